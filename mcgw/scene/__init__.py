@@ -1,1 +1,1 @@
-"""What is asked: a scene, its TOML file, and the cautions it deserves."""
+"""Scenes, their TOML files, and their cautions."""

@@ -1,4 +1,4 @@
-"""What Python gives as arguments: numbers with units, arrays, and objects, each with what to give instead."""
+"""Arguments given in Python: numbers with units, arrays and objects, with errors that say what to give."""
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -25,7 +25,7 @@ _MAKES = {
 
 
 def arguments(given: Mapping[str, Any], kinds: Mapping[str, Kind]) -> dict[str, Any]:
-    """Arguments of these kinds, as a table of keys is read.
+    """Read arguments of these kinds as a table of keys.
 
     Raises
     ------
@@ -41,12 +41,12 @@ def arguments(given: Mapping[str, Any], kinds: Mapping[str, Kind]) -> dict[str, 
 
 
 def argument(name: str, value: Any, unit: str) -> float:
-    """An argument that is a positive number, or a text with its unit; errors as of `arguments`."""
+    """Read a positive number, or a text with its unit; errors as in `arguments`."""
     return float(arguments({name: value}, {name: Number(unit)})[name])
 
 
 def as_toml(value: Any) -> Any:
-    """A Python value as a TOML file would give it: arrays, tuples and ranges as lists of plain numbers."""
+    """Convert a Python value to what TOML gives: arrays, tuples and ranges to lists of plain numbers."""
     if isinstance(value, str | bytes | bool | int | float):
         return value.item() if isinstance(value, np.generic) else value
     if isinstance(value, Mapping):
@@ -59,7 +59,7 @@ def as_toml(value: Any) -> Any:
 
 
 def check_object(call: str, value: Any, kind: type) -> None:
-    """See to it that a call is given what it takes.
+    """Check the type of an argument.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Where a scene asks the model beyond what it assumes: said, not forbidden. One list, for every command."""
+"""Cautions: where a scene goes beyond the assumptions of the model. One list for every command."""
 
 from collections.abc import Iterator
 
@@ -14,11 +14,11 @@ _DEEP = 1e-3  # share of the contacts compressed by more than their radius
 _CROWDED = 0.05  # real over nominal area: Gaussian maps and caps are far beyond 10 % of load there
 _STEEP = 0.3  # contact radius over summit radius from which a paraboloid is not a sphere and strain is large
 _NEIGHBOURS = 0.05  # constriction of neighbours over that of the spots
-_FEW = 30.0  # contacts a surface, below which single surfaces are far from Gaussian
+_FEW = 30.0  # contacts per surface; with fewer, single surfaces are far from Gaussian
 
 
 def cautions(scene: Scene) -> list[str]:
-    """What a reader should know before trusting the numbers of a scene, a line each."""
+    """Cautions about the numbers of a scene, one per line."""
     known = scene.validity()
     alone, together = "neither interact nor merge", "interact by a mean field, and do not merge"
     together = "do not merge" if scene.located else together
@@ -27,10 +27,10 @@ def cautions(scene: Scene) -> list[str]:
     conducts = scene.film is not None or "conductance" in scene.quantities
     conducting = [_neighbours, _thick_film, _no_answer] if conducts else []
     asked = [*unmeasured, _depth, _slope, _numbers, *conducting]
-    for caution in [_half, _numbers] if scene.located else asked:  # others ask what the mean surface feels
+    for caution in [_half, _numbers] if scene.located else asked:  # others use what the mean surface feels
         lines += caution(scene)
     if type(scene.law) is not Hertz and not scene.located:
-        from mcgw.scene.law_cautions import law_cautions  # who asks for Hertz needs no other law
+        from mcgw.scene.law_cautions import law_cautions  # Hertz is meant
 
         lines += law_cautions(scene)
     of_fit = [] if scene.fitted is None else scene.fitted.gravest
@@ -38,13 +38,13 @@ def cautions(scene: Scene) -> list[str]:
 
 
 def _crowd(scene: Scene) -> Iterator[str]:
-    """The area only falls with the separation: halving finds where it is small enough."""
+    """Caution about crowded spots; the area falls with the separation, so bisection finds where it ends."""
 
     def crowded(h: float) -> bool:
         return float(scene.theory.mean("area", h)) > _CROWDED * scene.surface.nominal_area
 
     separations = np.unique(scene.separations)
-    low, high = -1, len(separations)  # crowded, and not
+    low, high = -1, len(separations)  # crowded, not crowded
     while high - low > 1:
         middle = 0 if low < 0 else (low + high) // 2  # most scenes are sparse throughout
         low, high = (middle, high) if crowded(separations[middle]) else (low, middle)
@@ -98,7 +98,7 @@ def _model(scene: Scene) -> str:
 
 
 def _numbers(scene: Scene) -> Iterator[str]:
-    """Few contacts, another number of asperities than the surface has, and moduli that are none."""
+    """Cautions about few contacts, an unusual number of asperities, and negative moduli."""
     h = np.array(scene.separations)
     few = h[scene.n_asperities * scene.heights.sf(h) < _FEW]
     if few.size:
@@ -119,7 +119,7 @@ def _numbers(scene: Scene) -> Iterator[str]:
 
 
 def _neighbours(scene: Scene) -> Iterator[str]:
-    """By the factor of Cooper, Mikic and Yovanovich, where the scene asks for no interaction."""
+    """Caution about constriction by neighbours (Cooper, Mikic and Yovanovich), if there is no interaction."""
     h = float(min(scene.separations))
     fraction = float(scene.theory.mean("area_fraction", h))
     if scene.interaction is not None or not 0 < fraction < 1:
@@ -133,7 +133,7 @@ def _neighbours(scene: Scene) -> Iterator[str]:
 
 
 def _thick_film(scene: Scene) -> Iterator[str]:
-    """A film that may not be thin beside its spots; one on a current is nanometres thick."""
+    """Caution about a film that may not be thin beside its spots; electrical films are nanometres thick."""
     h, theory, film = np.array(min(scene.separations)), scene.theory, scene.film
     contacts = float(theory.mean("contacts", h))
     if film is None or not film.thermal or not film.film_resistance or not contacts > 0:
@@ -147,7 +147,7 @@ def _thick_film(scene: Scene) -> Iterator[str]:
 
 
 def _no_answer(scene: Scene) -> Iterator[str]:
-    """Where the correction of the mean plane exceeds what the spots resist."""
+    """Caution where the correction of the mean plane exceeds the resistance of the spots."""
     name = "conductance" if scene.film is None else "conductance_si"
     if (other := scene.series(name)) >= 0:
         return

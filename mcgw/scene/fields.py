@@ -1,4 +1,4 @@
-"""What follows of the values of a scene, and the heights that matter to it."""
+"""Quantities derived from the values of a scene, and the range of heights that matters."""
 
 import math
 from dataclasses import replace
@@ -27,27 +27,27 @@ if TYPE_CHECKING:
     from analytic.joint import Gap
 
 _CLEARLY = 1e-6  # no rounding makes such a modulus negative
-_BEYOND = 1e-16  # share of the heights that lie above what is checked for negative moduli
+_BEYOND = 1e-16  # share of heights above those checked for negative moduli
 _MARGIN = 12.0  # standard deviations of a surface's own balance
-_ROUNDED = 16.0  # of what is felt, so that cells do not hang on the last digit of an integral
+_ROUNDED = 16.0  # rounding of felt separations, so that cells do not depend on the last digit of an integral
 
 
 class LeftOut(int):
-    """A whole number that nobody gave: it equals any other, but is found anew when the scene changes."""
+    """An integer that was not given: it equals the same number, but is found anew when the scene changes."""
 
 
 @values_of_scene
 class Fields(Values):
-    """The same with what follows of them."""
+    """Values of a scene with what follows from them."""
 
     @property
     def left_out(self) -> tuple[str, ...]:
-        """Which of the numbers that depend on something else nobody gave: n_asperities, seed."""
+        """Which of n_asperities and seed were not given."""
         return tuple(key for key in ("n_asperities", "seed") if isinstance(getattr(self, key), LeftOut))
 
     @property
     def touching(self) -> float:
-        """Asperities of a surface that are expected above the lowest separation."""
+        """Expected number of asperities of a surface above the lowest separation."""
         return self.n_asperities * share_above(self.heights, float(self.lowest))
 
     @property
@@ -57,7 +57,7 @@ class Fields(Values):
 
     @property
     def theory(self) -> Model:
-        """The exact model of this very scene: its modulus, height law, contact law, history, asperities."""
+        """The exact model of this scene: modulus, heights, contact law, history, asperities."""
         if self.joint is not None:
             return self._joined
         return self._alone if self.interaction is None else self._interacting
@@ -98,7 +98,7 @@ class Fields(Values):
 
     @cached_property
     def filled(self) -> "Gap | None":
-        """What gas in the gap of the joint conducts; None without one."""
+        """Conduction by gas in the gap of the joint; None without one."""
         if self.joint is None:
             return None
         moments = None if self.fitted is None else self.fitted.moments
@@ -106,39 +106,39 @@ class Fields(Values):
         return filled
 
     def quantity(self, name: str) -> Quantity:
-        """A quantity with the unit it has here, where heat or current is conducted."""
+        """A quantity with its unit in this scene, which conducts heat or current."""
         q = quantity_of(name)
         return replace(q, unit=q.unit.split(" or ")[-1 if self.thermal else 0]) if " or " in q.unit else q
 
     @property
     def thermal(self) -> bool:
-        """Whether it is heat that is conducted."""
+        """Whether heat is conducted."""
         return self.film is not None and self.film.thermal
 
     @property
     def from_mean_plane(self) -> bool:
-        """Whether nominal separations count from the mean of the deformed plane, as gaps do."""
+        """Whether nominal separations are measured from the mean of the deformed plane, as gaps are."""
         return self.interaction is not None and self.interaction.reference == "mean-plane"
 
     @property
     def nominal(self) -> bool:
-        """Whether its separations are nominal ones, at which each surface finds its own balance."""
+        """Whether separations are nominal: each surface finds its own balance there."""
         return self.interaction is not None and self.interaction.nominal
 
     @property
     def located(self) -> bool:
-        """Whether its summits have places, at which they press each other down."""
+        """Whether summits have positions, at which they press each other down."""
         return self.interaction is not None and self.interaction.located
 
     @property
     def compliance(self) -> float:
-        """How much farther down the asperities feel the plane for each newton on the surface, m/N."""
+        """How far a load on the surface moves the plane away from the asperities, m/N."""
         if self.interaction is None:
             return 0.0
         return self.interaction.compliance(self.surface, float(self.n_asperities))
 
     def series(self, quantity: str) -> float:
-        """What the half-space adds to the inverse of a sum over spots, over its unit."""
+        """What the half-space adds to the inverse of a sum over spots, in units of that sum."""
         if self.interaction is None:
             return 0.0
         rho = 1.0 if self.film is None else self.film.rho
@@ -151,12 +151,12 @@ class Fields(Values):
 
     @property
     def hertzian(self) -> bool:
-        """Whether every sum is one of powers of the penetration, as Hertz's law has them."""
+        """Whether every sum is over powers of the penetration, as in Hertz's law."""
         return type(self.law) is Hertz and self.film is None
 
     @property
     def exact(self) -> bool:
-        """Whether every value is asked to its last digits, as it is where nothing else is said."""
+        """Whether every value is computed to its last digits, the default."""
         return self.accuracy <= EXACT
 
     @property
@@ -166,17 +166,17 @@ class Fields(Values):
 
     @property
     def ways(self) -> Ways:
-        """The ways to its separations that quantities are about."""
+        """Loading or unloading: the ways that its quantities need."""
         conductance = None if self.film is None else self.film.on(self.surface)
         return Ways(self.contact, self.unload_from, conductance)
 
     def branch_of(self, quantity: str) -> Branch:
-        """The way to its separation that a quantity is about."""
+        """The way of a quantity, loading or unloading."""
         return self.ways.of(quantity)
 
     @property
     def all_separations(self) -> tuple[float, ...]:
-        """Every separation at which loads are summed, once and increasing: those shifted sideways too."""
+        """Every separation at which loads are summed, increasing, with those shifted sideways."""
         if self.tangential is None:
             return tuple(sorted(set(self.separations)))
         shifts = self.tangential.shifts(self.surface).tolist()
@@ -184,7 +184,7 @@ class Fields(Values):
 
     @property
     def shapes(self) -> dict[str, tuple[int, ...]]:
-        """Shape of what one surface has of each table that an ensemble of the scene holds."""
+        """Shape of each table of an ensemble, for one surface."""
         shapes: dict[str, tuple[int, ...]] = {name: (len(self.separations),) for name in self.quantities}
         if self.tangential is not None:
             shapes["tangential_load"] = (len(self.separations), len(self.tangential.displacements))
@@ -196,19 +196,19 @@ class Fields(Values):
 
     @property
     def of_joint(self) -> tuple[str, ...]:
-        """The conductances of a joint besides those of its spots."""
+        """Conductances of a joint other than those of its spots."""
         if self.joint is None:
             return ()
         return tuple(name for name, q in JOINT.items() if self.unload_from is not None or not q.unloading)
 
     @property
     def answers(self) -> tuple[str, ...]:
-        """What it is asked for, sums and conductances of the joint."""
+        """Its answers: sums and conductances of the joint."""
         return (*self.quantities, *self.of_joint)
 
     @property
     def other_separations(self) -> tuple[str, ...]:
-        """What an ensemble says of separations where asperities press each other down."""
+        """Further separations of an ensemble whose asperities press each other down."""
         if self.interaction is None or self.interaction.located:
             return ()
         if self.interaction.nominal:
@@ -218,12 +218,12 @@ class Fields(Values):
 
     @property
     def width(self) -> int:
-        """Numbers of one surface in all these tables."""
+        """Count of numbers of one surface in all tables."""
         return sum(math.prod(shape) for shape in self.shapes.values())
 
     @property
     def lowest(self) -> float:
-        """The lowest separation there is or was that asperities feel: what lies below it never touches."""
+        """Lowest separation that asperities ever feel: those below it never touch."""
         lowest = self._felt if self.nominal else min(self.separations)
         return lowest if self.unload_from is None else min(lowest, self.unload_from)
 
@@ -241,13 +241,13 @@ class Fields(Values):
 
     @property
     def highest(self) -> float:
-        """Height that hardly an asperity exceeds, above every separation."""
+        """Height that hardly any asperity exceeds, above every separation."""
         top = _ends(self.heights)[1]
         return min(max(top, max(self.separations) + 1), self.heights.support[1])
 
     @property
     def least(self) -> float:
-        """Height that hardly an asperity falls below."""
+        """Height that hardly any asperity is below."""
         return _ends(self.heights)[0]
 
     def negative_above(self, h: float) -> float | None:
@@ -265,12 +265,12 @@ class Fields(Values):
 
 @kept(64)  # the same for all scenes of a sweep
 def share_above(heights: HeightLaw, h: float) -> float:
-    """Share of the heights of a law that lie above one."""
+    """Share of a height law above a height."""
     return float(heights.sf(np.array(h)))
 
 
-@kept(64)  # every scene asks, a few times
+@kept(64)  # needed by every scene, a few times
 def _ends(heights: HeightLaw) -> tuple[float, float]:
-    """Heights that hardly an asperity of a law falls below, or exceeds."""
+    """Heights that hardly any asperity of a law is below or above."""
     share = np.array(_BEYOND)
     return float(heights.ppf(share)), float(heights.isf(share))

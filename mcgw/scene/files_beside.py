@@ -1,4 +1,4 @@
-"""Tables in files beside a scene: moduli over heights, heights, and summits with their radii."""
+"""Files beside a scene: moduli against height, heights, summits with radii."""
 
 import csv
 import math
@@ -22,7 +22,7 @@ _NAMED = re.compile(r"\s*(\w+)\s*(?:[(\[/ ]\s*([^()\[\]]*?)\s*[)\]]?)?\s*")  # z
 def read_grading(path: Path, surface: Surface) -> Table:
     """A grading from a CSV file of bounded length, as `analytic.Table.from_csv` reads it.
 
-    Units may stand behind the names, as ``z (um), E_star (GPa)``, or behind numbers, as ``61.2 GPa``.
+    Units may follow the names, ``z (um), E_star (GPa)``, or the numbers, ``61.2 GPa``.
 
     Raises
     ------
@@ -37,7 +37,7 @@ def read_grading(path: Path, surface: Surface) -> Table:
 
 
 def _in_si(lines: list[str]) -> Iterator[str]:
-    """The lines of a table with its units worked in; what is no number with a unit stays, to be refused."""
+    """Lines of a table in SI; text that is no number stays, to be refused later."""
     header, *rows = [row for row in csv.reader(lines) if row] or [[]]
     named = [
         (match[1], match[2] or "") if (match := _NAMED.fullmatch(name)) else (name, "") for name in header
@@ -54,7 +54,7 @@ def _in_si(lines: list[str]) -> Iterator[str]:
 
 
 def _cell(text: str, name: str, unit: str) -> str:
-    """A number in the unit of its column, unless it has one of its own."""
+    """A number in its own unit or in that of its column."""
     for written in (f"{text}{unit}", text):
         if math.isfinite(value := signed(written, _COLUMNS[name])):
             return repr(value)

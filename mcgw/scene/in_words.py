@@ -1,4 +1,4 @@
-"""A scene in words: its laws by their names and numbers, and what it asks beyond Hertz and exact values."""
+"""A scene in words: its laws with their numbers, and what differs from Hertz and exact values."""
 
 from collections.abc import Mapping
 from dataclasses import MISSING, fields, is_dataclass
@@ -13,11 +13,11 @@ from mcgw.scene.stop_rule import rel_err_text
 
 _PLANES = {"body": "undeformed body", "mean-plane": "mean deformed plane"}
 _PLANES["located"] = "mean deformed plane, summits at their places"
-_MOST = 4  # numbers of a list that are all said
+_MOST = 4  # longest list that is printed whole
 
 
 def law_text(law: Any) -> str:
-    """A law by its name and the numbers that were given for it.
+    """Name of a law with the numbers given for it.
 
     Examples
     --------
@@ -49,7 +49,7 @@ def _listed(given: Mapping[str, Any]) -> str:
 
 
 def _short(value: Any) -> str:
-    """A list of many numbers by their ends: no text that is cut holds half a number."""
+    """A long list by its ends, so that no number is cut."""
     if isinstance(value, tuple) and all(isinstance(x, float) for x in value):
         if len(value) > _MOST:
             return f"{len(value)} from {value[0]:.4g} to {value[-1]:.4g}"
@@ -58,7 +58,7 @@ def _short(value: Any) -> str:
 
 
 def conducting_text(film: Film) -> str:
-    """What spots conduct through, heat or current as it was given."""
+    """Conductivities or resistivities of the spots, as given."""
     if film.conductivities is None:
         held, unit = f"resistivity {film.resistivity:g} ohm m", "ohm m^2"
     else:
@@ -69,7 +69,7 @@ def conducting_text(film: Film) -> str:
 
 
 def contact_facts(scene: Fields) -> list[tuple[str, str]]:
-    """A word and what holds, only for what is not Hertz's contact pressed once; for reports of any kind."""
+    """Facts, by name, that differ from Hertz's contact pressed once."""
     facts = []
     if type(scene.law) is not Hertz:
         facts.append(("contact law", law_text(scene.law)))
@@ -95,7 +95,7 @@ def contact_facts(scene: Fields) -> list[tuple[str, str]]:
 
 
 def joint_text(scene: Fields) -> str:
-    """What fills the gap; nobody gave it: spots only, as in vacuum."""
+    """What fills the gap; by default nothing: spots only, as in vacuum."""
     if scene.joint is None or scene.filled is None or (gas := scene.filled.gas) is None:
         return "spots only (vacuum)"
     name = scene.joint.gas if isinstance(scene.joint.gas, str) else "gas"
@@ -106,7 +106,7 @@ def joint_text(scene: Fields) -> str:
 
 
 def accuracy_facts(scene: Fields) -> list[tuple[str, str]]:
-    """A word and what holds, only for what is not exact; for reports of any kind."""
+    """Facts, by name, about values that are not exact."""
     facts = []
     if not scene.exact:
         facts.append(("accuracy", f"{scene.accuracy:g} of every value of a surface"))
@@ -116,7 +116,7 @@ def accuracy_facts(scene: Fields) -> list[tuple[str, str]]:
 
 
 def sheet_of(scene: Fields) -> Sheet:
-    """What is shown of a scene, at most a dozen lines."""
+    """Display of a scene, at most a dozen lines."""
     x = {key: f"{key} = {getattr(scene.surface, key):g} {unit}" for key, unit in SURFACE_UNITS.items()}
     h, among = scene.separations, f"{len(scene.separations)} from " if len(scene.separations) > 1 else ""
     ends = " to ".join(f"{end:g}" for end in sorted({min(h), max(h)}))

@@ -1,4 +1,4 @@
-"""What is wrong with a scene whose asperities press each other down."""
+"""Mistakes in scenes with asperity interaction."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -13,7 +13,7 @@ _MOST_LOCATED = 20_000
 
 
 def interaction_mistakes(scene: Fields) -> Iterator[str]:
-    """A line for each."""
+    """One line for each mistake."""
     if scene.located:
         yield from _located(scene)
         return
@@ -21,7 +21,7 @@ def interaction_mistakes(scene: Fields) -> Iterator[str]:
 
 
 def _located(scene: Fields) -> Iterator[str]:
-    """What summits at their places do not know."""
+    """Features that summits with positions do not support."""
     key = 'interaction.reference = "located"'
     if not promise_of(scene.sampler).places:
         yield f'ensemble.sampler = "{scene.sampler}": {key} takes all asperities of a surface; take "direct"'
@@ -46,12 +46,12 @@ def _located(scene: Fields) -> Iterator[str]:
 
 
 def _adheres(scene: Fields) -> bool:
-    """Whether there is a pull at first touch."""
+    """Whether asperities adhere at first touch."""
     return float(np.min(scene.contact.load(0, np.zeros(1), np.ones(1)))) < 0
 
 
 def _independent(scene: Fields) -> Iterator[str]:
-    """What does not hang on where the balance is."""
+    """Mistakes that do not depend on where the balance is."""
     assert scene.interaction is not None
     if "load" not in scene.quantities:
         yield 'interaction: separations depend on the load; add "load" to contact.quantities'
@@ -67,7 +67,7 @@ def _independent(scene: Fields) -> Iterator[str]:
 
 
 def _nominal(scene: Fields) -> Iterator[str]:
-    """What a search for the balance of each surface does not know."""
+    """Features that the search for each surface's balance does not support."""
     key = 'interaction.at = "nominal"'
     promise = promise_of(scene.sampler)
     if not promise.finds_balance:
@@ -93,7 +93,7 @@ def _nominal(scene: Fields) -> Iterator[str]:
 
 
 def _balance(scene: Fields) -> Iterator[str]:
-    """Separations at which the plane sinks faster than it is pressed."""
+    """Mistake: separations at which the plane sinks faster than it is pressed."""
     theory: Any = scene.theory
     h = np.unique(scene.separations)
     try:

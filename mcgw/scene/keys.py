@@ -1,4 +1,4 @@
-"""Every key of a scene, a row each: reader, writer, checks, schema, page and ``--set`` come from here."""
+"""Every key of a scene, one row each: source of reader, writer, checks, schema, page and ``--set``."""
 
 import math
 from typing import TYPE_CHECKING, Any

@@ -1,4 +1,4 @@
-"""The kinds of values that keys have: numbers with units, words, lists, tables."""
+"""Kinds of values of keys: numbers with units, words, lists, tables."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -10,7 +10,7 @@ from mcgw.formats.sheet import brief
 from mcgw.scene.section import Key, Kind, Section, nearest, table_shape
 
 _MOST_WHOLE = 10**30  # so that no message has hundreds of digits
-# Which unit does is checked by `parse`, which knows more spellings than a pattern should.
+# Units are checked by `parse`, which knows more spellings than a pattern could.
 _WITH_UNIT = {
     "type": "string",
     "pattern": r"^\s*\+?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*([^\d\s.].*|1/.*)?$",
@@ -19,16 +19,16 @@ _WITH_UNIT = {
 
 @dataclass(frozen=True, slots=True)
 class Number(Kind):
-    """A finite number; with a unit also a text, as "1.37 um".
+    """A finite number; with a unit also a text such as "1.37 um".
 
     Parameters
     ----------
     unit : str, optional
         Of `mcgw.formats.numbers`.
     low, high : float, optional
-        Its range; 0 itself is outside if `low` is 0 and `zero` false.
+        Its range.
     zero : bool, optional
-        See there.
+        Whether 0 is allowed if `low` is 0.
     infinite : bool, optional
         Whether it may be infinite.
     advice : str, optional
@@ -43,7 +43,7 @@ class Number(Kind):
     advice: str = ""
 
     def value(self, given: Any) -> float | None:
-        """The number, None if it is no such one."""
+        """The number, or None if it does not fit."""
         try:
             if self.unit and isinstance(given, str):
                 number = parse(given, self.unit)
@@ -77,7 +77,7 @@ class Number(Kind):
         return f"give it in {self.unit}" if self.unit else "give it"
 
     def shape(self) -> dict[str, Any]:
-        """Its range, a text with a unit, and null, which editors see where infinity stands."""
+        """Its range, a text with a unit, or null, which editors show for infinity."""
         shape: dict[str, Any] = {"type": "number"}
         if self.low > -math.inf:
             shape["exclusiveMinimum" if self.low == 0 and not self.zero else "minimum"] = self.low
@@ -89,7 +89,7 @@ class Number(Kind):
 
 @dataclass(frozen=True, slots=True)
 class Whole(Kind):
-    """A whole number from `least` to `most`; 1e6 is one, 1.5 and true are not."""
+    """An integer from `least` to `most`; 1e6 is one, 1.5 and true are not."""
 
     least: int = 0
     most: int = _MOST_WHOLE
@@ -115,7 +115,7 @@ class Whole(Kind):
 
 @dataclass(frozen=True, slots=True)
 class Word(Kind):
-    """One of a few words, or of those that are found when they are asked for."""
+    """One of a few words; a function may find them when needed."""
 
     words: tuple[str, ...] | Callable[[], tuple[str, ...]]
     advice: str = ""
@@ -171,7 +171,7 @@ class Flag(Kind):
 
 @dataclass(frozen=True, slots=True)
 class List(Kind):
-    """A list of values of one kind, at least and at most so many, perhaps each once."""
+    """A list of values of one kind, with bounds on their number, perhaps without repeats."""
 
     item: Kind
     least: int = 1
@@ -180,7 +180,7 @@ class List(Kind):
     once: bool = False
 
     def read(self, section: Section, name: str, value: Any) -> list[Any] | None:
-        """Read all of them; one that is wrong spoils the list."""
+        """Read all values; one mistake makes the list None."""
         reason = ""
         if isinstance(value, list) and self.least <= len(value) <= self.most:
             of, found = Section(section.name, {}, [], {}), []
@@ -206,14 +206,14 @@ class List(Kind):
 
 @dataclass(frozen=True, slots=True)
 class Table(Kind):
-    """A table in braces, or the object that its keys `make`, where they make one."""
+    """A table in braces, or the object that its keys `make`."""
 
     rows: tuple[Key, ...]
     advice: str
     make: type | None = None
 
     def read(self, section: Section, name: str, value: Any) -> Any:
-        """Read its keys, and make the object of them."""
+        """Read its keys and make the object."""
         if self.make and isinstance(value, self.make):
             return value
         if not isinstance(value, dict):
@@ -259,13 +259,13 @@ class ByName(Kind):
 
 @dataclass(frozen=True, slots=True)
 class Either(Kind):
-    """A list, a table in braces, or a number or word, whichever stands there: the kinds in this order."""
+    """A list, a table in braces, or a number or word: the kinds in this order."""
 
     kinds: tuple[Kind, ...]
     advice: str = ""
 
     def read(self, section: Section, name: str, value: Any) -> Any:
-        """Read it as the kind that it looks like; the last is what is left."""
+        """Read it as the kind that it looks like; the last is the fallback."""
         for kind in self.kinds:
             if isinstance(value, _LOOKS[type(kind)]):
                 return kind.read(section, name, value)

@@ -1,4 +1,4 @@
-"""Where a contact law is asked beyond what it was made for, and what other laws that yield would give."""
+"""Cautions about contact laws: use beyond their range, and what other plastic laws would give."""
 
 import math
 from collections.abc import Iterator
@@ -23,23 +23,23 @@ from mcgw.scene.scene import Scene
 
 _DEEP = 1e-3  # share of the contacts beyond the range of a fit
 _FITTED, _UNLOADED = 110.0, 170.0  # delta/delta_c up to which Kogut-Etsion, and its unloading, were fitted
-_STRAINS, _WIDEST = (1e-3, 1e-2), 0.4  # S_y/E* and a/R of Jackson and Green's finite elements
+_STRAINS, _WIDEST = (1e-3, 1e-2), 0.4  # largest S_y/E* and a/R of Jackson and Green's finite elements
 _QUANTILES = 10_000
-_REACH = 3e-10  # m, distance over which surfaces attract: about that of neighbouring atoms
+_REACH = 3e-10  # m, range of attraction: about an atomic distance
 _MAUGIS = 2 * 16 / (9 * np.sqrt(3)) * (9 / (16 * np.pi)) ** (1 / 3)  # his number over Tabor's: 1.157
-_STICKY, _STIFF = 5.0, 0.1  # Tabor's number from which JKR holds, and up to which DMT does
-_POISSON = 0.3  # where the law of the scene has none
-_RATIOS = (1 / 3, 3.0)  # of moduli for which a coating's perturbation is good
+_STICKY, _STIFF = 5.0, 0.1  # JKR holds above the first Tabor number, DMT below the second
+_POISSON = 0.3  # if the law of the scene has none
+_RATIOS = (1 / 3, 3.0)  # ratio of moduli for which the perturbation of a coating holds
 
 
 def law_cautions(scene: Scene) -> list[str]:
-    """What a reader should know of the contact law, a line each; none under Hertz's."""
+    """Cautions about the contact law, one per line; none for Hertz."""
     found = [_choice, _yielded, _jumps, _gain, _fitted, _strain, _radius, _coating, _adhesion]
     return [line for caution in found for line in caution(scene)]
 
 
 def _choice(scene: Scene) -> Iterator[str]:
-    """How far laws that are meant alike differ."""
+    """State how much comparable laws differ."""
     others = other_laws(scene)
     if others is None:
         return
@@ -53,7 +53,7 @@ def _choice(scene: Scene) -> Iterator[str]:
 
 
 def _yielded(scene: Scene) -> Iterator[str]:
-    """Contacts that are beyond elasticity."""
+    """State how many contacts have yielded."""
     h = scene.lowest
     if not isinstance(scene.law, ElasticPlastic) or not scene.heights.sf(np.array(h)) > 0:
         return
@@ -67,7 +67,7 @@ def _yielded(scene: Scene) -> Iterator[str]:
 
 
 def _jumps(scene: Scene) -> Iterator[str]:
-    """Stiffness is not the slope of the load."""
+    """Say that stiffness is not the slope of the load."""
     if not isinstance(scene.law, ElasticPlastic):
         return
     line = f'contact.law = "{scene.law.name}": stiffness is that of initial unloading, 2 E*(s) a per contact'
@@ -78,7 +78,7 @@ def _jumps(scene: Scene) -> Iterator[str]:
 
 
 def _gain(scene: Scene) -> Iterator[str]:
-    """The fits of loading and unloading do not quite belong together."""
+    """State the work gained because the fits of loading and unloading do not quite match."""
     if isinstance(scene.law, KogutEtsion) and scene.unload_from is not None and scene.law.bridge is None:
         share = _share(scene, 1.0) - _share(scene, 1.25)
         if share > 0:
@@ -104,17 +104,17 @@ def _fitted(scene: Scene) -> Iterator[str]:
 
 
 def _share(scene: Scene, multiple: float) -> float:
-    """Contacts at the deepest separation that are deeper than a multiple of the critical penetration."""
+    """Share of contacts deeper than a multiple of the critical penetration, at the smallest separation."""
     h, law = scene.lowest, scene.contact
     assert isinstance(law, ElasticPlastic)
     if not scene.heights.sf(np.array(h)) > 0:
         return 0.0
-    s = scene.heights.isf((np.arange(_QUANTILES) + 0.5) / _QUANTILES, h)  # of those that touch
+    s = scene.heights.isf((np.arange(_QUANTILES) + 0.5) / _QUANTILES, h)  # share among contacts
     return float(np.mean(s - h > multiple * law.delta_c(scene.modulus(s))))
 
 
 def _strain(scene: Scene) -> Iterator[str]:
-    """Outside of the materials of the finite elements."""
+    """Caution about materials outside those of the finite elements."""
     law: Any = scene.contact
     if not isinstance(law, JacksonGreen):
         return
@@ -129,7 +129,7 @@ def _strain(scene: Scene) -> Iterator[str]:
 
 
 def _radius(scene: Scene) -> Iterator[str]:
-    """Contacts wider than those of the finite elements."""
+    """Caution about contacts wider than those of the finite elements."""
     law = scene.contact
     if not isinstance(law, JacksonGreen):
         return
@@ -172,7 +172,7 @@ def _adhesion(scene: Scene) -> Iterator[str]:
 
 @dataclass(frozen=True)
 class OtherLaws:
-    """Means under other laws over those under the law of a scene, at one separation.
+    """Means under other laws divided by those under the law of a scene, at one separation.
 
     Parameters
     ----------
@@ -191,13 +191,13 @@ class OtherLaws:
 
     @property
     def spread(self) -> tuple[float, float]:
-        """Least and largest ratio of loads among the laws that yield, this one's being 1."""
+        """Smallest and largest ratio of loads among plastic laws, relative to this one."""
         ratios = [1.0, *(ratio for name, ratio in self.load.items() if name != Hertz.name)]
         return min(ratios), max(ratios)
 
 
 def other_laws(scene: Scene) -> OtherLaws | None:
-    """Look at the other laws; None where the scene's asperities do not yield, or nothing touches."""
+    """Compare other laws; None if asperities do not yield or nothing touches."""
     law = scene.contact
     if not isinstance(law, ElasticPlastic) or law.critical is None:
         return None
@@ -219,7 +219,7 @@ def other_laws(scene: Scene) -> OtherLaws | None:
 
 
 def _alike(scene: Scene, critical: float) -> Iterator[ContactLaw]:
-    """The other laws that yield at this penetration, and Hertz's."""
+    """Other laws that yield at this penetration, and Hertz's."""
     poisson = getattr(scene.law, "poisson", None)
     poisson = _POISSON if poisson is None else poisson
     plain = JacksonGreen(yield_strain=1.0, critical=critical, poisson=poisson)

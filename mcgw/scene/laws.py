@@ -1,4 +1,4 @@
-"""Gradings, height laws and contact laws: made of the keys of their table, and written as these."""
+"""Gradings, height laws and contact laws, read from the keys of their tables and written back."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, asdict, fields
@@ -26,9 +26,9 @@ _LAW_OF_HEIGHTS = ("support", "breaks", "span", "log_ratio", "pdf")
 
 
 def _made(section: Section, law: str | None, make: Callable[..., Any] | None) -> Any:
-    """What the keys of a law make; mistakes are noted in the section, and give None."""
+    """Make a law from its keys; mistakes are noted in the section and give None."""
     if law is None or make is None:
-        section.known(*section.table)  # whose keys they are is not known
+        section.known(*section.table)  # unknown law: its keys cannot be checked
         return None
     names, before = [row.name for row in section.rows.values() if law in row.laws], len(section.problems)
     given = {name: value for name, value in section.read_all(names).items() if value is not None}
@@ -41,7 +41,7 @@ def _made(section: Section, law: str | None, make: Callable[..., Any] | None) ->
 
 
 def _table(table: str, law: str, part: Any) -> dict[str, Any]:
-    """The keys that give a part back."""
+    """Keys that describe a part."""
     found = {key: getattr(part, key, None) for key, row in KEYS[table].items() if law in row.laws}
     return {"law": law} | {key: _plain(value) for key, value in found.items() if value is not None}
 
@@ -56,7 +56,7 @@ def _plain(value: Any) -> Any:
 
 
 def grading_of(section: Section, surface: Surface | None, folder: Path) -> Grading:
-    """Read the table [grading]; what is wrong is noted, and gives a homogeneous one."""
+    """Read the table [grading]; mistakes are noted and give a homogeneous one."""
 
     def table(file: str | None = None, s: Any = (), ratio: Any = ()) -> Table | None:
         try:
@@ -72,7 +72,7 @@ def grading_of(section: Section, surface: Surface | None, folder: Path) -> Gradi
 
 
 def grading_given(section: Section, given: Any) -> Grading:
-    """A grading of Python, or any function of an array of heights."""
+    """Accept a grading, or any function of an array of heights."""
     if isinstance(given, type) or not callable(given):
         advice = "give mcgw.Exponential(gamma), mcgw.Table(s, ratio), or a function of an array of heights"
         section.fail("grading", given, advice)
@@ -83,7 +83,7 @@ def grading_given(section: Section, given: Any) -> Grading:
 
 
 def grading_table(grading: Grading) -> dict[str, Any]:
-    """The table [grading] of one that is data, read again the same."""
+    """Write the table [grading] of a grading that is data; it reads back the same."""
     (law,) = [name for name, kind in GRADINGS.items() if isinstance(grading, kind)]
     return _table("grading", law, grading)
 
@@ -92,7 +92,7 @@ def grading_table(grading: Grading) -> dict[str, Any]:
 
 
 def heights_of(section: Section, folder: Path) -> HeightLaw | None:
-    """Read the table [heights]; what is wrong is noted, and gives None."""
+    """Read the table [heights]; mistakes are noted and give None."""
 
     def table(
         heights: Any = None, file: str | None = None, resample: bool = True, s: Any = (), share: Any = ()
@@ -113,7 +113,7 @@ def heights_of(section: Section, folder: Path) -> HeightLaw | None:
 
 
 def _of_scipy(name: str = "norm", shapes: Mapping[str, float] | None = None) -> HeightLaw:
-    import scipy.stats  # takes half a second, which other scenes need not wait
+    import scipy.stats  # takes half a second; other scenes do not need it
 
     distribution = getattr(scipy.stats, name, None)
     if not isinstance(distribution, scipy.stats.rv_continuous):
@@ -126,7 +126,7 @@ def _of_scipy(name: str = "norm", shapes: Mapping[str, float] | None = None) -> 
 
 
 def heights_given(section: Section, given: Any) -> HeightLaw:
-    """A height law of Python, or a frozen distribution of scipy.stats."""
+    """Accept a height law, or a frozen distribution of scipy.stats."""
     if hasattr(given, "dist") and hasattr(given, "kwds"):
         try:
             return ScipyHeights(given)
@@ -144,12 +144,12 @@ def heights_given(section: Section, given: Any) -> HeightLaw:
 
 
 def heights_table(heights: HeightLaw, file: str | None = None) -> dict[str, Any]:
-    """The table [heights] of a height law, read again the same; measured heights by the name of their file.
+    """Write the table [heights] of a height law; measured heights by the name of their file.
 
     Raises
     ------
     SceneError
-        If it is a class of the user.
+        If the law is a class of the user.
     """
     if type(heights) is MeasuredHeights:
         held = {"heights": list(heights.heights)} if file is None else {"file": file}
@@ -162,7 +162,7 @@ def heights_table(heights: HeightLaw, file: str | None = None) -> dict[str, Any]
         name = getattr(own, "name", None)
         if name and type(own) is type(getattr(scipy.stats, name, None)):
             return {"law": "scipy", "name": name, "shapes": heights.shapes}
-    elif type(heights) in HEIGHTS.values():  # a class made of one may do more
+    elif type(heights) in HEIGHTS.values():  # a subclass may do more
         (law,) = [name for name, kind in HEIGHTS.items() if type(heights) is kind]
         return _table("heights", law, heights)
     raise SceneError(
@@ -177,13 +177,13 @@ def heights_table(heights: HeightLaw, file: str | None = None) -> dict[str, Any]
 
 
 def contact_law(section: Section) -> ContactLaw:
-    """Read the law and its constants; mistakes are noted in the section, and give Hertz's."""
+    """Read the law and its constants; mistakes are noted in the section and give Hertz's."""
     if section.table.get("law", Hertz.name) == Hertz.name:
         section.known("law")
         return Hertz()
     law = section.read("law")
     if law is None:
-        section.known(*section.table)  # whose constants they are is not known
+        section.known(*section.table)  # unknown law: its constants cannot be checked
         return Hertz()
     names, needed, make = _constants_of(law)
     before = len(section.problems)
@@ -201,7 +201,7 @@ def contact_law(section: Section) -> ContactLaw:
 
 
 def _constants_of(law: str) -> tuple[Sequence[str], Sequence[str], Callable[..., ContactLaw]]:
-    """Names of the constants of a law, of those that it needs, and what makes it of them."""
+    """Constants of a law, those that are required, and the function that makes it."""
     if law == "custom":
         names = ("critical", "limits", "load", "area")
         return names, names, _custom
@@ -212,7 +212,7 @@ def _constants_of(law: str) -> tuple[Sequence[str], Sequence[str], Callable[...,
 
 
 def read_law(given: ContactLaw | Mapping[str, Any]) -> ContactLaw:
-    """A law, or one by the keys that it has in a file.
+    """Read a law, or one given by its keys in a file.
 
     Raises
     ------
@@ -229,7 +229,7 @@ def read_law(given: ContactLaw | Mapping[str, Any]) -> ContactLaw:
 
 
 def law_of_keys(given: Mapping[str, Any], problems: list[str]) -> ContactLaw:
-    """The same of keys alone; mistakes are noted, and give Hertz's."""
+    """Read a law from keys; mistakes are noted and give Hertz's."""
     section = Section("contact", {"law": None, **given}, problems, KEYS["contact"])
     law = contact_law(section)
     section.finish()
@@ -237,7 +237,7 @@ def law_of_keys(given: Mapping[str, Any], problems: list[str]) -> ContactLaw:
 
 
 def contact_law_table(law: ContactLaw) -> dict[str, Any]:
-    """The keys that give the law back; none for Hertz's."""
+    """Keys that describe the law; none for Hertz's."""
     if law.name != "custom":
         return {} if type(law) is Hertz else {"law": law.name, **law.given()}
     custom: Any = law
@@ -249,7 +249,7 @@ def contact_law_table(law: ContactLaw) -> dict[str, Any]:
 
 
 def _custom(critical: float, limits: list[float], load: Any, area: Any) -> ContactLaw:
-    """What a contact law of a Python script has become in a file."""
+    """Explain what a contact law of a Python script becomes in a file."""
     from analytic.laws.custom import CustomLaw, RootSeries
 
     def series(key: str, pieces: Any) -> list[RootSeries]:

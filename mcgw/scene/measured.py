@@ -1,6 +1,6 @@
-"""What was measured of the surface that a scene was made of.
+"""Measurements of the surface behind a scene.
 
-Of the fit of a map or of profiles the table ``[fitted]``; and how well the parameters are known, by
+The table ``[fitted]``, from the fit of a map or profiles, and the uncertainty of the parameters,
 ``uncertainty`` under ``[surface]``.
 """
 
@@ -57,21 +57,21 @@ class Fitted:
         return SpectralMoments(self.m0, self.m2, self.m4)
 
     def off(self, surface: Surface) -> float:
-        """Largest ratio between eta, R and sigma of a surface and those that the moments tell, at least 1."""
+        """Largest ratio, at least 1, of eta, R and sigma of a surface to those from the moments."""
         m = self.moments
         pairs = ((surface.eta, m.eta), (surface.radius, m.radius), (surface.sigma, m.sigma))
         return max(max(a, b) / min(a, b) if min(a, b) > 0 else math.inf for a, b in pairs)
 
     @property
     def gravest(self) -> list[str]:
-        """The cautions that people are shown, three at most."""
+        """The cautions to display, at most three."""
         shown, more = [f"fit: {line}" for line in self.cautions[:_SHOWN]], len(self.cautions) - _SHOWN
         if more > 0:
             shown[-1] += f" (and {more} more under [fitted] in the scene)"
         return shown
 
     def lines(self) -> tuple[str, str]:
-        """What it says: of the spectrum, and of what else the map is."""
+        """Lines about the spectrum and other properties of the map."""
         lay = "" if self.lay is None else f", lay {self.lay:.3g}"
         apart = "" if self.agreement is None else f", estimates differ by a factor of {self.agreement:.3g}"
         return (
@@ -82,7 +82,7 @@ class Fitted:
 
 _PARAMETERS = ("sigma", "radius", "eta", "m0", "m2", "m4", "E_star")
 _LARGEST = 2.0  # standard error of a logarithm: a factor of 7
-_NEGATIVE = -1e-3  # eigenvalue of a matrix that is rounded
+_NEGATIVE = -1e-3  # allowed negative eigenvalue, from rounding
 
 
 @dataclass(frozen=True)

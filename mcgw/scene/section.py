@@ -32,12 +32,12 @@ class SceneError(ValueError):
 
 
 class Kind:
-    """What may stand at a key.
+    """What a key may hold.
 
     Attributes
     ----------
     advice : str
-        What would do, where something else stands or nothing.
+        What to give, if something else or nothing is given.
     unit : str
         Of a number.
     """
@@ -47,11 +47,11 @@ class Kind:
 
     @property
     def missing(self) -> str:
-        """What to give where nothing stands."""
+        """What to give if nothing is given."""
         return self.advice
 
     def read(self, section: "Section", name: str, value: Any) -> Any:
-        """Read a value; what is wrong is noted in the section, and gives None."""
+        """Read a value; mistakes are noted in the section and give None."""
         raise NotImplementedError
 
     def shape(self) -> dict[str, Any]:
@@ -66,15 +66,15 @@ class Key:
     Parameters
     ----------
     name : str
-        As it stands in the file.
+        Its name in the file.
     kind : Kind
-        What may stand there.
+        Kind of its values.
     example : str
         A right value, as TOML.
     words : str
-        What it means, as Markdown; None for keys inside of a value.
+        Its meaning, as Markdown; None for keys inside a value.
     default : object, optional
-        What holds where it is left out.
+        Value if it is left out.
     required : bool, optional
         Whether it must be there, in a table that is asked for it.
     laws : tuple of str, optional
@@ -95,7 +95,7 @@ class Key:
 
 
 class TableOfKeys(NamedTuple):
-    """A table of a scene file: what it says, as Markdown, and its rows.
+    """A table of a scene file: its description, as Markdown, and its rows.
 
     Where all its keys `make` an object, the scene holds that in a field of its name, and Python gives it; or
     else hears the `advice`.
@@ -109,7 +109,7 @@ class TableOfKeys(NamedTuple):
 
 
 def table_shape(rows: tuple[Key, ...]) -> dict[str, Any]:
-    """An object with these keys and no others, and which of them go together."""
+    """An object with these keys only, and which of them go together."""
     shape: dict[str, Any] = {
         "type": "object",
         "properties": {
@@ -140,9 +140,9 @@ class Section:
     table : mapping
         Its contents.
     problems : list of str
-        Shared by all sections of a document; each mistake adds a line.
+        Mistakes of the document, shared by all its sections, one line each.
     rows : mapping of str to Key
-        The keys that it may have.
+        Its allowed keys.
     """
 
     def __init__(
@@ -152,7 +152,7 @@ class Section:
         self._asked: list[str] = []
 
     def section(self, name: str, rows: Mapping[str, Key], advice: str = "") -> "Section":
-        """Read a table inside this one, empty if it is not there."""
+        """Read a table inside this one; empty if missing."""
         self.known(name)
         value = self.table.get(name, {})
         if not isinstance(value, dict):
@@ -161,16 +161,16 @@ class Section:
         return Section(name, value, self.problems, rows)
 
     def fail(self, name: str, value: Any, advice: str) -> _Value | None:
-        """Note a mistake; gives None, which is then the value."""
+        """Note a mistake; return None as the value."""
         return self.note(f"{self.path(name)} = {shortened(repr(value))}: {advice}")
 
     def note(self, line: str) -> _Value | None:
-        """Note a mistake in these words."""
+        """Note a mistake with this text."""
         self.problems.append(line)
         return None
 
     def refuse(self, reason: str, names: Iterable[str]) -> _Value | None:
-        """Note what is wrong with the object that keys make: of the one that it names, or of the first."""
+        """Note a mistake in the object made of keys, at the key that it names or at the first."""
         (key, _, advice), names = reason.partition(": "), list(names)
         given = [name for name in names if name in self]
         at = key.partition(" = ")[0].partition(",")[0]
@@ -187,7 +187,7 @@ class Section:
         return name in self.table
 
     def read(self, name: str, default: Any = _FROM_ROW) -> Any:
-        """The value of a key by its row; None where it is wrong, or left out without a default."""
+        """Read a key by its row; None if it is wrong, or left out without a default."""
         row = self.rows[name]
         self.known(name)
         if name in self.table:
@@ -197,15 +197,15 @@ class Section:
         return row.default if default is _FROM_ROW else default
 
     def read_all(self, names: Iterable[str]) -> dict[str, Any]:
-        """The values of several."""
+        """Read several keys."""
         return {name: self.read(name) for name in names}
 
     def known(self, *names: str) -> None:
-        """Keys that are known here, read or not."""
+        """Mark keys as known, read or not."""
         self._asked += names
 
     def finish(self) -> None:
-        """Note every key that was not read, and those that do not go together."""
+        """Note keys that were not read, and those that do not go together."""
         unknown = [key for key in self.table if key not in self._asked]
         for key in unknown[:_MOST_NAMED]:
             meant = nearest(key[:99], self._asked) or f"known keys: {', '.join(self._asked)}"
@@ -215,7 +215,7 @@ class Section:
         if len(unknown) > _MOST_NAMED:
             self.problems.append(f"[{self.name}]: {len(unknown) - _MOST_NAMED} more unknown keys")
         if any(line.startswith(f"{self.name}.") for line in self.problems):
-            return  # of which this may be a consequence
+            return  # this may be a consequence of them
         for row in (self.rows[name] for name in self.table if name in self.rows):
             if row.needs and not any(other in self for other in row.needs):
                 self.fail(row.name, self.table[row.name], f"give {_either(row.needs)} too, or leave it out")
@@ -223,13 +223,13 @@ class Section:
                 self.fail(row.name, self.table[row.name], f"give it or {_either(others)}, not both")
 
     def path(self, name: str) -> str:
-        """A key with its table."""
+        """Name of a key with its table."""
         shown = one_line(shortened(name))
         return f"{self.name}.{shown}" if self.name else shown
 
 
 def shortened(text: str) -> str:
-    """A text, with dots in place of its end if it is longer than 60 characters."""
+    """Shorten a text to 60 characters, with dots at its end."""
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
@@ -238,6 +238,6 @@ def _either(words: Iterable[str]) -> str:
 
 
 def nearest(value: Any, known: Iterable[str]) -> str:
-    """A question for the word that was meant, or nothing."""
+    """Suggest the word that was meant, or nothing."""
     close = difflib.get_close_matches(str(value), list(known), n=1)
     return f"did you mean {close[0]}? " if close else ""

@@ -1,4 +1,4 @@
-"""How well means are to be known: one number for all, one for each quantity, or for each separation too."""
+"""Wanted accuracy of means: one number, one per quantity, or one per separation."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -12,7 +12,7 @@ from mcgw.scene.fields import Fields
 
 
 def rel_err_mistakes(scene: Fields) -> Iterator[str]:
-    """What does not go with the scene."""
+    """Mistakes: wishes that the scene cannot have."""
     if scene.rel_err is None:
         return
     given = scene.rel_err if isinstance(scene.rel_err, Mapping) else {"": scene.rel_err}
@@ -35,14 +35,14 @@ def rel_err_mistakes(scene: Fields) -> Iterator[str]:
 
 
 def _off(scene: Fields, name: str) -> float:
-    """How far values of a quantity, and so their means, may be off, over themselves; numbers are exact."""
+    """Relative error of the values of a quantity, and so of their means; counts are exact."""
     return 0.0 if scene.exact or quantity_of(name).counts else scene.accuracy
 
 
 def wanted(scene: Fields) -> dict[str, Array]:
-    """How well each mean is to be known by drawing, shape (separations,); of quantities that are waited for.
+    """Wanted relative error of each mean by drawing, shape (separations,), for quantities with a wish.
 
-    What values may be off by is left out: drawing more does not help there.
+    The error of single values is left out: drawing more does not reduce it.
     """
     if scene.rel_err is None:
         return {}
@@ -55,7 +55,7 @@ def wanted(scene: Fields) -> dict[str, Array]:
 
 
 def rel_err_text(rel_err: float | Mapping[str, float | list[float]]) -> str:
-    """For people."""
+    """Display the wish."""
     if not isinstance(rel_err, Mapping):
         return f"{rel_err:g}"
     shown = (f"{min(x):g} at best" if isinstance(x, list) else f"{x:g}" for x in rel_err.values())

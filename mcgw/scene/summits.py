@@ -1,4 +1,4 @@
-"""Radii of summits: by the spectrum of the surface, or given one by one with their heights."""
+"""Radii of summits: from the spectrum of the surface, or listed with their heights."""
 
 import math
 from dataclasses import dataclass
@@ -30,9 +30,9 @@ class Spectral:
     Parameters
     ----------
     moments : SpectralMoments
-        Of its spectrum.
+        Moments of its spectrum.
     surface : Surface
-        Its summits, all of the inverse of their mean curvature.
+        Its summits, with the inverse of their mean curvature as radius.
     """
 
     moments: SpectralMoments
@@ -40,7 +40,7 @@ class Spectral:
 
     @property
     def heights(self) -> Nayak:
-        """Law of the heights of its summits."""
+        """Height law of its summits."""
         return Nayak(self.moments.alpha)
 
 
@@ -66,7 +66,7 @@ class ListedSummits:
     over_surface: bool
 
     def of_surface(self, nominal_area: float) -> dict[str, float]:
-        """What they tell of a surface of this area (m^2): eta (1/m^2) and, if in m, sigma and radius (m)."""
+        """Parameters of a surface of this area (m^2): eta (1/m^2) and, if in m, sigma and radius (m)."""
         eta = self.heights.size / nominal_area
         if self.over_surface:
             return {"eta": eta}
@@ -81,7 +81,7 @@ class ListedSummits:
 def curvature_of(
     section: Section, heights: HeightLaw | None, surface: Surface | None, default: str
 ) -> RandomCurvature | None:
-    """Read whether summits have radii of their own; mistakes are noted, and give None.
+    """Read whether summits have their own radii; mistakes are noted and give None.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def curvature_of(
 
 
 def datum_shift(section: Section, heights: HeightLaw | None) -> float:
-    """What is to be taken off separations d/sigma that count from the plane that ``datum`` names."""
+    """Shift to subtract from separations d/sigma measured from the plane named by ``datum``."""
     if section.read("datum") != "surface" or heights is None:
         return 0.0
     if not isinstance(heights, Nayak):
@@ -120,7 +120,7 @@ def datum_shift(section: Section, heights: HeightLaw | None) -> float:
 
 
 def listed_of(section: Section, folder: Path) -> ListedSummits | None:
-    """Read summits that are given one by one; None if they are not, or if they are wrong, which is noted."""
+    """Read listed summits; None if there are none, or mistakes, which are noted."""
     before = len(section.problems)
     file, heights, radii, ratios, resample = section.read_all(_LISTS).values()
     section.known("curvature", "largest_radius")
@@ -137,7 +137,7 @@ def listed_of(section: Section, folder: Path) -> ListedSummits | None:
 
 
 def _checked(heights: Any, radii: Any) -> tuple[Array, Array]:
-    """Both as arrays.
+    """Check heights and radii; return arrays.
 
     Raises
     ------
@@ -162,7 +162,7 @@ def _checked(heights: Any, radii: Any) -> tuple[Array, Array]:
 def summits_table(
     curvature: RandomCurvature | MeasuredRadii, surface: Surface, file: str | None = None
 ) -> dict[str, Any]:
-    """The table [summits], read again the same, of summits that have radii of their own.
+    """Write the table [summits] of summits with their own radii; it reads back the same.
 
     Measured ones are given by the name of their file, if they have one; else radii stand there over that of
     the surface, which has a last digit of its own.

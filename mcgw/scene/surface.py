@@ -1,4 +1,4 @@
-"""A surface from numbers or from texts with units."""
+"""Surfaces from numbers or texts with units."""
 
 from typing import Any, TypeVar
 
@@ -101,7 +101,7 @@ def SpectralSurface(  # noqa: N802 - as above
 
 
 def _read(kind: type[_Kind], **given: Any) -> _Kind:
-    """Of numbers or texts with units; values that nobody has are asked about."""
+    """Read numbers or texts with units; implausible values give a warning."""
     section = Section("surface", {key: as_toml(value) for key, value in given.items()}, [], KEYS["surface"])
     surface = read_surface(section)
     if surface is None:
@@ -113,7 +113,7 @@ def _read(kind: type[_Kind], **given: Any) -> _Kind:
 
 
 def read_surface(section: Section, listed: ListedSummits | None = None) -> Plain | Spectral | None:
-    """Read the table [surface], also by m0, m2 and m4; mistakes are noted in the section, and give None.
+    """Read the table [surface], also from m0, m2 and m4; mistakes are noted in the section and give None.
 
     What summits that are `listed` tell can be left out.
     """

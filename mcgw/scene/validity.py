@@ -158,17 +158,17 @@ class Validity(Shown):
 
 
 def percent(x: float) -> str:
-    """A share, rounded up: what is said holds."""
+    """A share in per cent, rounded up so that the statement holds."""
     return f"{100 * rounded_up(x):.0f} %"
 
 
 def rounded_up(x: float) -> float:
-    """To two decimals."""
+    """Round up to two decimals."""
     return math.ceil(100 * x - 1e-9) / 100
 
 
 def span(h: Array, where: Marks) -> str:
-    """Separations of one kind: from where to where, perhaps twice."""
+    """Ranges of separations that are marked, in words."""
     runs = []
     for wanted, group in groupby(range(len(h)), key=lambda k: bool(where[k])):
         members = list(group)
@@ -178,7 +178,7 @@ def span(h: Array, where: Marks) -> str:
     return " and ".join(runs)
 
 
-_OFF = 0.1  # error of area, stiffness or load from which on it is said
+_OFF = 0.1  # error of area, stiffness or load above which there is a caution
 _QUANTITIES = ("area", "stiffness", "load")  # the first two at a given load
 
 
@@ -209,7 +209,7 @@ def _first_measured(v: Validity) -> float:
 
 
 def _scatters(v: Validity, name: str) -> Marks:
-    """Where an error is rather scatter than bias."""
+    """Say where an error is mostly scatter, not bias."""
     return np.asarray(v.error[name] > 2 * np.abs(v.bias[name]))
 
 

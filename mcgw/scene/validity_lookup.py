@@ -1,4 +1,4 @@
-"""How far the model of a scene is from elasticity, as it was measured: a number, or that there is none."""
+"""Measured error of the model of a scene against elasticity, or that there is none."""
 
 from dataclasses import replace
 from typing import Any
@@ -15,12 +15,12 @@ from mcgw.scene.validity_place import Place, not_on_the_map, place_of, reduced_p
 from mcgw.scene.validity_table import COLUMNS, Expected, Grid, grid_of
 
 _MOST_SEPARATIONS = 64
-_NONE = 1.0  # contacts a surface: of fewer nothing is said
+_NONE = 1.0  # contacts per surface; no statement for fewer
 _SURE = 2.1  # standard deviations that hold 95 % of maps left out: light loads have long tails
 
 
 def validity_of(scene: Fields, separations: ArrayLike | None = None, *, felt: bool = False) -> Validity:
-    """Look up how far a scene's model is from elasticity.
+    """Look up the error of a scene's model against elasticity.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ def validity_of(scene: Fields, separations: ArrayLike | None = None, *, felt: bo
     separations : array_like, optional
         Reduced separations. Default: those of the scene, or 64 of them.
     felt : bool, optional
-        Whether they are what the asperities feel, also where those of the scene are nominal.
+        Whether they are felt separations even if those of the scene are nominal.
 
     Returns
     -------
@@ -104,7 +104,7 @@ def _share(scene: Fields, place: Place, found: Expected, felt: Array) -> dict[st
 
 
 def _felt(scene: Fields, h: Array) -> Array:
-    """Separations that the asperities of the mean surface feel."""
+    """Felt separations of the mean surface."""
     if not scene.nominal:
         return h
     theory: Any = scene.theory  # an `InteractingModel`, loaded for those scenes alone

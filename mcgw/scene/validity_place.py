@@ -1,4 +1,4 @@
-"""Where a scene lies on the map of validity: which surfaces, which model of them, which load."""
+"""Place of a scene in the table of validity: kind of surface, model, load."""
 
 import math
 from dataclasses import dataclass
@@ -27,16 +27,16 @@ _NODES = 48
 
 @dataclass(frozen=True)
 class Place:
-    """Where on the map a scene lies.
+    """Place of a scene in the table.
 
     Parameters
     ----------
     kind : {"gaussian", "caps"}
         Kind of the maps: isotropic Gaussian surfaces, or separate spherical caps.
     model : {"one radius", "nayak", "own radii"}
-        What the scene says of its summits.
+        Model of its summits.
     interaction : {"none", "summits", "contacts"}
-        How asperities feel each other.
+        How asperities interact.
     x : float
         Nayak's alpha of Gaussian surfaces, eta R sigma of caps.
     slope : float
@@ -71,13 +71,13 @@ def moments_of(surface: Surface) -> SpectralMoments | None:
 
 
 def moments_of_nayak(surface: Surface, alpha: float) -> SpectralMoments:
-    """Of the Gaussian surface whose summits have sigma and R of a surface, and this alpha."""
+    """Moments of the Gaussian surface with this alpha, sigma and R."""
     m0, m4 = surface.sigma**2 / (1 - SUMMIT_SPREAD / alpha), 9 * math.pi / (64 * surface.radius**2)
     return SpectralMoments(m0, math.sqrt(m0 * m4 / alpha), m4)
 
 
 def not_on_the_map(scene: Fields) -> str | None:
-    """Why the model of a scene was never held to elasticity, in words; None if it was somewhere."""
+    """Why the model of a scene was never compared with elasticity; None if it was."""
     if scene.located:
         return "only for a mean field, not for summits at random places"
     if type(scene.law) is not Hertz:
@@ -99,7 +99,7 @@ def not_on_the_map(scene: Fields) -> str | None:
 
 
 def _not_gaussian(fitted: Fitted, surface: Surface) -> str | None:
-    """Why a map is none of those that were solved, or a surface not that of its map."""
+    """Why a map is unlike those that were solved, or a surface unlike its map."""
     if fitted.lay is not None and fitted.lay > _LAID:
         why = f"lay, mean square slopes {fitted.lay:.3g} : 1"
     elif abs(fitted.skewness) > min(
@@ -125,7 +125,7 @@ def _of_alpha(scene: Fields) -> Surface:
 
 
 def place_of(scene: Fields) -> Place:
-    """Where a scene lies that is `not_on_the_map` for no reason."""
+    """Place of a scene for which `not_on_the_map` has no reason."""
     surface, fitted = scene.surface, scene.fitted
     if isinstance(scene.heights, Nayak):
         moments: SpectralMoments | None = moments_of_nayak(surface, scene.heights.alpha)
@@ -144,7 +144,7 @@ def place_of(scene: Fields) -> Place:
 
 
 def _apart(scene: Fields) -> str:
-    """Why an interaction is not that of the periodic cells, empty if it is; areas are the same under all."""
+    """Why an interaction differs from that of the periodic cells, or empty; areas do not depend on it."""
     found, surface = scene.interaction, scene.surface
     if found is None:
         return ""

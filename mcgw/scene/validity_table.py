@@ -1,4 +1,4 @@
-"""Errors of the model against boundary elements: the packaged table, and what lies between its rows."""
+"""Errors of the model against boundary elements: the packaged table and its interpolation."""
 
 import csv
 from collections import defaultdict
@@ -12,9 +12,9 @@ from scipy.special import digamma
 
 from analytic.arrays import Array
 
-COLUMNS = ("area", "stiffness", "separation", "load")  # what has an error
+COLUMNS = ("area", "stiffness", "separation", "load")  # quantities with an error
 _OF_GAP = ("separation", "load")
-_ROUNDING = 1e-9  # by which a point of the table may be missed
+_ROUNDING = 1e-9  # tolerance at the points of the table
 # Standard deviation of the gap over sqrt(m0) between spectra of H = 0.5 to 1 and one alpha, a unit of
 # ln(alpha/2): 0.01 to 0.02 at alpha = 3 and 7, 0.04 to 0.06 at 15, whatever the load (fresh maps, README).
 _SPECTRA = 0.02
@@ -22,14 +22,14 @@ _SPECTRA = 0.02
 
 @cache
 def rows() -> tuple[dict[str, str], ...]:
-    """Lines of the table, by the names of its columns; its head says what they are."""
+    """Columns of the table by name; the head of the file describes them."""
     text = (files("mcgw.scene") / "validity.csv").read_text(encoding="utf-8")
     return tuple(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
 
 
 @cache
 def grid_of(kind: str, model: str, interaction: str) -> "Grid | None":
-    """What was measured of a model on one kind of maps, "gaussian" or "caps"; None if nothing was."""
+    """Table of a model on one kind of maps, "gaussian" or "caps"; None if not measured."""
     named = {"map": kind, "model": model, "interaction": interaction}
     found = [row for row in rows() if all(row[key] == word for key, word in named.items())]
     return Grid.of(found, along_separation=kind == "caps") if found else None
@@ -105,7 +105,7 @@ def _numbers(found: Iterable[Mapping[str, str]], key: str) -> Array:
 
 
 def _steepness(found: Sequence[Mapping[str, str]]) -> Array:
-    """By how much the logarithm of a load differs between maps for each unit that their gaps differ by."""
+    """Change of the logarithm of the load per unit of gap, between maps."""
     load, off, gap = (_numbers(found, key) for key in ("load", "load_std", "separation_std"))
     return off / (1 + load) / gap
 
@@ -127,7 +127,7 @@ class Scatter:
 
     @classmethod
     def of(cls, found: Iterable[Mapping[str, str]], name: str) -> "Scatter":
-        """By least squares of the logarithms over rows of the table, weighted by what each knows."""
+        """Fit by weighted least squares of the logarithms over rows of the table."""
         bias, std, maps = (_numbers(found, key) for key in (name, f"{name}_std", "maps"))
         share = std if name == "separation" else std / (1 + bias)
         known = np.isfinite(share) & (share > 0) & (maps > 0)
@@ -146,7 +146,7 @@ class Scatter:
 
 @dataclass(frozen=True)
 class Grid:
-    """What was measured of one model on one kind of maps.
+    """Errors of one model on one kind of maps.
 
     Between rows everything is linear in the logarithms of x and p; of caps in those of x and p/x, which
     goes with the separation alone. Outside nothing is said. Rows without a map are of lighter loads than were
@@ -171,7 +171,7 @@ class Grid:
 
     @classmethod
     def of(cls, found: Iterable[Mapping[str, str]], *, along_separation: bool) -> "Grid":
-        """A grid of rows of the table."""
+        """Make a grid from rows of the table."""
         by_x, found = defaultdict(list), list(found)
         for row in found:
             by_x[float(row["x"])].append(row)
@@ -181,7 +181,7 @@ class Grid:
         return cls(np.array(x), surfaces, scatter, along_separation)
 
     def holds(self, x: float) -> bool:
-        """Whether surfaces on both sides of it were measured."""
+        """Whether surfaces on both sides of this x were measured."""
         return bool(self.x[0] * (1 - _ROUNDING) <= x <= self.x[-1] * (1 + _ROUNDING))
 
     def expected(self, x: float, p: Array) -> Expected:
@@ -199,7 +199,7 @@ class Grid:
         for name, (_, contacts, _, steep, theory) in found.items():
             law = self.scatter["separation" if name == "load" else name]
             scatter[name] = law(x, np.exp(contacts)) * np.exp(steep)
-            # So few maps tell a mean; and alpha does not tell all of a spectrum.
+            # Few maps determine a mean, and alpha does not determine a spectrum.
             other = _SPECTRA * np.log(x / self.x[0]) if name in _OF_GAP and not self.along_separation else 0.0
             of_maps = np.hypot(scatter[name] / np.sqrt(maps), other * np.exp(steep))
             unsure[name] = np.hypot(of_maps, theory)
@@ -215,7 +215,7 @@ class Grid:
         )
 
     def _near(self, x: float) -> list[tuple[float, _Surface]]:
-        """The surfaces beside it, and how much each counts."""
+        """Neighbouring surfaces and their weights."""
         place = float(np.interp(np.log(x), np.log(self.x), np.arange(len(self.x))))
         nearest = round(place)
         if abs(place - nearest) <= _ROUNDING:

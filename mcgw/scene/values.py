@@ -1,4 +1,4 @@
-"""The values of a scene: what Python gives for each, and what a scene holds of it.
+"""The values of a scene: as given in Python, and as stored.
 
 Those that no other place makes, as all of ``[ensemble]``, stand here with their rows as keys: signature,
 docstring, reader, checks, writer, schema, page and ``--set`` follow.
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     _Held = TypeVar("_Held", covariant=True)
 
     class As(Generic[_Given, _Held]):
-        """A value that Python may give in another form than a scene holds it."""
+        """A value that may be given in another form than a scene stores."""
 
         def __get__(self, scene: object, kind: Any) -> _Held: ...
         def __set__(self, scene: object, value: _Given) -> None: ...
@@ -52,8 +52,8 @@ else:
             return types[0]
 
 
-EXACT, COARSEST = 1e-13, 1e-2  # accuracy where none is asked: the last digits; and the least there is
-MOMENTS, SUMMITS = ("m0", "m2", "m4"), ("sigma", "radius", "eta")  # either tells the summits of a surface
+EXACT, COARSEST = 1e-13, 1e-2  # default accuracy, the last digits; and the lowest one
+MOMENTS, SUMMITS = ("m0", "m2", "m4"), ("sigma", "radius", "eta")  # either describes the summits of a surface
 SUMS = tuple({**QUANTITIES, **LAW_QUANTITIES})
 
 _ANY = Number(low=-math.inf)
@@ -95,7 +95,7 @@ def key(
 
 
 def object_or(default: Any = None) -> Any:
-    """A value that is made elsewhere, of several keys or of an object."""
+    """A value made elsewhere, from several keys or an object."""
     return field(default=default)
 
 
@@ -183,17 +183,17 @@ class Values:
 
 
 def rows_of(table: str) -> tuple[Key, ...]:
-    """The keys of a table that are values as they stand."""
+    """Keys of a table that are values themselves."""
     known = fields(Values)
     return tuple(Key(x.name, **x.metadata["row"]) for x in known if x.metadata.get("table") == table)
 
 
 def documented(kind: type[_Class]) -> type[_Class]:
-    """A class of values that is whole: its docstring tells of those with a row, too."""
+    """Complete a class of values: its docstring also describes those with a row."""
     said, known = [""], vars(kind)["__dataclass_fields__"]
     for name, one in list(known.items()):
         given = one.type if isinstance(one.type, str) else formatannotation(one.type)
-        if isinstance(one.type, InitVar):  # of which a scene has no value
+        if isinstance(one.type, InitVar):  # a scene has no value for these
             del known[name]
             delattr(Values, name)
         elif "row" in one.metadata:
