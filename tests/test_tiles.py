@@ -12,7 +12,7 @@ from mcgw.machine.memory import aligned
 from mcgw.sampling.cells import mesh_of
 from mcgw.sampling.response.gathering import FOUR, Lines, gathered, in_fours
 from mcgw.sampling.response.product import Tiles
-from mcgw.sampling.response.rows import Start, hertz_rows
+from mcgw.sampling.response.rows import hertz_rows
 from mcgw.sampling.response.tree import LAST_DIGITS, Nodes, Precision, tree_over
 from mcgw.sampling.response.walk import walk
 
@@ -142,7 +142,7 @@ class InNumpy:
     def at_start(self, rows, above, e, u):
         values, (whole, half) = self.values(rows, above / u[:, None], e), np.divmod(self.exponent[rows], 1)
         return [
-            Start(root, np.flatnonzero(here), values[:, here], whole[here])
+            (root, np.flatnonzero(here), values[:, here], whole[here])
             for root, here in ((False, half == 0), (True, half > 0))
         ]
 

@@ -7,7 +7,7 @@ import numpy as np
 from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads
-from mcgw.sampling.response.rows import Powers, Rows, raise_to
+from mcgw.sampling.response.rows import Rows, raise_to
 from mcgw.sampling.response.series import (
     APART,
     MOST,
@@ -36,12 +36,10 @@ class HertzWalk:
         Nodes over the cells.
     rows : Rows
         What to simulate.
-    formulas : Powers
-        Theirs.
     """
 
-    def __init__(self, tree: Tree, nodes: Nodes, rows: Rows, formulas: Powers) -> None:
-        self._rows = len(rows.h) if tree.left.size else 0
+    def __init__(self, tree: Tree, nodes: Nodes, rows: Rows) -> None:
+        self._rows, formulas = len(rows.h) if tree.left.size else 0, rows.formulas
         self._of = (
             (rows.h, rows.rooted, rows.graded, formulas.exponent, formulas.scale),
             (tree.left, tree.right, nodes.broken, nodes.end),

@@ -11,7 +11,7 @@ from analytic import Homogeneous, quantity_of
 from analytic.arrays import Array, Ints
 from analytic.laws import Branch, term_of
 from mcgw.sampling.cells import Mesh
-from mcgw.sampling.response.rows import Rows, Sixteen, Start
+from mcgw.sampling.response.rows import Rows, Sixteen
 from mcgw.sampling.stretches import Stretches, stretches_of
 from mcgw.scene.scene import Scene
 
@@ -36,16 +36,21 @@ class _Pieces:
     low: Array
 
     def values(self, rows: Ints, above: Array, e: Array) -> Array:
-        """As `Formulas.values`."""
+        """Values at heights `above` the separation of each row, of modulus `e`: shape (points, rows)."""
         return self._values(rows, above, e, 1.0)
 
-    def at_start(self, rows: Ints, above: Array, e: Array, u: Array) -> list[Start]:
-        """The even part in the root of the penetration is smooth, the odd part has the root as a factor."""
+    def at_start(self, rows: Ints, above: Array, e: Array, u: Array) -> list[tuple[bool, Ints, Array, Array]]:
+        """The same on the cell or node of variable u at which each row begins, at heights `above` its start.
+
+        Smooth functions of u: whether they are still to be multiplied by sqrt(u), of which of the rows they
+        are, their values, and the whole powers of u that they are to be multiplied by besides. The even part
+        in the root of the penetration is smooth, the odd part has the root as a factor.
+        """
         above = (self.low[rows] - self.h[rows]) + above
         forth, back = (self._values(rows, above, e, sign) for sign in (1.0, -1.0))
         every, none = np.arange(len(rows)), np.zeros(len(rows))
         even, odd = (forth + back) / 2, (forth - back) / 2 / np.sqrt(u)[:, None]
-        return [Start(False, every, even, none), Start(True, every, odd, none)]
+        return [(False, every, even, none), (True, every, odd, none)]
 
     def _values(self, rows: Ints, above: Array, e: Array, sign: float) -> Array:
         result = np.empty(above.shape)

@@ -5,7 +5,7 @@ where a law of contact has breaks: one for each piece, on the heights at which t
 """
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,42 +16,6 @@ from mcgw.machine.compiling import njit
 from mcgw.machine.memory import kept
 from mcgw.sampling.spacing import SURE
 from mcgw.scene.scene import Scene
-
-
-class Start(NamedTuple):
-    """Smooth functions of u that rows consist of, on the cell at which they begin.
-
-    Attributes
-    ----------
-    rooted : bool
-        Whether they are still to be multiplied by sqrt(u).
-    rows : ndarray of int
-        Of which of the rows that were asked for.
-    values : ndarray
-        Shape (points, rows).
-    power : ndarray
-        Whole power of u that they are to be multiplied by besides.
-    """
-
-    rooted: bool
-    rows: Ints
-    values: Array
-    power: Array
-
-
-class Formulas(Protocol):
-    """The formulas of all rows, of any law."""
-
-    def values(self, rows: Ints, above: Array, e: Array) -> Array:
-        """Values at heights `above` the separation of each row, of modulus `e`: shape (points, rows)."""
-        ...
-
-    def at_start(self, rows: Ints, above: Array, e: Array, u: Array) -> list[Start]:
-        """The same on the cell or node at which each row begins, at heights `above` its start.
-
-        `u` is the variable of the cell or node, from 0 to 1.
-        """
-        ...
 
 
 class Powers(NamedTuple):
@@ -78,7 +42,7 @@ class Rows:
     low, high : ndarray
         Heights between which its formula holds.
     begins : ndarray of bool
-        Whether contact begins at `low`: there `Formulas.at_start` tells what it is made of.
+        Whether contact begins at `low`: there `at_start` of the formulas tells what it is made of.
     rooted : ndarray of bool
         Whether it has a root there, as a part of it or as a factor.
     rough : ndarray of bool
@@ -93,7 +57,7 @@ class Rows:
         Which answer it adds to: quantity by quantity, at increasing separations.
     total : ndarray
         Mean sum over a surface of the answer, where so many touch that it is sure to be of that size; else 0.
-    formulas : Formulas or Powers
+    formulas : Powers, or those of `mcgw.sampling.response.law_rows`
         What holds.
     """
 
@@ -108,7 +72,7 @@ class Rows:
     kind: Ints
     answer: Ints
     total: Array
-    formulas: Formulas | Powers
+    formulas: Any
 
     def order(self, answers: int) -> Ints:
         """So many answers in an order in which neighbours need the same cells."""

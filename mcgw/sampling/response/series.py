@@ -3,8 +3,7 @@
 The rules say where a row holds, and where its series is cut.
 """
 
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,14 +30,10 @@ def _times_u(order: int) -> Any:
 TABLES = np.ascontiguousarray(TO_COEFFICIENTS.T), _times_u(len(NODES)), U
 
 
-_NO_INDEX = np.empty(0, dtype=np.int64)
-
-
-@dataclass(frozen=True)
-class Entries:
+class Entries(NamedTuple):
     """Series of rows on nodes, one an array element.
 
-    Parameters
+    Attributes
     ----------
     node, row : ndarray of int
         Whose they are.
@@ -60,17 +55,6 @@ class Entries:
     def start(self) -> Ints:
         """Where the coefficients of each begin."""
         return np.cumsum(self.length) - self.length
-
-    @classmethod
-    def joined(cls, parts: list["Entries"]) -> "Entries":
-        """Some after the others."""
-        return cls(
-            np.concatenate([_NO_INDEX, *(part.node for part in parts)]),
-            np.concatenate([_NO_INDEX, *(part.row for part in parts)]),
-            np.concatenate([_NO_INDEX.astype(bool), *(part.rooted for part in parts)]),
-            np.concatenate([_NO_INDEX, *(part.length for part in parts)]),
-            np.concatenate([np.empty(0), *(part.coefficients for part in parts)]),
-        )
 
 
 @njit()

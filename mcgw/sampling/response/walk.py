@@ -15,7 +15,7 @@ from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.response.hertz_walk import HertzWalk
-from mcgw.sampling.response.rows import Formulas, Powers, Rows
+from mcgw.sampling.response.rows import Powers, Rows
 from mcgw.sampling.response.series import (
     APART,
     MOST,
@@ -34,6 +34,7 @@ from mcgw.sampling.stretches import SMALLEST
 
 _PAIRS = 1024  # of a row and a node, at a time
 _MANY = 16  # times that many: worth another thread
+_NONE = np.empty(0, dtype=np.int64)
 
 
 class LawWalk:
@@ -44,20 +45,18 @@ class LawWalk:
     tree, nodes : Tree, Nodes
         Nodes over the cells.
     rows : Rows
-        What to simulate.
-    formulas : Formulas
-        Theirs.
+        What to simulate, by formulas of Python.
     """
 
-    def __init__(self, tree: Tree, nodes: Nodes, rows: Rows, formulas: Formulas) -> None:
-        self._tree, self._nodes, self._rows, self._formulas = tree, nodes, rows, formulas
+    def __init__(self, tree: Tree, nodes: Nodes, rows: Rows) -> None:
+        self._tree, self._nodes, self._rows = tree, nodes, rows
         self._limits = nodes.limits(rows)
 
     def entries(self) -> tuple[Entries, Ints, Ints, Array, float]:
         """As `mcgw.sampling.response.hertz_walk.HertzWalk.entries`."""
         tree, nodes = self._tree, self._nodes
         plain, rooted = np.zeros(tree.size, dtype=np.int64), np.zeros(tree.size, dtype=np.int64)
-        found: list[Entries] = []
+        found = [_entries(_NONE, _NONE, np.empty((0, len(U))))]
         unresolved, inside = [np.empty(0)], np.inf
         row = np.arange(len(self._rows.h) if tree.size else 0)
         node = np.full(len(row), tree.size - 1)
@@ -80,12 +79,13 @@ class LawWalk:
             left &= nodes.parent[node]
             node, row = node[left], row[left]
             node, row = np.concatenate([tree.left[node], tree.right[node]]), np.concatenate([row, row])
-        return Entries.joined(found), plain, rooted, np.unique(np.concatenate(unresolved)), inside
+        joined = Entries(*map(np.concatenate, zip(*found, strict=True)))
+        return joined, plain, rooted, np.unique(np.concatenate(unresolved)), inside
 
     def needed(self, node: Ints, row: Ints) -> Ints:
         """As `mcgw.sampling.response.hertz_walk.HertzWalk.needed`."""
         parts = [self._smooth(node[few], row[few])[1] for few in _together(np.arange(len(node)))]
-        return np.concatenate([np.empty(0, dtype=np.int64), *parts])
+        return np.concatenate([_NONE, *parts])
 
     def _met(self, node: Ints, row: Ints) -> tuple[Ints, Ints, NDArray[np.bool_]]:
         """Nodes and rows that have heights in common, and whether the row is one smooth function there."""
@@ -119,7 +119,7 @@ class LawWalk:
         What no sum over many nodes can show is zero.
         """
         nodes, rows = self._nodes, self._rows
-        values = self._formulas.values(row, *nodes.at(node, rows.h[row]))
+        values = rows.formulas.values(row, *nodes.at(node, rows.h[row]))
         c, needed = self._series(values, node, row, np.zeros(len(row)), of_many=True)
         begins = np.flatnonzero(rows.begins[row] & (rows.low[row] == nodes.start[node]))
         for _, which, begun, count in self._starts(node[begins], row[begins]):
@@ -131,10 +131,9 @@ class LawWalk:
         nodes = self._nodes
         if not row.size:
             return
-        for start in self._formulas.at_start(row, *nodes.at(node, nodes.start[node]), U):
-            which = start.rows
-            c, needed = self._series(start.values, node[which], row[which], start.power, of_many=False)
-            yield start.rooted, which, c, needed
+        parts = self._rows.formulas.at_start(row, *nodes.at(node, nodes.start[node]), U)
+        for rooted, which, values, power in parts:
+            yield rooted, which, *self._series(values, node[which], row[which], power, of_many=False)
 
     def _series(
         self, values: Array, node: Ints, row: Ints, power: Array, *, of_many: bool
@@ -229,11 +228,7 @@ def walk(mesh: Mesh, tree: Tree, rows: Rows, nodes: Nodes) -> tuple[Entries, Int
     ValueError
         If a row begins or ends inside a cell.
     """
-    formulas = rows.formulas
-    if isinstance(formulas, Powers):
-        series: HertzWalk | LawWalk = HertzWalk(tree, nodes, rows, formulas)
-    else:
-        series = LawWalk(tree, nodes, rows, formulas)
+    series = (HertzWalk if isinstance(rows.formulas, Powers) else LawWalk)(tree, nodes, rows)
     entries, plain, rooted, unresolved, inside = series.entries()
     if unresolved.size:
         raise UnresolvedError(unresolved)
