@@ -12,6 +12,7 @@ import mcgw
 from analytic import MeasuredHeights
 from mcgw.cli import main
 from mcgw.maps.envelope import envelope, hidden_summits
+from mcgw.maps.estimates import SUMMITS
 from mcgw.maps.map_files import write_map
 from mcgw.maps.synthetic import Asperities, Spectrum, gaussian_map, moments_on_grid
 from mcgw.maps.topography import Topography
@@ -286,7 +287,7 @@ def test_a_sigma_above_peak_to_valley_is_refused(monkeypatch):
     absurd = [(1e10, 1e8), (1e-5, 1e-7), (94e-3, 1e-3)]
     monkeypatch.setattr("mcgw.maps.fit.by_caps", lambda *_: absurd)
     assert "caps" not in fit_map(topography, cutoff=None).estimates
-    monkeypatch.setattr("mcgw.maps.fit.by_moments", lambda *_: absurd)
+    monkeypatch.setattr("mcgw.maps.fit.by_moments", lambda *_: dict(zip(SUMMITS, absurd, strict=True)))
     with pytest.raises(ValueError, match=r"sigma of .* 0.094 m, more than the peak to valley"):
         fit_map(topography, cutoff=None)
 

@@ -17,6 +17,7 @@ from mcgw.maps.waves import Uncertain, Waves, uncertain
 
 Pairs = list[tuple[float, float]]
 
+SUMMITS = ("eta", "radius", "sigma")
 METHODS = {
     "moments": "spectral moments (Nayak, McCool)",
     "summits": "summits counted",
@@ -87,7 +88,7 @@ class Estimate:
     @classmethod
     def of(cls, pairs: Pairs, waves: Waves) -> Self:
         """From values and errors over sub-areas, and the errors of few long waves."""
-        spreads = (waves.spreads[name] for name in ("eta", "radius", "sigma"))
+        spreads = (waves.spreads[name] for name in SUMMITS)
         return cls(*(uncertain(*pair, spread) for pair, spread in zip(pairs, spreads, strict=True)))
 
 
@@ -134,14 +135,15 @@ def skewness_of(counted: SummitSums) -> float:
     return float((z3 - 3 * z * z2 + 2 * z**3) / (z2 - z * z) ** 1.5)
 
 
-def by_moments(counted: SummitSums) -> Pairs:
-    """The summits that an isotropic Gaussian surface of these moments has."""
+def by_moments(counted: SummitSums) -> dict[str, tuple[float, float]]:
+    """m0, m2, m4, alpha, the summits of an isotropic Gaussian surface that has these, and the skewness."""
+    names = ("m0", "m2", "m4", "alpha", *SUMMITS)
 
     def found(t: SummitSums) -> Array:
         m = moments_of(t)
-        return np.array([m.eta, m.radius, m.sigma])
+        return np.array([*(getattr(m, name) for name in names), skewness_of(t)])
 
-    return jackknife(found, counted)
+    return dict(zip((*names, "skewness"), jackknife(found, counted), strict=True))
 
 
 def by_summits(fine: SummitSums, coarse: SummitSums) -> Pairs:

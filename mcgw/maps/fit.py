@@ -14,17 +14,16 @@ from mcgw.formats.table import Table
 from mcgw.machine.terminal import plotted
 from mcgw.maps.estimates import (
     METHODS,
+    SUMMITS,
     Estimate,
     Roughness,
     by_caps,
     by_moments,
     by_summits,
     estimates_table,
-    jackknife,
     mean_squares,
     moments_of,
     roughness_of,
-    skewness_of,
 )
 from mcgw.maps.form import ORDERS
 from mcgw.maps.hidden_caps import Visible, visible
@@ -141,12 +140,8 @@ class Fit(Shown):
         if "summits" not in self.estimates:
             return None
         told, seen = self.estimates["moments"], self.estimates["summits"]
-        return max(
-            max(a.value, b.value) / min(a.value, b.value)
-            for a, b in zip(
-                (told.eta, told.radius, told.sigma), (seen.eta, seen.radius, seen.sigma), strict=True
-            )
-        )
+        pairs = ((getattr(told, x).value, getattr(seen, x).value) for x in SUMMITS)
+        return float(max(max(pair) / min(pair) for pair in pairs))
 
     @property
     def spread_of_curvatures(self) -> float:
@@ -210,7 +205,8 @@ def fit_prepared(ready: Prepared, *, across: int = 4) -> Fit:
             "these; give the right unit, or take bad points near the edge out by --spikes remove or --trim"
         )
     waves = waves_of(used, moments, ORDERS[form])
-    estimates = {"moments": Estimate.of(by_moments(counted), waves)}
+    told = by_moments(counted)
+    estimates = {"moments": Estimate.of([told[name] for name in SUMMITS], waves)}
     blur = math.hypot(max(used.pixel), _BLUR * (ready.asked.cutoff or 0.0))
     peak_to_valley = float(np.ptp(used.heights if ready.seen is None else used.heights[ready.seen]))
     if number >= _FEWEST:
@@ -220,19 +216,17 @@ def fit_prepared(ready: Prepared, *, across: int = 4) -> Fit:
         if caps is not None and caps[2][0] <= peak_to_valley:  # else too many hide for the others to tell
             estimates["caps"] = Estimate.of(caps, waves)
     _check_sigma(estimates, peak_to_valley)
-    found = estimates.get("caps")
-    of_moments = jackknife(_of_moments, counted)
-    m0, m2, m4, alpha = (
-        uncertain(*pair, waves.spreads[name])
-        for pair, name in zip(of_moments, ("m0", "m2", "m4", "alpha"), strict=True)
-    )
+    seen = None
+    if found := estimates.get("caps"):
+        seen = visible(found.overlap, blur / math.sqrt(2 * found.radius.value * found.sigma.value))
+    m0, m2, m4, alpha = (uncertain(*told[x], waves.spreads[x]) for x in ("m0", "m2", "m4", "alpha"))
     return Fit(
         estimates, moments, m0, m2, m4, alpha,
-        jackknife(lambda t: np.array([skewness_of(t)]), counted)[0],
+        told["skewness"],
         summits_of(used, counted, _origin(ready.levelled, used)),
         float(counted.heights.mean()) - mean_squares(counted)["z"],
         counted.area,
-        None if found is None else _visible(found, blur),
+        seen,
         mean_squares(counted), form, waves, alone_of(counted), tiles_of(counted),
         roughness_of(_inside(ready)), ready.notes,
     )  # fmt: skip
@@ -259,16 +253,6 @@ def _scales(ready: Prepared, across: int, counted: SummitSums) -> tuple[SummitSu
         return _without_summit_form(sums_of(ready.used, across=fewer, seen=ready.seen), ready.asked.form)
 
     return counted if counted.parts == fewer**2 else count(summit_sums_of), count(coarse_sums_of)
-
-
-def _visible(caps: Estimate, blur: float) -> Visible:
-    """What a map shows of such caps."""
-    return visible(caps.overlap, blur / math.sqrt(2 * caps.radius.value * caps.sigma.value))
-
-
-def _of_moments(counted: SummitSums) -> Array:
-    m = moments_of(counted)
-    return np.array([m.m0, m.m2, m.m4, m.alpha])
 
 
 def _check_sigma(estimates: dict[str, Estimate], peak_to_valley: float) -> None:
