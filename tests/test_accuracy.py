@@ -20,6 +20,7 @@ from mcgw.ensemble.regrading import regrade
 from mcgw.ensemble.simulation import Values
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run
+from mcgw.reports.text import summary
 from mcgw.sampling import cells
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.scene_file import scene_text
@@ -257,7 +258,10 @@ def test_stored_in_any_way_the_digest_is_one(make_scene, wish, tmp_path, monkeyp
     assert_same(found, mcgw.simulate(scene))
     with h5py.File(halted) as file:
         spent = file.attrs.get("law_error_spent")
+        text = summary(found, file.attrs)
     assert spent is None if "accuracy" in wish else 0 < spent <= scene.law_error
+    assert spent is None or f"up to 0.01 from the exact laws, {spent:.2g} of it spent\n" in text
+    assert ("spent" in text) == (spent is not None)
     other = replace(scene, accuracy=1e-4) if "accuracy" in wish else replace(scene, law_error=2e-2)
     with pytest.raises(mcgw.StoreError, match=rf"ensemble\.{next(iter(wish))} is"):
         run(other, halted)

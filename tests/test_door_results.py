@@ -1,6 +1,7 @@
 """What a notebook is given: quantities by name, tables, pictures, short looks, progress, files."""
 
 import math
+from dataclasses import replace
 
 import matplotlib as mpl
 import numpy as np
@@ -12,7 +13,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import MemoryResults
 from mcgw.figures.plotting import draw
 from mcgw.formats.sheet import Sheet, brief
-from mcgw.formats.table import Column, Table
+from mcgw.formats.table import Column, Table, joined, stacked
 from mcgw.machine.progress import told
 from mcgw.statistics import tradeoff
 
@@ -193,6 +194,36 @@ def test_a_title_is_no_tag_and_no_command(scene, ensemble):
     assert sheet.html().count("<b>") == 1  # our own
     assert brief("x" * 88) == "x" * 88
     assert brief("x" * 500) == "x" * 85 + "..."
+
+
+def test_tables_under_each_other_are_their_rows_one_by_one(tmp_path):
+    """A unit that is not common has a column of its own; errors stay where every table has them."""
+
+    def cell(values, unit, **more):
+        return Table((Column("x", values, unit=unit, **more), Column("n", [7.0] * len(values))))
+
+    one, two = cell([1.0, 2.0], "N", error=[0.1, 0.2]), cell([3.0], "N", error=[0.3])
+    both = joined([one, two])
+    assert (list(both.columns[0].values), list(both.columns[1].values)) == ([1.0, 2.0, 3.0], [7.0] * 3)
+    assert (both.columns[0].unit, list(both.columns[0].error)) == ("N", [0.1, 0.2, 0.3])
+    assert (len(both), both.unit, len(Table(()))) == (3, "N", 0)
+    other = joined([one, cell([4.0], "m^2")]).columns[0]
+    assert (other.unit, other.error) == ("", None)
+    named = stacked({"a": one, "b": cell([4.0], "m^2")}, "who", "the one")
+    assert [column.name for column in named.columns] == ["who", "unit", "x", "n"]
+    assert named.to_dataframe().to_dict("list") == {
+        "who": ["a", "a", "b"], "unit": ["N", "N", "m^2"], "x": [1.0, 2.0, 4.0], "n": [7.0] * 3
+    }  # fmt: skip
+    bare = stacked({"a": cell([1.0], ""), "b": cell([2.0], "")}, "who")
+    assert [column.name for column in bare.columns] == ["who", "x", "n"]
+    part = both.at([2, 0])
+    assert (list(part.columns[0].values), list(part.columns[0].error)) == ([3.0, 1.0], [0.3, 0.1])
+    alone = Table((Column("x", [1.0, 2.5, np.nan], unit="N", words="load", form=".3f", missing="none"),))
+    assert alone.text() == "  load (N)\n  1.000\n  2.500\n  none"
+    assert replace(alone, title="in (N)").text().splitlines()[:2] == ["in (N)", "  load"]
+    assert len(alone) == 3
+    alone.write(tmp_path / "x.csv", comment="of\nit")
+    assert (tmp_path / "x.csv").read_text() == "# of\\nit\nx\n1.0\n2.5\nnan\n"
 
 
 # --- pictures ----------------------------------------------------------------------------------------------

@@ -13,11 +13,12 @@ from scipy.stats import norm
 
 import analytic
 import mcgw
+from mcgw.figures import style
 from mcgw.figures.against_theory import quantity_panel, save_comparison
 from mcgw.figures.data import FigureData, Panel, Points, Series
 from mcgw.figures.panels import draw
 from mcgw.figures.studies import draw_methods, save_convergence, save_tradeoff
-from mcgw.figures.style import THEORY, plain, power_of_ten
+from mcgw.figures.style import FAMILIES, PAIRS, THEORY, look, plain, power_of_ten
 from mcgw.statistics.checks import Check, Slope
 from mcgw.statistics.comparison import Comparison, Curve, compare
 from mcgw.statistics.convergence import Convergence
@@ -95,6 +96,15 @@ def test_residuals_are_below_their_panel():
     assert low == -high < -np.abs(SERIES[1].points.residual).max()
     (band,) = below.patches
     assert (band.get_y(), band.get_height()) == (-2, 4)
+
+
+def test_there_are_no_residuals_of_points_whose_errors_are_not_known():
+    series = Series("a", X, X, Points(X, X, 0 * X, X)), Series("b", X, X)
+    axes = draw(FigureData("", "", (Panel("p", "x", "y", series),))).axes
+    assert [axis.get_xlabel() for axis in axes] == ["x"]
+    assert style.line("γ = 1", 3) == {"label": "γ = 1", "color": "#000000", "linestyle": "-"}
+    assert {look(names[0])["linestyle"] for names in (*FAMILIES, *PAIRS)} == {"-"}
+    assert {look(names[0])["marker"] for names in (*FAMILIES, *PAIRS)} == {"o"}
 
 
 def reach(points, scale):
@@ -247,7 +257,7 @@ def test_tradeoff(make_scene, kept, tmp_path):
 def test_contact_map(make_scene, kept, tmp_path):
     """Spots to scale at their places in micrometres, coloured by their loads in millinewtons."""
     from mcgw.figures.contact_map import _DPI, contact_map_figure, save_contact_map, spots_at
-    from mcgw.maps.synthetic import Asperities
+    from mcgw.maps.synthetic import Asperities, asperities_of
 
     scene = make_scene(grading=analytic.Exponential(2.0))
     sigma, radius = scene.surface.sigma, scene.surface.radius
@@ -258,6 +268,12 @@ def test_contact_map(make_scene, kept, tmp_path):
     modulus = 2 - np.exp(-np.array([2.0, 1.5]))
     load = 4 / 3 * scene.surface.E_star * modulus * math.sqrt(radius) * delta**1.5
     np.testing.assert_allclose(spots.load, load, rtol=1e-12)
+    yields = make_scene(law=mcgw.KogutEtsion(critical=0.05), quantities=("load", "conductance"))
+    pressed = mcgw.simulate(yields)
+    for k, h in enumerate(yields.separations):
+        drawn = spots_at(yields, asperities_of(yields, 1), h)
+        np.testing.assert_allclose(drawn.load.sum(), pressed.load[1, k], rtol=1e-9)
+        np.testing.assert_allclose(4 * drawn.radius.sum(), pressed.conductance[1, k], rtol=1e-9)
     for colour, values, label in (
         ("load", 1e3 * load, "load of a spot (mN)"),
         ("modulus", modulus, "$E^*(s)/E^*$"),

@@ -12,8 +12,8 @@ from scipy.optimize import brentq
 from scipy.signal import get_window
 
 import mcgw
-from mcgw.elasticity import elastic as public
-from mcgw.elasticity.levels import LEVELS, Level, Pressed, alone, located
+from mcgw.elasticity import elastic as public, levels
+from mcgw.elasticity.levels import LEVELS, Level, Pressed, alone, located, rimless
 from mcgw.elasticity.multilevel import design, differences, mean_of, terms_of
 from mcgw.elasticity.sources import maps_of
 from mcgw.maps.synthetic import Spectrum
@@ -215,6 +215,20 @@ class TestLevels:
             for name, power in powers.items():
                 assert_allclose(b[name], a[name] * 1e3**power, rtol=1e-7)
 
+    def test_the_rim_of_what_touches_is_counted_step_by_step(self, rng):
+        """On a torus, literally: of each pair of neighbours one of which touches."""
+        touching = rng.random((5, 7)) < 0.4
+        pairs = [((j, i), (j, (i + 1) % 7)) for j in range(5) for i in range(7)]
+        pairs += [((j, i), ((j + 1) % 5, i)) for j in range(5) for i in range(7)]
+        steps = sum(touching[a] != touching[b] for a, b in pairs)
+        assert rimless(touching) == pytest.approx((touching.sum() - levels._OVERHANG * steps) / 35, rel=1e-12)
+
+    def test_a_map_without_a_summit_is_told(self):
+        bowl = np.zeros((64, 64))
+        bowl[8, 8] = -1e-6
+        with pytest.raises(mcgw.RunError, match="has no summit"):
+            located(Pressed(bowl, (6.4e-5, 6.4e-5), 1e11, 1e6))
+
     def test_alone_is_hertz_over_the_summits(self, rng):
         heights = mcgw.maps.synthetic.gaussian_map(SPECTRUM, (64, 64), (1e-6, 1e-6), rng).heights
         one = Pressed(heights, (6.4e-5, 6.4e-5), 1e11, 5e7)
@@ -355,8 +369,19 @@ class TestElastic:
         assert again.mean("area") == pytest.approx(first.mean("area"), rel=0.3)
         whole = path.read_bytes()
         assert whole.startswith("".join(f"{line}\n" for line in lines[: len(lines) // 2]).encode())
-        once_more = mcgw.elastic(SPECTRUM, **asked)  # all lines can be read, and nothing is solved again
+        seen = []
+        once_more = mcgw.elastic(
+            SPECTRUM, progress=lambda *told: seen.append(told), **asked
+        )  # all lines can be read, and nothing is solved again
         assert (once_more.mean("area"), path.read_bytes()) == (again.mean("area"), whole)
+        done, planned = np.array(seen).T
+        assert done[0] > 0
+        assert np.all(np.diff(done) >= 0)
+        assert_allclose(planned, again.planned.seconds)
+        assert done[-1] == pytest.approx(planned[-1], rel=0.5)
+        assert once_more.seconds == pytest.approx(
+            sum(json.loads(x)["seconds"] for x in whole.splitlines()[1:])
+        )
         assert set(json.loads(lines[0])) == {"maps", "pressure", "E_star", "seed"}
         with pytest.raises(mcgw.StoreError, match="another path"):
             mcgw.elastic(SPECTRUM, **{**asked, "pressure": "60 MPa"})
@@ -450,7 +475,8 @@ class TestElastic:
             ({"pressure": None}, "one of the two"),
             ({"separation": 1e-6}, "one of the two"),
             ({"pressure": None, "separation": -1e-6}, "separation = -1e-06"),
-            ({"rel_err": 2}, "rel_err"),
+            *(({"rel_err": x}, f"rel_err = {x},") for x in (2, 1, 0)),
+            ({"solves": 3}, "solves = 3: .*4 or more"),
             ({"pilot": 1}, "4 or more"),
             ({"seed": -1}, "seed = -1: give"),
         ],

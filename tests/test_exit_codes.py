@@ -3,18 +3,21 @@
 Every command, standard output and standard error, each closed, full, or a pipe whose reader has left.
 """
 
+import gc
 import importlib
+import importlib.metadata
 import os
 import shutil
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import pytest
 from overwrites import prepare
 
 import mcgw
-from mcgw.cli import COMMANDS, main
+from mcgw.cli import COMMANDS, main, process
 from mcgw.errors import RunError
 from mcgw.store import ensembles, structure
 
@@ -99,6 +102,52 @@ def test_what_is_said_decides_nothing(command, stream, state, disturbed, tmp_pat
         assert main(WORDS[command].split()) == expected(command, stream, state, code)
         for number in range(2):
             (tmp_path / f"done{number}").unlink()
+
+
+@pytest.mark.parametrize(
+    ("end", "code", "told"),
+    [
+        (None, 0, ""),
+        (KeyboardInterrupt(), 130, "mcgw: interrupted\n"),
+        (RunError("failed", code=3), 3, "mcgw: failed\n"),
+        (RunError("failed"), 1, "mcgw: failed\n"),
+        (MemoryError("of 3\nGiB"), 1, "mcgw: not enough memory (of 3\\nGiB); reduce the scene\n"),
+        (ValueError("one\ntwo"), 2, "mcgw: one\nmcgw: two\n"),
+        (OSError("no disk"), 2, "mcgw: no disk\n"),
+    ],
+)
+@pytest.mark.filterwarnings("always")
+def test_each_end_has_its_line_after_those_of_the_warnings(end, code, told, monkeypatch, capsys):
+    def work(args):
+        warnings.warn("two\nlines", stacklevel=1)
+        warnings.warn_explicit("said as a note", UserWarning, "", 1, module="mcgw.scene.plausible")
+        if end is not None:
+            raise end
+        return 0
+
+    monkeypatch.setattr("mcgw.commands.show.execute", work)
+    for quiet, warned in ([], "mcgw: warning: two\\nlines\n"), (["--quiet"], ""):
+        assert main(["show", "e.h5", *quiet]) == code
+        assert capsys.readouterr() == ("", warned + told)
+
+
+def test_a_process_ends_with_the_code_of_its_command_and_looks_for_no_garbage(monkeypatch, capsys):
+    frozen = []
+    monkeypatch.setattr(gc, "freeze", lambda: frozen.append(True))
+    monkeypatch.setattr("mcgw.commands.show.execute", lambda args: 3)
+    monkeypatch.setattr(sys, "argv", ["mcgw", "show", "e.h5"])
+    with pytest.raises(SystemExit) as end:
+        process()
+    assert (end.value.code, frozen) == (3, [True])
+
+    def unknown(name):
+        raise importlib.metadata.PackageNotFoundError(name)
+
+    for version, said in (unknown, "mcgw unknown\n"), (lambda name: f"1.2 of {name}", "mcgw 1.2 of mcgw\n"):
+        monkeypatch.setattr(importlib.metadata, "version", version)
+        with pytest.raises(SystemExit) as end:
+            main(["--version"])
+        assert (end.value.code, capsys.readouterr().out) == (0, said)
 
 
 @streams

@@ -274,6 +274,33 @@ def test_comments_tell_where_it_comes_from(ensemble, tmp_path):
         assert f"with asperity interaction; {told}" in path.read_text()
 
 
+BEYOND = {
+    ("calculix", "pressure-gap"): ["*CONTACT PAIR, TYPE=NODE TO SURFACE", "the pressure is constant"],
+    ("calculix", "conductance-pressure"): [
+        "below *SURFACE BEHAVIOR",
+        "the conductance is constant",
+        "third entry",
+    ],
+    ("abaqus", "pressure-gap"): ["the pressure continues with the last slope"],
+    ("abaqus", "conductance-pressure"): ["the conductance is constant"],
+    ("abaqus", "conductance-gap"): ["nothing is conducted"],
+    ("moose", "stiffness-pressure"): [
+        "[Functions] [stiffness]",
+        "data_file = f.x",
+        "x: pressure, y: stiffness",
+    ],
+    ("comsol", "pressure-gap"): ["column 1: gap (argument), column 2: pressure", "Extrapolation Constant"],
+}
+
+
+@pytest.mark.parametrize(("program", "table"), BEYOND)
+def test_a_program_is_told_its_own_rules_and_no_others(program, table):
+    told = "\n".join(PROGRAMS[program].hints(KINDS[table], "f.x"))
+    assert ("INPUT=f.x" in told) == (program in ("calculix", "abaqus"))
+    every = {words for rules in BEYOND.values() for words in rules}
+    assert {words for words in every if words in told} == set(BEYOND[program, table])
+
+
 # --- what has no table ----------------------------------------------------------------------------------
 
 

@@ -225,6 +225,14 @@ def all_zero(members):
             for axis, old in (("X", b"1e-06"), ("Y", b"2.5e-06"), ("Z", b"1.0"))
             for new in (b"0", b"-1e-6")
         ),
+        (replaced(b"<SizeX>7<", b"<SizeX>7.5<"), "'?7.5'? is not a whole number"),
+        *(
+            (
+                replaced(b"<C%s><AxisType>I<" % x, b"<C%s><AxisType>A<" % x),
+                f"along C{x.decode()} are not equally",
+            )
+            for x in (b"X", b"Y")
+        ),
         (blown_up, "more than 1048576"),
         (all_zero, "checksum"),
     ],

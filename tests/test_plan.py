@@ -41,6 +41,9 @@ def test_plan_counts_what_is_kept_and_says_who_chose(make_scene):
     kept = plan_of(alone)
     assert kept.bytes < 8 * 10**6  # not even one value of each surface
     assert f"statistics alone, about {kept.bytes / 1e6:.4g} MB" in plan_text(alone, kept)
+    wish = scene.replace(keep="sums", law_error=1e-4)
+    assert "law_error     up to 0.0001 allowed for Gaussian moments" in plan_text(wish, plan_of(wish))
+    assert "law_error" not in plan_text(scene, plan)
     assert "chosen by auto" not in plan_text(scene, plan)
     assert "sampler       cells" in plan_text(scene, plan)
     assert "chosen by auto" in plan_text(make_scene(sampler="auto"), plan)

@@ -1,6 +1,7 @@
 """The report: every number of the page, read as a reader would, against numbers made here."""
 
 import html
+import math
 import re
 from dataclasses import replace
 
@@ -313,6 +314,33 @@ def test_the_contact_law_and_its_rivals_are_in_the_report(make_scene, page):
     for shown in (ensemble, scene):
         assert "contact law  KogutEtsion(critical=0.05, poisson=0.3)" in repr(shown)
         assert "resistivity 1e-07 ohm m, film 1e-14 ohm m^2" in repr(shown)
+
+
+@pytest.mark.parametrize(
+    ("changes", "names"),
+    [
+        ({}, {"separation", "mean_gap"}),
+        ({"interaction": {"reference": "mean-plane", "at": "nominal"}}, {"nominal_separation"}),
+        ({"interaction": {"reference": "mean-plane", "at": "effective"}}, {"separation"}),
+        ({"quantities": ["load"]}, None),
+        ({"quantities": ["area", "stiffness"]}, None),
+    ],
+)
+def test_surfaces_are_solved_amid_their_pressures_at_their_own_separations(
+    changes, names, small, monkeypatch
+):
+    monkeypatch.setattr("mcgw.reports.html.mean_surface", lambda *_: {})  # theory is dear there
+    few = {"n_asperities": 300, "n_surfaces": 3, "quantities": ["load", "area"], "separations": (0.5, 1.0)}
+    pressed = mcgw.simulate(
+        small.replace(heights=analytic.Gaussian(), grading=analytic.Homogeneous(), **few | changes)
+    )
+    found = solution_of(pressed.scene, pressed)
+    if names is None:
+        assert found is None
+        return
+    low, high = pressed.load[:, 1].max(), pressed.load[:, 0].min()
+    assert found.value == pytest.approx(math.sqrt(low * high), rel=1e-12)
+    assert found.surfaces.keys() == names | {"area"}
 
 
 def test_the_budget_at_a_pressure_and_the_corrected_answer(small):

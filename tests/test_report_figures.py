@@ -134,6 +134,7 @@ KINDS = [
     {"law": mcgw.DerjaguinMullerToporov(pull_off=0.3)},
     {"interaction": {"reference": "mean-plane", "at": "effective"}},
     {"count": "poisson", "grading": mcgw.Exponential(0.5)},
+    {"film": mcgw.Film(conductivities=(200.0, 16.0)), "joint": mcgw.Joint("air", rms=2e-6)},
 ]
 
 

@@ -234,6 +234,9 @@ def test_solve(scene, words, given, pressure, title, tmp_path, capsys):
         assert half == pytest.approx(
             student.ppf(0.975, 24) * float(row["std"]) / 5, rel=1e-9, abs=1e-14 * float(row["mean"])
         )
+    told_by = mcgw.solve(few, **dict([given])).told_by
+    full = out_of(["solve", tmp_path / "s.toml", *words, "-v"], capsys)
+    assert ("90 % of specimens: for the separation from its exact" in full) == (told_by is not None)
     assert exact.mean(few, given[0], [h])[0] == pytest.approx(given[1], rel=1e-8)
     shown = {}
     for line in lines:

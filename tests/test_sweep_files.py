@@ -15,6 +15,7 @@ from begun_runs import settle
 
 import mcgw
 from mcgw.cli import main
+from mcgw.commands.sweep import _axis
 from mcgw.jobs import job
 from mcgw.jobs.engines import Processes
 from mcgw.jobs.job import commit_block
@@ -228,10 +229,21 @@ def test_the_command_with_zipped_axes_and_texts(shell):
         ("grading.gamma", "--over grading.gamma: give KEY=VALUES"),
         ("grading.gamma=1:2:0", "0 values; give a whole number"),
         ("grading.gamma=1:2:2.5", "2.5 values; give a whole number"),
+        ("grading.gamma=1:2:1000001", "1e+06 values; give a whole number from 1 to 1e6"),
+        *((over, f"--over {over}: give KEY=VALUES") for over in ("=1,2", "grading.gamma=")),
     ],
 )
 def test_mistakes_of_the_command(shell, over, words):
     assert words in shell("sweep", "s.toml", "--over", over, code=2).err
+
+
+def test_values_of_the_command_are_numbers_evenly_or_as_they_stand():
+    assert _axis("a.b=1:3:1") == ("a.b", [1.0])
+    assert _axis("a.b=3:1:5") == ("a.b", [3.0, 2.5, 2.0, 1.5, 1.0])
+    assert _axis("a.b=1,0.5,auto") == ("a.b", [1, 0.5, "auto"])
+    assert _axis("a.b=x:1:2") == ("a.b", ["x:1:2"])
+    _, values = _axis("a.b=0:1:1000000")
+    assert (len(values), values[-1]) == (10**6, 1.0)
 
 
 def test_a_disk_that_is_full(tmp_path, monkeypatch):

@@ -10,7 +10,7 @@ from matplotlib.collections import EllipseCollection
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 
-from analytic import Hertz, quantity_of
+from analytic import quantity_of
 from analytic.arrays import Array, Marks
 from analytic.laws import Ways
 from mcgw.figures.style import STYLE
@@ -88,9 +88,6 @@ def spots_at(scene: Scene, field: Asperities, separation: float) -> Spots:
 def _load_and_radius(scene: Scene, delta: Array, modulus: Array, radii: Array) -> tuple[Array, Array]:
     """Of contacts of these penetrations and summit radii, all in SI units."""
     surface = scene.surface
-    if type(scene.law) is Hertz:
-        load = 4 / 3 * surface.E_star * modulus * np.sqrt(radii * delta) * delta
-        return load, np.sqrt(radii * delta)
     ways, penetration, ratios = Ways(scene.contact), delta / surface.sigma, radii / surface.radius
     load, radius = (ways.term(name, 0.0, penetration, modulus, ratios) for name in ("load", "conductance"))
     scale = quantity_of("load").scale(surface)
