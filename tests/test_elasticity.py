@@ -15,6 +15,7 @@ import mcgw
 from mcgw.elasticity import elastic as public, levels
 from mcgw.elasticity.levels import LEVELS, Level, Pressed, alone, located, rimless
 from mcgw.elasticity.multilevel import design, differences, mean_of, terms_of
+from mcgw.elasticity.profiles import ProfileSpots, _sneddon
 from mcgw.elasticity.sources import maps_of
 from mcgw.maps.synthetic import Spectrum
 from mcgw.maps.topography import Topography
@@ -250,6 +251,43 @@ class TestLevels:
             assert clear == dict.fromkeys(("area", "stiffness", "conductance", "pressure"), 0)
 
 
+class TestProfiles:
+    def test_of_fourth_power_is_in_closed_form(self):
+        """f = c r^4: 8/3 c a^4 deep under 64/15 c E* a^5; a paraboloid's is Hertz's to rounding (Sneddon)."""
+        a, E_star = np.linspace(0, 2.0, 201), 3.0
+        for power, deep, heavy, off in ((4, 8 / 3, 64 / 15, 1e-3), (2, 2, 8 / 3, 1e-13)):
+            depths = np.insert(_sneddon(a) @ np.diff(a**power), 0, 0.0)[None]
+            spot, wide = ProfileSpots(np.zeros(1), a, depths, E_star), 1.503
+            depth = np.array([deep * wide**power])
+            assert_allclose(spot.squared_radius(depth), wide**2, rtol=off)
+            assert_allclose(spot.load(depth), heavy * E_star * wide ** (power + 1), rtol=off)
+            assert not spot.load(-depth).any()
+            step = 1e-6 * depth
+            slope = (spot.load(depth + step) - spot.load(depth - step)) / (2 * step)
+            assert_allclose(spot.slope(depth), slope, rtol=1e-6)
+
+    def test_of_waves_fall_as_their_mean_around_a_top(self):
+        """cos kx + cos ky is 2 J0(kr) around it: 2 - 2 cos ka deep, a paraboloid (ka)^2."""
+        n, waves = 96, 4
+        phase = 2 * math.pi * waves * np.arange(n) / n
+        one = Pressed(np.cos(phase)[:, None] + np.cos(phase), (1.0, 1.0), 1.0, 1e-3)
+        spots = one.profiles.spots
+        assert spots.heights.size == waves**2
+        k = 2 * math.pi * waves
+        shallow = k * spots.radii < 1.6
+        assert shallow.sum() == 3
+        assert_allclose(spots.depths[:, shallow], [2 - 2 * np.cos(k * spots.radii[shallow])] * 16, rtol=0.04)
+        beyond = np.diff(spots.depths[0, 5:]) / np.diff(spots.radii[5:] ** 2)
+        assert (beyond > 0).all()
+
+    def test_of_a_map_are_in_balance(self, rng):
+        heights = mcgw.maps.synthetic.gaussian_map(SPECTRUM, (64, 64), (1e-6, 1e-6), rng).heights
+        one = Pressed(heights, (6.4e-5, 6.4e-5), 1e11, 5e7)
+        balance = one.profiles.at_load(one.load)
+        assert residual(one.profiles, balance) < 1e-10
+        assert balance.area > 1.02 * one.summits.at_load(one.load).area
+
+
 def made_up(rng, maps):
     """Three levels of two quantities: 0.9 of the variance is known to the second one."""
     common, own = rng.standard_normal((maps, 2)), rng.standard_normal((2, maps, 2))
@@ -397,8 +435,7 @@ class TestElastic:
             1.25 * located(Pressed(one.heights - one.heights.mean(), one.size, 1e11, 5e7))["area"]
             for one in maps
         ])  # fmt: skip
-        low, high = found.interval("area")
-        assert low <= truth <= high
+        assert_allclose(found.interval("area"), truth, rtol=1e-12)
 
     @pytest.mark.parametrize("solves", [None, 4])
     @pytest.mark.parametrize("maps", [1, 2, 5, 7])

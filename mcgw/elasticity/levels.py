@@ -8,10 +8,11 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from analytic.arrays import Array, Marks
+from analytic.arrays import Array, Ints, Marks
+from mcgw.elasticity.profiles import profile_spots
 from mcgw.errors import RunError
 from mcgw.maps.summit_sums import summit_sums_of
-from mcgw.maps.summits import summits_of
+from mcgw.maps.summits import Summits, summits_of
 from mcgw.maps.topography import Topography
 from mcgw.sampling.located.balance import Located
 from mcgw.sampling.located.spots import Grid, HertzSpots
@@ -60,18 +61,35 @@ class Pressed:
 
     @cached_property
     def summits(self) -> Located:
-        """Its summits where they are."""
-        grid = _sized_grid(self.heights.shape, self.size, True)
-        used = Topography(self.heights, grid.pixel, periodic=True)
-        counted = summit_sums_of(used, across=1)
+        """Its summits where they are, each on a paraboloid."""
+        heights, summits, places = self._counted
+        return Located(HertzSpots(heights, summits.radii, self.E_star), places, self._grid)
+
+    @cached_property
+    def profiles(self) -> Located:
+        """Its summits where they are, each with the surface around it."""
+        heights, summits, places = self._counted
+        return Located(profile_spots(self._map, summits, heights, self.E_star), places, self._grid)
+
+    @property
+    def _grid(self) -> Grid:
+        return _sized_grid(self.heights.shape, self.size, True)
+
+    @property
+    def _map(self) -> Topography:
+        return Topography(self.heights, self._grid.pixel, periodic=True)
+
+    @cached_property
+    def _counted(self) -> tuple[Array, Summits, Ints]:
+        """Heights of its summits, what else there is to them, and their rows and columns."""
+        counted = summit_sums_of(self._map, across=1)
         if not counted.heights.size:
             raise RunError("a map has no summit; give a larger one, or a shorter cutoff")
         columns, rows = (
             np.rint(p * n - 0.5).astype(np.int64) % n
             for p, n in zip(counted.places, self.heights.shape[::-1], strict=True)
         )
-        spots = HertzSpots(counted.heights, summits_of(used, counted, (0.0, 0.0)).radii, self.E_star)
-        return Located(spots, np.array([rows, columns]), grid)
+        return counted.heights, summits_of(self._map, counted, (0.0, 0.0)), np.array([rows, columns])
 
     def clear(self, highest: float) -> bool:
         """Whether the plane is above all there is."""
@@ -98,8 +116,8 @@ def alone(pressed: Pressed) -> Values:
 
 
 def located(pressed: Pressed) -> Values:
-    """The same summits, each pressed down by all others."""
-    summits, separation = pressed.summits, pressed.separation
+    """The same summits, each with the surface around it and pressed down by all others."""
+    summits, separation = pressed.profiles, pressed.separation
     if pressed.clear(float(summits.spots.heights.max())):
         return alone(pressed)
     balance = summits.at_load(pressed.load) if separation is None else summits.at_separation(separation)

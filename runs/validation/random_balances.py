@@ -3,8 +3,9 @@
     python runs/validation/random_balances.py [--cases 500]     (15 minutes)
 
 Summits of Gaussian maps of random spectra, alpha from 2 to 50, H from 0.2 to 1, one to three longest waves
-wide; periodic or on a free half-space; Hertz's law with the summits' own radii, or laws that yield, coats and
-gradings. Each under a load p/(E* g) of 1e-5 to 0.02, even in its logarithm, and under one of 0.02 to 0.1.
+wide; periodic or on a free half-space; summits with the surface around them, or as paraboloids under laws
+that yield, coats and gradings. Each under a load p/(E* g) of 1e-5 to 0.02, even in its logarithm, and under
+one of 0.02 to 0.1.
 """
 
 import argparse
@@ -23,7 +24,7 @@ from mcgw.sampling.located.balance import Located
 from mcgw.sampling.located.spots import Grid, LawSpots
 
 SEED, M2, MODULUS = 20261124, 0.01, 1e11
-LAWS = ("hertz", "kogut-etsion", "zhao", "jackson-green", "coated", "graded")
+LAWS = ("profiles", "kogut-etsion", "zhao", "jackson-green", "coated", "graded")
 
 
 def case(number, most_points=768):
@@ -39,9 +40,9 @@ def case(number, most_points=768):
     pixel = spectrum.short / 8
     heights = gaussian_map(spectrum, (points, points), (pixel, pixel), rng).heights
     pressed = Pressed(heights - heights.mean(), (points * pixel, points * pixel), MODULUS)
-    own = pressed.summits
+    own = pressed.profiles if law == "profiles" else pressed.summits
     grid = own.grid if periodic else Grid(own.grid.shape, own.grid.size, periodic=False)
-    spots = own.spots if law == "hertz" else _under(law, own.spots, grid.area, rng)
+    spots = own.spots if law == "profiles" else _under(law, own.spots, grid.area, rng)
     shares = math.exp(rng.uniform(math.log(1e-5), math.log(0.02))), rng.uniform(0.02, 0.1)
     words = f"alpha = {alpha:.1f}, H = {hurst:.2f}, {points}^2, {'periodic' if periodic else 'free'}, {law}"
     full = MODULUS * math.sqrt(2 * M2) * grid.area

@@ -6,6 +6,7 @@ How far a load at one point of a grid presses down the half-space at another one
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 from scipy import fft
@@ -21,6 +22,30 @@ _NEUTRAL = 1.125
 # Ewald's two sums, with so narrow a split that only the nearest image counts in the first: erfc(6) is 2e-17.
 _SPLIT = 12.0  # over the shorter side
 _FEWEST = 46  # points along the shorter side, at which the second sum has no more than the grid's waves
+
+
+class Spots(Protocol):
+    """Contacts of summits, none of which feels another one here: of each from its penetration, m."""
+
+    @property
+    def heights(self) -> Array:
+        """Of the summits, m, shape (n,)."""
+
+    @property
+    def E_star(self) -> float:  # noqa: N802 - as everywhere
+        """Composite modulus of the half-space, Pa."""
+
+    def load(self, penetration: Array) -> Array:
+        """N."""
+
+    def slope(self, penetration: Array) -> Array:
+        """Derivative of the load, N/m."""
+
+    def squared_radius(self, penetration: Array) -> Array:
+        """Of the contact, m^2."""
+
+    def only(self, which: Marks) -> "Spots":
+        """Some of them."""
 
 
 @dataclass(frozen=True)
@@ -100,9 +125,6 @@ class LawSpots:
         s = self.heights / surface.sigma
         h, e = s - penetration / surface.sigma, self.scene.modulus(s)
         return quantity_of(name).scale(surface) * self.scene.ways.term(name, h, s, e, self.ratios)
-
-
-Spots = HertzSpots | LawSpots  # contacts at places, none of which feels another one here
 
 
 def field_beyond_point(squared_distance: Array, squared_radii: Array) -> tuple[Array, Array]:
