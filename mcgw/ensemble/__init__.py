@@ -1,1 +1,1 @@
-"""Ensembles in memory: drawn, summed up, extended to other gradings and to given loads."""
+"""Ensembles in memory: drawing, statistics, regrading, answers at given loads."""

@@ -20,7 +20,7 @@ NEGATIVE = (
     "{} = {:g} {}: {} reaches it only with asperities of negative modulus, at s = {:.4g}; give less, "
     'or set negative = "clip" or "allow" under [grading]'
 )
-_DRAWS = 1e9  # numbers drawn to have single surfaces again: a second or two
+_DRAWS = 1e9  # numbers drawn again for single surfaces: a second or two
 _FEWEST = 20
 
 
@@ -30,7 +30,7 @@ def mean_surface(scene: Scene, given: str, value: float) -> dict[str, float]:
 
 
 def asperities_of(scene: Scene) -> Scene:
-    """The scene without asperity interaction, which at a given load changes nothing but the separation."""
+    """The scene without asperity interaction, which at a given load only changes the separation."""
     if scene.located:
         from analytic.interaction import NO_THEORY  # for those scenes alone
 
@@ -158,7 +158,7 @@ def common_pressures(ensemble: Ensemble) -> tuple[float, float] | None:
 
 
 def with_values(ensemble: Ensemble, most: int) -> Ensemble:
-    """The ensemble itself; if it keeps statistics only, that many of its first surfaces, drawn again."""
+    """The ensemble itself; if it keeps only statistics, its first surfaces drawn again."""
     if ensemble.scene.keep != "statistics":
         return ensemble
     scene = replace(drawn_by(ensemble.scene, ensemble.sampler), keep="sums")

@@ -22,9 +22,9 @@ from mcgw.scene.validity_place import moments_of_nayak
 LINES = ("drawn surfaces", "specimens", "parameters", "model")
 Answers = dict[str, float]
 
-_SURE = 1.96  # standard deviations to both sides that hold 95 %
-_STEP = 1e-3  # of the logarithm of a parameter: a central difference is off by 1e-6 of itself
-# Whose measured error an answer has. A conductance is that of stiffness: Barber (2003), Proc. R. Soc. A 459.
+_SURE = 1.96  # standard deviations on either side that hold 95 %
+_STEP = 1e-3  # step of ln(parameter): a central difference has a relative error of 1e-6
+# Measured error of each answer. A conductance has that of stiffness: Barber (2003), Proc. R. Soc. A 459.
 _ERROR_OF = {"area": "area", "stiffness": "stiffness", "conductance": "stiffness", "mean_gap": "separation"}
 _LOWERED = {
     "drawn surfaces": "draw more surfaces",
@@ -190,7 +190,7 @@ def moved(scene: Scene, steps: dict[str, float]) -> Scene:
     factors = {name: math.exp(step) for name, step in steps.items()}
     surface, heights, curvature = scene.surface, scene.heights, scene.curvature
     if any(name in factors for name in ("m0", "m2", "m4")):
-        assert isinstance(heights, Nayak)  # `uncertainty` of others does not know moments
+        assert isinstance(heights, Nayak)  # only these have uncertain moments
         old = moments_of_nayak(surface, heights.alpha)
         m = SpectralMoments(*(getattr(old, name) * factors.get(name, 1.0) for name in ("m0", "m2", "m4")))
         surface, heights = m.surface(surface.nominal_area, surface.E_star), Nayak(m.alpha)
@@ -219,7 +219,7 @@ def corrected(validity: Validity, scene: Scene, name: str, value: float, std: fl
 
 
 def _model_error(validity: Validity, name: str, scene: Scene, value: float) -> float:
-    """Over the answer."""
+    """Error of the model, relative to the answer."""
     if name not in _ERROR_OF:
         return math.nan
     error = float(validity.error[_ERROR_OF[name]][0])

@@ -1,6 +1,6 @@
-"""Surfaces block by block: how many at a time, by which threads, and what of a block is kept.
+"""Draw surfaces block by block: block size, threads, and what is kept of a block.
 
-How long a run will take, in a moment and in words.
+Estimates of the time of a run, in seconds and in words.
 """
 
 from abc import ABC, abstractmethod
@@ -25,12 +25,12 @@ from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 
 _Drawn = TypeVar("_Drawn")
-GoOn = Callable[[int], bool]  # told the surface after those that are drawn, says whether to draw more
-_WORDS = 4_000_000  # numbers of a block that stay in the outer cache
+GoOn = Callable[[int], bool]  # called with the number drawn so far; returns whether to go on
+_WORDS = 4_000_000  # numbers of a block that fit the outer cache
 _MOST_WORDS = 20_000_000  # numbers a block may hold
 _DRAWS = 1.5e8  # asperities a block may draw, so that a bar moves every second
-_PER_COUNT, _PER_PRODUCT = 4e-8, 2.5e-10  # rough seconds of a number, and of two, for statistics
-_TRIED = 0.05  # rough seconds of a surface up to which a block is drawn to see
+_PER_COUNT, _PER_PRODUCT = 4e-8, 2.5e-10  # rough seconds per number and per pair, for statistics
+_TRIED = 0.05  # rough seconds per surface up to which a block is drawn on trial
 
 
 def blocks(scene: Scene, sampler: Sampler) -> Iterator[Block]:
@@ -41,8 +41,8 @@ def blocks(scene: Scene, sampler: Sampler) -> Iterator[Block]:
 def drawn_blocks(sampler: Source[_Drawn], first: int, stop: int, size: int) -> Iterator[_Drawn]:
     """Results of surfaces `first` ... `stop - 1`, in order, in blocks of at most `size`.
 
-    Each thread draws blocks of its own. To share the work within a block, and wake the others for each
-    step of it, takes longer; that is left to a few, huge surfaces.
+    Each thread draws its own blocks. Sharing the work within a block costs a wake-up per step, which pays
+    only for a few, huge surfaces.
     """
 
     def block(ends: tuple[int, int]) -> _Drawn:
@@ -55,12 +55,12 @@ def drawn_blocks(sampler: Source[_Drawn], first: int, stop: int, size: int) -> I
 
 
 def at_a_time(size: int) -> int:
-    """Surfaces drawn side by side: a block for each thread, but one surface if that is a block."""
+    """Surfaces drawn side by side: a block for each thread, or one surface if that is a block."""
     return size * numba.get_num_threads() if size > 1 else 1  # it may fill the memory
 
 
 def kept(scene: Scene, block: Block) -> dict[str, Any]:
-    """What of a block is kept: its sums, and its moments if the scene says so."""
+    """What is kept of a block: its sums, and its moments if the scene says so."""
     alone = scene.interaction is scene.joint is None
     arrays = dict(block.sums) if alone else answered(scene, block.sums)
     if promise_of(scene.sampler).real_surfaces:
@@ -72,7 +72,7 @@ def kept(scene: Scene, block: Block) -> dict[str, Any]:
 
 
 def answered(scene: Scene, sums: dict[str, Any]) -> dict[str, Any]:
-    """What surfaces answer with these sums of their asperities."""
+    """Answers of surfaces from the sums over their asperities."""
     found = dict(sums)
     if scene.interaction is not None:
         from mcgw.ensemble.half_space import with_interaction  # for those scenes alone
@@ -86,7 +86,7 @@ def answered(scene: Scene, sums: dict[str, Any]) -> dict[str, Any]:
 
 
 def block_size(scene: Scene, sampler: Source[Any]) -> int:
-    """Surfaces a block: bounded by memory and time, twice an odd number of `counts.GROUP` if it can be.
+    """Surfaces per block, bounded by memory and time; if possible twice an odd number of `counts.GROUP`.
 
     Whole groups, so that no generator of the counts is made for two blocks; an odd number of pairs, since
     with a multiple of eight the rows of the moments would share their places in the innermost cache.
@@ -112,7 +112,7 @@ def seconds_per_surface(scene: Scene, sampler: Source[Any]) -> float:
 
 @contextmanager
 def use_threads(threads: int | None) -> Iterator[None]:
-    """Let the loops use so many threads, at most as many as there are."""
+    """Set the number of threads of the loops, at most those available."""
     if threads is not None and not (isinstance(threads, int) and threads >= 1):
         raise ValueError(f"threads = {threads!r}: give a whole number >= 1")
     before = numba.get_num_threads()
@@ -124,20 +124,20 @@ def use_threads(threads: int | None) -> Iterator[None]:
 
 
 def always(_: int) -> bool:
-    """Go on."""
+    """Always continue."""
     return True
 
 
 class Reducer(ABC):
-    """Draws surfaces of one scene, or of several that share them, and keeps of each block what is asked.
+    """Draws surfaces of one scene, or of several that share them, and keeps the requested part of each block.
 
-    Blocks are a function of the scenes alone and are joined in their order: the same bits whoever draws them,
-    and wherever that was interrupted.
+    Blocks depend on the scenes alone and are joined in order: the same bits whoever draws them, and despite
+    interruptions.
     """
 
-    whole = True  # whether a block is of use as a whole only, since nothing is kept of a single surface
-    work = 1.0  # what a surface takes, in any unit
-    disk = 0  # bytes that blocks and their file take at most, as far as they count
+    whole = True  # whether only whole blocks are useful, since nothing is kept of single surfaces
+    work = 1.0  # cost of a surface, in any unit
+    disk = 0  # largest size of blocks and file in bytes
 
     @property
     @abstractmethod
@@ -147,22 +147,22 @@ class Reducer(ABC):
     @property
     @abstractmethod
     def rows(self) -> int:
-        """Surfaces of a block, however many of them are asked for."""
+        """Surfaces per block."""
 
     @abstractmethod
     def tables(self, first: int, stop: int, go_on: GoOn = always) -> Tables:
-        """What is kept of a block, or of its beginning; it does not depend on the number of threads.
+        """What is kept of a block or its beginning, whatever the number of threads.
 
-        `go_on` is asked after each piece that fits the memory.
+        `go_on` is called after each piece that fits the memory.
         """
 
     @abstractmethod
     def held(self, blocks: Iterable[Tables]) -> Any:
-        """What all blocks make, each read when its turn comes."""
+        """The result of all blocks, each read in its turn."""
 
     @abstractmethod
     def check(self, surfaces: int | None = None) -> None:
-        """Refuse what does not fit the memory: so many surfaces, or if they go into a file a block.
+        """Refuse surfaces that do not fit the memory; with a file, only a block must fit.
 
         Raises
         ------
@@ -172,7 +172,7 @@ class Reducer(ABC):
 
 
 def drawn(reducer: Reducer, go_on: GoOn) -> Any:
-    """What is kept of all surfaces, or as many as `go_on` lets be drawn, in memory."""
+    """What is kept of all surfaces, or of as many as `go_on` allows, in memory."""
     more = True
 
     def asked(done: int) -> bool:
@@ -191,7 +191,7 @@ def drawn(reducer: Reducer, go_on: GoOn) -> Any:
 
 @dataclass(frozen=True)
 class OfScene(Reducer):
-    """Of the surfaces of one scene, with a number of them; of a sampler that is only expected, its size."""
+    """Draws the surfaces of one scene with a fixed number of them."""
 
     scene: Scene
     expected: Expected | None = None
@@ -208,13 +208,13 @@ class OfScene(Reducer):
 
     @abstractmethod
     def joined_bytes(self, surfaces: int) -> int:
-        """About what the file of so many surfaces takes, before compression."""
+        """Approximate size of the file, before compression."""
 
 
 def seconds_for(scene: Scene, sampler: Sampler, surfaces: int, *, at_least: float = 0.0) -> float:
     """Expected wall time of drawing some surfaces on this machine, s.
 
-    From a block drawn on trial where a surface takes little, unless a rough guess lies below `at_least`.
+    Measured on a trial block if surfaces are cheap, unless a rough estimate is below `at_least`.
     """
     rough = rough_seconds(scene, 1)
     if rough * surfaces < at_least or rough > _TRIED:
@@ -228,7 +228,7 @@ def rough_seconds(scene: Scene, surfaces: int) -> float:
 
 
 def _for_statistics(scene: Scene) -> float:
-    """Of a surface whose numbers are counted, and not kept."""
+    """Rough seconds of a surface of which only statistics are kept."""
     return scene.width * _PER_COUNT + scene.width**2 / 2 * _PER_PRODUCT if scene.keep == "statistics" else 0.0
 
 

@@ -15,7 +15,7 @@ from mcgw.machine.terminal import plotted
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 
-STATISTICS = ("mean", "std", "skewness")  # that are kept where values are not, besides quantiles
+STATISTICS = ("mean", "std", "skewness")  # kept in place of values, besides quantiles
 
 
 @dataclass(frozen=True, repr=False)
@@ -279,7 +279,7 @@ class Ensemble(Shown):
         return plotted(self, ax, quantity=quantity or self.scene.quantities[0])
 
     def sheet(self) -> Sheet:
-        """How it was drawn, and means at the lowest, a middle and the highest separation."""
+        """How the ensemble was drawn, and means at the lowest, a middle and the highest separation."""
         return sheet_of(self)
 
     def _quantile(self, quantity: str, share: float) -> tuple[Array, Array, Array]:
@@ -290,7 +290,7 @@ class Ensemble(Shown):
         return value / area, low / area, high / area
 
     def _held(self, quantity: str) -> tuple[str, float]:
-        """The quantity that is held, and the area that this one is per, or 1."""
+        """The stored quantity, and the area to divide by, or 1."""
         q = PER_AREA.get(quantity)
         name, area = (q.of, self.scene.surface.nominal_area) if q else (quantity, 1.0)
         if name not in self.scene.shapes:

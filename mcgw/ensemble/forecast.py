@@ -1,4 +1,4 @@
-"""How many surfaces a scene takes: known before any is drawn, from the exact theory of a finite surface.
+"""Number of surfaces that a scene needs, from the exact theory of finite surfaces before any is drawn.
 
 An interval of a mean reaches the same share of the mean in every ensemble of a scene
 (`mcgw.ensemble.intervals`). So the stop rule `rel_err` needs no look at what was drawn, and cannot stop by
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from mcgw.ensemble.ensemble import Ensemble
 
 _STEP = 16  # numbers of surfaces lie 1/16 apart
-_ANY = 0.1  # in place of a share that is not asked for
-_ROUNDS = 8  # each leaves a share of the skewness over the square root of the contacts, at most 0.1
+_ANY = 0.1  # stands for a share without a wish
+_ROUNDS = 8  # skewness over the root of the number of contacts: at most 0.1 remains
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Forecast:
 
     @property
     def shortfall(self) -> str:
-        """What will not be known as well as asked, in words; empty if all will."""
+        """Which means miss the wanted accuracy, in words; empty if none."""
         if not self.out_of_reach:
             return ""
         name, h = self.out_of_reach[-1]
@@ -82,9 +82,9 @@ def forecast(scene: Scene) -> Forecast:
 
 
 def _needed(spread: Spread, asked: Array) -> Array:
-    """Surfaces with which the interval reaches no farther than a share of the mean, neither end.
+    """Surfaces for which both ends of the interval lie within a share of the mean.
 
-    None where nothing is asked (an infinite share).
+    None for an infinite share.
     """
     wanted = np.where(np.isinf(asked), _ANY, asked)
     with np.errstate(divide="ignore"):
@@ -93,7 +93,7 @@ def _needed(spread: Spread, asked: Array) -> Array:
     reached = np.isfinite(n)
     for _ in range(_ROUNDS):
         low, high = spread.ratio(np.where(reached, n, 1.0))
-        # where an end is to lie, over where it lies: the distance from 1 falls with the root of n
+        # wanted over actual end: its distance from 1 falls with the root of n
         more = np.maximum((1 - low) / (1 - 1 / (1 + wanted)), (high - 1) / (1 / (1 - wanted) - 1))
         n = np.where(reached, np.maximum(enough, n * more**2), n)
     return np.where(
@@ -102,7 +102,7 @@ def _needed(spread: Spread, asked: Array) -> Array:
 
 
 def checkpoints(limit: int) -> Iterator[int]:
-    """Numbers of surfaces an ensemble may have: multiples of 64, the last one is `limit`."""
+    """Allowed numbers of surfaces: multiples of 64, and `limit`."""
     n = GROUP
     while n < limit:
         yield n
@@ -111,7 +111,7 @@ def checkpoints(limit: int) -> Iterator[int]:
 
 
 def without_rule(scene: Scene) -> Scene:
-    """The scene with its number of surfaces in place of the rules that decide it.
+    """The scene with a number of surfaces in place of its stop rules.
 
     Warns
     -----
@@ -125,13 +125,13 @@ def without_rule(scene: Scene) -> Scene:
 
 
 def before(forecast: Forecast, seconds_each: float) -> str:
-    """One line: how many surfaces, how long, and what that will not reach."""
+    """One line: number of surfaces, time, and means that miss the wanted accuracy."""
     line = f"about {forecast.surfaces:.2g} surfaces, {forecast.surfaces * seconds_each:.2g} s"
     return f"{line}; {forecast.shortfall}" if forecast.shortfall else line
 
 
 def after(ensemble: "Ensemble", scene: Scene) -> list[str]:
-    """One line for each separation without a contact and each mean known less well than the scene asked."""
+    """One line for each separation without contact and each mean that misses the wanted accuracy."""
     m, n = ensemble.n_surfaces, ensemble.scene.n_asperities
     silent = np.all([ensemble.mean(name) == 0 for name in ensemble.scene.quantities], axis=0)
     limit = upper_contacts(m)
@@ -153,7 +153,7 @@ def after(ensemble: "Ensemble", scene: Scene) -> list[str]:
 
 
 def upper_contacts(n: int) -> float:
-    """Upper limit (95 %) of the mean number of contacts a surface, if `n` surfaces had none: 3.0/n.
+    """Upper limit (95 %) of the mean number of contacts per surface if `n` surfaces had none: 3.0/n.
 
     Exact for a Poisson number of contacts, ``exp(-n limit) = 0.05``; for a fixed number of asperities it
     is the safe side by a share 1.5/(n N).

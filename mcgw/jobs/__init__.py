@@ -1,1 +1,1 @@
-"""Ensembles in files: who draws which block, on what, and what makes the file of them."""
+"""Ensembles in files: distribute blocks to engines, and merge them."""

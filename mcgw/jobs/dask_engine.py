@@ -14,9 +14,9 @@ from urllib.parse import urlsplit
 from mcgw.errors import RunError
 from mcgw.jobs.engines import EngineLostError, pass_on
 
-# Of our own workers: the profiler holds frames, and with them HDF5 handles.
+# For our own workers: the profiler keeps frames and thus HDF5 handles.
 _WORKERS = {"distributed.worker.profile.enabled": False}
-_ASK_AGAIN = 5.0  # seconds after which the workers are counted anew
+_ASK_AGAIN = 5.0  # seconds between counts of the workers
 
 
 class Dask:
@@ -60,7 +60,7 @@ class Dask:
                 threads_per_worker=1,
                 processes=True,
                 host="127.0.0.1",
-                dashboard_address="127.0.0.1:0",  # by default 8787, where another may be
+                dashboard_address="127.0.0.1:0",  # not the default 8787, which may be taken
                 scheduler_kwargs={"dashboard": _has_pages()},
                 silence_logs="CRITICAL" if quiet else "WARNING",
                 config=_WORKERS,
@@ -85,20 +85,20 @@ class Dask:
 
     @property
     def dashboard(self) -> str:
-        """Address of the page on which a cluster of our own is seen at work; empty if there is none."""
+        """Address of the dashboard of our own cluster; empty if there is none."""
         return str(self._cluster.dashboard_link) if self._cluster is not None and _has_pages() else ""
 
     @property
     def width(self) -> int:
-        """Twice as many blocks as there are threads, so that none waits; workers may come and go."""
+        """Twice the number of threads, so that none waits; workers may come and go."""
         if monotonic() > self._asked + _ASK_AGAIN:
             self._asked = monotonic()
-            with suppress(*self._lost, OSError):  # what is submitted next will tell
+            with suppress(*self._lost, OSError):  # the next task will show it
                 self._threads = sum(self._client.nthreads().values())
         return 2 * max(self._threads, 1)
 
     def submit(self, task: Callable[..., Any], *arguments: Any) -> "Future[Any]":
-        """Give a task to the scheduler; what a worker knows of it is forgotten once it is done."""
+        """Submit a task to the scheduler; its data are released when it is done."""
         outer: Future[Any] = Future()
         try:
             inner = self._client.submit(task, *arguments, pure=False)
@@ -116,7 +116,7 @@ class Dask:
         return outer
 
     def close(self) -> None:
-        """End a cluster of our own; of a client that was given, only drop what is not done."""
+        """End our own cluster; for a given client, only cancel unfinished tasks."""
         if self._borrowed:
             for future in list(self._pending):
                 future.release()
@@ -127,18 +127,18 @@ class Dask:
 
 
 def is_client(engine: Any) -> bool:
-    """Whether something is a `distributed.Client`, which is not imported to know it."""
+    """Whether something is a `distributed.Client`, without importing it."""
     distributed = sys.modules.get("distributed")
     return distributed is not None and isinstance(engine, distributed.Client)
 
 
 def _has_pages() -> bool:
-    """Whether dask has what it draws its dashboard with."""
+    """Whether dask has the packages of its dashboard."""
     return find_spec("bokeh") is not None
 
 
 def _fit(client: Any) -> Any:
-    """A client that answers now."""
+    """Return a client that responds."""
     if client.asynchronous:
         raise ValueError("engine: this client is asynchronous; give a client made without asynchronous=True")
     if client.status != "running":

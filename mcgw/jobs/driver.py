@@ -1,7 +1,6 @@
 """The driver: gives blocks to an engine until none is missing, and heeds signals.
 
-Which engine a call asks for: by a word, an address, a client of dask or as it is; which share of the blocks,
-and who hears how far it has come.
+Arguments of a call: the engine by word, address, dask client or object; the share of the blocks; progress.
 """
 
 import signal
@@ -22,16 +21,16 @@ from mcgw.machine.progress import Progress, Tell, told
 _Block = TypeVar("_Block")
 
 _TRIES = 3
-_GRACE = 2.0  # seconds a running block has to finish when the run is asked to stop
+_GRACE = 2.0  # seconds for running blocks to finish when the run stops
 
 
 class Signals:
-    """Which signal has come, if any."""
+    """The signal that has arrived, if any."""
 
     number: int | None = None
 
     def check(self, kept: str) -> None:
-        """Raise if one has come.
+        """Raise if a signal has arrived.
 
         Raises
         ------
@@ -45,7 +44,7 @@ class Signals:
 
 @contextmanager
 def heed_signals() -> Iterator[Signals]:
-    """Take note of Ctrl-C and SIGTERM instead of dying; a second one acts at once."""
+    """Record Ctrl-C and SIGTERM instead of dying; a second signal acts at once."""
     signals = Signals()
     if threading.current_thread() is not threading.main_thread():
         yield signals
@@ -131,7 +130,7 @@ def _last_answers(
     running: set[_Block],
     done: Callable[[_Block, Any], None],
 ) -> None:
-    """Give what is running a moment to finish; what does not is dropped."""
+    """Wait briefly for running tasks; drop those that do not finish."""
     until = monotonic() + _GRACE
     while running and (left := until - monotonic()) > 0:
         try:
@@ -161,7 +160,7 @@ class Part:
     of: int
 
     def mine(self, block: int) -> bool:
-        """Whether a block, by its number, is this job's."""
+        """Whether a block belongs to this job."""
         return block % self.of == self.number - 1
 
 
@@ -181,12 +180,12 @@ def part_of(shard: str) -> Part:
 
 @dataclass(frozen=True)
 class By:
-    """Who draws blocks this time, and who hears of it.
+    """Who draws blocks, and who is told of progress.
 
     Parameters
     ----------
     engine : Engine, optional
-        Who draws; default: threads of this process, of which one writes a block while others draw the next.
+        Default: threads of this process; one writes a block while others draw the next.
     threads : int, optional
         Of a block.
     progress : callable
@@ -205,7 +204,7 @@ class By:
 def asked_of(
     engine: Any, threads: int | None, shard: str | None, progress: Progress
 ) -> Iterator[tuple[Engine | None, Part | None, Tell]]:
-    """What a call says of who draws into a file: the engine, the share, and whom to tell.
+    """Read the arguments of a call: engine, share and progress.
 
     An engine that is made here, of a word or an address, is closed at the end; one that is given, a client of
     dask too, is left open. None stands for threads of this process.
@@ -230,7 +229,7 @@ def asked_of(
 
 
 def dashboard_of(engine: Engine | None) -> str:
-    """What to say of where an engine is seen at work; empty if there is no such page."""
+    """A line with the address of the dashboard of an engine; empty if there is none."""
     link = getattr(engine, "dashboard", "")
     return f"dashboard: {link}" if link else ""
 

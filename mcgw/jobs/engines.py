@@ -22,7 +22,7 @@ class WorkerDiedError(Exception):
 
 
 class EngineLostError(Exception):
-    """There is nobody left to give work to."""
+    """No worker is left."""
 
 
 class Engine(Protocol):
@@ -30,7 +30,7 @@ class Engine(Protocol):
 
     @property
     def width(self) -> int:
-        """How many blocks to have in hand."""
+        """Number of blocks to submit in advance."""
         ...
 
     def submit(self, task: Callable[..., Any], *arguments: Any) -> "Future[Any]":
@@ -38,7 +38,7 @@ class Engine(Protocol):
         ...
 
     def close(self) -> None:
-        """Drop what is not done and end the workers."""
+        """Drop unfinished tasks and end the workers."""
         ...
 
 
@@ -56,7 +56,7 @@ class Threads:
         self._tasks: SimpleQueue[Any] = SimpleQueue()
         self._begun: SimpleQueue[Any] = SimpleQueue()
         for work in (self._begin, self._finish):
-            # A daemon: a block that takes hours does not keep an interrupted program alive.
+            # A daemon: a long block does not keep an interrupted program alive.
             threading.Thread(target=work, daemon=True, name="mcgw-blocks").start()
 
     def submit(self, task: Callable[..., Any], *arguments: Any) -> "Future[Any]":
@@ -66,7 +66,7 @@ class Threads:
         return future
 
     def close(self) -> None:
-        """Let the running task be the last."""
+        """Finish the running task and stop."""
         while not self._tasks.empty():
             self._tasks.get()
         self._tasks.put(None)
@@ -95,7 +95,7 @@ class Processes:
     Parameters
     ----------
     n : int
-        How many.
+        Number of processes.
 
     Raises
     ------
@@ -111,12 +111,12 @@ class Processes:
         self._pool = self._new_pool()
 
     def _new_pool(self) -> ProcessPoolExecutor:
-        # Spawned, not forked: a fork would inherit locks of threads that it does not have.
+        # Spawned: a fork would inherit locks of threads that it does not have.
         context = multiprocessing.get_context("spawn")
         return ProcessPoolExecutor(self._n, mp_context=context, initializer=_begin_worker)
 
     def submit(self, task: Callable[..., Any], *arguments: Any) -> "Future[Any]":
-        """Give a task to the next free process; a broken pool is replaced."""
+        """Submit a task to the next free process; replace a broken pool."""
         try:
             inner = self._pool.submit(task, *arguments)
         except BrokenProcessPool:
@@ -136,7 +136,7 @@ class Processes:
 
 
 def _begin_worker() -> None:
-    """Ctrl-C is for the driver; and end with it, however it dies."""
+    """Ignore Ctrl-C, which the driver handles, and end together with the driver."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent = multiprocessing.parent_process()
     if parent is not None:

@@ -1,4 +1,4 @@
-"""From the blocks of a run to its file."""
+"""Merge the blocks of a run into its file."""
 
 from collections.abc import Callable, Iterator
 from contextlib import suppress
@@ -55,7 +55,7 @@ def merge(path: str | Path) -> "Ensemble | Sweep":
     (0, 20)
     ([20, 0], (2,))
     """
-    from mcgw.sweeps import open_results  # which a run that merges its own blocks needs not
+    from mcgw.sweeps import open_results  # not needed by a run that merges its own blocks
 
     path = Path(path)
     tidy(path)

@@ -1,4 +1,4 @@
-"""``mcgw.run``: from a scene to its file. Begin, go on, extend, until its rule is met."""
+"""``mcgw.run``: from a scene to its file: begin, resume, extend, until its stop rule is met."""
 
 from collections.abc import Iterator
 from contextlib import closing, nullcontext
@@ -24,7 +24,7 @@ from mcgw.store.place import drop_leftovers, tidy, with_recorded_seed, write_bod
 from mcgw.store.run_folder import RunFolder
 from mcgw.store.shards import Span
 
-_ROUNDS = 3  # of merging, if shards turn out damaged
+_ROUNDS = 3  # attempts to merge, if shards turn out damaged
 
 
 @overload
@@ -134,7 +134,7 @@ def run(
 
 
 def _stages(scene: Scene, path: Path) -> Iterator[Scene]:
-    """The scene with a number of surfaces in place of its rules; with `max_seconds`, ever more of them."""
+    """The scene with a number of surfaces in place of its stop rules; with `max_seconds`, growing numbers."""
     held = min(open_ensemble(path).n_surfaces, scene.n_surfaces) if path.is_file() else 0
     fixed = without_rule(scene)
     last = max(fixed.n_surfaces, held)
@@ -173,7 +173,7 @@ def make(job: Job, by: By, part: Part | None = None) -> int:
             by = replace(by, signals=signals)
             if not (part or new):
                 drop_leftovers(run.path)
-            if job.done() < total:  # no other process was quicker
+            if job.done() < total:  # no other process was faster
                 try:
                     if part:
                         return _share(job, by, part)
@@ -205,19 +205,19 @@ def _at_once(job: Job, by: By) -> None:
     by.progress(0)
     tables = job.draw(Span(0, run.scene.n_surfaces), by.threads, go_on)
     before = state_of(run.path)
-    job.done()  # or what is there now is another's
+    job.done()  # else the file is another's
     write_body(run.path, job.body([(0, tables)], perf_counter() - started), before)
 
 
 def _in_blocks(job: Job, by: By) -> None:
-    """Shards until none is missing, then the file. Only with the lock."""
+    """Draw missing shards, then make the file. Needs the lock."""
     started = job.record.begin()
     started.freeze()
     for _ in range(_ROUNDS):
         shards = started.sweep()
         done = job.done()
         n, wanted = max((shard.span.stop for shard in shards), default=0), started.plan.total
-        if n > wanted:  # blocks beyond what is asked are not thrown away
+        if n > wanted:  # blocks beyond those requested are kept
             raise StoreError(
                 f"{started.folder}: holds surfaces up to number {n} already, more than ensemble.n_surfaces = "
                 f"{wanted}; ask for as many or more, or choose another -o"
@@ -229,7 +229,7 @@ def _in_blocks(job: Job, by: By) -> None:
 
 
 def _share(job: Job, by: By, part: Part) -> int:
-    """A share of the blocks that are missing; how many surfaces then are. Only with the lock."""
+    """Draw a share of the missing blocks; return how many surfaces are still missing. Needs the lock."""
     started, done = job.record.begin(), job.done()
     missing = started.missing(done, started.shards())
     _draw_missing(job, started, missing, by, part)
@@ -237,7 +237,7 @@ def _share(job: Job, by: By, part: Part) -> int:
 
 
 def _draw_missing(job: Job, started: RunFolder, spans: list[Span], by: By, part: Part | None = None) -> None:
-    """Commit every block that is missing, or of these a job's share."""
+    """Draw and store every missing block, or a job's share of them."""
     plan, left = started.plan, sum(span.n for span in spans)
     done = sum(map(job.work, plan.missing(spans)))
     if part:

@@ -1,4 +1,4 @@
-"""``mcgw.sweep``: a sweep as a notebook asks for it."""
+"""``mcgw.sweep``: a sweep from Python."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path

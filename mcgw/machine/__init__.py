@@ -1,1 +1,1 @@
-"""What is asked of the machine: memory, compiled loops, threads, child processes, a terminal."""
+"""The machine: memory, compiled loops, threads, child processes, terminal."""

@@ -1,4 +1,4 @@
-"""Work in a process of its own, where a crash, a hang or a greed for memory harms nobody else.
+"""Work in a child process, where a crash, a hang or excessive memory does no harm.
 
 A child process ends with its parent, however that dies.
 

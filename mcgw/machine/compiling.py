@@ -1,4 +1,4 @@
-"""Compiled loops, kept on the disk where that can be done.
+"""Compiled loops, cached on the disk if possible.
 
 A loop has two compiled forms. What Python calls is machine code, which is kept. What other loops call is
 code that is optimised and made machine code as a part of theirs alone (`_ForLoops`): as Numba has it, each
@@ -89,7 +89,7 @@ def _compile_lightly(compiler: Any) -> None:
     compile_loop = compiler.compile
 
     def lightly(*args: Any) -> Any:
-        with global_compiler_lock:  # one at a time: none takes another's pause for how it was
+        with global_compiler_lock:  # one at a time, so that each restores the right state
             searching, lower = gc.isenabled(), NativeLowering.run_pass
             gc.disable()
             NativeLowering.run_pass = _lower_for_loops  # type: ignore[method-assign, assignment, unused-ignore]
@@ -223,12 +223,12 @@ def _load_without_compiler(kept: Any) -> None:
     kept.load_overload = load
 
 
-_WAS_EMPTY: list[bool] = []  # for each loop that was compiled, whether its folder had none before
+_WAS_EMPTY: list[bool] = []  # for each compiled loop, whether its folder was empty before
 _OF_HERTZ = 12  # loops that a scene takes under Hertz's law (`tests/test_compiled_loops.py`)
 
 
 def _count(folder: Path) -> None:
-    """Say which loop is compiled now; of how many is known where there was none."""
+    """Report which loop is compiled; the total is known if none was cached."""
     _WAS_EMPTY.append(not any(folder.glob("*.nbi")))
     number = len(_WAS_EMPTY)
     of = f" of {_OF_HERTZ}" if _WAS_EMPTY[0] and number <= _OF_HERTZ else ""
@@ -239,7 +239,7 @@ _SAID: set[str] = set()
 
 
 def _say(folder: str, reason: str) -> None:
-    """Once for each reason, though every package has a folder of its own."""
+    """Report each reason once, though every package has its own folder."""
     if reason in _SAID:
         return
     _SAID.add(reason)

@@ -32,7 +32,7 @@ def in_threads(call: Callable[[_Item], _Result], items: Sequence[_Item], *, leas
 
     def run_alone(places: Iterable[int]) -> list[_Result]:
         before = get_num_threads()
-        set_num_threads(1)  # of this thread: what is called finds the others busy
+        set_num_threads(1)  # set for this thread: nested calls find the others busy
         try:
             return [call(items[i]) for i in places]
         finally:
@@ -55,9 +55,9 @@ def pieces(n: int, least: int) -> list[tuple[int, int]]:
 
 
 def one_ahead(items: Items[_Item]) -> Items[_Item]:
-    """The same items in the same order, each made by a thread of its own while the one before it is used.
+    """The same items in order, each made in another thread while the previous one is used.
 
-    An error comes where its item would have come. What makes the items is closed together with this.
+    An error is raised in place of its item. The source is closed together with this generator.
     """
     with closing(items), ThreadPoolExecutor(1, thread_name_prefix="mcgw-ahead") as thread:
         coming = thread.submit(_next, items)
@@ -67,5 +67,5 @@ def one_ahead(items: Items[_Item]) -> Items[_Item]:
 
 
 def _next(items: Items[_Item]) -> list[_Item]:
-    """The next item in a list, which is empty at the end."""
+    """The next item in a list; an empty list at the end."""
     return list(islice(items, 1))

@@ -1,4 +1,4 @@
-"""How much memory there is: asked before anything is computed. And what is kept.
+"""Available memory, checked before anything is computed; memory and results that are kept.
 
 Memory that a block frees, for the next; and results, for the next call with the same arguments. Arrays that
 begin with a line of the cache.
@@ -18,13 +18,13 @@ from mcgw.machine.child_process import memory_limit
 
 _Result = TypeVar("_Result")
 _MOST = 2**63 - 1
-_SMALL = 2**24  # bytes; to look how many there are takes half a millisecond
+_SMALL = 2**24  # bytes; looking up what is available takes half a millisecond
 _LARGE = 31 * 2**20  # bytes; at 32 MiB the GNU C library learns no more
 _LINE = 8  # words
 
 
 def check_memory(what: str, size: int) -> None:
-    """Refuse what needs more memory than there is.
+    """Refuse work that needs more memory than there is.
 
     Raises
     ------
@@ -42,7 +42,7 @@ def check_memory(what: str, size: int) -> None:
 
 
 def memory_available() -> int:
-    """Bytes that this process may still take: of the machine, of its control group, and by `ulimit -v`."""
+    """Bytes that this process may still use: of the machine, its control group and `ulimit -v`."""
     limits = [_number(line.split()[1]) * 1024 for line in _lines("/proc/meminfo") if "MemAvailable" in line]
     used = [_number(line) for line in _lines("/sys/fs/cgroup/memory.current")]
     most = [_number(line) for line in _lines("/sys/fs/cgroup/memory.max") if line.strip() != "max"]
@@ -66,14 +66,14 @@ def _number(text: str) -> int:
 
 
 def gibibytes(size: int) -> str:
-    """A number of bytes for people."""
+    """Display a number of bytes."""
     return f"{size / 2**30:.4g} GiB"
 
 
 def peak_growth(call: Callable[[], object]) -> float:
     """Bytes of memory that a call takes at most on top of what there was (Linux; else nan)."""
     try:
-        Path("/proc/self/clear_refs").write_text("5")  # forget the highest level so far
+        Path("/proc/self/clear_refs").write_text("5")  # reset the peak
         before = _status("VmHWM")
     except OSError:
         call()
@@ -111,9 +111,9 @@ def aligned(*shape: int) -> NDArray[np.float64]:
 
 
 def kept(most: int) -> Callable[[Callable[..., _Result]], Callable[..., _Result]]:
-    """As `functools.lru_cache`, for numbers, bytes and frozen dataclasses; for others there is no memory.
+    """As `functools.lru_cache` for numbers, bytes and frozen dataclasses; others are not cached.
 
-    A height law of somebody's own may be any object, and may have changed since the last call.
+    A user's height law may be any object and may have changed since the last call.
     """
 
     def decorate(function: Callable[..., _Result]) -> Callable[..., _Result]:

@@ -1,4 +1,4 @@
-"""How far a long call has come: told to a function, or drawn as a bar."""
+"""Progress of long calls: a function to call, or a bar."""
 
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -15,10 +15,10 @@ Progress = bool | Tell | None
 
 @contextmanager
 def told(progress: Progress, unit: str, beside: str = "") -> Iterator[Tell]:
-    """Whom to tell ``(done, total)``: the one meaning of ``progress=`` in every call that takes it.
+    """The function to call with ``(done, total)``, from ``progress=`` of any call.
 
     True draws a bar that counts in `unit`, with a line `beside` it as in `bar`; a function is called; None
-    and False tell nobody.
+    and False do nothing.
 
     Raises
     ------
@@ -40,7 +40,7 @@ def told(progress: Progress, unit: str, beside: str = "") -> Iterator[Tell]:
 def bar(unit: str, beside: str = "", *, terminal: bool = False) -> Iterator[Tell]:
     """A bar on standard error, with `terminal` only on one that is `watched`; a line may be said `beside` it.
 
-    Its rate is that of this call: what was done before counts as given.
+    Its rate is that of this call, without earlier work.
     """
     if terminal and not (sys.stderr.isatty() and _WATCHED.get()):
         yield lambda *_: None
@@ -66,7 +66,7 @@ def bar(unit: str, beside: str = "", *, terminal: bool = False) -> Iterator[Tell
 
 @contextmanager
 def watched() -> Iterator[None]:
-    """Let `steps` and `stages` draw bars: somebody waits, as for every command and ``progress=True``."""
+    """Let `steps` and `stages` draw bars: for commands and ``progress=True``."""
     before = _WATCHED.set(True)
     try:
         yield
@@ -75,7 +75,7 @@ def watched() -> Iterator[None]:
 
 
 def steps(items: Sequence[_Item], unit: str) -> Iterator[_Item]:
-    """Go through what takes long, anywhere below; with a bar on the terminal of who waits for it."""
+    """Iterate over long work; with a bar on a watched terminal."""
     with stages(len(items), unit) as done:
         for item in items:
             yield item
@@ -84,7 +84,7 @@ def steps(items: Sequence[_Item], unit: str) -> Iterator[_Item]:
 
 @contextmanager
 def stages(number: int, unit: str = "steps") -> Iterator[Callable[[], Any]]:
-    """As `steps`, of things that follow each other: what is yielded is called after each."""
+    """As `steps`, for consecutive stages: the yielded function is called after each."""
     if not _WATCHED.get():
         yield lambda: None
         return

@@ -1,6 +1,6 @@
-"""What people see: text that cannot steer a terminal, to streams that may be closed or full; and drawings.
+"""Output: text that cannot control a terminal, streams that may be closed or full; and drawings.
 
-Who reads it decides nothing about the work: what a stream does not take is lost, and its user may ask why.
+Readers do not affect the work: text that a stream refuses is lost, and its error is kept.
 """
 
 import os
@@ -16,7 +16,7 @@ _SHORT = {"\n": "\\n", "\r": "\\r", "\t": "\\t"}
 
 
 def one_line(text: str) -> str:
-    r"""A text in which every character that is not printable stands as its escape.
+    r"""Escape every character that is not printable.
 
     Examples
     --------
@@ -29,7 +29,7 @@ def one_line(text: str) -> str:
 
 
 def plain_text(text: str) -> str:
-    """Lines, each as by `one_line`; what was TOML still is."""
+    """Escape each line as `one_line` does; TOML stays TOML."""
     return "\n".join(map(one_line, text.split("\n")))
 
 
@@ -38,9 +38,9 @@ def _escape(code: int) -> str:
 
 
 class Plain:
-    """A stream that passes on printable characters and the ends of lines, and never fails.
+    """A stream that passes on printable characters and line ends, and never fails.
 
-    `lost` is the first error of the stream below; all that is written after it is lost too.
+    `lost` is the first error of the stream below; later text is lost too.
     """
 
     lost: OSError | None = None
@@ -51,7 +51,7 @@ class Plain:
             stream.reconfigure(errors="backslashreplace")  # not every terminal has an eta
 
     def write(self, text: str) -> int:
-        """Write a text, with what is not printable as its escape."""
+        """Write a text, escaping what is not printable."""
         shown = "".join(
             line if line in self._ends else one_line(line) for line in re.split(f"([{self._ends}])", text)
         )
@@ -60,7 +60,7 @@ class Plain:
         return len(text)
 
     def flush(self) -> None:
-        """Pass on what is held back."""
+        """Flush the stream below."""
         with self._unfailing():
             self._stream.flush()
 
@@ -71,7 +71,7 @@ class Plain:
         except OSError as error:
             error.filename, self.lost = self._name, self.lost or error
             with suppress(OSError, ValueError), open(os.devnull, "wb") as nowhere:
-                os.dup2(nowhere.fileno(), self._stream.fileno())  # what it holds back would fail again
+                os.dup2(nowhere.fileno(), self._stream.fileno())  # its buffer would fail again
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)
@@ -79,9 +79,9 @@ class Plain:
 
 @contextmanager
 def plain_output() -> Iterator[Plain]:
-    """Let nothing but text reach the terminal, and replace streams that were closed by an empty one.
+    """Let only text reach the terminal, and replace closed streams by an empty one.
 
-    Gives what stands for standard output.
+    Yields the new standard output.
     """
     _open_closed()
     before = sys.stdout, sys.stderr
@@ -96,7 +96,7 @@ def plain_output() -> Iterator[Plain]:
 
 
 def _open_closed() -> None:
-    """Put the empty device in place of closed descriptors, before a file of ours gets their numbers."""
+    """Open the null device for closed descriptors, before another file gets their numbers."""
     for number, name, mode in ((0, "stdin", "r"), (1, "stdout", "w"), (2, "stderr", "w")):
         try:
             os.fstat(number)
@@ -107,7 +107,7 @@ def _open_closed() -> None:
 
 
 def pass_by(text: str) -> None:
-    """Write a line on a terminal that the next one takes the place of; an empty one takes it away."""
+    """Write a line that the next one replaces; an empty one removes it."""
     if _passing["silent"] or not (sys.stderr and sys.stderr.isatty()):
         return
     with suppress(OSError, ValueError):
@@ -118,7 +118,7 @@ def pass_by(text: str) -> None:
 
 @contextmanager
 def without_passing() -> Iterator[None]:
-    """Let no such line be written, by any thread."""
+    """Write no such lines, in any thread."""
     before, _passing["silent"] = _passing["silent"], True
     try:
         yield
@@ -127,7 +127,7 @@ def without_passing() -> Iterator[None]:
 
 
 def bind_drawing(draw: Callable[..., Any]) -> None:
-    """Say how results are drawn: ``draw(result, ax, **options)``."""
+    """Set the function that draws results: ``draw(result, ax, **options)``."""
     _bound["draw"] = draw
 
 

@@ -1,4 +1,4 @@
-"""What to run for what one wants: the pair of sampler and accuracy that takes the least time, and how many.
+"""Advice: the fastest sampler and accuracy for a wanted error, and the number of surfaces.
 
 A wish is kept in 95 of 100 ensembles: by the exact spread of a surface for a mean, by the exact density at it
 for a quantile. For values of single surfaces it is kept in all of them.
@@ -27,11 +27,11 @@ from mcgw.scene.scene import Scene
 from mcgw.scene.section import SceneError
 from mcgw.scene.values import EXACT
 
-_SHARE = 0.1  # of a wish that the accuracy of values may take
-_PROBABILITY = 0.99  # whose quantile is wished for
-_FEWEST = 2000  # surfaces that show a quantile; of fewer there are not 20 beyond it
+_SHARE = 0.1  # share of a wish left to the accuracy of values
+_PROBABILITY = 0.99  # probability of the wanted quantile
+_FEWEST = 2000  # surfaces needed for a quantile: 20 lie beyond it
 _MOST_SURFACES = 1e12
-# What matters most first: there may not be time for all.
+# In order of importance: there may not be time for all.
 _ACCURACIES = (EXACT, 1e-6, 1e-3, 1e-2, 1e-4, 1e-5, 1e-10, 1e-8)
 _LAW_ERRORS = (1e-3, 1e-4, 1e-2)
 _MOST_DRAWS, _MOST_LISTED = 1e5, 3e6  # asperities of a surface that are still drawn, or listed, by themselves
@@ -42,14 +42,14 @@ _LISTED = 4  # surfaces whose values are held against sums over their heights
 
 @dataclass(frozen=True)
 class Way:
-    """A scene that draws the same surfaces' law, and what it costs.
+    """A scene with the same law of surfaces, and its cost.
 
     Parameters
     ----------
     scene : Scene
         With its sampler, accuracy and law_error.
     sampler : str
-        The one that draws: "auto" takes one.
+        The sampler that draws.
     error : float
         Largest relative error of a value of some surfaces against the sum over their heights; nan if they
         have none, or too many to list.
@@ -64,12 +64,12 @@ class Way:
     each: float
 
     def seconds(self, surfaces: float) -> float:
-        """Expected wall time of so many surfaces."""
+        """Expected wall time of some surfaces."""
         return self.set_up + surfaces * self.each
 
 
 def ways_for(scene: Scene) -> Iterator[Way]:
-    """Measure every pair that serves a scene, one after the other, what matters most first."""
+    """Measure every usable pair for a scene, the most important first."""
     asked = replace(scene, keep="sums", accuracy=EXACT, law_error=0.0)
     tried: list[dict[str, Any]] = [{"sampler": "cells", "accuracy": accuracy} for accuracy in _ACCURACIES]
     crowds = [{"sampler": "auto", "law_error": error} for error in _LAW_ERRORS]
@@ -81,20 +81,20 @@ def ways_for(scene: Scene) -> Iterator[Way]:
 
 
 def _measured(scene: Scene, **changes: Any) -> Way | None:
-    """One of them; None if it does not go with the scene."""
+    """Measure one pair; None if it does not suit the scene."""
     try:
         asked = scene.replace(**changes)
     except SceneError:
         return None
     sampler = sampler_of(asked)  # and its loops are compiled
     start = perf_counter()
-    sampler_of(asked.replace(separations=_SHIFTED * np.array(asked.separations)))  # nothing kept helps
+    sampler_of(asked.replace(separations=_SHIFTED * np.array(asked.separations)))  # no cached result is used
     set_up = perf_counter() - start
     return Way(asked, sampler.name, _worst(asked, sampler), set_up, _each(asked, sampler))
 
 
 def _each(scene: Scene, sampler: Sampler) -> float:
-    """Seconds of a surface; of one with very many asperities, from one with fewer."""
+    """Seconds per surface; extrapolated for very many asperities."""
     promise = promise_of(sampler.name)
     if not promise.one_by_one or scene.touching <= _ENOUGH:
         return seconds_per_surface(scene, sampler)
@@ -119,7 +119,7 @@ def _worst(scene: Scene, sampler: Sampler) -> float:
 
 @dataclass(frozen=True)
 class Wish:
-    """What somebody wants of an ensemble.
+    """A wanted accuracy.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ class Wish:
 
     @property
     def text(self) -> str:
-        """In words."""
+        """The wish in words."""
         what = {"mean": "a mean", "quantile": "the 99 % quantile", "surfaces": "every value of a surface"}
         return f"{what[self.of]} to {self.within:g}"
 
@@ -153,13 +153,13 @@ class Advice:
     Parameters
     ----------
     wish : Wish
-        For what.
+        The wish it fulfils.
     scene : Scene
         The one to run: its sampler, accuracy, law_error and number of surfaces are the advice.
     sampler : str
         The one that draws.
     seconds : float
-        That it takes on this machine by the clock.
+        Wall time on this machine.
     """
 
     wish: Wish
@@ -212,7 +212,7 @@ def advise(
 def _needed(
     wish: Wish, scene: Scene, spread: float, of_quantile: Callable[[], tuple[float, float]]
 ) -> tuple[float, float]:
-    """Surfaces that it takes, and how far from the exact law they may be."""
+    """Number of surfaces, and their allowed distance from the exact law."""
     if wish.of == "mean":  # which is exact whatever the law
         return max((float(ndtri(0.975)) * spread / wish.within) ** 2, 1.0), inf
     if wish.of == "quantile":
@@ -222,7 +222,7 @@ def _needed(
 
 
 def _of_quantile(scene: Scene, h: float) -> tuple[float, float]:
-    """How well one surface knows a quantile, from the exact law at one separation.
+    """Error of a quantile from one surface, by the exact law at one separation.
 
     Half of its 95 % interval over the quantile, which falls with the root of the number of surfaces: order
     statistics have a normal law with its density. And the probability for a relative change of its value.

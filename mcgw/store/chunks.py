@@ -35,7 +35,7 @@ from mcgw.ensemble.results import CHUNK_ROWS
 
 _CHUNK = 2**20  # bytes of a chunk, at most
 _SAMPLE = 2**14  # bytes that tell whether compression pays
-_PIECE = 2**23  # bytes of numbers in hand at a time
+_PIECE = 2**23  # bytes of numbers processed at a time
 
 PACKED: Any = {"compression": "gzip", "compression_opts": 1, "shuffle": True, "fletcher32": True}
 _PLAIN: Any = {"fletcher32": True}
@@ -50,7 +50,7 @@ def chunk_rows(rows: int, columns: int) -> int:
 def empty_table(
     file: h5py.File, path: str, rows: int | None, like: "NDArray[Any] | h5py.Dataset"
 ) -> h5py.Dataset:
-    """A table for so many rows like those of another one, packed as suits its numbers; None: it will grow."""
+    """Make a table like another, packed to suit its numbers; rows None: it will grow."""
     shape = like.shape[1:]
     return file.create_dataset(
         path,
@@ -67,11 +67,11 @@ def stored(file: h5py.File, name: str, values: NDArray[Any]) -> None:
     if len(values):
         empty_table(file, name, len(values), values)[()] = values
     else:
-        file.create_dataset(name, data=values)  # there is no chunk of no rows
+        file.create_dataset(name, data=values)  # a chunk has at least one row
 
 
 def _shrinks(table: "NDArray[Any] | h5py.Dataset") -> bool:
-    """Whether shuffling and compressing the first rows saves half of them."""
+    """Whether compressing the first rows saves half of their size."""
     rows = max(_SAMPLE // max(8 * math.prod(table.shape[1:]), 1), 1)
     sample = np.ascontiguousarray(table[:rows])
     shuffled = sample.reshape(-1).view(np.uint8).reshape(-1, sample.itemsize).T.tobytes()
@@ -79,7 +79,7 @@ def _shrinks(table: "NDArray[Any] | h5py.Dataset") -> bool:
 
 
 def add_rows(target: h5py.Dataset, first: int, source: "NDArray[Any] | h5py.Dataset") -> None:
-    """Put all rows of a table into another one, from row `first` on: packed as they are, if that can be."""
+    """Copy all rows of a table into another, from row `first`; as packed chunks if possible."""
     if isinstance(source, h5py.Dataset) and first % target.chunks[0] == 0 and _cut(source) == _cut(target):
         _add_chunks(target, first, source)
         return
@@ -90,7 +90,7 @@ def add_rows(target: h5py.Dataset, first: int, source: "NDArray[Any] | h5py.Data
 
 
 def _cut(table: h5py.Dataset) -> Any:
-    """What two tables must have in common for a chunk of one to be a chunk of the other."""
+    """Properties that two tables must share to exchange chunks."""
     plist = table.id.get_create_plist()
     filters = [plist.get_filter(i) for i in range(plist.get_nfilters())]
     return table.dtype, table.shape[1:], table.chunks, [(code, values) for code, _, values, _ in filters]

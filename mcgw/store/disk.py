@@ -27,7 +27,7 @@ from mcgw.errors import StoreError
 from mcgw.formats.named_files import open_regular
 
 GROUP = "drawn"  # the one group that a file may have
-MOST_SCALE = 2**20  # values of a scale up to which they are looked at on opening
+MOST_SCALE = 2**20  # longest scale that is checked on opening
 
 
 def parts_of(path: Path) -> Path:
@@ -96,10 +96,10 @@ class SteadyFile:
         return self._file.tell()
 
     def flush(self) -> None:
-        """Nothing is held back."""
+        """Do nothing: there is no buffer."""
 
     def sync(self) -> None:
-        """Flush to the disk what was written."""
+        """Flush to the disk."""
         os.fsync(self._file.fileno())
 
     def trailer(self, data: bytes) -> None:
@@ -116,7 +116,7 @@ class SteadyFile:
         self.sync()
 
     def close(self) -> None:
-        """Close it, whatever became of it."""
+        """Close the file, even after an error."""
         self._file.close()
 
 
@@ -128,7 +128,7 @@ _PIECE = 2**22
 
 @dataclass(frozen=True)
 class Trailer:
-    """What a trailer says.
+    """Contents of a trailer.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ class Trailer:
     sha256 : str
         Digest of these bytes.
     notes : dict
-        What else its writer put in.
+        Further entries of its writer.
     """
 
     length: int
@@ -259,7 +259,7 @@ def head_digest(file: h5py.File) -> str:
 
 
 def _attributes(name: str, attributes: Any) -> Iterator[str]:
-    """Those that are text or numbers; the others only tie the scales to the tables."""
+    """Attributes that are text or numbers; others only link scales to tables."""
     for key in sorted(attributes):
         value = attributes[key]
         if isinstance(value, str):

@@ -86,7 +86,7 @@ def open_ensemble(path: str | Path) -> Ensemble:
 
 
 def _drawn_for(path: Path, attributes: dict[str, Any]) -> Scene | None:
-    """The scene that the surfaces were drawn for, if the file says that it is another one."""
+    """The scene that the surfaces were drawn for, if it is another one."""
     if "drawn_for" not in attributes:
         return None
     try:
@@ -141,7 +141,7 @@ def _run_of(path: Path) -> RunFolder:
 
 
 def described(path: Path) -> tuple[dict[str, Any], Scene]:
-    """Attributes and scene of a file that are as they were written, with the datasets that they declare."""
+    """Attributes and scene of an unchanged file, with its datasets."""
     answer = examine(path)
     attributes = answer["attributes"]
     _check_format(path, attributes)
@@ -166,7 +166,7 @@ def described(path: Path) -> tuple[dict[str, Any], Scene]:
 
 
 def _check_format(path: Path, attributes: dict[str, Any]) -> None:
-    """Refuse what is no file of results, or of another format than this version reads."""
+    """Refuse files that are no results, or of a format that this version does not read."""
     filetype, known = str(attributes.get("filetype", "")), attributes.get("format")
     if filetype.startswith("mcgw-") and (filetype != FILETYPE or known != list(FORMAT)):
         raise StoreError(
@@ -199,9 +199,9 @@ def _check_tables(path: Path, scene: Scene, datasets: dict[str, Any]) -> None:
 
 
 def verify(path: Path) -> tuple[str, str]:
-    """What is wrong with a finished file, and the digest of what it holds now.
+    """Damage of a finished file, and the digest of its present contents.
 
-    The first is empty for a file that is bit by bit as it was written.
+    The first is empty if every bit is as written.
     """
     problem = ""
     try:

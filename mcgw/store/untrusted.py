@@ -1,4 +1,4 @@
-"""What an HDF5 file holds, found out without trusting it.
+"""Contents of an HDF5 file that is not trusted.
 
 A file whose trailer holds is as `mcgw` wrote it, and is looked at in this process. Any other may come from
 a stranger, or from a failing disk, and HDF5 may crash on it: a child process looks at it. What is looked at
@@ -19,7 +19,7 @@ from mcgw.formats.named_files import open_regular
 from mcgw.machine.child_process import ChildError, memory_limit, run_child
 from mcgw.store.disk import check_trailer, read_trailer
 
-_MEMORY = 2**31  # address space of the child; HDF5 and NumPy take a tenth of it
+_MEMORY = 2**31  # bytes of address space of the child; HDF5 and NumPy take a tenth
 _SECONDS, _BYTES_A_SECOND = 20.0, 50e6  # a busy machine takes seconds to start a process
 _SMALL = 2**24  # bytes up to which all of a file is checked: a hundredth of a second
 

@@ -1,4 +1,4 @@
-"""Sweeps: many scenes as one question; and a file of results opened as what it is, one scene or many."""
+"""Sweeps: many scenes on the same surfaces; and opening a result file of either kind."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,9 +11,9 @@ if TYPE_CHECKING:
 
 
 def open_results(path: Path) -> "Ensemble | Sweep":
-    """Open whatever a file holds, or a run in progress; errors as of `open_ensemble` and `open_sweep`."""
+    """Open an ensemble, a sweep or a run in progress; errors as of `open_ensemble` and `open_sweep`."""
     if "axes" not in read_attributes(path):
         return open_ensemble(path)
-    from mcgw.sweeps.file import open_sweep  # which loads what draws
+    from mcgw.sweeps.file import open_sweep  # imports the samplers
 
     return open_sweep(path)

@@ -49,7 +49,7 @@ class Axes:
         return cls({key: tuple(values) for key, values in said["values"].items()}, bool(said["zipped"]))
 
     def text_of_all(self) -> str:
-        """All of it as JSON."""
+        """Axes as JSON."""
         return json.dumps({"values": self.values, "zipped": self.zipped})
 
     @property
@@ -94,7 +94,7 @@ class Axes:
         return brief(", ".join(f"{key} = {_short(value)}" for key, value in self.at(point).items()))
 
     def values_text(self, point: Point) -> str:
-        """The values alone, in the order of the keys."""
+        """The values in the order of the keys."""
         return brief(", ".join(map(_short, self.at(point).values())))
 
     def dimension(self, key: str) -> int:
@@ -103,7 +103,7 @@ class Axes:
         Raises
         ------
         ValueError
-            If it is no axis.
+            If no such key varies.
         """
         if key not in self.values:
             raise ValueError(f"{key!r} is no axis of this sweep; it has {', '.join(self.keys)}")
@@ -185,7 +185,7 @@ def axes_of(over: Mapping[str, Any], *, zipped: bool) -> Axes:
 
 
 def _value(key: str, value: Any) -> Any:
-    """A value as a scene file gives it; a whole grading may be an object."""
+    """A value as in a scene file; a whole grading may be an object."""
     if key == "grading" and callable(value):
         if not is_data(value):
             raise SceneError(

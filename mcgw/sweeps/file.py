@@ -54,7 +54,7 @@ Tables = dict[str, NDArray[Any]]
 
 
 def body_of_sweep(record: RunFolder, pooled: Sequence[Pooled], **about: Any) -> tuple[bytes, bytes]:
-    """The file of a sweep, with more attributes, and its trailer."""
+    """Make the file of a sweep with more attributes, and its trailer."""
     sweep = Asked.from_texts(record.text, record.axes).answered(pooled, STATISTICS)
     texts = {"scene": record.text, "axes": record.axes}
     return body_of_kept(
@@ -63,7 +63,7 @@ def body_of_sweep(record: RunFolder, pooled: Sequence[Pooled], **about: Any) -> 
 
 
 def _by_point(sweep: Sweep) -> Labelled:
-    """What other programs read: statistics by point and separation, and the axes whose values are numbers."""
+    """Statistics by point and separation, and numeric axes, for other programs."""
     found = sweep.labelled()
     coordinates = {name: one for name, one in found.coordinates.items() if name in AXES}
     coordinates["point"] = axis("point", np.arange(sweep.axes.size))
@@ -80,7 +80,7 @@ def _by_point(sweep: Sweep) -> Labelled:
 
 
 def _drawn(sweep: Sweep) -> Tables:
-    """All that the statistics follow from."""
+    """The data behind the statistics."""
     size = [len(next(iter(one.means.values()))) for one in sweep.groups]
     points = [(place.group, *place.scenes, -1)[:3] for place in sweep.places]
     weights = [(*place.weights, 0.0)[:2] for place in sweep.places]
@@ -153,7 +153,7 @@ def open_sweep(path: str | Path, statistics: tuple[str, ...] = STATISTICS) -> Sw
 
 
 def _groups(drawn: Tables) -> Iterator[Pooled]:
-    """What is kept of each group, out of the rows of all."""
+    """Data of each group, from the rows of all groups."""
     first = pair = 0
     for n, scenes in drawn["groups"].tolist():
         tables: Tables = {"n": np.array([n])}

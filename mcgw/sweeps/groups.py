@@ -1,4 +1,4 @@
-"""Points of a sweep that share their surfaces, and those of them whose sums must be computed.
+"""Groups of points that share their surfaces, and the points whose sums are computed.
 
 Exponential gradings as combinations of two: under Hertz's law every sum is linear in the modulus.
 
@@ -26,19 +26,19 @@ if TYPE_CHECKING:
     from mcgw.ensemble.summary import Bins
 
 _Item = TypeVar("_Item")
-_MANY = 8  # gradings: fewer are computed each by itself, with the bits that it has alone
+_MANY = 8  # gradings; fewer are computed one by one, with the same bits as alone
 
 
 @dataclass(frozen=True)
 class Place:
-    """Where the statistics of a point are: a weighted mean of some scenes that are computed.
+    """Statistics of a point as a weighted mean of computed scenes.
 
     Parameters
     ----------
     group : int
-        Of points that share their surfaces.
+        Number of the group.
     scenes : ndarray of int
-        Which of them.
+        Computed scenes of the group.
     weights : ndarray
         Of what the modulus enters; anything else is the same for all of them.
     """
@@ -63,11 +63,11 @@ class Group:
     numbers : tuple of int
         Which points of the sweep.
     scenes : tuple of Scene
-        Theirs, on common cells.
+        Their scenes, on common cells.
     computed : tuple of Scene
         Those whose sums are computed for every surface.
     places : tuple of Place
-        Of all points.
+        Places of all points.
     """
 
     numbers: tuple[int, ...]
@@ -84,7 +84,7 @@ class Group:
 
     @property
     def n_surfaces(self) -> int:
-        """How many surfaces they share."""
+        """Number of shared surfaces."""
         return self.scenes[0].n_surfaces
 
 
@@ -113,14 +113,14 @@ def _group(group: int, numbers: list[int], scenes: list[Scene]) -> Group:
         two, weights = found
         computed += [members[k] for k in two]
         for i, pair in zip(members, weights, strict=True):
-            some = np.flatnonzero(pair)  # without one that does not count
+            some = np.flatnonzero(pair)  # drop those with zero weight
             places[i] = Place(group, first + some, pair[some])
     in_order = tuple(places[i] for i in range(len(scenes)))
     return Group(tuple(numbers), tuple(scenes), tuple(scenes[i] for i in computed), in_order)
 
 
 def _alike(items: Sequence[_Item], key: Callable[[_Item], Any]) -> list[list[_Item]]:
-    """Items with equal keys together; keys need not have a hash."""
+    """Group items with equal keys, which need not be hashable."""
     keys: list[Any] = []
     found: list[list[_Item]] = []
     for item in items:
@@ -144,7 +144,7 @@ def between_two(scenes: Sequence[Scene]) -> tuple[tuple[int, int], Array] | None
         grading is no exponential one, or sums are not linear in it.
     """
     one = scenes[0]
-    # All that is kept must follow from sums linear in a modulus that is not negative.
+    # All that is kept must be linear in a modulus that is not negative.
     linear = one.hertzian and one.tangential is None and one.interaction is None
     linear = linear and one.negative == "error" and one.keep != "statistics"
     gammas = [

@@ -154,11 +154,11 @@ class OverPoints:
 
     @cached_property
     def _ensembles(self) -> dict[int, Ensemble]:
-        """Those of the points that were asked for."""
+        """Ensembles of some points."""
         return {}
 
     def _of_all(self, quantity: str, get: Any) -> Array:
-        """One array of all points, per area where that is asked."""
+        """One array over all points, per area if requested."""
         name, per_area = self._held(quantity)
         found = [get(self.groups[place.group], name, *place.of(name)) for place in self.places]
         if per_area:
@@ -166,12 +166,12 @@ class OverPoints:
         return self._arranged(found)
 
     def _arranged(self, found: Iterable[Array]) -> Array:
-        """What there is of all points, in the shape of the axes."""
+        """Data of all points in the shape of the axes."""
         each = np.stack(list(found))
         return each.reshape(*self.shape, *each.shape[1:])
 
     def _held(self, quantity: str) -> tuple[str, bool]:
-        """The quantity that is held, and whether that asked is per nominal area."""
+        """The stored quantity, and whether the requested one is per nominal area."""
         name = PER_AREA[quantity].of if quantity in PER_AREA else quantity
         if name not in self.quantities:
             raise KeyError(f"{quantity!r} is not in this sweep; it has {', '.join(self.quantities)}")
@@ -188,9 +188,9 @@ class PointResults(Held):
     Parameters
     ----------
     pooled : Pooled
-        Of its group.
+        Statistics of its group.
     place : Place
-        Its own.
+        Its place in the group.
     """
 
     pooled: Pooled

@@ -1,6 +1,6 @@
 """The scene of each point of a sweep, checked as a scene file is.
 
-What a sweep asks, checked and put into groups: before anything is drawn.
+A sweep is checked and put into groups before anything is drawn.
 """
 
 from collections.abc import Sequence
@@ -22,16 +22,16 @@ from mcgw.sweeps.groups import Group, Place, groups_of
 from mcgw.sweeps.pooled import Pooled
 from mcgw.sweeps.sweep import Sweep
 
-_MOST_TOLD = 20  # mistakes: more say nothing new
+_MOST_TOLD = 20  # most mistakes that are shown
 
 
 def scenes_of(document: dict[str, Any], axes: Axes) -> list[Scene]:
-    """The scenes of all points, out of the tables of the one that they come from.
+    """Scenes of all points, from the tables of the base scene.
 
     Raises
     ------
     SceneError
-        With the mistakes of all points, each with the point it is of.
+        With the mistakes of all points, each with its point.
     """
     found, problems = [], []
     for point in steps(list(axes.points()), "points"):
@@ -49,12 +49,12 @@ def scenes_of(document: dict[str, Any], axes: Axes) -> list[Scene]:
 
 
 class Points(Sequence[Scene]):
-    """The scenes of a sweep that was drawn before, each made when it is asked for.
+    """Scenes of a finished sweep, each made when needed.
 
     Parameters
     ----------
     document : dict
-        The tables of the scene that they come from.
+        Tables of the base scene.
     axes : Axes
         What they differ in.
     drawn : sequence of (int, tuple of float)
@@ -72,7 +72,7 @@ class Points(Sequence[Scene]):
         return len(self._points)
 
     def __getitem__(self, i: Any) -> Any:
-        """One of them, or some."""
+        """A scene, or several."""
         if isinstance(i, slice):
             return [self[k] for k in range(*i.indices(len(self)))]
         n, edges = self._drawn[i]
@@ -83,25 +83,25 @@ class Points(Sequence[Scene]):
 
 
 def document_of(scene: Scene) -> dict[str, Any]:
-    """The tables of the scene; what follows from others, or goes without saying, is left out."""
+    """Tables of the scene, without defaults and derived values."""
     document = scene_document(scene, left_out=False)
     if "n_asperities" in scene.left_out:
         del document["ensemble"]["n_asperities"]
     if document["grading"]["law"] == "homogeneous":
         del document["grading"]["law"]
-    if scene.keep == "moments":  # which no point can be given back
+    if scene.keep == "moments":  # cannot be written back
         document["ensemble"]["keep"] = "sums"
     return document
 
 
 @dataclass(frozen=True)
 class Asked:
-    """The question.
+    """The scenes of a sweep, not yet drawn.
 
     Parameters
     ----------
     document : dict
-        The tables of the scene that the points come from.
+        Tables of the base scene.
     axes : Axes
         What they differ in.
     """
@@ -111,13 +111,13 @@ class Asked:
 
     @classmethod
     def of(cls, scene: Scene, axes: Axes) -> "Asked":
-        """A scene and what is changed of it; nothing is checked yet."""
+        """From a base scene and its changes; nothing is checked yet."""
         return cls(document_of(scene), axes)
 
     @staticmethod
     @lru_cache(maxsize=1)
     def from_texts(scene: str, axes: str) -> "Asked":
-        """What `texts` gave; the same object for the same texts, for its groups may take long to find."""
+        """From what `texts` gave; cached, since finding the groups may take long."""
         return Asked(loads(scene), Axes.from_text(axes))
 
     def texts(self) -> tuple[str, str]:
@@ -137,7 +137,7 @@ class Asked:
         return groups_of([_with_a_number(scene) for scene in scenes_of(self.document, self.axes)])
 
     def answered(self, pooled: Sequence[Pooled], statistics: tuple[str, ...]) -> Sweep:
-        """The answer, from what is kept of each group."""
+        """The sweep, from the data of each group."""
         scenes: dict[int, Scene] = {}
         places: dict[int, Place] = {}
         for group in self.groups:
@@ -154,7 +154,7 @@ class Asked:
 
 
 def _with_a_number(scene: Scene) -> Scene:
-    """With a number of surfaces in place of a rule."""
+    """The same with a number of surfaces in place of a stop rule."""
     if scene.max_seconds is not None:
         raise SceneError(["ensemble.max_seconds: a sweep must be reproducible; give n_surfaces or rel_err"])
     return scene if scene.rel_err is None else without_rule(scene)

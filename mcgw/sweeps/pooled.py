@@ -1,4 +1,4 @@
-"""Means, variances and covariances over surfaces of several scenes that share these, drawn block by block."""
+"""Means, variances and covariances of scenes that share their surfaces, drawn block by block."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -26,14 +26,14 @@ _MEANS, _PRODUCTS, _OF_EACH = "_means", "_products", "summary_"
 
 @dataclass(frozen=True)
 class Pooled:
-    """What is kept of some surfaces.
+    """Statistics of some surfaces.
 
     Parameters
     ----------
     n : int
-        How many.
+        Number of surfaces.
     means : dict of str to ndarray
-        Of each quantity, shape (scenes, separations).
+        Means of each quantity, shape (scenes, separations).
     products : dict of str to ndarray
         Sums over the surfaces of products of two scenes' deviations from their means, shape (scenes, scenes,
         separations).
@@ -49,9 +49,9 @@ class Pooled:
 
     @classmethod
     def of(cls, values: Sequence[Values]) -> "Pooled":
-        """Of the values of some surfaces: for each scene arrays (surfaces, separations).
+        """From values of some surfaces: for each scene arrays (surfaces, separations).
 
-        Shifted by the first surface, so that nothing cancels; of one scene the same bits as an ensemble's.
+        Shifted by the first surface against cancellation; for one scene the same bits as an ensemble.
         """
         means, products = {}, {}
         for name in values[0]:
@@ -66,7 +66,7 @@ class Pooled:
 
     @classmethod
     def from_tables(cls, tables: Mapping[str, NDArray[Any]]) -> "Pooled":
-        """What `tables` gave."""
+        """From what `tables` gave."""
         means = {k.removesuffix(_MEANS): v for k, v in tables.items() if k.endswith(_MEANS)}
         products = {
             name: tables[name + _PRODUCTS].reshape(len(mean), *mean.shape) for name, mean in means.items()
@@ -89,7 +89,7 @@ class Pooled:
         return tables
 
     def __add__(self, other: "Pooled") -> "Pooled":
-        """Of the surfaces of both."""
+        """Statistics of the surfaces of both."""
         n, means, products = self.n + other.n, {}, {}
         for name, mean in self.means.items():
             step = other.means[name] - mean
@@ -118,9 +118,9 @@ class Pooled:
 
 
 _ROWS = 8192  # surfaces whose values are pooled at once, as an ensemble does
-_BYTES = 2**28  # of those values
-_DRAWS = 1e10  # asperities of a block: what an interruption may cost
-_ANSWER = 3000  # asperities that take as long to draw as a surface takes to answer one scene
+_BYTES = 2**28  # bytes of those values
+_DRAWS = 1e10  # asperities per block: the cost of an interruption
+_ANSWER = 3000  # cost of one scene per surface, in asperities drawn
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,18 +131,18 @@ class Pooling(Reducer):
 
     @property
     def n_surfaces(self) -> int:
-        """How many surfaces they share."""
+        """Number of shared surfaces."""
         return self.group.n_surfaces
 
     @property
     def rows(self) -> int:
-        """Surfaces of a block."""
+        """Surfaces per block."""
         width = sum(scene.width for scene in self.group.computed)
         return max(min(_ROWS, _BYTES // (8 * width), int(_DRAWS / (self._touching + 1))), 1)
 
     @property
     def work(self) -> float:  # type: ignore[override]
-        """What a surface takes, in asperities drawn."""
+        """Cost of a surface, in asperities drawn."""
         return self._touching + _ANSWER * len(self.group.computed)
 
     @property
@@ -150,7 +150,7 @@ class Pooling(Reducer):
         return self.group.scenes[0].touching
 
     def tables(self, first: int, stop: int, go_on: GoOn = always) -> Tables:
-        """What `Pooled` keeps of a block."""
+        """Statistics of a block, as `Pooled` stores them."""
         scenes, source = self.group.computed, _source_of(self)
         blocks = list(drawn_blocks(source, first, stop, block_size(scenes[0], source)))
         values = [joined([kept(scene, block[i]) for block in blocks]) for i, scene in enumerate(scenes)]
@@ -165,7 +165,7 @@ class Pooling(Reducer):
         return {BLOCK + name: table[None] for name, table in pooled.tables().items()}  # rows of whole blocks
 
     def held(self, blocks: Iterable[Tables]) -> Pooled:
-        """All of them, added up."""
+        """The sum of all blocks."""
         plain = ({name.removeprefix(BLOCK): table[0] for name, table in block.items()} for block in blocks)
         return reduce(add, map(Pooled.from_tables, plain))
 
@@ -181,7 +181,7 @@ class Pooling(Reducer):
             check_memory(what, 4 * len(scenes) * size_of(scenes[0].width))
 
 
-@lru_cache(maxsize=1)  # blocks come group after group
+@lru_cache(maxsize=1)  # blocks come in the order of groups
 def _source_of(pooling: Pooling) -> Shared:
     return shared(pooling.group.computed)
 
@@ -189,14 +189,14 @@ def _source_of(pooling: Pooling) -> Shared:
 def weighted(
     reducers: Iterable[Reducer], tell: Callable[[float, float], object]
 ) -> Callable[[float], object]:
-    """Tells (done, total) surfaces, each weighted by what it takes, out of how much work is done."""
+    """Convert work done to (done, total) surfaces, weighted by their cost."""
     each = [(one.n_surfaces, one.n_surfaces * one.work) for one in reducers]
     surfaces, work = map(sum, zip(*each, strict=True))
     return lambda done: tell(round(surfaces * done / work), surfaces)
 
 
 def draw(groups: Iterable[Group], tell: Callable[[float, float], object]) -> list[Pooled]:
-    """Draw all, in memory: what is kept of each group.
+    """Draw all groups in memory and return their statistics.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""A sweep: many scenes as one question, whose surfaces are the same wherever they can be.
+"""A sweep: many scenes that share their surfaces where possible.
 
 Differences between its points over the same surfaces, and how these change with a key.
 """
@@ -42,9 +42,9 @@ class Difference:
     def of(
         cls, pooled: Pooled, points: tuple[Place, Place], quantity: str, areas: tuple[float, float]
     ) -> "Difference":
-        """First point less second one, each per an area.
+        """First point minus second, each per area.
 
-        The variance is that of one combination of scenes, so that nothing cancels.
+        The variance is that of one combination of scenes, so that there is no cancellation.
         """
         (one, v), (other, w) = (point.of(quantity) for point in points)
         a, b = areas
@@ -54,7 +54,7 @@ class Difference:
         weights = np.zeros(len(scenes))
         weights[np.searchsorted(scenes, one)] += v / a
         weights[np.searchsorted(scenes, other)] -= w / b
-        paired = np.maximum(pooled.variance(quantity, scenes, weights), 0.0)  # but for rounding
+        paired = np.maximum(pooled.variance(quantity, scenes, weights), 0.0)  # apart from rounding
         with np.errstate(divide="ignore", invalid="ignore"):
             return cls(value, np.sqrt(paired / pooled.n), apart / paired)
 
@@ -103,7 +103,7 @@ class Slopes(Shown):
         return plotted(self, ax, k=k)
 
     def sheet(self) -> Sheet:
-        """Slopes at the first separation, at some values of the key and the first ones of all others."""
+        """Display slopes at the first separation, for some values of the key."""
         flat = [
             np.moveaxis(x, self.axis, 0).reshape(len(self.at), -1)[:, 0]
             for x in (self.value, self.stderr, self.theory)
@@ -119,7 +119,7 @@ class Slopes(Shown):
 
 
 STATISTICS = ("mean", "std")
-_SHOWN = 7  # points of a sheet
+_SHOWN = 7  # points displayed
 
 
 @dataclass(frozen=True, repr=False)
@@ -245,7 +245,7 @@ class Sweep(OverPoints, Shown):
         return plotted(self, ax, quantity=quantity or self.quantities[0])
 
     def sheet(self) -> Sheet:
-        """The axes, and means of some points at the lowest separation."""
+        """Display the axes, and means of some points at the lowest separation."""
         facts = [(key, self.axes.summary(key)) for key in self.axes.keys]
         surfaces = sum(group.n for group in self.groups)
         facts.append(("surfaces", f"{surfaces} drawn, in {len(self.groups)} groups that share surfaces"))
