@@ -63,7 +63,7 @@ def simulate(
     (20, 3)
     """
     check_object("simulate", scene, Scene)
-    scene = scene.replace(**changes)
+    scene = scene.replace(**changes) if changes else scene
     until = None if scene.max_seconds is None else monotonic() + scene.max_seconds
     scene = storable(scene)
     if scene.rel_err is not None or scene.max_seconds is not None:
@@ -111,7 +111,7 @@ class Values(OfScene):
     @property
     def disk(self) -> int:  # type: ignore[override]
         """Bytes of the blocks, and of the file they are merged into."""
-        return 2 * self.joined_bytes(self.n_surfaces)
+        return 2 * 8 * self.n_surfaces * self.columns
 
     def joined_bytes(self, surfaces: int) -> int:
         """What the file of so many surfaces takes."""

@@ -24,12 +24,13 @@ from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import State, check_output, state_of
 from mcgw.machine.memory import gibibytes
 from mcgw.sampling.samplers import name_of
+from mcgw.scene.fields import LeftOut
 from mcgw.scene.scene import Scene, storable
 from mcgw.store.disk import parts_of
 from mcgw.store.ensembles import described
 from mcgw.store.identity import difference, drawn_with, identity_of, now
 from mcgw.store.layout import body_of, stored_text
-from mcgw.store.place import finished, recorded_scene
+from mcgw.store.place import finished, recorded_scene, with_recorded_seed
 from mcgw.store.run_folder import RunFolder
 from mcgw.store.shards import Plan, Span, commit_shard
 
@@ -184,10 +185,12 @@ def _of_groups(asked: "Asked") -> tuple[Reducer, ...]:
 
 
 def as_recorded(scene: Scene, path: Path) -> Scene:
-    """The scene with its functions resolved, or as they were when the run at this place began.
+    """The scene with a seed and its functions resolved, or as they were when the run at this place began.
 
     Another processor, or another NumPy, may give other last digits to a Python function.
     """
+    if isinstance(scene.seed, LeftOut):
+        scene = with_recorded_seed(scene, path)
     resolved = storable(scene)
     there = None if resolved is scene else recorded_scene(path)
     if there is None:

@@ -20,7 +20,7 @@ from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import Scene
 from mcgw.store.ensembles import FileResults, open_ensemble
 from mcgw.store.lock import locked
-from mcgw.store.place import drop_leftovers, tidy, with_recorded_seed, write_body
+from mcgw.store.place import drop_leftovers, tidy, write_body
 from mcgw.store.run_folder import RunFolder
 from mcgw.store.shards import Span
 
@@ -112,7 +112,7 @@ def run(
     """
     check_object("run", scene, Scene)
     path = Path(path)
-    scene = with_recorded_seed(scene.replace(**changes), path)
+    scene = scene.replace(**changes) if changes else scene
     if shard is not None and scene.max_seconds is not None:
         raise ValueError("ensemble.max_seconds: the jobs of a run end at different times; give n_surfaces")
     total = forecast(scene).surfaces if progress else 0

@@ -33,7 +33,7 @@ class Layout:
     @property
     def starts(self) -> NDArray[np.int64]:
         """First row of each cell, and the number of all rows."""
-        return np.concatenate([[0], np.cumsum(self.sizes)])
+        return np.concatenate([[0], np.cumsum(self.plain + self.rooted)])
 
     def at_most(self, other: "Layout") -> "Layout":
         """No more than another one has."""

@@ -97,7 +97,10 @@ class Counted(Sampler):
         answers = iter(self.response @ moments)
         sums = {}
         for name in scene.quantities:
-            if quantity_of(name).counts:
+            if name == "contacts" or (scene.hertzian and quantity_of(name).counts):
+                lowest = np.searchsorted(self.mesh.edges[:-1], scene.separations)
+                sums[name] = contacts_above(counts, lowest)
+            elif quantity_of(name).counts:
                 sums[name] = self._numbers(name, counts)
             else:
                 everywhere = next(answers)
@@ -114,9 +117,7 @@ class Counted(Sampler):
         return sums
 
     def _numbers(self, name: str, counts: Array) -> Array:
-        """Asperities in cells that count for a quantity, shape (surfaces, separations)."""
-        if name == "contacts" or self.scene.hertzian:
-            return contacts_above(counts, np.searchsorted(self.mesh.edges[:-1], self.scene.separations))
+        """Asperities in cells that count for a quantity under another law, shape (surfaces, separations)."""
         separation, first, last = self._counted[name]
         numbers = contacts_above(counts, first) - contacts_above(counts, last)
         once = np.array(self.scene.all_separations)

@@ -72,8 +72,22 @@ def sampler_of(scene: Scene) -> Sampler:
 
 
 def name_of(scene: Scene) -> str:
-    """The exact sampler that a scene asks for; `law_error` may buy another one than ``cells``."""
-    return _cheapest(scene) if scene.sampler == "auto" else scene.sampler
+    """The exact sampler that a scene asks for; `law_error` may buy another one than ``cells``.
+
+    For ``auto`` the first that fits: cells, unless most of them would be empty (`runs/bench/auto.py`).
+    """
+    if scene.sampler != "auto":
+        return scene.sampler
+    if scene.nominal and scene.located:
+        return "direct"
+    most = min(5 + len(scene.separations) / 20, 20)
+    few = scene.keep != "moments" and not scene.nominal and scene.touching < most
+    names = ("tail", "cells", "direct") if few else ("cells", "tail", "direct")
+    # Where two of these meet, each summit has breaks of its own.
+    breaks = (scene.curvature is not None) + (not scene.hertzian) + scene.nominal
+    listed = isinstance(scene.heights, MeasuredHeights)
+    promises = ((name, promise_of(name)) for name in names)
+    return next(x for x, p in promises if (p.own_laws or breaks < 2) and not (p.needs_density and listed))
 
 
 def law_error_of(scene: Scene) -> float:
@@ -282,17 +296,3 @@ def _every_sum(scene: Scene, power: float | None) -> tuple[str, ...]:
     if scene.unload_from is not None:
         names += [q.name for q in UNLOADING.values() if q.unloading in names]
     return tuple(name for name in _summed(names) if power in (None, quantity_of(name).radius))
-
-
-def _cheapest(scene: Scene) -> str:
-    """The first that fits: cells, unless most of them would be empty (`runs/bench/auto.py`)."""
-    if scene.nominal and scene.located:
-        return "direct"
-    most = min(5 + len(scene.separations) / 20, 20)
-    few = scene.keep != "moments" and not scene.nominal and scene.touching < most
-    names = ("tail", "cells", "direct") if few else ("cells", "tail", "direct")
-    # Where two of these meet, each summit has breaks of its own.
-    breaks = (scene.curvature is not None) + (not scene.hertzian) + scene.nominal
-    listed = isinstance(scene.heights, MeasuredHeights)
-    promises = ((name, promise_of(name)) for name in names)
-    return next(x for x, p in promises if (p.own_laws or breaks < 2) and not (p.needs_density and listed))

@@ -1,8 +1,9 @@
 """Every key of a scene, one row each: source of reader, writer, checks, schema, page and ``--set``."""
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import analytic
 from analytic import (
     UNLOADING,
     Body,
@@ -22,9 +23,6 @@ from mcgw.scene.kinds import ByName, Either, Flag, List, Number, Table, Text, Wh
 from mcgw.scene.measured import Fitted
 from mcgw.scene.section import Key, TableOfKeys
 from mcgw.scene.values import SUMMITS, SUMS, rows_of
-
-if TYPE_CHECKING:
-    from analytic import Interaction, Joint
 
 GRADINGS: dict[str, Any] = {  # laws by their words in a scene
     "homogeneous": Homogeneous,
@@ -47,18 +45,6 @@ def _contact_laws() -> tuple[str, ...]:
     from analytic.laws import by_name  # which imports them all
 
     return (*by_name, "custom")
-
-
-def _interaction(**keys: Any) -> "Interaction":
-    from analytic import Interaction  # for those scenes alone
-
-    return Interaction(**keys)
-
-
-def _joint(**keys: Any) -> "Joint":
-    from analytic import Joint  # for those scenes alone
-
-    return Joint(**keys)
 
 
 _ANY, _POSITIVE, _NOT_NEGATIVE = Number(low=-math.inf), Number(), Number(zero=True)
@@ -265,7 +251,8 @@ TABLES: dict[str, TableOfKeys] = {
         "the separations of the scene are `effective` (default), those that asperities feel, or `nominal`",
         "effective"),
     Key("bulk_modulus", Number("Pa"), "1e11", "composite modulus of the half-space, Pa; default: `E_star`"),
-), make=_interaction, advice='give mcgw.Interaction("body"), or mcgw.Interaction("mean-plane")'),
+), make=lambda **keys: analytic.Interaction(**keys),
+    advice='give mcgw.Interaction("body"), or mcgw.Interaction("mean-plane")'),
 "joint": TableOfKeys("[A thermal joint](../how-to/conductance-of-a-joint.md): gas conducts in parallel with "
     "the spots. Adds `gap_conductance` and `joint_conductance`, W/(m² K); needs `conductivities`. Default: "
     "spots only (vacuum).", (
@@ -276,7 +263,8 @@ TABLES: dict[str, TableOfKeys] = {
         "summits), m; not needed with Nayak's heights or `[fitted]`"),
     Key("temperature", Number(advice="give a finite number > 0, in K"), "293.15", "of air, K"),
     Key("gas_pressure", Number("Pa"), "101325.0", "of air, Pa"),
-), make=_joint, advice='give mcgw.Joint("air", rms="1 um"), or the keys of [joint] in a scene file'),
+), make=lambda **keys: analytic.Joint(**keys),
+    advice='give mcgw.Joint("air", rms="1 um"), or the keys of [joint] in a scene file'),
 "fitted": TableOfKeys("More about the fitted map, written by `mcgw fit`. It does not affect the results, but "
     "the stated [error of the model](../explanation/validity.md). Default: the surface is assumed to be "
     "Gaussian.", (

@@ -237,9 +237,9 @@ def law_of_keys(given: Mapping[str, Any], problems: list[str]) -> ContactLaw:
 
 
 def contact_law_table(law: ContactLaw) -> dict[str, Any]:
-    """Keys that describe the law; none for Hertz's."""
+    """Keys that describe a law other than Hertz's."""
     if law.name != "custom":
-        return {} if type(law) is Hertz else {"law": law.name, **law.given()}
+        return {"law": law.name, **law.given()}
     custom: Any = law
     series = {
         key: [{**asdict(x), "coefficients": list(x.coefficients)} for x in formulas]

@@ -8,6 +8,7 @@ from typing import Any
 import tomli_w
 
 from analytic import MeasuredRadii
+from analytic.laws import Hertz
 from mcgw.formats.named_files import HDF5, loads, read_bytes
 from mcgw.scene.keys import KEYS, SURFACE_UNITS, TABLES
 from mcgw.scene.kinds import Word
@@ -193,6 +194,7 @@ def scene_document(scene: Scene, *, heights_file: str | None = None, left_out: b
     """The tables that `scene_text` writes; arguments and errors as there."""
     scene = storable(scene)
     listed = isinstance(scene.curvature, MeasuredRadii)  # whose heights stand there too
+    law = {} if type(scene.law) is Hertz else contact_law_table(scene.law)
     document: dict[str, Any] = {
         "title": scene.title,
         "surface": {key: float(getattr(scene.surface, key)) for key in SURFACE_UNITS}
@@ -200,7 +202,7 @@ def scene_document(scene: Scene, *, heights_file: str | None = None, left_out: b
         "grading": {**grading_table(scene.grading), "negative": scene.negative},
         "heights": {} if listed else heights_table(scene.heights, heights_file),
         "summits": scene.curvature and summits_table(scene.curvature, scene.surface, heights_file),
-        "contact": {**contact_law_table(scene.law), **_written(scene.film), **_written(scene, "contact")},
+        "contact": {**law, **_written(scene.film), **_written(scene, "contact")},
         **{name: _written(getattr(scene, name), name) for name, table in TABLES.items() if table.make},
         "ensemble": _written(scene, "ensemble"),
     }

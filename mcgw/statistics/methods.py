@@ -20,14 +20,7 @@ from numpy.polynomial.legendre import leggauss
 from scipy.integrate import quad
 
 import analytic
-from analytic import (
-    LAW_QUANTITIES,
-    MeasuredHeights,
-    Quantity,
-    RandomCurvature,
-    quantity_of,
-    resolved_breaks,
-)
+from analytic import LAW_QUANTITIES, MeasuredHeights, Quantity, RandomCurvature, quantity_of, resolved_breaks
 from analytic.arrays import Array
 from analytic.laws import Hertz, term_of
 from mcgw.ensemble.drawing import blocks
@@ -133,16 +126,7 @@ def _edges(scene: Scene, q: Quantity, h: float, touching: float) -> Array:
 
 
 _MOST_DRAWS = 1e7  # asperities of one surface, beyond which a sampler is not even tried
-_PIECES = (
-    0.0,
-    1.0,
-    3.0,
-    7.0,
-    14.0,
-    24.0,
-    40.0,
-    80.0,
-)  # -log of the shares of higher heights where quad's end
+_PIECES = (0.0, 1.0, 3.0, 7.0, 14.0, 24.0, 40.0, 80.0)  # -log of shares of higher heights where quad's end
 _AGREE = 1e-10  # of theory and its reference
 
 

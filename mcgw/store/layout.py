@@ -137,7 +137,7 @@ def body_of(ensemble: Ensemble, **about: Any) -> tuple[bytes, bytes]:
     arrays = {name: ensemble.sums.read(name, 0, None) for name in names}
     made = io.BytesIO()
     with h5py.File(made, "w", libver=LIBVER) as file:
-        fill(file, scene, [(Span(0, ensemble.sums.rows()), arrays)])
+        fill(file, scene, [(Span(0, len(arrays[names[0]])), arrays)])
         describe(file, scene, ensemble.sampler, digest_of(file, scene, [arrays]), **about)
         head = head_digest(file)
     body = made.getvalue()
