@@ -180,7 +180,7 @@ def part_of(shard: str) -> Part:
 
 @dataclass(frozen=True)
 class By:
-    """Who draws blocks, and who is told of progress.
+    """Who draws blocks, and who hears of progress.
 
     Parameters
     ----------
