@@ -375,6 +375,13 @@ class TestSources:
         assert np.abs(z_scores).max() < 5
         assert np.abs((seen.mean(axis=0) - 1.2 * power) / np.where(error > 0, error, 1)).max() > 5
 
+    def test_a_map_with_holes_is_refused(self, rng):
+        whole = mcgw.maps.synthetic.gaussian_map(SPECTRUM, (64, 64), (1e-6, 1e-6), rng)
+        holed = whole.heights.copy()
+        holed[3, 4:6] = np.nan
+        with pytest.raises(ValueError, match=r"^2 points are missing; fill them first"):
+            maps_of(replace(whole, heights=holed))
+
     @pytest.mark.usefixtures("cheap")
     def test_an_answer_says_of_which_maps_it_is(self, rng):
         draw = mcgw.maps.synthetic.gaussian_map

@@ -362,6 +362,10 @@ ROWS = [
     ("solve", "--area", "@s.toml --pressure 1MPa", "@s.toml --area 2000um^2", says("2e-09 m^2 = ")),
     ("solve", "--area-fraction", "@s.toml --pressure 1MPa", "@s.toml --area-fraction 0.2%",
      says("2e-09 m^2 = ")),
+    *(
+        ("solve", "--scatter", "@s.toml --load 1N", f"+ --scatter {x}", refuses(f"--scatter {x}: give"))
+        for x in ("0", "1", "2")
+    ),
     ("solve", "--scatter", "@s.toml --load 1N", "+ --scatter 1%", says("for std = 0.01 of the mean")),
     ("solve", "--surfaces", "@s.toml --load 1N -v", "+ --surfaces 9", says("specimens: 9 surfaces")),
     ("solve", "--csv", "@s.toml --load 1N", "+ --csv x.csv",

@@ -267,6 +267,8 @@ def test_profiles_that_should_be_doubted_are():
     assert "waves" in cautions([Profile(good.heights[:300], UM)], 10 * UM)
     steps = np.round(good.heights / UM * 2) / 2 * UM + 1e-9 * np.random.default_rng(1).normal(size=2000)
     assert "peaks" in cautions([Profile(steps, UM)], None)
+    drawn = gaussian_map(Spectrum(UM, 60 * UM, 50 * UM), (128, 4000), (UM, UM), np.random.default_rng(2))
+    assert "alpha" in cautions([Profile(drawn.heights[0], UM)], 10 * UM)
 
 
 @pytest.fixture(scope="module")
