@@ -102,11 +102,7 @@ def quotient(
 
 
 def fn_scaled(
-    n: float,
-    h: ArrayLike,
-    grading: Grading | None = None,
-    *,
-    heights: HeightLaw = GAUSSIAN,
+    n: float, h: ArrayLike, grading: Grading | None = None, *, heights: HeightLaw = GAUSSIAN
 ) -> Array:
     """F_n or F*_n relative to the density at the separation.
 

@@ -95,16 +95,10 @@ PER_AREA = _by_name(
     Quantity("pressure", "normal load per nominal area", "Pa", 1.5, 1, 0.5, 4 / 3, of="load"),
     Quantity("area_fraction", "real contact area per nominal area", "1", 1.0, 0, 1.0, math.pi, of="area"),
     Quantity(
-        "contact_conductance",
-        "contact conductance per nominal area",
-        "S/m^2 or W/(m^2 K)",
-        0.5,
-        0,
-        0.5,
-        4,
-        of="conductance_si",
+        "contact_conductance", "contact conductance per nominal area", "S/m^2 or W/(m^2 K)",
+        0.5, 0, 0.5, 4, of="conductance_si",
     ),
-)
+)  # fmt: skip
 
 # What only other laws of contact than Hertz's tell apart.
 LAW_QUANTITIES = _by_name(

@@ -6,14 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from analytic import (
-    QUANTITIES,
-    Hertz,
-    MeasuredHeights,
-    MeasuredRadii,
-    Quantity,
-    quantity_of,
-)
+from analytic import QUANTITIES, Hertz, MeasuredHeights, MeasuredRadii, Quantity, quantity_of
 from mcgw.ensemble.at_load import NEGATIVE, answers_at, asperities_of, quantities_at, theory_at
 from mcgw.ensemble.separation import Summits
 from mcgw.ensemble.solved import Solution

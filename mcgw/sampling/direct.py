@@ -88,11 +88,7 @@ class Direct(Sampler):
 
 
 def asperity_sums(
-    scene: Scene,
-    numbers: NDArray[np.int64],
-    heights: Array,
-    weights: Array,
-    ratios: Array | None = None,
+    scene: Scene, numbers: NDArray[np.int64], heights: Array, weights: Array, ratios: Array | None = None
 ) -> dict[str, Array]:
     """Load, area, ... of surfaces whose heights are given.
 
@@ -165,11 +161,7 @@ def _sums(starts: Any, heights: Any, factors: Any, separations: Any, twice: Any)
 
 
 def _hertz_sums(
-    scene: Scene,
-    numbers: NDArray[np.int64],
-    heights: Array,
-    weights: Array,
-    ratios: Array | None = None,
+    scene: Scene, numbers: NDArray[np.int64], heights: Array, weights: Array, ratios: Array | None = None
 ) -> dict[str, Array]:
     """As `asperity_sums`, of Hertz contacts, by plain loops."""
     asked = [quantity_of(name) for name in scene.quantities]

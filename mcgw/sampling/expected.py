@@ -22,11 +22,8 @@ from mcgw.scene.scene import Scene
 _SURFACE, _INSIDE, _MOMENT, _OF_LAW = 2e-6, 1e-9, 1.1e-8, 2.5e-8
 _ALONE, _VALUE, _VALUE_OF_LAW, _GENERATOR = 1.2e-7, 1.9e-9, 3.5e-8, 3e-4
 _RADIUS, _DRAWS_WITH_RADIUS = 10, 6  # times an asperity with the radius of all
-_BALANCE, _STEPS, _STEP = (
-    5e-6,
-    4e-4,
-    1e-7,
-)  # of a separation by cells; by single asperities, and each of these
+_BALANCE = 5e-6  # of a separation by cells
+_STEPS, _STEP = 4e-4, 1e-7  # of one by single asperities, and of each of these
 _BALANCE_OF_PLACES, _GROWS = 5e-7, 1.6  # of located summits: seconds, by a power of their number
 _RARE, _RARE_STRATA = 0.1, 1e-9
 

@@ -185,11 +185,7 @@ def converge(
     y = exact.turn(sums)
     whole = replace(scene, n_surfaces=len(y))
     means = verdict(Ensemble(whole, "drawn", MemoryResults(sums)))
-    checks = [
-        Check("means", means.seen, means.p),
-        *_contacts(whole, sums),
-        *_repeats(scene, sums),
-    ]
+    checks = [Check("means", means.seen, means.p), *_contacts(whole, sums), *_repeats(scene, sums)]
     slopes: list[Slope] = []
     z = np.empty(0)
     if y.shape[1]:
