@@ -162,15 +162,11 @@ def _listed(sampler: Direct, surface: int, above: float) -> Listed:
 
 def _below(scene: Scene, surface: int, touching: int) -> Array:
     """Heights of the asperities that no separation reaches."""
-    rest = _untouched(scene, surface, touching)
+    if scene.count == "fixed":
+        rest = scene.n_asperities - touching
+    else:
+        expected = scene.n_asperities * float(scene.heights.cdf(np.array(scene.lowest)))
+        rest = int(generator(scene.seed, REST, surface).poisson(expected))
     check_memory("the heights of one surface", 24 * rest)
     u = uniforms(scene.seed, REST, surface, 0, rest)
     return np.asarray(scene.heights.ppf(u, scene.lowest))
-
-
-def _untouched(scene: Scene, surface: int, touching: int) -> int:
-    """Number of asperities below every separation."""
-    if scene.count == "fixed":
-        return scene.n_asperities - touching
-    expected = scene.n_asperities * float(scene.heights.cdf(np.array(scene.lowest)))
-    return int(generator(scene.seed, REST, surface).poisson(expected))

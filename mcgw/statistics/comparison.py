@@ -149,8 +149,8 @@ class SweepComparison(Shown):
 
     @cached_property
     def worst(self) -> list[Tested]:
-        """All points, the least likely by chance first."""
-        return sorted(self.points, key=lambda one: one.unlikely)
+        """All points, the least likely by chance first; of equally likely ones that with the worst mean."""
+        return sorted(self.points, key=lambda one: (one.verdict.p, -abs(one.residual[one.worst])))
 
     @property
     def residuals(self) -> Array:

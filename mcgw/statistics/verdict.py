@@ -146,11 +146,6 @@ class Tested:
         quantity, separation = divmod(int(np.argmax(off)), len(self.separations))
         return quantity, separation
 
-    @property
-    def unlikely(self) -> tuple[float, float]:
-        """What orders points: the probability by chance, and for equal ones how far off the worst mean is."""
-        return self.verdict.p, -abs(float(self.residual[self.worst]))
-
 
 def verdict(ensemble: Ensemble) -> Verdict:
     """Test all means at once, with their exact covariance.
