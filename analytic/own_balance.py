@@ -109,17 +109,20 @@ class OwnBalance:
     def _balance(self, h: Array) -> Array:
         """By Newton from the side of no load, where the balance is monotone and convex or concave."""
         x, c = h.copy(), self.compliance
+        moving = np.arange(h.size)
         for _ in range(_MOST_STEPS):
-            rate = self.rate(x)
+            at = x[moving]
+            rate = self.rate(at)
             if np.any(rate <= 0):
-                where = float(np.max(h[rate <= 0]))
+                where = float(np.max(h[moving][rate <= 0]))
                 raise ValueError(
                     f"interaction: no equilibrium at d/sigma = {where:g} from the mean plane, because the "
                     "plane sinks faster than it is pressed; give larger separations"
                 )
-            step = (h - x + c * self.alone.mean("load", x)) / rate
-            x = x + step
-            if np.all(np.abs(step) <= _CLOSE * np.maximum(np.abs(x), 1.0)):
+            step = (h[moving] - at + c * self.alone.mean("load", at)) / rate
+            x[moving] = at + step
+            moving = moving[np.abs(step) > _CLOSE * np.maximum(np.abs(at), 1.0)]
+            if not moving.size:
                 break
         return x
 

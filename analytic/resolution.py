@@ -1,7 +1,7 @@
 """Where a grading varies: the heights between which it is resolved, and where it turns negative."""
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -18,6 +18,7 @@ _TOLERANCE = 1e-14
 _EVEN, _NARROW = 5.0, 2.0**-6  # greatest ratio of values on an interval, unless it is so narrow
 _OF_ONE = 2.0**-52  # rounding, as of 1 - tanh(s), that is not chased into narrow intervals
 _MOST = 4096
+_REMEMBERED = 256  # ranges, each of which every bound of a law and every slope asks again
 _NOISE = 2.0**-50  # of a grading, over its greatest value: more is a mistake
 
 
@@ -171,9 +172,28 @@ def resolved_breaks(
     ValueError
         If more than 4096 pieces are not enough.
     """
-    declared = np.unique([float(b) for b in grading.breaks if low < b < high])
     if grading.smooth or not low < high:
-        return tuple(declared.tolist())
+        return tuple(np.unique([float(b) for b in grading.breaks if low < b < high]).tolist())
+    return _found_breaks(Same(grading), low, high, noise_of_one)
+
+
+class Same:
+    """A grading by identity, for what is remembered of it: an equal function may have changed."""
+
+    def __init__(self, grading: Grading) -> None:
+        self.grading = grading
+
+    def __hash__(self) -> int:
+        return id(self.grading)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Same) and other.grading is self.grading
+
+
+@lru_cache(maxsize=_REMEMBERED)
+def _found_breaks(same: Same, low: float, high: float, noise_of_one: float) -> tuple[float, ...]:
+    grading = same.grading
+    declared = np.unique([float(b) for b in grading.breaks if low < b < high])
     edges = np.unique([low, *declared, *marks(low, high, _WIDEST), high])
     edges = bisected(_LONG, grading, edges, _MOST, noise_of_one)
     return tuple(merged(_LONG, grading, edges, declared)[1:-1].tolist())

@@ -153,7 +153,25 @@ class Summits:
 
     def rule(self, h: Array, grading: Grading, branches: Branches | None = None) -> HeightRule:
         """Heights and radii for sums on these branches, rough without any; None: of powers of both."""
-        return HeightRule.over(h, grading, self.heights, branches=branches or ())
+        if branches is None:
+            return HeightRule.over(h, grading, self.heights)
+        key = (branches, h.tobytes())  # of one model, every quantity and statistic of which asks again
+        if key not in self._rules:
+            while sum(kept.heights.size for kept in self._rules.values()) > _KEPT:
+                self._rules.pop(next(iter(self._rules)))
+            self._rules[key] = self._new_rule(h, grading, branches)
+        return self._rules[key]
+
+    def _new_rule(self, h: Array, grading: Grading, branches: Branches) -> HeightRule:
+        return HeightRule.over(h, grading, self.heights, branches=branches)
+
+    @cached_property
+    def _rules(self) -> dict[tuple[Branches, bytes], HeightRule]:
+        return {}
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave out what is kept, which is large: other processes compute their own."""
+        return {name: value for name, value in vars(self).items() if name != "_rules"}
 
     def jumps(self, quantity: str, branch: Branch, grading: Grading, h: Array, rule: HeightRule) -> Array:
         """What summits add to the slope of a mean by jumping, at each separation of a rule."""
@@ -175,14 +193,11 @@ class _RandomRadii(Summits):
         return WeightedHeights(self.heights, partial(self.curvature.mean, power)) if power else self.heights
 
     def rule(self, h: Array, grading: Grading, branches: Branches | None = None) -> HeightRule:
-        if branches is None:
-            return self._spread(super().rule(h, grading))
-        key = (branches, h.tobytes())  # of one model, every quantity and statistic of which asks again
-        if key not in self._rules:
-            while sum(kept.heights.size for kept in self._rules.values()) > _KEPT:
-                self._rules.pop(next(iter(self._rules)))
-            self._rules[key] = rule_of_radii(h, grading, self.curvature, branches)
-        return self._rules[key]
+        rule = super().rule(h, grading, branches)
+        return self._spread(rule) if branches is None else rule
+
+    def _new_rule(self, h: Array, grading: Grading, branches: Branches) -> HeightRule:
+        return rule_of_radii(h, grading, self.curvature, branches)
 
     def _spread(self, rule: HeightRule) -> HeightRule:
         """A rule over heights, spread to heights and radii.
@@ -193,14 +208,6 @@ class _RandomRadii(Summits):
         ratio, share = self.curvature.rule(rule.heights)
         heights = np.broadcast_to(rule.heights, ratio.shape)
         return HeightRule(heights.ravel(), (rule.probabilities * share).ravel(), rule.below, ratio.ravel())
-
-    @cached_property
-    def _rules(self) -> dict[tuple[Branches, bytes], HeightRule]:
-        return {}
-
-    def __getstate__(self) -> dict[str, Any]:
-        """Leave out what is kept, which is large: other processes compute their own."""
-        return {"heights": self.heights, "curvature": self.curvature}
 
     def jumps(self, quantity: str, branch: Branch, grading: Grading, h: Array, rule: HeightRule) -> Array:
         top, found = float(rule.heights.max()), []

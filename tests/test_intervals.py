@@ -3,6 +3,8 @@
 Gate of coverage: of 4000 intervals that cover with probability 0.95, fewer than 0.93 do once in 6e7.
 """
 
+import tracemalloc
+
 import numpy as np
 import pytest
 from conftest import SURFACE
@@ -10,10 +12,28 @@ from scipy.special import gammaincinv
 from scipy.stats import binom, binomtest, norm, pearson3, poisson, t as student
 
 import mcgw
-from analytic import Exponential, ExponentialHeights, Gaussian, MeasuredHeights, Weibull
+from analytic import (
+    Exponential,
+    ExponentialHeights,
+    Gaussian,
+    MeasuredHeights,
+    Nayak,
+    RandomCurvature,
+    Weibull,
+    quantity_of,
+)
+from analytic.laws import PowerLawGraded
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import forecast
-from mcgw.ensemble.intervals import FEWEST, TOO_FEW, Spread, count_interval, pearson3_quantile, spread_of
+from mcgw.ensemble.intervals import (
+    FEWEST,
+    TOO_FEW,
+    Spread,
+    count_interval,
+    moments,
+    pearson3_quantile,
+    spread_of,
+)
 from mcgw.ensemble.results import MemoryResults
 from mcgw.figures.against_theory import quantity_panel
 from mcgw.figures.data import FigureData
@@ -266,3 +286,22 @@ def test_numbers_of_contacts_have_the_interval_of_clopper_and_pearson(make_scene
     for k, total in enumerate(ensemble.contacts.sum(axis=0).tolist()):
         exact = binomtest(int(total), 280).proportion_ci(0.95, "exact")
         assert (low[k], high[k]) == pytest.approx((40 * exact.low, 40 * exact.high), rel=1e-9)
+
+
+def test_summits_of_any_radius_take_their_separations_one_by_one():
+    """Under another law the pieces of each are cut at all radii: a rule for twelve took ten times as much."""
+    scene = Scene(
+        surface=SURFACE, separations=np.linspace(-1, 3, 12),
+        heights=Nayak(4.0), curvature=RandomCurvature(4.0),
+        law=PowerLawGraded(0.1, reduced_c0=1.0), n_asperities=100, n_surfaces=2,
+    )  # fmt: skip
+    tracemalloc.start()
+    mean, variance = moments(scene, ["load", "area"], (2,))
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 2**26
+    for name, m, v in zip(("load", "area"), mean, variance, strict=True):
+        exact = scene.theory.cumulants(name, scene.separations)
+        scale = quantity_of(name).scale(scene.surface)
+        assert m * 100 * scale == pytest.approx(exact.mean, rel=1e-12)
+        assert v * 100 * scale**2 == pytest.approx(exact.variance, rel=1e-12)

@@ -363,3 +363,24 @@ def test_questions_without_an_answer_are_refused():
     for question in (model.mean, model.slope, model.std, model.separation_at):
         with pytest.raises(ValueError, match="law = 'by hand: kogut-etsion': no unloading is known"):
             question("load_unloading", 0.5)
+
+
+def test_a_grading_is_searched_once():
+    """Every quantity of a model asks where it jumps; a function that has changed is asked anew."""
+    asked, place = [], [0.7]
+
+    def step(s):
+        asked.append(s.size)
+        return np.where(s > place[0], 2.0, 0.5)
+
+    def model():
+        return Model(SURFACE, grading=Custom(step), law=laws.KogutEtsion(critical=0.1), heights=Weibull(3.0))
+
+    first, calls = model(), []
+    for quantity in ("load", "area", "contacts"):
+        calls.append(len(asked))
+        first.slope(quantity, [0.5, 1.0])
+    assert len(asked) - calls[1] < calls[1] / 20
+    place[0] = 0.9
+    there = replace(first, grading=Custom(lambda s: np.where(s > 0.9, 2.0, 0.5), breaks=(0.9,), smooth=True))
+    assert model().mean("load", 0.5) == pytest.approx(there.mean("load", 0.5), rel=1e-12)

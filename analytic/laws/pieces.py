@@ -5,7 +5,7 @@ comes nearer: within the pieces, and where pieces change.
 """
 
 from collections.abc import Callable, Iterable, Sequence
-from functools import partial
+from functools import lru_cache, partial
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -13,11 +13,11 @@ from numpy.polynomial import chebyshev
 from analytic.arrays import Array, Ints, Marks
 from analytic.gradings import Grading
 from analytic.laws.branch import Branch
-from analytic.laws.law import piece_of
+from analytic.laws.law import ContactLaw, piece_of
 from analytic.laws.regimes import Bound, Crossings, Regimes, crossings_of, limit_of
 from analytic.laws.unloading import slope_in_root
 from analytic.quadrature import NEAREST, towards
-from analytic.resolution import resolved_breaks
+from analytic.resolution import Same, resolved_breaks
 
 
 def cuts_of(
@@ -79,6 +79,7 @@ def _goes_on(regimes: Regimes) -> Marks:
 
 _TOUCH = 1e-60  # root of the penetration at first touch: at 0 itself slopes are 0/0
 _ABOUT, _NODES = 2.0**-6, 16  # of the fit from which the slope of a bound is taken
+_REMEMBERED = 512  # bounds at some separations, where every quantity jumps
 _JUMP = 1e-9  # a bound that misses by more jumps over the penetration
 
 
@@ -112,7 +113,7 @@ def jump_terms(
     heights between the ends. `density` is that of heights and of the numbers of their separations; the law is
     one, or one for each separation. Of shape (separations,).
     """
-    (low, high), law, every = ends, branch.law, np.arange(separations.size)
+    law, every = branch.law, np.arange(separations.size)
     e = grading(separations)
     total = np.zeros(separations.shape)
     touch = np.full(separations.shape, _TOUCH)
@@ -120,15 +121,24 @@ def jump_terms(
         first = branch.of_root(quantity, int(j), touch, e)
         total += np.where(piece_of(law, 0 * separations, e) == j, first, 0.0) * density(separations, every)
     for j in range(len(law.limits(e))):
-        bound = limit_of(law, grading, j)
-        kinks = [()] * (separations.size if law.each else 1)
-        found = crossings_of(bound, grading, separations, low, high, kinks)
+        find = _met.__wrapped__ if law.each else _met
+        found, shares = find(Same(grading), law, j, tuple(separations.tolist()), ends)
         t, which = found.height, found.separation
         y, e, own = np.sqrt(np.maximum(t - separations[which], 0.0)), grading(t), branch.of_some(which)
         jump = own.of_root(quantity, j + 1, y, e) - own.of_root(quantity, j, y, e)
-        met = jump * density(t, which) * _shares(bound, grading, found, separations, ends)
-        np.add.at(total, which, met)
+        np.add.at(total, which, jump * density(t, which) * shares)
     return total
+
+
+@lru_cache(maxsize=_REMEMBERED)
+def _met(
+    same: Same, law: ContactLaw, j: int, at: tuple[float, ...], ends: tuple[float, float]
+) -> tuple[Crossings, Array]:
+    """Where piece j + 1 begins or ends at some separations, and the heights that cross for each unit."""
+    bound, separations = limit_of(law, same.grading, j), np.array(at)
+    kinks = [()] * (separations.size if law.each else 1)
+    found = crossings_of(bound, same.grading, separations, *ends, kinks)
+    return found, _shares(bound, same.grading, found, separations, ends)
 
 
 def _shares(

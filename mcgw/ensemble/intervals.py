@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import betainc, betaincc, gammainccinv, gammaincinv, ndtri, stdtrit
 
-from analytic import TANGENTIAL, Hertz, MeasuredHeights, quantity_of
+from analytic import TANGENTIAL, Hertz, MeasuredHeights, RandomCurvature, quantity_of
 from analytic.arrays import Array, Marks
 from mcgw.ensemble.results import Held
 from mcgw.formats.table import Column
@@ -111,7 +111,9 @@ def moments(scene: Scene, names: Sequence[str], orders: Sequence[int]) -> Array:
     Shape (1 + orders, quantities, separations), over the scale of each quantity.
     """
     (h, back), parts = np.unique(scene.separations, return_inverse=True), []
-    for few in np.array_split(h, -(-h.size // _AT_A_TIME)):
+    cut_by_radius = isinstance(scene.curvature, RandomCurvature) and not scene.hertzian
+    most = 1 if cut_by_radius else _AT_A_TIME
+    for few in np.array_split(h, -(-h.size // most)):
         one = scene.theory.fluctuations(names, few)
         found = np.stack([one.mean, *(one.moment(order) for order in orders)])
         parts.append(found.reshape(1 + len(orders), len(names), -1))

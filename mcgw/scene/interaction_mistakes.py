@@ -97,7 +97,10 @@ def _balance(scene: Fields) -> Iterator[str]:
     theory: Any = scene.theory
     h = np.unique(scene.separations)
     try:
-        rate = 1 + theory.compliance * theory.alone.slope("load", theory.effective(h))
+        felt = theory.effective(h)  # which refuses a balance that is not unique
+        if theory.interaction.nominal:
+            return
+        rate = 1 + theory.compliance * theory.alone.slope("load", felt)
     except ValueError as error:
         yield str(error)
         return

@@ -227,7 +227,14 @@ def storable(scene: AnyScene) -> AnyScene:
     """
     if scene.law.is_data and is_data(scene.grading):
         return scene
-    return dataclasses.replace(scene, **in_numbers(scene))
+    return _in_other_words(scene, **in_numbers(scene))
+
+
+def _in_other_words(scene: AnyScene, **changes: Any) -> AnyScene:
+    """The scene with values that say the same: not checked anew, which may take as long as drawing it."""
+    same = object.__new__(type(scene))
+    hold(same, **{each.name: getattr(scene, each.name) for each in dataclasses.fields(scene)} | changes)
+    return same
 
 
 def in_numbers(scene: Fields) -> dict[str, Any]:
@@ -267,4 +274,4 @@ def drawn_by(scene: AnyScene, sampler: str) -> AnyScene:
     """The scene that says by which sampler it was drawn, where it left the choice to ``auto``."""
     if sampler != scene.sampler and scene.law_error and promise_of(sampler).spends:
         return scene  # its crowds follow from what may be spent
-    return dataclasses.replace(scene, sampler=sampler)
+    return scene if sampler == scene.sampler else _in_other_words(scene, sampler=sampler)
