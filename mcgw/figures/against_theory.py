@@ -1,4 +1,4 @@
-"""Monte-Carlo means on the curves of the theory; of a sweep all residuals, and the point farthest off."""
+"""Monte-Carlo means on curves of theory; for a sweep all residuals and the worst point."""
 
 import textwrap
 from pathlib import Path
@@ -77,7 +77,7 @@ def quantity_panel(comparison: Comparison, name: str) -> Panel:
     order = np.argsort(h, kind="stable")
     points = Points(h, curve.mean, curve.stderr, curve.theory, (curve.low, curve.high))
     series = Series("theory", h[order], curve.theory[order], points)
-    pulls = bool(np.any(curve.theory < 0) or np.any(curve.mean < 0))  # no place for it on a log axis
+    pulls = bool(np.any(curve.theory < 0) or np.any(curve.mean < 0))  # it does not fit a log axis
     scales, level = (("linear", "linear"), 0.0) if pulls else (("linear", "log"), None)
     return Panel(comparison.ensemble.scene.quantity(name).title, SEPARATION, "", (series,), scales, level)
 
@@ -111,7 +111,7 @@ def sweep_figure(comparison: "SweepComparison") -> Figure:
 
 
 def draw_residuals(comparison: "SweepComparison", axis: Any) -> None:
-    """A histogram of all residuals on what it is in the mean, where theory holds."""
+    """Draw a histogram of all residuals on its expectation if theory holds."""
     z = comparison.residuals
     most = max(4.0, _BIN * np.ceil(np.abs(z).max(initial=0.0) / _BIN))
     edges = np.arange(-most, most + _BIN / 2, _BIN)
@@ -119,7 +119,7 @@ def draw_residuals(comparison: "SweepComparison", axis: Any) -> None:
     x = np.linspace(-most, most, 201)
     expected = len(z) * _BIN * np.exp(-(x**2) / 2) / np.sqrt(2 * np.pi)
     axis.plot(x, expected, color=THEORY, label="normal: expected if theory holds")
-    axis.set_yscale("log")  # a single one far off is seen beside thousands
+    axis.set_yscale("log")  # a single outlier shows beside thousands
     axis.yaxis.set_major_formatter(power_of_ten)
     axis.set_ylim(0.4, 60 * max(expected.max(), 1.0))
     axis.set(xlabel="residual (standard errors)", ylabel="means of all points")
@@ -128,7 +128,7 @@ def draw_residuals(comparison: "SweepComparison", axis: Any) -> None:
 
 
 def _draw_worst(comparison: "SweepComparison", axis: Any) -> None:
-    """Residuals of the point that is the least likely by chance; those that count have a marker."""
+    """Draw residuals of the least likely point; those that count have a marker."""
     t = comparison.worst[0]
     for name, residual, counts in zip(t.quantities, t.residual, t.counts, strict=True):
         shown = np.where(counts, residual, np.nan)

@@ -1,4 +1,4 @@
-"""The figures of `mcgw figures`: a row each, of the paper's preset swept over gamma or of anybody's scene."""
+"""The figures of `mcgw figures`: one row each, of the paper's preset swept over gamma or of any scene."""
 
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, replace
@@ -22,11 +22,11 @@ class Row:
     Parameters
     ----------
     name : str
-        Of its files.
+        Name of its files.
     draw : callable
-        Takes the scenes to its numbers.
+        Computes its numbers from the scenes.
     needs : tuple of callables, optional
-        What it has no meaning without: each says what is missing, or nothing.
+        Requirements: each returns what is missing, or nothing.
     sweep : bool, optional
         Whether it is of a sweep over gamma alone.
     """
@@ -37,7 +37,7 @@ class Row:
     sweep: bool = False
 
     def lacking(self, f: Compared) -> str:
-        """Say why it has no meaning for a scene; nothing if it has."""
+        """Say why the figure has no meaning for a scene, or nothing."""
         return next(filter(None, (need(f) for need in self.needs)), "")
 
 
@@ -46,13 +46,13 @@ def _grading(f: Compared) -> str:
 
 
 def _reference(f: Compared) -> str:
-    """Ratios are to another scene."""
+    """Require another scene for ratios."""
     alone = "the scene is its own reference (homogeneous, Hertz's law): every ratio is 1"
     return "" if f.others else alone
 
 
 def _pressing(f: Compared) -> str:
-    """There is no ratio to a pull, nor a logarithm of it."""
+    """Require positive loads, for ratios and logarithms."""
     pulls = any(np.any(f.theory(label, "load", f.line) <= 0) for label in f.all)
     return "the mean load is not positive at every separation" if pulls else ""
 

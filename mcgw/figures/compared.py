@@ -25,11 +25,11 @@ from mcgw.scene.scene import Scene
 SCENE = "this scene"
 _STIFFER, _SOFTER = (2.0, 1.5, 1.2, 1.0), (1.0, 0.8, 0.5, 0.2)
 _MOST_SURFACES, _MOST_ASPERITIES = 1000, 1_000_000_000
-_MOST_SEPARATIONS, _FINE, _COARSE = 17, 49, 25  # of lines: radii of their own take long
+_MOST_SEPARATIONS, _FINE, _COARSE = 17, 49, 25  # separations of lines: own radii are slow
 _SWEPT, _SWEPT_LINE = np.linspace(0, 4, 17), np.linspace(0, 4, 161)
-_LOWEST = -0.2  # of the heights that are listed for a sweep: at equal load it goes below its separations
+_LOWEST = -0.2  # lowest listed height of a sweep: at equal load it goes below its separations
 _MOST_HEIGHTS = 10_000_000
-ENOUGH = 20  # contacts in the ensemble below which a mean is far from Gaussian
+ENOUGH = 20  # contacts in the ensemble; with fewer a mean is far from Gaussian
 
 
 def of_gamma(gamma: float) -> str:
@@ -118,12 +118,12 @@ class Compared:
 
     @property
     def reference(self) -> str:
-        """Label of what ratios are taken to."""
+        """Label of the reference of ratios."""
         return list(self.all)[-1]
 
     @property
     def others(self) -> tuple[str, ...]:
-        """Labels of those that ratios are taken of."""
+        """Labels of the scenes that are divided by the reference."""
         return tuple(self.all)[:-1]
 
     @cached_property
@@ -150,7 +150,7 @@ class Compared:
         return replace(model, grading=grading, **changes)
 
     def theory(self, key: str | float, quantity: str, h: Array) -> Array:
-        """Exact means of what has this label or, in a sweep, this gamma, each computed once."""
+        """Exact means for a label or, in a sweep, a gamma, each computed once."""
         place = (key, quantity, h.tobytes())
         if place not in self._kept:
             model = self.all[key].theory if isinstance(key, str) else self.model(key)
@@ -158,7 +158,7 @@ class Compared:
         return np.asarray(self._kept[place])
 
     def at_load_of_reference(self, key: str | float, h: Array) -> Array:
-        """Separations at which the same load is carried that the reference carries at these."""
+        """Separations with the load that the reference has at these."""
         place = (key, "at load", h.tobytes())
         if place not in self._kept:
             model = self.all[key].theory if isinstance(key, str) else self.model(key)
@@ -166,7 +166,7 @@ class Compared:
         return np.asarray(self._kept[place])
 
     def drawn(self, key: str | float) -> Ensemble:
-        """Ensemble of what has this label or, in a sweep, this gamma: on the same surfaces."""
+        """Ensemble for a label or, in a sweep, a gamma, on the same surfaces."""
         key = key if isinstance(key, str) else of_gamma(key)
         if key not in self._kept:
             if self.swept and key != self.reference:
@@ -198,7 +198,7 @@ class Compared:
         return asperity_sums(scene, np.array([len(s) for s in self.listed]), every, np.ones(len(every)))
 
     def enough(self, scene: Scene) -> Marks:
-        """At which of its separations the ensemble has contacts and surfaces enough for an error."""
+        """Separations where the ensemble has enough contacts and surfaces for an error."""
         h = np.array(scene.separations)
         return (scene.theory.mean("contacts", h) * scene.n_surfaces >= ENOUGH) & (scene.n_surfaces > 1)
 
@@ -235,7 +235,7 @@ class Compared:
 
     @property
     def words(self) -> str:
-        """What the scene is."""
+        """Describe the scene."""
         if self.swept:
             return ""
         said, law = contact_label(self.scene), short(law_text(self.scene.heights))

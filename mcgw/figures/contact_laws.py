@@ -1,4 +1,4 @@
-"""What laws of contact change: who yields, the way back, sideways, and through films."""
+"""Effects of contact laws: yielding, unloading, sliding, films."""
 
 from dataclasses import dataclass, replace
 from functools import partial
@@ -39,7 +39,7 @@ _CRITICAL = 0.02
 _STRAIN = 0.004
 _AT, _LINE = np.linspace(0, 3, 7), np.linspace(0, 3.5, 36)
 _FALLING = _LINE[::-1]  # pressures rise
-_LOWER = np.linspace(-2, 3.5, 56)  # where the loads of Hertz are reached
+_LOWER = np.linspace(-2, 3.5, 56)  # where Hertz's loads are reached
 _STATES = (("elastic", (0,)), ("elastoplastic", (1, 2)), ("fully plastic", (3,)))
 _LAWS: dict[str, ContactLaw] = {
     "Chang": ChangEtsionBogy(critical=_CRITICAL),
@@ -191,7 +191,7 @@ def way_back(f: Compared) -> FigureData:
 
 @dataclass(frozen=True)
 class _Ways:
-    """What is known of both ways: theory, sums of surfaces at separations, and how many make a point."""
+    """Data of loading and unloading: theory, sums of surfaces, and surfaces per point."""
 
     theory: Any
     sums: dict[str, Array]
@@ -204,7 +204,7 @@ class _Ways:
         for way, name in (("in", quantity), ("back", f"{quantity}_unloading")):
             exact, line = (self.theory.mean(name, x) / unit for x in (self.h, self.line))
             values = self.sums[name] / unit
-            known = np.count_nonzero(values, axis=0) >= self.fewest  # a mean of nothing has no error
+            known = np.count_nonzero(values, axis=0) >= self.fewest  # a mean of no surfaces has no error
             points = mean_points(self.h[known], values[:, known], exact[known]) if known.any() else None
             series.append(Series(way, self.line, line, points))
         return Panel(title, SEPARATION, ylabel, tuple(series), level=0.0)

@@ -1,4 +1,4 @@
-"""Spots to scale on the height map, coloured by what they carry; and a patch of it for a report."""
+"""Contact spots to scale on the height map, coloured by load; and a patch for a report."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,14 +25,14 @@ Window = tuple[float, float, float, float]
 
 _INCHES = 6.0
 _DPI = 160
-_VISIBLE = 1.8  # pixels of the figure that the median spot's radius shall have
-_POINTS = 800  # of the height map along each side
-_MOST = 200_000  # asperities of a surface that is drawn whole
+_VISIBLE = 1.8  # least pixels of the figure per radius of the median spot
+_POINTS = 800  # points of the height map along each side
+_MOST = 200_000  # asperities of a surface that is drawn as a whole
 _FEWER = 20_000  # of a patch of a larger one
 _SHARE = 0.3  # of the asperities that touch at a moderate separation
 _PATCH_POINTS = 400  # of the map along each side
 _SHOWN = 150.0  # summits on the part of the map that is drawn
-_DEPTH = 6.0  # sigma below the mean summit, to which the scale of heights reaches
+_DEPTH = 6.0  # depth of the height scale below the mean summit, in sigma
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ def _load_and_radius(scene: Scene, delta: Array, modulus: Array, radii: Array) -
 
 
 def _window(spots: Spots, size: tuple[float, float], most: float) -> Window:
-    """Left, right, bottom, top: all of the map, or as many radii of the median spot as there is room for."""
+    """Left, right, bottom, top: all of the map, or a window that shows the median spot large enough."""
     width, height = size
     if not spots.radius.size:
         return 0.0, width, 0.0, height
@@ -106,7 +106,7 @@ def _window(spots: Spots, size: tuple[float, float], most: float) -> Window:
 
 
 def _middle(size: tuple[float, float], side: float) -> Window:
-    """Of a map, a square of this side, where there is room for it."""
+    """The central square of this side of a map, if it fits."""
     left, bottom = (max(n - side, 0) / 2 for n in size)
     return left, min(left + side, size[0]), bottom, min(bottom + side, size[1])
 
@@ -123,7 +123,7 @@ def save_contact_map(
     field : Asperities
         The whole surface.
     spots : Spots
-        On it.
+        Contacts on it.
     path : Path
         Ending in .png, .svg or .pdf.
     colour : {"load", "modulus"}, optional

@@ -1,4 +1,4 @@
-"""What a figure shows, as numbers: lines of theory and Monte-Carlo points, ready to draw, test or export."""
+"""Numbers of a figure: lines of theory and Monte-Carlo points, to draw, test or export."""
 
 from dataclasses import dataclass
 
@@ -21,9 +21,9 @@ class Points:
     Parameters
     ----------
     x, mean, stderr : ndarray
-        Where, what, and its standard error.
+        Place, mean and standard error.
     exact : ndarray
-        What theory says there.
+        Values of theory there.
     interval : (ndarray, ndarray), optional
         Ends of 95 % intervals, nan where there are too few contacts for one; default: those of a normal law.
     """
@@ -73,7 +73,7 @@ class Panel:
 
 @dataclass(frozen=True)
 class FigureData:
-    """A figure: what it says, its panels, and the name of its file."""
+    """A figure: its text, panels and file name."""
 
     title: str
     caption: str

@@ -22,7 +22,7 @@ from mcgw.maps.topography import Topography
 from mcgw.maps.waves import Uncertain
 
 _SIZE, _DPI = (11.0, 6.8), 160
-_POINTS = 700  # of a map along each side: more are not seen
+_POINTS = 700  # points of a map along each side: more do not show
 _MOST_MARKS = 3000
 _CUTOFFS = 8
 _WIDTH, _LINES = 42, 27  # of the text, in characters and lines
@@ -30,16 +30,16 @@ _TIMES = 12.0  # from the shortest cutoff to the longest
 
 
 def save_fit_picture(fit: Fit, raw: Topography, ready: Prepared, path: Path) -> None:
-    """Draw it.
+    """Draw the picture of a fit.
 
     Parameters
     ----------
     fit : Fit
-        Of the map.
+        Fit of the map.
     raw : Topography
         The map as it was read.
     ready : Prepared
-        The same when it was looked at.
+        The prepared map.
     path : Path
         Ending in .png, .svg or .pdf.
 
@@ -82,7 +82,7 @@ def _draw_map(figure: Figure, axis: Any, topography: Topography, seen: Marks | N
 
 
 def _unit(length: float) -> tuple[str, float]:
-    """A unit in which a length is 1 to 1000, and how many of it a metre has."""
+    """A unit in which a length is 1 to 1000, and its number per metre."""
     size, prefix = prefixed(length)
     return f"{prefix}m", 1 / size
 
@@ -109,7 +109,7 @@ def _draw_moments(axis: Any, ready: Prepared) -> None:
     for cutoff in cutoffs:
         try:
             m = moments_of(summit_sums_of(smooth(ready.levelled, float(cutoff)), across=1))
-        except ValueError:  # nothing of the map is left
+        except ValueError:  # the filter leaves nothing of the map
             break
         rows.append((m.m0, m.m2, m.m4))
     unit, times = _unit(float(cutoffs[len(rows) // 2]))
@@ -125,7 +125,7 @@ def _draw_moments(axis: Any, ready: Prepared) -> None:
 
 
 def _draw_heights(axis: Any, fit: Fit) -> None:
-    """Of the summits, and the laws they may follow."""
+    """Draw summit heights and the laws that they may follow."""
     sigma = float(fit.summits.std())
     z = np.linspace(-4.5, 4.5, 241)
     axis.hist(fit.summits / sigma, bins="auto", density=True, color=SAMPLE, label="summits")
@@ -148,7 +148,7 @@ def height_laws(fit: Fit) -> list[tuple[str, Any]]:
 
 
 def _draw_curvatures(axis: Any, fit: Fit) -> None:
-    """Of the summits over their mean, and that of isotropic Gaussian surfaces (Nayak 1971), free of alpha."""
+    """Draw summit curvatures over their mean, and Nayak's law (1971), which does not depend on alpha."""
     k = fit.curvatures / fit.curvatures.mean()
     k = k[(k > 0) & (k < 3)]
     axis.hist(k, bins="auto", density=True, color=SAMPLE, label="summits")
@@ -164,7 +164,7 @@ def _draw_curvatures(axis: Any, fit: Fit) -> None:
 
 
 def _write(axis: Any, fit: Fit) -> None:
-    """What was found, and what was done."""
+    """Write the results and the steps of preparation."""
     lines = [f"{'':9}{'eta (1/m²)':>12}{'R (m)':>11}{'sigma (m)':>11}"]
     for name, e in fit.estimates.items():
         mark = "*" if name == fit.best else " "

@@ -1,4 +1,4 @@
-"""The modulus that contacts feel: its means, which summits carry the load, and where it turns negative."""
+"""The modulus of contacts: its means, the summits that carry the load, and where it is negative."""
 
 from itertools import pairwise
 
@@ -28,7 +28,7 @@ def mean_moduli(f: Compared) -> FigureData:
     title = "Plasticity index over that of the homogeneous surface"
     if f.swept:
         return FigureData(title, f.listed_caption, _over_gamma(f))
-    plain = f.hertz and f.scene.curvature is None  # else area and load of a contact are no powers
+    plain = f.hertz and f.scene.curvature is None  # else area and load of a contact are not powers
     series = []
     for weight in _POWERS if plain else ("number",):
         line, at = (_exact(f, weight, f.scene.modulus, h) for h in (f.line, f.h))
@@ -62,7 +62,7 @@ def _exact(f: Compared, weight: str, modulus: Grading, h: Array) -> Array:
 
 
 def _points(f: Compared, weight: str, exact: Array) -> Points | None:
-    """Of the listed heights, where they are enough."""
+    """Points from the listed heights, where there are enough."""
     if len(f.listed) < 2:
         return None
     known = f.enough(f.scene.replace(n_surfaces=len(f.listed)))

@@ -16,17 +16,17 @@ from mcgw.figures.data import FigureData, Panel, Points, Series, figure_table
 from mcgw.figures.style import BACK, BAND, LEVEL, PAPER, STYLE, look, plain, power_of_ten
 from mcgw.formats.pictures import save_figure
 
-# Inches. Places are given, not looked for: that takes as long as to draw.
+# Inches. Places are given, since finding them takes as long as drawing.
 _WIDTH, _NARROWEST = 3.7, 4.4  # of a panel with its labels, and of a figure
 _LEFT, _RIGHT = 0.85, 0.12  # labels and ticks beside a panel
 _OVER, _HEIGHT, _BETWEEN, _RESIDUAL, _UNDER = 0.3, 2.4, 0.12, 0.7, 0.52
-_TITLE, _CAPTION, _EDGE = 0.19, 0.14, 0.08  # a line of each, and what is left free around them
+_TITLE, _CAPTION, _EDGE = 0.19, 0.14, 0.08  # line heights of texts, and their margins
 _KEY, _THEORY = "Monte Carlo, 95 %", "theory"
 _MARKS = look("Monte Carlo")
 _WHITE: Any = {"ms": 4, "mfc": "white", "mew": 0.9}
 _STEPS = (1, 2, 2.5, 5, 10)  # of ticks
-_FEW, _FEWER = 1.5, 0.5  # decades, below which powers of ten are too few ticks, and 2 and 5 times them too
-_UNSEEN = 0.01  # of the smallest mean that is drawn: how far down theory is, where nothing touches any more
+_FEW, _FEWER = 1.5, 0.5  # decades below which ticks at 2 and 5 times powers of ten are added
+_UNSEEN = 0.01  # share of the smallest mean: how far down theory is drawn
 
 
 def draw(data: FigureData) -> Figure:
@@ -98,7 +98,7 @@ def _known(panel: Panel) -> list[tuple[int, Series, Points]]:
 def draw_panel(axis: Any, panel: Panel, *, keyed: bool) -> None:
     """Draw lines, points on them and the legend; if `keyed`, it says what points are."""
     positive = [float(y[y > 0].min()) for y in (x.theory for x in panel.series) if np.any(y > 0)]
-    logarithmic = panel.scales[1] == "log" and bool(positive)  # such an axis has no place for 0 alone
+    logarithmic = panel.scales[1] == "log" and bool(positive)  # a log axis cannot show 0 alone
     yscale = "linear" if panel.scales[1] == "log" and not positive else panel.scales[1]
     axis.set(xlabel=panel.xlabel, ylabel=panel.ylabel, xscale=panel.scales[0], yscale=yscale)
     axis.set_title(panel.title, loc="left")
@@ -126,7 +126,7 @@ def draw_panel(axis: Any, panel: Panel, *, keyed: bool) -> None:
 
 
 def _set_ticks(ticks: Any, scale: str, low: float, high: float) -> None:
-    """Few, as plain text: to read formulas takes a quarter of a second."""
+    """Set few ticks as plain text: formulas take a quarter of a second."""
     decades = math.log10(high / low) if scale == "log" else 0.0
     if decades > _FEWER:
         ticks.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if decades < _FEW else (1.0,), numticks=7))

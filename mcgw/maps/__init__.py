@@ -1,1 +1,1 @@
-"""Surfaces as maps: synthetic ones out, measured ones in."""
+"""Height maps: synthetic ones are written, measured ones are fitted."""

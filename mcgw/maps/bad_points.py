@@ -1,4 +1,4 @@
-"""Points of a map that are wrong: missing, out of their surroundings, at a bad edge, or cut off."""
+"""Bad points of a map: missing, spikes, bad edges, or cut off."""
 
 import math
 from dataclasses import dataclass
@@ -15,14 +15,14 @@ from mcgw.maps.topography import Topography
 
 _STEPS, _CLOSE = 2000, 1e-8
 _REACH = 3  # pixels from a point to the ring around it: a spike is narrower than five
-BENT = 7.0  # usual bends: once in 4e11 points of a Gaussian map
-_OF_MEDIAN = 0.6745  # of a Gaussian deviation
-_ENOUGH = 2**20  # rings tell their median to a thousandth
-_BAND = 64  # rows that are looked at together: what is made of them stays in the cache
+BENT = 7.0  # times the usual bend: exceeded once in 4e11 points of a Gaussian map
+_OF_MEDIAN = 0.6745  # median over standard deviation of a Gaussian
+_ENOUGH = 2**20  # rings: enough for their median to a thousandth
+_BAND = 64  # rows processed together: their intermediate results fit the cache
 _OUT = 3.0  # ranges of the ring: 12 deviations of white noise beyond it; ridges, pits and peaks stay below
-_MOST = 8  # points from an edge that are looked at
+_MOST = 8  # lines from an edge that are checked
 _JUMP = 5.0  # times the usual difference between neighbouring lines
-_LINES = 32  # fewer have no usual difference
+_LINES = 32  # fewer lines do not define a usual difference
 _LOOKED_AT = 2**18  # points tell the steps of up to some thousand levels
 _MOST_LEVELS = 2**12
 _MORE = 1.3  # times the points of the next level: of a summit that a step cuts, no level has more
@@ -53,11 +53,11 @@ def filled(heights: Array) -> Array:
     for way in ((0, 1), (0, -1), (1, 0), (-1, 0)):
         at = tuple(np.clip(places + way, 0, last).T)
         beside, height = index[at], result[at]
-        hole = beside >= 0  # beyond an edge lies the point itself, which takes one of its four neighbours off
+        hole = beside >= 0  # beyond an edge the point itself stands for its missing neighbour
         matrix -= coo_array((np.ones(hole.sum()), (own[hole], beside[hole])), shape=(number, number)).tocsr()
         known[~hole] += height[~hole]
     start = result[missing]
-    away = known - matrix @ start  # solved for the difference: heights may lie far from zero
+    away = known - matrix @ start  # solved for the difference, since heights may be far from zero
     scale = float(np.abs(away).max())
     if scale > 0:
         found = cg(matrix, away / scale, rtol=_CLOSE, maxiter=min(_STEPS, 10 * math.isqrt(number) + 50))[0]
@@ -97,7 +97,7 @@ def spike_heights(topography: Topography) -> Array:
 
 
 def small_spike_heights(topography: Topography) -> Array:
-    """The same about the mean of the four neighbours, for points that bend unlike all others.
+    """Heights of spikes above the mean of their four neighbours, for points with unusual bends.
 
     A spike may be lower than its surroundings are high and still have most of the curvature of a map. Its
     second differences lie beyond seven times the usual ones, and beyond those of the points next to it.
@@ -128,7 +128,7 @@ def _of_seven(z: Array, extreme: Any) -> Array:
 
 
 def bad_edges(heights: Array) -> int:
-    """How many points from an edge reach the last line that differs from its neighbour unlike all others.
+    """Number of lines at each edge up to the last that differs unusually from its neighbour.
 
     Root mean squares of the differences between neighbouring rows, and columns, are compared with their
     median over the map. No point may be missing.
@@ -139,7 +139,7 @@ def bad_edges(heights: Array) -> int:
             continue
         wild = jumps > _JUMP * np.median(jumps)
         if wild[_MOST:-_MOST].any():
-            continue  # such lines lie everywhere
+            continue  # such lines are everywhere
         for side in (wild, wild[::-1]):
             worst = max(worst, int(np.flatnonzero(np.append(False, side[:_MOST])).max(initial=0)))
     return worst
@@ -155,7 +155,7 @@ def _jumps(heights: Array) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, slots=True)
 class Recorded:
-    """Of a map as it was read.
+    """Resolution and clipping of a map as it was read.
 
     Parameters
     ----------
@@ -171,7 +171,7 @@ class Recorded:
 
 
 def recorded(heights: Array) -> Recorded:
-    """Look at a map before anything is taken off it; points may be missing, not all."""
+    """Examine a map before it is changed; some points may be missing."""
     some = heights.ravel()[:: max(heights.size // _LOOKED_AT, 1)]
     levels = np.unique(some[np.isfinite(some)])
     steps = np.diff(levels)

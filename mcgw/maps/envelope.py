@@ -18,7 +18,7 @@ from mcgw.maps.topography import Topography, checked_shape
 
 
 def _binned(field: Asperities) -> tuple[Ints, Any, tuple[int, int]]:
-    """Sort asperities into about as many bins, as square as they come.
+    """Sort asperities into about as many bins, nearly square.
 
     Gives the order that this is; places, heights and sharpness 1/(2R) bin by bin, with the first asperity of
     each bin and the number of all; and how many bins there are along y and x.
@@ -42,7 +42,7 @@ def _highest(
     rows, columns = shape
     bx, by = size[0] / columns, size[1] / rows
     ci, cj = min(int(px / bx), columns - 1), min(int(py / by), rows - 1)
-    ex, ey = px - ci * bx, py - cj * by  # inside the own bin
+    ex, ey = px - ci * bx, py - cj * by  # inside its own bin
     margin = min(min(ex, bx - ex), min(ey, by - ey))
     least = min(bx, by)
     furthest = max(rows, columns)
@@ -132,7 +132,7 @@ def envelope(
 
 
 def hidden_summits(field: Asperities, *, periodic: bool = False) -> Marks:
-    """Which summits of a field lie below the cap of a taller neighbour, across the edges too if periodic."""
+    """Which summits lie below the cap of a taller neighbour, across the edges too if periodic."""
     order, caps, shape = _binned(field)
     hidden = np.empty(field.number, dtype=np.bool_)
     hidden[order] = _hidden(caps, shape, field.size, periodic)

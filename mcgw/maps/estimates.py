@@ -23,10 +23,10 @@ METHODS = {
     "summits": "summits counted",
     "caps": "counted summits, corrected for hidden ones",
 }
-_UNSURE = 0.25  # of a correction, measured for hidden caps and for summits between pixels
-_ORDER = 3  # what is lost goes as the square of the pixel: of two pixels less one, a third is lost by one
-_FLAT = 0.5  # of the median curvature
-_BLOCK = 2**13  # heights at once: the cache holds them
+_UNSURE = 0.25  # share of a correction that is uncertain, measured for hidden caps and summits between pixels
+_ORDER = 3  # losses scale as the pixel squared: one pixel loses a third of the difference between two and one
+_FLAT = 0.5  # share of the median curvature
+_BLOCK = 2**13  # heights processed at once: they fit the cache
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +54,7 @@ class Roughness:
 
 
 def roughness_of(heights: Array) -> Roughness:
-    """Of an array of any shape without missing points, m."""
+    """Roughness of an array of any shape without missing points, m."""
     mean, sums = heights.mean(), np.zeros(4)
     for some in np.array_split(heights, heights.size // _BLOCK + 1):
         z = some - mean
@@ -124,13 +124,13 @@ def mean_squares(counted: SummitSums) -> dict[str, float]:
 
 
 def moments_of(counted: SummitSums) -> SpectralMoments:
-    """Averages over both axes."""
+    """Moments, averaged over both axes."""
     m = mean_squares(counted)
     return SpectralMoments(m["z2"] - m["z"] ** 2, (m["slope_x"] + m["slope_y"]) / 2, m["bend"])
 
 
 def skewness_of(counted: SummitSums) -> float:
-    """Of the heights of all points."""
+    """Skewness of the heights of all points."""
     z, z2, z3 = (mean_squares(counted)[key] for key in ("z", "z2", "z3"))
     return float((z3 - 3 * z * z2 + 2 * z**3) / (z2 - z * z) ** 1.5)
 
@@ -166,12 +166,12 @@ def by_summits(fine: SummitSums, coarse: SummitSums) -> Pairs:
 
 
 def _counted(t: SummitSums) -> Array:
-    """Density, mean curvature, standard deviation of heights."""
+    """Density, mean curvature and standard deviation of heights, as counted."""
     return np.array([t.heights.size / t.area, t.curvatures.mean(), t.heights.std(ddof=1)])
 
 
 def _also(pair: tuple[float, float], correction: float) -> tuple[float, float]:
-    """With a share of the correction in the error."""
+    """Add a share of the correction to the error."""
     return pair[0], float(np.hypot(pair[1], _UNSURE * correction))
 
 
@@ -190,7 +190,7 @@ def by_caps(counted: SummitSums, blur: float) -> Pairs | None:
 
     def found(t: SummitSums, blur: float) -> Array:
         median = np.median(t.curvatures)
-        caps = t.heights[t.curvatures > _FLAT * median]  # the others are ripples in the valleys
+        caps = t.heights[t.curvatures > _FLAT * median]  # lower ones are ripples in the valleys
         all_caps = unhidden(caps.size / t.area, float(1 / median), float(caps.std(ddof=1)), blur)
         return np.full(3, np.nan) if all_caps is None else np.array([all_caps[0], 1 / median, all_caps[1]])
 

@@ -35,16 +35,16 @@ from mcgw.maps.summits import Alone, Summits, alone_of, summits_of, tiles_of
 from mcgw.maps.topography import SMALLEST, Topography
 from mcgw.maps.waves import Uncertain, Waves, uncertain, waves_of
 
-# Of caps placed at random 12 and 20 pixels apart, so many were lost as if a summit had to be 0.7 to 1.2
-# pixels from a valley, and 0.2 to 0.45 cutoffs.
+# Random caps 12 and 20 pixels apart are lost as if a summit had to be 0.7 to 1.2 pixels from a valley, and
+# 0.2 to 0.45 cutoffs.
 _BLUR = 0.3
-# Sub-areas that long waves cross tell too little of errors, and few of them tell it badly.
-_FEWEST = 8  # summits on the map, to count them
+# Sub-areas crossed by long waves underestimate errors, and few sub-areas estimate them badly.
+_FEWEST = 8  # summits on a map, at least, for counting
 _A_PART, _LEAST_ACROSS = 4, 2  # summits in a sub-area on average, for their own errors
-_A_LITTLE, _FEW_ACROSS = 2, 3  # the same for those of the moments
+_A_LITTLE, _FEW_ACROSS = 2, 3  # the same for errors of the moments
 _OF_QUARTILES = 1 / 1.349
-_ONE_RADIUS = 0.17  # half of what curvatures of Gaussian surfaces spread by
-_MOST_CAUTIONS = 4  # in a short look
+_ONE_RADIUS = 0.17  # half of the spread of curvatures of Gaussian surfaces
+_MOST_CAUTIONS = 4  # in the display
 
 
 @dataclass(frozen=True, repr=False)
@@ -199,7 +199,7 @@ def fit_prepared(ready: Prepared, *, across: int = 4) -> Fit:
         counted = summit_sums_of(used, across=fewer, seen=ready.seen)
     counted = _without_summit_form(counted, form)
     moments = moments_of(counted)
-    if not (moments.m2 > SMALLEST and moments.sigma > 0):  # alpha takes its square
+    if not (moments.m2 > SMALLEST and moments.sigma > 0):  # alpha contains its square
         raise ValueError(
             f"m0 = {moments.m0:.3g} m^2, m2 = {moments.m2:.3g}, m4 = {moments.m4:.3g} 1/m^2: no surface has "
             "these; give the right unit, or take bad points near the edge out by --spikes remove or --trim"
@@ -213,7 +213,7 @@ def fit_prepared(ready: Prepared, *, across: int = 4) -> Fit:
         fine, coarse = _scales(ready, across, counted)
         estimates["summits"] = Estimate.of(by_summits(fine, coarse), waves)
         caps = by_caps(fine, blur)
-        if caps is not None and caps[2][0] <= peak_to_valley:  # else too many hide for the others to tell
+        if caps is not None and caps[2][0] <= peak_to_valley:  # else too many are hidden
             estimates["caps"] = Estimate.of(caps, waves)
     _check_sigma(estimates, peak_to_valley)
     seen = None
@@ -233,20 +233,20 @@ def fit_prepared(ready: Prepared, *, across: int = 4) -> Fit:
 
 
 def _inside(ready: Prepared) -> Array:
-    """Heights of the points that were seen."""
+    """Heights of the points that count."""
     inside = (slice(None),) if ready.used.periodic else (slice(EDGE, -EDGE), slice(EDGE, -EDGE))
     heights = ready.used.heights[inside]
     return heights if ready.seen is None else heights[ready.seen[inside]]
 
 
 def _origin(whole: Topography, used: Topography) -> tuple[float, float]:
-    """Corner of what is left of a map between margins that are equal on both sides, m."""
+    """Corner of a map after equal margins on both sides, m."""
     x, y = ((a - b) / 2 for a, b in zip(whole.size, used.size, strict=True))
     return x, y
 
 
 def _scales(ready: Prepared, across: int, counted: SummitSums) -> tuple[SummitSums, SummitSums]:
-    """Summits of every point and of every second one, in fewer sub-areas where they are few."""
+    """Summits of every point and of every second point, in fewer sub-areas if they are few."""
     fewer = max(min(across, math.isqrt(counted.heights.size // _A_PART)), _LEAST_ACROSS)
 
     def count(sums_of: Callable[..., SummitSums]) -> SummitSums:
@@ -256,7 +256,7 @@ def _scales(ready: Prepared, across: int, counted: SummitSums) -> tuple[SummitSu
 
 
 def _check_sigma(estimates: dict[str, Estimate], peak_to_valley: float) -> None:
-    """No standard deviation is more than the range."""
+    """Refuse a standard deviation larger than the range."""
     for name, estimate in estimates.items():
         if not estimate.sigma.value <= peak_to_valley:
             raise ValueError(
@@ -266,7 +266,7 @@ def _check_sigma(estimates: dict[str, Estimate], peak_to_valley: float) -> None:
 
 
 def _without_summit_form(counted: SummitSums, form: Form) -> SummitSums:
-    """Summit heights about their own plane: deep valleys tilt that of the whole map."""
+    """Summit heights about their own plane, since deep valleys tilt that of the map."""
     order = min(ORDERS[form], 2)
     if order < 0:
         return counted

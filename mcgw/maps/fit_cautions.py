@@ -1,4 +1,4 @@
-"""Why a fit may not be trusted: what lies on the map, its pixel, heights and summits, a line each."""
+"""Cautions about a fit: the map, its pixel, heights and summits, one line each."""
 
 from collections.abc import Iterator, Sequence
 
@@ -16,16 +16,16 @@ from mcgw.maps.profile_fit import ProfileFit
 from mcgw.maps.topography import STEEPEST, Topography
 
 _WIDEST = 1e-2  # m
-_FEW_WAVES = 50  # sigma known to a tenth
-_PIXELS = 10.0  # a cutoff wavelength should have
-_RESOLVED = 0.05  # that two ways to m4 may differ by: at about ten pixels a wavelength
+_FEW_WAVES = 50  # waves for sigma to a tenth
+_PIXELS = 10.0  # pixels that a cutoff wavelength should have
+_RESOLVED = 0.05  # allowed ratio of two estimates of m4, reached at about ten pixels per wavelength
 _LOST = 0.1  # of the summits
 _SKEW, _ALPHA, _APART = 0.3, 1.5, 1.2
 _FEW, _STREAKY = 100, 1.5
 _PEAKS, _UNSURE = 1.2, 0.2
 
 
-# First words of cautions, by what a fit that ignores them may be off by: from a unit to a few per cent.
+# First words of cautions, the most serious first: errors from a wrong unit to a few per cent.
 _GRAVEST = (
     "slope", "unit", "spikes", "bends", "lines", "rounding", "step", "sub-area", "form", "edge", "range",
     "tip", "cutoff", "pixel", "blur", "holes", "missing", "estimates", "lay", "skewness", "alpha", "peaks",
@@ -52,7 +52,7 @@ def _spikes(topography: Topography) -> Iterator[str]:
     above = spike_heights(topography)
     if not above.any():
         return
-    number = ndimage.label(above, structure=np.ones((3, 3)))[1]  # adjacent points are one
+    number = ndimage.label(above, structure=np.ones((3, 3)))[1]  # adjacent points count once
     places = "1 place stands" if number == 1 else f"{number} places stand"
     j, i = np.unravel_index(int(np.argmax(np.abs(above))), above.shape)
     x, y = ((int(k) + 0.5) * p for k, p in zip((i, j), topography.pixel, strict=True))
@@ -133,7 +133,7 @@ def _gravest_first(lines: list[str]) -> list[str]:
 
 
 def _longer(ready: Prepared) -> float:
-    """A cutoff that takes more of the shortest waves, in pixels."""
+    """A longer cutoff, in pixels."""
     return max(_PIXELS, 1.5 * (ready.asked.cutoff or 0.0) / max(ready.used.pixel))
 
 

@@ -1,4 +1,4 @@
-"""The scene of a fit: it runs as it is."""
+"""The scene of a fit, ready to run."""
 
 from pathlib import Path
 from typing import Any, Literal
@@ -18,7 +18,7 @@ from mcgw.scene.scene_file import scene_document
 from mcgw.scene.values import MOMENTS, SUMMITS
 
 Heights = Literal["gaussian", "nayak", "table", "measured", "summits"]
-_FITTED = ("load", "area", "stiffness", "contacts", "conductance")  # what a fitted scene asks for
+_FITTED = ("load", "area", "stiffness", "contacts", "conductance")  # wanted quantities of a fitted scene
 
 
 def fitted_scene(
@@ -87,16 +87,16 @@ def fitted_scene(
 
 
 def _best(fit: Fit | ProfileFit, heights: Heights) -> str:
-    """The estimate that heights of a kind go with."""
+    """The estimate that suits a kind of heights."""
     if isinstance(fit, ProfileFit) or heights == "nayak":
         return "moments"
     return fit.best if heights == "gaussian" else "summits"
 
 
 def _uncertainty(fit: Fit | ProfileFit, use: str, heights: Heights) -> Uncertainty | None:
-    """Standard errors of what the scene takes of the fit; measured summits are as they are.
+    """Standard errors of the parameters taken from the fit; measured summits have none.
 
-    They go together as those of the moments do over maps, whatever the estimate.
+    Their correlations are those of the moments over maps, whatever the estimate.
     """
     if heights in ("measured", "summits"):
         return None
@@ -111,7 +111,7 @@ def _uncertainty(fit: Fit | ProfileFit, use: str, heights: Heights) -> Uncertain
 
 
 def _known(fit: Fit | ProfileFit) -> Fitted:
-    """What the fit knew besides the summits of the scene."""
+    """Results of the fit besides the summits of the scene."""
     m, heights = fit.moments, fit.roughness
     known = m.m0, m.m2, m.m4, heights.sk, heights.ku
     if isinstance(fit, ProfileFit):
@@ -122,7 +122,7 @@ def _known(fit: Fit | ProfileFit) -> Fitted:
 
 
 def _as_fitted(fit: Fit | ProfileFit, use: str, heights: Heights, modulus: float, title: str) -> Scene:
-    """The scene with nothing but what the fit tells; profiles stand for a square as long as they are."""
+    """The scene with the results of the fit alone; profiles stand for a square of their length."""
     if isinstance(fit, ProfileFit) and (use == "caps" or heights not in ("gaussian", "nayak")):
         raise ValueError(
             f'use = "{use}", heights = "{heights}": profiles do not show summits, only '
@@ -144,7 +144,7 @@ def _as_fitted(fit: Fit | ProfileFit, use: str, heights: Heights, modulus: float
 
 
 def _of_summits(fit: Fit, use: str, heights: Heights, modulus: float, title: str) -> Scene:
-    """With the heights of the summits: drawn from their table, or just as they are, with their radii too."""
+    """With the heights of the summits: drawn from their table, or as measured, with their radii."""
     z, sigma = fit.summits, float(fit.summits.std())
     if heights == "table":
         found = fit.estimates[use]
@@ -161,7 +161,7 @@ def _of_summits(fit: Fit, use: str, heights: Heights, modulus: float, title: str
         raise ValueError(f'use = "{use}": measured heights as they are need use = "summits"')
     surface = Surface(
         sigma, radius, z.size / fit.area, fit.area, modulus
-    )  # those between pixels have no heights
+    )  # summits between pixels have no heights
     alone = {"n_surfaces": 1, "n_asperities": z.size, "sampler": "direct"}
     return _scene(surface, title, heights=law, curvature=curvature, **alone)
 
@@ -173,7 +173,7 @@ def _scene(surface: Surface, title: str, **more: Any) -> Scene:
 
 
 def heights_beside(path: Path) -> Path:
-    """Where the summit heights of a fitted scene lie."""
+    """Path of the file of summit heights."""
     return path.with_name(f"{path.stem}.heights.npy")
 
 

@@ -1,4 +1,4 @@
-"""From the file of a map to its fit, in one call."""
+"""Fit a map from its file, in one call."""
 
 from collections.abc import Sequence
 from dataclasses import fields, replace
@@ -116,12 +116,12 @@ def fit_map(
     unit: str | None = None,
     use: str = "auto",
 ) -> tuple[Fit, Prepared]:
-    """Fit a map, with what casts doubt on the estimate to `use`; and the map as it was looked at."""
+    """Fit a map; return the fit, its cautions for the estimate to `use`, and the prepared map."""
     size = None if pixel is None else (pixel, pixel)
     with stages(4) as done:
         read = [source if isinstance(source, Topography) else read_map(source, pixel=size, unit=unit)]
         done()
-        ready = prepared(read.pop(), asked)  # which keeps no map as it was read: large ones fill the memory
+        ready = prepared(read.pop(), asked)  # the raw map is not kept: large ones fill the memory
         done()
         found = fit_prepared(ready, across=across)
         done()
@@ -133,7 +133,7 @@ def fit_map(
 def fit_lines(
     sources: Sequence[str | Path | Profile], asked: Preparation, *, spacing: float | None, unit: str | None
 ) -> tuple[ProfileFit, list[Profile]]:
-    """Fit profiles, read from files or in memory, with what casts doubt on it; and the profiles.
+    """Fit profiles from files or memory; return the fit, its cautions and the profiles.
 
     Raises
     ------

@@ -22,16 +22,16 @@ from mcgw.maps.topography import Topography, checked_shape, height_unit
 
 _HEIGHTS = "heights.npy"
 _MOST_TEXT = 2**28  # bytes
-_MEMORY, _A_BYTE = 2**30, 64  # address space of the child, a third of it for imports; and of each byte
+_MEMORY, _A_BYTE = 2**30, 64  # bytes of address space of the child; and for each byte of the file
 _SECONDS, _BYTES_A_SECOND = 60.0, 1e6
 
 
 class ForeignError(ValueError):
-    """A file that is none of ours: it may be one of the many others."""
+    """A file that is not in one of our formats, but may be in another."""
 
 
 class UnreadableError(ValueError):
-    """A file that SurfaceTopography refuses, or would if it were there."""
+    """A file that SurfaceTopography refuses, or cannot read because it is missing."""
 
 
 def read_foreign(path: Path, pixel: tuple[float, float] | None = None, unit: str | None = None) -> Topography:
@@ -56,7 +56,7 @@ def read_foreign(path: Path, pixel: tuple[float, float] | None = None, unit: str
         found = _read(path, Path(folder))
         if found["dim"] != 2:
             raise ValueError(f"{path}: is a profile along a line; a map has rows and columns")
-        metre, assumed = height_unit(path, found["unit"], unit)  # of lengths along x and y too
+        metre, assumed = height_unit(path, found["unit"], unit)  # the unit also of x and y
         told = found["pixel"]
         if told and pixel is not None:
             raise ValueError(f"{path}: gives the size of a pixel; leave --pixel out")
@@ -92,7 +92,7 @@ def is_foreign_line(path: Path) -> bool:
 
 
 def _read(path: Path, folder: Path, what: str = "all") -> dict[str, Any]:
-    """Facts about a file, whose heights are written to a folder, if not its kind alone is asked for."""
+    """Facts about a file, whose heights are written to a folder unless only its kind is wanted."""
     if find_spec("SurfaceTopography") is None:
         raise UnreadableError(
             f"{path}: {path.suffix or 'no ending'} is not a known format; install SurfaceTopography (the "
@@ -109,7 +109,7 @@ def _read(path: Path, folder: Path, what: str = "all") -> dict[str, Any]:
 
 
 def _from_child(path: Path, folder: Path, what: str) -> dict[str, Any]:
-    """What a process of its own tells of a file."""
+    """Run the child process on a file and return its facts."""
     size = path.stat().st_size
     memory, seconds = _MEMORY + _A_BYTE * size, _SECONDS + size / _BYTES_A_SECOND
     words = str(path), str(folder / _HEIGHTS), what, str(memory)
@@ -124,7 +124,7 @@ def _from_child(path: Path, folder: Path, what: str) -> dict[str, Any]:
 
 
 def _with_points(path: Path, folder: Path) -> Path | None:
-    """A copy of a text with points for its decimal commas; None if it has none, or another meaning."""
+    """A copy of a text with points for decimal commas; None if it has none, or they mean something else."""
     if path.stat().st_size > _MOST_TEXT:
         return None
     try:
@@ -171,7 +171,7 @@ def _main(path: str, heights: str, what: str, memory: int) -> None:
         answer = _read_here(Path(path), Path(heights), what)
     except MemoryError:
         answer = {"refused": f"it may take {memory >> 20} MiB of memory, and it asks for more"}
-    except Exception as error:  # its readers raise errors of many kinds
+    except Exception as error:  # its readers raise many kinds of errors
         answer = {"refused": " ".join(str(error).split())[:160] or type(error).__name__}
     sys.stdout.write("\n" + json.dumps(answer) + "\n")
 

@@ -1,4 +1,4 @@
-"""What is taken off a measured map: its form, offsets of its lines, and waves finer than a cutoff."""
+"""Removal from a measured map: form, offsets of lines, and waves shorter than a cutoff."""
 
 import math
 from dataclasses import replace
@@ -16,9 +16,9 @@ ORDERS = {"none": -1, "plane": 1, "quadratic": 2, "cubic": 3, "quartic": 4, "sph
 
 _ALPHA = math.sqrt(math.log(2) / math.pi)  # ISO 16610-61: half the amplitude is left at the cutoff
 _REACH = 1.0  # of the filter's window, in cutoffs: beyond lies a share of 5e-7
-_WINDOWS = 32  # half windows of rows that are filtered together
-_BAND = 16  # rows that are looked at together: BLAS wakes no threads for so few
-_POINTS = 96  # along each axis that are looked at: a form is smooth
+_WINDOWS = 32  # half windows of rows filtered together
+_BAND = 16  # rows processed together, too few for threads of BLAS
+_POINTS = 96  # points along each axis that are used: a form is smooth
 _AXES = 4  # directions that are tried first
 
 _WIDTH = 10.0  # lines, standard deviation: of waves as long as 53 lines half is kept

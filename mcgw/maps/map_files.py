@@ -1,4 +1,4 @@
-"""Maps in files: which reader and writer an ending needs; arrays with a JSON sidecar, and HDF5."""
+"""Maps in files: readers and writers by ending; arrays with a JSON sidecar, and HDF5."""
 
 import json
 from pathlib import Path
@@ -20,12 +20,12 @@ from mcgw.maps.x3p import read_x3p, write_x3p
 _FILETYPE = "mcgw-surface"
 _MOST_JSON = 2**16
 WRITTEN = (".sdf", ".ascii.sdf", ".x3p", ".npy", ".h5")
-_READERS = {".sdf": read_sdf, ".x3p": read_x3p}  # of formats that tell the size of a pixel, and heights in m
+_READERS = {".sdf": read_sdf, ".x3p": read_x3p}  # formats that contain the pixel size, with heights in m
 _TEXT = (".txt", ".csv", ".asc", ".dat", ".tsv")
 
 
 def sidecar_of(path: Path) -> Path:
-    """Where the pixel size of an array lies: ``map.json`` beside ``map.npy``."""
+    """File of the pixel size of an array: ``map.json`` beside ``map.npy``."""
     return path.with_suffix(".json")
 
 
@@ -87,7 +87,7 @@ def _sidecar(path: Path) -> tuple[tuple[float, float], bool, str | None]:
 
 
 def _pixel(path: Path, told: Any) -> tuple[float, float]:
-    """What a file tells of the size of a pixel, if it is two numbers: no text of two digits is."""
+    """Pixel size from a file, if it is two numbers; a text of two digits is not."""
     values = told.tolist() if isinstance(told, np.ndarray) else told
     if not (isinstance(values, list) and len(values) == 2 and all(type(p) in (int, float) for p in values)):
         raise ValueError(f"{path}: pixel = {told!r}: must be [dx, dy], two numbers in m")
@@ -95,7 +95,7 @@ def _pixel(path: Path, told: Any) -> tuple[float, float]:
 
 
 def _periodic(path: Path, told: Any) -> bool:
-    """Whether a file tells that its map is periodic; no text is an answer, though "no" is true to Python."""
+    """Whether a file says that its map is periodic; texts do not count, since "no" is true in Python."""
     if not isinstance(told, bool | np.bool_):
         raise ValueError(f"{path}: periodic = {told!r}: must be true or false")
     return bool(told)
@@ -152,7 +152,7 @@ def read_h5(path: Path, unit: str | None = None) -> Topography:
 
 
 def files_of_map(path: Path) -> list[Path]:
-    """Files of a map of this name: itself, and what lies beside it."""
+    """Files of a map of this name: the map and its sidecar."""
     return [path, sidecar_of(path)] if path.suffix.lower() == ".npy" else [path]
 
 
@@ -221,7 +221,7 @@ def read_map(path: Path, *, pixel: tuple[float, float] | None = None, unit: str 
 
 
 def _read(path: Path, pixel: tuple[float, float] | None, unit: str | None) -> Topography:
-    """By our own readers; what is none of their files by SurfaceTopography."""
+    """Read by our own readers, otherwise by SurfaceTopography."""
     ending = path.suffix.lower()
     try:
         if ending == ".npy":
@@ -241,7 +241,7 @@ def _read(path: Path, pixel: tuple[float, float] | None, unit: str | None) -> To
 def _otherwise(
     path: Path, pixel: tuple[float, float] | None, unit: str | None, refused: ForeignError
 ) -> Topography:
-    """By SurfaceTopography; of text it skips what it does not know, so that has to tell its pixel too."""
+    """Read by SurfaceTopography; since it skips unknown text, text files must state their pixel."""
     if path.suffix.lower() not in _TEXT:
         try:
             return read_foreign(path, pixel, unit)
@@ -255,7 +255,7 @@ def _otherwise(
 
 
 def _told(path: Path, pixel: tuple[float, float] | None, found: Topography) -> Topography:
-    """A map whose file told the size of a pixel."""
+    """Require that the file of a map contains its pixel size."""
     if pixel is not None:
         raise ValueError(f"{path}: gives the size of a pixel; leave --pixel out")
     return found

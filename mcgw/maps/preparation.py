@@ -18,15 +18,15 @@ from mcgw.scene.kinds import Whole, Word
 from mcgw.scene.section import Kind
 
 _NEIGHBOURS = 2  # pixels on each side that differences need
-_LEAST = 0.5  # of the measured points must have all neighbours, or filled ones count too
-_SHARE = 0.1  # of the filter's window may be filled
-_ROUNDS = 5  # of looking for spikes: small ones stand beside large ones
-_ROUNDING = 1e-12  # of the range that was taken off
+_LEAST = 0.5  # share of measured points that must have all neighbours, else filled ones count
+_SHARE = 0.1  # share of the filter's window that may be filled
+_ROUNDS = 5  # searches for spikes: small ones stand beside large ones
+_ROUNDING = 1e-12  # share of the removed range
 
 
 @dataclass(frozen=True)
 class Preparation:
-    """What is asked for, by the keywords of `mcgw.fit`.
+    """Requested steps, by the keywords of `mcgw.fit`.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class Preparation:
 
 
 def preparation_of(given: Mapping[str, Any], length: Callable[[str, Any], float]) -> tuple[Preparation, int]:
-    """What the keywords of `mcgw.fit` ask for, and ``parts``; `length` reads those that are a length.
+    """Read the keywords of `mcgw.fit` and ``parts``; `length` reads lengths.
 
     Raises
     ------
@@ -107,7 +107,7 @@ def prepared(topography: Topography, asked: Preparation) -> Prepared:
     """
     notes: list[str] = []
     kept = _within(_trimmed(topography, asked.trim, notes), notes)
-    del topography  # a large map that nobody else looks at leaves its memory to what is made of it
+    del topography  # frees the memory of a large map that nobody else uses
     if asked.step == "crop":
         kept = _terrace(kept, notes)
     if not np.nanmax(kept.heights) - np.nanmin(kept.heights) > SMALLEST:
@@ -142,7 +142,7 @@ def _trimmed(topography: Topography, trim: int, notes: list[str]) -> Topography:
 
 
 def _within(topography: Topography, notes: list[str]) -> Topography:
-    """Without rows and columns at the edges where all is missing."""
+    """Without edge rows and columns that lack all points."""
     there = np.isfinite(topography.heights)
     if there.all():
         return topography

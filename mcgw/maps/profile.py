@@ -11,10 +11,10 @@ from mcgw.maps.form import filter_variance
 from mcgw.maps.steps import Form
 from mcgw.maps.topography import STEEPEST
 
-_EVEN = 0.1  # of a step, which places may lie beside an even grid
-_MOST_MISSING = 0.1  # of all points
+_EVEN = 0.1  # share of a step that places may be off an even grid
+_MOST_MISSING = 0.1  # share of all points
 _LEAST = 8
-_WIDEST, _LONGEST = 1e-2, 0.2  # m, between points and of a profile: no stylus goes farther
+_WIDEST, _LONGEST = 1e-2, 0.2  # m, longest spacing and profile of a stylus
 PROFILE_ORDERS = {"none": 0, "plane": 1, "quadratic": 2}
 
 

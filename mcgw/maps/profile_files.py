@@ -25,7 +25,7 @@ _LOOKED_AT = 20  # lines of numbers
 _COMMA_ALONE = re.compile(r"\s*[-+]?\d+(?:,\d+)?(?:[eE][-+]?\d+)?\s*")
 _TEXT = (".txt", ".csv", ".asc", ".dat", ".tsv", ".prf", ".xy")
 Lines = list[tuple[int, str]]  # with their numbers
-_MAPS = (".sdf", ".x3p", ".h5")  # which tell of no profiles
+_MAPS = (".sdf", ".x3p", ".h5")  # endings that hold no profiles
 
 
 def read_profile_text(path: Path, spacing: float | None = None, unit: str | None = None) -> Profile:
@@ -70,7 +70,7 @@ def read_profile_text(path: Path, spacing: float | None = None, unit: str | None
 
 
 def _table(path: Path, most: int) -> tuple[list[str], Lines]:
-    """What stands above the numbers of a file, and at most so many lines of these."""
+    """Header of a file, and at most this many lines of numbers."""
     header: list[str] = []
     lines: Lines = []
     for number, line in lines_of(path):
@@ -90,7 +90,7 @@ def _table(path: Path, most: int) -> tuple[list[str], Lines]:
 
 
 def _columns(path: Path) -> int:
-    """How many columns stand on the first lines that hold numbers alone.
+    """Number of columns on the first lines of numbers.
 
     Separators at the end of all of them, as a Dektak writes, make no column.
     """
@@ -134,7 +134,7 @@ def _values(path: Path, lines: Lines) -> Array:
 
 
 def _filled(words: list[str]) -> int:
-    """How many there are up to the last one that is not empty."""
+    """Number of cells up to the last one that is not empty."""
     return max((k for k, word in enumerate(words, 1) if word), default=0)
 
 
@@ -144,7 +144,7 @@ def _rises(places: list[float]) -> bool:
 
 
 def _units(header: list[str], columns: int) -> list[str | None]:
-    """Of each column, by the last line above them that names units and has no digits."""
+    """Unit of each column, from the last header line with units and no digits."""
     for line in reversed([line for line in header if not re.search(r"\d", line)]):
         cells = [cell for cell in re.split(r"[;,\t]|\s{2,}", line) if cell.strip()]
         units = [_unit(cell) for cell in cells]
@@ -234,7 +234,7 @@ def _array(path: Path, spacing: float | None, unit: str | None) -> Profile:
 
 
 def _profile(path: Path, places: Array, heights: Array, assumed: str) -> Profile:
-    """Of a file, which what is wrong with it names."""
+    """Make a profile; errors name the file."""
     try:
         return profile_at(places, heights, assumed)
     except ValueError as error:

@@ -26,7 +26,7 @@ from mcgw.maps.waves import Uncertain, log_derivatives, uncertain
 
 _PIECES = 16
 _SMOOTH = 3  # waves over which power is averaged
-_LEAST_ALPHA = 0.9  # below, summit heights would have no variance
+_LEAST_ALPHA = 0.9  # below it summit heights have no variance
 
 
 @dataclass(frozen=True, repr=False)
@@ -160,7 +160,7 @@ def fit_profiles(profiles: Sequence[Profile], *, cutoff: float | None, form: For
 
 
 def _checked(values: Array) -> SpectralMoments:
-    """Moments that a surface can have."""
+    """Check that a surface can have these moments."""
     if not np.all(values > 0):
         raise ValueError(
             f"m0, m2, m4 = {', '.join(f'{v:.3g}' for v in values)}: not all are > 0; the profile is too "
@@ -196,7 +196,7 @@ def _error(derivative: Array, seen: list[ProfileWaves], shares: Array) -> float:
 
 
 def _covariance(values: Array, seen: list[ProfileWaves], shares: Array) -> Array:
-    """Of the logarithms of the moments, by the waves alone."""
+    """Covariance of the logarithms of the moments, from the waves alone."""
     terms = [
         share * np.array([_smooth(row, w.power) for row in w.weights])
         for share, w in zip(shares, seen, strict=True)
@@ -214,7 +214,7 @@ def _widened(freedom: float) -> float:
 
 
 def _peaks(profiles: list[Profile]) -> tuple[float, float]:
-    """Of filtered profiles: peaks a length, counted and by Rice's formula."""
+    """Peaks per length of filtered profiles, counted and by Rice's formula."""
     counted, slopes, bends, points, length = 0, 0.0, 0.0, 0, 0.0
     for p in profiles:
         z, h = p.heights, p.spacing

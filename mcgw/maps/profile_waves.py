@@ -28,13 +28,13 @@ from analytic.arrays import Array
 from mcgw.maps.form import filter_variance
 from mcgw.maps.profile import Profile
 
-_SERIES = 0.02  # below, two terms of the series have 1e-9
-_REACH = 1.5  # cutoffs that the weights of distances reach: beyond, exp(-16)
-_LEAST = 24  # points: with a short cutoff, weights fall off slowly at the shortest wave
+_SERIES = 0.02  # below it two terms of the series suffice for 1e-9
+_REACH = 1.5  # range of the weights, in cutoffs: exp(-16) beyond
+_LEAST = 24  # points: with a short cutoff weights decay slowly
 _STENCIL = 4  # points, without a cutoff
-_FINE = 16  # points of a spectrum to each weight of a distance
-_ENDS = 0.1  # of a profile, faded out before its waves are counted
-_LOW = slice(1, 5)  # waves that tell what the form took off
+_FINE = 16  # points of a spectrum per weight
+_ENDS = 0.1  # share of a profile faded out at its ends
+_LOW = slice(1, 5)  # waves that show what the form removed
 
 
 def areal_weights(wave_numbers: Array, cutoff: float) -> Array:
@@ -83,7 +83,7 @@ def stencil_weights(phases: Array) -> Array:
 
 @dataclass(frozen=True)
 class ProfileWaves:
-    """What one profile tells of its isotropic surface.
+    """Moments of an isotropic surface from one profile.
 
     Parameters
     ----------
@@ -155,7 +155,7 @@ def _stretches(u: Array, weights: Array, pieces: int) -> Array:
     n, reach = u.size, weights.size - 1
     size = fft.next_fast_len(n + reach, real=True)
     even = np.zeros(size)
-    even[: reach + 1] = weights * n / (n - np.arange(reach + 1))  # so many pairs there are
+    even[: reach + 1] = weights * n / (n - np.arange(reach + 1))  # number of pairs
     even[size - reach :] = even[1 : reach + 1][::-1]
     products = u * fft.irfft(fft.rfft(u, size) * fft.rfft(even), size)[:n]
     edges = np.linspace(0, n, pieces + 1).round().astype(np.int64)

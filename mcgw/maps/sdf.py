@@ -27,7 +27,7 @@ _HEADER = struct.Struct("<8s10s12s12sHHddddBBB")
 _TYPES = ("u1", "<u2", "<u4", "<f4", "i1", "<i2", "<i4", "<f8")
 _MISSING = {"<u2": 2**16 - 1, "<u4": 2**32 - 1, "<i2": -(2**15), "<i4": -(2**31)}
 _DOUBLE = 7
-_LOWEST = 0.999  # of the lowest floating number: text may have rounded it
+_LOWEST = 0.999  # share of the lowest float: text may have rounded it
 _MOST_POINTS = 65535  # along each axis: 16 bits in a binary file
 _TEXT_HEADER = 4096  # bytes
 _CHUNK = 2**20
@@ -36,7 +36,7 @@ _FIELDS = ("NumPoints", "NumProfiles", "Xscale", "Yscale", "Zscale", "DataType")
 
 @dataclass(frozen=True)
 class _Header:
-    """What either form declares."""
+    """Header of either form."""
 
     rows: int
     columns: int

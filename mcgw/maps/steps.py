@@ -1,4 +1,4 @@
-"""What may be done to a measured map before it is looked at: a row a step, for Python and commands."""
+"""Steps of preparing a measured map, one row each, for Python and commands."""
 
 from dataclasses import dataclass
 from typing import Literal, get_args

@@ -14,13 +14,13 @@ from mcgw.maps.topography import LARGEST, Topography
 # Rows of the sums: points, powers of height, squared slopes, squared second derivatives, the latter by plain
 # differences over one pixel and over two, which tell whether the pixel resolves them, and products of slopes.
 SUMS = ("points", "z", "z2", "z3", "slope_x", "slope_y", "bend", "bend_1", "bend_2", "slope_xy")
-EDGE = 4  # pixels that are left out
+EDGE = 4  # pixels left out at the edge
 _STENCIL = 2  # pixels that the differences reach
 
 
 @dataclass(frozen=True)
 class SummitSums:
-    """What a map's estimates are made of.
+    """Sums and summits of a map, the basis of its estimates.
 
     Parameters
     ----------

@@ -1,1 +1,1 @@
-"""Where Monte Carlo meets theory: comparison, convergence, error against time."""
+"""Monte Carlo against theory: comparison, convergence, error against time."""

@@ -1,4 +1,4 @@
-"""Single checks of statistical convergence: each gives the probability of what is seen, if all is right.
+"""Single checks of statistical convergence, each with the probability of its result if all is right.
 
 They take surfaces along the principal axes of the exact correlation of all that is asked. Sums of one surface
 at several separations share their asperities. Turned to these axes they are uncorrelated, of mean 0 and
@@ -21,8 +21,8 @@ from mcgw.statistics.verdict import allowance, bounded_theory, told_apart
 
 _LAGS = (1, 2, 4, 8, 16, 32, 64)
 _TOUCHING = 100  # asperities expected in contact, so that a single surface is nearly Gaussian
-_INDEPENDENT = 1e-6  # variance of a combination that is more than a difference of nearly equal columns
-_MOST_KURTOSIS = 0.5  # of a combination over surfaces
+_INDEPENDENT = 1e-6  # least variance of a combination: below it columns are nearly equal
+_MOST_KURTOSIS = 0.5  # of a combination, over surfaces
 
 
 @dataclass(frozen=True)
@@ -123,7 +123,7 @@ class Slope:
     against : str
         What is varied.
     sizes, errors, stderr : ndarray
-        How much there is of it; relative error there, and the relative uncertainty of that.
+        Sizes; relative errors there, and their relative uncertainties.
     value, uncertainty : float
         Exponent and its standard error.
     """
@@ -197,7 +197,7 @@ def skewness(exact: PrincipalComponents, y: Array) -> Check:
 
 
 def coverage(groups: Array, level: float = 0.95) -> Check:
-    """How many Student intervals cover the mean: `groups` has shape (seeds, surfaces, axes)."""
+    """Number of Student intervals that cover the mean: `groups` has shape (seeds, surfaces, axes)."""
     m = groups.shape[1]
     half = student.ppf((1 + level) / 2, m - 1) * groups.std(axis=1, ddof=1) / np.sqrt(m)
     covered, tried = int((np.abs(groups.mean(axis=1)) <= half).sum()), half.size

@@ -24,7 +24,7 @@ from mcgw.sweeps.axes import label
 if TYPE_CHECKING:
     from mcgw.sweeps.sweep import Sweep
 
-_SEPARATIONS = 12  # of a point, at most: what theory takes grows as their square
+_SEPARATIONS = 12  # separations of a point, at most: the cost of theory grows as their square
 _LISTED = 7
 
 
@@ -107,7 +107,7 @@ class Comparison(Shown):
         return {name: self._table(name) for name in self.curves}
 
     def worst(self, rows: int) -> Table:
-        """The means that are farthest from theory, of all quantities."""
+        """The means farthest from theory, over all quantities."""
         table = replace(stacked(self.tables(), "quantity"), title="farthest from theory, in standard errors")
         far = np.abs(table.only("residual").columns[0].values)
         return table.at(np.argsort(-far, kind="stable")[:rows].tolist())
@@ -196,7 +196,7 @@ class SweepComparison(Shown):
 
 
 def _columns(rows: Sequence[tuple[Tested, int, int]], scene: Scene) -> tuple[Column, ...]:
-    """Of points, each at a quantity and a separation, by number."""
+    """Columns of points, each at a quantity and a separation, by number."""
     names = [t.quantities[q] for t, q, _ in rows]
     return (
         Column("quantity", names),
@@ -251,7 +251,7 @@ def compare(
     True
     """
     if not isinstance(result, Ensemble):
-        from mcgw.sweeps.sweep import Sweep  # which loads what draws
+        from mcgw.sweeps.sweep import Sweep  # imports the samplers
 
         if isinstance(result, Sweep):
             if laws:
@@ -278,7 +278,7 @@ def _of_ensemble(ensemble: Ensemble, laws: bool) -> Comparison:
     on_means = verdict(ensemble)
     if not laws:
         return Comparison(ensemble, curves, on_means)
-    from mcgw.statistics.laws_of_values import laws_of_values  # and with it the exact laws
+    from mcgw.statistics.laws_of_values import laws_of_values  # imports the exact laws
 
     return Comparison(ensemble, curves, on_means.with_laws(laws_of_values(ensemble)))
 

@@ -1,4 +1,4 @@
-"""The statistical convergence test, for this simulator and for anybody's sampler or contact law."""
+"""The statistical convergence test, for this simulator and for a user's sampler or contact law."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -42,16 +42,16 @@ Sums = Mapping[str, NDArray[Any]]
 Draw = Callable[[Scene], Sums]
 
 SEEDS = 24
-_FEWEST, _MOST = 64, 1000  # surfaces a seed
+_FEWEST, _MOST = 64, 1000  # surfaces per seed
 _MOST_SEPARATIONS = 12
-_MOST_SHOWN = 8  # checks in a short look
-_FEWEST_ERRORS = 24  # to take a root mean square of
+_MOST_SHOWN = 8  # checks displayed
+_FEWEST_ERRORS = 24  # squares for a root mean square, at least
 _SIZES_OF_N = (64, 16, 4, 1)  # divisors of the scene's number of asperities
 
 
 @dataclass(frozen=True, repr=False)
 class Convergence(Shown):
-    """What the test found.
+    """Result of the convergence test.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ def converge(
         )
     draw = draw or _own
     scene, h = scene_alone(scene, "converge"), np.unique(scene.separations)
-    scene = replace(  # few separations, in their order, and a number of surfaces that a test can take
+    scene = replace(  # few separations, in order, and a feasible number of surfaces
         scene,
         separations=tuple(h[evenly(len(h), _MOST_SEPARATIONS)].tolist()),
         n_surfaces=min(max(scene.n_surfaces, _FEWEST), _MOST),
@@ -177,7 +177,7 @@ def converge(
         tell(seeds, seeds)
     sums = joined([{name: part[name] for name in scene.quantities} for part in parts])
     exact = PrincipalComponents.of(scene, surfaces=seeds * scene.n_surfaces)
-    if not scene.exact and exact.columns and not exact.axes.size:  # the accuracy of values would be seen
+    if not scene.exact and exact.columns and not exact.axes.size:  # else the accuracy of values would show
         raise ValueError(
             f"ensemble.accuracy = {scene.accuracy:g}: means of {seeds * scene.n_surfaces} surfaces are more "
             "accurate than that; use fewer surfaces, or a smaller accuracy"
@@ -211,7 +211,7 @@ def _own(scene: Scene) -> Sums:
 
 @lru_cache(maxsize=1)
 def _prepared(scene: Scene) -> Sampler:
-    """For all seeds of a scene: to prepare a sampler takes longer than to draw with it."""
+    """The sampler for all seeds of a scene: preparing takes longer than drawing."""
     return sampler_of(scene)
 
 

@@ -17,19 +17,19 @@ from mcgw.formats.table import evenly
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 
-_SEPARATIONS, _FEW = 8, 3  # of each quantity, at most; few where a law takes 60 ms, not 10
+_SEPARATIONS, _FEW = 8, 3  # laws per quantity, at most; few where a law takes 60 ms instead of 10
 _PLACES = 1000  # values at which shares and probabilities are compared, of more surfaces some of theirs
-_ROWS = 20_000  # surfaces that are read at a time
+_ROWS = 20_000  # surfaces read at a time
 
 
 @dataclass(frozen=True)
 class LawsOfValues:
-    """How far surfaces are from their exact laws.
+    """Largest distance of surfaces from their exact laws.
 
     Parameters
     ----------
     number : int
-        Laws that were looked at.
+        Number of tested laws.
     quantity, separation : str, float
         Of the values that are farthest off.
     distance : float
@@ -47,7 +47,7 @@ class LawsOfValues:
 
     @property
     def seen(self) -> str:
-        """What p is of, in words."""
+        """What p refers to, in words."""
         at = f"{self.quantity} at d/sigma = {self.separation:g}"
         return f"the distribution of {at} differs by {self.distance:.3g}, the most of {self.number}"
 
@@ -86,7 +86,7 @@ def laws_of_values(ensemble: Ensemble) -> LawsOfValues:
 
 
 def _distances(ensemble: Ensemble, name: str, which: list[int]) -> list[float]:
-    """Of one quantity, at some separations by number."""
+    """Distances of one quantity at some separations, by number."""
     m, scene = ensemble.n_surfaces, ensemble.scene
     first = np.sort(ensemble.sums.read(name, 0, min(m, _ROWS))[:, which], axis=0)
     places = first[evenly(len(first), _PLACES)].astype(np.float64)

@@ -32,7 +32,7 @@ from mcgw.scene.scene import Scene
 _POINTS = 24
 _SMALLEST = -50  # power of two of the panel next to t = 0, which is left out
 _WIDEST = 0.5
-_STAGES = (50.0, 100.0, 200.0, 400.0)  # after each of which the rest may be below a last digit
+_STAGES = (50.0, 100.0, 200.0, 400.0)  # after each of these the rest may be negligible
 _LAST = 600.0  # p = 1e-260
 _NOTHING = 1e-18
 _BREAKS = 46.0  # t up to which kinks are looked for: p = 1e-20
@@ -52,7 +52,7 @@ def quantiles(scene: Scene, h: float, t: Array) -> Array:
 
 
 def _one_asperity(scene: Scene, q: Quantity, h: float) -> float:
-    """Mean of what one asperity adds, over the scale."""
+    """Mean contribution of one asperity, in units of the scale."""
     heights, low = scene.heights, lowest(scene, q, h)
     if isinstance(heights, MeasuredHeights):
         s = np.array(heights.heights)
@@ -78,7 +78,7 @@ def _one_asperity(scene: Scene, q: Quantity, h: float) -> float:
 
 
 def added(scene: Scene, q: Quantity, h: float, s: Array) -> Array:
-    """What asperities of heights `s` above `h` add, over the scale: ``(s - h)^n e(s)`` under Hertz's law."""
+    """What asperities at `s` above `h` add, in units of the scale: ``(s - h)^n e(s)`` under Hertz's law."""
     if by_powers(scene, q):
         weight = scene.modulus(s) if q.modulus else np.ones_like(s)
         if isinstance(scene.curvature, RandomCurvature):  # of listed summits there is one method alone
@@ -103,7 +103,7 @@ def lowest(scene: Scene, q: Quantity, h: float) -> float:
 
 
 def formula_ends(scene: Scene, q: Quantity, h: float, low: float, high: float) -> Array:
-    """Heights between two others at which another formula begins, increasing."""
+    """Heights between two others where the formula changes, increasing."""
     if by_powers(scene, q):
         return np.empty(0)
     found = scene.branch_of(q.name).regimes(scene.modulus, [h], low, high)
@@ -125,21 +125,21 @@ def _edges(scene: Scene, q: Quantity, h: float, touching: float) -> Array:
     return np.unique([*small, *np.arange(_WIDEST, _LAST, _WIDEST), *-np.log(share[share > 0]), *inside])
 
 
-_MOST_DRAWS = 1e7  # asperities of one surface, beyond which a sampler is not even tried
+_MOST_DRAWS = 1e7  # asperities per surface above which a sampler is not tried
 _PIECES = (0.0, 1.0, 3.0, 7.0, 14.0, 24.0, 40.0, 80.0)  # -log of shares of higher heights where quad's end
 _AGREE = 1e-10  # of theory and its reference
 
 
 @dataclass(frozen=True)
 class Method:
-    """One way to a number.
+    """A method for one number.
 
     Parameters
     ----------
     name : str
-        For the table.
+        Its name in the table.
     unit : str
-        What the size counts.
+        Unit of the size.
     sizes : tuple of float
         In increasing order of cost.
     slope : float or None
@@ -159,7 +159,7 @@ class Method:
 
 
 def methods_for(scene: Scene, chosen: tuple[int, ...]) -> tuple[Method, ...]:
-    """All ways to the first quantity of a scene at the separations number `chosen`.
+    """All methods for the first quantity of a scene, at separations with indices `chosen`.
 
     Raises
     ------
@@ -193,7 +193,7 @@ def methods_for(scene: Scene, chosen: tuple[int, ...]) -> tuple[Method, ...]:
 
 
 def _checked(scene: Scene, chosen: tuple[int, ...]) -> Array:
-    """The reference, once theory agrees with it."""
+    """The reference, after a check that theory agrees."""
     exact, name = reference(scene, chosen), scene.quantities[0]
     theory = scene.theory.mean(name, [scene.separations[k] for k in chosen])
     for k, ours, other in zip(chosen, theory, exact, strict=True):
@@ -246,7 +246,7 @@ def _by_quad(scene: Scene, q: analytic.Quantity, h: float, accuracy: float) -> f
     def integrand(v: float) -> float:
         return float(_integrand(scene, q, h, v))
 
-    # with full output it does not warn: how far off it is stands in the table
+    # full output suppresses warnings: its error stands in the table
     rules = (quad(integrand, *e, epsabs=0, epsrel=accuracy, full_output=1) for e in pairwise(ends.tolist()))
     return float(sum(found[0] for found in rules))
 

@@ -26,7 +26,7 @@ from mcgw.statistics.wishes import Advice, Way, advise, ways_for
 SECONDS = 60.0
 _MOST_ROUNDS, _ROUNDS = 24, 6
 _FEWEST_SIZES = 3
-_SHORTEST = 2e-3  # what is faster is repeated until it takes this long
+_SHORTEST = 2e-3  # faster calls are repeated until they take this long
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ class Point:
 
 @dataclass(frozen=True, repr=False)
 class Tradeoff(Shown):
-    """What the study found.
+    """Result of the study.
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ class Tradeoff(Shown):
 
 
 class _Task:
-    """A method at a size, and what its runs gave."""
+    """A method at a size, with its runs."""
 
     def __init__(self, method: Method, size: float, peak: float, repeat: int) -> None:
         self.method, self.size, self.peak, self.repeat = method, size, peak, repeat
@@ -277,7 +277,7 @@ def tradeoff(
 
 
 def _chosen(scene: Scene) -> tuple[int, ...]:
-    """The lowest, a middle and the highest separation that something reaches in 1e9 asperities."""
+    """The lowest, a middle and the highest separation that any of 1e9 asperities reaches."""
     order = np.argsort(scene.separations, kind="stable")
     share = scene.heights.sf(np.array(scene.separations))[order]
     reached = order[share > 1e-9] if (share > 1e-9).any() else order[:1]
@@ -285,7 +285,7 @@ def _chosen(scene: Scene) -> tuple[int, ...]:
 
 
 def _sized(method: Method, longest: float, seed: int) -> list[_Task]:
-    """Sizes that take no longer than they may, each run once to warm up and to see its memory."""
+    """Sizes within the time limit, each run once to warm up and to measure its memory."""
     tasks: list[_Task] = []
     before = 0.0
     for size in method.sizes:
