@@ -1,6 +1,6 @@
-"""Whether means follow theory: one test of all of them at once, for an ensemble or a point of a sweep.
+"""Test whether means follow theory, all at once, for an ensemble or a point of a sweep.
 
-Theory to hold an ensemble to: with a bound on radii that hardly any ensemble meets.
+The theory for the test has a bound on radii that hardly any ensemble reaches.
 
 Where each summit has a radius of its own, the fourth moment of the area is infinite, by the logarithm of the
 flattest summit. Whether a mean is Gaussian cannot be told from the kurtosis of all summits then, but from
@@ -31,13 +31,13 @@ if TYPE_CHECKING:
 
 FALSE_ALARM = 1e-3
 _MOST_SEPARATIONS = 48
-_SKEW, _KURTOSIS = 0.1, 0.1  # so nearly Gaussian must a combination of means be to count
+_SKEW, _KURTOSIS = 0.1, 0.1  # allowed departure from a Gaussian of a combination of means
 _SMALL, _THIRD = 0.2, 3.0  # standard errors that theory may be off by, and what it leaves out, at most
-_COMING_AND_GOING = 20.0  # over a separation: a twentieth of the variance comes and goes
-_INDEPENDENT = 1e-9  # variance of a combination that is not a rounding error
-_SELDOM = 1e-4  # summits flatter than the bound, in an ensemble
+_COMING_AND_GOING = 20.0  # share of a separation's variance: asperities that come and go
+_INDEPENDENT = 1e-9  # least variance of a combination, above rounding errors
+_SELDOM = 1e-4  # expected summits flatter than the bound, per ensemble
 _FLAT = 1e-3  # curvature down to which the share of flatter summits goes as its fourth power
-_UNSEEN = 0.3  # standard errors by which a combination may be off without being seen
+_UNSEEN = 0.3  # standard errors of a combination that go unnoticed
 
 
 @dataclass(frozen=True)
@@ -109,7 +109,7 @@ class Verdict:
 
 @dataclass(frozen=True)
 class Tested:
-    """What a verdict is based on: means at some separations, arrays of shape (quantities, separations).
+    """Data behind a verdict: means at some separations, arrays of shape (quantities, separations).
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ class Tested:
 
     @property
     def worst(self) -> tuple[int, int]:
-        """Quantity and separation, by number, of the mean that is farthest off, of those that count."""
+        """Indices (quantity, separation) of the mean farthest off, among those that count."""
         off = np.where(self.counts, np.abs(self.residual), -1.0)
         quantity, separation = divmod(int(np.argmax(off)), len(self.separations))
         return quantity, separation
@@ -213,7 +213,7 @@ def tested(ensemble: Ensemble, most: int) -> Tested:
 
 
 def _resolved(scene: Scene, h: Array) -> float:
-    """Variance of a combination from which theory knows it.
+    """Variance above which theory is accurate for a combination.
 
     Where each surface has a separation of its own, single asperities come and go between it and that of the
     mean surface. Theory is linear in what surfaces differ by, and knows nothing of that.
@@ -225,7 +225,7 @@ def _resolved(scene: Scene, h: Array) -> float:
 
 
 def _left_out(scene: Scene, h: Array) -> Array:
-    """What theory may be off by for each quantity and separation, over its scale: nothing, where it is exact.
+    """Possible error of theory for each quantity and separation, in units of its scale: 0 if exact.
 
     Of means that it knows to second order, the third: as the second is to the mean, so it is to the second.
     """
@@ -259,7 +259,7 @@ def bounded_theory(scene: Scene, surfaces: int) -> Model:
 
 
 def allowance(scene: Scene, mean: Array, stderr: Array) -> Array:
-    """How many standard errors each mean may be off by: none, where nothing but the last digit is.
+    """Allowed error of each mean in standard errors: 0 if only the last digit is uncertain.
 
     Parameters
     ----------
@@ -274,15 +274,15 @@ def allowance(scene: Scene, mean: Array, stderr: Array) -> Array:
 
 
 def beyond(z: Array, allowed: Array) -> Array:
-    """What of each deviation is beyond what is allowed."""
+    """The part of each deviation beyond the allowed error."""
     return np.asarray(z - np.clip(z, -allowed, allowed))
 
 
 def told_apart(allowed: Array) -> float:
-    """Variance of a combination of means, each of variance 1, from which on their errors are not seen."""
+    """Variance of a combination of means, each of variance 1, above which their errors do not show."""
     return float(4 * (allowed**2).sum() / _UNSEEN**2)
 
 
 def farthest(z: Array) -> float:
-    """Probability that the largest of some deviations is as large by chance, whatever their correlation."""
+    """Probability that the largest deviation is this large by chance, whatever the correlation."""
     return min(1.0, 2 * z.size * float(ndtr(-np.abs(z).max(initial=0.0)))) if z.size else 1.0
