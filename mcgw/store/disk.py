@@ -18,13 +18,13 @@ import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
-
-import h5py
-import numpy as np
+from typing import TYPE_CHECKING, Any
 
 from mcgw.errors import StoreError
 from mcgw.formats.named_files import open_regular
+
+if TYPE_CHECKING:
+    import h5py  # what looks at files of strangers starts without it, and may have little memory
 
 GROUP = "drawn"  # the one group that a file may have
 MOST_SCALE = 2**20  # longest scale that is checked on opening
@@ -245,7 +245,7 @@ def _trailer(path: Path, data: bytes, size: int) -> Trailer:
     return trailer
 
 
-def head_digest(file: h5py.File) -> str:
+def head_digest(file: "h5py.File") -> str:
     """SHA-256 of the head of a plain file; it does not depend on how HDF5 laid it out."""
     lines = [*_attributes("/", file.attrs)]
     names = {*file, *(f"{GROUP}/{name}" for name in file.get(GROUP, ()))}
@@ -264,5 +264,5 @@ def _attributes(name: str, attributes: Any) -> Iterator[str]:
         value = attributes[key]
         if isinstance(value, str):
             yield json.dumps([name, key, value])
-        elif isinstance(value, np.ndarray | np.generic) and value.dtype.kind in "iufbS":
+        elif hasattr(value, "tobytes") and value.dtype.kind in "iufbS":
             yield json.dumps([name, key, value.dtype.str, value.shape, value.tobytes().hex()])
