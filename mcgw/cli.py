@@ -99,7 +99,7 @@ def _show_warning(message: Warning | str, *_: Any) -> None:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="mcgw",
         description="Monte-Carlo simulation of rough contacts with graded elasticity. SI units; "
         "separations and heights in units of sigma.",
@@ -116,6 +116,13 @@ def _parser() -> argparse.ArgumentParser:
         add_amount_options(sub)
         sub.set_defaults(execute=command.execute, parser=parser, command=name)
     return parser
+
+
+class _Parser(argparse.ArgumentParser):
+    """Errors are one line, without the usage, which has a dozen."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"{self.prog}: error: {message}; see {self.prog} --help\n")
 
 
 class _Version(argparse.Action):

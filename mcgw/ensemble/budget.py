@@ -23,6 +23,7 @@ LINES = ("drawn surfaces", "specimens", "parameters", "model")
 Answers = dict[str, float]
 
 _SURE = 1.96  # standard deviations on either side that hold 95 %
+_LARGE = 0.2  # share of an answer
 _STEP = 1e-3  # step of ln(parameter): a central difference has a relative error of 1e-6
 # Measured error of each answer. A conductance has that of stiffness: Barber (2003), Proc. R. Soc. A 459.
 _ERROR_OF = {"area": "area", "stiffness": "stiffness", "conductance": "stiffness", "mean_gap": "separation"}
@@ -94,9 +95,11 @@ class Budget(Shown):
 
     @property
     def brief(self) -> str:
-        """Which line dominates the first quantity, and which are not known."""
+        """Which line dominates the first quantity, what would lower a large one, and which are not known."""
+        most, share = self._largest()
+        remedy = f" ({_LOWERED[most]})" if share > _LARGE else ""
         without = f", without {' and '.join(self.lacking)}" if self.lacking else ""
-        return f"± 95 %, mostly the {self._largest()[0]}{without}"
+        return f"Error: mostly the {most}{remedy}{without}"
 
     @property
     def advice(self) -> str:
