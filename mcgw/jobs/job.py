@@ -121,9 +121,8 @@ class Job:
         )
         if needed > free:
             raise StoreError(
-                f"{path}: needs up to {gibibytes(needed)} more on the disk while made and "
-                f"{gibibytes(free)} are free; free some space, choose another -o, or reduce surfaces or "
-                "separations"
+                f"{path}: needs up to {gibibytes(needed)} more on the disk while made and {gibibytes(free)} "
+                "are free; free some space, choose another -o, or reduce surfaces or separations"
             )
 
     def done(self) -> int:

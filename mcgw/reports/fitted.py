@@ -41,9 +41,8 @@ def fit_lines(fit: Fit) -> list[str]:
     lines.append(f"best here: {METHODS[fit.best]}; {why}")
     if fit.visible is not None and fit.best == "caps":
         lines.append(
-            f"of such independent caps the map shows {100 * fit.visible.share:.3g} %, so counts are off "
-            f"by {100 * (fit.visible.share - 1):+.2g} % in eta and "
-            f"{100 * (fit.visible.std - 1):+.2g} % in sigma"
+            f"of such independent caps the map shows {100 * fit.visible.share:.3g} %, so counts are off by "
+            f"{100 * (fit.visible.share - 1):+.2g} % in eta and {100 * (fit.visible.std - 1):+.2g} % in sigma"
         )
     return lines
 

@@ -237,6 +237,5 @@ def _elasticity_words(found: Validity) -> list[str]:
         f"{details[0].upper()}{details[1:]}",
         "Relative error of the model: mean over the maps ± the range that contains 95 % of such surfaces. "
         "Area, stiffness and gap are at the load of that separation; the load is at that separation, as the "
-        "mean gap of a periodic cell. Pressure: "
-        f"{found.axis}.",
+        f"mean gap of a periodic cell. Pressure: {found.axis}.",
     ]

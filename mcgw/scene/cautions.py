@@ -76,8 +76,7 @@ def _depth(scene: Scene) -> Iterator[str]:
     if share > _DEEP or surface.sigma >= surface.radius:
         yield (
             f"surface.radius = {surface.radius:g} m: at d/sigma = {lowest:g}, {100 * share:.2g} % of the "
-            f"contacts are "
-            f"compressed by more than R, where {_model(scene)} does not hold"
+            f"contacts are compressed by more than R, where {_model(scene)} does not hold"
         )
 
 
@@ -88,8 +87,7 @@ def _slope(scene: Scene) -> Iterator[str]:
     if steepest > _STEEP:
         yield (
             f"the highest asperities (s = {top:.1f}) have contact radii of {steepest:.2f} R at the smallest "
-            f"separation, too large for {_model(scene)}"
-            f"{yields * scene.law.elastic}"
+            f"separation, too large for {_model(scene)}{yields * scene.law.elastic}"
         )
 
 

@@ -55,12 +55,22 @@ class Fields(Values):
         """The grading as used: clipped if the scene says so."""
         return Clipped.of(self.grading) if self.negative == "clip" else self.grading
 
-    @property
+    @cached_property
     def theory(self) -> Model:
         """The exact model of this scene: modulus, heights, contact law, history, asperities."""
-        if self.joint is not None:
-            return self._joined
-        return self._alone if self.interaction is None else self._interacting
+        model = self._alone
+        if self.interaction is not None:
+            from analytic import InteractingModel  # for those scenes alone
+            from analytic.interaction import NO_THEORY
+
+            if self.located:
+                raise ValueError(NO_THEORY)
+            model = InteractingModel.of(model, self.interaction)
+        if self.filled is not None:
+            from analytic.joint_model import with_gap  # for those scenes alone
+
+            model = with_gap(model, self.filled)
+        return model
 
     @cached_property
     def _alone(self) -> Model:
@@ -76,25 +86,6 @@ class Fields(Values):
             n_asperities=float(self.n_asperities),
             count=self.count,
         )
-
-    @cached_property
-    def _interacting(self) -> Model:
-        """Kept, for it keeps what it has computed."""
-        from analytic import InteractingModel  # for those scenes alone
-        from analytic.interaction import NO_THEORY
-
-        if self.located:
-            raise ValueError(NO_THEORY)
-        assert self.interaction is not None
-        return InteractingModel.of(self._alone, self.interaction)
-
-    @cached_property
-    def _joined(self) -> Model:
-        """Kept, for it keeps what it has computed."""
-        from analytic.joint_model import with_gap  # for those scenes alone
-
-        assert self.filled is not None
-        return with_gap(self._alone if self.interaction is None else self._interacting, self.filled)
 
     @cached_property
     def filled(self) -> "Gap | None":

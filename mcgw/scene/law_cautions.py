@@ -60,9 +60,8 @@ def _yielded(scene: Scene) -> Iterator[str]:
     share = 1 - float(scene.theory.share(0, h))
     if share > _DEEP:
         yield (
-            f"{100 * share:.3g} % of the contacts have yielded at d/sigma = {h:g}; elastic solutions "
-            f"cannot check "
-            "their loads and areas"
+            f"{100 * share:.3g} % of the contacts have yielded at d/sigma = {h:g}; elastic solutions cannot "
+            "check their loads and areas"
         )
 
 
@@ -98,8 +97,7 @@ def _fitted(scene: Scene) -> Iterator[str]:
         if share > _DEEP:
             yield (
                 f"contact.law: {100 * share:.2g} % of the contacts are deeper than {most:g} critical "
-                f"penetrations, "
-                f"up to which its {what} was fitted"
+                f"penetrations, up to which its {what} was fitted"
             )
 
 
