@@ -76,6 +76,14 @@ def test_one_surface_without_a_film_has_neither_covariance_nor_conductance(tmp_p
         table("conductance", 1e-6)
     with pytest.raises(ValueError, match="the table has"):
         table("pressure", 1.0)
+    low, high = table.gap[[0, -1]]
+    for outside in (low - 1e-6 * high, 1.000001 * high):
+        with pytest.raises(ValueError, match="the table has"):
+            table("pressure", [low, outside])
+    ends = low - 1e-13 * high, high * (1 + 1e-13)  # but not for rounding
+    np.testing.assert_allclose(table("pressure", ends), table.pressure[[0, -1]], rtol=1e-9)
+    assert table.gap_at(table.pressure[0]) == pytest.approx(low, abs=1e-9 * high)
+    assert table.gap_at(table.pressure[-1]) == pytest.approx(high, rel=1e-9)
     with pytest.raises(ValueError, match="the table has"):
         table.gap_at(1e12)
 

@@ -10,6 +10,7 @@ from located_by_hand import residual
 from numpy.testing import assert_allclose
 from scipy.optimize import brentq
 from scipy.signal import get_window
+from scipy.stats import t as student
 
 import mcgw
 from mcgw.elasticity import elastic as public, levels
@@ -296,6 +297,15 @@ def made_up(rng, maps):
 
 
 class TestMultilevel:
+    def test_of_one_level_takes_the_maps_that_the_error_asks_for(self, rng):
+        pilot = rng.normal([3.0, 10.0], [0.6, 1.0], (5, 2))
+        asked = (student.ppf(0.975, 20) * pilot.std(axis=0, ddof=1) / pilot.mean(axis=0) / 0.02) ** 2
+        found = design({0: pilot}, [2.0], 0.02)
+        assert (found.chain, found.maps) == ((0,), (math.ceil(asked.max()),))
+        assert (found.seconds, found.plain) == pytest.approx((2 * found.maps[0], 2 * asked.max()))
+        assert design({0: pilot}, [2.0], 0.02, solves=7).maps == (7,)
+        assert design({0: pilot}, [2.0], 0.9).maps == (4,)
+
     def test_takes_the_chain_that_costs_least(self, rng):
         pilot = made_up(rng, 2000)
         assert design(pilot, (0.01, 0.1, 10.0), 0.01).chain == (1, 2)

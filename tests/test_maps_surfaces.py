@@ -51,6 +51,7 @@ def offsets(a, b, length, periodic):
 def test_envelope_and_hidden_summits_against_all_pairs(number, width, radius, sigma, periodic, seed):
     field = random_field(number, (width, 1.0), radius, sigma, seed)
     found = envelope(field, (9, 13), periodic=periodic)
+    assert found.periodic == periodic
     x, y = (np.arange(13) + 0.5) * width / 13, (np.arange(9) + 0.5) / 9
     dx, dy = offsets(x, field.x, width, periodic), offsets(y, field.y, 1.0, periodic)
     caps = field.z - (dx[None, :, :] ** 2 + dy[:, None, :] ** 2) / (2 * radius)
@@ -66,6 +67,7 @@ def test_a_window_is_cut_from_the_same_envelope():
     field = random_field(50, (2.0, 1.0), 0.5, 0.05)
     whole = envelope(field, (20, 40))
     part = envelope(field, (10, 20), window=(0.5, 1.5, 0.25, 0.75))
+    assert not envelope(field, (10, 20), window=(0.5, 1.5, 0.25, 0.75), periodic=True).periodic
     assert part.heights == pytest.approx(whole.heights[5:15, 10:30], abs=1e-14)
 
 

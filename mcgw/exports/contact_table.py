@@ -124,8 +124,8 @@ class ContactTable:
         if column is None:
             raise ValueError(f"{name!r}: the table has no such column")
         x = np.asarray(gap, dtype=np.float64)
-        slack = 1e-12 * self.gap[-1]
-        if np.any((x < self.gap[0] - slack) | (x > self.gap[-1] + slack)):
+        low, high = self._ends
+        if np.any((x < low) | (x > high)):
             raise ValueError(f"gap = {gap!r}: the table has {self.gap[0]:.4g} to {self.gap[-1]:.4g} m")
         return np.asarray(np.exp(PchipInterpolator(self.gap, np.log(column))(x)))
 
@@ -142,8 +142,13 @@ class ContactTable:
         low, high = self.pressure[-1], self.pressure[0]
         if not low <= pressure <= high:
             raise ValueError(f"pressure = {pressure!r}: the table has {low:.4g} to {high:.4g} Pa")
-        ends = self.gap[0], self.gap[-1]
-        return float(brentq(lambda x: float(self("pressure", x)) / pressure - 1, *ends, xtol=1e-18))
+        return float(brentq(lambda x: float(self("pressure", x)) / pressure - 1, *self._ends, xtol=1e-18))
+
+    @property
+    def _ends(self) -> tuple[float, float]:
+        """Of the gaps, with room for rounding, m."""
+        slack = 1e-12 * float(self.gap[-1])
+        return float(self.gap[0]) - slack, float(self.gap[-1]) + slack
 
     def write(self, path: str | Path) -> None:
         """Write the table as JSON; the file is never left half-written."""
