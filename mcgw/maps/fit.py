@@ -32,7 +32,7 @@ from mcgw.maps.preparation import Prepared
 from mcgw.maps.steps import Form
 from mcgw.maps.summit_sums import EDGE, SummitSums, coarse_sums_of, summit_sums_of
 from mcgw.maps.summits import Alone, Summits, alone_of, summits_of, tiles_of
-from mcgw.maps.topography import SMALLEST, Topography
+from mcgw.maps.topography import SMALLEST
 from mcgw.maps.waves import Uncertain, Waves, uncertain, waves_of
 
 # Random caps 12 and 20 pixels apart are lost as if a summit had to be 0.7 to 1.2 pixels from a valley, and
@@ -219,11 +219,12 @@ def fit_prepared(ready: Prepared, *, across: int = 4) -> Fit:
     seen = None
     if found := estimates.get("caps"):
         seen = visible(found.overlap, blur / math.sqrt(2 * found.radius.value * found.sigma.value))
+    x, y = ((a - b) / 2 for a, b in zip(ready.levelled.size, used.size, strict=True))  # of equal margins
     m0, m2, m4, alpha = (uncertain(*told[x], waves.spreads[x]) for x in ("m0", "m2", "m4", "alpha"))
     return Fit(
         estimates, moments, m0, m2, m4, alpha,
         told["skewness"],
-        summits_of(used, counted, _origin(ready.levelled, used)),
+        summits_of(used, counted, (x, y)),
         float(counted.heights.mean()) - mean_squares(counted)["z"],
         counted.area,
         seen,
@@ -237,12 +238,6 @@ def _inside(ready: Prepared) -> Array:
     inside = (slice(None),) if ready.used.periodic else (slice(EDGE, -EDGE), slice(EDGE, -EDGE))
     heights = ready.used.heights[inside]
     return heights if ready.seen is None else heights[ready.seen[inside]]
-
-
-def _origin(whole: Topography, used: Topography) -> tuple[float, float]:
-    """Corner of a map after equal margins on both sides, m."""
-    x, y = ((a - b) / 2 for a, b in zip(whole.size, used.size, strict=True))
-    return x, y
 
 
 def _scales(ready: Prepared, across: int, counted: SummitSums) -> tuple[SummitSums, SummitSums]:

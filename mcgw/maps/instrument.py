@@ -63,10 +63,6 @@ def faults(ready: Prepared, longer: float) -> list[str]:
     ]
 
 
-def _at_end(ready: Prepared) -> float:
-    return ready.recorded.at_end
-
-
 def _rounding(ready: Prepared) -> float:
     """Share of the mean square bend, by plain differences, that rounding to steps adds."""
     if not ready.recorded.step:
@@ -153,13 +149,9 @@ def _outliers(ready: Prepared) -> float:
     return float(np.sum(bends[far] ** 2) / np.nansum(bends**2))
 
 
-def _filled(ready: Prepared) -> float:
-    return ready.filled if ready.seen is None else 0.0
-
-
 CHECKS = (
     Check(
-        "range", _at_end, 1e-3,
+        "range", lambda ready: ready.recorded.at_end, 1e-3,
         "{share:.2g} % of the points have the same extreme height, as if the range of the instrument cut off "
         "summits; measure with a larger range, or use --use moments, which is affected less",
     ),
@@ -184,7 +176,7 @@ CHECKS = (
         "blunt tip, or between caps; unless these are caps, use --cutoff of five times the width of the tip",
     ),
     Check(
-        "holes", _filled, 0.01,
+        "holes", lambda ready: ready.filled if ready.seen is None else 0.0, 0.01,
         "{share:.2g} % of the points were missing and filled smoothly, which makes summits blunter; use "
         "--missing mask, or a longer --cutoff",
     ),

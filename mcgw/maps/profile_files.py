@@ -118,7 +118,8 @@ def _values(path: Path, lines: Lines) -> Array:
     """Shape (points, columns), one or two of them."""
     if all(_COMMA_ALONE.fullmatch(line) for _, line in lines):  # each may be one number
         x, _, z = zip(*(line.partition(",") for _, line in lines), strict=True)
-        if not (all(z) and _rises([int(text) if text.isdigit() else math.nan for text in x])):
+        steps = np.diff([int(text) if text.isdigit() else math.nan for text in x])
+        if not (all(z) and (np.all(steps > 0) or np.all(steps < 0))):
             return np.array([[float(line.replace(",", "."))] for _, line in lines])
     cells = [(n, words_of(path, n, line)) for n, line in lines]
     width = max(_filled(words) for _, words in cells)
@@ -136,11 +137,6 @@ def _values(path: Path, lines: Lines) -> Array:
 def _filled(words: list[str]) -> int:
     """Number of cells up to the last one that is not empty."""
     return max((k for k, word in enumerate(words, 1) if word), default=0)
-
-
-def _rises(places: list[float]) -> bool:
-    steps = np.diff(places)
-    return bool(np.all(steps > 0) or np.all(steps < 0))
 
 
 def _units(header: list[str], columns: int) -> list[str | None]:

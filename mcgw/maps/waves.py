@@ -67,12 +67,8 @@ def uncertain(value: float, error: float, waves: Spread = Spread(0.0, 0.0, 0.0))
     """
     relative = error / value
     down, up = max(2 * relative, waves.down), max(2 * relative, waves.up)
-    return Uncertain(value, value * max(relative, waves.error), value * math.exp(-down), value * _exp(up))
-
-
-def _exp(x: float) -> float:
-    """Infinite, where an arm has no end."""
-    return math.exp(x) if x < 700 else math.inf
+    high = value * math.exp(up) if up < 700 else math.inf  # where an arm has no end
+    return Uncertain(value, value * max(relative, waves.error), value * math.exp(-down), high)
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,7 +25,6 @@ from analytic.arrays import Array
 from analytic.laws import Hertz, term_of
 from mcgw.ensemble.drawing import blocks
 from mcgw.errors import RunError
-from mcgw.sampling.block import Sampler
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.scene import Scene
 
@@ -187,7 +186,7 @@ def methods_for(scene: Scene, chosen: tuple[int, ...]) -> tuple[Method, ...]:
         drawn = partial(_by_sampler, scene, chosen, exact, "aggregate")
         found.append(Method("aggregate", "surfaces", surfaces, -0.5, drawn))
         strata = tuple(float(10**3 * 4**k) for k in range(10))
-        by_strata = partial(_by_strata, scene, chosen, exact)
+        by_strata = partial(_by_sampler, scene, chosen, exact, "stratified")
         found.append(Method("stratified", "strata", strata, -1.5, by_strata))
     return (*found, *_quadratures(scene, chosen, exact))
 
@@ -208,24 +207,17 @@ def _checked(scene: Scene, chosen: tuple[int, ...]) -> Array:
     return exact
 
 
-def _mean(scene: Scene, chosen: tuple[int, ...], sampler: Sampler) -> Array:
-    name = scene.quantities[0]
-    total = np.zeros(len(chosen))
-    for block in blocks(scene, sampler):
-        total += block.sums[name][:, list(chosen)].sum(axis=0)
-    return total / scene.n_surfaces
-
-
 def _by_sampler(
     scene: Scene, chosen: tuple[int, ...], exact: Array, name: str, size: float, seed: int
 ) -> Array:
-    asked = replace(scene, sampler=name, n_surfaces=int(size), seed=seed, keep="sums")
-    return _mean(asked, chosen, sampler_of(asked)) / exact - 1
-
-
-def _by_strata(scene: Scene, chosen: tuple[int, ...], exact: Array, size: float, seed: int) -> Array:
-    asked = replace(scene, sampler="stratified", n_surfaces=1, n_asperities=int(size), seed=seed, keep="sums")
-    return _mean(asked, chosen, sampler_of(asked)) / (exact / scene.n_asperities * int(size)) - 1
+    """By so many surfaces; of strata one surface has as many asperities."""
+    strata = name == "stratified"
+    n, surfaces = (int(size), 1) if strata else (scene.n_asperities, int(size))
+    asked = replace(scene, sampler=name, n_surfaces=surfaces, n_asperities=n, seed=seed, keep="sums")
+    total = np.zeros(len(chosen))
+    for block in blocks(asked, sampler_of(asked)):
+        total += block.sums[scene.quantities[0]][:, list(chosen)].sum(axis=0)
+    return np.asarray(total / surfaces / (exact * (n / scene.n_asperities)) - 1)
 
 
 def _integrand(scene: Scene, q: analytic.Quantity, h: float, v: Array | float) -> Array:
