@@ -96,6 +96,13 @@ def test_gradings(make_scene, grading, n, surfaces, separations):
     check(of_all_quantities(make_scene, grading=GRADINGS[grading], separations=h, n_asperities=n), surfaces)
 
 
+@pytest.mark.parametrize(("k", "h"), [(-30.0, tuple(np.linspace(0, 4, 11))), (-60.0, (3.2, 3.6))])
+def test_lone_contacts_where_the_modulus_is_least(make_scene, k, h):
+    """It falls by decades between two separations, and a single contact is as accurate as all of them."""
+    steep = analytic.Custom(lambda s: np.exp(k * (s - 3)))
+    check(of_all_quantities(make_scene, grading=steep, separations=h, n_asperities=1500), 40)
+
+
 @pytest.mark.parametrize("separations", SEPARATIONS)
 @pytest.mark.parametrize(
     ("n", "surfaces"), [(300, 10), (50_000, 1), pytest.param(10**6, 1, marks=pytest.mark.slow)]
@@ -320,6 +327,7 @@ def test_what_auto_takes(make_scene):
 def test_errors_are_held_against_the_least_modulus_of_a_cell():
     """A lone contact may sit there: from a ratio of four on, unless the sign changes."""
     moduli = np.array([[1.0, 2.0], [0.25, 1.0], [0.05, 1.0], [1e-3, 1.0], [-1e-3, 1.0], [-0.01, -1.0]])
-    found = evenness(analytic.Custom(np.tanh), moduli)
-    np.testing.assert_allclose(found, [1.0, 1.0, 0.2, 1 / 16, 1.0, 1 / 16], rtol=1e-15)
+    for grading in (analytic.Custom(np.tanh), analytic.resolved(analytic.Custom(np.tanh), -1.0, 1.0)):
+        found = evenness(grading, moduli)
+        np.testing.assert_allclose(found, [1.0, 1.0, 0.2, 1 / 16, 1.0, 1 / 16], rtol=1e-15)
     assert evenness(analytic.Exponential(2.0), moduli).tolist() == [1.0] * 6

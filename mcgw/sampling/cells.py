@@ -34,6 +34,7 @@ _CONVERGED = 1e-9  # a step of Newton whose square is nothing
 _SHORT, _MOST_HALVINGS = 16, 60  # terms for a grading on a cell, and how often it is cut to get there
 _DIGITS = 4.0  # of a height that coefficients without meaning may seem to be worth
 _EVEN, _LEAST = 4.0, 1 / 16  # see `evenness`
+_NARROW = 2.0**-6  # cells that are not cut because the modulus falls
 _ALONE = 1 / 2  # see `series_accuracy`
 CHANGING = 1 / 64  # share of the largest value that errors are held against where values change their sign
 _TOGETHER = 64  # cells whose densities stay in the cache
@@ -104,7 +105,8 @@ def mesh_of(scene: Scene, *, split: bool = True, rare: float = 0.1) -> Mesh:
     edges = edges_before_grading(scene, split=split, rare=rare)
     if not edges.size:
         return no_cells(scene)
-    edges = _resolving(scene, edges)
+    if _steep(scene.modulus):
+        edges = _resolving(scene, edges)
     return _mesh(scene.heights, float(scene.lowest), edges.tobytes())
 
 
@@ -208,11 +210,11 @@ def _power_of_two_below(distance: float) -> float:
 
 
 def _resolving(scene: Scene, edges: Array) -> Array:
-    """Halve cells until a short series describes the grading: the law of contact has a root besides."""
+    """Halve cells until a short series describes the grading: the law of contact has a root besides.
+
+    And until errors are held against its least values.
+    """
     grading, law, accuracy = scene.modulus, scene.heights, series_accuracy(scene.accuracy)
-    steep = isinstance(getattr(grading, "grading", grading), PiecewiseSeries)  # it may be, between its kinks
-    if grading.smooth and not steep:
-        return edges
     for _ in range(_MOST_HALVINGS):
         a, width = edges[:-1], np.diff(edges)
         stretch = _stretch(law, a, width, _mass(law, a, width[:, None])[:, 0])
@@ -221,6 +223,8 @@ def _resolving(scene: Scene, edges: Array) -> Array:
         tail = np.abs(product(TO_COEFFICIENTS, e.T))[_SHORT:].sum(axis=0)
         share = evenness(grading, e) if scene.exact else _evenly(e, accuracy)
         rough = tail > accuracy * share * np.abs(e).max(axis=1) + height_noise(a, t, e)
+        least, changing = _least(e)  # next to a zero it falls as deep on every cell
+        rough |= (share > _EVEN * least) & ~changing & (width > _NARROW)
         if not rough.any():
             break
         edges = np.unique(np.concatenate([edges, (a + width / 2)[rough]]))
@@ -233,13 +237,18 @@ def height_noise(a: Array | float, t: Array, e: Array) -> Array:
     return np.asarray(_DIGITS * np.spacing(np.abs(a) + widest) * np.ptp(e, axis=-1) / widest)
 
 
+def _steep(grading: Grading) -> bool:
+    """Whether it may be, between its breaks or, if it is made of series, its kinks."""
+    return not grading.smooth or isinstance(getattr(grading, "grading", grading), PiecewiseSeries)
+
+
 def evenness(grading: Grading, e: Array) -> Array:
     """Share of the largest modulus `e` on a cell that errors are held against, over the last axis.
 
     A single contact may sit where the modulus is least, and is to be as accurate as all others. 1 up to a
     ratio of four, for gradings without steep places, and where the modulus changes its sign.
     """
-    if grading.smooth:
+    if not _steep(grading):
         return np.ones(e.shape[:-1])
     least, changing = _least(e)
     return np.asarray(np.where(changing, 1.0, np.clip(_EVEN * least, _LEAST, 1.0)))
