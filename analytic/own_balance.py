@@ -17,7 +17,8 @@ The mean of the balances is not the balance of the means: the load of a finite s
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, wraps
+from typing import Any
 
 import numpy as np
 
@@ -38,11 +39,27 @@ def derivative(found: Callable[[Array], Array], x: Array, order: int = 1) -> Arr
     return np.asarray(np.tensordot(_WEIGHTS[order - 1], around, 1) / _STEP**order)
 
 
+def _once(found: Callable[..., Array]) -> Callable[..., Array]:
+    """Compute only at those separations, the last argument, that have not been asked for before."""
+
+    @wraps(found)
+    def known_or_found(self: "OwnBalance", *asked: Any) -> Array:
+        *what, h = asked
+        known = self._known.setdefault((found, *what), {})
+        new = np.array([x for x in np.unique(h).tolist() if x not in known])
+        if new.size:
+            known.update(zip(new.tolist(), found(self, *what, new).tolist(), strict=True))
+        return np.array([known[x] for x in h.ravel().tolist()]).reshape(h.shape)
+
+    return known_or_found
+
+
 @dataclass(frozen=True)
 class OwnBalance:
     """Sums over the asperities of surfaces at nominal separations.
 
-    Everything is computed once for each separation, since a comparison asks again.
+    Everything dear is computed once for each separation, since a comparison asks again, and one statistic
+    what others have asked.
 
     Parameters
     ----------
@@ -55,20 +72,16 @@ class OwnBalance:
     alone: Model
     compliance: float
 
-    def separation(self, h: Array) -> Array:
-        """Separation that the asperities of the mean surface feel.
-
-        A ValueError if there is none: where loads pull the mean plane down faster than the body follows.
-        """
-        return self._once("separation", h, self._balance)
-
     def rate(self, x: Array) -> Array:
         """How fast the nominal separation changes with the effective one, of the mean surface."""
-        return np.asarray(1 + self.compliance * self.alone.slope("load", x))
+        return np.asarray(1 - self.compliance * self._first("load", x))
 
     def mean(self, quantity: str, h: Array) -> Array:
         """Of a sum, to second order."""
-        return self._once(quantity, h, lambda some: self._mean(quantity, some))
+        x, c = self.separation(h), self.compliance
+        value, bias = self._alone(quantity, x), self._bias(h)
+        moved = self._first(quantity, x) * c * bias + self._bent(quantity, h)
+        return np.asarray(value + moved + c * self._changing(quantity, x) / self.rate(x))
 
     def press(self, quantity: str, x: Array) -> Array:
         """How much a sum deviates for each newton that the asperities at x0 carry more than the mean ones."""
@@ -79,14 +92,8 @@ class OwnBalance:
         x = self.separation(h)
         press = self.press(quantity, x)
         of_load = self._load_variance(h) * self.rate(x) ** 2
-        own = self.alone.cumulants(quantity, x).variance
-        return np.asarray(own + 2 * press * self._covariance(quantity, x) + press**2 * of_load)
-
-    def _mean(self, quantity: str, h: Array) -> Array:
-        x, c = self.separation(h), self.compliance
-        value, bias = self.alone.mean(quantity, x), self._once("bias", h, self._bias)
-        moved = self._first(quantity, x) * c * bias + self._bent(quantity, h)
-        return np.asarray(value + moved + c * self._changing(quantity, x) / self.rate(x))
+        own = self._variance(quantity, x)
+        return np.asarray(own + 2 * press * self._covariance(quantity, 0.0, x) + press**2 * of_load)
 
     def _bias(self, h: Array) -> Array:
         """Of the load, by which the mean of the balances is not the balance of the means."""
@@ -100,14 +107,16 @@ class OwnBalance:
         return np.asarray(self._second(quantity, self.separation(h)) * spread / 2)
 
     def _load_variance(self, h: Array) -> Array:
-        def found(some: Array) -> Array:
-            x = self.separation(some)
-            return np.asarray(self.alone.cumulants("load", x).variance / self.rate(x) ** 2)
+        x = self.separation(h)
+        return np.asarray(self._variance("load", x) / self.rate(x) ** 2)
 
-        return self._once("load variance", h, found)
+    @_once
+    def separation(self, h: Array) -> Array:
+        """Separation that the asperities of the mean surface feel.
 
-    def _balance(self, h: Array) -> Array:
-        """By Newton from the side of no load, where the balance is monotone and convex or concave."""
+        By Newton from the side of no load, where the balance is monotone and convex or concave. A ValueError
+        if there is none: where loads pull the mean plane down faster than the body follows.
+        """
         x, c = h.copy(), self.compliance
         moving = np.arange(h.size)
         for _ in range(_MOST_STEPS):
@@ -119,7 +128,7 @@ class OwnBalance:
                     f"interaction: no equilibrium at d/sigma = {where:g} from the mean plane, because the "
                     "plane sinks faster than it is pressed; give larger separations"
                 )
-            step = (h[moving] - at + c * self.alone.mean("load", at)) / rate
+            step = (h[moving] - at + c * self._alone("load", at)) / rate
             x[moving] = at + step
             moving = moving[np.abs(step) > _CLOSE * np.maximum(np.abs(at), 1.0)]
             if not moving.size:
@@ -127,33 +136,37 @@ class OwnBalance:
         return x
 
     @cached_property
-    def _known(self) -> dict[tuple[str, float], float]:
+    def _known(self) -> dict[tuple[Any, ...], dict[float, float]]:
         return {}
 
-    def _once(self, what: str, h: Array, found: Callable[[Array], Array]) -> Array:
-        """Something at separations, of which only those are computed that are not known yet."""
-        new = np.array([x for x in np.unique(h).tolist() if (what, x) not in self._known])
-        if new.size:
-            keys = [(what, x) for x in new.tolist()]
-            self._known.update(zip(keys, found(new).tolist(), strict=True))
-        return np.array([self._known[what, x] for x in h.ravel().tolist()]).reshape(h.shape)
+    @_once
+    def _alone(self, quantity: str, x: Array) -> Array:
+        """Mean of a sum over the asperities at what they feel."""
+        return self.alone.mean(quantity, x)
 
+    @_once
+    def _variance(self, quantity: str, x: Array) -> Array:
+        """Variance of the same."""
+        return np.asarray(self.alone.cumulants(quantity, x).variance)
+
+    @_once
     def _first(self, quantity: str, x: Array) -> Array:
         """Derivative of the mean of a sum by the separation: its slope, where that is known."""
         if quantity_of(quantity).base != "load_slope":
             return -self.alone.slope(quantity, x)
-        return derivative(lambda at: self.alone.mean(quantity, at), x)
+        return derivative(lambda at: self._alone(quantity, at), x)
 
     def _second(self, quantity: str, x: Array) -> Array:
         """Second derivative of the mean of a sum by the separation."""
-        return derivative(lambda at: self.alone.mean(quantity, at), x, order=2)
+        return derivative(lambda at: self._alone(quantity, at), x, order=2)
 
     def _changing(self, quantity: str, x: Array) -> Array:
         """Covariance of the derivative of a sum by the separation with the load."""
-        around = [self._covariance(quantity, x, k * _STEP) for k in (-2, -1, 1, 2)]
+        around = [self._covariance(quantity, k * _STEP, x) for k in (-2, -1, 1, 2)]
         return np.tensordot(_WEIGHTS[0][[0, 1, 3, 4]], around, 1) / _STEP
 
-    def _covariance(self, quantity: str, x: Array, apart: float = 0.0) -> Array:
+    @_once
+    def _covariance(self, quantity: str, apart: float, x: Array) -> Array:
         """Covariance of a sum with the load at separations x, the sum's farther up by `apart`."""
         of_sum, of_load = (quantity_of(name).scale(self.alone.surface) for name in (quantity, "load"))
         parts = np.array_split(x.ravel(), -(-x.size // _TOGETHER)) if x.size else []

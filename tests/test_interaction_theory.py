@@ -22,6 +22,7 @@ from scipy.stats import norm
 
 import analytic
 from analytic import InteractingModel, Model
+from analytic.height_rule import HeightRule
 from analytic.interaction import BOWL, LATTICE
 
 QUANTITIES = ("load", "area", "stiffness", "contacts", "conductance")
@@ -172,6 +173,26 @@ def test_every_asperity_can_be_pressed_down(strength, own):
     np.testing.assert_allclose(
         effective.mean("nominal_separation", h), h - c * alone.mean("load", h), rtol=0, atol=1e-13
     )
+
+
+def test_nothing_is_integrated_twice(monkeypatch):
+    """Means and variances need the same slopes and rules of heights, which take nearly all the time."""
+    asked = []
+
+    def noted(cls, name, key):
+        original = getattr(cls, name)
+        monkeypatch.setattr(
+            cls, name, lambda *a, **k: asked.append((name, *key(*a, **k))) or original(*a, **k)
+        )
+
+    noted(Model, "slope", lambda _, quantity, h: (quantity, h.tobytes()))
+    noted(HeightRule, "over", lambda h, *_, branches=(): (branches, np.asarray(h).tobytes()))
+    own = {"law": analytic.KogutEtsion(critical=0.5), "heights": analytic.ExponentialHeights()}
+    model = model_of(3.0, 2000, **own)
+    for name in ("load", "contacts", "load_slope"):
+        model.mean(name, H)
+        model.std(name, H)
+    assert len(asked) == len(set(asked)) > 20
 
 
 def test_adhesive_asperities_are_pressed_up_too():
