@@ -37,7 +37,7 @@ BOWL = (4 * math.asinh(1) - 4 / 3 * (math.sqrt(2) - 1)) / math.pi
 # Potential at a point of a square lattice in a neutral background, over charge/side: -4 zeta(1/2) beta(1/2).
 LATTICE = 3.900264920001956
 NO_THEORY = (
-    'interaction.reference = "located": no theory is known of summits at their places; take "mean-plane", '
+    'interaction.reference = "located": no theory is known of summits at their places; use "mean-plane", '
     "which has their mean field"
 )
 

@@ -8,6 +8,8 @@ from located_by_hand import residual
 from numpy.testing import assert_allclose
 
 import mcgw
+from mcgw.cli import main
+from mcgw.reports.plan import plan_of, plan_text
 from mcgw.sampling.counts import generator
 from mcgw.sampling.located.balance import Located
 from mcgw.sampling.located.spots import Grid, HertzSpots
@@ -83,10 +85,10 @@ def test_laws_gradings_and_own_radii_go_with_it():
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"sampler": "cells"}, 'sampler = "cells".*take "direct"'),
+        ({"sampler": "cells"}, 'sampler = "cells".*use "direct"'),
         ({"interaction": {"reference": "located"}}, 'at = "nominal"'),
         ({"interaction": {**LOCATED, "bulk_modulus": 1e9}}, "leave it out"),
-        ({"keep": "statistics"}, 'take "sums"'),
+        ({"keep": "statistics"}, 'use "sums"'),
         ({"quantities": ["load", "yielded"], "law": mcgw.KogutEtsion(critical=0.1)}, "leave out yielded"),
         ({"rel_err": 0.05, "n_surfaces": None}, "give n_surfaces"),
         ({"n_asperities": 30000}, "20000 or fewer"),
@@ -100,8 +102,14 @@ def test_refuses_what_does_not_fit(changes, words):
         scene_of(**changes)
 
 
-def test_where_theory_is_needed_none_is_told():
+def test_where_theory_is_needed_none_is_told(tmp_path, capsys):
     scene = scene_of()
+    assert "1e-11 of every value" in plan_text(scene, plan_of(scene))
+    (tmp_path / "scene.toml").write_text(mcgw.scene_text(scene))
+    for command in (("figures", "--scene"), ("converge",), ("tradeoff",)):
+        assert main([*command, str(tmp_path / "scene.toml"), "-o", str(tmp_path / "new")]) == 2
+        assert capsys.readouterr().err.count("\n") == 1
+    assert len(list(tmp_path.iterdir())) == 1
     assert "for summits at random places" in scene.validity().unknown
     e = mcgw.simulate(scene)
     for ask in (

@@ -37,6 +37,7 @@ def execute(args: argparse.Namespace) -> int:
 
     seconds = parse(args.seconds, "s", "--seconds")
     scene = load_scene(args.scene, changes=changes_of(args))
+    scene.ask_theory()
     folder = args.output or args.scene.parent / "out"
     table, figure = (folder / f"{args.scene.stem}-tradeoff.{end}" for end in ("csv", "png"))
     check_outputs([Output(table, CSV), Output(figure, figure_format())], inputs=files_of(args.scene))

@@ -94,10 +94,7 @@ def scene_alone(scene: Scene, what: str) -> Scene:
     """
     if scene.interaction is None:
         return scene
-    if scene.located:
-        from analytic.interaction import NO_THEORY  # as above
-
-        raise ValueError(NO_THEORY)
+    scene.ask_theory()
     if scene.interaction.nominal:
         raise ValueError(
             f'interaction.at = "nominal": {what} needs sums of independent asperities, but here each '

@@ -13,7 +13,7 @@ from mcgw.sampling.shared import shared
 from mcgw.scene.in_words import contact_facts
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene, storable
-from mcgw.scene.values import COARSEST, EXACT
+from mcgw.scene.values import BALANCED, COARSEST, EXACT
 from mcgw.sweeps.groups import Group
 from mcgw.sweeps.points import Asked
 from mcgw.sweeps.pooled import Pooling
@@ -117,7 +117,8 @@ def plan_text(scene: Scene, plan: Plan) -> str:
 
 def _accuracy_lines(scene: Scene, plan: Plan) -> list[str]:
     """What was chosen of the accuracy, and what others would cost."""
-    lines = [f"  accuracy      {scene.accuracy:g} of every value"]
+    accuracy = max(scene.accuracy, BALANCED) if scene.located else scene.accuracy
+    lines = [f"  accuracy      {accuracy:g} of every value"]
     if plan.at:
         ratios = ", ".join(f"{a:g}: {t / plan.seconds:.2g} x" for a, t in plan.at.items())
         lines.append(f"                time at others: {ratios}")

@@ -61,16 +61,27 @@ class Fields(Values):
         model = self._alone
         if self.interaction is not None:
             from analytic import InteractingModel  # for those scenes alone
-            from analytic.interaction import NO_THEORY
 
-            if self.located:
-                raise ValueError(NO_THEORY)
+            self.ask_theory()
             model = InteractingModel.of(model, self.interaction)
         if self.filled is not None:
             from analytic.joint_model import with_gap  # for those scenes alone
 
             model = with_gap(model, self.filled)
         return model
+
+    def ask_theory(self) -> None:
+        """Refuse a scene of which no theory is known.
+
+        Raises
+        ------
+        ValueError
+            If summits are located.
+        """
+        if self.located:
+            from analytic.interaction import NO_THEORY  # for those scenes alone
+
+            raise ValueError(NO_THEORY)
 
     @cached_property
     def _alone(self) -> Model:

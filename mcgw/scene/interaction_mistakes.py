@@ -24,13 +24,13 @@ def _located(scene: Fields) -> Iterator[str]:
     """Features that summits with positions do not support."""
     key = 'interaction.reference = "located"'
     if not promise_of(scene.sampler).places:
-        yield f'ensemble.sampler = "{scene.sampler}": {key} takes all asperities of a surface; take "direct"'
+        yield f'ensemble.sampler = "{scene.sampler}": {key} uses all asperities of a surface; use "direct"'
     if unknown := [name for name in scene.quantities if name not in LOCATED]:
         yield f"contact.quantities: {key} has {', '.join(LOCATED)}; leave out {', '.join(unknown)}"
     if scene.n_asperities > _MOST_LOCATED:
         yield f"{key}: {scene.n_asperities:g} asperities a surface; give {_MOST_LOCATED} or fewer"
     if scene.keep != "sums":
-        yield f'ensemble.keep = "{scene.keep}": {key} keeps sums; take "sums"'
+        yield f'ensemble.keep = "{scene.keep}": {key} keeps sums; use "sums"'
     if scene.rel_err is not None:
         yield f"ensemble.rel_err: no theory tells how {key} scatters; give n_surfaces"
     others = {

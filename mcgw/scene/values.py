@@ -53,6 +53,7 @@ else:
 
 
 EXACT, COARSEST = 1e-13, 1e-2  # default accuracy, the last digits; and the lowest one
+BALANCED = 1e-11  # what is left over of a balance of located summits
 MOMENTS, SUMMITS = ("m0", "m2", "m4"), ("sigma", "radius", "eta")  # either describes the summits of a surface
 SUMS = tuple({**QUANTITIES, **LAW_QUANTITIES})
 

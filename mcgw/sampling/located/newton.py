@@ -14,8 +14,8 @@ from scipy.spatial import cKDTree
 
 from analytic.arrays import Array, Ints
 from mcgw.sampling.located.spots import Grid, Spots, field_beyond_point
+from mcgw.scene.values import BALANCED
 
-_CLOSE = 1e-11  # of the deepest penetration, and of the load
 _STEPS, _SHORTEST, _MEMORY = 60, 2**-7, 4  # a step may leave more over than the last, not than the last four
 _KRYLOV_CLOSE, _KRYLOV, _RESTARTS = 1e-10, 100, 5
 _DENSE = 2500  # spots, beyond which Fourier series sum faster than a matrix
@@ -52,8 +52,8 @@ class State:
 
     @property
     def converged(self) -> bool:
-        """Whether nothing but rounding is left over."""
-        return self.residual < _CLOSE
+        """Whether nothing that counts is left over, of the deepest penetration and of the load."""
+        return self.residual < BALANCED
 
     @property
     def size(self) -> float:
