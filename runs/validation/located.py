@@ -1,11 +1,12 @@
-"""Summits at their places against boundary elements, on the maps of `solves.csv`; and means by levels.
+"""Summits at their places against boundary elements; and means by levels.
 
-    python runs/validation/located.py [--most-seconds 600]
+    python runs/validation/located.py            # on the maps of solves.csv; --alpha 50, --most-seconds 600
+    python runs/validation/located.py --fresh    # on maps that nothing was tuned on, in located.csv
+    python runs/validation/located.py --solve    # solve those first (Tamaas); resumes
 
 For each spectrum and load: rms over maps of the error of own summits alone and located, correlations over
 maps with boundary elements, and how many CPU seconds plain boundary elements take for 2 % of each mean, over
-what levels take. Last, how far the surface falls from its summits to the rims of their spots, over what
-paraboloids do. Nothing of the model was fitted to these solves.
+what levels take.
 """
 
 import argparse
@@ -17,7 +18,6 @@ from pathlib import Path
 
 import numpy as np
 from rough_maps import GaussianMap
-from scipy.ndimage import map_coordinates
 
 from mcgw.elasticity.levels import LEVELS, Pressed
 from mcgw.elasticity.multilevel import design, mean_of
@@ -26,6 +26,42 @@ from mcgw.errors import RunError
 HERE = Path(__file__).parent
 NAMES = ("area", "stiffness", "mean_gap")
 REPEATED, FEW = 300, 4
+FRESH = HERE / "located.csv"
+ALPHAS, SEEDS, LOADS, HURST, WAVES = (
+    (20, 5, 36, 10),
+    (*range(7001, 7009), *range(8001, 8009)),
+    (1e-3, 1e-2, 5e-2),
+    0.8,
+    64,
+)
+
+
+def fresh():
+    """Maps of 512^2 points, and boundary elements of each load: values and seconds."""
+    found = defaultdict(dict)
+    with open(FRESH, encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            alpha, values = float(row["alpha"]), [float(row[name]) for name in (*NAMES, "seconds", "m0")]
+            surface = GaussianMap(HURST, int(alpha), int(row["seed"]), WAVES)
+            found[alpha, HURST][surface, float(row["p"])] = values
+    return found
+
+
+def solve():
+    """Write what boundary elements say of fresh maps that are not in the file."""
+    done = {(int(m.alpha), m.seed, p) for maps in fresh().values() for m, p in maps} if FRESH.exists() else ()
+    with open(FRESH, "a", encoding="utf-8", buffering=1) as file:
+        if not file.tell():
+            file.write(f"alpha,seed,p,{','.join(NAMES)},m0,seconds\n")
+        for seed in SEEDS:
+            for alpha in ALPHAS:
+                heights = GaussianMap(HURST, alpha, seed, WAVES).heights()
+                for p in LOADS:
+                    if (alpha, seed, p) not in done:
+                        values, seconds = LEVELS[-1].timed(Pressed(heights, (1.0, 1.0), 1.0, p))
+                        found = ",".join(f"{values[name]:.8g}" for name in NAMES)
+                        m0 = float((heights**2).mean())
+                        file.write(f"{alpha},{seed},{p:g},{found},{m0:.8g},{seconds:.3g}\n")
 
 
 def solves():
@@ -39,23 +75,6 @@ def solves():
                 values = [float(row[name]) for name in ("area", "stiffness", "gap", "seconds", "m0")]
                 found[alpha, hurst][surface, float(row["p"])] = values
     return found
-
-
-def flatter(pressed):
-    """How far the surface falls to the rims of its located spots, over what paraboloids do; by load."""
-    summits = pressed.summits
-    delta = np.maximum(summits.at_load(pressed.load).penetrations, 0)
-    on = delta > 0
-    radii, load = summits.spots.radii[on], summits.spots.load(delta)[on]
-    angle, rim = np.arange(16) * math.pi / 8, np.sqrt(radii * delta[on]) * len(pressed.heights)
-    ring = [
-        x[:, None] + rim[:, None] * f(angle)
-        for x, f in zip(summits.places[:, on], (np.sin, np.cos), strict=True)
-    ]
-    fall = summits.spots.heights[on] - map_coordinates(pressed.heights, ring, order=3, mode="grid-wrap").mean(
-        axis=1
-    )
-    return float((fall * load).sum() / (delta[on] / 2 * load).sum())
 
 
 def covered(values, rng):
@@ -73,17 +92,25 @@ def main():
     """Print a row for each spectrum and load."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--most-seconds", type=float, default=600.0)
-    most, begun, rng = parser.parse_args().most_seconds, time.process_time(), np.random.default_rng(7)
+    parser.add_argument("--alpha", type=float, help="of the maps; default: all")
+    parser.add_argument("--fresh", action="store_true")
+    parser.add_argument("--solve", action="store_true")
+    asked = parser.parse_args()
+    if asked.solve:
+        solve()
+    known = fresh() if asked.fresh or asked.solve else solves()
+    most, begun, rng = asked.most_seconds, time.process_time(), np.random.default_rng(7)
     tried = failed = 0
     print(
         "alpha  H  p/(E* g)  maps | alone: area stiffness gap/rms | located | correlation | saved | covered"
-        " | falls"
     )
-    for (alpha, hurst), all_solves in sorted(solves().items()):
+    for (alpha, hurst), all_solves in sorted(known.items()):
+        if asked.alpha not in (None, alpha):
+            continue
         loads = sorted({p for _, p in all_solves})
         kept = {}
         for p in loads:
-            rows, costs, falls = [], [], []
+            rows, costs = [], []
             for (surface, load), bem in all_solves.items():
                 if load != p or time.process_time() - begun > most:
                     continue
@@ -99,7 +126,6 @@ def main():
                 rms = math.sqrt(bem[4])
                 rows.append([[a[k] for k in NAMES], [b[k] for k in NAMES], bem[:3], [rms] * 3])
                 costs.append((one, two, bem[3]))
-                falls.append(flatter(pressed))
             if len(rows) < 3:
                 continue
             x = np.array(rows).transpose(1, 0, 2)
@@ -115,7 +141,6 @@ def main():
             texts = [" ".join(f"{v:+.3f}" for v in part) for part in (*errors, together)]
             texts.append(" ".join(f"{v:.1f}" for v in saved))
             texts.append(" ".join(f"{v:.2f}" for v in covered(x[:3], rng)) if len(rows) > FEW else "")
-            texts.append(f"{np.mean(falls):.2f}")
             print(
                 f"{alpha:g}  {hurst:g}  {p:g}  {len(rows)} | {' | '.join(texts)} | {seconds.round(2)}",
                 flush=True,
