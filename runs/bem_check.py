@@ -24,8 +24,7 @@ from scipy import fft
 from scipy.optimize import root
 
 import mcgw
-from mcgw.figures.style import HOMOGENEOUS, STYLE, look
-from mcgw.formats.pictures import save_figure
+from mcgw.figures.style import HOMOGENEOUS, STYLE, look, save_figure
 from mcgw.maps.envelope import envelope
 from mcgw.maps.synthetic import Asperities, asperities_of
 

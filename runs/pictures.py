@@ -13,8 +13,7 @@ import mcgw
 from mcgw.figures.catalogue import figures_of
 from mcgw.figures.compared import Compared
 from mcgw.figures.panels import draw
-from mcgw.figures.style import CATEGORIES, MONTE_CARLO, STYLE, THEORY
-from mcgw.formats.pictures import save_figure
+from mcgw.figures.style import CATEGORIES, MONTE_CARLO, STYLE, THEORY, save_figure
 from mcgw.sampling.cells import mesh_of
 
 HERE = Path(__file__).parent

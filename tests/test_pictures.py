@@ -7,8 +7,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from PIL import Image
 
-from mcgw.figures.style import STYLE
-from mcgw.formats.pictures import save_figure
+from mcgw.figures.style import STYLE, save_figure
 
 X = np.linspace(0.0, 4.0, 9)
 

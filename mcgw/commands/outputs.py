@@ -34,7 +34,7 @@ TOML = Format("a scene", (".toml",))
 
 def figure_format() -> Format:
     """The formats that matplotlib writes."""
-    from mcgw.formats.pictures import figure_endings
+    from mcgw.figures.style import figure_endings
 
     return Format("a figure", figure_endings())
 

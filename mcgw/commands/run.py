@@ -56,7 +56,6 @@ def _execute(args: argparse.Namespace) -> int:
     with drawing(args) as how:
         notes(*_of_threads(args.threads), *_of_time(scene), *short)
         if ruled and not args.shard:
-            from mcgw.commands.voice import news
             from mcgw.ensemble.drawing import seconds_per_surface
             from mcgw.ensemble.forecast import before
             from mcgw.sampling.samplers import sampler_of

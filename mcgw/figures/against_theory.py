@@ -10,8 +10,17 @@ from matplotlib.figure import Figure
 
 from mcgw.figures.data import SEPARATION, FigureData, Panel, Points, Series
 from mcgw.figures.panels import draw, draw_residual
-from mcgw.figures.style import PAPER, SAMPLE, STYLE, THEORY, contact_label, look, power_of_ten, shown_title
-from mcgw.formats.pictures import save_figure
+from mcgw.figures.style import (
+    PAPER,
+    SAMPLE,
+    STYLE,
+    THEORY,
+    contact_label,
+    look,
+    power_of_ten,
+    save_figure,
+    shown_title,
+)
 from mcgw.machine.terminal import one_line
 from mcgw.statistics.comparison import Comparison
 

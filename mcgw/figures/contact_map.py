@@ -13,8 +13,7 @@ from matplotlib.figure import Figure
 from analytic import quantity_of
 from analytic.arrays import Array, Marks
 from analytic.laws import Ways
-from mcgw.figures.style import STYLE
-from mcgw.formats.pictures import save_figure
+from mcgw.figures.style import STYLE, save_figure
 from mcgw.maps.envelope import envelope
 from mcgw.maps.synthetic import Asperities, asperities_of
 from mcgw.maps.topography import Topography

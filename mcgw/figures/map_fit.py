@@ -11,8 +11,17 @@ from matplotlib.figure import Figure
 
 from analytic import Gaussian, Nayak
 from analytic.arrays import Marks
-from mcgw.figures.style import HOMOGENEOUS, MARKED, MISSING, SAMPLE, STYLE, THEORY, look, prefixed
-from mcgw.formats.pictures import save_figure
+from mcgw.figures.style import (
+    HOMOGENEOUS,
+    MARKED,
+    MISSING,
+    SAMPLE,
+    STYLE,
+    THEORY,
+    look,
+    prefixed,
+    save_figure,
+)
 from mcgw.maps.estimates import moments_of
 from mcgw.maps.fit import Fit
 from mcgw.maps.form import smooth

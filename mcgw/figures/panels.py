@@ -13,8 +13,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, MaxNLocat
 
 from mcgw.ensemble.intervals import TOO_FEW
 from mcgw.figures.data import FigureData, Panel, Points, Series, figure_table
-from mcgw.figures.style import BACK, BAND, LEVEL, PAPER, STYLE, look, plain, power_of_ten
-from mcgw.formats.pictures import save_figure
+from mcgw.figures.style import BACK, BAND, LEVEL, PAPER, STYLE, look, plain, power_of_ten, save_figure
 
 # Inches. Places are given, since finding them takes as long as drawing.
 _WIDTH, _NARROWEST = 3.7, 4.4  # of a panel with its labels, and of a figure

@@ -7,8 +7,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from mcgw.figures.style import BACK, BAND, MONTE_CARLO, SAMPLE, STYLE, THEORY, look, shown_title
-from mcgw.formats.pictures import save_figure
+from mcgw.figures.style import BACK, BAND, MONTE_CARLO, SAMPLE, STYLE, THEORY, look, save_figure, shown_title
 from mcgw.statistics.checks import Slope
 from mcgw.statistics.convergence import Convergence
 from mcgw.statistics.tradeoff import Tradeoff

@@ -20,8 +20,7 @@ from mcgw.figures.against_theory import quantity_panel
 from mcgw.figures.contact_map import patch_figures
 from mcgw.figures.data import FigureData, Panel, Points, Series
 from mcgw.figures.panels import draw
-from mcgw.figures.style import STYLE
-from mcgw.formats.pictures import write_figure
+from mcgw.figures.style import STYLE, write_figure
 from mcgw.formats.table import Column, Table, evenly
 from mcgw.scene.in_words import joint_text
 from mcgw.scene.samplers import promise_of

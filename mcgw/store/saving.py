@@ -38,7 +38,6 @@ from mcgw.store.lock import locked
 from mcgw.store.place import finished, write_body
 from mcgw.store.run_folder import RunFolder
 from mcgw.store.shards import LIBVER, Shard, Span, content_digest, tables_in
-from mcgw.store.statistics_file import body_of_statistics
 
 _CACHE = 2**25  # of chunks that a shard fills only in part
 
@@ -92,7 +91,9 @@ def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> 
         about = {"run": identity_of(*asked), "draws": drawn_with(*asked), "wall_seconds": wall_seconds}
         if ensemble.drawn_for is not None:
             about["drawn_for"] = scene_text(ensemble.drawn_for)
-        write = body_of_statistics if ensemble.scene.keep == "statistics" else body_of
+        write = body_of
+        if ensemble.scene.keep == "statistics":
+            from mcgw.store.statistics_file import body_of_statistics as write  # for those scenes alone
         write_body(path, write(ensemble, **about), before)
     return open_ensemble(path)
 

@@ -24,8 +24,7 @@ from mcgw.elasticity.elastic import _by_levels
 from mcgw.elasticity.levels import LEVELS, Pressed
 from mcgw.elasticity.multilevel import differences, terms_of
 from mcgw.elasticity.sources import drawn
-from mcgw.figures.style import HOMOGENEOUS, MONTE_CARLO, STYLE, THEORY
-from mcgw.formats.pictures import save_figure
+from mcgw.figures.style import HOMOGENEOUS, MONTE_CARLO, STYLE, THEORY, save_figure
 from mcgw.maps.synthetic import Spectrum
 
 HERE = Path(__file__).parent

@@ -16,8 +16,7 @@ from models import INTERACTIONS, MODELS, Model, summits_of
 from numpy.typing import NDArray
 from solve_table import Row
 
-from mcgw.figures.style import HOMOGENEOUS, STYLE, look
-from mcgw.formats.pictures import save_figure
+from mcgw.figures.style import HOMOGENEOUS, STYLE, look, save_figure
 
 Lines = list[Condensed]
 
