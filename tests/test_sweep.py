@@ -308,9 +308,26 @@ def test_pictures():
     import matplotlib as mpl
 
     mpl.use("agg")
-    sweep = mcgw.sweep(SCENE, {GAMMA: [1.0, 1.5, 2.0]})
-    assert len(sweep.plot().get_legend().get_texts()) == 3
-    assert sweep.slopes("load", GAMMA).plot().get_xlabel() == GAMMA
+
+    def check(container, x, mean, error):
+        marks, _, (bars,) = container.lines
+        np.testing.assert_allclose(marks.get_xydata(), np.stack([x, mean], axis=1))
+        ends = np.stack([mean - 1.96 * error, mean + 1.96 * error], axis=1)
+        np.testing.assert_allclose([segment[:, 1] for segment in bars.get_segments()], ends)
+
+    scene = SCENE.replace(separations=[1.0, 0.0, 2.0])
+    sweep = mcgw.sweep(scene, {"ensemble.seed": [1, 2], GAMMA: [1.0, 1.5, 2.0]})
+    axes, order = sweep.plot(quantity="area"), [1, 0, 2]
+    assert len(axes.get_legend().get_texts()) == len(axes.containers) == 6
+    assert axes.get_ylabel() == "mean area (m^2)"
+    for container, point in zip(axes.containers, sweep.axes.points(), strict=True):
+        mean, error = sweep.mean("area")[point], sweep.stderr("area")[point]
+        check(container, [0.0, 1.0, 2.0], mean[order], error[order])
+    slopes = sweep.slopes("load", GAMMA)
+    axes = slopes.plot(k=2)
+    check(axes.containers[0], slopes.at, slopes.value[0, :, 2], slopes.stderr[0, :, 2])
+    np.testing.assert_allclose(axes.lines[-1].get_ydata(), slopes.theory[0, :, 2])
+    assert axes.get_xlabel() == GAMMA
 
 
 def test_points_of_other_numbers_of_surfaces_have_errors_of_their_own():
