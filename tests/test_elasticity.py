@@ -297,8 +297,9 @@ def made_up(rng, maps):
 
 
 class TestMultilevel:
-    def test_of_one_level_takes_the_maps_that_the_error_asks_for(self, rng):
-        pilot = rng.normal([3.0, 10.0], [0.6, 1.0], (5, 2))
+    @pytest.mark.parametrize("tried", [2, 5])
+    def test_of_one_level_takes_the_maps_that_the_error_asks_for(self, tried, rng):
+        pilot = rng.normal([3.0, 10.0], [0.6, 1.0], (tried, 2))
         asked = (student.ppf(0.975, 20) * pilot.std(axis=0, ddof=1) / pilot.mean(axis=0) / 0.02) ** 2
         found = design({0: pilot}, [2.0], 0.02)
         assert (found.chain, found.maps) == ((0,), (math.ceil(asked.max()),))
@@ -465,7 +466,7 @@ class TestElastic:
         assert_allclose(found.interval("area"), 1.25 * truth, rtol=1e-12)
         assert (found.planned.chain, found.planned.maps, found.saved) == ((2,), (4,), 1.0)
 
-    def test_takes_a_separation(self, tmp_path, rng):
+    def test_takes_a_separation(self, tmp_path, rng, monkeypatch):
         """The mean of a list, all of whose maps are solved, is theirs; one of five is clear of the plane."""
         draw, path = mcgw.maps.synthetic.gaussian_map, tmp_path / "s.jsonl"
         maps = [draw(SPECTRUM, (64, 64), (1e-6, 1e-6), rng) for _ in range(4)]
@@ -485,6 +486,10 @@ class TestElastic:
                 mcgw.elastic(maps, **other, **asked)
         with pytest.raises(mcgw.RunError, match="smaller separation"):
             mcgw.elastic(maps, separation="1 mm", E_star=1e11)
+        apart = Level("elastic", "stand-in", lambda pressed: dict.fromkeys(located(pressed), 0.0))
+        monkeypatch.setattr(public, "LEVELS", (*LEVELS[:2], apart))  # the dearest level decides
+        with pytest.raises(mcgw.RunError, match="none of 5 maps touches"):
+            mcgw.elastic(maps, separation="1 um", E_star=1e11)
 
     @pytest.mark.parametrize("held", [b"", b"my notes", b"my notes\n", b"\x89HDF\r\n\x1a\n", b"[1]\n"])
     def test_a_file_in_the_way_stays(self, held, tmp_path):
