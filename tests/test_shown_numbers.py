@@ -106,7 +106,14 @@ def check_csv(path, told, columns):
 
 
 def test_show(file, scene, told, tmp_path, capsys):
-    out = out_of(["show", file, "--csv", tmp_path / "s.csv"], capsys)
+    lines = out_of(["show", file], capsys).splitlines()
+    at = next(k for k, line in enumerate(lines) if line.split()[:1] == ["d/sigma"])
+    brief = np.array([line.split() for line in lines[at + 1 : at + 1 + len(H)]], dtype=float)
+    wanted = np.column_stack([H, *(told[name]["mean"] for name in QUANTITIES)])
+    assert np.all(
+        np.abs(brief - wanted)[:, 1:] <= 0.06 * np.column_stack([x["stderr"] for x in told.values()])
+    )
+    out = out_of(["show", file, "-v", "--csv", tmp_path / "s.csv"], capsys)
     check_csv(tmp_path / "s.csv", told, ["mean", "std", "stderr"])
     assert f"  surfaces      150 of {scene.n_asperities} asperities each (fixed)" in out
     assert "  separations   4 from 0 to 2 (d/sigma)" in out

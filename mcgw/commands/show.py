@@ -34,7 +34,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Print to standard output; with --csv, write the table there."""
     from mcgw.commands.outputs import check_outputs, table_output, write_table
-    from mcgw.commands.voice import tell_cautions
+    from mcgw.commands.voice import ALL, says, tell_cautions
     from mcgw.store.ensembles import read_attributes, unfinished_sweep, verify
     from mcgw.store.place import tidy
 
@@ -68,7 +68,7 @@ def execute(args: argparse.Namespace) -> int:
 
         result = open_results(args.file)
         check_outputs(table_output(args.csv), inputs=[args.file])
-        text, table = summary_of(result, attributes)
+        text, table = summary_of(result, attributes, says(ALL))
         print(text)
         tell_cautions(result)
         write_table(args.csv, table)

@@ -11,7 +11,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.labelled import statistics_table
 from mcgw.ensemble.paired import paired_ratio
 from mcgw.formats.sheet import listed
-from mcgw.formats.table import Column, Table, stacked
+from mcgw.formats.table import SEPARATION, Column, Table, stacked
 from mcgw.machine.terminal import one_line
 from mcgw.scene.in_words import accuracy_facts, contact_facts, law_text
 from mcgw.statistics.comparison import Comparison
@@ -24,11 +24,12 @@ if TYPE_CHECKING:
 
 _KEPT = "statistics alone: mean, covariance, skewness, quantiles, extremes"
 _SHOWN = ("separation", "mean", "std", "stderr")
+_COLUMNS = 6  # quantities that stand in one table
 _LISTED, _WORST = 12, 3  # points of a sweep; rows that are farthest from theory
 
 
-def summary(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
-    """What a file holds: provenance and a table of means."""
+def summary(ensemble: Ensemble, attributes: dict[str, Any], full: bool = True) -> str:
+    """What a file holds: provenance and a table of means; if `full`, one of each quantity with its spread."""
     scene = ensemble.scene
     h = scene.separations
     facts = [
@@ -46,9 +47,26 @@ def summary(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
     ]
     lines = [one_line(scene.title) or "ensemble", *listed(facts, 12)]
     lines += [f"  {line}" for line in scene.validity().lines]
-    for name in scene.answers:
+    if not full:
+        lines += ["", _means(ensemble).text(), "standard deviations, all quantities: add -v"]
+    for name in scene.answers if full else ():
         lines += ["", statistics_table(ensemble, name).only(*_SHOWN).rows().text()]
     return "\n".join(lines)
+
+
+def _means(ensemble: Ensemble) -> Table:
+    """Means of the first quantities, to the digits that their standard errors allow."""
+    columns = [
+        Column(
+            x,
+            ensemble.mean(x),
+            x.replace("_", " "),
+            ensemble.scene.quantity(x).unit,
+            error=ensemble.stderr(x),
+        )
+        for x in ensemble.scene.answers[:_COLUMNS]
+    ]
+    return Table((Column("separation", ensemble.separations, SEPARATION, form="g"), *columns)).rows()
 
 
 def _so_far(ensemble: Ensemble) -> str:
@@ -109,11 +127,13 @@ def comparison_summary(
     return text, lambda: stacked(comparison.tables(), "quantity"), lines
 
 
-def summary_of(result: "Ensemble | Sweep", attributes: dict[str, Any]) -> tuple[str, Callable[[], Table]]:
+def summary_of(
+    result: "Ensemble | Sweep", attributes: dict[str, Any], full: bool
+) -> tuple[str, Callable[[], Table]]:
     """The summary for people, and what makes the table for programs."""
     if isinstance(result, Ensemble):
         names = result.scene.answers
-        return summary(result, attributes), lambda: stacked(
+        return summary(result, attributes, full), lambda: stacked(
             {name: statistics_table(result, name) for name in names}, "quantity"
         )
     lines = [
