@@ -432,6 +432,15 @@ def test_yielding_and_the_way_back():
     )
 
 
+def test_nothing_is_divided_by_a_load_of_nothing():
+    """Above the highest summit there is none at all, which is not positive."""
+    heights = analytic.HeightTable.of([1.0, 2.0, 5.0, 9.0])
+    for highest, told in ((1.0, False), (9.0, True)):
+        scene = scene_of(separations=(0.0, highest), heights=heights)
+        found = dict(figures_of(Compared(scene), ["area-and-load"]))["area-and-load"]
+        assert (found == "the mean load is not positive at every separation") == told
+
+
 def test_numbers_are_integrals_over_the_heights(graded):
     """Of a graded Gaussian surface at d/sigma = 1, by quadrature alone."""
 

@@ -260,6 +260,7 @@ def test_profiles_that_should_be_doubted_are():
     assert cautions([good, other], 10 * UM) == []
     assert cautions([good, other], None) == ["cutoff"]
     assert "cutoff" in cautions([good], 4 * UM)
+    assert "cutoff" in cautions([good, Profile(other.heights, 3 * UM)], 10 * UM)  # of the coarser one
     bent = Profile(np.exp(good.heights / UM) * UM, UM)
     assert "skewness" in cautions([bent], 10 * UM)
     assert "missing" in cautions([Profile(good.heights, UM, filled=3)], 10 * UM)

@@ -98,6 +98,18 @@ def test_a_literal_search_finds_the_same(name, given, monkeypatch):
             assert solution.surfaces["contacts"][number] == np.count_nonzero(s > h)
 
 
+@pytest.mark.parametrize("given", ["load", "area"])
+def test_radii_of_their_own(given):
+    """A summit r times as blunt yields r times as deep, at r^2 times the load and area."""
+    s, ratios, ones = np.array([2.2, 2.0, 1.0]), np.array([0.5, 2.0, 1.3]), np.ones(3)
+    total = LawSum(given, Branch(mcgw.KogutEtsion(critical=0.05)), s, ones, ratios)
+    which = ("load", "area").index(given)
+    for h in (2.1, 1.7, 0.6):
+        above = [(x - h, r) for x, r in zip(s, ratios, strict=True) if x > h]
+        each = [r**2 * by_hand.kogut_etsion(x / r, 1.0)[which] for x, r in above]
+        assert total.largest_separation(sum(each), -3.0) == pytest.approx(h, abs=1e-12)
+
+
 def test_a_load_that_is_jumped_over_is_passed():
     """One asperity of Chang, Etsion and Bogy: between Hertz's load at yield and 1.5 times that."""
     one = LawSum("load", Branch(mcgw.ChangEtsionBogy(critical=0.5)), np.array([2.0]), np.ones(1))

@@ -57,8 +57,6 @@ def _one_asperity(scene: Scene, q: Quantity, h: float) -> float:
         s = np.array(heights.heights)
         return float(np.sum(added(scene, q, h, s[s > low]))) / s.size
     touching = float(heights.sf(np.array(low)))
-    if not touching > 0:
-        return 0.0
     x, w = leggauss(_POINTS)
     edges = _edges(scene, q, h, touching)
     total = 0.0
