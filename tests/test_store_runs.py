@@ -325,6 +325,20 @@ def test_signals_stop_a_run_that_then_goes_on(
     assert digest(path) == expected
 
 
+def test_a_signal_while_the_only_block_is_drawn_leaves_nothing(scene, tmp_path, monkeypatch):
+    draw = Job.draw
+
+    def signalled(*arguments):
+        os.kill(os.getpid(), signal.SIGTERM)
+        return draw(*arguments)
+
+    monkeypatch.setattr(Job, "draw", signalled)
+    with pytest.raises(StoppedError, match="terminated: nothing was saved") as caught:
+        run(replace(scene, n_surfaces=SIZE), tmp_path / "e.h5")
+    assert caught.value.code == 143
+    assert list(tmp_path.iterdir()) == []
+
+
 KILLED = """
 import os, signal, sys
 import numpy
