@@ -259,7 +259,7 @@ class Sweep(OverPoints, Shown):
         where = [self.axes.values_text(points[i]) for i in shown]
         columns = [Column("point", where, f"mean +- stderr at d/sigma = {self.separations[k]:g}")]
         for name in names:
-            error = Column("stderr", np.where(real, errors[name][shown], np.nan), form=".1g")
+            error = Column("stderr", np.where(real, errors[name][shown], np.nan), form=".2g")
             columns.append(Column(name, means[name][shown], form=".5g", beside=error))
         return Sheet(f"Sweep of {self.axes.size} scenes", facts, Table(tuple(columns)))
 
