@@ -1,6 +1,7 @@
 """From maps to surfaces and scenes: known fields of caps and known spectra are found again."""
 
 import math
+import re
 from types import SimpleNamespace
 
 import numpy as np
@@ -16,6 +17,7 @@ from mcgw.maps.estimates import SUMMITS
 from mcgw.maps.map_files import write_map
 from mcgw.maps.synthetic import Asperities, Spectrum, gaussian_map, moments_on_grid
 from mcgw.maps.topography import Topography
+from mcgw.reports.fitted import fit_lines
 
 PIXEL = (1e-6, 1e-6)
 
@@ -104,6 +106,9 @@ def test_where_summits_hide_the_bias_is_stated(crowded):
     counted = fit.estimates["summits"].eta
     assert counted.value < (1 - hidden + 0.03) * eta
     assert counted.value / fit.visible.share == pytest.approx(eta, rel=0.06)
+    told = re.search(r"shows (\S+) %, so counts are off by\s*(\S+) % in eta", "\n".join(fit_lines(fit)))
+    share = 100 * fit.visible.share
+    assert [float(x) for x in told.groups()] == pytest.approx([share, share - 100], abs=0.6)
     is_found(fit.estimates["caps"], crowded.field, crowded.truth)
     assert {"overlap", "skewness"} <= words(fit)
 
