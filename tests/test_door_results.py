@@ -214,6 +214,7 @@ def test_tables_under_each_other_are_their_rows_one_by_one(tmp_path):
     assert named.to_dataframe().to_dict("list") == {
         "who": ["a", "a", "b"], "unit": ["N", "N", "m^2"], "x": [1.0, 2.0, 4.0], "n": [7.0] * 3
     }  # fmt: skip
+    assert list(stacked({"a": one, "b": cell([4.0], "")}, "who").columns[1].values) == ["N", "N", ""]
     bare = stacked({"a": cell([1.0], ""), "b": cell([2.0], "")}, "who")
     assert [column.name for column in bare.columns] == ["who", "x", "n"]
     part = both.at([2, 0])

@@ -124,7 +124,10 @@ def test_other_files_made_by_hand(tmp_path):
     (tmp_path / "w.txt").write_text(text, encoding="utf-8")
     german = "# Kanal: Z\n# Breite: 4,5 µm\n# Höhe: 8,0 µm\n# Werteinheit: nm\n1,0\t2,0\t3\n4\t\t6,0\n"
     (tmp_path / "g.txt").write_text(german, encoding="utf-8")
-    for name in ("t.ascii.sdf", "a.npy", "h.h5", "w.txt", "g.txt"):
+    others = [f"w{ending}" for ending in (".csv", ".asc", ".dat", ".tsv", ".TXT")]
+    for name in others:
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    for name in ("t.ascii.sdf", "a.npy", "h.h5", "w.txt", "g.txt", *others):
         found = read_map(tmp_path / name)
         assert found.heights == pytest.approx(1e-9 * BY_HAND, nan_ok=True, rel=1e-14), name
         assert found.pixel == pytest.approx((1.5e-6, 4e-6), rel=1e-14), name

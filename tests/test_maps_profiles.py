@@ -385,7 +385,10 @@ ROWS = {  # name: text, ending, spacing given, spacing and unit of z expected in
          "Scan Data", "Lateral um,Raw Micrometer,", *(f"{x},,"  for x in lines(BOTH, ",", False))],
         ".csv", None, (0.5 * UM, UM),
     ),
-    "one column": (["z (um)", *lines(ALONE, "", False)], ".txt", 2 * UM, (2 * UM, UM)),
+    **{
+        f"one column in {ending}": (["z (um)", *lines(ALONE, "", False)], ending, 2 * UM, (2 * UM, UM))
+        for ending in (".txt", ".csv", ".asc", ".dat", ".tsv", ".prf", ".xy", ".XY")
+    },
     "one column of commas": (["z (um)", *lines(ALONE, "", True)], ".txt", 2 * UM, (2 * UM, UM)),
     "a count for x": (["n z", *lines((np.arange(10), Z * UM), " ", False)], ".txt", 2 * UM, (2 * UM, UM)),
 }  # fmt: skip

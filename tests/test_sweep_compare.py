@@ -2,6 +2,7 @@
 
 import dataclasses
 import html
+import math
 import re
 from dataclasses import replace
 from html.parser import HTMLParser
@@ -9,9 +10,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.stats import norm
 
 import mcgw
 from mcgw.cli import main
+from mcgw.figures.against_theory import sweep_figure
 from mcgw.statistics.verdict import FALSE_ALARM, verdict
 from mcgw.store.ensembles import read_attributes
 from mcgw.sweeps.over_points import sweep_cautions
@@ -89,6 +92,27 @@ def test_one_mean_of_one_point_that_is_off_breaks_it(sweep, name):
     assert compared.sheet().table.columns[0].values[0] == "2, 2"
     assert "DISAGREE" in repr(compared)
     assert len(repr(compared).splitlines()) <= 12
+
+
+def test_the_picture_shows_all_residuals_and_those_of_the_worst_point(sweep):
+    compared = mcgw.compare(off(sweep, 1.03))
+    left, right = sweep_figure(compared).axes
+    assert sum(bar.get_height() for bar in left.patches) == len(compared.residuals) == 108
+    line = left.lines[-1].get_xydata()
+    width = left.patches[0].get_width()
+    np.testing.assert_allclose(line[:, 1], 108 * width * norm.pdf(line[:, 0]), rtol=1e-9)
+    worst = compared.worst[0]
+    mean = mcgw.simulate(sweep.scenes[worst.number])
+    drawn = {line.get_label(): line for line in right.lines}
+    for name in ("load", "area", "stiffness", "contacts"):
+        h, shown = drawn[name].get_data()
+        exact = mean.scene.theory
+        z = mean.mean(name) - exact.mean(name, mean.separations)
+        z /= exact.std(name, mean.separations) / math.sqrt(200)
+        z = dict(zip(mean.separations, z, strict=True)) | ({0.0: shown[0]} if name == "load" else {})
+        np.testing.assert_allclose(shown, [z[x] for x in h], rtol=1e-6)
+    assert right.get_ylim()[1] == pytest.approx(1.5 * np.abs(worst.residual).max())
+    assert right.get_title().startswith("worst: grading.gamma = 2, ensemble.seed = 2")
 
 
 def test_means_too_low_are_counted_as_those_too_high(sweep):
