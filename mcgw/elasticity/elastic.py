@@ -200,8 +200,7 @@ class _Solved:
     def __init__(
         self, maps: Maps, held: dict[str, float], E_star: float, seed: int, quantities: list[str]
     ) -> None:
-        self.maps, self.held, self.E_star, self.seed = maps, held, E_star, seed
-        self.quantities = quantities
+        self.maps, self.held, self.E_star, self.seed, self.quantities = maps, held, E_star, seed, quantities
         self._rows: dict[tuple[str, int], tuple[Values, float]] = {}
         self._path: Path | None = None
         self._last: tuple[int, Pressed] | None = None
@@ -288,10 +287,8 @@ def _by_levels(solved: _Solved, rel_err: float, solves: int | None, pilot: int, 
         Column("mean", [x.mean() for x in first], f"mean {solved.quantities[0]}", form=".4g"),
         Column("std", [x.std(ddof=1) if len(x) > 1 else 0.0 for x in first], form=".2g"),
     ))  # fmt: skip
-    return Elastic(
-        tuple(solved.quantities), mean_of(samples, population), levels, planned, solved.seconds,
-        solved.maps.words,
-    )  # fmt: skip
+    mean, words = mean_of(samples, population), solved.maps.words
+    return Elastic(tuple(solved.quantities), mean, levels, planned, solved.seconds, words)
 
 
 def _chosen(population: int | None, seed: int, first: int, maps: Sequence[int]) -> list[Sequence[int]]:
