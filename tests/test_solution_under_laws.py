@@ -14,6 +14,7 @@ import mcgw
 from analytic.laws import Branch
 from mcgw.ensemble.separation import LawSum
 from mcgw.ensemble.solution import solutions
+from mcgw.reports.solved_loads import solutions_text
 
 YIELD_OF_STEEL = by_hand.yields_at(0.004)
 
@@ -160,6 +161,13 @@ def test_what_is_told_belongs_to_the_law():
     ]  # fmt: skip
     assert 0 < found.theory["yielded"] < found.theory["contacts"]
     assert list(found.surfaces) == list(found.theory)
+    for asked in (scene, scene.replace(unload_from="loop", separations=(0.0, 1.0))):
+        text = solutions_text(asked, [found], full=True)
+        assert ("from first contact; unloading is not included" in text) == (asked is not scene)
+        assert (
+            "specimens: 3 surfaces of 300 asperities, seed 1; mean gap from the mean plane of the summits"
+            in text
+        )
     plain = mcgw.solve(scene.replace(law=mcgw.Hertz()), pressure="1 MPa")
     assert len(plain.theory) == 7
     assert plain.theory["separation"] > found.theory["separation"]
