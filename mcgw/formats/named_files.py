@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from mcgw.errors import StoreError
 
 if TYPE_CHECKING:
+    import h5py
     from numpy.typing import NDArray
 
 HDF5 = b"\x89HDF\r\n"  # how such a file begins
@@ -77,6 +78,13 @@ def read_text(path: Path, most: int) -> str:
         return read_bytes(path, most).decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise StoreError(f"{path}: is not text in UTF-8 (byte {error.start})") from None
+
+
+def open_h5(path: Path | str) -> "h5py.File":
+    """Open for reading, without a lock: files are whole when they get names, and some disks keep no locks."""
+    import h5py
+
+    return h5py.File(path, "r", locking=False)
 
 
 def open_npy(path: Path) -> "NDArray[Any]":

@@ -8,7 +8,7 @@ import h5py
 import numpy as np
 
 from mcgw.formats.files import whole_file
-from mcgw.formats.named_files import open_npy
+from mcgw.formats.named_files import open_h5, open_npy
 from mcgw.machine.terminal import one_line
 from mcgw.maps.foreign import ForeignError, UnreadableError, read_foreign
 from mcgw.maps.sdf import read_sdf, write_sdf
@@ -112,7 +112,7 @@ def write_h5(topography: Topography, path: Path, field: Asperities | None = None
     OSError
         If the file cannot be written.
     """
-    with whole_file(path) as unfinished, h5py.File(unfinished, "w") as file:
+    with whole_file(path) as unfinished, h5py.File(unfinished, "w", locking=False) as file:
         file.attrs.update(
             filetype=_FILETYPE, format=[1, 0], pixel=topography.pixel, periodic=topography.periodic
         )
@@ -137,7 +137,7 @@ def read_h5(path: Path, unit: str | None = None) -> Topography:
     if not h5py.is_hdf5(path):
         raise ForeignError(f"{path}: is not a valid HDF5 file")
     try:
-        with h5py.File(path, "r") as file:
+        with open_h5(path) as file:
             if file.attrs.get("filetype") != _FILETYPE:
                 raise ForeignError(f"{path}: is not a {_FILETYPE} file; it was not written by mcgw surface")
             data = file["height"]

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import h5py
 import numpy as np
 from numpy.typing import NDArray
 
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import Held, Results
 from mcgw.errors import StoreError
+from mcgw.formats.named_files import open_h5
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from, scene_text
 from mcgw.store.disk import MOST_SCALE, check_trailer, parts_of, read_trailer
@@ -192,7 +192,7 @@ def _check_tables(path: Path, scene: Scene, datasets: dict[str, Any]) -> None:
         if name not in datasets or datasets[name][1] != shape:
             found = datasets.get(name, ["", "none"])[1]
             raise StoreError(f"{path}: {name} has shape {found}, its scene declares {shape}")
-    with h5py.File(path, "r") as file:
+    with open_h5(path) as file:
         for name, values in scales.items():
             if not np.array_equal(file[name][:MOST_SCALE], values[:MOST_SCALE]):
                 raise StoreError(f"{path}: {name} does not hold the values that its scene declares")
@@ -210,7 +210,7 @@ def verify(path: Path) -> tuple[str, str]:
         problem = str(error).removeprefix(f"{path}: ")
     try:
         attributes, scene = described(path)
-        with h5py.File(path, "r") as file:
+        with open_h5(path) as file:
             if "axes" in attributes:
                 texts = str(attributes["scene"]), str(attributes["axes"])
                 found = drawn_digest(drawn_tables(file), *texts)
@@ -236,14 +236,14 @@ class FileResults(Results):
     def read(self, name: str, start: int, stop: int | None) -> NDArray[Any]:
         """Rows `start` to `stop` (None: to the end) of a dataset."""
         try:
-            with h5py.File(self.path, "r") as file:
+            with open_h5(self.path) as file:
                 return np.asarray(file[where(name)][start:stop])
         except OSError:
             raise StoreError(f"{self.path}: cannot be read; is it damaged? See mcgw show --verify") from None
 
     def rows(self) -> int:
         """Number of surfaces."""
-        with h5py.File(self.path, "r") as file:
+        with open_h5(self.path) as file:
             return int(file["surface"].shape[0])
 
 

@@ -18,6 +18,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import Tables
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import check_output, state_of
+from mcgw.formats.named_files import open_h5
 from mcgw.machine.in_threads import Items, one_ahead
 from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import Scene
@@ -147,7 +148,7 @@ def _write(
         of_run = {"run": run.identity, "draws": run.drawn_with, "wall_seconds": seconds}
         describe(file, run.scene, run.sampler, digest, **of_run)
     raw.check()
-    with h5py.File(path, "r") as file:
+    with open_h5(path) as file:
         if file.attrs["digest"] != digest:
             raise OSError(f"{path}: was not written correctly")
         notes = {"head": head_digest(file)}
@@ -160,7 +161,7 @@ def _pieces(
 ) -> Items[tuple[Span, Mapping[str, h5py.Dataset]]]:
     """All surfaces in order, packed: first those of the finished file, then those of the shards."""
     if target.exists():
-        with h5py.File(target, "r") as old:
+        with open_h5(target) as old:
             yield Span(0, len(old["surface"])), stored_tables(old)
     with closing(one_ahead((shard, shard.body()) for shard in shards)) as bodies:
         for shard, body in bodies:
@@ -172,7 +173,7 @@ def _pieces(
 def _expected(target: Path, shards: list[Shard]) -> Iterator[tuple[Span, str]]:
     """What the numbers of all surfaces, in order, give if they are the right ones."""
     if target.exists():
-        with h5py.File(target, "r") as old:
+        with open_h5(target) as old:
             for span, arrays in file_pieces(old):
                 yield span, content_digest(arrays)
     for shard in shards:
@@ -186,7 +187,7 @@ def _read_back(
 
     One thread reads, one compares, and this one adds up the digest of the whole.
     """
-    with h5py.File(path, "r") as file:
+    with open_h5(path) as file:
 
         def read() -> Items[tuple[str, Tables]]:
             for span, digest in expected:
@@ -209,5 +210,5 @@ def _before(target: Path) -> tuple[int, float]:
     """Surfaces of the finished file, and the seconds they took."""
     if not target.exists():
         return 0, 0.0
-    with h5py.File(target, "r") as old:
+    with open_h5(target) as old:
         return len(old["surface"]), float(old.attrs["wall_seconds"])

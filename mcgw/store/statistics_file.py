@@ -30,7 +30,6 @@ import math
 from pathlib import Path
 from typing import Any
 
-import h5py
 import numpy as np
 
 from mcgw.ensemble.ensemble import STATISTICS, Ensemble
@@ -39,6 +38,7 @@ from mcgw.ensemble.results import PROBABILITIES
 from mcgw.ensemble.summarised import Summarised
 from mcgw.ensemble.summary import ROW, Summary
 from mcgw.errors import StoreError
+from mcgw.formats.named_files import open_h5
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 from mcgw.store.layout import body_of_kept, drawn_tables, scales_of
@@ -74,7 +74,7 @@ def read_blocks(path: Path, scene: Scene) -> Summarised:
         If they cannot be read.
     """
     try:
-        with h5py.File(path, "r") as file:
+        with open_h5(path) as file:
             tables = drawn_tables(file)
         rows = range(len(tables[f"{ROW}n"]))
         return Summarised(scene, tuple(Summary.from_tables(tables, i) for i in rows))

@@ -19,6 +19,7 @@ from typing import Any
 import h5py
 import numpy as np
 
+from mcgw.formats.named_files import open_h5
 from mcgw.store.disk import GROUP, head_digest
 
 _FILTERS = {h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32, h5py.h5z.FILTER_LZF}
@@ -108,7 +109,7 @@ def describe(path: str, *, read: bool = True) -> dict[str, Any]:
     OSError
         If HDF5 cannot read it.
     """
-    with h5py.File(path, "r") as file:
+    with open_h5(path) as file:
         names = check_plain(file)
         if len(file.attrs) > _MOST_ATTRIBUTES:
             raise RefusedError(f"{len(file.attrs)} attributes")

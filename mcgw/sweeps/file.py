@@ -33,13 +33,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import h5py
 import numpy as np
 from numpy.typing import NDArray
 
 from mcgw.ensemble.labelled import AXES, Labelled, Variable, axis
 from mcgw.errors import StoreError
-from mcgw.formats.named_files import loads
+from mcgw.formats.named_files import loads, open_h5
 from mcgw.scene.section import SceneError
 from mcgw.store.ensembles import read_attributes
 from mcgw.store.layout import body_of_kept, drawn_digest, drawn_tables
@@ -133,7 +132,7 @@ def open_sweep(path: str | Path, statistics: tuple[str, ...] = STATISTICS) -> Sw
     if "axes" not in said:
         raise StoreError(f"{path}: not the file of a sweep; mcgw.open_ensemble opens it")
     try:
-        with h5py.File(path, "r") as file:
+        with open_h5(path) as file:
             drawn = drawn_tables(file)
         if drawn_digest(drawn, said["scene"], said["axes"]) != said["digest"]:
             raise StoreError(f"{path}: damaged (digest mismatch of its data)")
