@@ -19,8 +19,8 @@ import mcgw
 from mcgw.figures.catalogue import CATALOGUE, figures_of, rows_of
 from mcgw.figures.compared import Compared
 from mcgw.figures.data import GAMMA, FigureData, ratio_of_sums
-from mcgw.figures.finite import spread
 from mcgw.figures.panels import draw, save_figure_files
+from mcgw.figures.populations import spread
 from mcgw.figures.ratios import _jackknifed
 from mcgw.figures.style import prefixed, short
 from mcgw.scene.scene_file import scene_from

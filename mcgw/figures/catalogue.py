@@ -6,7 +6,7 @@ from importlib.resources import files
 
 import numpy as np
 
-from mcgw.figures import contact_laws, finite, moduli, ratios
+from mcgw.figures import contact_laws, populations, ratios
 from mcgw.figures.compared import SCENE, Compared
 from mcgw.figures.data import FigureData
 from mcgw.machine.progress import steps
@@ -85,15 +85,15 @@ CATALOGUE = (
     Row("figure-1", ratios.gradings, (_grading,)),
     Row("figure-2", ratios.load),
     Row("figure-3", ratios.area_per_load, (_reference, _pressing)),
-    Row("figure-4", moduli.mean_moduli, (_grading,)),
+    Row("figure-4", populations.mean_moduli, (_grading,)),
     Row("figure-5", ratios.stiffness),
     Row("figure-6", ratios.stiffness_ratios, (_reference,)),
     Row("equal-load", ratios.equal_load, (_reference, _pressing, _same_load)),
-    Row("fluctuations", finite.fluctuations, (_several,)),
-    Row("distribution", finite.distribution, sweep=True),
+    Row("fluctuations", populations.fluctuations, (_several,)),
+    Row("distribution", populations.distribution, sweep=True),
     Row("area-and-load", ratios.area_and_load, (_pressing,)),
-    Row("who-carries", moduli.carriers, sweep=True),
-    Row("negative-modulus", moduli.negative_modulus, sweep=True),
+    Row("who-carries", populations.carriers, sweep=True),
+    Row("negative-modulus", populations.negative_modulus, sweep=True),
     Row("who-yields", contact_laws.who_yields, (_yielding, _pressing)),
     Row("laws-compared", contact_laws.laws_compared, sweep=True),
     Row("way-back", contact_laws.way_back, (_released,)),

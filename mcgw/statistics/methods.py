@@ -26,6 +26,7 @@ from analytic.laws import Hertz, term_of
 from mcgw.ensemble.drawing import blocks
 from mcgw.errors import RunError
 from mcgw.sampling.samplers import sampler_of
+from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
 
 _POINTS = 24
@@ -209,8 +210,8 @@ def _by_sampler(
     scene: Scene, chosen: tuple[int, ...], exact: Array, name: str, size: float, seed: int
 ) -> Array:
     """By so many surfaces; of strata one surface has as many asperities."""
-    strata = name == "stratified"
-    n, surfaces = (int(size), 1) if strata else (scene.n_asperities, int(size))
+    real = promise_of(name).real_surfaces
+    n, surfaces = (scene.n_asperities, int(size)) if real else (int(size), 1)
     asked = replace(scene, sampler=name, n_surfaces=surfaces, n_asperities=n, seed=seed, keep="sums")
     total = np.zeros(len(chosen))
     for block in blocks(asked, sampler_of(asked)):
