@@ -17,8 +17,9 @@ the sign:
                 sinking only that counts by which it differs from its mean: a summit lies outside the dent of
                 every other one, so ``compliance = -M/(E_b sqrt(N A_n))``, M that of a square lattice of
                 point loads. The asperities feel more than the nominal approach.
-``located``     the same plane, without a mean field: summits have places, uniform at random in a periodic
-                cell, and each is pressed down by every other one by as much as it does there. No theory.
+``located``     the same plane, without a mean field: summits have places in a periodic cell, their own or
+                uniform at random, and each is pressed down by every other one by as much as it does there.
+                No theory.
 """
 
 import math

@@ -85,6 +85,9 @@ COMPANY = {
     ("summits", "heights"): (HEIGHTS["heights"], LISTED | RADII),
     ("summits", "radii"): (RADII["radii"], LISTED | HEIGHTS),
     ("summits", "ratios"): ("[1.0, 2.0, 3.0]", LISTED | HEIGHTS),
+    ("summits", "x"): ("[0.0, 1e-4, 0.0]", LISTED | HEIGHTS | RADII | {"y": "[0.0, 0.0, 1e-4]"}),
+    ("summits", "y"): ("[0.0, 0.0, 1e-4]", LISTED | HEIGHTS | RADII | {"x": "[0.0, 1e-4, 0.0]"}),
+    ("summits", "aspect"): ("1.5", LISTED | {"file": "'s.csv'"}),
     ("summits", "resample"): ("true", LISTED | {"file": "'s.csv'"}),
     ("contact", "datum"): ("'surface'", NAYAK),
     ("contact", "law"): ("'kogut-etsion'", {"critical": "0.05"}),
@@ -174,7 +177,8 @@ WRONG = {
     "m0": ["0", "-1", "~'1 m'"], "m2": ["0", "~nan", "~'1 m'"], "m4": ["0", "-1", "~'1 m'"],
     "largest_radius": ["0", "-1", "~'1 Pa'"], "datum": ["'top'", "1"],
     "radii": ["~[1e-5]", "1", "[1e-5, -1e-5, 1e-5]", "~[1e-5, nan, 1e-5]", "['x', 1, 1]"],
-    "ratios": ["~[1.0]", "'x'", "[1.0, -1.0, 1.0]"],
+    "ratios": ["~[1.0]", "'x'", "[1.0, -1.0, 1.0]"], "aspect": ["0", "-1", "1000", "'x'"],
+    **{key: ["~[1.0]", "1", "~[0.0, nan, 1.0]", "['x', 1, 1]"] for key in "xy"},
     "left_out": ["'seed'", "['gamma']", "[1]", "~['n_asperities']"],
 }  # fmt: skip
 WRONG_HERE = {
@@ -312,7 +316,7 @@ def test_wrong_values_of_every_key_are_named(table, key):
     """By the program, from a file and from Python, and by the schema but for those that it cannot know."""
     path, right = f"{table}.{key}" if table else key, mcgw.scene_from(text_of(table, key, good(table, key)))
     named = {path, f"{table}.s"} if key in ("share", "ratio") else {path}
-    if key in ("radii", "ratios"):  # lists of two lengths are told by the first
+    if key in ("radii", "ratios", "x", "y"):  # lists of two lengths are told by the first
         named.add("summits.heights")
     if key == "left_out":
         named.add("ensemble.n_asperities")

@@ -40,6 +40,8 @@ class Summits:
     unresolved : int
         Number of summits on ridges between pixels, of which only the mean curvature is known; both curvatures
         equal it.
+    size : (float, float) or None
+        Width and height of what was counted, m, by which a periodic cell repeats.
     """
 
     x: Array
@@ -48,6 +50,7 @@ class Summits:
     curvatures: Array
     tile: Ints
     unresolved: int
+    size: tuple[float, float] | None = None
 
     @property
     def radii(self) -> Array:
@@ -91,6 +94,7 @@ def summits_of(used: Topography, counted: SummitSums, origin: tuple[float, float
         curvatures,
         counted.part,
         unresolved,
+        (shape[1] * dx, shape[0] * dy),
     )
 
 

@@ -133,6 +133,11 @@ class Fields(Values):
         return self.interaction is not None and self.interaction.located
 
     @property
+    def own_places(self) -> bool:
+        """Whether its summits are measured ones, each taken once, whose places are known."""
+        return self.as_measured and getattr(self.curvature, "places", None) is not None
+
+    @property
     def compliance(self) -> float:
         """How far a load on the surface moves the plane away from the asperities, m/N."""
         if self.interaction is None:

@@ -12,7 +12,7 @@ from mcgw.scene.keys import SURFACE_UNITS
 from mcgw.scene.stop_rule import rel_err_text
 
 _PLANES = {"body": "undeformed body", "mean-plane": "mean deformed plane"}
-_PLANES["located"] = "mean deformed plane, summits at their places"
+_PLANES["located"] = _PLANES["mean-plane"]
 _MOST = 4  # longest list that is printed whole
 
 
@@ -88,7 +88,9 @@ def contact_facts(scene: Fields) -> list[tuple[str, str]]:
         )
     if scene.interaction is not None:
         felt = "nominal" if scene.interaction.nominal else "effective"
-        facts.append(("interaction", f"from the {_PLANES[scene.interaction.reference]}, separations {felt}"))
+        places = f", summits at {'their own' if scene.own_places else 'random'} places" * scene.located
+        plane = _PLANES[scene.interaction.reference]
+        facts.append(("interaction", f"from the {plane}{places}, separations {felt}"))
     if scene.thermal:
         facts.append(("joint", joint_text(scene)))
     return facts

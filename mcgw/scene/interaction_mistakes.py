@@ -9,7 +9,8 @@ from mcgw.scene.fields import Fields
 from mcgw.scene.samplers import promise_of
 
 LOCATED = ("load", "area", "stiffness", "contacts", "conductance")
-_MOST_LOCATED = 20_000
+MOST_LOCATED = 20_000
+_BEYOND = 1e-6  # of a side: places read from a file
 
 
 def interaction_mistakes(scene: Fields) -> Iterator[str]:
@@ -27,8 +28,10 @@ def _located(scene: Fields) -> Iterator[str]:
         yield f'ensemble.sampler = "{scene.sampler}": {key} uses all asperities of a surface; use "direct"'
     if unknown := [name for name in scene.quantities if name not in LOCATED]:
         yield f"contact.quantities: {key} has {', '.join(LOCATED)}; leave out {', '.join(unknown)}"
-    if scene.n_asperities > _MOST_LOCATED:
-        yield f"{key}: {scene.n_asperities:g} asperities a surface; give {_MOST_LOCATED} or fewer"
+    if scene.n_asperities > MOST_LOCATED:
+        yield f"{key}: {scene.n_asperities:g} asperities a surface; give {MOST_LOCATED} or fewer"
+    if scene.own_places:
+        yield from _outside(scene.curvature, scene.surface.nominal_area)
     if scene.keep != "sums":
         yield f'ensemble.keep = "{scene.keep}": {key} keeps sums; use "sums"'
     if scene.rel_err is not None:
@@ -43,6 +46,16 @@ def _located(scene: Fields) -> Iterator[str]:
         yield f'grading.negative = "allow": {key} needs loads that decrease with the separation; use "clip"'
     if _adheres(scene):
         yield f'contact.law = "{scene.law.name}": {key} needs loads that fall with the separation'
+
+
+def _outside(listed: Any, area: float) -> Iterator[str]:
+    """Places that do not fit into the cell, which repeats itself: where its corner is does not matter."""
+    for name, at, side in zip("xy", listed.places, listed.sides(area), strict=True):
+        if (extent := max(at) - min(at)) > side * (1 + _BEYOND):
+            yield (
+                f"summits.aspect = {listed.aspect:g}: places extend over {extent:.4g} m along {name}, but "
+                f"the nominal area over {side:.4g} m; give the width over the height of the map, and its area"
+            )
 
 
 def _adheres(scene: Fields) -> bool:

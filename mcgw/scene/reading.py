@@ -15,7 +15,7 @@ from mcgw.scene.fields import LeftOut
 from mcgw.scene.keys import KEYS, TABLES
 from mcgw.scene.laws import contact_law, grading_given, grading_of, heights_given, heights_of, law_of_keys
 from mcgw.scene.section import SceneError, Section
-from mcgw.scene.summits import Spectral, curvature_of, datum_shift, listed_of
+from mcgw.scene.summits import LISTS, Spectral, curvature_of, datum_shift, listed_of
 from mcgw.scene.surface import read_surface
 from mcgw.scene.values import MOMENTS, rows_of
 
@@ -119,8 +119,9 @@ def of_tables(
 def _surface_and_summits(top: Section, of: Mapping[str, Section], objects: Values, folder: Path) -> Summits:
     """A surface, the law of its heights, and that of its radii where summits have their own."""
     summits, radii = of["summits"], objects.get("curvature")
-    if any(key in summits for key in ("file", "heights", "radii", "ratios", "resample")):
-        listed = listed_of(summits, folder)
+    if any(key in summits for key in LISTS):
+        located = of["interaction"].table.get("reference") == "located"
+        listed = listed_of(summits, folder, located)
         return _with_listed(of, None if listed is None else read_surface(of["surface"], listed), listed)
     read = objects["surface"] if "surface" in objects else read_surface(of["surface"])
     surface, default = (read.surface, "random") if isinstance(read, Spectral) else (read, "mean")

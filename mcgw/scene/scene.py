@@ -81,7 +81,8 @@ class Scene(Fields, Shown):
         Asperity interaction: `mcgw.Interaction`, its reference alone, or its keys in a scene file. Adds
         "nominal_separation" or "effective_separation", and puts stiffness and conductance in series with
         the half-space. With ``{"reference": "located", "at": "nominal"}`` each surface is solved with its
-        summits at random places. Default: asperities are independent.
+        summits at their own places where these are listed, or random ones. Default: asperities are
+        independent.
     joint : Joint, {"air", "vacuum"} or dict, optional
         Gas in the gap of a thermal joint: `mcgw.Joint`, its gas alone, or its keys in a scene file; needs
         the conductivities of a `film`. Adds "gap_conductance" and "joint_conductance", W/(m^2 K).

@@ -95,7 +95,7 @@ def depends_on_processor(scene: Scene, sampler: str) -> bool:
     if isinstance(modulus, Clipped) and isinstance(modulus.grading, Exponential | PiecewiseSeries):
         modulus = modulus.grading
     own = isinstance(scene.heights, _HEIGHTS) and isinstance(modulus, _GRADINGS)
-    drawn_alike = promise_of(sampler).same_on_all_processors or scene.as_measured
+    drawn_alike = promise_of(sampler).same_on_all_processors or (scene.as_measured and not scene.located)
     return not (own and drawn_alike and scene.hertzian)
 
 
