@@ -27,13 +27,8 @@ HERE = Path(__file__).parent
 NAMES = ("area", "stiffness", "mean_gap")
 REPEATED, FEW = 300, 4
 FRESH = HERE / "located.csv"
-ALPHAS, SEEDS, LOADS, HURST, WAVES = (
-    (20, 5, 36, 10),
-    (*range(7001, 7009), *range(8001, 8009)),
-    (1e-3, 1e-2, 5e-2),
-    0.8,
-    64,
-)
+ALPHAS, SEEDS, LOADS = (5, 10, 20, 36), range(8001, 8009), (1e-3, 1e-2, 5e-2)
+HURST, WAVES = 0.8, 64
 
 
 def fresh():
