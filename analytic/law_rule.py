@@ -84,6 +84,8 @@ def _edges(law: HeightLaw, start: float, top: float) -> list[float]:
                 step = min(step, max((_GROWTH - 1) * (a - below[0]), _TINY))
             if above:
                 step = min(step, max((1 - 1 / _GROWTH) * (above[0] - a), _TINY))
+            while a == start and a + step < mark and law.cdf(np.array(a + step)) < _NOTHING:
+                step *= 2  # where a law begins flat and its ppf is lost, no end of pieces would hold nothing
             edges.append(mark if a + 1.5 * step >= mark or a + step == a else a + step)
     return edges
 

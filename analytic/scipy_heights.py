@@ -23,6 +23,7 @@ _NOISE = 2.0**-30  # of a density that is the exponential of large terms, as of 
 _RARE, _RARER = np.array([1e-3, 1e-9, 1e-15, 1e-24, 1e-36]), 10.0 ** -np.arange(1.0, 37.0)
 _ALIKE, _NEARLY = 1e-6, 1e-2  # how near shares come to themselves by way of heights: all of them, some
 _MOST_STEPS, _SETTLED = 100, 2.0**-30  # of Newton; a step whose square is nothing
+_HALVINGS, _NEXT = 60, 1e-8  # of a height, to its last digit; as near to the lower end as is as good as there
 _TRIAL, _TRIAL_SECONDS = np.array([1e-9, 0.1, 0.5, 0.9]), 1.0  # a few of the thousands of calls to come
 
 
@@ -151,12 +152,21 @@ class ScipyHeights(HeightLaw):
         return np.asarray(self.distribution.sf(self._x(s)))
 
     def ppf(self, p: Array, below: float = math.inf) -> Array:
-        """Its ``ppf``, or the lower end where that is lost: of the inverse Gaussian it is 1e248 at 1e-36."""
-        share = np.asarray(p * self.cdf(np.array(below)))
+        """Its ``ppf``, or the height where its ``cdf`` is `p`: SciPy loses inverse Gaussian ones at 1e-17."""
+        share, middle = np.asarray(p * self.cdf(np.array(below))), self._median
+        low, high = np.full(share.shape, self.support[0]), np.full(share.shape, middle)
         with np.errstate(all="ignore"), warnings.catch_warnings():
             warnings.simplefilter("ignore", RuntimeWarning)  # Boost's, of what it does not find
             s = self._s(self.distribution.ppf(share))
-        return np.where((share < 0.5) & ~(s <= self._median), self.support[0], s)
+            s = np.where((share < 0.5) & ~(s <= middle), low, s)
+            lost = (share > 0) & (s <= low) & np.isfinite(low)
+            if np.any(lost) and self.cdf(np.array(self.support[0] + _NEXT)) < share[lost].max():
+                for _ in range(_HALVINGS):
+                    half = low + (high - low) / 2
+                    under = self.cdf(half) < share
+                    low, high = np.where(under, half, low), np.where(under, high, half)
+                s = np.where(lost, low, s)
+        return s
 
     @cached_property
     def _median(self) -> float:

@@ -12,6 +12,7 @@ from scipy.optimize import brentq
 
 import analytic
 import mcgw
+from analytic.law_rule import law_rule
 from analytic.laws.regimes import crossings_of
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
@@ -65,13 +66,46 @@ def test_tails_that_scipy_searches_one_by_one_are_found_at_once(law):
     np.testing.assert_allclose(heights.sf(s), shares, rtol=1e-12)
 
 
-def test_low_heights_that_scipy_loses_are_at_the_lower_end():
-    law = mcgw.ScipyHeights(scipy.stats.invgauss(0.3))
-    assert law.ppf(np.array([0.0, 1e-37])).tolist() == [law.support[0]] * 2
-    scene = mcgw.Scene(SURFACE, separations=[0.0], heights=law, grading=stiffer, n_asperities=300, seed=1)
-    literal = scene.modulus(s := mcgw.heights(scene, 0)) * np.maximum(s, 0) ** 1.5
+@pytest.mark.parametrize("shape", [0.3, 1e4])
+def test_laws_that_begin_flat_are_made_and_right_below_their_support(shape):
+    """SciPy loses the rarest low heights of the inverse Gaussian: spans shrink there without end.
+
+    Every height touches, and the mean is an integral over the whole law.
+    """
+    law = scipy.stats.invgauss(shape)
+    mean, std = law.mean(), law.std()
+    h = -mean / std - 0.22
+    scene = mcgw.Scene(SURFACE, separations=[h], heights=law, grading=stiffer, n_asperities=300, seed=1)
+
+    def under(x):
+        s = (x - mean) / std
+        return (s - h) ** 1.5 * stiffer(s) * law.pdf(x)
+
+    cuts = [0.0, *law.ppf([1e-9, 1e-3, 0.3, 0.9]), *(mean + std * 3.0 ** np.arange(10))]
+    whole = sum(quad(under, a, b, epsabs=0, limit=200)[0] for a, b in pairwise(cuts))
     scale = 4 / 3 * SURFACE.E_star * SURFACE.radius**0.5 * SURFACE.sigma**1.5
+    assert scene.theory.mean("load", h) == pytest.approx(300 * scale * whole, rel=1e-9)
+    literal = scene.modulus(s := mcgw.heights(scene, 0)) * np.maximum(s - h, 0) ** 1.5
     assert mcgw.simulate(scene, n_surfaces=1).load[0, 0] == pytest.approx(scale * literal.sum(), rel=1e-12)
+
+
+@pytest.mark.parametrize("law", [scipy.stats.invgauss(0.3), scipy.stats.invgamma(9), scipy.stats.lognorm(1)])
+def test_pieces_of_a_law_that_begins_flat_end_whatever_its_ppf(law, monkeypatch):
+    heights = mcgw.ScipyHeights(law)
+    h, constant = np.array([heights.support[0] - 0.22]), analytic.Custom(np.ones_like)
+    wanted = [p @ (s - h) ** n for s, p in [law_rule(heights, h, constant)] for n in (0.0, 1.0, 1.5)]
+    monkeypatch.setattr(mcgw.ScipyHeights, "ppf", lambda self, p: np.full_like(p, self.support[0]))
+    s, p = law_rule(heights, h, constant)
+    assert s.size < 5000
+    np.testing.assert_allclose(wanted, [p @ (s - h) ** n for n in (0.0, 1.0, 1.5)], rtol=1e-11)
+    np.testing.assert_allclose(wanted[:2], [1.0, -h[0]], rtol=1e-11)
+
+
+def test_low_heights_that_scipy_loses_are_those_of_its_cdf():
+    law = mcgw.ScipyHeights(scipy.stats.invgauss(0.3))
+    shares = np.array([0.0, 1e-300, 1e-37, 1e-32, 1e-17, 0.3])
+    np.testing.assert_allclose(law.cdf(found := law.ppf(shares)), shares, rtol=1e-6, atol=0)
+    assert found[0] == law.support[0]
 
 
 def counting(function, calls):
