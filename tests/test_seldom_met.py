@@ -116,7 +116,7 @@ CALLS = [
 def test_many_unknown_keys_are_counted():
     keys = "".join(f", k{i} = 1" for i in range(30))
     with pytest.raises(mcgw.SceneError) as caught:
-        mcgw.scene_from(FILE.format(surface=keys, contact=""))
+        mcgw.scene_from(FILE.format(**NONE | {"surface": keys}))
     told = caught.value.problems
     assert all(line.startswith("surface.k") for line in told[:-1])
     assert told[-1] == f"[surface]: {31 - len(told)} more unknown keys"

@@ -81,10 +81,15 @@ def read_text(path: Path, most: int) -> str:
 
 
 def open_h5(path: Path | str) -> "h5py.File":
-    """Open for reading, without a lock: files are whole when they get names, and some disks keep no locks."""
+    """Open for reading, without a lock where a disk keeps none: files are whole when they get names."""
     import h5py
 
-    return h5py.File(path, "r", locking=False)
+    try:
+        return h5py.File(path, "r")
+    except OSError as error:
+        if "unable to lock" not in str(error):
+            raise
+        return h5py.File(path, "r", locking=False)
 
 
 def open_npy(path: Path) -> "NDArray[Any]":
