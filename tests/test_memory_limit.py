@@ -112,8 +112,8 @@ def test_the_least_of_what_machine_group_and_user_leave(monkeypatch, machine, us
 
 @pytest.mark.skipif(not os.access("/proc/self/clear_refs", os.W_OK), reason="Linux alone tells it")
 def test_growth_is_of_the_call_alone():
-    np.ones(2**23)  # a peak before it
-    assert peak_growth(lambda: np.ones(2**22)) == pytest.approx(2**25, rel=0.2)
+    np.ones(2**24)  # a peak before it; more than 32 MiB comes fresh from the system
+    assert peak_growth(lambda: np.ones(2**23)) == pytest.approx(2**26, rel=0.2)
 
 
 def test_a_child_has_what_it_needs_whatever_its_user_has_set(tmp_path, monkeypatch):
