@@ -65,6 +65,15 @@ def test_cautions_are_said_once(answers):
     assert "fewer than 30 contacts" in answers["compare e.h5", "-v"].stderr
 
 
+def test_a_doubt_about_units_is_said_again_and_is_none_of_those_counted(tmp_path):
+    (tmp_path / "s.toml").write_text(SCENE.replace("sigma = 1e-6", "sigma = 1.37"))
+    run, compare = (call(*words.split(), cwd=tmp_path) for words in ("run s.toml -o e.h5", "compare e.h5"))
+    doubt, number = compare.stderr.splitlines()
+    assert "did you mean 1.37 um" in doubt
+    assert doubt in run.stderr
+    assert number == f"mcgw: note: {run.stderr.count('mcgw: note: ') - 1} cautions: mcgw show e.h5"
+
+
 @pytest.mark.parametrize("name", COMMANDS)
 def test_every_command_takes_them(name):
     shown = call(name, "--help").stdout

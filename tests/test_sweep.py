@@ -50,6 +50,16 @@ def test_many_exponential_gradings_have_the_numbers_of_single_runs(count):
             np.testing.assert_allclose(sweep.std(name)[i], alone.std(name), rtol=1e-12)
 
 
+def test_a_table_among_many_exponential_gradings_keeps_its_numbers():
+    """It is not taken for the homogeneous surface, which is one of them."""
+    gradings = [*(mcgw.Exponential(gamma) for gamma in np.linspace(0.2, 2.0, 9)), mcgw.Homogeneous(), KINKED[0]]
+    sweep = mcgw.sweep(SCENE.replace(n_surfaces=20), {"grading": gradings})
+    for i in range(len(gradings)):
+        np.testing.assert_allclose(
+            sweep.mean("load")[i], mcgw.simulate(sweep.scene(i)).mean("load"), rtol=1e-12
+        )
+
+
 SEVERAL = {
     "balance": (SCENE.replace(interaction="body"), {GAMMA: [1.0, 1.5]}),
     "sideways": (
