@@ -28,6 +28,7 @@ DOCUMENTS = {
     "runs/ROUGHNESS.md": "explanation/roughness",
     "runs/reliability/README.md": "explanation/reliability",
     "runs/validation/README.md": "explanation/validation",
+    "runs/validation/published.md": "explanation/published-numbers",
 }
 _LINK = re.compile(r"(!?)\[([^\]]+)\]\(([^)#:]+)\)")
 PARTS = ("explanation/errata-table", "explanation/errata-proofs")  # no pages: parts of one

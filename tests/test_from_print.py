@@ -92,7 +92,7 @@ def test_page_has_every_joint_and_every_miss(at, rows, monkeypatch):
     """And what is missing; with the figures that were computed already."""
     page = at["from_print"]
     monkeypatch.setattr(page, "rows", lambda part, _: [rows[name] for name in part.FIGURES])
-    text = page.section(page.sheet(), page.claims_sheet())
+    text = page.page(page.sheet(), page.claims_sheet())
     shown = {name for name, row in rows.items() if abs(float(f"{row.deviation:.2g}")) > 10} | set(
         at["from_print_joints"].FIGURES
     )

@@ -118,38 +118,38 @@ def claims_sheet():
     return table(head, [[x.claim, "yes" if x.holds else "no", x.ours, x.source, x.seen_at] for x in found])
 
 
-def section(printed, claimed):
-    """What the page says of them: how many are near, the joints, and every other miss."""
-    rows = [dict(zip(printed.head, row, strict=True)) for row in printed.rows]
-    off = [abs(float(row["deviation, %"])) for row in rows]
-    remembered = sum("memory" in row["seen at"] for row in rows)
+def summary(printed, claimed):
+    """How many published figures are near, in a sentence."""
+    off = _deviations(printed)
+    remembered = sum("memory" in row[printed.head.index("seen at")] for row in printed.rows)
     holds = sum(row[1] == "yes" for row in claimed.rows)
+    return (
+        f"{len(off)} published figures, {remembered} of them recalled and not yet compared with the papers: "
+        f"{sum(x < 1 for x in off)} are met within 1 %, {sum(x > MISSED for x in off)} missed by more than "
+        f"{MISSED:g} %. Of {len(claimed.rows)} claims without a number {holds} hold here."
+    )
+
+
+def page(printed, claimed):
+    """The page of published figures: all joints with gas, and every other miss."""
+    rows = [dict(zip(printed.head, row, strict=True)) for row in printed.rows]
     shown = [
         row
-        for row, deviation in zip(rows, off, strict=True)
+        for row, deviation in zip(rows, _deviations(printed), strict=True)
         if row["part"] == "Joints with gas" or deviation > MISSED
     ]
-    text = (
-        f"{len(rows)} published figures, {remembered} of them recalled and not yet compared with the papers: "
-        f"{sum(x < 1 for x in off)} are met within 1 %, {sum(x > MISSED for x in off)} missed by more than "
-        f"{MISSED:g} %. Of {len(claimed.rows)} claims without a number {holds} hold here. Below: all joints "
-        "with gas, and every miss.\n\n"
-    )
     head = ["figure", "printed", "mcgw", "deviation, %", "mcgw's is, and means"]
     body = [[_named(row), *(row[key] for key in head[1:])] for row in shown]
-    return f"{text}{table(head, body)}\nNot to be had: {'; '.join(NOT_DONE)}.\n"
+    return (
+        f"# Published numbers\n{summary(printed, claimed)} Below: all joints with gas, and every miss; all "
+        "others are in [table_printed.csv](table_printed.csv) and [table_claims.csv](table_claims.csv).\n\n"
+        f"{table(head, body)}\nNot to be had: {'; '.join(NOT_DONE)}.\n"
+    )
+
+
+def _deviations(printed):
+    return [abs(float(row[printed.head.index("deviation, %")])) for row in printed.rows]
 
 
 def _named(row):
     return row["figure"] if row["unit"] == "1" else f"{row['figure']}, in {row['unit']}"
-
-
-def _per_cent(deviation):
-    if abs(deviation) < 0.01:
-        return "0"
-    return f"{deviation:+.2g}" if abs(deviation) < 100 else f"{deviation:+.0f}"
-
-
-if __name__ == "__main__":
-    print(sheet())
-    print(claims_sheet())

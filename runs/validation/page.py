@@ -15,12 +15,12 @@ from solve_table import Row
 from within import within_table
 
 FOLDER = Path(__file__).parent
-SHOWN_ALPHAS = ("2", "5", "10", "50")
+SHOWN_ALPHA = "5"
 TEMPLATE = FOLDER / "README.template.md"
 
 
 def page(lines: list[Condensed], rows: list[Row]) -> str:
-    """The README; the tables that it links to are written beside it."""
+    """The README; the tables and the page that it links to are written beside it."""
     gaussian = [line for line in lines if line.map == "gaussian"]
     found = fresh(lines, rows)
     long = {
@@ -35,15 +35,16 @@ def page(lines: list[Condensed], rows: list[Row]) -> str:
     }
     for name, sheet in long.items():
         sheet.write(FOLDER / f"table_{name}.csv")
+    (FOLDER / "published.md").write_text(from_print.page(long["printed"], long["claims"]))
     return TEMPLATE.read_text().format(
         amount=amount(rows),
         pixels=DRAWN_PIXELS,
         within=within_table(gaussian),
         conductance=Sheet(
-            long["conductance"].head, [x for x in long["conductance"].rows if x[0] in SHOWN_ALPHAS]
+            long["conductance"].head, [x for x in long["conductance"].rows if x[0] == SHOWN_ALPHA]
         ),
         claim=claim(found),
-        printed=from_print.section(long["printed"], long["claims"]),
+        printed=from_print.summary(long["printed"], long["claims"]),
     )
 
 
