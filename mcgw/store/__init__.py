@@ -54,8 +54,7 @@ are merged at the end and then removed. What each mechanism is for:
 ``identity``     which scenes, samplers, versions and kinds of processor those are; and who made a file
 ``saving``       a file is made in memory, or of blocks under another name, and read back
 ``statistics_file``  that of scenes that keep statistics and no surface
-``disk``         HDF5 may crash on a full disk: it never sees an error of it; and the trailer, which tells
-                 whether a file is whole and unchanged, without HDF5
+``disk``         HDF5 may crash on a full disk, so it never sees its errors; the trailer of a whole file
 ``structure``    what a file may hold, looked at on every opening
 ``untrusted``    a file of a stranger is looked at by a child first
 ``ensembles``    files and runs in progress opened, and verified
