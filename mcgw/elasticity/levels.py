@@ -4,7 +4,7 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from mcgw.maps.summit_sums import summit_sums_of
 from mcgw.maps.summits import Summits, summits_of
 from mcgw.maps.topography import Topography
 from mcgw.sampling.located.balance import Located
-from mcgw.sampling.located.spots import Grid, HertzSpots
+from mcgw.sampling.located.spots import Grid, HertzSpots, sized_grid
 
 _EITHER = ("area", "stiffness", "conductance")
 QUANTITIES = {"pressure": (*_EITHER, "mean_gap"), "separation": (*_EITHER, "pressure")}  # by what is given
@@ -27,7 +27,6 @@ Values = dict[str, float]
 _OVERHANG = (math.pi - 1 + math.log(2)) / 24
 _TOLERANCE, _MOST_STEPS = 1e-6, 20_000  # of Tamaas, by its own measure
 _STEP = 1.02  # from the pressure to that at which stiffness is found
-_sized_grid = lru_cache(maxsize=2)(Grid)  # their potential takes as long as a balance
 
 
 @dataclass(frozen=True)
@@ -73,9 +72,9 @@ class Pressed:
 
     @property
     def _grid(self) -> Grid:
-        return _sized_grid(self.heights.shape, self.size, True)
+        return sized_grid(self.heights.shape, self.size, True)
 
-    @property
+    @cached_property
     def _map(self) -> Topography:
         return Topography(self.heights, self._grid.pixel, periodic=True)
 

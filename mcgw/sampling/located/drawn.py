@@ -1,7 +1,6 @@
 """Surfaces whose summits have places in a periodic cell, their own or uniform at random: their sums."""
 
 import math
-from functools import lru_cache
 
 import numpy as np
 from scipy import fft
@@ -11,14 +10,13 @@ from analytic.arrays import Array, Ints
 from mcgw.errors import RunError
 from mcgw.sampling.counts import generator
 from mcgw.sampling.located.balance import BalanceError, Located
-from mcgw.sampling.located.spots import Grid, LawSpots
+from mcgw.sampling.located.spots import Grid, LawSpots, sized_grid
 from mcgw.scene.scene import Scene
 
 _PURPOSE = 2  # of NumPy's generator: places
 _FINE, _FEWEST = 8, 64  # points of the grid a summit and a side
 _FINER, _MOST = 16, 4096  # the same for places of their own, and the most that tell near ones apart
 _ROUNDED = 1e-9  # points that are not added for a last digit
-_sized_grid = lru_cache(maxsize=2)(Grid)  # their potential takes as long as a balance
 
 
 def located_sums(scene: Scene, number: int, heights: Array, ratios: Array | None) -> dict[str, Array]:
@@ -73,7 +71,7 @@ def _random(scene: Scene, number: int, n: int) -> tuple[Ints, Grid]:
     points = fft.next_fast_len(max(math.ceil(_FINE * math.sqrt(scene.n_asperities)), _FEWEST), real=True)
     cells = generator(scene.seed, _PURPOSE, number).choice(points**2, n, replace=False)
     places = np.array(np.divmod(cells, points))
-    return places, _sized_grid((points, points), (side, side), True)
+    return places, sized_grid((points, points), (side, side), True)
 
 
 def _own(scene: Scene) -> tuple[Ints, Grid]:
@@ -90,6 +88,6 @@ def _own(scene: Scene) -> tuple[Ints, Grid]:
             [np.rint(p / s * m).astype(np.int64) % m for p, s, m in ((y, height, rows), (x, width, columns))]
         )
         if np.unique(places, axis=1).shape[1] == x.size:
-            return places, _sized_grid((rows, columns), (width, height), True)
+            return places, sized_grid((rows, columns), (width, height), True)
         apart, n = apart / 2, 2 * max(rows, columns)
     raise RunError(f"summits: two of them lie within {2 * apart:.2g} m; leave one of them out of the list")

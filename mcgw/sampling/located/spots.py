@@ -5,7 +5,7 @@ How far a load at one point of a grid presses down the half-space at another one
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Protocol
 
 import numpy as np
@@ -245,3 +245,6 @@ class Grid:
         spread[tuple(by)] = loads
         shape = self.potential.shape
         return np.asarray(fft.irfft2(fft.rfft2(spread, shape) * self._series, shape)[tuple(at)])
+
+
+sized_grid = lru_cache(maxsize=2)(Grid)  # their potential takes as long as a balance
