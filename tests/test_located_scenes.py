@@ -112,6 +112,10 @@ def test_where_theory_is_needed_none_is_told(tmp_path, capsys):
         assert main([*command, str(tmp_path / "scene.toml"), "-o", str(tmp_path / "new")]) == 2
         assert capsys.readouterr().err.count("\n") == 1
     assert len(list(tmp_path.iterdir())) == 1
+    for command in (("run",), ("sweep", "--over", "ensemble.n_surfaces=1,2")):
+        path = tmp_path / f"{command[0]}.h5"
+        assert main([*command, str(tmp_path / "scene.toml"), "-o", str(path)]) == 0
+        assert f"next: mcgw show {path}\n" in capsys.readouterr().out
     assert "for summits at places" in scene.validity().unknown
     e = mcgw.simulate(scene)
     for ask in (

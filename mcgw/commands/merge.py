@@ -18,7 +18,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Merge and print the path of the file."""
     from mcgw.commands.outputs import HDF5, Output, check_outputs
-    from mcgw.commands.voice import news
+    from mcgw.commands.voice import look_next, news
     from mcgw.ensemble.ensemble import Ensemble
     from mcgw.formats.files import state_of
     from mcgw.jobs.merging import merge
@@ -33,8 +33,9 @@ def execute(args: argparse.Namespace) -> int:
     merged = merge(path)
     done = "was finished before, " if state_of(path) == before else ""
     if isinstance(merged, Ensemble):
-        news(f"{path}: {done}{merged.n_surfaces} surfaces, seed {merged.scene.seed}")
+        scene, made = merged.scene, f"{merged.n_surfaces} surfaces"
     else:
-        news(f"{path}: {done}{merged.axes.size} scenes, seed {merged.scenes[0].seed}")
-    news(f"next: mcgw compare {path}")
+        scene, made = merged.scenes[0], f"{merged.axes.size} scenes"
+    news(f"{path}: {done}{made}, seed {scene.seed}")
+    look_next(scene, path)
     return 0

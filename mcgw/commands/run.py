@@ -38,7 +38,7 @@ def execute(args: argparse.Namespace) -> int:
 
 def _execute(args: argparse.Namespace) -> int:
     from mcgw.commands.outputs import HDF5, Output, check_outputs
-    from mcgw.commands.voice import details, news, notes, tell_cautions
+    from mcgw.commands.voice import details, look_next, news, notes, tell_cautions
     from mcgw.ensemble.forecast import forecast
     from mcgw.jobs.driver import part_of
     from mcgw.jobs.running import run
@@ -72,7 +72,7 @@ def _execute(args: argparse.Namespace) -> int:
     known = scene.validity()
     news(known.verdict)
     details(*filter(None, [known.details]))
-    news(f"next: mcgw {'show' if scene.located else 'compare'} {path}")
+    look_next(scene, path)
     tell_cautions(scene)
     return 0
 

@@ -41,7 +41,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Draw and print the path of the file."""
     from mcgw.commands.outputs import HDF5, Output, check_outputs
-    from mcgw.commands.voice import details, news
+    from mcgw.commands.voice import details, look_next, news
     from mcgw.jobs.sweeping import sweep
     from mcgw.scene.scene_file import files_of, load_scene
     from mcgw.store.place import recorded_seed
@@ -61,7 +61,8 @@ def execute(args: argparse.Namespace) -> int:
         found = sweep(scene, over, zipped=args.zip, path=path, **how)
     if args.shard is not None:
         return tell_share(args.shard, path, found)
-    news(f"{path}: {found.axes.size} scenes, seed {scene.seed}", f"next: mcgw compare {path}")
+    news(f"{path}: {found.axes.size} scenes, seed {scene.seed}")
+    look_next(scene, path)
     details(found)
     return 0
 

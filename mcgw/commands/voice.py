@@ -11,6 +11,8 @@ from mcgw.machine.progress import watched
 from mcgw.machine.terminal import without_passing
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from mcgw.ensemble.ensemble import Ensemble
     from mcgw.scene.scene import Scene
     from mcgw.sweeps.sweep import Sweep
@@ -55,6 +57,11 @@ def news(*lines: object) -> None:
     """Print what was made, the result, and what to type next."""
     if says() and lines:
         print(*lines, sep="\n")
+
+
+def look_next(scene: "Scene", path: "Path") -> None:
+    """Print the command that looks at a new file: it is compared with theory where one is known."""
+    news(f"next: mcgw {'show' if scene.located else 'compare'} {path}")
 
 
 def details(*lines: object) -> None:
