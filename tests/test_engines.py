@@ -7,19 +7,23 @@ import subprocess
 import sys
 import threading
 import time
+from concurrent.futures import CancelledError, Future
 from contextlib import closing, nullcontext
 from pathlib import Path
+from types import SimpleNamespace
 
+import numba
 import pytest
 from begun_runs import digest
 from lost_workers import deadly, deadly_once
 
 import mcgw
 from mcgw.ensemble.simulation import Values
-from mcgw.errors import RunError
+from mcgw.errors import RunError, StoppedError
+from mcgw.jobs import dask_engine
 from mcgw.jobs.dask_engine import Dask, check_address
-from mcgw.jobs.driver import Signals, drive
-from mcgw.jobs.engines import Processes, Threads
+from mcgw.jobs.driver import Signals, drive, heed_signals
+from mcgw.jobs.engines import EngineLostError, Processes, Threads, WorkerDiedError
 from mcgw.jobs.running import run
 from mcgw.store.disk import parts_of
 from mcgw.store.shards import Span
@@ -90,9 +94,18 @@ def test_killed_dask_workers_are_replaced(scene, tmp_path, expected):
     assert digest(tmp_path / "e.h5") == expected(scene)
 
 
-@pytest.mark.parametrize("word", ["dask", "tcp://127.0.0.1:8786"])
-def test_a_word_or_an_address_asks_for_dask(word, make_scene, tmp_path, monkeypatch):
-    asked = []
+WORDS = {
+    "dask": ("dask_engine.Dask", (None,), "workers"),
+    "tcp://127.0.0.1:8786": ("dask_engine.Dask", ("tcp://127.0.0.1:8786",), "workers"),
+    "processes": ("driver.Processes", (), None),
+}
+
+
+@pytest.mark.parametrize("threads", [3, None])
+@pytest.mark.parametrize("word", WORDS)
+def test_a_word_or_an_address_asks_for_workers(word, threads, make_scene, tmp_path, monkeypatch):
+    """As many as there are threads, unless their number is given."""
+    asked, (name, arguments, option) = [], WORDS[word]
 
     class Recorded(Threads):
         def __init__(self, *args, **options):
@@ -103,9 +116,10 @@ def test_a_word_or_an_address_asks_for_dask(word, make_scene, tmp_path, monkeypa
             super().close()
             asked.append("closed")
 
-    monkeypatch.setattr("mcgw.jobs.dask_engine.Dask", Recorded)
-    mcgw.run(make_scene(n_surfaces=3 * SIZE), tmp_path / "e.h5", engine=word, threads=3)
-    assert asked == [((None if word == "dask" else word,), {"workers": 3}), "closed"]
+    monkeypatch.setattr(f"mcgw.jobs.{name}", Recorded)
+    mcgw.run(make_scene(n_surfaces=3 * SIZE), tmp_path / "e.h5", engine=word, threads=threads)
+    many = threads or numba.get_num_threads()
+    assert asked == [((*arguments, *(() if option else (many,))), {option: many} if option else {}), "closed"]
 
 
 def test_the_rest_of_a_task_is_done_beside_the_next_one_in_order():
@@ -258,3 +272,212 @@ def test_dask_without_its_scheduler_is_one_line(monkeypatch):
 def test_no_workers_are_an_error(engine):
     with pytest.raises(ValueError, match="= 0: give a whole number >= 1"):
         engine(0)
+
+
+# --- dask by a stand-in: what is asked of it, and what becomes of its answers ---------------------------
+
+
+class Inner(Future):
+    """A future of dask; it can be released."""
+
+    released = 0
+
+    def release(self):
+        self.released += 1
+
+
+@pytest.fixture
+def dask(monkeypatch):
+    """In place of `distributed`, which need not be there: it notes what it is asked, and computes nothing."""
+    noted, answers = [], []
+
+    class Client:
+        asynchronous, status, threads = False, "running", [3, 2]
+
+        def __init__(self, *args, **options):
+            noted.append(("client", *args, options))
+
+        def nthreads(self):
+            if self.threads is None:
+                raise OSError
+            return dict(enumerate(self.threads))
+
+        def submit(self, task, *arguments, **options):
+            answers.append(Inner())
+            noted.append((task, arguments, options))
+            return answers[-1]
+
+        def close(self, **options):
+            noted.append(("client closed", options))
+
+    class LocalCluster:
+        dashboard_link = "http://127.0.0.1:1/status"
+
+        def __init__(self, **options):
+            noted.append(("cluster", options))
+
+        def close(self, **options):
+            noted.append(("cluster closed", options))
+
+    errors = {name: type(name, (Exception,), {}) for name in ("Killed", "Closed", "Cancelled")}
+    stand_in = SimpleNamespace(
+        Client=Client, LocalCluster=LocalCluster, KilledWorker=errors["Killed"], noted=noted, answers=answers,
+        comm=SimpleNamespace(CommClosedError=errors["Closed"]),
+        client=SimpleNamespace(FutureCancelledError=errors["Cancelled"]),
+    )  # fmt: skip
+    monkeypatch.setitem(sys.modules, "distributed", stand_in)
+    return stand_in
+
+
+@pytest.mark.parametrize("pages", [True, False])
+@pytest.mark.parametrize("quiet", [True, False])
+def test_a_cluster_of_our_own_is_on_this_machine_alone(quiet, pages, dask, monkeypatch):
+    monkeypatch.setattr(dask_engine, "find_spec", lambda name: name if pages and name == "bokeh" else None)
+    engine = Dask(workers=3, quiet=quiet)
+    (_, options), (_, cluster, client) = dask.noted
+    assert options == {
+        "n_workers": 3,
+        "threads_per_worker": 1,
+        "processes": True,
+        "host": "127.0.0.1",
+        "dashboard_address": "127.0.0.1:0",
+        "scheduler_kwargs": {"dashboard": pages},
+        "silence_logs": "CRITICAL" if quiet else "WARNING",
+        "config": {"distributed.worker.profile.enabled": False},
+    }
+    assert (type(cluster), client) == (dask.LocalCluster, {"timeout": "10s", "set_as_default": False})
+    assert engine.dashboard == ("http://127.0.0.1:1/status" if pages else "")
+    dask.noted.clear()
+    engine.close()
+    assert dask.noted == [("client closed", {"timeout": 2}), ("cluster closed", {"timeout": 5})]
+
+
+def test_a_scheduler_elsewhere_is_left_at_work(dask, monkeypatch):
+    engine, address = Dask("tcp://127.0.0.1:8786"), "tcp://127.0.0.1:8786"
+    assert dask.noted == [("client", address, {"timeout": "10s", "set_as_default": False})]
+    assert engine.dashboard == ""
+    engine.close()
+    assert dask.noted[1:] == [("client closed", {"timeout": 2})]
+
+    def nobody(*_, **__):
+        raise OSError
+
+    monkeypatch.setattr(dask, "Client", nobody)
+    with pytest.raises(RunError, match=f"^{address}: no scheduler answers; start it"):
+        Dask(address)
+
+
+def test_workers_are_counted_again_after_five_seconds(dask, monkeypatch):
+    """Twice their threads; the old number as long as nobody answers, and two where there is none."""
+    clock = [1.0]
+    monkeypatch.setattr(dask_engine, "monotonic", lambda: clock[0])
+    client = dask.Client()
+    engine = Dask(client)
+    for now, threads, width in (
+        (1.0, [3, 2], 10), (5.9, [1], 10), (6.0, [1], 10), (6.1, [4], 8), (11.0, [1], 8), (11.2, None, 8),
+        (99.0, [], 2),
+    ):  # fmt: skip
+        clock[0], client.threads = now, threads
+        assert engine.width == width
+
+
+OUTCOMES = {
+    "Killed": (WorkerDiedError, ""),
+    "Closed": (EngineLostError, "Closed"),
+    "Cancelled": (EngineLostError, "Cancelled"),
+    "CancelledError": (EngineLostError, "CancelledError"),
+    "ZeroDivisionError": (ZeroDivisionError, ""),
+}
+
+
+def test_what_becomes_of_a_task_of_dask(dask):
+    """Its result, or its error in our words; what it leaves with dask is let go of."""
+    engine = Dask(dask.Client())
+    raised = {"Killed": dask.KilledWorker, "Closed": dask.comm.CommClosedError}
+    raised |= {"Cancelled": dask.client.FutureCancelledError, "CancelledError": CancelledError}
+    for name, (kind, words) in OUTCOMES.items():
+        outer = engine.submit(max, 1, 2)
+        assert dask.noted[-1] == (max, (1, 2), {"pure": False})
+        assert not outer.done()
+        dask.answers[-1].set_exception(raised.get(name, ZeroDivisionError)())
+        with pytest.raises(kind) as caught:
+            outer.result(timeout=10)
+        assert str(caught.value) == words
+    outer = engine.submit(max, 1, 2)
+    dask.answers[-1].set_result(2)
+    assert outer.result(timeout=10) == 2
+    engine.submit(max, 1, 2)  # which is not done when the run ends
+    dask.noted.clear()
+    engine.close()
+    assert [answer.released for answer in dask.answers] == [1] * len(dask.answers)
+    assert dask.noted == []  # the client stays open
+
+
+@pytest.mark.parametrize("error", [OSError, RuntimeError, CancelledError])
+def test_a_scheduler_that_takes_no_task_is_lost(error, dask, make_scene, tmp_path, monkeypatch):
+    def submit(*_, **__):
+        raise error
+
+    monkeypatch.setattr(dask.Client, "submit", submit)
+    lost = rf"^scheduler lost \({error.__name__}\); start it again and repeat the command$"
+    with pytest.raises(RunError, match=lost):
+        mcgw.run(make_scene(n_surfaces=3 * SIZE), tmp_path / "e.h5", engine=dask.Client())
+
+
+def test_a_client_draws_the_surfaces_that_threads_draw(dask, make_scene, tmp_path, monkeypatch):
+    def submit(_, task, *arguments, pure):
+        dask.answers.append(Inner())
+        dask.answers[-1].set_result(task(*arguments))
+        return dask.answers[-1]
+
+    monkeypatch.setattr(dask.Client, "submit", submit)
+    scene = make_scene(n_surfaces=3 * SIZE)
+    drawn = mcgw.run(scene, tmp_path / "e.h5", engine=dask.Client())
+    assert (drawn.load == mcgw.simulate(scene).load).all()
+    assert len(dask.answers) == 3
+
+
+@pytest.mark.parametrize(
+    ("fact", "told"),
+    [({"asynchronous": True}, "client is asynchronous; give"), ({"status": "closed"}, "client is closed")],
+)
+def test_a_client_that_cannot_be_used_is_refused(fact, told, dask):
+    client = dask.Client()
+    vars(client).update(fact)
+    with pytest.raises(ValueError, match=f"^engine: .*{told}"):
+        Dask(client)
+
+
+# --- signals ---------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("number", "word", "code"), [(signal.SIGINT, "interrupted", 130), (signal.SIGTERM, "terminated", 143)]
+)
+def test_a_signal_is_noted_and_a_second_one_acts_at_once(number, word, code):
+    before = signal.getsignal(number)
+    with heed_signals() as signals:
+        signals.check("all is kept")
+        signal.raise_signal(number)
+        with pytest.raises(StoppedError, match=f"^{word}: all is kept$") as caught:
+            signals.check("all is kept")
+        assert caught.value.code == code
+        with pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(number)
+    assert signal.getsignal(number) == before
+
+
+def test_blocks_in_hand_when_a_signal_comes_are_kept():
+    """Three of six: one that is done, and those that were begun with it, but for the one that fails."""
+    signals, done = Signals(), []
+
+    def note(span, first):
+        done.append(first)
+        signals.number = signal.SIGTERM
+
+    def task(first):
+        return lambda: first // (first != 8)
+
+    with closing(Threads()) as engine:
+        drive(engine, SPANS, task, lambda span: (span.first,), note, signals)
+    assert done == [0, 16]
