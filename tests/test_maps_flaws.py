@@ -1,6 +1,7 @@
 """What lies on a map and is no roughness is named with its size; clean maps are left in peace."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,7 +11,11 @@ from scipy.ndimage import gaussian_filter
 import mcgw
 from mcgw.cli import main
 from mcgw.maps.bad_points import bad_edges, small_spike_heights
+from mcgw.maps.fit import fit_prepared
+from mcgw.maps.fit_cautions import cautions
+from mcgw.maps.hidden_caps import visible
 from mcgw.maps.levels import form_left, step_of
+from mcgw.maps.preparation import Preparation, prepared
 from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography
 
@@ -200,3 +205,120 @@ def test_a_small_spike_is_as_high_as_it_stands_above_its_neighbours():
     assert np.argwhere(found).tolist() == [[100, 70]]
     beside = np.mean([z[99, 70], z[101, 70], z[100, 69], z[100, 71]])
     np.testing.assert_allclose(found[100, 70], z[100, 70] - beside, rtol=1e-9)
+
+
+@pytest.fixture(scope="module")
+def sound():
+    """A fit that nothing is said of, and its map."""
+    ready = prepared(topography(rough(2)), Preparation(None))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("mcgw.maps.fit.by_caps", lambda *_: None)
+        fit = fit_prepared(ready)
+    assert cautions(fit, ready) == []
+    return fit, ready
+
+
+def scaled(estimate, **factors):
+    changes = {
+        name: getattr(estimate, name)._replace(value=x * getattr(estimate, name).value)
+        for name, x in factors.items()
+    }
+    return replace(estimate, **changes)
+
+
+def apart(fit, **factors):
+    both = {"moments": fit.estimates["moments"], "summits": scaled(fit.estimates["moments"], **factors)}
+    return replace(fit, estimates=both)
+
+
+def squares(fit, **changes):
+    return replace(fit, mean_squares=fit.mean_squares | changes)
+
+
+def crowded(fit, overlap):
+    one = fit.estimates["moments"]
+    return replace(fit, estimates={"moments": scaled(one, eta=overlap / one.overlap)})
+
+
+def blurred(fit, lost):
+    one = scaled(fit.estimates["moments"], eta=0.01 / fit.estimates["moments"].overlap)
+    seen = visible(0.01)
+    return replace(
+        fit, estimates={"moments": one, "caps": one}, visible=replace(seen, share=seen.share - lost)
+    )
+
+
+def with_slope(ready, slope):
+    level = ready.levelled
+    return replace(ready, levelled=replace(level, heights=level.heights * (slope / level.steepness)))
+
+
+# Of each caution: how far it goes without a word, and what is changed to be there.
+LIMITS = {
+    "skewness": (0.3, lambda f, r, x: (replace(f, skewness=(-x, 0.05)), r)),
+    "skewness, little known": (0.6, lambda f, r, x: (replace(f, skewness=(x, 0.2)), r)),
+    "alpha": (1 / 1.5, lambda f, r, x: (replace(f, alpha=f.alpha._replace(value=1 / x)), r)),
+    "lay": (1.5, lambda f, r, x: (squares(f, slope_x=x, slope_y=1.0, slope_xy=0.0), r)),
+    "estimates": (1.2, lambda f, r, x: (apart(f, eta=1.1, sigma=1 / x), r)),
+    "estimates, radius": (1.2, lambda f, r, x: (apart(f, radius=x), r)),
+    "overlap": (0.05, lambda f, r, x: (crowded(f, x), r)),
+    "blur": (0.1, lambda f, r, x: (blurred(f, x), r)),
+    "waves": (1 / 50, lambda f, r, x: (replace(f, waves=replace(f.waves, independent=1 / x)), r)),
+    "pixel": (1.05, lambda f, r, x: (squares(f, bend=x, bend_1=1.0), r)),
+    "cutoff": (1 / 20e-6, lambda f, r, x: (f, replace(r, asked=replace(r.asked, cutoff=1 / x)))),
+    "slope": (10.0, lambda f, r, x: (f, with_slope(r, x))),
+    "unit": (1e-2, lambda f, r, x: (f, replace(r, levelled=replace(r.levelled, pixel=(1e-3, x))))),
+}
+
+
+@pytest.mark.parametrize("name", LIMITS)
+def test_a_caution_begins_at_its_limit(name, sound):
+    """Half a per cent below it, nothing is said."""
+    limit, change = LIMITS[name]
+    word = name.partition(",")[0]
+    for factor, there in ((0.995, False), (1.005, True)):
+        fit, ready = change(*sound, factor * limit)
+        told = [line for line in cautions(fit, ready, "caps") if line.startswith(f"{word}:")]
+        assert bool(told) == there, (factor, told)
+
+
+def test_few_summits_are_named_with_their_number(sound):
+    fit, ready = sound
+    for number in (99, 100):
+        few = replace(fit, listed=replace(fit.listed, heights=np.zeros(number)))
+        assert ("summits: only 99 found; use a larger map or a shorter cutoff" in cautions(few, ready)) == (
+            number == 99
+        )
+
+
+def test_cautions_tell_their_numbers(sound):
+    """Shares in per cent; and a cutoff of ten pixels or half as much again as was used."""
+    fit, ready = sound
+    few = replace(
+        fit.waves, independent=20.0, spreads={"sigma": replace(fit.waves.spreads["sigma"], error=0.345)}
+    )
+    (line,) = cautions(replace(fit, waves=few), ready)
+    assert line.startswith(
+        "waves: the map has few of the longest waves, equivalent to 20 independent heights"
+    )
+    assert "differ elsewhere by 34 % or more" in line
+    (line,) = cautions(squares(fit, bend=1.25, bend_1=1.0), ready)
+    assert "is 25 % above that by plain ones" in line
+    assert "use a cutoff of 10 pixels or more" in line
+    wide = replace(ready, asked=replace(ready.asked, cutoff=48e-6))
+    (line,) = cautions(squares(fit, bend=1.25, bend_1=1.0), wide)
+    assert "use a cutoff of 36 pixels or more" in line  # of 2 um, one and a half times 24
+    (line,) = cautions(fit, replace(ready, asked=replace(ready.asked, cutoff=10e-6)))
+    assert line.startswith("cutoff: 5 pixels per wavelength; below 10 ")
+    lost = blurred(fit, 0.2)
+    lines = cautions(lost, ready, "caps")
+    assert lines[0].startswith("blur: 20 % of such caps are lost")
+    assert cautions(lost, ready, "moments") == []
+    heavy = crowded(fit, 0.1)
+    caps = replace(
+        heavy, estimates={"caps": heavy.estimates["moments"], **heavy.estimates}, visible=visible(0.1)
+    )
+    (line,) = cautions(caps, ready, "caps")
+    assert line.startswith(
+        f"overlap: eta R sigma = 0.1; {100 * (1 - visible(0.1).share):.0f} % of such caps are"
+    )

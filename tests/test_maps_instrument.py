@@ -1,14 +1,18 @@
 """Faults of instruments, planted in Gaussian maps: each is named, and what its caution says helps."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from fit_of_maps import fit_map
 from scipy import ndimage
+from scipy.stats import skew
 
 import mcgw
-from mcgw.maps.bad_points import recorded
+from mcgw.maps import instrument
+from mcgw.maps.bad_points import Recorded, recorded
 from mcgw.maps.form import smooth
-from mcgw.maps.instrument import CHECKS, _kept_of_noise
+from mcgw.maps.instrument import CHECKS, _kept_of_noise, faults
 from mcgw.maps.preparation import Preparation, prepared
 from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography
@@ -176,3 +180,96 @@ def test_what_a_filter_keeps_of_noise(pixel):
         z = noise.heights if cutoff is None else smooth(noise, cutoff).heights
         seen = [np.mean(np.diff(z, 2, axis=axis) ** 2) for axis in (1, 0)]
         assert _kept_of_noise(cutoff, pixel) == pytest.approx(seen, rel=0.05)
+
+
+def measured(ready):
+    """By name; of lines those of rows."""
+    return {check.name: check.measure(ready) for check in reversed(CHECKS)}
+
+
+def plain(z, cutoff=None, pixel=(1e-6, 2e-6), **known):
+    ready = prepared(Topography(z, pixel, periodic=True), Preparation(cutoff, form="none"))
+    return replace(ready, **known)
+
+
+def test_what_rounding_adds_to_bends():
+    """Step^2/12 is its variance, of which second differences have six times as much, on the worse axis."""
+    z = rough(1, n=64, long=50e-6)
+    seen = measured(plain(z, recorded=Recorded(3e-8, 0.0)))["rounding"]
+    bends = [np.mean(np.diff(z, 2, axis=axis) ** 2) for axis in (0, 1)]
+    assert seen == pytest.approx((3e-8) ** 2 / 12 * 6 / min(bends), rel=1e-3)
+    assert measured(plain(z, recorded=Recorded(0.0, 0.0)))["rounding"] == 0
+    cutoff = plain(z, 8e-6, recorded=Recorded(3e-8, 0.0))
+    bends = [np.mean(np.diff(cutoff.used.heights, 2, axis=axis) ** 2) for axis in (1, 0)]
+    each = [k * 7.5e-17 / b for k, b in zip(_kept_of_noise(8e-6, (1e-6, 2e-6)), bends, strict=True)]
+    assert measured(cutoff)["rounding"] == pytest.approx(max(each), rel=1e-9)
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_the_share_of_offsets_in_bends(turned):
+    """The wave that does not change along a line, beyond the largest of the eight next to it, over all."""
+    z = rough(1, n=64, long=50e-6) + 3e-7 * np.random.default_rng(1).normal(size=(64, 1))
+    power = np.mean(np.abs(np.fft.fft(np.diff(z, 2, axis=0))) ** 2, axis=0)
+    share = (power[0] - 2 * power[1:9].max()) / power.sum()
+    rows, columns = (c.measure(plain(z.T.copy() if turned else z)) for c in CHECKS if c.name == "lines")
+    assert (columns if turned else rows) == pytest.approx(share, rel=1e-9)
+    assert (rows if turned else columns) < 0.05 < share
+
+
+def laplacian(z):
+    return z[2:, 1:-1] + z[:-2, 1:-1] + z[1:-1, 2:] + z[1:-1, :-2] - 4 * z[1:-1, 1:-1]
+
+
+def test_what_outliers_have_of_bends_and_how_skewed_the_others_are():
+    """Beyond seven deviations, those of a Gaussian with the median of their sizes; cut at five of them."""
+    z = ndimage.maximum_filter(rough(1, n=64, long=50e-6), 3)
+    z[[5, 40], [7, 30]] += 5e-7
+    bends = laplacian(z)
+    about = bends - np.median(bends)
+    usual = np.median(np.abs(about)) / 0.6745
+    found = measured(plain(z))
+    assert found["bends"] == pytest.approx(
+        (bends[np.abs(about) > 7 * usual] ** 2).sum() / (bends**2).sum(), rel=1e-9
+    )
+    assert 0.05 < found["bends"] < 0.5
+    cut = np.clip(about, -5 * usual, 5 * usual)
+    tiles = [skew(t.ravel()) for rows in np.array_split(cut, 4) for t in np.array_split(rows, 4, axis=1)]
+    assert found["tip"] == pytest.approx(skew(cut.ravel()) - 6 * np.std(tiles) / 4, rel=1e-9)
+    assert found["tip"] != 0
+    seen = np.random.default_rng(1).random(z.shape) < 0.97
+    some = np.where(seen, z, np.nan)
+    bends = laplacian(some)
+    about = bends - np.nanmedian(bends)
+    far = np.abs(about) > 7 * np.nanmedian(np.abs(about)) / 0.6745
+    masked = measured(plain(z, seen=seen))
+    assert masked["bends"] == pytest.approx((bends[far] ** 2).sum() / np.nansum(bends**2), rel=1e-9)
+    assert masked["tip"] not in (0, found["tip"])
+    z[[5, 40], [7, 30]] += 4e-6
+    assert (
+        measured(plain(z))["tip"] == 0 < 0.5 < measured(plain(z))["bends"]
+    )  # whose rims are of the other sign
+    assert measured(plain(-np.exp(rough(1, n=64, long=50e-6) / 1e-6)))["tip"] == 0  # deep valleys are sharp
+
+
+def test_filled_points_and_cut_tops_are_told_as_they_were_found():
+    z = rough(1, n=64, long=50e-6)
+    ready = plain(z, filled=0.2, recorded=Recorded(0.0, 0.125))
+    assert (measured(ready)["holes"], measured(ready)["range"]) == (0.2, 0.125)
+    assert measured(replace(ready, seen=np.ones(z.shape, dtype=bool)))["holes"] == 0
+
+
+LIMITS = {"range": 1e-3, "rounding": 0.05, "lines": 0.05, "tip": 0.05, "holes": 0.01, "bends": 0.05}
+
+
+def test_a_fault_is_named_from_its_limit_on_with_its_share(monkeypatch):
+    ready = plain(rough(1, n=64, long=50e-6), recorded=Recorded(3.25e-8, 0.0))
+    for factor, names in ((0.995, []), (1.005, [check.name for check in CHECKS])):
+        checks = [replace(c, measure=lambda _, x=factor * LIMITS[c.name]: x) for c in CHECKS]
+        monkeypatch.setattr(instrument, "CHECKS", checks)
+        lines = faults(ready, 12.34)
+        assert [line.partition(":")[0] for line in lines] == names
+    for check, line in zip(CHECKS, lines, strict=True):
+        share = LIMITS[check.name] * 1.005
+        assert (f"{share:.2g} at least" if check.name == "tip" else f"{100 * share:.2g} %") in line
+        assert ("--cutoff of 12.3 pixels" in line) == (check.name in ("rounding", "bends"))
+        assert ("multiples of 3.25e-08 m" in line) == (check.name == "rounding")

@@ -3,6 +3,7 @@
 import math
 import re
 import sys
+from dataclasses import replace
 
 import matplotlib.pyplot as plt
 import mpmath
@@ -13,6 +14,7 @@ from scipy.stats import t as t_law
 import mcgw
 from analytic import Nayak, SpectralMoments
 from mcgw.cli import main
+from mcgw.maps.fit_cautions import profile_cautions
 from mcgw.maps.form import filter_variance, gaussian_transmission
 from mcgw.maps.profile import Profile, profile_at, smooth_profile, without_profile_form
 from mcgw.maps.profile_files import holds_profile, read_profile
@@ -270,6 +272,51 @@ def test_profiles_that_should_be_doubted_are():
     assert "peaks" in cautions([Profile(steps, UM)], None)
     drawn = gaussian_map(Spectrum(UM, 60 * UM, 50 * UM), (128, 4000), (UM, UM), np.random.default_rng(2))
     assert "alpha" in cautions([Profile(drawn.heights[0], UM)], 10 * UM)
+
+
+def known(fit, name, relative):
+    number = fit.numbers[name]
+    return replace(fit, numbers={**fit.numbers, name: number._replace(error=relative * number.value)})
+
+
+# Of each caution: how far it goes without a word, and what is changed to be there.
+LIMITS = {
+    "skewness": (0.3, lambda f, x: replace(known(f, "m0", 0.01), roughness=replace(f.roughness, sk=-x))),
+    "skewness, little known": (
+        0.6, lambda f, x: replace(known(f, "m0", 0.1), roughness=replace(f.roughness, sk=x)),
+    ),
+    "peaks": (1.2, lambda f, x: replace(f, peaks=(x, 1.0))),
+    "peaks, too few": (1.2, lambda f, x: replace(f, peaks=(1.0, x))),
+    "alpha": (1 / 1.5, lambda f, x: replace(f, moments=SpectralMoments(1.0, 1.0, 1 / x))),
+    "waves": (0.2, lambda f, x: known(f, "sigma", x)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", LIMITS)
+def test_a_caution_begins_at_its_limit(name):
+    """Half a per cent below it, nothing is said."""
+    profiles = list(cut(Spectrum(UM, 60 * UM, 8 * UM), 2000))[:2]
+    fit = fit_profiles(profiles, cutoff=10 * UM)
+    limit, change = LIMITS[name]
+    for factor, there in ((0.995, False), (1.005, True)):
+        lines = profile_cautions(change(fit, factor * limit), profiles, 10 * UM)
+        assert [line.partition(":")[0] for line in lines] == [name.partition(",")[0]] * there
+
+
+def test_cautions_of_profiles_tell_their_numbers():
+    """Those of points, of both profiles; a cutoff of ten spacings is enough."""
+    one, two = list(cut(Spectrum(UM, 60 * UM, 8 * UM), 2000))[:2]
+    fit = fit_profiles([one, two], cutoff=10 * UM)
+    gaps = [replace(one, filled=3), replace(two, filled=4, resampled=True, spacing=2 * UM)]
+    missing, uneven = profile_cautions(fit, gaps, 20 * UM)
+    assert missing == "missing: 7 of 4000 heights lie on straight lines between their neighbours"
+    assert uneven.startswith("x: ")
+    (line,) = profile_cautions(fit, [one, two], None)
+    assert "give ten points (1e-05 m) or more" in line
+    (line,) = profile_cautions(fit, [one, two], 9.95 * UM)
+    assert line.startswith("cutoff: 9.95 points per wavelength; below 10 ")
+    (line,) = profile_cautions(known(fit, "sigma", 0.345), [one, two], 10 * UM)
+    assert "sigma is known to 34 % only" in line
 
 
 @pytest.fixture(scope="module")

@@ -147,7 +147,7 @@ def check_output(path: Path) -> None:
     """
     name = path.name
     try:
-        if name in ("", ".", "..") or len(os.fsencode(name)) > 200 or not name.isprintable():
+        if name in ("", "..") or len(os.fsencode(name)) > 200 or not name.isprintable():
             raise StoreError(f"{str(path)!r}: is not a valid file name; choose another -o")
         if path.is_symlink() or (path.exists() and not path.is_file()):
             raise StoreError(f"{path}: is not a regular file; choose another -o")

@@ -206,10 +206,10 @@ class Table:
             alike = [c for c in self.flat if c.unit == unit and not c.textual and _DIGITS.fullmatch(c.form)]
             sized = [(c.values, int(c.form[1:-1])) for c in alike]
             texts = typeset_columns(sized) if sized else []
-            found |= {c.name: text for c, text in zip(alike, texts, strict=True)}
+            for c, cells in zip(alike, texts, strict=True):
+                found[c.name] = [cell or typeset(c.missing) for cell in cells]
         for column in self.columns:
             own, *beside = (found.get(c.name) or c.typeset() for c in column.flat)
-            own = [text or typeset(column.missing) for text in own]
             between = replace(column, between=typeset(column.between))
             yield between.together(own, beside[0]) if beside else own
 
