@@ -7,7 +7,7 @@ from scipy.stats import skew
 
 import mcgw
 from mcgw.sweeps import pooled
-from mcgw.sweeps.axes import axes_of
+from mcgw.sweeps.axes import axes_of, label
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
 SCENE = mcgw.Scene(SURFACE, separations=[0.0, 0.4, 1.0, 1.5, 2.5], n_surfaces=300, n_asperities=2000, seed=7)
@@ -50,6 +50,20 @@ def test_many_exponential_gradings_have_the_numbers_of_single_runs(count):
             np.testing.assert_allclose(sweep.std(name)[i], alone.std(name), rtol=1e-12)
 
 
+@pytest.mark.parametrize("gammas", [np.linspace(0.2, 1.6, 8), [1.0, 0.4, 1.9, 0.9, 0.8, 0.7, 0.6, 0.5, 1.9]])
+def test_eight_gradings_are_means_of_the_softest_and_the_stiffest(gammas):
+    """In any order; and the two themselves have the bits of single runs."""
+    sweep = mcgw.sweep(SCENE.replace(n_surfaces=20), {GAMMA: gammas})
+    assert len(sweep.groups[0].means["load"]) == 2
+    assert same_bits(sweep, (int(np.argmin(gammas)),))
+    assert same_bits(sweep, (int(np.argmax(gammas)),))
+    for i in range(len(gammas)):
+        alone = mcgw.simulate(sweep.scene(i))
+        np.testing.assert_allclose(sweep.std("load")[i], alone.std("load"), rtol=1e-12)
+        for found, expected in zip(sweep.interval("contacts"), alone.interval("contacts"), strict=True):
+            np.testing.assert_allclose(found[i], expected, rtol=1e-12)
+
+
 def test_a_table_among_many_exponential_gradings_keeps_its_numbers():
     """It is not taken for the homogeneous surface, a mean of two of them."""
     gradings = [*(mcgw.Exponential(gamma) for gamma in np.linspace(0.2, 2.0, 9)), KINKED[0]]
@@ -83,6 +97,12 @@ SEVERAL = {
         SPECTRAL.replace(law=mcgw.KogutEtsion(critical=0.1)),
         {"contact.critical": [0.1, 0.2]},
     ),
+    "balance of many": (SCENE.replace(interaction="body", n_surfaces=20), {GAMMA: np.linspace(1.0, 2.0, 9)}),
+    "a yielding law of many": (
+        SCENE.replace(law=mcgw.KogutEtsion(critical=0.1), n_surfaces=5, n_asperities=10, sampler="tail"),
+        {GAMMA: np.linspace(1.0, 2.0, 8)},
+    ),
+    "seven gradings": (SCENE.replace(n_surfaces=20), {GAMMA: [0.5, 0.7, 0.9, 1.1, 1.3, 1.5, 1.7, 0.5]}),
     "a function": (SCENE.replace(grading=lambda s: 1 + 0.3 * np.tanh(s)), {"surface.E_star": [7e10, 8e10]}),
 }
 
@@ -255,6 +275,10 @@ def test_what_nobody_gave_follows():
 
 
 MISTAKES = [
+    (
+        {"interaction": [{"reference": "body"}, {"reference": "body", "at": "nominal"}]},
+        "^sweep: the points differ in separations or quantities",
+    ),
     ({GAMMA: [1, -3, 5]}, "negative from s = 0.2877.*at grading.gamma = -3"),
     ({"grading.gama": [1]}, "grading.gama: unknown key.*at grading.gama = 1"),
     ({"contact.separations": [[1]]}, "must be the same for all points"),
@@ -305,6 +329,75 @@ def test_points_that_are_none():
         mcgw.sweep(SCENE, {"ensemble.count": ["fixed", "poisson"]}).slopes("load", "ensemble.count")
     with pytest.raises(ValueError, match="statistics = "):
         mcgw.sweep(SCENE, {GAMMA: [1.0]}, statistics=["median"])
+
+
+def test_points_are_found_as_elements_of_a_list():
+    """From the front and from the back, and none beyond either end."""
+    over = {GAMMA: [1.0, 2.0, 3.0], "ensemble.seed": [1, 2, 3]}
+    square, line = axes_of(over, zipped=False), axes_of(over, zipped=True)
+    for i in range(-3, 3):
+        assert line.place(i) == line.place((i,)) == (range(3)[i],)
+        assert [square.place((i, k)) for k in range(-3, 3)] == [(range(3)[i], k) for k in 2 * [0, 1, 2]]
+    assert line.place({GAMMA: 3.0}) == (2,)
+    for axes, at in (
+        (line, 3),
+        (line, -4),
+        (square, (3, 0)),
+        (square, (0, -4)),
+        (square, (0,)),
+        (line, (0, 0)),
+    ):
+        with pytest.raises(ValueError, match="there is no point"):
+            axes.place(at)
+
+
+def test_values_are_told_as_numbers_or_words():
+    assert [label(x) for x in (2, 0.5, "1 um")] == [2, 0.5, "1 um"]
+    assert [label(x) for x in (True, [1, 2])] == ["True", "[1, 2]"]
+    assert label({"law": "weibull", "shape": 2.0}) == "law = weibull, shape = 2.0"
+    axes = axes_of({GAMMA: [1 / 3], "heights.resample": [True], "surface.sigma": ["1 um"]}, zipped=False)
+    assert axes.text((0, 0, 0)) == f"{GAMMA} = 0.333333, heights.resample = True, surface.sigma = 1 um"
+    assert axes.values_text((0, 0, 0)) == "0.333333, True, 1 um"
+    assert axes.names == {GAMMA: "gamma", "heights.resample": "resample", "surface.sigma": "sigma"}
+    both = axes_of({"heights.law": ["gaussian"], "grading.law": ["homogeneous"], GAMMA: [1]}, zipped=False)
+    assert both.dims == ("heights.law", "grading.law", "gamma")
+    six = axes_of({GAMMA: range(6)}, zipped=False)
+    assert six.summary(GAMMA) == "0, 1, 2, 3, 4, 5"
+
+
+def test_what_is_shown_of_slopes_and_points_is_what_there_is():
+    """Slopes at the first separation and the first values of other keys; points at the lowest separation."""
+    over = {"ensemble.count": ["fixed", "poisson"], GAMMA: [1.0, 1.5, 2.5, 3.0, 3.5]}
+    sweep = mcgw.sweep(SCENE.replace(n_surfaces=20, separations=[1.0, 0.0], quantities=["load"]), over)
+    slopes = sweep.slopes("load", GAMMA)
+    _, *lines = repr(slopes).splitlines()
+    assert lines[0].split() == [GAMMA, "slope", "stderr", "theory"]
+    shown = np.array([[float(word) for word in line.split()] for line in lines[1:]])
+    np.testing.assert_allclose(shown[:, 0], [1.25, 2.0, 2.75, 3.25])
+    np.testing.assert_allclose(shown[:, 1], slopes.value[0, :, 0], rtol=1e-4)
+    np.testing.assert_allclose(shown[:, 2], slopes.stderr[0, :, 0], rtol=0.5)
+    np.testing.assert_allclose(shown[:, 3], slopes.theory[0, :, 0], rtol=1e-4)
+    sheet = sweep.sheet()
+    assert sheet.title == "Sweep of 10 scenes"
+    assert sheet.facts == [
+        ("ensemble.count", "fixed, poisson"),
+        (GAMMA, "1, 1.5, 2.5, 3, 3.5"),
+        ("surfaces", "40 drawn, in 2 groups that share surfaces"),
+    ]
+    at, load = sheet.table.columns
+    where = [0, 2, 3, 4, 6, 8, 9]
+    assert list(at.values) == [sweep.axes.values_text(list(sweep.axes.points())[k]) for k in where]
+    np.testing.assert_array_equal(load.values, sweep.mean("load").reshape(10, 2)[where, 1])
+    np.testing.assert_array_equal(load.beside.values, sweep.stderr("load").reshape(10, 2)[where, 1])
+
+
+def test_progress_counts_what_a_group_takes():
+    """By hand: an asperity that touches at the lowest separation is one, a scene of a surface 3000."""
+    told, over = [], {"ensemble.n_asperities": [200, 40_000], GAMMA: [1.0, 1.5, 2.0]}
+    sweep = mcgw.sweep(SCENE.replace(n_surfaces=40), over, progress=lambda *pair: told.append(pair))
+    work = [n / 2 + 3000 * 3 for n in (200, 40_000)]  # half of the asperities lie above d = 0
+    assert len(sweep.groups) == 2
+    assert told == [(0, 80), (round(80 * work[0] / sum(work)), 80), (80, 80)]
 
 
 def test_progress_ends_at_all_surfaces():

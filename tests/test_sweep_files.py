@@ -12,6 +12,7 @@ import h5py
 import numpy as np
 import pytest
 from begun_runs import settle
+from new_trailer import trailer_again
 
 import mcgw
 from mcgw.cli import main
@@ -21,6 +22,7 @@ from mcgw.jobs.engines import Processes
 from mcgw.jobs.job import commit_block
 from mcgw.store.disk import parts_of
 from mcgw.store.ensembles import read_attributes
+from mcgw.store.layout import drawn_digest, drawn_tables
 from mcgw.store.run_folder import RunFolder
 from mcgw.sweeps import pooled
 
@@ -182,6 +184,61 @@ def test_damage_is_found(tmp_path, capsys, share):
         file["drawn/load_means"][0, 0] *= 2  # with care
     with pytest.raises(mcgw.StoreError):
         mcgw.open_sweep(path)
+
+
+def put(file, name, values):
+    del file[f"drawn/{name}"]
+    file[f"drawn/{name}"] = values
+
+
+WRONG = {
+    "no data": lambda file: file.__delitem__("drawn"),
+    "no points": lambda file: file.__delitem__("drawn/points"),
+    "no products": lambda file: file.__delitem__("drawn/area_products"),
+    "products of fewer pairs": lambda file: put(file, "area_products", file["drawn/area_products"][:-1]),
+    "a group that is not there": lambda file: put(file, "points", file["drawn/points"][()] + [2, 0, 0]),
+    "fewer weights": lambda file: put(file, "weights", file["drawn/weights"][1:]),
+    "edges of no group": lambda file: put(file, "edges", np.zeros((1, 3))),
+    "axes that are no JSON": lambda file: file.attrs.__setitem__("axes", "{"),
+    "axes of another kind": lambda file: file.attrs.__setitem__("axes", "[1, 2]"),
+    "axes without values": lambda file: file.attrs.__setitem__("axes", '{"zipped": false}'),
+}
+
+
+@pytest.mark.parametrize("what", WRONG)
+def test_wrong_data_under_right_digests_are_refused_in_one_line(tmp_path, what):
+    """Whoever made the file meant them so."""
+    path = tmp_path / "a.h5"
+    mcgw.sweep(SCENE, {GAMMA: [0.5, 1.0], N: [20, 30]}, path=path)
+    with h5py.File(path, "r+") as file:
+        WRONG[what](file)
+        drawn = drawn_tables(file) if "drawn" in file else {}
+        file.attrs["digest"] = drawn_digest(drawn, file.attrs["scene"], file.attrs["axes"])
+    trailer_again(path)
+    with pytest.raises(mcgw.StoreError, match=r"a\.h5: damaged, or of another version \(.+\)$"):
+        mcgw.open_sweep(path)
+
+
+def test_a_number_changed_with_care_is_told_from_damage(tmp_path):
+    path = tmp_path / "a.h5"
+    mcgw.sweep(SCENE, {GAMMA: [0.5, 1.0]}, path=path)
+    with h5py.File(path, "r+") as file:
+        file["drawn/load_means"][0, 0] *= 2
+    trailer_again(path)
+    with pytest.raises(mcgw.StoreError, match=r"a\.h5: damaged \(digest mismatch of its data\)$"):
+        mcgw.open_sweep(path)
+
+
+def test_scenes_of_a_file_are_those_of_a_list(tmp_path):
+    """By any index or slice."""
+    mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5")
+    scenes, memory = mcgw.open_sweep(tmp_path / "a.h5").scenes, mcgw.sweep(SCENE, OVER).scenes
+    assert len(scenes) == len(memory) == 18
+    for some in (slice(None), slice(3, 9, 2), slice(None, None, -7), slice(-2, None), slice(5, 5)):
+        assert tuple(scenes[some]) == tuple(memory[some])
+    assert scenes[-1] == memory[-1]
+    with pytest.raises(IndexError):
+        scenes[18]
 
 
 @pytest.fixture

@@ -39,7 +39,6 @@ from numpy.typing import NDArray
 from mcgw.ensemble.labelled import AXES, Labelled, Variable, axis
 from mcgw.errors import StoreError
 from mcgw.formats.named_files import loads, open_h5
-from mcgw.scene.section import SceneError
 from mcgw.store.ensembles import read_attributes
 from mcgw.store.layout import body_of_kept, drawn_digest, drawn_tables
 from mcgw.store.run_folder import RunFolder
@@ -144,11 +143,10 @@ def open_sweep(path: str | Path, statistics: tuple[str, ...] = STATISTICS) -> Sw
         places = tuple(Place(g, some[some >= 0], w[some >= 0]) for (g, *_), some, w in rows)
         of_points = [(groups[place.group].n, edges[place.group]) for place in places]
         return Sweep(axes, Points(document, axes, of_points), places, groups, edges, statistics)
+    except StoreError:
+        raise
     except (OSError, RuntimeError, KeyError, IndexError, TypeError, ValueError) as error:
-        if isinstance(error, StoreError):
-            raise
-        what = error.problems[0] if isinstance(error, SceneError) else error
-        raise StoreError(f"{path}: damaged, or of another version ({what})") from None
+        raise StoreError(f"{path}: damaged, or of another version ({error})") from None
 
 
 def _groups(drawn: Tables) -> Iterator[Pooled]:
