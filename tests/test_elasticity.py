@@ -2,7 +2,11 @@
 
 import json
 import math
+import re
+import sys
 from dataclasses import replace
+from itertools import pairwise
+from types import ModuleType, SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,7 +22,8 @@ from mcgw.elasticity.levels import LEVELS, Level, Pressed, alone, located, rimle
 from mcgw.elasticity.multilevel import design, differences, mean_of, terms_of
 from mcgw.elasticity.profiles import ProfileSpots, _sneddon
 from mcgw.elasticity.sources import maps_of
-from mcgw.maps.synthetic import Spectrum
+from mcgw.maps.map_files import write_map
+from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography
 from mcgw.sampling.located import newton
 from mcgw.sampling.located.balance import BalanceError, Located
@@ -350,6 +355,130 @@ class TestMultilevel:
         assert mean_of([rng.random((7, 2))], population=7).stderr.max() == 0
 
 
+BED = 3.0  # pressure over modulus on a bed of springs, for a depth of one side of the map
+
+
+class Springs:
+    """Tamaas's interface over a bed of springs, each of which feels only what is above it."""
+
+    pressure, gap = "pressure", "gap"
+    answer = 1e-7  # the error that it stops at, or what it raises
+
+    def __init__(self, model, heights, tolerance, primal, constraint):
+        assert (model.E, model.nu) == (1.0, 0.0)
+        assert model.shape == list(heights.shape)
+        assert model.size == [1.0, pytest.approx(1.5)]
+        assert heights.flags.c_contiguous
+        assert (tolerance, primal) == (1e-6, constraint)
+        self.model, self.heights, self.what, self.max_iter = model, heights, primal, 0
+
+    def solve(self, target):
+        assert self.max_iter == 20_000
+        if isinstance(self.answer, Exception):
+            raise self.answer
+        h = self.heights
+
+        def at(d):
+            return BED * np.maximum(h - d, 0)
+
+        def off(d):
+            held = at(d).mean()
+            return held - target if self.what == "pressure" else d + held / BED - target
+
+        traction = at(brentq(off, h.min() - 2, h.max(), xtol=1e-16, rtol=1e-14))
+        if self.what == "gap":
+            traction[...] = traction.mean()  # of which the mean alone is right
+        else:
+            assert not np.any(self.model.traction[h == h.min()])  # where it begins is no problem of gaps
+        self.model.traction[...] = traction
+        self.model.displacement[...] = traction / BED
+        return self.answer
+
+
+def springs_model(kind, size, shape):
+    assert kind == "2d"
+    return SimpleNamespace(size=size, shape=shape, traction=np.ones(shape) * 0, displacement=np.zeros(shape))
+
+
+@pytest.fixture
+def springs(monkeypatch):
+    said = []
+    library = ModuleType("tamaas")
+    library.Model, library.PolonskyKeerRey = springs_model, Springs
+    library.model_type = SimpleNamespace(basic_2d="2d")
+    library.LogLevel = SimpleNamespace(error="error")
+    library.set_log_level = said.append
+    monkeypatch.setitem(sys.modules, "tamaas", library)
+    yield library
+    assert set(said) <= {"error"}
+
+
+class TestBoundaryElements:
+    """What is asked of the solver and made of its answers, on a bed of springs that NumPy solves too."""
+
+    size, E_star = (3e-4, 2e-4), 1e9
+
+    def heights(self, rng):
+        z = 1e-6 * rng.standard_normal((8, 12))
+        return z - z.mean()
+
+    def by_hand(self, z, p):
+        """Separation of the plane from the deformed surface's mean plane, and what touches."""
+        springs = BED * self.E_star / self.size[1]  # Pa/m
+        d = brentq(
+            lambda d: springs * np.maximum(z - d, 0).mean() - p, -1e-4, z.max(), xtol=1e-20, rtol=1e-14
+        )
+        return d + p / springs, z > d
+
+    @pytest.mark.usefixtures("springs")
+    @pytest.mark.parametrize("p", [2e6, 2e7])
+    def test_make_si_values(self, p, rng):
+        z, nominal = self.heights(rng), 6e-8
+        found = LEVELS[-1].solve(Pressed(z, self.size, self.E_star, p))
+        gap, touching = self.by_hand(z, p)
+        nearer, _ = self.by_hand(z, 1.02 * p)
+        stiffness = 0.02 * p * nominal / (gap - nearer)
+        expected = {
+            "area": rimless(touching) * nominal, "stiffness": stiffness,
+            "conductance": 2 * stiffness / self.E_star, "mean_gap": gap,
+        }  # fmt: skip
+        assert found == pytest.approx(expected, rel=1e-9)
+        at = LEVELS[-1].solve(Pressed(z, self.size, self.E_star, separation=gap))
+        expected["pressure"] = p
+        del expected["mean_gap"]
+        assert at == pytest.approx(expected, rel=1e-8)
+
+    @pytest.mark.usefixtures("springs")
+    def test_of_a_plane_above_all_say_zero(self, rng):
+        z = self.heights(rng)
+        clear = LEVELS[-1].solve(Pressed(z, self.size, self.E_star, separation=float(z.max())))
+        assert clear == dict.fromkeys(("area", "stiffness", "conductance", "pressure"), 0.0)
+        near = LEVELS[-1].solve(Pressed(z, self.size, self.E_star, separation=0.99 * float(z.max())))
+        assert min(near.values()) > 0
+
+    @pytest.mark.usefixtures("springs")
+    @pytest.mark.parametrize(
+        ("answer", "held", "words"),
+        [
+            (FloatingPointError(), {"pressure": 1e6}, "a single point touches; give a higher pressure"),
+            (FloatingPointError(), {"separation": 1e-7}, "a single point touches; give a smaller separation"),
+            (1.1e-6, {"pressure": 1e6}, "stopped at an error of 1.1e-06; give a lower pressure"),
+            (math.nan, {"separation": 1e-7}, "stopped at an error of nan; give a larger separation"),
+        ],
+    )
+    def test_that_do_not_end_are_told(self, answer, held, words, rng, monkeypatch):
+        monkeypatch.setattr(Springs, "answer", answer)
+        with pytest.raises(mcgw.RunError, match=words):
+            LEVELS[-1].solve(Pressed(self.heights(rng), self.size, self.E_star, **held))
+        monkeypatch.setattr(Springs, "answer", 1e-6)
+        assert LEVELS[-1].timed(Pressed(self.heights(rng), self.size, self.E_star, **held))[0]
+
+    def test_that_are_not_there_are_told(self, rng, monkeypatch):
+        monkeypatch.setitem(sys.modules, "tamaas", None)
+        with pytest.raises(mcgw.RunError, match=r"need Tamaas: pip install 'mcgw\[bem\]'"):
+            LEVELS[-1].solve(Pressed(self.heights(rng), self.size, self.E_star, 1e6))
+
+
 @pytest.fixture
 def cheap(monkeypatch):
     """Boundary elements that are a known multiple of what located summits say."""
@@ -405,6 +534,43 @@ class TestSources:
         ):
             assert f"Elastic mean over {said}" in repr(mcgw.elastic(source, **asked))
 
+    def test_maps_of_a_scene_have_its_moments_and_area(self, tmp_path):
+        """Eight points to the shortest wave; the scene may have them from its surface, its law or a fit."""
+        spectral = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "0.16 mm^2", "78.6 GPa")
+        scene = mcgw.Scene(spectral, separations=0.0, n_surfaces=2, seed=1)
+        spectrum = Spectrum.with_moments(mcgw.maps.synthetic.SpectralMoments(1e-12, 1e-3, 5e6))
+        found = maps_of(scene)
+        points = found.heights(3, 7).shape[0]
+        assert 8 <= points * spectrum.short / 4e-4 < 8.8
+        expected = gaussian_map(spectrum, (points,) * 2, (4e-4 / points,) * 2, np.random.default_rng([7, 3]))
+        assert_allclose(found.heights(3, 7), expected.heights, rtol=1e-6, atol=1e-12)
+        assert found.size == pytest.approx((4e-4, 4e-4))
+        assert found.number is None
+        drawn = gaussian_map(SPECTRUM, (96, 96), (1e-6, 1e-6), np.random.default_rng(1))
+        fit = mcgw.fit(drawn, cutoff=None, form="none")
+        fitted = maps_of(mcgw.fitted_scene(fit, nominal_area="0.04 mm^2"))
+        assert fitted.heights(0, 1).std() == pytest.approx(math.sqrt(fit.moments.m0), rel=0.2)
+        write_map(drawn, tmp_path / "map.npy")
+        for source in (tmp_path / "map.npy", str(tmp_path / "map.npy")):
+            assert np.array_equal(maps_of(source).heights(2, 1), maps_of(drawn).heights(2, 1))
+            assert np.array_equal(maps_of([source]).heights(0, 1), drawn.heights - drawn.heights.mean())
+
+    @pytest.mark.parametrize("over", [1, -1])
+    def test_an_area_that_is_proposed_will_do(self, over):
+        """As wide as the longest wave, or as 2048 points, eight of which are the shortest."""
+        moments = mcgw.maps.synthetic.moments_on_grid(SPECTRUM, (512, 512), (1e-6, 1e-6))
+        surface = mcgw.SpectralSurface(moments.m0, moments.m2, moments.m4, 1e-8, 1e11)
+        scene = mcgw.Scene(surface, separations=0.0, n_surfaces=2, seed=1)
+        spectrum = Spectrum.with_moments(moments)
+        limit = spectrum.long if over > 0 else 256 * spectrum.short
+        factor = (1 - over * 1e-3) * limit
+        with pytest.raises(ValueError, match="give nominal_area = ") as told:
+            maps_of(scene.replace(nominal_area=factor**2))
+        proposed = float(re.search(r"nominal_area = (\S+) m\^2 or (?:more|less)", str(told.value))[1])
+        assert maps_of(scene.replace(nominal_area=proposed)).number is None
+        assert proposed == pytest.approx(limit**2, rel=0.015)
+        maps_of(scene.replace(nominal_area=((1 + over * 1e-3) * limit) ** 2))
+
     @pytest.mark.parametrize(("size", "periodic"), [(1e-6, False), (2e-6, True), (None, True)])
     def test_maps_of_a_list_are_alike_and_periodic(self, size, periodic):
         flat = Topography(np.arange(12.0).reshape(3, 4), (1e-6, 1e-6), True)
@@ -441,6 +607,70 @@ class TestElastic:
         assert set(json.loads(lines[0])) == {"maps", "pressure", "E_star", "seed"}
         with pytest.raises(mcgw.StoreError, match="another path"):
             mcgw.elastic(SPECTRUM, **{**asked, "pressure": "60 MPa"})
+
+    def test_is_what_its_solves_say(self, tmp_path):
+        """Means, errors, table and cost from the lines of the file: a pilot, and fresh maps for each term."""
+        path = tmp_path / "s.jsonl"
+        asked = {"pressure": 5e7, "E_star": 1e11, "solves": 5, "pilot": 6, "path": path}
+        found = mcgw.elastic(SPECTRUM, quantities=["mean_gap", "area"], **asked)
+        _, *rows = map(json.loads, path.read_text().splitlines())
+        names = [level.name for level in LEVELS]
+        by = {(row["level"], row["map"]): row for row in rows}
+        assert len(by) == len(rows)
+        assert [(row["level"], row["map"]) for row in rows[:18]] == [(n, k) for k in range(6) for n in names]
+        cost = {n: np.mean([by[n, k]["seconds"] for k in range(6)]) for n in names}
+        used = [names[level] for level in found.planned.chain]
+        assert used[-1] == "elastic"
+        first, means, variances, parts = 6, [], [], []
+        shown = zip(*(column.values for column in found.levels.columns), strict=True)
+        for term, many in zip(
+            [used[:1], *([b, a] for a, b in pairwise(used))],
+            found.planned.maps,
+            strict=True,
+        ):
+            maps = range(first, first + many)
+            first += many
+            x = np.array([[by[term[0], k]["values"][q] for q in found.quantities] for k in maps])
+            for other in term[1:]:
+                x -= [[by[other, k]["values"][q] for q in found.quantities] for k in maps]
+            _, number, seconds, mean, std = next(shown)
+            assert number == many
+            assert seconds == pytest.approx(sum(cost[n] for n in term))
+            assert (mean, std) == pytest.approx((x[:, 0].mean(), x[:, 0].std(ddof=1)), rel=1e-9)
+            means.append(x.mean(axis=0))
+            variances.append(x.var(axis=0, ddof=1) / many)
+            parts.append(variances[-1] ** 2 / (many - 1))
+        assert next(shown, None) is None
+        assert max(k for _, k in by) == first - 1
+        degrees = sum(variances) ** 2 / sum(parts)
+        assert_allclose(found.found.mean, sum(means), rtol=1e-12)
+        assert_allclose(found.found.degrees, degrees, rtol=1e-9)
+        assert found.mean("area") == pytest.approx(sum(means)[1], rel=1e-12)
+        half = student.ppf(0.95, degrees[1]) * math.sqrt(sum(variances)[1])
+        assert_allclose(found.interval("area", 0.9), sum(means)[1] + np.array([-half, half]), rtol=1e-9)
+        low, high = found.interval("mean_gap")
+        assert high - low == pytest.approx(
+            2 * student.ppf(0.975, degrees[0]) * math.sqrt(sum(variances)[0]), rel=1e-9
+        )
+        assert found.seconds == pytest.approx(sum(row["seconds"] for row in rows))
+        told = [line.split() for line in str(found).splitlines()]
+        assert [line[:2] for line in told[-2:]] == [["mean_gap", "m"], ["area", "m^2"]]
+        assert [float(x) for x in told[-2][2:]] == pytest.approx([sum(means)[0], low, high], rel=1e-4)
+        other = mcgw.elastic(SPECTRUM, quantities=["area"], seed=2, **{**asked, "path": None})
+        assert other.mean("area") != found.mean("area")
+
+    def test_says_what_levels_save(self):
+        from mcgw.elasticity.multilevel import Design, Mean
+        from mcgw.formats.table import Table
+
+        nothing = Mean(np.ones(1), np.ones(1), np.ones(1))
+        by_levels = public.Elastic(("area",), nothing, Table(()), Design((0, 2), (9, 4), 2.5, 31.0), 1.0, "w")
+        assert by_levels.saved == pytest.approx(12.4)
+        assert by_levels.verdict() == (
+            "2.5 s by levels, 12.4 times less than boundary elements alone: 31 s for the same error"
+        )
+        alone = replace(by_levels, planned=Design((2,), (4,), 31.0, 31.0))
+        assert alone.verdict() == "no cheaper level helps; boundary elements alone: 31 s for the same error"
 
     def test_a_list_has_its_own_mean(self, rng):
         maps = [
