@@ -1,10 +1,16 @@
 """Files that go to SurfaceTopography: what it takes of memory, or crashes on, harms nobody."""
 
+import io
+import sys
+from contextlib import redirect_stdout
+
 import numpy as np
 import pytest
 
 from mcgw.machine.memory import peak_growth
+from mcgw.maps import foreign as library
 from mcgw.maps.map_files import read_map
+from mcgw.maps.profile_files import holds_profile, read_profile
 
 STAND_IN = """
 import os
@@ -16,7 +22,8 @@ class Channel:
 
     def __init__(self, path, columns, rows):
         self.path, self.nb_grid_pts = path, (columns, rows)
-        self.pixel_size = tuple(length / n for length, n in zip(self.physical_sizes, self.nb_grid_pts))
+        sizes = self.physical_sizes or (columns, rows)
+        self.pixel_size = tuple(length / n for length, n in zip(sizes, self.nb_grid_pts))
         self.default_channel = self
 
     def topography(self):
@@ -26,9 +33,39 @@ class Channel:
     def heights(self):
         return np.arange(6.0).reshape(self.nb_grid_pts)
 
+class Line(Channel):
+    dim = 1
+
+    def positions_and_heights(self):
+        x = np.arange(float(self.nb_grid_pts[0])) * 0.5
+        self.path.with_name("read").touch()
+        return x, np.ma.masked_array(x * x, mask=x == 2.0)
+
+class Bare(Channel):
+    physical_sizes, unit, is_periodic = None, None, True
+
+    def topography(self, physical_sizes):
+        assert physical_sizes == self.nb_grid_pts
+        return self
+
+    def heights(self):
+        found = np.ma.masked_array(super().heights(), mask=False)
+        found[0, 1], found[2, 0] = np.ma.masked, np.nan
+        return found
+
 def open_topography(path):
     path = Path(path)
-    words = path.read_text().split()
+    words = path.read_text().replace(";", "?").split()
+    if words[0] in ("line", "bare"):
+        kind = {"line": Line, "bare": Bare}[words[0]]
+        return kind(path, *map(int, words[1:3]))
+    if words[0] == "points":
+        heights = [float(word) for word in words[1:]]
+        one = Channel(path, len(heights), 1)
+        one.heights = lambda: np.array(heights)[:, None]
+        return one
+    if words[0] == "silent":
+        raise ValueError
     if words[0] == "greedy":
         np.ones(2**28)
     if words[0] == "crash":
@@ -51,11 +88,101 @@ def foreign(tmp_path, monkeypatch):
     return write
 
 
+@pytest.fixture
+def here(foreign, monkeypatch):
+    """The same without a process for each file, which takes most of the time."""
+
+    def child(module, *words, seconds):
+        assert module == "mcgw.maps.foreign"
+        assert seconds > 60
+        assert int(words[3]) > 2**30
+        monkeypatch.delitem(sys.modules, "SurfaceTopography", raising=False)
+        said = io.StringIO()
+        with redirect_stdout(said):
+            library._main(*words[:3], int(words[3]))
+        return said.getvalue()
+
+    monkeypatch.setattr(library, "run_child", child)
+    monkeypatch.setattr(library, "limit_memory", lambda most: most)
+    yield foreign
+    sys.modules.pop("SurfaceTopography", None)
+
+
 def test_a_map_comes_back_as_it_was_read(foreign):
     found = read_map(foreign("3 2"))
     assert found.heights == pytest.approx(1e-6 * np.array([[0, 2, 4], [1, 3, 5]]))
     assert found.pixel == pytest.approx((1e-6, 0.5e-6))
     assert found.heights.flags["C_CONTIGUOUS"]
+
+
+def test_a_map_without_a_pixel_takes_one_and_keeps_its_holes(here):
+    """What it does not tell is given, or assumed; masked points and nan are missing."""
+    path = here("bare 3 2")
+    with pytest.raises(ValueError, match=r"map\.plu: does not give the size of a pixel; give --pixel"):
+        read_map(path, unit="nm")
+    found = read_map(path, pixel=(2e-6, 3e-6), unit="nm")
+    expected = 1e-9 * np.array([[0, 2, np.nan], [np.nan, 3, 5]])
+    assert found.heights == pytest.approx(expected, nan_ok=True, rel=1e-14)
+    assert (found.pixel, found.periodic, found.assumed_unit) == ((2e-6, 3e-6), True, "")
+    assert read_map(path, pixel=(1e3, 1e3)).assumed_unit == "m"
+    with pytest.raises(ValueError, match=r"map\.plu: gives the size of a pixel; leave --pixel out"):
+        read_map(here("3 2"), pixel=(1e-6, 1e-6))
+    with pytest.raises(ValueError, match="heights are in um as the file says, not in nm"):
+        read_map(here("3 2"), unit="nm")
+    assert not read_map(here("3 2"), unit="um").periodic
+
+
+def test_heights_along_a_line_are_a_profile_and_no_map(here):
+    """The gap in them is filled along a straight line."""
+    path = here("line 12 1")
+    assert holds_profile(path)
+    assert not (path.with_name("read")).exists()  # its kind is known without its heights
+    found = read_profile(path, unit="um")
+    x = np.arange(12.0) / 2
+    assert found.heights == pytest.approx(1e-6 * np.where(x == 2, (1.5**2 + 2.5**2) / 2, x * x), rel=1e-12)
+    assert (found.spacing, found.filled) == (pytest.approx(0.5e-6), 1)
+    with pytest.raises(ValueError, match="is a profile along a line; a map has rows and columns"):
+        read_map(path)
+    with pytest.raises(ValueError, match="gives the distance between its points; leave --pixel out"):
+        read_profile(path, spacing=1e-6)
+    path = here("3 2")
+    assert not holds_profile(path)
+    with pytest.raises(ValueError, match="is a map, not a profile; leave --profile out"):
+        read_profile(path)
+
+
+def test_a_text_with_decimal_commas_is_shown_again_with_points(here, tmp_path):
+    """Where nothing in it may be a decimal point; of semicolons tabs are made."""
+    found = read_map(here("points 1,5\t2,5\t-3"))
+    assert found.heights == pytest.approx(1e-6 * np.array([[1.5, 2.5, -3.0]]))
+    found = read_map(here("points 1,5;2,5"))
+    assert found.heights == pytest.approx(1e-6 * np.array([[1.5, 2.5]]))
+    for text in ("points 1,5\t2.5", "points 1;2", "points 1,5\t2,5\0"):
+        with pytest.raises(
+            ValueError, match=r"map\.plu: SurfaceTopography cannot read it: could not convert"
+        ):
+            read_map(here(text))
+    path = here("")
+    path.write_bytes(b"points 1,5\xff")
+    with pytest.raises(ValueError, match=r"SurfaceTopography cannot read it: .*codec can't decode"):
+        read_map(path)
+    with pytest.raises(ValueError, match=r"SurfaceTopography cannot read it: ValueError$"):
+        read_map(here("silent"))
+
+
+def test_what_our_readers_refuse_is_shown_to_the_library_where_it_says_its_pixel(here, tmp_path):
+    """Of another format under an ending of ours; of two refusals both are told."""
+    for name in ("map.h5", "map.sdf", "map.dat"):
+        found = read_map(here("3 2").rename(tmp_path / name))
+        assert found.heights == pytest.approx(1e-6 * np.array([[0, 2, 4], [1, 3, 5]]))
+    with pytest.raises(ValueError, match=r"map\.sdf: begins with .*; SurfaceTopography cannot read it: Val"):
+        read_map(here("silent").rename(tmp_path / "map.sdf"))
+    with pytest.raises(ValueError, match=r"^\S*map\.dat: line 1: could not convert"):
+        read_map(here("silent").rename(tmp_path / "map.dat"))
+    path = here("bare 3 2").rename(tmp_path / "map.dat")
+    for pixel in (None, (1e-6, 1e-6)):
+        with pytest.raises(ValueError, match=r"^\S*map\.dat: line 1: could not convert"):
+            read_map(path, pixel=pixel)
 
 
 def test_what_a_file_cannot_hold_is_never_read(foreign, tmp_path):
