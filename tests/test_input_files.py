@@ -111,6 +111,11 @@ HOSTILE = {
     "narrow": (load(np.ones((20, 1))), r"load has shape \[20, 1\], its scene declares \[20, 2\]"),
     "missing": (lambda data, folder: None, "load has shape none, its scene declares"),
     "many": (many, "datasets; at most 128 are allowed"),
+    "no group": (lambda data, folder: data.__setitem__("drawn", ONES), "refused: drawn: not a group"),
+    "a link in the group": (
+        lambda data, folder: data.create_group("drawn").__setitem__("x", h5py.SoftLink("/load")),
+        "refused: drawn/x: a link to another place",
+    ),
     "large attribute": (attribute("date", np.zeros(1000)), "attribute date: too large"),
     "bytes": (attribute("date", np.bytes_(b"x")), "attribute date: neither text nor number"),
     "many attributes": (notes, "refused: [0-9]+ attributes"),
@@ -196,6 +201,45 @@ def test_what_the_child_suffers_is_told_in_one_line(path, monkeypatch):
     copy.write_bytes(path.read_bytes()[:-TRAILER_BYTES])
     with pytest.raises(StoreError, match="damaged or hostile; reading it crashed with SIGSEGV"):
         untrusted.examine(copy)
+
+
+@pytest.mark.parametrize("said", ["", "{", "nothing"])
+def test_a_child_that_says_nothing_of_use_has_found_no_file(said, path, monkeypatch):
+    monkeypatch.setattr(untrusted, "run_child", lambda *_, **__: said)
+    with pytest.raises(StoreError, match=r"shown: not an HDF5 file, or a damaged one$"):
+        untrusted._examined_by_child(path, Path("shown"), 0)
+
+
+def test_a_child_has_time_by_the_size_of_the_file(path, monkeypatch):
+    asked = []
+
+    def child(*words, seconds):
+        asked.append((words, seconds))
+        return "{}"
+
+    monkeypatch.setattr(untrusted, "run_child", child)
+    for size, seconds in ((0, 20.0), (10**9, 40.0)):
+        assert untrusted._examined_by_child(path, path, size) == {}
+        assert asked.pop() == (("mcgw.store.structure", str(path), "--memory", str(2**31)), seconds)
+
+
+@pytest.mark.parametrize(
+    ("limit", "whole", "blamed"),
+    [(None, True, False), (2**31, True, False), (2**31 - 1024, True, True), (2**30, False, False)],
+)
+@pytest.mark.parametrize("sure", [True, False])
+def test_memory_is_blamed_where_it_may_be_too_small_for_a_whole_file(
+    limit, whole, blamed, sure, path, monkeypatch
+):
+    """Unless the child is sure that it is something else."""
+    answer = {"refused": "greedy"} | ({"sure": True} if sure else {})
+    monkeypatch.setattr(untrusted, "run_child", lambda *_, **__: json.dumps(answer))
+    monkeypatch.setattr(untrusted, "memory_limit", lambda: limit)
+    if not whole:
+        path.write_bytes(path.read_bytes()[:-1])
+    told = f"within the memory limit of this process .ulimit -v {(limit or 0) // 1024}.; 2097152 is always"
+    with pytest.raises(StoreError, match=told if blamed and not sure else r"shown: refused: greedy$"):
+        untrusted._examined_by_child(path, Path("shown"), 0)
 
 
 def test_a_file_is_looked_at_once_until_it_changes(path, monkeypatch):

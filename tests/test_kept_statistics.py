@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import scipy.stats
 from conftest import SURFACE
+from new_trailer import trailer_again
 
 import mcgw
 from mcgw.cli import main
@@ -316,6 +317,27 @@ def test_single_surfaces_are_refused_with_what_to_do(tmp_path, monkeypatch):
         file.attrs["seed"] = 2
     with pytest.raises(StoreError, match=r"not a whole file"):
         mcgw.open_ensemble(tmp_path / "a.h5")
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda file: file.__delitem__("drawn"),
+        lambda file: file.__delitem__("drawn/block_n"),
+        lambda file: file.__delitem__("drawn/block_mean"),
+        lambda file: file.__setitem__("drawn/block_more", np.ones(1)),
+        lambda file: file.move("drawn/block_n", "drawn/n"),
+    ],
+)
+def test_joined_blocks_that_are_not_as_they_must_be_are_one_line(change, tmp_path):
+    """Under a trailer that fits: who made the file meant them so."""
+    path = tmp_path / "a.h5"
+    run(scene(n_surfaces=10), path, keep="statistics")
+    with h5py.File(path, "r+") as file:
+        change(file)
+    trailer_again(path)
+    with pytest.raises(StoreError, match=r"a\.h5: damaged, or of another version \(.+\)$"):
+        mcgw.open_ensemble(path)
 
 
 @pytest.mark.slow

@@ -1,6 +1,7 @@
 """One driver alone or several that share: between threads and processes, freed however a holder ends."""
 
 import os
+import socket
 import subprocess
 import sys
 import threading
@@ -15,7 +16,7 @@ from mcgw.errors import StoreError
 from mcgw.jobs.running import run
 from mcgw.store import lock
 from mcgw.store.disk import parts_of
-from mcgw.store.lock import LOCK_FILES, locked
+from mcgw.store.lock import LOCK_FILES, LockedError, locked
 
 ROOT = Path(mcgw.__file__).parents[1]
 ENV = os.environ | {"PYTHONPATH": str(ROOT)}
@@ -197,3 +198,22 @@ def test_all_works_where_fcntl_and_resource_are_missing(tmp_path):
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("hidden\n")
     assert done.stdout.endswith("locked\n")
+
+
+def test_a_holder_that_has_not_said_its_name_is_another_process(tmp_path):
+    """On a full disk, or before it has written; and folders above the one that is held are made."""
+    folder = tmp_path / "a" / "e.h5.parts"
+    with locked(folder) as new:
+        assert new
+        assert folder.stat().st_mode & 0o777 == 0o755
+        for text in (b"", b"\xff", b"x" * 201, None):
+            if text is None:
+                (folder / "holder").unlink()
+            else:
+                (folder / "holder").write_bytes(text)
+            with pytest.raises(LockedError, match=r"parts: locked by another process, which is working"):
+                locked(folder).__enter__()
+        (folder / "other").touch()
+    with locked(folder) as new:
+        assert not new
+        assert (folder / "holder").read_text() == f"pid {os.getpid()} on {socket.gethostname()}\n"

@@ -3,7 +3,9 @@
 import json
 import re
 import sys
+from importlib.metadata import PackageNotFoundError
 from pathlib import Path
+from types import SimpleNamespace
 
 import h5py
 import numpy as np
@@ -18,7 +20,7 @@ from mcgw.machine.memory import peak_growth
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.samplers import SAMPLERS
 from mcgw.scene.scene import Scene
-from mcgw.store import ensembles
+from mcgw.store import ensembles, identity
 
 GOLDEN = Path(__file__).parent / "golden_samplers.json"
 
@@ -133,3 +135,83 @@ def test_memory_does_not_grow_with_the_ensemble(make_scene, tmp_path, monkeypatc
 
 if __name__ == "__main__":
     GOLDEN.write_text(json.dumps({case: drawn(case) for case in CASES}, indent=1) + "\n")
+
+
+# --- what is not known is said to be so ---
+
+
+def test_versions_are_those_of_the_packages_and_of_some_unknown(monkeypatch):
+    known = {"mcgw": "1.2", "numpy": "2.0", "scipy": "1.1", "numba": "0.6"}
+
+    def version(name):
+        if name not in known:
+            raise PackageNotFoundError(name)
+        return known[name]
+
+    monkeypatch.setattr(identity, "version", version)
+    monkeypatch.setattr(identity.platform, "python_version", lambda: "3.99")
+    told = identity.versions.__wrapped__
+    assert told() == "python 3.99, mcgw 1.2, numpy 2.0, scipy 1.1, numba 0.6, h5py unknown"
+    assert told(of_draws=True) == "mcgw 1.2, numpy 2.0, numba 0.6, scipy 1.1"
+
+
+def test_the_commit_is_that_of_the_checkout_if_there_is_one(tmp_path, monkeypatch):
+    package = tmp_path / "mcgw" / "store"
+    package.mkdir(parents=True)
+    monkeypatch.setattr(identity, "__file__", str(package / "identity.py"))
+    told = identity.commit.__wrapped__
+    assert told() == "unknown"  # installed
+    (tmp_path / ".git").mkdir()
+    assert told() == "unknown"  # git fails
+
+    def git(call, **_):
+        assert call == ["git", "-C", str(tmp_path), "rev-parse", "HEAD"]
+        return SimpleNamespace(stdout="abc\n")
+
+    monkeypatch.setattr(identity.subprocess, "run", git)
+    assert told() == "abc"
+
+
+def test_a_processor_is_told_by_what_the_system_knows(tmp_path, monkeypatch):
+    info = tmp_path / "cpuinfo"
+    info.write_text(
+        "processor : 0\nmodel name : Z80 at 4: MHz\n\nprocessor : 1\nmodel name : Z80 at 4: MHz\n"
+    )
+    monkeypatch.setattr(identity, "Path", lambda _: info)
+    monkeypatch.setattr(identity.sys, "platform", "linux")
+    monkeypatch.setattr(identity.platform, "processor", lambda: "")
+    monkeypatch.setattr(identity.platform, "machine", lambda: "z80")
+    told = identity.processor.__wrapped__
+    assert told() == "Z80 at 4: MHz (2 cores)"
+    monkeypatch.setattr(identity.sys, "platform", "plan9")
+    assert told() == "z80"
+    monkeypatch.setattr(identity.sys, "platform", "linux")
+    monkeypatch.setattr(identity.platform, "processor", lambda: "Z")
+    info.write_text("processor : 0\n")
+    assert told() == "Z"
+    info.unlink()
+    assert told() == "Z"
+
+
+def test_what_keeps_two_runs_apart_is_said(make_scene):
+    """What differs first; a key that only one has, on either side; then what draws, and on what."""
+    one = make_scene(quantities=("load",))
+    film = one.replace(film=mcgw.Film(1e-7), quantities=("load",))
+    text, other = mcgw.scene_text(one), mcgw.scene_text(film)
+    told = identity.difference
+    assert told((text, "", "a"), (mcgw.scene_text(one.replace(seed=9)), "", "b")) == (
+        "ensemble.seed is 1 there and 9 here"
+    )
+    assert told((other, "", "a"), (text, "", "a")) == "contact.resistivity is 1e-07 there and not given here"
+    assert told((text, "", "a"), (other, "", "a")) == "contact.resistivity is None there and 1e-07 here"
+    assert told((text, "x", "a"), (text, "y", "a")) == "sweep is 'x' there and 'y' here"
+    more = mcgw.scene_text(one.replace(n_surfaces=7))
+    assert told((text, "", "numpy 1"), (more, "", "numpy 2")) == (
+        "it was drawn with numpy 1, but this is numpy 2"
+    )
+    assert told((text, "", "numpy 1, processor a"), (text, "", "numpy 1, processor b")) == (
+        "it was drawn on another kind of processor, which rounds exponentials differently"
+    )
+    assert told((text, "", "numpy 1, processor a"), (text, "", "numpy 2, processor a")) == (
+        "it was drawn with numpy 1, processor a, but this is numpy 2, processor a"
+    )

@@ -13,13 +13,14 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from begun_runs import SIZE, SURFACES, digest, halted, in_small_blocks
+from begun_runs import SIZE, SURFACES, begun, digest, halted, in_small_blocks
 from new_trailer import trailer_again
 from said import without_notes
 
 import mcgw
 from mcgw.cli import main
 from mcgw.errors import RunError, StoppedError, StoreError
+from mcgw.formats.files import state_of
 from mcgw.jobs import merging
 from mcgw.jobs.driver import part_of
 from mcgw.jobs.job import Job, commit_block
@@ -27,6 +28,8 @@ from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run
 from mcgw.store import ensembles, layout
 from mcgw.store.disk import parts_of
+from mcgw.store.place import write_body
+from mcgw.store.run_folder import RunFolder
 from mcgw.store.shards import Plan, Span
 
 HERE = Path(__file__).parent
@@ -206,6 +209,93 @@ def test_a_run_in_progress_can_be_read(scene, tmp_path):
     np.testing.assert_array_equal(ensemble.load, whole.load[:m])
     np.testing.assert_allclose(ensemble.mean("area"), whole.area[:m].mean(axis=0), rtol=1e-12)  # rounding
     assert not ensembles.read_attributes(path)["complete"]
+
+
+@pytest.mark.parametrize("keep", ["sums", "moments"])
+def test_rows_of_a_run_in_progress_are_those_of_a_list(scene, tmp_path, keep):
+    """From any surface to any other, within a block and beyond one; but of the ragged table, which is one."""
+    path, asked = tmp_path / "e.h5", replace(scene, sampler="cells", keep=keep)
+    shards = begun(asked, path)[:3]
+    every = ensembles.open_ensemble(path).sums
+    held = replace(every, shards=every.shards[:3])
+    whole = mcgw.simulate(asked)
+    for start in (0, 5, 15, 16, 33):
+        for stop in (16, 17, 40, 48, None):
+            rows = slice(start, 48 if stop is None else stop)
+            if rows.start < rows.stop:
+                np.testing.assert_array_equal(held.read("load", start, stop), whole.load[rows])
+    if keep == "moments":
+        extras = whole.sums.read("extras", 0, None)
+        np.testing.assert_array_equal(held.read("extras", 0, None), extras[extras[:, 0] < 48])
+        np.testing.assert_array_equal(every.read("extras", 1, 3), extras[1:3])
+        assert len(extras) > 2
+        np.testing.assert_array_equal(held.read("cells", 10, 20), whole.sums.read("cells", 10, 20))
+    shards[1].unlink()
+    with pytest.raises(StoreError, match=r"block-0000000000016\.h5: no longer exists; its run has ended"):
+        held.read("load", 0, 20)
+    np.testing.assert_array_equal(held.read("load", 0, 16), whole.load[:16])
+
+
+def test_a_run_without_a_block_or_its_record_is_said_to_have_none(scene, tmp_path):
+    path = tmp_path / "e.h5"
+    begun(scene, path)
+    folder = parts_of(path)
+    for shard in folder.glob("shards/*"):
+        shard.unlink()
+    with pytest.raises(StoreError, match=r"e\.h5: no block of its run is finished yet$"):
+        ensembles.open_ensemble(path)
+    (folder / "shards").rmdir()
+    with pytest.raises(RunError, match=r"e\.h5\.parts: is missing or incomplete; run the command again$"):
+        ensembles.open_ensemble(path)
+    (folder / "run.toml").unlink()
+    with pytest.raises(StoreError, match=r"run\.toml: No such file or directory$"):
+        RunFolder.open(folder)
+
+
+def test_a_block_that_is_a_link_or_damaged_is_not_held(scene, tmp_path):
+    path = tmp_path / "e.h5"
+    first, second, third = begun(scene, path)[:3]
+    run_folder = RunFolder.open(parts_of(path))
+    assert [run_folder.held(Span(at, 16)).span for at in (0, 16, 32)] == [Span(at, 16) for at in (0, 16, 32)]
+    first.rename(tmp_path / "elsewhere.h5")
+    first.symlink_to(tmp_path / "elsewhere.h5")
+    second.write_bytes(second.read_bytes()[:-1])
+    third.unlink()
+    assert [run_folder.held(Span(at, 16)) for at in (0, 16, 32)] == [None] * 3
+    (parts_of(path) / ".left.tmp").touch()
+    run_folder.remove()
+    assert [left.name for left in parts_of(path).iterdir()] == ["lock.db"]
+
+
+def test_statistics_of_a_missing_block_are_not_merged(scene, tmp_path, monkeypatch):
+    """It goes between the look for gaps and the making of the file."""
+    path = tmp_path / "e.h5"
+    gone = begun(replace(scene, keep="statistics"), path)[2]
+    made = merging.merge_once
+
+    def late(*words):
+        gone.unlink()
+        return made(*words)
+
+    monkeypatch.setattr(merging, "merge_once", late)
+    with pytest.raises(RunError, match=r"a shard is damaged; run the jobs again to redraw it$"):
+        merge(path)
+    assert not path.exists()
+
+
+def test_a_file_that_appears_while_one_is_made_is_left_alone(tmp_path):
+    path = tmp_path / "e.h5"
+    write_body(path, (b"one", b"two"), None)
+    before = state_of(path)
+    with pytest.raises(StoreError, match=r"e\.h5: File exists; it was not changed; choose another"):
+        write_body(path, (b"three", b""), None)
+    assert path.read_bytes() == b"onetwo"
+    write_body(path, (b"three", b"four"), before)
+    assert path.read_bytes() == b"threefour"
+    with pytest.raises(StoreError, match="another file now has this name; it was not changed"):
+        write_body(path, (b"five", b""), before)
+    with pytest.raises(RunError, match=r"cannot be written \(No such file or directory\); free some space"):
+        write_body(tmp_path / "no" / "e.h5", (b"", b""), None)
 
 
 def test_jobs_that_share_a_run(scene, tmp_path, expected):

@@ -1,6 +1,9 @@
 """Shards and trailers: every changed bit and every lost byte is noticed."""
 
+import errno
+import hashlib
 import os
+from contextlib import closing
 
 import h5py
 import numpy as np
@@ -8,7 +11,7 @@ import pytest
 
 from mcgw.errors import StoreError
 from mcgw.formats.files import write_whole
-from mcgw.store.disk import TRAILER_BYTES, check_trailer, read_checked, trailer_of
+from mcgw.store.disk import TRAILER_BYTES, SteadyFile, Trailer, check_trailer, read_checked, trailer_of
 from mcgw.store.shards import Span, commit_shard, content_digest, open_shard, pack
 
 RUN, SPAN = "a" * 64, Span(40, 5)
@@ -149,3 +152,81 @@ def test_large_files_are_checked_in_pieces(tmp_path):
     path, body = tmp_path / "a", bytes(range(256)) * 40_000
     path.write_bytes(body + trailer_of(body))
     assert check_trailer(path).length == read_checked(path)[0].length == len(body)
+
+
+NO_TRAILERS = ["{}", "[]", "3", "nothing", '{"length": "x", "sha256": "", "notes": {}}']
+NO_TRAILERS += ['{"length": 1, "sha256": ""}', '{"length": 1, "sha256": "", "notes": 3}']
+
+
+@pytest.mark.parametrize("text", NO_TRAILERS)
+def test_a_trailer_of_other_words_is_refused(text):
+    """Its own digest holds; and so does that of one in order."""
+    for words, good in ((text, False), ('{"length": 7, "sha256": "a", "notes": {"n": 1}}', True)):
+        head = b"MCGWSEAL" + words.encode().ljust(472)
+        data = head + hashlib.sha256(head).digest()
+        if good:
+            assert Trailer.from_bytes(data) == Trailer(7, "a", {"n": 1})
+            continue
+        with pytest.raises(StoreError, match=r"^its trailer cannot be read$"):
+            Trailer.from_bytes(data)
+
+
+class Disk:
+    """A file that takes three bytes at a time, and so many in all."""
+
+    def __init__(self, file, room):
+        self.room, self.data, self.asked = room, b"", 0
+        self.close = file._file.close
+        file._file = self
+
+    def write(self, data):
+        self.asked += 1
+        if len(self.data) >= self.room:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        self.data += bytes(data[:3])
+        return len(data[:3])
+
+    def truncate(self, _):
+        raise OSError(errno.EIO, "Input/output error")
+
+    def seek(self, *_):
+        return 0
+
+
+def test_a_full_disk_is_an_error_only_when_it_is_asked_for(tmp_path):
+    """HDF5 sees none: it goes on, nothing more is written, and the first error is the one that is told."""
+    with closing(SteadyFile(tmp_path / "a")) as file:
+        disk = Disk(file, room=6)
+        assert file.write(b"abcdef") == 6
+        file.check()
+        assert file.write(np.arange(2, dtype=np.int64)) == 16
+        assert (disk.data, disk.asked) == (b"abcdef", 3)
+        assert file.write(b"xyz") == 3
+        assert file.truncate(5) == 5
+        assert disk.asked == 3
+        for end in (file.check, lambda: file.trailer(b"end")):
+            with pytest.raises(OSError, match="No space left on device"):
+                end()
+
+
+def test_a_length_that_cannot_be_set_is_an_error_too(tmp_path):
+    with closing(SteadyFile(tmp_path / "a")) as file:
+        Disk(file, room=6)
+        assert file.truncate(None) == 0
+        with pytest.raises(OSError, match="Input/output error"):
+            file.check()
+
+
+def test_what_hdf5_writes_is_what_it_reads(tmp_path):
+    path = tmp_path / "a"
+    with closing(SteadyFile(path)) as file:
+        file.write(b"0123456789")
+        assert file.tell() == file.seek(0, os.SEEK_END) == 10
+        assert file.seek(-3, os.SEEK_CUR) == 7
+        assert file.read(5) == b"789\0\0"
+        file.truncate(4)
+        file.trailer(b"end")
+        file.flush()
+    assert path.read_bytes() == b"0123end"
+    with pytest.raises(FileExistsError):
+        SteadyFile(path)

@@ -94,6 +94,45 @@ def test_who_may_live_on_another_host_is_told_and_how_to_go_on(no_locks, tmp_pat
     assert free(tmp_path, shared=False)
 
 
+def test_of_two_that_begin_at_once_none_may_go_on(no_locks, tmp_path, monkeypatch):
+    """Another takes its name between our look and ours, or ours between our look and that of the name."""
+    look, seen = lock._other, []
+
+    def late(folder, shared, mine):
+        seen.append(mine.name)
+        found = look(folder, shared, mine)
+        if len(seen) == 1:
+            (folder / name).write_text(f"pid {os.getpid()} on {socket.gethostname()}\n")
+        return found
+
+    monkeypatch.setattr(lock, "_other", late)
+    for name in ("lock.shared-1", "lock.alone"):
+        seen.clear()
+        with pytest.raises(LockedError, match=f"locked by pid {os.getpid()} on"):
+            locked(tmp_path / "e.parts").__enter__()
+        assert [path.name for path in (tmp_path / "e.parts").glob("lock.[as]*")] == [name]
+        (tmp_path / "e.parts" / name).unlink()
+    assert seen == ["lock.alone"]  # its name was taken: there is nothing more to look for
+
+
+@pytest.mark.parametrize("text", [b"\xff", b"x" * 201, None])
+def test_a_name_that_cannot_be_read_is_another_process(no_locks, text, tmp_path):
+    name = tmp_path / "lock.alone"
+    if text is None:
+        name.mkdir()
+    else:
+        name.write_bytes(text)
+    with pytest.raises(LockedError, match="locked by another process, which is working on this run"):
+        locked(tmp_path).__enter__()
+
+
+def test_where_the_system_has_no_such_locks_the_disk_is_not_asked(tmp_path, monkeypatch):
+    assert lock.keeps_locks(tmp_path)
+    monkeypatch.setitem(sys.modules, "fcntl", None)
+    assert lock.keeps_locks(tmp_path / "nowhere")
+    assert not list(tmp_path.iterdir())
+
+
 def test_a_lock_that_fails_for_another_reason_leaves_no_folder(monkeypatch, tmp_path):
     def fail(folder, shared):
         (folder / "lock.db").touch()
