@@ -1,11 +1,15 @@
 """Files of maps: every digit back, other people's readers, and damaged ones refused in one line."""
 
+import hashlib
 import json
+import math
 import re
 import shutil
 import struct
 import subprocess
 import zipfile
+from datetime import UTC, datetime, timedelta
+from xml.etree import ElementTree
 
 import h5py
 import numpy as np
@@ -13,11 +17,13 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 from mcgw.formats.numbers import METRES
+from mcgw.maps.envelope import envelope
 from mcgw.maps.form import smooth
 from mcgw.maps.map_files import read_map, write_map
+from mcgw.maps.profile_files import read_profile
 from mcgw.maps.sdf import read_sdf
-from mcgw.maps.synthetic import Spectrum, gaussian_map, spectrum_from
-from mcgw.maps.topography import Topography
+from mcgw.maps.synthetic import Asperities, Spectrum, gaussian_map, spectrum_from
+from mcgw.maps.topography import Topography, checked_shape, single_points
 
 NAMES = ["map.sdf", "map.ascii.sdf", "map.x3p", "map.npy", "map.h5"]
 every_format = pytest.mark.parametrize("name", NAMES)
@@ -133,6 +139,79 @@ def test_other_files_made_by_hand(tmp_path):
         assert found.pixel == pytest.approx((1.5e-6, 4e-6), rel=1e-14), name
 
 
+def test_headers_that_are_written_literally(topography, tmp_path):
+    """Byte by byte as ISO 25178-71 has it; and of X3P the sums of both members, and the axes."""
+    for name in ("m.sdf", "m.ascii.sdf", "m.x3p"):
+        write_map(topography, tmp_path / name)
+    raw = (tmp_path / "m.sdf").read_bytes()
+    magic, maker, made, changed, *numbers = struct.unpack("<8s10s12s12sHHddddBBB", raw[:81])
+    assert (magic, maker, changed) == (b"bISO-1.0", b"mcgw      ", made)
+    assert numbers == [7, 5, 1e-6, 2.5e-6, 1.0, 0.0, 0, 7, 0]
+    assert raw[81:] == topography.heights.tobytes()
+    lines = (tmp_path / "m.ascii.sdf").read_bytes().split(b"\r\n")
+    date = lines[2].decode().removeprefix("CreateDate = ")
+    assert made.decode()[:10] == date[:10]  # but for a minute between the two
+    now = datetime.now(UTC).replace(tzinfo=None)
+    assert abs(datetime.strptime(date, "%d%m%Y%H%M") - now) < timedelta(minutes=3)
+    assert (
+        lines[:14]
+        == f"""aISO-1.0
+ManufacID = mcgw
+CreateDate = {date}
+ModDate = {date}
+NumPoints = 7
+NumProfiles = 5
+Xscale = 1e-06
+Yscale = 2.5e-06
+Zscale = 1.0
+Zresolution = 0.0
+Compression = 0
+DataType = 7
+CheckType = 0
+*""".encode().split(b"\n")
+    )
+    assert lines[-2:] == [b"*", b""]
+    with zipfile.ZipFile(tmp_path / "m.x3p") as archive:
+        main, data = archive.read("main.xml"), archive.read("bindata/data.bin")
+        assert archive.read("md5checksum.hex").decode() == f"{hashlib.md5(main).hexdigest()} *main.xml\n"
+    assert data == topography.heights.tobytes()
+    root = ElementTree.fromstring(main)
+    assert root.find("Record3/DataLink/MD5ChecksumPointData").text == hashlib.md5(data).hexdigest().upper()
+    axes = {axis.tag: [part.text for part in axis] for axis in root.find("Record1/Axes")}
+    assert axes == {
+        "CX": ["I", "D", "1e-06", "0.0"], "CY": ["I", "D", "2.5e-06", "0.0"], "CZ": ["A", "D", "1.0", "0.0"],
+    }  # fmt: skip
+    date = root.find("Record2/Date").text
+    assert abs(datetime.strptime(date, "%Y-%m-%dT%H:%M:%S.0+00:00") - now) < timedelta(minutes=3)
+
+
+@pytest.mark.parametrize("separator", [" ", "\t", "\n", ","])
+def test_an_ascii_sdf_of_several_megabytes_is_read_piece_by_piece(separator, tmp_path):
+    """Wherever a piece ends inside a number; what stands behind the second star is no height."""
+    z = np.random.default_rng(1).integers(0, 10**12, 90_000)
+    head = "NumPoints=300\nNumProfiles=300\nXscale=1e-6\nYscale=1e-6\nZscale=1e-18\nDataType=7\n*\n"
+    text = separator.join(map(str, z)).replace(",", ", ")
+    (tmp_path / "m.sdf").write_text(f"aISO-1.0\n{head}{text}\n*\n5 5\n")
+    assert np.array_equal(read_map(tmp_path / "m.sdf").heights.ravel(), z * 1e-18)
+    (tmp_path / "m.sdf").write_text(f"aISO-1.0\n{head}{text}")  # without an end
+    assert read_map(tmp_path / "m.sdf").heights[-1, -1] == z[-1] * 1e-18
+
+
+def test_the_shortest_ascii_sdf_there_is(tmp_path):
+    """A digit and a space a point; keys without an equals sign, and none of compression."""
+    head = "NumPoints 2\n NumProfiles 1\nXscale 1e-6\nYscale 2e-6\nZscale 1\nDataType 7\n"
+    (tmp_path / "m.sdf").write_text(f"aISO-1.0\n{head}*\n1 2")
+    found = read_map(tmp_path / "m.sdf")
+    assert (found.heights.tolist(), found.pixel) == ([[1.0, 2.0]], (1e-6, 2e-6))
+    for key in ("NumPoints", "NumProfiles", "Xscale", "Yscale", "Zscale", "DataType"):
+        (tmp_path / "m.sdf").write_text(f"aISO-1.0\n{head.replace(key, 'Other')}*\n1 2")
+        with pytest.raises(ValueError, match=f"the SDF header lacks {key}$"):
+            read_map(tmp_path / "m.sdf")
+        (tmp_path / "m.sdf").write_text(f"aISO-1.0\n{head.replace(key, key + ' x')}*\n1 2")
+        with pytest.raises(ValueError, match="the SDF header is malformed"):
+            read_map(tmp_path / "m.sdf")
+
+
 @every_format
 def test_a_file_cut_short_is_refused(name, topography, tmp_path):
     path = tmp_path / name
@@ -238,6 +317,13 @@ def all_zero(members):
         ),
         (blown_up, "more than 1048576"),
         (all_zero, "checksum"),
+        (replaced(b"<Record1>", b"<!ENTITY a><Record1>"), "declares entities or is not UTF-8"),
+        (replaced(b"<Record1>", b"\0<Record1>"), "declares entities or is not UTF-8"),
+        *(
+            (replaced(b"<Increment>1e-06<", b"<Increment>%s<" % x), "CX/Increment = .* is not a number")
+            for x in (b"nan", b"inf", b"wide")
+        ),
+        (replaced(b"<Increment>1e-06<", b"<Increment> <"), "lacks Record1/Axes/CX/Increment"),
     ],
 )
 def test_damaged_x3p_files_are_refused_in_one_line(change, told, topography, tmp_path):
@@ -300,6 +386,24 @@ def test_the_valid_points_of_an_x3p_made_by_hand(tmp_path):
             archive.writestr("bindata/valid.bin", bytes([valid]))
         missing = np.isnan(read_map(tmp_path / "hand.x3p").heights).ravel()
         assert missing.tolist() == [not valid >> k & 1 for k in range(6)]
+
+
+def test_an_x3p_with_more_points_and_without_a_scale_of_heights(tmp_path):
+    """Nine points need two bytes of marks; increment 1 and offset 0 are what is meant. Packed or not."""
+    link = "<ValidPointsLink>bindata/valid.bin</ValidPointsLink></DataLink>"
+    main = MAIN.replace("</DataLink>", link).replace("<SizeY>2<", "<SizeY>3<")
+    main = main.replace("<Increment>2.5e-9</Increment><Offset>1e-6</Offset>", "")
+    for method in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, zipfile.ZIP_BZIP2):
+        with zipfile.ZipFile(tmp_path / "m.x3p", "w", method) as archive:
+            archive.writestr("main.xml", main)
+            archive.writestr("bindata/data.bin", struct.pack("<9h", *range(9)))
+            archive.writestr("bindata/valid.bin", bytes([0b11111101, 0b1]))
+        if method == zipfile.ZIP_BZIP2:
+            with pytest.raises(ValueError, match=r"main\.xml: is packed by method 12; only deflate is read"):
+                read_map(tmp_path / "m.x3p", unit="m")
+        else:
+            found = read_map(tmp_path / "m.x3p").heights.ravel()
+            assert np.array_equal(found, [0, np.nan, *range(2, 9)], equal_nan=True)
 
 
 @pytest.mark.parametrize("kind", ["<f4", ">f8", ">i2", "<u1", "<i8", "<f2"])
@@ -394,9 +498,93 @@ def test_what_makes_no_map_is_refused(tmp_path):
         (lambda: gaussian_map(Spectrum(1e-6, 28e-6, 23e-6), (64, 64), (1e-6, 1e-6), rng), "give more pixels"),
         (lambda: spectrum_from("rms=1um,long=30um,short=5um,hurst=x"), "hurst = 'x': give a number"),
         (lambda: smooth(wave, 30e-6), "longer than the map"),
+        (lambda: Spectrum(1e-6, math.inf, 5e-6), "long = inf: give a length > 0 m"),
+        (lambda: Spectrum(1e-6, 30e-6, -1.0), "short = -1.0: give a length > 0 m"),
+        (lambda: Spectrum(1e-6, 5e-6, 5e-6), "below long"),
+        (lambda: Spectrum(1e-6, 30e-6, 5e-6, -1.01), "hurst = -1.01"),
+        (lambda: spectrum_from("rms=1um,long=30um,m0=1e-12"), "give rms, long and short, or m0, m2 and m4"),
+        (lambda: spectrum_from("rms=1um,long=30,short=5um,size=1um"), "'size=1um': give rms, long"),
+        (
+            lambda: envelope(Asperities(*4 * [np.zeros(0)], 1.0, (1.0, 1.0)), (4, 4)),
+            "no asperity: nothing to",
+        ),
+        (lambda: read_map(tmp_path), "is not a regular file"),
+        (lambda: read_profile(tmp_path), "is not a regular file"),
+        (
+            lambda: read_profile(saved("m.npy", np.zeros((3, 9))), spacing=1.0),
+            "2 dimensions; a profile has one",
+        ),
     ):
         with pytest.raises(ValueError, match=told):
             call()
+
+
+def test_the_largest_map_and_the_most_points_that_a_file_may_declare():
+    """2^28; or of a file's bytes twenty each, but 2^22 in any case. Three columns of more rows are no map."""
+    assert checked_shape(2**14, 2**14) == (2**14, 2**14)
+    assert checked_shape(1, 1, held=0) == (1, 1)
+    assert checked_shape(2**11, 2**11, held=0) == (2**11, 2**11)
+    assert checked_shape(2**20, 20, held=2**20) == (2**20, 20)
+    for rows, columns, held in ((2**14, 2**14 + 1, None), (2**22 + 1, 1, 0), (20 * 2**20 + 1, 1, 2**20)):
+        with pytest.raises(ValueError, match="points: more than "):
+            checked_shape(rows, columns, held=held)
+    for rows, columns in ((0, 1), (1, 0)):
+        with pytest.raises(ValueError, match="one or more along each axis"):
+            checked_shape(rows, columns)
+    assert [bool(single_points(*shape)) for shape in ((4, 3), (3, 3), (4, 4), (4, 2))] == [True] + 3 * [False]
+
+
+def test_what_an_array_and_an_hdf5_map_say_of_themselves(topography, tmp_path):
+    """Each key and each attribute, as others read them."""
+    periodic = Topography(topography.heights, topography.pixel, periodic=True)
+    assert write_map(periodic, tmp_path / "m.npy") == [tmp_path / "m.npy", tmp_path / "m.json"]
+    assert json.loads((tmp_path / "m.json").read_text()) == {
+        "filetype": "mcgw-surface", "pixel": [1e-6, 2.5e-6], "unit": "m", "periodic": True,
+        "axes": ["y", "x"],
+    }  # fmt: skip
+    one = np.ones(1)
+    field = Asperities(1e-6 * one, 2e-6 * one, 3e-6 * one, 4e-6 * one, 5e-6, (7e-6, 12.5e-6))
+    assert write_map(periodic, tmp_path / "m.h5", field, scene="of it") == [tmp_path / "m.h5"]
+    with h5py.File(tmp_path / "m.h5") as file:
+        assert file.attrs["filetype"] == "mcgw-surface"
+        assert list(file.attrs["format"]) == [1, 0]
+        assert list(file.attrs["pixel"]) == [1e-6, 2.5e-6]
+        assert file.attrs["periodic"]
+        assert file["height"].attrs["units"] == "m"
+        assert list(file["height"].attrs["axes"]) == ["y", "x"]
+        assert file["height"].compression == "gzip"
+        group = file["asperities"]
+        assert (group.attrs["radius"], list(group.attrs["size"])) == (5e-6, [7e-6, 12.5e-6])
+        assert group.attrs["units"] == "m"
+        assert {name: (x[0], x.attrs["units"]) for name, x in group.items()} == {
+            "x": (1e-6, "m"), "y": (2e-6, "m"), "z": (3e-6, "m"),
+        }  # fmt: skip
+        assert file["scene"][()] == b"of it"
+    for name in ("m.npy", "m.h5"):
+        assert read_map(tmp_path / name).periodic
+        assert read_map(tmp_path / name).assumed_unit == ""
+    write_map(topography, tmp_path / "n.h5")
+    with h5py.File(tmp_path / "n.h5") as file:
+        assert "asperities" not in file
+        assert file["scene"][()] == b""
+    assert not read_map(tmp_path / "n.h5").periodic
+
+
+@pytest.mark.parametrize(("key", "value", "told"), [
+    ("pixel", "12", "pixel = '12': must be"), ("pixel", [1, True], "two numbers in m"),
+    ("pixel", [1e-6] * 3, "two numbers in m"), ("periodic", "no", "periodic = 'no': must be true or false"),
+    ("unit", "um", "unit = 'um': must be 'm'"),
+])  # fmt: skip
+def test_words_in_place_of_numbers_are_refused(key, value, told, topography, tmp_path):
+    write_map(topography, tmp_path / "m.npy")
+    facts = json.loads((tmp_path / "m.json").read_text())
+    (tmp_path / "m.json").write_text(json.dumps({**facts, key: value}))
+    with pytest.raises(ValueError, match=rf"m\.json: {told}" if key == "periodic" else told):
+        read_map(tmp_path / "m.npy")
+    del facts["unit"], facts["periodic"]
+    (tmp_path / "m.json").write_text(json.dumps({"pixel": [1, 2]}))
+    found = read_map(tmp_path / "m.npy")
+    assert (found.pixel, found.periodic, found.assumed_unit) == ((1.0, 2.0), False, "m")
 
 
 def test_arrays_of_objects_are_never_unpickled(tmp_path):
