@@ -6,6 +6,7 @@ from dataclasses import replace
 import matplotlib as mpl
 import numpy as np
 import pytest
+from told import drawn
 
 import analytic
 import mcgw
@@ -236,7 +237,8 @@ def no_window():
     plt.close("all")
 
 
-def test_everything_draws_itself(results):
+def test_everything_draws_itself(results, recorded):
+    seen = []
     for name, result in results.items():
         figure, ax = plt.subplots()
         before = set(plt.get_fignums())
@@ -248,8 +250,10 @@ def test_everything_draws_itself(results):
         own = result.plot()
         assert own.figure is not figure, name
         assert own.figure.number in plt.get_fignums(), name  # so a notebook shows it
+        seen += [] if name == "study" else drawn(own)  # which is of times
         if name == "ensemble":  # the others are drawn in the tests of figures
             own.figure.canvas.draw()
+    recorded("drawn.results", seen)
 
 
 def test_what_is_drawn_is_what_there_is(results, ensemble):

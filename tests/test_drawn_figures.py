@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+import told
 from conftest import SURFACE
 from crowding import crowded
 from matplotlib.collections import LineCollection, PathCollection
@@ -49,9 +50,10 @@ SERIES = (
 
 
 @pytest.mark.parametrize("scale", ["linear", "log"])
-def test_panels_are_drawn_as_they_are(scale):
+def test_panels_are_drawn_as_they_are(scale, recorded):
     panel = Panel("the panel", "x (m)", "y (N)", SERIES, ("linear", scale), level=2.5)
     figure = draw(FigureData("The title", "The caption.", (panel, panel)))
+    recorded(f"drawn.{scale}", told.drawn(figure))
     assert (figure.get_suptitle(), figure.get_supxlabel()) == ("The title", "The caption.")
     used = [axis for axis in figure.axes if axis.get_title(loc="left")]
     assert len(used) == 2
@@ -140,7 +142,7 @@ def slope(against, value):
     )
 
 
-def test_convergence(make_scene, kept, tmp_path):
+def test_convergence(make_scene, kept, tmp_path, recorded):
     checks = (Check("first", "seen so", 0.5), Check("second", "seen else", 1e-5), Check("third", "x", 0.0))
     scores = np.random.default_rng(1).normal(size=400)
     found = Convergence(make_scene(title="T"), checks, (slope("M", -0.49), slope("N", -0.55)), scores)
@@ -148,6 +150,7 @@ def test_convergence(make_scene, kept, tmp_path):
     assert repr(dataclasses.replace(found, checks=checks[:1])).startswith("Statistical convergence passed")
     save_convergence(found, tmp_path / "x.png")
     (figure,) = kept
+    recorded("drawn.converge", told.drawn(figure))
     m, n, z, bottom = figure.axes
     for axis, curve, x, y in (
         (m, found.slopes[0], "surfaces $M$", "rms error (standard deviations)"),
@@ -192,7 +195,7 @@ def test_convergence_without_slopes(make_scene, kept, tmp_path):
     assert "passed: p = 0.3 over 1 checks" in kept[0].get_suptitle()
 
 
-def test_tradeoff(make_scene, kept, tmp_path):
+def test_tradeoff(make_scene, kept, tmp_path, recorded):
     from mcgw.statistics.methods import Method
     from mcgw.statistics.tradeoff import Point, Tradeoff
     from mcgw.statistics.wishes import Advice, Way, Wish
@@ -225,6 +228,7 @@ def test_tradeoff(make_scene, kept, tmp_path):
     found = Tradeoff(scene, (0.0, 2.0), points, methods, tuple(ways), advice, 1.0)
     save_tradeoff(found, tmp_path / "x.png")
     (figure,) = kept
+    recorded("drawn.tradeoff", told.drawn(figure))
     left, right = figure.axes
     assert figure.get_suptitle() == "T"
     assert [axis.get_xlabel() for axis in (left, right)] == ["time of a surface (ms)", "time (s)"]
@@ -254,7 +258,7 @@ def test_tradeoff(make_scene, kept, tmp_path):
     np.testing.assert_allclose(bars[:2, 2], [p.rms[1] * (1 + p.rms_stderr) for p in points[:2]])
 
 
-def test_contact_map(make_scene, kept, tmp_path):
+def test_contact_map(make_scene, kept, tmp_path, recorded):
     """Spots to scale at their places in micrometres, coloured by their loads in millinewtons."""
     from mcgw.figures.contact_map import _DPI, contact_map_figure, save_contact_map, spots_at
     from mcgw.maps.synthetic import Asperities, asperities_of
@@ -281,6 +285,7 @@ def test_contact_map(make_scene, kept, tmp_path):
         kept.clear()
         save_contact_map(field, spots, tmp_path / "x.png", colour=colour)
         (figure,) = kept
+        recorded(f"drawn.map-{colour}", told.drawn(figure))
         axis, *bars = figure.axes
         (circles,) = axis.collections
         np.testing.assert_allclose(circles.get_offsets(), 1e6 * np.column_stack([x[:2], y[:2]]))

@@ -13,6 +13,7 @@ from crowding import crowded
 from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.stats import norm
+from told import mark
 
 import analytic
 import mcgw
@@ -57,6 +58,27 @@ def test_all_are_there(figures):
 )
 def test_panels_have_room(figures, name):
     assert not crowded(draw(figures[name]))
+
+
+def said(figures):
+    """Words, axes and numbers of figures, a line for each series."""
+    for name, data in figures.items():
+        if not isinstance(data, FigureData):
+            yield f"{name}: {data}"
+            continue
+        yield f"{name}: {data.title}; {data.caption}; {data.columns} columns"
+        for panel in data.panels:
+            ends = "" if panel.ylim is None else f" from {panel.ylim[0]:.6g} to {panel.ylim[1]:.6g}"
+            axes = f"{panel.xlabel} | {panel.ylabel}, {' '.join(panel.scales)}{ends}, level {panel.level}"
+            yield f" {panel.title or '-'}: {axes}"
+            for s in panel.series:
+                p, band = s.points, s.band or ()
+                parts = (s.x, s.theory, *band, *((p.x, p.mean, p.stderr, p.exact) if p else ()))
+                yield f"  {s.label}: {'; '.join(map(mark, parts))}"
+
+
+def test_nothing_else_of_the_sweep_moves(figures, recorded):
+    recorded("figures.sweep", said(figures))
 
 
 def test_every_point_agrees_with_theory(figures):
@@ -324,7 +346,7 @@ def preset(name):
 
 
 def drawn(scene):
-    """Figures by name, and the names of those with no meaning."""
+    """Figures by name, the names of those with no meaning, and why."""
     compared = Compared(scene)
     found = dict(figures_of(compared))
     assert [row.name for row in rows_of(compared)] == list(found)
@@ -333,7 +355,7 @@ def drawn(scene):
     assert all(
         isinstance(x, str) and x and "\n" not in x for x in found.values() if x not in figures.values()
     )
-    return figures, set(found) - set(figures)
+    return figures, {name: why for name, why in found.items() if name not in figures}
 
 
 def residuals(figures):
@@ -377,6 +399,7 @@ SCENES = {
         BACK,
     ),
 }  # fmt: skip
+RECORDED = ("graded", "coated", "sticks", "interacting", "preset nanoindentation")
 DEAR = ("own grading", "other heights", "yields, and back", "own radii")  # 2 s to half a minute of theory
 
 
@@ -401,9 +424,11 @@ def check(figures):
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.slow if name in DEAR else ()) for name in SCENES]
 )
-def test_every_kind_of_scene_has_its_figures(name):
+def test_every_kind_of_scene_has_its_figures(name, recorded):
     figures, without = drawn_of(name)
-    assert without == SCENES[name][1]
+    assert set(without) == SCENES[name][1]
+    if name in RECORDED:
+        recorded(f"figures.{name.split()[-1]}", said(figures | without))
     check(figures.values())
     for panel in (panel for figure in figures.values() for panel in figure.panels):
         assert len({one.label for one in panel.series}) == len(panel.series), panel.title

@@ -9,13 +9,12 @@ from collections import defaultdict
 from html import unescape
 from io import BytesIO
 
-import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from overwrites import prepare
 from said import call
 from test_scene_keys import keys, text_of
-from told import ANSWERS, of_array
+from told import ANSWERS, drawn, of_array
 
 import mcgw
 from mcgw.cli import COMMANDS
@@ -35,7 +34,8 @@ LINES = {
     "solve": ["solve moments.toml --load 1N --csv new/v.csv", "solve y.toml --pressure 2MPa -v"],
     "export": [f"export scene.toml --to {to} -o new/x{to}{end}" for to, end in
                (("abaqus", ".inp"), ("calculix", ".inp"), ("comsol", ".txt"), ("moose", ".csv"))],
-    "figures": ["figures --scene moments.toml --only equal-load -o new", "figures --list"],
+    "figures": ["figures --scene moments.toml --only equal-load -o new", "figures --list",
+                "figures --scene y.toml --only figure-2 -o new --csv"],
     "report": ["report e.h5 -o new/r.html"],
     "surface": ["surface scene.toml --shape 16 -o new/m.sdf", "surface scene.toml --at 0 -o new/m.png"],
     "fit": ["fit map.npy --cutoff none -o new/f.toml -v --picture new/f.png --summits new/s.csv"],
@@ -56,28 +56,6 @@ def steady(text):
     for line in text.splitlines():
         if line.strip():
             yield OTHER.sub("#", CLOCK.sub("#", line)).rstrip()
-
-
-def drawn(figure):
-    """What stands in a figure, with the data of every line and every collection of points."""
-    yield f"figure: {figure.get_suptitle()!r} {figure.get_supxlabel()!r}"
-    for axis in figure.axes:
-        words = axis.get_title(loc="left"), axis.get_title(), axis.get_xlabel(), axis.get_ylabel()
-        yield f" axes: {' | '.join(words)}, {axis.get_xscale()}, {axis.get_yscale()}"
-        legend = axis.get_legend()
-        yield f"  legend: {[t.get_text() for t in legend.get_texts()] if legend else None}"
-        yield from (f"  says {t.get_text()!r}" for t in axis.texts)
-        for line in axis.get_lines():
-            x, y = (np.asarray(v, dtype=float) for v in line.get_data())
-            yield f"  line {line.get_label()!r} {line.get_marker()}: {of_array(x)}; {of_array(y)}"
-        yield from (f"  image: {of_array(np.ma.filled(one.get_array(), np.nan))}" for one in axis.images)
-        corners = [p.get_patch_transform().transform(p.get_path().vertices) for p in axis.patches]
-        if corners:
-            yield f"  {len(corners)} patches: {of_array(np.concatenate(corners))}"
-        for one in axis.collections:
-            paths = [p.vertices for p in one.get_paths()]
-            held = np.concatenate([np.asarray(one.get_offsets(), dtype=float).reshape(-1, 2), *paths])
-            yield f"  collection: {of_array(held)}"
 
 
 def written(path):

@@ -13,6 +13,7 @@ from enum import Enum
 from pathlib import Path
 
 import numpy as np
+from matplotlib.ticker import FixedFormatter, FuncFormatter
 
 ANSWERS = Path(__file__).parent / "answers"
 SHORT = 8  # numbers that stand one by one
@@ -45,6 +46,63 @@ def of_array(values):
     said = (x[0], x[-1], x.min(), x.max(), x.mean(), np.sqrt(np.mean(x * x)), weights @ x / x.size)
     rest = "" if finite.all() else f", {np.count_nonzero(~finite)} not finite"
     return f"{a.dtype.kind}{a.shape} " + " ".join(number(round(v / size, 10) * size) for v in said) + rest
+
+
+def mark(values):
+    """A series of numbers in four: how many, both ends, and a mean that moves with each."""
+    x = np.asarray(values, dtype=float)
+    if not x.size:
+        return "none"
+    weights = 1 + np.arange(x.size) * 0.6180339887498949 % 1
+    said, size = (x[0], x[-1], weights @ x / x.size), np.abs(x).max() or 1.0
+    return f"{x.size} {' '.join(f'{round(v / size, 10) * size:.6g}' for v in said)}"
+
+
+def drawn(figure):
+    """What stands in a figure, or in that of an axis: words, ends, ticks, data and look of each part."""
+    figure = figure.figure
+    size = " x ".join(f"{x:.4g}" for x in figure.get_size_inches())
+    yield f"figure: {figure.get_suptitle()!r} {figure.get_supxlabel()!r}, {size} inches"
+    for axis in figure.axes:
+        words = axis.get_title(loc="left"), axis.get_title(), axis.get_xlabel(), axis.get_ylabel()
+        yield f" axes: {' | '.join(words)}, at {' '.join(f'{x:.4g}' for x in axis.get_position().bounds)}"
+        yield from (f"  {one}" for one in map(_axis, (axis.xaxis, axis.yaxis)))
+        legend = axis.get_legend()
+        yield f"  legend: {[t.get_text() for t in legend.get_texts()] if legend else None}"
+        yield from (f"  says {t.get_text()!r}" for t in axis.texts)
+        for line in axis.get_lines():
+            x, y = (np.asarray(v, dtype=float) for v in line.get_data())
+            yield f"  line {line.get_label()!r} {_look(line)}: {of_array(x)}; {of_array(y)}"
+        for one in axis.images:
+            ends = " ".join(f"{x:.6g}" for x in (*one.get_extent(), *one.get_clim()))
+            yield f"  image {one.get_cmap().name} {ends}: {of_array(np.ma.filled(one.get_array(), np.nan))}"
+        corners = [p.get_patch_transform().transform(p.get_path().vertices) for p in axis.patches]
+        if corners:
+            yield f"  {len(corners)} patches {_colour(axis.patches[0])}: {of_array(np.concatenate(corners))}"
+        for one in axis.collections:
+            paths = [p.vertices for p in one.get_paths()]
+            held = np.concatenate([np.asarray(one.get_offsets(), dtype=float).reshape(-1, 2), *paths])
+            shades = () if one.get_array() is None else (*one.get_clim(), *np.ravel(one.get_array()))
+            yield f"  collection {_colour(one)} {mark(shades)}: {of_array(held)}"
+
+
+def _axis(axis):
+    """Scale, ends and ticks, with the labels that are ours."""
+    ends = sorted(axis.get_view_interval())
+    ticks = [x for x in axis.get_majorticklocs() if ends[0] <= x <= ends[1]]
+    ours = isinstance(axis.get_major_formatter(), FuncFormatter | FixedFormatter)
+    labels = axis.get_major_formatter().format_ticks(ticks) if ours else [f"{x:.4g}" for x in ticks]
+    return f"{axis.get_scale()} {ends[0]:.6g} to {ends[1]:.6g}: {', '.join(labels)}"
+
+
+def _look(line):
+    dash, mark = line.get_linestyle(), line.get_marker()
+    return f"{line.get_color()} {dash} {line.get_linewidth():g} {mark} {line.get_markersize():g}"
+
+
+def _colour(one):
+    face = np.atleast_2d(one.get_facecolor())
+    return " ".join(f"{x:.3g}" for x in face[0]) if face.size else "no face"
 
 
 def lines(value, name="", depth=6):
