@@ -2,19 +2,25 @@
 
 import math
 import re
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from fit_of_maps import fit_map
 from scipy import ndimage
+from scipy.stats import kurtosis, skew
 
 import mcgw
 from analytic import MeasuredHeights
 from mcgw.cli import main
 from mcgw.maps.envelope import envelope, hidden_summits
-from mcgw.maps.estimates import SUMMITS
+from mcgw.maps.estimates import SUMMITS, Estimate, by_summits, estimates_table, roughness_of
+from mcgw.maps.fit import fit_prepared
+from mcgw.maps.hidden_caps import visible
 from mcgw.maps.map_files import write_map
+from mcgw.maps.preparation import Preparation, prepared
+from mcgw.maps.summit_sums import coarse_sums_of, summit_sums_of
 from mcgw.maps.synthetic import Asperities, Spectrum, gaussian_map, moments_on_grid
 from mcgw.maps.topography import Topography
 from mcgw.reports.fitted import fit_lines
@@ -356,3 +362,135 @@ def test_summits_of_a_map_have_the_radius_of_their_mean_curvature(sparse):
     assert scene.surface.radius == pytest.approx(1 / np.mean(1 / listed.radii), rel=1e-12)
     own = np.array(scene.curvature.ratios) * scene.surface.radius
     np.testing.assert_allclose(np.sort(own), np.sort(listed.radii), rtol=1e-12)
+
+
+def waves(along, down, n=160):
+    """A map of so many equal summits, each in the middle of its cell."""
+    x, y = (2 * math.pi * k * (np.arange(n) + 0.5) / n for k in (along, down))
+    return Topography(1e-7 * -(np.cos(x) + np.cos(y)[:, None]), PIXEL, periodic=True)
+
+
+@pytest.mark.parametrize(("shape", "parts", "tiles", "counted"), [
+    ((7, 1), 4, 9, False), ((4, 2), 4, 9, True), ((6, 5), 4, 9, True), ((8, 4), 4, 16, True),
+    ((8, 4), 6, 16, True), ((8, 4), 2, 4, True),
+])  # fmt: skip
+def test_few_summits_have_few_sub_areas(shape, parts, tiles, counted, without_caps):
+    """Two summits in each on average, but three of them along each axis; fewer than eight are not counted."""
+    fit = fit_map(waves(*shape), cutoff=None, form="none", across=parts)
+    assert fit.summits.size == math.prod(shape)
+    assert len(fit.tiles) == tiles
+    assert ("summits" in fit.estimates) == counted
+
+
+@pytest.mark.parametrize("size", [72, 100, 130, 200])
+def test_errors_of_counted_summits_are_those_over_sub_areas_of_four(size, without_caps):
+    """As many along each axis as that makes, from two to four."""
+    drawn = gaussian_map(Spectrum(1e-6, 30e-6, 14e-6), (size, size), PIXEL, rng(2))
+    ready = prepared(drawn, Preparation(None, form="none"))
+    fit = fit_prepared(ready)
+    across = max(min(4, int(math.sqrt(fit.summits.size / 4))), 2)
+    pairs = by_summits(summit_sums_of(drawn, across=across), coarse_sums_of(drawn, across=across))
+    assert fit.estimates["summits"] == Estimate.of(pairs, fit.waves)
+
+
+@pytest.mark.parametrize("form", ["none", "plane", "quadratic", "cubic"])
+def test_heights_of_summits_are_about_their_own_plane_or_paraboloid(form, without_caps):
+    """Of the form that was taken off the map, but of second order at most; their mean stays."""
+    tilt = np.add.outer(np.arange(120.0) ** 2, 90 * np.arange(140.0)) * 1e-10
+    drawn = gaussian_map(Spectrum(1e-6, 30e-6, 14e-6), (120, 140), PIXEL, rng(3)).heights
+    ready = prepared(Topography(np.exp(drawn * 1e6) * 1e-6 + tilt, PIXEL), Preparation(None, form=form))
+    found, counted = fit_prepared(ready), summit_sums_of(ready.used)
+    x, y = counted.places
+    columns = {"none": [], "plane": [x, y]}.get(form, [x, y, x * x, x * y, y * y])
+    basis = np.column_stack([np.ones_like(x), *(c - c.mean() for c in columns)])
+    left = counted.heights - basis[:, 1:] @ np.linalg.lstsq(basis, counted.heights, rcond=None)[0][1:]
+    np.testing.assert_allclose(found.summits, left - left.mean(), atol=1e-9 * np.ptp(left))
+
+
+@pytest.mark.parametrize(("periodic", "masked"), [(False, False), (True, False), (False, True)])
+def test_roughness_is_that_of_the_points_that_count(periodic, masked, without_caps):
+    """Four points at each edge do not; all moments by NumPy, of more points than are summed at once."""
+    z = np.exp(gaussian_map(Spectrum(1e-6, 30e-6, 14e-6), (120, 140), PIXEL, rng(3)).heights * 1e6) * 1e-6
+    if masked:
+        z[50:53, 60:64] = np.nan
+    ready = prepared(Topography(z, PIXEL, periodic), Preparation(None, form="none", missing="mask"))
+    found = fit_prepared(ready).roughness
+    counts = slice(None) if periodic else slice(4, -4)
+    some = z[counts, counts][np.isfinite(z[counts, counts])]
+    expected = np.abs(some - some.mean()).mean(), some.std(), skew(some), kurtosis(some, fisher=False)
+    assert (found.a, found.q, found.sk, found.ku) == pytest.approx(expected, rel=1e-9)
+    assert found.text("S") == f"Sa = {found.a:.4g} m, Sq = {found.q:.4g} m, Ssk = {found.sk:.2f}"
+    flat = roughness_of(np.full(9, 2.0))
+    assert (flat.a, flat.q, flat.sk, flat.ku) == (0, 0, 0, 0)
+
+
+def test_a_field_of_caps_is_blurred_by_a_pixel_and_a_cutoff(monkeypatch):
+    """Three tenths of that; it is one only if it spreads no more than the map from peak to valley."""
+    drawn = gaussian_map(Spectrum(1e-6, 40e-6, 14e-6), (100, 100), (1e-6, 1.5e-6), rng(1))
+    asked, told = [], [(2e9, 1e7), (1e-5, 1e-7), (1e-6, 1e-8)]
+    monkeypatch.setattr("mcgw.maps.fit.by_caps", lambda counted, blur: asked.append(blur) or told)
+    for cutoff, blur in ((None, 1.5e-6), (10e-6, math.hypot(1.5e-6, 3e-6))):
+        fit = fit_map(drawn, cutoff=cutoff, form="none")
+        assert asked[-1] == pytest.approx(blur, rel=1e-12)
+        assert fit.estimates["caps"].overlap == pytest.approx(0.02, rel=1e-12)
+        expected = visible(0.02, blur / math.sqrt(2 * 1e-5 * 1e-6))
+        found = fit.visible
+        assert (found.share, found.mean, found.std) == pytest.approx(
+            (expected.share, expected.mean, expected.std), rel=1e-9
+        )
+    whole = float(np.ptp(drawn.heights))
+    for sigma, there in ((whole, True), (1.001 * whole, False)):
+        told[2] = (sigma, 1e-8)
+        fit = fit_map(drawn, cutoff=None, form="none")
+        assert ("caps" in fit.estimates) == there
+        assert (fit.visible is not None) == there
+
+
+def test_one_radius_is_one_to_a_sixth(rough):
+    """Quartiles of a Gaussian are 1.349 deviations apart."""
+    both = replace(rough, estimates={**rough.estimates, "caps": rough.estimates["summits"]})
+    for spread, best in ((0.1692, "caps"), (0.1708, "summits")):
+        bends = 1e5 * (1 + spread * 1.349 / 2 * np.array([-9, -1, -1, 0, 1, 1, 9.0]))
+        fit = replace(both, listed=replace(rough.listed, curvatures=np.array([1.5 * bends, 0.5 * bends])))
+        assert fit.spread_of_curvatures == pytest.approx(spread, rel=1e-9)
+        assert fit.best == best
+    assert fit.agreement == pytest.approx(
+        max(
+            max(a.value / b.value, b.value / a.value)
+            for a, b in (
+                (getattr(rough.estimates["moments"], x), getattr(rough.estimates["summits"], x))
+                for x in SUMMITS
+            )
+        )
+    )
+
+
+def test_a_fit_shows_its_estimates_and_four_of_its_cautions(rough):
+    table = estimates_table(rough.estimates)
+    names = ["method", "eta", "eta_stderr", "radius", "radius_stderr", "sigma", "sigma_stderr", "overlap"]
+    assert [column.name for column in table.flat] == names
+    assert [column.unit for column in table.flat] == ["", *2 * ["1/m^2"], *4 * ["m"], ""]
+    for number, told in ((4, 0), (6, 2)):
+        lines = str(replace(rough, cautions=tuple(f"word: {k}" for k in range(number)))).splitlines()
+        assert lines[0] == f"Fit of {rough.summits.size} summits on {rough.area:.4g} m^2"
+        assert lines[1].split(maxsplit=1) == ["roughness", rough.roughness.text("S")]
+        spectrum = f"alpha = {rough.alpha.value:.3g}, skewness {rough.skewness[0]:.2f}"
+        assert lines[2].split(maxsplit=1) == ["spectrum", spectrum]
+        assert [line.split() for line in lines[3:7]] == [["caution", "word:", str(k)] for k in range(4)]
+        assert ("and 2 more in .cautions" in lines[7]) == (told == 2)
+    head, *rows = lines[8:]
+    assert head.split() == ["by", "eta", "(1/m^2)", "R", "(m)", "sigma", "(m)"]
+    for row, estimate in zip(rows, rough.estimates.values(), strict=True):
+        shown = [float(x) for x in re.findall(r"[\d.]+e?[-+]?\d*(?= |$)", row.replace("+-", " "))]
+        wanted = [x for name in SUMMITS for x in getattr(estimate, name)[:2]]
+        assert shown[::2] == pytest.approx(wanted[::2], rel=6e-4)
+        assert shown[1::2] == pytest.approx(wanted[1::2], rel=0.5)
+        assert len(shown) == 6
+
+
+def test_a_lay_of_nothing_across_is_a_number():
+    """Grooves that do not change along themselves: two in a million millions, and not infinitely many."""
+    z = 1e-7 * np.sin(2 * math.pi * np.arange(160) / 20)[:, None] + np.zeros(160)
+    z += 1e-15 * rng(1).normal(size=z.shape)
+    fit = fit_map(Topography(z, PIXEL, periodic=True), cutoff=None, form="none")
+    assert fit.lay == pytest.approx(2e12, rel=1e-6)

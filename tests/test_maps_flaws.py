@@ -10,7 +10,7 @@ from scipy.ndimage import gaussian_filter
 
 import mcgw
 from mcgw.cli import main
-from mcgw.maps.bad_points import bad_edges, small_spike_heights
+from mcgw.maps.bad_points import bad_edges, recorded, small_spike_heights, spike_heights, usual_bend
 from mcgw.maps.fit import fit_prepared
 from mcgw.maps.fit_cautions import cautions
 from mcgw.maps.hidden_caps import visible
@@ -322,3 +322,116 @@ def test_cautions_tell_their_numbers(sound):
     assert line.startswith(
         f"overlap: eta R sigma = 0.1; {100 * (1 - visible(0.1).share):.0f} % of such caps are"
     )
+
+
+def rings(z):
+    """Lowest and highest of the 24 points three pixels around each, mirrored at edges, one by one."""
+    around = [(j, i) for j in range(-3, 4) for i in range(-3, 4) if max(abs(j), abs(i)) == 3]
+    padded = np.pad(z, 3, mode="reflect")
+    seen = np.array([padded[3 + j : 3 + j + z.shape[0], 3 + i : 3 + i + z.shape[1]] for j, i in around])
+    return seen.min(axis=0), seen.max(axis=0)
+
+
+def test_spikes_stand_out_of_their_ring_by_three_ranges():
+    """Of that ring and of the usual one; on more rows than are looked at together."""
+    z = np.round(rng(1).normal(size=(150, 40)), 3)
+    z[:, 20:] *= 0.1  # there the usual range is more than that of a ring
+    places = [(j, i) for j in (2, 30, 63, 100, 127, 147) for i in (4, 13, 24, 36)]
+    for _ in range(6):  # a spike belongs to the rings of others
+        low, high = rings(z)
+        least = 3 * np.maximum(high - low, np.median(high - low))
+        for k, (j, i) in enumerate(places):
+            out = (0.999, 1.001)[k % 2] * least[j, i]
+            z[j, i] = high[j, i] + out if k // 2 % 2 else low[j, i] - out
+    low, high = rings(z)
+    out = np.where(z > high, z - high, np.minimum(z - low, 0))
+    usual = np.median(high - low)
+    expected = np.where(np.abs(out) > 3 * np.maximum(high - low, usual), out, 0)
+    assert [expected[at] != 0 for at in places] == 12 * [False, True]
+    np.testing.assert_allclose(spike_heights(topography(z)), expected, rtol=1e-12)
+
+
+@pytest.mark.parametrize("size", [6, 7])
+def test_a_map_as_small_as_a_ring_has_no_spikes(size):
+    z = np.zeros((size, 20))
+    z[3, 9] = 1.0
+    z[:, ::2] += 0.01
+    assert spike_heights(topography(z)).any() == (size == 7)
+    z[:, ::2] -= 0.01
+    flat = spike_heights(topography(z))  # most of it has no range at all: the mean one counts
+    assert flat.any() == (size == 7)
+
+
+def test_a_small_spike_bends_by_seven_deviations_more_than_those_beside_it():
+    """Deviations that have the median of the bends, of which half are 8 and half -8."""
+    assert usual_bend(np.array([-1.0, 1, 3, 5, np.nan])) == pytest.approx(2 / 0.6745, rel=1e-12)
+    j, i = np.indices((40, 40))
+    for factor, there in ((0.998, False), (1.002, True)):
+        z = np.where((j + i) % 2 == 0, 1.0, -1.0)
+        z[20, 20] += (factor * 7 * 8 / 0.6745 - 8) / 4
+        assert np.argwhere(small_spike_heights(topography(z))).tolist() == [[20, 20]] * there
+
+
+def test_an_edge_jumps_by_five_usual_differences_within_eight_lines():
+    def steps(places, size=5.01, n=40, axis=0):
+        jump = np.ones(n - 1)
+        jump[list(places)] = size
+        lines = np.concatenate([[0.0], np.cumsum(jump)])
+        z = np.broadcast_to(lines, (50, n))
+        return bad_edges(z.T.copy() if axis == 0 else z.copy())
+
+    for axis in (0, 1):
+        assert steps([0], axis=axis) == 1
+        assert steps([0], 4.99, axis=axis) == 0
+        assert steps([3, 37], axis=axis) == 4
+        assert (steps([7], axis=axis), steps([31], axis=axis)) == (8, 8)
+        assert (steps([8], axis=axis), steps([30], axis=axis)) == (0, 0)
+        assert steps([0, 20], axis=axis) == 0  # such lines are everywhere
+        assert (steps([0], n=32, axis=axis), steps([0], n=31, axis=axis)) == (1, 0)
+
+
+def test_levels_and_ends_of_a_recording():
+    """The median step between levels, of which there are few; an end has more than 1.3 times the next."""
+    z = np.repeat([0.0, 1.0, 2.0, 4.0], [130, 100, 700, 1]).reshape(7, -1)
+    found = recorded(z)
+    assert (found.step, found.at_end) == (1.0, 0.0)  # 130 of 100 are not more
+    more = np.repeat([0.0, 1.0, 2.0, 4.0], [131, 100, 699, 1]).reshape(7, -1)
+    assert recorded(more).at_end == 131 / 931
+    assert recorded(-more).at_end == 131 / 931
+    smooth = rng(1).normal(size=(30, 30))
+    assert (recorded(smooth).step, recorded(smooth).at_end) == (0.0, 0.0)
+    assert recorded(np.minimum(smooth, 1)).at_end == np.mean(smooth >= 1)
+    few = np.arange(800) % 100 + 0.0
+    assert recorded(few.reshape(20, -1)).step == 0  # a level for eight points is none
+    assert recorded((np.arange(800) % 99 + 0.0).reshape(20, -1)).step == 1
+    assert recorded(np.zeros((20, 20))).step == 0
+
+
+@pytest.mark.parametrize(("jump", "seen"), [(5.9, False), (6.1, True)])
+def test_a_step_is_six_usual_differences(jump, seen):
+    """On lines whose differences over two areas are -1 and 1, before a larger one: place, height and ends."""
+    n = 240
+    ramp = np.where(np.arange(n) // 20 % 2 == 0, 0.0, 1.0)  # each of 24 areas of ten points is level
+    z = ramp * 0.5 + jump * 0.5 * (np.arange(n) >= 120)
+    step = step_of(topography(np.broadcast_to(z, (n, n)).copy()))
+    assert (step is not None) == seen
+    if seen:
+        assert step.axis == "x"
+        assert step.begin <= 120e-6 <= step.end
+        assert step.end - step.begin <= 50e-6
+        assert step.begin < step.place < step.end
+
+
+@pytest.mark.parametrize(("share", "seen"), [(0.046, False), (0.054, True)])
+def test_a_form_counts_from_a_twentieth_of_the_variance_on(share, seen):
+    """What a polynomial of second order takes off, over all; its range is what is told."""
+    x, y = (2 * t - 1 for t in grid())
+    z = rough(3, long=16.1e-6)
+    shape = x * y
+    z *= np.sqrt((1 - share) / z.var())
+    shape *= np.sqrt(share / shape.var())
+    left = form_left(topography(1e-6 * (z + shape)), "plane")
+    assert (left is not None) == seen
+    if seen:
+        assert left.share == pytest.approx(share, rel=0.05)
+        assert left.height == pytest.approx(1e-6 * np.ptp(shape), rel=0.07)

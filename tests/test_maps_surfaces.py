@@ -69,6 +69,11 @@ def test_a_window_is_cut_from_the_same_envelope():
     part = envelope(field, (10, 20), window=(0.5, 1.5, 0.25, 0.75))
     assert not envelope(field, (10, 20), window=(0.5, 1.5, 0.25, 0.75), periodic=True).periodic
     assert part.heights == pytest.approx(whole.heights[5:15, 10:30], abs=1e-14)
+    assert not whole.periodic
+    assert np.array_equal(whole.heights, envelope(field, (20, 40), periodic=False).heights)
+    apart = Asperities(*np.array([[0.1, 1.9], [0.5, 0.5], [0.0, 1.0], [1.0, 1.0]]), 1.0, (2.0, 1.0))
+    assert hidden_summits(apart).tolist() == [False, False]  # across an edge it would be
+    assert hidden_summits(apart, periodic=True).tolist() == [True, False]
 
 
 @pytest.mark.parametrize("count", ["fixed", "poisson"])
@@ -239,7 +244,54 @@ def test_mistakes_are_told_in_one_line_and_nothing_is_written(arguments, told, t
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize("hurst", [0.5, 0.8, 1.0])
+def test_the_bandwidths_of_a_spectrum_have_ends(hurst):
+    """Of the narrowest one 1.5, of the widest a number that is told, up to which there is one."""
+    with pytest.raises(ValueError, match=r"give a ratio above 1[.]5 and below ") as told:
+        Spectrum.with_moments(analytic.SpectralMoments(1.0, 1.0, 1e30), hurst)
+    highest = float(str(told.value).rpartition(" ")[2])
+    r = 1e6
+    mean = [quad(lambda t, k=k: math.exp((k - 2 * hurst) * t), 0, math.log(r))[0] for k in (0, 2, 4)]
+    assert highest == pytest.approx(1.5 * mean[2] * mean[0] / mean[1] ** 2, rel=1e-3)
+    Spectrum.with_moments(analytic.SpectralMoments(1.0, 1.0, 0.99 * highest), hurst)
+    for alpha in (1.01 * highest, 1.5, 1.4):
+        with pytest.raises(ValueError, match=r"give a ratio above 1[.]5 and below "):
+            Spectrum.with_moments(analytic.SpectralMoments(1.0, 1.0, alpha), hurst)
+    assert Spectrum.with_moments(analytic.SpectralMoments(1.0, 1.0, 4.0)).hurst == 0.8
+
+
+def test_a_spectrum_fills_its_grid_to_two_pixels_and_to_its_edge():
+    """As long as the map and as short as two pixels, along the axis where that is least."""
+    one = np.random.default_rng(1)
+    drawn = gaussian_map(Spectrum(1e-6, 30e-6, 4e-6), (15, 40), (1e-6, 2e-6), one)
+    assert drawn.heights.shape == (15, 40)
+    for shape, pixel in (((14, 40), (1e-6, 2e-6)), ((15, 29), (1e-6, 2e-6))):
+        with pytest.raises(ValueError, match="longer than the map"):
+            gaussian_map(Spectrum(1e-6, 30e-6, 4e-6), shape, pixel, one)
+    for pixel in ((2.01e-6, 2e-6), (2e-6, 2.01e-6)):
+        with pytest.raises(ValueError, match="shows 2 pixels or more"):
+            gaussian_map(Spectrum(1e-6, 30e-6, 4e-6), (40, 40), pixel, one)
+
+
+@pytest.mark.parametrize("width", [0.0, -1.0, math.nan, math.inf])
+def test_a_surface_of_a_scene_has_a_width_and_a_number(width, make_scene):
+    scene = make_scene(n_surfaces=3)
+    with pytest.raises(ValueError, match=r"width = .*: give a length > 0 m"):
+        asperities_of(scene, 0, width=width)
+    for surface in (-1, 3):
+        with pytest.raises(ValueError, match=f"surface = {surface}: the scene has surfaces 0 to 2"):
+            asperities_of(scene, surface)
+    field = asperities_of(scene, 2)
+    assert field.size == pytest.approx((0.01, 0.01))
+    assert (field.number, field.radius) == (3000, 13e-6)
+    assert np.array_equal(field.radii, np.full(3000, 13e-6))
+
+
 def test_a_spectrum_is_read_key_by_key():
+    of_moments = spectrum_from("m0=1e-12, m2=1e-3,m4=5e6")
+    assert of_moments.rms == pytest.approx(1e-6)
+    assert of_moments == Spectrum.with_moments(analytic.SpectralMoments(1e-12, 1e-3, 5e6))
+    assert spectrum_from("m0=1e-12,m2=1e-3,m4=5e6,hurst=0.3").hurst == 0.3
     found = spectrum_from("rms=2um, long=100um, short=5um, hurst=0.5")
     assert (found.rms, found.long, found.short, found.hurst) == pytest.approx((2e-6, 1e-4, 5e-6, 0.5))
     assert spectrum_from("rms=2um,long=100um,short=5um").hurst == Spectrum(2e-6, 1e-4, 5e-6).hurst

@@ -44,6 +44,11 @@ def read(tmp_path, content, encoding="utf-8"):
         ("1\t2\n\t\n3\t4\n", [[1, 2], [NAN, NAN], [3, 4]]),
         ("1;nan;BAD\n---;5,5;6\n", [[1, NAN, NAN], [NAN, 5.5, 6]]),
         ("1;2;\n3;4;\n", [[1, 2], [3, 4]]),  # every line ends with a separator
+        (";1;2\n;3;4\n", [[1, 2], [3, 4]]),
+        ("1;2;\n3;4;5\n", [[1, 2, NAN], [3, 4, 5]]),
+        ("1,5 2\n3 4\n", [[1.5, 2], [3, 4]]),
+        ("1,5e3;2\n", [[1500, 2]]),
+        ("0;0.5\n", [[0, 0.5]]),
         ("# nm, as measured\n\n1 2\n", [[1, 2]]),
     ],
 )
@@ -72,6 +77,35 @@ def test_what_may_mean_two_things_is_refused_in_one_line(content, told, tmp_path
     with pytest.raises(ValueError, match=told) as error:
         read(tmp_path, content)
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("mark", [b"\xff\xfe", b"\xfe\xff"])
+def test_utf_16_is_read_in_either_order(mark, tmp_path):
+    text = "1,5;2\n".encode("utf-16-le" if mark == b"\xff\xfe" else "utf-16-be")
+    (tmp_path / "map.csv").write_bytes(mark + text)
+    assert read_map(tmp_path / "map.csv", pixel=(1.0, 1.0), unit="m").heights.tolist() == [[1.5, 2.0]]
+
+
+@pytest.mark.parametrize(("head", "told"), [
+    ("# Width: 4 um\n", "does not give the size of a pixel"),
+    ("# Height: 4 um\n", "does not give the size of a pixel"),
+    ("# Width: 4 um\n# Height: 4 lightyears\n", "'lightyears' is not a known unit of length"),
+    ("# Width: 1-2 um\n# Height: 4 um\n", "line 1: could not convert"),
+])  # fmt: skip
+def test_half_of_an_extent_is_none(head, told, tmp_path):
+    (tmp_path / "map.txt").write_text(head + "1 2\n3 4\n")
+    with pytest.raises(ValueError, match=told):
+        read_map(tmp_path / "map.txt", unit="m")
+
+
+@pytest.mark.parametrize("word", ["Value units", "Werteinheit", "Werteinheiten", "Einheit der Werte"])
+def test_units_of_comments_in_two_languages(word, tmp_path):
+    """Whatever separator ends or begins the rows, the extent is that of the points there are."""
+    (tmp_path / "map.txt").write_text(f"# {word}: nm\n# Breite: 3 µm\n#Höhe : 2,5 µm \n;1;2\n;3;4\n;5;6\n")
+    found = read_map(tmp_path / "map.txt")
+    assert found.heights == pytest.approx(1e-9 * np.array([[1, 2], [3, 4], [5, 6]]))
+    assert found.pixel == pytest.approx((1.5e-6, 2.5e-6 / 3))
+    assert found.assumed_unit == ""
 
 
 @pytest.fixture(scope="module")

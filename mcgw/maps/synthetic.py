@@ -65,17 +65,16 @@ class Spectrum:
             If no such spectrum has this alpha, which is above 1.5.
         """
 
-        def misfit(log_ratio: float) -> float:
+        def alpha(log_ratio: float) -> float:
             q4, q2 = (_mean_power(k, math.exp(log_ratio), hurst) for k in (4, 2))
-            return 1.5 * q4 / q2**2 - moments.alpha
+            return 1.5 * q4 / q2**2
 
         low, high = math.log(_NARROWEST), math.log(_WIDEST)
-        if not misfit(low) < 0 < misfit(high):
-            highest = misfit(high) + moments.alpha
+        if not alpha(low) < moments.alpha < alpha(high):
             raise ValueError(
-                f"m0 m4/m2^2 = {moments.alpha:.6g}: give a ratio above 1.5 and below {highest:.4g}"
+                f"m0 m4/m2^2 = {moments.alpha:.6g}: give a ratio above 1.5 and below {alpha(high):.4g}"
             )
-        ratio = math.exp(brentq(misfit, low, high, xtol=1e-14))
+        ratio = math.exp(brentq(lambda x: alpha(x) - moments.alpha, low, high, xtol=1e-14))
         q_long = math.sqrt(2 * moments.m2 / moments.m0 / _mean_power(2, ratio, hurst))
         return cls(math.sqrt(moments.m0), 2 * math.pi / q_long, 2 * math.pi / q_long / ratio, hurst)
 
