@@ -146,7 +146,8 @@ def open_sweep(path: str | Path, statistics: tuple[str, ...] = STATISTICS) -> Sw
     except StoreError:
         raise
     except (OSError, RuntimeError, KeyError, IndexError, TypeError, ValueError) as error:
-        raise StoreError(f"{path}: damaged, or of another version ({error})") from None
+        what = str(error).partition("\n")[0]
+        raise StoreError(f"{path}: damaged, or of another version ({what})") from None
 
 
 def _groups(drawn: Tables) -> Iterator[Pooled]:
