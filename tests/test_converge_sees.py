@@ -17,7 +17,7 @@ import mcgw
 from mcgw.cli import main
 from mcgw.figures.studies import save_convergence
 from mcgw.statistics import convergence
-from mcgw.statistics.checks import coverage, independence, skewness, variances
+from mcgw.statistics.checks import PrincipalComponents, coverage, independence, skewness, variances
 from mcgw.statistics.convergence import Convergence, _own as own, converge
 from mcgw.statistics.verdict import FALSE_ALARM
 
@@ -361,3 +361,35 @@ def test_other_numbers_of_asperities_and_separations_in_disorder(make_scene):
 def test_stratified_is_refused(make_scene):
     with pytest.raises(ValueError, match="use another sampler"):
         converge(make_scene(sampler="stratified"))
+
+
+@pytest.mark.parametrize("count", ["fixed", "poisson"])
+@pytest.mark.parametrize("quantity", ["load", "yielded", "area_unloading"])
+def test_single_surfaces_are_tested_where_a_hundred_asperities_decide(make_scene, quantity, count):
+    """So many that add to a sum, and where their number is fixed as many that do not."""
+    law = analytic.KogutEtsion(critical=0.05)
+    scene = make_scene(
+        law=law, separations=tuple(np.linspace(-3, 3, 25)), n_asperities=2000, count=count,
+        unload_from=-3.0, quantities=("load", "yielded", "area_unloading"), grading=analytic.Homogeneous(),
+    )  # fmt: skip
+    h = np.array(scene.separations)
+    adds = {"load": "contacts", "yielded": "yielded", "area_unloading": "contacts_unloading"}[quantity]
+    number = scene.theory.mean(adds, h)
+    decide = number if count == "poisson" else np.minimum(number, 2000 - number)
+    found = PrincipalComponents.of(scene, (quantity,)).columns
+    assert found == tuple((quantity, k) for k in np.flatnonzero(decide > 100).tolist())
+    assert 0 < len(found) < 25
+
+
+def test_a_scene_of_few_asperities_has_no_slope_of_fewer(make_scene):
+    found = converge(make_scene(n_asperities=40, separations=(0.0,), n_surfaces=64), seeds=3)
+    assert found.passed
+    assert "slope of the error in N" not in {check.name for check in found.checks}
+
+
+@pytest.mark.parametrize("call", ["converge", "tradeoff", "regrade"])
+def test_where_each_surface_has_its_own_separation_no_sum_is_of_independent_ones(call, pressed):
+    scene = pressed(3.0, "nominal")
+    what = mcgw.simulate(scene) if call == "regrade" else scene
+    with pytest.raises(ValueError, match=rf'^interaction.at = "nominal": {call} needs sums of independent'):
+        getattr(mcgw, call)(what)

@@ -4,6 +4,7 @@ import csv
 import re
 import shutil
 import subprocess
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from scipy.optimize import brentq
 
 import mcgw
 from mcgw.cli import main
-from mcgw.ensemble.at_load import at_pressures, loaded_part
+from mcgw.ensemble.at_load import at_pressures, common_pressures, loaded_part, with_values
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import MemoryResults
 from mcgw.exports.curves import KINDS, quantile_name
@@ -358,6 +359,58 @@ def test_what_has_no_table_is_told(scene, ensemble, tmp_path):
     assert not list(tmp_path.iterdir())
     assert len(mcgw.export(means, tmp_path / "t.txt", to="comsol")) == 2
     mcgw.export(fine, tmp_path / "t.inp", **steps, units="mm-N-s")
+
+
+def held_by(loads, areas, separations):
+    """An ensemble of these values, in pascal and square metres, of a unit area."""
+    surface = mcgw.Surface("1 um", "10 um", 1e9, 1.0, 1e11)
+    scene = mcgw.Scene(surface, separations=separations, quantities=("load", "area"), seed=1)
+    return Ensemble(scene, "cells", MemoryResults({"load": np.array(loads), "area": np.array(areas)}))
+
+
+def test_powers_are_read_off_exactly():
+    """Areas as powers of the pressure and separations as its logarithm, in any order; nan beyond the ends."""
+    h = np.array([1.0, 3.0, 0.0, 2.0])
+    pressure = np.exp([2 - h, 3 - 2 * h])
+    e = held_by(pressure, [2 * pressure[0] ** 0.5, 7 * pressure[1] ** 0.9], h)
+    wanted = np.exp([-1.1, -0.9, 0.5, 1.9, 2.1])
+    found = at_pressures(e, wanted, ("area", "separation"))
+    inside = np.array([[False, True, True, True, False], [True] * 5])
+    np.testing.assert_allclose(
+        found["area"], np.where(inside, [2 * wanted**0.5, 7 * wanted**0.9], np.nan), rtol=1e-12
+    )
+    each = [2 - np.log(wanted), (3 - np.log(wanted)) / 2]
+    np.testing.assert_allclose(found["separation"], np.where(inside, each, np.nan), rtol=1e-12)
+    assert common_pressures(e) == pytest.approx((np.exp(-1), np.exp(2)), rel=1e-12)
+
+
+def test_a_curve_of_one_point_or_of_values_without_logarithm_is_not_read():
+    e = held_by([[0.0, 0.0, 1.0], [1.0, 2.0, 3.0]], [[0.0, 0.0, 1.0], [0.0, 2.0, 3.0]], [2.0, 1.0, 0.0])
+    found = at_pressures(e, np.array([1.5, 2.5]), ("area", "separation"))
+    assert np.isnan(found["area"]).all()
+    assert np.isnan(found["separation"][0]).all()
+    assert np.isfinite(found["separation"][1]).all()
+    assert common_pressures(e) is None
+    apart = held_by([[1.0, 2.0], [3.0, 4.0]], [[1.0, 2.0]] * 2, [1.0, 0.0])
+    assert common_pressures(apart) is None
+    assert common_pressures(held_by([[1.0, 2.0], [2.0, 4.0]], [[1.0, 2.0]] * 2, [1.0, 0.0])) is None
+    assert common_pressures(held_by([[1.0, 2.0], [1.5, 4.0]], [[1.0, 2.0]] * 2, [1.0, 0.0])) == (1.5, 2.0)
+
+
+@pytest.mark.parametrize(
+    ("most", "draws", "n"), [(30, 0, 30), (99, 0, 50), (99, 1e9 / 25 - 1, 25), (99, 1e9, 20)]
+)
+def test_the_first_surfaces_are_drawn_again_where_values_are_not_kept(
+    most, draws, n, make_scene, monkeypatch
+):
+    """As many as there are, as are wanted, or as a second or two allows: twenty at least."""
+    scene = make_scene(n_surfaces=50, separations=(1.0,))
+    whole = mcgw.simulate(scene)
+    assert with_values(whole, 3) is whole
+    monkeypatch.setattr("mcgw.ensemble.at_load.sampler_of", lambda _: SimpleNamespace(draws=draws))
+    again = with_values(mcgw.simulate(scene, keep="statistics"), most)
+    assert again.n_surfaces == n
+    np.testing.assert_array_equal(again.load, whole.load[:n])
 
 
 def test_only_the_rising_part_of_a_load_counts():

@@ -22,7 +22,7 @@ from analytic import (
     Weibull,
     quantity_of,
 )
-from analytic.laws import PowerLawGraded
+from analytic.laws import KogutEtsion, PowerLawGraded
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import forecast
 from mcgw.ensemble.intervals import (
@@ -30,6 +30,7 @@ from mcgw.ensemble.intervals import (
     TOO_FEW,
     Spread,
     count_interval,
+    exact_ends,
     moments,
     pearson3_quantile,
     spread_of,
@@ -305,3 +306,38 @@ def test_summits_of_any_radius_take_their_separations_one_by_one():
         scale = quantity_of(name).scale(scene.surface)
         assert m * 100 * scale == pytest.approx(exact.mean, rel=1e-12)
         assert v * 100 * scale**2 == pytest.approx(exact.variance, rel=1e-12)
+
+
+def test_ends_of_a_share_of_all_surfaces_are_those_of_the_exact_law(make_scene):
+    """And none where no law is known, or where laws take a while."""
+    scene = make_scene(separations=(0.0, 2.0))
+    laws = [scene.theory.distribution("load", h) for h in (0.0, 2.0)]
+    for share in (0.5, 0.9):
+        ends = exact_ends(scene, "load", share)
+        assert ends.shape == (2, 2)
+        below = [[float(law.cdf(ends[i, k])) for k, law in enumerate(laws)] for i in (0, 1)]
+        np.testing.assert_allclose(below, [[(1 - share) / 2] * 2, [(1 + share) / 2] * 2], atol=1e-9)
+    few, many = np.linspace(0, 3, 100), np.linspace(0, 3, 101)
+    yielding = scene.replace(law=KogutEtsion(critical=0.1))
+    listed = scene.replace(
+        heights=MeasuredHeights([0.0, 1.0, 2.0]), sampler="direct", n_asperities=3, n_surfaces=1
+    )
+    radii = scene.replace(heights=Nayak(5.0), curvature=RandomCurvature(5.0))
+    assert exact_ends(scene.replace(separations=many), "contacts", 0.9).shape == (2, 101)
+    assert exact_ends(yielding.replace(separations=few[:2]), "load", 0.9).shape == (2, 2)
+    assert exact_ends(radii, "load", 0.9).shape == (2, 2)
+    for none in (
+        yielding.replace(separations=many),
+        radii.replace(separations=many),
+        radii.replace(law=KogutEtsion(critical=0.1)),
+        listed,
+    ):
+        assert exact_ends(none, "load", 0.9) is None
+    assert exact_ends(scene, "depth", 0.9) is None
+
+
+def test_a_difference_of_loads_has_no_interval(make_scene):
+    pushed = mcgw.Tangential(friction=0.3, poisson=0.3, displacements=[1e-8])
+    e = mcgw.simulate(make_scene(separations=(1.0,), n_surfaces=4, tangential=pushed))
+    with pytest.raises(ValueError, match=r"^tangential_load has no interval, .* use its stderr$"):
+        e.interval("tangential_load")

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from located_by_hand import residual
 from numpy.testing import assert_allclose
+from scipy.stats import t as student
 
 import mcgw
 from mcgw.cli import main
@@ -250,3 +251,14 @@ def test_a_fitted_map_brings_its_places():
 def test_places_that_are_none(places, words):
     with pytest.raises(ValueError, match=words):
         mcgw.MeasuredRadii(mcgw.MeasuredHeights([0.0, 1.0, 3.0]), [1.0, 1.0, 1.0], places)
+
+
+@pytest.mark.parametrize("level", [0.5, 0.95])
+def test_intervals_of_surfaces_without_a_theory_are_students(level):
+    e = mcgw.simulate(scene_of(n_surfaces=5))
+    for name in ("load", "contacts"):
+        low, high = e.interval(name, level)
+        for k in range(2):
+            ends = student.interval(level, 4, e[name][:, k].mean(), e[name][:, k].std(ddof=1) / 5**0.5)
+            assert_allclose((low[k], high[k]), ends, rtol=1e-12)
+    assert np.isnan(mcgw.simulate(scene_of(n_surfaces=1)).interval("load", level)).all()

@@ -3,12 +3,15 @@
 import os
 import subprocess
 import sys
+from types import SimpleNamespace
 
+import numba
 import numpy as np
 import pytest
 
 import analytic
 import mcgw
+from mcgw.ensemble import drawing
 from mcgw.reports.plan import plan_of, plan_text
 from mcgw.sampling.samplers import sampler_of
 
@@ -110,3 +113,56 @@ def test_a_plan_compiles_nothing(tmp_path):
     assert done.returncode == 0, done.stderr
     assert len(done.stdout.split()) == 10
     assert [path for path in tmp_path.rglob("*") if path.is_file()] == []
+
+
+# --- what it will take ---
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [
+        (0.0123, "0.012 s"), (59.0, "59 s"), (60.0, "1 min"), (3599.0, "60 min"), (3600.0, "1 h"),
+        (259_199.0, "72 h"), (259_200.0, "3 days"), (86_400 * 40.0, "40 days"), (3.15576e7, "1 years"),
+    ],
+)  # fmt: skip
+def test_times_are_told_as_people_say_them(seconds, words):
+    assert drawing.in_words(seconds) == words
+
+
+@pytest.mark.parametrize("keep", ["sums", "statistics"])
+def test_rough_times_are_counted_by_hand(keep, make_scene, monkeypatch):
+    """Of 36 numbers a surface: 4e-8 s for each, 2.5e-10 s for each pair; drawing is shared by the threads."""
+    monkeypatch.setattr(drawing, "expected", lambda _: SimpleNamespace(seconds=8.0))
+    kept = 36 * 4e-8 + 36**2 / 2 * 2.5e-10 if keep == "statistics" else 0.0
+    expected = 50 * (8.0 / numba.get_num_threads() + kept)
+    assert drawing.rough_seconds(make_scene(keep=keep), 50) == pytest.approx(expected, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("rough", "at_least", "seconds"),
+    [(0.05, 0.0, 300.0), (0.051, 0.0, 5.1), (0.04, 4.1, 4.0), (0.04, 4.0, 300.0), (0.04, 3.9, 300.0)],
+)
+def test_a_trial_tells_the_time_where_it_is_short_and_asked_for(
+    rough, at_least, seconds, make_scene, monkeypatch
+):
+    """A hundred surfaces, each of 3 s if they are tried."""
+    monkeypatch.setattr(drawing, "rough_seconds", lambda _, n: n * rough)
+    monkeypatch.setattr(drawing, "seconds_per_surface", lambda *_: 3.0)
+    assert drawing.seconds_for(make_scene(), None, 100, at_least=at_least) == pytest.approx(seconds)
+    kept = make_scene(keep="statistics")
+    more = 100 * (36 * 4e-8 + 36**2 / 2 * 2.5e-10) if seconds == 300 else 0.0
+    told = drawing.seconds_for(kept, None, 100, at_least=at_least)
+    assert told - seconds == pytest.approx(more, abs=1e-12)
+
+
+def test_a_trial_is_the_median_of_three_after_one_that_does_not_count(make_scene, monkeypatch):
+    clock, asked = iter([0.0, 30.0, 100.0, 110.0, 200.0, 220.0]), []
+    monkeypatch.setattr(drawing, "perf_counter", lambda: next(clock))
+    monkeypatch.setattr(drawing, "drawn_blocks", lambda *words: asked.append(words) or [])
+    for words, size in ((0, 256), (10**6 - 36, 20), (10**8, 1)):
+        sampler = SimpleNamespace(words=words, draws=0)
+        n = size * numba.get_num_threads() if size > 1 else 1
+        assert drawing.seconds_per_surface(make_scene(), sampler) == 20.0 / n
+        assert asked == [(sampler, 0, n, size)] * 4
+        asked.clear()
+        clock = iter([0.0, 30.0, 100.0, 110.0, 200.0, 220.0])

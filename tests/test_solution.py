@@ -9,7 +9,7 @@ from scipy.stats import t as student
 import analytic
 import mcgw
 from mcgw.cli import main
-from mcgw.ensemble.separation import separation_on
+from mcgw.ensemble.separation import crossing, separation_on
 from mcgw.ensemble.solution import solutions
 from mcgw.reports.solved_loads import solutions_text
 
@@ -180,6 +180,35 @@ def test_the_branch_below_the_margin_is_entered(scene, monkeypatch):
             above = scale * (np.maximum(s - middle, 0) ** 1.5).sum() > 2.0
             low, high = (middle, high) if above else (low, middle)
         assert found.surfaces["separation"][number] == pytest.approx(low, rel=1e-9, abs=1e-9)
+
+
+def test_what_a_surface_does_not_reach_is_said_of_it(scene):
+    """Some surfaces have fewer asperities than the mean one, or none."""
+    none = replace(scene, n_asperities=2, count="poisson", n_surfaces=20, grading=analytic.Homogeneous())
+    with pytest.raises(ValueError, match=r"^surface \d+ has no asperity; increase n_asperities$"):
+        solutions(none, "load", [1.0])
+    few = none.replace(n_asperities=8, law=analytic.KogutEtsion(critical=0.05))
+    most = float(few.theory.mean("load", -39.0))
+    with pytest.raises(ValueError, match=rf"^load = {most:g} N: surface \d+ does not reach it; give less$"):
+        solutions(few, "load", [most])
+
+
+def test_negative_sums_that_never_reach_a_value_have_no_crossing():
+    assert crossing(lambda h: -1.0 - h * 0, 1.0) is None
+    assert crossing(lambda h: 0.3 - h, 1.0) == pytest.approx(0.3, abs=1e-14)
+    assert crossing(lambda h: -39.9 - h, 1.0) == pytest.approx(-39.9, abs=1e-12)
+    assert crossing(lambda h: -40.1 - h, 1.0) is None
+    first = crossing(lambda h: float(np.sin(h)), -0.1)  # the largest of many, from above
+    assert first == pytest.approx(-np.pi, abs=1e-12)
+
+
+@pytest.mark.parametrize("pressed_down", [True, False])
+def test_only_what_asperities_alone_decide_has_a_number_of_them(pressed_down, make_scene):
+    scene = make_scene(separations=(0.0,), n_surfaces=3, quantities=("load", "area", "stiffness"))
+    if pressed_down:
+        scene = scene.replace(interaction=mcgw.Interaction("body"))
+    found = mcgw.solve(scene, load=10.0).asperities_for(0.01)
+    assert set(found) == ({"area"} if pressed_down else {"area", "stiffness", "conductance"})
 
 
 def test_surfaces_within_the_margin_are_drawn_once(scene, monkeypatch):

@@ -100,6 +100,20 @@ def test_a_literal_search_finds_the_same(name, given, monkeypatch):
 
 
 @pytest.mark.parametrize("given", ["load", "area"])
+def test_below_all_that_was_drawn_at_once_the_search_finds_the_same(given):
+    """Step by step, on the whole of each surface."""
+    import mcgw.ensemble.solution as module
+
+    listed, whole = module.summits, []
+    with pytest.MonkeyPatch.context() as patch, pytest.MonkeyPatch.context() as inner:
+        patch.setattr(module, "_MARGIN", -1.0)
+        patch.setattr(module, "summits", lambda drawn, number: whole.append(number) or listed(drawn, number))
+        test_a_literal_search_finds_the_same("kogut-etsion", given, inner)
+    assert whole == sorted(set(whole))  # once for all values
+    assert len(whole) > 1
+
+
+@pytest.mark.parametrize("given", ["load", "area"])
 def test_radii_of_their_own(given):
     """A summit r times as blunt yields r times as deep, at r^2 times the load and area."""
     s, ratios, ones = np.array([2.2, 2.0, 1.0]), np.array([0.5, 2.0, 1.3]), np.ones(3)

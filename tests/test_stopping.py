@@ -189,6 +189,15 @@ def test_what_nothing_reaches_is_reported_and_not_waited_for(make_scene):
     assert upper_contacts(100) == pytest.approx(-np.log(0.05) / 100, rel=1e-14)
 
 
+def test_strata_are_said_to_be_silent_and_no_more(make_scene):
+    """Their means have no error that could be held to a wish."""
+    scene = make_scene(sampler="stratified", n_surfaces=5, separations=(0.0, 12.0, 30.0))
+    told = after(simulate(scene), scene)
+    assert [line.split(":")[0] for line in told] == ["d/sigma = 12", "d/sigma = 30"]
+    limit = -np.log(0.05) / 5
+    assert f"mean below {limit:.3g} contacts per surface, {limit / 3000:.3g} per asperity (95%" in told[0]
+
+
 def test_a_mean_that_may_come_is_waited_for(make_scene):
     """h = 4.5 has one contact in 98 surfaces: it takes (1.96/0.1)^2 = 384 of them."""
     scene = make_scene(rel_err=0.1, n_surfaces=10**7, separations=(4.5,), quantities=("contacts",))

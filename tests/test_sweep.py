@@ -495,7 +495,10 @@ def test_points_have_the_intervals_and_tables_of_single_runs():
             assert frame.loc[gamma, n].load_std.tolist() == alone.std("load").tolist()
             assert mcgw.compare(sweep.ensemble((i, k))).verdict == mcgw.compare(alone).verdict
     assert sweep.ensemble({GAMMA: 0.5, "ensemble.n_asperities": 50}).n_surfaces == 300
-    for ask in (sweep.ensemble((0, 0)).values, lambda q: sweep.quantile(q, 0.5), sweep.skewness):
+    point = sweep.ensemble((0, 0))
+    for ask in (
+        point.values, lambda q: sweep.quantile(q, 0.5), sweep.skewness, point.extremes, point.covariance
+    ):  # fmt: skip
         with pytest.raises(ValueError, match=r'load: a sweep only keeps mean and .* keep = "statistics"'):
             ask("load")
 

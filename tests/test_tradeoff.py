@@ -11,8 +11,9 @@ from scipy.stats import norm
 
 import analytic
 import mcgw
+from mcgw.errors import RunError
 from mcgw.figures.studies import save_tradeoff
-from mcgw.statistics import tradeoff as study
+from mcgw.statistics import methods, tradeoff as study
 from mcgw.statistics.tradeoff import tradeoff
 from mcgw.statistics.wishes import Way, Wish, _of_quantile, advise, ways_for
 
@@ -206,3 +207,53 @@ def test_ways_take_half_of_the_time_and_methods_the_rest(scene, monkeypatch):
     assert [point.seeds for point in found.points] == [18, 18]
     assert found.seconds == 100
     assert found.advice == (2.0, 6)  # where surfaces scatter most
+
+
+def test_ways_of_crowds_are_measured_on_smaller_ones(make_scene, monkeypatch):
+    """A surface of 1e7 contacts takes twice as long as one of 5e6, and is not listed."""
+    asked = []
+
+    def seconds(scene, sampler):
+        asked.append((scene.n_asperities, sampler.name))
+        return 1e-9 * scene.touching
+
+    monkeypatch.setattr("mcgw.statistics.wishes.seconds_per_surface", seconds)
+    first = next(ways_for(make_scene(n_asperities=2 * 10**7, separations=(0.0,), grading=None)))
+    assert asked == [(10**7, "cells")]
+    assert first.each == pytest.approx(1e-2, rel=1e-6)
+    assert math.isnan(first.error)
+    assert (first.sampler, first.scene.accuracy) == ("cells", 1e-13)
+    assert first.seconds(10) == first.set_up + 10 * first.each
+    asked.clear()
+    few = next(ways_for(make_scene(n_asperities=10**7, separations=(0.0,), grading=None)))
+    assert asked == [(10**7, "cells")]
+    assert few.each == pytest.approx(5e-3, rel=1e-6)
+
+
+def test_means_over_heights_and_radii_have_no_other_rule(make_scene):
+    radii = make_scene(heights=analytic.Nayak(5.0), curvature=analytic.RandomCurvature(5.0), grading=None)
+    with pytest.raises(
+        ValueError, match=r'contact.law = "kogut-etsion" with summits.curvature = "random": means'
+    ):
+        study.methods_for(radii.replace(law=analytic.KogutEtsion(critical=0.1)), (0,))
+    measured = make_scene(
+        heights=analytic.MeasuredHeights([0.0, 1.0, 3.0]), n_asperities=3, n_surfaces=1, sampler="direct"
+    )
+    with pytest.raises(ValueError, match="measured heights are summed exactly; set resample = true"):
+        study.methods_for(measured, (0,))
+    with pytest.raises(ValueError, match=r"mean load at d/sigma = 60 is 0: a relative error needs"):
+        study.methods_for(make_scene(separations=(0.0, 60.0), grading=None), (0, 1))
+
+
+def test_a_theory_that_its_reference_does_not_give_measures_nothing(make_scene, monkeypatch):
+    scene = make_scene(grading=None)
+    exact = methods.reference(scene, (0, 3))
+    for off, told in ((0.9e-10, False), (1.2e-10, True)):
+        monkeypatch.setattr(methods, "reference", lambda *_, off=off: exact * np.array([1.0, 1 + off]))
+        if told:
+            with pytest.raises(
+                RunError, match=r"mean load at d/sigma = 1.5: theory gives .* differ by more than 1e-10"
+            ):
+                methods.methods_for(scene, (0, 3))
+        else:
+            assert methods.methods_for(scene, (0, 3))

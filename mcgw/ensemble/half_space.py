@@ -115,12 +115,7 @@ def asperities_alone(ensemble: Ensemble) -> Ensemble:
     """
     scene = ensemble.scene
     if not isinstance(ensemble.sums, Results):  # of what is in series only each surface's would tell
-        rest = tuple(name for name in scene.quantities if not scene.series(name))
-        if not rest:
-            raise ValueError(
-                "theory gives no mean of stiffness and conductance in series with the half-space, and no "
-                "values are kept; add another quantity"
-            )
+        rest = tuple(name for name in scene.quantities if not scene.series(name))  # the load at least
         return replace(ensemble, scene=scene_alone(replace(scene, quantities=rest), "this"))
     sums = _Alone(ensemble.sums, scene)
     return replace(ensemble, scene=scene_alone(scene, "this"), sums=sums)

@@ -256,8 +256,7 @@ def exact_ends(scene: Scene, name: str, share: float) -> Array | None:
     """
     both = scene.curvature is not None and type(scene.law) is not Hertz
     longer = not laws_are_quick(scene) and len(scene.separations) > _MOST_OF_BAND
-    listed = scene.as_measured or isinstance(scene.heights, MeasuredHeights)
-    if both or longer or listed or scene.located:
+    if both or longer or isinstance(scene.heights, MeasuredHeights) or scene.located:
         return None
     try:
         laws = [scene.theory.distribution(name, h) for h in scene.separations]
