@@ -38,6 +38,23 @@ LINES = {
                 "figures --scene y.toml --only figure-2 -o new --csv"],
     "report": ["report e.h5 -o new/r.html"],
     "surface": ["surface scene.toml --shape 16 -o new/m.sdf", "surface scene.toml --at 0 -o new/m.png"],
+    "given": ["solve moments.toml --pressure 500kPa 1MPa 2MPa", "solve pressed.toml --load 1N -v",
+              "solve moments.toml --area-fraction 1% 2% --scatter 1%", "solve spectral.toml --area 0.01mm^2"],
+    "joints": ["run joint.toml -o j.h5", "show j.h5", "report j.h5 -o new/j.html",
+               "solve joint.toml --pressure 1MPa 2MPa", "solve joint.toml --pressure 1MPa -v"],
+    "tables": ["export joint.toml --to moose --table conductance-gap --points 6 -o new/g.csv",
+               "export joint.toml --to calculix --table conductance-pressure --units mm-N-s -o new/p.inp "
+               "--points 6",
+               "export pressed.toml --to comsol --table stiffness-pressure --points 6 -o new/s.txt",
+               "export spectral.toml --to abaqus --points 5 --quantile 0.125 -o new/n.inp",
+               "export joint.toml --to json --points 3 -o new/t.json"],
+    "plans": [f"show --plan -v {name}.toml" for name in
+              ("pressed", "measured", "crowd", "strata", "pushed", "sticks", "spectral", "located")],
+    "pages": ["report y.h5 -o new/y.html", "report s.h5 -o new/s.html", "show s.h5 -v",
+              "sweep moments.toml --over grading.gamma=0.5:2:4 --plan"],
+    "laws": ["regrade y.h5 --law zhao-maietta-chang --critical 0.1 -o new/z.h5",
+             "surface scene.toml --at 0.5 --colour modulus -o new/o.svg",
+             "surface --from-spectrum rms=1um,long=20um,short=5um --pixel 1um --shape 32x16 -o new/f.sdf"],
     "fit": ["fit map.npy --cutoff none -o new/f.toml -v --picture new/f.png --summits new/s.csv"],
 }  # fmt: skip
 CLOCK = re.compile(
@@ -48,7 +65,21 @@ OTHER = re.compile(
     r"|\d{4}-\d\d-\d\d[T ][\d:.+Z-]*"
 )
 LONG = 40  # lines of a file that stand one by one
-TEXT = {".toml", ".csv", ".inp", ".txt"}
+TEXT = {".toml", ".csv", ".inp", ".txt", ".json"}
+SURFACE = """surface = {sigma = 1.37e-6, radius = 13e-6, eta = 3e8, nominal_area = 1e-6, E_star = 78.6e9}
+ensemble = {n_surfaces = 30, seed = 5, n_asperities = 300}
+"""
+SCENES = {
+    "joint": """joint = {gas = "air", rms = "2 um"}
+[contact]
+separations = [0.0, 0.5, 1.0, 1.5]
+conductivities = [150.0, 16.0]
+film_resistance = 1e-8
+""",
+    "located": """interaction = {reference = "located", at = "nominal"}
+contact = {separations = [1.0, 1.5]}
+""",
+}
 
 
 def steady(text):
@@ -81,7 +112,11 @@ def material(tmp_path_factory):
     folder = tmp_path_factory.mktemp("read")
     prepare(folder)
     (folder / "new").mkdir()
-    (folder / "y.toml").write_text((ANSWERS / "scenes" / "yields.toml").read_text())
+    for path in (ANSWERS / "scenes").glob("*.toml"):
+        (folder / path.name).write_text(path.read_text())
+    (folder / "yields.toml").rename(folder / "y.toml")
+    for name, text in SCENES.items():
+        (folder / f"{name}.toml").write_text(SURFACE + text)
     call("run", "y.toml", "-o", "y.h5", "-q", cwd=folder)
     call("sweep", "moments.toml", "--over", "grading.gamma=1.1,1.2", "-q", "-o", "s.h5", cwd=folder)
     return folder

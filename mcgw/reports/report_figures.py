@@ -239,6 +239,9 @@ def first_surfaces(ensemble: Ensemble) -> Ensemble:
     """The first surfaces, in memory, with the quantities shown over pressure."""
     ensemble = with_values(ensemble, MOST_SURFACES)
     names = {name for name, *_ in _asked(ensemble)} - {"separation"} | {"load"}
+    names |= {"conductance"} & {
+        *ensemble.scene.quantities
+    }  # of a solution, also where it is shown in SI units
     rows = {name: ensemble.sums.read(name, 0, min(MOST_SURFACES, ensemble.n_surfaces)) for name in names}
     return Ensemble(ensemble.scene, ensemble.sampler, MemoryResults(rows))
 
