@@ -1,15 +1,18 @@
 """What is done to a map before it is looked at: each step against a map that never needed it."""
 
 import math
+import re
 from typing import get_args
 
 import numpy as np
 import pytest
 from fit_of_maps import fit_map
+from numpy.polynomial.polynomial import polyvander2d
+from scipy.ndimage import gaussian_filter1d, minimum_filter
 
 import mcgw
 from mcgw.maps.bad_points import filled
-from mcgw.maps.form import gaussian_transmission, smooth, without_form
+from mcgw.maps.form import gaussian_transmission, lowpass, smooth, without_form, without_offsets
 from mcgw.maps.preparation import Preparation, prepared
 from mcgw.maps.steps import Form
 from mcgw.maps.synthetic import Spectrum, gaussian_map
@@ -201,3 +204,164 @@ def test_the_larger_terrace_is_kept(axis):
 def test_words_that_are_none_are_refused_in_one_line(key):
     with pytest.raises(mcgw.SceneError, match=f"{key} = 'x'.*choose one of"):
         fitted(np.zeros((9, 9)), **{key: "x"})
+
+
+def test_the_filter_is_a_sum_over_its_window():
+    """Literal, on a map of many bands of rows, mirrored beyond its edges or periodic."""
+    z, pixel, cutoff = np.random.default_rng(1).normal(size=(150, 20)), (2e-6, 1e-6), 3.1e-6
+    weights = []
+    for p in pixel[::-1]:
+        t = np.arange(-math.ceil(cutoff / p), math.ceil(cutoff / p) + 1) * p
+        w = np.exp(-math.pi * (t / (math.sqrt(math.log(2) / math.pi) * cutoff)) ** 2)
+        weights.append(w / w.sum())
+    assert [w.size for w in weights] == [9, 5]
+    for periodic, mode in ((False, "symmetric"), (True, "wrap")):
+        padded = np.pad(z, ((4, 4), (2, 2)), mode=mode)
+        expected = sum(
+            v * w * padded[j : j + 150, i : i + 20]
+            for j, v in enumerate(weights[0])
+            for i, w in enumerate(weights[1])
+        )
+        map_ = Topography(z, pixel, periodic)
+        np.testing.assert_allclose(lowpass(map_, cutoff), expected, atol=1e-12)
+        left = smooth(map_, cutoff).heights
+        np.testing.assert_allclose(left, expected if periodic else expected[4:-4, 2:-2], atol=1e-12)
+
+
+def test_a_cutoff_leaves_eight_points_or_the_map_is_too_small():
+    wave = np.sin(np.arange(20.0) * 28).repeat(28).reshape(20, 28)
+    for shape in ((28, 28), (28, 40), (40, 28)):
+        left = smooth(Topography(np.resize(wave, shape), (1.0, 1.0)), 10.0)
+        assert min(left.heights.shape) == 8
+    for shape in ((27, 40), (40, 27)):
+        with pytest.raises(ValueError, match=f"leaves nothing of a map of {shape[1]} x {shape[0]} m"):
+            smooth(Topography(np.resize(wave, shape), (1.0, 1.0)), 10.0)
+    for shape, pixel in (((20, 40), (1.0, 1.0)), ((40, 20), (1.0, 1.0))):
+        whole = Topography(np.resize(wave, shape), pixel, periodic=True)
+        assert smooth(whole, 19.0).heights.shape == shape
+        with pytest.raises(ValueError, match=f"longer than the map of {shape[1]} x {shape[0]} m"):
+            smooth(whole, 20.0)
+
+
+@pytest.mark.parametrize(("form", "order"), [("plane", 1), ("quadratic", 2), ("cubic", 3), ("quartic", 4)])
+@pytest.mark.parametrize("holes", [False, True])
+def test_a_polynomial_is_that_of_least_squares(form, order, holes):
+    """Over the points that are there, of all powers together up to its order."""
+    z = np.random.default_rng(1).normal(size=(40, 30))
+    y, x = np.mgrid[-1:1:40j, -1:1:30j]
+    z += 3 * x**2 * y - x**4 + y**4
+    if holes:
+        z[3:9, 4:20] = np.nan
+    there = np.isfinite(z)
+    terms = polyvander2d(y, x, [order, order])[
+        ..., np.add.outer(*2 * [np.arange(order + 1)]).ravel() <= order
+    ]
+    left = z - terms @ np.linalg.lstsq(terms[there], z[there], rcond=None)[0]
+    found = without_form(Topography(z, PIXEL, periodic=True), form)
+    np.testing.assert_allclose(found.heights, left, atol=1e-9)
+    assert not found.periodic
+    assert without_form(Topography(z, PIXEL, periodic=True), "none").periodic
+
+
+@pytest.mark.parametrize("lines", ["rows", "columns"])
+def test_offsets_of_lines_are_sums_of_medians_less_their_long_waves(lines):
+    """In plain loops; a line without heights is passed over. The root mean square of offsets is told."""
+    z = np.random.default_rng(1).normal(size=(60, 45))
+    z += 2 * np.random.default_rng(2).normal(size=(60, 1))
+    z[7, 3:20] = z[20] = np.nan
+    level, last = [0.0], z[0]
+    for row in z[1:]:
+        steps = (row - last)[np.isfinite(row - last)]
+        level.append(level[-1] + (np.median(steps) if steps.size else 0.0))
+        last = row if steps.size else last
+    offsets = np.array(level) - gaussian_filter1d(level, 10, mode="nearest")
+    turned = z if lines == "rows" else z.T
+    found, rms = without_offsets(Topography(turned, PIXEL), lines)
+    expected = z - offsets[:, None]
+    np.testing.assert_allclose(found.heights, expected if lines == "rows" else expected.T, atol=1e-12)
+    assert rms == pytest.approx(np.sqrt(np.mean(offsets**2)), rel=1e-12)
+    note = prepared(Topography(turned, PIXEL), Preparation(None, form="none", lines=lines)).notes[0]
+    assert note == f"lines: offsets of {lines} removed, {rms:.3g} m rms"
+
+
+@pytest.mark.parametrize("cutoff", [None, 4e-6])
+@pytest.mark.parametrize("number", [40, 330])
+def test_points_count_whose_neighbours_were_seen(cutoff, number):
+    """Of a filtered map those whose window has less than a tenth of filled ones; half of all must remain."""
+    z = rough(1, n=60)
+    holes = np.zeros(z.size, dtype=bool)
+    holes[np.random.default_rng(1).choice(z.size, number, replace=False)] = True
+    holes = holes.reshape(z.shape)
+    z[holes] = np.nan
+    seen = ~holes
+    if cutoff:
+        seen = smooth(Topography(holes + 0.0, PIXEL), cutoff).heights < 0.1
+    whole = minimum_filter(seen, 5)
+    left = whole.mean() / np.mean(~holes)
+    masked = ready(z, cutoff, missing="mask", form="none")
+    np.testing.assert_array_equal(masked.seen, seen)
+    told = f"missing: {number} of 3600 points ({number / 36:.2g} %) filled from their edges"
+    rest = f"; they and their neighbours are ignored, which leaves {100 * whole.mean():.3g} % of the map"
+    assert masked.notes == (told + rest,)
+    assert masked.filled == number / 3600
+    auto = ready(z, cutoff, form="none")
+    assert (auto.seen is None) == (left < 0.5) == (number == 330)
+    if auto.seen is None:
+        why = f", and used like the others: only {100 * left:.2g} % of the others have all neighbours"
+        assert auto.notes == (told + why,)
+    filled_in = ready(z, cutoff, missing="fill", form="none")
+    assert filled_in.notes == (told + ", and used like the others",)
+    assert filled_in.seen is None
+
+
+def test_notes_tell_what_was_done_to_a_map():
+    z = np.full((50, 70), np.nan)
+    z[10:45, 8:66] = rough(1, n=58)[:35]
+    found = ready(z, trim=3, form="none", long_cutoff=30e-6)
+    assert found.notes == (
+        "trim: 3 points removed along each edge",
+        "edges: 58 x 35 points kept; all points outside are missing",
+        "long cutoff: waves longer than 3e-05 m removed (Gaussian, ISO 16610-61)",
+    )
+    np.testing.assert_array_equal(found.levelled.heights, z[10:45, 8:66])
+    long = lowpass(Topography(z[10:45, 8:66], PIXEL), 30e-6)
+    np.testing.assert_allclose(found.used.heights, z[10:45, 8:66] - long, atol=1e-12 * 1e-6)
+    periodic = prepared(Topography(rough(), PIXEL, periodic=True), Preparation(None, form="none"))
+    assert periodic.used.periodic
+    assert periodic.notes == ()
+    assert (periodic.filled, periodic.seen) == (0.0, None)
+    for steps in ({"trim": 1}, {"form": "plane"}):
+        asked = Preparation(None, **{"form": "none", **steps})
+        assert not prepared(Topography(rough(), PIXEL, periodic=True), asked).used.periodic
+    assert ready(rough(n=58), spikes="remove").notes == ("spikes: 0 places removed",)
+    narrow = np.add.outer(np.arange(9.0) ** 2, np.arange(20.0) ** 2)
+    assert ready(narrow, trim=4, form="none").used.heights.shape == (1, 12)
+    for turned in (narrow[:8], narrow[:8].T):
+        with pytest.raises(ValueError, match="trim = 4: leaves nothing of"):
+            ready(turned, trim=4)
+
+
+@pytest.mark.parametrize("axis", ["x", "y"])
+@pytest.mark.parametrize("first", [True, False])
+def test_a_terrace_ends_where_the_step_begins(axis, first):
+    """The larger one, to the point; what is kept is told."""
+    z = rough(6)
+    at = 140 if first else 60
+    step = 2e-5 * (np.arange(N) >= at)
+    stepped = z + (step if axis == "x" else step[:, None])
+    found = ready(stepped, step="crop", form="none")
+    kept = found.used.heights.shape["yx".index(axis)]
+    pixel = PIXEL["xy".index(axis)]
+    assert 110 < kept < 140
+    whole = z if axis == "x" else z.T
+    part = whole[:, :kept] if first else whole[:, N - kept :] + 2e-5
+    used = found.used.heights if axis == "x" else found.used.heights.T
+    np.testing.assert_allclose(used, part, atol=1e-15)
+    (note,) = found.notes
+    height, place, word, end = re.fullmatch(
+        rf"step: (\S+) m near {axis} = (\S+) m; only the map (up to|from) (\S+) m kept", note
+    ).groups()
+    assert float(height) == pytest.approx(2e-5, rel=0.1)
+    assert float(place) == pytest.approx(at * pixel, abs=9 * pixel)
+    assert word == ("up to" if first else "from")
+    assert float(end) == pytest.approx((kept if first else N - kept) * pixel, abs=pixel)

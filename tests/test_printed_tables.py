@@ -3,11 +3,12 @@
 import os
 import stat
 
+import h5py
 import numpy as np
 import pytest
 
 from mcgw.formats.files import alive, check_output, temporary_beside, write_whole
-from mcgw.formats.named_files import loads, open_npy, read_text
+from mcgw.formats.named_files import loads, open_h5, open_npy, read_text
 from mcgw.formats.numbers import columns, number, parse, typeset
 from mcgw.formats.sheet import Sheet, listed
 from mcgw.formats.table import Column, Table, digits_of, evenly, stacked
@@ -212,6 +213,26 @@ def test_keys_have_a_hundred_parts_and_brackets_are_a_hundred_deep_at_most():
     assert loads("a" + ".a" * 99 + " = 1 # a.b\n")
     with pytest.raises(ValueError, match="a dotted key has more than 100 parts"):
         loads("a" + ".a" * 100 + " = 1\n")
+
+
+@pytest.mark.parametrize("told", ["unable to lock file, errno = 37", "no such file"])
+def test_a_disk_without_locks_is_read_without_one(told, monkeypatch):
+    asked = []
+
+    def opened(path, mode, **more):
+        asked.append((path, mode, more))
+        if not more:
+            raise OSError(told)
+        return "a file"
+
+    monkeypatch.setattr(h5py, "File", opened)
+    if "lock" in told:
+        assert open_h5("x.h5") == "a file"
+        assert asked == [("x.h5", "r", {}), ("x.h5", "r", {"locking": False})]
+    else:
+        with pytest.raises(OSError, match=told):
+            open_h5("x.h5")
+        assert len(asked) == 1
 
 
 def test_arrays_of_either_version_are_mapped(tmp_path):
