@@ -13,7 +13,17 @@ from analytic import SpectralMoments
 from mcgw.maps.fit_cautions import _waves
 from mcgw.maps.synthetic import Spectrum, gaussian_map, moments_on_grid
 from mcgw.maps.topography import Topography
-from mcgw.maps.waves import Spread, Waves, _legendre_shares, _taken, uncertain, waves_of
+from mcgw.maps.waves import (
+    Spread,
+    Waves,
+    _legendre_shares,
+    _taken,
+    block_means,
+    coarser,
+    log_derivatives,
+    uncertain,
+    waves_of,
+)
 
 PARAMETERS = ("eta", "radius", "sigma")
 MOMENTS = ("m0", "m2", "m4", "alpha")
@@ -102,6 +112,45 @@ def test_the_larger_error_counts_and_arms_are_those_of_logarithms():
     assert x == pytest.approx((2.0, 0.4, 2 * math.exp(-0.3), 2 * math.exp(0.5)))
     y = uncertain(2.0, 0.6, Spread(0.2, 0.3, 0.5))
     assert y == pytest.approx((2.0, 0.6, 2 * math.exp(-0.6), 2 * math.exp(0.6)))
+
+
+def test_an_arm_without_an_end_is_infinite():
+    for error, end in ((349.9, 2 * math.exp(699.8)), (350.1, math.inf)):
+        x = uncertain(2.0, 2 * error)
+        assert (x.high, x.relative) == (pytest.approx(end), error)
+    assert uncertain(2.0, 0.5)[2:] == pytest.approx((2 * math.exp(-0.5), 2 * math.exp(0.5)))
+
+
+def test_blocks_leave_so_many_points_to_twice_as_many():
+    """What is over at the right and above is left out; a map that is coarse enough stays as it is."""
+    z = np.arange(7 * 10.0).reshape(7, 10)
+    means = [[z[2 * j : 2 * j + 2, 3 * i : 3 * i + 3].mean() for i in range(3)] for j in range(3)]
+    np.testing.assert_array_equal(block_means(z, 3), means)
+    odd = z**2
+    medians = [[np.median(odd[3 * j : 3 * j + 3, 5 * i : 5 * i + 5]) for i in range(2)] for j in range(2)]
+    np.testing.assert_array_equal(block_means(odd, 2, np.median), medians)
+    assert block_means(z, 7) is z
+    found = coarser(Topography(z, (1.0, 10.0)), 3)
+    assert found.pixel == (3.0, 20.0)
+    assert found.heights.shape == (3, 3)
+
+
+@pytest.mark.parametrize("alpha", [1.6, 20.0])
+def test_derivatives_of_logarithms_are_differences(alpha):
+    """Of all that the three moments tell, by each of them."""
+    m = (1e-12, 1e-3, alpha * 1e6)
+    found = log_derivatives(SpectralMoments(*m))
+    assert list(found) == [*MOMENTS, *PARAMETERS]
+    for k in range(3):
+        up, down = (
+            SpectralMoments(*(x * math.exp(h) if i == k else x for i, x in enumerate(m)))
+            for h in (1e-5, -1e-5)
+        )
+        for name, derivative in found.items():
+            slope = math.log(getattr(up, name) / getattr(down, name)) / 2e-5
+            assert derivative[k] == pytest.approx(slope, abs=1e-6), name
+    flat = log_derivatives(SpectralMoments(1.0, 1.0, 0.8968057562340189))["sigma"]
+    assert flat.tolist() == [0.5, 0, 0]  # alpha at which summits have no spread
 
 
 def fits_of(alpha, waves, n, *, hurst=0.8, number=60):

@@ -490,6 +490,9 @@ def test_maps_are_no_profiles(tmp_path, monkeypatch):
     assert not holds_profile(tmp_path / "m.npy")
     assert not holds_profile(tmp_path / "absent.txt")
     assert not holds_profile(tmp_path / "absent.xyz")
+    for ending in (".sdf", ".x3p", ".h5"):  # no question to another library
+        (tmp_path / f"m{ending}").touch()
+        assert not holds_profile(tmp_path / f"m{ending}")
     assert holds_profile(tmp_path / "p.npy")
     assert read_profile(tmp_path / "p.npy", spacing=UM).heights[6] == 6 * UM
     with pytest.raises(ValueError, match="give --pixel"):
@@ -526,6 +529,105 @@ def test_gaps_are_filled_and_uneven_places_resampled():
     np.testing.assert_array_equal(back.heights, (3 * x + 1)[::-1])
     with pytest.raises(ValueError, match="no heights"):
         profile_at(x, np.full(50, np.nan))
+
+
+def test_the_limits_of_places_and_gaps():
+    """A tenth of a step beside the grid, a tenth of the heights; at either end nothing is filled."""
+    x, z = np.arange(40.0), np.arange(40.0) ** 2
+    for shift, resampled in ((0.099, False), (0.101, True)):
+        moved = x.copy()
+        moved[20] += shift
+        found = profile_at(moved, z)
+        assert found.resampled == resampled
+        assert (found.heights[20] == 400.0) == (not resampled)
+    for number, told in ((4, None), (5, "5 of the 40 heights are missing")):
+        holed = z.copy()
+        holed[3 : 3 + 2 * number : 2] = np.nan
+        if told:
+            with pytest.raises(ValueError, match=told):
+                profile_at(x, holed)
+        else:
+            found = profile_at(x, holed, "um")
+            assert (found.filled, found.assumed_unit) == (4, "um")
+            assert found.heights[5] == (16 + 36) / 2
+    with pytest.raises(ValueError, match=r"^7 points: a profile has 8 or more"):
+        profile_at(x[:7], z[:7])
+    assert profile_at(x[:8], z[:8]).length == 8.0
+    with pytest.raises(ValueError, match="x = 5 m is followed by 5 m; give x in increasing or decreasing"):
+        profile_at(np.array([0, 1, 2, 3, 4, 5, 5, 6, 7.0]), np.zeros(9))
+    with pytest.raises(ValueError, match="1 points: a profile has"):
+        profile_at(np.zeros(1), np.zeros(1))
+
+
+@pytest.mark.parametrize(("points", "height", "spacing", "said"), [
+    (40, 9.99e-3, 1e-3, ""), (40, 10.01e-3, 1e-3, "the typical slope is 10"),
+    (8, 1e-4, 0.99e-2, ""), (8, 1e-4, 1.01e-2, "the points are 0.0101 m apart"),
+    (40, 1e-4, 0.199 / 40, ""), (40, 1e-4, 0.201 / 40, "it is 0.201 m long"),
+])  # fmt: skip
+def test_an_assumed_unit_is_doubted_from_a_limit_on(points, height, spacing, said):
+    """Slopes of ten, points a centimetre apart, 20 cm; of a unit that is known, nothing is."""
+    z = height * (np.arange(points) % 2)
+    assert Profile(z, spacing, "m").doubtful == said
+    assert Profile(z, spacing).doubtful == ""
+
+
+@pytest.mark.parametrize("size", [27, 28])
+def test_a_filtered_profile_is_a_sum_over_its_window(size):
+    """Literal weights to one cutoff; eight points are left, or none."""
+    z, cutoff = np.random.default_rng(1).normal(size=size), 9.5
+    if size == 27:
+        with pytest.raises(ValueError, match="leaves nothing of a profile of 27 m"):
+            smooth_profile(Profile(z, 1.0), cutoff)
+        return
+    t = np.arange(-10, 11.0)
+    w = np.exp(-math.pi * (t / (math.sqrt(math.log(2) / math.pi) * cutoff)) ** 2)
+    found = smooth_profile(Profile(z, 1.0, filled=2), cutoff)
+    np.testing.assert_allclose(found.heights, np.convolve(z, w / w.sum(), mode="valid"), rtol=1e-10)
+    assert found.filled == 2
+
+
+def test_a_fit_of_profiles_shows_its_numbers_and_two_cautions():
+    profiles = list(cut(Spectrum(UM, 60 * UM, 8 * UM), 900))[:2]
+    fit = replace(fit_profiles(profiles, cutoff=10 * UM), cautions=("a: 1", "b: 2", "c: 3"))
+    lines = str(fit).splitlines()
+    assert lines[0] == "Fit of 2 profile(s), 0.0018 m together"
+    q, sk = fit.roughness.q, fit.roughness.sk
+    assert lines[1].split(maxsplit=1) == [
+        "profiles", f"Pa = {fit.roughness.a:.4g} m, Pq = {q:.4g} m, Psk = {sk:.2f}",
+    ]  # fmt: skip
+    assert [line.split(maxsplit=1) for line in lines[2:4]] == [["caution", "a: 1"], ["caution", "b: 2"]]
+    assert lines[4].split(maxsplit=2) == ["unit", "value", "95 %"]
+    units = dict(zip(NAMES, ("m^2", "1", "1/m^2", "1", "1/m^2", "m", "m"), strict=True))
+    for line, name in zip(lines[5:], NAMES, strict=True):
+        number = fit.numbers[name]
+        assert line.split() == [
+            name, units[name], f"{number.value:.4g}", f"{number.low:.3g}", "to", f"{number.high:.3g}",
+        ]  # fmt: skip
+    assert fit.area == pytest.approx((0.9e-3) ** 2)
+    filtered = np.concatenate(
+        [smooth_profile(without_profile_form(p, "plane"), 10 * UM).heights for p in profiles]
+    )
+    assert q == pytest.approx(filtered.std(), rel=1e-12)
+    moments = {"eta": fit.moments.eta, "radius": fit.moments.radius, "sigma": fit.moments.sigma}
+    assert {k: x.value for k, x in vars(fit.estimates["moments"]).items()} == moments
+
+
+def test_peaks_are_counted_between_their_neighbours():
+    """Of equal neighbours the first is one; Rice's formula takes mean squares of the same profiles."""
+    z = np.tile([0.0, 2.0, 1.0, 1.0, 0.0, 3.0, 3.0, -1.0], 40) * UM
+    z += 1e-9 * np.arange(320) / 320
+    long, short = Profile(z, UM), Profile(z[:160], 2 * UM)
+    counted, expected = fit_profiles([long, short], cutoff=None, form="none").peaks
+    slopes = bends = peaks = length = 0.0
+    for p in (long, short):
+        u, h = (p.heights - p.heights.mean()).tolist(), p.spacing
+        for k in range(1, len(u) - 1):
+            peaks += u[k] > u[k - 1] and u[k] >= u[k + 1]
+            slopes += ((u[k] - u[k - 1]) / h) ** 2
+            bends += ((u[k + 1] - 2 * u[k] + u[k - 1]) / h**2) ** 2
+            length += h
+    assert counted == pytest.approx(peaks / length, rel=1e-12)
+    assert expected == pytest.approx(math.sqrt(bends / slopes) / (2 * math.pi), rel=1e-9)
 
 
 @pytest.mark.parametrize(("heights", "spacing", "told"), [

@@ -290,6 +290,16 @@ def test_hidden_caps_by_quadrature(overlap, blur):
         assert back[0] > unhidden(eta * share, radius, sigma * std)[0]
 
 
+def test_where_nothing_is_seen_nothing_is_found_again():
+    nothing = visible(1e30)
+    assert (nothing.share, nothing.mean, nothing.std) == (0, 0, 0)
+    assert visible(0.0).share == pytest.approx(1, rel=1e-12)
+    assert visible(0.0).std == pytest.approx(1, rel=1e-9)
+    assert unhidden(1e9, 1e-5, 0.0) is None
+    assert unhidden(1e9, 1e-5, 1e-3) is None  # no field shows so many
+    assert unhidden(1e3, 1e-5, 1e-6) == pytest.approx((1e3, 1e-6), rel=1e-5)
+
+
 def test_constants_of_the_spectral_moments():
     """Nayak (1971): density 1/(6 sqrt 3 pi); mean curvature 8/(3 sqrt pi); Bush et al. (1975): 0.8968."""
     unit = SpectralMoments(1.0, 1.0, 1.0)
