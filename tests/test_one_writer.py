@@ -54,7 +54,7 @@ def drawing(monkeypatch):
     """A run that has begun to draw its only block and waits: others may try."""
 
     class Drawing:
-        begun, go_on = threading.Event(), threading.Event()
+        begun, go_on, blocks = threading.Event(), threading.Event(), 0
 
         def start(self, scene, path):
             self.pool = ThreadPoolExecutor(1)
@@ -70,6 +70,7 @@ def drawing(monkeypatch):
     held, drawn = Drawing(), Job.draw
 
     def slowly(*arguments):
+        held.blocks += 1
         held.begun.set()
         assert held.go_on.wait(30)
         return drawn(*arguments)
@@ -124,6 +125,19 @@ def test_a_run_that_waited_sees_what_the_other_wrote(scene, path, drawing, monke
         assert same.result(30).n_surfaces == SIZE
         with pytest.raises(StoreError, match="seed is 1 there and 2 here"):
             other.result(30)
+    assert drawing.blocks == 1  # and nothing is drawn twice
+
+
+def test_a_finished_file_needs_no_lock(scene, path):
+    """Whoever holds it: nothing is to be done, and there is nobody to wait for."""
+    over = {"grading.gamma": [0.5, 1.0]}
+    run(scene, path)
+    mcgw.sweep(scene, over, path=path.with_name("s.h5"))
+    with locked(parts_of(path)), locked(parts_of(path.with_name("s.h5"))):
+        assert run(scene, path).n_surfaces == SIZE
+        assert run(scene, path, shard="1/2") == 0
+        assert mcgw.sweep(scene, over, path=path.with_name("s.h5")).shape == (2,)
+        assert mcgw.sweep(scene, over, path=path.with_name("s.h5"), shard="2/2") == 0
 
 
 def test_jobs_share_and_others_wait(scene, path):

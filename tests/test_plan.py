@@ -78,6 +78,10 @@ WISHES = {
     "coarse": {"accuracy": 1e-4, "n_asperities": 10**5},
     "strata": {"sampler": "stratified"},
     "contacts": {"quantities": ("contacts",)},
+    "nominal": {"interaction": mcgw.Interaction("body", at="nominal")},
+    "moments": {"keep": "moments"},
+    "radii": {"heights": analytic.Nayak(5.0), "curvature": mcgw.RandomCurvature(5.0)},
+    "one by one": {"interaction": mcgw.Interaction("body", at="nominal"), "sampler": "tail"},
 }
 
 

@@ -2,6 +2,7 @@
 
 import warnings
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from mcgw.ensemble.forecast import after, before, checkpoints, forecast, upper_c
 from mcgw.ensemble.intervals import mean_interval, spread_of
 from mcgw.ensemble.simulation import simulate
 from mcgw.errors import StoreError
+from mcgw.jobs import running
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run
 from mcgw.scene.section import SceneError
@@ -226,6 +228,49 @@ def test_surfaces_that_all_agree_are_not_proof(make_scene):
     rule = {"rel_err": 1e-3, "n_surfaces": 10**5, "quantities": ("contacts",)}
     scene = make_scene(n_asperities=1, separations=(-3.0,), grading=analytic.Exponential(1.0), **rule)
     assert simulate(scene).n_surfaces >= 2900
+
+
+@pytest.mark.parametrize(
+    ("seconds", "held", "made"),
+    [
+        (100, 0, [64, 128, 256, 512]),  # three of them take 90 s
+        (90, 0, [64, 128, 256, 512]),
+        (89, 0, [64, 128, 256]),
+        (1000, 0, [64, 128, 256, 512, 1024, 2048, 3000]),
+        (1000, 100, [100, 256, 512, 1024, 2048, 3000]),
+        (1000, 3000, [3000]),
+        (10, 5000, [3000]),
+        (None, 0, [3000]),
+        (None, 5000, [3000]),
+    ],
+)
+def test_a_run_of_limited_time_doubles_what_it_has(seconds, held, made, make_scene, tmp_path, monkeypatch):
+    """By a clock that goes on by 30 s a stage. Without a limit of time there is one stage alone."""
+    path, found = tmp_path / "a.h5", []
+    if held:
+        path.touch()
+    monkeypatch.setattr(running, "open_ensemble", lambda _: SimpleNamespace(n_surfaces=held))
+    monkeypatch.setattr(running, "as_recorded", lambda scene, _: scene)
+    monkeypatch.setattr(running, "monotonic", lambda: 30.0 * len(found))
+    monkeypatch.setattr(running, "make", lambda job, by: found.append(job.record.scene.n_surfaces))
+    wish = {"max_seconds": seconds} if seconds else {"rel_err": 1e-3}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of 3000 surfaces no mean is known so well
+        run(make_scene(separations=(0.0,), n_surfaces=3000, **wish), path)
+    assert found == made
+
+
+def test_a_narrower_file_is_not_cut_by_a_wider_wish(make_scene, tmp_path, monkeypatch):
+    """What is there stays: the number of surfaces is at least that of the file."""
+    path, found = tmp_path / "a.h5", []
+    path.touch()
+    monkeypatch.setattr(running, "open_ensemble", lambda _: SimpleNamespace(n_surfaces=2000))
+    monkeypatch.setattr(running, "as_recorded", lambda scene, _: scene)
+    monkeypatch.setattr(running, "make", lambda job, by: found.append(job.record.scene.n_surfaces))
+    scene = make_scene(separations=(0.0,), n_surfaces=10**5, rel_err=0.05, quantities=("load",))
+    assert forecast(scene).surfaces < 2000
+    run(scene, path)
+    assert found == [2000]
 
 
 def test_time_ends_a_run(make_scene, tmp_path):
