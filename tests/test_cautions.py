@@ -71,6 +71,83 @@ def test_told_here_and_not_beside(make_scene, words, told, silent):
     assert not about(cautions(make_scene(**silent)), words)
 
 
+# --- limits -------------------------------------------------------------------------------------------------
+
+
+def falling(h=0.0, **changes):
+    """Exponential heights, of which exp(-h - 1) lie above h, deeper by 1 on average."""
+    plain = {"grading": analytic.Homogeneous(), "surface": SHALLOW, "heights": analytic.ExponentialHeights()}
+    return plain | {"separations": (h,), "n_surfaces": 2} | changes
+
+
+def crowd(f):
+    """3000 summits, a real area of 5 % f: a mean of pi R sigma for each that touches."""
+    area = 3000 * np.pi * SHALLOW.radius * SHALLOW.sigma * np.exp(-1) / (0.05 * f)
+    return falling(surface=dataclasses.replace(SHALLOW, nominal_area=area, eta=3000 / area))
+
+
+def blunt(ratio, depth):
+    """A depth in sigma at which the radius of a contact by Hertz is so much of that of its summit."""
+    return dataclasses.replace(SHALLOW, radius=depth * SHALLOW.sigma / ratio**2)
+
+
+def conducting(gain):
+    """Factor (1 - sqrt(A/A_n))^-1.5 of spots that constrict each other."""
+    share = (1 - gain ** (-2 / 3)) ** 2
+    area = 3000 * np.pi * SHALLOW.radius * SHALLOW.sigma * np.exp(-1) / share
+    surface = dataclasses.replace(SHALLOW, nominal_area=area, eta=3000 / area)
+    return falling(surface=surface, quantities=("load", "conductance"))
+
+
+def filmed(f):
+    """A fifth of the radius sqrt(R sigma) of spots, of bodies that conduct 2 k1 k2/(k1 + k2) = 50."""
+    film = mcgw.Film(conductivities=(30.0, 150.0), film_resistance=f * (SHALLOW.radius * 1e-6) ** 0.5 / 250)
+    return falling(2.0, film=film)
+
+
+def kogut(critical, **changes):
+    return falling(law=mcgw.KogutEtsion(critical=critical), **changes)
+
+
+LIMITS = {
+    "nominal area is in contact": crowd,
+    "more than half": lambda f: falling(-np.log(f / 2 * np.e)),
+    "compressed by more": lambda f: falling(
+        surface=dataclasses.replace(SHALLOW, radius=-np.log(1e-3 * f) * SHALLOW.sigma)
+    ),
+    "too large for Hertz": lambda f: falling(surface=blunt(0.3 * f, np.log(3000) - 1)),
+    "fewer than 30 contacts": lambda f: falling(np.log(3000 / 30 * f) - 1),
+    "not eta * nominal_area": lambda f: falling(n_asperities=round(3e4 * (1 + 0.01 * f))),
+    "Cooper, Mikic and Yovanovich": lambda f: conducting(1 + 0.05 * f),
+    "contact.film_resistance": filmed,
+    "have yielded": lambda f: kogut(-np.log(1e-3 * f)),
+    # of 10 000 equally likely heights more than ten
+    "than 110 critical": lambda f: kogut(-np.log(1e-3 * (1 + f) / 2 * 1.05) / 110),
+    "than 170 critical": lambda f: kogut(-np.log(1e-3 * (1 + f) / 2 * 1.05) / 170, unload_from="loop"),
+    "contact.yield_strength": lambda f: falling(law=steel(1e-2 * f)),
+    "yield_strength over": lambda f: falling(law=steel(1e-3 / f)),
+    "reach 0.4 of the summit": lambda f: falling(
+        surface=blunt(0.4 * f, np.log(1000)), law=mcgw.JacksonGreen(yield_strain=1e-2, critical=100.0)
+    ),
+    "contact.ratio": lambda f: falling(law=mcgw.Coated(ratio=3 * f, thickness=1e-6)),
+    "first-order coating": lambda f: falling(law=mcgw.Coated(ratio=1 / 3 / f, thickness=1e-6)),
+    "Tabor number above 5": lambda f: falling(law=mcgw.JohnsonKendallRoberts(work=work_of(5 / f))),
+    "Tabor number below 0.1": lambda f: falling(law=mcgw.DerjaguinMullerToporov(work=work_of(0.1 * f))),
+}
+
+
+def work_of(tabor):
+    """(R w^2/(E*^2 z0^3))^(1/3) at z0 = 0.3 nm."""
+    return float(np.sqrt((tabor * 3e-10) ** 3 / SHALLOW.radius) * SHALLOW.E_star)
+
+
+@pytest.mark.parametrize("words", LIMITS)
+def test_each_limit_is_met_to_half_a_per_cent(make_scene, words):
+    told, silent = (cautions(make_scene(**LIMITS[words](f))) for f in (1.005, 0.995))
+    assert len(about(told, words)) == 1
+    assert not about(silent, words)
+
+
 def test_a_calm_scene_has_no_caution(make_scene):
     assert cautions(make_scene(separations=(2.0,), n_asperities=30_000, surface=SHALLOW)) == []
 

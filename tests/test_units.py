@@ -13,7 +13,7 @@ import mcgw
 from mcgw.cli import COMMANDS
 from mcgw.formats.numbers import _FACTORS, EXAMPLES, METRES, parse
 from mcgw.scene.keys import SURFACE_UNITS
-from mcgw.scene.plausible import RANGES, perhaps_other_units
+from mcgw.scene.plausible import RANGES, perhaps_other_units, surface_in_other_units
 from mcgw.scene.scene import Scene
 
 # One of each, in SI. Written out: a table that was computed would repeat the mistakes of the other.
@@ -202,6 +202,19 @@ def test_a_value_in_another_unit_is_asked_about_in_one_line(key):
     assert line.startswith(f"surface.{key} = ")
 
 
+ENDS = {  # from atoms to faults in rock, from gels to diamond
+    "sigma": (1e-10, 1e-3), "radius": (1e-10, 0.1), "eta": (1e4, 1e19), "nominal_area": (1e-17, 10.0),
+    "E_star": (1e3, 2e12),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("key", ENDS)
+def test_values_are_asked_about_from_the_end_of_their_range_on(key):
+    low, high = ENDS[key]
+    for value, doubts in ((low, 0), (0.995 * low, 1), (high, 0), (1.005 * high, 1)):
+        assert len(surface_in_other_units(replace(SURFACE, **{key: value}))) == doubts, value
+
+
 def test_every_key_of_the_surface_has_a_range():
     assert RANGES.keys() == SURFACE_UNITS.keys() == DOUBTED.keys()
 
@@ -212,6 +225,8 @@ def test_separations_in_metres_are_asked_about():
     assert "did you mean 2e-06 m = 2 sigma?" in line
     assert perhaps_other_units(replace(scene, separations=(0.0,))) == []
     assert perhaps_other_units(replace(scene, separations=(1e-6, 1.0))) == []
+    assert perhaps_other_units(replace(scene, separations=(0.0, 1.005e-3))) == []  # a thousandth of sigma
+    assert len(perhaps_other_units(replace(scene, separations=(0.0, 0.995e-3)))) == 1
 
 
 def test_no_scene_of_ours_is_doubted():

@@ -4,6 +4,7 @@ import warnings
 
 import numpy as np
 import pytest
+from scipy.stats import norm
 
 import mcgw
 from mcgw.cli import main
@@ -108,6 +109,25 @@ def test_a_table_that_ends_short_of_the_contacts_is_doubted(ends, separations, d
     found = perhaps_other_units(scene)
     assert len(found) == (doubt is not None)
     assert doubt is None or doubt in found[0]
+
+
+@pytest.mark.parametrize(
+    ("s", "ratio"),
+    [
+        (lambda f: (-4.0, 50 * f), lambda f: (1.0, 2.0)),
+        (lambda f: (-50 * f, 9.0), lambda f: (1.0, 2.0)),
+        (lambda f: (-4.0, 9.0), lambda f: (1.0, 50 * f)),
+        (lambda f: (-4.0, 9.0), lambda f: (1e-3 / f, 1.0)),
+        (lambda f: (-4.0, norm.isf(0.05 * f)), lambda f: (1.0, 2.0)),  # 10 % of the contacts at d = 0
+    ],
+)
+def test_tables_are_doubted_from_a_limit_on(s, ratio):
+    for f, doubts in ((0.995, 0), (1.005, 1)):
+        grading = mcgw.Table(s(f), ratio(f))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            scene = mcgw.Scene(mcgw.Surface(**SURFACE), separations=0.0, grading=grading)
+        assert len(perhaps_other_units(scene)) == doubts
 
 
 def test_a_surface_in_another_unit_is_asked_about_in_python():

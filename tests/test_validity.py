@@ -313,10 +313,26 @@ def test_nothing_is_said_of_what_was_not_measured(make_scene, name):
 
 def test_radii_that_end_early_are_not_those_of_the_maps():
     surface = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 mm^2", "1 GPa")
-    for bound, known in ((9.0, False), (11.0, True)):
+    for bound, known in ((9.95, False), (10.05, True)):
         curvature = mcgw.RandomCurvature(surface.moments.alpha, bound)
         scene = mcgw.Scene(surface, separations=[1.0], curvature=curvature, seed=1)
         assert scene.validity().measured.all() == known
+
+
+def test_a_density_is_that_of_its_alpha_up_to_a_twentieth():
+    """Of Nayak's heights, and of the asperities of an interaction that are all on the nominal area."""
+    surface = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 mm^2", "1 GPa").surface
+    scene = mcgw.Scene(surface, separations=1.0, heights=analytic.Nayak(5.0), seed=1)
+    for ratio, known in ((1.049, True), (1.051, False), (0.951, True), (0.949, False)):
+        dense = dataclasses.replace(surface, eta=ratio * surface.eta)
+        assert scene.replace(surface=dense).validity().measured.all() == known
+        found = scene.replace(
+            interaction="mean-plane",
+            n_asperities=round(1000 * ratio),
+            surface=dataclasses.replace(surface, nominal_area=1000 / surface.eta),
+        ).validity()
+        assert np.isfinite(found.error["area"]).all()
+        assert np.isfinite(found.error["load"]).all() == known
 
 
 def test_far_away_and_far_down_are_outside():

@@ -88,6 +88,37 @@ def test_estimates_that_differ_are_reason_enough(scene):
     assert "too few summits" in scene.replace(fitted=few).validity().verdict
 
 
+# Of many independent heights and of few, so that chance allows 0.1 of skewness and 0.2 of kurtosis.
+MANY, FEW = {"independent": 1e9, "skewness": 0.0, "kurtosis": 3.0}, {"independent": 2400.0, "kurtosis": 3.0}
+LIMITS = {
+    "lay": lambda f: MANY | {"lay": 1.5 * f},
+    "agreement": lambda f: MANY | {"agreement": 1.1 * f},
+    "skewness": lambda f: MANY | {"skewness": -0.05 * f},
+    "skewness by chance": lambda f: FEW | {"skewness": 0.1 * f},
+    "skewness whatever the chance": lambda f: FEW | {"independent": 100.0, "skewness": 0.15 * f},
+    "kurtosis": lambda f: MANY | {"kurtosis": 3 + 0.1 * f},
+    "kurtosis by chance": lambda f: FEW | {"skewness": 0.0, "kurtosis": 3 - 0.2 * f},
+}
+
+
+@pytest.mark.parametrize("name", LIMITS)
+def test_a_map_is_like_those_that_were_solved_up_to_a_limit(scene, name):
+    for f, known in ((0.995, True), (1.005, False)):
+        fitted = replace(scene.fitted, lay=None, agreement=1.0)
+        found = scene.replace(fitted=replace(fitted, **LIMITS[name](f))).validity()
+        assert found.measured.any() == known
+        assert (name.split()[0] in found.unknown.replace("moments and counts", "agreement")) != known
+
+
+def test_a_surface_is_that_of_its_map_up_to_a_tenth(scene):
+    sigma = scene.fitted.moments.sigma
+    fitted = replace(scene.fitted, **MANY, lay=None, agreement=1.0)
+    plain = scene.replace(fitted=fitted, eta=fitted.moments.eta, radius=fitted.moments.radius)
+    for ratio, known in ((1.0995, True), (1.1005, False), (1 / 1.0995, True), (1 / 1.1005, False)):
+        found = plain.replace(sigma=ratio * sigma).validity()
+        assert ("differs from that of the map by a factor of 1.1" in found.unknown) != known
+
+
 def test_chance_is_left_to_maps_of_few_waves(scene):
     """A skewness of .1 is one of a map with 500 independent heights, of one with a million it is its own."""
     for independent, known in ((500.0, True), (1e6, False)):

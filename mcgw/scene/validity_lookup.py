@@ -44,9 +44,6 @@ def validity_of(scene: Fields, separations: ArrayLike | None = None, *, felt: bo
         return _nothing(h, f"not measured: {reason}")
     place = place_of(scene)
     grid = grid_of(place.kind, place.model, place.interaction)
-    if grid is None:
-        shared = "" if place.interaction == "none" else " with an interaction"
-        return _nothing(h, f"not measured: {place.model} on maps ({_maps(place)}){shared}")
     if not grid.holds(place.x):
         return _nothing(
             h, f"outside the measured range ({_coordinate(place)} = {place.x:.4g}; {_span(grid)})"

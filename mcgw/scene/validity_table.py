@@ -28,11 +28,11 @@ def rows() -> tuple[dict[str, str], ...]:
 
 
 @cache
-def grid_of(kind: str, model: str, interaction: str) -> "Grid | None":
-    """Table of a model on one kind of maps, "gaussian" or "caps"; None if not measured."""
+def grid_of(kind: str, model: str, interaction: str) -> "Grid":
+    """Table of a model on one kind of maps, "gaussian" or "caps"."""
     named = {"map": kind, "model": model, "interaction": interaction}
     found = [row for row in rows() if all(row[key] == word for key, word in named.items())]
-    return Grid.of(found, along_separation=kind == "caps") if found else None
+    return Grid.of(found, along_separation=kind == "caps")
 
 
 @dataclass(frozen=True)
