@@ -9,15 +9,23 @@ import exact
 import numpy as np
 import pytest
 from oracles import ensemble_arrays
-from scipy.special import ndtri
-from scipy.stats import binom, chi2, norm, ttest_1samp
+from scipy.special import ndtri, polygamma, psi
+from scipy.stats import binom, chi2, kstest, norm, poisson, ttest_1samp
 
 import analytic
 import mcgw
 from mcgw.cli import main
 from mcgw.figures.studies import save_convergence
 from mcgw.statistics import convergence
-from mcgw.statistics.checks import PrincipalComponents, coverage, independence, skewness, variances
+from mcgw.statistics.checks import (
+    PrincipalComponents,
+    covariances,
+    coverage,
+    independence,
+    scores,
+    skewness,
+    variances,
+)
 from mcgw.statistics.convergence import Convergence, _own as own, converge
 from mcgw.statistics.verdict import FALSE_ALARM
 
@@ -393,3 +401,132 @@ def test_where_each_surface_has_its_own_separation_no_sum_is_of_independent_ones
     what = mcgw.simulate(scene) if call == "regrade" else scene
     with pytest.raises(ValueError, match=rf'^interaction.at = "nominal": {call} needs sums of independent'):
         getattr(mcgw, call)(what)
+
+
+@pytest.mark.parametrize(("asked", "given"), [(20, 64), (64, 64), (300, 300), (1000, 1000), (5000, 1000)])
+def test_what_is_asked_of_a_sampler(make_scene, asked, given):
+    """Seeds one by one from that of the scene, few separations in order, a feasible number of surfaces."""
+    h = tuple(np.linspace(2, 0, 20))
+    scene = make_scene(
+        separations=(*h, 1.0, 1.0), n_surfaces=asked, n_asperities=6400, seed=2**64 - 2, quantities=("load",),
+        keep="statistics", max_seconds=9.0,
+    )  # fmt: skip
+    drawn, told = [], []
+
+    def draw(one):
+        drawn.append(one)
+        return own(one)
+
+    found = converge(scene, draw, seeds=3, progress=lambda *pair: told.append(pair))
+    whole, sizes = drawn[:3], drawn[3:]
+    assert [one.seed for one in whole] == [2**64 - 2, 2**64 - 1, 0]
+    every = np.unique([*h, 1.0])
+    at = np.unique(np.linspace(0, 20, 12).round().astype(int))
+    for one in whole:
+        np.testing.assert_array_equal(one.separations, every[at])
+        assert (one.n_surfaces, one.keep, one.max_seconds, one.rel_err) == (given, "sums", None, None)
+    assert [one.n_asperities for one in sizes] == [100, 400, 1600, 6400][-len(sizes) :]
+    assert len(sizes) >= 2
+    assert all((one.separations, one.quantities) == ((0.0,), ("load",)) for one in sizes)
+    seeds = [(2**64 - 2 + 10**6 + divisor) % 2**64 for divisor in (64, 16, 4, 1)]
+    assert [one.seed for one in sizes] == seeds[-len(sizes) :]
+    assert told == [(0, 3), (1, 3), (2, 3), (3, 3)]
+    in_m, in_n = found.slopes
+    assert (
+        in_m.sizes.tolist()
+        == [m for m in (1.0, 4.0, 16.0, 64.0, 256.0) if m <= given // 4][: len(in_m.sizes)]
+    )
+    assert in_n.sizes.tolist() == [one.n_asperities for one in sizes]
+    assert (in_m.against, in_n.against) == ("M", "N")
+
+
+def test_the_worst_eight_checks_are_shown(scene):
+    checks = tuple(convergence.Check(f"c{k}", f"seen {k}", 0.05 * (9 - k)) for k in range(9))
+    found = Convergence(scene, checks, (), np.empty(0))
+    table = found.sheet().table
+    assert list(table.columns[0].values) == [f"c{k}" for k in range(8, 0, -1)]
+    assert list(table.columns[1].values) == [0.05 * (9 - k) for k in range(8, 0, -1)]
+    assert [table.heading(column) for column in table.columns] == ["worst", "p", "seen"]
+    assert found.sheet().facts == [("p", "0.45 over all 9 checks")]
+    assert found.sheet().title == "Statistical convergence passed"
+    whole = found.table()
+    assert [column.name for column in whole.columns] == ["check", "p", "seen"]
+    assert whole.heading(whole.columns[0]) == "check"
+    assert list(whole.columns[2].values) == [check.seen for check in checks]
+
+
+def test_the_number_of_contacts_is_exactly_binomial_or_poisson(make_scene):
+    """Every surface the same number off: p is twice the smaller tail of the exact law."""
+    for count in ("fixed", "poisson"):
+        scene = make_scene(separations=(0.0, 1.0), n_asperities=200, n_surfaces=50, count=count)
+        share = norm.sf([0.0, 1.0])
+        for k, add in ((0, 2.0), (1, -1.0)):
+            contacts = np.rint(np.tile(200 * share, (50, 1)))
+            contacts[:, k] += add
+            (check,) = convergence._contacts(scene, {"contacts": contacts})
+            tried, total = 50 * 200, contacts.sum(axis=0)
+            law = binom(tried, share) if count == "fixed" else poisson(tried * share)
+            each = np.minimum(2 * np.minimum(law.cdf(total), law.sf(total - 1)), 1)
+            assert check.p == pytest.approx(min(1, 2 * each.min()), rel=1e-9)
+            assert check.seen == f"{total[k]:.0f} at d/sigma = {k}, {tried * share[k]:.1f} expected"
+    assert convergence._contacts(scene.replace(quantities=("load",)), {}) == []
+
+
+@pytest.mark.parametrize(
+    ("levels", "excess", "told"),
+    [((0.9, 1.0, 1.3), 0.0, 3.0), ((0.9, 1.0, 1.3), 2.0, 3.0), ((1.0, 1.0), 1.0, 2.0)],
+)
+def test_a_slope_weighs_sizes_by_what_they_tell(levels, excess, told):
+    """By the variance of the logarithm of a chi-square, whose degrees an excess of kurtosis lessens."""
+    sizes = [4.0**k for k in range(len(levels))]
+    numbers = [40 * 2**k for k in range(len(levels))]
+    squares = [np.full(n, level) for n, level in zip(numbers, levels, strict=True)]
+    degrees = np.array(numbers) / (1 + excess / 2)
+    y = (np.log(levels) - psi(degrees / 2) + np.log(degrees / 2)) / 2
+    weight = 4 / polygamma(1, degrees / 2)
+    fit, covariance = np.polyfit(np.log(sizes), y, 1, w=np.sqrt(weight), cov="unscaled") if told > 2 else (
+        [np.diff(y)[0] / np.log(4)], [[(1 / weight).sum() / np.log(4) ** 2]]
+    )  # fmt: skip
+    found = convergence.slope("M", sizes, squares, [excess] * len(levels))
+    assert found.value == pytest.approx(fit[0], rel=1e-9, abs=1e-12)
+    assert found.uncertainty == pytest.approx(np.sqrt(covariance[0][0]), rel=1e-9)
+    np.testing.assert_allclose(found.errors, np.exp(y), rtol=1e-12)
+    np.testing.assert_allclose(found.stderr, weight**-0.5, rtol=1e-12)
+    half = 1.96 * found.uncertainty
+    assert found.check.seen == f"{found.value:.4f} +- {half:.4f} (95 %), expected -0.5"
+    assert found.check.name == "slope of the error in M"
+
+
+def test_products_of_axes_are_summed_over_all_pairs():
+    """Chi-square and its degrees by plain loops; of one axis there is no pair."""
+    y = np.random.default_rng(6).normal(size=(500, 4)) + 0.3 * np.random.default_rng(7).normal(size=(500, 1))
+    total = 0.0
+    for i in range(4):
+        for j in range(i):
+            product = y[:, i] * y[:, j]
+            total += product.sum() ** 2 / (product**2).sum()
+    check = covariances(y)
+    assert check.p == pytest.approx(chi2.sf(total, 6), rel=1e-9)
+    assert check.seen == f"chi-square {total:.1f} for 6 pairs of quantities and separations"
+    assert covariances(y[:, :1]).p == 1.0
+
+
+def test_products_of_later_surfaces_are_summed_over_lags_that_there_are():
+    groups = np.random.default_rng(8).normal(size=(3, 17, 2))
+    total = 0.0
+    for lag in (1, 2, 4, 8, 16):
+        for axis in (0, 1):
+            found = [groups[k, i, axis] * groups[k, i + lag, axis] for k in range(3) for i in range(17 - lag)]
+            total += sum(found) ** 2 / len(found)
+    check = independence(groups)
+    assert check.p == pytest.approx(chi2.sf(total, 10), rel=1e-9)
+    assert check.seen == f"chi-square {total:.1f} for 10 lags and axes"
+
+
+def test_scores_are_means_in_standard_errors():
+    groups = np.random.default_rng(9).normal(size=(5, 16, 2))
+    check, z = scores(groups)
+    np.testing.assert_allclose(z, 4 * groups.mean(axis=1).ravel(), rtol=1e-12)
+    expected = kstest(z, "norm")
+    assert check.p == pytest.approx(expected.pvalue, rel=1e-12)
+    assert check.seen == f"10 of them, KS distance {expected.statistic:.3f}"

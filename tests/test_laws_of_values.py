@@ -36,6 +36,21 @@ def test_distances_are_those_of_scipy(make_scene):
     assert found.p == pytest.approx(min(1, 8 * np.exp(-1800 * found.distance**2)), rel=1e-9)
 
 
+@pytest.mark.parametrize(("law", "most"), [(None, 8), (analytic.KogutEtsion(critical=0.1), 3)])
+@pytest.mark.parametrize("n", [2, 3, 8, 9])
+def test_so_many_laws_are_looked_at(law, most, n, make_scene):
+    """Eight separations of each quantity, with the first and the last; three where a law takes longer."""
+    h = np.linspace(0.5, 1.5, n)
+    scene = make_scene(separations=h[::-1], n_surfaces=30, n_asperities=300, quantities=("load", "contacts"))
+    found = laws_of_values(mcgw.simulate(scene if law is None else scene.replace(law=law)))
+    assert found.number == 2 * min(n, most)
+    assert found.separation in h
+    assert found.seen == (
+        f"the distribution of {found.quantity} at d/sigma = {found.separation:g} differs by "
+        f"{found.distance:.3g}, the most of {found.number}"
+    )
+
+
 def test_of_many_surfaces_some_values_tell(make_scene):
     """At 1000 of 30 000 values the distance is less than that of all by no more than 1/1000."""
     ensemble = mcgw.simulate(make_scene(separations=(2.5,), n_surfaces=30_000, quantities=("load",)))

@@ -15,7 +15,7 @@ from mcgw.errors import RunError
 from mcgw.figures.studies import save_tradeoff
 from mcgw.statistics import methods, tradeoff as study
 from mcgw.statistics.tradeoff import tradeoff
-from mcgw.statistics.wishes import Way, Wish, _of_quantile, advise, ways_for
+from mcgw.statistics.wishes import Advice, Way, Wish, _of_quantile, advise, ways_for
 
 
 @pytest.fixture(scope="module")
@@ -225,9 +225,135 @@ def test_ways_of_crowds_are_measured_on_smaller_ones(make_scene, monkeypatch):
     assert (first.sampler, first.scene.accuracy) == ("cells", 1e-13)
     assert first.seconds(10) == first.set_up + 10 * first.each
     asked.clear()
-    few = next(ways_for(make_scene(n_asperities=10**7, separations=(0.0,), grading=None)))
+    few = make_scene(n_asperities=10**7, separations=(0.0,), grading=None)
+    assert next(ways_for(few)).each == pytest.approx(5e-3, rel=1e-6)
     assert asked == [(10**7, "cells")]
-    assert few.each == pytest.approx(5e-3, rel=1e-6)
+    crowds = [way for way in ways_for(few.replace(n_asperities=2 * 10**7)) if way.sampler == "aggregate"]
+    assert (2 * 10**7, "aggregate") in asked  # they take no longer for more asperities
+    assert {way.each for way in crowds} == {1e-9 * crowds[0].scene.touching}
+
+
+@pytest.mark.parametrize("touching", [99_999, 100_001])
+def test_ways_are_tried_in_order_of_importance(touching, make_scene, monkeypatch):
+    """There may not be time for all; auto is for what spends some of the law, and that alone."""
+    from mcgw.statistics import wishes
+
+    tried, asked = (
+        [],
+        make_scene(accuracy=1e-3, keep="moments", separations=(0.0,), n_asperities=2 * touching),
+    )
+
+    def measured(scene, **changes):
+        tried.append(changes)
+        assert (scene.keep, scene.accuracy, scene.law_error) == ("sums", 1e-13, 0.0)
+        if changes.get("accuracy") == 1e-10:
+            return None
+        spends = changes["sampler"] == "auto" and changes["law_error"] > 1e-4
+        return Way(scene, "aggregate" if spends else "cells", 0.0, 0.0, 1.0)
+
+    monkeypatch.setattr(wishes, "_measured", measured)
+    found = list(ways_for(asked))
+    cells = [{"sampler": "cells", "accuracy": x} for x in (1e-13, 1e-6, 1e-3, 1e-2, 1e-4, 1e-5, 1e-10, 1e-8)]
+    crowds = [{"sampler": "auto", "law_error": x} for x in (1e-3, 1e-4, 1e-2)]
+    tail = [{"sampler": "tail"}] * (touching < 1e5)
+    assert tried == [cells[0], *tail, *cells[1:3], *crowds, *cells[3:]]
+    assert len(found) == 7 + len(tail) + 2
+
+
+def test_what_wishes_need_is_counted_by_hand(make_scene):
+    """Of a quantile at least 2000 surfaces, of which 20 lie beyond; of values what the scene has."""
+    scene = make_scene(separations=(1.0,), quantities=("load",), n_surfaces=50)
+    ways = [way(scene, "cells", 1e-13, 1e-4), way(scene, "aggregate", 1e-13, 1e-9, law_error=1e-2)]
+    half, density = _of_quantile(scene, 1.0)
+    wishes = [Wish("quantile", 0.1), Wish("quantile", 1e-3), Wish("quantile", 1e-9)]
+    few, many = advise(scene, 1.0, ways, wishes)  # the last takes more than 1e12
+    assert few.scene.n_surfaces == max(2000, math.ceil((half / 0.1) ** 2))
+    assert many.scene.n_surfaces == math.ceil((half / 1e-3) ** 2) > 2000
+    assert few.sampler == many.sampler == "cells"  # the other law may be off by a tenth of wish and density
+    assert 0.1 * 0.1 * density < 1e-2
+    close = [ways[0], way(scene, "aggregate", 1e-13, 1e-9, law_error=0.99e-2 * density)]
+    assert advise(scene, 1.0, close, wishes[:1])[0].sampler == "aggregate"
+    assert half == pytest.approx(norm.ppf(0.975) * math.sqrt(0.99 * 0.01) / density, rel=1e-12)
+    texts = [wish.text for wish in (Wish("mean", 1e-4), Wish("quantile", 0.01), Wish("surfaces", 1e-9))]
+    assert texts == ["a mean to 0.0001", "the 99 % quantile to 0.01", "every value of a surface to 1e-09"]
+
+
+def test_errors_are_taken_at_the_lowest_a_middle_and_the_highest_separation_reached(make_scene):
+    """One of 1e9 asperities lies above 5.998 standard deviations."""
+    for h, chosen in (
+        ((3.0, 0.0, 1.0, 2.0), (1, 3, 0)),
+        ((5.99, 0.0, 6.01, 7.0, 1.0), (1, 4, 0)),
+        ((2.0, 1.0), (1, 0)),
+        ((1.5,), (0,)),
+        ((9.0, 8.0), (1,)),
+    ):
+        assert study._chosen(make_scene(separations=h)) == chosen
+
+
+def test_what_is_shown_of_a_study_is_what_was_measured(make_scene):
+    scene = make_scene(separations=(0.0, 2.5), quantities=("area",))
+    point = study.Point("tail", "surfaces", 4.0, np.array([0.125, 0.25]), 0.5, 2.0, 3.0, 1e6, 7)
+    rule = replace(point, method="rule", unit="points", size=8192.0, rms_stderr=0.0, peak=math.nan, seeds=1)
+    ways = (
+        way(scene, "cells", 1e-6, 2e-5, set_up=0.25),
+        way(scene, "aggregate", 1e-13, 1e-3, law_error=1e-3),
+    )
+    advice = tuple(
+        Advice(Wish("mean", 0.1), replace(one.scene, n_surfaces=n), one.sampler, one.seconds(n))
+        for one, n in zip(ways, (1000, 20), strict=True)
+    )
+    found = study.Tradeoff(scene, (0.0, 2.5), (point, rule), (), ways, advice, 1.0)
+    assert found.table().title == "root mean square relative error of the mean area at d/sigma"
+    assert shown(found.table()) == [
+        ["method", "size", "of", "at 0", "at 2.5", "+-", "CPU (s)", "wall (s)", "memory (B)", "seeds"],
+        ["tail", "4", "surfaces", "1.25e-01", "2.50e-01", "50%", "2.00e+00", "3.00e+00", "1e+06", "7"],
+        ["rule", "8.19e+03", "points", "1.25e-01", "2.50e-01", "0%", "2.00e+00", "3.00e+00", "nan", "1"],
+    ]
+    assert [column.name for column in found.table().columns] == [
+        "method", "size", "size_counts", "rms_relative_error_at_h_0", "rms_relative_error_at_h_2.5",
+        "rms_uncertainty", "cpu_s", "wall_s", "peak_growth_bytes", "seeds",
+    ]  # fmt: skip
+    assert shown(found.ways_table()) == [
+        ["sampler", "accuracy", "law_error", "error", "s a surface", "s before"],
+        ["cells", "1e-06", "0", "0.0e+00", "2.00e-05", "0.25"],
+        ["aggregate", "1e-13", "0.001", "0.0e+00", "1.00e-03", "0"],
+    ]
+    assert [column.name for column in found.ways_table().columns[4:]] == ["s_per_surface", "set_up_s"]
+    sheet = found.sheet()
+    assert sheet.facts == [("mean, quantile", "of the area at d/sigma = 2.5, in 95 of 100 ensembles")]
+    assert shown(sheet.table) == [
+        ["wanted, relative error", "sampler", "accuracy", "law_error", "n_surfaces", "seconds"],
+        ["a mean to 0.1", "cells", "1e-06", "0", "1000", "0.27"],
+        ["a mean to 0.1", "auto: aggregate", "1e-13", "0.001", "20", "0.02"],
+    ]
+    with pytest.raises(ValueError, match=r"^separation = 1: give one of 0, 2\.5$"):
+        found.plot(separation=1.0)
+
+
+def shown(table):
+    """Headings and cells of a table as they are printed."""
+    rows = zip(*(column.cells() for column in table.columns), strict=True)
+    return [[table.heading(column) for column in table.columns], *map(list, rows)]
+
+
+def test_a_task_tells_roots_of_means_and_medians(monkeypatch):
+    """Three seeds: errors 1, 2, 2 have the root of 3; a method without chance has no uncertainty."""
+    clock = iter([0.0, 6.0, 10.0, 12.0, 20.0, 21.0])
+    monkeypatch.setattr(study, "perf_counter", lambda: next(clock))
+    monkeypatch.setattr(study, "process_time", lambda: 0.0)
+    method = study.Method("made up", "units", (1.0,), None, lambda size, seed: np.array([seed * size, 3.0]))
+    task = study._Task(method, 1.0, 5.0, 2)
+    for seed in (1, 2, -2):
+        task.run(seed)
+    point = task.point()
+    np.testing.assert_allclose(point.rms, [3**0.5, 3.0], rtol=1e-14)
+    assert point.rms_stderr == pytest.approx(6**-0.5)
+    assert (point.wall, point.cpu, point.peak, point.seeds) == (1.0, 0.0, 5.0, 3)
+    same = study._Task(method, 0.0, 5.0, 1)
+    monkeypatch.setattr(study, "perf_counter", lambda: 0.0)
+    same.run(1)
+    same.run(2)
+    assert same.point().rms_stderr == 0.0
 
 
 def test_means_over_heights_and_radii_have_no_other_rule(make_scene):

@@ -6,15 +6,16 @@ from itertools import pairwise
 import exact
 import numpy as np
 import pytest
-from scipy.stats import chi2
+from scipy.stats import chi2, norm
 
 import analytic
 import mcgw
+from analytic.curvature import MEAN_CURVATURE
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import Held, MemoryResults
 from mcgw.figures.against_theory import save_comparison
 from mcgw.sampling.samplers import sampler_of
-from mcgw.statistics import comparison
+from mcgw.statistics import comparison, verdict as parts
 from mcgw.statistics.comparison import compare
 from mcgw.statistics.verdict import FALSE_ALARM, Verdict, verdict
 
@@ -262,3 +263,71 @@ def test_one_surface(make_scene):
 def test_stratified_is_no_ensemble(make_scene):
     with pytest.raises(ValueError, match="use another sampler"):
         compare(mcgw.simulate(make_scene(sampler="stratified")))
+
+
+# --- its parts, by hand ---
+
+
+def test_what_the_accuracy_allows_is_taken_off_either_side(make_scene):
+    scene, mean, stderr = make_scene(accuracy=1e-3), np.array([10.0, -20.0, 0.0]), np.array([0.01, 0.1, 1.0])
+    allowed = parts.allowance(scene, mean, stderr)
+    np.testing.assert_allclose(allowed, [1.0, 0.2, 0.0], rtol=1e-12)
+    assert not parts.allowance(make_scene(), mean, stderr).any()
+    np.testing.assert_allclose(
+        parts.beyond(np.array([3.0, -3.0, 0.5]), allowed), [2.0, -2.8, 0.5], rtol=1e-12
+    )
+    np.testing.assert_array_equal(parts.beyond(np.array([0.9, -0.9]), np.ones(2)), [0.0, 0.0])
+
+
+def test_combinations_in_which_errors_show_are_left_out():
+    """Of variance v: errors a of either sign add up to at most 2 |a|/sqrt(v), 0.3 of which goes unnoticed."""
+    for allowed in ([0.1, 0.2], [0.3], []):
+        least = parts.told_apart(np.array(allowed))
+        assert least == pytest.approx((2 * np.linalg.norm(allowed) / 0.3) ** 2, rel=1e-12)
+
+
+@pytest.mark.parametrize("z", [[0.0], [3.0, -1.0], [-4.0, 1.0, 2.0], [0.5, 0.4], []])
+def test_the_farthest_of_some_means_is_bonferroni_s(z):
+    p = min([1.0, *(2 * len(z) * norm.sf(abs(x)) for x in z)])
+    assert parts.farthest(np.array(z)) == pytest.approx(p, rel=1e-12)
+
+
+def test_radii_have_a_bound_that_one_in_ten_thousand_ensembles_passes(make_scene):
+    """And none where there is one already, or where all radii are one."""
+    scene = make_scene(
+        heights=analytic.Nayak(5.0), curvature=analytic.RandomCurvature(5.0), separations=(1.0,), grading=None
+    )
+    law = scene.curvature
+    for surfaces in (10**9, 10**12):
+        largest = parts.bounded_theory(scene, surfaces).curvature.largest
+        flatter = float(law.cdf(MEAN_CURVATURE / largest, 1.0)) * scene.touching * surfaces
+        assert flatter == pytest.approx(1e-4, rel=0.02)
+    few = parts.bounded_theory(scene, 1000).curvature  # of which fewer are flatter than a thousandth
+    assert few.largest == pytest.approx(MEAN_CURVATURE / 1e-3, rel=1e-12)
+    assert float(law.cdf(1e-3, 1.0)) * scene.touching * 1000 < 1e-4
+    for known in (scene.replace(curvature=analytic.RandomCurvature(5.0, 50.0)), make_scene()):
+        assert parts.bounded_theory(known, 10**6) is known.theory
+
+
+def test_the_worst_mean_is_one_that_counts():
+    residual = np.array([[1.0, -9.0, 2.0], [3.0, 0.0, -2.5]])
+    counts = np.array([[True, False, True], [False, True, True]])
+    found = parts.Tested(
+        quantities=("a", "b"), separations=np.arange(3.0), mean=residual, theory=residual, residual=residual,
+        counts=counts, verdict=Verdict(1.0, 1, 1.0),
+    )  # fmt: skip
+    assert found.worst == (1, 2)
+
+
+def test_a_sweep_is_judged_at_twelve_separations_and_never_more_than_surely(make_scene):
+    scene = make_scene(separations=tuple(np.linspace(2, 0, 30)), n_surfaces=20, quantities=("load",))
+    compared = compare(mcgw.sweep(scene, {"grading.gamma": [0.5, 1.0, 2.0]}))
+    at = np.linspace(0, 29, 12).round().astype(int)
+    for one in compared.points:
+        np.testing.assert_array_equal(one.separations, np.linspace(2, 0, 30)[::-1][at])
+    sure = tuple(dataclasses.replace(one, verdict=Verdict(1.0, 1, 0.5)) for one in compared.points)
+    assert dataclasses.replace(compared, points=sure).verdict.p == 1.0
+    assert dataclasses.replace(compared, points=sure[:1]).verdict.p == 0.5
+    told = []
+    compare(mcgw.sweep(scene, {"grading.gamma": [0.5, 1.0]}), progress=lambda *pair: told.append(pair))
+    assert told == [(0, 2), (1, 2), (2, 2)]
