@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from located_by_hand import residual
 from numpy.testing import assert_allclose
+from scipy.ndimage import map_coordinates
 from scipy.optimize import brentq
 from scipy.signal import get_window
 from scipy.stats import t as student
@@ -285,6 +286,34 @@ class TestProfiles:
         assert_allclose(spots.depths[:, shallow], [2 - 2 * np.cos(k * spots.radii[shallow])] * 16, rtol=0.04)
         beyond = np.diff(spots.depths[0, 5:]) / np.diff(spots.radii[5:] ** 2)
         assert (beyond > 0).all()
+
+    def test_of_a_map_are_means_over_eight_rays(self, rng):
+        """Literal: twelve steps of an eighth of the mean distance, each ray down to its first valley."""
+        heights = gaussian_map(SPECTRUM, (64, 96), (1e-6, 1.5e-6), rng).heights
+        one = Pressed(heights, (9.6e-5, 9.6e-5), 1e11, 5e7)
+        spots, summits = one.profiles.spots, one._counted[1]
+        n = spots.heights.size
+        r = np.arange(13) / 8 * math.sqrt(9.6e-5**2 / n)
+        assert_allclose(spots.radii, r, rtol=1e-12)
+        for k in range(0, n, 7):
+            bend = summits.curvatures[:, k].mean() / 2 * np.diff(r**2)
+            rays = []
+            for m in range(8):
+                x = summits.x[k] + r * math.cos(m * math.pi / 4)
+                y = summits.y[k] + r * math.sin(m * math.pi / 4)
+                at = [y / 1.5e-6 - 0.5, x / 1e-6 - 0.5]
+                falls = -np.diff(map_coordinates(heights, at, order=3, mode="grid-wrap"))
+                ups = np.flatnonzero(falls <= 0)
+                if ups.size:
+                    falls[ups[0] :] = bend[ups[0] :]
+                rays.append(falls)
+            falls, deep = np.mean(rays, axis=0), [0.0]
+            for a in r[1:]:
+                roots = [math.sqrt(max(a * a - x * x, 0)) for x in r]
+                weights = -2 * a * np.diff(roots) / np.diff(r**2)
+                deep.append(float(falls @ weights))
+            steps = np.maximum(np.diff(deep), 0.04 * bend)
+            assert_allclose(spots.depths[k, 1:], np.cumsum(steps), rtol=1e-9)
 
     def test_of_a_map_are_in_balance(self, rng):
         heights = mcgw.maps.synthetic.gaussian_map(SPECTRUM, (64, 64), (1e-6, 1e-6), rng).heights

@@ -2,6 +2,8 @@
 
 import math
 import re
+import tomllib
+from contextlib import contextmanager
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -17,6 +19,7 @@ from mcgw.cli import main
 from mcgw.maps.envelope import envelope, hidden_summits
 from mcgw.maps.estimates import SUMMITS, Estimate, by_summits, estimates_table, roughness_of
 from mcgw.maps.fit import fit_prepared
+from mcgw.maps.fitted_scene import write_scene
 from mcgw.maps.hidden_caps import visible
 from mcgw.maps.map_files import write_map
 from mcgw.maps.preparation import Preparation, prepared
@@ -494,3 +497,96 @@ def test_a_lay_of_nothing_across_is_a_number():
     z += 1e-15 * rng(1).normal(size=z.shape)
     fit = fit_map(Topography(z, PIXEL, periodic=True), cutoff=None, form="none")
     assert fit.lay == pytest.approx(2e12, rel=1e-6)
+
+
+def test_a_fit_tells_each_of_its_four_stages(rough, monkeypatch):
+    asked, done = [], []
+
+    @contextmanager
+    def stages(number):
+        asked.append(number)
+        yield lambda: done.append(1)
+
+    monkeypatch.setattr("mcgw.maps.fitting.stages", stages)
+    mcgw.fit(waves(8, 4), cutoff=None, form="none")
+    assert (asked, len(done)) == ([4], 4)
+
+
+@pytest.mark.parametrize(("width", "height", "area", "number", "placed"), [
+    (1e-3, 1e-3, 1e-6, 30, True), (0.99e-2, 1e-4, 0.99e-6, 30, True), (1.01e-2, 1e-4, 1.01e-6, 30, False),
+    (1e-4, 0.99e-2, 0.99e-6, 30, True), (1e-4, 1.01e-2, 1.01e-6, 30, False),
+    (1e-3, 1e-3, 1.0000009e-6, 30, True), (1e-3, 1e-3, 1.0000011e-6, 30, False),
+    (1e-3, 1e-3, 1e-6, 20_000, True), (1e-3, 1e-3, 1e-6, 20_001, False),
+])  # fmt: skip
+def test_summits_of_a_scene_have_places_where_there_are_few_on_a_whole_map(
+    width, height, area, number, placed, rough
+):
+    """Not on a strip, nor beside holes; each to seven digits, and the aspect of the map."""
+    x, y, z = rng(1).random((3, number))
+    listed = replace(
+        rough.listed, x=width * x, y=height * y, heights=z - z.mean(),
+        curvatures=np.full((2, number), 1e5), size=(width, height),
+    )  # fmt: skip
+    scene = mcgw.fitted_scene(replace(rough, listed=listed, area=area), heights="summits")
+    if not placed:
+        assert scene.curvature.places is None
+        return
+    expected = [width * x, height * y]
+    np.testing.assert_allclose(scene.curvature.places, expected, rtol=5.1e-7)
+    assert scene.curvature.sides(area) == pytest.approx((width, height), rel=1e-6)
+
+
+def test_a_scene_of_a_fit_asks_what_all_such_scenes_do(rough):
+    """A table of heights has the radius and density of the estimate it names; a list has one surface."""
+    scene = mcgw.fitted_scene(rough, title="of a map")
+    assert scene.title == "of a map"
+    np.testing.assert_allclose(scene.separations, np.arange(31) / 10, atol=1e-15)
+    assert scene.quantities == ("load", "area", "stiffness", "contacts", "conductance")
+    assert (scene.seed, scene.surface.E_star) == (1, 100e9)
+    table = mcgw.fitted_scene(rough, heights="table", use="moments").surface
+    told = rough.estimates["moments"]
+    assert (table.radius, table.eta) == (told.radius.value, told.eta.value)
+    assert table.sigma == pytest.approx(rough.summits.std())
+    fitted = scene.fitted
+    m = rough.moments
+    assert (fitted.m0, fitted.m2, fitted.m4, fitted.skewness, fitted.kurtosis) == (
+        m.m0, m.m2, m.m4, rough.roughness.sk, rough.roughness.ku,
+    )  # fmt: skip
+    assert (fitted.independent, fitted.agreement, fitted.lay, fitted.area, fitted.cautions) == (
+        rough.waves.independent, rough.agreement, rough.lay, rough.area, rough.cautions,
+    )  # fmt: skip
+    for heights in ("measured", "summits"):
+        one = mcgw.fitted_scene(rough, heights=heights)
+        assert (one.n_surfaces, one.n_asperities, one.sampler) == (1, rough.summits.size, "direct")
+        assert one.uncertainty is None
+        with pytest.raises(ValueError, match=f'nominal_area = 1: heights = "{heights}" uses the measured'):
+            mcgw.fitted_scene(rough, heights=heights, nominal_area=1)
+    own = mcgw.fitted_scene(rough, heights="measured").surface
+    assert own.radius == rough.estimates["summits"].radius.value
+    with pytest.raises(
+        ValueError, match='use = "moments": measured heights as they are need use = "summits"'
+    ):
+        mcgw.fitted_scene(rough, heights="measured", use="moments")
+    by = mcgw.fitted_scene(rough, heights="table").uncertainty
+    told = rough.estimates["summits"]
+    assert (by.eta, by.radius, by.sigma) == (told.eta.relative, told.radius.relative, told.sigma.relative)
+    nayak = mcgw.fitted_scene(rough, heights="nayak").uncertainty
+    assert (nayak.m0, nayak.m2, nayak.m4) == tuple(x.relative for x in (rough.m0, rough.m2, rough.m4))
+
+
+def test_a_written_scene_of_a_fit_leaves_out_what_follows(rough, tmp_path):
+    """The number of asperities follows from the area; comments stand above; heights lie beside it."""
+    scene = mcgw.fitted_scene(rough)
+    assert write_scene(scene, tmp_path / "f.toml", None, ["one", "two"]) == [tmp_path / "f.toml"]
+    text = (tmp_path / "f.toml").read_text()
+    assert text.startswith("# one\n# two\n\ntitle")
+    keys = tomllib.loads(text)["ensemble"]
+    assert not {"n_asperities", "left_out"} & set(keys)
+    assert mcgw.load_scene(tmp_path / "f.toml") == scene
+    listed = mcgw.fitted_scene(rough, heights="measured")
+    assert write_scene(listed, tmp_path / "m.toml", rough, []) == [
+        tmp_path / "m.toml", tmp_path / "m.heights.npy",
+    ]  # fmt: skip
+    assert np.array_equal(np.load(tmp_path / "m.heights.npy"), rough.summits)
+    assert "m.heights.npy" in (tmp_path / "m.toml").read_text()
+    assert len((tmp_path / "m.toml").read_text()) < 4000
