@@ -11,6 +11,7 @@ from told import drawn
 import analytic
 import mcgw
 from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.labelled import statistics_table
 from mcgw.ensemble.results import MemoryResults
 from mcgw.figures.plotting import draw
 from mcgw.formats.sheet import Sheet, brief
@@ -71,6 +72,55 @@ def results(scene, ensemble, tmp_path_factory):
         "study": few_methods(scene, seconds=0.1),
         "fit": mcgw.fit(folder / "map.npy", cutoff="10 um", pixel="1 um"),
     }
+
+
+OF_MEANS = "mean low_95 high_95 std theory residual"
+SHARES = "0 0.001 0.01 0.025 0.05 0.25 0.5 0.75 0.95 0.975 0.99 0.999 1"
+COLUMNS = {  # as files have them
+    "comparison": [
+        (lambda x: x.tables()["area"], f"separation {OF_MEANS}"),
+        (lambda x: x.worst(2), f"quantity unit separation {OF_MEANS}"),
+        (lambda x: x.sheet().table, f"quantity unit separation {OF_MEANS}"),
+    ],
+    "ensemble": [
+        (lambda x: statistics_table(x, "load"), "separation mean std stderr"),
+        (
+            lambda x: statistics_table(mcgw.simulate(x.scene, keep="statistics"), "load"),
+            "separation mean std stderr skewness " + " ".join(f"quantile_{x}" for x in SHARES.split()),
+        ),
+        (lambda x: x.sheet().table, "quantity 0 stderr 1 stderr 2 stderr"),
+    ],
+    "ratio": [(lambda x: x.table(), "separation ratio stderr variance_gain")],
+    "solution": [
+        (
+            lambda x: x.table(),
+            "quantity unit theory mean low_95 high_95 std specimen_05 specimen_95 corrected corrected_95",
+        ),
+        (lambda x: x.budget().table(), "95_% area stiffness conductance mean_gap"),
+        (lambda x: x.budget().sheet().table, "95_% area stiffness conductance mean_gap"),
+    ],
+    "convergence": [(lambda x: x.table(), "check p seen")],
+    "sweep": [
+        (lambda x: x.table(), "grading.gamma separation load_mean load_std area_mean area_std"),
+        (lambda x: x.sheet().table, "point load stderr area stderr"),
+        (
+            lambda x: mcgw.compare(x).table(),
+            "grading.gamma quantity unit separation mean theory residual p_of_point",
+        ),
+        (
+            lambda x: mcgw.compare(x).sheet().table,
+            "point quantity unit separation mean theory residual p_of_point",
+        ),
+    ],
+}
+
+
+@pytest.mark.parametrize("name", COLUMNS)
+def test_columns_have_names_that_programs_may_rely_on(name, results, scene):
+    short = scene.replace(quantities=("load", "area"))
+    result = mcgw.sweep(short, {"grading.gamma": [0.5, 2.0]}) if name == "sweep" else results[name]
+    for table, names in COLUMNS[name]:
+        assert [column.name.replace(" ", "_") for column in table(result).flat] == names.split()
 
 
 # --- quantities --------------------------------------------------------------------------------------------
