@@ -454,6 +454,8 @@ def test_an_array_needs_a_sound_sidecar(sidecar, topography, tmp_path):
     beside.unlink() if sidecar is None else beside.write_text(sidecar)
     with pytest.raises(ValueError, match=r"map\.json"):
         read_map(tmp_path / "map.npy")
+    beside.write_text(SOUND + " " * (2**16 - len(SOUND)))
+    assert read_map(tmp_path / "map.npy").pixel == (1.0, 1.0)
 
 
 def test_what_makes_no_map_is_refused(tmp_path):

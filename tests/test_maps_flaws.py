@@ -7,12 +7,14 @@ import numpy as np
 import pytest
 from fit_of_maps import fit_map
 from scipy.ndimage import gaussian_filter
+from scipy.optimize import brentq
 
 import mcgw
 from mcgw.cli import main
 from mcgw.maps.bad_points import bad_edges, recorded, small_spike_heights, spike_heights, usual_bend
 from mcgw.maps.fit import fit_prepared
 from mcgw.maps.fit_cautions import cautions
+from mcgw.maps.form import without_form
 from mcgw.maps.hidden_caps import visible
 from mcgw.maps.levels import form_left, step_of
 from mcgw.maps.preparation import Preparation, prepared
@@ -407,31 +409,69 @@ def test_levels_and_ends_of_a_recording():
     assert recorded(np.zeros((20, 20))).step == 0
 
 
-@pytest.mark.parametrize(("jump", "seen"), [(5.9, False), (6.1, True)])
-def test_a_step_is_six_usual_differences(jump, seen):
-    """On lines whose differences over two areas are -1 and 1, before a larger one: place, height and ends."""
-    n = 240
-    ramp = np.where(np.arange(n) // 20 % 2 == 0, 0.0, 1.0)  # each of 24 areas of ten points is level
-    z = ramp * 0.5 + jump * 0.5 * (np.arange(n) >= 120)
-    step = step_of(topography(np.broadcast_to(z, (n, n)).copy()))
-    assert (step is not None) == seen
-    if seen:
-        assert step.axis == "x"
-        assert step.begin <= 120e-6 <= step.end
-        assert step.end - step.begin <= 50e-6
-        assert step.begin < step.place < step.end
+def terraces(jump, back=0.0, lines=240):
+    """A map of 24 areas across, and its differences over two of them, about their median.
+
+    Levels at random, a jump at the fourteenth on so many lines, and one back at the fifth.
+    """
+    plain = rng(7).normal(size=24) - back * (np.arange(24) >= 5)
+    levels = plain + jump * (np.arange(24) >= 14)
+    changes = levels[2:] - levels[:-2]
+    z = np.where(np.arange(240)[:, None] < lines, levels.repeat(10), plain.repeat(10))
+    return topography(z), changes - np.median(changes)
 
 
-@pytest.mark.parametrize(("share", "seen"), [(0.046, False), (0.054, True)])
-def test_a_form_counts_from_a_twentieth_of_the_variance_on(share, seen):
+def jump_to(times, *more):
+    """The jump whose difference is so many times the usual one."""
+
+    def over(jump):
+        changes = terraces(jump, *more)[1]
+        return changes.max() / np.median(np.abs(changes)) - times
+
+    return brentq(over, 3.0, 60.0)
+
+
+def test_a_step_is_six_usual_differences_on_half_of_all_lines():
+    """Place and height of the largest one; it lies between the areas on either side of it."""
+    assert step_of(terraces(jump_to(5.98))[0]) is None
+    z, changes = terraces(jump_to(6.02))
+    step, at = step_of(z), int(np.argmax(changes))
+    assert at in (12, 13)
+    assert step.axis == "x"
+    assert step.height == pytest.approx(changes.max(), rel=1e-9)
+    area = 10e-6
+    found = (step.begin, step.place, step.end)
+    assert found == pytest.approx(((at - 0.5) * area, (at + 1.5) * area, (at + 3.5) * area), rel=1e-9)
+    turned = step_of(Topography(z.heights.T.copy(), PIXEL[::-1]))
+    assert (turned.axis, turned.place, turned.height) == ("y", pytest.approx(step.place), step.height)
+    assert step_of(terraces(jump_to(12), 0.0, 120)[0]) is not None
+    assert step_of(terraces(jump_to(12), 0.0, 110)[0]) is None
+
+
+def test_a_step_is_twice_what_goes_the_other_way():
+    for ratio, seen in ((1.98, False), (2.02, True)):
+
+        def off(back, ratio=ratio):
+            changes = terraces(20.0, back)[1]
+            return changes.max() / -changes.min() - ratio
+
+        assert (step_of(terraces(20.0, brentq(off, 5, 15))[0]) is not None) == seen
+
+
+@pytest.mark.parametrize("seen", [False, True])
+def test_a_form_counts_from_a_twentieth_of_the_variance_on(seen):
     """What a polynomial of second order takes off, over all; its range is what is told."""
     x, y = (2 * t - 1 for t in grid())
-    z = rough(3, long=16.1e-6)
-    shape = x * y
-    z *= np.sqrt((1 - share) / z.var())
-    shape *= np.sqrt(share / shape.var())
-    left = form_left(topography(1e-6 * (z + shape)), "plane")
+    z, share = rough(3, long=16.1e-6), 0.0502 if seen else 0.0498
+
+    def parts(size):
+        whole = topography(z + size * x * y)
+        return whole, whole.heights - without_form(whole, "quadratic").heights
+
+    size = brentq(lambda s: parts(s)[1].var() / parts(s)[0].heights.var() - share, 0.1e-6, 2e-6, rtol=1e-6)
+    whole, shape = parts(size)
+    left = form_left(whole, "plane")
     assert (left is not None) == seen
     if seen:
-        assert left.share == pytest.approx(share, rel=0.05)
-        assert left.height == pytest.approx(1e-6 * np.ptp(shape), rel=0.07)
+        assert left.share == pytest.approx(share, rel=1e-4)
+        assert left.height == pytest.approx(np.ptp(shape), rel=1e-6)

@@ -79,6 +79,39 @@ def test_a_profile_of_a_few_waves_has_their_weighted_power():
     assert found.power.sum() == pytest.approx(power.sum(), rel=1e-2)
 
 
+@pytest.mark.parametrize("n", [57, 200])
+def test_power_of_a_profile_is_that_of_its_faded_waves(n):
+    """A tenth at each end is faded by a squared sine; a wave that the form took is as four of the longest."""
+    z, h, cutoff = np.random.default_rng(4).normal(size=n), 0.5 * UM, 6 * UM
+    fade = round(n / 10)
+    window = np.ones(n)
+    for k in range(fade):
+        window[k] = window[-1 - k] = math.sin(math.pi / 2 * (k + 0.5) / fade) ** 2
+    seen = np.abs(np.fft.rfft(z * window / math.sqrt((window**2).mean()))) ** 2 * 2 / n**2
+    seen[0] = 0
+    some, none = (waves_of_profile(Profile(z, h), cutoff=cutoff, terms=t, pieces=8) for t in (3, 0))
+    np.testing.assert_allclose(some.power, seen, rtol=1e-10)
+    k = 2 * math.pi * np.fft.rfftfreq(n) / h
+    weights = areal_weights(k, cutoff) * k ** np.array([[0], [2], [4]])
+    np.testing.assert_allclose(some.weights, weights, rtol=1e-9, atol=1e-12 * np.abs(weights).max())
+    added = 3 * (seen[1:5] * weights[0, 1:5]).mean() / 2
+    np.testing.assert_allclose(
+        some.pieces - none.pieces, [[added] * 8, [0] * 8, [0] * 8], rtol=1e-6, atol=1e-30
+    )
+    assert some.length == n * h
+
+
+def test_the_fewest_points_of_a_fit():
+    """Four for each of sixteen stretches together, of the shortest profile."""
+    (one,) = list(cut(Spectrum(UM, 20 * UM, 8 * UM), 400))[:1]
+    z = one.heights
+    for several in ([64], [32, 400]):
+        fit_profiles([Profile(z[:n], UM) for n in several], cutoff=None)
+    for several, told in (([63], "63 points: too few for 16"), ([31, 400], "31 points: too few for 8 str")):
+        with pytest.raises(ValueError, match=told):
+            fit_profiles([Profile(z[:n], UM) for n in several], cutoff=None)
+
+
 def test_without_a_cutoff_moments_are_mean_squares_of_stencils():
     z = np.random.default_rng(2).normal(size=4000)
     found = waves_of_profile(Profile(z, 0.5), cutoff=None, terms=0, pieces=4).moments
@@ -478,6 +511,26 @@ def test_what_is_no_profile_is_refused_in_one_line(text, given, told, tmp_path):
         read_profile(path, **given)
     assert "\n" not in str(error.value)
     assert "p.txt" in str(error.value)
+
+
+@pytest.mark.parametrize(("unit", "metre"), [
+    ("m", 1), ("cm", 1e-2), ("mm", 1e-3), ("um", 1e-6), ("µm", 1e-6), ("μm", 1e-6), ("micron", 1e-6),
+    ("nm", 1e-9), ("pm", 1e-12), ("fm", 1e-15), ("km", 1e3), ("Angstrom", 1e-10), ("Å", 1e-10),
+    ("Nanometer", 1e-9), ("Micrometer", 1e-6), ("Millimeter", 1e-3),
+])  # fmt: skip
+@pytest.mark.parametrize("form", ["z ({})", "z [{}]", "z/{}", "height in {}", "Raw {}", "{}"])
+def test_every_unit_in_a_header(unit, metre, form, tmp_path):
+    (tmp_path / "p.txt").write_text("\n".join([form.format(unit), *map(str, Z)]), encoding="utf-8")
+    found = read_profile(tmp_path / "p.txt", spacing=1e3)
+    np.testing.assert_allclose(found.heights, Z * metre, rtol=1e-12)
+    assert found.assumed_unit == ""
+
+
+@pytest.mark.parametrize(("full", "found"), [(19, False), (20, True)])
+def test_the_first_twenty_lines_tell_a_profile(full, found, tmp_path):
+    """If a separator ends all of them, there is nothing behind it."""
+    (tmp_path / "p.csv").write_text("1.5,2.5,,\n" * full + "3.5,4.5,5.5,6.5\n")
+    assert holds_profile(tmp_path / "p.csv") == found
 
 
 def test_maps_are_no_profiles(tmp_path, monkeypatch):
