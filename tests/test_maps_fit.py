@@ -499,6 +499,22 @@ def test_a_lay_of_nothing_across_is_a_number():
     assert fit.lay == pytest.approx(2e12, rel=1e-6)
 
 
+def test_what_a_file_does_not_tell_is_given_to_a_fit(tmp_path, without_caps):
+    """Pixel and unit of an array; spacing and unit of a column, which `profile` makes of any file."""
+    z = gaussian_map(Spectrum(1e-6, 40e-6, 14e-6), (100, 100), PIXEL, rng(1)).heights
+    np.save(tmp_path / "m.npy", z * 1e6)
+    same = mcgw.fit(Topography(z, (2e-6, 2e-6)), cutoff="20 um")
+    found = mcgw.fit(tmp_path / "m.npy", cutoff="20 um", pixel="2 um", unit="um")
+    assert found.moments.m4 == pytest.approx(same.moments.m4, rel=1e-9)
+    with pytest.raises(ValueError, match="2 dimensions; a profile has one"):
+        mcgw.fit(str(tmp_path / "m.npy"), cutoff=None, pixel="2 um", profile=True)
+    np.savetxt(tmp_path / "p.txt", z[:20].ravel() * 1e9)
+    same = mcgw.fit(mcgw.maps.profile.Profile(z[:20].ravel(), 2e-6), cutoff="20 um")
+    for more in ({}, {"profile": True}):
+        found = mcgw.fit(tmp_path / "p.txt", cutoff="20 um", pixel="2 um", unit="nm", **more)
+        assert found.moments.m4 == pytest.approx(same.moments.m4, rel=1e-6)
+
+
 def test_a_fit_tells_each_of_its_four_stages(rough, monkeypatch):
     asked, done = [], []
 

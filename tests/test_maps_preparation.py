@@ -330,6 +330,11 @@ def test_notes_tell_what_was_done_to_a_map():
     assert periodic.used.periodic
     assert periodic.notes == ()
     assert (periodic.filled, periodic.seen) == (0.0, None)
+    edge = rough()
+    edge[0] = np.nan
+    for z in (edge, rough() + 2e-5 * (np.arange(N) > 60)):  # what is left of a map does not repeat itself
+        part = prepared(Topography(z, PIXEL, periodic=True), Preparation(None, form="none", step="crop"))
+        assert not part.used.periodic
     for steps in ({"trim": 1}, {"form": "plane"}):
         asked = Preparation(None, **{"form": "none", **steps})
         assert not prepared(Topography(rough(), PIXEL, periodic=True), asked).used.periodic

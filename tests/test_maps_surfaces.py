@@ -257,6 +257,8 @@ def test_the_bandwidths_of_a_spectrum_have_ends(hurst):
     for alpha in (1.01 * highest, 1.5, 1.4):
         with pytest.raises(ValueError, match=r"give a ratio above 1[.]5 and below "):
             Spectrum.with_moments(analytic.SpectralMoments(1.0, 1.0, alpha), hurst)
+    narrow = Spectrum.with_moments(analytic.SpectralMoments(1.0, 1.0, 1.5001), hurst)
+    assert 1 < narrow.long / narrow.short < 1.05
     assert Spectrum.with_moments(analytic.SpectralMoments(1.0, 1.0, 4.0)).hurst == 0.8
 
 

@@ -86,6 +86,10 @@ def test_utf_16_is_read_in_either_order(mark, tmp_path):
     assert read_map(tmp_path / "map.csv", pixel=(1.0, 1.0), unit="m").heights.tolist() == [[1.5, 2.0]]
 
 
+def test_comments_may_be_in_any_encoding(tmp_path):
+    assert read(tmp_path, "# Gr\u00f6\u00dfe\n1 2\n3 4\n", "latin-1").tolist() == [[1, 2], [3, 4]]
+
+
 @pytest.mark.parametrize(("head", "told"), [
     ("# Width: 4 um\n", "does not give the size of a pixel"),
     ("# Height: 4 um\n", "does not give the size of a pixel"),
