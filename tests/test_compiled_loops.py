@@ -9,6 +9,7 @@ import pty
 import re
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -169,3 +170,33 @@ def test_whatever_is_kept_gives_the_same_digest(tmp_path):
     assert "machine: 12 of 12\r" in said
     assert "machine: 13" not in said
     assert len(digests) == 1
+
+
+@pytest.mark.parametrize("folder", ["", "elsewhere"])
+def test_a_full_disk_is_told_once_with_what_to_do(folder, monkeypatch):
+    monkeypatch.setattr(compiling, "_SAID", set())
+    monkeypatch.setenv("NUMBA_CACHE_DIR", folder)  # an empty one is none
+    with pytest.warns(UserWarning, match=r"^compiled loops cannot be cached in here \(full\), so .*") as told:
+        compiling._say("here", "full")
+    advice = "; free some space" + ", or set NUMBA_CACHE_DIR to another folder" * (not folder)
+    assert str(told[0].message).endswith(f"them{advice}")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        compiling._say("there", "full")
+    with pytest.warns(UserWarning, match="in there .away"):
+        compiling._say("there", "away")
+
+
+@pytest.mark.parametrize("empty", [True, False])
+def test_loops_are_counted_and_their_number_is_known_where_none_was_kept(empty, tmp_path, monkeypatch):
+    """Twelve take a scene under Hertz's law; what else is compiled is beyond them."""
+    said = []
+    monkeypatch.setattr(compiling, "_WAS_EMPTY", [])
+    monkeypatch.setattr(compiling, "pass_by", said.append)
+    if not empty:
+        (tmp_path / "a.nbi").touch()
+    for _ in range(14):
+        compiling._count(tmp_path)
+        (tmp_path / "b.nbi").touch()
+    of = [" of 12" if empty and k <= 12 else "" for k in range(1, 15)]
+    assert said == [f"compiling the loops, once for this machine: {k}{of[k - 1]}" for k in range(1, 15)]

@@ -1,5 +1,6 @@
 """Engines: threads, processes and dask give the same digest, whatever happens to their workers."""
 
+import multiprocessing
 import os
 import signal
 import socket
@@ -266,6 +267,17 @@ def test_dask_without_its_scheduler_is_one_line(monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)  # it cannot be imported
     with pytest.raises(RunError, match=r'dask is not installed: pip install "mcgw\[dask\]"'):
         Dask(workers=1)
+
+
+def test_workers_are_killed_at_the_end_whatever_they_do():
+    before = set(multiprocessing.active_children())
+    engine = Processes(1)
+    assert engine.width == 2
+    engine.submit(time.sleep, 600)
+    (worker,) = set(multiprocessing.active_children()) - before
+    engine.close()
+    worker.join(timeout=30)
+    assert worker.exitcode == -signal.SIGKILL
 
 
 @pytest.mark.parametrize("engine", [Processes, lambda n: Dask(workers=n)])

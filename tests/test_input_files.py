@@ -203,6 +203,23 @@ def test_what_the_child_suffers_is_told_in_one_line(path, monkeypatch):
         untrusted.examine(copy)
 
 
+def test_small_files_of_strangers_are_read_to_the_last_number(path, monkeypatch):
+    """HDF5 may fail on any of them; large ones are looked at when they are read."""
+    with h5py.File(path) as file:
+        place = file["load"].id.get_chunk_info(0).byte_offset
+    data = bytearray(path.read_bytes())
+    data[place + 3] ^= 1
+    path.write_bytes(data)
+    assert structure.describe(str(path), read=False)["datasets"]["load"] == ["<f8", [20, 2]]
+    for most, refused in ((len(data), True), (len(data) - 1, False)):
+        monkeypatch.setattr(structure, "_READ_ALL", most)
+        if refused:
+            with pytest.raises(OSError, match="Can't"):
+                structure.describe(str(path))
+        else:
+            structure.describe(str(path))
+
+
 @pytest.mark.parametrize("said", ["", "{", "nothing"])
 def test_a_child_that_says_nothing_of_use_has_found_no_file(said, path, monkeypatch):
     monkeypatch.setattr(untrusted, "run_child", lambda *_, **__: said)

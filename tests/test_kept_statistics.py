@@ -255,7 +255,12 @@ def test_the_file_is_read_by_others_and_says_when_it_is_damaged(tmp_path):
         assert file["tangential_load_std"].dims == ("separation", "displacement")
         assert file["load_std"].units == "N"
         xarray.testing.assert_equal(file[list(e.to_xarray())].load(), e.to_xarray())
-        assert file["covariance"].shape == (e.scene.width,) * 2
+        full = mcgw.simulate(scene(tangential=PUSHED))
+        columns = np.concatenate([full[name].reshape(e.n_surfaces, -1) for name in full.scene.shapes], axis=1)
+        np.testing.assert_allclose(file["covariance"], np.cov(columns.T), rtol=1e-9, atol=1e-300)
+        assert file["covariance"].dims == ("column", "other_column")
+        order = ", ".join(f"{name} {'x'.join(map(str, full[name].shape[1:]))}" for name in full.scene.shapes)
+        assert file["covariance"].long_name == f"covariance of {order}"
     assert e.to_dataframe()["load_std"].tolist() == e.std("load").tolist()
     assert verify(path)[0] == ""
     data = bytearray(path.read_bytes())

@@ -200,6 +200,18 @@ def test_strata_are_said_to_be_silent_and_no_more(make_scene):
     assert f"mean below {limit:.3g} contacts per surface, {limit / 3000:.3g} per asperity (95%" in told[0]
 
 
+def test_means_without_a_wish_are_not_held_to_one(make_scene):
+    """Neither where contacts are few nor where they are many: only what was asked is told."""
+    scene = make_scene(n_surfaces=5, separations=(0.0, 2.0, 3.5), quantities=("load", "area"))
+    wished = scene.replace(n_surfaces=10**9, rel_err={"load": [1e-6, np.inf, np.inf]})
+    (told,) = after(simulate(scene), wished)
+    assert told.startswith("load at d/sigma = 0 has a relative error of ")
+    assert told.endswith(", not 1e-06")
+    (few,) = after(simulate(scene), wished.replace(rel_err={"area": [np.inf, np.inf, 0.1]}))
+    assert few == "area at d/sigma = 3.5: too few contacts"
+    assert len(after(simulate(scene), scene)) == 2  # of no wish, one that any interval keeps
+
+
 def test_a_mean_that_may_come_is_waited_for(make_scene):
     """h = 4.5 has one contact in 98 surfaces: it takes (1.96/0.1)^2 = 384 of them."""
     scene = make_scene(rel_err=0.1, n_surfaces=10**7, separations=(4.5,), quantities=("contacts",))

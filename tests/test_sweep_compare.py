@@ -133,6 +133,18 @@ def test_false_alarms_are_as_rare_as_stated():
     assert sum(x < 0.5 for x in p) >= 8
 
 
+def test_of_equally_likely_points_that_with_the_worst_mean_is_first(sweep):
+    compared = mcgw.compare(sweep)
+    alike = [replace(one, verdict=replace(one.verdict, p=0.5)) for one in compared.points]
+    found = replace(compared, points=tuple(alike)).worst
+    off = [abs(one.residual[one.worst]) for one in found]
+    assert off == sorted((np.abs(one.residual[one.counts]).max() for one in alike), reverse=True)
+    assert off[0] > off[-1]
+    shown = replace(compared, points=tuple(alike)).sheet().table.columns
+    assert [len(column.values) for column in shown] == [7] * 8
+    assert len(replace(compared, points=tuple(alike)).sheet(9).table.columns[0].values) == 9
+
+
 def test_points_that_are_no_ensembles_are_left_out():
     over = {"ensemble.sampler": ["auto", "stratified"]}
     compared = mcgw.compare(mcgw.sweep(SCENE, over))
