@@ -41,7 +41,8 @@ def test_results_in_python(name, recorded):
     things = [scene, ensemble]
     if scene.sampler != "stratified":  # which is no ensemble of surfaces
         things.append(mcgw.compare(ensemble))
-    recorded(f"{name}.results", (line for thing in things for line in answers(thing, APART, **asked)))
+    told = (line for thing in things for line in (*answers(thing, APART, **asked), *str(thing).splitlines()))
+    recorded(f"{name}.results", told)
 
 
 @pytest.mark.parametrize("name", SCENES)

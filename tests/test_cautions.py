@@ -148,6 +148,14 @@ def test_each_limit_is_met_to_half_a_per_cent(make_scene, words):
     assert not about(silent, words)
 
 
+@pytest.mark.parametrize("law", [METAL, mcgw.JacksonGreen(critical=0.05, yield_strain=0.004)])
+def test_where_nothing_touches_nothing_is_said_of_contacts(make_scene, law):
+    flat = analytic.HeightTable.of([0.0, 1.0, 2.0, 3.0])
+    told = told_of(make_scene, law, heights=flat, separations=(9.0,), n_asperities=30_000)
+    kinds = [" ".join(line.split()[:4]) for line in told if "stiffness is that of initial" not in line]
+    assert kinds == ["from d/sigma = 9"]  # fewer than 30 contacts
+
+
 def test_a_calm_scene_has_no_caution(make_scene):
     assert cautions(make_scene(separations=(2.0,), n_asperities=30_000, surface=SHALLOW)) == []
 

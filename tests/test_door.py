@@ -168,6 +168,13 @@ def scalar_only(s):
 
 ONLY_PYTHON = [
     ({"surface": 3}, r"^surface = 3: give mcgw\.Surface\("),
+    ({"curvature": 3.0}, r'^summits\.curvature = 3\.0: give "random", "mean", or mcgw\.MeasuredRadii'),
+    ({"law": mcgw.KogutEtsion(hardness=1e300)},
+     r'^contact\.law = "kogut-etsion": critical = inf: give a finite number > 0$'),
+    ({"law": mcgw.JacksonGreen(yield_strength=1e200)},
+     r'^contact\.law = "jackson-green": critical = inf: give a finite number > 0$'),
+    ({"surface": analytic.Surface(1e250, 1e250, 1e-9, 1e12, 1e9), "quantities": ["load"]},
+     "^surface: the load of an asperity would be inf N, beyond double precision; check sigma"),
     ({"grading": 2.0}, r"^grading = 2\.0: give mcgw\.Exponential\(gamma\)"),
     ({"grading": mcgw.Homogeneous}, r"^grading = <class .*Homogeneous'>: give"),
     ({"grading": scalar_only},

@@ -96,6 +96,7 @@ def test_laws_gradings_and_own_radii_go_with_it():
         ({"rel_err": 0.05, "n_surfaces": None}, "give n_surfaces"),
         ({"n_asperities": 30000}, "20000 or fewer"),
         ({"unload_from": 0.1}, "unload_from"),
+        ({"negative": "allow"}, 'needs loads that decrease with the separation; use "clip"'),
         ({"film": mcgw.Film(1e-7)}, "resistivity"),
         ({"law": mcgw.JohnsonKendallRoberts(work=0.01)}, "fall with the separation"),
     ],

@@ -13,6 +13,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import MemoryResults
 from mcgw.figures.contact_map import patch_figures
 from mcgw.figures.panels import draw
+from mcgw.reports.html import solution_of
 from mcgw.reports.report_figures import _relative_error, _spread, line_figure, pressure_curves
 from mcgw.statistics.comparison import compare
 
@@ -126,7 +127,9 @@ def test_there_is_no_band_where_there_are_not_several_surfaces(scene, changes):
     "changes", [{"separations": 1.0}, {"separations": [8.0, 9.0]}, {"quantities": ["contacts"], "film": None}]
 )
 def test_there_are_no_curves_where_no_pressure_is_common(scene, changes):
-    assert pressure_curves(mcgw.simulate(scene, **changes)) == []
+    ensemble = mcgw.simulate(scene, **changes)
+    assert pressure_curves(ensemble) == []
+    assert solution_of(ensemble.scene, ensemble) is None
 
 
 KINDS = [

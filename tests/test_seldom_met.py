@@ -40,6 +40,8 @@ ADDED = [
     ("contact", ', quantities = ["load_unloading"]', "'load_unloading' needs unloading; give"),
     ("ensemble", ', keep = "moments", sampler = "stratified"', 'sampler = "stratified" has none; use'),
     ("contact", ", yield_index = 3", "unknown key"),
+    ("contact", f", datum = '{58 * 'x'}'", f"contact.datum = '{58 * 'x'}': "),  # 60 characters as they are
+    ("contact", f", datum = '{59 * 'x'}'", f"contact.datum = '{56 * 'x'}...: "),
 ]  # fmt: skip
 
 
@@ -50,6 +52,16 @@ def test_a_mistake_is_one_line(table, more, told):
         mcgw.scene_from(FILE.format(**NONE | {table: more}))
     assert any(told in line for line in caught.value.problems), caught.value.problems
     assert len(caught.value.problems) == 1
+
+
+def test_of_many_unknown_keys_twenty_are_named():
+    for number, more in ((20, []), (23, ["[contact]: 3 more unknown keys"])):
+        keys = "".join(f", key_{k} = 1" for k in range(number))
+        with pytest.raises(mcgw.SceneError) as caught:
+            mcgw.scene_from(FILE.format(**NONE | {"contact": keys}))
+        named, rest = caught.value.problems[:20], caught.value.problems[20:]
+        assert [line.partition(":")[0] for line in named] == [f"contact.key_{k}" for k in range(20)]
+        assert rest == more
 
 
 RADII = analytic.RandomCurvature(5.0)
@@ -159,6 +171,7 @@ def test_laws_are_told_by_name_and_numbers():
         (analytic.MeasuredHeights([0.0, 1.0, 3.0]), "3 measured ones, as they are"),
         (analytic.MeasuredHeights([0.0, 1.0, 3.0], resampled=True), "3 measured ones, resampled"),
         (stats.norm, repr(stats.norm)),
+        (analytic.Custom(np.exp), "Custom(exp)"),
     ):
         assert law_text(law) == told
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 from scipy.stats import skew
+from told import drawn
 
 import mcgw
 from mcgw.sweeps import pooled
@@ -407,7 +408,7 @@ def test_progress_ends_at_all_surfaces():
     assert told[-1] == (600, 600)
 
 
-def test_pictures():
+def test_pictures(recorded):
     import matplotlib as mpl
 
     mpl.use("agg")
@@ -423,6 +424,7 @@ def test_pictures():
     axes, order = sweep.plot(quantity="area"), [1, 0, 2]
     assert len(axes.get_legend().get_texts()) == len(axes.containers) == 6
     assert axes.get_ylabel() == "mean area (m^2)"
+    recorded("drawn.sweep", drawn(axes))
     for container, point in zip(axes.containers, sweep.axes.points(), strict=True):
         mean, error = sweep.mean("area")[point], sweep.stderr("area")[point]
         check(container, [0.0, 1.0, 2.0], mean[order], error[order])

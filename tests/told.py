@@ -78,12 +78,12 @@ def drawn(figure):
             yield f"  image {one.get_cmap().name} {ends}: {of_array(np.ma.filled(one.get_array(), np.nan))}"
         corners = [p.get_patch_transform().transform(p.get_path().vertices) for p in axis.patches]
         if corners:
-            yield f"  {len(corners)} patches {_colour(axis.patches[0])}: {of_array(np.concatenate(corners))}"
+            yield f"  {len(corners)} patches {_colour(axis.patches[0])}: {_points(corners)}"
         for one in axis.collections:
             paths = [p.vertices for p in one.get_paths()]
-            held = np.concatenate([np.asarray(one.get_offsets(), dtype=float).reshape(-1, 2), *paths])
+            places = np.asarray(one.get_offsets(), dtype=float).reshape(-1, 2)
             shades = () if one.get_array() is None else (*one.get_clim(), *np.ravel(one.get_array()))
-            yield f"  collection {_colour(one)} {mark(shades)}: {of_array(held)}"
+            yield f"  collection {_colour(one)} {mark(shades)}: {_points([places, *paths])}"
 
 
 def _axis(axis):
@@ -93,6 +93,11 @@ def _axis(axis):
     ours = isinstance(axis.get_major_formatter(), FuncFormatter | FixedFormatter)
     labels = axis.get_major_formatter().format_ticks(ticks) if ours else [f"{x:.4g}" for x in ticks]
     return f"{axis.get_scale()} {ends[0]:.6g} to {ends[1]:.6g}: {', '.join(labels)}"
+
+
+def _points(parts):
+    """Places by x and y, each in numbers of its own size."""
+    return "; ".join(map(of_array, np.concatenate(parts).T))
 
 
 def _look(line):

@@ -119,7 +119,7 @@ class FromHardness(ElasticPlastic):
         """delta_c of an asperity of modulus E*, over sigma."""
         assert self.hardness is not None
         strain = math.pi * self.yield_factor * self.hardness / (2 * surface.E_star)
-        return strain**2 * surface.radius / surface.sigma
+        return strain * strain * surface.radius / surface.sigma  # inf where a power would raise
 
 
 @dataclass(frozen=True)

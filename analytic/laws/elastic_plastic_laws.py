@@ -273,7 +273,8 @@ class JacksonGreen(Bridgeable):
         if self.yield_strength is None:
             return self
         strain = self.yield_strength / surface.E_star
-        critical = (math.pi * self.yield_factor * strain / 2) ** 2 * surface.radius / surface.sigma
+        root = math.pi * self.yield_factor * strain / 2
+        critical = root * root * surface.radius / surface.sigma  # inf where a power would raise
         return replace(self, yield_strength=None, yield_strain=strain, critical=critical)
 
     def load_over_hertz(self, fit: int, x: Any, e: Array) -> Any:

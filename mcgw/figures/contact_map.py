@@ -96,8 +96,6 @@ def _load_and_radius(scene: Scene, delta: Array, modulus: Array, radii: Array) -
 def _window(spots: Spots, size: tuple[float, float], most: float) -> Window:
     """Left, right, bottom, top: all of the map, or a window that shows the median spot large enough."""
     width, height = size
-    if not spots.radius.size:
-        return 0.0, width, 0.0, height
     side = np.median(spots.radius) * most
     if side >= max(size):
         return 0.0, width, 0.0, height

@@ -88,11 +88,9 @@ def _meant(value: float, known: Range) -> str:
         value *= 1e3
     while value >= 1e4:
         value /= 1e3
-    for unit in known.units:
-        meant = f"{value:.6g}{unit}" if unit[0] == "/" else f"{value:.6g} {unit}"
-        if known.low <= parse(meant, known.si) <= known.high:
-            return f"did you mean {meant} = {parse(meant, known.si):g}?"
-    return f"did you mean {known.si}?"
+    written = (f"{value:.6g}{unit}" if unit[0] == "/" else f"{value:.6g} {unit}" for unit in known.units)
+    meant = next(text for text in written if known.low <= parse(text, known.si) <= known.high)
+    return f"did you mean {meant} = {parse(meant, known.si):g}?"
 
 
 def _of_table(table: Table, scene: "Fields") -> Iterator[str]:
