@@ -28,6 +28,7 @@ from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography
 from mcgw.sampling.located import newton
 from mcgw.sampling.located.balance import BalanceError, Located
+from mcgw.sampling.located.newton import Equations, State
 from mcgw.sampling.located.spots import Grid, HertzSpots, LawSpots, field_beyond_point
 
 SPECTRUM = Spectrum(rms=1e-6, long=40e-6, short=5e-6)
@@ -210,6 +211,47 @@ class TestLocated:
         assert_allclose(balance.load, 0.1, rtol=1e-10)
         with pytest.raises(BalanceError, match=r"no equilibrium of 38 summits .*; give a lower load"):
             one.at_load(1.0)
+
+    @pytest.mark.parametrize("apart", [37, 36])
+    def test_a_twentieth_of_what_touches_may_be_left_out(self, apart):
+        """Two summits beside higher ones, where these, the second of them and 37 more touch: of 40."""
+        at = [(20 + 40 * i, 20 + 40 * j) for i in range(10) for j in range(10)]
+        (y, x), (v, u), *rest = at[0], at[99], *at[10 : 10 + apart]
+        places = np.array([(y, x), (y, x + 1), (v, u), (v, u + 1), *rest]).T
+        heights, radii = np.zeros(4 + apart), np.full(4 + apart, 1e-9)
+        heights[[1, 3]], radii[:4] = -2e-7, [1e-5, 3e-5, 1e-5, 3e-5]
+        one = Located(HertzSpots(heights, radii, 1e9), places, Grid((400, 400), (4e-4, 4e-4), False))
+        if apart < 37:
+            with pytest.raises(BalanceError, match="no equilibrium of 38 summits"):
+                one.at_separation(-2.5e-7)
+            return
+        balance = one.at_separation(-2.5e-7)
+        kept = np.isfinite(balance.penetrations)
+        assert (np.flatnonzero(~kept).tolist(), balance.merged, balance.contacts) == ([1, 3], 2, 39)
+        others = Located(one.spots.only(kept), places[:, kept], one.grid)
+        assert residual(others, replace(balance, penetrations=balance.penetrations[kept])) < 1e-10
+
+    @pytest.mark.parametrize(
+        ("misfit", "reach", "doubtful"),
+        [
+            ((0, 0, 0, 3, 0, 0, 0), 20, 4),  # of its own pair, though another one lies deeper
+            ((0, 0, 0, 0, -3, 0, 1), 20, 4),  # whatever its sign
+            ((5, 0, 0, 0, 0, 0, 0), 20, 0),
+            ((0, 5, 0, 0, 0, 0, 0), 20, 2),  # of two pairs, where the narrower one reaches farther
+            ((0, 0, 0, 0, 0, 0, 2), 20, 2),  # without a neighbour: of the deepest pair
+            ((0, 1, 0, -2, 0, 0, 0), 0, 3),  # without any pair: itself
+        ],
+    )
+    def test_the_lower_of_the_deepest_pair_around_the_largest_misfit_is_doubtful(
+        self, misfit, reach, doubtful
+    ):
+        """Pairs 0-1, 1-2, 3-4: the smaller squared radii over squared distances are 9/25, 9/16, 6/36."""
+        spots = HertzSpots(np.array([2.0, 3.0, 1.0, 5.0, 4.0, 0.0, 0.0]), np.ones(7), 1.0)
+        squared = np.array([100.0, 9.0, 9.0, 6.0, 7.0, 0.0, 9.0])  # of the radii 1, the penetrations, too
+        places = np.array([[0] * 7, [0, 5, 9, 30, 36, 60, 90]])
+        one = Equations(spots, places, Grid((100, 100), (100.0, 100.0), False), np.full(7, float(reach)))
+        state = State(0.0, squared, np.array(misfit, dtype=float), 0.0, np.empty(0), np.empty(0))
+        assert one.doubtful(state) == doubtful
 
 
 class TestLevels:

@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 import mcgw
+from analytic import quantity_of
 from analytic.laws import Branch
-from mcgw.ensemble.separation import LawSum
+from mcgw.ensemble.separation import LawSum, Summits
 from mcgw.ensemble.solution import solutions
 from mcgw.reports.solved_loads import solutions_text
 
@@ -141,6 +142,21 @@ def test_of_several_separations_the_largest_counts():
     assert one.largest_separation(0.049, -3.0) == pytest.approx(2 - 0.049, abs=1e-14)
     after = 2 - 0.05 * (0.0505 / 0.05 / 0.93) ** (1 / 1.136)
     assert one.largest_separation(0.0505, -3.0) == pytest.approx(after, abs=1e-14)
+
+
+@pytest.mark.parametrize(("gamma_", "lowest"), [(2.0, -0.8), (1.0, -40.0)])
+def test_a_search_on_all_heights_ends_where_a_modulus_is_negative(gamma_, lowest):
+    """At the highest such summit, or at 40 below the mean: what is solved there and not beyond is literal."""
+    s = np.array([0.3, -1.5, 2.0, -0.8, 1.1, -0.4])  # moduli of 2 - exp(-s) are negative below -0.69
+    scene = mcgw.Scene(
+        SURFACE, separations=0.0, grading=mcgw.Exponential(gamma_), law=mcgw.KogutEtsion(critical=0.05),
+        n_surfaces=2, seed=1,
+    )  # fmt: skip
+    asperities, load = Summits.of(scene, s, None), quantity_of("load")
+    for h in (1.9, 0.4, -0.7, lowest + 1e-3, lowest - 1e-3):
+        value = literal_sum(by_hand.kogut_etsion, "load", s[s > lowest], gamma_, h)
+        found = asperities.separation_anywhere(load, value, 1.95)
+        assert found == (pytest.approx(h, abs=1e-11) if h > lowest else None)
 
 
 @pytest.mark.slow
