@@ -24,9 +24,7 @@ from typing import Any
 import numba
 from numba import types
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_lock import global_compiler_lock
-from numba.core.compiler_machinery import register_pass
 from numba.core.runtime.nrt import rtsys
 from numba.core.typed_passes import NativeLowering
 
@@ -56,7 +54,7 @@ def njit(**options: Any) -> Callable[[Any], Any]:
     kept = options.pop("cache", False)
 
     def decorate(function: Any) -> Any:
-        compiled = numba.njit(pipeline_class=_ForPython, **options)(function)
+        compiled = numba.njit(**options)(function)
         _hand_to_loops(compiled, numba.njit(**options)(function))
         if kept:
             try:
@@ -77,6 +75,7 @@ def _hand_to_loops(compiled: Any, within: Any) -> None:
         return within.get_call_template(tuple(map(types.unliteral, args)), keywords)
 
     compiled.get_call_template, compiled.get_overload = template, within.get_overload
+    compiled._compiler.locals = _FOR_PYTHON
     for loop in (compiled, within):
         _compile_lightly(loop._compiler)
 
@@ -114,10 +113,13 @@ class _CodeForLoops(JITCodeLibrary):  # type: ignore[misc, unused-ignore]
 
 
 _LOWER = NativeLowering.run_pass
+_FOR_PYTHON: dict[str, Any] = {}  # of what Python calls: as such Numba hands it on to no other loop
 
 
 def _lower_for_loops(step: NativeLowering, state: Any) -> bool:
     """Make such code, without what Python would need to call it."""
+    if state.locals is _FOR_PYTHON:
+        return bool(_LOWER(step, state))
     state.library = _CodeForLoops(state.targetctx.codegen(), state.func_id.func_qualname)
     state.flags.no_compile = state.flags.no_cpython_wrapper = state.flags.no_cfunc_wrapper = True
     _LOWER(step, state)
@@ -125,31 +127,6 @@ def _lower_for_loops(step: NativeLowering, state: Any) -> bool:
     state["cr"] = state["cr"]._replace(cfunc=key)
     state.targetctx.insert_user_function(key, state["cr"].fndesc, [state.library])
     return True
-
-
-@register_pass(mutates_CFG=True, analysis_only=False)
-class _LoweringForPython(NativeLowering):  # type: ignore[misc, unused-ignore]
-    """Makes the machine code that Python calls."""
-
-    _name = "lowering_for_python"
-
-    def run_pass(self, state: Any) -> bool:
-        """As Numba calls it."""
-        state.library = JITCodeLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
-        state.library.enable_object_caching()
-        return bool(_LOWER(self, state))
-
-
-class _ForPython(CompilerBase):  # type: ignore[misc, unused-ignore]
-    """Numba's steps, with that one in place of its own."""
-
-    def define_pipelines(self) -> list[Any]:
-        """As Numba calls it."""
-        steps = DefaultPassBuilder.define_nopython_pipeline(self.state)
-        own = {NativeLowering: _LoweringForPython}
-        steps.passes = [(own.get(step, step), what) for step, what in steps.passes]
-        steps.finalize()
-        return [steps]
 
 
 def _keep(loops: Any, module: str) -> None:
