@@ -296,7 +296,7 @@ BEYOND = {
 
 @pytest.mark.parametrize(("program", "table"), BEYOND)
 def test_a_program_is_told_its_own_rules_and_no_others(program, table):
-    told = "\n".join(PROGRAMS[program].hints(KINDS[table], "f.x"))
+    told = "\n".join(PROGRAMS[program].hints[table]).format(file="f.x", kind=KINDS[table])
     assert ("INPUT=f.x" in told) == (program in ("calculix", "abaqus"))
     every = {words for rules in BEYOND.values() for words in rules}
     assert {words for words in every if words in told} == set(BEYOND[program, table])

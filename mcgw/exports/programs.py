@@ -1,7 +1,6 @@
 """How each finite-element program reads a table: order of columns, signs, comments and requirements."""
 
 import re
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,7 +31,7 @@ class Program:
     first : {"x", "y"}
         Which column stands first: argument or value.
     hints : dict of str to tuple of str
-        By table: lines that say how the program includes the file, and what it does beyond the ends.
+        By table: lines that say how the program includes a ``file``, and what it does beyond the ends.
     most : int, optional
         Largest number of rows.
     least_step : float, optional
@@ -46,7 +45,7 @@ class Program:
     keywords: dict[str, str]
     overclosure: bool
     first: str
-    hints: Callable[[Kind, str], Sequence[str]]
+    hints: dict[str, tuple[str, ...]]
     most: int | None = None
     least_step: float = 0.0
 
@@ -87,55 +86,28 @@ def rows_of(curve: Curve, kind: Kind, program: Program, foot: float, stays: bool
     return np.column_stack([x, y] if program.first == "x" else [y, x])
 
 
-def _calculix(kind: Kind, file: str) -> list[str]:
-    lines = [f"under *SURFACE INTERACTION: *INCLUDE, INPUT={file}"]
-    if kind.quantity == "pressure":
-        lines += [
-            "use *CONTACT PAIR, TYPE=NODE TO SURFACE: with SURFACE TO SURFACE CalculiX misreads tables",
-            "beyond the last line the pressure is constant",
-            "in a thermomechanical step give *GAP CONDUCTANCE too",
-        ]
-    else:
-        lines += [
-            "below *SURFACE BEHAVIOR; beyond the last line the conductance is constant",
-            "third entry: temperature, which has no effect here",
-        ]
-    return lines
-
-
-def _abaqus(kind: Kind, file: str) -> list[str]:
-    lines = [f"under *SURFACE INTERACTION: *INCLUDE, INPUT={file}"]
-    beyond = {
-        "pressure-gap": "beyond the last line the pressure continues with the last slope",
-        "conductance-pressure": "beyond the last line the conductance is constant",
-        "conductance-gap": "beyond the last line nothing is conducted",
-    }
-    return [*lines, beyond[kind.name]]
-
-
-def _moose(kind: Kind, file: str) -> list[str]:
-    return [
-        f"[Functions] [{kind.quantity}] type = PiecewiseLinear data_file = {file} format = columns [] []",
-        f"x: {kind.against}, y: {kind.quantity}; beyond the ends y is constant, unless extrap = true",
-    ]
-
-
-def _comsol(kind: Kind, _: str) -> list[str]:
-    return [
-        "Definitions > Functions > Interpolation: Data source File, Data format Spreadsheet, 1 argument",
-        f"column 1: {kind.against} (argument), column 2: {kind.quantity}; enter their units under Units",
-        "beyond the ends: Extrapolation Constant",
-    ]
-
-
 _BEHAVIOR = "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR"
 _ANY = dict.fromkeys(KINDS, "")
+_INCLUDED = "under *SURFACE INTERACTION: *INCLUDE, INPUT={file}"
 PROGRAMS = {
     # Rules and limits as in CalculiX's manual and its sources (surfacebehaviors.f, springforc_n2f.f).
     "calculix": Program(
         "calculix", (".inp",), "**", ", ",
         {"pressure-gap": _BEHAVIOR, "conductance-pressure": "*GAP CONDUCTANCE"},
-        overclosure=True, first="y", hints=_calculix, most=200, least_step=1e-10,
+        overclosure=True, first="y", most=200, least_step=1e-10,
+        hints={
+            "pressure-gap": (
+                _INCLUDED,
+                "use *CONTACT PAIR, TYPE=NODE TO SURFACE: with SURFACE TO SURFACE CalculiX misreads tables",
+                "beyond the last line the pressure is constant",
+                "in a thermomechanical step give *GAP CONDUCTANCE too",
+            ),
+            "conductance-pressure": (
+                _INCLUDED,
+                "below *SURFACE BEHAVIOR; beyond the last line the conductance is constant",
+                "third entry: temperature, which has no effect here",
+            ),
+        },
     ),
     # Abaqus Keywords Guide, *SURFACE BEHAVIOR and *GAP CONDUCTANCE.
     "abaqus": Program(
@@ -145,12 +117,28 @@ PROGRAMS = {
             "conductance-pressure": "*GAP CONDUCTANCE, PRESSURE",
             "conductance-gap": "*GAP CONDUCTANCE",
         },
-        overclosure=True, first="y", hints=_abaqus,
+        overclosure=True, first="y",
+        hints={
+            "pressure-gap": (_INCLUDED, "beyond the last line the pressure continues with the last slope"),
+            "conductance-pressure": (_INCLUDED, "beyond the last line the conductance is constant"),
+            "conductance-gap": (_INCLUDED, "beyond the last line nothing is conducted"),
+        },
     ),
     # MOOSE, PiecewiseTabularBase.C: comments "#", rising x.
-    "moose": Program("moose", (".csv",), "#", ",", _ANY, overclosure=False, first="x", hints=_moose),
+    "moose": Program(
+        "moose", (".csv",), "#", ",", _ANY, overclosure=False, first="x",
+        hints=dict.fromkeys(KINDS, (
+            "[Functions] [{kind.quantity}] type = PiecewiseLinear data_file = {file} format = columns [] []",
+            "x: {kind.against}, y: {kind.quantity}; beyond the ends y is constant, unless extrap = true",
+        )),
+    ),
     # COMSOL Multiphysics Reference Manual, "Spreadsheet Data Format": comments "%".
     "comsol": Program(
-        "comsol", (".txt", ".dat"), "%", " ", _ANY, overclosure=False, first="x", hints=_comsol
+        "comsol", (".txt", ".dat"), "%", " ", _ANY, overclosure=False, first="x",
+        hints=dict.fromkeys(KINDS, (
+            "Definitions > Functions > Interpolation: Data source File, Data format Spreadsheet, 1 argument",
+            "column 1: {kind.against} (argument), column 2: {kind.quantity}; enter their units under Units",
+            "beyond the ends: Extrapolation Constant",
+        )),
     ),
 }  # fmt: skip

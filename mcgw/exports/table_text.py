@@ -48,8 +48,9 @@ def heading(ensemble: Ensemble, kind: Kind, curve: Curve, system: UnitSystem, di
     over = f"{ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, seed {scene.seed}"
     argument = system.length if kind.against == "gap" else system.pressure
     what = kind.quantity if kind.quantity == "pressure" else f"{kind.quantity} per nominal area"
+    curve_name = curve.name if curve.name == "mean" else f"{curve.name[1:]} % quantile"
     return [
-        f"{kind.name}, {_curve(curve.name)} over {over}, at equal {kind.against}",
+        f"{kind.name}, {curve_name} over {over}, at equal {kind.against}",
         f"scene: {brief(scene.title) or 'without a title'}",
         f"mcgw {_version()}; SHA-256 of the {digest}",
         f"units: {what} in {unit_of(kind, system, scene)}; {kind.against} in {argument[1]}",
@@ -74,10 +75,6 @@ def _filled(kind: Kind, scene: Scene) -> list[str]:
         "gap": "gas also conducts beyond the last line: add separations up to where the bodies part",
     }
     return [f"joint: {joint_text(scene)}", *([stays[kind.against]] if kind.stays(scene) else [])]
-
-
-def _curve(name: str) -> str:
-    return "mean" if name == "mean" else f"{name[1:]} % quantile"
 
 
 def _version() -> str:
@@ -143,7 +140,8 @@ def table_text(
     foot = foot_of(curve) if kind.against == "gap" and not stays else 0.0
     rows = rows_of(curve, kind, program, foot, stays)
     _check(rows, kind, program)
-    comments = [*head, *(_foot(foot, kind, program, system) if foot else ()), *program.hints(kind, file)]
+    hints = (line.format(file=file, kind=kind) for line in program.hints[kind.name])
+    comments = [*head, *(_foot(foot, kind, program, system) if foot else ()), *hints]
     lines = [f"{program.comment} {one_line(line)}" for line in comments]
     lines += [program.keywords[kind.name]] if program.keywords[kind.name] else []
     lines += [program.separator.join(f"{x:.9e}" for x in row) for row in rows.tolist()]
