@@ -12,6 +12,7 @@ from typing import Any
 
 HELP = "compile all loops now, once for this machine, so that later runs only load them; uses two processes"
 EXAMPLE = "mcgw warm"
+_HALVES = 2
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -45,7 +46,7 @@ def warm() -> None:
     from mcgw.machine.child_process import run_child
     from mcgw.machine.progress import steps
 
-    halves = range(min(len(_HALVES), os.cpu_count() or 1))
+    halves = range(min(_HALVES, os.cpu_count() or 1))
     with ThreadPoolExecutor(len(halves)) as pool:
         waiting = [pool.submit(run_child, __name__, str(half), str(len(halves))) for half in halves]
         for one in steps(waiting, "halves"):
@@ -62,19 +63,25 @@ def _scene(**changes: Any) -> Any:
     return Scene(**{"surface": surface, **asked, **changes})
 
 
-def _simulate(*changes: dict[str, Any]) -> None:
-    """Draw it with each sampler."""
-    from mcgw.ensemble.simulation import simulate
-
-    for change in changes:
-        simulate(_scene(**change))
-
-
-def _laws() -> None:
-    from analytic import KogutEtsion
+def _scenes() -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
+    """Changes of that scene for either half: laws, a balance, Hertz's law; crowds, statistics, radii."""
+    from analytic import Interaction, KogutEtsion
+    from mcgw.scene.surface import SpectralSurface
 
     yielding = {"law": KogutEtsion(critical=0.1)}
-    _simulate(yielding, {**yielding, "unload_from": 0.0}, {**yielding, "sampler": "tail"})
+    coarse = {"accuracy": 1e-3, "n_asperities": 10**5}
+    spectrum = SpectralSurface(m0=1e-12, m2=1e-2, m4=4e8, nominal_area=1e-6, E_star=1e11)
+    return (
+        [
+            *(yielding, {**yielding, "unload_from": 0.0}, {**yielding, "sampler": "tail"}),
+            {"interaction": Interaction("mean-plane", at="nominal"), "n_asperities": 300},
+            *({"keep": "moments"}, {"sampler": "stratified"}, {"sampler": "direct"}, {"count": "poisson"}),
+        ],
+        [
+            *(coarse, {"sampler": "aggregate", "n_asperities": 10**6}, {"keep": "statistics"}),
+            *({"surface": spectrum, "sampler": sampler} for sampler in ("cells", "tail", "stratified")),
+        ],
+    )
 
 
 def _maps() -> None:
@@ -85,16 +92,6 @@ def _maps() -> None:
 
     heights = np.random.default_rng(1).normal(size=(64, 64)) * 1e-6
     fit(Topography(heights, (1e-6, 1e-6)), cutoff="8 um")
-
-
-def _nominal() -> None:
-    from analytic import Interaction
-
-    _simulate({"interaction": Interaction("mean-plane", at="nominal"), "n_asperities": 300})
-
-
-def _hertz() -> None:
-    _simulate({"keep": "moments"}, {"sampler": "stratified"}, {"sampler": "direct"}, {"count": "poisson"})
 
 
 def _draws() -> None:
@@ -112,22 +109,19 @@ def _draws() -> None:
     OneByOne().moments(1, 0, counts_of(scene, mesh, 0, 20), Layout(*lengths))
 
 
-def _crowds() -> None:
-    coarse = {"accuracy": 1e-3, "n_asperities": 10**5}
-    _simulate(coarse, {"sampler": "aggregate", "n_asperities": 10**6}, {"keep": "statistics"})
+def _compile(half: int) -> None:
+    """Run a half: they begin with different loops, so that common ones are compiled once."""
+    from mcgw.ensemble.simulation import simulate
 
+    if half:
+        _draws()
+    for change in _scenes()[half]:
+        simulate(_scene(**change))
+    if not half:
+        _maps()
 
-def _radii() -> None:
-    from mcgw.scene.surface import SpectralSurface
-
-    spectrum = SpectralSurface(m0=1e-12, m2=1e-2, m4=4e8, nominal_area=1e-6, E_star=1e11)
-    _simulate(*({"surface": spectrum, "sampler": sampler} for sampler in ("cells", "tail", "stratified")))
-
-
-# They begin with different loops, so that common ones are compiled once.
-_HALVES = ((_laws, _maps, _nominal, _hertz), (_draws, _crowds, _radii))
 
 if __name__ == "__main__":
-    half, of = map(int, sys.argv[1:])
-    for part in (part for parts in _HALVES[half::of] for part in parts):
-        part()
+    first, of = map(int, sys.argv[1:])
+    for half in range(first, _HALVES, of):
+        _compile(half)

@@ -148,34 +148,22 @@ def _at_gaps(
 def _at_pressures(
     ensemble: Ensemble, kind: Kind, pressures: Array | None, points: int
 ) -> tuple[Array, Array]:
-    wanted = _pressures_within(ensemble, points) if pressures is None else pressures
-    name = kind.answer(ensemble.scene)
-    y = at_pressures(ensemble, wanted, (name,))[name]
+    reach, name = common_pressures(ensemble), kind.answer(ensemble.scene)
+    if pressures is None:
+        if reach is None:
+            raise ValueError(
+                "contact.separations: no pressure is reached by all surfaces; give more or smaller ones"
+            )
+        pressures = np.geomspace(*reach, points)
+    y = at_pressures(ensemble, pressures, (name,))[name]
     if np.any(missing := np.isnan(y)):
         surface, at = (int(k[0]) for k in np.nonzero(missing))
-        reach = common_pressures(ensemble)
         told = "no pressure at all" if reach is None else f"{reach[0]:.4g} to {reach[1]:.4g} Pa"
         raise ValueError(
-            f"pressures: {wanted[at]:.4g} Pa is not on the curve of surface {surface}; all surfaces reach "
+            f"pressures: {pressures[at]:.4g} Pa is not on the curve of surface {surface}; all surfaces reach "
             f"{told}"
         )
-    return wanted, y
-
-
-def _pressures_within(ensemble: Ensemble, points: int) -> Array:
-    """Pressures that all surfaces reach, at a constant ratio, Pa.
-
-    Raises
-    ------
-    ValueError
-        If there are none.
-    """
-    reach = common_pressures(ensemble)
-    if reach is None:
-        raise ValueError(
-            "contact.separations: no pressure is reached by all surfaces; give more or smaller separations"
-        )
-    return np.geomspace(*reach, points)
+    return pressures, y
 
 
 def _one_way(curve: Curve, kind: Kind) -> Curve:

@@ -39,15 +39,7 @@ def run(
     **changes: Any,
 ) -> Ensemble: ...
 @overload
-def run(
-    scene: Scene,
-    path: str | Path,
-    *,
-    threads: int | None = None,
-    shard: str,
-    progress: Progress = None,
-    **changes: Any,
-) -> int: ...
+def run(scene: Scene, path: str | Path, *, shard: str, **others: Any) -> int: ...
 def run(
     scene: Scene,
     path: str | Path,

@@ -84,7 +84,8 @@ class CellsAtNominal(Sampler):
         scene = self.scene
         counts = counts_of(scene, self.mesh, first, n)
         crowded = np.where(counts.cells > _FEW, counts.cells, 0)
-        moments = cell_moments(scene.seed, first, crowded, self._layout)
+        layout = Layout(np.full(self.cells, POINTS), np.zeros(self.cells, dtype=np.int64))
+        moments = cell_moments(scene.seed, first, crowded, layout)
         weights = product(
             np.ascontiguousarray(moments.reshape(self.cells, POINTS, n).transpose(2, 0, 1)), _TRANSFORM
         )
@@ -115,10 +116,6 @@ class CellsAtNominal(Sampler):
         if failed.any():
             surface, k = (int(x[0]) for x in np.nonzero(failed))
             raise no_balance(first + surface, self.scene.separations[k])
-
-    @property
-    def _layout(self) -> Layout:
-        return Layout(np.full(self.cells, POINTS), np.zeros(self.cells, dtype=np.int64))
 
     @property
     def _compliance(self) -> float:

@@ -58,7 +58,7 @@ def _stretches(branch: Branch, grading: Grading, separations: bytes, low: float,
     inside = (found.low > low) | (h[found.separation] >= low)
     at = h[found.separation]
     left = branch.left(at, found.low - at, grading(found.low))
-    nothing = np.abs(left) <= _NOTHING
+    nothing, begin = np.abs(left) <= _NOTHING, found.low - left  # on a separation, but for rounding
     last = np.nextafter(found.high, -np.inf)
     dwindling = np.abs(branch.left(at, last - at, grading(last))) <= _NOTHING
     return Stretches(
@@ -67,14 +67,9 @@ def _stretches(branch: Branch, grading: Grading, separations: bytes, low: float,
         high=np.where(found.high < high, found.high, np.inf),
         piece=found.piece,
         begins=inside & nothing & ~goes_on[: len(inside)],
-        root=np.where(nothing, found.low, _snapped(found.low - left, at)),
+        root=np.where(nothing, found.low, np.where(np.abs(begin - at) <= _NOTHING, at, begin)),
         lost=dwindling & (found.high < high) & (found.low < last),
     )
-
-
-def _snapped(roots: Array, h: Array) -> Array:
-    """Where contacts would begin, on the separation itself if only rounding lies in between."""
-    return np.where(np.abs(roots - h) <= _NOTHING, h, roots)
 
 
 def begins_and_breaks(scene: Scene, low: float, high: float) -> tuple[Array, Array]:

@@ -192,7 +192,7 @@ def off_elasticity(v: Validity, why: str) -> Iterator[str]:
         yield (
             f"d/sigma = {span(v.separations, off)}: scatter between surfaces: {'; '.join(_told(v, loose))}"
         )
-    heavier = ~v.measured & (v.separations < _first_measured(v))
+    heavier = np.arange(len(v.separations)) < np.argmax(v.measured)
     if heavier.any():
         yield (
             f"d/sigma = {span(v.separations, heavier)}: loads heavier than measured ({v.axis} up to "
@@ -202,10 +202,6 @@ def off_elasticity(v: Validity, why: str) -> Iterator[str]:
 
 def _above(v: Validity, name: str) -> Marks:
     return np.asarray(v.error[name] > _OFF)
-
-
-def _first_measured(v: Validity) -> float:
-    return float(v.separations[v.measured].min()) if v.measured.any() else -np.inf
 
 
 def _scatters(v: Validity, name: str) -> Marks:

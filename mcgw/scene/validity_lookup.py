@@ -133,19 +133,15 @@ def _loads(place: Place, found: Expected, p: Array) -> str:
 
 def _where(scene: Fields, place: Place, grid: Grid, maps: int, loads: str) -> str:
     many = f"{maps} maps" if maps > 1 else "one map"
-    by = ""
+    by, alone = "", f"; nothing else: {place.area_only}" if place.area_only else ""
     if scene.fitted is not None:
         by = " from the fit"
     elif place.kind == "gaussian" and place.model == "one radius":
         by = f" as eta R sigma = {scene.surface.eta * scene.surface.radius * scene.surface.sigma:.3g} says"
     return (
         f"boundary elements on homogeneous half-spaces, {many} ({_maps(place)}) a point: "
-        f"{_coordinate(place)} = {place.x:.3g}{by} ({_span(grid)}), {loads}{_reason(place)}"
+        f"{_coordinate(place)} = {place.x:.3g}{by} ({_span(grid)}), {loads}{alone}"
     )
-
-
-def _reason(place: Place) -> str:
-    return f"; nothing else: {place.area_only}" if place.area_only else ""
 
 
 def _maps(place: Place) -> str:

@@ -219,13 +219,6 @@ def _by_sampler(
     return np.asarray(total / surfaces / (exact * (n / scene.n_asperities)) - 1)
 
 
-def _integrand(scene: Scene, q: analytic.Quantity, h: float, v: Array | float) -> Array:
-    """Of the mean of one asperity in v, the root of how far it rises above the lowest that can touch."""
-    v = np.asarray(v)
-    s = lowest(scene, q, h) + v * v
-    return np.asarray(2 * v * added(scene, q, h, s) * scene.heights.pdf(s))
-
-
 def _by_quad(scene: Scene, q: analytic.Quantity, h: float, accuracy: float) -> float:
     """Mean of one asperity by SciPy's adaptive rule, from break to break and to the tail of the heights."""
     low = lowest(scene, q, h)
@@ -235,7 +228,9 @@ def _by_quad(scene: Scene, q: analytic.Quantity, h: float, accuracy: float) -> f
     ends = np.sqrt(np.unique([*ends, *breaks]) - low)
 
     def integrand(v: float) -> float:
-        return float(_integrand(scene, q, h, v))
+        """In v, the root of how far the asperity rises above the lowest that can touch."""
+        s = np.asarray(low + v * v)
+        return float(2 * v * added(scene, q, h, s) * scene.heights.pdf(s))
 
     # full output suppresses warnings: its error stands in the table
     rules = (quad(integrand, *e, epsabs=0, epsrel=accuracy, full_output=1) for e in pairwise(ends.tolist()))
