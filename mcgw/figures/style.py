@@ -8,6 +8,7 @@ And how they become files, in the formats of matplotlib.
 
 import math
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import IO, Any
 
@@ -19,6 +20,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from analytic import Exponential, Grading, Hertz, Homogeneous, PiecewiseSeries
+from analytic.arrays import Array
 from mcgw.formats.files import whole_file
 from mcgw.formats.numbers import RAISED
 from mcgw.machine.terminal import one_line
@@ -159,24 +161,16 @@ def _of_gamma(gamma: float) -> dict[str, Any]:
     side = [g for g in GRADINGS if g != 1 and (g > 1) == (gamma > 1)]
     away = np.array([1 - min(g, 1 / g) if g else 1.0 for g in side])  # as far from 1 as its inverse is
     x = 1 - min(gamma, 1 / gamma) if gamma > 0 else 1.0
-    order, rgb = np.argsort(away), np.array([_rgb(GRADINGS[g]) for g in side])
-    color = _hex([np.interp(x, away[order], channel[order]) for channel in rgb.T])
-    nearest = int(np.argmin(np.abs(away - x)))
+    order, nearest = np.argsort(away), int(np.argmin(np.abs(away - x)))
+    color = _between(x, [GRADINGS[side[k]] for k in order], away[order])
     return _of(color, (3, 2, 1, 1)[nearest] if gamma > 1 else (5, 5, 4, 6)[nearest])
 
 
-def _between(x: float, colors: tuple[str, ...]) -> str:
-    """Colour at x, 0 to 1, along a map."""
-    at = np.linspace(0, 1, len(colors))
-    return _hex([np.interp(x, at, channel) for channel in np.array([_rgb(c) for c in colors]).T])
-
-
-def _rgb(color: str) -> tuple[int, ...]:
-    return tuple(int(color[k : k + 2], 16) for k in (1, 3, 5))
-
-
-def _hex(rgb: Any) -> str:
-    return "#" + "".join(f"{round(float(x)):02X}" for x in rgb)
+def _between(x: float, colors: Sequence[str], at: Array | None = None) -> str:
+    """Colour at x along a map, whose own colours are evenly spaced from 0 to 1 or stand at these places."""
+    at = np.linspace(0, 1, len(colors)) if at is None else at
+    rgb = np.array([list(bytes.fromhex(color[1:])) for color in colors])
+    return f"#{bytes(round(float(np.interp(x, at, channel))) for channel in rgb.T).hex().upper()}"
 
 
 def power_of_ten(x: float, _: Any = None) -> str:
