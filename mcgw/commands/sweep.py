@@ -24,9 +24,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "ensemble.n_asperities=1e4,1e5; repeat for more axes",
     )
     parser.add_argument(
-        "--zip",
-        action="store_true",
-        help="combine the first values of all keys into one point, and so on",
+        "--zip", action="store_true", help="combine the first values of all keys into one point, and so on"
     )
     parser.add_argument(
         "-o", "--output", type=Path, metavar="FILE.h5", help="default: out/NAME.sweep.h5 beside the scene"

@@ -115,10 +115,8 @@ class Job:
         path = self.record.path
         there = [path, *self.record.folder.glob("shards/block-*.h5")]
         held = sum(file.stat().st_size for file in there if file.is_file())
-        needed, free = (
-            sum(one.disk for one in self.reducers) - held,
-            shutil.disk_usage(path.parent).free,
-        )
+        needed = sum(one.disk for one in self.reducers) - held
+        free = shutil.disk_usage(path.parent).free
         if needed > free:
             raise StoreError(
                 f"{path}: needs up to {gibibytes(needed)} more on the disk while made and {gibibytes(free)} "

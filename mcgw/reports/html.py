@@ -182,10 +182,7 @@ def surface_facts(ensemble: Ensemble) -> Facts:
         ("standard deviation σ of the summit heights", f"{number(x.sigma)} m"),
         ("summit radius R", f"{number(x.radius)} m = {number(x.radius / x.sigma)} σ"),
         ("summits per area η", f"{number(x.eta)} m⁻²; ηRσ = {number(x.eta * x.radius * x.sigma)}"),
-        (
-            "nominal area Aₙ",
-            f"{number(x.nominal_area)} m² = {number(x.nominal_area / x.sigma**2)} σ²",
-        ),
+        ("nominal area Aₙ", f"{number(x.nominal_area)} m² = {number(x.nominal_area / x.sigma**2)} σ²"),
         ("composite modulus E*", f"{number(x.E_star)} Pa"),
         ("grading E*(s)/E*", grading_label(scene.grading)),
         *contact_facts(scene),

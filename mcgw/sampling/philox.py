@@ -75,10 +75,7 @@ def two_wide(seed: Any, purpose: Any, surface: Any, cell: Any, block: Any) -> An
     c2, c3, k0, k1 = stream_of(seed, purpose, surface)
     w0, w1, w2, w3 = philox(block, cell, c2, c3, k0, k1)
     low = 0.5 * _UNIT
-    return (
-        0.5 * (_to_centred(w0) + low * _to_centred(w1)),
-        0.5 * (_to_centred(w2) + low * _to_centred(w3)),
-    )
+    return (0.5 * (_to_centred(w0) + low * _to_centred(w1)), 0.5 * (_to_centred(w2) + low * _to_centred(w3)))
 
 
 @njit(cache=True, inline="always")

@@ -11,10 +11,7 @@ from mcgw.scene.section import Key, Kind, Section, nearest, table_shape
 
 _MOST_WHOLE = 10**30  # so that no message has hundreds of digits
 # Units are checked by `parse`, which knows more spellings than a pattern could.
-_WITH_UNIT = {
-    "type": "string",
-    "pattern": r"^\s*\+?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*([^\d\s.].*|1/.*)?$",
-}
+_WITH_UNIT = {"type": "string", "pattern": r"^\s*\+?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*([^\d\s.].*|1/.*)?$"}
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,11 +25,7 @@ Summits = tuple[Surface | None, HeightLaw | None, RandomCurvature | MeasuredRadi
 _OF_SURFACE = tuple(row.name for row in rows_of("surface"))
 # Where arguments of `Scene` stand in a file. Others are whole tables or several keys: objects.
 _PLACES = {key: table for table in ("", "contact", "ensemble") for key in KEYS[table]}
-_PLACES |= {
-    "negative": "grading",
-    "curvature": "summits",
-    **dict.fromkeys(_OF_SURFACE, "surface"),
-}
+_PLACES |= {"negative": "grading", "curvature": "summits", **dict.fromkeys(_OF_SURFACE, "surface")}
 _OBJECTS = ("law", "curvature")  # which may be words or keys, too
 _QUANTITIES = ("load", "area", "stiffness", "contacts")
 # Keys of [ensemble] that are no values of a scene as they are read.

@@ -134,10 +134,7 @@ def _document(text: str | bytes) -> dict[str, Any]:
 
 
 def scene_of(
-    document: Mapping[str, Any],
-    *,
-    folder: Path | None = None,
-    seed: Callable[[], int | None] | None = None,
+    document: Mapping[str, Any], *, folder: Path | None = None, seed: Callable[[], int | None] | None = None
 ) -> Scene:
     """Make a scene of the tables that its TOML text holds; arguments and errors as of `scene_from`."""
     return Scene.of(of_tables(document, {}, folder or Path(), seed))

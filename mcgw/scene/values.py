@@ -81,13 +81,7 @@ _Class = TypeVar("_Class")
 
 
 def key(
-    table: str,
-    kind: Kind,
-    example: str,
-    words: str,
-    default: Any = None,
-    python: str = "",
-    **others: Any,
+    table: str, kind: Kind, example: str, words: str, default: Any = None, python: str = "", **others: Any
 ) -> Any:
     """A value with its row in a table of keys; `python` are its words in a docstring, where others do."""
     row = {"kind": kind, "example": example, "words": words, "default": default, **others}
@@ -203,9 +197,6 @@ def documented(kind: type[_Class]) -> type[_Class]:
             given = "{" + ", ".join(f'"{word}"' for word in of.known) + "}" if isinstance(of, Word) else given
             words = re.sub(r"\[([^]]+)\]\([^)]+\)", r"\1", f"{words[0].upper()}{words[1:]}.")  # no links
             words = words.replace("`", "``")
-            said += [
-                f"    {name} : {given}, optional",
-                indent(fill(words, 102), " " * 8),
-            ]
+            said += [f"    {name} : {given}, optional", indent(fill(words, 102), " " * 8)]
     kind.__doc__ = (kind.__doc__ or "").replace("\n\n    Raises", "\n".join(said) + "\n\n    Raises", 1)
     return kind

@@ -26,15 +26,7 @@ from mcgw.scene.scene_file import scene_text
 from mcgw.store.disk import SteadyFile, Trailer, head_digest, parts_of, sha256_of
 from mcgw.store.ensembles import open_ensemble
 from mcgw.store.identity import drawn_with, identity_of
-from mcgw.store.layout import (
-    body_of,
-    describe,
-    digest_of,
-    file_pieces,
-    fill,
-    rows_of,
-    stored_tables,
-)
+from mcgw.store.layout import body_of, describe, digest_of, file_pieces, fill, rows_of, stored_tables
 from mcgw.store.lock import locked
 from mcgw.store.place import finished, write_body
 from mcgw.store.run_folder import RunFolder
