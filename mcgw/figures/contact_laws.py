@@ -6,21 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from analytic import Exponential, Model
+from analytic import Exponential, Model, laws
 from analytic.arrays import Array
-from analytic.laws import (
-    ChangEtsionBogy,
-    ContactLaw,
-    Film,
-    Hertz,
-    JacksonGreen,
-    JohnsonKendallRoberts,
-    KogutEtsion,
-    Tangential,
-    ZhaoMaiettaChang,
-    masing,
-    piece_of,
-)
 from mcgw.ensemble.simulation import simulate
 from mcgw.figures.compared import Compared, of_gamma
 from mcgw.figures.data import (
@@ -41,20 +28,20 @@ _AT, _LINE = np.linspace(0, 3, 7), np.linspace(0, 3.5, 36)
 _FALLING = _LINE[::-1]  # pressures rise
 _LOWER = np.linspace(-2, 3.5, 56)  # where Hertz's loads are reached
 _STATES = (("elastic", (0,)), ("elastoplastic", (1, 2)), ("fully plastic", (3,)))
-_LAWS: dict[str, ContactLaw] = {
-    "Chang": ChangEtsionBogy(critical=_CRITICAL),
-    "Zhao": ZhaoMaiettaChang(critical=_CRITICAL),
-    "Kogut": KogutEtsion(critical=_CRITICAL),
-    "Jackson": JacksonGreen(yield_strain=_STRAIN, critical=_CRITICAL),
+_LAWS: dict[str, laws.ContactLaw] = {
+    "Chang": laws.ChangEtsionBogy(critical=_CRITICAL),
+    "Zhao": laws.ZhaoMaiettaChang(critical=_CRITICAL),
+    "Kogut": laws.KogutEtsion(critical=_CRITICAL),
+    "Jackson": laws.JacksonGreen(yield_strain=_STRAIN, critical=_CRITICAL),
 }
 _ENOUGH = 100  # contacts on either side of a share
 _TURN, _STRETCH = 0.5, 0.5
 _FRICTION, _POISSON = 0.3, 0.3
 _RESISTIVITY = 1e-7
 _STICKS = "sticking (Johnson, Kendall, Roberts)"
-_WAYS: dict[str, ContactLaw] = {
-    "yielding (Kogut, Etsion)": KogutEtsion(critical=_CRITICAL),
-    _STICKS: JohnsonKendallRoberts(pull_off=_STRETCH),
+_WAYS: dict[str, laws.ContactLaw] = {
+    "yielding (Kogut, Etsion)": laws.KogutEtsion(critical=_CRITICAL),
+    _STICKS: laws.JohnsonKendallRoberts(pull_off=_STRETCH),
 }
 _PUSHED = r"displacement $u/(\mu\sigma)$"
 _SLIPS = r"$T/(\mu P)$"
@@ -103,7 +90,7 @@ def _states(f: Compared) -> FigureData:
 
 def laws_compared(f: Compared) -> FigureData:
     """Show load and area of laws that yield over Hertz's on the same surfaces, and at its load."""
-    hertz, model = f.sums(Hertz(), _AT), f.model()
+    hertz, model = f.sums(laws.Hertz(), _AT), f.model()
     models = {label: f.model(law=law) for label, law in _LAWS.items()}
     sums = {label: f.sums(law, _AT) for label, law in _LAWS.items()}
     panels = []
@@ -134,7 +121,7 @@ def _share(model: Model, pieces: tuple[int, ...], h: Array) -> Array:
 
 
 def _share_points(
-    listed: tuple[Array, ...], law: ContactLaw, gamma: float, model: Model, pieces: tuple[int, ...]
+    listed: tuple[Array, ...], law: laws.ContactLaw, gamma: float, model: Model, pieces: tuple[int, ...]
 ) -> Points:
     """Shares on the listed surfaces, where they have enough contacts of this kind and of others."""
     grading = Exponential(gamma)
@@ -142,7 +129,7 @@ def _share_points(
     for i, s in enumerate(listed):
         for k, h in enumerate(_AT):
             touching = s[s > h]
-            piece = piece_of(law, touching - h, grading(touching))
+            piece = laws.piece_of(law, touching - h, grading(touching))
             counts[:, i, k] = len(touching), np.isin(piece, pieces).sum()
     among, others = counts[1].sum(axis=0), (counts[0] - counts[1]).sum(axis=0)
     known = (among >= _ENOUGH) & (others >= _ENOUGH)
@@ -215,15 +202,15 @@ def sliding(f: Compared) -> FigureData:
     u, line = np.linspace(0, 1.2, 7)[1:], np.linspace(0, 1.2, 61)
     model, curves, cycles = f.model(), [], []
     for h in (0.0, 1.0, 2.0):
-        pushed = Tangential(_FRICTION, _POISSON, u * _FRICTION * f.scene.surface.sigma)
-        sums = f.sums(Hertz(), np.array([h]), quantities=("load",), tangential=pushed)
+        pushed = laws.Tangential(_FRICTION, _POISSON, u * _FRICTION * f.scene.surface.sigma)
+        sums = f.sums(laws.Hertz(), np.array([h]), quantities=("load",), tangential=pushed)
         ratio, stderr = ratio_of_sums(sums["tangential_load"][:, 0], _FRICTION * sums["load"])
         points = Points(u, ratio, stderr, _slipping(model, h, u))
         curves.append(Series(f"d/σ = {h:g}", line, _slipping(model, h, line), points))
     for reach in (0.6, 0.3, 0.1):
         x = np.linspace(0, reach, 61)
         virgin = _slipping(model, 1.0, x)
-        back, down = masing(virgin), reach - 2 * x
+        back, down = laws.masing(virgin), reach - 2 * x
         around = np.concatenate([x, down, -down]), np.concatenate([virgin, back, -back])
         cycles.append(Series(f"up to {reach:g}", *around))
     return FigureData(
@@ -239,7 +226,7 @@ def sliding(f: Compared) -> FigureData:
 
 def _slipping(model: Model, h: float, u: Array) -> Array:
     """Mean tangential load over that of gross sliding, at displacements in units of mu sigma."""
-    pushed = Tangential(_FRICTION, _POISSON, u * _FRICTION * model.surface.sigma)
+    pushed = laws.Tangential(_FRICTION, _POISSON, u * _FRICTION * model.surface.sigma)
     load = model.mean("load", h)
     return np.asarray((load - model.mean("load", h + pushed.shifts(model.surface))) / load)
 
@@ -251,10 +238,10 @@ def films(f: Compared) -> FigureData:
     bare, series = f.model(), []
     pressure, shown = (bare.mean("pressure", x) / 1e6 for x in (h, line))
     for b in (0.0, 0.1, 1.0, 10.0):
-        film = Film(_RESISTIVITY, b * np.pi * _RESISTIVITY * root / 4)
+        film = laws.Film(_RESISTIVITY, b * np.pi * _RESISTIVITY * root / 4)
         model = f.model(film=film)
         exact, resistance = (unit / model.mean("conductance_si", x) for x in (h, line))
-        values = f.sums(Hertz(), h, quantities=("load",), film=film)["conductance_si"]
+        values = f.sums(laws.Hertz(), h, quantities=("load",), film=film)["conductance_si"]
         mean = values.mean(axis=0)
         error = values.std(axis=0, ddof=1) / np.sqrt(len(values)) / mean
         points = Points(pressure, unit / mean, unit / mean * error, exact)

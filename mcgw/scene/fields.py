@@ -7,18 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from analytic import (
-    JOINT,
-    Clipped,
-    Exponential,
-    Grading,
-    HeightLaw,
-    MeasuredHeights,
-    Model,
-    Quantity,
-    first_negative,
-    quantity_of,
-)
+import analytic
 from analytic.laws import Branch, ContactLaw, Hertz, Ways
 from mcgw.machine.memory import kept
 from mcgw.scene.values import EXACT, Values, values_of_scene
@@ -51,12 +40,12 @@ class Fields(Values):
         return self.n_asperities * share_above(self.heights, float(self.lowest))
 
     @property
-    def modulus(self) -> Grading:
+    def modulus(self) -> analytic.Grading:
         """The grading as used: clipped if the scene says so."""
-        return Clipped.of(self.grading) if self.negative == "clip" else self.grading
+        return analytic.Clipped.of(self.grading) if self.negative == "clip" else self.grading
 
     @cached_property
-    def theory(self) -> Model:
+    def theory(self) -> analytic.Model:
         """The exact model of this scene: modulus, heights, contact law, history, asperities."""
         model = self._alone
         if self.interaction is not None:
@@ -84,9 +73,9 @@ class Fields(Values):
             raise ValueError(NO_THEORY)
 
     @cached_property
-    def _alone(self) -> Model:
+    def _alone(self) -> analytic.Model:
         """Kept, for it keeps what it has computed."""
-        return Model(
+        return analytic.Model(
             self.surface,
             grading=self.modulus,
             heights=self.heights,
@@ -107,9 +96,9 @@ class Fields(Values):
         filled: Gap = self.joint.gap(self.surface, self.heights, moments)
         return filled
 
-    def quantity(self, name: str) -> Quantity:
+    def quantity(self, name: str) -> analytic.Quantity:
         """A quantity with its unit in this scene, which conducts heat or current."""
-        q = quantity_of(name)
+        q = analytic.quantity_of(name)
         return replace(q, unit=q.unit.split(" or ")[-1 if self.thermal else 0]) if " or " in q.unit else q
 
     @property
@@ -154,7 +143,7 @@ class Fields(Values):
     @property
     def as_measured(self) -> bool:
         """Whether its one surface has the measured heights as they are, and nothing is drawn."""
-        return isinstance(self.heights, MeasuredHeights) and not self.heights.resampled
+        return isinstance(self.heights, analytic.MeasuredHeights) and not self.heights.resampled
 
     @property
     def hertzian(self) -> bool:
@@ -206,7 +195,9 @@ class Fields(Values):
         """Conductances of a joint other than those of its spots."""
         if self.joint is None:
             return ()
-        return tuple(name for name, q in JOINT.items() if self.unload_from is not None or not q.unloading)
+        return tuple(
+            name for name, q in analytic.JOINT.items() if self.unload_from is not None or not q.unloading
+        )
 
     @property
     def answers(self) -> tuple[str, ...]:
@@ -265,19 +256,19 @@ class Fields(Values):
         if not start < high:
             return None
         grading = self.grading  # which rises or falls all the way, if it is exponential: two heights tell
-        if isinstance(grading, Exponential) and (grading(np.array([start, high])) > _CLEARLY).all():
+        if isinstance(grading, analytic.Exponential) and (grading(np.array([start, high])) > _CLEARLY).all():
             return None
-        return first_negative(self.grading, start, high)
+        return analytic.first_negative(self.grading, start, high)
 
 
 @kept(64)  # the same for all scenes of a sweep
-def share_above(heights: HeightLaw, h: float) -> float:
+def share_above(heights: analytic.HeightLaw, h: float) -> float:
     """Share of a height law above a height."""
     return float(heights.sf(np.array(h)))
 
 
 @kept(64)  # needed by every scene, a few times
-def _ends(heights: HeightLaw) -> tuple[float, float]:
+def _ends(heights: analytic.HeightLaw) -> tuple[float, float]:
     """Heights that hardly any asperity of a law is below or above."""
     share = np.array(_BEYOND)
     return float(heights.ppf(share)), float(heights.isf(share))

@@ -4,20 +4,6 @@ import math
 from typing import Any
 
 import analytic
-from analytic import (
-    UNLOADING,
-    Body,
-    Exponential,
-    ExponentialHeights,
-    Gaussian,
-    HeightTable,
-    Homogeneous,
-    Nayak,
-    PiecewiseSeries,
-    ScipyHeights,
-    Table as TableGrading,
-    Weibull,
-)
 from analytic.laws import Layer, Tangential
 from mcgw.scene.kinds import ByName, Either, Flag, List, Number, Table, Text, Whole, Word
 from mcgw.scene.measured import Fitted
@@ -25,18 +11,18 @@ from mcgw.scene.section import Key, TableOfKeys
 from mcgw.scene.values import SUMMITS, SUMS, rows_of
 
 GRADINGS: dict[str, Any] = {  # laws by their words in a scene
-    "homogeneous": Homogeneous,
-    "exponential": Exponential,
-    "table": TableGrading,
-    "series": PiecewiseSeries,
+    "homogeneous": analytic.Homogeneous,
+    "exponential": analytic.Exponential,
+    "table": analytic.Table,
+    "series": analytic.PiecewiseSeries,
 }
 HEIGHTS: dict[str, Any] = {
-    "gaussian": Gaussian,
-    "exponential": ExponentialHeights,
-    "weibull": Weibull,
-    "nayak": Nayak,
-    "table": HeightTable,
-    "scipy": ScipyHeights,
+    "gaussian": analytic.Gaussian,
+    "exponential": analytic.ExponentialHeights,
+    "weibull": analytic.Weibull,
+    "nayak": analytic.Nayak,
+    "table": analytic.HeightTable,
+    "scipy": analytic.ScipyHeights,
 }
 _MOST = 100_000
 
@@ -66,7 +52,9 @@ _PIECES_EXAMPLE = (
     "[{low = -1.0, high = 1.0, coefficients = [1.0]}, {low = 1.0, high = 3.0, coefficients = [1.0]}]"
 )
 _BODY = Table(
-    (Key("E", Number("Pa", infinite=True), required=True), Key("nu", _POISSON, default=0.3)), "", Body
+    (Key("E", Number("Pa", infinite=True), required=True), Key("nu", _POISSON, default=0.3)),
+    "",
+    analytic.Body,
 )
 _SHIFTS = Either((List(_NOT_NEGATIVE, advice="give a list of numbers >= 0, in m"), _NOT_NEGATIVE))
 _MOUNTED = (Key("friction", _POSITIVE, required=True), Key("poisson", _POISSON, required=True))
@@ -201,7 +189,7 @@ TABLES: dict[str, TableOfKeys] = {
         "separations are measured from the mean plane of the `summits` (default) or of the `surface` "
         "(Nayak's heights)", "summits"),
     Key("quantities",
-        List(Word((*SUMS, *UNLOADING), f"choose one of {', '.join(SUMS)}"), once=True,
+        List(Word((*SUMS, *analytic.UNLOADING), f"choose one of {', '.join(SUMS)}"), once=True,
              advice="give a list of names, each once"),
         '["load"]', "any of `load`, `area`, `stiffness`, `contacts` (these four by default), `conductance`, "
         "`spot_conductance`, `yielded`, `load_slope`"),

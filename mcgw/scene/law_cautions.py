@@ -7,17 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from analytic import (
-    ChangEtsionBogy,
-    Coated,
-    ContactLaw,
-    DerjaguinMullerToporov,
-    Hertz,
-    JacksonGreen,
-    JohnsonKendallRoberts,
-    KogutEtsion,
-    ZhaoMaiettaChang,
-)
+import analytic
 from analytic.laws.elastic_plastic import ElasticPlastic
 from mcgw.scene.scene import Scene
 
@@ -78,7 +68,11 @@ def _jumps(scene: Scene) -> Iterator[str]:
 
 def _gain(scene: Scene) -> Iterator[str]:
     """State the work gained because the fits of loading and unloading do not quite match."""
-    if isinstance(scene.law, KogutEtsion) and scene.unload_from is not None and scene.law.bridge is None:
+    if (
+        isinstance(scene.law, analytic.KogutEtsion)
+        and scene.unload_from is not None
+        and scene.law.bridge is None
+    ):
         share = _share(scene, 1.0) - _share(scene, 1.25)
         if share > 0:
             yield (
@@ -89,7 +83,7 @@ def _gain(scene: Scene) -> Iterator[str]:
 
 
 def _fitted(scene: Scene) -> Iterator[str]:
-    if not isinstance(scene.law, KogutEtsion):
+    if not isinstance(scene.law, analytic.KogutEtsion):
         return
     back = scene.unload_from is not None
     for most, what, applies in ((_FITTED, "loading", True), (_UNLOADED, "unloading", back)):
@@ -114,7 +108,7 @@ def _share(scene: Scene, multiple: float) -> float:
 def _strain(scene: Scene) -> Iterator[str]:
     """Caution about materials outside those of the finite elements."""
     law: Any = scene.contact
-    if not isinstance(law, JacksonGreen):
+    if not isinstance(law, analytic.JacksonGreen):
         return
     s = np.linspace(max(scene.lowest, scene.least), scene.highest, 101)
     e = scene.modulus(s)
@@ -129,7 +123,7 @@ def _strain(scene: Scene) -> Iterator[str]:
 def _radius(scene: Scene) -> Iterator[str]:
     """Caution about contacts wider than those of the finite elements."""
     law = scene.contact
-    if not isinstance(law, JacksonGreen):
+    if not isinstance(law, analytic.JacksonGreen):
         return
     h = scene.lowest
     if not scene.heights.sf(np.array(h)) > 0:
@@ -147,7 +141,7 @@ def _radius(scene: Scene) -> Iterator[str]:
 
 def _coating(scene: Scene) -> Iterator[str]:
     law = scene.law
-    if isinstance(law, Coated) and not _RATIOS[0] <= law.ratio <= _RATIOS[1]:
+    if isinstance(law, analytic.Coated) and not _RATIOS[0] <= law.ratio <= _RATIOS[1]:
         yield (
             f"contact.ratio = {law.ratio:g}: the first-order coating law is valid for ratios from 1/3 to 3"
         )
@@ -156,10 +150,10 @@ def _coating(scene: Scene) -> Iterator[str]:
 def _adhesion(scene: Scene) -> Iterator[str]:
     """Tabor's number ``(R w^2/(E*^2 z0^3))^(1/3)``; Maugis's (1992) is a multiple of it."""
     law = scene.contact  # in reduced units: it has its pull_off
-    if not isinstance(law, JohnsonKendallRoberts | DerjaguinMullerToporov):
+    if not isinstance(law, analytic.JohnsonKendallRoberts | analytic.DerjaguinMullerToporov):
         return
     tabor = (law.pull_off or 0.0) * scene.surface.sigma / (0.75 * np.pi ** (2 / 3) * _REACH)
-    sticks = isinstance(law, JohnsonKendallRoberts)
+    sticks = isinstance(law, analytic.JohnsonKendallRoberts)
     if tabor < _STICKY if sticks else tabor > _STIFF:
         holds = f"above {_STICKY:g}" if sticks else f"below {_STIFF:g}"
         yield (
@@ -190,7 +184,7 @@ class OtherLaws:
     @property
     def spread(self) -> tuple[float, float]:
         """Smallest and largest ratio of loads among plastic laws, relative to this one."""
-        ratios = [1.0, *(ratio for name, ratio in self.load.items() if name != Hertz.name)]
+        ratios = [1.0, *(ratio for name, ratio in self.load.items() if name != analytic.Hertz.name)]
         return min(ratios), max(ratios)
 
 
@@ -216,18 +210,18 @@ def other_laws(scene: Scene) -> OtherLaws | None:
     )
 
 
-def _alike(scene: Scene, critical: float) -> Iterator[ContactLaw]:
+def _alike(scene: Scene, critical: float) -> Iterator[analytic.ContactLaw]:
     """Other laws that yield at this penetration, and Hertz's."""
     poisson = getattr(scene.law, "poisson", None)
     poisson = _POISSON if poisson is None else poisson
-    plain = JacksonGreen(yield_strain=1.0, critical=critical, poisson=poisson)
+    plain = analytic.JacksonGreen(yield_strain=1.0, critical=critical, poisson=poisson)
     strain = 2 * math.sqrt(critical * scene.surface.sigma / scene.surface.radius)
     for law in (
-        ChangEtsionBogy(critical=critical),
-        ZhaoMaiettaChang(critical=critical),
-        KogutEtsion(critical=critical, poisson=poisson),
+        analytic.ChangEtsionBogy(critical=critical),
+        analytic.ZhaoMaiettaChang(critical=critical),
+        analytic.KogutEtsion(critical=critical, poisson=poisson),
         replace(plain, yield_strain=strain / (np.pi * plain.yield_factor)),
-        Hertz(),
+        analytic.Hertz(),
     ):
         if law.name != scene.law.name:
             yield law

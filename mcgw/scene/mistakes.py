@@ -5,17 +5,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from analytic import (
-    LAW_QUANTITIES,
-    QUANTITIES,
-    Custom,
-    Exponential,
-    MeasuredHeights,
-    MeasuredRadii,
-    Nayak,
-    PiecewiseSeries,
-    quantity_of,
-)
+import analytic
 from mcgw.formats.sheet import brief
 from mcgw.scene.fields import Fields
 from mcgw.scene.samplers import promise_of
@@ -36,7 +26,7 @@ def mistakes(scene: Fields) -> list[str]:
 
 
 def _values(scene: Fields) -> Iterator[str]:
-    known, sampler = {**QUANTITIES, **LAW_QUANTITIES}, scene.sampler
+    known, sampler = {**analytic.QUANTITIES, **analytic.LAW_QUANTITIES}, scene.sampler
     if "conductance_si" in scene.quantities and scene.film is None:
         yield 'contact.quantities: "conductance_si" needs resistivity, or conductivities = [k1, k2]; give one'
     if tiny := [h for h in scene.separations if 0 < abs(h) < _LEAST]:
@@ -54,7 +44,7 @@ def _values(scene: Fields) -> Iterator[str]:
         yield f'ensemble.rel_err: sampler = "{sampler}" has no variance to stop by; use another'
     if scene.keep == "statistics" and not promise_of(sampler).real_surfaces:
         yield f'ensemble.keep = "statistics": sampler = "{sampler}" has none; use another sampler, or "sums"'
-    listed = isinstance(scene.heights, MeasuredHeights)  # of which no sampler has moments
+    listed = isinstance(scene.heights, analytic.MeasuredHeights)  # of which no sampler has moments
     if scene.keep == "moments" and not promise_of(sampler).keeps_moments and not listed:
         yield f'ensemble.keep = "moments": sampler = "{sampler}" has none; use "cells"'
 
@@ -129,20 +119,20 @@ def _scales(scene: Fields) -> Iterator[str]:
     for name in scene.quantities:
         with np.errstate(all="ignore"):
             try:
-                one = quantity_of(name).scale(scene.surface)
+                one = analytic.quantity_of(name).scale(scene.surface)
             except OverflowError:
                 one = math.inf
             ends = (one * 1e-12, one * float(scene.n_asperities) * _SAFELY)
         if not (np.finfo(float).tiny < ends[0] and ends[1] < np.finfo(float).max):
             yield (
-                f"surface: the {name} of an asperity would be {one:.3g} {quantity_of(name).unit}, "
+                f"surface: the {name} of an asperity would be {one:.3g} {analytic.quantity_of(name).unit}, "
                 "beyond double precision; check sigma, radius and E_star"
             )
 
 
 def _measured(scene: Fields) -> Iterator[str]:
     """Measured heights are one surface, added up and not drawn; or drawn one by one, in pairs with radii."""
-    if not isinstance(scene.heights, MeasuredHeights):
+    if not isinstance(scene.heights, analytic.MeasuredHeights):
         return
     table = "heights" if scene.curvature is None else "summits"
     if promise_of(scene.sampler).needs_density:
@@ -174,11 +164,11 @@ def _radii(scene: Fields) -> Iterator[str]:
     """Radii of summits that do not go with their heights, or that a sampler does not draw."""
     if scene.curvature is None:
         return
-    if isinstance(scene.curvature, MeasuredRadii):
+    if isinstance(scene.curvature, analytic.MeasuredRadii):
         if scene.heights != scene.curvature.heights:
             yield "heights: they differ from those of the measured summits; leave them out"
         return
-    if not isinstance(scene.heights, Nayak) or scene.heights.alpha != scene.curvature.alpha:
+    if not isinstance(scene.heights, analytic.Nayak) or scene.heights.alpha != scene.curvature.alpha:
         yield (
             'summits.curvature = "random": it needs heights.law = "nayak", alpha = '
             f'{scene.curvature.alpha:g}; use these heights, or curvature = "mean"'
@@ -199,7 +189,7 @@ def _radii(scene: Fields) -> Iterator[str]:
 
 def _function(scene: Fields) -> Iterator[str]:
     """A Python function that does not take arrays."""
-    if not isinstance(scene.grading, Custom):
+    if not isinstance(scene.grading, analytic.Custom):
         return
     try:
         with np.errstate(all="ignore"):
@@ -214,7 +204,7 @@ def _function(scene: Fields) -> Iterator[str]:
 
 def _range(scene: Fields) -> Iterator[str]:
     """Heights that touch and that the series of a grading do not reach."""
-    if not isinstance(scene.grading, PiecewiseSeries) or scene.lowest >= scene.highest:
+    if not isinstance(scene.grading, analytic.PiecewiseSeries) or scene.lowest >= scene.highest:
         return
     low, high = max(scene.lowest, scene.least), scene.highest
     first, last = scene.grading.edges[0], scene.grading.edges[-1]
@@ -237,7 +227,7 @@ def _modulus(scene: Fields) -> Iterator[str]:
         return
     if where is None:
         return
-    if isinstance(scene.grading, Exponential) and scene.grading.gamma < 0:
+    if isinstance(scene.grading, analytic.Exponential) and scene.grading.gamma < 0:
         where = scene.grading.zero
     if scene.negative == "clip":
         yield (
@@ -255,7 +245,7 @@ def _modulus(scene: Fields) -> Iterator[str]:
 def _sums(scene: Fields) -> Iterator[str]:
     """Sums that the grading makes larger than double precision holds."""
     ends = np.array(sorted({scene.highest, *scene.separations}))
-    stiff = [q for q in map(quantity_of, scene.quantities) if q.modulus]
+    stiff = [q for q in map(analytic.quantity_of, scene.quantities) if q.modulus]
     with np.errstate(all="ignore"):
         try:
             steepest = float(np.max(np.abs(scene.modulus(ends))))
@@ -278,4 +268,4 @@ def _fluctuating(scene: Fields) -> Iterator[str]:
 def _key(scene: Fields) -> str:
     """The key of a grading, and its value if that is one number."""
     grading = scene.grading
-    return f"grading.gamma = {grading.gamma:g}" if isinstance(grading, Exponential) else "grading"
+    return f"grading.gamma = {grading.gamma:g}" if isinstance(grading, analytic.Exponential) else "grading"

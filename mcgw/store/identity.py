@@ -26,17 +26,7 @@ from typing import Any
 import numpy as np
 from scipy import special
 
-from analytic import (
-    Clipped,
-    Exponential,
-    ExponentialHeights,
-    Gaussian,
-    HeightTable,
-    Homogeneous,
-    MeasuredHeights,
-    PiecewiseSeries,
-    Table,
-)
+import analytic
 from mcgw.formats.named_files import loads
 from mcgw.scene.samplers import promise_of
 from mcgw.scene.scene import Scene
@@ -45,8 +35,8 @@ from mcgw.scene.section import shortened
 
 Question = tuple[str, str, str]  # text of a scene, axes of a sweep or none, versions that draw
 KIND = ", processor "  # stands between the versions and the kind
-_HEIGHTS = (Gaussian, ExponentialHeights, HeightTable, MeasuredHeights)
-_GRADINGS = (Homogeneous, Exponential, Table, PiecewiseSeries)
+_HEIGHTS = (analytic.Gaussian, analytic.ExponentialHeights, analytic.HeightTable, analytic.MeasuredHeights)
+_GRADINGS = (analytic.Homogeneous, analytic.Exponential, analytic.Table, analytic.PiecewiseSeries)
 _POINTS = 4096  # one value in a thousand differs between kinds
 _PACKAGES = ("mcgw", "numpy", "scipy", "numba", "h5py")
 _DRAW = ("mcgw", "numpy", "numba", "scipy")
@@ -92,7 +82,9 @@ def _flat(table: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
 def depends_on_processor(scene: Scene, sampler: str) -> bool:
     """Whether the last digits of what a sampler draws may differ from one kind of processor to another."""
     modulus = scene.modulus
-    if isinstance(modulus, Clipped) and isinstance(modulus.grading, Exponential | PiecewiseSeries):
+    if isinstance(modulus, analytic.Clipped) and isinstance(
+        modulus.grading, analytic.Exponential | analytic.PiecewiseSeries
+    ):
         modulus = modulus.grading
     own = isinstance(scene.heights, _HEIGHTS) and isinstance(modulus, _GRADINGS)
     drawn_alike = promise_of(sampler).same_on_all_processors or (scene.as_measured and not scene.located)
