@@ -86,7 +86,8 @@ def _edges(law: HeightLaw, start: float, top: float) -> list[float]:
                 step = min(step, max((1 - 1 / _GROWTH) * (above[0] - a), _TINY))
             while a == start and a + step < mark and law.cdf(np.array(a + step)) < _NOTHING:
                 step *= 2  # where a law begins flat and its ppf is lost, no end of pieces would hold nothing
-            edges.append(mark if a + 1.5 * step >= mark or a + step == a else a + step)
+            last = a + (1 if above else 1.5) * step >= mark  # towards a singular end no piece is a wider one
+            edges.append(mark if last or a + step == a else a + step)
     return edges
 
 

@@ -261,10 +261,19 @@ def test_what_auto_takes(make_scene):
         "cells": {"n_asperities": 10**6},
         "tail": {"n_asperities": 10, "law_error": 1e-2},
     }
+    bought = {24_000: "cells", 30_000: "aggregate"}  # 300 a cell and those alone, by 1.5: 13 100; 13 600
     for name, changes in names.items():
         assert sampler_of(make_scene(**changes)).name == name
+    for n, name in bought.items():
+        assert sampler_of(make_scene(n_asperities=n, law_error=1e-3)).name == name
     named = make_scene(n_asperities=10**6, law_error=1e-3, sampler="cells")
     assert sampler_of(named).name == "cells"
     assert law_error_of(named) == law_error_of(make_scene()) == 0
     assert 0 < law_error_of(make_scene(**names["aggregate"])) <= 1e-3
     assert sampler_of(make_scene(n_asperities=3000, law_error=1e-9)).name == "cells"
+    strict, high = (
+        make_scene(n_asperities=10**15, law_error=1e-12),
+        make_scene(separations=9.0, law_error=0.01),
+    )
+    for scene in (strict, high):  # no crowd is large enough, or there is no cell
+        assert crowding(scene, mesh_of(scene, split=False)) is None

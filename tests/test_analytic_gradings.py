@@ -276,3 +276,12 @@ def test_every_header(tmp_path, text):
 def test_every_mistake_in_a_file_is_named(tmp_path, text, message):
     with pytest.raises(ValueError, match=message):
         Table.from_csv(csv(tmp_path, text), sigma=2e-6, E_star=2e9)
+
+
+def test_what_is_no_file_of_a_table_is_told(tmp_path):
+    for path, told in (
+        (tmp_path / "none.csv", "none.csv: no such file"),
+        (tmp_path, "is not a regular file"),
+    ):
+        with pytest.raises(ValueError, match=told):
+            Table.from_csv(path, sigma=2e-6, E_star=2e9)

@@ -55,6 +55,18 @@ def test_values_that_no_separation_has():
         analytic.Model(SURFACE, grading=Custom(lambda s: -np.ones_like(s))).separation_at("load", 1.0)
 
 
+def test_a_target_beyond_the_end_of_its_bracket_by_a_last_digit_is_that_end():
+    """A mean whose values one by one are a little more, or less, than all at once; what is known is wrong."""
+    grid = np.array([0.0, 1.0, 2.0, 3.0])
+    for more, target, h in ((-1e-9, -1.0, 1.0), (1e-9, -2.0 + 5e-10, 2.0)):
+
+        def log_mean(x, more=more):
+            return -np.asarray(x) + (0.0 if np.ndim(x) else more)
+
+        found = inversion.last_separations(log_mean, np.array([[target]]), grid, np.full(4, -9.0), "load")
+        np.testing.assert_array_equal(found, [[h]])
+
+
 def test_target_right_before_the_load_turns_negative():
     """gamma = -0.2: positive up to h = 0.81086, so the larger of two separations is next to it."""
     grading = Exponential(-0.2)

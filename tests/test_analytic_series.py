@@ -183,6 +183,7 @@ def named(s):
     (np.cosh, "cosh"),
     (Custom(named), "named"),
     (analytic.Clipped(Custom(named)), "named, clipped"),
+    (analytic.gradings.Squared(Custom(named)), "named, squared"),
     (Exponential(2.0), "Exponential"),
     (PiecewiseSeries([0, 1], [[1]], "kept"), "kept"),
 ])  # fmt: skip

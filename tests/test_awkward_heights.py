@@ -42,6 +42,23 @@ def test_means_and_surfaces_are_literal(law):
     np.testing.assert_allclose(scene.theory.mean("load", H), 3000 * scale * np.array(integrals), rtol=1e-7)
 
 
+@pytest.mark.parametrize(("a", "b"), [(3, 0.5), (0.5, 0.7)])
+def test_where_the_density_is_infinite_at_its_upper_end(a, b):
+    """Beta: F_n by mpmath, in a power of the distance from the end, as near as heights are told."""
+    law = scipy.stats.beta(a, b)
+    mean, std, heights = law.mean(), law.std(), mcgw.ScipyHeights(law)
+    for n in (0, 1, 1.5):
+        for h in (-0.5, 0.5 * heights.support[1]):
+
+            def term(w, n=n, h=h):
+                t = 1 - w ** (1 / mpmath.mpf(b))  # so that (1 - t)^(b - 1) dt is dw/b
+                return max((t - mean) / std - h, 0) ** n * t ** (a - 1) / b
+
+            known = mpmath.quad(term, [0, (1 - mpmath.mpf(mean + h * std)) ** b]) / mpmath.beta(a, b)
+            rounding = 30 * np.finfo(float).eps ** b
+            assert analytic.fn(n, h, heights=heights) == pytest.approx(float(known), rel=rounding)
+
+
 def test_the_tail_of_f_is_that_of_its_sf():
     """The isf of SciPy takes 1 - p: off by a tenth at 1e-16, infinite beyond."""
     law = mcgw.ScipyHeights(scipy.stats.f(10, 20))

@@ -1,6 +1,7 @@
 """`cells` (moments times response) against exactly rounded sums over the very same heights."""
 
 import dataclasses
+from itertools import product
 
 import mpmath as mp
 import numpy as np
@@ -150,8 +151,8 @@ def test_derivative_of_the_load_is_the_stiffness(make_scene):
 
 
 def test_heights_in_all_are_the_asperities_asked_for(make_scene):
-    for count in ("fixed", "poisson"):
-        scene = make_scene(sampler="cells", count=count, separations=(0.5, 2.0))
+    for count, sampler in product(("fixed", "poisson"), ("cells", "direct")):
+        scene = make_scene(sampler=sampler, count=count, separations=(0.5, 2.0))
         touching, every = mcgw.heights(scene, 1), mcgw.heights(scene, 1, untouched=True)
         np.testing.assert_array_equal(every[: len(touching)], touching)
         assert (touching > 0.5).all()

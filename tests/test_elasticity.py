@@ -79,7 +79,8 @@ class TestPotential:
     def test_needs_points(self):
         with pytest.raises(ValueError, match="46 or more"):
             Grid((45, 45), (1.0, 1.0), True)
-        assert Grid((46, 46), (1.0, 1.0), True).pixel == pytest.approx((1 / 46, 1 / 46))
+        wide = Grid((46, 184), (3.0, 1.0), True)
+        assert (wide.pixel, wide.area) == (pytest.approx((3 / 184, 1 / 46)), 3.0)
 
 
 class TestField:

@@ -188,6 +188,9 @@ def test_contacts_are_counted(count):
     np.testing.assert_allclose(law.cdf([40, 68, 90]), known.cdf([40, 68, 90]), rtol=1e-11)
     assert law.atom == pytest.approx(known.pmf(0), rel=1e-11)
     assert law.ppf(0.5) == known.ppf(0.5)
+    assert (law.mean(), law.var()) == pytest.approx((known.mean(), known.var()), rel=1e-11)
+    assert repr(law) == f"Counted(mean={known.mean():.4g}, std={known.std():.4g})"
+    assert 0 < law.error_at([40, 90]).max() <= law.error < 1e-12
 
 
 def test_shapes_ends_and_the_atom():
@@ -284,6 +287,22 @@ def test_the_separation_at_a_load():
     np.testing.assert_array_equal([law.ppf([0, 1]), law.isf([0, 1])], np.nan)  # no separation is the last
     assert law.mean() - 2.5 == pytest.approx(-4.477e-3, abs=6e-4)
     assert law.var() == pytest.approx(1.5e-2, rel=0.03)
+    below = of.distribution("load", 2.4)
+    assert law.error_at([2.4, 2.4]) == pytest.approx(
+        2 * [float(below.error_at(of.mean("load", 2.5)))], rel=1e-9
+    )
+
+
+def test_a_share_of_the_surfaces_without_any_asperity_reaches_a_load_nowhere():
+    """exp(-3) of them, by Poisson: where more do, what is solved for is at that share."""
+    of = model(3, grading=analytic.Homogeneous(), count="poisson")
+    load, empty = float(of.mean("load", 0.5)), np.exp(-3)
+    law = of.separation_law(load)
+    np.testing.assert_array_equal(law.ppf([0.01, empty * (1 - 1e-9)]), np.nan)
+    h = law.ppf([1.001 * empty, 0.1])
+    assert np.all(h < 0)
+    for x, share in zip(h, (1.001 * empty, 0.1), strict=True):
+        assert of.distribution("load", x).cdf(load) == pytest.approx(share, rel=1e-9)
 
 
 @pytest.mark.parametrize("count", ["fixed", "poisson"])

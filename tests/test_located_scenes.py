@@ -119,6 +119,7 @@ def test_where_theory_is_needed_none_is_told(tmp_path, capsys):
         assert main([*command, str(tmp_path / "scene.toml"), "-o", str(path)]) == 0
         assert f"next: mcgw show {path}\n" in capsys.readouterr().out
     assert "for summits at places" in scene.validity().unknown
+    assert scene.series("stiffness") == 0  # that of all together has it
     e = mcgw.simulate(scene)
     for ask in (
         lambda: mcgw.compare(e),
@@ -127,12 +128,13 @@ def test_where_theory_is_needed_none_is_told(tmp_path, capsys):
         lambda: mcgw.tradeoff(scene),
         lambda: mcgw.regrade(e, mcgw.Exponential(1.2)),
         lambda: scene.theory,
+        lambda: scene.compliance,
     ):
         with pytest.raises(ValueError, match="no theory is known of summits at their places"):
             ask()
 
 
-WIDTH, HEIGHT, POINTS = 2.25e-4, 1e-4, (64, 144)  # 36 summits, sixteen points for their mean distance
+WIDTH, HEIGHT, POINTS = 1.6e-4, 0.9e-4, (72, 128)  # 36 summits, sixteen points for their mean distance
 
 
 def placed(shuffle=None, places=True, resampled=False, **given):
@@ -223,7 +225,7 @@ def test_places_are_kept_in_text_and_read_from_a_table(tmp_path):
     assert read.curvature.places == c.places
     assert_allclose(mcgw.simulate(read).load, mcgw.simulate(scene).load, rtol=1e-9)
     with pytest.raises(ValueError, match=r"summits.aspect = 1: places extend over .* along x"):
-        mcgw.scene_from(f"{text.replace('aspect = 2.25', '')}'located'", folder=tmp_path)
+        mcgw.scene_from(f"{text.replace(f'aspect = {c.aspect!r}', '')}'located'", folder=tmp_path)
     (tmp_path / "s.csv").write_text(table.replace("-", "", 1).replace("\n", "\n?", 2).replace("?x", "x", 1))
     assert mcgw.scene_from(f"{text}'mean-plane'", folder=tmp_path).curvature.places is None
     with pytest.raises(ValueError, match="summit 1 has no number as height or radius or x or y"):

@@ -202,6 +202,20 @@ def test_products_of_summits_that_yield_each_at_its_own_depth(by_hand):
     np.testing.assert_allclose(found, SURFACE.n_asperities * (f * p) @ f.T, rtol=1e-9)
 
 
+@pytest.mark.parametrize("name", ["load", "area"])
+def test_means_of_summits_on_the_way_back_each_from_its_own_depth(name):
+    """Etsion, Kligerman and Kadin's formulas from h = 0.5; sums are not cut where contact is lost."""
+    s, c, p = summits(0.5, CRITICAL * np.array([1, 6, 110]))
+    deepest, delta = s - 0.5, s - 1.0
+    x = np.maximum(deepest / (CRITICAL * c), 1.0)
+    left = deepest * (1 - x**-0.28) * (1 - x**-0.69)
+    share = np.maximum(delta - left, 0) / (deepest - left)
+    power = share ** (1.5 * x**-0.0331 if name == "load" else x**-0.12)
+    known = SURFACE.n_asperities * quantity_of(name).scale(SURFACE) * (p @ (yielded(name, s, c, 0.5) * power))
+    found = model(law=LAW, unload_from=0.5).mean(f"{name}_unloading", 1.0)
+    assert float(found) == pytest.approx(known, rel=1e-4)
+
+
 @pytest.mark.slow
 def test_shares_of_summits_that_yield(monkeypatch):
     """The kinks of a share take more points than the means do: by 12 of them it is off by 4e-8."""

@@ -13,6 +13,7 @@ import analytic
 import mcgw
 from mcgw.ensemble import drawing
 from mcgw.reports.plan import plan_of, plan_text
+from mcgw.sampling.expected import expected
 from mcgw.sampling.samplers import sampler_of
 
 
@@ -23,6 +24,7 @@ def test_plan_says_what_is_drawn(make_scene):
     assert plan.touching == pytest.approx(expected, rel=1e-12)
     drawn = sampler_of(scene).block(0, 64)
     assert drawn.counts.sum() / 64 == pytest.approx(expected, abs=5 * np.sqrt(expected / 64))
+    assert sampler_of(scene).draws == pytest.approx(expected, rel=1e-9)
     assert plan.cells == drawn.counts.shape[1]
     assert plan.moments == pytest.approx(drawn.moments.shape[1], rel=0.2)
     assert plan.bytes == 8 * 200 * 2 * 4
@@ -82,18 +84,47 @@ WISHES = {
     "moments": {"keep": "moments"},
     "radii": {"heights": analytic.Nayak(5.0), "curvature": mcgw.RandomCurvature(5.0)},
     "one by one": {"interaction": mcgw.Interaction("body", at="nominal"), "sampler": "tail"},
+    "beyond all": {"separations": (9.0, 10.0)},
 }
 
 
 @pytest.mark.parametrize("name", WISHES)
 def test_what_is_expected_is_what_is_made(make_scene, name):
     """To a share that no reader would miss: moments are counted before any law is resolved."""
-    scene = make_scene(separations=(0.0, 0.5, 1.0, 2.0), **{"sampler": "cells", **WISHES[name]})
+    scene = make_scene(**{"separations": (0.0, 0.5, 1.0, 2.0), "sampler": "cells", **WISHES[name]})
     plan, made = plan_of(scene), sampler_of(scene)
     assert plan.sampler == made.name
     assert plan.drawn == pytest.approx(made.draws, rel=1e-2)
     assert plan.cells == pytest.approx(made.cells, rel=0.2)
     assert plan.moments == pytest.approx(made.moments, rel=0.4)
+
+
+ONE_BY_ONE, BY_LAW = 1.2e-7 + 4 * 2 * 1.9e-9, 1.2e-7 + 4 * 2 * 3.5e-8  # of four quantities at two separations
+LAW, OWN = mcgw.KogutEtsion(critical=0.1), analytic.Interaction("body", at="nominal")
+PLACES = {"interaction": analytic.Interaction("located", at="nominal"), "grading": None}
+CROWDS = {"sampler": "aggregate", "n_asperities": 10**15}
+SECONDS = {
+    "direct": ({"sampler": "direct"}, lambda n, moments: 3e-4 + n * ONE_BY_ONE),
+    "tail": ({"sampler": "tail"}, lambda n, moments: 2e-6 + n * ONE_BY_ONE),
+    "tail of a law": ({"sampler": "tail", "law": LAW}, lambda n, moments: 2e-6 + n * BY_LAW),
+    "balances one by one": (
+        {"sampler": "tail", "interaction": OWN},
+        lambda n, moments: 2e-6 + 2 * (4e-4 + n * 1e-7),
+    ),
+    "balances": ({"sampler": "cells", "interaction": OWN}, lambda n, moments: 2e-6 + 2 * 5e-6 + n * 1e-9),
+    "places": (PLACES, lambda n, moments: 3e-4 + 2 * 5e-7 * n**1.6),
+    "crowds": (CROWDS, lambda n, moments: 2e-6 + moments * 1.1e-8),
+    "crowds of a law": (CROWDS | {"law": LAW}, lambda n, moments: 2e-6 + moments * 2.5e-8),
+}
+
+
+@pytest.mark.parametrize("name", SECONDS)
+def test_a_surface_takes_what_its_parts_do(make_scene, name):
+    """Measured once: seconds of a surface, an asperity, a value, a step of a search, a moment."""
+    changes, by_hand = SECONDS[name]
+    scene = make_scene(separations=(1.0, 2.0), **changes)
+    known, touching = expected(scene), scene.n_asperities * float(scene.heights.sf(np.array(scene.lowest)))
+    assert known.seconds == pytest.approx(by_hand(touching, known.moments), rel=2e-3)
 
 
 CHILD = """

@@ -13,7 +13,7 @@ from mcgw.jobs.running import run
 from mcgw.sampling import cells, spacing
 from mcgw.sampling.block import Layout
 from mcgw.sampling.response.response import LAST_DIGITS, parts_of, response_of
-from mcgw.sampling.samplers import sampler_of
+from mcgw.sampling.samplers import regraded, sampler_of
 from mcgw.store.saving import save
 
 H = tuple(np.linspace(0, 4, 21))
@@ -115,6 +115,8 @@ def test_what_cannot_be_regraded(base, make_scene):
         regrade(base, analytic.Custom(lambda s: 2 + np.sin(20 * s)))
     with pytest.raises(ValueError, match='sampler = "stratified" keeps no heights; use "cells", "tail"'):
         regrade(mcgw.simulate(make_scene(sampler="stratified", n_surfaces=5)), analytic.Homogeneous())
+    with pytest.raises(ValueError, match='sampler = "direct" has no cells'):
+        regraded(base.scene, make_scene(sampler="direct"))
 
 
 @pytest.mark.parametrize("sampler", ["tail", "direct"])

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.arrays import Array
+from analytic.inversion import LOWEST
 from analytic.quadrature import gauss_legendre
 
 _NODES, _RAREST = 48, 1e-13  # of the integrals that give moments
@@ -203,8 +204,10 @@ class Along(Law):
         low, high, step = self.start - self.spread, self.start + self.spread, self.spread
         for _ in range(_MOST):
             if (too_low := excess(low) <= 0) or excess(high) >= 0:
+                if too_low and low <= LOWEST:  # as a share of surfaces without any asperity
+                    break
                 step *= 2
-                low, high = (low - step, low) if too_low else (high, high + step)
+                low, high = (max(low - step, LOWEST), low) if too_low else (high, high + step)
                 continue
             from scipy.optimize import brentq  # imports half of SciPy
 
