@@ -2,13 +2,16 @@
 
 import io
 import sys
+from contextlib import nullcontext
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import mcgw
 from mcgw.cli import main
-from mcgw.machine.progress import stages, steps, watched
+from mcgw.jobs.driver import dashboard_of
+from mcgw.machine.progress import bar, stages, steps, told as asked, watched
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "0.1 mm^2", "78.6 GPa")
 SCENE = mcgw.Scene(SURFACE, separations=[0.0, 1.0], n_surfaces=4, seed=1)
@@ -106,3 +109,70 @@ def test_a_bar_counts_what_is_done_and_ends_with_an_error(monkeypatch):
     with stages(3, "things") as done:  # nobody waits any more
         done()
     assert len(stream.getvalue()) == before
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+@pytest.mark.parametrize("seen", [True, False])
+@pytest.mark.parametrize("person", [True, False])
+def test_a_line_beside_the_bar_is_said_once_and_to_terminals_alone(terminal, seen, person, monkeypatch):
+    """The bar too, where it is for watched terminals alone."""
+    stream = Stream(terminal=seen)
+    monkeypatch.setattr(sys, "stderr", stream)
+    with watched() if person else nullcontext(), bar("surfaces", "dashboard: x", terminal=terminal) as show:
+        show(0, 2)
+        show(2, 2)
+    drawn = not terminal or (seen and person)
+    assert stream.getvalue().count("dashboard: x\n") == (drawn and seen)
+    assert ("0/2 [" in stream.getvalue()) == drawn
+
+
+def test_a_bar_goes_on_from_what_was_done_before(monkeypatch):
+    """At its rate in this call; it is closed at the end."""
+    made = []
+
+    class Bar:
+        def __init__(self, **options):
+            self.n, self.noted = options["initial"], [options]
+            made.append(self.noted)
+
+        def update(self, more):
+            self.n += more
+            self.noted.append(more)
+
+        def close(self):
+            self.noted.append("closed")
+
+    monkeypatch.setattr("tqdm.tqdm", Bar)
+    with bar("surfaces") as show:
+        assert made == []  # nothing is drawn before the first number
+        for done in (50, 60, 60, 100):
+            show(done, 100)
+    options = {"total": 100, "initial": 50, "unit": " surfaces", "leave": False, "smoothing": 0}
+    assert made == [[options, 0, 10, 0, 40, "closed"]]
+
+
+def test_progress_is_a_bar_a_function_or_nothing(monkeypatch):
+    with asked(print, "surfaces") as tell:
+        assert tell is print
+    for none in (None, False):
+        with asked(none, "surfaces") as tell:
+            assert tell(1, 2) is None
+    for wrong in (3, "bar"):
+        with pytest.raises(ValueError, match=f"progress = {wrong!r}: give True, or a function"):
+            asked(wrong, "surfaces").__enter__()
+    stream = Stream(terminal=True)
+    monkeypatch.setattr(sys, "stderr", stream)
+    with asked(True, "surfaces", "beside it") as tell:
+        tell(1, 3)
+        assert list(steps([4, 5], "things")) == [4, 5]  # watched, and so drawn
+    assert "beside it" in stream.getvalue()
+    assert "1/3 [" in stream.getvalue()
+    assert "things/s" in stream.getvalue()
+    before = len(stream.getvalue())
+    list(steps([4, 5], "things"))
+    assert len(stream.getvalue()) == before
+
+
+def test_only_an_engine_with_pages_has_a_line():
+    assert dashboard_of(None) == dashboard_of(SimpleNamespace(dashboard="")) == ""
+    assert dashboard_of(SimpleNamespace(dashboard="http://x")) == "dashboard: http://x"

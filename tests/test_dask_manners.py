@@ -3,7 +3,6 @@
 import copy
 import logging
 import socket
-import sys
 import warnings
 from contextlib import ExitStack, closing, contextmanager, suppress
 from importlib.util import find_spec
@@ -15,7 +14,6 @@ from begun_runs import digest
 import mcgw
 from mcgw.ensemble.simulation import Values
 from mcgw.jobs.dask_engine import Dask
-from mcgw.machine.progress import bar, watched
 
 distributed = pytest.importorskip("distributed")
 pytestmark = pytest.mark.site
@@ -134,13 +132,3 @@ def test_its_dashboard_is_on_this_machine_if_dask_can_draw_it():
     with closing(Dask(workers=1)) as engine:
         place = engine.dashboard[:17]
     assert place == ("http://127.0.0.1:" if find_spec("bokeh") else "")
-
-
-def test_a_line_beside_the_bar_is_said_once_and_to_terminals_alone(capsys, monkeypatch):
-    for terminal in (False, True):
-        monkeypatch.setattr(sys.stderr, "isatty", lambda seen=terminal: seen, raising=False)
-        beside = "dashboard: http://127.0.0.1:1/status"
-        with watched(), bar("surfaces", beside, terminal=True) as show:
-            show(0, 2)
-            show(2, 2)
-        assert capsys.readouterr().err.count("dashboard") == terminal

@@ -14,6 +14,7 @@ from new_trailer import trailer_again
 import mcgw
 from mcgw.cli import main
 from mcgw.ensemble import simulation, summarised
+from mcgw.ensemble.drawing import drawn as drawn_by
 from mcgw.ensemble.summary import Bins, Summary, push, total
 from mcgw.errors import StoreError
 from mcgw.jobs.running import run
@@ -364,6 +365,36 @@ def test_time_ends_between_pieces_and_the_same_number_gives_the_same_bits(monkey
     assert e.n_surfaces == told[-1] == 32 * 32
     assert len(told) > 32
     assert_same_bits(e, mcgw.simulate(asked, max_seconds=None, n_surfaces=e.n_surfaces))
+
+
+@pytest.mark.parametrize("keep", ["sums", "statistics"])
+def test_whoever_asks_for_an_end_gets_what_is_drawn_by_then(keep):
+    """After one piece of a block, or two; of several blocks none is begun any more."""
+    asked = scene(n_surfaces=40_000, n_asperities=5, keep=keep)
+    reducer = simulation.reducer_of(asked)
+    for pieces in (1, 2):
+        told = []
+
+        def go_on(done, told=told, pieces=pieces):
+            told.append(done)
+            return len(told) < pieces
+
+        tables = reducer.tables(0, 40_000, go_on)
+        drawn = int(tables["block_n"][0]) if keep == "statistics" else len(tables["load"])
+        assert len(told) == pieces
+        assert drawn == told[-1] < 40_000
+    blocks = []
+
+    class Short(type(reducer)):
+        rows = 10_000
+
+        def tables(self, first, stop, go_on):
+            blocks.append((first, stop))
+            return super().tables(first, stop, go_on)
+
+    held = drawn_by(Short(asked), lambda done: done < 15_000)
+    assert blocks == [(0, 10_000), (10_000, 20_000)]
+    assert 15_000 <= held.rows() <= 20_000
 
 
 def test_a_block_takes_seconds_however_large_a_surface_is():

@@ -10,8 +10,8 @@ import analytic
 import mcgw
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import MemoryResults
-from mcgw.statistics.laws_of_values import laws_of_values
-from mcgw.statistics.verdict import verdict
+from mcgw.statistics.laws_of_values import LawsOfValues, laws_of_values
+from mcgw.statistics.verdict import Verdict, verdict
 
 
 def holding(scene, **values):
@@ -106,6 +106,20 @@ def test_where_no_value_has_a_known_law_that_is_said(make_scene, changes):
     assert mcgw.compare(ensemble).verdict == verdict(ensemble)
     with pytest.raises(ValueError, match="laws = True: needs kept values"):
         mcgw.compare(ensemble, laws=True)
+
+
+@pytest.mark.parametrize(
+    ("means", "values", "both"), [(0.3, 0.2, 0.4), (0.2, 0.3, 0.4), (0.7, 0.6, 1.0), (0.3, 0.3, 0.6)]
+)
+def test_a_verdict_on_means_and_values_is_twice_the_smaller(means, values, both):
+    """What decided is what is told."""
+    laws = LawsOfValues(4, "load", 1.5, 0.25, values)
+    found = Verdict(7.0, 5, means).with_laws(laws)
+    assert found.p == pytest.approx(both, rel=1e-14)
+    assert found.laws == (laws if values < means else None)
+    assert ("the distribution of load at d/sigma = 1.5 differs by 0.25, the most of 4" in found.line) == (
+        values < means
+    )
 
 
 def test_a_sweep_has_no_single_values(make_scene):

@@ -17,7 +17,7 @@ from said import call as call_here, without_notes
 import analytic
 import mcgw
 from mcgw.jobs.job import Job
-from mcgw.machine.terminal import one_line
+from mcgw.machine.terminal import one_line, plain_text
 
 ROOT = Path(__file__).parent.parent
 SCENE = (ROOT / "runs" / "quick.toml").read_text()
@@ -267,6 +267,8 @@ def test_one_line_keeps_what_is_printable():
     for text in ("", "Kontakt σ = 1 µm²", "日本", "$x$ \\"):
         assert one_line(text) == text
     assert one_line("a\tb\nc\x9b\u2028\udcff") == "a\\tb\\nc\\u009b\\u2028\\udcff"
+    assert one_line("\r\uffff\U00010000\U000e0001") == "\\r\\uffff\U00010000\\U000e0001"
+    assert plain_text("a\tb\nc\x1b") == "a\\tb\nc\\u001b"
 
 
 # --- files that a scene names ---------------------------------------------------------------------------
