@@ -842,6 +842,7 @@ class TestElastic:
             *(({"rel_err": x}, f"rel_err = {x},") for x in (2, 1, 0)),
             ({"solves": 3}, "solves = 3: .*4 or more"),
             ({"pilot": 1}, "4 or more"),
+            ({"pilot": 3}, "pilot = 3, .*4 or more"),
             ({"seed": -1}, "seed = -1: give"),
         ],
     )

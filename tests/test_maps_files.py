@@ -536,6 +536,62 @@ def test_the_largest_map_and_the_most_points_that_a_file_may_declare():
     assert [bool(single_points(*shape)) for shape in ((4, 3), (3, 3), (4, 4), (4, 2))] == [True] + 3 * [False]
 
 
+def test_the_largest_height_and_the_finest_pixel():
+    z = np.array([[1.0, 0.0]])
+    for pixel in (1.005e-30, 0.995e30):
+        assert Topography(z, (pixel, pixel)).pixel == (pixel, pixel)
+    for pixel in ((0.995e-30, 1.0), (1.0, 1.005e30)):
+        with pytest.raises(ValueError, match="two numbers > 0"):
+            Topography(z, pixel)
+    assert Topography(0.995e150 * z, (1.0, 1.0)).highest == 0.995e150
+    with pytest.raises(ValueError, match="too large to be squared"):
+        Topography(-1.005e150 * z, (1.0, 1.0))
+
+
+@pytest.mark.parametrize(("steep", "doubted"), [(9.95, False), (10.05, True)])
+def test_heights_without_a_unit_are_doubted_from_a_slope_of_ten_on(steep, doubted, tmp_path):
+    np.savetxt(tmp_path / "m.txt", steep * 1e-6 * np.arange(8.0) + np.zeros((8, 1)))
+    if doubted:
+        with pytest.raises(ValueError, match=r"would be 10[.]1; give --unit"):
+            read_map(tmp_path / "m.txt", pixel=(1e-6, 1e-6))
+    else:
+        assert read_map(tmp_path / "m.txt", pixel=(1e-6, 1e-6)).assumed_unit == "m"
+    assert read_map(tmp_path / "m.txt", pixel=(1e-6, 1e-6), unit="m").assumed_unit == ""
+
+
+def test_the_longest_header_of_an_ascii_sdf_and_its_lowest_number(tmp_path):
+    """Four kilobytes; and what is within a thousandth of the lowest number is a missing point."""
+    head = "NumPoints=2\nNumProfiles=1\nXscale=1e-6\nYscale=1e-6\nZscale=1e-9\nDataType=7\n"
+    for size, told in ((4096, None), (4097, "no line with \\*")):
+        text = head + "Note = " + "x" * (size - len(head) - 9) + "\n*\n"
+        (tmp_path / "m.sdf").write_text(f"aISO-1.0{text}-1.7960e308 3\n*\n")
+        if told:
+            with pytest.raises(ValueError, match=told):
+                read_map(tmp_path / "m.sdf")
+        else:
+            found = read_map(tmp_path / "m.sdf").heights
+            assert np.isnan(found[0, 0])
+            assert found[0, 1] == pytest.approx(3e-9)
+    (tmp_path / "m.sdf").write_text(f"aISO-1.0\n{head}*\n-1.7958e308 3\n*\n")
+    with pytest.raises(ValueError, match="too large to be squared"):
+        read_map(tmp_path / "m.sdf")
+    write_map(Topography(np.zeros((1, 65535)), (1e-6, 1e-6)), tmp_path / "w.sdf")
+    assert read_map(tmp_path / "w.sdf").heights.shape == (1, 65535)
+
+
+@pytest.mark.parametrize("over", [0, 1])
+def test_a_description_of_a_megabyte_is_the_longest(over, topography, tmp_path):
+    def filled(members):
+        members["main.xml"] += b" " * (2**20 + over - len(members["main.xml"]))
+
+    path = x3p_with(tmp_path / "m.x3p", topography, filled)
+    if over:
+        with pytest.raises(ValueError, match="unpacks to 1048577 bytes, more than 1048576"):
+            read_map(path)
+    else:
+        assert np.array_equal(read_map(path).heights, topography.heights)
+
+
 def test_what_an_array_and_an_hdf5_map_say_of_themselves(topography, tmp_path):
     """Each key and each attribute, as others read them."""
     periodic = Topography(topography.heights, topography.pixel, periodic=True)

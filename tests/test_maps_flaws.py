@@ -407,6 +407,8 @@ def test_levels_and_ends_of_a_recording():
     assert recorded(few.reshape(20, -1)).step == 0  # a level for eight points is none
     assert recorded((np.arange(800) % 99 + 0.0).reshape(20, -1)).step == 1
     assert recorded(np.zeros((20, 20))).step == 0
+    for number, step in ((4095, 1), (4096, 0)):  # as many levels are as good as none
+        assert recorded((np.arange(9 * number) % number + 0.0).reshape(9, -1)).step == step
 
 
 def terraces(jump, back=0.0, lines=240):
@@ -446,6 +448,52 @@ def test_a_step_is_six_usual_differences_on_half_of_all_lines():
     assert (turned.axis, turned.place, turned.height) == ("y", pytest.approx(step.place), step.height)
     assert step_of(terraces(jump_to(12), 0.0, 120)[0]) is not None
     assert step_of(terraces(jump_to(12), 0.0, 110)[0]) is None
+
+
+def test_an_oblique_step_lies_between_quantiles_of_its_places():
+    """A twentieth of all lines may see it beyond its ends."""
+    levels, at = 0.1 * rng(7).normal(size=24), 8 + rng(2).integers(0, 8, 24)
+    rows = levels + 5.0 * (np.arange(24) >= at[:, None])
+    step = step_of(topography(rows.repeat(10, axis=0).repeat(10, axis=1)))
+    changes = rows[:, 2:] - rows[:, :-2]
+    seen = np.argmax(changes - np.median(changes), axis=1)
+    begin, place, end = 10e-6 * (np.quantile(seen, (0.05, 0.5, 0.95)) + 1.5)
+    assert (step.begin, step.place, step.end) == pytest.approx((begin - 20e-6, place, end + 20e-6), rel=1e-9)
+
+
+def test_a_form_is_three_times_the_longest_waves():
+    """Those of up to two on the map along each axis, diagonals too, once the form is off."""
+    x, y = grid(96)
+    wave = np.cos(2 * np.pi * (2 * x + y)) + 0.2 * np.cos(2 * np.pi * (2 * x + 2 * y))
+
+    def ratio(size):
+        z = wave + size * (2 * x - 1) * (2 * y - 1)
+        rest = without_form(topography(z), "quadratic").heights
+        k = np.fft.fftfreq(96) * 96
+        power = np.abs(np.fft.fft2(rest) / z.size) ** 2
+        return (z - rest).var() / power[np.hypot(k, k[:, None]) < 2.3].sum(), topography(1e-6 * z)
+
+    for target, seen in ((2.98, False), (3.02, True)):
+        size = brentq(lambda s, t=target: ratio(s)[0] - t, 1.0, 20.0)
+        assert (form_left(ratio(size)[1], "plane") is not None) == seen
+
+
+def test_a_cylinder_is_named_where_a_fiftieth_is_left_at_most():
+    x, y = (2 * t - 1 for t in grid(40))
+
+    def left(second):
+        z = topography(1e-6 * (y * y + second * x * x) + 1e-9 * rng(1).normal(size=x.shape))
+        rest = without_form(z, "quadratic").heights
+        more = without_form(z, "cylinder").heights.var() - rest.var()
+        return more / (z.heights - rest).var(), z
+
+    second = -0.1
+    for target, form in ((0.0198, "cylinder"), (0.0202, "quadratic")):
+        for _ in range(4):  # it goes nearly as the square
+            second *= (target / left(second)[0]) ** 0.5
+        share, z = left(second)
+        assert share == pytest.approx(target, abs=1e-4)
+        assert form_left(z, "plane").form == form
 
 
 def test_a_step_is_twice_what_goes_the_other_way():

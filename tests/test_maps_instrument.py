@@ -251,6 +251,46 @@ def test_what_outliers_have_of_bends_and_how_skewed_the_others_are():
     assert measured(plain(-np.exp(rough(1, n=64, long=50e-6) / 1e-6)))["tip"] == 0  # deep valleys are sharp
 
 
+def bisected(measure, low, high):
+    """Where a rising measure is next to zero, on either side."""
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (low, middle) if measure(middle) > 0 else (middle, high)
+    return low, high
+
+
+def test_offsets_alternate_and_waves_along_lines_do_not():
+    """Second differences of the means of lines: neighbours have a correlation below -0.4."""
+    noise, wave = np.random.default_rng(1).normal(size=64), 20 * np.sin(np.arange(64) * 2 * np.pi / 8)
+
+    def correlation(offsets):
+        bends = np.diff(offsets, 2)
+        return (bends[1:] @ bends[:-1]) / (bends @ bends)
+
+    for target, some in ((-0.402, True), (-0.398, False)):
+        share, _ = bisected(lambda x, t=target: correlation((1 - x) * noise + x * wave) - t, 0.0, 1.0)
+        z = 1e-7 * ((1 - share) * noise + share * wave)[:, None] + np.zeros(64)
+        assert (measured(plain(z))["lines"] > 0.05) == some
+
+
+def test_a_tip_is_not_looked_for_under_spikes_and_on_honed_maps():
+    """From half of the bends on in outliers; of a skewness of -0.3 and less."""
+    z = ndimage.maximum_filter(rough(1, n=64, long=50e-6), 3)
+
+    def spiked(height):
+        some = z.copy()
+        some[[5, 40], [7, 30]] += height
+        return plain(some)
+
+    for target, some in ((0.497, True), (0.503, False)):
+        height, _ = bisected(lambda x, t=target: measured(spiked(x))["bends"] - t, 1e-8, 1e-6)
+        assert (measured(spiked(height))["tip"] != 0) == some
+    z = rough(1, n=64, long=50e-6) / 1e-6
+    for target, some in ((0.298, True), (0.302, False)):
+        bend, _ = bisected(lambda x, t=target: -skew(-np.exp(x * z).ravel()) - t, 1e-3, 1.0)
+        assert (measured(plain(-1e-6 * np.exp(bend * z)))["tip"] != 0) == some
+
+
 def test_filled_points_and_cut_tops_are_told_as_they_were_found():
     z = rough(1, n=64, long=50e-6)
     ready = plain(z, filled=0.2, recorded=Recorded(0.0, 0.125))

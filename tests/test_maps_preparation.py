@@ -208,7 +208,7 @@ def test_words_that_are_none_are_refused_in_one_line(key):
 
 def test_the_filter_is_a_sum_over_its_window():
     """Literal, on a map of many bands of rows, mirrored beyond its edges or periodic."""
-    z, pixel, cutoff = np.random.default_rng(1).normal(size=(150, 20)), (2e-6, 1e-6), 3.1e-6
+    z, pixel, cutoff = np.random.default_rng(1).normal(size=(150, 20)), (2e-6, 1e-6), 3.98e-6
     weights = []
     for p in pixel[::-1]:
         t = np.arange(-math.ceil(cutoff / p), math.ceil(cutoff / p) + 1) * p
@@ -312,6 +312,34 @@ def test_points_count_whose_neighbours_were_seen(cutoff, number):
     filled_in = ready(z, cutoff, missing="fill", form="none")
     assert filled_in.notes == (told + ", and used like the others",)
     assert filled_in.seen is None
+
+
+def test_a_mask_that_leaves_half_is_kept():
+    """Of the points that were measured, those with all neighbours; a hole more, and all of them count."""
+    z, order = rough(1, n=60), np.random.default_rng(1).permutation(3600)
+
+    def left(number):
+        there = np.ones(3600)
+        there[order[:number]] = 0
+        return minimum_filter(there.reshape(60, 60), 5).sum() / (3600 - number)
+
+    last = max(number for number in range(50, 200) if left(number) >= 0.5)
+    assert 0.495 < left(last + 1) < 0.5 <= left(last) < 0.505
+    for number, masked in ((last, True), (last + 1, False)):
+        holed = z.copy()
+        holed.flat[order[:number]] = np.nan
+        assert (ready(holed, form="none").seen is not None) == masked
+
+
+@pytest.mark.parametrize(("size", "told"), [(0.995e-150, "the map is flat, without"), (1.005e-150, None)])
+def test_a_map_is_flat_whose_squares_vanish(size, told):
+    z = np.zeros((20, 20))
+    z[7, 8] = size
+    if told:
+        with pytest.raises(ValueError, match=told):
+            ready(z, form="none")
+    else:
+        assert ready(z, form="none").used.highest == size
 
 
 def test_notes_tell_what_was_done_to_a_map():

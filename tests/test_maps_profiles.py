@@ -101,6 +101,24 @@ def test_power_of_a_profile_is_that_of_its_faded_waves(n):
     assert some.length == n * h
 
 
+@pytest.mark.parametrize(("values", "told"), [
+    ((1.0, 1.0, 0.905), None), ((1.0, 1.0, 0.895), r"m0 m4/m2\^2 = 0.895, impossible for an isotropic"),
+    ((1.0, 1.0, 0.0), "not all are > 0; the profile is too"), ((-1.0, 1.0, 1.0), "not all are > 0"),
+])  # fmt: skip
+def test_moments_that_no_surface_has_are_refused(values, told, monkeypatch):
+    """Summits have no spread below 0.9 of alpha."""
+    seen = waves_of_profile(Profile(np.sin(np.arange(900.0)), UM), cutoff=None, terms=1, pieces=16)
+    monkeypatch.setattr(
+        "mcgw.maps.profile_fit.waves_of_profile", lambda *_, **__: replace(seen, moments=np.array(values))
+    )
+    profile = [Profile(np.sin(np.arange(900.0)), UM)]
+    if told is None:
+        assert fit_profiles(profile, cutoff=None).moments.m4 == 0.905
+    else:
+        with pytest.raises(ValueError, match=told):
+            fit_profiles(profile, cutoff=None)
+
+
 def test_the_fewest_points_of_a_fit():
     """Four for each of sixteen stretches together, of the shortest profile."""
     (one,) = list(cut(Spectrum(UM, 20 * UM, 8 * UM), 400))[:1]
