@@ -298,6 +298,33 @@ def test_a_file_that_appears_while_one_is_made_is_left_alone(tmp_path):
         write_body(tmp_path / "no" / "e.h5", (b"", b""), None)
 
 
+def test_progress_of_a_run_goes_on_from_what_it_holds(scene, tmp_path):
+    path, told = tmp_path / "e.h5", []
+    run(scene, path, shard="2/2", progress=lambda *pair: told.append(pair))  # of seven blocks three
+    assert told == [(0, 100), (16, 100), (32, 100), (48, 100)]
+    told.clear()
+    run(scene, path, progress=lambda *pair: told.append(pair))
+    assert told == [(48, 100), (64, 100), (80, 100), (96, 100), (100, 100)]
+    told.clear()
+    run(scene, path, progress=lambda *pair: told.append(pair))
+    assert told == [(100, 100)]
+    told.clear()
+    run(scene, tmp_path / "one.h5", n_surfaces=10, progress=lambda *pair: told.append(pair))
+    assert (told[0], told[-1]) == ((0, 10), (10, 10))
+
+
+def test_what_is_left_out_of_a_run_is_told(scene, tmp_path):
+    """Blocks of a share, by their numbers among all."""
+    path = tmp_path / "e.h5"
+    for k, held in ((2, [16, 64]), (3, [16, 32, 64, 80])):
+        run(scene, path, shard=f"{k}/3")
+        assert [shard.span.first for shard in RunFolder.open(parts_of(path)).shards()] == held
+    for wrong in ("0/3", "4/3", "1", "a/b", "1/0", "-1/3", "1/3/5", ""):
+        with pytest.raises(ValueError, match=r"^--shard .*: give i/n with 1 <= i <= n$"):
+            part_of(wrong)
+    assert (part_of("3/3").number, part_of("3/3").of) == (3, 3)
+
+
 def test_jobs_that_share_a_run(scene, tmp_path, expected):
     path = tmp_path / "e.h5"
     assert run(scene, path, shard="2/3") == SURFACES - 2 * SIZE

@@ -145,6 +145,24 @@ def test_interrupted_anywhere_it_goes_on_to_the_same_digest(tmp_path, monkeypatc
     assert not (tmp_path / "a.h5.parts").exists()
 
 
+def test_progress_of_a_file_goes_on_from_what_it_holds(tmp_path):
+    """By hand: an asperity that touches at d = 0 is one, a scene of a surface 3000; 600 surfaces in all."""
+    over, path, told = {GAMMA: [0.5, 1.0, 1.7], N: [200, 20_000]}, tmp_path / "a.h5", []
+    each = [50 * (n / 2 + 3 * 3000) for n in (200, 20_000)]
+    whole = [0.0, *np.cumsum(6 * [each[0]] + 6 * [each[1]])]
+    left = mcgw.sweep(SCENE, over, path=path, shard="1/2", progress=lambda *pair: told.append(pair))
+    assert left == 300
+    part = np.cumsum([0, each[0], each[0], each[0], each[1], each[1], each[1]])
+    assert told == [(round(600 * x / whole[-1]), 600) for x in part]
+    told.clear()
+    mcgw.sweep(SCENE, over, path=path, threads=1, progress=lambda *pair: told.append(pair))
+    rest = part[-1] + part
+    assert told == [(round(600 * x / whole[-1]), 600) for x in rest]
+    told.clear()
+    mcgw.sweep(SCENE, over, path=path, progress=lambda *pair: told.append(pair))
+    assert told == [(600, 600)]
+
+
 def test_another_sweep_is_left_alone(tmp_path):
     mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5")
     for scene, over in ((SCENE, {GAMMA: [1.0]}), (SCENE.replace(seed=8), OVER)):
