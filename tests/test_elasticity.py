@@ -730,7 +730,16 @@ class TestElastic:
         assert found.seconds == pytest.approx(sum(row["seconds"] for row in rows))
         told = [line.split() for line in str(found).splitlines()]
         assert [line[:2] for line in told[-2:]] == [["mean_gap", "m"], ["area", "m^2"]]
-        assert [float(x) for x in told[-2][2:]] == pytest.approx([sum(means)[0], low, high], rel=1e-4)
+        assert told[-2][2:] == [f"{x:.5g}" for x in (sum(means)[0], low, high)]
+        head, *lines = str(found.levels).splitlines()
+        assert head.split() == ["term", "maps", "s", "a", "map", "mean", "mean_gap", "std"]
+        for line, row in zip(lines, zip(*(c.values for c in found.levels.columns), strict=True), strict=True):
+            form = [f"{x:{how}}" for x, how in zip(row[1:], ("d", ".2g", ".4g", ".2g"), strict=True)]
+            assert line.split()[-4:] == form
+            assert line.strip().startswith(row[0])
+        words = ["summits, independent", "summits, located", "stand-in"]
+        used = [words[level] for level in found.planned.chain]
+        assert found.levels.columns[0].values == [used[0], *(f"{b} - {a}" for a, b in pairwise(used))]
         other = mcgw.elastic(SPECTRUM, quantities=["area"], seed=2, **{**asked, "path": None})
         assert other.mean("area") != found.mean("area")
 

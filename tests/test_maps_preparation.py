@@ -314,6 +314,19 @@ def test_points_count_whose_neighbours_were_seen(cutoff, number):
     assert filled_in.seen is None
 
 
+def test_spikes_that_touch_at_a_corner_are_one_place():
+    """It goes with the points around it, and with nothing else."""
+    z = rough(n=80)
+    z[[40, 41], [50, 51]] += 3e-5
+    found = ready(z, spikes="remove")
+    assert found.notes[0].startswith("spikes: 1 places removed, up to ")
+    assert found.notes[1].startswith("missing: 14 of 6400 points (0.22 %)")
+    assert "1 place stands" in next(line for line in fitted(z).cautions if line.startswith("spikes:"))
+    gone = np.argwhere(~found.seen)
+    assert gone.min(axis=0).tolist() == [39, 49]
+    assert gone.max(axis=0).tolist() == [42, 52]
+
+
 def test_a_mask_that_leaves_half_is_kept():
     """Of the points that were measured, those with all neighbours; a hole more, and all of them count."""
     z, order = rough(1, n=60), np.random.default_rng(1).permutation(3600)

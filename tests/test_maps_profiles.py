@@ -175,6 +175,12 @@ def test_errors_of_a_fit_literally():
     whole = sum(w.length for w in seen)
     values = sum(w.length / whole * w.moments for w in seen)
     assert (fit.moments.m0, fit.moments.m2, fit.moments.m4) == pytest.approx(tuple(values), rel=1e-12)
+    covariance = np.zeros((3, 3))
+    for w in seen:
+        power = np.convolve(w.power, np.full(SMOOTH, 1 / SMOOTH), mode="same")
+        terms = w.length / whole * w.weights * power / values[:, None]
+        covariance += terms @ terms.T
+    np.testing.assert_allclose(fit.covariance, covariance, rtol=1e-9)
     m0 = 0.8968057562340189 * fit.moments.m2**2 / fit.moments.m4 / fit.moments.sigma**2  # m0/sigma^2 - 1
     by_logarithms = {
         "m0": (1, 0, 0), "m2": (0, 1, 0), "m4": (0, 0, 1), "alpha": (1, -2, 1), "eta": (0, -1, 1),

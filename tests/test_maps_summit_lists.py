@@ -185,6 +185,41 @@ def test_tiles_tell_a_map_that_varies():
     assert math.isnan(variation(told(even, "sigma", across=1)))
 
 
+def test_columns_of_both_tables_have_their_units(waves):
+    counted = summit_sums_of(waves, across=3)
+    listed = summits_of(waves, counted, (0.0, 0.0)).table()
+    assert [(c.name, c.unit) for c in listed.columns] == [
+        ("x", "m"), ("y", "m"), ("height", "m"), ("radius", "m"), ("curvature_1", "1/m"),
+        ("curvature_2", "1/m"), ("tile", ""),
+    ]  # fmt: skip
+    tiles = tiles_of(counted)
+    assert [(c.name, c.unit) for c in tiles.columns] == [
+        ("tile", ""), ("column", ""), ("row", ""), ("summits", ""), ("eta", "1/m^2"), ("radius", "m"),
+        ("sigma", "m"), ("m0", "m^2"), ("m2", ""), ("m4", "1/m^2"),
+    ]  # fmt: skip
+    x, y = X(0.5 * UM * (np.arange(800) + 0.5), 1), Y(0.6 * UM * (np.arange(500) + 0.5), 1)
+    m2, m4 = tiles.columns[8].values, tiles.columns[9].values
+    assert m2.mean() == pytest.approx(((x**2).mean() + (y**2).mean()) / 2, rel=5e-3)
+    x, y = X(0.5 * UM * (np.arange(800) + 0.5), 2), Y(0.6 * UM * (np.arange(500) + 0.5), 2)
+    assert m4.mean() == pytest.approx(((x**2).mean() + (y**2).mean()) / 2, rel=5e-3)
+
+
+def test_tiles_without_summits_or_points_are_nan():
+    """One summit has no spread of heights."""
+    sums = np.ones((len(SUMS), 4))
+    sums[:, 3] = 0
+    one = SummitSums(sums, np.ones(3), np.full(3, 2.0), np.zeros((2, 3)), np.array([0, 0, 1]), 0.5)
+    found = {c.name: np.asarray(c.values).tolist() for c in tiles_of(one).columns}
+    assert found["summits"] == [2, 1, 0, 0]
+    assert (found["column"], found["row"]) == ([0, 1, 0, 1], [0, 0, 1, 1])
+    assert found["eta"][:3] == [4, 2, 0]
+    assert found["radius"][:2] == [0.5, 0.5]
+    assert found["sigma"][0] == 0
+    nan = {"radius": [2, 3], "sigma": [1, 2, 3], "eta": [3], "m0": [3], "m2": [3], "m4": [3]}
+    for name, places in nan.items():
+        assert np.flatnonzero(np.isnan(found[name])).tolist() == places, name
+
+
 def sums_of(parts, **rows):
     """Sums over so many sub-areas of 100 points, without summits."""
     sums = np.zeros((len(SUMS), parts))

@@ -78,9 +78,7 @@ def _rounding(ready: Prepared) -> float:
 def _kept_of_noise(cutoff: float | None, pixel: tuple[float, float]) -> list[float]:
     """Mean squares of second differences along x and y of independent heights of variance 1, filtered."""
     k = math.pi * (np.arange(128) + 0.5) / 128
-    left = [
-        1.0 if cutoff is None else gaussian_transmission(k / p, cutoff) ** 2 * np.ones_like(k) for p in pixel
-    ]
+    left = [1.0 if cutoff is None else gaussian_transmission(k / p, cutoff) ** 2 for p in pixel]
     bend = (2 - 2 * np.cos(k)) ** 2
     x, y = (np.mean(bend * t) for t in left), [float(np.mean(t)) for t in left]
     return [float(b) * other for b, other in zip(x, y[::-1], strict=True)]
