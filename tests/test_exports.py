@@ -23,6 +23,7 @@ from mcgw.store.ensembles import read_attributes
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "10 mm^2", "78.6 GPa")
 FILM = mcgw.Film(resistivity=1 / 150 + 1 / 16)
+METAL = mcgw.KogutEtsion(critical=0.05)
 ENDING = {"calculix": ".inp", "abaqus": ".inp", "moose": ".csv", "comsol": ".txt"}
 CCX = shutil.which("ccx")
 
@@ -205,6 +206,34 @@ def test_at_equal_pressure_each_surface_is_on_its_own_curve(scene):
         share = found[kind.dataset] / by_hand[:, :, 1 if kind.quantity == "stiffness" else 2]
         assert np.all(np.abs(share - 1) < 0.1 / np.sqrt(contacts))
         assert np.all(np.abs(found["separation"] - by_hand[:, :, 0]) < 1 / 32 / np.sqrt(contacts))
+
+
+def test_separations_are_as_many_as_rows_or_a_thirty_second_apart(scene):
+    """And end six deviations beyond those of the pressures, of one surface, but no more than 2."""
+    plain = {"quantities": ["load"], "film": None, "n_surfaces": 2}
+    few = scene.replace(separations=[2.0, 0.0, 0.5], keep="moments", **plain)
+    by_gap, by_pressure = KINDS["pressure-gap"], KINDS["stiffness-pressure"]
+    drawn = surfaces_for(few, by_gap, None, 5)
+    np.testing.assert_allclose(drawn.separations, [0, 0.5, 1, 1.5, 2])
+    assert (drawn.scene.quantities, drawn.scene.keep) == (("load",), "sums")
+    back = surfaces_for(few.replace(law=METAL, unload_from="loop", keep="sums"), by_gap, None, 5)
+    assert (back.scene.quantities, back.scene.unload_from) == (("load",), None)
+    drawn = surfaces_for(few, by_pressure, None, 5)
+    np.testing.assert_allclose(drawn.separations, np.arange(65) / 32)
+    assert drawn.scene.quantities == ("load", "stiffness")
+    one = surfaces_for(few.replace(separations=1.0), by_pressure, None, 5)
+    np.testing.assert_array_equal(one.separations, [1.0, 1.0])
+    theory = few.theory
+    wanted = theory.mean("pressure", [1.5, 1.0, 0.5])
+    np.testing.assert_allclose(surfaces_for(few, by_gap, wanted, 9).separations, [1.5, 1.0, 0.5], rtol=1e-9)
+    h = surfaces_for(few, by_pressure, wanted, 9).separations
+    for end, at, side in ((h[0], 0.5, -1), (h[-1], 1.5, 1)):
+        slope = (theory.mean("load", at - 1e-5) - theory.mean("load", at + 1e-5)) / 2e-5
+        assert end == pytest.approx(at + side * (6 * theory.std("load", at) / slope + 1 / 32), rel=1e-6)
+    assert 1 / 40 < np.diff(h).min() <= np.diff(h).max() <= 1 / 32
+    sparse = few.replace(n_asperities=3, grading=mcgw.Homogeneous())
+    lone = surfaces_for(sparse, by_pressure, sparse.theory.mean("pressure", [1.5, 0.5]), 9)
+    np.testing.assert_allclose(lone.separations[[0, -1]], [-1.5, 3.5])
 
 
 def test_rows_against_pressure_are_means_of_those(scene, tmp_path):

@@ -1,6 +1,7 @@
 """What no other test meets: mistakes that few make, facts that few scenes have, statistics of values."""
 
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,7 +9,9 @@ from scipy import stats
 
 import analytic
 import mcgw
+from mcgw.commands import warm
 from mcgw.scene.in_words import accuracy_facts, contact_facts, law_text
+from mcgw.scene.measured import Fitted, Uncertainty
 from mcgw.statistics.comparison import verdict
 
 SPECTRAL = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 mm^2", "78.6 GPa")
@@ -62,6 +65,60 @@ def test_of_many_unknown_keys_twenty_are_named():
         named, rest = caught.value.problems[:20], caught.value.problems[20:]
         assert [line.partition(":")[0] for line in named] == [f"contact.key_{k}" for k in range(20)]
         assert rest == more
+
+
+def test_errors_of_a_fit_have_the_correlation_of_its_covariance():
+    """0.006/(0.1 0.2) = 0.3 whatever the errors are; one of a factor of 7 says that nothing is known."""
+    found = Uncertainty.correlated(
+        ("sigma", "eta"), [0.25, 2.5], np.array([[0.01, 0.00600001], [0.00600001, 0.04]])
+    )
+    assert (found.names, found.sigma, found.eta) == (("sigma", "eta"), 0.25, 2.0)
+    assert found.correlation == ((1.0, 0.3), (0.3, 1.0))
+    np.testing.assert_allclose(found.covariance, [[0.0625, 0.15], [0.15, 4.0]], rtol=1e-15)
+
+
+def test_what_a_fit_did_not_see_is_not_shown():
+    known = Fitted(1e-12, 1e-3, 5e6, skewness=-0.123, kurtosis=3.456, independent=100.0)
+    first, second = "alpha = 5, rms slope 0.0447", "skewness -0.12, kurtosis 3.46"
+    assert known.lines() == (first, second)
+    assert replace(known, lay=1.2345).lines() == (f"{first}, lay 1.23", second)
+    apart = f"{second}, estimates differ by a factor of 1.5"
+    assert replace(known, agreement=1.5).lines() == (first, apart)
+    for number, more in ((0, ""), (3, ""), (5, " (and 2 more under [fitted] in the scene)")):
+        shown = [f"fit: {'abcde'[k]}" for k in range(min(number, 3))]
+        told = replace(known, cautions=tuple("abcde"[:number])).gravest
+        assert told == [*shown[:-1], *(f"{line}{more}" for line in shown[-1:])]
+
+
+WARMED = {  # every sampler, laws that yield, there and back, radii, interaction, statistics
+    ("auto", "sums", "KogutEtsion"), ("tail", "sums", "KogutEtsion"), ("auto", "moments", "Hertz"),
+    ("stratified", "sums", "Hertz"), ("direct", "sums", "Hertz"), ("auto", "sums", "Hertz"),
+    ("aggregate", "sums", "Hertz"), ("auto", "statistics", "Hertz"), ("cells", "sums", "Hertz"),
+    ("tail", "sums", "Hertz"),
+}  # fmt: skip
+
+
+def test_loops_are_compiled_in_two_processes_for_every_kind_of_scene(monkeypatch):
+    """Each process has its half; one processor has them all in one."""
+    children, scenes, fitted = [], [], []
+    monkeypatch.setattr("mcgw.machine.child_process.run_child", lambda *words: children.append(words))
+    monkeypatch.setattr("mcgw.ensemble.simulation.simulate", scenes.append)
+    monkeypatch.setattr("mcgw.maps.fitting.fit", lambda *given, **_: fitted.append(given))
+    for processors, words in ((2, [("0", "2"), ("1", "2")]), (1, [("0", "1")])):
+        monkeypatch.setattr("os.cpu_count", lambda n=processors: n)
+        children.clear()
+        warm.warm()
+        assert sorted(children) == [("mcgw.commands.warm", *each) for each in words]
+    for parts in warm._HALVES:
+        for part in parts:
+            part()
+    assert {(s.sampler, s.keep, type(s.law).__name__) for s in scenes} == WARMED
+    assert {s.count for s in scenes} == {"fixed", "poisson"}
+    assert [s.unload_from for s in scenes if s.unload_from is not None] == [0.0]
+    assert [s.interaction.at for s in scenes if s.interaction] == ["nominal"]
+    assert [s.sampler for s in scenes if s.curvature] == ["cells", "tail", "stratified"]
+    assert max(s.n_asperities * s.n_surfaces for s in scenes) <= 2e7
+    assert len(fitted) == 1
 
 
 RADII = analytic.RandomCurvature(5.0)

@@ -9,6 +9,7 @@ from collections import defaultdict
 from html import unescape
 from io import BytesIO
 
+import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from overwrites import prepare
@@ -55,6 +56,9 @@ LINES = {
     "laws": ["regrade y.h5 --law zhao-maietta-chang --critical 0.1 -o new/z.h5",
              "surface scene.toml --at 0.5 --colour modulus -o new/o.svg",
              "surface --from-spectrum rms=1um,long=20um,short=5um --pixel 1um --shape 32x16 -o new/f.sdf"],
+    "maps": ["surface caps.toml --shape 96 -o caps.npy",
+             "fit caps.npy --cutoff none --parts 2 --tiles new/t.csv -v -o new/caps.toml",
+             "fit p.txt --cutoff none --E-star 7GPa -v -o new/p.toml"],
     "fit": ["fit map.npy --cutoff none -o new/f.toml -v --picture new/f.png --summits new/s.csv"],
 }  # fmt: skip
 CLOCK = re.compile(
@@ -75,6 +79,8 @@ SCENES = {
 separations = [0.0, 0.5, 1.0, 1.5]
 conductivities = [150.0, 16.0]
 film_resistance = 1e-8
+""",
+    "caps": """contact = {separations = [1.0]}
 """,
     "located": """interaction = {reference = "located", at = "nominal"}
 contact = {separations = [1.0, 1.5]}
@@ -117,6 +123,11 @@ def material(tmp_path_factory):
     (folder / "yields.toml").rename(folder / "y.toml")
     for name, text in SCENES.items():
         (folder / f"{name}.toml").write_text(SURFACE + text)
+    x = np.arange(400)
+    z = sum(np.sin(x / k + k) for k in (2.3, 3.1, 5.7, 9.1))
+    (folder / "p.txt").write_text(
+        "x (um) z (nm)\n" + "".join(f"{a} {b:.6f}\n" for a, b in zip(x, 9 * z, strict=True))
+    )
     call("run", "y.toml", "-o", "y.h5", "-q", cwd=folder)
     call("sweep", "moments.toml", "--over", "grading.gamma=1.1,1.2", "-q", "-o", "s.h5", cwd=folder)
     return folder
