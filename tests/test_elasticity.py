@@ -315,6 +315,11 @@ class TestProfiles:
             step = 1e-6 * depth
             slope = (spot.load(depth + step) - spot.load(depth - step)) / (2 * step)
             assert_allclose(spot.slope(depth), slope, rtol=1e-6)
+            two = ProfileSpots(np.array([0.0, 1.0]), a, np.vstack([depths / 2, depths]), E_star)
+            one = two.only(np.array([False, True]))
+            assert one.heights.tolist() == [1.0]
+            assert_allclose(one.load(depth), spot.load(depth), rtol=1e-12)
+            assert_allclose(two.load(np.repeat(depth, 2))[1:], spot.load(depth), rtol=1e-12)
 
     def test_of_waves_fall_as_their_mean_around_a_top(self):
         """cos kx + cos ky is 2 J0(kr) around it: 2 - 2 cos ka deep, a paraboloid (ka)^2."""
@@ -829,13 +834,17 @@ class TestElastic:
         )
         from mcgw.cli import main
 
+        asked = {"pressure": 5e7, "solves": 4, "pilot": 4, "path": tmp_path / "own.jsonl", "E_star": "50 GPa"}
+        mcgw.elastic(mcgw.load_scene(scene), **asked)  # what is given counts, not the scene's
+        assert json.loads(asked["path"].read_text().splitlines()[0])["E_star"] == 5e10
         out = tmp_path / "solves.jsonl"
         code = main(["elastic", str(scene), "--pressure", "50MPa", "--rel-err", "0.3", "-o", str(out)])
         printed = capsys.readouterr().out
         assert code == 0
         assert "mean_gap" in printed
         assert str(out) in printed
-        assert out.exists()
+        header = json.loads(out.read_text().splitlines()[0])
+        assert (header["E_star"], header["pressure"]) == (1e11, 5e7)
 
     @pytest.mark.parametrize(
         ("changes", "words"),
@@ -843,6 +852,7 @@ class TestElastic:
             ({"E_star": None}, "E_star: give"),
             ({"quantities": ["load"]}, "area, stiffness"),
             ({"quantities": []}, "area, stiffness"),
+            ({"quantities": ["area", "load"]}, "area, stiffness"),
             ({"quantities": ["pressure"]}, "mean_gap"),
             ({"pressure": None, "separation": 1e-6, "quantities": ["mean_gap"]}, "pressure"),
             ({"pressure": None}, "one of the two"),

@@ -187,6 +187,11 @@ def test_what_our_readers_refuse_is_shown_to_the_library_where_it_says_its_pixel
             read_map(path, pixel=pixel)
 
 
+def test_three_columns_may_be_points_of_another_program(here, tmp_path):
+    found = read_map(here("3 2 1\n1 2 x").rename(tmp_path / "map.txt"))
+    assert found.heights == pytest.approx(1e-6 * np.array([[0, 2, 4], [1, 3, 5]]))
+
+
 def test_what_a_file_cannot_hold_is_never_read(foreign, tmp_path):
     """Ten bytes that declare 1.2e9 points, and 8e6, which are a map's number, but not of ten bytes."""
     with pytest.raises(ValueError, match=r"40000 x 30000 points: more than the"):
@@ -198,8 +203,8 @@ def test_what_a_file_cannot_hold_is_never_read(foreign, tmp_path):
 
 @pytest.mark.parametrize("word", ["0x10", "[nan]", "1.2e-\x00"])
 def test_a_matrix_with_a_damaged_number_is_shown_to_no_other_program(word, foreign, tmp_path):
-    """One may take it for something else; this one reads five heights, a height and a map of 3 x 2."""
-    path = foreign(f"3 2 1 1 1\n1 2 {word} 3 3").rename(tmp_path / "map.txt")
+    """One may take it for something else; this one reads a map of 3 x 2."""
+    path = foreign(f"3 2 1 1\n1 2 {word} 3").rename(tmp_path / "map.txt")
     with pytest.raises(ValueError, match=r"map\.txt: line 2: could not convert string to float"):
         read_map(path)
     assert not (tmp_path / "read").exists()

@@ -294,7 +294,7 @@ def all_zero(members):
         (lambda m: m.pop("main.xml"), r"main\.xml: is missing"),
         (lambda m: m.pop("bindata/data.bin"), r"data\.bin: is missing"),
         (replaced(b"<SizeX>7<", b"<SizeX>8<"), r"280 bytes, but the map needs 320"),
-        (replaced(b"<SizeX>7<", b"<SizeX>99999999<"), "more than the"),
+        (replaced(b"<SizeX>7<", b"<SizeX>99999999<"), "99999999 x 5 points: more than the"),
         (replaced(b"<SizeX>7<", b"<SizeX>seven<"), "is not a number"),
         (replaced(b"<SizeZ>1<", b"<SizeZ>2<"), "SizeZ is not 1"),
         (replaced(b"<DataType>D<", b"<DataType>X<"), "DataType 'X' of CZ"),

@@ -450,6 +450,17 @@ def test_a_step_is_six_usual_differences_on_half_of_all_lines():
     assert step_of(terraces(jump_to(12), 0.0, 110)[0]) is None
 
 
+@pytest.mark.parametrize("form", ["quadratic", "sphere", "cylinder"])
+def test_what_a_form_of_second_order_leaves_is_of_fourth(form):
+    """However far from zero the map lies."""
+    x, _ = (2 * t - 1 for t in grid(80))
+    z = without_form(topography(rough(n=80) + 8e-6 * x**3), form)
+    left, far = (form_left(replace(z, heights=z.heights + level), form) for level in (0.0, 1e-5))
+    assert left.form == "quartic"
+    assert far.share == pytest.approx(left.share, rel=1e-9)
+    assert form_left(without_form(z, "quartic"), form) is None
+
+
 def test_an_oblique_step_lies_between_quantiles_of_its_places():
     """A twentieth of all lines may see it beyond its ends."""
     levels, at = 0.1 * rng(7).normal(size=24), 8 + rng(2).integers(0, 8, 24)

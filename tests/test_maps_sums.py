@@ -291,6 +291,36 @@ def test_hidden_caps_by_quadrature(overlap, blur):
         assert back[0] > unhidden(eta * share, radius, sigma * std)[0]
 
 
+def test_errors_of_caps_hold_a_quarter_of_what_blur_hides():
+    """And how far the radius of the median is from that of the mean curvature."""
+    generator = np.random.default_rng(3)
+    sums = np.zeros((len(SUMS), 4))
+    sums[0] = 100
+    bends = 1e5 * (1 + 0.1 * generator.random(240) ** 2)
+    whole = SummitSums(
+        sums,
+        1e-6 * generator.normal(size=240),
+        bends,
+        np.full((2, 240), 0.5),
+        np.repeat(np.arange(4), 60),
+        1e-9,
+    )
+
+    def found(t, blur):
+        bend = np.median(t.curvatures)
+        eta, sigma = unhidden(t.heights.size / t.area, 1 / bend, t.heights.std(ddof=1), blur)
+        return np.array([eta, 1 / bend, sigma])
+
+    pairs, sharp = jackknife(lambda t: found(t, 1e-6), whole), found(whole, 0.0)
+    expected = [
+        (pairs[0][0], math.hypot(pairs[0][1], 0.25 * (pairs[0][0] - sharp[0]))),
+        (pairs[1][0], math.hypot(pairs[1][1], 1 / bends.mean() - pairs[1][0])),
+        (pairs[2][0], math.hypot(pairs[2][1], 0.25 * (pairs[2][0] - sharp[2]))),
+    ]
+    np.testing.assert_allclose(by_caps(whole, 1e-6), expected, rtol=1e-9)
+    assert pairs[0][0] > 1.01 * sharp[0]
+
+
 @pytest.mark.parametrize(("share", "counted_too"), [(0.497, False), (0.503, True)])
 def test_caps_are_as_sharp_as_half_of_the_median(share, counted_too):
     z = 1e-6 * np.linspace(-1, 1, 50)
