@@ -432,10 +432,10 @@ def test_what_is_asked_of_a_sampler(make_scene, asked, given):
     assert [one.seed for one in sizes] == seeds[-len(sizes) :]
     assert told == [(0, 3), (1, 3), (2, 3), (3, 3)]
     in_m, in_n = found.slopes
-    assert (
-        in_m.sizes.tolist()
-        == [m for m in (1.0, 4.0, 16.0, 64.0, 256.0) if m <= given // 4][: len(in_m.sizes)]
-    )
+    powers = [m for m in (1, 4, 16, 64, 256) if m <= given // 4]
+    axes, parts = found.scores.size // 3, np.array_split(np.arange(3 * given), len(powers))
+    means = [len(part) // m * axes for m, part in zip(powers, parts, strict=True)]
+    assert in_m.sizes.tolist() == [m for m, n in zip(powers, means, strict=True) if n >= 24]
     assert in_n.sizes.tolist() == [one.n_asperities for one in sizes]
     assert (in_m.against, in_n.against) == ("M", "N")
 

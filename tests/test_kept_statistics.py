@@ -1,5 +1,6 @@
 """`keep = "statistics"`: what follows from surfaces follows without them, in the same bits whoever draws."""
 
+import math
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
@@ -365,6 +366,27 @@ def test_time_ends_between_pieces_and_the_same_number_gives_the_same_bits(monkey
     assert e.n_surfaces == told[-1] == 32 * 32
     assert len(told) > 32
     assert_same_bits(e, mcgw.simulate(asked, max_seconds=None, n_surfaces=e.n_surfaces))
+
+
+def test_bins_are_narrowest_around_the_exact_mean():
+    """In steps of the largest power of two below the exact deviation, counted from zero."""
+    asked = scene(quantities=("load", "contacts"), separations=(0.0, 2.0, 40.0))
+    bins, theory = Bins.of(asked), asked.theory
+    mean, std = (
+        [
+            float(x)
+            for name in asked.quantities
+            for x in getattr(theory, kind)(name, np.array([0.0, 2.0, 40.0]))
+        ]
+        for kind in ("mean", "std")
+    )
+    for k, (m, s) in enumerate(zip(mean, std, strict=True)):
+        scale = 2.0 ** (math.frexp(s)[1] - 1) if s > 0 else 1.0  # at 40 nothing fluctuates
+        assert bins.scale[k] == scale
+        assert scale <= s < 2 * scale or s == 0
+        steps = bins.centre[k] / scale
+        assert steps == round(steps)
+        assert -0.7 < steps - m / scale <= 0.3  # a mean half way between two steps is not on an edge
 
 
 @pytest.mark.parametrize("keep", ["sums", "statistics"])

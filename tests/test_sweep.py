@@ -366,6 +366,20 @@ def test_values_are_told_as_numbers_or_words():
     assert six.summary(GAMMA) == "0, 1, 2, 3, 4, 5"
 
 
+@pytest.mark.parametrize(
+    "values", [[1e-6], [1e-6, "2 um"], ["1 um", "2 um"], [1e-6, 1e-6, 2e-6], [1e-6, 2e-6, 2e-6], [True, "x"]]
+)
+def test_slopes_are_between_numbers_that_differ(values):
+    key = "surface.sigma"
+    with pytest.raises(ValueError, match=r"^surface\.sigma: slopes need at least two numbers, with no equal"):
+        axes_of({key: values}, zipped=False).numbers(key)
+    with pytest.raises(
+        ValueError, match=r"^'grading\.gamma' is no axis of this sweep; it has surface\.sigma$"
+    ):
+        axes_of({key: values}, zipped=False).numbers(GAMMA)
+    assert axes_of({key: [1, 2.5, 1]}, zipped=False).numbers(key).tolist() == [1.0, 2.5, 1.0]
+
+
 def test_what_is_shown_of_slopes_and_points_is_what_there_is():
     """Slopes at the first separation and the first values of other keys; points at the lowest separation."""
     over = {"ensemble.count": ["fixed", "poisson"], GAMMA: [1.0, 1.5, 2.5, 3.0, 3.5]}
