@@ -163,3 +163,43 @@ def test_quantities_have_the_dimension_of_their_unit(name):
     assert ratio == pytest.approx(1e3**metres, rel=1e-14)
     stiff = float(analytic.mean(replace(surface, E_star=2 * surface.E_star), name, 1.0))
     assert stiff / float(analytic.mean(surface, name, 1.0)) == pytest.approx(2**newtons, rel=1e-14)
+
+
+# Words, symbol and unit of each quantity, and the power of lengths in its scale: R = 3, sigma = 5, E* = 2.
+HERTZ, AREA, STIFF, SPOT = 4 / 3 * 2 * 3**0.5 * 5**1.5, math.pi * 15, 2 * 2 * 15**0.5, 4 * 15**0.5
+GAP, JOINT, OHM = "Gap conductance h_g (W/(m² K))", "Joint conductance h_j (W/(m² K))", "(ohm m² or K m²/W)"
+TOLD = {
+    "load": ("Load P (N)", HERTZ),
+    "area": ("Real area A (m²)", AREA),
+    "stiffness": ("Stiffness K (N/m)", STIFF),
+    "contacts": ("Contacts", 1.0),
+    "conductance": ("Conductance Cρ (m)", SPOT),
+    "load_slope": ("Slope of the loads (N/m)", STIFF),
+    "conductance_si": ("Conductance C (S or W/K)", SPOT),
+    "yielded": ("Yielded contacts", 1.0),
+    "spot_conductance": ("Spot conductance (m)", SPOT),
+    "load_unloading": ("Load P (N), unloading", HERTZ),
+    "spot_conductance_unloading": ("Spot conductance (m), unloading", SPOT),
+    "tangential_load": ("Tangential load (N)", HERTZ),
+    "nominal_separation": ("Nominal separation", 1.0),
+    "nominal_separation_unloading": ("Nominal separation, unloading", 1.0),
+    "effective_separation": ("Effective separation", 1.0),
+    "gap_conductance": (GAP, SPOT / 7),
+    "gap_conductance_unloading": (f"{GAP}, unloading", SPOT / 7),
+    "joint_conductance": (JOINT, SPOT / 7),
+    "joint_conductance_unloading": (f"{JOINT}, unloading", SPOT / 7),
+    "pressure": ("Pressure (Pa)", HERTZ / 7),
+    "area_fraction": ("Area fraction", AREA / 7),
+    "contact_conductance": ("Contact conductance (S/m² or W/(m² K))", SPOT / 7),
+    "thermal_resistance": ("Thermal resistance (K/W)", 1 / SPOT),
+    "contact_resistance": ("Contact resistance (ohm)", 1 / SPOT),
+    "specific_contact_resistance": (f"Specific contact resistance {OHM}", 1 / SPOT),
+}
+
+
+@pytest.mark.parametrize("name", TOLD)
+def test_each_quantity_has_its_unit_and_scale(name):
+    surface = Surface(sigma=5.0, radius=3.0, eta=1.0, nominal_area=7.0, E_star=2.0)
+    q, (title, scale) = analytic.quantity_of(name), TOLD[name]
+    assert (q.name, q.title, q.scale(surface)) == (name, title, pytest.approx(scale, rel=1e-14))
+    assert q.counts == (name in ("contacts", "yielded"))

@@ -48,6 +48,17 @@ def test_the_rms_is_that_of_the_surface():
     assert Joint({"conductivity": 0.15, "jump": 1e-6}).held == Gas(0.15, 1e-6)
 
 
+def test_air_is_that_of_the_standard_atmosphere():
+    """0.025326 W/(m K) at sea level (1976); Sutherland's law at 373.15 K, and jumps, by hand."""
+    assert air(288.15).conductivity == pytest.approx(0.025326, rel=2e-5)
+    assert air(373.15).conductivity == pytest.approx(0.0317379, rel=2e-5)
+    paths = 2 * 1.13 / 0.87 * 2.8 / (2.4 * 0.71)
+    assert air(288.0, 101325.0).jump == pytest.approx(64e-9 * paths, rel=1e-12)
+    assert air(576.0, 101325.0 / 4).jump == pytest.approx(8 * 64e-9 * paths, rel=1e-12)
+    assert Joint("air").held == air() == air(293.15, 101325.0)
+    assert Joint("air", temperature=400.0, gas_pressure=5e4).held == air(400.0, 5e4)
+
+
 @pytest.mark.parametrize(("joint", "line"), [
     (lambda: Joint("steam"), "gas = 'steam': give"),
     (lambda: Joint("vacuum", temperature=300.0), "temperature = 300.0: it is only for"),

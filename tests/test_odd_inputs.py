@@ -82,8 +82,9 @@ def test_more_asperities_than_memory(make_scene, tmp_path, monkeypatch):
         n_surfaces=4, n_asperities=memory_available() // 8, separations=(4.0,), sampler="aggregate"
     )
     assert run(scene, tmp_path / "e.h5").n_surfaces == 4
-    with pytest.raises(ValueError, match=r"the heights of one surface needs .* GiB of memory but only"):
-        mcgw.heights(replace(scene, sampler="cells"), 0, untouched=True)
+    for sampler in ("cells", "direct"):
+        with pytest.raises(ValueError, match=r"the heights of one surface needs .* GiB of memory but only"):
+            mcgw.heights(replace(scene, sampler=sampler), 0, untouched=True)
     reducer = Values(scene)
     monkeypatch.setattr(Values, "columns", memory_available())
     with pytest.raises(StoreError, match=r"a block of 4 surfaces needs .* GiB of memory"):

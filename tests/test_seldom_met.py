@@ -9,6 +9,7 @@ from scipy import stats
 
 import analytic
 import mcgw
+from analytic.laws.film import crowding_factor
 from mcgw.commands import warm
 from mcgw.scene.in_words import accuracy_facts, contact_facts, law_text
 from mcgw.scene.measured import Fitted, Uncertainty
@@ -151,6 +152,49 @@ REFUSED = [
 def test_what_objects_refuse(call, told):
     with pytest.raises((ValueError, KeyError, AttributeError), match=told):
         call()
+
+
+SURFACE = SPECTRAL.surface
+BACK = analytic.Model(SURFACE, law=mcgw.KogutEtsion(critical=0.05), unload_from=0.5)
+# What is made of a number, those at either end that it may be, and what it may not be.
+LIMITS = {
+    "largest": (lambda x: analytic.RandomCurvature(5.0, x), [1e-300, np.inf], [0.0, np.nan]),
+    "power": (lambda x: RADII.mean(x, np.zeros(1)), [0, 3.5], [-0.5, 4.0]),
+    "power of bounded radii": (lambda x: analytic.RandomCurvature(5.0, 3.0).mean(x, np.zeros(1)), [4], [-1]),
+    "shape": (analytic.Weibull, [1, 100], [0.999, 100.1, np.nan]),
+    "alpha": (analytic.Nayak, [1.501, 1e12], [1.5009, 1.01e12]),
+    "m0 m4/m2^2": (lambda x: analytic.SpectralMoments(x, 1, 1).surface(1, 1), [1.5], [1.499]),
+    "E": (lambda x: analytic.Body(x, 0.3), [1e-300, np.inf], [0.0, np.nan]),
+    "nu": (lambda x: analytic.Body(1e9, x), [-1, 0.5], [-1.001, 0.501]),
+    "n": (lambda x: analytic.fn(x, 0.0), [0], [-1e-9, np.inf]),
+    "n_asperities": (lambda x: analytic.Model(SURFACE, n_asperities=x), [1e-9], [0.0, np.inf]),
+    "unload_from": (lambda x: analytic.Model(SURFACE, unload_from=x), [-9.0], [np.inf, np.nan]),
+    "h": (lambda x: BACK.mean("load_unloading", x), [0.5], [0.4999]),
+    "bulk_modulus": (lambda x: analytic.Interaction("body", bulk_modulus=x), [1e-300], [0.0, np.inf]),
+    "rms": (lambda x: mcgw.Joint("air", rms=x).gap(SURFACE, analytic.Gaussian()), [1.01 * SURFACE.sigma],
+            [SURFACE.sigma]),
+    "gas_pressure": (lambda x: mcgw.Joint("air", gas_pressure=x), [1e-9], [0.0, np.inf]),
+    "k": (lambda x: mcgw.PowerLawGraded(x, reduced_c0=1.0), [0, 0.999], [-1e-9, 1]),
+    "poisson": (lambda x: mcgw.Tangential(0.3, x, [1e-8]), [-0.999, 0.5], [-1, 0.501]),
+    "friction": (lambda x: mcgw.Tangential(x, 0.3, [1e-8]), [1e-9], [0.0, np.inf]),
+    "displacements": (lambda x: mcgw.Tangential(0.3, 0.3, [x]), [0.0], [-1e-30, np.inf]),
+    "film_resistance": (lambda x: mcgw.Film(1.0, x), [0.0], [-1e-30, np.inf]),
+    "area_fraction": (crowding_factor, [0.0, 0.999], [-1e-9, 1.0]),
+    "terms": (lambda x: analytic.PiecewiseSeries([0, 1], [np.ones(x)]), [1, 64], [0, 65]),
+    "pieces": (lambda x: analytic.PiecewiseSeries(range(x + 1), x * [[1.0]]), [1, 4096], [0, 4097]),
+    "std_over_mean": (lambda x: analytic.Model(SURFACE).asperities_for("load", 1.0, x), [1e-9], [0, np.inf]),
+    "heights": (lambda x: analytic.MeasuredHeights(np.arange(x)), [2], [1]),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", LIMITS)
+def test_numbers_at_their_limits_are_taken_and_those_beyond_are_not(name):
+    make, taken, refused = LIMITS[name]
+    for x in taken:
+        make(x)
+    for x in refused:
+        with pytest.raises(ValueError, match=r"give|must|smaller than"):
+            make(x)
 
 
 def with_radii(**changes):
