@@ -224,6 +224,63 @@ def test_a_task_that_kills_its_worker_is_tried_again_and_given_up(mark, tmp_path
     assert sorted(done) == [span for span in SPANS[:3] if mark or span.first != 16]
 
 
+class Slow:
+    """Answers when so many tasks wait; workers die of some."""
+
+    width = 2
+
+    def __init__(self, patience, deadly=()):
+        self.patience, self.deadly, self.waiting, self.events = patience, deadly, [], []
+
+    def submit(self, task, first):
+        future = Future()
+        self.events.append(f"begin {first}")
+        self.waiting.append((future, first))
+        if len(self.waiting) == self.patience:
+            for answer, number in self.waiting:
+                if number in self.deadly:
+                    answer.set_exception(WorkerDiedError())
+                else:
+                    answer.set_result(task(number))
+            self.waiting.clear()
+        return future
+
+
+def test_as_many_blocks_are_in_hand_as_an_engine_asks_for():
+    engine, done = Slow(2), []
+
+    def note(span, answer):
+        assert answer == -span.first
+        engine.events.append(f"end {span.first}")
+        done.append(span)
+
+    drive(engine, SPANS, lambda first: -first, lambda span: (span.first,), note, Signals())
+    order = [f"begin {k}" for k in (0, 8)]
+    order += [word for k in (0, 8, 16, 24) for word in (f"end {k}", f"begin {k + 16}")]
+    assert engine.events == [*order, "end 32", "end 40"]
+    assert done == SPANS
+
+
+def test_blocks_that_kill_their_workers_are_counted():
+    """Each is tried three times, alone; the others are done all the same."""
+    engine, done = Slow(1, deadly=(8, 24)), []
+    told = r"^surfaces 8 \.\.\. 15 killed the worker 3 times; 2 blocks are not done, all others are$"
+    with pytest.raises(RunError, match=told):
+        drive(
+            engine, SPANS, abs, lambda span: (span.first,), lambda span, _: done.append(span.first), Signals()
+        )
+    assert sorted(done) == [0, 16, 32, 40]
+    begun = [event.split()[1] for event in engine.events]
+    assert {first: begun.count(first) for first in begun} == {
+        "0": 1,
+        "8": 3,
+        "16": 1,
+        "24": 3,
+        "32": 1,
+        "40": 1,
+    }
+
+
 def test_an_error_of_a_task_ends_the_run():
     with closing(Threads()) as engine, pytest.raises(ZeroDivisionError):
         drive(engine, SPANS, lambda first: 1 / first, lambda s: (s.first,), lambda s, _: None, Signals())
