@@ -705,7 +705,8 @@ def test_figures_take_folder_scene_and_csv(call, tmp_path, monkeypatch):
     assert (wrong.code, wrong.files) == (2, [])
     assert "--only figure-9: no such figure; give one of figure-1, figure-2, " in wrong.err
     default, *others = seen
-    assert (default.swept, default.scene.n_asperities, default.scene.seed) == (True, 30_000, 20240601)
+    paper = default.scene
+    assert (default.swept, paper.n_surfaces, paper.n_asperities, paper.seed) == (True, 2000, 30_000, 20240601)
     one, other = (compared.asked for compared in others)
     assert one == scene
     heights = np.linspace(0, 3, 7)

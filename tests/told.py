@@ -63,12 +63,17 @@ def drawn(figure):
     figure = figure.figure
     size = " x ".join(f"{x:.4g}" for x in figure.get_size_inches())
     yield f"figure: {figure.get_suptitle()!r} {figure.get_supxlabel()!r}, {size} inches"
+    for one in figure.texts:
+        x, y = one.get_position()
+        yield f" text at {x:.4g} {y:.4g}, {one.get_fontsize():g} pt: {one.get_text()[:20]!r}"
     for axis in figure.axes:
         words = axis.get_title(loc="left"), axis.get_title(), axis.get_xlabel(), axis.get_ylabel()
         yield f" axes: {' | '.join(words)}, at {' '.join(f'{x:.4g}' for x in axis.get_position().bounds)}"
         yield from (f"  {one}" for one in map(_axis, (axis.xaxis, axis.yaxis)))
         legend = axis.get_legend()
-        yield f"  legend: {[t.get_text() for t in legend.get_texts()] if legend else None}"
+        entries = legend.get_texts() if legend else ()
+        sizes = sorted({t.get_fontsize() for t in (axis.title, axis.xaxis.label, axis.yaxis.label, *entries)})
+        yield f"  legend: {[t.get_text() for t in entries] if legend else None}; {sizes} pt"
         yield from (f"  says {t.get_text()!r}" for t in axis.texts)
         for line in axis.get_lines():
             x, y = (np.asarray(v, dtype=float) for v in line.get_data())
