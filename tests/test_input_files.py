@@ -203,6 +203,89 @@ def test_what_the_child_suffers_is_told_in_one_line(path, monkeypatch):
         untrusted.examine(copy)
 
 
+def attributes(**values):
+    return lambda file: file.attrs.update(values)
+
+
+def tables(n, where=""):
+    return lambda file: [file.create_dataset(f"{where}x{k}", data=np.zeros(1)) for k in range(n)]
+
+
+# What a file may just hold, and what is too much, with the line that says so.
+LIMITS = {
+    "attributes": (
+        attributes(**{f"a{k}": k for k in range(64)}), attributes(**{f"a{k}": k for k in range(65)}),
+        "^65 attributes$",
+    ),
+    "tables": (tables(128), tables(129), "^129 datasets; at most 128 are allowed$"),
+    "tables of the group": (
+        tables(128, "drawn/"), tables(129, "drawn/"), "^129 datasets; at most 128 are allowed$"
+    ),
+    "numbers of an attribute": (
+        attributes(a=np.zeros(64)), attributes(a=np.zeros(65)), "^attribute a: too large$"
+    ),
+    "axes": (
+        lambda file: file.__setitem__("x", np.ones((1, 2, 1, 2))),
+        lambda file: file.__setitem__("x", np.ones((1, 2, 1, 2, 1))),
+        "^x: not a table of one to four axes$",
+    ),
+    "no axis": (
+        lambda file: file.__setitem__("x", np.ones(1)),
+        lambda file: file.__setitem__("x", np.float64(1)),
+        "^x: not a table of one to four axes$",
+    ),
+    "lines of a text": (
+        attributes(title="a\nb", scene="a\nb", drawn_for="a\nb", axes="a\nb"), attributes(date="a\nb"),
+        "^attribute date: not one line of text$",
+    ),
+    "kinds of numbers": (
+        attributes(a=np.int32(1), b=np.uint64(2), c=True, d=0.5), attributes(a=1j),
+        "^attribute a: neither text nor number$",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", LIMITS)
+def test_a_file_may_hold_so_much_and_no_more(what, tmp_path):
+    just, too_much, told = LIMITS[what]
+    for name, change, refused in (("a.h5", just, False), ("b.h5", too_much, True)):
+        with h5py.File(tmp_path / name, "w") as file:
+            change(file)
+        if refused:
+            with pytest.raises(structure.RefusedError, match=told):
+                structure.describe(str(tmp_path / name))
+        else:
+            structure.describe(str(tmp_path / name))
+
+
+@pytest.mark.parametrize(("length", "refused"), [(20, False), (21, True)])
+def test_a_text_may_be_so_long(length, refused, tmp_path, monkeypatch):
+    monkeypatch.setattr(structure, "MOST_TEXT", 20)
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file.attrs["title"] = "x" * length
+    if refused:
+        with pytest.raises(structure.RefusedError, match=r"^attribute title: too large$"):
+            structure.describe(str(tmp_path / "a.h5"))
+    else:
+        assert structure.describe(str(tmp_path / "a.h5"))["attributes"] == {"title": "x" * 20}
+
+
+def test_zeros_may_shrink_as_far_as_deflate_can(tmp_path, monkeypatch):
+    """Declared bytes are at most 1100 times those that are stored, and a mebibyte."""
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file.create_dataset("x", data=np.zeros((2**18, 2)), chunks=(2**16, 2), compression="gzip")
+        stored = file["x"].id.get_storage_size()
+    for most, refused in ((3 * 2**20 / stored, False), (3 * 2**20 / stored - 1e-6, True)):
+        monkeypatch.setattr(structure, "_MOST_EXPANSION", most)
+        if refused:
+            with pytest.raises(
+                structure.RefusedError, match=rf"^x: 4194304 bytes declared, {stored} stored$"
+            ):
+                structure.describe(str(tmp_path / "a.h5"))
+        else:
+            structure.describe(str(tmp_path / "a.h5"))
+
+
 def test_small_files_of_strangers_are_read_to_the_last_number(path, monkeypatch):
     """HDF5 may fail on any of them; large ones are looked at when they are read."""
     with h5py.File(path) as file:
