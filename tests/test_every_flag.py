@@ -491,6 +491,35 @@ def test_it_changes_what_is_said_or_written(command, option, words, given, check
     check(once(command, *words.split()), once(command, *given.split()))
 
 
+# Of a number on the command line: the last that is taken, and the first that is not.
+EXPORT = "export @s.toml --to moose -o t.csv"
+ENDS = [
+    ("sweep @s.toml --plan --over grading.gamma=1:2:", "1", "0"),
+    ("sweep @s.toml --plan --over grading.gamma=1:2:", "2", "1.5"),
+    ("sweep @s.toml --plan --over grading.gamma=1:2:", "3", "1000001"),
+    (f"{EXPORT} --pressures 1MPa:", "2MPa:2", "2MPa:1"),
+    (f"{EXPORT} --pressures 1MPa:", "1.1MPa:2", "1MPa:2"),
+    (f"{EXPORT} --points ", "2", "1"),
+    (f"{EXPORT} --points ", "3", "10001"),
+    (f"{EXPORT} --points 3 --quantile ", "0.001", "0"),
+    (f"{EXPORT} --points 3 --quantile ", "0.999", "1"),
+    ("solve @s.toml --pressure 1MPa --scatter ", "99%", "100%"),
+    ("solve @s.toml --pressure 1MPa --scatter ", "1%", "0%"),
+    (
+        "surface --from-spectrum rms=1um,long=20um,short=5um --pixel 1um --shape 32 -o m.sdf --seed ",
+        "0",
+        "-1",
+    ),
+]
+
+
+@pytest.mark.parametrize(("words", "taken", "refused"), ENDS)
+def test_numbers_are_taken_up_to_their_ends(once, words, taken, refused):
+    assert once(*f"{words}{taken}".split()).code == 0
+    said = once(*f"{words}{refused}".split())
+    assert (said.code, said.files, said.err.count("\n")) == (2, [], 1), said.err
+
+
 # --- those apart ------------------------------------------------------------------------------------
 
 
