@@ -315,6 +315,26 @@ def test_labels_of_decades_are_plain_text(x, label):
     assert plain(-2.5e-12) == "−2.5e−12"
 
 
+LABELS = (
+    *style.MEANINGS, "load_unloading", "nothing known",
+    *(f"γ = {g:g}" for g in (0, 0.1, 0.2, 0.3, 0.5, 0.7, 0.8, 0.95, 1, 1.05, 1.2, 1.4, 1.5, 2, 3, 40)),
+    *(f"d/σ = {h:g}" for h in (0, 0.5, 1, 2, 3, 3.5, 4)),
+    "N = 10²", "N = 10³", "N = 10⁶", "N = 1000", "b = 0.1", "b = 1", "b = 10",
+)  # fmt: skip
+
+
+def test_every_meaning_has_the_look_that_it_had(recorded):
+    def words(found):
+        return f"{found['color']} {found['linestyle']} {found.get('marker')}"
+
+    looks = [f"{label}: {words(look(label))}" for label in LABELS]
+    looks += [f"line {k}: {words(look('other', k))}" for k in range(9)]
+    looks += [f"step {k} of {n}: {words(style.step('', k, n))}" for n in (1, 2, 4, 9) for k in range(n)]
+    looks += [f"{key} = {value}" for key, value in style.STYLE.items()]
+    looks += [f"{x:g}: {style.prefixed(x)}" for x in (0.0, 1e-20, 1e-15, 0.999, 1.0, 999.9, 1e15, 1e16, 1e19)]
+    recorded("drawn.looks", looks)
+
+
 # --- comparisons ----------------------------------------------------------------------------------------
 
 TITLES = {

@@ -94,7 +94,7 @@ def test_laws_gradings_and_own_radii_go_with_it():
         ({"keep": "statistics"}, 'use "sums"'),
         ({"quantities": ["load", "yielded"], "law": mcgw.KogutEtsion(critical=0.1)}, "leave out yielded"),
         ({"rel_err": 0.05, "n_surfaces": None}, "give n_surfaces"),
-        ({"n_asperities": 30000}, "20000 or fewer"),
+        ({"n_asperities": 20_001}, "20001 asperities a surface; give 20000 or fewer"),
         ({"unload_from": 0.1}, "unload_from"),
         ({"negative": "allow"}, 'needs loads that decrease with the separation; use "clip"'),
         ({"film": mcgw.Film(1e-7)}, "resistivity"),
@@ -102,6 +102,7 @@ def test_laws_gradings_and_own_radii_go_with_it():
     ],
 )
 def test_refuses_what_does_not_fit(changes, words):
+    assert scene_of(n_asperities=20_000).located
     with pytest.raises(ValueError, match=words):
         scene_of(**changes)
 
