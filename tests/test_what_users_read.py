@@ -48,6 +48,7 @@ LINES = {
                "--points 6",
                "export pressed.toml --to comsol --table stiffness-pressure --points 6 -o new/s.txt",
                "export spectral.toml --to abaqus --points 5 --quantile 0.125 -o new/n.inp",
+               "export pressed.toml --to moose --points 4 -o new/q.csv",
                "export joint.toml --to json --points 3 -o new/t.json"],
     "plans": [f"show --plan -v {name}.toml" for name in
               ("pressed", "measured", "crowd", "strata", "pushed", "sticks", "spectral", "located")],
@@ -56,6 +57,7 @@ LINES = {
     "laws": ["regrade y.h5 --law zhao-maietta-chang --critical 0.1 -o new/z.h5",
              "surface scene.toml --at 0.5 --colour modulus -o new/o.svg",
              "surface --from-spectrum rms=1um,long=20um,short=5um --pixel 1um --shape 32x16 -o new/f.sdf"],
+    "means": ["run strata.toml -o m.h5", "report m.h5 -o new/m.html", "compare e.h5 --laws -o new/l.png -q"],
     "maps": ["surface caps.toml --shape 96 -o caps.npy",
              "fit caps.npy --cutoff none --parts 2 --tiles new/t.csv -v -o new/caps.toml",
              "fit p.txt --cutoff none --E-star 7GPa -v -o new/p.toml"],
