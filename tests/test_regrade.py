@@ -1,14 +1,17 @@
 """Another grading on the same surfaces: equal to a new simulation, and ratios with far smaller errors."""
 
 import dataclasses
+from contextlib import nullcontext
 
 import numpy as np
 import pytest
 
 import analytic
 import mcgw
+from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.paired import paired_ratio
-from mcgw.ensemble.regrading import regrade
+from mcgw.ensemble.regrading import check_same, regrade
+from mcgw.ensemble.results import MemoryResults
 from mcgw.jobs.running import run
 from mcgw.sampling import cells, spacing
 from mcgw.sampling.block import Layout
@@ -193,3 +196,19 @@ def test_from_file_to_file(make_scene, tmp_path):
     again = save(regrade(stored, grading), tmp_path / "other.h5")
     assert again.scene.grading == grading
     assert_same(regrade(again, scene.grading), stored)  # there and back
+
+
+@pytest.mark.parametrize(("accuracy", "same"), [(1e-13, 1e-9), (1e-3, 2e-3)])
+@pytest.mark.parametrize("quantity", ["load", "area"])
+def test_surfaces_drawn_again_may_differ_by_rounding_or_what_was_asked(accuracy, same, quantity, make_scene):
+    """However small they are: by so much of the value and as much of the mean, which are one here."""
+    scene = make_scene(separations=(0.0, 1.0), n_surfaces=6, accuracy=accuracy)
+    held = np.full((6, 2), 3e-10)
+    ensemble = Ensemble(scene, "cells", MemoryResults({quantity: held}))
+    for factor, differs in ((1.9, False), (-1.9, False), (2.1, True), (-2.1, True)):
+        again = held[2:5].copy()
+        again[1, 1] *= 1 + factor * same
+        for columns, seen in ((slice(None), True), (slice(1, 2), True), (slice(0, 1), False)):
+            told = rf"cannot be drawn again: their {quantity} differs"
+            with pytest.raises(ValueError, match=told) if differs and seen else nullcontext():
+                check_same(ensemble, 2, {quantity: again[:, columns]}, columns)

@@ -217,3 +217,20 @@ def test_a_holder_that_has_not_said_its_name_is_another_process(tmp_path):
     with locked(folder) as new:
         assert not new
         assert (folder / "holder").read_text() == f"pid {os.getpid()} on {socket.gethostname()}\n"
+
+
+@pytest.mark.parametrize(
+    ("error", "told"),
+    [
+        (OSError(), "its run has just ended; repeat the command$"),
+        (FileNotFoundError(2, "No such file or directory"), "its run has just ended; repeat the command$"),
+        (PermissionError(13, "Permission denied"), r"cannot be locked \(Permission denied\)$"),
+    ],
+)
+def test_a_folder_that_is_gone_is_told_from_one_that_cannot_be_locked(error, told, tmp_path, monkeypatch):
+    def fail(*_):
+        raise error
+
+    monkeypatch.setattr(lock, "_lock", fail)
+    with pytest.raises(StoreError, match=rf"e\.h5\.parts: {told}"):
+        locked(tmp_path / "e.h5.parts").__enter__()
