@@ -630,6 +630,7 @@ def test_the_limits_of_places_and_gaps():
     with pytest.raises(ValueError, match=r"^7 points: a profile has 8 or more"):
         profile_at(x[:7], z[:7])
     assert profile_at(x[:8], z[:8]).length == 8.0
+    assert profile_at(x, np.arange(40)).heights.dtype == np.float64
     with pytest.raises(ValueError, match="x = 5 m is followed by 5 m; give x in increasing or decreasing"):
         profile_at(np.array([0, 1, 2, 3, 4, 5, 5, 6, 7.0]), np.zeros(9))
     with pytest.raises(ValueError, match="1 points: a profile has"):
