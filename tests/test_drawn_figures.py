@@ -442,6 +442,19 @@ def test_one_quantity(comparison):
     assert [t.get_text() for t in above.get_legend().get_texts()] == ["theory", "Monte Carlo, 95 %"]
 
 
+def test_of_residuals_that_read_alike_the_first_is_shown(comparison):
+    """Which of them has most rounding depends on the processor."""
+    curve = comparison.curves["load"]
+    for pull, shown in (([1e-9, -2e-9, 3e-9], 0), ([0.5, -2.001, 2.002], 1), ([-0.5, 0.4, 0.506], 2)):
+        mean = curve.theory + np.array(pull) * curve.stderr
+        compared = one_of(comparison, dataclasses.replace(curve, mean=mean))
+        assert compared.worst(1).only("separation").columns[0].values == [H[shown]]
+        assert f"{H[shown]:g}" in compared.sheet().table.text()
+        assert compared.sheet().table.only("separation").columns[0].values == [H[shown]]
+    still = dataclasses.replace(curve, mean=curve.theory - 1e-9 * curve.stderr)
+    assert "-0.00" not in one_of(comparison, still).worst(3).text()
+
+
 def test_a_large_residual_stays_in_sight_and_the_verdict_says_so(comparison, kept, tmp_path):
     curve = comparison.curves["load"]
     shift = 20 * curve.stderr

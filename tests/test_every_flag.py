@@ -637,6 +637,21 @@ def test_converge_takes_its_folder(call):
 
 
 @pytest.mark.parametrize("study", ["converge", "tradeoff"])
+def test_a_study_lies_beside_its_scene(study, tmp_path, monkeypatch):
+    """In a folder that is made."""
+    from mcgw.statistics import tradeoff
+
+    every = tradeoff.methods_for
+    monkeypatch.setattr(tradeoff, "methods_for", lambda *asked: every(*asked)[:1])
+    (tmp_path / "there").mkdir()
+    (tmp_path / "there/s.toml").write_text(SCENE)
+    words = {"converge": [], "tradeoff": ["--seconds", "0.1"]}
+    done = command_here(study, "there/s.toml", *words[study], cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert [*tmp_path.rglob("*.png")] == [tmp_path / f"there/out/s-{study}.png"]
+
+
+@pytest.mark.parametrize("study", ["converge", "tradeoff"])
 def test_a_study_is_of_the_values_that_are_set(call, study):
     said = call([study, "@s.toml", "--set", "ensemble.seed=-1"])
     assert said.code == 2

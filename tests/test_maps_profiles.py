@@ -754,6 +754,14 @@ def test_whole_numbers_that_rise_before_a_comma_are_places(tmp_path):
     np.testing.assert_allclose(read_profile(path, spacing=UM).heights[4:6] / UM, [2.02, 3.0], rtol=1e-12)
 
 
+@pytest.mark.parametrize("whole", [8 * (0,), 4 * (0,) + 4 * (1,), 2 * (2,) + 6 * (1,)])
+def test_whole_numbers_that_stay_before_a_comma_are_no_places(whole, tmp_path):
+    path = tmp_path / "p.txt"
+    path.write_text("z (um)\n" + "\n".join(f"{n},{25 + i}" for i, n in enumerate(whole)))
+    heights = [float(f"{n}.{25 + i}") for i, n in enumerate(whole)]
+    np.testing.assert_allclose(read_profile(path, spacing=UM).heights / UM, heights, rtol=1e-12)
+
+
 def test_whole_numbers_that_fall_before_a_comma_are_places_too(tmp_path):
     path = tmp_path / "back.csv"
     path.write_text("# x (um), z (um)\n" + "\n".join(f"{8 - i},{i % 3}" for i in range(9)))

@@ -442,7 +442,8 @@ def test_pictures(recorded):
     for container, point in zip(axes.containers, sweep.axes.points(), strict=True):
         mean, error = sweep.mean("area")[point], sweep.stderr("area")[point]
         check(container, [0.0, 1.0, 2.0], mean[order], error[order])
-    assert mcgw.sweep(SCENE, {GAMMA: [1.0]}).plot().get_title() == f"{GAMMA}: 1 points, 95 %"
+    alone = mcgw.sweep(SCENE, {GAMMA: [1.0]}).plot()
+    assert (alone.get_title(), alone.get_ylabel()) == (f"{GAMMA}: 1 points, 95 %", "mean load (N)")
     slopes = sweep.slopes("load", GAMMA)
     axes = slopes.plot(k=2)
     check(axes.containers[0], slopes.at, slopes.value[0, :, 2], slopes.stderr[0, :, 2])

@@ -55,7 +55,7 @@ def mark(values):
         return "none"
     weights = 1 + np.arange(x.size) * 0.6180339887498949 % 1
     said, size = (x[0], x[-1], weights @ x / x.size), np.abs(x).max() or 1.0
-    return f"{x.size} {' '.join(f'{round(v / size, 10) * size:.6g}' for v in said)}"
+    return f"{x.size} {' '.join(f'{round(v / size, 10) * size + 0.0:.6g}' for v in said)}"
 
 
 def drawn(figure):
@@ -190,12 +190,19 @@ def apart(old, new):
 
 
 def near(a, b):
-    """Whether lines say the same but for the last digits of their numbers."""
+    """Whether lines say the same but for the last digits of their numbers.
+
+    What is less than 1e-14 of the numbers before and after it is rounding, another one on another processor.
+    """
     if _NUMBER.sub("#", a) != _NUMBER.sub("#", b):
         return False
+    old, new = _NUMBER.findall(a), _NUMBER.findall(b)
+    sizes = [0.0, *(abs(float(x)) for x in old), 0.0]
+    noise = [1e-14 * min(pair) for pair in zip(sizes, sizes[2:], strict=False)]
     return all(
-        x == y or ("." in x + y and abs(float(x) - float(y)) <= max(1.001 * step(x), 1e-7 * abs(float(x))))
-        for x, y in zip(_NUMBER.findall(a), _NUMBER.findall(b), strict=True)
+        x == y
+        or ("." in x + y and abs(float(x) - float(y)) <= max(1.001 * step(x), 1e-7 * abs(float(x)), least))
+        for x, y, least in zip(old, new, noise, strict=True)
     )
 
 

@@ -169,7 +169,7 @@ class Fit(Shown):
     def sheet(self) -> Sheet:
         """Estimates by all methods, with standard errors, and the first of the cautions."""
         facts = [("roughness", self.roughness.text("S"))]
-        facts += [("spectrum", f"alpha = {self.alpha.value:.3g}, skewness {self.skewness[0]:.2f}")]
+        facts += [("spectrum", f"alpha = {self.alpha.value:.3g}, skewness {self.skewness[0]:z.2f}")]
         facts += [("caution", line) for line in self.cautions[:_MOST_CAUTIONS]]
         more = len(self.cautions) - _MOST_CAUTIONS
         facts += [("", f"and {more} more in .cautions")] if more > 0 else []

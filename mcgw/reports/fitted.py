@@ -25,7 +25,7 @@ def fit_lines(fit: Fit) -> list[str]:
     m0, m2, m4, alpha = (_told(x) for x in (fit.m0, fit.m2, fit.m4, fit.alpha))
     lines = [
         f"m0 = {m0} m^2, m2 = {m2}, m4 = {m4} 1/m^2, alpha = {alpha}, "
-        f"skewness {fit.skewness[0]:.2f} +- {fit.skewness[1]:.1g}",
+        f"skewness {fit.skewness[0]:z.2f} +- {fit.skewness[1]:.1g}",
         f"{fit.summits.size} summits on {fit.area:.4g} m^2, "
         f"on average {fit.mean_summit:.3g} m above the mean plane",
         f"of all heights (below, sigma is that of the summits): {fit.roughness.text('S')}",

@@ -153,8 +153,8 @@ class Validity(Shown):
             return "not measured"
         off = error - abs(bias)
         if name == "separation":
-            return f"{bias:+.2f} ± {off:.2f}"
-        return f"{100 * bias:+.0f} ± {100 * off:.0f} %"
+            return f"{bias:+z.2f} ± {off:.2f}"
+        return f"{100 * bias:+z.0f} ± {100 * off:.0f} %"
 
 
 def percent(x: float) -> str:

@@ -192,7 +192,7 @@ def skewness(exact: PrincipalComponents, y: Array) -> Check:
     values = y**3 - 3 * y
     z = (values.mean(axis=0) - exact.skewness) / (values.std(axis=0) / np.sqrt(len(y)))
     worst = int(np.argmax(np.abs(z)))
-    seen = f"z = {z[worst]:+.2f} at worst of {z.size} axes, exact skewness {exact.skewness[worst]:.3f}"
+    seen = f"z = {z[worst]:+z.2f} at worst of {z.size} axes, exact skewness {exact.skewness[worst]:.3f}"
     return Check("skewness", seen, min(1.0, z.size * float(2 * norm.sf(abs(z[worst])))))
 
 

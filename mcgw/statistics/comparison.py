@@ -90,7 +90,7 @@ class Comparison(Shown):
 
     def sheet(self) -> Sheet:
         """The verdict, and each quantity at the separation where it is farthest from theory."""
-        worst = [int(np.argmax(np.abs(curve.residual))) for curve in self.curves.values()]
+        worst = [int(np.argmax(_farness(curve.residual))) for curve in self.curves.values()]
         tables = zip(self.tables().items(), worst, strict=True)
         farthest = {name: table.at([k]) for (name, table), k in tables}
         v = self.verdict
@@ -109,7 +109,7 @@ class Comparison(Shown):
     def worst(self, rows: int) -> Table:
         """The means farthest from theory, over all quantities."""
         table = replace(stacked(self.tables(), "quantity"), title="farthest from theory, in standard errors")
-        far = np.abs(table.only("residual").columns[0].values)
+        far = _farness(table.only("residual").columns[0].values)
         return table.at(np.argsort(-far, kind="stable")[:rows].tolist())
 
     def _table(self, quantity: str) -> Table:
@@ -121,9 +121,14 @@ class Comparison(Shown):
             interval_column(c.low, c.high, unit),
             Column("std", self.ensemble.std(quantity), unit=unit, form=".3g"),
             Column("theory", c.theory, unit=unit, error=c.stderr),
-            Column("residual", c.residual, form="+.2f"),
+            Column("residual", c.residual, form="+z.2f"),
         )
         return Table(columns, heading(q))
+
+
+def _farness(residuals: Array) -> Array:
+    """Sizes as they are shown: of equal ones the first is the farthest, not that of most rounding."""
+    return np.abs(residuals).round(2)
 
 
 @dataclass(frozen=True, repr=False)
@@ -204,7 +209,7 @@ def _columns(rows: Sequence[tuple[Tested, int, int]], scene: Scene) -> tuple[Col
         Column("separation", [t.separations[k] for t, _, k in rows], SEPARATION, form="g"),
         Column("mean", [t.mean[q, k] for t, q, k in rows]),
         Column("theory", [t.theory[q, k] for t, q, k in rows]),
-        Column("residual", [t.residual[q, k] for t, q, k in rows], form="+.2f"),
+        Column("residual", [t.residual[q, k] for t, q, k in rows], form="+z.2f"),
         Column("p_of_point", [t.verdict.p for t, *_ in rows], form=".2g"),
     )
 
