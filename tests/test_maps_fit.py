@@ -531,6 +531,7 @@ def test_a_fit_tells_each_of_its_four_stages(rough, monkeypatch):
 
 @pytest.mark.parametrize(("width", "height", "area", "number", "placed"), [
     (1e-3, 1e-3, 1e-6, 30, True), (0.99e-2, 1e-4, 0.99e-6, 30, True), (1.01e-2, 1e-4, 1.01e-6, 30, False),
+    (1e-2, 1e-4, 1e-6, 30, True), (1e-4, 1e-2, 1e-6, 30, True),
     (1e-4, 0.99e-2, 0.99e-6, 30, True), (1e-4, 1.01e-2, 1.01e-6, 30, False),
     (1e-3, 1e-3, 1.0000009e-6, 30, True), (1e-3, 1e-3, 1.0000011e-6, 30, False),
     (1e-3, 1e-3, 1e-6, 20_000, True), (1e-3, 1e-3, 1e-6, 20_001, False),

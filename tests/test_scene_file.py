@@ -51,6 +51,14 @@ def test_every_scene_of_runs_reads_back_the_same(path):
     assert mcgw.scene_from(mcgw.scene_text(scene)) == scene
 
 
+def test_a_zero_has_no_sign():
+    """Nor is a scene of such zeros another one."""
+    drawn = dict(n_surfaces=5, seed=1)
+    one, other = (Scene(SURFACE, separations=(z, 1.0), edges=(z, 1.5), **drawn) for z in (0.0, -0.0))
+    assert mcgw.scene_text(one) == mcgw.scene_text(other)
+    assert "-0.0" not in mcgw.scene_text(other)
+
+
 def test_a_table_in_the_scene_or_beside_it(tmp_path):
     inline = GOOD + '[grading]\nlaw = "table"\ns = [-1.0, 1.0]\nratio = [0.5, 2.0]\n'
     assert mcgw.scene_from(inline).grading == analytic.Table([-1, 1], [0.5, 2])

@@ -93,6 +93,13 @@ def test_two_methods_in_a_moment(scene, monkeypatch, tmp_path):
     assert (tmp_path / "x.png").exists()
 
 
+def test_each_method_is_drawn_against_its_own_law(scene):
+    """Errors of strata fall as size^(-3/2), of real surfaces as size^(-1/2); rules have no such law."""
+    laws = {method.name: method.slope for method in study.methods_for(scene, (0, 1, 2))}
+    drawn = {name: slope for name, slope in laws.items() if slope is not None}
+    assert drawn == dict.fromkeys(("direct", "tail", "cells", "aggregate"), -0.5) | {"stratified": -1.5}
+
+
 @pytest.mark.slow
 def test_errors_fall_as_they_should(found):
     stratified = found.of("stratified")
