@@ -90,7 +90,8 @@ class Comparison(Shown):
 
     def sheet(self) -> Sheet:
         """The verdict, and each quantity at the separation where it is farthest from theory."""
-        worst = [int(np.argmax(_farness(curve.residual))) for curve in self.curves.values()]
+        residuals = (curve.residual for curve in self.curves.values())
+        worst = [int(np.argmax(np.abs(r).round(2))) for r in residuals]  # the first of those that read alike
         tables = zip(self.tables().items(), worst, strict=True)
         farthest = {name: table.at([k]) for (name, table), k in tables}
         v = self.verdict
@@ -109,7 +110,7 @@ class Comparison(Shown):
     def worst(self, rows: int) -> Table:
         """The means farthest from theory, over all quantities."""
         table = replace(stacked(self.tables(), "quantity"), title="farthest from theory, in standard errors")
-        far = _farness(table.only("residual").columns[0].values)
+        far = np.abs(table.only("residual").columns[0].values).round(2)
         return table.at(np.argsort(-far, kind="stable")[:rows].tolist())
 
     def _table(self, quantity: str) -> Table:
@@ -124,11 +125,6 @@ class Comparison(Shown):
             Column("residual", c.residual, form="+z.2f"),
         )
         return Table(columns, heading(q))
-
-
-def _farness(residuals: Array) -> Array:
-    """Sizes as they are shown: of equal ones the first is the farthest, not that of most rounding."""
-    return np.abs(residuals).round(2)
 
 
 @dataclass(frozen=True, repr=False)
