@@ -16,7 +16,7 @@ from scipy import stats
 
 import mcgw
 from analytic import Exponential, quantity_of
-from mcgw.scene.samplers import promise_of
+from mcgw.scene.promises import promise_of
 
 SURFACES, NEAR, UNSURE = 400, 1e-6, 5e-3
 ROOTED = {"area": "conductance", "conductance": "area"}  # of Hertz's law: an approach, and its root

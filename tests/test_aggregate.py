@@ -16,7 +16,7 @@ from mcgw.ensemble.results import MemoryResults
 from mcgw.sampling import samplers
 from mcgw.sampling.cells import mesh_of
 from mcgw.sampling.crowding import crowding
-from mcgw.sampling.drawing import _law_of_moments, _partly
+from mcgw.sampling.drawn_moments import _law_of_moments, _partly
 from mcgw.sampling.samplers import aggregate_of, law_error_of, sampler_of
 
 GATE = 5.0

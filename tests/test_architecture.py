@@ -1,6 +1,7 @@
 """Imports point one way, whether by name or by string, and compiled loops stay in their layer."""
 
 import ast
+from collections import Counter
 from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
@@ -9,7 +10,7 @@ import pytest
 
 import analytic
 import mcgw
-from mcgw.scene.samplers import SAMPLERS
+from mcgw.scene.promises import SAMPLERS
 
 # Packages are layers: each imports only from those before it. Above all is the door, `mcgw` itself.
 LAYERS = (
@@ -125,7 +126,7 @@ def test_each_way_of_importing_would_be_seen(text):
 
 
 def test_the_response_knows_no_randomness():
-    random = {"binomial", "counts", "moments", "philox", "samplers", "chebyshev_sums", "drawing"}
+    random = {"binomial", "counts", "moments", "philox", "samplers", "chebyshev_sums", "drawn_moments"}
     for this, tree in inside():
         if this.startswith("sampling.response"):
             assert not {f"sampling.{name}" for name in random} & set(imports(tree)), this
@@ -135,7 +136,7 @@ def test_nobody_outside_asks_which_sampler_it_is():
     """What differs between them they tell themselves, or their `Promise` does."""
     names = set(SAMPLERS) - {"auto", "cells"}  # there is a dataset called cells
     for this, tree in inside():
-        if this.startswith(("sampling.", "scene.samplers")):
+        if this.startswith(("sampling.", "scene.promises")):
             continue
         compared = [x for node in tree.nodes if isinstance(node, ast.Compare) for x in ast.walk(node)]
         assert not {x.value for x in compared if isinstance(x, ast.Constant)} & names, this
@@ -226,3 +227,11 @@ def test_every_dataclass_is_frozen():
         if mark.startswith("dataclass") and "frozen=True" not in mark
     ]
     assert not thawed
+
+
+@pytest.mark.parametrize("package", [analytic, mcgw])
+def test_a_file_has_a_name_of_its_own(package):
+    """Commands alone have the names of what they are about."""
+    files = Path(package.__file__).parent.rglob("[!_]*.py")
+    names = Counter(file.name for file in files if file.parent.name != "commands")
+    assert not [name for name, times in names.items() if times > 1]

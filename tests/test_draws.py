@@ -18,7 +18,7 @@ from mcgw.sampling.lanes import LANES
 from mcgw.sampling.moments import _PIECE, add_compensated, cell_moments
 from mcgw.sampling.philox import CELLS, centred, philox, uniforms
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene.samplers import SAMPLERS
+from mcgw.scene.promises import SAMPLERS
 
 FALSE_ALARM = 1e-6  # of each chi-square test; the seeds are fixed
 MANY = 2**20

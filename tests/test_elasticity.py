@@ -27,7 +27,7 @@ from mcgw.maps.map_files import write_map
 from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography
 from mcgw.sampling.located import newton
-from mcgw.sampling.located.balance import BalanceError, Located
+from mcgw.sampling.located.equilibrium import BalanceError, Located
 from mcgw.sampling.located.newton import Equations, State
 from mcgw.sampling.located.spots import Grid, HertzSpots, LawSpots, field_beyond_point
 

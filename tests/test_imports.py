@@ -12,7 +12,7 @@ import pytest
 
 import analytic
 import mcgw
-from mcgw.scene.samplers import SAMPLERS
+from mcgw.scene.promises import SAMPLERS
 
 ROOT = Path(mcgw.__file__).parents[1]
 SCENE = ROOT / "runs" / "quick.toml"

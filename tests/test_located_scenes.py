@@ -14,7 +14,7 @@ from mcgw.elasticity.levels import Pressed
 from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.reports.plan import plan_of, plan_text
 from mcgw.sampling.counts import generator
-from mcgw.sampling.located.balance import Located
+from mcgw.sampling.located.equilibrium import Located
 from mcgw.sampling.located.spots import Grid, HertzSpots, LawSpots
 
 LOCATED = {"reference": "located", "at": "nominal"}

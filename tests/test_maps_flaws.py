@@ -16,8 +16,8 @@ from mcgw.maps.fit import fit_prepared
 from mcgw.maps.fit_cautions import cautions
 from mcgw.maps.form import without_form
 from mcgw.maps.hidden_caps import visible
-from mcgw.maps.levels import form_left, step_of
 from mcgw.maps.preparation import Preparation, prepared
+from mcgw.maps.steps_and_forms import form_left, step_of
 from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography
 

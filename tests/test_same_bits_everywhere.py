@@ -21,7 +21,7 @@ from mcgw.jobs.running import run
 from mcgw.sampling.block import Layout
 from mcgw.sampling.moments import cell_moments
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene.samplers import SAMPLERS
+from mcgw.scene.promises import SAMPLERS
 from mcgw.scene.scene import Scene
 from mcgw.store import identity
 

@@ -14,7 +14,7 @@ from mcgw.figures.compared import Compared
 from mcgw.jobs.running import run
 from mcgw.sampling.asperities import heights
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene.samplers import SAMPLERS
+from mcgw.scene.promises import SAMPLERS
 from mcgw.statistics.convergence import converge
 from mcgw.store import ensembles, place
 

@@ -18,7 +18,7 @@ from mcgw.ensemble.simulation import Values
 from mcgw.jobs.running import run
 from mcgw.machine.memory import peak_growth
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene.samplers import SAMPLERS
+from mcgw.scene.promises import SAMPLERS
 from mcgw.scene.scene import Scene
 from mcgw.store import ensembles, identity
 

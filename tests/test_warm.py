@@ -8,7 +8,7 @@ import pytest
 import mcgw
 from mcgw.commands import warm
 from mcgw.machine.child_process import ChildError
-from mcgw.scene.samplers import SAMPLERS
+from mcgw.scene.promises import SAMPLERS
 
 
 @pytest.mark.parametrize(("cores", "halves"), [(1, 1), (2, 2), (8, 2), (None, 1)])

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.special import gammaln, xlogy
 
 from analytic.distribution.derived import Along, Counted, Law, Mapped
-from analytic.distribution.law import Distribution
+from analytic.distribution.distribution import Distribution
 from analytic.distribution.one_asperity import OneAsperity
 from analytic.distribution.touching import Asperity, Touching
 from analytic.height_rule import HeightRule

@@ -101,7 +101,7 @@ def _draws() -> None:
     from mcgw.sampling.block import Layout
     from mcgw.sampling.cells import mesh_of
     from mcgw.sampling.counts import counts_of
-    from mcgw.sampling.drawing import OneByOne
+    from mcgw.sampling.drawn_moments import OneByOne
 
     scene = _scene()
     mesh = mesh_of(scene)

@@ -14,7 +14,7 @@ from mcgw.errors import RunError
 from mcgw.maps.summit_sums import summit_sums_of
 from mcgw.maps.summits import Summits, summits_of
 from mcgw.maps.topography import Topography
-from mcgw.sampling.located.balance import Located
+from mcgw.sampling.located.equilibrium import Located
 from mcgw.sampling.located.spots import Grid, HertzSpots, sized_grid
 
 _EITHER = ("area", "stiffness", "conductance")

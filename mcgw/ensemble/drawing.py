@@ -21,7 +21,7 @@ from mcgw.sampling.block import Block, Sampler, Source
 from mcgw.sampling.counts import GROUP
 from mcgw.sampling.expected import Expected, expected
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene.samplers import promise_of
+from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 
 _Drawn = TypeVar("_Drawn")

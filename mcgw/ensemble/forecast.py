@@ -15,7 +15,7 @@ import numpy as np
 from analytic.arrays import Array
 from mcgw.ensemble.intervals import CONFIDENCE, MANY, TOO_FEW, Spread, chebyshev, spread_of
 from mcgw.sampling.counts import GROUP
-from mcgw.scene.samplers import promise_of
+from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.stop_rule import wanted
 

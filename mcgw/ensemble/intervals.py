@@ -21,7 +21,7 @@ from analytic import TANGENTIAL, Hertz, MeasuredHeights, RandomCurvature, quanti
 from analytic.arrays import Array, Marks
 from mcgw.ensemble.results import Held
 from mcgw.formats.table import Column
-from mcgw.scene.samplers import promise_of
+from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 
 CONFIDENCE = 0.95

@@ -12,7 +12,7 @@ from mcgw.ensemble.results import PROBABILITIES
 from mcgw.formats.sheet import Sheet
 from mcgw.formats.table import SEPARATION, Column, Table, optional
 from mcgw.scene.in_words import accuracy_facts, contact_facts, law_text
-from mcgw.scene.samplers import promise_of
+from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 
 AXES = {  # of tables, in their order: unit and long name

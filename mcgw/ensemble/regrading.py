@@ -21,7 +21,7 @@ from mcgw.sampling.direct import asperity_sums
 from mcgw.sampling.samplers import regraded, sampler_of
 from mcgw.scene.arguments import as_toml, check_object
 from mcgw.scene.laws import read_law
-from mcgw.scene.samplers import promise_of
+from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene, drawn_by, storable
 
 Drawn = tuple[Array, Array, Array]  # moments, counts and single asperities of some surfaces

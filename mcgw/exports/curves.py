@@ -8,7 +8,7 @@ from analytic.arrays import Array
 from mcgw.ensemble.at_load import at_pressures, common_pressures, with_values
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.formats.table import evenly
-from mcgw.scene.samplers import promise_of
+from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 
 _MOST = 2000  # surfaces drawn again where an ensemble keeps statistics alone

@@ -17,7 +17,7 @@ from mcgw.exports.programs import PROGRAMS, Program, check_name
 from mcgw.exports.table_text import UNIT_SYSTEMS, UnitSystem, all_curves, heading, in_units, table_text
 from mcgw.formats.files import write_whole
 from mcgw.scene.arguments import argument, as_toml
-from mcgw.scene.samplers import promise_of
+from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 from mcgw.store.ensembles import open_ensemble, read_attributes

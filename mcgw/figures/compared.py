@@ -19,7 +19,7 @@ from mcgw.formats.table import evenly
 from mcgw.sampling.asperities import heights
 from mcgw.sampling.direct import asperity_sums
 from mcgw.scene.in_words import law_text
-from mcgw.scene.samplers import promise_of
+from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 
 SCENE = "this scene"

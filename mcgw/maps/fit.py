@@ -27,9 +27,9 @@ from mcgw.maps.estimates import (
 )
 from mcgw.maps.form import ORDERS
 from mcgw.maps.hidden_caps import Visible, visible
-from mcgw.maps.levels import form_left
 from mcgw.maps.preparation import Prepared
 from mcgw.maps.steps import Form
+from mcgw.maps.steps_and_forms import form_left
 from mcgw.maps.summit_sums import EDGE, SummitSums, coarse_sums_of, summit_sums_of
 from mcgw.maps.summits import Alone, Summits, alone_of, summits_of, tiles_of
 from mcgw.maps.topography import SMALLEST

@@ -9,10 +9,10 @@ from mcgw.maps.bad_points import bad_edges, spike_heights
 from mcgw.maps.fit import Fit
 from mcgw.maps.hidden_caps import CROWDED, visible
 from mcgw.maps.instrument import faults
-from mcgw.maps.levels import form_left, step_of
 from mcgw.maps.preparation import Prepared
 from mcgw.maps.profile import Profile
 from mcgw.maps.profile_fit import ProfileFit
+from mcgw.maps.steps_and_forms import form_left, step_of
 from mcgw.maps.topography import STEEPEST, Topography
 
 _WIDEST = 1e-2  # m

@@ -10,8 +10,8 @@ from scipy import ndimage
 from analytic.arrays import Marks
 from mcgw.maps.bad_points import Recorded, filled, recorded, small_spike_heights, spike_heights
 from mcgw.maps.form import lowpass, smooth, without_form, without_offsets
-from mcgw.maps.levels import step_of
 from mcgw.maps.steps import STEPS, Form, LinesTo, Missing, SpikesTo, StepTo
+from mcgw.maps.steps_and_forms import step_of
 from mcgw.maps.topography import SMALLEST, Topography
 from mcgw.scene.arguments import arguments
 from mcgw.scene.kinds import Whole, Word

@@ -29,7 +29,7 @@ from mcgw.reports.report_figures import (
 from mcgw.scene.cautions import cautions
 from mcgw.scene.in_words import contact_facts, law_text
 from mcgw.scene.law_cautions import other_laws
-from mcgw.scene.samplers import promise_of
+from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.validity import Validity
 from mcgw.statistics.comparison import compare

@@ -11,7 +11,7 @@ from mcgw.machine.terminal import one_line
 from mcgw.sampling.expected import Expected, expected
 from mcgw.sampling.shared import shared
 from mcgw.scene.in_words import contact_facts
-from mcgw.scene.samplers import promise_of
+from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene, storable
 from mcgw.scene.values import BALANCED, COARSEST, EXACT
 from mcgw.sweeps.groups import Group

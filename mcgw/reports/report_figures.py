@@ -23,7 +23,7 @@ from mcgw.figures.panels import draw
 from mcgw.figures.style import STYLE, write_figure
 from mcgw.formats.table import Column, Table, evenly
 from mcgw.scene.in_words import joint_text
-from mcgw.scene.samplers import promise_of
+from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.statistics.comparison import Comparison
 

@@ -106,7 +106,7 @@ class Sampler:
     Parameters
     ----------
     name : str
-        One of `mcgw.scene.samplers.SAMPLERS`, never "auto".
+        One of `mcgw.scene.promises.SAMPLERS`, never "auto".
     scene : Scene
         What to simulate.
     mesh : Mesh

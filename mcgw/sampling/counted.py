@@ -13,7 +13,7 @@ from mcgw.sampling.block import Block, Layout, Sampler
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.counts import Counts, contacts_above, counts_of
 from mcgw.sampling.direct import asperity_sums, tangential_loads
-from mcgw.sampling.drawing import Drawing, OneByOne
+from mcgw.sampling.drawn_moments import Drawing, OneByOne
 from mcgw.sampling.outside import extra_heights
 from mcgw.sampling.response.response import Response
 from mcgw.sampling.stretches import stretches_of

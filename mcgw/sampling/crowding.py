@@ -20,7 +20,7 @@ from analytic import quantity_of
 from analytic.arrays import Array
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.direct import asperity_sums
-from mcgw.sampling.drawing import CROWDED
+from mcgw.sampling.drawn_moments import CROWDED
 from mcgw.sampling.rules import gauss_legendre, product
 from mcgw.scene.scene import Scene
 

@@ -77,7 +77,7 @@ class Direct(Sampler):
     def _balanced(self, number: int, heights: Array, ratios: Array | None) -> dict[str, Array]:
         """The surface at the separations that its asperities feel, or with their places."""
         if self.scene.located:
-            from mcgw.sampling.located.balance import located_sums  # as below
+            from mcgw.sampling.located.equilibrium import located_sums  # as below
 
             return located_sums(self.scene, number, heights, ratios)
         from mcgw.sampling.nominal import balanced_sums  # for those scenes alone

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from mcgw.scene.fields import Fields
-from mcgw.scene.samplers import promise_of
+from mcgw.scene.promises import promise_of
 
 LOCATED = ("load", "area", "stiffness", "contacts", "conductance")
 MOST_LOCATED = 20_000

@@ -8,7 +8,7 @@ import numpy as np
 import analytic
 from mcgw.formats.sheet import brief
 from mcgw.scene.fields import Fields
-from mcgw.scene.samplers import promise_of
+from mcgw.scene.promises import promise_of
 from mcgw.scene.stop_rule import rel_err_mistakes
 
 _LEAST = 1e-100  # next to it, powers of a distance are beyond double precision

@@ -14,8 +14,8 @@ from mcgw.scene.arguments import as_toml
 from mcgw.scene.fields import LeftOut
 from mcgw.scene.keys import KEYS, TABLES
 from mcgw.scene.laws import contact_law, grading_given, grading_of, heights_given, heights_of, law_of_keys
+from mcgw.scene.radii import LISTS, Spectral, curvature_of, datum_shift, listed_of
 from mcgw.scene.section import SceneError, Section
-from mcgw.scene.summits import LISTS, Spectral, curvature_of, datum_shift, listed_of
 from mcgw.scene.surface import read_surface
 from mcgw.scene.values import MOMENTS, rows_of
 

@@ -20,8 +20,8 @@ from mcgw.scene.in_words import sheet_of
 from mcgw.scene.keys import SURFACE_UNITS
 from mcgw.scene.mistakes import mistakes
 from mcgw.scene.plausible import perhaps_other_units, warn_of_units
+from mcgw.scene.promises import promise_of
 from mcgw.scene.reading import of_arguments
-from mcgw.scene.samplers import promise_of
 from mcgw.scene.section import SceneError, nearest
 from mcgw.scene.surface import Surface as GivenSurface
 from mcgw.scene.values import documented, values_of_scene

@@ -13,10 +13,10 @@ from mcgw.formats.named_files import HDF5, loads, read_bytes
 from mcgw.scene.keys import KEYS, SURFACE_UNITS, TABLES
 from mcgw.scene.kinds import Word
 from mcgw.scene.laws import contact_law_table, grading_table, heights_table
+from mcgw.scene.radii import summits_table
 from mcgw.scene.reading import of_tables
 from mcgw.scene.scene import Scene, storable
 from mcgw.scene.section import SceneError
-from mcgw.scene.summits import summits_table
 
 _MOST_BYTES = 2**21
 

@@ -6,8 +6,8 @@ from analytic import Nayak, SpectralMoments, Surface as Plain, composite_modulus
 from mcgw.scene.arguments import as_toml
 from mcgw.scene.keys import KEYS, SURFACE_UNITS
 from mcgw.scene.plausible import surface_in_other_units, warn_of_units
+from mcgw.scene.radii import ListedSummits, Spectral
 from mcgw.scene.section import SceneError, Section
-from mcgw.scene.summits import ListedSummits, Spectral
 from mcgw.scene.values import MOMENTS, SUMMITS
 
 _Kind = TypeVar("_Kind", Plain, Spectral)

@@ -27,12 +27,12 @@ from analytic import (
 from analytic.laws import ContactLaw, Film, Layer, Tangential
 from mcgw.scene.kinds import ByName, Either, List, Number, Table, Whole, Word
 from mcgw.scene.measured import Fitted, Uncertainty
-from mcgw.scene.samplers import SAMPLERS
+from mcgw.scene.promises import SAMPLERS
 from mcgw.scene.section import Key, Kind
 
 if TYPE_CHECKING:
     from analytic import Interaction, Joint
-    from mcgw.scene.summits import Spectral
+    from mcgw.scene.radii import Spectral
 
     _Given = TypeVar("_Given", contravariant=True)
     _Held = TypeVar("_Held", covariant=True)

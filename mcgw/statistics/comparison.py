@@ -16,7 +16,7 @@ from mcgw.formats.table import SEPARATION, Column, Table, stacked
 from mcgw.machine.progress import Progress, told
 from mcgw.machine.terminal import plotted
 from mcgw.scene.arguments import check_object
-from mcgw.scene.samplers import promise_of
+from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.statistics.verdict import Tested, Verdict, tested, verdict
 from mcgw.sweeps.axes import label

@@ -22,7 +22,7 @@ from mcgw.machine.terminal import plotted
 from mcgw.sampling.block import Sampler
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.arguments import check_object
-from mcgw.scene.samplers import promise_of
+from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.statistics.checks import (
     Check,

@@ -14,7 +14,7 @@ from analytic import MeasuredHeights, quantity_of
 from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.formats.table import evenly
-from mcgw.scene.samplers import promise_of
+from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 
 _SEPARATIONS, _FEW = 8, 3  # laws per quantity, at most; few where a law takes 60 ms instead of 10

@@ -26,7 +26,7 @@ from analytic.laws import Hertz, term_of
 from mcgw.ensemble.drawing import blocks
 from mcgw.errors import RunError
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene.samplers import promise_of
+from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 
 _POINTS = 24

@@ -22,7 +22,7 @@ from mcgw.sampling.asperities import summits_drawn
 from mcgw.sampling.block import Sampler
 from mcgw.sampling.direct import asperity_sums
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene.samplers import promise_of
+from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.section import SceneError
 from mcgw.scene.values import EXACT

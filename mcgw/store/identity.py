@@ -28,7 +28,7 @@ from scipy import special
 
 import analytic
 from mcgw.formats.named_files import loads
-from mcgw.scene.samplers import promise_of
+from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from, scene_text
 from mcgw.scene.section import shortened

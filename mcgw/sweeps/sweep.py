@@ -14,7 +14,7 @@ from mcgw.ensemble.results import PROBABILITIES
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import SEPARATION, Column, Table, evenly
 from mcgw.machine.terminal import plotted
-from mcgw.scene.samplers import promise_of
+from mcgw.scene.promises import promise_of
 from mcgw.scene.scene_file import scene_text
 from mcgw.sweeps.axes import Point, label
 from mcgw.sweeps.groups import Place

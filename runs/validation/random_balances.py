@@ -20,7 +20,7 @@ from analytic import SpectralMoments
 from mcgw.elasticity.levels import Pressed
 from mcgw.errors import RunError
 from mcgw.maps.synthetic import Spectrum, gaussian_map
-from mcgw.sampling.located.balance import Located
+from mcgw.sampling.located.equilibrium import Located
 from mcgw.sampling.located.spots import Grid, LawSpots
 
 SEED, M2, MODULUS = 20261124, 0.01, 1e11

@@ -81,7 +81,7 @@ class OneByOne:
 
 @dataclass(frozen=True)
 class Crowds:
-    """Crowded cells by the Gaussian limit of their moments (`mcgw.sampling.drawing`).
+    """Crowded cells by the Gaussian limit of their moments (`mcgw.sampling.drawn_moments`).
 
     Parameters
     ----------
