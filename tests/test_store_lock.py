@@ -225,6 +225,7 @@ def test_a_holder_that_has_not_said_its_name_is_another_process(tmp_path):
         (OSError(), "its run has just ended; repeat the command$"),
         (FileNotFoundError(2, "No such file or directory"), "its run has just ended; repeat the command$"),
         (PermissionError(13, "Permission denied"), r"cannot be locked \(Permission denied\)$"),
+        (ValueError("opened read-only"), r"cannot be locked \(opened read-only\); choose another -o$"),
     ],
 )
 def test_a_folder_that_is_gone_is_told_from_one_that_cannot_be_locked(error, told, tmp_path, monkeypatch):

@@ -85,9 +85,9 @@ def _try(folder: Path, shared: bool, held: ExitStack) -> str | None:
         folder.mkdir(mode=0o755, parents=True, exist_ok=True)
         try:
             held.enter_context(_lock(folder, shared))
-        except (Timeout, sqlite3.Error) as error:
+        except (Timeout, sqlite3.Error, ValueError) as error:  # the last: its file cannot be written
             by_name = not keeps_locks(folder)
-            if not by_name and isinstance(error, sqlite3.Error):
+            if not by_name and not isinstance(error, Timeout):
                 if new:
                     _remove_if_empty(folder)
                 raise StoreError(f"{folder}: cannot be locked ({error}); choose another -o") from None
