@@ -636,13 +636,19 @@ def test_converge_takes_its_folder(call):
     assert (said.folder / "there/deep/s-converge.png").is_file()
 
 
-@pytest.mark.parametrize("study", ["converge", "tradeoff"])
-def test_a_study_lies_beside_its_scene(study, tmp_path, monkeypatch):
-    """In a folder that is made."""
+@pytest.fixture
+def few_methods(monkeypatch):
+    """Studies of speed and accuracy look at two methods alone."""
     from mcgw.statistics import tradeoff
 
     every = tradeoff.methods_for
-    monkeypatch.setattr(tradeoff, "methods_for", lambda *asked: every(*asked)[:1])
+    monkeypatch.setattr(tradeoff, "methods_for", lambda *asked: every(*asked)[:2])
+
+
+@pytest.mark.parametrize("study", ["converge", "tradeoff"])
+@pytest.mark.usefixtures("few_methods")
+def test_a_study_lies_beside_its_scene(study, tmp_path):
+    """In a folder that is made."""
     (tmp_path / "there").mkdir()
     (tmp_path / "there/s.toml").write_text(SCENE)
     words = {"converge": [], "tradeoff": ["--seconds", "0.1"]}
@@ -658,6 +664,7 @@ def test_a_study_is_of_the_values_that_are_set(call, study):
     assert "ensemble.seed = -1: give a whole number" in said.err
 
 
+@pytest.mark.usefixtures("few_methods")
 def test_tradeoff_takes_its_folder_and_its_time(call, monkeypatch):
     from mcgw.statistics import tradeoff
 
@@ -669,8 +676,6 @@ def test_tradeoff_takes_its_folder_and_its_time(call, monkeypatch):
         return study(scene, seconds=0.01, progress=progress)
 
     monkeypatch.setattr(tradeoff, "tradeoff", spy)
-    every = tradeoff.methods_for
-    monkeypatch.setattr(tradeoff, "methods_for", lambda *asked: every(*asked)[:2])
     said = call(["tradeoff", "@s.toml", "-o", "there", "--seconds", "7.5"])
     assert said.code == 0, said.err
     assert sorted(p.name for p in (said.folder / "there").iterdir()) == ["s-tradeoff.csv", "s-tradeoff.png"]

@@ -90,14 +90,10 @@ class Comparison(Shown):
 
     def sheet(self) -> Sheet:
         """The verdict, and each quantity at the separation where it is farthest from theory."""
-        residuals = (curve.residual for curve in self.curves.values())
-        worst = [int(np.argmax(np.abs(r).round(2))) for r in residuals]  # the first of those that read alike
-        tables = zip(self.tables().items(), worst, strict=True)
-        farthest = {name: table.at([k]) for (name, table), k in tables}
+        farthest = {name: _farthest(table, 1) for name, table in self.tables().items()}
         v = self.verdict
-        seen = f"{v.seen}, p = {v.p:.3g}"
         facts = [
-            ("all means" if v.laws is None else "all values", seen),
+            ("all means" if v.laws is None else "all values", f"{v.seen}, p = {v.p:.3g}"),
             ("elasticity", self.ensemble.scene.validity().brief),
         ]
         table = stacked(farthest, "quantity", "farthest off")
@@ -110,8 +106,7 @@ class Comparison(Shown):
     def worst(self, rows: int) -> Table:
         """The means farthest from theory, over all quantities."""
         table = replace(stacked(self.tables(), "quantity"), title="farthest from theory, in standard errors")
-        far = np.abs(table.only("residual").columns[0].values).round(2)
-        return table.at(np.argsort(-far, kind="stable")[:rows].tolist())
+        return _farthest(table, rows)
 
     def _table(self, quantity: str) -> Table:
         c, q = self.curves[quantity], self.ensemble.scene.quantity(quantity)
@@ -125,6 +120,12 @@ class Comparison(Shown):
             Column("residual", c.residual, form="+z.2f"),
         )
         return Table(columns, heading(q))
+
+
+def _farthest(table: Table, rows: int) -> Table:
+    """Rows of the largest residuals; of those that read alike the first, whatever their rounding."""
+    far = np.abs(table.only("residual").columns[0].values).round(2)
+    return table.at(np.argsort(-far, kind="stable")[:rows].tolist())
 
 
 @dataclass(frozen=True, repr=False)

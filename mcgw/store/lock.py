@@ -3,16 +3,14 @@
 It lies in the folder of the run (`mcgw.store.disk.parts_of`) and goes together with the folder when nothing
 else is left there. The system frees it when its holder dies, however that happens. It is the lock of an
 SQLite file that stays empty, which every system has. Such a lock goes when *any* descriptor of its file is
-closed, so nothing else may open that file: who holds it stands in another one. Where the disk keeps no locks,
-names of files stand for them (`mcgw.store.lock`).
+closed, so nothing else may open that file: who holds it stands in another one.
 
-The lock of a folder on a disk that keeps none, as NFS or Lustre without them: by names of files.
-
-Only one process can make a name. Who works alone makes ``lock.alone``, who shares makes a name of its own,
-and each looks for the others before and after: of two that begin at once one goes on, or none. No system
-frees such a lock: names that processes of this host left when they died are removed, and those of another
-host are for people to remove. That two drivers work on one run harms no more than their time, for blocks are
-whole or not there, and the same whoever draws them.
+Where the disk keeps no locks, as NFS or Lustre without them, names of files stand for them. Only one process
+can make a name. Who works alone makes ``lock.alone``, who shares makes a name of its own, and each looks for
+the others before and after: of two that begin at once one goes on, or none. No system frees such a lock:
+names that processes of this host left when they died are removed, and those of another host are for people
+to remove. That two drivers work on one run harms no more than their time, for blocks are whole or not there,
+and the same whoever draws them.
 """
 
 import os
