@@ -77,6 +77,12 @@ from analytic.surface import Body, SpectralMoments, Surface, composite_modulus
 from analytic.tables import Table
 
 if TYPE_CHECKING:
+    from analytic.correlation import (
+        cooper_mikic_yovanovich,
+        harmonic_conductivity,
+        mean_absolute_slope,
+        mikic_elastic,
+    )
     from analytic.interacting import InteractingModel
     from analytic.interaction import Interaction
     from analytic.laws import (
@@ -90,6 +96,7 @@ if TYPE_CHECKING:
         PowerLawGraded,
         ZhaoMaiettaChang,
     )
+    from analytic.yielding import critical_penetration, summit_plasticity_index, yielding_share
 
 __all__ = [
     "ALL_QUANTITIES", "JOINT", "LAW_QUANTITIES", "PER_AREA", "QUANTITIES", "RESISTANCES", "SEPARATIONS",
@@ -101,14 +108,21 @@ __all__ = [
     "MeasuredHeights", "MeasuredRadii", "Model", "Nayak", "PiecewiseSeries", "PowerLawGraded", "Quantity",
     "RandomCurvature", "ScipyHeights", "SpectralMoments", "Surface", "Table", "Tangential", "Weibull",
     "ZhaoMaiettaChang",
-    "area", "area_per_load", "area_per_load_ratio", "barber_conductance", "bends",
-    "composite_modulus", "conductance", "contacts", "extent", "first_negative",
-    "fn", "fn_between", "fn_paper", "fn_scaled", "is_data", "load", "masing", "mean", "mean_modulus",
-    "name_of", "plasticity_index", "quantity_of", "ratio_at_equal_load", "resolved", "resolved_breaks",
-    "stiffness", "stiffness_ratio",
+    "area", "area_per_load", "area_per_load_ratio", "barber_conductance", "bends", "composite_modulus",
+    "conductance", "contacts", "cooper_mikic_yovanovich", "critical_penetration", "extent", "first_negative",
+    "fn", "fn_between", "fn_paper", "fn_scaled", "harmonic_conductivity", "is_data", "load", "masing", "mean",
+    "mean_absolute_slope", "mean_modulus", "mikic_elastic", "name_of", "plasticity_index", "quantity_of",
+    "ratio_at_equal_load", "resolved", "resolved_breaks", "stiffness", "stiffness_ratio",
+    "summit_plasticity_index", "yielding_share",
 ]  # fmt: skip
 
-_LATER = {"Interaction": "interaction", "InteractingModel": "interacting", "Joint": "joint"}
+_LATER = {
+    "Interaction": "interaction", "InteractingModel": "interacting", "Joint": "joint",
+    "cooper_mikic_yovanovich": "correlation", "harmonic_conductivity": "correlation",
+    "mean_absolute_slope": "correlation", "mikic_elastic": "correlation",
+    "critical_penetration": "yielding", "summit_plasticity_index": "yielding",
+    "yielding_share": "yielding",
+}  # fmt: skip
 
 
 def __getattr__(name: str) -> Any:
