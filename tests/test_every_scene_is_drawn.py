@@ -104,7 +104,7 @@ def test_each_cell_looks_at_the_highest_separation_of_each_formula_that_holds_th
     high = np.where(dice.random(n) < 0.3, np.inf, low + dice.exponential(0.3, n))
     none = np.zeros(n, dtype=bool)
     rooted = kind == 4
-    rows = Rows(h, low, high, none, rooted, none, none, none, kind, kind, h, Powers(h, h))
+    rows = Rows(h, low, high, none, rooted, none, none, none, kind, kind, h, Powers(h, h, none))
     pairs = zip(*(x.tolist() for x in rows.nearest(starts)), strict=True)
     found = {(cell, int(kind[r])): h[r] for cell, r in pairs}
     wanted = {}

@@ -10,10 +10,9 @@ import analytic
 import mcgw
 from mcgw.machine.memory import aligned
 from mcgw.sampling.cells import mesh_of
-from mcgw.sampling.response.gathering import FOUR, Lines, gathered, in_fours
-from mcgw.sampling.response.product import Tiles
+from mcgw.sampling.response.product import FOUR, Lines, Tiles
 from mcgw.sampling.response.rows import hertz_rows
-from mcgw.sampling.response.tree import LAST_DIGITS, Nodes, Precision, tree_over
+from mcgw.sampling.response.tree import LAST_DIGITS, Nodes, tree_over
 from mcgw.sampling.response.walk import walk
 
 
@@ -40,9 +39,8 @@ def lines(blocks):
 
 
 def swept(first, second, given, answers):
-    """Tiles of lines, the order of the sweep being found."""
-    step, fetches, *others, values, at = gathered(first, second, len(given), len(answers))
-    return Tiles(given[fetches], *others, values, at, answers[step])
+    """Tiles of lines."""
+    return Tiles.of((first, second), given, answers)
 
 
 NONE = Lines(*np.empty((4, 0), dtype=np.int64), np.empty(0))
@@ -84,30 +82,10 @@ def test_every_row_is_that_of_a_dense_product(groups, computed, surfaces):
     np.testing.assert_array_equal(tiles.apply(moments[:, :1].copy(), (2, computed)), found[:, :1])
 
 
-def test_the_table_holds_what_is_needed_and_no_more():
-    """A chain of sums from the highest given group down: two groups and the next are there at a time."""
-    n = 100
-    blocks = []
-    for k in range(n):  # row k is given group n - 1 - k plus row k - 1
-        for source in (n - 1 - k, n + k - 1)[: 1 + (k > 0)]:
-            blocks.append(
-                (FOUR * (n + np.full(FOUR, k)) + np.arange(FOUR), np.full(FOUR, FOUR * source), np.eye(FOUR))
-            )
-    answers = np.where(np.arange(n)[:, None] == n - 1, np.arange(FOUR), -1)
-    tiles = swept(*lines(blocks), np.arange(FOUR * n).reshape(-1, FOUR), answers)
-    assert max(tiles.fetched.max(), tiles.computed.max()) == 2 * FOUR
-    assert tiles.fetches[:, 0].tolist() == [FOUR * (n - 1 - k) for k in range(n)]
-    moments = np.random.default_rng(3).integers(0, 1000, (FOUR * n, 5)).astype(float)
-    np.testing.assert_array_equal(
-        tiles.apply(moments, (1, FOUR))[0], moments.reshape(n, FOUR, 5).sum(axis=0).T
-    )
-
-
 def test_nothing_asked():
     none = np.empty((0, FOUR), dtype=np.int64)
     tiles = swept(NONE, NONE, np.array([[0, 1, 2, 3], [4, -1, -1, -1]]), none)
     assert tiles.apply(np.ones((5, 3)), (0, 4)).shape == (0, 3, 4)
-    assert [int(in_fours(n)) for n in (0, 1, 4, 5)] == [0, 4, 4, 8]
     silent = swept(NONE, NONE, none, np.arange(8).reshape(-1, FOUR))  # a separation above all cells
     np.testing.assert_array_equal(silent.apply(np.ones((5, 3)), (2, 4)), np.zeros((2, 3, 4)))
 
@@ -119,35 +97,9 @@ def test_arrays_begin_with_a_line_of_the_cache():
 
 
 QUANTITIES = ("load", "area", "stiffness", "conductance")
-GRADINGS = {
-    "homogeneous": analytic.Homogeneous(),
-    "gamma 2": analytic.Exponential(2.0),
-    "kinks": analytic.Table((-4.0, 0.0, 1.0, 4.0), (0.5, 1.0, 2.0, 1.5)),
-}
 
 
-class InNumpy:
-    """``scale e^m (s - h)^n`` as it is written."""
-
-    def __init__(self, rows):
-        self.exponent, self.scale, self.graded = rows.formulas.exponent, rows.formulas.scale, rows.graded
-
-    def values(self, rows, above, e):
-        whole, half = np.divmod(self.exponent[rows], 1)
-        power = np.where(half > 0, np.sqrt(above), 1.0)
-        for times in range(3):
-            power = np.where(whole > times, power * above, power)
-        return self.scale[rows] * np.where(self.graded[rows], e, 1.0) * power
-
-    def at_start(self, rows, above, e, u):
-        values, (whole, half) = self.values(rows, above / u[:, None], e), np.divmod(self.exponent[rows], 1)
-        return [
-            (root, np.flatnonzero(here), values[:, here], whole[here])
-            for root, here in ((False, half == 0), (True, half > 0))
-        ]
-
-
-def asked(grading, number, precision=LAST_DIGITS):
+def asked(grading, number):
     h = tuple(np.linspace(0, 4, number))
     scene = mcgw.Scene(
         SURFACE, separations=h, grading=grading, quantities=QUANTITIES, n_asperities=10**5, n_surfaces=1,
@@ -157,38 +109,19 @@ def asked(grading, number, precision=LAST_DIGITS):
     tree = tree_over(mesh)
     return (
         mesh, tree, hertz_rows(scene, QUANTITIES, lasting=False),
-        Nodes.of(mesh, tree, grading, 10**5, precision),
+        Nodes.of(mesh, tree, grading, 10**5, LAST_DIGITS),
     )  # fmt: skip
 
 
-def found(mesh, tree, rows, nodes):
-    """Every series by its row and node, and the moments that it takes."""
-    entries, plain, rooted = walk(mesh, tree, rows, nodes)
-    ends = entries.start + entries.length
-    places = zip(entries.row.tolist(), entries.node.tolist(), entries.rooted.tolist(), strict=True)
-    pieces = [entries.coefficients[a:b].tobytes() for a, b in zip(entries.start, ends, strict=True)]
-    return dict(zip(places, pieces, strict=True)), plain.tolist(), rooted.tolist()
-
-
-@pytest.mark.parametrize("grading", GRADINGS.values(), ids=GRADINGS)
-@pytest.mark.parametrize("number", [1, 7, 301])
-@pytest.mark.parametrize("precision", [LAST_DIGITS, Precision(1e-4, of_least=True)])
-def test_both_walks_find_the_same(grading, number, precision):
-    """The same nodes for every row, and the same bits of every coefficient."""
-    mesh, tree, rows, nodes = asked(grading, number, precision)
-    assert found(mesh, tree, rows, nodes) == found(mesh, tree, replace(rows, formulas=InNumpy(rows)), nodes)
-
-
-@pytest.mark.parametrize("formulas", [lambda rows: rows.formulas, InNumpy])
-def test_what_is_not_resolved_is_refused(formulas):
+def test_what_is_not_resolved_is_refused():
     """A grading too steep for the cells, and a row that begins inside one."""
     mesh, tree, rows, nodes = asked(analytic.Homogeneous(), 7)
     steep = replace(nodes, moduli=1 + 0.5 * np.sign(np.sin(40 * (nodes.start[:, None] + nodes.above))))
     with pytest.raises(ValueError, match="not resolved near s = "):
-        walk(mesh, tree, replace(rows, formulas=formulas(rows)), steep)
+        walk(mesh, tree, rows, steep)
     inside = rows.h + 1e-3
     with pytest.raises(ValueError, match=r"at s = 0.001 is not an edge"):
-        walk(mesh, tree, replace(rows, h=inside, low=inside, formulas=formulas(rows)), nodes)
+        walk(mesh, tree, replace(rows, h=inside, low=inside), nodes)
 
 
 def test_a_row_of_very_many_groups_in_falling_order():
@@ -198,5 +131,5 @@ def test_a_row_of_very_many_groups_in_falling_order():
     first = Lines(np.full(n, FOUR * n), start, np.ones(n, dtype=np.int64), at, 1.0 + at)
     given = np.arange(FOUR * n).reshape(-1, FOUR)
     tiles = swept(first, NONE, given, np.array([[0, -1, -1, -1]]))
-    np.testing.assert_array_equal(tiles.fetches, given)
+    np.testing.assert_array_equal(tiles.columns, np.arange(n))
     np.testing.assert_array_equal(tiles.values[:, 0, 0], n - at)

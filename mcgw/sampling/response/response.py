@@ -49,7 +49,7 @@ class Response:
     def out_of(self, layout: Layout) -> "Response":
         """The same, bit by bit, out of moments of which each cell may have more than this needs."""
         there = np.append(layout.rows_of(self.layout), -1)
-        return replace(self, tiles=replace(self.tiles, fetches=there[self.tiles.fetches]))
+        return replace(self, tiles=replace(self.tiles, given=there[self.tiles.given]))
 
     def __matmul__(self, moments: Array) -> Array:
         """Quantities of every surface: moments (rows, surfaces) to (quantities, surfaces, separations)."""

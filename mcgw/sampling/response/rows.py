@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from analytic import HeightLaw, quantity_of
 from analytic.arrays import Array, Ints
-from mcgw.machine.compiling import njit
 from mcgw.machine.memory import kept
 from mcgw.sampling.spacing import SURE
 from mcgw.scene.scene import Scene
@@ -24,11 +23,30 @@ class Powers(NamedTuple):
     Attributes
     ----------
     exponent, scale : ndarray
-        Of each row.
+        Of each row: whole or half-integer exponents.
+    graded : ndarray of bool
+        As `Rows.graded`.
     """
 
     exponent: Array
     scale: Array
+    graded: NDArray[np.bool_]
+
+    def values(self, rows: Ints, above: Array, e: Array) -> Array:
+        """Values at heights `above` the separation of each row, of modulus `e`: shape (points, rows)."""
+        powers = power_of(self.exponent[rows], above)
+        return np.asarray(self.scale[rows] * np.where(self.graded[rows], e, 1.0) * powers)
+
+    def at_start(self, rows: Ints, above: Array, e: Array, u: Array) -> list[tuple[bool, Ints, Array, Array]]:
+        """The same on the cell or node of variable u at which each row begins, at heights `above` its start.
+
+        As ``s - h = u q(u)``, they are ``u^n q^n e`` with q^n e smooth: whether they are still to be
+        multiplied by sqrt(u), of which of the rows they are, q^n e, and the whole powers of u.
+        """
+        values, whole = self.values(rows, above / u[:, None], e), np.floor(self.exponent[rows])
+        half = self.exponent[rows] > whole
+        parts = [(root, np.flatnonzero(half == root)) for root in (False, True)]
+        return [(root, which, values[:, which], whole[which]) for root, which in parts]
 
 
 @dataclass(frozen=True)
@@ -127,8 +145,7 @@ def hertz_rows(scene: Scene, quantities: tuple[str, ...], *, lasting: bool) -> R
     if not lasting:
         sixteen = Sixteen.of(scene)
         for q in chosen:
-            terms = np.empty(sixteen.approach.shape)
-            raise_to(float(q.exponent), sixteen.approach.ravel(), terms.reshape(-1))
+            terms = power_of(q.exponent, sixteen.approach)
             totals.append(sixteen.totals(q.scale(scene.surface), terms * sixteen.e if q.modulus else terms))
     return Rows(
         h=h,
@@ -142,19 +159,17 @@ def hertz_rows(scene: Scene, quantities: tuple[str, ...], *, lasting: bool) -> R
         kind=np.repeat(np.arange(len(chosen)), len(once)),
         answer=np.arange(len(h)),
         total=np.concatenate(totals),
-        formulas=Powers(exponent, scale),
+        formulas=Powers(exponent, scale, graded.astype(bool)),
     )
 
 
-@njit(cache=True)
-def raise_to(exponent: Any, x: Any, result: Any) -> None:
-    """Write ``x^exponent`` for a whole or half-integer exponent, by products and roots."""
-    half = exponent % 1 != 0
-    for i in range(x.size):
-        result[i] = np.sqrt(x[i]) if half else 1.0
-    for _ in range(int(exponent)):
-        for i in range(x.size):
-            result[i] *= x[i]
+def power_of(exponent: Array | float, x: Array) -> Array:
+    """Return ``x^exponent`` for whole or half-integer exponents, by products and roots."""
+    whole = np.floor(exponent)
+    power = np.where(exponent > whole, np.sqrt(x), 1.0)
+    for times in range(int(np.max(whole, initial=0))):
+        power = np.where(whole > times, power * x, power)
+    return power
 
 
 @dataclass(frozen=True)

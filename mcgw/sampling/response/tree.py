@@ -221,12 +221,13 @@ class Nodes:
     def rough_noise(self, node: Ints, row: Ints, rows: Rows) -> Array:
         """What the last digit of a height makes of a power of its distance from the end of a row."""
         noise = np.zeros(len(row))
-        start, end, low, high = self.start[node], self.end[node], rows.low[row], rows.high[row]
-        for at, distance, which in (
-            (start, start - low, rows.rough[row] & np.isfinite(low)),
-            (end, high - end, rows.lost[row]),
+        for at, far, which in (
+            (self.start, rows.low, rows.rough & np.isfinite(rows.low)),
+            (self.end, rows.high, rows.lost),
         ):
-            near = np.flatnonzero(which & (distance > 0))
-            share = np.spacing(np.abs(at[near])) / distance[near]
+            near = np.flatnonzero(which[row])
+            edge = at[node[near]]
+            distance = np.abs(edge - far[row[near]])
+            share = np.spacing(np.abs(edge)) / np.where(distance > 0, distance, np.inf)
             noise[near] = np.maximum(noise[near], np.minimum(_DIGITS * share, 1.0))
         return noise

@@ -1,8 +1,4 @@
-"""From the root down: give each row to the coarsest nodes that resolve it.
-
-Rows of any contact law, whose formulas are Python's, are walked all of a level of the tree at once; those of
-Hertz's law one by one, in compiled loops (`mcgw.sampling.response.hertz_walk`).
-"""
+"""From the root down, a level of the tree at a time: give each row to the coarsest nodes that resolve it."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -14,8 +10,7 @@ from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads
 from mcgw.sampling.cells import Mesh
-from mcgw.sampling.response.hertz_walk import HertzWalk
-from mcgw.sampling.response.rows import Powers, Rows
+from mcgw.sampling.response.rows import Rows
 from mcgw.sampling.response.series import (
     APART,
     MOST,
@@ -37,7 +32,7 @@ _MANY = 16  # times that many: worth another thread
 _NONE = np.empty(0, dtype=np.int64)
 
 
-class LawWalk:
+class _Walk:
     """Series of rows.
 
     Parameters
@@ -45,7 +40,7 @@ class LawWalk:
     tree, nodes : Tree, Nodes
         Nodes over the cells.
     rows : Rows
-        What to simulate, by formulas of Python.
+        What to simulate.
     """
 
     def __init__(self, tree: Tree, nodes: Nodes, rows: Rows) -> None:
@@ -53,7 +48,11 @@ class LawWalk:
         self._limits = nodes.limits(rows)
 
     def entries(self) -> tuple[Entries, Ints, Ints, Array, float]:
-        """As `mcgw.sampling.response.hertz_walk.HertzWalk.entries`."""
+        """What each node gives; how many T_j and R_j it must have; where that fails.
+
+        The last two are starts of cells on which a row is not resolved, increasing, and the lowest
+        separation that is not an edge; infinite if there is none.
+        """
         tree, nodes = self._tree, self._nodes
         plain, rooted = np.zeros(tree.size, dtype=np.int64), np.zeros(tree.size, dtype=np.int64)
         found = [_entries(_NONE, _NONE, np.empty((0, len(U))))]
@@ -83,7 +82,7 @@ class LawWalk:
         return joined, plain, rooted, np.unique(np.concatenate(unresolved)), inside
 
     def needed(self, node: Ints, row: Ints) -> Ints:
-        """As `mcgw.sampling.response.hertz_walk.HertzWalk.needed`."""
+        """Moments that each of these nodes needs for a row that is smooth on it."""
         parts = [self._smooth(node[few], row[few])[1] for few in _together(np.arange(len(node)))]
         return np.concatenate([_NONE, *parts])
 
@@ -228,7 +227,7 @@ def walk(mesh: Mesh, tree: Tree, rows: Rows, nodes: Nodes) -> tuple[Entries, Int
     ValueError
         If a row begins or ends inside a cell.
     """
-    series = (HertzWalk if isinstance(rows.formulas, Powers) else LawWalk)(tree, nodes, rows)
+    series = _Walk(tree, nodes, rows)
     entries, plain, rooted, unresolved, inside = series.entries()
     if unresolved.size:
         raise UnresolvedError(unresolved)
