@@ -492,3 +492,21 @@ def test_what_is_asked_of_surfaces_is_an_argument_by_its_row():
         arguments[name].default == (KEYS["ensemble"][name].default or None) for name in ("keep", "seed")
     )
     assert not {"datum", "layer"} & set(dir(mcgw.Scene))
+
+
+@pytest.mark.parametrize(
+    ("table", "lines"),
+    [
+        ("contact", 'law = "johnson-kendall-roberts"\npull_off = 0.1\nseparations = [1.0]'),
+        ("contact", 'law = "kogut-etsion"\ncritical = 0.1\nseparations = [1.0]'),
+        ("heights", 'law = "weibull"\nshape = 2.0'),
+        ("grading", "gamma = 2.0"),
+        ("ensemble", "seed = 1"),
+    ],
+)
+def test_each_neighbour_of_an_unknown_key_is_listed_once(table, lines):
+    with pytest.raises(mcgw.SceneError) as error:
+        mcgw.scene_from(f"[{table}]\n{lines}\nzzzzzz = 1\n")
+    (line,) = [line for line in error.value.problems if "zzzzzz" in line]
+    known = line.partition("known keys: ")[2].split(", ")
+    assert len(known) == len(set(known)) > 1

@@ -35,6 +35,7 @@ class ElasticPlastic(ContactLaw):
     critical: float | None = None
 
     elastic: ClassVar[bool] = False
+    yields: ClassVar[bool] = True
     of_radius: ClassVar[tuple[str, float]] = ("critical", 1.0)
     starts: ClassVar[tuple[float, ...]] = (1.0,)
 

@@ -37,6 +37,8 @@ class ContactLaw:
         Name of the law in scene files and reports.
     elastic : bool
         Whether an asperity unloads along its loading curve.
+    yields : bool
+        Whether an asperity yields.
     finest : float
         How far above first touch the formulas of piece 0 are analytic, in penetration: infinite if they
         are sums of powers of y.
@@ -51,6 +53,7 @@ class ContactLaw:
 
     name: ClassVar[str] = "hertz"
     elastic: ClassVar[bool] = True
+    yields: ClassVar[bool] = False
     root: ClassVar[bool] = True
     in_si: ClassVar[tuple[str, str] | None] = None
     of_radius: ClassVar[tuple[str, float] | None] = None

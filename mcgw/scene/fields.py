@@ -161,6 +161,14 @@ class Fields(Values):
         return self.law.on(self.surface)
 
     @property
+    def softer(self) -> tuple[float, float] | None:
+        """Hardness, Pa, and Poisson's ratio that tell whether contacts of an elastic law yield, if known."""
+        if self.hardness is None:
+            return None
+        poisson = getattr(self.law, "poisson", self.poisson)
+        return self.hardness, 0.3 if poisson is None else poisson
+
+    @property
     def ways(self) -> Ways:
         """Loading or unloading: the ways that its quantities need."""
         conductance = None if self.film is None else self.film.on(self.surface)

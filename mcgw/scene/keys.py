@@ -8,7 +8,7 @@ from analytic.laws import Layer, Tangential
 from mcgw.scene.kinds import ByName, Either, Flag, List, Number, Table, Text, Whole, Word
 from mcgw.scene.measured import Fitted
 from mcgw.scene.section import Key, TableOfKeys
-from mcgw.scene.values import SUMMITS, SUMS, rows_of
+from mcgw.scene.values import POISSON, SUMMITS, SUMS, rows_of
 
 GRADINGS: dict[str, Any] = {  # laws by their words in a scene
     "homogeneous": analytic.Homogeneous,
@@ -34,7 +34,7 @@ def _contact_laws() -> tuple[str, ...]:
 
 
 _ANY, _POSITIVE, _NOT_NEGATIVE = Number(low=-math.inf), Number(), Number(zero=True)
-_POISSON, _FILE = Number(low=-1.0, high=0.5), Text()
+_FILE = Text()
 _RATIO = Number(low=1, advice="give the larger over the smaller, a number >= 1")
 _RADII = List(_POSITIVE, advice="give a list of finite numbers > 0")
 _LISTED = List(_ANY)
@@ -52,12 +52,12 @@ _PIECES_EXAMPLE = (
     "[{low = -1.0, high = 1.0, coefficients = [1.0]}, {low = 1.0, high = 3.0, coefficients = [1.0]}]"
 )
 _BODY = Table(
-    (Key("E", Number("Pa", infinite=True), required=True), Key("nu", _POISSON, default=0.3)),
+    (Key("E", Number("Pa", infinite=True), required=True), Key("nu", POISSON, default=0.3)),
     "",
     analytic.Body,
 )
 _SHIFTS = Either((List(_NOT_NEGATIVE, advice="give a list of numbers >= 0, in m"), _NOT_NEGATIVE))
-_MOUNTED = (Key("friction", _POSITIVE, required=True), Key("poisson", _POISSON, required=True))
+_MOUNTED = (Key("friction", _POSITIVE, required=True), Key("poisson", POISSON, required=True))
 _LAYER = Table(
     (Key("thickness", Number("m"), required=True), Key("conductivity", _POSITIVE, required=True)),
     'give {thickness = "10 um", conductivity = 1.3} (m, W/(m K))',
@@ -195,14 +195,13 @@ TABLES: dict[str, TableOfKeys] = {
         "`spot_conductance`, `yielded`, `load_slope`"),
     Key("law", Word(_contact_laws), '"kogut-etsion"', "contact law of an asperity; default: Hertz's",
         "hertz"),
-    Key("hardness", Number("Pa"), '"1.2 GPa"', "hardness of the softer body, Pa, for elastic-plastic laws"),
+    *rows_of("contact"),
     Key("critical", _POSITIVE, "0.05",
         "instead of `hardness`: δ_c/σ, penetration at which an asperity yields"),
     Key("yield_strength", Number("Pa"), '"400 MPa"',
         "yield strength of the softer body, Pa (`jackson-green`)"),
     Key("yield_strain", _POSITIVE, "0.004",
         "yield strength over E\\*, with `critical` (`jackson-green`; form used in files)"),
-    Key("poisson", _POISSON, "0.3", "Poisson's ratio of the body that yields or coats"),
     Key("bridge", Word(("hermite",)), '"hermite"', "smooths the jumps of a fit"),
     Key("k", _POSITIVE, "0.5", "exponent of the depth (`power-law-graded`)"),
     Key("c0", Number("m"), '"10 um"', "depth at which the modulus is E\\*, m (`power-law-graded`)"),

@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 
 from analytic import UNLOADING, Gaussian, HeightLaw, MeasuredRadii, Nayak, RandomCurvature, Surface
-from analytic.laws import ContactLaw, Film
+from analytic.laws import ContactLaw, Film, Hertz
+from analytic.laws.law import check_poisson
 from mcgw.scene.arguments import as_toml
 from mcgw.scene.fields import LeftOut
 from mcgw.scene.keys import KEYS, TABLES
-from mcgw.scene.laws import contact_law, grading_given, grading_of, heights_given, heights_of, law_of_keys
+from mcgw.scene.laws import contact_law, grading_given, grading_of, heights_given, heights_of
 from mcgw.scene.radii import LISTS, Spectral, curvature_of, datum_shift, listed_of
 from mcgw.scene.section import SceneError, Section
 from mcgw.scene.surface import read_surface
@@ -26,7 +27,8 @@ _OF_SURFACE = tuple(row.name for row in rows_of("surface"))
 # Where arguments of `Scene` stand in a file. Others are whole tables or several keys: objects.
 _PLACES = {key: table for table in ("", "contact", "ensemble") for key in KEYS[table]}
 _PLACES |= {"negative": "grading", "curvature": "summits", **dict.fromkeys(_OF_SURFACE, "surface")}
-_OBJECTS = ("law", "curvature")  # which may be words or keys, too
+_OBJECTS = ("law", "curvature")  # which may be words, too
+_OF_YIELD = ("hardness", "poisson")
 _QUANTITIES = ("load", "area", "stiffness", "contacts")
 # Keys of [ensemble] that are no values of a scene as they are read.
 _DERIVED = ("max_surfaces", "n_surfaces", "n_asperities", "seed", "edges", "left_out")
@@ -46,9 +48,11 @@ def of_arguments(**given: Any) -> Values:
         plain = as_toml(value)
         if value is None:
             continue
-        if name in TABLES and TABLES[name].make:
+        if name == "law" and isinstance(plain, dict):
+            document.setdefault("contact", {}).update(plain)
+        elif name in TABLES and TABLES[name].make:
             document[name] = _keys_of(name, value, plain)
-        elif name in _PLACES and (name not in _OBJECTS or isinstance(plain, str | dict)):
+        elif name in _PLACES and (name not in _OBJECTS or isinstance(plain, str)):
             table = document.setdefault(_PLACES[name], {}) if _PLACES[name] else document
             table[name] = value if isinstance(value, LeftOut) else plain
         else:
@@ -105,7 +109,7 @@ def of_tables(
         advice = 'm0, m2 and m4 need heights.law = "nayak"; otherwise give sigma, radius and eta'
         of["surface"].fail("uncertainty", of["surface"].table["uncertainty"], advice)
     for name, section in (("", top), *of.items()):
-        if not python or TABLES[name].make:  # a file or a dict, where more may be wrong than values
+        if not python or name == "contact" or TABLES[name].make:  # where keys may be unknown, as in a dict
             section.finish()
     if problems:
         raise SceneError(problems)
@@ -164,9 +168,11 @@ def _contact(section: Section, objects: Values, heights: HeightLaw | None) -> Va
     names = section.read("quantities") or _QUANTITIES
     names = (*names, *(["conductance_si"] if film and "conductance_si" not in names else []))
     also = () if back is None else (q.name for n in names for q in UNLOADING.values() if q.unloading == n)
+    law = _law(section, objects)
     return {
         "separations": separations,
-        "law": _law(section, objects),
+        "law": law,
+        **_softer(section, law, of_python="law" in objects),
         "unload_from": back,
         "film": film,
         "tangential": section.read("tangential"),
@@ -175,15 +181,39 @@ def _contact(section: Section, objects: Values, heights: HeightLaw | None) -> Va
 
 
 def _law(section: Section, objects: Values) -> ContactLaw:
-    """Of a file, of Python, or by its keys in a dict of Python."""
-    given = objects.get("law", section.table.get("law"))
-    if isinstance(given, ContactLaw):
-        return given
-    if isinstance(given, dict):
-        return law_of_keys(given, section.problems)
-    if "law" in objects:
+    """Of Python, or by its keys."""
+    if "law" not in objects:
+        return contact_law(section)
+    given = objects["law"]
+    if not isinstance(given, ContactLaw):
         section.fail("law", given, "your own law is mcgw.CustomLaw(load=..., area=..., ...)")
-    return contact_law(section)
+        return Hertz()
+    return given
+
+
+def _softer(section: Section, law: ContactLaw, *, of_python: bool) -> Values:
+    """Hardness and Poisson's ratio that an elastic law does not take, to tell whether its contacts yield."""
+    found: Values = dict.fromkeys(_OF_YIELD)
+    if not of_python and section.table.get("law", Hertz.name) != law.name:
+        return found  # what is wrong with the law is noted
+    own: list[str] = [field.name for field in fields(law)] if is_dataclass(law) else []
+    for key in _OF_YIELD:
+        if key not in section:
+            continue
+        if key not in own and not law.yields:
+            found[key] = section.read(key)
+        elif of_python:
+            section.known(key)
+            advice = f"give it to the law, {type(law).__name__}, or leave it out"
+            section.fail(key, section.table[key], advice)
+    if found["poisson"] is not None:
+        try:
+            check_poisson(found["poisson"])
+        except ValueError as error:
+            section.note(f"contact.{error}")
+        if "hardness" not in section:
+            section.fail("poisson", found["poisson"], "give hardness too, or leave it out")
+    return found
 
 
 def _film(section: Section, given: Any) -> Film | None:

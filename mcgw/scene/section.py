@@ -202,7 +202,7 @@ class Section:
 
     def known(self, *names: str) -> None:
         """Mark keys as known, read or not."""
-        self._asked += names
+        self._asked += (name for name in names if name not in self._asked)
 
     def finish(self) -> None:
         """Note keys that were not read, and those that do not go together."""

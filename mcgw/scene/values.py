@@ -57,6 +57,7 @@ BALANCED = 1e-11  # what is left over of a balance of located summits
 MOMENTS, SUMMITS = ("m0", "m2", "m4"), ("sigma", "radius", "eta")  # either describes the summits of a surface
 SUMS = tuple({**QUANTITIES, **LAW_QUANTITIES})
 
+POISSON = Number(low=-1.0, high=0.5)
 _ANY = Number(low=-math.inf)
 _KNOWN_TO = "give a number > 0 and at most 0.1; beyond that there are too few contacts for an interval"
 _SHARE = Number("1", high=0.1, advice=_KNOWN_TO)
@@ -123,6 +124,21 @@ class Values:
     interaction: As["Interaction | str | dict[str, Any] | None", "Interaction | None"] = object_or()
     joint: As["Joint | str | dict[str, Any] | None", "Joint | None"] = object_or()
     quantities: As[Sequence[str] | None, tuple[str, ...]] = object_or()
+    hardness: As[float | str | None, float | None] = key(
+        "contact",
+        Number("Pa"),
+        '"1.2 GPa"',
+        "hardness of the softer body, Pa, for elastic-plastic laws; under an elastic law it only tells "
+        "whether contacts yield",
+        python="Hardness of the softer body, Pa, beside an elastic law: only to tell whether contacts yield",
+    )
+    poisson: float | None = key(
+        "contact",
+        POISSON,
+        "0.3",
+        "Poisson's ratio of the body that yields or coats",
+        python="Poisson's ratio of that body, with `hardness`; default: 0.3",
+    )
     fitted: As[Fitted | dict[str, Any] | None, Fitted | None] = object_or()
     # fmt: off
     n_surfaces: As[int | None, int] = key("ensemble", Whole(1), "10", "number of surfaces, default 1000",

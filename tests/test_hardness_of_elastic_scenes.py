@@ -1,0 +1,133 @@
+"""A hardness beside a law that stays elastic: taken everywhere, it changes no value."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import analytic
+import mcgw
+from mcgw.scene.section import SceneError
+
+_SURFACE = mcgw.Surface("1 um", "10 um", "1000/mm^2", "1 mm^2", "100 GPa")
+_LAWS = {
+    "hertz": {},
+    "power-law-graded": {"k": 0.3, "c0": "10 um"},
+    "coated": {"ratio": 2.0, "thickness": "1 um"},
+    "derjaguin-muller-toporov": {"work": "0.01 J/m^2"},
+    "johnson-kendall-roberts": {"pull_off": 0.01},
+}
+_OWN = ("power-law-graded", "coated")  # have a Poisson's ratio already
+_TEXT = """[surface]
+sigma = 1e-6
+radius = 1e-5
+eta = 1e9
+nominal_area = 1e-6
+E_star = 1e11
+[contact]
+separations = [0.0, 1.0]
+"""
+
+
+def _scene(law, **others):
+    given = {"law": law, **_LAWS.get(law, {})}
+    return mcgw.Scene(_SURFACE, separations=[0.0, 1.0], law=given, n_surfaces=3, seed=1, **others)
+
+
+@pytest.mark.parametrize("law", _LAWS)
+def test_taken_and_kept(law, tmp_path):
+    plain, checked = _scene(law), _scene(law, hardness="2 GPa")
+    assert plain.softer is None
+    assert checked.softer == (2e9, 0.3)
+    assert mcgw.scene_from(mcgw.scene_text(checked)) == checked
+    assert replace(checked, n_surfaces=5).softer == checked.softer
+    drawn = mcgw.run(checked, tmp_path / "a.h5")
+    assert mcgw.open_ensemble(tmp_path / "a.h5").scene.softer == (2e9, 0.3)
+    assert np.array_equal(drawn.values("load"), mcgw.simulate(plain).values("load"))
+
+
+@pytest.mark.parametrize("law", _LAWS)
+def test_poisson_is_that_of_the_law_where_it_has_one(law):
+    if law in _OWN:
+        given = {"law": law, **_LAWS[law], "poisson": 0.4, "hardness": 2e9}
+        scene = mcgw.Scene(_SURFACE, separations=[0.0], law=given)
+        assert scene.poisson is None
+        assert scene.law.poisson == 0.4
+    else:
+        scene = _scene(law, hardness=2e9, poisson=0.4)
+    assert scene.softer == (2e9, 0.4)
+    assert mcgw.scene_from(mcgw.scene_text(scene)) == scene
+
+
+def test_the_share_of_a_scene():
+    scene = _scene("hertz", hardness="10 GPa", poisson=0.25)
+    share = analytic.yielding_share(scene.theory, [0.0, 1.0], *scene.softer)
+    law = analytic.KogutEtsion(hardness=10e9, poisson=0.25)
+    yielding = mcgw.Scene(_SURFACE, separations=[0.0, 1.0], law=law, quantities=["contacts", "yielded"])
+    exact = yielding.theory.mean("yielded", [0.0, 1.0]) / yielding.theory.mean("contacts", [0.0, 1.0])
+    assert share == pytest.approx(exact, rel=1e-9)
+
+
+def test_a_law_by_its_word_takes_its_own():
+    by_word = mcgw.Scene(_SURFACE, separations=[0.0], law="kogut-etsion", hardness="2 GPa", poisson=0.33)
+    assert by_word.law == analytic.KogutEtsion(hardness=2e9, poisson=0.33)
+    assert (by_word.hardness, by_word.poisson, by_word.softer) == (None, None, None)
+    of_file = mcgw.scene_from(f'{_TEXT}law = "kogut-etsion"\nhardness = "2 GPa"\npoisson = 0.33\n')
+    assert (of_file.law, of_file.softer) == (by_word.law, None)
+
+
+@pytest.mark.parametrize(
+    ("given", "line"),
+    [
+        ({"poisson": 0.3}, "contact.poisson = 0.3: give hardness too, or leave it out"),
+        (
+            {"hardness": 2e9, "poisson": -1.0},
+            "contact.poisson = -1.0: give a Poisson's ratio, above -1 and at most 0.5",
+        ),
+        (
+            {"hardness": 0.0},
+            "contact.hardness = 0.0: give a finite number > 0 in Pa, such as 1MPa, 78.6 GPa or 1e6 (Pa)",
+        ),
+    ],
+)
+def test_wrong_numbers_beside_hertz(given, line):
+    with pytest.raises(SceneError) as error:
+        mcgw.Scene(_SURFACE, separations=[0.0], **given)
+    assert error.value.problems == [line]
+    with pytest.raises(SceneError) as error:
+        mcgw.scene_from(_TEXT + "".join(f"{key} = {value}\n" for key, value in given.items()))
+    assert error.value.problems == [line]
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        analytic.KogutEtsion(hardness=1e9),
+        analytic.ZhaoMaiettaChang(hardness=1e9),
+        analytic.JacksonGreen(yield_strength=4e8),
+        analytic.CustomLaw([lambda u: u**3], [lambda u: u**2], [], 0.05),
+    ],
+    ids=lambda law: law.name,
+)
+def test_a_law_that_yields_has_its_own(law):
+    for key, value in (("hardness", 2e9), ("poisson", 0.2)):
+        with pytest.raises(SceneError) as error:
+            mcgw.Scene(_SURFACE, separations=[0.0], law=law, **{key: value})
+        advice = f"give it to the law, {type(law).__name__}, or leave it out"
+        assert error.value.problems == [f"contact.{key} = {value}: {advice}"]
+
+
+def test_a_law_of_python_that_has_a_poisson_keeps_it():
+    law = analytic.Coated(ratio=2.0, thickness=1e-6, poisson=0.25)
+    assert mcgw.Scene(_SURFACE, separations=[0.0], law=law, hardness=2e9).softer == (2e9, 0.25)
+    with pytest.raises(SceneError, match=r"contact\.poisson = 0\.2: give it to the law, Coated"):
+        mcgw.Scene(_SURFACE, separations=[0.0], law=law, hardness=2e9, poisson=0.2)
+
+
+def test_keys_that_no_law_has_are_unknown():
+    with pytest.raises(SceneError, match=r"contact\.hardnes: unknown key; did you mean hardness\?"):
+        mcgw.Scene(_SURFACE, separations=[0.0], law={"law": "hertz", "hardnes": 1e9, "hardness": 1e9})
+    with pytest.raises(SceneError, match=r"contact\.critical: unknown key"):
+        mcgw.Scene(_SURFACE, separations=[0.0], law={"law": "hertz", "critical": 0.05})
+    with pytest.raises(SceneError, match=r"contact\.hardness: unknown key"):
+        mcgw.scene_from(f'{_TEXT}law = "jackson-green"\nyield_strength = 4e8\nhardness = 1e9\n')
