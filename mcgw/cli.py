@@ -1,16 +1,20 @@
 """The command line: ``mcgw COMMAND``. What a command needs is imported when it runs."""
 
 import argparse
+import errno
 import gc
 import re
+import signal
 import sys
+import threading
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from importlib import import_module
 from typing import Any, NoReturn
 
 from mcgw.commands.voice import QUIET, add_amount_options, speaking
-from mcgw.errors import RunError
+from mcgw.errors import RunError, in_one_line
 from mcgw.machine.terminal import Plain, one_line, plain_output
 
 COMMANDS = (
@@ -64,33 +68,58 @@ def _printed(output: Plain, asked: argparse.Namespace) -> int:
     output.flush()
     if output.lost is None or isinstance(output.lost, BrokenPipeError) or asked.command not in _PRINTED:
         return 0
-    print(f"mcgw: {output.lost}", file=sys.stderr)
+    print(f"mcgw: {in_one_line(output.lost)}", file=sys.stderr)
     return 1
 
 
 def _main(argv: Sequence[str] | None, asked: argparse.Namespace) -> int:
     try:
         args = _parser().parse_args(argv, asked)
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), _heeding_sigterm():
             warnings.showwarning = _show_warning  # type: ignore[assignment]
             warnings.filterwarnings("ignore", module=r"mcgw\.scene\.plausible")  # shown as notes
             if args.amount == QUIET:
                 warnings.simplefilter("ignore")
             with speaking(args.amount):
                 return int(args.execute(args))
-    except KeyboardInterrupt:
-        print("mcgw: interrupted", file=sys.stderr)
-        return 130
+    except KeyboardInterrupt as stop:
+        terminated = isinstance(stop, _Terminated)
+        print(f"mcgw: {'terminated' if terminated else 'interrupted'}", file=sys.stderr)
+        return 143 if terminated else 130
     except RunError as error:
         print(f"mcgw: {error}", file=sys.stderr)
         return error.code
     except MemoryError as error:
         print(f"mcgw: not enough memory ({one_line(str(error))}); reduce the scene", file=sys.stderr)
         return 1
-    except (ValueError, OSError) as error:
+    except OSError as error:
+        print(f"mcgw: {one_line(in_one_line(error))}", file=sys.stderr)
+        return 1 if error.errno in (errno.ENOSPC, errno.EDQUOT) else 2
+    except ValueError as error:
         for line in str(error).splitlines():
             print(f"mcgw: {one_line(line)}", file=sys.stderr)
         return 2
+
+
+class _Terminated(KeyboardInterrupt):
+    """SIGTERM, which ends a command as Ctrl-C does."""
+
+
+@contextmanager
+def _heeding_sigterm() -> Iterator[None]:
+    """Raise `_Terminated` in the main thread; runs and sweeps heed signals in their own way meanwhile."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def stop(*_: object) -> NoReturn:
+        raise _Terminated
+
+    before = signal.signal(signal.SIGTERM, stop)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def _show_warning(message: Warning | str, *_: Any) -> None:

@@ -1,5 +1,7 @@
 """Errors of runs and of their files, each with its exit code."""
 
+import errno
+
 
 class StoreError(ValueError):
     """A file that cannot be read or written, is not an ensemble, or asks for another place.
@@ -40,3 +42,15 @@ class RunError(RuntimeError):
 
 class StoppedError(RunError):
     """A run that was asked to stop: by Ctrl-C (130) or SIGTERM (143)."""
+
+
+def in_one_line(error: OSError, file: object = None) -> str:
+    """Return a line of what the system said and of which file; `file` is the one that was being made.
+
+    Of a file that nobody names, on a full disk, Numba's own of the compiled loops is likely.
+    """
+    name = error.filename or file
+    said = error.strerror or str(error)
+    if name is None and error.errno in (errno.ENOSPC, errno.EDQUOT):
+        name = "compiled loops (NUMBA_CACHE_DIR), or another file"
+    return said if name is None else f"{name}: {said}"

@@ -15,6 +15,7 @@ from told import ANSWERS, apart
 from touched import reached
 
 import analytic
+import mcgw
 from mcgw.commands.warm import warm
 from mcgw.scene.scene import Scene
 
@@ -28,8 +29,18 @@ def pytest_addoption(parser):
     group.addoption("--touched", action="store_true", help="only what imports what has changed since main")
 
 
+def forget_old_loops(folder):
+    """Remove compiled loops older than the newest source: Numba looks at none but the own file of a loop."""
+    newest = max(path.stat().st_mtime for path in folder.rglob("*.py") if "njit" in path.read_text())
+    for kept in folder.rglob("*.nbi"):
+        if kept.stat().st_mtime < newest:
+            kept.unlink()
+
+
 def pytest_configure(config):
     worker, alone = hasattr(config, "workerinput"), not config.getoption("numprocesses", None)
+    if not worker:
+        forget_old_loops(Path(mcgw.__file__).parent)
     if not worker and not alone:
         warm()
     if config.getoption("--cost"):

@@ -8,8 +8,10 @@ import importlib
 import importlib.metadata
 import os
 import shutil
+import signal
 import subprocess
 import sys
+import time
 import warnings
 from pathlib import Path
 
@@ -173,7 +175,7 @@ def test_a_pipe_that_breaks_elsewhere_is_an_error(monkeypatch, capsys):
 
     monkeypatch.setattr("mcgw.commands.run.execute", work)
     assert main(["run", "s.toml"]) == 2
-    assert capsys.readouterr().err == "mcgw: [Errno 32] Broken pipe: 'a worker'\n"
+    assert capsys.readouterr().err == "mcgw: a worker: Broken pipe\n"
 
 
 @streams
@@ -240,3 +242,17 @@ def test_whole_commands_end_as_undisturbed(command, inputs, tmp_path):
     code, files = made["", ""]
     assert code in (0, 1)
     assert made == {key: (expected(command, *key, code), files) for key in made}
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_termination_is_told_in_one_line_by_every_command(command, monkeypatch, capsys):
+    def work(args):
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(5)
+
+    before = signal.getsignal(signal.SIGTERM)
+    monkeypatch.setattr(f"mcgw.commands.{command}.execute", work)
+    monkeypatch.chdir(Path(mcgw.__file__).parents[1])
+    assert main(WORDS[command].split()) == 143
+    assert capsys.readouterr().err == "mcgw: terminated\n"
+    assert signal.getsignal(signal.SIGTERM) is before

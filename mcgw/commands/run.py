@@ -19,7 +19,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of this command."""
     parser.description = (
         f"{parser.description or ''} The first run on a machine compiles the loops that it needs, which "
-        "takes about 10 s; mcgw warm compiles all of them in advance."
+        "takes about 12 s; mcgw warm compiles all of them in advance."
     )
     parser.add_argument("scene", type=Path, metavar="SCENE", help="TOML file, SI units")
     parser.add_argument(

@@ -6,13 +6,10 @@ loops of their own, radii, interaction, statistics, maps.
 
 import argparse
 import os
-import sys
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
-HELP = "compile all loops now, once for this machine, so that later runs only load them; uses two processes"
+HELP = "compile all loops now, once for this machine, so that later runs only load them"
 EXAMPLE = "mcgw warm"
-_HALVES = 2
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -22,35 +19,23 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(_args: argparse.Namespace) -> int:
     """Compile and print where the loops are stored."""
     from mcgw.commands.voice import news
-    from mcgw.errors import RunError
-    from mcgw.machine.child_process import ChildError
-    from mcgw.sampling.rules import multiply
+    from mcgw.machine.compiling import loops_folder
 
-    try:
-        warm()
-    except ChildError as error:
-        raise RunError(f"the loops could not all be compiled: {error}") from None
-    folder = os.environ.get("NUMBA_CACHE_DIR") or multiply._cache.cache_path
-    news(f"all loops are compiled; cached in {folder}")
+    warm()
+    folder = os.environ.get("NUMBA_CACHE_DIR") or loops_folder()
+    news(f"all loops are compiled; cached in {folder or 'no folder'}")
     return 0
 
 
 def warm() -> None:
-    """Compile what is missing, in two processes that end with this one.
-
-    Raises
-    ------
-    ChildError
-        If a process ended badly.
-    """
-    from mcgw.machine.child_process import run_child
+    """Compile what is missing."""
+    from mcgw.ensemble.simulation import simulate
     from mcgw.machine.progress import steps
 
-    halves = range(min(_HALVES, os.cpu_count() or 1))
-    with ThreadPoolExecutor(len(halves)) as pool:
-        waiting = [pool.submit(run_child, __name__, str(half), str(len(halves))) for half in halves]
-        for one in steps(waiting, "halves"):
-            one.result()
+    _draws()
+    for change in steps(_scenes(), "scenes"):
+        simulate(_scene(**change))
+    _maps()
 
 
 def _scene(**changes: Any) -> Any:
@@ -63,25 +48,21 @@ def _scene(**changes: Any) -> Any:
     return Scene(**{"surface": surface, **asked, **changes})
 
 
-def _scenes() -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
-    """Changes of that scene for either half: laws, a balance, Hertz's law; crowds, statistics, radii."""
+def _scenes() -> list[dict[str, Any]]:
+    """Changes of that scene: laws, a balance, samplers, crowds, statistics, radii."""
     from analytic import Interaction, KogutEtsion
     from mcgw.scene.surface import SpectralSurface
 
     yielding = {"law": KogutEtsion(critical=0.1)}
     coarse = {"accuracy": 1e-3, "n_asperities": 10**5}
     spectrum = SpectralSurface(m0=1e-12, m2=1e-2, m4=4e8, nominal_area=1e-6, E_star=1e11)
-    return (
-        [
-            *(yielding, {**yielding, "unload_from": 0.0}, {**yielding, "sampler": "tail"}),
-            {"interaction": Interaction("mean-plane", at="nominal"), "n_asperities": 300},
-            *({"keep": "moments"}, {"sampler": "stratified"}, {"sampler": "direct"}, {"count": "poisson"}),
-        ],
-        [
-            *(coarse, {"sampler": "aggregate", "n_asperities": 10**6}, {"keep": "statistics"}),
-            *({"surface": spectrum, "sampler": sampler} for sampler in ("cells", "tail", "stratified")),
-        ],
-    )
+    return [
+        *(yielding, {**yielding, "unload_from": 0.0}, {**yielding, "sampler": "tail"}),
+        {"interaction": Interaction("mean-plane", at="nominal"), "n_asperities": 300},
+        *({"keep": "moments"}, {"sampler": "stratified"}, {"sampler": "direct"}, {"count": "poisson"}),
+        *(coarse, {"sampler": "aggregate", "n_asperities": 10**6}, {"keep": "statistics"}),
+        *({"surface": spectrum, "sampler": sampler} for sampler in ("cells", "tail", "stratified")),
+    ]
 
 
 def _maps() -> None:
@@ -107,21 +88,3 @@ def _draws() -> None:
     mesh = mesh_of(scene)
     lengths = (np.resize(kinds, mesh.size) for kinds in ([10, 12, 16], [0, 0, 0, 4, 6, 11]))
     OneByOne().moments(1, 0, counts_of(scene, mesh, 0, 20), Layout(*lengths))
-
-
-def _compile(half: int) -> None:
-    """Run a half: they begin with different loops, so that common ones are compiled once."""
-    from mcgw.ensemble.simulation import simulate
-
-    if half:
-        _draws()
-    for change in _scenes()[half]:
-        simulate(_scene(**change))
-    if not half:
-        _maps()
-
-
-if __name__ == "__main__":
-    first, of = map(int, sys.argv[1:])
-    for half in range(first, _HALVES, of):
-        _compile(half)
