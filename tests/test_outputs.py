@@ -1,9 +1,12 @@
 """What commands may write: never what they read, never an ensemble, never half a file."""
 
+import errno
 import os
 import shutil
+import stat
 import subprocess
 import sys
+from functools import partial
 
 import pytest
 from overwrites import CASES, attempt, contents, prepare, ways
@@ -12,8 +15,8 @@ import mcgw
 from mcgw.cli import main
 from mcgw.commands import outputs
 from mcgw.commands.outputs import CSV, Output, check_outputs
-from mcgw.errors import StoreError
-from mcgw.formats.files import rename_over, state_of, write_whole
+from mcgw.errors import StoreError, in_one_line
+from mcgw.formats.files import rename_over, state_of, whole_file, write_whole
 from mcgw.jobs.job import Job
 from mcgw.store import ensembles, untrusted
 
@@ -302,3 +305,60 @@ def test_save_in_python_keeps_what_is_there(make_scene, tmp_path, monkeypatch):
         mcgw.save(mcgw.simulate(make_scene(n_surfaces=4)), tmp_path / "f.h5")
     assert (tmp_path / "f.h5").read_bytes() == b"precious"
     assert [p.name for p in tmp_path.iterdir()] == ["f.h5"]
+
+
+def test_a_disk_that_does_not_flush_folders_is_no_error(tmp_path, make_scene, monkeypatch):
+    """As some of FUSE, CIFS and 9p; a file that cannot be flushed is one."""
+    real = os.fsync
+
+    def no_folders(fd, code=errno.EINVAL):
+        if stat.S_ISDIR(os.fstat(fd).st_mode):
+            raise OSError(code, os.strerror(code))
+        real(fd)
+
+    for number, code in enumerate((errno.EINVAL, errno.ENOTSUP)):
+        monkeypatch.setattr(os, "fsync", partial(no_folders, code=code))
+        assert mcgw.run(make_scene(n_surfaces=20), tmp_path / f"{number}.h5").n_surfaces == 20
+    monkeypatch.setattr(os, "fsync", partial(no_folders, code=errno.EIO))
+    with pytest.raises(mcgw.RunError, match="Input/output error"):
+        mcgw.run(make_scene(n_surfaces=20), tmp_path / "2.h5")
+
+
+@pytest.mark.parametrize("mode", [0o600, 0o640, 0o664])
+def test_a_replaced_file_keeps_its_mode(mode, here):
+    """Of an ensemble that grows, and of what a command writes anew."""
+    run, export = (
+        "run scene.toml -o r.h5 --set ensemble.n_surfaces=",
+        "export scene.toml --to abaqus -o x.inp",
+    )
+    for name, calls in (("r.h5", (f"{run}30", f"{run}60")), ("x.inp", (export, export))):
+        assert main(calls[0].split()) == 0
+        (here / name).chmod(mode)
+        assert main(calls[1].split()) == 0
+        assert stat.S_IMODE((here / name).stat().st_mode) == mode
+
+
+def test_a_read_only_file_is_refused_in_one_line(here, capsys):
+    """Before anything is drawn; what needs no writing is done as ever."""
+    words = ["run", "scene.toml", "-o", "r.h5", "--set"]
+    assert main([*words, "ensemble.n_surfaces=30"]) == 0
+    export = ["export", "scene.toml", "--to", "abaqus", "-o", "x.inp"]
+    assert main(export) == 0
+    before = [(here / name).read_bytes() for name in ("r.h5", "x.inp")]
+    for name in ("r.h5", "x.inp"):
+        (here / name).chmod(0o444)
+    assert "r.h5: is read-only; choose another -o" in told(capsys, [*words, "ensemble.n_surfaces=60"])
+    assert "x.inp: is read-only" in told(capsys, export)
+    assert main([*words, "ensemble.n_surfaces=30"]) == 0
+    assert [(here / name).read_bytes() for name in ("r.h5", "x.inp")] == before
+
+
+def test_a_full_disk_names_the_file(tmp_path, monkeypatch):
+    """Whatever is written whole."""
+
+    with pytest.raises(OSError, match="No space left") as error, whole_file(tmp_path / "a.csv"):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    assert error.value.filename == str(tmp_path / "a.csv")
+    assert in_one_line(error.value) == f"{tmp_path / 'a.csv'}: No space left on device"
+    assert in_one_line(OSError(errno.ENOSPC, "full")).startswith("compiled loops (NUMBA_CACHE_DIR)")
+    assert in_one_line(OSError("no number")) == "no number"

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from mcgw.commands.voice import news, notes
 from mcgw.errors import StoreError
-from mcgw.formats.files import check_output
+from mcgw.formats.files import check_output, refuse_read_only
 from mcgw.formats.table import Table
 from mcgw.store.disk import TRAILER_BYTES, TRAILER_MAGIC, parts_of
 from mcgw.store.lock import LOCK_FILES
@@ -90,6 +90,8 @@ def check_outputs(outputs: Iterable[Output], *, inputs: Iterable[Path] = ()) -> 
             known = ", ".join(output.format.endings)
             raise output.refuse(f"{output.format.what} is written there, whose name ends in {known}")
         _refuse_ensemble(output)
+        if not output.grows:
+            refuse_read_only(output.path)
     for output in outputs:
         folder = output.path.parent
         new = not folder.exists()

@@ -9,6 +9,7 @@ import glob
 import os
 import secrets
 import socket
+import stat
 import zlib
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
@@ -20,6 +21,7 @@ from mcgw.errors import StoreError
 # What tells a file from another that has taken its name: inode, size, time of the last change.
 State = tuple[int, int, int]
 Expected = State | None | Literal["anything"]
+_WRITABLE = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
 
 
 def state_of(path: Path) -> State | None:
@@ -81,18 +83,42 @@ def whole_file(path: Path, *, expected: Expected = "anything") -> Iterator[Path]
     """
     temporary = temporary_beside(path)
     try:
+        refuse_read_only(path)
         yield temporary
         sync(temporary)
         rename_over(temporary, path, expected)
         sync(path.parent)
-    except BaseException:
+    except BaseException as error:
         with suppress(OSError):  # it has its own name by now, or was never made
             os.unlink(temporary)
+        if isinstance(error, OSError) and error.filename in (None, str(temporary)):
+            error.filename = str(path)
         raise
 
 
+def refuse_read_only(path: Path) -> None:
+    """Refuse to replace a file that nobody may write.
+
+    Raises
+    ------
+    StoreError
+        If it is one.
+    """
+    with suppress(OSError):  # there is none
+        mode = os.lstat(path).st_mode
+        if stat.S_ISREG(mode) and not mode & _WRITABLE:
+            raise StoreError(f"{path}: is read-only; choose another -o, or make it writable")
+
+
 def rename_over(temporary: Path, path: Path, expected: Expected) -> None:
-    """Give a finished file its name, unless that belongs to another file than the expected one."""
+    """Give a finished file its name, unless that belongs to another file than the expected one.
+
+    It keeps the mode of the file that it replaces.
+    """
+    with suppress(FileNotFoundError):
+        replaced = os.lstat(path).st_mode
+        if stat.S_ISREG(replaced):
+            os.chmod(temporary, stat.S_IMODE(replaced))
     if expected is None:
         try:
             os.link(temporary, path)  # unlike a rename, it never replaces anything
@@ -126,10 +152,14 @@ def write_whole(path: Path, pieces: Iterable[bytes], *, expected: Expected = "an
 
 
 def sync(path: Path) -> None:
-    """Flush a file, or the names in a folder, to the disk."""
+    """Flush a file, or the names in a folder, to the disk; some disks do not flush folders."""
     fd = os.open(path, os.O_RDONLY)
     try:
         os.fsync(fd)
+    except OSError as error:
+        if not (stat.S_ISDIR(os.fstat(fd).st_mode) and error.errno in (errno.EINVAL, errno.ENOTSUP)):
+            error.filename = error.filename or str(path)
+            raise
     finally:
         os.close(fd)
 

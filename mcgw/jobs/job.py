@@ -21,7 +21,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import Tables
 from mcgw.ensemble.simulation import reducer_of
 from mcgw.errors import RunError, StoreError
-from mcgw.formats.files import State, check_output, state_of
+from mcgw.formats.files import State, check_output, refuse_read_only, state_of
 from mcgw.machine.memory import gibibytes
 from mcgw.sampling.samplers import name_of
 from mcgw.scene.fields import LeftOut
@@ -109,10 +109,11 @@ class Job:
         StoreError
             With the numbers, or with what is there.
         """
-        self.done()
+        path = self.record.path
+        if self.done() < self.record.plan.total:
+            refuse_read_only(path)
         for one in self.reducers:
             one.check()
-        path = self.record.path
         there = [path, *self.record.folder.glob("shards/block-*.h5")]
         held = sum(file.stat().st_size for file in there if file.is_file())
         needed = sum(one.disk for one in self.reducers) - held

@@ -9,7 +9,7 @@ from typing import Any, overload
 
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import checkpoints, forecast, without_rule
-from mcgw.errors import RunError, StoreError
+from mcgw.errors import RunError, StoreError, in_one_line
 from mcgw.formats.files import state_of
 from mcgw.jobs.driver import By, Part, asked_of, drive, heed_signals
 from mcgw.jobs.engines import Threads
@@ -176,8 +176,8 @@ def make(job: Job, by: By, part: Part | None = None) -> int:
                         _in_blocks(job, by)
                 except OSError as error:
                     raise RunError(
-                        f"{error.filename or run.path}: {error.strerror or error}; finished blocks are kept "
-                        f"in {run.folder}; once this is fixed, the same command resumes"
+                        f"{in_one_line(error)}; finished blocks are kept in {run.folder}; once this is "
+                        "fixed, the same command resumes"
                     ) from None
                 return 0
     tidy(run.path)
