@@ -156,3 +156,21 @@ class Interaction:
             return 0.0
         modulus = surface.E_star if self.bulk_modulus is None else self.bulk_modulus
         return modulus * compliance / 2 * (resistivity if name == "conductance_si" else 1.0)
+
+    def bodies(self, surface: Surface, resistivity: float) -> float:
+        """Return how the bodies as a whole resist the flux through a unit area of the joint, m^2 K/W.
+
+        Parameters
+        ----------
+        surface : Surface
+            Whose nominal area the flux is constricted to.
+        resistivity : float
+            rho of both bodies, m K/W.
+
+        Returns
+        -------
+        float
+            ``0.4732 rho sqrt(A_n)``, half the mean sinking of a square times rho; 0 from the mean plane, far
+            inside a larger contact.
+        """
+        return BOWL / 2 * resistivity * math.sqrt(surface.nominal_area) if self.reference == "body" else 0.0

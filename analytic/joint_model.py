@@ -1,12 +1,17 @@
 """Statistics of surfaces with gas in the gap: a model that also has the conductances of the joint.
 
+A joint is one network, surface by surface: gas beside the spots, both in series with the bodies as a whole,
+``1/h_j = 1/(h_spots + h_gas) + R_bodies A_n``. Film, layer and neighbours are inside h_spots.
+
 What the gas conducts is a number wherever all surfaces have the same distance of mean planes. Where each
 has its own (the nominal separation from the mean plane at given effective ones, or the effective separation
-at given nominal ones), means are to second order in what surfaces differ by, fluctuations to leading order.
+at given nominal ones), means are to second order in what surfaces differ by, fluctuations to leading order;
+so they are in series with the bodies.
 """
 
 from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, fields, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,6 +20,7 @@ from numpy.typing import ArrayLike
 from analytic.arrays import Array
 from analytic.height_rule import Fluctuations
 from analytic.interacting import InteractingModel
+from analytic.interaction import in_series
 from analytic.joint import Gap
 from analytic.model import Cumulants, Model
 from analytic.own_balance import derivative
@@ -108,14 +114,17 @@ class JointModel(Model):
         for name in quantities:
             own.append(names.index(mine[name]) * h.size + np.arange(h.size))
             other.append(names.index(planes[name]) * h.size + np.arange(h.size))
-            factor.append(np.full(h.size, float(name not in JOINT or _spots(name) is not None)))
+            by_spots, by_gas = self._parts(name, h)
+            conducts = name not in JOINT or _spots(name) is not None
+            factor.append(by_spots if conducts else np.zeros(h.size))
             press = np.zeros(h.size)
             if planes[name] != "load":
                 unit = quantity_of(name).scale(self.surface)
-                press = self.filled(super().mean(planes[name], h), 1) / unit
+                press = by_gas * self.filled(super().mean(planes[name], h), 1) / unit
             by_plane.append(press)
         means = [self.mean(name, h) / self._unit(quantity_of(name)) for name in quantities]
-        return one.combined(*(np.concatenate(part) for part in (means, own, factor, other, by_plane)))
+        join = np.concatenate
+        return one.combined(join(means), join(own), join(factor), join(other), join(by_plane))
 
     def _asked(self, quantity: str, h: ArrayLike = np.inf) -> Quantity:
         return JOINT[quantity] if quantity in JOINT else super()._asked(quantity, h)
@@ -124,16 +133,64 @@ class JointModel(Model):
         """The separation that tells the distance of mean planes where each surface has its own; or none."""
         return ""
 
+    def _parts(self, quantity: str, h: Array) -> tuple[Array, Array]:  # noqa: ARG002
+        """How much a quantity deviates with the conductance of the spots, and with that of the gas."""
+        return np.ones(h.size), np.ones(h.size)
+
 
 @dataclass(frozen=True)
 class InteractingJointModel(JointModel, InteractingModel):
-    """The same of asperities that press each other down."""
+    """The same of asperities that press each other down, on bodies that may constrict the flux as a whole."""
+
+    def mean(self, quantity: str, h: ArrayLike) -> Array:
+        """As of the spots; in series with the bodies to second order."""
+        if not (bodies := self._bodies(quantity)):
+            return super().mean(quantity, h)
+        x = self._beside.cumulants(quantity, h)
+        return np.asarray(in_series(x.mean, bodies) - bodies * x.variance / (1 + bodies * x.mean) ** 3)
+
+    def distribution(self, quantity: str, h: float) -> "Law":
+        """As of the spots: of spots and gas, in series with the bodies."""
+        if not (bodies := self._bodies(quantity)):
+            return super().distribution(quantity, h)
+        from analytic.distribution import Mapped
+
+        of = self._beside.distribution(quantity, h)
+        return Mapped(of, lambda x: x / (1 + bodies * x), lambda y: y / (1 - bodies * y))
+
+    @cached_property
+    def _beside(self) -> "_WithoutBodies":
+        return _WithoutBodies(**{each.name: getattr(self, each.name) for each in fields(self)})
+
+    def _bodies(self, quantity: str) -> float:
+        """Their resistance times the nominal area, to what passes them."""
+        if quantity not in JOINT or _spots(quantity) is None or self.film is None:
+            return 0.0
+        return self.interaction.bodies(self.surface, self.film.rho)
+
+    def _parts(self, quantity: str, h: Array) -> tuple[Array, Array]:
+        if not (bodies := self._bodies(quantity)):
+            return super()._parts(quantity, h)
+        felt = self.effective(h)
+        spots = self.alone.mean(f"conductance_si{_way(quantity)}", felt) / self.surface.nominal_area
+        by_gas = (1 + bodies * (spots + self.filled(felt))) ** -2.0
+        return (1 + bodies * spots) ** 2 * by_gas, by_gas  # spots deviate in series with the bodies alone
 
     def _own_plane(self, quantity: str) -> str:
         body = self.interaction.reference == "body"
         if body != self.interaction.nominal:
             return ""
         return "effective_separation" if body else f"nominal_separation{_way(quantity)}"
+
+
+class _WithoutBodies(InteractingJointModel):
+    """The joint without the bodies that it is in series with."""
+
+    def series(self, quantity: str) -> float:  # noqa: ARG002
+        return 0.0
+
+    def _bodies(self, quantity: str) -> float:  # noqa: ARG002
+        return 0.0
 
 
 def with_gap(model: Model, filled: Gap) -> JointModel:

@@ -148,7 +148,7 @@ JOINT = {
     )
     for name, long_name, symbol in (
         ("gap_conductance", "conductance of the gas in the gap, per nominal area", "h_g"),
-        ("joint_conductance", "conductance of spots and gas, per nominal area", "h_j"),
+        ("joint_conductance", "conductance of the joint (spots beside gas), per nominal area", "h_j"),
     )
     for way in ("", "_unloading")
 }  # fmt: skip

@@ -1,10 +1,12 @@
 """Gap conductance of a gas: check values of Yovanovich's integral, limits, and whose heights count."""
 
+import itertools
 import math
 import re
 
 import numpy as np
 import pytest
+from interacting_by_hand import LATTICE, MEAN_SINKING
 from scipy.integrate import quad
 from test_layer import LAWS
 
@@ -96,26 +98,35 @@ def scene_of(**changes):
 def by_hand(h):
     """Gap conductance at a distance over sigma, by the integral as it is written."""
     rms, gas, sigma = 2e-6, air(), ROUGH.sigma
-    alpha = 0.8968 / (1 - (sigma / rms) ** 2)
+    alpha = (1 + 16 / math.pi - 3 * math.sqrt(3)) / (1 - (sigma / rms) ** 2)
     y, m = (h * sigma + 4 * rms / math.sqrt(math.pi * alpha)) / rms, gas.jump / rms
-    integral = quad(lambda x: math.exp(-((y - x) ** 2) / 2) / (x + m), 0, y + 12, points=(m, y))[0]
-    return gas.conductivity / rms * integral / math.sqrt(2 * math.pi)
+    ends = (0, m, 4 * m, 1, *((y,) if y > 1 else ()), y + 4, y + 12)
+    parts = [
+        quad(lambda x: math.exp(-((y - x) ** 2) / 2) / (x + m), *pair, epsabs=0, epsrel=1e-13)[0]
+        for pair in itertools.pairwise(ends)
+    ]
+    return gas.conductivity / rms * sum(parts) / math.sqrt(2 * math.pi)
+
+
+def before_bodies(contact, gas, constricted, area=ROUGH.nominal_area):
+    """Spots (whose conductance has the bodies in series) and gas side by side, then the bodies, by hand."""
+    bodies = MEAN_SINKING / 2 * (1 / 200 + 1 / 16) * math.sqrt(area) if constricted else 0.0
+    return 1 / (1 / (1 / (1 / contact - bodies) + gas) + bodies)
 
 
 @pytest.mark.parametrize("mode", OWN)
 def test_each_surface_at_its_own_distance(mode):
-    """The joint is its spots and its gas; vacuum is the spots alone, no contact the gas alone."""
+    """The joint is its spots and its gas before the bodies; vacuum is the spots alone, no contact the gas."""
     interaction, own = OWN[mode]
     e = mcgw.simulate(scene_of(interaction=interaction))
     h = np.tile(H, (40, 1)) if own is None else e[own]
     for i in (0, 7):
         np.testing.assert_allclose(e["gap_conductance"][i], [by_hand(x) for x in h[i]], rtol=2e-4)
-    np.testing.assert_allclose(
-        e["joint_conductance"], e["contact_conductance"] + e["gap_conductance"], rtol=1e-14
-    )
+    network = before_bodies(e["contact_conductance"], e["gap_conductance"], "body" in mode)
+    np.testing.assert_allclose(e["joint_conductance"], network, rtol=1e-13)
     assert (np.ptp(e["gap_conductance"], axis=0) > 0).all() == (own is not None)
     vacuum = mcgw.simulate(scene_of(interaction=interaction, joint="vacuum"))
-    np.testing.assert_array_equal(vacuum["joint_conductance"], vacuum["contact_conductance"])
+    np.testing.assert_allclose(vacuum["joint_conductance"], vacuum["contact_conductance"], rtol=1e-14)
     far = mcgw.simulate(scene_of(separations=9.0))
     np.testing.assert_array_equal(far["joint_conductance"], far["gap_conductance"])
 
@@ -143,6 +154,62 @@ def test_many_have_the_mean_and_spread_of_theory(mode):
     found = e.covariance("joint_conductance", "load")
     np.testing.assert_allclose(np.diag(found), np.diag(covariance[0, :, 1]), rtol=6.3 / math.sqrt(n))
     assert mcgw.compare(e).verdict.agrees
+
+
+@pytest.mark.parametrize("area", [1e-8, 1e-6, 1e-4])
+@pytest.mark.parametrize("reference", [None, "mean-plane", "body"])
+@pytest.mark.parametrize("film", ["bare", "film", "layer"])
+def test_network_by_hand(reference, area, film):
+    """1/h = 1/(h_spots + h_gas) + R_bodies A_n of every specimen; spots alone from the scene without it."""
+    more = {"film": {"film_resistance": 1e-8}, "layer": {"layer": analytic.Layer(1e-5, 1.3)}}.get(film, {})
+    asked = {"film": analytic.Film(conductivities=(200.0, 16.0), **more), "n_asperities": 3000}
+    scene = scene_of(**asked, n_surfaces=6, interaction=reference).replace(nominal_area=area)
+    alone = scene_of(**asked, n_surfaces=6, joint=None).replace(nominal_area=area)
+    e, single = mcgw.simulate(scene), mcgw.simulate(alone)
+    spots, h, rho = single["conductance_si"] / area, np.tile(H, (6, 1)), 1 / 200 + 1 / 16
+    if reference == "mean-plane":
+        other = LATTICE / math.pi / math.sqrt(3000 * area)  # metres of the mean plane for each P/E*
+        spots = 1 / (1 / spots - rho / 2 * other * area)
+        h = h + other * single["load"] / ROUGH.E_star / ROUGH.sigma
+    gas = np.vectorize(by_hand)(h)
+    bodies = 0.4732010044 * rho * math.sqrt(area) if reference == "body" else 0.0
+    expected = 1 / (1 / (spots + gas) + bodies)
+    np.testing.assert_allclose(e["gap_conductance"], gas, rtol=1e-11)
+    np.testing.assert_allclose(e["joint_conductance"], expected, rtol=1e-9)
+    gas, bodies = e["gap_conductance"], MEAN_SINKING / 2 * rho * math.sqrt(area) * (reference == "body")
+    expected = 1 / (1 / (spots + gas) + bodies)
+    np.testing.assert_allclose(e["joint_conductance"], expected, rtol=1e-12)
+    if reference == "body":
+        assert (e["joint_conductance"] < 1 / bodies).all()
+
+
+@pytest.mark.parametrize("area", [1e-8, 1e-6, 1e-4])
+@pytest.mark.parametrize("reference", [None, "mean-plane", "body"])
+def test_network_of_the_infinite_surface(reference, area):
+    """At a load: conductances and resistance of the mean surface by hand, and of each specimen."""
+    scene = scene_of(n_surfaces=4, interaction=reference).replace(nominal_area=area)
+    alone = scene_of(n_surfaces=4, joint=None).replace(nominal_area=area)
+    found, single = (mcgw.solve(x, pressure="1 MPa") for x in (scene, alone))
+    rho, load = 1 / 200 + 1 / 16, 1e6 * area
+    for at, by_itself in ((found.theory, single.theory), (found.surfaces, single.surfaces)):
+        spots, h, bodies = by_itself["conductance_si"] / area, by_itself["separation"], 0.0
+        if reference == "mean-plane":
+            other = LATTICE / math.pi / math.sqrt(scene.n_asperities * area)
+            spots, h = 1 / (1 / spots - rho / 2 * other * area), h + other * load / ROUGH.E_star / ROUGH.sigma
+        if reference == "body":
+            bodies = MEAN_SINKING / 2 * rho * math.sqrt(area)
+        joint = 1 / (1 / (spots + scene.filled(h)) + bodies)
+        np.testing.assert_allclose(at["joint_conductance"], joint, rtol=1e-12)
+        np.testing.assert_allclose(at["thermal_resistance"], 1 / (joint * area), rtol=1e-12)
+
+
+def test_distribution_of_a_joint_before_bodies():
+    """As the specimens, at a separation; Hoeffding: false alarms 1e-6."""
+    scene = scene_of(interaction="body", n_surfaces=2000)
+    law = scene.theory.distribution("joint_conductance", 2.0)
+    values = mcgw.simulate(scene)["joint_conductance"][:, 1]
+    for share in (0.1, 0.5, 0.9):
+        assert abs(np.mean(values <= law.ppf(share)) - share) < math.sqrt(math.log(2e6) / 2 / 2000)
 
 
 @pytest.mark.parametrize("name", LAWS)
@@ -276,9 +343,9 @@ def test_at_a_pressure(mode):
     for at in (found.theory, found.surfaces):
         gas = np.asarray(at["gap_conductance"])
         np.testing.assert_allclose(gas, scene.filled(at[plane]), rtol=1e-14)
-        joint = at["conductance_si"] / area + gas
-        np.testing.assert_allclose(at["joint_conductance"], joint, rtol=1e-14)
-        np.testing.assert_allclose(1 / at["thermal_resistance"], joint * area, rtol=1e-14)
+        joint = before_bodies(at["conductance_si"] / area, gas, "body" in mode)
+        np.testing.assert_allclose(at["joint_conductance"], joint, rtol=1e-13)
+        np.testing.assert_allclose(1 / at["thermal_resistance"], joint * area, rtol=1e-13)
         np.testing.assert_allclose(at["specific_contact_resistance"], area / at["conductance_si"], rtol=1e-14)
     assert float(gas[0]) == pytest.approx(by_hand(found.surfaces[plane][0]), rel=2e-4)
     h = found.theory["separation"]
@@ -288,7 +355,7 @@ def test_at_a_pressure(mode):
 
 
 def test_table_by_pressure(capsys, tmp_path):
-    """Spots, constriction of the bodies in series, gas beside; nothing given is vacuum."""
+    """Spots, gas beside, constriction of the bodies in series with both; nothing given is vacuum."""
     path = tmp_path / "joint.toml"
     path.write_text(mcgw.scene_text(scene_of(interaction="body", n_surfaces=5)))
     ask = ["solve", str(path), "--pressure", "1MPa", "5MPa"]
@@ -298,7 +365,7 @@ def test_table_by_pressure(capsys, tmp_path):
     for row, pressure in zip(table[2:4], (1.0, 5.0), strict=True):
         at, _, _, _, spots, constriction, gas, joint, resistance = map(float, row.split())
         assert at == pressure
-        assert joint == pytest.approx(1 / (1 / spots + 1 / constriction) + gas, rel=2e-3)
+        assert joint == pytest.approx(1 / (1 / (spots + gas) + 1 / constriction), rel=2e-3)
         assert resistance == pytest.approx(1 / (joint * ROUGH.nominal_area), rel=2e-3)
     assert "joint_conductance,W/(m^2 K)" in (tmp_path / "o.csv").read_text()
     ask = ask[:-1]

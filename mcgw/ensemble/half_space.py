@@ -124,8 +124,10 @@ def asperities_alone(ensemble: Ensemble) -> Ensemble:
 def with_joint(scene: Scene, found: dict[str, Any], names: Iterable[str], h: Any) -> dict[str, Any]:
     """Conductances of the joint, W/(m^2 K), of what surfaces have besides.
 
-    The distance of the mean planes is the separation that the asperities feel, or the nominal one if that
-    is measured from the mean plane itself (`reference = "mean-plane"`).
+    Each surface is one network, ``1/h_j = 1/(h_spots + h_gas) + R_bodies A_n``: what passes the gas is
+    constricted by the bodies as a whole like what passes the spots. The distance of the mean planes is the
+    separation that the asperities feel, or the nominal one if that is measured from the mean plane itself
+    (`reference = "mean-plane"`).
 
     Parameters
     ----------
@@ -138,12 +140,19 @@ def with_joint(scene: Scene, found: dict[str, Any], names: Iterable[str], h: Any
     h : array_like
         Separations where surfaces have none of their own.
     """
+    from analytic.interaction import in_series  # as above
+
     plane = "nominal_separation" if scene.from_mean_plane else "effective_separation"
     assert scene.filled is not None
+    assert scene.film is not None
+    bodies = 0.0 if scene.interaction is None else scene.interaction.bodies(scene.surface, scene.film.rho)
     answers = {}
     for name in names:
         way = "_unloading" * name.endswith("_unloading")
-        spots = found[f"conductance_si{way}"]
-        gas = scene.filled(found.get(f"{plane}{way}", h))
-        answers[name] = gas + (spots / scene.surface.nominal_area if name.startswith("joint") else 0 * spots)
+        contact = found[f"conductance_si{way}"] / scene.surface.nominal_area  # spots, and bodies in series
+        gas = scene.filled(found.get(f"{plane}{way}", h)) + 0 * contact
+        if name.startswith("joint"):
+            answers[name] = in_series(in_series(contact, -bodies) + gas, bodies)
+        else:
+            answers[name] = gas
     return answers

@@ -243,8 +243,9 @@ TABLES: dict[str, TableOfKeys] = {
     Key("bulk_modulus", Number("Pa"), "1e11", "composite modulus of the half-space, Pa; default: `E_star`"),
 ), make=lambda **keys: analytic.Interaction(**keys),
     advice='give mcgw.Interaction("body"), or mcgw.Interaction("mean-plane")'),
-"joint": TableOfKeys("[A thermal joint](../how-to/conductance-of-a-joint.md): gas conducts in parallel with "
-    "the spots. Adds `gap_conductance` and `joint_conductance`, W/(m² K); needs `conductivities`. Default: "
+"joint": TableOfKeys("[A thermal joint](../how-to/conductance-of-a-joint.md): gas conducts beside the spots, "
+    "and both in series with the bodies where `[interaction]` has them constrict the flux. Adds "
+    "`gap_conductance` and `joint_conductance`, W/(m² K); needs `conductivities`. Default: "
     "spots only (vacuum).", (
     Key("gas", _GASES, '"air"', "gas in the gap: `air`, `vacuum`, or its conductivity, W/(m K), and jump, m: "
         "the thickness of gas across which the temperature drops by as much as it jumps at both "

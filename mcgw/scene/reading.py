@@ -109,8 +109,10 @@ def of_tables(
         advice = 'm0, m2 and m4 need heights.law = "nayak"; otherwise give sigma, radius and eta'
         of["surface"].fail("uncertainty", of["surface"].table["uncertainty"], advice)
     for name, section in (("", top), *of.items()):
-        if not python or name == "contact" or TABLES[name].make:  # where keys may be unknown, as in a dict
+        if not python or TABLES[name].make:  # a file or a dict, where more may be wrong than values
             section.finish()
+    if python:
+        of["contact"].note_unknown()  # of a law that is given by its keys
     if problems:
         raise SceneError(problems)
     return values

@@ -206,6 +206,17 @@ class Section:
 
     def finish(self) -> None:
         """Note keys that were not read, and those that do not go together."""
+        self.note_unknown()
+        if any(line.startswith(f"{self.name}.") for line in self.problems):
+            return  # this may be a consequence of them
+        for row in (self.rows[name] for name in self.table if name in self.rows):
+            if row.needs and not any(other in self for other in row.needs):
+                self.fail(row.name, self.table[row.name], f"give {_either(row.needs)} too, or leave it out")
+            if others := [other for other in row.excludes if other in self]:
+                self.fail(row.name, self.table[row.name], f"give it or {_either(others)}, not both")
+
+    def note_unknown(self) -> None:
+        """Note keys that were not read."""
         unknown = [key for key in self.table if key not in self._asked]
         for key in unknown[:_MOST_NAMED]:
             meant = nearest(key[:99], self._asked) or f"known keys: {', '.join(self._asked)}"
@@ -214,13 +225,6 @@ class Section:
             self.problems.append(f"{self.path(key)}: unknown key; {meant.removesuffix(' ')}")
         if len(unknown) > _MOST_NAMED:
             self.problems.append(f"[{self.name}]: {len(unknown) - _MOST_NAMED} more unknown keys")
-        if any(line.startswith(f"{self.name}.") for line in self.problems):
-            return  # this may be a consequence of them
-        for row in (self.rows[name] for name in self.table if name in self.rows):
-            if row.needs and not any(other in self for other in row.needs):
-                self.fail(row.name, self.table[row.name], f"give {_either(row.needs)} too, or leave it out")
-            if others := [other for other in row.excludes if other in self]:
-                self.fail(row.name, self.table[row.name], f"give it or {_either(others)}, not both")
 
     def path(self, name: str) -> str:
         """Name of a key with its table."""
