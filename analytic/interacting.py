@@ -163,10 +163,8 @@ class InteractingModel(Model):
             return felt
         if quantity != "load":
             raise ValueError(f"quantity = {quantity!r}: at nominal separations give a load")
-        from analytic.distribution import Mapped
-
         shift = self.compliance * load
-        return Mapped(felt, lambda x: x - shift, lambda h: h + shift)
+        return felt.mapped(lambda x: x - shift)
 
     def fluctuations(self, quantities: Sequence[str], separations: ArrayLike) -> Fluctuations:
         """As `Model.fluctuations`, to leading order where a surface answers by itself."""

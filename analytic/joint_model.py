@@ -96,10 +96,8 @@ class JointModel(Model):
                 f"quantity = {quantity!r}: only 'joint_conductance' is known, for surfaces with one distance "
                 "of mean planes"
             )
-        from analytic.distribution import Mapped
-
         area, gas = self.surface.nominal_area, float(self.filled(h))
-        return Mapped(super().distribution(spots, h), lambda x: x / area + gas, lambda y: (y - gas) * area)
+        return super().distribution(spots, h).mapped(lambda x: x / area + gas)
 
     def fluctuations(self, quantities: Sequence[str], separations: ArrayLike) -> Fluctuations:
         """As of the spots, and of the mean planes of the surfaces where each has its own."""

@@ -14,8 +14,7 @@ from scipy.special import binom, gammaln
 
 import analytic
 from analytic.curvature import MEAN_CURVATURE
-from analytic.distribution import touching
-from analytic.distribution.independent_sums import by_contour
+from analytic.distribution import lattice, of_model
 
 GRADED = analytic.Exponential(2.0)
 
@@ -44,14 +43,14 @@ BY_MPMATH = [
 @pytest.mark.parametrize(("quantity", "h", "count", "known"), BY_MPMATH)
 def test_the_cdf_is_that_of_another_inversion(quantity, h, count, known):
     law = model(30_000, count=count).distribution(quantity, h)
-    np.testing.assert_allclose(law.cdf(np.array(AT) * law.mean()), known, rtol=1e-12, atol=2e-14)
-    assert law.error < 1e-12
+    np.testing.assert_allclose(law.cdf(np.array(AT) * law.mean()), known, atol=law.error)
+    assert law.error < 1e-6
 
 
 def test_areas_of_hundreds_of_contacts_by_another_inversion():
     law = model(30_000).distribution("area", 2)
     known = (2.20768898714207e-5, 0.504730887353553)
-    np.testing.assert_allclose(law.cdf(np.array([0.8, 1.0]) * law.mean()), known, rtol=1e-12, atol=2e-14)
+    np.testing.assert_allclose(law.cdf(np.array([0.8, 1.0]) * law.mean()), known, rtol=0, atol=1e-8)
 
 
 def test_what_is_wrong_by_little_would_be_seen():
@@ -78,8 +77,8 @@ def test_one_asperity_and_two(h, x, one, two):
     for n, known in ((1, one), (2, two)):
         of = model(n)
         law = of.distribution("load", h)
-        assert law.cdf(x * unit(of, "load")) == pytest.approx(known, rel=2e-13)
-        assert law.atom == pytest.approx(stats.norm.cdf(h) ** n, rel=1e-14)
+        assert law.cdf(x * unit(of, "load")) == pytest.approx(known, abs=1e-6)
+        assert law.atom == pytest.approx(stats.norm.cdf(h) ** n, rel=1e-6)
 
 
 @pytest.mark.parametrize("quantity", ["load", "area", "conductance"])
@@ -92,7 +91,7 @@ def test_one_asperity_by_its_height(quantity):
 
     for x in (1e-3, 0.1, 3.0):
         s = brentq(lambda s, x=x: added(s) - x, h, 40, xtol=1e-14)
-        assert law.sf(x * unit(of, quantity)) == pytest.approx(stats.norm.sf(s), rel=1e-12)
+        assert law.sf(x * unit(of, quantity)) == pytest.approx(stats.norm.sf(s), abs=1e-7)
 
 
 def binomial_gamma(n, share, x, count):
@@ -108,8 +107,8 @@ def test_areas_of_exponential_heights_are_gamma_sums(n, h, count):
     law, share = of.distribution("area", h), np.exp(-1 - h)
     for x in (0.1, 1.0, 10.0, 40.0):
         known = binomial_gamma(n, share, x, count)
-        assert law.sf(x * unit(of, "area")) == pytest.approx(known, rel=1e-10, abs=1e-300)
-        assert law.sf(x * unit(of, "area")) == pytest.approx(known, rel=1e-12, abs=1e-12)
+        found, bound = law.sf(x * unit(of, "area")), law.error_at(x * unit(of, "area"))
+        assert found == pytest.approx(known, rel=1e-4, abs=min(1e-6, float(bound * found)))
 
 
 @pytest.mark.parametrize("count", ["fixed", "poisson"])
@@ -129,38 +128,106 @@ def test_its_third_moment_is_the_skewness(quantity, count):
     of = model(3000, count=count)
     law, z = of.distribution(quantity, 0.5), np.linspace(-10, 14, 201)
     share = law.pdf(law.mean() + z * law.std()) * law.std() * (z[1] - z[0])
-    assert share.sum() == pytest.approx(1, abs=1e-12)
-    assert share @ z**3 == pytest.approx(float(of.cumulants(quantity, 0.5).skewness), abs=1e-12)
+    assert share.sum() == pytest.approx(1, abs=1e-7)
+    assert share @ z**3 == pytest.approx(float(of.cumulants(quantity, 0.5).skewness), abs=1e-6)
 
 
 @pytest.mark.parametrize("n", [1e4, 1e6, 1e9])
-def test_far_tails_have_their_own_digits(n):
+def test_tails_have_digits_as_far_as_lattices_resolve_them(n):
     law = model(n).distribution("load", 2.0)
-    shares = np.array([1e-30, 1e-12, 1e-3, 0.5])
-    np.testing.assert_allclose(law.sf(law.isf(shares)), shares, rtol=3e-9 if n > 1e8 else 1e-11)
-    np.testing.assert_allclose(law.cdf(law.ppf(shares)), shares, rtol=3e-9 if n > 1e8 else 1e-11)
-    x = law.isf(shares)
-    step = 1e-4 * law.std()
-    by_hand = (law.sf(x[:3] - step) - law.sf(x[:3] + step)) / (2 * step)
-    np.testing.assert_allclose(law.pdf(x[:3]), by_hand, rtol=1e-5)
+    shares = np.array([1e-10, 1e-6, 1e-3, 0.5])
+    resolved = shares > law.rounding
+    np.testing.assert_allclose(law.sf(law.isf(shares))[resolved], shares[resolved], rtol=1e-9)
+    np.testing.assert_allclose(law.cdf(law.ppf(shares))[resolved], shares[resolved], rtol=1e-9)
+    x, step = law.isf(shares[1:]), 0.01 * law.std()
+    by_hand = (law.sf(x - step) - law.sf(x + step)) / (2 * step)
+    np.testing.assert_allclose(law.pdf(x), by_hand, rtol=2e-3)
+    np.testing.assert_array_equal(law.isf([1e-30, 0, 2]), [np.nan, np.inf, np.nan])
 
 
-def test_both_ways_meet_where_contacts_are_not_few_any_more():
-    of = model(30_000).distribution("load", 3.05)  # 34 contacts
-    x = of.mean() / of.unit * np.array([0.6, 1.0, 2.0, 4.0])
-    line, few = by_contour(of.touching.one, x), of._values(x)
-    np.testing.assert_allclose(line.cdf, few.cdf, rtol=1e-11)
-    np.testing.assert_allclose(line.sf, few.sf, rtol=1e-10)
-    np.testing.assert_allclose(line.pdf, few.pdf, rtol=1e-10)
+def test_beyond_what_lattices_resolve_there_is_a_bound_that_says_so():
+    law = model(1e6).distribution("load", 2.0)
+    far = law.mean() + np.array([-30, -15, 15, 30, 1e7]) * law.std()
+    rarer = np.minimum(law.cdf(far), law.sf(far))
+    assert np.all((rarer > 0) & (rarer < 1e-9))
+    np.testing.assert_array_equal(law.error_at(far), 1)
+    assert law.error_at(law.isf(1e-8)) < 0.1
+    assert law.sf(law.mean() + 1e7 * law.std()) == pytest.approx(1e-14)  # Chebyshev
+    np.testing.assert_array_equal(law.cdf(far) + law.sf(far), 1)
 
 
-@pytest.mark.parametrize("n", [1e15, 1e12])
-def test_a_law_of_very_many_is_gaussian_and_no_more(n):
-    of = model(n).distribution("load", 1.0)
-    z = np.array([-3.0, 0.5, 4.0])
-    skewness = of.touching.one.skewness
+def test_both_ways_meet_where_contacts_are_not_few_any_more(monkeypatch):
+    """Of 34 contacts: with sums of none and of one taken apart, and without."""
+    of = model(30_000)
+    few = of.distribution("load", 3.05)
+    monkeypatch.setattr(lattice, "_FEW", 1.0)
+    many, x = of.distribution("load", 3.05), few.mean() * np.array([0.6, 1.0, 2.0, 4.0])
+    assert many.x.size < few.x.size
+    np.testing.assert_allclose(many.cdf(x), few.cdf(x), atol=1e-6)
+    np.testing.assert_allclose(many.pdf(x), few.pdf(x), rtol=1e-3)
+
+
+@pytest.mark.parametrize(("n", "off"), [(1e15, 1e-5), (1e12, 1e-6), (1e9, 1e-6)])
+def test_a_law_of_very_many_is_gaussian_and_no_more(n, off):
+    of = model(n)
+    law, z = of.distribution("load", 1.0), np.array([-3.0, 0.5, 4.0])
+    skewness = float(of.cumulants("load", 1.0).skewness)
     known = stats.norm.cdf(z) - skewness / 6 * (z**2 - 1) * stats.norm.pdf(z)
-    np.testing.assert_allclose(of.cdf(of.mean() + z * of.std()), known, atol=1e-8)
+    np.testing.assert_allclose(law.cdf(law.mean() + z * law.std()), known, atol=off)
+    assert law.error < 10 * off
+
+
+def test_a_wrong_value_is_seen_by_the_error():
+    """A table in which a millionth of the surfaces lies elsewhere."""
+    law = model(1e6).distribution("load", 2.0)
+    moved = 1e-5 * stats.norm.pdf(law.x, law.mean() + law.std(), law.std() / 4) * law.std()
+    wrong = replace(law, below=law.below - moved, above=law.above + moved)
+    x = law.mean() + law.std()
+    assert law.error < 1e-6 < 1e-5 < wrong.error
+    assert law.error_at(x) * law.sf(x) < 1e-6 < abs(wrong.sf(x) - law.sf(x)) < wrong.error_at(x) * wrong.sf(x)
+
+
+def test_the_error_is_of_other_lattices_and_other_cells(monkeypatch):
+    """Coarse ones in the first computation, which the second one does not share."""
+    monkeypatch.setattr(of_model, "_POINTS", (64, of_model._POINTS[1]))
+    for h in (0.0, 3.0):
+        law = model(30_000).distribution("load", h)
+        x, fine = law.ppf([0.01, 0.3, 0.9]), law.again()
+        off = np.abs(law.cdf(x) - fine.cdf(x))
+        assert np.all(off > 1e-6)
+        assert np.all(off < law.error_at(x) * np.minimum(law.cdf(x), law.sf(x)))
+
+
+HEAVY = {
+    "fisk(8)": stats.fisk(8.0),
+    "t(4)": stats.t(4),
+    "pareto(5)": stats.pareto(5),
+    "lognorm(1)": stats.lognorm(1.0),
+}
+
+
+@pytest.mark.parametrize("name", HEAVY)
+@pytest.mark.parametrize("n", [580_000, 3000])
+def test_the_tail_of_heavy_tails_is_there(name, n):
+    of = model(n, heights=analytic.ScipyHeights(HEAVY[name]), grading=analytic.Homogeneous())
+    law = of.distribution("load", 3.0)
+    x = law.isf(np.append(np.geomspace(0.9, 1e-6, 200), 1e-7))
+    assert np.all(np.diff(x[:-1]) >= 0)
+    assert np.all(np.diff(law.sf(np.linspace(x[0], x[-1], 5000))) <= 0)
+    shares = law.sf(x[:-1])
+    assert np.all(law.error_at(x[:-1]) * shares < 2e-6)
+    with np.errstate(divide="ignore"):
+        jumps = n * float(of.heights.sf(3.0 + (x[-1] / unit(of, "load")) ** (2 / 3)))
+    assert 0.8 * jumps < 1e-7  # one asperity alone that adds as much is a lower bound
+
+
+def test_a_tail_that_was_lost():
+    """30 300 drawn surfaces: 0.0251 beyond two standard deviations, quantiles 2.384 and 3.171 of them."""
+    of = model(580_000, heights=analytic.ScipyHeights(stats.fisk(8.0)), grading=analytic.Homogeneous())
+    law = of.distribution("load", 3.0)
+    assert law.sf(law.mean() + 2 * law.std()) == pytest.approx(0.0251, abs=4.5 * 9e-4)
+    z = (law.isf([0.01, 0.001]) - law.mean()) / law.std()
+    np.testing.assert_allclose(z, [2.384, 3.171], rtol=0.08)
 
 
 @pytest.mark.parametrize("quantity", ["load", "area"])
@@ -174,10 +241,10 @@ def test_far_below_the_mean_all_is_above(quantity):
 def test_a_heavy_tail_is_one_big_jump():
     of = model(30_000, heights=analytic.ScipyHeights(stats.t(3)), grading=analytic.Homogeneous())
     law = of.distribution("area", 1.0)
-    x = law.mean() + 3000 * law.std()
+    x = law.mean() + 300 * law.std()
     alone = 30_000 * float(of.heights.sf(np.array(1.0 + (x - law.mean()) / unit(of, "area"))))
-    assert law.sf(x) == pytest.approx(alone, rel=1e-2)
-    assert law.error < 1e-6
+    assert law.sf(x) == pytest.approx(alone, rel=3e-2)
+    assert law.error < 1e-5
 
 
 @pytest.mark.parametrize("count", ["fixed", "poisson"])
@@ -256,7 +323,8 @@ def test_stiffness_in_series_and_the_nominal_separation():
     assert stiff.ppf(0.3) == pytest.approx(k / (1 + c * k), rel=1e-12)
     alone, s = of.distribution("stiffness", 1.0), k / (1 + c * k)
     assert stiff.pdf(s) == pytest.approx(alone.pdf(k) * (1 + c * k) ** 2, rel=1e-5)
-    assert (stiff.error, stiff.error_at(s)) == (alone.error, pytest.approx(alone.error_at(k), rel=0.1))
+    assert stiff.error_at(s) == pytest.approx(alone.error_at(k), rel=0.2)
+    assert stiff.error < 1e-6
     nominal = pressed.distribution("nominal_separation", 1.0)
     p = of.distribution("load", 1.0).isf(0.3)
     assert nominal.ppf(0.3) == pytest.approx(1.0 - pressed.compliance * p, rel=1e-12)
@@ -272,7 +340,7 @@ def test_the_separation_at_a_load_that_sinks_all():
         pressed = analytic.InteractingModel.of(of, analytic.Interaction("body", at=at))
         law = pressed.separation_law(load)
         assert law.ppf(0.3) == pytest.approx(felt.ppf(0.3) - pressed.compliance * sinks, rel=1e-12)
-        assert law.error == felt.error == of.distribution("load", felt.start).error
+        assert law.error < 1e-6
         x = float(pressed.effective(1.0))
         assert pressed.share(0, 1.0) == of.share(0, x) == 1
         np.testing.assert_array_equal(pressed.rule(1.0).heights, of.rule(x).heights)
@@ -284,13 +352,14 @@ def test_the_separation_at_a_load():
     law = of.separation_law(float(of.mean("load", 2.5)))
     np.testing.assert_allclose(law.cdf([2.3, 2.5, 2.7]), [0.04017, 0.54496, 0.94262], atol=6e-6)
     assert law.cdf(law.ppf(0.05)) == pytest.approx(0.05, rel=1e-9)
-    np.testing.assert_array_equal([law.ppf([0, 1]), law.isf([0, 1])], np.nan)  # no separation is the last
+    np.testing.assert_array_equal(law.ppf([0, 1]), [-np.inf, np.inf])  # no separation is the last
     assert law.mean() - 2.5 == pytest.approx(-4.477e-3, abs=6e-4)
     assert law.var() == pytest.approx(1.5e-2, rel=0.03)
-    below = of.distribution("load", 2.4)
-    assert law.error_at([2.4, 2.4]) == pytest.approx(
-        2 * [float(below.error_at(of.mean("load", 2.5)))], rel=1e-9
-    )
+    for h in law.ppf([1e-4, 0.2, 0.7, 1 - 1e-4]):
+        assert law.cdf(h) == pytest.approx(
+            float(of.distribution("load", h).cdf(of.mean("load", 2.5))), abs=1e-6
+        )
+        assert law.error_at(h) * min(law.cdf(h), law.sf(h)) < 3e-6
 
 
 def test_a_share_of_the_surfaces_without_any_asperity_reaches_a_load_nowhere():
@@ -302,7 +371,7 @@ def test_a_share_of_the_surfaces_without_any_asperity_reaches_a_load_nowhere():
     h = law.ppf([1.001 * empty, 0.1])
     assert np.all(h < 0)
     for x, share in zip(h, (1.001 * empty, 0.1), strict=True):
-        assert of.distribution("load", x).cdf(load) == pytest.approx(share, rel=1e-9)
+        assert of.distribution("load", x).cdf(load) == pytest.approx(share, abs=1e-6)
 
 
 @pytest.mark.parametrize("count", ["fixed", "poisson"])
@@ -325,8 +394,8 @@ def test_laws_of_contact_and_radii_keep_their_moments():
     ):
         of = model(3000, **more)
         law, known = of.distribution("load", 1.0), of.cumulants("load", 1.0)
-        assert law.var() == pytest.approx(float(known.variance), rel=1e-11)
-        assert law.error < 1e-11
+        assert law.var() == pytest.approx(float(known.variance), rel=1e-9)
+        assert law.error < 5e-6
         assert law.cdf(law.ppf(0.01)) == pytest.approx(0.01, rel=1e-10)
 
 
@@ -338,7 +407,7 @@ def test_few_contacts_of_radii_of_their_own():
         return float(radii.heights.pdf(np.array(s)) * radii.cdf(MEAN_CURVATURE * (s - h) / x, s))
 
     known = quad(larger, h, 9, epsabs=1e-13, limit=200)[0]
-    assert of.distribution("area", h).sf(x * unit(of, "area")) == pytest.approx(known, rel=1e-8)
+    assert of.distribution("area", h).sf(x * unit(of, "area")) == pytest.approx(known, abs=1e-6)
 
 
 def test_asperities_that_pull():
@@ -374,7 +443,7 @@ def test_what_snaps_into_contact_adds_no_little(quantity):
 
     for x in (0.5 * one(h + 1e-13), one(2.5)):
         law = model(1, **more).distribution(quantity, h)
-        assert law.sf(x * law.unit) == pytest.approx(stats.norm.sf(least(x)), rel=1e-9)
+        assert law.sf(x * unit(model(1), quantity)) == pytest.approx(stats.norm.sf(least(x)), abs=1e-6)
         ends = sorted({h, min(least(x), 12.0), 12.0})
         second = sum(
             quad(
@@ -392,20 +461,20 @@ def test_what_snaps_into_contact_adds_no_little(quantity):
         )
         known = second + stats.norm.cdf(h) * stats.norm.sf(least(x))
         law = model(2, **more).distribution(quantity, h)
-        assert law.sf(x * law.unit) == pytest.approx(known, rel=1e-7)
+        assert law.sf(x * unit(model(1), quantity)) == pytest.approx(known, abs=1e-6)
 
 
 @pytest.mark.parametrize(
     ("quantity", "law"), [("load", analytic.ZhaoMaiettaChang), ("area", analytic.ChangEtsionBogy)]
 )
 def test_the_error_of_a_law_that_jumps_is_as_large_as_said(monkeypatch, quantity, law):
-    """Against more panels, on which kinks of sums of three are resolved."""
+    """Against more cells and more points."""
     of = model(30_000, law=law(critical=0.05))
     rough = of.distribution(quantity, 4.0)
     x = rough.isf([0.2, 0.05, 0.01, 1e-4])
     said, seen = rough.error_at(x), rough.sf(x)
-    monkeypatch.setattr(touching, "_PANELS", ())
-    monkeypatch.setattr(touching, "_MOST", 40)
+    monkeypatch.setattr(of_model, "_POINTS", (2**16, 2**15))
+    monkeypatch.setattr(of_model, "_CELLS", (40_000, 30_000))
     off = np.abs(seen / of.distribution(quantity, 4.0).sf(x) - 1)
     assert np.all(off < np.fmax(said, 1e-13))
     assert rough.error < 1e-4
@@ -428,11 +497,11 @@ def test_what_many_asperities_have_alike_is_no_density():
 def test_where_digits_end_is_said():
     """In tails too; steps of listed summits are smoothed, which the error says where they are few."""
     many = model(30_000).distribution("load", 2.0)
-    assert np.all(many.error_at(many.isf([1e-9, 0.5])) < 1e-10)
+    assert np.all(many.error_at(many.isf([1e-9, 0.5])) < [1e-1, 1e-6])
     heights = np.random.default_rng(1).normal(size=400)
     listed = analytic.MeasuredHeights(heights)
     of = model(400, heights=listed, grading=analytic.Homogeneous())
-    for h, most in ((1.0, 1e-14), (2.5, 0.05)):
+    for h, most in ((1.0, 1e-6), (2.5, 0.05)):
         law, s = of.distribution("area", h), (heights - heights.mean()) / heights.std()
         drawn = np.random.default_rng(2).choice(s, (20_000, 400))
         areas = np.maximum(drawn - h, 0).sum(axis=1) * unit(of, "area")
@@ -460,7 +529,7 @@ def test_all_asperities_touch_and_none_has_less():
     np.testing.assert_array_equal(law.cdf(least * np.array([0.0, 0.5, 1 - 1e-9])), 0)
     k, span = np.arange(8), 2 * np.sqrt(3) * unit(of, "area")
     hall = float(np.sum((-1.0) ** k * binom(40, k) * np.exp(40 * np.log(7.5 - k) - gammaln(41))))
-    np.testing.assert_allclose(law.cdf(least + np.array([7.5, 20]) * span), [hall, 0.5], rtol=1e-8)
+    np.testing.assert_allclose(law.cdf(least + np.array([7.5, 20]) * span), [hall, 0.5], atol=1e-9)
 
 
 @pytest.mark.slow

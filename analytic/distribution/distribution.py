@@ -1,289 +1,243 @@
-"""Exact distribution of a sum over the asperities of a finite surface."""
+"""Distributions over surfaces, with the methods of `scipy.stats`: tables, and numbers of asperities."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import gammaincinv, ndtri
 
-from analytic.arrays import Array, Marks
-from analytic.distribution.derived import Law
-from analytic.distribution.independent_sums import (
-    MOST,
-    FewContacts,
-    Line,
-    Values,
-    bounded,
-    by_contour,
-    saddle,
-)
-from analytic.distribution.touching import Touching
+from analytic.arrays import Array, hold
 
-_MANY = -40.0  # logarithm of the probability of no contact, below which the transform has died away
-_MIDDLE = 4.0  # standard deviations around the mean that one line serves
-_LONG = 60.0  # of them, in which the largest asperity must stay for that
+_NARROW = 1e-9  # of the table: cells that have no density to be told
+_LINEAR = 1e-7  # what shares that are linear between neighbours may be off by
 _SAFE = 3.0  # times what two computations differ by: their errors may have one sign
-_TAIL = 1e-4  # a share of the surfaces
-_STEPS = 60
-_REACH = 8.0  # of a step, over the value or the standard deviation: a law is flat between two jumps
-_CLOSE = 1e-13
-_LOST = 0.5 + 1e-6  # a probability farther from a half is none
-_DIGIT = 1e-15  # that rounding leaves
-_SHARES = np.array([1e-9, 1e-6, 0.001, 0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99, 0.999, 1 - 1e-6, 1 - 1e-9])
+_SHARES = np.array([1e-6, 1e-4, 0.001, 0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99, 0.999, 1 - 1e-4, 1 - 1e-6])
+_SCIPY = 1e-14
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Distribution(Law):
-    """Exact distribution of one quantity over all surfaces, with the methods of `scipy.stats`.
+class Law:
+    """Distribution of a value over surfaces; arguments have any shape.
 
-    Arguments are in the unit of the quantity and have any shape. The smaller one of `cdf` and `sf` is
-    accurate relative to itself. Where a surface may have no contact at all, the value 0 has the probability
-    `atom`.
-
-    Parameters
-    ----------
-    touching : Touching
-        Contribution of one asperity.
-    unit : float
-        Unit of the values of `touching`.
-
-    Examples
-    --------
-    >>> import analytic
-    >>> surface = analytic.Surface(sigma=1e-6, radius=1e-5, eta=1e9, nominal_area=1e-6, E_star=1e9)
-    >>> law = analytic.Model(surface).distribution("load", 2.0)
-    >>> low, high = law.interval(0.95)
-    >>> round(float(low / law.mean()), 3), round(float(high / law.mean()), 3)
-    (0.418, 1.776)
+    It has cdf, sf, pdf, ppf, isf, mean, var, `atom` (probability that no asperity touches), `error` (bound of
+    the error of cdf) and `error_at` (relative, of the smaller one of cdf and sf).
     """
 
-    touching: Touching
-    unit: float
+    cdf: Callable[[ArrayLike], Array]
+    sf: Callable[[ArrayLike], Array]
+    pdf: Callable[[ArrayLike], Array]
+    ppf: Callable[[ArrayLike], Array]
+    isf: Callable[[ArrayLike], Array]
+    error_at: Callable[[ArrayLike], Array]
+    mean: Callable[[], float]
+    var: Callable[[], float]
+    mapped: Callable[..., "Law"]
 
     @property
     def atom(self) -> float:
-        """P(S = 0), the probability that no asperity touches."""
-        return float(np.exp(self.touching.one.nothing))
-
-    def mean(self) -> float:
-        """Mean over surfaces."""
-        return self.unit * self.touching.one.mean
-
-    def var(self) -> float:
-        """Variance over surfaces."""
-        return self.unit**2 * self.touching.one.variance
-
-    def pdf(self, x: ArrayLike) -> Array:
-        """Density of all values but 0, which has the probability `atom`."""
-        return self._at(x, "pdf") / self.unit
-
-    def _tail(self, y: ArrayLike, *, upper: bool) -> Array:
-        return self._at(y, "sf" if upper else "cdf")
+        """Probability that no asperity touches."""
+        return float(self.cdf(0.0) - self.cdf(np.nextafter(0, -1)))
 
     @property
     def error(self) -> float:
-        """Error bound of `cdf`, estimated by a second computation with other nodes."""
-        x = self.ppf(_SHARES) / self.unit
-        own = self._values(x)
-        apart = np.abs(own.cdf - self._again(x).cdf) + np.abs(own.cdf + own.sf - 1)
-        return max(_SAFE * float(apart.max()), self.touching.step / 2, _DIGIT)
+        """Error bound of `cdf`."""
+        return _SCIPY
 
-    def error_at(self, x: ArrayLike) -> Array:
-        """As `Law.error_at`."""
-        reduced = np.asarray(x, dtype=np.float64) / self.unit
-        own, other = self._values(reduced.ravel()), self._again(reduced.ravel())
+    def __repr__(self) -> str:
+        """One line: all that it holds would fill pages."""
+        return f"{type(self).__name__}(mean={self.mean():.4g}, std={self.std():.4g})"
+
+    def std(self) -> float:
+        """Return the standard deviation over surfaces."""
+        return float(np.sqrt(self.var()))
+
+    def median(self) -> float:
+        """Return the median over surfaces: half of them lie below it."""
+        return float(self.ppf(0.5))
+
+    def interval(self, confidence: ArrayLike) -> tuple[Array, Array]:
+        """Return the ends of the range with equal shares of the surfaces below and above."""
+        out = (1 - np.asarray(confidence, dtype=np.float64)) / 2
+        return self.ppf(out), self.isf(out)
+
+    def rvs(self, size: int | tuple[int, ...] | None = None, random_state: Any = None) -> Array:
+        """Draw random values, by inversion."""
+        return self.ppf(np.random.default_rng(random_state).random(size))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Table(Law):
+    """Distribution of a value over surfaces as a table.
+
+    Between the points of the table, of which the first and the last are those that lattices resolve, shares
+    are linear. Beyond them the smaller share is an upper bound (Chebyshev's, and that at the last
+    point) with `error_at` = 1, and quantiles are nan.
+
+    Parameters
+    ----------
+    x : ndarray
+        Values, increasing.
+    below, above : ndarray
+        Shares of the surfaces up to and above each, as accurate as they are small.
+    mean_and_variance : (float, float)
+        Over surfaces.
+    ends : (float, float)
+        The least and the greatest value that there is.
+    rounding : float
+        Of the shares.
+    again : callable
+        Computes the law once more, by other lattices and other cells of the heights.
+    """
+
+    x: Array
+    below: Array
+    above: Array
+    mean_and_variance: tuple[float, float]
+    ends: tuple[float, float]
+    rounding: float
+    again: Callable[[], Any]
+
+    def cdf(self, y: ArrayLike) -> Array:
+        """Return P(Y <= y)."""
+        return self._shares(y)[0]
+
+    def sf(self, y: ArrayLike) -> Array:
+        """Return P(Y > y)."""
+        return self._shares(y)[1]
+
+    def _shares(self, y: ArrayLike) -> tuple[Array, Array]:
+        """Shares up to and above; the greater one is what the smaller one leaves of 1."""
+        y, (mean, variance) = np.asarray(y, dtype=np.float64), self.mean_and_variance
         with np.errstate(divide="ignore", invalid="ignore"):
-            apart = np.where(own.cdf < own.sf, other.cdf / own.cdf, other.sf / own.sf) - 1
-            step = self.touching.step / 2 / np.minimum(own.cdf, own.sf)
-        apart = np.abs(apart) + np.abs(own.cdf + own.sf - 1)  # all of few contacts grow by one share
-        return np.asarray(np.fmax(_SAFE * apart, step + _DIGIT).reshape(reduced.shape)[()])
+            chebyshev = variance / (y - mean) ** 2
+        bounds = (
+            np.fmin(max(float(end), self.rounding), chebyshev) for end in (self.below[0], self.above[-1])
+        )
+        below = np.where(y < self.x[0], next(bounds), np.interp(y, self.x, self.below))
+        above = np.where(y > self.x[-1], next(bounds), np.interp(y, self.x, self.above))
+        below, above = np.where(y < self.ends[0], 0.0, below), np.where(y >= self.ends[1], 0.0, above)
+        lower = np.where(np.isnan(y), np.nan, np.where(below < above, below, 1 - above))
+        return lower[()], np.where(below < above, 1 - below, above)[()] + 0 * lower[()]
+
+    def ppf(self, q: ArrayLike) -> Array:
+        """Return the smallest value y with P(Y <= y) >= q; nan beyond what lattices resolve."""
+        return self._quantiles(np.asarray(q, dtype=np.float64), 1 - np.asarray(q, dtype=np.float64))
+
+    def isf(self, q: ArrayLike) -> Array:
+        """Return the smallest value y with P(Y > y) <= q; nan beyond what lattices resolve."""
+        return self._quantiles(1 - np.asarray(q, dtype=np.float64), np.asarray(q, dtype=np.float64))
+
+    def _quantiles(self, below: Array, above: Array) -> Array:
+        by_below = np.interp(below, self.below, self.x, left=np.nan)
+        by_above = np.interp(above, self.above[::-1], self.x[::-1], left=np.nan)
+        found = np.where(below < above, by_below, by_above)
+        found = np.where(below == 0, self.ends[0], np.where(above == 0, self.ends[1], found))
+        return np.where((below >= 0) & (above >= 0), found, np.nan)[()]
+
+    def mean(self) -> float:
+        """Return the mean over surfaces."""
+        return self.mean_and_variance[0]
+
+    def var(self) -> float:
+        """Return the variance over surfaces."""
+        return self.mean_and_variance[1]
+
+    def pdf(self, y: ArrayLike) -> Array:
+        """Return the density of all values but those with a probability of their own."""
+        middle, shares, widths = self._cells
+        wide = widths > _NARROW * (self.x[-1] - self.x[0])
+        y = np.asarray(y, dtype=np.float64)
+        inside = (y >= self.x[0]) & (y <= self.x[-1])
+        return np.where(inside, np.interp(y, middle[wide], shares[wide] / widths[wide]), 0.0)[()]
 
     @cached_property
-    def _again(self) -> Callable[[Array], Values]:
-        return _Evaluation(self.touching, finer=True)
+    def _cells(self) -> tuple[Array, Array, Array]:
+        """Middle, share and width of what lies between neighbours in the table."""
+        low = self.below[1:] < self.above[1:]
+        shares = np.where(low, np.diff(self.below), -np.diff(self.above))
+        return (self.x[1:] + self.x[:-1]) / 2, shares, np.diff(self.x)
+
+    def error_at(self, y: ArrayLike) -> Array:
+        """Return a relative error bound of the smaller one of cdf and sf, from the second computation."""
+        y = np.asarray(y, dtype=np.float64)
+        (below, above), (lower, upper) = self._shares(y), self._other._shares(y)
+        apart = np.where(below < above, np.abs(below - lower), np.abs(above - upper))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            found = (_SAFE * apart + self.rounding) / np.minimum(below, above) + _LINEAR
+        beyond = ((y < self.x[0]) & (y >= self.ends[0])) | ((y > self.x[-1]) & (y < self.ends[1]))
+        known = (y < self.ends[0]) | (y >= self.ends[1])
+        return np.where(known, 0.0, np.where(beyond, 1.0, found))[()]
+
+    @property
+    def error(self) -> float:
+        """Error bound of `cdf`, from the second computation."""
+        x = np.concatenate([self.ppf(_SHARES), np.linspace(self.ppf(_SHARES[1]), self.ppf(_SHARES[-2]), 99)])
+        x = x[np.isfinite(x)]
+        return float(
+            _SAFE * np.abs(self.cdf(x) - self._other.cdf(x)).max(initial=0.0) + _LINEAR + self.rounding
+        )
 
     @cached_property
-    def _values(self) -> Callable[[Array], Values]:
-        return _Evaluation(self.touching)
+    def _other(self) -> "Table":
+        other: Table = self.again()
+        return other
 
-    def _at(self, x: ArrayLike, name: str) -> Array:
-        reduced = np.asarray(x, dtype=np.float64) / self.unit
-        flat = np.ravel(reduced)
-        found = np.full(flat.shape, np.nan)
-        known = np.isfinite(flat)
-        if known.any():
-            found[known] = getattr(self._values(flat[known]), name)
-        found[flat == np.inf], found[flat == -np.inf] = float(name == "cdf"), float(name == "sf")
-        return found.reshape(reduced.shape)[()]
+    def with_moments(self) -> "Table":
+        """Return it with the mean and variance of the table."""
+        middle, shares, _ = self._cells
+        mean = float(shares @ middle / shares.sum())
+        return replace(self, mean_and_variance=(mean, float(shares @ (middle - mean) ** 2)))
 
-    def _quantile(self, q: ArrayLike, *, upper: bool) -> Array:
-        q = np.asarray(q, dtype=np.float64)
-        flat = np.ravel(q)
-        found = np.full(flat.shape, np.nan)
-        share = 1 - flat if upper else flat
-        inside = (flat > 0) & (flat < 1)
-        least = self.touching.one.least
-        found[share == 0], found[share == 1] = least, np.inf
-        beyond = self._beyond_zero[int(upper)]
-        none = inside & (flat >= beyond - self.atom * (not upper)) & (flat <= beyond + self.atom * upper)
-        found[none] = 0.0
-        asked = inside & ~none
-        if asked.any():
-            found[asked] = self._solve(flat[asked], upper=upper)
-        return (found * self.unit).reshape(q.shape)[()]
-
-    @cached_property
-    def _beyond_zero(self) -> tuple[float, float]:
-        """P(S <= 0) and P(S > 0); nan where 0 has no probability of its own."""
-        if self.touching.one.least == 0:
-            return self.atom, float(-np.expm1(self.touching.one.nothing))
-        at = self._values(np.zeros(1))
-        return (float(at.cdf[0]), float(at.sf[0])) if self.atom > 0 else (np.nan, np.nan)
-
-    def _solve(self, q: Array, *, upper: bool) -> Array:
-        """By Newton on the logarithm of the smaller tail, kept between ends."""
-        from_above = upper ^ (q > 0.5)
-        tail = np.where(q > 0.5, 1 - q, q)
-        x, one = self._start(tail, from_above), self.touching.one
-        low = np.full(x.shape, one.least)
-        high, left = np.full(x.shape, np.inf), np.arange(x.size)
-        for _ in range(_STEPS):
-            at = self._values(x[left])
-            reached = np.where(from_above[left], at.sf, at.cdf)
-            with np.errstate(all="ignore"):
-                more = np.log(reached / tail[left]) * np.where(from_above[left], 1.0, -1.0)
-                step = more * reached / at.pdf
-                low[left] = np.where(more > 0, x[left], low[left])
-                high[left] = np.where(more < 0, x[left], high[left])
-                new, far = x[left] + step, np.maximum(np.abs(x[left]), one.std)
-                middle = np.where(np.isfinite(high[left]), (low[left] + high[left]) / 2, x[left] + far)
-                middle = np.where(np.isfinite(middle), middle, x[left] - far)
-            good = (new >= low[left]) & (new <= high[left]) & (np.abs(step) <= _REACH * far)
-            new = np.where(good, new, middle)
-            size = np.minimum(np.abs(new), one.std + np.abs(new - one.mean))
-            done = np.abs(new - x[left]) <= np.maximum(_CLOSE * size, 2 * np.spacing(np.abs(new)))
-            x[left] = new
-            left = left[~(done | (more == 0))]
-            if not left.size:
-                break
-        return x
-
-    def _start(self, tail: Array, from_above: Marks) -> Array:
-        """Of a gamma law with the same mean, variance and skewness."""
-        one = self.touching.one
-        skewness = float(np.clip(one.skewness, 1e-3, 50.0))
-        shape = 4 / skewness**2
-        with np.errstate(all="ignore"):
-            gamma = gammaincinv(shape, np.where(from_above, 1 - tail, tail))
-            by_gamma = one.mean + one.std * (gamma - shape) / np.sqrt(shape)
-            normal = one.mean + one.std * ndtri(tail) * np.where(from_above, -1, 1)
-        x = np.where(np.isfinite(by_gamma), by_gamma, normal)
-        return np.where(x > 0, x, one.mean * 1e-3) if one.least == 0 else x
+    def mapped(self, forward: Callable[[Any], Any], *, falls: bool = False) -> "Table":
+        """Return the law of a function that rises, or falls, with the value."""
+        middle, shares, _ = self._cells
+        mean, std = self.mean(), self.std()
+        f, slope = forward(middle), (forward(mean + std / 8) - forward(mean - std / 8)) / (std / 4)
+        of_x, of_f = float(shares @ middle), float(shares @ f)
+        more = self.var() - float(shares @ (middle - of_x) ** 2)  # than the table has
+        moments = of_f + slope * (mean - of_x), float(shares @ (f - of_f) ** 2) + slope**2 * more
+        turned = slice(None, None, -1 if falls else 1)
+        below, above = (self.above, self.below) if falls else (self.below, self.above)
+        ends = np.array([float(forward(end)) for end in self.ends])
+        return replace(
+            self,
+            x=forward(self.x)[turned],
+            below=below[turned],
+            above=above[turned],
+            mean_and_variance=moments,
+            ends=tuple(ends[turned].tolist()),
+            again=lambda: self._other.mapped(forward, falls=falls),
+        )
 
 
-class _Evaluation:
-    """The law at any arguments, each by the way that suits it."""
+@dataclass(frozen=True, eq=False, repr=False)
+class Counted(Law):
+    """Distribution of a number of asperities, binomial or Poisson, from `scipy.stats`.
 
-    def __init__(self, touching: Touching, *, finer: bool = False) -> None:
-        self._touching, self._finer = touching, finer
-        self.one = touching.finer() if finer else touching.one
-        self._most = MOST * 2 if finer else MOST
-        self._kept: dict[tuple[int, bool], FewContacts] = {}
+    Parameters
+    ----------
+    share : float
+        Probability that an asperity counts.
+    number : float
+        Asperities on a surface, or their mean number.
+    poisson : bool
+        Whether their number is a Poisson variable.
+    """
 
-    def __call__(self, x: Array) -> Values:
-        """At arguments in any order."""
-        with np.errstate(all="ignore"):  # far out things overflow that count for nothing
-            return self._found(x)
+    share: float
+    number: float
+    poisson: bool
 
-    def _found(self, x: Array) -> Values:
-        order = np.argsort(x, kind="stable")
-        sorted_x = x[order]
-        found = np.empty((3, x.size))
-        for mask, law in self._ways(sorted_x):
-            part = law(sorted_x[mask])
-            found[:, mask] = part.cdf, part.sf, part.pdf
-        back = np.empty((3, x.size))
-        back[:, order] = found
-        return Values(*back)
+    def __post_init__(self) -> None:
+        """Take the functions from SciPy."""
+        from scipy.stats import binom, poisson  # takes long to import
 
-    def _ways(self, x: Array) -> list[tuple[Marks, Callable[[Array], Values]]]:
-        one = self.one
-        positive = one.least == 0
-        all_touch = one.number * one.values.min(initial=np.inf) if one.nothing == -np.inf else 0.0
-        nothing = x < all_touch if positive else np.zeros(x.shape, dtype=bool)
-        at_zero = (x == 0) & positive if one.values.size else ~nothing
-        rest = ~(nothing | at_zero)
-        atom = np.exp(one.nothing)
-        ways: list[tuple[Marks, Callable[[Array], Values]]] = [
-            (nothing, lambda y: Values(0 * y, 0 * y + 1, 0 * y)),
-            (at_zero, lambda y: Values(0 * y + atom, 0 * y - np.expm1(one.nothing), 0 * y)),
-        ]
-        few = np.zeros(x.shape, dtype=bool)
-        if rest.any() and (one.nothing > _MANY or x[rest][0] < one.mean - _MIDDLE * one.std):
-            few = rest & (x <= self.one.few_up_to) & self._touching.rises
-        usual = x < one.mean + _MIDDLE * one.std
-        ways += [
-            (part, partial(self._by_few, self._few(float(x[part][-1]))))
-            for part in (few & usual, few & ~usual)
-            if part.any()
-        ]
-        rest &= ~few
-        middle = rest & (np.abs(x - one.mean) < _MIDDLE * one.std) & self._short
-        ways += [(middle, self._middle), (rest & ~middle, self._far)]
-        return [(mask, law) for mask, law in ways if mask.any()]
+        of_number = poisson(self.number * self.share)
+        law = of_number if self.poisson else binom(round(self.number), self.share)
+        functions = {name: getattr(law, name) for name in ("cdf", "sf", "ppf", "isf", "mean", "var")}
+        hold(self, **functions, pdf=law.pmf)
 
-    def _middle(self, x: Array) -> Values:
-        """By one line for all; by others where so little lies beyond that its digits would be lost."""
-        found = self._central(x)
-        rare = (np.minimum(found.cdf, found.sf) < _TAIL) & (self.one.nothing <= _MANY)
-        if rare.any():
-            _replace(found, rare, self._far(x[rare]))
-        return found
-
-    def _far(self, x: Array) -> Values:
-        """By lines through saddle points; by one not shifted where heavy tails both ways leave none."""
-        found, one = by_contour(self.one, x, self._most), self.one
-        lost = ~(np.abs(found.cdf - 0.5) < _LOST) | (one.least < 0 and not self._short)
-        if not lost.any():
-            return found
-        room = 2 * max(_MIDDLE * one.std, float(np.abs(x[lost] - one.mean).max()))
-        _replace(found, lost, Line(one, 0.0, one.std, room, self._most)(x[lost]))
-        return found
-
-    def _by_few(self, law: FewContacts, x: Array) -> Values:
-        """Where it does not reach on to the largest sums, what lies above is what is left of 1."""
-        found = law(x)
-        return replace(found, sf=1 - found.cdf) if np.isfinite(self.one.few_up_to) else found
-
-    def _few(self, x: float) -> FewContacts:
-        """Up to x at least, and where the transform takes over no farther."""
-        if np.isfinite(self.one.few_up_to):
-            usual, doublings, far = self.one.few_up_to, 0, self.one.few_up_to
-        else:
-            usual, rarest = self.one.usual
-            far = max(usual, x)
-            doublings = int(np.ceil(np.log2((far + rarest) / usual)))
-        rare = x > self.one.mean + _MIDDLE * self.one.std
-        if (doublings, rare) not in self._kept:
-            tilt = min(saddle(bounded(self.one, far)[0], far)[0], self.one.decay(far)) if rare else 0.0
-            law = self._touching.few(usual, doublings, tilt, coarse=self._finer)
-            if tilt and not np.isfinite(self.one.few_up_to) and not law.missing < _TAIL:
-                law = replace(law, tilt=0.0)  # panels do not follow what is tilted so much
-            self._kept[doublings, rare] = law
-        return self._kept[doublings, rare]
-
-    @cached_property
-    def _short(self) -> bool:
-        return self._central.widest < _LONG * self._central.spread
-
-    @cached_property
-    def _central(self) -> Line:
-        spread = self.one.std
-        return Line(self.one, 0.0, spread, 2 * _MIDDLE * spread, self._most)
-
-
-def _replace(found: Values, where: Marks, by: Values) -> None:
-    for name in ("cdf", "sf", "pdf"):
-        getattr(found, name)[where] = getattr(by, name)
+    def error_at(self, y: ArrayLike) -> Array:
+        """As `Law.error_at`: that of SciPy's functions."""
+        return np.full(np.shape(y), _SCIPY)[()]

@@ -1,88 +1,231 @@
 """The laws of the quantities of a model."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import numpy as np
-from scipy.special import gammaln, xlogy
+from scipy.interpolate import make_interp_spline
+from scipy.special import ndtr, ndtri
 
-from analytic.distribution.derived import Along, Counted, Law, Mapped
-from analytic.distribution.distribution import Distribution
-from analytic.distribution.one_asperity import OneAsperity
-from analytic.distribution.touching import Asperity, Touching
-from analytic.height_rule import HeightRule
+from analytic.arrays import Array
+from analytic.distribution.distribution import Counted, Law, Table
+from analytic.distribution.lattice import OneAsperity, resolved, share_at, shares
+from analytic.heights import HeightLaw
+from analytic.inversion import LOWEST
 from analytic.measured_summits import MeasuredHeights
 from analytic.quantities import quantity_of
+from analytic.summits import Radii
 
-_FARTHER = (1.0, 3.0, 6.0, 10.0)  # heights above the separation that divide the rule, and reach on
+_POINTS = 2**14, 5 * 2**12  # of a lattice, and of another one
+_CELLS = 4096, 5000  # of the heights, at least
+_FEW_WIDE, _MANY_WIDE, _MOST = 4000, 2, 64  # cells over a usual width; over a standard deviation; in a gap
+_SCORES, _APART, _NONE, _SMALLEST, _TABLE = 6.0, 0.4, 1e-14, 1e-3, 8192
+_LEVEL = 1e-9
+_GAUSS = 0.5 - 0.5 / np.sqrt(3)  # the first of two points of a cell
+_NEVER, _TAIL = 1e-14, 1e-5
 _ROUNDING = 1e-9  # of a law that goes on smoothly
-_FINER = (0.5, 1.0, 2.0, 3.0, 4.5, 6.0, 8.0, 10.0)
 
 
-def distribution_of(model: Any, quantity: str, h: float) -> Law:
+def distribution_of(model: Any, quantity: str, h: float, *, other: bool = False) -> Law:
     """As `analytic.Model.distribution`, of a model whose asperities are independent."""
     q, poisson = quantity_of(quantity), model.count == "poisson"
     if q.counts:
         return Counted(float(model.mean(quantity, h) / model.number), model.number, poisson)
-    rule, added = model.asperities(quantity, h, _FARTHER)
-
-    def one(rule: HeightRule) -> OneAsperity:
-        return OneAsperity.of(added(rule), rule.probabilities, model.number, poisson)
-
-    listed = isinstance(model.heights, MeasuredHeights)
-    mixed = model.curvature is not None and model.law is not None  # breaks of every radius for itself
-    itself = None if listed or mixed else Asperity(model, quantity, h, rule, added)
-    finer = partial(model.asperities, quantity, h, _FINER)
-    touching = Touching(one(rule), lambda: one(finer()[0]), itself)
-    if listed:  # how often a surface has each of them, the likeliest way
-        often = model.number * touching.one.probabilities
-        k = np.floor(often)
-        touching = replace(touching, step=float(np.exp(np.sum(xlogy(k, often) - often - gammaln(k + 1)))))
-    return Distribution(touching, q.scale(model.surface))
+    one, unit = one_asperity(model, quantity, h, _CELLS[other]), q.scale(model.surface)
+    x, below, above = shares(one, _POINTS[other])
+    low, high = one.ends
+    return Table(
+        unit * x,
+        below,
+        above,
+        (unit * one.mean, unit**2 * one.variance),
+        (unit * low, unit * high),
+        one.rounding,
+        partial(distribution_of, model, quantity, h, other=True),
+    )
 
 
-def separation_law_of(model: Any, load: float, quantity: str) -> Law:
+def one_asperity(model: Any, quantity: str, h: float, cells: int, top: float = np.inf) -> OneAsperity:
+    """Return what one asperity adds, over the scale of the quantity: by cells of the heights of each radius.
+
+    Cells in which asperities add more than `top` are wide.
+    """
+    rule, added = model.asperities(quantity, h)
+    values, p, n = added(rule), rule.probabilities, model.number
+    poisson, listed = model.count == "poisson", isinstance(model.heights, MeasuredHeights)
+    mean = float(p @ values)
+    square = float(p @ values**2) - (0 if poisson else mean**2)
+    bounded = listed or (model.curvature is None and bool(np.isfinite(model.heights.support[1])))
+
+    def of(values: Array, p: Array, upto: tuple[Array, Array]) -> OneAsperity:
+        return OneAsperity(values, p, *upto, n * mean, n * square, n, poisson, listed, bounded)
+
+    x, p_of_x = _touching(values, p)
+    one = of(x, p_of_x, (x, np.cumsum(p_of_x)))
+    if listed or not one.values.size:
+        return one
+    usual, std, largest = one.usual
+    gaps = np.abs(np.diff(values, prepend=values[0]))
+    gaps[(n * np.cumsum(p[::-1])[::-1] < _NEVER) | (values > top)] = 0.0
+    width = (usual + largest) / _FEW_WIDE if one.few else std / _MANY_WIDE
+    parts = np.clip(np.ceil(gaps / width), -(-cells // gaps.size), _MOST).astype(np.int64)
+    radius = np.zeros(p.size, dtype=np.int64)
+    if rule.ratios is not None:
+        radius = np.append(0, np.cumsum(np.diff(rule.ratios) != 0))
+    lowest = max(min(h, model.ways.of(quantity).lowest(h)), model.heights.support[0])
+    left = np.where(np.diff(radius, prepend=-1) > 0, lowest, np.append(lowest, rule.heights[:-1]))
+    part = (np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)) / np.repeat(parts, parts)
+    wide = np.repeat((rule.heights - left) / parts, parts)
+    left, radius = (
+        np.repeat(left, parts) + part * np.repeat(rule.heights - left, parts),
+        np.repeat(radius, parts),
+    )
+    s = left + wide * [[_GAUSS], [1 - _GAUSS]]
+    if rule.ratios is None:
+        p, ratios = _probabilities(model.heights, left, wide, s), None
+    else:
+        radii = Radii.over(model.curvature, h)
+        ratios = np.tile(np.repeat(rule.ratios, parts), 2)
+        which = np.searchsorted(-radii.ratios, -ratios)
+        p = radii.density(s.ravel(), which).reshape(s.shape) * wide / 2
+    p *= rule.probabilities.sum() / p.sum()
+    of_cells = replace(rule, heights=s.ravel(), probabilities=p.ravel(), ratios=ratios)
+    values = added(of_cells).reshape(s.shape)
+    own = 0.5 + np.sign(np.diff(values, axis=0)) * [[0.5 - 2 * _GAUSS], [2 * _GAUSS - 0.5]]
+    x, p_of_x = _touching(values.ravel(), p.ravel())
+    if rule.ratios is None:
+        return of(x, p_of_x, _upto(values, p, own))
+    places = x[:: -(-x.size // cells)]
+    upto = np.zeros(places.shape)
+    for k in range(radius[-1] + 1):
+        mine = slice(*np.searchsorted(radius, [k, k + 1]))
+        upto += np.interp(places, *_upto(values[:, mine], p[:, mine], own[:, mine]))
+    return of(x, p_of_x, (places, upto))
+
+
+def _touching(values: Array, p: Array) -> tuple[Array, Array]:
+    """Of asperities that add something, in the order of what they add."""
+    order = np.argsort(values)
+    order = order[(values[order] != 0) & (p[order] > 0)]
+    return values[order], p[order]
+
+
+def _upto(values: Array, p: Array, own: Array) -> tuple[Array, Array]:
+    """Values, and the share of asperities that touch and add no more; `own` parts of those at it do not."""
+    order = np.argsort(values, axis=None)
+    order = order[(values.flat[order] != 0) & (p.flat[order] > 0)]
+    x, p = values.flat[order], p.flat[order]
+    return x, np.cumsum(p) - own.flat[order] * p
+
+
+def _probabilities(law: HeightLaw, left: Array, wide: Array, s: Array) -> Array:
+    """Of heights s in cells, two in each, that share its probability as their densities are."""
+    with np.errstate(all="ignore"):
+        above, p = law.sf(np.append(left, left[-1] + wide[-1])), law.pdf(s) * wide / 2
+        exact = -np.diff(above) / p.sum(axis=0)
+    exact[(above[1:] < _TAIL) | ~np.isfinite(exact)] = 1.0  # differences there have lost their digits
+    return np.asarray(p * exact)
+
+
+def separation_law_of(model: Any, load: float, quantity: str, *, other: bool = False) -> Law:
     """As `analytic.Model.separation_law`, of a model whose asperities are independent."""
-    if quantity_of(quantity).counts or quantity_of(quantity).unloading:
+    q = quantity_of(quantity)
+    if q.counts or q.unloading:
         raise ValueError(
             f"quantity = {quantity!r}: give a sum that decreases with the separation, such as 'load'"
         )
     start = float(model.separation_at(quantity, load))
     _falling(model, quantity, start)
-    spread = float(model.std(quantity, start) / model.slope(quantity, start))
-    return Along(partial(distribution_of, model, quantity), lambda _: load, start, spread)
+    unit = q.scale(model.surface)
+    one, target = one_asperity(model, quantity, start, _CELLS[other]), load / unit
+    spread = float(unit * one.usual[1] / model.slope(quantity, start))
+
+    def shares(h: float) -> tuple[float, float]:
+        return share_at(one_asperity(model, quantity, h, _CELLS[other], target), target, _POINTS[other] // 4)
+
+    again = partial(separation_law_of, model, load, quantity, other=True)
+    return _along(shares, start + other * spread / 7, spread, (-np.inf, np.inf), one.rounding, again)
 
 
-def interacting_distribution(model: Any, quantity: str, h: float) -> Law:
+def interacting_distribution(model: Any, quantity: str, h: float, *, other: bool = False) -> Law:
     """As `analytic.Model.distribution`, of a model whose asperities press each other down."""
     c, alone, q = model.compliance, model.alone, quantity_of(quantity)
     if not model.interaction.nominal:
         if quantity == "nominal_separation":
-            return Mapped(
-                distribution_of(alone, "load", h), lambda p: h - c * p, lambda x: (h - x) / c, falls=c > 0
-            )
-        if si := model.series(quantity):
-            of = distribution_of(alone, quantity, h)
-            return Mapped(of, lambda k: k / (1 + si * k), lambda k: k / (1 - si * k))
-        return distribution_of(alone, quantity, h)
+            return distribution_of(alone, "load", h).mapped(lambda p: h - c * p, falls=c > 0)
+        law = distribution_of(alone, quantity, h)
+        series = model.series(quantity)
+        return law.mapped(lambda k: k / (1 + series * k)) if series else law
     if c < 0:
         raise ValueError(
             f"quantity = {quantity!r}: its exact distribution at nominal separations from the mean plane is "
             "not known, because a surface may have several equilibria; use effective separations"
         )
+    if quantity == "effective_separation":
+        return interacting_distribution(model, "load", h).mapped(lambda p: h + c * p)
     if q.base != "load" or q.unloading:
-        if quantity != "effective_separation":
-            raise ValueError(
-                f"quantity = {quantity!r}: at nominal separations only the distributions of 'load', "
-                "'pressure' and 'effective_separation' are known; use effective separations for others"
-            )
-        return Mapped(interacting_distribution(model, "load", h), lambda p: h + c * p, lambda x: (x - h) / c)
+        raise ValueError(
+            f"quantity = {quantity!r}: at nominal separations only the distributions of 'load', "
+            "'pressure' and 'effective_separation' are known; use effective separations for others"
+        )
     each = c * alone.surface.nominal_area if q.of else c  # of d/sigma for each unit of the quantity
     _falling(alone, quantity, h)
-    felt = float(model.effective(h))
-    start, spread = float(alone.mean(quantity, felt)), float(alone.std(quantity, felt))
-    return Along(lambda p: distribution_of(alone, quantity, h + each * p), lambda p: p, start, spread)
+    felt, unit = float(model.effective(h)), q.scale(alone.surface)
+    start = np.cbrt(float(alone.mean(quantity, felt)))
+    middle = one_asperity(alone, quantity, felt, _CELLS[other])
+    spread = unit * middle.usual[1] / (3 * start**2)
+
+    def shares(root: float) -> tuple[float, float]:
+        p = root**3
+        one = one_asperity(alone, quantity, h + each * p, _CELLS[other], p / unit)
+        return share_at(one, p / unit, _POINTS[other] // 4)
+
+    again = partial(interacting_distribution, model, quantity, h, other=True)
+    law = _along(shares, start + other * spread / 7, spread, (0.0, np.inf), middle.rounding, again)
+    return law.mapped(lambda root: root**3)
+
+
+def _along(
+    shares: Callable[[float], tuple[float, float]],
+    start: float,
+    spread: float,
+    ends: tuple[float, float],
+    rounding: float,
+    again: Callable[[], Any],
+) -> Table:
+    """The law of y, of which the shares up to y and above are given: normal scores of some, and a spline."""
+
+    def score(y: float) -> float:
+        below, above = (max(share, _NONE) for share in shares(y))
+        return float(ndtri(below) if below < above else -ndtri(above))
+
+    scores = {start: score(start)}
+    for way in (-1, 1):
+        at, reached, step = start, scores[start], spread / 4
+        while way * reached < _SCORES and at > max(ends[0], LOWEST):
+            new = max(at + way * step, ends[0], LOWEST)
+            found = score(new)
+            apart = abs(found - reached)
+            if apart > 1.5 * _APART and step > _SMALLEST * spread:
+                step /= 4
+                continue
+            scores[new] = found
+            if way < 0 and apart < _LEVEL:  # all asperities touch, and the rest of the surfaces have none
+                break
+            step *= float(np.clip(_APART / max(apart, _LEVEL), 0.25, 1.5))
+            step = min(step, spread / 3) if way < 0 else step
+            at, reached = new, found
+    nodes = np.array(sorted(scores))
+    z = np.maximum.accumulate([scores[at] for at in nodes.tolist()])
+    nodes, z = nodes[np.abs(z) < -ndtri(_NONE)], z[np.abs(z) < -ndtri(_NONE)]
+    y = np.interp(np.linspace(0, nodes.size - 1, _TABLE), np.arange(nodes.size), nodes)
+    z = np.maximum.accumulate(make_interp_spline(nodes, z, min(5, nodes.size - 1))(y))
+    if np.isfinite(ends[0]):
+        y, z = np.append(np.nextafter(ends[0], -np.inf), y), np.append(-np.inf, z)
+    table = Table(*resolved(y, ndtr(z), ndtr(-z), rounding), (0.0, 0.0), ends, rounding, again)
+    return table.with_moments()
 
 
 def _falling(model: Any, quantity: str, h: float) -> None:
