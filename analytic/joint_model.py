@@ -151,10 +151,7 @@ class InteractingJointModel(JointModel, InteractingModel):
         """As of the spots: of spots and gas, in series with the bodies."""
         if not (bodies := self._bodies(quantity)):
             return super().distribution(quantity, h)
-        from analytic.distribution import Mapped
-
-        of = self._beside.distribution(quantity, h)
-        return Mapped(of, lambda x: x / (1 + bodies * x), lambda y: y / (1 - bodies * y))
+        return self._beside.distribution(quantity, h).mapped(lambda x: x / (1 + bodies * x))
 
     @cached_property
     def _beside(self) -> "_WithoutBodies":

@@ -12,6 +12,8 @@ from analytic.arrays import Array, hold
 
 _NARROW = 1e-9  # of the table: cells that have no density to be told
 _LINEAR = 1e-7  # what shares that are linear between neighbours may be off by
+_FAR = 1e100  # beyond all sums
+_LEAST = 1e-60  # below all sums but 0
 _SAFE = 3.0  # times what two computations differ by: their errors may have one sign
 _SHARES = np.array([1e-6, 1e-4, 0.001, 0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99, 0.999, 1 - 1e-4, 1 - 1e-6])
 _SCIPY = 1e-14
@@ -37,7 +39,7 @@ class Law:
     @property
     def atom(self) -> float:
         """Probability that no asperity touches."""
-        return float(self.cdf(0.0) - self.cdf(np.nextafter(0, -1)))
+        return float(self.cdf(0.0))
 
     @property
     def error(self) -> float:
@@ -98,6 +100,11 @@ class Table(Law):
     rounding: float
     again: Callable[[], Any]
 
+    @property
+    def atom(self) -> float:
+        """Probability that no asperity touches."""
+        return float(self.cdf(0.0) - self.cdf(-_LEAST)) if self.x[0] <= 0 else 0.0
+
     def cdf(self, y: ArrayLike) -> Array:
         """Return P(Y <= y)."""
         return self._shares(y)[0]
@@ -116,9 +123,10 @@ class Table(Law):
         )
         below = np.where(y < self.x[0], next(bounds), np.interp(y, self.x, self.below))
         above = np.where(y > self.x[-1], next(bounds), np.interp(y, self.x, self.above))
-        below, above = np.where(y < self.ends[0], 0.0, below), np.where(y >= self.ends[1], 0.0, above)
+        above, below = np.where(y < self.ends[0], 1.0, above), np.where(y < self.ends[0], 0.0, below)
+        below, above = np.where(y >= self.ends[1], 1.0, below), np.where(y >= self.ends[1], 0.0, above)
         lower = np.where(np.isnan(y), np.nan, np.where(below < above, below, 1 - above))
-        return lower[()], np.where(below < above, 1 - below, above)[()] + 0 * lower[()]
+        return lower[()], np.where(np.isnan(y), np.nan, np.where(below < above, 1 - below, above))[()]
 
     def ppf(self, q: ArrayLike) -> Array:
         """Return the smallest value y with P(Y <= y) >= q; nan beyond what lattices resolve."""
@@ -133,6 +141,7 @@ class Table(Law):
         by_above = np.interp(above, self.above[::-1], self.x[::-1], left=np.nan)
         found = np.where(below < above, by_below, by_above)
         found = np.where(below == 0, self.ends[0], np.where(above == 0, self.ends[1], found))
+        found = np.where(np.abs(found) < _LEAST, 0.0, found)
         return np.where((below >= 0) & (above >= 0), found, np.nan)[()]
 
     def mean(self) -> float:
@@ -199,7 +208,8 @@ class Table(Law):
         moments = of_f + slope * (mean - of_x), float(shares @ (f - of_f) ** 2) + slope**2 * more
         turned = slice(None, None, -1 if falls else 1)
         below, above = (self.above, self.below) if falls else (self.below, self.above)
-        ends = np.array([float(forward(end)) for end in self.ends])
+        ends = np.array([float(forward(end)) for end in np.clip(self.ends, -_FAR, _FAR).tolist()])
+        ends[np.abs(ends) > np.sqrt(_FAR)] *= np.inf
         return replace(
             self,
             x=forward(self.x)[turned],

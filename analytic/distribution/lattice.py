@@ -16,6 +16,7 @@ ROUNDING = 1e-12  # of probabilities of one contact: damping multiplies the last
 _PERIOD, _DAMPED = 4, 28.0  # length of a lattice over what is read of it; logarithm of the damping over it
 _STENCIL = range(-3, 4)  # lattice points that share a value and keep its moments up to the sixth
 _MARGIN = 16  # lattice points read below the lowest sum, and filled beyond the last that is read
+_NOTHING = 1e-100  # less than any sum but 0
 _FEW = 1e-25  # probability of no contact above which sums of none and of one are taken apart
 _REACH = 9.0  # standard deviations that hold all but 1e-18
 _RARE = 1e-3  # asperities on a surface that add more than usual ones
@@ -206,7 +207,7 @@ def _log1p(q: Complex) -> Complex:
 def shares(one: OneAsperity, points: int) -> tuple[Array, Array, Array]:
     """Return sums, and the shares of the surfaces up to and above them, from ever wider lattices."""
     if not one.values.size:
-        return np.array([np.nextafter(0, -1), 0.0]), np.array([0.0, 1.0]), np.array([1.0, 0.0])
+        return np.array([-_NOTHING, 0.0]), np.array([0.0, 1.0]), np.array([1.0, 0.0])
     rest = 1 - one.none - one.alone * one.share if one.few else 1.0
     lattices = []
     for width in one.widths(points):
@@ -224,7 +225,7 @@ def shares(one: OneAsperity, points: int) -> tuple[Array, Array, Array]:
         parts.append(np.stack([x, np.cumsum(p) - p / 2, more])[:, x > end])
     x, below, more = np.concatenate(parts[::-1], axis=1)
     if one.few:
-        zero = np.array([np.nextafter(0, -1), 0.0])
+        zero = np.array([-_NOTHING, 0.0])
         own = one.places[:: max(1, one.places.size // points)]
         own = own[own < x[-1]]
         every = np.unique(np.concatenate([x, zero, own, np.nextafter(own, -np.inf) if one.stepped else zero]))
