@@ -13,7 +13,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-o", "--output", type=Path, metavar="PNG", help="figure (.png, .pdf, .svg, ...); default: FILE.png"
     )
-    parser.add_argument("--csv", type=Path, metavar="FILE", help="also write the table of all separations")
+    parser.add_argument(
+        "--csv", type=Path, metavar="FILE", help="also write the table, of at most 100 separations"
+    )
     parser.add_argument(
         "--table", action="store_true", help="print all means beside theory, not only the worst three"
     )

@@ -61,7 +61,8 @@ def _data(comparison: Comparison) -> FigureData:
         f"{shown_title(scene, 'Ensemble')}\n"
         f"Monte Carlo and theory {verdict.word}: {seen}, p = {verdict.p:.3g}",
         f"{ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, "
-        f"{contact_label(scene)}; sampler {ensemble.sampler}, seed {scene.seed}",
+        f"{contact_label(scene)}; sampler {ensemble.sampler}, seed {scene.seed}"
+        + (f"; {comparison.of_many}" if comparison.of_many else ""),
         panels,
         columns=2 if len(panels) == 4 else _MOST_COLUMNS,
     )

@@ -12,6 +12,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.intervals import exact_ends
 from mcgw.ensemble.paired import Paired
 from mcgw.ensemble.solved import Solution
+from mcgw.ensemble.some_separations import shown
 from mcgw.figures.against_theory import draw_residuals, quantity_panel
 from mcgw.figures.panels import draw_panel
 from mcgw.figures.studies import draw_checks, draw_methods
@@ -63,6 +64,7 @@ def _draw(result: Any, _: Any) -> None:
 @_draw.register
 def _(result: Ensemble, ax: Any, *, quantity: str) -> None:
     """Mean and interval; the band holds 90 % of all surfaces; two thirds where no law is known."""
+    result = shown(result)
     h, q = result.separations, result.scene.quantity(quantity)
     order = np.argsort(h, kind="stable")
     mean, std = result.mean(quantity), result.std(quantity)

@@ -11,6 +11,7 @@ from mcgw.ensemble.at_load import at_pressures, common_pressures, mean_surface, 
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.labelled import statistics_table
 from mcgw.ensemble.solved import Solution
+from mcgw.ensemble.some_separations import how_many, shown
 from mcgw.figures.against_theory import sweep_figure
 from mcgw.figures.style import grading_label
 from mcgw.formats.numbers import number, typeset
@@ -48,16 +49,16 @@ def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
     scene, against = ensemble.scene, ensemble.scene.validity()
     real = promise_of(ensemble.sampler).real_surfaces
     with stages(4) as done:
-        comparison = compare(ensemble) if real else None
+        comparison, some = compare(ensemble) if real else None, shown(ensemble)
         done()
-        first = first_surfaces(ensemble) if "load" in scene.quantities else ensemble
+        first = first_surfaces(some) if "load" in scene.quantities else some
         at_pressure = list(pressure_pictures(first))
         solved = solution_of(scene, first) if real and at_pressure else None
         done()
         patch = patch_pictures(ensemble)
         done()
-        figures = means_figures(ensemble) if comparison is None else comparison_figures(comparison)
-        tables = _means(ensemble) if comparison is None else list(comparison.tables().values())
+        figures = means_figures(some) if comparison is None else comparison_figures(comparison)
+        tables = _means(some) if comparison is None else list(comparison.tables().values())
         done()
     return rendered(
         "report.html.j2",
@@ -171,6 +172,7 @@ def opening_words(ensemble: Ensemble) -> str:
         f"{ensemble.n_surfaces} rough surfaces of {scene.n_asperities:g} asperities{count}, "
         f"{grading_label(scene.grading)}, each pressed on a plane at {separations} from d/σ = "
         f"{min(scene.separations):g} to {max(scene.separations):g}. {contacts_sentence(scene)}"
+        + (f" Tables and figures are {how_many(ensemble)}." if how_many(ensemble) else "")
     )
 
 

@@ -123,6 +123,8 @@ def comparison_summary(
     if not isinstance(comparison, Comparison):
         return comparison.sheet(_LISTED if whole else _WORST).text(), comparison.table, lines
     lines.append(comparison.ensemble.scene.validity().verdict)
+    if comparison.of_many:
+        lines.append(f"tables and figure {comparison.of_many}; the verdict is on all of them")
     text = comparison_text(comparison) if whole else comparison.worst(_WORST).text()
     return text, lambda: stacked(comparison.tables(), "quantity"), lines
 

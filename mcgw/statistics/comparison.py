@@ -11,6 +11,7 @@ from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.intervals import interval_column
 from mcgw.ensemble.labelled import heading
+from mcgw.ensemble.some_separations import how_many, shown
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import SEPARATION, Column, Table, stacked
 from mcgw.machine.progress import Progress, told
@@ -60,16 +61,19 @@ class Comparison(Shown):
     Parameters
     ----------
     ensemble : Ensemble
-        What was compared.
+        What was compared, at the separations that are shown: 100 of them where there are more.
     curves : dict of str to Curve
         By quantity.
     verdict : Verdict
         On all means, and on the distributions of single surfaces if these were tested.
+    of_many : str, optional
+        At how many of its separations it is shown; nothing if at all.
     """
 
     ensemble: Ensemble
     curves: dict[str, Curve]
     verdict: Verdict
+    of_many: str = ""
 
     def plot(self, ax: Any = None, *, quantity: str | None = None) -> Any:
         """Draw the theory of a quantity with the Monte-Carlo means on it.
@@ -95,12 +99,13 @@ class Comparison(Shown):
         facts = [
             ("all means" if v.laws is None else "all values", f"{v.seen}, p = {v.p:.3g}"),
             ("elasticity", self.ensemble.scene.validity().brief),
+            *([("shown", self.of_many)] if self.of_many else []),
         ]
         table = stacked(farthest, "quantity", "farthest off")
         return Sheet(f"Monte Carlo and theory {v.word}", facts, table)
 
     def tables(self) -> dict[str, Table]:
-        """By quantity: mean, 95 % interval, standard deviation, theory and residual at every separation."""
+        """By quantity: mean, 95 % interval, standard deviation, theory, residual at each separation shown."""
         return {name: self._table(name) for name in self.curves}
 
     def worst(self, rows: int) -> Table:
@@ -268,21 +273,19 @@ def compare(
 def _of_ensemble(ensemble: Ensemble, laws: bool) -> Comparison:
     if not promise_of(ensemble.sampler).real_surfaces:
         raise ValueError("a stratified file holds means, not an ensemble; use another sampler")
-    scene = ensemble.scene
-    curves = {}
-    for name in scene.answers:
-        variance = scene.theory.cumulants(name, scene.separations).variance
-        low, high = ensemble.interval(name)
-        stderr = np.sqrt(variance / ensemble.n_surfaces)
-        curves[name] = Curve(
-            ensemble.mean(name), low, high, scene.theory.mean(name, scene.separations), stderr
-        )
-    on_means = verdict(ensemble)
-    if not laws:
-        return Comparison(ensemble, curves, on_means)
-    from mcgw.statistics.laws_of_values import laws_of_values  # imports the exact laws
+    some, result = shown(ensemble), verdict(ensemble)
+    if laws:
+        from mcgw.statistics.laws_of_values import laws_of_values  # imports the exact laws
 
-    return Comparison(ensemble, curves, on_means.with_laws(laws_of_values(ensemble)))
+        result = result.with_laws(laws_of_values(ensemble))
+    curves = {name: _curve(some, name) for name in some.scene.answers}
+    return Comparison(some, curves, result, how_many(ensemble))
+
+
+def _curve(ensemble: Ensemble, name: str) -> Curve:
+    theory, h = ensemble.scene.theory, ensemble.scene.separations
+    stderr = np.sqrt(theory.cumulants(name, h).variance / ensemble.n_surfaces)
+    return Curve(ensemble.mean(name), *ensemble.interval(name), theory.mean(name, h), stderr)
 
 
 def _of_sweep(sweep: "Sweep", progress: Progress) -> SweepComparison:

@@ -1,0 +1,81 @@
+"""Ensembles of more separations than tables and figures show beside theory."""
+
+import numpy as np
+import pytest
+
+import mcgw
+from mcgw.ensemble.some_separations import MOST_SHOWN, at_separations, how_many, shown
+from mcgw.reports.html import opening_words
+from mcgw.reports.text import comparison_summary
+from mcgw.statistics.verdict import verdict
+
+WHOLE = np.linspace(1.5, 0.0, 2 * MOST_SHOWN + 1)  # falling: every other one is shown
+
+
+@pytest.fixture(scope="module", params=["sums", "statistics"])
+def whole(request):
+    surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    scene = mcgw.Scene(surface, separations=WHOLE, n_surfaces=40, seed=3, keep=request.param)
+    return mcgw.simulate(scene)
+
+
+@pytest.mark.parametrize("count", [1, MOST_SHOWN, MOST_SHOWN + 1])
+def test_up_to_the_limit_an_ensemble_is_shown_as_it_is(whole, count):
+    few = at_separations(whole, np.arange(count))
+    assert (shown(few) is few) == (count <= MOST_SHOWN)
+    assert bool(how_many(few)) == (count > MOST_SHOWN)
+    assert len(shown(few).separations) == min(count, MOST_SHOWN)
+
+
+def test_the_first_and_the_last_separation_are_shown_and_the_order_is_kept(whole):
+    some = shown(whole)
+    assert some.separations[[0, -1]].tolist() == [1.5, 0.0]
+    assert np.all(np.diff(some.separations) < 0)
+    assert set(some.separations) <= set(WHOLE)
+    assert some.surfaces_of is whole.scene
+
+
+def test_every_number_is_that_of_the_same_separation(whole):
+    which = np.array([7, 50, 191])
+    some = at_separations(whole, which)
+    assert some.n_surfaces == whole.n_surfaces
+    for ask in ("mean", "std", "stderr", "skewness", "extremes", "extreme_surfaces"):
+        found, expected = (np.asarray(getattr(e, ask)("area_fraction")) for e in (some, whole))
+        np.testing.assert_array_equal(found, expected[..., which])
+    for ask in ("quantile", "quantile_range"):
+        found, expected = (np.asarray(getattr(e, ask)("load", 0.25)) for e in (some, whole))
+        np.testing.assert_array_equal(found, expected[..., which])
+    both = whole.covariance("load", "contacts")[np.ix_(which, which)]
+    np.testing.assert_array_equal(some.covariance("load", "contacts"), both)
+    for name in ("contacts", "load"):
+        np.testing.assert_allclose(
+            np.asarray(some.interval(name))[:, 1],
+            np.asarray(at_separations(whole, which[[1]]).interval(name))[:, 0],
+            rtol=1e-13,
+        )
+    if whole.scene.keep == "sums":
+        np.testing.assert_array_equal(some["load"], whole["load"][:, which])
+
+
+def test_a_comparison_shows_some_and_its_verdict_is_on_all(whole):
+    found = mcgw.compare(whole)
+    assert found.of_many == f"at {MOST_SHOWN} of {len(WHOLE)} separations"
+    assert found.of_many in str(found)
+    for name, table in found.tables().items():
+        h, mean = (table.only(column).columns[0].values for column in ("separation", "mean"))
+        assert len(h) == MOST_SHOWN
+        index = [WHOLE.tolist().index(x) for x in h]
+        np.testing.assert_array_equal(mean, whole.mean(name)[index])
+        theory = table.only("theory").columns[0].values
+        np.testing.assert_allclose(theory, whole.scene.theory.mean(name, h), rtol=1e-13)
+    assert found.verdict == verdict(whole)
+
+
+def test_the_command_and_the_report_say_how_many(whole):
+    _, table, lines = comparison_summary(mcgw.compare(whole), whole=False)
+    said = f"at {MOST_SHOWN} of {len(WHOLE)} separations"
+    assert lines[-1] == f"tables and figure {said}; the verdict is on all of them"
+    assert len(table()) == MOST_SHOWN * len(whole.scene.quantities)
+    assert opening_words(whole).endswith(f" Tables and figures are {said}.")
+    few = shown(whole)
+    assert said not in "".join(comparison_summary(mcgw.compare(few), whole=False)[2]) + opening_words(few)
