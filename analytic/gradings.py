@@ -104,6 +104,11 @@ class Custom:
         Takes an array of reduced heights, returns E*(s)/E* in the same shape.
     breaks : tuple of float, optional
         Heights where it jumps or has a kink. Without them they are searched for, which takes time.
+    smooth : bool, optional
+        Whether it is smooth between them.
+    checked : bool, optional
+        Whether a scene refuses it if it is above 1000 or below 0.001 at all heights that touch, as moduli in
+        pascals are.
 
     Examples
     --------
@@ -115,6 +120,7 @@ class Custom:
     function: Callable[[Array], ArrayLike]
     breaks: tuple[float, ...] = ()
     smooth: bool = False
+    checked: bool = True
 
     def __call__(self, s: Array) -> Array:
         """Values of the function.

@@ -38,6 +38,8 @@ class PiecewiseSeries:
         Of the function that it stands for; for people.
     kinks : sequence of float, optional
         Which inner edges are jumps or kinks; at the others the curve goes on smoothly.
+    checked : bool, optional
+        As of `Custom`.
 
     Raises
     ------
@@ -57,6 +59,7 @@ class PiecewiseSeries:
     coefficients: tuple[tuple[float, ...], ...]
     name: str
     kinks: tuple[float, ...]
+    checked: bool
     smooth: ClassVar[bool] = True
 
     def __init__(
@@ -65,9 +68,10 @@ class PiecewiseSeries:
         coefficients: Sequence[Sequence[float]],
         name: str = "",
         kinks: Sequence[float] = (),
+        checked: bool = True,
     ) -> None:
         hold(self, edges=_floats(edges), coefficients=tuple(map(_floats, coefficients)))
-        hold(self, name=str(name)[:_MOST_NAME], kinks=_floats(kinks))
+        hold(self, name=str(name)[:_MOST_NAME], kinks=_floats(kinks), checked=checked)
         pieces = len(self.edges) - 1
         if not 1 <= pieces <= MOST_PIECES or not _rising(self.edges):
             raise ValueError(f"edges: give 2 to {MOST_PIECES + 1} finite heights that increase")

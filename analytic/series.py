@@ -86,7 +86,8 @@ def resolved(grading: Grading, low: float, high: float) -> PiecewiseSeries:
     c = SHORT.at_nodes(grading, left, right) @ SHORT.to_coefficients.T
     series = [_shortened(row) for row in c]
     kinks = edges[1:-1][np.isin(edges[1:-1], told) | _bends(grading, edges)].tolist()
-    found = PiecewiseSeries(edges.tolist(), series, name_of(grading), kinks)
+    checked = getattr(getattr(grading, "grading", grading), "checked", True)
+    found = PiecewiseSeries(edges.tolist(), series, name_of(grading), kinks, checked)
     return _not_below(found, grading, left, right)
 
 
@@ -120,4 +121,4 @@ def _not_below(found: PiecewiseSeries, grading: Grading, left: Array, right: Arr
     heights = np.concatenate([spread_over(left, right), ends, SHORT.heights(left, right)], axis=1)
     lacking = np.where(np.all(grading(heights) >= 0, axis=1), -2 * found(heights).min(axis=1), 0.0)
     raised = [(c[0] + max(more, 0.0), *c[1:]) for c, more in zip(found.coefficients, lacking, strict=True)]
-    return PiecewiseSeries(found.edges, raised, found.name, found.kinks)
+    return PiecewiseSeries(found.edges, raised, found.name, found.kinks, found.checked)

@@ -54,6 +54,7 @@ COMPANY = {
     ("grading", "coefficients"): ("[[1.0, 0.5], [1.5]]", {"gamma": None, **SERIES, "coefficients": None}),
     ("grading", "kinks"): ("[5.0]", {"gamma": None, **SERIES}),
     ("grading", "name"): ("'ramp'", {"gamma": None, **SERIES}),
+    ("grading", "checked"): ("false", {"gamma": None, **SERIES}),
     ("grading", "file"): ("'g.csv'", {"gamma": None, "law": "'table'"}),
     ("heights", "file"): ("'h.csv'", {"shape": None, "law": "'table'"}),
     ("heights", "heights"): ("[0.0, 1.0, 3.0]", {"shape": None, "law": "'table'"}),
@@ -113,6 +114,7 @@ COMPANY = {
     ("contact", "conductivities"): ("[150.0, 16.0]", {}),
     ("contact", "film_resistance"): ("1e-12", {"resistivity": "1e-7"}),
     ("contact", "layer"): ("{thickness = 1e-5, conductivity = 1.3}", {"conductivities": "[150.0, 16.0]"}),
+    ("contact", "checked"): ("false", CUSTOM),
     ("contact", "tangential"): ("{friction = 0.3, poisson = 0.3, displacements = [1e-8]}", {}),
 }
 # With ~ what the schema lets pass: wrong by other keys or a file, or as only the program can know.
@@ -187,6 +189,7 @@ WRONG_HERE = {
     ("grading", "name"): ["1", "['x']"],
     ("ensemble", "edges"): ["1.0", "'x'", "[1.0, 'x']", "~[nan]", "~[inf]", "[true]", "{a = 1.0}"],
     ("contact", "ratio"): ["0", "-1", "'x'"],
+    **{(table, "checked"): ["0", "'no'"] for table in ("contact", "grading")},
     ("summits", "heights"): ["[]", "~[1.0]", "1", "~[1.0, nan, 2.0]"],
     ("fitted", "area"): ["0", "-1", "~'1 m'"],
 }  # fmt: skip

@@ -196,6 +196,8 @@ ROWS = [
          quad(lambda s: (s - 0.5) ** 1.5 * norm.pdf(s), 0.5, 0.7, epsabs=0, epsrel=1e-12)[0]
          + quad(lambda s: 2 * (s - 0.5) ** 1.5 * norm.pdf(s), 0.7, 12, epsabs=0, epsrel=1e-12)[0])),
     ("grading.name", "'ramp'", {"grading": SERIES}, lambda s: s.grading.name, "ramp"),
+    ("grading.checked", "false", {"grading": SERIES | {"coefficients": "[[2e6], [2e6]]"}}, simulated(),
+     2e6 * F),
     ("heights.law", "'exponential'", {"heights": FREE, **AUTO}, theory("contacts"), 3 * exp(-1.5)),
     ("heights.shape", 3.0, {"heights": {"law": "'weibull'", **FREE}, **AUTO},
      theory("contacts"), 3 * weibull_min.sf(weibull_min.mean(3) + 0.5 * weibull_min.std(3), 3)),
@@ -253,6 +255,8 @@ ROWS = [
     ("contact.limits", [4.0], {"contact": CUSTOM}, simulated(), UNIT * LATER),
     ("contact.load", PIECE.format("2.0, 0.5"), {"contact": CUSTOM}, simulated(), UNIT * LATER),
     ("contact.area", PIECE.format("3.0"), {"contact": CUSTOM}, simulated("area"), 3 * pi * SPOT**2),
+    ("contact.checked", "false", {"contact": CUSTOM | {"load": PIECE.format("2e7, 0.5e7")}}, simulated(),
+     UNIT * LATER * 1e7),
     ("contact.work", "'0.05 J/m^2'", {"contact": {"law": "'derjaguin-muller-toporov'"}}, simulated(),
      F - 2 * pi * 1e-5 * 0.05),
     ("contact.pull_off", 0.1, {"contact": {"law": "'johnson-kendall-roberts'"}}, simulated(),

@@ -62,31 +62,40 @@ def test_a_unit_of_another_kind_is_refused(tmp_path, header, cells):
     assert len(error.value.problems) == 1
 
 
-DOUBTS = {  # as the header says nothing of um and GPa
-    "z,E_star": ["s = 5.11e+06 sigma", "E*(s)/E* = 7.79e-10"],
-    "s,E_star": ["E*(s)/E* = 7.79e-10"],
-    "z,ratio": ["s = 5.11e+06 sigma", "E*(s)/E* = 61.2"],
-    "s,ratio": ["E*(s)/E* = 61.2"],
+REFUSED = {  # as the header says nothing of um and GPa
+    "z,E_star": "moduli are perhaps in GPa: say so in the header of the file, E_star (GPa)",
+    "s,E_star": "moduli are perhaps in GPa: say so in the header of the file, E_star (GPa)",
+    "z,ratio": "divide by E_star = 78.6 GPa",
+    "s,ratio": "divide by E_star = 78.6 GPa",
 }
 
 
-@pytest.mark.parametrize("header", DOUBTS)
-def test_numbers_in_other_units_are_doubted_by_every_door(tmp_path, capsys, header):
+@pytest.mark.parametrize("header", REFUSED)
+def test_moduli_in_other_units_are_refused_by_every_door(tmp_path, capsys, header):
     path = scene_of(tmp_path, header, BARE)
+    with pytest.raises(mcgw.SceneError) as error:
+        mcgw.load_scene(path)
+    (line,) = error.value.problems
+    assert line.startswith("grading: E*(s)/E* is ")
+    assert line.endswith(f" at all heights that touch; {REFUSED[header]}")
+    assert main(["show", "--plan", str(path)]) == 2
+    assert capsys.readouterr().err.count(REFUSED[header]) == 1
+
+
+def test_heights_in_other_units_are_doubted_by_every_door(tmp_path, capsys):
+    path = scene_of(tmp_path, "z,ratio", [(a, repr(float(b) / 78.6)) for a, b in BARE])
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         scene = mcgw.load_scene(path)
         mcgw.Scene(scene.surface, separations=[0.0, 2.0], grading=scene.grading)
-    told = [str(each.message) for each in caught]
-    assert [sum(part in line for line in told) for part in DOUBTS[header]] == [2] * len(DOUBTS[header])
+    assert sum("s = 5.11e+06 sigma" in str(each.message) for each in caught) == 2
     assert main(["show", "--plan", str(path)]) == 0
-    notes = capsys.readouterr().err.splitlines()
-    assert [sum(part in line for line in notes) for part in DOUBTS[header]] == [1] * len(DOUBTS[header])
+    assert capsys.readouterr().err.count("s = 5.11e+06 sigma") == 1
 
 
 def test_regrade_doubts_the_table_that_it_is_given(tmp_path, capsys):
     path = scene_of(tmp_path, "z (um),E_star (GPa)", BARE, 'keep = "moments"\n')
-    (tmp_path / "other.csv").write_text("s,ratio\n-3,61.2\n7,138\n")
+    (tmp_path / "other.csv").write_text("s,ratio\n-3,0.9\n7,61.2\n")
     assert main(["run", str(path), "-o", str(tmp_path / "a.h5")]) == 0
     assert "grading" not in capsys.readouterr().err
     assert main(["regrade", str(tmp_path / "a.h5"), "--grading", str(tmp_path / "other.csv")]) == 0

@@ -70,21 +70,29 @@ def resolved_in_root(formula: Callable[[Any], Any], low: float, high: float) -> 
     If 256 terms are not enough that is a ValueError.
     """
     for terms in (16, 32, 64, 128, _MOST_TERMS):
-        nodes = chebyshev.chebpts1(terms)
-        u = _at(nodes, low, high)
-        c = 2 / terms * (chebyshev.chebvander(nodes, terms - 1).T @ (formula(u) / (u * u)))
-        c[0] /= 2
-        c[np.abs(c) <= _NOTHING * np.abs(c).max()] = 0  # so that what is even or odd stays it
-        found = RootSeries(low, high, tuple(np.trim_zeros(c, "b").tolist()))
-        between = _at(_BETWEEN[_BETWEEN != 0], low, high)
-        over = (found(between) - formula(between)) / between**2
-        if np.all(np.abs(over) <= _ALLOWED * np.abs(c).max()):
+        with np.errstate(all="ignore"):  # a piece may be too wide for any
+            found, over, largest = _tried(formula, low, high, terms)
+        if np.all(np.abs(over) <= _ALLOWED * largest):
             return found
     first = "; where it begins, write u**3 for (u*u)**1.5: it is also evaluated at -u" if low < 0 else ""
     raise ValueError(
         f"a series of {_MOST_TERMS} terms is not accurate enough between x = {low * abs(low):g} and "
         f"{high * high:g}: give the penetration of each jump and kink in limits{first}"
     )
+
+
+def _tried(
+    formula: Callable[[Any], Any], low: float, high: float, terms: int
+) -> tuple[RootSeries, Array, float]:
+    """A series, what it is off over u^2, and the largest of its coefficients."""
+    nodes = chebyshev.chebpts1(terms)
+    u = _at(nodes, low, high)
+    c = 2 / terms * (chebyshev.chebvander(nodes, terms - 1).T @ (formula(u) / (u * u)))
+    c[0] /= 2
+    c[np.abs(c) <= _NOTHING * np.abs(c).max()] = 0  # so that what is even or odd stays it
+    found = RootSeries(low, high, tuple(np.trim_zeros(c, "b").tolist()))
+    between = _at(_BETWEEN[_BETWEEN != 0], low, high)
+    return found, (found(between) - formula(between)) / between**2, float(np.abs(c).max())
 
 
 @dataclass(frozen=True)
@@ -106,6 +114,9 @@ class CustomLaw(ElasticPlastic):
         ``x = delta/delta_c`` at which each piece from the second on begins, increasing.
     critical : float
         delta_c/sigma of an asperity of modulus E*; where the modulus is e E*, it is critical/e^2.
+    checked : bool, optional
+        Whether a scene refuses the law if its load or area is above 1000 or below 0.001 of Hertz's at every
+        penetration that occurs, as a load in newtons is.
 
     Raises
     ------
@@ -132,12 +143,19 @@ class CustomLaw(ElasticPlastic):
     load_of: tuple[Formula, ...]
     area_of: tuple[Formula, ...]
     beginnings: tuple[float, ...]
+    checked: bool
 
     def __init__(
-        self, load: Sequence[Formula], area: Sequence[Formula], limits: Sequence[float], critical: float
+        self,
+        load: Sequence[Formula],
+        area: Sequence[Formula],
+        limits: Sequence[float],
+        critical: float,
+        checked: bool = True,
     ) -> None:
         beginnings = tuple(map(float, limits))
         hold(self, load_of=tuple(load), area_of=tuple(area), beginnings=beginnings, critical=float(critical))
+        hold(self, checked=checked)
         super().__post_init__()
         rising = [0.0, *self.beginnings]
         if not (np.all(np.isfinite(rising)) and np.all(np.diff(rising) > 0)):
@@ -201,7 +219,7 @@ class CustomLaw(ElasticPlastic):
                 except ValueError as error:
                     raise ValueError(f"{name}[{piece}]: {error}") from None
         assert self.critical is not None
-        return CustomLaw(series["load"], series["area"], kept, self.critical)
+        return CustomLaw(series["load"], series["area"], kept, self.critical, self.checked)
 
     def as_data(self, deepest: float) -> "CustomLaw":
         """Series in place of formulas, up to a penetration of an asperity of modulus E*."""

@@ -127,6 +127,8 @@ TABLES: dict[str, TableOfKeys] = {
     Key("kinks", List(_ANY, 0), "[5.0]", "edges at which the function has a kink or a jump",
         laws=("series",)),
     Key("name", Text(empty=True), '"ramp"', "name of the function, for display", laws=("series",)),
+    Key("checked", Flag(), "false", "`false`: a series far from 1 at all heights that touch is meant so",
+        True, laws=("series",)),
 )),
 "heights": TableOfKeys("Distribution of the summit heights, scaled to mean 0 and standard deviation 1. "
     "Default: Gaussian.", (
@@ -215,6 +217,8 @@ TABLES: dict[str, TableOfKeys] = {
         "δ/δ_c at which the pieces of your own law begin (`custom`)", laws=("custom",)),
     Key("load", _PIECES, _PIECES_EXAMPLE, "series of its load", laws=("custom",)),
     Key("area", _PIECES, _PIECES_EXAMPLE, "series of its area", laws=("custom",)),
+    Key("checked", Flag(), "false", "`false`: a law far from Hertz's at all penetrations is meant so", True,
+        laws=("custom",)),
     Key("unload_from", Either((Word(("loop",), _BACK), _ANY), _BACK), "-0.5",
         'smallest separation reached before unloading, d/σ, or `"loop"`: the smallest of the scene; adds '
         "`load_unloading` and so on"),

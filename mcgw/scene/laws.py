@@ -42,14 +42,19 @@ def _made(section: Section, law: str | None, make: Callable[..., Any] | None) ->
 
 def _table(table: str, law: str, part: Any) -> dict[str, Any]:
     """Keys that describe a part."""
-    found = {key: getattr(part, key, None) for key, row in KEYS[table].items() if law in row.laws}
-    return {"law": law} | {key: _plain(value) for key, value in found.items() if value is not None}
+    rows = {key: row for key, row in KEYS[table].items() if law in row.laws}
+    found = {key: getattr(part, key, None) for key in rows}
+    return {"law": law} | {
+        key: _plain(value)
+        for key, value in found.items()
+        if value is not None and not (isinstance(value, bool) and value is rows[key].default)
+    }
 
 
 def _plain(value: Any) -> Any:
     if isinstance(value, tuple):
         return [_plain(each) for each in value]
-    return value if isinstance(value, str) else float(value)
+    return value if isinstance(value, str | bool) else float(value)
 
 
 # --- gradings ---
@@ -204,7 +209,7 @@ def _constants_of(law: str) -> tuple[Sequence[str], Sequence[str], Callable[...,
     """Constants of a law, those that are required, and the function that makes it."""
     if law == "custom":
         names = ("critical", "limits", "load", "area")
-        return names, names, _custom
+        return (*names, "checked"), names, _custom
     from analytic.laws import by_name
 
     known = fields(by_name[law])  # type: ignore[arg-type]
@@ -245,10 +250,17 @@ def contact_law_table(law: ContactLaw) -> dict[str, Any]:
         key: [{**asdict(x), "coefficients": list(x.coefficients)} for x in formulas]
         for key, formulas in (("load", custom.load_of), ("area", custom.area_of))
     }
-    return {"law": law.name, "critical": custom.critical, "limits": list(custom.beginnings), **series}
+    unchecked = {} if custom.checked else {"checked": False}
+    return {
+        "law": law.name,
+        "critical": custom.critical,
+        "limits": list(custom.beginnings),
+        **series,
+        **unchecked,
+    }
 
 
-def _custom(critical: float, limits: list[float], load: Any, area: Any) -> ContactLaw:
+def _custom(critical: float, limits: list[float], load: Any, area: Any, checked: bool = True) -> ContactLaw:
     """Explain what a contact law of a Python script becomes in a file."""
     from analytic.laws.custom import CustomLaw, RootSeries
 
@@ -258,4 +270,4 @@ def _custom(critical: float, limits: list[float], load: Any, area: Any) -> Conta
             raise ValueError(f"{key}: a piece reaches from {wrong[0].low:g} to {wrong[0].high:g}")
         return found
 
-    return CustomLaw(series("load", load), series("area", area), limits, critical)
+    return CustomLaw(series("load", load), series("area", area), limits, critical, checked)

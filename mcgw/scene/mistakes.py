@@ -18,7 +18,7 @@ _SAFELY = 1e4  # factor by which the sum over all asperities stays below the lar
 
 def mistakes(scene: Fields) -> list[str]:
     """All that is wrong, later checks only where the earlier ones find nothing."""
-    one_by_one = (_function,), (_range,), (_modulus,), (_sums,), (_fluctuating,)
+    one_by_one = (_function,), (_range,), (_units,), (_modulus,), (_sums,), (_fluctuating,)
     for checks in ((_values, _history, _measured, _radii), (_scales,), (_law, _together), *one_by_one):
         if found := [line for check in checks for line in check(scene)]:
             return found
@@ -213,6 +213,16 @@ def _range(scene: Fields) -> Iterator[str]:
             f"grading.edges: the series reach from s = {first:.6g} to {last:.6g}, but heights from {low:.6g} "
             f"to {high:.6g} are needed; give the grading itself, or other separations"
         )
+
+
+def _units(scene: Fields) -> Iterator[str]:
+    """Functions in other units."""
+    known = isinstance(scene.grading, analytic.Homogeneous | analytic.Exponential)
+    if known and scene.law.name != "custom":
+        return
+    from mcgw.scene.units_of_functions import functions_in_units  # for those scenes alone
+
+    yield from functions_in_units(scene)
 
 
 def _modulus(scene: Fields) -> Iterator[str]:

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 _SURFACES, _MOST_SURFACES = 1000, 10**9  # where n_surfaces is left out; where rel_err is to decide
 _LOOKED_AT, _BEYOND = 4001, 1.1  # heights for the stiffest; and how much farther series reach
+_FARTHEST = 1e12  # penetrations over the first one, which few formulas are meant for
 _MARGIN = 1 / 16  # the lowest that is felt is a multiple of this, and may change by one with the series
 
 AnyScene = TypeVar("AnyScene", bound=Fields)
@@ -264,11 +265,23 @@ def _resolved_law(scene: Fields) -> ContactLaw:
     """The series of a law up to the deepest penetration of the stiffest asperity."""
     low, high = _extent(scene)
     deepest = high - min(scene.lowest, low if scene.unload_from is None else scene.unload_from)
-    stiffest = float(np.max(np.abs(scene.modulus(np.linspace(low, high, _LOOKED_AT)))))
+    s = np.linspace(low, high, _LOOKED_AT)
+    stiff = np.abs(scene.modulus(s))
+    stiffest, where = float(stiff.max()), float(s[stiff.argmax()])
+    with np.errstate(over="ignore"):
+        farthest = _BEYOND * deepest * np.square(stiffest)  # penetration over that of a modulus of 1
     try:
-        return scene.law.as_data(_BEYOND * deepest * stiffest**2)
+        if np.isinf(farthest):
+            raise ValueError("no series reaches that far")
+        return scene.law.as_data(float(farthest))
     except ValueError as error:
-        raise SceneError([f"contact.law = {type(scene.law).__name__}: {error}"]) from None
+        reason = str(error)
+        if farthest > _FARTHEST:
+            reason = (
+                f"E*(s)/E* reaches {stiffest:.3g} at s = {where:.4g}, where no series of the law is accurate"
+                "; give a grading that is less steep, or a law of the package"
+            )
+        raise SceneError([f"contact.law = {type(scene.law).__name__}: {reason}"]) from None
 
 
 def drawn_by(scene: AnyScene, sampler: str) -> AnyScene:
