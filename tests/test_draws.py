@@ -7,14 +7,13 @@ from itertools import combinations, product
 import numpy as np
 import pytest
 from numpy.polynomial.chebyshev import chebvander
-from scipy.stats import binom, chi2, kstest
-from test_binomial import draw
+from scipy.stats import binom, chi2, kstest, norm
 
 from mcgw.machine.compiling import njit
-from mcgw.sampling import counts
 from mcgw.sampling.block import Layout
-from mcgw.sampling.chebyshev_sums import BUFFER, PLAIN, ROOTED, WORDS, _12_6
-from mcgw.sampling.lanes import LANES
+from mcgw.sampling.cells import mesh_of
+from mcgw.sampling.counts import counts_of
+from mcgw.sampling.kernels import BUFFER, PLAIN, ROOTED, TOGETHER, WORDS, add_uniforms
 from mcgw.sampling.moments import _PIECE, add_compensated, cell_moments
 from mcgw.sampling.philox import CELLS, centred, philox, uniforms
 from mcgw.sampling.samplers import sampler_of
@@ -24,22 +23,64 @@ FALSE_ALARM = 1e-6  # of each chi-square test; the seeds are fixed
 MANY = 2**20
 
 
-def p_value(numbers, n, p):
-    """Exact classes 0 ... n: of two asperities, both touch p^2 of the time, twice as often under Poisson."""
-    expected = len(numbers) * binom.pmf(np.arange(n + 1), n, p)
-    found = np.bincount(np.asarray(numbers, dtype=np.int64), minlength=n + 1)
-    assert len(found) == n + 1
-    return chi2.sf(((found - expected) ** 2 / expected).sum(), n)
+def p_value(numbers, n, p, most):
+    """Classes 0 ... most, the last with all above: of two asperities, both touch p^2 of the time.
+
+    Under Poisson's law they would twice as often.
+    """
+    share = binom.pmf(np.arange(most + 1), n, p)
+    share[-1] += binom.sf(most, n, p)
+    expected, found = len(numbers) * share, np.bincount(np.minimum(numbers, most), minlength=most + 1)
+    return chi2.sf(((found - expected) ** 2 / expected).sum(), most)
 
 
-@pytest.mark.parametrize(("n", "p"), [(2, 9e-3), (3, 9e-3)])
-def test_rare_contacts_are_binomial_and_not_poisson(make_scene, n, p):
-    """The number that touches, and the numbers that are shared out, where p is below 1 %."""
-    touching = counts._touching(make_scene(n_asperities=n), p, 0, MANY)
-    assert p_value(touching, n, p) > FALSE_ALARM
-    assert p_value(draw(n, p, MANY), n, p) > FALSE_ALARM
-    poisson = np.minimum(np.random.default_rng(1).poisson(n * p, MANY), n)
-    assert p_value(poisson, n, p) < FALSE_ALARM  # the test can fail
+@pytest.mark.parametrize(("n", "h"), [(2, 2.4), (3, 2.4), (300, 4.0)])
+def test_rare_contacts_are_binomial_and_not_poisson(make_scene, n, h):
+    """The number that touches, and that in the highest cells, where few do."""
+    scene = make_scene(n_asperities=n, separations=(h, h + 0.5))
+    mesh = mesh_of(scene)
+    found = counts_of(scene, mesh, 0, MANY)
+    numbers = np.vstack([found.low_extras, found.cells, found.high_extras])
+    shares = np.concatenate([[mesh.low_extras], mesh.probability, [mesh.high_extras]])
+    above = np.searchsorted(mesh.edges, h + 0.5) + 1
+    for first in (0, above):
+        touching = numbers[first:].sum(axis=0)
+        kept = min(n, 6)  # no more than so many touch
+        p = shares[first:].sum()
+        assert p_value(touching, n, p, kept) > FALSE_ALARM
+    poisson = np.minimum(np.random.default_rng(1).poisson(n * shares.sum(), MANY), n)
+    if n < 10:
+        assert p_value(poisson, n, shares.sum(), n) < FALSE_ALARM  # the test can fail
+
+
+@pytest.mark.parametrize("n", [10**9, 10**12])
+def test_cells_far_in_the_tail_are_as_probable_as_they_are(make_scene, n):
+    """Of 20 contacts among so many: mean numbers of all cells, |z| < 5.5, false alarms 4e-8 each."""
+    h = float(norm.isf(20 / n))
+    scene = make_scene(n_asperities=n, separations=(h, h + 0.3, h + 0.9))
+    mesh, m = mesh_of(scene), 2**17
+    found, expected = counts_of(scene, mesh, 0, m).cells, n * mesh.probability
+    z = (found.mean(axis=1) - expected) / np.sqrt(expected / m)
+    assert np.abs(z).max() < 5.5
+    assert (0.01 * np.sqrt(expected * m)).max() > 5.5  # one in a hundred too many would be seen
+
+
+@pytest.mark.parametrize("count", ["fixed", "poisson"])
+def test_counts_are_multinomial_or_independent(make_scene, count):
+    """Means, variances and covariances of all pairs of cells: |z| < 5.5, false alarms 4e-8 a number."""
+    scene = make_scene(separations=(-0.5, 0.0, 1.0, 2.0), n_asperities=2000, count=count, seed=3)
+    mesh, m = mesh_of(scene), 40_000
+    counts = counts_of(scene, mesh, 0, m).cells.astype(float)
+    n, p = scene.n_asperities, mesh.probability
+    exact = n * (np.diag(p) - (np.outer(p, p) if count == "fixed" else 0))
+    sd = np.sqrt(np.diag(exact))
+    assert np.abs((counts.mean(axis=1) - n * p) / sd * np.sqrt(m)).max() < 5.5
+    correlation = (np.cov(counts) - exact) / np.outer(sd, sd)
+    spread = np.sqrt(1 + np.eye(len(p)) * (1 + 1 / (n * p)))  # of a pair, and of a variance with its kurtosis
+    assert np.abs(correlation / spread * np.sqrt(m)).max() < 5.5
+    wrong = exact + (n * np.outer(p, p) if count == "fixed" else -n * np.outer(p, p))  # the other law
+    seen = (np.cov(counts) - wrong) / np.outer(sd, sd) / spread * np.sqrt(m)
+    assert np.abs(seen).max() > 5.5
 
 
 def far_apart():
@@ -51,7 +92,8 @@ def far_apart():
 def test_numbers_of_contacts_do_not_repeat(make_scene, count):
     """Of 64 surfaces each, 2^6 ... 2^47 apart; equal by chance less than once in 10^60."""
     scene = make_scene(count=count, n_asperities=10**6)
-    numbers = [counts._touching(scene, 0.3, first, 64) for first in far_apart()]
+    mesh = mesh_of(scene)
+    numbers = [counts_of(scene, mesh, first, 64).cells.sum(axis=0) for first in far_apart()]
     for a, b in combinations(numbers, 2):
         assert np.mean(a == b) < 0.2
 
@@ -95,10 +137,10 @@ def piece_of_a_cell(start, stop):
     w = np.zeros(WORDS)
     for first in range(start, stop, BUFFER):
         n = min(BUFFER, stop - first)
-        filled = -n % LANES
+        filled = -n % TOGETHER
         centred(w, np.uint64(5), CELLS, 0, 0, first, n)
         w[n : n + filled] = 1.0
-        _12_6(w, n + filled, filled, ROOTED, ROOTED)
+        add_uniforms(w, n + filled, filled, 11, 6)
     w[PLAIN] = stop - start
     return w
 

@@ -108,7 +108,7 @@ NOT_THERE = {
     "compare": {"matplotlib.pyplot", "numba", "scipy.optimize", "scipy.stats"},
     "run": {"matplotlib", "scipy.optimize", "scipy.stats"},
     "plan": {"matplotlib", "scipy.optimize", "scipy.stats"},
-    "simulate": {"pandas", "xarray", "matplotlib", "scipy.linalg", "numba.cpython.setobj"},
+    "simulate": {"pandas", "xarray", "matplotlib"},
 }
 # What a scene that does not ask for it pays nothing for; and the step that asks, if one does.
 FEATURES = {

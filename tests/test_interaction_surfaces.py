@@ -1,12 +1,5 @@
 """Surfaces whose asperities press each other down: against literal sums, identities, and each other."""
 
-import hashlib
-import json
-import os
-import subprocess
-import sys
-from pathlib import Path
-
 import interacting_by_hand as hand
 import numpy as np
 import pytest
@@ -15,7 +8,6 @@ from conftest import SURFACE
 from interacting_by_hand import QUANTITIES, SEPARATIONS, STRENGTHS, interaction, literal_sums
 from oracles import factor
 from scipy.stats import ks_2samp
-from test_same_bits_everywhere import OLD_BLAS, OLD_C, OLD_NUMPY
 
 import analytic
 import mcgw
@@ -252,33 +244,6 @@ def test_a_file_holds_both_separations_and_goes_on(pressed, at, tmp_path):
     assert mcgw.scene_from(mcgw.scene_text(found.scene)) == scene
     for name in (*QUANTITIES, *scene.other_separations):
         np.testing.assert_array_equal(found[name], memory[name])
-
-
-def digests():
-    """Of surfaces of both references by `cells`."""
-    found = {}
-    for name, strength in STRENGTHS.items():
-        values = {"grading": analytic.Exponential(1.5), "separations": SEPARATIONS, "n_asperities": 5000}
-        scene = mcgw.Scene(SURFACE, seed=1, interaction=interaction(strength, SURFACE, 5000), **values)
-        sums = sampler_of(scene).block(0, 5).sums
-        found[name] = hashlib.sha256(b"".join(sums[key].tobytes() for key in sorted(sums))).hexdigest()
-    return found
-
-
-@pytest.mark.slow
-def test_older_processors_find_the_same_balances():
-    """Their libraries round otherwise (`test_same_bits_everywhere`)."""
-    code = "import json, test_interaction_surfaces as t; print(json.dumps(t.digests()))"
-    folder = Path(__file__).parent
-    older = {
-        **OLD_BLAS,
-        **OLD_C,
-        **OLD_NUMPY,
-        "PYTHONPATH": os.pathsep.join(map(str, (folder, folder.parent))),
-    }
-    call = [sys.executable, "-W", "ignore", "-c", code]
-    done = subprocess.run(call, env=os.environ | older, capture_output=True, check=True)
-    assert json.loads(done.stdout) == digests()
 
 
 NOMINAL, EFFECTIVE = {"reference": "body", "at": "nominal"}, "body"

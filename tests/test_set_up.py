@@ -9,11 +9,9 @@ import scipy.stats
 
 import analytic
 import mcgw
-from analytic.elementary import exp
 from mcgw.machine.memory import kept
 from mcgw.sampling.cells import mesh_of
-from mcgw.sampling.exp_log import weigh_exponentials
-from mcgw.sampling.rules import product
+from mcgw.sampling.rules import multiply, product
 from mcgw.sampling.samplers import sampler_of
 from mcgw.sampling.spacing import Gaps, cuts, price
 
@@ -77,31 +75,19 @@ def test_gaps_are_cut_as_the_cheapest_of_all_ladders(n):
     assert n < 10**6 or sum(map(len, expected)) > 12
 
 
-@pytest.mark.parametrize("largest", [1e-9, 1.0, 30.0, 699.0])
-def test_compiled_exponentials_have_the_bits_of_those_of_arrays(largest):
-    rng = np.random.default_rng(5)
-    x, weights, sums = rng.uniform(-largest, largest, (300, 20)), np.eye(20)[3], np.empty(300)
-    assert weigh_exponentials(x, weights, sums)
-    np.testing.assert_array_equal(sums, exp(x)[:, 3])
-
-
-@pytest.mark.parametrize("far", [-701.0, 1e4, np.inf, -np.inf, np.nan])
-def test_compiled_exponentials_say_where_they_are_wrong(far):
-    x = np.zeros((3, 20))
-    x[1, 7] = far
-    assert not weigh_exponentials(x, np.ones(20), np.empty(3))
-
-
 SHAPES = [(1, 1, 1), (2, 0, 3), (20, 20, 3), (20, 20, 16), (7, 20, 37), (20, 5, 100)]
 
 
 @pytest.mark.parametrize("shape", SHAPES)
 def test_products_of_whole_numbers_are_exact(shape):
-    """Whatever number of columns: in sixteens, in fours, and one by one; and rows in any order in memory."""
+    """Whatever number of columns, and rows in any order in memory; compiled too."""
     rng = np.random.default_rng(sum(shape))
     a, b = rng.integers(-99, 99, shape[:2]).astype(float), rng.integers(-99, 99, shape[1:]).astype(float)
     np.testing.assert_array_equal(product(a, b), a @ b)
     np.testing.assert_array_equal(product(a, np.asfortranarray(b)), a @ b)
+    compiled = np.empty((shape[0], shape[2]))
+    multiply(a, b, compiled)
+    np.testing.assert_array_equal(compiled, a @ b)
 
 
 def test_each_sum_of_a_product_has_one_order():

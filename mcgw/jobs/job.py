@@ -23,12 +23,11 @@ from mcgw.ensemble.simulation import reducer_of
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import State, check_output, refuse_read_only, state_of
 from mcgw.machine.memory import gibibytes
-from mcgw.sampling.samplers import name_of
 from mcgw.scene.fields import LeftOut
 from mcgw.scene.scene import Scene, storable
 from mcgw.store.disk import parts_of
 from mcgw.store.ensembles import described
-from mcgw.store.identity import difference, drawn_with, identity_of, now
+from mcgw.store.identity import difference, identity_of, now, versions
 from mcgw.store.layout import body_of, stored_text
 from mcgw.store.place import finished, recorded_scene, with_recorded_seed
 from mcgw.store.run_folder import RunFolder
@@ -65,7 +64,7 @@ class Job:
         check_output(path)
         one = reducer_of(scene)
         sampler, plan = one.sampler.name, Plan(((one.n_surfaces, one.rows),), whole=one.whole)
-        known = identity_of(scene, sampler), drawn_with(scene, sampler), now()
+        known = identity_of(scene, sampler), versions(of_draws=True), now()
         record = RunFolder(parts_of(path), stored_text(scene), "", sampler, plan, *known)
         hold(record, scene=scene, path=path)  # which the text and the folder would give back
         return cls(record, (one,))
@@ -82,8 +81,7 @@ class Job:
         check_output(path)
         reducers, texts = _of_groups(asked), asked.texts()
         plan = Plan(tuple((one.n_surfaces, one.rows) for one in reducers), whole=True)
-        known = {drawn_with(scene, name_of(scene)) for group in asked.groups for scene in group.computed}
-        draws = max(known, key=len)  # with the kind of processor, if any has it
+        draws = versions(of_draws=True)
         identity = hashlib.sha256("\0".join((*texts, draws)).encode()).hexdigest()
         return cls(RunFolder(parts_of(path), *texts, "", plan, identity, draws, now()), reducers)
 

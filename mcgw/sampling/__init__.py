@@ -1,15 +1,14 @@
 """From a scene to the sums of its surfaces: an ensemble is a matrix, a question is a matrix.
 
 ``cells``      the heights that touch, cut where a law of contact has a root (`spacing` says where else)
-``counts``     how many asperities fall into each cell, exactly (`binomial`)
-``moments``    sums over the uniforms of a cell (`philox`, `chebyshev_sums`), or from their Gaussian limit
+``counts``     how many asperities fall into each cell, exactly
+``moments``    sums over the uniforms of a cell (`philox`, `kernels`), or from their Gaussian limit
                (`drawing`): all that a surface keeps, as many of each cell as its `layout` says
 ``response``   physics as a sparse matrix: `series` on the cells and on a `tree` over them, put together to
                rows that follow from each other (`product`)
 ``counted``    a block of surfaces = response @ moments, and the few asperities outside the cells (`outside`);
                `drawing` has the ways to draw moments, `samplers` the names of what they make
 ``direct``     all heights, or those that are given, in plain loops: the witness
-``lanes``      four numbers at a time; with `rules` and `exp_log` it makes the same bits on every processor
 ``asperities`` the heights that were summed
 
 The whole idea in a dozen lines. The load of each surface is its row of moments times a matrix that was made

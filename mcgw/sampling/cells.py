@@ -20,10 +20,8 @@ from numpy.typing import NDArray
 
 from analytic import Grading, HeightLaw, PiecewiseSeries, bends
 from analytic.arrays import Array
-from analytic.elementary import exp
 from mcgw.machine.in_threads import in_threads
 from mcgw.machine.memory import kept
-from mcgw.sampling.exp_log import weigh_exponentials
 from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, gauss_legendre, product
 from mcgw.sampling.spacing import DIGITS, refined, spaced
 from mcgw.sampling.stretches import SMALLEST, begins_and_breaks, losses
@@ -279,8 +277,7 @@ def _densities(law: HeightLaw, a: Array, t: Array, points: Array, weights: Array
     def weigh(first: int) -> None:
         some = slice(first, first + _TOGETHER)
         logs = law.log_ratio(a[some, None, None], t[some, :, None] * points).reshape(-1, len(points))
-        if not weigh_exponentials(logs, weights, sums[some].reshape(-1)):
-            sums[some] = product(exp(logs), weights).reshape(-1, t.shape[1])
+        sums[some] = product(np.exp(logs), weights).reshape(-1, t.shape[1])
 
     in_threads(weigh, range(0, len(a), _TOGETHER), least=_MANY)
     return sums

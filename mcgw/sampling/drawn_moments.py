@@ -23,15 +23,15 @@ from typing import Any, Protocol
 
 import numpy as np
 from numpy.polynomial import chebyshev
+from scipy.special import ndtri
 
 from analytic.arrays import Array
 from mcgw.machine.compiling import njit
 from mcgw.sampling.block import Layout
 from mcgw.sampling.counts import Counts
-from mcgw.sampling.exp_log import make_normal
 from mcgw.sampling.moments import cell_moments
 from mcgw.sampling.philox import MOMENTS, centred, made_for
-from mcgw.sampling.rules import gauss_legendre, product, triangle
+from mcgw.sampling.rules import gauss_legendre, product
 
 CROWDED = 256  # asperities in a cell, from which its moments count as Gaussian
 VARYING = 1e-6  # accuracy of the laws up to which moments vary, if only sums are kept
@@ -114,7 +114,7 @@ class Crowds:
             roots[start : start + root.shape[0], : root.shape[1]] = root
         words = np.repeat(varying.starts[crowded] - starts[:-1, 1], widths[:, 1]) + np.arange(starts[-1, 1])
         z = _words(np.uint64(seed), first, words, many.shape[1])
-        make_normal(z)
+        z = ndtri((1 + z) / 2)
         means = np.concatenate([mean for mean, _ in laws])
         _mix(moments, many[crowded], layout.starts[crowded], starts, means, roots, z)
         return moments
@@ -148,7 +148,8 @@ def _law_of_moments(plain: int, rooted: int) -> tuple[Array, Array]:
     varying = [*range(min(plain, 1), plain), *range(plain + rooted - 1, plain - 1, -1)]
     order = np.array(varying, dtype=np.int64)
     root = np.zeros((plain + rooted, len(order)))
-    root[order] = triangle((b - mean)[:, order] * np.sqrt(w)[:, None]).T
+    triangle = np.linalg.qr((b - mean)[:, order] * np.sqrt(w)[:, None], mode="r")
+    root[order] = (triangle * np.sign(np.diag(triangle))[:, None]).T
     return mean, root
 
 

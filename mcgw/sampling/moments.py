@@ -20,7 +20,7 @@ from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads
 from mcgw.machine.memory import aligned
 from mcgw.sampling.block import Layout
-from mcgw.sampling.chebyshev_sums import BUFFER, PLAIN, ROOTED, WORDS, add_uniforms, stratify, unfold
+from mcgw.sampling.kernels import BUFFER, PLAIN, ROOTED, TOGETHER, WORDS, add_uniforms, stratify, unfold
 from mcgw.sampling.philox import CELLS, centred
 from mcgw.sampling.spacing import price
 
@@ -44,7 +44,7 @@ def add_compensated(totals: Any, w: Any, first: Any, size: Any) -> None:
 def _sum_cell(
     w: Any, carries: Any, seed: Any, surface: Any, cell: Any, n: Any, plain: Any, rooted: Any, strata: Any
 ) -> None:
-    """Leave the sums over the `n` uniforms of a cell in the workspace, folded; very many in pieces."""
+    """Leave the sums over the `n` uniforms of a cell in the workspace; very many in pieces."""
     for k in range(PLAIN, WORDS):
         w[k] = 0.0
     for k in range(carries.size if n > _PIECE else 0):
@@ -54,12 +54,17 @@ def _sum_cell(
         centred(w, seed, CELLS, surface, cell, first, some)
         if strata:
             stratify(w, some, first, strata)
-        add_uniforms(w, some, plain, rooted)
+        filled = -some % TOGETHER
+        for i in range(some, some + filled):
+            w[i] = 1.0
+        add_uniforms(w, some + filled, filled, plain, rooted)
         if n > _PIECE and ((first + BUFFER) % _PIECE == 0 or first + some == n):
             add_compensated(carries, w, PLAIN, WORDS - PLAIN)
     for k in range(WORDS - PLAIN if n > _PIECE else 0):
         w[PLAIN + k] = carries[k] + carries[WORDS - PLAIN + k]
     w[PLAIN] = n
+    unfold(w, PLAIN, plain)
+    unfold(w, ROOTED, rooted)
 
 
 @njit(cache=True)
@@ -76,10 +81,8 @@ def _sum_cells(
         cell, start = at // surfaces, at % surfaces
         stop = min(surfaces, start + end - at)
         row, plain, rooted = starts[cell], orders[cell, 0], orders[cell, 1]
-        drawn = 0
         for surface in range(start, stop):
             n = counts[cell, surface]
-            drawn += n
             if n:
                 strata = n if stratified else 0
                 _sum_cell(w, carries, seed, first + surface, cell, n, plain, rooted, strata)
@@ -87,9 +90,6 @@ def _sum_cells(
                 moments[row + j, surface] = w[PLAIN + j] if n else 0.0
             for j in range(rooted):
                 moments[row + plain + j, surface] = w[ROOTED + j] if n else 0.0
-        if drawn:
-            unfold(moments, row, plain, start, stop)
-            unfold(moments, row + plain, rooted, start, stop)
         at += stop - start
 
 

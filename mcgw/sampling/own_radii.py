@@ -26,7 +26,6 @@ from analytic.curvature import MEAN_CURVATURE
 from analytic.curvature_given_height import CurvatureGivenHeight
 from mcgw.machine.compiling import njit
 from mcgw.sampling.block import Layout
-from mcgw.sampling.lanes import bits, fused
 from mcgw.sampling.response.response import Response, matrix_of
 from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, gauss_legendre, product
 
@@ -158,7 +157,7 @@ def _between(x: Array, at: Array, value: Array, first: Array, second: Array) -> 
 def root_ratio(coefficients: Any, bottom: Any, largest: Any, s: Any, centred: Any, fine: Any) -> Any:
     """sqrt(c) of one summit."""
     p = 0.5 * (1.0 - abs(centred)) + fine * 2.0**-33
-    word = bits(p)
+    word: Any = np.float64(p).view(np.int64)
     octave = 1021 - (word >> 52)
     if octave < _FINE:
         piece = octave * _PARTS + ((word >> 50) & 3)
@@ -175,8 +174,8 @@ def root_ratio(coefficients: Any, bottom: Any, largest: Any, s: Any, centred: An
     for i in range(_IN_HEIGHT - 1, -1, -1):
         inner = coefficients[panel, piece, i, _IN_SHARE - 1]
         for j in range(_IN_SHARE - 2, -1, -1):
-            inner = fused(inner, y, coefficients[panel, piece, i, j])
-        value = fused(value, z, inner)
+            inner = inner * y + coefficients[panel, piece, i, j]
+        value = value * z + inner
     return min(value, largest)
 
 

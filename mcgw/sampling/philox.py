@@ -21,16 +21,15 @@ stream is word w of block 16 g + i.
 from typing import Any
 
 import numpy as np
-from numba import int64, uint64
+from numba import uint64
 from numpy.typing import NDArray
 
 from mcgw.machine.compiling import njit
-from mcgw.sampling.lanes import number
 
 AT_ONCE = 64  # words that are made together
 
 # Purposes: streams of the same surface that must not overlap.
-CELLS, TAIL, EXTRAS, MOMENTS, REST, POSITIONS, COUNTS, RADII, RADII_LOW = range(9)
+CELLS, TAIL, EXTRAS, MOMENTS, REST, POSITIONS, RADII, RADII_LOW = range(8)
 
 _M0, _M1 = uint64(0xD2511F53), uint64(0xCD9E8D57)
 _W0, _W1 = uint64(0x9E3779B9), uint64(0xBB67AE85)
@@ -60,22 +59,13 @@ def _to_centred(word: Any) -> Any:
 
     Written into the digits of a number that is larger by 1 + 2^20, which costs less than to convert it.
     """
-    return number(int64(word + word | _WORD_OF_BASE | uint64(1))) - (_BASE + 1.0)
+    return np.uint64(word + word | _WORD_OF_BASE | uint64(1)).view(np.float64) - (_BASE + 1.0)
 
 
 @njit(cache=True, inline="always")
 def stream_of(seed: Any, purpose: Any, surface: Any) -> Any:
     """Counter words c2, c3 and key of a stream."""
     return surface & _LOW, (surface >> _32) | (uint64(purpose) << uint64(16)), seed & _LOW, seed >> _32
-
-
-@njit(cache=True, inline="always")
-def two_wide(seed: Any, purpose: Any, surface: Any, cell: Any, block: Any) -> Any:
-    """Two uniforms of 64 bits from a block of a stream, less a half; all arguments but the purpose uint64."""
-    c2, c3, k0, k1 = stream_of(seed, purpose, surface)
-    w0, w1, w2, w3 = philox(block, cell, c2, c3, k0, k1)
-    low = 0.5 * _UNIT
-    return (0.5 * (_to_centred(w0) + low * _to_centred(w1)), 0.5 * (_to_centred(w2) + low * _to_centred(w3)))
 
 
 @njit(cache=True, inline="always")

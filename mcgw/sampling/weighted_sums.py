@@ -20,10 +20,9 @@ from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
 from mcgw.sampling.block import Layout
 from mcgw.sampling.cells import Mesh
-from mcgw.sampling.chebyshev_sums import BUFFER, add_weighted, stratify, unfold
 from mcgw.sampling.counted import Counted
 from mcgw.sampling.counts import Counts
-from mcgw.sampling.lanes import LANES, alike, fused, load, roots, store
+from mcgw.sampling.kernels import BUFFER, TOGETHER, add_weighted, stratify, unfold
 from mcgw.sampling.moments import add_compensated, in_runs_of_cells
 from mcgw.sampling.own_radii import Families, RadiusTable, radius_table, root_ratio
 from mcgw.sampling.philox import CELLS, RADII, RADII_LOW, centred
@@ -37,40 +36,31 @@ _PRICE = 5.0  # of a summit with its radius, in asperities
 
 @njit(inline="always")
 def _factor(w: Any, n: Any, squared: Any, rooted: Any) -> None:
-    """Weight of each uniform, 0 for what fills the last lanes."""
-    for i in range(0, n, LANES):
-        f = load(w, _WEIGHT + i)
-        if squared:
-            f *= f
-        if rooted:
-            f *= load(w, _ROOT + i)
-        store(w, _FACTOR + i, f)
+    """Weight of each uniform, 0 for what fills the end."""
+    for i in range(n):
+        f = w[_WEIGHT + i]
+        w[_FACTOR + i] = (f * f if squared else f) * (w[_ROOT + i] if rooted else 1.0)
 
 
-@njit(inline="always")
+@njit(inline="always", fastmath={"contract"})
 def _weigh(w: Any, n: Any, edge: Any, series: Any, table: Any) -> Any:
-    """Roots and weights of `n` uniforms; returns how many lanes hold, the last ones filled with nothing."""
+    """Roots and weights of `n` uniforms; returns how many the loops take, the last ones of weight 0."""
     coefficients, bottom, largest = table
-    half = alike(0.5)
-    whole = (n + LANES - 1) // LANES * LANES
+    whole = n + -n % TOGETHER
     for i in range(n, whole):
         w[i] = 1.0
-    for i in range(0, whole, LANES):
-        x = load(w, i)
-        u = fused(half, x, half)
-        twice = x + x
-        a, b = alike(0.0), alike(0.0)
+        w[_WEIGHT + i] = 0.0
+    for i in range(whole):
+        a = b = 0.0
         for k in range(series.size - 1, 0, -1):
-            a, b = fused(twice, a, alike(series[k]) - b), a
-        height = fused(u, fused(x, a, alike(series[0]) - b), alike(edge))
-        store(w, _FACTOR + i, height)
-        store(w, _ROOT + i, roots(u))
+            a, b = 2.0 * w[i] * a + (series[k] - b), a
+        u = 0.5 * w[i] + 0.5
+        w[_FACTOR + i] = u * (w[i] * a + (series[0] - b)) + edge
+        w[_ROOT + i] = np.sqrt(u)
     for i in range(n):
         w[_WEIGHT + i] = root_ratio(
             coefficients, bottom, largest, w[_FACTOR + i], w[_COARSE + i], w[_FINE + i]
         )
-    for i in range(n, whole):
-        w[_WEIGHT + i] = 0.0
     return whole
 
 
@@ -99,13 +89,15 @@ def _sum_cells(
                 if many[kind]:
                     sums = _SUMS + 3 * _MOST * kind
                     _factor(w, whole, squares[kind // 2], kind % 2)
-                    add_weighted(w, whole, many[kind], _FACTOR, sums)
+                    add_weighted(w, whole, 0, many[kind], _FACTOR, sums)
                     add_compensated(w[sums + _MOST : sums + 3 * _MOST], w, sums, _MOST)
         for kind in range(many.size):
             sums, row = _SUMS + (3 * kind + 1) * _MOST, starts[cell, kind]
             for j in range(many[kind]):
-                moments[row + j, surface] = w[sums + j] + w[sums + _MOST + j]
-            unfold(moments, row, many[kind], surface, surface + 1)
+                w[sums + j] += w[sums + _MOST + j]
+            unfold(w, sums, many[kind])
+            for j in range(many[kind]):
+                moments[row + j, surface] = w[sums + j]
 
 
 def with_radii(

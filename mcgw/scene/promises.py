@@ -12,8 +12,6 @@ class Promise:
     real_surfaces : bool, optional
         Each surface could exist: it has whole numbers of contacts and fluctuates as others do. Otherwise
         only means are of use.
-    same_on_all_processors : bool, optional
-        Its numbers are made of sums, products, quotients and roots, which every processor rounds alike.
     one_by_one : bool, optional
         The heights are those of single asperities, which `mcgw.heights` can tell.
     keeps_moments : bool, optional
@@ -35,7 +33,6 @@ class Promise:
     """
 
     real_surfaces: bool = True
-    same_on_all_processors: bool = True
     one_by_one: bool = True
     keeps_moments: bool = True
     own_radii: bool = True
@@ -51,7 +48,7 @@ _UNTOUCHED = "{spared:.4g} asperities per surface lie below every separation and
 _CROWDED = "in crowded cells, Gaussian moments are drawn instead of asperities"
 
 _PROMISES = {
-    "direct": Promise(same_on_all_processors=False, keeps_moments=False, own_laws=True, places=True),
+    "direct": Promise(keeps_moments=False, own_laws=True, places=True),
     "tail": Promise(keeps_moments=False, own_laws=True, needs_density=True, not_done=(_UNTOUCHED,)),
     "cells": Promise(needs_density=True, not_done=(_UNTOUCHED,)),
     "aggregate": Promise(

@@ -1,18 +1,13 @@
 """Which runs may be one: those whose surfaces are the same, whatever their number.
 
-On what the numbers of a scene depend besides the scene: versions, and for some the kind of processor.
-
-Sums, products, quotients and roots are rounded alike by every processor, and the samplers, height laws and
-gradings of this package are made of them. A distribution of scipy.stats, a function of the user, the powers
-of contact laws and the generators behind ``direct`` call exponentials and logarithms of NumPy and of the C
-library, whose last digits differ from one kind of processor to another. Then the kind is known by what these
-give here.
+Besides its scene, the numbers of a run depend on the versions of what draws. In their last digits they depend
+on the kind of processor as well, which a run may change on its way, as the nodes of a cluster do: to 1e-12
+they are the same.
 
 What is needed to repeat a run, besides its scene: versions, commit, processor, date.
 """
 
 import hashlib
-import math
 import platform
 import subprocess
 import sys
@@ -23,21 +18,12 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from scipy import special
-
-import analytic
 from mcgw.formats.named_files import loads
-from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from, scene_text
 from mcgw.scene.section import shortened
 
 Question = tuple[str, str, str]  # text of a scene, axes of a sweep or none, versions that draw
-KIND = ", processor "  # stands between the versions and the kind
-_HEIGHTS = (analytic.Gaussian, analytic.ExponentialHeights, analytic.HeightTable, analytic.MeasuredHeights)
-_GRADINGS = (analytic.Homogeneous, analytic.Exponential, analytic.Table, analytic.PiecewiseSeries)
-_POINTS = 4096  # one value in a thousand differs between kinds
 _PACKAGES = ("mcgw", "numpy", "scipy", "numba", "h5py")
 _DRAW = ("mcgw", "numpy", "numba", "scipy")
 
@@ -45,7 +31,7 @@ _DRAW = ("mcgw", "numpy", "numba", "scipy")
 def identity_of(scene: Scene, sampler: str) -> str:
     """SHA-256 of all that the numbers of a surface depend on: frozen scene, sampler, what draws."""
     frozen = scene_text(scene.with_surfaces(1), left_out=False)  # its values, whoever gave them
-    parts = (frozen, sampler, drawn_with(scene, sampler))
+    parts = (frozen, sampler, versions(of_draws=True))
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()
 
 
@@ -58,10 +44,7 @@ def difference(there: Question, here: Question) -> str:
     for key, value in before.items():
         if key not in now:
             return f"{key} is {shortened(repr(value))} there and not given here"
-    made_with, this = there[2], here[2]
-    if made_with.partition(KIND)[0] == this.partition(KIND)[0] and made_with != this:
-        return "it was drawn on another kind of processor, which rounds exponentials differently"
-    return f"it was drawn with {made_with}, but this is {this}"
+    return f"it was drawn with {there[2]}, but this is {here[2]}"
 
 
 def _said(scene: str, axes: str) -> dict[str, Any]:
@@ -77,39 +60,6 @@ def _flat(table: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
             yield from _flat(value, f"{prefix}{key}.")
         else:
             yield prefix + key, value
-
-
-def depends_on_processor(scene: Scene, sampler: str) -> bool:
-    """Whether the last digits of what a sampler draws may differ from one kind of processor to another."""
-    modulus = scene.modulus
-    if isinstance(modulus, analytic.Clipped) and isinstance(
-        modulus.grading, analytic.Exponential | analytic.PiecewiseSeries
-    ):
-        modulus = modulus.grading
-    own = isinstance(scene.heights, _HEIGHTS) and isinstance(modulus, _GRADINGS)
-    drawn_alike = promise_of(sampler).same_on_all_processors or (scene.as_measured and not scene.located)
-    return not (own and drawn_alike and scene.hertzian)
-
-
-@cache
-def kind_of_processor() -> str:
-    """Eight digits that are the same where NumPy, SciPy and the C library round alike."""
-    x = (np.arange(_POINTS) + 0.5) / 64
-    matrix = 1 / (1 + np.arange(20) + np.arange(20)[:, None])
-    values = [
-        *(f(x) for f in (np.exp, np.expm1, np.log, np.log1p, np.sin, np.tanh, special.ndtr, special.gammaln)),
-        x**1.7,
-        special.gammainc(2.5, x),
-        matrix @ matrix,
-        np.array([(math.exp(v), math.log(v), math.log1p(v), math.pow(v, 1.7)) for v in x.tolist()]),
-    ]
-    return hashlib.sha256(b"".join(np.ascontiguousarray(v).tobytes() for v in values)).hexdigest()[:8]
-
-
-def drawn_with(scene: Scene, sampler: str) -> str:
-    """Versions of the packages that draw and, where the numbers depend on it, the kind of processor."""
-    known = versions(of_draws=True)
-    return f"{known}{KIND}{kind_of_processor()}" if depends_on_processor(scene, sampler) else known
 
 
 @cache

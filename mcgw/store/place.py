@@ -11,7 +11,7 @@ from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from, scene_text
 from mcgw.store.disk import check_trailer, parts_of
 from mcgw.store.ensembles import described, read_attributes
-from mcgw.store.identity import difference, drawn_with, identity_of
+from mcgw.store.identity import difference, identity_of, versions
 from mcgw.store.lock import locked
 from mcgw.store.run_folder import RunFolder, remove_run
 
@@ -64,7 +64,7 @@ def finished(path: Path, scene: Scene, sampler: str) -> int:
         raise StoreError(f"{path}: holds a sweep; choose another -o, or remove it")
     if attributes.get("run") != identity_of(scene, sampler):
         before = scene_text(there), "", str(attributes.get("draws", "another version"))
-        what = difference(before, (scene_text(scene), "", drawn_with(scene, sampler)))
+        what = difference(before, (scene_text(scene), "", versions(of_draws=True)))
         raise StoreError(f"{path}: holds a different ensemble: {what}; choose another -o, or remove it")
     if there.n_surfaces > scene.n_surfaces:
         raise StoreError(

@@ -57,7 +57,7 @@ class RunFolder:
     identity : str
         See `identity_of`.
     drawn_with : str
-        Versions that draw, and the kind of processor where it counts.
+        Versions that draw.
     date : str
         When it began.
     """

@@ -25,7 +25,7 @@ from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 from mcgw.store.disk import SteadyFile, Trailer, head_digest, parts_of, sha256_of
 from mcgw.store.ensembles import open_ensemble
-from mcgw.store.identity import drawn_with, identity_of
+from mcgw.store.identity import identity_of, versions
 from mcgw.store.layout import body_of, describe, digest_of, file_pieces, fill, rows_of, stored_tables
 from mcgw.store.lock import locked
 from mcgw.store.place import finished, write_body
@@ -81,7 +81,7 @@ def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> 
             )
         before, asked = state_of(path), (ensemble.scene, ensemble.sampler)
         finished(path, *asked)
-        about = {"run": identity_of(*asked), "draws": drawn_with(*asked), "wall_seconds": wall_seconds}
+        about = {"run": identity_of(*asked), "draws": versions(of_draws=True), "wall_seconds": wall_seconds}
         if ensemble.drawn_for is not None:
             about["drawn_for"] = scene_text(ensemble.drawn_for)
         write = body_of

@@ -1,0 +1,106 @@
+"""Sums of Chebyshev polynomials over the uniforms of one cell: the innermost loops, written by a template.
+
+They know no physics, and have no branch, no exponential and no logarithm. Of each number x = 2u - 1 they
+compute T_1 ... T_5 alone, each in a variable of its own: since ``2 T_m T_k = T_{m+k} + T_{m-k}``, the sums of
+the products of T_5 and T_1 ... T_5 stand for the orders 6 ... 10, those with T_10 for 11 ... 15, and so on
+(`unfold`). A loop over the orders would be two to three times slower. The one for seven T_j and one f T_j::
+
+    for i in range(n):
+        t1 = w[i]
+        y = t1 + t1
+        t2 = y * t1 - 1.0
+        t3 = y * t2 - t1
+        ...
+        f0 = np.sqrt(0.5 * t1 + 0.5)
+        r0 += f0
+        s1 += t1
+        ...
+        s6 += t5 * t1
+
+A cell takes the first of the loops that has its orders. The compiler may take several terms of a sum at a
+time, as many as the vector unit holds: the bits are those of one kind of processor.
+
+A thread's workspace is one array, since each array that a function is given costs as much as ten asperities::
+
+    from     0              1024 = PLAIN    1056 = ROOTED    1088 = WORDS
+    there is x = 2u - 1     sums T_j        sums R_j         (end)
+             of 1024 u      32 of them      32 of them
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from mcgw.machine.compiling import njit
+
+BUFFER = 1024  # uniforms at a time: they stay in the innermost cache
+PLAIN, ROOTED, WORDS = BUFFER, BUFFER + 32, BUFFER + 64
+TOGETHER = 16  # uniforms: loops take a multiple, so that no vector loop leaves any over
+_FAST = {"reassoc", "contract", "nsz"}
+_ORDERS = ((9, 0), (10, 0), (12, 0), (16, 0), (21, 0), (6, 6), (12, 6), (14, 11), (21, 21))
+_WEIGHTED = (6, 11, 21)
+
+
+def _loop(plain: int, rooted: int, factor: str) -> list[str]:
+    """Lines of a loop that adds products for T_1 ... and f T_0 ... of `n` numbers, and takes `filled` off."""
+    sums = [(f"s{j}", f"PLAIN + {j}") for j in range(1, plain)]
+    sums += [(f"r{j}", f"rooted_sums + {j}") for j in range(rooted)]
+    most = max(plain, rooted)
+    lines = [" = ".join([*(name for name, _ in sums), "0.0"]), "for i in range(n):"]
+    lines += ["    t1 = w[i]", "    y = t1 + t1", "    t2 = y * t1 - 1.0"]
+    lines += [f"    t{j} = y * t{j - 1} - t{j - 2}" for j in (3, 4, 5)]
+    lines += ["    t10 = (t5 + t5) * t5 - 1.0"] * (most > 11)
+    lines += ["    t15 = (t5 + t5) * t10 - t5"] * (most > 16)
+    lines += [f"    f0 = {factor}"] * (rooted > 0) + [
+        f"    f{m} = f0 * t{m}" for m in (5, 10, 15) if rooted > m + 1
+    ]
+    for j in range(most):
+        first = (j - 1) // 5 * 5 if j else 0
+        term = f"t{first} * t{j - first}" if first else f"t{j}"
+        lines += [f"    s{j} += {term}"] * (0 < j < plain)
+        lines += [f"    r{j} += f{first} * t{j - first}" if j else "    r0 += f0"] * (j < rooted)
+    return lines + [f"w[{place}] += {name} - filled" for name, place in sums]
+
+
+def _compiled(head: str, choices: list[tuple[str, list[str]]]) -> Callable[..., None]:
+    """A function of these loops, of which the first whose condition holds is taken, or the last."""
+    lines = [head]
+    for condition, loop in choices[:-1]:
+        lines += [f"    if {condition}:", *(f"        {line}" for line in loop), "        return"]
+    lines += [f"    {line}" for line in choices[-1][1]]
+    names = {"np": np, "PLAIN": PLAIN, "rooted_sums": ROOTED}
+    exec("\n".join(lines), names)
+    made: Callable[..., None] = njit(fastmath=_FAST)(names["add"])
+    return made
+
+
+add_uniforms = _compiled(
+    "def add(w, n, filled, plain, rooted):",
+    [(f"plain <= {p} and rooted <= {r}", _loop(p, r, "np.sqrt(0.5 * t1 + 0.5)")) for p, r in _ORDERS],
+)
+"""Add the sums of so many moments over the first `n` uniforms, a multiple of `TOGETHER`.
+
+The last `filled` of them are 1, and are taken off again: every polynomial is 1 there, and the root.
+"""
+add_weighted = _compiled(
+    "def add(w, n, filled, orders, weights, rooted_sums):",
+    [(f"orders <= {r}", _loop(0, r, "w[weights + i]")) for r in _WEIGHTED],
+)
+add_weighted.__doc__ = (
+    """Add to ``w[rooted_sums + j]`` the sums of so many f T_j; weights begin at `weights`."""
+)
+
+
+@njit(inline="always")
+def stratify(w: Any, n: Any, first: Any, strata: Any) -> None:
+    """Move the uniform of asperity ``first + i`` into its own one of `strata` equal strata."""
+    for i in range(n):
+        w[i] = (2.0 * (first + i) + 1.0 + w[i]) / strata - 1.0
+
+
+@njit(inline="always")
+def unfold(w: Any, first: Any, orders: Any) -> None:
+    """Make sums of polynomials of `orders` sums of products, which begin at ``w[first]``."""
+    for j in range(6, orders):
+        w[first + j] = 2.0 * w[first + j] - w[first + 2 * ((j - 1) // 5 * 5) - j]
