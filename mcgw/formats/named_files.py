@@ -1,5 +1,6 @@
-"""Files that somebody names, read without trust: regular ones of bounded size, arrays, TOML."""
+"""Files that somebody names, read without trust: regular ones of bounded size, arrays, TOML, JSON."""
 
+import json
 import os
 import re
 import stat
@@ -12,22 +13,13 @@ from typing import TYPE_CHECKING, Any, Literal
 from mcgw.errors import StoreError
 
 if TYPE_CHECKING:
-    import h5py
     from numpy.typing import NDArray
 
 HDF5 = b"\x89HDF\r\n"  # how such a file begins
 _UNSOUND = (EOFError, KeyError, MemoryError, OverflowError, SyntaxError, TokenError, TypeError, ValueError)
 _MOST_PARTS = 100  # of a dotted key: the parser's time grows as their square
-_DEEPEST = 100  # brackets within brackets: the parser calls itself for each
-_ASIDE = re.compile(
-    r'"""(?:[^"\\]|\\.|"(?!""))*+(?:"""|\Z)'  # texts, to their ends or to where they break off
-    r"|'''(?:[^']|'(?!''))*+(?:'''|\Z)"
-    r'|"(?:[^"\\\n]|\\.)*+(?:"|$)'
-    r"|'[^'\n]*+(?:'|$)"
-    r"|\#[^\n]*+",
-    re.DOTALL | re.MULTILINE,
-)
-_LONG_KEY = re.compile(rf"(?<![\w-])(?:[\w-]++[ \t]*+\.[ \t]*+){{{_MOST_PARTS}}}")
+_LONG_KEY = re.compile(rf"(?<![\w\"'-])(?:[\w\"'-]++[ \t]*+\.[ \t]*+){{{_MOST_PARTS}}}")
+_TOML_DIGITS, _JSON_DIGITS = 4000, 300  # of a number: Python reads no more; no float has more
 
 
 def open_regular(path: Path) -> int:
@@ -80,18 +72,6 @@ def read_text(path: Path, most: int) -> str:
         raise StoreError(f"{path}: is not text in UTF-8 (byte {error.start})") from None
 
 
-def open_h5(path: Path | str) -> "h5py.File":
-    """Open for reading, without a lock where a disk keeps none: files are whole when they get names."""
-    import h5py
-
-    try:
-        return h5py.File(path, "r")
-    except OSError as error:
-        if "unable to lock" not in str(error):
-            raise
-        return h5py.File(path, "r", locking=False)
-
-
 def open_npy(path: Path) -> "NDArray[Any]":
     """Map integers or floats of any shape into memory, read-only; nothing is allocated or unpickled.
 
@@ -125,14 +105,40 @@ def loads(text: str) -> dict[str, Any]:
     Raises
     ------
     ValueError
-        If it is not TOML, a key has a hundred parts, or brackets are nested a hundred deep.
+        If it is not TOML, a number has more than 4000 digits, a dotted key a hundred parts, or brackets are
+        nested too deeply.
     """
-    plain = _ASIDE.sub(lambda found: "" if found[0].startswith("#") else "t", text)
-    if _LONG_KEY.search(plain):
+    if _LONG_KEY.search(text):
         raise ValueError(f"a dotted key has more than {_MOST_PARTS} parts")
-    depth = 0
-    for bracket in re.findall(r"[\[\]{}]", plain):
-        depth = depth + 1 if bracket in "[{" else max(depth - 1, 0)
-        if depth > _DEEPEST:
-            raise ValueError("nested too deeply")
-    return tomllib.loads(text)
+    _check_digits(text, _TOML_DIGITS)
+    try:
+        return tomllib.loads(text)
+    except RecursionError:
+        raise ValueError("nested too deeply") from None
+
+
+def loads_json(text: str | bytes) -> Any:
+    """Read a JSON document as `json.loads`; what is no JSON but Python's, such as NaN, is refused.
+
+    Raises
+    ------
+    ValueError
+        If it is not JSON in UTF-8, a number has more than 300 digits, or brackets are nested too deeply.
+    """
+    text = text if isinstance(text, str) else text.decode("utf-8-sig")
+    _check_digits(text, _JSON_DIGITS)
+    try:
+        return json.loads(text, parse_constant=_refuse_constant)
+    except RecursionError:
+        raise ValueError("nested too deeply") from None
+
+
+def _refuse_constant(word: str) -> float:
+    raise ValueError(f"{word} is not a number of JSON")
+
+
+def _check_digits(text: str, most: int) -> None:
+    found = re.search(rf"(?:\d_?){{{most + 1}}}|0x(?:[\da-fA-F]_?){{{most + 1}}}", text)
+    if found:
+        line = text.count("\n", 0, found.start()) + 1
+        raise ValueError(f"line {line}: a number has more than {most} digits")

@@ -8,7 +8,8 @@ import h5py
 import numpy as np
 
 from mcgw.formats.files import whole_file
-from mcgw.formats.named_files import open_h5, open_npy
+from mcgw.formats.gate import open_h5
+from mcgw.formats.named_files import loads_json, open_npy, read_bytes
 from mcgw.machine.terminal import one_line
 from mcgw.maps.foreign import ForeignError, UnreadableError, read_foreign
 from mcgw.maps.sdf import read_sdf, write_sdf
@@ -74,12 +75,11 @@ def _sidecar(path: Path) -> tuple[tuple[float, float], bool, str | None]:
     beside = sidecar_of(path)
     if not beside.is_file():
         raise ValueError(f"{path}: there is no {beside.name} with the size of a pixel; give --pixel")
-    if beside.stat().st_size > _MOST_JSON:
-        raise ValueError(f"{beside}: longer than {_MOST_JSON} bytes, too long for a sidecar")
+    data = read_bytes(beside, _MOST_JSON)
     try:
-        facts: Any = json.loads(beside.read_text(encoding="utf-8"))
+        facts: Any = loads_json(data)
         pixel, periodic, unit = facts["pixel"], facts.get("periodic", False), facts.get("unit")
-    except (AttributeError, KeyError, RecursionError, TypeError, ValueError) as error:
+    except (AttributeError, KeyError, TypeError, ValueError) as error:
         raise ValueError(f'{beside}: must hold "pixel": [dx, dy] in m: {error}') from None
     if unit not in (None, "m"):
         raise ValueError(f"{beside}: unit = {unit!r}: must be 'm'")

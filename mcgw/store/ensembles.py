@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import Held, Results
 from mcgw.errors import StoreError
-from mcgw.formats.named_files import open_h5
+from mcgw.formats.gate import open_h5
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from, scene_text
 from mcgw.store.disk import MOST_SCALE, check_trailer, parts_of, read_trailer

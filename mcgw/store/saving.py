@@ -18,7 +18,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import Tables
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import check_output, state_of
-from mcgw.formats.named_files import open_h5
+from mcgw.formats.gate import open_h5
 from mcgw.machine.in_threads import Items, one_ahead
 from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import Scene

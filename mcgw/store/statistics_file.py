@@ -38,7 +38,7 @@ from mcgw.ensemble.results import PROBABILITIES
 from mcgw.ensemble.summarised import Summarised
 from mcgw.ensemble.summary import ROW, Summary
 from mcgw.errors import StoreError
-from mcgw.formats.named_files import open_h5
+from mcgw.formats.gate import open_h5
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 from mcgw.store.layout import body_of_kept, drawn_tables, scales_of

@@ -19,7 +19,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from mcgw.formats.named_files import open_h5
+from mcgw.formats.gate import opened
 from mcgw.store.disk import GROUP, head_digest
 
 _FILTERS = {h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32, h5py.h5z.FILTER_LZF}
@@ -109,7 +109,7 @@ def describe(path: str, *, read: bool = True) -> dict[str, Any]:
     OSError
         If HDF5 cannot read it.
     """
-    with open_h5(path) as file:
+    with opened(path) as file:
         names = check_plain(file)
         if len(file.attrs) > _MOST_ATTRIBUTES:
             raise RefusedError(f"{len(file.attrs)} attributes")

@@ -38,7 +38,8 @@ from numpy.typing import NDArray
 
 from mcgw.ensemble.labelled import AXES, Labelled, Variable, axis
 from mcgw.errors import StoreError
-from mcgw.formats.named_files import loads, open_h5
+from mcgw.formats.gate import open_h5
+from mcgw.formats.named_files import loads
 from mcgw.store.ensembles import read_attributes
 from mcgw.store.layout import body_of_kept, drawn_digest, drawn_tables
 from mcgw.store.run_folder import RunFolder

@@ -1,0 +1,189 @@
+"""The gate: what a file from elsewhere must be before a parser, or a library, sees it.
+
+HDF5 (results, maps, what SurfaceTopography is given) is opened by `open_h5`: all of it must be inside the
+file, and what it declares is bounded by the file's size and by memory. Archives are looked at by
+`check_archive`. Nothing of the data is read, and nothing runs in another process. Text, JSON, TOML and
+arrays pass `mcgw.formats.named_files`: regular files of bounded size, with bounded numbers and depth.
+"""
+
+import math
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import h5py
+
+from mcgw.errors import StoreError
+from mcgw.formats.named_files import open_regular
+from mcgw.machine.memory import gibibytes, memory_available
+
+EXPANSION = 1100  # bytes declared for each byte of the file: deflate reaches 1032
+ENOUGH = 2**20  # bytes that any file may declare
+MOST_CHUNK = 2**26  # bytes of a chunk that is larger than its data
+MOST_OBJECTS, DEEPEST = 4096, 32  # groups, datasets and types of a file; groups within groups
+MOST_MEMBERS = 1000  # of an archive
+_UNPACKED, _RATIO = 2**26, 200  # bytes that any archive may unpack to; and for each byte of it
+_MOST_XML = 2**26  # bytes of a description
+_FILTERS = {  # built into HDF5: any other is code that it loads from a folder
+    h5py.h5z.FILTER_DEFLATE,
+    h5py.h5z.FILTER_SHUFFLE,
+    h5py.h5z.FILTER_FLETCHER32,
+    h5py.h5z.FILTER_LZF,
+    h5py.h5z.FILTER_SZIP,
+    h5py.h5z.FILTER_NBIT,
+    h5py.h5z.FILTER_SCALEOFFSET,
+}
+
+
+def open_h5(path: Path | str) -> h5py.File:
+    """Open an HDF5 file for reading, if it may be read.
+
+    Without a lock where a disk keeps none: files are whole when they get their names.
+
+    Raises
+    ------
+    StoreError
+        If it is no regular file, or `check_h5` refuses it.
+    OSError
+        If it is no HDF5 file, or damaged.
+    """
+    with open(open_regular(Path(path)), "rb") as found:
+        size = found.seek(0, 2)
+    file = opened(path)
+    try:
+        check_h5(file, size)
+    except StoreError as error:
+        file.close()
+        raise StoreError(f"{path}: refused: {error}") from None
+    except BaseException:
+        file.close()
+        raise
+    return file
+
+
+def opened(path: Path | str) -> h5py.File:
+    """Open an HDF5 file for reading without `check_h5`; for files that are checked otherwise."""
+    try:
+        return h5py.File(path, "r")
+    except OSError as error:
+        if "unable to lock" not in str(error):
+            raise
+        return h5py.File(path, "r", locking=False)
+
+
+def check_h5(file: h5py.File, size: int) -> None:
+    """Refuse an open HDF5 file that leads out of itself, or declares what its bytes cannot hold.
+
+    No data and no attribute are read.
+
+    Parameters
+    ----------
+    file : h5py.File
+        The open file.
+    size : int
+        Of the file, bytes.
+
+    Raises
+    ------
+    StoreError
+        If there is an external link, external storage, a virtual dataset, or a filter that HDF5 would load;
+        if all datasets declare more than 1100 times the file, or a chunk is beyond its data or memory; if
+        groups are nested too deeply, or there are too many objects. The line does not name the file.
+    """
+    left = max(EXPANSION * size, ENOUGH)
+    seen: set[int] = set()
+    waiting: list[tuple[Any, str, int]] = [(file.id, "", 0)]
+    while waiting:
+        group, prefix, depth = waiting.pop()
+        if depth > DEEPEST:
+            raise StoreError(f"groups are nested more than {DEEPEST} deep")
+        for name in _members(group, prefix):
+            item = h5py.h5o.open(group, name)
+            address = h5py.h5o.get_info(item).addr
+            if address in seen:
+                continue
+            seen.add(address)
+            if len(seen) > MOST_OBJECTS:
+                raise StoreError(f"more than {MOST_OBJECTS} groups and datasets")
+            path = prefix + name.decode(errors="replace")
+            if isinstance(item, h5py.h5g.GroupID):
+                waiting.append((item, f"{path}/", depth + 1))
+            elif isinstance(item, h5py.h5d.DatasetID):
+                left -= _declared(path[:80], item)
+                if left < 0:
+                    raise StoreError(f"{path[:80]}: more bytes declared than a file of {size} bytes holds")
+
+
+def _members(group: Any, prefix: str) -> list[bytes]:
+    """Names of hard links; soft ones lead to what these reach, since no other file is linked."""
+    if len(group) > MOST_OBJECTS:
+        raise StoreError(f"{prefix or '/'}: {len(group)} members, more than {MOST_OBJECTS}")
+    kinds = {name: group.links.get_info(name).type for name in group}
+    for name, kind in kinds.items():
+        if kind not in (h5py.h5l.TYPE_HARD, h5py.h5l.TYPE_SOFT):
+            raise StoreError(f"{prefix}{name.decode(errors='replace')[:80]}: a link to another file")
+    return [name for name, kind in kinds.items() if kind == h5py.h5l.TYPE_HARD]
+
+
+def _declared(name: str, item: Any) -> int:
+    """Return the bytes that a dataset declares; refuse data in another file, strange filters, huge chunks."""
+    plist, layout = item.get_create_plist(), item.get_create_plist().get_layout()
+    if plist.get_external_count() or layout not in (h5py.h5d.COMPACT, h5py.h5d.CONTIGUOUS, h5py.h5d.CHUNKED):
+        raise StoreError(f"{name}: its data are in another file")
+    filters = {plist.get_filter(i)[0] for i in range(plist.get_nfilters())}
+    if not filters <= _FILTERS:
+        raise StoreError(f"{name}: unknown filter {sorted(filters - _FILTERS)}")
+    width = item.get_type().get_size()
+    declared = math.prod(item.shape or ()) * width
+    if layout == h5py.h5d.CHUNKED:
+        chunk = math.prod(plist.get_chunk()) * width
+        if chunk > max(MOST_CHUNK, declared):
+            raise StoreError(f"{name}: chunks of {chunk} bytes for {declared}")
+        if chunk > MOST_CHUNK and chunk > memory_available():
+            raise StoreError(f"{name}: chunks of {gibibytes(chunk)}, more than the memory available")
+    return int(declared)
+
+
+def check_archive(path: Path) -> None:
+    """Refuse a zip archive that unpacks to far more than it is, or describes itself by entities.
+
+    Python's `zipfile` never unpacks more of a member than its directory declares, which is summed here.
+
+    Raises
+    ------
+    ValueError
+        If it is damaged, has more than 1000 members, unpacks to more than 64 MiB and 200 times its size, or
+        to more than the memory available, is packed by another method than deflate, or is encrypted; or if an
+        XML member has a document type.
+    """
+    size = path.stat().st_size
+    try:
+        with zipfile.ZipFile(path) as archive:
+            members = archive.infolist()
+            _check_members(path, members, size)
+            for member in members:
+                if member.filename.lower().endswith(".xml"):
+                    _check_xml(path, archive, member)
+    except (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError, OSError) as error:
+        raise ValueError(f"{path}: is a damaged zip archive: {str(error)[:80]}") from None
+
+
+def _check_members(path: Path, members: list[zipfile.ZipInfo], size: int) -> None:
+    if len(members) > MOST_MEMBERS:
+        raise ValueError(f"{path}: an archive of {len(members)} members; at most {MOST_MEMBERS} are read")
+    unpacked = sum(member.file_size for member in members)
+    if unpacked > max(_UNPACKED, _RATIO * size) or (unpacked > _UNPACKED and unpacked > memory_available()):
+        raise ValueError(f"{path}: an archive of {size} bytes that unpacks to {unpacked}; that is refused")
+    for member in members:
+        if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED) or member.flag_bits & 1:
+            raise ValueError(f"{path}: {member.filename[:80]!r} is encrypted, or not packed by deflate")
+
+
+def _check_xml(path: Path, archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> None:
+    """Refuse a document type: entities make gigabytes of a line, and name other files."""
+    if member.file_size > _MOST_XML:
+        raise ValueError(f"{path}: {member.filename[:80]!r} is a description of {member.file_size} bytes")
+    with archive.open(member) as file:
+        text = file.read()
+    if b"<!DOCTYPE" in text or b"<!ENTITY" in text or b"\0" in text:
+        raise ValueError(f"{path}: {member.filename[:80]!r} declares entities, or is not UTF-8")

@@ -1,0 +1,248 @@
+"""The gate before every HDF5 file and archive: nothing outside is read, and little makes nothing large."""
+
+import os
+import subprocess
+import sys
+import time
+import zipfile
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from mcgw.errors import StoreError
+from mcgw.formats.gate import check_archive, open_h5
+from mcgw.formats.named_files import loads, loads_json
+from mcgw.machine.memory import peak_growth
+
+SECRET = b"correct horse battery staple" * 64
+
+
+def external_storage(file, folder):
+    file.create_dataset("height", (8, 8), "f8", external=[(str(folder / "secret"), 0, 512)])
+
+
+def external_storage_below(file, folder):
+    external_storage(file.create_group("a/b/c"), folder)
+
+
+def virtual(file, folder):
+    layout = h5py.VirtualLayout((8, 8), "f8")
+    layout[:] = h5py.VirtualSource(str(folder / "other.h5"), "height", (8, 8))
+    file.create_virtual_dataset("height", layout)
+
+
+def virtual_of_itself(file, folder):
+    file["real"] = np.ones((8, 8))
+    layout = h5py.VirtualLayout((8, 8), "f8")
+    layout[:] = h5py.VirtualSource(".", "real", (8, 8))
+    file.create_virtual_dataset("height", layout)
+
+
+def external_link(file, folder):
+    file["height"] = h5py.ExternalLink(str(folder / "other.h5"), "height")
+
+
+def link_through_a_link(file, folder):
+    file["out"] = h5py.ExternalLink(str(folder / "other.h5"), "/")
+    file["height"] = h5py.SoftLink("/out/height")
+
+
+def chunk_bomb(file, folder):
+    file.create_dataset(
+        "height", data=np.ones((64, 64)), maxshape=(None, None), chunks=(4000, 4000), compression="gzip"
+    )
+
+
+def never_written(file, folder):
+    file.create_dataset("height", (2**14, 2**14), "f8", chunks=(64, 64))
+
+
+def many_small(file, folder):
+    for i in range(40):
+        file.create_dataset(f"x{i}", (2**8, 2**10), "f8", chunks=(64, 64))
+
+
+def unknown_filter(file, folder):
+    space, plist = h5py.h5s.create_simple((8, 8)), h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+    plist.set_chunk((8, 8))
+    plist.set_filter(32999, h5py.h5z.FLAG_OPTIONAL)
+    h5py.h5d.create(file.id, b"height", h5py.h5t.IEEE_F64LE, space, plist)
+
+
+def deep(file, folder):
+    for _ in range(100):
+        file = file.create_group("g")
+
+
+def members(file, folder):
+    for i in range(5000):
+        file.create_group(str(i))
+
+
+HOSTILE = {
+    external_storage: "height: its data are in another file",
+    external_storage_below: "a/b/c/height: its data are in another file",
+    virtual: "height: its data are in another file",
+    virtual_of_itself: "height: its data are in another file",
+    external_link: "height: a link to another file",
+    link_through_a_link: "out: a link to another file",
+    chunk_bomb: "height: chunks of 128000000 bytes for 32768",
+    never_written: "height: more bytes declared than a file of",
+    many_small: "more bytes declared than a file of",
+    unknown_filter: "height: unknown filter",
+    deep: "groups are nested more than 32 deep",
+    members: "/: 5000 members, more than 4096",
+}
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "secret").write_bytes(SECRET)
+    with h5py.File(tmp_path / "other.h5", "w") as file:
+        file["height"] = np.ones((8, 8))
+    return tmp_path
+
+
+@pytest.mark.parametrize("make", HOSTILE, ids=lambda make: make.__name__)
+def test_what_leads_out_of_a_file_or_declares_too_much_is_refused(make, folder):
+    with h5py.File(folder / "map.h5", "w") as file:
+        make(file, folder)
+
+    def refused():
+        with pytest.raises(StoreError, match=rf"^\S*map\.h5: refused: .*{HOSTILE[make]}") as told:
+            open_h5(folder / "map.h5")
+        assert len(str(told.value).splitlines()) == 1
+
+    began = time.process_time()
+    assert not peak_growth(refused) > 2**26
+    assert time.process_time() - began < 1
+
+
+def test_plain_files_pass(folder):
+    """Groups, a soft link, cycles, empty and scalar data, resizable and compressed ones."""
+    with h5py.File(folder / "map.h5", "w") as file:
+        file["a/b"], file["scalar"], file["text"] = np.ones(8), 1.0, "a text"
+        file["a/self"], file["soft"], file["dangling"] = (
+            file["/"],
+            h5py.SoftLink("/a/b"),
+            h5py.SoftLink("/no"),
+        )
+        file["empty"] = h5py.Empty("f8")
+        file.create_dataset("none", (0, 5), "f8", maxshape=(None, 5))
+        file.create_dataset("zeros", data=np.zeros((1000, 1000)), compression="gzip")
+        file.create_dataset("grows", data=np.ones(10), maxshape=(None,), compression="lzf", shuffle=True)
+    with open_h5(folder / "map.h5") as file:
+        assert file["soft"][...] == pytest.approx(1)
+        assert file["zeros"].shape == (1000, 1000)
+
+
+def test_what_is_no_regular_file_is_not_waited_for(folder):
+    os.mkfifo(folder / "pipe.h5")
+    with pytest.raises(StoreError, match=r"pipe\.h5: is not a regular file"):
+        open_h5(folder / "pipe.h5")
+    with pytest.raises(StoreError, match="is not a regular file"):
+        open_h5("/dev/zero")
+    with pytest.raises(StoreError, match="No such file"):
+        open_h5(folder / "absent.h5")
+
+
+def test_an_audit_of_what_is_opened_sees_no_other_file(folder):
+    """HDF5 opens files by itself, past Python, so the kernel's list of open files is looked at too."""
+    with h5py.File(folder / "map.h5", "w") as file:
+        external_storage(file, folder)
+        file["far"] = h5py.ExternalLink(str(folder / "other.h5"), "height")
+    script = f"""
+import os, sys
+opened = []
+from mcgw.formats.gate import open_h5
+sys.addaudithook(lambda name, args: opened.append(str(args[0])) if name == "open" else None)
+before = os.stat({str(folder / "secret")!r}).st_atime_ns
+try:
+    open_h5({str(folder / "map.h5")!r})
+except ValueError as error:
+    print(error)
+kept = [os.readlink(f"/proc/self/fd/{{n}}") for n in os.listdir("/proc/self/fd") if n.isdigit() and
+        os.path.exists(f"/proc/self/fd/{{n}}")]
+print(*(name for name in opened + kept if name.endswith(("secret", "other.h5"))), sep="|")
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    told, others = done.stdout.splitlines()
+    assert "refused" in told
+    assert others == ""
+
+
+def archive(path: Path, members: dict[str, bytes], method=zipfile.ZIP_DEFLATED) -> Path:
+    with zipfile.ZipFile(path, "w", method) as file:
+        for name, data in members.items():
+            file.writestr(name, data)
+    return path
+
+
+ARCHIVES = {
+    "unpacks to 100 MB": (
+        {"bindata/data.bin": bytes(10**8)},
+        zipfile.ZIP_DEFLATED,
+        "that unpacks to 100000000",
+    ),
+    "many": ({str(i): b"" for i in range(2000)}, zipfile.ZIP_DEFLATED, "an archive of 2000 members"),
+    "bzip2": ({"a": b"1"}, zipfile.ZIP_BZIP2, "'a' is encrypted, or not packed by deflate"),
+    "entities": (
+        {"main.xml": b'<!DOCTYPE a [<!ENTITY b "c">]><a>&b;</a>'},
+        8,
+        "'main.xml' declares entities",
+    ),
+    "wide": ({"index.xml": "<a/>".encode("utf-16")}, 8, "'index.xml' declares entities, or is not UTF-8"),
+}
+
+
+@pytest.mark.parametrize("name", ARCHIVES)
+def test_archives_that_unpack_to_far_more_are_refused(name, tmp_path):
+    members, method, told = ARCHIVES[name]
+    path = archive(tmp_path / "map.x3p", members, method)
+    with pytest.raises(ValueError, match=told):
+        check_archive(path)
+
+
+def test_a_whole_archive_passes_and_a_cut_one_does_not(tmp_path):
+    path = archive(tmp_path / "map.x3p", {"main.xml": b"<a/>", "data": bytes(10**6)})
+    check_archive(path)
+    path.write_bytes(path.read_bytes()[:-30])
+    with pytest.raises(ValueError, match=r"map\.x3p: is a damaged zip archive"):
+        check_archive(path)
+
+
+TEXTS = {
+    "deep": ("[" * 10**5, "nested too deeply|Invalid|Unclosed"),
+    "digits": ("a = " + "1" * 10**5, "line 1: a number has more than 4000 digits"),
+    "hexadecimal": ("a = 0x" + "f" * 10**6, "line 1: a number has more than 4000 digits"),
+    "underscores": ("a = " + "1_" * 10**5 + "1", "line 1: a number has more than 4000 digits"),
+    "key": (".".join(["a"] * 10**5) + " = 1", "a dotted key has more than 100 parts"),
+    "quoted key": (".".join(['"a"'] * 10**5) + " = 1", "a dotted key has more than 100 parts"),
+    "long word": ("a" * 10**6, "Expected"),
+}
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_toml_that_would_stop_its_parser_is_refused_at_once(name):
+    text, told = TEXTS[name]
+    began = time.process_time()
+    with pytest.raises(ValueError, match=told):
+        loads(text if name != "deep" else "a = " + text)
+    assert time.process_time() - began < 1
+
+
+def test_json_that_would_stop_its_parser_is_refused_at_once():
+    for text, told in (
+        ("[" * 10**6, "nested too deeply"),
+        ('{"a": ' * 10**5, "nested too deeply"),
+        ("1" * 400, "300 digits"),
+        ('{"a": NaN}', "NaN is not a number of JSON"),
+        (b'{"a": "\xff"}', "can't decode"),
+        ("{", "Expecting"),
+    ):
+        with pytest.raises(ValueError, match=told):
+            loads_json(text)
+    assert loads_json(b'\xef\xbb\xbf{"a": [1, 2.5e300, "[[["]}') == {"a": [1, 2.5e300, "[[["]}
+    assert loads(f'a = "{"[" * 500}"\nb = [{"1, " * 500}]') == {"a": "[" * 500, "b": [1] * 500}
