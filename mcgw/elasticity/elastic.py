@@ -1,9 +1,8 @@
 """Means over elastic surfaces by levels: ``mcgw.elastic``."""
 
-import hashlib
-import json
 from collections.abc import Sequence
-from dataclasses import dataclass
+from contextlib import nullcontext
+from dataclasses import asdict, dataclass
 from itertools import accumulate, pairwise
 from pathlib import Path
 from typing import Any
@@ -11,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from analytic.arrays import Array
-from mcgw.elasticity.levels import LEVELS, QUANTITIES, Level, Pressed, Values
+from mcgw.elasticity.levels import LEVELS, QUANTITIES
 from mcgw.elasticity.multilevel import FEWEST, Design, Mean, design, differences, mean_of, terms_of
-from mcgw.elasticity.sources import Maps, maps_of
-from mcgw.errors import RunError, StoreError
-from mcgw.formats.files import write_whole
+from mcgw.elasticity.solves import Solves
+from mcgw.elasticity.sources import maps_of
+from mcgw.errors import RunError
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
 from mcgw.machine.progress import Progress, told
@@ -43,7 +42,7 @@ class Elastic(Shown):
         A row for each term: number of maps, CPU seconds for one map, mean and standard deviation of the first
         quantity.
     planned : Design
-        Levels, maps and seconds as planned after the pilot.
+        Levels, maps and their cost as planned after the pilot, in solves of boundary elements.
     seconds : float
         CPU seconds of all solves, including the pilot's.
     words : str
@@ -69,8 +68,8 @@ class Elastic(Shown):
 
     @property
     def saved(self) -> float:
-        """Factor of time saved over the most expensive level alone, for the same error, as planned."""
-        return self.planned.plain / self.planned.seconds
+        """Factor of cost saved over the most expensive level alone, for the same error, as planned."""
+        return self.planned.plain / self.planned.cost
 
     def table(self) -> Table:
         """A row for each quantity: mean and interval."""
@@ -85,10 +84,10 @@ class Elastic(Shown):
 
     def verdict(self) -> str:
         """How much the cheaper levels helped, in one sentence."""
-        plain = f"boundary elements alone: {self.planned.plain:.3g} s for the same error"
+        plain = f"boundary elements alone: {self.planned.plain:.3g} for the same error"
         if len(self.planned.chain) == 1:
             return f"no cheaper level helps; {plain}"
-        return f"{self.planned.seconds:.3g} s by levels, {self.saved:.1f} times less than {plain}"
+        return f"{self.planned.cost:.3g} solves by levels, {self.saved:.1f} times less than {plain}"
 
     def sheet(self) -> Sheet:
         """Means, intervals and what was saved."""
@@ -139,9 +138,10 @@ def elastic(
     seed : int, optional
         Of the maps.
     path : str or Path, optional
-        File for the solves, one line for each; the same call again resumes from it.
+        File for the solves, one line with a checksum for each, the plan in the first; the same call again
+        resumes from it. Damaged lines are named in a warning and solved again.
     progress : bool or callable, optional
-        True: a bar; a function: called with (done, total) in seconds of solving as planned.
+        True: a bar; a function: called with (done, total) in solves of boundary elements, as planned.
 
     Returns
     -------
@@ -155,10 +155,12 @@ def elastic(
         If Tamaas is not installed (``pip install 'mcgw[bem]'``), a solve does not converge, or no map of
         the pilot touches.
     StoreError
-        If `path` holds solves of another question.
+        If `path` holds solves of another question, or another process adds to it.
 
     Notes
     -----
+    The plan follows from the pilot and fixed costs of the levels, not from measured seconds: the same call
+    gives the same numbers.
     The exact theory of summits is never taken as a level's mean: maps of pixels have their own.
 
     Examples
@@ -187,87 +189,24 @@ def elastic(
         )
     if seed < 0:
         raise ValueError(f"seed = {seed}: give a whole number >= 0")
-    solved = _Solved(maps, held, modulus, seed, known)
-    if path is not None:
-        solved.resume(Path(path))
-    with told(progress, "s") as tell:
+    solved = Solves(maps, held, modulus, seed, known)
+    kept = nullcontext() if path is None else solved.kept_in(Path(path))
+    with kept, told(progress, "solves") as tell:
         return _by_levels(solved, rel_err, solves, pilot, tell)
 
 
-class _Solved:
-    """Values of levels on maps, each solved once; in a file, too, if there is one."""
-
-    def __init__(
-        self, maps: Maps, held: dict[str, float], E_star: float, seed: int, quantities: list[str]
-    ) -> None:
-        self.maps, self.held, self.E_star, self.seed, self.quantities = maps, held, E_star, seed, quantities
-        self._rows: dict[tuple[str, int], tuple[Values, float]] = {}
-        self._path: Path | None = None
-        self._last: tuple[int, Pressed] | None = None
-
-    def resume(self, path: Path) -> None:
-        """Read what is solved, and write there from now on.
-
-        Raises
-        ------
-        StoreError
-            If these are solves of other maps, another pressure, separation or modulus.
-        """
-        asked = {"maps": self._digest(), **self.held, "E_star": self.E_star, "seed": self.seed}
-        new = not path.exists()
-        text = json.dumps(asked) + "\n" if new else path.read_text(encoding="utf-8", errors="replace")
-        whole = text[: text.rfind("\n") + 1]  # a run that was killed leaves its last line cut
-        try:
-            header, *rows = map(json.loads, whole.splitlines())
-        except ValueError:
-            header, rows = None, []
-        if header != asked:
-            what = next(iter(self.held))
-            raise StoreError(f"{path}: holds no solves of these maps at this {what}; give another path")
-        self._rows = {(r["level"], r["map"]): (r["values"], r["seconds"]) for r in rows}
-        if new or whole != text:
-            write_whole(path, [whole.encode()])
-        self._path = path
-
-    def _digest(self) -> str:
-        """Of all maps that were given, or of the first one of those that are drawn."""
-        found = hashlib.sha256()
-        for number in range(self.maps.number or 1):
-            found.update(self.maps.heights(number, self.seed).tobytes())
-        return found.hexdigest()[:16]
-
-    def at(self, level: Level, number: int) -> tuple[Array, float]:
-        """Quantities of a map at a level, and the seconds they took."""
-        key = (level.name, number)
-        if key not in self._rows:
-            if self._last is None or self._last[0] != number:
-                heights = self.maps.heights(number, self.seed)
-                self._last = number, Pressed(heights, self.maps.size, self.E_star, **self.held)
-            self._rows[key] = level.timed(self._last[1])
-            if self._path is not None:
-                values, seconds = self._rows[key]
-                row = {"level": level.name, "map": number, "values": values, "seconds": seconds}
-                with open(self._path, "a", encoding="utf-8") as file:
-                    file.write(json.dumps(row) + "\n")
-        values, seconds = self._rows[key]
-        return np.array([values[name] for name in self.quantities]), seconds
-
-    @property
-    def seconds(self) -> float:
-        """CPU seconds of all."""
-        return sum(seconds for _, seconds in self._rows.values())
-
-
-def _by_levels(solved: _Solved, rel_err: float, solves: int | None, pilot: int, tell: Any) -> Elastic:
+def _by_levels(solved: Solves, rel_err: float, solves: int | None, pilot: int, tell: Any) -> Elastic:
     """Pilot, plan, terms."""
     population = solved.maps.number
     tried = _chosen(population, solved.seed, 0, [pilot])[0]
     rows = [[solved.at(level, k) for level in LEVELS] for k in tried]
     table = {i: np.array([row[i][0] for row in rows]) for i in range(len(LEVELS))}
-    costs = [float(np.mean([row[i][1] for row in rows])) for i in range(len(LEVELS))]
+    costs = [level.cost for level in LEVELS]
+    seconds = [float(np.mean([row[i][1] for row in rows])) for i in range(len(LEVELS))]
     if not table[len(LEVELS) - 1].any(axis=0).all():
         raise RunError(f"none of {len(tried)} maps touches; give a smaller separation")
     planned = design(table, costs, rel_err, solves)
+    solved.record({"pilot": pilot, "rel_err": rel_err, "solves": solves, "costs": costs, **asdict(planned)})
     terms = terms_of(planned.chain)
     done, samples, lines = 0.0, [], []
     for term, numbers in zip(terms, _chosen(population, solved.seed, pilot, planned.maps), strict=True):
@@ -276,14 +215,14 @@ def _by_levels(solved: _Solved, rel_err: float, solves: int | None, pilot: int, 
             for level in term:
                 found[level].append(solved.at(LEVELS[level], number)[0])
                 done += costs[level]
-            tell(min(done, planned.seconds), planned.seconds)
+            tell(min(done, planned.cost), planned.cost)
         samples.append(differences({level: np.array(x) for level, x in found.items()}, term))
         lines.append((" - ".join(LEVELS[level].words for level in term), len(samples[-1])))
     first = [x[:, 0] for x in samples]
     levels = Table((
         Column("term", [words for words, _ in lines]),
         Column("maps", [many for _, many in lines], form="d"),
-        Column("seconds", [sum(costs[k] for k in term) for term in terms], "s a map", form=".2g"),
+        Column("seconds", [sum(seconds[k] for k in term) for term in terms], "s a map", form=".2g"),
         Column("mean", [x.mean() for x in first], f"mean {solved.quantities[0]}", form=".4g"),
         Column("std", [x.std(ddof=1) if len(x) > 1 else 0.0 for x in first], form=".2g"),
     ))  # fmt: skip

@@ -33,15 +33,15 @@ class Design:
         Levels, the dearest last.
     maps : tuple of int
         Of each term: the first level's mean, then differences.
-    seconds : float
-        What they are expected to cost together.
+    cost : float
+        What they are expected to cost together, in the unit of the levels' costs.
     plain : float
         What the dearest level alone would cost for the same error.
     """
 
     chain: Chain
     maps: tuple[int, ...]
-    seconds: float
+    cost: float
     plain: float
 
 
@@ -55,14 +55,14 @@ def differences(table: Table, term: Chain) -> Array:
     return np.asarray(table[term[0]] - sum((table[level] for level in term[1:]), np.zeros(1)))
 
 
-def design(pilot: Table, seconds: Sequence[float], rel_err: float, solves: int | None = None) -> Design:
+def design(pilot: Table, costs: Sequence[float], rel_err: float, solves: int | None = None) -> Design:
     """Find the chain that costs least.
 
     Parameters
     ----------
     pilot : dict of int to ndarray
         By level, shape (maps, quantities).
-    seconds : sequence of float
+    costs : sequence of float
         Of one map at each level.
     rel_err : float
         Half the width of the 95 % interval over the mean, which no quantity is to exceed.
@@ -78,20 +78,20 @@ def design(pilot: Table, seconds: Sequence[float], rel_err: float, solves: int |
 
     def planned(chain: Chain) -> Design:
         terms = terms_of(chain)
-        costs = [sum(seconds[level] for level in term) for term in terms]
+        of_terms = [sum(costs[level] for level in term) for term in terms]
         spreads = [spread(term) for term in terms]
-        total = sum(math.sqrt(v * c) for v, c in zip(spreads, costs, strict=True))
-        ideal = [math.sqrt(v / c) * total for v, c in zip(spreads, costs, strict=True)]
+        total = sum(math.sqrt(v * c) for v, c in zip(spreads, of_terms, strict=True))
+        ideal = [math.sqrt(v / c) * total for v, c in zip(spreads, of_terms, strict=True)]
         many, base = (solves, ideal[-1]) if solves is not None and ideal[-1] > 0 else (1, 1.0)
         maps = tuple(max(math.ceil(many * (n / base)), FEWEST) for n in ideal)
-        cost = sum(n * c for n, c in zip(maps, costs, strict=True))
-        return Design(chain, maps, cost, max(many * spread((top,)) / base, FEWEST) * seconds[top])
+        cost = sum(n * c for n, c in zip(maps, of_terms, strict=True))
+        return Design(chain, maps, cost, max(many * spread((top,)) / base, FEWEST) * costs[top])
 
     lower = [level for level in pilot if level != top]
     chains = [(*some, top) for k in range(len(lower) + 1) for some in combinations(lower, k)]
     if solves is None:
-        return min(map(planned, chains), key=lambda one: one.seconds)
-    return max(map(planned, chains), key=lambda one: one.plain / one.seconds)
+        return min(map(planned, chains), key=lambda one: one.cost)
+    return max(map(planned, chains), key=lambda one: one.plain / one.cost)
 
 
 @dataclass(frozen=True)

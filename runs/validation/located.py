@@ -132,7 +132,7 @@ def main():
             for q in range(3):
                 table = {level: np.log(np.abs(x[level][:, q : q + 1])) + 30 for level in range(3)}
                 planned = design(table, seconds, 0.02 / 30)
-                saved.append(planned.plain / planned.seconds)
+                saved.append(planned.plain / planned.cost)
             texts = [" ".join(f"{v:+.3f}" for v in part) for part in (*errors, together)]
             texts.append(" ".join(f"{v:.1f}" for v in saved))
             texts.append(" ".join(f"{v:.2f}" for v in covered(x[:3], rng)) if len(rows) > FEW else "")

@@ -105,6 +105,9 @@ class Stored:
         i = LEVELS.index(level)
         return self.table[i][self.rows[number]], self.costs[i]
 
+    def record(self, plan):
+        """Keep no plan."""
+
 
 def repeated(alpha):
     """Print how often the intervals hold; by quantity and chain seconds and errors."""
