@@ -140,18 +140,58 @@ class Joint:
             if self.rms is not None:
                 raise ValueError(f"rms = {self.rms!r}: it follows from the heights; leave it out")
             return Gap(self.held, sigma, sigma / heights.std, heights.mean / heights.std)
-        if self.rms is None:
-            if moments is None:
-                raise ValueError(
-                    "rms: give the root mean square height of the surface (not of its summits), m"
-                )
-            return Gap(self.held, sigma, math.sqrt(moments.m0), moments.mean_height / sigma)
-        if self.rms <= sigma:
-            raise ValueError(
-                f"rms = {self.rms!r}: give more than sigma = {sigma:g} m, which is that of the summits alone"
-            )
-        alpha = SUMMIT_SPREAD / (1 - (sigma / self.rms) ** 2)
-        return Gap(self.held, sigma, self.rms, 4 * self.rms / math.sqrt(math.pi * alpha) / sigma)
+        rise = rise_of_summits(surface, heights, moments, self.rms)
+        if rise is None:
+            raise ValueError("rms: give the root mean square height of the surface (not of its summits), m")
+        rms = math.sqrt(moments.m0) if self.rms is None and moments is not None else self.rms
+        assert rms is not None
+        return Gap(self.held, sigma, rms, rise)
+
+
+def rise_of_summits(
+    surface: Surface, heights: Any, moments: SpectralMoments | None = None, rms: float | None = None
+) -> float | None:
+    """Return how far the mean plane of the summits lies above that of the surface, over sigma.
+
+    Parameters
+    ----------
+    surface : Surface
+        With the standard deviation of the summits' heights.
+    heights : HeightLaw
+        Nayak's know it.
+    moments : SpectralMoments, optional
+        Of the surface.
+    rms : float, optional
+        Root mean square height of the surface, m, which goes before its moments.
+
+    Returns
+    -------
+    float or None
+        ``4 sqrt(m0/(pi alpha))/sigma``; None if neither tells m0 and alpha.
+
+    Raises
+    ------
+    ValueError
+        If `rms` is not above sigma.
+
+    Examples
+    --------
+    >>> import analytic
+    >>> surface = analytic.Surface(sigma=1e-6, radius=1e-5, eta=1e10, nominal_area=1e-4, E_star=1e11)
+    >>> round(rise_of_summits(surface, analytic.Gaussian(), rms=1.1e-6), 4)
+    1.0921
+    """
+    sigma = surface.sigma
+    if isinstance(heights, Nayak):
+        return heights.mean / heights.std
+    if rms is None:
+        return None if moments is None else moments.mean_height / sigma
+    if rms <= sigma:
+        raise ValueError(
+            f"rms = {rms!r}: give more than sigma = {sigma:g} m, which is that of the summits alone"
+        )
+    alpha = SUMMIT_SPREAD / (1 - (sigma / rms) ** 2)
+    return 4 * rms / math.sqrt(math.pi * alpha) / sigma
 
 
 @dataclass(frozen=True)

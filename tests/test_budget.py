@@ -29,7 +29,7 @@ ERRORS = {
     "sigma": "20 %", "radius": 0.15, "eta": 0.12, "E_star": 0.05,
     "correlation": [[1, 0.1, -0.8, 0], [0.1, 1, 0.2, 0], [-0.8, 0.2, 1, 0], [0, 0, 0, 1]],
 }  # fmt: skip
-NAMES = ("area", "stiffness", "conductance", "mean_gap")
+NAMES = ("area", "stiffness", "conductance", "gap_to_summits")
 
 
 def scene_of(**more):
@@ -103,16 +103,16 @@ def test_derivatives_obey_what_scales(interaction):
     """By E* as by one over the load; by eta as A_n would: both alike, and a length has no other unit."""
     every = dict.fromkeys(("sigma", "radius", "eta", "E_star"), 0.1)
     scene = scene_of(interaction=interaction, uncertainty=every)
-    of = ("area", "stiffness", "mean_gap")
+    of = ("area", "stiffness", "gap_to_summits")
     by = slopes_of(scene, scene.uncertainty, lambda s: mean_surface(s, "load", 5e3), of)
     ends = [mean_surface(scene, "load", 5e3 * np.exp(step)) for step in (1e-3, -1e-3)]
     by_load = [(ends[0][x] - ends[1][x]) / 2e-3 / mean_surface(scene, "load", 5e3)[x] for x in of]
     np.testing.assert_allclose(by[:, 3], np.array([0, 1, 0]) - by_load, atol=1e-5)
     # lengths by c, eta by c^-2, A_n by c^2: P/E* A_n is the same at c^2 P
     for name, row, slope in zip(of, by, by_load, strict=True):
-        powers = {"area": 2, "stiffness": 1, "mean_gap": 1}[name]
+        powers = {"area": 2, "stiffness": 1, "gap_to_summits": 1}[name]
         if interaction is None:  # then A_n counts as eta does
-            extensive = 0 if name == "mean_gap" else 1
+            extensive = 0 if name == "gap_to_summits" else 1
             assert row[2] == pytest.approx(extensive - slope, abs=1e-5)
             whole = row[0] + row[1] - 2 * row[2] + 2 * (extensive - slope) + 2 * slope
             assert whole == pytest.approx(powers, abs=1e-5)
@@ -128,7 +128,7 @@ def test_lines_of_surfaces_by_hand(solved):
     v = solved.scene.validity(solved.theory["separation"])
     assert budget.shares["model"][0] == pytest.approx(v.error["area"][0])
     assert budget.shares["model"][2] == budget.shares["model"][1]
-    gap = v.error["separation"][0] * solved.scene.surface.sigma / solved.theory["mean_gap"]
+    gap = v.error["separation"][0] * solved.scene.surface.sigma / solved.theory["gap_to_summits"]
     assert budget.shares["model"][3] == pytest.approx(gap)
     squares = sum(share**2 for share in budget.shares.values())
     np.testing.assert_allclose(budget.all, np.sqrt(squares))
@@ -171,10 +171,10 @@ def test_corrected_is_divided_by_its_bias(solved):
         most = np.hypot(most, 1.96 * solved.surfaces[name].std(ddof=1) / solved.theory[name])
         assert found.high / found.value == pytest.approx(1 + most)
         assert found.low * found.high == pytest.approx(found.value**2)
-    gap, sigma = solved.corrected("mean_gap"), solved.scene.surface.sigma
-    assert gap.value == pytest.approx(solved.theory["mean_gap"] - sigma * v.bias["separation"][0])
+    gap, sigma = solved.corrected("gap_to_summits"), solved.scene.surface.sigma
+    assert gap.value == pytest.approx(solved.theory["gap_to_summits"] - sigma * v.bias["separation"][0])
     off = sigma * (v.error["separation"][0] - abs(v.bias["separation"][0]))
-    off = np.hypot(off, 1.96 * solved.surfaces["mean_gap"].std(ddof=1))
+    off = np.hypot(off, 1.96 * solved.surfaces["gap_to_summits"].std(ddof=1))
     assert gap.high - gap.value == pytest.approx(off)
     assert "contacts: its error was not measured" in solved.corrected("contacts").why
     named = {column.name: column for column in solved.table().flat}

@@ -96,8 +96,8 @@ COLUMNS = {  # as files have them
             lambda x: x.table(),
             "quantity unit theory mean low_95 high_95 std specimen_05 specimen_95 corrected corrected_95",
         ),
-        (lambda x: x.budget().table(), "95_% area stiffness conductance mean_gap"),
-        (lambda x: x.budget().sheet().table, "95_% area stiffness conductance mean_gap"),
+        (lambda x: x.budget().table(), "95_% area stiffness conductance gap_to_summits"),
+        (lambda x: x.budget().sheet().table, "95_% area stiffness conductance gap_to_summits"),
     ],
     "convergence": [(lambda x: x.table(), "check p seen")],
     "sweep": [

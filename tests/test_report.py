@@ -319,7 +319,7 @@ def test_the_contact_law_and_its_rivals_are_in_the_report(make_scene, page):
 @pytest.mark.parametrize(
     ("changes", "names"),
     [
-        ({}, {"separation", "mean_gap"}),
+        ({}, {"separation", "gap_to_summits"}),
         ({"interaction": {"reference": "mean-plane", "at": "nominal"}}, {"nominal_separation"}),
         ({"interaction": {"reference": "mean-plane", "at": "effective"}}, {"separation"}),
         ({"quantities": ["load"]}, None),
@@ -354,12 +354,12 @@ def test_the_budget_at_a_pressure_and_the_corrected_answer(small):
     found = solution_of(ensemble.scene, ensemble)
     searched = mcgw.solve(scene, load=found.value)
     assert found.theory == searched.theory
-    for name in ("area", "stiffness", "mean_gap"):
+    for name in ("area", "stiffness", "gap_to_summits"):
         few = searched.surfaces[name].std() / np.sqrt(40)
         assert found.surfaces[name].mean() == pytest.approx(searched.surfaces[name].mean(), abs=6 * few)
         assert found.corrected(name).value == searched.corrected(name).value > 0
     budget = found.budget()
-    assert budget.quantities == ("area", "stiffness", "mean_gap")
+    assert budget.quantities == ("area", "stiffness", "gap_to_summits")
     by_hand = 1.96 * found.surfaces["area"].std(ddof=1) / found.theory["area"]
     assert budget.shares["specimens"][0] == pytest.approx(by_hand)
     assert budget.shares["parameters"][0] == pytest.approx(searched.budget().shares["parameters"][0])

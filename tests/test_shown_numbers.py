@@ -226,15 +226,15 @@ def test_solve(scene, words, given, pressure, title, tmp_path, capsys):
     head = "quantity unit theory mean 95 % interval 90 % of specimens"
     assert head + " corrected (95 %)" * (given[0] == "load") in [" ".join(x.split()) for x in lines]
     rows = {row["quantity"]: row for row in rows_of(tmp_path / "s.csv")}
-    assert list(rows) == ["separation", "mean_gap", *analytic.QUANTITIES]
+    assert list(rows) == ["separation", "gap_to_summits", *analytic.QUANTITIES]
     h = float(rows["separation"]["theory"])
-    units = {"separation": "sigma", "mean_gap": "m", **exact.UNITS}
+    units = {"separation": "sigma", "gap_to_summits": "m", **exact.UNITS}
     for name, row in rows.items():
         assert row["unit"] == units[name]
         assert float(row["load_or_area_SI"]) == pytest.approx(given[1])
         assert float(row["pressure_Pa"]) == pytest.approx(pressure, nan_ok=True)
         if name != "separation":
-            expected = h * few.surface.sigma if name == "mean_gap" else exact.mean(few, name, [h])[0]
+            expected = h * few.surface.sigma if name == "gap_to_summits" else exact.mean(few, name, [h])[0]
             assert float(row["theory"]) == pytest.approx(expected, rel=1e-8)
         half = (float(row["high_95"]) - float(row["low_95"])) / 2
         assert float(row["low_95"]) + half == pytest.approx(float(row["mean"]), rel=1e-9)

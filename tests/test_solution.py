@@ -276,9 +276,13 @@ def test_the_mean_gap(spectral, reference, make_scene):
         name = "nominal_separation" if reference == "mean-plane" else "separation"
         for values in (found.theory, found.surfaces):
             expected = scene.surface.sigma * values[name] + rise
-            np.testing.assert_allclose(values["mean_gap"], expected, rtol=1e-12)
-        assert "mean_gap" in repr(found)
-    assert ("from the mean plane of the surface" in solutions_text(scene, solved, full=True)) == spectral
+            np.testing.assert_allclose(values[scene.gap], expected, rtol=1e-12)
+            assert ("mean_gap" in values, "gap_to_summits" in values) == (spectral, not spectral)
+        assert scene.gap in repr(found)
+    assert scene.gap == ("mean_gap" if spectral else "gap_to_summits")
+    told = solutions_text(scene, solved, full=True)
+    assert ("gap between the mean planes of the surfaces" in told) == spectral
+    assert ("gap to the mean plane of the summits" in told) != spectral
 
 
 def test_notes_are_about_the_load_and_not_the_scenes_separations(make_scene, tmp_path, capsys):
@@ -290,8 +294,9 @@ def test_notes_are_about_the_load_and_not_the_scenes_separations(make_scene, tmp
         told = capsys.readouterr()
         notes = [line for line in told.err.splitlines() if line.startswith("mcgw: note: ")]
         assert any("more than half of all asperities touch" in line for line in notes) == crowded, notes
-        assert "mean gap from the mean plane of the summits" in told.out
-        assert "mean_gap" in told.out
+        assert "gap to the mean plane of the summits" in told.out
+        assert "gap_to_summits" in told.out
+        assert "mean_gap" not in told.out
 
 
 def test_specimens_follow_the_exact_law_of_the_separation(make_scene):
@@ -306,8 +311,8 @@ def test_specimens_follow_the_exact_law_of_the_separation(make_scene):
     ends = found.specimens("separation", 0.5)
     assert found.separation_law.cdf(np.array(ends)) == pytest.approx([0.25, 0.75], abs=1e-9)
     sigma, h = few.surface.sigma, found.theory["separation"]
-    gaps = found.theory["mean_gap"] + sigma * (np.array(ends) - h)
-    assert found.specimens("mean_gap", 0.5) == pytest.approx(gaps, rel=1e-12)
+    gaps = found.theory["gap_to_summits"] + sigma * (np.array(ends) - h)
+    assert found.specimens("gap_to_summits", 0.5) == pytest.approx(gaps, rel=1e-12)
     assert found.specimens("area") == tuple(np.quantile(found.surfaces["area"], [0.05, 0.95]))
     felt = replace(found, scene=few.replace(interaction=mcgw.Interaction("body")))
     assert felt.separation_law.ppf(0.3) == pytest.approx(found.separation_law.ppf(0.3), rel=1e-12)

@@ -186,7 +186,7 @@ def test_what_is_told_belongs_to_the_law():
     scene = mcgw.Scene(SURFACE, separations=0.0, law=law, n_surfaces=3, seed=1)
     found = mcgw.solve(scene, pressure="1 MPa")
     assert list(found.theory) == [
-        "separation", "mean_gap", "load", "area", "stiffness", "contacts", "conductance", "load_slope",
+        "separation", "gap_to_summits", "load", "area", "stiffness", "contacts", "conductance", "load_slope",
         "yielded",
     ]  # fmt: skip
     assert 0 < found.theory["yielded"] < found.theory["contacts"]
@@ -194,10 +194,7 @@ def test_what_is_told_belongs_to_the_law():
     for asked in (scene, scene.replace(unload_from="loop", separations=(0.0, 1.0))):
         text = solutions_text(asked, [found], full=True)
         assert ("from first contact; unloading is not included" in text) == (asked is not scene)
-        assert (
-            "specimens: 3 surfaces of 300 asperities, seed 1; mean gap from the mean plane of the summits"
-            in text
-        )
+        assert "specimens: 3 surfaces of 300 asperities, seed 1; gap to the mean plane of the summits" in text
     plain = mcgw.solve(scene.replace(law=mcgw.Hertz()), pressure="1 MPa")
     assert len(plain.theory) == 7
     assert plain.theory["separation"] > found.theory["separation"]

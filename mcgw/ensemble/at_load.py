@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from analytic import QUANTITIES, SEPARATIONS, Nayak, Quantity, quantity_of
+from analytic import QUANTITIES, SEPARATIONS, Quantity, quantity_of
 from analytic.arrays import Array
 from analytic.laws.elastic_plastic import ElasticPlastic
 from mcgw.ensemble.ensemble import Ensemble
@@ -16,6 +16,7 @@ from mcgw.ensemble.simulation import simulate
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.scene import Scene, drawn_by
 
+GAPS = ("mean_gap", "gap_to_summits")  # m: see `answers_at`
 NEGATIVE = (
     "{} = {:g} {}: {} reaches it only with asperities of negative modulus, at s = {:.4g}; give less, "
     'or set negative = "clip" or "allow" under [grading]'
@@ -53,8 +54,9 @@ def quantities_at(scene: Scene) -> tuple[str, ...]:
 def answers_at(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
     """Answers of a surface of the scene whose asperities, at a given load, have these sums.
 
-    They include "mean_gap", m: the distance of the rigid plane from the mean plane of the surface, or from
-    that of its summits where the scene does not know the other. With asperity interaction it is the effective
+    They include "mean_gap", m: the distance of the rigid plane from the mean plane of the surface, which
+    Nayak's heights, a fit or `joint.rms` tell; where nothing does, it is "gap_to_summits", to the mean plane
+    of the summits. With asperity interaction it is the effective
     separation, or the nominal one if that is measured from the mean plane itself
     (`reference = "mean-plane"`). Where current or heat is conducted, conductances per area and resistances
     are included.
@@ -64,9 +66,9 @@ def answers_at(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
 
         found = at_loads(scene, found)
     h = found["nominal_separation" if scene.from_mean_plane else "separation"]
-    gap = scene.surface.sigma * (h + (rise_of_summits(scene) or 0.0))
+    gap = scene.surface.sigma * (h + (scene.rise or 0.0))
     ahead = {name: found[name] for name in found if name in ("separation", *SEPARATIONS)}
-    return {**ahead, "mean_gap": gap, **found, **_conducted(scene, found)}
+    return {**ahead, scene.gap: gap, **found, **_conducted(scene, found)}
 
 
 def _conducted(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
@@ -85,12 +87,6 @@ def _conducted(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
         answers[name] = np.divide(1.0, whole * area)
         answers["specific_contact_resistance"] = np.divide(1.0, answers["contact_conductance"])
     return answers
-
-
-def rise_of_summits(scene: Scene) -> float | None:
-    """Height of the mean plane of the summits above that of the surface, over sigma; None if unknown."""
-    heights = scene.heights
-    return heights.mean / heights.std if isinstance(heights, Nayak) else None
 
 
 def at_pressures(ensemble: Ensemble, pressures: Array, quantities: tuple[str, ...]) -> dict[str, Array]:

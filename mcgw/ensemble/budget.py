@@ -12,6 +12,7 @@ import numpy as np
 
 from analytic import Nayak, RandomCurvature, SpectralMoments
 from analytic.arrays import Array
+from mcgw.ensemble.at_load import GAPS
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
 from mcgw.scene.measured import Uncertainty
@@ -26,7 +27,8 @@ _SURE = 1.96  # standard deviations on either side that hold 95 %
 _LARGE = 0.2  # share of an answer
 _STEP = 1e-3  # step of ln(parameter): a central difference has a relative error of 1e-6
 # Measured error of each answer. A conductance has that of stiffness: Barber (2003), Proc. R. Soc. A 459.
-_ERROR_OF = {"area": "area", "stiffness": "stiffness", "conductance": "stiffness", "mean_gap": "separation"}
+_ERROR_OF = {"area": "area", "stiffness": "stiffness", "conductance": "stiffness"}
+_ERROR_OF |= dict.fromkeys(GAPS, "separation")
 _LOWERED = {
     "drawn surfaces": "draw more surfaces",
     "specimens": "use a larger nominal area or several specimens",
@@ -226,4 +228,4 @@ def _model_error(validity: Validity, name: str, scene: Scene, value: float) -> f
     if name not in _ERROR_OF:
         return math.nan
     error = float(validity.error[_ERROR_OF[name]][0])
-    return error * scene.surface.sigma / abs(value) if name == "mean_gap" else error
+    return error * scene.surface.sigma / abs(value) if name in GAPS else error

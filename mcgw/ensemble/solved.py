@@ -10,7 +10,7 @@ from scipy.special import stdtrit
 
 from analytic import SEPARATIONS, quantity_of
 from analytic.arrays import Array
-from mcgw.ensemble.at_load import asperities_of, mean_surface
+from mcgw.ensemble.at_load import GAPS, asperities_of, mean_surface
 from mcgw.ensemble.intervals import FEWEST, MANY, interval_column, laws_are_quick
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
@@ -40,7 +40,8 @@ class Solution(Shown):
     theory : dict of str to float
         "separation" (d/sigma) and every quantity (SI) of the mean surface, on loading.
         With asperity interaction the separation is the effective one, and "nominal_separation" is given as
-        well. "mean_gap" is the distance of the mean planes, m: see `answers_at`.
+        well. "mean_gap" is the distance of the mean planes of the surfaces, m; where they are not known there
+        is "gap_to_summits" instead: see `answers_at`.
     surfaces : dict of str to ndarray
         The same for every surface at its own separation, shape (surfaces,).
     drawn : Scene
@@ -130,11 +131,11 @@ class Solution(Shown):
         quantiles of the surfaces drawn.
         """
         ends = np.array([(1 - share) / 2, (1 + share) / 2])
-        nominal = name == "nominal_separation" or (name == "mean_gap" and self.scene.interaction is not None)
+        nominal = name == "nominal_separation" or (name in GAPS and self.scene.interaction is not None)
         moved = self.given == "load" or not nominal  # from the separation, by the same on all surfaces
-        exact = name in ("separation", "mean_gap", *SEPARATIONS) and moved
+        exact = name in ("separation", *GAPS, *SEPARATIONS) and moved
         if exact and (law := self.told_by) is not None:
-            unit = self.scene.surface.sigma if name == "mean_gap" else 1.0
+            unit = self.scene.surface.sigma if name in GAPS else 1.0
             if share not in self._ends:
                 self._ends[share] = law.ppf(ends)
             low, high = self.theory[name] + unit * (self._ends[share] - self.theory["separation"])
@@ -212,7 +213,7 @@ class Solution(Shown):
         Parameters
         ----------
         quantity : str
-            "area", "stiffness", "conductance" or "mean_gap".
+            "area", "stiffness", "conductance", "mean_gap" or "gap_to_summits".
 
         Returns
         -------
@@ -248,7 +249,7 @@ class Solution(Shown):
 
     def table(self) -> Table:
         """Theory beside the mean over the surfaces, a row for each quantity."""
-        units = {"mean_gap": "m", "separation": "sigma", **dict.fromkeys(SEPARATIONS, "sigma")}
+        units = {**dict.fromkeys(GAPS, "m"), "separation": "sigma", **dict.fromkeys(SEPARATIONS, "sigma")}
         names = list(self.surfaces)
         low, high = np.array([self.interval(name) for name in names]).T
         found = [self.surfaces[name] for name in names]

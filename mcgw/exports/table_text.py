@@ -6,7 +6,6 @@ from importlib.metadata import PackageNotFoundError, version
 
 import numpy as np
 
-from analytic import Nayak
 from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.exports.curves import Curve, Kind
@@ -88,8 +87,8 @@ def _zero(scene: Scene, system: UnitSystem) -> list[str]:
     """Name the plane from which gaps are measured."""
     factor, unit = system.length
     lines = ["gap d: from the rigid plane to the mean plane of the summits"]
-    if isinstance(scene.heights, Nayak):
-        rise = factor * scene.surface.sigma * scene.heights.mean / scene.heights.std
+    if scene.rise is not None:
+        rise = factor * scene.surface.sigma * scene.rise
         lines.append(f"(from the mean plane of the surface it is larger by {rise:.9e} {unit})")
     if scene.interaction is not None:
         felt = (

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from analytic import Hertz
-from mcgw.ensemble.at_load import at_pressures, common_pressures, mean_surface, rise_of_summits
+from mcgw.ensemble.at_load import at_pressures, common_pressures, mean_surface
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.labelled import statistics_table
 from mcgw.ensemble.solved import Solution
@@ -103,8 +103,8 @@ def solution_of(scene: Scene, first: Ensemble) -> Solution | None:
     if any(np.isnan(values).any() for values in surfaces.values()):
         return None
     if scene.interaction is None:
-        gap = scene.surface.sigma * (surfaces["separation"] + (rise_of_summits(scene) or 0.0))
-        surfaces = {"mean_gap": gap, **surfaces}
+        gap = scene.surface.sigma * (surfaces["separation"] + (scene.rise or 0.0))
+        surfaces = {scene.gap: gap, **surfaces}
     elif scene.nominal:
         surfaces["nominal_separation"] = surfaces.pop("separation")
     load = pressure * scene.surface.nominal_area

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from mcgw.ensemble.at_load import rise_of_summits
+from mcgw.ensemble.at_load import GAPS
 from mcgw.ensemble.intervals import MANY
 from mcgw.ensemble.solved import Solution, against_elasticity
 from mcgw.formats.table import SEPARATION, Column, Table, joined
@@ -14,6 +14,10 @@ from mcgw.scene.scene import Scene
 from mcgw.scene.validity import percent
 
 _SHOWN = ("contact law", "film", "interaction", "joint")  # what of the contacts counts at a given load
+_GAP = {
+    "mean_gap": "mean gap between the mean planes of the surfaces",
+    "gap_to_summits": "gap to the mean plane of the summits",
+}
 _LINES = 2  # loads that the news names one by one
 # Left out of the short table; all but the first only where a film gives the conductance in SI units.
 _VARIANTS = ("load_slope", "conductance", "conductance_si", "specific_contact_resistance")
@@ -86,7 +90,7 @@ def _by_load(scene: Scene, solutions: Sequence[Solution]) -> Table:
     h = Column("separation", [x.theory["separation"] for x in solutions], SEPARATION, form=".3f")
     columns = [given, h]
     for k, name in enumerate(budgets[0].quantities):
-        unit = "m" if name == "mean_gap" else scene.quantity(name).unit
+        unit = "m" if name in GAPS else scene.quantity(name).unit
         error = Column("error", [budget.all[k] for budget in budgets], form=".1%")
         values = [x.theory[name] for x in solutions]
         words = name.replace("_", " ")
@@ -111,8 +115,7 @@ def _background(scene: Scene, solutions: Sequence[Solution]) -> list[str]:
     """What is meant by the numbers."""
     ways = ", drawn from the measured ones" if scene.as_measured else ""
     many = f"{solutions[0].drawn.n_surfaces} surfaces of {scene.n_asperities:g} asperities{ways}"
-    plane = "summits" if rise_of_summits(scene) is None else "surface"
-    lines = [f"specimens: {many}, seed {scene.seed}; mean gap from the mean plane of the {plane}"]
+    lines = [f"specimens: {many}, seed {scene.seed}; {_GAP[scene.gap]}"]
     if any(x.theory["contacts"] < MANY for x in solutions):
         lines.append("few contacts: finite surfaces differ from the theory of an infinite one beyond noise")
     if scene.unload_from is not None:

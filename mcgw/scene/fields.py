@@ -96,6 +96,20 @@ class Fields(Values):
         filled: Gap = self.joint.gap(self.surface, self.heights, moments)
         return filled
 
+    @cached_property
+    def rise(self) -> float | None:
+        """Height of the mean plane of the summits above that of the surface, over sigma; None if unknown."""
+        from analytic.joint import rise_of_summits  # few ask
+
+        moments = None if self.fitted is None else self.fitted.moments
+        rms = None if self.joint is None else self.joint.rms
+        return rise_of_summits(self.surface, self.heights, moments, rms)
+
+    @property
+    def gap(self) -> str:
+        """The name of its gap: between the mean planes of the surfaces, or to that of the summits."""
+        return "gap_to_summits" if self.rise is None else "mean_gap"
+
     def quantity(self, name: str) -> analytic.Quantity:
         """A quantity with its unit in this scene, which conducts heat or current."""
         q = analytic.quantity_of(name)
