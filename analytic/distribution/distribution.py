@@ -11,11 +11,11 @@ from numpy.typing import ArrayLike
 from analytic.arrays import Array, hold
 
 _NARROW = 1e-9  # of the table: cells that have no density to be told
-_LINEAR = 1e-7  # what shares that are linear between neighbours may be off by
 _FAR = 1e100  # beyond all sums
 _LEAST = 1e-60  # below all sums but 0
-_SAFE = 3.0  # times what two computations differ by: their errors may have one sign
-_SHARES = np.array([1e-6, 1e-4, 0.001, 0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99, 0.999, 1 - 1e-4, 1 - 1e-6])
+_SAFE = 5.0  # times what two computations differ by: their errors may have one sign
+_SHARES = np.geomspace(1e-9, 0.5, 60)
+_NEIGHBOURS = 5  # on either side
 _SCIPY = 1e-14
 
 
@@ -170,10 +170,7 @@ class Table(Law):
     def error_at(self, y: ArrayLike) -> Array:
         """Return a relative error bound of the smaller one of cdf and sf, from the second computation."""
         y = np.asarray(y, dtype=np.float64)
-        (below, above), (lower, upper) = self._shares(y), self._other._shares(y)
-        apart = np.where(below < above, np.abs(below - lower), np.abs(above - upper))
-        with np.errstate(divide="ignore", invalid="ignore"):
-            found = (_SAFE * apart + self.rounding) / np.minimum(below, above) + _LINEAR
+        found = np.maximum(self._apart(y), np.interp(y, *self._near))
         beyond = ((y < self.x[0]) & (y >= self.ends[0])) | ((y > self.x[-1]) & (y < self.ends[1]))
         known = (y < self.ends[0]) | (y >= self.ends[1])
         return np.where(known, 0.0, np.where(beyond, 1.0, found))[()]
@@ -181,11 +178,37 @@ class Table(Law):
     @property
     def error(self) -> float:
         """Error bound of `cdf`, from the second computation."""
-        x = np.concatenate([self.ppf(_SHARES), np.linspace(self.ppf(_SHARES[1]), self.ppf(_SHARES[-2]), 99)])
-        x = x[np.isfinite(x)]
-        return float(
-            _SAFE * np.abs(self.cdf(x) - self._other.cdf(x)).max(initial=0.0) + _LINEAR + self.rounding
+        below, above = self._shares(self._places)
+        return float(np.max(self._apart(self._places) * np.minimum(below, above), initial=self.rounding))
+
+    def _apart(self, y: Array) -> Array:
+        """Relative error bound by the second computation at these values alone."""
+        (below, above), (lower, upper) = self._shares(y), self._other._shares(y)
+        apart = np.where(below < above, np.abs(below - lower), np.abs(above - upper))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray((_SAFE * apart + self._bend(y) + self.rounding) / np.minimum(below, above))
+
+    @cached_property
+    def _places(self) -> Array:
+        """Values over the whole table."""
+        x = np.concatenate(
+            [self.ppf(_SHARES), self.isf(_SHARES), np.linspace(self.x[0], self.x[-1], _SHARES.size)]
         )
+        return np.unique(x[np.minimum(*self._shares(x)) > self.rounding])
+
+    @cached_property
+    def _near(self) -> tuple[Array, Array]:
+        """Those values, and the largest bound in the neighbourhood: differences pass through 0."""
+        x = self._places
+        bounds = np.pad(self._apart(x), _NEIGHBOURS, "edge")
+        return x, np.lib.stride_tricks.sliding_window_view(bounds, 2 * _NEIGHBOURS + 1).max(axis=1)
+
+    def _bend(self, y: Array) -> Array:
+        """What shares may be off by that are linear between neighbours: twice a turning density's."""
+        _, shares, widths = self._cells
+        wide = widths > _NARROW * (self.x[-1] - self.x[0])
+        turned = np.diff(shares[wide] / widths[wide], append=0.0) * widths[wide] / 4
+        return np.asarray(np.interp(y, self.x[1:][wide], np.abs(turned)))
 
     @cached_property
     def _other(self) -> "Table":

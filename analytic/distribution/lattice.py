@@ -23,6 +23,7 @@ _RARE = 1e-3  # asperities on a surface that add more than usual ones
 _WIDER, _NARROWER, _LEVELS = 8, 16, 6
 _SMOOTH, _DIED = 1e3, 45.0  # mean over standard deviation of sums without steps; logarithm of their transform
 _RESOLVED = 5.0  # lattice points in a standard deviation of the usual sums
+_PLAIN = 8  # lattice points to the median of the values, of which half are resolved
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +103,11 @@ class OneAsperity:
         variance = float(p @ x**2) - (0.0 if self.poisson else mean**2)
         return self.number * mean, float(np.sqrt(self.number * max(variance, 0.0))), float(x[-1])
 
+    @cached_property
+    def median(self) -> float:
+        """What half of the asperities that touch add."""
+        return float(np.interp(self.share / 2, self.upto, self.places))
+
     def below(self, x: Array) -> tuple[Array, Array]:
         """Shares of asperities that touch and add no more than some values, and that add more."""
         if self.stepped:
@@ -162,7 +168,7 @@ def masses(one: OneAsperity, width: float, points: int) -> tuple[Array, Array]:
     f[0] = -kept - lost  # so that many small values lose no digits
     q = np.fft.rfft(f)
     z = damping + 2j * np.pi / size * k[: q.size]
-    if one.few and not one.stepped and step < one.usual[1] / np.sqrt(one.number * one.share) / _RESOLVED:
+    if one.few and not one.stepped and step < abs(one.median) / _PLAIN:
         q = (q + one.share) / (np.sinh(z / 2) / (z / 2)) ** 2 - one.share  # shared by two neighbours
     log = one.number * (q if one.poisson else _log1p(q)) + z * first
     if one.few:
@@ -212,17 +218,18 @@ def shares(one: OneAsperity, points: int) -> tuple[Array, Array, Array]:
     lattices = []
     for width in one.widths(points):
         lattices.append(masses(one, width, points))
-        alone = one.alone * float(one.below(lattices[-1][0][-1])[1]) if one.few else 0.0
-        if rest - lattices[-1][1].sum() + alone < one.rounding:
+        x, p = lattices[-1]
+        larger = one.number * float(one.below((x[-1] - x[0]) / 2)[1])
+        if max(rest - p.sum(), larger) < one.rounding:
             break
     above = max(rest - float(lattices[-1][1].sum()), 0.0)
     parts = []
     for k in range(len(lattices))[::-1]:
         x, p = lattices[k]
-        more = above + np.cumsum(p[::-1])[::-1] - p / 2
+        more, bend = above + np.cumsum(p[::-1])[::-1] - p / 2, np.gradient(p) / 12  # Euler-Maclaurin
         end = lattices[k - 1][0][-1] if k else -np.inf
         above = float(np.interp(end, x, more) - lattices[k - 1][1][-1] / 2)
-        parts.append(np.stack([x, np.cumsum(p) - p / 2, more])[:, x > end])
+        parts.append(np.stack([x, np.cumsum(p) - p / 2 - bend, more + bend])[:, x > end])
     x, below, more = np.concatenate(parts[::-1], axis=1)
     if one.few:
         zero = np.array([-_NOTHING, 0.0])

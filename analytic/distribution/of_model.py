@@ -19,8 +19,10 @@ from analytic.quantities import quantity_of
 from analytic.summits import Radii
 
 _POINTS = 2**14, 5 * 2**12  # of a lattice, and of another one
-_CELLS = 4096, 5000  # of the heights, at least
-_FEW_WIDE, _MANY_WIDE, _MOST = 4000, 2, 64  # cells over a usual width; over a standard deviation; in a gap
+_CELLS = 4096, 8192  # of the heights, at least
+_FEW_WIDE, _MANY_WIDE = 20, 2000  # medians of the values, standard deviations of the sum, that cells divide
+_FAR_WIDE = 20  # of a value, in which are as many cells
+_MOST = 64  # a share of the cells in one gap of the rule
 _SCORES, _APART, _NONE, _SMALLEST, _TABLE = 6.0, 0.4, 1e-14, 1e-3, 8192
 _LEVEL = 1e-9
 _GAUSS = 0.5 - 0.5 / np.sqrt(3)  # the first of two points of a cell
@@ -66,11 +68,13 @@ def one_asperity(model: Any, quantity: str, h: float, cells: int, top: float = n
     one = of(x, p_of_x, (x, np.cumsum(p_of_x)))
     if listed or not one.values.size:
         return one
-    usual, std, largest = one.usual
+    std = one.usual[1]
     gaps = np.abs(np.diff(values, prepend=values[0]))
     gaps[(n * np.cumsum(p[::-1])[::-1] < _NEVER) | (values > top)] = 0.0
-    width = (usual + largest) / _FEW_WIDE if one.few else std / _MANY_WIDE
-    parts = np.clip(np.ceil(gaps / width), -(-cells // gaps.size), _MOST).astype(np.int64)
+    width = abs(one.median) * _FEW_WIDE / cells if one.few else std * _MANY_WIDE / cells
+    width = np.maximum(width, _FAR_WIDE / cells * np.abs(values))
+    parts = np.ceil(np.maximum(gaps / width, cells * p / one.share))
+    parts = np.clip(parts, -(-cells // p.size), cells // _MOST).astype(np.int64)
     radius = np.zeros(p.size, dtype=np.int64)
     if rule.ratios is not None:
         radius = np.append(0, np.cumsum(np.diff(rule.ratios) != 0))
