@@ -6,7 +6,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import make_interp_spline
 from scipy.special import ndtr, ndtri
 
 from analytic.arrays import Array
@@ -204,6 +203,8 @@ def _along(
     def score(y: float) -> float:
         below, above = (max(share, _NONE) for share in shares(y))
         return float(ndtri(below) if below < above else -ndtri(above))
+
+    from scipy.interpolate import make_interp_spline  # imports half of SciPy
 
     scores = {start: score(start)}
     for way in (-1, 1):
