@@ -53,7 +53,7 @@ Use the results:
 ``scene.validity()``     measured error of the model against elasticity
 `regrade`                another grading or contact law on the same surfaces; `paired_ratio` of both
 `solve`                  the separation at a load, pressure or area
-`export`                 tables for finite-element programs; `ContactTable`: one as a law
+`export`                 tables for finite-element programs, or as JSON
 `sweep`, `open_sweep`    many scenes on the same surfaces: means, differences, slopes
 `converge`, `tradeoff`   the statistical convergence test; error against time on this machine
 `elastic`                means of elastic surfaces, with errors, from few boundary-element solves
@@ -118,7 +118,6 @@ if TYPE_CHECKING:
     from mcgw.ensemble.simulation import simulate as simulate
     from mcgw.ensemble.solution import solve as solve
     from mcgw.errors import RunError as RunError, StoreError as StoreError
-    from mcgw.exports.contact_table import ContactTable as ContactTable
     from mcgw.exports.writing import export as export
     from mcgw.jobs.merging import merge as merge
     from mcgw.jobs.running import run as run
@@ -159,7 +158,6 @@ _HOMES = {
     "mcgw.ensemble.simulation": "simulate",
     "mcgw.ensemble.solution": "solve",
     "mcgw.errors": "RunError StoreError",
-    "mcgw.exports.contact_table": "ContactTable",
     "mcgw.exports.writing": "export",
     "mcgw.jobs.merging": "merge",
     "mcgw.jobs.running": "run",

@@ -22,12 +22,10 @@ CELLS, PHYSICS, ANSWERS = THEORY, CATEGORIES[2], MONTE_CARLO  # as dark, middle 
 
 
 def from_the_catalogue():
-    """Equal separation against equal load, who yields, and the laws side by side, from `mcgw figures`."""
+    """Equal separation against equal load, from `mcgw figures`."""
     scene = mcgw.load_scene(HERE / "demo.toml").replace(n_surfaces=200)
-    found = dict(figures_of(Compared(scene, swept=True)))
-    found["equal-load"] = replace(found["equal-load"], panels=found["equal-load"].panels[:2])
-    for name in ("equal-load", "who-yields", "laws-compared"):
-        save_figure(draw(found[name]), FOLDER / f"{name}.png", dpi=110)
+    data = dict(figures_of(Compared(scene, swept=True), ["equal-load"]))["equal-load"]
+    save_figure(draw(replace(data, panels=data.panels[:2])), FOLDER / "equal-load.png", dpi=110)
 
 
 def how_it_works():

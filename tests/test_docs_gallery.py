@@ -120,6 +120,20 @@ def test_ra_for_sigma():
     assert says("ra_for_sigma", "here by up to six times")
 
 
+@pytest.mark.parametrize(("pressure", "more"), [(1e4, 1.2), (1e7, 1.4)])
+def test_laws_of_yielding(pressure, more):
+    hertz, metal = analytic.Model(SURFACE), {"poisson": 0.33}
+    laws = (
+        analytic.laws.KogutEtsion(hardness=1.2e9, **metal),
+        analytic.laws.JacksonGreen(yield_strength=0.43e9, **metal),
+    )
+    models = hertz, *(analytic.Model(SURFACE, law=law) for law in laws)
+    elastic, kogut, jackson = (m.mean("area", m.separation_at("pressure", pressure)) for m in models)
+    assert jackson / kogut == pytest.approx(more, abs=0.05)
+    assert 5.5 < kogut / elastic < jackson / elastic < 11.5
+    assert says("laws_compared", "is a fifth to two fifths larger than Kogut and Etsion's")
+
+
 def test_sliding():
     """Nine tenths of the friction are reached within some tenths of a micrometre, by summing over heights."""
     model = analytic.Model(SURFACE)

@@ -1,6 +1,7 @@
 """Gap conductance of a gas: check values of Yovanovich's integral, limits, and whose heights count."""
 
 import itertools
+import json
 import math
 import re
 
@@ -400,8 +401,10 @@ def test_exports_of_a_joint(to, ending, tmp_path):
     assert (y[1:] > 2 * spots).all(), "spots alone are something else"
     assert "joint: air" in text
     mcgw.export(mcgw.simulate(scene), tmp_path / "j.json", to="json")
-    law = mcgw.ContactTable.read(tmp_path / "j.json")
-    np.testing.assert_allclose(law.conductance, mcgw.simulate(scene).mean("joint_conductance"), rtol=1e-12)
+    table = json.loads((tmp_path / "j.json").read_text())
+    np.testing.assert_allclose(
+        table["conductance"], mcgw.simulate(scene).mean("joint_conductance"), rtol=1e-12
+    )
     if to != "calculix":
         mcgw.export(scene, tmp_path / name, to=to, table="conductance-gap", points=3)
         gap = (tmp_path / name).read_text()

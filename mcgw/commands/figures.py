@@ -30,14 +30,14 @@ def execute(args: argparse.Namespace) -> int:
     """Write each figure and say where it is."""
     from mcgw.commands.outputs import CSV, Output, check_outputs, figure_format
     from mcgw.commands.voice import details, news
-    from mcgw.figures.catalogue import figures_of, of_paper, rows_of
+    from mcgw.figures.catalogue import CATALOGUE, figures_of, of_paper
     from mcgw.figures.compared import Compared
     from mcgw.figures.panels import figure_files, save_figure_files
     from mcgw.scene.scene_file import files_of, load_scene
 
     compared = Compared(load_scene(args.scene)) if args.scene else of_paper()
     compared.asked.ask_theory()
-    names = [row.name for row in rows_of(compared)]
+    names = [row.name for row in CATALOGUE]
     if args.list:
         print(*names, sep="\n")
         return 0

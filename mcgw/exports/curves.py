@@ -24,7 +24,7 @@ class Kind:
     name : str
         Its name: quantity and argument.
     quantity : {"pressure", "conductance", "stiffness", "contact", "conducting"}
-        The tabulated quantity; the last two stand for all columns of a `ContactTable`.
+        The tabulated quantity; the last two stand for all columns of a contact table as JSON.
     against : {"gap", "pressure"}
         Its argument.
     """

@@ -1,5 +1,6 @@
 """``mcgw.export``: write a table, one file for each curve and one for all."""
 
+import json
 from collections.abc import Sequence
 from dataclasses import replace
 from hashlib import sha256
@@ -11,7 +12,7 @@ import numpy as np
 from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.simulation import simulate
-from mcgw.exports.contact_table import ContactTable
+from mcgw.exports.contact_table import contact_table
 from mcgw.exports.curves import CONDUCTING, CONTACT, KINDS, Kind, curves_of
 from mcgw.exports.programs import PROGRAMS, Program, check_name
 from mcgw.exports.table_text import UNIT_SYSTEMS, UnitSystem, all_curves, heading, in_units, table_text
@@ -54,8 +55,7 @@ def export(
         Of the table of means; those of quantiles lie beside it, such as ``NAME.q05.inp``, and all
         together as ``NAME.all.csv``.
     to : {"calculix", "abaqus", "moose", "comsol", "json"}
-        The program; "json": one file with everything in SI units, which `mcgw.ContactTable.read` turns
-        into a law.
+        The program; "json": one file with everything in SI units, for any other.
     table : {"pressure-gap", "conductance-pressure", "conductance-gap", "stiffness-pressure"}
         What is tabulated, against what. Stiffness and conductance are per nominal area;
         conductance is that of the joint, where the scene has one.
@@ -141,7 +141,8 @@ def _contact_table(
     scene = source if isinstance(source, Scene) else source.scene
     conducts = scene.film is not None and (scene is source or "conductance_si" in scene.quantities)
     ensemble = _drawn(source, CONDUCTING if conducts else CONTACT, pressures, points)
-    ContactTable.of(ensemble, digest).write(path)
+    text = json.dumps(contact_table(ensemble, digest), indent=1, allow_nan=False)
+    write_whole(path, [text.encode()])
     return path
 
 

@@ -6,8 +6,8 @@ from importlib.resources import files
 
 import numpy as np
 
-from mcgw.figures import contact_laws, populations, ratios
-from mcgw.figures.compared import SCENE, Compared
+from mcgw.figures import populations, ratios
+from mcgw.figures.compared import Compared
 from mcgw.figures.data import FigureData
 from mcgw.machine.progress import steps
 from mcgw.scene.scene_file import scene_from
@@ -27,14 +27,11 @@ class Row:
         Computes its numbers from the scenes.
     needs : tuple of callables, optional
         Requirements: each returns what is missing, or nothing.
-    sweep : bool, optional
-        Whether it is of a sweep over gamma alone.
     """
 
     name: str
     draw: Callable[[Compared], FigureData]
     needs: tuple[Callable[[Compared], str], ...] = ()
-    sweep: bool = False
 
     def lacking(self, f: Compared) -> str:
         """Say why the figure has no meaning for a scene, or nothing."""
@@ -70,17 +67,6 @@ def _several(f: Compared) -> str:
     return "" if f.scene.n_surfaces > 1 else "there is only one surface"
 
 
-def _yielding(f: Compared) -> str:
-    law = f.scene.law
-    yields = f.swept or (not law.elastic and np.any(f.theory(SCENE, "yielded", f.line)))
-    return "" if yields else f"nothing yields under contact.law = {law.name!r}"
-
-
-def _released(f: Compared) -> str:
-    released = f.swept or f.asked.unload_from is not None
-    return "" if released else "the scene is not unloaded: contact.unload_from is not set"
-
-
 CATALOGUE = (
     Row("figure-1", ratios.gradings, (_grading,)),
     Row("figure-2", ratios.load),
@@ -90,15 +76,7 @@ CATALOGUE = (
     Row("figure-6", ratios.stiffness_ratios, (_reference,)),
     Row("equal-load", ratios.equal_load, (_reference, _pressing, _same_load)),
     Row("fluctuations", populations.fluctuations, (_several,)),
-    Row("distribution", populations.distribution, sweep=True),
     Row("area-and-load", ratios.area_and_load, (_pressing,)),
-    Row("who-carries", populations.carriers, sweep=True),
-    Row("negative-modulus", populations.negative_modulus, sweep=True),
-    Row("who-yields", contact_laws.who_yields, (_yielding, _pressing)),
-    Row("laws-compared", contact_laws.laws_compared, sweep=True),
-    Row("way-back", contact_laws.way_back, (_released,)),
-    Row("sliding", contact_laws.sliding, sweep=True),
-    Row("films", contact_laws.films, sweep=True),
 )
 
 
@@ -106,11 +84,6 @@ def of_paper() -> Compared:
     """Take the paper's surfaces, those of the preset ``demo``."""
     text = (files("mcgw.scene") / "presets" / "demo.toml").read_text(encoding="utf-8")
     return Compared(scene_from(text).replace(n_surfaces=_SURFACES), swept=True)
-
-
-def rows_of(f: Compared) -> list[Row]:
-    """Pick the rows that a scene or a sweep has."""
-    return [row for row in CATALOGUE if f.swept or not row.sweep]
 
 
 def figures_of(f: Compared, only: Collection[str] = ()) -> Iterator[tuple[str, FigureData | str]]:
@@ -128,5 +101,5 @@ def figures_of(f: Compared, only: Collection[str] = ()) -> Iterator[tuple[str, F
     (str, FigureData or str)
         Name of a figure, and its numbers, or why it has no meaning for this scene.
     """
-    for row in steps([row for row in rows_of(f) if not only or row.name in only], "figures"):
+    for row in steps([row for row in CATALOGUE if not only or row.name in only], "figures"):
         yield row.name, row.lacking(f) or replace(row.draw(f), name=row.name)

@@ -9,7 +9,6 @@ import numpy as np
 
 from analytic import QUANTITIES, Exponential, Hertz, Homogeneous, MeasuredHeights, Model
 from analytic.arrays import Array, Marks
-from analytic.laws import ContactLaw
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.regrading import regrade
 from mcgw.ensemble.simulation import simulate
@@ -17,7 +16,6 @@ from mcgw.figures.data import Estimate, Points
 from mcgw.figures.style import contact_label, short
 from mcgw.formats.table import evenly
 from mcgw.sampling.asperities import heights
-from mcgw.sampling.direct import asperity_sums
 from mcgw.scene.in_words import law_text
 from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
@@ -143,11 +141,10 @@ class Compared:
     def _kept(self) -> dict[Any, Any]:
         return {}
 
-    def model(self, gamma: float = 1.0, **changes: Any) -> Model:
-        """Theory of the surfaces of a sweep, with another grading and contact."""
-        grading = Homogeneous() if gamma == 1 else Exponential(gamma)
+    def model(self, gamma: float) -> Model:
+        """Theory of the surfaces of a sweep, with another grading."""
         model: Model = self.scene.theory
-        return replace(model, grading=grading, **changes)
+        return replace(model, grading=Homogeneous() if gamma == 1 else Exponential(gamma))
 
     def theory(self, key: str | float, quantity: str, h: Array) -> Array:
         """Exact means for a label or, in a sweep, a gamma, each computed once."""
@@ -188,14 +185,6 @@ class Compared:
             lowest = _LOWEST if self.swept else scene.separations
             scene = scene.replace(sampler="tail", keep="sums", separations=lowest)
         return tuple(heights(scene, k) for k in range(min(self.most_listed, scene.n_surfaces, room)))
-
-    def sums(self, law: ContactLaw, h: Array, **asked: Any) -> dict[str, Array]:
-        """Sums over each listed surface under a law, at separations above the lowest listed height."""
-        asked = {"quantities": ("load", "area")} | asked
-        number, seed = self.scene.n_asperities, self.scene.seed
-        scene = Scene(self.scene.surface, separations=h, law=law, n_asperities=number, seed=seed, **asked)
-        every = np.concatenate(self.listed)
-        return asperity_sums(scene, np.array([len(s) for s in self.listed]), every, np.ones(len(every)))
 
     def enough(self, scene: Scene) -> Marks:
         """Separations where the ensemble has enough contacts and surfaces for an error."""

@@ -1,15 +1,12 @@
-"""How contacts, and surfaces, of one population differ: moduli, who carries the load, scatter."""
-
-from itertools import pairwise
+"""How contacts, and surfaces, of one population differ: moduli and scatter."""
 
 import numpy as np
 
-import analytic
 from analytic import Exponential, Grading, mean_modulus
 from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.simulation import simulate
-from mcgw.figures.compared import ENOUGH, SCENE, Compared, of_gamma
+from mcgw.figures.compared import ENOUGH, SCENE, Compared
 from mcgw.figures.data import GAMMA, SEPARATION, Estimate, FigureData, Panel, Points, Series, ratio_of_sums
 from mcgw.figures.ratios import over_gamma
 from mcgw.figures.style import power_of_ten
@@ -88,60 +85,6 @@ def _drawn(f: Compared, weight: str, modulus: Grading, h: Array) -> Estimate:
     return ratio_of_sums(above, below)
 
 
-def carriers(f: Compared) -> FigureData:
-    """Show modulus and share of the load, by height."""
-    h, s = 1.0, np.linspace(0, 4, 161)
-    edges = np.arange(1.0, 4.01, 0.25)
-    centre = (edges[1:] + edges[:-1]) / 2
-    moduli, shares = [], []
-    for gamma in (2.0, 1.0, 0.2):
-        e, label = Exponential(gamma), of_gamma(gamma)
-        moduli.append(Series(label, s, e(s)))
-        mean, stderr = _shares(f.listed, h, e, edges)
-        exact = [float(analytic.fn_between(1.5, h, a, b, e)) for a, b in pairwise(edges)]
-        points = Points(centre, mean / 0.25, stderr / 0.25, np.array(exact) / 0.25)
-        above = np.maximum(s - h, 0.0)
-        density = above**1.5 * e(s) * np.exp(-s * s / 2) / np.sqrt(2 * np.pi) / analytic.fn(1.5, h, e)
-        shares.append(Series(label, s, density, points))
-    return FigureData(
-        "Which summits carry the load, at d/σ = 1",
-        f"Shares in bins of 0.25 σ. {f.listed_caption}",
-        (
-            Panel("a  modulus", "summit height s = z/σ", "E*(s)/E*", tuple(moduli)),
-            Panel("b  share of the load", "summit height s = z/σ", "share per σ", tuple(shares)),
-        ),
-        columns=1,
-    )
-
-
-def _shares(listed: tuple[Array, ...], h: float, e: Grading, edges: Array) -> Estimate:
-    """Share of the load in each bin of height."""
-    rows, totals = [], []
-    for s in listed:
-        s = s[s > h]
-        loads = (s - h) ** 1.5 * e(s)
-        rows.append(np.histogram(s, edges, weights=loads)[0])
-        totals.append(loads.sum())
-    return ratio_of_sums(np.array(rows), np.array(totals)[:, None])
-
-
-def negative_modulus(_: Compared) -> FigureData:
-    """Show the heights where the exponential grading is below zero."""
-    end = 4.0
-    above, below = np.linspace(1.02, end, 150), np.linspace(-2, -0.02, 100)
-    low, high = -np.log(above / (above - 1)), np.log(1 + 1 / np.abs(below))
-    series = (
-        Series("negative below this height", above, low, band=(np.full_like(low, -end), low)),
-        Series("negative above this height", below, high, band=(high, np.full_like(high, end))),
-    )
-    return FigureData(
-        "Where the modulus turns negative (shaded)",
-        "Exponential grading. A scene whose contacts reach the shaded heights needs "
-        'negative = "clip" or "allow". γ from 0 to 1 is safe at every height; γ > 1 from d/σ = 0 up. Theory.',
-        (Panel("", GAMMA, "summit height s = z/σ", series, ylim=(-end, end)),),
-    )
-
-
 def fluctuations(f: Compared) -> FigureData:
     """Show the standard deviation over the mean: of a sweep from a hundred asperities to a million."""
     if not f.swept:
@@ -191,38 +134,3 @@ def spread(x: Array, h: Array, exact: Array) -> Points | None:
     z = (x - mean) / std
     influence = std / mean * ((z**2 - 1) / 2 - z * std / mean)
     return Points(h, std / np.abs(mean), influence.std(axis=0) / np.sqrt(len(x)), exact)
-
-
-def distribution(f: Compared) -> FigureData:
-    """Show the law of the load at light contact: exact, Gaussian, drawn."""
-    panels = tuple(_load_panel(f, key, contacts) for key, contacts in (("a", 5.0), ("b", 50.0), ("c", 500.0)))
-    return FigureData(
-        "Load of one finite surface at light contact (d/σ = 2.5)",
-        f"Homogeneous; 100 000 surfaces, seed {f.scene.seed}. Gaussian: of the same mean and "
-        "std. Markers: share of the surfaces in bins of a quarter of the std, over their width.",
-        panels,
-    )
-
-
-def _load_panel(f: Compared, key: str, contacts: float) -> Panel:
-    h, m = 2.5, 100_000
-    n = round(contacts / float(f.scene.heights.sf(np.array(h))))
-    scene = f.scene.replace(keep="sums", separations=h, quantities=("load",), n_asperities=n, n_surfaces=m)
-    law = scene.theory.distribution("load", h)
-    mean, std = law.mean(), law.std()
-    width, top = std / 4, mean + 5 * std
-    edges = np.arange(max(width * round((mean - 4 * std) / width), width), top, width)
-    share, p = np.histogram(simulate(scene).load[:, 0], edges)[0] / m, np.diff(law.cdf(edges))
-    often = p * m >= 25  # a bin with fewer has no symmetric interval
-    share, p, centre = share[often], p[often], ((edges[1:] + edges[:-1]) / 2)[often] / mean
-    each = width / mean
-    points = Points(centre, share / each, np.sqrt(p * (1 - p) / m) / each, p / each)
-    fine = np.linspace(max(0.0, 2 * mean - top), top, 201)
-    bell = np.exp(-(((fine - mean) / std) ** 2) / 2) / np.sqrt(2 * np.pi) * mean / std
-    none = f"; no contact: {law.atom:.1%}" if contacts < 10 else ""
-    return Panel(
-        f"{key}  {contacts:g} contacts{none}",
-        r"load over its mean, $P/\langle P\rangle$",
-        "probability density",
-        (Series("exact", centre, p / each, points), Series("Gaussian", fine / mean, bell)),
-    )
