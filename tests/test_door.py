@@ -33,7 +33,7 @@ e = mcgw.run(scene, "demo.h5")                            # in a file: goes on, 
 e                                                         # at most a dozen lines; a table in a notebook
 e["load"], e.load, e.mean("pressure"), e.interval("area_fraction")
 e.to_xarray(), e.to_dataframe()
-mcgw.compare(e), mcgw.regrade(e, mcgw.Exponential(1.2)), mcgw.solve(scene, pressure="1 MPa"), mcgw.converge(scene), mcgw.tradeoff(scene), mcgw.fit("map.x3p", cutoff="5 um")
+mcgw.compare(e), mcgw.regrade(e, mcgw.Exponential(1.2)), mcgw.solve(scene, pressure="1 MPa"), mcgw.converge(scene), mcgw.tradeoff(scene), mcgw.fit("map.h5", cutoff="5 um")
 scene.replace(nominal_area="10 cm^2")                     # N follows, unless it was given
 mcgw.Scene(surface, separations=2.0, grading=lambda s: 1 + 0.3*np.tanh(s), heights=scipy.stats.lognorm(0.3))  # any callable, any frozen scipy law; files hold it too
 scene.theory.mean("load", h)                              # the exact model of this very scene
@@ -42,17 +42,17 @@ scene.theory.mean("load", h)                              # the exact model of t
 
 @pytest.fixture
 def map_file(tmp_path, monkeypatch):
-    """A folder with ``map.x3p``, and a study that takes a second, of two ways."""
+    """A folder with ``map.h5``, and a study that takes a second, of two ways."""
     spectrum = spectrum_from("rms=1um,long=100um,short=8um")
     z = gaussian_map(spectrum, (256, 256), (1e-6, 1e-6), np.random.default_rng(1))
-    write_map(z, tmp_path / "map.x3p")
+    write_map(z, tmp_path / "map.h5")
     monkeypatch.chdir(tmp_path)
     every = tradeoff.methods_for
     monkeypatch.setattr(tradeoff, "SECONDS", 1.0)
     monkeypatch.setattr(tradeoff, "methods_for", lambda *asked: every(*asked)[:2])
 
 
-STUDIES = ', mcgw.converge(scene), mcgw.tradeoff(scene), mcgw.fit("map.x3p", cutoff="5 um")'
+STUDIES = ', mcgw.converge(scene), mcgw.tradeoff(scene), mcgw.fit("map.h5", cutoff="5 um")'
 SMALL = NOTEBOOK.replace(STUDIES, "").replace("4, 41", "4, 5").replace("=1000", "=100")
 SMALL = SMALL.replace("seed=1)", "seed=1, n_surfaces=100)")
 
@@ -225,12 +225,12 @@ CALLS = [
      r"^load = -1\.0: give a finite number > 0 in N, such as 5N"),
     (lambda: mcgw.tradeoff(scene(), seconds="1 m"),
      r"^seconds = '1 m': give a finite number > 0 in s, such as 90 s"),
-    (lambda: mcgw.fit("map.x3p", cutoff="5 N"), r"^cutoff = '5 N': give a finite number > 0 in m"),
-    (lambda: mcgw.fit("map.x3p", cutoff=None, form="x"),
+    (lambda: mcgw.fit("map.h5", cutoff="5 N"), r"^cutoff = '5 N': give a finite number > 0 in m"),
+    (lambda: mcgw.fit("map.h5", cutoff=None, form="x"),
      r"^form = 'x': choose one of plane, none, quadratic, cubic, quartic, sphere, cylinder$"),
-    (lambda: mcgw.fit("map.x3p", cutoff=None, parts=1), r"^parts = 1: give a whole number >= 2$"),
-    (lambda: mcgw.fit("map.x3p", cutoff=None, pixel=-1), r"^pixel = -1: give a finite number > 0 in m"),
-    (lambda: mcgw.fit("absent.x3p", cutoff=None), r"^absent\.x3p: no such file$"),
+    (lambda: mcgw.fit("map.h5", cutoff=None, parts=1), r"^parts = 1: give a whole number >= 2$"),
+    (lambda: mcgw.fit("map.h5", cutoff=None, pixel=-1), r"^pixel = -1: give a finite number > 0 in m"),
+    (lambda: mcgw.fit("absent.h5", cutoff=None), r"^absent\.h5: no such file$"),
 ]  # fmt: skip
 
 

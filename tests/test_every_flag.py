@@ -51,8 +51,8 @@ def material(tmp_path_factory):
     (folder / "t.csv").write_text("s,ratio\n0.0,1.0\n1.0,3.0\n")
     scene = mcgw.load_scene(folder / "s.toml")
     run(dataclasses.replace(scene, keep="moments"), folder / "e.h5")
-    assert main(["surface", *SPECTRUM, "--seed", "3", "-o", str(folder / "map.sdf")]) == 0
-    z = read_map(folder / "map.sdf").heights
+    assert main(["surface", *SPECTRUM, "--seed", "3", "-o", str(folder / "map.h5")]) == 0
+    z = read_map(folder / "map.h5").heights
     np.save(folder / "bare.npy", z)
     holes, spiked, stepped = z.copy(), z.copy(), z.copy()
     lined = z + 2e-7 * np.random.default_rng(9).normal(size=(len(z), 1))
@@ -123,7 +123,7 @@ def refuses(text):
     return check
 
 
-def map_of(said, name="m.sdf"):
+def map_of(said, name="m.h5"):
     assert said.code == 0, said.err
     return read_map(said.folder / name)
 
@@ -280,10 +280,10 @@ GRADED = "@e.h5 -o a.h5 --law power-law-graded --k 0.5 --c0 1um"
 COATED = "@e.h5 -o a.h5 --law coated --thickness 1um --ratio 2"
 AS_IS = "@e.h5 --gamma 1 -o a.h5"
 INP, OF_SCENE = "@e.h5 --to abaqus -o a.inp", "@s.toml --to abaqus -o a.inp"
-MAP = "@s.toml --shape 200 -o m.sdf"
+MAP = "@s.toml --shape 200 -o m.h5"
 HDF = "@s.toml --shape 200 -o m.h5"
-GAUSS = "--from-spectrum rms=1um,long=30um,short=6um --shape 128 --pixel 1um -o m.sdf"
-FIT = "@map.sdf --cutoff none -o f.toml"
+GAUSS = "--from-spectrum rms=1um,long=30um,short=6um --shape 128 --pixel 1um -o m.h5"
+FIT = "@map.h5 --cutoff none -o f.toml"
 
 # Command, option, its words without the option, with it ("+": after those, the last of two counts), and what
 # that must change.
@@ -381,11 +381,11 @@ ROWS = [
     ("export", "--units", INP, "+ --units mm-N-s", in_mm),
     ("report", "--output", "@e.h5 -o a.html", "@e.h5 -o b.html", writes("b.html", instead=["a.html"])),
     ("surface", "--surface", HDF, "+ --surface 7", surface_is_the_seventh),
-    ("surface", "--shape", "@s.toml --shape 50 -o m.sdf", "@s.toml --shape 60x40 -o m.sdf", shape_is(40, 60)),
+    ("surface", "--shape", "@s.toml --shape 50 -o m.h5", "@s.toml --shape 60x40 -o m.h5", shape_is(40, 60)),
     ("surface", "--shape", GAUSS, "+ --shape 128x100", shape_is(100, 128)),
     ("surface", "--width", MAP, "+ --width 2mm", width_is_2_mm),
     ("surface", "--periodic", MAP, "+ --periodic", edges_are_joined),
-    ("surface", "--at", MAP, "@s.toml -o m.png --at 1", writes("m.png", instead=["m.sdf"])),
+    ("surface", "--at", MAP, "@s.toml -o m.png --at 1", writes("m.png", instead=["m.h5"])),
     ("surface", "--at", MAP, "@s.toml -o m.png --at 1", says(" contacts, ")),
     ("surface", "--from-spectrum", GAUSS, "+ --from-spectrum rms=3um,long=30um,short=6um",
      heights_are_three_times_those),
@@ -395,8 +395,8 @@ ROWS = [
     ("surface", "SCENE", GAUSS, f"@s.toml {GAUSS}", refuses("a map without asperities; leave out SCENE")),
     ("surface", "--at", GAUSS, "+ --at 1", refuses("a map without asperities; leave out")),
     ("surface", "--width", MAP, "+ --width -1mm", refuses("--width = '-1mm': give a number > 0")),
-    ("surface", "--output", MAP, "@s.toml --shape 200 -o n.x3p", writes("n.x3p", instead=["m.sdf"])),
-    ("fit", "--cutoff", FIT, "@map.sdf --cutoff 10um -o f.toml", fitted(lambda a, b: b.eta < 0.8 * a.eta)),
+    ("surface", "--output", MAP, "@s.toml --shape 200 -o n.npy", writes("n.npy", instead=["m.h5"])),
+    ("fit", "--cutoff", FIT, "@map.h5 --cutoff 10um -o f.toml", fitted(lambda a, b: b.eta < 0.8 * a.eta)),
     ("fit", "--form", FIT, "+ --form quadratic", fitted(lambda a, b: b.sigma < a.sigma)),
     ("fit", "--pixel", FIT, "@bare.npy --cutoff none -o f.toml --pixel 2um",
      fitted(lambda a, b: b.eta == pytest.approx(a.eta / 4, rel=1e-6))),
@@ -424,7 +424,7 @@ ROWS = [
     ("fit", "--tiles", FIT, "+ --tiles t.csv", writes("t.csv")),
     ("fit", "--profile", "@bare.npy --cutoff none -o f.toml --pixel 1um", "+ --profile",
      refuses("holds 2 dimensions")),
-    ("fit", "--output", FIT, "@map.sdf --cutoff none -o g.toml", writes("g.toml", instead=["f.toml"])),
+    ("fit", "--output", FIT, "@map.h5 --cutoff none -o g.toml", writes("g.toml", instead=["f.toml"])),
 ]  # fmt: skip
 
 # Options whose commands take long, or need several calls: by tests of their own below.
@@ -506,7 +506,7 @@ ENDS = [
     ("solve @s.toml --pressure 1MPa --scatter ", "99%", "100%"),
     ("solve @s.toml --pressure 1MPa --scatter ", "1%", "0%"),
     (
-        "surface --from-spectrum rms=1um,long=20um,short=5um --pixel 1um --shape 32 -o m.sdf --seed ",
+        "surface --from-spectrum rms=1um,long=20um,short=5um --pixel 1um --shape 32 -o m.h5 --seed ",
         "0",
         "-1",
     ),

@@ -37,7 +37,7 @@ WORDS = {
     "export": "export moments.toml --to abaqus -o new/x.inp",
     "figures": "figures --scene moments.toml -o new",
     "report": "report e.h5 -o new/r.html",
-    "surface": "surface moments.toml --shape 16 -o new/m.sdf",
+    "surface": "surface moments.toml --shape 16 -o new/m.h5",
     "fit": "fit map.npy --cutoff none -o new/f.toml",
     "elastic": "elastic moments.toml --pressure 1MPa -o new/e.jsonl",
     "warm": "warm",

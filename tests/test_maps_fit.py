@@ -50,7 +50,7 @@ def caps(overlap, number, pixels, seed=2):
 
 def fitted(tmp_path_factory, *arguments):
     topography, field, truth = caps(*arguments)
-    path = tmp_path_factory.mktemp("caps") / "map.sdf"
+    path = tmp_path_factory.mktemp("caps") / "map.h5"
     write_map(topography, path)
     return SimpleNamespace(path=path, field=field, truth=truth, fit=mcgw.fit(topography, cutoff=None))
 
@@ -139,9 +139,9 @@ def test_overlap_is_that_of_the_estimate_that_is_used(crowded, tmp_path, capsys)
     assert fit.best == "summits"
     assert fit.estimates["summits"].overlap < 0.05 < fit.estimates["caps"].overlap
     assert not {"overlap", "blur"} & words(fit)
-    write_map(map_, tmp_path / "m.sdf")
+    write_map(map_, tmp_path / "m.h5")
     for use, named in (("auto", False), ("caps", True)):
-        words_of = ["fit", str(tmp_path / "m.sdf"), "--cutoff", "none", "--use", use]
+        words_of = ["fit", str(tmp_path / "m.h5"), "--cutoff", "none", "--use", use]
         assert main([*words_of, "-o", str(tmp_path / "s.toml")]) == 0
         assert ("overlap:" in capsys.readouterr().err) == named
     wide = gaussian_map(Spectrum(1e-6, 200e-6, 8e-6), (256, 256), PIXEL, rng(1))

@@ -152,13 +152,13 @@ def test_the_largest_map_fits_two_gigabytes(tmp_path):
     """4096 x 4096 points of 1e6 asperities; some of them by all caps. `runs/bench/maps.py` times it."""
     scene = mcgw.load_scene(RUNS / "homogeneous.toml").replace(n_asperities=10**6)
     (tmp_path / "scene.toml").write_text(scene_text(scene))
-    command = ["surface", str(tmp_path / "scene.toml"), "--shape", "4096", "-o", str(tmp_path / "map.sdf")]
+    command = ["surface", str(tmp_path / "scene.toml"), "--shape", "4096", "-o", str(tmp_path / "map.h5")]
     # In a process of its own: what other tests took before does not count.
     code = "import resource, sys; from mcgw.cli import main; assert main(sys.argv[1:]) == 0; "
     code += "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"
     done = subprocess.run([sys.executable, "-c", code, *command], capture_output=True, text=True, check=True)
     assert int(done.stdout.split()[-1]) < 2e6
-    found = read_map(tmp_path / "map.sdf")
+    found = read_map(tmp_path / "map.h5")
     assert found.heights.shape == (4096, 4096)
     field = asperities_of(mcgw.load_scene(tmp_path / "scene.toml"), 0)
     pixel = field.size[0] / 4096
@@ -221,18 +221,18 @@ def test_the_contact_map_is_drawn(name, tmp_path, capsys):
 
 @pytest.mark.parametrize(("arguments", "told"), [
     (["SCENE", "-o", "map.tiff"], "a map is written there"),
-    (["SCENE", "-o", "map.sdf", "--at", "1"], "a figure is written there"),
+    (["SCENE", "-o", "map.h5", "--at", "1"], "a figure is written there"),
     (["SCENE", "-o", "map.png", "--at", "99"], "there is no contact"),
-    (["SCENE", "-o", "map.sdf", "--surface", "1000000"], "surfaces 0 to"),
-    (["SCENE", "-o", "map.sdf", "--shape", "1x"], "--shape"),
-    (["SCENE", "-o", "map.sdf", "--shape", "99999"], "more than the"),
-    (["SCENE", "-o", "map.sdf", "--width", "far"], "--width = 'far': give a number > 0 with its unit"),
-    (["-o", "map.sdf"], "SCENE"),
-    (["-o", "map.sdf", "--from-spectrum", "rms=1um,long=1um,short=9um", "--pixel", "1um"], "below long"),
-    (["-o", "map.sdf", "--from-spectrum", "m0=1,m2=1,m4=1", "--pixel", "1um"], "above 1.5"),
-    (["-o", "map.sdf", "--from-spectrum", "rms=1um", "--pixel", "1um"], "give rms, long and short"),
-    (["-o", "map.sdf", "--from-spectrum", "height=1um", "--pixel", "1um"], "give rms, long"),
-    (["-o", "map.sdf", "--from-spectrum", "rms=1um,long=90um,short=9um"], "--pixel"),
+    (["SCENE", "-o", "map.h5", "--surface", "1000000"], "surfaces 0 to"),
+    (["SCENE", "-o", "map.h5", "--shape", "1x"], "--shape"),
+    (["SCENE", "-o", "map.h5", "--shape", "99999"], "more than the"),
+    (["SCENE", "-o", "map.h5", "--width", "far"], "--width = 'far': give a number > 0 with its unit"),
+    (["-o", "map.h5"], "SCENE"),
+    (["-o", "map.h5", "--from-spectrum", "rms=1um,long=1um,short=9um", "--pixel", "1um"], "below long"),
+    (["-o", "map.h5", "--from-spectrum", "m0=1,m2=1,m4=1", "--pixel", "1um"], "above 1.5"),
+    (["-o", "map.h5", "--from-spectrum", "rms=1um", "--pixel", "1um"], "give rms, long and short"),
+    (["-o", "map.h5", "--from-spectrum", "height=1um", "--pixel", "1um"], "give rms, long"),
+    (["-o", "map.h5", "--from-spectrum", "rms=1um,long=90um,short=9um"], "--pixel"),
 ])  # fmt: skip
 def test_mistakes_are_told_in_one_line_and_nothing_is_written(arguments, told, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)

@@ -99,7 +99,7 @@ def test_the_very_summits_carry_what_they_carry_literally(fit, tmp_path):
 def test_from_map_to_verdict(tmp_path, without_caps):
     """At one separation of the scene that is written: the theory of own radii takes its time for each."""
     spectrum = "rms=1um,long=60um,short=12um"
-    path, scene = (str(tmp_path / name) for name in ("map.sdf", "scene.toml"))
+    path, scene = (str(tmp_path / name) for name in ("map.h5", "scene.toml"))
     assert main(["surface", "--from-spectrum", spectrum, "--pixel", "1um", "--shape", "128", "-o", path]) == 0
     assert main(["fit", path, "--cutoff", "none", "--heights", "nayak", "-o", scene]) == 0
     read = mcgw.load_scene(scene)

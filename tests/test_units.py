@@ -143,8 +143,8 @@ def test_every_dimensional_key_of_a_scene_takes_a_text():
 # Command, and what it is of: without the option it is right, but for solve and the cutoff.
 OPTIONS = [
     ("solve s.toml --pressure", "Pa"), ("solve s.toml --load", "N"), ("solve s.toml --area-fraction", "1"),
-    ("surface s.toml -o m.sdf --width", "m"),
-    ("surface --from-spectrum rms=1um,long=9um,short=1um -o m.sdf --pixel", "m"),
+    ("surface s.toml -o m.h5 --width", "m"),
+    ("surface --from-spectrum rms=1um,long=9um,short=1um -o m.h5 --pixel", "m"),
     ("fit map.npy -o f.toml --cutoff", "m"), ("fit map.npy -o f.toml --cutoff none --pixel", "m"),
     ("fit map.npy -o f.toml --cutoff none --E-star", "Pa"), ("tradeoff s.toml -o t --seconds", "s"),
 ]  # fmt: skip

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     Fitted = tuple[Fit | ProfileFit, list[str], Callable[[], None]]  # printed, and written to the scene
 
 HELP = "fit summit density, radius and spread to a measured height map, and write a scene"
-EXAMPLE = "mcgw fit map.sdf --cutoff 5um -o fitted.toml"
+EXAMPLE = "mcgw fit map.h5 --cutoff 5um -o fitted.toml"
 E_STAR = "100 GPa"  # default
 
 
@@ -24,8 +24,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
     parser.add_argument(
         "map", type=Path, nargs="+", metavar="MAP",
-        help="SDF, X3P, .npy, .h5 or text; or profiles of one surface (text with x and z), recognised by "
-            "their shape",
+        help=".npy, .h5 or text (SDF, X3P, ... with the extra maps); or profiles of one surface (text with x "
+            "and z), recognised by their shape",
     )  # fmt: skip
     parser.add_argument("--profile", action="store_true", help="read each file as a profile")
     for step in STEPS:

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from mcgw.scene.scene import Scene
 
 HELP = "write one surface of an ensemble, or a Gaussian map, as a height map"
-EXAMPLE = "mcgw surface runs/demo.toml --surface 3 -o map.sdf"
+EXAMPLE = "mcgw surface runs/demo.toml --surface 3 -o map.h5"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -43,7 +43,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=int, default=0, help="seed of a Gaussian map; default: 0")
     parser.add_argument(
         "-o", "--output", type=Path, required=True, metavar="FILE",
-        help="file ending in .sdf, .ascii.sdf, .x3p, .npy or .h5; with --at in .png, .svg or .pdf",
+        help="file ending in .npy, .h5, .sdf or .ascii.sdf; with --at in .png, .svg or .pdf",
     )  # fmt: skip
 
 

@@ -38,7 +38,7 @@ def fit(
     Parameters
     ----------
     heights : str, Path, Topography or Profile
-        A file (SDF, X3P, .npy, .h5, text, or whatever SurfaceTopography reads), or a map in memory; or
+        A file (.npy, .h5, text; SDF, X3P and all that SurfaceTopography reads), or a map in memory; or
         profiles, one or a list: text of x and z, or any file that holds heights along a line.
     cutoff : float, str or None
         Shortest wavelength of the roughness (Gaussian filter, ISO 16610-61), m or text such as "5 um";

@@ -1,29 +1,25 @@
-"""Maps in the many formats that SurfaceTopography reads, where it is installed.
+"""Maps and profiles in the many formats that SurfaceTopography reads, where it is installed.
 
-Its readers believe what a file declares, so they work in a process of their own, with as much memory and time
-as a file of that size may take: ``python -m mcgw.maps.foreign FILE HEIGHTS WHAT MEMORY`` writes heights to a
-``.npy`` file and tells the rest as JSON.
+Its readers believe what a file declares, so a file passes the gate first (`mcgw.formats.gate`), and what a
+reader has found is bounded by the size of the file before any height is read. It is imported once, in this
+process, by the first file that needs it.
 """
 
-import json
-import sys
-from contextlib import suppress
+import warnings
+import zipfile
 from importlib.util import find_spec
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
+import h5py
 import numpy as np
 
 from analytic.arrays import Array
-from mcgw.formats.named_files import open_npy
-from mcgw.machine.child_process import ChildError, limit_memory, run_child
+from mcgw.formats.gate import check_archive, open_h5
 from mcgw.maps.topography import Topography, checked_shape, height_unit
 
-_HEIGHTS = "heights.npy"
-_MOST_TEXT = 2**28  # bytes
-_MEMORY, _A_BYTE = 2**30, 64  # bytes of address space of the child; and for each byte of the file
-_SECONDS, _BYTES_A_SECOND = 60.0, 1e6
+_MOST_TEXT = 2**26  # bytes of a text, which it takes in whole
+_MAGIC = 64  # bytes that tell a text
 
 
 class ForeignError(ValueError):
@@ -35,7 +31,7 @@ class UnreadableError(ValueError):
 
 
 def read_foreign(path: Path, pixel: tuple[float, float] | None = None, unit: str | None = None) -> Topography:
-    """Read a map by SurfaceTopography; text with decimal commas too.
+    """Read a map by SurfaceTopography: the first channel of heights.
 
     Parameters
     ----------
@@ -49,23 +45,26 @@ def read_foreign(path: Path, pixel: tuple[float, float] | None = None, unit: str
     Raises
     ------
     ValueError
-        If it is not installed or cannot read the file, or the file holds a profile, or tells another unit
-        or the size of a pixel that was given, or none that was not.
+        If it is not installed or cannot read the file, or the file holds a profile or no heights, or tells
+        another unit or the size of a pixel that was given, or none that was not.
     """
-    with TemporaryDirectory() as folder:
-        found = _read(path, Path(folder))
-        if found["dim"] != 2:
-            raise ValueError(f"{path}: is a profile along a line; a map has rows and columns")
-        metre, assumed = height_unit(path, found["unit"], unit)  # the unit also of x and y
-        told = found["pixel"]
-        if told and pixel is not None:
-            raise ValueError(f"{path}: gives the size of a pixel; leave --pixel out")
-        if not told and pixel is None:
-            raise ValueError(f"{path}: does not give the size of a pixel; give --pixel")
-        dx, dy = pixel or (p * metre for p in told)
-        z = np.array(open_npy(Path(folder) / _HEIGHTS), dtype=np.float64, order="C")
-    z *= metre
-    return Topography(z, (dx, dy), found["periodic"], assumed)
+    channel = _channel(path)
+    if channel.dim != 2:
+        raise ValueError(f"{path}: is a profile along a line; a map has rows and columns")
+    told = channel.physical_sizes is not None
+    if told and pixel is not None:
+        raise ValueError(f"{path}: gives the size of a pixel; leave --pixel out")
+    if not told and pixel is None:
+        raise ValueError(f"{path}: does not give the size of a pixel; give --pixel")
+    metre, assumed = height_unit(path, _unit(channel), unit)  # the unit also of x and y
+    columns, rows = _points(path, channel)
+    found = _heights_of(path, channel, {} if told else {"physical_sizes": (columns, rows)})
+    z = np.ma.filled(np.ma.masked_invalid(found.heights()), np.nan).T
+    checked_shape(*z.shape)
+    dx, dy = pixel or (float(p) * metre for p in found.pixel_size)
+    return Topography(
+        np.array(z, dtype=np.float64, order="C") * metre, (dx, dy), bool(found.is_periodic), assumed
+    )
 
 
 def read_foreign_line(path: Path, unit: str | None = None) -> tuple[Array, Array, str]:
@@ -76,106 +75,106 @@ def read_foreign_line(path: Path, unit: str | None = None) -> tuple[Array, Array
     ValueError
         If SurfaceTopography is not installed or cannot read the file, or the file holds a map.
     """
-    with TemporaryDirectory() as folder:
-        found = _read(path, Path(folder))
-        if found["dim"] != 1:
-            raise ValueError(f"{path}: is a map, not a profile; leave --profile out")
-        metre, assumed = height_unit(path, found["unit"], unit)
-        places, heights = np.array(open_npy(Path(folder) / _HEIGHTS), dtype=np.float64) * metre
+    channel = _channel(path)
+    if channel.dim != 1:
+        raise ValueError(f"{path}: is a map, not a profile; leave --profile out")
+    metre, assumed = height_unit(path, _unit(channel), unit)
+    _points(path, channel)
+    x, z = _heights_of(path, channel, {}).positions_and_heights()
+    checked_shape(1, x.size, held=path.stat().st_size)
+    places, heights = np.array([x, np.ma.filled(z, np.nan)], dtype=np.float64) * metre
     return places, heights, assumed
 
 
 def is_foreign_line(path: Path) -> bool:
     """Whether SurfaceTopography finds heights along a line in a file."""
-    with TemporaryDirectory() as folder:
-        return bool(_read(path, Path(folder), "kind")["dim"] == 1)
+    return bool(_channel(path).dim == 1)
 
 
-def _read(path: Path, folder: Path, what: str = "all") -> dict[str, Any]:
-    """Facts about a file, whose heights are written to a folder unless only its kind is wanted."""
+def check_foreign(path: Path) -> None:
+    """Refuse a file that leads out of itself, or unpacks to far more than it is, before a reader sees it.
+
+    Raises
+    ------
+    ValueError
+        As `mcgw.formats.gate` does; or if a text is longer than 64 MiB.
+    """
+    if h5py.is_hdf5(path):
+        try:
+            open_h5(path).close()
+        except OSError as error:
+            raise UnreadableError(f"{path}: is a damaged HDF5 file: {str(error)[:80]}") from None
+    elif zipfile.is_zipfile(path):
+        check_archive(path)
+    elif path.stat().st_size > _MOST_TEXT:
+        with open(path, "rb") as file:
+            start = file.read(_MAGIC)
+        if (
+            start.isascii()
+            and start.decode().replace("\t", " ").replace("\r", " ").replace("\n", " ").isprintable()
+        ):
+            raise UnreadableError(f"{path}: a text longer than {_MOST_TEXT} bytes; save it as .npy")
+
+
+def _channel(path: Path) -> Any:
+    """The first channel of heights, of which nothing but facts is read."""
     if find_spec("SurfaceTopography") is None:
         raise UnreadableError(
-            f"{path}: {path.suffix or 'no ending'} is not a known format; install SurfaceTopography (the "
-            "extra mcgw[maps]), or save it as SDF, X3P, .npy or text"
+            f"{path}: {path.suffix or 'no ending'} is read by SurfaceTopography, which is not installed (the "
+            "extra maps: pip install SurfaceTopography); or save it as .npy, .h5 of mcgw or text"
         )
-    try:
-        return _from_child(path, folder, what)
-    except UnreadableError as error:
-        points = _with_points(path, folder)
-        if points is not None:
-            with suppress(UnreadableError):
-                return _from_child(points, folder, what)
-        raise UnreadableError(f"{path}: SurfaceTopography cannot read it: {error}") from None
-
-
-def _from_child(path: Path, folder: Path, what: str) -> dict[str, Any]:
-    """Run the child process on a file and return its facts."""
-    size = path.stat().st_size
-    memory, seconds = _MEMORY + _A_BYTE * size, _SECONDS + size / _BYTES_A_SECOND
-    words = str(path), str(folder / _HEIGHTS), what, str(memory)
-    try:
-        said = run_child("mcgw.maps.foreign", *words, seconds=seconds)
-    except ChildError as error:
-        raise UnreadableError(f"reading it {error.how}") from None
-    found: dict[str, Any] = json.loads(said.splitlines()[-1])
-    if "refused" in found:
-        raise UnreadableError(found["refused"])
-    return found
-
-
-def _with_points(path: Path, folder: Path) -> Path | None:
-    """A copy of a text with points for decimal commas; None if it has none, or they mean something else."""
-    if path.stat().st_size > _MOST_TEXT:
-        return None
-    try:
-        text = path.read_text(encoding="utf-8")
-    except UnicodeDecodeError:
-        return None
-    if "," not in text or "." in text or "\0" in text:
-        return None
-    copy = folder / path.name
-    copy.write_text(text.replace(",", ".").replace(";", "\t"), encoding="utf-8")
-    return copy
-
-
-def _read_here(path: Path, heights: Path, what: str) -> dict[str, Any]:
-    """Facts about a file whose heights are written: rows of y from below; of a profile places and heights."""
+    check_foreign(path)
     from SurfaceTopography import open_topography  # type: ignore[import-not-found, import-untyped, unused-ignore]
 
-    channel, size = open_topography(str(path)).default_channel, path.stat().st_size
-    if what == "kind":
-        return {"dim": channel.dim}
-    if channel.dim == 1:
-        found = channel.topography()
-        x, z = found.positions_and_heights()
-        checked_shape(1, x.size, held=size)
-        np.save(heights, np.array([x, np.ma.filled(z, np.nan)], dtype=np.float64))
-        return {"dim": 1, "unit": None if found.unit is None else str(found.unit)}
-    columns, rows = (int(n) for n in channel.nb_grid_pts)
-    checked_shape(rows, columns, held=size)
-    told = channel.physical_sizes is not None
-    found = channel.topography(**({} if told else {"physical_sizes": (columns, rows)}))
-    checked_shape(*found.nb_grid_pts[::-1])
-    np.save(heights, np.ma.filled(np.ma.masked_invalid(found.heights()), np.nan).T)
-    return {
-        "dim": 2,
-        "unit": None if found.unit is None else str(found.unit),
-        "pixel": [float(p) for p in found.pixel_size] if told else None,
-        "periodic": bool(found.is_periodic),
-    }
-
-
-def _main(path: str, heights: str, what: str, memory: int) -> None:
-    memory = limit_memory(memory)
     try:
-        answer = _read_here(Path(path), Path(heights), what)
-    except MemoryError:
-        answer = {"refused": f"it may take {memory >> 20} MiB of memory, and it asks for more"}
-    except Exception as error:  # its readers raise many kinds of errors
-        answer = {"refused": " ".join(str(error).split())[:160] or type(error).__name__}
-    sys.stdout.write("\n" + json.dumps(answer) + "\n")
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            reader = open_topography(str(path))
+            channels = reader.height_channels
+            channel = channels[0] if channels else reader.default_channel
+            channel.dim, channel.nb_grid_pts, channel.physical_sizes  # noqa: B018  # tells damage here
+    except (Exception, RecursionError) as error:
+        raise _unreadable(path, error) from None
+    if not channels:
+        raise ValueError(
+            f"{path}: holds no heights: its channels are "
+            + ", ".join(f"{c.name} in {_data_unit(c)}" for c in reader.channels)[:120]
+        )
+    return channel
 
 
-if __name__ == "__main__":
-    _path, _heights, _what, _memory = sys.argv[1:]
-    _main(_path, _heights, _what, int(_memory))
+def _data_unit(channel: Any) -> str:
+    return str(channel.data_unit or channel.unit or "no unit")
+
+
+def _unit(channel: Any) -> str | None:
+    return None if channel.unit is None else str(channel.unit)
+
+
+def _points(path: Path, channel: Any) -> tuple[int, int]:
+    """Columns and rows, if a file of this size can hold them."""
+    points = tuple(int(n) for n in channel.nb_grid_pts)
+    columns, rows = points if len(points) == 2 else (*points, 1)
+    try:
+        checked_shape(rows, columns, held=path.stat().st_size)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
+    return columns, rows
+
+
+def _heights_of(path: Path, channel: Any, more: dict[str, Any]) -> Any:
+    """The topography of a channel."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return channel.topography(**more)
+    except (Exception, RecursionError) as error:
+        raise _unreadable(path, error) from None
+
+
+def _unreadable(path: Path, error: BaseException) -> UnreadableError:
+    """One line of an error of its readers, which raise many kinds."""
+    if isinstance(error, MemoryError):
+        return UnreadableError(f"{path}: needs more memory than there is")
+    said = " ".join(str(error).split())[:160] or type(error).__name__
+    return UnreadableError(f"{path}: SurfaceTopography cannot read it: {said}")

@@ -12,16 +12,14 @@ from mcgw.formats.gate import open_h5
 from mcgw.formats.named_files import loads_json, open_npy, read_bytes
 from mcgw.machine.terminal import one_line
 from mcgw.maps.foreign import ForeignError, UnreadableError, read_foreign
-from mcgw.maps.sdf import read_sdf, write_sdf
+from mcgw.maps.sdf import write_sdf
 from mcgw.maps.synthetic import Asperities
 from mcgw.maps.text_file import read_text
 from mcgw.maps.topography import STEEPEST, Topography, checked_shape, height_unit, single_points
-from mcgw.maps.x3p import read_x3p, write_x3p
 
 _FILETYPE = "mcgw-surface"
 _MOST_JSON = 2**16
-WRITTEN = (".sdf", ".ascii.sdf", ".x3p", ".npy", ".h5")
-_READERS = {".sdf": read_sdf, ".x3p": read_x3p}  # formats that contain the pixel size, with heights in m
+WRITTEN = (".npy", ".h5", ".sdf", ".ascii.sdf")
 _TEXT = (".txt", ".csv", ".asc", ".dat", ".tsv")
 
 
@@ -171,8 +169,6 @@ def write_map(
     match path.suffix.lower():
         case ".sdf":
             write_sdf(topography, path, text=path.name.lower().endswith(".ascii.sdf"))
-        case ".x3p":
-            write_x3p(topography, path)
         case ".npy":
             write_npy(topography, path)
         case ".h5":
@@ -188,7 +184,7 @@ def read_map(path: Path, *, pixel: tuple[float, float] | None = None, unit: str 
     Parameters
     ----------
     path : Path
-        SDF, X3P, ``.npy``, HDF5 of mcgw or text; any other goes to SurfaceTopography, where it is
+        ``.npy``, HDF5 of mcgw or text; any other (SDF, X3P, ...) goes to SurfaceTopography, where it is
         installed, whatever its ending.
     pixel : (float, float), optional
         Size of a pixel, m, for arrays and text that do not tell it.
@@ -230,9 +226,6 @@ def _read(path: Path, pixel: tuple[float, float] | None, unit: str | None) -> To
             return read_text(path, pixel, unit)
         if ending == ".h5":
             return _told(path, pixel, read_h5(path, unit))
-        if ending in _READERS:
-            height_unit(path, "m", unit)
-            return _told(path, pixel, _READERS[ending](path))
     except ForeignError as refused:
         return _otherwise(path, pixel, unit, refused)
     return read_foreign(path, pixel, unit)
