@@ -15,3 +15,8 @@ def hold(frozen: Any, **values: Any) -> None:
     """Give fields of a frozen object their values while it is made: the one place that can."""
     for name, value in values.items():
         object.__setattr__(frozen, name, value)
+
+
+def some_of(values: Array, which: NDArray[Any]) -> Array:
+    """Some of the values, by a mask or by numbers; those beyond the last begin again with the first."""
+    return np.asarray(values[which if which.dtype == np.bool_ else which % len(values)])

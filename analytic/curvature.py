@@ -117,6 +117,11 @@ class RandomCurvature:
         """Probability density of the curvature at given heights, broadcast."""
         return self._broadcast(lambda a, x: CurvatureGivenHeight(self.alpha, x).pdf(a), g, s)
 
+    def with_height(self, g: ArrayLike, s: ArrayLike) -> Array:
+        """Probability density of reduced heights and curvatures together, broadcast."""
+        found = self._broadcast(lambda a, x: CurvatureGivenHeight(self.alpha, x).with_height(a), g, s)
+        return self.heights.std * found
+
     def cdf(self, g: ArrayLike, s: ArrayLike) -> Array:
         """Probability of a smaller curvature, to full relative accuracy."""
         return self._broadcast(lambda a, x: CurvatureGivenHeight(self.alpha, x).between(0 * a, a), g, s)

@@ -72,6 +72,10 @@ class CurvatureGivenHeight:
         """Probability density at `g`, shape (n,)."""
         return g**3 * self._parts(g) / self._whole
 
+    def with_height(self, g: Array) -> Array:
+        """Probability density of the height and of a curvature `g` together, shape (n,)."""
+        return g**3 * self._parts(g) * self._tables.envelope(self.x) / math.sqrt(2 * math.pi / 3)
+
     def elasticity(self, g: Array) -> Array:
         """``d log(density)/d log(g)``."""
         v = self._v

@@ -77,6 +77,10 @@ class HeightRule:
         h = np.unique([*h, *(branch.lowest(h[0]) for branch in branches)])
         return cls(*law_rule(heights, h, grading, further=further), float(heights.cdf(h[0])))
 
+    def mean(self, f: Array) -> Array:
+        """Mean of each column of `f`, of what lies above the lowest separation; in this thread alone."""
+        return np.asarray(np.einsum("i,ij->j", self.probabilities, f))
+
     def fluctuations(self, f: Array, count: Count) -> "Fluctuations":
         """What makes sums of the columns of `f` fluctuate.
 
@@ -84,12 +88,12 @@ class HeightRule:
         almost every asperity contributes (nothing, or the same), so that a variance like 1e-89 keeps its
         digits; for a Poisson number the terms themselves.
         """
-        mean = self.probabilities @ f
+        mean = self.mean(f)
         if count == "poisson" or not self.heights.size:
             return Fluctuations(self, mean, f, np.zeros(f.shape[1]))
         usual = np.zeros(f.shape[1]) if self.below > 0.5 else f[np.argmax(self.probabilities)]
         shifted = f - usual
-        offset = self.probabilities @ shifted - self.below * usual
+        offset = self.mean(shifted) - self.below * usual
         return Fluctuations(self, mean, shifted - offset, -usual - offset)
 
     def terms(
@@ -150,7 +154,7 @@ class Fluctuations:
         """Mean of the `k`-th power, shape (columns,); infinite where there is none."""
         rule = self.rule
         powers = reduce(np.multiply, [self.at_heights] * k)  # ten times as fast as **
-        found = np.asarray(rule.probabilities @ powers + rule.below * self.below**k)
+        found = np.asarray(rule.mean(powers) + rule.below * self.below**k)
         return found if self.radius is None else np.where(k * self.radius < _DIVERGES, found, np.inf)
 
     def combined(self, mean: Array, own: Ints, factor: Array, other: Ints, press: Array) -> "Fluctuations":

@@ -66,7 +66,7 @@ class MeanContact:
         """
         q = quantity_of(quantity)
         if not q.unloading or self.ways.law.elastic:
-            return self._in_parts(h, q.base, partial(self._slope, q.base))
+            return self._in_parts(h, q.base, partial(self._slope, q.base)) + self._jumps(q.base, h)
         if q.base != "load":
             raise ValueError(f"quantity = {quantity!r}: its slope is not known; give 'load_unloading'")
         return q.exponent * self.mean("load_slope_unloading", h)
@@ -75,13 +75,18 @@ class MeanContact:
         """Heights, and radii, for integrals of what is added to these quantities at these separations."""
         return self.summits.rule(np.asarray(h, dtype=np.float64), self.grading, self.ways.among(quantities))
 
+    def prepare(self, h: Array, quantities: Sequence[str]) -> None:
+        """Make the rules of these separations together, where they are not made yet."""
+        self.summits.prepare(h, self.grading, self.ways.among(quantities))
+
     def separations_at(self, quantity: str, values: Array) -> Array:
         """Largest separations with given means, in the shape of `values`.
 
         Refused if the mean does not have a value where it can be told from 0, at h = -40 or above.
         """
         grid = self._grid(quantity)
-        about = self._in_parts(grid, None, partial(self._mean, quantity))
+        rough = self.rule(grid[:1], [])  # right to a percent, but in tails that this separation hardly needs
+        about = np.concatenate([self._mean(quantity, grid[k : k + 1], rough) for k in range(grid.size)])
         with np.errstate(divide="ignore", invalid="ignore"):
 
             def log_mean(h: ArrayLike) -> Array:
@@ -89,32 +94,27 @@ class MeanContact:
 
             return last_separations(log_mean, np.log(values), grid, np.log(about), quantity)
 
-    def _in_parts(
-        self, h: ArrayLike, quantity: str | None, function: Callable[[Array, HeightRule], Array]
-    ) -> Array:
-        """A few separations at a time, which share a rule: without a quantity one that is soon made.
-
-        That one is not cut where pieces of the law end: sums over it are right to a percent.
-        """
+    def _in_parts(self, h: ArrayLike, quantity: str, function: Callable[[Array, HeightRule], Array]) -> Array:
+        """A few separations at a time, which share a rule."""
         flat = np.ravel(np.asarray(h, dtype=np.float64))
         if not np.all(np.isfinite(flat)):
             raise ValueError("h: every separation must be finite")
         order = np.argsort(flat)
         result = np.empty(flat.size)
+        self.prepare(flat, [quantity])
         for k in range(0, flat.size, self.together):
             part = order[k : k + self.together]
-            rule = self.rule(flat[part], [quantity] if quantity else [])
-            result[part] = function(flat[part], rule)
+            result[part] = function(flat[part], self.rule(flat[part], [quantity]))
         return result.reshape(np.shape(h))
 
     def _mean(self, quantity: str, h: Array, rule: HeightRule) -> Array:
-        return np.asarray(rule.probabilities @ rule.terms([quantity], h, self.grading, self.ways))
+        return rule.mean(rule.terms([quantity], h, self.grading, self.ways))
 
     def _share(self, piece: int, h: Array, rule: HeightRule) -> Array:
         s, e, law = rule.heights, self.grading(rule.heights), self._ways_of(rule).law
         inside = np.stack([(s > x) & (piece_of(law, s - x, e) == piece) for x in h], axis=1)
         with np.errstate(invalid="ignore"):
-            return np.asarray(rule.probabilities @ inside / self._mean("contacts", h, rule))
+            return np.asarray(rule.mean(inside) / self._mean("contacts", h, rule))
 
     def _slope(self, quantity: str, h: Array, rule: HeightRule) -> Array:
         s, p = rule.heights, rule.probabilities
@@ -123,8 +123,19 @@ class MeanContact:
         if rule.ratios is not None:
             p = p * rule.ratios ** quantity_of(quantity).radius
         branch, e = self._ways_of(rule).loading, self.grading(s)
-        within = p @ np.stack([slope_term(quantity, branch, s - x, e) for x in h], axis=1)
-        return np.asarray(within + self.summits.jumps(quantity, self.ways.loading, self.grading, h, rule))
+        return np.array([np.sum(p * slope_term(quantity, branch, s - x, e)) for x in h])
+
+    def _jumps(self, quantity: str, h: ArrayLike) -> Array:
+        """What summits add to the slope by jumping, at separations of any shape."""
+        flat = np.ravel(np.asarray(h, dtype=np.float64))
+        if not flat.size:
+            return np.zeros(np.shape(h))
+        rules = (self.rule(x, [quantity]) for x in (flat.min(keepdims=True), flat.max(keepdims=True)))
+        s = np.concatenate([rule.heights for rule in rules])
+        if not s.size:
+            return np.zeros(np.shape(h))
+        found = self.summits.jumps(quantity, self.ways.loading, self.grading, flat, (s.min(), s.max()))
+        return np.broadcast_to(found, flat.shape).reshape(np.shape(h))
 
     def _ways_of(self, rule: HeightRule) -> Ways:
         """In units of each summit, where radii differ."""
@@ -175,6 +186,9 @@ class MeanPowers:
         if q.exponent >= 1:
             return q.exponent * fn(q.exponent - 1, h, self._grading(q), heights=self._heights(q))
         return replace(self.contact, summits=Summits(self._heights(q))).slope(q.base, h)
+
+    def prepare(self, h: Array, quantities: Sequence[str]) -> None:
+        """Do nothing: a rule of powers is soon made."""
 
     def rule(self, h: ArrayLike, quantities: Sequence[str]) -> HeightRule:  # noqa: ARG002 - the same for all
         """Heights, and radii, for integrals of powers at these separations."""

@@ -90,7 +90,9 @@ class Model(MeanModel):
     def cumulants(self, quantity: str, h: ArrayLike) -> Cumulants:
         """Mean, variance, skewness and excess kurtosis over surfaces, in the shape of `h`."""
         h = np.asarray(h, dtype=np.float64)
-        step = self._means(self._asked(quantity, h)).together
+        means = self._means(self._asked(quantity, h))
+        means.prepare(h.ravel(), [quantity])
+        step = means.together
         parts = np.split(h.ravel(), range(step, h.size, step)) if h.size else []
         rows = np.concatenate([np.empty((0, 4)), *(self._one_asperity(quantity, x) for x in parts)])
         k1, k2, k3, k4 = rows.reshape(*h.shape, 4).transpose(-1, *range(h.ndim))

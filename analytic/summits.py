@@ -26,10 +26,12 @@ from analytic.quantities import quantity_of
 from analytic.resolution import resolved_breaks
 
 Branches = tuple[Branch, ...]
+Ends = tuple[float, float]
 
 _HIGHEST = 1e-280  # share of heights above the highest separation that is looked at
 _NODES, _AS_WIDE = 64, 0.6  # points for curvatures, if their density bends over so many heights
 _PER_PIECE = 32  # points of a piece
+_TOGETHER = 3.0  # separations of so wide a range have the same radii
 _RAREST = 1e-18  # share of the touching heights above which curvatures are left out
 _KEPT = 4_000_000  # points of rules over heights and radii
 
@@ -72,34 +74,74 @@ class Radii:
         """Density of the heights of summits of some of the radii, with their weights."""
         own = np.empty(s.shape)
         bound = (which == self.curvatures.size - 1) & np.isfinite(self.law.largest)
-        own[bound] = self.law.cdf(self.curvatures[-1], s[bound])
-        own[~bound] = self.law.pdf(self.curvatures[which[~bound]], s[~bound])
-        return np.asarray(self.weights[which] * own * self.law.heights.pdf(s))
+        own[bound] = self.law.cdf(self.curvatures[-1], s[bound]) * self.law.heights.pdf(s[bound])
+        own[~bound] = self.law.with_height(self.curvatures[which[~bound]], s[~bound])
+        return np.asarray(self.weights[which] * own)
 
 
 def rule_of_radii(
     separations: Array, grading: Grading, law: RandomCurvature, branches: Iterable[Branch]
 ) -> HeightRule:
     """Rule over heights and radii for these separations, in any order, and for sums on these branches."""
-    branches, h, heights = tuple(branches), np.unique(separations), law.heights
-    radii = Radii.over(law, float(h[-1]))
-    lowest = np.unique([*h, *(branch.lowest(float(h[0])) for branch in branches)])
-    below = float(heights.cdf(lowest[0]))
-    start, top = ends_of(heights, lowest, grading)
+    h, radii = np.unique(separations), Radii.over(law, float(np.max(separations)))
+    cuts, which = _cuts_of_laws(h, grading, radii, tuple(branches))
+    return _rule(h, grading, radii, tuple(branches), cuts, which % radii.ratios.size)
+
+
+def rules_of_radii(
+    separations: Array, grading: Grading, law: RandomCurvature, branches: Iterable[Branch]
+) -> list[HeightRule]:
+    """One rule for each of these separations; where contacts change their laws is found for all together."""
+    h, radii, branches = separations, Radii.over(law, float(np.max(separations))), tuple(branches)
+    cuts, which = _cuts_of_laws(h, grading, radii, branches)
+    number = radii.ratios.size
+    order = np.argsort(which, kind="stable")
+    of = np.searchsorted(which[order], number * np.arange(h.size + 1))
+    parts = [order[of[k] : of[k + 1]] for k in range(h.size)]
+    return [
+        _rule(h[k : k + 1], grading, radii, branches, cuts[part], which[part] - number * k)
+        for k, part in enumerate(parts)
+    ]
+
+
+def _cuts_of_laws(h: Array, grading: Grading, radii: Radii, branches: Branches) -> tuple[Array, Ints]:
+    """Cuts of the law of each radius at each separation, which has the radii in turn."""
+    heights, at = radii.law.heights, np.repeat(h, radii.ratios.size)
+    lowest = _lowest(np.unique(h), branches)
+    ends = [ends_of(heights, each, grading) for each in (lowest, np.unique(h)[-1:])]
+    low, high = min(start for start, _ in ends), max(top for _, top in ends)
+    found = [(np.empty(0), np.empty(0, np.int64))]
+    if low < high:
+        found += [cuts_of_each(own.with_radii(radii.ratios), grading, at, low, high) for own in branches]
+    cuts, which = (np.concatenate(part) for part in zip(*found, strict=True))
+    return cuts, which
+
+
+def _lowest(h: Array, branches: Branches) -> Array:
+    """Separations, and where asperities stick that have touched before; increasing."""
+    return np.unique([*h, *(branch.lowest(float(h[0])) for branch in branches)])
+
+
+def _rule(
+    h: Array,
+    grading: Grading,
+    radii: Radii,
+    branches: Branches,
+    cuts: Array,
+    of_radius: Ints,
+) -> HeightRule:
+    """Rule over heights and radii, cut where the laws of these radii change."""
+    law, lowest = radii.law, _lowest(h, branches)
+    below, (start, top) = float(law.heights.cdf(lowest[0])), ends_of(law.heights, lowest, grading)
     if not start < top:
         return HeightRule(np.empty(0), np.empty(0), below, np.empty(0))
     widest = min(SPANS * law.narrowest, WIDEST)
     regular = np.linspace(start, top, int(np.ceil((top - start) / widest)) + 1)
     breaks = resolved_breaks(grading, start, top)
-    common = np.concatenate([regular, breaks, lowest, above_neighbours(lowest)])
-    number = radii.ratios.size
-    cuts, which = [np.tile(common, number)], [np.repeat(np.arange(number), common.size)]
-    for branch in (branch.with_radii(radii.ratios) for branch in branches):
-        for x in h.tolist():
-            found = cuts_of_each(branch, grading, np.full(number, x), start, top)
-            cuts.append(found[0])
-            which.append(found[1])
-    left, right, of = _pieces(np.concatenate(cuts), np.concatenate(which), start, top)
+    common, number = np.concatenate([regular, breaks, lowest, above_neighbours(lowest)]), radii.ratios.size
+    cuts = np.append(cuts, np.tile(common, number))
+    of_radius = np.append(of_radius, np.repeat(np.arange(number), common.size))
+    left, right, of = _pieces(cuts, of_radius, start, top)
     s, weights = rooted(left, right, lowest, _PER_PIECE)
     of = np.repeat(of, _PER_PIECE)
     return HeightRule(s, weights * radii.density(s, of), below, radii.ratios[of])
@@ -157,10 +199,16 @@ class Summits:
             return HeightRule.over(h, grading, self.heights)
         key = (branches, h.tobytes())  # of one model, every quantity and statistic of which asks again
         if key not in self._rules:
-            while sum(kept.heights.size for kept in self._rules.values()) > _KEPT:
-                self._rules.pop(next(iter(self._rules)))
-            self._rules[key] = self._new_rule(h, grading, branches)
+            self._keep({key: self._new_rule(h, grading, branches)})
         return self._rules[key]
+
+    def prepare(self, h: Array, grading: Grading, branches: Branches) -> None:
+        """Have the rules that are asked for next, each for one of these separations."""
+
+    def _keep(self, rules: dict[tuple[Branches, bytes], HeightRule]) -> None:
+        while sum(kept.heights.size for kept in self._rules.values()) > _KEPT:
+            self._rules.pop(next(iter(self._rules)))
+        self._rules.update(rules)
 
     def _new_rule(self, h: Array, grading: Grading, branches: Branches) -> HeightRule:
         return HeightRule.over(h, grading, self.heights, branches=branches)
@@ -173,9 +221,8 @@ class Summits:
         """Leave out what is kept, which is large: other processes compute their own."""
         return {name: value for name, value in vars(self).items() if name != "_rules"}
 
-    def jumps(self, quantity: str, branch: Branch, grading: Grading, h: Array, rule: HeightRule) -> Array:
-        """What summits add to the slope of a mean by jumping, at each separation of a rule."""
-        ends = float(rule.heights[0]), float(rule.heights[-1])
+    def jumps(self, quantity: str, branch: Branch, grading: Grading, h: Array, ends: Ends) -> Array:
+        """What summits of heights between two add to the slope of a mean by jumping, at each separation."""
         return jump_terms(quantity, branch, grading, lambda s, _: self.heights.pdf(s), h, ends)
 
 
@@ -199,6 +246,13 @@ class _RandomRadii(Summits):
     def _new_rule(self, h: Array, grading: Grading, branches: Branches) -> HeightRule:
         return rule_of_radii(h, grading, self.curvature, branches)
 
+    def prepare(self, h: Array, grading: Grading, branches: Branches) -> None:
+        new = np.array([x for x in np.unique(h) if (branches, x.tobytes()) not in self._rules])
+        for part in np.split(new, np.flatnonzero(np.diff(new // _TOGETHER)) + 1):
+            if part.size > 1:
+                rules = rules_of_radii(part, grading, self.curvature, branches)
+                self._keep({(branches, x.tobytes()): rule for x, rule in zip(part, rules, strict=True)})
+
     def _spread(self, rule: HeightRule) -> HeightRule:
         """A rule over heights, spread to heights and radii.
 
@@ -209,14 +263,15 @@ class _RandomRadii(Summits):
         heights = np.broadcast_to(rule.heights, ratio.shape)
         return HeightRule(heights.ravel(), (rule.probabilities * share).ravel(), rule.below, ratio.ravel())
 
-    def jumps(self, quantity: str, branch: Branch, grading: Grading, h: Array, rule: HeightRule) -> Array:
-        top, found = float(rule.heights.max()), []
-        for x in h.tolist():
-            radii = Radii.over(self.curvature, x)
-            own, at = branch.with_radii(radii.ratios), np.full(radii.ratios.shape, x)
-            jumps = jump_terms(quantity, own, grading, radii.density, at, (x, top))
-            found.append(float(jumps @ radii.ratios ** quantity_of(quantity).radius))
-        return np.array(found)
+    def jumps(self, quantity: str, branch: Branch, grading: Grading, h: Array, ends: Ends) -> Array:
+        radii = Radii.over(self.curvature, float(h.max()))
+        number, own = radii.ratios.size, branch.with_radii(radii.ratios)
+
+        def density(s: Array, which: Ints) -> Array:
+            return radii.density(s, which % number)
+
+        found = jump_terms(quantity, own, grading, density, np.repeat(h, number), ends)
+        return found.reshape(h.size, number) @ radii.ratios ** quantity_of(quantity).radius
 
 
 @dataclass(frozen=True)

@@ -23,8 +23,8 @@ from analytic import (
     quantity_of,
 )
 from analytic.curvature import MEAN_CURVATURE
-from analytic.laws import Film
-from analytic.summits import rule_of_radii
+from analytic.laws import Coated, Film, regimes
+from analytic.summits import rule_of_radii, rules_of_radii
 
 ALPHA = 5.0
 MOMENTS = SpectralMoments(1e-12, 1e-3, ALPHA * 1e6)
@@ -260,3 +260,45 @@ def test_what_does_not_fit_is_refused():
     with pytest.raises(ValueError, match="heights"):
         Model(SURFACE, heights=ExponentialHeights(), curvature=RandomCurvature(ALPHA))
     assert pytest.approx(8 / math.sqrt(3 * math.pi)) == MEAN_CURVATURE
+
+
+@pytest.mark.parametrize("law", [KogutEtsion(critical=0.05), Coated(ratio=3.0, reduced_thickness=0.5), None])
+@pytest.mark.parametrize("unload_from", [None, -0.5])
+def test_rules_of_several_separations_at_once_are_those_of_each(law, unload_from):
+    m = replace(model(largest=8.0, grading=GRADED), law=law, unload_from=unload_from)
+    names = ["load", "area"] if unload_from is None else ["load_unloading"]
+    h, branches = np.array([-0.3, 0.11, 2.6]), m.ways.among(names)
+    together = rules_of_radii(h, GRADED, m.curvature, branches)
+    for x, rule in zip(h, together, strict=True):
+        alone = rule_of_radii(np.array([x]), GRADED, m.curvature, branches)
+        assert rule.below == alone.below
+        for power in (1, 2, 3) if unload_from is None else (1,):
+            found, expected = (r.mean(r.terms(names, [x], GRADED, m.ways) ** power) for r in (rule, alone))
+            # On the way back contact is lost in a broken power, which either rule resolves to some 1e-7.
+            np.testing.assert_allclose(found, expected, rtol=1e-9 if unload_from is None else 1e-6)
+        np.testing.assert_allclose(rule.probabilities.sum(), alone.probabilities.sum(), rtol=1e-12)
+
+
+def test_slopes_of_several_separations_at_once_are_those_of_each():
+    m = replace(model(largest=8.0, grading=GRADED), law=KogutEtsion(critical=0.05))
+    h = np.array([[0.2], [2.6]])
+    for name in ("load", "contacts"):
+        each = [float(m.slope(name, x)) for x in h.ravel()]
+        np.testing.assert_allclose(m.slope(name, h).ravel(), each, rtol=1e-9)
+
+
+def test_heights_and_curvatures_together_have_the_product_of_their_densities():
+    law, s, g = RandomCurvature(5.0), np.linspace(-3, 5, 17), np.linspace(0.01, 6, 17)[:, None]
+    np.testing.assert_allclose(law.with_height(g, s), law.pdf(g, s) * law.heights.pdf(s), rtol=1e-13)
+
+
+def test_forty_separations_of_own_radii_that_yield_are_looked_at_once(monkeypatch):
+    """Whatever is asked of them: each bound of the law is sought once."""
+    asked, find = [], regimes.crossings_of
+    monkeypatch.setattr(regimes, "crossings_of", lambda *given: asked.append(given) or find(*given))
+    m = replace(model(grading=GRADED), law=KogutEtsion(critical=0.05))
+    h = np.linspace(0.0, 2.9, 8)
+    for name in ("load", "area"):
+        m.mean(name, h)
+        m.cumulants(name, h)
+    assert len(asked) == len(m.ways.law.limits(np.ones(1)))

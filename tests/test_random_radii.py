@@ -9,7 +9,7 @@ from scipy import stats
 
 import analytic
 import mcgw
-from analytic.summits import rule_of_radii
+from analytic.summits import rule_of_radii, rules_of_radii
 from mcgw.ensemble import solution
 from mcgw.sampling.asperities import summits, summits_drawn, touching_summits
 from mcgw.sampling.own_radii import radius_table
@@ -195,12 +195,14 @@ def test_each_summit_has_the_law_of_its_own_radius(law):
 
 
 def test_a_comparison_asks_once_for_each_rule_over_heights_and_radii(monkeypatch):
-    """One for each separation, and one for all of them together."""
-    made, build = [], rule_of_radii
-    monkeypatch.setattr("analytic.summits.rule_of_radii", lambda *asked: made.append(asked) or build(*asked))
+    """Once for those of one separation each, and once for that of all of them together."""
+    made = []
+    for build in (rule_of_radii, rules_of_radii):
+        name = f"analytic.summits.{build.__name__}"
+        monkeypatch.setattr(name, lambda *asked, build=build: made.append(build.__name__) or build(*asked))
     scene = spectral(law=LAWS[0], n_asperities=1000, separations=(0.0, 1.0), quantities=("load", "area"))
     assert mcgw.compare(mcgw.simulate(scene)).verdict.agrees
-    assert len(made) == 3
+    assert sorted(made) == ["rule_of_radii", "rules_of_radii"]
 
 
 def test_regraded_from_moments_as_drawn_anew():

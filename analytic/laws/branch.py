@@ -117,7 +117,7 @@ class UnloadingBranch(Branch):
     def regimes(self, grading: Grading, separations: ArrayLike, low: float, high: float) -> Regimes:
         """As `Branch.regimes`: pieces are those of the deepest penetration."""
         h = np.asarray(separations, dtype=np.float64)
-        laws = h.size if self.law.each else 1
+        laws = self.law.radii
         turn = regimes_of(self.law, grading, np.full(laws, self.deepest), low, high)
         if not turn.low.size:
             return turn
@@ -134,8 +134,7 @@ class UnloadingBranch(Branch):
 
     def _lost(self, grading: Grading, s: Array, which: Ints) -> Array:
         """Penetration at which asperities of a height are lost, under the law of which separation."""
-        if self.law.each:
-            s, which = np.broadcast_arrays(s, which)
+        s, which = np.broadcast_arrays(s, which)
         return self.of_some(which)._residual(s, grading(s))
 
     def _residual(self, s: Array, e: Array) -> Array:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.arrays import Array, hold
+from analytic.arrays import Array, hold, some_of
 from analytic.laws.law import is_positive
 from analytic.surface import Surface
 
@@ -175,8 +175,8 @@ class SpotConductance:
             return self
         layered = self.layered
         if layered is not None:
-            layered = replace(layered, thickness=layered.thickness[which])
-        return replace(self, parameter=self.parameter[which], layered=layered)
+            layered = replace(layered, thickness=some_of(layered.thickness, which))
+        return replace(self, parameter=some_of(self.parameter, which), layered=layered)
 
     def __call__(self, radius: Array) -> Array:
         """Conductance over 4 sqrt(R sigma), in 1/(ohm m) or W/(m K), analytic in the radius up to -b."""

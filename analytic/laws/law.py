@@ -16,7 +16,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.arrays import Array, Ints, hold
+from analytic.arrays import Array, Ints, hold, some_of
 from analytic.laws.unloading import Unloading, slope_in_root
 from analytic.surface import Surface
 
@@ -154,9 +154,17 @@ class ContactLaw:
         """Whether it was made for summits of different radii: constants are arrays."""
         return bool(self.of_radius and np.ndim(getattr(self, self.of_radius[0])))
 
+    @property
+    def radii(self) -> int:
+        """Number of radii that it was made for."""
+        return np.size(getattr(self, self.of_radius[0])) if self.each and self.of_radius else 1
+
     def of_some(self, which: NDArray[Any]) -> Self:
-        """The law of some of the summits that it was made for; itself where all have one radius."""
-        return self._with(lambda constant, _: constant[which]) if self.each else self
+        """The law of some of the summits that it was made for; itself where all have one radius.
+
+        Numbers beyond the last begin again with the first.
+        """
+        return self._with(lambda constant, _: some_of(constant, which)) if self.each else self
 
     def _with(self, change: Callable[[Any, float], Any]) -> Self:
         """The law with another constant in place of the one that follows the radius."""

@@ -110,19 +110,19 @@ def jump_terms(
 
     An asperity of height t jumps by D when the separation is that at which ``t - h = limit(e(t))``. As the
     surface comes nearer by dh, those of a range of ``dh/abs(1 - d limit/dt)`` heights do so, in the range of
-    heights between the ends. `density` is that of heights and of the numbers of their separations; the law is
-    one, or one for each separation. Of shape (separations,).
+    heights between the ends. `density` is that of heights and of the numbers of their separations, which have
+    the radii of the law in turn. Of shape (separations,).
     """
-    law, every = branch.law, np.arange(separations.size)
-    e = grading(separations)
-    total = np.zeros(separations.shape)
+    every = np.arange(separations.size)
+    e, first = grading(separations), branch.of_some(every)
+    law, total = first.law, np.zeros(separations.shape)
     touch = np.full(separations.shape, _TOUCH)
     for j in np.unique(piece_of(law, 0 * separations, e)):
-        first = branch.of_root(quantity, int(j), touch, e)
-        total += np.where(piece_of(law, 0 * separations, e) == j, first, 0.0) * density(separations, every)
+        added = first.of_root(quantity, int(j), touch, e)
+        total += np.where(piece_of(law, 0 * separations, e) == j, added, 0.0) * density(separations, every)
     for j in range(len(law.limits(e))):
         find = _met.__wrapped__ if law.each else _met
-        found, shares = find(Same(grading), law, j, tuple(separations.tolist()), ends)
+        found, shares = find(Same(grading), branch.law, j, tuple(separations.tolist()), ends)
         t, which = found.height, found.separation
         y, e, own = np.sqrt(np.maximum(t - separations[which], 0.0)), grading(t), branch.of_some(which)
         jump = own.of_root(quantity, j + 1, y, e) - own.of_root(quantity, j, y, e)
@@ -136,8 +136,7 @@ def _met(
 ) -> tuple[Crossings, Array]:
     """Where piece j + 1 begins or ends at some separations, and the heights that cross for each unit."""
     bound, separations = limit_of(law, same.grading, j), np.array(at)
-    kinks = [()] * (separations.size if law.each else 1)
-    found = crossings_of(bound, same.grading, separations, *ends, kinks)
+    found = crossings_of(bound, same.grading, separations, *ends, [()] * law.radii)
     return found, _shares(bound, same.grading, found, separations, ends)
 
 

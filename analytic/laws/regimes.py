@@ -60,7 +60,8 @@ def regimes_of(law: ContactLaw, grading: Grading, separations: ArrayLike, low: f
     Parameters
     ----------
     law : ContactLaw
-        In reduced units; one, or one for each separation (`ContactLaw.with_radii`).
+        In reduced units; of one radius, or of several (`ContactLaw.with_radii`), which separations have in
+        turn.
     grading : Grading
         E*(s)/E*.
     separations : array_like
@@ -74,8 +75,7 @@ def regimes_of(law: ContactLaw, grading: Grading, separations: ArrayLike, low: f
         From the separation, or `low`, up to `high`; nothing for separations above that.
     """
     h = np.asarray(separations, dtype=np.float64)
-    count = len(law.limits(np.ones(h.shape)))
-    kinks = [()] * (h.size if law.each else 1)
+    count, kinks = len(law.limits(np.ones(law.radii))), [()] * law.radii
     found = [crossings_of(limit_of(law, grading, j), grading, h, low, high, kinks) for j in range(count)]
     empty = np.empty(0, np.int64)
     index = np.concatenate([empty, *(c.separation for c in found)])
@@ -166,7 +166,7 @@ def crossings_of(
     `bound` gives the penetration at which something begins, of the heights, and of the numbers of their
     separations in an array that broadcasts with them; infinite where it never does. Under one modulus for all
     it must be constant, or rise by less than the height. It has its kinks and jumps where the grading has
-    them, and further `kinks`, of the one bound there is or of that of each separation. A grading that is not
+    them, and further `kinks`, of each of the bounds that separations have in turn. A grading that is not
     resolved by 4096 pieces is a ValueError.
     """
     h = np.asarray(separations, dtype=np.float64)
@@ -181,6 +181,9 @@ def crossings_of(
             return np.asarray(s - h[which] - bound(s, which))
 
     every = np.arange(h.size)[:, None]
+    if len(starts) > 1:
+        turn = every[:, 0] % len(starts)
+        starts, ends = starts[turn], ends[turn]
     at_start, at_end = excess(starts, every) >= 0, excess(ends, every) >= 0
     inner, stretch = np.nonzero(at_start != at_end)
     starts, ends = (np.broadcast_to(x, at_start.shape) for x in (starts, ends))
