@@ -52,7 +52,7 @@ CASES = {
     "run, table": ("table.csv", "run scene.toml -o OUT", ".h5"),
     "run, heights": ("heights.npy", "run scene.toml -o OUT", ".h5"),
     "run --shard": ("scene.toml", "run scene.toml --shard 1/2 -o OUT", ".h5"),
-    "run --processes": ("table.csv", "run scene.toml --processes 1 -o OUT", ".h5"),
+    "run --jobs": ("table.csv", "run scene.toml --jobs 1 -o OUT", ".h5"),
     "compare": ("e.h5", "compare e.h5 -o OUT", ".png"),
     "compare --csv": ("e.h5", "compare e.h5 --csv OUT", ".csv"),
     "show --csv": ("e.h5", "show e.h5 --csv OUT", ".csv"),

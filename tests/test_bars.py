@@ -3,14 +3,12 @@
 import io
 import sys
 from contextlib import nullcontext
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import mcgw
 from mcgw.cli import main
-from mcgw.jobs.driver import dashboard_of
 from mcgw.machine.progress import bar, stages, steps, told as asked, watched
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "0.1 mm^2", "78.6 GPa")
@@ -118,11 +116,10 @@ def test_a_line_beside_the_bar_is_said_once_and_to_terminals_alone(terminal, see
     """The bar too, where it is for watched terminals alone."""
     stream = Stream(terminal=seen)
     monkeypatch.setattr(sys, "stderr", stream)
-    with watched() if person else nullcontext(), bar("surfaces", "dashboard: x", terminal=terminal) as show:
+    with watched() if person else nullcontext(), bar("surfaces", terminal=terminal) as show:
         show(0, 2)
         show(2, 2)
     drawn = not terminal or (seen and person)
-    assert stream.getvalue().count("dashboard: x\n") == (drawn and seen)
     assert ("0/2 [" in stream.getvalue()) == drawn
 
 
@@ -162,17 +159,11 @@ def test_progress_is_a_bar_a_function_or_nothing(monkeypatch):
             asked(wrong, "surfaces").__enter__()
     stream = Stream(terminal=True)
     monkeypatch.setattr(sys, "stderr", stream)
-    with asked(True, "surfaces", "beside it") as tell:
+    with asked(True, "surfaces") as tell:
         tell(1, 3)
         assert list(steps([4, 5], "things")) == [4, 5]  # watched, and so drawn
-    assert "beside it" in stream.getvalue()
     assert "1/3 [" in stream.getvalue()
     assert "things/s" in stream.getvalue()
     before = len(stream.getvalue())
     list(steps([4, 5], "things"))
     assert len(stream.getvalue()) == before
-
-
-def test_only_an_engine_with_pages_has_a_line():
-    assert dashboard_of(None) == dashboard_of(SimpleNamespace(dashboard="")) == ""
-    assert dashboard_of(SimpleNamespace(dashboard="http://x")) == "dashboard: http://x"

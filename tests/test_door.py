@@ -8,6 +8,7 @@ import pydoc
 import re
 import rlcompleter
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from importlib import import_module
 from pathlib import Path
 
@@ -29,7 +30,7 @@ import mcgw, numpy as np
 surface = mcgw.Surface(sigma="1.37 um", radius="13 um", eta=3e8, nominal_area="1 cm^2", E_star="78.6 GPa")   # floats are SI
 scene = mcgw.Scene(surface, separations=np.linspace(0, 4, 41), grading=mcgw.Exponential(2.0), seed=1)        # any array; a number is one separation
 e = mcgw.simulate(scene, n_surfaces=1000)                 # in memory; keywords replace fields of the scene
-e = mcgw.run(scene, "demo.h5")                            # in a file: goes on, extends, honours rel_err, engine=, shard="2/8"
+e = mcgw.run(scene, "demo.h5")                            # in a file: goes on, extends, honours rel_err, executor=, shard="2/8"
 e                                                         # at most a dozen lines; a table in a notebook
 e["load"], e.load, e.mean("pressure"), e.interval("area_fraction")
 e.to_xarray(), e.to_dataframe()
@@ -212,11 +213,12 @@ CALLS = [
     (lambda: mcgw.simulate(scene(), threads=1.5), r"^threads = 1\.5: give a whole number >= 1$"),
     (lambda: mcgw.simulate(scene(), progress=3),
      r"^progress = 3: give True, or a function of \(done, total\)$"),
-    (lambda: mcgw.run(scene(), "x.h5", engine="gpu"),
-     r"^engine = 'gpu': give one of threads, processes, dask"),
+    (lambda: mcgw.run(scene(), "x.h5", executor="gpu"),
+     r"^executor = 'gpu': give a concurrent.futures.Executor, such as ProcessPoolExecutor"),
     (lambda: mcgw.run(scene(), "x.h5", shard="9/8"), "9/8: give i/n with 1 <= i <= n$"),
     (lambda: mcgw.run(scene(), "x.h5", shard="first"), "first: give i/n with 1 <= i <= n$"),
-    (lambda: mcgw.run(scene(), "x.h5", shard="1/2", engine="dask"), r"^shard = '1/2': .*leave engine out$"),
+    (lambda: mcgw.run(scene(), "x.h5", shard="1/2", executor=ThreadPoolExecutor(1)),
+     r"^shard = '1/2': .*leave executor out$"),
     (lambda: mcgw.solve(scene()), "^solve: give one of load, pressure, area, area_fraction, not none$"),
     (lambda: mcgw.solve(scene(), load=1, area=1), "^solve: give one of .*, not load and area$"),
     (lambda: mcgw.solve(scene(), pressure="1 N"),

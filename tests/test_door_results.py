@@ -348,7 +348,7 @@ def checked(seen, total):
 def test_progress_means_the_same_everywhere(scene, tmp_path):
     calls = {
         60: lambda tell: mcgw.simulate(scene, progress=tell),
-        61: lambda tell: mcgw.run(scene, tmp_path / "e.h5", n_surfaces=61, engine="threads", progress=tell),
+        61: lambda tell: mcgw.run(scene, tmp_path / "e.h5", n_surfaces=61, progress=tell),
         5: lambda tell: mcgw.converge(scene, n_surfaces=64, seeds=5, quantities=["load"], progress=tell),
         0.2: lambda tell: few_methods(scene, seconds=0.2, progress=tell),
     }

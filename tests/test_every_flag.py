@@ -5,7 +5,7 @@ import dataclasses
 import re
 import shlex
 from collections import namedtuple
-from concurrent.futures import Future
+from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from typing import Any, ClassVar
 
@@ -18,6 +18,7 @@ import analytic
 import mcgw
 from mcgw.cli import _parser, main
 from mcgw.figures.contact_map import EllipseCollection
+from mcgw.jobs import executors
 from mcgw.jobs.running import run
 from mcgw.maps.map_files import read_map
 from mcgw.store.ensembles import read_attributes
@@ -305,9 +306,7 @@ ROWS = [
     ("run", "--threads", RUN, "+ --threads 0", refuses("threads = 0: give")),
     ("run", "--threads", RUN, "+ --threads 0 --shard 1/2", refuses("threads = 0: give")),
     ("run", "--threads", RUN, "@rule.toml -o a.h5 --threads 0", refuses("threads = 0: give")),
-    ("run", "--processes", RUN, "+ --processes 0", refuses("processes = 0: give")),
-    ("run", "--workers", RUN, "+ --workers 0", refuses("workers = 0: give")),
-    ("run", "--scheduler", RUN, "+ --scheduler ftp://x", refuses("ftp://x")),
+    ("run", "--jobs", RUN, "+ --jobs 0", refuses("--jobs 0: give a whole number >= 1")),
     ("run", "--shard", RUN, "+ --shard 1/2", share_drawn),
     ("run", "--shard", RUN, "+ --shard 3/2", refuses("--shard 3/2: give i/n")),
     ("sweep", "--output", SWEEP, "+ -o b.h5", writes("b.h5", instead=["a.h5"])),
@@ -315,9 +314,7 @@ ROWS = [
     ("sweep", "--over", SWEEP, "+ --over ensemble.seed", refuses("--over ensemble.seed: give")),
     ("sweep", "--zip", f"{SWEEP} -v", "+ --zip --over ensemble.seed=1,2", says("1, 1 ")),
     ("sweep", "--threads", SWEEP, "+ --threads 0", refuses("threads = 0: give")),
-    ("sweep", "--processes", SWEEP, "+ --processes 0", refuses("processes = 0: give")),
-    ("sweep", "--workers", SWEEP, "+ --workers 0", refuses("workers = 0: give")),
-    ("sweep", "--scheduler", SWEEP, "+ --scheduler ftp://x", refuses("ftp://x")),
+    ("sweep", "--jobs", SWEEP, "+ --jobs 0", refuses("--jobs 0: give a whole number >= 1")),
     ("sweep", "--shard", SWEEP, "+ --shard 1/2", share_drawn),
     ("sweep", "--shard", SWEEP, "+ --shard 3/2", refuses("--shard 3/2: give i/n")),
     ("sweep", "--plan", SWEEP, "+ --plan", says("computed ")),
@@ -429,8 +426,8 @@ ROWS = [
 
 # Options whose commands take long, or need several calls: by tests of their own below.
 APART = {
-    ("run", "--insecure"): "test_engines_are_those_asked_for",
-    ("sweep", "--insecure"): "test_engines_are_those_asked_for",
+    ("run", "--dask"): "test_executors_are_those_asked_for",
+    ("sweep", "--dask"): "test_executors_are_those_asked_for",
     ("merge", "FILE"): "test_merge_makes_the_file_that_is_named",
     ("merge", "--output"): "test_merge_makes_the_file_that_is_named",
     ("tradeoff", "--output"): "test_tradeoff_takes_its_folder_and_its_time",
@@ -523,45 +520,37 @@ def test_numbers_are_taken_up_to_their_ends(once, words, taken, refused):
 # --- those apart ------------------------------------------------------------------------------------
 
 
-class Recorder:
-    """An engine that draws in this process and remembers how it was made."""
+class Recorder(ThreadPoolExecutor):
+    """An executor that draws in this process and remembers how it was made."""
 
     made: ClassVar[list[Any]] = []
-    width = 1
 
-    def __init__(self, *arguments, **options):
-        self.made.append((type(self).__name__, arguments, options))
+    def __init__(self, *arguments):
+        super().__init__(1)
+        self.made.append(arguments)
 
-    def submit(self, task, *arguments):
+    def submit(self, attempt, task, *arguments):
         self.made.append(task.__name__)
-        future = Future()
-        future.set_result(task(*arguments))
-        return future
+        return super().submit(attempt, task, *arguments)
 
-    def close(self):
-        self.made.append("closed")
-
-
-DASK = "mcgw.jobs.dask_engine.Dask"
-ENGINES = [
-    ("--processes 3", "mcgw.jobs.engines.Processes", ((3,), {})),
-    ("--workers 2", DASK, ((None,), {"workers": 2, "insecure": False, "quiet": True})),
-    ("--scheduler tcp://h:1 --insecure", DASK,
-     (("tcp://h:1",), {"workers": 1, "insecure": True, "quiet": True})),
-]  # fmt: skip
+    def shutdown(self, *arguments, **options):
+        self.made.append("ended")
+        super().shutdown(*arguments, **options)
 
 
 @pytest.mark.parametrize("command", [f"run {RUN}", "run @rule.toml -o a.h5", f"sweep {SWEEP}"])
-@pytest.mark.parametrize(("words", "where", "made"), ENGINES, ids=[row[0] for row in ENGINES])
-def test_engines_are_those_asked_for(call, monkeypatch, command, words, where, made):
-    """They are made as asked, given the blocks, and closed; the file is that of the threads."""
+@pytest.mark.parametrize(
+    ("words", "name", "made"),
+    [("--jobs 3", "Jobs", (3,)), ("--dask tcp://h:1", "dask_executor", ("tcp://h:1",))],
+)
+def test_executors_are_those_asked_for(call, monkeypatch, command, words, name, made):
+    """They are made as asked, given the blocks, and ended; the file is that of the threads."""
     read = mcgw.open_sweep if command.startswith("sweep") else mcgw.open_ensemble
-    monkeypatch.setattr(where, Recorder)
+    monkeypatch.setattr(executors, name, Recorder)
     Recorder.made.clear()
     given = call(f"{command} {words}".split())
     assert given.code == 0, given.err
-    assert Recorder.made[0][1:] == made
-    assert (Recorder.made[1], Recorder.made[-1]) == ("commit_block", "closed")
+    assert (Recorder.made[0], Recorder.made[1], Recorder.made[-1]) == (made, "commit_block", "ended")
     plain = call(command.split())
     assert len([x for x in Recorder.made if isinstance(x, tuple)]) == 1
     np.testing.assert_array_equal(*(read(x.folder / "a.h5").mean("load") for x in (plain, given)))

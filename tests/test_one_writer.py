@@ -304,13 +304,13 @@ def test_a_child_ends_with_its_parent(busy, tmp_path):
 
 POOL = """
 import sys, time
-from mcgw.jobs.engines import Processes
+from mcgw.jobs.executors import Jobs
 if __name__ == "__main__":
-    engine = Processes(2)
-    answers = [engine.submit(time.sleep, 100) for _ in range(2)]
-    while len(engine._pool._processes) < 2:
+    jobs = Jobs(2)
+    answers = [jobs.submit(time.sleep, 100) for _ in range(2)]
+    while len(jobs._pool._processes) < 2:
         time.sleep(0.01)
-    print(*engine._pool._processes, flush=True)
+    print(*jobs._pool._processes, flush=True)
     time.sleep(100)
 """
 

@@ -35,9 +35,7 @@ def test_a_run_goes_on_from_its_blocks(begun, bit, monkeypatch):
     with pytest.raises(StoreError, match=r"damaged .* resume with mcgw run or mcgw sweep"):
         RunFolder.open(parts_of(path))
     drawn, draw = [], Job.draw
-    monkeypatch.setattr(
-        Job, "draw", lambda job, span, threads: drawn.append(span) or draw(job, span, threads)
-    )
+    monkeypatch.setattr(Job, "draw", lambda job, span, *how: drawn.append(span) or draw(job, span, *how))
     made = mcgw.run(scene, path)
     assert [span.first for span in drawn] == [4]
     assert np.array_equal(made.load, mcgw.simulate(scene).load)

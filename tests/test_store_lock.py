@@ -170,7 +170,7 @@ from mcgw.ensemble.simulation import Values
 from mcgw.errors import StoreError
 from mcgw.store.lock import locked
 for found in pkgutil.walk_packages(mcgw.__path__, "mcgw."):
-    if found.name not in ("mcgw.__main__", "mcgw.jobs.dask_engine"):
+    if found.name != "mcgw.__main__":
         importlib.import_module(found.name)
 scene = mcgw.load_scene(sys.argv[1])
 loads = mcgw.simulate(scene).load

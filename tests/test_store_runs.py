@@ -473,7 +473,7 @@ def killed_at_the_fourth(*words):
 
 job.commit_shard = killed_at_the_fourth
 drawn = dict(numpy.load(sys.argv[3]))  # so that no loop is loaded
-Job.draw = lambda job, span, threads: {name: x[span.first : span.stop] for name, x in drawn.items()}
+Job.draw = lambda job, span, *how: {name: x[span.first : span.stop] for name, x in drawn.items()}
 from mcgw.jobs.running import run
 from mcgw.scene.scene_file import scene_from
 run(scene_from(open(sys.argv[1]).read()), sys.argv[2])

@@ -4,7 +4,7 @@ import os
 import signal
 import subprocess
 import sys
-from contextlib import closing
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,7 +18,7 @@ import mcgw
 from mcgw.cli import main
 from mcgw.commands.sweep import _axis
 from mcgw.jobs import job
-from mcgw.jobs.engines import Processes
+from mcgw.jobs.executors import Jobs
 from mcgw.jobs.job import commit_block
 from mcgw.store.disk import parts_of
 from mcgw.store.ensembles import read_attributes
@@ -345,13 +345,13 @@ def test_by_processes_of_which_some_are_killed(tmp_path, expected):
 
     def kill(done, total):
         if done and len(killed) < 2 and random.random() < 0.5:  # fewer than make a block a suspect for good
-            alive = [pid for pid in engine._pool._processes or () if pid not in killed]
+            alive = [pid for pid in jobs._pool._processes or () if pid not in killed]
             killed.extend(alive[:1])
             for pid in alive[:1]:
                 os.kill(pid, signal.SIGKILL)
 
-    with closing(Processes(2)) as engine:
-        mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5", engine=engine, progress=kill)
+    with Jobs(2) as jobs:
+        mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5", executor=jobs, progress=kill)
     assert killed
     assert digest(tmp_path / "a.h5") == expected
     assert not list(tmp_path.glob("*.parts"))
@@ -473,12 +473,13 @@ def test_a_worker_draws_for_nobody_who_asked_something_else(tmp_path):
         commit_block(str(parts_of(path)), 0, 50)
 
 
-def test_engines_draw_into_a_file():
-    for how in ({"engine": "processes"}, {"shard": "1/2"}):
-        with pytest.raises(ValueError, match=r"^engine, shard: they need a file; give path"):
+def test_executors_draw_into_a_file():
+    pool = ThreadPoolExecutor(1)
+    for how in ({"executor": pool}, {"shard": "1/2"}):
+        with pytest.raises(ValueError, match=r"^executor, shard: they need a file; give path"):
             mcgw.sweep(SCENE, OVER, **how)
     with pytest.raises(ValueError, match="a share uses threads"):
-        mcgw.sweep(SCENE, OVER, path="a.h5", engine="processes", shard="1/2")
+        mcgw.sweep(SCENE, OVER, path="a.h5", executor=pool, shard="1/2")
 
 
 def test_shares_by_command(shell, tmp_path):

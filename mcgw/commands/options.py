@@ -1,65 +1,66 @@
-"""Options shared by several commands: --set for keys, and the engine that draws the blocks."""
+"""Options shared by several commands: --set for keys, and what draws the blocks."""
 
 import argparse
 import logging
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mcgw.commands.voice import news
 
 if TYPE_CHECKING:
-    from mcgw.jobs.engines import Engine
+    from concurrent.futures import Executor
 
 
-def add_engine_options(parser: argparse.ArgumentParser) -> None:
-    """Add --threads, --processes, --workers, --scheduler, --shard and --insecure."""
+def add_drawing_options(parser: argparse.ArgumentParser) -> None:
+    """Add --threads, --jobs, --dask and --shard."""
     parser.add_argument(
         "--threads",
         type=int,
         metavar="N",
         help="number of threads; default: all cores; does not change results",
     )
-    engine = parser.add_mutually_exclusive_group()
-    engine.add_argument("--processes", type=int, metavar="N", help="use N processes instead")
-    engine.add_argument("--workers", type=int, metavar="N", help="use N dask workers on this machine")
-    engine.add_argument(
-        "--scheduler", metavar="ADDRESS", help="use the workers of a dask scheduler, tcp:// or tls://"
+    how = parser.add_mutually_exclusive_group()
+    how.add_argument("--jobs", type=int, metavar="N", help="use N processes instead")
+    how.add_argument(
+        "--dask", metavar="ADDRESS", help="use the workers of a dask scheduler, tcp:// or tls://"
     )
-    engine.add_argument(
+    how.add_argument(
         "--shard", metavar="I/N", help="draw the I-th of N shares, as one job of an array; then mcgw merge"
     )
-    parser.add_argument("--insecure", action="store_true", help="allow a remote scheduler without encryption")
 
 
 @contextmanager
-def engine_asked(args: argparse.Namespace) -> Iterator["Engine | None"]:
-    """The engine that the options name, closed at the end; None for threads of this process.
+def _executor(args: argparse.Namespace) -> Iterator["Executor | None"]:
+    """Yield the executor that the options name, ended at the end; None for threads of this process.
 
     Libraries log nothing meanwhile: mcgw itself reports a lost worker or scheduler, in one line.
     """
     before = logging.root.manager.disable
     logging.disable(logging.CRITICAL)
     try:
-        engine = _engine(args)
-        try:
-            yield engine
-        finally:
-            if engine:
-                engine.close()
+        with _made(args) as executor:
+            yield executor
     finally:
         logging.disable(before)
 
 
+def _made(args: argparse.Namespace) -> "AbstractContextManager[Executor | None]":
+    if args.jobs is None is args.dask:
+        return nullcontext()
+    from mcgw.jobs.executors import Jobs, dask_executor
+
+    return dask_executor(args.dask) if args.jobs is None else Jobs(args.jobs)
+
+
 @contextmanager
 def drawing(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
-    """Engine arguments of `mcgw.run` and `mcgw.sweep`, with a progress bar."""
-    from mcgw.jobs.driver import dashboard_of
+    """Yield the arguments of `mcgw.run` and `mcgw.sweep` that say how, with a progress bar."""
     from mcgw.machine.progress import bar
 
-    with engine_asked(args) as engine, bar("surfaces", dashboard_of(engine), terminal=True) as show:
-        who = {"engine": engine} if args.shard is None else {"shard": args.shard}
+    with _executor(args) as executor, bar("surfaces", terminal=True) as show:
+        who = {"executor": executor} if args.shard is None else {"shard": args.shard}
         yield {"threads": args.threads, "progress": show, **who}
 
 
@@ -68,19 +69,6 @@ def tell_share(shard: str, path: Path, left: int) -> int:
     then = f"{left} surfaces are still missing" if left else f"all are done: mcgw merge {path}"
     news(f"{path}.parts: share {shard} is done; {then}")
     return 0
-
-
-def _engine(args: argparse.Namespace) -> "Engine | None":
-    if args.processes is not None:
-        from mcgw.jobs.engines import Processes
-
-        return Processes(args.processes)
-    if args.workers is not None or args.scheduler is not None:
-        from mcgw.jobs.dask_engine import Dask
-
-        workers = 1 if args.workers is None else args.workers
-        return Dask(args.scheduler, workers=workers, insecure=args.insecure, quiet=True)
-    return None
 
 
 def add_set_option(parser: argparse.ArgumentParser) -> None:

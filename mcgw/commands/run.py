@@ -5,7 +5,7 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mcgw.commands.options import add_engine_options, add_set_option, changes_of, drawing, tell_share
+from mcgw.commands.options import add_drawing_options, add_set_option, changes_of, drawing, tell_share
 
 if TYPE_CHECKING:
     from mcgw.scene.scene import Scene
@@ -25,7 +25,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-o", "--output", type=Path, metavar="FILE.h5", help="default: out/NAME.h5 beside the scene"
     )
-    add_engine_options(parser)
+    add_drawing_options(parser)
     add_set_option(parser)
 
 

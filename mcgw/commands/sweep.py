@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from mcgw.commands.options import add_engine_options, add_set_option, changes_of, drawing, tell_share
+from mcgw.commands.options import add_drawing_options, add_set_option, changes_of, drawing, tell_share
 
 HELP = "draw many scenes at once on the same surfaces, keeping means and deviations; resumes where it stopped"
 EXAMPLE = "mcgw sweep runs/demo.toml --over grading.gamma=0.2:2:10 -o gamma.h5"
@@ -29,7 +29,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-o", "--output", type=Path, metavar="FILE.h5", help="default: out/NAME.sweep.h5 beside the scene"
     )
-    add_engine_options(parser)
+    add_drawing_options(parser)
     parser.add_argument(
         "--plan", action="store_true", help="print what would be drawn and how long it takes, without drawing"
     )

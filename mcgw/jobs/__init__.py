@@ -1,1 +1,1 @@
-"""Ensembles in files: distribute blocks to engines, and merge them."""
+"""Ensembles in files: distribute blocks to executors, and merge them."""

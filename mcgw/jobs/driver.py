@@ -1,13 +1,10 @@
-"""The driver: gives blocks to an engine until none is missing, and heeds signals.
-
-Arguments of a call: the engine by word, address, dask client or object; the share of the blocks; progress.
-"""
+"""The driver: gives blocks to an executor until none is missing, and heeds signals."""
 
 import signal
 import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future
+from concurrent.futures import CancelledError, Executor, Future
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from queue import Empty, SimpleQueue
@@ -15,12 +12,11 @@ from time import monotonic
 from typing import Any, TypeVar
 
 from mcgw.errors import RunError, StoppedError
-from mcgw.jobs.engines import Engine, EngineLostError, Processes, WorkerDiedError
-from mcgw.machine.progress import Progress, Tell, told
 
 _Block = TypeVar("_Block")
 
-_TRIES = 3
+_IN_HAND = 4096  # blocks given at a time to an executor that does not say how many it takes
+_RESUME = "finished blocks are kept; the same command resumes"
 _GRACE = 2.0  # seconds for running blocks to finish when the run stops
 
 
@@ -63,71 +59,90 @@ def heed_signals() -> Iterator[Signals]:
             signal.signal(number, handler)
 
 
+def outcome(task: Callable[..., Any], *arguments: Any) -> tuple[Any, Exception | None]:
+    """Return the result of a task, or its error: what is raised in place of both is its executor's."""
+    try:
+        return task(*arguments), None
+    except Exception as error:
+        return None, error
+
+
 def drive(
-    engine: Engine,
+    executor: Executor,
     blocks: Sequence[_Block],
     task: Callable[..., Any],
     arguments: Callable[[_Block], tuple[Any, ...]],
     done: Callable[[_Block, Any], None],
     signals: Signals,
 ) -> None:
-    """Have an engine draw every block, in any order, and call `done` with each block and its result.
+    """Have an executor draw every block, in any order, and call `done` with each block and its result.
 
-    `task` is called with what `arguments` gives for a block. A block whose worker died is tried again,
-    alone; after three times it is given up and the others are drawn all the same. When a signal has come,
-    which is asked several times a second, this returns.
+    `task` is called with what `arguments` gives for a block. A block that the executor lost, as with its
+    worker, is submitted once more, alone; if it is lost again, it is given up and the others are drawn all
+    the same. When a signal has come, which is asked several times a second, this returns.
 
     Raises
     ------
     RunError
-        If the engine is lost or a block kills its workers.
+        If the executor takes no more work, or lost a block twice.
     Exception
         As the task raises.
     """
-    todo, suspects = deque(blocks), deque[_Block]()
-    tries: dict[_Block, int] = {}
-    given_up: list[_Block] = []
+    todo, again, given_up = deque(blocks), deque[_Block](), list[tuple[_Block, str]]()
+    lost: set[_Block] = set()
     answers: SimpleQueue[tuple[_Block, Future[Any]]] = SimpleQueue()
-    running: set[_Block] = set()
+    running: dict[_Block, Future[Any]] = {}
+    in_hand: int = getattr(executor, "in_hand", _IN_HAND)
 
     def submit(block: _Block) -> None:
-        running.add(block)
-        future = engine.submit(task, *arguments(block))
-        future.add_done_callback(lambda future: answers.put((block, future)))
+        try:
+            running[block] = executor.submit(outcome, task, *arguments(block))
+        except Exception as error:
+            raise RunError(f"the executor takes no more work ({_in_words(error)}); {_RESUME}") from None
+        running[block].add_done_callback(lambda future: answers.put((block, future)))
 
-    while todo or suspects or running:
-        while todo and len(running) < engine.width and not suspects:
-            submit(todo.popleft())
-        if suspects and not running:
-            submit(suspects.popleft())
-        try:
-            block, future = answers.get(timeout=0.2)
-        except Empty:
-            if signals.number is not None:
-                break
-            continue
-        running.discard(block)
-        try:
-            result = future.result()
-        except WorkerDiedError:
-            tries[block] = tries.get(block, 0) + 1
-            (given_up if tries[block] >= _TRIES else suspects).append(block)
-            continue
-        except EngineLostError as error:
-            raise RunError(f"scheduler lost ({error}); start it again and repeat the command") from None
-        done(block, result)
+    try:
+        while (todo or again or running) and signals.number is None:
+            while todo and len(running) < in_hand and not again:
+                submit(todo.popleft())
+            if again and not running:
+                submit(again.popleft())
+            try:
+                block, future = answers.get(timeout=0.2)
+            except Empty:
+                continue
+            del running[block]
+            try:
+                result, error = future.result()
+            except CancelledError:  # by nobody here: not a worker, but its executor is lost
+                raise RunError(f"the executor takes no more work (it dropped {block}); {_RESUME}") from None
+            except Exception as failure:
+                given_up += [(block, _in_words(failure))] if block in lost else []
+                again.extend(() if block in lost else [block])
+                lost.add(block)
+                continue
+            if error is not None:
+                raise error
+            done(block, result)
         if signals.number is not None:
-            break
-    if signals.number is not None:
-        _last_answers(answers, running, done)
-    elif given_up:
-        lost = "1 block is" if len(given_up) == 1 else f"{len(given_up)} blocks are"
-        raise RunError(f"{given_up[0]} killed the worker {_TRIES} times; {lost} not done, all others are")
+            _last_answers(answers, running, done)
+    finally:
+        for future in running.values():
+            future.cancel()
+    if given_up and signals.number is None:
+        block, why = given_up[0]
+        more = f", as were {len(given_up) - 1} other blocks" if len(given_up) > 1 else ""
+        raise RunError(f"{block} were lost twice by the executor ({why}){more}; {_RESUME}")
+
+
+def _in_words(error: BaseException) -> str:
+    """Return kind and first line of an error of an executor."""
+    return ": ".join([type(error).__name__, *str(error).splitlines()[:1]])
 
 
 def _last_answers(
     answers: "SimpleQueue[tuple[_Block, Future[Any]]]",
-    running: set[_Block],
+    running: dict[_Block, "Future[Any]"],
     done: Callable[[_Block, Any], None],
 ) -> None:
     """Wait briefly for running tasks; drop those that do not finish."""
@@ -137,12 +152,9 @@ def _last_answers(
             block, future = answers.get(timeout=left)
         except Empty:
             return
-        running.discard(block)
-        if future.exception() is None:
-            done(block, future.result())
-
-
-_ENGINES = ("threads", "processes", "dask")
+        del running[block]
+        if not future.cancelled() and future.exception() is None and future.result()[1] is None:
+            done(block, future.result()[0])
 
 
 @dataclass(frozen=True)
@@ -184,7 +196,7 @@ class By:
 
     Parameters
     ----------
-    engine : Engine, optional
+    executor : concurrent.futures.Executor, optional
         Default: threads of this process; one writes a block while others draw the next.
     threads : int, optional
         Of a block.
@@ -194,67 +206,27 @@ class By:
         What has come.
     """
 
-    engine: Engine | None
+    executor: Executor | None
     threads: int | None
     progress: Callable[[Any], Any]
     signals: Signals = field(default_factory=Signals)
 
 
-@contextmanager
-def asked_of(
-    engine: Any, threads: int | None, shard: str | None, progress: Progress
-) -> Iterator[tuple[Engine | None, Part | None, Tell]]:
-    """Read the arguments of a call: engine, share and progress.
-
-    An engine that is made here, of a word or an address, is closed at the end; one that is given, a client of
-    dask too, is left open. None stands for threads of this process.
+def check_how(executor: Any, threads: int | None, shard: str | None) -> Part | None:
+    """Check the arguments of a call; return the share that it asks for.
 
     Raises
     ------
     ValueError
-        If one of them is wrong, or a share is given to an engine.
+        If one of them is wrong, or a share is given to an executor.
     """
     if threads is not None and threads < 1:
         raise ValueError(f"threads = {threads}: give a whole number >= 1")
-    if shard is not None and engine is not None:
-        raise ValueError(f"shard = {shard!r}: a share uses threads; leave engine out")
-    part = None if shard is None else part_of(shard)
-    draws = None if engine in (None, "threads") else _engine_of(engine, threads)
-    try:
-        with told(progress, "surfaces", dashboard_of(draws) if draws else "") as tell:
-            yield draws, part, tell
-    finally:
-        if draws is not None and draws is not engine:
-            draws.close()
-
-
-def dashboard_of(engine: Engine | None) -> str:
-    """A line with the address of the dashboard of an engine; empty if there is none."""
-    link = getattr(engine, "dashboard", "")
-    return f"dashboard: {link}" if link else ""
-
-
-def _engine_of(engine: Any, threads: int | None) -> Engine:
-    from mcgw.jobs.dask_engine import Dask, is_client
-
-    match engine:
-        case "processes":
-            return Processes(_cores() if threads is None else threads)
-        case str() if engine == "dask" or "://" in engine:
-            return Dask(
-                None if engine == "dask" else engine, workers=_cores() if threads is None else threads
-            )
-        case _ if is_client(engine):
-            return Dask(engine)
-        case _ if not isinstance(engine, str) and hasattr(engine, "submit") and hasattr(engine, "width"):
-            return engine  # type: ignore[no-any-return]
-    raise ValueError(
-        f"engine = {engine!r}: give one of {', '.join(_ENGINES)}, tcp://ADDRESS of a scheduler, or a "
-        "distributed.Client"
-    )
-
-
-def _cores() -> int:
-    import numba
-
-    return int(numba.get_num_threads())
+    if shard is not None and executor is not None:
+        raise ValueError(f"shard = {shard!r}: a share uses threads; leave executor out")
+    if not (executor is None or isinstance(executor, Executor)):
+        raise ValueError(
+            f"executor = {executor!r}: give a concurrent.futures.Executor, such as ProcessPoolExecutor(8) or "
+            "client.get_executor() of a dask client"
+        )
+    return None if shard is None else part_of(shard)

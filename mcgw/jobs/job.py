@@ -199,20 +199,22 @@ def as_recorded(scene: Scene, path: Path) -> Scene:
     return resolved
 
 
-def commit_block(folder: str, first: int, n: int, threads: int | None = 1) -> str:
+def commit_block(folder: str, first: int, n: int) -> str:
     """Draw a block of a run into its folder, unless a valid shard is there; returns its digest."""
-    return draw_block(folder, first, n, threads)()
+    return draw_block(folder, first, n)()
 
 
-def draw_block(folder: str, first: int, n: int, threads: int | None = 1) -> Callable[[], str]:
-    """The first half of `commit_block`; what it returns is the second, which another thread may do."""
+def draw_block(
+    folder: str, first: int, n: int, threads: int | None = 1, go_on: GoOn = always
+) -> Callable[[], str]:
+    """Do the first half of `commit_block`; what it returns is the second, to be done beside the next."""
     run, job = _prepared(folder, state_of(Path(folder) / "run.toml"))
     span = Span(first, n)
     if shard := run.held(span):
         digest = shard.digest
         return lambda: digest
     started = perf_counter()
-    tables = job.draw(span, threads)
+    tables = job.draw(span, threads, go_on)
     path, seconds = run.shards_folder / span.file_name, perf_counter() - started
     return lambda: commit_shard(path, run.identity, span, tables, seconds).digest
 

@@ -1,21 +1,21 @@
 """``mcgw.run``: from a scene to its file: begin, resume, extend, until its stop rule is met."""
 
-from collections.abc import Iterator
-from contextlib import closing, nullcontext
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
+from threading import Event
 from time import monotonic, perf_counter
 from typing import Any, overload
 
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import checkpoints, forecast, without_rule
-from mcgw.errors import RunError, StoreError, in_one_line
+from mcgw.errors import RunError, StoppedError, StoreError, in_one_line
 from mcgw.formats.files import state_of
-from mcgw.jobs.driver import By, Part, asked_of, drive, heed_signals
-from mcgw.jobs.engines import Threads
+from mcgw.jobs.driver import By, Part, check_how, drive, heed_signals
 from mcgw.jobs.job import Job, as_recorded, commit_block, draw_block
 from mcgw.jobs.merging import merge_once
-from mcgw.machine.progress import Progress
+from mcgw.machine.progress import Progress, told
 from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import Scene
 from mcgw.store.ensembles import FileResults, open_ensemble
@@ -33,7 +33,7 @@ def run(
     path: str | Path,
     *,
     threads: int | None = None,
-    engine: Any = None,
+    executor: Executor | None = None,
     shard: None = None,
     progress: Progress = None,
     **changes: Any,
@@ -45,7 +45,7 @@ def run(
     path: str | Path,
     *,
     threads: int | None = None,
-    engine: Any = None,
+    executor: Executor | None = None,
     shard: str | None = None,
     progress: Progress = None,
     **changes: Any,
@@ -62,11 +62,10 @@ def run(
     path : str or Path
         The file; it appears when it is complete. Until then, blocks lie in ``FILE.parts/``.
     threads : int, optional
-        Cores: threads, or processes or workers of the engine. Default: all. The data are the
-        same for any number.
-    engine : {"threads", "processes", "dask"}, address, distributed.Client or Engine, optional
-        What draws the blocks; an address such as ``"tcp://host:8786"`` is that of a dask scheduler. A
-        client stays open, and dask's configuration and logging do not change.
+        Of this process. Default: all cores. The data are the same for any number.
+    executor : concurrent.futures.Executor, optional
+        What draws the blocks in place of this process, one thread a block: a pool of processes or threads,
+        that of a dask client (``client.get_executor()``) or of ``mpi4py.futures``. It stays open.
     shard : str, optional
         "2/8": draw only the second of eight shares, as one of eight jobs; then `mcgw.merge`.
     progress : bool or callable, optional
@@ -108,8 +107,9 @@ def run(
     if shard is not None and scene.max_seconds is not None:
         raise ValueError("ensemble.max_seconds: the jobs of a run end at different times; give n_surfaces")
     total = forecast(scene).surfaces if progress else 0
-    with asked_of(engine, threads, shard, progress) as (draws, part, tell):
-        by = By(draws, threads, lambda done: tell(done, total))
+    part = check_how(executor, threads, shard)
+    with told(progress, "surfaces") as tell:
+        by = By(executor, threads, lambda done: tell(done, total))
         scene = as_recorded(scene, path)
         if part:
             return make(Job.of(without_rule(scene) if scene.rel_err is not None else scene, path), by, part)
@@ -170,7 +170,7 @@ def make(job: Job, by: By, part: Part | None = None) -> int:
                     if part:
                         return _share(job, by, part)
                     one, begun = job.reducers[0], (run.folder / "run.toml").exists()
-                    if by.engine is None and not run.axes and total <= one.rows > 1 and not begun:
+                    if by.executor is None and not run.axes and total <= one.rows > 1 and not begun:
                         _at_once(job, by)
                     else:
                         _in_blocks(job, by)
@@ -242,9 +242,37 @@ def _draw_missing(job: Job, started: RunFolder, spans: list[Span], by: By, part:
         by.progress(done)
 
     by.progress(done)
-    task, threads = (draw_block, by.threads) if by.engine is None else (commit_block, 1)
-    with nullcontext(by.engine) if by.engine else closing(Threads()) as engine:
-        drive(engine, spans, task, lambda span: (folder, span.first, span.n, threads), note, by.signals)
+    if by.executor:
+        drive(by.executor, spans, commit_block, lambda s: (folder, s.first, s.n), note, by.signals)
+    else:
+        with _Overlapped(by.threads) as threads:
+            drive(threads, spans, draw_block, lambda s: (folder, s.first, s.n), note, by.signals)
     by.signals.check(
         f"{plan.total - left} of {plan.total} surfaces are kept in {started.folder}; the same command resumes"
     )
+
+
+class _Overlapped(Executor):
+    """One thread of this process draws block after block, another one writes what is drawn."""
+
+    in_hand = 3  # one waits, one is drawn, one is written
+
+    def __init__(self, threads: int | None) -> None:
+        self._draws, self._writes = (ThreadPoolExecutor(1, thread_name_prefix="mcgw-blocks") for _ in "12")
+        self._threads, self._ended = threads, Event()
+
+    def submit(self, attempt: Callable[..., Any], draw: Callable[..., Any], /, *block: Any) -> Future[Any]:  # type: ignore[override]
+        """Submit the drawing of a block, and the writing that this returns."""
+        drawn = self._draws.submit(draw, *block, self._threads, self._go_on)
+        return self._writes.submit(attempt, lambda: drawn.result()())
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = True) -> None:
+        """End both; a long block does not keep an interrupted run alive."""
+        self._ended.set()
+        for pool in (self._draws, self._writes):
+            pool.shutdown(wait=wait, cancel_futures=cancel_futures)
+
+    def _go_on(self, _: int) -> bool:
+        if self._ended.is_set():
+            raise StoppedError("the run has ended")
+        return True

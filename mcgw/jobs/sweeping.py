@@ -1,11 +1,12 @@
 """``mcgw.sweep``: a sweep from Python."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import Executor
 from pathlib import Path
 from typing import Any, overload
 
 from mcgw.ensemble.drawing import use_threads
-from mcgw.jobs.driver import By, asked_of
+from mcgw.jobs.driver import By, check_how
 from mcgw.machine.progress import Progress, told
 from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import Scene
@@ -24,7 +25,7 @@ def sweep(
     zipped: bool = False,
     path: str | Path | None = None,
     threads: int | None = None,
-    engine: Any = None,
+    executor: Executor | None = None,
     shard: None = None,
     progress: Progress = None,
 ) -> Sweep: ...
@@ -47,7 +48,7 @@ def sweep(
     zipped: bool = False,
     path: str | Path | None = None,
     threads: int | None = None,
-    engine: Any = None,
+    executor: Executor | None = None,
     shard: str | None = None,
     progress: Progress = None,
 ) -> Sweep | int:
@@ -122,8 +123,8 @@ def sweep(
     check_object("sweep", scene, Scene)
     if not statistics or not set(statistics) <= set(STATISTICS):
         raise ValueError(f"statistics = {statistics!r}: give one or both of {', '.join(STATISTICS)}")
-    if path is None and (engine not in (None, "threads") or shard is not None):
-        raise ValueError("engine, shard: they need a file; give path, or leave them out")
+    if path is None and not (executor is None and shard is None):
+        raise ValueError("executor, shard: they need a file; give path, or leave them out")
     axes, chosen = axes_of(over, zipped=zipped), tuple(statistics)
     if path is None:
         with use_threads(threads), told(progress, "surfaces") as tell:
@@ -136,8 +137,9 @@ def sweep(
 
     path = Path(path)
     scene = with_recorded_seed(scene, path)
-    with asked_of(engine, threads, shard, progress) as (draws, part, tell):
+    part = check_how(executor, threads, shard)
+    with told(progress, "surfaces") as tell:
         asked = Asked.from_texts(*Asked.of(scene, axes).texts())  # as workers read it
         job = Job.of_sweep(asked, path)
-        left = make(job, By(draws, threads, weighted(job.reducers, tell)), part)
+        left = make(job, By(executor, threads, weighted(job.reducers, tell)), part)
     return left if part else open_sweep(path, chosen)

@@ -14,11 +14,10 @@ Progress = bool | Tell | None
 
 
 @contextmanager
-def told(progress: Progress, unit: str, beside: str = "") -> Iterator[Tell]:
+def told(progress: Progress, unit: str) -> Iterator[Tell]:
     """The function to call with ``(done, total)``, from ``progress=`` of any call.
 
-    True draws a bar that counts in `unit`, with a line `beside` it as in `bar`; a function is called; None
-    and False do nothing.
+    True draws a bar that counts in `unit`; a function is called; None and False do nothing.
 
     Raises
     ------
@@ -26,7 +25,7 @@ def told(progress: Progress, unit: str, beside: str = "") -> Iterator[Tell]:
         If `progress` is something else.
     """
     if progress is True:
-        with watched(), bar(unit, beside) as show:
+        with watched(), bar(unit) as show:
             yield show
     elif callable(progress):
         yield progress
@@ -37,8 +36,8 @@ def told(progress: Progress, unit: str, beside: str = "") -> Iterator[Tell]:
 
 
 @contextmanager
-def bar(unit: str, beside: str = "", *, terminal: bool = False) -> Iterator[Tell]:
-    """A bar on standard error, with `terminal` only on one that is `watched`; a line may be said `beside` it.
+def bar(unit: str, *, terminal: bool = False) -> Iterator[Tell]:
+    """A bar on standard error, with `terminal` only on one that is `watched`.
 
     Its rate is that of this call, without earlier work.
     """
@@ -48,8 +47,6 @@ def bar(unit: str, beside: str = "", *, terminal: bool = False) -> Iterator[Tell
     from tqdm import tqdm
 
     bars: list[Any] = []
-    if beside and sys.stderr.isatty():
-        tqdm.write(beside, file=sys.stderr)
 
     def show(done: float, total: float) -> None:
         if not bars:

@@ -1,7 +1,7 @@
-"""What engines cost, and how far they scale: ``python runs/reliability/scaling.py [-o FOLDER]``.
+"""What executors cost, and how far they scale: ``python runs/reliability/scaling.py [-o FOLDER]``.
 
 Blocks here take a second and give 1 MiB each, but wait instead of computing: so what is measured is the
-engine and the commit, not the processor, and more workers than cores can be tried. Writes `scaling.json`
+executor and the commit, not the processor, and more workers than cores can be tried. Writes `scaling.json`
 and `scaling.png` into FOLDER (left out: `runs/out`).
 """
 
@@ -10,14 +10,16 @@ import hashlib
 import json
 import tempfile
 import time
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from pathlib import Path
 
+import distributed
 import numpy as np
 
 import mcgw
-from mcgw.jobs.dask_engine import Dask
 from mcgw.jobs.driver import Signals, drive
-from mcgw.jobs.engines import Processes, Threads
+from mcgw.jobs.executors import Jobs
 from mcgw.store.shards import Span, commit_shard
 
 SECONDS, ROWS, COLUMNS = 1.0, 1024, 128
@@ -31,7 +33,7 @@ def wait_and_commit(folder, first, seconds):
 
 
 def nothing(*_):
-    """A block that costs nothing: what is left is the engine."""
+    """A block that costs nothing: what is left is the executor."""
     return RUN
 
 
@@ -42,12 +44,12 @@ def commit(folder, first, rows):
     return commit_shard(Path(folder) / span.file_name, RUN, span, {"load": load}, SECONDS).digest
 
 
-def wall(engine, blocks, seconds, task=wait_and_commit):
+def wall(executor, blocks, seconds, task=wait_and_commit):
     """Seconds for so many blocks."""
     spans, signals = [Span(ROWS * i, ROWS) for i in range(blocks)], Signals()
     with tempfile.TemporaryDirectory() as folder:
         begin = time.perf_counter()
-        drive(engine, spans, task, lambda s: (folder, s.first, seconds), lambda *_: None, signals)
+        drive(executor, spans, task, lambda s: (folder, s.first, seconds), lambda *_: None, signals)
         return time.perf_counter() - begin
 
 
@@ -81,26 +83,35 @@ def merge_seconds():
     return float(np.median(times)) / (size / 2**20)
 
 
+@contextmanager
+def dask_workers(n):
+    """Yield the executor of so many workers of this machine."""
+    with (
+        distributed.LocalCluster(n_workers=n, threads_per_worker=1, dashboard_address=None) as cluster,
+        distributed.Client(cluster, set_as_default=False) as client,
+    ):
+        yield client.get_executor(pure=False)
+
+
 def measure():
     """All figures."""
     result = {}
     result["commit"], result["merge_per_mib"] = commit_seconds(), merge_seconds()
-    for name, engine, workers, blocks in (
-        ("threads", Threads(), 1, 8),
-        ("processes", Processes(2), 2, 16),
-        ("dask", Dask(workers=2), 2, 16),
+    for name, make, workers, blocks in (
+        ("threads", ThreadPoolExecutor, 1, 8),
+        ("processes", Jobs, 2, 16),
+        ("dask", dask_workers, 2, 16),
     ):
-        wall(engine, 2 * workers, 0.0)  # workers import and connect
-        result[name] = wall(engine, blocks, SECONDS) / (blocks / workers * SECONDS) - 1
-        if name == "dask":
-            result["tasks_per_second"] = 500 / wall(engine, 500, 0.0, nothing)
-        engine.close()
+        with make(workers) as executor:
+            wall(executor, 2 * workers, 0.0)  # workers import and connect
+            result[name] = wall(executor, blocks, SECONDS) / (blocks / workers * SECONDS) - 1
+            if name == "dask":
+                result["tasks_per_second"] = 500 / wall(executor, 500, 0.0, nothing)
     curve = {}
     for workers in (1, 2, 4, 8, 16):
-        engine = Dask(workers=workers)
-        wall(engine, 2 * workers, 0.0)
-        curve[workers] = 6 * SECONDS / wall(engine, 6 * workers, SECONDS)
-        engine.close()
+        with dask_workers(workers) as executor:
+            wall(executor, 2 * workers, 0.0)
+            curve[workers] = 6 * SECONDS / wall(executor, 6 * workers, SECONDS)
     result["efficiency"] = curve
     return result
 
