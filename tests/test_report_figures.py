@@ -11,7 +11,6 @@ import analytic
 import mcgw
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import MemoryResults
-from mcgw.figures.contact_map import patch_figures
 from mcgw.figures.panels import draw
 from mcgw.reports.html import solution_of
 from mcgw.reports.report_figures import _relative_error, _spread, line_figure, pressure_curves
@@ -153,20 +152,6 @@ def test_every_kind_has_its_curves(scene, changes):
         assert np.all(rising * np.diff(series.theory) > 0), panel.title
         assert np.all(series.band[0] <= series.theory)
         assert np.all(series.theory <= series.band[1])
-
-
-def test_contacts_of_the_picture_are_those_of_the_file(scene):
-    """Surface 0, at the separation of the scene where the share that touches is nearest to 0.3."""
-    ensemble = mcgw.simulate(scene)
-    found = patch_figures(scene)
-    k = scene.separations.index(found.separation)
-    assert found.contacts == ensemble.contacts[0, k]
-    assert found.separation == 0.5  # 0.31 of a Gaussian's summits are above
-    many = patch_figures(scene.replace(nominal_area="1 m^2"))
-    assert not many.whole
-    assert many.contacts == pytest.approx(0.31 * 20_000, rel=0.05)
-    assert patch_figures(scene.replace(sampler="aggregate")) is None
-    assert patch_figures(scene.replace(separations=[8.0, 9.0])) is None
 
 
 def test_the_band_of_separations_is_that_of_the_exact_law(scene):

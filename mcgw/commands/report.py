@@ -9,7 +9,7 @@ EXAMPLE = "mcgw report demo.h5 -o demo.html"
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of this command."""
-    parser.add_argument("file", type=Path, metavar="FILE", help="file of an ensemble or of a sweep (HDF5)")
+    parser.add_argument("file", type=Path, metavar="FILE", help="file of an ensemble (HDF5)")
     parser.add_argument("-o", "--output", type=Path, metavar="HTML", help="default: FILE.html")
 
 
@@ -17,26 +17,15 @@ def execute(args: argparse.Namespace) -> int:
     """Write the page and print its path."""
     from mcgw.commands.outputs import HTML, Output, check_outputs
     from mcgw.commands.voice import news, tell_cautions
-    from mcgw.ensemble.ensemble import Ensemble
     from mcgw.formats.files import write_whole
-    from mcgw.machine.progress import bar
-    from mcgw.store.ensembles import read_attributes
-    from mcgw.sweeps import open_results
+    from mcgw.reports.html import report_html
+    from mcgw.store.ensembles import open_ensemble, read_attributes
 
     path = args.output or args.file.with_suffix(".html")
-    result = open_results(args.file)
+    ensemble = open_ensemble(args.file)
     check_outputs([Output(path, HTML)], inputs=[args.file])
-    attributes = read_attributes(args.file)
-    if isinstance(result, Ensemble):
-        from mcgw.reports.html import report_html
-
-        page = report_html(result, attributes)
-    else:
-        from mcgw.reports.html import sweep_report_html  # most files are no sweeps
-
-        with bar("points", terminal=True) as show:
-            page = sweep_report_html(result, attributes, progress=show)
+    page = report_html(ensemble, read_attributes(args.file))
     write_whole(path, [page.encode()])
     news(f"{path}: report, {len(page.encode()) / 1e6:.2f} MB; open it in a browser")
-    tell_cautions(result, f"mcgw show {args.file}")
+    tell_cautions(ensemble, f"mcgw show {args.file}")
     return 0

@@ -15,7 +15,7 @@ from analytic.arrays import Array, Marks
 from analytic.laws import Ways
 from mcgw.figures.style import STYLE, save_figure
 from mcgw.maps.envelope import envelope
-from mcgw.maps.synthetic import Asperities, asperities_of
+from mcgw.maps.synthetic import Asperities
 from mcgw.maps.topography import Topography
 from mcgw.scene.scene import Scene
 
@@ -26,12 +26,6 @@ _INCHES = 6.0
 _DPI = 160
 _VISIBLE = 1.8  # least pixels of the figure per radius of the median spot
 _POINTS = 800  # points of the height map along each side
-_MOST = 200_000  # asperities of a surface that is drawn as a whole
-_FEWER = 20_000  # of a patch of a larger one
-_SHARE = 0.3  # of the asperities that touch at a moderate separation
-_PATCH_POINTS = 400  # of the map along each side
-_SHOWN = 150.0  # summits on the part of the map that is drawn
-_DEPTH = 6.0  # depth of the height scale below the mean summit, in sigma
 
 
 @dataclass(frozen=True)
@@ -99,11 +93,6 @@ def _window(spots: Spots, size: tuple[float, float], most: float) -> Window:
     side = np.median(spots.radius) * most
     if side >= max(size):
         return 0.0, width, 0.0, height
-    return _middle(size, side)
-
-
-def _middle(size: tuple[float, float], side: float) -> Window:
-    """The central square of this side of a map, if it fits."""
     left, bottom = (max(n - side, 0) / 2 for n in size)
     return left, min(left + side, size[0]), bottom, min(bottom + side, size[1])
 
@@ -155,7 +144,7 @@ def contact_map_figure(
     topography = envelope(field, (_POINTS, _POINTS), periodic=periodic, window=window)
     figure = Figure(figsize=(inches + 2.2, inches + 0.6), layout="constrained")
     axes = figure.add_subplot()
-    _draw_heights(figure, axes, topography, window, float(np.percentile(topography.heights, 5)))
+    _draw_heights(figure, axes, topography, window)
     inside = _inside(spots, window)
     values, norm, label, scale = _values(spots, inside, colour)
     diameters = 2e6 * spots.radius[inside]
@@ -190,70 +179,17 @@ def _values(spots: Spots, inside: Marks, colour: Colour) -> tuple[Array, Normali
     return np.maximum(spots.load[inside], 1e-6 * top), LogNorm(1e-3 * top, top), "load of a spot (mN)", 1e3
 
 
-def _draw_heights(
-    figure: Figure, axes: Any, topography: Topography, window: Window, lowest: float, **look: Any
-) -> None:
-    """The height map, its colours from the lowest height on, m."""
-    extent = tuple(1e6 * edge for edge in window)
+def _draw_heights(figure: Figure, axes: Any, topography: Topography, window: Window) -> None:
+    """Draw the height map, its grey scale from the 5th percentile of the heights on."""
+    left, right, bottom, top = (1e6 * edge for edge in window)
+    heights = 1e6 * topography.heights
     image = axes.imshow(
-        1e6 * topography.heights, origin="lower", interpolation="nearest", extent=extent, vmin=1e6 * lowest,
-        cmap=look.get("cmap", "gray"),
-    )  # fmt: skip
-    axes.set(xlabel="x (µm)", ylabel="y (µm)", xlim=extent[:2], ylim=extent[2:], aspect="equal")
-    figure.colorbar(image, ax=axes, label=look.get("label", "height (µm)"), shrink=0.85, pad=0.02)
-
-
-@dataclass(frozen=True)
-class Patch:
-    """Two figures, and the separation and number of contacts of the second."""
-
-    heights: Figure
-    spots: Figure
-    separation: float
-    contacts: int
-    whole: bool
-
-
-def patch_figures(scene: Scene) -> Patch | None:
-    """Heights of the first surface, and its contacts at a moderate separation.
-
-    A surface of more than 200 000 asperities is shown by a patch of another one of 20 000. None where the
-    sampler has no single asperities, or nothing touches.
-    """
-    whole = scene.n_asperities <= _MOST
-    try:
-        field = asperities_of(scene if whole else _smaller(scene), 0)
-    except ValueError:  # measured heights have no places, and some samplers draw no single heights
-        return None
-    separation = _moderate(scene, field)
-    if separation is None:
-        return None
-    spots = spots_at(scene, field, separation)
-    picture = contact_map_figure(field, spots, inches=3.6, visible=4.0)
-    sigma = scene.surface.sigma
-    return Patch(_patch_heights(field, sigma), picture, separation, int(spots.radius.size), whole)
-
-
-def _smaller(scene: Scene) -> Scene:
-    share = _FEWER / scene.n_asperities
-    return scene.replace(nominal_area=share * scene.surface.nominal_area, n_asperities=_FEWER)
-
-
-def _moderate(scene: Scene, field: Asperities) -> float | None:
-    """The separation of the scene that is nearest to that of so many contacts, of those with any."""
-    s = field.z / scene.surface.sigma
-    touched = [h for h in scene.separations if s.size and h < s.max()]
-    wanted = float(np.quantile(s, 1 - _SHARE)) if s.size else 0.0
-    return min(touched, key=lambda h: abs(h - wanted), default=None)
-
-
-def _patch_heights(field: Asperities, sigma: float) -> Figure:
-    """The middle of the map, as large as some hundred summits are."""
-    width, height = field.size
-    window = _middle(field.size, min(np.sqrt(_SHOWN * width * height / max(field.number, 1)), width, height))
-    topography = envelope(field, (_PATCH_POINTS, _PATCH_POINTS), window=window)
-    figure = Figure(figsize=(4.9, 4.2), layout="constrained")
-    lowest = max(float(np.percentile(topography.heights, 1)), -_DEPTH * sigma)
-    above = "height above the mean summit (µm)"
-    _draw_heights(figure, figure.add_subplot(), topography, window, lowest, cmap="viridis", label=above)
-    return figure
+        heights,
+        origin="lower",
+        interpolation="nearest",
+        extent=(left, right, bottom, top),
+        vmin=float(np.percentile(heights, 5)),
+        cmap="gray",
+    )
+    axes.set(xlabel="x (µm)", ylabel="y (µm)", xlim=(left, right), ylim=(bottom, top), aspect="equal")
+    figure.colorbar(image, ax=axes, label="height (µm)", shrink=0.85, pad=0.02)

@@ -1,4 +1,4 @@
-"""Reports of an ensemble and of a sweep: one HTML page each, without network or scripts."""
+"""Report of an ensemble: one HTML page without network or scripts."""
 
 import math
 import re
@@ -12,18 +12,15 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.labelled import statistics_table
 from mcgw.ensemble.solved import Solution
 from mcgw.ensemble.some_separations import how_many, shown
-from mcgw.figures.against_theory import sweep_figure
 from mcgw.figures.style import grading_label
 from mcgw.formats.numbers import number, typeset
 from mcgw.formats.table import Column, Table
-from mcgw.machine.progress import Progress, stages
+from mcgw.machine.progress import stages
 from mcgw.machine.terminal import one_line, plain_text
 from mcgw.reports.report_figures import (
     comparison_figures,
     first_surfaces,
-    line_figure,
     means_figures,
-    patch_pictures,
     pressure_pictures,
     pressure_table,
 )
@@ -34,10 +31,7 @@ from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.validity import Validity
 from mcgw.statistics.comparison import compare
-from mcgw.sweeps.over_points import sweep_cautions
-from mcgw.sweeps.sweep import Sweep
 
-_LISTED = 12  # points
 Facts = list[tuple[str, str]]
 
 
@@ -48,14 +42,12 @@ def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
     """
     scene, against = ensemble.scene, ensemble.scene.validity()
     real = promise_of(ensemble.sampler).real_surfaces
-    with stages(4) as done:
+    with stages(3) as done:
         comparison, some = compare(ensemble) if real else None, shown(ensemble)
         done()
         first = first_surfaces(some) if "load" in scene.quantities else some
         at_pressure = list(pressure_pictures(first))
         solved = solution_of(scene, first) if real and at_pressure else None
-        done()
-        patch = patch_pictures(ensemble)
         done()
         figures = means_figures(some) if comparison is None else comparison_figures(comparison)
         tables = _means(some) if comparison is None else list(comparison.tables().values())
@@ -75,7 +67,6 @@ def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
         solved=solved and solved.sheet().table,
         budget=solved and solved.budget(),
         several=real and ensemble.n_surfaces > 1,
-        patch=patch,
         figures=figures,
         tables=[table.rows() for table in tables],
         tested=comparison is not None,
@@ -114,7 +105,7 @@ def solution_of(scene: Scene, first: Ensemble) -> Solution | None:
 def rendered(template: str, **values: Any) -> str:
     """Render a template of this folder; every text is escaped.
 
-    Pages extend ``page.html.j2``, which sets their look on screens and in print.
+    The page extends ``page.html.j2``, which sets its look on screens and in print.
     """
     from jinja2 import Environment, PackageLoader, StrictUndefined  # only pages need it
 
@@ -139,28 +130,6 @@ def _means(ensemble: Ensemble) -> list[Table]:
 def _shorter(scene: str) -> str:
     """The scene as TOML with each list on one line."""
     return re.sub(r"\[\n([^\]]*)\]", lambda found: f"[{' '.join(found[1].split()).rstrip(',')}]", scene)
-
-
-def sweep_report_html(sweep: Sweep, attributes: dict[str, Any], *, progress: Progress = None) -> str:
-    """Make the page of a sweep from it and the attributes of its file."""
-    comparison = compare(sweep, progress=progress)
-    verdict = comparison.verdict
-    first, h = sweep.scenes[0], sweep.separations
-    return rendered(
-        "sweep.html.j2",
-        title=one_line(first.title) or "Sweep of scenes",
-        agrees=verdict.agrees,
-        verdict=verdict.line,
-        words=f"{sweep.axes.size} scenes at {len(h)} separations from d/σ = {h.min():g} to {h.max():g}; "
-        f"{sum(group.n for group in sweep.groups)} surfaces were drawn, in {len(sweep.groups)} groups of "
-        "points that share surfaces.",
-        figure=line_figure(sweep_figure(comparison), "residuals of all points, and of the worst one"),
-        table=comparison.sheet(_LISTED).table,
-        cautions=sweep_cautions(sweep),
-        axes=[(key, sweep.axes.summary(key)) for key in sweep.axes.keys],
-        provenance=provenance_facts({**attributes, "sampler": first.sampler}, first.seed),
-        scene=plain_text(attributes["scene"]),
-    )
 
 
 def opening_words(ensemble: Ensemble) -> str:

@@ -1,8 +1,7 @@
-"""Figures of a report inside its page: lines as SVG, height maps as PNG, each with words in its place."""
+"""Figures of a report inside its page, as SVG."""
 
 import io
 import re
-from base64 import b64encode
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
@@ -17,7 +16,6 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.intervals import exact_ends
 from mcgw.ensemble.results import MemoryResults
 from mcgw.figures.against_theory import quantity_panel
-from mcgw.figures.contact_map import patch_figures
 from mcgw.figures.data import FigureData, Panel, Points, Series
 from mcgw.figures.panels import draw
 from mcgw.figures.style import STYLE, write_figure
@@ -27,8 +25,6 @@ from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.statistics.comparison import Comparison
 
-_DPI = 150
-_FITTED = "Fitted to "  # how titles of scenes that mcgw fit writes begin, before the name of the map
 MOST_SURFACES = 2000  # that mean and band are of: more would move them by less than a line is wide
 _POINTS = 60
 _BAND, _OF_BAND = (0.05, 0.95), " Band: 5 to 95 % of the surfaces."
@@ -51,19 +47,13 @@ class PageFigure:
     label : str
         What it shows.
     svg : str
-        An element that takes the width it is given; empty for a picture.
-    uri : str
-        The data of a picture as the address of an image.
-    caption : str
-        Below it.
+        An element that takes the width it is given.
     panel : Panel, optional
         What is drawn, where a table has it too.
     """
 
     label: str
-    svg: str = ""
-    uri: str = ""
-    caption: str = ""
+    svg: str
     panel: Panel | None = None
 
 
@@ -114,32 +104,6 @@ def pressure_table(figures: Sequence[PageFigure], scene: Scene) -> Table | None:
     return Table(tuple(columns), f"Means; conductances: {joint_text(scene)}" if scene.thermal else "Means")
 
 
-def patch_pictures(ensemble: Ensemble) -> list[PageFigure]:
-    """Heights and contacts of one surface; empty where it has no single asperities."""
-    found = patch_figures(ensemble.surfaces_of)
-    if found is None:
-        return []
-    which = "surface 0 of the ensemble" if found.whole else "a similar patch of 20 000 asperities"
-    title = ensemble.scene.title
-    twin = (
-        f" A synthetic surface like {title[len(_FITTED) :].partition(':')[0]}."
-        if title.startswith(_FITTED)
-        else ""
-    )
-    return [
-        _dots(
-            found.heights,
-            f"height map of {which}",
-            f"Part of {which}, as written by mcgw surface; the scale ends 6 σ below the mean summit.{twin}",
-        ),
-        _dots(
-            found.spots,
-            f"{found.contacts} contact spots at d/σ = {found.separation:g}",
-            f"Its contacts at d/σ = {found.separation:g}, to scale, coloured by load.",
-        ),
-    ]
-
-
 def line_figure(figure: Figure, label: str) -> PageFigure:
     """An SVG element that takes the width it is given."""
     buffer = io.StringIO()
@@ -153,15 +117,6 @@ def line_figure(figure: Figure, label: str) -> PageFigure:
     mark = re.sub(r"\W+", "-", label)
     rest = re.sub(r'(id="|href="#|url\(#)', rf"\g<1>{mark}-", rest)
     return PageFigure(label, svg=f"{head}>{rest}")
-
-
-def _dots(figure: Figure, label: str, caption: str) -> PageFigure:
-    buffer = io.BytesIO()
-    with mpl.rc_context(STYLE):
-        write_figure(figure, buffer, format="png", dpi=_DPI, metadata={"Software": None})
-    return PageFigure(
-        label, uri=f"data:image/png;base64,{b64encode(buffer.getvalue()).decode()}", caption=caption
-    )
 
 
 def _spread(comparison: Comparison) -> FigureData:

@@ -76,7 +76,7 @@ def open_ensemble(path: str | Path) -> Ensemble:
         return Ensemble(run.scene, run.sampler, Summarised.of(run.scene, blocks))
     attributes, scene = described(path)
     if "axes" in attributes:
-        raise StoreError(f"{path}: holds a sweep; mcgw.open_sweep opens it")
+        raise StoreError(f"{path}: holds a sweep; mcgw.open_sweep opens it, mcgw compare and show take it")
     results: Held = FileResults(path)
     if scene.keep == "statistics":
         from mcgw.store.statistics_file import read_blocks
