@@ -92,7 +92,7 @@ STEPS = {
     "plain": {"cutoff": "3 um"},
     "uncut": {"cutoff": None, "form": "none"},
     "cubic": {"cutoff": "3 um", "form": "cubic", "trim": 3},
-    "sphere": {"cutoff": "3 um", "form": "sphere"},
+    "quadratic": {"cutoff": "3 um", "form": "quadratic"},
     "holes": {"cutoff": "3 um", "missing": "fill"},
     "masked": {"cutoff": "3 um", "missing": "mask", "parts": 3},
     "spikes": {"cutoff": "3 um", "spikes": "remove"},

@@ -229,7 +229,7 @@ CALLS = [
      r"^seconds = '1 m': give a finite number > 0 in s, such as 90 s"),
     (lambda: mcgw.fit("map.h5", cutoff="5 N"), r"^cutoff = '5 N': give a finite number > 0 in m"),
     (lambda: mcgw.fit("map.h5", cutoff=None, form="x"),
-     r"^form = 'x': choose one of plane, none, quadratic, cubic, quartic, sphere, cylinder$"),
+     r"^form = 'x': choose one of plane, none, quadratic, cubic, quartic$"),
     (lambda: mcgw.fit("map.h5", cutoff=None, parts=1), r"^parts = 1: give a whole number >= 2$"),
     (lambda: mcgw.fit("map.h5", cutoff=None, pixel=-1), r"^pixel = -1: give a finite number > 0 in m"),
     (lambda: mcgw.fit("absent.h5", cutoff=None), r"^absent\.h5: no such file$"),

@@ -1,8 +1,7 @@
-"""Bad points of a map: missing, spikes, bad edges, or cut off."""
+"""Bad points of a map: missing, spikes, or cut off."""
 
 import math
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -20,9 +19,6 @@ _OF_MEDIAN = 0.6745  # median over standard deviation of a Gaussian
 _ENOUGH = 2**20  # rings: enough for their median to a thousandth
 _BAND = 64  # rows processed together: their intermediate results fit the cache
 _OUT = 3.0  # ranges of the ring: 12 deviations of white noise beyond it; ridges, pits and peaks stay below
-_MOST = 8  # lines from an edge that are checked
-_JUMP = 5.0  # times the usual difference between neighbouring lines
-_LINES = 32  # fewer lines do not define a usual difference
 _LOOKED_AT = 2**18  # points tell the steps of up to some thousand levels
 _MOST_LEVELS = 2**12
 _MORE = 1.3  # times the points of the next level: of a summit that a step cuts, no level has more
@@ -125,32 +121,6 @@ def _of_seven(z: Array, extreme: Any) -> Array:
     two = extreme(z[:, :-1], z[:, 1:])
     four = extreme(two[:, :-2], two[:, 2:])
     return np.asarray(extreme(four[:, :-3], four[:, 3:]))
-
-
-def bad_edges(heights: Array) -> int:
-    """Number of lines at each edge up to the last that differs unusually from its neighbour.
-
-    Root mean squares of the differences between neighbouring rows, and columns, are compared with their
-    median over the map. No point may be missing.
-    """
-    worst = 0
-    for jumps in _jumps(heights):
-        if jumps.size + 1 < _LINES:
-            continue
-        wild = jumps > _JUMP * np.median(jumps)
-        if wild[_MOST:-_MOST].any():
-            continue  # such lines are everywhere
-        for side in (wild, wild[::-1]):
-            worst = max(worst, int(np.flatnonzero(np.append(False, side[:_MOST])).max(initial=0)))
-    return worst
-
-
-def _jumps(heights: Array) -> tuple[Array, Array]:
-    """Root mean squares of the differences between neighbouring rows, and columns."""
-    rows, columns = heights.shape
-    between_rows = [np.mean(np.square(below - above)) for above, below in pairwise(heights)]
-    between_columns = sum((np.square(np.diff(row)) for row in heights), np.zeros(columns - 1)) / rows
-    return np.sqrt(between_rows), np.sqrt(between_columns)
 
 
 @dataclass(frozen=True, slots=True)

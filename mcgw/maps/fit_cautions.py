@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from scipy import ndimage
 
-from mcgw.maps.bad_points import bad_edges, spike_heights
+from mcgw.maps.bad_points import spike_heights
 from mcgw.maps.fit import Fit
 from mcgw.maps.hidden_caps import CROWDED, visible
 from mcgw.maps.instrument import faults
@@ -27,8 +27,8 @@ _PEAKS, _UNSURE = 1.2, 0.2
 
 # First words of cautions, the most serious first: errors from a wrong unit to a few per cent.
 _GRAVEST = (
-    "slope", "unit", "spikes", "bends", "lines", "rounding", "step", "sub-area", "form", "edge", "range",
-    "tip", "cutoff", "pixel", "blur", "holes", "missing", "estimates", "lay", "skewness", "alpha", "peaks",
+    "slope", "unit", "spikes", "lines", "rounding", "step", "sub-area", "form", "range",
+    "cutoff", "pixel", "blur", "missing", "estimates", "lay", "skewness", "alpha", "peaks",
     "overlap", "summits", "waves", "x",
 )  # fmt: skip
 
@@ -40,12 +40,6 @@ def _units(topography: Topography) -> Iterator[str]:
         )
     if max(topography.pixel) > _WIDEST:
         yield f"unit: a pixel is {max(topography.pixel):g} m; was um or mm meant?"
-
-
-def _edges(topography: Topography) -> Iterator[str]:
-    if number := bad_edges(topography.heights):
-        points = "outermost points" if number == 1 else f"outermost {number} points"
-        yield f"edge: the {points} of the map jump more than all others; remove them with --trim {number}"
 
 
 def _spikes(topography: Topography) -> Iterator[str]:
@@ -116,7 +110,6 @@ def cautions(fit: Fit, ready: Prepared, use: str = "auto") -> list[str]:
     return _gravest_first(
         [
             *_units(level),
-            *_edges(level),
             *_spikes(level),
             *_alone(fit, level),
             *(_step(level) or _form(fit, level) or _waves(fit)),

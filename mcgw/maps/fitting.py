@@ -43,7 +43,7 @@ def fit(
     cutoff : float, str or None
         Shortest wavelength of the roughness (Gaussian filter, ISO 16610-61), m or text such as "5 um";
         None or "none": as measured.
-    form : {"plane", "none", "quadratic", "cubic", "quartic", "sphere", "cylinder"}, optional
+    form : {"plane", "none", "quadratic", "cubic", "quartic"}, optional
         Form to remove first.
     missing : {"auto", "mask", "fill"}, optional
         Missing points are filled from the edges of their holes. ``mask`` ignores them and points next to

@@ -6,38 +6,29 @@ from typing import Literal
 
 import numpy as np
 from scipy.ndimage import gaussian_filter, gaussian_filter1d
-from scipy.optimize import least_squares
 
 from analytic.arrays import Array
 from mcgw.maps.steps import Form, LinesTo
 from mcgw.maps.topography import Topography
 
-ORDERS = {"none": -1, "plane": 1, "quadratic": 2, "cubic": 3, "quartic": 4, "sphere": 2, "cylinder": 2}
+ORDERS = {"none": -1, "plane": 1, "quadratic": 2, "cubic": 3, "quartic": 4}
 
 _ALPHA = math.sqrt(math.log(2) / math.pi)  # ISO 16610-61: half the amplitude is left at the cutoff
 _REACH = 1.0  # of the filter's window, in cutoffs: beyond lies a share of 5e-7
 _WINDOWS = 32  # half windows of rows filtered together
 _BAND = 16  # rows processed together, too few for threads of BLAS
-_POINTS = 96  # points along each axis that are used: a form is smooth
-_AXES = 4  # directions that are tried first
-
 _WIDTH = 10.0  # lines, standard deviation: of waves as long as 53 lines half is kept
 
 
 def without_form(topography: Topography, form: Form) -> Topography:
-    """Subtract the form of least squares: a polynomial of two coordinates, a sphere or a cylinder.
+    """Subtract the form of least squares: a polynomial of two coordinates.
 
     Missing points neither count nor get a height. The rest is no longer periodic, unless nothing was taken
     off.
     """
-    match form:
-        case "none":
-            return topography
-        case "sphere" | "cylinder":
-            shape = round_form(topography, axis=form == "cylinder")
-            left = np.subtract(topography.heights, shape, out=shape)
-        case _:
-            left = _without_polynomial(topography.heights, ORDERS[form])
+    if form == "none":
+        return topography
+    left = _without_polynomial(topography.heights, ORDERS[form])
     return replace(topography, heights=left, periodic=False)
 
 
@@ -129,65 +120,6 @@ def _window(topography: Topography, cutoff: float) -> tuple[int, int]:
     """Half its size along y and x, in points."""
     dx, dy = topography.pixel
     return max(math.ceil(_REACH * cutoff / dy), 1), max(math.ceil(_REACH * cutoff / dx), 1)
-
-
-def round_form(topography: Topography, *, axis: bool) -> Array:
-    """Heights of the sphere, or of the cylinder along an axis, that is nearest to a map, in m.
-
-    Least squares of distances along z. It may be tilted, hollow or flat: its parameters are height, two
-    slopes and curvature in the middle of the map, and the direction of the axis.
-
-    Raises
-    ------
-    ValueError
-        If the map does not lie on one sheet of the form.
-    """
-    rows, columns = topography.heights.shape
-    unit = max(topography.size) / 2
-    y, x = (
-        (np.arange(n) + 0.5 - n / 2) * p / unit
-        for n, p in zip((rows, columns), topography.pixel[::-1], strict=True)
-    )
-    j, i = (np.unique(np.linspace(0, n - 1, _POINTS).astype(int)) for n in (rows, columns))
-    some = topography.heights[np.ix_(j, i)] / unit
-    there = np.isfinite(some)
-    u, v = (np.broadcast_to(t, some.shape)[there] for t in (x[i], y[j][:, None]))
-    level, scale = float(some[there].mean()), float(np.ptp(some[there])) or 1.0
-
-    def misfit(p: Array) -> Array:
-        return np.asarray((level + scale * _height(u, v, p, scale, axis=axis) - some[there]) / scale)
-
-    turns = [math.pi * k / _AXES for k in range(_AXES)] if axis else [0.0]
-    starts = (np.array([0.0, 0.0, 0.0, bend, turn]) for turn in turns for bend in (1.0, -1.0))
-    found = min((least_squares(misfit, start, method="lm") for start in starts), key=lambda f: float(f.cost))
-    shape = unit * (level + scale * _height(x, y[:, None], found.x, scale, axis=axis))
-    return np.asarray(shape)
-
-
-def _height(u: Array, v: Array, p: Array, scale: float, *, axis: bool) -> Array:
-    """Of a sphere or cylinder above the middle of a map, over `scale`; u and v are lengths.
-
-    With curvature c and unit normal n in the middle, points X of a sphere have ``c |X|^2 = 2 n X``; of a
-    cylinder, whose axis has the direction a, ``c (|X|^2 - (a X)^2) = 2 n X``: a quadratic equation for the
-    height, whose smaller root stays regular where c vanishes.
-    """
-    height, slope_x, slope_y, bend, turn = p
-    along, across = scale * slope_x, scale * slope_y
-    upright = 1 / math.sqrt(1 + along**2 + across**2)
-    flat = -upright * (along * u + across * v)  # n X without the height
-    c = scale * bend
-    square, with_height, of_height = u * u + v * v, 0.0, 1.0
-    if axis:
-        cos, sin = math.cos(turn), math.sin(turn)
-        rise = along * cos + across * sin
-        length = math.sqrt(1 + rise**2)
-        beside = (cos * u + sin * v) / length  # a X without the height
-        up = rise / length
-        square, with_height, of_height = square - beside**2, up * beside, 1 - up**2
-    first = upright + c * with_height
-    under = first**2 - of_height * c * (c * square - 2 * flat)
-    root = np.sqrt(np.maximum(under, 0.0))
-    return np.asarray(height + (c * square - 2 * flat) / (first + root) / scale)
 
 
 def without_offsets(topography: Topography, lines: LinesTo) -> tuple[Topography, float]:

@@ -2,9 +2,8 @@
 
 Most faults put power into waves as short as a pixel, which is all of m4 and of the curvature of summits. So
 they are measured on the map between its cutoffs, where they count, by second differences; of a large map
-about a million of them are looked at. Isotropic Gaussian maps have as many pits as summits, as sharp; no row
-of theirs differs from its neighbours more than waves that cross it slantwise do; and none of their
-differences lies beyond seven deviations.
+about a million of them are looked at. No row of an isotropic Gaussian map differs from its neighbours more
+than waves that cross it slantwise do.
 """
 
 import math
@@ -15,18 +14,12 @@ import numpy as np
 from scipy import fft
 
 from analytic.arrays import Array
-from mcgw.maps.bad_points import BENT, usual_bend
 from mcgw.maps.form import gaussian_transmission
 from mcgw.maps.preparation import Prepared
 
 _ENOUGH = 2**20  # second differences
 _NEAR = slice(1, 9)  # waves along a row that are nearly as long as those that do not change along it
 _ALTERNATE = -0.4  # correlation of second differences of neighbours: -2/3 of independent offsets
-_TILES = 4  # along each axis, whose differences tell an error
-_SURE = 6.0  # standard errors, with 15 degrees of freedom: once in 80 000 maps
-_TRIMMED = 5.0  # deviations: spikes say nothing of valleys
-_SPIKES = 0.5  # of the bends in outliers, which have rims of the other sign
-_HONED = -0.3  # skewness of heights, below which valleys are deep, and sharp for that reason
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,43 +103,6 @@ def _second(z: Array) -> Array:
     return np.asarray(z[j - 1] - 2 * z[j] + z[j + 1])
 
 
-def _laplacian(ready: Prepared) -> Array:
-    """Sums of second differences along x and y, on such rows; nan where points do not count."""
-    z = ready.used.heights if ready.seen is None else np.where(ready.seen, ready.used.heights, np.nan)
-    j = np.arange(1, len(z) - 1, max(z.size // _ENOUGH, 1))
-    here = z[j]
-    return np.asarray(z[j - 1, 1:-1] + z[j + 1, 1:-1] + here[:, 2:] + here[:, :-2] - 4 * here[:, 1:-1])
-
-
-def _tip(ready: Prepared) -> float:
-    """Skewness of the bends, less what chance may give it."""
-    heights = ready.used.heights
-    deep = _skewness(heights[:: max(heights.size // _ENOUGH, 1)]) < _HONED
-    if deep or _outliers(ready) > _SPIKES:
-        return 0.0
-    bends = _laplacian(ready)
-    usual = usual_bend(bends)
-    bends = np.clip(bends - np.nanmedian(bends), -_TRIMMED * usual, _TRIMMED * usual)
-    tiles = [t for rows in np.array_split(bends, _TILES) for t in np.array_split(rows, _TILES, axis=1)]
-    several = np.array([_skewness(t) for t in tiles])
-    return _skewness(bends) - _SURE * float(np.nanstd(several)) / _TILES
-
-
-def _skewness(bends: Array) -> float:
-    z = bends[np.isfinite(bends)]
-    if z.size < 2 or not np.ptp(z) > 0:
-        return 0.0
-    z = (z - z.mean()) / z.std()
-    return float(np.mean(z * z * z))  # a power takes ten times as long
-
-
-def _outliers(ready: Prepared) -> float:
-    """Share of the mean square bend that points have which lie beyond all Gaussian ones."""
-    bends = _laplacian(ready)
-    far = np.abs(bends - np.nanmedian(bends)) > BENT * usual_bend(bends)
-    return float(np.sum(bends[far] ** 2) / np.nansum(bends**2))
-
-
 CHECKS = (
     Check(
         "range", lambda ready: ready.recorded.at_end, 1e-3,
@@ -167,20 +123,5 @@ CHECKS = (
         "lines", _lines(1), 0.05,
         "offsets between columns, as in a line scan, make {share:.2g} % of the curvature across them; level "
         "them with --lines columns",
-    ),
-    Check(
-        "tip", _tip, 0.05,
-        "valleys are sharper than summits (curvatures have the skewness {value:.2g} at least), as from a "
-        "blunt tip, or between caps; unless these are caps, use --cutoff of five times the width of the tip",
-    ),
-    Check(
-        "holes", lambda ready: ready.filled if ready.seen is None else 0.0, 0.01,
-        "{share:.2g} % of the points were missing and filled smoothly, which makes summits blunter; use "
-        "--missing mask, or a longer --cutoff",
-    ),
-    Check(
-        "bends", _outliers, 0.05,
-        "{share:.2g} % of m4 comes from points whose curvature exceeds seven deviations, as in small spikes; "
-        "use --spikes remove, or --cutoff of {pixels:.3g} pixels or more",
     ),
 )  # fmt: skip

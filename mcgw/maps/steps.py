@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-Form = Literal["plane", "none", "quadratic", "cubic", "quartic", "sphere", "cylinder"]
+Form = Literal["plane", "none", "quadratic", "cubic", "quartic"]
 Missing = Literal["auto", "mask", "fill"]
 SpikesTo = Literal["keep", "remove"]
 StepTo = Literal["keep", "crop"]

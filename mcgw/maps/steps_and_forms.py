@@ -1,4 +1,4 @@
-"""What a plane does not take off a map: a step between two terraces, a spherical or cylindrical form."""
+"""What a plane does not take off a map: a step between two terraces, a curved form."""
 
 from dataclasses import dataclass
 
@@ -18,8 +18,6 @@ _LINES = 0.5  # of all lines across a step
 _FIRST = 0.05  # of all lines may see it elsewhere
 _LONGEST = 2.3  # waves on the map; there are 20 such wave vectors
 _STRONGER, _COUNTS = 3.0, 0.05
-_ROUND: tuple[Form, ...] = ("sphere", "cylinder")
-_AS_MUCH = 0.02  # of its variance may be left
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,20 +95,18 @@ def form_left(topography: Topography, form: Form) -> FormLeft | None:
     """Find a polynomial that is more than long waves, on a map that this form was taken off.
 
     It is of second order, or of fourth where that was taken off already. It must hold more than a twentieth
-    of the variance, and three times what the longest waves do, two on the map, once it is taken off too. A
-    sphere or a cylinder is named where it takes off as much. No point may be missing.
+    of the variance, and three times what the longest waves do, two on the map, once it is taken off too. No
+    point may be missing.
     """
     more: Form = "quadratic" if ORDERS[form] < ORDERS["quadratic"] else "quartic"
     coarse = coarser(topography, _ENOUGH)
     rest = without_form(coarse, more).heights
-    longest, of_rest, left = _longest(rest), rest.var(), coarse.heights - rest
+    longest, left = _longest(rest), coarse.heights - rest
     variance = float(left.var())
     share = variance / _variance(topography.heights)
     if share < _COUNTS or variance < _STRONGER * longest:
         return None
-    enough = of_rest + _AS_MUCH * variance
-    simple = (f for f in _ROUND if more == "quadratic" and without_form(coarse, f).heights.var() < enough)
-    return FormLeft(share, float(np.ptp(left)), next(simple, more))
+    return FormLeft(share, float(np.ptp(left)), more)
 
 
 def _longest(z: Array) -> float:
