@@ -52,7 +52,7 @@ from analytic.heights import ExponentialHeights, Gaussian, HeightLaw, Weibull
 from analytic.integrals import fn, fn_between, fn_paper, fn_scaled
 from analytic.inversion import ratio_at_equal_load
 from analytic.law_rule import extent
-from analytic.laws import ContactLaw, Film, Hertz, Layer, Tangential, masing
+from analytic.laws import ContactLaw, Film, Hertz, Layer
 from analytic.measured_summits import MeasuredHeights, MeasuredRadii
 from analytic.model import Cumulants, Model
 from analytic.nayak import Nayak
@@ -65,7 +65,6 @@ from analytic.quantities import (
     QUANTITIES,
     RESISTANCES,
     SEPARATIONS,
-    TANGENTIAL,
     UNLOADING,
     Quantity,
     quantity_of,
@@ -100,17 +99,17 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ALL_QUANTITIES", "JOINT", "LAW_QUANTITIES", "PER_AREA", "QUANTITIES", "RESISTANCES", "SEPARATIONS",
-    "TANGENTIAL", "UNLOADING",
+    "UNLOADING",
     "Body", "ChangEtsionBogy", "Clipped", "Coated", "ContactLaw", "Cumulants", "Custom", "CustomLaw",
     "DerjaguinMullerToporov", "Exponential", "ExponentialHeights", "Film", "Fluctuations", "Gaussian",
     "Grading", "HeightLaw", "HeightRule", "HeightTable", "Hertz", "Homogeneous", "InteractingModel",
     "Interaction", "JacksonGreen", "JohnsonKendallRoberts", "Joint", "KogutEtsion", "Layer",
     "MeasuredHeights", "MeasuredRadii", "Model", "Nayak", "PiecewiseSeries", "PowerLawGraded", "Quantity",
-    "RandomCurvature", "ScipyHeights", "SpectralMoments", "Surface", "Table", "Tangential", "Weibull",
+    "RandomCurvature", "ScipyHeights", "SpectralMoments", "Surface", "Table", "Weibull",
     "ZhaoMaiettaChang",
     "area", "area_per_load", "area_per_load_ratio", "barber_conductance", "bends", "composite_modulus",
     "conductance", "contacts", "cooper_mikic_yovanovich", "critical_penetration", "extent", "first_negative",
-    "fn", "fn_between", "fn_paper", "fn_scaled", "harmonic_conductivity", "is_data", "load", "masing", "mean",
+    "fn", "fn_between", "fn_paper", "fn_scaled", "harmonic_conductivity", "is_data", "load", "mean",
     "mean_absolute_slope", "mean_modulus", "mikic_elastic", "name_of", "plasticity_index", "quantity_of",
     "ratio_at_equal_load", "resolved", "resolved_breaks", "stiffness", "stiffness_ratio",
     "summit_plasticity_index", "yielding_share",

@@ -15,7 +15,6 @@ from analytic.heights import Gaussian, HeightLaw
 from analytic.laws.branch import Ways
 from analytic.laws.film import Film
 from analytic.laws.law import ContactLaw
-from analytic.laws.tangential import Tangential
 from analytic.mean_contact import MeanContact, MeanPowers
 from analytic.measured_summits import MeasuredRadii
 from analytic.quantities import LAW_QUANTITIES, NOT_SUMS, Quantity, quantity_of
@@ -130,36 +129,6 @@ class MeanModel:
             In the shape of `h`; nan where no contact is to be expected in double precision.
         """
         return self._contact.share(piece, h)
-
-    def tangential_load(self, h: ArrayLike, tangential: Tangential) -> Array:
-        """Mean tangential load of a surface that is pressed on and then pushed sideways.
-
-        Parameters
-        ----------
-        h : array_like
-            Reduced separations, any shape.
-        tangential : Tangential
-            Friction, and displacements.
-
-        Returns
-        -------
-        ndarray
-            N, shape ``(*h.shape, displacements)``.
-
-        Raises
-        ------
-        ValueError
-            If the law is not that of elastic half-spaces.
-        """
-        if not self.ways.law.half_space:
-            raise ValueError(
-                f"law = {self.ways.law.name!r}: tangential loads need elastic half-spaces; use 'hertz' or "
-                "'power-law-graded'"
-            )
-        h, shifts = np.asarray(h, dtype=np.float64)[..., None], tangential.shifts(self.surface)
-        once, where = np.unique([h + 0 * shifts, h + shifts], return_inverse=True)  # u = 0 gives exactly 0
-        pressed, shifted = self.mean("load", once)[where].reshape(2, *h.shape[:-1], shifts.size)
-        return tangential.load(pressed, shifted)
 
     def separation_at(self, quantity: str, value: ArrayLike) -> Array:
         """Separation at which the mean has a given value.

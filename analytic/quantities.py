@@ -163,14 +163,11 @@ RESISTANCES = _by_name(
     ),
 )  # fmt: skip
 
-TANGENTIAL = Quantity("tangential_load", "tangential load", "N", 1.5, 1, 0.5, 4 / 3)
-
 # All that an ensemble can hold.
 ALL_QUANTITIES = {
     **QUANTITIES,
     **LAW_QUANTITIES,
     **UNLOADING,
-    TANGENTIAL.name: TANGENTIAL,
     **SEPARATIONS,
     **JOINT,
 }

@@ -32,7 +32,6 @@ Contact laws of an asperity, and other properties of contacts:
 `JohnsonKendallRoberts`  contacts that stick; also `DerjaguinMullerToporov`
 `Film`, `Layer`          resistivity of the bodies, a thin film, a layer: conductance in S or W/K
 `Joint`                  gas in the gap, which conducts in parallel with the spots
-`Tangential`             friction and tangential displacements; `masing`: unloading
 `Interaction`            asperity interaction: nominal and effective separations
 =======================  =========================================================================
 
@@ -105,11 +104,9 @@ if TYPE_CHECKING:
         RandomCurvature as RandomCurvature,
         ScipyHeights as ScipyHeights,
         Table as Table,
-        Tangential as Tangential,
         Weibull as Weibull,
         ZhaoMaiettaChang as ZhaoMaiettaChang,
         composite_modulus as composite_modulus,
-        masing as masing,
     )
     from mcgw.elasticity.elastic import elastic as elastic
     from mcgw.ensemble.ensemble import Ensemble as Ensemble
@@ -150,7 +147,7 @@ _HOMES = {
     "analytic": "Body ChangEtsionBogy Coated Custom CustomLaw DerjaguinMullerToporov Exponential "
     "ExponentialHeights Film Gaussian HeightTable Hertz Homogeneous Interaction JacksonGreen "
     "JohnsonKendallRoberts Joint KogutEtsion Layer MeasuredHeights MeasuredRadii Nayak PowerLawGraded "
-    "RandomCurvature ScipyHeights Table Tangential Weibull ZhaoMaiettaChang composite_modulus masing",
+    "RandomCurvature ScipyHeights Table Weibull ZhaoMaiettaChang composite_modulus",
     "mcgw.elasticity.elastic": "elastic",
     "mcgw.ensemble.ensemble": "Ensemble",
     "mcgw.ensemble.paired": "paired_ratio",

@@ -61,7 +61,7 @@ def p_values(seed, faults, surfaces=SURFACES, **more):
         scene = mcgw.Scene(**values)
     except mcgw.SceneError:
         return "refused"
-    names = [x for x in scene.quantities if x != "tangential_load"]
+    names = list(scene.quantities)
     name, k = str(dice.choice(names)), int(dice.integers(len(scene.separations)))
     h = scene.separations[k]
     try:

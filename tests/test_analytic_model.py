@@ -180,7 +180,6 @@ TOLD = {
     "spot_conductance": ("Spot conductance (m)", SPOT),
     "load_unloading": ("Load P (N), unloading", HERTZ),
     "spot_conductance_unloading": ("Spot conductance (m), unloading", SPOT),
-    "tangential_load": ("Tangential load (N)", HERTZ),
     "nominal_separation": ("Nominal separation", 1.0),
     "nominal_separation_unloading": ("Nominal separation, unloading", 1.0),
     "effective_separation": ("Effective separation", 1.0),

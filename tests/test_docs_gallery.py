@@ -134,18 +134,6 @@ def test_laws_of_yielding(pressure, more):
     assert says("laws_compared", "is a fifth to two fifths larger than Kogut and Etsion's")
 
 
-def test_sliding():
-    """Nine tenths of the friction are reached within some tenths of a micrometre, by summing over heights."""
-    model = analytic.Model(SURFACE)
-    push = np.linspace(0, 1.2e-6, 121)
-    tangential = analytic.Tangential(0.3, 0.3, push)
-    share = np.array([model.tangential_load(h, tangential) for h in (0.0, 1.0)]).reshape(2, -1)
-    share /= 0.3 * model.mean("load", np.array([0.0, 1.0]))[:, None]
-    reached = push[(share < 0.9).sum(axis=1)]
-    assert np.all((reached > 0.2e-6) & (reached < 0.7e-6))
-    assert says("before_it_slips", "within tenths of a micrometre")
-
-
 def test_errata_have_their_proofs(capsys):
     """Each row of the table is proved, and the numbers of the page are among those printed."""
     proofs = list(runpy.run_path(str(ROOT / "runs" / "errata.py"))["proofs"]())

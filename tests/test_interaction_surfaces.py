@@ -249,7 +249,6 @@ def test_a_file_holds_both_separations_and_goes_on(pressed, at, tmp_path):
 NOMINAL, EFFECTIVE = {"reference": "body", "at": "nominal"}, "body"
 KOGUT, JKR = analytic.KogutEtsion(critical=0.3), analytic.JohnsonKendallRoberts(pull_off=0.05)
 NEGATIVE = {"grading": analytic.Exponential(2.0), "separations": (-1.0, 1.0)}
-SIDEWAYS = analytic.Tangential(friction=0.3, displacements=(1e-7,), poisson=0.3)
 LOAD = 'add "load" to contact.quantities'
 # What is refused, a word of the line for it, and the neighbour that passes.
 REFUSED = {
@@ -257,10 +256,6 @@ REFUSED = {
     "no load there and back": (
         {"interaction": "body", "unload_from": "loop", "quantities": ["area"]}, LOAD,
         {"quantities": ["area", "load"]},  # with its way back
-    ),
-    "sideways": (
-        {"interaction": "body", "tangential": SIDEWAYS}, r"leave out tangential or \[interaction\]",
-        {"tangential": None},
     ),
     "means alone": (
         {"interaction": "body", "sampler": "stratified"}, "interaction needs the load of each surface",

@@ -334,10 +334,3 @@ def test_ends_of_a_share_of_all_surfaces_are_those_of_the_exact_law(make_scene):
     ):
         assert exact_ends(none, "load", 0.9) is None
     assert exact_ends(scene, "depth", 0.9) is None
-
-
-def test_a_difference_of_loads_has_no_interval(make_scene):
-    pushed = mcgw.Tangential(friction=0.3, poisson=0.3, displacements=[1e-8])
-    e = mcgw.simulate(make_scene(separations=(1.0,), n_surfaces=4, tangential=pushed))
-    with pytest.raises(ValueError, match=r"^tangential_load has no interval, .* use its stderr$"):
-        e.interval("tangential_load")

@@ -33,7 +33,6 @@ def scene(**changes):
 
 
 YIELDS = mcgw.KogutEtsion(hardness=1.2e9, poisson=0.3)
-PUSHED = mcgw.Tangential(friction=0.3, poisson=0.3, displacements=[1e-8, 1e-7])
 SPECTRUM = mcgw.SpectralSurface(m0=1e-12, m2=1e-3, m4=1e7, nominal_area="1 mm^2", E_star="80 GPa")
 SCENES = {
     "hertz": scene(),
@@ -41,7 +40,6 @@ SCENES = {
     "yields, and back": scene(
         law=YIELDS, unload_from=-0.5, quantities=["load", "yielded", "contacts", "area"]
     ),
-    "pushed": scene(tangential=PUSHED),
     "interacting": scene(interaction="body"),
     "balanced": scene(interaction={"reference": "mean-plane", "at": "nominal"}, n_surfaces=150),
     "crowds": scene(sampler="aggregate", n_asperities=10**7),
@@ -250,14 +248,14 @@ def test_the_file_is_read_by_others_and_says_when_it_is_damaged(tmp_path):
     for package in ("h5netcdf", "pandas"):
         pytest.importorskip(package)
     path = tmp_path / "a.h5"
-    e = run(scene(tangential=PUSHED), path, keep="statistics")
+    e = run(scene(), path, keep="statistics")
     with xarray.open_dataset(path, engine="h5netcdf") as file:
         np.testing.assert_array_equal(file["load_mean"], e.mean("load"))
         assert file["load_quantile"].dims == ("probability", "separation")
-        assert file["tangential_load_std"].dims == ("separation", "displacement")
+        assert file["load_std"].dims == ("separation",)
         assert file["load_std"].units == "N"
         xarray.testing.assert_equal(file[list(e.to_xarray())].load(), e.to_xarray())
-        full = mcgw.simulate(scene(tangential=PUSHED))
+        full = mcgw.simulate(scene())
         columns = np.concatenate([full[name].reshape(e.n_surfaces, -1) for name in full.scene.shapes], axis=1)
         np.testing.assert_allclose(file["covariance"], np.cov(columns.T), rtol=1e-9, atol=1e-300)
         assert file["covariance"].dims == ("column", "other_column")

@@ -1,4 +1,4 @@
-"""The exact theory of the way back, of films, and of surfaces pushed sideways."""
+"""The exact theory of the way back, and of films."""
 
 import math
 from dataclasses import replace
@@ -20,7 +20,7 @@ from analytic import (
     PowerLawGraded,
     quantity_of,
 )
-from analytic.laws import DerjaguinMullerToporov, Film, JohnsonKendallRoberts, Tangential, Unloading
+from analytic.laws import DerjaguinMullerToporov, Film, JohnsonKendallRoberts, Unloading
 
 LAW = KogutEtsion(critical=0.05)
 BACK = Model(SURFACE, law=LAW, unload_from=0.5)
@@ -191,9 +191,6 @@ def test_questions_without_an_answer_are_refused():
         BACK.slope("load_slope_unloading", 0.6)
     with pytest.raises(ValueError, match="quantity = 'conductance_si': give a film"):
         BACK.mean("conductance_si", 1.0)
-    for law in (LAW, Coated(ratio=3.0, reduced_thickness=0.5)):
-        with pytest.raises(ValueError, match="tangential loads need elastic half-spaces; use"):
-            Model(SURFACE, law=law).tangential_load(1.0, pushed(0.1))
 
 
 @pytest.mark.parametrize(
@@ -276,36 +273,6 @@ def test_films_on_spots_that_yield(name, back):
     m2 = integral(lambda s: conducted(s) ** 2, marks)
     spread = float(replace(model, count="poisson", n_asperities=1.0).std(name, h))
     assert spread / quantity_of(name).scale(SURFACE) == pytest.approx(math.sqrt(m2), rel=1e-10)
-
-
-# Tangential loads
-
-
-def pushed(shift):
-    """A displacement that shifts the second normal load by so much."""
-    ratio = 2 * (1 - 0.3) / (2 - 0.3)  # Mindlin: of the tangential to the normal stiffness
-    return Tangential(0.3, 0.3, [0.0, shift * 0.3 * SURFACE.sigma / ratio])
-
-
-def test_tangential_load_at_its_check_value():
-    """physics.md A.9."""
-    model = Model(SURFACE)
-    found = model.tangential_load([[1.0]], pushed(0.1)) / (
-        0.3 * model.number * quantity_of("load").scale(SURFACE)
-    )
-    assert found.shape == (1, 1, 2)
-    np.testing.assert_allclose(found[0, 0], [0.0, 0.0143314500896241], rtol=1e-12)
-
-
-@pytest.mark.parametrize("law", [None, PowerLawGraded(0.5, reduced_c0=1.0)])
-def test_tangential_loads_rise_to_the_friction(law):
-    model = Model(SURFACE, law=law, grading=Exponential(0.2))
-    h = np.array([-1.0, 2.0])
-    gross = 0.3 * model.mean("load", h)
-    for far in (50.0, 3e6 + 0.03):
-        np.testing.assert_array_equal(model.tangential_load(h, pushed(far))[:, 1], gross)
-    half = model.tangential_load(h, pushed(0.3))[:, 1]
-    assert np.all((half > 0) & (half < gross))
 
 
 # Contacts that stick

@@ -115,7 +115,6 @@ COMPANY = {
     ("contact", "film_resistance"): ("1e-12", {"resistivity": "1e-7"}),
     ("contact", "layer"): ("{thickness = 1e-5, conductivity = 1.3}", {"conductivities": "[150.0, 16.0]"}),
     ("contact", "checked"): ("false", CUSTOM),
-    ("contact", "tangential"): ("{friction = 0.3, poisson = 0.3, displacements = [1e-8]}", {}),
 }
 # With ~ what the schema lets pass: wrong by other keys or a file, or as only the program can know.
 WRONG = {
@@ -154,12 +153,6 @@ WRONG = {
     "unload_from": ["~0.5", "'back'", "~nan"], "film_resistance": ["-1", "'x'"],
     "conductivities": ["[1.0]", "[0.0, 1.0]", "1.0", "['x', 1.0]"],
     "layer": ["1", "{thickness = 1}", "{thickness = 0, conductivity = 1}"],
-    "tangential": ["1", "{}", "{friction = 0.3}", "{friction = 0, poisson = 0.3, displacements = [1e-8]}",
-                   "{friction = 0.3, poisson = 0.9, displacements = [1e-8]}",
-                   "{friction = 0.3, poisson = 0.3, displacements = []}",
-                   "{friction = 0.3, poisson = 0.3, displacements = [-1.0]}",
-                   "{friction = 0.3, poisson = 0.3, displacements = ['x']}",
-                   "{friction = 0.3, poisson = 0.3, displacements = [1e-8], u = 1}"],
     "uncertainty": ["1", "~{}", "{sigma = 3.0}", "{sigma = 0}", "{sigma = 0.1, m0 = 0.1}", "{E = 0.1}",
                     "~{m0 = 0.1}", "~{sigma = 0.1, correlation = [[1.0, 0.0]]}",
                     "{sigma = 0.1, correlation = 1}",
@@ -290,7 +283,6 @@ def test_the_lists_of_keys_are_whole(monkeypatch, example):
     for table, key in keys():
         mcgw.scene_from(text_of(table, key, good(table, key)))
     inner = {("contact.separations", name) for name in ("start", "stop", "num")}
-    inner |= {("contact.tangential", name) for name in ("friction", "poisson", "displacements")}
     inner |= {("joint.gas", name) for name in ("conductivity", "jump")}
     inner |= {("contact.layer", name) for name in ("thickness", "conductivity")}
     errors = ("sigma", "radius", "eta", "m0", "m2", "m4", "E_star", "correlation")

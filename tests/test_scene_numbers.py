@@ -125,9 +125,7 @@ DEEP = sqrt(0.5 / 0.05)  # root of the depth over the critical one
 # The variable of a piece from u = 1 to 4 is (u - 2)/(u + 2), stretched to -1..1.
 LATER = 0.05**1.5 * DEEP**2 * (2.0 + 0.5 * 3 * (DEEP - 2) / (DEEP + 2))
 SPOT = sqrt(1e-5 * 0.5e-6)
-PUSHED = "{friction = 0.3, poisson = 0.25, displacements = [1e-8]}"
 PRESSED = {"interaction": {"at": "'nominal'"}}
-SPENT = 2 * 0.75 / 1.75 * 1e-8 / 0.3 / 1e-6
 
 
 def changed(key, value, **tables):
@@ -270,7 +268,6 @@ ROWS = [
     ("contact.layer", "{thickness = 1e9, conductivity = 7.0}",
      changed("contact.conductivities", [150.0, 16.0]),
      simulated("conductance_si"), 4 * SPOT / (1 / 7 + 1 / 16)),
-    ("contact.tangential", PUSHED, {}, simulated("tangential_load"), 0.3 * (F - hertz(0.5 - SPENT))),
     ("ensemble.n_surfaces", 7, GAUSS, lambda s: mcgw.simulate(s).load.shape, (7, 1)),
     ("ensemble.n_asperities", 50, changed("contact.separations", -30.0, **GAUSS), simulated("contacts"), 50),
     ("ensemble.count", "'poisson'", GAUSS, lambda s: s.theory.std("contacts", -30.0), sqrt(1000)),

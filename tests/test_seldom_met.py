@@ -23,7 +23,6 @@ ensemble = {{n_surfaces = 10, n_asperities = 100, seed = 1{ensemble}}}
 """
 
 NONE = {"surface": "", "contact": "", "ensemble": ""}
-PUSHED = "{friction = 0.3, poisson = 0.25, displacements = [1e-8, 3e-8]}"
 # Of a scene file: what is added to a table, and the line that names it with what would do.
 ADDED = [
     ("surface", ", bodies = [{E = 7e10}, {E = inf}]",
@@ -39,8 +38,6 @@ ADDED = [
     ("contact", ', quantities = ["conductance_si"]',
      '"conductance_si" needs resistivity, or conductivities = [k1, k2]; give one'),
     ("contact", ', quantities = ["load", "yielded"]', 'no contact yields with law = "hertz"; leave it out'),
-    ("contact", f', quantities = ["area"], tangential = {PUSHED}',
-     'it needs normal loads; add "load" to contact.quantities'),
     ("contact", ', quantities = ["load_unloading"]', "'load_unloading' needs unloading; give"),
     ("ensemble", ', keep = "moments", sampler = "stratified"', 'sampler = "stratified" has none; use'),
     ("contact", ", yield_index = 3", "unknown key"),
@@ -135,9 +132,6 @@ REFUSED = [
     (lambda: mcgw.Film(), r"resistivity: give it in ohm m, or conductivities = \(k1, k2\)"),
     (lambda: mcgw.Film(conductivities=(1.0,)), "give two numbers > 0"),
     (lambda: mcgw.Film(conductivities=(1.0, 0.0)), "give two numbers > 0"),
-    (lambda: mcgw.Tangential(0.0, 0.3, [1e-8]), "friction = 0.0: give a coefficient of friction > 0"),
-    (lambda: mcgw.Tangential(0.3, 0.3, []), r"displacements = \[\]: give at least one"),
-    (lambda: mcgw.Tangential(0.3, 0.3, [0, -1e-8]), "displacements: -1e-08 is not a displacement"),
     (lambda: mcgw.Joint("air", temperature=-1.0), "temperature = -1.0: give a finite number > 0, in K"),
     (lambda: analytic.MeasuredHeights([0.0, 1.0]).pdf(np.ones(2)), "no density at s = 1;"),
     (lambda: analytic.MeasuredHeights([0.0, 1.0]).rvs(3, None), "n = 3: give 2, the number"),
@@ -174,9 +168,6 @@ LIMITS = {
             [SURFACE.sigma]),
     "gas_pressure": (lambda x: mcgw.Joint("air", gas_pressure=x), [1e-9], [0.0, np.inf]),
     "k": (lambda x: mcgw.PowerLawGraded(x, reduced_c0=1.0), [0, 0.999], [-1e-9, 1]),
-    "poisson": (lambda x: mcgw.Tangential(0.3, x, [1e-8]), [-0.999, 0.5], [-1, 0.501]),
-    "friction": (lambda x: mcgw.Tangential(x, 0.3, [1e-8]), [1e-9], [0.0, np.inf]),
-    "displacements": (lambda x: mcgw.Tangential(0.3, 0.3, [x]), [0.0], [-1e-30, np.inf]),
     "film_resistance": (lambda x: mcgw.Film(1.0, x), [0.0], [-1e-30, np.inf]),
     "area_fraction": (crowding_factor, [0.0, 0.999], [-1e-9, 1.0]),
     "terms": (lambda x: analytic.PiecewiseSeries([0, 1], [np.ones(x)]), [1, 64], [0, 65]),
@@ -241,9 +232,7 @@ def test_a_mistake_in_python_is_one_line(call, told, make_scene):
     assert told in str(caught.value)
 
 
-SIDEWAYS = {"friction": 0.3, "poisson": 0.25, "displacements": [1e-8, 3e-8]}
 FACTS = [
-    ({"tangential": SIDEWAYS}, ("sideways", "friction 0.3, Poisson's ratio 0.25, u up to 3e-08 m")),
     ({"unload_from": -0.5}, ("way back", "from d/sigma = -0.5")),
     ({"film": mcgw.Film(1e-7)}, ("film", "resistivity 1e-07 ohm m")),
     ({"film": mcgw.Film(1e-7, 2e-12)}, ("film", "resistivity 1e-07 ohm m, film 2e-12 ohm m^2")),

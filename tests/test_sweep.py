@@ -77,10 +77,6 @@ def test_a_table_among_many_exponential_gradings_keeps_its_numbers():
 
 SEVERAL = {
     "balance": (SCENE.replace(interaction="body"), {GAMMA: [1.0, 1.5]}),
-    "sideways": (
-        SCENE.replace(tangential=mcgw.Tangential(friction=0.3, poisson=0.3, displacements=[1e-8, 1e-7])),
-        {GAMMA: np.linspace(1.0, 2.0, 9)},
-    ),
     "breaks where others begin": (
         SCENE.replace(law=mcgw.KogutEtsion(critical=0.1), separations=[0.0, 0.1, 0.2, 0.3]),
         {"contact.critical": [0.05, 0.1, 0.2]},

@@ -110,15 +110,6 @@ def test_other_programs_read_it(tmp_path):
         assert data.attrs["filetype"] == "mcgw-results"
 
 
-def test_a_sweep_of_tangential_loads_has_a_file(tmp_path):
-    """Its shards have tables of four axes."""
-    pushed = mcgw.Tangential(friction=0.3, poisson=0.3, displacements=[1e-8, 1e-7])
-    scene = SCENE.replace(tangential=pushed)
-    held, memory = (mcgw.sweep(scene, {N: [50, 200]}, **to) for to in ({"path": tmp_path / "a.h5"}, {}))
-    assert held.mean("tangential_load").shape == (2, 3, 2)
-    assert np.array_equal(held.std("tangential_load"), memory.std("tangential_load"))
-
-
 @pytest.mark.parametrize("after", [1, 6])
 def test_interrupted_anywhere_it_goes_on_to_the_same_digest(tmp_path, monkeypatch, drawn, expected, after):
     """A damaged chunk is drawn again; a finished file is not."""

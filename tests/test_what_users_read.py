@@ -51,7 +51,7 @@ LINES = {
                "export pressed.toml --to moose --points 4 -o new/q.csv",
                "export joint.toml --to json --points 3 -o new/t.json"],
     "plans": [f"show --plan -v {name}.toml" for name in
-              ("pressed", "measured", "crowd", "strata", "pushed", "sticks", "spectral", "located")],
+              ("pressed", "measured", "crowd", "strata", "sticks", "spectral", "located")],
     "pages": ["report y.h5 -o new/y.html", "report s.h5 -o new/s.html", "show s.h5 -v",
               "sweep moments.toml --over grading.gamma=0.5:2:4 --plan"],
     "laws": ["regrade y.h5 --law zhao-maietta-chang --critical 0.1 -o new/z.h5",

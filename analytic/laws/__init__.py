@@ -7,7 +7,6 @@ from analytic.laws.branch import Branch, UnloadingBranch, Ways, term_of
 from analytic.laws.film import Film, Layer, SpotConductance, crowding_factor
 from analytic.laws.law import ContactLaw, Hertz, of_spot, piece_of
 from analytic.laws.regimes import Regimes, merged_heights, regimes_of
-from analytic.laws.tangential import Tangential, masing
 from analytic.laws.unloading import Unloading
 
 if TYPE_CHECKING:
@@ -27,9 +26,9 @@ __all__ = [
     "Branch", "ChangEtsionBogy", "Coated", "ContactLaw", "CustomLaw", "DerjaguinMullerToporov", "Film",
     "Hertz", "JacksonGreen", "JohnsonKendallRoberts", "KogutEtsion", "Layer",
     "PowerLawGraded",
-    "Regimes", "SpotConductance", "Tangential", "Unloading", "UnloadingBranch", "Ways",
+    "Regimes", "SpotConductance", "Unloading", "UnloadingBranch", "Ways",
     "ZhaoMaiettaChang", "by_name", "crowding_factor",
-    "masing", "merged_heights", "of_spot", "piece_of", "regimes_of", "term_of",
+    "merged_heights", "of_spot", "piece_of", "regimes_of", "term_of",
 ]  # fmt: skip
 
 _HOMES = {

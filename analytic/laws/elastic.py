@@ -55,7 +55,6 @@ class PowerLawGraded(ContactLaw):
 
     name: ClassVar[str] = "power-law-graded"
     root: ClassVar[bool] = False
-    half_space: ClassVar[bool] = True
     of_radius: ClassVar[tuple[str, float]] = ("reduced_c0", -0.5)
     in_si: ClassVar[tuple[str, str]] = ("c0", "a depth in m or over sqrt(R sigma)")
 

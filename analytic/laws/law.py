@@ -86,11 +86,6 @@ class ContactLaw:
         """Whether this is Hertz's law, for which closed forms exist."""
         return all(getattr(type(self), name) is getattr(ContactLaw, name) for name in _FORMULAS)
 
-    @property
-    def half_space(self) -> bool:
-        """Whether both bodies are elastic half-spaces."""
-        return self.hertz
-
     def check_constants(self, *others: str) -> None:
         """Refuse constants that are not numbers > 0, and two that fix the same thing, or neither of these."""
         names = [pair[0] for pair in (self.in_si, self.of_radius) if pair]

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import betainc, betaincc, gammainccinv, gammaincinv, ndtri, stdtrit
 
-from analytic import TANGENTIAL, Hertz, MeasuredHeights, RandomCurvature, quantity_of
+from analytic import Hertz, MeasuredHeights, RandomCurvature, quantity_of
 from analytic.arrays import Array, Marks
 from mcgw.ensemble.results import Held
 from mcgw.formats.table import Column
@@ -198,10 +198,6 @@ def interval_of(scene: Scene, sampler: str, sums: Held, name: str, level: float)
         contacts, asperities = sums.total_number(name), float(scene.n_asperities) * m
         ends = count_interval(contacts, asperities, poisson=scene.count == "poisson", level=level)
         return ends[0] / m, ends[1] / m
-    if name == TANGENTIAL.name:
-        raise ValueError(
-            f"{name} has no interval, because it is a difference of normal loads; use its stderr"
-        )
     spread = spread_of(scene, name)
     low, high = mean_interval(mean, spread, m, level)
     if laws_are_quick(scene) and scene.interaction is None and name not in scene.of_joint:

@@ -20,11 +20,10 @@ AXES = {  # of tables, in their order: unit and long name
     "surface": ("1", "number of the surface"),
     "probability": ("1", "share of the surfaces that are below"),
     "separation": ("1", "mean-plane separation d/sigma"),
-    "displacement": ("m", "tangential displacement"),
 }
 _AT = "mean +- stderr, d/sigma ="
 _MOST_SHOWN = 20_000_000  # numbers that are read for a short look; of more, only how many there are
-_OF_A_SURFACE = ("separation", "displacement")
+_OF_A_SURFACE = ("separation",)
 _WORDS = {
     "mean": "mean of the {}",
     "std": "standard deviation of the {} over surfaces",
@@ -99,10 +98,7 @@ def axis(name: str, values: Any) -> Variable:
 
 def axes_of(scene: Scene) -> dict[str, Variable]:
     """The coordinates that tables of one surface of a scene have."""
-    found = {"separation": axis("separation", scene.separations)}
-    if scene.tangential is not None:
-        found["displacement"] = axis("displacement", scene.tangential.displacements)
-    return found
+    return {"separation": axis("separation", scene.separations)}
 
 
 def values_of(scene: Scene, tables: Mapping[str, NDArray[Any]]) -> Labelled:

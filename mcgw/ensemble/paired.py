@@ -118,7 +118,7 @@ def _variance(x: Array) -> Array:
 def _same_asperities(one: Ensemble, other: Ensemble) -> bool:
     """Whether the surfaces are the same, where contact laws put edges between cells."""
     scenes = [replace(drawn_by(e.surfaces_of, e.sampler), n_surfaces=1) for e in (one, other)]
-    if scenes[0] == scenes[1] or all(s.hertzian and s.tangential is None for s in scenes):
+    if scenes[0] == scenes[1] or all(s.hertzian for s in scenes):
         return True
     from mcgw.sampling.asperities import same_heights  # compiled loops, which few pairs need
 

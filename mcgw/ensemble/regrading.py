@@ -28,7 +28,7 @@ Drawn = tuple[Array, Array, Array]  # moments, counts and single asperities of s
 Tables = dict[str, NDArray[Any]]
 
 _ROWS = 1024  # surfaces at a time
-_CONTACT = ("unload_from", "film", "tangential", "interaction", "joint")
+_CONTACT = ("unload_from", "film", "interaction", "joint")
 _HEIGHTS = 2**18  # at a time, or one surface
 _SAME = 1e-9  # relative difference of sums that are only rounded differently
 
@@ -67,7 +67,7 @@ def regrade(
         From kept moments: edges of the cells, such as the ensemble's own separations. Otherwise: any that are
         not lower than the ensemble's. Default: those of the ensemble.
     **contact
-        ``unload_from``, ``film``, ``tangential``, ``interaction`` or ``joint``, where they are to change;
+        ``unload_from``, ``film``, ``interaction`` or ``joint``, where they are to change;
         None leaves them out. By default they stay, where the law has them.
 
     Returns
@@ -148,7 +148,7 @@ def regraded_scene(
 
 def _unknown_under(law: ContactLaw) -> dict[str, None]:
     """What there cannot be under a law."""
-    unknown: dict[str, None] = {} if law.half_space else {"tangential": None}
+    unknown: dict[str, None] = {}
     try:
         law.unloading()
     except ValueError:
@@ -249,7 +249,7 @@ def sums_of_heights(ensemble: Ensemble, scene: Scene) -> Iterator[dict[str, Arra
             f"separation {scene.lowest:g} is smaller than {origin.lowest:g}, down to which the asperities of "
             "these surfaces were drawn; give larger ones, or simulate the scene again"
         )
-    lowest = replace(old, separations=(old.lowest,), tangential=None)
+    lowest = replace(old, separations=(old.lowest,))
     where = old.separations.index(old.lowest)
     step = max(int(_HEIGHTS / max(origin.touching, 1.0)), 1)
     for first in range(0, ensemble.n_surfaces, step):

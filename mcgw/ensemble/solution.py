@@ -183,7 +183,6 @@ def _drawn(scene: Scene, q: Quantity, separations: Sequence[float]) -> Scene:
         law=Hertz(),  # heights are what is drawn, the same under every law
         unload_from=None,
         film=None,
-        tangential=None,
         negative="clip" if scene.negative == "clip" else "allow",
     )
 

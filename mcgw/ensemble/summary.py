@@ -109,15 +109,7 @@ def _of_independent(scene: Scene) -> dict[str, tuple[Array, Array]]:
 def _mean_and_std(scene: Scene, name: str) -> tuple[Array, Array]:
     """Exact, of what one surface has of a table."""
     h, theory = np.array(scene.separations), scene.theory
-    if name != "tangential_load" or scene.tangential is None:
-        return theory.mean(name, h), theory.std(name, h)
-    pushed = scene.tangential
-    apart = [
-        theory.covariance(["load"], [*h, *(h + shift)])[0, :, 0] for shift in pushed.shifts(scene.surface)
-    ]
-    n = np.arange(len(h))
-    variance = np.stack([c[n, n] + c[n + len(h), n + len(h)] - 2 * c[n, n + len(h)] for c in apart], axis=-1)
-    return theory.tangential_load(h, pushed), pushed.friction * np.sqrt(np.maximum(variance, 0.0))
+    return theory.mean(name, h), theory.std(name, h)
 
 
 ROW = "block_"  # before the names of tables with one row for a whole block of surfaces

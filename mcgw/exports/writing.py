@@ -263,7 +263,7 @@ def surfaces_for(scene: Scene, kind: Kind, pressures: Array | None, points: int)
     return simulate(
         replace(
             scene, separations=tuple(h.tolist()), quantities=kind.needs, keep="sums", unload_from=None,
-            tangential=None, rel_err=None, max_seconds=None,
+            rel_err=None, max_seconds=None,
         )
     )  # fmt: skip
 

@@ -70,7 +70,6 @@ class Compared:
             unload_from=None,
             film=None,
             joint=None,
-            tangential=None,
             n_surfaces=max(min(self.asked.n_surfaces, _MOST_SURFACES, cheap), 1),
             sampler=self.asked.sampler if real else "auto",
             keep="sums",

@@ -12,7 +12,7 @@ from analytic.arrays import Array, Ints
 from mcgw.sampling.block import Block, Layout, Sampler
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.counts import Counts, contacts_above, counts_of
-from mcgw.sampling.direct import asperity_sums, tangential_loads
+from mcgw.sampling.direct import asperity_sums
 from mcgw.sampling.drawn_moments import Drawing, OneByOne
 from mcgw.sampling.outside import extra_heights
 from mcgw.sampling.response.response import Response
@@ -103,10 +103,7 @@ class Counted(Sampler):
             elif quantity_of(name).counts:
                 sums[name] = self._numbers(name, counts)
             else:
-                everywhere = next(answers)
-                sums[name] = everywhere[:, columns]
-                if name == "load" and scene.tangential:
-                    sums["tangential_load"] = tangential_loads(scene, everywhere)
+                sums[name] = next(answers)[:, columns]
         if not len(extras):
             return sums
         where, numbers = np.unique(extras[:, 0].astype(np.int64) - first, return_counts=True)

@@ -107,11 +107,10 @@ def _values(scene: Scene, heights: Array) -> Array:
     """What single asperities add to every value that is not counted, reduced; shape (heights, values)."""
     one = np.ones(len(heights))
     sums = asperity_sums(scene, one.astype(np.int64), heights, one)
-    scales = {name: quantity_of(name.replace("tangential_", "")).scale(scene.surface) for name in sums}
     parts = [
-        part.reshape(len(heights), -1) / scales[name]  # its fourth power is a number
+        part / quantity_of(name).scale(scene.surface)  # its fourth power is a number
         for name, part in sums.items()
-        if name == "tangential_load" or not quantity_of(name).counts
+        if not quantity_of(name).counts
     ]
     return np.concatenate([np.empty((len(heights), 0)), *parts], axis=1)
 

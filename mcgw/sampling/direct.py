@@ -4,7 +4,7 @@ Sums over given heights, by the formula of each contact: slow, literal, trusted.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -110,12 +110,6 @@ def asperity_sums(
     dict of str to ndarray
         Each quantity in SI units, shape (surfaces, separations).
     """
-    if scene.tangential:
-        plain = replace(scene, tangential=None)
-        loads = replace(plain, separations=scene.all_separations, quantities=("load",))
-        everywhere = asperity_sums(loads, numbers, heights, weights, ratios)["load"]
-        sums = asperity_sums(plain, numbers, heights, weights, ratios)
-        return {**sums, "tangential_load": tangential_loads(scene, everywhere)}
     if scene.hertzian:
         return _hertz_sums(scene, numbers, heights, weights, ratios)
     surface = np.repeat(np.arange(len(numbers)), numbers)
@@ -182,26 +176,3 @@ def _hertz_sums(
     for q, values in zip(asked, sums, strict=True):
         values *= q.scale(scene.surface)
     return dict(zip(scene.quantities, sums, strict=True))
-
-
-def tangential_loads(scene: Scene, loads: Array) -> Array:
-    """Differences of normal loads.
-
-    Parameters
-    ----------
-    scene : Scene
-        Pushed sideways.
-    loads : ndarray
-        Normal loads at `scene.all_separations`, shape (surfaces, all separations).
-
-    Returns
-    -------
-    ndarray
-        N, shape (surfaces, separations, displacements).
-    """
-    assert scene.tangential is not None
-    h = np.array(scene.separations)
-    shifted = h[:, None] + scene.tangential.shifts(scene.surface)
-    once = np.array(scene.all_separations)
-    below, above = loads[:, np.searchsorted(once, h)], loads[:, np.searchsorted(once, shifted)]
-    return scene.tangential.load(below[:, :, None], above)

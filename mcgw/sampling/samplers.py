@@ -277,7 +277,6 @@ def _lasting_layout(scene: Scene, mesh: Mesh, power: float | None) -> Layout:
         unload_from=None,
         film=None,
         joint=None,
-        tangential=None,
         quantities=tuple(QUANTITIES),
         negative="allow",
     )

@@ -194,18 +194,13 @@ class Fields(Values):
 
     @property
     def all_separations(self) -> tuple[float, ...]:
-        """Every separation at which loads are summed, increasing, with those shifted sideways."""
-        if self.tangential is None:
-            return tuple(sorted(set(self.separations)))
-        shifts = self.tangential.shifts(self.surface).tolist()
-        return tuple(sorted({h + shift for h in self.separations for shift in (0.0, *shifts)}))
+        """Every separation once, increasing."""
+        return tuple(sorted(set(self.separations)))
 
     @property
     def shapes(self) -> dict[str, tuple[int, ...]]:
         """Shape of each table of an ensemble, for one surface."""
         shapes: dict[str, tuple[int, ...]] = {name: (len(self.separations),) for name in self.quantities}
-        if self.tangential is not None:
-            shapes["tangential_load"] = (len(self.separations), len(self.tangential.displacements))
         if self.interaction is not None:
             shapes |= dict.fromkeys(self.other_separations, (len(self.separations),))
         if self.joint is not None:

@@ -77,15 +77,6 @@ def contact_facts(scene: Fields) -> list[tuple[str, str]]:
         facts.append(("way back", f"from d/sigma = {scene.unload_from:g}"))
     if scene.film is not None:
         facts.append(("film", conducting_text(scene.film)))
-    if scene.tangential is not None:
-        pushed = scene.tangential
-        facts.append(
-            (
-                "sideways",
-                f"friction {pushed.friction:g}, Poisson's ratio {pushed.poisson:g}, "
-                f"u up to {max(pushed.displacements):g} m",
-            )
-        )
     if scene.interaction is not None:
         felt = "nominal" if scene.interaction.nominal else "effective"
         places = f", summits at {'their own' if scene.own_places else 'random'} places" * scene.located

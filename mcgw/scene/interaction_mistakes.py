@@ -37,7 +37,7 @@ def _located(scene: Fields) -> Iterator[str]:
     if scene.rel_err is not None:
         yield f"ensemble.rel_err: no theory tells how {key} scatters; give n_surfaces"
     others = {
-        "contact.unload_from": scene.unload_from, "contact.tangential": scene.tangential,
+        "contact.unload_from": scene.unload_from,
         "contact: resistivity or conductivities": scene.film, "joint": scene.joint,
     }  # fmt: skip
     for other in (name for name, value in others.items() if value is not None):
@@ -68,8 +68,6 @@ def _independent(scene: Fields) -> Iterator[str]:
     assert scene.interaction is not None
     if "load" not in scene.quantities:
         yield 'interaction: separations depend on the load; add "load" to contact.quantities'
-    if scene.tangential is not None:
-        yield "contact.tangential: tangential loads do not interact; leave out tangential or [interaction]"
     if not promise_of(scene.sampler).real_surfaces:
         yield (
             f'ensemble.sampler = "{scene.sampler}": it draws means only, but interaction needs the load of '

@@ -4,7 +4,7 @@ import math
 from typing import Any
 
 import analytic
-from analytic.laws import Layer, Tangential
+from analytic.laws import Layer
 from mcgw.scene.kinds import ByName, Either, Flag, List, Number, Table, Text, Whole, Word
 from mcgw.scene.measured import Fitted
 from mcgw.scene.section import Key, TableOfKeys
@@ -56,8 +56,6 @@ _BODY = Table(
     "",
     analytic.Body,
 )
-_SHIFTS = Either((List(_NOT_NEGATIVE, advice="give a list of numbers >= 0, in m"), _NOT_NEGATIVE))
-_MOUNTED = (Key("friction", _POSITIVE, required=True), Key("poisson", POISSON, required=True))
 _LAYER = Table(
     (Key("thickness", Number("m"), required=True), Key("conductivity", _POSITIVE, required=True)),
     'give {thickness = "10 um", conductivity = 1.3} (m, W/(m K))',
@@ -71,12 +69,6 @@ _GASES = Either(
     ),
     _GAS,
 )
-_PUSHED = Table(
-    (*_MOUNTED, Key("displacements", _SHIFTS, required=True)),
-    "give {friction = 0.3, poisson = 0.3, displacements = [1e-8, 1e-7]} (m)",
-    Tangential,
-)
-
 # fmt: off
 TABLES: dict[str, TableOfKeys] = {
 "": TableOfKeys("", (
@@ -232,8 +224,6 @@ TABLES: dict[str, TableOfKeys] = {
         "conductivities")),
     Key("layer", _LAYER, '{thickness = "10 um", conductivity = 1.3}',
         "layer of any thickness on the first body (k₁): m, W/(m K)", needs=("conductivities",)),
-    Key("tangential", _PUSHED, "{friction = 0.3, poisson = 0.3, displacements = [1e-8]}",
-        "tangential displacements (m) with friction; adds `tangential_load`"),
 ), required=True),
 "interaction": TableOfKeys("[Asperity interaction](../explanation/interaction.md). Default: asperities are "
     "independent.", (

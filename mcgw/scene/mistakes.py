@@ -72,13 +72,6 @@ def _history(scene: Fields) -> Iterator[str]:
 
 def _law(scene: Fields) -> Iterator[str]:
     """A law that means nothing for this surface."""
-    if scene.tangential and not scene.law.half_space:
-        yield (
-            f'contact.tangential: the theorem needs elastic half-spaces, not law = "{scene.law.name}"; use '
-            '"hertz" or "power-law-graded"'
-        )
-    if scene.tangential and "load" not in scene.quantities:
-        yield 'contact.tangential: it needs normal loads; add "load" to contact.quantities'
     if scene.law.elastic and "yielded" in scene.quantities:
         yield f'contact.quantities: "yielded": no contact yields with law = "{scene.law.name}"; leave it out'
     if scene.hertzian:

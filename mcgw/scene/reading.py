@@ -177,7 +177,6 @@ def _contact(section: Section, objects: Values, heights: HeightLaw | None) -> Va
         **_softer(section, law, of_python="law" in objects),
         "unload_from": back,
         "film": film,
-        "tangential": section.read("tangential"),
         "quantities": (*names, *(name for name in also if name not in names)),
     }
 

@@ -75,9 +75,6 @@ class Scene(Fields, Shown):
         "conductance_si". Default: none.
     layer : Layer, optional
         Layer of any thickness on the first body: `mcgw.Layer`; becomes a part of `film`.
-    tangential : Tangential, optional
-        Friction and tangential displacements: `mcgw.Tangential`. Adds "tangential_load", of shape
-        (surface, separation, displacement). Default: none.
     interaction : Interaction, {"body", "mean-plane"} or dict, optional
         Asperity interaction: `mcgw.Interaction`, its reference alone, or its keys in a scene file. Adds
         "nominal_separation" or "effective_separation", and puts stiffness and conductance in series with

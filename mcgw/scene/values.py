@@ -24,7 +24,7 @@ from analytic import (
     RandomCurvature,
     Surface,
 )
-from analytic.laws import ContactLaw, Film, Layer, Tangential
+from analytic.laws import ContactLaw, Film, Layer
 from mcgw.scene.kinds import ByName, Either, List, Number, Table, Whole, Word
 from mcgw.scene.measured import Fitted, Uncertainty
 from mcgw.scene.promises import SAMPLERS
@@ -120,7 +120,6 @@ class Values:
     unload_from: As[float | Literal["loop"] | None, float | None] = object_or()
     film: Film | None = None
     layer: InitVar[Layer | None] = None
-    tangential: Tangential | None = None
     interaction: As["Interaction | str | dict[str, Any] | None", "Interaction | None"] = object_or()
     joint: As["Joint | str | dict[str, Any] | None", "Joint | None"] = object_or()
     quantities: As[Sequence[str] | None, tuple[str, ...]] = object_or()

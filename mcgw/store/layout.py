@@ -33,7 +33,7 @@ _LONG_NAMES = {
     "cells": "asperities in each cell",
     RAGGED: "asperities outside the cells: surface, height, weight",
 }
-_OF_SURFACES = ("surface", "separation", "displacement")  # axes of tables with values
+_OF_SURFACES = ("surface", "separation")  # axes of tables with values
 _PIECE = 2**23  # bytes read at a time
 _SCALE_CHUNK = 2**17  # numbers
 
@@ -124,10 +124,7 @@ def stored_text(scene: Scene) -> str:
 
 def scales_of(scene: Scene, surfaces: int) -> dict[str, NDArray[Any]]:
     """What the axes of the tables count; of the surfaces only the first ones."""
-    scales = {"surface": np.arange(surfaces), "separation": np.array(scene.separations)}
-    if scene.tangential is not None:
-        scales["displacement"] = np.array(scene.tangential.displacements)
-    return scales
+    return {"surface": np.arange(surfaces), "separation": np.array(scene.separations)}
 
 
 def body_of(ensemble: Ensemble, **about: Any) -> tuple[bytes, bytes]:

@@ -145,7 +145,7 @@ def between_two(scenes: Sequence[Scene]) -> tuple[tuple[int, int], Array] | None
     """
     one = scenes[0]
     # All that is kept must be linear in a modulus that is not negative.
-    linear = one.hertzian and one.tangential is None and one.interaction is None
+    linear = one.hertzian and one.interaction is None
     linear = linear and one.negative == "error" and one.keep != "statistics"
     gammas = [
         x.grading.gamma if isinstance(x.grading, Exponential) else 1.0 if x.grading == Homogeneous() else None
