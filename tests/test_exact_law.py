@@ -543,6 +543,41 @@ def test_heavy_tails_both_ways_leave_a_probability():
     assert cdf[-1] == pytest.approx(1, abs=1e-3)
 
 
+RADII = analytic.RandomCurvature(5.0)
+PULLS = {"law": analytic.JohnsonKendallRoberts(pull_off=2e-3), "grading": analytic.Homogeneous()}
+YIELDS = {"law": analytic.KogutEtsion(critical=0.05)}
+CURVED = {"curvature": RADII, "heights": RADII.heights}
+UNIFORM = {"heights": analytic.ScipyHeights(stats.uniform()), "grading": analytic.Homogeneous()}
+KINDS = {
+    "0.06 contacts": (100, {}, "load", 3.24, 2e-6),
+    "0.06 contacts that pull": (100, PULLS, "load", 3.24, 2e-4),
+    "no contact": (100, UNIFORM, "load", 5.0, 1e-6),
+    "all touch": (50, {}, "area", -9.0, 1e-6),
+    "unloading": (3000, YIELDS | {"unload_from": 1.0}, "load_unloading", 1.2, 1e-6),
+    "unloading of what pulls": (3000, PULLS | {"unload_from": 1.0}, "load_unloading", 2.5, 1e-6),
+    "own radii": (300, CURVED, "load", 2.5, 1e-4),
+    "own radii that yield": (300, CURVED | YIELDS, "load", 2.5, 1e-4),
+    "own radii that pull": (300, CURVED | PULLS, "load", 2.5, 1e-4),
+    "films": (3000, {"film": analytic.Film(conductivities=(16.0, 16.0))}, "conductance_si", 2.0, 1e-6),
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_kind_of_contact_has_a_law_with_its_moments(kind):
+    n, more, quantity, h, error = KINDS[kind]
+    of = model(n, **more)
+    law, known = of.distribution(quantity, h), of.cumulants(quantity, h)
+    assert law.error < error
+    shares = law.cdf(law.x)
+    middle, weights = (law.x[1:] + law.x[:-1]) / 2, np.diff(shares)
+    mean, std = float(weights @ middle), float(np.sqrt(known.variance))
+    assert mean == pytest.approx(float(known.mean), abs=2e-4 * std + 1e-90)
+    assert float(np.sqrt(weights @ (middle - mean) ** 2)) == pytest.approx(std, rel=2e-3)
+    assert np.all(np.diff(shares) >= 0)
+    np.testing.assert_array_equal(shares + law.sf(law.x), 1)
+    assert law.atom == pytest.approx(float(1 - of.rule(h).probabilities.sum()) ** n, abs=1e-6) or "un" in kind
+
+
 def test_nobody_pays_for_it_who_does_not_ask():
     code = "import analytic, mcgw.scene.scene, sys; sys.exit('analytic.distribution' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -170,37 +170,38 @@ class Table(Law):
     def error_at(self, y: ArrayLike) -> Array:
         """Return a relative error bound of the smaller one of cdf and sf, from the second computation."""
         y = np.asarray(y, dtype=np.float64)
-        found = np.maximum(self._apart(y), np.interp(y, *self._near))
-        beyond = ((y < self.x[0]) & (y >= self.ends[0])) | ((y > self.x[-1]) & (y < self.ends[1]))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            found = np.maximum(self._apart(y) / self._rarer(y), np.interp(y, *self._near))
+        beyond = (y < self.x[0]) | (y > self.x[-1])
         known = (y < self.ends[0]) | (y >= self.ends[1])
         return np.where(known, 0.0, np.where(beyond, 1.0, found))[()]
 
     @property
     def error(self) -> float:
         """Error bound of `cdf`, from the second computation."""
-        below, above = self._shares(self._places)
-        return float(np.max(self._apart(self._places) * np.minimum(below, above), initial=self.rounding))
+        return float(self._apart(self._places).max(initial=self.rounding))
+
+    def _rarer(self, y: Array) -> Array:
+        return np.asarray(np.minimum(*self._shares(y)))
 
     def _apart(self, y: Array) -> Array:
-        """Relative error bound by the second computation at these values alone."""
+        """Error bound by the second computation at these values alone."""
         (below, above), (lower, upper) = self._shares(y), self._other._shares(y)
         apart = np.where(below < above, np.abs(below - lower), np.abs(above - upper))
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return np.asarray((_SAFE * apart + self._bend(y) + self.rounding) / np.minimum(below, above))
+        return np.asarray(_SAFE * apart + self._bend(y) + self.rounding)
 
     @cached_property
     def _places(self) -> Array:
         """Values over the whole table."""
-        x = np.concatenate(
-            [self.ppf(_SHARES), self.isf(_SHARES), np.linspace(self.x[0], self.x[-1], _SHARES.size)]
-        )
-        return np.unique(x[np.minimum(*self._shares(x)) > self.rounding])
+        even = np.linspace(self.x[0], self.x[-1], _SHARES.size)
+        x = np.concatenate([self.ppf(_SHARES), self.isf(_SHARES), even])
+        return np.unique(x[self._rarer(x) > self.rounding])
 
     @cached_property
     def _near(self) -> tuple[Array, Array]:
-        """Those values, and the largest bound in the neighbourhood: differences pass through 0."""
-        x = self._places
-        bounds = np.pad(self._apart(x), _NEIGHBOURS, "edge")
+        """Those values, and the largest relative bound in the neighbourhood: differences pass through 0."""
+        x = self._places if self._places.size else self.x[-1:]
+        bounds = np.pad(self._apart(x) / np.maximum(self._rarer(x), self.rounding), _NEIGHBOURS, "edge")
         return x, np.lib.stride_tricks.sliding_window_view(bounds, 2 * _NEIGHBOURS + 1).max(axis=1)
 
     def _bend(self, y: Array) -> Array:
@@ -224,7 +225,7 @@ class Table(Law):
     def mapped(self, forward: Callable[[Any], Any], *, falls: bool = False) -> "Table":
         """Return the law of a function that rises, or falls, with the value."""
         middle, shares, _ = self._cells
-        mean, std = self.mean(), self.std()
+        mean, std = self.mean(), self.std() or 1.0
         f, slope = forward(middle), (forward(mean + std / 8) - forward(mean - std / 8)) / (std / 4)
         of_x, of_f = float(shares @ middle), float(shares @ f)
         more = self.var() - float(shares @ (middle - of_x) ** 2)  # than the table has

@@ -19,10 +19,11 @@ _MARGIN = 16  # lattice points read below the lowest sum, and filled beyond the 
 _NOTHING = 1e-100  # less than any sum but 0
 _FEW = 1e-25  # probability of no contact above which sums of none and of one are taken apart
 _REACH = 9.0  # standard deviations that hold all but 1e-18
-_RARE = 1e-3  # asperities on a surface that add more than usual ones
+_RARE = 1e-3, 1e-9  # asperities on a surface that add more, or less, than usual ones; than next to all
 _WIDER, _NARROWER, _LEVELS = 8, 16, 6
 _SMOOTH, _DIED = 1e3, 45.0  # mean over standard deviation of sums without steps; logarithm of their transform
 _RESOLVED = 5.0  # lattice points in a standard deviation of the usual sums
+_NEVER = 1e3  # a logarithm of what is 0
 _PLAIN = 8  # lattice points to the median of the values, of which half are resolved
 
 
@@ -97,7 +98,7 @@ class OneAsperity:
     def usual(self) -> tuple[float, float, float]:
         """Mean and standard deviation of sums without rare large values, and the largest value in them."""
         rarer = self.number * np.cumsum(self.probabilities[::-1])[::-1]
-        kept = rarer > min(_RARE, rarer[0] / 2)
+        kept = rarer > min(_RARE[0], rarer[0] / 2)
         x, p = self.values[kept], self.probabilities[kept]
         mean = float(p @ x)
         variance = float(p @ x**2) - (0.0 if self.poisson else mean**2)
@@ -132,13 +133,12 @@ class OneAsperity:
     @cached_property
     def lowest(self) -> float:
         """A sum that next to no surface stays below."""
-        least = min(float(self.values[0]), 0.0)
+        usual, rarest = (min(float(np.interp(x / self.number, self.upto, self.places)), 0.0) for x in _RARE)
         if self.few:
             contacts = self.number * self.share
-            return least * float(contacts + _REACH * np.sqrt(contacts) + 2 * _REACH)
+            return rarest + usual * float(contacts + _REACH * np.sqrt(contacts) + 2 * _REACH)
         mean, std, _ = self.usual
-        floor = -np.inf if least < 0 else 0.0
-        return max(mean - _REACH * std + _REACH * least, floor)
+        return max(mean - _REACH * std + rarest, -np.inf if rarest < 0 else 0.0)
 
     def widths(self, points: int) -> list[float]:
         """Lengths above the lowest sum that lattices cover, increasing."""
@@ -207,7 +207,8 @@ def _shared(one: OneAsperity, step: float, points: int, size: int) -> tuple[Arra
 def _log1p(q: Complex) -> Complex:
     """``log(1 + q)``, of which NumPy's loses digits where q is small."""
     with np.errstate(divide="ignore"):
-        return np.asarray(np.log1p(2 * q.real + np.abs(q) ** 2) / 2 + 1j * np.arctan2(q.imag, 1 + q.real))
+        size = np.maximum(np.log1p(2 * q.real + np.abs(q) ** 2) / 2, -_NEVER)
+    return np.asarray(size + 1j * np.arctan2(q.imag, 1 + q.real))
 
 
 def shares(one: OneAsperity, points: int) -> tuple[Array, Array, Array]:
