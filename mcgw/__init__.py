@@ -78,7 +78,6 @@ from mcgw.machine.terminal import bind_drawing
 
 if TYPE_CHECKING:
     from analytic import (
-        Body as Body,
         ChangEtsionBogy as ChangEtsionBogy,
         Coated as Coated,
         Custom as Custom,
@@ -129,7 +128,7 @@ if TYPE_CHECKING:
         scene_text as scene_text,
     )
     from mcgw.scene.section import SceneError as SceneError
-    from mcgw.scene.surface import SpectralSurface as SpectralSurface, Surface as Surface
+    from mcgw.scene.surface import Body as Body, SpectralSurface as SpectralSurface, Surface as Surface
     from mcgw.statistics.comparison import compare as compare
     from mcgw.statistics.convergence import converge as converge
     from mcgw.statistics.tradeoff import tradeoff as tradeoff
@@ -144,7 +143,7 @@ os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 # Where names come from. They are imported on first use: compiling and file formats cost a second, for which
 # `mcgw --help` should not wait.
 _HOMES = {
-    "analytic": "Body ChangEtsionBogy Coated Custom CustomLaw DerjaguinMullerToporov Exponential "
+    "analytic": "ChangEtsionBogy Coated Custom CustomLaw DerjaguinMullerToporov Exponential "
     "ExponentialHeights Film Gaussian HeightTable Hertz Homogeneous Interaction JacksonGreen "
     "JohnsonKendallRoberts Joint KogutEtsion Layer MeasuredHeights MeasuredRadii Nayak PowerLawGraded "
     "RandomCurvature ScipyHeights Table Weibull ZhaoMaiettaChang composite_modulus",
@@ -165,7 +164,7 @@ _HOMES = {
     "mcgw.scene.scene": "Scene",
     "mcgw.scene.scene_file": "load_scene scene_from scene_text",
     "mcgw.scene.section": "SceneError",
-    "mcgw.scene.surface": "SpectralSurface Surface",
+    "mcgw.scene.surface": "Body SpectralSurface Surface",
     "mcgw.statistics.comparison": "compare",
     "mcgw.statistics.convergence": "converge",
     "mcgw.statistics.tradeoff": "tradeoff",

@@ -44,6 +44,11 @@ class StoppedError(RunError):
     """A run that was asked to stop: by Ctrl-C (130) or SIGTERM (143)."""
 
 
+def extra(name: str) -> str:
+    """Return how to install an extra of this package, which no registry has."""
+    return f"in a clone of mcgw, pip install -e '.[{name}]'"
+
+
 def in_one_line(error: OSError, file: object = None) -> str:
     """Return a line of what the system said and of which file; `file` is the one that was being made.
 

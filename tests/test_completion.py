@@ -73,4 +73,6 @@ def test_other_shells_are_told_of_every_command(shell, capsys):
 def test_without_the_library_one_line_says_so(monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "shtab", None)
     assert main(["completion", "bash"]) == 2
-    assert capsys.readouterr().err == 'mcgw: shtab is not installed: pip install "mcgw[completion]"\n'
+    assert capsys.readouterr().err == (
+        "mcgw: shtab is not installed: in a clone of mcgw, pip install -e '.[completion]'\n"
+    )

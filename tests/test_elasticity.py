@@ -552,7 +552,9 @@ class TestBoundaryElements:
 
     def test_that_are_not_there_are_told(self, rng, monkeypatch):
         monkeypatch.setitem(sys.modules, "tamaas", None)
-        with pytest.raises(mcgw.RunError, match=r"need Tamaas: pip install 'mcgw\[bem\]'"):
+        with pytest.raises(
+            mcgw.RunError, match=r"need Tamaas: in a clone of mcgw, pip install -e '\.\[bem\]'"
+        ):
             LEVELS[-1].solve(Pressed(self.heights(rng), self.size, self.E_star, 1e6))
 
 

@@ -186,7 +186,7 @@ def test_dask_that_is_not_there_is_one_line(monkeypatch):
         pass
     monkeypatch.setitem(sys.modules, "distributed", None)  # it cannot be imported
     with (
-        pytest.raises(RunError, match=r'dask is not installed: pip install "mcgw\[dask\]"'),
+        pytest.raises(RunError, match=r"dask is not installed: in a clone of mcgw, pip install -e '\.\["),
         dask_executor("tcp://127.0.0.1:1"),
     ):
         pass

@@ -4,6 +4,8 @@ import argparse
 import sys
 from pathlib import Path
 
+from mcgw.errors import extra
+
 HELP = "print a shell script that completes commands, options and files"
 EXAMPLE = "mcgw completion bash"
 
@@ -20,7 +22,7 @@ def execute(args: argparse.Namespace) -> int:
     try:
         import shtab  # an extra
     except ImportError:
-        raise ValueError('shtab is not installed: pip install "mcgw[completion]"') from None
+        raise ValueError(f"shtab is not installed: {extra('completion')}") from None
     (commands,) = (x for x in args.parser._actions if isinstance(x, argparse._SubParsersAction))
     for parser in (args.parser, *commands.choices.values()):
         for action in parser._actions:

@@ -152,8 +152,8 @@ def elastic(
     ValueError
         If an argument is wrong, or the source has no maps: see `mcgw.elasticity.sources.maps_of`.
     RunError
-        If Tamaas is not installed (``pip install 'mcgw[bem]'``), a solve does not converge, or no map of
-        the pilot touches.
+        If Tamaas is not installed (``pip install -e '.[bem]'`` in a clone), a solve does not converge, or no
+        map of the pilot touches.
     StoreError
         If `path` holds solves of another question, or another process adds to it.
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from analytic.arrays import Array, Ints, Marks
 from mcgw.elasticity.profiles import profile_spots
-from mcgw.errors import RunError
+from mcgw.errors import RunError, extra
 from mcgw.maps.summit_sums import summit_sums_of
 from mcgw.maps.summits import Summits, summits_of
 from mcgw.maps.topography import Topography
@@ -135,7 +135,7 @@ def boundary_elements(pressed: Pressed) -> Values:
     try:
         import tamaas
     except ImportError:
-        raise RunError("boundary elements need Tamaas: pip install 'mcgw[bem]'") from None
+        raise RunError(f"boundary elements need Tamaas: {extra('bem')}") from None
     tamaas.set_log_level(tamaas.LogLevel.error)
     if pressed.clear(float(pressed.heights.max())):
         return pressed.values(0.0, 0.0, 0.0, 0.0)

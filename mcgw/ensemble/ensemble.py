@@ -4,17 +4,19 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from analytic import PER_AREA
 from analytic.arrays import Array, Ints
 from mcgw.ensemble.intervals import CONFIDENCE, interval_of
 from mcgw.ensemble.labelled import Labelled, axes_of, axis, sheet_of, statistics_of, values_of
 from mcgw.ensemble.results import PROBABILITIES, Held
-from mcgw.formats.sheet import Sheet, Shown
-from mcgw.machine.terminal import plotted
+from mcgw.formats.sheet import Sheet, Shown, brief
+from mcgw.machine.terminal import plotted, quantity_and_axes
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 
+_SAME = 1e-9  # d/sigma
 STATISTICS = ("mean", "std", "skewness")  # kept in place of values, besides quantiles
 
 
@@ -133,19 +135,53 @@ class Ensemble(Shown):
         """Real area per nominal area A/A_n, shape (surfaces, separations)."""
         return self.values("area_fraction")
 
-    def mean(self, quantity: str) -> Array:
-        """Mean over the surfaces, shape (separations,)."""
-        name, area = self._held(quantity)
-        return np.asarray(self.sums.mean_and_std(name)[0] / area)
+    def mean(self, quantity: str, separation: ArrayLike | None = None) -> Array:
+        """Return the mean over the surfaces.
 
-    def std(self, quantity: str) -> Array:
-        """Standard deviation over the surfaces (divisor M - 1), nan for one surface."""
-        name, area = self._held(quantity)
-        return np.asarray(self.sums.mean_and_std(name)[1] / area)
+        Parameters
+        ----------
+        quantity : str
+            Its name.
+        separation : array_like, optional
+            Some of the separations of the ensemble, d/sigma. Default: all.
 
-    def stderr(self, quantity: str) -> Array:
-        """Standard error of the mean, nan for one surface."""
-        return np.asarray(self.std(quantity) / np.sqrt(self.n_surfaces))
+        Returns
+        -------
+        ndarray
+            In the shape of the separations.
+
+        Raises
+        ------
+        KeyError
+            If the ensemble does not hold this quantity.
+        ValueError
+            If it has no such separation.
+        """
+        name, area = self._held(quantity)
+        return self._at(np.asarray(self.sums.mean_and_std(name)[0] / area), quantity, separation)
+
+    def std(self, quantity: str, separation: ArrayLike | None = None) -> Array:
+        """Return the standard deviation over the surfaces (divisor M - 1), nan for one; as `mean`."""
+        name, area = self._held(quantity)
+        return self._at(np.asarray(self.sums.mean_and_std(name)[1] / area), quantity, separation)
+
+    def stderr(self, quantity: str, separation: ArrayLike | None = None) -> Array:
+        """Return the standard error of the mean, nan for one surface; as `mean`."""
+        return np.asarray(self.std(quantity, separation) / np.sqrt(self.n_surfaces))
+
+    def _at(self, values: Array, quantity: str, separation: ArrayLike | None) -> Array:
+        """Values at some separations."""
+        if separation is None:
+            return values
+        asked = np.asarray(separation, dtype=np.float64)
+        apart = np.abs(asked[..., None] - self.separations)
+        if np.any(lacking := apart.min(axis=-1, initial=np.inf) > _SAME):
+            first, have = float(asked[lacking].flat[0]), ", ".join(f"{h:g}" for h in self.separations)
+            raise ValueError(
+                f"separation = {first:g}: the ensemble has {brief(have)}; "
+                f"scene.theory.mean({quantity!r}, {first:g}) is exact at any"
+            )
+        return np.asarray(values[apart.argmin(axis=-1)])
 
     def covariance(self, quantity: str, other: str | None = None) -> Array:
         """Covariance over the surfaces (divisor M - 1) of two quantities, or of one with itself.
@@ -261,21 +297,22 @@ class Ensemble(Shown):
         found = statistics_of(self, self.scene.shapes, STATISTICS, quantiles=True)
         return Labelled(found, {"probability": axis("probability", PROBABILITIES), **axes_of(self.scene)})
 
-    def plot(self, ax: Any = None, *, quantity: str | None = None) -> Any:
+    def plot(self, quantity: str | None = None, ax: Any = None) -> Any:
         """Draw the mean of a quantity with its confidence interval, and the spread of single surfaces.
 
         Parameters
         ----------
-        ax : matplotlib Axes, optional
-            Axes to draw on; default: new ones.
         quantity : str, optional
             Default: the first quantity of the scene.
+        ax : matplotlib Axes, optional
+            Axes to draw on, also as the first argument; default: new ones.
 
         Returns
         -------
         matplotlib.axes.Axes
             With labels.
         """
+        quantity, ax = quantity_and_axes(quantity, ax)
         return plotted(self, ax, quantity=quantity or self.scene.quantities[0])
 
     def sheet(self) -> Sheet:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from analytic.arrays import Ints
+from mcgw.errors import extra
 from mcgw.formats.files import whole_file
 from mcgw.formats.numbers import columns as typeset_columns, typeset
 from mcgw.machine.terminal import one_line
@@ -281,4 +282,4 @@ def optional(package: str, what: str) -> Any:
     try:
         return import_module(package)
     except ImportError:
-        raise ImportError(f'{what} needs {package}: pip install "mcgw[notebook]"', name=package) from None
+        raise ImportError(f"{what} needs {package}: {extra('notebook')}", name=package) from None

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from importlib import import_module
 from typing import Any
 
-from mcgw.errors import RunError
+from mcgw.errors import RunError, extra
 from mcgw.machine.child_process import end_with
 
 
@@ -78,7 +78,7 @@ def dask_executor(address: str) -> Iterator[Executor]:
     try:
         distributed: Any = import_module("distributed")
     except ImportError:
-        raise RunError('dask is not installed: pip install "mcgw[dask]"') from None
+        raise RunError(f"dask is not installed: {extra('dask')}") from None
     try:
         client = distributed.Client(address, timeout="10s", set_as_default=False)
     except (OSError, ValueError) as error:

@@ -45,6 +45,15 @@ def argument(name: str, value: Any, unit: str) -> float:
     return float(arguments({name: value}, {name: Number(unit)})[name])
 
 
+def as_seed(value: Any) -> Any:
+    """Draw a seed from a generator or a seed sequence of NumPy; other values stay as they are."""
+    if isinstance(value, np.random.SeedSequence):
+        return int(value.generate_state(1, np.uint64)[0])
+    if isinstance(value, np.random.BitGenerator):
+        value = np.random.Generator(value)
+    return int(value.integers(2**63)) if isinstance(value, np.random.Generator) else value
+
+
 def as_toml(value: Any) -> Any:
     """Convert a Python value to what TOML gives: arrays, tuples and ranges to lists of plain numbers."""
     if isinstance(value, str | bytes | bool | int | float):

@@ -35,6 +35,7 @@ def _contact_laws() -> tuple[str, ...]:
 
 _ANY, _POSITIVE, _NOT_NEGATIVE = Number(low=-math.inf), Number(), Number(zero=True)
 _FILE = Text()
+YOUNG = Number("Pa", infinite=True)
 _RATIO = Number(low=1, advice="give the larger over the smaller, a number >= 1")
 _RADII = List(_POSITIVE, advice="give a list of finite numbers > 0")
 _LISTED = List(_ANY)
@@ -52,7 +53,7 @@ _PIECES_EXAMPLE = (
     "[{low = -1.0, high = 1.0, coefficients = [1.0]}, {low = 1.0, high = 3.0, coefficients = [1.0]}]"
 )
 _BODY = Table(
-    (Key("E", Number("Pa", infinite=True), required=True), Key("nu", POISSON, default=0.3)),
+    (Key("E", YOUNG, required=True), Key("nu", POISSON, default=0.3)),
     "",
     analytic.Body,
 )

@@ -11,7 +11,7 @@ import numpy as np
 from analytic import UNLOADING, Gaussian, HeightLaw, MeasuredRadii, Nayak, RandomCurvature, Surface
 from analytic.laws import ContactLaw, Film, Hertz
 from analytic.laws.law import check_poisson
-from mcgw.scene.arguments import as_toml
+from mcgw.scene.arguments import as_seed, as_toml
 from mcgw.scene.fields import LeftOut
 from mcgw.scene.keys import KEYS, TABLES
 from mcgw.scene.laws import contact_law, grading_given, grading_of, heights_given, heights_of
@@ -45,6 +45,7 @@ def of_arguments(**given: Any) -> Values:
     document: dict[str, Any] = {}
     objects: dict[str, Any] = {}
     for name, value in given.items():
+        value = as_seed(value) if name == "seed" else value
         plain = as_toml(value)
         if value is None:
             continue

@@ -2,15 +2,44 @@
 
 from typing import Any, TypeVar
 
-from analytic import Nayak, SpectralMoments, Surface as Plain, composite_modulus
-from mcgw.scene.arguments import as_toml
-from mcgw.scene.keys import KEYS, SURFACE_UNITS
+from analytic import Body as PlainBody, Nayak, SpectralMoments, Surface as Plain, composite_modulus
+from mcgw.scene.arguments import arguments, as_toml
+from mcgw.scene.keys import KEYS, SURFACE_UNITS, YOUNG
 from mcgw.scene.plausible import surface_in_other_units, warn_of_units
 from mcgw.scene.radii import ListedSummits, Spectral
 from mcgw.scene.section import SceneError, Section
-from mcgw.scene.values import MOMENTS, SUMMITS
+from mcgw.scene.values import MOMENTS, POISSON, SUMMITS
 
 _Kind = TypeVar("_Kind", Plain, Spectral)
+
+
+def Body(E: float | str, nu: float = 0.3) -> PlainBody:  # noqa: N802 - the door to a class of this name
+    """Return the elastic constants of one of two bodies, for `mcgw.composite_modulus`.
+
+    Parameters
+    ----------
+    E : float or str
+        Young's modulus, Pa; or text such as "70 GPa"; ``inf`` for a rigid body.
+    nu : float, optional
+        Poisson's ratio, from -1 to 0.5.
+
+    Returns
+    -------
+    analytic.Body
+        In SI units.
+
+    Raises
+    ------
+    SceneError
+        With one line for each that is out of range.
+
+    Examples
+    --------
+    >>> import mcgw
+    >>> mcgw.Body("70 GPa", 0.33)
+    Body(E=70000000000.0, nu=0.33)
+    """
+    return PlainBody(**arguments({"E": E, "nu": nu}, {"E": YOUNG, "nu": POISSON}))
 
 
 def Surface(  # noqa: N802 - the door to a class of this name

@@ -31,6 +31,8 @@ from mcgw.scene.promises import SAMPLERS
 from mcgw.scene.section import Key, Kind
 
 if TYPE_CHECKING:
+    from numpy.random import Generator, SeedSequence
+
     from analytic import Interaction, Joint
     from mcgw.scene.radii import Spectral
 
@@ -147,7 +149,7 @@ class Values:
         "asperities per surface, or their mean number if `count` is `poisson`; default: η A_n, rounded")
     count: Literal["fixed", "poisson"] = key("ensemble", Word(("fixed", "poisson")), '"poisson"',
         "`fixed` number on each surface (default), or `poisson`: a window on an unbounded surface", "fixed")
-    seed: As[int | None, int] = key("ensemble",
+    seed: As["int | Generator | SeedSequence | None", int] = key("ensemble",
         Whole(0, 2**64 - 1, "give a whole number from 0 to 2^64 - 1"), "1",
         "seed of the random numbers, 0 to 2^64 - 1; default: a random one, which is recorded")
     sampler: str = key("ensemble", Word(SAMPLERS), '"cells"',

@@ -15,7 +15,7 @@ from mcgw.ensemble.some_separations import how_many, shown
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import SEPARATION, Column, Table, stacked
 from mcgw.machine.progress import Progress, told
-from mcgw.machine.terminal import plotted
+from mcgw.machine.terminal import plotted, quantity_and_axes
 from mcgw.scene.arguments import check_object
 from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
@@ -75,21 +75,22 @@ class Comparison(Shown):
     verdict: Verdict
     of_many: str = ""
 
-    def plot(self, ax: Any = None, *, quantity: str | None = None) -> Any:
+    def plot(self, quantity: str | None = None, ax: Any = None) -> Any:
         """Draw the theory of a quantity with the Monte-Carlo means on it.
 
         Parameters
         ----------
-        ax : matplotlib Axes, optional
-            Axes to draw on; default: new ones.
         quantity : str, optional
             One of the curves; default: the first.
+        ax : matplotlib Axes, optional
+            Axes to draw on, also as the first argument; default: new ones.
 
         Returns
         -------
         matplotlib.axes.Axes
             With labels and a legend.
         """
+        quantity, ax = quantity_and_axes(quantity, ax)
         return plotted(self, ax, quantity=quantity or next(iter(self.curves)))
 
     def sheet(self) -> Sheet:
