@@ -96,19 +96,11 @@ WARMED = {  # every sampler, laws that yield, there and back, radii, interaction
 }  # fmt: skip
 
 
-def test_loops_are_compiled_in_two_processes_for_every_kind_of_scene(monkeypatch):
-    """Each process has its half; one processor has them all in one."""
-    children, scenes, fitted = [], [], []
-    monkeypatch.setattr("mcgw.machine.child_process.run_child", lambda *words: children.append(words))
+def test_loops_are_compiled_for_every_kind_of_scene(monkeypatch):
+    scenes, fitted = [], []
     monkeypatch.setattr("mcgw.ensemble.simulation.simulate", scenes.append)
     monkeypatch.setattr("mcgw.maps.fitting.fit", lambda *given, **_: fitted.append(given))
-    for processors, words in ((2, [("0", "2"), ("1", "2")]), (1, [("0", "1")])):
-        monkeypatch.setattr("os.cpu_count", lambda n=processors: n)
-        children.clear()
-        warm.warm()
-        assert sorted(children) == [("mcgw.commands.warm", *each) for each in words]
-    for half in (0, 1):
-        warm._compile(half)
+    warm.warm()
     assert {(s.sampler, s.keep, type(s.law).__name__) for s in scenes} == WARMED
     assert {s.count for s in scenes} == {"fixed", "poisson"}
     assert [s.unload_from for s in scenes if s.unload_from is not None] == [0.0]
@@ -200,7 +192,7 @@ def listed(**changes):
 # In Python: a call with a scene, and what its line says.
 CALLS = [
     (lambda scene: scene.replace(film=3), "contact.film = 3: give resistivity and film_resistance"),
-    (lambda scene: scene.replace(law={"critical": 0.05}), "contact.law = None: choose one of hertz"),
+    (lambda scene: scene.replace(law={"critical": 0.05}), "contact.critical: unknown key"),
     (lambda scene: mcgw.SpectralSurface(-1.0, 1e-3, 5e6, 1e-6, 1e11), "surface.m0 = -1"),
     (lambda scene: scene.replace(separations=np.zeros(100_001)), "at most 100000 of them"),
     (lambda scene: mcgw.run(scene, "e.h5", threads=0), "threads = 0: give a whole number >= 1"),
