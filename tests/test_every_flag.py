@@ -57,9 +57,11 @@ def material(tmp_path_factory):
     np.save(folder / "bare.npy", z)
     holes, spiked, stepped = z.copy(), z.copy(), z.copy()
     lined = z + 2e-7 * np.random.default_rng(9).normal(size=(len(z), 1))
-    holes[25:35, 50:65] = np.nan
+    marked = z.copy()
+    holes[25:35, 50:65], marked[25:35, 50:65] = np.nan, 8e-6
     spiked[25::30, 20::35] += 3e-5
     stepped[:, 75:] += 1e-5
+    np.save(folder / "marked.npy", marked)
     for name, heights in (("holes", holes), ("spiked", spiked), ("stepped", stepped), ("lined", lined)):
         np.save(folder / f"{name}.npy", heights)
     return folder
@@ -403,6 +405,8 @@ ROWS = [
     ("fit", "--heights", FIT, "+ --heights table", heights_are_a_table),
     ("fit", "--heights", FIT, "+ --heights measured", writes("f.heights.npy")),
     ("fit", "--long-cutoff", FIT, "+ --long-cutoff 20um", fitted(lambda a, b: b.sigma < 0.9 * a.sigma)),
+    ("fit", "--missing-value", "@marked.npy --cutoff none --pixel 1um -o f.toml", "+ --missing-value 8e-6",
+     fitted(lambda a, b: b.sigma < a.sigma)),
     ("fit", "--missing", "@holes.npy --cutoff none --pixel 1um -o f.toml", "+ --missing fill",
      fitted(lambda a, b: b.nominal_area > a.nominal_area)),
     ("fit", "--spikes", "@spiked.npy --cutoff none --pixel 1um -o f.toml", "+ --spikes remove",

@@ -162,7 +162,7 @@ def test_without_the_library_its_name_is_told(tmp_path, monkeypatch):
 
 def test_what_our_readers_refuse_is_shown_to_the_library_where_it_says_its_pixel(foreign, tmp_path):
     """Of another format under an ending of ours; of two refusals both are told."""
-    for name in ("map.h5", "map.sdf", "map.dat"):
+    for name in ("map.h5", "map.sdf"):
         found = read_map(foreign("3 2").rename(tmp_path / name))
         assert found.heights == pytest.approx(1e-6 * np.array([[0, 2, 4], [1, 3, 5]]))
     with pytest.raises(

@@ -17,7 +17,7 @@ from mcgw.formats.numbers import METRES
 from mcgw.maps.envelope import envelope
 from mcgw.maps.form import smooth
 from mcgw.maps.map_files import read_map, write_map
-from mcgw.maps.profile_files import read_profile
+from mcgw.maps.profile_files import holds_profile, read_profile
 from mcgw.maps.synthetic import Asperities, Spectrum, gaussian_map, spectrum_from
 from mcgw.maps.topography import Topography, checked_shape, single_points
 
@@ -205,7 +205,7 @@ MAIN = """<?xml version="1.0" encoding="UTF-8"?>
 def test_arrays_of_every_kind_are_read_as_numbers(kind, order, tmp_path):
     numbers = np.array([[0, 1, 2], [3, 4, 200]])
     np.save(tmp_path / "map.npy", np.asarray(numbers.astype(kind), order=order))
-    found = read_map(tmp_path / "map.npy", pixel=(2.0, 3.0), unit="nm")
+    found = read_map(tmp_path / "map.npy", pixel=(2e-8, 3e-8), unit="nm")
     assert found.heights == pytest.approx(1e-9 * numbers, rel=1e-15)
     assert found.heights.dtype == np.float64
 
@@ -234,7 +234,7 @@ def test_damaged_text_is_refused(content, told, tmp_path):
         read_map(tmp_path / "map.txt", pixel=(1.0, 1.0))
 
 
-SOUND = '{"pixel": [1, 1]}'
+SOUND = '{"pixel": [1e-6, 1e-6]}'
 
 
 @pytest.mark.parametrize(
@@ -249,7 +249,7 @@ def test_an_array_needs_a_sound_sidecar(sidecar, topography, tmp_path):
     with pytest.raises(ValueError, match=r"map\.json"):
         read_map(tmp_path / "map.npy")
     beside.write_text(SOUND + " " * (2**16 - len(SOUND)))
-    assert read_map(tmp_path / "map.npy").pixel == (1.0, 1.0)
+    assert read_map(tmp_path / "map.npy").pixel == (1e-6, 1e-6)
 
 
 def test_what_makes_no_map_is_refused(tmp_path):
@@ -324,15 +324,21 @@ def test_the_largest_height_and_the_finest_pixel():
         Topography(-1.005e150 * z, (1.0, 1.0))
 
 
-@pytest.mark.parametrize(("steep", "doubted"), [(9.95, False), (10.05, True)])
-def test_heights_without_a_unit_are_doubted_from_a_slope_of_ten_on(steep, doubted, tmp_path):
-    np.savetxt(tmp_path / "m.txt", steep * 1e-6 * np.arange(8.0) + np.zeros((8, 1)))
-    if doubted:
-        with pytest.raises(ValueError, match=r"would be 10[.]1; give --unit"):
-            read_map(tmp_path / "m.txt", pixel=(1e-6, 1e-6))
-    else:
-        assert read_map(tmp_path / "m.txt", pixel=(1e-6, 1e-6)).assumed_unit == "m"
-    assert read_map(tmp_path / "m.txt", pixel=(1e-6, 1e-6), unit="m").assumed_unit == ""
+@pytest.mark.parametrize("name", ["m.txt", "m.npy"])
+@pytest.mark.parametrize(
+    ("slope", "doubted"), [(9.95, False), (10.05, True), (1.01e-6, False), (0.99e-6, True)]
+)
+def test_slopes_that_no_surface_has_are_refused(name, slope, doubted, tmp_path):
+    """A unit that was assumed is named, one that was given or told is doubted too."""
+    path, heights = tmp_path / name, slope * 1e-6 * np.arange(8.0) + np.zeros((8, 1))
+    np.savetxt(path, heights) if name == "m.txt" else np.save(path, heights)
+    for unit, told in ((None, "would be 10[.]1; give --unit" if slope > 1 else "are in another unit"),
+                       ("m", "the typical slope of this map is .*, which no surface has")):  # fmt: skip
+        if doubted:
+            with pytest.raises(ValueError, match=told):
+                read_map(path, pixel=(1e-6, 1e-6), unit=unit)
+        else:
+            assert read_map(path, pixel=(1e-6, 1e-6), unit=unit).assumed_unit == ("" if unit else "m")
 
 
 def test_what_an_array_and_an_hdf5_map_say_of_themselves(topography, tmp_path):
@@ -383,9 +389,9 @@ def test_words_in_place_of_numbers_are_refused(key, value, told, topography, tmp
     with pytest.raises(ValueError, match=rf"m\.json: {told}" if key == "periodic" else told):
         read_map(tmp_path / "m.npy")
     del facts["unit"], facts["periodic"]
-    (tmp_path / "m.json").write_text(json.dumps({"pixel": [1, 2]}))
+    (tmp_path / "m.json").write_text(json.dumps({"pixel": [1e-6, 2e-6]}))
     found = read_map(tmp_path / "m.npy")
-    assert (found.pixel, found.periodic, found.assumed_unit) == ((1.0, 2.0), False, "m")
+    assert (found.pixel, found.periodic, found.assumed_unit) == ((1e-6, 2e-6), False, "m")
 
 
 def test_arrays_of_objects_are_never_unpickled(tmp_path):
@@ -435,15 +441,103 @@ def test_ascii_sdf_with_missing_points_is_read_by_gwyddions_rules(topography, tm
     assert keys == [*order.split(), "Compression", "DataType", "CheckType"]
 
 
+POINTS = [(x, y, 10 * x + y * y) for y in range(4) for x in range(3)]  # um and nm
+
+
+@pytest.mark.parametrize(
+    "head", ["x (um) y (um) z (nm)", "# x[um]\ty[um]\tz[nm]", "x_um,y_um,z_nm", "X/um;Y/um;Z/nm"]
+)
+@pytest.mark.parametrize("order", ["x first", "y first", "backwards", "mixed"])
+@pytest.mark.parametrize(("mark", "separator"), [(".", " "), (".", ","), (",", ";"), (",", "\t")])
+def test_points_on_a_grid_are_a_map_in_any_order(head, order, mark, separator, tmp_path):
+    """With the units of the header; a point that is not there is missing."""
+    rows = {
+        "x first": POINTS, "y first": sorted(POINTS), "backwards": POINTS[::-1],
+        "mixed": list(np.random.default_rng(1).permutation(POINTS)),
+    }[order]  # fmt: skip
+    rows = [row for row in rows if tuple(row[:2]) != (1, 2)]
+    lines = [
+        separator.join(f"{0.5 * x:.4f} {2 * y + 7:.4f} {z:.3f}".replace(".", mark).split())
+        for x, y, z in rows
+    ]
+    (tmp_path / "map.txt").write_text("\n".join([head, *lines]) + "\n")
+    found = read_map(tmp_path / "map.txt")
+    expected = np.array([[10.0 * x + y * y for x in range(3)] for y in range(4)])
+    expected[2, 1] = np.nan
+    assert found.heights == pytest.approx(1e-9 * expected, nan_ok=True, rel=1e-12, abs=1e-25)
+    assert found.pixel == pytest.approx((0.5e-6, 2e-6))
+    assert found.assumed_unit == ""
+    assert not holds_profile(tmp_path / "map.txt")
+
+
+def test_points_along_one_line_are_a_profile(tmp_path):
+    for name, columns in (("x.txt", "{i} 5 {z}"), ("y.xyz", "5 {i} {z}")):
+        lines = [columns.format(i=i, z=i % 3) for i in range(20)]
+        (tmp_path / name).write_text("x (um) y (um) z (nm)\n" + "\n".join(lines))
+        assert holds_profile(tmp_path / name)
+        found = read_profile(tmp_path / name)
+        assert found.spacing == pytest.approx(1e-6)
+        assert found.heights == pytest.approx(1e-9 * (np.arange(20) % 3))
+        with pytest.raises(ValueError, match="all points lie on one line: a profile"):
+            read_map(tmp_path / name)
+
+
+@pytest.mark.parametrize(("change", "told"), [
+    (lambda p: [*p, p[0]], r"x = 0, y = 0 has two heights"),
+    (lambda p: [*p, (0.37, 0, 1)], "x of the points is not evenly spaced"),
+    (lambda p: [(x, x, z) for x, y, z in p[:3]] + [(9, 9, 1), (5, 5, 2), (7, 7, 0)], "evenly|scattered"),
+    (lambda p: [("nan", *p[0][1:]), *p[1:]], "a point lacks x or y"),
+])  # fmt: skip
+def test_points_that_are_no_grid_are_refused(change, told, tmp_path):
+    (tmp_path / "map.txt").write_text("\n".join(" ".join(map(str, p)) for p in change(POINTS)))
+    with pytest.raises(ValueError, match=told):
+        read_map(tmp_path / "map.txt", unit="um")
+    with pytest.raises(ValueError, match="leave --pixel out"):
+        read_map(tmp_path / "map.txt", unit="um", pixel=(1e-6, 1e-6))
+
+
+@pytest.mark.parametrize("name", ["m.txt", "m.npy", "m.h5", "m.nc"])
+@pytest.mark.parametrize("value", [-9999.0, -3.4028235e38, 32767.0])
 @pytest.mark.filterwarnings("ignore")
-@pytest.mark.parametrize("mark", [".", ","])
-def test_lists_of_points_are_read_by_surface_topography(mark, tmp_path):
-    pytest.importorskip("SurfaceTopography")
-    rows = ["0.0\t0.0\t1.5", "1.0\t0.0\t2.5", "0.0\t1.0\t3.5", "1.0\t1.0\t4.5"]
-    (tmp_path / "map.xyz").write_text("\n".join(rows).replace(".", mark) + "\n")
-    found = read_map(tmp_path / "map.xyz", unit="um")
-    assert found.heights == pytest.approx(1e-6 * np.array([[1.5, 2.5], [3.5, 4.5]]))
-    assert found.pixel == pytest.approx((1e-6, 1e-6))
+def test_numbers_that_stand_for_missing_points_are_named(name, value, topography, tmp_path):
+    path, z = tmp_path / name, 1e6 * topography.heights
+    z[1, 2] = z[3, 0] = value
+    given = {}
+    if name == "m.nc":
+        library = pytest.importorskip("SurfaceTopography")
+        library.Topography(z.T, (7.0, 12.5), unit="um").to_netcdf(str(path))
+    elif name == "m.h5":
+        write_map(topography, path)
+        with h5py.File(path, "r+") as file:
+            file["height"][...] = z
+            file["height"].attrs["units"] = "um"
+    else:
+        np.savetxt(path, z) if name == "m.txt" else np.save(path, z)
+        given = {"pixel": topography.pixel, "unit": "um"}
+    with pytest.raises(
+        ValueError, match=rf"2 of 35 heights are {re.escape(f'{value:.8g}')}, .*--missing-value"
+    ):
+        read_map(path, **given)
+    found = read_map(path, missing=value, **given)
+    assert np.isnan(found.heights[[1, 3], [2, 0]]).all()
+    assert found.missing == 2
+    with pytest.raises(ValueError, match="no height is -7777; leave --missing-value out"):
+        read_map(path, missing=-7777.0, **given)
+
+
+def test_heights_that_are_no_real_numbers_are_refused(topography, tmp_path):
+    for name, heights in (("c.h5", topography.heights * (1 + 1j)), ("n.h5", None)):
+        write_map(topography, tmp_path / name)
+        with h5py.File(tmp_path / name, "r+") as file:
+            del file["height"]
+            if heights is None:
+                file.create_dataset("height", (5, 7), "f8")
+            else:
+                file["height"] = heights
+    with pytest.raises(ValueError, match="heights are complex128, not real numbers"):
+        read_map(tmp_path / "c.h5")
+    with pytest.raises(ValueError, match="its heights were never written"):
+        read_map(tmp_path / "n.h5")
 
 
 @pytest.mark.filterwarnings("ignore")

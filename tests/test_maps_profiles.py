@@ -584,9 +584,11 @@ def test_maps_are_no_profiles(tmp_path, monkeypatch):
     with pytest.raises(ValueError, match=r"short\.npy: 7 points: a profile has 8 or more"):
         read_profile(tmp_path / "short.npy", spacing=UM)
     monkeypatch.setitem(sys.modules, "SurfaceTopography", None)  # as where it is not installed
-    (tmp_path / "p.xyz").write_text("0 1\n" * 9)
-    with pytest.raises(ValueError, match=r"p\.xyz: \.xyz is not a known format; install SurfaceTopography"):
-        read_profile(tmp_path / "p.xyz")
+    (tmp_path / "p.plu").write_text("0 1\n" * 9)
+    with pytest.raises(
+        ValueError, match=r"p\.plu: \.plu is read by SurfaceTopography, which is not installed"
+    ):
+        read_profile(tmp_path / "p.plu")
 
 
 def test_gaps_are_filled_and_uneven_places_resampled():

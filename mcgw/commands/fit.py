@@ -49,6 +49,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help="unit of the heights, such as um, if the file does not give it; default: m",
     )
     parser.add_argument(
+        "--missing-value", type=float, metavar="V",
+        help="number that stands for a missing point, in the unit of the file, such as -9999",
+    )  # fmt: skip
+    parser.add_argument(
         "--use", choices=("auto", "moments", "summits", "caps"), default="auto",
         help="estimate used in the scene; auto: caps if all summits have one radius, otherwise summits; "
         "default: auto",
@@ -143,7 +147,9 @@ def _of_map(args: argparse.Namespace, asked: "Preparation", pixel: float | None,
     if args.picture is not None:
         beside.append(Output(args.picture, figure_format(), "--picture"))
     check_outputs([Output(args.output, TOML), *beside], inputs=files_of_map(path_of_map))
-    fit, ready = fit_map(path_of_map, asked, across, pixel=pixel, unit=args.unit, use=args.use)
+    fit, ready = fit_map(
+        path_of_map, asked, across, pixel=pixel, unit=args.unit, missing=args.missing_value, use=args.use
+    )
     head = map_line(path_of_map.name, asked, ready.levelled.assumed_unit)
     return fit, [head, *fit.notes, *fit_lines(fit)], partial(_write_beside, args, fit, ready, pixel)
 
@@ -166,7 +172,12 @@ def _write_beside(args: argparse.Namespace, fit: "Fit", ready: "Prepared", pixel
         from mcgw.figures.map_fit import save_fit_picture
 
         size = None if pixel is None else (pixel, pixel)
-        save_fit_picture(fit, read_map(args.map[0], pixel=size, unit=args.unit), ready, args.picture)
+        save_fit_picture(
+            fit,
+            read_map(args.map[0], pixel=size, unit=args.unit, missing=args.missing_value),
+            ready,
+            args.picture,
+        )
         news(f"{args.picture}: figure")
 
 

@@ -32,6 +32,7 @@ def fit(
     pixel: float | str | None = None,
     unit: str | None = None,
     profile: bool = False,
+    missing_value: float | None = None,
 ) -> Fit | ProfileFit:
     """Fit summit density, radius and spread to a measured height map, or to profiles of one surface.
 
@@ -68,6 +69,8 @@ def fit(
         Of the heights, as "um", where the file does not tell it.
     profile : bool, optional
         Read a file as a profile whatever its shape.
+    missing_value : float, optional
+        Number that stands for a missing point of a map, in the unit of the file, such as -9999.
 
     Returns
     -------
@@ -102,7 +105,7 @@ def fit(
     if isinstance(heights, Topography) or (
         isinstance(heights, Path) and not (profile or holds_profile(heights))
     ):
-        return fit_map(heights, asked, across, pixel=length, unit=unit)[0]
+        return fit_map(heights, asked, across, pixel=length, unit=unit, missing=missing_value)[0]
     several = [heights] if isinstance(heights, Path | Profile) else heights
     return fit_lines(several, asked, spacing=length, unit=unit)[0]
 
@@ -114,12 +117,17 @@ def fit_map(
     *,
     pixel: float | None = None,
     unit: str | None = None,
+    missing: float | None = None,
     use: str = "auto",
 ) -> tuple[Fit, Prepared]:
     """Fit a map; return the fit, its cautions for the estimate to `use`, and the prepared map."""
     size = None if pixel is None else (pixel, pixel)
     with stages(4) as done:
-        read = [source if isinstance(source, Topography) else read_map(source, pixel=size, unit=unit)]
+        read = [
+            source
+            if isinstance(source, Topography)
+            else read_map(source, pixel=size, unit=unit, missing=missing)
+        ]
         done()
         ready = prepared(read.pop(), asked)  # the raw map is not kept: large ones fill the memory
         done()

@@ -16,7 +16,7 @@ import numpy as np
 
 from analytic.arrays import Array
 from mcgw.formats.gate import check_archive, open_h5
-from mcgw.maps.topography import Topography, checked_shape, height_unit
+from mcgw.maps.topography import Topography, checked_shape, height_unit, in_metres
 
 _MOST_TEXT = 2**26  # bytes of a text, which it takes in whole
 _MAGIC = 64  # bytes that tell a text
@@ -30,7 +30,12 @@ class UnreadableError(ValueError):
     """A file that SurfaceTopography refuses, or cannot read because it is missing."""
 
 
-def read_foreign(path: Path, pixel: tuple[float, float] | None = None, unit: str | None = None) -> Topography:
+def read_foreign(
+    path: Path,
+    pixel: tuple[float, float] | None = None,
+    unit: str | None = None,
+    missing: float | None = None,
+) -> Topography:
     """Read a map by SurfaceTopography: the first channel of heights.
 
     Parameters
@@ -41,6 +46,9 @@ def read_foreign(path: Path, pixel: tuple[float, float] | None = None, unit: str
         Size of a pixel, m, where the file does not tell it.
     unit : str, optional
         Of all lengths, where the file tells none; m if left out.
+
+    missing : float, optional
+        Number that stands for a missing point, in the unit of the file.
 
     Raises
     ------
@@ -62,9 +70,8 @@ def read_foreign(path: Path, pixel: tuple[float, float] | None = None, unit: str
     z = np.ma.filled(np.ma.masked_invalid(found.heights()), np.nan).T
     checked_shape(*z.shape)
     dx, dy = pixel or (float(p) * metre for p in found.pixel_size)
-    return Topography(
-        np.array(z, dtype=np.float64, order="C") * metre, (dx, dy), bool(found.is_periodic), assumed
-    )
+    heights = np.ascontiguousarray(in_metres(path, z, metre, missing))
+    return Topography(heights, (dx, dy), bool(found.is_periodic), assumed)
 
 
 def read_foreign_line(path: Path, unit: str | None = None) -> tuple[Array, Array, str]:
@@ -124,11 +131,13 @@ def _channel(path: Path) -> Any:
             "extra maps: pip install SurfaceTopography); or save it as .npy, .h5 of mcgw or text"
         )
     check_foreign(path)
-    from SurfaceTopography import open_topography  # type: ignore[import-not-found, import-untyped, unused-ignore]
-
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
+            from SurfaceTopography import (  # type: ignore[import-not-found, import-untyped, unused-ignore]
+                open_topography,
+            )
+
             reader = open_topography(str(path))
             channels = reader.height_channels
             channel = channels[0] if channels else reader.default_channel

@@ -15,12 +15,20 @@ from mcgw.maps.foreign import ForeignError, UnreadableError, read_foreign
 from mcgw.maps.sdf import write_sdf
 from mcgw.maps.synthetic import Asperities
 from mcgw.maps.text_file import read_text
-from mcgw.maps.topography import STEEPEST, Topography, checked_shape, height_unit, single_points
+from mcgw.maps.topography import (
+    FLATTEST,
+    STEEPEST,
+    Topography,
+    checked_shape,
+    height_unit,
+    in_metres,
+    single_points,
+)
 
 _FILETYPE = "mcgw-surface"
 _MOST_JSON = 2**16
 WRITTEN = (".npy", ".h5", ".sdf", ".ascii.sdf")
-_TEXT = (".txt", ".csv", ".asc", ".dat", ".tsv")
+_TEXT = (".txt", ".csv", ".asc", ".dat", ".tsv", ".xyz")
 
 
 def sidecar_of(path: Path) -> Path:
@@ -44,7 +52,12 @@ def write_npy(topography: Topography, path: Path) -> None:
         beside.write_text(json.dumps(facts, indent=2) + "\n", encoding="utf-8")
 
 
-def read_npy(path: Path, pixel: tuple[float, float] | None = None, unit: str | None = None) -> Topography:
+def read_npy(
+    path: Path,
+    pixel: tuple[float, float] | None = None,
+    unit: str | None = None,
+    missing: float | None = None,
+) -> Topography:
     """Read an array; its pixel size and the unit of its heights from the sidecar, unless given.
 
     Raises
@@ -64,7 +77,7 @@ def read_npy(path: Path, pixel: tuple[float, float] | None = None, unit: str | N
     if pixel is None:
         pixel, periodic, told = _sidecar(path)
     metre, assumed = height_unit(path, told, unit)
-    heights = np.multiply(array, metre, dtype=np.float64, casting="unsafe")
+    heights = np.ascontiguousarray(in_metres(path, array, metre, missing))
     return Topography(heights, pixel, periodic, assumed)
 
 
@@ -124,7 +137,7 @@ def write_h5(topography: Topography, path: Path, field: Asperities | None = None
         file["scene"] = scene  # a dataset: an attribute ends at 64 kB
 
 
-def read_h5(path: Path, unit: str | None = None) -> Topography:
+def read_h5(path: Path, unit: str | None = None, missing: float | None = None) -> Topography:
     """Read the map of such a file; `unit` is that of heights, where it tells none.
 
     Raises
@@ -143,7 +156,9 @@ def read_h5(path: Path, unit: str | None = None) -> Topography:
             pixel, periodic = _pixel(path, file.attrs["pixel"]), _periodic(path, file.attrs["periodic"])
             told = data.attrs.get("units")
             metre, assumed = height_unit(path, None if told is None else str(told), unit)
-            heights = data[...].astype(np.float64) * metre
+            if data.size and not data.id.get_storage_size():
+                raise ValueError(f"{path}: its heights were never written")
+            heights = in_metres(path, data[...], metre, missing)
             return Topography(heights, pixel, periodic, assumed)
     except (AttributeError, KeyError, OSError, RuntimeError, TypeError) as error:  # as HDF5 tells of damage
         raise ValueError(f"{path}: is a damaged {_FILETYPE} file: {one_line(str(error))}") from None
@@ -178,7 +193,13 @@ def write_map(
     return files_of_map(path)
 
 
-def read_map(path: Path, *, pixel: tuple[float, float] | None = None, unit: str | None = None) -> Topography:
+def read_map(
+    path: Path,
+    *,
+    pixel: tuple[float, float] | None = None,
+    unit: str | None = None,
+    missing: float | None = None,
+) -> Topography:
     """Read a map in the format of the file's ending.
 
     Parameters
@@ -190,6 +211,8 @@ def read_map(path: Path, *, pixel: tuple[float, float] | None = None, unit: str 
         Size of a pixel, m, for arrays and text that do not tell it.
     unit : str, optional
         Of the heights, for files that do not tell it; m if left out.
+    missing : float, optional
+        Number that stands for a missing point, in the unit of the file, such as -9999.
 
     Returns
     -------
@@ -207,41 +230,53 @@ def read_map(path: Path, *, pixel: tuple[float, float] | None = None, unit: str 
     if not path.is_file():
         raise ValueError(f"{path}: is not a regular file" if path.exists() else f"{path}: no such file")
     with np.errstate(over="ignore", invalid="ignore"):  # of scales: a map refuses what comes of it
-        topography = _read(path, pixel, unit)
+        topography = _read(path, pixel, unit, missing)
     if topography.assumed_unit and topography.steepness > STEEPEST:
         raise ValueError(
             f"{path}: gives no unit of its heights, and in {topography.assumed_unit} their typical slope "
             f"would be {topography.steepness:.3g}; give --unit (um, nm, ...), or another --pixel"
         )
+    slope = topography.steepness
+    if not (slope == 0 or FLATTEST <= slope <= STEEPEST):
+        raise ValueError(
+            f"{path}: the typical slope of this map is {slope:.3g}, which no surface has ({FLATTEST:g} to "
+            f"{STEEPEST:g}): its heights, or its pixel of {topography.pixel[0]:.3g} m, are in another unit"
+        )
     return topography
 
 
-def _read(path: Path, pixel: tuple[float, float] | None, unit: str | None) -> Topography:
+def _read(
+    path: Path, pixel: tuple[float, float] | None, unit: str | None, missing: float | None
+) -> Topography:
     """Read by our own readers, otherwise by SurfaceTopography."""
     ending = path.suffix.lower()
     try:
         if ending == ".npy":
-            return read_npy(path, pixel, unit)
+            return read_npy(path, pixel, unit, missing)
         if ending in _TEXT:
-            return read_text(path, pixel, unit)
+            return read_text(path, pixel, unit, missing)
         if ending == ".h5":
-            return _told(path, pixel, read_h5(path, unit))
+            return _told(path, pixel, read_h5(path, unit, missing))
     except ForeignError as refused:
-        return _otherwise(path, pixel, unit, refused)
-    return read_foreign(path, pixel, unit)
+        return _otherwise(path, pixel, unit, missing, refused)
+    return read_foreign(path, pixel, unit, missing)
 
 
 def _otherwise(
-    path: Path, pixel: tuple[float, float] | None, unit: str | None, refused: ForeignError
+    path: Path,
+    pixel: tuple[float, float] | None,
+    unit: str | None,
+    missing: float | None,
+    refused: ForeignError,
 ) -> Topography:
     """Read by SurfaceTopography; since it skips unknown text, text files must state their pixel."""
     if path.suffix.lower() not in _TEXT:
         try:
-            return read_foreign(path, pixel, unit)
+            return read_foreign(path, pixel, unit, missing)
         except UnreadableError as too:
             raise ValueError(f"{refused}; {str(too).removeprefix(f'{path}: ')}") from None
     try:
-        found = read_foreign(path, None, unit)
+        found = read_foreign(path, None, unit, missing)
     except ValueError:
         raise refused from None
     return _told(path, pixel, found)

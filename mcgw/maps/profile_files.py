@@ -8,22 +8,17 @@ import numpy as np
 
 from analytic.arrays import Array
 from mcgw.formats.named_files import open_npy
-from mcgw.formats.numbers import METRES
 from mcgw.maps.foreign import is_foreign_line, read_foreign_line
+from mcgw.maps.points import along_line
 from mcgw.maps.profile import Profile, profile_at
-from mcgw.maps.text_file import lines_of, numbers_of, words_of
-from mcgw.maps.topography import height_unit
+from mcgw.maps.text_file import header_units, lines_of, numbers_of, words_of
+from mcgw.maps.topography import XYZ, height_unit
 
 _MOST_HEADER = 500  # lines
 _MOST_POINTS = 2**26
-_UNITS = {name: name for name in METRES} | {"Nanometer": "nm", "Micrometer": "um", "Millimeter": "mm"}
-_UNIT_NAMES = "|".join(sorted(map(re.escape, _UNITS), key=len, reverse=True))
-_UNIT = re.compile(
-    rf"[\[(/]\s*({_UNIT_NAMES})\s*(?=[\])\s;,\t]|$)|\bin ({_UNIT_NAMES})\b|^(?:Lateral|Raw) ({_UNIT_NAMES})$"
-)
 _LOOKED_AT = 20  # lines of numbers
 _COMMA_ALONE = re.compile(r"\s*[-+]?\d+(?:,\d+)?(?:[eE][-+]?\d+)?\s*")
-_TEXT = (".txt", ".csv", ".asc", ".dat", ".tsv", ".prf", ".xy")
+_TEXT = (".txt", ".csv", ".asc", ".dat", ".tsv", ".prf", ".xy", ".xyz")
 Lines = list[tuple[int, str]]  # with their numbers
 _MAPS = (".sdf", ".x3p", ".h5")  # endings that hold no profiles
 
@@ -55,7 +50,12 @@ def read_profile_text(path: Path, spacing: float | None = None, unit: str | None
     if len(lines) > _MOST_POINTS:
         raise ValueError(f"{path}: more than {_MOST_POINTS} lines; cut it first")
     values = _values(path, lines)
-    told = _units(header, values.shape[1])
+    told = header_units(header, values.shape[1])
+    if values.shape[1] == XYZ:
+        along = along_line(values)
+        if along is None:
+            raise ValueError(f"{path}: 3 numbers a line; a profile has z, or x and z")
+        values, told = values[:, [along, 2]], [told[along], told[2]]
     metre, assumed = height_unit(path, told[-1], unit)
     if values.shape[1] == 1 and spacing is None:
         raise ValueError(f"{path}: has only a column of heights; give --pixel, the distance between points")
@@ -126,7 +126,7 @@ def _values(path: Path, lines: Lines) -> Array:
     rows = [numbers_of(path, n, words[: max(width, 1)]) for n, words in cells]
     widths = np.array([row.size for row in rows])
     other = np.nonzero(widths != widths[0])[0]
-    if widths[0] > 2:
+    if widths[0] > XYZ:
         raise ValueError(f"{path}: {widths[0]} numbers a line; a profile has z, or x and z")
     if other.size:
         number = lines[int(other[0])][0]
@@ -139,27 +139,6 @@ def _filled(words: list[str]) -> int:
     return max((k for k, word in enumerate(words, 1) if word), default=0)
 
 
-def _units(header: list[str], columns: int) -> list[str | None]:
-    """Unit of each column, from the last header line with units and no digits."""
-    for line in reversed([line for line in header if not re.search(r"\d", line)]):
-        cells = [cell for cell in re.split(r"[;,\t]|\s{2,}", line) if cell.strip()]
-        units = [_unit(cell) for cell in cells]
-        if len(cells) == columns and any(units):
-            return [unit[0] if unit else None for unit in units]
-        found = [unit for cell in units for unit in cell]
-        if found:
-            return [*found[:columns]] if len(found) >= columns else [found[0]] * columns
-    return [None] * columns
-
-
-def _unit(cell: str) -> list[str]:
-    """Units in a cell, or in a line of several with single spaces."""
-    words = cell.split()
-    if not all(word in _UNITS for word in words):
-        words = [next(filter(None, found)) for found in _UNIT.findall(cell)]
-    return [_UNITS[word] for word in words]
-
-
 def holds_profile(path: Path) -> bool:
     """Whether a file holds heights along a line, by its shape: one or two columns, or one dimension.
 
@@ -168,7 +147,7 @@ def holds_profile(path: Path) -> bool:
     ending = path.suffix.lower()
     try:
         if ending in _TEXT:
-            return _columns(path) in (1, 2)
+            return _columns(path) in (1, 2) or (_columns(path) == XYZ and _is_line(path))
         if ending == ".npy":
             return open_npy(path).ndim == 1
         if ending in _MAPS or not path.is_file():
@@ -176,6 +155,12 @@ def holds_profile(path: Path) -> bool:
         return is_foreign_line(path)
     except (OSError, ValueError):
         return False
+
+
+def _is_line(path: Path) -> bool:
+    """Whether points of x, y and z all have one x, or one y."""
+    points = _values(path, _table(path, _MOST_POINTS)[1])
+    return points.shape[1] == XYZ and along_line(points) is not None
 
 
 def read_profile(path: Path, *, spacing: float | None = None, unit: str | None = None) -> Profile:

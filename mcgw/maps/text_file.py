@@ -3,18 +3,29 @@
 import codecs
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from analytic.arrays import Array
+from mcgw.formats.numbers import METRES
 from mcgw.maps.foreign import ForeignError
-from mcgw.maps.topography import XYZ, Topography, checked_shape, height_unit, metres_in, single_points
+from mcgw.maps.points import grid_of
+from mcgw.maps.topography import XYZ, Topography, checked_shape, height_unit, in_metres, metres_in
 
 _MOST_LINE = 2**24
-_LENGTH = re.compile(r"#\s*(Width|Height|Breite|Höhe)\s*:\s*([-+.,\deE]+)\s*(\S+)\s*$")
+_MOST_HEADER = 500  # lines
+_LENGTH = re.compile(r"#\s*(Width|Height|Breite|Höhe)\s*:\s*(.*?)\s*$")
+_SIZE = re.compile(r"([-+]?[.,\d]+(?:[eE][-+]?\d+)?)\s*([^\d\s.,+-]\S*)$")
+_UNITS = {name: name for name in METRES} | {"Nanometer": "nm", "Micrometer": "um", "Millimeter": "mm"}
+_UNIT_NAMES = "|".join(sorted(map(re.escape, _UNITS), key=len, reverse=True))
+_UNIT = re.compile(
+    rf"[\[(/]\s*({_UNIT_NAMES})\s*(?=[\])\s;,\t]|$)|\bin ({_UNIT_NAMES})\b"
+    rf"|\w_({_UNIT_NAMES})$|^(?:Lateral|Raw) ({_UNIT_NAMES})$"
+)
 _ENGLISH = {"Breite": "Width", "Höhe": "Height"}
-_UNIT = re.compile(r"#\s*(?:Value units|Werteinheit(?:en)?|Einheit(?:en)? der Werte)\s*:\s*(\S+)\s*$")
+_VALUE_UNIT = re.compile(r"#\s*(?:Value units|Werteinheit(?:en)?|Einheit(?:en)? der Werte)\s*:\s*(\S+)\s*$")
 _ENCODINGS = {codecs.BOM_UTF8: "utf-8-sig", codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16"}
 _BLANKS = " \r\n\f\v"  # a tab parts two numbers, both of which may be missing
 _COMMA_TOO = re.compile(r"[ \f\v]*[;,\t][ \f\v]*|[ \f\v]+")
@@ -24,61 +35,121 @@ _MORE_COMMAS = re.compile(r"[-+.,\deE]*\d,+[-+.\d][-+.,\deE]*")
 _MISSING = ("", "BAD", "---")
 
 
-def read_text(path: Path, pixel: tuple[float, float] | None = None, unit: str | None = None) -> Topography:
-    """Read a matrix of numbers, a row a line, separated by spaces, tabs, semicolons or commas; heights in m.
+def read_text(
+    path: Path,
+    pixel: tuple[float, float] | None = None,
+    unit: str | None = None,
+    missing: float | None = None,
+) -> Topography:
+    """Read a matrix of numbers, a row a line, or a regular grid of points x, y and z, one a line.
 
-    Where something else parts the numbers of a line, a comma inside one is its decimal mark. Lines that
-    begin with # are comments; of those that Gwyddion writes, ``Width``, ``Height`` and ``Value units``
-    are understood, in German too. ``nan``, ``BAD``, ``---`` and nothing between two separators are missing
-    points. The text is UTF-8, or UTF-16 with its mark. What no comment tells is given: the size of a pixel,
-    m, and the unit of the heights, by default m.
+    Numbers are separated by spaces, tabs, semicolons or commas. Where something else parts the numbers of a
+    line, a comma inside one is its decimal mark. Lines that begin with # are comments; of those that
+    Gwyddion writes, ``Width``, ``Height`` and ``Value units`` are understood, in German too. Points may
+    have a header with the units of x, y and z. ``nan``, ``BAD``, ``---`` and nothing between two separators
+    are missing points. The text is UTF-8, or UTF-16 with its mark. What no comment tells is given: the size
+    of a pixel, m, the unit of the heights, by default m, and the number that stands for a missing point.
 
     Raises
     ------
     ValueError
-        If a row has another length than the first, a word is not a number, a comma may mean two things, or
-        no pixel size is known.
+        If a row has another length than the first, a word is not a number, a comma may mean two things, no
+        pixel size is known, or points are on no regular grid.
     """
+    header, rows = _rows(path)
+    table = np.array(rows)
+    del rows
+    # every row begins or ends with a separator: there is no column beyond it
+    table = table[:, int(header.open_left) : table.shape[1] - int(header.open_right)]
+    if table.shape[1] == XYZ < len(table):
+        return _of_points(path, header, table, pixel, unit, missing)
+    if header.refused is not None:
+        raise header.refused
+    metre, assumed = height_unit(path, header.unit, unit)
+    heights = in_metres(path, table, metre, missing)
+    if pixel is None:
+        if set(header.extent) != {"Width", "Height"}:
+            message = f"{path}: does not give the size of a pixel; give --pixel"
+            raise ForeignError(message) if header.lines and not header.extent else ValueError(message)
+        pixel = header.extent["Width"] / heights.shape[1], header.extent["Height"] / heights.shape[0]
+    return Topography(heights, pixel, assumed_unit=assumed)
+
+
+@dataclass
+class _Header:
+    """What a text says above and between its numbers."""
+
+    lines: list[str] = field(default_factory=list)
+    extent: dict[str, float] = field(default_factory=dict)
+    unit: str | None = None
+    refused: ForeignError | None = None  # why the first line that is not numbers is none
+    open_left: bool = True
+    open_right: bool = True
+
+    def add(self, path: Path, number: int, line: str) -> None:
+        """Understand a comment."""
+        self.lines.append(line.lstrip("# "))
+        if found := _LENGTH.match(line):
+            if not (size := _SIZE.match(found[2])):
+                raise ValueError(
+                    f"{path}: line {number}: {found[1]} = {found[2]!r}: give one length, as 4 um"
+                )
+            length = numbers_of(path, number, [size[1].replace(",", ".")])[0]
+            self.extent[_ENGLISH.get(found[1], found[1])] = float(length) * metres_in(path, size[2])
+        elif found := _VALUE_UNIT.match(line):
+            self.unit = found[1]
+
+
+def _rows(path: Path) -> tuple[_Header, list[Array]]:
+    """Header of a text and its rows of equal length."""
+    header, total = _Header(), 0
     rows: list[Array] = []
-    extent: dict[str, float] = {}
-    told: str | None = None
-    total, open_left, open_right = 0, True, True
     for number, line in lines_of(path):
         if line.startswith("#"):
-            if found := _LENGTH.match(line):
-                length = numbers_of(path, number, [found[2].replace(",", ".")])[0]
-                extent[_ENGLISH.get(found[1], found[1])] = float(length) * metres_in(path, found[3])
-            elif found := _UNIT.match(line):
-                told = found[1]
+            header.add(path, number, line)
             continue
         words = words_of(path, number, line)
-        open_left, open_right = open_left and not words[0], open_right and not words[-1]
         try:
-            rows.append(numbers_of(path, number, words))
+            row = numbers_of(path, number, words)
         except ForeignError as error:
+            if not rows and len(header.lines) < _MOST_HEADER:
+                header.refused = header.refused or error
+                header.lines.append(line)
+                continue
             if rows and rows[0].size > XYZ:  # a matrix, which a wrong word makes no file of another program
                 raise ValueError(str(error)) from None
             raise
-        if rows[-1].size != rows[0].size:
-            raise ForeignError(
-                f"{path}: line {number} has {rows[-1].size} numbers, the first row {rows[0].size}"
-            )
-        total += rows[-1].size
+        header.open_left = header.open_left and not words[0]
+        header.open_right = header.open_right and not words[-1]
+        rows.append(row)
+        if row.size != rows[0].size:
+            told = f"{path}: line {number} has {row.size} numbers, the first row {rows[0].size}"
+            raise header.refused or ValueError(told)
+        total += row.size
         checked_shape(1, total)
     if not rows:
-        raise ForeignError(f"{path}: holds no numbers")
-    if points := single_points(len(rows), rows[0].size):
-        raise ForeignError(f"{path}: {points}")
-    metre, assumed = height_unit(path, told, unit)
-    heights = np.array(rows) * metre
-    # every row begins or ends with a separator: there is no column beyond it
-    heights = np.ascontiguousarray(heights[:, int(open_left) : heights.shape[1] - int(open_right)])
-    if pixel is None:
-        if set(extent) != {"Width", "Height"}:
-            raise ForeignError(f"{path}: does not give the size of a pixel; give --pixel")
-        checked_shape(*heights.shape)
-        pixel = extent["Width"] / heights.shape[1], extent["Height"] / heights.shape[0]
-    return Topography(heights, pixel, assumed_unit=assumed)
+        raise header.refused or ForeignError(f"{path}: holds no numbers")
+    return header, rows
+
+
+def _of_points(
+    path: Path,
+    header: _Header,
+    points: Array,
+    pixel: tuple[float, float] | None,
+    unit: str | None,
+    missing: float | None,
+) -> Topography:
+    """A map of points x, y and z."""
+    if pixel is not None:
+        raise ValueError(f"{path}: three numbers a line are points with x, y and z; leave --pixel out")
+    told = header_units(header.lines, XYZ)
+    metre, assumed = height_unit(path, told[2], unit)
+    z = in_metres(path, points[:, 2], metre, missing)
+    places = [height_unit(path, told[k], unit if told[k] is None else None) for k in (0, 1)]
+    scaled = np.column_stack([*(points[:, k] * places[k][0] for k in (0, 1)), z])
+    heights, size = grid_of(path, scaled)
+    return Topography(heights, size, assumed_unit=assumed or places[0][1])
 
 
 def lines_of(path: Path) -> Iterator[tuple[int, str]]:
@@ -128,3 +199,24 @@ def numbers_of(path: Path, number: int, words: list[str]) -> Array:
     if np.any(np.isinf(row)):
         raise ValueError(f"{path}: line {number}: a height is infinite")
     return row
+
+
+def header_units(header: list[str], columns: int) -> list[str | None]:
+    """Unit of each column, from the last header line with units and no digits."""
+    for line in reversed([line for line in header if not re.search(r"\d", line)]):
+        cells = [cell for cell in re.split(r"[;,\t]|\s{2,}", line) if cell.strip()]
+        units = [_unit(cell) for cell in cells]
+        if len(cells) == columns and any(units):
+            return [unit[0] if unit else None for unit in units]
+        found = [unit for cell in units for unit in cell]
+        if found:
+            return [*found[:columns]] if len(found) >= columns else [found[0]] * columns
+    return [None] * columns
+
+
+def _unit(cell: str) -> list[str]:
+    """Units in a cell, or in a line of several with single spaces."""
+    words = cell.split()
+    if not all(word in _UNITS for word in words):
+        words = [next(filter(None, found)) for found in _UNIT.findall(cell)]
+    return [_UNITS[word] for word in words]

@@ -4,8 +4,10 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analytic.arrays import Array
 from mcgw.formats.numbers import METRES
@@ -17,6 +19,10 @@ _SMALL, _PACKED = 2**22, 20  # points that any file may declare, and that each o
 _ENOUGH = 2**20  # differences between neighbours tell their median to a thousandth
 XYZ = 3
 STEEPEST = 10.0  # 84 degrees: no instrument that gives a height map sees such slopes all over it
+FLATTEST = 1e-6  # and no surface is so flat from one pixel to the next
+_SENTINELS = (-9999.0, -99999.0, -32768.0, 32767.0, 1e30, -1e30, 1e10, -1e10, 3.4028235e38, -3.4028235e38)
+_FAR = 3.0  # ranges of all other heights
+_EQUAL = 1e-6  # relative, of a height and the number that stands for a missing one; beyond 1e30 a hundredth
 
 
 @dataclass(frozen=True)
@@ -119,6 +125,64 @@ def single_points(rows: int, columns: int) -> str:
         f"three numbers a line, {rows} lines: single points with x, y and z are not a map; give rows of "
         "heights on a grid"
     )
+
+
+def in_metres(path: Path, raw: NDArray[Any], metre: float, missing: float | None) -> Array:
+    """Heights of a file in m, nan where it holds the number that stands for a missing point.
+
+    Parameters
+    ----------
+    path : Path
+        Of the file, for errors.
+    raw : ndarray
+        As the file has them.
+    metre : float
+        Size of their unit, m.
+    missing : float or None
+        Number that stands for a missing point, in that unit.
+
+    Raises
+    ------
+    ValueError
+        If they are complex or no numbers, `missing` is nowhere, or a number such as -9999 lies far from all
+        other heights and `missing` is not given.
+    """
+    if raw.dtype.kind not in "fiu":
+        raise ValueError(f"{path}: heights are {raw.dtype.name}, not real numbers; give their real part")
+    z = raw.astype(np.float64)
+    if missing is not None:
+        marked = _equal(z, missing)
+        if not marked.any():
+            raise ValueError(f"{path}: no height is {missing:g}; leave --missing-value out")
+        z[marked] = np.nan
+    elif sentinel := _sentinel(z):
+        value, number = sentinel
+        raise ValueError(
+            f"{path}: {number} of {z.size} heights are {value:.8g}, far from all others; if they stand for "
+            f"missing points, give --missing-value={value:.8g}"
+        )
+    z *= metre
+    return z
+
+
+def _equal(z: Array, value: float) -> NDArray[np.bool_]:
+    return np.abs(z - value) <= (0.01 if abs(value) > 1e30 else _EQUAL) * abs(value)
+
+
+def _sentinel(z: Array) -> tuple[float, int] | None:
+    """A number that stands for missing points, and how many of them there are."""
+    with np.errstate(invalid="ignore"):
+        for value in _SENTINELS:
+            end = np.fmin.reduce(z, axis=None) if value < 0 else np.fmax.reduce(z, axis=None)
+            if not _equal(np.array(end), value):
+                continue
+            others = z[~_equal(z, value) & np.isfinite(z)]
+            if not others.size:
+                continue
+            low, high = float(others.min()), float(others.max())
+            if max(low - value, value - high) > _FAR * (high - low):
+                return float(end), z.size - int(np.count_nonzero(~_equal(z, value)))
+    return None
 
 
 def height_unit(path: Path, told: str | None, given: str | None) -> tuple[float, str]:
