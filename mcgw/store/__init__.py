@@ -51,7 +51,7 @@ are merged at the end and then removed. What each mechanism is for:
 ``shards``       a killed run loses at most the blocks in hand; workers elsewhere share no open file
 ``run_folder``   a run goes on only with what it was begun with: scene, sampler, versions
 ``Plan``         which surfaces are drawn together, of a run or of all groups of a sweep
-``identity``     which scenes, samplers, versions and kinds of processor those are; and who made a file
+``identity``     which scenes, samplers and versions those are; and who made a file
 ``saving``       a file is made in memory, or of blocks under another name, and read back
 ``statistics_file``  that of scenes that keep statistics and no surface
 ``disk``         HDF5 may crash on a full disk, so it never sees its errors; the trailer of a whole file
