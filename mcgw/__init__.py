@@ -50,7 +50,7 @@ Use the results:
 =======================  =========================================================================
 `compare`                an ensemble or a sweep against theory; the theory itself: ``scene.theory``
 ``scene.validity()``     measured error of the model against elasticity
-`regrade`                another grading or contact law on the same surfaces; `paired_ratio` of both
+`paired_ratio`           ratio of two means over the same surfaces
 `solve`                  the separation at a load, pressure or area
 `export`                 tables for finite-element programs, or as JSON
 `sweep`, `open_sweep`    many scenes on the same surfaces: means, differences, slopes
@@ -110,7 +110,6 @@ if TYPE_CHECKING:
     from mcgw.elasticity.elastic import elastic as elastic
     from mcgw.ensemble.ensemble import Ensemble as Ensemble
     from mcgw.ensemble.paired import paired_ratio as paired_ratio
-    from mcgw.ensemble.regrading import regrade as regrade
     from mcgw.ensemble.simulation import simulate as simulate
     from mcgw.ensemble.solution import solve as solve
     from mcgw.errors import RunError as RunError, StoreError as StoreError
@@ -150,7 +149,6 @@ _HOMES = {
     "mcgw.elasticity.elastic": "elastic",
     "mcgw.ensemble.ensemble": "Ensemble",
     "mcgw.ensemble.paired": "paired_ratio",
-    "mcgw.ensemble.regrading": "regrade",
     "mcgw.ensemble.simulation": "simulate",
     "mcgw.ensemble.solution": "solve",
     "mcgw.errors": "RunError StoreError",

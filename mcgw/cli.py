@@ -25,7 +25,6 @@ COMMANDS = (
     "compare",
     "converge",
     "tradeoff",
-    "regrade",
     "merge",
     "solve",
     "export",

@@ -28,7 +28,7 @@ separations = [0.0, 1.0]
 n_surfaces = 8
 seed = 1
 """
-MOMENTS = """
+PLAIN = """
 [surface]
 sigma = 1.37e-6
 radius = 13e-6
@@ -42,7 +42,6 @@ quantities = ["load"]
 n_surfaces = 8
 seed = 1
 sampler = "cells"
-keep = "moments"
 """
 
 # By name: the file that is read; the command, with OUT or DIR for where it is told to write; and what the
@@ -60,10 +59,6 @@ CASES = {
     "export, scene": ("scene.toml", "export scene.toml --to abaqus -o OUT", ".inp"),
     "export, quantile": ("table.csv", "export scene.toml --to moose -o DIR/t.csv", "t.q05.csv"),
     "report": ("e.h5", "report e.h5 -o OUT", ".html"),
-    "regrade": ("e.h5", "regrade e.h5 --gamma 1.1 -o OUT", ".h5"),
-    "regrade --csv": ("e.h5", "regrade e.h5 --gamma 1.1 --csv OUT", ".csv"),
-    "regrade --grading": ("table.csv", "regrade e.h5 --grading table.csv -o OUT", ".h5"),
-    "regrade --grading --csv": ("table.csv", "regrade e.h5 --grading table.csv --csv OUT", ".csv"),
     "solve": ("scene.toml", "solve scene.toml --pressure 1MPa --csv OUT", ".csv"),
     "solve, table": ("table.csv", "solve scene.toml --pressure 1MPa --csv OUT", ".csv"),
     "surface": ("scene.toml", "surface scene.toml --shape 16 -o OUT", ".sdf"),
@@ -100,9 +95,9 @@ def prepare(folder):
     rng = np.random.default_rng(1)
     np.save(folder / "heights.npy", np.sort(rng.normal(size=300)))
     (folder / "scene.toml").write_text(SCENE)
-    (folder / "moments.toml").write_text(MOMENTS)
+    (folder / "plain.toml").write_text(PLAIN)
     words = [
-        "run moments.toml -o e.h5",
+        "run plain.toml -o e.h5",
         "surface --from-spectrum rms=1um,long=50um,short=5um --pixel 1um --shape 64 -o map.npy",
     ]
     with chdir(folder):

@@ -122,7 +122,7 @@ def asked(seed):
     values["sampler"] = str(
         dice.choice(["auto", "cells", "tail", "direct", "aggregate"], p=[0.55, 0.3, 0.05, 0.05, 0.05])
     )
-    values["keep"] = str(dice.choice(["sums", "moments", "statistics"], p=[0.75, 0.2, 0.05]))
+    values["keep"] = str(dice.choice(["sums", "statistics"], p=[0.95, 0.05]))
     return values | {"quantities": names}
 
 

@@ -16,7 +16,6 @@ from test_random_radii import spectral
 import analytic
 import mcgw
 from analytic import laws
-from mcgw.ensemble.regrading import regrade
 from mcgw.ensemble.simulation import Values
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run
@@ -58,7 +57,6 @@ HERTZ = {
     "gamma 0": {"grading": analytic.Exponential(0.0)},
     "poisson": {"count": "poisson", "grading": analytic.Exponential(0.2)},
     "table": {"grading": analytic.Table([-1.0, 0.3, 1.0, 2.2], [0.3, 0.5, 1.4, 1.5])},
-    "moments kept": {"keep": "moments"},
     "high": {"separations": np.linspace(2, 5, 16), "n_asperities": 20_000},
     "geometric": {"separations": np.geomspace(1e-3, 4, 15)},
     "close": {"separations": CLOSE},
@@ -301,25 +299,3 @@ def test_converge_says_where_values_are_coarser_than_means(make_scene):
         ValueError, match=r"ensemble\.accuracy = 0\.01: means of .* surfaces are more accurate"
     ):
         converge(scene, n_surfaces=100, seeds=4)
-
-
-@pytest.mark.parametrize("keep", ["sums", "moments"])
-@pytest.mark.parametrize("accuracy", [1e-6, 1e-3])
-def test_regrade(make_scene, accuracy, keep):
-    """As near to a new simulation as what is asked allows; from moments or by drawing again."""
-    scene = make_scene(n_surfaces=20, keep=keep, accuracy=accuracy)
-    regraded = regrade(mcgw.simulate(scene), analytic.Exponential(0.5))
-    fresh = mcgw.simulate(replace(scene, grading=analytic.Exponential(0.5), keep="sums"))
-    for name in scene.quantities:
-        x, y = regraded.values(name), fresh.values(name)
-        np.testing.assert_allclose(x, y, rtol=2 * accuracy, atol=2e-3 * accuracy * y.mean())
-
-
-def test_regrade_crowds(make_scene):
-    """By their moments, of which each number of moments has others: to the law. Without them not at all."""
-    scene = make_scene(n_surfaces=1000, keep="moments", **COARSE[2])
-    regraded = regrade(mcgw.simulate(scene), analytic.Exponential(0.5))
-    assert compare(regraded).verdict.agrees
-    ensemble = mcgw.simulate(scene.replace(keep="sums"))
-    with pytest.raises(ValueError, match=r"cannot be drawn again: .* keep = \"moments\""):
-        regrade(ensemble, analytic.Exponential(0.5))

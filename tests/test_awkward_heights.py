@@ -207,26 +207,6 @@ def stiffening(s):
     return 1 + 0.3 * np.tanh(s)
 
 
-@pytest.mark.parametrize("keep", ["sums", "moments"])
-@pytest.mark.parametrize("heights", BOUNDED, ids=lambda x: getattr(x, "name", type(x).__name__))
-def test_regraded_loads_are_literal(heights, keep):
-    """One separation lies below the support, one in it."""
-    scene = mcgw.Scene(SURFACE, separations=[-5.0, -0.5, 0.5], heights=heights, keep=keep, **FEW)
-    softer = mcgw.Exponential(0.5)
-    regraded = mcgw.regrade(mcgw.simulate(scene), softer)
-    drawn = [mcgw.heights(scene, i) for i in range(4)]
-    sums = [[np.sum(np.maximum(s - h, 0) ** 1.5 * softer(s)) for h in scene.separations] for s in drawn]
-    scale = 4 / 3 * SURFACE.E_star * np.sqrt(SURFACE.radius) * SURFACE.sigma**1.5
-    np.testing.assert_allclose(regraded.load, scale * np.array(sums), rtol=1e-12)
-
-
-def test_moments_of_heights_that_were_not_drawn_are_refused():
-    scene = mcgw.Scene(SURFACE, separations=[0.0, 1.0], heights=scipy.stats.uniform(), keep="moments", **FEW)
-    ensemble = mcgw.simulate(scene)
-    with pytest.raises(ValueError, match=r"separation -1 is not an edge"):
-        mcgw.regrade(ensemble, mcgw.Exponential(0.5), separations=[-1.0, 1.0])
-
-
 def test_a_function_is_resolved_down_to_where_the_way_back_begins():
     """On the surface's own heights: elastic spots lose nothing on the way back."""
     law = mcgw.KogutEtsion(critical=1e3)

@@ -234,7 +234,7 @@ SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
 
 
 def test_every_dataset_and_attribute_is_described(tmp_path):
-    asked = {"quantities": ("load", "area", "stiffness", "contacts", "conductance"), "keep": "moments"}
+    asked = {"quantities": ("load", "area", "stiffness", "contacts", "conductance")}
     scene = mcgw.Scene(
         SURFACE, separations=[0.0, 1.0], n_surfaces=3, seed=1, title="x", interaction="body", **asked
     )
@@ -248,7 +248,7 @@ def test_every_dataset_and_attribute_is_described(tmp_path):
                 key for key in file[name].attrs if key.islower()
             }  # those of HDF5 itself are in capitals
     assert found - words == set()
-    assert {"load", "moments", "digest", "units"} <= found
+    assert {"load", "digest", "units"} <= found
 
 
 def test_every_dataset_of_a_sweep_is_described(tmp_path):

@@ -34,7 +34,7 @@ e = mcgw.run(scene, "demo.h5")                            # in a file: goes on, 
 e                                                         # at most a dozen lines; a table in a notebook
 e["load"], e.load, e.mean("pressure"), e.interval("area_fraction")
 e.to_xarray(), e.to_dataframe()
-mcgw.compare(e), mcgw.regrade(e, mcgw.Exponential(1.2)), mcgw.solve(scene, pressure="1 MPa"), mcgw.converge(scene), mcgw.tradeoff(scene), mcgw.fit("map.h5", cutoff="5 um")
+mcgw.compare(e), mcgw.solve(scene, pressure="1 MPa"), mcgw.converge(scene), mcgw.tradeoff(scene), mcgw.fit("map.h5", cutoff="5 um")
 scene.replace(nominal_area="10 cm^2")                     # N follows, unless it was given
 mcgw.Scene(surface, separations=2.0, grading=lambda s: 1 + 0.3*np.tanh(s), heights=scipy.stats.lognorm(0.3))  # any callable, any frozen scipy law; files hold it too
 scene.theory.mean("load", h)                              # the exact model of this very scene
@@ -83,9 +83,8 @@ def test_the_notebook_runs(whole, capsys, tmp_path, monkeypatch, request):
     np.testing.assert_array_equal(values[0], values[1])
     np.testing.assert_array_equal(values[2], e.mean("load") / 1e-4)
     assert np.all(values[3][0] <= e.mean("area") / 1e-4)
-    comparison, graded, solution, *studies = results
+    comparison, solution, *studies = results
     assert comparison.verdict.agrees
-    assert graded.scene.grading == mcgw.Exponential(1.2)
     assert solution.value == pytest.approx(100, rel=1e-15)
     if whole:
         convergence, study, fit = studies
@@ -321,5 +320,5 @@ def test_a_plain_function_is_custom():
         assert mcgw.compare(mcgw.simulate(x, n_surfaces=200)).verdict.agrees
     means = [x.theory.mean("load", [0.0, 1.0, 2.0]) for x in (plain, told)]
     np.testing.assert_allclose(*means, rtol=1e-11)
-    base = mcgw.simulate(scene(separations=[0.0, 1.0, 1.25]), n_surfaces=50, keep="moments")
-    assert mcgw.regrade(base, tips).scene.grading.name == "tips"  # the series of it
+    swept = mcgw.sweep(scene(n_surfaces=50), {"grading": [mcgw.Homogeneous(), tips]})
+    assert swept.scene(1).grading.name == "tips"  # the series of it

@@ -44,14 +44,14 @@ def without_layout(monkeypatch):
 
 @pytest.fixture(scope="module")
 def material(tmp_path_factory):
-    """What commands read: scenes, an ensemble with its moments, a run in two shares, a map, a table."""
+    """What commands read: scenes, an ensemble, a run in two shares, a map, a table."""
     folder = tmp_path_factory.mktemp("material")
     (folder / "s.toml").write_text(SCENE)
     (folder / "noseed.toml").write_text(SCENE.replace(", seed = 5", ""))
     (folder / "rule.toml").write_text(SCENE.replace("n_surfaces = 70", "rel_err = 0.05, max_surfaces = 500"))
     (folder / "t.csv").write_text("s,ratio\n0.0,1.0\n1.0,3.0\n")
     scene = mcgw.load_scene(folder / "s.toml")
-    run(dataclasses.replace(scene, keep="moments"), folder / "e.h5")
+    run(scene, folder / "e.h5")
     assert main(["surface", *SPECTRUM, "--seed", "3", "-o", str(folder / "map.h5")]) == 0
     z = read_map(folder / "map.h5").heights
     np.save(folder / "bare.npy", z)
@@ -200,7 +200,6 @@ def digest_alone(plain, given):
 
 def scene_alone(plain, given):
     assert mcgw.scene_from(given.out).seed == 5
-    assert mcgw.scene_from(given.out).keep == "moments"
 
 
 def csv_columns(name, *columns):
@@ -226,10 +225,6 @@ def scene_has(**fields):
             assert all(getattr(other, name) != value for other in others)
 
     return check
-
-
-def contact_by(law):
-    return scene_has(law=law)
 
 
 def fitted(differs):
@@ -277,11 +272,6 @@ def in_mm(plain, given):
 E = "@e.h5"
 RUN = "@s.toml -o a.h5"
 SWEEP = "@s.toml --over grading.gamma=1,2 -o a.h5"
-HERTZ = "@e.h5 -o a.h5 --law hertz"
-KE = "@e.h5 -o a.h5 --law kogut-etsion --critical 0.05"
-GRADED = "@e.h5 -o a.h5 --law power-law-graded --k 0.5 --c0 1um"
-COATED = "@e.h5 -o a.h5 --law coated --thickness 1um --ratio 2"
-AS_IS = "@e.h5 --gamma 1 -o a.h5"
 INP, OF_SCENE = "@e.h5 --to abaqus -o a.inp", "@s.toml --to abaqus -o a.inp"
 MAP = "@s.toml --shape 200 -o m.h5"
 HDF = "@s.toml --shape 200 -o m.h5"
@@ -329,32 +319,6 @@ ROWS = [
     ("compare", "--table", "@e.h5 -o p.png", "+ --table", says("normal load (N)\n")),
     ("compare", "--csv", "@e.h5 -o p.png", "+ --csv x.csv",
      csv_columns("x.csv", "mean", "low_95", "high_95", "theory", "residual")),
-    ("regrade", "--gamma", AS_IS, "+ --gamma 0.25", scene_has(grading=analytic.Exponential(0.25))),
-    ("regrade", "--grading", AS_IS, "@e.h5 --grading @t.csv -o a.h5",
-     scene_has(grading=analytic.Table([0.0, 1.0], [1.0, 3.0]))),
-    ("regrade", "--output", AS_IS, "+ -o b.h5", writes("b.h5", instead=["a.h5"])),
-    ("regrade", "--csv", AS_IS, "+ --csv x.csv",
-     csv_columns("x.csv", "ratio", "stderr", "theory", "variance_gain")),
-    ("regrade", "--law", HERTZ, KE, contact_by(mcgw.KogutEtsion(critical=0.05))),
-    ("regrade", "--gamma", AS_IS, "@e.h5 -o a.h5", refuses("give another grading (--gamma, --grading) or")),
-    ("regrade", "--critical", AS_IS, "@e.h5 -o a.h5 --critical 0.1", refuses("--critical: belongs to")),
-    ("regrade", "--critical", KE, "+ --critical 0.1", contact_by(mcgw.KogutEtsion(critical=0.1))),
-    ("regrade", "--hardness", KE, "@e.h5 -o a.h5 --law kogut-etsion --hardness 2GPa",
-     contact_by(mcgw.KogutEtsion(hardness=2e9))),
-    ("regrade", "--poisson", KE, "+ --poisson 0.4", contact_by(mcgw.KogutEtsion(critical=0.05, poisson=0.4))),
-    ("regrade", "--bridge", KE, "+ --bridge hermite",
-     contact_by(mcgw.KogutEtsion(critical=0.05, bridge="hermite"))),
-    ("regrade", "--yield-strength", HERTZ, "@e.h5 -o a.h5 --law jackson-green --yield-strength 500MPa",
-     contact_by(mcgw.JacksonGreen(yield_strength=5e8))),
-    ("regrade", "--k", GRADED, "+ --k 0.6", contact_by(mcgw.PowerLawGraded(0.6, c0=1e-6))),
-    ("regrade", "--c0", GRADED, "+ --c0 2um", contact_by(mcgw.PowerLawGraded(0.5, c0=2e-6))),
-    ("regrade", "--thickness", COATED, "+ --thickness 0.5um",
-     contact_by(mcgw.Coated(thickness=5e-7, ratio=2.0))),
-    ("regrade", "--ratio", COATED, "+ --ratio 3", contact_by(mcgw.Coated(thickness=1e-6, ratio=3.0))),
-    ("regrade", "--work", HERTZ, "@e.h5 -o a.h5 --law derjaguin-muller-toporov --work 0.05",
-     contact_by(analytic.laws.DerjaguinMullerToporov(work=0.05))),
-    ("regrade", "--pull-off", HERTZ, "@e.h5 -o a.h5 --law derjaguin-muller-toporov --pull-off 0.01",
-     contact_by(analytic.laws.DerjaguinMullerToporov(pull_off=0.01))),
     ("solve", "--pressure", "@s.toml --pressure 1MPa", "@s.toml --pressure 2MPa",
      says("load 2 N = pressure 2 MPa")),
     ("solve", "--load", "@s.toml --pressure 1MPa", "@s.toml --load 250mN", says("0.25 N = ")),
@@ -791,7 +755,7 @@ def test_places_left_out(call, material):
     """Where a file goes if -o does not say: beside what is read, under its name."""
     for line, name in (
         ("compare @e.h5", "e.png"), ("report @e.h5", "e.html"),
-        ("regrade @e.h5 --gamma 1", "e.regraded.h5"), ("run @s.toml", "out/s.h5"),
+        ("run @s.toml", "out/s.h5"),
     ):  # fmt: skip
         assert call(line.split()).code == 0
         assert (material / name).is_file()

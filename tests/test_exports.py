@@ -213,7 +213,7 @@ def test_at_equal_pressure_each_surface_is_on_its_own_curve(scene):
 def test_separations_are_as_many_as_rows_or_a_thirty_second_apart(scene):
     """And end six deviations beyond those of the pressures, of one surface, but no more than 2."""
     plain = {"quantities": ["load"], "film": None, "n_surfaces": 2}
-    few = scene.replace(separations=[2.0, 0.0, 0.5], keep="moments", **plain)
+    few = scene.replace(separations=[2.0, 0.0, 0.5], keep="statistics", **plain)
     by_gap, by_pressure = KINDS["pressure-gap"], KINDS["stiffness-pressure"]
     drawn = surfaces_for(few, by_gap, None, 5)
     np.testing.assert_allclose(drawn.separations, [0, 0.5, 1, 1.5, 2])

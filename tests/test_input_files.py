@@ -235,7 +235,7 @@ LIMITS = {
         "^x: not a table of one to four axes$",
     ),
     "lines of a text": (
-        attributes(title="a\nb", scene="a\nb", drawn_for="a\nb", axes="a\nb"), attributes(date="a\nb"),
+        attributes(title="a\nb", scene="a\nb", axes="a\nb"), attributes(date="a\nb"),
         "^attribute date: not one line of text$",
     ),
     "kinds of numbers": (

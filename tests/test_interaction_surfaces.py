@@ -269,10 +269,6 @@ REFUSED = {
         {"interaction": NOMINAL, "sampler": "cells", "law": KOGUT}, 'needs single asperities; use "tail"',
         {"sampler": "tail"},
     ),
-    "moments": (
-        {"interaction": NOMINAL, "keep": "moments", "sampler": "cells"}, 'has none; use "sums"',
-        {"interaction": "body"},
-    ),
     "the way back": (
         {"interaction": NOMINAL, "unload_from": "loop", "quantities": ["load", "load_unloading"]},
         "has no unloading", {"interaction": "body"},

@@ -281,12 +281,6 @@ def test_where_it_goes(tmp_path):
     without = mcgw.simulate(scene.replace(joint=None))
     for name in without.scene.quantities:
         np.testing.assert_array_equal(without[name], e[name])
-    alone = mcgw.regrade(e, joint=None)
-    assert "joint_conductance" not in alone.scene.shapes
-    assert "joint_conductance" in mcgw.regrade(e, analytic.Exponential(2.0)).scene.shapes
-    moments = mcgw.regrade(mcgw.simulate(scene.replace(keep="moments")), analytic.Exponential(2.0))
-    anew = mcgw.simulate(scene.replace(grading=analytic.Exponential(2.0)))
-    np.testing.assert_allclose(moments["joint_conductance"], anew["joint_conductance"], rtol=1e-12)
     for shown in (
         repr(e),
         str(mcgw.compare(e).tables()["conductance_si"]),

@@ -127,7 +127,6 @@ def test_where_theory_is_needed_none_is_told(tmp_path, capsys):
         lambda: mcgw.solve(scene, pressure="1 kPa"),
         lambda: mcgw.converge(scene),
         lambda: mcgw.tradeoff(scene),
-        lambda: mcgw.regrade(e, mcgw.Exponential(1.2)),
         lambda: scene.theory,
         lambda: scene.compliance,
     ):

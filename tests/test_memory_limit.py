@@ -185,10 +185,9 @@ def test_small_requests_are_not_looked_up(monkeypatch):
 def test_disk_is_asked_for_blocks_and_file(make_scene):
     """Statistics: a summary each block, packed, joined in pairs in the file, which holds covariances too."""
     sampler = SimpleNamespace(draws=0, words=0, moments=100, cells=7)
-    plain, moments = (reducer_of(make_scene(keep=keep), sampler) for keep in ("sums", "moments"))
-    for reducer, width in ((plain, WIDTH), (moments, WIDTH + 107)):
-        assert reducer.joined_bytes(50) == 8 * 50 * width
-        assert reducer.disk == 2 * 8 * 200 * width
+    reducer = reducer_of(make_scene(), sampler)
+    assert reducer.joined_bytes(50) == 8 * 50 * WIDTH
+    assert reducer.disk == 2 * 8 * 200 * WIDTH
     block = 8 * WIDTH * (WIDTH + 1) // 2 + 1500 * WIDTH
     for n, blocks, joined in (
         (1, 1, 1),

@@ -71,9 +71,9 @@ OVER_AN_ENSEMBLE = [
     "show e.h5 --csv OTHER.csv",
     "report e.h5 -o OTHER.html",
     "export e.h5 --to comsol -o OTHER.txt",
-    "solve moments.toml --pressure 1MPa --csv OTHER.csv",
-    "surface moments.toml -o OTHER.h5",
-    "surface moments.toml -o OTHER.h5",
+    "solve plain.toml --pressure 1MPa --csv OTHER.csv",
+    "surface plain.toml -o OTHER.h5",
+    "surface plain.toml -o OTHER.h5",
     "fit map.npy --cutoff none -o OTHER.toml",
     "init -o OTHER.toml",
 ]
@@ -99,7 +99,7 @@ def test_a_damaged_ensemble_is_not_replaced_either(here, capsys):
 def test_an_earlier_output_is_replaced(here):
     for _ in range(2):
         assert main(["show", "e.h5", "--csv", "table2.csv"]) == 0
-        assert main(["surface", "moments.toml", "--shape", "16", "-o", "m.h5"]) == 0
+        assert main(["surface", "plain.toml", "--shape", "16", "-o", "m.h5"]) == 0
 
 
 ENDINGS = [
@@ -108,8 +108,6 @@ ENDINGS = [
     ("run scene.toml -o x", "an ensemble"),
     ("run scene.toml --shard 1/2 -o x.csv", "an ensemble"),
     ("merge x.csv", "an ensemble"),
-    ("regrade e.h5 --gamma 1 -o x.png", "an ensemble"),
-    ("regrade e.h5 --gamma 1 --csv x.h5", "--csv x.h5: a table"),
     ("compare e.h5 -o x.h5", "a figure is written there, whose name ends in .eps"),
     ("compare e.h5 -o x.xcf", "a figure"),
     ("compare e.h5 --csv x.h5", "a table"),
@@ -143,7 +141,6 @@ def test_every_format_of_matplotlib_is_a_figure():
     ("words", "message"),
     [
         ("compare e.h5 -o a.svg --csv a.svg", "is also the output of -o"),
-        ("regrade e.h5 --gamma 1.1 -o a.h5 --csv there/../a.h5", "is also the output of -o"),
         ("merge e.h5 -o other.h5", "leave out one of the two"),
         ("show e.h5 --digest --csv a.csv", "leave out the other option"),
         ("compare e.h5 -o e.h5.parts/a.png", "is the folder of the run that makes e.h5"),
@@ -163,15 +160,14 @@ def test_places_that_will_not_do(words, message, here, capsys):
 
 
 WRITE = [
-    ("run moments.toml -o OUT", ".h5"),
+    ("run plain.toml -o OUT", ".h5"),
     ("compare e.h5 -o OUT", ".png"),
     ("report e.h5 -o OUT", ".html"),
     ("export e.h5 --to moose -o OUT", ".csv"),
     ("show e.h5 --csv OUT", ".csv"),
-    ("regrade e.h5 --gamma 1.1 -o OUT", ".h5"),
-    ("solve moments.toml --pressure 1MPa --csv OUT", ".csv"),
-    ("surface moments.toml --shape 16 -o OUT", ".npy"),
-    ("surface moments.toml --at 0 -o OUT", ".svg"),
+    ("solve plain.toml --pressure 1MPa --csv OUT", ".csv"),
+    ("surface plain.toml --shape 16 -o OUT", ".npy"),
+    ("surface plain.toml --at 0 -o OUT", ".svg"),
     ("init -o OUT", ".toml"),
 ]
 
@@ -210,21 +206,9 @@ def test_a_disk_that_fails_leaves_the_older_file(words, ending, here, monkeypatc
     assert contents() == before
 
 
-def test_regrade_never_replaces_another_ensemble(here, capsys):
-    assert main(["regrade", "e.h5", "--gamma", "1.1", "-o", "r.h5"]) == 0
-    before = contents()
-    assert main(["regrade", "e.h5", "--gamma", "1.1", "-o", "r.h5"]) == 0  # the same one again
-    assert mcgw.open_ensemble("r.h5").n_surfaces == 8
-    first = (here / "r.h5").read_bytes()
-    err = told(capsys, ["regrade", "e.h5", "--gamma", "1.2", "-o", "r.h5"])
-    assert "holds a different ensemble: grading.gamma is 1.1 there and 1.2 here" in err
-    assert (here / "r.h5").read_bytes() == first
-    assert before.keys() == contents().keys()
-
-
 def test_a_map_does_not_take_the_name_of_an_unfinished_run(here, capsys):
     (here / "m.h5.parts").mkdir()
-    err = told(capsys, ["surface", "moments.toml", "-o", "m.h5"])
+    err = told(capsys, ["surface", "plain.toml", "-o", "m.h5"])
     assert "a run that makes this file is not finished" in err
 
 

@@ -22,11 +22,11 @@ def test_plan_says_what_is_drawn(make_scene):
     plan = plan_of(scene)
     expected = 10**5 * float(analytic.fn(0, 1.0))
     assert plan.touching == pytest.approx(expected, rel=1e-12)
-    drawn = sampler_of(scene).block(0, 64)
-    assert drawn.counts.sum() / 64 == pytest.approx(expected, abs=5 * np.sqrt(expected / 64))
+    moments, counts, _ = sampler_of(scene).drawn(0, 64, sampler_of(scene).response.layout)
+    assert counts.sum() / 64 == pytest.approx(expected, abs=5 * np.sqrt(expected / 64))
     assert sampler_of(scene).draws == pytest.approx(expected, rel=1e-9)
-    assert plan.cells == drawn.counts.shape[1]
-    assert plan.moments == pytest.approx(drawn.moments.shape[1], rel=0.2)
+    assert plan.cells == len(counts)
+    assert plan.moments == pytest.approx(len(moments), rel=0.2)
     assert plan.bytes == 8 * 200 * 2 * 4
     assert plan.seconds > 0
     text = plan_text(scene, plan)
@@ -36,12 +36,10 @@ def test_plan_says_what_is_drawn(make_scene):
 
 
 def test_plan_counts_what_is_kept_and_says_who_chose(make_scene):
-    """Bytes of the sums, and of moments and cells where they are kept; auto is named where it chose."""
-    scene = make_scene(sampler="cells", keep="moments", separations=(1.0, 2.0))
+    """Bytes of the sums, or of statistics alone; auto is named where it chose."""
+    scene = make_scene(sampler="cells", separations=(1.0, 2.0))
     plan = plan_of(scene)
-    drawn = sampler_of(scene).block(0, 1)
-    size = 8 * 200 * (2 * 4 + drawn.moments.shape[1] + drawn.counts.shape[1])
-    assert plan.bytes == pytest.approx(size, rel=0.2)
+    assert plan.bytes == 8 * 200 * 2 * 4
     alone = scene.replace(keep="statistics", n_surfaces=10**6)
     kept = plan_of(alone)
     assert kept.bytes < 8 * 10**6  # not even one value of each surface
@@ -81,7 +79,6 @@ WISHES = {
     "strata": {"sampler": "stratified"},
     "contacts": {"quantities": ("contacts",)},
     "nominal": {"interaction": mcgw.Interaction("body", at="nominal")},
-    "moments": {"keep": "moments"},
     "radii": {"heights": analytic.Nayak(5.0), "curvature": mcgw.RandomCurvature(5.0)},
     "one by one": {"interaction": mcgw.Interaction("body", at="nominal"), "sampler": "tail"},
     "beyond all": {"separations": (9.0, 10.0)},
@@ -133,7 +130,7 @@ from mcgw.reports.plan import plan_of
 surface = mcgw.Surface(1e-6, 1e-5, 3e8, 1e-4, 8e10)
 spectrum = mcgw.SpectralSurface(m0=1e-12, m2=1e-2, m4=4e8, nominal_area=1e-6, E_star=1e11)
 asked = {"separations": [2.0, 3.0], "n_asperities": 10**4, "n_surfaces": 100}
-for changes in ({}, {"keep": "moments"}, {"keep": "statistics"}, {"law_error": 0.01}, {"sampler": "direct"},
+for changes in ({}, {"keep": "statistics"}, {"law_error": 0.01}, {"sampler": "direct"},
                 {"law": mcgw.KogutEtsion(critical=0.1)}, {"grading": lambda s: 1 + abs(s - 2.5)},
                 {"interaction": mcgw.Interaction("mean-plane", at="nominal")}, {"rel_err": 0.1}):
     print(plan_of(mcgw.Scene(surface, **asked).replace(**changes)).seconds)
@@ -146,7 +143,7 @@ def test_a_plan_compiles_nothing(tmp_path):
     env = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
     done = subprocess.run([sys.executable, "-c", CHILD], capture_output=True, text=True, env=env, check=False)
     assert done.returncode == 0, done.stderr
-    assert len(done.stdout.split()) == 10
+    assert len(done.stdout.split()) == 9
     assert [path for path in tmp_path.rglob("*") if path.is_file()] == []
 
 

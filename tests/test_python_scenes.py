@@ -11,7 +11,6 @@ from begun_runs import SIZE, digest, halted, in_small_blocks
 import analytic
 import mcgw
 from mcgw.cli import main
-from mcgw.ensemble.regrading import regrade
 from mcgw.errors import StoreError
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run
@@ -159,35 +158,6 @@ def test_a_name_is_shown_and_nothing_else(make, tmp_path, capsys, request):
     assert "<b>$" not in page
     assert "&lt;b&gt;$" in page
     assert "\x1b" not in page
-
-
-# --- regraded -------------------------------------------------------------------------------------------
-
-
-def bent_at_an_edge(s):
-    return 1 + 0.3 * np.abs(s - H[0])
-
-
-@pytest.mark.parametrize("grading", [np.cosh, lambda s: 1 + 0.3 * np.tanh(s), bent_at_an_edge])
-def test_regraded_by_a_function_and_saved(make, tmp_path, grading):
-    base = run(make("lambda", grading=analytic.Homogeneous(), keep="moments"), tmp_path / "base.h5")
-    new = mcgw.save(regrade(base, grading), tmp_path / "new.h5")
-    fresh = mcgw.simulate(make("lambda", grading=grading, keep="sums"))
-    np.testing.assert_array_equal(regrade(base, new.scene.grading).load, new.load)  # by what the file holds
-    for quantity in fresh.scene.quantities:
-        x, y = new.values(quantity), fresh.values(quantity)
-        np.testing.assert_allclose(x, y, rtol=1e-12, atol=1e-14 * y.mean())
-    assert new.scene == replace(fresh.scene, keep="moments")
-    assert analytic.name_of(new.scene.grading) == grading.__name__
-    if grading is not np.cosh:  # which takes more moments than the exponential gradings do
-        again = regrade(new, base.scene.grading)  # there and back
-        np.testing.assert_allclose(again.load, base.load, rtol=1e-12, atol=1e-14 * base.load.mean())
-
-
-def test_a_kink_inside_a_cell_is_refused(make):
-    base = mcgw.simulate(make("lambda", grading=analytic.Homogeneous(), keep="moments"))
-    with pytest.raises(ValueError, match=r"break of the grading 0\.777 is not an edge|not resolve"):
-        regrade(base, bent)
 
 
 # --- what is refused ------------------------------------------------------------------------------------

@@ -13,7 +13,7 @@ from analytic.summits import rule_of_radii, rules_of_radii
 from mcgw.ensemble import solution
 from mcgw.sampling.asperities import summits, summits_drawn, touching_summits
 from mcgw.sampling.own_radii import radius_table
-from mcgw.sampling.samplers import regraded, sampler_of
+from mcgw.sampling.samplers import sampler_of
 
 ALPHAS = (1.55, 2.0, 5.0, 50.0)
 POWERS = {"load": 0.5, "area": 1.0, "stiffness": 0.5, "conductance": 0.5, "contacts": 0.0}
@@ -81,7 +81,6 @@ def test_sums_are_those_of_the_very_summits(sampler, alpha):
     {"separations": np.linspace(0, 4, 41)},
     {"separations": (1.0, 1.0 + 1e-9, 1.5)},
     {"curvature": analytic.RandomCurvature(5.0, 2.0)},
-    {"keep": "moments"},
     {"quantities": ("contacts",)},
     {"quantities": ("contacts", "area", "load")},
 ], ids=lambda changes: ", ".join(changes))  # fmt: skip
@@ -203,16 +202,6 @@ def test_a_comparison_asks_once_for_each_rule_over_heights_and_radii(monkeypatch
     scene = spectral(law=LAWS[0], n_asperities=1000, separations=(0.0, 1.0), quantities=("load", "area"))
     assert mcgw.compare(mcgw.simulate(scene)).verdict.agrees
     assert sorted(made) == ["rule_of_radii", "rules_of_radii"]
-
-
-def test_regraded_from_moments_as_drawn_anew():
-    scene = spectral(sampler="cells", keep="moments", quantities=("load",))
-    other = scene.replace(grading=analytic.Exponential(2.0), quantities=("load", "area"))
-    drawn, fresh = sampler_of(scene), sampler_of(other)
-    block = drawn.block(0, 3)
-    again = regraded(other, scene).sums(0, block.moments.T.copy(), block.counts.T.copy(), block.extras)
-    for name, values in fresh.block(0, 3).sums.items():
-        np.testing.assert_allclose(again[name], values, rtol=1e-12)
 
 
 def test_all_summits_of_a_surface():

@@ -295,18 +295,6 @@ def test_a_packed_list_of_heights_is_not_unpacked(tmp_path):
     refused(done, "heights.gz: is not text in UTF-8")
 
 
-def test_a_table_of_regrade_is_read_as_carefully(tmp_path):
-    put(tmp_path, SCENE.replace("[ensemble]", '[ensemble]\nkeep = "moments"'), n_surfaces=5)
-    os.mkfifo(tmp_path / "pipe.csv")
-    passwords(tmp_path / "p.csv")
-    words = "regrade e.h5 -o r.h5 --grading"
-    made, pipe, done = calls(["run s.toml -o e.h5", f"{words} pipe.csv", f"{words} p.csv"], tmp_path)
-    assert made.returncode == 0
-    refused(pipe, "pipe.csv: is not a regular file")
-    refused(done, "p.csv: the first line must be s or z, a comma, and ratio or E_star")
-    assert "secret" not in done.stderr
-
-
 HOSTILE = {
     "dotted key": "a" + ".a" * 20_000 + " = 1\n",
     "dotted quoted key": '"a"' + '."a"' * 10_000 + " = 1\n",

@@ -68,7 +68,7 @@ def test_commands_take_it(tmp_path):
 
 
 @pytest.mark.parametrize("seed", LARGE[1:])
-def test_heights_figures_regrading_and_convergence_take_it(make_scene, seed):
+def test_heights_figures_and_convergence_take_it(make_scene, seed):
     scene = make_scene(seed=seed, n_surfaces=64, n_asperities=300, separations=(0.0, 1.0), sampler="cells")
     touching = heights(scene, 0, untouched=True)
     assert touching.size == 300

@@ -39,7 +39,7 @@ ADDED = [
      '"conductance_si" needs resistivity, or conductivities = [k1, k2]; give one'),
     ("contact", ', quantities = ["load", "yielded"]', 'no contact yields with law = "hertz"; leave it out'),
     ("contact", ', quantities = ["load_unloading"]', "'load_unloading' needs unloading; give"),
-    ("ensemble", ', keep = "moments", sampler = "stratified"', 'sampler = "stratified" has none; use'),
+    ("ensemble", ', keep = "statistics", sampler = "stratified"', 'sampler = "stratified" has none; use'),
     ("contact", ", yield_index = 3", "unknown key"),
     ("contact", f", datum = '{58 * 'x'}'", f"contact.datum = '{58 * 'x'}': "),  # 60 characters as they are
     ("contact", f", datum = '{59 * 'x'}'", f"contact.datum = '{56 * 'x'}...: "),
@@ -89,7 +89,7 @@ def test_what_a_fit_did_not_see_is_not_shown():
 
 
 WARMED = {  # every sampler, laws that yield, there and back, radii, interaction, statistics
-    ("auto", "sums", "KogutEtsion"), ("tail", "sums", "KogutEtsion"), ("auto", "moments", "Hertz"),
+    ("auto", "sums", "KogutEtsion"), ("tail", "sums", "KogutEtsion"),
     ("stratified", "sums", "Hertz"), ("direct", "sums", "Hertz"), ("auto", "sums", "Hertz"),
     ("aggregate", "sums", "Hertz"), ("auto", "statistics", "Hertz"), ("cells", "sums", "Hertz"),
     ("tail", "sums", "Hertz"),

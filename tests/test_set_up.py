@@ -184,7 +184,8 @@ def test_a_surface_without_extras_is_one_of_many(make_scene):
     scene = make_scene(n_surfaces=200, n_asperities=1000, separations=(0.0, 2.0, 3.5))
     sampler = sampler_of(scene)
     block = sampler.block(0, 200)
-    lonely = set(block.extras[:, 0].astype(int).tolist())
+    extras = sampler.drawn(0, 200, sampler.response.layout)[2]
+    lonely = set(extras[:, 0].astype(int).tolist())
     assert 0 < len(lonely) < 100
     for surface in (*sorted(lonely)[:3], next(i for i in range(200) if i not in lonely)):
         np.testing.assert_array_equal(sampler.block(surface, 1).sums["load"][0], block.sums["load"][surface])

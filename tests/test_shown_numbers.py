@@ -33,7 +33,7 @@ TITLES = {name: LONG[name].partition(" (")[0] for name in LONG}
 
 @pytest.fixture(scope="module")
 def file(make_scene, tmp_path_factory):
-    scene = make_scene(separations=H, quantities=QUANTITIES, n_surfaces=150, seed=2, keep="moments")
+    scene = make_scene(separations=H, quantities=QUANTITIES, n_surfaces=150, seed=2)
     path = tmp_path_factory.mktemp("shown") / "e.h5"
     run(scene, path)
     return path
@@ -160,48 +160,6 @@ def test_compare_ends_with_1_and_says_so_where_they_disagree(file, tmp_path, cap
     assert "theory agree" in out_of(["compare", file, "-o", tmp_path / "c.png"], capsys)
     monkeypatch.setattr(sweeps, "open_ensemble", lambda path: wrong)
     assert "theory DISAGREE" in out_of(["compare", file, "-o", tmp_path / "c.png"], capsys, code=1)
-
-
-@pytest.fixture(scope="module")
-def ratios(file, scene):
-    """Mean ratios over the same surfaces and their errors, written out: the delta method."""
-    old = mcgw.open_ensemble(file)
-    new = mcgw.simulate(dataclasses.replace(scene, grading=analytic.Exponential(0.5), keep="sums"))
-    found = {}
-    for name in ("load", "stiffness"):
-        b, a = new.values(name), old.values(name)
-        ratio = b.mean(axis=0) / a.mean(axis=0)
-        rest = (b - ratio * a).std(axis=0, ddof=1)
-        apart = np.sqrt(b.var(axis=0, ddof=1) + ratio**2 * a.var(axis=0, ddof=1))
-        found[name] = {
-            "ratio": ratio,
-            "stderr": rest / math.sqrt(len(a)) / a.mean(axis=0),
-            "theory": exact.mean(new.scene, name) / exact.mean(scene, name),
-            "variance_gain": (apart / rest) ** 2,
-        }
-    return found
-
-
-def test_regrade(file, ratios, tmp_path, capsys):
-    words = ["--gamma", "0.5", "-v", "-o", tmp_path / "n.h5", "--csv", tmp_path / "n.csv"]
-    out = out_of(["regrade", file, *words], capsys)
-    found = tables(out)
-    assert list(found)[:2] == [f"{TITLES[name]}, new over old" for name in ("load", "stiffness")]
-    for name, expected in ratios.items():
-        _, rows = found[f"{TITLES[name]}, new over old"]
-        shown = np.array(rows, dtype=float)
-        np.testing.assert_array_equal(shown[:, 0], H)
-        np.testing.assert_allclose(shown[:, 1], expected["ratio"], atol=6e-7)
-        np.testing.assert_allclose(shown[:, 2], expected["stderr"], rtol=0.06)
-        np.testing.assert_allclose(shown[:, 3], expected["theory"], atol=6e-7)
-        np.testing.assert_allclose(shown[:, 4], expected["variance_gain"], rtol=6e-3)
-    rows = rows_of(tmp_path / "n.csv")
-    assert [(r["quantity"], float(r["separation"])) for r in rows] == [(n, h) for n in ratios for h in H]
-    for row in rows:
-        k = H.index(float(row["separation"]))
-        for column in ("ratio", "stderr", "theory", "variance_gain"):
-            assert float(row[column]) == pytest.approx(ratios[row["quantity"]][column][k], rel=1e-7)
-    assert f"{tmp_path / 'n.h5'}: 150 surfaces, the same as in {file}" in out
 
 
 SOLVED = ("theory", "mean", "low_95", "high_95", "specimen_05", "specimen_95")

@@ -154,7 +154,7 @@ def test_chunks_are_cut_at_powers_of_two_within_a_mebibyte(columns, monkeypatch)
 
 @pytest.fixture
 def scene(make_scene):
-    return make_scene(sampler="cells", keep="moments", n_surfaces=SURFACES)
+    return make_scene(sampler="cells", n_surfaces=SURFACES)
 
 
 @pytest.fixture
@@ -170,8 +170,7 @@ def copied(monkeypatch):
     rows, add = [], chunks._add_chunks
 
     def counted(target, first, source):
-        if not target.name.endswith("extras"):  # whose rows are not surfaces
-            rows.append(len(source))
+        rows.append(len(source))
         add(target, first, source)
 
     monkeypatch.setattr(chunks, "_add_chunks", counted)
@@ -192,7 +191,7 @@ def test_blocks_of_any_number_of_chunks_make_the_same(
     monkeypatch.setattr(chunks, "CHUNK_ROWS", rows)
     path = tmp_path / "e.h5"
     assert made(run, scene, path) == expected
-    tables = len(scene.quantities) + 2  # moments and cells
+    tables = len(scene.quantities)
     assert len(copied) == direct * tables
     for name, values in mcgw.simulate(scene).sums.arrays.items():
         np.testing.assert_array_equal(mcgw.open_ensemble(path).sums.read(name, 0, None), values)
@@ -205,7 +204,7 @@ def test_blocks_that_begin_within_a_chunk_go_on_as_well(scene, tmp_path, expecte
     begun(scene, path)
     monkeypatch.setattr(Values, "rows", SIZE)
     assert made(run, scene, path) == expected
-    assert sum(copied) == 60 * (len(scene.quantities) + 2)
+    assert sum(copied) == 60 * len(scene.quantities)
 
 
 def test_a_run_that_an_older_version_began_goes_on(scene, tmp_path, expected, copied, monkeypatch):
@@ -229,7 +228,7 @@ def test_a_file_is_extended_whatever_it_is_packed_with(scene, tmp_path, expected
         assert (file["load"].compression == "gzip") == (old == "all compressed")
     copied.clear()
     assert made(run, scene, path) == expected
-    assert copied.count(37) == (6 if old == "of this version" else 2)  # contacts and cells shrink
+    assert copied.count(37) == (4 if old == "of this version" else 1)  # contacts shrink
 
 
 def chunk_of(path, name, number=1):

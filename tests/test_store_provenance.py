@@ -30,7 +30,6 @@ CHANGES = {
     "poisson": {"grading": analytic.Homogeneous(), "count": "poisson", "separations": (0.1, 1 / 3)},
     "table": {"grading": analytic.Table([-5.0, 0.0, 9.0], [0.5, 1.0, 1.7])},
     "direct": {"sampler": "direct", "n_asperities": 500},
-    "moments": {"keep": "moments"},
     "python": {
         "grading": lambda s: 1 + s * s, "heights": scipy.stats.lognorm(0.3), "separations": (0.5, 2.0)
     },

@@ -283,7 +283,7 @@ MISTAKES = [
     ({GAMMA: 2}, "grading.gamma = 2: give a list"),
     ({GAMMA: []}, "give a list of at least one"),
     ({"grading": [3]}, "grading = 3: must be a table"),
-    ({"grading": [np.sin]}, "gradings such as"),
+    ({"grading": [np.sin]}, "is negative from s = 3.143"),
     ({}, "at least one key"),
     ({"contact.unload_from": [0, "x"]}, "contact.unload_from = 'x'"),
     ({"ensemble.max_seconds": [3]}, "max_seconds: a sweep must be reproducible"),

@@ -108,7 +108,7 @@ def asked(grading, number):
     mesh = mesh_of(scene)
     tree = tree_over(mesh)
     return (
-        mesh, tree, hertz_rows(scene, QUANTITIES, lasting=False),
+        mesh, tree, hertz_rows(scene, QUANTITIES),
         Nodes.of(mesh, tree, grading, 10**5, LAST_DIGITS),
     )  # fmt: skip
 

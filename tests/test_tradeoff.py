@@ -247,7 +247,7 @@ def test_ways_are_tried_in_order_of_importance(touching, make_scene, monkeypatch
 
     tried, asked = (
         [],
-        make_scene(accuracy=1e-3, keep="moments", separations=(0.0,), n_asperities=2 * touching),
+        make_scene(accuracy=1e-3, keep="statistics", separations=(0.0,), n_asperities=2 * touching),
     )
 
     def measured(scene, **changes):

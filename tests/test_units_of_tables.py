@@ -93,15 +93,6 @@ def test_heights_in_other_units_are_doubted_by_every_door(tmp_path, capsys):
     assert capsys.readouterr().err.count("s = 5.11e+06 sigma") == 1
 
 
-def test_regrade_doubts_the_table_that_it_is_given(tmp_path, capsys):
-    path = scene_of(tmp_path, "z (um),E_star (GPa)", BARE, 'keep = "moments"\n')
-    (tmp_path / "other.csv").write_text("s,ratio\n-3,0.9\n7,61.2\n")
-    assert main(["run", str(path), "-o", str(tmp_path / "a.h5")]) == 0
-    assert "grading" not in capsys.readouterr().err
-    assert main(["regrade", str(tmp_path / "a.h5"), "--grading", str(tmp_path / "other.csv")]) == 0
-    assert "mcgw: note: grading: E*(s)/E* = 61.2 of surface.E_star = 7.86e+10 Pa" in capsys.readouterr().err
-
-
 @pytest.mark.parametrize(
     ("ends", "separations", "doubt"),
     [

@@ -185,8 +185,6 @@ def test_it_goes_through_files_and_is_shown(scene, tmp_path, capsys):
     assert f"fitted to    {first}\n               {second}\n" in repr(kept)
     assert main(["show", str(tmp_path / "s.h5")]) == 0
     assert scene.validity().verdict in capsys.readouterr().out
-    graded = mcgw.regrade(mcgw.simulate(scene.replace(keep="moments")), mcgw.Exponential(2.0))
-    assert graded.scene.fitted == scene.fitted
 
 
 def test_cautions_of_a_fit_travel_the_gravest_first(fit, tmp_path, capsys):

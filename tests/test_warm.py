@@ -11,7 +11,7 @@ def test_scenes_of_every_kind_are_drawn(monkeypatch):
     monkeypatch.setattr("mcgw.maps.fitting.fit", lambda *words, **options: fitted.append((words, options)))
     warm.warm()
     assert {scene.sampler for scene in scenes} == set(SAMPLERS)
-    assert {scene.keep for scene in scenes} == {"sums", "moments", "statistics"}
+    assert {scene.keep for scene in scenes} == {"sums", "statistics"}
     assert {scene.count for scene in scenes} == {"fixed", "poisson"}
     assert {scene.hertzian for scene in scenes} == {True, False}
     assert {scene.unload_from for scene in scenes} == {None, 0.0}

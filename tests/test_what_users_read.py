@@ -25,22 +25,21 @@ pytestmark = pytest.mark.usefixtures("looked_at_here")
 # Command lines in the order in which they find their inputs; y.toml is a scene that yields, there and back.
 LINES = {
     "init": ["init demo -o new/i.toml", "init --help"],
-    "run": ["run moments.toml -o new/r.h5", "run y.toml -o y.h5", "run y.toml -o y.h5 -v"],
-    "sweep": ["sweep moments.toml --over grading.gamma=1.1,1.2 -v -o s.h5", "compare s.h5 -o s.png"],
+    "run": ["run plain.toml -o new/r.h5", "run y.toml -o y.h5", "run y.toml -o y.h5 -v"],
+    "sweep": ["sweep plain.toml --over grading.gamma=1.1,1.2 -v -o s.h5", "compare s.h5 -o s.png"],
     "show": ["show e.h5 --verify", "show y.h5", "show y.toml --plan", "show scene.toml --plan -v"],
     "compare": ["compare e.h5 -o c.png --csv new/c.csv -v", "compare y.h5 -o y.png --table"],
-    "converge": ["converge moments.toml -o new"],
-    "regrade": ["regrade e.h5 --gamma 1.1 -o new/g.h5 --csv new/g.csv"],
+    "converge": ["converge plain.toml -o new"],
     "merge": ["merge e.h5"],
-    "solve": ["solve moments.toml --load 1N --csv new/v.csv", "solve y.toml --pressure 2MPa -v"],
+    "solve": ["solve plain.toml --load 1N --csv new/v.csv", "solve y.toml --pressure 2MPa -v"],
     "export": [f"export scene.toml --to {to} -o new/x{to}{end}" for to, end in
                (("abaqus", ".inp"), ("calculix", ".inp"), ("comsol", ".txt"), ("moose", ".csv"))],
-    "figures": ["figures --scene moments.toml --only equal-load -o new", "figures --list",
+    "figures": ["figures --scene plain.toml --only equal-load -o new", "figures --list",
                 "figures --scene y.toml --only figure-2 -o new --csv"],
     "report": ["report e.h5 -o new/r.html"],
     "surface": ["surface scene.toml --shape 16 -o new/m.h5", "surface scene.toml --at 0 -o new/m.png"],
-    "given": ["solve moments.toml --pressure 500kPa 1MPa 2MPa", "solve pressed.toml --load 1N -v",
-              "solve moments.toml --area-fraction 1% 2% --scatter 1%", "solve spectral.toml --area 0.01mm^2"],
+    "given": ["solve plain.toml --pressure 500kPa 1MPa 2MPa", "solve pressed.toml --load 1N -v",
+              "solve plain.toml --area-fraction 1% 2% --scatter 1%", "solve spectral.toml --area 0.01mm^2"],
     "joints": ["run joint.toml -o j.h5", "show j.h5", "report j.h5 -o new/j.html",
                "solve joint.toml --pressure 1MPa 2MPa", "solve joint.toml --pressure 1MPa -v"],
     "tables": ["export joint.toml --to moose --table conductance-gap --points 6 -o new/g.csv",
@@ -53,9 +52,8 @@ LINES = {
     "plans": [f"show --plan -v {name}.toml" for name in
               ("pressed", "measured", "crowd", "strata", "sticks", "spectral", "located")],
     "pages": ["report y.h5 -o new/y.html", "report s.h5 -o new/s.html", "show s.h5 -v",
-              "sweep moments.toml --over grading.gamma=0.5:2:4 --plan"],
-    "laws": ["regrade y.h5 --law zhao-maietta-chang --critical 0.1 -o new/z.h5",
-             "surface scene.toml --at 0.5 --colour modulus -o new/o.svg",
+              "sweep plain.toml --over grading.gamma=0.5:2:4 --plan"],
+    "laws": ["surface scene.toml --at 0.5 --colour modulus -o new/o.svg",
              "surface --from-spectrum rms=1um,long=20um,short=5um --pixel 1um --shape 32x16 -o new/f.h5"],
     "means": ["run strata.toml -o m.h5", "report m.h5 -o new/m.html", "compare e.h5 --laws -o new/l.png -q"],
     "maps": ["surface caps.toml --shape 96 -o caps.npy",
@@ -131,7 +129,7 @@ def material(tmp_path_factory):
         "x (um) z (nm)\n" + "".join(f"{a} {b:.6f}\n" for a, b in zip(x, 9 * z, strict=True))
     )
     call("run", "y.toml", "-o", "y.h5", "-q", cwd=folder)
-    call("sweep", "moments.toml", "--over", "grading.gamma=1.1,1.2", "-q", "-o", "s.h5", cwd=folder)
+    call("sweep", "plain.toml", "--over", "grading.gamma=1.1,1.2", "-q", "-o", "s.h5", cwd=folder)
     return folder
 
 

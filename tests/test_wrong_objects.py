@@ -18,7 +18,6 @@ OF_SCENES = {
 }
 OF_ENSEMBLES = {
     "compare": mcgw.compare,
-    "regrade": mcgw.regrade,
     "save": lambda e: mcgw.save(e, "never.h5"),
     "paired_ratio": lambda e: mcgw.paired_ratio(ENSEMBLE, e, "load"),
 }
@@ -84,7 +83,6 @@ NO_RESULTS = "scene.toml: is not a file of results; make one from a scene with m
         ("compare scene.toml", NO_RESULTS),
         ("show scene.toml", NO_RESULTS),
         ("report scene.toml", NO_RESULTS),
-        ("regrade scene.toml --gamma 2", NO_RESULTS),
         ("solve scene.toml --pressure -1MPa", "--pressure = '-1MPa': give a number > 0 with its unit"),
         ("solve scene.toml --load 1N -.5N", "--load = '-.5N': give a number > 0 with its unit"),
         ("solve scene.toml --area-fraction -1%", "--area-fraction = '-1%': give a number > 0 with its unit"),

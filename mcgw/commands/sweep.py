@@ -6,7 +6,7 @@ from typing import Any
 
 from mcgw.commands.options import add_drawing_options, add_set_option, changes_of, drawing, tell_share
 
-HELP = "draw many scenes at once on the same surfaces, keeping means and deviations; resumes where it stopped"
+HELP = "draw many scenes at once on the same surfaces: means, deviations, paired ratios; resumes"
 EXAMPLE = "mcgw sweep runs/demo.toml --over grading.gamma=0.2:2:10 -o gamma.h5"
 
 
@@ -41,6 +41,7 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.commands.outputs import HDF5, Output, check_outputs
     from mcgw.commands.voice import details, look_next, news
     from mcgw.jobs.sweeping import sweep
+    from mcgw.reports.text import ratios_in_words
     from mcgw.scene.scene_file import files_of, load_scene
     from mcgw.store.place import recorded_seed
     from mcgw.sweeps.axes import axes_of
@@ -60,6 +61,9 @@ def execute(args: argparse.Namespace) -> int:
     if args.shard is not None:
         return tell_share(args.shard, path, found)
     news(f"{path}: {found.axes.size} scenes, seed {scene.seed}")
+    ratios = ratios_in_words(found)
+    news(*ratios[:1])
+    details(*ratios[1:])
     look_next(scene, path)
     details(found)
     return 0

@@ -1,1 +1,1 @@
-"""Ensembles in memory: drawing, statistics, regrading, answers at given loads."""
+"""Ensembles in memory: drawing, statistics, answers at given loads."""

@@ -60,14 +60,12 @@ def at_a_time(size: int) -> int:
 
 
 def kept(scene: Scene, block: Block) -> dict[str, Any]:
-    """What is kept of a block: its sums, and its moments if the scene says so."""
+    """What is kept of a block: its sums, contacts as whole numbers."""
     alone = scene.interaction is scene.joint is None
     arrays = dict(block.sums) if alone else answered(scene, block.sums)
     if promise_of(scene.sampler).real_surfaces:
         for name in filter(lambda name: quantity_of(name).counts, scene.quantities):
             arrays[name] = np.rint(arrays[name]).astype(np.int64)
-    if scene.keep == "moments":
-        arrays |= {"moments": block.moments, "cells": block.counts, "extras": block.extras}
     return arrays
 
 

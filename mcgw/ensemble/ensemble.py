@@ -36,7 +36,7 @@ class Ensemble(Shown):
     sums : Held
         The values of every surface, or their statistics.
     drawn_for : Scene, optional
-        The scene for which the surfaces were drawn, if it is another one, as after `mcgw.regrade`.
+        The scene for which the surfaces were drawn, if it is another one, as for some of its separations.
 
     Examples
     --------

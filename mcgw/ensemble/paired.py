@@ -4,9 +4,11 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from scipy.special import ndtri
 
 from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.intervals import CONFIDENCE
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import SEPARATION, Column, Table
 from mcgw.machine.terminal import plotted
@@ -38,6 +40,29 @@ class Paired(Shown):
     stderr: Array
     gain: Array
 
+    def interval(self, level: float = CONFIDENCE) -> tuple[Array, Array]:
+        """Return both ends of a confidence interval of the ratio, by the normal law of many surfaces.
+
+        Raises
+        ------
+        ValueError
+            If `level` is not between 0 and 1.
+        """
+        if not 0 < level < 1:
+            raise ValueError(f"level = {level!r}: give a number between 0 and 1, such as 0.95")
+        half = ndtri((1 + level) / 2) * self.stderr
+        return self.ratio - half, self.ratio + half
+
+    @property
+    def ratio_low(self) -> Array:
+        """Lower end of the 95 % interval."""
+        return self.interval()[0]
+
+    @property
+    def ratio_high(self) -> Array:
+        """Upper end of the 95 % interval."""
+        return self.interval()[1]
+
     def plot(self, ax: Any = None) -> Any:
         """Draw the ratio with its 95 % interval; returns the axes."""
         return plotted(self, ax)
@@ -65,7 +90,7 @@ def paired_ratio(numerator: Ensemble, denominator: Ensemble, quantity: str) -> P
     Parameters
     ----------
     numerator, denominator : Ensemble
-        Of the same surfaces, such as from `regrade`.
+        Of the same surfaces: simulated with the same seed, number of asperities, separations and cells.
     quantity : str
         One they share.
 
@@ -85,8 +110,9 @@ def paired_ratio(numerator: Ensemble, denominator: Ensemble, quantity: str) -> P
     --------
     >>> import mcgw
     >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
-    >>> e = mcgw.simulate(mcgw.Scene(surface, separations=[0, 1, 2], n_surfaces=100, seed=1))
-    >>> mcgw.paired_ratio(mcgw.regrade(e, mcgw.Exponential(2.0)), e, "load").ratio.shape
+    >>> scene = mcgw.Scene(surface, separations=[0, 1, 2], n_surfaces=100, seed=1)
+    >>> two = (mcgw.simulate(scene, grading=mcgw.Exponential(gamma)) for gamma in (2.0, 1.0))
+    >>> mcgw.paired_ratio(*two, "load").ratio.shape
     (3,)
     """
     for ensemble in (numerator, denominator):
@@ -96,7 +122,7 @@ def paired_ratio(numerator: Ensemble, denominator: Ensemble, quantity: str) -> P
         name for name in ("n_surfaces", "sampler") if getattr(numerator, name) != getattr(denominator, name)
     ]
     if not differ and not _same_asperities(numerator, denominator):
-        differ = ["law, and hence in asperities (mcgw.regrade gives the same surfaces another law)"]
+        differ = ["law, and hence in asperities (mcgw.sweep gives the same surfaces several laws)"]
     if differ:
         raise ValueError(
             f"a paired ratio needs two ensembles of the same surfaces; these differ in {', '.join(differ)}"

@@ -103,10 +103,7 @@ class Values(OfScene):
     @property
     def columns(self) -> int:
         """Numbers kept of a surface."""
-        sums = self.scene.width
-        if self.scene.keep != "moments":
-            return sums
-        return sums + int(self.sampler.moments + self.sampler.cells)
+        return self.scene.width
 
     @property
     def disk(self) -> int:  # type: ignore[override]

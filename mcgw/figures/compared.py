@@ -10,7 +10,6 @@ import numpy as np
 from analytic import QUANTITIES, Exponential, Hertz, Homogeneous, MeasuredHeights, Model
 from analytic.arrays import Array, Marks
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.regrading import regrade
 from mcgw.ensemble.simulation import simulate
 from mcgw.figures.data import Estimate, Points
 from mcgw.figures.style import contact_label, short
@@ -58,9 +57,7 @@ class Compared:
     def scene(self) -> Scene:
         """What is drawn: pressed once, with the sums that the figures show, at some of its separations."""
         if self.swept:
-            return self.asked.replace(
-                grading=Homogeneous(), separations=_SWEPT, quantities=tuple(QUANTITIES), keep="moments"
-            )
+            return self.asked.replace(grading=Homogeneous(), separations=_SWEPT, quantities=tuple(QUANTITIES))
         h = np.unique(self.asked.separations)
         cheap = _MOST_ASPERITIES // self.asked.n_asperities
         real = promise_of(self.asked.sampler).real_surfaces
@@ -165,11 +162,7 @@ class Compared:
         """Ensemble for a label or, in a sweep, a gamma, on the same surfaces."""
         key = key if isinstance(key, str) else of_gamma(key)
         if key not in self._kept:
-            if self.swept and key != self.reference:
-                gamma = float(key.partition("= ")[2])
-                self._kept[key] = regrade(self.drawn(self.reference), Exponential(gamma))
-            else:
-                self._kept[key] = simulate(self.all[key])
+            self._kept[key] = simulate(self.all[key])
         found: Ensemble = self._kept[key]
         return found
 

@@ -24,7 +24,8 @@ from mcgw.scene.promises import promise_of
 from mcgw.statistics.comparison import Comparison, SweepComparison
 from mcgw.statistics.convergence import Convergence
 from mcgw.statistics.tradeoff import Tradeoff
-from mcgw.sweeps.sweep import Slopes, Sweep
+from mcgw.sweeps.between import Slopes
+from mcgw.sweeps.sweep import Sweep
 
 _SEPARATION = "separation $d/\\sigma$"
 _MOST_LINES = 7

@@ -9,7 +9,7 @@ from mcgw.ensemble.drawing import use_threads
 from mcgw.jobs.driver import By, check_how
 from mcgw.machine.progress import Progress, told
 from mcgw.scene.arguments import check_object
-from mcgw.scene.scene import Scene
+from mcgw.scene.scene import Scene, storable
 from mcgw.sweeps.axes import axes_of
 from mcgw.sweeps.points import Asked
 from mcgw.sweeps.pooled import draw, weighted
@@ -67,7 +67,8 @@ def sweep(
         What all points have in common, its seed too.
     over : dict of str to sequence
         Keys as in a scene file, as "grading.gamma" or "ensemble.n_asperities", and the values of each as
-        there; or a whole table, as "grading", whose values may also be gradings as `mcgw.Table`.
+        there; or a whole table, as "grading", whose values may also be gradings as `mcgw.Table`, or Python
+        functions, which are resolved over the heights of `scene`.
     statistics : sequence of {"mean", "std"}, optional
         What `Sweep.to_xarray` tells. Default: both.
     zipped : bool, optional
@@ -119,13 +120,19 @@ def sweep(
     >>> stiffer = sweep.difference("load", {"grading.gamma": 2.0, **both}, {"grading.gamma": 1.0, **both})
     >>> stiffer.gain.round()
     array([6., 6., 5.])
+    >>> sweep.ratio("load", (2, 0), (1, 0)).ratio.round(2)
+    array([1.71, 1.85, 1.93])
     """
     check_object("sweep", scene, Scene)
     if not statistics or not set(statistics) <= set(STATISTICS):
         raise ValueError(f"statistics = {statistics!r}: give one or both of {', '.join(STATISTICS)}")
     if path is None and not (executor is None and shard is None):
         raise ValueError("executor, shard: they need a file; give path, or leave them out")
-    axes, chosen = axes_of(over, zipped=zipped), tuple(statistics)
+
+    def resolved(grading: Any) -> Any:
+        return storable(scene.replace(grading=grading)).grading
+
+    axes, chosen = axes_of(over, zipped=zipped, resolve=resolved), tuple(statistics)
     if path is None:
         with use_threads(threads), told(progress, "surfaces") as tell:
             asked = Asked.of(scene, axes)

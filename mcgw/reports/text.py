@@ -9,7 +9,6 @@ import numpy as np
 from analytic import quantity_of
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.labelled import statistics_table
-from mcgw.ensemble.paired import paired_ratio
 from mcgw.formats.sheet import listed
 from mcgw.formats.table import SEPARATION, Column, Table, stacked
 from mcgw.machine.terminal import one_line
@@ -88,31 +87,20 @@ def comparison_text(comparison: Comparison) -> str:
     return "\n".join([*facts, *(table.rows().text() for table in comparison.tables().values())])
 
 
-def ratio_tables(new: Ensemble, old: Ensemble) -> dict[str, Table]:
-    """Ratios of means over the same surfaces, beside theory, of each quantity that the change enters.
-
-    Eqs. (12) and (15) of the paper.
-    """
-    other_law, found = new.scene.law != old.scene.law, {}
-    for name in filter(old.scene.quantities.__contains__, new.scene.quantities):
-        q = quantity_of(name)
-        if q.modulus or (other_law and not q.counts):
-            exact, before = (e.scene.theory.mean(name, e.separations) for e in (new, old))
-            with np.errstate(invalid="ignore", divide="ignore"):
-                pair, theory = paired_ratio(new, old, name), Column("theory", exact / before, unit="1")
-            *most, gain = pair.table().columns
-            found[name] = Table((*most, theory, gain), f"{q.long_name}, new over old")
-    return found
-
-
-def ends_in_words(quantity: str, ratios: Table) -> str:
-    """One of these tables in a line: the ratio at the lowest and at the highest separation."""
-    h, ratio = (column.values for column in ratios.only("separation", "ratio").columns)
-    low, high = int(np.argmin(h)), int(np.argmax(h))
-    return (
-        f"{quantity_of(quantity).long_name}: {ratio[low]:.4g} times the old one at d/sigma = {h[low]:g}, "
-        f"{ratio[high]:.4g} at {h[high]:g}"
-    )
+def ratios_in_words(sweep: "Sweep") -> list[str]:
+    """Of each quantity a line: its mean at the last point over that at the first, on the same surfaces."""
+    h, points = sweep.separations, list(sweep.axes.points())
+    ends = dict.fromkeys((int(np.argmin(h)), int(np.argmax(h))))
+    last, first = sweep.axes.text(points[-1]), sweep.axes.text(points[0])
+    lines = []
+    for name, pairs in sweep.ratios().items():
+        pair = pairs[-1]
+        found = (
+            f"{pair.ratio[k]:.5g} ({pair.ratio_low[k]:.5g} to {pair.ratio_high[k]:.5g}) at d/sigma = {h[k]:g}"
+            for k in ends
+        )
+        lines.append(f"{quantity_of(name).long_name}, {last} over {first}: {', '.join(found)}")
+    return lines
 
 
 def comparison_summary(

@@ -67,18 +67,9 @@ class Block:
     ----------
     sums : dict of str to ndarray
         Each quantity in SI units, shape (surfaces, separations).
-    moments : ndarray or None
-        Of all cells, shape (surfaces, moments), where the sampler has cells.
-    counts : ndarray or None
-        Asperities in each cell, shape (surfaces, cells).
-    extras : ndarray or None
-        Rows (surface, height, weight) of the asperities outside the cells.
     """
 
     sums: dict[str, Array]
-    moments: Array | None = None
-    counts: Array | None = None
-    extras: Array | None = None
 
 
 class Source(Protocol[Drawn]):

@@ -63,8 +63,7 @@ class Counted(Sampler):
 
     def block(self, first: int, n: int) -> Block:
         """Results of surfaces `first` ... `first + n - 1`."""
-        moments, numbers, extras = self.drawn(first, n, self.response.layout)
-        return Block(self.sums(first, moments, numbers, extras), moments.T, numbers.T, extras)
+        return Block(self.sums(first, *self.drawn(first, n, self.response.layout)))
 
     def drawn(self, first: int, n: int, layout: Layout) -> tuple[Array, Array, Array]:
         """Moments, numbers in the cells and heights outside of these surfaces: what `sums` takes."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic import QUANTITIES, quantity_of
+from analytic import quantity_of
 from analytic.arrays import Array, Ints
 from mcgw.sampling.cells import digits_of, edges_before_grading
 from mcgw.sampling.samplers import name_of
@@ -90,16 +90,12 @@ def _orders(scene: Scene, edges: Array) -> tuple[Ints, Ints]:
     if not edges.size:
         return np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64)
     begins, _ = begins_and_breaks(scene, float(edges[0]), float(edges[-1]))
-    lasting = scene.keep == "moments"  # then no number of contacts counts on others, and one is in reserve
-    n = 0 if lasting else scene.n_asperities
-    plain, rooted = expected_orders(scene.heights, n, digits_of(scene), begins, edges)
-    return plain + lasting, rooted + lasting
+    return expected_orders(scene.heights, scene.n_asperities, digits_of(scene), begins, edges)
 
 
 def _families(scene: Scene) -> int:
     """Powers of the radius by which moments are kept apart; 0 where contacts are only counted."""
-    names = QUANTITIES if scene.keep == "moments" else scene.quantities
-    powers = {quantity_of(name).radius for name in names if not quantity_of(name).counts}
+    powers = {quantity_of(name).radius for name in scene.quantities if not quantity_of(name).counts}
     return len(powers) if scene.curvature is not None else min(len(powers), 1)
 
 

@@ -187,9 +187,6 @@ def _root_ratios(coefficients: Any, bottom: Any, largest: Any, s: Any, centred: 
     return result
 
 
-POWERS = (0.5, 1.0)  # of the radius, that quantities have
-
-
 @dataclass(frozen=True)
 class Families:
     """Responses side by side.
@@ -213,23 +210,13 @@ class Families:
 
     @classmethod
     def of(
-        cls,
-        quantities: tuple[str, ...],
-        response_to: Callable[[float, tuple[str, ...]], Response],
-        *,
-        every: bool,
+        cls, quantities: tuple[str, ...], response_to: Callable[[tuple[str, ...]], Response]
     ) -> "Families":
-        """Sort quantities by their power, and have a response made for each power and its quantities.
-
-        With `every`, there is a family also for a power that no quantity has.
-        """
+        """Sort quantities by their power, and have a response made for each power and its quantities."""
         power = [quantity_of(name).radius for name in quantities]
-        powers = POWERS if every else tuple(sorted(set(power)))
+        powers = tuple(sorted(set(power)))
         groups = [[i for i, p in enumerate(power) if p == one] for one in powers]
-        responses = tuple(
-            response_to(one, tuple(quantities[i] for i in group))
-            for one, group in zip(powers, groups, strict=True)
-        )
+        responses = tuple(response_to(tuple(quantities[i] for i in group)) for group in groups)
         return cls(powers, responses, tuple(i for group in groups for i in group))
 
     @cached_property
@@ -258,10 +245,6 @@ class Families:
         drawn = self.apart(layout)
         responses = tuple(x.out_of(more) for x, more in zip(self.responses, drawn, strict=True))
         return replace(self, responses=responses, drawn=drawn)
-
-    def layout_of(self, power: float | None) -> Layout:
-        """The moments of one family."""
-        return self.responses[self.powers.index(power or 0.0)].layout
 
     def __matmul__(self, moments: Array) -> Array:
         """Quantities of every surface: moments (rows, surfaces) to (quantities, surfaces, separations)."""

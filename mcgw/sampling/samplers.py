@@ -11,17 +11,15 @@ name            cells        numbers in them  moments     for
 ==============  ===========  ===============  ==========  =============================================
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from contextlib import suppress
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from analytic import QUANTITIES, UNLOADING, Exponential, Hertz, MeasuredHeights, bends, quantity_of
+from analytic import MeasuredHeights, quantity_of
 from mcgw.machine.memory import keep_freed_memory
-from mcgw.sampling.block import Layout, Sampler
+from mcgw.sampling.block import Sampler
 from mcgw.sampling.cells import Mesh, cut, mesh_of, no_cells, series_accuracy
 from mcgw.sampling.counted import Counted
 from mcgw.sampling.counts import Counts, counts_of, strata_of
@@ -31,7 +29,6 @@ from mcgw.sampling.outside import table_of
 from mcgw.sampling.response.response import Response, parts_of, response_of
 from mcgw.sampling.response.tree import Precision
 from mcgw.sampling.response.walk import UnresolvedError
-from mcgw.sampling.stretches import begins_and_breaks
 from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene, storable
 
@@ -66,7 +63,7 @@ def sampler_of(scene: Scene) -> Sampler:
             return _perhaps_crowded(scene)
         return _MAKERS[name](scene)
     except UnresolvedError:
-        if scene.sampler != "auto" or scene.keep == "moments":
+        if scene.sampler != "auto":
             raise
         return tail_of(scene)
 
@@ -81,7 +78,7 @@ def name_of(scene: Scene) -> str:
     if scene.nominal and scene.located:
         return "direct"
     most = min(5 + len(scene.separations) / 20, 20)
-    few = scene.keep != "moments" and not scene.nominal and scene.touching < most
+    few = not scene.nominal and scene.touching < most
     names = ("tail", "cells", "direct") if few else ("cells", "tail", "direct")
     # Where two of these meet, each summit has breaks of its own.
     breaks = (scene.curvature is not None) + (not scene.hertzian) + scene.nominal
@@ -155,14 +152,13 @@ def aggregate_of(scene: Scene, crowded: int = CROWDED, distance: float = np.nan)
     Returns
     -------
     Counted
-        If moments are kept all of them vary, for another grading may need them.
+        Only the moments that the laws of its sums need vary.
     """
     mesh, response = _resolved(scene, mesh_of(scene, split=False))
     varying = response.layout
-    if scene.keep != "moments":
-        with suppress(UnresolvedError):  # all of them vary where cells are too wide to tell
-            needed = parts_of(scene, mesh, _summed(scene.quantities), Precision(VARYING))
-            varying = needed.layout.at_most(response.layout)
+    with suppress(UnresolvedError):  # all of them vary where cells are too wide to tell
+        needed = parts_of(scene, mesh, _summed(scene.quantities), Precision(VARYING))
+        varying = needed.layout.at_most(response.layout)
     return Counted("aggregate", scene, mesh, response, drawing=Crowds(varying, crowded, distance))
 
 
@@ -186,52 +182,6 @@ def _at_nominal(name: str, scene: Scene) -> Sampler:
     return CellsAtNominal.of(scene)
 
 
-def regraded(scene: Scene, drawn: Scene) -> Counted:
-    """Physics of one scene on the cells of another, for the moments that were kept of that.
-
-    Parameters
-    ----------
-    scene : Scene
-        What is asked now.
-    drawn : Scene
-        What the moments were drawn for.
-
-    Returns
-    -------
-    Counted
-        Its `sums` take the moments.
-
-    Raises
-    ------
-    ValueError
-        If the sampler has no cells, a separation, a break of the grading or a height where a piece of the
-        contact law begins is not an edge of them, or the moments do not resolve what is asked.
-    """
-    sampler = sampler_of(drawn)
-    if not isinstance(sampler, Counted):
-        raise ValueError(f'sampler = "{sampler.name}" has no cells')
-    edges = sampler.mesh.edges
-    # Below the first edge every height that was drawn touches: all there are, or those above the lowest.
-    least = -np.inf if drawn.lowest <= drawn.heights.support[0] else drawn.lowest
-    inside = [h for h in scene.separations if not (edges.size and least <= h <= edges[0])]
-    _check_edges("separation", inside, edges)
-    if edges.size:
-        _check_edges("break of the grading", bends(scene.modulus, edges[0], edges[-1]), edges, _SAME)
-        for heights in begins_and_breaks(scene, *sampler.mesh.range):
-            begun = heights[(edges[0] <= heights) & (heights <= edges[-1])]
-            _check_edges("height where a piece of the contact law begins,", begun.tolist(), edges)
-    response = _response(scene, sampler.mesh, sampler.response)
-    return replace(sampler, scene=scene, response=response)
-
-
-def _check_edges(what: str, wanted: Sequence[float], edges: NDArray[np.float64], apart: float = 0.0) -> None:
-    """Every one of these heights must be an edge, or no farther from one."""
-    for s in wanted:
-        near = edges[np.argmin(np.abs(edges - s))]
-        if abs(s - near) > apart:
-            raise ValueError(f"{what} {s:.6g} is not an edge of the cells (the nearest is {near:.6g})")
-
-
 def _resolved(scene: Scene, mesh: Mesh) -> "tuple[Mesh, Response | Families]":
     """The mesh, cut further where the law of contact bends with the modulus; and the response on it."""
     for _ in range(_CUTS):
@@ -242,56 +192,20 @@ def _resolved(scene: Scene, mesh: Mesh) -> "tuple[Mesh, Response | Families]":
     return mesh, _response(scene, mesh)
 
 
-def _response(scene: Scene, mesh: Mesh, drawn: "Response | Families | None" = None) -> "Response | Families":
-    """Response for all that moments can tell, by those that were `drawn`; contacts are counted."""
+def _response(scene: Scene, mesh: Mesh) -> "Response | Families":
+    """Response for all that moments can tell; contacts are counted."""
     precision = Precision(series_accuracy(scene.accuracy), not scene.exact)
 
-    def response_to(power: float | None, names: tuple[str, ...]) -> Response:
-        kept = None
-        if drawn:
-            kept = drawn.layout if isinstance(drawn, Response) else drawn.layout_of(power)
-        elif scene.keep == "moments":
-            kept = _lasting_layout(scene, mesh, power)
-        return response_of(scene, mesh, names, kept=kept, precision=precision)
+    def response_to(names: tuple[str, ...]) -> Response:
+        return response_of(scene, mesh, names, precision=precision)
 
     names = _summed(scene.quantities)
-    if scene.curvature is None or (not names and scene.keep != "moments"):
-        return response_to(None, names)
+    if scene.curvature is None or not names:
+        return response_to(names)
     from mcgw.sampling.own_radii import Families
 
-    return Families.of(names, response_to, every=bool(drawn) or scene.keep == "moments")
+    return Families.of(names, response_to)
 
 
 def _summed(quantities: Iterable[str]) -> tuple[str, ...]:
     return tuple(name for name in quantities if not quantity_of(name).counts)
-
-
-def _lasting_layout(scene: Scene, mesh: Mesh, power: float | None) -> Layout:
-    """Moments that serve this grading, another exponential one under Hertz's law, and every quantity.
-
-    With a power, every quantity that has this power of the radius.
-    """
-    plainly = replace(
-        scene,
-        law=Hertz(),
-        unload_from=None,
-        film=None,
-        joint=None,
-        quantities=tuple(QUANTITIES),
-        negative="allow",
-    )
-    others = [replace(plainly, grading=Exponential(gamma)) for gamma in (2.0, 0.5, 0.0)]
-    precision = Precision(series_accuracy(scene.accuracy), not scene.exact)
-    needed = (parts_of(x, mesh, _every_sum(x, power), precision, lasting=True) for x in (scene, *others))
-    most = Layout.covering([parts.layout for parts in needed])
-    return Layout(most.plain + 1, most.rooted + 1)  # one in reserve
-
-
-def _every_sum(scene: Scene, power: float | None) -> tuple[str, ...]:
-    """Quantities that the surfaces of a scene have, but those that are counted or have another power."""
-    names = [*QUANTITIES]
-    if not scene.hertzian:
-        names += ["load_slope"] if scene.film is None else ["load_slope", "conductance_si"]
-    if scene.unload_from is not None:
-        names += [q.name for q in UNLOADING.values() if q.unloading in names]
-    return tuple(name for name in _summed(names) if power in (None, quantity_of(name).radius))

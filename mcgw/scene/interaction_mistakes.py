@@ -90,8 +90,6 @@ def _nominal(scene: Fields) -> Iterator[str]:
         what = "a film" if scene.film is not None else f'contact.law = "{scene.law.name}"'
         what = what if scene.curvature is None else "individual summit radii"
         yield f'ensemble.sampler = "cells": with {what}, {key} needs single asperities; use "tail"'
-    if scene.keep == "moments":
-        yield f'ensemble.keep = "moments": {key} has none; use "sums", or at = "effective"'
     if scene.unload_from is not None:
         yield f'contact.unload_from: {key} has no unloading; leave it out, or use at = "effective"'
     if scene.negative == "allow":

@@ -44,9 +44,6 @@ def _values(scene: Fields) -> Iterator[str]:
         yield f'ensemble.rel_err: sampler = "{sampler}" has no variance to stop by; use another'
     if scene.keep == "statistics" and not promise_of(sampler).real_surfaces:
         yield f'ensemble.keep = "statistics": sampler = "{sampler}" has none; use another sampler, or "sums"'
-    listed = isinstance(scene.heights, analytic.MeasuredHeights)  # of which no sampler has moments
-    if scene.keep == "moments" and not promise_of(sampler).keeps_moments and not listed:
-        yield f'ensemble.keep = "moments": sampler = "{sampler}" has none; use "cells"'
 
 
 def _history(scene: Fields) -> Iterator[str]:
@@ -133,8 +130,6 @@ def _measured(scene: Fields) -> Iterator[str]:
             f'ensemble.sampler = "{scene.sampler}": it draws from a density, which measured heights do '
             'not have; use "direct"'
         )
-    if scene.keep == "moments":
-        yield 'ensemble.keep = "moments": sums of measured heights have none; use "sums"'
     if not scene.as_measured:
         if scene.curvature is None:
             yield "heights: heights that are resampled without radii have a smooth law; use mcgw.HeightTable"
@@ -172,10 +167,9 @@ def _radii(scene: Fields) -> Iterator[str]:
             f'ensemble.sampler = "{scene.sampler}": sums over summits with individual radii are far '
             'from Gaussian; use "cells", or summits.curvature = "mean"'
         )
-    if not scene.hertzian and (not promise.own_laws or scene.keep == "moments"):
-        key, value = ("keep", "moments") if scene.keep == "moments" else ("sampler", scene.sampler)
+    if not scene.hertzian and not promise.own_laws:
         yield (
-            f'ensemble.{key} = "{value}": summits with individual radii have different breaks of '
+            f'ensemble.sampler = "{scene.sampler}": summits with individual radii have different breaks of '
             f'contact.law = "{scene.law.name}"; use sampler = "tail", or summits.curvature = "mean"'
         )
 

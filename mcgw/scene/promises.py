@@ -14,8 +14,6 @@ class Promise:
         only means are of use.
     one_by_one : bool, optional
         The heights are those of single asperities, which `mcgw.heights` can tell.
-    keeps_moments : bool, optional
-        Its surfaces can be given another grading afterwards.
     own_radii : bool, optional
         It can draw a radius for each summit.
     own_laws : bool, optional
@@ -34,7 +32,6 @@ class Promise:
 
     real_surfaces: bool = True
     one_by_one: bool = True
-    keeps_moments: bool = True
     own_radii: bool = True
     own_laws: bool = False
     finds_balance: bool = True
@@ -48,8 +45,8 @@ _UNTOUCHED = "{spared:.4g} asperities per surface lie below every separation and
 _CROWDED = "in crowded cells, Gaussian moments are drawn instead of asperities"
 
 _PROMISES = {
-    "direct": Promise(keeps_moments=False, own_laws=True, places=True),
-    "tail": Promise(keeps_moments=False, own_laws=True, needs_density=True, not_done=(_UNTOUCHED,)),
+    "direct": Promise(own_laws=True, places=True),
+    "tail": Promise(own_laws=True, needs_density=True, not_done=(_UNTOUCHED,)),
     "cells": Promise(needs_density=True, not_done=(_UNTOUCHED,)),
     "aggregate": Promise(
         one_by_one=False,
@@ -62,7 +59,6 @@ _PROMISES = {
     "stratified": Promise(
         real_surfaces=False,
         one_by_one=False,
-        keeps_moments=False,
         finds_balance=False,
         needs_density=True,
         not_done=(_UNTOUCHED,),

@@ -155,11 +155,10 @@ class Values:
     sampler: str = key("ensemble", Word(SAMPLERS), '"cells"',
         "how surfaces are drawn: `auto` (default) uses the fastest exact one of `cells`, `tail`, `direct`; "
         "or `aggregate`, `stratified` ([how they differ](../how-to/choose-a-sampler.md))", "auto")
-    keep: Literal["sums", "moments", "statistics"] = key("ensemble",
-        Word(("sums", "moments", "statistics")), '"moments"',
-        "`sums` (default); `moments`: also the moments, for [another grading](../how-to/keep-moments.md); "
-        "`statistics`: [no surfaces](../how-to/keep-statistics.md), only mean, covariance, skewness, "
-        "quantiles and extremes, of any number of surfaces in the same memory", "sums")
+    keep: Literal["sums", "statistics"] = key("ensemble",
+        Word(("sums", "statistics")), '"statistics"',
+        "`sums` (default); `statistics`: [no surfaces](../how-to/keep-statistics.md), only mean, covariance, "
+        "skewness, quantiles and extremes, of any number of surfaces in the same memory", "sums")
     rel_err: As["float | str | Mapping[str, Any] | None", float | Mapping[str, float | list[float]] | None
     ] = key("ensemble",
         Either((ByName(Either((_SHARES, _SHARE), _KNOWN_TO), "", (*SUMS, *UNLOADING)), _SHARE), _KNOWN_TO),

@@ -27,12 +27,6 @@ Of a scene::
     /nominal_separation   float64 (surfaces, separations) 1   (or effective_separation: interaction)
     /joint_conductance    float64 (surfaces, separations) W/(m^2 K)   (and gap_conductance: joint)
 
-and, if the scene says ``keep = "moments"``, what `mcgw.ensemble.regrading` starts from::
-
-    /drawn/moments        float64 (surfaces, moments)     sums of Chebyshev polynomials, cell by cell
-    /drawn/cells          float64 (surfaces, cells)       asperities in each cell
-    /drawn/extras         float64 (extras, 3)             surface, height, weight of those outside
-
 With ``keep = "statistics"`` a file holds none of these tables: see `statistics_file`.
 
 Every dataset has the attributes `units` and `long_name`; only quantities that the scene asks for are

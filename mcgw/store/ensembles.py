@@ -26,10 +26,9 @@ from mcgw.store.layout import (
     drawn_tables,
     file_pieces,
     scales_of,
-    where,
 )
 from mcgw.store.run_folder import RunFolder
-from mcgw.store.shards import RAGGED, Shard
+from mcgw.store.shards import Shard
 from mcgw.store.untrusted import examine
 
 
@@ -82,19 +81,7 @@ def open_ensemble(path: str | Path) -> Ensemble:
         from mcgw.store.statistics_file import read_blocks
 
         results = read_blocks(path, scene)
-    return Ensemble(scene, str(attributes["sampler"]), results, _drawn_for(path, attributes))
-
-
-def _drawn_for(path: Path, attributes: dict[str, Any]) -> Scene | None:
-    """The scene that the surfaces were drawn for, if it is another one."""
-    if "drawn_for" not in attributes:
-        return None
-    try:
-        return scene_from(str(attributes["drawn_for"]))
-    except ValueError as error:
-        raise StoreError(
-            f"{path}: its attribute drawn_for cannot be read: {str(error).splitlines()[0]}"
-        ) from None
+    return Ensemble(scene, str(attributes["sampler"]), results)
 
 
 def read_attributes(path: Path) -> dict[str, Any]:
@@ -237,7 +224,7 @@ class FileResults(Results):
         """Rows `start` to `stop` (None: to the end) of a dataset."""
         try:
             with open_h5(self.path) as file:
-                return np.asarray(file[where(name)][start:stop])
+                return np.asarray(file[name][start:stop])
         except OSError:
             raise StoreError(f"{self.path}: cannot be read; is it damaged? See mcgw show --verify") from None
 
@@ -254,16 +241,14 @@ class ShardResults(Results):
     shards: tuple[Shard, ...]
 
     def read(self, name: str, start: int, stop: int | None) -> NDArray[Any]:
-        """Rows `start` to `stop` of what is there; of the ragged table all."""
+        """Rows `start` to `stop` of what is there."""
         rows, parts, first = self.rows() if stop is None else stop, [], 0
         for shard in self.shards:
             low, high = max(start - first, 0), min(rows - first, shard.span.n)
-            if name == RAGGED:
-                parts.append(self._arrays(shard)[name])
-            elif low < high:
+            if low < high:
                 parts.append(self._arrays(shard)[name][low:high])
             first += shard.span.n
-        return np.concatenate(parts)[slice(start, stop) if name == RAGGED else slice(None)]
+        return np.concatenate(parts)
 
     def rows(self) -> int:
         """Number of surfaces."""

@@ -21,18 +21,13 @@ from mcgw.scene.scene_file import scene_text
 from mcgw.store.chunks import PACKED, add_rows, empty_table
 from mcgw.store.disk import GROUP, head_digest, trailer_of
 from mcgw.store.identity import commit, now, processor, versions
-from mcgw.store.shards import DRAWN, LIBVER, RAGGED, Span, content_digest
+from mcgw.store.shards import LIBVER, Span, content_digest
 from mcgw.store.structure import MOST_TEXT
 
 FILETYPE, FORMAT = "mcgw-results", (2, 0)
 
 Stored = Mapping[str, NDArray[Any] | h5py.Dataset]
 
-_LONG_NAMES = {
-    "moments": "sums of Chebyshev polynomials of the uniforms in each cell",
-    "cells": "asperities in each cell",
-    RAGGED: "asperities outside the cells: surface, height, weight",
-}
 _OF_SURFACES = ("surface", "separation")  # axes of tables with values
 _PIECE = 2**23  # bytes read at a time
 _SCALE_CHUNK = 2**17  # numbers
@@ -54,19 +49,13 @@ def fill(file: h5py.File, scene: Scene, pieces: Iterable[tuple[Span, Stored]]) -
             for name, scale in scales_of(scene, scene.n_surfaces).items():
                 _scale(file, name, scale, *AXES[name])
             for name in sorted(tables):
-                q = scene.quantity(name) if name in ALL_QUANTITIES else None
-                rows = None if name == RAGGED else scene.n_surfaces
-                data = empty_table(file, where(name), rows, tables[name])
-                unit, long_name = (q.unit, q.long_name) if q else ("1", _LONG_NAMES[name])
-                data.attrs.update(units=unit, long_name=long_name)
-                for axis, name_of_scale in enumerate(_OF_SURFACES[: data.ndim] if q else ()):
+                q = scene.quantity(name)
+                data = empty_table(file, name, scene.n_surfaces, tables[name])
+                data.attrs.update(units=q.unit, long_name=q.long_name)
+                for axis, name_of_scale in enumerate(_OF_SURFACES[: data.ndim]):
                     data.dims[axis].attach_scale(file[name_of_scale])
         for name, table in tables.items():
-            data, first = file[where(name)], span.first
-            if name == RAGGED:
-                first = len(data)
-                data.resize(first + len(table), axis=0)
-            add_rows(data, first, table)
+            add_rows(file[name], span.first, table)
         stop += span.n
     if stop != scene.n_surfaces:
         raise StoreError(f"{stop} surfaces, not {scene.n_surfaces}")
@@ -95,14 +84,9 @@ def describe(file: h5py.File, scene: Scene, sampler: str, digest: str, /, **attr
     file.attrs.update(**{**usual, **attributes})
 
 
-def where(name: str) -> str:
-    """Path of a table in the file."""
-    return f"{GROUP}/{name}" if name in DRAWN else name
-
-
 def stored_tables(file: h5py.File) -> dict[str, h5py.Dataset]:
     """The tables of results by their names, in order."""
-    return {name: file[where(name)] for name in sorted((*ALL_QUANTITIES, *DRAWN)) if where(name) in file}
+    return {name: file[name] for name in sorted(ALL_QUANTITIES) if name in file}
 
 
 def stored_text(scene: Scene) -> str:
@@ -130,11 +114,10 @@ def scales_of(scene: Scene, surfaces: int) -> dict[str, NDArray[Any]]:
 def body_of(ensemble: Ensemble, **about: Any) -> tuple[bytes, bytes]:
     """The file of an ensemble that holds surfaces, with more attributes, and its trailer."""
     scene = ensemble.scene
-    names = [*scene.shapes, *(DRAWN if scene.keep == "moments" else ())]
-    arrays = {name: ensemble.sums.read(name, 0, None) for name in names}
+    arrays = {name: ensemble.sums.read(name, 0, None) for name in scene.shapes}
     made = io.BytesIO()
     with h5py.File(made, "w", libver=LIBVER) as file:
-        fill(file, scene, [(Span(0, len(arrays[names[0]])), arrays)])
+        fill(file, scene, [(Span(0, scene.n_surfaces), arrays)])
         describe(file, scene, ensemble.sampler, digest_of(file, scene, [arrays]), **about)
         head = head_digest(file)
     body = made.getvalue()
@@ -206,9 +189,8 @@ def drawn_digest(tables: Tables, *texts: str) -> str:
 
 def file_pieces(file: h5py.File) -> Iterator[tuple[Span, Tables]]:
     """The surfaces of an ensemble file, some at a time."""
-    rows, width = len(file["surface"]), 0
-    for name, table in stored_tables(file).items():
-        width += 0 if name == RAGGED else 8 * math.prod(table.shape[1:])
+    rows = len(file["surface"])
+    width = sum(8 * math.prod(table.shape[1:]) for table in stored_tables(file).values())
     step = max(_PIECE // max(width, 1), 1)
     return rows_of(file, (Span(first, min(step, rows - first)) for first in range(0, rows, step)))
 
@@ -216,12 +198,8 @@ def file_pieces(file: h5py.File) -> Iterator[tuple[Span, Tables]]:
 def rows_of(file: h5py.File, spans: Iterable[Span]) -> Iterator[tuple[Span, Tables]]:
     """Some surfaces of an ensemble file after the other."""
     data = stored_tables(file)
-    outside = data.pop(RAGGED)[()] if RAGGED in data else None
     for span in spans:
-        arrays = {name: table[span.first : span.stop] for name, table in data.items()}
-        if outside is not None:
-            arrays[RAGGED] = outside[(outside[:, 0] >= span.first) & (outside[:, 0] < span.stop)]
-        yield span, arrays
+        yield span, {name: table[span.first : span.stop] for name, table in data.items()}
 
 
 def _scale(file: h5py.File, name: str, values: NDArray[Any], unit: str, long_name: str) -> None:

@@ -22,7 +22,6 @@ from mcgw.formats.gate import open_h5
 from mcgw.machine.in_threads import Items, one_ahead
 from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import Scene
-from mcgw.scene.scene_file import scene_text
 from mcgw.store.disk import SteadyFile, Trailer, head_digest, parts_of, sha256_of
 from mcgw.store.ensembles import open_ensemble
 from mcgw.store.identity import identity_of, versions
@@ -67,7 +66,7 @@ def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> 
     >>> scene = mcgw.Scene(surface, separations=[0, 1, 2], n_surfaces=20, seed=1)
     >>> e = mcgw.simulate(scene)
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     mcgw.save(mcgw.regrade(e, mcgw.Exponential(2.0)), f"{folder}/stiffer.h5").n_surfaces
+    ...     mcgw.save(e, f"{folder}/e.h5").n_surfaces
     20
     """
     check_object("save", ensemble, Ensemble)
@@ -82,8 +81,6 @@ def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> 
         before, asked = state_of(path), (ensemble.scene, ensemble.sampler)
         finished(path, *asked)
         about = {"run": identity_of(*asked), "draws": versions(of_draws=True), "wall_seconds": wall_seconds}
-        if ensemble.drawn_for is not None:
-            about["drawn_for"] = scene_text(ensemble.drawn_for)
         write = body_of
         if ensemble.scene.keep == "statistics":
             from mcgw.store.statistics_file import body_of_statistics as write  # for those scenes alone

@@ -28,8 +28,6 @@ from mcgw.formats.files import write_whole
 from mcgw.store.chunks import stored
 from mcgw.store.disk import Trailer, read_checked, read_trailer, trailer_of
 
-RAGGED = "extras"  # the one table whose rows are not surfaces
-DRAWN = ("moments", "cells", RAGGED)  # what `keep = "moments"` adds to the quantities
 BLOCK = "block_"  # begins the names of tables with one row for all surfaces of a block
 LIBVER = ("v108", "v110")  # checksums on all metadata, and every HDF5 of the last decade reads it
 _MOST_DATASETS = 64
@@ -198,14 +196,7 @@ def tables_in(body: bytes, path: Path) -> Iterator[dict[str, h5py.Dataset]]:
 
 def _check_rows(shard: Shard, arrays: Tables) -> None:
     for name, values in arrays.items():
-        if name == RAGGED:
-            surfaces = values[:, 0] if len(values) else np.empty(0)
-            good = bool(np.all((surfaces >= shard.span.first) & (surfaces < shard.span.stop)))
-        elif name.startswith(BLOCK):
-            good = len(values) == 1
-        else:
-            good = len(values) == shard.span.n
-        if not good:
+        if len(values) != (1 if name.startswith(BLOCK) else shard.span.n):
             raise StoreError(f"{shard.path}: {name} does not have the rows of {shard.span}")
         if not np.all(np.isfinite(values)):
             raise StoreError(f"{shard.path}: {name} holds numbers that are not finite")

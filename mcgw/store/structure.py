@@ -27,7 +27,7 @@ _MOST_ATTRIBUTES = 64
 _READ_ALL = 2**26  # stored bytes up to which all is read here first
 _MOST_EXPANSION = 1100  # deflate cannot shrink more
 _MOST_CHUNK = 2**28
-_DOCUMENTS = ("title", "scene", "drawn_for", "axes")  # other texts are shown and exported as they stand
+_DOCUMENTS = ("title", "scene", "axes")  # other texts are shown and exported as they stand
 MOST_TEXT = 2**22  # characters of an attribute, such as the scene
 
 

@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
@@ -156,8 +156,17 @@ class Axes:
         return tuple(i % n for i, n in zip(point, self.shape, strict=True))
 
 
-def axes_of(over: Mapping[str, Any], *, zipped: bool) -> Axes:
+def axes_of(over: Mapping[str, Any], *, zipped: bool, resolve: Callable[[Any], Any] | None = None) -> Axes:
     """Read the axes of a sweep and check them.
+
+    Parameters
+    ----------
+    over : mapping
+        Values of each key.
+    zipped : bool
+        As of `Axes`.
+    resolve : callable, optional
+        Turns a Python function that stands for a grading into a grading that is data.
 
     Raises
     ------
@@ -175,7 +184,7 @@ def axes_of(over: Mapping[str, Any], *, zipped: bool) -> Axes:
         listed = list(given) if hasattr(given, "__iter__") and not isinstance(given, str | Mapping) else []
         if not listed:
             problems.append(f"sweep: {key} = {given!r}: give a list of at least one value")
-        values[key] = tuple(_value(key, value) for value in listed)
+        values[key] = tuple(_value(key, value, resolve) for value in listed)
     if zipped and len({len(each) for each in values.values()}) > 1:
         lengths = ", ".join(f"{key} {len(each)}" for key, each in values.items())
         problems.append(f"sweep: zipped axes need the same number of values; these have {lengths}")
@@ -184,13 +193,13 @@ def axes_of(over: Mapping[str, Any], *, zipped: bool) -> Axes:
     return Axes(values, zipped)
 
 
-def _value(key: str, value: Any) -> Any:
-    """A value as in a scene file; a whole grading may be an object."""
+def _value(key: str, value: Any, resolve: Callable[[Any], Any] | None = None) -> Any:
+    """A value as in a scene file; a whole grading may be an object, or a function that is resolved."""
     if key == "grading" and callable(value):
-        if not is_data(value):
-            raise SceneError(
-                ["sweep: grading: give tables, or gradings such as mcgw.Exponential or mcgw.Table"]
-            )
+        if resolve is not None:
+            value = resolve(value)
+        elif not is_data(value):
+            raise ValueError("grading: a point that has a function is named by its indices")
         return grading_table(value)
     return as_toml(value)
 

@@ -89,8 +89,6 @@ def document_of(scene: Scene) -> dict[str, Any]:
         del document["ensemble"]["n_asperities"]
     if document["grading"]["law"] == "homogeneous":
         del document["grading"]["law"]
-    if scene.keep == "moments":  # cannot be written back
-        document["ensemble"]["keep"] = "sums"
     return document
 
 

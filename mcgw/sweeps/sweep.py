@@ -1,6 +1,6 @@
 """A sweep: many scenes that share their surfaces where possible.
 
-Differences between its points over the same surfaces, and how these change with a key.
+Differences and ratios of its points are over the same surfaces (`mcgw.sweeps.between`).
 """
 
 from dataclasses import dataclass
@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from analytic.arrays import Array
 from mcgw.ensemble.labelled import Labelled, Variable, axes_of, axis, statistics_of
+from mcgw.ensemble.paired import Paired
 from mcgw.ensemble.results import PROBABILITIES
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import SEPARATION, Column, Table, evenly
@@ -17,106 +17,9 @@ from mcgw.machine.terminal import plotted
 from mcgw.scene.promises import promise_of
 from mcgw.scene.scene_file import scene_text
 from mcgw.sweeps.axes import Point, label
+from mcgw.sweeps.between import Difference, Slopes, ratio_of
 from mcgw.sweeps.groups import Place
 from mcgw.sweeps.over_points import At, OverPoints
-from mcgw.sweeps.pooled import Pooled
-
-
-@dataclass(frozen=True)
-class Difference:
-    """Difference of two means over the same surfaces; arrays over the separations.
-
-    Parameters
-    ----------
-    value, stderr : ndarray
-        In SI units, and its standard error; nan for a single surface.
-    gain : ndarray
-        Variance of the difference of two independent ensembles of this size, divided by that of the pair.
-    """
-
-    value: Array
-    stderr: Array
-    gain: Array
-
-    @classmethod
-    def of(
-        cls, pooled: Pooled, points: tuple[Place, Place], quantity: str, areas: tuple[float, float]
-    ) -> "Difference":
-        """First point minus second, each per area.
-
-        The variance is that of one combination of scenes, so that there is no cancellation.
-        """
-        (one, v), (other, w) = (point.of(quantity) for point in points)
-        a, b = areas
-        value = pooled.mean(quantity, one, v) / a - pooled.mean(quantity, other, w) / b
-        apart = pooled.variance(quantity, one, v) / a**2 + pooled.variance(quantity, other, w) / b**2
-        scenes = np.union1d(one, other)
-        weights = np.zeros(len(scenes))
-        weights[np.searchsorted(scenes, one)] += v / a
-        weights[np.searchsorted(scenes, other)] -= w / b
-        paired = np.maximum(pooled.variance(quantity, scenes, weights), 0.0)  # apart from rounding
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return cls(value, np.sqrt(paired / pooled.n), apart / paired)
-
-
-@dataclass(frozen=True, repr=False)
-class Slopes(Shown):
-    """Change of a mean with a key, between neighbouring points of a sweep.
-
-    Parameters
-    ----------
-    quantity, key : str
-        What changes, and the key with which it changes.
-    axis : int
-        Dimension of the arrays along which the key changes.
-    at : ndarray
-        Middle between two values of the key, shape (pairs,).
-    value, stderr : ndarray
-        Difference of the means over that of the key in SI units, and its standard error over the surfaces:
-        shape of the sweep and separations, one less along the key.
-    theory : ndarray
-        The same difference of the exact means.
-
-    Examples
-    --------
-    >>> import mcgw
-    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
-    >>> scene = mcgw.Scene(surface, separations=[0, 1], n_surfaces=200, seed=1)
-    >>> sweep = mcgw.sweep(scene, {"grading.gamma": [1.0, 1.5, 2.0]})
-    >>> slopes = sweep.slopes("load", "grading.gamma")
-    >>> slopes.at
-    array([1.25, 1.75])
-    >>> bool((abs(slopes.value - slopes.theory) < 5 * slopes.stderr).all())
-    True
-    """
-
-    quantity: str
-    key: str
-    axis: int
-    at: Array
-    value: Array
-    stderr: Array
-    theory: Array
-
-    def plot(self, ax: Any = None, *, k: int = 0) -> Any:
-        """Draw the slopes at one separation, given by its index; returns the axes."""
-        return plotted(self, ax, k=k)
-
-    def sheet(self) -> Sheet:
-        """Display slopes at the first separation, for some values of the key."""
-        flat = [
-            np.moveaxis(x, self.axis, 0).reshape(len(self.at), -1)[:, 0]
-            for x in (self.value, self.stderr, self.theory)
-        ]
-        columns = (
-            Column("at", self.at, self.key, form="g"),
-            Column("slope", flat[0], unit="1"),
-            Column("stderr", flat[1], unit="1", form=".1g"),
-            Column("theory", flat[2], unit="1"),
-        )
-        title = f"Change of the mean {self.quantity} with {self.key}"
-        return Sheet(title, table=Table(columns).rows())
-
 
 STATISTICS = ("mean", "std")
 _SHOWN = 7  # points displayed
@@ -154,6 +57,21 @@ class Sweep(OverPoints, Shown):
         """
         points = self.axes.place(one), self.axes.place(other)
         return self._difference(quantity, *points)
+
+    def ratio(self, quantity: str, one: At, other: At) -> Paired:
+        """Ratio of a mean between two points, first over second, over the same surfaces.
+
+        Eqs. (12) and (15) of the paper by Monte Carlo; arguments and errors as of `difference`.
+
+        Returns
+        -------
+        Paired
+            With its standard error over the surfaces, and `interval`.
+        """
+        points = self.axes.place(one), self.axes.place(other)
+        name, _ = self._held(quantity)
+        a, b = self._pair(*points)
+        return ratio_of(self.groups[self.places[a].group], self._places(a, b), name, self.separations)
 
     def slopes(self, quantity: str, along: str) -> Slopes:
         """Change of a mean with a key between neighbouring points, over the same surfaces, and by theory.
@@ -264,11 +182,15 @@ class Sweep(OverPoints, Shown):
         return Sheet(f"Sweep of {self.axes.size} scenes", facts, Table(tuple(columns)))
 
     def table(self) -> Table:
-        """A row for each point and separation: the keys, and statistics of what has no further axes."""
+        """A row for each point and separation: the keys, and statistics of what has no further axes.
+
+        Ratios are those of `ratios`, with the ends of their 95 % intervals.
+        """
         h, size = self.separations, self.axes.size
         at = [self.axes.at(point) for point in self.axes.points()]
         columns = [Column(key, [label(values[key]) for values in at for _ in h]) for key in self.axes.keys]
         columns.append(Column("separation", np.tile(h, size), SEPARATION, form="g"))
+        ratios = self.ratios()
         for name, shape in self.scenes[0].shapes.items():
             if len(shape) == 1:
                 unit = self.scenes[0].quantity(name).unit
@@ -276,16 +198,46 @@ class Sweep(OverPoints, Shown):
                     Column(f"{name}_{kind}", getattr(self, kind)(name).ravel(), unit=unit)
                     for kind in self.statistics
                 ]
+                if name in ratios:
+                    columns += [
+                        Column(
+                            f"{name}_{kind}", np.ravel([getattr(one, kind) for one in ratios[name]]), unit="1"
+                        )
+                        for kind in ("ratio", "ratio_low", "ratio_high")
+                    ]
         return Table(tuple(columns))
+
+    def ratios(self) -> dict[str, list[Paired]]:
+        """Ratios of the means of every point to those of the first, of each quantity that changes.
+
+        Empty unless all points share their surfaces.
+        """
+        first, *others = self.axes.points()
+        if not others or any(place.group != self.places[0].group for place in self.places):
+            return {}
+        found = {}
+        for name, shape in self.scenes[0].shapes.items():
+            pairs = [self.ratio(name, point, first) for point in (first, *others)] if len(shape) == 1 else []
+            if any((pair.ratio != 1).any() for pair in pairs[1:]):
+                found[name] = pairs
+        return found
 
     def _difference(self, quantity: str, one: Point, other: Point) -> Difference:
         name, per_area = self._held(quantity)
+        a, b = self._pair(one, other)
+        area = (self.scenes[k].surface.nominal_area if per_area else 1.0 for k in (a, b))
+        pooled = self.groups[self.places[a].group]
+        return Difference.of(pooled, self._places(a, b), name, (next(area), next(area)))
+
+    def _places(self, a: int, b: int) -> tuple[Place, Place]:
+        return self.places[a], self.places[b]
+
+    def _pair(self, one: Point, other: Point) -> tuple[int, int]:
+        """Numbers of two points that share their surfaces."""
         a, b = self._number(one), self._number(other)
-        places = self.places[a], self.places[b]
-        if places[0].group != places[1].group:
+        if self.places[a].group != self.places[b].group:
             raise ValueError(
                 f"sweep: {self.axes.text(one)} and {self.axes.text(other)} have different surfaces, so there "
                 "are no pairs, but the same seed correlates them: give the ensemble of each its own seed"
             )
-        area = (self.scenes[k].surface.nominal_area if per_area else 1.0 for k in (a, b))
-        return Difference.of(self.groups[places[0].group], places, name, (next(area), next(area)))
+        return a, b

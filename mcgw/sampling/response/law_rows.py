@@ -70,7 +70,7 @@ class _Pieces:
             yield here, self.kinds[number]
 
 
-def law_rows(scene: Scene, quantities: tuple[str, ...], mesh: Mesh, *, lasting: bool) -> Rows:
+def law_rows(scene: Scene, quantities: tuple[str, ...], mesh: Mesh) -> Rows:
     """Rows of some quantities at all separations of a scene, which increase.
 
     Parameters
@@ -81,8 +81,6 @@ def law_rows(scene: Scene, quantities: tuple[str, ...], mesh: Mesh, *, lasting: 
         Which; none that counts asperities.
     mesh : Mesh
         Its cells end at every break.
-    lasting : bool
-        Whether they are to be resolved as if every surface could have a single contact.
 
     Returns
     -------
@@ -93,18 +91,16 @@ def law_rows(scene: Scene, quantities: tuple[str, ...], mesh: Mesh, *, lasting: 
     parts: list[tuple[NDArray[Any], ...]] = []
     stretches: dict[Branch, Stretches] = {}
     kinds: list[tuple[Branch, str, int, float]] = []
-    sixteen = None if lasting else Sixteen.of(scene)
+    sixteen = Sixteen.of(scene)
     for number, name in enumerate(quantities):
         q, branch = quantity_of(name), scene.branch_of(name)
         if branch not in stretches:
             stretches[branch] = stretches_of(scene, branch, *mesh.range)
         found = stretches[branch]
         roots = np.array([branch.root_at_touch(int(piece)) for piece in found.piece], dtype=bool)
-        scale, total = q.scale(scene.surface), np.zeros(len(separations))
-        if sixteen:
-            heights = sixteen.approach + separations[:, None]
-            terms = term_of(q.base, branch, separations[:, None], heights, sixteen.e)
-            total = sixteen.totals(scale, terms)
+        scale, heights = q.scale(scene.surface), sixteen.approach + separations[:, None]
+        terms = term_of(q.base, branch, separations[:, None], heights, sixteen.e)
+        total = sixteen.totals(scale, terms)
         parts.append(
             (
                 separations[found.separation],

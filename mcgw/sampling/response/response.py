@@ -63,7 +63,6 @@ def response_of(
     mesh: Mesh,
     quantities: tuple[str, ...],
     *,
-    kept: Layout | None = None,
     precision: Precision = LAST_DIGITS,
 ) -> Response:
     """Build the response of a mesh.
@@ -77,8 +76,6 @@ def response_of(
     quantities : tuple of str
         Which answers there are. Each separation has its own once, in increasing order: repeated or
         permuted ones give the same bits.
-    kept : Layout, optional
-        The moments there are; default: as many as it takes.
     precision : Precision, optional
         Take as many moments as this needs.
 
@@ -91,28 +88,15 @@ def response_of(
     Raises
     ------
     ValueError
-        If the grading is not resolved on a cell, or not by the moments there are.
+        If the grading is not resolved on a cell.
     """
-    parts = parts_of(scene, mesh, quantities, precision, lasting=kept is not None)
-    if kept:
-        short = (parts.layout.plain > kept.plain) | (parts.layout.rooted > kept.rooted)
-        if short.any():
-            s = mesh.edges[np.flatnonzero(short)[0]]
-            raise ValueError(
-                f"the kept moments do not resolve it near s = {s:.4g}; simulate the scene again with it"
-            )
-        plain = np.concatenate([kept.plain, parts.plain[mesh.size :]])
-        parts = replace(parts, plain=plain, rooted=kept.rooted)
+    parts = parts_of(scene, mesh, quantities, precision)
     shape = len(quantities), len(scene.all_separations)
     return Response(parts.layout, tiles_of(parts, parts.rows.order(shape[0] * shape[1])), shape)
 
 
-def parts_of(
-    scene: Scene, mesh: Mesh, quantities: tuple[str, ...], precision: Precision, *, lasting: bool = False
-) -> Parts:
+def parts_of(scene: Scene, mesh: Mesh, quantities: tuple[str, ...], precision: Precision) -> Parts:
     """Series of what is asked, each separation once, in increasing order, and the moments that they need.
-
-    With `lasting` the laws are resolved for surfaces of any number of contacts.
 
     Raises
     ------
@@ -120,11 +104,11 @@ def parts_of(
         If the grading is not resolved on a cell.
     """
     if scene.hertzian or not quantities:  # without rows every law is the same
-        rows = hertz_rows(scene, quantities, lasting=lasting)
+        rows = hertz_rows(scene, quantities)
     else:
         from mcgw.sampling.response.law_rows import law_rows
 
-        rows = law_rows(scene, quantities, mesh, lasting=lasting)
+        rows = law_rows(scene, quantities, mesh)
     tree = tree_over(mesh)
     nodes = Nodes.of(mesh, tree, scene.modulus, scene.n_asperities, precision)
     entries, plain, rooted = walk(mesh, tree, rows, nodes)

@@ -132,21 +132,16 @@ class Rows:
         return cell, row
 
 
-def hertz_rows(scene: Scene, quantities: tuple[str, ...], *, lasting: bool) -> Rows:
-    """Rows of some quantities at all separations of a scene, which increase.
-
-    If they are to be lasting, they are resolved as if every surface could have a single contact.
-    """
+def hertz_rows(scene: Scene, quantities: tuple[str, ...]) -> Rows:
+    """Rows of some quantities at all separations of a scene, which increase."""
     chosen, once = [quantity_of(name) for name in quantities], np.array(scene.all_separations)
     h = np.tile(once, len(chosen))
     values = np.array([(q.exponent, q.modulus, q.scale(scene.surface)) for q in chosen]).reshape(-1, 3)
     exponent, graded, scale = np.repeat(values, len(once), axis=0).T.copy()
-    totals = [np.zeros(len(h) if lasting else 0)]
-    if not lasting:
-        sixteen = Sixteen.of(scene)
-        for q in chosen:
-            terms = power_of(q.exponent, sixteen.approach)
-            totals.append(sixteen.totals(q.scale(scene.surface), terms * sixteen.e if q.modulus else terms))
+    totals, sixteen = [np.zeros(0)], Sixteen.of(scene)
+    for q in chosen:
+        terms = power_of(q.exponent, sixteen.approach)
+        totals.append(sixteen.totals(q.scale(scene.surface), terms * sixteen.e if q.modulus else terms))
     return Rows(
         h=h,
         low=h,
