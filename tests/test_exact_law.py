@@ -359,7 +359,7 @@ def test_the_separation_at_a_load():
         assert law.cdf(h) == pytest.approx(
             float(of.distribution("load", h).cdf(of.mean("load", 2.5))), abs=1e-6
         )
-        assert law.error_at(h) * min(law.cdf(h), law.sf(h)) < 3e-6
+        assert law.error_at(h) * min(law.cdf(h), law.sf(h)) < 1e-5
 
 
 def test_a_share_of_the_surfaces_without_any_asperity_reaches_a_load_nowhere():
@@ -497,7 +497,7 @@ def test_what_many_asperities_have_alike_is_no_density():
 def test_where_digits_end_is_said():
     """In tails too; steps of listed summits are smoothed, which the error says where they are few."""
     many = model(30_000).distribution("load", 2.0)
-    assert np.all(many.error_at(many.isf([1e-9, 0.5])) < [0.5, 2e-6])
+    assert np.all(many.error_at(many.isf([1e-9, 0.5])) < [0.5, 5e-6])
     heights = np.random.default_rng(1).normal(size=400)
     listed = analytic.MeasuredHeights(heights)
     of = model(400, heights=listed, grading=analytic.Homogeneous())
@@ -549,7 +549,7 @@ YIELDS = {"law": analytic.KogutEtsion(critical=0.05)}
 CURVED = {"curvature": RADII, "heights": RADII.heights}
 UNIFORM = {"heights": analytic.ScipyHeights(stats.uniform()), "grading": analytic.Homogeneous()}
 KINDS = {
-    "0.06 contacts": (100, {}, "load", 3.24, 2e-6),
+    "0.06 contacts": (100, {}, "load", 3.24, 5e-6),
     "0.06 contacts that pull": (100, PULLS, "load", 3.24, 2e-4),
     "no contact": (100, UNIFORM, "load", 5.0, 1e-6),
     "all touch": (50, {}, "area", -9.0, 1e-6),

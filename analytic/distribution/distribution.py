@@ -13,7 +13,8 @@ from analytic.arrays import Array, hold
 _NARROW = 1e-9  # of the table: cells that have no density to be told
 _FAR = 1e100  # beyond all sums
 _LEAST = 1e-60  # below all sums but 0
-_SAFE = 5.0  # times what two computations differ by: their errors may have one sign
+_SAFE = 8.0  # times what two computations differ by: their errors may have one sign
+_USUAL = 5e-7  # over the root of a share: what two computations may have in common, by a grid of 630 laws
 _SHARES = np.geomspace(1e-9, 0.5, 60)
 _NEIGHBOURS = 5  # on either side
 _SCIPY = 1e-14
@@ -188,7 +189,8 @@ class Table(Law):
         """Error bound by the second computation at these values alone."""
         (below, above), (lower, upper) = self._shares(y), self._other._shares(y)
         apart = np.where(below < above, np.abs(below - lower), np.abs(above - upper))
-        return np.asarray(_SAFE * apart + self._bend(y) + self.rounding)
+        own = _USUAL * np.sqrt(np.minimum(below, above))
+        return np.asarray(_SAFE * apart + self._bend(y) + own + self.rounding)
 
     @cached_property
     def _places(self) -> Array:
