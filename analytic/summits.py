@@ -30,7 +30,7 @@ Ends = tuple[float, float]
 
 _HIGHEST = 1e-280  # share of heights above the highest separation that is looked at
 _NODES, _AS_WIDE = 64, 0.6  # points for curvatures, if their density bends over so many heights
-_PER_PIECE = 32  # points of a piece
+_NARROW, _PER_NARROW, _PER_PIECE = 0.25, 10, 32  # heights of a narrow piece, points of one and of a wider one
 _TOGETHER = 3.0  # separations of so wide a range have the same radii
 _RAREST = 1e-18  # share of the touching heights above which curvatures are left out
 _KEPT = 4_000_000  # points of rules over heights and radii
@@ -142,8 +142,10 @@ def _rule(
     cuts = np.append(cuts, np.tile(common, number))
     of_radius = np.append(of_radius, np.repeat(np.arange(number), common.size))
     left, right, of = _pieces(cuts, of_radius, start, top)
-    s, weights = rooted(left, right, lowest, _PER_PIECE)
-    of = np.repeat(of, _PER_PIECE)
+    wide, found = right - left > _NARROW, []
+    for some, points in ((wide, _PER_PIECE), (~wide, _PER_NARROW)):
+        found.append((*rooted(left[some], right[some], lowest, points), np.repeat(of[some], points)))
+    s, weights, of = (np.concatenate(part) for part in zip(*found, strict=True))
     return HeightRule(s, weights * radii.density(s, of), below, radii.ratios[of])
 
 

@@ -21,6 +21,7 @@ from analytic import (
     RandomCurvature,
     SpectralMoments,
     quantity_of,
+    summits as summits_module,
 )
 from analytic.curvature import MEAN_CURVATURE
 from analytic.laws import Coated, Film, regimes
@@ -302,3 +303,16 @@ def test_forty_separations_of_own_radii_that_yield_are_looked_at_once(monkeypatc
         m.mean(name, h)
         m.cumulants(name, h)
     assert len(asked) == len(m.ways.law.limits(np.ones(1)))
+
+
+def test_few_points_of_narrow_pieces_lose_nothing(monkeypatch):
+    """Against as many as of wide ones; four are too few."""
+    m = replace(model(largest=3.0, grading=GRADED), law=KogutEtsion(critical=0.05))
+    h, names, found = np.array([0.0, 0.1, 0.4]), ["load", "contacts"], {}
+    for points in (summits_module._PER_NARROW, summits_module._PER_PIECE, 4):
+        monkeypatch.setattr(summits_module, "_PER_NARROW", points)
+        rule = rule_of_radii(h, GRADED, m.curvature, m.ways.among(names))
+        found[points] = rule.fluctuations(rule.terms(names, h, GRADED, m.ways), m.count).products()
+    few, many, too_few = found.values()
+    np.testing.assert_allclose(few, many, rtol=1e-12)
+    assert np.abs(too_few / many - 1).max() > 1e-11
