@@ -1,6 +1,7 @@
 """What commands may write: never what they read, never an ensemble, never half a file."""
 
 import errno
+import importlib
 import os
 import shutil
 import stat
@@ -8,15 +9,17 @@ import subprocess
 import sys
 from functools import partial
 
+import numpy as np
 import pytest
 from overwrites import CASES, attempt, contents, prepare, ways
+from scipy.ndimage import gaussian_filter
 
 import mcgw
 from mcgw.cli import main
 from mcgw.commands import outputs
 from mcgw.commands.outputs import CSV, Output, check_outputs
 from mcgw.errors import StoreError, in_one_line
-from mcgw.formats.files import rename_over, state_of, whole_file, write_whole
+from mcgw.formats.files import rename_over, state_of, together, whole_file, write_whole
 from mcgw.jobs.job import Job
 from mcgw.store import ensembles, untrusted
 
@@ -346,3 +349,59 @@ def test_a_full_disk_names_the_file(tmp_path, monkeypatch):
     assert in_one_line(error.value) == f"{tmp_path / 'a.csv'}: No space left on device"
     assert in_one_line(OSError(errno.ENOSPC, "full")).startswith("compiled loops (NUMBA_CACHE_DIR)")
     assert in_one_line(OSError("no number")) == "no number"
+
+
+def test_files_written_together_appear_all_or_none(tmp_path):
+    (tmp_path / "b").write_text("older")
+
+    def written(error):
+        with together():
+            for name in "abc":
+                with together():  # in vain
+                    write_whole(tmp_path / name, [name.encode()])
+            assert not (tmp_path / "a").exists()
+            if error:
+                raise error
+
+    for error in (ValueError("x"), KeyboardInterrupt()):
+        with pytest.raises(type(error)):
+            written(error)
+        assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {"b": "older"}
+    written(None)
+    assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {"a": "a", "b": "b", "c": "c"}
+    write_whole(tmp_path / "d", [b"alone again"])
+    assert (tmp_path / "d").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "where", "name", "first"),
+    [
+        ("fit map.npy --cutoff none --pixel 1um --summits s.csv --tiles t.csv --picture p.png -o f.toml",
+         "mcgw.figures.map_fit", "save_fit_picture", 0),
+        ("figures --only figure-1 figure-2 --csv -o drawn", "mcgw.figures.panels", "save_figure_files", 1),
+    ],
+    ids=["fit", "figures"],
+)  # fmt: skip
+def test_a_command_that_fails_at_its_last_output_leaves_none(
+    words, where, name, first, tmp_path, monkeypatch, capsys
+):
+    """The scene, tables and figures written before are not there."""
+    z = 1e-6 * np.random.default_rng(1).normal(size=(64, 64))
+    np.save(tmp_path / "map.npy", gaussian_filter(z, 2))
+    monkeypatch.chdir(tmp_path)
+    module, calls = importlib.import_module(where), []
+    whole = getattr(module, name)
+
+    def fails(*arguments, **more):
+        calls.append(arguments)
+        if len(calls) > first:
+            raise OSError(28, "No space left on device", "last")
+        return whole(*arguments, **more)
+
+    monkeypatch.setattr(module, name, fails)
+    assert main(words.split()) != 0
+    assert "last" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.rglob("*") if path.is_file()] == ["map.npy"]
+    monkeypatch.setattr(module, name, whole)
+    assert main(words.split()) == 0
+    assert len([path for path in tmp_path.rglob("*") if path.is_file()]) == 5

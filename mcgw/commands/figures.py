@@ -33,6 +33,7 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.figures.catalogue import CATALOGUE, figures_of, of_paper
     from mcgw.figures.compared import Compared
     from mcgw.figures.panels import figure_files, save_figure_files
+    from mcgw.formats.files import together
     from mcgw.scene.scene_file import files_of, load_scene
 
     compared = Compared(load_scene(args.scene)) if args.scene else of_paper()
@@ -55,12 +56,15 @@ def execute(args: argparse.Namespace) -> int:
         inputs=files_of(args.scene) if args.scene else (),
     )
     drawn = 0
-    for name, data in figures_of(compared, args.only or ()):
-        if isinstance(data, str):
-            (news if args.only else details)(f"{name}: not drawn: {data}")
-            continue
-        drawn += 1
-        details(*save_figure_files(data, args.output, formats, csv=args.csv))
+    written: list[Path] = []
+    with together():
+        for name, data in figures_of(compared, args.only or ()):
+            if isinstance(data, str):
+                (news if args.only else details)(f"{name}: not drawn: {data}")
+                continue
+            drawn += 1
+            written += save_figure_files(data, args.output, formats, csv=args.csv)
+    details(*written)
     files = f"{args.output / '*'}.{formats[0]}" if len(formats) == 1 else args.output
     news(f"{files}: {drawn} figure{'s' * (drawn != 1)}; mcgw figures --list for their names")
     return 0

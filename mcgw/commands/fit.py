@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from mcgw.maps.preparation import Preparation, Prepared
     from mcgw.maps.profile_fit import ProfileFit
 
-    Fitted = tuple[Fit | ProfileFit, list[str], Callable[[], None]]  # printed, and written to the scene
+    Fitted = tuple[Fit | ProfileFit, list[str], Callable[[], list[str]]]  # lines; writes the rest, tells what
 
 HELP = "fit summit density, radius and spread to a measured height map, and write a scene"
 EXAMPLE = "mcgw fit map.h5 --cutoff 5um -o fitted.toml"
@@ -89,6 +89,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Write the scene with all estimates as comments; print it and its cautions."""
     from mcgw.commands.voice import details, news, notes
+    from mcgw.formats.files import together
     from mcgw.formats.numbers import parse
     from mcgw.maps.fit import Fit
     from mcgw.maps.fitted_scene import fitted_scene, write_scene
@@ -110,15 +111,17 @@ def execute(args: argparse.Namespace) -> int:
     scene = fitted_scene(fit, use=args.use, heights=args.heights, E_star=E_star, title=title, **on)
     comments = [*lines, "", "units: sigma and radius in m, eta in 1/m^2, nominal_area in m^2, E_star in Pa"]
     measured = fit if isinstance(fit, Fit) and args.heights == "measured" else None
-    path, *beside = write_scene(scene, args.output, measured, comments)
+    with together():
+        path, *beside = write_scene(scene, args.output, measured, comments)
+        others = write()
     s = scene.surface
     news(
         f"{path}: sigma = {s.sigma:.4g} m, radius = {s.radius:.4g} m, eta = {s.eta:.4g} 1/m^2, "
         f"E_star = {E_star:.4g} Pa{' (assumed; give --E-star)' * (args.E_star is None)}",
         lines[0],
         *beside,
+        *others,
     )
-    write()
     details(*lines[1:])
     notes(*([] if scene.fitted is None else scene.fitted.gravest))
     news(
@@ -154,20 +157,20 @@ def _of_map(args: argparse.Namespace, asked: "Preparation", pixel: float | None,
     return fit, [head, *fit.notes, *fit_lines(fit)], partial(_write_beside, args, fit, ready, pixel)
 
 
-def _write_beside(args: argparse.Namespace, fit: "Fit", ready: "Prepared", pixel: float | None) -> None:
-    """Write the requested tables and picture, and print their paths."""
-    from mcgw.commands.voice import news
+def _write_beside(args: argparse.Namespace, fit: "Fit", ready: "Prepared", pixel: float | None) -> list[str]:
+    """Write the requested tables and picture, and return a line for each."""
     from mcgw.maps.map_files import read_map
     from mcgw.maps.summits import SUMMITS, TILES
 
+    told = []
     if args.summits is not None:
         width, height = fit.listed.size or (1.0, 1.0)
         comment = f"{SUMMITS}; summits.aspect of a scene is {width / height:.7g}"
         fit.listed.table().write(args.summits, comment=comment)
-        news(f"{args.summits}: every summit")
+        told.append(f"{args.summits}: every summit")
     if args.tiles is not None:
         fit.tiles.write(args.tiles, comment=TILES)
-        news(f"{args.tiles}: every sub-area")
+        told.append(f"{args.tiles}: every sub-area")
     if args.picture is not None:
         from mcgw.figures.map_fit import save_fit_picture
 
@@ -178,7 +181,8 @@ def _write_beside(args: argparse.Namespace, fit: "Fit", ready: "Prepared", pixel
             ready,
             args.picture,
         )
-        news(f"{args.picture}: figure")
+        told.append(f"{args.picture}: figure")
+    return told
 
 
 def _of_profiles(args: argparse.Namespace, asked: "Preparation", spacing: float | None) -> "Fitted":
@@ -195,4 +199,4 @@ def _of_profiles(args: argparse.Namespace, asked: "Preparation", spacing: float 
     check_outputs([Output(args.output, TOML)], inputs=args.map)
     fit, profiles = fit_lines(args.map, asked, spacing=spacing, unit=args.unit)
     head = profile_line([path.name for path in args.map], asked, profiles)
-    return fit, [head, *profile_lines(fit)], lambda: None
+    return fit, [head, *profile_lines(fit)], list

@@ -13,6 +13,7 @@ import stat
 import zlib
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from pathlib import Path
 from typing import Literal
 
@@ -22,6 +23,8 @@ from mcgw.errors import StoreError
 State = tuple[int, int, int]
 Expected = State | None | Literal["anything"]
 _WRITABLE = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
+
+_waiting: ContextVar[list[tuple[Path, Path, Expected]] | None] = ContextVar("_waiting", default=None)
 
 
 def state_of(path: Path) -> State | None:
@@ -64,8 +67,37 @@ def alive(pid: int) -> bool:
 
 
 @contextmanager
+def together() -> Iterator[None]:
+    """Let the files that are written inside get their names when all of them are whole, or none of them.
+
+    For a command with several outputs: if a later one fails, the earlier ones are not there, and older files
+    are as they were.
+    """
+    if _waiting.get() is not None:  # those around it say when
+        yield
+        return
+    waiting: list[tuple[Path, Path, Expected]] = []
+    token = _waiting.set(waiting)
+    try:
+        yield
+        for temporary, path, expected in waiting:
+            rename_over(temporary, path, expected)
+        for folder in {path.parent for _, path, _ in waiting}:
+            sync(folder)
+    except BaseException:
+        for temporary, *_ in waiting:
+            with suppress(OSError):
+                os.unlink(temporary)
+        raise
+    finally:
+        _waiting.reset(token)
+
+
+@contextmanager
 def whole_file(path: Path, *, expected: Expected = "anything") -> Iterator[Path]:
     """Name to write a file under; at the end it takes the place of `path`, on an error it goes.
+
+    Inside of `together` it takes that place when all files are whole.
 
     Parameters
     ----------
@@ -86,6 +118,9 @@ def whole_file(path: Path, *, expected: Expected = "anything") -> Iterator[Path]
         refuse_read_only(path)
         yield temporary
         sync(temporary)
+        if (waiting := _waiting.get()) is not None:
+            waiting.append((temporary, path, expected))
+            return
         rename_over(temporary, path, expected)
         sync(path.parent)
     except BaseException as error:

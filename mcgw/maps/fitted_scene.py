@@ -8,7 +8,7 @@ import numpy as np
 import tomli_w
 
 from analytic import HeightTable, MeasuredHeights, MeasuredRadii, Nayak, RandomCurvature, Surface
-from mcgw.formats.files import whole_file
+from mcgw.formats.files import together, whole_file
 from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
 from mcgw.maps.waves import log_derivatives
@@ -205,7 +205,7 @@ def write_scene(scene: Scene, path: Path, measured: Fit | None, comments: list[s
         with whole_file(path) as unfinished:
             unfinished.write_text(text, encoding="utf-8")
         return [path]
-    with whole_file(path) as unfinished, whole_file(beside) as numbers:
+    with together(), whole_file(path) as unfinished, whole_file(beside) as numbers:
         with open(numbers, "wb") as file:
             np.save(file, measured.summits)
         unfinished.write_text(text, encoding="utf-8")

@@ -7,7 +7,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from mcgw.formats.files import whole_file
+from mcgw.formats.files import together, whole_file
 from mcgw.formats.gate import open_h5
 from mcgw.formats.named_files import loads_json, open_npy, read_bytes
 from mcgw.machine.terminal import one_line
@@ -46,7 +46,7 @@ def write_npy(topography: Topography, path: Path) -> None:
         "periodic": topography.periodic,
         "axes": ["y", "x"],
     }
-    with whole_file(path) as unfinished, whole_file(sidecar_of(path)) as beside:
+    with together(), whole_file(path) as unfinished, whole_file(sidecar_of(path)) as beside:
         with open(unfinished, "wb") as file:
             np.save(file, topography.heights)
         beside.write_text(json.dumps(facts, indent=2) + "\n", encoding="utf-8")
