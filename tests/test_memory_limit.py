@@ -17,7 +17,7 @@ from mcgw.ensemble.simulation import Values, reducer_of
 from mcgw.errors import StoreError
 from mcgw.jobs.running import run
 from mcgw.machine import child_process, memory
-from mcgw.machine.child_process import end_with, limit_memory, memory_limit, run_child
+from mcgw.machine.child_process import end_with
 from mcgw.machine.memory import check_memory, memory_available, peak_growth
 from mcgw.sweeps.pooled import Pooling
 
@@ -49,7 +49,6 @@ def file(make_scene, tmp_path):
 
 @pytest.mark.slow
 def test_commands_work_where_the_memory_suffices(tmp_path):
-    """Half of what the child that looks at files would otherwise allow itself."""
     path = tmp_path / "e.h5"
     for words in (
         ["run", ROOT / "runs" / "quick.toml", "-o", path],
@@ -58,34 +57,6 @@ def test_commands_work_where_the_memory_suffices(tmp_path):
     ):
         done = limited(1024, "-m", "mcgw", *words)
         assert (done.returncode, without_notes(done.stderr)) == (0, "")
-
-
-LOOK = """
-import sys
-from pathlib import Path
-from mcgw.errors import StoreError
-from mcgw.store import untrusted
-path = Path(sys.argv[1])
-try:
-    untrusted._examined_by_child(path, path, 0)
-except StoreError as error:
-    print(error)
-"""
-
-
-def test_too_little_memory_is_not_blamed_on_the_file(file):
-    (line,) = limited(TIGHT, "-c", LOOK, file).stdout.splitlines()
-    assert line.startswith(f"{file}: cannot be checked within the memory limit of this process")
-    assert f"(ulimit -v {TIGHT * 1024})" in line
-    assert limited(1024, "-c", LOOK, file).stdout == ""
-
-
-def test_a_damaged_file_is_blamed_all_the_same(file):
-    data = bytearray(file.read_bytes())
-    data[len(data) // 2] ^= 1
-    file.write_bytes(data)
-    (line,) = limited(TIGHT, "-c", LOOK, file).stdout.splitlines()
-    assert "damaged or hostile" in line
 
 
 def test_what_may_be_taken_heeds_the_limit():
@@ -121,17 +92,6 @@ def test_the_least_of_what_machine_group_and_user_leave(monkeypatch, machine, us
 def test_growth_is_of_the_call_alone():
     np.ones(2**24)  # a peak before it; more than 32 MiB comes fresh from the system
     assert peak_growth(lambda: np.ones(2**23)) == pytest.approx(2**26, rel=0.2)
-
-
-def test_a_child_has_what_it_needs_whatever_its_user_has_set(tmp_path, monkeypatch):
-    """One thread of BLAS, and this package before those of the user, which stay."""
-    monkeypatch.setenv("OPENBLAS_NUM_THREADS", "7")
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    ask = "import os; print(os.environ['OPENBLAS_NUM_THREADS'], os.environ['PYTHONPATH'])"
-    said = run_child("timeit", "-n", "1", "-r", "1", "-s", ask, "pass", seconds=60)
-    threads, paths = said.split()[:2]
-    assert threads == "1"
-    assert paths.split(os.pathsep) == [str(Path(mcgw.__file__).parents[1]), str(tmp_path)]
 
 
 # --- what is asked for, by hand -------------------------------------------------------------------------
@@ -254,23 +214,6 @@ def test_points_of_a_sweep_that_are_drawn_at_once(make_scene):
 
 
 # --- limits of a process, by a stand-in for the system ---------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("limits", "least"), [((-1, -1), 500), ((300, -1), 300), ((-1, 400), 400), ((700, 600), 500), ((9, 8), 8)]
-)
-def test_a_limit_is_never_raised(limits, least, monkeypatch):
-    put = []
-    system = SimpleNamespace(
-        RLIMIT_AS=9, RLIM_INFINITY=-1, getrlimit=lambda _: limits, setrlimit=lambda *words: put.append(words)
-    )
-    monkeypatch.setitem(sys.modules, "resource", system)
-    assert limit_memory(500) == least
-    assert put == [(9, (least, least))]
-    assert memory_limit() == (None if limits[0] == -1 else limits[0])
-    monkeypatch.setitem(sys.modules, "resource", None)
-    assert limit_memory(500) == 500
-    assert memory_limit() is None
 
 
 @pytest.mark.parametrize("linux", [True, False])

@@ -244,28 +244,6 @@ def test_what_is_not_there_is_said_in_one_line(path, capsys):
     assert capsys.readouterr().err.startswith(f"mcgw: {path}: neither this file nor its blocks")
 
 
-CHILD = """
-import os, sys
-from mcgw.machine.child_process import run_child
-import threading, time
-threading.Thread(target=run_child, args=("{module}",), daemon=True).start()
-while True:
-    children = open(f"/proc/{{os.getpid()}}/task/{{os.getpid()}}/children").read().split()
-    for thread in os.listdir(f"/proc/{{os.getpid()}}/task"):
-        children += open(f"/proc/{{os.getpid()}}/task/{{thread}}/children").read().split()
-    if children:
-        print(children[0], flush=True)
-        time.sleep(60)
-    time.sleep(0.01)
-"""
-BUSY = {
-    "waiting": "import time\ntime.sleep(100)",
-    # PyDLL keeps Python's global lock while the C function runs, as HDF5 does.
-    "in C with the lock": "import ctypes\nctypes.PyDLL(None).sleep(100)",
-    "computing": "while True: pass",
-}
-
-
 def lives(pid):
     try:
         return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
@@ -281,25 +259,6 @@ def gone(pid, seconds=30):
             return False
         time.sleep(0.01)
     return True
-
-
-@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="needs /proc")
-@pytest.mark.parametrize("busy", BUSY)
-def test_a_child_ends_with_its_parent(busy, tmp_path):
-    """Whatever it does, even where no thread of its own could run."""
-    (tmp_path / "busy.py").write_text(f"open('begun', 'w').close()\n{BUSY[busy]}\n")
-    env = os.environ | {"PYTHONPATH": os.pathsep.join([str(HERE.parent), str(tmp_path)])}
-    call = [sys.executable, "-c", CHILD.format(module="busy")]
-    parent = subprocess.Popen(call, stdout=subprocess.PIPE, text=True, env=env, cwd=tmp_path)
-    child = int(parent.stdout.readline())
-    until = time.monotonic() + 30
-    while not (tmp_path / "begun").exists():
-        assert time.monotonic() < until
-        time.sleep(0.01)
-    assert Path(f"/proc/{child}").exists()
-    parent.kill()
-    parent.communicate()
-    assert gone(child)
 
 
 POOL = """

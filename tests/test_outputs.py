@@ -9,6 +9,7 @@ import subprocess
 import sys
 from functools import partial
 
+import h5py
 import numpy as np
 import pytest
 from overwrites import CASES, attempt, contents, prepare, ways
@@ -21,7 +22,7 @@ from mcgw.commands.outputs import CSV, Output, check_outputs
 from mcgw.errors import StoreError, in_one_line
 from mcgw.formats.files import rename_over, state_of, together, whole_file, write_whole
 from mcgw.jobs.job import Job
-from mcgw.store import ensembles, untrusted
+from mcgw.store import ensembles, structure
 
 pytestmark = pytest.mark.usefixtures("looked_at_here")
 
@@ -95,8 +96,12 @@ def test_no_ensemble_is_replaced_by_something_else(words, here, capsys):
 def test_a_damaged_ensemble_is_not_replaced_either(here, capsys):
     data = (here / "e.h5").read_bytes()[:-100]
     (here / "other.csv").write_bytes(data)
-    assert "is an HDF5 file, which this would replace" in told(capsys, ["show", "e.h5", "--csv", "other.csv"])
+    words = ["show", "e.h5", "--csv", "other.csv"]
+    assert "is an ensemble of mcgw, which this would replace" in told(capsys, words)
     assert (here / "other.csv").read_bytes() == data
+    with h5py.File(here / "other.csv", "w") as file:
+        file["x"] = [1.0]
+    assert "is an HDF5 file, which this would replace" in told(capsys, words)
 
 
 def test_an_earlier_output_is_replaced(here):
@@ -256,7 +261,7 @@ def test_without_hard_links_a_taken_name_is_refused_as_well(tmp_path, monkeypatc
 def test_a_file_that_appears_while_a_run_draws_is_left_alone(make_scene, tmp_path, monkeypatch):
     from mcgw.jobs import running
 
-    monkeypatch.setattr(ensembles, "examine", untrusted.examine)
+    monkeypatch.setattr(ensembles, "examine", structure.examine)
     path, drawn = tmp_path / "e.h5", Job.draw
 
     def slowly(*arguments):
@@ -286,7 +291,7 @@ def test_leftovers_of_the_dead_go_with_the_next_output(here):
 
 
 def test_save_in_python_keeps_what_is_there(make_scene, tmp_path, monkeypatch):
-    monkeypatch.setattr(ensembles, "examine", untrusted.examine)
+    monkeypatch.setattr(ensembles, "examine", structure.examine)
     (tmp_path / "f.h5").write_bytes(b"precious")
     with pytest.raises(StoreError, match="not an HDF5 file"):
         mcgw.save(mcgw.simulate(make_scene(n_surfaces=4)), tmp_path / "f.h5")

@@ -14,7 +14,7 @@ from mcgw.cli import main
 from mcgw.errors import RunError, StoreError
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run
-from mcgw.store import ensembles, layout, lock, run_folder, saving, shards, structure, untrusted
+from mcgw.store import ensembles, layout, lock, run_folder, saving, shards, structure
 from mcgw.store.disk import (
     TRAILER_BYTES,
     SteadyFile,
@@ -82,15 +82,21 @@ def a_changed_load(path):
         file["load"][3, 1] *= 1 + 1e-12
 
 
-def without_its_trailer(path):
-    path.write_bytes(path.read_bytes()[:-TRAILER_BYTES])
+def cut_within_its_trailer(path):
+    path.write_bytes(path.read_bytes()[: 100 - TRAILER_BYTES])
 
 
 def with_another_trailer(path):
     flip(path, len(path.read_bytes()) - 40)
 
 
-DAMAGES = [changed_in_place, flipped_in_a_result, a_changed_load, without_its_trailer, with_another_trailer]
+DAMAGES = [
+    changed_in_place,
+    flipped_in_a_result,
+    a_changed_load,
+    cut_within_its_trailer,
+    with_another_trailer,
+]
 
 
 # Every way to put more into a file.
@@ -113,9 +119,9 @@ def test_a_damaged_file_is_not_extended_nor_sealed_anew(
     assert ensembles.verify(damaged)[0] == ""
     damage(damaged)
     if large:
-        monkeypatch.setattr(ensembles, "examine", untrusted.examine)
-        monkeypatch.setattr(untrusted, "_SMALL", 0)
-        untrusted._examined.cache_clear()
+        monkeypatch.setattr(ensembles, "examine", structure.examine)
+        monkeypatch.setattr(structure, "_SMALL", 0)
+        structure._examined.cache_clear()
         assert ensembles.open_ensemble(damaged).n_surfaces == SURFACES
     before = damaged.read_bytes()
     with pytest.raises(StoreError):

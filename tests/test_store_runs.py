@@ -162,7 +162,8 @@ def test_another_scene_or_seed_in_that_place_is_refused(scene, tmp_path, change,
 def test_another_version_is_refused(scene, tmp_path, monkeypatch):
     path = tmp_path / "e.h5"
     halted(scene, path, 40)
-    monkeypatch.setattr("mcgw.store.identity.versions", lambda **_: "mcgw 99")
+    for module in ("store.identity", "jobs.job"):
+        monkeypatch.setattr(f"mcgw.{module}.versions", lambda **_: "mcgw 99")
     with pytest.raises(StoreError, match=r"drawn with .*, but this is mcgw 99"):
         run(scene, path)
 

@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -131,10 +132,19 @@ def _refuse_ensemble(output: Output) -> None:
         start = file.read(len(_SIGNATURE))
         file.seek(max(output.path.stat().st_size - TRAILER_BYTES, 0))
         ours = file.read(len(TRAILER_MAGIC)) == TRAILER_MAGIC
-    if ours:
+    if ours or (start == _SIGNATURE and _holds_results(output.path)):
         raise output.refuse("is an ensemble of mcgw, which this would replace")
     if start == _SIGNATURE and not set(HDF5.endings) & set(output.format.endings):
         raise output.refuse("is an HDF5 file, which this would replace")
+
+
+def _holds_results(path: Path) -> bool:
+    """Whether an HDF5 file says that it holds results, whoever wrote it last."""
+    from mcgw.formats.gate import opened
+
+    with suppress(Exception), opened(path) as file:  # HDF5 reports damage as any of a dozen exceptions
+        return str(file.attrs.get("filetype", "")).startswith("mcgw-results")
+    return False
 
 
 def table_output(path: Path | None) -> list[Output]:

@@ -162,7 +162,7 @@ class Section:
 
     def fail(self, name: str, value: Any, advice: str) -> _Value | None:
         """Note a mistake; return None as the value."""
-        return self.note(f"{self.path(name)} = {shortened(repr(value))}: {advice}")
+        return self.note(f"{self.path(name)} = {shortened(as_written(value))}: {advice}")
 
     def note(self, line: str) -> _Value | None:
         """Note a mistake with this text."""
@@ -230,6 +230,14 @@ class Section:
         """Name of a key with its table."""
         shown = one_line(shortened(name))
         return f"{self.name}.{shown}" if self.name else shown
+
+
+def as_written(value: object) -> str:
+    """Return the repr of a value; of a number too long for that, only that it is."""
+    try:
+        return repr(value)
+    except ValueError:
+        return "a number of more than 4000 digits"
 
 
 def shortened(text: str) -> str:

@@ -33,9 +33,12 @@ Every dataset has the attributes `units` and `long_name`; only quantities that t
 there. Chunked, each chunk with a checksum (Fletcher); a table is shuffled and compressed with gzip if that
 saves half of it (`chunks`). `digest` is over scene and data, `run` over what the
 numbers of a surface depend on (scene but for the number of surfaces, sampler, and the versions in `draws`).
-After the HDF5 data stand 512 bytes, the trailer (`disk`), with the digest of the file's bytes and that of
-its head (attributes, types, shapes, scales). That of the head is checked on every opening, that
-of all bytes by ``mcgw show --verify``.
+After the HDF5 data stand 512 bytes, the trailer: ``MCGWSEAL``, JSON padded with spaces (472 bytes), and the
+SHA-256 of both (32 bytes). The JSON has the length and the SHA-256 of all bytes before it, and the digest of
+the head (attributes, types, shapes, scales). That of the head is checked on every opening, that of all bytes
+by ``mcgw show --verify``. Every HDF5 program reads such a file, and one that opens it for writing leaves the
+trailer out, even if it writes nothing. The numbers of a file without one are compared with its `digest` when
+it is opened: if they are whole, it is read, with a note, and if they are not, it is refused.
 
 A run that fits one block is written in one atomic step. Any other grows as shards in ``FILE.parts/``, which
 are merged at the end and then removed. What each mechanism is for:
@@ -50,7 +53,6 @@ are merged at the end and then removed. What each mechanism is for:
 ``statistics_file``  that of scenes that keep statistics and no surface
 ``disk``         HDF5 may crash on a full disk, so it never sees its errors; the trailer of a whole file
 ``structure``    what a file may hold, looked at on every opening
-``untrusted``    a file of a stranger is looked at by a child first
 ``ensembles``    files and runs in progress opened, and verified
 ``lock``         two processes never write one file; shared by jobs that each make a share
 ``place``        what is there already: surfaces, a seed, and leftovers of the dead, which are cleared

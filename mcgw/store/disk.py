@@ -1,10 +1,12 @@
 """How the store reads and writes: regular files that end with a trailer, and no error of the disk for HDF5.
 
 The trailer, the last 512 bytes of a file, tells whether it is whole and unchanged. It stands at the end, so
-that an HDF5 file with one begins as any other and every HDF5 reader opens it; a file without its trailer was
-never finished. Layout: 8 bytes magic, JSON padded with spaces (472 bytes), SHA-256 of these 480 bytes (32
-bytes). The JSON holds the length and the SHA-256 of all that stands before the trailer, and what the writer
-wants known without opening the file.
+that an HDF5 file with one begins as any other and every HDF5 reader opens it. Layout: 8 bytes magic, JSON
+padded with spaces (472 bytes), SHA-256 of these 480 bytes (32 bytes). The JSON holds the length and the
+SHA-256 of all that stands before the trailer, and what the writer wants known without opening the file.
+
+A program that opens such a file for writing leaves the trailer out: what it left is compared with the digest
+of its numbers (`mcgw.store.ensembles`). A shard without its trailer was never finished.
 
 Of a file of results that is the digest of its head: attributes, types and shapes of its tables, and scales.
 They are small and decide what the numbers mean, and the digest is computed again whenever the file is opened;
@@ -195,6 +197,14 @@ def read_checked(path: Path) -> tuple[Trailer, bytes]:
     if hashlib.sha256(body).hexdigest() != trailer.sha256:
         raise StoreError(f"{path}: damaged (checksum mismatch)")
     return trailer, body
+
+
+def rewritten(path: Path) -> bool:
+    """Whether a file has no trailer, not even a damaged one: another program that opened it left that out."""
+    with os.fdopen(open_regular(path), "rb") as file:
+        file.seek(max(file.seek(0, os.SEEK_END) - TRAILER_BYTES, 0))
+        end = file.read()
+    return not any(sign in end for sign in (TRAILER_MAGIC, b'"length": ', b'"sha256": ', b'"notes": '))
 
 
 def read_trailer(path: Path) -> Trailer:

@@ -4,7 +4,9 @@ The sums of an ensemble where they lie: in its file, or in the shards of a run i
 """
 
 import re
+import warnings
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +19,7 @@ from mcgw.errors import StoreError
 from mcgw.formats.gate import open_h5
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from, scene_text
-from mcgw.store.disk import MOST_SCALE, check_trailer, parts_of, read_trailer
+from mcgw.store.disk import MOST_SCALE, check_trailer, parts_of, read_trailer, rewritten
 from mcgw.store.layout import (
     FILETYPE,
     FORMAT,
@@ -29,7 +31,7 @@ from mcgw.store.layout import (
 )
 from mcgw.store.run_folder import RunFolder
 from mcgw.store.shards import Shard
-from mcgw.store.untrusted import examine
+from mcgw.store.structure import examine
 
 
 def open_ensemble(path: str | Path) -> Ensemble:
@@ -128,11 +130,20 @@ def _run_of(path: Path) -> RunFolder:
 
 
 def described(path: Path) -> tuple[dict[str, Any], Scene]:
-    """Attributes and scene of an unchanged file, with its datasets."""
+    """Return attributes and scene of an unchanged file; one without a trailer is read through for that."""
+    head = _head_of(path)
+    if rewritten(path):
+        status = path.stat()
+        _check_rewritten(path.resolve(), path, (status.st_ino, status.st_size, status.st_mtime_ns))
+    return head
+
+
+def _head_of(path: Path) -> tuple[dict[str, Any], Scene]:
+    """Return attributes and scene of a file whose head is unchanged."""
     answer = examine(path)
     attributes = answer["attributes"]
     _check_format(path, attributes)
-    if read_trailer(path).notes.get("head") != answer["head"]:
+    if not rewritten(path) and read_trailer(path).notes.get("head") != answer["head"]:
         raise StoreError(f"{path}: damaged (checksum mismatch of its scene, attributes or scales)")
     try:
         scene = scene_from(str(attributes["scene"]))
@@ -150,6 +161,47 @@ def described(path: Path) -> tuple[dict[str, Any], Scene]:
     if "axes" not in attributes:
         _check_tables(path, scene, answer["datasets"])
     return attributes, scene
+
+
+@lru_cache(maxsize=32)
+def _check_rewritten(path: Path, shown: Path, _state: tuple[int, int, int]) -> None:
+    """Compare the numbers of a file without a trailer with their digest, once until it changes.
+
+    Raises
+    ------
+    StoreError
+        If they are others.
+    """
+    attributes = examine(path)["attributes"]
+    try:
+        found = _present_digest(path, attributes, scene_from(str(attributes["scene"])))
+    except (OSError, RuntimeError, KeyError, ValueError) as error:
+        raise StoreError(f"{shown}: damaged ({error})") from None
+    if found != attributes["digest"]:
+        raise StoreError(f"{shown}: damaged: it has no trailer, and its numbers are not those of its digest")
+    warnings.warn(f"{shown}: was rewritten by another program; its numbers are whole", stacklevel=3)
+
+
+def check_whole(path: Path) -> None:
+    """Refuse a file, already opened by `described`, of which a bit has changed.
+
+    Raises
+    ------
+    StoreError
+        If one has; of a file that another program wrote anew, one of its numbers.
+    """
+    if not rewritten(path):
+        check_trailer(path)
+
+
+def _present_digest(path: Path, attributes: dict[str, Any], scene: Scene) -> str:
+    """Return the digest of what a file holds now."""
+    with open_h5(path) as file:
+        if "axes" in attributes:
+            return drawn_digest(drawn_tables(file), str(attributes["scene"]), str(attributes["axes"]))
+        if scene.keep == "statistics":
+            return drawn_digest(drawn_tables(file), scene_text(scene, left_out=False))
+        return digest_of(file, scene, (arrays for _, arrays in file_pieces(file)))
 
 
 def _check_format(path: Path, attributes: dict[str, Any]) -> None:
@@ -192,25 +244,19 @@ def verify(path: Path) -> tuple[str, str]:
     """
     problem = ""
     try:
-        check_trailer(path)
+        check_whole(path)
     except StoreError as error:
         problem = str(error).removeprefix(f"{path}: ")
     try:
-        attributes, scene = described(path)
-        with open_h5(path) as file:
-            if "axes" in attributes:
-                texts = str(attributes["scene"]), str(attributes["axes"])
-                found = drawn_digest(drawn_tables(file), *texts)
-            elif scene.keep == "statistics":
-                found = drawn_digest(drawn_tables(file), scene_text(scene, left_out=False))
-            else:
-                found = digest_of(file, scene, (arrays for _, arrays in file_pieces(file)))
+        attributes, scene = _head_of(path)
+        found = _present_digest(path, attributes, scene)
         if found != attributes["digest"]:
             problem = problem or "digest mismatch of its data"
     except (OSError, RuntimeError, KeyError, ValueError) as error:
-        if not problem:
+        if not problem and not rewritten(path):
             raise
-        return f"{problem}; {error}", "unreadable"
+        said = str(error).removeprefix(f"{path}: ")
+        return "; ".join(filter(None, [problem, said])), "unreadable"
     return problem, found
 
 

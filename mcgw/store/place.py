@@ -9,8 +9,8 @@ from mcgw.formats.files import State, remove_stale, write_whole
 from mcgw.scene.fields import LeftOut
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from, scene_text
-from mcgw.store.disk import check_trailer, parts_of
-from mcgw.store.ensembles import described, read_attributes
+from mcgw.store.disk import parts_of
+from mcgw.store.ensembles import check_whole, described, read_attributes
 from mcgw.store.identity import difference, identity_of, versions
 from mcgw.store.lock import locked
 from mcgw.store.run_folder import RunFolder, remove_run
@@ -72,7 +72,7 @@ def finished(path: Path, scene: Scene, sampler: str) -> int:
             f"{scene.n_surfaces}; ask for as many or more, or choose another -o"
         )
     if there.n_surfaces < scene.n_surfaces:
-        check_trailer(path)  # it is about to be copied
+        check_whole(path)  # it is about to be copied
     return there.n_surfaces
 
 

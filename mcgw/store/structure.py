@@ -1,30 +1,27 @@
-"""What an HDF5 file from elsewhere must be before it is read: plain datasets at the root or in one group.
+"""What an HDF5 file of results must be before it is read: plain datasets at the root or in one group.
 
-HDF5 follows external links, external storage and virtual datasets to any file of the machine, and a
-crafted file can crash the library, so this runs as a script in a process of its own
-(`mcgw.store.untrusted`)::
-
-    python -m mcgw.store.structure FILE --memory BYTES
-
-It prints a line of JSON: the attributes and datasets, or why the file is refused; "sure" if that is not for a
-want of memory.
+Nothing of it leads elsewhere, and it declares no more than it holds. That is looked at in this process on
+every opening; a trailer is no signature, so it is looked at whoever wrote the file.
 """
 
-import json
 import math
-import sys
+import os
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 import h5py
 import numpy as np
 
+from mcgw.errors import StoreError
 from mcgw.formats.gate import opened
-from mcgw.store.disk import GROUP, head_digest
+from mcgw.formats.named_files import open_regular
+from mcgw.store.disk import GROUP, check_trailer, head_digest, read_trailer
 
 _FILTERS = {h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32, h5py.h5z.FILTER_LZF}
 _MOST_ATTRIBUTES = 64
 _READ_ALL = 2**26  # stored bytes up to which all is read here first
+_SMALL = 2**24  # bytes up to which all of a file is checked: a hundredth of a second
 _MOST_EXPANSION = 1100  # deflate cannot shrink more
 _MOST_CHUNK = 2**28
 _DOCUMENTS = ("title", "scene", "axes")  # other texts are shown and exported as they stand
@@ -140,21 +137,40 @@ def _plain_value(name: str, attributes: Any) -> Any:
     raise RefusedError(f"attribute {name}: neither text nor number")
 
 
-def _main(path: str, memory: int) -> None:
-    from mcgw.machine.child_process import limit_memory
+def examine(path: Path) -> dict[str, Any]:
+    """Return what `describe` tells of a file, looked at once until it changes.
 
-    memory = limit_memory(memory)
+    Raises
+    ------
+    StoreError
+        If it is not there, or no plain file of numbers, or damaged.
+    """
+    fd = open_regular(path)
     try:
-        answer = describe(path)
+        status, head = os.fstat(fd), os.read(fd, 512)
+    finally:
+        os.close(fd)
+    if path.suffix == ".toml" and b"\0" not in head:
+        raise StoreError(f"{path}: is not a file of results; make one from a scene with mcgw run {path}")
+    return _examined(path.resolve(), path, (status.st_ino, status.st_size, status.st_mtime_ns))
+
+
+@lru_cache(maxsize=32)
+def _examined(path: Path, shown: Path, _state: tuple[int, int, int]) -> dict[str, Any]:
+    try:
+        return describe(str(path), read=not _as_written(path))
     except MemoryError:
-        answer = {"refused": f"needs more than {memory} bytes of memory"}
+        raise StoreError(f"{shown}: cannot be looked at: too little memory") from None
     except RefusedError as error:
-        answer = {"refused": str(error), "sure": True}
+        raise StoreError(f"{shown}: refused: {error}") from None
     except Exception:  # HDF5 reports damage as any of a dozen exceptions
-        answer = {"refused": "not an HDF5 file, or a damaged one"}
-    sys.stdout.write(json.dumps(answer) + "\n")
+        raise StoreError(f"{shown}: not an HDF5 file, or a damaged one") from None
 
 
-if __name__ == "__main__":
-    _path, _, _memory = sys.argv[1:]
-    _main(_path, int(_memory))
+def _as_written(path: Path) -> bool:
+    """Whether the trailer holds; of a large file the head alone is compared with it, when it is opened."""
+    try:
+        (check_trailer if path.stat().st_size <= _SMALL else read_trailer)(path)
+    except StoreError:
+        return False
+    return True
