@@ -127,6 +127,10 @@ class InteractingModel(Model):
         """As `Model.share`, at what the asperities of the mean surface feel."""
         return self.alone.share(piece, self.effective(h))
 
+    def prepare(self, separations: ArrayLike, quantities: Sequence[str]) -> None:
+        """As `Model.prepare`, at what the asperities of the mean surface feel."""
+        self.alone.prepare(self.effective(separations), [_load_of(name) for name in quantities])
+
     def rule(self, separations: ArrayLike, quantities: Sequence[str] = ("load",)) -> HeightRule:
         """As `Model.rule`, at what the asperities of the mean surface feel."""
         return self.alone.rule(self.effective(separations), quantities)
