@@ -159,6 +159,18 @@ def test_a_tilt_and_a_form_that_leaves_no_summit_are_named():
         fit_map(topography(1e-3 * x * x), cutoff=None)
 
 
+def test_summits_that_are_all_equally_high_are_refused():
+    """A regular texture, periodic or of single points; with a thousandth of roughness it is a surface."""
+    j, i = np.mgrid[:N, :N]
+    waves = 1e-6 * np.cos(2 * np.pi * i / 16) * np.cos(2 * np.pi * j / 16)
+    for z in (waves, 1e-6 * ((i % 8 == 4) & (j % 8 == 4))):
+        fit = mcgw.fit(topography(z), cutoff=None, form="none")
+        for use in ("auto", "summits"):
+            with pytest.raises(ValueError, match=r"all \d+ summits are equally high, within .* m: a regular"):
+                mcgw.fitted_scene(fit, use=use)
+    assert mcgw.fitted_scene(mcgw.fit(topography(waves + 0.05 * rough()), cutoff=None)).surface.sigma > 0
+
+
 def test_absurd_slopes_and_pixels_are_named():
     assert "slope" in lines(1e6 * rough())
     assert "was um or mm meant" in lines(rough(), (1.0, 1.0))["unit"]

@@ -20,6 +20,7 @@ from mcgw.scene.scene_file import scene_document
 from mcgw.scene.values import MOMENTS, SUMMITS
 
 Heights = Literal["gaussian", "nayak", "table", "measured", "summits"]
+_EQUAL = 1e-3  # of the standard deviation of the map: summits that differ less are equally high
 _FITTED = ("load", "area", "stiffness", "contacts", "conductance")  # wanted quantities of a fitted scene
 
 
@@ -84,8 +85,20 @@ def fitted_scene(
         )
     if use == "auto":
         use = _best(fit, heights)
+    if isinstance(fit, Fit) and use != "moments" and use in fit.estimates:
+        _check_spread(fit)
     scene = _as_fitted(fit, use, heights, argument("E_star", E_star, "Pa"), title)
     return scene.replace(**{"fitted": _known(fit), "uncertainty": _uncertainty(fit, use, heights), **changes})
+
+
+def _check_spread(fit: Fit) -> None:
+    """Refuse summits that are all equally high."""
+    spread = float(np.ptp(fit.summits))
+    if fit.summits.size > 1 and spread < _EQUAL * math.sqrt(fit.m0.value):
+        raise ValueError(
+            f"all {fit.summits.size} summits are equally high, within {spread:.2g} m: a regular texture has "
+            "no distribution of summit heights; give sigma, radius and eta of its asperities in a scene"
+        )
 
 
 def _best(fit: Fit | ProfileFit, heights: Heights) -> str:

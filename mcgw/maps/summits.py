@@ -183,7 +183,8 @@ def tiles_of(counted: SummitSums) -> Table:
 def variation(values: Array) -> float:
     """Standard deviation over the tiles, over the mean; nan where fewer than two tell anything."""
     values = values[np.isfinite(values)]
-    return float(values.std(ddof=1) / values.mean()) if values.size > 1 else math.nan
+    mean = float(values.mean())
+    return float(values.std(ddof=1) / mean) if values.size > 1 and mean else math.nan
 
 
 @dataclass(frozen=True, slots=True)
