@@ -2,6 +2,7 @@
 
 import os
 import socket
+import sqlite3
 import subprocess
 import sys
 import threading
@@ -9,8 +10,10 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
+from filelock import Timeout
 
 import mcgw
+from mcgw.cli import main
 from mcgw.ensemble.simulation import Values
 from mcgw.errors import StoreError
 from mcgw.jobs.running import run
@@ -211,7 +214,7 @@ def test_a_holder_that_has_not_said_its_name_is_another_process(tmp_path):
                 (folder / "holder").unlink()
             else:
                 (folder / "holder").write_bytes(text)
-            with pytest.raises(LockedError, match=r"parts: locked by another process, which is working"):
+            with pytest.raises(LockedError, match=r"parts: locked by another process .*, which is working"):
                 locked(folder).__enter__()
         (folder / "other").touch()
     with locked(folder) as new:
@@ -225,7 +228,10 @@ def test_a_holder_that_has_not_said_its_name_is_another_process(tmp_path):
         (OSError(), "its run has just ended; repeat the command$"),
         (FileNotFoundError(2, "No such file or directory"), "its run has just ended; repeat the command$"),
         (PermissionError(13, "Permission denied"), r"cannot be locked \(Permission denied\)$"),
-        (ValueError("opened read-only"), r"cannot be locked \(opened read-only\); choose another -o$"),
+        (
+            ValueError("opened read-only"),
+            r"cannot be locked \(opened read-only\); choose another -o, on a disk",
+        ),
     ],
 )
 def test_a_folder_that_is_gone_is_told_from_one_that_cannot_be_locked(error, told, tmp_path, monkeypatch):
@@ -235,3 +241,18 @@ def test_a_folder_that_is_gone_is_told_from_one_that_cannot_be_locked(error, tol
     monkeypatch.setattr(lock, "_lock", fail)
     with pytest.raises(StoreError, match=rf"e\.h5\.parts: {told}"):
         locked(tmp_path / "e.h5.parts").__enter__()
+
+
+@pytest.mark.parametrize(
+    "error", [sqlite3.OperationalError("disk I/O error"), ValueError("not writable"), Timeout("x")]
+)
+def test_a_disk_that_keeps_no_locks_is_refused_in_one_line(error, make_scene, tmp_path, monkeypatch, capsys):
+    def none(*_, **__):
+        raise error
+
+    monkeypatch.setattr(lock, "PATIENCE", 0.0)
+    monkeypatch.setattr(lock, "_lock", none)
+    (tmp_path / "s.toml").write_text(mcgw.scene_text(make_scene(n_surfaces=4)))
+    assert main(["run", str(tmp_path / "s.toml"), "-o", str(tmp_path / "e.h5")]) == 2
+    assert "disk that keeps" in "".join(capsys.readouterr().err.splitlines()[-1:])
+    assert not (tmp_path / "e.h5").exists()

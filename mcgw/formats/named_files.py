@@ -19,6 +19,8 @@ HDF5 = b"\x89HDF\r\n"  # how such a file begins
 _UNSOUND = (EOFError, KeyError, MemoryError, OverflowError, SyntaxError, TokenError, TypeError, ValueError)
 _MOST_PARTS = 100  # of a dotted key: the parser's time grows as their square
 _LONG_KEY = re.compile(rf"(?<![\w\"'-])(?:[\w\"'-]++[ \t]*+\.[ \t]*+){{{_MOST_PARTS}}}")
+# Texts and comments, which may be full of dots.
+_ASIDE = re.compile(r'"(?:[^"\\\n]|\\.)*+"|\'[^\'\n]*+\'|#[^\n]*+')
 _TOML_DIGITS, _JSON_DIGITS = 4000, 300  # of a number: Python reads no more; no float has more
 
 
@@ -108,7 +110,7 @@ def loads(text: str) -> dict[str, Any]:
         If it is not TOML, a number has more than 4000 digits, a dotted key a hundred parts, or brackets are
         nested too deeply.
     """
-    if _LONG_KEY.search(text):
+    if _LONG_KEY.search(text) and _LONG_KEY.search(_ASIDE.sub("t", text)):
         raise ValueError(f"a dotted key has more than {_MOST_PARTS} parts")
     _check_digits(text, _TOML_DIGITS)
     try:

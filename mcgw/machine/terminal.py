@@ -83,27 +83,16 @@ def plain_output() -> Iterator[Plain]:
 
     Yields the new standard output.
     """
-    _open_closed()
     before = sys.stdout, sys.stderr
-    output = Plain(sys.stdout, "standard output", "\n")
-    sys.stdout, sys.stderr = output, Plain(sys.stderr, "standard error", "\n\r")
-    try:
-        yield output
-    finally:
-        sys.stdout.flush()
-        sys.stderr.flush()
-        sys.stdout, sys.stderr = before
-
-
-def _open_closed() -> None:
-    """Open the null device for closed descriptors, before another file gets their numbers."""
-    for number, name, mode in ((0, "stdin", "r"), (1, "stdout", "w"), (2, "stderr", "w")):
+    with open(os.devnull, "w") as nowhere:
+        output = Plain(sys.stdout or nowhere, "standard output", "\n")
+        sys.stdout, sys.stderr = output, Plain(sys.stderr or nowhere, "standard error", "\n\r")
         try:
-            os.fstat(number)
-        except OSError:
-            os.open(os.devnull, os.O_RDWR)  # takes the lowest number that is free
-        if getattr(sys, name) is None:
-            setattr(sys, name, open(number, mode, closefd=False))  # noqa: SIM115 - for as long as the process
+            yield output
+        finally:
+            sys.stdout.flush()
+            sys.stderr.flush()
+            sys.stdout, sys.stderr = before
 
 
 def pass_by(text: str) -> None:

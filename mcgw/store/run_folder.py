@@ -6,7 +6,6 @@
                 surfaces and the size of a block of each group; last, the SHA-256 of all that stands before
     lock.db     held by whoever writes the file, freed by the system when it dies (`lock`)
     holder      who that is
-    lock.*      in place of both where the disk keeps no locks (`lock_by_name`)
     shards/     block-0000000000042.h5: the surfaces from number 42 on
 
 The set of valid shards is the only record of progress.
