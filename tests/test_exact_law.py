@@ -557,7 +557,7 @@ KINDS = {
     "unloading of what pulls": (3000, PULLS | {"unload_from": 1.0}, "load_unloading", 2.5, 1e-6),
     "own radii": (300, CURVED, "load", 2.5, 1e-4),
     "own radii that yield": (300, CURVED | YIELDS, "load", 2.5, 1e-4),
-    "own radii that pull": (300, CURVED | PULLS, "load", 2.5, 1e-4),
+    "own radii that pull": (300, CURVED | PULLS, "load", 2.5, 1e-3),
     "films": (3000, {"film": analytic.Film(conductivities=(16.0, 16.0))}, "conductance_si", 2.0, 1e-6),
 }
 

@@ -133,7 +133,8 @@ class OneAsperity:
     @cached_property
     def lowest(self) -> float:
         """A sum that next to no surface stays below."""
-        usual, rarest = (min(float(np.interp(x / self.number, self.upto, self.places)), 0.0) for x in _RARE)
+        at = np.searchsorted(np.cumsum(self.probabilities), np.array(_RARE) / self.number)
+        usual, rarest = (min(float(x), 0.0) for x in self.values[np.minimum(at, self.values.size - 1)])
         if self.few:
             contacts = self.number * self.share
             return rarest + usual * float(contacts + _REACH * np.sqrt(contacts) + 2 * _REACH)

@@ -54,6 +54,10 @@ def one_asperity(model: Any, quantity: str, h: float, cells: int, top: float = n
     Cells in which asperities add more than `top` are wide.
     """
     rule, added = model.asperities(quantity, h)
+    if rule.ratios is not None:  # radius by radius
+        order = np.lexsort((rule.heights, -rule.ratios))
+        s, p, ratios = (each[order] for each in (rule.heights, rule.probabilities, rule.ratios))
+        rule = replace(rule, heights=s, probabilities=p, ratios=ratios)
     values, p, n = added(rule), rule.probabilities, model.number
     poisson, listed = model.count == "poisson", isinstance(model.heights, MeasuredHeights)
     mean = float(p @ values)
