@@ -15,6 +15,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import MemoryResults
 from mcgw.sampling import samplers
 from mcgw.sampling.cells import mesh_of
+from mcgw.sampling.counts import counts_of
 from mcgw.sampling.crowding import crowding
 from mcgw.sampling.drawn_moments import _law_of_moments, _partly
 from mcgw.sampling.samplers import aggregate_of, law_error_of, sampler_of
@@ -89,7 +90,7 @@ def test_price_does_not_depend_on_n(make_scene):
     singly = []
     for n in (10**8, 10**12, 2**53):
         sampler = samplers.sampler_of(make_scene(n_asperities=n, sampler="aggregate"))
-        counts = sampler.counting(sampler.scene, sampler.mesh, 0, 4).cells
+        counts = counts_of(sampler.scene, sampler.mesh, 0, 4).cells
         singly.append(counts[counts < samplers.CROWDED].sum() / 4)
     assert max(singly) < 3000
 

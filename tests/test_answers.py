@@ -38,9 +38,7 @@ def test_results_in_python(name, recorded):
     scene = mcgw.scene_from(SCENES[name])
     ensemble = mcgw.simulate(scene)
     asked = {"quantity": scene.quantities, "share": [0.1]}
-    things = [scene, ensemble]
-    if scene.sampler != "stratified":  # which is no ensemble of surfaces
-        things.append(mcgw.compare(ensemble))
+    things = [scene, ensemble, mcgw.compare(ensemble)]
     told = (line for thing in things for line in (*answers(thing, APART, **asked), *str(thing).splitlines()))
     recorded(f"{name}.results", told)
 

@@ -164,10 +164,9 @@ def test_heights_in_all_are_the_asperities_asked_for(make_scene):
         np.testing.assert_array_equal(touching, summits_drawn(scene, sampler_of(scene), 1)[0])
 
 
-def test_aggregate_and_stratified_keep_no_heights(make_scene):
-    for sampler in ("aggregate", "stratified"):
-        with pytest.raises(ValueError, match="keeps no heights"):
-            mcgw.heights(make_scene(sampler=sampler), 0)
+def test_aggregate_keeps_no_heights(make_scene):
+    with pytest.raises(ValueError, match="keeps no heights"):
+        mcgw.heights(make_scene(sampler="aggregate"), 0)
 
 
 def test_what_is_not_asked_is_not_computed(make_scene):

@@ -366,11 +366,6 @@ def test_other_numbers_of_asperities_and_separations_in_disorder(make_scene):
     assert converge(make_scene(sampler="aggregate", n_asperities=10**12)).passed
 
 
-def test_stratified_is_refused(make_scene):
-    with pytest.raises(ValueError, match="use another sampler"):
-        converge(make_scene(sampler="stratified"))
-
-
 @pytest.mark.parametrize("count", ["fixed", "poisson"])
 @pytest.mark.parametrize("quantity", ["load", "yielded", "area_unloading"])
 def test_single_surfaces_are_tested_where_a_hundred_asperities_decide(make_scene, quantity, count):

@@ -63,7 +63,6 @@ def results(scene, ensemble, tmp_path_factory):
     return {
         "ensemble": ensemble,
         "one surface": mcgw.simulate(scene, n_surfaces=1),
-        "stratified": mcgw.simulate(scene, sampler="stratified", n_surfaces=4),
         "comparison": mcgw.compare(ensemble),
         "other grading": other,
         "ratio": mcgw.paired_ratio(other, ensemble, "load"),
@@ -222,8 +221,6 @@ def test_the_look_of_an_ensemble_has_its_means(ensemble, results):
     means = [float(cell.split(" +- ")[0]) for cell in row.split("  ") if " +- " in cell]
     np.testing.assert_allclose(means, ensemble.mean("load")[[1, 2, 0]], rtol=1e-4)
     assert "nan" not in repr(results["one surface"])
-    means = repr(results["stratified"]).splitlines()[6:]  # without errors: they are those of no ensemble
-    assert not [line for line in means if "+-" in line]
 
 
 def test_a_large_ensemble_is_not_read_for_a_look(ensemble):

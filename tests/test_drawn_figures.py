@@ -205,13 +205,13 @@ def test_tradeoff(make_scene, kept, tmp_path, recorded):
 
     methods = (
         Method("tail", "surfaces", (1.0, 4.0), -0.5, none),
-        Method("stratified", "strata", (1.0,), -1.5, none),
+        Method("cells", "surfaces", (1.0,), -0.5, none),
         Method("theory", "points", (64.0,), None, none),
     )
     points = (
         Point("tail", "surfaces", 1.0, np.array([0.2, 0.4]), 0.25, 1e-3, 9.0, 0.0, 4),
         Point("tail", "surfaces", 4.0, np.array([0.1, 0.2]), 0.125, 4e-3, 9.0, 0.0, 4),
-        Point("stratified", "strata", 1.0, np.array([0.01, 0.03]), 0.5, 2e-3, 9.0, 0.0, 4),
+        Point("cells", "surfaces", 1.0, np.array([0.01, 0.03]), 0.5, 2e-3, 9.0, 0.0, 4),
         Point("theory", "points", 64.0, np.array([0.0, 1e-15]), 0.0, 5e-3, 9.0, 0.0, 1),
     )
     scene = make_scene(title="T", quantities=("area", "load"))
@@ -244,7 +244,7 @@ def test_tradeoff(make_scene, kept, tmp_path, recorded):
     np.testing.assert_allclose(spent.get_xydata(), [(0.002, 1e-3)])
     assert left.get_xscale() == "log"
     named = [text.get_text() for text in right.get_legend().get_texts()]
-    assert {"tail (size$^{-1/2}$)", "stratified (size$^{-3/2}$)", "theory"} <= set(named)
+    assert {"tail (size$^{-1/2}$)", "cells (size$^{-1/2}$)", "theory"} <= set(named)
     for line, method in zip(markers_of(right), methods, strict=False):
         own = [p for p in points if p.method == method.name]
         np.testing.assert_array_equal(line.get_xdata(), [p.wall for p in own])

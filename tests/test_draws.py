@@ -161,19 +161,6 @@ def test_pieces_of_a_huge_cell_lose_no_digit():
     assert (plain != found).any()
 
 
-def test_a_poisson_number_does_not_undo_stratification(make_scene):
-    """Strata are there for means: the number of asperities does not vary from surface to surface."""
-    scenes = [
-        make_scene(sampler="stratified", count=count, n_asperities=10**5) for count in ("fixed", "poisson")
-    ]
-    fixed, poisson = (sampler_of(scene).block(0, 5) for scene in scenes)
-    np.testing.assert_array_equal(fixed.counts, poisson.counts)
-    for name, values in poisson.sums.items():
-        np.testing.assert_array_equal(values, fixed.sums[name])
-    load = poisson.sums["load"][:, 0]
-    assert load.std() / load.mean() < 1e-5  # of surfaces that are drawn: 5e-3
-
-
 # Random123, kat_vectors: philox4x32 10, counter, key, output.
 KNOWN = [
     ((0, 0, 0, 0), (0, 0), (0x6627E8D5, 0xE169C58D, 0xBC57AC4C, 0x9B00DBD8)),

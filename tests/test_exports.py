@@ -362,7 +362,6 @@ def test_what_has_no_table_is_told(scene, ensemble, tmp_path):
     mean, stiffness = ensemble.mean("pressure"), {"table": "stiffness-pressure", "points": 5}
     conductance = {"table": "conductance-pressure", "pressures": [1e6, 1e12]}
     bare = scene.replace(film=None, quantities=["load"], n_surfaces=3)
-    means = mcgw.simulate(bare, sampler="stratified")
     bent = scene.replace(separations=[0, 1, 2], quantities=["load", "stiffness"], film=None, n_surfaces=2)
     load = np.outer([1.0, 1.1], [4.0, 2.0, 1.0])
     less = MemoryResults({"load": load, "stiffness": load[:, [1, 0, 2]]})  # at the highest pressure
@@ -377,7 +376,6 @@ def test_what_has_no_table_is_told(scene, ensemble, tmp_path):
             stiffness,
             r"^contact\.quantities: the ensemble has no stiffness; give its scene",
         ),
-        (means, {"quantiles": [0.5]}, r"^quantiles: stratified surfaces only have means"),
         (fine, steps, r'closer than 1e-10, .*units = "mm-N-s"'),
         (ensemble, {"pressures": [0.9 * mean[3], 1.1 * mean[3]]}, r"mean: 1 point\(s\) with load"),
         (ensemble, conductance, r"^pressures: 1e\+12 Pa .* all surfaces reach [\d.e+]+ to [\d.e+]+ Pa$"),
@@ -388,7 +386,6 @@ def test_what_has_no_table_is_told(scene, ensemble, tmp_path):
         with pytest.raises(ValueError, match=told):
             mcgw.export(what, tmp_path / "t.txt", **({"to": "comsol"} | given))
     assert not list(tmp_path.iterdir())
-    assert len(mcgw.export(means, tmp_path / "t.txt", to="comsol")) == 2
     mcgw.export(fine, tmp_path / "t.inp", **steps, units="mm-N-s")
 
 

@@ -69,7 +69,7 @@ def simulate(**wish):
     given = {"separations": [0.0, 1.0], "n_surfaces": 2, "seed": 1, **wish}
     return mcgw.simulate(mcgw.Scene(surface, **given))
 
-for sampler in ("cells", "tail", "direct", "stratified", "aggregate"):
+for sampler in ("cells", "tail", "direct", "aggregate"):
     simulate(sampler=sampler, n_asperities=10**5)
 repr(simulate())
 simulate().mean("load")

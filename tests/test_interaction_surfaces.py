@@ -257,10 +257,6 @@ REFUSED = {
         {"interaction": "body", "unload_from": "loop", "quantities": ["area"]}, LOAD,
         {"quantities": ["area", "load"]},  # with its way back
     ),
-    "means alone": (
-        {"interaction": "body", "sampler": "stratified"}, "interaction needs the load of each surface",
-        {"sampler": "cells"},
-    ),
     "no asperities": (
         {"interaction": NOMINAL, "sampler": "aggregate"}, 'it draws no asperities.*at = "effective"',
         {"interaction": "body"},

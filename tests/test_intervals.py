@@ -244,11 +244,6 @@ def test_nothing_drawn_leaves_nothing_open(make_scene):
     np.testing.assert_array_equal(ensemble.interval("load"), [ensemble.mean("load")] * 2)
 
 
-def test_stratified_surfaces_have_none(make_scene):
-    with pytest.raises(ValueError, match="stratified surfaces have no interval"):
-        mcgw.simulate(make_scene(sampler="stratified")).interval("load")
-
-
 def test_too_few_is_said_wherever_intervals_are(make_scene):
     """h = 4 and 8: one contact in 190 surfaces, and none."""
     h = (0.0, 4.0, 8.0)

@@ -20,7 +20,6 @@ from mcgw.ensemble.summary import Bins, Summary, push, total
 from mcgw.errors import StoreError
 from mcgw.jobs.running import run
 from mcgw.machine.memory import peak_growth
-from mcgw.scene.section import SceneError
 from mcgw.store.ensembles import read_attributes, verify
 
 H = [0.0, 1.0, 2.5]
@@ -311,8 +310,6 @@ def test_single_surfaces_are_refused_with_what_to_do(tmp_path, monkeypatch):
         e.quantile("load", 1.5)
     with pytest.raises(KeyError, match="conductance"):
         e.covariance("load", "conductance")
-    with pytest.raises(SceneError, match="stratified"):
-        scene(sampler="stratified", keep="statistics")
     with pytest.raises(StoreError, match=r"different"):
         run(scene(n_surfaces=10), tmp_path / "a.h5")
     monkeypatch.setattr("mcgw.machine.memory.memory_available", lambda: 2**28)

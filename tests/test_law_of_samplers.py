@@ -16,8 +16,6 @@ import analytic
 import mcgw
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import MemoryResults
-from mcgw.sampling.counts import strata_of
-from mcgw.sampling.samplers import sampler_of
 from mcgw.statistics.checks import independence
 
 GATE = 5.0
@@ -152,33 +150,3 @@ def test_skewness(ensembles):
         assert np.abs(z).max() < GATE
         z_if_gaussian = cubes.mean(axis=0) / (cubes.std(axis=0) / np.sqrt(M))
         assert np.abs(z_if_gaussian).max() > GATE
-
-
-# The error of a stratified mean falls as N^(-3/2)
-
-
-REPEATS = 60  # an rms over so many parts is known to 9 %
-
-
-def test_stratified_falls_as_the_three_halves_power(make_scene):
-    n = np.array([3200, 25600, 204800])  # fewer leave less than a stratum a cell
-    scene, errors = make_scene(separations=(1.0,), quantities=("load",), n_surfaces=REPEATS, seed=1000), []
-    exact = float(analytic.load(scene.surface, 1.0, scene.grading)) / scene.surface.n_asperities
-    for k in n.tolist():
-        loads = mcgw.simulate(scene.replace(sampler="stratified", n_asperities=k)).load
-        errors.append(np.sqrt(np.mean((loads / exact / k - 1) ** 2)))
-    assert np.polyfit(np.log(n), np.log(errors), 1)[0] < -1.4
-
-
-@pytest.mark.parametrize("separations", [(0.0,), tuple(np.linspace(0, 4, 41))])
-def test_a_millionth_with_fewer_than_1e5_draws(make_scene, separations):
-    """The load at h = 0: each of 60 surfaces, whose rms is 2e-7."""
-    scene = make_scene(
-        separations=separations, n_asperities=120_000, n_surfaces=REPEATS, sampler="stratified"
-    )
-    exact = float(analytic.load(scene.surface, 0.0, scene.grading)) / scene.surface.n_asperities
-    errors = mcgw.simulate(scene).load[:, 0] / (exact * scene.n_asperities) - 1
-    assert np.ptp(errors) > 0
-    strata = strata_of(scene, sampler_of(scene).mesh, 0, 1)
-    assert strata.cells.sum() + strata.low_extras.sum() + strata.high_extras.sum() < 1e5
-    assert np.abs(errors).max() < 1e-6

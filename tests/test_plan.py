@@ -76,7 +76,6 @@ WISHES = {
     "one law of two": {"law": mcgw.KogutEtsion(critical=0.1), "unload_from": 0.0},
     "steep": {"grading": analytic.Table((0.0, 1.37, 3.0), (1.0, 2.0, 1.5))},
     "coarse": {"accuracy": 1e-4, "n_asperities": 10**5},
-    "strata": {"sampler": "stratified"},
     "contacts": {"quantities": ("contacts",)},
     "nominal": {"interaction": mcgw.Interaction("body", at="nominal")},
     "radii": {"heights": analytic.Nayak(5.0), "curvature": mcgw.RandomCurvature(5.0)},

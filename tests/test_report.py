@@ -145,20 +145,6 @@ def test_every_column_of_every_table(ensemble, page):
             assert value(residual)[0] == pytest.approx((x[:, k].mean() - theory[k]) / stderr[k], abs=0.06)
 
 
-def test_stratified_surfaces_have_a_report_of_means(small):
-    page = page_of(small, sampler="stratified")
-    ((_, header, rows),) = tables(page)
-    assert header == ["d/σ", "mean", "theory"]
-    theory = exact.mean(small, "load")
-    for row, h, load in zip(rows, small.separations, theory, strict=True):
-        assert float(row[0]) == h
-        assert value(row[1])[0] == pytest.approx(load, rel=1e-2)
-        assert value(row[2])[0] == pytest.approx(load, rel=6e-5)
-    assert "These are stratified surfaces: only their means are meaningful" in page
-    assert "residual" not in page
-    assert "band" not in page
-
-
 def test_the_surface(ensemble, page):
     """Each fact with its unit, and the same in units of sigma."""
     s, found = ensemble.scene.surface, facts(page)

@@ -114,9 +114,8 @@ def test_curves_are_those_of_surfaces_whose_laws_are_known(scene):
     np.testing.assert_array_equal(axes.lines[0].get_ydata(), others[0].panels[0].series[0].theory)
 
 
-@pytest.mark.parametrize("changes", [{"n_surfaces": 1}, {"sampler": "stratified"}])
-def test_there_is_no_band_where_there_are_not_several_surfaces(scene, changes):
-    curves = pressure_curves(mcgw.simulate(scene, **changes))
+def test_there_is_no_band_where_there_are_not_several_surfaces(scene):
+    curves = pressure_curves(mcgw.simulate(scene, n_surfaces=1))
     assert len(curves) == 4
     assert all(curve.panels[0].series[0].band is None for curve in curves)
     assert {curve.caption for curve in curves} == {"Line: mean."}

@@ -39,7 +39,6 @@ ADDED = [
      '"conductance_si" needs resistivity, or conductivities = [k1, k2]; give one'),
     ("contact", ', quantities = ["load", "yielded"]', 'no contact yields with law = "hertz"; leave it out'),
     ("contact", ', quantities = ["load_unloading"]', "'load_unloading' needs unloading; give"),
-    ("ensemble", ', keep = "statistics", sampler = "stratified"', 'sampler = "stratified" has none; use'),
     ("contact", ", yield_index = 3", "unknown key"),
     ("contact", f", datum = '{58 * 'x'}'", f"contact.datum = '{58 * 'x'}': "),  # 60 characters as they are
     ("contact", f", datum = '{59 * 'x'}'", f"contact.datum = '{56 * 'x'}...: "),
@@ -90,7 +89,7 @@ def test_what_a_fit_did_not_see_is_not_shown():
 
 WARMED = {  # every sampler, laws that yield, there and back, radii, interaction, statistics
     ("auto", "sums", "KogutEtsion"), ("tail", "sums", "KogutEtsion"),
-    ("stratified", "sums", "Hertz"), ("direct", "sums", "Hertz"), ("auto", "sums", "Hertz"),
+    ("direct", "sums", "Hertz"), ("auto", "sums", "Hertz"),
     ("aggregate", "sums", "Hertz"), ("auto", "statistics", "Hertz"), ("cells", "sums", "Hertz"),
     ("tail", "sums", "Hertz"),
 }  # fmt: skip
@@ -105,7 +104,7 @@ def test_loops_are_compiled_for_every_kind_of_scene(monkeypatch):
     assert {s.count for s in scenes} == {"fixed", "poisson"}
     assert [s.unload_from for s in scenes if s.unload_from is not None] == [0.0]
     assert [s.interaction.at for s in scenes if s.interaction] == ["nominal"]
-    assert [s.sampler for s in scenes if s.curvature] == ["cells", "tail", "stratified"]
+    assert [s.sampler for s in scenes if s.curvature] == ["cells", "tail"]
     assert max(s.n_asperities * s.n_surfaces for s in scenes) <= 2e7
     assert len(fitted) == 1
 
@@ -268,18 +267,6 @@ def test_statistics_of_values_are_those_of_numpy(make_scene):
         np.testing.assert_allclose(ensemble.skewness("load"), stats.skew(load), rtol=1e-9)
     alone = mcgw.simulate(make_scene(n_surfaces=1, separations=(0.0, 2.0)))
     assert np.isnan(alone.covariance("load")).all()
-
-
-def test_an_ensemble_that_is_stratified_shows_no_errors(make_scene):
-    """Its surfaces are not independent: how they scatter tells nothing of the mean."""
-    plain, strata = (mcgw.simulate(make_scene(n_surfaces=4, sampler=s)) for s in ("cells", "stratified"))
-    for ensemble, told in ((plain, True), (strata, False)):
-        (line,) = (
-            line.strip() for line in repr(ensemble).splitlines() if line.strip().startswith("load (N)")
-        )
-        assert (" +- " in line) == told, line
-    with pytest.raises(ValueError, match="stratified surfaces have no interval"):
-        strata.interval("load")
 
 
 def test_the_other_separation_is_as_sure_as_the_load(pressed):

@@ -110,7 +110,6 @@ def test_scenes_drawn_after_others_are_those_drawn_alone(make_scene):
         {"heights": analytic.Weibull(2.0)},
         {"law": mcgw.KogutEtsion(critical=0.1)},
         {"law": mcgw.KogutEtsion(critical=0.2)},
-        {"sampler": "stratified"},
     ]
     scenes = [make_scene(n_surfaces=3, **change) for change in changes]
     first = [mcgw.simulate(scene).load for scene in scenes]

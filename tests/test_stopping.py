@@ -191,15 +191,6 @@ def test_what_nothing_reaches_is_reported_and_not_waited_for(make_scene):
     assert upper_contacts(100) == pytest.approx(-np.log(0.05) / 100, rel=1e-14)
 
 
-def test_strata_are_said_to_be_silent_and_no_more(make_scene):
-    """Their means have no error that could be held to a wish."""
-    scene = make_scene(sampler="stratified", n_surfaces=5, separations=(0.0, 12.0, 30.0))
-    told = after(simulate(scene), scene)
-    assert [line.split(":")[0] for line in told] == ["d/sigma = 12", "d/sigma = 30"]
-    limit = -np.log(0.05) / 5
-    assert f"mean below {limit:.3g} contacts per surface, {limit / 3000:.3g} per asperity (95%" in told[0]
-
-
 def test_means_without_a_wish_are_not_held_to_one(make_scene):
     """Neither where contacts are few nor where they are many: only what was asked is told."""
     scene = make_scene(n_surfaces=5, separations=(0.0, 2.0, 3.5), quantities=("load", "area"))
@@ -344,7 +335,6 @@ def test_keys_that_do_not_go_together_are_refused():
     for keys, message in (
         ("rel_err = 0.01\nn_surfaces = 5", r"ensemble\.n_surfaces = 5: give it or rel_err, not both"),
         ("max_surfaces = 5", r"ensemble\.max_surfaces = 5: give rel_err too, or leave it out"),
-        ('rel_err = 0.01\nsampler = "stratified"', "stratified"),
     ):
         with pytest.raises(SceneError, match=message):
             mcgw.scene_from(text + keys)

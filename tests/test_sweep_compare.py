@@ -141,15 +141,6 @@ def test_of_equally_likely_points_that_with_the_worst_mean_is_first(sweep):
     assert len(replace(compared, points=tuple(alike)).sheet(9).table.columns[0].values) == 9
 
 
-def test_points_that_are_no_ensembles_are_left_out():
-    over = {"ensemble.sampler": ["auto", "stratified"]}
-    compared = mcgw.compare(mcgw.sweep(SCENE, over))
-    assert [one.number for one in compared.points] == [0]
-    assert "1 stratified points" in repr(compared)
-    with pytest.raises(ValueError, match="stratified points hold means"):
-        mcgw.compare(mcgw.sweep(SCENE.replace(sampler="stratified"), {"grading.gamma": [1.0, 2.0]}))
-
-
 @pytest.mark.parametrize("at", ["effective", "nominal"])
 def test_points_whose_asperities_press_each_other_down(pressed, at):
     scene = pressed(0.05, at, n_surfaces=100)

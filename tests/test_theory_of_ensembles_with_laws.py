@@ -92,7 +92,7 @@ def test_ways_to_a_mean_agree(values):
         assert np.abs(ways[name].errors(size, 0)).max() < 1e-9
 
 
-@pytest.mark.parametrize("sampler", ["tail", "aggregate", "stratified"])
+@pytest.mark.parametrize("sampler", ["tail", "aggregate"])
 def test_samplers_that_are_traded_off_have_the_right_mean(sampler):
     """One large ensemble each; within 5 standard errors of one that is independent."""
     scene = scene_of(SCENES["Kogut, there and back"], sampler=sampler, n_surfaces=36, seed=8)

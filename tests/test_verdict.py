@@ -260,11 +260,6 @@ def test_one_surface(make_scene):
     assert np.isfinite(comparison.verdict.p)
 
 
-def test_stratified_is_no_ensemble(make_scene):
-    with pytest.raises(ValueError, match="use another sampler"):
-        compare(mcgw.simulate(make_scene(sampler="stratified")))
-
-
 # --- its parts, by hand ---
 
 

@@ -61,10 +61,7 @@ def news(*lines: object) -> None:
 
 def look_next(scene: "Scene", path: "Path") -> None:
     """Print the command that looks at a new file: surfaces are compared with theory where one is known."""
-    from mcgw.scene.promises import promise_of
-
-    alone = scene.located or not promise_of(scene.sampler).real_surfaces
-    news(f"next: mcgw {'show' if alone else 'compare'} {path}")
+    news(f"next: mcgw {'show' if scene.located else 'compare'} {path}")
 
 
 def details(*lines: object) -> None:

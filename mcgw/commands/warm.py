@@ -59,9 +59,9 @@ def _scenes() -> list[dict[str, Any]]:
     return [
         *(yielding, {**yielding, "unload_from": 0.0}, {**yielding, "sampler": "tail"}),
         {"interaction": Interaction("mean-plane", at="nominal"), "n_asperities": 300},
-        *({"sampler": "stratified"}, {"sampler": "direct"}, {"count": "poisson"}),
+        *({"sampler": "direct"}, {"count": "poisson"}),
         *(coarse, {"sampler": "aggregate", "n_asperities": 10**6}, {"keep": "statistics"}),
-        *({"surface": spectrum, "sampler": sampler} for sampler in ("cells", "tail", "stratified")),
+        *({"surface": spectrum, "sampler": sampler} for sampler in ("cells", "tail")),
     ]
 
 

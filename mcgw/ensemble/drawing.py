@@ -21,7 +21,6 @@ from mcgw.sampling.block import Block, Sampler, Source
 from mcgw.sampling.counts import GROUP
 from mcgw.sampling.expected import Expected, expected
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 
 _Drawn = TypeVar("_Drawn")
@@ -63,9 +62,8 @@ def kept(scene: Scene, block: Block) -> dict[str, Any]:
     """What is kept of a block: its sums, contacts as whole numbers."""
     alone = scene.interaction is scene.joint is None
     arrays = dict(block.sums) if alone else answered(scene, block.sums)
-    if promise_of(scene.sampler).real_surfaces:
-        for name in filter(lambda name: quantity_of(name).counts, scene.quantities):
-            arrays[name] = np.rint(arrays[name]).astype(np.int64)
+    for name in filter(lambda name: quantity_of(name).counts, scene.quantities):
+        arrays[name] = np.rint(arrays[name]).astype(np.int64)
     return arrays
 
 

@@ -255,8 +255,6 @@ class Ensemble(Shown):
         ------
         KeyError
             If the ensemble does not hold this quantity.
-        ValueError
-            If the surfaces are stratified: the error of their mean is not known.
         """
         name, area = self._held(quantity)
         low, high = interval_of(self.scene, self.sampler, self.sums, name, level)

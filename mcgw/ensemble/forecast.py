@@ -15,7 +15,6 @@ import numpy as np
 from analytic.arrays import Array
 from mcgw.ensemble.intervals import CONFIDENCE, MANY, TOO_FEW, Spread, chebyshev, spread_of
 from mcgw.sampling.counts import GROUP
-from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.stop_rule import wanted
 
@@ -140,8 +139,6 @@ def after(ensemble: "Ensemble", scene: Scene) -> list[str]:
         f"{limit / n:.3g} per asperity ({CONFIDENCE:.0%} confidence)"
         for h in np.unique(ensemble.separations[silent])
     ]
-    if not promise_of(ensemble.sampler).real_surfaces:
-        return lines
     asked = wanted(scene) or dict.fromkeys(scene.quantities, np.ones(len(scene.separations)))
     for name, most in asked.items():
         reach = spread_of(ensemble.scene, name).reach(m)

@@ -21,7 +21,6 @@ from analytic import Hertz, MeasuredHeights, RandomCurvature, quantity_of
 from analytic.arrays import Array, Marks
 from mcgw.ensemble.results import Held
 from mcgw.formats.table import Column
-from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 
 CONFIDENCE = 0.95
@@ -184,10 +183,6 @@ def interval_of(scene: Scene, sampler: str, sums: Held, name: str, level: float)
         If there is none.
     """
     mean, m = sums.mean_and_std(name)[0], sums.rows()
-    if not promise_of(sampler).real_surfaces:
-        raise ValueError(
-            "stratified surfaces have no interval, because they do not fluctuate like real surfaces"
-        )
     if scene.as_measured:
         return mean, mean
     if scene.located:  # no theory tells how much surfaces differ: they do

@@ -12,7 +12,6 @@ from mcgw.ensemble.results import PROBABILITIES
 from mcgw.formats.sheet import Sheet
 from mcgw.formats.table import SEPARATION, Column, Table, optional
 from mcgw.scene.in_words import accuracy_facts, contact_facts, law_text
-from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 
 AXES = {  # of tables, in their order: unit and long name
@@ -176,7 +175,6 @@ def sheet_of(ensemble: Any) -> Sheet:
     names = scene.answers
     columns = [Column("quantity", [f"{q} ({scene.quantity(q).unit})" for q in names], _AT)]
     mean, error = (np.array([get(q)[shown] for q in names]) for get in (ensemble.mean, ensemble.stderr))
-    error *= 1 if promise_of(ensemble.sampler).real_surfaces else np.nan
     for i, h in enumerate(ensemble.separations[shown]):
         columns.append(
             Column(f"{h:g}", mean[:, i], form=".5g", beside=Column("stderr", error[:, i], form=".1g"))

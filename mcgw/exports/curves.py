@@ -8,7 +8,6 @@ from analytic.arrays import Array
 from mcgw.ensemble.at_load import at_pressures, common_pressures, with_values
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.formats.table import evenly
-from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 
 _MOST = 2000  # surfaces drawn again where an ensemble keeps statistics alone
@@ -103,8 +102,6 @@ def curves_of(
     ValueError
         If there are surfaces that do not reach a pressure, too few points, or something that is no function.
     """
-    if quantiles and not promise_of(ensemble.sampler).real_surfaces:
-        raise ValueError(f"quantiles: {ensemble.sampler} surfaces only have means; leave it out")
     if kind.against == "gap":
         x, mean, some = _at_gaps(ensemble, kind, pressures, points, quantiles)
     else:

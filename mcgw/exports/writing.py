@@ -18,7 +18,6 @@ from mcgw.exports.programs import PROGRAMS, Program, check_name
 from mcgw.exports.table_text import UNIT_SYSTEMS, UnitSystem, all_curves, heading, in_units, table_text
 from mcgw.formats.files import write_whole
 from mcgw.scene.arguments import argument, as_toml
-from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 from mcgw.store.ensembles import open_ensemble, read_attributes
@@ -194,8 +193,7 @@ def _pressures(given: Any) -> Array | None:
 
 def _quantiles(given: Sequence[float] | None, ensemble: Ensemble) -> tuple[float, ...]:
     if given is None:
-        several = ensemble.n_surfaces > 1 and promise_of(ensemble.sampler).real_surfaces
-        return DEFAULT_QUANTILES if several else ()
+        return DEFAULT_QUANTILES if ensemble.n_surfaces > 1 else ()
     found = tuple(float(q) for q in given)
     wrong = [q for q in found if not 0 < q < 1]
     if wrong or len(set(found)) < len(found):

@@ -16,7 +16,6 @@ from mcgw.figures.style import contact_label, short
 from mcgw.formats.table import evenly
 from mcgw.sampling.asperities import heights
 from mcgw.scene.in_words import law_text
-from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 
 SCENE = "this scene"
@@ -60,7 +59,6 @@ class Compared:
             return self.asked.replace(grading=Homogeneous(), separations=_SWEPT, quantities=tuple(QUANTITIES))
         h = np.unique(self.asked.separations)
         cheap = _MOST_ASPERITIES // self.asked.n_asperities
-        real = promise_of(self.asked.sampler).real_surfaces
         return self.asked.replace(
             separations=h[evenly(len(h), _MOST_SEPARATIONS)],
             quantities=tuple(QUANTITIES),
@@ -68,7 +66,6 @@ class Compared:
             film=None,
             joint=None,
             n_surfaces=max(min(self.asked.n_surfaces, _MOST_SURFACES, cheap), 1),
-            sampler=self.asked.sampler if real else "auto",
             keep="sums",
             rel_err=None,
             max_seconds=None,

@@ -170,7 +170,7 @@ def _draw_points(axis: Any, points: Points, found: dict[str, Any], logarithmic: 
 
 
 def _has_errors(panel: Panel) -> bool:
-    """Whether there are points with an error: means of stratified surfaces have none that is known."""
+    """Whether there are points with an error."""
     return any(bool((points.stderr > 0).any()) for *_, points in _known(panel))
 
 

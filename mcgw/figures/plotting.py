@@ -20,7 +20,6 @@ from mcgw.figures.style import MONTE_CARLO, SAMPLE, SEEN, STYLE, THEORY, shown_t
 from mcgw.formats.table import evenly
 from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
-from mcgw.scene.promises import promise_of
 from mcgw.statistics.comparison import Comparison, SweepComparison
 from mcgw.statistics.convergence import Convergence
 from mcgw.statistics.tradeoff import Tradeoff
@@ -75,12 +74,9 @@ def _(result: Ensemble, ax: Any, *, quantity: str) -> None:
         low = np.maximum(low, mean / 20)  # an axis of logarithms has no place for 0
         words = "std over surfaces (no quick law)" if exact is None else "90 % of the surfaces"
         ax.fill_between(h[order], low[order], high[order], color=MONTE_CARLO, alpha=0.18, lw=0, label=words)
-    if not promise_of(result.sampler).real_surfaces:
-        ax.plot(h[order], mean[order], "o-", **SEEN, label="mean")
-    else:
-        low, high = result.interval(quantity)
-        bars = np.nan_to_num([np.minimum(mean - low, 0.999 * mean), high - mean])[:, order]
-        ax.errorbar(h[order], mean[order], bars, fmt="o-", **SEEN, label="mean, 95 %")
+    low, high = result.interval(quantity)
+    bars = np.nan_to_num([np.minimum(mean - low, 0.999 * mean), high - mean])[:, order]
+    ax.errorbar(h[order], mean[order], bars, fmt="o-", **SEEN, label="mean, 95 %")
     if np.any(mean > 0):
         ax.set_yscale("log")
     ax.set(xlabel=_SEPARATION, ylabel=f"{quantity.replace('_', ' ')} ({q.unit})")

@@ -54,7 +54,7 @@ _TOP = len(_DASHES)
 FAMILIES: tuple[tuple[str, ...], ...] = (  # what one figure may show together, in the order of the colours
     ("load", "area", "stiffness", "contacts", "conductance", "yielded"),
     ("Chang", "Zhao", "Kogut", "Jackson"),
-    ("cells", "tail", "aggregate", "direct", "stratified"),
+    ("cells", "tail", "aggregate", "direct"),
     ("own radii", "one radius", "nayak", "measured summits"),
     ("$m_0$", "$m_2$", "$m_4$"),
 )

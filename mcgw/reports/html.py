@@ -9,7 +9,6 @@ import numpy as np
 from analytic import Hertz
 from mcgw.ensemble.at_load import at_pressures, common_pressures, mean_surface
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.labelled import statistics_table
 from mcgw.ensemble.solved import Solution
 from mcgw.ensemble.some_separations import how_many, shown
 from mcgw.figures.style import grading_label
@@ -20,14 +19,12 @@ from mcgw.machine.terminal import one_line, plain_text
 from mcgw.reports.report_figures import (
     comparison_figures,
     first_surfaces,
-    means_figures,
     pressure_pictures,
     pressure_table,
 )
 from mcgw.scene.cautions import cautions
 from mcgw.scene.in_words import contact_facts, law_text
 from mcgw.scene.law_cautions import other_laws
-from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.validity import Validity
 from mcgw.statistics.comparison import compare
@@ -36,40 +33,32 @@ Facts = list[tuple[str, str]]
 
 
 def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
-    """Make the page of an ensemble from it and the attributes of its file: scene, digest, versions, ...
-
-    Surfaces with means alone have neither test against theory nor band.
-    """
+    """Make the page of an ensemble from it and the attributes of its file: scene, digest, versions, ..."""
     scene, against = ensemble.scene, ensemble.scene.validity()
-    real = promise_of(ensemble.sampler).real_surfaces
     with stages(3) as done:
-        comparison, some = compare(ensemble) if real else None, shown(ensemble)
+        comparison, some = compare(ensemble), shown(ensemble)
         done()
         first = first_surfaces(some) if "load" in scene.quantities else some
         at_pressure = list(pressure_pictures(first))
-        solved = solution_of(scene, first) if real and at_pressure else None
+        solved = solution_of(scene, first) if at_pressure else None
         done()
-        figures = means_figures(some) if comparison is None else comparison_figures(comparison)
-        tables = _means(some) if comparison is None else list(comparison.tables().values())
+        figures = comparison_figures(comparison)
+        tables = list(comparison.tables().values())
         done()
     return rendered(
         "report.html.j2",
         title=one_line(scene.title) or "Ensemble of rough surfaces",
         words=opening_words(ensemble),
-        agrees=comparison is None or comparison.verdict.agrees,
-        verdict=comparison.verdict.line
-        if comparison
-        else f"These are {ensemble.sampler} surfaces: only their means are meaningful, and they are not "
-        f"tested against theory",
+        agrees=comparison.verdict.agrees,
+        verdict=comparison.verdict.line,
         elastic=against.verdict,
         at_pressure=at_pressure,
         by_pressure=pressure_table(at_pressure, scene),
         solved=solved and solved.sheet().table,
         budget=solved and solved.budget(),
-        several=real and ensemble.n_surfaces > 1,
+        several=ensemble.n_surfaces > 1,
         figures=figures,
         tables=[table.rows() for table in tables],
-        tested=comparison is not None,
         facts=surface_facts(ensemble),
         laws=laws_table(scene),
         elasticity=_elasticity_words(against),
@@ -115,16 +104,6 @@ def rendered(template: str, **values: Any) -> str:
     )  # fmt: skip
     environment.filters["typeset"] = typeset
     return environment.get_template(template).render(**values)
-
-
-def _means(ensemble: Ensemble) -> list[Table]:
-    """Means and theory of stratified surfaces, whose fluctuations are not real."""
-    found, h = [], ensemble.separations
-    for name in ensemble.scene.answers:
-        table, unit = statistics_table(ensemble, name), ensemble.scene.quantity(name).unit
-        theory = Column("theory", ensemble.scene.theory.mean(name, h), unit=unit)
-        found.append(Table((*table.only("separation", "mean").columns, theory), table.title))
-    return found
 
 
 def _shorter(scene: str) -> str:

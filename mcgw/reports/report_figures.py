@@ -21,7 +21,6 @@ from mcgw.figures.panels import draw
 from mcgw.figures.style import STYLE, write_figure
 from mcgw.formats.table import Column, Table, evenly
 from mcgw.scene.in_words import joint_text
-from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.statistics.comparison import Comparison
 
@@ -65,21 +64,6 @@ def comparison_figures(comparison: Comparison) -> list[PageFigure]:
         found.append(line_figure(figure, quantity_of(name).long_name))
     if comparison.ensemble.n_surfaces > 1:
         found.append(line_figure(draw(_spread(comparison)), "std over mean against separation"))
-    return found
-
-
-def means_figures(ensemble: Ensemble) -> list[PageFigure]:
-    """Each quantity of surfaces that have means only, with its theory."""
-    found = []
-    for name in ensemble.scene.answers:
-        q = ensemble.scene.quantity(name)
-        order = np.argsort(ensemble.separations, kind="stable")
-        h, mean = ensemble.separations[order], ensemble.mean(name)[order]
-        exact = ensemble.scene.theory.mean(name, h)
-        series = Series("theory, and means", h, exact, Points(h, mean, np.zeros(len(h)), exact))
-        panel = Panel(q.title, "separation d/σ", q.unit, (series,), ("linear", "log"))
-        figure = draw(FigureData("", "Line: exact. Markers: means.", (panel,), columns=1))
-        found.append(line_figure(figure, q.long_name))
     return found
 
 
@@ -164,7 +148,7 @@ def pressure_curves(ensemble: Ensemble) -> list[FigureData]:
     pressure[[0, -1]] = reach  # to the last bit: beyond them there is nothing
     asked = list(_asked(ensemble))
     found = at_pressures(first, pressure, tuple(name for name, *_ in asked))
-    banded = first.n_surfaces > 1 and promise_of(ensemble.sampler).real_surfaces
+    banded = first.n_surfaces > 1
     curves = []
     for name, factor, title, label in asked:
         values = factor * found[name]

@@ -28,6 +28,7 @@ from mcgw.sampling.stretches import SMALLEST, begins_and_breaks, losses
 from mcgw.scene.scene import Scene
 from mcgw.scene.values import EXACT
 
+_RARE = 0.1  # asperities a surface that may be expected beyond the cells, on either side
 _CONVERGED = 1e-9  # a step of Newton whose square is nothing
 _SHORT, _MOST_HALVINGS = 16, 60  # terms for a grading on a cell, and how often it is cut to get there
 _DIGITS = 4.0  # of a height that coefficients without meaning may seem to be worth
@@ -83,7 +84,7 @@ class Mesh:
         return np.asarray(u * chebyshev.chebval(2 * u - 1, self.stretch[:, cell], tensor=False))
 
 
-def mesh_of(scene: Scene, *, split: bool = True, rare: float = 0.1) -> Mesh:
+def mesh_of(scene: Scene, *, split: bool = True) -> Mesh:
     """Cut the contacting heights of a scene into cells.
 
     Parameters
@@ -92,15 +93,13 @@ def mesh_of(scene: Scene, *, split: bool = True, rare: float = 0.1) -> Mesh:
         Its separations, grading, height law and number of asperities are used.
     split : bool, optional
         Cut crowded cells further, so that each needs fewer moments.
-    rare : float, optional
-        Asperities a surface that may be expected beyond the cells, on either side.
 
     Returns
     -------
     Mesh
         With every separation and every break of the grading on an edge.
     """
-    edges = edges_before_grading(scene, split=split, rare=rare)
+    edges = edges_before_grading(scene, split=split)
     if not edges.size:
         return no_cells(scene)
     if _steep(scene.modulus):
@@ -108,10 +107,10 @@ def mesh_of(scene: Scene, *, split: bool = True, rare: float = 0.1) -> Mesh:
     return _mesh(scene.heights, float(scene.lowest), edges.tobytes())
 
 
-def edges_before_grading(scene: Scene, *, split: bool = True, rare: float = 0.1) -> Array:
+def edges_before_grading(scene: Scene, *, split: bool = True) -> Array:
     """The edges of the cells of `mesh_of`, before those that a grading with kinks takes; none: no cell."""
     law = scene.heights
-    low, high = _range(law, rare / scene.n_asperities, scene.lowest)
+    low, high = _range(law, _RARE / scene.n_asperities, scene.lowest)
     if not low < high:
         return np.empty(0)
     begins, breaks = begins_and_breaks(scene, low, high)

@@ -1,6 +1,5 @@
 """Samplers that count before they draw: the numbers in the cells, their moments, and the product."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -10,14 +9,12 @@ import numpy as np
 from analytic import quantity_of
 from analytic.arrays import Array, Ints
 from mcgw.sampling.block import Block, Layout, Sampler
-from mcgw.sampling.cells import Mesh
-from mcgw.sampling.counts import Counts, contacts_above, counts_of
+from mcgw.sampling.counts import contacts_above, counts_of
 from mcgw.sampling.direct import asperity_sums
 from mcgw.sampling.drawn_moments import Drawing, OneByOne
 from mcgw.sampling.outside import extra_heights
 from mcgw.sampling.response.response import Response
 from mcgw.sampling.stretches import stretches_of
-from mcgw.scene.scene import Scene
 
 if TYPE_CHECKING:
     from mcgw.sampling.own_radii import Families, RadiusTable
@@ -33,8 +30,6 @@ class Counted(Sampler):
         As of any `Sampler`.
     response : Response or Families
         Physics on this mesh.
-    counting : callable, optional
-        Numbers of asperities of surfaces `first` ... `first + n - 1`: ``counting(scene, mesh, first, n)``.
     drawing : Drawing, optional
         How the moments of the cells are drawn.
     table : RadiusTable, optional
@@ -42,7 +37,6 @@ class Counted(Sampler):
     """
 
     response: "Response | Families"
-    counting: Callable[[Scene, Mesh, int, int], Counts] = counts_of
     drawing: Drawing = OneByOne()  # noqa: RUF009 - it has no state
     table: "RadiusTable | None" = None
 
@@ -67,10 +61,10 @@ class Counted(Sampler):
 
     def drawn(self, first: int, n: int, layout: Layout) -> tuple[Array, Array, Array]:
         """Moments, numbers in the cells and heights outside of these surfaces: what `sums` takes."""
-        counts = self.counting(self.scene, self.mesh, first, n)
+        counts = counts_of(self.scene, self.mesh, first, n)
         moments = self.drawing.moments(self.scene.seed, first, counts, layout)
         extras = extra_heights(self.scene, self.mesh, first, counts, self.table)
-        return moments, counts.cells * counts.weights[1:-1, None], extras
+        return moments, counts.cells.astype(np.float64), extras
 
     def sums(self, first: int, moments: Array, counts: Array, extras: Array) -> dict[str, Array]:
         """Quantities of surfaces `first` ... from what was drawn.

@@ -7,7 +7,6 @@ multinomial: from the highest cell down, so that each probability is accurate ho
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic.arrays import Array, Ints
 from mcgw.sampling.cells import Mesh
@@ -27,14 +26,11 @@ class Counts:
         In each cell, shape (cells, surfaces).
     low_extras, high_extras : ndarray of int
         In contact, below and above all cells, shape (surfaces,).
-    weights : ndarray
-        For how many asperities one drawn in the low extras, each cell, the high extras stands.
     """
 
     cells: Ints
     low_extras: Ints
     high_extras: Ints
-    weights: NDArray[np.float64]
 
 
 def counts_of(scene: Scene, mesh: Mesh, first: int, n: int) -> Counts:
@@ -64,35 +60,7 @@ def counts_of(scene: Scene, mesh: Mesh, first: int, n: int) -> Counts:
         drawn.append(rng.multinomial(_touching(rng, scene, min(touching, 1.0)), falling))
     skip = first - groups[0] * GROUP
     numbers = np.ascontiguousarray(np.concatenate(drawn)[skip : skip + n, ::-1].T)
-    return Counts(numbers[1:-1], numbers[0], numbers[-1], np.ones(mesh.size + 2))
-
-
-def strata_of(scene: Scene, mesh: Mesh, first: int, n: int) -> Counts:  # noqa: ARG001 - all are alike
-    """Number of strata in each cell: the expected number of asperities, and enough in the tail.
-
-    The last of N equal strata has no upper end, and its asperity alone makes an error of order 1/N.
-    So every cell gets at least half of an equal share, with weights that keep the means exact.
-
-    Parameters
-    ----------
-    scene : Scene
-        Its number of asperities is used.
-    mesh : Mesh
-        The scene's.
-    first, n : int
-        Which surfaces; all are alike.
-
-    Returns
-    -------
-    Counts
-        The same for every surface.
-    """
-    probability = np.concatenate([[mesh.low_extras], mesh.probability, [mesh.high_extras]])
-    expected = scene.n_asperities * probability
-    numbers = np.ceil(np.maximum(expected, expected.sum() / (2 * len(expected)))).astype(np.int64)
-    weights = expected / np.maximum(numbers, 1)
-    alike = np.repeat(numbers[:, None], n, axis=1)
-    return Counts(np.ascontiguousarray(alike[1:-1]), alike[0], alike[-1], weights)
+    return Counts(numbers[1:-1], numbers[0], numbers[-1])
 
 
 def contacts_above(counts: Array, cells: Ints) -> Array:

@@ -1,6 +1,6 @@
 """From the numbers of asperities in the cells to their moments.
 
-``OneByOne``   a uniform for each asperity, anywhere in the cell or in one of as many equal strata
+``OneByOne``   a uniform for each asperity, anywhere in the cell
 ``Crowds``     for cells with few asperities as `OneByOne`, else one Gaussian number a moment
 
 Where summits have radii of their own there is a third way, `mcgw.sampling.weighted_sums`.
@@ -56,23 +56,13 @@ class Drawing(Protocol):
 
 @dataclass(frozen=True)
 class OneByOne:
-    """A uniform for each asperity.
+    """A uniform for each asperity."""
 
-    Parameters
-    ----------
-    strata : bool, optional
-        Draw it in one of as many equal strata of the cell, with the weight that it stands for.
-    """
-
-    strata: bool = False
     distance = 0.0
 
     def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
         """Sums over the uniforms of each cell."""
-        moments = cell_moments(seed, first, counts.cells, layout, stratified=self.strata)
-        if self.strata:
-            moments *= np.repeat(counts.weights[1:-1], layout.sizes)[:, None]
-        return moments
+        return cell_moments(seed, first, counts.cells, layout)
 
     def draws(self, asperities: float, layout: Layout) -> float:
         """All of them, unless nobody asks for a moment."""

@@ -25,7 +25,6 @@ _RADIUS, _DRAWS_WITH_RADIUS = 10, 6  # times an asperity with the radius of all
 _BALANCE = 5e-6  # of a separation by cells
 _STEPS, _STEP = 4e-4, 1e-7  # of one by single asperities, and of each of these
 _BALANCE_OF_PLACES, _GROWS = 5e-7, 1.6  # of located summits: seconds, by a power of their number
-_RARE, _RARE_STRATA = 0.1, 1e-9
 
 
 @dataclass(frozen=True)
@@ -70,8 +69,7 @@ def expected(scene: Scene) -> Expected:
 
 
 def _in_cells(name: str, scene: Scene) -> Expected:
-    rare = _RARE_STRATA if name == "stratified" else _RARE
-    edges = edges_before_grading(scene, split=name == "cells", rare=rare)
+    edges = edges_before_grading(scene, split=name == "cells")
     inside = scene.n_asperities * -np.diff(scene.heights.sf(edges)) if edges.size else np.empty(0)
     outside = max(scene.touching - float(inside.sum()), 0.0)
     plain, rooted = _orders(scene, edges)

@@ -93,13 +93,6 @@ add_weighted.__doc__ = (
 
 
 @njit(inline="always")
-def stratify(w: Any, n: Any, first: Any, strata: Any) -> None:
-    """Move the uniform of asperity ``first + i`` into its own one of `strata` equal strata."""
-    for i in range(n):
-        w[i] = (2.0 * (first + i) + 1.0 + w[i]) / strata - 1.0
-
-
-@njit(inline="always")
 def unfold(w: Any, first: Any, orders: Any) -> None:
     """Make sums of polynomials of `orders` sums of products, which begin at ``w[first]``."""
     for j in range(6, orders):

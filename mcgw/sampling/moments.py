@@ -20,7 +20,7 @@ from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads
 from mcgw.machine.memory import aligned
 from mcgw.sampling.block import Layout
-from mcgw.sampling.kernels import BUFFER, PLAIN, ROOTED, TOGETHER, WORDS, add_uniforms, stratify, unfold
+from mcgw.sampling.kernels import BUFFER, PLAIN, ROOTED, TOGETHER, WORDS, add_uniforms, unfold
 from mcgw.sampling.philox import CELLS, centred
 from mcgw.sampling.spacing import price
 
@@ -42,7 +42,7 @@ def add_compensated(totals: Any, w: Any, first: Any, size: Any) -> None:
 
 @njit(inline="always")
 def _sum_cell(
-    w: Any, carries: Any, seed: Any, surface: Any, cell: Any, n: Any, plain: Any, rooted: Any, strata: Any
+    w: Any, carries: Any, seed: Any, surface: Any, cell: Any, n: Any, plain: Any, rooted: Any
 ) -> None:
     """Leave the sums over the `n` uniforms of a cell in the workspace; very many in pieces."""
     for k in range(PLAIN, WORDS):
@@ -52,8 +52,6 @@ def _sum_cell(
     for first in range(0, n, BUFFER):
         some = min(BUFFER, n - first)
         centred(w, seed, CELLS, surface, cell, first, some)
-        if strata:
-            stratify(w, some, first, strata)
         filled = -some % TOGETHER
         for i in range(some, some + filled):
             w[i] = 1.0
@@ -69,7 +67,7 @@ def _sum_cell(
 
 @njit(cache=True)
 def _sum_cells(
-    seed: Any, first: Any, counts: Any, starts: Any, orders: Any, bounds: Any, stratified: Any, moments: Any
+    seed: Any, first: Any, counts: Any, starts: Any, orders: Any, bounds: Any, moments: Any
 ) -> None:
     """Sum a run of cells, all surfaces of one after the other."""
     w, carries = np.empty(WORDS), np.empty(2 * (WORDS - PLAIN))
@@ -84,8 +82,7 @@ def _sum_cells(
         for surface in range(start, stop):
             n = counts[cell, surface]
             if n:
-                strata = n if stratified else 0
-                _sum_cell(w, carries, seed, first + surface, cell, n, plain, rooted, strata)
+                _sum_cell(w, carries, seed, first + surface, cell, n, plain, rooted)
             for j in range(plain):
                 moments[row + j, surface] = w[PLAIN + j] if n else 0.0
             for j in range(rooted):
@@ -93,7 +90,7 @@ def _sum_cells(
         at += stop - start
 
 
-def cell_moments(seed: int, first: int, counts: Ints, layout: Layout, *, stratified: bool = False) -> Array:
+def cell_moments(seed: int, first: int, counts: Ints, layout: Layout) -> Array:
     """Moments of all cells of a block of surfaces.
 
     Parameters
@@ -106,8 +103,6 @@ def cell_moments(seed: int, first: int, counts: Ints, layout: Layout, *, stratif
         Asperities to draw in each cell, shape (cells, surfaces).
     layout : Layout
         Moments of each cell.
-    stratified : bool, optional
-        Jitter the uniforms of a cell over as many equal strata.
 
     Returns
     -------
@@ -117,7 +112,7 @@ def cell_moments(seed: int, first: int, counts: Ints, layout: Layout, *, stratif
     orders = np.column_stack([layout.plain, layout.rooted])
 
     def sum_run(counts: Ints, bounds: tuple[int, int], moments: Array) -> None:
-        _sum_cells(np.uint64(seed), first, counts, layout.starts, orders, bounds, stratified, moments)
+        _sum_cells(np.uint64(seed), first, counts, layout.starts, orders, bounds, moments)
 
     return in_runs_of_cells(counts, orders, price(layout.plain, layout.rooted), sum_run)
 

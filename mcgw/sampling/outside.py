@@ -49,9 +49,9 @@ def extra_heights(
         check_memory(f"ensemble.sampler: to list {number:.4g} heights one by one", _BYTES * number)
     edge = float(mesh.edges[-1]) if mesh.size else scene.lowest
 
-    def listed(stream: int, numbers: Ints, heights: Array, weight: float) -> Array:
+    def listed(stream: int, numbers: Ints, heights: Array) -> Array:
         surfaces = np.repeat(first + np.arange(len(numbers)), numbers)
-        columns = [surfaces, heights, np.full(len(heights), weight)]
+        columns = [surfaces, heights, np.ones(len(heights))]
         if table:
             pairs = _centred_pairs(np.uint64(scene.seed), first, stream + _RADII, numbers)
             two = np.ascontiguousarray(pairs.reshape(-1, 2).T)
@@ -59,13 +59,13 @@ def extra_heights(
         return np.column_stack(columns)
 
     heights = law.isf(_wide_uniforms(scene.seed, first, _HIGH, counts.high_extras), edge)
-    rows = listed(_HIGH, counts.high_extras, heights, counts.weights[-1])
+    rows = listed(_HIGH, counts.high_extras, heights)
     if not counts.low_extras.any():
         return rows
     bottom = float(mesh.edges[0])
     least = float(law.cdf(np.array(scene.lowest)) / law.cdf(np.array(bottom)))
     share = least + (1 - least) * _wide_uniforms(scene.seed, first, _LOW, counts.low_extras)
-    low = listed(_LOW, counts.low_extras, law.ppf(share, bottom), counts.weights[0])
+    low = listed(_LOW, counts.low_extras, law.ppf(share, bottom))
     rows = np.concatenate([low, rows])
     return np.asarray(rows[np.argsort(rows[:, 0], kind="stable")])
 

@@ -7,7 +7,6 @@ name            cells        numbers in them  moments     for
 ``tail``        none         drawn            none        few contacts: each drawn by itself, exactly
 ``cells``       split        drawn            one by one  nearly everything, exactly
 ``aggregate``   not split    drawn            Gaussian    any number of asperities at one price
-``stratified``  not split    as expected      in strata   means only
 ==============  ===========  ===============  ==========  =============================================
 """
 
@@ -22,7 +21,6 @@ from mcgw.machine.memory import keep_freed_memory
 from mcgw.sampling.block import Sampler
 from mcgw.sampling.cells import Mesh, cut, mesh_of, no_cells, series_accuracy
 from mcgw.sampling.counted import Counted
-from mcgw.sampling.counts import Counts, counts_of, strata_of
 from mcgw.sampling.direct import Direct
 from mcgw.sampling.drawn_moments import CROWDED, VARYING, Crowds, OneByOne
 from mcgw.sampling.outside import table_of
@@ -114,27 +112,14 @@ def cells_of(scene: Scene) -> Counted:
     return _counted("cells", scene, mesh_of(scene))
 
 
-def stratified_of(scene: Scene) -> Counted:
-    """Prepare ``stratified``."""
-    mesh = mesh_of(scene, split=False, rare=1e-9)
-    return _counted("stratified", scene, mesh, strata_of, strata=True)
-
-
-def _counted(
-    name: str,
-    scene: Scene,
-    mesh: Mesh,
-    counting: Callable[[Scene, Mesh, int, int], Counts] = counts_of,
-    *,
-    strata: bool = False,
-) -> Counted:
+def _counted(name: str, scene: Scene, mesh: Mesh) -> Counted:
     """A sampler on a mesh, with radii where the scene has them."""
     mesh, response = _resolved(scene, mesh)
     if not isinstance(response, Response):
         from mcgw.sampling.weighted_sums import with_radii
 
-        return with_radii(name, scene, mesh, response, counting, strata=strata)
-    return Counted(name, scene, mesh, response, counting, OneByOne(strata))
+        return with_radii(name, scene, mesh, response)
+    return Counted(name, scene, mesh, response, OneByOne())
 
 
 def aggregate_of(scene: Scene, crowded: int = CROWDED, distance: float = np.nan) -> Counted:
@@ -167,7 +152,6 @@ _MAKERS: dict[str, Callable[[Scene], Sampler]] = {
     "tail": tail_of,
     "cells": cells_of,
     "aggregate": aggregate_of,
-    "stratified": stratified_of,
 }
 
 

@@ -10,7 +10,6 @@ radius is drawn for each summit from the table of `mcgw.sampling.own_radii`, at 
 cell's lower edge and its series of the uniform.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,7 +21,7 @@ from mcgw.sampling.block import Layout
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.counted import Counted
 from mcgw.sampling.counts import Counts
-from mcgw.sampling.kernels import BUFFER, TOGETHER, add_weighted, stratify, unfold
+from mcgw.sampling.kernels import BUFFER, TOGETHER, add_weighted, unfold
 from mcgw.sampling.moments import add_compensated, in_runs_of_cells
 from mcgw.sampling.own_radii import Families, RadiusTable, radius_table, root_ratio
 from mcgw.sampling.philox import CELLS, RADII, RADII_LOW, centred
@@ -65,9 +64,7 @@ def _weigh(w: Any, n: Any, edge: Any, series: Any, table: Any) -> Any:
 
 
 @njit(cache=True)
-def _sum_cells(
-    who: Any, counts: Any, kinds: Any, bounds: Any, stratified: Any, mesh: Any, table: Any, moments: Any
-) -> None:
+def _sum_cells(who: Any, counts: Any, kinds: Any, bounds: Any, mesh: Any, table: Any, moments: Any) -> None:
     """Sum a run of cells, all surfaces of one after the other: 32 sums for each kind, and their carries."""
     (seed, first), (starts, orders, squares), (edges, series) = who, kinds, mesh
     w = np.ones(_WORDS)
@@ -82,8 +79,6 @@ def _sum_cells(
             centred(w, seed, CELLS, first + surface, cell, begin, m)
             centred(w[_COARSE:], seed, RADII, first + surface, cell, begin, m)
             centred(w[_FINE:], seed, RADII_LOW, first + surface, cell, begin, m)
-            if stratified:
-                stratify(w, m, begin, n)
             whole = _weigh(w, m, edges[cell], series[cell], table)
             for kind in range(many.size):
                 if many[kind]:
@@ -105,14 +100,11 @@ def with_radii(
     scene: Scene,
     mesh: Mesh,
     response: Families,
-    counting: Callable[[Scene, Mesh, int, int], Counts],
-    *,
-    strata: bool,
 ) -> Counted:
     """A sampler on a mesh that draws a radius for each asperity."""
     assert scene.curvature is not None
     table = radius_table(scene.curvature, scene.lowest)
-    return Counted(name, scene, mesh, response, counting, WithRadii(mesh, table, response, strata), table)
+    return Counted(name, scene, mesh, response, WithRadii(mesh, table, response), table)
 
 
 @dataclass(frozen=True)
@@ -127,14 +119,11 @@ class WithRadii:
         The law of the radii.
     families : Families
         Powers of the radius that are asked for.
-    strata : bool, optional
-        Draw the uniforms in as many equal strata of the cell.
     """
 
     mesh: Mesh
     table: RadiusTable
     families: Families
-    strata: bool = False
     distance = 0.0
 
     def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
@@ -158,13 +147,9 @@ class WithRadii:
         who, held = (np.uint64(seed), first), (self.table.coefficients, self.table.bottom, self.table.largest)
 
         def sum_run(counts: Ints, bounds: tuple[int, int], moments: Array) -> None:
-            _sum_cells(who, counts, kinds, bounds, self.strata, mesh, held, moments)
+            _sum_cells(who, counts, kinds, bounds, mesh, held, moments)
 
-        moments = in_runs_of_cells(counts.cells, orders, _PRICE, sum_run)
-        if self.strata:
-            weights = np.tile(counts.weights[1:-1], len(layouts))
-            moments *= np.repeat(weights, layout.sizes)[:, None]
-        return moments
+        return in_runs_of_cells(counts.cells, orders, _PRICE, sum_run)
 
     def draws(self, asperities: float, layout: Layout) -> float:
         """A height and two words of a radius, which take about as long."""

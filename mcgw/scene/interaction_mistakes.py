@@ -68,11 +68,6 @@ def _independent(scene: Fields) -> Iterator[str]:
     assert scene.interaction is not None
     if "load" not in scene.quantities:
         yield 'interaction: separations depend on the load; add "load" to contact.quantities'
-    if not promise_of(scene.sampler).real_surfaces:
-        yield (
-            f'ensemble.sampler = "{scene.sampler}": it draws means only, but interaction needs the load of '
-            'each surface; use "cells"'
-        )
     if scene.interaction.nominal:
         yield from _nominal(scene)
 

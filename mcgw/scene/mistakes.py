@@ -26,7 +26,7 @@ def mistakes(scene: Fields) -> list[str]:
 
 
 def _values(scene: Fields) -> Iterator[str]:
-    known, sampler = {**analytic.QUANTITIES, **analytic.LAW_QUANTITIES}, scene.sampler
+    known = {**analytic.QUANTITIES, **analytic.LAW_QUANTITIES}
     if "conductance_si" in scene.quantities and scene.film is None:
         yield 'contact.quantities: "conductance_si" needs resistivity, or conductivities = [k1, k2]; give one'
     if tiny := [h for h in scene.separations if 0 < abs(h) < _LEAST]:
@@ -40,10 +40,6 @@ def _values(scene: Fields) -> Iterator[str]:
             "change it, or surface.eta and surface.nominal_area"
         )
     yield from rel_err_mistakes(scene)
-    if scene.rel_err is not None and not promise_of(sampler).real_surfaces:
-        yield f'ensemble.rel_err: sampler = "{sampler}" has no variance to stop by; use another'
-    if scene.keep == "statistics" and not promise_of(sampler).real_surfaces:
-        yield f'ensemble.keep = "statistics": sampler = "{sampler}" has none; use another sampler, or "sums"'
 
 
 def _history(scene: Fields) -> Iterator[str]:

@@ -9,9 +9,6 @@ class Promise:
 
     Parameters
     ----------
-    real_surfaces : bool, optional
-        Each surface could exist: it has whole numbers of contacts and fluctuates as others do. Otherwise
-        only means are of use.
     one_by_one : bool, optional
         The heights are those of single asperities, which `mcgw.heights` can tell.
     own_radii : bool, optional
@@ -30,7 +27,6 @@ class Promise:
         What it spares, for people; ``{spared}`` stands for the asperities that do not touch.
     """
 
-    real_surfaces: bool = True
     one_by_one: bool = True
     own_radii: bool = True
     own_laws: bool = False
@@ -55,13 +51,6 @@ _PROMISES = {
         needs_density=True,
         spends=True,
         not_done=(_UNTOUCHED, _CROWDED),
-    ),
-    "stratified": Promise(
-        real_surfaces=False,
-        one_by_one=False,
-        finds_balance=False,
-        needs_density=True,
-        not_done=(_UNTOUCHED,),
     ),
 }
 SAMPLERS = ("auto", *_PROMISES)

@@ -17,7 +17,6 @@ from mcgw.formats.table import SEPARATION, Column, Table, stacked
 from mcgw.machine.progress import Progress, told
 from mcgw.machine.terminal import plotted, quantity_and_axes
 from mcgw.scene.arguments import check_object
-from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.statistics.verdict import Tested, Verdict, tested, verdict
 from mcgw.sweeps.axes import label
@@ -172,13 +171,11 @@ class SweepComparison(Shown):
     def sheet(self, most: int = _LISTED) -> Sheet:
         """The verdict, and the points that are farthest from theory."""
         v = self.verdict
-        left = self.sweep.axes.size - v.points
         smallest = self.worst[0].verdict.p
         beyond = int((np.abs(self.residuals) > 3).sum())
         facts = [
             ("all points", f"p = {v.p:.3g}: {v.points} times the smallest p of a point, {smallest:.3g}"),
             ("residuals", f"{beyond} of {len(self.residuals)} beyond 3 standard errors"),
-            *([("left out", f"{left} stratified points, which are not real surfaces")] if left else []),
         ]
         where = list(self.sweep.axes.points())
         shown = [(one, *one.worst) for one in self.worst[:most]]
@@ -229,7 +226,7 @@ def compare(
     Parameters
     ----------
     result : Ensemble or Sweep
-        Its surfaces must be independent, not stratified.
+        Its surfaces must be independent.
     laws : bool, optional
         Also test the values of single surfaces against their exact distributions (Kolmogorov and Smirnov),
         which takes half a second more; the verdict then covers both. Not for a sweep.
@@ -244,9 +241,8 @@ def compare(
     Raises
     ------
     ValueError
-        If the surfaces are stratified: their fluctuations are not those of an ensemble; or if `laws` is
-        set but the distribution of single values is not known (see `laws_of_values`), or they are not
-        kept.
+        If `laws` is set but the distribution of single values is not known (see `laws_of_values`), or they
+        are not kept.
 
     Examples
     --------
@@ -272,8 +268,6 @@ def compare(
 
 
 def _of_ensemble(ensemble: Ensemble, laws: bool) -> Comparison:
-    if not promise_of(ensemble.sampler).real_surfaces:
-        raise ValueError("a stratified file holds means, not an ensemble; use another sampler")
     some, result = shown(ensemble), verdict(ensemble)
     if laws:
         from mcgw.statistics.laws_of_values import laws_of_values  # imports the exact laws
@@ -295,10 +289,6 @@ def _of_sweep(sweep: "Sweep", progress: Progress) -> SweepComparison:
     with told(progress, "points") as tell:
         for i, point in enumerate(sweep.axes.points()):
             tell(i, sweep.axes.size)
-            one = sweep.ensemble(point)
-            if promise_of(one.scene.sampler).real_surfaces:
-                found.append(replace(tested(one, _SEPARATIONS), number=i))
+            found.append(replace(tested(sweep.ensemble(point), _SEPARATIONS), number=i))
         tell(sweep.axes.size, sweep.axes.size)
-    if not found:
-        raise ValueError("stratified points hold means, not ensembles; use another sampler")
     return SweepComparison(sweep, tuple(found))

@@ -22,7 +22,6 @@ from mcgw.machine.terminal import plotted
 from mcgw.sampling.block import Sampler
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.arguments import check_object
-from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.statistics.checks import (
     Check,
@@ -137,8 +136,8 @@ def converge(
     Raises
     ------
     ValueError
-        If the sampler is ``stratified``, which draws no ensemble, if nothing touches, each surface finds
-        its own balance (``interaction.at = "nominal"``), or means are known better than values.
+        If nothing touches, each surface finds its
+        own balance (``interaction.at = "nominal"``), or means are known better than values.
     SceneError, TypeError
         As from `mcgw.Scene.replace`.
 
@@ -152,8 +151,6 @@ def converge(
     """
     check_object("converge", scene, Scene)
     scene = scene.replace(**changes)
-    if not promise_of(scene.sampler).real_surfaces:
-        raise ValueError('sampler = "stratified" draws means, not an ensemble; use another sampler')
     if not scene.touching:
         raise ValueError(
             f"contact.separations: no height reaches d/sigma = {scene.lowest:g}, so there is nothing to "

@@ -26,7 +26,6 @@ from analytic.laws import Hertz, term_of
 from mcgw.ensemble.drawing import blocks
 from mcgw.errors import RunError
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 
 _POINTS = 24
@@ -184,9 +183,6 @@ def methods_for(scene: Scene, chosen: tuple[int, ...]) -> tuple[Method, ...]:
     if scene.curvature is None:  # radii of their own are drawn one by one
         drawn = partial(_by_sampler, scene, chosen, exact, "aggregate")
         found.append(Method("aggregate", "surfaces", surfaces, -0.5, drawn))
-        strata = tuple(float(10**3 * 4**k) for k in range(10))
-        by_strata = partial(_by_sampler, scene, chosen, exact, "stratified")
-        found.append(Method("stratified", "strata", strata, -1.5, by_strata))
     return (*found, *_quadratures(scene, chosen, exact))
 
 
@@ -209,14 +205,13 @@ def _checked(scene: Scene, chosen: tuple[int, ...]) -> Array:
 def _by_sampler(
     scene: Scene, chosen: tuple[int, ...], exact: Array, name: str, size: float, seed: int
 ) -> Array:
-    """By so many surfaces; of strata one surface has as many asperities."""
-    real = promise_of(name).real_surfaces
-    n, surfaces = (scene.n_asperities, int(size)) if real else (int(size), 1)
-    asked = replace(scene, sampler=name, n_surfaces=surfaces, n_asperities=n, seed=seed, keep="sums")
+    """By so many surfaces."""
+    surfaces = int(size)
+    asked = replace(scene, sampler=name, n_surfaces=surfaces, seed=seed, keep="sums")
     total = np.zeros(len(chosen))
     for block in blocks(asked, sampler_of(asked)):
         total += block.sums[scene.quantities[0]][:, list(chosen)].sum(axis=0)
-    return np.asarray(total / surfaces / (exact * (n / scene.n_asperities)) - 1)
+    return np.asarray(total / surfaces / exact - 1)
 
 
 def _by_quad(scene: Scene, q: analytic.Quantity, h: float, accuracy: float) -> float:

@@ -22,7 +22,7 @@ Of a scene::
     /load                 float64 (surfaces, separations) N
     /area                 float64 (surfaces, separations) m^2
     /stiffness            float64 (surfaces, separations) N/m
-    /contacts             int64   (surfaces, separations) 1   (float64 expectation if stratified)
+    /contacts             int64   (surfaces, separations) 1
     /conductance          float64 (surfaces, separations) m   (times 1/rho)
     /nominal_separation   float64 (surfaces, separations) 1   (or effective_separation: interaction)
     /joint_conductance    float64 (surfaces, separations) W/(m^2 K)   (and gap_conductance: joint)

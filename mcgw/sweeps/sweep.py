@@ -14,7 +14,6 @@ from mcgw.ensemble.results import PROBABILITIES
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import SEPARATION, Column, Table, evenly
 from mcgw.machine.terminal import plotted
-from mcgw.scene.promises import promise_of
 from mcgw.scene.scene_file import scene_text
 from mcgw.sweeps.axes import Point, label
 from mcgw.sweeps.between import Difference, Slopes, ratio_of
@@ -173,11 +172,10 @@ class Sweep(OverPoints, Shown):
         errors = {name: self.stderr(name).reshape(self.axes.size, -1)[:, k] for name in names}
         points = list(self.axes.points())
         shown = evenly(len(points), _SHOWN)
-        real = [promise_of(self.scenes[i].sampler).real_surfaces for i in shown]
         where = [self.axes.values_text(points[i]) for i in shown]
         columns = [Column("point", where, f"mean +- stderr at d/sigma = {self.separations[k]:g}")]
         for name in names:
-            error = Column("stderr", np.where(real, errors[name][shown], np.nan), form=".2g")
+            error = Column("stderr", errors[name][shown], form=".2g")
             columns.append(Column(name, means[name][shown], form=".5g", beside=error))
         return Sheet(f"Sweep of {self.axes.size} scenes", facts, Table(tuple(columns)))
 
