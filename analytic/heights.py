@@ -115,6 +115,9 @@ class Gaussian(HeightLaw):
 GAUSSIAN = Gaussian()
 
 
+_AT_END = 1e-6  # next to an end of the support a density may vanish by rounding
+
+
 @lru_cache(maxsize=4096)  # every quantity asks for the same heights, and a call of scipy's laws is slow
 def narrowest(law: Any, s: float) -> float:
     """Width, halved until no quarter changes the logarithm of the density by more than 1/8."""
@@ -129,6 +132,8 @@ def narrowest(law: Any, s: float) -> float:
             return float(widths[even[0]])
         width = float(widths[-1]) / 2
     if np.isnan(change).all():  # there would be no end of ever smaller cells
+        if np.abs(np.array(law.support) - s).min() < _AT_END * max(1.0, abs(s)):
+            return _BEND  # a density that vanishes at its end: who asks takes no more than is left
         raise ValueError(
             f"heights: their density is 0 at s = {s:.6g}, inside the support; fill the gap, for example "
             f"with wider bins"

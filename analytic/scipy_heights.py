@@ -24,6 +24,8 @@ _RARE, _RARER = np.array([1e-3, 1e-9, 1e-15, 1e-24, 1e-36]), 10.0 ** -np.arange(
 _ALIKE, _NEARLY = 1e-6, 1e-2  # how near shares come to themselves by way of heights: all of them, some
 _MOST_STEPS, _SETTLED = 100, 2.0**-30  # of Newton; a step whose square is nothing
 _HALVINGS, _NEXT = 60, 1e-8  # of a height, to its last digit; as near to the lower end as is as good as there
+_NO_RARER = 1e-300  # share beyond which a law has no heights, if its density ends there:
+_INSIDE, _OUTSIDE = 1e-2, 1e-6  # it is positive so far inside, in standard deviations, and 0 so far outside
 _TRIAL, _TRIAL_SECONDS = np.array([1e-9, 0.1, 0.5, 0.9]), 1.0  # a few of the thousands of calls to come
 
 
@@ -102,8 +104,21 @@ class ScipyHeights(HeightLaw):
     def support(self) -> tuple[float, float]:
         """Its support, reduced."""
         mean, std = self._mean_std
-        low, high = self.distribution.support()
-        return (float(low) - mean) / std, (float(high) - mean) / std
+        low, high = map(float, self.distribution.support())
+        if math.isinf(low):
+            low = self._end(self.distribution.ppf, -std)
+        if math.isinf(high):
+            high = self._end(self.distribution.isf, std)
+        return (low - mean) / std, (high - mean) / std
+
+    def _end(self, inverse: Callable[[float], Any], outward: float) -> float:
+        """Where heights end of which SciPy says that they do not, as Pearson's of type III; or infinity."""
+        pdf = self.distribution.pdf
+        with np.errstate(all="ignore"), warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)  # Boost's, of what it does not find
+            end = float(inverse(_NO_RARER))
+            ends = math.isfinite(end) and pdf(end + _OUTSIDE * outward) == 0 < pdf(end - _INSIDE * outward)
+        return end if ends else math.copysign(math.inf, outward)
 
     @cached_property
     def breaks(self) -> tuple[float, ...]:

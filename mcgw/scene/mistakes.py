@@ -54,13 +54,22 @@ def _history(scene: Fields) -> Iterator[str]:
     try:
         way = scene.contact.unloading()
         stiff = [name for name in ("stiffness", "load_slope") if name in scene.quantities]
+        rest = [
+            x for x in scene.quantities if x.partition("_unloading")[0] not in ("stiffness", "load_slope")
+        ]
         if stiff and not way.stiff:
             yield (
                 f"contact.quantities: {stiff[0]!r} has no variance if contacts break off (law = "
-                f'"{scene.law.name}"); leave it out, or unload_from'
+                f'"{scene.law.name}"); give {_listed(rest)}, or leave out unload_from'
             )
     except ValueError as error:
         yield f"contact.unload_from = {scene.unload_from:g}: {error}"
+
+
+def _listed(names: list[str]) -> str:
+    """Quantities as a file lists them, those of loading."""
+    known = [name for name in names if name in analytic.QUANTITIES or name in analytic.LAW_QUANTITIES]
+    return str(known or ["load"]).replace("'", '"')
 
 
 def _law(scene: Fields) -> Iterator[str]:

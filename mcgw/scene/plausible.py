@@ -48,6 +48,7 @@ RANGES = {
 _HARDLY_APART = 1e-3  # d/sigma: separations that all lie so close to 0 are lengths
 _FARTHEST = 50.0  # reduced heights of which no surface has one
 _RATIOS = (1e-3, 50.0)  # from a gel on its rubber to diamond on its glue
+_A_CONTACT = 4.4e-9  # s: drawing 1e10 asperities, half of which touch, took 22 s
 _UNTOLD = 0.1  # share of the contacts at a separation that a table may leave to the value of its end
 
 
@@ -69,6 +70,21 @@ def perhaps_other_units(scene: "Fields") -> list[str]:
     if isinstance(scene.grading, Table):
         found += _of_table(scene.grading, scene)
     return found
+
+
+def takes_hours(scene: "Fields") -> list[str]:
+    """Return a line if `auto` would draw the scene for more than an hour, and the remedy."""
+    if scene.sampler != "auto" or scene.law_error or scene.rel_err is not None or scene.max_seconds:
+        return []
+    touching = scene.n_asperities * float(scene.heights.sf(np.array(min(scene.separations))))
+    hours = touching * scene.n_surfaces * _A_CONTACT / 3600
+    if hours < 1:
+        return []
+    return [
+        f"ensemble: {scene.n_surfaces:g} surfaces, each of {touching:.3g} asperities that touch, take about "
+        f'{hours:.2g} hours; give fewer, as by surface.nominal_area, or sampler = "aggregate", which takes '
+        "no longer for many"
+    ]
 
 
 def surface_in_other_units(surface: Surface) -> list[str]:

@@ -19,7 +19,7 @@ from mcgw.scene.fields import Fields, LeftOut
 from mcgw.scene.in_words import sheet_of
 from mcgw.scene.keys import SURFACE_UNITS
 from mcgw.scene.mistakes import mistakes
-from mcgw.scene.plausible import perhaps_other_units, warn_of_units
+from mcgw.scene.plausible import perhaps_other_units, takes_hours, warn_of_units
 from mcgw.scene.promises import promise_of
 from mcgw.scene.reading import of_arguments
 from mcgw.scene.section import SceneError, nearest
@@ -136,7 +136,7 @@ class Scene(Fields, Shown):
             raise SceneError(problems)
         if not (self.law.is_data and is_data(self.grading)):
             in_numbers(self)  # a function that no series resolves is a mistake as well
-        warn_of_units(perhaps_other_units(self))
+        warn_of_units([*perhaps_other_units(self), *takes_hours(self)])
 
     def replace(self, **changes: Any) -> "Scene":
         """The scene with other values; fields that were left out follow from them.

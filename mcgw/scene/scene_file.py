@@ -1,5 +1,6 @@
 """Scenes as TOML: read with all mistakes named at once, written so that they read the same."""
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, is_dataclass
 from pathlib import Path
@@ -10,15 +11,17 @@ import tomli_w
 from analytic import MeasuredRadii
 from analytic.laws import Hertz
 from mcgw.formats.named_files import HDF5, loads, read_bytes
+from mcgw.machine.terminal import one_line
 from mcgw.scene.keys import KEYS, SURFACE_UNITS, TABLES
 from mcgw.scene.kinds import Word
 from mcgw.scene.laws import contact_law_table, grading_table, heights_table
 from mcgw.scene.radii import summits_table
 from mcgw.scene.reading import of_tables
 from mcgw.scene.scene import Scene, storable
-from mcgw.scene.section import SceneError
+from mcgw.scene.section import SceneError, shortened
 
 _MOST_BYTES = 2**21
+_BARE = r"([\w.]+)\s*=\s*([^\s\"'\[{#][^\"'\]},#]*?)\s*(?:#.*)?"  # a value that lacks its quotes
 
 
 def load_scene(
@@ -68,7 +71,7 @@ def load_scene(
         raise SceneError(
             [f"{path}: holds results, not a scene; print their scene with mcgw show --scene {path}"]
         )
-    return scene_of(with_changes(_document(text), changes or {}), folder=path.parent, seed=seed)
+    return scene_of(with_changes(_document(text, f"{path}: "), changes or {}), folder=path.parent, seed=seed)
 
 
 def files_of(path: str | Path) -> list[Path]:
@@ -122,15 +125,29 @@ def scene_from(
     return scene_of(_document(text), folder=folder, seed=seed)
 
 
-def _document(text: str | bytes) -> dict[str, Any]:
-    """Its tables."""
+def _document(text: str | bytes, path: str = "") -> dict[str, Any]:
+    """Its tables; `path` begins a message."""
     try:
-        return loads(text if isinstance(text, str) else text.decode("utf-8"))
+        text = text if isinstance(text, str) else text.decode("utf-8")
+        return loads(text)
     except UnicodeDecodeError as error:
-        raise SceneError([f"not a TOML scene: not text in UTF-8 (byte {error.start})"]) from None
+        raise SceneError([f"{path}not a TOML scene: not text in UTF-8 (byte {error.start})"]) from None
     except (ValueError, RecursionError) as error:
         reason = str(error).splitlines()[0] if str(error) else "nested too deeply"
-        raise SceneError([f"not a TOML scene: {reason}"]) from None
+        raise SceneError([f"{path}not a TOML scene: {reason}{_cure(str(text), reason)}"]) from None
+
+
+def _cure(text: str, reason: str) -> str:
+    """Return the line that is no TOML, and its remedy: mostly a number with its unit lacks its quotes."""
+    at, lines = re.search(r"at line (\d+)", reason), text.splitlines()
+    if not at or not 0 < int(at[1]) <= len(lines):
+        return ""
+    line = shortened(one_line(lines[int(at[1]) - 1].strip()))
+    bare = re.fullmatch(_BARE, line)
+    if bare:
+        what = "a text with its unit" if bare[2][0] in "+-.0123456789" else "a text"
+        return f': {line}; quote {what}: {bare[1]} = "{bare[2]}"'
+    return f": {line}; write key = value" if "=" not in line and not line.startswith("[") else f": {line}"
 
 
 def scene_of(
