@@ -43,9 +43,9 @@ def open_h5(path: Path | str) -> h5py.File:
     Raises
     ------
     StoreError
-        If it is no regular file, or `check_h5` refuses it.
+        If it is no regular file, is damaged where its structure stands, or `check_h5` refuses it.
     OSError
-        If it is no HDF5 file, or damaged.
+        If it is no HDF5 file.
     """
     with open(open_regular(Path(path)), "rb") as found:
         size = found.seek(0, 2)
@@ -55,9 +55,10 @@ def open_h5(path: Path | str) -> h5py.File:
     except StoreError as error:
         file.close()
         raise StoreError(f"{path}: refused: {error}") from None
-    except BaseException:
+    except Exception as error:  # HDF5 reports damage as any of a dozen
         file.close()
-        raise
+        reason = " ".join(str(error).split())[:100]
+        raise StoreError(f"{path}: is a damaged HDF5 file: {reason}") from None
     return file
 
 

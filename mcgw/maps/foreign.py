@@ -7,6 +7,7 @@ process, by the first file that needs it.
 
 import warnings
 import zipfile
+from collections.abc import Callable
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -66,12 +67,13 @@ def read_foreign(
         raise ValueError(f"{path}: does not give the size of a pixel; give --pixel")
     metre, assumed = height_unit(path, _unit(channel), unit)  # the unit also of x and y
     columns, rows = _points(path, channel)
-    found = _heights_of(path, channel, {} if told else {"physical_sizes": (columns, rows)})
-    z = np.ma.filled(np.ma.masked_invalid(found.heights()), np.nan).T
+    more = {} if told else {"physical_sizes": (columns, rows)}
+    found, heights = _heights_of(path, channel, more, lambda found: found.heights())
+    z = np.ma.filled(np.ma.masked_invalid(heights), np.nan).T
     checked_shape(*z.shape)
     dx, dy = pixel or (float(p) * metre for p in found.pixel_size)
-    heights = np.ascontiguousarray(in_metres(path, z, metre, missing))
-    return Topography(heights, (dx, dy), bool(found.is_periodic), assumed)
+    z = np.ascontiguousarray(in_metres(path, z, metre, missing))
+    return Topography(z, (dx, dy), bool(found.is_periodic), assumed)
 
 
 def read_foreign_line(path: Path, unit: str | None = None) -> tuple[Array, Array, str]:
@@ -87,7 +89,7 @@ def read_foreign_line(path: Path, unit: str | None = None) -> tuple[Array, Array
         raise ValueError(f"{path}: is a map, not a profile; leave --profile out")
     metre, assumed = height_unit(path, _unit(channel), unit)
     _points(path, channel)
-    x, z = _heights_of(path, channel, {}).positions_and_heights()
+    _, (x, z) = _heights_of(path, channel, {}, lambda found: found.positions_and_heights())
     checked_shape(1, x.size, held=path.stat().st_size)
     places, heights = np.array([x, np.ma.filled(z, np.nan)], dtype=np.float64) * metre
     return places, heights, assumed
@@ -171,12 +173,15 @@ def _points(path: Path, channel: Any) -> tuple[int, int]:
     return columns, rows
 
 
-def _heights_of(path: Path, channel: Any, more: dict[str, Any]) -> Any:
-    """The topography of a channel."""
+def _heights_of(
+    path: Path, channel: Any, more: dict[str, Any], what: Callable[[Any], Any]
+) -> tuple[Any, Any]:
+    """The topography of a channel, and what is asked of it."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            return channel.topography(**more)
+            found = channel.topography(**more)
+            return found, what(found)
     except (Exception, RecursionError) as error:
         raise _unreadable(path, error) from None
 
