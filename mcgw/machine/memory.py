@@ -1,12 +1,11 @@
-"""Available memory, checked before anything is computed; memory and results that are kept.
+"""Available memory, checked before anything is computed; arrays that begin with a line of the cache.
 
-Memory that a block frees, for the next; and results, for the next call with the same arguments. Arrays that
-begin with a line of the cache.
+Results that are kept for the next call with the same arguments.
 """
 
 import math
 from collections.abc import Callable
-from functools import cache, lru_cache, wraps
+from functools import lru_cache, wraps
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -19,7 +18,6 @@ from mcgw.machine.child_process import memory_limit
 _Result = TypeVar("_Result")
 _MOST = 2**63 - 1
 _SMALL = 2**24  # bytes; looking up what is available takes half a millisecond
-_LARGE = 31 * 2**20  # bytes; at 32 MiB the GNU C library learns no more
 _LINE = 8  # words
 
 
@@ -85,18 +83,6 @@ def peak_growth(call: Callable[[], object]) -> float:
 def _status(key: str) -> int:
     lines = Path("/proc/self/status").read_text().splitlines()
     return next(int(line.split()[1]) * 1024 for line in lines if line.startswith(key))
-
-
-@cache
-def keep_freed_memory() -> None:
-    """Let the C library keep for the next block what a block has freed.
-
-    To ask the system for it again takes microseconds a page, up to a third of the time of a block. The
-    GNU library keeps pieces as large as any it has been given back (its dynamic threshold): one is
-    enough, which nobody has touched.
-    """
-    piece = np.empty(_LARGE, dtype=np.uint8)
-    del piece
 
 
 def aligned(*shape: int) -> NDArray[np.float64]:

@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from analytic import MeasuredHeights, quantity_of
-from mcgw.machine.memory import keep_freed_memory
 from mcgw.sampling.block import Sampler
 from mcgw.sampling.cells import Mesh, cut, mesh_of, no_cells, series_accuracy
 from mcgw.sampling.counted import Counted
@@ -52,7 +51,6 @@ def sampler_of(scene: Scene) -> Sampler:
         Ready to draw.
     """
     scene = storable(scene)
-    keep_freed_memory()
     name = name_of(scene)
     if scene.nominal:
         return _at_nominal(name, scene)

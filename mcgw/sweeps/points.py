@@ -12,7 +12,6 @@ import tomli_w
 
 from mcgw.ensemble.forecast import without_rule
 from mcgw.formats.named_files import loads
-from mcgw.machine.memory import keep_freed_memory
 from mcgw.machine.progress import steps
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_document, scene_of, with_changes
@@ -131,7 +130,6 @@ class Asked:
         SceneError
             With the mistakes of all points.
         """
-        keep_freed_memory()
         return groups_of([_with_a_number(scene) for scene in scenes_of(self.document, self.axes)])
 
     def answered(self, pooled: Sequence[Pooled], statistics: tuple[str, ...]) -> Sweep:
