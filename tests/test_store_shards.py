@@ -20,7 +20,7 @@ FLIPS, TRUNCATIONS = 200, 100
 
 def arrays():
     load = np.linspace(0, 1, 15).reshape(5, 3)
-    return {"load": load, "contacts": np.arange(15).reshape(5, 3), "extras": np.array([[42.0, 3.5, 1.0]])}
+    return {"load": load, "contacts": np.arange(15).reshape(5, 3), "block_mean": np.array([[42.0, 3.5, 1.0]])}
 
 
 @pytest.fixture
@@ -77,7 +77,7 @@ def test_numbers_that_are_not_finite_are_never_committed(tmp_path, bad):
 
 
 def test_rows_must_be_those_of_the_block(tmp_path):
-    for wrong in ({"load": np.ones((4, 3))}, {"extras": np.array([[45.0, 3.5, 1.0]])}):
+    for wrong in ({"load": np.ones((4, 3))}, {"block_mean": np.ones((2, 3))}):
         with pytest.raises(StoreError, match="does not have the rows"):
             commit_shard(tmp_path / SPAN.file_name, RUN, SPAN, wrong, 0.0)
 
