@@ -60,10 +60,9 @@ class Interaction:
     ----------
     reference : {"body", "mean-plane", "located"}
         What the nominal separation is measured from: the undeformed body, or the mean deformed plane; from
-        that with summits at their places, too, which takes ``at="nominal"`` and `E_star`.
-    at : {"effective", "nominal"}, optional
-        Kind of the given separations: effective ones, which the asperities feel, so that the nominal ones
-        follow without a solver; or nominal ones, at which each surface finds its own equilibrium.
+        that with summits at their places, too, which takes `E_star`. Separations given are those that the
+        asperities feel, so that the nominal ones follow without a solver; but nominal ones of located
+        summits, which feel no one separation.
     bulk_modulus : float, optional
         Composite modulus of the half-space E_b, Pa, where it is not that of the asperities.
 
@@ -83,26 +82,17 @@ class Interaction:
 
     reference: Reference
     _: KW_ONLY
-    at: Literal["effective", "nominal"] = "effective"
     bulk_modulus: float | None = None
 
     def __post_init__(self) -> None:
-        for key, known in (("reference", get_args(Reference)), ("at", ("effective", "nominal"))):
-            if getattr(self, key) not in known:
-                *others, last = (f'"{word}"' for word in known)
-                raise ValueError(f"{key} = {getattr(self, key)!r}: give {', '.join(others)} or {last}")
-        if self.located and not self.nominal:
-            raise ValueError('at = "effective": located summits feel no one separation; give at = "nominal"')
+        if self.reference not in get_args(Reference):
+            *others, last = (f'"{word}"' for word in get_args(Reference))
+            raise ValueError(f"reference = {self.reference!r}: give {', '.join(others)} or {last}")
         if self.located and self.bulk_modulus is not None:
             raise ValueError("bulk_modulus: located summits lie on a half-space of E_star; leave it out")
         modulus = self.bulk_modulus
         if modulus is not None and not (math.isfinite(modulus) and modulus > 0):
             raise ValueError(f"bulk_modulus = {modulus!r}: give a finite number > 0, in Pa")
-
-    @property
-    def nominal(self) -> bool:
-        """Whether separations are given as nominal ones."""
-        return self.at == "nominal"
 
     @property
     def located(self) -> bool:

@@ -4,9 +4,8 @@ A joint is one network, surface by surface: gas beside the spots, both in series
 ``1/h_j = 1/(h_spots + h_gas) + R_bodies A_n``. Film, layer and neighbours are inside h_spots.
 
 What the gas conducts is a number wherever all surfaces have the same distance of mean planes. Where each
-has its own (the nominal separation from the mean plane at given effective ones, or the effective separation
-at given nominal ones), means are to second order in what surfaces differ by, fluctuations to leading order;
-so they are in series with the bodies.
+has its own (the nominal separation, from the mean plane), means are to second order in what surfaces
+differ by, fluctuations to leading order; so they are in series with the bodies.
 """
 
 from collections.abc import Sequence
@@ -19,11 +18,10 @@ from numpy.typing import ArrayLike
 
 from analytic.arrays import Array
 from analytic.height_rule import Fluctuations
-from analytic.interacting import InteractingModel
+from analytic.interacting import InteractingModel, derivative
 from analytic.interaction import in_series
 from analytic.joint import Gap
 from analytic.model import Cumulants, Model
-from analytic.own_balance import derivative
 from analytic.quantities import JOINT, Quantity, quantity_of
 
 if TYPE_CHECKING:
@@ -166,16 +164,12 @@ class InteractingJointModel(JointModel, InteractingModel):
     def _parts(self, quantity: str, h: Array) -> tuple[Array, Array]:
         if not (bodies := self._bodies(quantity)):
             return super()._parts(quantity, h)
-        felt = self.effective(h)
-        spots = self.alone.mean(f"conductance_si{_way(quantity)}", felt) / self.surface.nominal_area
-        by_gas = (1 + bodies * (spots + self.filled(felt))) ** -2.0
+        spots = self.alone.mean(f"conductance_si{_way(quantity)}", h) / self.surface.nominal_area
+        by_gas = (1 + bodies * (spots + self.filled(h))) ** -2.0
         return (1 + bodies * spots) ** 2 * by_gas, by_gas  # spots deviate in series with the bodies alone
 
     def _own_plane(self, quantity: str) -> str:
-        body = self.interaction.reference == "body"
-        if body != self.interaction.nominal:
-            return ""
-        return "effective_separation" if body else f"nominal_separation{_way(quantity)}"
+        return "" if self.interaction.reference == "body" else f"nominal_separation{_way(quantity)}"
 
 
 class _WithoutBodies(InteractingJointModel):

@@ -128,17 +128,16 @@ UNLOADING = {
     if name != "yielded"
 }
 
-# The other separation of a surface whose asperities press each other down.
+# The separation of the bodies, where asperities press each other down.
 SEPARATIONS = {
-    f"{name}{way}": Quantity(
-        f"{name}{way}", f"{long_name}{way and ', unloading'}", "1", 1.5, 1, 0.5, 1, unloading=way and name
+    f"nominal_separation{way}": Quantity(
+        f"nominal_separation{way}",
+        f"nominal separation d/sigma{way and ', unloading'}",
+        "1", 1.5, 1, 0.5, 1,
+        unloading=way and "nominal_separation",
     )
-    for name, long_name, ways in (
-        ("nominal_separation", "nominal separation d/sigma", ("", "_unloading")),
-        ("effective_separation", "separation d/sigma that the asperities feel", ("",)),
-    )
-    for way in ways
-}
+    for way in ("", "_unloading")
+}  # fmt: skip
 
 # Of a joint with gas in its gap, per nominal area: what the gas conducts, and spots and gas together.
 JOINT = {

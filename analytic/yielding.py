@@ -99,6 +99,6 @@ def yielding_share(model: Model, h: ArrayLike, hardness: float, poisson: float =
     """
     law = KogutEtsion(hardness=hardness, poisson=poisson)
     if isinstance(model, InteractingModel):
-        h, model = model.effective(h), model.alone  # what asperities feel under their own law
+        model = model.alone  # what asperities feel under their own law
     yielding = replace(model, law=law, unload_from=None, film=None)
     return np.asarray(1 - yielding.share(0, h))

@@ -88,24 +88,26 @@ def pairwise(s: np.ndarray, sinking: np.ndarray, h: float) -> np.ndarray:
     raise RuntimeError(f"no balance of pairs at h = {h:g}: {np.abs(error).max():.1e} is left")
 
 
-def mean_field(s: np.ndarray, reference: str | None) -> tuple[np.ndarray, np.ndarray]:
-    """Reduced load and separation that is felt, at `SEPARATIONS`, of one surface by `mcgw`."""
-    mean, spread = s.mean(), s.std()
+def mean_field(s: np.ndarray, reference: str | None) -> np.ndarray:
+    """Reduced load of one surface at `SEPARATIONS` from the reference, with the compliance of `mcgw`."""
     eta = CROWDING / (RADIUS * SIGMA)
-    surface = mcgw.Surface(spread * SIGMA, RADIUS, eta, s.size / eta, MODULUS)
-    scene = mcgw.Scene(
-        surface,
-        heights=mcgw.MeasuredHeights(s),
-        separations=(np.array(SEPARATIONS) - mean) / spread,
-        interaction=None if reference is None else mcgw.Interaction(reference, at="nominal"),
-        quantities=["load"],
-        n_surfaces=1,
-        seed=1,
-    )
-    ensemble = mcgw.simulate(scene)
+    surface = mcgw.Surface(SIGMA, RADIUS, eta, s.size / eta, MODULUS)
     unit = 4 / 3 * MODULUS * math.sqrt(RADIUS) * SIGMA**1.5
-    felt = scene.separations if reference is None else ensemble["effective_separation"][0]
-    return ensemble["load"][0] / unit, mean + spread * np.array(felt)
+    own = 0.0 if reference is None else mcgw.Interaction(reference).compliance(surface, s.size)
+
+    def load(x: float) -> float:
+        return float((np.maximum(s - x, 0) ** 1.5).sum())
+
+    def felt(h: float) -> float:
+        def over(x: float) -> float:
+            return x - h - own * unit / SIGMA * load(x)
+
+        low, high = h, max(h, s.max())
+        while over(low) > 0:
+            low -= 0.1
+        return float(brentq(over, low, high, xtol=1e-14)) if over(high) > 0 else high
+
+    return np.array([load(felt(h)) for h in SEPARATIONS])
 
 
 def area_at_load(s: np.ndarray, load: float) -> float:
@@ -143,7 +145,7 @@ def study(reference: str, surfaces: int = 16, n: int = 300, seed: int = 5) -> li
     for one in found:
         s = rng.standard_normal(n)
         sinking = kappa / math.pi * potential(places(n, rng, periodic=periodic), periodic=periodic)
-        one[:, 0], one[:, 1] = mean_field(s, None)[0], mean_field(s, reference)[0]
+        one[:, 0], one[:, 1] = mean_field(s, None), mean_field(s, reference)
         for row, h in zip(one, SEPARATIONS, strict=True):
             d = pairwise(s, sinking, h)
             row[2], row[3] = (d**1.5).sum(), np.count_nonzero(d)

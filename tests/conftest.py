@@ -83,10 +83,10 @@ def make_scene():
 def pressed(make_scene):
     """The same whose asperities press each other down, by an interaction of some strength."""
 
-    def make(strength, at="nominal", **changes):
+    def make(strength, **changes):
         values = {"separations": SEPARATIONS, "quantities": QUANTITIES, "n_surfaces": 4}
         scene = make_scene(**(values | changes))
-        return scene.replace(interaction=interaction(strength, scene.surface, scene.n_asperities, at))
+        return scene.replace(interaction=interaction(strength, scene.surface, scene.n_asperities))
 
     return make
 

@@ -21,14 +21,14 @@ SEPARATIONS = (0.0, 0.8, 1.7, 3.0)
 STRENGTHS = {"body": 3.0, "mean-plane": -0.25}
 
 
-def interaction(strength, surface, n, at="nominal"):
+def interaction(strength, surface, n):
     """The interaction that is so strong on a surface with `n` asperities, by its bulk modulus."""
     alone = n * factor(surface, "load") / (abs(strength) * surface.sigma)
     if strength > 0:
         modulus = MEAN_SINKING * alone / math.sqrt(surface.nominal_area)
-        return analytic.Interaction("body", at=at, bulk_modulus=modulus)
+        return analytic.Interaction("body", bulk_modulus=modulus)
     modulus = LATTICE / math.pi * alone / math.sqrt(n * surface.nominal_area)
-    return analytic.Interaction("mean-plane", at=at, bulk_modulus=modulus)
+    return analytic.Interaction("mean-plane", bulk_modulus=modulus)
 
 
 def literal_sums(scene, heights, felt, quantity):
@@ -45,24 +45,10 @@ def drawn(n, surfaces, grading, seed, highest):
 
 
 def sums_at(s, e, x):
-    """Reduced load, stiffness, area, conductance and contacts of each surface at its own separation."""
-    d = np.maximum(s - x[:, None], 0.0)
+    """Reduced load, stiffness, area, conductance and contacts of each surface at a separation."""
+    d = np.maximum(s - x, 0.0)
     root = np.sqrt(d)
     return {
         "load": (e * d * root).sum(axis=1), "stiffness": (e * root).sum(axis=1), "area": d.sum(axis=1),
         "conductance": root.sum(axis=1), "contacts": (d > 0).sum(axis=1).astype(float),
     }  # fmt: skip
-
-
-def balances(s, e, h, c):
-    """What each surface feels, ``x = h + c P(x)``, by Newton's steps from h: the highest such x.
-
-    Loads are convex in x, so from the side of no load the steps never pass it.
-    """
-    x = np.full(len(s), float(h))
-    for _ in range(12):
-        sums = sums_at(s, e, x)
-        x -= (x - h - c * sums["load"]) / (1 + 1.5 * c * sums["stiffness"])
-    assert np.abs(x - h - c * sums_at(s, e, x)["load"]).max() < 1e-12
-    assert (x > s.min(axis=1)).all()  # those left out do not touch
-    return x

@@ -117,8 +117,8 @@ def asked(seed):
         names.append("conductance_si")
     if dice.random() < 0.15:
         bulk = SURFACE.E_star * float(10 ** dice.uniform(1, 4))
-        reference, at = str(dice.choice(["body", "mean-plane"])), str(dice.choice(["nominal", "effective"]))
-        values["interaction"] = mcgw.Interaction(reference, at=at, bulk_modulus=bulk)
+        reference = str(dice.choice(["body", "mean-plane"]))
+        values["interaction"] = mcgw.Interaction(reference, bulk_modulus=bulk)
     values["sampler"] = str(
         dice.choice(["auto", "cells", "tail", "direct", "aggregate"], p=[0.55, 0.3, 0.05, 0.05, 0.05])
     )
@@ -181,12 +181,9 @@ def worst_share(ensemble):
         s, ratios = mcgw.heights(scene, surface), None
         if scene.curvature is not None:
             ratios = mcgw.radii(scene, surface) / scene.surface.radius
-        felt = scene.separations
-        if "effective_separation" in scene.shapes:
-            felt = ensemble["effective_separation"][surface].tolist()
         for name in names:
             q = quantity_of(name)
-            for k, h in enumerate(felt):
+            for k, h in enumerate(scene.separations):
                 x = s[s > (scene.unload_from if q.unloading else h)]
                 c = None if ratios is None else ratios[s > (scene.unload_from if q.unloading else h)]
                 one = literal(scene, name, h, x, c)

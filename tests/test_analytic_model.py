@@ -182,7 +182,6 @@ TOLD = {
     "spot_conductance_unloading": ("Spot conductance (m), unloading", SPOT),
     "nominal_separation": ("Nominal separation", 1.0),
     "nominal_separation_unloading": ("Nominal separation, unloading", 1.0),
-    "effective_separation": ("Effective separation", 1.0),
     "gap_conductance": (GAP, SPOT / 7),
     "gap_conductance_unloading": (f"{GAP}, unloading", SPOT / 7),
     "joint_conductance": (JOINT, SPOT / 7),

@@ -18,7 +18,6 @@ import mcgw
 from mcgw.commands.voice import NEWS, QUIET, speaking
 from mcgw.machine import compiling
 from mcgw.machine.compiling import loops_folder, njit
-from mcgw.sampling.lanes import load, total
 from mcgw.store.ensembles import read_attributes
 
 LOOP = """
@@ -104,19 +103,6 @@ def test_what_was_kept_before_a_loop_changed_goes(tmp_path):
     forget_old_loops(tmp_path)
     assert not old.exists()
     assert new.exists()
-
-
-def test_lanes_of_what_is_not_contiguous_are_refused():
-    """Four numbers at once are neighbours in memory: of a transposed array they would be others."""
-
-    @njit()
-    def first(x):
-        return total(load(x, 0))
-
-    x = np.arange(16.0).reshape(4, 4)
-    assert first(x) == 0 + 1 + 2 + 3
-    with pytest.raises(TypeError, match="lanes are neighbours"):
-        first(x.T)
 
 
 def test_a_line_says_so_on_a_terminal_alone(loop, monkeypatch):

@@ -390,13 +390,6 @@ def test_a_scene_of_few_asperities_has_no_slope_of_fewer(make_scene):
     assert "slope of the error in N" not in {check.name for check in found.checks}
 
 
-@pytest.mark.parametrize("call", ["converge", "tradeoff"])
-def test_where_each_surface_has_its_own_separation_no_sum_is_of_independent_ones(call, pressed):
-    scene = pressed(3.0, "nominal")
-    with pytest.raises(ValueError, match=rf'^interaction.at = "nominal": {call} needs sums of independent'):
-        getattr(mcgw, call)(scene)
-
-
 @pytest.mark.parametrize(("asked", "given"), [(20, 64), (64, 64), (300, 300), (1000, 1000), (5000, 1000)])
 def test_what_is_asked_of_a_sampler(make_scene, asked, given):
     """Seeds one by one from that of the scene, few separations in order, a feasible number of surfaces."""

@@ -173,27 +173,3 @@ def test_what_no_cell_resolves_is_drawn_one_by_one(scene_of, monkeypatch, wish):
     assert sampler_of(scene_of(**SCENES["powers"], **wish)).name == "tail"
     with pytest.raises(UnresolvedError, match=r'not resolved near s = .*; use sampler = "tail"'):
         sampler_of(scene_of(**SCENES["powers"], sampler="cells"))
-
-
-def test_a_python_function_reaches_as_far_as_a_balance_looks(make_scene):
-    """Where separations are nominal, cells begin at separations up to the highest asperity."""
-
-    def grading(s):
-        return 1 + 0.8 * np.sin(3 * s)
-
-    scene = make_scene(
-        heights=mcgw.Weibull(26.780291221572774),
-        grading=analytic.Custom(grading),
-        separations=[1.5124768704078466, 2.4201689285287316],
-        interaction=mcgw.Interaction("body", at="nominal", bulk_modulus=1e13),
-        quantities=["load"],
-        n_surfaces=2,
-        n_asperities=773,
-        count="poisson",
-    )
-    e = mcgw.simulate(scene)
-    for surface, felt in enumerate(e["effective_separation"]):
-        s = mcgw.heights(scene, surface)
-        sums = [np.sum(grading(s[s > h]) * (s[s > h] - h) ** 1.5) for h in felt]
-        exact = quantity_of("load").scale(scene.surface) * np.array(sums)
-        np.testing.assert_allclose(e.load[surface], exact, rtol=1e-11)

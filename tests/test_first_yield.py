@@ -82,9 +82,8 @@ def test_by_penetration_under_every_elastic_law(name):
 
 def test_neighbours_that_press_down_are_felt():
     model = analytic.Model(_SURFACE)
-    together = analytic.InteractingModel.of(model, analytic.Interaction("body", at="nominal"))
-    felt = together.effective(0.5)
-    share = analytic.yielding_share(model, felt, 1e10)
+    together = analytic.InteractingModel.of(model, analytic.Interaction("body"))
+    share = analytic.yielding_share(model, 0.5, 1e10)
     assert float(analytic.yielding_share(together, 0.5, 1e10)) == pytest.approx(float(share), abs=1e-12)
 
 

@@ -120,8 +120,7 @@ FEATURES = {
 # Laws of contact and height, interaction and joints: by the last part of their names.
 LAWS = {
     "adhesion", "custom", "elastic", "elastic_plastic", "elastic_plastic_laws", "law_rows",
-    "balance", "interacting", "interaction", "interaction_mistakes",
-    "nominal", "own_balance", "joint", "joint_model",
+    "interacting", "interaction", "interaction_mistakes", "joint", "joint_model",
 }  # fmt: skip
 
 

@@ -5,7 +5,6 @@ Statistical gates are |z| < 5 with fixed seeds: false alarms 6e-7 a number. Wron
 
 import importlib
 import math
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -17,12 +16,10 @@ from conftest import SURFACE
 from interacting_by_hand import drawn, interaction
 from oracles import factor
 from scipy.integrate import quad
-from scipy.optimize import brentq
 from scipy.stats import norm
 
 import analytic
 from analytic import InteractingModel, Model
-from analytic.height_rule import HeightRule
 from analytic.interaction import BOWL, LATTICE
 
 QUANTITIES = ("load", "area", "stiffness", "contacts", "conductance")
@@ -30,8 +27,8 @@ LOAD = factor(SURFACE, "load")
 H = np.array([0.0, 0.8, 2.0])
 
 
-def model_of(strength, n, at="nominal", **own):
-    return InteractingModel(SURFACE, n_asperities=n, interaction=interaction(strength, SURFACE, n, at), **own)
+def model_of(strength, n, **own):
+    return InteractingModel(SURFACE, n_asperities=n, interaction=interaction(strength, SURFACE, n), **own)
 
 
 def f(n, h):
@@ -70,23 +67,6 @@ def test_potential_of_a_square_lattice():
     assert fit[0] == pytest.approx(LATTICE, abs=1e-8)
 
 
-@pytest.fixture
-def poisson():
-    """N = 3000, strength 3, h = 0.8: the case of the check values."""
-    return model_of(3.0, 3000, count="poisson")
-
-
-def test_mean_and_variance_of_the_load_by_the_formulas(poisson):
-    """With F_n by scipy; F_{-1/2} too, whose integrand is finite in the root of the approach."""
-    lam, n = 3 / 3000, 3000
-    x0 = brentq(lambda x: x - 0.8 - 3 * f(1.5, x), 0.8, 3, xtol=1e-15)
-    rate, v = 1 + lam * 1.5 * n * f(0.5, x0), n * f(3, x0)
-    curved, together = 0.75 * n * f(-0.5, x0), -1.5 * n * f(2, x0)  # P''; Cov(P, P')
-    bias = (curved * lam**2 * v / rate**2 / 2 + lam * together / rate) / rate
-    assert float(poisson.mean("load", 0.8)) / LOAD == pytest.approx(n * f(1.5, x0) + bias, rel=1e-10)
-    assert float(poisson.std("load", 0.8) / LOAD) ** 2 == pytest.approx(v / rate**2, rel=1e-12)
-
-
 STRENGTHS = {"body": 3.0, "mean-plane": -0.3}
 GRADINGS = {
     "same": analytic.Homogeneous(),
@@ -98,23 +78,15 @@ GRADINGS = {
 @pytest.mark.parametrize("grading", GRADINGS.values(), ids=GRADINGS)
 @pytest.mark.parametrize("strength", STRENGTHS.values(), ids=STRENGTHS)
 class TestIdentities:
-    def test_balance(self, strength, grading):
+    def test_the_bodies_are_apart_by_what_the_load_sinks(self, strength, grading):
         model = model_of(strength, 1000, grading=analytic.resolved(grading, -8, 9))
-        x = model.effective(H)
-        load = model.alone.mean("load", x) / (1000 * LOAD)
-        np.testing.assert_allclose(x, H + strength * load, rtol=0, atol=1e-13)
-        wrong = H - strength * load
-        assert (np.abs(x - wrong) > 1e-3).all()
-
-    def test_variances_are_divided_by_the_square_of_the_rate(self, strength, grading):
-        model = model_of(strength, 1000, grading=analytic.resolved(grading, -8, 9))
-        x = model.effective(H)
-        rate = 1 + strength * model.alone.slope("load", x) / (1000 * LOAD)
-        alone = model.alone.cumulants("load", x).variance
-        np.testing.assert_allclose(model.std("load", H) ** 2, alone / rate**2, rtol=1e-12)
+        load = model.alone.mean("load", H) / (1000 * LOAD)
         np.testing.assert_allclose(
-            model.std("effective_separation", H),
-            np.abs(strength) / 1000 / LOAD * model.std("load", H),
+            model.mean("nominal_separation", H), H - strength * load, rtol=0, atol=1e-13
+        )
+        np.testing.assert_allclose(
+            model.std("nominal_separation", H),
+            np.abs(strength) / 1000 / LOAD * model.alone.std("load", H),
             rtol=1e-12,
         )
 
@@ -122,25 +94,19 @@ class TestIdentities:
         """Of a surface so large that it does not fluctuate; and the stiffness is the slope of the load."""
         n = 1e16
         model = model_of(strength, n, grading=analytic.resolved(grading, -8, 9))
-        x, sunk = model.effective(H), model.compliance * SURFACE.sigma
+        sunk = model.compliance * SURFACE.sigma
         stiffness = model.mean("stiffness", H)
-        apart = 1 / model.alone.mean("stiffness", x)
+        apart = 1 / model.alone.mean("stiffness", H)
         np.testing.assert_allclose(1 / stiffness - apart, sunk, rtol=1e-12 * (apart / abs(sunk)).max())
         assert (np.abs(sunk) / apart > 5e-3).all()  # without it, 1/K would be off by so much
         step = 1e-3
-        loads = [model.mean("load", H + k * step) for k in (-2, -1, 1, 2)]
-        slope = -(loads[0] - 8 * loads[1] + 8 * loads[2] - loads[3]) / (12 * step * SURFACE.sigma)
-        np.testing.assert_allclose(stiffness, slope, rtol=1e-9)
 
-    def test_at_a_given_load_only_the_separation_differs(self, strength, grading):
-        model = model_of(strength, 1e16, grading=analytic.resolved(grading, -8, 9))
-        loads = model.alone.mean("load", H)
-        h = model.separation_at("load", loads)
-        shift = strength * loads / (1e16 * LOAD)
-        np.testing.assert_allclose(h, H - shift, rtol=0, atol=1e-13)
-        for name in ("load", "area", "contacts", "spot_conductance"):
-            np.testing.assert_allclose(model.mean(name, h), model.alone.mean(name, H), rtol=1e-12)
-        assert (np.abs(model.mean("area", H) / model.alone.mean("area", H) - 1) > 1e-3).all()
+        def change(name):
+            found = [model.mean(name, H + k * step) for k in (-2, -1, 1, 2)]
+            return found[0] - 8 * found[1] + 8 * found[2] - found[3]
+
+        slope = -change("load") / change("nominal_separation") / SURFACE.sigma
+        np.testing.assert_allclose(stiffness, slope, rtol=1e-9)
 
 
 NAYAK = analytic.SpectralMoments(1e-12, 1e-3, 5e6)
@@ -158,48 +124,26 @@ CROSSED = {
     ("strength", "own"), [*zip((3.0, -0.3, 3.0, -0.3, 3.0), CROSSED.values(), strict=True)], ids=CROSSED
 )
 def test_every_asperity_can_be_pressed_down(strength, own):
-    """Balance, variance and compliances from the model of the same asperities alone."""
+    """Loads, nominal separations and stiffness from the model of the same asperities alone."""
     surface = NAYAK.surface(1e-8, 1e9) if "curvature" in own else SURFACE
     model = InteractingModel(
-        surface, n_asperities=2000, interaction=interaction(strength, surface, 2000), **own
+        surface, n_asperities=1e16, interaction=interaction(strength, surface, 1e16), **own
     )
     h = np.array([0.1, 1.13] if model.curvature is None else [0.1])  # radii of their own take long
-    x, alone, c = model.effective(h), model.alone, model.compliance
-    np.testing.assert_allclose(x, h + c * alone.mean("load", x), rtol=0, atol=1e-13)
-    rate = 1 + c * alone.slope("load", x)
-    np.testing.assert_allclose(model.std("load", h), alone.std("load", x) / rate, rtol=1e-12)
-    effective = InteractingModel.of(alone, interaction(strength, surface, 2000, "effective"))
-    np.testing.assert_array_equal(effective.mean("load", h), alone.mean("load", h))
+    alone, c = model.alone, model.compliance
+    np.testing.assert_array_equal(model.mean("load", h), alone.mean("load", h))
     np.testing.assert_allclose(
-        effective.mean("nominal_separation", h), h - c * alone.mean("load", h), rtol=0, atol=1e-13
+        model.mean("nominal_separation", h), h - c * alone.mean("load", h), rtol=0, atol=1e-13
     )
-
-
-def test_nothing_is_integrated_twice(monkeypatch):
-    """Means and variances need the same slopes and rules of heights, which take nearly all the time."""
-    asked = []
-
-    def noted(cls, name, key):
-        original = getattr(cls, name)
-        monkeypatch.setattr(
-            cls, name, lambda *a, **k: asked.append((name, *key(*a, **k))) or original(*a, **k)
-        )
-
-    noted(Model, "slope", lambda _, quantity, h: (quantity, h.tobytes()))
-    noted(HeightRule, "over", lambda h, *_, branches=(): (branches, np.asarray(h).tobytes()))
-    own = {"law": analytic.KogutEtsion(critical=0.5), "heights": analytic.ExponentialHeights()}
-    model = model_of(3.0, 2000, **own)
-    for name in ("load", "contacts", "load_slope"):
-        model.mean(name, H)
-        model.std(name, H)
-    assert len(asked) == len(set(asked)) > 20
+    spots = alone.mean("stiffness", h)
+    np.testing.assert_allclose(model.mean("stiffness", h), 1 / (1 / spots + c * surface.sigma), rtol=1e-12)
 
 
 def test_adhesive_asperities_are_pressed_up_too():
     """Loads that pull sink the plane the other way; given are what asperities feel."""
     law = analytic.JohnsonKendallRoberts(pull_off=0.5)
     alone = Model(SURFACE, law=law, n_asperities=2000)
-    model = InteractingModel.of(alone, interaction(3.0, SURFACE, 2000, "effective"))
+    model = InteractingModel.of(alone, interaction(3.0, SURFACE, 2000))
     h = np.array([-1.0, 1.0])  # pressed, and pulled
     loads = alone.mean("load", h)
     assert loads[0] > 0 > loads[1]
@@ -208,21 +152,7 @@ def test_adhesive_asperities_are_pressed_up_too():
     )
 
 
-@pytest.mark.parametrize(("crowding", "fold"), [(0.05, -3.3), (0.116, -1.6)])
-def test_the_mean_plane_has_no_balance_below_its_fold(crowding, fold):
-    """Where strength times slope is 1; at these eta R sigma it lies at an x told elsewhere, to two digits."""
-    surface = replace(SURFACE, eta=crowding / (SURFACE.radius * SURFACE.sigma))
-    model = InteractingModel(surface, interaction=analytic.Interaction("mean-plane", at="nominal"))
-    strength = hand.LATTICE / math.pi * 4 / 3 * math.sqrt(crowding)
-    x = brentq(lambda x: strength * 1.5 * f(0.5, x) - 1, -4, 0)
-    assert x == pytest.approx(fold, abs=0.1)
-    h = x + strength * f(1.5, x)
-    assert x < float(model.effective(h + 1e-4)) < x + 0.05
-    with pytest.raises(ValueError, match=r"no equilibrium at d/sigma = .* give larger separations"):
-        model.effective(h - 1e-4)
-
-
-# Monte Carlo of small surfaces, whose mean load is eight of its standard errors below the naive one.
+# Monte Carlo of small surfaces.
 
 N, M, TOUCHING = 100, 22_000, 75
 GRADED = analytic.Exponential(2.0)
@@ -233,19 +163,18 @@ def literal_means(strength, h, seed=11):
     """Mean of every quantity over many surfaces, and its standard error."""
     s, e = drawn(N, M, GRADED, seed, TOUCHING)
     c = strength / N
-    x = hand.balances(s, e, h, c)
-    sums = hand.sums_at(s, e, x)
+    sums = hand.sums_at(s, e, h)
     sums["stiffness of the contacts"] = sums["stiffness"]
     bulk = interaction(strength, SURFACE, N).bulk_modulus / SURFACE.E_star
     for name, modulus in (("stiffness", 1.0), ("conductance", bulk)):
         sums[name] = sums[name] / (1 + 1.5 * c * modulus * sums[name])
-    sums["effective_separation"] = x
+    sums["nominal_separation"] = h - c * sums["load"]
     return {name: (v.mean(), v.std() / math.sqrt(M)) for name, v in sums.items()}
 
 
 def scores(strength, h, model):
     """How far means of literal surfaces are from those of a model, in standard errors."""
-    scale = {name: factor(SURFACE, name) for name in QUANTITIES} | {"effective_separation": 1.0}
+    scale = {name: factor(SURFACE, name) for name in QUANTITIES} | {"nominal_separation": 1.0}
     means = literal_means(strength, h)
     return {
         name: (means[name][0] - float(model.mean(name, h)) / unit) / means[name][1]
@@ -257,15 +186,6 @@ def scores(strength, h, model):
 def test_means_of_finite_surfaces(strength, h):
     z = scores(strength, h, model_of(strength, N, grading=GRADED))
     assert max(map(abs, z.values())) < 5, z
-
-
-def test_the_load_without_its_bias_fails():
-    """The balance of the means is not the mean of the balances."""
-    mean, error = literal_means(3.0, 0.8)["load"]
-    model = model_of(3.0, N, grading=GRADED)
-    naive = float(model.alone.mean("load", model.effective(0.8))) / LOAD
-    assert (naive - mean) / error > 5
-    assert (naive - float(model.mean("load", 0.8)) / LOAD) / error > 7
 
 
 WRONG = {

@@ -86,8 +86,6 @@ OWN = {  # modes of interaction, and the separation that differs from surface to
     "alone": (None, None),
     "body": ("body", None),
     "plane": ("mean-plane", "nominal_separation"),
-    "body, nominal": ({"reference": "body", "at": "nominal"}, "effective_separation"),
-    "plane, nominal": ({"reference": "mean-plane", "at": "nominal"}, None),
 }
 
 
@@ -136,7 +134,7 @@ def test_each_surface_at_its_own_distance(mode):
 def test_many_have_the_mean_and_spread_of_theory(mode):
     """|z| < 5 of means, 7 of spreads: false alarms 6e-7 a number. The gap at the wrong plane fails."""
     interaction, own = OWN[mode]
-    n = 500 if "nominal" in mode else 4000
+    n = 4000
     scene = scene_of(interaction=interaction, n_surfaces=n)
     e, theory = mcgw.simulate(scene), scene.theory
     for name in scene.of_joint:
@@ -334,7 +332,7 @@ def test_at_a_pressure(mode):
     interaction, own = OWN[mode]
     scene, area = scene_of(interaction=interaction, n_surfaces=8), ROUGH.nominal_area
     found = mcgw.solve(scene, pressure="1 MPa")
-    plane = "nominal_separation" if own == "nominal_separation" or mode == "plane, nominal" else "separation"
+    plane = own or "separation"
     for at in (found.theory, found.surfaces):
         gas = np.asarray(at["gap_conductance"])
         np.testing.assert_allclose(gas, scene.filled(at[plane]), rtol=1e-14)

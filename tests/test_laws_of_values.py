@@ -97,7 +97,6 @@ def test_accuracy_is_allowed_for(make_scene):
     [
         {"keep": "statistics"},
         {"sampler": "aggregate"},
-        {"interaction": analytic.Interaction("body", at="nominal")},
     ],
 )
 def test_where_no_value_has_a_known_law_that_is_said(make_scene, changes):

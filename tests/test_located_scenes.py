@@ -17,7 +17,7 @@ from mcgw.sampling.counts import generator
 from mcgw.sampling.located.equilibrium import Located
 from mcgw.sampling.located.spots import Grid, HertzSpots, LawSpots
 
-LOCATED = {"reference": "located", "at": "nominal"}
+LOCATED = {"reference": "located"}
 
 
 def scene_of(area="0.09 mm^2", eta="1000/mm^2", **given):
@@ -59,11 +59,17 @@ def test_far_apart_they_are_independent_and_nearer_they_are_as_a_mean_field_has_
     far = {"area": "9 m^2", "eta": "10/m^2"}
     located, alone = (mcgw.simulate(scene_of(**far, interaction=x)).load for x in (LOCATED, None))
     assert_allclose(located, alone, rtol=1e-4)
-    some = {"n_surfaces": 30, "separations": [0.5], "eta": "3000/mm^2"}
-    field = {"reference": "mean-plane", "at": "nominal"}
-    found = [mcgw.simulate(scene_of(**some, interaction=x)).mean("load")[0] for x in (LOCATED, field, None)]
-    assert abs(found[1] / found[0] - 1) < abs(found[2] / found[0] - 1)
-    assert found[0] > found[2] * 1.02  # pressed from the mean plane, more of them touch
+    some = {"n_surfaces": 30, "eta": "3000/mm^2"}
+    pressed, alone = (
+        mcgw.simulate(scene_of(**some, separations=[0.5], interaction=x)).mean("load")[0]
+        for x in (LOCATED, None)
+    )
+    field = scene_of(**some, separations=np.linspace(0, 0.5, 11), interaction="mean-plane").theory
+    felt = np.linspace(0, 0.5, 201)
+    nominal = field.mean("nominal_separation", felt)
+    found = float(field.mean("load", np.interp(0.5, nominal, felt)))
+    assert abs(found / pressed - 1) < abs(alone / pressed - 1)
+    assert pressed > alone * 1.02  # pressed from the mean plane, more of them touch
 
 
 def test_stiffness_is_the_derivative_and_nothing_touches_above_all():
@@ -89,7 +95,6 @@ def test_laws_gradings_and_own_radii_go_with_it():
     ("changes", "words"),
     [
         ({"sampler": "cells"}, 'sampler = "cells".*use "direct"'),
-        ({"interaction": {"reference": "located"}}, 'at = "nominal"'),
         ({"interaction": {**LOCATED, "bulk_modulus": 1e9}}, "leave it out"),
         ({"keep": "statistics"}, 'use "sums"'),
         ({"quantities": ["load", "yielded"], "law": mcgw.KogutEtsion(critical=0.1)}, "leave out yielded"),
@@ -218,7 +223,7 @@ def test_places_are_kept_in_text_and_read_from_a_table(tmp_path):
     )
     text = (
         f"[surface]\n{surface}[summits]\nfile = 's.csv'\naspect = {c.aspect!r}\n[contact]\n"
-        "separations = [-0.5, 0.8]\n[interaction]\nat = 'nominal'\nreference = "
+        "separations = [-0.5, 0.8]\n[interaction]\nreference = "
     )
     (tmp_path / "s.csv").write_text(table)
     read = mcgw.scene_from(f"{text}'located'", folder=tmp_path)

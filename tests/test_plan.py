@@ -77,9 +77,7 @@ WISHES = {
     "steep": {"grading": analytic.Table((0.0, 1.37, 3.0), (1.0, 2.0, 1.5))},
     "coarse": {"accuracy": 1e-4, "n_asperities": 10**5},
     "contacts": {"quantities": ("contacts",)},
-    "nominal": {"interaction": mcgw.Interaction("body", at="nominal")},
     "radii": {"heights": analytic.Nayak(5.0), "curvature": mcgw.RandomCurvature(5.0)},
-    "one by one": {"interaction": mcgw.Interaction("body", at="nominal"), "sampler": "tail"},
     "beyond all": {"separations": (9.0, 10.0)},
 }
 
@@ -96,18 +94,13 @@ def test_what_is_expected_is_what_is_made(make_scene, name):
 
 
 ONE_BY_ONE, BY_LAW = 1.2e-7 + 4 * 2 * 1.9e-9, 1.2e-7 + 4 * 2 * 3.5e-8  # of four quantities at two separations
-LAW, OWN = mcgw.KogutEtsion(critical=0.1), analytic.Interaction("body", at="nominal")
-PLACES = {"interaction": analytic.Interaction("located", at="nominal"), "grading": None}
+LAW = mcgw.KogutEtsion(critical=0.1)
+PLACES = {"interaction": analytic.Interaction("located"), "grading": None}
 CROWDS = {"sampler": "aggregate", "n_asperities": 10**15}
 SECONDS = {
     "direct": ({"sampler": "direct"}, lambda n, moments: 3e-4 + n * ONE_BY_ONE),
     "tail": ({"sampler": "tail"}, lambda n, moments: 2e-6 + n * ONE_BY_ONE),
     "tail of a law": ({"sampler": "tail", "law": LAW}, lambda n, moments: 2e-6 + n * BY_LAW),
-    "balances one by one": (
-        {"sampler": "tail", "interaction": OWN},
-        lambda n, moments: 2e-6 + 2 * (4e-4 + n * 1e-7),
-    ),
-    "balances": ({"sampler": "cells", "interaction": OWN}, lambda n, moments: 2e-6 + 2 * 5e-6 + n * 1e-9),
     "places": (PLACES, lambda n, moments: 3e-4 + 2 * 5e-7 * n**1.6),
     "crowds": (CROWDS, lambda n, moments: 2e-6 + moments * 1.1e-8),
     "crowds of a law": (CROWDS | {"law": LAW}, lambda n, moments: 2e-6 + moments * 2.5e-8),
@@ -131,7 +124,7 @@ spectrum = mcgw.SpectralSurface(m0=1e-12, m2=1e-2, m4=4e8, nominal_area=1e-6, E_
 asked = {"separations": [2.0, 3.0], "n_asperities": 10**4, "n_surfaces": 100}
 for changes in ({}, {"keep": "statistics"}, {"law_error": 0.01}, {"sampler": "direct"},
                 {"law": mcgw.KogutEtsion(critical=0.1)}, {"grading": lambda s: 1 + abs(s - 2.5)},
-                {"interaction": mcgw.Interaction("mean-plane", at="nominal")}, {"rel_err": 0.1}):
+                {"interaction": mcgw.Interaction("mean-plane")}, {"rel_err": 0.1}):
     print(plan_of(mcgw.Scene(surface, **asked).replace(**changes)).seconds)
 print(plan_of(mcgw.Scene(spectrum, **asked)).seconds)
 """

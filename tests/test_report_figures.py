@@ -133,7 +133,7 @@ def test_there_are_no_curves_where_no_pressure_is_common(scene, changes):
 KINDS = [
     {"law": mcgw.KogutEtsion(critical=0.05), "unload_from": "loop"},
     {"law": mcgw.DerjaguinMullerToporov(pull_off=0.3)},
-    {"interaction": {"reference": "mean-plane", "at": "effective"}},
+    {"interaction": {"reference": "mean-plane"}},
     {"count": "poisson", "grading": mcgw.Exponential(0.5)},
     {"film": mcgw.Film(conductivities=(200.0, 16.0)), "joint": mcgw.Joint("air", rms=2e-6)},
 ]

@@ -65,7 +65,6 @@ COMPANY = {
     ("heights", "shapes"): ("{a = 4.0}", {"shape": None, "law": "'scipy'", "name": "'gamma'"}),
     ("heights", "alpha"): ("5.0", {"shape": None, "law": "'nayak'"}),
     ("interaction", "reference"): ("'body'", {}),
-    ("interaction", "at"): ("'nominal'", {"reference": "'body'"}),
     ("interaction", "bulk_modulus"): ("1e11", {"reference": "'body'"}),
     ("joint", "gas"): ("{conductivity = 0.15, jump = '1 um'}", JOINED),
     ("joint", "rms"): ("'2 um'", JOINED),
@@ -120,7 +119,7 @@ COMPANY = {
 WRONG = {
     "title": ["1"], "sigma": ["0.0", "-1e-6", "~nan", "true", "[1.0]"], "radius": ["0", "-1", "~inf", "'x'"],
     "eta": ["0", "-1", "{}"], "nominal_area": ["0", "-1", "~'1 m'"], "E_star": ["0", "-1", "~'1 N'"],
-    "reference": ["'plane'", "1"], "at": ["'both'", "1"], "bulk_modulus": ["0", "-1", "~'1 N'"],
+    "reference": ["'plane'", "1"], "bulk_modulus": ["0", "-1", "~'1 N'"],
     "bodies": ["[]", "[{E = 7e10}]", "[{E = -1}, {E = 1}]", "[{E = 1, nu = 2}, {E = 1}]",
                "[{e = 1}, {E = 1}]",
                "3", "[{E = true}, {E = 1}]", "[{E = 1, nu = '0.3'}, {E = 1}]", "~[{E = '1 m'}, {E = 1}]"],

@@ -103,16 +103,13 @@ def test_loops_are_compiled_for_every_kind_of_scene(monkeypatch):
     assert {(s.sampler, s.keep, type(s.law).__name__) for s in scenes} == WARMED
     assert {s.count for s in scenes} == {"fixed", "poisson"}
     assert [s.unload_from for s in scenes if s.unload_from is not None] == [0.0]
-    assert [s.interaction.at for s in scenes if s.interaction] == ["nominal"]
     assert [s.sampler for s in scenes if s.curvature] == ["cells", "tail"]
     assert max(s.n_asperities * s.n_surfaces for s in scenes) <= 2e7
     assert len(fitted) == 1
 
 
 RADII = analytic.RandomCurvature(5.0)
-PRESSED = analytic.InteractingModel.of(
-    analytic.Model(SPECTRAL.surface), analytic.Interaction("body", at="nominal")
-)
+PRESSED = analytic.InteractingModel.of(analytic.Model(SPECTRAL.surface), analytic.Interaction("body"))
 REFUSED = [
     (lambda: RADII.mean(0.3, np.ones(1)), "power = 0.3: give a multiple of 1/2"),
     (lambda: RADII.nothing, "nothing"),
@@ -127,8 +124,6 @@ REFUSED = [
     (lambda: analytic.MeasuredHeights([0.0, 1.0]).pdf(np.ones(2)), "no density at s = 1;"),
     (lambda: analytic.MeasuredHeights([0.0, 1.0]).rvs(3, None), "n = 3: give 2, the number"),
     (lambda: PRESSED.alone.separation_law(2.0, "contacts"), "give a sum that decreases with the separation"),
-    (lambda: PRESSED.separation_law(1e-9, "area"), "quantity = 'area': at nominal separations give a load"),
-    (lambda: PRESSED.mean("nominal_separation", 1.0), "the model is given at these separations"),
 ]
 
 
@@ -229,8 +224,8 @@ FACTS = [
     ({"film": mcgw.Film(1e-7, 2e-12)}, ("film", "resistivity 1e-07 ohm m, film 2e-12 ohm m^2")),
     ({"interaction": analytic.Interaction("body")},
      ("interaction", "from the undeformed body, separations effective")),
-    ({"interaction": analytic.Interaction("mean-plane", at="nominal")},
-     ("interaction", "from the mean deformed plane, separations nominal")),
+    ({"interaction": analytic.Interaction("mean-plane")},
+     ("interaction", "from the mean deformed plane, separations effective")),
     ({"law": mcgw.KogutEtsion(critical=0.05)}, ("contact law", "KogutEtsion(critical=0.05, poisson=0.3)")),
     ({"accuracy": 1e-5}, ("accuracy", "1e-05 of every value of a surface")),
     ({"law_error": 1e-3, "sampler": "auto"}, ("law_error", "up to 0.001 from the exact laws")),
@@ -271,7 +266,7 @@ def test_statistics_of_values_are_those_of_numpy(make_scene):
 
 def test_the_other_separation_is_as_sure_as_the_load(pressed):
     """Where asperities feel the separations of the scene, nominal ones differ by a multiple of the load."""
-    ensemble = mcgw.simulate(pressed(3.0, "effective", n_surfaces=30))
+    ensemble = mcgw.simulate(pressed(3.0, n_surfaces=30))
     h = ensemble.separations
     low, high = ensemble.interval("nominal_separation")
     sunk = h - ensemble.mean("nominal_separation")
@@ -282,7 +277,7 @@ def test_the_other_separation_is_as_sure_as_the_load(pressed):
 
 def test_a_half_space_at_effective_separations_changes_no_verdict(pressed):
     """The sums are those of the same asperities without it, which theory knows."""
-    scene = pressed(3.0, "effective", n_surfaces=30)
+    scene = pressed(3.0, n_surfaces=30)
     with_it, without = (verdict(mcgw.simulate(x)) for x in (scene, scene.replace(interaction=None)))
     assert with_it.p == pytest.approx(without.p, rel=1e-6)
     assert with_it.agrees
@@ -333,14 +328,13 @@ def test_files_of_the_other_kind_are_refused(make_scene, tmp_path):
     )
 
 
-@pytest.mark.parametrize("at", ["nominal", "effective"])
 @pytest.mark.parametrize("quantity", ["load", "stiffness"])
-def test_means_under_an_interaction_fall_as_their_slopes_say(at, quantity, pressed):
-    theory = pressed(3.0, at).theory
+def test_means_under_an_interaction_fall_as_their_slopes_say(quantity, pressed):
+    theory = pressed(3.0).theory
     h, step = np.array([0.3, 1.5]), 1e-3
     fall = (theory.mean(quantity, h - step) - theory.mean(quantity, h + step)) / (2 * step)
     np.testing.assert_allclose(theory.slope(quantity, h), fall, rtol=1e-4)
     with pytest.raises(ValueError, match="give a load, an area, or another sum of the asperities"):
         theory.separation_at("stiffness", 1.0)
-    h = theory.separation_at("area", theory.balanced("area", 0.7))
+    h = theory.separation_at("area", theory.mean("area", 0.7))
     assert h == pytest.approx(0.7, abs=1e-9)

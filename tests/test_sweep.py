@@ -273,7 +273,7 @@ def test_what_nobody_gave_follows():
 
 MISTAKES = [
     (
-        {"interaction": [{"reference": "body"}, {"reference": "body", "at": "nominal"}]},
+        {"interaction": [{"reference": "body"}, {"reference": "located"}]},
         "^sweep: the points differ in separations or quantities",
     ),
     ({GAMMA: [1, -3, 5]}, "negative from s = 0.2877.*at grading.gamma = -3"),

@@ -405,16 +405,6 @@ def test_an_interaction_has_its_own_rows_and_a_body_the_area_alone():
         assert cell.validity().bias["separation"][k] == pytest.approx(rms * wanted, rel=1e-5)
 
 
-def test_a_nominal_separation_is_looked_up_by_the_felt_one():
-    scene = mcgw.Scene(
-        surface_of(4.0), separations=[1.5], interaction={"reference": "body", "at": "nominal"}, seed=1
-    )
-    felt = float(scene.theory.effective(1.5))
-    alone = scene.replace(interaction=None, separations=[felt])
-    assert felt > 1.5
-    assert scene.validity().loads[0] == pytest.approx(alone.validity().loads[0], rel=1e-9)
-
-
 def test_many_separations_are_looked_at_from_the_first_to_the_last():
     scene = mcgw.Scene(surface_of(4.0), separations=np.linspace(3, -1, 5000), seed=1)
     found = scene.validity()

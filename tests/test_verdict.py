@@ -15,7 +15,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import Held, MemoryResults
 from mcgw.figures.against_theory import save_comparison
 from mcgw.sampling.samplers import sampler_of
-from mcgw.statistics import comparison, verdict as parts
+from mcgw.statistics import verdict as parts
 from mcgw.statistics.comparison import compare
 from mcgw.statistics.verdict import FALSE_ALARM, Verdict, verdict
 
@@ -71,18 +71,6 @@ class Exact(Held):
 
     def total_number(self, name):
         return self.mean_and_std(name)[0] * self.rows()
-
-
-def test_what_theory_leaves_out_belongs_to_its_quantity(make_scene):
-    """Of so many surfaces it leaves out too much of some means: of the same ones in any order."""
-    balanced = {"interaction": mcgw.Interaction("body", at="nominal"), "separations": (0.0, 2.0)}
-    found = []
-    for quantities in (("load", "area", "contacts"), ("area", "load", "contacts")):
-        scene = make_scene(**balanced, quantities=quantities, n_asperities=1000)
-        counts = comparison.tested(Ensemble(scene, "cells", Exact(scene)), 60).counts
-        found.append(dict(zip(quantities, counts.tolist(), strict=True)))
-    assert found[0] == found[1]
-    assert {name for name, counts in found[0].items() if counts[0]} == {"area"}
 
 
 def test_the_last_of_many_separations_counts(make_scene):

@@ -82,7 +82,7 @@ film_resistance = 1e-8
 """,
     "caps": """contact = {separations = [1.0]}
 """,
-    "located": """interaction = {reference = "located", at = "nominal"}
+    "located": """interaction = {reference = "located"}
 contact = {separations = [1.0, 1.5]}
 """,
 }

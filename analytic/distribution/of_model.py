@@ -153,52 +153,23 @@ def separation_law_of(model: Any, load: float, quantity: str, *, other: bool = F
         return share_at(one_asperity(model, quantity, h, _CELLS[other], target), target, _POINTS[other] // 4)
 
     again = partial(separation_law_of, model, load, quantity, other=True)
-    return _along(shares, start + other * spread / 7, spread, (-np.inf, np.inf), one.rounding, again)
+    return _along(shares, start + other * spread / 7, spread, one.rounding, again)
 
 
-def interacting_distribution(model: Any, quantity: str, h: float, *, other: bool = False) -> Law:
+def interacting_distribution(model: Any, quantity: str, h: float) -> Law:
     """As `analytic.Model.distribution`, of a model whose asperities press each other down."""
-    c, alone, q = model.compliance, model.alone, quantity_of(quantity)
-    if not model.interaction.nominal:
-        if quantity == "nominal_separation":
-            return distribution_of(alone, "load", h).mapped(lambda p: h - c * p, falls=c > 0)
-        law = distribution_of(alone, quantity, h)
-        series = model.series(quantity)
-        return law.mapped(lambda k: k / (1 + series * k)) if series else law
-    if c < 0:
-        raise ValueError(
-            f"quantity = {quantity!r}: its exact distribution at nominal separations from the mean plane is "
-            "not known, because a surface may have several equilibria; use effective separations"
-        )
-    if quantity == "effective_separation":
-        return interacting_distribution(model, "load", h).mapped(lambda p: h + c * p)
-    if q.base != "load" or q.unloading:
-        raise ValueError(
-            f"quantity = {quantity!r}: at nominal separations only the distributions of 'load', "
-            "'pressure' and 'effective_separation' are known; use effective separations for others"
-        )
-    each = c * alone.surface.nominal_area if q.of else c  # of d/sigma for each unit of the quantity
-    _falling(alone, quantity, h)
-    felt, unit = float(model.effective(h)), q.scale(alone.surface)
-    start = np.cbrt(float(alone.mean(quantity, felt)))
-    middle = one_asperity(alone, quantity, felt, _CELLS[other])
-    spread = unit * middle.usual[1] / (3 * start**2)
-
-    def shares(root: float) -> tuple[float, float]:
-        p = root**3
-        one = one_asperity(alone, quantity, h + each * p, _CELLS[other], p / unit)
-        return share_at(one, p / unit, _POINTS[other] // 4)
-
-    again = partial(interacting_distribution, model, quantity, h, other=True)
-    law = _along(shares, start + other * spread / 7, spread, (0.0, np.inf), middle.rounding, again)
-    return law.mapped(lambda root: root**3)
+    c, alone = model.compliance, model.alone
+    if quantity == "nominal_separation":
+        return distribution_of(alone, "load", h).mapped(lambda p: h - c * p, falls=c > 0)
+    law = distribution_of(alone, quantity, h)
+    series = model.series(quantity)
+    return law.mapped(lambda k: k / (1 + series * k)) if series else law
 
 
 def _along(
     shares: Callable[[float], tuple[float, float]],
     start: float,
     spread: float,
-    ends: tuple[float, float],
     rounding: float,
     again: Callable[[], Any],
 ) -> Table:
@@ -213,8 +184,8 @@ def _along(
     scores = {start: score(start)}
     for way in (-1, 1):
         at, reached, step = start, scores[start], spread / 4
-        while way * reached < _SCORES and at > max(ends[0], LOWEST):
-            new = max(at + way * step, ends[0], LOWEST)
+        while way * reached < _SCORES and at > LOWEST:
+            new = max(at + way * step, LOWEST)
             found = score(new)
             apart = abs(found - reached)
             if apart > 1.5 * _APART and step > _SMALLEST * spread:
@@ -231,9 +202,7 @@ def _along(
     nodes, z = nodes[np.abs(z) < -ndtri(_NONE)], z[np.abs(z) < -ndtri(_NONE)]
     y = np.interp(np.linspace(0, nodes.size - 1, _TABLE), np.arange(nodes.size), nodes)
     z = np.maximum.accumulate(make_interp_spline(nodes, z, min(5, nodes.size - 1))(y))
-    if np.isfinite(ends[0]):
-        y, z = np.append(np.nextafter(ends[0], -np.inf), y), np.append(-np.inf, z)
-    table = Table(*resolved(y, ndtr(z), ndtr(-z), rounding), (0.0, 0.0), ends, rounding, again)
+    table = Table(*resolved(y, ndtr(z), ndtr(-z), rounding), (0.0, 0.0), (-np.inf, np.inf), rounding, again)
     return table.with_moments()
 
 

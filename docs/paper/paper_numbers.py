@@ -51,7 +51,6 @@ def timings() -> Numbers:
         "faster_loop": "samplers: cells / plain numba loop, all cores",
         "faster_whole": "setup: S1 / NumPy script",
         "faster_yielding": "contact_laws: Kogut, 0.05, gamma 2: drawing / NumPy script of Kogut",
-        "faster_together": "interaction: nominal separations, body / NumPy script, N = 1e6",
     }
     cheap = float(last["samplers: h = 0 ... 4, 401 separations / h = 0 ... 4, 41 separations"]) - 1
     found = {name: f"{_two_digits(1 / float(last[column]))}" for name, column in ratios.items()}

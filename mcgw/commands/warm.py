@@ -49,8 +49,8 @@ def _scene(**changes: Any) -> Any:
 
 
 def _scenes() -> list[dict[str, Any]]:
-    """Changes of that scene: laws, a balance, samplers, crowds, statistics, radii."""
-    from analytic import Interaction, KogutEtsion
+    """Changes of that scene: laws, samplers, crowds, statistics, radii."""
+    from analytic import KogutEtsion
     from mcgw.scene.surface import SpectralSurface
 
     yielding = {"law": KogutEtsion(critical=0.1)}
@@ -58,7 +58,6 @@ def _scenes() -> list[dict[str, Any]]:
     spectrum = SpectralSurface(m0=1e-12, m2=1e-2, m4=4e8, nominal_area=1e-6, E_star=1e11)
     return [
         *(yielding, {**yielding, "unload_from": 0.0}, {**yielding, "sampler": "tail"}),
-        {"interaction": Interaction("mean-plane", at="nominal"), "n_asperities": 300},
         *({"sampler": "direct"}, {"count": "poisson"}),
         *(coarse, {"sampler": "aggregate", "n_asperities": 10**6}, {"keep": "statistics"}),
         *({"surface": spectrum, "sampler": sampler} for sampler in ("cells", "tail")),

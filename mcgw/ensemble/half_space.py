@@ -1,6 +1,6 @@
 """What the half-space makes of the sums of surfaces whose asperities press each other down.
 
-And these asperities by themselves: at effective separations nothing else is random. What gas in the gap adds
+And these asperities by themselves: nothing else is random. What gas in the gap adds
 to the spots of surfaces, each at its own distance of mean planes.
 """
 
@@ -18,10 +18,9 @@ from mcgw.scene.scene import Scene
 
 
 def with_interaction(scene: Scene, sums: dict[str, NDArray[Any]]) -> dict[str, Any]:
-    """Sums of the asperities, stiffness and conductance with the half-space, and the other separation.
+    """Sums of the asperities, stiffness and conductance with the half-space, and nominal separations.
 
-    At effective separations the nominal one follows from the load of each surface, without a search; at
-    nominal ones the sampler has found it.
+    These follow from the load of each surface, without a search.
 
     Parameters
     ----------
@@ -35,9 +34,7 @@ def with_interaction(scene: Scene, sums: dict[str, NDArray[Any]]) -> dict[str, A
     found = {name: _answer(scene, name, values) for name, values in sums.items()}
     h, sunk = np.array(scene.separations), scene.compliance / scene.surface.sigma
     for name in scene.other_separations:
-        if name not in sums:
-            load = sums["load_unloading" if name.endswith("_unloading") else "load"]
-            found[name] = h - sunk * load
+        found[name] = h - sunk * sums["load_unloading" if name.endswith("_unloading") else "load"]
     return found
 
 
@@ -77,34 +74,22 @@ class _Alone(Results):
         return self.whole.rows()
 
 
-def scene_alone(scene: Scene, what: str) -> Scene:
+def scene_alone(scene: Scene) -> Scene:
     """The scene without interaction.
-
-    Parameters
-    ----------
-    scene : Scene
-        Any.
-    what : str
-        What is asked of it, for the message.
 
     Raises
     ------
     ValueError
-        If its surfaces each find their own balance: then no sum is one of independent asperities.
+        If its summits are located: then no sum is one of independent asperities.
     """
     if scene.interaction is None:
         return scene
     scene.ask_theory()
-    if scene.interaction.nominal:
-        raise ValueError(
-            f'interaction.at = "nominal": {what} needs sums of independent asperities, but here each '
-            'surface has its own separation; use at = "effective"'
-        )
     return replace(scene, interaction=None)
 
 
 def asperities_alone(ensemble: Ensemble) -> Ensemble:
-    """The ensemble of the sums of the asperities, where its separations are effective ones.
+    """The ensemble of the sums of the asperities.
 
     Of one that keeps no values those that are not in series with the half-space.
 
@@ -116,9 +101,9 @@ def asperities_alone(ensemble: Ensemble) -> Ensemble:
     scene = ensemble.scene
     if not isinstance(ensemble.sums, Results):  # of what is in series only each surface's would tell
         rest = tuple(name for name in scene.quantities if not scene.series(name))  # the load at least
-        return replace(ensemble, scene=scene_alone(replace(scene, quantities=rest), "this"))
+        return replace(ensemble, scene=scene_alone(replace(scene, quantities=rest)))
     sums = _Alone(ensemble.sums, scene)
-    return replace(ensemble, scene=scene_alone(scene, "this"), sums=sums)
+    return replace(ensemble, scene=scene_alone(scene), sums=sums)
 
 
 def with_joint(scene: Scene, found: dict[str, Any], names: Iterable[str], h: Any) -> dict[str, Any]:
@@ -142,7 +127,6 @@ def with_joint(scene: Scene, found: dict[str, Any], names: Iterable[str], h: Any
     """
     from analytic.interaction import in_series  # as above
 
-    plane = "nominal_separation" if scene.from_mean_plane else "effective_separation"
     assert scene.filled is not None
     assert scene.film is not None
     bodies = 0.0 if scene.interaction is None else scene.interaction.bodies(scene.surface, scene.film.rho)
@@ -150,7 +134,8 @@ def with_joint(scene: Scene, found: dict[str, Any], names: Iterable[str], h: Any
     for name in names:
         way = "_unloading" * name.endswith("_unloading")
         contact = found[f"conductance_si{way}"] / scene.surface.nominal_area  # spots, and bodies in series
-        gas = scene.filled(found.get(f"{plane}{way}", h)) + 0 * contact
+        apart = found[f"nominal_separation{way}"] if scene.from_mean_plane else h
+        gas = scene.filled(apart) + 0 * contact
         if name.startswith("joint"):
             answers[name] = in_series(in_series(contact, -bodies) + gas, bodies)
         else:

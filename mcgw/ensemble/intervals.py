@@ -191,8 +191,7 @@ def interval_of(scene: Scene, sampler: str, sums: Held, name: str, level: float)
         return mean - half, mean + half
     if name in scene.other_separations:
         return _of_separation(scene, sampler, sums, name, level)
-    balanced = scene.nominal
-    if quantity_of(name).counts and not balanced:
+    if quantity_of(name).counts:
         contacts, asperities = sums.total_number(name), float(scene.n_asperities) * m
         ends = count_interval(contacts, asperities, poisson=scene.count == "poisson", level=level)
         return ends[0] / m, ends[1] / m

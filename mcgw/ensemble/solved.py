@@ -289,12 +289,11 @@ class Solution(Shown):
 
 def against_elasticity(solutions: Sequence[Solution]) -> Validity:
     """Error of the model against elasticity at solutions of one scene, at their effective separations."""
-    return validity_of(solutions[0].scene, [each.theory["separation"] for each in solutions], felt=True)
+    return validity_of(solutions[0].scene, [each.theory["separation"] for each in solutions])
 
 
 def at_solutions(scene: Scene, solutions: Sequence[Solution]) -> Scene:
     """The scene at the separations of the mean surface in these solutions, which stand for their loads."""
-    name = "nominal_separation" if scene.nominal else "separation"
-    h = sorted({each.theory[name] for each in solutions})
+    h = sorted({each.theory["separation"] for each in solutions})
     loading = [q for q in scene.quantities if not quantity_of(q).unloading] or ["load"]
     return scene.replace(separations=h, unload_from=None, quantities=loading)

@@ -93,7 +93,7 @@ def _zero(scene: Scene, system: UnitSystem) -> list[str]:
     if scene.interaction is not None:
         felt = (
             "nominal"
-            if scene.interaction.nominal
+            if scene.located
             else "the separation that asperities feel, without the displacement of the bulk"
         )
         lines.append(f"with asperity interaction; d is {felt}")

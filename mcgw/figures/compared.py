@@ -218,6 +218,6 @@ class Compared:
             return ""
         said, law = contact_label(self.scene), short(law_text(self.scene.heights))
         if self.scene.interaction is not None:
-            felt = "d/σ is nominal" if self.scene.interaction.nominal else "d/σ is effective"
+            felt = "d/σ is nominal" if self.scene.located else "d/σ is effective"
             said += f", interacting ({felt})"
         return f"This scene: {said}; heights {law}."

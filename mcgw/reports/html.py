@@ -85,8 +85,6 @@ def solution_of(scene: Scene, first: Ensemble) -> Solution | None:
     if scene.interaction is None:
         gap = scene.surface.sigma * (surfaces["separation"] + (scene.rise or 0.0))
         surfaces = {scene.gap: gap, **surfaces}
-    elif scene.nominal:
-        surfaces["nominal_separation"] = surfaces.pop("separation")
     load = pressure * scene.surface.nominal_area
     return Solution(scene, "load", load, mean_surface(scene, "load", load), surfaces, scene)
 

@@ -77,7 +77,7 @@ def plan_of(scene: Scene) -> Plan:
 
 def _at_others(scene: Scene, known: Expected, surfaces: int) -> dict[float, float]:
     """Seconds at neighbouring decades of accuracy; at two coarser ones for a scene to its last digits."""
-    if not known.cells or promise_of(known.name).spends or scene.nominal:
+    if not known.cells or promise_of(known.name).spends:
         return {}  # accuracy does not apply to this sampler or law
     others = (1e-6, 1e-3) if scene.exact else (scene.accuracy / 10, scene.accuracy * 10)
     return {

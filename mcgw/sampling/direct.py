@@ -51,7 +51,7 @@ class Direct(Sampler):
         scene = self.scene
         rng = generator(scene.seed, _PURPOSE, number)
         left = scene.n_asperities if scene.count == "fixed" else int(rng.poisson(scene.n_asperities))
-        most = left if scene.nominal or scene.as_measured else _PIECE
+        most = left if scene.located or scene.as_measured else _PIECE
         while left:
             now = min(left, most)
             left -= now
@@ -59,8 +59,10 @@ class Direct(Sampler):
 
     def _surface(self, number: int) -> dict[str, Array]:
         scene = self.scene
-        if scene.nominal:
-            return self._balanced(number, *next(self.asperities(number), (np.empty(0), None)))
+        if scene.located:
+            from mcgw.sampling.located.equilibrium import located_sums  # for those scenes alone
+
+            return located_sums(scene, number, *next(self.asperities(number), (np.empty(0), None)))
         total = asperity_sums(scene, np.array([0]), np.empty(0), np.empty(0))
         for s, ratios in self.asperities(number):
             sums = asperity_sums(scene, np.array([s.size]), s, np.ones(s.size), ratios)
@@ -73,18 +75,6 @@ class Direct(Sampler):
         if self.scene.curvature:
             return self.scene.curvature.summits(rng, n)
         return self.scene.heights.rvs(n, rng), None
-
-    def _balanced(self, number: int, heights: Array, ratios: Array | None) -> dict[str, Array]:
-        """The surface at the separations that its asperities feel, or with their places."""
-        if self.scene.located:
-            from mcgw.sampling.located.equilibrium import located_sums  # as below
-
-            return located_sums(self.scene, number, heights, ratios)
-        from mcgw.sampling.nominal import balanced_sums  # for those scenes alone
-
-        touching = heights > self.scene.lowest
-        ratios = None if ratios is None else ratios[touching]
-        return balanced_sums(self.scene, number, heights[touching], ratios)
 
 
 def asperity_sums(

@@ -22,8 +22,6 @@ from mcgw.scene.scene import Scene
 _SURFACE, _INSIDE, _MOMENT, _OF_LAW = 2e-6, 1e-9, 1.1e-8, 2.5e-8
 _ALONE, _VALUE, _VALUE_OF_LAW, _GENERATOR = 1.2e-7, 1.9e-9, 3.5e-8, 3e-4
 _RADIUS, _DRAWS_WITH_RADIUS = 10, 6  # times an asperity with the radius of all
-_BALANCE = 5e-6  # of a separation by cells
-_STEPS, _STEP = 4e-4, 1e-7  # of one by single asperities, and of each of these
 _BALANCE_OF_PLACES, _GROWS = 5e-7, 1.6  # of located summits: seconds, by a power of their number
 
 
@@ -57,14 +55,6 @@ def expected(scene: Scene) -> Expected:
         draws = float(scene.n_asperities) if name == "direct" else touching
         begin = _GENERATOR if name == "direct" else _SURFACE
         return Expected(name, 0, 0, draws, begin + _alone(scene, touching))
-    if scene.nominal:
-        from mcgw.sampling.balance import POINTS  # for those scenes alone
-        from mcgw.sampling.nominal import on_a_grid
-
-        plain = on_a_grid(scene)
-        cells = max(len(edges_before_grading(plain, split=False)) - 1, 0)
-        seconds = _SURFACE + _BALANCE * len(scene.separations) + _INSIDE * plain.touching
-        return Expected(name, cells, POINTS * cells, float(plain.touching), seconds)
     return _in_cells(name, scene)
 
 
@@ -99,8 +89,6 @@ def _families(scene: Scene) -> int:
 
 def _alone(scene: Scene, asperities: float) -> float:
     """Seconds that asperities take which are drawn and added up one by one."""
-    if scene.nominal and scene.located:
+    if scene.located:
         return float(len(scene.separations) * _BALANCE_OF_PLACES * asperities**_GROWS)
-    if scene.nominal:
-        return len(scene.separations) * (_STEPS + asperities * _STEP)
     return asperities * (_ALONE + scene.width * (_VALUE if scene.hertzian else _VALUE_OF_LAW))

@@ -22,7 +22,6 @@ from mcgw.sampling.cells import Mesh, cut, mesh_of, no_cells, series_accuracy
 from mcgw.sampling.counted import Counted
 from mcgw.sampling.direct import Direct
 from mcgw.sampling.drawn_moments import CROWDED, VARYING, Crowds, OneByOne
-from mcgw.sampling.outside import table_of
 from mcgw.sampling.response.response import Response, parts_of, response_of
 from mcgw.sampling.response.tree import Precision
 from mcgw.sampling.response.walk import UnresolvedError
@@ -52,8 +51,6 @@ def sampler_of(scene: Scene) -> Sampler:
     """
     scene = storable(scene)
     name = name_of(scene)
-    if scene.nominal:
-        return _at_nominal(name, scene)
     try:
         if scene.law_error and scene.sampler == "auto" and name == "cells" and scene.curvature is None:
             return _perhaps_crowded(scene)
@@ -71,13 +68,13 @@ def name_of(scene: Scene) -> str:
     """
     if scene.sampler != "auto":
         return scene.sampler
-    if scene.nominal and scene.located:
+    if scene.located:
         return "direct"
     most = min(5 + len(scene.separations) / 20, 20)
-    few = not scene.nominal and scene.touching < most
+    few = scene.touching < most
     names = ("tail", "cells", "direct") if few else ("cells", "tail", "direct")
     # Where two of these meet, each summit has breaks of its own.
-    breaks = (scene.curvature is not None) + (not scene.hertzian) + scene.nominal
+    breaks = (scene.curvature is not None) + (not scene.hertzian)
     listed = isinstance(scene.heights, MeasuredHeights)
     promises = ((name, promise_of(name)) for name in names)
     return next(x for x, p in promises if (p.own_laws or breaks < 2) and not (p.needs_density and listed))
@@ -151,17 +148,6 @@ _MAKERS: dict[str, Callable[[Scene], Sampler]] = {
     "cells": cells_of,
     "aggregate": aggregate_of,
 }
-
-
-def _at_nominal(name: str, scene: Scene) -> Sampler:
-    """The sampler of a scene whose surfaces each find their own balance: imported for those alone."""
-    if name == "direct":
-        return Direct.of(scene)
-    from mcgw.sampling.nominal import CellsAtNominal, TailAtNominal
-
-    if name == "tail":
-        return TailAtNominal("tail", scene, no_cells(scene), table_of(scene, scene.lowest))
-    return CellsAtNominal.of(scene)
 
 
 def _resolved(scene: Scene, mesh: Mesh) -> "tuple[Mesh, Response | Families]":

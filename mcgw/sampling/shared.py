@@ -69,12 +69,12 @@ class Shared:
 def to_be_shared(scene: Scene) -> tuple[Any, ...] | None:
     """What other scenes must agree in to have the same surfaces; None if it shares them with none.
 
-    Crowds depend on what is asked, and balances of their own on more than heights and radii.
+    Crowds depend on what is asked.
     """
     name = name_of(scene)
     perhaps_crowded = scene.law_error > 0 and scene.sampler == "auto"
     listed = isinstance(scene.curvature, MeasuredRadii)
-    if name not in ("cells", "tail") or listed or scene.nominal or perhaps_crowded:
+    if name not in ("cells", "tail") or listed or perhaps_crowded:
         return None
     drawn = scene.n_asperities, scene.seed, scene.count, scene.n_surfaces
     powers = {quantity_of(name).radius for name in scene.quantities} if scene.curvature else None

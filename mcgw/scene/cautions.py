@@ -150,7 +150,7 @@ def _no_answer(scene: Scene) -> Iterator[str]:
     if (other := scene.series(name)) >= 0:
         return
     h, theory = np.unique(scene.separations), scene.theory
-    spots = theory.alone.mean(name, theory.effective(h))  # type: ignore[attr-defined]
+    spots = theory.alone.mean(name, h)  # type: ignore[attr-defined]
     if np.any(none := 1 + other * spots <= 0):
         yield (
             f"up to d/sigma = {h[none].max():.3g} {name} is nan: the correction for the mean plane exceeds "

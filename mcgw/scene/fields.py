@@ -3,7 +3,7 @@
 import math
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 _CLEARLY = 1e-6  # no rounding makes such a modulus negative
 _BEYOND = 1e-16  # share of heights above those checked for negative moduli
-_MARGIN = 12.0  # standard deviations of a surface's own balance
 _ROUNDED = 16.0  # rounding of felt separations, so that cells do not depend on the last digit of an integral
 
 
@@ -126,11 +125,6 @@ class Fields(Values):
         return self.interaction is not None and self.interaction.reference == "mean-plane"
 
     @property
-    def nominal(self) -> bool:
-        """Whether separations are nominal: each surface finds its own balance there."""
-        return self.interaction is not None and self.interaction.nominal
-
-    @property
     def located(self) -> bool:
         """Whether summits have positions, at which they press each other down."""
         return self.interaction is not None and self.interaction.located
@@ -223,11 +217,9 @@ class Fields(Values):
 
     @property
     def other_separations(self) -> tuple[str, ...]:
-        """Further separations of an ensemble whose asperities press each other down."""
+        """Nominal separations of an ensemble whose asperities press each other down."""
         if self.interaction is None or self.interaction.located:
             return ()
-        if self.interaction.nominal:
-            return ("effective_separation",)
         back = () if self.unload_from is None else ("nominal_separation_unloading",)
         return ("nominal_separation", *back)
 
@@ -239,20 +231,8 @@ class Fields(Values):
     @property
     def lowest(self) -> float:
         """Lowest separation that asperities ever feel: those below it never touch."""
-        lowest = self._felt if self.nominal else min(self.separations)
+        lowest = self.least if self.located else min(self.separations)
         return lowest if self.unload_from is None else min(lowest, self.unload_from)
-
-    @cached_property
-    def _felt(self) -> float:
-        """The lowest; where surfaces find their own, and sink from the mean plane, hardly one goes below."""
-        asked = min(self.separations)
-        if self.interaction is None or self.interaction.reference == "body":
-            return asked
-        if self.interaction.located:
-            return self.least
-        theory: Any = self.theory
-        margin = _MARGIN * float(theory.std("effective_separation", np.array(asked)))
-        return math.floor(_ROUNDED * (float(theory.effective(np.array(asked))) - margin)) / _ROUNDED
 
     @property
     def highest(self) -> float:

@@ -78,7 +78,7 @@ def contact_facts(scene: Fields) -> list[tuple[str, str]]:
     if scene.film is not None:
         facts.append(("film", conducting_text(scene.film)))
     if scene.interaction is not None:
-        felt = "nominal" if scene.interaction.nominal else "effective"
+        felt = "nominal" if scene.located else "effective"
         places = f", summits at {'their own' if scene.own_places else 'random'} places" * scene.located
         plane = _PLANES[scene.interaction.reference]
         facts.append(("interaction", f"from the {plane}{places}, separations {felt}"))

@@ -65,35 +65,8 @@ def _adheres(scene: Fields) -> bool:
 
 def _independent(scene: Fields) -> Iterator[str]:
     """Mistakes that do not depend on where the balance is."""
-    assert scene.interaction is not None
     if "load" not in scene.quantities:
         yield 'interaction: separations depend on the load; add "load" to contact.quantities'
-    if scene.interaction.nominal:
-        yield from _nominal(scene)
-
-
-def _nominal(scene: Fields) -> Iterator[str]:
-    """Features that the search for each surface's balance does not support."""
-    key = 'interaction.at = "nominal"'
-    promise = promise_of(scene.sampler)
-    if not promise.finds_balance:
-        yield (
-            f'ensemble.sampler = "{scene.sampler}": it draws no asperities, which {key} needs; use '
-            '"cells", or at = "effective"'
-        )
-    if scene.sampler == "cells" and (scene.curvature is not None or not scene.hertzian):
-        what = "a film" if scene.film is not None else f'contact.law = "{scene.law.name}"'
-        what = what if scene.curvature is None else "individual summit radii"
-        yield f'ensemble.sampler = "cells": with {what}, {key} needs single asperities; use "tail"'
-    if scene.unload_from is not None:
-        yield f'contact.unload_from: {key} has no unloading; leave it out, or use at = "effective"'
-    if scene.negative == "allow":
-        yield f'grading.negative = "allow": {key} needs loads that decrease with the separation; use "clip"'
-    if _adheres(scene):
-        yield (
-            f'contact.law = "{scene.law.name}": its load does not decrease monotonically, and {key} '
-            'would have several equilibria; use at = "effective"'
-        )
 
 
 def _balance(scene: Fields) -> Iterator[str]:
@@ -101,10 +74,7 @@ def _balance(scene: Fields) -> Iterator[str]:
     theory: Any = scene.theory
     h = np.unique(scene.separations)
     try:
-        felt = theory.effective(h)  # which refuses a balance that is not unique
-        if theory.interaction.nominal:
-            return
-        rate = 1 + theory.compliance * theory.alone.slope("load", felt)
+        rate = 1 + theory.compliance * theory.alone.slope("load", h)
     except ValueError as error:
         yield str(error)
         return

@@ -230,11 +230,8 @@ TABLES: dict[str, TableOfKeys] = {
     "independent.", (
     Key("reference", Word(("body", "mean-plane", "located"), f"give {_PLANES}"), '"body"',
         "nominal separations are measured from the undeformed `body`, or from the deformed `mean-plane`; "
-        "`located`: from that, with summits at places instead of a mean field (`at = \"nominal\"`), their "
+        "`located`: from that, with summits at places instead of a mean field, their "
         "own if `[summits]` lists them and `resample` is `false`, otherwise at random", required=True),
-    Key("at", Word(("effective", "nominal")), '"nominal"',
-        "the separations of the scene are `effective` (default), those that asperities feel, or `nominal`",
-        "effective"),
     Key("bulk_modulus", Number("Pa"), "1e11", "composite modulus of the half-space, Pa; default: `E_star`"),
 ), make=lambda **keys: analytic.Interaction(**keys),
     advice='give mcgw.Interaction("body"), or mcgw.Interaction("mean-plane")'),

@@ -15,8 +15,6 @@ class Promise:
         It can draw a radius for each summit.
     own_laws : bool, optional
         It adds up summit by summit, so that each can have breaks of its own in the law of contact.
-    finds_balance : bool, optional
-        It has the asperities of each surface, which finds its own balance where they press each other down.
     places : bool, optional
         It has all asperities of a surface at once, those that do not touch too, and can place them.
     needs_density : bool, optional
@@ -30,7 +28,6 @@ class Promise:
     one_by_one: bool = True
     own_radii: bool = True
     own_laws: bool = False
-    finds_balance: bool = True
     places: bool = False
     needs_density: bool = False
     spends: bool = False
@@ -47,7 +44,6 @@ _PROMISES = {
     "aggregate": Promise(
         one_by_one=False,
         own_radii=False,
-        finds_balance=False,
         needs_density=True,
         spends=True,
         not_done=(_UNTOUCHED, _CROWDED),

@@ -75,10 +75,10 @@ class Scene(Fields, Shown):
         "conductance_si". Default: none.
     layer : Layer, optional
         Layer of any thickness on the first body: `mcgw.Layer`; becomes a part of `film`.
-    interaction : Interaction, {"body", "mean-plane"} or dict, optional
+    interaction : Interaction, {"body", "mean-plane", "located"} or dict, optional
         Asperity interaction: `mcgw.Interaction`, its reference alone, or its keys in a scene file. Adds
-        "nominal_separation" or "effective_separation", and puts stiffness and conductance in series with
-        the half-space. With ``{"reference": "located", "at": "nominal"}`` each surface is solved with its
+        "nominal_separation", and puts stiffness and conductance in series with
+        the half-space. With "located" each surface is solved with its
         summits at their own places where these are listed, or random ones. Default: asperities are
         independent.
     joint : Joint, {"air", "vacuum"} or dict, optional
@@ -251,10 +251,8 @@ def _extent(scene: Fields) -> tuple[float, float]:
     """Lowest and highest height that count; asperities may have felt lower separations than those asked."""
     asked = scene.separations
     if scene.lowest < min(asked):
-        asked = (*asked, scene.lowest - (_MARGIN if scene.nominal else 0.0))
+        asked = (*asked, scene.lowest - (_MARGIN if scene.located else 0.0))
     low, high = extent(scene.grading, scene.heights, asked)
-    if scene.nominal:  # a balance is sought in cells that begin at separations up to the highest asperity
-        high = max(high, min(scene.highest + 1, scene.heights.support[1]))
     return low, high
 
 

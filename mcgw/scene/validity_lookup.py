@@ -1,7 +1,6 @@
 """Measured error of the model of a scene against elasticity, or that there is none."""
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,7 +18,7 @@ _NONE = 1.0  # contacts per surface; no statement for fewer
 _SURE = 2.1  # standard deviations that hold 95 % of maps left out: light loads have long tails
 
 
-def validity_of(scene: Fields, separations: ArrayLike | None = None, *, felt: bool = False) -> Validity:
+def validity_of(scene: Fields, separations: ArrayLike | None = None) -> Validity:
     """Look up the error of a scene's model against elasticity.
 
     Parameters
@@ -28,8 +27,6 @@ def validity_of(scene: Fields, separations: ArrayLike | None = None, *, felt: bo
         Whose geometry counts: a grading, a film and friction do not.
     separations : array_like, optional
         Reduced separations. Default: those of the scene, or 64 of them.
-    felt : bool, optional
-        Whether they are felt separations even if those of the scene are nominal.
 
     Returns
     -------
@@ -48,7 +45,7 @@ def validity_of(scene: Fields, separations: ArrayLike | None = None, *, felt: bo
         return _nothing(
             h, f"outside the measured range ({_coordinate(place)} = {place.x:.4g}; {_span(grid)})"
         )
-    return _looked_up(scene, place, grid, h, h if felt else _felt(scene, h))
+    return _looked_up(scene, place, grid, h, h)
 
 
 def _nothing(h: Array, why: str) -> Validity:
@@ -98,14 +95,6 @@ def _share(scene: Fields, place: Place, found: Expected, felt: Array) -> dict[st
         contacts = np.sqrt(found.contacts / np.where(own < _NONE, np.nan, own))
     waves = np.sqrt(found.waves * place.correlation_area / area)
     return {name: contacts if name == "area" else np.fmax(contacts, waves) for name in COLUMNS}
-
-
-def _felt(scene: Fields, h: Array) -> Array:
-    """Felt separations of the mean surface."""
-    if not scene.nominal:
-        return h
-    theory: Any = scene.theory  # an `InteractingModel`, loaded for those scenes alone
-    return np.asarray(theory.effective(h))
 
 
 def _coordinate(place: Place) -> str:

@@ -136,8 +136,7 @@ def converge(
     Raises
     ------
     ValueError
-        If nothing touches, each surface finds its
-        own balance (``interaction.at = "nominal"``), or means are known better than values.
+        If nothing touches, summits are located, or means are known better than values.
     SceneError, TypeError
         As from `mcgw.Scene.replace`.
 
@@ -157,7 +156,7 @@ def converge(
             "test; give smaller ones"
         )
     draw = draw or _own
-    scene, h = scene_alone(scene, "converge"), np.unique(scene.separations)
+    scene, h = scene_alone(scene), np.unique(scene.separations)
     scene = replace(  # few separations, in order, and a feasible number of surfaces
         scene,
         separations=tuple(h[evenly(len(h), _MOST_SEPARATIONS)].tolist()),

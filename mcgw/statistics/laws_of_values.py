@@ -59,19 +59,17 @@ def laws_of_values(ensemble: Ensemble) -> LawsOfValues:
     ------
     ValueError
         Where values are not kept, are those of listed summits (laws with a step for each of them) or of
-        radii of their own under a law that yields, or come from a balance of each surface or a sampler that
-        spends some of the law.
+        radii of their own under a law that yields, or come from a sampler that spends some of the law.
     """
     scene, one_radius = ensemble.scene, ensemble.scene.curvature is None
     if (
         scene.keep == "statistics"
-        or scene.nominal
         or isinstance(scene.heights, MeasuredHeights)
         or promise_of(ensemble.sampler).spends
         or not (scene.hertzian or one_radius)
     ):
         raise ValueError(
-            "laws = True: needs kept values of surfaces at effective separations, from an exact sampler; not "
+            "laws = True: needs kept values of surfaces, from an exact sampler; not "
             "for listed summits, nor for individual radii with a law other than Hertz's"
         )
     h = np.unique(scene.separations)

@@ -233,7 +233,7 @@ def tradeoff(
     SceneError, TypeError
         If `seconds` is not positive; and as from `mcgw.Scene.replace`.
     ValueError
-        If each surface finds its own balance (``interaction.at = "nominal"``).
+        If summits are located.
 
     Examples
     --------
@@ -246,7 +246,7 @@ def tradeoff(
     limit = argument("seconds", SECONDS if seconds is None else seconds, "s")
     started = monotonic()
     check_object("tradeoff", scene, Scene)
-    scene = scene_alone(replace(scene.replace(**changes), rel_err=None, max_seconds=None), "tradeoff")
+    scene = scene_alone(replace(scene.replace(**changes), rel_err=None, max_seconds=None))
     chosen = _chosen(scene)
     methods = methods_for(scene, chosen)
     with told(progress, "s") as tell:

@@ -13,7 +13,7 @@ Every value may be off by its share, and so may the mean, in the same direction 
 """
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.special import chdtrc, ndtr
@@ -32,8 +32,6 @@ if TYPE_CHECKING:
 FALSE_ALARM = 1e-3
 _MOST_SEPARATIONS = 48
 _SKEW, _KURTOSIS = 0.1, 0.1  # allowed departure from a Gaussian of a combination of means
-_SMALL, _THIRD = 0.2, 3.0  # standard errors that theory may be off by, and what it leaves out, at most
-_COMING_AND_GOING = 20.0  # share of a separation's variance: asperities that come and go
 _INDEPENDENT = 1e-9  # least variance of a combination, above rounding errors
 _SELDOM = 1e-4  # expected summits flatter than the bound, per ensemble
 _FLAT = 1e-3  # curvature down to which the share of flatter summits goes as its fourth power
@@ -153,9 +151,9 @@ def verdict(ensemble: Ensemble) -> Verdict:
     The means are turned to the principal axes of their exact correlation. Of these, those count
     along which the mean of all asperities is Gaussian, which its exact skewness and kurtosis tell:
     so the false-alarm rate is the stated one also where few asperities touch. Of asperities that press each
-    other down the sums are tested, without the half-space; where each surface finds its own balance, those
-    means that theory knows well enough. Of a scene that asks for less than the last digits, what is beyond
-    its accuracy counts, of the means one by one and of their combinations in which it cannot be seen.
+    other down the sums are tested, without the half-space. Of a scene that asks for less than the last
+    digits, what is beyond its accuracy counts, of the means one by one and of their combinations in which it
+    cannot be seen.
     """
     return tested(ensemble, _MOST_SEPARATIONS).verdict
 
@@ -167,7 +165,7 @@ def tested(ensemble: Ensemble, most: int) -> Tested:
     only their means in series with the half-space are then known.
     """
     scene, surfaces = ensemble.scene, ensemble.n_surfaces
-    if scene.interaction is not None and not scene.interaction.nominal:
+    if scene.interaction is not None:
         return tested(asperities_alone(ensemble), most)
     h = np.unique(scene.separations)
     h = h[evenly(len(h), most)]
@@ -185,12 +183,12 @@ def tested(ensemble: Ensemble, most: int) -> Tested:
     parts = parts.take(varies, unit)
     errors = np.sqrt(surfaces / scene.n_asperities) / unit
     z = difference[varies] * errors
-    usable = _gaussian(parts, asperities) & (_left_out(scene, h)[varies] * errors < _SMALL)
+    usable = _gaussian(parts, asperities)
     allowed = allowance(scene, exact[varies], 1 / errors)
     residual, counts = np.zeros(len(means)), np.zeros(len(means), dtype=np.bool_)
     residual[varies], counts[varies] = beyond(z, allowed), usable
     parts, z, allowed = parts.take(usable), beyond(z, allowed)[usable], allowed[usable]
-    axes = parts.whitening(max(_resolved(scene, h), told_apart(allowed)))
+    axes = parts.whitening(max(_INDEPENDENT, told_apart(allowed)))
     axes = axes[:, _gaussian(parts.turned(axes), asperities)]
     chi_square = float(np.sum((z @ axes) ** 2))
     degrees = axes.shape[1]
@@ -210,34 +208,6 @@ def tested(ensemble: Ensemble, most: int) -> Tested:
         counts=counts.reshape(shape),
         verdict=found,
     )
-
-
-def _resolved(scene: Scene, h: Array) -> float:
-    """Variance above which theory is accurate for a combination.
-
-    Where each surface has a separation of its own, single asperities come and go between it and that of the
-    mean surface. Theory is linear in what surfaces differ by, and knows nothing of that.
-    """
-    if scene.interaction is None:
-        return _INDEPENDENT
-    widest = float(np.max(scene.theory.std("effective_separation", h)))
-    return min(max(_INDEPENDENT, _COMING_AND_GOING * widest), 0.5)
-
-
-def _left_out(scene: Scene, h: Array) -> Array:
-    """Possible error of theory for each quantity and separation, in units of its scale: 0 if exact.
-
-    Of means that it knows to second order, the third: as the second is to the mean, so it is to the second.
-    """
-    if scene.interaction is None:
-        return np.zeros(len(scene.quantities) * len(h))
-    found, theory = [], cast(Any, scene.theory)
-    for name in scene.quantities:
-        mean, first = theory.mean(name, h), theory.balanced(name, h)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            third = np.nan_to_num(_THIRD * (mean - first) ** 2 / np.abs(mean), nan=np.inf)
-        found.append(third / quantity_of(name).scale(scene.surface))
-    return np.concatenate(found)
 
 
 def _gaussian(parts: Fluctuations, asperities: float) -> Marks:

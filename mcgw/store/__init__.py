@@ -24,7 +24,7 @@ Of a scene::
     /stiffness            float64 (surfaces, separations) N/m
     /contacts             int64   (surfaces, separations) 1
     /conductance          float64 (surfaces, separations) m   (times 1/rho)
-    /nominal_separation   float64 (surfaces, separations) 1   (or effective_separation: interaction)
+    /nominal_separation   float64 (surfaces, separations) 1   (interaction)
     /joint_conductance    float64 (surfaces, separations) W/(m^2 K)   (and gap_conductance: joint)
 
 With ``keep = "statistics"`` a file holds none of these tables: see `statistics_file`.

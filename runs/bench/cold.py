@@ -34,8 +34,6 @@ seed = 1
 FEATURES = {
     "Kogut and Etsion": "contact.law=kogut-etsion contact.critical=0.1",
     "accuracy 1e-6": "ensemble.accuracy=1e-6",
-    "nominal separations": "interaction.reference=mean-plane interaction.at=nominal "
-    "contact.separations.start=1",
 }
 Found = dict[str, list[tuple[float, float]]]
 
