@@ -121,7 +121,7 @@ def sweep(
     >>> stiffer.gain.round()
     array([6., 6., 5.])
     >>> sweep.ratio("load", (2, 0), (1, 0)).ratio.round(2)
-    array([1.71, 1.85, 1.93])
+    array([1.71, 1.86, 1.93])
     """
     check_object("sweep", scene, Scene)
     if not statistics or not set(statistics) <= set(STATISTICS):
