@@ -122,13 +122,13 @@ def test_lines_of_surfaces_by_hand(solved):
     budget, n = solved.budget(), 20
     for k, name in enumerate(NAMES):
         x, low, high = solved.surfaces[name], *solved.interval(name)
-        assert budget.shares["drawn surfaces"][k] == pytest.approx((high - low) / 2 / solved.theory[name])
-        assert budget.shares["specimens"][k] == pytest.approx(1.96 * x.std(ddof=1) / solved.theory[name])
+        assert budget.shares["drawn surfaces"][k] == pytest.approx((high - low) / 2 / solved.value[name])
+        assert budget.shares["specimens"][k] == pytest.approx(1.96 * x.std(ddof=1) / solved.value[name])
     assert (budget.shares["drawn surfaces"] < 3 * budget.shares["specimens"] / np.sqrt(n)).all()
     v = solved.scene.validity(solved.theory["separation"])
     assert budget.shares["model"][0] == pytest.approx(v.error["area"][0])
     assert budget.shares["model"][2] == budget.shares["model"][1]
-    gap = v.error["separation"][0] * solved.scene.surface.sigma / solved.theory["gap_to_summits"]
+    gap = v.error["separation"][0] * solved.scene.surface.sigma / solved.value["gap_to_summits"]
     assert budget.shares["model"][3] == pytest.approx(gap)
     squares = sum(share**2 for share in budget.shares.values())
     np.testing.assert_allclose(budget.all, np.sqrt(squares))
@@ -157,8 +157,8 @@ def test_at_a_given_area_no_model_was_measured():
     assert "model (its error was measured at a given load" in budget.advice
     assert np.isnan(solved.corrected("load").value)
     assert "at a given load" in solved.corrected("load").why
-    assert np.isnan(solved.table().only("corrected").columns[0].values).all()
-    assert "corrected" not in repr(solved)
+    assert np.isnan(solved.table().only("best").columns[0].values).all()
+    assert "best (95" not in repr(solved)
 
 
 def test_corrected_is_divided_by_its_bias(solved):
@@ -166,20 +166,20 @@ def test_corrected_is_divided_by_its_bias(solved):
     for name, column in (("area", "area"), ("stiffness", "stiffness"), ("conductance", "stiffness")):
         found = solved.corrected(name)
         bias = v.bias[column][0]
-        assert found.value * (1 + bias) == pytest.approx(solved.theory[name])
+        assert found.value * (1 + bias) == pytest.approx(solved.value[name])
         most = (v.error[column][0] - abs(bias)) / (1 + bias)  # of the very summits of a surface
-        most = np.hypot(most, 1.96 * solved.surfaces[name].std(ddof=1) / solved.theory[name])
+        most = np.hypot(most, 1.96 * solved.surfaces[name].std(ddof=1) / solved.value[name])
         assert found.high / found.value == pytest.approx(1 + most)
         assert found.low * found.high == pytest.approx(found.value**2)
     gap, sigma = solved.corrected("gap_to_summits"), solved.scene.surface.sigma
-    assert gap.value == pytest.approx(solved.theory["gap_to_summits"] - sigma * v.bias["separation"][0])
+    assert gap.value == pytest.approx(solved.value["gap_to_summits"] - sigma * v.bias["separation"][0])
     off = sigma * (v.error["separation"][0] - abs(v.bias["separation"][0]))
     off = np.hypot(off, 1.96 * solved.surfaces["gap_to_summits"].std(ddof=1))
     assert gap.high - gap.value == pytest.approx(off)
     assert "contacts: its error was not measured" in solved.corrected("contacts").why
     named = {column.name: column for column in solved.table().flat}
     row = list(named["quantity"].values).index("area")
-    assert named["corrected"].values[row] == solved.corrected("area").value
+    assert named["best"].values[row] == solved.corrected("area").value
 
 
 def test_where_nothing_was_measured_the_answer_stays_alone():
@@ -188,8 +188,8 @@ def test_where_nothing_was_measured_the_answer_stays_alone():
     model = solved.budget().lacking["model"]
     assert model == against_elasticity([solved]).unknown
     assert "Hertz" in model
-    assert np.isnan(solved.table().only("corrected").columns[0].values).all()
-    assert "corrected" not in repr(solved)
+    assert np.isnan(solved.table().only("best").columns[0].values).all()
+    assert "best (95" not in repr(solved)
 
 
 @pytest.mark.slow
@@ -207,7 +207,7 @@ def test_corrected_answers_are_those_of_boundary_elements():
             solved = mcgw.solve(scene, load=row["p"] * fitted_maps.MODULUS * slope * area)
             found, right = solved.corrected("area"), row["area"] * area
             off.append(found.value / right - 1)
-            plain.append(solved.theory["area"] / right - 1)
+            plain.append(solved.value["area"] / right - 1)
             missed += not found.low <= right <= found.high
     assert np.sqrt(np.mean(np.square(off))) < 0.06
     assert np.sqrt(np.mean(np.square(plain))) > 0.15  # as the model itself is

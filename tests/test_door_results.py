@@ -93,7 +93,7 @@ COLUMNS = {  # as files have them
     "solution": [
         (
             lambda x: x.table(),
-            "quantity unit theory mean low_95 high_95 std specimen_05 specimen_95 corrected corrected_95",
+            "quantity unit value low_95 high_95 std specimen_05 specimen_95 infinite best best_95",
         ),
         (lambda x: x.budget().table(), "95_% area stiffness conductance gap_to_summits"),
         (lambda x: x.budget().sheet().table, "95_% area stiffness conductance gap_to_summits"),
@@ -388,9 +388,9 @@ def test_one_load_by_four_names(scene):
         assert found.theory == pytest.approx(one.theory, rel=1e-14)
         np.testing.assert_allclose(found.surfaces["area"], one.surfaces["area"], rtol=1e-12)
     several = mcgw.solve(scene, area_fraction=["0.1 %", 0.002])
-    assert [s.value / area for s in several] == pytest.approx([0.001, 0.002], rel=1e-15)
+    assert [s.amount / area for s in several] == pytest.approx([0.001, 0.002], rel=1e-15)
     for words in (np.array([1e-9]), [1e-9], ["1e-3 mm^2"]):
-        assert [s.value for s in mcgw.solve(scene, area=words)] == [1e-9]
+        assert [s.amount for s in mcgw.solve(scene, area=words)] == [1e-9]
     assert math.isclose(mcgw.solve(scene, load=2.0, n_surfaces=7).surfaces["load"].size, 7)
 
 

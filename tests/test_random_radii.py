@@ -11,7 +11,7 @@ import analytic
 import mcgw
 from analytic.summits import rule_of_radii, rules_of_radii
 from mcgw.ensemble import solution
-from mcgw.sampling.asperities import summits, summits_drawn, touching_summits
+from mcgw.sampling.asperities import summits, summits_drawn
 from mcgw.sampling.own_radii import radius_table
 from mcgw.sampling.samplers import sampler_of
 
@@ -305,10 +305,10 @@ def test_solved_on_each_surface(law, monkeypatch):
     summits_of = []
 
     def listed(*asked):
-        summits_of.append(touching_summits(*asked))
+        summits_of.append(summits_drawn(*asked))
         return summits_of[-1]
 
-    monkeypatch.setattr(solution, "touching_summits", listed)
+    monkeypatch.setattr(solution, "summits_drawn", listed)
     scene = spectral(law=law, n_asperities=500, n_surfaces=3)
     found = mcgw.solve(scene, load=2.0)
     assert scene.theory.mean("load", found.theory["separation"]) == pytest.approx(2.0, rel=1e-9)

@@ -64,13 +64,13 @@ def drawn_by(monkeypatch, scene, given, values):
     """Solutions, and the scene whose heights were drawn for them."""
     import mcgw.ensemble.solution as module
 
-    listed, scenes = module.touching_summits, []
+    listed, scenes = module.summits_drawn, []
 
-    def spy(drawn, number):
+    def spy(drawn, *rest):
         scenes.append(drawn)
-        return listed(drawn, number)
+        return listed(drawn, *rest)
 
-    monkeypatch.setattr(module, "touching_summits", spy)
+    monkeypatch.setattr(module, "summits_drawn", spy)
     found = solutions(scene, given, values)
     monkeypatch.undo()
     return found, scenes[0]

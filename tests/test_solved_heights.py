@@ -28,7 +28,7 @@ def test_their_loads_add_up_to_what_was_given(surface, count, grading):
     scene = mcgw.Scene(surface, separations=0.0, grading=grading, count=count, n_surfaces=3, seed=2)
     for found in mcgw.solve(scene, pressure=["0.1 MPa", "2 MPa"]):
         for i in (0, 2):
-            assert load_of(found, i) == pytest.approx(found.value, rel=1e-9)
+            assert load_of(found, i) == pytest.approx(found.amount, rel=1e-9)
             assert found.heights(i).size == found.radii(i).size == found.surfaces["contacts"][i]
             assert np.all(np.diff(found.heights(i)) <= 0)
             assert found.heights(i)[-1] > found.surfaces["separation"][i]
@@ -45,7 +45,7 @@ def test_of_areas_too_and_below_what_was_drawn_at_first(monkeypatch):
         below += np.count_nonzero(h < found.drawn.lowest)
         for i in range(40):
             area = np.pi * PLAIN.radius * PLAIN.sigma * np.sum(found.heights(i) - h[i])
-            assert area == pytest.approx(found.value, rel=1e-9)
+            assert area == pytest.approx(found.amount, rel=1e-9)
     assert below
 
 

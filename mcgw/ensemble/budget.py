@@ -1,6 +1,6 @@
 """Error budget of an answer at a given load, cause by cause; and the answer corrected by measured errors.
 
-The answer is that of the exact theory; it is compared with a real specimen of the scene's nominal area.
+The answer is the mean over specimens; it is compared with a real specimen of the scene's nominal area.
 """
 
 import math
@@ -25,6 +25,7 @@ Answers = dict[str, float]
 
 _SURE = 1.96  # standard deviations on either side that hold 95 %
 _LARGE = 0.2  # share of an answer
+MOST_YIELDING = 0.05  # share of the contacts past first yield that an elastic law bears
 _STEP = 1e-3  # step of ln(parameter): a central difference has a relative error of 1e-6
 # Measured error of each answer. A conductance has that of stiffness: Barber (2003), Proc. R. Soc. A 459.
 _ERROR_OF = {"area": "area", "stiffness": "stiffness", "conductance": "stiffness"}
@@ -87,13 +88,25 @@ class Budget(Shown):
 
     @property
     def all(self) -> Array:
-        """Total: root of the sum of squares of the known lines."""
-        return np.asarray(np.sqrt(np.nansum(np.array([*self.shares.values()]) ** 2, axis=0)))
+        """Total: root of the sum of squares of the lines; nan where one but the parameters is not known.
+
+        Parameters without an uncertainty are taken as given.
+        """
+        squares = {line: share**2 for line, share in self.shares.items()}
+        squares["parameters"] = np.nan_to_num(squares["parameters"])
+        return np.asarray(np.sqrt(np.sum([*squares.values()], axis=0)))
+
+    def told(self, name: str, scatter: float) -> str:
+        """Total of one answer; without one, the `scatter` of specimens and that more is not known."""
+        total = self.all[self.quantities.index(name)] if name in self.quantities else math.nan
+        if np.isnan(total):
+            return f"(scatter of specimens {percent(scatter)}; error of the model not known)"
+        return f"± {percent(total)}"
 
     def _largest(self) -> tuple[str, float]:
         """The line that dominates the first quantity, and its share."""
         first = {line: float(share[0]) for line, share in self.shares.items() if not np.isnan(share[0])}
-        return max(first.items(), key=lambda item: item[1])
+        return max(first.items(), key=lambda item: item[1], default=("specimens", math.nan))
 
     @property
     def brief(self) -> str:
@@ -137,6 +150,7 @@ def budget_of(
     validity: Validity,
     again: Callable[[Scene], Answers],
     at_load: bool,
+    yielding: float = math.nan,
 ) -> Budget:
     """Make the budget of a solution: see `mcgw.ensemble.solved.Solution.budget`, which calls this.
 
@@ -151,6 +165,8 @@ def budget_of(
         The answers of another scene at the same load, or area.
     at_load : bool
         Whether a load was given: at a given area no error of a model was measured.
+    yielding : float
+        Share of the contacts past first yield under an elastic law, whose error is then not known.
     """
     names = tuple(
         name for name in ("load", *_ERROR_OF) if name in surfaces and name != ("area", "load")[at_load]
@@ -172,10 +188,19 @@ def budget_of(
     if not at_load:
         model[:] = np.nan
         lacking["model"] = "its error was measured at a given load, not at a given area"
+    elif why := yields(yielding):
+        model[:], lacking["model"] = np.nan, why
     elif np.isnan(model[0]):
         lacking["model"] = validity.unknown or "not measured"
     lines = dict(zip(LINES, (np.abs(drawn), np.abs(scatter), parameters, model), strict=True))
     return Budget(title, lines, names, lacking, parts)
+
+
+def yields(share: float) -> str:
+    """Why the error of an elastic law is not known where so many contacts yield; empty if it is."""
+    if not share > MOST_YIELDING:
+        return ""
+    return f'{share:.0%} of the contacts yield: use contact.law = "kogut-etsion"'
 
 
 def slopes_of(

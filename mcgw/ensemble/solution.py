@@ -11,9 +11,10 @@ from mcgw.ensemble.at_load import NEGATIVE, answers_at, asperities_of, quantitie
 from mcgw.ensemble.separation import Summits
 from mcgw.ensemble.solved import Solution
 from mcgw.machine.progress import Progress, told
-from mcgw.sampling.asperities import summits, touching_summits
+from mcgw.sampling.asperities import listing_sampler, summits, summits_drawn
+from mcgw.sampling.block import Sampler
 from mcgw.scene.arguments import argument, as_toml, check_object
-from mcgw.scene.scene import Scene
+from mcgw.scene.scene import Scene, storable
 from mcgw.scene.section import nearest
 
 _MARGIN = 6.0  # standard deviations of a surface's separation that are drawn at once
@@ -135,15 +136,15 @@ def solutions(
             f"give {2 * least:.1g} {q.unit} or more"
         )
     theory = [theory_at(scene, q, value) for value in values]
-    drawn = _drawn(specimens, q, [at["separation"] for at in theory])
+    drawn = storable(_drawn(specimens, q, [at["separation"] for at in theory]))
     if drawn.touching * drawn.n_surfaces > _MOST_HEIGHTS:
         raise ValueError(
             f"{drawn.n_surfaces} surfaces with {drawn.touching:.3g} contacts each are too many to solve "
             f"singly; give fewer than {_MOST_HEIGHTS / drawn.touching:.0f} surfaces"
         )
-    rows = []
+    rows, sampler = [], listing_sampler(drawn)
     for number in range(drawn.n_surfaces):
-        rows.append(_surface(scene, drawn, number, q, values))
+        rows.append(_surface(scene, sampler, number, q, values))
         if tell is not None:
             tell(number + 1, drawn.n_surfaces)
     surfaces = [{x: np.array([row[k][x] for row in rows]) for x in at} for k, at in enumerate(theory)]
@@ -188,10 +189,11 @@ def _drawn(scene: Scene, q: Quantity, separations: Sequence[float]) -> Scene:
 
 
 def _surface(
-    scene: Scene, drawn: Scene, number: int, q: Quantity, values: Sequence[float]
+    scene: Scene, sampler: Sampler, number: int, q: Quantity, values: Sequence[float]
 ) -> list[dict[str, float]]:
     """All quantities of one surface at each value."""
-    touching = Summits.of(scene, *touching_summits(drawn, number))
+    drawn = sampler.scene
+    touching = Summits.of(scene, *summits_drawn(drawn, sampler, number))
     whole: Summits | None = None
     rows = []
     for value in values:

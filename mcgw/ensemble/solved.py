@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.special import stdtrit
 
-from analytic import SEPARATIONS, quantity_of
+from analytic import SEPARATIONS, quantity_of, yielding_share
 from analytic.arrays import Array
-from mcgw.ensemble.at_load import GAPS, asperities_of, mean_surface
-from mcgw.ensemble.intervals import FEWEST, MANY, interval_column, laws_are_quick
+from analytic.at_load import specimen_means
+from mcgw.ensemble.at_load import GAPS, asperities_of, mean_surface, quantities_at
+from mcgw.ensemble.intervals import FEWEST, interval_column, laws_are_quick
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
 from mcgw.machine.terminal import plotted
@@ -25,6 +26,9 @@ if TYPE_CHECKING:
     from mcgw.ensemble.budget import Budget, Corrected
 
 
+_ENOUGH = 10  # surfaces for each number that a control variate is fitted with
+
+
 @dataclass(frozen=True, repr=False)
 class Solution(Shown):
     """The state of surfaces at one given load or real area.
@@ -35,10 +39,11 @@ class Solution(Shown):
         The scene that describes the surfaces.
     given : str
         Which quantity was given: "load" or "area".
-    value : float
+    amount : float
         Its value, N or m^2.
     theory : dict of str to float
-        "separation" (d/sigma) and every quantity (SI) of the mean surface, on loading.
+        "separation" (d/sigma) and every quantity (SI) of an infinite surface at that pressure, on loading;
+        the mean of finite ones is `value`.
         With asperity interaction the separation is the effective one, and "nominal_separation" is given as
         well. "mean_gap" is the distance of the mean planes of the surfaces, m; where they are not known there
         is "gap_to_summits" instead: see `answers_at`.
@@ -50,7 +55,7 @@ class Solution(Shown):
 
     scene: Scene
     given: str
-    value: float
+    amount: float
     theory: dict[str, float]
     surfaces: dict[str, Array]
     drawn: Scene
@@ -58,10 +63,10 @@ class Solution(Shown):
     @property
     def title(self) -> str:
         """The given load or real area, in words."""
-        share = self.value / self.scene.surface.nominal_area
+        share = self.amount / self.scene.surface.nominal_area
         if self.given == "load":
-            return f"At the load {self.value:.6g} N = pressure {share / 1e6:.6g} MPa"
-        return f"At the real area {self.value:.6g} m^2 = {share:.4%} of the nominal area"
+            return f"At the load {self.amount:.6g} N = pressure {share / 1e6:.6g} MPa"
+        return f"At the real area {self.amount:.6g} m^2 = {share:.4%} of the nominal area"
 
     def heights(self, surface: int) -> Array:
         """Reduced heights of the asperities of a surface in contact at its separation, in descending order.
@@ -100,13 +105,84 @@ class Solution(Shown):
         order = np.argsort(-s, kind="stable")[: np.count_nonzero(s > h)]
         return s[order], None if ratios is None else ratios[order]
 
+    @cached_property
+    def value(self) -> dict[str, float]:
+        """Mean over specimens, each at its own separation under the given load: the answer of the model.
+
+        Sums of asperities are averaged exactly where the law of the separation is quickly known (see
+        `analytic.at_load`); what is not a sum, as a resistance, is then the mean of the surfaces drawn,
+        corrected by what their sums and separations lack (a control variate). Otherwise it is the mean of
+        the surfaces drawn.
+        """
+        return {name: estimate[0] for name, estimate in self._estimates.items()}
+
     def interval(self, name: str, level: float = 0.95) -> tuple[float, float]:
-        """Confidence interval of the mean over surfaces (Student's t); nan if they have too few contacts."""
-        x = self.surfaces[name]
-        if len(x) * self.theory["contacts"] < FEWEST:
+        """Confidence interval of `value` (Student's t); of no width where that is exact.
+
+        nan if the surfaces drawn have too few contacts.
+        """
+        value, error, freedom = self._estimates[name]
+        if error == 0:
+            return value, value
+        if self.surfaces.get("contacts", np.full(self._many, np.inf)).sum() < FEWEST:
             return float("nan"), float("nan")
-        half = stdtrit(len(x) - 1, (1 + level) / 2) * x.std(ddof=1) / np.sqrt(len(x))
-        return float(x.mean() - half), float(x.mean() + half)
+        half = stdtrit(freedom, (1 + level) / 2) * error
+        return float(value - half), float(value + half)
+
+    @property
+    def _many(self) -> int:
+        return len(next(iter(self.surfaces.values())))
+
+    @cached_property
+    def _estimates(self) -> dict[str, tuple[float, float, int]]:
+        """Mean over specimens of each answer, its standard error, and the degrees of freedom of that."""
+        exact = {self.given: self.amount, **self._exact}
+        controls: list[str] = [
+            name for name in ("separation", "conductance_si", "stiffness", "area") if name in exact
+        ]
+        return {
+            name: (exact[name], 0.0, 0) if name in exact else self._estimate(x, exact, controls)
+            for name, x in self.surfaces.items()
+        }
+
+    def _estimate(self, x: Array, exact: dict[str, float], controls: list[str]) -> tuple[float, float, int]:
+        """Mean of what is no sum, less what the surfaces drawn have too much of those that are."""
+        m = len(x)
+        known = {name: self.surfaces[name] for name in controls if name in self.surfaces}
+        if m < _ENOUGH * (1 + len(known)):
+            known = {}
+        off = [(y - exact[name]) / (y.std() or 1.0) for name, y in known.items()]
+        columns = np.stack([np.ones(m), *off], axis=1)
+        fitted = np.linalg.lstsq(columns, x, rcond=1e-9)[0]
+        mean, left = fitted[0], x - columns @ fitted
+        freedom = max(m - 1 - len(known), 1)
+        return float(mean), float(np.sqrt(left @ left / freedom / m)), freedom
+
+    @cached_property
+    def _exact(self) -> dict[str, float]:
+        """Means over specimens that need no draw: by quadrature, in the units of `surfaces`."""
+        alone = asperities_of(self.scene)
+        if not laws_are_quick(alone):
+            return {}
+        scene, sigma = self.scene, self.scene.surface.sigma
+        summed = [name for name in quantities_at(alone) if name in self.surfaces and name != self.given]
+        try:
+            found = specimen_means(alone.theory, self.given, self.amount, summed)
+        except ValueError:
+            return {}
+        found = {name: x for name, x in found.items() if name == "separation" or not scene.series(name)}
+        if scene.interaction is None:
+            rise = self.theory[scene.gap] - sigma * self.theory["separation"]
+            found[scene.gap] = sigma * found["separation"] + rise
+            if "conductance_si" in found:
+                found["contact_conductance"] = found["conductance_si"] / scene.surface.nominal_area
+        elif self.given == "load":
+            for name in ("nominal_separation", *GAPS):  # moved from the separation alike on all surfaces
+                if name in self.theory:
+                    unit = sigma if name in GAPS else 1.0
+                    moved = found["separation"] - self.theory["separation"]
+                    found[name] = self.theory[name] + unit * moved
+        return found
 
     @cached_property
     def separation_law(self) -> "Law | None":
@@ -115,7 +191,7 @@ class Solution(Shown):
         It is not known where sums may rise with the separation, as with adhesive asperities.
         """
         try:
-            return asperities_of(self.scene).theory.separation_law(self.value, self.given)
+            return asperities_of(self.scene).theory.separation_law(self.amount, self.given)
         except ValueError:
             return None
 
@@ -172,10 +248,26 @@ class Solution(Shown):
             if name != self.given
         }
 
-    def budget(self) -> "Budget":
-        """Error budget: how much a real specimen may differ from `theory`, cause by cause.
+    @cached_property
+    def yielding(self) -> float:
+        """Share of the contacts that pass first yield at this separation, under an elastic law.
 
-        The causes are the number of surfaces drawn (it affects the Monte Carlo mean, not the theory), the
+        nan if the scene has no hardness beside such a law: see `analytic.yielding_share`.
+        """
+        softer = self.scene.softer
+        if softer is None or not self.scene.law.elastic:
+            return float("nan")
+        return float(yielding_share(asperities_of(self.scene).theory, self.theory["separation"], *softer))
+
+    @property
+    def verdict(self) -> str:
+        """Measured error of the model, and whether contacts yield that it takes as elastic, in one line."""
+        return elastic_verdict([self])
+
+    def budget(self) -> "Budget":
+        """Error budget: how much a real specimen may differ from `value`, cause by cause.
+
+        The causes are the number of surfaces drawn (none where `value` is exact), the
         scatter of specimens (from one nominal area to another), the uncertainty of the parameters of the
         surface (``[surface] uncertainty``), and the error of the model against elasticity, where it was
         measured. The total is the root of the sum of their squares.
@@ -199,16 +291,17 @@ class Solution(Shown):
         return budget_of(
             self.scene,
             self.title,
-            self.theory,
+            self.value,
             self.surfaces,
             {name: self.interval(name) for name in self.surfaces},
             against_elasticity([self]),
-            lambda scene: mean_surface(scene, self.given, self.value),
+            lambda scene: mean_surface(scene, self.given, self.amount),
             self.given == "load",
+            self.yielding,
         )
 
     def corrected(self, quantity: str) -> "Corrected":
-        """Answer of the theory, corrected by the measured error of the model against boundary elements.
+        """`value`, corrected by the measured error of the model against boundary elements.
 
         Parameters
         ----------
@@ -221,48 +314,50 @@ class Solution(Shown):
             With the ends between which 95 % of such surfaces lie; nan where nothing was measured, with the
             reason in `why`.
         """
-        from mcgw.ensemble.budget import Corrected, corrected
+        from mcgw.ensemble.budget import Corrected, corrected, yields
 
         if self.given != "load":
             return Corrected.unknown("errors of models are measured at a given load")
+        if why := yields(self.yielding):
+            return Corrected.unknown(why)
         std = float(self.surfaces[quantity].std(ddof=1))
-        return corrected(against_elasticity([self]), self.scene, quantity, self.theory[quantity], std)
+        return corrected(against_elasticity([self]), self.scene, quantity, self.value[quantity], std)
 
     def plot(self, ax: Any = None) -> Any:
         """Draw how the separation differs from surface to surface; returns the axes."""
         return plotted(self, ax)
 
     def sheet(self) -> Sheet:
-        """Theory and Monte Carlo side by side."""
-        many = f"{len(next(iter(self.surfaces.values())))} surfaces of {self.scene.n_asperities} asperities"
+        """The answers, and how specimens differ."""
+        from mcgw.ensemble.budget import yields
+
+        many = f"{self._many} surfaces of {self.scene.n_asperities} asperities"
         many += ", drawn from the measured summits" if self.scene.as_measured else ""
         facts = [("over", many), ("elasticity", against_elasticity([self]).brief)]
-        if (contacts := self.theory["contacts"]) < MANY:
-            few = f"{contacts:.2g} contacts per surface: few for theory, which is of a large surface"
-            facts.append(("caution", f"{few}; use a larger area"))
+        facts += [("yielding", why)] if (why := yields(self.yielding)) else []
         table = self.table()
-        table = replace(table, columns=tuple(x for x in table.columns if x.name != "std"))
+        table = replace(table, columns=tuple(x for x in table.columns if x.name not in ("std", "infinite")))
         if np.isnan(table.flat[-1].values).all():
             table = replace(table, columns=table.columns[:-1])
         found = [k for k, name in enumerate(self.surfaces) if name != self.given]
         return Sheet(table.title, facts, table.at(found))
 
     def table(self) -> Table:
-        """Theory beside the mean over the surfaces, a row for each quantity."""
+        """The mean over specimens, their scatter and the corrected answer, a row for each quantity."""
         units = {**dict.fromkeys(GAPS, "m"), "separation": "sigma", **dict.fromkeys(SEPARATIONS, "sigma")}
         names = list(self.surfaces)
         low, high = np.array([self.interval(name) for name in names]).T
         found = [self.surfaces[name] for name in names]
         least, most = np.array([self.specimens(name) for name in names]).T
-        error = (high - low) / 4
+        means = np.array([self.value[name] for name in names])
+        error = np.where(high > low, (high - low) / 4, np.where(high == low, 1e-6 * np.abs(means), np.nan))
         right, below, above, _ = map(np.array, zip(*map(self.corrected, names), strict=True))
-        off = Column("corrected_95", (above - below) / 2, form=".1g")
+        off = Column("best_95", (above - below) / 2, form=".1g")
         return Table(
             (
                 Column("quantity", names),
                 Column("unit", [units.get(name) or self.scene.quantity(name).unit for name in names]),
-                Column("theory", [self.theory[name] for name in names], error=error),
-                Column("mean", [x.mean() for x in found], error=error),
+                Column("value", [self.value[name] for name in names], error=error),
                 interval_column(low, high),
                 Column("std", [x.std(ddof=1) for x in found], form=".3g"),
                 Column(
@@ -273,10 +368,11 @@ class Solution(Shown):
                     between=" ... ",
                     beside=Column("specimen_95", most, form=".4g"),
                 ),
+                Column("infinite", [self.theory[name] for name in names], "infinite surface", form=".5g"),
                 Column(
-                    "corrected",
+                    "best",
                     right,
-                    "corrected (95 %)",
+                    "best (95 %)",
                     error=(above - below) / 2,
                     missing="",
                     beside=off,
@@ -290,6 +386,21 @@ class Solution(Shown):
 def against_elasticity(solutions: Sequence[Solution]) -> Validity:
     """Error of the model against elasticity at solutions of one scene, at their effective separations."""
     return validity_of(solutions[0].scene, [each.theory["separation"] for each in solutions])
+
+
+def elastic_verdict(solutions: Sequence[Solution]) -> str:
+    """Measured error of the model at some solutions of one scene, and whether contacts yield, in one line."""
+    from mcgw.ensemble.budget import MOST_YIELDING, yields
+
+    error = against_elasticity(solutions).verdict
+    if not solutions[0].scene.law.elastic:
+        return error
+    most = max((each.yielding for each in solutions), key=lambda share: np.nan_to_num(share, nan=-1.0))
+    if np.isnan(most):
+        return f"{error}; yielding not looked at: give contact.hardness"
+    if most > MOST_YIELDING:
+        return f"Model error: not known, {yields(most)}"
+    return f"{error}; {most:.1%} of the contacts yield"
 
 
 def at_solutions(scene: Scene, solutions: Sequence[Solution]) -> Scene:

@@ -141,7 +141,7 @@ def _(result: Solution, ax: Any) -> None:
     ax.axvline(result.theory["separation"], color=THEORY, label="theory, infinite surface")
     ax.axvline(x.mean(), color=MONTE_CARLO, ls="--", label="mean of the surfaces")
     unit = quantity_of(result.given).unit
-    ax.set(xlabel=_SEPARATION, ylabel="surfaces", title=f"at {result.given} = {result.value:.6g} {unit}")
+    ax.set(xlabel=_SEPARATION, ylabel="surfaces", title=f"at {result.given} = {result.amount:.6g} {unit}")
     ax.legend()
 
 

@@ -6,12 +6,10 @@ from dataclasses import replace
 import numpy as np
 
 from mcgw.ensemble.at_load import GAPS
-from mcgw.ensemble.intervals import MANY
-from mcgw.ensemble.solved import Solution, against_elasticity
+from mcgw.ensemble.solved import Solution, elastic_verdict
 from mcgw.formats.table import SEPARATION, Column, Table, joined
 from mcgw.scene.in_words import contact_facts, joint_text
 from mcgw.scene.scene import Scene
-from mcgw.scene.validity import percent
 
 _SHOWN = ("contact law", "film", "interaction", "joint")  # what of the contacts counts at a given load
 _GAP = {
@@ -31,7 +29,7 @@ def solutions_text(
     With `scatter` also how many asperities it takes; `full` adds every quantity and the sources of error.
     """
     lines = [_brief(x) for x in (solutions if len(solutions) <= _LINES else (solutions[0], solutions[-1]))]
-    lines.append(against_elasticity(solutions).verdict)
+    lines.append(elastic_verdict(solutions))
     one = len(solutions) == 1
     if not full:
         lines.append(f"{solutions[0].budget().brief}; more: add -v")
@@ -52,25 +50,30 @@ def solutions_text(
 
 
 def _full(solution: Solution) -> Table:
-    table = solution.sheet().table
-    assert table is not None
-    return table
+    """Every quantity but the given one, with that of an infinite surface."""
+    table = solution.table()
+    shown = tuple(x for x in table.columns if x.name != "std")
+    if np.isnan(table.flat[-1].values).all():
+        shown = shown[:-1]
+    found = [k for k, name in enumerate(solution.surfaces) if name != solution.given]
+    return replace(table, columns=shown).at(found)
 
 
 def _answer(solution: Solution) -> Table:
-    """Theory, mean and specimens to the digits that count, a row for each quantity that is not a variant."""
+    """The answer and specimens to the digits that count, a row for each quantity that is not a variant."""
     table = _full(solution)
-    name, unit, theory, mean, interval, least, *corrected = table.columns
+    name, unit, value, interval, least, _, *best = table.columns
     low, high = (np.asarray(column.values) for column in interval.flat)
-    half = Column("half", (high - low) / 2, form=".2g")
+    sure = high == low
+    error = np.where(sure, 1e-4 * np.abs(np.asarray(value.values)), (high - low) / 2)
+    half = Column("half", np.where(sure, np.nan, error), form=".2g", missing="")
     table = Table(
         (
             name,
             unit,
-            replace(theory, form=".4g", error=None),
-            replace(mean, words="mean (95 %)", error=half.values, beside=half, between=" ± "),
+            replace(value, words="value (95 %)", error=error, beside=half, between=" ± "),
             least,
-            *corrected,
+            *best,
         ),
         joint_text(solution.scene) if solution.scene.thermal else "",
     )
@@ -79,36 +82,37 @@ def _answer(solution: Solution) -> Table:
 
 
 def _by_load(scene: Scene, solutions: Sequence[Solution]) -> Table:
-    """Answers of the theory with their 95 % errors where known, a row for each given value."""
+    """Means of specimens with their 95 % errors where known, a row for each given value."""
     if scene.film is not None:
         return conductances(scene, solutions)
     area, budgets = scene.surface.nominal_area, [each.budget() for each in solutions]
     if solutions[0].given == "load":
-        given = Column("pressure", [x.value / area / 1e6 for x in solutions], unit="MPa", form=".4g")
+        given = Column("pressure", [x.amount / area / 1e6 for x in solutions], unit="MPa", form=".4g")
     else:
-        given = Column("area_fraction", [x.value / area for x in solutions], "A/A_n", form=".4g")
-    h = Column("separation", [x.theory["separation"] for x in solutions], SEPARATION, form=".3f")
+        given = Column("area_fraction", [x.amount / area for x in solutions], "A/A_n", form=".4g")
+    h = Column("separation", [x.value["separation"] for x in solutions], SEPARATION, form=".3f")
     columns = [given, h]
     for k, name in enumerate(budgets[0].quantities):
         unit = "m" if name in GAPS else scene.quantity(name).unit
         error = Column("error", [budget.all[k] for budget in budgets], form=".1%")
-        values = [x.theory[name] for x in solutions]
+        values = [x.value[name] for x in solutions]
         words = name.replace("_", " ")
         columns.append(Column(name, values, words, unit, form=".4g", beside=error, between=" ± "))
-    return Table((*columns, Column("contacts", [x.theory["contacts"] for x in solutions], form=".4g")))
+    return Table((*columns, Column("contacts", [x.value["contacts"] for x in solutions], form=".4g")))
 
 
 def _brief(solution: Solution) -> str:
-    """The answer in one line: separation, area or load with its error, contacts, conductance."""
-    budget, theory, scene = solution.budget(), solution.theory, solution.scene
+    """The answer in one line: conductance if there is any, else area or load, with its error; separation."""
+    budget, value, scene = solution.budget(), solution.value, solution.scene
     name = budget.quantities[0]
-    told = f"d/sigma = {theory['separation']:.4g}, "
-    told += f"{name} = {theory[name]:.4g} {scene.quantity(name).unit} ± {percent(budget.all[0])}"
-    conducted = next((x for x in ("joint_conductance", "contact_conductance") if x in theory), None)
-    if conducted is not None and scene.film is not None:
-        q = scene.quantity(conducted)
-        told += f", {q.name.replace('_', ' ')} = {theory[conducted]:.4g} {q.unit}"
-    return f"{solution.title}: {told}"
+    if scene.film is not None:
+        name = next(x for x in ("joint_conductance", "contact_conductance") if x in value)
+    best, scatter = solution.corrected(name).value, solution.surfaces[name].std(ddof=1) / abs(value[name])
+    first = value[name] if np.isnan(best) else best
+    told = f"{first:.4g} {scene.quantity(name).unit} {budget.told(name, scatter)}"
+    if f"{first:.4g}" != f"{value[name]:.4g}":
+        told += f" (value {value[name]:.4g})"
+    return f"{solution.title}: {name.replace('_', ' ')} = {told}, d/sigma = {value['separation']:.4g}"
 
 
 def _background(scene: Scene, solutions: Sequence[Solution]) -> list[str]:
@@ -116,8 +120,6 @@ def _background(scene: Scene, solutions: Sequence[Solution]) -> list[str]:
     ways = ", drawn from the measured ones" if scene.as_measured else ""
     many = f"{solutions[0].drawn.n_surfaces} surfaces of {scene.n_asperities:g} asperities{ways}"
     lines = [f"specimens: {many}, seed {scene.seed}; {_GAP[scene.gap]}"]
-    if any(x.theory["contacts"] < MANY for x in solutions):
-        lines.append("few contacts: finite surfaces differ from the theory of an infinite one beyond noise")
     if scene.unload_from is not None:
         lines.append("each surface is loaded from first contact; unloading is not included")
     lines += [f"{word}: {what}" for word, what in contact_facts(scene) if word in _SHOWN]
@@ -132,9 +134,9 @@ def _lowered(title: str) -> str:
 
 
 def conductances(scene: Scene, solutions: Sequence[Solution]) -> Table:
-    """What the joint conducts by theory, a row for each load: spots, bodies in series, gas beside."""
+    """What the joint conducts on average, a row for each load: spots, bodies in series, gas beside."""
     area, other = scene.surface.nominal_area, scene.series("conductance_si")
-    at = {name: np.array([x.theory[name] for x in solutions]) for name in solutions[0].theory}
+    at = {name: np.array([x.value[name] for x in solutions]) for name in solutions[0].value}
     contact = at["contact_conductance"]
     found = {"spots": contact / (1 - other * area * contact)}
     if other:
@@ -153,7 +155,7 @@ def conductances(scene: Scene, solutions: Sequence[Solution]) -> Table:
     )
     gas = f"; {joint_text(scene)}" if scene.thermal else ""
     unit = scene.quantity("contact_conductance").unit
-    return Table(columns, f"Conductance by pressure, {unit}, theory{gas}")
+    return Table(columns, f"Conductance by pressure, {unit}, means of specimens{gas}")
 
 
 def _sizes(solution: Solution, scatter: float) -> str:
@@ -169,8 +171,8 @@ def solutions_table(scene: Scene, solutions: Sequence[Solution]) -> Table:
     tables = []
     for solution in solutions:
         table, area = solution.table(), scene.surface.nominal_area
-        pressure = solution.value / area if solution.given == "load" else np.nan
-        given = {"pressure_Pa": pressure, "load_or_area_SI": solution.value}
+        pressure = solution.amount / area if solution.given == "load" else np.nan
+        given = {"pressure_Pa": pressure, "load_or_area_SI": solution.amount}
         columns = (Column(name, np.full(len(table), value)) for name, value in given.items())
         tables.append(Table((*columns, *table.columns)))
     return joined(tables)

@@ -98,5 +98,5 @@ assert np.ptp(sharper) < np.ptp(inside)
 scene = mcgw.Scene(surface, separations=0.0, grading=mcgw.Exponential(1.5), n_surfaces=100, seed=1)
 for solution in mcgw.solve(scene, pressure=[float(pressure[0]), float(pressure[-1])]):
     k = solution.surfaces["stiffness"]
-    at = solution.value / surface.nominal_area / 1e6
+    at = solution.amount / surface.nominal_area / 1e6
     print(f"{at:5.1f} MPa: specimens differ by {k.std() / k.mean():.1%}")

@@ -1,0 +1,123 @@
+"""Means over finite surfaces under a given load, each at its own separation, without a draw.
+
+A sum Q falls to 0 as a surface is lifted, so ``Q(H) = int_H^inf -Q'(h) dh`` where H is the separation where
+its load P is F. P falls too, so that H <= h where P(h) <= F; the mean over surfaces is ::
+
+    E Q(H) = N int dh int ds f(s) [-q'(s - h)] Pr(P_{N-1}(h) <= F - p(s - h))
+
+with q and p what an asperity of height s adds: the others share the load that it leaves (Campbell and
+Mecke). It holds for any number of contacts; that of the load itself is F, which checks the quadrature.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from analytic.arrays import Array
+from analytic.quadrature import gauss_legendre
+from analytic.quantities import quantity_of
+
+_LIFTS, _DEPTHS = 24, 32  # nodes in the separation, in the penetration at each: 1e-6 of the load and better
+_RAREST = 1e-9  # share of the surfaces beyond either end of the separations
+_STEP = 1e-4  # of a difference, over the penetration
+_DEEPEST = 20.0  # penetration over sigma that no asperity reaches
+_HALVINGS = 60
+
+
+def specimen_means(model: Any, given: str, value: float, names: Sequence[str]) -> dict[str, float]:
+    """Return means over surfaces that all have the same load, or another sum.
+
+    Parameters
+    ----------
+    model : Model
+        Under Hertz's law, its summits of one radius.
+    given : str
+        The sum that is the same on all surfaces, such as "load".
+    value : float
+        Its value, SI.
+    names : sequence of str
+        Sums to average on loading.
+
+    Returns
+    -------
+    dict of str to float
+        "separation" (d/sigma) and each of `names`, SI.
+
+    Raises
+    ------
+    ValueError
+        If the law of the separation is not known (see `Model.separation_law`), or some surfaces have none.
+
+    Examples
+    --------
+    >>> import analytic
+    >>> surface = analytic.Surface(sigma=1e-6, radius=1e-5, eta=1e9, nominal_area=1e-8, E_star=1e9)
+    >>> found = specimen_means(analytic.Model(surface), "load", 1e-6, ["load", "contacts"])
+    >>> round(found["load"] / 1e-6, 6)
+    1.0
+    """
+    law = model.separation_law(value, given)
+    low, high = float(law.ppf(_RAREST)), float(law.isf(_RAREST))
+    if not np.isfinite(high - low):  # a Poisson number of asperities may be 0
+        raise ValueError(f"{given} = {value:g}: not every surface has a separation with it")
+    x, w = gauss_legendre(_LIFTS)
+    found = {name: float(model.mean(name, high)) for name in names}
+    found["separation"] = high
+    for h, width in zip(low + (high - low) * x, (high - low) * w, strict=True):
+        rates, share = _rates(model, given, value, names, float(h))
+        found["separation"] -= float(width * share)
+        for name, rate in rates.items():
+            found[name] += float(width * rate)
+    return found
+
+
+def _rates(
+    model: Any, given: str, value: float, names: Sequence[str], h: float
+) -> tuple[dict[str, float], float]:
+    """What the means gain for each unit of separation, and the share of surfaces that are lower."""
+    unit = quantity_of(given).scale(model.surface)
+    x, w = gauss_legendre(_DEPTHS)
+    most = _deepest(model, given, value / unit, h)
+    depth, weight = most * x**2, 2 * most * x * w  # roots of the penetration: all terms are smooth in them
+    s = h + depth
+    modulus, density = model.grading(s), weight * model.heights.pdf(s)
+    left = np.maximum(value - unit * model.ways.term(given, h, s, modulus), 0.0)
+    rest = _others(model)
+    others = rest.distribution(given, h)
+    bearable = density * others.cdf(left)
+    share = float(others.cdf(value))
+    if rest is not model:  # one more asperity beside them, in contact or not
+        share = float((1 - model.heights.sf(np.array(h))) * share + np.sum(bearable))
+    rates = {}
+    for name in names:
+        if quantity_of(name).counts:  # begins with a step
+            rates[name] = float(model.number * model.heights.pdf(np.array(h)) * others.cdf(value))
+            continue
+        step = _STEP * depth
+        rise = model.ways.term(name, h - step, s, modulus) - model.ways.term(name, h + step, s, modulus)
+        scale = model.number * quantity_of(name).scale(model.surface)
+        rates[name] = float(scale * np.sum(bearable * rise / (2 * step)))
+    return rates, share
+
+
+def _others(model: Any) -> Any:
+    """The asperities beside one: of a Poisson number as many as before."""
+    if model.count == "poisson" or model.number <= 1:
+        return model
+    return replace(model, n_asperities=model.number - 1)
+
+
+def _deepest(model: Any, given: str, target: float, h: float) -> float:
+    """Penetration at which one asperity alone has the target, over the scale."""
+
+    def alone(depth: float) -> Array:
+        s = np.array([h + depth])
+        return np.asarray(model.ways.term(given, h, s, model.grading(s)))
+
+    low, high = 0.0, _DEEPEST
+    for _ in range(_HALVINGS):
+        middle = (low + high) / 2
+        low, high = (low, middle) if alone(middle)[0] > target else (middle, high)
+    return high
