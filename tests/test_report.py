@@ -316,7 +316,7 @@ def test_surfaces_are_solved_amid_their_pressures_at_their_own_separations(
         assert found is None
         return
     low, high = pressed.load[:, 1].max(), pressed.load[:, 0].min()
-    assert found.value == pytest.approx(math.sqrt(low * high), rel=1e-12)
+    assert found.amount == pytest.approx(math.sqrt(low * high), rel=1e-12)
     assert found.surfaces.keys() == names | {"area"}
 
 
@@ -329,7 +329,7 @@ def test_the_budget_at_a_pressure_and_the_corrected_answer(small):
     )  # fmt: skip
     ensemble = mcgw.simulate(scene)
     found = solution_of(ensemble.scene, ensemble)
-    searched = mcgw.solve(scene, load=found.value)
+    searched = mcgw.solve(scene, load=found.amount)
     assert found.theory == searched.theory
     for name in ("area", "stiffness", "gap_to_summits"):
         few = searched.surfaces[name].std() / np.sqrt(40)
