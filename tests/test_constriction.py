@@ -73,13 +73,11 @@ def test_spots_alone_are_all_without_interaction():
     "grading", [analytic.Homogeneous(), analytic.Exponential(2.0)], ids=["same", "graded"]
 )
 def test_it_is_geometry_under_every_law_and_grading(law, grading):
-    mode = Interaction("body")
-    e = mcgw.simulate(scene_of(mode, law=law, grading=grading))
+    asked = {"law": law, "grading": grading, "separations": (0.8, 1.7)}  # each surface has contacts there
+    e = mcgw.simulate(scene_of(Interaction("body"), **asked))
     extra = 1 / e.conductance - 1 / e["spot_conductance"]
     assert extra == pytest.approx(0.4732010044093386 / math.sqrt(SURFACE.nominal_area), rel=1e-9)
-    softer = mcgw.simulate(
-        scene_of(Interaction("body", bulk_modulus=SURFACE.E_star / 7), law=law, grading=grading)
-    )
+    softer = mcgw.simulate(scene_of(Interaction("body", bulk_modulus=SURFACE.E_star / 7), **asked))
     np.testing.assert_allclose(softer.conductance, e.conductance, rtol=1e-12)
 
 

@@ -433,7 +433,7 @@ def paths(scene, tmp_path_factory):
 @pytest.fixture
 def without_pictures(monkeypatch):
     """The report has its words and tables only."""
-    for name in ("comparison_figures", "pressure_pictures", "patch_pictures"):
+    for name in ("comparison_figures", "pressure_pictures"):
         monkeypatch.setattr(f"mcgw.reports.html.{name}", lambda *_: [])
 
 
