@@ -322,3 +322,8 @@ def test_a_plain_function_is_custom():
     np.testing.assert_allclose(*means, rtol=1e-11)
     swept = mcgw.sweep(scene(n_surfaces=50), {"grading": [mcgw.Homogeneous(), tips]})
     assert swept.scene(1).grading.name == "tips"  # the series of it
+
+
+def test_a_number_alone_is_no_load():
+    with pytest.raises(TypeError, match=r"^solve: 1000000\.0 has no name: give one of load=, pressure=, "):
+        mcgw.solve(scene(), 1e6)

@@ -333,7 +333,7 @@ ROWS = [
     ("solve", "--scatter", "@s.toml --load 1N", "+ --scatter 1%", says("for std = 0.01 of the mean")),
     ("solve", "--surfaces", "@s.toml --load 1N -v", "+ --surfaces 9", says("specimens: 9 surfaces")),
     ("solve", "--csv", "@s.toml --load 1N", "+ --csv x.csv",
-     csv_columns("x.csv", "theory", "mean", "low_95", "high_95", "std")),
+     csv_columns("x.csv", "value", "infinite", "low_95", "high_95", "std")),
     ("export", "--output", INP, "+ -o b.inp", writes("b.inp", "b.q05.inp", instead=["a.inp"])),
     ("export", "--to", INP, "@e.h5 --to moose -o a.csv", writes("a.csv", "a.q95.csv", instead=["a.inp"])),
     ("export", "--table", INP, "@e.h5 --to comsol --table stiffness-pressure -o a.txt",

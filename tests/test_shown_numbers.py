@@ -304,3 +304,15 @@ def test_run_says_how_many_and_what_is_not_known(scene, tmp_path, capsys):
         assert float(width) == pytest.approx(students, rel=0.15)
         _, high = ensemble.interval(name)
         assert float(width) == pytest.approx(high[0] / x.mean() - 1, rel=0.06)
+
+
+def test_loads_at_a_constant_ratio(scene, tmp_path, capsys):
+    """Of LO:HI:N, by what is between; the other grammar, of sweeps, is linear."""
+    few = dataclasses.replace(scene, n_surfaces=5, keep="sums", sampler="tail")
+    (tmp_path / "s.toml").write_text(mcgw.scene_text(few))
+    out_of(["solve", tmp_path / "s.toml", "--pressure", "1MPa:4MPa:3", "--csv", tmp_path / "s.csv"], capsys)
+    pressures = sorted({float(row["pressure_Pa"]) for row in rows_of(tmp_path / "s.csv")})
+    assert pressures == pytest.approx([1e6, 2e6, 4e6], rel=1e-12)
+    for wrong, told in (("1MPa:4MPa", "give LO:HI:N"), ("4MPa:1MPa:3", "give the lower one first")):
+        assert main(["solve", str(tmp_path / "s.toml"), "--pressure", wrong]) == 2
+        assert f"--pressure {wrong}: {told}" in capsys.readouterr().err

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from mcgw.commands.options import add_set_option, changes_of
+from mcgw.commands.options import add_set_option, changes_of, spaced
 
 HELP = "write pressure, conductance or stiffness as a table for a finite-element program"
 EXAMPLE = "mcgw export mine.toml --to calculix --units mm-N-s -o contact.inp"
@@ -60,7 +60,7 @@ def execute(args: argparse.Namespace) -> int:
     whole = args.to == "json"
     if not whole:
         check_name(args.output.name, PROGRAMS[args.to])
-    pressures = None if args.pressures is None else _pressures(args.pressures)
+    pressures = None if args.pressures is None else spaced(args.pressures, "Pa", "--pressures")
     from_scene = args.scene.suffix.lower() == ".toml"
     if args.set and not from_scene:
         raise ValueError(f"--set {args.set[0]}: {args.scene} holds results; give a scene")
@@ -84,19 +84,3 @@ def execute(args: argparse.Namespace) -> int:
         news(*(f"{path}: the same for a quantile" for path in quantiles), f"{together}: all curves")
     tell_cautions(scene, f"mcgw show {'--plan ' * from_scene}{args.scene}")
     return 0
-
-
-def _pressures(text: str) -> list[float]:
-    """Pressures (Pa) from LO:HI:N."""
-    import numpy as np
-
-    from mcgw.formats.numbers import parse
-
-    low, _, rest = text.partition(":")
-    high, _, number = rest.partition(":")
-    if not number.isdigit() or int(number) < 2:
-        raise ValueError(f"--pressures {text}: give LO:HI:N, such as 10kPa:20MPa:30, with N of 2 or more")
-    ends = parse(low, "Pa", "--pressures"), parse(high, "Pa", "--pressures")
-    if not ends[0] < ends[1]:
-        raise ValueError(f"--pressures {text}: give the lower one first")
-    return [float(p) for p in np.geomspace(*ends, int(number))]

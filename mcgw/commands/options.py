@@ -101,3 +101,20 @@ def changes_of(args: argparse.Namespace) -> dict[str, Any]:
         except ValueError:
             changes[key] = value
     return changes
+
+
+def spaced(text: str, unit: str, option: str) -> list[float]:
+    """Numbers at a constant ratio from LO:HI:N, in a unit."""
+    import numpy as np
+
+    from mcgw.formats.numbers import parse
+
+    low, _, rest = text.partition(":")
+    high, _, number = rest.partition(":")
+    if not number.isdigit() or int(number) < 2:
+        example = "10kPa:20MPa:30" if unit == "Pa" else "1:100:30"
+        raise ValueError(f"{option} {text}: give LO:HI:N, such as {example}, with N of 2 or more")
+    ends = parse(low, unit, option), parse(high, unit, option)
+    if not 0 < ends[0] < ends[1]:
+        raise ValueError(f"{option} {text}: give the lower one first, above 0")
+    return [float(x) for x in np.geomspace(*ends, int(number))]

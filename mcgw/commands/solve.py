@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from mcgw.commands.options import add_set_option, changes_of
+from mcgw.commands.options import add_set_option, changes_of, spaced
 
 HELP = "find separation, area, stiffness, contacts and conductance at given loads"
 EXAMPLE = "mcgw solve runs/demo.toml --pressure 100kPa 1MPa --csv solved.csv"
@@ -17,12 +17,15 @@ _GIVEN = {
 }
 
 
+_RANGE = "; or LO:HI:N for N of them at a constant ratio"
+
+
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of this command."""
     parser.add_argument("scene", type=Path, metavar="SCENE", help="TOML file, SI units")
     given = parser.add_mutually_exclusive_group(required=True)
     for name, (letter, words) in _GIVEN.items():
-        given.add_argument(f"--{name.replace('_', '-')}", nargs="+", metavar=letter, help=words)
+        given.add_argument(f"--{name.replace('_', '-')}", nargs="+", metavar=letter, help=words + _RANGE)
     parser.add_argument(
         "--surfaces", type=int, metavar="M", help="number of surfaces to solve; default: that of the scene"
     )
@@ -41,7 +44,7 @@ def execute(args: argparse.Namespace) -> int:
 
     from mcgw.commands.outputs import check_outputs, table_output, write_table
     from mcgw.commands.voice import ALL, says, tell_cautions
-    from mcgw.ensemble.solution import given_values, solutions
+    from mcgw.ensemble.solution import UNIT_OF, given_values, solutions
     from mcgw.ensemble.solved import at_solutions
     from mcgw.formats.numbers import parse
     from mcgw.machine.progress import bar
@@ -54,7 +57,12 @@ def execute(args: argparse.Namespace) -> int:
         scene = replace(scene, n_surfaces=args.surfaces)
     key = next(name for name in _GIVEN if getattr(args, name))
     option = f"--{key.replace('_', '-')}"
-    given, values = given_values(scene, key, getattr(args, key), lambda x, unit: parse(x, unit, option))
+    asked: list[str | float] = []
+    for text in getattr(args, key):
+        asked += spaced(text, UNIT_OF[key], option) if ":" in text else [text]
+    given, values = given_values(
+        scene, key, asked, lambda x, unit: x if isinstance(x, float) else parse(x, unit, option)
+    )
     scatter = None if args.scatter is None else parse(args.scatter, "1", "--scatter")
     if scatter is not None and not 0 < scatter < 1:
         raise ValueError(f"--scatter {args.scatter}: give a number between 0 and 1, such as 1%")

@@ -29,11 +29,12 @@ _GIVEN = {
     "area": ("m^2", "area", False),
     "area_fraction": ("1", "area", True),
 }
+UNIT_OF = {key: unit for key, (unit, *_) in _GIVEN.items()}
 
 
 def solve(
     scene: Scene,
-    *,
+    *unnamed: Any,
     load: Any = None,
     pressure: Any = None,
     area: Any = None,
@@ -47,6 +48,8 @@ def solve(
     ----------
     scene : Scene
         Its surface, grading, heights, contact law, number of surfaces and asperities, and seed are used.
+    *unnamed
+        Refused: a number alone may be a load or a pressure.
     load, pressure, area, area_fraction : float, str or sequence of them
         One of the four: P (N), P/A_n (Pa), A (m^2) or A/A_n; or texts with units, as "1 MPa".
     progress : bool or callable, optional
@@ -62,7 +65,7 @@ def solve(
     Raises
     ------
     SceneError, TypeError
-        If a value is no such quantity; and as from `mcgw.Scene.replace`.
+        If a value is no such quantity or has no name; and as from `mcgw.Scene.replace`.
     ValueError
         If not one of the four is given, or if surfaces cannot reach the value.
 
@@ -78,6 +81,8 @@ def solve(
     asked = {"load": load, "pressure": pressure, "area": area, "area_fraction": area_fraction}
     known = {key: value for key, value in asked.items() if value is not None}
     check_object("solve", scene, Scene)
+    if unnamed:
+        raise TypeError(f"solve: {unnamed[0]!r} has no name: give one of {', '.join(f'{x}=' for x in asked)}")
     for key in changes:
         if not (hasattr(scene, key) or hasattr(scene.surface, key)) and (meant := nearest(key, tuple(asked))):
             raise TypeError(f"solve: there is no {key!r}; {meant.rstrip()}")
