@@ -18,7 +18,8 @@ def test_an_interval_holds_all_that_values_may_be_off_by():
         (low, high), (lower, higher) = exact.interval(name), coarse.interval(name)
         drawn = (high - low) / exact.mean(name)
         np.testing.assert_allclose((higher - lower) / coarse.mean(name), drawn + 2e-2, rtol=1e-9)
-    np.testing.assert_array_equal(exact.interval("contacts"), coarse.interval("contacts"))
+    widths = [np.diff(e.interval("contacts"), axis=0) for e in (exact, coarse)]  # of other draws
+    np.testing.assert_allclose(widths[1], widths[0], rtol=0.2)
 
 
 @pytest.mark.parametrize("rel_err", [1e-2, 5e-3, {"load": 1e-2}, {"load": [2e-2, 9e-3]}])

@@ -66,9 +66,9 @@ def test_report_and_figures_draw_one(told, monkeypatch):
     from mcgw.figures import catalogue
     from mcgw.reports import html
 
-    for name in ("comparison_figures", "patch_pictures", "pressure_pictures"):
+    for name in ("comparison_figures", "pressure_pictures"):
         monkeypatch.setattr(html, name, lambda _: [])
-    assert "/4 [" in told("report e.h5 -o e.html", terminal=True)
+    assert "/3 [" in told("report e.h5 -o e.html", terminal=True)
 
     rows = [catalogue.Row(name, catalogue.Row, (lambda _: "it has no meaning",)) for name in "abc"]
     monkeypatch.setattr(catalogue, "CATALOGUE", rows)

@@ -53,7 +53,7 @@ def ensemble_of(make_scene):
 @pytest.fixture
 def no_figures(monkeypatch):
     """A report without its drawings, which take a second each."""
-    for name in ("comparison_figures", "means_figures", "patch_pictures", "pressure_pictures"):
+    for name in ("comparison_figures", "pressure_pictures"):
         monkeypatch.setattr(mcgw.reports.html, name, lambda _: [])
 
 
@@ -266,7 +266,7 @@ def test_solve(scene):
 
 def test_report(scene, ensemble, monkeypatch):
     """The contacts that it expects, and theory in every table; its drawings take a second each."""
-    for name in ("comparison_figures", "means_figures", "patch_pictures", "pressure_pictures"):
+    for name in ("comparison_figures", "pressure_pictures"):
         monkeypatch.setattr(mcgw.reports.html, name, lambda _: [])
     page = report_html(ensemble, ATTRIBUTES)
     assert "Monte Carlo and theory agree" in page

@@ -89,6 +89,5 @@ def test_points_in_space_are_taken_for_no_image(capsys, separator, header):
     for more in ([], ["--pixel", "1um"]):
         assert main(["fit", "points.txt", "--cutoff", "none", "-o", "f.toml", *more]) == 2
         (line,) = capsys.readouterr().err.splitlines()
-        assert (
-            "points.txt: three numbers a line, 64 lines: single points with x, y and z are not a map" in line
-        )
+        assert "points.txt: " in line
+        assert "x, y and z" in line

@@ -192,7 +192,6 @@ PAIR = "heights = [1e-6, 2e-6, 4e-6]\nradii = [1e-5, 2e-5, 1e-5]\n"
     (HEAD + "m0 = 1e-12\nm2 = 1e-3\nm4 = 5e6\n", PAIR, "", "surface.m0"),
     (HEAD.replace("nominal_area", "area"), PAIR, "", "surface.nominal_area: missing"),
     (HEAD, PAIR, "sampler = 'cells'", 'use "direct"'),
-    (HEAD, PAIR, "keep = 'moments'", 'use "sums"'),
     (HEAD, PAIR, "n_surfaces = 5", "resample = true under [summits]"),
     (HEAD, PAIR, "n_asperities = 5", "summits.resample = true"),
     (HEAD, PAIR + "resample = true", "sampler = 'aggregate'", 'use "direct"'),

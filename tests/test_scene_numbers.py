@@ -272,7 +272,7 @@ ROWS = [
     ("ensemble.count", "'poisson'", GAUSS, lambda s: s.theory.std("contacts", -30.0), sqrt(1000)),
     ("ensemble.seed", 12, GAUSS, lambda s: mcgw.simulate(s).scene.seed, 12),
     ("ensemble.sampler", "'tail'", GAUSS, lambda s: mcgw.simulate(s).sampler, "tail"),
-    ("ensemble.keep", "'moments'", GAUSS, lambda s: len(mcgw.simulate(s).sums.read("cells", 0, None)), 4),
+    ("ensemble.keep", "'statistics'", GAUSS, lambda s: mcgw.simulate(s).std("load").shape, (1,)),
     ("ensemble.rel_err", "'2 %'", changed("ensemble.n_surfaces", None, **GAUSS), lambda s: s.rel_err, 0.02),
     ("ensemble.max_surfaces", 50,
      {**GAUSS, "ensemble": {"n_surfaces": None, "rel_err": 0.01, "sampler": None}},

@@ -162,6 +162,7 @@ def test_no_option_with_a_unit_is_read_as_a_bare_float():
     assert bare == {
         ("elastic", "--rel-err"),
         ("export", "--quantile"),
+        ("fit", "--missing-value"),
         ("surface", "--at"),
     }
 

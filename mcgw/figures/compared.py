@@ -157,10 +157,11 @@ class Compared:
 
     def drawn(self, key: str | float) -> Ensemble:
         """Ensemble for a label or, in a sweep, a gamma, on the same surfaces."""
-        key = key if isinstance(key, str) else of_gamma(key)
-        if key not in self._kept:
-            self._kept[key] = simulate(self.all[key])
-        found: Ensemble = self._kept[key]
+        label = key if isinstance(key, str) else of_gamma(key)
+        if label not in self._kept:
+            graded = None if isinstance(key, str) else self.scene.replace(grading=Exponential(key))
+            self._kept[label] = simulate(graded or self.all[label])
+        found: Ensemble = self._kept[label]
         return found
 
     @cached_property

@@ -9,7 +9,7 @@ import numpy as np
 from analytic.arrays import Array
 from mcgw.formats.named_files import open_npy
 from mcgw.maps.foreign import is_foreign_line, read_foreign_line
-from mcgw.maps.points import along_line
+from mcgw.maps.grid_of_points import along_line
 from mcgw.maps.profile import Profile, profile_at
 from mcgw.maps.text_file import header_units, lines_of, numbers_of, words_of
 from mcgw.maps.topography import XYZ, height_unit

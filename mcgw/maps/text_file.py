@@ -3,7 +3,6 @@
 import codecs
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +10,7 @@ import numpy as np
 from analytic.arrays import Array
 from mcgw.formats.numbers import METRES
 from mcgw.maps.foreign import ForeignError
-from mcgw.maps.points import grid_of
+from mcgw.maps.grid_of_points import grid_of
 from mcgw.maps.topography import XYZ, Topography, checked_shape, height_unit, in_metres, metres_in
 
 _MOST_LINE = 2**24
@@ -75,16 +74,15 @@ def read_text(
     return Topography(heights, pixel, assumed_unit=assumed)
 
 
-@dataclass
 class _Header:
     """What a text says above and between its numbers."""
 
-    lines: list[str] = field(default_factory=list)
-    extent: dict[str, float] = field(default_factory=dict)
-    unit: str | None = None
-    refused: ForeignError | None = None  # why the first line that is not numbers is none
-    open_left: bool = True
-    open_right: bool = True
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+        self.extent: dict[str, float] = {}
+        self.unit: str | None = None
+        self.refused: ForeignError | None = None  # why the first line that is not numbers is none
+        self.open_left = self.open_right = True
 
     def add(self, path: Path, number: int, line: str) -> None:
         """Understand a comment."""

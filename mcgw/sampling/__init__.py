@@ -21,8 +21,8 @@ without any surface; it is that of its very asperities, added up one by one:
 >>> asked = {"separations": (0.0, 1.0), "grading": Exponential(2.0), "n_surfaces": 3, "seed": 1}
 >>> scene = mcgw.Scene(surface=surface, **asked)
 >>> sampler = cells_of(scene)
->>> moments = sampler.block(0, 3).moments
->>> load = moments @ sampler.response.matrix()[scene.quantities.index("load")].T
+>>> moments, _, _ = sampler.drawn(0, 3, sampler.response.layout)
+>>> load = moments.T @ sampler.response.matrix()[scene.quantities.index("load")].T
 >>> s = mcgw.heights(scene, 2)
 >>> delta = surface.sigma * np.maximum(s[:, None] - scene.separations, 0)
 >>> E = surface.E_star * scene.grading(s)
