@@ -348,18 +348,22 @@ def test_at_a_pressure(mode):
 
 
 def test_table_by_pressure(capsys, tmp_path):
-    """Spots, gas beside, constriction of the bodies in series with both; nothing given is vacuum."""
-    path = tmp_path / "joint.toml"
-    path.write_text(mcgw.scene_text(scene_of(interaction="body", n_surfaces=5)))
+    """Spots, gas beside, bodies in series with both, on each specimen; nothing given is vacuum."""
+    path, scene = tmp_path / "joint.toml", scene_of(interaction="body", n_surfaces=5)
+    path.write_text(mcgw.scene_text(scene))
+    several, area = mcgw.solve(scene, pressure=[1e6, 5e6]), ROUGH.nominal_area
     ask = ["solve", str(path), "--pressure", "1MPa", "5MPa"]
     assert main([*ask, "--csv", str(tmp_path / "o.csv")]) == 0
     text = capsys.readouterr().out
-    table = text[text.index("Conductance by pressure, W/(m^2 K), theory; air of") :].splitlines()
-    for row, pressure in zip(table[2:4], (1.0, 5.0), strict=True):
-        at, _, _, _, spots, constriction, gas, joint, resistance = map(float, row.split())
+    table = text[text.index("Conductance by pressure, W/(m^2 K), means of specimens; air of") :].splitlines()
+    for row, pressure, found in zip(table[2:4], (1.0, 5.0), several, strict=True):
+        at, _, _, _, _, _, gas, joint, resistance = map(float, row.split())
         assert at == pressure
-        assert joint == pytest.approx(1 / (1 / (spots + gas) + 1 / constriction), rel=2e-3)
-        assert resistance == pytest.approx(1 / (joint * ROUGH.nominal_area), rel=2e-3)
+        each = found.surfaces["gap_conductance"]
+        assert gas == pytest.approx(each.mean(), rel=2e-3)
+        network = before_bodies(found.surfaces["conductance_si"] / area, each, True)
+        assert joint == pytest.approx(network.mean(), rel=2e-3)
+        assert resistance == pytest.approx((1 / network).mean() / area, rel=2e-3)
     assert "joint_conductance,W/(m^2 K)" in (tmp_path / "o.csv").read_text()
     ask = ask[:-1]
     path.write_text(mcgw.scene_text(scene_of(joint=None, n_surfaces=5)))
