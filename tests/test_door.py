@@ -85,7 +85,7 @@ def test_the_notebook_runs(whole, capsys, tmp_path, monkeypatch, request):
     assert np.all(values[3][0] <= e.mean("area") / 1e-4)
     comparison, solution, *studies = results
     assert comparison.verdict.agrees
-    assert solution.value == pytest.approx(100, rel=1e-15)
+    assert solution.amount == pytest.approx(100, rel=1e-15)
     if whole:
         convergence, study, fit = studies
         assert convergence.passed

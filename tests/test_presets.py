@@ -109,7 +109,7 @@ def lightly_loaded(name, folder):
     assert main(["solve", str(path), "--pressure", "10kPa", "--csv", str(table)]) == 0
     scene = mcgw.load_scene(path)
     with table.open() as file:
-        said = {row["quantity"]: float(row["theory"]) for row in csv.DictReader(file)}
+        said = {row["quantity"]: float(row["infinite"]) for row in csv.DictReader(file)}
     return scene, said
 
 

@@ -167,8 +167,11 @@ class Solution(Shown):
         scene, sigma = self.scene, self.scene.surface.sigma
         summed = [name for name in quantities_at(alone) if name in self.surfaces and name != self.given]
         try:
-            found = specimen_means(alone.theory, self.given, self.amount, summed)
-        except ValueError:
+            with np.errstate(all="ignore"):
+                found = specimen_means(alone.theory, self.given, self.amount, summed)
+        except (ValueError, IndexError):  # far up, where hardly any asperity of any surface is
+            return {}
+        if not np.isfinite(list(found.values())).all():
             return {}
         found = {name: x for name, x in found.items() if name == "separation" or not scene.series(name)}
         if scene.interaction is None:
