@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from analytic.arrays import Array
+from analytic.distribution.of_model import shares_upto
 from analytic.quadrature import gauss_legendre
 from analytic.quantities import quantity_of
 
@@ -85,15 +86,14 @@ def _rates(
     modulus, density = model.grading(s), weight * model.heights.pdf(s)
     left = np.maximum(value - unit * model.ways.term(given, h, s, modulus), 0.0)
     rest = _others(model)
-    others = rest.distribution(given, h)
-    bearable = density * others.cdf(left)
-    share = float(others.cdf(value))
+    *lower, lowest = shares_upto(rest, given, h, np.append(left, value)).tolist()
+    share, bearable = lowest, density * np.array(lower)
     if rest is not model:  # one more asperity beside them, in contact or not
         share = float((1 - model.heights.sf(np.array(h))) * share + np.sum(bearable))
     rates = {}
     for name in names:
         if quantity_of(name).counts:  # begins with a step
-            rates[name] = float(model.number * model.heights.pdf(np.array(h)) * others.cdf(value))
+            rates[name] = float(model.number * model.heights.pdf(np.array(h)) * lowest)
             continue
         step = _STEP * depth
         rise = model.ways.term(name, h - step, s, modulus) - model.ways.term(name, h + step, s, modulus)

@@ -27,6 +27,8 @@ EVERYBODYS = ("h5py", "matplotlib.pyplot", "numba", "pandas", "scipy.optimize", 
 DEARER = {
     "tests/test_maps_fit.py::test_where_summits_hide_the_bias_is_stated": "no smaller map has so many caps",
     "tests/test_python_scenes.py::test_a_name_is_shown_and_nothing_else": "a name through run, show, compare",
+    "tests/test_what_users_read.py::test_commands": "whole tables of solve: exact means at several loads",
+    "tests/test_draws.py::test_pieces_of_a_huge_cell_lose_no_digit": "compiles the sums of a cell once more",
 }
 
 

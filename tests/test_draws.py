@@ -131,7 +131,7 @@ def test_a_compensated_sum_is_the_exact_one():
     assert (carry != 0).all()
 
 
-@njit()
+@njit(cache=True)
 def piece_of_a_cell(start, stop):
     """Its eleven T_j and six R_j, folded, by a plain sum."""
     w = np.zeros(WORDS)

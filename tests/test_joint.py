@@ -347,6 +347,7 @@ def test_at_a_pressure(mode):
         assert found.theory["joint_conductance"] == pytest.approx(mean, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_table_by_pressure(capsys, tmp_path):
     """Spots, gas beside, bodies in series with both, on each specimen; nothing given is vacuum."""
     path, scene = tmp_path / "joint.toml", scene_of(interaction="body", n_surfaces=5)

@@ -165,6 +165,7 @@ def test_compare_ends_with_1_and_says_so_where_they_disagree(file, tmp_path, cap
 SOLVED = ("value", "low_95", "high_95", "specimen_05", "specimen_95", "infinite")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "given", "pressure", "title"),
     [

@@ -218,6 +218,7 @@ def test_surfaces_within_the_margin_are_drawn_once(scene, monkeypatch):
     assert not whole
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("level", [0.5, 0.95])
 def test_intervals_are_students(solved, level):
     """Of a mean of drawn surfaces, as under laws whose exact law takes long; an exact mean has no width."""
@@ -292,7 +293,7 @@ SPECTRAL = {"m0": 1e-12, "m2": 5e-4, "m4": 2.5e6}  # alpha = 10
 
 
 @pytest.mark.parametrize("reference", [None, "body", "mean-plane"])
-@pytest.mark.parametrize("spectral", [True, False])
+@pytest.mark.parametrize("spectral", [pytest.param(True, marks=pytest.mark.slow), False])
 def test_the_mean_gap(spectral, reference, make_scene):
     """From the mean plane of the surface where it is known: summits lie 4 sqrt(m0/(pi alpha)) above it.
 

@@ -245,21 +245,23 @@ def shares(one: OneAsperity, points: int) -> tuple[Array, Array, Array]:
     return resolved(x, below, more, one.rounding)
 
 
-def share_at(one: OneAsperity, x: float, points: int) -> tuple[float, float]:
-    """Return the shares of the surfaces up to a sum and above it, from the one lattice that suits it."""
-    width = next((w for w in one.widths(points) if one.lowest + w >= x), None)
+def share_at(one: OneAsperity, x: Array, points: int) -> tuple[Array, Array]:
+    """Return the shares of surfaces up to some sums and above them, by one lattice that suits the largest."""
+    width = next((w for w in one.widths(points) if one.lowest + w >= x.max()), None) if one.values.size else 0
     if width is None or not one.values.size:
-        return float(x >= 0 or width is None), float(x < 0 and width is not None)
+        upto = np.where((x >= 0) | (width is None), 1.0, 0.0)
+        return upto, 1 - upto
     at, p = masses(one, width, points)
     below = np.cumsum(p) - p / 2 - np.gradient(p) / 12  # Euler-Maclaurin
-    k = int(np.clip(np.floor((x - at[0]) / (at[1] - at[0])), 0, at.size - 2))
+    k = np.clip(np.floor((x - at[0]) / (at[1] - at[0])), 0, at.size - 2).astype(np.int64)
     part = (x - at[k]) / (at[1] - at[0])
-    upto = float(below[k] + part * (p[k] + part * (p[k + 1] - p[k]) / 2)) if x >= at[0] else 0.0
+    upto = np.where(x >= at[0], below[k] + part * (p[k] + part * (p[k + 1] - p[k]) / 2), 0.0)
     if not one.few:
         return upto, 1 - upto
-    own = [float(of_one) for of_one in one.below(np.array(x))]
+    own_upto, own_above = one.below(x)
     rest = 1 - one.none - one.alone * one.share - upto
-    return upto + one.alone * own[0] + one.none * (x >= 0), rest + one.alone * own[1] + one.none * (x < 0)
+    upto = upto + one.alone * own_upto + one.none * (x >= 0)
+    return upto, rest + one.alone * own_above + one.none * (x < 0)
 
 
 def resolved(x: Array, below: Array, above: Array, rounding: float) -> tuple[Array, Array, Array]:

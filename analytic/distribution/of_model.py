@@ -150,10 +150,22 @@ def separation_law_of(model: Any, load: float, quantity: str, *, other: bool = F
     spread = float(unit * one.usual[1] / model.slope(quantity, start))
 
     def shares(h: float) -> tuple[float, float]:
-        return share_at(one_asperity(model, quantity, h, _CELLS[other], target), target, _POINTS[other] // 4)
+        one = one_asperity(model, quantity, h, _CELLS[other], target)
+        upto, above = share_at(one, np.array([target]), _POINTS[other] // 4)
+        return float(upto[0]), float(above[0])
 
     again = partial(separation_law_of, model, load, quantity, other=True)
     return _along(shares, start + other * spread / 7, spread, one.rounding, again)
+
+
+def shares_upto(model: Any, quantity: str, h: float, values: Array) -> Array:
+    """Return the shares of surfaces whose sum is no more than some values, SI, to 1e-6 or better.
+
+    For what is integrated over: one lattice that suits the largest of them, without the far tails of a `Law`.
+    """
+    x = values / quantity_of(quantity).scale(model.surface)
+    one = one_asperity(model, quantity, h, _CELLS[False], float(x.max()))
+    return share_at(one, x, _POINTS[False] // 4)[0]
 
 
 def interacting_distribution(model: Any, quantity: str, h: float) -> Law:
