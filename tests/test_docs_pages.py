@@ -197,7 +197,7 @@ def test_the_whole_set_of_figures(tmp_path, capsys):
     formats = ["--format", "png", "pdf", "svg"]
     assert main(["figures", "-v", "-o", str(tmp_path / "figures"), *formats]) == 0
     said = [x for x in capsys.readouterr().out.split() if x.endswith((".png", ".pdf", ".svg"))]
-    assert len(said) == 3 * (6 + 11)  # of the paper, and those it lacks
+    assert len(said) == 3 * (6 + 3)  # of the paper, and those it lacks
     assert {Path(path) for path in said} == set((tmp_path / "figures").iterdir())
 
 

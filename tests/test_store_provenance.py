@@ -103,12 +103,15 @@ def drawn(case, seed=20240601):
 
 @pytest.mark.parametrize("case", CASES)
 def test_golden_numbers(case):
-    """Stored once: any change of the draws is seen. With other versions of NumPy they agree to 1e-12.
+    """Stored once: any change of the draws is seen. With any NumPy those without cells agree to 1e-12.
 
     A change on purpose makes old runs impossible to go on with, so it needs another version of the package;
     then ``python tests/test_store_provenance.py`` stores them anew.
     """
-    golden = json.loads(GOLDEN.read_text())[case]
+    stored = json.loads(GOLDEN.read_text())
+    golden, of_numpy = stored[case], stored["numpy"]
+    if case not in ("direct", "tail") and of_numpy != np.__version__.rpartition(".")[0]:
+        pytest.skip(f"numbers in cells are of the multinomial of NumPy {of_numpy}, whose stream may change")
     found = drawn(case)
     assert set(found) == set(golden)
     for name, values in found.items():
@@ -133,7 +136,8 @@ def test_memory_does_not_grow_with_the_ensemble(make_scene, tmp_path, monkeypatc
 
 
 if __name__ == "__main__":
-    GOLDEN.write_text(json.dumps({case: drawn(case) for case in CASES}, indent=1) + "\n")
+    stored = {"numpy": np.__version__.rpartition(".")[0], **{case: drawn(case) for case in CASES}}
+    GOLDEN.write_text(json.dumps(stored, indent=1) + "\n")
 
 
 # --- what is not known is said to be so ---
