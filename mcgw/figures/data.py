@@ -82,11 +82,6 @@ class FigureData:
     name: str = ""
 
 
-def mean_points(x: Array, values: Array, exact: Array) -> Points:
-    """Take the means of values of surfaces, shape (surfaces, points), and their standard errors."""
-    return Points(x, values.mean(axis=0), values.std(axis=0, ddof=1) / np.sqrt(len(values)), exact)
-
-
 def ratio_of_sums(b: Array, a: Array) -> Estimate:
     """Take the ratio of two means over the same surfaces, and its standard error by the delta method.
 

@@ -216,23 +216,6 @@ def _constants_of(law: str) -> tuple[Sequence[str], Sequence[str], Callable[...,
     return [f.name for f in known], [f.name for f in known if f.default is MISSING], by_name[law]
 
 
-def read_law(given: ContactLaw | Mapping[str, Any]) -> ContactLaw:
-    """Read a law, or one given by its keys in a file.
-
-    Raises
-    ------
-    SceneError
-        With one line for each mistake.
-    """
-    if isinstance(given, ContactLaw):
-        return given
-    problems: list[str] = []
-    law = law_of_keys(given, problems)
-    if problems:
-        raise SceneError(problems)
-    return law
-
-
 def law_of_keys(given: Mapping[str, Any], problems: list[str]) -> ContactLaw:
     """Read a law from keys; mistakes are noted and give Hertz's."""
     section = Section("contact", {"law": None, **given}, problems, KEYS["contact"])
