@@ -325,7 +325,7 @@ SCENES = {
         {"figure-1", "figure-3", "figure-4", "equal-load", "area-and-load"},
     ),
     "interacting": (lambda: scene_of(interaction="body"), {"figure-1", "figure-4"}),
-    "preset aluminium": (lambda: preset("aluminium"), {"figure-1", "figure-4"} | RATIOS),
+    "homogeneous": (scene_of, {"figure-1", "figure-4"} | RATIOS),
     "preset nanoindentation": (lambda: preset("nanoindentation"), set()),
     "own grading": (lambda: scene_of(grading=lambda s: 1 + 0.3 * np.tanh(s), count="poisson"), set()),
     "other heights": (

@@ -1,6 +1,7 @@
 """Scenes to start from: each runs, and none is written over a file."""
 
 import csv
+import runpy
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -152,3 +153,33 @@ def test_theory_of_a_light_load_by_command(name, tmp_path):
     assert said["stiffness"] == pytest.approx(2 * s.E_star * root * integral(1, 0.5, e), rel=1e-9)
     assert said["conductance"] == pytest.approx(4 * root * integral(1, 0.5, np.ones_like), rel=1e-9)
     assert said["contacts"] == pytest.approx(scene.n_asperities * norm.sf(h), rel=1e-9)
+
+
+LAW_FOR_JOINT = runpy.run_path(str(Path(__file__).parents[1] / "runs" / "law_for_joint.py"))
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_presets_yield_under_a_yielding_law_alone(name):
+    """Their plasticity index by hand, and the share that yields at 1 MPa by a sum over heights."""
+    index, _, share, _ = LAW_FOR_JOINT["shares"](name)
+    scene = mcgw.load_scene(HERE / f"{name}.toml")
+    hardness, poisson = scene.softer or (scene.law.hardness, scene.law.poisson)
+    s = scene.surface
+    first = (np.pi * (0.454 + 0.41 * poisson) * hardness / (2 * s.E_star)) ** 2 * s.radius / s.sigma
+    assert index == pytest.approx(first**-0.5, rel=1e-12)
+    assert (share > 0.05) == isinstance(scene.law, mcgw.KogutEtsion) == (index > 1)
+    if scene.curvature is None:
+        h = float(scene.theory.separation_at("pressure", 1e6))
+        x = np.linspace(h, h + 9, 400_001)
+        past = x - h > first / modulus_of(scene)(x) ** 2
+        assert share == pytest.approx(np.sum(norm.pdf(x[past])) / np.sum(norm.pdf(x)), rel=1e-3, abs=1e-12)
+
+
+def test_page_on_laws_for_a_joint_has_the_ratios_of_the_script():
+    """One alpha of metals, and those of Hertz's law, which Mikic's correlation describes within 14 %."""
+    page = (Path(__file__).parents[1] / "docs" / "how-to" / "law-for-a-joint.md").read_text(encoding="utf-8")
+    E_star = LAW_FOR_JOINT["MODULI"]["Metal, E*/H = 46"]
+    rows = list(LAW_FOR_JOINT["rows"](E_star, alphas=(10.0,)))
+    assert len(rows) == 4
+    assert all("| " + " | ".join(row) + " |" in page for row in rows)
+    assert all(0.86 < float(cell) < 1.14 for cell in rows[-1][3:])

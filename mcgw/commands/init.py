@@ -10,12 +10,12 @@ SCHEMA = "scene.schema.json"
 
 # Name and description.
 PRESETS = {
-    "demo": "bead-blasted aluminium with stiffened tips",
-    "aluminium": "bead-blasted aluminium of Greenwood and Williamson, homogeneous",
-    "metal": "the same with asperities that yield, loading and unloading",
+    "demo": "lapped silicon carbide with stiffened tips, which stays elastic",
+    "aluminium": "bead-blasted aluminium of Greenwood and Williamson, whose asperities yield",
+    "metal": "the same, loading and unloading",
     "spectral": "a Gaussian surface given by its spectrum, each summit with its own radius",
     "coating": "a graded hard coating",
-    "degradation": "tips softened by chemical attack",
+    "degradation": "glass whose tips were softened by chemical attack",
     "nanoindentation": "a table of measured moduli",
 }
 

@@ -81,7 +81,7 @@ CATALOGUE = (
 
 
 def of_paper() -> Compared:
-    """Take the paper's surfaces, those of the preset ``demo``."""
+    """Take the surfaces of the preset ``demo``, in the paper's reduced quantities."""
     text = (files("mcgw.scene") / "presets" / "demo.toml").read_text(encoding="utf-8")
     return Compared(scene_from(text).replace(n_surfaces=_SURFACES), swept=True)
 

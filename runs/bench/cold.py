@@ -60,7 +60,7 @@ def measure(folder: Path, found: Found) -> None:
     note("show --plan runs/quick.toml, cold", ("show", "--plan", "runs/quick.toml"), "plan")
     note("run runs/quick.toml, cold", QUICK, "hertz")
     note("run runs/quick.toml, warm", QUICK, "hertz")
-    note("run runs/demo.toml, cold", ("run", "runs/demo.toml"), "demo")
+    note("run runs/bench/aluminium.toml, cold", ("run", "runs/bench/aluminium.toml"), "demo")
     note("warm, cold", ("warm",), "all")
     features = {
         name: (*QUICK, *(part for word in words.split() for part in ("--set", word)))
