@@ -17,13 +17,14 @@ from analytic.arrays import Array, Ints
 from analytic.gradings import Grading
 from analytic.heights import GAUSSIAN, HeightLaw
 from analytic.law_rule import law_rule
-from analytic.laws.branch import Branch, Ways, term_of
+from analytic.laws.branch import Branch, Ways, terms_of
 from analytic.laws.law import ContactLaw
 from analytic.laws.pieces import cuts_of
 from analytic.quantities import quantity_of
 
 Count = Literal["fixed", "poisson"]
 
+_TOGETHER = 2**17  # terms that are found together: a cache holds them
 _DIVERGES = 4  # power of the radius of a summit that has no mean
 
 
@@ -94,7 +95,8 @@ class HeightRule:
         usual = np.zeros(f.shape[1]) if self.below > 0.5 else f[np.argmax(self.probabilities)]
         shifted = f - usual
         offset = self.mean(shifted) - self.below * usual
-        return Fluctuations(self, mean, shifted - offset, -usual - offset)
+        shifted -= offset
+        return Fluctuations(self, mean, shifted, -usual - offset)
 
     def terms(
         self, quantities: Sequence[str], separations: ArrayLike, grading: Grading, ways: Ways | None = None
@@ -104,24 +106,42 @@ class HeightRule:
         Without `ways` these are powers of the approach and of the radius, as under Hertz's law.
         """
         h = np.asarray(separations, dtype=np.float64)
+        modulus = grading(self.heights)
+        if ways is None:
+            terms = self._powers(quantities, h, modulus)
+        else:
+            if not ways.law.elastic:
+                _check(self.heights, modulus, ways.law)
+            terms = self._by_law(quantities, h, modulus, ways)
+        return terms.reshape(self.heights.size, len(quantities) * h.size)
+
+    def _powers(self, quantities: Sequence[str], h: Array, modulus: Array) -> Array:
+        """Shape (m, quantities, separations)."""
         approach = self.heights[:, None] - h
-        modulus = grading(self.heights)[:, None]
-        if ways is not None and not ways.law.elastic:
-            _check(self.heights, modulus[:, 0], ways.law)
-        columns = []
-        for name in quantities:
-            q = quantity_of(name)
-            if ways is not None and self.ratios is not None:
-                of_each = partial(ways.term, name, s=self.heights, e=modulus[:, 0], ratios=self.ratios)
-                columns.append(np.stack([of_each(h=x) for x in h.tolist()], axis=1))
-                continue
-            if ways is not None:
-                columns.append(term_of(q.base, ways.of(name), h, self.heights[:, None], modulus))
-                continue
-            power = np.where(approach > 0, np.abs(approach) ** q.exponent, 0.0)
-            radius = 1.0 if self.ratios is None else self.ratios[:, None] ** q.radius
-            columns.append(power * modulus**q.modulus * radius)
-        return np.concatenate(columns, axis=1)
+        touch, terms = approach > 0, np.zeros((self.heights.size, len(quantities), h.size))
+        for k, q in enumerate(map(quantity_of, quantities)):
+            radius = 1.0 if self.ratios is None else self.ratios**q.radius
+            power = np.where(touch, np.abs(approach) ** q.exponent, 0.0)
+            terms[:, k] = power * (modulus**q.modulus)[:, None] * np.expand_dims(radius, -1)
+        return terms
+
+    def _by_law(self, quantities: Sequence[str], h: Array, modulus: Array, ways: Ways) -> Array:
+        """The same by the formulas of a law, each piece of which is looked for once."""
+        terms = np.zeros((self.heights.size, len(quantities), h.size))
+        for branch in ways.among(quantities):
+            which = [k for k, name in enumerate(quantities) if ways.of(name) == branch]
+            several = [quantity_of(quantities[k]) for k in which]
+            step = max(1, _TOGETHER // max(1, h.size))
+            for first in range(0, self.heights.size, step):
+                part = slice(first, first + step)
+                s, e, of_part, radius = self.heights[part], modulus[part], branch, np.ones(1)
+                if self.ratios is not None:
+                    ratios = self.ratios[part]
+                    of_part = ways.with_radii(ratios).of(quantities[which[0]])
+                    radius = np.stack([ratios**q.radius for q in several])[:, None, :]
+                found = terms_of([q.base for q in several], of_part, h[:, None], s, e)
+                terms[part, which] = (radius * found).transpose(2, 0, 1)
+        return terms
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import analytic
-from analytic import laws, quantity_of
+from analytic import height_rule, laws, quantity_of
 from analytic.laws import Ways, term_of
 
 SURFACE = analytic.Surface(1e-6, 1e-5, 1e9, 1e-6, 1e11)
@@ -53,6 +53,21 @@ def test_each_summit_is_one_of_a_surface_of_its_radius(law, unload_from):
             found = quantity_of(name).scale(SURFACE) * ways.term(name, h, S, MODULI, RATIOS)
             wanted = literal(LAWS[law], name, unload_from, h)
             assert np.abs(found - wanted).max() <= 1e-13 * max(np.abs(wanted).max(), 1e-300), (name, h)
+
+
+@pytest.mark.parametrize("law", ["hertz", "kogut-etsion", "johnson-kendall-roberts"])
+def test_terms_of_a_rule_are_those_of_its_summits(law, monkeypatch):
+    """All quantities on both ways at all separations, found seven summits at a time."""
+    monkeypatch.setattr(height_rule, "_TOGETHER", 21)
+    names = ["contacts", "load_unloading", "conductance_si", "load", "area_unloading"]
+    h = [-0.5, 0.2, 5.0]
+    rule = height_rule.HeightRule(S, np.full(S.size, 1 / S.size), 0.0, RATIOS)
+    ways = Ways(LAWS[law].on(SURFACE), -1.0, FILM.on(SURFACE))
+    terms = rule.terms(names, h, analytic.Custom(lambda s: np.exp(0.3 * s)), ways)
+    scales = [quantity_of(name).scale(SURFACE) for name in names]
+    for found, scale, name in zip(terms.T.reshape(len(names), 3, -1), scales, names, strict=True):
+        wanted = np.array([literal(LAWS[law], name, -1.0, x) for x in h])
+        assert np.abs(scale * found - wanted).max() <= 1e-13 * np.abs(wanted).max()
 
 
 def test_another_radius_is_seen():

@@ -4,7 +4,7 @@ A branch says at which heights which formula holds, and gives the formulas at he
 So everything that sums over asperities treats loading, unloading and any law of contact alike.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import KW_ONLY, dataclass, replace
 from functools import partial
 from typing import Any, Self
@@ -51,8 +51,8 @@ class Branch:
         own = None if self.conductance is None else self.conductance.of_some(which)
         return replace(self, law=self.law.of_some(which), conductance=own)
 
-    def lowest(self, h: float) -> float:
-        """Height below which nothing touches, at a separation or at higher ones."""
+    def lowest(self, h: Any) -> Any:
+        """Height below which nothing touches, at a separation or at higher ones, in its shape."""
         return h
 
     def regimes(self, grading: Grading, separations: ArrayLike, low: float, high: float) -> Regimes:
@@ -110,7 +110,7 @@ class UnloadingBranch(Branch):
     _: KW_ONLY
     deepest: float
 
-    def lowest(self, h: float) -> float:
+    def lowest(self, h: Any) -> Any:
         """As `Branch.lowest`: what has touched may stick."""
         return self.deepest
 
@@ -203,12 +203,28 @@ def term_of(quantity: str, branch: Branch, h: ArrayLike, heights: ArrayLike, e: 
     ndarray
         In their common shape, over the quantity's scale.
     """
-    h, s, e = np.broadcast_arrays(*(np.asarray(x, dtype=np.float64) for x in (h, heights, e)))
-    above, result = s - h, np.zeros(s.shape)
-    pieces = branch.pieces(h, above, e)
+    return np.asarray(terms_of([quantity], branch, h, heights, e)[0])
+
+
+def terms_of(
+    quantities: Sequence[str], branch: Branch, h: ArrayLike, heights: ArrayLike, e: ArrayLike
+) -> Array:
+    """Several quantities of one branch, as `term_of`: shape (quantities, *common shape).
+
+    A law made for summits of different radii is that of the last axis.
+    """
+    every = np.broadcast_arrays(*(np.asarray(x, dtype=np.float64) for x in (h, heights, e)))
+    reach = every[1] >= branch.lowest(every[0])
+    touching, (x, s, modulus) = branch.of_some(np.flatnonzero(reach)), (each[reach] for each in every)
+    above, result = s - x, np.zeros((len(quantities), *reach.shape))
+    pieces = touching.pieces(x, above, modulus)
+    found = np.zeros((len(quantities), pieces.size))
     for piece in np.unique(pieces[pieces >= 0]).tolist():
         here = pieces == piece
-        result[here] = branch.of_some(here).value(quantity, piece, h[here], above[here], e[here])
+        of_piece, at = touching.of_some(here), (x[here], above[here], modulus[here])
+        for values, quantity in zip(found, quantities, strict=True):
+            values[here] = of_piece.value(quantity, piece, *at)
+    result[:, reach] = found
     return result
 
 
