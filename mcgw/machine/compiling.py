@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numba
-from filelock import FileLock
+from filelock import FileLock, SoftFileLock
 from numba.core import event
 
 from mcgw.errors import RunError
@@ -95,6 +95,6 @@ class _Told(event.Listener):  # type: ignore[misc, unused-ignore]
             pass_by("")
 
 
-if loops_folder():
+if loops_folder() and FileLock is not SoftFileLock:  # a soft lock would outlive a process that is killed
     event.register("numba:compiler_lock", _OneCompiles(loops_folder()))
 event.register("numba:compile", _Told())
