@@ -11,7 +11,7 @@ Mecke). It holds for any number of contacts; that of the load itself is F, which
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,14 +20,20 @@ from analytic.distribution.of_model import shares_upto
 from analytic.quadrature import gauss_legendre
 from analytic.quantities import quantity_of
 
+if TYPE_CHECKING:
+    from analytic.distribution import Law
+
 _LIFTS, _DEPTHS = 24, 32  # nodes in the separation, in the penetration at each: 1e-6 of the load and better
+_MANY, _LIFTS_OF_MANY = 100.0, 16  # contacts from which so many do as well
 _RAREST = 1e-9  # share of the surfaces beyond either end of the separations
 _STEP = 1e-4  # of a difference, over the penetration
 _DEEPEST = 20.0  # penetration over sigma that no asperity reaches
 _HALVINGS = 60
 
 
-def specimen_means(model: Any, given: str, value: float, names: Sequence[str]) -> dict[str, float]:
+def specimen_means(
+    model: Any, given: str, value: float, names: Sequence[str], law: "Law | None" = None
+) -> dict[str, float]:
     """Return means over surfaces that all have the same load, or another sum.
 
     Parameters
@@ -40,6 +46,8 @@ def specimen_means(model: Any, given: str, value: float, names: Sequence[str]) -
         Its value, SI.
     names : sequence of str
         Sums to average on loading.
+    law : Law, optional
+        `Model.separation_law` of them, where it was made before.
 
     Returns
     -------
@@ -59,15 +67,18 @@ def specimen_means(model: Any, given: str, value: float, names: Sequence[str]) -
     >>> round(found["load"] / 1e-6, 6)
     1.0
     """
-    law = model.separation_law(value, given)
+    law = model.separation_law(value, given) if law is None else law
     low, high = float(law.ppf(_RAREST)), float(law.isf(_RAREST))
     if not np.isfinite(high - low):  # a Poisson number of asperities may be 0
         raise ValueError(f"{given} = {value:g}: not every surface has a separation with it")
-    x, w = gauss_legendre(_LIFTS)
+    many = float(model.mean("contacts", (low + high) / 2)) > _MANY
+    x, w = gauss_legendre(_LIFTS_OF_MANY if many else _LIFTS)
     found = {name: float(model.mean(name, high)) for name in names}
     found["separation"] = high
-    for h, width in zip(low + (high - low) * x, (high - low) * w, strict=True):
-        rates, share = _rates(model, given, value, names, float(h))
+    lifts = low + (high - low) * x
+    deepest = _deepest(model, given, value / quantity_of(given).scale(model.surface), lifts)
+    for h, most, width in zip(lifts, deepest, (high - low) * w, strict=True):
+        rates, share = _rates(model, given, value, names, float(h), float(most))
         found["separation"] -= float(width * share)
         for name, rate in rates.items():
             found[name] += float(width * rate)
@@ -75,12 +86,14 @@ def specimen_means(model: Any, given: str, value: float, names: Sequence[str]) -
 
 
 def _rates(
-    model: Any, given: str, value: float, names: Sequence[str], h: float
+    model: Any, given: str, value: float, names: Sequence[str], h: float, most: float
 ) -> tuple[dict[str, float], float]:
-    """What the means gain for each unit of separation, and the share of surfaces that are lower."""
+    """What the means gain for each unit of separation, and the share of surfaces that are lower.
+
+    No asperity alone penetrates deeper than `most`.
+    """
     unit = quantity_of(given).scale(model.surface)
     x, w = gauss_legendre(_DEPTHS)
-    most = _deepest(model, given, value / unit, h)
     depth, weight = most * x**2, 2 * most * x * w  # roots of the penetration: all terms are smooth in them
     s = h + depth
     modulus, density = model.grading(s), weight * model.heights.pdf(s)
@@ -109,15 +122,12 @@ def _others(model: Any) -> Any:
     return replace(model, n_asperities=model.number - 1)
 
 
-def _deepest(model: Any, given: str, target: float, h: float) -> float:
-    """Penetration at which one asperity alone has the target, over the scale."""
-
-    def alone(depth: float) -> Array:
-        s = np.array([h + depth])
-        return np.asarray(model.ways.term(given, h, s, model.grading(s)))
-
-    low, high = 0.0, _DEEPEST
+def _deepest(model: Any, given: str, target: float, h: Array) -> Array:
+    """Penetration at which one asperity alone has the target, over the scale, at each separation."""
+    low, high = np.zeros_like(h), np.full_like(h, _DEEPEST)
     for _ in range(_HALVINGS):
         middle = (low + high) / 2
-        low, high = (low, middle) if alone(middle)[0] > target else (middle, high)
+        s = h + middle
+        beyond = model.ways.term(given, h, s, model.grading(s)) > target
+        low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
     return high

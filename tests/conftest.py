@@ -146,3 +146,9 @@ def recorded(request):
         assert not moved, "\n".join(["is it meant? then --record, and read the difference", *moved])
 
     return check
+
+
+@pytest.fixture
+def one_pressure(monkeypatch):
+    """Reports solve for one pressure: each takes half a second."""
+    monkeypatch.setattr("mcgw.reports.report_figures._PRESSURES", 1)

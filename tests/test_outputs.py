@@ -24,7 +24,7 @@ from mcgw.formats.files import rename_over, state_of, together, whole_file, writ
 from mcgw.jobs.job import Job
 from mcgw.store import ensembles, structure
 
-pytestmark = pytest.mark.usefixtures("looked_at_here")
+pytestmark = pytest.mark.usefixtures("looked_at_here", "one_pressure")
 
 
 @pytest.fixture(scope="module")

@@ -9,11 +9,14 @@ from conftest import SURFACE as COARSE
 
 import analytic
 import mcgw
-from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.results import MemoryResults
 from mcgw.figures.panels import draw
-from mcgw.reports.html import solution_of
-from mcgw.reports.report_figures import _relative_error, _spread, line_figure, pressure_curves
+from mcgw.reports.report_figures import (
+    _relative_error,
+    _spread,
+    line_figure,
+    pressure_curves,
+    solved_pressures,
+)
 from mcgw.statistics.comparison import compare
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "10 mm^2", "78.6 GPa")
@@ -73,61 +76,49 @@ def test_error_of_std_over_mean_is_that_of_repetitions(make_scene):
     np.testing.assert_allclose(told / np.sqrt(100), ratio.std(axis=0), rtol=0.15)
 
 
-def test_curves_are_those_of_surfaces_whose_laws_are_known(scene):
-    """Loads p_i exp(-2 h), areas k_i P^0.9: at equal pressure each area, and so mean and band, is known."""
-    h = np.array(scene.separations)
-    rng = np.random.default_rng(3)
-    own, factor = rng.uniform(0.8, 1.2, size=(2, 12, 1))
-    load = 50.0 * own * np.exp(-2 * h)
-    rows = {
-        "load": load, "area": 1e-9 * factor * load**0.9, "stiffness": 1e6 * factor * load**0.8,
-        "contacts": load, "conductance_si": 0.3 * factor * load**0.95,
-    }  # fmt: skip
-    first, *others = pressure_curves(Ensemble(scene, "cells", MemoryResults(rows)))
-    area = SURFACE.nominal_area
+@pytest.fixture(autouse=True)
+def _few_pressures(monkeypatch):
+    """Each takes half a second."""
+    monkeypatch.setattr("mcgw.reports.report_figures._PRESSURES", 2)
+
+
+def test_curves_are_values_and_specimens_of_solve(scene):
+    solved, area = solved_pressures(scene), SURFACE.nominal_area
+    searched = mcgw.solve(scene, load=[each.amount for each in solved])
     expected = [
-        ("Real contact area", "A/Aₙ (%)", 100 * 1e-9 / area, 0.9),
-        ("Normal stiffness", "K/Aₙ (MPa/µm)", 1e-12 * 1e6 / area, 0.8),
-        ("Contact conductance", "C/Aₙ (S/m²)", 0.3 / area, 0.95),
+        ("Load: pressure at a separation", "separation d/σ", "separation", 1.0),
+        ("Real contact area", "A/Aₙ (%)", "area", 100 / area),
+        ("Normal stiffness", "K/Aₙ (MPa/µm)", "stiffness", 1e-12 / area),
+        ("Contact conductance", "C/Aₙ (S/m²)", "conductance_si", 1 / area),
     ]
-    for curve, (title, label, scale, power) in zip(others, expected, strict=True):
+    curves = pressure_curves(solved)
+    for curve, (title, label, name, factor) in zip(curves, expected, strict=True):
         (panel,) = curve.panels
         (series,) = panel.series
         assert (panel.title, panel.ylabel) == (title, label)
-        exact_curves = scale * factor * (1e6 * series.x * area) ** power
-        np.testing.assert_allclose(series.theory, exact_curves.mean(axis=0), rtol=1e-10)
-        for side, q in zip(series.band, (0.05, 0.95), strict=True):
-            np.testing.assert_allclose(side, np.quantile(exact_curves, q, axis=0), rtol=1e-10)
-    ((panel,), (series,)) = first.panels, first.panels[0].series
-    assert (panel.title, panel.ylabel) == ("Load: pressure at a separation", "separation d/σ")
-    separations = np.log(50.0 * own / (1e6 * series.x * area)) / 2
-    np.testing.assert_allclose(series.theory, separations.mean(axis=0), atol=1e-10)
-    ends = 1e-6 / area * np.array([load[:, -1].max(), load[:, 0].min()])
-    assert series.x[[0, -1]] == pytest.approx(ends, rel=1e-12)
-    figure = draw(first)
+        np.testing.assert_allclose(series.theory, [factor * x.value[name] for x in searched], rtol=1e-12)
+        ends = factor * np.array([x.specimens(name) for x in searched]).T
+        np.testing.assert_allclose(series.band, ends, rtol=1e-9)
+        np.testing.assert_allclose(series.x, [1e-6 * x.amount / area for x in searched], rtol=1e-12)
+    figure = draw(curves[0])
     (axes,) = figure.axes
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("nominal pressure P/Aₙ (MPa)", "separation d/σ")
     assert (axes.get_xscale(), axes.get_yscale()) == ("log", "linear")
-    assert figure.get_supxlabel() == "Line: mean. Band: 5 to 95 % of the surfaces."
-    (axes,) = draw(others[0]).axes
-    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
-    np.testing.assert_array_equal(axes.lines[0].get_ydata(), others[0].panels[0].series[0].theory)
-
-
-def test_there_is_no_band_where_there_are_not_several_surfaces(scene):
-    curves = pressure_curves(mcgw.simulate(scene, n_surfaces=1))
-    assert len(curves) == 4
-    assert all(curve.panels[0].series[0].band is None for curve in curves)
-    assert {curve.caption for curve in curves} == {"Line: mean."}
+    assert figure.get_supxlabel() == "Line: mean. Band: 5 to 95 % of the specimens."
 
 
 @pytest.mark.parametrize(
-    "changes", [{"separations": 1.0}, {"separations": [8.0, 9.0]}, {"quantities": ["contacts"], "film": None}]
+    "changes",
+    [
+        {"separations": 1.0},
+        {"separations": [8.0, 9.0]},
+        {"quantities": ["contacts"], "film": None},
+        {"n_surfaces": 1},
+    ],
 )
-def test_there_are_no_curves_where_no_pressure_is_common(scene, changes):
-    ensemble = mcgw.simulate(scene, **changes)
-    assert pressure_curves(ensemble) == []
-    assert solution_of(ensemble.scene, ensemble) is None
+def test_there_are_no_curves_where_no_pressures_are_spanned(scene, changes):
+    assert solved_pressures(scene.replace(**changes)) == []
+    assert pressure_curves([]) == []
 
 
 KINDS = [
@@ -142,7 +133,7 @@ KINDS = [
 @pytest.mark.parametrize("changes", KINDS, ids=lambda x: next(iter(x)))
 def test_every_kind_has_its_curves(scene, changes):
     """Positive and rising with the pressure, also where adhesion lets a load fall below 0."""
-    curves = pressure_curves(mcgw.simulate(scene, **changes))
+    curves = pressure_curves(solved_pressures(scene.replace(**changes)))
     assert len(curves) >= 4
     for curve in curves:
         (panel,) = curve.panels
@@ -151,13 +142,3 @@ def test_every_kind_has_its_curves(scene, changes):
         assert np.all(rising * np.diff(series.theory) > 0), panel.title
         assert np.all(series.band[0] <= series.theory)
         assert np.all(series.theory <= series.band[1])
-
-
-def test_the_band_of_separations_is_that_of_the_exact_law(scene):
-    """A probability of 0.05 and 0.95 at its ends, to what a straight line between separations misses."""
-    asked = scene.replace(separations=np.linspace(1.0, 2.5, 31), n_surfaces=200)
-    (series,) = pressure_curves(mcgw.simulate(asked))[0].panels[0].series
-    for k in (5, 30, 55):
-        law = asked.theory.separation_law(1e6 * series.x[k] * asked.surface.nominal_area)
-        ends = [float(side[k]) for side in series.band]
-        np.testing.assert_allclose(law.cdf(ends), [0.05, 0.95], atol=3e-3)

@@ -29,8 +29,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--points", type=int, default=40, metavar="N", help="number of rows; default: 40")
     parser.add_argument(
         "--pressures", metavar="LO:HI:N",
-        help="N nominal pressures at a constant ratio, such as 10kPa:20MPa:30; default: all that the "
-        "surfaces reach",
+        help="N nominal pressures at a constant ratio, such as 10kPa:20MPa:30; default: those that the "
+        "separations of the scene span",
     )  # fmt: skip
     parser.add_argument(
         "--quantile", type=float, nargs="+", metavar="Q",

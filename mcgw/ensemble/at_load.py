@@ -1,6 +1,6 @@
 """Answers at given loads: the exact mean surface, and the gap between its planes.
 
-Also the answers of each surface of an ensemble at given nominal pressures, read off its own curve.
+Also the pressures that the separations of a scene span.
 """
 
 from dataclasses import replace
@@ -11,18 +11,13 @@ import numpy as np
 from analytic import QUANTITIES, SEPARATIONS, Quantity, quantity_of
 from analytic.arrays import Array
 from analytic.laws.elastic_plastic import ElasticPlastic
-from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.simulation import simulate
-from mcgw.sampling.samplers import sampler_of
-from mcgw.scene.scene import Scene, drawn_by
+from mcgw.scene.scene import Scene
 
 GAPS = ("mean_gap", "gap_to_summits")  # m: see `answers_at`
 NEGATIVE = (
     "{} = {:g} {}: {} reaches it only with asperities of negative modulus, at s = {:.4g}; give less, "
     'or set negative = "clip" or "allow" under [grading]'
 )
-_DRAWS = 1e9  # numbers drawn again for single surfaces: a second or two
-_FEWEST = 20
 
 
 def mean_surface(scene: Scene, given: str, value: float) -> dict[str, float]:
@@ -89,71 +84,21 @@ def _conducted(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
     return answers
 
 
-def at_pressures(ensemble: Ensemble, pressures: Array, quantities: tuple[str, ...]) -> dict[str, Array]:
-    """Quantities of every surface at its own separation for each pressure.
+def pressures_of(scene: Scene, number: int) -> Array:
+    """Return pressures at a constant ratio, from the lowest to the highest at the scene's separations, Pa.
 
-    Between two separations of the ensemble, a quantity is interpolated as a power of the pressure, and the
-    separation linearly in the logarithm of the pressure.
+    They are those of the mean surface, where a specimen has a contact or more.
 
-    Parameters
-    ----------
-    ensemble : Ensemble
-        An ensemble that holds the load and these quantities.
-    pressures : ndarray
-        Load per nominal area, Pa, shape (pressures,).
-    quantities : tuple of str
-        Names, or "separation" (d/sigma).
-
-    Returns
-    -------
-    dict of str to ndarray
-        SI, shape (surfaces, pressures); nan where the curve of a surface does not reach.
+    Raises
+    ------
+    ValueError
+        If fewer than two separations have such.
     """
-    order = np.argsort(-ensemble.separations, kind="stable")
-    h, wanted = ensemble.separations[order], np.log(pressures)
-    loads = ensemble.values("pressure")[:, order]
-    found = {}
-    for name in quantities:
-        values = None if name == "separation" else ensemble.values(name)[:, order]
-        rows = [
-            _on_one(load, h if values is None else values[i], wanted, name == "separation")
-            for i, load in enumerate(loads)
-        ]
-        found[name] = np.array(rows)
-    return found
-
-
-def _on_one(load: Array, values: Array, wanted: Array, linear: bool) -> Array:
-    part = loaded_part(load)
-    x, y = load[part], values[part]
-    if x.size < 2 or (not linear and np.any(y <= 0)):
-        return np.full(wanted.shape, np.nan)
-    read = np.interp(wanted, np.log(x), y if linear else np.log(y), left=np.nan, right=np.nan)
-    return read if linear else np.exp(read)
-
-
-def loaded_part(load: Array) -> slice:
-    """Part of a curve, along falling separations, where the load is positive and rises; it may be empty."""
-    falls = np.flatnonzero((load[1:] <= load[:-1]) | (load[:-1] <= 0))
-    start = int(falls[-1]) + 1 if falls.size else 0
-    return slice(start, len(load) if load[-1] > 0 else start)
-
-
-def common_pressures(ensemble: Ensemble) -> tuple[float, float] | None:
-    """Lowest and highest pressure that the curves of all surfaces reach, Pa; None if there is none."""
-    order = np.argsort(-ensemble.separations, kind="stable")
-    loads = ensemble.values("pressure")[:, order]
-    parts = [load[loaded_part(load)] for load in loads]
-    if any(part.size < 2 for part in parts):
-        return None
-    low, high = max(float(p[0]) for p in parts), min(float(p[-1]) for p in parts)
-    return (low, high) if low < high else None
-
-
-def with_values(ensemble: Ensemble, most: int) -> Ensemble:
-    """The ensemble itself; if it keeps only statistics, its first surfaces drawn again."""
-    if ensemble.scene.keep != "statistics":
-        return ensemble
-    scene = replace(drawn_by(ensemble.scene, ensemble.sampler), keep="sums")
-    fitting = int(_DRAWS / (sampler_of(scene).draws + 1))
-    return simulate(replace(scene, n_surfaces=min(ensemble.n_surfaces, most, max(fitting, _FEWEST))))
+    alone, h = asperities_of(scene).theory, np.array(scene.separations)
+    pressures = np.asarray(alone.mean("pressure", h))
+    pressures = pressures[(pressures > 0) & (np.asarray(alone.mean("contacts", h)) >= 1)]
+    if len(np.unique(pressures)) < 2:
+        raise ValueError(
+            "contact.separations: give two or more at which a surface has a contact and carries a load"
+        )
+    return np.geomspace(pressures.min(), pressures.max(), number)

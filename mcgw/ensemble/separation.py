@@ -187,6 +187,11 @@ class Summits:
     s: Array
     ratios: Array | None
 
+    @cached_property
+    def modulus(self) -> Array:
+        """E*(s)/E* of each."""
+        return np.asarray(self.scene.modulus(self.s))
+
     @classmethod
     def of(cls, scene: Scene, s: Array, ratios: Array | None) -> "Summits":
         """In falling order."""
@@ -196,7 +201,9 @@ class Summits:
     def above(self, h: float) -> "Summits":
         """The first of them, that rise above a separation."""
         n = int(np.searchsorted(-self.s, -h))
-        return Summits(self.scene, self.s[:n], None if self.ratios is None else self.ratios[:n])
+        first = Summits(self.scene, self.s[:n], None if self.ratios is None else self.ratios[:n])
+        first.__dict__["modulus"] = self.modulus[:n]
+        return first
 
     def largest_separation(self, q: Quantity, target: float, start: float) -> float | None:
         """The solution among separations from `start` on at which no modulus is negative, or None.
@@ -205,7 +212,7 @@ class Summits:
         the separation: so there is no larger solution.
         """
         if not self._by_powers:
-            e = self.scene.modulus(self.s)
+            e = self.modulus
             start = float(self.s[e < 0].max(initial=start))
             return LawSum(q.base, self.scene.ways.loading, self.s, e, self.ratios).largest_separation(
                 target, start
@@ -234,7 +241,7 @@ class Summits:
     def sums(self, names: Iterable[str], h: float) -> dict[str, float]:
         """Quantities at one separation, SI."""
         touching, found = self.above(h), {}
-        s, modulus = touching.s, self.scene.modulus(touching.s)
+        s, modulus = touching.s, touching.modulus
         for name in names:
             q = quantity_of(name)
             if self.scene.hertzian:
@@ -246,7 +253,7 @@ class Summits:
 
     def _going_down(self, q: Quantity, target: float, start: float) -> float | None:
         """As `separation_anywhere` under any law, step by step."""
-        softest = float(self.s[self.scene.modulus(self.s) < 0].max(initial=_LOWEST))
+        softest = float(self.s[self.modulus < 0].max(initial=_LOWEST))
         while start > softest:
             start = max(start - _STEP, softest)
             if (found := self.above(start).largest_separation(q, target, start)) is not None:
@@ -259,7 +266,7 @@ class Summits:
         return type(self.scene.law) is Hertz
 
     def _weights(self, q: Quantity) -> Array:
-        modulus = self.scene.modulus(self.s) if q.modulus else np.ones_like(self.s)
+        modulus = self.modulus if q.modulus else np.ones_like(self.s)
         return modulus if self.ratios is None else modulus * self.ratios**q.radius
 
     def _power_sum(self, q: Quantity, weights: Array, h: float) -> float:

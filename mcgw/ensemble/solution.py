@@ -211,7 +211,7 @@ def _surface(
             if not on.s.size:
                 raise ValueError(f"surface {number} has no asperity; increase n_asperities")
             h = on.separation_anywhere(q, target, drawn.lowest)
-        negative = on.s[scene.modulus(on.s) < 0]
+        negative = on.s[on.modulus < 0]
         if h is None and not negative.size:
             raise ValueError(f"{q.name} = {value:g} {q.unit}: surface {number} does not reach it; give less")
         if h is None or (scene.negative == "error" and np.any(negative > h)):

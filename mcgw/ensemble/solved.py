@@ -168,7 +168,7 @@ class Solution(Shown):
         summed = [name for name in quantities_at(alone) if name in self.surfaces and name != self.given]
         try:
             with np.errstate(all="ignore"):
-                found = specimen_means(alone.theory, self.given, self.amount, summed)
+                found = specimen_means(alone.theory, self.given, self.amount, summed, self.separation_law)
         except (ValueError, IndexError):  # far up, where hardly any asperity of any surface is
             return {}
         if not np.isfinite(list(found.values())).all():

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.arrays import Array
-from mcgw.ensemble.at_load import at_pressures, common_pressures, with_values
+from mcgw.ensemble.at_load import pressures_of
 from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.solution import solutions
 from mcgw.formats.table import evenly
 from mcgw.scene.scene import Scene
 
-_MOST = 2000  # surfaces drawn again where an ensemble keeps statistics alone
 _FEWEST = 2  # points of a curve
 
 
@@ -78,10 +78,10 @@ class Curve:
     y: Array
 
 
-def curves_of(
+def curves_at_gaps(
     ensemble: Ensemble, kind: Kind, pressures: Array | None, points: int, quantiles: tuple[float, ...]
 ) -> list[Curve]:
-    """Mean and quantiles over surfaces, at equal gap or at equal pressure.
+    """Mean and quantiles over surfaces at equal gap.
 
     Parameters
     ----------
@@ -90,8 +90,34 @@ def curves_of(
     kind : Kind
         Of which table.
     pressures : ndarray or None
-        Pressures of the rows, or of which the first and the last bound the gaps. Default: all that the
-        surfaces reach.
+        The first and the last bound the gaps. Default: all there are.
+    points : int
+        How many rows.
+    quantiles : tuple of float
+        Between 0 and 1; empty for the mean alone.
+
+    Raises
+    ------
+    ValueError
+        If there are too few points, or something that is no function.
+    """
+    x, mean, some = _at_gaps(ensemble, kind, pressures, points, quantiles)
+    return _named(kind, quantiles, x, mean, some)
+
+
+def curves_at_pressures(
+    scene: Scene, kind: Kind, pressures: Array | None, points: int, quantiles: tuple[float, ...]
+) -> list[Curve]:
+    """Mean and quantiles over specimens that all carry the same load: those of `mcgw.solve`.
+
+    Parameters
+    ----------
+    scene : Scene
+        Of the specimens.
+    kind : Kind
+        Of which table.
+    pressures : ndarray or None
+        Of the rows. Default: those that the scene's separations span.
     points : int
         How many rows, where no pressures are given.
     quantiles : tuple of float
@@ -100,17 +126,21 @@ def curves_of(
     Raises
     ------
     ValueError
-        If there are surfaces that do not reach a pressure, too few points, or something that is no function.
+        As from `mcgw.solve`; and if something is no function.
     """
-    if kind.against == "gap":
-        x, mean, some = _at_gaps(ensemble, kind, pressures, points, quantiles)
-    else:
-        x, y = _at_pressures(with_values(ensemble, _MOST), kind, pressures, points)
-        mean, some = y.mean(axis=0), [np.quantile(y, q, axis=0) for q in quantiles]
-    area = ensemble.scene.surface.nominal_area if kind.quantity == "stiffness" else 1.0
-    found = [Curve("mean", x, mean / area)]
-    found += [Curve(quantile_name(q), x, y / area) for q, y in zip(quantiles, some, strict=True)]
-    return [_one_way(curve, kind) for curve in found]
+    if pressures is None:
+        pressures = pressures_of(scene, points)
+    area, name = scene.surface.nominal_area, kind.answer(scene)
+    solved = solutions(scene, "load", (area * pressures).tolist())
+    per = area if kind.quantity == "stiffness" else 1.0
+    mean = np.array([each.value[name] for each in solved]) / per
+    some = [np.array([np.quantile(each.surfaces[name], q) for each in solved]) / per for q in quantiles]
+    return _named(kind, quantiles, pressures, mean, some)
+
+
+def _named(kind: Kind, quantiles: tuple[float, ...], x: Array, mean: Array, some: list[Array]) -> list[Curve]:
+    names = ["mean", *map(quantile_name, quantiles)]
+    return [_one_way(Curve(name, x, y), kind) for name, y in zip(names, [mean, *some], strict=True)]
 
 
 def quantile_name(quantile: float) -> str:
@@ -140,27 +170,6 @@ def _at_gaps(
     name = kind.answer(ensemble.scene)
     x = h * ensemble.scene.surface.sigma
     return x, ensemble.mean(name)[order], [ensemble.quantile(name, q)[order] for q in quantiles]
-
-
-def _at_pressures(
-    ensemble: Ensemble, kind: Kind, pressures: Array | None, points: int
-) -> tuple[Array, Array]:
-    reach, name = common_pressures(ensemble), kind.answer(ensemble.scene)
-    if pressures is None:
-        if reach is None:
-            raise ValueError(
-                "contact.separations: no pressure is reached by all surfaces; give more or smaller ones"
-            )
-        pressures = np.geomspace(*reach, points)
-    y = at_pressures(ensemble, pressures, (name,))[name]
-    if np.any(missing := np.isnan(y)):
-        surface, at = (int(k[0]) for k in np.nonzero(missing))
-        told = "no pressure at all" if reach is None else f"{reach[0]:.4g} to {reach[1]:.4g} Pa"
-        raise ValueError(
-            f"pressures: {pressures[at]:.4g} Pa is not on the curve of surface {surface}; all surfaces reach "
-            f"{told}"
-        )
-    return pressures, y
 
 
 def _one_way(curve: Curve, kind: Kind) -> Curve:

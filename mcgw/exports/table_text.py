@@ -7,7 +7,6 @@ from importlib.metadata import PackageNotFoundError, version
 import numpy as np
 
 from analytic.arrays import Array
-from mcgw.ensemble.ensemble import Ensemble
 from mcgw.exports.curves import Curve, Kind
 from mcgw.exports.programs import Program, foot_of, rows_of
 from mcgw.formats.sheet import brief
@@ -41,10 +40,11 @@ UNIT_SYSTEMS = {
 }
 
 
-def heading(ensemble: Ensemble, kind: Kind, curve: Curve, system: UnitSystem, digest: str) -> list[str]:
+def heading(
+    scene: Scene, surfaces: int, kind: Kind, curve: Curve, system: UnitSystem, digest: str
+) -> list[str]:
     """Lines of plain ASCII text, without the mark of a comment."""
-    scene = ensemble.scene
-    over = f"{ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, seed {scene.seed}"
+    over = f"{surfaces} surfaces of {scene.n_asperities:g} asperities, seed {scene.seed}"
     argument = system.length if kind.against == "gap" else system.pressure
     what = kind.quantity if kind.quantity == "pressure" else f"{kind.quantity} per nominal area"
     curve_name = curve.name if curve.name == "mean" else f"{curve.name[1:]} % quantile"

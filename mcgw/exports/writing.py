@@ -13,7 +13,7 @@ from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.simulation import simulate
 from mcgw.exports.contact_table import contact_table
-from mcgw.exports.curves import CONDUCTING, CONTACT, KINDS, Kind, curves_of
+from mcgw.exports.curves import CONDUCTING, CONTACT, KINDS, Kind, curves_at_gaps, curves_at_pressures
 from mcgw.exports.programs import PROGRAMS, Program, check_name
 from mcgw.exports.table_text import UNIT_SYSTEMS, UnitSystem, all_curves, heading, in_units, table_text
 from mcgw.formats.files import write_whole
@@ -24,9 +24,6 @@ from mcgw.store.ensembles import open_ensemble, read_attributes
 
 DEFAULT_POINTS, DEFAULT_QUANTILES = 40, (0.05, 0.95)
 _MOST_POINTS = 10_000
-_STEP = 1 / 32  # d/sigma between separations, where quantities are read off at equal pressure
-_MARGIN = 6.0  # standard deviations of the separation at a pressure
-_MOST = 2.0  # d/sigma, largest margin: a single contact has a huge standard deviation
 
 
 def export(
@@ -42,14 +39,14 @@ def export(
 ) -> list[Path]:
     """Write a contact table in the format of a finite-element program.
 
-    Means and quantiles are those over the surfaces, at equal gap in tables against the gap, at equal pressure
-    in tables against the pressure.
+    Means and quantiles are those over the surfaces, at equal gap in tables against the gap. In tables against
+    the pressure the mean is `Solution.value` of `mcgw.solve`, and quantiles are of its specimens.
 
     Parameters
     ----------
     what : Scene, Ensemble, str or Path
         A scene, whose surfaces are drawn at separations that suit the table; or an ensemble or its file, with
-        its own separations.
+        its own separations. Tables against the pressure are made from the scene of either.
     path : str or Path
         Of the table of means; those of quantiles lie beside it, such as ``NAME.q05.inp``, and all
         together as ``NAME.all.csv``.
@@ -62,8 +59,8 @@ def export(
         Rows, besides the one where nothing is carried. Default: 40.
     pressures : array_like or sequence of str, optional
         Nominal pressures of the rows, rising, Pa or text such as "1 MPa"; against the gap those of the
-        mean surface, or bounds, where there is an ensemble. Default: all that the surfaces reach at the
-        scene's separations.
+        mean surface, or bounds, where there is an ensemble. Default: those that the scene's separations
+        span, on the mean surface.
     quantiles : sequence of float, optional
         Default: 0.05 and 0.95, or none where there are not several surfaces.
     units : {"SI", "mm-N-s"}
@@ -106,11 +103,16 @@ def export(
     source, digest = _source(what)
     scene = source if isinstance(source, Scene) else source.scene
     checked(scene, kind)
-    ensemble = _drawn(source, kind, wanted, points)
-    bounds, rows = wanted, points
-    if wanted is not None and ensemble is not source and kind.against == "gap":
-        bounds, rows = None, len(wanted)  # drawn at the separations of the rows
-    curves = curves_of(ensemble, kind, bounds, rows, _quantiles(quantiles, ensemble))
+    surfaces = scene.n_surfaces if source is scene else source.n_surfaces
+    shares = _quantiles(quantiles, surfaces)
+    if kind.against == "pressure":
+        curves = curves_at_pressures(scene, kind, wanted, points, shares)
+    else:
+        ensemble = _drawn(source, kind, wanted, points)
+        bounds, rows = wanted, points
+        if wanted is not None and ensemble is not source:
+            bounds, rows = None, len(wanted)  # drawn at the separations of the rows
+        curves = curves_at_gaps(ensemble, kind, bounds, rows, shares)
     files = files_of_export(path, [curve.name for curve in curves])
     scaled = [in_units(curve, kind, system) for curve in curves]
     texts = [
@@ -119,7 +121,7 @@ def export(
             kind,
             program,
             system,
-            heading(ensemble, kind, curve, system, digest),
+            heading(scene, surfaces, kind, curve, system, digest),
             file.name,
             stays=kind.stays(scene),
         )
@@ -191,9 +193,9 @@ def _pressures(given: Any) -> Array | None:
     return found
 
 
-def _quantiles(given: Sequence[float] | None, ensemble: Ensemble) -> tuple[float, ...]:
+def _quantiles(given: Sequence[float] | None, n_surfaces: int) -> tuple[float, ...]:
     if given is None:
-        return DEFAULT_QUANTILES if ensemble.n_surfaces > 1 else ()
+        return DEFAULT_QUANTILES if n_surfaces > 1 else ()
     found = tuple(float(q) for q in given)
     wrong = [q for q in found if not 0 < q < 1]
     if wrong or len(set(found)) < len(found):
@@ -229,7 +231,7 @@ def checked(scene: Scene, kind: Kind) -> None:
 
 
 def surfaces_for(scene: Scene, kind: Kind, pressures: Array | None, points: int) -> Ensemble:
-    """Draw the surfaces of a scene with only what a table needs.
+    """Draw the surfaces of a scene with only what a table against the gap needs.
 
     Parameters
     ----------
@@ -240,33 +242,21 @@ def surfaces_for(scene: Scene, kind: Kind, pressures: Array | None, points: int)
     pressures : ndarray or None
         Of the table, Pa.
     points : int
-        Rows of a table against gap.
+        Rows of the table.
 
     Returns
     -------
     Ensemble
-        In memory. Against gap at as many separations as there are points, or at those where the mean surface
-        has the pressures; against pressure at separations 1/32 apart, so far beyond the range that every
-        surface passes through it.
+        In memory, at as many separations as there are points, or at those where the mean surface has the
+        pressures.
     """
     if pressures is None:
-        low, high = min(scene.separations), max(scene.separations)
-        number = points if kind.against == "gap" else max(round((high - low) / _STEP), 1) + 1
-        h = np.linspace(low, high, number)
+        h = np.linspace(min(scene.separations), max(scene.separations), points)
     else:
         h = np.array([float(scene.theory.separation_at("pressure", p)) for p in pressures])
-        if kind.against == "pressure":
-            low, high = h[-1] - _margin(scene, h[-1]), h[0] + _margin(scene, h[0])
-            h = np.linspace(low, high, round((high - low) / _STEP) + 2)
     return simulate(
         replace(
             scene, separations=tuple(h.tolist()), quantities=kind.needs, keep="sums", unload_from=None,
             rel_err=None, max_seconds=None,
         )
     )  # fmt: skip
-
-
-def _margin(scene: Scene, h: float) -> float:
-    slope = float(scene.theory.slope("load", h))
-    spread = float(scene.theory.std("load", h)) / slope if slope else _MOST
-    return min(_MARGIN * abs(spread) + _STEP, _MOST)

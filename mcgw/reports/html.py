@@ -1,16 +1,11 @@
 """Report of an ensemble: one HTML page without network or scripts."""
 
-import math
 import re
 from typing import Any
 
-import numpy as np
-
 from analytic import Hertz
-from mcgw.ensemble.at_load import at_pressures, common_pressures, mean_surface
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.solved import Solution
-from mcgw.ensemble.some_separations import how_many, shown
+from mcgw.ensemble.some_separations import how_many
 from mcgw.figures.style import grading_label
 from mcgw.formats.numbers import number, typeset
 from mcgw.formats.table import Column, Table
@@ -18,9 +13,9 @@ from mcgw.machine.progress import stages
 from mcgw.machine.terminal import one_line, plain_text
 from mcgw.reports.report_figures import (
     comparison_figures,
-    first_surfaces,
     pressure_pictures,
     pressure_table,
+    solved_pressures,
 )
 from mcgw.scene.cautions import cautions
 from mcgw.scene.in_words import contact_facts, law_text
@@ -36,11 +31,11 @@ def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
     """Make the page of an ensemble from it and the attributes of its file: scene, digest, versions, ..."""
     scene, against = ensemble.scene, ensemble.scene.validity()
     with stages(3) as done:
-        comparison, some = compare(ensemble), shown(ensemble)
+        comparison = compare(ensemble)
         done()
-        first = first_surfaces(some) if "load" in scene.quantities else some
-        at_pressure = list(pressure_pictures(first))
-        solved = solution_of(scene, first) if at_pressure else None
+        at_loads = solved_pressures(scene)
+        at_pressure = list(pressure_pictures(at_loads))
+        solved = at_loads[len(at_loads) // 2] if at_loads else None
         done()
         figures = comparison_figures(comparison)
         tables = list(comparison.tables().values())
@@ -56,7 +51,6 @@ def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
         by_pressure=pressure_table(at_pressure, scene),
         solved=solved and solved.sheet().table,
         budget=solved and solved.budget(),
-        several=ensemble.n_surfaces > 1,
         figures=figures,
         tables=[table.rows() for table in tables],
         facts=surface_facts(ensemble),
@@ -68,25 +62,6 @@ def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
         provenance=provenance_facts(attributes, scene.seed),
         scene=plain_text(_shorter(attributes["scene"])),
     )
-
-
-def solution_of(scene: Scene, first: Ensemble) -> Solution | None:
-    """First surfaces at a middle pressure that all reach, each read off its own curve."""
-    names = [name for name in ("area", "stiffness", "conductance") if name in scene.quantities]
-    if "load" not in scene.quantities or not names or first.n_surfaces < 2:
-        return None
-    if (reach := common_pressures(first)) is None:
-        return None
-    pressure = math.sqrt(reach[0] * reach[1])
-    found = at_pressures(first, np.array([pressure]), ("separation", *names))
-    surfaces = {name: values[:, 0] for name, values in found.items()}
-    if any(np.isnan(values).any() for values in surfaces.values()):
-        return None
-    if scene.interaction is None:
-        gap = scene.surface.sigma * (surfaces["separation"] + (scene.rise or 0.0))
-        surfaces = {scene.gap: gap, **surfaces}
-    load = pressure * scene.surface.nominal_area
-    return Solution(scene, "load", load, mean_surface(scene, "load", load), surfaces, scene)
 
 
 def rendered(template: str, **values: Any) -> str:

@@ -11,30 +11,29 @@ from matplotlib.figure import Figure
 
 from analytic import quantity_of
 from analytic.arrays import Array
-from mcgw.ensemble.at_load import at_pressures, common_pressures, with_values
-from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.intervals import exact_ends
-from mcgw.ensemble.results import MemoryResults
+from mcgw.ensemble.at_load import pressures_of
+from mcgw.ensemble.solution import solutions
+from mcgw.ensemble.solved import Solution
 from mcgw.figures.against_theory import quantity_panel
 from mcgw.figures.data import FigureData, Panel, Points, Series
 from mcgw.figures.panels import draw
 from mcgw.figures.style import STYLE, write_figure
-from mcgw.formats.table import Column, Table, evenly
+from mcgw.formats.table import Column, Table
 from mcgw.scene.in_words import joint_text
 from mcgw.scene.scene import Scene
 from mcgw.statistics.comparison import Comparison
 
-MOST_SURFACES = 2000  # that mean and band are of: more would move them by less than a line is wide
-_POINTS = 60
-_BAND, _OF_BAND = (0.05, 0.95), " Band: 5 to 95 % of the surfaces."
+_MOST_SURFACES, _MOST_HEIGHTS = 2000, 1e7  # drawn: more would move a band by less than a line is wide
+_FEWEST = 20
+_PRESSURES = 7  # of the table and of the curves, straight where both scales are logarithmic
+_BAND, _OF_BAND = 0.9, " Band: 5 to 95 % of the specimens."
 _PER_AREA = (  # name, factor from SI, title, unit
     ("area", 100, "Real contact area", "%"),
     ("stiffness", 1e-12, "Normal stiffness", "MPa/µm"),
-    ("conductance_si", 1, "Contact conductance", ""),
+    ("contact_conductance", 1, "Contact conductance", ""),
     ("conductance", 1, "Contact conductance times ρ", "1/m"),
 )
 _OF_JOINT = {"gap_conductance": "Gap conductance", "joint_conductance": "Joint conductance"}
-_ROWS = 6  # of the table of all of them
 
 
 @dataclass(frozen=True)
@@ -67,9 +66,22 @@ def comparison_figures(comparison: Comparison) -> list[PageFigure]:
     return found
 
 
-def pressure_pictures(ensemble: Ensemble) -> Iterator[PageFigure]:
+def solved_pressures(scene: Scene) -> list[Solution]:
+    """Answers at pressures that the scene's separations span; none where that is not known."""
+    if "load" not in scene.quantities or scene.located:
+        return []
+    try:
+        pressures = pressures_of(scene, _PRESSURES)
+        most = int(_MOST_HEIGHTS / float(scene.theory.mean("contacts", scene.lowest)))
+        few = replace(scene, n_surfaces=min(scene.n_surfaces, _MOST_SURFACES, max(most, _FEWEST)))
+        return solutions(few, "load", (scene.surface.nominal_area * pressures).tolist())
+    except ValueError:
+        return []
+
+
+def pressure_pictures(solved: Sequence[Solution]) -> Iterator[PageFigure]:
     """What holds at equal nominal pressure."""
-    for data in pressure_curves(ensemble):
+    for data in pressure_curves(solved):
         (panel,) = data.panels
         low, high = panel.series[0].x[[0, -1]]
         label = f"{panel.title} against nominal pressure from {low:.3g} to {high:.3g} MPa"
@@ -77,14 +89,12 @@ def pressure_pictures(ensemble: Ensemble) -> Iterator[PageFigure]:
 
 
 def pressure_table(figures: Sequence[PageFigure], scene: Scene) -> Table | None:
-    """Their means at some pressures; None where there are none."""
+    """Their means; None where there are none."""
     panels = [figure.panel for figure in figures if figure.panel is not None]
     if not panels:
         return None
-    x = panels[0].series[0].x
-    rows = evenly(len(x), _ROWS)
-    columns = [Column("nominal pressure (MPa)", x[rows], form=".3g")]
-    columns += [Column(panel.ylabel, panel.series[0].theory[rows], form=".4g") for panel in panels]
+    columns = [Column("nominal pressure (MPa)", panels[0].series[0].x, form=".3g")]
+    columns += [Column(panel.ylabel, panel.series[0].theory, form=".4g") for panel in panels]
     return Table(tuple(columns), f"Means; conductances: {joint_text(scene)}" if scene.thermal else "Means")
 
 
@@ -132,67 +142,36 @@ def _relative_error(scene: Scene, name: str) -> Array:
         return np.asarray(np.sqrt((exact.excess_kurtosis + 2) / 4 + spread**2 - exact.skewness * spread))
 
 
-def pressure_curves(ensemble: Ensemble) -> list[FigureData]:
-    """Of what an ensemble holds, each surface read off at the pressure; empty without a common one.
+def pressure_curves(solved: Sequence[Solution]) -> list[FigureData]:
+    """Means over specimens at rising pressures in MPa, in the unit of the label.
 
-    Mean over the surfaces, in the unit of the label, over rising pressures in MPa; the band holds 90 % of the
-    surfaces, if there are several: of the separation by its exact law, where it is known.
+    The band holds 90 % of the specimens: of the separation by its exact law, where it is quickly known.
     """
-    if "load" not in ensemble.scene.quantities:
+    if not solved:
         return []
-    first = first_surfaces(ensemble)
-    reach = common_pressures(first)
-    if reach is None:
-        return []
-    pressure = np.geomspace(*reach, _POINTS)
-    pressure[[0, -1]] = reach  # to the last bit: beyond them there is nothing
-    asked = list(_asked(ensemble))
-    found = at_pressures(first, pressure, tuple(name for name, *_ in asked))
-    banded = first.n_surfaces > 1
+    scene = solved[0].scene
+    pressure = np.array([each.amount for each in solved]) / scene.surface.nominal_area / 1e6
     curves = []
-    for name, factor, title, label in asked:
-        values = factor * found[name]
-        if np.isnan(values).any():
-            continue
-        exact = _exact(first, pressure) if banded and name == "separation" else None
-        low, high = np.quantile(values, _BAND, axis=0) if exact is None else exact
-        band = (low, high) if banded else None
-        series = Series("mean", pressure / 1e6, values.mean(axis=0), band=band)
+    for name, factor, title, label in _asked(scene):
+        mean = factor * np.array([each.value[name] for each in solved])
+        low, high = factor * np.array([each.specimens(name, _BAND) for each in solved]).T
+        series = Series("mean", pressure, mean, band=(low, high))
         scales = ("log", "linear" if name == "separation" else "log")
         panel = Panel(title, "nominal pressure P/Aₙ (MPa)", label, (series,), scales)
-        curves.append(FigureData("", f"Line: mean.{_OF_BAND * banded}", (panel,)))
+        curves.append(FigureData("", f"Line: mean.{_OF_BAND}", (panel,)))
     return curves
 
 
-def _exact(ensemble: Ensemble, pressure: Array) -> Array | None:
-    """Ends of the band of separations: the separation rises above one where the load there falls short."""
-    ends = exact_ends(ensemble.scene, "load", _BAND[1] - _BAND[0])
-    if ends is None:
-        return None
-    two = Ensemble(ensemble.scene, ensemble.sampler, MemoryResults({"load": ends}))
-    found = at_pressures(two, pressure, ("separation",))["separation"]
-    return None if np.isnan(found).any() else found
-
-
-def first_surfaces(ensemble: Ensemble) -> Ensemble:
-    """The first surfaces, in memory, with the quantities shown over pressure."""
-    ensemble = with_values(ensemble, MOST_SURFACES)
-    names = {name for name, *_ in _asked(ensemble)} - {"separation"} | {"load"}
-    names |= {"conductance"} & {
-        *ensemble.scene.quantities
-    }  # of a solution, also where it is shown in SI units
-    rows = {name: ensemble.sums.read(name, 0, min(MOST_SURFACES, ensemble.n_surfaces)) for name in names}
-    return Ensemble(ensemble.scene, ensemble.sampler, MemoryResults(rows))
-
-
-def _asked(ensemble: Ensemble) -> Iterator[tuple[str, float, str, str]]:
-    """Name, factor from SI, title and label of what there is."""
-    scene = ensemble.scene
-    per_area, held = 1 / scene.surface.nominal_area, scene.quantities
+def _asked(scene: Scene) -> Iterator[tuple[str, float, str, str]]:
+    """Name, factor from SI, title and label of the answers to the scene's quantities."""
+    area = scene.surface.nominal_area
+    held = {"contact_conductance" if name == "conductance_si" else name for name in scene.quantities}
     conducted = scene.quantity("contact_conductance").unit.replace("^2", "²")
     yield "separation", 1.0, "Load: pressure at a separation", "separation d/σ"
     for name, factor, title, unit in _PER_AREA:
-        if name in held and not (name == "conductance" and "conductance_si" in held):
-            yield name, factor * per_area, title, f"{quantity_of(name).symbol}/Aₙ ({unit or conducted})"
+        if name in held and not (name == "conductance" and "contact_conductance" in held):
+            per = 1.0 if name == "contact_conductance" else area
+            symbol = quantity_of("conductance_si" if name == "contact_conductance" else name).symbol
+            yield name, factor / per, title, f"{symbol}/Aₙ ({unit or conducted})"
     for name in filter(_OF_JOINT.__contains__, scene.of_joint):
         yield name, 1.0, _OF_JOINT[name], f"{quantity_of(name).symbol} ({conducted})"
