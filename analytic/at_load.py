@@ -6,28 +6,34 @@ its load P is F. P falls too, so that H <= h where P(h) <= F; the mean over surf
     E Q(H) = N int dh int ds f(s) [-q'(s - h)] Pr(P_{N-1}(h) <= F - p(s - h))
 
 with q and p what an asperity of height s adds: the others share the load that it leaves (Campbell and
-Mecke). It holds for any number of contacts; that of the load itself is F, which checks the quadrature.
+Mecke). It holds for any number of contacts; that of the load itself is F, which checks the quadrature. Where
+radii differ the inner integral is over them too. Where a law of contact jumps from piece to piece, an
+asperity adds the jump if the others bear what it leaves before: the sum of a surface then passes F without
+having it.
 """
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from analytic.arrays import Array
 from analytic.distribution.of_model import shares_upto
+from analytic.laws.branch import Branch
+from analytic.laws.pieces import slope_term
+from analytic.measured_summits import MeasuredHeights
 from analytic.quadrature import gauss_legendre
 from analytic.quantities import quantity_of
 
 if TYPE_CHECKING:
     from analytic.distribution import Law
 
-_LIFTS, _DEPTHS = 24, 32  # nodes in the separation, in the penetration at each: 1e-6 of the load and better
+_LIFTS = 24  # nodes in the separation: 1e-6 of the load and better
 _MANY, _LIFTS_OF_MANY = 100.0, 16  # contacts from which so many do as well
 _RAREST = 1e-9  # share of the surfaces beyond either end of the separations
-_STEP = 1e-4  # of a difference, over the penetration
 _DEEPEST = 20.0  # penetration over sigma that no asperity reaches
+_PARTS = np.array([0.25, 0.5, 0.75, 1.0])  # of the penetration at which one asperity has all of the load
 _HALVINGS = 60
 
 
@@ -39,7 +45,7 @@ def specimen_means(
     Parameters
     ----------
     model : Model
-        Under Hertz's law, its summits of one radius.
+        Its asperities independent, under a law of contact that never pulls.
     given : str
         The sum that is the same on all surfaces, such as "load".
     value : float
@@ -67,6 +73,10 @@ def specimen_means(
     >>> round(found["load"] / 1e-6, 6)
     1.0
     """
+    if isinstance(model.heights, MeasuredHeights):
+        raise ValueError("heights: means of listed summits at a load are those of drawn surfaces")
+    if any(quantity_of(name).base == "load_slope" for name in names):
+        raise ValueError("load_slope: its slope is not known; give other quantities")
     law = model.separation_law(value, given) if law is None else law
     low, high = float(law.ppf(_RAREST)), float(law.isf(_RAREST))
     if not np.isfinite(high - low):  # a Poisson number of asperities may be 0
@@ -85,34 +95,82 @@ def specimen_means(
     return found
 
 
+@dataclass(frozen=True)
+class _Added:
+    """What asperities add to the given sum at a separation, and to others for each unit that it falls.
+
+    Parameters
+    ----------
+    given : ndarray
+        In the unit of the quantity, shape (m,).
+    rates : dict of str to ndarray
+        Over the scale, weighted by the probabilities, shape (m,).
+    probabilities : ndarray
+        Shape (m,); 0 of asperities that jump.
+    """
+
+    given: Array
+    rates: dict[str, Array]
+    probabilities: Array
+
+
 def _rates(
     model: Any, given: str, value: float, names: Sequence[str], h: float, most: float
 ) -> tuple[dict[str, float], float]:
     """What the means gain for each unit of separation, and the share of surfaces that are lower.
 
-    No asperity alone penetrates deeper than `most`.
+    No asperity of the surface's radius alone penetrates deeper than `most`.
     """
-    unit = quantity_of(given).scale(model.surface)
-    x, w = gauss_legendre(_DEPTHS)
-    depth, weight = most * x**2, 2 * most * x * w  # roots of the penetration: all terms are smooth in them
-    s = h + depth
-    modulus, density = model.grading(s), weight * model.heights.pdf(s)
-    left = np.maximum(value - unit * model.ways.term(given, h, s, modulus), 0.0)
-    rest = _others(model)
-    *lower, lowest = shares_upto(rest, given, h, np.append(left, value)).tolist()
-    share, bearable = lowest, density * np.array(lower)
-    if rest is not model:  # one more asperity beside them, in contact or not
-        share = float((1 - model.heights.sf(np.array(h))) * share + np.sum(bearable))
-    rates = {}
+    rule, added = model.asperities(given, h, most * _PARTS)
+    parts = [_pressed(model, given, names, h, rule, added(rule)), *_jumping(model, given, names, h, rule)]
+    left = value - np.concatenate([part.given for part in parts])
+    others = _others(model)
+    *lower, lowest = shares_upto(others, given, h, np.append(np.maximum(left, 0.0), value)).tolist()
+    bearable = np.where(left >= 0, lower, 0.0)
+    share = lowest
+    if others is not model:  # one more asperity beside them, in contact or not
+        share = float(rule.below * lowest + np.concatenate([x.probabilities for x in parts]) @ bearable)
+    rates, touching = {}, float(model.heights.pdf(np.array(h)) * lowest)
     for name in names:
-        if quantity_of(name).counts:  # begins with a step
-            rates[name] = float(model.number * model.heights.pdf(np.array(h)) * lowest)
-            continue
-        step = _STEP * depth
-        rise = model.ways.term(name, h - step, s, modulus) - model.ways.term(name, h + step, s, modulus)
-        scale = model.number * quantity_of(name).scale(model.surface)
-        rates[name] = float(scale * np.sum(bearable * rise / (2 * step)))
+        rate = float(np.concatenate([part.rates[name] for part in parts]) @ bearable)
+        rate += touching if name == "contacts" else 0.0  # begins with a step
+        rates[name] = float(model.number * quantity_of(name).scale(model.surface) * rate)
     return rates, share
+
+
+def _pressed(model: Any, given: str, names: Sequence[str], h: float, rule: Any, terms: Array) -> _Added:
+    """Asperities within the pieces of the law."""
+    s, branch = rule.heights, model.ways.loading
+    if rule.ratios is not None:
+        branch = branch.with_radii(rule.ratios)
+    modulus, rates = model.grading(s), {}
+    for name in names:
+        weight = rule.probabilities * _by_radius(name, rule.ratios)
+        rates[name] = weight * slope_term(quantity_of(name).base, branch, s - h, modulus)
+    return _Added(quantity_of(given).scale(model.surface) * terms, rates, rule.probabilities)
+
+
+def _jumping(model: Any, given: str, names: Sequence[str], h: float, rule: Any) -> Iterator[_Added]:
+    """Asperities that go on from piece to piece."""
+    if not rule.heights.size:
+        return
+    ends = float(rule.heights.min()), float(rule.heights.max())
+    scale = quantity_of(given).scale(model.surface)
+    for j, s, ratios, share in model.summits.jumping(model.ways.loading, model.grading, h, ends):
+        branch: Branch = model.ways.loading if ratios is None else model.ways.loading.with_radii(ratios)
+        y, e = np.sqrt(np.maximum(s - h, 0.0)), model.grading(s)
+        before = scale * _by_radius(given, ratios) * branch.of_root(quantity_of(given).base, j, y, e)
+        rates = {}
+        for name in names:
+            base = quantity_of(name).base
+            jump = branch.of_root(base, j + 1, y, e) - branch.of_root(base, j, y, e)
+            rates[name] = share * _by_radius(name, ratios) * jump
+        yield _Added(before, rates, np.zeros(s.size))
+
+
+def _by_radius(name: str, ratios: Array | None) -> Array | float:
+    """What a quantity is worth by the radius of an asperity."""
+    return 1.0 if ratios is None else np.asarray(ratios ** quantity_of(name).radius)
 
 
 def _others(model: Any) -> Any:

@@ -179,12 +179,13 @@ class MeanModel:
         return Ways(law, self.unload_from, None if self.film is None else self.film.on(self.surface))
 
     @cached_property
-    def _summits(self) -> Summits:
+    def summits(self) -> Summits:
+        """Their heights and radii."""
         return summits_of(self.heights, self.curvature)
 
     @cached_property
     def _contact(self) -> MeanContact:
-        return MeanContact(self.ways, self.grading, self._summits)
+        return MeanContact(self.ways, self.grading, self.summits)
 
     def _means(self, *quantities: Quantity) -> MeanContact | MeanPowers:
         """What one asperity adds to all of these in the mean, by powers of its approach if that is true."""
@@ -206,7 +207,7 @@ class MeanModel:
 
     def _by_powers(self, q: Quantity) -> bool:
         """Whether one asperity carries a power of its approach, whose mean is an integral over heights."""
-        return self.ways.law.hertz and q.base not in LAW_QUANTITIES and self._summits.powers
+        return self.ways.law.hertz and q.base not in LAW_QUANTITIES and self.summits.powers
 
     def _unit(self, q: Quantity) -> float:
         return self.number * q.scale(self.surface)

@@ -179,7 +179,7 @@ class Model(MeanModel):
         means, h = self._means(*asked), np.asarray(separations, dtype=np.float64)
         rule = means.rule(h, quantities)
         result = rule.fluctuations(rule.terms(quantities, h, self.grading, means.ways), self.count)
-        if not self._summits.unbounded:
+        if not self.summits.unbounded:
             return result
         return replace(result, radius=np.repeat([q.radius for q in asked], h.size))
 

@@ -5,7 +5,7 @@ curvature, in the root of which they are smooth: the heights at which a contact 
 radius alone. So there are some radii, each with a rule over the heights of its own; all are found at once.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Any
@@ -19,7 +19,7 @@ from analytic.height_rule import HeightRule
 from analytic.heights import Gaussian, HeightLaw
 from analytic.law_rule import ends_of
 from analytic.laws.branch import Branch
-from analytic.laws.pieces import cuts_of_each, jump_terms
+from analytic.laws.pieces import cuts_of_each, jump_terms, jumps_met
 from analytic.measured_summits import MeasuredHeights, MeasuredRadii
 from analytic.quadrature import SPANS, WIDEST, above_neighbours, gauss_legendre, rooted
 from analytic.quantities import quantity_of
@@ -227,6 +227,14 @@ class Summits:
         """What summits of heights between two add to the slope of a mean by jumping, at each separation."""
         return jump_terms(quantity, branch, grading, lambda s, _: self.heights.pdf(s), h, ends)
 
+    def jumping(
+        self, branch: Branch, grading: Grading, h: float, ends: Ends
+    ) -> Iterator[tuple[int, Array, Array | None, Array]]:
+        """Summits that go on from piece to piece at a separation, as `jumps_met`, with their radii."""
+        met = jumps_met(branch, grading, lambda s, _: self.heights.pdf(s), np.array([h]), ends)
+        for j, s, _, share in met:
+            yield j, s, None, share
+
 
 @dataclass(frozen=True)
 class _RandomRadii(Summits):
@@ -274,6 +282,14 @@ class _RandomRadii(Summits):
 
         found = jump_terms(quantity, own, grading, density, np.repeat(h, number), ends)
         return found.reshape(h.size, number) @ radii.ratios ** quantity_of(quantity).radius
+
+    def jumping(
+        self, branch: Branch, grading: Grading, h: float, ends: Ends
+    ) -> Iterator[tuple[int, Array, Array | None, Array]]:
+        radii = Radii.over(self.curvature, h)
+        own, at = branch.with_radii(radii.ratios), np.full(radii.ratios.size, h)
+        for j, s, which, share in jumps_met(own, grading, radii.density, at, ends):
+            yield j, s, radii.ratios[which], share
 
 
 @dataclass(frozen=True)

@@ -285,8 +285,12 @@ def test_a_solution_of_too_few_contacts_has_no_interval(make_scene):
     scene = make_scene(n_surfaces=3, separations=(0.0,), law=analytic.KogutEtsion(critical=0.01))
     light, heavy = solutions(scene, "load", [float(x) for x in scene.theory.mean("load", [3.4, 2.0])])
     assert light.surfaces["contacts"].sum() < 10 < heavy.surfaces["contacts"].sum()
-    assert np.isnan(light.interval("area")).all()
-    assert heavy.interval("area")[0] < heavy.surfaces["area"].mean() < heavy.interval("area")[1]
+    assert np.isnan(light.interval("load_slope")).all()
+    assert (
+        heavy.interval("load_slope")[0]
+        < heavy.surfaces["load_slope"].mean()
+        < heavy.interval("load_slope")[1]
+    )
 
 
 SPECTRAL = {"m0": 1e-12, "m2": 5e-4, "m4": 2.5e6}  # alpha = 10

@@ -4,7 +4,7 @@ Where a quadrature must be cut so that terms are smooth in between; and how fast
 comes nearer: within the pieces, and where pieces change.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import lru_cache, partial
 
 import numpy as np
@@ -120,14 +120,34 @@ def jump_terms(
     for j in np.unique(piece_of(law, 0 * separations, e)):
         added = first.of_root(quantity, int(j), touch, e)
         total += np.where(piece_of(law, 0 * separations, e) == j, added, 0.0) * density(separations, every)
-    for j in range(len(law.limits(e))):
+    for j, t, which, share in jumps_met(branch, grading, density, separations, ends):
+        y, e, own = np.sqrt(np.maximum(t - separations[which], 0.0)), grading(t), branch.of_some(which)
+        jump = own.of_root(quantity, j + 1, y, e) - own.of_root(quantity, j, y, e)
+        np.add.at(total, which, jump * share)
+    return total
+
+
+def jumps_met(
+    branch: Branch,
+    grading: Grading,
+    density: Callable[[Array, Ints], Array],
+    separations: Array,
+    ends: tuple[float, float],
+) -> Iterator[tuple[int, Array, Ints, Array]]:
+    """Where asperities go on to the next piece of a law, of `jump_terms`.
+
+    Yields
+    ------
+    (int, ndarray, ndarray of int, ndarray)
+        Of each piece its number, heights, the numbers of their separations, and the share of asperities that
+        do so for each unit by which the surface comes nearer.
+    """
+    law = branch.of_some(np.arange(separations.size)).law
+    for j in range(len(law.limits(grading(separations)))):
         find = _met.__wrapped__ if law.each else _met
         found, shares = find(Same(grading), branch.law, j, tuple(separations.tolist()), ends)
         t, which = found.height, found.separation
-        y, e, own = np.sqrt(np.maximum(t - separations[which], 0.0)), grading(t), branch.of_some(which)
-        jump = own.of_root(quantity, j + 1, y, e) - own.of_root(quantity, j, y, e)
-        np.add.at(total, which, jump * density(t, which) * shares)
-    return total
+        yield j, t, which, density(t, which) * shares
 
 
 @lru_cache(maxsize=_REMEMBERED)
