@@ -75,6 +75,7 @@ CASES = {
     "fit --tiles": ("map.npy", "fit map.npy --cutoff none -o f.toml --tiles OUT", ".csv"),
     "converge": ("table.csv", "converge scene.toml -o DIR", "scene-converge.png"),
     "tradeoff": ("table.csv", "tradeoff scene.toml -o DIR", "scene-tradeoff.csv"),
+    "tradeoff, measured": ("table.csv", "tradeoff scene.toml -o DIR", "scene-tradeoff-measured.csv"),
     "tradeoff, figure": ("scene.toml", "tradeoff scene.toml -o DIR", "scene-tradeoff.png"),
     "figures": ("scene.toml", "figures --scene scene.toml -o DIR --format png svg", "equal-load.svg"),
     "figures --csv": ("table.csv", "figures --scene scene.toml --csv -o DIR", "figure-6.csv"),

@@ -14,8 +14,8 @@ from mcgw.scene.promises import SAMPLERS
 
 # Packages are layers: each imports only from those before it. Above all is the door, `mcgw` itself.
 LAYERS = (
-    "errors", "machine", "formats", "scene", "sampling", "ensemble", "store", "sweeps", "jobs", "statistics",
-    "exports", "maps", "elasticity", "figures", "reports", "commands", "cli",
+    "errors", "machine", "formats", "scene", "sampling", "ensemble", "store", "sweeps", "jobs", "exports",
+    "maps", "elasticity", "statistics", "figures", "reports", "commands", "cli",
 )  # fmt: skip
 ROOT = Path(mcgw.__file__).parent
 
@@ -189,7 +189,7 @@ def test_the_simulator_takes_no_integral_from_theory():
 def test_no_default_stands_for_the_height_law_of_a_scene():
     """`scene.theory` knows the scene's own law; the Gaussian functions are for the paper's own figures."""
     asking = {name.partition(".")[0] for name, tree in inside() if set(from_theory(tree, GAUSSIAN))}
-    assert asking == {"statistics", "figures"}  # the rules that `tradeoff` measures
+    assert asking == {"figures"}
 
 
 def test_compiled_functions_call_those_of_their_own_layer():

@@ -46,10 +46,9 @@ def ensemble(scene):
 
 
 def few_methods(scene, **options):
-    """A study of the first two of them."""
-    every = tradeoff.methods_for
+    """A study with one sampler."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(tradeoff, "methods_for", lambda *asked: every(*asked)[:2])
+        patch.setattr(tradeoff, "sampled_ways", lambda scene: ["tail"])
         return mcgw.tradeoff(scene, **options)
 
 
@@ -327,9 +326,9 @@ def test_what_is_drawn_is_what_there_is(results, ensemble):
     ax = results["solution"].plot()
     assert sum(bar.get_height() for bar in ax.patches) == 60
     study = results["study"]
-    assert f"{study.separations[0]:g}" in study.plot(separation=study.separations[0]).get_title()
-    with pytest.raises(ValueError, match="separation = 9: give one of "):
-        study.plot(separation=9.0)
+    assert study.plot(want="quantile").get_title() == "99% quantile"
+    with pytest.raises(ValueError, match="want = 'median': give one of "):
+        study.plot(want="median")
     with pytest.raises(KeyError, match="torque"):
         ensemble.plot(quantity="torque")
     with pytest.raises(TypeError, match=r"^int: there is no figure of it"):

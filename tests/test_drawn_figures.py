@@ -18,7 +18,7 @@ from mcgw.figures import style
 from mcgw.figures.against_theory import quantity_panel, save_comparison
 from mcgw.figures.data import FigureData, Panel, Points, Series
 from mcgw.figures.panels import draw
-from mcgw.figures.studies import draw_methods, save_convergence, save_tradeoff
+from mcgw.figures.studies import save_convergence, save_tradeoff
 from mcgw.figures.style import FAMILIES, PAIRS, THEORY, look, plain, power_of_ten
 from mcgw.statistics.checks import Check, Slope
 from mcgw.statistics.comparison import Comparison, Curve, compare
@@ -196,66 +196,44 @@ def test_convergence_without_slopes(make_scene, kept, tmp_path):
 
 
 def test_tradeoff(make_scene, kept, tmp_path, recorded):
-    from mcgw.statistics.methods import Method
-    from mcgw.statistics.tradeoff import Point, Tradeoff
-    from mcgw.statistics.wishes import Advice, Way, Wish
+    from mcgw.elasticity.ladder import Ladder, Rung
+    from mcgw.statistics.measured_ways import Point
+    from mcgw.statistics.prices import Way
+    from mcgw.statistics.tradeoff import Tradeoff
 
-    def none(size, seed):
-        return np.zeros(2)
-
-    methods = (
-        Method("tail", "surfaces", (1.0, 4.0), -0.5, none),
-        Method("cells", "surfaces", (1.0,), -0.5, none),
-        Method("theory", "points", (64.0,), None, none),
-    )
     points = (
-        Point("tail", "surfaces", 1.0, np.array([0.2, 0.4]), 0.25, 1e-3, 9.0, 0.0, 4),
-        Point("tail", "surfaces", 4.0, np.array([0.1, 0.2]), 0.125, 4e-3, 9.0, 0.0, 4),
-        Point("cells", "surfaces", 1.0, np.array([0.01, 0.03]), 0.5, 2e-3, 9.0, 0.0, 4),
-        Point("theory", "points", 64.0, np.array([0.0, 1e-15]), 0.0, 5e-3, 9.0, 0.0, 1),
+        Point("tail", "mean", 10, 0.2, 0.02, 0.0, 1e-3, 16),
+        Point("tail", "mean", 1000, 0.02, 0.002, 0.0, 4e-3, 16),
+        Point("theory", "mean", 0, 0.0, 0.0, 0.0, 5e-4, 16),
     )
-    scene = make_scene(title="T", quantities=("area", "load"))
-    each = [(1e-13, 8e-14, 9e-5), (1e-6, 3e-7, 5e-5)]
-    ways = [Way(scene.replace(sampler="cells", accuracy=a), "cells", e, 0.0, t) for a, e, t in each]
-    ways += [
-        Way(scene.replace(sampler="tail"), "tail", 0.0, 0.0, 0.015),
-        Way(scene.replace(sampler="auto", law_error=1e-3), "aggregate", np.nan, 0.0, 2e-6),
-    ]
-    advice = (
-        Advice(Wish("mean", 0.02), scene, "cells", 0.5),
-        Advice(Wish("surfaces", 1e-6), scene, "cells", 0.7),
-    )
-    found = Tradeoff(scene, (0.0, 2.0), points, methods, tuple(ways), advice, 1.0)
+    ways = (Way("theory", "mean", 1e-13, 5e-4, 0.0), Way("tail", "mean", 0.0, 1e-3, 3e-6))
+    ways += (Way("cells, 0.001", "values", 1e-3, 0.25, 0.01), Way("exact law", "quantile", 1e-6, 0.01, 0.0))
+    rungs = (Rung("formula", 0, 1e-3, 0.0, 0.03), Rung("surfaces", 10, 0.1, 0.04, 0.03))
+    rungs += (Rung("surfaces", 1000, 9.0, 0.004, 0.03),)
+    scene = make_scene(title="T", separations=(2.0,), quantities=("area",), n_surfaces=75)
+    found = Tradeoff(scene, 2.0, points, ways, Ladder(rungs, ""), 1.0)
     save_tradeoff(found, tmp_path / "x.png")
     (figure,) = kept
     recorded("drawn.tradeoff", told.drawn(figure))
-    left, right = figure.axes
-    assert figure.get_suptitle() == "T"
-    assert [axis.get_xlabel() for axis in (left, right)] == ["time of a surface (ms)", "time (s)"]
-    assert right.get_ylabel() == "rms relative error of the mean area"
-    assert right.get_title() == "Its mean at $d/\\sigma$ = 2"
-    said = [text.get_text() for text in left.get_legend().get_texts()]
-    assert said[0] == "cells: accuracy asked"
-    assert "tail: to the last digit, 15 ms" in said
-    asked, seen, *others = left.get_lines()
-    spent = next(line for line in others if line.get_marker() == "^")
-    np.testing.assert_allclose(asked.get_xydata(), [(0.09, 1e-13), (0.05, 1e-6)])
-    np.testing.assert_allclose(seen.get_ydata(), [8e-14, 3e-7])
-    np.testing.assert_allclose(spent.get_xydata(), [(0.002, 1e-3)])
-    assert left.get_xscale() == "log"
-    named = [text.get_text() for text in right.get_legend().get_texts()]
-    assert {"tail (size$^{-1/2}$)", "cells (size$^{-1/2}$)", "theory"} <= set(named)
-    for line, method in zip(markers_of(right), methods, strict=False):
-        own = [p for p in points if p.method == method.name]
-        np.testing.assert_array_equal(line.get_xdata(), [p.wall for p in own])
-        np.testing.assert_array_equal(line.get_ydata(), [max(p.rms[1], 1e-16) for p in own])
-    star = next(line for line in right.get_lines() if line.get_marker() == "*")
-    np.testing.assert_allclose(star.get_xydata(), [(0.5, 0.02 / 1.96)])  # values of surfaces are on the left
-    left.clear()
-    draw_methods(left, found, 0)  # the advice is for the last separation
-    assert not [line for line in left.get_lines() if line.get_marker() == "*"]
-    bars = bars_of(right)
-    np.testing.assert_allclose(bars[:2, 2], [p.rms[1] * (1 + p.rms_stderr) for p in points[:2]])
+    mean, std, quantile, _, _, values, ladder = figure.axes
+    titles = ["mean area", "standard deviation", "99% quantile", "values of surfaces (75)"]
+    assert [axis.get_title() for axis in (mean, std, quantile, values)] == titles
+    assert [text.get_text() for text in std.texts] == ["no way to it"]
+    bars = bars_of(mean)
+    np.testing.assert_allclose(bars[:, 0], [1e-3, 4e-3])
+    np.testing.assert_allclose(
+        bars[:, 1:], 1.96 * np.array([[0.1608, 0.2392], [0.01608, 0.02392]]), rtol=1e-3
+    )
+    slope = next(
+        line for line in mean.get_lines() if line.get_linestyle() == "-" and len(line.get_xdata()) == 2
+    )
+    np.testing.assert_allclose(slope.get_ydata(), 1.96 * np.array([0.2, 0.02]))  # a tenth for a hundredfold
+    star = next(line for line in mean.get_lines() if line.get_marker() == "*")
+    np.testing.assert_allclose(star.get_xydata(), [(5e-4, 1e-13)])
+    np.testing.assert_allclose(values.get_lines()[0].get_xydata(), [(1.0, 1e-3)])
+    curve = next(line for line in ladder.get_lines() if line.get_label() == "surfaces")
+    np.testing.assert_allclose(curve.get_xydata(), [(0.1, 0.05), (9.0, math.hypot(0.004, 0.03))])
+    assert [text.get_text() for text in ladder.texts] == ["10", "1000"]
 
 
 def test_contact_map(make_scene, kept, tmp_path, recorded):

@@ -9,8 +9,8 @@ from exact_law_grid import faults, laws
 from scipy import stats
 
 import mcgw
+from mcgw.ensemble.needed import Needs
 from mcgw.statistics.laws_of_values import laws_of_values
-from mcgw.statistics.wishes import _of_quantile
 
 HEAVY = [(stats.fisk(8.0), 58_000, 2.5), (stats.t(4), 3000, 1.5), (stats.lognorm(1.0), 20_000, 3.0)]
 
@@ -61,9 +61,8 @@ def test_specimens_of_heavy_tails_are_as_drawn(heights, n, h):
     between = scene.theory.distribution("load", h).interval(0.9)
     np.testing.assert_allclose([np.mean(loads <= end) for end in between], shares, atol=allowed)
     assert laws_of_values(values).p > 1e-5
-    half, density = _of_quantile(scene.replace(quantities=("load",)), h)
+    half = Needs(scene.replace(quantities=("load",), separations=(h,))).of_one("quantile")
     each = np.quantile(
         mcgw.simulate(scene.replace(n_surfaces=100_000)).load[:, 0].reshape(100, 1000), 0.99, axis=1
     )
     assert 1.96 * (each / each.mean()).std() * np.sqrt(1000) == pytest.approx(half, rel=0.4)
-    assert density > 0

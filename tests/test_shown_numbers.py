@@ -219,72 +219,26 @@ def test_solve(scene, words, given, pressure, title, tmp_path, capsys):
         assert float(rows[name]["std"]) == pytest.approx(x.std(ddof=1), rel=1e-7, abs=1e-12 * x.mean())
 
 
-@pytest.fixture(scope="module")
-def study(scene):
-    from mcgw.statistics.methods import methods_for
-    from mcgw.statistics.tradeoff import Point, Tradeoff
-    from mcgw.statistics.wishes import Advice, Way, Wish
+def test_tradeoff(scene, tmp_path, capsys, monkeypatch):
+    """Files hold what was measured and what is advised, in full; the terminal says the same in short."""
+    from test_tradeoff import made_up
 
-    small = dataclasses.replace(scene, keep="sums", quantities=("load", "area"))
-    points = (
-        Point("direct", "surfaces", 4.0, np.array([0.11, 0.22]), 0.25, 0.5, 0.125, 4096.0, 8),
-        Point("tail", "surfaces", 16.0, np.array([0.033, 0.044]), 0.125, 2.0, 1.0, 8192.0, 6),
-    )
-    ways = (
-        Way(dataclasses.replace(small, sampler="cells", accuracy=1e-6), "cells", 3e-7, 0.02, 5e-5),
-        Way(dataclasses.replace(small, sampler="auto", law_error=1e-4), "aggregate", math.nan, 0.04, 6e-6),
-    )
-    asked = dataclasses.replace(small, sampler="cells", accuracy=1e-6, n_surfaces=77)
-    advice = (Advice(Wish("mean", 0.01), asked, "cells", 3.5),)
-    methods = tuple(m for m in methods_for(small, (1, 2)) if m.name in ("direct", "tail"))
-    return Tradeoff(small, (0.0, 2.0), points, methods, ways, advice, 12.4)
-
-
-def test_tradeoff(study, tmp_path, capsys, monkeypatch):
-    (tmp_path / "s.toml").write_text(mcgw.scene_text(study.scene))
+    small = dataclasses.replace(scene, keep="sums", quantities=("load",), separations=(2.0,))
+    study = made_up(small)
+    (tmp_path / "s.toml").write_text(mcgw.scene_text(small))
     monkeypatch.setattr("mcgw.statistics.tradeoff.tradeoff", lambda scene, *, seconds, progress: study)
     said = out_of(["tradeoff", tmp_path / "s.toml", "-o", tmp_path, "-v"], capsys)
-    news, _, tables = said.partition("\n\n")
-    news, out = news.splitlines(), tables.splitlines()
-    assert out[0] == "root mean square relative error of the mean load at d/sigma"
-    assert out[1].split()[:7] == ["method", "size", "of", "at", "0", "at", "2"]
-    for line, point in zip(out[2:4], study.points, strict=True):
-        words = line.split()
-        assert (words[0], float(words[1]), words[2]) == (point.method, point.size, point.unit)
-        assert [float(x) for x in words[3:5]] == point.rms.tolist()
-        assert float(words[5].rstrip("%")) == pytest.approx(100 * point.rms_stderr, abs=0.6)
-        assert [float(x) for x in words[6:]] == pytest.approx(
-            [point.cpu, point.wall, point.peak, point.seeds], rel=0.03
-        )
-    assert out[6].split() == ["sampler", "accuracy", "law_error", "error", "s", "a", "surface", "s", "before"]
-    assert out[7].split() == ["cells", "1e-06", "0", "3.0e-07", "5.00e-05", "0.02"]
-    assert out[8].split() == ["aggregate", "1e-13", "0.0001", "nan", "6.00e-06", "0.04"]
-    assert ["a", "mean", "to", "0.01", "cells", "1e-06", "0", "77", "3.5"] in [line.split() for line in news]
-    assert news[-2] == f"{tmp_path / 's-tradeoff.csv'}: all measurements (12 s)"
+    assert "The mean load needs no surfaces: 0.5 ms" in said
+    assert f"{tmp_path / 's-tradeoff.csv'}: what to run for each error (12 s)" in said
     rows = rows_of(tmp_path / "s-tradeoff.csv")
-    assert len(rows) == 2
-    for row, p in zip(rows, study.points, strict=True):
-        assert (row["method"], float(row["size"]), row["size_counts"]) == (p.method, p.size, p.unit)
-        assert [float(row[f"rms_relative_error_at_h_{h}"]) for h in (0, 2)] == p.rms.tolist()
-        ends = ("rms_uncertainty", "cpu_s", "wall_s", "peak_growth_bytes", "seeds")
-        assert [float(row[key]) for key in ends] == [p.rms_stderr, p.cpu, p.wall, p.peak, p.seeds]
-
-
-def test_points_of_a_study_are_the_runs(scene):
-    """Rms over the seeds, medians of the times, and an uncertainty where something is random."""
-    from mcgw.statistics.tradeoff import _Task
-
-    errors = iter([np.array([0.1, -0.2]), np.array([-0.3, 0.4])])
-    method = dataclasses.make_dataclass("M", ["name", "unit", "errors"])(
-        "m", "u", lambda size, seed: next(errors)
-    )
-    task = _Task(method, 5.0, 9.0, 1)
-    task.run(1)
-    task.run(2)
-    point = task.point()
-    np.testing.assert_allclose(point.rms, np.sqrt([(0.01 + 0.09) / 2, (0.04 + 0.16) / 2]))
-    assert (point.size, point.peak, point.seeds) == (5.0, 9.0, 2)
-    assert point.rms_stderr == pytest.approx(1 / math.sqrt(4))
+    assert len(rows) == 36
+    assert [row["way"] for row in rows[:6]] == ["theory"] * 6
+    assert {row["way"] for row in rows if row["want"] == "standard deviation"} == {"none"}
+    for row, p in zip(rows_of(tmp_path / "s-tradeoff-measured.csv"), study.points, strict=True):
+        assert (row["way"], row["want"], int(row["n_surfaces"])) == (p.way, p.want, p.n_surfaces)
+        assert [float(row[key]) for key in ("rms", "stderr", "bias", "seconds", "repeats")] == [
+            p.rms, p.stderr, p.bias, p.seconds, p.repeats
+        ]  # fmt: skip
 
 
 def test_run_says_how_many_and_what_is_not_known(scene, tmp_path, capsys):

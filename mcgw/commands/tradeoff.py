@@ -5,7 +5,7 @@ from pathlib import Path
 
 from mcgw.commands.options import add_set_option, changes_of
 
-HELP = "measure error against time of every sampler and quadrature, and recommend one"
+HELP = "measure what each answer costs, how exact it is, and recommend a way"
 EXAMPLE = "mcgw tradeoff runs/demo.toml -o out"
 
 
@@ -33,20 +33,25 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.formats.numbers import parse
     from mcgw.machine.progress import bar
     from mcgw.scene.scene_file import files_of, load_scene
+    from mcgw.statistics.prices import TARGETS
     from mcgw.statistics.tradeoff import tradeoff
 
     seconds = parse(args.seconds, "s", "--seconds")
     scene = load_scene(args.scene, changes=changes_of(args))
     scene.ask_theory()
     folder = args.output or args.scene.parent / "out"
-    table, figure = (folder / f"{args.scene.stem}-tradeoff.{end}" for end in ("csv", "png"))
-    check_outputs([Output(table, CSV), Output(figure, figure_format())], inputs=files_of(args.scene))
+    table, measured, figure = (
+        folder / f"{args.scene.stem}-tradeoff{end}" for end in (".csv", "-measured.csv", ".png")
+    )
+    outputs = [Output(table, CSV), Output(measured, CSV), Output(figure, figure_format())]
+    check_outputs(outputs, inputs=files_of(args.scene))
     with bar("s", terminal=True) as show:
         found = tradeoff(scene, seconds=seconds, progress=show)
     found.table().write(table)
+    found.measurements().write(measured)
     save_tradeoff(found, figure)
-    news(found)
-    news(f"{table}: all measurements ({found.seconds:.0f} s)", f"{figure}: figure")
-    details("", found.table().text(), "", found.ways_table().text())
+    news(found.sheet(TARGETS).text())
+    news(f"{table}: what to run for each error ({found.seconds:.0f} s)", f"{figure}: figure")
+    details("", found.measurements().text())
     tell_cautions(scene, f"mcgw show --plan {args.scene}")
     return 0

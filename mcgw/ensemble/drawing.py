@@ -29,6 +29,7 @@ _WORDS = 4_000_000  # numbers of a block that fit the outer cache
 _MOST_WORDS = 20_000_000  # numbers a block may hold
 _DRAWS = 1.5e8  # asperities a block may draw, so that a bar moves every second
 _PER_COUNT, _PER_PRODUCT = 4e-8, 2.5e-10  # rough seconds per number and per pair, for statistics
+_SHORT = 0.01  # seconds that are told in milliseconds
 _TRIED = 0.05  # rough seconds per surface up to which a block is drawn on trial
 
 
@@ -233,10 +234,10 @@ def in_words(seconds: float) -> str:
 
     Examples
     --------
-    >>> in_words(200), in_words(90_000), in_words(1e9)
-    ('3.3 min', '25 h', '32 years')
+    >>> in_words(3e-4), in_words(200), in_words(90_000), in_words(1e9)
+    ('0.3 ms', '3.3 min', '25 h', '32 years')
     """
     for size, name in ((3.15576e7, "years"), (86_400 * 3, "days"), (3600.0, "h"), (60.0, "min")):
         if seconds >= size:
             return f"{seconds / (86_400 if name == 'days' else size):.2g} {name}"
-    return f"{seconds:.2g} s"
+    return f"{1e3 * seconds:.2g} ms" if seconds < _SHORT else f"{seconds:.2g} s"

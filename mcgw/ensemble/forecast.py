@@ -6,11 +6,12 @@ chance before rare, stiff summits have come: the number of surfaces is a functio
 """
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.special import ndtri
 
 from analytic.arrays import Array
 from mcgw.ensemble.intervals import CONFIDENCE, MANY, TOO_FEW, Spread, chebyshev, spread_of
@@ -21,6 +22,7 @@ from mcgw.scene.stop_rule import wanted
 if TYPE_CHECKING:
     from mcgw.ensemble.ensemble import Ensemble
 
+MOST_SURFACES = 10**9
 _STEP = 16  # numbers of surfaces lie 1/16 apart
 _ANY = 0.1  # stands for a share without a wish
 _ROUNDS = 8  # skewness over the root of the number of contacts: at most 0.1 remains
@@ -121,6 +123,52 @@ def without_rule(scene: Scene) -> Scene:
     if expected.shortfall:
         warnings.warn(expected.shortfall, stacklevel=3)
     return replace(scene, n_surfaces=expected.surfaces, rel_err=None, max_seconds=None)
+
+
+def surfaces_at_load(scene: Scene, h: float, targets: Mapping[str, float], given: str = "load") -> float:
+    """Surfaces for which the bounds of means at a given load are within their targets.
+
+    Parameters
+    ----------
+    scene : Scene
+        Whose asperities act alone.
+    h : float
+        Separation of the mean surface at that load.
+    targets : mapping of str to float
+        For each quantity, 1.96 standard errors over the mean.
+    given : str, optional
+        "load" or "area".
+
+    Returns
+    -------
+    float
+        To leading order in the number of asperities; one of `checkpoints`, infinite beyond 1e9.
+    """
+    model, needed = scene.theory, 1.0
+    for name, target in targets.items():
+        of_one = float(model.asperities_for(name, h, 1.0, given=given)) / scene.n_asperities
+        needed = max(needed, of_one * (ndtri((1 + CONFIDENCE) / 2) / target) ** 2)
+    return next((float(n) for n in checkpoints(MOST_SURFACES) if n >= needed), np.inf)
+
+
+def surfaces_at_loads(scene: Scene, separations: Sequence[float], given: str) -> int:
+    """Surfaces that `rel_err` asks for at the loads of the mean surface at these separations.
+
+    One number for all is kept by load, area, stiffness and conductance, whatever the scene's quantities are.
+
+    Warns
+    -----
+    UserWarning
+        If `n_surfaces` is too small.
+    """
+    asked = {name: float(share.min()) for name, share in wanted(scene).items()}
+    if not isinstance(scene.rel_err, Mapping):
+        asked = dict.fromkeys(("load", "area", "stiffness", "conductance"), min(asked.values()))
+    asked = {name: share for name, share in asked.items() if name != given}
+    most = max(surfaces_at_load(scene, h, asked, given) for h in separations)
+    if most > scene.n_surfaces:
+        warnings.warn(f"rel_err needs {most:.2g} surfaces, and n_surfaces = {scene.n_surfaces}", stacklevel=4)
+    return int(min(most, scene.n_surfaces))
 
 
 def before(forecast: Forecast, seconds_each: float) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 
 from analytic import QUANTITIES, Hertz, MeasuredHeights, MeasuredRadii, Quantity, quantity_of
 from mcgw.ensemble.at_load import NEGATIVE, answers_at, asperities_of, quantities_at, theory_at
+from mcgw.ensemble.forecast import surfaces_at_loads
 from mcgw.ensemble.separation import Summits
 from mcgw.ensemble.solved import Solution
 from mcgw.machine.progress import Progress, told
@@ -55,7 +56,8 @@ def solve(
     progress : bool or callable, optional
         True: a bar; a function: called with (done, total) surfaces.
     **changes
-        Fields of the scene to change: see `mcgw.Scene.replace`.
+        Fields of the scene to change: see `mcgw.Scene.replace`. With `rel_err` as many surfaces are drawn as
+        keep 1.96 standard errors of every answer within it.
 
     Returns
     -------
@@ -129,11 +131,9 @@ def solutions(
         negative modulus where the scene does not allow them, if there are too many asperities to draw, or if
         a surface has none.
     """
-    whole, scene = scene, asperities_of(scene)
-    specimens = _resampled(scene) if scene.as_measured else scene
-    if specimens.n_surfaces < 2:
+    whole, scene, q = scene, asperities_of(scene), quantity_of(given)
+    if scene.n_surfaces < 2 and not scene.as_measured:
         raise ValueError(f"n_surfaces = {scene.n_surfaces}: an interval needs at least 2 surfaces")
-    q = quantity_of(given)
     least = q.scale(scene.surface) * _LAST_DIGITS**q.exponent
     if small := [value for value in values if 0 <= value < least]:
         raise ValueError(
@@ -141,6 +141,10 @@ def solutions(
             f"give {2 * least:.1g} {q.unit} or more"
         )
     theory = [theory_at(scene, q, value) for value in values]
+    if scene.rel_err is not None:
+        n = surfaces_at_loads(scene, [at["separation"] for at in theory], given)
+        whole, scene = (replace(x, n_surfaces=n, rel_err=None, max_seconds=None) for x in (whole, scene))
+    specimens = _resampled(scene) if scene.as_measured else scene
     drawn = storable(_drawn(specimens, q, [at["separation"] for at in theory]))
     if drawn.touching * drawn.n_surfaces > _MOST_HEIGHTS:
         raise ValueError(

@@ -15,7 +15,7 @@ from mcgw.ensemble.solved import Solution
 from mcgw.ensemble.some_separations import shown
 from mcgw.figures.against_theory import draw_residuals, quantity_panel
 from mcgw.figures.panels import draw_panel
-from mcgw.figures.studies import draw_checks, draw_methods
+from mcgw.figures.studies import draw_checks, draw_errors
 from mcgw.figures.style import MONTE_CARLO, SAMPLE, SEEN, STYLE, THEORY, shown_title, step
 from mcgw.formats.table import evenly
 from mcgw.maps.fit import Fit
@@ -154,10 +154,8 @@ def _(result: Convergence, ax: Any) -> None:
 
 
 @_draw.register
-def _(result: Tradeoff, ax: Any, *, k: int) -> None:
-    draw_methods(ax, result, k)
-    ax.set_ylabel(f"rms relative error of the mean {result.scene.quantities[0]}")
-    ax.set_title(f"$d/\\sigma$ = {result.separations[k]:g}")
+def _(result: Tradeoff, ax: Any, *, want: str) -> None:
+    draw_errors(ax, result, want)
     ax.legend(fontsize=7)
 
 

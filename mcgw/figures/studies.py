@@ -1,26 +1,47 @@
 """Figures of the two studies of a scene: its convergence test, and error against time."""
 
 from pathlib import Path
+from textwrap import wrap
 from typing import Any
 
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from mcgw.figures.style import BACK, BAND, MONTE_CARLO, SAMPLE, STYLE, THEORY, look, save_figure, shown_title
+from mcgw.figures.style import (
+    BAND,
+    HOMOGENEOUS,
+    LEVEL,
+    MONTE_CARLO,
+    SAMPLE,
+    STYLE,
+    THEORY,
+    look,
+    save_figure,
+    shown_title,
+)
 from mcgw.statistics.checks import Slope
 from mcgw.statistics.convergence import Convergence
+from mcgw.statistics.measured_ways import Point
+from mcgw.statistics.prices import SOLVE, WANTS
 from mcgw.statistics.tradeoff import Tradeoff
 from mcgw.statistics.verdict import FALSE_ALARM
 
 _TITLES = {"M": "surfaces $M$", "N": "asperities $N$"}
-_FLOOR = 1e-16
-_WIDE = 20  # times that are better told apart by their logarithms
+_FLOOR = 1e-14
 _TWO = 1.96  # standard errors that 95 of 100 keep
 _KINDS = ("cells", "tail", "aggregate", "direct")
 _COLOURS = {kind: look(kind)["color"] for kind in _KINDS}
 _MARKERS = {kind: look(kind)["marker"] for kind in _KINDS}
-_CELLS, _CROWDS = _COLOURS["cells"], _COLOURS["aggregate"]
+_RULES: dict[str, dict[str, Any]] = {
+    "theory": {"color": THEORY, "marker": "*"},
+    "exact law": {"color": HOMOGENEOUS, "marker": "P"},
+    SOLVE: {"color": _COLOURS["tail"], "marker": "o"},
+}
+_LADDER = {
+    "formula": (THEORY, "*"), "surfaces": (_COLOURS["tail"], "s"), "located": ("#8A4FD3", "v"),
+    "boundary elements": (HOMOGENEOUS, "D"),
+}  # fmt: skip
 
 
 def save_convergence(found: Convergence, path: str | Path) -> None:
@@ -107,7 +128,7 @@ def draw_checks(axis: Any, found: Convergence) -> None:
 
 
 def save_tradeoff(found: Tradeoff, path: str | Path) -> None:
-    """Draw a work-precision study.
+    """Draw error against time, a panel for each answer, and the ladder of models below.
 
     Parameters
     ----------
@@ -117,69 +138,86 @@ def save_tradeoff(found: Tradeoff, path: str | Path) -> None:
         The ending chooses the format: .png, .pdf, .svg.
     """
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(9.6, 5.6), layout="constrained")
-        left, right = figure.subplots(1, 2)
-        draw_ways(left, found)
-        draw_methods(right, found, len(found.separations) - 1)
-        figure.suptitle(shown_title(found.scene, "Work and precision"), fontsize=11)
+        figure = Figure(figsize=(10, 10.5), layout="constrained")
+        parts: Any = figure.subfigures(2, 1, height_ratios=[2, 1.1])
+        top, bottom = parts
+        axes = top.subplots(2, 3, sharex=True)
+        for axis, want in zip(axes.flat, WANTS, strict=True):
+            draw_errors(axis, found, want)
+        handles = {h.get_label(): h for axis in axes.flat for h in axis.get_legend_handles_labels()[0]}
+        top.legend(handles=[*handles.values()], loc="outside lower center", ncols=6, fontsize=8)
+        top.suptitle(f"{shown_title(found.scene, 'Speed and accuracy')}\n{found.sentence}", fontsize=10)
+        draw_ladder(bottom.subplots(), found)
+        bottom.suptitle(_wrapped(found.ladder.sentence), fontsize=10)
         save_figure(figure, path)
 
 
-def draw_ways(axis: Any, found: Tradeoff) -> None:
-    """Accuracy of the values of a surface against the time of one."""
-    cells = [way for way in found.ways if way.sampler == "cells"]
-    if cells:
-        times, asked = [1e3 * way.each for way in cells], [way.scene.accuracy for way in cells]
-        axis.plot(times, asked, "o-", color=_CELLS, label="cells: accuracy asked")
-        seen = [max(way.error, _FLOOR) for way in cells]
-        axis.plot(times, seen, "o", color=_CELLS, mfc="none", label="cells: worst of a few surfaces")
-    crowds = [way for way in found.ways if way.scene.law_error]
-    for way in found.ways:
-        if way not in (*cells, *crowds):  # far off to the right
-            look = {"color": _COLOURS[way.sampler], "marker": _MARKERS[way.sampler], "ls": ""}
-            axis.plot([], [], **look, label=f"{way.sampler}: to the last digit, {1e3 * way.each:.2g} ms")
-    if crowds:
-        times, spent = [1e3 * way.each for way in crowds], [way.scene.law_error for way in crowds]
-        axis.plot(times, spent, "^--", color=_CROWDS, label="crowds: error of the law allowed")
-    axis.set(yscale="log", ylim=(1e-15, 1))
-    every = [1e3 * way.each for way in (*cells, *crowds)]
-    if every and max(every) > _WIDE * min(every):
-        axis.set_xscale("log")
-    else:
-        axis.set_xlim(0, 1.1 * max(every, default=1.0))
-    axis.set_xlabel("time of a surface (ms)")
-    axis.set_ylabel("relative error of a value of a surface")
-    axis.set_title("Values of surfaces")
-    _legend(axis, 1)
-
-
-def draw_methods(axis: Any, found: Tradeoff, k: int) -> None:
-    """Error of the mean against time of every method at one of the separations, each named at its end."""
-    others = iter((("-", "P"), ("--", "X"), (":", "*")))
-    for method in found.methods:
-        points = found.of(method.name)
-        time = np.array([p.wall for p in points])
-        error = np.maximum([p.rms[k] for p in points], _FLOOR)
-        kind = method.name.split(",")[0]
-        line, marker = ("-", _MARKERS[kind]) if kind in _MARKERS else next(others, ("-", "."))
-        law = {-0.5: r" (size$^{-1/2}$)", -1.5: r" (size$^{-3/2}$)"}.get(method.slope or 0.0, "")
-        axis.errorbar(
-            time, error, error * np.array([p.rms_stderr for p in points]), color=_COLOURS.get(kind, BACK),
-            marker=marker, ms=4.5, lw=1.2, ls=line, label=f"{method.name}{law}",
-        )  # fmt: skip
-    axis.set(xscale="log", yscale="log", ylim=(_FLOOR / 5, 10))
-    advised = [advice for advice in found.advice if advice.wish.of == "mean"]
-    if k == len(found.separations) - 1 and advised:
-        axis.plot(
-            [a.seconds for a in advised], [a.wish.within / _TWO for a in advised], "*", ms=11, mfc="none",
-            color="k", label="recommended for the next decades",
-        )  # fmt: skip
+def draw_errors(axis: Any, found: Tradeoff, want: str) -> None:
+    """95 % bounds against time: measured points, lines of the expected slope, and ways without draws."""
+    axis.set(xscale="log", yscale="log", ylim=(_FLOOR / 3, 3), ylabel="error (95 % bound)")
     axis.set_xlabel("time (s)")
-    axis.set_ylabel(f"rms relative error of the mean {found.scene.quantities[0]}")
-    axis.set_title(f"Its mean at $d/\\sigma$ = {found.separations[k]:g}")
-    _legend(axis, 2)
+    kept = [way for way in found.ways if way.want == want and way.measured]
+    for way in kept:
+        own = _look_of(way.name)
+        if not way.draws or want == "values":
+            seconds, floor = way.seconds(found.scene.n_surfaces), max(way.floor, _FLOOR)
+            axis.plot(seconds, floor, ls="", ms=6, label=way.name, **own)
+            if not way.draws:
+                axis.axhline(floor, color=own["color"], lw=0.8, ls=":")
+        else:
+            points = [p for p in found.points if (p.way, p.want) == (way.name, want) and p.n_surfaces]
+            _draw_points(axis, points, own, way.name)
+    if not kept:
+        axis.text(0.5, 0.5, "no way to it", ha="center", va="center", transform=axis.transAxes)
+    title = found.words(want)
+    axis.set_title(f"{title} ({found.scene.n_surfaces})" if want == "values" else title)
 
 
-def _legend(axis: Any, columns: int) -> None:
-    """Below the panel, where nothing is drawn."""
-    axis.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=columns)
+def _draw_points(axis: Any, points: list[Point], own: dict[str, Any], name: str) -> None:
+    """Measured errors of growing numbers of surfaces, and the line that falls with the root of these."""
+    if not points:
+        return
+    seconds, size = [p.seconds for p in points], np.array([p.n_surfaces for p in points])
+    error, bars = [_TWO * p.rms for p in points], [_TWO**2 * p.stderr for p in points]
+    of_one = np.exp(np.mean(np.log(error) + np.log(size) / 2))
+    axis.plot(seconds, of_one / np.sqrt(size), color=own["color"], lw=1)
+    axis.errorbar(seconds, error, bars, ls="", ms=4, label=name, **own)
+
+
+def _look_of(name: str) -> dict[str, Any]:
+    """Colour and marker of a way; a coarser accuracy is the same, open."""
+    if name in _RULES:
+        return _RULES[name]
+    sampler, _, coarse = name.partition(", ")
+    own = {"color": _COLOURS[sampler], "marker": _MARKERS[sampler]}
+    return own | {"mfc": "none", "marker": "d"} if coarse else own
+
+
+def draw_ladder(axis: Any, found: Tradeoff) -> None:
+    """Whole errors of the conductance at a load against time, model by model; their parts as thin lines."""
+    for k, name in enumerate(dict.fromkeys(rung.name for rung in found.ladder.rungs)):
+        rungs = [rung for rung in found.ladder.rungs if rung.name == name]
+        time, many = [r.seconds for r in rungs], len(rungs) > 1
+        known = not np.isnan(rungs[0].model)
+        whole = [r.whole if known else r.drawn for r in rungs]
+        color, marker = _LADDER[name]
+        axis.plot(time, whole, color=color, marker=marker, ms=5, ls="-" if many else "", label=name)
+        if many and known:
+            axis.plot(time, [r.drawn for r in rungs], color=color, lw=0.8, ls=":")
+        for r in rungs if many else ():
+            axis.annotate(
+                f"{r.n_surfaces:g}", (r.seconds, r.whole if known else r.drawn), (0, 5),
+                textcoords="offset points", fontsize=7, ha="center",
+            )  # fmt: skip
+        if k == 0 and known:
+            axis.axhline(rungs[0].model, color=LEVEL, lw=1, label="error of the model")
+    axis.set(xscale="log", yscale="log", xlabel="time (s)", ylabel="whole error (95 % bound)")
+    axis.set_title(
+        "Conductance at its load, by numbers of surfaces or maps; dotted: without the model", fontsize=9
+    )
+    axis.legend(loc="center left", bbox_to_anchor=(1, 0.5), fontsize=8)
+
+
+def _wrapped(sentence: str) -> str:
+    """Lines of a title."""
+    return "\n".join(wrap(sentence, 120)).replace("$", r"\$")

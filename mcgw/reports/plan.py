@@ -1,11 +1,12 @@
 """Cost of a scene, estimated before anything is drawn."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from time import perf_counter
 
 from analytic import QUANTITIES
 from mcgw.ensemble.drawing import in_words, rough_seconds, seconds_per_surface
-from mcgw.ensemble.forecast import forecast
+from mcgw.ensemble.forecast import MOST_SURFACES, forecast
+from mcgw.ensemble.intervals import laws_are_quick
 from mcgw.ensemble.simulation import reducer_of
 from mcgw.machine.terminal import one_line
 from mcgw.sampling.expected import Expected, expected
@@ -17,6 +18,9 @@ from mcgw.scene.values import BALANCED, COARSEST, EXACT
 from mcgw.sweeps.groups import Group
 from mcgw.sweeps.points import Asked
 from mcgw.sweeps.pooled import Pooling
+
+_TARGETS = (1e-2, 1e-3)  # 95 % bounds of means
+_NO_SURFACES = "means alone: no surfaces, scene.theory is exact"
 
 
 @dataclass(frozen=True)
@@ -102,6 +106,7 @@ def plan_text(scene: Scene, plan: Plan) -> str:
         f"  results       {size if scene.keep == 'statistics' else f'{size} before compression'}",
         f"  time          about {in_words(plan.seconds)}",
         *_accuracy_lines(scene, plan),
+        *_target_lines(scene, plan),
         *(f"  {line}" for line in scene.validity().lines),
         "not done:",
     ]
@@ -125,6 +130,19 @@ def _accuracy_lines(scene: Scene, plan: Plan) -> list[str]:
     if scene.law_error:
         lines.append(f"  law_error     up to {scene.law_error:g} allowed for Gaussian moments, if faster")
     return lines
+
+
+def _target_lines(scene: Scene, plan: Plan) -> list[str]:
+    """Surfaces and time for which every mean is within an error, and that theory needs none."""
+    if scene.interaction is not None or scene.as_measured or not laws_are_quick(scene):
+        return []  # no theory, or one that takes longer than a plan may
+    lines = []
+    for target in (x for x in _TARGETS if x > scene.accuracy):
+        found = forecast(replace(scene, rel_err=target, n_surfaces=MOST_SURFACES))
+        some = f", all but {len(found.out_of_reach)} means" if found.out_of_reach else ""
+        seconds = in_words(plan.seconds / plan.surfaces * found.surfaces)
+        lines.append(f"rel_err = {target:g}: {found.surfaces:.2g} surfaces, {seconds}{some}")
+    return [f"  {'for' if k == 0 else '':13} {line}" for k, line in enumerate([*lines, _NO_SURFACES])]
 
 
 def sweep_plan_text(asked: Asked) -> str:

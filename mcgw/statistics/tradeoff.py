@@ -1,65 +1,35 @@
-"""Error against time for one scene on this machine, and what to run: a work-precision study in bounded time.
+"""Error against time of one scene on this machine: which answer, how exact, at what cost."""
 
-Two frontiers: of the mean of its first quantity, by every method there is; and of the values of single
-surfaces, by every pair of sampler and accuracy (`mcgw.statistics.wishes`).
-"""
-
-from dataclasses import dataclass, replace
-from functools import partial
-from time import monotonic, perf_counter, process_time
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from itertools import groupby
+from operator import attrgetter
+from time import monotonic
 from typing import Any
 
-import numpy as np
-
-from analytic.arrays import Array
+from analytic import MeasuredHeights, MeasuredRadii
+from mcgw.elasticity.ladder import Ladder, ladder_of
+from mcgw.ensemble.drawing import in_words
 from mcgw.ensemble.half_space import scene_alone
+from mcgw.ensemble.needed import PROBABILITY, Needs
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
-from mcgw.machine.memory import peak_growth
 from mcgw.machine.progress import Progress, told
 from mcgw.machine.terminal import plotted
 from mcgw.scene.arguments import argument, check_object
 from mcgw.scene.scene import Scene
-from mcgw.statistics.methods import Method, methods_for
-from mcgw.statistics.wishes import Advice, Way, advise, ways_for
+from mcgw.scene.values import EXACT
+from mcgw.statistics.measured_ways import REPEATS, Answers, Point, moved, prices, sized
+from mcgw.statistics.prices import TARGETS, WANTS, Advice, Way, advise, changes_of, sampled_ways
 
 SECONDS = 60.0
-_MOST_ROUNDS, _ROUNDS = 24, 6
-_FEWEST_SIZES = 3
-_SHORTEST = 2e-3  # faster calls are repeated until they take this long
-
-
-@dataclass(frozen=True)
-class Point:
-    """One method at one size.
-
-    Parameters
-    ----------
-    method, unit : str
-        Name of the method, and what its size counts.
-    size : float
-        Its size, in that unit.
-    rms : ndarray
-        Root mean square relative error over the seeds, shape (separations,).
-    rms_stderr : float
-        Relative uncertainty of `rms`; 0 where nothing is random.
-    cpu, wall : float
-        Median seconds: CPU time of all cores together, and wall-clock time.
-    peak : float
-        Bytes of additional memory; nan where the system does not report it.
-    seeds : int
-        How many runs.
-    """
-
-    method: str
-    unit: str
-    size: float
-    rms: Array
-    rms_stderr: float
-    cpu: float
-    wall: float
-    peak: float
-    seeds: int
+_SHOWN = (1e-2,)
+_EXACT = 1e-12  # error of values that are right to the last digits
+WORDS = {
+    "mean": "mean {}", "std": "standard deviation", "quantile": f"{PROBABILITY:.0%} quantile",
+    "distribution": "distribution", "conductance": "conductance at its load", "values": "values of surfaces",
+}  # fmt: skip
 
 
 @dataclass(frozen=True, repr=False)
@@ -69,155 +39,150 @@ class Tradeoff(Shown):
     Parameters
     ----------
     scene : Scene
-        As studied.
-    separations : tuple of float
-        Where errors were taken, of the scene's first quantity.
+        As studied: of one separation and one quantity.
+    load : float
+        Mean load there, N.
     points : tuple of Point
-        Every method at every size.
-    methods : tuple of Method
-        All of them.
+        What was measured.
     ways : tuple of Way
-        Pairs of sampler and accuracy: time and error of the values of single surfaces.
-    advice : tuple of Advice
-        What to run for a mean, a quantile, or values; the first two at the last of the separations.
+        Prices of all ways to all answers.
+    ladder : Ladder
+        Whole errors, of surfaces and of the model, from one formula to boundary elements.
     seconds : float
         How long the study took.
     """
 
     scene: Scene
-    separations: tuple[float, ...]
+    load: float
     points: tuple[Point, ...]
-    methods: tuple[Method, ...]
     ways: tuple[Way, ...]
-    advice: tuple[Advice, ...]
+    ladder: Ladder
     seconds: float
 
-    def of(self, method: str) -> list[Point]:
-        """Points of one method, by size."""
-        return [point for point in self.points if point.method == method]
+    def advice(self, want: str, target: float) -> Advice:
+        """Choose the cheapest way to one of `prices.WANTS` within a relative error, a 95 % bound."""
+        return advise(want, target, list(self.ways), Needs(self.scene))
 
-    def plot(self, ax: Any = None, *, separation: float | None = None) -> Any:
-        """Draw error against time.
+    def words(self, want: str) -> str:
+        """Name of an answer."""
+        return WORDS[want].format(self.scene.quantities[0])
+
+    def plot(self, ax: Any = None, *, want: str = "mean") -> Any:
+        """Draw error against time of one of the answers.
 
         Parameters
         ----------
         ax : matplotlib Axes, optional
             Axes to draw on; default: new ones.
-        separation : float, optional
-            One of `separations`; default: the last.
+        want : str, optional
+            "mean", "std", "quantile", "distribution", "conductance" or "values".
 
         Returns
         -------
         matplotlib.axes.Axes
             With labels and a legend.
-
-        Raises
-        ------
-        ValueError
-            If no errors were taken at that separation.
         """
-        h = self.separations[-1] if separation is None else separation
-        if h not in self.separations:
-            raise ValueError(
-                f"separation = {h:g}: give one of {', '.join(f'{x:g}' for x in self.separations)}"
-            )
-        return plotted(self, ax, k=self.separations.index(h))
+        if want not in WANTS:
+            raise ValueError(f"want = {want!r}: give one of {', '.join(WANTS)}")
+        return plotted(self, ax, want=want)
 
-    def sheet(self) -> Sheet:
-        """What to run for each goal."""
-        quantity, h = self.scene.quantities[0], f"{self.separations[-1]:g}"
-        facts = [("mean, quantile", f"of the {quantity} at d/sigma = {h}, in 95 of 100 ensembles")]
-        a = self.advice
-        asked = [x.scene.sampler for x in a]
-        columns = (
-            Column("wish", [x.wish.text for x in a], "wanted, relative error"),
-            Column(
-                "sampler",
-                [s if s == x.sampler else f"{s}: {x.sampler}" for s, x in zip(asked, a, strict=True)],
-            ),
-            Column("accuracy", [x.scene.accuracy for x in a], form="g"),
-            Column("law_error", [x.scene.law_error for x in a], form="g"),
-            Column("n_surfaces", [x.scene.n_surfaces for x in a], form="d"),
-            Column("seconds", [x.seconds for x in a], form=".2g"),
-        )
-        return Sheet("Recommended", facts, Table(columns))
+    @property
+    def sentence(self) -> str:
+        """What to do for the mean and the quantile, in one sentence."""
+        parts = []
+        for want in ("mean", "quantile"):
+            found = self.advice(want, 1e-3)
+            if found.way is None:
+                parts.append(f"the {self.words(want)} is out of reach")
+            elif found.way.draws:
+                n = f"{found.n_surfaces} surfaces by {found.way.name}, {in_words(found.seconds)}"
+                parts.append(f"the {self.words(want)} to 0.1 % takes {n}")
+            else:
+                parts.append(f"the {self.words(want)} needs no surfaces: {in_words(found.seconds)}")
+        text = "; ".join(parts)
+        return f"{text[0].upper()}{text[1:]}."
+
+    def sheet(self, targets: Sequence[float] = _SHOWN) -> Sheet:
+        """What to run for each answer; targets with one and the same way in one row."""
+        scene = self.scene
+        facts = [
+            ("at", f"d/sigma = {scene.separations[0]:g}; an error is a 95 % bound, 1.96 standard errors"),
+            ("do", self.sentence),
+            ("model", self.ladder.sentence),
+        ]
+        table = self._rows(targets, ("want", "way", "n_surfaces"))
+        return Sheet("Speed and accuracy", facts, table if len(targets) > 1 else Table(table.columns[:-1]))
 
     def table(self) -> Table:
-        """Errors and time of every method at every size."""
-        p = self.points
-        errors = (
-            Column(f"rms_relative_error_at_h_{h:g}", [x.rms[k] for x in p], f"at {h:g}", form=".2e")
-            for k, h in enumerate(self.separations)
-        )
-        title = f"root mean square relative error of the mean {self.scene.quantities[0]} at d/sigma"
+        """For each answer and error the cheapest way, its surfaces, its time, and what to type."""
+        return self._rows(TARGETS, ("want", "target"))
+
+    def _rows(self, targets: Sequence[float], alike: tuple[str, ...]) -> Table:
+        found = [self.advice(want, target) for want in WANTS for target in targets]
+        groups = [[*group] for _, group in groupby(found, attrgetter(*alike))]
+        first = [group[0] for group in groups]
+        drawn = [f"{x.n_surfaces:d}" if x.way and x.way.draws else "" for x in first]
         columns = (
-            Column("method", [x.method for x in p]),
-            Column("size", [x.size for x in p], form=".3g"),
-            Column("size_counts", [x.unit for x in p], "of"),
-            *errors,
-            Column("rms_uncertainty", [x.rms_stderr for x in p], "+-", form=".0%"),
-            Column("cpu_s", [x.cpu for x in p], "CPU (s)", form=".2e"),
-            Column("wall_s", [x.wall for x in p], "wall (s)", form=".2e"),
-            Column("peak_growth_bytes", [x.peak for x in p], "memory (B)", form=".2g"),
-            Column("seeds", [x.seeds for x in p], form="d"),
+            Column("want", [self.words(x.want) for x in first]),
+            Column("error_95", [_errors(group) for group in groups], "95 %"),
+            Column("way", ["none" if x.way is None else x.way.name for x in first], "cheapest"),
+            Column("n_surfaces", drawn),
+            Column("seconds", [x.seconds for x in first], form=".2g", missing=""),
+            Column("type", [self.to_type(x) for x in first]),
         )
-        return Table(columns, title)
+        return Table(columns)
 
-    def ways_table(self) -> Table:
-        """Time and error of the values of single surfaces, for every pair of sampler and accuracy."""
-        w = self.ways
-        columns = (
-            Column("sampler", [x.sampler for x in w]),
-            Column("accuracy", [x.scene.accuracy for x in w], form="g"),
-            Column("law_error", [x.scene.law_error for x in w], form="g"),
-            Column("error", [x.error for x in w], form=".1e"),
-            Column("s_per_surface", [x.each for x in w], "s a surface", form=".2e"),
-            Column("set_up_s", [x.set_up for x in w], "s before", form=".2g"),
-        )
-        title = "values of single surfaces (largest relative error of a few surfaces, seconds by the clock)"
-        return Table(columns, title)
+    def to_type(self, advice: Advice) -> str:
+        """Python that carries out an advice."""
+        way, h, q = advice.way, f"{self.scene.separations[0]:g}", self.scene.quantities[0]
+        if way is None:
+            return ""
+        if advice.want == "conductance":
+            n = f"n_surfaces={max(advice.n_surfaces, 2)}"
+            solved = f"mcgw.solve(scene, load={self.load:.6g}, {n})"
+            of = {"theory": "theory", "exact law": "value"}.get(way.name, "surfaces")
+            return f'{solved}.{of}["conductance"]{".mean()" if way.draws else ""}'
+        if not way.draws:
+            found = {"mean": f'mean("{q}", {h})', "std": f'std("{q}", {h})'}
+            law = f'distribution("{q}", {h})'
+            found |= {"quantile": f"{law}.ppf({PROBABILITY})", "distribution": law}
+            return f"scene.theory.{found[advice.want]}"
+        changes = {"separations": self.scene.separations[0], **changes_of(way.name)}
+        told = ", ".join(f"{key}={x!r}" for key, x in changes.items())
+        return f"mcgw.simulate(scene, {told}, n_surfaces={advice.n_surfaces})"
+
+    def measurements(self) -> Table:
+        """Errors and times of every way at every size."""
+        names = [each.name for each in fields(Point)]
+        return Table(tuple(Column(x, [getattr(p, x) for p in self.points], form=".3g") for x in names))
 
 
-class _Task:
-    """A method at a size, with its runs."""
-
-    def __init__(self, method: Method, size: float, peak: float, repeat: int) -> None:
-        self.method, self.size, self.peak, self.repeat = method, size, peak, repeat
-        self.errors: list[Array] = []
-        self.cpu: list[float] = []
-        self.wall: list[float] = []
-
-    def run(self, seed: int) -> None:
-        cpu, wall = process_time(), perf_counter()
-        for _ in range(self.repeat):
-            errors = self.method.errors(self.size, seed)
-        self.cpu.append((process_time() - cpu) / self.repeat)
-        self.wall.append((perf_counter() - wall) / self.repeat)
-        self.errors.append(errors)
-
-    def point(self) -> Point:
-        random = float(np.ptp(np.array(self.errors), axis=0).max()) > 0
-        rms = np.sqrt(np.mean(np.square(self.errors), axis=0))
-        spread = 1 / np.sqrt(2 * len(self.errors)) if random else 0.0
-        cpu, wall = float(np.median(self.cpu)), float(np.median(self.wall))
-        n = len(self.errors)
-        return Point(self.method.name, self.method.unit, self.size, rms, spread, cpu, wall, self.peak, n)
+def _errors(group: list[Advice]) -> str:
+    """Targets of a row; "exact" where values are right to the last digits."""
+    ends = " ... ".join(f"{x.target:g}" for x in (group[0], group[-1])[: len(group)])
+    way = group[0].way
+    return "exact" if group[0].want == "values" and way and way.floor <= _EXACT else ends
 
 
 def tradeoff(
-    scene: Scene, *, seconds: float | str | None = None, progress: Progress = None, **changes: Any
+    scene: Scene,
+    *,
+    separation: float | None = None,
+    seconds: float | str | None = None,
+    progress: Progress = None,
+    **changes: Any,
 ) -> Tradeoff:
-    """Measure error against time of every method for the first quantity of a scene.
-
-    Everything is warmed up, then all methods and sizes run in turn, with a new seed each round, until
-    the time is used up; medians over the rounds are given.
+    """Measure what each answer of a scene costs on this machine, and how exact it is.
 
     Parameters
     ----------
     scene : Scene
-        What to simulate.
+        What to simulate; its first quantity is studied.
+    separation : float, optional
+        Where, d/sigma; default: the middle one of the scene's.
     seconds : float or str, optional
-        Bound of the whole study, s or text such as "5 min", default: 60; it is kept to within the last run.
+        Time of the study, s or text such as "5 min", default: 60. Sizes are chosen for it; 16 repeats of the
+        smallest are made even if that takes longer.
     progress : bool or callable, optional
         True: a bar; a function: called with (done, total) seconds.
     **changes
@@ -226,74 +191,55 @@ def tradeoff(
     Returns
     -------
     Tradeoff
-        Points and advice.
+        Prices, what to run, and where more surfaces stop to help.
 
     Raises
     ------
     SceneError, TypeError
         If `seconds` is not positive; and as from `mcgw.Scene.replace`.
     ValueError
-        If summits are located.
+        If summits are located or used as measured, or the mean is 0.
 
     Examples
     --------
     >>> import mcgw
     >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
-    >>> study = mcgw.tradeoff(mcgw.Scene(surface, separations=[0, 1], seed=1), seconds=0.1)
-    >>> study.advice[0].wish.text
-    'a mean to 0.1'
+    >>> study = mcgw.tradeoff(mcgw.Scene(surface, separations=1, seed=1), seconds=0.1)
+    >>> study.advice("mean", 1e-3).way.name
+    'theory'
     """
     limit = argument("seconds", SECONDS if seconds is None else seconds, "s")
     started = monotonic()
     check_object("tradeoff", scene, Scene)
-    scene = scene_alone(replace(scene.replace(**changes), rel_err=None, max_seconds=None))
-    chosen = _chosen(scene)
-    methods = methods_for(scene, chosen)
-    with told(progress, "s") as tell:
-
-        def note() -> None:
-            tell(min(monotonic() - started, limit), limit)
-
-        ways = []
-        for way in ways_for(scene):
-            ways.append(way)
-            note()
-            if monotonic() - started > limit / 2:
-                break
-        tasks: list[_Task] = []
-        for method in methods:
-            note()
-            tasks += _sized(method, limit / (2 * _ROUNDS * len(methods)), scene.seed)
-        for number in range(1, _MOST_ROUNDS + 1):
+    whole = _refused(scene.replace(**changes))
+    h = sorted(whole.separations)[(len(whole.separations) - 1) // 2] if separation is None else separation
+    scene = replace(
+        scene_alone(whole), separations=(float(h),), quantities=whole.quantities[:1], keep="sums",
+        accuracy=EXACT, rel_err=None, max_seconds=None,
+    )  # fmt: skip
+    answers, names = Answers(scene), sampled_ways(scene)
+    with told(progress, "s") as tell, warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # of ways that take long, which is what is asked
+        tasks = [*answers.without_surfaces()]
+        for name in names:
+            tasks += sized(answers, name, scene, limit / (2 * len(names)))
+        number = 0
+        while number < REPEATS or monotonic() - started < limit:
+            number += 1
             for task in tasks:
-                if monotonic() - started < limit or not task.errors:
-                    task.run((scene.seed + 7919 * number + 104729) % 2**64)
-            note()
-    points = tuple(task.point() for task in tasks)
-    h = tuple(scene.separations[k] for k in chosen)
-    advice = advise(scene, h[-1], ways)
-    ways.sort(key=lambda way: (way.sampler, way.scene.accuracy, way.scene.law_error))
-    return Tradeoff(scene, h, points, methods, tuple(ways), advice, monotonic() - started)
+                task.run(moved(scene, number), limit / REPEATS)
+            tell(min(monotonic() - started, limit), limit)
+        points = tuple(point for task in tasks for point in task.points())
+        ways = prices(scene, points, names)
+    ladder = ladder_of(whole, scene, answers.load, ways)
+    return Tradeoff(scene, answers.load, points, tuple(ways), ladder, monotonic() - started)
 
 
-def _chosen(scene: Scene) -> tuple[int, ...]:
-    """The lowest, a middle and the highest separation that any of 1e9 asperities reaches."""
-    order = np.argsort(scene.separations, kind="stable")
-    share = scene.heights.sf(np.array(scene.separations))[order]
-    reached = order[share > 1e-9] if (share > 1e-9).any() else order[:1]
-    return tuple(int(k) for k in dict.fromkeys(reached[[0, len(reached) // 2, -1]]))
-
-
-def _sized(method: Method, longest: float, seed: int) -> list[_Task]:
-    """Sizes within the time limit, each run once to warm up and to measure its memory."""
-    tasks: list[_Task] = []
-    before = 0.0
-    for size in method.sizes:
-        if len(tasks) >= _FEWEST_SIZES and before > longest:
-            break
-        method.errors(size, seed)
-        start = perf_counter()
-        peak = peak_growth(partial(method.errors, size, seed))
-        before = perf_counter() - start
-        tasks.append(_Task(method, size, peak, max(1, min(100, int(_SHORTEST / before)))))
-    return tasks
+def _refused(scene: Scene) -> Scene:
+    """The scene, if its answers can be traded off."""
+    if isinstance(scene.curvature, MeasuredRadii):
+        raise ValueError("summits: listed summits are summed or drawn, and have no other method")
+    if isinstance(scene.heights, MeasuredHeights):
+        raise ValueError("heights: measured heights are summed exactly; no answer is traded off")
+    scene.ask_theory()
+    return scene

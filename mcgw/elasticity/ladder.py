@@ -1,0 +1,104 @@
+"""The ladder of models: whole error against time, from one formula to boundary elements.
+
+What is asked for is the conductance (C rho, or the stiffness) at a given load: its measured error against
+elasticity is in the error budget of a solution, and `mcgw.elastic` gives it for surfaces with a spectrum.
+"""
+
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from math import hypot, isnan
+from typing import Any
+
+import numpy as np
+
+from mcgw.ensemble.drawing import in_words
+from mcgw.ensemble.needed import Needs
+from mcgw.errors import RunError
+from mcgw.scene.scene import Scene
+from mcgw.scene.validity import percent
+
+_SIZES = (2, 10, 100, 1000, 10_000, 100_000)
+_PILOT = 4  # maps on which levels are compared
+_PIXELS = 0.02  # error of boundary elements on the maps of `mcgw.elastic`: see `mcgw.elasticity.sources`
+_TARGETS = (0.1, 0.03, 0.01)
+_ENOUGH = 1.05  # times the error of the model: more surfaces are not worth it
+
+
+@dataclass(frozen=True)
+class Rung:
+    """One model with so many surfaces or maps; errors are relative 95 % bounds, nan where not known."""
+
+    name: str
+    n_surfaces: int
+    seconds: float
+    drawn: float
+    model: float
+
+    @property
+    def whole(self) -> float:
+        """Root of the sum of squares, as in an error budget."""
+        return hypot(self.drawn, self.model)
+
+
+@dataclass(frozen=True)
+class Ladder:
+    """Rungs from cheap to dear, and why the error of the model is not known where it is not."""
+
+    rungs: tuple[Rung, ...]
+    unknown: str
+
+    @property
+    def sentence(self) -> str:
+        """Where more surfaces stop to help."""
+        formula = self.rungs[0]
+        if isnan(formula.model):
+            return f"The error of the model is not known here: {self.unknown}."
+        parts = [f"The model is off by {percent(formula.model)}"]
+        enough = [r for r in self.rungs[1:] if r.name == "surfaces" and r.whole <= _ENOUGH * formula.model]
+        if formula.whole <= _ENOUGH * formula.model:
+            parts.append(f"theory, {in_words(formula.seconds)}, is as good as any number of surfaces")
+        elif enough:
+            parts.append(f"more than {enough[0].n_surfaces} surfaces do not help")
+        dear = [r for r in self.rungs if r.name == "boundary elements" and r.whole < formula.whole]
+        if dear:
+            parts.append(f"`mcgw elastic` gets {percent(dear[-1].whole)} in {in_words(dear[-1].seconds)}")
+        return f"{'; '.join(parts)}."
+
+
+def ladder_of(scene: Scene, alone: Scene, load: float, ways: Sequence[Any]) -> Ladder:
+    """Rungs of the whole scene; `alone` is that of its asperities at the one separation of the load."""
+    h = alone.separations[0]
+    validity = scene.validity([h])
+    model = float(validity.error["stiffness"][0])
+    by = {way.name: way for way in ways if way.want == "conductance"}
+    theory = by.get("theory") or next(way for way in ways if way.name == "theory")
+    rungs = [Rung("formula", 0, theory.seconds(0), theory.floor, model)]
+    if "solve" in by:
+        of_one = Needs(alone).at_load
+        rungs += [Rung("surfaces", n, by["solve"].seconds(n), of_one / n**0.5, model) for n in _SIZES]
+    with suppress(ValueError, RunError):  # without a spectrum, or Tamaas, the ladder ends here
+        rungs += _of_maps(scene, load / scene.surface.nominal_area)
+    return Ladder(tuple(rungs), validity.unknown or "not measured")
+
+
+def _of_maps(scene: Scene, pressure: float) -> Iterator[Rung]:
+    """Located summits and boundary elements: errors and seconds of a few maps, and what a mean takes."""
+    from mcgw.elasticity.levels import LEVELS  # for scenes with a spectrum alone
+    from mcgw.elasticity.multilevel import design
+    from mcgw.elasticity.solves import Solves
+    from mcgw.elasticity.sources import maps_of
+
+    solves = Solves(maps_of(scene), {"pressure": pressure}, scene.surface.E_star, 1, ["conductance"])
+    rows = [[solves.at(level, number) for level in LEVELS] for number in range(_PILOT)]
+    table = {k: np.array([row[k][0] for row in rows]) for k in range(len(LEVELS))}
+    seconds = [float(np.median([row[k][1] for row in rows])) for k in range(len(LEVELS))]
+    off = table[1][:, 0] / table[2][:, 0] - 1
+    model = abs(float(off.mean())) + 2 * float(off.std(ddof=1)) / _PILOT**0.5
+    scatter = 2 * float(table[1].std(ddof=1) / table[1].mean())
+    yield from (
+        Rung("located", n, n * seconds[1], scatter / n**0.5, hypot(model, _PIXELS)) for n in _SIZES[:4]
+    )
+    for target in _TARGETS:
+        planned = design(table, [level.cost for level in LEVELS], target)
+        yield Rung("boundary elements", planned.maps[-1], planned.cost * seconds[2], target, _PIXELS)

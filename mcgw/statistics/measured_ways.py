@@ -1,0 +1,249 @@
+"""Every way to every answer of a scene, run and timed in turn with all others.
+
+Each repeat has new surfaces and a separation moved by nothing that counts, so that no result is remembered.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from functools import partial
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from analytic.arrays import Array
+from analytic.at_load import specimen_means
+from mcgw.ensemble.drawing import rough_seconds
+from mcgw.ensemble.intervals import laws_are_quick
+from mcgw.ensemble.needed import PROBABILITY, Needs
+from mcgw.ensemble.simulation import simulate
+from mcgw.ensemble.solution import solve
+from mcgw.sampling.asperities import summits_drawn
+from mcgw.sampling.direct import asperity_sums
+from mcgw.sampling.samplers import sampler_of
+from mcgw.scene.promises import promise_of
+from mcgw.scene.scene import Scene
+from mcgw.statistics.prices import SOLVE, Way, changes_of, wants_of
+
+REPEATS = 16
+_FEWEST = 3  # repeats of what draws nothing and takes long
+_SIZES = tuple(10**k for k in range(1, 7))
+_RELIABLE = 1000  # surfaces, from which on tenths of them tell how long they take
+_SHIFT = 1e-9  # of a separation, from repeat to repeat
+_SURE = 5.0  # standard errors of a bias, by 16 repeats: a right way is taken for wrong once in 6000
+_BY_CHANCE = (0.8687, 0.2603)  # mean and standard deviation of Kolmogorov's law
+_FEWEST_FOR_QUANTILE, _LEVELS = 2000, np.arange(1, 200) / 200  # surfaces; probabilities that are compared
+_MOST_LISTED, _LISTED = 3e6, 4  # asperities of a surface that are summed by themselves; surfaces
+_HERTZ, _OTHERS, _LAW = 1e-13, 1e-9, 1e-6  # errors that theory and exact laws are tested to
+
+Errors = dict[str, float]
+
+
+@dataclass(frozen=True)
+class Point:
+    """One way to an answer from so many surfaces.
+
+    Parameters
+    ----------
+    way, want : str
+        Of a `Way`.
+    n_surfaces : int
+        0 where none is drawn.
+    rms, stderr : float
+        Root mean square error over the repeats, and its own standard error.
+    bias : float
+        Mean error, if it cannot be chance; else 0.
+    seconds : float
+        Median time by the clock.
+    repeats : int
+        How many.
+    """
+
+    way: str
+    want: str
+    n_surfaces: int
+    rms: float
+    stderr: float
+    bias: float
+    seconds: float
+    repeats: int
+
+
+class Task:
+    """A way at a size: a timed call on the scene of each repeat, and the errors of what it returns."""
+
+    def __init__(
+        self, way: str, n_surfaces: int, call: Callable[[Scene], Any], compare: Callable[[Any], Errors]
+    ) -> None:
+        self.way, self.n_surfaces, self.call, self.compare = way, n_surfaces, call, compare
+        self.errors: list[Errors] = []
+        self.seconds: list[float] = []
+
+    def run(self, scene: Scene, limit: float = np.inf) -> None:
+        """Run it once; a long one that draws nothing not again once it has spent its limit of seconds."""
+        if not self.n_surfaces and len(self.seconds) >= _FEWEST and sum(self.seconds) > limit:
+            return
+        start = perf_counter()
+        found = self.call(scene)
+        self.seconds.append(perf_counter() - start)
+        self.errors.append(self.compare(found))
+
+    def points(self) -> Iterator[Point]:
+        """One for each answer."""
+        for want in self.errors[0]:
+            e, n = np.array([errors[want] for errors in self.errors]), self.n_surfaces
+            rms, r = float(np.sqrt(np.mean(e**2))), len(e)
+            stderr = float(np.std(e**2) / (2 * rms * np.sqrt(r))) if rms > 0 else 0.0
+            usual, spread = _BY_CHANCE if want == "distribution" else (0.0, float(e.std(ddof=1)) * n**0.5)
+            sure = abs(e.mean()) * n**0.5 > usual + _SURE * spread / r**0.5
+            bias = abs(float(e.mean())) if sure else 0.0
+            yield Point(self.way, want, n, rms, stderr, bias, float(np.median(self.seconds)), r)
+
+
+class Answers:
+    """Answers of a scene of one separation by theory and exact laws, which samples are held against."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.q, self.h, theory = scene.quantities[0], scene.separations[0], scene.theory
+        self.load = float(theory.mean("load", self.h))
+        self.known = {name: float(getattr(theory, name)(self.q, self.h)) for name in ("mean", "std")}
+        if not self.known["mean"]:
+            raise ValueError(
+                f"mean {self.q} at d/sigma = {self.h:g} is 0: a relative error needs a mean that is not; "
+                "change separations"
+            )
+        self.touching, self.of_one, self.at = scene.touching, Needs(scene).at_load, np.empty(0)
+        with suppress(KeyError, ValueError):
+            law = theory.distribution(self.q, self.h)
+            self.at = np.array(law.ppf(_LEVELS))
+            self.levels, self.known["quantile"] = np.array(law.cdf(self.at)), float(law.ppf(PROBABILITY))
+        if laws_are_quick(scene):
+            with suppress(KeyError, ValueError, IndexError):
+                found = specimen_means(theory, "load", self.load, ["conductance"])
+                self.known["conductance"] = found["conductance"]
+
+    def _off(self, want: str, value: float) -> Errors:
+        """Error of an answer; none where it is not known."""
+        return {want: value / self.known[want] - 1} if want in self.known else {}
+
+    def _off_at_load(self, value: float) -> Errors:
+        """Error of a conductance; where the mean over specimens is not known, theory's by its order 1/N."""
+        return self._off("conductance", float(value)) or {"conductance": self.of_one**2}
+
+    def of_sample(self, x: Array) -> Errors:
+        """Errors of the answers that a sample of surfaces gives."""
+        errors = self._off("mean", float(x.mean())) | self._off("std", float(x.std(ddof=1)))
+        if x.size >= _FEWEST_FOR_QUANTILE:
+            errors |= self._off("quantile", float(np.quantile(x, PROBABILITY)))
+        if self.at.size:
+            below = np.searchsorted(np.sort(x), self.at, side="right") / x.size
+            errors["distribution"] = float(np.abs(below - self.levels).max())
+        return errors
+
+    def without_surfaces(self) -> Iterator[Task]:
+        """Ways that draw nothing; their errors are those that tests hold them to."""
+
+        def by_theory(name: str, scene: Scene) -> Any:
+            return getattr(scene.theory, name)(self.q, scene.separations[0])
+
+        def at_load(scene: Scene) -> float:
+            return float(
+                scene.theory.mean("conductance", scene.theory.separation_at("load", self._load(scene)))
+            )
+
+        yield Task("theory", 0, partial(by_theory, "mean"), lambda _: {"mean": 0.0})
+        yield Task("theory", 0, partial(by_theory, "std"), lambda _: {"std": 0.0})
+        yield Task("theory", 0, at_load, self._off_at_load)
+        if "conductance" in self.known and self.touching < _MOST_LISTED:
+            solved = partial(self._solved, 2)
+            yield Task("exact law", 0, lambda s: solved(s).value, lambda _: {"conductance": 0.0})
+        if self.at.size:
+            law = partial(by_theory, "distribution")
+            yield Task("exact law", 0, lambda s: law(s).ppf(PROBABILITY), lambda _: {"quantile": 0.0})
+            yield Task("exact law", 0, lambda s: law(s).cdf(self.at), lambda _: {"distribution": 0.0})
+
+    def _load(self, scene: Scene) -> float:
+        """The load, moved as the scene of a repeat is."""
+        return self.load * (1 + scene.separations[0] - self.h)
+
+    def _solved(self, n_surfaces: int, scene: Scene) -> Any:
+        return solve(scene, load=self._load(scene), n_surfaces=n_surfaces)
+
+    def sampled(self, name: str, n_surfaces: int) -> Task:
+        """A way that draws so many surfaces: at the separation, or at the load."""
+        if name == SOLVE:
+            solved = partial(self._solved, n_surfaces)
+            return Task(
+                name, n_surfaces, lambda s: solved(s).surfaces["conductance"].mean(), self._off_at_load
+            )
+        changes = {**changes_of(name), "n_surfaces": n_surfaces}
+        return Task(name, n_surfaces, lambda s: simulate(s, **changes)[self.q][:, 0], self.of_sample)
+
+
+def moved(scene: Scene, number: int) -> Scene:
+    """The scene of one repeat."""
+    seed = (scene.seed + 7919 * number + 104729) % 2**64
+    return replace(scene, separations=(scene.separations[0] + _SHIFT * number,), seed=seed)
+
+
+def sized(answers: Answers, name: str, scene: Scene, share: float) -> list[Task]:
+    """A way at all sizes of which 16 repeats fit into its share of seconds, each run before."""
+    tasks: list[Task] = []
+    rough = rough_seconds(scene.replace(**changes_of(name)), 1)
+    for size in _SIZES:
+        each = tasks[-1].seconds[-1] / tasks[-1].n_surfaces if size >= _RELIABLE else rough
+        if REPEATS * size * each > share:
+            break
+        tasks.append(answers.sampled(name, size))
+        for number in (-2, -1):  # the first compiles
+            tasks[-1].run(moved(scene, number))
+    for task in tasks:
+        task.errors, task.seconds = [], []
+    return tasks
+
+
+def prices(scene: Scene, points: Sequence[Point], names: Sequence[str]) -> list[Way]:
+    """Set-up and cost of a surface from the smallest and the largest size; floors from what is off."""
+    tested = {"theory": _HERTZ if scene.hertzian and scene.curvature is None else _OTHERS, "exact law": _LAW}
+    still = [p for p in points if p.way in tested]
+    ways = [Way(p.way, p.want, max(tested[p.way], p.rms), p.seconds, 0.0) for p in still]
+    for name in names:
+        own = [p for p in points if p.way == name]
+        rough = rough_seconds(scene.replace(**changes_of(name)), 1)
+        worst, promised = _worst(scene, name), changes_of(name).get("accuracy", 0.0)
+        for want in wants_of(name):
+            timed = [p for p in own if p.want == ("conductance" if name == SOLVE else "mean")]
+            bias = ([p.bias for p in own if p.want == want] or [p.bias for p in timed] or [0.0])[-1]
+            floor = max(promised, worst if want == "values" else bias)
+            if timed:
+                ways.append(Way(name, want, floor, *_price(timed[0], timed[-1], rough)))
+            elif name != SOLVE:
+                ways.append(Way(name, want, floor, 0.0, rough, measured=False))
+    return ways
+
+
+def _price(small: Point, large: Point, rough: float) -> tuple[float, float]:
+    """Seconds before the first surface, and of each: between two sizes, or by arithmetic."""
+    if large.seconds < 2 * small.seconds:  # most of it is set-up
+        each = rough
+    else:
+        each = (large.seconds - small.seconds) / (large.n_surfaces - small.n_surfaces)
+    return max(small.seconds - each * small.n_surfaces, 0.0), each
+
+
+def _worst(scene: Scene, name: str) -> float:
+    """Largest relative error of values of a few surfaces against plain sums over their heights."""
+    everywhere = promise_of(changes_of(name)["sampler"]).places
+    listed = scene.n_asperities if everywhere else scene.touching
+    if "values" not in wants_of(name) or listed > _MOST_LISTED:
+        return 0.0
+    asked, worst = scene.replace(**changes_of(name)), 0.0
+    sampler = sampler_of(asked)
+    for number in range(_LISTED):
+        s, ratios = summits_drawn(asked, sampler, number)
+        plain = asperity_sums(asked, np.array([s.size]), s, np.ones(s.size), ratios)
+        for quantity, values in sampler.block(number, 1).sums.items():
+            if quantity in plain and plain[quantity].any():
+                worst = max(worst, float(np.abs(values / plain[quantity] - 1).max()))
+    return worst
