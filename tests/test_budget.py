@@ -182,6 +182,40 @@ def test_corrected_is_divided_by_its_bias(solved):
     assert named["best"].values[row] == solved.corrected("area").value
 
 
+@pytest.mark.parametrize("gas", ["air", "vacuum"])
+def test_a_joint_is_corrected_through_its_network(gas):
+    """Spots as stiffness, gas at the corrected gap, side by side: by hand."""
+    film, joint = mcgw.Film(conductivities=(200.0, 16.0)), mcgw.Joint(gas, rms=2e-6)
+    solved = mcgw.solve(scene_of(film=film, joint=joint, uncertainty=None), pressure="50 MPa")
+    scene, value, v = solved.scene, solved.value, against_elasticity([solved])
+    (bias, error), (lift, gap) = ((v.bias[x][0], v.error[x][0]) for x in ("stiffness", "separation"))
+    spots, found = solved.corrected("contact_conductance"), solved.corrected("joint_conductance")
+    assert spots.value == pytest.approx(value["contact_conductance"] / (1 + bias))
+    right = value["separation"] - lift
+    assert found.value / value["joint_conductance"] == pytest.approx(
+        (spots.value + scene.filled(right))
+        / (value["contact_conductance"] + scene.filled(value["separation"])),
+        rel=1e-9,
+    )
+    off = np.hypot(
+        spots.value * (error - abs(bias)) / (1 + bias), scene.filled(right, 1) * (gap - abs(lift))
+    ) / (spots.value + scene.filled(right))
+    own = 1.96 * solved.surfaces["joint_conductance"].std(ddof=1) / value["joint_conductance"]
+    assert found.high / found.value - 1 == pytest.approx(np.hypot(off, own), rel=1e-5)
+    budget = solved.budget()
+    assert budget.quantities == ("area", "stiffness", "contact_conductance", "joint_conductance", "mean_gap")
+    assert np.isfinite(budget.all).all()
+
+
+def test_spots_with_a_film_have_no_corrected_conductance():
+    film = mcgw.Film(resistivity=0.07, film_resistance=1e-8)
+    solved = mcgw.solve(scene_of(film=film, uncertainty=None), pressure="50 MPa")
+    budget = solved.budget()
+    assert np.isnan(budget.all[budget.quantities.index("contact_conductance")])
+    assert solved.corrected("contact_conductance").why.startswith("a film or layer is not")
+    assert budget.told("contact_conductance", 0.01).startswith("(scatter of specimens 1 %; error of the")
+
+
 def test_where_nothing_was_measured_the_answer_stays_alone():
     solved = mcgw.solve(scene_of(law={"law": "kogut-etsion", "hardness": "8 GPa"}), pressure="50 MPa")
     assert solved.corrected("area").why.startswith("not measured: only for Hertz's law")

@@ -45,7 +45,7 @@ def ensemble(scene):
 @pytest.fixture
 def only_drawn(monkeypatch):
     """Values at a load are means of the surfaces drawn: exact ones take half a second each."""
-    monkeypatch.setattr("mcgw.ensemble.solved.laws_are_quick", lambda _: False)
+    monkeypatch.setattr("mcgw.ensemble.solved.Solution._exact", {})
 
 
 # --- small readers, each written from its program's rule ------------------------------------------------

@@ -27,9 +27,13 @@ _SURE = 1.96  # standard deviations on either side that hold 95 %
 _LARGE = 0.2  # share of an answer
 MOST_YIELDING = 0.05  # share of the contacts past first yield that an elastic law bears
 _STEP = 1e-3  # step of ln(parameter): a central difference has a relative error of 1e-6
-# Measured error of each answer. A conductance has that of stiffness: Barber (2003), Proc. R. Soc. A 459.
-_ERROR_OF = {"area": "area", "stiffness": "stiffness", "conductance": "stiffness"}
+# Measured error of each answer. The conductance of spots without a film has that of stiffness, to which it is
+# proportional: Barber (2003), Proc. R. Soc. A 459, 53. That of a joint follows from its network.
+_ERROR_OF = {"area": "area", "stiffness": "stiffness"}
+_ERROR_OF |= dict.fromkeys(("conductance", "contact_conductance", "joint_conductance"), "stiffness")
 _ERROR_OF |= dict.fromkeys(GAPS, "separation")
+_SPOTS = ("conductance", "contact_conductance", "joint_conductance")
+_FILM = "a film or layer is not part of what was measured"
 _LOWERED = {
     "drawn surfaces": "draw more surfaces",
     "specimens": "use a larger nominal area or several specimens",
@@ -168,9 +172,10 @@ def budget_of(
     yielding : float
         Share of the contacts past first yield under an elastic law, whose error is then not known.
     """
-    names = tuple(
-        name for name in ("load", *_ERROR_OF) if name in surfaces and name != ("area", "load")[at_load]
-    )
+    asked = [name for name in ("load", *_ERROR_OF) if name != ("area", "load")[at_load]]
+    if scene.film is not None:  # in SI units instead
+        asked.remove("conductance")
+    names = tuple(name for name in asked if name in surfaces)
     value = np.array([theory[name] for name in names])
     lacking, parts = {}, {}
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -184,7 +189,7 @@ def budget_of(
         parameters = _SURE * np.sqrt(np.einsum("ki,ij,kj->k", slopes, scene.uncertainty.covariance, slopes))
         alone = _SURE * np.abs(slopes[0]) * np.sqrt(np.diag(scene.uncertainty.covariance))
         parts = dict(zip(scene.uncertainty.names, alone.tolist(), strict=True))
-    model = np.array([_model_error(validity, name, scene, x) for name, x in zip(names, value, strict=True)])
+    model = np.array([_model_error(validity, name, scene, theory) for name in names])
     if not at_load:
         model[:] = np.nan
         lacking["model"] = "its error was measured at a given load, not at a given area"
@@ -231,15 +236,16 @@ def moved(scene: Scene, steps: dict[str, float]) -> Scene:
     return scene.replace(surface=replace(surface, **own), heights=heights, curvature=curvature)
 
 
-def corrected(validity: Validity, scene: Scene, name: str, value: float, std: float) -> Corrected:
+def corrected(validity: Validity, scene: Scene, name: str, answers: Answers, std: float) -> Corrected:
     """Answer at a load without the bias of its model, with the remaining error; `std` is for specimens."""
     column = _ERROR_OF.get(name)
     if column is None:
         return Corrected.unknown(f"{name}: its error was not measured")
-    bias, error = (float(x[column][0]) for x in (validity.bias, validity.error))
+    bias, error = _bias_and_error(validity, name, scene, answers)
     if math.isnan(error):
-        return Corrected.unknown(validity.unknown or f"{name}: not measured there")
-    besides = _SURE * std * validity.listed
+        filmed = name in _SPOTS and _filmed(scene)
+        return Corrected.unknown(_FILM if filmed else validity.unknown or f"{name}: not measured there")
+    value, besides = answers[name], _SURE * std * validity.listed
     if column == "separation":
         right, off = value - bias * scene.surface.sigma, (error - abs(bias)) * scene.surface.sigma
         off = math.hypot(off, besides)
@@ -248,9 +254,59 @@ def corrected(validity: Validity, scene: Scene, name: str, value: float, std: fl
     return Corrected(right, right / factor, right * factor)
 
 
-def _model_error(validity: Validity, name: str, scene: Scene, value: float) -> float:
+def _model_error(validity: Validity, name: str, scene: Scene, answers: Answers) -> float:
     """Error of the model, relative to the answer."""
     if name not in _ERROR_OF:
         return math.nan
-    error = float(validity.error[_ERROR_OF[name]][0])
-    return error * scene.surface.sigma / abs(value) if name in GAPS else error
+    error = _bias_and_error(validity, name, scene, answers)[1]
+    return error * scene.surface.sigma / abs(answers[name]) if name in GAPS else error
+
+
+def _bias_and_error(validity: Validity, name: str, scene: Scene, answers: Answers) -> tuple[float, float]:
+    """Bias of an answer and its error, relative to the right value, of a gap over sigma; nan if not known."""
+    if name in _SPOTS and _filmed(scene):
+        return math.nan, math.nan
+    if name == "joint_conductance":
+        return _of_joint(validity, scene, answers)
+    column = _ERROR_OF[name]
+    return float(validity.bias[column][0]), float(validity.error[column][0])
+
+
+def _filmed(scene: Scene) -> bool:
+    """Whether spots conduct through a film or layer, so that their conductance is not that of stiffness."""
+    film = scene.film
+    return film is not None and (film.film_resistance > 0 or film.layer is not None)
+
+
+def _of_joint(validity: Validity, scene: Scene, answers: Answers) -> tuple[float, float]:
+    """As `_bias_and_error` of a joint: from its network with the right spots and gap.
+
+    The errors of spots and gap, through the derivatives of the network, are added as independent ones.
+    """
+    from mcgw.ensemble.half_space import with_joint  # for those scenes alone
+
+    assert scene.filled is not None
+    spots, gap = (
+        (float(validity.bias[x][0]), float(validity.error[x][0])) for x in ("stiffness", "separation")
+    )
+    if scene.filled.gas is None:  # a vacuum is as empty in any gap
+        gap = (0.0, 0.0)
+
+    def network(factor: float, lift: float) -> float:
+        at = {"conductance_si": factor * answers["contact_conductance"] * scene.surface.nominal_area}
+        at |= {x: answers[x] + lift for x in ("nominal_separation",) if x in answers}
+        h = answers["separation"] + lift
+        return float(with_joint(scene, at, ("joint_conductance",), h)["joint_conductance"])
+
+    right = network(1 / (1 + spots[0]), -gap[0])
+    by_spots = (spots[1] - abs(spots[0])) / (1 + spots[0])
+    off = math.hypot(
+        _slope(lambda x: network((1 + x) / (1 + spots[0]), -gap[0])) * by_spots,
+        _slope(lambda x: network(1 / (1 + spots[0]), x - gap[0])) * (gap[1] - abs(gap[0])),
+    )
+    bias = network(1.0, 0.0) / right - 1
+    return bias, abs(bias) + off / right * (1 + bias)
+
+
+def _slope(f: Callable[[float], float]) -> float:
+    return (f(_STEP) - f(-_STEP)) / (2 * _STEP)

@@ -310,7 +310,9 @@ class Solution(Shown):
         Parameters
         ----------
         quantity : str
-            "area", "stiffness", "conductance", "mean_gap" or "gap_to_summits".
+            "area", "stiffness", "conductance", "contact_conductance", "joint_conductance", "mean_gap" or
+            "gap_to_summits". Spots have the error of stiffness, to which they are proportional without a film
+            (Barber, 2003, Proc. R. Soc. A 459, 53); a joint that of its network of spots and gas.
 
         Returns
         -------
@@ -325,7 +327,7 @@ class Solution(Shown):
         if why := yields(self.yielding):
             return Corrected.unknown(why)
         std = float(self.surfaces[quantity].std(ddof=1))
-        return corrected(against_elasticity([self]), self.scene, quantity, self.value[quantity], std)
+        return corrected(against_elasticity([self]), self.scene, quantity, self.value, std)
 
     def plot(self, ax: Any = None) -> Any:
         """Draw how the separation differs from surface to surface; returns the axes."""
