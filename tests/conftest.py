@@ -8,10 +8,10 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 import pytest
-from interacting_by_hand import QUANTITIES, SEPARATIONS, interaction
 from item_cost import Bill, Meter
 from matplotlib.figure import Figure
-from told import ANSWERS, apart
+from oracles.interacting_by_hand import QUANTITIES, SEPARATIONS, interaction
+from oracles.told import ANSWERS, apart
 from touched import reached
 
 import analytic

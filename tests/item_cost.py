@@ -25,13 +25,13 @@ EVERYBODYS = ("h5py", "matplotlib.pyplot", "numba", "pandas", "scipy.optimize", 
 
 # Items that must be dearer, and why. Everything else that is dear belongs to the tier `slow` or `site`.
 DEARER = {
-    "tests/test_maps_fit.py::test_where_summits_hide_the_bias_is_stated": "no smaller map has so many caps",
-    "tests/test_python_scenes.py::test_a_name_is_shown_and_nothing_else": "a name through run, show, compare",
-    "tests/test_what_users_read.py::test_commands": "whole tables of solve: exact means at several loads",
-    "tests/test_shown_numbers.py::test_loads_at_a_constant_ratio": "exact means at several loads",
-    "tests/test_solution.py::test_a_metal_under_an_elastic_law_is_not_said_to_be_within": "two loads",
-    "tests/test_solution.py::test_the_answer_is_the_mean_of_specimens": "exact means beside drawn ones",
-    "tests/test_draws.py::test_pieces_of_a_huge_cell_lose_no_digit": "compiles the sums of a cell once more",
+    "test_maps_fit.py::test_where_summits_hide_the_bias_is_stated": "no smaller map has so many caps",
+    "test_python_scenes.py::test_a_name_is_shown_and_nothing_else": "a name through run, show, compare",
+    "test_what_users_read.py::test_commands": "whole tables of solve: exact means at several loads",
+    "test_shown_numbers.py::test_loads_at_a_constant_ratio": "exact means at several loads",
+    "test_solution.py::test_a_metal_under_an_elastic_law_is_not_said_to_be_within": "two loads",
+    "test_solution.py::test_the_answer_is_the_mean_of_specimens": "exact means beside drawn ones",
+    "test_draws.py::test_pieces_of_a_huge_cell_lose_no_digit": "compiles the sums of a cell once more",
 }
 
 
@@ -124,7 +124,7 @@ class Bill:
         return [
             name
             for name, (tier, cost) in self.items.items()
-            if tier == "default" and cost > NOISE * LIMIT and name.partition("[")[0] not in DEARER
+            if tier == "default" and cost > NOISE * LIMIT and Path(name.partition("[")[0]).name not in DEARER
         ]
 
     def pytest_sessionfinish(self, session, exitstatus):

@@ -31,7 +31,9 @@ def changed():
 
 def module_of(path):
     """Name under which a file is imported."""
-    inside = path.relative_to(ROOT / "tests" if path.is_relative_to(ROOT / "tests") else ROOT)
+    if path.is_relative_to(ROOT / "tests"):
+        return f"oracles.{path.stem}" if path.parent.name == "oracles" else path.stem
+    inside = path.relative_to(ROOT)
     return ".".join(inside.with_suffix("").parts).removesuffix(".__init__")
 
 

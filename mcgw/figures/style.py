@@ -1,7 +1,7 @@
 """What all figures share: one colour for each meaning, their look, titles and labels.
 
 Colour never stands alone: a dash and a marker go with each. Those that one figure shows together differ for
-readers with two kinds of cones and in grey (`tests/test_palette.py` measures both).
+readers with two kinds of cones and in grey (`tests/figures/test_palette.py` measures both).
 
 And how they become files, in the formats of matplotlib.
 """

@@ -8,7 +8,8 @@ of the value, whose standard deviation is sigma, then misses
 
 with K3 and K4 the sums over the crowded cells, over sigma^3 and sigma^4 (Petrov, "Sums of Independent
 Random Variables", 1975, VI.1): what the theorem of Berry and Esseen bounds. The largest of each term,
-doubled, is held against what may be spent. The distance itself is half of it (`tests/law_of_crowds.py`).
+doubled, is held against what may be spent. The distance itself is half of it
+(`tests/oracles/law_of_crowds.py`).
 """
 
 from dataclasses import dataclass

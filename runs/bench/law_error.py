@@ -1,7 +1,7 @@
 """What crowds buy: `law_error` with a hundred million asperities, against cells that are exact.
 
 Run: ``python runs/bench/law_error.py [--rounds 7]``. What they change in the laws of values is computed, not
-drawn: `tests/law_of_crowds.py`.
+drawn: `tests/oracles/law_of_crowds.py`.
 """
 
 from dataclasses import replace

@@ -1,7 +1,7 @@
 """Every command told to write over what it reads: ``python runs/reliability/overwrite.py``.
 
 Prints a line a command: under how many names of the file it was tried, how often it was refused with exit
-code 2, and how often any file changed. `tests/test_outputs.py` asserts the same.
+code 2, and how often any file changed. `tests/commands/test_outputs.py` asserts the same.
 """
 
 import contextlib
@@ -14,7 +14,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests"))
 
-from overwrites import CASES, attempt, prepare, ways
+from oracles.overwrites import CASES, attempt, prepare, ways
 
 
 def tried(case, inputs, place):

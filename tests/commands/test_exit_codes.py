@@ -1,0 +1,257 @@
+"""Exit codes are those of the work: who reads what a command says decides nothing.
+
+Every command, standard output and standard error, each closed, full, or a pipe whose reader has left.
+"""
+
+import gc
+import importlib
+import importlib.metadata
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import warnings
+from pathlib import Path
+
+import pytest
+from oracles.overwrites import prepare
+
+import mcgw
+from mcgw.cli import COMMANDS, main, process
+from mcgw.errors import RunError
+from mcgw.store import ensembles, structure
+
+WORDS = {
+    "init": "init demo -o new/i.toml",
+    "run": "run scene.toml -o new/r.h5",
+    "sweep": "sweep plain.toml --over grading.gamma=1.1,1.2 -o new/s.h5",
+    "show": "show e.h5 --verify",
+    "compare": "compare e.h5 -o new/c.png --csv new/c.csv",
+    "converge": "converge plain.toml -o new",
+    "tradeoff": "tradeoff plain.toml --seconds 2 -o new",
+    "merge": "merge e.h5",
+    "solve": "solve plain.toml --load 1N --csv new/v.csv",
+    "export": "export plain.toml --to abaqus -o new/x.inp",
+    "figures": "figures --scene plain.toml -o new",
+    "report": "report e.h5 -o new/r.html",
+    "surface": "surface plain.toml --shape 16 -o new/m.h5",
+    "fit": "fit map.npy --cutoff none -o new/f.toml",
+    "elastic": "elastic plain.toml --pressure 1MPa -o new/e.jsonl",
+    "warm": "warm",
+    "completion": "completion bash",
+}
+PRINTED = {"show", "solve", "elastic", "completion"}  # the product stands on standard output
+STATES = ("closed", "full", "broken")
+streams = pytest.mark.parametrize("state", STATES)
+both = pytest.mark.parametrize("stream", ["stdout", "stderr"])
+has_full = pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no device that is always full")
+pytestmark = has_full
+
+
+def expected(command, stream, state, code):
+    """Only a full disk is a failure, and only of what has no other product."""
+    return code or int(command in PRINTED and (stream, state) == ("stdout", "full"))
+
+
+@pytest.fixture
+def disturbed():
+    """A stream of that state, as Python has it at the start of a process."""
+    opened = []
+
+    def make(state):
+        if state == "closed":
+            return None
+        if state == "full":
+            opened.append(os.fdopen(os.open("/dev/full", os.O_WRONLY), "w"))
+        else:
+            reader, writer = os.pipe()
+            os.close(reader)
+            opened.append(os.fdopen(writer, "w"))
+        return opened[-1]
+
+    yield make
+    for stream in opened:
+        stream.close()
+
+
+def test_all_commands_are_here():
+    assert tuple(WORDS) == COMMANDS
+
+
+@both
+@streams
+@pytest.mark.parametrize("command", COMMANDS)
+def test_what_is_said_decides_nothing(command, stream, state, disturbed, tmp_path, monkeypatch):
+    """The work stands in for that of the command: it says much before and after, and ends in every way."""
+    ends = {0: None, 1: None, 2: ValueError("bad"), 3: RunError("failed", code=3), 130: KeyboardInterrupt()}
+
+    def work(args):
+        for number in range(2):
+            for where in (sys.stdout, sys.stderr):
+                print("said\n" * 4000, file=where)
+                where.flush()
+            (tmp_path / f"done{number}").touch()
+        if ends[code] is not None:
+            raise ends[code]
+        return code
+
+    monkeypatch.setattr(importlib.import_module(f"mcgw.commands.{command}"), "execute", work)
+    for code in ends:
+        monkeypatch.setattr(sys, stream, disturbed(state))
+        assert main(WORDS[command].split()) == expected(command, stream, state, code)
+        for number in range(2):
+            (tmp_path / f"done{number}").unlink()
+
+
+@pytest.mark.parametrize(
+    ("end", "code", "told"),
+    [
+        (None, 0, ""),
+        (KeyboardInterrupt(), 130, "mcgw: interrupted\n"),
+        (RunError("failed", code=3), 3, "mcgw: failed\n"),
+        (RunError("failed"), 1, "mcgw: failed\n"),
+        (MemoryError("of 3\nGiB"), 1, "mcgw: not enough memory (of 3\\nGiB); reduce the scene\n"),
+        (ValueError("one\ntwo"), 2, "mcgw: one\nmcgw: two\n"),
+        (OSError("no disk"), 2, "mcgw: no disk\n"),
+    ],
+)
+@pytest.mark.filterwarnings("always")
+def test_each_end_has_its_line_after_those_of_the_warnings(end, code, told, monkeypatch, capsys):
+    def work(args):
+        warnings.warn("two\nlines", stacklevel=1)
+        warnings.warn_explicit("said as a note", UserWarning, "", 1, module="mcgw.scene.plausible")
+        if end is not None:
+            raise end
+        return 0
+
+    monkeypatch.setattr("mcgw.commands.show.execute", work)
+    for quiet, warned in ([], "mcgw: warning: two\\nlines\n"), (["--quiet"], ""):
+        assert main(["show", "e.h5", *quiet]) == code
+        assert capsys.readouterr() == ("", warned + told)
+
+
+def test_a_process_ends_with_the_code_of_its_command_and_looks_for_no_garbage(monkeypatch, capsys):
+    frozen = []
+    monkeypatch.setattr(gc, "freeze", lambda: frozen.append(True))
+    monkeypatch.setattr("mcgw.commands.show.execute", lambda args: 3)
+    monkeypatch.setattr(sys, "argv", ["mcgw", "show", "e.h5"])
+    with pytest.raises(SystemExit) as end:
+        process()
+    assert (end.value.code, frozen) == (3, [True])
+
+    def unknown(name):
+        raise importlib.metadata.PackageNotFoundError(name)
+
+    for version, said in (unknown, "mcgw unknown\n"), (lambda name: f"1.2 of {name}", "mcgw 1.2 of mcgw\n"):
+        monkeypatch.setattr(importlib.metadata, "version", version)
+        with pytest.raises(SystemExit) as end:
+            main(["--version"])
+        assert (end.value.code, capsys.readouterr().out) == (0, said)
+
+
+@streams
+@pytest.mark.parametrize("words", ["--version", "--help", "show --help"])
+def test_help_is_what_was_asked_for(words, state, disturbed, monkeypatch):
+    monkeypatch.setattr(sys, "stdout", disturbed(state))
+    with pytest.raises(SystemExit) as end:
+        main(words.split())
+    assert end.value.code == (1 if state == "full" else 0)
+
+
+@streams
+def test_words_that_are_none_are_bad_input_all_the_same(state, disturbed, monkeypatch):
+    monkeypatch.setattr(sys, "stderr", disturbed(state))
+    with pytest.raises(SystemExit) as end:
+        main(["show", "--none"])
+    assert end.value.code == 2
+
+
+def test_a_pipe_that_breaks_elsewhere_is_an_error(monkeypatch, capsys):
+    def work(args):
+        raise BrokenPipeError(32, "Broken pipe", "a worker")
+
+    monkeypatch.setattr("mcgw.commands.run.execute", work)
+    assert main(["run", "s.toml"]) == 2
+    assert capsys.readouterr().err == "mcgw: a worker: Broken pipe\n"
+
+
+@streams
+def test_a_damaged_file_is_damaged_whoever_reads_it(state, disturbed, make_scene, tmp_path, monkeypatch):
+    monkeypatch.setattr(ensembles, "examine", lambda path: structure.describe(str(path)))
+    mcgw.save(mcgw.simulate(make_scene(separations=(2.0,), sampler="tail", n_surfaces=4)), tmp_path / "e.h5")
+    data = bytearray((tmp_path / "e.h5").read_bytes())
+    data[-1] ^= 1
+    (tmp_path / "e.h5").write_bytes(data)
+    for stream in ("stdout", "stderr"):
+        monkeypatch.setattr(sys, stream, disturbed(state))
+    assert main(["show", str(tmp_path / "e.h5"), "--verify"]) == 1
+
+
+# --- whole processes --------------------------------------------------------------------------------------
+
+REDIRECT = {
+    ("stdout", "closed"): ">&-",
+    ("stdout", "full"): ">/dev/full",
+    ("stderr", "closed"): "2>&-",
+    ("stderr", "full"): "2>/dev/full",
+    ("both", "broken"): "2>&1 | head -c 0; exit ${PIPESTATUS[0]}",
+    ("stdout", "broken"): "| head -c 0; exit ${PIPESTATUS[0]}",
+    ("stderr", "broken"): "2>&1 >/dev/null | head -c 0; exit ${PIPESTATUS[0]}",
+}
+
+
+def code_of(words, redirect, folder):
+    env = os.environ | {"PYTHONPATH": str(Path(mcgw.__file__).parents[1])}
+    line = f"{sys.executable} -m mcgw {words} {redirect}"
+    return subprocess.run(
+        ["bash", "-c", line], cwd=folder, env=env, capture_output=True, check=False
+    ).returncode
+
+
+def files_in(folder):
+    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
+
+
+@pytest.mark.parametrize(("stream", "state"), [("both", "broken"), ("stderr", "full")])
+def test_a_run_makes_its_file(stream, state, tmp_path):
+    scene = Path(mcgw.__file__).parents[1] / "runs" / "quick.toml"
+    assert code_of(f"run {scene} -o e.h5", REDIRECT[stream, state], tmp_path) == 0
+    assert files_in(tmp_path) == ["e.h5"]
+
+
+@pytest.fixture(scope="module")
+def inputs(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("inputs")
+    prepare(folder)
+    return folder
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", ["init", "show", "solve", "completion"])  # the others do so above
+def test_whole_commands_end_as_undisturbed(command, inputs, tmp_path):
+    """In processes of their own, through a shell: the same code, and the same files."""
+    made = {}
+    for stream, state in [("", ""), *REDIRECT]:
+        folder = tmp_path / f"{stream}-{state}"
+        shutil.copytree(inputs, folder)
+        code = code_of(WORDS[command], REDIRECT.get((stream, state), ""), folder)
+        made[stream, state] = (code, files_in(folder))
+    code, files = made["", ""]
+    assert code in (0, 1)
+    assert made == {key: (expected(command, *key, code), files) for key in made}
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_termination_is_told_in_one_line_by_every_command(command, monkeypatch, capsys):
+    def work(args):
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(5)
+
+    before = signal.getsignal(signal.SIGTERM)
+    monkeypatch.setattr(f"mcgw.commands.{command}.execute", work)
+    monkeypatch.chdir(Path(mcgw.__file__).parents[1])
+    assert main(WORDS[command].split()) == 143
+    assert capsys.readouterr().err == "mcgw: terminated\n"
+    assert signal.getsignal(signal.SIGTERM) is before

@@ -1,0 +1,412 @@
+"""What commands may write: never what they read, never an ensemble, never half a file."""
+
+import errno
+import importlib
+import os
+import shutil
+import stat
+import subprocess
+import sys
+from functools import partial
+
+import h5py
+import numpy as np
+import pytest
+from oracles.overwrites import CASES, attempt, contents, prepare, ways
+from scipy.ndimage import gaussian_filter
+
+import mcgw
+from mcgw.cli import main
+from mcgw.commands import outputs
+from mcgw.commands.outputs import CSV, Output, check_outputs
+from mcgw.errors import StoreError, in_one_line
+from mcgw.formats.files import rename_over, state_of, together, whole_file, write_whole
+from mcgw.jobs.job import Job
+from mcgw.store import ensembles, structure
+
+pytestmark = pytest.mark.usefixtures("looked_at_here", "one_pressure")
+
+
+@pytest.fixture(scope="module")
+def inputs(tmp_path_factory, looked_at_here):
+    folder = tmp_path_factory.mktemp("inputs")
+    prepare(folder)
+    return folder
+
+
+@pytest.fixture
+def here(inputs, tmp_path, monkeypatch):
+    """A folder of its own with all inputs, as the current one."""
+    shutil.copytree(inputs, tmp_path / "here")
+    monkeypatch.chdir(tmp_path / "here")
+    return tmp_path / "here"
+
+
+def told(capsys, words, code=2):
+    """The one line that a command ends with."""
+    capsys.readouterr()
+    assert main([str(word) for word in words]) == code
+    err = "".join(x for x in capsys.readouterr().err.splitlines(True) if not x.startswith("mcgw: note: "))
+    assert len(err.splitlines()) == 1, err
+    return err
+
+
+# Each command with the first of the names that its output may have, and in turn with one of the others.
+OVERWRITES = [
+    (case, way)
+    for i, case in enumerate(CASES)
+    for k, way in enumerate(ways(case))
+    if k in (0, 1 + i % (len(ways(case)) - 1))
+]
+
+
+@pytest.mark.parametrize(("case", "way"), OVERWRITES)
+def test_no_command_writes_over_what_it_reads(case, way, here, capsys):
+    code, changed = attempt(case, way)
+    assert (code, changed) == (2, [])
+    err = capsys.readouterr().err.splitlines()
+    assert sum(line.startswith("mcgw: ") for line in err) == 1
+    assert "is an input" in err[-1]
+
+
+OVER_AN_ENSEMBLE = [
+    "compare e.h5 -o OTHER.png",
+    "compare e.h5 --csv OTHER.csv",
+    "show e.h5 --csv OTHER.csv",
+    "report e.h5 -o OTHER.html",
+    "export e.h5 --to comsol -o OTHER.txt",
+    "solve plain.toml --pressure 1MPa --csv OTHER.csv",
+    "surface plain.toml -o OTHER.h5",
+    "surface plain.toml -o OTHER.h5",
+    "fit map.npy --cutoff none -o OTHER.toml",
+    "init -o OTHER.toml",
+]
+
+
+@pytest.mark.parametrize("words", OVER_AN_ENSEMBLE)
+def test_no_ensemble_is_replaced_by_something_else(words, here, capsys):
+    ending = words.rpartition(".")[2]
+    shutil.copy("e.h5", f"other.{ending}")
+    before = contents()
+    err = told(capsys, words.replace("OTHER", "other").split())
+    assert "is an ensemble of mcgw, which this would replace" in err
+    assert contents() == before
+
+
+def test_a_damaged_ensemble_is_not_replaced_either(here, capsys):
+    data = (here / "e.h5").read_bytes()[:-100]
+    (here / "other.csv").write_bytes(data)
+    words = ["show", "e.h5", "--csv", "other.csv"]
+    assert "is an ensemble of mcgw, which this would replace" in told(capsys, words)
+    assert (here / "other.csv").read_bytes() == data
+    with h5py.File(here / "other.csv", "w") as file:
+        file["x"] = [1.0]
+    assert "is an HDF5 file, which this would replace" in told(capsys, words)
+
+
+def test_an_earlier_output_is_replaced(here):
+    for _ in range(2):
+        assert main(["show", "e.h5", "--csv", "table2.csv"]) == 0
+        assert main(["surface", "plain.toml", "--shape", "16", "-o", "m.h5"]) == 0
+
+
+ENDINGS = [
+    ("run scene.toml -o x.csv", "an ensemble is written there, whose name ends in .h5, .hdf5"),
+    ("run scene.toml -o x.png", "an ensemble"),
+    ("run scene.toml -o x", "an ensemble"),
+    ("run scene.toml --shard 1/2 -o x.csv", "an ensemble"),
+    ("merge x.csv", "an ensemble"),
+    ("compare e.h5 -o x.h5", "a figure is written there, whose name ends in .eps"),
+    ("compare e.h5 -o x.xcf", "a figure"),
+    ("compare e.h5 --csv x.h5", "a table"),
+    ("show e.h5 --csv x.h5", "a table"),
+    ("report e.h5 -o x.h5", "a web page"),
+    ("export e.h5 --to calculix -o x.csv", "a table for calculix is written there, whose name ends in .inp"),
+    ("solve scene.toml --pressure 1MPa --csv x.h5", "a table"),
+    ("surface scene.toml -o x.tiff", "a map is written there, whose name ends in .npy"),
+    ("surface scene.toml --at 1 -o x.h5", "a figure"),
+    ("fit map.npy --cutoff none -o x.h5", "a scene"),
+    ("init -o x.h5", "a scene"),
+]
+
+
+@pytest.mark.parametrize(("words", "message"), ENDINGS)
+def test_endings_fit_what_is_written(words, message, here, capsys):
+    before = contents()
+    assert message in told(capsys, words.split())
+    assert contents() == before
+
+
+def test_every_format_of_matplotlib_is_a_figure():
+    from matplotlib.figure import Figure
+
+    known = Figure().canvas.get_supported_filetypes()
+    assert set(outputs.figure_format().endings) == {f".{name}" for name in known}
+    assert {".png", ".pdf", ".svg"} <= set(outputs.figure_format().endings)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ("compare e.h5 -o a.svg --csv a.svg", "is also the output of -o"),
+        ("merge e.h5 -o other.h5", "leave out one of the two"),
+        ("show e.h5 --digest --csv a.csv", "leave out the other option"),
+        ("compare e.h5 -o e.h5.parts/a.png", "is the folder of the run that makes e.h5"),
+        ("compare e.h5 -o map.npy/a.png", "map.npy/a.png: cannot be written"),
+        ("converge scene.toml -o e.h5", "e.h5/scene-converge.png: cannot be written"),
+        ("figures -o e.h5", "cannot be written"),
+        ("show e.h5 --csv .", "a table is written there"),
+    ],
+)
+def test_places_that_will_not_do(words, message, here, capsys):
+    (here / "there").mkdir()
+    before = contents()
+    if "there" not in words:
+        (here / "there").rmdir()
+    assert message in told(capsys, words.split())
+    assert contents() == before
+
+
+WRITE = [
+    ("run plain.toml -o OUT", ".h5"),
+    ("compare e.h5 -o OUT", ".png"),
+    ("report e.h5 -o OUT", ".html"),
+    ("export e.h5 --to moose -o OUT", ".csv"),
+    ("show e.h5 --csv OUT", ".csv"),
+    ("solve plain.toml --pressure 1MPa --csv OUT", ".csv"),
+    ("surface plain.toml --shape 16 -o OUT", ".npy"),
+    ("surface plain.toml --at 0 -o OUT", ".svg"),
+    ("init -o OUT", ".toml"),
+]
+
+
+@pytest.mark.usefixtures("blank_figures")
+@pytest.mark.parametrize(("words", "ending"), WRITE)
+def test_folders_are_made_alike(words, ending, here):
+    out = here / "new" / "deeper" / f"x{ending}"
+    assert main(words.replace("OUT", str(out)).split()) in (0, 1)
+    assert out.is_file()
+    assert not list(out.parent.glob(".*"))
+
+
+@pytest.mark.parametrize(("words", "ending"), WRITE)
+@pytest.mark.parametrize("kind", ["folder", "pipe"])
+def test_something_in_the_way_is_one_line(words, ending, kind, here, capsys):
+    out = here / f"x{ending}"
+    out.mkdir() if kind == "folder" else os.mkfifo(out)
+    assert "is not a regular file" in told(capsys, words.replace("OUT", str(out)).split())
+
+
+@pytest.mark.usefixtures("blank_figures")
+@pytest.mark.parametrize(("words", "ending"), WRITE)
+def test_a_disk_that_fails_leaves_the_older_file(words, ending, here, monkeypatch, capsys):
+    """The old file is there bit by bit, and nothing lies beside it."""
+    out = here / f"x{ending}"
+    if ending not in (".h5", ".toml"):
+        out.write_bytes(b"old")
+
+    def fail(fd):
+        raise OSError(28, "No space left on device")
+
+    before = contents()
+    monkeypatch.setattr(os, "fsync", fail)
+    assert main(words.replace("OUT", str(out)).split()) in (1, 2)
+    assert contents() == before
+
+
+def test_a_map_does_not_take_the_name_of_an_unfinished_run(here, capsys):
+    (here / "m.h5.parts").mkdir()
+    err = told(capsys, ["surface", "plain.toml", "-o", "m.h5"])
+    assert "a run that makes this file is not finished" in err
+
+
+def test_nothing_is_put_into_the_folder_of_any_run(tmp_path):
+    folder = tmp_path / "a.h5.parts"
+    folder.mkdir()
+    (folder / "lock.db").touch()
+    for name in (folder, folder / "shards" / "x.csv"):
+        with pytest.raises(StoreError, match="is the folder of a run"):
+            check_outputs([Output(name, CSV)])
+
+
+def test_a_name_taken_meanwhile_is_left_alone(tmp_path):
+    new, path = tmp_path / "new", tmp_path / "a"
+    new.write_bytes(b"new")
+    path.write_bytes(b"old")
+    seen = state_of(path)
+    os.replace(path, tmp_path / "moved")
+    path.write_bytes(b"another")
+    for expected in (seen, None):
+        with pytest.raises(FileExistsError, match=r"another file|exists"):
+            rename_over(new, path, expected)
+        with pytest.raises(FileExistsError):
+            write_whole(path, [b"x"], expected=expected)
+    assert path.read_bytes() == b"another"
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["a", "moved", "new"]
+    rename_over(new, path, state_of(path))
+    assert path.read_bytes() == b"new"
+
+
+def test_without_hard_links_a_taken_name_is_refused_as_well(tmp_path, monkeypatch):
+    def none(*names):
+        raise PermissionError(1, "Operation not permitted")
+
+    monkeypatch.setattr(os, "link", none)
+    write_whole(tmp_path / "a", [b"x"], expected=None)
+    with pytest.raises(FileExistsError, match="another file"):
+        write_whole(tmp_path / "a", [b"y"], expected=None)
+    assert [p.name for p in tmp_path.iterdir()] == ["a"]
+
+
+def test_a_file_that_appears_while_a_run_draws_is_left_alone(make_scene, tmp_path, monkeypatch):
+    from mcgw.jobs import running
+
+    monkeypatch.setattr(ensembles, "examine", structure.examine)
+    path, drawn = tmp_path / "e.h5", Job.draw
+
+    def slowly(*arguments):
+        path.write_bytes(b"precious")
+        return drawn(*arguments)
+
+    monkeypatch.setattr(Job, "draw", slowly)
+    with pytest.raises(StoreError):
+        running.run(make_scene(n_surfaces=4), path)
+    assert path.read_bytes() == b"precious"
+    assert [p.name for p in tmp_path.iterdir()] == ["e.h5"]
+
+
+def test_leftovers_of_the_dead_go_with_the_next_output(here):
+    call = [sys.executable, "-c", "import os; print(os.getpid())"]
+    dead = subprocess.run(call, capture_output=True, text=True, check=True)
+    from mcgw.formats.files import temporary_beside
+
+    mine = temporary_beside(here / "x.csv")
+    theirs = mine.with_name(mine.name.replace(f"-{os.getpid()}-", f"-{dead.stdout.strip()}-"))
+    mine.touch()
+    theirs.touch()
+    assert theirs != mine
+    assert main(["show", "e.h5", "--csv", "x.csv"]) == 0
+    assert mine.exists()
+    assert not theirs.exists()
+
+
+def test_save_in_python_keeps_what_is_there(make_scene, tmp_path, monkeypatch):
+    monkeypatch.setattr(ensembles, "examine", structure.examine)
+    (tmp_path / "f.h5").write_bytes(b"precious")
+    with pytest.raises(StoreError, match="not an HDF5 file"):
+        mcgw.save(mcgw.simulate(make_scene(n_surfaces=4)), tmp_path / "f.h5")
+    assert (tmp_path / "f.h5").read_bytes() == b"precious"
+    assert [p.name for p in tmp_path.iterdir()] == ["f.h5"]
+
+
+def test_a_disk_that_does_not_flush_folders_is_no_error(tmp_path, make_scene, monkeypatch):
+    """As some of FUSE, CIFS and 9p; a file that cannot be flushed is one."""
+    real = os.fsync
+
+    def no_folders(fd, code=errno.EINVAL):
+        if stat.S_ISDIR(os.fstat(fd).st_mode):
+            raise OSError(code, os.strerror(code))
+        real(fd)
+
+    for number, code in enumerate((errno.EINVAL, errno.ENOTSUP)):
+        monkeypatch.setattr(os, "fsync", partial(no_folders, code=code))
+        assert mcgw.run(make_scene(n_surfaces=20), tmp_path / f"{number}.h5").n_surfaces == 20
+    monkeypatch.setattr(os, "fsync", partial(no_folders, code=errno.EIO))
+    with pytest.raises(mcgw.RunError, match="Input/output error"):
+        mcgw.run(make_scene(n_surfaces=20), tmp_path / "2.h5")
+
+
+@pytest.mark.parametrize("mode", [0o600, 0o640, 0o664])
+def test_a_replaced_file_keeps_its_mode(mode, here):
+    """Of an ensemble that grows, and of what a command writes anew."""
+    run, export = (
+        "run scene.toml -o r.h5 --set ensemble.n_surfaces=",
+        "export scene.toml --to abaqus -o x.inp",
+    )
+    for name, calls in (("r.h5", (f"{run}30", f"{run}60")), ("x.inp", (export, export))):
+        assert main(calls[0].split()) == 0
+        (here / name).chmod(mode)
+        assert main(calls[1].split()) == 0
+        assert stat.S_IMODE((here / name).stat().st_mode) == mode
+
+
+def test_a_read_only_file_is_refused_in_one_line(here, capsys):
+    """Before anything is drawn; what needs no writing is done as ever."""
+    words = ["run", "scene.toml", "-o", "r.h5", "--set"]
+    assert main([*words, "ensemble.n_surfaces=30"]) == 0
+    export = ["export", "scene.toml", "--to", "abaqus", "-o", "x.inp"]
+    assert main(export) == 0
+    before = [(here / name).read_bytes() for name in ("r.h5", "x.inp")]
+    for name in ("r.h5", "x.inp"):
+        (here / name).chmod(0o444)
+    assert "r.h5: is read-only; choose another -o" in told(capsys, [*words, "ensemble.n_surfaces=60"])
+    assert "x.inp: is read-only" in told(capsys, export)
+    assert main([*words, "ensemble.n_surfaces=30"]) == 0
+    assert [(here / name).read_bytes() for name in ("r.h5", "x.inp")] == before
+
+
+def test_a_full_disk_names_the_file(tmp_path, monkeypatch):
+    """Whatever is written whole."""
+
+    with pytest.raises(OSError, match="No space left") as error, whole_file(tmp_path / "a.csv"):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    assert error.value.filename == str(tmp_path / "a.csv")
+    assert in_one_line(error.value) == f"{tmp_path / 'a.csv'}: No space left on device"
+    assert in_one_line(OSError(errno.ENOSPC, "full")).startswith("compiled loops (NUMBA_CACHE_DIR)")
+    assert in_one_line(OSError("no number")) == "no number"
+
+
+def test_files_written_together_appear_all_or_none(tmp_path):
+    (tmp_path / "b").write_text("older")
+
+    def written(error):
+        with together():
+            for name in "abc":
+                with together():  # in vain
+                    write_whole(tmp_path / name, [name.encode()])
+            assert not (tmp_path / "a").exists()
+            if error:
+                raise error
+
+    for error in (ValueError("x"), KeyboardInterrupt()):
+        with pytest.raises(type(error)):
+            written(error)
+        assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {"b": "older"}
+    written(None)
+    assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {"a": "a", "b": "b", "c": "c"}
+    write_whole(tmp_path / "d", [b"alone again"])
+    assert (tmp_path / "d").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "where", "name", "first"),
+    [
+        ("fit map.npy --cutoff none --pixel 1um --summits s.csv --tiles t.csv --picture p.png -o f.toml",
+         "mcgw.figures.map_fit", "save_fit_picture", 0),
+        ("figures --only figure-1 figure-2 --csv -o drawn", "mcgw.figures.panels", "save_figure_files", 1),
+    ],
+    ids=["fit", "figures"],
+)  # fmt: skip
+def test_a_command_that_fails_at_its_last_output_leaves_none(
+    words, where, name, first, tmp_path, monkeypatch, capsys
+):
+    """The scene, tables and figures written before are not there."""
+    z = 1e-6 * np.random.default_rng(1).normal(size=(64, 64))
+    np.save(tmp_path / "map.npy", gaussian_filter(z, 2))
+    monkeypatch.chdir(tmp_path)
+    module, calls = importlib.import_module(where), []
+    whole = getattr(module, name)
+
+    def fails(*arguments, **more):
+        calls.append(arguments)
+        if len(calls) > first:
+            raise OSError(28, "No space left on device", "last")
+        return whole(*arguments, **more)
+
+    monkeypatch.setattr(module, name, fails)
+    assert main(words.split()) != 0
+    assert "last" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.rglob("*") if path.is_file()] == ["map.npy"]
+    monkeypatch.setattr(module, name, whole)
+    assert main(words.split()) == 0
+    assert len([path for path in tmp_path.rglob("*") if path.is_file()]) == 5

@@ -1,0 +1,242 @@
+"""Models against boundary elements: what users are told follows from the solves, and the models are these."""
+
+import csv
+import hashlib
+import math
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from analytic import Model, Nayak, RandomCurvature, SpectralMoments
+from mcgw.scene import validity_lookup, validity_table
+
+ROOT = Path(__file__).parents[2]
+FOLDER = ROOT / "runs" / "validation"
+CONDENSED = ROOT / "mcgw" / "scene" / "validity.csv"
+
+sys.path.insert(0, str(FOLDER))
+
+import charted  # noqa: E402
+import conductance  # noqa: E402
+import deviations  # noqa: E402
+import models  # noqa: E402
+import rough_maps  # noqa: E402
+import solve_table  # noqa: E402
+
+sys.path.remove(str(FOLDER))
+
+ROWS = solve_table.read()
+MOMENTS = {alpha: (1e-4 * alpha, 0.5, 2500.0) for alpha in (2.1, 5.0, 40.0)}  # m0 m4/m2^2 = alpha
+
+
+def table():
+    lines = CONDENSED.read_text().splitlines()
+    head = [line for line in lines if line.startswith("#")]
+    return head, list(csv.DictReader(lines[len(head) :]))
+
+
+def rows_of(kind, x, purposes=("study", "caps")):
+    return [row for row in ROWS if (row["kind"], row["x"]) == (kind, x) and row["purpose"] in purposes]
+
+
+def test_the_table_holds_every_solve_it_counts():
+    head, lines = table()
+    assert hashlib.sha256(solve_table.PATH.read_bytes()).hexdigest()[:16] in " ".join(head)
+    assert tuple(lines[0]) == deviations.COLUMNS
+    lines = [line for line in lines if line["maps"] != "0"]  # the others are of theory
+    assert min(int(line["maps"]) for line in lines) >= 3
+    maps = {(x["map"], float(x["x"]), float(x["p"])): int(x["maps"]) for x in lines}
+    counted = [row for row in ROWS if row["purpose"] in ("study", "caps")]
+    assert sum(maps.values()) == len(counted)
+    assert {key[1] for key in maps if key[0] == "gaussian"} == {2, 3, 5, 7, 10, 20, 50, 100}
+    assert {key[1] for key in maps if key[0] == "caps"} == {0.002, 0.006, 0.02, 0.06, 0.2}
+
+
+@pytest.mark.parametrize(("kind", "x", "p"), [("gaussian", 20.0, 1e-3), ("caps", 0.06, 1e-2)])
+def test_the_table_is_made_of_the_solves(kind, x, p):
+    found = deviations.condensed([row for row in rows_of(kind, x) if row["p"] == p])
+    text = deviations.table_text(found, b"", 0).splitlines()
+    text = text[text.index(",".join(deviations.COLUMNS)) + 1 :]
+    assert len(text) == (9 if kind == "gaussian" else 3)
+    assert set(text) <= set(CONDENSED.read_text().splitlines())
+
+
+@pytest.mark.parametrize(("x", "p"), [(5.0, 0.1), (20.0, 1e-3)])
+def test_conductance_is_as_far_off_as_stiffness(x, p):
+    """Barber's relation, by sums over a grid of heights; at alpha = 5 the neighbours are half of all."""
+    row = next(row for row in rows_of("gaussian", x) if row["p"] == p)
+    alone, beside = conductance.errors(row)
+    stiffness = {
+        one.interaction: one.stiffness for one in deviations.deviations(row) if one.model == "own radii"
+    }
+    assert alone == pytest.approx(stiffness["none"], abs=1e-3)
+    assert beside == pytest.approx(stiffness["summits"], abs=2e-3)
+    if p == 0.1:
+        assert alone < -0.45
+        assert abs(beside) < 0.06
+
+
+@pytest.mark.parametrize("name", models.MODELS)
+@pytest.mark.parametrize("alpha", MOMENTS)
+def test_sums_over_heights_are_the_integrals_of_theory(name, alpha):
+    moments = SpectralMoments(*MOMENTS[alpha])
+    surface, heights = moments.surface(1.0, 1.0), Nayak(moments.alpha)
+    exact = {
+        "one radius": Model(surface),
+        "nayak": Model(surface, heights=heights),
+        "own radii": Model(
+            surface, heights=heights, curvature=RandomCurvature(moments.alpha, 1 / surface.radius)
+        ),
+    }[name]
+    summits = models.summits_of(name, *MOMENTS[alpha])
+    for x in (-1.0, 1.0, 3.0):
+        found = summits.at(moments.mean_height + moments.sigma * x)
+        for key, quantity, most in (
+            ("load", "load", 2e-6), ("area", "area", 2e-5), ("stiffness", "stiffness", 4e-4),
+            ("spots", "contacts", 2e-6),
+        ):  # fmt: skip
+            assert getattr(found, key) == pytest.approx(float(exact.mean(quantity, x)), rel=most), (x, key)
+
+
+@pytest.mark.parametrize("interaction", models.INTERACTIONS)
+def test_stiffness_is_the_slope_of_load_over_gap(interaction):
+    summits = models.summits_of("own radii", *MOMENTS[5.0])
+    model, p = models.Model(summits, interaction), 5e-3
+    x, near = summits.separation(p), [summits.separation(p * f) for f in (0.98, 1.02)]
+    slope = -0.04 * p / (model.gap(near[1]) - model.gap(near[0]))
+    assert model.stiffness(x) == pytest.approx(slope, rel=2e-3)
+    assert model.load_at(model.gap(x)) == pytest.approx(p, rel=2e-3)
+    if interaction != "none":  # what is left out would be seen
+        assert summits.at(x).stiffness < 0.97 * slope
+
+
+def test_beyond_the_lowest_gap_there_is_no_load():
+    summits = models.summits_of("one radius", *MOMENTS[2.1])
+    model = models.Model(summits, "summits")
+    assert math.isnan(model.load_at(-50 * math.sqrt(MOMENTS[2.1][0])))
+    assert math.isnan(model.stiffness(-50 * math.sqrt(MOMENTS[2.1][0])))
+
+
+@pytest.mark.parametrize("k", [0, -1])
+def test_maps_come_again_from_their_seeds(k):
+    """Moments of a solved map, also by derivatives of its heights."""
+    row = rows_of("gaussian", 5.0)[k]
+    surface = rough_maps.GaussianMap(row["hurst"], row["x"], int(row["seed"]), int(row["waves"]))
+    assert surface.moments() == pytest.approx([row[key] for key in ("m0", "m2", "m4")], rel=1e-8)
+    z = surface.heights()
+    q = 2 * math.pi * np.fft.fftfreq(len(z), 1 / len(z))
+    lines = np.fft.fft(z)
+    slope, bend = (np.fft.ifft(lines * factor).real for factor in (1j * q, -(q**2)))
+    across = np.fft.ifft(np.fft.fft(z.T) * 1j * q).real
+    assert np.mean(z**2) == pytest.approx(row["m0"], rel=1e-8)
+    assert np.mean(slope**2) + np.mean(across**2) == pytest.approx(2 * row["m2"], rel=1e-8)
+    assert np.mean(bend**2) == pytest.approx(row["m4"], rel=0.03)  # one map is not quite isotropic
+
+
+def test_refined_maps_are_the_same_maps():
+    coarse = rough_maps.GaussianMap(0.8, 5.0, 3, 16)
+    fine = rough_maps.GaussianMap(0.8, 5.0, 3, 16, pixels=16)
+    assert np.abs(fine.heights()[::2, ::2] - coarse.heights()).max() < 1e-14
+
+
+def test_a_torn_line_does_not_count(tmp_path):
+    path = tmp_path / "solves.csv"
+    row = dict.fromkeys(solve_table.COLUMNS, 1.5) | {"kind": "caps", "job": "a", "purpose": "study"}
+    solve_table.append(row, path)
+    whole = path.read_bytes()
+    path.write_bytes(whole + whole.splitlines()[1][:20])
+    assert [x["job"] for x in solve_table.read(path)] == ["a"]
+    solve_table.append(row | {"job": "b"}, path)
+    solve_table.append(row | {"p": 2.5}, path)  # by two who did not know of each other
+    assert [(x["job"], x["p"]) for x in solve_table.read(path)] == [("a", 1.5), ("b", 1.5)]
+
+
+def test_the_solver_finds_hertz_and_the_square_lattice():
+    """One paraboloid a cell: its area, and its gap, which images raise by 1.2415 p."""
+    pytest.importorskip("tamaas")
+    sys.path.insert(0, str(FOLDER))
+    try:
+        from boundary_elements import Solver
+    finally:
+        sys.path.remove(str(FOLDER))
+    radius, n, p = 0.5, 256, 2e-3
+    x = np.arange(n) / n - 0.5
+    z = -(x[:, None] ** 2 + x**2) / (2 * radius)
+    found = Solver(z, 1e-9).at(p)
+    a = (3 * p * radius / 4) ** (1 / 3)
+    plane = found.gap + z.mean()
+    assert found.spots == 1
+    assert found.area == pytest.approx(math.pi * a**2, rel=0.02)
+    assert plane == pytest.approx(-(a**2) / radius + models.SQUARE_LATTICE * p, abs=2e-3 * a**2 / radius)
+    compliance = 1 / (2 * (3 * 1.01 * p * radius / 4) ** (1 / 3)) - models.SQUARE_LATTICE
+    assert found.stiffness == pytest.approx(1 / compliance, rel=5e-3)
+    assert abs(plane + a**2 / radius) > 0.02 * a**2 / radius  # without images it would be seen
+
+
+@pytest.mark.slow
+def test_fresh_maps_are_as_the_table_says():
+    """Where a model calls itself within 10 %, maps of other seeds, alpha and H are, but for their scatter."""
+    fresh = [row for row in ROWS if row["purpose"] == "fresh"]
+    assert {(row["hurst"], row["x"]) for row in fresh} >= {(h, a) for h in (0.5, 1.0) for a in (3, 7, 15)}
+    _, lines = table()
+    chart = [
+        deviations.Condensed(
+            x["map"], x["model"], x["interaction"], float(x["x"]), float(x["p"]),
+            {q: float(x[q]) for q in deviations.QUANTITIES},
+            {q: float(x[f"{q}_std"]) for q in deviations.QUANTITIES},
+            int(x["maps"]), float(x["contacts"]), float(x["waves"]),
+        )
+        for x in lines
+        if int(x["maps"])  # the others are by theory
+    ]  # fmt: skip
+    found = charted.fresh(chart, fresh)
+    valid = [one for one in found if one.claimed]
+    assert len(valid) > 20
+    assert all(one.holds for one in valid)
+    assert not all(one.holds for one in found)  # elsewhere they are beyond it
+    assert np.mean([one.z**2 for one in found]) < 2.0
+    wrong = [replace(one, measured=one.measured + 0.15) for one in found]
+    assert np.mean([one.z**2 for one in wrong]) > 4.0
+
+
+@pytest.mark.slow
+def test_95_percent_hold_of_maps_left_out(monkeypatch):
+    """Each Gaussian map against a table of all others: of the intervals about the bias 93 to 97 % hold it.
+
+    The error of each figure is shared by loads and neighbouring figures of one map; of 59 maps, whose share
+    outside scatters by 4 %, a rule of 95 % has a mean share of 91 to 99 % in all but one of a thousand.
+    """
+    monkeypatch.setattr(deviations, "MODELS", ("one radius",))
+    monkeypatch.setattr(deviations, "INTERACTIONS", ("none",))
+    rows = [row for row in ROWS if row["kind"] == "gaussian" and row["purpose"] == "study"]
+    found = [(row, deviations.deviations(row)[0]) for row in rows]
+    inside, below, many = 0, 0, 0
+    for key in {(row["x"], row["seed"]) for row in rows}:
+        others = [row for row in rows if (row["x"], row["seed"]) != key]
+        known = {id(row): one for row, one in found}
+        with monkeypatch.context() as patch:
+            patch.setattr(deviations, "deviations", lambda row, known=known: [known[id(row)]])
+            lines = deviations.table_text(deviations.condensed(others), b"", 0).splitlines()
+        grid = validity_table.Grid.of(
+            list(csv.DictReader(line for line in lines if not line.startswith("#"))), along_separation=False
+        )
+        for row, one in found:
+            if (row["x"], row["seed"]) != key:
+                continue
+            for name in deviations.QUANTITIES:
+                real = getattr(one, name)
+                at = np.array([row["p"] * (1 + real) if name == "load" else row["p"]])
+                said = grid.expected(row["x"], at)
+                (bias,), (off,) = said.bias[name], validity_lookup.farthest(said, name, np.ones(1))
+                if math.isnan(bias):
+                    continue
+                low = bias - off if name == "separation" else (1 + bias) ** 2 / (1 + bias + off) - 1
+                many += 1
+                inside += low <= real <= bias + off
+                below += abs(real) <= abs(bias) + off
+    assert many > 1500
+    assert 0.91 < inside / many < 0.99
+    assert below / many > 0.95

@@ -1,0 +1,415 @@
+"""Gap conductance of a gas: check values of Yovanovich's integral, limits, and whose heights count."""
+
+import itertools
+import json
+import math
+import re
+
+import numpy as np
+import pytest
+from oracles.interacting_by_hand import LATTICE, MEAN_SINKING
+from scipy.integrate import quad
+from test_layer import LAWS
+
+import analytic
+import mcgw
+from analytic.joint import Gas, Joint, air, gap_integral
+from mcgw.cli import main
+from mcgw.figures.compared import Compared
+
+SURFACE = analytic.Surface(sigma=0.9e-6, radius=1e-5, eta=1e10, nominal_area=1e-4, E_star=1e11)
+
+
+@pytest.mark.parametrize(("y", "m", "value"), [
+    (3, 0.1, 0.37663374387822), (2, 1, 0.357567566339058), (4, 0.01, 0.269913675556762),
+    (0, 0.3, 0.618189222135803),
+])  # fmt: skip
+def test_check_values(y, m, value):
+    assert float(gap_integral(y, m)) == pytest.approx(value, rel=1e-13)
+
+
+def test_limits_and_many_distances():
+    """Far apart two walls at a distance; many are interpolated to as many digits."""
+    assert float(gap_integral(1e6, 0.5)) == pytest.approx(1 / (1e6 + 0.5), rel=1e-11)
+    many = np.linspace(-2.0, 14.0, 9001)
+    few = many[::900]
+    np.testing.assert_allclose(gap_integral(many, 0.1)[::900], gap_integral(few, 0.1), rtol=1e-13)
+    literal = quad(lambda x: math.exp(-((few[5] - x) ** 2) / 2) / (x + 0.1), 0, 20, points=(0.1, few[5]))[0]
+    assert float(gap_integral(few[5], 0.1)) == pytest.approx(literal / math.sqrt(2 * math.pi), rel=1e-9)
+
+
+def test_the_rms_is_that_of_the_surface():
+    """By Nayak's heights, or given: both tell alpha and the offset; that of the summits is another one."""
+    heights = analytic.Nayak(5.0)
+    known = Joint("air").gap(SURFACE, heights)
+    given = Joint("air", rms=SURFACE.sigma / heights.std).gap(SURFACE, analytic.Gaussian())
+    assert given.rise == pytest.approx(known.rise, rel=1e-12)
+    assert float(given(2.0)) == pytest.approx(float(known(2.0)), rel=1e-12)
+    wrong = air().conductivity / SURFACE.sigma * gap_integral(2.0, air().jump / SURFACE.sigma)
+    assert abs(float(wrong) / float(known(2.0)) - 1) > 0.1
+    assert float(Joint("vacuum").gap(SURFACE, heights)(2.0)) == 0.0
+    assert Joint({"conductivity": 0.15, "jump": 1e-6}).held == Gas(0.15, 1e-6)
+
+
+def test_air_is_that_of_the_standard_atmosphere():
+    """0.025326 W/(m K) at sea level (1976); Sutherland's law at 373.15 K, and jumps, by hand."""
+    assert air(288.15).conductivity == pytest.approx(0.025326, rel=2e-5)
+    assert air(373.15).conductivity == pytest.approx(0.0317379, rel=2e-5)
+    paths = 2 * 1.13 / 0.87 * 2.8 / (2.4 * 0.71)
+    assert air(288.0, 101325.0).jump == pytest.approx(64e-9 * paths, rel=1e-12)
+    assert air(576.0, 101325.0 / 4).jump == pytest.approx(8 * 64e-9 * paths, rel=1e-12)
+    assert Joint("air").held == air() == air(293.15, 101325.0)
+    assert Joint("air", temperature=400.0, gas_pressure=5e4).held == air(400.0, 5e4)
+
+
+@pytest.mark.parametrize(("joint", "line"), [
+    (lambda: Joint("steam"), "gas = 'steam': give"),
+    (lambda: Joint("vacuum", temperature=300.0), "temperature = 300.0: it is only for"),
+    (lambda: Joint("air").gap(SURFACE, analytic.Gaussian()), "rms: give the root mean square height"),
+    (lambda: Joint("air", rms=1e-7).gap(SURFACE, analytic.Gaussian()), "rms = 1e-07: give more than sigma"),
+    (lambda: Joint("air", rms=1e-6).gap(SURFACE, analytic.Nayak(5.0)), "rms = 1e-06: it follows from the "
+        "heights"),
+    (lambda: Gas(0.0, 1.0), "gas.conductivity = 0.0: give"),
+])  # fmt: skip
+def test_mistakes(joint, line):
+    with pytest.raises(ValueError, match=line):
+        joint()
+
+
+# --- in scenes ---
+
+FILM = analytic.Film(conductivities=(200.0, 16.0))
+ROUGH = analytic.Surface(sigma=1.37e-6, radius=13e-6, eta=3.0e8, nominal_area=1e-6, E_star=78.6e9)
+AIR = {"gas": "air", "rms": "2 um"}
+H = (1.5, 2.0)
+OWN = {  # modes of interaction, and the separation that differs from surface to surface and tells the gap
+    "alone": (None, None),
+    "body": ("body", None),
+    "plane": ("mean-plane", "nominal_separation"),
+}
+
+
+def scene_of(**changes):
+    asked = {"separations": H, "film": FILM, "joint": AIR, "seed": 3, "n_surfaces": 40}
+    return mcgw.Scene(ROUGH, **asked | changes)
+
+
+def by_hand(h):
+    """Gap conductance at a distance over sigma, by the integral as it is written."""
+    rms, gas, sigma = 2e-6, air(), ROUGH.sigma
+    alpha = (1 + 16 / math.pi - 3 * math.sqrt(3)) / (1 - (sigma / rms) ** 2)
+    y, m = (h * sigma + 4 * rms / math.sqrt(math.pi * alpha)) / rms, gas.jump / rms
+    ends = (0, m, 4 * m, 1, *((y,) if y > 1 else ()), y + 4, y + 12)
+    parts = [
+        quad(lambda x: math.exp(-((y - x) ** 2) / 2) / (x + m), *pair, epsabs=0, epsrel=1e-13)[0]
+        for pair in itertools.pairwise(ends)
+    ]
+    return gas.conductivity / rms * sum(parts) / math.sqrt(2 * math.pi)
+
+
+def before_bodies(contact, gas, constricted, area=ROUGH.nominal_area):
+    """Spots (whose conductance has the bodies in series) and gas side by side, then the bodies, by hand."""
+    bodies = MEAN_SINKING / 2 * (1 / 200 + 1 / 16) * math.sqrt(area) if constricted else 0.0
+    return 1 / (1 / (1 / (1 / contact - bodies) + gas) + bodies)
+
+
+@pytest.mark.parametrize("mode", OWN)
+def test_each_surface_at_its_own_distance(mode):
+    """The joint is its spots and its gas before the bodies; vacuum is the spots alone, no contact the gas."""
+    interaction, own = OWN[mode]
+    e = mcgw.simulate(scene_of(interaction=interaction))
+    h = np.tile(H, (40, 1)) if own is None else e[own]
+    for i in (0, 7):
+        np.testing.assert_allclose(e["gap_conductance"][i], [by_hand(x) for x in h[i]], rtol=2e-4)
+    network = before_bodies(e["contact_conductance"], e["gap_conductance"], "body" in mode)
+    np.testing.assert_allclose(e["joint_conductance"], network, rtol=1e-13)
+    assert (np.ptp(e["gap_conductance"], axis=0) > 0).all() == (own is not None)
+    vacuum = mcgw.simulate(scene_of(interaction=interaction, joint="vacuum"))
+    np.testing.assert_allclose(vacuum["joint_conductance"], vacuum["contact_conductance"], rtol=1e-14)
+    far = mcgw.simulate(scene_of(separations=9.0))
+    np.testing.assert_array_equal(far["joint_conductance"], far["gap_conductance"])
+
+
+@pytest.mark.parametrize("mode", OWN)
+def test_many_have_the_mean_and_spread_of_theory(mode):
+    """|z| < 5 of means, 7 of spreads: false alarms 6e-7 a number. The gap at the wrong plane fails."""
+    interaction, own = OWN[mode]
+    n = 4000
+    scene = scene_of(interaction=interaction, n_surfaces=n)
+    e, theory = mcgw.simulate(scene), scene.theory
+    for name in scene.of_joint:
+        mean, std = theory.mean(name, H), theory.std(name, H)
+        if own is None and name == "gap_conductance":
+            np.testing.assert_array_equal(e.mean(name), mean)
+            assert (std == 0).all()
+            continue
+        assert np.abs((e.mean(name) - mean) / std * math.sqrt(n)).max() < 5
+        assert e.std(name) == pytest.approx(std, rel=5 / math.sqrt(n))
+    if own is not None:
+        std = theory.std("gap_conductance", H)
+        wrong = scene.filled(H) - e.mean("gap_conductance")
+        assert (np.abs(wrong) / std * math.sqrt(n) > 10).any()
+    covariance = theory.covariance(["joint_conductance", "load"], H)
+    found = e.covariance("joint_conductance", "load")
+    np.testing.assert_allclose(np.diag(found), np.diag(covariance[0, :, 1]), rtol=6.3 / math.sqrt(n))
+    assert mcgw.compare(e).verdict.agrees
+
+
+@pytest.mark.parametrize("area", [1e-8, 1e-6, 1e-4])
+@pytest.mark.parametrize("reference", [None, "mean-plane", "body"])
+@pytest.mark.parametrize("film", ["bare", "film", "layer"])
+def test_network_by_hand(reference, area, film):
+    """1/h = 1/(h_spots + h_gas) + R_bodies A_n of every specimen; spots alone from the scene without it."""
+    more = {"film": {"film_resistance": 1e-8}, "layer": {"layer": analytic.Layer(1e-5, 1.3)}}.get(film, {})
+    asked = {"film": analytic.Film(conductivities=(200.0, 16.0), **more), "n_asperities": 3000}
+    scene = scene_of(**asked, n_surfaces=6, interaction=reference).replace(nominal_area=area)
+    alone = scene_of(**asked, n_surfaces=6, joint=None).replace(nominal_area=area)
+    e, single = mcgw.simulate(scene), mcgw.simulate(alone)
+    spots, h, rho = single["conductance_si"] / area, np.tile(H, (6, 1)), 1 / 200 + 1 / 16
+    if reference == "mean-plane":
+        other = LATTICE / math.pi / math.sqrt(3000 * area)  # metres of the mean plane for each P/E*
+        spots = 1 / (1 / spots - rho / 2 * other * area)
+        h = h + other * single["load"] / ROUGH.E_star / ROUGH.sigma
+    gas = np.vectorize(by_hand)(h)
+    bodies = 0.4732010044 * rho * math.sqrt(area) if reference == "body" else 0.0
+    expected = 1 / (1 / (spots + gas) + bodies)
+    np.testing.assert_allclose(e["gap_conductance"], gas, rtol=1e-11)
+    np.testing.assert_allclose(e["joint_conductance"], expected, rtol=1e-9)
+    gas, bodies = e["gap_conductance"], MEAN_SINKING / 2 * rho * math.sqrt(area) * (reference == "body")
+    expected = 1 / (1 / (spots + gas) + bodies)
+    np.testing.assert_allclose(e["joint_conductance"], expected, rtol=1e-12)
+    if reference == "body":
+        assert (e["joint_conductance"] < 1 / bodies).all()
+
+
+@pytest.mark.parametrize("area", [1e-8, 1e-6, 1e-4])
+@pytest.mark.parametrize("reference", [None, "mean-plane", "body"])
+def test_network_of_the_infinite_surface(reference, area):
+    """At a load: conductances and resistance of the mean surface by hand, and of each specimen."""
+    scene = scene_of(n_surfaces=4, interaction=reference).replace(nominal_area=area)
+    alone = scene_of(n_surfaces=4, joint=None).replace(nominal_area=area)
+    found, single = (mcgw.solve(x, pressure="1 MPa") for x in (scene, alone))
+    rho, load = 1 / 200 + 1 / 16, 1e6 * area
+    for at, by_itself in ((found.theory, single.theory), (found.surfaces, single.surfaces)):
+        spots, h, bodies = by_itself["conductance_si"] / area, by_itself["separation"], 0.0
+        if reference == "mean-plane":
+            other = LATTICE / math.pi / math.sqrt(scene.n_asperities * area)
+            spots, h = 1 / (1 / spots - rho / 2 * other * area), h + other * load / ROUGH.E_star / ROUGH.sigma
+        if reference == "body":
+            bodies = MEAN_SINKING / 2 * rho * math.sqrt(area)
+        joint = 1 / (1 / (spots + scene.filled(h)) + bodies)
+        np.testing.assert_allclose(at["joint_conductance"], joint, rtol=1e-12)
+        np.testing.assert_allclose(at["thermal_resistance"], 1 / (joint * area), rtol=1e-12)
+
+
+def test_distribution_of_a_joint_before_bodies():
+    """As the specimens, at a separation; Hoeffding: false alarms 1e-6."""
+    scene = scene_of(interaction="body", n_surfaces=2000)
+    law = scene.theory.distribution("joint_conductance", 2.0)
+    values = mcgw.simulate(scene)["joint_conductance"][:, 1]
+    for share in (0.1, 0.5, 0.9):
+        assert abs(np.mean(values <= law.ppf(share)) - share) < math.sqrt(math.log(2e6) / 2 / 2000)
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_every_law(name):
+    scene = scene_of(law=LAWS[name], negative="clip", n_surfaces=1500, n_asperities=300)
+    e = mcgw.simulate(scene)
+    mean, std = (get("joint_conductance", H) for get in (scene.theory.mean, scene.theory.std))
+    assert np.abs((e.mean("joint_conductance") - mean) / std * math.sqrt(1500)).max() < 5
+    np.testing.assert_allclose(
+        mean - scene.theory.mean("contact_conductance", H), [by_hand(h) for h in H], rtol=2e-4
+    )
+
+
+def test_way_back_and_laws():
+    scene = scene_of(law=LAWS["kogut"], unload_from=1.0, interaction="mean-plane", n_surfaces=2000)
+    e, name = mcgw.simulate(scene), "joint_conductance_unloading"
+    gas = e["gap_conductance_unloading"]
+    np.testing.assert_allclose(e[name], e["conductance_si_unloading"] / ROUGH.nominal_area + gas, rtol=1e-14)
+    np.testing.assert_allclose(gas, scene.filled(e["nominal_separation_unloading"]), rtol=1e-14)
+    mean, std = (get(name, H) for get in (scene.theory.mean, scene.theory.std))
+    assert np.abs((e.mean(name) - mean) / std * math.sqrt(2000)).max() < 5
+    law = scene_of().theory.distribution("joint_conductance", 2.0)
+    assert law.mean() == pytest.approx(float(scene_of().theory.mean("joint_conductance", 2.0)), rel=1e-6)
+    values = mcgw.simulate(scene_of(n_surfaces=2000))["joint_conductance"][:, 1]
+    for share in (0.1, 0.5, 0.9):  # Hoeffding: false alarms 1e-6
+        assert abs(np.mean(values <= law.ppf(share)) - share) < math.sqrt(math.log(2e6) / 2 / 2000)
+
+
+def test_derivatives_of_the_gap():
+    gap = scene_of().filled
+    for order in (1, 2):
+        step = 1e-3
+        slope = (gap(2.0 + step, order - 1) - gap(2.0 - step, order - 1)) / (2 * step)
+        assert float(gap(2.0, order)) == pytest.approx(float(slope), rel=1e-6)
+
+
+@pytest.mark.parametrize("name", ["gap_conductance", "joint_conductance"])
+def test_slopes_of_the_joint_and_what_has_no_other_law(name):
+    model, step = scene_of().theory, 1e-4
+    ends = (float(model.mean(name, 1.5 + side * step)) for side in (-1, 1))
+    assert float(model.slope(name, 1.5)) == pytest.approx(-np.diff(list(ends))[0] / (2 * step), rel=1e-6)
+    with pytest.raises(ValueError, match="give a load, an area, or another sum"):
+        model.separation_at(name, 1.0)
+    if name != "joint_conductance":
+        with pytest.raises(ValueError, match="only 'joint_conductance' is known"):
+            model.distribution(name, 1.5)
+
+
+def test_where_it_goes(tmp_path):
+    """Text, files, statistics, sweeps, another law, tables: units are those of heat."""
+    scene = scene_of()
+    assert mcgw.scene_from(mcgw.scene_text(scene)) == scene
+    assert (
+        scene.replace(joint=analytic.Joint({"conductivity": 0.15, "jump": 1e-6}, rms=2e-6)).joint.held.jump
+        == 1e-6
+    )
+    e = mcgw.simulate(scene)
+    mcgw.save(e, tmp_path / "joint.h5")
+    held = mcgw.open_ensemble(tmp_path / "joint.h5")
+    np.testing.assert_array_equal(held["joint_conductance"], e["joint_conductance"])
+    kept = mcgw.simulate(scene.replace(keep="statistics"))
+    np.testing.assert_allclose(kept.mean("joint_conductance"), e.mean("joint_conductance"), rtol=1e-12)
+    np.testing.assert_allclose(kept.quantile("gap_conductance", 0.5), scene.filled(H), rtol=1e-12)
+    swept = mcgw.sweep(scene, {"joint.gas_pressure": [1e4, 1e5]})
+    gas = swept.mean("gap_conductance")
+    assert (gas[0] < gas[1]).all()
+    np.testing.assert_allclose(swept.theory("joint_conductance"), swept.mean("joint_conductance"), rtol=0.1)
+    without = mcgw.simulate(scene.replace(joint=None))
+    for name in without.scene.quantities:
+        np.testing.assert_array_equal(without[name], e[name])
+    for shown in (
+        repr(e),
+        str(mcgw.compare(e).tables()["conductance_si"]),
+        mcgw.compare(e).tables()["joint_conductance"].text(),
+    ):
+        assert " or " not in shown
+        assert "W/" in shown
+    assert e.labelled().variables["conductance_si"].about["units"] == "W/K"
+
+
+@pytest.mark.parametrize(("changes", "line"), [
+    ({"film": None}, r"joint: gas conducts heat; give contact\.conductivities"),
+    ({"film": analytic.Film(1e-7)}, r"joint: gas conducts heat; give contact\.conductivities"),
+    ({"joint": "air"}, r"joint\.rms: give the root mean square height"),
+    ({"joint": {"gas": "air", "rms": "1 um"}}, r"joint\.rms = 1e-06: give more than sigma"),
+    ({"joint": "steam"}, r"joint\.gas = 'steam': give \"air\""),
+    ({"joint": {"gas": {"jump": 1e-6}}}, r"joint\.gas\.conductivity: missing"),
+    ({"joint": {"gas": "vacuum", "temperature": 300.0}}, r"joint\.temperature = 300\.0: it is only for"),
+    ({"joint": {"rms": 1e-6}}, r"joint\.gas: missing"),
+    ({"joint": 3}, r"joint = 3: give mcgw\.Joint"),
+    ({"heights": analytic.Nayak(5.0)}, r"joint\.rms = 2e-06: it follows from the heights"),
+])  # fmt: skip
+def test_mistakes_of_scenes(changes, line):
+    with pytest.raises(mcgw.SceneError, match=line) as raised:
+        scene_of(**changes)
+    assert len(raised.value.problems) == 1
+
+
+def test_a_fit_tells_the_surface():
+    """[fitted] knows rms and alpha; what is given as rms goes before."""
+    fitted = {"m0": 4e-12, "m2": 1e-3, "m4": 5e6, "skewness": 0.0, "kurtosis": 3.0, "independent": 900.0}
+    gap = scene_of(joint="air", fitted=fitted).filled
+    assert (gap.rms, gap.rise) == (2e-6, pytest.approx(4 * 2e-6 / math.sqrt(math.pi * 20) / ROUGH.sigma))
+    assert scene_of(fitted=fitted, joint={"gas": "air", "rms": 3e-6}).filled.rms == 3e-6
+
+
+def test_models_without_gas_say_so():
+    scene = scene_of(joint=None)
+    for name in ("gap_conductance", "thermal_resistance"):
+        with pytest.raises(KeyError, match="this model has no gas"):
+            scene.theory.mean(name, H)
+    assert not scene.of_joint
+
+
+# --- at a given load, and in tables ---
+
+
+@pytest.mark.parametrize("mode", OWN)
+def test_at_a_pressure(mode):
+    """Gas at each surface's own distance, the joint beside it, resistances the inverse."""
+    interaction, own = OWN[mode]
+    scene, area = scene_of(interaction=interaction, n_surfaces=8), ROUGH.nominal_area
+    found = mcgw.solve(scene, pressure="1 MPa")
+    plane = own or "separation"
+    for at in (found.theory, found.surfaces):
+        gas = np.asarray(at["gap_conductance"])
+        np.testing.assert_allclose(gas, scene.filled(at[plane]), rtol=1e-14)
+        joint = before_bodies(at["conductance_si"] / area, gas, "body" in mode)
+        np.testing.assert_allclose(at["joint_conductance"], joint, rtol=1e-13)
+        np.testing.assert_allclose(1 / at["thermal_resistance"], joint * area, rtol=1e-13)
+        np.testing.assert_allclose(at["specific_contact_resistance"], area / at["conductance_si"], rtol=1e-14)
+    assert float(gas[0]) == pytest.approx(by_hand(found.surfaces[plane][0]), rel=2e-4)
+    h = found.theory["separation"]
+    if interaction is None:
+        mean = float(scene.theory.mean("joint_conductance", h))
+        assert found.theory["joint_conductance"] == pytest.approx(mean, rel=1e-12)
+
+
+@pytest.mark.slow
+def test_table_by_pressure(capsys, tmp_path):
+    """Spots, gas beside, bodies in series with both, on each specimen; nothing given is vacuum."""
+    path, scene = tmp_path / "joint.toml", scene_of(interaction="body", n_surfaces=5)
+    path.write_text(mcgw.scene_text(scene))
+    several, area = mcgw.solve(scene, pressure=[1e6, 5e6]), ROUGH.nominal_area
+    ask = ["solve", str(path), "--pressure", "1MPa", "5MPa"]
+    assert main([*ask, "--csv", str(tmp_path / "o.csv")]) == 0
+    text = capsys.readouterr().out
+    table = text[text.index("Conductance by pressure, W/(m^2 K), means of specimens; air of") :].splitlines()
+    for row, pressure, found in zip(table[2:4], (1.0, 5.0), several, strict=True):
+        at, _, _, _, _, _, gas, joint, resistance = map(float, row.split())
+        assert at == pressure
+        each = found.surfaces["gap_conductance"]
+        assert gas == pytest.approx(each.mean(), rel=2e-3)
+        network = before_bodies(found.surfaces["conductance_si"] / area, each, True)
+        assert joint == pytest.approx(network.mean(), rel=2e-3)
+        assert resistance == pytest.approx((1 / network).mean() / area, rel=2e-3)
+    assert "joint_conductance,W/(m^2 K)" in (tmp_path / "o.csv").read_text()
+    ask = ask[:-1]
+    path.write_text(mcgw.scene_text(scene_of(joint=None, n_surfaces=5)))
+    for more in ([], ["--set", "joint={gas = 'vacuum', rms = '2 um'}"]):
+        assert main([*ask, *more]) == 0
+        assert capsys.readouterr().out.count("spots only (vacuum)") == 1
+    path.write_text(mcgw.scene_text(scene_of(joint=None, film=analytic.Film(1e-7), n_surfaces=5)))
+    assert main([*ask, "-v"]) == 0
+    text = capsys.readouterr().out
+    assert "vacuum" not in text
+    assert "contact_resistance           ohm " in text
+    assert "ohm m^2" in text
+
+
+@pytest.mark.parametrize(
+    ("to", "ending"), [("calculix", "inp"), ("abaqus", "inp"), ("moose", "csv"), ("comsol", "txt")]
+)
+def test_exports_of_a_joint(to, ending, tmp_path):
+    """Rows are spots and gas together, and stay where nothing is carried."""
+    scene = scene_of(separations=[0.0, 2.0]).replace(nominal_area="1 cm^2")
+    area, name = [1e6, 2e6, 5e6], f"j.{ending}"
+    mcgw.export(scene, tmp_path / name, to=to, table="conductance-pressure", pressures=area)
+    text = (tmp_path / name).read_text()
+    lines = [line for line in text.splitlines() if line[0].isdigit()]
+    rows = np.array([[float(x) for x in re.split("[, ]+", line)] for line in lines])
+    x, y = rows.T if to in ("moose", "comsol") else rows.T[::-1]
+    np.testing.assert_allclose(x, [0, *area])
+    assert y[0] == y[1]
+    spots = scene.theory.mean("contact_conductance", h := scene.theory.separation_at("pressure", area))
+    np.testing.assert_allclose(y[1:], spots + scene.filled(h), rtol=0.02)
+    assert (y[1:] > 2 * spots).all(), "spots alone are something else"
+    assert "joint: air" in text
+    mcgw.export(mcgw.simulate(scene), tmp_path / "j.json", to="json")
+    table = json.loads((tmp_path / "j.json").read_text())
+    np.testing.assert_allclose(
+        table["conductance"], mcgw.simulate(scene).mean("joint_conductance"), rtol=1e-12
+    )
+    if to != "calculix":
+        mcgw.export(scene, tmp_path / name, to=to, table="conductance-gap", points=3)
+        gap = (tmp_path / name).read_text()
+        assert "gas also conducts beyond the last line" in gap
+        assert "nothing is carried" not in gap
+
+
+def test_figures_compare_its_surfaces_without_it():
+    """They are of load, area and stiffness under gradings: those of the scene without a joint."""
+    compared, plain = (Compared(scene_of(joint=joint)).scene for joint in (AIR, None))
+    assert compared == plain

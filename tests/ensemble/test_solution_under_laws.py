@@ -1,0 +1,200 @@
+"""The separation at a load or area under other contact laws: against a literal search, and theory.
+
+Laws are typed anew, of one depth at a time; the search looks at every separation at which an
+asperity goes from piece to piece, from above, and halves behind the first that reaches the value.
+"""
+
+from math import pi, sqrt
+
+import numpy as np
+import oracles.laws_of_one_depth as by_hand
+import pytest
+
+import mcgw
+from analytic import quantity_of
+from analytic.laws import Branch
+from mcgw.ensemble.separation import LawSum, Summits
+from mcgw.ensemble.solution import solutions
+from mcgw.reports.solved_loads import solutions_text
+
+YIELD_OF_STEEL = by_hand.yields_at(0.004)
+
+# Law of the package, the same by hand, penetrations over 1/e^2 at which pieces begin, and the grading.
+LAWS = {
+    "kogut-etsion": (mcgw.KogutEtsion(critical=0.05), by_hand.kogut_etsion, (0.05, 0.3, 5.5), 2.0),
+    "chang-etsion-bogy": (mcgw.ChangEtsionBogy(critical=0.5), by_hand.chang_etsion_bogy, (0.5,), 1.0),
+    "jackson-green": (mcgw.JacksonGreen(yield_strain=0.004, critical=YIELD_OF_STEEL), by_hand.jackson_green,
+                      (1.9 * YIELD_OF_STEEL,), 1.2),
+    "johnson-kendall-roberts": (mcgw.JohnsonKendallRoberts(pull_off=0.3), by_hand.johnson_kendall_roberts,
+                                (), 1.3),
+    "coated": (mcgw.Coated(ratio=3.0, reduced_thickness=0.5), by_hand.coated, (), 1.0),
+    "power-law-graded": (mcgw.PowerLawGraded(0.5, reduced_c0=2.0), by_hand.power_law_graded, (), 1.5),
+}  # fmt: skip
+SURFACE = mcgw.Surface(sigma=1e-6, radius=1e-3, eta=3e8, nominal_area=1e-6, E_star=1e11)
+SCALES = {"load": 4 / 3 * 1e11 * sqrt(1e-3) * 1e-6**1.5, "area": pi * 1e-3 * 1e-6}
+
+
+def modulus(s, gamma_):
+    return gamma_ - (gamma_ - 1) * np.exp(-s)
+
+
+def literal_sum(law, given, s, gamma_, h):
+    which = ("load", "area").index(given)
+    return sum(law(x - h, modulus(x, gamma_))[which] for x in s if x > h)
+
+
+def literal_search(law, starts, given, s, gamma_, value):
+    """Largest separation at which the sum reaches a value, to 1e-13."""
+    e = modulus(s, gamma_)
+    jumps = np.concatenate([s, *(s - start / e**2 for start in starts)])
+    looks = np.sort(np.concatenate([jumps + 1e-13, jumps - 1e-13, np.linspace(-2, s.max(), 50)]))[::-1]
+    above = s.max() + 1
+    for below in looks:
+        if literal_sum(law, given, s, gamma_, below) >= value:
+            break
+        above = below
+    for _ in range(60):
+        middle = (above + below) / 2
+        reached = literal_sum(law, given, s, gamma_, middle) >= value
+        above, below = (above, middle) if reached else (middle, below)
+    return below
+
+
+def drawn_by(monkeypatch, scene, given, values):
+    """Solutions, and the scene whose heights were drawn for them."""
+    import mcgw.ensemble.solution as module
+
+    listed, scenes = module.summits_drawn, []
+
+    def spy(drawn, *rest):
+        scenes.append(drawn)
+        return listed(drawn, *rest)
+
+    monkeypatch.setattr(module, "summits_drawn", spy)
+    found = solutions(scene, given, values)
+    monkeypatch.undo()
+    return found, scenes[0]
+
+
+@pytest.mark.parametrize("given", ["load", "area"])
+@pytest.mark.parametrize("name", LAWS)
+def test_a_literal_search_finds_the_same(name, given, monkeypatch):
+    law, typed, starts, gamma_ = LAWS[name]
+    scene = mcgw.Scene(
+        SURFACE, separations=0.0, grading=mcgw.Exponential(gamma_), law=law, n_asperities=60, n_surfaces=3,
+        seed=3,
+    )  # fmt: skip
+    values = [float(x) for x in scene.theory.mean(given, [2.2, 1.0])]
+    found, drawn = drawn_by(monkeypatch, scene, given, values)
+    for number in range(3):
+        s = mcgw.heights(drawn, number, untouched=True)
+        for value, solution in zip(values, found, strict=True):
+            expected = literal_search(typed, starts, given, s, gamma_, value / SCALES[given])
+            h = solution.surfaces["separation"][number]
+            assert h == pytest.approx(expected, abs=3e-12)
+            for name_, scale in SCALES.items():  # on either side of a jump
+                sides = [scale * literal_sum(typed, name_, s, gamma_, h + x) for x in (1e-11, -1e-11)]
+                told = solution.surfaces[name_][number]
+                slack = 1e-8 * max(map(abs, sides))
+                assert min(sides) - slack <= told <= max(sides) + slack
+            assert solution.surfaces["contacts"][number] == np.count_nonzero(s > h)
+
+
+@pytest.mark.parametrize("given", ["load", "area"])
+def test_below_all_that_was_drawn_at_once_the_search_finds_the_same(given):
+    """Step by step, on the whole of each surface."""
+    import mcgw.ensemble.solution as module
+
+    listed, whole = module.summits, []
+    with pytest.MonkeyPatch.context() as patch, pytest.MonkeyPatch.context() as inner:
+        patch.setattr(module, "_MARGIN", -1.0)
+        patch.setattr(module, "summits", lambda drawn, number: whole.append(number) or listed(drawn, number))
+        test_a_literal_search_finds_the_same("kogut-etsion", given, inner)
+    assert whole == sorted(set(whole))  # once for all values
+    assert len(whole) > 1
+
+
+@pytest.mark.parametrize("given", ["load", "area"])
+def test_radii_of_their_own(given):
+    """A summit r times as blunt yields r times as deep, at r^2 times the load and area."""
+    s, ratios, ones = np.array([2.2, 2.0, 1.0]), np.array([0.5, 2.0, 1.3]), np.ones(3)
+    total = LawSum(given, Branch(mcgw.KogutEtsion(critical=0.05)), s, ones, ratios)
+    which = ("load", "area").index(given)
+    for h in (2.1, 1.7, 0.6):
+        above = [(x - h, r) for x, r in zip(s, ratios, strict=True) if x > h]
+        each = [r**2 * by_hand.kogut_etsion(x / r, 1.0)[which] for x, r in above]
+        assert total.largest_separation(sum(each), -3.0) == pytest.approx(h, abs=1e-12)
+
+
+def test_a_load_that_is_jumped_over_is_passed():
+    """One asperity of Chang, Etsion and Bogy: between Hertz's load at yield and 1.5 times that."""
+    one = LawSum("load", Branch(mcgw.ChangEtsionBogy(critical=0.5)), np.array([2.0]), np.ones(1))
+    at_yield = 0.5**1.5
+    for value in (1.01 * at_yield, 1.49 * at_yield):
+        assert one.largest_separation(value, -3.0) == pytest.approx(1.5, abs=1e-15)
+    assert one.largest_separation(0.99 * at_yield, -3.0) == pytest.approx(2 - (0.99) ** (2 / 3) * 0.5)
+    assert one.largest_separation(1.8, 1.9) is None
+
+
+def test_of_several_separations_the_largest_counts():
+    """The area of one asperity of Kogut and Etsion falls by 7 % at yield: .049 is met three times."""
+    one = LawSum("area", Branch(mcgw.KogutEtsion(critical=0.05)), np.array([2.0]), np.ones(1))
+    assert one.largest_separation(0.049, -3.0) == pytest.approx(2 - 0.049, abs=1e-14)
+    after = 2 - 0.05 * (0.0505 / 0.05 / 0.93) ** (1 / 1.136)
+    assert one.largest_separation(0.0505, -3.0) == pytest.approx(after, abs=1e-14)
+
+
+@pytest.mark.parametrize(("gamma_", "lowest"), [(2.0, -0.8), (1.0, -40.0)])
+def test_a_search_on_all_heights_ends_where_a_modulus_is_negative(gamma_, lowest):
+    """At the highest such summit, or at 40 below the mean: what is solved there and not beyond is literal."""
+    s = np.array([0.3, -1.5, 2.0, -0.8, 1.1, -0.4])  # moduli of 2 - exp(-s) are negative below -0.69
+    scene = mcgw.Scene(
+        SURFACE, separations=0.0, grading=mcgw.Exponential(gamma_), law=mcgw.KogutEtsion(critical=0.05),
+        n_surfaces=2, seed=1,
+    )  # fmt: skip
+    asperities, load = Summits.of(scene, s, None), quantity_of("load")
+    for h in (1.9, 0.4, -0.7, lowest + 1e-3, lowest - 1e-3):
+        value = literal_sum(by_hand.kogut_etsion, "load", s[s > lowest], gamma_, h)
+        found = asperities.separation_anywhere(load, value, 1.95)
+        assert found == (pytest.approx(h, abs=1e-11) if h > lowest else None)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", LAWS)
+def test_the_mean_is_that_of_theory(name):
+    """200 surfaces of 3000 asperities, |z| < 5: 1 in 2e6 a value. A law that is 10 % off shows.
+
+    The bias of a finite surface is 1e-3 here, less than half a standard error of the mean.
+    """
+    law, _, _, gamma_ = LAWS[name]
+    scene = mcgw.Scene(
+        SURFACE, separations=0.0, grading=mcgw.Exponential(gamma_), law=law, n_asperities=3000,
+        n_surfaces=200, seed=9,
+    )  # fmt: skip
+    value = float(scene.theory.mean("load", 1.0))
+    (found,) = solutions(scene, "load", [value])
+    h = found.surfaces["separation"]
+    stderr = h.std(ddof=1) / sqrt(h.size)
+    assert found.theory["separation"] == pytest.approx(1.0, abs=1e-9)
+    assert abs(h.mean() - 1.0) < 5 * stderr
+    wrong = float(scene.theory.separation_at("load", 1.1 * value))
+    assert abs(h.mean() - wrong) > 5 * stderr
+
+
+def test_what_is_told_belongs_to_the_law():
+    law = mcgw.KogutEtsion(critical=0.05)
+    scene = mcgw.Scene(SURFACE, separations=0.0, law=law, n_surfaces=3, seed=1)
+    found = mcgw.solve(scene, pressure="1 MPa")
+    assert list(found.theory) == [
+        "separation", "gap_to_summits", "load", "area", "stiffness", "contacts", "conductance", "load_slope",
+        "yielded",
+    ]  # fmt: skip
+    assert 0 < found.theory["yielded"] < found.theory["contacts"]
+    assert list(found.surfaces) == list(found.theory)
+    for asked in (scene, scene.replace(unload_from="loop", separations=(0.0, 1.0))):
+        text = solutions_text(asked, [found], full=True)
+        assert ("from first contact; unloading is not included" in text) == (asked is not scene)
+        assert "specimens: 3 surfaces of 300 asperities, seed 1; gap to the mean plane of the summits" in text
+    plain = mcgw.solve(scene.replace(law=mcgw.Hertz()), pressure="1 MPa")
+    assert len(plain.theory) == 7
+    assert plain.theory["separation"] > found.theory["separation"]

@@ -1,0 +1,492 @@
+"""What is drawn is what was computed: lines, error bars, labels, legends and verdicts, read from the axes."""
+
+import dataclasses
+import math
+import re
+
+import numpy as np
+import pytest
+from conftest import SURFACE
+from matplotlib.collections import LineCollection, PathCollection
+from oracles import told
+from oracles.crowding import crowded
+from scipy.stats import norm
+
+import analytic
+import mcgw
+from mcgw.figures import style
+from mcgw.figures.against_theory import quantity_panel, save_comparison
+from mcgw.figures.data import FigureData, Panel, Points, Series
+from mcgw.figures.panels import draw
+from mcgw.figures.studies import save_convergence, save_tradeoff
+from mcgw.figures.style import FAMILIES, PAIRS, THEORY, look, plain, power_of_ten
+from mcgw.statistics.checks import Check, Slope
+from mcgw.statistics.comparison import Comparison, Curve, compare
+from mcgw.statistics.convergence import Convergence
+from mcgw.statistics.verdict import Verdict
+
+
+def bars_of(axis):
+    """x, low and high ends of vertical error bars."""
+    found = []
+    for lines in (c for c in axis.collections if isinstance(c, LineCollection)):
+        for (x0, y0), (x1, y1) in lines.get_segments():
+            if x0 == x1:
+                found.append((x0, min(y0, y1), max(y0, y1)))
+    return np.array(found)
+
+
+def markers_of(axis):
+    """Lines of markers alone."""
+    return [line for line in axis.get_lines() if line.get_marker() in list("os^Dv") and len(line.get_xdata())]
+
+
+X = np.array([1.0, 2.0, 4.0])
+SERIES = (
+    Series("line alone", X, X**2),
+    Series("with points", X, 3 * X, Points(X + 0.5, 3 * X + 1, X / 10, 3 * X + 2)),
+    Series("γ = 1", X, 5 * X, Points(X, 5 * X, X / 3, 5 * X)),
+)
+
+
+@pytest.mark.parametrize("scale", ["linear", "log"])
+def test_panels_are_drawn_as_they_are(scale, recorded):
+    panel = Panel("the panel", "x (m)", "y (N)", SERIES, ("linear", scale), level=2.5)
+    figure = draw(FigureData("The title", "The caption.", (panel, panel)))
+    recorded(f"drawn.{scale}", told.drawn(figure))
+    assert (figure.get_suptitle(), figure.get_supxlabel()) == ("The title", "The caption.")
+    used = [axis for axis in figure.axes if axis.get_title(loc="left")]
+    assert len(used) == 2
+    for axis, key in zip(used, (["Monte Carlo, 95 %"], []), strict=True):
+        assert (axis.get_xlabel(), axis.get_ylabel()) == ("", "y (N)")  # the residuals below say what x is
+        assert axis.get_title(loc="left") == "the panel"
+        assert (axis.get_xscale(), axis.get_yscale()) == ("linear", scale)
+        assert [t.get_text() for t in axis.get_legend().get_texts()] == [s.label for s in SERIES] + key
+        lines = [x for x in axis.get_lines() if len(x.get_xdata()) == 3 and x.get_linestyle() != "None"]
+        for line, series in zip(lines, SERIES, strict=True):
+            np.testing.assert_array_equal(line.get_xydata(), np.stack([series.x, series.theory], axis=1))
+        assert any(np.all(np.asarray(x.get_ydata()) == 2.5) for x in axis.get_lines())
+        shown = [s.points for s in SERIES if s.points]
+        for line, points in zip(markers_of(axis), shown, strict=True):
+            np.testing.assert_array_equal(line.get_xydata(), np.stack([points.x, points.mean], axis=1))
+        bars = bars_of(axis)
+        low = np.concatenate([p.mean - np.minimum(1.96 * p.stderr, reach(p, scale)) for p in shown])
+        high = np.concatenate([p.mean + 1.96 * p.stderr for p in shown])
+        np.testing.assert_allclose(bars[:, 0], np.concatenate([p.x for p in shown]))
+        np.testing.assert_allclose(bars[:, 1], low, rtol=1e-12)
+        np.testing.assert_allclose(bars[:, 2], high, rtol=1e-12)
+
+
+def test_residuals_are_below_their_panel():
+    """In standard errors, with the marker and the colour of their series; none where there are no points."""
+    panels = Panel("with", "x (m)", "y (N)", SERIES), Panel("without", "x (m)", "y (N)", SERIES[:1])
+    above, below, alone = draw(FigureData("", "", panels)).axes
+    assert (below.get_xlabel(), alone.get_xlabel()) == ("x (m)", "x (m)")
+    assert below.get_xlim() == above.get_xlim()
+    labelled = [
+        [axis.xaxis.get_tick_params()["labelbottom"], axis.yaxis.get_tick_params()["labelleft"]]
+        for axis in (above, below, alone)
+    ]
+    assert labelled == [[False, True], [True, True], [True, True]]  # the axis of both stands below
+    shown = [line for line in markers_of(below) if line.get_linestyle() == "None"]
+    looks = [(line.get_marker(), line.get_color()) for line in markers_of(above)]
+    for line, series, drawn in zip(shown, SERIES[1:], looks, strict=False):
+        z = (series.points.mean - series.points.exact) / series.points.stderr
+        np.testing.assert_allclose(line.get_xydata(), np.stack([series.points.x, z], axis=1))
+        assert (line.get_marker(), line.get_color()) == drawn
+    low, high = below.get_ylim()
+    assert low == -high < -np.abs(SERIES[1].points.residual).max()
+    (band,) = below.patches
+    assert (band.get_y(), band.get_height()) == (-2, 4)
+
+
+def test_there_are_no_residuals_of_points_whose_errors_are_not_known():
+    series = Series("a", X, X, Points(X, X, 0 * X, X)), Series("b", X, X)
+    axes = draw(FigureData("", "", (Panel("p", "x", "y", series),))).axes
+    assert [axis.get_xlabel() for axis in axes] == ["x"]
+    assert style.line("γ = 1", 3) == {"label": "γ = 1", "color": "#000000", "linestyle": "-"}
+    assert {look(names[0])["linestyle"] for names in (*FAMILIES, *PAIRS)} == {"-"}
+    assert {look(names[0])["marker"] for names in (*FAMILIES, *PAIRS)} == {"o"}
+
+
+def reach(points, scale):
+    """On a logarithmic axis a bar ends above zero."""
+    return 0.95 * points.mean if scale == "log" else np.inf
+
+
+def test_legends_name_the_line_that_is_drawn_so():
+    figure = draw(FigureData("", "", (Panel("p", "x", "y", SERIES),)))
+    axis, _ = figure.axes
+    drawn = [x for x in axis.get_lines() if len(x.get_xdata()) == 3 and x.get_linestyle() != "None"]
+    *named, key = axis.get_legend().get_lines()
+    assert key.get_linestyle() == "None"  # a marker alone: any of the drawn
+    for entry, line in zip(named, drawn, strict=True):
+        assert entry.get_color() == line.get_color()
+        assert entry.get_linestyle() == line.get_linestyle()
+    assert drawn[2].get_color() == "#000000"  # homogeneous, in every figure alike
+
+
+def test_a_band_is_shaded():
+    series = Series("edge", X, X, band=(X - 3, 2 * X))
+    (axis,) = draw(FigureData("", "", (Panel("p", "x", "y", (series,), ylim=(-3.0, 9.0)),))).axes
+    (patch,) = axis.collections
+    corners = {tuple(xy) for xy in patch.get_paths()[0].vertices.tolist()}
+    assert corners >= set(zip(X, X - 3, strict=True)) | set(zip(X, 2 * X, strict=True))
+    assert axis.get_ylim() == (-3.0, 9.0)
+
+
+def slope(against, value):
+    sizes = np.array([1.0, 4.0, 16.0])
+    return Slope(
+        against, sizes, 0.3 / np.sqrt(sizes) * [1, 1.1, 0.9], np.array([0.1, 0.2, 0.05]), value, 0.02
+    )
+
+
+def test_convergence(make_scene, kept, tmp_path, recorded):
+    checks = (Check("first", "seen so", 0.5), Check("second", "seen else", 1e-5), Check("third", "x", 0.0))
+    scores = np.random.default_rng(1).normal(size=400)
+    found = Convergence(make_scene(title="T"), checks, (slope("M", -0.49), slope("N", -0.55)), scores)
+    assert repr(found).startswith("Statistical convergence FAILED")
+    assert repr(dataclasses.replace(found, checks=checks[:1])).startswith("Statistical convergence passed")
+    save_convergence(found, tmp_path / "x.png")
+    (figure,) = kept
+    recorded("drawn.converge", told.drawn(figure))
+    m, n, z, bottom = figure.axes
+    for axis, curve, x, y in (
+        (m, found.slopes[0], "surfaces $M$", "rms error (standard deviations)"),
+        (n, found.slopes[1], "asperities $N$", "rms relative error"),
+    ):
+        assert (axis.get_xlabel(), axis.get_ylabel()) == (x, y)
+        assert axis.get_title() == f"slope {curve.value:.4f} ± 0.0392"
+        (points,) = markers_of(axis)
+        np.testing.assert_array_equal(points.get_xydata(), np.stack([curve.sizes, curve.errors], axis=1))
+        bars = bars_of(axis)
+        np.testing.assert_allclose(bars[:, 2] - curve.errors, 1.96 * curve.stderr * curve.errors, rtol=1e-9)
+        fit = axis.get_lines()[0].get_ydata()
+        np.testing.assert_allclose(fit * np.sqrt(curve.sizes), fit[0], rtol=1e-12)
+        middle = np.exp(np.mean(np.log(curve.errors) - np.log(fit)))
+        assert middle == pytest.approx(1, rel=1e-12)
+    heights = np.array([patch.get_height() for patch in z.patches])
+    expected = np.histogram(scores, np.linspace(-4, 4, 25), density=True)[0]
+    np.testing.assert_allclose(heights, expected)
+    x, y = z.get_lines()[0].get_data()
+    np.testing.assert_allclose(y, norm.pdf(x))
+    good, bad = (c for c in bottom.collections if isinstance(c, PathCollection))
+    np.testing.assert_allclose(good.get_offsets()[:, 0], [0.5])
+    np.testing.assert_allclose(bad.get_offsets()[:, 0], [1e-5, 1e-12])  # the second and third fail
+    places = np.concatenate([good.get_offsets(), bad.get_offsets()])[:, 1]
+    labels = {
+        label.get_text(): y for label, y in zip(bottom.get_yticklabels(), bottom.get_yticks(), strict=True)
+    }
+    for check, row in zip(checks, places, strict=True):
+        assert labels[f"{check.name}: {check.seen}"] == row
+    assert tuple(good.get_facecolors()[0]) != tuple(bad.get_facecolors()[0])
+    assert len(good.get_paths()[0].vertices) != len(bad.get_paths()[0].vertices)  # nor by colour alone
+    assert "T\nStatistical convergence FAILED: p = 0 over 3 checks" in figure.get_suptitle()
+
+
+def test_convergence_without_slopes(make_scene, kept, tmp_path):
+    found = Convergence(make_scene(), (Check("means", "x", 0.3),), (), np.empty(0))
+    save_convergence(found, tmp_path / "x.png")
+    said = [text.get_text() for axis in kept[0].axes for text in axis.texts]
+    assert sorted(said) == [
+        "slope in M: too few contacts", "slope in N: too few contacts", "z-scores: too few contacts"
+    ]  # fmt: skip
+    assert "passed: p = 0.3 over 1 checks" in kept[0].get_suptitle()
+
+
+def test_tradeoff(make_scene, kept, tmp_path, recorded):
+    from mcgw.elasticity.ladder import Ladder, Rung
+    from mcgw.statistics.measured_ways import Point
+    from mcgw.statistics.prices import Way
+    from mcgw.statistics.tradeoff import Tradeoff
+
+    points = (
+        Point("tail", "mean", 10, 0.2, 0.02, 0.0, 1e-3, 16),
+        Point("tail", "mean", 1000, 0.02, 0.002, 0.0, 4e-3, 16),
+        Point("theory", "mean", 0, 0.0, 0.0, 0.0, 5e-4, 16),
+    )
+    ways = (Way("theory", "mean", 1e-13, 5e-4, 0.0), Way("tail", "mean", 0.0, 1e-3, 3e-6))
+    ways += (Way("cells, 0.001", "values", 1e-3, 0.25, 0.01), Way("exact law", "quantile", 1e-6, 0.01, 0.0))
+    rungs = (Rung("formula", 0, 1e-3, 0.0, 0.03), Rung("surfaces", 10, 0.1, 0.04, 0.03))
+    rungs += (Rung("surfaces", 1000, 9.0, 0.004, 0.03),)
+    scene = make_scene(title="T", separations=(2.0,), quantities=("area",), n_surfaces=75)
+    found = Tradeoff(scene, 2.0, points, ways, Ladder(rungs, ""), 1.0)
+    save_tradeoff(found, tmp_path / "x.png")
+    (figure,) = kept
+    recorded("drawn.tradeoff", told.drawn(figure))
+    mean, std, quantile, _, _, values, ladder = figure.axes
+    titles = ["mean area", "standard deviation", "99% quantile", "values of surfaces (75)"]
+    assert [axis.get_title() for axis in (mean, std, quantile, values)] == titles
+    assert [text.get_text() for text in std.texts] == ["no way to it"]
+    bars = bars_of(mean)
+    np.testing.assert_allclose(bars[:, 0], [1e-3, 4e-3])
+    np.testing.assert_allclose(
+        bars[:, 1:], 1.96 * np.array([[0.1608, 0.2392], [0.01608, 0.02392]]), rtol=1e-3
+    )
+    slope = next(
+        line for line in mean.get_lines() if line.get_linestyle() == "-" and len(line.get_xdata()) == 2
+    )
+    np.testing.assert_allclose(slope.get_ydata(), 1.96 * np.array([0.2, 0.02]))  # a tenth for a hundredfold
+    star = next(line for line in mean.get_lines() if line.get_marker() == "*")
+    np.testing.assert_allclose(star.get_xydata(), [(5e-4, 1e-13)])
+    np.testing.assert_allclose(values.get_lines()[0].get_xydata(), [(1.0, 1e-3)])
+    curve = next(line for line in ladder.get_lines() if line.get_label() == "surfaces")
+    np.testing.assert_allclose(curve.get_xydata(), [(0.1, 0.05), (9.0, math.hypot(0.004, 0.03))])
+    assert [text.get_text() for text in ladder.texts] == ["10", "1000"]
+
+
+def test_contact_map(make_scene, kept, tmp_path, recorded):
+    """Spots to scale at their places in micrometres, coloured by their loads in millinewtons."""
+    from mcgw.figures.contact_map import _DPI, contact_map_figure, save_contact_map, spots_at
+    from mcgw.maps.synthetic import Asperities, asperities_of
+
+    scene = make_scene(grading=analytic.Exponential(2.0))
+    sigma, radius = scene.surface.sigma, scene.surface.radius
+    x, y = np.array([10e-6, 30e-6, 45e-6]), np.array([15e-6, 20e-6, 5e-6])
+    field = Asperities(x, y, sigma * np.array([2.0, 1.5, 0.5]), np.full(3, radius), radius, (60e-6, 40e-6))
+    spots = spots_at(scene, field, 1.0)
+    delta = sigma * np.array([1.0, 0.5])
+    modulus = 2 - np.exp(-np.array([2.0, 1.5]))
+    load = 4 / 3 * scene.surface.E_star * modulus * math.sqrt(radius) * delta**1.5
+    np.testing.assert_allclose(spots.load, load, rtol=1e-12)
+    yields = make_scene(law=mcgw.KogutEtsion(critical=0.05), quantities=("load", "conductance"))
+    pressed = mcgw.simulate(yields)
+    for k, h in enumerate(yields.separations):
+        drawn = spots_at(yields, asperities_of(yields, 1), h)
+        np.testing.assert_allclose(drawn.load.sum(), pressed.load[1, k], rtol=1e-9)
+        np.testing.assert_allclose(4 * drawn.radius.sum(), pressed.conductance[1, k], rtol=1e-9)
+    for colour, values, label in (
+        ("load", 1e3 * load, "load of a spot (mN)"),
+        ("modulus", modulus, "$E^*(s)/E^*$"),
+    ):
+        kept.clear()
+        save_contact_map(field, spots, tmp_path / "x.png", colour=colour)
+        (figure,) = kept
+        recorded(f"drawn.map-{colour}", told.drawn(figure))
+        axis, *bars = figure.axes
+        (circles,) = axis.collections
+        np.testing.assert_allclose(circles.get_offsets(), 1e6 * np.column_stack([x[:2], y[:2]]))
+        np.testing.assert_allclose(circles.get_array(), values, rtol=1e-12)
+        widths = circles.get_widths() if hasattr(circles, "get_widths") else 2 * circles._widths
+        np.testing.assert_allclose(widths, 2e6 * np.sqrt(radius * delta), rtol=1e-12)
+        assert (axis.get_xlabel(), axis.get_ylabel()) == ("x (µm)", "y (µm)")
+        assert {bar.get_ylabel() for bar in bars} == {label, "height (µm)"}
+        assert axis.get_title() == "2 contacts at $d/\\sigma$ = 1"
+        (image,) = axis.get_images()
+        assert image.get_extent() == pytest.approx([0, 60, 0, 40])
+        assert np.max(image.get_array()) == pytest.approx(1e6 * sigma * 2, rel=1e-2)
+        assert image.origin == "lower"
+    pixels = 20e-6 / np.median(spots.radius)  # so many to a radius, and the window is 20 um wide
+    beside = dataclasses.replace(spots, x=np.array([25e-6, 30e-6]))
+    for drawn, number in ((beside, 2), (spots, 1)):
+        axis, *_ = contact_map_figure(field, drawn, inches=1.0, visible=_DPI / pixels).axes
+        assert axis.get_title() == f"2 contacts at $d/\\sigma$ = 1, {number} in this window of the map"
+    (circles,) = axis.collections
+    np.testing.assert_allclose(circles.get_array(), 1e3 * load[1:], rtol=1e-12)
+    assert circles.norm.vmax == pytest.approx(1e3 * load[0], rel=1e-12)  # colours are those of the whole map
+
+
+@pytest.mark.parametrize(("x", "label"), [(1e-12, "10⁻¹²"), (1.0, "10⁰"), (1e308, "10³⁰⁸"), (30.0, "30")])
+def test_labels_of_decades_are_plain_text(x, label):
+    assert power_of_ten(x) == label
+    assert plain(-2.5e-12) == "−2.5e−12"
+
+
+LABELS = (
+    *style.MEANINGS, "load_unloading", "nothing known",
+    *(f"γ = {g:g}" for g in (0, 0.1, 0.2, 0.3, 0.5, 0.7, 0.8, 0.95, 1, 1.05, 1.2, 1.4, 1.5, 2, 3, 40)),
+    *(f"d/σ = {h:g}" for h in (0, 0.5, 1, 2, 3, 3.5, 4)),
+    "N = 10²", "N = 10³", "N = 10⁶", "N = 1000", "b = 0.1", "b = 1", "b = 10",
+)  # fmt: skip
+
+
+def test_every_meaning_has_the_look_that_it_had(recorded):
+    def words(found):
+        return f"{found['color']} {found['linestyle']} {found.get('marker')}"
+
+    looks = [f"{label}: {words(look(label))}" for label in LABELS]
+    looks += [f"line {k}: {words(look('other', k))}" for k in range(9)]
+    looks += [f"step {k} of {n}: {words(style.step('', k, n))}" for n in (1, 2, 4, 9) for k in range(n)]
+    looks += [f"{key} = {value}" for key, value in style.STYLE.items()]
+    looks += [f"{x:g}: {style.prefixed(x)}" for x in (0.0, 1e-20, 1e-15, 0.999, 1.0, 999.9, 1e15, 1e16, 1e19)]
+    recorded("drawn.looks", looks)
+
+
+# --- comparisons ----------------------------------------------------------------------------------------
+
+TITLES = {
+    "load": "Load P (N)",
+    "area": "Real area A (m²)",
+    "stiffness": "Stiffness K (N/m)",
+    "contacts": "Contacts",
+    "conductance": "Conductance Cρ (m)",
+}
+QUANTITIES = tuple(TITLES)
+H = (1.0, 0.0, 2.0)
+
+
+@pytest.fixture(scope="module")
+def comparison():
+    scene = mcgw.Scene(
+        surface=SURFACE,
+        title="A title",
+        separations=H,
+        grading=analytic.Exponential(2.0),
+        quantities=QUANTITIES,
+        n_asperities=3000,
+        n_surfaces=60,
+        seed=4,
+    )
+    return compare(mcgw.simulate(scene))
+
+
+def check_curve(axis, curve, title):
+    """Theory in the order of the separations, means and their intervals where they are."""
+    h, order = np.array(H), np.argsort(H)
+    assert axis.get_title() + axis.get_title(loc="left") == title
+    assert axis.get_yscale() == "log"
+    (line,) = (x for x in axis.get_lines() if x.get_label() == "theory")
+    assert line.get_color() == THEORY
+    np.testing.assert_array_equal(line.get_xdata(), h[order])
+    np.testing.assert_array_equal(line.get_ydata(), curve.theory[order])
+    (points,) = markers_of(axis)
+    np.testing.assert_array_equal(points.get_xdata(), h)
+    np.testing.assert_array_equal(points.get_ydata(), curve.mean)
+    bars = bars_of(axis)
+    np.testing.assert_array_equal(bars[:, 0], h)
+    np.testing.assert_allclose(bars[:, 1], curve.low, rtol=1e-12)
+    np.testing.assert_allclose(bars[:, 2], curve.high, rtol=1e-12)
+
+
+def check_residual(axis, curve):
+    (points,) = markers_of(axis)
+    np.testing.assert_array_equal(points.get_xdata(), H)
+    np.testing.assert_array_equal(points.get_ydata(), curve.residual)
+    low, high = axis.get_ylim()
+    assert low == -high <= -4
+    assert np.all(np.abs(curve.residual) < high)
+    (band,) = axis.patches
+    assert (band.get_y(), band.get_height()) == (-2, 4)
+
+
+def test_every_title_has_the_unit_of_its_quantity():
+    """As the ensemble gives it: N and m², never mN or mm²."""
+    names = (*QUANTITIES, "load_slope", "conductance_si", "yielded", "load_unloading", "area_unloading")
+    found = [re.search(r" \((.+?)\)|$", analytic.quantity_of(name).title)[1] for name in names]
+    assert found == ["N", "m²", "N/m", None, "m", "N/m", "S or W/K", None, "N", "m²"]
+    assert analytic.quantity_of("area_unloading").title == "Real area A (m²), unloading"
+
+
+def test_comparison(comparison, kept, tmp_path):
+    save_comparison(comparison, tmp_path / "x.png")
+    (figure,) = kept
+    assert len(figure.axes) == 2 * len(QUANTITIES)
+    above, below = figure.axes[::2], figure.axes[1::2]
+    for k, name in enumerate(QUANTITIES):
+        check_curve(above[k], comparison.curves[name], TITLES[name])
+        check_residual(below[k], comparison.curves[name])
+    assert {axis.get_xlabel() for axis in below} == {"separation d/σ"}
+    assert below[0].get_ylabel() == "residual\n(std. errors)"
+    assert [axis.get_legend() is None for axis in above] == [False, *[True] * (len(QUANTITIES) - 1)]
+    legend = [text.get_text() for text in above[0].get_legend().get_texts()]
+    assert legend == ["theory", "Monte Carlo, 95 %"]
+    verdict = comparison.verdict
+    assert figure.get_suptitle() == (
+        f"A title\nMonte Carlo and theory agree: χ² = {verdict.chi_square:.1f} for "
+        f"{verdict.degrees} degrees, p = {verdict.p:.3g}"
+    )
+    assert figure.get_supxlabel() == (
+        "60 surfaces of 3000 asperities, exponential grading, γ = 2; "
+        f"sampler {comparison.ensemble.sampler}, seed 4"
+    )
+
+
+def drawn(comparison, name="load"):
+    """One quantity alone, as in a report."""
+    return draw(FigureData("", "", (quantity_panel(comparison, name),))).axes
+
+
+def one_of(comparison, curve):
+    """The same with another curve of the load, and that alone."""
+    return Comparison(comparison.ensemble, {"load": curve}, comparison.verdict)
+
+
+def test_one_quantity(comparison):
+    above, below = drawn(comparison, "area")
+    check_curve(above, comparison.curves["area"], TITLES["area"])
+    check_residual(below, comparison.curves["area"])
+    assert (below.get_xlabel(), below.get_ylabel()) == ("separation d/σ", "residual\n(std. errors)")
+    assert [t.get_text() for t in above.get_legend().get_texts()] == ["theory", "Monte Carlo, 95 %"]
+
+
+def test_of_residuals_that_read_alike_the_first_is_shown(comparison):
+    """Which of them has most rounding depends on the processor."""
+    curve = comparison.curves["load"]
+    for pull, shown in (([1e-9, -2e-9, 3e-9], 0), ([0.5, -2.001, 2.002], 1), ([-0.5, 0.4, 0.506], 2)):
+        mean = curve.theory + np.array(pull) * curve.stderr
+        compared = one_of(comparison, dataclasses.replace(curve, mean=mean))
+        assert compared.worst(1).only("separation").columns[0].values == [H[shown]]
+        assert f"{H[shown]:g}" in compared.sheet().table.text()
+        assert compared.sheet().table.only("separation").columns[0].values == [H[shown]]
+    still = dataclasses.replace(curve, mean=curve.theory - 1e-9 * curve.stderr)
+    assert "-0.00" not in one_of(comparison, still).worst(3).text()
+
+
+def test_a_large_residual_stays_in_sight_and_the_verdict_says_so(comparison, kept, tmp_path):
+    curve = comparison.curves["load"]
+    shift = 20 * curve.stderr
+    off = Curve(curve.mean + shift, curve.low + shift, curve.high + shift, curve.theory, curve.stderr)
+    wrong = dataclasses.replace(one_of(comparison, off), verdict=Verdict(99.0, 15, 1e-9))
+    save_comparison(wrong, tmp_path / "x.png")
+    low, high = kept[0].axes[1].get_ylim()
+    assert low < off.residual.min() < off.residual.max() < high
+    assert "theory DISAGREE: χ² = 99.0 for 15" in kept[0].get_suptitle().replace("\n", " ")
+
+
+def test_lopsided_intervals_are_drawn_lopsided(comparison):
+    """Longer upwards than downwards, and the other way round: each end where it belongs."""
+    curve = comparison.curves["load"]
+    low, high = curve.mean * [0.9, 0.7, 0.99], curve.mean * [1.3, 1.1, 1.5]
+    lopsided = Curve(curve.mean, low, high, curve.theory, curve.stderr)
+    check_curve(drawn(one_of(comparison, lopsided))[0], lopsided, TITLES["load"])
+
+
+def test_too_few_contacts_have_a_marker_of_their_own_and_pulls_a_linear_axis(comparison):
+    curve = comparison.curves["load"]
+    few = dataclasses.replace(curve, low=curve.low * [1, 1, np.nan], high=curve.high * [1, 1, np.nan])
+    axis = drawn(one_of(comparison, few))[0]
+    (points,) = markers_of(axis)
+    (cross,) = (x for x in axis.get_lines() if x.get_marker() == "x" and len(x.get_xdata()))
+    np.testing.assert_array_equal(points.get_xdata(), H[:2])
+    np.testing.assert_array_equal(cross.get_xydata(), [(H[2], curve.mean[2])])
+    assert [t.get_text() for t in axis.get_legend().get_texts()][-1] == "too few contacts"
+    pull = Curve(-curve.mean, -curve.high, -curve.low, -curve.theory, curve.stderr)
+    axis = drawn(one_of(comparison, pull))[0]
+    assert axis.get_yscale() == "linear"
+    np.testing.assert_allclose(bars_of(axis)[:, 1:], np.column_stack([pull.low, pull.high]), rtol=1e-12)
+    touches_nowhere = dataclasses.replace(curve, mean=curve.mean * [1, 1, 0])
+    axis = drawn(one_of(comparison, touches_nowhere))[0]
+    assert axis.get_ylim()[0] == pytest.approx(0.01 * curve.mean[:2].min())
+
+
+# --- drawn ------------------------------------------------------------------------------------------------
+
+
+# Panels, sign of the mean, and how far theory is: linear axes of pulls, exponents at the side.
+ROOM = [(1, 1, 1.0), (2, -1, 1e6), (5, 1, 1e6), (6, -1, 1.0), (7, 1, 1.0), (7, -1, 1e6)]
+
+
+@pytest.mark.parametrize(
+    ("panels", "sign", "size"), [pytest.param(*x, marks=() if x[0] == 1 else pytest.mark.site) for x in ROOM]
+)
+def test_panels_of_a_comparison_have_room(comparison, kept, tmp_path, panels, sign, size):
+    names = (*QUANTITIES, "yielded", "load_slope")[:panels]
+    one = comparison.curves["load"]
+    mean, error = sign * 1e-12 * one.mean, 1e-13 * one.mean
+    curve = Curve(mean, mean - error, mean + error, mean * (1 + 0.01 * size), 1e-13 * one.stderr)
+    save_comparison(dataclasses.replace(comparison, curves=dict.fromkeys(names, curve)), tmp_path / "x.png")
+    assert len(kept[0].axes) == 2 * panels
+    assert not crowded(kept[0])
+    kept[0].axes[0].set_title("A title for which there is no room " * 9)  # which would be seen
+    assert crowded(kept[0])

@@ -1,0 +1,467 @@
+"""Figures of the paper, those it lacks, those of any scene: every Monte-Carlo point against theory."""
+
+import csv
+from dataclasses import replace
+from functools import cache
+from importlib.resources import files
+
+import numpy as np
+import pytest
+from conftest import SURFACE
+from oracles.crowding import crowded
+from oracles.told import mark
+from scipy.integrate import quad
+from scipy.optimize import brentq
+from scipy.stats import norm
+
+import analytic
+import mcgw
+from mcgw.figures.catalogue import CATALOGUE, figures_of
+from mcgw.figures.compared import Compared
+from mcgw.figures.data import GAMMA, FigureData, ratio_of_sums
+from mcgw.figures.panels import draw, save_figure_files
+from mcgw.figures.populations import spread
+from mcgw.figures.ratios import _jackknifed
+from mcgw.figures.style import prefixed, short
+from mcgw.scene.scene_file import scene_from
+
+THEORY_ALONE = {"figure-1"}
+
+
+@pytest.fixture(scope="module")
+def figures():
+    """All of the sweep; eta A_n is 5000, as pressures are per nominal area."""
+    surface = replace(SURFACE, nominal_area=5000 / SURFACE.eta)
+    scene = mcgw.Scene(surface, separations=0.0, n_surfaces=400, n_asperities=5000, seed=11)
+    return dict(figures_of(Compared(scene, swept=True, most_listed=10)))
+
+
+def points(data):
+    return [s.points for panel in data.panels for s in panel.series if s.points is not None]
+
+
+def test_all_are_there(figures):
+    assert [f"figure-{k}" for k in range(1, 7)] == list(figures)[:6]
+    assert [row.name for row in CATALOGUE] == list(figures)  # the names that are checked before one is drawn
+    assert [data.name for data in figures.values()] == list(figures)
+    assert set(list(figures)[6:]) == {"equal-load", "fluctuations", "area-and-load"}
+    assert {name for name, data in figures.items() if not points(data)} == THEORY_ALONE
+
+
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(row.name, marks=() if row.name == "figure-3" else pytest.mark.site) for row in CATALOGUE],
+)
+def test_panels_have_room(figures, name):
+    assert not crowded(draw(figures[name]))
+
+
+def said(figures):
+    """Words, axes and numbers of figures, a line for each series."""
+    for name, data in figures.items():
+        if not isinstance(data, FigureData):
+            yield f"{name}: {data}"
+            continue
+        yield f"{name}: {data.title}; {data.caption}; {data.columns} columns"
+        for panel in data.panels:
+            ends = "" if panel.ylim is None else f" from {panel.ylim[0]:.6g} to {panel.ylim[1]:.6g}"
+            axes = f"{panel.xlabel} | {panel.ylabel}, {' '.join(panel.scales)}{ends}, level {panel.level}"
+            yield f" {panel.title or '-'}: {axes}"
+            for s in panel.series:
+                p, band = s.points, s.band or ()
+                parts = (s.x, s.theory, *band, *((p.x, p.mean, p.stderr, p.exact) if p else ()))
+                yield f"  {s.label}: {'; '.join(map(mark, parts))}"
+
+
+def test_nothing_else_of_the_sweep_moves(figures, recorded):
+    recorded("figures.sweep", said(figures))
+
+
+def test_every_point_agrees_with_theory(figures):
+    """|z| < 5 at each of some 700 points, one false alarm in 2500 seeds for Gaussian means.
+
+    Errors come from the surfaces, so points that few contacts make (below 20 in the ensemble, at
+    h = 4 with 2 000 000 asperities there are 63) would not be Gaussian; there are none.
+    """
+    for name in figures.keys() - THEORY_ALONE:
+        z = np.concatenate([p.residual for p in points(figures[name])])
+        assert np.all(np.isfinite(z)), name
+        assert np.abs(z).max() < 5, name
+        assert np.abs(z).max() > 0.05, name  # points that are theory itself would be no test
+
+
+def test_points_with_wrong_theory_would_show(figures):
+    """The companion: at half the points of Fig. 6 an error of 0.03 in gamma is 5 standard errors."""
+    for panel in figures["figure-6"].panels:
+        for series in panel.series[:3]:
+            h = float(series.label.split("=")[1])
+            p = series.points
+            slope = analytic.stiffness_ratio(h, analytic.Exponential(2.0)) - 1
+            assert np.median(np.abs((p.mean - p.exact - 0.03 * slope) / p.stderr)) > 5
+
+
+def test_lines_pass_through_what_theory_says_at_the_points(figures):
+    """The line is drawn from the function the points are held to: interpolated to 2 % of a coarse grid."""
+    for name in figures.keys() - THEORY_ALONE - {"area-and-load"}:
+        for panel in figures[name].panels:
+            for series in panel.series:
+                if series.points:
+                    on_line = np.interp(series.points.x, series.x, series.theory)
+                    np.testing.assert_allclose(on_line, series.points.exact, rtol=0.02)
+
+
+def test_numbers_of_the_paper(figures):
+    """Independent of the functions behind the figures: theory.md's and the paper's own figures."""
+    just, *_, by_load = figures["figure-4"].panels
+    assert just.series[0].theory == pytest.approx(np.ones(73))  # s = 0: no effect, the paper's reading
+    assert by_load.series[0].theory[-1] == pytest.approx(1.727, abs=5e-4)
+    six = figures["figure-6"].panels[0].series
+    assert six[1].theory[-1] == pytest.approx(1.802, abs=5e-4)
+    assert six[4].theory[-1] == pytest.approx(2, abs=0.03)  # "C_FGM/C_HOM = gamma" at d/sigma = 4
+    conductance = figures["equal-load"].panels[1].series[1]
+    assert conductance.theory[[0, -1]] == pytest.approx([3.114, 0.548], abs=5e-4)
+    stiffness = figures["equal-load"].panels[3].series[1]
+    assert stiffness.theory[[0, -1]] == pytest.approx([0.945, 1.057], abs=5e-4)
+    homogeneous = figures["area-and-load"].panels[1].series[1]
+    assert np.all(np.diff(homogeneous.theory) > 0)
+    assert homogeneous.theory[-1] < 1  # area grows slower than load, ever less so
+
+
+def test_ratios_have_a_line_of_their_own_at_one(figures):
+    """What is 1 for every curve where nothing is graded, and nothing else over gamma."""
+    panels = [p for data in figures.values() for p in data.panels if p.xlabel == GAMMA]
+    ones = [
+        all(np.interp(1.0, s.x, s.theory) == pytest.approx(1.0, abs=1e-6) for s in p.series) for p in panels
+    ]
+    assert len(panels) > 8
+    assert [p.level for p in panels] == [1.0 if one else None for one in ones]
+
+
+def test_ratio_of_sums_against_repetition():
+    """The stated error is the spread of repeated ratios: 200 of them know it to 5 %, four times that."""
+    rng = np.random.default_rng(3)
+    a = rng.gamma(3, size=(200, 500))
+    b = 2 * a + rng.normal(size=a.shape)
+    found = [ratio_of_sums(y, x) for x, y in zip(a, b, strict=True)]
+    spread = np.std([r for r, _ in found], ddof=1)
+    assert spread == pytest.approx(np.mean([e for _, e in found]), rel=0.2)
+
+
+def test_error_of_a_spread_against_repetition():
+    """Of std/mean as of ratios: 300 repetitions know it to 4 %."""
+    rng, h = np.random.default_rng(4), np.array([0.0, 0.5])
+    found = [spread(rng.gamma([2.0, 5.0], size=(500, 2)), h, 0 * h) for _ in range(300)]
+    seen = np.std([p.mean for p in found], axis=0, ddof=1)
+    np.testing.assert_allclose(seen, np.mean([p.stderr for p in found], axis=0), rtol=0.16)
+
+
+def test_jackknife_at_equal_load_literally():
+    """Ten groups of surfaces, each left out in turn; ratios at equal load by bisection."""
+    rng, h = np.random.default_rng(5), 1.0
+    listed = tuple(rng.normal(size=n) for n in rng.integers(100, 300, 25))
+
+    def ratios(s, gamma):
+        modulus, d = gamma - (gamma - 1) * np.exp(-s), np.maximum(s - h, 0)
+
+        def excess(x):
+            return (modulus * np.maximum(s - x, 0) ** 1.5).sum() - (d**1.5).sum()
+
+        own = np.maximum(s - brentq(excess, h - 1, h + 1, xtol=1e-13), 0)
+        hom = np.sqrt(d).sum(), d.sum(), np.sqrt(d).sum()
+        return np.array([np.sqrt(own).sum(), own.sum(), (modulus * np.sqrt(own)).sum()]) / hom
+
+    found, errors = _jackknifed(listed, h)
+    for k, gamma in ((0, 0.2), (6, 2.0)):
+        np.testing.assert_allclose(found[k], ratios(np.concatenate(listed), gamma), rtol=1e-9)
+        left = [
+            ratios(np.concatenate([s for i, s in enumerate(listed) if i % 10 != group]), gamma)
+            for group in range(10)
+        ]
+        np.testing.assert_allclose(errors[k], np.std(left, axis=0) * 3, rtol=1e-7)  # sqrt(10 - 1)
+
+
+OVER_H, G, S = "separation d/σ", "grading factor γ", "summit height s = z/σ"
+P = "pressure $P/A_n$ (MPa)"
+AXES = {
+    "figure-1": [(S, "E*(s)/E*")] * 2,
+    "figure-2": [(OVER_H, r"load integral $F^*_{3/2}$")] * 2,
+    "figure-3": [(G, r"$(A/P)\,/\,(A/P)_\mathrm{hom}$")] * 2,
+    "figure-4": [(G, r"$\psi/\psi_\mathrm{hom}$")] * 4,
+    "figure-5": [(OVER_H, r"stiffness integral $F^*_{1/2}$")] * 2,
+    "figure-6": [(G, r"$K/K_\mathrm{hom}$")] * 2,
+    "equal-load": [(G, rf"${q}/{q}_\mathrm{{hom}}$") for q in "KCAK"],
+    "fluctuations": [(OVER_H, "std / mean")] * 3,
+    "area-and-load": [
+        (r"pressure $P/A_n$ (MPa)", r"real area fraction $A/A_n$"),
+        (OVER_H, r"$d\,\ln A/d\,\ln P$"),
+    ],
+}  # fmt: skip
+
+
+def test_axes_say_what_is_drawn_and_in_which_unit(figures):
+    assert list(AXES) == list(figures)
+    for name, data in figures.items():
+        assert [(panel.xlabel, panel.ylabel) for panel in data.panels] == AXES[name], name
+
+
+def test_curves_carry_the_label_of_their_grading_or_separation(figures):
+    """A line drawn under another's label: theory by the label alone, in two panels of each kind."""
+    for name, n in (("figure-2", 1.5), ("figure-5", 0.5)):
+        for panel in figures[name].panels:
+            for series in panel.series:
+                grading = analytic.Exponential(float(series.label.removeprefix("γ = ")))
+                np.testing.assert_allclose(series.theory, analytic.fn(n, series.x, grading), rtol=1e-12)
+    for panel in figures["figure-6"].panels:
+        for series in panel.series:
+            h = float(series.label.removeprefix("d/σ = "))
+            for gamma, value in list(zip(series.x, series.theory, strict=True))[::20]:
+                exact = analytic.stiffness_ratio(h, analytic.Exponential(gamma))
+                assert value == pytest.approx(float(exact), rel=1e-12)
+
+
+def test_pressures_and_area_fractions_are_those_of_the_paper(figures):
+    """P/A_n in MPa and A/A_n at d = 0, gamma = 2: closed forms of F_1 and F*_{3/2}."""
+    series = figures["area-and-load"].panels[0].series[0]
+    assert series.label == "γ = 2"
+    x = SURFACE
+    area = np.pi * x.eta * x.radius * x.sigma / np.sqrt(2 * np.pi)
+    f = float(analytic.fn(1.5, 0.0, analytic.Exponential(2.0)))
+    pressure = 4 / 3 * x.eta * x.E_star * x.radius**0.5 * x.sigma**1.5 * f / 1e6
+    assert (series.x[0], series.theory[0]) == (pytest.approx(pressure), pytest.approx(area))
+    assert series.points.x[0] == pytest.approx(pressure, rel=0.01)
+    assert series.points.mean[0] == pytest.approx(area, rel=0.01)
+
+
+def test_captions_count_what_was_drawn(figures):
+    for name in ("figure-2", "figure-3", "figure-5", "figure-6", "area-and-load"):
+        assert "400 surfaces of 5000 asperities, seed 11" in figures[name].caption
+    for name in ("figure-4", "equal-load"):
+        assert "10 surfaces of 5000 asperities, seed 11" in figures[name].caption
+    assert "(a: 400 surfaces.)" in figures["equal-load"].caption
+
+
+@pytest.mark.usefixtures("blank_figures")
+def test_files_and_every_number_of_a_figure_in_its_csv(figures, tmp_path):
+    data = figures["figure-6"]
+    both = (data, figures["figure-1"])
+    paths = [
+        path
+        for one in both
+        for path in save_figure_files(one, tmp_path / "new", ("png", "pdf", "svg"), csv=True)
+    ]
+    assert sorted(p.suffix for p in paths) == [".csv", ".csv", ".pdf", ".pdf", ".png", ".png", ".svg", ".svg"]
+    assert set((tmp_path / "new").iterdir()) == set(paths)
+    rows = list(csv.DictReader((tmp_path / "new" / "figure-6.csv").read_text().splitlines()))
+    expected = []
+    for panel in data.panels:
+        for s in panel.series:
+            expected += [
+                (panel.title, s.label, "line", x, y, "", "") for x, y in zip(s.x, s.theory, strict=True)
+            ]
+            p = s.points
+            expected += [
+                (panel.title, s.label, "point", *numbers)
+                for numbers in zip(p.x, p.exact, p.mean, p.stderr, strict=True)
+            ]
+    found = [tuple(row.values()) for row in rows]
+    assert len(found) == len(expected)
+    for a, b in zip(found, expected, strict=True):
+        assert a[:3] == b[:3]
+        assert [float(x) if x else "" for x in a[3:]] == list(b[3:])
+
+
+# --- figures of a scene ----------------------------------------------------------------------------------
+
+H = (0.0, 1.0, 2.0)
+SOFT = mcgw.Surface("0.2 um", "50 um", "1000/mm^2", "1 mm^2", "10 MPa")
+RATIOS = {"figure-3", "figure-6", "equal-load"}
+
+
+def scene_of(surface=SURFACE, **given):
+    return mcgw.Scene(
+        surface, **{"separations": H, "n_asperities": 20_000, "n_surfaces": 200, "seed": 3} | given
+    )
+
+
+def preset(name):
+    scene = scene_from((files("mcgw.scene") / "presets" / f"{name}.toml").read_text(encoding="utf-8"))
+    return scene.replace(separations=H, n_surfaces=60)
+
+
+def drawn(scene):
+    """Figures by name, the names of those with no meaning, and why."""
+    compared = Compared(scene)
+    found = dict(figures_of(compared))
+    assert [row.name for row in CATALOGUE] == list(found)
+    figures = {name: x for name, x in found.items() if isinstance(x, FigureData)}
+    assert all(
+        isinstance(x, str) and x and "\n" not in x for x in found.values() if x not in figures.values()
+    )
+    return figures, {name: why for name, why in found.items() if name not in figures}
+
+
+def residuals(figures):
+    """Of points that scatter by more than rounding."""
+    every = [p for x in figures for p in points(x)]
+    scatter = [p.stderr > 1e-14 * np.abs(p.mean) for p in every]
+    return np.concatenate([(p.mean - p.exact)[s] / p.stderr[s] for p, s in zip(every, scatter, strict=True)])
+
+
+YIELDS = {"law": mcgw.KogutEtsion(hardness=1.2e9, poisson=0.3), "grading": mcgw.Exponential(1.5)}
+# Of each kind its scene, and the figures without meaning.
+SCENES = {
+    "graded": (lambda: scene_of(grading=mcgw.Exponential(0.5)), set()),
+    "clipped": (
+        lambda: scene_of(grading=mcgw.Exponential(2.0), negative="clip", separations=(-1.0, 0.0)), set()
+    ),
+    "coated": (
+        lambda: scene_of(law=mcgw.Coated(thickness=1e-6, ratio=3.0, poisson=0.3), count="poisson"),
+        {"figure-1", "figure-4"},
+    ),
+    "sticks": (
+        lambda: scene_of(
+            SOFT, law=mcgw.JohnsonKendallRoberts(work=0.05), unload_from="loop", quantities=["load"]
+        ),
+        {"figure-1", "figure-3", "figure-4", "equal-load", "area-and-load"},
+    ),
+    "interacting": (lambda: scene_of(interaction="body"), {"figure-1", "figure-4"}),
+    "homogeneous": (scene_of, {"figure-1", "figure-4"} | RATIOS),
+    "preset nanoindentation": (lambda: preset("nanoindentation"), set()),
+    "own grading": (lambda: scene_of(grading=lambda s: 1 + 0.3 * np.tanh(s), count="poisson"), set()),
+    "other heights": (
+        lambda: scene_of(grading=mcgw.Exponential(2.0), heights=mcgw.Weibull(10.0)), set()
+    ),
+    # At d/sigma = 0 Hertz's asperities carry more than those that yield can.
+    "yields, and back": (lambda: scene_of(**YIELDS, unload_from="loop"), {"equal-load"}),
+    "own radii": (
+        lambda: scene_of(
+            mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 mm^2", "100 GPa"), grading=mcgw.Exponential(0.5)
+        ),
+        set(),
+    ),
+}  # fmt: skip
+RECORDED = ("graded", "coated", "sticks", "interacting", "preset nanoindentation")
+DEAR = ("own grading", "other heights", "yields, and back", "own radii")  # 2 s to half a minute of theory
+
+
+@cache
+def drawn_of(name):
+    return drawn(SCENES[name][0]())
+
+
+@pytest.fixture
+def graded():
+    figures, _ = drawn_of("graded")
+    return figures
+
+
+def check(figures):
+    """|z| < 5 at each of some 100 points, of Gaussian means one false alarm in 10^4 seeds."""
+    z = residuals(figures)
+    assert z.size > 10
+    assert 0.05 < np.abs(z).max() < 5
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow if name in DEAR else ()) for name in SCENES]
+)
+def test_every_kind_of_scene_has_its_figures(name, recorded):
+    figures, without = drawn_of(name)
+    assert set(without) == SCENES[name][1]
+    if name in RECORDED:
+        recorded(f"figures.{name.split()[-1]}", said(figures | without))
+    check(figures.values())
+    for panel in (panel for figure in figures.values() for panel in figure.panels):
+        assert len({one.label for one in panel.series}) == len(panel.series), panel.title
+
+
+def test_a_load_that_yielding_asperities_do_not_reach():
+    said = dict(figures_of(Compared(scene_of(**YIELDS)), ["equal-load"]))["equal-load"]
+    assert "does not reach the load of its reference" in said
+
+
+def test_nothing_is_divided_by_a_load_of_nothing():
+    """Above the highest summit there is none at all, which is not positive."""
+    heights = analytic.HeightTable.of([1.0, 2.0, 5.0, 9.0])
+    for highest, told in ((1.0, False), (9.0, True)):
+        scene = scene_of(separations=(0.0, highest), heights=heights)
+        found = dict(figures_of(Compared(scene), ["area-and-load"]))["area-and-load"]
+        assert (found == "the mean load is not positive at every separation") == told
+
+
+def test_numbers_are_integrals_over_the_heights(graded):
+    """Of a graded Gaussian surface at d/sigma = 1, by quadrature alone."""
+
+    def modulus(s):
+        return 0.5 + 0.5 * np.exp(-s)
+
+    def integral(power, weight=lambda s: 1.0):
+        return quad(lambda s: (s - 1) ** power * weight(s) * norm.pdf(s), 1, 12, epsrel=1e-11)[0]
+
+    def at_one(name, series=0, panel=0):
+        p = graded[name].panels[panel].series[series].points
+        (value,) = p.exact[np.isclose(p.x, 1.0)]
+        return value
+
+    x, plain = SURFACE, integral(1.5)
+    pressure = 4 / 3 * x.eta * x.E_star * x.radius**0.5 * x.sigma**1.5 * integral(1.5, modulus)
+    pressure *= 20_000 / (x.eta * x.nominal_area)
+    assert graded["figure-2"].panels[0].ylabel == "pressure $P/A_n$ (MPa)"
+    assert at_one("figure-2") == pytest.approx(pressure / 1e6, rel=1e-9)
+    assert at_one("figure-3") == pytest.approx(plain / integral(1.5, modulus), rel=1e-9)
+    assert at_one("figure-6") == pytest.approx(integral(0.5, modulus) / integral(0.5), rel=1e-9)
+    assert at_one("figure-4") == pytest.approx(integral(0, modulus) / integral(0), rel=1e-9)
+    squared = integral(1.5, lambda s: modulus(s) ** 2)
+    assert at_one("figure-4", series=2) == pytest.approx(squared / integral(1.5, modulus), rel=1e-9)
+    grading = graded["figure-1"].panels[0].series[0]
+    np.testing.assert_allclose(grading.theory, modulus(grading.x), rtol=1e-12)
+    assert {s.label for s in graded["figure-2"].panels[0].series} == {"this scene", "homogeneous"}
+
+
+def test_another_scene_would_show(graded):
+    """The companion: an error of 0.02 in gamma is more than 5 standard errors at most points of figure 6."""
+    p = graded["figure-6"].panels[0].series[0].points
+    other = analytic.stiffness_ratio(p.x, analytic.Exponential(0.52))
+    assert np.median(np.abs(p.mean - other) / p.stderr) > 5
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"separations": (4.9, 5.1), "n_surfaces": 4},
+        {
+            "heights": mcgw.MeasuredHeights(np.linspace(-2, 2, 99)),
+            "n_asperities": 99,
+            "n_surfaces": 1,
+            "separations": (0.5, 1.0),
+        },
+    ],
+)
+def test_what_hardly_touches_or_is_one_surface_has_no_markers(changes):
+    figures, without = drawn(scene_of(grading=mcgw.Exponential(2.0), quantities=["load"], **changes))
+    assert set(without) <= {"fluctuations", "equal-load"}
+    assert not [p for x in figures.values() for p in points(x)]
+
+
+def test_one_surface_has_no_markers():
+    figures, without = drawn(
+        scene_of(n_surfaces=1, grading=mcgw.Exponential(2.0), separations=1.0, quantities=["load", "area"])
+    )
+    assert "fluctuations" in without
+    assert not [p for x in figures.values() for p in points(x)]
+    assert not any("Markers" in data.caption for data in figures.values())
+    assert draw(figures["figure-2"]).axes
+
+
+@pytest.mark.parametrize(
+    ("largest", "found"),
+    [(2.5e6, (1e6, "M")), (999.0, (1, "")), (1000.0, (1e3, "k")), (0.02, (1e-3, "m")), (3e-6, (1e-6, "µ"))],
+)
+def test_prefixes(largest, found):
+    assert prefixed(largest) == (pytest.approx(found[0]), found[1])
+
+
+def test_a_law_in_a_caption_keeps_six_digits():
+    law = "KogutEtsion(hardness=1234567000.0, poisson=0.3333333333)"
+    assert short(law) == "KogutEtsion(hardness=1.23457e+09, poisson=0.333333)"
+    assert short("Hertz()") == "Hertz"

@@ -1,0 +1,357 @@
+"""Executors: threads, processes and dask give the same digest, whatever happens to their workers."""
+
+import multiprocessing
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from contextlib import closing, nullcontext
+from pathlib import Path
+
+import pytest
+from oracles.begun_runs import digest
+from oracles.lost_workers import deadly, deadly_once
+
+import mcgw
+from mcgw.ensemble.simulation import Values
+from mcgw.errors import RunError, StoppedError
+from mcgw.jobs import driver, job
+from mcgw.jobs.driver import Signals, drive, heed_signals
+from mcgw.jobs.executors import Jobs, dask_executor
+from mcgw.jobs.running import run
+from mcgw.store.disk import parts_of
+from mcgw.store.shards import Span
+
+SIZE, SURFACES = 8, 72
+HERE = Path(__file__).parents[1]
+SPANS = [Span(8 * i, 8) for i in range(6)]
+
+
+@pytest.fixture(autouse=True)
+def _small_blocks(monkeypatch):
+    monkeypatch.setattr(Values, "rows", SIZE)
+    # Spawned workers import this package from here.
+    monkeypatch.setenv("PYTHONPATH", str(HERE.parent))
+
+
+@pytest.fixture
+def scene(make_scene):
+    """Blocks of some tenths of a second: long enough to be killed in."""
+    return make_scene(sampler="direct", n_asperities=250_000, n_surfaces=SURFACES, separations=(1.0, 2.0))
+
+
+@pytest.fixture(scope="module")
+def expected(tmp_path_factory):
+    """Digest from threads."""
+    found = []
+
+    def of(scene):
+        if not found:
+            path = tmp_path_factory.mktemp("threads") / "e.h5"
+            run(scene, path)
+            found.append(digest(path))
+        return found[0]
+
+    return of
+
+
+def kill_one_now_and_then(pids, times):
+    """Progress that kills a worker each time a few more blocks are done."""
+    killed = []
+
+    def progress(done, _):
+        if done and done % (3 * SIZE) == 0 and len(killed) < times:
+            alive = [pid for pid in pids() if pid not in killed]
+            killed.append(alive[0])
+            os.kill(alive[0], signal.SIGKILL)
+
+    return progress, killed
+
+
+@pytest.mark.slow
+def test_a_killed_process_is_replaced(scene, tmp_path, expected):
+    with Jobs(2) as executor:
+        progress, killed = kill_one_now_and_then(lambda: list(executor._pool._processes), 1)
+        run(scene, tmp_path / "e.h5", executor=executor, progress=progress)
+    assert len(killed) == 1
+    assert digest(tmp_path / "e.h5") == expected(scene)
+
+
+@pytest.mark.slow
+def test_a_pool_of_the_user_that_breaks_is_one_line_and_the_run_goes_on_with_another(
+    scene, tmp_path, expected
+):
+    path, spawn = tmp_path / "e.h5", multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(2, spawn) as pool:
+        progress, killed = kill_one_now_and_then(lambda: list(pool._processes), 1)
+        lost = r"^the executor takes no more work \(BrokenProcessPool: .*\); finished"
+        with pytest.raises(RunError, match=lost):
+            run(scene, path, executor=pool, progress=progress)
+    assert killed
+    kept = len(list(parts_of(path).glob("shards/*.h5")))
+    assert 3 <= kept < SURFACES // SIZE
+    with ProcessPoolExecutor(2, spawn) as pool:
+        run(scene, path, executor=pool)
+        assert pool.submit(abs, -1).result(timeout=60) == 1  # it stays open
+    assert digest(path) == expected(scene)
+
+
+@pytest.mark.site
+def test_killed_dask_workers_are_replaced(scene, tmp_path, expected):
+    distributed = pytest.importorskip("distributed")
+    cluster = distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs="CRITICAL"
+    )
+    with cluster, distributed.Client(cluster, set_as_default=False) as client:
+        nannies = cluster.workers
+        progress, killed = kill_one_now_and_then(lambda: [x.process.process.pid for x in nannies.values()], 3)
+        executor = client.get_executor(pure=False)
+        run(scene, tmp_path / "e.h5", executor=executor, progress=progress)
+        assert client.submit(sum, (1, 2)).result(timeout=30) == 3  # it stays open
+    assert len(killed) == 3
+    assert digest(tmp_path / "e.h5") == expected(scene)
+
+
+def free_port():
+    with socket.socket() as found:
+        found.bind(("127.0.0.1", 0))
+        return found.getsockname()[1]
+
+
+class Cluster:
+    """A scheduler and two workers as processes of their own."""
+
+    def __init__(self, folder):
+        self.address = f"tcp://127.0.0.1:{free_port()}"
+        self.folder = folder
+        port = self.address.rsplit(":", 1)[1]
+        self.scheduler = self._start("scheduler", "--port", port, "--host", "127.0.0.1", "--no-dashboard")
+        words = ("worker", self.address, "--nworkers", "2", "--nthreads", "1", "--no-dashboard")
+        self.workers = self._start(*words, "--host", "127.0.0.1", "--death-timeout", "20")
+
+    def _start(self, *words):
+        call = [sys.executable, "-m", "distributed.cli.dask_" + words[0], *words[1:]]
+        env = os.environ | {"PYTHONPATH": str(HERE.parent), "PYTHONWARNINGS": "ignore"}
+        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": self.folder}
+        return subprocess.Popen(call, env=env, start_new_session=True, **quiet)
+
+    def close(self):
+        for process in (self.scheduler, self.workers):
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+
+    def draw(self, *arguments, **options):
+        """Run by its workers; the scheduler needs a moment to start."""
+        until = time.monotonic() + 30
+        while True:
+            try:
+                with dask_executor(self.address) as executor:
+                    return run(*arguments, executor=executor, **options)
+            except RunError as error:
+                if "no scheduler answers" not in str(error) or time.monotonic() > until:
+                    raise
+
+
+@pytest.mark.site
+def test_a_lost_scheduler_is_one_line_and_the_run_goes_on_with_another(scene, tmp_path, expected):
+    pytest.importorskip("distributed")
+    path, first = tmp_path / "e.h5", Cluster(tmp_path)
+
+    def kill_midway(done, _):
+        if done >= SURFACES // 3 and first.scheduler.poll() is None:
+            os.killpg(first.scheduler.pid, signal.SIGKILL)
+
+    lost = r"by the executor|takes no more work"
+    with closing(first), pytest.raises(RunError, match=lost) as told:
+        first.draw(scene, path, progress=kill_midway)
+    assert "\n" not in str(told.value)
+    assert str(told.value).endswith("finished blocks are kept; the same command resumes")
+    kept = len(list(parts_of(path).glob("shards/*.h5")))
+    assert SURFACES // 3 // SIZE <= kept < SURFACES // SIZE
+    with closing(Cluster(tmp_path)) as second:
+        second.draw(scene, path)
+    assert digest(path) == expected(scene)
+
+
+def test_dask_that_is_not_there_is_one_line(monkeypatch):
+    with (
+        pytest.raises(RunError, match=r"^--dask ftp://x: no scheduler answers|^dask is not installed"),
+        dask_executor("ftp://x"),
+    ):
+        pass
+    monkeypatch.setitem(sys.modules, "distributed", None)  # it cannot be imported
+    with (
+        pytest.raises(RunError, match=r"dask is not installed: in a clone of mcgw, pip install -e '\.\["),
+        dask_executor("tcp://127.0.0.1:1"),
+    ):
+        pass
+
+
+def test_any_executor_draws_the_surfaces_that_this_process_draws(make_scene, tmp_path):
+    scene = make_scene(n_surfaces=5 * SIZE)
+    with ThreadPoolExecutor(3) as pool:
+        drawn = mcgw.run(scene, tmp_path / "e.h5", executor=pool)
+        assert pool.submit(abs, -1).result(timeout=60) == 1  # it stays open
+    assert (drawn.load == mcgw.simulate(scene).load).all()
+
+
+def test_a_block_is_written_while_the_next_one_is_drawn(make_scene, tmp_path, monkeypatch):
+    """Each commit but the last waits until the next block is begun; with one thread it would for ever."""
+    draw, commit, begun, written = job.Job.draw, job.commit_shard, [], []
+    next_one = {first: threading.Event() for first in range(0, 4 * SIZE, SIZE)}
+    next_one[3 * SIZE].set()
+
+    def drawn(self, span, *how):
+        next_one[span.first].set()
+        begun.append(span.first)
+        return draw(self, span, *how)
+
+    def committed(path, run, span, *rest):
+        assert next_one[span.stop].wait(timeout=30)
+        written.append(span.first)
+        return commit(path, run, span, *rest)
+
+    monkeypatch.setattr(job.Job, "draw", drawn)
+    monkeypatch.setattr(job, "commit_shard", committed)
+    mcgw.run(make_scene(n_surfaces=3 * SIZE), tmp_path / "e.h5")
+    assert begun == written == [0, SIZE, 2 * SIZE]
+
+
+class Now(Executor):
+    """Does a task when it is submitted; some blocks are lost so many times, after some it is broken."""
+
+    def __init__(self, lost=None, takes=99):
+        self.lost, self.takes, self.begun = dict(lost or {}), takes, []
+
+    def submit(self, task, /, *arguments):
+        if len(self.begun) == self.takes:
+            raise BrokenExecutor("no worker\nis left")
+        first = arguments[1]
+        self.begun.append(first)
+        future = Future()
+        if self.lost.get(first, 0):
+            self.lost[first] -= 1
+            future.set_exception(KeyError("worker 7\nwas lost"))
+        else:
+            future.set_result(task(*arguments))
+        return future
+
+
+def driven(executor, task=abs):
+    done = []
+    drive(
+        executor, SPANS, task, lambda span: (span.first,), lambda span, _: done.append(span.first), Signals()
+    )
+    return done
+
+
+def test_a_block_that_is_lost_is_submitted_once_more():
+    executor = Now(lost={8: 1, 24: 1})
+    assert sorted(driven(executor)) == [0, 8, 16, 24, 32, 40]
+    assert sorted(executor.begun) == [0, 8, 8, 16, 24, 24, 32, 40]
+
+
+def test_blocks_that_are_lost_twice_are_counted_and_the_others_are_done():
+    executor, done = Now(lost={8: 2, 24: 2}), []
+    told = r"^surfaces 8 \.\.\. 15 were lost twice by the executor \(KeyError: .*\), as were 1 other"
+    with pytest.raises(RunError, match=told):
+        drive(executor, SPANS, abs, lambda s: (s.first,), lambda s, _: done.append(s.first), Signals())
+    assert sorted(done) == [0, 16, 32, 40]
+
+
+def test_an_executor_that_takes_no_more_work_ends_the_run_in_one_line():
+    told = r"^the executor takes no more work \(BrokenExecutor: no worker\); finished"
+    with pytest.raises(RunError, match=told):
+        driven(Now(takes=3))
+
+
+@pytest.mark.parametrize("mark", ["once", None])
+def test_a_task_that_kills_its_worker_is_tried_once_more_and_given_up(mark, tmp_path):
+    """A worker that is killed is replaced; a task that kills two is the only one that is not done."""
+    done, given_up = [], r"16 \.\.\. 23 were lost twice by the executor \(BrokenProcessPool"
+    task, words = (deadly_once, (str(tmp_path / mark),)) if mark else (deadly, ())
+    with Jobs(1) as executor, nullcontext() if mark else pytest.raises(RunError, match=given_up):
+        drive(executor, SPANS[:3], task, lambda s: (s.first, *words), lambda s, _: done.append(s), Signals())
+    assert sorted(done) == [span for span in SPANS[:3] if mark or span.first != 16]
+
+
+def test_an_error_of_a_task_ends_the_run_and_what_is_not_begun_is_dropped():
+    for pool in (ThreadPoolExecutor(1), Now()):
+        begun = []
+
+        def task(first, begun=begun):
+            begun.append(first)
+            time.sleep(0.01)
+            return 1 / first
+
+        with pool, pytest.raises(ZeroDivisionError):
+            driven(pool, task)
+        assert len(begun) < len(SPANS) or isinstance(pool, Now)
+
+
+def test_a_long_block_is_left_when_the_run_is_interrupted(make_scene, tmp_path):
+    """It asks between two surfaces whether to go on."""
+    scene = make_scene(sampler="direct", n_asperities=1_000_000, n_surfaces=64 * SIZE)
+
+    def stop(done, _):
+        signal.raise_signal(signal.SIGTERM)
+
+    begin = time.monotonic()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(driver, "_GRACE", 0.1)
+        patch.setattr(Values, "rows", 32 * SIZE)
+        with pytest.raises(StoppedError, match=r"^terminated: 0 of 512 surfaces are kept"):
+            mcgw.run(scene, tmp_path / "e.h5", progress=stop)
+    assert time.monotonic() - begin < 10
+
+
+def test_workers_are_killed_at_the_end_whatever_they_do():
+    before = set(multiprocessing.active_children())
+    with Jobs(1) as executor:
+        executor.submit(time.sleep, 600)
+        (worker,) = set(multiprocessing.active_children()) - before
+    end = time.monotonic() + 30
+    while worker.exitcode is None and time.monotonic() < end:  # the pool's own thread waits for it, too
+        time.sleep(0.01)
+    assert worker.exitcode == -signal.SIGKILL
+
+
+def test_no_workers_are_an_error():
+    with pytest.raises(ValueError, match=r"^--jobs 0: give a whole number >= 1$"):
+        Jobs(0)
+
+
+# --- signals ---------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("number", "word", "code"), [(signal.SIGINT, "interrupted", 130), (signal.SIGTERM, "terminated", 143)]
+)
+def test_a_signal_is_noted_and_a_second_one_acts_at_once(number, word, code):
+    before = signal.getsignal(number)
+    with heed_signals() as signals:
+        signals.check("all is kept")
+        signal.raise_signal(number)
+        with pytest.raises(StoppedError, match=f"^{word}: all is kept$") as caught:
+            signals.check("all is kept")
+        assert caught.value.code == code
+        with pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(number)
+    assert signal.getsignal(number) == before
+
+
+def test_blocks_in_hand_when_a_signal_comes_are_kept():
+    """Of six, one that is done and those that were begun with it, but for the one that fails."""
+    signals, done = Signals(), []
+
+    def note(span, first):
+        done.append(first)
+        signals.number = signal.SIGTERM
+
+    drive(Now(), SPANS, lambda first: first // (first != 8), lambda span: (span.first,), note, signals)
+    assert done == [0, 16, 24, 32, 40]

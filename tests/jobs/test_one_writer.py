@@ -1,0 +1,303 @@
+"""One process writes a file at a time, whatever it is about to write; and none outlives its parent."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import mcgw
+from mcgw.cli import main
+from mcgw.ensemble.simulation import Values
+from mcgw.errors import RunError, StoreError
+from mcgw.formats.files import state_of
+from mcgw.jobs import merging
+from mcgw.jobs.job import Job
+from mcgw.jobs.merging import merge
+from mcgw.jobs.running import run
+from mcgw.store import ensembles, lock
+from mcgw.store.disk import parts_of
+from mcgw.store.lock import LockedError, locked
+from mcgw.store.place import tidy
+from mcgw.store.run_folder import RunFolder
+from mcgw.store.saving import save
+
+HERE = Path(__file__).parents[1]
+SIZE = 16
+
+
+@pytest.fixture(autouse=True)
+def _small_blocks_and_no_patience(looked_at_here, monkeypatch):
+    monkeypatch.setattr(Values, "rows", SIZE)
+    monkeypatch.setattr(lock, "PATIENCE", 0.0)
+
+
+@pytest.fixture
+def scene(make_scene):
+    return make_scene(separations=(1.0, 2.0), sampler="tail", n_surfaces=SIZE)
+
+
+@pytest.fixture
+def path(tmp_path):
+    return tmp_path / "e.h5"
+
+
+@pytest.fixture
+def drawing(monkeypatch):
+    """A run that has begun to draw its only block and waits: others may try."""
+
+    class Drawing:
+        begun, go_on, blocks = threading.Event(), threading.Event(), 0
+
+        def start(self, scene, path):
+            self.pool = ThreadPoolExecutor(1)
+            self.answer = self.pool.submit(run, scene, path)
+            assert self.begun.wait(30)
+
+        def finish(self):
+            self.go_on.set()
+            answer = self.answer.result(30)
+            self.pool.shutdown()
+            return answer
+
+    held, drawn = Drawing(), Job.draw
+
+    def slowly(*arguments):
+        held.blocks += 1
+        held.begun.set()
+        assert held.go_on.wait(30)
+        return drawn(*arguments)
+
+    monkeypatch.setattr(Job, "draw", slowly)
+    return held
+
+
+def others(scene):
+    """All that can be written to the same file meanwhile."""
+    blocks = replace(scene, n_surfaces=3 * SIZE)
+    return {
+        "the same run": lambda path: run(scene, path),
+        "its own seed": lambda path: run(replace(scene, seed=2), path),
+        "in blocks": lambda path: run(blocks, path),
+        "a share": lambda path: run(blocks, path, shard="1/2"),
+        "merge": merge,
+        "save": lambda path: save(mcgw.simulate(replace(scene, seed=3)), path),
+    }
+
+
+@pytest.mark.parametrize("other", ["the same run", "its own seed", "in blocks", "a share", "merge", "save"])
+def test_nothing_else_is_written_beside_a_run_of_one_block(other, scene, path, drawing):
+    drawing.start(scene, path)
+    with pytest.raises(LockedError, match=f"locked by pid {os.getpid()} on"):
+        others(scene)[other](path)
+    tidy(path)  # what `show` does; it takes nothing away
+    first = drawing.finish()
+    assert first.n_surfaces == SIZE
+    assert ensembles.verify(path)[0] == ""
+    assert [p.name for p in path.parent.iterdir()] == ["e.h5"]
+
+
+@pytest.mark.parametrize("other", ["its own seed", "save"])
+def test_who_comes_too_late_finds_another_ensemble(other, scene, path):
+    run(scene, path)
+    before = path.read_bytes()
+    with pytest.raises(StoreError, match="holds a different ensemble"):
+        others(scene)[other](path)
+    assert path.read_bytes() == before
+
+
+def test_a_run_that_waited_sees_what_the_other_wrote(scene, path, drawing, monkeypatch):
+    """Both looked before either wrote: the second one looks again, with the lock."""
+    monkeypatch.setattr(lock, "PATIENCE", 30.0)
+    drawing.start(scene, path)
+    with ThreadPoolExecutor(2) as pool:
+        same = pool.submit(run, scene, path)
+        other = pool.submit(run, replace(scene, seed=2), path)
+        time.sleep(0.2)
+        drawing.finish()
+        assert same.result(30).n_surfaces == SIZE
+        with pytest.raises(StoreError, match="seed is 1 there and 2 here"):
+            other.result(30)
+    assert drawing.blocks == 1  # and nothing is drawn twice
+
+
+def test_a_finished_file_needs_no_lock(scene, path):
+    """Whoever holds it: nothing is to be done, and there is nobody to wait for."""
+    over = {"grading.gamma": [0.5, 1.0]}
+    run(scene, path)
+    mcgw.sweep(scene, over, path=path.with_name("s.h5"))
+    with locked(parts_of(path)), locked(parts_of(path.with_name("s.h5"))):
+        assert run(scene, path).n_surfaces == SIZE
+        assert run(scene, path, shard="1/2") == 0
+        assert mcgw.sweep(scene, over, path=path.with_name("s.h5")).shape == (2,)
+        assert mcgw.sweep(scene, over, path=path.with_name("s.h5"), shard="2/2") == 0
+
+
+def test_jobs_share_and_others_wait(scene, path):
+    blocks = replace(scene, n_surfaces=3 * SIZE)
+    with locked(parts_of(path), shared=True):
+        run(blocks, path, shard="1/2")
+        for name in ("in blocks", "merge", "save", "the same run"):
+            with pytest.raises(LockedError):
+                others(scene)[name](path)
+        tidy(path)
+    assert run(blocks, path, shard="2/2") == 0
+    assert merge(path).n_surfaces == 3 * SIZE
+
+
+def test_an_unfinished_run_is_not_replaced(scene, path):
+    run(replace(scene, n_surfaces=3 * SIZE), path, shard="1/2")
+    with pytest.raises(StoreError, match="a run that makes this file is not finished"):
+        save(mcgw.simulate(scene), path)
+    with pytest.raises(StoreError, match="holds surfaces up to number 48 already, more than"):
+        run(scene, path)
+    with pytest.raises(StoreError, match="holds a different run"):
+        run(replace(scene, seed=2, n_surfaces=3 * SIZE), path)
+    assert run(replace(scene, n_surfaces=4 * SIZE), path).n_surfaces == 4 * SIZE
+
+
+def test_drawn_surfaces_are_kept_when_fewer_are_asked_for(scene, path):
+    """An extension that stopped half-way is not thrown away by the run that it extends."""
+    run(scene, path)
+    run(replace(scene, n_surfaces=4 * SIZE), path, shard="2/2")
+    kept = sorted(p.name for p in parts_of(path).glob("shards/*.h5"))
+    assert len(kept) == 2
+    for _ in range(2):
+        assert run(scene, path).n_surfaces == SIZE
+    assert sorted(p.name for p in parts_of(path).glob("shards/*.h5")) == kept
+
+
+def test_a_file_that_changes_while_it_is_extended_is_left_alone(scene, path, monkeypatch):
+    run(scene, path)
+    merged = merging.merge_into
+
+    def replaced(*words):
+        merged(*words)
+        path.unlink()
+        path.write_bytes(b"precious")
+
+    monkeypatch.setattr(merging, "merge_into", replaced)
+    with pytest.raises(RunError, match="another file now has this name"):
+        run(replace(scene, n_surfaces=3 * SIZE), path)
+    assert path.read_bytes() == b"precious"
+    assert len(list(parts_of(path).glob("shards/*.h5"))) == 2
+    assert not list(parts_of(path).glob(".*"))
+
+
+def leave_behind(path, scene, *, shards):
+    """What processes killed at the worst moments leave."""
+    folder = parts_of(path)
+    (folder / "shards").mkdir(parents=True)
+    (folder / "holder").write_text("pid 1 on here\n")
+    (folder / ".e.h5.0-1-2.tmp").write_bytes(b"half a file")
+    (folder / "shards" / ".block.tmp").write_bytes(b"half a block")
+    (folder / "shards" / "block-0000000000016.h5").write_bytes(b"of a worker whose driver is gone")
+    if shards:
+        (folder / "shards" / "block-0000000000016.h5").unlink()
+        Job.of(scene, path).record.begin()
+        (folder / "shards" / "block-0000000000000.h5").write_bytes(b"whole")
+
+
+@pytest.mark.parametrize("shards", [False, True], ids=["no run", "run"])
+@pytest.mark.parametrize("command", ["run", "merge", "show"])
+def test_leftovers_of_a_finished_file_are_cleared(command, shards, scene, path, capsys):
+    run(scene, path)
+    leave_behind(path, scene, shards=shards)
+    toml = path.with_suffix(".toml")
+    toml.write_text(mcgw.scene_text(scene))
+    before = state_of(path)
+    words = {"run": ["run", str(toml), "-o", str(path)]}.get(command, [command, str(path)])
+    assert main(words) == 0
+    assert state_of(path) == before
+    assert sorted(p.name for p in path.parent.iterdir()) == ["e.h5", "e.toml"]
+    if command == "merge":
+        assert "was finished before, 16 surfaces" in capsys.readouterr().out
+
+
+def test_leftovers_of_a_run_of_one_block_do_not_stand_in_the_way_of_another(scene, path):
+    leave_behind(path, scene, shards=False)
+    run(replace(scene, seed=2), path)
+    assert [p.name for p in path.parent.iterdir()] == ["e.h5"]
+
+
+def test_an_empty_run_of_another_scene_gives_way(scene, path):
+    folder = parts_of(path)
+    with locked(folder):
+        Job.of(scene, path).record.begin()
+    run(replace(scene, seed=2, n_surfaces=3 * SIZE), path, shard="1/2")
+    assert RunFolder.open(folder).scene.seed == 2
+
+
+def test_what_is_not_there_is_said_in_one_line(path, capsys):
+    with locked(parts_of(path)):
+        assert main(["show", str(path)]) == 2
+    assert capsys.readouterr().err == f"mcgw: {path}: no block of its run is finished yet\n"
+    tidy(path)
+    assert main(["merge", str(path)]) == 2
+    assert capsys.readouterr().err.startswith(f"mcgw: {path}: neither this file nor its blocks")
+
+
+def lives(pid):
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
+    except OSError:
+        return False
+
+
+def gone(pid, seconds=30):
+    until = time.monotonic() + seconds
+    while lives(pid):
+        if time.monotonic() > until:
+            os.kill(pid, signal.SIGKILL)
+            return False
+        time.sleep(0.01)
+    return True
+
+
+POOL = """
+import sys, time
+from mcgw.jobs.executors import Jobs
+if __name__ == "__main__":
+    jobs = Jobs(2)
+    answers = [jobs.submit(time.sleep, 100) for _ in range(2)]
+    while len(jobs._pool._processes) < 2:
+        time.sleep(0.01)
+    print(*jobs._pool._processes, flush=True)
+    time.sleep(100)
+"""
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="needs /proc")
+def test_workers_end_with_the_driver(tmp_path):
+    (tmp_path / "pool.py").write_text(POOL)
+    env = os.environ | {"PYTHONPATH": str(HERE.parent)}
+    driver = subprocess.Popen(
+        [sys.executable, tmp_path / "pool.py"], stdout=subprocess.PIPE, text=True, env=env
+    )
+    workers = [int(word) for word in driver.stdout.readline().split()]
+    assert len(workers) == 2
+    driver.kill()
+    driver.wait()
+    stayed = [pid for pid in workers if not gone(pid)]
+    assert stayed == []
+    driver.stdout.close()
+
+
+@pytest.mark.slow
+def test_random_kills_of_everything(tmp_path):
+    """A short one of `runs/reliability/kills.py`."""
+    script = HERE.parent / "runs" / "reliability" / "kills.py"
+    env = os.environ | {"PYTHONPATH": str(HERE.parent)}
+    call = [sys.executable, str(script), "6", "7"]
+    done = subprocess.run(call, env=env, capture_output=True, text=True, timeout=500, check=True)
+    found = json.loads(done.stdout)
+    assert found["kills"] >= 6
+    bad = {key: found[key] for key in ("lost", "wrong", "left", "stuck")}
+    assert bad == {"lost": 0, "wrong": 0, "left": 0, "stuck": 0}, done.stderr

@@ -1,0 +1,225 @@
+"""Stated errors: those of few waves and of sub-areas, literally; and against the scatter over maps."""
+
+import math
+from collections import defaultdict
+
+import numpy as np
+import pytest
+from oracles.fit_of_maps import fit_map
+from scipy.special import polygamma
+from scipy.stats import gamma, norm, t as t_law
+
+from analytic import SpectralMoments
+from mcgw.maps.fit_cautions import _waves
+from mcgw.maps.synthetic import Spectrum, gaussian_map, moments_on_grid
+from mcgw.maps.topography import Topography
+from mcgw.maps.waves import (
+    Spread,
+    Waves,
+    _legendre_shares,
+    _taken,
+    block_means,
+    coarser,
+    log_derivatives,
+    uncertain,
+    waves_of,
+)
+
+PARAMETERS = ("eta", "radius", "sigma")
+MOMENTS = ("m0", "m2", "m4", "alpha")
+PIXEL = (1e-6, 1.6e-6)
+
+
+def test_errors_of_a_few_waves():
+    """Shares of every wave in every moment, and what their squares say, in plain Python.
+
+    Shares of n equal waves, each twice with its conjugate, have the sum of squares 1/(n + 1). A sum of n
+    exponential numbers has a gamma distribution, widened by Student's t of as many degrees of freedom as
+    fourth powers tell. Products of cosines that are even about the middle of the map have no jump at its
+    edges, so that nothing is taken off them.
+    """
+    n, m, k = (48, 60), (3, 2, 5, 9, 0), (2, 4, 0, 7, 6)  # whole waves along x and y
+    amplitude = (1.5, 0.3, 0.7, 0.3, 0.5)
+    j, i = (np.mgrid[0 : n[0], 0 : n[1]] + 0.5) * 2 * math.pi
+    z = sum(a * np.cos(b * i / n[1]) * np.cos(c * j / n[0]) for a, b, c in zip(amplitude, m, k, strict=True))
+    waves = [2 if b * c == 0 else 4 for b, c in zip(m, k, strict=True)]  # in the plane, with conjugates
+    power = [a * a / w for a, w in zip(amplitude, waves, strict=True)]
+    x2 = [(2 * math.pi * b / n[1] / PIXEL[0]) ** 2 for b in m]
+    y2 = [(2 * math.pi * c / n[0] / PIXEL[1]) ** 2 for c in k]
+    moments = SpectralMoments(
+        *(sum(p * (x**d + y**d) / 2 for p, x, y in zip(power, x2, y2, strict=True)) for d in (0, 1, 2))
+    )
+    of_m0 = [p / moments.m0 for p in power]
+    of_m2 = [p * (x + y) / 2 / moments.m2 for p, x, y in zip(power, x2, y2, strict=True)]
+    of_m4 = [p * (x * x + y * y) / 2 / moments.m4 for p, x, y in zip(power, x2, y2, strict=True)]
+    alpha = [a + c - 2 * b for a, b, c in zip(of_m0, of_m2, of_m4, strict=True)]
+    rest = (moments.m0 - moments.sigma**2) / moments.sigma**2  # d ln sigma^2 = d ln m0 + rest d ln alpha
+    shares = {  # with the power of the moments that each number is
+        "m0": (of_m0, 1), "m2": (of_m2, 1), "m4": (of_m4, 1), "alpha": (alpha, 1),
+        "eta": ([c - b for b, c in zip(of_m2, of_m4, strict=True)], 1),
+        "radius": ([-c / 2 for c in of_m4], 0.5),
+        "sigma": ([(a + rest * b) / 2 for a, b in zip(of_m0, alpha, strict=True)], 0.5),
+    }  # fmt: skip
+    found = waves_of(Topography(z, PIXEL, periodic=True), moments)
+    for name, (share, degree) in shares.items():
+        parts = [s / w / degree for s, w in zip(share, waves, strict=True) for _ in range(w)]
+        square, fourth = sum(s**2 for s in parts), sum(s**4 for s in parts)
+        number = max(1 / square - 1, 0.5)
+        freedom = max(0.4 * (3 * square**2 / fourth - 5), 2)
+        wider = math.copysign(degree, sum(s**3 for s in parts)) * t_law.ppf(norm.cdf(2), freedom) / 2
+        ends = sorted(-wider * math.log(gamma.ppf(p, number) / number) for p in (0.025, 0.975))
+        error = abs(wider) * math.sqrt(polygamma(1, number))
+        expected = (error, -ends[0], ends[1])
+        spread = found.spreads[name]
+        assert (spread.error, spread.down, spread.up) == pytest.approx(expected, rel=1e-9), name
+    squares = sum(s**2 / w for s, w in zip(of_m0, waves, strict=True))
+    assert found.independent == pytest.approx(2 * (1 / squares - 1), rel=1e-9)
+
+
+def test_what_a_plane_takes_of_long_waves():
+    """The share of a wave of random phase, against least squares on 12 phases of it."""
+    n = 64
+    t = (np.arange(n) + 0.5) / n
+    y, x = np.meshgrid(t, t, indexing="ij")
+    for order, columns in ((1, (1, x, y)), (2, (1, x, y, x * x, x * y, y * y))):
+        basis = np.column_stack([np.broadcast_to(c, (n, n)).ravel() for c in columns])
+        for kx, ky in ((1, 0), (0, 2), (1, 1), (3, 1)):
+            phases = 2 * np.pi * (np.arange(12) + 0.5) / 12
+            z = np.stack([np.cos(2 * np.pi * (kx * x + ky * y) + p).ravel() for p in phases], axis=1)
+            rest = z - basis @ np.linalg.lstsq(basis, z, rcond=None)[0]
+            left = (rest**2).sum() / (z**2).sum()
+            near = 2 * (math.pi * max(kx, ky) / n) ** 2  # sums are off integrals by half of it
+            assert _taken(*_legendre_shares((n, n), order))[ky, kx] == pytest.approx(1 / left - 1, rel=near)
+
+
+def test_a_ramp_has_no_waves():
+    """The smooth field that makes edges fit is taken off; and a form leaves m0 unsure of what it took."""
+    drawn = gaussian_map(Spectrum(1e-6, 30e-6, 12e-6), (60, 80), PIXEL, np.random.default_rng(3))
+    moments = SpectralMoments(1e-12, 0.04, 5e9)
+    ramp = 1e-8 * np.add.outer(np.arange(60.0), 2 * np.arange(80.0))
+    plain, tilted = (
+        waves_of(Topography(z, PIXEL), moments).spreads for z in (drawn.heights, drawn.heights + ramp)
+    )
+    assert plain["radius"].error == pytest.approx(tilted["radius"].error, rel=0.05)
+    levelled = waves_of(drawn, moments, 1).spreads
+    assert levelled["m0"].up > plain["m0"].up
+    assert levelled["m0"].down == pytest.approx(plain["m0"].down, rel=0.05)
+    assert levelled["m4"].up == pytest.approx(plain["m4"].up, rel=1e-12)
+
+
+def test_the_larger_error_counts_and_arms_are_those_of_logarithms():
+    x = uncertain(2.0, 0.1, Spread(0.2, 0.3, 0.5))
+    assert x == pytest.approx((2.0, 0.4, 2 * math.exp(-0.3), 2 * math.exp(0.5)))
+    y = uncertain(2.0, 0.6, Spread(0.2, 0.3, 0.5))
+    assert y == pytest.approx((2.0, 0.6, 2 * math.exp(-0.6), 2 * math.exp(0.6)))
+
+
+def test_an_arm_without_an_end_is_infinite():
+    for error, end in ((349.9, 2 * math.exp(699.8)), (350.1, math.inf)):
+        x = uncertain(2.0, 2 * error)
+        assert (x.high, x.relative) == (pytest.approx(end), error)
+    assert uncertain(2.0, 0.5)[2:] == pytest.approx((2 * math.exp(-0.5), 2 * math.exp(0.5)))
+
+
+def test_blocks_leave_so_many_points_to_twice_as_many():
+    """What is over at the right and above is left out; a map that is coarse enough stays as it is."""
+    z = np.arange(7 * 10.0).reshape(7, 10)
+    means = [[z[2 * j : 2 * j + 2, 3 * i : 3 * i + 3].mean() for i in range(3)] for j in range(3)]
+    np.testing.assert_array_equal(block_means(z, 3), means)
+    odd = z**2
+    medians = [[np.median(odd[3 * j : 3 * j + 3, 5 * i : 5 * i + 5]) for i in range(2)] for j in range(2)]
+    np.testing.assert_array_equal(block_means(odd, 2, np.median), medians)
+    assert block_means(z, 7) is z
+    found = coarser(Topography(z, (1.0, 10.0)), 3)
+    assert found.pixel == (3.0, 20.0)
+    assert found.heights.shape == (3, 3)
+
+
+@pytest.mark.parametrize("alpha", [1.6, 20.0])
+def test_derivatives_of_logarithms_are_differences(alpha):
+    """Of all that the three moments tell, by each of them."""
+    m = (1e-12, 1e-3, alpha * 1e6)
+    found = log_derivatives(SpectralMoments(*m))
+    assert list(found) == [*MOMENTS, *PARAMETERS]
+    for k in range(3):
+        up, down = (
+            SpectralMoments(*(x * math.exp(h) if i == k else x for i, x in enumerate(m)))
+            for h in (1e-5, -1e-5)
+        )
+        for name, derivative in found.items():
+            slope = math.log(getattr(up, name) / getattr(down, name)) / 2e-5
+            assert derivative[k] == pytest.approx(slope, abs=1e-6), name
+    flat = log_derivatives(SpectralMoments(1.0, 1.0, 0.8968057562340189))["sigma"]
+    assert flat.tolist() == [0.5, 0, 0]  # alpha at which summits have no spread
+
+
+def fits_of(alpha, waves, n, *, hurst=0.8, number=60):
+    """So many Gaussian maps with this bandwidth, as many of their longest wave on each."""
+    pixel = 1e-6
+    shape = Spectrum.with_moments(SpectralMoments(1e-12, 1e-3, alpha * 1e6), hurst)
+    long = n * pixel / waves
+    spectrum = Spectrum(1e-6, long, long * shape.short / shape.long, hurst)
+    truth = moments_on_grid(spectrum, (n, n), (pixel, pixel))
+    maps = (
+        gaussian_map(spectrum, (n, n), (pixel, pixel), np.random.default_rng(seed)) for seed in range(number)
+    )
+    return [(fit_map(Topography(m.heights, m.pixel), cutoff=None), truth) for m in maps]
+
+
+def compared(maps):
+    """Of every estimate of every map: z of its logarithm, and whether its interval holds the truth."""
+    found = {}
+    for fit, truth in maps:
+        pairs = {name: (getattr(fit, name), getattr(truth, name)) for name in MOMENTS}
+        for method, e in fit.estimates.items():
+            pairs |= {f"{method} {p}": (getattr(e, p), getattr(truth, p)) for p in PARAMETERS}
+        for name, (x, true) in pairs.items():
+            z = math.log(x.value / true) / (x.error / x.value)
+            found.setdefault(name, []).append((z, x.low <= true <= x.high))
+    return {name: np.array(rows) for name, rows in found.items()}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("alpha", "waves", "n", "hurst"),
+    [(2, 1, 96, -0.8), (10, 1, 192, 0.8), (2, 3, 224, -0.8), (5, 3, 320, 0.5)],
+)
+def test_intervals_hold_the_truth(alpha, waves, n, hurst, without_caps):
+    """Of 60 maps at most 9 lie outside by any of ten estimates, where 3 are expected of each.
+
+    Were it 3, more than 9 would be seen once in 900 sets of maps, of ten estimates once in 90 at most; the
+    seeds are fixed. `runs/map_errors.py` has 200 maps of every case.
+    """
+    found = compared(fits_of(alpha, waves, n, hurst=hurst))
+    assert {
+        name: len(rows) - rows[:, 1].sum() for name, rows in found.items() if rows[:, 1].mean() < 0.85
+    } == {}
+    scatter = {name: rows[:, 0].std() for name, rows in found.items()}
+    # 1 would be right; with 13 summits on a map errors are a third too large, else a fifth at most
+    assert {name: s for name, s in scatter.items() if not 0.55 < s < 1.35} == {}
+
+
+def test_sub_areas_alone_would_not_hold_it(without_caps, monkeypatch):
+    """With the jackknife alone many of the intervals of one-wave maps miss; with the waves hardly any."""
+    whole = compared(fits_of(10, 1, 160, number=12))
+    nothing = Spread(1e-9, 1e-9, 1e-9)
+    monkeypatch.setattr(
+        "mcgw.maps.fit.waves_of", lambda *_: Waves(defaultdict(lambda: nothing), 1e9, np.eye(3))
+    )
+    alone = compared(fits_of(10, 1, 160, number=12))
+    assert max(12 - rows[:, 1].sum() for rows in alone.values()) >= 4
+    assert max(12 - rows[:, 1].sum() for rows in whole.values()) <= 2
+
+
+def waves_named(long, short, number):
+    maps = (
+        gaussian_map(Spectrum(1e-6, long, short), (256, 256), (1e-6, 1e-6), np.random.default_rng(k))
+        for k in range(number)
+    )
+    return [bool(_waves(fit_map(Topography(m.heights, m.pixel), cutoff=None))) for m in maps]
+
+
+def test_few_long_waves_are_named(without_caps):
+    """One of the longest on the map: three of four maps say so. Ten of them: none does."""
+    assert sum(waves_named(256e-6, 18e-6, 5)) >= 3
+    assert not any(waves_named(25.6e-6, 10e-6, 2))

@@ -1,0 +1,494 @@
+"""What lies on a map and is no roughness is named with its size; clean maps are left in peace."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from oracles.fit_of_maps import fit_map
+from scipy.ndimage import gaussian_filter
+from scipy.optimize import brentq
+
+import mcgw
+from mcgw.cli import main
+from mcgw.maps.bad_points import recorded, small_spike_heights, spike_heights, usual_bend
+from mcgw.maps.fit import fit_prepared
+from mcgw.maps.fit_cautions import cautions
+from mcgw.maps.form import without_form
+from mcgw.maps.hidden_caps import visible
+from mcgw.maps.preparation import Preparation, prepared
+from mcgw.maps.steps_and_forms import form_left, step_of
+from mcgw.maps.synthetic import Spectrum, gaussian_map
+from mcgw.maps.topography import Topography
+
+N, PIXEL = 240, (1e-6, 2e-6)
+SIZE = (N * PIXEL[0], N * PIXEL[1])
+OF_THE_MAP = {"spikes", "sub-area", "step", "form", "waves", "slope"}
+
+pytestmark = pytest.mark.usefixtures("without_caps")
+
+
+def rng(seed):
+    return np.random.default_rng(seed)
+
+
+def rough(seed=1, long=40e-6, n=N):
+    """1 um rms, waves from 40 um to 16 um on 240 um x 480 um."""
+    return gaussian_map(Spectrum(1e-6, long, 16e-6), (n, n), PIXEL, rng(seed)).heights
+
+
+def grid(n=N):
+    """Places along x and y from 0 to 1."""
+    y, x = (np.mgrid[0:n, 0:n] + 0.5) / n
+    return x, y
+
+
+def topography(z):
+    return Topography(z, PIXEL)
+
+
+def lines(z, pixel=PIXEL, **keywords):
+    """Warnings by their first word."""
+    found = mcgw.fit(Topography(z, pixel), **{"cutoff": None, **keywords}).cautions
+    return {line.partition(":")[0]: line for line in found}
+
+
+@pytest.mark.parametrize(
+    "clean",
+    [
+        lambda x, y: rough(2),
+        lambda x, y: rough(3, long=60e-6),
+        lambda x, y: 1e-3 + rough(4) + 5e-5 * x - 5e-5 * y,
+        lambda x, y: 1e-6 * np.exp(rough(5) / 1e-6),
+        lambda x, y: np.round(rough(6) / 2e-7) * 2e-7,
+        lambda x, y: rng(7).normal(size=(N, N)) * 1e-7,
+        lambda x, y: np.abs(rough(8)),
+    ],
+    ids=["rough", "long", "tilted, far from zero", "skewed", "few levels", "white", "valleys like knives"],
+)
+def test_clean_maps_are_left_in_peace(clean):
+    assert not OF_THE_MAP & set(lines(clean(*grid())))
+
+
+def test_a_spike_of_a_millimetre_is_named():
+    """With its number, place and height; and the sub-area that carries all of m4."""
+    z = rough()
+    before = fit_map(topography(z), cutoff=None)
+    z[101, 200] += 1e-3
+    found = lines(z)
+    assert fit_map(topography(z), cutoff=None).moments.radius < before.moments.radius / 50
+    assert "1 place stands" in found["spikes"]
+    assert "x = 0.0002005 m, y = 0.000203 m, 0.000999 m high" in found["spikes"]
+    assert "x = 0.00018 to 0.00024 m, y = 0.00012 to 0.00024 m m4" in found["sub-area"]
+    assert "spikes" in lines(z, cutoff=20e-6)  # a filter smears it, but takes nothing of it away
+
+
+@pytest.mark.parametrize(
+    ("number", "height", "word"), [(1, -20e-6, "deep"), (24, 30e-6, "high"), (3, 12e-6, "high")]
+)
+def test_spikes_are_counted(number, height, word):
+    z = rough()
+    places = [(20 + 37 * (k % 6), 25 + 50 * (k // 6)) for k in range(number)]
+    for j, i in places:
+        z[j : j + 2, i : i + 3] += height  # narrower than five pixels
+    told = re.search(r"(\d+) place.* x = (.*) m, y = (.*) m, (.*) m (\w+) and", lines(z)["spikes"]).groups()
+    assert (int(told[0]), told[-1]) == (number, word)
+    x, y, size = map(float, told[1:-1])
+    assert size == pytest.approx(abs(height), rel=0.4)  # above the highest point of its ring
+    assert (round(y / PIXEL[1] - 0.5), round(x / PIXEL[0] - 0.5)) in [
+        (j + b, i + a) for j, i in places for b in range(2) for a in range(3)
+    ]
+
+
+def test_the_sub_area_that_carries_the_map_is_named():
+    """A patch ten times as rough, which no spike is."""
+    x, y = grid()
+    z = rough() * np.where((x > 0.76) & (y < 0.24), 10, 1)
+    assert "x = 0.00018 to 0.00024 m, y = 0 to 0.00012 m m4" in lines(z)["sub-area"]
+
+
+@pytest.mark.parametrize(("axis", "place", "tilt"), [("x", 0.37, 0.0), ("y", 0.6, 3e-5)])
+def test_two_terraces_are_named(axis, place, tilt):
+    x, y = grid()
+    z = rough() + 12e-6 * ((x if axis == "x" else y) > place) + tilt * x
+    step = step_of(topography(z))
+    assert step.axis == axis
+    assert step.height == pytest.approx(12e-6, rel=0.1)
+    assert step.place / SIZE["xy".index(axis)] == pytest.approx(place, abs=0.045)  # an area and a bit
+    found = lines(z)
+    assert f"e-05 m apart meet near {axis} = {step.place:.3g} m" in found["step"]
+    assert not {"form", "waves"} & set(found)
+
+
+def test_an_oblique_step_is_named_and_a_ridge_is_none():
+    x, y = grid()
+    assert step_of(topography(rough() + 10e-6 * (x + 0.6 * y > 0.8))).height == pytest.approx(10e-6, rel=0.15)
+    assert step_of(topography(rough() + 10e-6 * (np.abs(x - 0.5) < 0.1))) is None
+    assert step_of(topography(rough() + 10e-6 * np.sin(7 * x))) is None
+    assert step_of(topography(rough() + 0.3e-6 * (x > 0.5))) is None  # less than the roughness
+
+
+@pytest.mark.parametrize(
+    ("form", "proposed"),
+    [
+        (lambda x, y: -(x * x + y * y), "quadratic"),
+        (lambda x, y: 2 * y * y, "quadratic"),
+        (lambda x, y: 2 * x * y, "quadratic"),
+    ],
+    ids=["bowl", "trough", "saddle"],
+)
+def test_a_form_left_under_a_plane_is_named(form, proposed):
+    n = 80
+    x, y = (2 * t - 1 for t in grid(n))
+    shape = 2e-6 * form(x, y)
+    z = rough(n=n) + shape
+    left = form_left(topography(z), "plane")
+    assert left.form == proposed
+    assert left.height == pytest.approx(np.ptp(shape), rel=0.15)
+    assert left.share == pytest.approx(shape.var() / z.var(), abs=0.05)
+    found = lines(z)
+    assert f"--form {proposed}" in found["form"]
+    assert "waves" not in found
+    assert not OF_THE_MAP - {"waves"} & set(lines(z, form=proposed))
+
+
+def test_a_tilt_and_a_form_that_leaves_no_summit_are_named():
+    x, _ = grid()
+    assert "tilt" in lines(rough() + 1.2e-5 * x, form="none")["form"]
+    with pytest.raises(ValueError, match=r"no summit; .* --form quadratic"):
+        fit_map(topography(1e-3 * x * x), cutoff=None)
+
+
+def test_summits_that_are_all_equally_high_are_refused():
+    """A regular texture, periodic or of single points; with a thousandth of roughness it is a surface."""
+    j, i = np.mgrid[:N, :N]
+    waves = 1e-6 * np.cos(2 * np.pi * i / 16) * np.cos(2 * np.pi * j / 16)
+    for z in (waves, 1e-6 * ((i % 8 == 4) & (j % 8 == 4))):
+        fit = mcgw.fit(topography(z), cutoff=None, form="none")
+        for use in ("auto", "summits"):
+            with pytest.raises(ValueError, match=r"all \d+ summits are equally high, within .* m: a regular"):
+                mcgw.fitted_scene(fit, use=use)
+    assert mcgw.fitted_scene(mcgw.fit(topography(waves + 0.05 * rough()), cutoff=None)).surface.sigma > 0
+
+
+def test_absurd_slopes_and_pixels_are_named():
+    assert "slope" in lines(1e6 * rough())
+    assert "was um or mm meant" in lines(rough(), (1.0, 1.0))["unit"]
+
+
+def test_less_than_no_points_cannot_be_trimmed(tmp_path, capsys):
+    np.save(tmp_path / "z.npy", rng(1).normal(size=(40, 40)))
+    given = ["--pixel", "1um", "--cutoff", "none", "--E-star", "1GPa", "-o", str(tmp_path / "s.toml")]
+    assert main(["fit", str(tmp_path / "z.npy"), *given, "--trim=-1"]) == 2
+    assert "trim = -1: give a whole number >= 0" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("given", [True, False])
+def test_a_modulus_is_called_assumed_only_where_nobody_gave_it(given, tmp_path, capsys):
+    """That it is the usual one does not matter."""
+    np.save(tmp_path / "z.npy", gaussian_filter(rng(1).normal(size=(80, 80)), 2, mode="wrap") * 1e-7)
+    asked = ["--pixel", "1um", "--cutoff", "none", "-o", str(tmp_path / "s.toml")]
+    assert main(["fit", str(tmp_path / "z.npy"), *asked, *["--E-star", "100 GPa"] * given]) == 0
+    told = capsys.readouterr().out
+    assert "E_star = 1e+11 Pa" in told
+    assert ("(assumed; give --E-star)" in told) is not given
+
+
+def test_a_small_spike_is_as_high_as_it_stands_above_its_neighbours():
+    z, spike = rough(), 1e-6
+    z[100, 70] += spike
+    found = small_spike_heights(topography(z))
+    assert np.argwhere(found).tolist() == [[100, 70]]
+    beside = np.mean([z[99, 70], z[101, 70], z[100, 69], z[100, 71]])
+    np.testing.assert_allclose(found[100, 70], z[100, 70] - beside, rtol=1e-9)
+
+
+@pytest.fixture(scope="module")
+def sound():
+    """A fit that nothing is said of, and its map."""
+    ready = prepared(topography(rough(2)), Preparation(None))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("mcgw.maps.fit.by_caps", lambda *_: None)
+        fit = fit_prepared(ready)
+    assert cautions(fit, ready) == []
+    return fit, ready
+
+
+def scaled(estimate, **factors):
+    changes = {
+        name: getattr(estimate, name)._replace(value=x * getattr(estimate, name).value)
+        for name, x in factors.items()
+    }
+    return replace(estimate, **changes)
+
+
+def apart(fit, **factors):
+    both = {"moments": fit.estimates["moments"], "summits": scaled(fit.estimates["moments"], **factors)}
+    return replace(fit, estimates=both)
+
+
+def squares(fit, **changes):
+    return replace(fit, mean_squares=fit.mean_squares | changes)
+
+
+def crowded(fit, overlap):
+    one = fit.estimates["moments"]
+    return replace(fit, estimates={"moments": scaled(one, eta=overlap / one.overlap)})
+
+
+def blurred(fit, lost):
+    one = scaled(fit.estimates["moments"], eta=0.01 / fit.estimates["moments"].overlap)
+    seen = visible(0.01)
+    return replace(
+        fit, estimates={"moments": one, "caps": one}, visible=replace(seen, share=seen.share - lost)
+    )
+
+
+def with_slope(ready, slope):
+    level = ready.levelled
+    return replace(ready, levelled=replace(level, heights=level.heights * (slope / level.steepness)))
+
+
+# Of each caution: how far it goes without a word, and what is changed to be there.
+LIMITS = {
+    "skewness": (0.3, lambda f, r, x: (replace(f, skewness=(-x, 0.05)), r)),
+    "skewness, little known": (0.6, lambda f, r, x: (replace(f, skewness=(x, 0.2)), r)),
+    "alpha": (1 / 1.5, lambda f, r, x: (replace(f, alpha=f.alpha._replace(value=1 / x)), r)),
+    "lay": (1.5, lambda f, r, x: (squares(f, slope_x=x, slope_y=1.0, slope_xy=0.0), r)),
+    "estimates": (1.2, lambda f, r, x: (apart(f, eta=1.1, sigma=1 / x), r)),
+    "estimates, radius": (1.2, lambda f, r, x: (apart(f, radius=x), r)),
+    "overlap": (0.05, lambda f, r, x: (crowded(f, x), r)),
+    "blur": (0.1, lambda f, r, x: (blurred(f, x), r)),
+    "waves": (1 / 50, lambda f, r, x: (replace(f, waves=replace(f.waves, independent=1 / x)), r)),
+    "pixel": (1.05, lambda f, r, x: (squares(f, bend=x, bend_1=1.0), r)),
+    "cutoff": (1 / 20e-6, lambda f, r, x: (f, replace(r, asked=replace(r.asked, cutoff=1 / x)))),
+    "slope": (10.0, lambda f, r, x: (f, with_slope(r, x))),
+    "unit": (1e-2, lambda f, r, x: (f, replace(r, levelled=replace(r.levelled, pixel=(1e-3, x))))),
+}
+
+
+@pytest.mark.parametrize("name", LIMITS)
+def test_a_caution_begins_at_its_limit(name, sound):
+    """Half a per cent below it, nothing is said."""
+    limit, change = LIMITS[name]
+    word = name.partition(",")[0]
+    for factor, there in ((0.995, False), (1.005, True)):
+        fit, ready = change(*sound, factor * limit)
+        told = [line for line in cautions(fit, ready, "caps") if line.startswith(f"{word}:")]
+        assert bool(told) == there, (factor, told)
+
+
+def test_few_summits_are_named_with_their_number(sound):
+    fit, ready = sound
+    for number in (99, 100):
+        few = replace(fit, listed=replace(fit.listed, heights=np.zeros(number)))
+        assert ("summits: only 99 found; use a larger map or a shorter cutoff" in cautions(few, ready)) == (
+            number == 99
+        )
+
+
+def test_cautions_tell_their_numbers(sound):
+    """Shares in per cent; and a cutoff of ten pixels or half as much again as was used."""
+    fit, ready = sound
+    few = replace(
+        fit.waves, independent=20.0, spreads={"sigma": replace(fit.waves.spreads["sigma"], error=0.345)}
+    )
+    (line,) = cautions(replace(fit, waves=few), ready)
+    assert line.startswith(
+        "waves: the map has few of the longest waves, equivalent to 20 independent heights"
+    )
+    assert "differ elsewhere by 34 % or more" in line
+    (line,) = cautions(squares(fit, bend=1.25, bend_1=1.0), ready)
+    assert "is 25 % above that by plain ones" in line
+    assert "use a cutoff of 10 pixels or more" in line
+    wide = replace(ready, asked=replace(ready.asked, cutoff=48e-6))
+    (line,) = cautions(squares(fit, bend=1.25, bend_1=1.0), wide)
+    assert "use a cutoff of 36 pixels or more" in line  # of 2 um, one and a half times 24
+    (line,) = cautions(fit, replace(ready, asked=replace(ready.asked, cutoff=10e-6)))
+    assert line.startswith("cutoff: 5 pixels per wavelength; below 10 ")
+    lost = blurred(fit, 0.2)
+    lines = cautions(lost, ready, "caps")
+    assert lines[0].startswith("blur: 20 % of such caps are lost")
+    assert cautions(lost, ready, "moments") == []
+    heavy = crowded(fit, 0.1)
+    caps = replace(
+        heavy, estimates={"caps": heavy.estimates["moments"], **heavy.estimates}, visible=visible(0.1)
+    )
+    (line,) = cautions(caps, ready, "caps")
+    assert line.startswith(
+        f"overlap: eta R sigma = 0.1; {100 * (1 - visible(0.1).share):.0f} % of such caps are"
+    )
+
+
+def rings(z):
+    """Lowest and highest of the 24 points three pixels around each, mirrored at edges, one by one."""
+    around = [(j, i) for j in range(-3, 4) for i in range(-3, 4) if max(abs(j), abs(i)) == 3]
+    padded = np.pad(z, 3, mode="reflect")
+    seen = np.array([padded[3 + j : 3 + j + z.shape[0], 3 + i : 3 + i + z.shape[1]] for j, i in around])
+    return seen.min(axis=0), seen.max(axis=0)
+
+
+def test_spikes_stand_out_of_their_ring_by_three_ranges():
+    """Of that ring and of the usual one; on more rows than are looked at together."""
+    z = np.round(rng(1).normal(size=(150, 40)), 3)
+    z[:, 20:] *= 0.1  # there the usual range is more than that of a ring
+    places = [(j, i) for j in (2, 30, 63, 100, 127, 147) for i in (4, 13, 24, 36)]
+    for _ in range(6):  # a spike belongs to the rings of others
+        low, high = rings(z)
+        least = 3 * np.maximum(high - low, np.median(high - low))
+        for k, (j, i) in enumerate(places):
+            out = (0.999, 1.001)[k % 2] * least[j, i]
+            z[j, i] = high[j, i] + out if k // 2 % 2 else low[j, i] - out
+    low, high = rings(z)
+    out = np.where(z > high, z - high, np.minimum(z - low, 0))
+    usual = np.median(high - low)
+    expected = np.where(np.abs(out) > 3 * np.maximum(high - low, usual), out, 0)
+    assert [expected[at] != 0 for at in places] == 12 * [False, True]
+    np.testing.assert_allclose(spike_heights(topography(z)), expected, rtol=1e-12)
+
+
+@pytest.mark.parametrize("size", [6, 7])
+def test_a_map_as_small_as_a_ring_has_no_spikes(size):
+    z = np.zeros((size, 20))
+    z[3, 9] = 1.0
+    z[:, ::2] += 0.01
+    assert spike_heights(topography(z)).any() == (size == 7)
+    z[:, ::2] -= 0.01
+    flat = spike_heights(topography(z))  # most of it has no range at all: the mean one counts
+    assert flat.any() == (size == 7)
+
+
+def test_a_small_spike_bends_by_seven_deviations_more_than_those_beside_it():
+    """Deviations that have the median of the bends, of which half are 8 and half -8."""
+    assert usual_bend(np.array([-1.0, 1, 3, 5, np.nan])) == pytest.approx(2 / 0.6745, rel=1e-12)
+    j, i = np.indices((40, 40))
+    for factor, there in ((0.998, False), (1.002, True)):
+        z = np.where((j + i) % 2 == 0, 1.0, -1.0)
+        z[20, [20, 22]] += (factor * 7 * 8 / 0.6745 - 8) / 4
+        assert np.argwhere(small_spike_heights(topography(z))).tolist() == [[20, 20], [20, 22]] * there
+
+
+def test_levels_and_ends_of_a_recording():
+    """The median step between levels, of which there are few; an end has more than 1.3 times the next."""
+    z = np.repeat([0.0, 1.0, 2.0, 4.0], [130, 100, 700, 1]).reshape(7, -1)
+    found = recorded(z)
+    assert (found.step, found.at_end) == (1.0, 0.0)  # 130 of 100 are not more
+    more = np.repeat([0.0, 1.0, 2.0, 4.0], [131, 100, 699, 1]).reshape(7, -1)
+    assert recorded(more).at_end == 131 / 931
+    assert recorded(-more).at_end == 131 / 931
+    smooth = rng(1).normal(size=(30, 30))
+    assert (recorded(smooth).step, recorded(smooth).at_end) == (0.0, 0.0)
+    assert recorded(np.minimum(smooth, 1)).at_end == np.mean(smooth >= 1)
+    few = np.arange(800) % 100 + 0.0
+    assert recorded(few.reshape(20, -1)).step == 0  # a level for eight points is none
+    assert recorded((np.arange(800) % 99 + 0.0).reshape(20, -1)).step == 1
+    assert recorded(np.zeros((20, 20))).step == 0
+    for number, step in ((4095, 1), (4096, 0)):  # as many levels are as good as none
+        assert recorded((np.arange(9 * number) % number + 0.0).reshape(9, -1)).step == step
+
+
+def terraces(jump, back=0.0, lines=240):
+    """A map of 24 areas across, and its differences over two of them, about their median.
+
+    Levels at random, a jump at the fourteenth on so many lines, and one back at the fifth.
+    """
+    plain = rng(7).normal(size=24) - back * (np.arange(24) >= 5)
+    levels = plain + jump * (np.arange(24) >= 14)
+    changes = levels[2:] - levels[:-2]
+    z = np.where(np.arange(240)[:, None] < lines, levels.repeat(10), plain.repeat(10))
+    return topography(z), changes - np.median(changes)
+
+
+def jump_to(times, *more):
+    """The jump whose difference is so many times the usual one."""
+
+    def over(jump):
+        changes = terraces(jump, *more)[1]
+        return changes.max() / np.median(np.abs(changes)) - times
+
+    return brentq(over, 3.0, 60.0)
+
+
+def test_a_step_is_six_usual_differences_on_half_of_all_lines():
+    """Place and height of the largest one; it lies between the areas on either side of it."""
+    assert step_of(terraces(jump_to(5.98))[0]) is None
+    z, changes = terraces(jump_to(6.02))
+    step, at = step_of(z), int(np.argmax(changes))
+    assert at in (12, 13)
+    assert step.axis == "x"
+    assert step.height == pytest.approx(changes.max(), rel=1e-9)
+    area = 10e-6
+    found = (step.begin, step.place, step.end)
+    assert found == pytest.approx(((at - 0.5) * area, (at + 1.5) * area, (at + 3.5) * area), rel=1e-9)
+    turned = step_of(Topography(z.heights.T.copy(), PIXEL[::-1]))
+    assert (turned.axis, turned.place, turned.height) == ("y", pytest.approx(step.place), step.height)
+    assert step_of(terraces(jump_to(12), 0.0, 120)[0]) is not None
+    assert step_of(terraces(jump_to(12), 0.0, 110)[0]) is None
+
+
+def test_what_a_form_of_second_order_leaves_is_of_fourth():
+    """However far from zero the map lies."""
+    form = "quadratic"
+    x, _ = (2 * t - 1 for t in grid(80))
+    z = without_form(topography(rough(n=80) + 8e-6 * x**3), form)
+    left, far = (form_left(replace(z, heights=z.heights + level), form) for level in (0.0, 1e-5))
+    assert left.form == "quartic"
+    assert far.share == pytest.approx(left.share, rel=1e-9)
+    assert form_left(without_form(z, "quartic"), form) is None
+
+
+def test_an_oblique_step_lies_between_quantiles_of_its_places():
+    """A twentieth of all lines may see it beyond its ends."""
+    levels, at = 0.1 * rng(7).normal(size=24), 8 + rng(2).integers(0, 8, 24)
+    rows = levels + 5.0 * (np.arange(24) >= at[:, None])
+    step = step_of(topography(rows.repeat(10, axis=0).repeat(10, axis=1)))
+    changes = rows[:, 2:] - rows[:, :-2]
+    seen = np.argmax(changes - np.median(changes), axis=1)
+    begin, place, end = 10e-6 * (np.quantile(seen, (0.05, 0.5, 0.95)) + 1.5)
+    assert (step.begin, step.place, step.end) == pytest.approx((begin - 20e-6, place, end + 20e-6), rel=1e-9)
+
+
+def test_a_form_is_three_times_the_longest_waves():
+    """Those of up to two on the map along each axis, diagonals too, once the form is off."""
+    x, y = grid(96)
+    wave = np.cos(2 * np.pi * (2 * x + y)) + 0.2 * np.cos(2 * np.pi * (2 * x + 2 * y))
+
+    def ratio(size):
+        z = wave + size * (2 * x - 1) * (2 * y - 1)
+        rest = without_form(topography(z), "quadratic").heights
+        k = np.fft.fftfreq(96) * 96
+        power = np.abs(np.fft.fft2(rest) / z.size) ** 2
+        return (z - rest).var() / power[np.hypot(k, k[:, None]) < 2.3].sum(), topography(1e-6 * z)
+
+    for target, seen in ((2.98, False), (3.02, True)):
+        size = brentq(lambda s, t=target: ratio(s)[0] - t, 1.0, 20.0)
+        assert (form_left(ratio(size)[1], "plane") is not None) == seen
+
+
+def test_a_step_is_twice_what_goes_the_other_way():
+    for ratio, seen in ((1.98, False), (2.02, True)):
+
+        def off(back, ratio=ratio):
+            changes = terraces(20.0, back)[1]
+            return changes.max() / -changes.min() - ratio
+
+        assert (step_of(terraces(20.0, brentq(off, 5, 15))[0]) is not None) == seen
+
+
+@pytest.mark.parametrize("seen", [False, True])
+def test_a_form_counts_from_a_twentieth_of_the_variance_on(seen):
+    """What a polynomial of second order takes off, over all; its range is what is told."""
+    x, y = (2 * t - 1 for t in grid())
+    z, share = rough(3, long=16.1e-6), 0.0502 if seen else 0.0498
+
+    def parts(size):
+        whole = topography(z + size * x * y)
+        return whole, whole.heights - without_form(whole, "quadratic").heights
+
+    size = brentq(lambda s: parts(s)[1].var() / parts(s)[0].heights.var() - share, 0.1e-6, 2e-6, rtol=1e-6)
+    whole, shape = parts(size)
+    left = form_left(whole, "plane")
+    assert (left is not None) == seen
+    if seen:
+        assert left.share == pytest.approx(share, rel=1e-4)
+        assert left.height == pytest.approx(np.ptp(shape), rel=1e-6)

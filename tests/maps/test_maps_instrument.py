@@ -1,0 +1,245 @@
+"""Faults of instruments, planted in Gaussian maps: each is named, and what its caution says helps."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from oracles.fit_of_maps import fit_map
+
+import mcgw
+from mcgw.maps import instrument
+from mcgw.maps.bad_points import Recorded, recorded
+from mcgw.maps.form import smooth
+from mcgw.maps.instrument import CHECKS, _kept_of_noise, faults
+from mcgw.maps.preparation import Preparation, prepared
+from mcgw.maps.synthetic import Spectrum, gaussian_map
+from mcgw.maps.topography import Topography
+
+PIXEL = (1e-6, 1e-6)
+
+pytestmark = pytest.mark.usefixtures("without_caps")
+
+
+def rough(seed=1, short=12e-6, long=120e-6, n=256, hurst=0.8):
+    drawn = gaussian_map(Spectrum(1e-6, long, short, hurst), (n, n), PIXEL, np.random.default_rng(seed))
+    return drawn.heights
+
+
+# Of each: what is planted, and the flags that its caution names.
+FAULTS = {
+    "range": (lambda z, rng: np.minimum(z, 2.5 * z.std()), None),
+    "rounding": (lambda z, rng: np.round(z / z.std() * 5) * z.std() / 5, {"cutoff": 10e-6}),
+    "lines": (lambda z, rng: z + 0.1 * z.std() * rng.normal(size=(len(z), 1)), {"lines": "rows"}),
+}
+
+
+def named(z, pixel=PIXEL, **steps):
+    """Checks that a map fails."""
+    ready = prepared(Topography(z, pixel), Preparation(**{"cutoff": None, **steps}))
+    return {check.name for check in CHECKS if check.measure(ready) > check.most}
+
+
+def numbers(z, **steps):
+    fit = fit_map(Topography(z, PIXEL), **{"cutoff": None, **steps})
+    e = fit.estimates["summits"]
+    return np.log([e.eta.value, e.radius.value])
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+@pytest.mark.parametrize(("short", "long"), [(12e-6, 120e-6), (5e-6, 60e-6)])
+def test_a_fault_is_named_and_its_flag_helps(fault, short, long):
+    """On every map of three; and what was wrong by a tenth to a factor of fifty is right within 7 %."""
+    plant, flags = FAULTS[fault]
+    wrong, left = [], []
+    for seed in range(3):
+        z = rough(seed, short, long)
+        broken = plant(z, np.random.default_rng(seed + 50))
+        found = named(broken)
+        assert fault in found
+        assert not found - {fault}
+        if flags is not None:
+            filtered = {"cutoff": flags["cutoff"]} if "cutoff" in flags else {}
+            wrong.append(numbers(broken) - numbers(z))
+            left.append(numbers(broken, **flags) - numbers(z, **filtered))
+            assert fault not in named(broken, **flags)
+    if flags is not None:
+        wrong, left = np.abs(np.mean(wrong, axis=0)), np.abs(np.mean(left, axis=0))
+        assert wrong.max() > 0.07
+        assert left.max() < 0.07
+        assert left.max() < wrong.max() / 2
+
+
+def test_cut_tops_leave_the_moments_alone():
+    """What the caution says: R of counted summits is off by more than that of the moments."""
+    z = rough(n=384)
+    cut = FAULTS["range"][0](z, None)
+    (line,) = (x for x in mcgw.fit(Topography(cut, PIXEL), cutoff=None).cautions if x.startswith("range:"))
+    assert "--use moments" in line
+    before, after = (fit_map(Topography(x, PIXEL), cutoff=None) for x in (z, cut))
+    counted, moments = (
+        abs(np.log(of(after) / of(before)))
+        for of in (lambda f: f.estimates["summits"].radius.value, lambda f: f.moments.radius)
+    )
+    assert counted > 0.04 > 1.5 * moments
+
+
+def clean_maps(number, seed):
+    """Isotropic or drawn out fourfold, of many spectra; some filtered, rounded, or in single precision."""
+    rng = np.random.default_rng(seed)
+    for k in range(number):
+        shape = tuple(int(n) for n in rng.choice([96, 160, 256], 2))
+        short = float(rng.choice([2, 3, 4, 6, 8, 12, 16, 20]))
+        hurst, lay = float(rng.choice([-1, -0.5, 0, 0.3, 0.5, 0.8, 1])), float(rng.choice([1, 1, 2, 4]))
+        long = min(short * float(rng.choice([1.5, 3, 8, 20])), shape[0], shape[1] / lay)
+        if long < 1.2 * short:
+            continue
+        z = gaussian_map(Spectrum(1e-6, long, short, hurst), shape, (1 / lay, 1.0), rng).heights
+        z = z.T.copy() if k % 2 else z
+        match k % 4:
+            case 1:
+                z = z.astype(np.float32).astype(np.float64)
+            case 2:
+                z = np.round(z / z.std() * 3000) * z.std() / 3000
+        cutoff = (None, None, 10e-6, 20e-6)[k // 4 % 4]
+        yield z, (None if cutoff and min(shape) < 100 else cutoff)
+
+
+def alarms(maps):
+    return [(k, found) for k, (z, cutoff) in enumerate(maps) if (found := named(z, cutoff=cutoff))]
+
+
+def test_clean_maps_raise_no_alarm():
+    """Seeds are fixed."""
+    assert alarms(clean_maps(24, 1)) == []
+
+
+@pytest.mark.slow
+def test_many_clean_maps_raise_no_alarm():
+    assert alarms(clean_maps(400, 2)) == []
+
+
+def test_grooves_along_rows_are_no_offsets():
+    """Of a turned surface, five or more lines wide; and offsets of columns are told from those of rows."""
+    z = rough() * 0.2
+    j = np.arange(256.0)
+    for lines in (5, 8, 20):
+        assert "lines" not in named(z + 1e-6 * np.sin(2 * np.pi * j / lines)[:, None])
+    broken = FAULTS["lines"][0](rough(2), np.random.default_rng(1)).T.copy()
+    (line,) = (x for x in mcgw.fit(Topography(broken, PIXEL), cutoff=None).cautions if x.startswith("lines:"))
+    assert "--lines columns" in line
+    assert "lines" in named(broken, lines="rows")
+    assert "lines" not in named(broken, lines="columns")
+
+
+def test_levelled_lines_keep_the_waves_of_the_surface():
+    """Of one across the lines, 120 lines long, what the window passes; a line without heights is none."""
+    z = rough(3)
+    wave = 1e-6 * np.sin(2 * np.pi * np.arange(256) / 120)[:, None]
+    broken = FAULTS["lines"][0](z + wave, np.random.default_rng(2))
+    broken[40] = np.nan
+    ready = prepared(Topography(broken, PIXEL), Preparation(None, form="none", lines="rows"))
+    assert ready.notes[0].startswith("lines: offsets of rows removed, 1")
+    off = np.delete(ready.used.heights - (z + wave), 40, axis=0).mean(axis=1)
+    lost = -(off @ np.delete(wave, 40)) / (wave**2).sum()
+    assert lost == pytest.approx(1 - np.exp(-((2 * np.pi * 10 / 120) ** 2) / 2), abs=0.03)
+    assert np.diff(off).std() < 0.02e-6  # of 0.1 um times the root of 2
+
+
+def test_what_a_recording_tells():
+    rng = np.random.default_rng(1)
+    z = rough(1)
+    assert recorded(z).step == recorded(z).at_end <= 1e-4
+    rounded = np.round(z / 2e-7) * 2e-7
+    assert recorded(rounded).step == pytest.approx(2e-7)
+    assert recorded(rounded).at_end == 0  # its highest level has fewer points than the next
+    cut = np.clip(rounded, -1.4e-6, None)
+    cut[rng.random(cut.shape) < 0.1] = np.nan
+    assert recorded(cut).at_end == pytest.approx(np.mean(rounded <= -1.4e-6) * 0.9, rel=0.1)
+
+
+@pytest.mark.parametrize("pixel", [(1e-6, 1e-6), (1e-6, 2e-6)])
+def test_what_a_filter_keeps_of_noise(pixel):
+    """Against white noise that is filtered: mean squares of its second differences, within a few per cent."""
+    noise = Topography(np.random.default_rng(1).normal(size=(400, 400)), pixel, periodic=True)
+    for cutoff in (None, 12e-6):
+        z = noise.heights if cutoff is None else smooth(noise, cutoff).heights
+        seen = [np.mean(np.diff(z, 2, axis=axis) ** 2) for axis in (1, 0)]
+        assert _kept_of_noise(cutoff, pixel) == pytest.approx(seen, rel=0.05)
+
+
+def measured(ready):
+    """By name; of lines those of rows."""
+    return {check.name: check.measure(ready) for check in reversed(CHECKS)}
+
+
+def plain(z, cutoff=None, pixel=(1e-6, 2e-6), **known):
+    ready = prepared(Topography(z, pixel, periodic=True), Preparation(cutoff, form="none"))
+    return replace(ready, **known)
+
+
+def test_what_rounding_adds_to_bends():
+    """Step^2/12 is its variance, of which second differences have six times as much, on the worse axis."""
+    z = rough(1, n=64, long=50e-6)
+    seen = measured(plain(z, recorded=Recorded(3e-8, 0.0)))["rounding"]
+    bends = [np.mean(np.diff(z, 2, axis=axis) ** 2) for axis in (0, 1)]
+    assert seen == pytest.approx((3e-8) ** 2 / 12 * 6 / min(bends), rel=1e-3)
+    assert measured(plain(z, recorded=Recorded(0.0, 0.0)))["rounding"] == 0
+    cutoff = plain(z, 8e-6, recorded=Recorded(3e-8, 0.0))
+    bends = [np.mean(np.diff(cutoff.used.heights, 2, axis=axis) ** 2) for axis in (1, 0)]
+    each = [k * 7.5e-17 / b for k, b in zip(_kept_of_noise(8e-6, (1e-6, 2e-6)), bends, strict=True)]
+    assert measured(cutoff)["rounding"] == pytest.approx(max(each), rel=1e-9)
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_the_share_of_offsets_in_bends(turned):
+    """The wave that does not change along a line, beyond the largest of the eight next to it, over all."""
+    z = rough(1, n=64, long=50e-6) + 3e-7 * np.random.default_rng(1).normal(size=(64, 1))
+    power = np.mean(np.abs(np.fft.fft(np.diff(z, 2, axis=0))) ** 2, axis=0)
+    share = (power[0] - 2 * power[1:9].max()) / power.sum()
+    rows, columns = (c.measure(plain(z.T.copy() if turned else z)) for c in CHECKS if c.name == "lines")
+    assert (columns if turned else rows) == pytest.approx(share, rel=1e-9)
+    assert (rows if turned else columns) < 0.05 < share
+
+
+def bisected(measure, low, high):
+    """Where a rising measure is next to zero, on either side."""
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (low, middle) if measure(middle) > 0 else (middle, high)
+    return low, high
+
+
+def test_offsets_alternate_and_waves_along_lines_do_not():
+    """Second differences of the means of lines: neighbours have a correlation below -0.4."""
+    noise, wave = np.random.default_rng(1).normal(size=64), 20 * np.sin(np.arange(64) * 2 * np.pi / 8)
+
+    def correlation(offsets):
+        bends = np.diff(offsets, 2)
+        return (bends[1:] @ bends[:-1]) / (bends @ bends)
+
+    for target, some in ((-0.402, True), (-0.398, False)):
+        share, _ = bisected(lambda x, t=target: correlation((1 - x) * noise + x * wave) - t, 0.0, 1.0)
+        z = 1e-7 * ((1 - share) * noise + share * wave)[:, None] + np.zeros(64)
+        assert (measured(plain(z))["lines"] > 0.05) == some
+
+
+def test_cut_tops_are_told_as_they_were_found():
+    ready = plain(rough(1, n=64, long=50e-6), recorded=Recorded(0.0, 0.125))
+    assert measured(ready)["range"] == 0.125
+
+
+LIMITS = {"range": 1e-3, "rounding": 0.05, "lines": 0.05}
+
+
+def test_a_fault_is_named_from_its_limit_on_with_its_share(monkeypatch):
+    ready = plain(rough(1, n=64, long=50e-6), recorded=Recorded(3.25e-8, 0.0))
+    for factor, names in ((0.995, []), (1.005, [check.name for check in CHECKS])):
+        checks = [replace(c, measure=lambda _, x=factor * LIMITS[c.name]: x) for c in CHECKS]
+        monkeypatch.setattr(instrument, "CHECKS", checks)
+        lines = faults(ready, 12.34)
+        assert [line.partition(":")[0] for line in lines] == names
+    for check, line in zip(CHECKS, lines, strict=True):
+        share = LIMITS[check.name] * 1.005
+        assert f"{100 * share:.2g} %" in line
+        assert ("--cutoff of 12.3 pixels" in line) == (check.name == "rounding")
+        assert ("multiples of 3.25e-08 m" in line) == (check.name == "rounding")

@@ -1,0 +1,403 @@
+"""What is done to a map before it is looked at: each step against a map that never needed it."""
+
+import math
+import re
+from typing import get_args
+
+import numpy as np
+import pytest
+from numpy.polynomial.polynomial import polyvander2d
+from oracles.fit_of_maps import fit_map
+from scipy.ndimage import gaussian_filter1d, minimum_filter
+
+import mcgw
+from mcgw.maps.bad_points import filled
+from mcgw.maps.form import gaussian_transmission, lowpass, smooth, without_form, without_offsets
+from mcgw.maps.preparation import Preparation, prepared
+from mcgw.maps.steps import Form
+from mcgw.maps.synthetic import Spectrum, gaussian_map
+from mcgw.maps.topography import Topography
+
+N, PIXEL = 200, (1e-6, 1.5e-6)
+
+pytestmark = pytest.mark.usefixtures("without_caps")
+
+
+def rough(seed=1, n=N):
+    return gaussian_map(Spectrum(1e-6, 40e-6, 16e-6), (n, n), PIXEL, np.random.default_rng(seed)).heights
+
+
+def grid(n=N):
+    y, x = np.mgrid[0:n, 0:n] + 0.5
+    return PIXEL[0] * (x - n / 2), PIXEL[1] * (y - n / 2)
+
+
+def ready(z, cutoff=None, **steps):
+    return prepared(Topography(z, PIXEL), Preparation(cutoff, **steps))
+
+
+def fitted(z, **steps):
+    return mcgw.fit(Topography(z, PIXEL), **{"cutoff": None, **steps})
+
+
+@pytest.mark.parametrize("wavelength", [20e-6, 40e-6, 80e-6])
+@pytest.mark.parametrize("periodic", [True, False])
+@pytest.mark.parametrize("axis", [0, 1])
+def test_the_filter_halves_a_wave_at_its_cutoff(axis, periodic, wavelength):
+    """ISO 16610-61, a wave along x or y, on pixels two and a half times as long along y."""
+    pixel, cutoff = (1e-6, 2.5e-6), 40e-6
+    x, y = (p * (np.arange(n) + 0.5) for p, n in zip(pixel, (320, 128), strict=True))
+    along = (x[None, :] if axis == 0 else y[:, None]) + np.zeros((128, 320))
+    wave = Topography(np.sin(2 * np.pi * along / wavelength), pixel, periodic=periodic)
+    left = smooth(wave, cutoff)
+    assert left.pixel == pixel
+    margin = [(n - m) // 2 for n, m in zip(wave.heights.shape, left.heights.shape, strict=True)]
+    assert margin == [0, 0] if periodic else margin in ([16, 40], [16, 41])  # a cutoff
+    inside = wave.heights[margin[0] : 128 - margin[0], margin[1] : 320 - margin[1]]
+    share = 0.5 ** ((cutoff / wavelength) ** 2)
+    assert float(gaussian_transmission(np.array(2 * np.pi / wavelength), cutoff)) == pytest.approx(share)
+    np.testing.assert_allclose(left.heights, share * inside, atol=2e-6)  # 5e-7 lies beyond the window
+
+
+def test_a_long_cutoff_leaves_short_waves():
+    """1 - 2^(-(cutoff/wavelength)^2): half the amplitude at the cutoff."""
+    x = grid(640)[0][:60]
+    for wavelength, left in ((40e-6, 0.5), (20e-6, 0.9375), (320e-6, 0.01077)):
+        wave = Topography(np.sin(2 * np.pi * x / wavelength), PIXEL, periodic=True)
+        used = prepared(wave, Preparation(None, form="none", long_cutoff=40e-6)).used
+        assert used.heights.std() / wave.heights.std() == pytest.approx(left, abs=2e-3)
+
+
+def test_holes_are_filled_with_harmonic_functions():
+    """x^2 - y^2, xy and a plane solve the discrete equation too, so they come back exactly."""
+    y, x = np.mgrid[0:60, 0:50] - 25.0
+    holes = np.zeros(x.shape, dtype=bool)
+    holes[10:30, 5:40] = True
+    holes[45, 3:20] = holes[50:52, 50:] = True
+    holes[20, 20] = False  # an island
+    for z in (x * x - y * y, x * y, 3 * x - 2 * y + 1e6):
+        with_holes = np.where(holes, np.nan, z)
+        assert filled(with_holes) == pytest.approx(z, abs=1e-5 * np.ptp(z))
+        assert np.array_equal(filled(with_holes)[~holes], z[~holes])
+    assert np.ptp(filled(np.where(holes, np.nan, np.cos(x)))) <= 2  # no point beyond its edge: a soap film
+    corner = np.full((20, 30), np.nan)
+    corner[5:, 10:] = 7.0
+    assert np.array_equal(filled(corner), np.full((20, 30), 7.0))
+
+
+@pytest.mark.parametrize("cutoff", [None, 20e-6])
+def test_few_missing_points_change_nothing_much(cutoff):
+    """Of 40 000 points 21: estimates move by less than half of their errors, and nothing is refused."""
+    z = rough()
+    whole = fitted(z, cutoff=cutoff)
+    holes = z.copy()
+    generator = np.random.default_rng(5)
+    holes[generator.integers(0, N, 12), generator.integers(0, N, 12)] = np.nan
+    holes[120:123, 60:63] = np.nan
+    fits = {way: fitted(holes, cutoff=cutoff, missing=way) for way in ("auto", "mask", "fill")}
+    for way, fit in fits.items():
+        share = 0.8 if way == "fill" else 0.5  # a soap film has summits of its own beside a hole
+        assert f"missing: {np.isnan(holes).sum()} of {N * N} points" in fit.notes[0]
+        for name in ("eta", "radius", "sigma"):
+            found, expected = (getattr(f.estimates["summits"], name) for f in (fit, whole))
+            assert abs(found.value - expected.value) < share * expected.error
+    assert fits["auto"].estimates == fits["mask"].estimates
+    assert fits["mask"].area < fits["fill"].area == whole.area
+
+
+def test_a_masked_hole_counts_as_if_the_map_ended_there():
+    """A part of the map is missing: moments and summits are those of the other part."""
+    z = rough(2, n=120)
+    z[:, 74:] = np.nan
+    z[:40, 118] = 0.0  # not cropped as an edge
+    masked = fitted(z, form="none", missing="mask")
+    alone = fitted(z[:, :74].copy(), form="none", parts=2)
+    assert masked.area == pytest.approx(alone.area, rel=0.04)  # two points more at the edge
+    assert masked.moments.m4 == pytest.approx(alone.moments.m4, rel=0.03)
+    assert masked.summits.size == pytest.approx(alone.summits.size, abs=5)
+
+
+def test_points_missing_everywhere_are_filled_where_a_mask_leaves_nothing():
+    z = rough(3, n=100)
+    z[np.random.default_rng(1).random(z.shape) < 0.2] = np.nan
+    assert "used like the others: only" in fitted(z).notes[0]
+    z[::3, ::3] = np.nan
+    with pytest.raises(ValueError, match="use --missing fill"):
+        fitted(z, missing="mask")
+
+
+def test_edges_are_cropped_where_all_is_missing_and_trimmed():
+    expected = fit_map(Topography(rough(4), PIXEL), cutoff=None).estimates
+    z = np.full((N + 80, N + 180), np.nan)
+    z[30 : N + 30, 100 : N + 100] = rough(4)
+    fit = fitted(z)
+    assert fit.estimates == expected
+    assert f"{N} x {N} points kept" in fit.notes[0]
+    broken = np.pad(rough(4), 1)
+    broken[0] += 1.0
+    broken[:, -1] = np.nan
+    assert fitted(broken, trim=1).estimates == expected
+    with pytest.raises(ValueError, match="leaves nothing"):
+        ready(rough(), trim=N // 2)
+
+
+@pytest.mark.parametrize("kind", get_args(Form))
+def test_a_form_comes_off_and_the_roughness_stays(kind):
+    """Each form over the roughness, and nothing else: what is left is within what it takes of roughness."""
+    n = 160
+    x, y = grid(n)
+    u, v = x / 1e-4, y / 1e-4
+    shape = {
+        "none": 0.0 * x, "plane": 0.2 * x - 0.1 * y, "quadratic": 1e-5 * (u * u + 3 * u * v),
+        "cubic": 1e-5 * (u**3 - v * u), "quartic": 1e-5 * (u**4 - 3 * u * v**3),
+    }[kind]  # fmt: skip
+    bare = without_form(Topography(shape, PIXEL), kind).heights
+    assert np.abs(bare).max() < 1e-9 * max(np.ptp(shape), 1e-9)
+    z = rough(n=n)
+    left = without_form(Topography(shape + z, PIXEL), kind).heights
+    assert (left - (z - z.mean())).std() < 0.2 * z.std()
+    if kind != "none":
+        more = 1e-5 * (u**5 - v**5)  # and nothing more comes off
+        assert np.abs(without_form(Topography(more, PIXEL), kind).heights).max() > 1e-7
+        holed = shape + z
+        holed[40:60, 60:110] = np.nan
+        rest = without_form(Topography(holed, PIXEL), kind).heights
+        assert np.nanstd(rest - left) < 0.1 * z.std()
+
+
+def test_spikes_are_taken_out():
+    z = rough()
+    spiked = z.copy()
+    spiked[50::60, 40::70] += 3e-5
+    spiked[101, 101] -= 5e-5
+    plain, kept, clean = fitted(z), fitted(spiked), fitted(spiked, spikes="remove")
+    assert kept.moments.m4 > 10 * plain.moments.m4
+    assert clean.moments.m4 == pytest.approx(plain.moments.m4, rel=0.03)
+    for fit, named in ((kept, True), (clean, False)):
+        assert any(line.startswith("spikes:") for line in fit.cautions) == named
+    assert clean.notes[0].startswith("spikes: 10 places removed, up to 4.")
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_the_larger_terrace_is_kept(axis):
+    z = rough(6)
+    x = grid()[axis]
+    stepped = z + 2e-5 * (x > 0.3 * x.max())
+    found = ready(stepped, step="crop")
+    assert 0.5 < found.used.heights.shape[1 - axis] / N < 0.65
+    assert found.used.heights.std() < 1.1 * z.std()
+    assert "step" in found.notes[0]
+    assert ready(z, step="crop").notes == ("step: none found, nothing cropped",)
+
+
+@pytest.mark.parametrize("key", ["missing", "spikes", "step", "form"])
+def test_words_that_are_none_are_refused_in_one_line(key):
+    with pytest.raises(mcgw.SceneError, match=f"{key} = 'x'.*choose one of"):
+        fitted(np.zeros((9, 9)), **{key: "x"})
+
+
+def test_the_filter_is_a_sum_over_its_window():
+    """Literal, on a map of many bands of rows, mirrored beyond its edges or periodic."""
+    z, pixel, cutoff = np.random.default_rng(1).normal(size=(150, 20)), (2e-6, 1e-6), 3.98e-6
+    weights = []
+    for p in pixel[::-1]:
+        t = np.arange(-math.ceil(cutoff / p), math.ceil(cutoff / p) + 1) * p
+        w = np.exp(-math.pi * (t / (math.sqrt(math.log(2) / math.pi) * cutoff)) ** 2)
+        weights.append(w / w.sum())
+    assert [w.size for w in weights] == [9, 5]
+    for periodic, mode in ((False, "symmetric"), (True, "wrap")):
+        padded = np.pad(z, ((4, 4), (2, 2)), mode=mode)
+        expected = sum(
+            v * w * padded[j : j + 150, i : i + 20]
+            for j, v in enumerate(weights[0])
+            for i, w in enumerate(weights[1])
+        )
+        map_ = Topography(z, pixel, periodic)
+        np.testing.assert_allclose(lowpass(map_, cutoff), expected, atol=1e-12)
+        left = smooth(map_, cutoff).heights
+        np.testing.assert_allclose(left, expected if periodic else expected[4:-4, 2:-2], atol=1e-12)
+
+
+def test_a_cutoff_leaves_eight_points_or_the_map_is_too_small():
+    wave = np.sin(np.arange(20.0) * 28).repeat(28).reshape(20, 28)
+    for shape in ((28, 28), (28, 40), (40, 28)):
+        left = smooth(Topography(np.resize(wave, shape), (1.0, 1.0)), 10.0)
+        assert min(left.heights.shape) == 8
+    for shape in ((27, 40), (40, 27)):
+        with pytest.raises(ValueError, match=f"leaves nothing of a map of {shape[1]} x {shape[0]} m"):
+            smooth(Topography(np.resize(wave, shape), (1.0, 1.0)), 10.0)
+    for shape, pixel in (((20, 40), (1.0, 1.0)), ((40, 20), (1.0, 1.0))):
+        whole = Topography(np.resize(wave, shape), pixel, periodic=True)
+        assert smooth(whole, 19.0).heights.shape == shape
+        with pytest.raises(ValueError, match=f"longer than the map of {shape[1]} x {shape[0]} m"):
+            smooth(whole, 20.0)
+
+
+@pytest.mark.parametrize(("form", "order"), [("plane", 1), ("quadratic", 2), ("cubic", 3), ("quartic", 4)])
+@pytest.mark.parametrize("holes", [False, True])
+def test_a_polynomial_is_that_of_least_squares(form, order, holes):
+    """Over the points that are there, of all powers together up to its order."""
+    z = np.random.default_rng(1).normal(size=(40, 30))
+    y, x = np.mgrid[-1:1:40j, -1:1:30j]
+    z += 3 * x**2 * y - x**4 + y**4
+    if holes:
+        z[3:9, 4:20] = np.nan
+    there = np.isfinite(z)
+    terms = polyvander2d(y, x, [order, order])[
+        ..., np.add.outer(*2 * [np.arange(order + 1)]).ravel() <= order
+    ]
+    left = z - terms @ np.linalg.lstsq(terms[there], z[there], rcond=None)[0]
+    found = without_form(Topography(z, PIXEL, periodic=True), form)
+    np.testing.assert_allclose(found.heights, left, atol=1e-9)
+    assert not found.periodic
+    assert without_form(Topography(z, PIXEL, periodic=True), "none").periodic
+
+
+@pytest.mark.parametrize("lines", ["rows", "columns"])
+def test_offsets_of_lines_are_sums_of_medians_less_their_long_waves(lines):
+    """In plain loops; a line without heights is passed over. The root mean square of offsets is told."""
+    z = np.random.default_rng(1).normal(size=(60, 45))
+    z += 2 * np.random.default_rng(2).normal(size=(60, 1))
+    z[7, 3:20] = z[20] = np.nan
+    level, last = [0.0], z[0]
+    for row in z[1:]:
+        steps = (row - last)[np.isfinite(row - last)]
+        level.append(level[-1] + (np.median(steps) if steps.size else 0.0))
+        last = row if steps.size else last
+    offsets = np.array(level) - gaussian_filter1d(level, 10, mode="nearest")
+    turned = z if lines == "rows" else z.T
+    found, rms = without_offsets(Topography(turned, PIXEL), lines)
+    expected = z - offsets[:, None]
+    np.testing.assert_allclose(found.heights, expected if lines == "rows" else expected.T, atol=1e-12)
+    assert rms == pytest.approx(np.sqrt(np.mean(offsets**2)), rel=1e-12)
+    note = prepared(Topography(turned, PIXEL), Preparation(None, form="none", lines=lines)).notes[0]
+    assert note == f"lines: offsets of {lines} removed, {rms:.3g} m rms"
+
+
+@pytest.mark.parametrize("cutoff", [None, 4e-6])
+@pytest.mark.parametrize("number", [40, 330])
+def test_points_count_whose_neighbours_were_seen(cutoff, number):
+    """Of a filtered map those whose window has less than a tenth of filled ones; half of all must remain."""
+    z = rough(1, n=60)
+    holes = np.zeros(z.size, dtype=bool)
+    holes[np.random.default_rng(1).choice(z.size, number, replace=False)] = True
+    holes = holes.reshape(z.shape)
+    z[holes] = np.nan
+    seen = ~holes
+    if cutoff:
+        seen = smooth(Topography(holes + 0.0, PIXEL), cutoff).heights < 0.1
+    whole = minimum_filter(seen, 5)
+    left = whole.mean() / np.mean(~holes)
+    masked = ready(z, cutoff, missing="mask", form="none")
+    np.testing.assert_array_equal(masked.seen, seen)
+    told = f"missing: {number} of 3600 points ({number / 36:.2g} %) filled from their edges"
+    rest = f"; they and their neighbours are ignored, which leaves {100 * whole.mean():.3g} % of the map"
+    assert masked.notes == (told + rest,)
+    assert masked.filled == number / 3600
+    auto = ready(z, cutoff, form="none")
+    assert (auto.seen is None) == (left < 0.5) == (number == 330)
+    if auto.seen is None:
+        why = f", and used like the others: only {100 * left:.2g} % of the others have all neighbours"
+        assert auto.notes == (told + why,)
+    filled_in = ready(z, cutoff, missing="fill", form="none")
+    assert filled_in.notes == (told + ", and used like the others",)
+    assert filled_in.seen is None
+
+
+def test_spikes_that_touch_at_a_corner_are_one_place():
+    """It goes with the points around it, and with nothing else."""
+    z = rough(n=80)
+    z[[40, 41], [50, 51]] += 3e-5
+    found = ready(z, spikes="remove")
+    assert found.notes[0].startswith("spikes: 1 places removed, up to ")
+    assert found.notes[1].startswith("missing: 14 of 6400 points (0.22 %)")
+    assert "1 place stands" in next(line for line in fitted(z).cautions if line.startswith("spikes:"))
+    gone = np.argwhere(~found.seen)
+    assert gone.min(axis=0).tolist() == [39, 49]
+    assert gone.max(axis=0).tolist() == [42, 52]
+
+
+def test_a_mask_that_leaves_half_is_kept():
+    """Of the points that were measured, those with all neighbours; a hole more, and all of them count."""
+    z, order = rough(1, n=60), np.random.default_rng(1).permutation(3600)
+
+    def left(number):
+        there = np.ones(3600)
+        there[order[:number]] = 0
+        return minimum_filter(there.reshape(60, 60), 5).sum() / (3600 - number)
+
+    last = max(number for number in range(50, 200) if left(number) >= 0.5)
+    assert 0.495 < left(last + 1) < 0.5 <= left(last) < 0.505
+    for number, masked in ((last, True), (last + 1, False)):
+        holed = z.copy()
+        holed.flat[order[:number]] = np.nan
+        assert (ready(holed, form="none").seen is not None) == masked
+
+
+@pytest.mark.parametrize(("size", "told"), [(0.995e-150, "the map is flat, without"), (1.005e-150, None)])
+def test_a_map_is_flat_whose_squares_vanish(size, told):
+    z = np.zeros((20, 20))
+    z[7, 8] = size
+    if told:
+        with pytest.raises(ValueError, match=told):
+            ready(z, form="none")
+    else:
+        assert ready(z, form="none").used.highest == size
+
+
+def test_notes_tell_what_was_done_to_a_map():
+    z = np.full((50, 70), np.nan)
+    z[10:45, 8:66] = rough(1, n=58)[:35]
+    found = ready(z, trim=3, form="none", long_cutoff=30e-6)
+    assert found.notes == (
+        "trim: 3 points removed along each edge",
+        "edges: 58 x 35 points kept; all points outside are missing",
+        "long cutoff: waves longer than 3e-05 m removed (Gaussian, ISO 16610-61)",
+    )
+    np.testing.assert_array_equal(found.levelled.heights, z[10:45, 8:66])
+    long = lowpass(Topography(z[10:45, 8:66], PIXEL), 30e-6)
+    np.testing.assert_allclose(found.used.heights, z[10:45, 8:66] - long, atol=1e-12 * 1e-6)
+    periodic = prepared(Topography(rough(), PIXEL, periodic=True), Preparation(None, form="none"))
+    assert periodic.used.periodic
+    assert periodic.notes == ()
+    assert (periodic.filled, periodic.seen) == (0.0, None)
+    edge = rough()
+    edge[0] = np.nan
+    for z in (edge, rough() + 2e-5 * (np.arange(N) > 60)):  # what is left of a map does not repeat itself
+        part = prepared(Topography(z, PIXEL, periodic=True), Preparation(None, form="none", step="crop"))
+        assert not part.used.periodic
+    for steps in ({"trim": 1}, {"form": "plane"}):
+        asked = Preparation(None, **{"form": "none", **steps})
+        assert not prepared(Topography(rough(), PIXEL, periodic=True), asked).used.periodic
+    assert ready(rough(n=58), spikes="remove").notes == ("spikes: 0 places removed",)
+    narrow = np.add.outer(np.arange(9.0) ** 2, np.arange(20.0) ** 2)
+    assert ready(narrow, trim=4, form="none").used.heights.shape == (1, 12)
+    for turned in (narrow[:8], narrow[:8].T):
+        with pytest.raises(ValueError, match="trim = 4: leaves nothing of"):
+            ready(turned, trim=4)
+
+
+@pytest.mark.parametrize("axis", ["x", "y"])
+@pytest.mark.parametrize("first", [True, False])
+def test_a_terrace_ends_where_the_step_begins(axis, first):
+    """The larger one, to the point; what is kept is told."""
+    z = rough(6)
+    at = 140 if first else 60
+    step = 2e-5 * (np.arange(N) >= at)
+    stepped = z + (step if axis == "x" else step[:, None])
+    found = ready(stepped, step="crop", form="none")
+    kept = found.used.heights.shape["yx".index(axis)]
+    pixel = PIXEL["xy".index(axis)]
+    assert 110 < kept < 140
+    whole = z if axis == "x" else z.T
+    part = whole[:, :kept] if first else whole[:, N - kept :] + 2e-5
+    used = found.used.heights if axis == "x" else found.used.heights.T
+    np.testing.assert_allclose(used, part, atol=1e-15)
+    (note,) = found.notes
+    height, place, word, end = re.fullmatch(
+        rf"step: (\S+) m near {axis} = (\S+) m; only the map (up to|from) (\S+) m kept", note
+    ).groups()
+    assert float(height) == pytest.approx(2e-5, rel=0.1)
+    assert float(place) == pytest.approx(at * pixel, abs=9 * pixel)
+    assert word == ("up to" if first else "from")
+    assert float(end) == pytest.approx((kept if first else N - kept) * pixel, abs=pixel)

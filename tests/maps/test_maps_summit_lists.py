@@ -1,0 +1,265 @@
+"""Summits one by one: those of a few cosines, known on paper; their table; what each tile of a map tells."""
+
+import csv
+import math
+
+import numpy as np
+import pytest
+from oracles.fit_of_maps import fit_map
+from scipy.optimize import brentq
+
+import mcgw
+from mcgw.cli import main
+from mcgw.maps.map_files import write_map
+from mcgw.maps.summit_sums import SUMS, SummitSums, summit_sums_of
+from mcgw.maps.summits import Alone, alone_of, summits_of, tiles_of, variation
+from mcgw.maps.synthetic import Spectrum, gaussian_map
+from mcgw.maps.topography import Topography
+
+UM = 1e-6
+
+
+class Wave:
+    """Two cosines along a line that repeats itself, and its maxima by bracketing."""
+
+    def __init__(self, length, long, short):
+        self.length = length
+        self.parts = [(a, 2 * math.pi * n / length, phase) for a, n, phase in (long, short)]
+
+    def __call__(self, t, order=0):
+        return sum(a * q**order * np.cos(q * t + p + order * math.pi / 2) for a, q, p in self.parts)
+
+    def maxima(self):
+        grid = np.linspace(0, self.length, 20001)
+        slope = self(grid, 1)
+        at = np.nonzero((slope[:-1] > 0) & (slope[1:] <= 0))[0]
+        return np.array([brentq(lambda t: self(t, 1), grid[k], grid[k + 1], xtol=1e-15) for k in at])
+
+
+X = Wave(400 * UM, (0.3 * UM, 3, 0.4), (0.1 * UM, 16, 1.1))
+Y = Wave(300 * UM, (0.2 * UM, 2, 2.0), (0.05 * UM, 10, 0.3))
+
+
+@pytest.fixture(scope="module")
+def waves():
+    """Their sum on pixels of 0.5 x 0.6 um, 50 to a short wave."""
+    x, y = (np.arange(800) + 0.5) * 0.5 * UM, (np.arange(500) + 0.5) * 0.6 * UM
+    return Topography(X(x) + Y(y)[:, None], (0.5 * UM, 0.6 * UM), periodic=True)
+
+
+def test_every_summit_of_four_cosines(waves, without_caps):
+    """A summit stands where both waves have a maximum: place, height and curvatures follow."""
+    fit = fit_map(waves, cutoff=None, form="none")
+    x, y = (a.ravel() for a in np.meshgrid(X.maxima(), Y.maxima()))
+    assert fit.summits.size == x.size == 160
+    found = fit.listed
+    assert found.unresolved == 0
+    true = X(x) + Y(y)
+    nearest = np.argmin(np.hypot(x - found.x[:, None], y - found.y[:, None]), axis=1)
+    assert sorted(nearest) == list(range(x.size))
+    bend_x, bend_y = -X(x, 2), -Y(y, 2)
+    skew_x, skew_y = (abs(w(t, 3) / w(t, 2))[nearest] for w, t in ((X, x), (Y, y)))
+    # The vertex through three points h apart lies h^2/6 times (third over second derivative) beside it.
+    assert np.all(abs(found.x - x[nearest]) < 1.2 * (0.5 * UM) ** 2 / 6 * skew_x + 1e-3 * UM)
+    assert np.all(abs(found.y - y[nearest]) < 1.2 * (0.6 * UM) ** 2 / 6 * skew_y + 1e-3 * UM)
+    np.testing.assert_allclose(found.heights, (true - true.mean())[nearest], atol=1e-4 * 0.1 * UM)
+    # Curvatures are those at the pixel, up to half of it beside the summit.
+    order = np.argsort([-bend_x[nearest], -bend_y[nearest]], axis=0)
+    bends = np.take_along_axis(np.array([bend_x, bend_y])[:, nearest], order, axis=0)
+    beside = np.take_along_axis(np.array([0.25 * UM * skew_x, 0.3 * UM * skew_y]), order, axis=0)
+    assert np.all(abs(found.curvatures / bends - 1) < 1.1 * beside + 0.004)
+    assert np.all(abs(fit.radii * np.sqrt(bends[0] * bends[1]) - 1) < beside.sum(axis=0) + 0.004)
+
+
+def test_waves_along_the_diagonals():
+    """Principal directions between the axes: the mixed derivative tells the two curvatures apart."""
+    n, q = 200, 2 * math.pi / (20 * UM)
+    x, y = np.meshgrid(np.arange(n) * UM, np.arange(n) * UM)
+    z = 1e-7 * (3 * np.cos(q * (x + y)) + np.cos(q * (x - y)))
+    topography = Topography(z, (UM, UM), periodic=True)
+    found = summits_of(topography, summit_sums_of(topography), (0.0, 0.0))
+    assert found.heights.size == 200  # two in each cell of 20 um
+    a = 2 * q * q * 1e-7
+    # Stencils of the fourth order at 20 pixels a wave: (2 pi/20)^4/30 of a first derivative, twice.
+    np.testing.assert_allclose(found.curvatures[0], 3 * a, rtol=1e-3)
+    np.testing.assert_allclose(found.curvatures[1], a, rtol=2e-3)
+    np.testing.assert_allclose(found.x / (10 * UM) % 1, np.full(200, 0.05), atol=1e-6)  # half a pixel
+
+
+@pytest.mark.parametrize("periodic", [True, False])
+def test_mean_curvatures_and_heights_are_those_that_were_counted(periodic, without_caps):
+    spectrum = Spectrum(1e-6, 60e-6, 8e-6)
+    drawn = gaussian_map(spectrum, (200, 240), (1e-6, 1.2e-6), np.random.default_rng(3))
+    topography = Topography(drawn.heights, drawn.pixel, periodic)
+    counted = summit_sums_of(topography)
+    fit = fit_map(topography, cutoff=None, form="none")
+    resolved = fit.listed.curvatures[0] != fit.listed.curvatures[1]
+    assert fit.listed.unresolved == np.count_nonzero(~resolved)
+    mean = fit.listed.curvatures.mean(axis=0)
+    np.testing.assert_allclose(mean[resolved], counted.curvatures[resolved], rtol=1e-9)
+    np.testing.assert_array_equal(fit.summits, counted.heights - counted.heights.mean())
+    np.testing.assert_array_equal(fit.listed.tile, counted.part)
+
+
+def test_places_are_those_on_the_map_as_it_was_read(without_caps):
+    """A cutoff takes a margin off; the bumps, one a field of a chess board, stay where they were."""
+    rng = np.random.default_rng(4)
+    column, row = (a.ravel() for a in np.meshgrid(np.arange(8), np.arange(6)))
+    bumps = np.array([30 + 20 * column, 30 + 20 * row]) + rng.uniform(-1, 1, (2, column.size))
+    y, x = np.mgrid[0:160, 0:200] + 0.5
+    z = sum(np.exp(-((x - a) ** 2 + (y - b) ** 2) / 20) for a, b in bumps.T)
+    found = fit_map(Topography(z * UM, (UM, UM)), cutoff=8 * UM, form="none").listed
+    distance = np.hypot(found.x / UM - bumps[0][:, None], found.y / UM - bumps[1][:, None]).min(axis=1)
+    assert np.all(distance < 0.05)
+
+
+def test_ridges_between_pixels_are_counted_and_have_a_radius(without_caps):
+    """White noise: some have a saddle by stencils of the fourth order. None is without a curvature."""
+    noise = Topography(np.random.default_rng(5).normal(size=(150, 150)) * UM, (UM, UM))
+    found = fit_map(noise, cutoff=None).listed
+    assert 0 < found.unresolved < 0.03 * found.heights.size
+    assert np.all(found.curvatures > 0)
+    assert np.all(np.isfinite(found.radii))
+
+
+@pytest.fixture(scope="module")
+def tables(waves, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("tables")
+    write_map(waves, folder / "map.npy")
+    words = ["fit", str(folder / "map.npy"), "--cutoff", "none", "--form", "none", "--parts", "3"]
+    words += ["--summits", str(folder / "s.csv"), "--tiles", str(folder / "t.csv")]
+    assert main([*words, "-o", str(folder / "f.toml")]) == 0
+    return folder
+
+
+def rows(path):
+    comment, *lines = path.read_text().splitlines()
+    assert comment.startswith("# ")
+    assert "in m" in comment
+    return list(csv.DictReader(lines))
+
+
+def test_the_table_reads_back_to_the_last_bit(tables, waves):
+    fit = mcgw.fit(waves, cutoff=None, form="none", parts=3)
+    found = rows(tables / "s.csv")
+    listed = fit.listed
+    columns = (listed.x, listed.y, fit.summits, fit.radii, *listed.curvatures)
+    for name, values in zip(
+        ("x", "y", "height", "radius", "curvature_1", "curvature_2"), columns, strict=True
+    ):
+        np.testing.assert_array_equal([float(row[name]) for row in found], values)
+    assert [int(row["tile"]) for row in found] == listed.tile.tolist()
+
+
+def test_each_tile_by_itself(tables, waves):
+    """Literal: the mean squares of numbers on each ninth of the map, and the summits that stand there."""
+    found = rows(tables / "t.csv")
+    listed = mcgw.fit(waves, cutoff=None, form="none", parts=3).listed
+    assert [row["column"] + row["row"] for row in found[:4]] == ["00", "10", "20", "01"]
+    x, y = X(0.5 * UM * (np.arange(800) + 0.5)), Y(0.6 * UM * (np.arange(500) + 0.5))
+    column, line = np.arange(800) * 3 // 800, np.arange(500) * 3 // 500
+    for k, row in enumerate(found):
+        z = x[column == k % 3] + y[line == k // 3][:, None]
+        assert float(row["m0"]) == pytest.approx(z.var(), rel=1e-9)
+        here = listed.tile == k
+        assert int(row["summits"]) == here.sum()
+        assert float(row["eta"]) == pytest.approx(here.sum() / (z.size * 0.3e-12), rel=1e-12)
+        assert float(row["sigma"]) == pytest.approx(listed.heights[here].std(ddof=1), rel=1e-9)
+        assert float(row["radius"]) == pytest.approx(1 / listed.curvatures[:, here].mean(), rel=1e-9)
+
+
+def test_tiles_tell_a_map_that_varies():
+    """Twice as rough on its right half: sigma varies by more than it does on a map that is alike all over."""
+    even = gaussian_map(Spectrum(1e-6, 20e-6, 10e-6), (400, 400), (UM, UM), np.random.default_rng(1))
+    rough = even.heights * np.where(np.arange(400) < 200, 1.0, 2.0)
+
+    def told(topography, name, **parts):
+        (column,) = tiles_of(summit_sums_of(topography, **parts)).only(name).columns
+        return column.values
+
+    assert variation(told(even, "sigma")) < 0.2
+    # one and two by halves: 0.5/1.5, times sqrt(16/15)
+    assert variation(told(Topography(rough, (UM, UM)), "sigma")) > 0.3
+    (alone,) = told(even, "m0", across=1)
+    assert alone == pytest.approx(even.heights.var(), rel=1e-12)
+    assert math.isnan(variation(told(even, "sigma", across=1)))
+
+
+def test_columns_of_both_tables_have_their_units(waves):
+    counted = summit_sums_of(waves, across=3)
+    listed = summits_of(waves, counted, (0.0, 0.0)).table()
+    assert [(c.name, c.unit) for c in listed.columns] == [
+        ("x", "m"), ("y", "m"), ("height", "m"), ("radius", "m"), ("curvature_1", "1/m"),
+        ("curvature_2", "1/m"), ("tile", ""),
+    ]  # fmt: skip
+    tiles = tiles_of(counted)
+    assert [(c.name, c.unit) for c in tiles.columns] == [
+        ("tile", ""), ("column", ""), ("row", ""), ("summits", ""), ("eta", "1/m^2"), ("radius", "m"),
+        ("sigma", "m"), ("m0", "m^2"), ("m2", ""), ("m4", "1/m^2"),
+    ]  # fmt: skip
+    x, y = X(0.5 * UM * (np.arange(800) + 0.5), 1), Y(0.6 * UM * (np.arange(500) + 0.5), 1)
+    m2, m4 = tiles.columns[8].values, tiles.columns[9].values
+    assert m2.mean() == pytest.approx(((x**2).mean() + (y**2).mean()) / 2, rel=5e-3)
+    x, y = X(0.5 * UM * (np.arange(800) + 0.5), 2), Y(0.6 * UM * (np.arange(500) + 0.5), 2)
+    assert m4.mean() == pytest.approx(((x**2).mean() + (y**2).mean()) / 2, rel=5e-3)
+
+
+def test_tiles_without_summits_or_points_are_nan():
+    """One summit has no spread of heights."""
+    sums = np.ones((len(SUMS), 4))
+    sums[:, 3] = 0
+    one = SummitSums(sums, np.ones(3), np.full(3, 2.0), np.zeros((2, 3)), np.array([0, 0, 1]), 0.5)
+    found = {c.name: np.asarray(c.values).tolist() for c in tiles_of(one).columns}
+    assert found["summits"] == [2, 1, 0, 0]
+    assert (found["column"], found["row"]) == ([0, 1, 0, 1], [0, 0, 1, 1])
+    assert found["eta"][:3] == [4, 2, 0]
+    assert found["radius"][:2] == [0.5, 0.5]
+    assert found["sigma"][0] == 0
+    nan = {"radius": [2, 3], "sigma": [1, 2, 3], "eta": [3], "m0": [3], "m2": [3], "m4": [3]}
+    for name, places in nan.items():
+        assert np.flatnonzero(np.isnan(found[name])).tolist() == places, name
+
+
+def sums_of(parts, **rows):
+    """Sums over so many sub-areas of 100 points, without summits."""
+    sums = np.zeros((len(SUMS), parts))
+    sums[0] = 100.0
+    for name, values in rows.items():
+        sums[SUMS.index(name)] = values
+    nothing = np.zeros(0)
+    return SummitSums(sums, nothing, nothing, np.zeros((2, 0)), np.zeros(0, dtype=int), 1e-12)
+
+
+@pytest.mark.parametrize(("moment", "rows"), [
+    ("m4", ("bend",)), ("m2", ("slope_x",)), ("m2", ("slope_y",)), ("m0", ("z2",)),
+])  # fmt: skip
+def test_a_sub_area_stands_alone_where_less_than_half_is_left_without_it(moment, rows):
+    """Of nine, all but one with 1: of 8/8 over (8 + x)/9 less than a half is left from x = 10 on."""
+    even = dict.fromkeys(("bend", "slope_x", "slope_y", "z2"), np.ones(9))
+    if moment == "m2":
+        even |= dict.fromkeys(("slope_x", "slope_y"), np.full(9, 0.5))
+    for most, found in ((9.9, False), (10.1, True)):
+        odd = even[rows[0]].copy()
+        odd[5] += most - 1
+        alone = alone_of(sums_of(9, **{**even, rows[0]: odd}))
+        left = 9 / (8 + most)
+        assert alone == (Alone(moment, pytest.approx(left), 2, 1, 3) if found else None)
+
+
+def test_heights_that_stand_alone_are_about_the_mean_of_the_map():
+    """Of a terrace, all of whose sub-areas are as high; and of one sub-area nothing is said."""
+    even = dict.fromkeys(("bend", "slope_x", "slope_y"), np.ones(4))
+    z = np.array([1e-3, 1e-3, 1e-3, 1e-3]) * 100
+    z2 = z * 1e-3 + np.array([1.0, 1.0, 40.0, 1.0]) * 1e-12
+    alone = alone_of(sums_of(4, z=z, z2=z2, **even))
+    assert (alone.moment, alone.column, alone.row) == ("m0", 0, 1)
+    assert alone.left == pytest.approx(1 / (43 / 4), rel=1e-3)
+    assert alone_of(sums_of(1, bend=5.0)) is None
+    few = sums_of(4, **even)
+    few.sums[0] = [0, 0, 100, 0]
+    assert alone_of(few) is None
+
+
+def test_variation_is_that_of_tiles_that_tell_something():
+    assert variation(np.array([1.0, 3.0, np.nan])) == pytest.approx(math.sqrt(2) / 2)
+    assert math.isnan(variation(np.array([1.0, np.nan])))

@@ -1,0 +1,301 @@
+"""Surfaces out: the asperities whose loads are in the file, their envelope, and what hides."""
+
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+from scipy.integrate import quad
+
+import analytic
+import mcgw
+from mcgw.cli import main
+from mcgw.figures.contact_map import spots_at
+from mcgw.maps.envelope import envelope, hidden_summits
+from mcgw.maps.hidden_caps import visible
+from mcgw.maps.map_files import read_map
+from mcgw.maps.synthetic import (
+    Asperities,
+    Spectrum,
+    asperities_of,
+    gaussian_map,
+    moments_on_grid,
+    spectrum_from,
+)
+from mcgw.scene.scene_file import scene_text
+
+RUNS = Path(__file__).parents[2] / "runs"
+
+
+def random_field(number, size, radius, sigma, seed=1):
+    rng = np.random.default_rng(seed)
+    x, y = rng.random((2, number)) * np.array(size)[:, None]
+    return Asperities(x, y, sigma * rng.normal(size=number), np.full(number, radius), radius, size)
+
+
+def offsets(a, b, length, periodic):
+    """Differences of all pairs, the shortest ones on a periodic cell."""
+    d = np.subtract.outer(a, b)
+    return d - length * np.round(d / length) if periodic else d
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    number=st.integers(1, 120), width=st.floats(0.2, 5.0), radius=st.floats(0.02, 3.0),
+    sigma=st.floats(0.0, 0.5), periodic=st.booleans(), seed=st.integers(0, 2**32),
+)  # fmt: skip
+def test_envelope_and_hidden_summits_against_all_pairs(number, width, radius, sigma, periodic, seed):
+    field = random_field(number, (width, 1.0), radius, sigma, seed)
+    found = envelope(field, (9, 13), periodic=periodic)
+    assert found.periodic == periodic
+    x, y = (np.arange(13) + 0.5) * width / 13, (np.arange(9) + 0.5) / 9
+    dx, dy = offsets(x, field.x, width, periodic), offsets(y, field.y, 1.0, periodic)
+    caps = field.z - (dx[None, :, :] ** 2 + dy[:, None, :] ** 2) / (2 * radius)
+    # heights are differences of numbers up to r^2/(2R)
+    assert found.heights == pytest.approx(caps.max(axis=2), abs=1e-15 * (1 + (width**2 + 1) / radius))
+    d2 = offsets(field.x, field.x, width, periodic) ** 2 + offsets(field.y, field.y, 1.0, periodic) ** 2
+    above = (field.z[None, :] - d2 / (2 * radius)).max(axis=1) - field.z
+    told = np.abs(above) > 1e-14 * (1 + width**2 / radius)
+    assert np.array_equal(hidden_summits(field, periodic=periodic)[told], (above > 0)[told])
+
+
+def test_a_window_is_cut_from_the_same_envelope():
+    field = random_field(50, (2.0, 1.0), 0.5, 0.05)
+    whole = envelope(field, (20, 40))
+    part = envelope(field, (10, 20), window=(0.5, 1.5, 0.25, 0.75))
+    assert not envelope(field, (10, 20), window=(0.5, 1.5, 0.25, 0.75), periodic=True).periodic
+    assert part.heights == pytest.approx(whole.heights[5:15, 10:30], abs=1e-14)
+    assert not whole.periodic
+    assert np.array_equal(whole.heights, envelope(field, (20, 40), periodic=False).heights)
+    apart = Asperities(*np.array([[0.1, 1.9], [0.5, 0.5], [0.0, 1.0], [1.0, 1.0]]), 1.0, (2.0, 1.0))
+    assert hidden_summits(apart).tolist() == [False, False]  # across an edge it would be
+    assert hidden_summits(apart, periodic=True).tolist() == [True, False]
+
+
+@pytest.mark.parametrize("count", ["fixed", "poisson"])
+def test_loads_of_the_listed_asperities_are_those_in_the_file(count, make_scene, tmp_path):
+    """Hertz's sums by NumPy over the asperities in the exported file, against the ensemble's row."""
+    scene = make_scene(sampler="cells", count=count, separations=(0.0, 0.5, 1.7), n_surfaces=4)
+    ensemble = mcgw.simulate(scene)
+    (tmp_path / "scene.toml").write_text(scene_text(scene))
+    out = tmp_path / "map.h5"
+    assert (
+        main(["surface", str(tmp_path / "scene.toml"), "--surface", "3", "--shape", "64", "-o", str(out)])
+        == 0
+    )
+    with h5py.File(out) as file:
+        z, radius = file["asperities/z"][:], file["asperities"].attrs["radius"]
+        assert mcgw.scene_from(file["scene"][()].decode()) == scene
+    surface = scene.surface
+    for k, h in enumerate(scene.separations):
+        delta = z[z > h * surface.sigma] - h * surface.sigma
+        modulus = surface.E_star * (2 - np.exp(-z[z > h * surface.sigma] / surface.sigma))
+        load = np.sum(4 / 3 * modulus * math.sqrt(radius) * delta**1.5)
+        # h sigma is subtracted again from s sigma: a last digit of both, summed over 1000 spots
+        assert ensemble.load[3, k] == pytest.approx(load, rel=1e-12)
+        assert ensemble.area[3, k] == pytest.approx(np.sum(np.pi * radius * delta), rel=1e-12)
+        assert ensemble.contacts[3, k] == delta.size
+    if count == "fixed":
+        assert z.size == scene.n_asperities
+
+
+@pytest.mark.parametrize(
+    "law", [mcgw.Hertz(), mcgw.KogutEtsion(critical=0.05), mcgw.PowerLawGraded(0.5, 1e-6)]
+)
+def test_spots_carry_the_load_of_the_row(make_scene, law):
+    scene = make_scene(separations=(0.5,), sampler="tail", n_surfaces=2, law=law)
+    spots = spots_at(scene, asperities_of(scene, 1), 0.5)
+    ensemble = mcgw.simulate(scene)
+    assert spots.load.sum() == pytest.approx(ensemble.load[1, 0], rel=1e-12)
+    assert np.pi * np.sum(spots.radius**2) == pytest.approx(ensemble.area[1, 0], rel=1e-12)
+
+
+def test_positions_are_uniform_and_belong_to_their_surface(make_scene):
+    """Mean and variance of 40000 uniforms, |z| < 5: a false alarm in 2e6 each; and no two fields alike."""
+    scene = make_scene(n_asperities=40000, sampler="cells")
+    field = asperities_of(scene, 5, width=0.02)
+    assert field.size == (0.02, pytest.approx(0.005))
+    for values, length in ((field.x, 0.02), (field.y, 0.005)):
+        u = values / length
+        assert 0 < u.min() < u.max() < 1
+        assert abs(u.mean() - 0.5) * math.sqrt(12 * u.size) < 5
+        assert abs(np.var(u) - 1 / 12) * math.sqrt(180 * u.size) < 5
+    assert abs(np.corrcoef(field.x, field.y)[0, 1]) * 200 < 5
+    assert abs(np.corrcoef(field.x, field.z)[0, 1]) * 200 < 5
+    again, other = asperities_of(scene, 5, width=0.02), asperities_of(scene, 6, width=0.02)
+    assert np.array_equal(again.x, field.x)
+    assert not np.any(np.isin(other.x, field.x[:1000]))
+
+
+def test_so_many_hide_as_the_theory_of_caps_says():
+    """A Poisson field is nearly this binomial one; 20000 summits, |z| < 5 (false alarm 1 in 2e6).
+
+    Hiding is correlated between neighbours; the binomial deviation is an upper bound to that of a
+    share this small within a factor of 2, for which the gate has room: leaving out the factor 2 pi R of
+    the exponent would be off by 30 deviations.
+    """
+    number, radius, overlap = 20000, 1e-3, 0.05
+    sigma = overlap / number / radius
+    field = random_field(number, (1.0, 1.0), radius, sigma, seed=3)
+    seen = ~hidden_summits(field, periodic=True)
+    theory = visible(overlap)
+    assert abs(seen.mean() - theory.share) < 5 * math.sqrt(theory.share * (1 - theory.share) / number)
+    assert abs(field.z[seen].std() / sigma / theory.std - 1) < 5 / math.sqrt(2 * number)
+
+
+@pytest.mark.slow
+def test_the_largest_map_fits_two_gigabytes(tmp_path):
+    """4096 x 4096 points of 1e6 asperities; some of them by all caps. `runs/bench/maps.py` times it."""
+    scene = mcgw.load_scene(RUNS / "homogeneous.toml").replace(n_asperities=10**6)
+    (tmp_path / "scene.toml").write_text(scene_text(scene))
+    command = ["surface", str(tmp_path / "scene.toml"), "--shape", "4096", "-o", str(tmp_path / "map.h5")]
+    # In a process of its own: what other tests took before does not count.
+    code = "import resource, sys; from mcgw.cli import main; assert main(sys.argv[1:]) == 0; "
+    code += "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"
+    done = subprocess.run([sys.executable, "-c", code, *command], capture_output=True, text=True, check=True)
+    assert int(done.stdout.split()[-1]) < 2e6
+    found = read_map(tmp_path / "map.h5")
+    assert found.heights.shape == (4096, 4096)
+    field = asperities_of(mcgw.load_scene(tmp_path / "scene.toml"), 0)
+    pixel = field.size[0] / 4096
+    for row, column in np.random.default_rng(1).integers(0, 4096, (20, 2)):
+        dx, dy = (column + 0.5) * pixel - field.x, (row + 0.5) * pixel - field.y
+        cap = field.z - (dx**2 + dy**2) / (2 * field.radius)
+        assert found.heights[row, column] == pytest.approx(cap.max(), abs=1e-6 * np.ptp(found.heights))
+
+
+def waves_of_the_plane(shape, pixel):
+    """Wave numbers along x and y of all modes of a map."""
+    return np.meshgrid(*(2 * np.pi * np.fft.fftfreq(n, p) for n, p in zip(shape[::-1], pixel, strict=True)))
+
+
+@pytest.mark.parametrize("shape", [(60, 48), (61, 47)])
+def test_a_gaussian_map_is_noise_with_the_power_of_its_spectrum(shape):
+    """Mode by mode of the whole plane, on pixels that are not square; moments are sums over all of it."""
+    spectrum, pixel = Spectrum(1e-6, 40e-6, 5.1e-6, 0.5), (1e-6, 1.5e-6)
+    qx, qy = waves_of_the_plane(shape, pixel)
+    q = np.hypot(qx, qy)
+    inside = (q > 2 * np.pi / 40e-6) & (q < 2 * np.pi / 5.1e-6)
+    power = np.where(inside, np.where(inside, q, 1.0) ** -3.0, 0.0)
+    power *= 1e-12 / power.sum()
+    noise = np.random.default_rng(3).standard_normal(shape)
+    drawn = gaussian_map(spectrum, shape, pixel, np.random.default_rng(3))
+    seen = np.abs(np.fft.fft2(drawn.heights))
+    expected = np.abs(np.fft.fft2(noise)) * np.sqrt(power * noise.size)
+    np.testing.assert_allclose(seen, expected, atol=1e-12 * expected.max())
+    assert drawn.pixel == pixel
+    assert drawn.periodic
+    m = moments_on_grid(spectrum, shape, pixel)
+    assert m.m0 == pytest.approx(1e-12, rel=1e-14)
+    assert m.m2 == pytest.approx((power * (qx**2 + qy**2)).sum() / 2, rel=1e-12)
+    assert m.m4 == pytest.approx((power * (qx**4 + qy**4)).sum() / 2, rel=1e-12)
+
+
+@pytest.mark.parametrize(("alpha", "hurst"), [(1.6, 0.8), (1.9, -1.0), (40.0, 0.5)])
+def test_a_spectrum_has_the_moments_that_were_asked_for(alpha, hurst):
+    """By integrals over its ring: m2 is half, m4 three eighths of the means of q^2 and q^4."""
+    asked = analytic.SpectralMoments(1e-12, 1e-3, alpha * 1e6)
+    spectrum = Spectrum.with_moments(asked, hurst)
+    ends = 1.0, spectrum.long / spectrum.short
+    mean = [quad(lambda q, k=k: q ** (k - 1 - 2 * hurst), *ends, epsrel=1e-12)[0] for k in (0, 2, 4)]
+    unit = 2 * np.pi / spectrum.long
+    assert spectrum.rms**2 == pytest.approx(asked.m0, rel=1e-12)
+    assert asked.m0 * unit**2 * mean[1] / mean[0] / 2 == pytest.approx(asked.m2, rel=1e-9)
+    assert asked.m0 * unit**4 * mean[2] / mean[0] * 3 / 8 == pytest.approx(asked.m4, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", ["at.png", "at.svg"])
+def test_the_contact_map_is_drawn(name, tmp_path, capsys):
+    out = tmp_path / name
+    assert (
+        main(["surface", str(RUNS / "quick.toml"), "--at", "1", "--colour", "modulus", "-o", str(out)]) == 0
+    )
+    assert out.read_bytes()[:5] in (b"\x89PNG\r", b"<?xml")
+    assert capsys.readouterr().out.startswith(f"{out}: ")
+    assert list(tmp_path.iterdir()) == [out]
+
+
+@pytest.mark.parametrize(("arguments", "told"), [
+    (["SCENE", "-o", "map.tiff"], "a map is written there"),
+    (["SCENE", "-o", "map.h5", "--at", "1"], "a figure is written there"),
+    (["SCENE", "-o", "map.png", "--at", "99"], "there is no contact"),
+    (["SCENE", "-o", "map.h5", "--surface", "1000000"], "surfaces 0 to"),
+    (["SCENE", "-o", "map.h5", "--shape", "1x"], "--shape"),
+    (["SCENE", "-o", "map.h5", "--shape", "99999"], "more than the"),
+    (["SCENE", "-o", "map.h5", "--width", "far"], "--width = 'far': give a number > 0 with its unit"),
+    (["-o", "map.h5"], "SCENE"),
+    (["-o", "map.h5", "--from-spectrum", "rms=1um,long=1um,short=9um", "--pixel", "1um"], "below long"),
+    (["-o", "map.h5", "--from-spectrum", "m0=1,m2=1,m4=1", "--pixel", "1um"], "above 1.5"),
+    (["-o", "map.h5", "--from-spectrum", "rms=1um", "--pixel", "1um"], "give rms, long and short"),
+    (["-o", "map.h5", "--from-spectrum", "height=1um", "--pixel", "1um"], "give rms, long"),
+    (["-o", "map.h5", "--from-spectrum", "rms=1um,long=90um,short=9um"], "--pixel"),
+])  # fmt: skip
+def test_mistakes_are_told_in_one_line_and_nothing_is_written(arguments, told, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    arguments = [str(RUNS / "quick.toml") if a == "SCENE" else a for a in arguments]
+    assert main(["surface", *arguments]) == 2
+    error = capsys.readouterr().err
+    assert told in error
+    assert error.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("hurst", [0.5, 0.8, 1.0])
+def test_the_bandwidths_of_a_spectrum_have_ends(hurst):
+    """Of the narrowest one 1.5, of the widest a number that is told, up to which there is one."""
+    with pytest.raises(ValueError, match=r"give a ratio above 1[.]5 and below ") as told:
+        Spectrum.with_moments(analytic.SpectralMoments(1.0, 1.0, 1e30), hurst)
+    highest = float(str(told.value).rpartition(" ")[2])
+    r = 1e6
+    mean = [quad(lambda t, k=k: math.exp((k - 2 * hurst) * t), 0, math.log(r))[0] for k in (0, 2, 4)]
+    assert highest == pytest.approx(1.5 * mean[2] * mean[0] / mean[1] ** 2, rel=1e-3)
+    Spectrum.with_moments(analytic.SpectralMoments(1.0, 1.0, 0.99 * highest), hurst)
+    for alpha in (1.01 * highest, 1.5, 1.4):
+        with pytest.raises(ValueError, match=r"give a ratio above 1[.]5 and below "):
+            Spectrum.with_moments(analytic.SpectralMoments(1.0, 1.0, alpha), hurst)
+    narrow = Spectrum.with_moments(analytic.SpectralMoments(1.0, 1.0, 1.5001), hurst)
+    assert 1 < narrow.long / narrow.short < 1.05
+    assert Spectrum.with_moments(analytic.SpectralMoments(1.0, 1.0, 4.0)).hurst == 0.8
+
+
+def test_a_spectrum_fills_its_grid_to_two_pixels_and_to_its_edge():
+    """As long as the map and as short as two pixels, along the axis where that is least."""
+    one = np.random.default_rng(1)
+    drawn = gaussian_map(Spectrum(1e-6, 30e-6, 4e-6), (15, 40), (1e-6, 2e-6), one)
+    assert drawn.heights.shape == (15, 40)
+    for shape, pixel in (((14, 40), (1e-6, 2e-6)), ((15, 29), (1e-6, 2e-6))):
+        with pytest.raises(ValueError, match="longer than the map"):
+            gaussian_map(Spectrum(1e-6, 30e-6, 4e-6), shape, pixel, one)
+    for pixel in ((2.01e-6, 2e-6), (2e-6, 2.01e-6)):
+        with pytest.raises(ValueError, match="shows 2 pixels or more"):
+            gaussian_map(Spectrum(1e-6, 30e-6, 4e-6), (40, 40), pixel, one)
+
+
+@pytest.mark.parametrize("width", [0.0, -1.0, math.nan, math.inf])
+def test_a_surface_of_a_scene_has_a_width_and_a_number(width, make_scene):
+    scene = make_scene(n_surfaces=3)
+    with pytest.raises(ValueError, match=r"width = .*: give a length > 0 m"):
+        asperities_of(scene, 0, width=width)
+    for surface in (-1, 3):
+        with pytest.raises(ValueError, match=f"surface = {surface}: the scene has surfaces 0 to 2"):
+            asperities_of(scene, surface)
+    field = asperities_of(scene, 2)
+    assert field.size == pytest.approx((0.01, 0.01))
+    assert (field.number, field.radius) == (3000, 13e-6)
+    assert np.array_equal(field.radii, np.full(3000, 13e-6))
+
+
+def test_a_spectrum_is_read_key_by_key():
+    of_moments = spectrum_from("m0=1e-12, m2=1e-3,m4=5e6")
+    assert of_moments.rms == pytest.approx(1e-6)
+    assert of_moments == Spectrum.with_moments(analytic.SpectralMoments(1e-12, 1e-3, 5e6))
+    assert spectrum_from("m0=1e-12,m2=1e-3,m4=5e6,hurst=0.3").hurst == 0.3
+    found = spectrum_from("rms=2um, long=100um, short=5um, hurst=0.5")
+    assert (found.rms, found.long, found.short, found.hurst) == pytest.approx((2e-6, 1e-4, 5e-6, 0.5))
+    assert spectrum_from("rms=2um,long=100um,short=5um").hurst == Spectrum(2e-6, 1e-4, 5e-6).hurst
+    with pytest.raises(ValueError, match="each once"):
+        spectrum_from("rms=2um,long=100um,short=5um,hurst=0.5,hurst=0.6")

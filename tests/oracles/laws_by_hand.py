@@ -1,0 +1,116 @@
+"""Contact laws typed in, independent of those of `analytic.laws`, and what tests of models share."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic import Exponential, Homogeneous, Surface, quantity_of
+from analytic.laws import CustomLaw
+from analytic.laws.law import ContactLaw
+
+SURFACE = Surface(sigma=1e-6, radius=1e-5, eta=1e9, nominal_area=1e-6, E_star=1e9)
+GRADINGS = {
+    "uniform": Homogeneous(), "no tips": Exponential(0.0), "soft tips": Exponential(0.2),
+    "stiff tips": Exponential(2.0),
+}  # fmt: skip
+OWN = CustomLaw(
+    load=(lambda u: u**3, lambda u: 1.03 * u**2.85, lambda u: 1.40 * u**2.526, lambda u: 3 / 0.577 * u**2),
+    area=(lambda u: u**2, lambda u: 0.93 * u**2.272, lambda u: 0.94 * u**2.292, lambda u: 2 * u**2),
+    limits=(1.0, 6.0, 110.0),
+    critical=0.05,
+)
+
+
+def reduced(model, quantity, h):
+    """Mean of one asperity over the scale."""
+    return np.asarray(model.mean(quantity, h)) / model.number / quantity_of(quantity).scale(SURFACE)
+
+
+def differences(model, quantity, h, step=4e-3):
+    """-d mean/dh by differences of the eighth order: the mean is smooth, jumps are smeared over heights."""
+    k, weights = step * np.array([1, 2, 3, 4]), np.array([4 / 5, -1 / 5, 4 / 105, -1 / 280]) / step
+    return float((model.mean(quantity, h - k) - model.mean(quantity, h + k)) @ weights)
+
+
+@dataclass(frozen=True)
+class KogutEtsion(ContactLaw):
+    """Kogut and Etsion (2002) with nu = 0.3: K = 0.577."""
+
+    critical: float = 0.05
+    third: float = 1.4  # factor of the load between 6 and 110 critical penetrations
+
+    name = "by hand: kogut-etsion"
+    elastic = False
+
+    def limits(self, e):
+        e = np.asarray(e)
+        return np.array([1.0, 6.0, 110.0]).reshape(-1, *[1] * e.ndim) * (self.critical / e**2)
+
+    def load(self, piece, y, e):
+        if piece == 0:
+            return e * y**3
+        dc = self.critical / e**2
+        x, pc = y * y / dc, e * dc**1.5
+        factor, power = ((1.03, 1.425), (self.third, 1.263), (3 / 0.577, 1.0))[piece - 1]
+        return factor * pc * x**power
+
+    def radius(self, piece, y, e):
+        if piece == 0:
+            return y + 0 * e
+        dc = self.critical / e**2
+        factor, power = ((0.93, 1.136), (0.94, 1.146), (2.0, 1.0))[piece - 1]
+        return (dc * factor * (y * y / dc) ** power) ** 0.5
+
+
+@dataclass(frozen=True)
+class ChangEtsionBogy(ContactLaw):
+    """Chang, Etsion and Bogy (1987): the load jumps by a half at yield, the area is continuous."""
+
+    critical: float = 0.05
+
+    name = "by hand: chang-etsion-bogy"
+    elastic = False
+
+    def limits(self, e):
+        return (self.critical / np.asarray(e) ** 2)[None]
+
+    def load(self, piece, y, e):
+        if piece == 0:
+            return e * y**3
+        dc = self.critical / e**2
+        return e * 1.5 * dc**0.5 * (2 * y * y - dc)
+
+    def radius(self, piece, y, e):
+        return (2 * y * y - self.critical / e**2) ** 0.5 if piece else y + 0 * e
+
+
+@dataclass(frozen=True)
+class HalfSpace(ContactLaw):
+    """A half-space whose modulus grows with the depth to the power k, over its own factor."""
+
+    k: float = 0.25
+
+    name = "by hand: graded half-space"
+    root = False
+
+    def load(self, piece, y, e):  # noqa: ARG002
+        return e * y ** (3 + self.k)
+
+    def radius(self, piece, y, e):  # noqa: ARG002
+        return y + 0 * e
+
+
+@dataclass(frozen=True)
+class Film(ContactLaw):
+    """Hertz's contact whose "radius" is its conductance behind a film: y^2/(y + b)."""
+
+    b: float = 0.1
+
+    name = "by hand: film"
+
+    @property
+    def finest(self):
+        return self.b**2
+
+    def radius(self, piece, y, e):  # noqa: ARG002
+        return y * y / (y + self.b) + 0 * e

@@ -1,0 +1,134 @@
+"""Drawn surfaces of random scenes against their exact laws: ``python -m oracles.random_laws COUNT FIRST``,
+with a first seed, or one of its two parts by a third number, 0 or 1; run in `tests`.
+
+Of each scene of `random_scenes` one quantity at one separation is taken by lot; 400 surfaces then give 400
+values of their distribution function, even ones between 0 and 1 at random where it jumps, and the test of
+Kolmogorov and Smirnov one p-value. Those of all scenes are uniform if the laws are right: the statistic of
+Anderson and Darling says so. Each fault is put into the law of the same values.
+"""
+
+import sys
+from dataclasses import replace
+
+import numpy as np
+from scipy import stats
+
+import mcgw
+from analytic import Exponential, quantity_of
+from mcgw.scene.promises import promise_of
+from oracles.random_scenes import asked
+
+SURFACES, NEAR, UNSURE = 400, 1e-6, 5e-3
+ROOTED = {"area": "conductance", "conductance": "area"}  # of Hertz's law: an approach, and its root
+
+
+def stiffer(scene, name, h, law):
+    """The grading factor is half a percent larger."""
+    if not isinstance(scene.grading, Exponential):
+        return None
+    return replace(scene, grading=Exponential(1.005 * scene.grading.gamma)).theory.distribution(name, h).cdf
+
+
+def miscounted(scene, name, h, law):
+    """A fixed number of asperities for a Poisson one, or the other way round."""
+    other = "fixed" if scene.count == "poisson" else "poisson"
+    return replace(scene, count=other).theory.distribution(name, h).cdf
+
+
+def rootless(scene, name, h, law):
+    """The root of a law is missing, its mean is right."""
+    if name not in ROOTED or not law.mean() > 0:
+        return None
+    other = scene.theory.distribution(ROOTED[name], h)
+    return lambda x: other.cdf(x * (other.mean() / law.mean()))
+
+
+def right(scene, name, h, law):
+    """As it is."""
+    return law.cdf
+
+
+def p_values(seed, faults, surfaces=SURFACES, **more):
+    """Of one scene, one for each of the faults, nan where it has no such; or why there is none."""
+    values = asked(seed)
+    dice = np.random.default_rng([seed, 35])
+    values |= {"keep": "sums", "n_surfaces": surfaces, "accuracy": min(values["accuracy"], NEAR), **more}
+    if values["sampler"] == "aggregate":
+        values["sampler"] = "auto"
+    if isinstance(values["heights"], mcgw.MeasuredHeights):
+        return "measured"
+    try:
+        scene = mcgw.Scene(**values)
+    except mcgw.SceneError:
+        return "refused"
+    names = list(scene.quantities)
+    name, k = str(dice.choice(names)), int(dice.integers(len(scene.separations)))
+    h = scene.separations[k]
+    try:
+        law = scene.theory.distribution(name, h)
+    except ValueError as error:
+        return f"no law: {str(error)[:60]}"
+    if not law.error < UNSURE:  # jumps that are smoothed, values over forty decades
+        return "its law says that it is too far off for this test"
+    ensemble = mcgw.simulate(scene)
+    assert not promise_of(ensemble.sampler).spends
+    x = ensemble.values(name)[:, k]
+    lot = dice.random(x.size)
+    off = 1e-9 * np.abs(x)  # values that are alike on many surfaces are so to the last digits
+    jumps = quantity_of(name).counts
+    below, above = (x - 1, x) if jumps else (x - off, x + off)
+
+    def p(fault):
+        cdf = fault(scene, name, h, law)
+        if cdf is None:
+            return np.nan
+        low, high = cdf(below), cdf(above)
+        low = np.where((x == 0) & (not jumps), 0.0, low)
+        return stats.kstest(low + lot * (high - low), "uniform").pvalue
+
+    return [p(fault) for fault in faults]
+
+
+def even(p, seed=1):
+    """Probability of so large a statistic of Anderson and Darling, from 4000 uniform samples."""
+
+    def statistic(u):
+        u, n = np.sort(np.clip(u, 1e-300, 1 - 1e-16), axis=-1), u.shape[-1]
+        weights = 2 * np.arange(1, n + 1) - 1
+        return -n - (weights * (np.log(u) + np.log1p(-u[..., ::-1]))).mean(axis=-1)
+
+    if not len(p):
+        return 1.0
+    known = statistic(np.random.default_rng(seed).random((4000, len(p))))
+    return (1 + np.count_nonzero(known >= statistic(np.asarray(p)))) / 4001
+
+
+FAULTS = (right, stiffer, miscounted, rootless)
+
+
+def judged(seeds, faults=FAULTS, **more):
+    """Probability of the p-values of these scenes by each fault, how many there are, and what is left out."""
+    rows, left = [], []
+    for seed in seeds:
+        try:
+            found = p_values(seed, faults, **more)
+        except Exception as error:  # whatever it is, the scene has no verdict
+            found = f"FAILED {seed}: {error!r}"
+        (left if isinstance(found, str) else rows).append(found)
+        if not isinstance(found, str) and found[0] < 1e-4:
+            sys.stderr.write(f"{seed}: p = {found[0]:.2g}\n")
+    columns = [np.array(column)[~np.isnan(column)] for column in zip(*rows, strict=True)]
+    return [even(column) for column in columns], [column.size for column in columns], left
+
+
+if __name__ == "__main__":
+    count, first = int(sys.argv[1]), int(sys.argv[2])
+    kinds = (("as they come", FAULTS, {}), ("many asperities", FAULTS[:2], {"n_asperities": 10**6}))
+    for words, faults, more in kinds if len(sys.argv) < 4 else kinds[int(sys.argv[3]) :][:1]:
+        found, sizes, left = judged(range(first, first + count), faults, **more)
+        sys.stdout.write(f"{words}: {count} scenes, {len(left)} without a law or refused\n")
+        for fault, p, n in zip(faults, found, sizes, strict=True):
+            sys.stdout.write(f"  {fault.__name__}: p = {p:.3g} of {n}\n")
+        for why in sorted(set(left)):
+            sys.stdout.write(f"  left out: {left.count(why)} {why}\n")
+        sys.stdout.flush()

@@ -1,0 +1,161 @@
+"""Benches (`runs/bench`): the history of their ratios, and what refuses a worse one, without any timing."""
+
+import importlib
+import re
+import sys
+from dataclasses import replace
+from datetime import date
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import analytic
+
+FOLDER = Path(__file__).parents[2] / "runs" / "bench"
+NAMES = sorted(path.stem for path in FOLDER.glob("*.py"))
+HERE, ELSEWHERE = "this one (2 cores)", "another (64 cores)"
+
+
+@pytest.fixture(scope="module")
+def benches():
+    """Every file of the folder, imported as `history.py` imports them."""
+    before = set(sys.modules)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(FOLDER))
+        yield {name: importlib.import_module(name) for name in NAMES}
+    for name in set(NAMES) - before:
+        del sys.modules[name]
+
+
+@pytest.fixture
+def names(benches, monkeypatch):
+    """Names of all ratios of each bench, as it gives them where every job takes a second."""
+    found = {}
+    for bench in benches["history"].BENCHES:
+        monkeypatch.setattr(
+            benches[bench], "timed", lambda jobs, rounds: dict.fromkeys(jobs, np.ones(rounds))
+        )
+        found[bench] = benches["history"].ratios_of(bench, 3)
+        assert found[bench], bench
+        assert set(found[bench].values()) == {1.0}
+    return found
+
+
+def about(version, machine=HERE):
+    return {"version": version, "date": "2025-11-22", "machine": machine}
+
+
+def test_every_bench_with_ratios_is_in_the_history(benches):
+    assert {name for name, module in benches.items() if hasattr(module, "ratios")} == set(
+        benches["history"].BENCHES
+    )
+
+
+def test_the_history_has_what_the_benches_give(benches, names):
+    records = benches["records"]
+    """Not each line all of it: a bench may be younger than a version."""
+    known = {name for ratios in names.values() for name in ratios}
+    assert all(re.fullmatch(r"\w+: [^/]+ / [^/]+", name) for name in known)  # a job and its peer
+    lines = records.read(records.HISTORY)
+    for line in lines:
+        assert set(line) <= known | set(records.ABOUT)
+        assert re.fullmatch(r"\d+\.\d+\.\d+", line["version"])
+        assert re.search(r"\(\d+ cores\)$", line["machine"])
+        assert date.fromisoformat(line["date"])
+        assert all(0 < value < np.inf for value in records.last([line], None).values())
+    assert len({(line["version"], line["machine"]) for line in lines}) == len(lines)
+
+
+@pytest.mark.parametrize(("change", "refused"), [(1.25, True), (1.15, False), (0.5, False)])
+def test_a_fifth_worse_is_refused(benches, change, refused):
+    records = benches["records"]
+    before = {"a / b": 0.02, "c / b": 3.0}
+    now = {"a / b": 0.02 * change, "c / b": 3.0, "new / b": 9.0}
+    assert records.worse(now, before) == (["a / b"] if refused else [])
+
+
+def test_lines_there_and_back(benches, tmp_path):
+    records = benches["records"]
+    path = tmp_path / "history.csv"
+    lines = records.written(records.read(path), about("0.5.0"), {"x, 0.05 / y": 1 / 3})
+    lines = records.written(lines, about("0.5.0", ELSEWHERE), {"x, 0.05 / y": 7.0})
+    lines = records.written(lines, about("0.6.0"), {"z / y": 2.0})
+    records.write(lines, path)
+    assert len(path.read_text().splitlines()) == 4
+    assert records.last(records.read(path), HERE) == {"x, 0.05 / y": 0.3333, "z / y": 2.0}
+    assert records.last(records.read(path), ELSEWHERE) == {"x, 0.05 / y": 7.0}
+    (line,) = records.written(lines[-1:], about("0.6.0"), {"z / y": 3.0})  # a version is one line
+    assert records.last([line], HERE) == {"z / y": 3.0}
+
+
+@pytest.fixture
+def run(benches, tmp_path, monkeypatch):
+    """The command with ratios that are given: one bench, `file`, measured as often as there are values."""
+    history = benches["history"]
+    monkeypatch.setattr(benches["records"], "HISTORY", tmp_path / "history.csv")
+
+    def run(*values, machine=HERE, record=False):
+        values = list(values)
+        monkeypatch.setattr(history, "ratios_of", lambda *_: {"file: run / simulate": values.pop(0)})
+        monkeypatch.setattr(history, "processor", lambda: machine)
+        monkeypatch.setattr(sys, "argv", ["history.py", "--only", "file", *(["--record"] if record else [])])
+        status = history.main()
+        assert not values
+        return status
+
+    return run
+
+
+def test_the_command_refuses_what_is_worse_twice(run, capsys):
+    assert run(2.0, record=True) == 0
+    assert run(2.3) == 0
+    assert run(2.5, 2.2) == 0
+    assert run(2.5, 2.6) == 1
+    assert "worse by more than 20%: file: run / simulate" in capsys.readouterr().out
+    assert run(9.0, machine=ELSEWHERE) == 0
+    out = capsys.readouterr().out
+    assert f"no record of {ELSEWHERE}" in out
+    assert "+350%" in out
+    assert run(3.0, 3.0, record=True) == 1  # and it is recorded, as was asked
+    assert run(3.0) == 0
+
+
+def test_first_round_does_not_count_and_ratios_are_those_within_a_round(benches):
+    """A job three times as long as its peer, whatever the machine does meanwhile."""
+    timing = benches["timing"]
+    peer = iter([50.0, 1.0, 10.0, 2.0])
+    slow = iter([1.0, 3.0, 30.0, 8.0])
+    times = timing.timed({"slow": lambda: next(slow), "peer": lambda: next(peer)}, 3)
+    assert timing.against(times, "peer", ["slow"]) == {"slow / peer": 3.0}
+    assert timing.seconds(lambda: None, 2) >= 0
+
+
+def test_the_script_answers_the_same_question(benches):
+    """Means of 4000 surfaces against theory: 5 standard errors (false alarm 1e-5), and gamma = 2, not 1."""
+    h, asperities, surfaces = (0.0, 1.0, 2.0), 100, 4000
+    drawn = benches["scenes"].numpy_script(asperities, h, surfaces) / asperities
+    mean, error = drawn.mean(axis=0), drawn.std(axis=0) / np.sqrt(surfaces)
+
+    def off(grading):
+        expected = [
+            analytic.fn(1.5, h, grading),
+            analytic.fn(1, h),
+            analytic.fn(0.5, h, grading),
+            analytic.fn(0, h),
+        ]
+        return np.abs((mean - np.stack(expected, axis=1)) / error).max()
+
+    assert off(benches["scenes"].S1.grading) < 5
+    assert off(None) > 20
+
+
+def test_a_fresh_scene_differs_from_all_before(benches):
+    """By its seed and all separations but 0, and in nothing else; and it is drawn."""
+    fresh, tiny = benches["scenes"].fresh, replace(benches["setup"].ONE, n_asperities=100)
+    one, two = fresh(tiny), fresh(tiny)
+    assert one.seed != two.seed
+    assert not set(one.separations[1:]) & set(two.separations[1:])
+    np.testing.assert_allclose(one.separations, two.separations, rtol=1e-4)
+    assert replace(two, separations=one.separations, seed=one.seed) == one
+    assert benches["setup"].one_surface(tiny)() > 0

@@ -1,0 +1,324 @@
+"""The report: every number of the page, read as a reader would, against numbers made here."""
+
+import html
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from conftest import SURFACE
+from oracles import exact
+
+import analytic
+import mcgw
+from mcgw.cli import main
+from mcgw.formats.numbers import columns, number
+from mcgw.reports.html import report_html
+from mcgw.reports.report_figures import solved_pressures
+from mcgw.statistics.comparison import compare
+
+LOWERED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
+H = (0.5, 0.0, 2.0, 1.0)
+HEADINGS = {
+    "area": "real contact area (m²)",
+    "contacts": "number of contacts",
+    "load": "normal load (N)",
+    "conductance": "contact conductance, times the resistivity rho (m)",
+    "stiffness": "normal stiffness (N/m)",
+}
+ATTRIBUTES = {
+    "digest": "a1b2", "seed": 77, "sampler": "cells", "date": "2026-01-02", "versions": "mcgw 9 <x>",
+    "commit": "c0ffee", "cpu": "A & B",
+    "scene": 'title = "T"\n[contact]\nseparations = [\n    0.5,\n    0.0,\n]\n',
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _not_drawn():
+    """Figures are made, and neither laid out nor drawn; drawn pages are in the tier `site`."""
+
+    def blank(figure, file, **options):
+        file.write("<svg></svg>" if options["format"] == "svg" else b"")
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("mcgw.reports.report_figures.write_figure", blank)
+        patch.setattr("mcgw.reports.report_figures._PRESSURES", 1)
+        yield
+
+
+@pytest.fixture(scope="module")
+def scene():
+    """Heights that are not Gaussian, separations in no order, quantities in an order of their own."""
+    return mcgw.Scene(
+        surface=SURFACE,
+        title="The title",
+        separations=H,
+        grading=analytic.Exponential(2.0),
+        heights=analytic.ExponentialHeights(),
+        quantities=tuple(HEADINGS),
+        n_asperities=3000,
+        n_surfaces=150,
+        seed=2,
+    )
+
+
+@pytest.fixture(scope="module")
+def small(scene):
+    """A scene whose report costs little."""
+    return scene.replace(quantities=("load",), separations=(0.5, 1.0), n_surfaces=12)
+
+
+@pytest.fixture(scope="module")
+def ensemble(scene):
+    return mcgw.simulate(scene)
+
+
+@pytest.fixture(scope="module")
+def page(ensemble):
+    return report_html(ensemble, ATTRIBUTES)
+
+
+def page_of(scene, **changes):
+    return report_html(mcgw.simulate(scene, **changes), ATTRIBUTES)
+
+
+def value(text):
+    """A number as the page writes it, 1.234×10⁻⁵, and what it was read from."""
+    found = re.match(r"([-+−]?[\d.]+)(?:×10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+))?", text)
+    power = 10.0 ** int((found[2] or "⁰").translate(LOWERED))
+    return float(found[1].replace("−", "-")) * power, found
+
+
+def tables(page):
+    """Heading of each table, its columns, and its rows."""
+    for heading, table in re.findall(r"<section><h3>(.*?)</h3>(.*?)</section>", page, flags=re.DOTALL):
+        rows = [re.findall(r"<td>(.*?)</td>", row) for row in re.findall(r"<tr>(<td>.*?)</tr>", table)]
+        yield heading, re.findall(r"<th>(.*?)</th>", table), rows
+
+
+def facts(page):
+    return dict(re.findall(r"<tr><td>(.*?)</td><td>(.*?)</td></tr>", page))
+
+
+# --- numbers ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("x", "text"), [(6.698e-7, "6.698×10⁻⁷"), (1234.4, "1234"), (-0.5, "−0.5")])
+def test_one_number(x, text):
+    assert number(x) == text
+    assert value(text)[0] == pytest.approx(x, rel=1e-3)
+
+
+def test_numbers_of_a_table_have_one_format():
+    mean, half = columns([([6361.2, 801.04], 5), ([6.3, 0.12], 2)])
+    assert (mean, half) == (["6361.20", "801.04"], ["6.30", "0.12"])
+    mean, half = columns([([6361.2, 6.6982e-7, 0.0], 5), ([6.3, 3.6e-10, np.nan], 2)])
+    assert [x.rstrip() for x in mean] == ["6.3612×10³", "6.6982×10⁻⁷", "0"]
+    assert [x.rstrip() for x in half] == ["6.3×10⁰", "3.6×10⁻¹⁰", ""]
+    assert len({len(x) for x in (*mean[:2], "6.6982×10⁻⁷")}) == 1  # as wide, with blanks behind
+    assert columns([([0.0, 0.0], 5)]) == [["0", "0"]]
+    assert columns([([-2.5, 4.0], 3)]) == [["−2.50", "4.00"]]
+    for ends, plain in (
+        ([9e4, 9.9e4], True),
+        ([9e4, 1.2e5], False),
+        ([1e-3, 2e-2], True),
+        ([9e-4, 2e-2], False),
+    ):
+        (found,) = columns([(ends, 3)])
+        assert ("×" not in found[0]) == plain, found  # from 0.001 to 100 000 without powers of ten
+
+
+def test_every_column_of_every_table(ensemble, page):
+    """Means by NumPy, theory and standard errors by quadrature over these heights."""
+    assert [heading for heading, *_ in tables(page)] == list(HEADINGS.values())
+    for (_, header, rows), name in zip(tables(page), HEADINGS, strict=True):
+        assert header == ["d/σ", "mean", "95 % interval", "std", "theory", "residual"]
+        assert [float(row[0]) for row in rows] == list(H)
+        x = ensemble.values(name).astype(float)
+        theory, stderr = exact.mean(ensemble.scene, name), exact.std(ensemble.scene, name) / np.sqrt(150)
+        low, high = ensemble.interval(name)
+        for k, (_, mean, interval, std, shown, residual) in enumerate(rows):
+            assert value(mean)[0] == pytest.approx(x[:, k].mean(), rel=6e-5)
+            ends = [value(end)[0] for end in interval.split(" … ")]
+            assert ends == pytest.approx([low[k], high[k]], rel=6e-5)
+            assert value(std)[0] == pytest.approx(x[:, k].std(ddof=1), rel=6e-3)
+            assert value(shown)[0] == pytest.approx(theory[k], rel=6e-5)
+            assert value(residual)[0] == pytest.approx((x[:, k].mean() - theory[k]) / stderr[k], abs=0.06)
+
+
+def test_the_surface(ensemble, page):
+    """Each fact with its unit, and the same in units of sigma."""
+    s, found = ensemble.scene.surface, facts(page)
+    expected = {
+        "standard deviation σ of the summit heights": [(s.sigma, " m")],
+        "summit radius R": [(s.radius, " m = "), (s.radius / s.sigma, " σ")],
+        "summits per area η": [(s.eta, " m⁻²; ηRσ = "), (s.eta * s.radius * s.sigma, "")],
+        "nominal area Aₙ": [(s.nominal_area, " m² = "), (s.nominal_area / s.sigma**2, " σ²")],
+        "composite modulus E*": [(s.E_star, " Pa")],
+        "contacts expected at the smallest separation": [(3000 * np.exp(-1), "")],  # heights s > 0
+    }
+    for key, parts in expected.items():
+        left = found[key]
+        for expected_number, after in parts:
+            shown, match = value(left)
+            assert shown == pytest.approx(expected_number, rel=6e-4), key
+            left = left[match.end() :]
+            assert left.startswith(after), (key, left)
+            left = left[len(after) :]
+        assert left == ""
+    assert found["grading E*(s)/E*"] == "exponential grading, γ = 2"
+
+
+def test_many_separations_are_shown_from_the_first_to_the_last(small):
+    ((_, _, rows),) = tables(page_of(small, separations=tuple(np.linspace(0, 2, 33))))
+    assert [float(row[0]) for row in rows] == [0, 0.25, 0.5, 0.75, 1, 1.25, 1.5, 1.75, 2]
+
+
+# --- words that depend on the ensemble ------------------------------------------------------------------
+
+
+def test_opening_and_verdict(ensemble, page, small):
+    assert (
+        "150 rough surfaces of 3000 asperities, exponential grading, γ = 2, each pressed on a plane at "
+        "4 separations from d/σ = 0 to 2. Every asperity is a Hertzian contact."
+    ) in page
+    verdict = compare(ensemble).verdict
+    top = re.search(r'</h1>\s*<p class="verdict">(.*?)</p>', page, flags=re.DOTALL)[1]
+    first, second = (html.unescape(line) for line in top.split("<br>\n"))
+    seen = f"chi-square {verdict.chi_square:.1f} for {verdict.degrees} degrees of freedom"
+    assert first.startswith(f"Monte Carlo and theory agree: {seen}")
+    assert first.endswith(f"p = {verdict.p:.3g}.")
+    assert second == f"{ensemble.scene.validity().verdict}."
+    other = page_of(small, count="poisson", separations=(1.0,))
+    assert "3000 asperities on average (a Poisson number)" in other
+    assert "at 1 separation from" in other
+
+
+def test_disagreement_is_shown_and_names_are_no_markup(small):
+    stiffer = replace(SURFACE, E_star=1.1 * SURFACE.E_star)
+    wrong = replace(mcgw.simulate(small), scene=small.replace(surface=stiffer, title="<b>&1"))
+    page = report_html(wrong, ATTRIBUTES)
+    assert '<p class="verdict bad">Monte Carlo and theory DISAGREE' in page
+    assert "<h1>&lt;b&gt;&amp;1</h1>" in page
+
+
+def test_cautions_are_those_of_the_scene(small):
+    """Two that a hand can tell: exp(-h - 1) of the heights lie above h; moduli 1 - 0.3 s fall below 0."""
+
+    deep = small.replace(grading=lambda s: 1 - 0.3 * s, negative="clip", separations=(-0.5, 1.0))
+    plain, told = (
+        [html.unescape(x) for x in re.findall(r"<li>(.*?)</li>", page_of(scene), re.DOTALL)]
+        for scene in (small, deep)
+    )
+    for caution in (
+        "up to d/sigma = -0.5 more than half of all asperities touch",
+        "the modulus is negative at heights that touch (set to zero)",
+    ):
+        assert sum(line.startswith(caution) for line in told) == 1
+        assert not [line for line in plain if line.startswith(caution[:20])]
+    assert plain[-1].startswith("every contact is elastic")
+
+
+def test_provenance_and_the_scene_to_run_again(page, small, tmp_path):
+    found = facts(page[page.index("<h2>Provenance") :])
+    shown = {key: str(ATTRIBUTES[key]) for key in ATTRIBUTES if key != "scene"}
+    assert {key: html.unescape(text) for key, text in found.items()} == shown
+    assert "separations = [0.5, 0.0]" in page
+    mcgw.run(small, tmp_path / "e.h5")
+    assert main(["report", str(tmp_path / "e.h5")]) == 0
+    again = (tmp_path / "e.html").read_text(encoding="utf-8")
+    text = html.unescape(re.findall(r"<pre>(.*?)</pre>", again, flags=re.DOTALL)[-1])
+    assert mcgw.scene_from(text) == small
+
+
+def test_figures_are_named_and_in_order(page):
+    labels = [html.unescape(x) for x in re.findall(r'aria-label="([^"]*)"', page)]
+    long = [analytic.QUANTITIES[name].long_name for name in HEADINGS]
+    assert labels[-6:] == [*long, "std over mean against separation"]
+    assert [x.partition(" against")[0] for x in labels[:-6]] == [
+        "Load: pressure at a separation",
+        "Real contact area",
+        "Normal stiffness",
+        "Contact conductance times ρ",
+    ]
+
+
+def test_one_surface_where_no_pressure_is_common(small):
+    page = page_of(small, n_surfaces=1, separations=(1.0,))
+    assert "1 separation from" in page
+    assert "At a given pressure" not in page
+    assert "std over mean" not in page
+
+
+def test_a_run_that_goes_on_has_a_report(small, tmp_path):
+    path = tmp_path / "e.h5"
+    mcgw.run(small.replace(n_surfaces=40), path, shard="1/2")
+    assert main(["report", str(path), "-o", str(tmp_path / "e.html")]) == 0
+    page = (tmp_path / "e.html").read_text(encoding="utf-8")
+    assert f"{mcgw.open_ensemble(path).n_surfaces} rough surfaces" in page
+    assert "none until it is complete" in page
+
+
+# --- contact laws ---------------------------------------------------------------------------------------
+
+
+METAL = {"law": mcgw.KogutEtsion(critical=0.05), "unload_from": "loop", "film": mcgw.Film(1e-7, 1e-14)}
+
+
+def test_the_contact_law_and_its_rivals_are_in_the_report(make_scene, page):
+    """Ratios of the means at h = 1 from physics.md: Chang .0532829, Kogut .0534662, Zhao .0487678."""
+    scene = make_scene(
+        n_surfaces=5,
+        separations=(0.5, 1.0, 2.0),
+        grading=analytic.Homogeneous(),
+        quantities=("load",),
+        **METAL,
+    )
+    ensemble = mcgw.simulate(scene)
+    told = report_html(ensemble, ATTRIBUTES)
+    assert "Every asperity is a contact by KogutEtsion(critical=0.05, poisson=0.3)" in told
+    assert "unloading starts from d/σ = 0.5" in told
+    assert "film 1e-14 ohm m^2" in told
+    rows = dict(re.findall(r"<tr><td>(chang-etsion-bogy|zhao-maietta-chang)</td><td>([^<]+)</td>", told))
+    for name, mean in (
+        ("chang-etsion-bogy", 0.05328285176044976),
+        ("zhao-maietta-chang", 0.04876778006841703),
+    ):
+        assert float(rows[name]) == pytest.approx(mean / 0.05346624148043353, rel=1e-4)
+    share = re.search(r"([\d.]+) % of the contacts have yielded at", told)[1]
+    gone = analytic.contacts(SURFACE, 0.55) / analytic.contacts(SURFACE, 0.5)
+    assert float(share) / 100 == pytest.approx(float(gone), abs=1e-3)
+    assert "every contact is elastic" not in told
+    assert "Other contact laws" not in page  # Hertz has no rivals
+    for shown in (ensemble, scene):
+        assert "contact law  KogutEtsion(critical=0.05, poisson=0.3)" in repr(shown)
+        assert "resistivity 1e-07 ohm m, film 1e-14 ohm m^2" in repr(shown)
+
+
+def test_the_budget_at_a_pressure_and_the_corrected_answer(small):
+    """Of Gaussian summits whose parameters are known to so much; the numbers are those of a search."""
+    wanted = ("load", "area", "stiffness")
+    scene = small.replace(
+        heights=analytic.Gaussian(), grading=analytic.Homogeneous(), quantities=wanted, n_surfaces=40,
+        uncertainty={"sigma": "20 %"}, separations=(0.8, 1.0, 1.2),
+    )  # fmt: skip
+    ensemble = mcgw.simulate(scene)
+    solved = solved_pressures(scene)
+    (found,) = solved
+    searched = mcgw.solve(scene, load=found.amount)
+    assert (found.theory, found.value) == (searched.theory, searched.value)
+    assert found.corrected("area").value == searched.corrected("area").value > 0
+    budget = found.budget()
+    assert budget.quantities == ("area", "stiffness", "conductance", "gap_to_summits")
+    by_hand = 1.96 * found.surfaces["area"].std(ddof=1) / found.value["area"]
+    assert budget.shares["specimens"][0] == pytest.approx(by_hand)
+    assert budget.shares["parameters"][0] == pytest.approx(searched.budget().shares["parameters"][0])
+    text = " ".join(html.unescape(re.sub("<[^>]+>", " ", report_html(ensemble, ATTRIBUTES))).split())
+    assert f"{budget.advice}." in text
+    assert "best (95 %)" in text
+    for line, share in budget.shares.items():
+        assert f"{line} {share[0]:.2%}" in text
+    assert number(100 * found.value["area"] / SURFACE.nominal_area) in text
+    assert solved_pressures(scene.replace(n_surfaces=1)) == []
+    assert "Sources of error at this load" in text
+    assert "Sources of error at this load" not in page_of(scene, n_surfaces=1)

@@ -1,0 +1,144 @@
+"""Figures of a report by their numbers: the spread over surfaces, curves at equal pressure, and a patch."""
+
+import re
+
+import numpy as np
+import pytest
+from conftest import SURFACE as COARSE
+from oracles import exact
+
+import analytic
+import mcgw
+from mcgw.figures.panels import draw
+from mcgw.reports.report_figures import (
+    _relative_error,
+    _spread,
+    line_figure,
+    pressure_curves,
+    solved_pressures,
+)
+from mcgw.statistics.comparison import compare
+
+SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "10 mm^2", "78.6 GPa")
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return mcgw.Scene(
+        SURFACE,
+        separations=[0.0, 0.5, 1.0, 1.5, 2.0],
+        n_surfaces=12,
+        seed=1,
+        film=mcgw.Film(resistivity=0.07),
+    )
+
+
+def test_spread_is_std_over_mean():
+    """Of the surfaces, and exact by quadrature over the heights."""
+    h, names = (1.0, 0.0, 2.0), ("load", "area", "stiffness", "contacts", "conductance")
+    ensemble = mcgw.simulate(
+        mcgw.Scene(
+            COARSE, separations=h, grading=analytic.Exponential(2.0), heights=analytic.ExponentialHeights(),
+            quantities=names, n_asperities=3000, n_surfaces=60, seed=4,
+        )
+    )  # fmt: skip
+    data = _spread(compare(ensemble))
+    (panel,) = data.panels
+    assert (panel.xlabel, panel.ylabel, panel.scales) == (
+        "separation d/σ", "std / mean", ("linear", "log")
+    )  # fmt: skip
+    assert [series.label for series in panel.series] == list(names)
+    for series, name in zip(panel.series, names, strict=True):
+        values = ensemble.values(name).astype(float)
+        ratio = values.std(axis=0, ddof=1) / values.mean(axis=0)
+        np.testing.assert_array_equal(series.points.x, h)
+        np.testing.assert_allclose(series.points.mean, ratio, rtol=1e-10)
+        spread = exact.std(ensemble.scene, name) / exact.mean(ensemble.scene, name)
+        np.testing.assert_allclose(series.points.exact, spread, rtol=1e-7)
+        np.testing.assert_array_equal(series.x, np.sort(h))
+        np.testing.assert_allclose(series.theory, spread[np.argsort(h)], rtol=1e-7)
+    # One drawn of many: each id of a page is there once, and an SVG takes the width it is given.
+    one, two = (line_figure(draw(data), label).svg for label in ("one name", "two"))
+    ids = [set(re.findall(r'\bid="([^"]+)"', svg)) for svg in (one, two)]
+    assert ids[0]
+    assert not ids[0] & ids[1]
+    assert set(re.findall(r'(?:href="|url\()#([^")]+)', one)) <= ids[0]
+    assert not re.search(r' (width|height)="', one.partition(">")[0])
+    assert "separation d/σ" in one
+
+
+def test_error_of_std_over_mean_is_that_of_repetitions(make_scene):
+    """400 ensembles of 100 surfaces: their deviation is known to 3.5 %, so 15 % is four of that."""
+    scene = make_scene(separations=[0.0, 2.0], n_surfaces=40_000, seed=9, quantities=("load",))
+    values = mcgw.simulate(scene).load.reshape(400, 100, 2)
+    ratio = values.std(axis=1, ddof=1) / values.mean(axis=1)
+    told = _relative_error(scene, "load") * exact.std(scene, "load") / exact.mean(scene, "load")
+    np.testing.assert_allclose(told / np.sqrt(100), ratio.std(axis=0), rtol=0.15)
+
+
+@pytest.fixture(autouse=True)
+def _few_pressures(monkeypatch):
+    """Each takes half a second."""
+    monkeypatch.setattr("mcgw.reports.report_figures._PRESSURES", 2)
+
+
+def test_curves_are_values_and_specimens_of_solve(scene):
+    solved, area = solved_pressures(scene), SURFACE.nominal_area
+    searched = mcgw.solve(scene, load=[each.amount for each in solved])
+    expected = [
+        ("Load: pressure at a separation", "separation d/σ", "separation", 1.0),
+        ("Real contact area", "A/Aₙ (%)", "area", 100 / area),
+        ("Normal stiffness", "K/Aₙ (MPa/µm)", "stiffness", 1e-12 / area),
+        ("Contact conductance", "C/Aₙ (S/m²)", "conductance_si", 1 / area),
+    ]
+    curves = pressure_curves(solved)
+    for curve, (title, label, name, factor) in zip(curves, expected, strict=True):
+        (panel,) = curve.panels
+        (series,) = panel.series
+        assert (panel.title, panel.ylabel) == (title, label)
+        np.testing.assert_allclose(series.theory, [factor * x.value[name] for x in searched], rtol=1e-12)
+        ends = factor * np.array([x.specimens(name) for x in searched]).T
+        np.testing.assert_allclose(series.band, ends, rtol=1e-9)
+        np.testing.assert_allclose(series.x, [1e-6 * x.amount / area for x in searched], rtol=1e-12)
+    figure = draw(curves[0])
+    (axes,) = figure.axes
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("nominal pressure P/Aₙ (MPa)", "separation d/σ")
+    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "linear")
+    assert figure.get_supxlabel() == "Line: mean. Band: 5 to 95 % of the specimens."
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"separations": 1.0},
+        {"separations": [8.0, 9.0]},
+        {"quantities": ["contacts"], "film": None},
+        {"n_surfaces": 1},
+    ],
+)
+def test_there_are_no_curves_where_no_pressures_are_spanned(scene, changes):
+    assert solved_pressures(scene.replace(**changes)) == []
+    assert pressure_curves([]) == []
+
+
+KINDS = [
+    {"law": mcgw.KogutEtsion(critical=0.05), "unload_from": "loop"},
+    {"law": mcgw.DerjaguinMullerToporov(pull_off=0.3)},
+    {"interaction": {"reference": "mean-plane"}},
+    {"count": "poisson", "grading": mcgw.Exponential(0.5)},
+    {"film": mcgw.Film(conductivities=(200.0, 16.0)), "joint": mcgw.Joint("air", rms=2e-6)},
+]
+
+
+@pytest.mark.parametrize("changes", KINDS, ids=lambda x: next(iter(x)))
+def test_every_kind_has_its_curves(scene, changes):
+    """Positive and rising with the pressure, also where adhesion lets a load fall below 0."""
+    curves = pressure_curves(solved_pressures(scene.replace(**changes)))
+    assert len(curves) >= 4
+    for curve in curves:
+        (panel,) = curve.panels
+        (series,) = panel.series
+        rising = -1 if "separation" in panel.ylabel else 1
+        assert np.all(rising * np.diff(series.theory) > 0), panel.title
+        assert np.all(series.band[0] <= series.theory)
+        assert np.all(series.theory <= series.band[1])

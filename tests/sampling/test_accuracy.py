@@ -1,0 +1,301 @@
+"""Values of single surfaces against exact sums over their heights: no error above what the scene asks.
+
+At all separations, from hardly a contact to many, for gradings, laws of heights and of contact, films, ways
+back and individual summit radii. Nothing here is statistical: bounds hold.
+"""
+
+from dataclasses import replace
+
+import h5py
+import numpy as np
+import pytest
+import scipy.stats
+from oracles.accurately import worst_share
+from test_random_radii import spectral
+
+import analytic
+import mcgw
+from analytic import laws
+from mcgw.ensemble.simulation import Values
+from mcgw.jobs.merging import merge
+from mcgw.jobs.running import run
+from mcgw.reports.text import summary
+from mcgw.sampling import cells
+from mcgw.sampling.samplers import sampler_of
+from mcgw.scene.scene_file import scene_text
+from mcgw.statistics.comparison import compare
+from mcgw.statistics.convergence import converge
+from mcgw.store import ensembles
+
+H = tuple(np.linspace(0, 4, 21))
+CLOSE = (1.0, 1.0 + 1e-9, 1.0 + 1e-6, 1.5)
+BASIC = ("load", "area", "stiffness", "contacts", "conductance")
+KOGUT = laws.KogutEtsion(critical=0.05)
+FILM = mcgw.Film(resistivity=1e-7, film_resistance=1e-12)
+ALL = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-10)
+SURFACES, FEW = 50, 10
+
+
+def steep(slope, middle):
+    return analytic.Custom(lambda s: 1.5 + np.tanh(slope * (s - middle)))
+
+
+def heights(law):
+    return {"heights": law, "grading": analytic.Exponential(0.5), "separations": np.linspace(-0.3, 1.5, 13)}
+
+
+def under(law, *more, **changes):
+    return {"law": law, "quantities": (*BASIC, "load_slope", *more), "separations": np.linspace(0, 3, 13)} | (
+        changes
+    )
+
+
+HERTZ = {
+    "few": {"n_asperities": 50},
+    "many": {"n_asperities": 3000},
+    "homogeneous": {"grading": None},
+    "gamma 0": {"grading": analytic.Exponential(0.0)},
+    "poisson": {"count": "poisson", "grading": analytic.Exponential(0.2)},
+    "table": {"grading": analytic.Table([-1.0, 0.3, 1.0, 2.2], [0.3, 0.5, 1.4, 1.5])},
+    "high": {"separations": np.linspace(2, 5, 16), "n_asperities": 20_000},
+    "geometric": {"separations": np.geomspace(1e-3, 4, 15)},
+    "close": {"separations": CLOSE},
+    "from -40": {"separations": (-40.0, -9.0, 0.0, 4.0)},
+}
+OTHERS = {
+    "step": {"grading": analytic.Custom(lambda s: np.where(s > 1.234, 2.0, 0.5), (1.234,))},
+    "untold step": {"grading": analytic.Custom(lambda s: np.where(s > 0.777, 2.0, 0.5))},
+    "steep": {"grading": steep(1e3, 0.5)},
+    "steeper": {"grading": steep(1e6, 0.5)},
+    "exp(-30 s)": {"grading": analytic.Custom(lambda s: np.exp(-30 * s))},
+    "exp(60 s)": {"grading": analytic.Custom(lambda s: np.exp(60 * (s - 3)), checked=False)},
+    "exponential": heights(analytic.ExponentialHeights()),
+    "weibull": heights(analytic.Weibull(1.5)),
+    "nayak": heights(analytic.Nayak(2.0)),
+    "table of heights": heights(analytic.HeightTable.of(np.random.default_rng(1).weibull(1.6, size=300))),
+    "uniform": heights(analytic.ScipyHeights(scipy.stats.uniform())),
+    "t": heights(analytic.ScipyHeights(scipy.stats.t(5))),
+    "steep weibull": {
+        "heights": analytic.Weibull(1.82),
+        "grading": steep(47, 2.12),
+        "separations": (-27.6, -21.7, -10.8),
+    },
+    "Kogut": under(KOGUT, "yielded"),
+    "Kogut, few": under(KOGUT, n_asperities=50, count="poisson"),
+    "Kogut, soft": under(laws.KogutEtsion(critical=0.001), "yielded"),
+    "Kogut, bridged": under(laws.KogutEtsion(critical=0.05, bridge="hermite"), unload_from="loop"),
+    "Kogut, and back": under(KOGUT, unload_from="loop", quantities=("load", "area", "contacts")),
+    "Kogut, table": under(KOGUT, grading=analytic.Table((-4.0, 0.0, 1.0, 4.0), (0.5, 1.0, 2.0, 1.5))),
+    "Kogut, steep": under(KOGUT, grading=steep(8, 1)),
+    "Kogut, weibull": under(KOGUT) | heights(analytic.Weibull(1.5)),
+    "Chang": under(laws.ChangEtsionBogy(critical=0.05)),
+    "Zhao": under(laws.ZhaoMaiettaChang(critical=0.05)),
+    "Jackson": under(laws.JacksonGreen(yield_strain=0.004, critical=0.1)),
+    "half-space": under(laws.PowerLawGraded(0.5, reduced_c0=1.0)),
+    "coated, and back": under(laws.Coated(reduced_thickness=0.5, ratio=3.0), unload_from="loop"),
+    "Derjaguin": under(laws.DerjaguinMullerToporov(pull_off=0.05)),
+    "Johnson": under(laws.JohnsonKendallRoberts(pull_off=0.05)),
+    "Johnson, sticky": under(laws.JohnsonKendallRoberts(pull_off=0.5)),
+    "Johnson, and back": under(
+        laws.JohnsonKendallRoberts(pull_off=0.5),
+        unload_from="loop",
+        quantities=("load", "area", "contacts", "conductance"),
+    ),
+    "film": {"film": FILM, "quantities": ("conductance_si", "load"), "law": KOGUT},
+}
+SCENES = HERTZ | OTHERS
+
+
+@pytest.fixture
+def asked(make_scene):
+    """A scene by its name."""
+
+    def make(name, accuracy):
+        values = {"separations": H, "n_asperities": 600, "sampler": "cells", "quantities": BASIC}
+        values |= {"seed": 3, "negative": "clip", "accuracy": accuracy} | SCENES[name]
+        return make_scene(**values)
+
+    return make
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_no_error_is_above_what_is_asked(name, asked):
+    assert worst_share(asked(name, 1e-6), FEW) <= 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "accuracy"),
+    [(name, ALL[(k + 3 * j) % len(ALL)]) for k, name in enumerate(SCENES) for j in range(3)],
+)
+def test_at_any_accuracy(name, accuracy, asked):
+    """Three of the eight for each scene, in turn."""
+    assert worst_share(asked(name, accuracy), SURFACES) <= 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("accuracy", [*ALL, 1e-12])
+def test_of_a_million_asperities(make_scene, accuracy):
+    """Where many touch, series are held against the sum of a surface, which is sure to be large."""
+    scene = make_scene(
+        separations=H, n_asperities=10**6, sampler="cells", quantities=BASIC, accuracy=accuracy
+    )
+    assert worst_share(scene, 3) <= 1
+
+
+@pytest.mark.parametrize(
+    ("alpha", "accuracy"),
+    [(1.55, 1e-6), (50.0, 1e-3)]
+    + [pytest.param(*case, marks=pytest.mark.slow) for case in ((1.55, 1e-10), (5.0, 1e-3), (50.0, 1e-10))],
+)
+def test_of_summits_with_radii_of_their_own(alpha, accuracy):
+    scene = spectral(
+        alpha, sampler="cells", n_asperities=600, accuracy=accuracy, grading=analytic.Exponential(2.0)
+    )
+    assert worst_share(scene, SURFACES) <= 1
+
+
+@pytest.mark.parametrize("name", ["few", "many"])
+def test_series_that_are_twice_too_loose_fail(name, asked, monkeypatch):
+    """The companion: as they would be if an asperity could be off in one way only, and by twice as much."""
+    monkeypatch.setattr(cells, "_ALONE", 2.0)
+    assert worst_share(asked(name, 1.001e-6), SURFACES) > 1
+
+
+LAST = {"few": 1e-12, "table": 1e-13, "poisson": 1e-12, "geometric": 1e-13, "from -40": 1e-12, "close": 1e-13}
+
+
+@pytest.mark.parametrize(
+    ("name", "accuracy"),
+    [
+        pytest.param(name, accuracy, marks=[] if LAST.get(name) == accuracy else pytest.mark.slow)
+        for name in HERTZ
+        for accuracy in (1e-12, 1e-13)
+    ],
+)
+def test_near_the_last_digits(name, accuracy, asked):
+    """At 1e-13, where nothing is asked, series are good to that of a sum over many.
+
+    A lone contact may then be off by twice as much, in the two ways of `mcgw.sampling.cells.series_accuracy`.
+    Elsewhere one in a cell where the modulus grows by decades keeps fewer digits.
+    """
+    assert worst_share(asked(name, accuracy), FEW) <= (1 if accuracy > 1e-13 else 2)
+
+
+COARSE = [{"accuracy": 1e-6}, {"accuracy": 1e-3}, {"law_error": 1e-2, "n_asperities": 10**6}]
+every_wish = pytest.mark.parametrize("wish", COARSE, ids=["1e-6", "1e-3", "law_error"])
+SIZE, NUMBER = 16, 70
+
+
+def assert_same(one, other):
+    for name in one.scene.quantities:
+        np.testing.assert_array_equal(one.values(name), other.values(name))
+
+
+@every_wish
+def test_same_bits_by_any_threads_and_in_any_block(make_scene, wish):
+    scene = make_scene(n_surfaces=70, **wish)
+    assert_same(mcgw.simulate(scene, threads=1), mcgw.simulate(scene, threads=2))
+    drawn = sampler_of(scene)
+    whole = drawn.block(0, 140).sums
+    for first, size in ((0, 1), (63, 7), (133, 7), (0, 64)):
+        for name, values in drawn.block(first, size).sums.items():
+            np.testing.assert_array_equal(values, whole[name][first : first + size])
+
+
+def test_the_last_digits_are_what_nobody_has_to_ask_for(make_scene, tmp_path):
+    """The same scene and file; texts that were written before there was a key read as they did."""
+    plain = make_scene(n_surfaces=5)
+    text = scene_text(plain)
+    assert "accuracy" not in text
+    assert "law_error" not in text
+    asked = mcgw.scene_from(text.replace("[ensemble]", "[ensemble]\naccuracy = 1e-13\nlaw_error = 0.0"))
+    assert asked == plain
+    digests = {
+        run(scene, tmp_path / f"{k}.h5") and digest(tmp_path / f"{k}.h5")
+        for k, scene in enumerate((plain, asked))
+    }
+    assert len(digests) == 1
+    with h5py.File(tmp_path / "0.h5") as file:
+        assert "law_error_spent" not in file.attrs
+
+
+def digest(path):
+    problem, found = ensembles.verify(path)
+    assert problem == ""
+    return found
+
+
+class HaltError(Exception):
+    """Ends a run."""
+
+
+@every_wish
+def test_stored_in_any_way_the_digest_is_one(make_scene, wish, tmp_path, monkeypatch):
+    """At once, halted and gone on with, in shards; what is read is what is drawn; another wish is refused."""
+    monkeypatch.setattr(Values, "rows", SIZE)
+    scene = make_scene(n_surfaces=NUMBER, **wish)
+    run(scene, tmp_path / "whole.h5")
+
+    def halt(done, _):
+        if done >= 40:
+            raise HaltError
+
+    halted, done = tmp_path / "halted.h5", []
+    with pytest.raises(HaltError):
+        run(scene, halted, progress=halt)
+    run(scene, halted, progress=lambda now, _: done.append(now))
+    assert done[0] >= 40
+    shards = tmp_path / "shards.h5"
+    for part in (2, 1):
+        run(scene, shards, shard=f"{part}/2")
+    merge(shards)
+    assert len({digest(tmp_path / f"{name}.h5") for name in ("whole", "halted", "shards")}) == 1
+    found = mcgw.open_ensemble(halted)
+    assert found.scene == scene
+    assert_same(found, mcgw.simulate(scene))
+    with h5py.File(halted) as file:
+        spent = file.attrs.get("law_error_spent")
+        text = summary(found, file.attrs)
+    assert spent is None if "accuracy" in wish else 0 < spent <= scene.law_error
+    assert spent is None or f"up to 0.01 from the exact laws, {spent:.2g} of it spent\n" in text
+    assert ("spent" in text) == (spent is not None)
+    other = replace(scene, accuracy=1e-4) if "accuracy" in wish else replace(scene, law_error=2e-2)
+    with pytest.raises(mcgw.StoreError, match=rf"ensemble\.{next(iter(wish))} is"):
+        run(other, halted)
+
+
+@every_wish
+def test_compare_agrees_and_sees_another_gamma(make_scene, wish):
+    """By 1 %, which is far more than anybody allowed for."""
+    scene = make_scene(n_surfaces=1000, **{"n_asperities": 10**5, **wish})
+    ensemble = mcgw.simulate(scene)
+    assert compare(ensemble).verdict.agrees
+    wrong = replace(scene, grading=analytic.Exponential(2.02))
+    assert not compare(replace(ensemble, scene=wrong)).verdict.agrees
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("wish", [{"accuracy": 1e-2}, {"accuracy": 1e-4, "n_asperities": 10**6}])
+def test_compare_where_the_error_of_a_value_is_above_that_of_the_mean(make_scene, wish):
+    """A mean may be off by what is asked, and no more: twice that is five standard errors beyond."""
+    scene = make_scene(n_surfaces=5000, **wish)
+    ensemble = mcgw.simulate(scene)
+    assert compare(ensemble).verdict.agrees
+    stiffer = replace(scene.surface, E_star=scene.surface.E_star * (1 + 2 * scene.accuracy))
+    off = compare(replace(ensemble, scene=replace(scene, surface=stiffer))).verdict
+    assert not off.agrees
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("wish", [{"accuracy": 1e-6}, {"accuracy": 1e-4}, COARSE[2]])
+def test_converge_passes(make_scene, wish):
+    assert converge(make_scene(**wish), n_surfaces=64, seeds=8).passed
+
+
+def test_converge_says_where_values_are_coarser_than_means(make_scene):
+    scene = make_scene(accuracy=1e-2, n_asperities=10**6, separations=(0.0,))
+    with pytest.raises(
+        ValueError, match=r"ensemble\.accuracy = 0\.01: means of .* surfaces are more accurate"
+    ):
+        converge(scene, n_surfaces=100, seeds=4)

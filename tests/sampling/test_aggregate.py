@@ -1,0 +1,282 @@
+"""`aggregate` against the exact cumulants, and where it stops being right."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from mpmath import mp
+from oracles.law_of_crowds import distance, farthest
+from scipy.integrate import quad
+from scipy.stats import kstest, kurtosis, skew
+
+import analytic
+import mcgw
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.results import MemoryResults
+from mcgw.sampling import samplers
+from mcgw.sampling.cells import mesh_of
+from mcgw.sampling.counts import counts_of
+from mcgw.sampling.crowding import crowding
+from mcgw.sampling.drawn_moments import _law_of_moments, _partly
+from mcgw.sampling.samplers import aggregate_of, law_error_of, sampler_of
+
+GATE = 5.0
+
+
+def scores(ensemble, quantity="load"):
+    """z of mean, variance, skewness and excess kurtosis, the largest over the separations.
+
+    Their errors are estimated from 50 batches of surfaces.
+    """
+    scene = ensemble.scene
+    exact = analytic.Model(scene.surface, grading=scene.grading, n_asperities=scene.n_asperities).cumulants(
+        quantity, scene.separations
+    )
+    values = (ensemble.values(quantity) - exact.mean) / np.sqrt(exact.variance)
+    batches = values.reshape(50, -1, values.shape[1])
+    found = np.array(
+        [
+            batches.mean(axis=1),
+            (batches**2).mean(axis=1) - 1,
+            skew(batches, axis=1) - exact.skewness,
+            kurtosis(batches, axis=1) - exact.excess_kurtosis,
+        ]
+    )
+    z = found.mean(axis=1) / (found.std(axis=1, ddof=1) / np.sqrt(50))
+    return np.abs(z).max(axis=1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("n", [10**4, 10**9])
+def test_four_cumulants_of_1e5_surfaces(make_scene, n):
+    """Batches of 2000 surfaces bias skewness and kurtosis by less than 1e-3 of their errors' scale."""
+    scene = make_scene(
+        separations=(0.0, 1.0, 2.0), n_asperities=n, n_surfaces=100_000, sampler="aggregate", seed=11
+    )
+    ensemble = mcgw.simulate(scene)
+    for quantity in ("load", "area", "stiffness"):
+        assert scores(ensemble, quantity).max() < GATE
+
+
+@pytest.mark.slow
+def test_the_scores_can_fail(make_scene):
+    """The companions: 2 % fewer asperities show in the variance, a Gaussian in the skewness."""
+    scene = make_scene(
+        separations=(2.0,), n_asperities=10**4, n_surfaces=100_000, sampler="aggregate", seed=11
+    )
+    ensemble = mcgw.simulate(scene)
+    fewer = dataclasses.replace(scene, n_asperities=9800)
+    assert scores(dataclasses.replace(ensemble, scene=fewer))[1] > GATE
+    rng = np.random.default_rng(1)
+    gaussian = ensemble.mean("load") + ensemble.std("load") * rng.standard_normal((100_000, 1))
+    assert scores(Ensemble(scene, "aggregate", MemoryResults({"load": gaussian})))[2] > GATE
+
+
+def test_where_the_approximation_begins_to_show(make_scene):
+    """Cells are so narrow that even single asperities taken for Gaussian ones keep the four cumulants.
+
+    What shows first are loads below zero at light contact: 1 % of the surfaces with a threshold of 1,
+    none with the threshold in use.
+    """
+    scene = make_scene(separations=(1.0, 2.0), n_asperities=100, n_surfaces=20_000, sampler="aggregate")
+    assert (mcgw.simulate(scene).load >= 0).all()
+    single = samplers.aggregate_of(scene, crowded=1)
+    share = (single.block(0, scene.n_surfaces).sums["load"] < 0).mean(axis=0)
+    assert 0.005 < share[1] < 0.02
+
+
+def test_price_does_not_depend_on_n(make_scene):
+    """From 1e8 to 1e15 asperities the cells that are drawn one by one stay a few thousand asperities."""
+    singly = []
+    for n in (10**8, 10**12, 2**53):
+        sampler = samplers.sampler_of(make_scene(n_asperities=n, sampler="aggregate"))
+        counts = counts_of(sampler.scene, sampler.mesh, 0, 4).cells
+        singly.append(counts[counts < samplers.CROWDED].sum() / 4)
+    assert max(singly) < 3000
+
+
+def test_counts_are_exact(make_scene):
+    ensemble = mcgw.simulate(make_scene(n_asperities=10**15, n_surfaces=50, sampler="aggregate"))
+    same = mcgw.simulate(
+        make_scene(n_asperities=10**15, n_surfaces=50, sampler="aggregate", quantities=("contacts",))
+    )
+    np.testing.assert_array_equal(ensemble.contacts, same.contacts)
+    p = analytic.fn(0, ensemble.separations)
+    z = (ensemble.contacts - 1e15 * p) / np.sqrt(1e15 * p * (1 - p))
+    assert np.abs(z).max() < GATE
+
+
+def dense(response):
+    """Matrix of shape (quantities, moments, separations)."""
+    return response @ np.eye(response.layout.sizes.sum())
+
+
+def variance(sampler):
+    """Of each quantity, with independent numbers in the cells: exactly what the Gaussian moments have."""
+    response, layout = dense(sampler.response), sampler.response.layout
+    total = 0.0
+    for cell, start in enumerate(layout.starts[:-1]):
+        orders = (
+            x[cell] for x in (layout.plain, layout.rooted, *dataclasses.astuple(sampler.drawing.varying))
+        )
+        mean, root = _partly(*(int(n) for n in orders))
+        rows = response[:, start : start + len(mean)]
+        expected = sampler.scene.n_asperities * sampler.mesh.probability[cell]
+        both = np.column_stack([mean, root])  # of T_0 a Poisson number has the variance n too
+        total = total + expected * (np.einsum("qms,mk->qks", rows, both) ** 2).sum(axis=1)
+    return total
+
+
+def extras(sampler, name):
+    """Variance of the asperities above all cells, at each separation."""
+    scene, quantity = sampler.scene, analytic.QUANTITIES[name]
+
+    def square(s, h):
+        law = (s - h) ** quantity.exponent * (scene.grading(np.array(s)) if quantity.modulus else 1.0)
+        return (quantity.scale(scene.surface) * law) ** 2 * np.exp(-s * s / 2) / np.sqrt(2 * np.pi)
+
+    top = sampler.mesh.edges[-1]
+    return [scene.n_asperities * quad(square, top, top + 4, args=(h,))[0] for h in scene.separations]
+
+
+@pytest.mark.parametrize(("n", "grading", "separations"), [
+    (10**6, analytic.Exponential(2.0), tuple(np.linspace(-0.5, 4, 7))),
+    (10**9, analytic.Custom(lambda s: 2 + np.tanh(8 * (s - 1))), tuple(np.linspace(-0.5, 4, 7))),
+    (10**15, analytic.Exponential(2.0), (0.0,)),
+    (10**6, analytic.Custom(lambda s: 2 + np.tanh(8 * (s - 1))), (0.0,)),
+])  # fmt: skip
+def test_moments_that_stay_at_their_means_hide_a_millionth_of_the_variance(
+    make_scene, n, grading, separations
+):
+    """Without a random number. Where all vary nothing is hidden."""
+    scene = make_scene(
+        separations=separations, grading=grading, n_asperities=n, sampler="aggregate", count="poisson"
+    )
+    some = samplers.sampler_of(scene)
+    all_vary = dataclasses.replace(some.drawing, varying=some.response.layout)
+    every = dataclasses.replace(some, drawing=all_vary)
+    assert some.drawing.varying.sizes.sum() < 0.6 * every.drawing.varying.sizes.sum()
+    for q, name in enumerate(x for x in scene.quantities if x != "contacts"):
+        exact = analytic.Model(scene.surface, grading=grading, n_asperities=n, count="poisson").cumulants(
+            name, separations
+        ).variance - extras(every, name)
+        assert np.abs(variance(every)[q] / exact - 1).max() < 1e-11
+        assert np.abs(variance(some)[q] / exact - 1).max() < 1e-6
+
+
+def covariance(plain, rooted):
+    """Of T_j(2u - 1) and sqrt(u) T_j(2u - 1), exactly: with u = v^2 they are polynomials in v."""
+    even = [mp.taylor(lambda v, j=j: mp.chebyt(2 * j, v), 0, 2 * j) for j in range(max(plain, rooted))]
+    terms = [*even[:plain], *([0, *c] for c in even[:rooted])]
+
+    def mean(f, g=(1,)):
+        return mp.fsum(2 * a * b / mp.mpf(i + k + 2) for i, a in enumerate(f) for k, b in enumerate(g))
+
+    return mp.matrix([[mean(f, g) - mean(f) * mean(g) for f in terms] for g in terms])
+
+
+@pytest.mark.parametrize(
+    ("plain", "rooted"), [(5, 0), (10, 5), pytest.param(18, 8, marks=pytest.mark.slow), (0, 4)]
+)
+def test_root_of_the_covariance_keeps_all_digits(plain, rooted):
+    """Cholesky's triangle in 80 digits: where it is lost to rounding, one kind of CPU draws other moments."""
+    order = [*range(min(plain, 1), plain), *reversed(range(plain, plain + rooted))]
+    with mp.workdps(80):
+        all_of_it = covariance(plain, rooted)
+        exact = mp.cholesky(mp.matrix([[all_of_it[i, j] for j in order] for i in order]))
+    _, root = _law_of_moments(plain, rooted)
+    assert not root[: min(plain, 1)].any()
+    np.testing.assert_allclose(root[order], np.array(exact.tolist(), float), atol=1e-13)
+
+
+@pytest.mark.parametrize("n", [10**3, 10**4, 10**6, 10**8])
+def test_a_promise_is_twice_the_distance_from_the_exact_law(make_scene, n):
+    """By two transforms; of the value that is farthest off, where one term of the expansion is enough."""
+    scene = make_scene(separations=(1.5, 2.5, 3.5), n_asperities=n, law_error=1e-2, count="poisson")
+    found = crowding(scene, mesh_of(scene, split=False))
+    seen = farthest(scene, found.threshold)
+    assert seen <= found.distance / 2 * 1.05
+    if n >= 10**6:  # some cell is a crowd on all surfaces
+        assert seen >= found.distance / 2 * 0.95
+
+
+def test_a_fixed_number_of_asperities_is_farther_off(make_scene):
+    """Its values vary less: by the generating function of the number."""
+    scene = make_scene(separations=(0.0,), quantities=("stiffness",), n_asperities=1000, law_error=1e-2)
+    found = crowding(scene, mesh_of(scene, split=False))
+    seen = distance(scene, "stiffness", 0.0, found.threshold)
+    poisson = distance(scene.replace(count="poisson"), "stiffness", 0.0, found.threshold)
+    assert 1.5 * poisson < seen
+    assert found.distance / 2 * 0.9 < seen < found.distance / 2 * 1.05
+
+
+def test_smaller_crowds_are_farther_off(make_scene):
+    """The companion: sixteen asperities in place of 256 break the promise."""
+    scene = make_scene(separations=(2.5, 3.5), n_asperities=10**4, count="poisson", law_error=1e-2)
+    assert farthest(scene, 16) > 3 * crowding(scene, mesh_of(scene, split=False)).distance
+
+
+H = (0.0, 1.0, 2.0)
+SURFACES = 100_000
+ALARM = 1e-6  # that one of the distances below is above its limit by chance
+QUANTITIES = ("load", "area", "stiffness")
+
+
+def lot(scene):
+    """Values of many surfaces, drawn with crowds."""
+    sampler = aggregate_of(scene)
+    blocks = [sampler.block(first, 2000).sums for first in range(0, SURFACES, 2000)]
+    return {name: np.concatenate([block[name] for block in blocks]) for name in QUANTITIES}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("n", [10**4, 10**9])
+def test_drawn_values_have_the_exact_law(make_scene, n):
+    """Within 1e-5 and what may be chance (Massart 1990); values that scatter 5 % less do not."""
+    scene = make_scene(separations=H, n_asperities=n, seed=5)
+    values, theory = lot(scene), scene.theory
+    limit = 1e-5 + np.sqrt(np.log(2 * len(QUANTITIES) * len(H) / ALARM) / (2 * SURFACES))
+    for name in QUANTITIES:
+        for k, h in enumerate(H):
+            law, drawn = theory.distribution(name, h), values[name][:, k]
+            assert kstest(drawn, law.cdf).statistic < limit
+            assert kstest(law.mean() + 0.95 * (drawn - law.mean()), law.cdf).statistic > limit
+
+
+@pytest.mark.parametrize("law_error", [1e-2, 1e-3, 1e-4, 1e-5])
+@pytest.mark.parametrize("n", [10**4, 10**6, 10**8])
+def test_a_crowd_keeps_what_is_asked_and_fewer_do_not(make_scene, n, law_error):
+    """The bound falls with the threshold, to nothing where no cell is crowded."""
+    scene = make_scene(n_asperities=n, law_error=law_error)
+    found = crowding(scene, mesh_of(scene, split=False))
+    assert found.distance <= law_error
+    assert 0 <= found.alone <= scene.touching * (1 + 1e-9)
+    stricter = scene.replace(law_error=found.distance * 0.999)
+    if stricter.law_error > 0:
+        less = crowding(stricter, mesh_of(stricter, split=False))
+        assert less is None or (less.threshold > found.threshold and less.alone > found.alone)
+
+
+def test_what_auto_takes(make_scene):
+    """Crowds where they buy something; `cells` where nobody may err, few touch, or a sampler is named."""
+    names = {
+        "aggregate": {"n_asperities": 10**6, "law_error": 1e-3},
+        "cells": {"n_asperities": 10**6},
+        "tail": {"n_asperities": 10, "law_error": 1e-2},
+    }
+    bought = {24_000: "cells", 30_000: "aggregate"}  # 300 a cell and those alone, by 1.5: 13 100; 13 600
+    for name, changes in names.items():
+        assert sampler_of(make_scene(**changes)).name == name
+    for n, name in bought.items():
+        assert sampler_of(make_scene(n_asperities=n, law_error=1e-3)).name == name
+    named = make_scene(n_asperities=10**6, law_error=1e-3, sampler="cells")
+    assert sampler_of(named).name == "cells"
+    assert law_error_of(named) == law_error_of(make_scene()) == 0
+    assert 0 < law_error_of(make_scene(**names["aggregate"])) <= 1e-3
+    assert sampler_of(make_scene(n_asperities=3000, law_error=1e-9)).name == "cells"
+    strict, high = (
+        make_scene(n_asperities=10**15, law_error=1e-12),
+        make_scene(separations=9.0, law_error=0.01),
+    )
+    for scene in (strict, high):  # no crowd is large enough, or there is no cell
+        assert crowding(scene, mesh_of(scene, split=False)) is None

@@ -1,0 +1,331 @@
+"""`cells` (moments times response) against exactly rounded sums over the very same heights."""
+
+import dataclasses
+from itertools import product
+
+import mpmath as mp
+import numpy as np
+import pytest
+from oracles.literal import sums_of_heights
+
+import analytic
+import mcgw
+from mcgw.sampling.asperities import summits_drawn
+from mcgw.sampling.cells import evenness, mesh_of, no_cells
+from mcgw.sampling.samplers import sampler_of
+from mcgw.sampling.spacing import Gaps, cuts
+
+CLOSE_KINKS = analytic.Table([-1.0, 1.03, 1.0304, 1.0308, 3.0], [1.0, 1.0, 1.1, 1.0, 1.0])
+GRADINGS = {
+    "gamma 0": analytic.Exponential(0.0),
+    "gamma 0.2": analytic.Exponential(0.2),
+    "homogeneous": analytic.Homogeneous(),
+    "gamma 2": analytic.Exponential(2.0),
+    "table": analytic.Table([-1.0, 0.3, 1.0, 2.2], [0.3, 0.5, 1.4, 1.5]),
+    "kinks nearer than a node's points": CLOSE_KINKS,
+    "step": analytic.Custom(lambda s: np.where(s > 1.234, 2.0, 0.5), (1.234,)),
+    "untold step": analytic.Custom(lambda s: np.where(s > 0.777, 2.0, 0.5)),
+    "steep": analytic.Custom(lambda s: 1.5 + np.tanh(1e3 * (s - 0.5))),
+    "steeper": analytic.Custom(lambda s: 1.5 + np.tanh(1e6 * (s - 0.5))),
+    "exp(12 s)": analytic.Custom(lambda s: np.exp(12 * s)),
+    "exp(30 s)": analytic.Custom(lambda s: np.exp(30 * s)),
+    "exp(-30 s)": analytic.Custom(lambda s: np.exp(-30 * s)),
+    "exp(60 s)": analytic.Custom(lambda s: np.exp(60 * (s - 3)), checked=False),
+}
+MANY = 20  # surfaces: what goes wrong in rare cells does not show in each
+RANDOM = np.random.default_rng(3)
+SEPARATIONS = {
+    "equal": tuple(np.linspace(0, 4, 21)),
+    "geometric": tuple(np.geomspace(1e-3, 4, 25)),
+    "random, unsorted, repeated": (*RANDOM.uniform(-1, 3.5, 12), 0.5, 0.5, -0.0),
+    "close": (1.0, 1.0 + 1e-9, 1.0 + 3e-9, 1.0 + 1e-6, 1.5),
+    "one": (0.7,),
+}
+
+
+def last_digit(scene, heights, quantity):
+    """Relative change of each sum if all heights are one digit off."""
+    n = analytic.QUANTITIES[quantity].exponent
+    changes = []
+    for h in scene.separations:
+        d = heights[heights > h] - h
+        changes.append(
+            n * np.spacing(d.max() + abs(h)) * (d ** (n - 1)).sum() / (d**n).sum() if d.size and n else 0.0
+        )
+    return np.array(changes)
+
+
+def worst(scene, surface, sampler=None):
+    """Largest relative difference, over all quantities and separations that are reached.
+
+    Less what the last digit of a listed height is good for where a contact just touches.
+    """
+    sampler = sampler or sampler_of(scene)
+    drawn = sampler.block(surface, 1).sums
+    heights = summits_drawn(scene, sampler, surface)[0]
+    errors = []
+    for quantity in scene.quantities:
+        exact = sums_of_heights(scene, heights, quantity)
+        found = drawn[quantity][0]
+        reached = exact > 0
+        np.testing.assert_array_equal(found[~reached], 0.0)
+        error = np.abs(found[reached] / exact[reached] - 1)
+        errors.append((error - last_digit(scene, heights, quantity)[reached]).max(initial=0.0))
+    return max(errors)
+
+
+def of_all_quantities(make_scene, **changes):
+    return make_scene(quantities=tuple(analytic.QUANTITIES), sampler="cells", **changes)
+
+
+def check(scene, surfaces):
+    """The accuracy promised; the response is built for 1e-13."""
+    sampler = sampler_of(scene)
+    assert max(worst(scene, surface, sampler) for surface in range(surfaces)) < 1e-12
+
+
+SIZES = [
+    pytest.param(4000, 6, 11, id="few"),
+    pytest.param(20_000, MANY, 41, id="many", marks=pytest.mark.slow),
+]
+
+
+@pytest.mark.parametrize(("n", "surfaces", "separations"), SIZES)
+@pytest.mark.parametrize("grading", GRADINGS)
+def test_gradings(make_scene, grading, n, surfaces, separations):
+    h = tuple(np.linspace(0, 4, separations))
+    check(of_all_quantities(make_scene, grading=GRADINGS[grading], separations=h, n_asperities=n), surfaces)
+
+
+@pytest.mark.parametrize(("k", "h"), [(-30.0, tuple(np.linspace(0, 4, 11))), (-60.0, (3.2, 3.6))])
+def test_lone_contacts_where_the_modulus_is_least(make_scene, k, h):
+    """It falls by decades between two separations, and a single contact is as accurate as all of them."""
+    steep = analytic.Custom(lambda s: np.exp(k * (s - 3)), checked=False)
+    check(of_all_quantities(make_scene, grading=steep, separations=h, n_asperities=1500), 40)
+
+
+@pytest.mark.parametrize("separations", SEPARATIONS)
+@pytest.mark.parametrize(
+    ("n", "surfaces"), [(300, 10), (50_000, 1), pytest.param(10**6, 1, marks=pytest.mark.slow)]
+)
+def test_separations(make_scene, separations, n, surfaces):
+    """Few asperities, or so many that every cell is full."""
+    h = SEPARATIONS[separations]
+    check(
+        of_all_quantities(make_scene, grading=GRADINGS["gamma 0.2"], separations=h, n_asperities=n), surfaces
+    )
+
+
+@pytest.mark.parametrize(
+    ("grading", "number"),
+    [("homogeneous", 1), ("gamma 2", 4), ("table", 17), ("steeper", 4), ("exp(60 s)", 17)],
+)
+def test_the_sparse_product_is_that_of_the_matrix(make_scene, grading, number):
+    h = tuple(np.linspace(0, 4, number)) if number > 1 else (1.0,)
+    scene = make_scene(grading=GRADINGS[grading], separations=h, n_asperities=30_000)
+    response = sampler_of(scene).response
+    moments = np.random.default_rng(1).normal(size=(response.layout.starts[-1], 70))
+    plain = np.einsum("qhm,mi->qih", response.matrix(), moments)
+    size = np.einsum("qhm,mi->qih", np.abs(response.matrix()), np.abs(moments))
+    assert np.all(np.abs(response @ moments - plain) <= 1e-14 * size)
+
+
+def test_tail_sums_its_own_heights(make_scene):
+    assert worst(make_scene(sampler="tail"), 3) < 1e-13
+
+
+def test_derivative_of_the_load_is_the_stiffness(make_scene):
+    """-dP/dd = K on one surface: central differences in the separation, error O(step^2)."""
+    step = 1e-4
+    h = np.linspace(0.5, 2.5, 5)
+    scene = make_scene(
+        separations=tuple(np.concatenate([h - step, h, h + step])), quantities=("load", "stiffness"),
+        sampler="cells", n_asperities=10**6,
+    )  # fmt: skip
+    sums = sampler_of(scene).block(0, 1).sums
+    before, _, after = sums["load"][0].reshape(3, -1)
+    stiffness = sums["stiffness"][0].reshape(3, -1)[1]
+    slope = (before - after) / (2 * step * scene.surface.sigma)
+    # Each root sqrt(s - h) within a step of h spoils the difference: 1e-5 of the load here.
+    np.testing.assert_allclose(slope, stiffness, rtol=1e-5)
+
+
+def test_heights_in_all_are_the_asperities_asked_for(make_scene):
+    for count, sampler in product(("fixed", "poisson"), ("cells", "direct")):
+        scene = make_scene(sampler=sampler, count=count, separations=(0.5, 2.0))
+        touching, every = mcgw.heights(scene, 1), mcgw.heights(scene, 1, untouched=True)
+        np.testing.assert_array_equal(every[: len(touching)], touching)
+        assert (touching > 0.5).all()
+        assert (every[len(touching) :] <= 0.5).all()
+        if count == "fixed":
+            assert len(every) == scene.n_asperities
+        else:
+            assert abs(len(every) - 3000) < 5 * 3000**0.5
+        np.testing.assert_array_equal(touching, summits_drawn(scene, sampler_of(scene), 1)[0])
+
+
+def test_aggregate_keeps_no_heights(make_scene):
+    with pytest.raises(ValueError, match="keeps no heights"):
+        mcgw.heights(make_scene(sampler="aggregate"), 0)
+
+
+def test_what_is_not_asked_is_not_computed(make_scene):
+    """Fewer quantities need fewer moments; contacts alone need none, and draw no uniform."""
+    size = {}
+    for quantities in (("load", "area", "stiffness"), ("area",), ("contacts",)):
+        scene = make_scene(sampler="cells", quantities=quantities, n_asperities=10**6)
+        sampler = sampler_of(scene)
+        size[quantities] = sampler.response.layout.sizes.sum()
+        assert set(sampler.block(0, 1).sums) == set(quantities)
+    assert size["load", "area", "stiffness"] > size["area",] > 0 == size["contacts",]
+    full = make_scene(sampler="cells", n_asperities=10**6)
+    alone = dataclasses.replace(full, quantities=("contacts",))
+    counted, all_of_it = (sampler_of(scene).block(0, 5).sums["contacts"] for scene in (alone, full))
+    np.testing.assert_array_equal(counted, all_of_it)
+
+
+@pytest.mark.parametrize(("law", "middle", "slope", "separations"), [
+    (analytic.Weibull(2.55), 1.14, 24.0, (0.0, 1e-28, 0.6)),
+    (analytic.Weibull(1.82), 2.12, 47.0, (-27.6, -21.7, -10.8)),
+    (analytic.ExponentialHeights(), 2.65, 3.35, (0.01803722, 0.01803731)),
+    (analytic.ExponentialHeights(), 0.03, 5.0, (-27.7, -27.3)),
+])  # fmt: skip
+def test_a_smooth_step_under_any_law(make_scene, law, middle, slope, separations):
+    """The law of heights, the grading and the root bend together: cells are cut until all is resolved."""
+    grading = analytic.Custom(lambda s: 1.5 + np.tanh(slope * (s - middle)))
+    check(of_all_quantities(make_scene, heights=law, grading=grading, separations=separations), MANY)
+
+
+@pytest.mark.parametrize(("shape", "gamma", "separations", "n"), [
+    (4.63, 0.7144619, (-1.655150524, 2.22019398), 17),
+    (45.423, 1.43735, (0.46187410402, 3.14785127), 6),
+    (1.80686, 0.6479186, (-1.87281584, -1.85053286), 9407),
+    (1.6853, 0.69289, (-3.42293094, 2.2294051), 1638),
+])  # fmt: skip
+def test_a_smooth_grading_is_never_refused(make_scene, shape, gamma, separations, n):
+    """Where the law of heights bends as fast as cells allow, a cell needs all but one of its coefficients."""
+    scene = of_all_quantities(
+        make_scene, heights=analytic.Weibull(shape), grading=analytic.Exponential(gamma), negative="allow",
+        separations=separations, n_asperities=n,
+    )  # fmt: skip
+    check(scene, MANY)
+
+
+def mass(a, b):
+    """Probability between a and b, at 40 digits."""
+    with mp.workdps(40):
+        return (mp.erfc(mp.mpf(a) / mp.sqrt(2)) - mp.erfc(mp.mpf(b) / mp.sqrt(2))) / 2
+
+
+@pytest.mark.parametrize("separations", [(0.0, 2.0, 4.0), (-40.0, -3.0, 0.0), (6.0, 6.5), (1.0, 1.0 + 1e-9)])
+def test_probabilities_and_inverse_distribution(make_scene, separations):
+    mesh = mesh_of(make_scene(separations=separations, n_asperities=10**15, grading=analytic.Homogeneous()))
+    u = np.array([1e-6, 0.1, 0.5, 0.9])
+    with mp.workdps(40):
+        for cell in range(0, mesh.size, max(mesh.size // 40, 1)):
+            a, b = mesh.edges[cell], mesh.edges[cell + 1]
+            p = mass(a, b)
+            # 1e-14: a Gauss rule of 20 points and one exponential.
+            assert abs(mp.mpf(float(mesh.probability[cell])) / p - 1) < 1e-14
+            for x, t in zip(u, mesh.offsets(cell, u), strict=True):
+                # The height itself, relative to its distance from the edge, not to its size.
+                found = mass(a, mp.mpf(float(a)) + mp.mpf(float(t)))
+                assert abs(found / (p * mp.mpf(float(x))) - 1) < 5e-13
+
+
+def test_cells_and_extras_share_the_contacting_heights(make_scene):
+    for separations in ((0.0, 4.0), (-40.0, 1.0), (-2.0, 3.0)):  # the lowest one counts
+        mesh = mesh_of(make_scene(separations=separations, grading=analytic.Homogeneous()))
+        total = mesh.low_extras + mesh.probability.sum() + mesh.high_extras
+        assert total == pytest.approx(float(analytic.fn(0, separations[0])), rel=1e-14)
+        assert 3000 * (mesh.low_extras + mesh.high_extras) < 0.21
+
+
+def test_far_out_there_are_no_cells(make_scene):
+    mesh = mesh_of(make_scene(separations=(30.0, 38.0)))
+    assert mesh.size == 0
+    assert mesh.high_extras == pytest.approx(float(analytic.fn(0, 30.0)), rel=1e-13)
+    assert no_cells(make_scene()).high_extras == 0.5
+
+
+def test_every_separation_and_break_is_an_edge(make_scene):
+    grading = analytic.Custom(lambda s: np.where(s > 1.234, 2.0, 1.0), (1.234,))
+    mesh = mesh_of(make_scene(separations=(0.3, 0.1, 2.7), grading=grading))
+    assert {0.1, 0.3, 1.234, 2.7} <= set(mesh.edges)
+
+
+@pytest.mark.parametrize("gap", [1e-9, 1e-3, 0.7])
+def test_cells_are_no_wider_than_their_distance_to_a_root(make_scene, gap):
+    separations = np.array([0.5, 0.5 + gap, 2.0])
+    mesh = mesh_of(make_scene(separations=tuple(separations)))
+    for a, b in zip(mesh.edges[:-1], mesh.edges[1:], strict=True):
+        below = separations[separations < a]
+        if below.size:
+            assert b - a <= (a - below[-1]) * (1 + 1e-6)
+
+
+def cut(law, n, low, high, before):
+    """Edges of one gap."""
+    gap = Gaps(*np.array([[low], [high], [before]]), np.array([True]))
+    return np.array(sorted([low, *cuts(law, n, gap), high]))
+
+
+@pytest.mark.parametrize("gap", [1e-9, 0.01, 0.1, 3.0])
+def test_the_fewest_cells_between_two_separations(gap):
+    """As wide as the distance below it lets each be: one for equal gaps, then one for each doubling."""
+    law, high = analytic.Gaussian(), 1.0 + gap
+    gap = high - 1.0  # as it is after rounding
+    assert len(cut(law, 0, 1.0, high, gap)) == 2
+    assert len(cut(law, 0, 1.0, high, np.inf)) == 2
+    for doublings in (1, 2, 5, 30):
+        edges = cut(law, 0, 1.0, high, gap / 2**doublings)
+        np.testing.assert_allclose(
+            (edges[1:] - 1) / gap, 0.5 ** np.arange(doublings, -1, -1), atol=1e-15 / gap
+        )
+
+
+def test_crowds_pay_for_more_cells():
+    """From none to many, and never one that is wider than its distance to the separation below."""
+    law, sizes = analytic.Gaussian(), []
+    for n in (0, 10**3, 10**5, 10**6, 10**8):
+        edges = cut(law, n, 0.5, 0.6, 0.1)
+        assert edges[0] == 0.5
+        assert edges[-1] == 0.6
+        distance = np.concatenate([[0.1], edges[1:-1] - 0.5])
+        assert (np.diff(edges) <= distance * (1 + 1e-9)).all()
+        sizes.append(edges.size - 1)
+    assert sizes == sorted(sizes)
+    assert sizes[0] == sizes[1] == 1
+    assert sizes[-1] > 4
+
+
+def test_what_auto_takes(make_scene):
+    """One by one where a handful touches, more with many separations; cells for all else, and for moments."""
+    many = tuple(np.linspace(0, 4, 601))
+    cases = {
+        "cells": (
+            {},
+            {"n_asperities": 10**12},
+            {"separations": many},
+            {"n_asperities": 50},
+            {"separations": many, "n_asperities": 60},
+        ),
+        "tail": (
+            {"n_asperities": 1},
+            {"n_asperities": 8},
+            {"separations": many, "n_asperities": 36},
+            {"separations": many[300:], "n_asperities": 800},
+        ),
+    }
+    for name, scenes in cases.items():
+        for changes in scenes:
+            assert sampler_of(make_scene(sampler="auto", **changes)).name == name
+
+
+def test_errors_are_held_against_the_least_modulus_of_a_cell():
+    """A lone contact may sit there: from a ratio of four on, unless the sign changes."""
+    moduli = np.array([[1.0, 2.0], [0.25, 1.0], [0.05, 1.0], [1e-3, 1.0], [-1e-3, 1.0], [-0.01, -1.0]])
+    for grading in (analytic.Custom(np.tanh), analytic.resolved(analytic.Custom(np.tanh), -1.0, 1.0)):
+        found = evenness(grading, moduli)
+        np.testing.assert_allclose(found, [1.0, 1.0, 0.2, 1 / 16, 1.0, 1 / 16], rtol=1e-15)
+    assert evenness(analytic.Exponential(2.0), moduli).tolist() == [1.0] * 6

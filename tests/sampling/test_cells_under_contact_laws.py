@@ -1,0 +1,163 @@
+"""`cells` under every contact law against exactly rounded sums of each asperity's own formula."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from conftest import SURFACE
+from oracles.accurately import exact_sums, worst_share
+from test_cells_against_direct_sums import CLOSE_KINKS
+
+import analytic
+import mcgw
+from analytic import laws
+from mcgw.sampling import cells
+from mcgw.sampling.asperities import summits_drawn
+from mcgw.sampling.samplers import cells_of
+
+LAWS = {
+    "kogut": laws.KogutEtsion(critical=0.05),
+    "kogut-soft": laws.KogutEtsion(critical=0.001),
+    "kogut-hard": laws.KogutEtsion(critical=10.0),
+    "kogut-bridged": laws.KogutEtsion(critical=0.05, bridge="hermite"),
+    "chang": laws.ChangEtsionBogy(critical=0.05),
+    "zhao": laws.ZhaoMaiettaChang(critical=0.05),
+    "jackson": laws.JacksonGreen(yield_strain=0.004, critical=0.1),
+    "half-space": laws.PowerLawGraded(0.5, reduced_c0=1.0),
+    "coated": laws.Coated(reduced_thickness=0.5, ratio=3.0),
+    "derjaguin": laws.DerjaguinMullerToporov(pull_off=0.05),
+    "johnson": laws.JohnsonKendallRoberts(pull_off=0.05),
+    "johnson-sticky": laws.JohnsonKendallRoberts(pull_off=0.5),
+}
+GRADINGS = {
+    "homogeneous": analytic.Homogeneous(),
+    "gamma-0": analytic.Exponential(0.0),
+    "gamma-0.2": analytic.Exponential(0.2),
+    "gamma-2": analytic.Exponential(2.0),
+    "table": analytic.Table((-4.0, 0.0, 1.0, 4.0), (0.5, 1.0, 2.0, 1.5)),
+    "close-kinks": CLOSE_KINKS,
+}
+SEPARATIONS = {
+    "equal": tuple(np.linspace(0, 3, 7)),
+    "geometric": tuple(np.geomspace(0.01, 3, 6)),
+    "random": tuple(0.5 + 2 * np.random.default_rng(4).random(6)),
+    "close": (1.0, 1.0 + 1e-9, 1.5),
+}
+# Every law twice, every grading with every kind of separations. The rest of the product is slow; cells refuse
+# some of the close kinks where a separation is next to them.
+TABLE = """
+kogut           homogeneous  equal        kogut           close-kinks  random
+kogut-soft      gamma-0      equal        kogut-soft      homogeneous  close
+kogut-hard      gamma-0.2    equal        kogut-hard      table        random
+kogut-bridged   gamma-2      equal        kogut-bridged   gamma-0      close
+chang           table        equal        chang           gamma-0.2    geometric
+zhao            close-kinks  close        zhao            gamma-2      geometric
+jackson         homogeneous  geometric    jackson         gamma-2      close
+half-space      close-kinks  equal        half-space      gamma-0      random
+coated          gamma-0      geometric    coated          table        close
+derjaguin       homogeneous  random       derjaguin       gamma-0.2    close
+johnson         gamma-0.2    random       johnson         table        geometric
+johnson-sticky  gamma-2      random       johnson-sticky  close-kinks  geometric
+"""
+PAIRS = re.findall(r"(\S+) +(\S+) +(\S+)", TABLE)
+REST = [(a, b, c) for a in LAWS for b in GRADINGS for c in SEPARATIONS if b != "close-kinks"]
+REST = [rest for rest in REST if rest not in PAIRS]
+QUANTITIES = ("load", "area", "stiffness", "contacts", "conductance", "load_slope")
+
+
+def scene_of(law, grading, separations, **changes):
+    names = QUANTITIES if law.elastic else (*QUANTITIES, "yielded")
+    if "unload_from" in changes and not law.on(SURFACE).unloading().stiff:
+        names = ("load", "area", "contacts", "conductance")
+    values = {"quantities": names, "n_asperities": 5000, "n_surfaces": 1, "seed": 11, "negative": "clip"}
+    return mcgw.Scene(SURFACE, law=law, grading=grading, separations=separations, **(values | changes))
+
+
+def worst(scene):
+    """Largest difference, of the largest value of each quantity."""
+    sampler = cells_of(scene)
+    drawn, heights = sampler.block(0, 1).sums, summits_drawn(scene, sampler, 0)[0]
+    found = []
+    for name in scene.quantities:
+        expected = exact_sums(scene, heights, name)
+        largest = np.abs(expected).max()
+        found.append(np.abs(drawn[name][0] - expected).max() / (largest if largest > 0 else 1.0))
+    return max(found)
+
+
+def test_every_grading_meets_every_kind_of_separations():
+    assert {law for law, *_ in PAIRS} == set(LAWS)
+    assert len({pair[1:] for pair in PAIRS}) == len(GRADINGS) * len(SEPARATIONS)
+
+
+@pytest.mark.parametrize(
+    ("law", "grading", "separations"), PAIRS + [pytest.param(*x, marks=pytest.mark.slow) for x in REST]
+)
+def test_sums_are_those_of_the_asperities(law, grading, separations):
+    back = {} if law in ("chang", "zhao", "jackson") else {"unload_from": "loop"}
+    assert worst(scene_of(LAWS[law], GRADINGS[grading], SEPARATIONS[separations], **back)) < 1e-12
+
+
+@pytest.mark.parametrize("number", [0, 2])
+def test_a_break_that_is_no_edge_is_refused(monkeypatch, number):
+    """A row that ends inside a cell is never interpolated over: that would be off by up to 0.8 %."""
+    find = cells.begins_and_breaks
+
+    def without_one(scene, low, high):
+        begins, breaks = find(scene, low, high)
+        inner = np.setdiff1d(breaks, [low, high, *begins])
+        return begins, np.delete(breaks, np.searchsorted(breaks, inner[number]))
+
+    scene = scene_of(laws.KogutEtsion(critical=0.3), analytic.Exponential(1.5), (0.0, 0.7, 1.1))
+    assert worst(scene) < 1e-12
+    monkeypatch.setattr(cells, "begins_and_breaks", without_one)
+    with pytest.raises(ValueError, match=r"break of the contact law at s = .* is not an edge"):
+        cells_of(scene)
+
+
+@pytest.mark.parametrize("sampler", ["cells", "tail"])
+def test_all_exact_samplers_sum_the_same_formulas(sampler):
+    """Asperities drawn by themselves, outside the cells or in `tail`, follow the law too."""
+    scene = scene_of(LAWS["kogut"], analytic.Exponential(2.0), (2.0, 2.5, 3.0, 4.5), n_asperities=20_000)
+    scene = replace(scene, sampler=sampler, n_surfaces=15)
+    heights = [mcgw.heights(scene, i) for i in range(15)]
+    drawn = mcgw.simulate(scene)
+    for name in scene.quantities:
+        expected = np.array([exact_sums(scene, s, name) for s in heights])
+        np.testing.assert_allclose(drawn[name], expected, rtol=1e-12, atol=1e-13 * expected.max())
+
+
+def test_hertz_by_another_name_is_hertz():
+    """A law of one piece whose formulas are Hertz's, by the rows of other laws: 1e-13."""
+
+    class Twin(laws.ContactLaw):
+        name = "twin"
+
+    hertz = scene_of(laws.Hertz(), analytic.Exponential(2.0), SEPARATIONS["equal"])
+    twin = hertz.replace(law=Twin())
+    ours, theirs = (cells_of(scene).block(0, 1).sums for scene in (twin, hertz))
+    for name in hertz.quantities:
+        np.testing.assert_allclose(ours[name], theirs[name], rtol=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("name", "way"),
+    [("kogut", {}), ("kogut", {"unload_from": "loop"}), ("chang", {}), ("johnson", {"unload_from": "loop"})],
+)
+def test_contacts_are_counted_where_nothing_else_is_asked(name, way):
+    """Under laws that yield or stick, of the very surfaces whose heights are told."""
+    given = {"law": LAWS[name], "quantities": ["contacts"], "n_surfaces": 2, "n_asperities": 3000, "seed": 5}
+    scene = mcgw.Scene(SURFACE, separations=[0.0, 1.0], sampler="cells", **given, **way)
+    counted = [[np.sum(mcgw.heights(scene, i) > h) for h in scene.separations] for i in range(2)]
+    assert np.array_equal(mcgw.simulate(scene).contacts, counted)
+
+
+def test_contacts_that_dwindle_towards_asperities_which_soften(make_scene):
+    """On the way back a row from farther below is the rougher one on a cell next to where it is lost."""
+    scene = make_scene(
+        separations=(-2.34, -1.45, -0.65), grading=lambda s: 1 + 0.8 * np.sin(13.2 * s + 0.56),
+        law=laws.KogutEtsion(critical=0.0446), heights=analytic.ExponentialHeights(), unload_from=-6.6,
+        n_asperities=30, n_surfaces=60, quantities=("stiffness",), sampler="cells", accuracy=1e-12,
+    )  # fmt: skip
+    assert worst_share(scene, 60) < 100

@@ -1,0 +1,188 @@
+"""Numerical stability at the extremes: each test is a row of runs/EXTREMES.md.
+
+Every case works to the accuracy stated, without a warning (pytest turns them into errors), or gets one
+clear error.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from oracles.literal import sums_of_heights
+from scipy.special import log_ndtr
+from test_cells_against_direct_sums import worst
+
+import analytic
+import mcgw
+from mcgw.sampling.counts import counts_of
+from mcgw.sampling.moments import add_compensated
+from mcgw.sampling.samplers import sampler_of
+from mcgw.scene.section import SceneError
+
+GAMMA_STAR = math.exp(0.5) / (math.exp(0.5) - 1)
+
+
+def agree(ensemble):
+    """Means within 5 exact standard errors of theory, wherever anything fluctuates."""
+    scene = ensemble.scene
+    for name in scene.quantities:
+        exact = analytic.Model(
+            scene.surface, grading=scene.modulus, n_asperities=scene.n_asperities
+        ).cumulants(name, scene.separations)
+        difference = np.abs(ensemble.mean(name) - exact.mean)
+        assert (difference <= 5 * np.sqrt(exact.variance / ensemble.n_surfaces) + 1e-12 * exact.mean).all()
+
+
+def test_separations_from_minus_40_to_40(make_scene):
+    scene = make_scene(separations=tuple(np.linspace(-40, 40, 17)), grading=analytic.Homogeneous())
+    assert worst(scene, 0) < 1e-12
+    agree(mcgw.simulate(scene))
+
+
+def test_where_nothing_ever_touches(make_scene):
+    ensemble = mcgw.simulate(make_scene(separations=(9.0, 38.6, 40.0, 1000.0)))
+    for name in ensemble.scene.quantities:
+        assert (ensemble.values(name) == 0).all()
+        assert (ensemble.std(name) == 0).all()
+
+
+@pytest.mark.parametrize("n", [1, 2])
+@pytest.mark.parametrize("sampler", ["direct", "tail", "cells"])
+def test_one_or_two_asperities(make_scene, n, sampler):
+    ensemble = mcgw.simulate(make_scene(n_asperities=n, sampler=sampler, n_surfaces=2000))
+    agree(ensemble)
+    assert ensemble.contacts.max() <= n
+
+
+def test_1e15_asperities(make_scene):
+    agree(mcgw.simulate(make_scene(n_asperities=10**15, sampler="aggregate", n_surfaces=64)))
+
+
+def test_no_asperities_and_too_many(make_scene):
+    for n, advice in ((0, "give a whole number >= 1"), (-1, "give a whole number >= 1")):
+        with pytest.raises(SceneError, match=advice):
+            make_scene(n_asperities=n)
+    for n in (2**53 + 1, 10**30):
+        with pytest.raises(SceneError, match="must lie between 1 and 2\\^53"):
+            make_scene(n_asperities=n)
+
+
+def test_one_surface(make_scene):
+    ensemble = mcgw.simulate(make_scene(n_surfaces=1))
+    assert np.isnan(ensemble.std("load")).all()
+    low, high = (end[:3] for end in ensemble.interval("load"))
+    assert ((low < ensemble.mean("load")[:3]) & (ensemble.mean("load")[:3] < high)).all()
+    assert (ensemble.mean("load") == ensemble.load[0]).all()
+
+
+@pytest.mark.slow
+def test_10_000_separations(make_scene):
+    h = tuple(np.linspace(0, 4, 10_000))
+    scene = make_scene(separations=h, quantities=("load", "contacts"), sampler="cells")
+    sums = sampler_of(scene).block(0, 2).sums
+    heights = mcgw.heights(scene, 0)
+    some = make_scene(separations=h[::500], quantities=("load", "contacts"), sampler="cells")
+    for name in some.quantities:
+        np.testing.assert_allclose(sums[name][0][::500], sums_of_heights(some, heights, name), rtol=1e-12)
+
+
+def test_separations_next_to_zero(make_scene):
+    scene = make_scene(separations=(-1e-100, 0.0, 1e-100, 1e-50, 1.0), sampler="cells")
+    assert worst(scene, 0) < 1e-12
+    with pytest.raises(SceneError, match=r"4\.94066e-324 is too close to 0"):
+        make_scene(separations=(5e-324,))
+
+
+def test_separations_1e_12_apart_and_equal(make_scene):
+    h = (1.0, 1.0 + 1e-12, 1.0, 1.0 + 2e-12, 2.0)
+    scene = make_scene(separations=h, n_asperities=10**5)
+    assert worst(scene, 0) < 1e-12
+    load = sampler_of(scene).block(0, 3).sums["load"]
+    np.testing.assert_array_equal(load[:, 0], load[:, 2])
+    assert (load[:, 0] >= load[:, 1]).all()
+
+
+@pytest.mark.parametrize("gamma", [0.0, GAMMA_STAR, 1e6, 1e60])
+def test_gradings_at_their_limits(make_scene, gamma):
+    scene = make_scene(grading=analytic.Exponential(gamma))
+    assert worst(scene, 0) < 1e-12
+    agree(mcgw.simulate(scene))
+
+
+def test_negative_gamma(make_scene):
+    with pytest.raises(SceneError, match=r"negative from s = 1\.099"):
+        make_scene(grading=analytic.Exponential(-0.5))
+    clipped = make_scene(grading=analytic.Exponential(-0.5), negative="clip")
+    assert worst(clipped, 0) < 1e-12
+    agree(mcgw.simulate(clipped))
+    agree(mcgw.simulate(make_scene(grading=analytic.Exponential(-0.5), negative="allow")))
+
+
+@pytest.mark.parametrize("size", [1e-12, 1.0])
+@pytest.mark.parametrize("stress", [1.0, 1e15])
+def test_sizes_and_moduli(make_scene, size, stress):
+    """Lengths and stresses enter as factors: the reduced sums are the same to the last digits."""
+    surface = analytic.Surface(
+        sigma=size, radius=size, eta=1 / size**2, nominal_area=3000 * size**2, E_star=stress
+    )
+    scaled = sampler_of(make_scene(surface=surface)).block(0, 2).sums
+    unit = sampler_of(make_scene(surface=analytic.Surface(1.0, 1.0, 1.0, 3000.0, 1.0))).block(0, 2).sums
+    np.testing.assert_allclose(scaled["load"] / (stress * size**2), unit["load"], rtol=1e-13)
+    np.testing.assert_allclose(scaled["area"] / size**2, unit["area"], rtol=1e-13)
+    np.testing.assert_allclose(scaled["stiffness"] / (stress * size), unit["stiffness"], rtol=1e-13)
+
+
+@pytest.mark.parametrize(("sigma", "E_star"), [(1e-320, 1e9), (1e-150, 1e-100), (1e100, 1e250)])
+def test_products_beyond_double_precision(make_scene, sigma, E_star):
+    surface = analytic.Surface(sigma=sigma, radius=1e-5, eta=1e9, nominal_area=1e-6, E_star=E_star)
+    with pytest.raises(SceneError, match="beyond double precision"):
+        make_scene(surface=surface)
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_gradings_that_are_not_finite(make_scene, value):
+    grading = analytic.Custom(lambda s: np.where(s > 1, value, 1.0))
+    with pytest.raises(SceneError, match="not finite at s = 1"):
+        make_scene(grading=grading)
+
+
+@pytest.mark.parametrize("quantity", list(analytic.QUANTITIES))
+def test_quantities_alone(make_scene, quantity):
+    alone = sampler_of(make_scene(quantities=(quantity,))).block(0, 3).sums
+    together = sampler_of(make_scene(quantities=tuple(analytic.QUANTITIES))).block(0, 3).sums
+    assert set(alone) == {quantity}
+    np.testing.assert_allclose(alone[quantity], together[quantity], rtol=1e-12)
+
+
+def test_pieces_of_1e12_terms():
+    """A sum of 1e12 terms is one of 4e6 pieces: compensated, it is the exactly rounded one of the pieces."""
+    pieces = np.random.default_rng(1).uniform(0.0, 2.6e5, (2000, 1))
+    sums = np.zeros(2)
+    for piece in pieces:
+        add_compensated(sums, piece.copy(), 0, 1)
+    assert sums.sum() == math.fsum(pieces[:, 0])
+    naive = np.add.accumulate(pieces[:, 0])[-1]  # the companion: plain addition loses digits
+    assert naive != math.fsum(pieces[:, 0])
+
+
+def test_count_law_far_in_the_tail(make_scene):
+    """p = 1e-300: the probability is right to 1e-12, the count is 0, for N up to 2^53."""
+    h = 37.0
+    scene = make_scene(separations=(h,), n_asperities=2**53)
+    sampler = sampler_of(scene)
+    assert abs(sampler.mesh.high_extras / math.exp(log_ndtr(-h)) - 1) < 1e-12
+    assert counts_of(scene, sampler.mesh, 0, 64).high_extras.sum() == 0
+
+
+def test_rare_contacts_among_2_to_the_53(make_scene):
+    """h = 8: 5.6 contacts expected of 9e15 asperities, where 1 - p rounds to 1."""
+    scene = make_scene(separations=(8.0,), n_asperities=2**53, quantities=("contacts",), n_surfaces=2000)
+    expected = 2**53 * float(analytic.fn(0, 8.0))
+    contacts = mcgw.simulate(scene).contacts[:, 0]
+    assert abs(contacts.mean() - expected) < 5 * np.sqrt(expected / 2000)
+    assert abs(contacts.var() / expected - 1) < 5 * np.sqrt(2 / 2000 + 1 / expected / 2000)
+
+
+def test_requests_that_do_not_fit(make_scene):
+    with pytest.raises(ValueError, match=r"n_surfaces = 1000000000000: .* needs .* GiB of memory"):
+        mcgw.simulate(make_scene(n_surfaces=10**12))

@@ -1,0 +1,190 @@
+"""Surfaces whose asperities press each other down: against literal sums, identities, and each other."""
+
+import numpy as np
+import pytest
+import scipy.stats
+from oracles.interacting_by_hand import QUANTITIES, SEPARATIONS, STRENGTHS, interaction, literal_sums
+
+import analytic
+import mcgw
+from mcgw.sampling.samplers import sampler_of
+from mcgw.store import ensembles
+
+GRADINGS = {
+    "exponential": analytic.Exponential(2.0),
+    "table": analytic.Table((-1.0, 0.5, 2.0), (0.8, 1.3, 1.1)),
+    "own": analytic.Custom(lambda s: 1 + 0.3 * np.tanh(s)),
+}
+HEIGHTS = {
+    "Weibull": analytic.Weibull(2.0), "Nayak": analytic.Nayak(5.0),
+    "exponential": analytic.ExponentialHeights(), "uniform": scipy.stats.uniform(),
+}  # fmt: skip
+
+
+def check_against_literal_sums(scene, surface=1, tolerance=1e-12):
+    """Every quantity at what the asperities feel; nominal separations; stiffness, conductance in series."""
+    ensemble, alone = mcgw.simulate(scene), mcgw.heights(scene, surface)
+    felt = scene.separations
+    c = scene.interaction.compliance(scene.surface, scene.n_asperities)
+    for name in scene.quantities:
+        expected = literal_sums(scene, alone, felt, name)
+        if name in ("stiffness", "conductance"):
+            other = c if name == "stiffness" else c * scene.interaction.bulk_modulus / 2
+            expected = expected / (1 + other * expected)
+        np.testing.assert_allclose(ensemble[name][surface], expected, rtol=tolerance, err_msg=name)
+    sunk = c / scene.surface.sigma * ensemble["load"][surface]
+    nominal = ensemble["nominal_separation"][surface]
+    np.testing.assert_allclose(nominal, np.array(felt) - sunk, rtol=0, atol=1e-13)
+    assert np.abs(sunk).max() > 0.02
+
+
+@pytest.mark.parametrize("strength", STRENGTHS.values(), ids=STRENGTHS)
+class TestLiteralSums:
+    @pytest.mark.parametrize("grading", GRADINGS.values(), ids=GRADINGS)
+    def test_gradings(self, pressed, strength, grading):
+        check_against_literal_sums(pressed(strength, grading=grading))
+
+    @pytest.mark.parametrize("heights", HEIGHTS.values(), ids=HEIGHTS)
+    def test_heights(self, pressed, strength, heights):
+        h = (-0.5, 0.3, 1.2)
+        asked = {"heights": heights, "separations": h, "grading": GRADINGS["table"]}
+        check_against_literal_sums(pressed(strength, **asked))
+
+    @pytest.mark.parametrize("changes", [
+        {"n_asperities": 300, "count": "poisson", "sampler": "tail"},
+        {"n_asperities": 300, "sampler": "cells"},
+        {"n_asperities": 10**5, "count": "poisson"},
+        pytest.param({"n_asperities": 10**6}, marks=pytest.mark.slow),
+    ], ids=lambda changes: ", ".join(map(str, changes.values())))  # fmt: skip
+    def test_numbers(self, pressed, strength, changes):
+        check_against_literal_sums(
+            pressed(strength, grading=analytic.Exponential(1.5), n_surfaces=2, **changes)
+        )
+
+
+@pytest.mark.parametrize("strength", STRENGTHS.values(), ids=STRENGTHS)
+def test_stiffness_is_the_slope_of_the_load_of_one_surface(pressed, strength):
+    """By its nominal separation, at separations a little higher and lower."""
+    step = 1e-4
+    h = tuple(1.0 + k * step for k in (-2, -1, 0, 1, 2))
+    ensemble = mcgw.simulate(pressed(strength, separations=h))
+
+    def change(name):
+        values = ensemble[name]
+        return values[:, 0] - 8 * values[:, 1] + 8 * values[:, 3] - values[:, 4]
+
+    slope = -change("load") / change("nominal_separation")
+    sigma = ensemble.scene.surface.sigma
+    np.testing.assert_allclose(ensemble["stiffness"][:, 2], slope / sigma, rtol=1e-5)  # some touch anew
+    c = ensemble.scene.interaction.compliance(ensemble.scene.surface, 3000)
+    alone = 1 / (1 / ensemble["stiffness"][:, 2] - c)
+    assert (np.abs(alone * sigma / slope - 1) > 0.02).all()
+
+
+def test_effective_separations_change_stiffness_and_conductance_alone(pressed):
+    """All else has the bits of surfaces without interaction; compliances add."""
+    for sampler in ("direct", "tail", "cells", "aggregate"):
+        scene = pressed(3.0, sampler=sampler, n_asperities=400)
+        with_, without = mcgw.simulate(scene), mcgw.simulate(scene.replace(interaction=None))
+        c = scene.interaction.compliance(scene.surface, 400)
+        for name in set(QUANTITIES) - {"stiffness", "conductance"}:
+            np.testing.assert_array_equal(with_[name], without[name])
+        touched = without["stiffness"] > 0
+        apart = 1 / without["stiffness"][touched]
+        np.testing.assert_allclose(1 / with_["stiffness"][touched], apart + c, rtol=1e-12)
+        spots, both = 1 / without["conductance"][touched], c * scene.interaction.bulk_modulus / 2
+        np.testing.assert_allclose(1 / with_["conductance"][touched], spots + both, rtol=1e-12)
+        sunk = c / scene.surface.sigma * without["load"]
+        np.testing.assert_array_equal(with_["nominal_separation"], np.array(SEPARATIONS) - sunk)
+
+
+@pytest.mark.parametrize("sampler", ["direct", "tail", "cells"])
+def test_same_bits_in_any_block_by_any_threads(pressed, sampler):
+    scene = pressed(3.0, sampler=sampler, n_asperities=200, n_surfaces=40)
+    one, two = mcgw.simulate(scene, threads=1), mcgw.simulate(scene, threads=2)
+    drawn = sampler_of(scene)
+    whole = drawn.block(0, 40).sums
+    for name, values in whole.items():
+        np.testing.assert_array_equal(one[name], two[name])
+        for first, n in ((0, 1), (33, 7), (10, 20)):
+            np.testing.assert_array_equal(drawn.block(first, n).sums[name], values[first : first + n])
+
+
+def test_a_file_holds_both_separations_and_goes_on(pressed, tmp_path):
+    """At once, in two goes, and in memory: one digest; the scene reads back from its text."""
+    scene, path = pressed(3.0, n_surfaces=100, n_asperities=500), tmp_path / "e.h5"
+    mcgw.run(scene.replace(n_surfaces=40), path)
+    mcgw.run(scene, path)
+    mcgw.run(scene, tmp_path / "at_once.h5", threads=1)
+    found, memory = mcgw.open_ensemble(path), mcgw.simulate(scene)
+    assert ensembles.verify(path) == ensembles.verify(tmp_path / "at_once.h5")
+    assert found.scene == scene
+    assert mcgw.scene_from(mcgw.scene_text(found.scene)) == scene
+    for name in (*QUANTITIES, *scene.other_separations):
+        np.testing.assert_array_equal(found[name], memory[name])
+
+
+LOAD = 'add "load" to contact.quantities'
+# What is refused, a word of the line for it, and the neighbour that passes.
+REFUSED = {
+    "no load": ({"interaction": "body", "quantities": ["area"]}, LOAD, {"quantities": ["area", "load"]}),
+    "no load there and back": (
+        {"interaction": "body", "unload_from": "loop", "quantities": ["area"]}, LOAD,
+        {"quantities": ["area", "load"]},  # with its way back
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("asked", "line", "neighbour"), REFUSED.values(), ids=REFUSED)
+def test_refused_in_one_line_and_its_neighbour_not(make_scene, asked, line, neighbour):
+    plain = {"grading": None, "n_surfaces": 2, "n_asperities": 100, "separations": (0.5, 1.0)}
+    with pytest.raises(mcgw.SceneError, match=line) as caught:
+        make_scene(**(plain | asked))
+    assert len(caught.value.problems) == 1
+    make_scene(**(plain | asked | neighbour))
+
+
+def test_separations_below_the_fold(make_scene):
+    """Strength 1: loads pull the mean plane down faster than it is pressed, somewhere above 0."""
+    scene = make_scene(separations=(-1.0, 2.0), grading=None, n_asperities=3000)
+    pulled = interaction(-1.0, scene.surface, 3000)
+    with pytest.raises(mcgw.SceneError, match="give larger separations") as caught:
+        scene.replace(interaction=pulled)
+    assert len(caught.value.problems) == 1
+    assert scene.replace(interaction=pulled, separations=(1.5, 2.0)).separations == (1.5, 2.0)
+
+
+@pytest.mark.parametrize(("given", "line"), [
+    ({"bulk_modulus": 1e9}, "interaction.reference: missing"),
+    ({"reference": "moon"}, "interaction.reference = 'moon'"),
+    ({"reference": "body", "at": "nominal"}, "interaction.at"),
+    ({"reference": "body", "bulk_modulus": -1.0}, "interaction.bulk_modulus = -1"),
+    ({"reference": "body", "bulk": 1.0}, "interaction.bulk"),
+    (3, "interaction = 3"),
+])  # fmt: skip
+def test_keys(make_scene, given, line):
+    with pytest.raises(mcgw.SceneError) as caught:
+        make_scene(interaction=given)
+    assert len(caught.value.problems) == 1
+    assert line.replace("'", "") in caught.value.problems[0].replace("'", "").replace('"', "")
+
+
+@pytest.mark.parametrize("given", [{"reference": "sea"}, {"bulk_modulus": float("inf")}])
+def test_words_of_the_theory(given):
+    ((key, value),) = given.items()
+    with pytest.raises(ValueError, match=f"{key} = '?{value}"):
+        analytic.Interaction(**({"reference": "body"} | given))
+
+
+@pytest.mark.parametrize("factor", [None, 1.0, 0.9, 1.1])
+def test_errors_were_measured_for_one_modulus_of_the_bulk(factor):
+    """That of the asperities: of softer bulks and of stiffer ones nothing is known but the area."""
+    surface = analytic.SpectralMoments(1e-12, 1e-3, 4e6).surface(1e-6, 78.6e9)
+    bulk = {} if factor is None else {"bulk_modulus": factor * 78.6e9}
+    asked = {"reference": "mean-plane"} | bulk
+    found = mcgw.Scene(surface, separations=[1.2, 1.6], interaction=asked, seed=1).validity()
+    assert np.isfinite(found.error["area"]).all()
+    known = factor in (None, 1.0)
+    assert np.isfinite(found.error["stiffness"]).all() == known
+    assert np.isfinite(found.bias["separation"]).all() == known
+    assert ("only for a bulk with the modulus of the asperities" in found.details) != known

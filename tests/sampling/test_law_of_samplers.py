@@ -1,0 +1,152 @@
+"""All samplers have the exact law: means, variances, covariances, skewness and distribution.
+
+Every gate is |z| < 5 with fixed seeds: false alarms 6e-7 a number. Each test has a companion that a
+wrong law fails.
+"""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from conftest import SURFACE
+from oracles.literal import ensemble_arrays
+from scipy.stats import kstest
+
+import analytic
+import mcgw
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.results import MemoryResults
+from mcgw.statistics.checks import independence
+
+GATE = 5.0
+EXACT = ("direct", "tail", "cells")
+M = 4000
+
+
+@pytest.fixture(scope="module")
+def ensembles():
+    """One ensemble a sampler, fixed and Poisson."""
+    made = {}
+    for count in ("fixed", "poisson"):
+        for k, sampler in enumerate((*EXACT, "aggregate")):
+            scene = mcgw.Scene(
+                surface=SURFACE,
+                separations=(0.0, 0.5, 1.0, 2.0),
+                grading=analytic.Exponential(1.5),
+                quantities=("load", "area", "stiffness", "contacts", "conductance"),
+                n_asperities=600,
+                n_surfaces=M,
+                count=count,
+                sampler=sampler,
+                seed=17 + k,
+            )
+            made[sampler, count] = mcgw.simulate(scene)
+    return made
+
+
+def scores(ensemble, *, gamma=None):
+    """z-scores of means, variances and covariances of all quantities at all separations."""
+    scene = ensemble.scene
+    grading = scene.grading if gamma is None else analytic.Exponential(gamma)
+    surface, h, n = scene.surface, scene.separations, scene.n_asperities
+    mean, variance, kurtosis = [], [], []
+    for name in scene.quantities:
+        exact = analytic.Model(surface, grading=grading, n_asperities=n, count=scene.count).cumulants(name, h)
+        mean.append(exact.mean)
+        variance.append(exact.variance)
+        kurtosis.append(exact.excess_kurtosis)
+    mean, variance, kurtosis = (np.concatenate(part) for part in (mean, variance, kurtosis))
+    exact = analytic.Model(surface, grading=grading, n_asperities=n, count=scene.count).covariance(
+        scene.quantities, h
+    )
+    exact = exact.reshape(mean.size, mean.size) / np.sqrt(np.outer(variance, variance))
+
+    values = np.concatenate([ensemble.values(name).astype(float) for name in scene.quantities], axis=1)
+    standard = (values - mean) / np.sqrt(variance)
+    m = len(values)
+    z_mean = standard.mean(axis=0) * np.sqrt(m)
+    z_variance = ((standard**2).mean(axis=0) - 1) / np.sqrt((2 + kurtosis) / m)
+    products = standard[:, :, None] * standard[:, None, :]
+    z_covariance = (products.mean(axis=0) - exact) / (products.std(axis=0) / np.sqrt(m))
+    upper = np.triu_indices(mean.size, 1)
+    return np.abs(z_mean).max(), np.abs(z_variance).max(), np.abs(z_covariance[upper]).max()
+
+
+@pytest.mark.parametrize("count", ["fixed", "poisson"])
+@pytest.mark.parametrize("sampler", [*EXACT, "aggregate"])
+def test_means_variances_covariances(ensembles, sampler, count):
+    assert max(scores(ensembles[sampler, count])) < GATE
+
+
+def test_a_grading_off_by_2_percent_fails(ensembles):
+    assert scores(ensembles["cells", "fixed"], gamma=1.53)[0] > GATE
+
+
+def test_a_poisson_number_for_a_fixed_one_fails(ensembles):
+    ensemble = ensembles["cells", "poisson"]
+    scene = dataclasses.replace(ensemble.scene, count="fixed")
+    assert scores(dataclasses.replace(ensemble, scene=scene))[1] > GATE
+
+
+def by_numpy(ensembles, **flaw):
+    scene = ensembles["direct", "fixed"].scene
+    return Ensemble(scene, "direct", MemoryResults(ensemble_arrays(scene, 5, **flaw)))
+
+
+def test_the_law_by_numpy_alone_passes(ensembles):
+    assert max(scores(by_numpy(ensembles))) < GATE
+
+
+@pytest.mark.parametrize(("flaw", "where"), [
+    ({"exponent": 1.4}, 0),
+    ({"heights": lambda s: s + 0.01}, 0),
+    ({"heights": lambda s: np.minimum(s, 2.5)}, 1),
+])  # fmt: skip
+def test_a_wrong_law_fails(ensembles, flaw, where):
+    """Exponent 1.4 for 3/2, normals biased by 0.01, a tail cut at 2.5 sigma."""
+    assert scores(by_numpy(ensembles, **flaw))[where] > GATE
+
+
+@pytest.mark.parametrize("quantity", ["load", "area", "stiffness"])
+def test_each_value_has_its_exact_law(ensembles, quantity):
+    """Kolmogorov-Smirnov at 1e-7 each; a mean that is off by 0.15 of the spread fails."""
+    for sampler in EXACT:
+        ensemble = ensembles[sampler, "fixed"]
+        for k, h in enumerate(ensemble.separations):
+            law, x = ensemble.scene.theory.distribution(quantity, h), ensemble.values(quantity)[:, k]
+            assert kstest(x, law.cdf).pvalue > 1e-7
+            assert kstest(x + 0.15 * law.std(), law.cdf).pvalue < 1e-7
+
+
+def test_surfaces_are_independent(ensembles):
+    """Correlation of each surface with the next, also across a group of counts."""
+    for sampler in EXACT:
+        load = ensembles[sampler, "fixed"].load[:, 0]
+        load = (load - load.mean()) / load.std()
+        for lag in (1, 2, 32, 64):
+            assert abs((load[lag:] * load[:-lag]).mean()) * np.sqrt(M - lag) < GATE
+    shared = np.repeat(load[: M // 2], 2)  # the companion: pairs of surfaces that share a stream
+    assert abs((shared[1:] * shared[:-1]).mean()) * np.sqrt(M) > GATE
+
+
+@pytest.mark.parametrize("lag", [None, 1, 2, 4, 8, 16, 32, 64])
+def test_the_check_of_independence_sees_every_lag(lag):
+    """By its p-value, below 1e-10 where each surface is correlated by 0.1 with the one a lag before only."""
+    e = np.random.default_rng(4).standard_normal((24, 364, 3))
+    groups = e[:, 64:] if lag is None else (e[:, 64:] + 0.1 * e[:, 64 - lag : -lag]) / np.sqrt(1.01)
+    assert (independence(groups).p < 1e-10) == (lag is not None)
+
+
+def test_skewness(ensembles):
+    scene = ensembles["cells", "fixed"].scene
+    exact = analytic.Model(scene.surface, grading=scene.grading, n_asperities=600).cumulants(
+        "load", scene.separations
+    )
+    for sampler in EXACT:
+        load = ensembles[sampler, "fixed"].load
+        standard = (load - exact.mean) / np.sqrt(exact.variance)
+        cubes = standard**3
+        z = (cubes.mean(axis=0) - exact.skewness) / (cubes.std(axis=0) / np.sqrt(M))
+        assert np.abs(z).max() < GATE
+        z_if_gaussian = cubes.mean(axis=0) / (cubes.std(axis=0) / np.sqrt(M))
+        assert np.abs(z_if_gaussian).max() > GATE

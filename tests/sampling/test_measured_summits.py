@@ -1,0 +1,309 @@
+"""Summits from a file in a scene: literal sums over them, resampled in pairs, and mistakes in files."""
+
+import math
+
+import numpy as np
+import pytest
+from oracles.law_means import own_terms
+from oracles.summits_by_hand import summit_contact
+from scipy.optimize import brentq
+
+import analytic
+import mcgw
+from mcgw.maps.summits import SUMMITS, Summits
+from mcgw.reports.solved_loads import solutions_text
+from mcgw.store import layout
+
+K = 200
+MODULUS = 78.6e9
+QUANTITIES = ("load", "area", "stiffness", "contacts", "conductance")
+SEPARATIONS = (-1.0, 0.0, 0.7, 1.5)
+
+
+def measured(seed=1):
+    """Heights and radii in m; high summits are sharper, as on a map, and two have the same height."""
+    rng = np.random.default_rng(seed)
+    z = rng.normal(size=K) * 1e-6
+    radii = 1e-5 * np.exp(0.4 * rng.normal(size=K) - 0.5 * z / 1e-6)
+    z[7] = z[8]
+    return z - z.mean(), radii
+
+
+Z, RADII = measured()
+
+
+def scene(*, resampled=False, radii=RADII, **changes):
+    """A scene of these summits, from Python."""
+    surface = mcgw.Surface(Z.std(), 1 / np.mean(1 / radii), K / 1e-6, 1e-6, MODULUS)
+    heights = mcgw.MeasuredHeights(Z, resampled=resampled)
+    values = {"separations": SEPARATIONS, "quantities": QUANTITIES, "seed": 1, "n_surfaces": 1}
+    return mcgw.Scene(
+        surface, curvature=mcgw.MeasuredRadii(heights, radii / surface.radius), **(values | changes)
+    )
+
+
+HEAD = '[surface]\nnominal_area = "1 mm^2"\nE_star = "78.6 GPa"\n'
+ASKED = "[contact]\nseparations = [-1.0, 0.0, 0.7, 1.5]\n[ensemble]\nseed = 1\n"
+
+
+@pytest.fixture
+def table(tmp_path):
+    """The summits in a file as `mcgw fit --summits` writes it."""
+    curvatures = np.array([1.25 / RADII, 0.8 / RADII])
+    place = np.linspace(0, 1e-3, K)
+    summits = Summits(place, place, Z, curvatures, np.zeros(K, dtype=np.int64), 0)
+    summits.table().write(tmp_path / "summits.csv", comment=SUMMITS)
+    return tmp_path / "summits.csv"
+
+
+def from_file(table, more=""):
+    return mcgw.scene_from(HEAD + f'[summits]\nfile = "{table.name}"\n{more}' + ASKED, folder=table.parent)
+
+
+def test_file_as_it_is_gives_the_sums_over_its_summits(table):
+    x = from_file(table)
+    assert (x.n_asperities, x.n_surfaces) == (K, 1)
+    assert x.surface.sigma == Z.std()
+    assert x.surface.radius == pytest.approx(1 / np.mean(1 / RADII), rel=1e-14)
+    assert x.surface.eta == K / 1e-6
+    ensemble = mcgw.simulate(x)
+    exact = summit_contact(Z, RADII, MODULUS, np.array(SEPARATIONS) * Z.std())
+    for name in ("load", "area", "stiffness", "contacts"):
+        np.testing.assert_allclose(ensemble[name], getattr(exact, name), rtol=1e-12)
+        np.testing.assert_allclose(x.theory.mean(name, SEPARATIONS), getattr(exact, name)[0], rtol=1e-12)
+    assert mcgw.compare(ensemble).verdict.agrees
+
+
+LAWS = [
+    None, mcgw.KogutEtsion(hardness=1.2e9), mcgw.JacksonGreen(yield_strength=4e8),
+    mcgw.JohnsonKendallRoberts(work=0.05), mcgw.PowerLawGraded(k=0.3, c0=1e-6),
+]  # fmt: skip
+GRADINGS = [None, mcgw.Exponential(1.5), mcgw.Table([-1.0, 0.3, 1.0, 2.2], [0.3, 0.5, 1.4, 1.5])]
+
+
+@pytest.mark.parametrize(("law", "grading"), [
+    (0, 0), (0, 2), (1, 0), (1, 1), (2, 2), (3, 1), (4, 0), (4, 2),
+], ids=lambda number: str(number))  # fmt: skip
+def test_each_summit_has_the_law_of_its_own_radius(law, grading):
+    """Means over surfaces drawn from the list, and their variance, as well: n times those of one summit."""
+    x = scene(law=LAWS[law], grading=GRADINGS[grading])
+    drawn, theory = mcgw.simulate(x), x.theory
+    for name in QUANTITIES:
+        terms = own_terms(x, name, Z / Z.std(), RADII)
+        sums = [math.fsum(row) for row in terms.tolist()]
+        np.testing.assert_allclose(drawn[name][0], sums, rtol=1e-12)
+        np.testing.assert_allclose(theory.mean(name, SEPARATIONS), sums, rtol=1e-12)
+        covariance = K * np.cov(terms, bias=True)
+        found = theory.covariance([name], SEPARATIONS)[0, :, 0]
+        np.testing.assert_allclose(found, covariance, rtol=1e-10, atol=1e-12 * np.diag(covariance).max())
+
+
+@pytest.mark.parametrize(("law", "surfaces"), [
+    (None, 2000), (mcgw.KogutEtsion(hardness=1.2e9), 200),
+], ids=("hertz", "kogut-etsion"))  # fmt: skip
+def test_resampled_means_and_variances_are_exact(law, surfaces):
+    """|z| < 5 of 16 means and 16 variances each: a false alarm in 50 000."""
+    x = scene(resampled=True, law=law, n_surfaces=surfaces, count="fixed", quantities=QUANTITIES[:4])
+    ensemble, m = mcgw.simulate(x), x.n_surfaces
+    assert ensemble.sampler == "direct"
+    for name in x.quantities:
+        for k, terms in enumerate(own_terms(x, name, Z / Z.std(), RADII)):
+            mean, variance = K * terms.mean(), K * terms.var()
+            fourth = K * (np.mean((terms - terms.mean()) ** 4) - 3 * terms.var() ** 2) + 3 * variance**2
+            assert abs(ensemble[name][:, k].mean() - mean) < 5 * math.sqrt(variance / m), (name, k)
+            spread = math.sqrt((fourth - variance**2) / m)
+            assert abs(ensemble[name][:, k].var() - variance) < 5 * spread, (name, k)
+    assert mcgw.compare(ensemble).verdict.agrees
+
+
+def test_what_is_drawn_are_pairs():
+    heights = mcgw.MeasuredHeights(Z, resampled=True)
+    law = mcgw.MeasuredRadii(heights, RADII)
+    s, ratios = law.summits(np.random.default_rng(1), 20_000)
+    known = set(zip(heights.heights, law.ratios, strict=True))
+    assert (
+        set(zip(s.tolist(), ratios.tolist(), strict=True)) == known
+    )  # each of 200: one is missed in 1 of 10^41
+    assert {ratio for height, ratio in known if height == heights.heights[7]} == {RADII[7], RADII[8]}
+
+
+@pytest.mark.parametrize("law", [None, mcgw.KogutEtsion(hardness=1.2e9)], ids=("hertz", "kogut-etsion"))
+def test_slopes_inverses_and_shares(law):
+    theory, h = scene(law=law).theory, 0.7123
+    for name in ("load", "area"):
+        step = 1e-6
+        rise = (theory.mean(name, h - step) - theory.mean(name, h + step)) / (2 * step)
+        assert theory.slope(name, h) == pytest.approx(rise, rel=1e-6)
+        assert theory.separation_at(name, theory.mean(name, h)) == pytest.approx(h, abs=1e-12)
+    yielded = 0.0 if law is None else theory.mean("yielded", h) / theory.mean("contacts", h)
+    assert theory.share(0, h) == pytest.approx(1 - yielded, rel=1e-12)
+
+
+def test_a_scene_reads_the_same_again(table):
+    for resample in ("", "resample = true\n"):
+        x = from_file(table, resample)
+        assert mcgw.scene_from(mcgw.scene_text(x)) == x
+        beside = mcgw.scene_text(x, heights_file=table.name)
+        assert mcgw.scene_from(beside, folder=table.parent) == x
+        assert len(beside) < 2000
+    with_lists = HEAD + f"[summits]\nheights = {Z.tolist()}\nradii = {RADII.tolist()}\n" + ASKED
+    found = mcgw.scene_from(with_lists)
+    assert found.heights == from_file(table).heights
+    assert found.curvature.ratios == pytest.approx(RADII * np.mean(1 / RADII), rel=1e-14)
+
+
+def test_a_stored_ensemble_has_its_scene(table, tmp_path):
+    ensemble = mcgw.run(from_file(table, "resample = true\n"), tmp_path / "a.h5")
+    again = mcgw.open_ensemble(tmp_path / "a.h5")
+    assert again.scene == ensemble.scene
+    np.testing.assert_array_equal(again.load, ensemble.load)
+
+
+def test_what_the_surface_gives_is_used(table):
+    x = mcgw.scene_from(
+        HEAD + f'sigma = "2 um"\nradius = "20 um"\n[summits]\nfile = "{table.name}"\n' + ASKED,
+        folder=table.parent,
+    )
+    assert (x.surface.sigma, x.surface.radius) == (2e-6, 2e-5)
+    exact = summit_contact(Z * (2e-6 / Z.std()), RADII, MODULUS, np.array(SEPARATIONS) * 2e-6)
+    np.testing.assert_allclose(mcgw.simulate(x).load, exact.load, rtol=1e-12)
+
+
+PAIR = "heights = [1e-6, 2e-6, 4e-6]\nradii = [1e-5, 2e-5, 1e-5]\n"
+
+
+@pytest.mark.parametrize(("head", "summits", "ensemble", "says"), [
+    (HEAD, "heights = [1e-6, 2e-6]\nradii = [1e-5]", "", "2 heights and 1 radii"),
+    (HEAD, "heights = [1e-6, nan]\nradii = [1e-5, 1e-5]", "", "finite numbers; value 2 is nan"),
+    (HEAD, "heights = [1e-6, 2e-6]\nradii = [1e-5, -1e-5]", "", "finite numbers > 0; value 2 is -1e-05"),
+    (HEAD, "heights = [1e-6, 2e-6]\nradii = [1e-5, inf]", "", "finite numbers > 0; value 2 is inf"),
+    (HEAD, "heights = [1e-6, 1e-6]\nradii = [1e-5, 1e-5]", "", "all equal"),
+    (HEAD, "heights = ['a', 1e-6]\nradii = [1e-5, 1e-5]", "", "summits.heights"),
+    (HEAD, "heights = [1e-6, 2e-6]", "", "give radii or ratios too"),
+    (HEAD, "resample = true", "", "give heights or file too"),
+    (HEAD, PAIR + "ratios = [1, 2, 1]", "", "give it or ratios, not both"),
+    (HEAD, PAIR + "file = 'a.csv'", "", "not both"),
+    (HEAD, "file = 'no.csv'", "", "No such file"),
+    (HEAD, PAIR + "resample = 1.5", "", "give true or false"),
+    (HEAD, PAIR + "curvature = 'random'", "", "give it or curvature, not both"),
+    (HEAD, PAIR + "largest_radius = 1", "", "give it or largest_radius, not both"),
+    (HEAD, PAIR + "tiles = 4", "", "unknown key"),
+    (HEAD, PAIR + "[heights]\nlaw = 'nayak'\nalpha = 5.0", "", "leave [heights] out"),
+    (HEAD + "m0 = 1e-12\nm2 = 1e-3\nm4 = 5e6\n", PAIR, "", "surface.m0"),
+    (HEAD.replace("nominal_area", "area"), PAIR, "", "surface.nominal_area: missing"),
+    (HEAD, PAIR, "sampler = 'cells'", 'use "direct"'),
+    (HEAD, PAIR, "n_surfaces = 5", "resample = true under [summits]"),
+    (HEAD, PAIR, "n_asperities = 5", "summits.resample = true"),
+    (HEAD, PAIR + "resample = true", "sampler = 'aggregate'", 'use "direct"'),
+])  # fmt: skip
+def test_bad_input_gets_one_line(head, summits, ensemble, says, tmp_path):
+    text = head + f"[summits]\n{summits}\n[contact]\nseparations = [0.0]\n[ensemble]\n{ensemble}\n"
+    with pytest.raises(mcgw.SceneError) as caught:
+        mcgw.scene_from(text, folder=tmp_path)
+    problems = [line for line in caught.value.problems if "surface.area" not in line]
+    assert len(problems) == 1, problems
+    assert says in problems[0]
+
+
+@pytest.mark.parametrize(("content", "says"), [
+    ("height\n1e-6\n2e-6\n", "no column radius"),
+    ("x,y\n1e-6,1\n", "no column height and no column radius"),
+    ("height,radius\n1e-6,1e-5\n2e-6,flat\n", "summit 2 has no number"),
+    ("height,radius\n1e-6,1e-5\n2e-6\n", "summit 2 has no number"),
+    ("height,radius\n1e-6,1e-5\nnan,1e-5\n", "height of summit 2 is nan"),
+    ("# nothing\n", "no column"),
+    ("height,radius\n", "two or more"),
+])  # fmt: skip
+def test_bad_files_get_one_line(content, says, tmp_path):
+    (tmp_path / "s.csv").write_text(content)
+    with pytest.raises(mcgw.SceneError) as caught:
+        from_file(tmp_path / "s.csv")
+    assert len(caught.value.problems) == 1, caught.value.problems
+    assert says in caught.value.problems[0]
+
+
+def test_of_a_list_there_is_nothing_to_trade_off():
+    with pytest.raises(ValueError, match="no other method"):
+        mcgw.tradeoff(scene(resampled=True))
+
+
+@pytest.mark.parametrize("own", [True, False])
+def test_a_load_on_the_very_summits(own):
+    """Against a root of plain sums over the list; specimens are lists resampled from it, and scatter so."""
+    x = scene() if own else scene().replace(curvature="mean")
+    s, r = np.array(x.heights.heights), np.array(x.curvature.ratios if own else np.ones(len(Z)))
+    unit = 4 / 3 * x.surface.E_star * x.surface.radius**0.5 * x.surface.sigma**1.5
+
+    def load(h, s=s, r=r):
+        return unit * np.sum(np.sqrt(r) * np.maximum(s - h, 0) ** 1.5)
+
+    def separation(which):
+        return brentq(lambda h: load(h, s[which], r[which]) - wished, -9, s.max())
+
+    wished = load(0.5)
+    found = mcgw.solve(x, load=wished)
+    assert found.theory["separation"] == pytest.approx(0.5, rel=1e-12)
+    assert found.theory["area"] == pytest.approx(
+        float(mcgw.simulate(x.replace(separations=[0.5])).area[0, 0])
+    )
+    for k in (0, 7):
+        h = found.surfaces["separation"][k]
+        own_radii = found.radii(k) / x.surface.radius
+        assert {*zip(found.heights(k), own_radii.round(9), strict=True)} <= {*zip(s, r.round(9), strict=True)}
+        assert load(h, found.heights(k), own_radii) == pytest.approx(wished, rel=1e-10)
+    rng = np.random.default_rng(1)
+    by_hand = [separation(rng.integers(0, s.size, s.size)) for _ in range(200)]
+    # Two samples of 200: means within 4.5 standard errors but in 7 of 1e6, deviations in 30 % but in 1e-4.
+    apart = found.surfaces["separation"].mean() - np.mean(by_hand)
+    assert abs(apart) < 4.5 * np.std(by_hand) * np.sqrt(2 / 200)
+    assert np.log(found.surfaces["separation"].std() / np.std(by_hand)) == pytest.approx(0, abs=0.3)
+    assert "200 surfaces of 200 asperities, drawn from the measured summits" in str(found)
+    told = solutions_text(x, [found], full=True)
+    assert "200 surfaces of 200 asperities, drawn from the measured ones" in told
+
+
+def test_radii_of_other_heights_are_refused():
+    radii = mcgw.MeasuredRadii(mcgw.MeasuredHeights(Z), RADII)
+    with pytest.raises(mcgw.SceneError, match="differ from those of the measured summits"):
+        scene().replace(heights=mcgw.MeasuredHeights(-Z))
+    with pytest.raises(ValueError, match="their own heights"):
+        analytic.Model(scene().surface, curvature=radii)
+    with pytest.raises(mcgw.SceneError, match="HeightTable"):
+        scene().replace(heights=mcgw.MeasuredHeights(Z, resampled=True), curvature=None)
+    for ratios, says in (([1.0], "1 for 200"), (np.where(Z > 0, 1.0, np.nan), "is nan")):
+        with pytest.raises(ValueError, match=says):
+            mcgw.MeasuredRadii(mcgw.MeasuredHeights(Z), ratios)
+
+
+def test_more_summits_than_a_file_can_tell_are_refused_before_anything_is_drawn(tmp_path, monkeypatch):
+    """A file whose scene is longer would not be opened again."""
+    x, path = scene(resampled=True, n_surfaces=2), tmp_path / "a.h5"
+    monkeypatch.setattr(layout, "MOST_TEXT", 5000)
+    for write in (lambda: mcgw.run(x, path), lambda: mcgw.save(mcgw.simulate(x), path)):
+        with pytest.raises(mcgw.StoreError, match="list fewer summits"):
+            write()
+
+
+def test_a_film_on_summits_of_their_own_radii_that_yield():
+    """Conductances summed by hand, spot by spot, and their slope by differences: some elastic, some not."""
+    heights, ratios = np.array([-1.7, -0.3, 0.7, 1.3]), np.array([0.5, 2.0, 0.8, 1.5])
+    heights /= heights.std()  # their mean is 0 as it is
+    surface = mcgw.Surface("1 um", "10 um", 4e6, 1e-6, MODULUS)
+    film, critical = mcgw.Film(resistivity=1e-7, film_resistance=1e-13), 0.4
+    model = analytic.Model(
+        surface, heights=mcgw.MeasuredHeights(heights), law=mcgw.KogutEtsion(critical=critical), film=film,
+        curvature=mcgw.MeasuredRadii(mcgw.MeasuredHeights(heights), ratios),
+    )  # fmt: skip
+
+    def by_hand(h):
+        depth, own = np.maximum(heights - h, 0), critical * ratios  # a softer spot yields deeper
+        u = depth / own
+        area = own * np.select([u < 1, u < 6], [u, 0.93 * u**1.136], 0.94 * u**1.146)
+        a = np.sqrt(area * ratios * surface.radius * surface.sigma)[depth > 0]
+        spots = 1 / (film.rho / (4 * a) + film.film_resistance / (np.pi * a**2))
+        return spots.sum()
+
+    h = -0.9
+    assert model.mean("conductance_si", h) == pytest.approx(by_hand(h), rel=1e-9)
+    slope = (by_hand(h - 1e-5) - by_hand(h + 1e-5)) / 2e-5
+    assert abs(model.slope("conductance_si", h)) == pytest.approx(abs(slope), rel=1e-6)

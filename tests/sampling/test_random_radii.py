@@ -1,0 +1,322 @@
+"""Summits with radii of their own: drawn sums against literal ones, the law of the radii, every crossing."""
+
+import math
+
+import numpy as np
+import pytest
+from oracles.law_means import own_terms
+from scipy import stats
+
+import analytic
+import mcgw
+from analytic.summits import rule_of_radii, rules_of_radii
+from mcgw.ensemble import solution
+from mcgw.sampling.asperities import summits, summits_drawn
+from mcgw.sampling.own_radii import radius_table
+from mcgw.sampling.samplers import sampler_of
+
+ALPHAS = (1.55, 2.0, 5.0, 50.0)
+POWERS = {"load": 0.5, "area": 1.0, "stiffness": 0.5, "conductance": 0.5, "contacts": 0.0}
+
+
+def spectral(alpha=5.0, **changes):
+    """A scene of a surface with this bandwidth."""
+    moments = analytic.SpectralMoments(1e-12, 1e-3, alpha * 1e-6 / 1e-12)
+    surface = mcgw.SpectralSurface(moments.m0, moments.m2, moments.m4, 1e-6, 78.6e9)
+    values = {
+        "separations": np.linspace(0, 4, 9), "n_asperities": 20_000, "n_surfaces": 20, "seed": 1,
+        "quantities": tuple(POWERS),
+    }  # fmt: skip
+    return mcgw.Scene(surface, **(values | changes))
+
+
+def literal(scene, s, radii):
+    """Hertz's formulas, summit by summit, exactly rounded."""
+    x, found = scene.surface, {}
+    e = scene.modulus(s)
+    for name in scene.quantities:
+        column = []
+        for h in scene.separations:
+            d = x.sigma * np.maximum(s - h, 0)
+            terms = {
+                "load": 4 / 3 * x.E_star * e * np.sqrt(radii) * d**1.5,
+                "area": math.pi * radii * d,
+                "stiffness": 2 * x.E_star * e * np.sqrt(radii * d),
+                "conductance": 4 * np.sqrt(radii * d),
+                "contacts": d > 0,
+            }[name]
+            column.append(math.fsum(terms.tolist()))
+        found[name] = np.array(column)
+    return found
+
+
+def worst(scene, sampler, surface):
+    s, ratios = summits_drawn(scene, sampler, surface)
+    exact, drawn = literal(scene, s, scene.surface.radius * ratios), sampler.block(surface, 1).sums
+    errors = []
+    for name, values in exact.items():
+        np.testing.assert_array_equal(drawn[name][0][values == 0], 0)
+        reached = values > 0
+        errors.append(np.abs(drawn[name][0][reached] / values[reached] - 1).max(initial=0))
+    return max(errors)
+
+
+@pytest.mark.parametrize(
+    ("sampler", "alpha"), [*(("cells", alpha) for alpha in ALPHAS), ("tail", 1.55), ("tail", 5.0)]
+)
+def test_sums_are_those_of_the_very_summits(sampler, alpha):
+    scene = spectral(alpha, sampler=sampler, separations=[-1.0, 0.0, 0.3, 1.0, 2.5])
+    made = sampler_of(scene)
+    assert max(worst(scene, made, surface) for surface in range(3)) < 1e-12
+
+
+@pytest.mark.parametrize("changes", [
+    {"grading": analytic.Exponential(2.0)},
+    {"grading": analytic.Table([-1.0, 0.3, 1.0, 2.2], [0.3, 0.5, 1.4, 1.5])},
+    {"grading": lambda s: 1 + 0.3 * np.tanh(s)},
+    {"n_asperities": 2},
+    {"n_asperities": 400_000, "separations": (1.0,)},
+    {"count": "poisson"},
+    {"seed": 2**64 - 1},
+    {"separations": np.linspace(0, 4, 41)},
+    {"separations": (1.0, 1.0 + 1e-9, 1.5)},
+    {"curvature": analytic.RandomCurvature(5.0, 2.0)},
+    {"quantities": ("contacts",)},
+    {"quantities": ("contacts", "area", "load")},
+], ids=lambda changes: ", ".join(changes))  # fmt: skip
+def test_crossings(changes):
+    scene = spectral(sampler="cells", **changes)
+    made = sampler_of(scene)
+    assert max(worst(scene, made, surface) for surface in range(2)) < 1e-12
+
+
+@pytest.mark.parametrize("alpha", ALPHAS)
+def test_table_is_the_inverse_of_the_law(alpha):
+    """Shares of what the table gives, by the law's own distribution function, down to 2^-40 at both ends."""
+    curvature = analytic.RandomCurvature(alpha)
+    table, rng = radius_table(curvature, -3.0), np.random.default_rng(1)
+    s = rng.uniform(-3, 7, 400)
+    p = np.concatenate([rng.uniform(0, 0.5, 200), 2.0 ** rng.uniform(-40, -1, 200)])
+    for side, of in ((-1, curvature.cdf), (1, curvature.sf)):
+        x = 1 - 2 * p
+        coarse = side * ((np.floor(np.abs(x) * 2**31) + 0.5) * 2.0**-31)  # as 32 bits give it
+        fine = ((1 - np.abs(coarse)) / 2 - p) * -(2.0**33)
+        g = (8 / math.sqrt(3 * math.pi)) / table.root_ratios(s, coarse, fine) ** 2
+        np.testing.assert_allclose(of(g, s), p, rtol=2e-5, atol=0)
+        np.testing.assert_allclose(of(g, s), p, rtol=0, atol=1e-6 if alpha < 2 else 3e-8)
+
+
+def test_radii_and_heights_have_the_joint_law():
+    """Kolmogorov and Smirnov, against summits made of four Gaussians; of nine tests, alarm at 1e-4 each."""
+    alpha, n = 2.0, 60_000
+    scene = spectral(alpha, sampler="cells", separations=(-0.5,), n_asperities=n, n_surfaces=2)
+    sampler = sampler_of(scene)
+    s, c = (
+        np.concatenate(part) for part in zip(*(summits_drawn(scene, sampler, i) for i in (0, 1)), strict=True)
+    )
+    rng = np.random.default_rng(5)
+    rho = math.sqrt(1.5 / alpha)
+    zeta, xi = rng.normal(size=(2, 2, 1_500_000))  # of curvatures; of what is left of the height
+    mean = rng.normal(size=1_500_000) * math.sqrt(2)  # T/q, of variance 2
+    deviator = np.hypot(*zeta)
+    det = mean**2 - deviator**2
+    keep = (mean > 0) & (det > 0) & (rng.random(1_500_000) * 25 < det)
+    heights = rho * mean / math.sqrt(2) + math.sqrt(1 - rho**2) * xi[0]
+    law = analytic.Nayak(alpha)
+    theirs = (heights[keep] - law.mean) / law.std, 8 / math.sqrt(3 * math.pi) / np.sqrt(det[keep])
+    touching = theirs[0] > -0.5
+    theirs = [part[touching] for part in theirs]
+    for low, high in ((-0.5, 10), (-0.5, 0.3), (1.2, 10)):
+        mine, other = ((a > low) & (a < high) for a in (s, theirs[0]))
+        for ours, theirs_too in ((s, theirs[0]), (c, theirs[1]), (c * s, theirs[1] * theirs[0])):
+            assert stats.ks_2samp(ours[mine], theirs_too[other]).pvalue > 1e-4
+    assert (
+        stats.ks_2samp(rng.permutation(c) * s, theirs[1] * theirs[0]).pvalue < 1e-6
+    )  # were they independent
+
+
+def test_the_same_bits_in_any_block_and_on_any_number_of_threads():
+    import numba
+
+    scene = spectral(sampler="cells", n_asperities=300_000, separations=(0.0, 1.0))
+    sampler = sampler_of(scene)
+    whole = sampler.block(0, 4)
+    parts = [sampler.block(0, 1), sampler.block(1, 3)]
+    before = numba.get_num_threads()
+    try:
+        numba.set_num_threads(1)
+        alone = sampler.block(0, 4)
+    finally:
+        numba.set_num_threads(before)
+    for name, values in whole.sums.items():
+        np.testing.assert_array_equal(values, alone.sums[name])
+        np.testing.assert_array_equal(values, np.concatenate([part.sums[name] for part in parts]))
+
+
+@pytest.fixture(scope="module")
+def theory():
+    """Mean and standard deviation of every value of a scene."""
+    scene = spectral(2.0, n_asperities=2000, separations=(0.0, 1.5))
+    return scene, {
+        name: (scene.theory.mean(name, scene.separations), scene.theory.std(name, scene.separations))
+        for name in scene.quantities
+    }
+
+
+@pytest.mark.parametrize("sampler", ["cells", "tail", "direct"])
+def test_means_are_those_of_theory(theory, sampler):
+    """|z| < 5 by the exact variance, which exists though the kurtosis of the area does not."""
+    scene, exact = theory
+    ensemble = mcgw.simulate(scene.replace(sampler=sampler, n_surfaces=400))
+    for name, (mean, std) in exact.items():
+        assert (np.abs(ensemble[name].mean(axis=0) - mean) < 5 * std / 20).all(), name
+
+
+LAWS = [
+    mcgw.KogutEtsion(hardness=1.2e9), mcgw.JacksonGreen(yield_strength=4e8),
+    mcgw.JohnsonKendallRoberts(work=0.05), mcgw.PowerLawGraded(k=0.3, c0=1e-6),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
+def test_each_summit_has_the_law_of_its_own_radius(law):
+    scene = spectral(
+        law=law, n_asperities=150, separations=(-0.5, 1.0), grading=analytic.Exponential(0.5),
+        quantities=("load", "area", "stiffness", "contacts"),
+    )  # fmt: skip
+    sampler = sampler_of(scene)
+    assert sampler.name == "tail"
+    drawn = sampler.block(0, 1).sums
+    s, ratios = summits_drawn(scene, sampler, 0)
+    for name in scene.quantities:
+        sums = own_terms(scene, name, s, scene.surface.radius * ratios).sum(axis=1)
+        np.testing.assert_allclose(drawn[name][0], sums, rtol=1e-12)
+
+
+def test_a_comparison_asks_once_for_each_rule_over_heights_and_radii(monkeypatch):
+    """Once for those of one separation each, and once for that of all of them together."""
+    made = []
+    for build in (rule_of_radii, rules_of_radii):
+        name = f"analytic.summits.{build.__name__}"
+        monkeypatch.setattr(name, lambda *asked, build=build: made.append(build.__name__) or build(*asked))
+    scene = spectral(law=LAWS[0], n_asperities=1000, separations=(0.0, 1.0), quantities=("load", "area"))
+    assert mcgw.compare(mcgw.simulate(scene)).verdict.agrees
+    assert sorted(made) == ["rule_of_radii", "rules_of_radii"]
+
+
+def test_all_summits_of_a_surface():
+    scene = spectral(sampler="cells", n_asperities=5000)
+    s, ratios = summits(scene, 0)
+    touching = mcgw.radii(scene, 0)
+    assert s.size == ratios.size == 5000
+    np.testing.assert_allclose(scene.surface.radius * ratios[: touching.size], touching, rtol=1e-15)
+    assert stats.kstest(s, lambda x: analytic.Nayak(5.0).cdf(x)).pvalue > 1e-4
+    assert np.mean(1 / ratios) == pytest.approx(2.34902690068464 / 2.60588006348224, abs=0.02)
+
+
+def test_file_keys():
+    text = """
+    [surface]
+    m0 = "1 um^2"
+    m2 = 1e-3
+    m4 = 5e6
+    nominal_area = "1 mm^2"
+    E_star = "78.6 GPa"
+    [contact]
+    separations = [0.0, 1.0]
+    """.replace('"1 um^2"', "1e-12")
+    scene = mcgw.scene_from(text)
+    assert scene.heights == analytic.Nayak(5.0)
+    assert scene.curvature == analytic.RandomCurvature(5.0)
+    again = mcgw.scene_from(mcgw.scene_text(scene))
+    assert again == scene
+    mean = mcgw.scene_from(text + '[summits]\ncurvature = "mean"\n')
+    assert mean.curvature is None
+    assert mean.heights == scene.heights
+    bound = mcgw.scene_from(text + '[summits]\nlargest_radius = "1 mm"\n')
+    assert bound.curvature.largest == pytest.approx(1e-3 / scene.surface.radius)
+    assert mcgw.scene_from(mcgw.scene_text(bound)) == bound
+    surface = mcgw.scene_from(text + 'datum = "surface"\n')
+    shift = 4 / math.sqrt(5 * math.pi) / math.sqrt(1 - 0.8968057562340189 / 5)
+    np.testing.assert_allclose(surface.separations, (-shift, 1 - shift), rtol=1e-12)
+    assert mcgw.scene_from(mcgw.scene_text(surface)) == surface
+
+
+AT_1 = "[contact]\nseparations = 1\n"
+HEAD = '[surface]\nnominal_area = "1 mm^2"\nE_star = "78.6 GPa"\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        (HEAD + "m0 = 1e-12\nm2 = 1e-3\nm4 = 1e6\n" + AT_1, "alpha"),
+        (HEAD + "m0 = 1e-12\nm2 = 1e-3\n" + AT_1, "m4: missing"),
+        (HEAD + "m0 = 1e-12\nm2 = 1e-3\nm4 = 5e6\nradius = 1\n" + AT_1, "m0 = 1e-12: give it or radius"),
+        (HEAD + "m0 = 1e-12\nm2 = 1e-3\nm4 = 5e6\n" + AT_1 + "[ensemble]\nsampler='aggregate'\n",
+         "aggregate"),
+        (HEAD + "m0 = 1e-12\nm2 = 1e-3\nm4 = 5e6\n[heights]\nlaw = 'gaussian'\n" + AT_1,
+         "nayak"),
+        (HEAD + "sigma = 1e-6\nradius = 1e-5\neta = 1e9\n" + AT_1 + "datum = 'surface'\n", "datum"),
+        (HEAD + "sigma = 1e-6\nradius = 1e-5\neta = 1e9\n" + AT_1 + "[summits]\ncurvature='random'\n",
+         "nayak"),
+        (HEAD + "sigma = 1e-6\nradius = 1e-5\neta = 1e9\n" + AT_1 + "[summits]\nlargest_radius = 1\n",
+         "largest_radius"),
+        (HEAD + "m0 = 1e-12\nm2 = 1e-3\nm4 = 5e6\n" + AT_1 + "law = 'kogut-etsion'\n"
+         "hardness = 1e9\n[ensemble]\nsampler = 'cells'\n", "tail"),
+    ],
+    ids=["alpha", "m4", "radius", "aggregate", "gaussian", "datum", "curvature", "largest", "metal"],
+)  # fmt: skip
+def test_what_does_not_go_together_gets_one_line(text, says):
+    with pytest.raises(mcgw.SceneError) as caught:
+        mcgw.scene_from(text)
+    assert len(caught.value.problems) == 1, caught.value.problems
+    assert says in caught.value.problems[0]
+
+
+def test_a_wrong_area_is_seen_though_its_kurtosis_is_infinite(monkeypatch):
+    """The verdict holds areas to theory: were each summit 5 % too large, it would say so."""
+    from mcgw.statistics.verdict import verdict
+
+    scene = spectral(n_surfaces=400, n_asperities=5000, sampler="cells", separations=(0.0, 1.0, 2.0))
+    ensemble = mcgw.simulate(scene)
+    assert np.isinf(scene.theory.cumulants("area", 1.0).excess_kurtosis)
+    found = verdict(ensemble)
+    assert found.agrees
+    assert found.degrees > len(scene.separations) * 2
+    plain = type(ensemble).mean
+
+    def wrong(self, quantity):
+        return plain(self, quantity) * (1.05 if quantity == "area" else 1.0)
+
+    monkeypatch.setattr(type(ensemble), "mean", wrong)
+    assert not verdict(ensemble).agrees
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        mcgw.Hertz(),
+        pytest.param(mcgw.KogutEtsion(hardness=1.2e9), marks=pytest.mark.slow),
+    ],  # its theory: 20 s
+    ids=lambda law: law.name,
+)
+def test_solved_on_each_surface(law, monkeypatch):
+    """At the separation of each surface measured summits carry the load; also where they yield."""
+    summits_of = []
+
+    def listed(*asked):
+        summits_of.append(summits_drawn(*asked))
+        return summits_of[-1]
+
+    monkeypatch.setattr(solution, "summits_drawn", listed)
+    scene = spectral(law=law, n_asperities=500, n_surfaces=3)
+    found = mcgw.solve(scene, load=2.0)
+    assert scene.theory.mean("load", found.theory["separation"]) == pytest.approx(2.0, rel=1e-9)
+    assert len(summits_of) == 3
+    for surface, h in enumerate(found.surfaces["separation"].tolist()):
+        there, (s, ratios) = scene.replace(separations=(h,), quantities=("load", "area")), summits_of[surface]
+        radii = scene.surface.radius * ratios
+        by_law = {name: own_terms(there, name, s, radii).sum(axis=1) for name in there.quantities}
+        sums = literal(there, s, radii) if law == mcgw.Hertz() else by_law
+        assert sums["load"][0] == pytest.approx(2.0, rel=1e-9)
+        assert found.surfaces["area"][surface] == pytest.approx(sums["area"][0], rel=1e-8)

@@ -1,0 +1,18 @@
+"""Scenes taken at random over all features: drawn and right, or refused when made, with what to do."""
+
+import pytest
+from oracles.random_scenes import judged
+
+# Bins of summits of any radius; balances whose grading was searched for each bound, or slopes asked again.
+ONCE_SLOW = (10250, 10543, 32123)
+
+
+@pytest.mark.parametrize("seed", [*range(20), 10189])
+def test_drawn_and_right_or_refused(seed):
+    assert not judged(seed)["wrong"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seeds", [ONCE_SLOW, *(range(10 * tens, 10 * tens + 10) for tens in range(2, 20))])
+def test_many(seeds):
+    assert not [told for told in map(judged, seeds) if told["wrong"]]

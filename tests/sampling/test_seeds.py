@@ -1,0 +1,82 @@
+"""All 64 bits of a seed, everywhere, and after a smaller seed in the same process."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from oracles.said import call
+
+import mcgw
+from mcgw.errors import StoreError
+from mcgw.figures.compared import Compared
+from mcgw.jobs.running import run
+from mcgw.sampling.asperities import heights
+from mcgw.sampling.samplers import sampler_of
+from mcgw.scene.promises import SAMPLERS
+from mcgw.statistics.convergence import converge
+from mcgw.store import ensembles, place
+
+SMALL, LARGE = 1, [2**63 - 1, 2**63, 2**64 - 1]
+QUICK = (Path(__file__).parents[2] / "runs" / "quick.toml").read_text()
+
+
+@pytest.mark.parametrize("count", ["fixed", "poisson"])
+@pytest.mark.parametrize("sampler", SAMPLERS[1:])
+def test_every_sampler_takes_every_seed(make_scene, sampler, count):
+    """One ensemble each, however large its neighbours."""
+    drawn = [
+        sampler_of(make_scene(sampler=sampler, count=count, seed=seed)).block(0, 3).sums["load"][:, 0]
+        for seed in (SMALL, *LARGE, 2**63 + SMALL, 2**32 + SMALL, SMALL)
+    ]
+    np.testing.assert_array_equal(drawn[0], drawn[-1])
+    assert len(np.unique(drawn)) == 3 * (len(drawn) - 1)
+
+
+@pytest.mark.parametrize("seed", LARGE)
+@pytest.mark.parametrize("sampler", ["cells", "direct"])
+def test_a_file_keeps_the_seed_and_goes_on_with_it(make_scene, tmp_path, sampler, seed):
+    scene = make_scene(sampler=sampler, seed=seed, n_surfaces=3, keep="sums")
+    path, whole = tmp_path / "a.h5", tmp_path / "b.h5"
+    run(make_scene(seed=SMALL, n_surfaces=3), tmp_path / "small.h5")
+    run(scene, path)
+    assert place.recorded_seed(path) == seed == mcgw.open_ensemble(path).scene.seed
+    with h5py.File(path) as file:
+        assert file.attrs["seed"].dtype == np.uint64
+        assert int(file.attrs["seed"]) == seed
+    longer = replace(scene, n_surfaces=6)
+    run(longer, path)
+    run(longer, whole)
+    assert ensembles.read_attributes(path)["digest"] == ensembles.read_attributes(whole)["digest"]
+    with pytest.raises(StoreError, match=r"ensemble\.seed is"):
+        run(replace(longer, seed=seed - 1), path)
+
+
+@pytest.mark.usefixtures("blank_figures")
+def test_commands_take_it(tmp_path):
+    seed = LARGE[-1]
+    text = QUICK.replace("n_surfaces = 200", "n_surfaces = 4").replace("seed = 1", f"seed = {seed}")
+    (tmp_path / "s.toml").write_text(text)
+    lines = ["run s.toml -o e.h5", "show e.h5", "surface s.toml --surface 1 -o m.npy --shape 64",
+             "show --plan s.toml", "compare e.h5"]  # fmt: skip
+    for line in lines:
+        done = call(*line.split(), cwd=tmp_path)
+        assert done.returncode in (0, 1), (line, done.stderr)
+        assert str(seed) in done.stdout + done.stderr or line in lines[3:], line
+        assert "Overflow" not in done.stderr
+
+
+@pytest.mark.parametrize("seed", LARGE[1:])
+def test_heights_figures_and_convergence_take_it(make_scene, seed):
+    scene = make_scene(seed=seed, n_surfaces=64, n_asperities=300, separations=(0.0, 1.0), sampler="cells")
+    touching = heights(scene, 0, untouched=True)
+    assert touching.size == 300
+    assert np.sum(touching > 0) == sampler_of(scene).block(0, 1).sums["contacts"][0, 0]
+    swept = Compared(scene.replace(n_surfaces=20, n_asperities=30_000), swept=True, most_listed=1)
+    assert swept.drawn(2.0).scene.seed == seed
+    assert swept.listed[0].size
+    seen = []
+    converge(scene, lambda x: seen.append(x.seed) or sampler_of(x).block(0, x.n_surfaces).sums, seeds=3)
+    assert {(seed + k) % 2**64 for k in range(3)} <= set(seen)
+    assert all(0 <= value < 2**64 for value in seen)

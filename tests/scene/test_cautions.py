@@ -1,0 +1,383 @@
+"""Notes, cautions and warnings: each on one scene where it must be given, and on its neighbour where not."""
+
+import dataclasses
+import re
+
+import numpy as np
+import pytest
+from conftest import SURFACE
+from oracles import exact
+
+import analytic
+import mcgw
+from mcgw.ensemble.forecast import before
+from mcgw.scene.cautions import cautions
+
+SHALLOW = dataclasses.replace(SURFACE, radius=1e-3, sigma=1e-6)  # summits so blunt that nothing is steep
+METAL = mcgw.KogutEtsion(critical=0.05)
+
+
+def about(lines, words):
+    return [line for line in lines if words in line]
+
+
+def on(law, surface=SHALLOW, **changes):
+    return {"surface": surface, "law": law, "grading": analytic.Homogeneous(), **changes}
+
+
+def told_of(make_scene, law, **changes):
+    return cautions(make_scene(**on(law, **changes)))
+
+
+def steel(strain):
+    return mcgw.JacksonGreen(yield_strength=strain * SHALLOW.E_star)
+
+
+def crowded(h):
+    return {"separations": (h, 1.0), "heights": analytic.ExponentialHeights()}
+
+
+def graded(h, negative):
+    return {"separations": (h,), "negative": negative}
+
+
+def coat(ratio):
+    return on(mcgw.Coated(ratio=ratio, thickness=1e-6))
+
+
+OF_AREA = "3000 asperities, not eta * nominal_area = 30000: loads are for 0.1 of the nominal area"
+# Words, a scene of which they are told in one line, and one beside it of which they are not.
+BESIDE = [
+    ("more than half", crowded(-0.35), crowded(-0.25)),  # their median is ln 2 - 1 = -0.307
+    (OF_AREA, {"n_asperities": 3000}, {"n_asperities": 30_000}),
+    ("set to zero", graded(-0.8, "clip"), graded(-0.6, "clip")),  # gamma = 2: negative below -ln 2 = -0.693
+    ("left negative", graded(-0.8, "allow"), graded(-0.6, "allow")),
+    ("ignores the jumps", on(METAL), on(dataclasses.replace(METAL, bridge="hermite"))),
+    ("ignores the jumps", on(METAL), on(mcgw.ZhaoMaiettaChang(critical=0.05))),
+    ("stiffness is that of initial unloading", on(METAL), on(None)),
+    # S_y/E* from 0.001 to 0.01, contacts up to 0.4 R
+    ("contact.yield_strength", on(steel(2e-2)), on(steel(4e-3))),
+    ("contact.yield_strength", on(steel(5e-4)), on(steel(4e-3))),
+    ("of the summit radius", on(steel(4e-3), dataclasses.replace(SHALLOW, radius=1e-5)), on(steel(4e-3))),
+    ("contact.ratio", coat(0.2), coat(0.5)),
+    ("contact.ratio", coat(4.0), coat(2.9)),
+    ('metals yield much earlier: use contact.law = "kogut-etsion"', {}, {"law": METAL}),  # steep and elastic
+]
+
+
+@pytest.mark.parametrize(("words", "told", "silent"), BESIDE)
+def test_told_here_and_not_beside(make_scene, words, told, silent):
+    assert len(about(cautions(make_scene(**told)), words)) == 1
+    assert not about(cautions(make_scene(**silent)), words)
+
+
+# --- limits -------------------------------------------------------------------------------------------------
+
+
+def falling(h=0.0, **changes):
+    """Exponential heights, of which exp(-h - 1) lie above h, deeper by 1 on average."""
+    plain = {"grading": analytic.Homogeneous(), "surface": SHALLOW, "heights": analytic.ExponentialHeights()}
+    return plain | {"separations": (h,), "n_surfaces": 2} | changes
+
+
+def crowd(f):
+    """3000 summits, a real area of 5 % f: a mean of pi R sigma for each that touches."""
+    area = 3000 * np.pi * SHALLOW.radius * SHALLOW.sigma * np.exp(-1) / (0.05 * f)
+    return falling(surface=dataclasses.replace(SHALLOW, nominal_area=area, eta=3000 / area))
+
+
+def blunt(ratio, depth):
+    """A depth in sigma at which the radius of a contact by Hertz is so much of that of its summit."""
+    return dataclasses.replace(SHALLOW, radius=depth * SHALLOW.sigma / ratio**2)
+
+
+def conducting(gain):
+    """Factor (1 - sqrt(A/A_n))^-1.5 of spots that constrict each other."""
+    share = (1 - gain ** (-2 / 3)) ** 2
+    area = 3000 * np.pi * SHALLOW.radius * SHALLOW.sigma * np.exp(-1) / share
+    surface = dataclasses.replace(SHALLOW, nominal_area=area, eta=3000 / area)
+    return falling(surface=surface, quantities=("load", "conductance"))
+
+
+def filmed(f):
+    """A fifth of the radius sqrt(R sigma) of spots, of bodies that conduct 2 k1 k2/(k1 + k2) = 50."""
+    film = mcgw.Film(conductivities=(30.0, 150.0), film_resistance=f * (SHALLOW.radius * 1e-6) ** 0.5 / 250)
+    return falling(2.0, film=film)
+
+
+def kogut(critical, **changes):
+    return falling(law=mcgw.KogutEtsion(critical=critical), **changes)
+
+
+LIMITS = {
+    "nominal area is in contact": crowd,
+    "more than half": lambda f: falling(-np.log(f / 2 * np.e)),
+    "compressed by more": lambda f: falling(
+        surface=dataclasses.replace(SHALLOW, radius=-np.log(1e-3 * f) * SHALLOW.sigma)
+    ),
+    "too large for Hertz": lambda f: falling(surface=blunt(0.3 * f, np.log(3000) - 1)),
+    "fewer than 30 contacts": lambda f: falling(np.log(3000 / 30 * f) - 1),
+    "not eta * nominal_area": lambda f: falling(n_asperities=round(3e4 * (1 + 0.01 * f))),
+    "Cooper, Mikic and Yovanovich": lambda f: conducting(1 + 0.05 * f),
+    "contact.film_resistance": filmed,
+    "have yielded": lambda f: kogut(-np.log(1e-3 * f)),
+    # of 10 000 equally likely heights more than ten
+    "than 110 critical": lambda f: kogut(-np.log(1e-3 * (1 + f) / 2 * 1.05) / 110),
+    "than 170 critical": lambda f: kogut(-np.log(1e-3 * (1 + f) / 2 * 1.05) / 170, unload_from="loop"),
+    "contact.yield_strength": lambda f: falling(law=steel(1e-2 * f)),
+    "yield_strength over": lambda f: falling(law=steel(1e-3 / f)),
+    "reach 0.4 of the summit": lambda f: falling(
+        surface=blunt(0.4 * f, np.log(1000)), law=mcgw.JacksonGreen(yield_strain=1e-2, critical=100.0)
+    ),
+    "contact.ratio": lambda f: falling(law=mcgw.Coated(ratio=3 * f, thickness=1e-6)),
+    "first-order coating": lambda f: falling(law=mcgw.Coated(ratio=1 / 3 / f, thickness=1e-6)),
+    "Tabor number above 5": lambda f: falling(law=mcgw.JohnsonKendallRoberts(work=work_of(5 / f))),
+    "Tabor number below 0.1": lambda f: falling(law=mcgw.DerjaguinMullerToporov(work=work_of(0.1 * f))),
+}
+
+
+def work_of(tabor):
+    """(R w^2/(E*^2 z0^3))^(1/3) at z0 = 0.3 nm."""
+    return float(np.sqrt((tabor * 3e-10) ** 3 / SHALLOW.radius) * SHALLOW.E_star)
+
+
+@pytest.mark.parametrize("words", LIMITS)
+def test_each_limit_is_met_to_half_a_per_cent(make_scene, words):
+    told, silent = (cautions(make_scene(**LIMITS[words](f))) for f in (1.005, 0.995))
+    assert len(about(told, words)) == 1
+    assert not about(silent, words)
+
+
+@pytest.mark.parametrize("law", [METAL, mcgw.JacksonGreen(critical=0.05, yield_strain=0.004)])
+def test_where_nothing_touches_nothing_is_said_of_contacts(make_scene, law):
+    flat = analytic.HeightTable.of([0.0, 1.0, 2.0, 3.0])
+    told = told_of(make_scene, law, heights=flat, separations=(9.0,), n_asperities=30_000)
+    kinds = [" ".join(line.split()[:4]) for line in told if "stiffness is that of initial" not in line]
+    assert kinds == ["from d/sigma = 9"]  # fewer than 30 contacts
+
+
+def test_a_calm_scene_has_no_caution(make_scene):
+    assert cautions(make_scene(separations=(2.0,), n_asperities=30_000, surface=SHALLOW)) == []
+
+
+@pytest.mark.parametrize(("h", "given"), [(0.0, False), (0.05, False), (-0.05, True), (-2.0, True)])
+def test_more_than_half_of_all_summits_of_a_model_that_was_not_measured(make_scene, h, given):
+    scene = make_scene(separations=(h, 1.0), law=mcgw.Coated(ratio=2.0, thickness=1e-6), negative="clip")
+    assert bool(about(cautions(scene), "more than half")) == given
+    measured = of_alpha(4.0, separations=[-0.05, 1.0])
+    assert measured.validity().measured.any()
+    assert not about(cautions(measured), "more than half")  # the map says how far off it is
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [{"law": mcgw.Coated(ratio=1.0001, thickness=1e-6)}, {"heights": analytic.ExponentialHeights()}],
+)
+def test_a_crowd_that_was_not_measured_up_to_the_last_separation(make_scene, changes):
+    """5 % of the nominal area, by quadrature at each of the separations; a coating changes no area."""
+    surface = dataclasses.replace(SHALLOW, eta=1e8, radius=5e-4)
+    h = (0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0)
+    scene = make_scene(surface=surface, separations=h, n_asperities=10_000, **changes)
+    plain = dataclasses.replace(scene, law=analytic.Hertz())
+    share = exact.mean(plain, "area") / surface.nominal_area
+    assert share[0] > 0.05 > share[-1]
+    (line,) = about(cautions(scene), "nominal area is in contact")
+    assert f"up to d/sigma = {max(x for x, part in zip(h, share, strict=True) if part > 0.05):.3g} " in line
+    assert "load too large if d is that of a rigid punch, too small if it is the mean gap" in line
+    pressed = about(cautions(scene.replace(interaction="body")), "nominal area is in contact")
+    assert "punch" not in pressed[0]
+    sparse = dataclasses.replace(scene, n_asperities=500, n_surfaces=2)
+    assert not about(cautions(sparse), "nominal area is in contact")
+
+
+@pytest.mark.parametrize("heights", [analytic.Gaussian(), analytic.ExponentialHeights()])
+def test_few_contacts_from_the_first_separation_where_they_are(make_scene, heights):
+    h = (3.5, 1.0, 2.0, 3.0, 2.5)
+    scene = make_scene(separations=h, n_asperities=1000, heights=heights, n_surfaces=2)
+    expected = 1000 * exact.share_above(scene, np.array(h))
+    (line,) = about(cautions(scene), "fewer than 30 contacts")
+    assert f"from d/sigma = {min(x for x, n in zip(h, expected, strict=True) if n < 30):.3g} " in line
+    many = dataclasses.replace(scene, separations=(0.0, 0.5))
+    assert not about(cautions(many), "fewer than 30")
+
+
+def test_steep_contacts(make_scene):
+    """sqrt(delta/R) of the highest of 3000 summits, at h = 0: 3.4 sigma."""
+    for ratio, given in ((0.25, False), (0.35, True)):
+        radius = 3.403 * 1e-6 / ratio**2
+        surface = dataclasses.replace(SHALLOW, radius=radius)
+        told = about(cautions(make_scene(surface=surface, separations=(0.0,))), "too large")
+        assert bool(told) == given
+        if given:
+            assert f"contact radii of {ratio:.2f} R " in told[0]
+            assert "(s = 3.4)" in told[0]
+
+
+@pytest.mark.parametrize("heights", [analytic.Gaussian(), analytic.ExponentialHeights()])
+@pytest.mark.parametrize("lowest", [0.0, 1.0, 8.0])
+def test_a_note_where_contacts_are_deeper_than_the_radius(make_scene, heights, lowest):
+    """Given from a share of 1e-3 of the contacts on, which it names; at R <= sigma always."""
+    for depth in (1.0, 2.0, 2.5, 3.0, 4.0, 8.0, 9.0):
+        surface = dataclasses.replace(make_scene().surface, radius=depth * 1.37e-6)
+        scene = make_scene(surface=surface, separations=(lowest + 1, lowest), heights=heights)
+        share = exact.share_above(scene, lowest + depth) / exact.share_above(scene, lowest)
+        told = about(cautions(scene), "compressed by more")
+        assert len(told) == (share > 1e-3 or depth <= 1), depth
+        if told:
+            where = f"surface.radius = {surface.radius:g} m: at d/sigma = {lowest:g}"
+            assert f"{where}, {100 * share:.2g} % of the contacts are" in told[0]
+
+
+def test_the_command_says_the_notes_on_stderr(make_scene, tmp_path, capsys):
+    from mcgw.cli import main
+
+    surface = dataclasses.replace(make_scene().surface, radius=2e-6)
+    calm = make_scene(surface=SHALLOW, separations=(2.0,), n_asperities=30_000)
+    for name, scene in (("deep", make_scene(surface=surface)), ("plain", calm)):
+        (tmp_path / f"{name}.toml").write_text(mcgw.scene_text(scene))
+        assert main(["run", str(tmp_path / f"{name}.toml"), "-o", str(tmp_path / f"{name}.h5")]) == 0
+        err = capsys.readouterr().err
+        assert [line for line in err.splitlines() if "note" in line] == [
+            f"mcgw: note: {x}" for x in cautions(scene)
+        ]
+        assert bool(err) == (name == "deep")
+
+
+def test_what_a_rule_will_not_reach_is_said_before(make_scene):
+    from mcgw.ensemble.forecast import forecast
+
+    scene = make_scene(rel_err=0.01, n_surfaces=1000, separations=(0.0, 3.0), quantities=("load",))
+    found = forecast(scene)
+    needed = found.needed["load"]
+    plain = (1.959963984540054 / 0.01 * exact.std(scene, "load") / exact.mean(scene, "load")) ** 2
+    assert np.all((plain < needed) & (needed < 1.01**2 * plain))  # an end 1 % away, of either of the two
+    assert found.out_of_reach == (("load", 3.0),)
+    line = before(found, 0.25)
+    n = found.surfaces
+    assert line.startswith(f"about {n:.2g} surfaces, {n * 0.25:.2g} s; 1 means need more")
+    assert line.endswith(f"load at d/sigma = 3 needs {needed[1]:.2g}")
+    easy = dataclasses.replace(scene, n_surfaces=10**9)
+    assert ";" not in before(forecast(easy), 0.25)
+
+
+def of_alpha(alpha, **changes):
+    surface = analytic.SpectralMoments(1e-12, 1e-3, 1e6 * alpha).surface(1e-2, 1e9)  # blunt, and many summits
+    return mcgw.Scene(surface, seed=1, **changes)
+
+
+SIZE = re.compile(r"(area|stiffness|load) up to (\d+) % (too small|too large|either way)")
+
+
+def off(scene):
+    """Largest size that the cautions name of each quantity, and the separations where none is above 10 %."""
+    found = {}
+    for line in cautions(scene):
+        for name, size, _ in SIZE.findall(line):
+            found[name] = max(found.get(name, 0), int(size))
+    return found
+
+
+@pytest.mark.parametrize("alpha", [2.0, 3.0, 4.5])
+@pytest.mark.parametrize("heights", ["gaussian", "nayak", "own radii"])
+def test_no_error_above_ten_percent_goes_without_its_size(alpha, heights):
+    """At single separations, each alone: by the errors of the map, rounded up."""
+    seen = set()
+    for h in np.linspace(-0.5, 3, 15):
+        scene = of_alpha(alpha, separations=[h])
+        if heights != "gaussian":
+            curvature = mcgw.RandomCurvature(alpha) if heights == "own radii" else None
+            scene = scene.replace(heights=analytic.Nayak(alpha), curvature=curvature)
+        known, told = scene.validity(), off(scene)
+        for name in ("area", "stiffness", "load"):
+            error = known.error[name][0]
+            assert (name in told) == (error > 0.1), (h, name)
+            if name in told:
+                assert error <= told[name] / 100 <= error + 0.01
+            seen.add(name in told)
+    assert seen == {True, False} or heights != "gaussian"
+
+
+def test_the_direction_of_an_error_and_whose_separation_it_is():
+    """Crowded summits lean on each other: at the mean gap of a cell the right load is larger."""
+    h = [0.5, 3.0]
+    scene = of_alpha(4.5, separations=h)
+    assert scene.validity().bias["load"][0] < -0.1
+    (line,) = about(cautions(scene), "model error")
+    size = re.search(r"load up to (\d+) % too small at that mean gap", line)
+    assert int(size[1]) / 100 == pytest.approx(scene.validity().error["load"][0], abs=0.01)
+    assert line.startswith("d/sigma = 0.5: ")
+    assert "neither interact nor merge" in line
+
+
+def test_loads_above_all_that_were_measured():
+    scene = of_alpha(4.0, separations=[-30.0, -20.0, 0.5])
+    (line,) = about(cautions(scene), "loads heavier than measured")
+    assert line.startswith("d/sigma = -30 to -20: ")
+    assert not about(cautions(scene.replace(separations=[0.5, 6.0])), "loads heavier")
+
+
+def test_who_yields(make_scene):
+    """Beyond the critical penetration: the share above h + 0.05 of that above h."""
+    for critical, given in ((0.05, True), (4.5, False)):
+        law = mcgw.KogutEtsion(critical=critical)
+        told = about(told_of(make_scene, law, separations=(0.5, 1.0)), "have yielded")
+        scene = make_scene(separations=(0.5, 1.0))
+        share = exact.share_above(scene, 0.5 + critical) / exact.share_above(scene, 0.5)
+        assert bool(told) == given == (share > 1e-3)
+        if told:
+            assert float(re.search(r"(\S+) % of", told[0])[1]) / 100 == pytest.approx(share, rel=2e-3)
+            assert "d/sigma = 0.5" in told[0]
+
+
+@pytest.mark.parametrize(
+    ("law", "tabor", "given"),
+    [
+        (mcgw.JohnsonKendallRoberts, 4.9, True), (mcgw.JohnsonKendallRoberts, 5.1, False),
+        (mcgw.DerjaguinMullerToporov, 0.09, False), (mcgw.DerjaguinMullerToporov, 0.11, True),
+    ],
+)  # fmt: skip
+def test_adhesion_by_tabors_number(make_scene, law, tabor, given):
+    """(R w^2/(E*^2 z0^3))^(1/3) at z0 = 0.3 nm, by work of adhesion or by the pull-off that it gives."""
+    work = np.sqrt((tabor * 3e-10) ** 3 / SHALLOW.radius) * SHALLOW.E_star
+    stretch = 0.75 * (np.pi**2 * work**2 * SHALLOW.radius / SHALLOW.E_star**2) ** (1 / 3) / SHALLOW.sigma
+    for constant in ({"work": work}, {"pull_off": stretch}):
+        told = about(told_of(make_scene, law(**constant), separations=(1.0, 2.0)), "Tabor")
+        assert bool(told) == given
+        if told:
+            assert f"it is {tabor:.3g} (Maugis's: {1.157 * tabor:.3g})" in told[0]
+
+
+def test_the_choice_of_the_law_is_worth_ten_percent(make_scene):
+    """Means of physics.md at h = 1 and delta_c = 0.05: CEB .0532829, KE .0534662, ZMC .0487678, Hertz."""
+    (line,) = about(told_of(make_scene, METAL, separations=(0.0, 1.0, 2.0)), "laws differ by")
+    said = {name: float(x) for name, x in re.findall(r"([a-z-]+) ([0-9.]+)(?:,|$)", line.split("sigma: ")[1])}
+    here = 0.05346624148043353
+    known = {"chang-etsion-bogy": 0.05328285176044976, "zhao-maietta-chang": 0.04876778006841703}
+    for name, mean in known.items():
+        assert said[name] == pytest.approx(mean / here, abs=6e-4)
+    assert said["hertz"] == pytest.approx(float(analytic.fn(1.5, 1.0)) / here, abs=6e-3)
+    worth = max(1.0, said["jackson-green"]) / min(x for n, x in said.items() if n != "hertz") - 1
+    assert f"laws differ by {worth:.0%} in load at d/sigma = 1;" in line
+    assert not about(told_of(make_scene, None), "laws differ by")
+    assert not about(told_of(make_scene, mcgw.PowerLawGraded(0.5, c0=1e-6)), "laws differ by")
+
+
+def test_a_loop_that_gains_energy(make_scene):
+    """The share of contacts with a deepest penetration from 1 to 1.25 times 0.05, by the exact law."""
+    (line,) = about(told_of(make_scene, METAL, unload_from="loop", separations=(0.5, 1.0)), "work")
+    scene = make_scene(grading=analytic.Homogeneous(), separations=(0.5, 1.0))
+    share = exact.share_above(scene, 0.55) - exact.share_above(scene, 0.5625)
+    said = float(re.search(r"affects (\S+) % of", line)[1]) / 100
+    assert said == pytest.approx(share / exact.share_above(scene, 0.5), abs=2e-3)
+    assert not about(told_of(make_scene, METAL), "work")
+
+
+@pytest.mark.parametrize(("critical", "given"), [(0.04, 0), (0.02, 1), (0.005, 1), (0.001, 1)])
+def test_contacts_deeper_than_the_fit(make_scene, critical, given):
+    law = mcgw.KogutEtsion(critical=critical)
+    told = about(told_of(make_scene, law, separations=(0.0, 1.0)), "110 critical")
+    scene = make_scene(grading=analytic.Homogeneous())
+    share = exact.share_above(scene, 110 * critical) / exact.share_above(scene, 0.0)
+    assert len(told) == given == (share > 1e-3)
+    if told:
+        assert float(re.search(r"(\S+) % of", told[0])[1]) / 100 == pytest.approx(share, rel=0.05)

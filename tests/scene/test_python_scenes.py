@@ -1,0 +1,212 @@
+"""Gradings and height laws of Python: simulated, stopped, shared, merged, looked at as any others."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import scipy.stats
+from oracles.begun_runs import SIZE, digest, halted, in_small_blocks
+
+import analytic
+import mcgw
+from mcgw.cli import main
+from mcgw.errors import StoreError
+from mcgw.jobs.merging import merge
+from mcgw.jobs.running import run
+from mcgw.scene.scene import storable
+from mcgw.scene.section import SceneError
+
+SURFACES = 60  # in four blocks, the last one short
+H = (2.0, 0.5, 3.0)
+
+
+def bent(s):
+    """A kink that nobody tells of."""
+    return 1 + 0.3 * np.abs(s - 0.777)
+
+
+SCENES = {
+    "lambda": {"grading": lambda s: 1 + 0.3 * np.tanh(s)},
+    "kink": {"grading": bent},
+    "told": {"grading": analytic.Custom(lambda s: np.where(s > 1.1, 2.0, 1.0) + np.abs(s - 0.4), (0.4, 1.1))},
+    "exp(12 s)": {"grading": analytic.Custom(lambda s: np.exp(12 * s), checked=False)},
+    "clip": {"grading": lambda s: s - 0.9, "negative": "clip"},
+    "allow": {"grading": lambda s: np.sin(3 * s), "negative": "allow"},
+    "clipped twice": {"grading": analytic.Clipped(analytic.Custom(lambda s: s - 0.9))},
+    "lognorm": {"heights": scipy.stats.lognorm(0.3)},
+    "genextreme": {"heights": scipy.stats.genextreme(0.1, 5.0, 2.0)},
+    "lambda, lognorm": {"grading": lambda s: 1 + s * s, "heights": scipy.stats.lognorm(0.3)},
+    "kink, weibull": {"grading": bent, "heights": analytic.Weibull(2.0), "count": "poisson"},
+    "direct": {"grading": bent, "sampler": "direct"},
+    "tail": {"grading": bent, "sampler": "tail"},
+    "aggregate": {"grading": bent, "sampler": "aggregate"},
+}
+
+
+@pytest.fixture(autouse=True)
+def _small_blocks(monkeypatch):
+    in_small_blocks(monkeypatch)
+
+
+@pytest.fixture
+def make(make_scene):
+    def of(name="lambda", **changes):
+        values = {
+            "separations": H,
+            "n_surfaces": SURFACES,
+            "sampler": "cells",
+            "grading": analytic.Homogeneous(),
+        }
+        return make_scene(**(values | SCENES[name] | changes))
+
+    return of
+
+
+# --- the same bits, however it is drawn -----------------------------------------------------------------
+
+
+OFTEN = {"lambda", "kink, weibull", "told", "clip", "aggregate"}
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[] if name in OFTEN else pytest.mark.slow) for name in SCENES]
+)
+def test_memory_file_stopped_and_shared_are_one(make, tmp_path, name):
+    """One file in one go; another begun smaller, extended, stopped on the way and finished by shares."""
+    scene, memory = make(name), mcgw.simulate(make(name))
+    whole, path = run(scene, tmp_path / "whole.h5"), tmp_path / "e.h5"
+    run(replace(scene, n_surfaces=20), path)
+    halted(scene, path, 2 * SIZE)
+    for i in (2, 1, 3):
+        run(scene, path, shard=f"{i}/3")
+    merge(path)
+    assert digest(path) == digest(tmp_path / "whole.h5")
+    for quantity in scene.quantities:
+        np.testing.assert_array_equal(whole.values(quantity), memory.values(quantity))
+    assert whole.scene == memory.scene == storable(scene)
+    np.testing.assert_array_equal(mcgw.simulate(whole.scene).load, memory.load)  # of what the file says alone
+
+
+@pytest.mark.parametrize("name", [name for name in SCENES if "grading" in SCENES[name]])
+def test_the_curve_of_the_file_is_that_of_the_function(make, tmp_path, name):
+    scene = make(name)
+    held = run(replace(scene, n_surfaces=1), tmp_path / "e.h5").scene.grading
+    s = np.random.default_rng(1).uniform(scene.lowest, 8, 10_000)
+    s = s[np.min([np.abs(s - k) for k in (0.4, 1.1, 0.777)], axis=0) > 1e-9]
+    exact, slope = scene.grading(s), np.abs(scene.grading(s + 1e-7) - scene.grading(s - 1e-7)) / 2e-7
+    near = np.max([np.abs(scene.grading(s + d)) for d in (-1 / 64, 0, 1 / 64)], axis=0)
+    assert np.all(np.abs(held(s) - exact) <= 1e-13 * near + 4 * np.spacing(s) * slope)
+
+
+@pytest.mark.parametrize("name", ["kink", "exp(12 s)", "told", "clip", "lambda, lognorm"])
+def test_sums_are_those_of_the_function(make, name):
+    """The heights themselves, added up with the function and not with its series."""
+    scene = make(name, n_surfaces=2, count="fixed")
+    drawn = mcgw.simulate(scene)
+    modulus = analytic.Clipped(scene.grading) if scene.negative == "clip" else scene.grading
+    for surface in range(2):
+        s = mcgw.heights(scene, surface)
+        unit = 4 / 3 * scene.surface.E_star * scene.surface.radius**0.5 * scene.surface.sigma**1.5
+        for k, h in enumerate(H):
+            exact = np.sum(modulus(s[s > h]) * (s[s > h] - h) ** 1.5) * unit
+            assert drawn.load[surface, k] == pytest.approx(exact, rel=2e-12)
+
+
+# --- another machine, another function ------------------------------------------------------------------
+
+
+def test_other_last_digits_go_on_and_another_function_does_not(make, tmp_path):
+    """As where another processor evaluates the function: the run keeps the series that it began with."""
+    path = tmp_path / "e.h5"
+    run(make("lambda"), tmp_path / "whole.h5")
+    halted(make("lambda"), path, SIZE)
+
+    def elsewhere(s):
+        return (1 + 0.3 * np.tanh(s)) * (1 + 4e-16 * np.sign(np.sin(1e3 * s)))
+
+    assert storable(make("lambda", grading=elsewhere)).grading != storable(make("lambda")).grading
+    with pytest.raises(StoreError, match=r"holds a different run: grading\.coefficients is "):
+        run(make("lambda", grading=lambda s: 1 + (0.3 + 1e-11) * np.tanh(s)), path)
+    run(make("lambda", grading=elsewhere), path)
+    assert digest(path) == digest(tmp_path / "whole.h5")
+    run(make("lambda", grading=elsewhere, n_surfaces=70), path)
+    with pytest.raises(StoreError, match="holds a different ensemble: grading"):
+        run(make("lambda", grading=np.cosh, n_surfaces=80), path)
+
+
+# --- looked at ------------------------------------------------------------------------------------------
+
+
+def test_a_name_is_shown_and_nothing_else(make, tmp_path, capsys, request):
+    """Whatever stands there: no markup, no formula, no control characters."""
+    run(make("kink", heights=scipy.stats.lognorm(0.3), quantities=("load",)), tmp_path / "k.h5")
+    assert main(["show", str(tmp_path / "k.h5")]) == 0
+    shown = capsys.readouterr().out
+    assert re.search(r"grading +PiecewiseSeries\('bent', \d+ pieces from s = 0.5 to ", shown)
+    assert "scipy.stats.lognorm(s=0.3)" in shown
+    assert main(["compare", str(tmp_path / "k.h5"), "-o", str(tmp_path / "k.svg")]) == 0
+    assert "grading bent" in (tmp_path / "k.svg").read_text()
+    series = replace(storable(make("lambda")).grading, name="<b>$\\frac{1}$\x1b[2J\n__import__('os')")
+    run(make("lambda", grading=series, quantities=("load",)), tmp_path / "e.h5")
+    assert main(["show", str(tmp_path / "e.h5")]) == 0
+    assert "\x1b" not in capsys.readouterr().out
+    assert main(["compare", str(tmp_path / "e.h5"), "-o", str(tmp_path / "e.png")]) == 0
+    request.getfixturevalue("blank_figures")
+    assert main(["report", str(tmp_path / "e.h5"), "-o", str(tmp_path / "e.html")]) == 0
+    page = (tmp_path / "e.html").read_text()
+    assert "<b>$" not in page
+    assert "&lt;b&gt;$" in page
+    assert "\x1b" not in page
+
+
+# --- what is refused ------------------------------------------------------------------------------------
+
+
+def test_noise_is_one_line(make):
+    with pytest.raises(SceneError, match=r"^grading: not resolved by .* pieces near s = [^\n]*$"):
+        make("lambda", grading=lambda s: 1 + 1e-3 * np.modf(np.sin(1e9 * s) * 1e5)[0])
+
+
+def test_series_are_not_taken_where_they_do_not_reach(make):
+    known = storable(make("lambda"))
+    assert replace(known, separations=(1.0, 3.0)).grading == known.grading
+    with pytest.raises(
+        SceneError, match=r"^grading\.edges: the series reach from s = 0\.5 .*give the grading"
+    ):
+        replace(known, separations=(-1.0, 3.0))
+    with pytest.raises(SceneError, match=r"^grading\.edges: "):
+        replace(known, heights=scipy.stats.lognorm(0.9))
+
+
+# --- distributions of scipy -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        scipy.stats.lognorm(0.3),
+        scipy.stats.lognorm(s=0.3),
+        scipy.stats.lognorm(0.3, 2.0, 5.0),
+        scipy.stats.lognorm(0.3, scale=7.0),
+        analytic.ScipyHeights(scipy.stats.lognorm(0.3)),
+    ],
+)
+def test_a_distribution_is_its_shapes(make, given):
+    scene, plain = make("lambda", heights=given), make("lambda", heights=scipy.stats.lognorm(s=0.3))
+    assert scene.heights == plain.heights
+    assert hash(scene.heights) == hash(plain.heights)
+    np.testing.assert_array_equal(mcgw.simulate(scene).load, mcgw.simulate(plain).load)
+    assert mcgw.scene_from(mcgw.scene_text(scene)) == storable(scene)
+    assert 'law = "scipy"\nname = "lognorm"' in mcgw.scene_text(scene)
+
+
+@pytest.mark.usefixtures("looked_at_here")
+def test_a_file_under_another_law_is_not_taken_up(make_scene, tmp_path):
+    """Beside a function, which may differ by last digits from that of the file, a law may not."""
+    scene = make_scene(grading=bent, law=mcgw.KogutEtsion(critical=0.05), n_surfaces=3, separations=(1.0,))
+    held = run(scene, tmp_path / "e.h5")
+    assert run(scene, tmp_path / "e.h5").scene == held.scene
+    for other in (mcgw.KogutEtsion(critical=0.06), analytic.Hertz()):
+        with pytest.raises(StoreError, match="holds a different ensemble: contact"):
+            run(scene.replace(law=other), tmp_path / "e.h5")

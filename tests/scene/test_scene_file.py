@@ -1,0 +1,252 @@
+"""Scenes as TOML: what is read, refused, and reads back the same; what is left out is marked in files."""
+
+import re
+from dataclasses import fields, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from test_scene_keys import text_of
+
+import analytic
+import mcgw
+from mcgw.scene.keys import SURFACE_UNITS
+from mcgw.scene.scene import Scene
+from mcgw.scene.section import SceneError
+
+GOOD = """
+[surface]
+sigma = 1e-6
+radius = 1e-5
+eta = 1e9
+nominal_area = 1e-6
+E_star = 1e11
+[contact]
+separations = [0.0, 2.0]
+[ensemble]
+n_surfaces = 10
+seed = 5
+"""
+
+
+def problems(text):
+    with pytest.raises(SceneError) as caught:
+        mcgw.scene_from(text)
+    return caught.value.problems
+
+
+def test_what_is_left_out_has_its_default():
+    scene = mcgw.scene_from(GOOD)
+    assert scene.grading == analytic.Homogeneous()
+    assert scene.quantities == ("load", "area", "stiffness", "contacts")
+    assert (scene.n_asperities, scene.count, scene.sampler, scene.seed) == (1000, "fixed", "auto", 5)
+
+
+@pytest.mark.parametrize("path", sorted(Path(__file__).parents[2].glob("runs/*.toml")), ids=lambda p: p.name)
+def test_every_scene_of_runs_reads_back_the_same(path):
+    scene = mcgw.load_scene(path)
+    assert scene.title
+    assert mcgw.scene_from(mcgw.scene_text(scene)) == scene
+
+
+def test_a_zero_has_no_sign():
+    """Nor is a scene of such zeros another one."""
+    drawn = {"n_surfaces": 5, "seed": 1}
+    one, other = (Scene(SURFACE, separations=(z, 1.0), edges=(z, 1.5), **drawn) for z in (0.0, -0.0))
+    assert mcgw.scene_text(one) == mcgw.scene_text(other)
+    assert "-0.0" not in mcgw.scene_text(other)
+
+
+def test_a_table_in_the_scene_or_beside_it(tmp_path):
+    inline = GOOD + '[grading]\nlaw = "table"\ns = [-1.0, 1.0]\nratio = [0.5, 2.0]\n'
+    assert mcgw.scene_from(inline).grading == analytic.Table([-1, 1], [0.5, 2])
+    (tmp_path / "indents.csv").write_text("z,E_star\n-1e-6,5e10\n1e-6,2e11\n")
+    scene = tmp_path / "scene.toml"
+    scene.write_text(GOOD + '[grading]\nlaw = "table"\nfile = "indents.csv"\n')
+    assert mcgw.load_scene(scene).grading == analytic.Table([-1, 1], [0.5, 2])
+    assert mcgw.scene_from(mcgw.scene_text(mcgw.load_scene(scene))) == mcgw.load_scene(scene)
+
+
+def changed(old, new):
+    assert old in GOOD
+    return GOOD.replace(old, new)
+
+
+def separations(text):
+    return changed("[0.0, 2.0]", text)
+
+
+def put(section, line):
+    return GOOD.replace(f"[{section}]", f"[{section}]\n{line}")
+
+
+# Text of a scene, and what its error must say: the key, and what would do.
+BAD = [
+    *((separations(f"[0.0, {x}]"), "contact.separations") for x in ("nan", "inf", "-inf", "1e400")),
+    (separations("[]"), "contact.separations = []: give at least one; give a list of finite numbers d/sigma"),
+    (separations('[1.0, "a", true]'), "contact.separations"),
+    (separations("[2026-11-21]"), "contact.separations"),
+    (separations("{start = 0, stop = 4, num = 1000000}"), "at most 100000"),
+    (separations("[1.0, -5e-324]"), "contact.separations: -4.94066e-324 is too close to 0"),
+    (put("ensemble", "n_asperities = 9007199254740993"), "between 1 and 2^53"),
+    (changed("sigma = 1e-6", "sigma = 1e-320"), "beyond double precision"),
+    (changed("sigma = 1e-6", f"sigma = {10**400}"), "surface.sigma"),
+    (changed("sigma = 1e-6", "sigma = 2026-11-21"), "surface.sigma"),
+    (changed("E_star = 1e11", "E_star = 1e308"), "beyond double precision"),
+    (GOOD + '[grading]\nlaw = "table"\ns = [0.0, 9.0]\nratio = [1.0, -1.0]', "negative from s = 4.5"),
+    (GOOD + '[grading]\nlaw = "table"\ns = [1.0, 0.0]\nratio = [1.0, 2.0]', "the heights must increase"),
+    (GOOD + '[grading]\nlaw = "table"\nfile = "absent.csv"',
+     "grading.file = 'absent.csv': give a CSV file, or lists s and ratio; absent.csv: No such file"),
+    (changed("seed = 5", 'sampler = "cell"'), "ensemble.sampler = 'cell': did you mean cells? choose one"),
+    (put("contact", 'quantities = ["lod"]'),
+     "contact.quantities = 'lod': did you mean load? choose one of load, area"),
+    (changed("E_star = 1e11", "bodies = [{E = 70e9}]"), "give two, such as [{E = 70e9, nu = 0.33}"),
+    (changed("radius = 1e-5", ""), "surface.radius: missing; give it in m"),
+    ("", "surface.sigma: missing"),
+    (changed("[contact]", "[contatc]"), "contact.separations: missing"),
+    (put("surface", "sigma = 2e-6"), "not a TOML scene"),
+    (GOOD + "[surface]\n", "not a TOML scene"),
+    (b"\xef\xbb\xbf" + GOOD.encode(), "not a TOML scene"),
+    (GOOD.encode() + b"\0", "not a TOML scene"),
+    (GOOD.encode("utf-16"), "not a TOML scene"),
+    (bytes(range(256)), "not a TOML scene"),
+    (put("ensemble", f"n_asperities = {'9' * 5000}"), "not a TOML scene"),
+    (separations("[" * 5000 + "]" * 5000), "not a TOML scene"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "message"), BAD)
+def test_bad_scenes_are_refused_in_one_line(text, message):
+    found = problems(text)
+    assert any(message in line for line in found), found
+    assert all("\n" not in line and len(line) < 300 for line in found)
+
+
+def test_all_mistakes_at_once():
+    text = changed("sigma = 1e-6", "sigam = 1e-6").replace("seed = 5", "seed = -1\nn_asperities = true")
+    found = {line.split(" = ")[0].split(":")[0] for line in problems(text)}
+    assert found == {"surface.sigma", "surface.sigam", "ensemble.n_asperities", "ensemble.seed"}
+
+
+def test_other_ways_to_write_numbers():
+    text = put("ensemble", "n_asperities = 1_000").replace("seed = 5", "seed = 0x10")
+    scene = mcgw.scene_from(text.replace("\n", "\r\n").encode())
+    assert (scene.n_asperities, scene.seed) == (1000, 16)
+    assert mcgw.scene_from(put("ensemble", "n_asperities = 1e6")).n_asperities == 10**6
+
+
+def test_negative_moduli_are_named_clipped_or_allowed():
+    text = GOOD.replace("[0.0, 2.0]", "[-2.0, 2.0]") + '[grading]\nlaw = "exponential"\ngamma = 2.0\n'
+    (line,) = problems(text)
+    height = re.search(r"negative from s = (-?[\d.]+)", line)
+    assert height
+    assert -2.01 < float(height[1]) < -1.99  # gamma = 2: negative below ln 2, touched from -2 on
+    for word in ("clip", "allow"):
+        scene = mcgw.scene_from(text + f'negative = "{word}"\n')
+        assert (scene.modulus(np.array([-1.0]))[0] < 0) == (word == "allow")
+    (line,) = problems(GOOD + '[grading]\nlaw = "exponential"\ngamma = -0.5\n')
+    assert "negative from s = 1.099" in line  # ln(1 + 1/0.5)
+
+
+def test_files_that_are_none(tmp_path):
+    with pytest.raises(SceneError, match="No such file"):
+        mcgw.load_scene(tmp_path / "absent.toml")
+    with pytest.raises(SceneError, match="not a regular file"):
+        mcgw.load_scene(tmp_path)
+    (tmp_path / "long.toml").write_text(GOOD + "#" * 2**21)
+    with pytest.raises(SceneError, match="longer than 2097152 bytes"):
+        mcgw.load_scene(tmp_path / "long.toml")
+
+
+@pytest.mark.parametrize("gamma", [-3.0, -0.01, 0.0, 0.4, 1.0, 1.000001, 2.0, 50.0])
+def test_a_negative_modulus_is_found_where_all_heights_are_looked_at(gamma):
+    """A grading that rises all the way is looked at its ends alone, and found the same."""
+    grading = analytic.Exponential(gamma)
+    scene = mcgw.scene_from(GOOD).replace(grading=grading, negative="allow")
+    found = []
+    for h in np.linspace(-3.0, 3.0, 31):
+        start, high = max(h, scene.least - 1), max(scene.highest, h + 1)
+        found.append(scene.negative_above(h))
+        assert found[-1] == analytic.first_negative(grading, start, high)
+    assert any(x is not None for x in found) == (gamma < 0 or gamma >= 2)  # elsewhere far below, or nowhere
+
+
+# --- what nobody gave ---
+
+SURFACE = analytic.Surface(1e-6, 1e-5, 1e9, 1e-6, 1e11)
+LARGE = replace(SURFACE, nominal_area=1e-5)
+
+
+def test_n_follows_the_surface_unless_it_was_given():
+    left_out = Scene(surface=SURFACE, separations=(1.0,), seed=1)
+    given = Scene(surface=SURFACE, separations=(1.0,), n_asperities=1000, seed=1)
+    assert left_out == given  # the same ensemble, by whatever way
+    assert hash(left_out.n_asperities) == hash(1000)
+    assert repr(left_out) == repr(given)
+    changes = (
+        lambda s: replace(s, surface=LARGE), lambda s: s.replace(surface=LARGE),
+        lambda s: s.replace(nominal_area=1e-5), lambda s: s.replace(nominal_area="10 mm²"),
+    )  # fmt: skip
+    for change in changes:
+        assert change(left_out).n_asperities == 10_000
+        assert change(replace(left_out, title="between")).n_asperities == 10_000
+        assert change(given).n_asperities == 1000
+        assert change(left_out.replace(n_asperities=1000)).n_asperities == 1000
+        assert change(mcgw.scene_from(mcgw.scene_text(left_out))).n_asperities == 10_000
+        assert change(mcgw.scene_from(mcgw.scene_text(given))).n_asperities == 1000
+    assert left_out.replace(eta="2000/mm^2", nominal_area="1 cm^2").n_asperities == 200_000
+
+
+def test_the_text_marks_what_nobody_gave_and_older_texts_read_the_same():
+    scene = Scene(surface=SURFACE, separations=(1.0,), seed=1)
+    text = mcgw.scene_text(scene)
+    assert "n_asperities = 1000\n" in text
+    assert re.search(r'left_out = \[\s*"n_asperities",\s*\]', text)
+    again = mcgw.scene_from(text)
+    assert again == scene
+    assert again.left_out == ("n_asperities",)
+    assert mcgw.scene_text(again) == text
+    older = mcgw.scene_text(scene, left_out=False)
+    assert "left_out" not in older
+    assert mcgw.scene_from(older) == scene
+    assert mcgw.scene_from(older).left_out == ()
+
+
+def test_a_mark_that_no_longer_holds_is_refused():
+    text = mcgw.scene_text(Scene(surface=SURFACE, separations=(1.0,)))
+    for change in (("n_asperities = 1000", "n_asperities = 500"), ("area = 1e-06", "area = 1e-05")):
+        with pytest.raises(SceneError, match="remove it from left_out, or leave n_asperities out"):
+            mcgw.scene_from(text.replace(*change))
+
+
+def test_a_drawn_seed_is_marked_and_stays():
+    text = text_of("", "title", "'x'").replace("seed = 1\n", "").replace("left_out = ['seed']\n", "")
+    scene = mcgw.scene_from(text)
+    assert scene.left_out == ("seed",)
+    again = mcgw.scene_from(mcgw.scene_text(scene))
+    assert (again.seed, again.left_out) == (scene.seed, ("seed",))
+    assert scene.replace(title="y").seed == scene.seed
+    assert scene.replace(seed=5).left_out == ()
+
+
+def test_the_most_surfaces_of_a_stop_rule_are_not_those_without_it():
+    ruled = Scene(surface=SURFACE, separations=(1.0,), rel_err=0.01)
+    assert (ruled.n_surfaces, replace(ruled, rel_err=None).n_surfaces) == (10**9, 1000)
+    assert replace(ruled, n_surfaces=50).replace(rel_err=None).n_surfaces == 50
+    text = mcgw.scene_text(ruled).replace("max_surfaces = 1000000000\n", "")
+    assert mcgw.scene_from(text).replace(rel_err=None).n_surfaces == 1000
+    with pytest.raises(SceneError, match=r"ensemble\.n_surfaces = 0"):
+        Scene(surface=SURFACE, separations=(1.0,), n_surfaces=0)
+
+
+def test_replace_takes_fields_of_scene_and_surface_only():
+    scene = Scene(surface=SURFACE, separations=(1.0,))
+    every = {f.name for f in fields(Scene)} | SURFACE_UNITS.keys()
+    assert every >= {"title", "sigma", "E_star"}
+    assert scene.replace(sigma="2 um", title="t", max_seconds="1 min").surface.sigma == 2e-6
+    assert scene.replace(max_seconds="1 min").max_seconds == 60
+    assert scene.replace(surface=LARGE, sigma=3e-6).surface == replace(LARGE, sigma=3e-6)
+    with pytest.raises(TypeError):
+        scene.replace(sigam=1.0)
+    with pytest.raises(ValueError, match=r"^surface\.sigma = '2 N': give a finite number > 0"):
+        scene.replace(sigma="2 N")

@@ -1,0 +1,237 @@
+"""Every prefix and unit against a literal factor, in every spelling; and what is not a unit."""
+
+import argparse
+from dataclasses import replace
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+from oracles.said import call
+
+import analytic
+import mcgw
+from mcgw.cli import COMMANDS
+from mcgw.formats.numbers import _FACTORS, EXAMPLES, METRES, parse
+from mcgw.scene.keys import SURFACE_UNITS
+from mcgw.scene.plausible import RANGES, perhaps_other_units, surface_in_other_units
+from mcgw.scene.scene import Scene
+
+# One of each, in SI. Written out: a table that was computed would repeat the mistakes of the other.
+LITERAL = {
+    "m": {
+        "": 1, "m": 1, "fm": 1e-15, "pm": 1e-12, "nm": 1e-9, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "mm": 1e-3,
+        "cm": 1e-2, "km": 1e3, "micron": 1e-6, "Angstrom": 1e-10, "\u00c5": 1e-10, "\u212b": 1e-10,
+    },
+    "m^2": {
+        "": 1, "m^2": 1, "m2": 1, "m²": 1, "m**2": 1, "cm^2": 1e-4, "cm²": 1e-4, "mm^2": 1e-6, "mm²": 1e-6,
+        "um^2": 1e-12, "µm²": 1e-12, "nm^2": 1e-18, "pm^2": 1e-24, "fm^2": 1e-30, "km^2": 1e6,
+    },
+    "1/m^2": {
+        "": 1, "1/m^2": 1, "/m^2": 1, "m^-2": 1, "m⁻²": 1, "1/cm^2": 1e4, "1/mm^2": 1e6, "/mm²": 1e6,
+        "mm^-2": 1e6, "mm⁻²": 1e6, "mm**-2": 1e6, "1/um^2": 1e12, "1/µm²": 1e12, "um^-2": 1e12,
+        "1/µm^2": 1e12, "1/nm^2": 1e18, "1/pm^2": 1e24, "1/fm^2": 1e30, "1/km^2": 1e-6,
+    },
+    "Pa": {
+        "": 1, "Pa": 1, "nPa": 1e-9, "uPa": 1e-6, "µPa": 1e-6, "mPa": 1e-3, "kPa": 1e3, "MPa": 1e6,
+        "GPa": 1e9,
+        "TPa": 1e12, "bar": 1e5, "psi": 6894.757293168361, "N/m^2": 1, "N/mm^2": 1e6,
+    },
+    "N": {
+        "": 1, "N": 1, "nN": 1e-9, "uN": 1e-6, "µN": 1e-6, "μN": 1e-6, "mN": 1e-3, "kN": 1e3, "MN": 1e6,
+        "GN": 1e9,
+    },
+    "s": {"": 1, "s": 1, "ms": 1e-3, "min": 60, "h": 3600},
+    "J/m^2": {"": 1, "J/m^2": 1, "J/m2": 1, "mJ/m^2": 1e-3, "N/m": 1, "mN/m": 1e-3},
+    "1": {"": 1, "%": 1e-2},
+}  # fmt: skip
+CASES = [(kind, unit, factor) for kind, units in LITERAL.items() for unit, factor in units.items()]
+
+
+@pytest.mark.parametrize(("kind", "unit", "factor"), CASES)
+def test_every_unit_is_its_literal_factor(kind, unit, factor):
+    assert parse(f"1{unit if unit[:1] != '1' else unit[1:]}", kind) == factor
+    assert parse(f" 2.5e1 {unit} ", kind) == pytest.approx(25 * factor, rel=3e-16)
+
+
+def test_the_table_leaves_no_unit_out():
+    """What `parse` knows is in the table above, so that a new unit cannot come without its factor."""
+    assert LITERAL.keys() == _FACTORS.keys() == EXAMPLES.keys()
+    for kind, factors in _FACTORS.items():
+        there = {unit.replace("^", "").replace("µ", "μ") for unit in LITERAL[kind]}
+        there |= {unit.replace("µ", "μ").replace("²", "2") for unit in LITERAL[kind]}
+        assert factors.keys() <= there, kind
+
+
+def test_units_of_maps_are_lengths():
+    assert {name: pytest.approx(parse(f"1 {name}", "m"), rel=0) for name in METRES} == METRES
+    assert {"\N{MICRO SIGN}m", "\N{GREEK SMALL LETTER MU}m", "um", "mm", "nm"} <= METRES.keys()
+
+
+@pytest.mark.parametrize("number", ["1.37", "13", "0.1", "2.7", "78.6", "9.9999999999999"])
+def test_a_number_with_a_prefix_is_the_literal_one(number):
+    """Rounded once: text with a unit and a float in SI give the same bits of the ensemble."""
+    units = (
+        (" um", "m", -6),
+        (" GPa", "Pa", 9),
+        ("/mm^2", "1/m^2", 6),
+        (" cm^2", "m^2", -4),
+        (" %", "1", -2),
+    )
+    for unit, kind, power in units:
+        assert parse(f"{number}{unit}", kind) == float(f"{number}e{power}")
+
+
+@pytest.mark.parametrize(
+    ("text", "kind"),
+    [
+        ("1 foo", "m"), ("1 mm^3", "m^2"), ("1 mm", "m^2"), ("1 mm^2", "m"), ("1 mm^2", "1/m^2"),
+        ("1 N", "Pa"),
+        ("1 pa", "Pa"), ("1 KN", "N"), ("-1 um", "m"), ("0 um", "m"), ("nan", "m"), ("inf m", "m"), ("", "m"),
+        ("um", "m"), ("1,5 um", "m"), ("1 2 um", "m"), ("1e400 m", "m"),
+        ("1e-400 m", "m"), ("1e9999999 m", "m"),
+        ("1/0", "1"), ("5 s", "N"), ("9" * 5000, "m"), ("1" + " " * 5000 + "x", "m"),
+        ("1" + " " * 5000 + "m", "m"), ("1 %", "m"),
+    ],
+)  # fmt: skip
+def test_what_is_no_quantity_is_refused_in_one_line(text, kind):
+    with pytest.raises(ValueError, match="give a number > 0 with its unit, such as") as caught:
+        parse(text, kind, "--width")
+    line = str(caught.value)
+    assert "\n" not in line
+    assert len(line) < 250
+    assert line.startswith(f"--width = '{text[:3]}")
+    assert EXAMPLES[kind] in line
+
+
+@pytest.mark.parametrize("kind", EXAMPLES)
+def test_examples_of_the_messages_are_right(kind):
+    for example in EXAMPLES[kind].replace(" or ", ", ").split(", "):
+        assert parse(example.partition(" (")[0], kind) > 0
+
+
+SI = {"sigma": 1.37e-6, "radius": 13e-6, "eta": 3e8, "nominal_area": 1e-4, "E_star": 78.6e9}
+AS_TEXT = {
+    "sigma": "1.37 um", "radius": "13 µm", "eta": "300/mm^2", "nominal_area": "1 cm²", "E_star": "78.6 GPa",
+}  # fmt: skip
+
+
+def test_a_surface_of_texts_is_that_of_floats():
+    assert mcgw.Surface(**AS_TEXT) == mcgw.Surface(**SI) == analytic.Surface(**SI)
+    for key in SI:
+        assert mcgw.Surface(**{**SI, key: AS_TEXT[key]}) == analytic.Surface(**SI)
+        with pytest.raises(ValueError, match=f"^surface.{key} = '5 apples': give a finite number > 0 in "):
+            mcgw.Surface(**{**SI, key: "5 apples"})
+        with pytest.raises(ValueError, match=f"^surface.{key} = -1"):
+            mcgw.Surface(**{**SI, key: -1.0})
+
+
+def scene_of(surface):
+    body = "\n".join(f"{key} = {value}" for key, value in surface.items())
+    return mcgw.scene_from(
+        f"[surface]\n{body}\n[contact]\nseparations = 1.0\n[ensemble]\nn_surfaces = 3\nseed = 1\n"
+    )
+
+
+def test_every_dimensional_key_of_a_scene_takes_a_text():
+    plain = scene_of(SI)
+    assert scene_of({key: f"'{value}'" for key, value in AS_TEXT.items()}) == plain
+    bodies = {key: value for key, value in SI.items() if key != "E_star"}
+    bodies["bodies"] = "[{E = '70 GPa', nu = 0.33}, {E = inf}]"
+    assert scene_of(bodies).surface.E_star == pytest.approx(70e9 / (1 - 0.33**2), rel=1e-15)
+
+
+# Command, and what it is of: without the option it is right, but for solve and the cutoff.
+OPTIONS = [
+    ("solve s.toml --pressure", "Pa"), ("solve s.toml --load", "N"), ("solve s.toml --area-fraction", "1"),
+    ("surface s.toml -o m.h5 --width", "m"),
+    ("surface --from-spectrum rms=1um,long=9um,short=1um -o m.h5 --pixel", "m"),
+    ("fit map.npy -o f.toml --cutoff", "m"), ("fit map.npy -o f.toml --cutoff none --pixel", "m"),
+    ("fit map.npy -o f.toml --cutoff none --E-star", "Pa"), ("tradeoff s.toml -o t --seconds", "s"),
+]  # fmt: skip
+
+
+def test_no_option_with_a_unit_is_read_as_a_bare_float():
+    """Whatever else is a float is without a dimension."""
+    bare = set()
+    for name in COMMANDS:
+        parser = argparse.ArgumentParser()
+        import_module(f"mcgw.commands.{name}").arguments(parser)
+        for action in parser._actions:
+            if action.type is float:
+                bare |= {(name, option) for option in action.option_strings}
+    assert bare == {
+        ("elastic", "--rel-err"),
+        ("export", "--quantile"),
+        ("fit", "--missing-value"),
+        ("surface", "--at"),
+    }
+
+
+@pytest.mark.parametrize(("words", "kind"), OPTIONS)
+def test_a_wrong_unit_of_an_option_is_one_line(words, kind, tmp_path):
+    (tmp_path / "map.npy").touch()
+    (tmp_path / "s.toml").write_text(mcgw.scene_text(scene_of(SI)))
+    done = call(*words.split(), "5 apples", cwd=tmp_path)
+    assert done.returncode == 2
+    said, option = done.stderr.splitlines()[-1], words.split()[-1]
+    assert said.startswith(f"mcgw: {option} = '5 apples': give a number > 0 with its unit")
+    assert EXAMPLES[kind] in said
+
+
+# --- units that are doubted ---------------------------------------------------------------------------
+
+SURFACE = analytic.Surface(1e-6, 1e-5, 1e9, 1e-6, 1e11)
+DOUBTED = {
+    "E_star": (50.0, "50 Pa is softer than any gel; did you mean 50 GPa = 5e+10?"),
+    "sigma": (0.8, "0.8 m is higher than the summits of any ground surface; did you mean 0.8"),
+    "eta": (300.0, "300 1/m^2 is less than one summit per square centimetre; did you mean 300/"),
+    "radius": (13.0, "13 m is too large for the radius of a summit; did you mean 13 um = 1.3e-05?"),
+    "nominal_area": (100.0, "100 m^2 is larger than any contact of two bodies; did you"),
+}
+
+
+@pytest.mark.parametrize("key", RANGES)
+def test_a_value_in_another_unit_is_asked_about_in_one_line(key):
+    value, asked = DOUBTED[key]
+    scene = Scene(surface=replace(SURFACE, **{key: value}), separations=(1.0,), n_asperities=100)
+    (line,) = perhaps_other_units(scene)
+    assert line.startswith(f"surface.{key} = {value:g}: {asked}")
+    assert len(line) < 150
+    tiny = Scene(surface=replace(SURFACE, **{key: RANGES[key].low / 2}), separations=(1.0,), n_asperities=100)
+    (line,) = perhaps_other_units(tiny)
+    assert line.startswith(f"surface.{key} = ")
+
+
+ENDS = {  # from atoms to faults in rock, from gels to diamond
+    "sigma": (1e-10, 1e-3), "radius": (1e-10, 0.1), "eta": (1e4, 1e19), "nominal_area": (1e-17, 10.0),
+    "E_star": (1e3, 2e12),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("key", ENDS)
+def test_values_are_asked_about_from_the_end_of_their_range_on(key):
+    low, high = ENDS[key]
+    for value, doubts in ((low, 0), (0.995 * low, 1), (high, 0), (1.005 * high, 1)):
+        assert len(surface_in_other_units(replace(SURFACE, **{key: value}))) == doubts, value
+
+
+def test_every_key_of_the_surface_has_a_range():
+    assert RANGES.keys() == SURFACE_UNITS.keys() == DOUBTED.keys()
+
+
+def test_separations_in_metres_are_asked_about():
+    scene = Scene(surface=SURFACE, separations=(0.0, 1e-6, 2e-6))
+    (line,) = perhaps_other_units(scene)
+    assert "did you mean 2e-06 m = 2 sigma?" in line
+    assert perhaps_other_units(replace(scene, separations=(0.0,))) == []
+    assert perhaps_other_units(replace(scene, separations=(1e-6, 1.0))) == []
+    assert perhaps_other_units(replace(scene, separations=(0.0, 1.005e-3))) == []  # a thousandth of sigma
+    assert len(perhaps_other_units(replace(scene, separations=(0.0, 0.995e-3)))) == 1
+
+
+def test_no_scene_of_ours_is_doubted():
+    root = Path(__file__).parents[2]
+    scenes = [path for path in root.glob("*/**/*.toml") if "[surface]" in path.read_text()]
+    assert len(scenes) > 5
+    for path in scenes:
+        assert perhaps_other_units(mcgw.load_scene(path)) == [], path

@@ -1,0 +1,519 @@
+"""Every check of the convergence test, each with a flaw that it alone is made for; and its exit codes."""
+
+import re
+from dataclasses import replace
+from functools import cache
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from oracles import exact
+from oracles.literal import ensemble_arrays
+from scipy.special import ndtri, polygamma, psi
+from scipy.stats import binom, chi2, kstest, norm, poisson, ttest_1samp
+
+import analytic
+import mcgw
+from mcgw.cli import main
+from mcgw.figures.studies import save_convergence
+from mcgw.statistics import convergence
+from mcgw.statistics.checks import (
+    PrincipalComponents,
+    covariances,
+    coverage,
+    independence,
+    scores,
+    skewness,
+    variances,
+)
+from mcgw.statistics.convergence import Convergence, _own as own, converge
+from mcgw.statistics.verdict import FALSE_ALARM
+
+H = (0.0, 1.0, 2.0)
+
+
+@pytest.fixture(scope="module")
+def scene(make_scene):
+    """24 x 300 surfaces: variances are known to 1.7 %; a surface has 114 contacts at h = 2."""
+    return make_scene(separations=H, n_asperities=5000, n_surfaces=300, seed=8)
+
+
+def right(scene):
+    return {name: x.astype(float) for name, x in own(scene).items()}
+
+
+@cache
+def mean_of(scene, name):
+    return exact.mean(scene, name)
+
+
+def mean(scene, name):
+    """Exact mean, computed once for all seeds."""
+    return mean_of(replace(scene, seed=0, quantities=("load",)), name)
+
+
+@cache
+def root_of(scene):
+    columns = [(name, h) for name in scene.quantities for h in scene.separations]
+    size, axes = np.linalg.eigh(exact.covariance(scene, columns))
+    return axes * np.sqrt(np.maximum(size, 0))
+
+
+def scaled_about_the_mean(factor):
+    def draw(scene):
+        return {
+            name: mean(scene, name) + factor * (x - mean(scene, name)) for name, x in right(scene).items()
+        }
+
+    return draw
+
+
+def of_other_asperities(scene):
+    """Each separation has surfaces of its own: the same law for each, no covariance between them."""
+    columns = [right(replace(scene, seed=scene.seed + 10**9 * k)) for k in range(len(scene.separations))]
+    at = range(len(columns))
+    return {name: np.stack([columns[k][name][:, k] for k in at], axis=1) for name in scene.quantities}
+
+
+def mirrored(scene):
+    """Means and covariances as they should be, the sign of every skewness turned."""
+    return {name: 2 * mean(scene, name) - x for name, x in right(scene).items()}
+
+
+def shifted_together(scene):
+    """All surfaces of a seed off by the same, as large as one standard error of their mean."""
+    sums, n = right(scene), len(scene.separations)
+    root = root_of(replace(scene, seed=0))
+    shift = root @ np.random.default_rng(scene.seed).normal(size=len(root)) / np.sqrt(scene.n_surfaces)
+    return {name: x + shift[k * n : (k + 1) * n] for k, (name, x) in enumerate(sums.items())}
+
+
+def in_lasting_groups(scene):
+    """Sixteen surfaces in a row share half of their variance: their mean is known less well."""
+    own, shared = right(scene), right(replace(scene, seed=scene.seed + 10**9))
+    found = {}
+    for name, x in own.items():
+        centre = mean(scene, name)
+        common = np.repeat(shared[name], 16, axis=0)[: len(x)]
+        found[name] = centre + ((x - centre) + (common - centre)) / np.sqrt(2)
+    return found
+
+
+def more_alike_if_small(scene):
+    """Fluctuations of a surface as N^(-0.35): right at N = 5000."""
+    return scaled_about_the_mean((scene.n_asperities / 5000) ** 0.15)(scene)
+
+
+def one_contact_more(scene):
+    return {name: x + (name == "contacts") for name, x in right(scene).items()}
+
+
+def one_surface_twice(scene):
+    sums = right(scene)
+    return {name: np.concatenate([x[:-1], x[:1]]) for name, x in sums.items()}
+
+
+def loads_off(scene):
+    sums = right(scene)
+    return sums | {"load": 1.002 * sums["load"]}
+
+
+FLAWS = [
+    (loads_off, ["means"]),
+    (one_contact_more, ["number of contacts"]),
+    (one_surface_twice, ["repeated surfaces"]),
+    (shifted_together, ["distribution of z-scores", "coverage of the intervals"]),
+    (scaled_about_the_mean(np.sqrt(0.9)), ["variance"]),
+    (of_other_asperities, ["covariance across separations"]),
+    (mirrored, ["skewness"]),
+    (in_lasting_groups, ["independence of surfaces", "slope of the error in M"]),
+    (more_alike_if_small, ["slope of the error in N"]),
+]
+
+
+def test_the_right_sampler_passes_every_check(scene):
+    found = converge(scene)
+    assert found.passed
+    assert [check.name for check in found.checks] == [name for _, checks in FLAWS for name in checks]
+    assert min(check.p for check in found.checks) > FALSE_ALARM
+
+
+@pytest.mark.parametrize(("flaw", "checks"), FLAWS, ids=[checks[-1] for _, checks in FLAWS])
+def test_each_check_sees_its_flaw(scene, flaw, checks):
+    found = converge(scene, flaw)
+    p = {c.name: c.p for c in found.checks}
+    assert max(p[check] for check in checks) < FALSE_ALARM / 100
+    assert not found.passed
+
+
+@pytest.mark.parametrize("factor", [0.9, 1.1])
+def test_a_variance_a_tenth_off_fails(scene, factor):
+    found = converge(scene, scaled_about_the_mean(np.sqrt(factor)))
+    assert not found.passed
+    (check,) = (c for c in found.checks if c.name == "variance")
+    assert check.p < FALSE_ALARM / 100
+    assert float(re.search(r"= ([\d.]+) at", check.seen)[1]) == pytest.approx(factor, abs=0.06)
+
+
+class Law:
+    """Of Gaussian axes."""
+
+    def __init__(self, axes):
+        self.kurtosis = np.zeros(axes)
+
+
+@pytest.mark.parametrize("factor", [0.9, 0.98, 1.0, 1.03, 1.1])
+def test_p_of_a_variance_is_the_chi_squares(factor):
+    y = np.random.default_rng(1).normal(size=(400, 1)) * np.sqrt(factor)
+    total = float((y**2).sum())
+    exact_p = 2 * min(chi2.cdf(total, 400), chi2.sf(total, 400))
+    assert variances(Law(1), y).p == pytest.approx(min(exact_p, 1.0), rel=1e-12)
+    assert variances(Law(3), np.tile(y, 3)).p == pytest.approx(min(3 * exact_p, 1.0), rel=1e-12)
+
+
+@pytest.mark.parametrize("lag", [1, 2, 4, 8, 16, 32, 64])
+def test_surfaces_alike_at_any_of_the_lags_are_seen(lag):
+    noise = np.random.default_rng(3).normal(size=(4, 500 + lag, 2))
+    assert independence(noise).p > FALSE_ALARM
+    assert independence((noise[:, lag:] + noise[:, :-lag]) / np.sqrt(2)).p < FALSE_ALARM / 100
+
+
+def test_coverage_is_students_and_its_p_the_binomials():
+    """As many intervals of 5 surfaces as tests of SciPy do not refuse."""
+    groups = np.random.default_rng(2).normal(size=(4000, 5, 1))
+    for level in (0.95, 0.5):
+        kept = int((ttest_1samp(groups[..., 0], 0.0, axis=1).pvalue >= 1 - level).sum())
+        assert coverage(groups, level).seen.startswith(f"{kept} of 4000 ")
+    found = coverage(groups)
+    covered, tried = map(int, re.match(r"(\d+) of (\d+)", found.seen).groups())
+    assert tried == 4000
+    assert found.p == pytest.approx(
+        min(1.0, 2 * min(binom.cdf(covered, 4000, 0.95), binom.sf(covered - 1, 4000, 0.95))), rel=1e-12
+    )
+    assert coverage(groups + 0.5).p < 1e-6
+
+
+def test_the_verdict_is_the_worst_check_times_their_number(scene):
+    def of(*p):
+        return Convergence(scene, tuple(convergence.Check("c", "", x) for x in p), (), np.empty(0))
+
+    assert of(0.5, 0.004, 0.9).p == pytest.approx(0.012)
+    assert of(0.5, 0.4).p == pytest.approx(0.8)
+    assert of(0.9).p == 0.9
+    assert of(0.5, 0.0004, 0.9).passed
+    assert not of(0.5, 0.0003, 0.9).passed
+    assert not of(*[0.5] * 10, 0.00009).passed
+
+
+def test_a_slope_is_a_least_squares_fit_and_its_p_two_sided():
+    rng = np.random.default_rng(4)
+    sizes = (1.0, 4.0, 16.0, 64.0)
+    squares = [rng.normal(size=2000) ** 2 / n for n in sizes]
+    found = convergence.slope("M", sizes, squares, [0.0] * 4)
+    plain = np.polyfit(np.log(sizes), [np.log(x.mean()) / 2 for x in squares], 1)[0]
+    assert found.value == pytest.approx(plain, abs=1e-3)  # weights and biases are equal here
+    assert abs(found.value + 0.5) < 5 * found.uncertainty
+    z = (found.value + 0.5) / found.uncertainty
+    assert found.check.p == pytest.approx(2 * norm.sf(abs(z)), rel=1e-9)
+    np.testing.assert_allclose(found.errors, [np.sqrt(x.mean()) for x in squares], rtol=1e-3)
+
+
+@pytest.fixture
+def scene_file(scene, tmp_path, blank_figures):
+    path = tmp_path / "x.toml"
+    path.write_text(mcgw.scene_text(replace(scene, n_surfaces=100)))
+    return path
+
+
+def test_the_command_ends_with_1_if_the_sampler_is_wrong(scene_file, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(convergence, "_own", loads_off)
+    assert main(["converge", str(scene_file), "-o", str(tmp_path)]) == 1
+    out = capsys.readouterr().out
+    assert "convergence FAILED: p = " in out
+    assert (tmp_path / "x-converge.png").exists()
+
+
+def test_what_the_command_prints_is_what_was_found(scene_file, tmp_path, capsys):
+    assert main(["converge", str(scene_file), "-v", "-o", str(tmp_path)]) == 0
+    out = capsys.readouterr().out.splitlines()
+    found = converge(mcgw.load_scene(scene_file))
+    many = "24 ensembles of 100 surfaces"
+    assert out[0] == f"convergence passed: p = {found.p:.3g} over all checks of {many}"
+    assert out[1] == f"{tmp_path / 'x-converge.png'}: figure"
+    assert out[2].split() == ["check", "p", "seen"]
+    shown = [re.fullmatch(r"  (.+?)  +(\d\S*)  +(.*)", line).groups() for line in out[3:]]
+    assert [(n, seen) for n, _, seen in shown] == [(c.name, c.seen) for c in found.checks]
+    for (_, p, _), check in zip(shown, found.checks, strict=True):
+        assert float(p) == pytest.approx(check.p, rel=5e-3)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("axis", [0, 2])
+def test_a_skewness_is_seen_on_any_axis_and_either_side(sign, axis):
+    """One axis of three with the third cumulant of a gamma law, where theory has none, or the other way."""
+    rng = np.random.default_rng(5)
+    y = rng.standard_normal((7200, 3))
+    law = SimpleNamespace(skewness=np.zeros(3))
+    assert skewness(law, y).p > 0.01
+    skewed = sign * (rng.gamma(16.0, size=7200) - 16.0) / 4
+    of_one = np.where(np.arange(3) == axis, skewed[:, None], y)
+    check = skewness(law, of_one)
+    assert check.p < 1e-6
+    assert f"z = {'+' if sign > 0 else '-'}" in check.seen
+    law.skewness[axis] = sign * 0.5
+    assert skewness(law, of_one).p > 0.01
+
+
+# --- right samplers, NumPy's with a flaw, and scenes at the edge of what it can test ---
+
+FIVE = (0.0, 1.0, 2.0, 3.0, 4.0)
+
+
+@pytest.fixture
+def asked(make_scene):
+    return make_scene(separations=FIVE, n_asperities=5000, n_surfaces=64)
+
+
+def drawn(*, gamma=None, shared=False, **flaw):
+    """A sampler in NumPy with one flaw."""
+
+    def draw(scene):
+        if gamma is not None:
+            scene = replace(scene, grading=analytic.Exponential(gamma))
+        if not shared:
+            return ensemble_arrays(scene, scene.seed, **flaw)
+        half = ensemble_arrays(replace(scene, n_surfaces=scene.n_surfaces // 2), scene.seed)
+        return {name: np.repeat(x, 2, axis=0)[: scene.n_surfaces] for name, x in half.items()}
+
+    return draw
+
+
+def of_12_bits(s):
+    """Normals by inversion of uniforms of 12 bits."""
+    k = np.random.default_rng(abs(int(s.flat[0] * 1e12))).integers(0, 4096, s.shape)
+    return ndtri((k + 0.5) / 4096)
+
+
+@pytest.mark.slow
+def test_a_right_sampler_from_outside_passes(asked):
+    assert converge(asked, drawn()).passed
+
+
+NUMPYS_FLAWS = {
+    "exponent 1.49": {"exponent": 1.49},
+    "gamma off by 1 %": {"gamma": 2.02},
+    "uniforms of 12 bits": {"heights": of_12_bits},
+    "tail cut at 4 sigma": {"heights": lambda s: np.where(s > 4, 0.0, s)},
+    "variance off by 0.5 %": {"heights": lambda s: s * np.sqrt(1.005)},
+    "pairs of surfaces share a stream": {"shared": True},
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("flaw", NUMPYS_FLAWS)
+def test_a_flaw_fails(asked, flaw):
+    assert not converge(asked, drawn(**NUMPYS_FLAWS[flaw])).passed
+
+
+def test_streams_shared_but_for_rounding_fail_too(asked):
+    """The same surfaces seen through another last digit: no number repeats, but neighbours correlate."""
+
+    def draw(scene):
+        sums = drawn(shared=True)(scene)
+        return {name: x * (1 + 1e-13 * np.arange(len(x))[:, None]) for name, x in sums.items()}
+
+    found = converge(replace(asked, quantities=("load", "area"), n_asperities=1000), draw)
+    assert {c.name: c.p for c in found.checks}["independence of surfaces"] < FALSE_ALARM / 100
+    assert not found.passed
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("count", ["fixed", "poisson"])
+@pytest.mark.parametrize("sampler", ["direct", "tail", "cells", "aggregate"])
+def test_every_sampler_passes(make_scene, sampler, count):
+    scene = make_scene(separations=FIVE, sampler=sampler, count=count, n_surfaces=100, seed=11)
+    found = converge(scene)
+    assert found.passed, found.checks
+    assert len(found.checks) == 11
+
+
+@pytest.mark.slow
+def test_passes_for_100_seeds_at_its_rate(make_scene):
+    """100 verdicts at 1e-3: a right program fails this for 1 in 10 choices of seeds, and these are fixed.
+
+    Single p-values below 0.05: 900 that are nearly independent give 45 +- 6.5; 5 standard errors are 33.
+    """
+    p, single = [], []
+    for k in range(100):
+        found = converge(make_scene(separations=FIVE, n_asperities=10_000, n_surfaces=64, seed=1000 * k))
+        p.append(found.p)
+        single += [c.p for c in found.checks if c.name != "repeated surfaces"]
+    assert min(p) > FALSE_ALARM
+    assert 0 < np.sum(np.array(single) < 0.05) * 900 / len(single) < 45 + 33
+
+
+def test_few_contacts_leave_the_exact_checks(make_scene, tmp_path):
+    found = converge(make_scene(separations=(4.0, 5.0), n_asperities=1000))
+    assert found.passed
+    assert {"means", "number of contacts"} == {c.name for c in found.checks}
+    save_convergence(found, tmp_path / "few.png")
+    assert (tmp_path / "few.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_other_numbers_of_asperities_and_separations_in_disorder(make_scene):
+    odd = make_scene(separations=(3.0, -0.9, 0.5, 0.5), n_asperities=500, grading=analytic.Homogeneous())
+    assert converge(odd.replace(heights=analytic.ExponentialHeights())).passed
+    assert converge(make_scene(sampler="aggregate", n_asperities=10**12)).passed
+
+
+@pytest.mark.parametrize("count", ["fixed", "poisson"])
+@pytest.mark.parametrize("quantity", ["load", "yielded", "area_unloading"])
+def test_single_surfaces_are_tested_where_a_hundred_asperities_decide(make_scene, quantity, count):
+    """So many that add to a sum, and where their number is fixed as many that do not."""
+    law = analytic.KogutEtsion(critical=0.05)
+    scene = make_scene(
+        law=law, separations=tuple(np.linspace(-3, 3, 25)), n_asperities=2000, count=count,
+        unload_from=-3.0, quantities=("load", "yielded", "area_unloading"), grading=analytic.Homogeneous(),
+    )  # fmt: skip
+    h = np.array(scene.separations)
+    adds = {"load": "contacts", "yielded": "yielded", "area_unloading": "contacts_unloading"}[quantity]
+    number = scene.theory.mean(adds, h)
+    decide = number if count == "poisson" else np.minimum(number, 2000 - number)
+    found = PrincipalComponents.of(scene, (quantity,)).columns
+    assert found == tuple((quantity, k) for k in np.flatnonzero(decide > 100).tolist())
+    assert 0 < len(found) < 25
+
+
+def test_a_scene_of_few_asperities_has_no_slope_of_fewer(make_scene):
+    found = converge(make_scene(n_asperities=40, separations=(0.0,), n_surfaces=64), seeds=3)
+    assert found.passed
+    assert "slope of the error in N" not in {check.name for check in found.checks}
+
+
+@pytest.mark.parametrize(("asked", "given"), [(20, 64), (64, 64), (300, 300), (1000, 1000), (5000, 1000)])
+def test_what_is_asked_of_a_sampler(make_scene, asked, given):
+    """Seeds one by one from that of the scene, few separations in order, a feasible number of surfaces."""
+    h = tuple(np.linspace(2, 0, 20))
+    scene = make_scene(
+        separations=(*h, 1.0, 1.0), n_surfaces=asked, n_asperities=6400, seed=2**64 - 2, quantities=("load",),
+        keep="statistics", max_seconds=9.0,
+    )  # fmt: skip
+    drawn, told = [], []
+
+    def draw(one):
+        drawn.append(one)
+        return own(one)
+
+    found = converge(scene, draw, seeds=3, progress=lambda *pair: told.append(pair))
+    whole, sizes = drawn[:3], drawn[3:]
+    assert [one.seed for one in whole] == [2**64 - 2, 2**64 - 1, 0]
+    every = np.unique([*h, 1.0])
+    at = np.unique(np.linspace(0, 20, 12).round().astype(int))
+    for one in whole:
+        np.testing.assert_array_equal(one.separations, every[at])
+        assert (one.n_surfaces, one.keep, one.max_seconds, one.rel_err) == (given, "sums", None, None)
+    assert [one.n_asperities for one in sizes] == [100, 400, 1600, 6400][-len(sizes) :]
+    assert len(sizes) >= 2
+    assert all((one.separations, one.quantities) == ((0.0,), ("load",)) for one in sizes)
+    seeds = [(2**64 - 2 + 10**6 + divisor) % 2**64 for divisor in (64, 16, 4, 1)]
+    assert [one.seed for one in sizes] == seeds[-len(sizes) :]
+    assert told == [(0, 3), (1, 3), (2, 3), (3, 3)]
+    in_m, in_n = found.slopes
+    powers = [m for m in (1, 4, 16, 64, 256) if m <= given // 4]
+    axes, parts = found.scores.size // 3, np.array_split(np.arange(3 * given), len(powers))
+    means = [len(part) // m * axes for m, part in zip(powers, parts, strict=True)]
+    assert in_m.sizes.tolist() == [m for m, n in zip(powers, means, strict=True) if n >= 24]
+    assert in_n.sizes.tolist() == [one.n_asperities for one in sizes]
+    assert (in_m.against, in_n.against) == ("M", "N")
+
+
+def test_the_worst_eight_checks_are_shown(scene):
+    checks = tuple(convergence.Check(f"c{k}", f"seen {k}", 0.05 * (9 - k)) for k in range(9))
+    found = Convergence(scene, checks, (), np.empty(0))
+    table = found.sheet().table
+    assert list(table.columns[0].values) == [f"c{k}" for k in range(8, 0, -1)]
+    assert list(table.columns[1].values) == [0.05 * (9 - k) for k in range(8, 0, -1)]
+    assert [table.heading(column) for column in table.columns] == ["worst", "p", "seen"]
+    assert found.sheet().facts == [("p", "0.45 over all 9 checks")]
+    assert found.sheet().title == "Statistical convergence passed"
+    whole = found.table()
+    assert [column.name for column in whole.columns] == ["check", "p", "seen"]
+    assert whole.heading(whole.columns[0]) == "check"
+    assert list(whole.columns[2].values) == [check.seen for check in checks]
+
+
+def test_the_number_of_contacts_is_exactly_binomial_or_poisson(make_scene):
+    """Every surface the same number off: p is twice the smaller tail of the exact law."""
+    for count in ("fixed", "poisson"):
+        scene = make_scene(separations=(0.0, 1.0), n_asperities=200, n_surfaces=50, count=count)
+        share = norm.sf([0.0, 1.0])
+        for k, add in ((0, 2.0), (1, -1.0)):
+            contacts = np.rint(np.tile(200 * share, (50, 1)))
+            contacts[:, k] += add
+            (check,) = convergence._contacts(scene, {"contacts": contacts})
+            tried, total = 50 * 200, contacts.sum(axis=0)
+            law = binom(tried, share) if count == "fixed" else poisson(tried * share)
+            each = np.minimum(2 * np.minimum(law.cdf(total), law.sf(total - 1)), 1)
+            assert check.p == pytest.approx(min(1, 2 * each.min()), rel=1e-9)
+            assert check.seen == f"{total[k]:.0f} at d/sigma = {k}, {tried * share[k]:.1f} expected"
+    assert convergence._contacts(scene.replace(quantities=("load",)), {}) == []
+
+
+@pytest.mark.parametrize(
+    ("levels", "excess", "told"),
+    [((0.9, 1.0, 1.3), 0.0, 3.0), ((0.9, 1.0, 1.3), 2.0, 3.0), ((1.0, 1.0), 1.0, 2.0)],
+)
+def test_a_slope_weighs_sizes_by_what_they_tell(levels, excess, told):
+    """By the variance of the logarithm of a chi-square, whose degrees an excess of kurtosis lessens."""
+    sizes = [4.0**k for k in range(len(levels))]
+    numbers = [40 * 2**k for k in range(len(levels))]
+    squares = [np.full(n, level) for n, level in zip(numbers, levels, strict=True)]
+    degrees = np.array(numbers) / (1 + excess / 2)
+    y = (np.log(levels) - psi(degrees / 2) + np.log(degrees / 2)) / 2
+    weight = 4 / polygamma(1, degrees / 2)
+    fit, covariance = np.polyfit(np.log(sizes), y, 1, w=np.sqrt(weight), cov="unscaled") if told > 2 else (
+        [np.diff(y)[0] / np.log(4)], [[(1 / weight).sum() / np.log(4) ** 2]]
+    )  # fmt: skip
+    found = convergence.slope("M", sizes, squares, [excess] * len(levels))
+    assert found.value == pytest.approx(fit[0], rel=1e-9, abs=1e-12)
+    assert found.uncertainty == pytest.approx(np.sqrt(covariance[0][0]), rel=1e-9)
+    np.testing.assert_allclose(found.errors, np.exp(y), rtol=1e-12)
+    np.testing.assert_allclose(found.stderr, weight**-0.5, rtol=1e-12)
+    half = 1.96 * found.uncertainty
+    assert found.check.seen == f"{found.value:.4f} +- {half:.4f} (95 %), expected -0.5"
+    assert found.check.name == "slope of the error in M"
+
+
+def test_products_of_axes_are_summed_over_all_pairs():
+    """Chi-square and its degrees by plain loops; of one axis there is no pair."""
+    y = np.random.default_rng(6).normal(size=(500, 4)) + 0.3 * np.random.default_rng(7).normal(size=(500, 1))
+    total = 0.0
+    for i in range(4):
+        for j in range(i):
+            product = y[:, i] * y[:, j]
+            total += product.sum() ** 2 / (product**2).sum()
+    check = covariances(y)
+    assert check.p == pytest.approx(chi2.sf(total, 6), rel=1e-9)
+    assert check.seen == f"chi-square {total:.1f} for 6 pairs of quantities and separations"
+    assert covariances(y[:, :1]).p == 1.0
+
+
+def test_products_of_later_surfaces_are_summed_over_lags_that_there_are():
+    groups = np.random.default_rng(8).normal(size=(3, 17, 2))
+    total = 0.0
+    for lag in (1, 2, 4, 8, 16):
+        for axis in (0, 1):
+            found = [groups[k, i, axis] * groups[k, i + lag, axis] for k in range(3) for i in range(17 - lag)]
+            total += sum(found) ** 2 / len(found)
+    check = independence(groups)
+    assert check.p == pytest.approx(chi2.sf(total, 10), rel=1e-9)
+    assert check.seen == f"chi-square {total:.1f} for 10 lags and axes"
+
+
+def test_scores_are_means_in_standard_errors():
+    groups = np.random.default_rng(9).normal(size=(5, 16, 2))
+    check, z = scores(groups)
+    np.testing.assert_allclose(z, 4 * groups.mean(axis=1).ravel(), rtol=1e-12)
+    expected = kstest(z, "norm")
+    assert check.p == pytest.approx(expected.pvalue, rel=1e-12)
+    assert check.seen == f"10 of them, KS distance {expected.statistic:.3f}"

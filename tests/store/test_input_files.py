@@ -1,0 +1,406 @@
+"""HDF5 files from elsewhere: hostile and damaged ones are errors, not crashes, hangs or secrets told."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from oracles.new_trailer import trailer_again
+
+import analytic
+import mcgw
+from mcgw.cli import main
+from mcgw.errors import StoreError
+from mcgw.jobs.running import run
+from mcgw.scene.scene import Scene
+from mcgw.store import ensembles, structure
+from mcgw.sweeps import open_results
+
+TESTS = Path(__file__).parents[1]
+SECRET = "key = correct horse battery staple"
+
+
+@pytest.fixture(scope="module")
+def good(tmp_path_factory):
+    path = tmp_path_factory.mktemp("good") / "e.h5"
+    surface = analytic.Surface(sigma=1e-6, radius=1e-5, eta=1e9, nominal_area=1e-6, E_star=1e11)
+    run(Scene(surface=surface, separations=(1.0, 2.0), n_surfaces=20, sampler="tail"), path)
+    return path.read_bytes()
+
+
+@pytest.fixture
+def path(good, tmp_path):
+    (tmp_path / "e.h5").write_bytes(good)
+    return tmp_path / "e.h5"
+
+
+def raw_external(data, folder):
+    data.create_dataset("load", (20, 2), "<f8", external=[(str(folder / "secret"), 0, 320)])
+
+
+def virtual(data, folder):
+    layout = h5py.VirtualLayout((20, 2), "<f8")
+    layout[:] = h5py.VirtualSource(str(folder / "other.h5"), "load", (20, 2))
+    data.create_virtual_dataset("load", layout)
+
+
+def many(data, folder):
+    data["load"] = np.ones((20, 2))
+    for i in range(200):
+        data[f"x{i}"] = np.zeros(1)
+
+
+def notes(data, folder):
+    data["load"] = ONES
+    data.attrs.update({f"x{i}": i for i in range(200)})
+
+
+def load(value):
+    """A dataset of this value."""
+    return lambda data, folder: data.__setitem__("load", value(folder) if callable(value) else value)
+
+
+def made(*arguments, **options):
+    """A dataset that h5py makes of these."""
+    return lambda data, folder: data.create_dataset("load", *arguments, **options)
+
+
+def attribute(name, value):
+    """The file with one attribute that is another, or none."""
+
+    def change(data, folder):
+        data["load"] = np.ones((20, 2))
+        del data.attrs[name]
+        if value is not None:
+            data.attrs[name] = value
+
+    return change
+
+
+# What stands in place of the dataset of loads (which is taken away first), and what is said of it.
+ONES = np.ones((20, 2))
+HOSTILE = {
+    "external link": (load(lambda folder: h5py.ExternalLink(str(folder / "other.h5"), "/load")),
+     "load: a link to another place"),
+    "soft loop": (load(h5py.SoftLink("/load")), "load: a link to another place"),
+    "raw external": (raw_external, "load: its data are in another file"),
+    "virtual": (virtual, "load: its data are in another file"),
+    "huge": (made((10**9, 10**9), "<f8", chunks=(1024, 1024)), "load: .* chunks declared, 0 stored"),
+    # Zeros that shrink a thousandfold, with a shape that the scene does not declare.
+    "bomb": (made(data=np.zeros((2 * 10**5, 8)), chunks=(10**4, 8), compression="gzip"),
+     r"load has shape \[200000, 8\], its scene declares \[20, 2\]"),
+    "hollow": (made((20, 2), "<f8", chunks=(20, 2)), "load: 1 chunks declared, 0 stored"),
+    "never written": (made((20, 2), "<f8"), "load: 320 bytes declared, 0 stored"),
+    "large chunks": (made((10**6, 40), "<f8", chunks=(10**6, 40)), "load: chunks of 320000000 bytes"),
+    "shrunk": (made(data=np.zeros((10**6, 2)), chunks=(10**5, 2), compression="gzip"),
+     r"load has shape \[1000000, 2\]|load: 16000000 bytes declared"),
+    "odd filter": (made(data=ONES, chunks=(20, 2), scaleoffset=2), r"load: unknown filter \[6\]"),
+    "group": (lambda data, folder: data.create_group("load"), "load: not a dataset"),
+    "text": (made(data=["a"] * 20), "load: type object, not 64-bit numbers"),
+    "int32": (made(data=ONES.astype("int32")), "load: type int32, not 64-bit numbers"),
+    "complex": (made(data=ONES.astype("complex128")), "load: type complex128"),
+    "references": (made((20, 2), h5py.ref_dtype), "load: type object"),
+    "empty": (load(h5py.Empty("f8")), "load: not a table"),
+    "cube": (load(np.ones((20, 2, 1))), r"load has shape \[20, 2, 1\], its scene declares \[20, 2\]"),
+    "hypercube": (load(np.ones((20, 2, 1, 1, 1))), "load: not a table"),
+    "narrow": (load(np.ones((20, 1))), r"load has shape \[20, 1\], its scene declares \[20, 2\]"),
+    "missing": (lambda data, folder: None, "load has shape none, its scene declares"),
+    "many": (many, "datasets; at most 128 are allowed"),
+    "no group": (lambda data, folder: data.__setitem__("drawn", ONES), "refused: drawn: not a group"),
+    "a link in the group": (
+        lambda data, folder: data.create_group("drawn").__setitem__("x", h5py.SoftLink("/load")),
+        "refused: drawn/x: a link to another place",
+    ),
+    "large attribute": (attribute("date", np.zeros(1000)), "attribute date: too large"),
+    "bytes": (attribute("date", np.bytes_(b"x")), "attribute date: neither text nor number"),
+    "many attributes": (notes, "refused: [0-9]+ attributes"),
+    "scene bomb": (attribute("scene", "[" * 5000), "its scene cannot be read: not a TOML scene"),
+    "no scene": (attribute("scene", None), "an attribute is missing"),
+    "odd attribute": (attribute("wall_seconds", h5py.Empty("f8")),
+     "refused: attribute wall_seconds|not an HDF5 file, or a damaged one"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("change", "told"), HOSTILE.values(), ids=HOSTILE)
+def test_hostile_files_are_refused(change, told, path):
+    (path.parent / "secret").write_text(SECRET)
+    with h5py.File(path.parent / "other.h5", "w") as other:
+        other["load"] = ONES
+    with h5py.File(path, "r+") as data:
+        del data["load"]
+        change(data, path.parent)
+    trailer_again(path)
+    with pytest.raises(StoreError, match=told) as caught:
+        mcgw.open_ensemble(path)
+    assert str(caught.value).startswith(str(path))
+    assert "\n" not in str(caught.value)
+    assert SECRET not in str(caught.value)
+
+
+def test_big_endian_numbers_are_read(path):
+    before = mcgw.open_ensemble(path).load
+    with h5py.File(path, "r+") as data:
+        del data["load"]
+        data["load"] = before.astype(">f8")
+    trailer_again(path)
+    np.testing.assert_array_equal(mcgw.open_ensemble(path).load, before)
+
+
+@pytest.mark.parametrize("numbers", [(3, 0), (0, 9)])
+def test_other_formats_are_named(path, numbers):
+    with h5py.File(path, "r+") as data:
+        data.attrs["format"] = numbers
+    with pytest.raises(
+        StoreError,
+        match=rf"results \[{numbers[0]}, {numbers[1]}\] is not read by this version",
+    ):
+        mcgw.open_ensemble(path)
+
+
+def test_other_files_are_none(tmp_path):
+    for name, content in (("empty", b""), ("text", b"load,area\n1,2\n"), ("noise", os.urandom(5000))):
+        (tmp_path / name).write_bytes(content)
+        with pytest.raises(StoreError, match="not an HDF5 file, or a damaged one"):
+            mcgw.open_ensemble(tmp_path / name)
+    with h5py.File(tmp_path / "other.h5", "w") as file:
+        file["x"] = np.zeros(3)
+    with pytest.raises(StoreError, match="holds no results of mcgw"):
+        mcgw.open_ensemble(tmp_path / "other.h5")
+
+
+def attributes(**values):
+    return lambda file: file.attrs.update(values)
+
+
+def tables(n, where=""):
+    return lambda file: [file.create_dataset(f"{where}x{k}", data=np.zeros(1)) for k in range(n)]
+
+
+# What a file may just hold, and what is too much, with the line that says so.
+LIMITS = {
+    "attributes": (
+        attributes(**{f"a{k}": k for k in range(64)}), attributes(**{f"a{k}": k for k in range(65)}),
+        "^65 attributes$",
+    ),
+    "tables": (tables(128), tables(129), "^129 datasets; at most 128 are allowed$"),
+    "tables of the group": (
+        tables(128, "drawn/"), tables(129, "drawn/"), "^129 datasets; at most 128 are allowed$"
+    ),
+    "numbers of an attribute": (
+        attributes(a=np.zeros(64)), attributes(a=np.zeros(65)), "^attribute a: too large$"
+    ),
+    "axes": (
+        lambda file: file.__setitem__("x", np.ones((1, 2, 1, 2))),
+        lambda file: file.__setitem__("x", np.ones((1, 2, 1, 2, 1))),
+        "^x: not a table of one to four axes$",
+    ),
+    "no axis": (
+        lambda file: file.__setitem__("x", np.ones(1)),
+        lambda file: file.__setitem__("x", np.float64(1)),
+        "^x: not a table of one to four axes$",
+    ),
+    "lines of a text": (
+        attributes(title="a\nb", scene="a\nb", axes="a\nb"), attributes(date="a\nb"),
+        "^attribute date: not one line of text$",
+    ),
+    "kinds of numbers": (
+        attributes(a=np.int32(1), b=np.uint64(2), c=True, d=0.5), attributes(a=1j),
+        "^attribute a: neither text nor number$",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", LIMITS)
+def test_a_file_may_hold_so_much_and_no_more(what, tmp_path):
+    just, too_much, told = LIMITS[what]
+    for name, change, refused in (("a.h5", just, False), ("b.h5", too_much, True)):
+        with h5py.File(tmp_path / name, "w") as file:
+            change(file)
+        if refused:
+            with pytest.raises(structure.RefusedError, match=told):
+                structure.describe(str(tmp_path / name))
+        else:
+            structure.describe(str(tmp_path / name))
+
+
+@pytest.mark.parametrize(("length", "refused"), [(20, False), (21, True)])
+def test_a_text_may_be_so_long(length, refused, tmp_path, monkeypatch):
+    monkeypatch.setattr(structure, "MOST_TEXT", 20)
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file.attrs["title"] = "x" * length
+    if refused:
+        with pytest.raises(structure.RefusedError, match=r"^attribute title: too large$"):
+            structure.describe(str(tmp_path / "a.h5"))
+    else:
+        assert structure.describe(str(tmp_path / "a.h5"))["attributes"] == {"title": "x" * 20}
+
+
+def test_zeros_may_shrink_as_far_as_deflate_can(tmp_path, monkeypatch):
+    """Declared bytes are at most 1100 times those that are stored, and a mebibyte."""
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file.create_dataset("x", data=np.zeros((2**18, 2)), chunks=(2**16, 2), compression="gzip")
+        stored = file["x"].id.get_storage_size()
+    for most, refused in ((3 * 2**20 / stored, False), (3 * 2**20 / stored - 1e-6, True)):
+        monkeypatch.setattr(structure, "_MOST_EXPANSION", most)
+        if refused:
+            with pytest.raises(
+                structure.RefusedError, match=rf"^x: 4194304 bytes declared, {stored} stored$"
+            ):
+                structure.describe(str(tmp_path / "a.h5"))
+        else:
+            structure.describe(str(tmp_path / "a.h5"))
+
+
+def test_small_files_of_strangers_are_read_to_the_last_number(path, monkeypatch):
+    """HDF5 may fail on any of them; large ones are looked at when they are read."""
+    with h5py.File(path) as file:
+        place = file["load"].id.get_chunk_info(0).byte_offset
+    data = bytearray(path.read_bytes())
+    data[place + 3] ^= 1
+    path.write_bytes(data)
+    assert structure.describe(str(path), read=False)["datasets"]["load"] == ["<f8", [20, 2]]
+    for most, refused in ((len(data), True), (len(data) - 1, False)):
+        monkeypatch.setattr(structure, "_READ_ALL", most)
+        if refused:
+            with pytest.raises(OSError, match="Can't"):
+                structure.describe(str(path))
+        else:
+            structure.describe(str(path))
+
+
+def test_a_file_is_looked_at_once_until_it_changes(path, monkeypatch):
+    mcgw.open_ensemble(path)
+    calls, describe = [], structure.describe
+    monkeypatch.setattr(structure, "describe", lambda *a, **k: calls.append(a) or describe(*a, **k))
+    mcgw.open_ensemble(path)
+    assert not calls
+    os.utime(path)
+    mcgw.open_ensemble(path)
+    assert len(calls) == 1
+
+
+def fuzzed(kind, count):
+    env = os.environ | {"PYTHONPATH": str(TESTS.parent)}
+    call = [sys.executable, str(TESTS / "fuzz" / "fuzz.py"), kind, str(count), "1"]
+    done = subprocess.run(call, env=env, capture_output=True, text=True, check=True, timeout=300)
+    return json.loads(done.stdout)
+
+
+@pytest.mark.parametrize(
+    ("kind", "count"),
+    [
+        ("scenes", 300),
+        pytest.param("scenes", 5000, marks=pytest.mark.slow),
+        pytest.param("files", 100, marks=pytest.mark.slow),
+    ],
+)
+def test_fuzzed_input(kind, count):
+    found = fuzzed(kind, count)
+    assert found["inputs"] == count
+    assert 0 < found["accepted"] < count  # it reaches the good and the bad
+    assert found["failures"] == []
+
+
+def test_verify_names_what_is_wrong_with_a_hostile_file(path):
+    with h5py.File(path, "r+") as data:
+        del data["load"]
+        data["load"] = h5py.SoftLink("/load")
+    problem, found = ensembles.verify(path)
+    assert "a link to another place" in problem
+    assert found == "unreadable"
+
+
+def by_another_program(path, change=lambda file: None):
+    """What h5py leaves of a file that it opened for writing: no trailer."""
+    with h5py.File(path, "a") as file:
+        change(file)
+
+
+KINDS = {
+    "values": lambda scene, path: mcgw.run(scene, path),
+    "statistics": lambda scene, path: mcgw.run(scene.replace(keep="statistics"), path),
+    "sweep": lambda scene, path: mcgw.sweep(scene, {"grading.gamma": [0.5, 1.0]}, path=path),
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_file_that_another_program_opened_for_writing_is_read_with_one_note(kind, make_scene, tmp_path):
+    path, scene = tmp_path / "e.h5", make_scene(n_surfaces=20, separations=(0.0, 1.0))
+    before = KINDS[kind](scene, path).mean("load")
+    data = path.read_bytes()
+    for change in (lambda file: None, lambda file: file.attrs.update(comment="seen")):
+        path.write_bytes(data)
+        by_another_program(path, change)
+        assert b"MCGWSEAL" not in path.read_bytes()
+        with pytest.warns(UserWarning, match="was rewritten by another program; its numbers are") as told:
+            found = open_results(path).mean("load")
+        assert len(told) == 1
+        assert (found == before).all()
+        assert ensembles.verify(path)[0] == ""
+        KINDS[kind](scene, path)  # it is done, and nothing is said again
+
+
+def one_more(name, where=(0, 0)):
+    def change(file):
+        file[name][where] += 1
+
+    return change
+
+
+CHANGED = {
+    "values": [one_more("load"), one_more("contacts", (3, 1)), one_more("separation", 1)],
+    "statistics": [one_more("drawn/block_mean")],
+}
+
+
+@pytest.mark.parametrize("kind", ["values", "statistics"])
+def test_one_whose_numbers_it_changed_is_refused(kind, make_scene, tmp_path, capsys):
+    path, scene = tmp_path / "e.h5", make_scene(n_surfaces=20, separations=(0.0, 1.0))
+    KINDS[kind](scene, path)
+    data = path.read_bytes()
+    for change in CHANGED[kind]:
+        path.write_bytes(data)
+        by_another_program(path, change)
+        for words in (["show"], ["compare"], ["show", "--digest"]):
+            assert main([*words, str(path)]) == 2
+            (line,) = capsys.readouterr().err.splitlines()
+            assert "not those of its digest" in line or "does not hold the values" in line
+        with pytest.raises(StoreError):
+            mcgw.run(scene, path, n_surfaces=30)
+
+
+def test_one_that_it_rewrote_grows_and_has_a_trailer_again(make_scene, tmp_path):
+    path, scene = tmp_path / "e.h5", make_scene(n_surfaces=20, separations=(0.0, 1.0))
+    mcgw.run(scene, path)
+    by_another_program(path)
+    with pytest.warns(UserWarning, match="rewritten by another program"):
+        grown = mcgw.run(scene, path, n_surfaces=30)
+    assert (grown.load == mcgw.simulate(scene, n_surfaces=30).load).all()
+    assert b"MCGWSEAL" in path.read_bytes()
+
+
+@pytest.mark.parametrize("at", [-512, -500, -200, -1])
+def test_a_trailer_that_is_damaged_is_no_rewritten_file(at, make_scene, tmp_path):
+    path = tmp_path / "e.h5"
+    mcgw.run(make_scene(n_surfaces=20, separations=(0.0, 1.0)), path)
+    data = bytearray(path.read_bytes())
+    data[at] ^= 1
+    path.write_bytes(data)
+    with pytest.raises(StoreError, match="no trailer at its end, so it was cut off or changed"):
+        mcgw.open_ensemble(path)
+
+
+def test_a_table_that_was_never_written_is_refused(make_scene, tmp_path):
+    """HDF5 reads zeros there."""
+    path = tmp_path / "e.h5"
+    mcgw.run(make_scene(n_surfaces=20, separations=(0.0, 1.0)), path)
+    for options in ({}, {"chunks": (4, 2)}):
+        with h5py.File(path, "a") as file:
+            del file["load"]
+            file.create_dataset("load", (20, 2), "f8", **options)
+        with pytest.raises(StoreError, match=r"refused: load: \d+ (bytes|chunks) declared, 0 stored"):
+            mcgw.open_ensemble(path)

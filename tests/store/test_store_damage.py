@@ -1,0 +1,404 @@
+"""What is damaged is never gone on with: each kind of damage, and then every way of going on."""
+
+import shutil
+from dataclasses import replace
+
+import h5py
+import numpy as np
+import pytest
+from oracles.begun_runs import SURFACES, begun, in_small_blocks
+from oracles.new_trailer import trailer_again
+
+import mcgw
+from mcgw.cli import main
+from mcgw.errors import RunError, StoreError
+from mcgw.jobs.merging import merge
+from mcgw.jobs.running import run
+from mcgw.store import ensembles, layout, lock, run_folder, saving, shards, structure
+from mcgw.store.disk import (
+    TRAILER_BYTES,
+    SteadyFile,
+    Trailer,
+    check_trailer,
+    parts_of,
+    read_checked,
+    trailer_of,
+)
+from mcgw.store.run_folder import RunFolder
+
+
+@pytest.fixture(autouse=True)
+def _small_blocks(monkeypatch):
+    in_small_blocks(monkeypatch)
+
+
+@pytest.fixture
+def scene(make_scene):
+    return make_scene(separations=(2.0, 1.0, 3.0), sampler="tail", n_surfaces=SURFACES)
+
+
+@pytest.fixture
+def larger(scene):
+    return replace(scene, n_surfaces=SURFACES + 30)
+
+
+def test_beyond_the_end_of_a_file_hdf5_reads_zeros(tmp_path):
+    file = SteadyFile(tmp_path / "f")
+    file.write(b"abc")
+    file.seek(1)
+    buffer = bytearray(b"?" * 6)
+    assert file.readinto(buffer) == 6
+    assert bytes(buffer) == b"bc\0\0\0\0"
+    file.close()
+
+
+def nobody():
+    """Asks for an end."""
+
+
+def flip(path, place):
+    data = bytearray(path.read_bytes())
+    data[place] ^= 4
+    path.write_bytes(data)
+
+
+def changed_in_place(path):
+    """A number in the data; HDF5 opens the file as if nothing were."""
+    with h5py.File(path, "r") as file:
+        place = file["separation"].id.get_chunk_info(0).byte_offset
+    flip(path, place + 3)
+
+
+def flipped_in_a_result(path):
+    """One bit of the stored loads: only who reads them, or all bytes, can see it."""
+    with h5py.File(path, "r") as file:
+        place = file["load"].id.get_chunk_info(0).byte_offset
+    flip(path, place + 30)
+
+
+def a_changed_load(path):
+    """A number of a result, written by HDF5 itself over the old one."""
+    with h5py.File(path, "r+") as file:
+        file["load"][3, 1] *= 1 + 1e-12
+
+
+def cut_within_its_trailer(path):
+    path.write_bytes(path.read_bytes()[: 100 - TRAILER_BYTES])
+
+
+def with_another_trailer(path):
+    flip(path, len(path.read_bytes()) - 40)
+
+
+DAMAGES = [
+    changed_in_place,
+    flipped_in_a_result,
+    a_changed_load,
+    cut_within_its_trailer,
+    with_another_trailer,
+]
+
+
+# Every way to put more into a file.
+WAYS = {
+    "run": run,
+    "shard job": lambda scene, path: run(scene, path, shard="1/2"),
+    "stop rule": lambda scene, path: run(replace(scene, rel_err=1e-4), path),
+}
+
+
+@pytest.mark.filterwarnings("ignore:.* more surfaces than max_surfaces allows")  # said before it is opened
+@pytest.mark.parametrize(("damage", "large"), [*((x, False) for x in DAMAGES), (flipped_in_a_result, True)])
+@pytest.mark.parametrize("way", WAYS)
+def test_a_damaged_file_is_not_extended_nor_sealed_anew(
+    scene, larger, tmp_path, damage, way, large, monkeypatch
+):
+    """Of a large file only the head is looked at on opening: all of it before more is drawn for it."""
+    damaged = tmp_path / "e.h5"
+    run(scene, damaged)
+    assert ensembles.verify(damaged)[0] == ""
+    damage(damaged)
+    if large:
+        monkeypatch.setattr(ensembles, "examine", structure.examine)
+        monkeypatch.setattr(structure, "_SMALL", 0)
+        structure._examined.cache_clear()
+        assert ensembles.open_ensemble(damaged).n_surfaces == SURFACES
+    before = damaged.read_bytes()
+    with pytest.raises(StoreError):
+        WAYS[way](larger, damaged)
+    assert damaged.read_bytes() == before
+    assert not parts_of(damaged).exists() or not list(parts_of(damaged).glob("shards/*.h5"))
+    with pytest.raises(StoreError):
+        check_trailer(damaged)
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_a_file_damaged_while_more_is_drawn_is_not_merged(scene, larger, tmp_path, damage, capsys):
+    """Its own surfaces come first in the file that takes its place: they are looked at again."""
+    path = tmp_path / "e.h5"
+    run(scene, path)
+    assert run(larger, path, shard="1/1") == 0
+    assert main(["show", "--verify", str(path)]) == 0
+    assert "intact" in capsys.readouterr().out
+    damage(path)
+    assert main(["show", "--verify", str(path)]) == 1
+    assert "DAMAGED" in capsys.readouterr().out
+    before = path.read_bytes()
+    with pytest.raises((StoreError, RunError)):
+        merge(path)
+    assert path.read_bytes() == before
+
+
+@pytest.mark.parametrize("way", ["merge", "run", "read"])
+def test_a_shard_of_other_contents_never_becomes_a_file(scene, tmp_path, way):
+    """Another number under a good trailer: only the digest of the contents is as before."""
+    path = tmp_path / "e.h5"
+    shard = begun(scene, path)[2]
+    trailer, body = read_checked(shard)
+    with shards.tables_in(body, shard) as tables:
+        arrays = {name: table[()] for name, table in tables.items()}
+    arrays["load"][3, 1] *= 1.5
+    body = shards.pack(arrays)
+    shard.write_bytes(body + trailer_of(body, **trailer.notes))
+    if way == "read":
+        with pytest.raises(StoreError, match=r"block-0000000000032.*mismatch of its contents"):
+            _ = mcgw.open_ensemble(path).load
+    else:
+        with pytest.raises((RunError, StoreError), match="damaged"):
+            merge(path) if way == "merge" else run(scene, path)
+    assert not path.exists()
+
+
+def test_a_digest_that_is_written_wrong_is_seen(scene, tmp_path, monkeypatch):
+    path = tmp_path / "e.h5"
+    begun(scene, path)
+    describe = saving.describe
+
+    def forged(file, *arguments, **options):
+        describe(file, *arguments, **options)
+        file.attrs["digest"] = "0" * 64
+
+    monkeypatch.setattr(saving, "describe", forged)
+    with pytest.raises(OSError, match="was not written correctly"):
+        saving.merge_into(RunFolder.open(parts_of(path)), path, tmp_path / "x.tmp", nobody)
+
+
+@pytest.mark.parametrize("gone", [0, 3, 6])
+def test_a_shard_that_is_gone_is_missing(scene, tmp_path, gone):
+    path = tmp_path / "e.h5"
+    begun(scene, path, jobs=2)[gone].unlink()
+    with pytest.raises(StoreError):
+        saving.merge_into(RunFolder.open(parts_of(path)), path, tmp_path / "x.tmp", nobody)
+    with pytest.raises(RunError, match=f"surfaces are missing, from {16 * gone} on"):
+        merge(path)
+    assert not path.exists()
+
+
+def test_shards_of_another_run_are_not_taken(scene, tmp_path):
+    """The same place and numbers of another seed, trailer and digest in order."""
+    a, b = tmp_path / "a.h5", tmp_path / "b.h5"
+    ours, theirs = begun(scene, a), begun(replace(scene, seed=99), b)
+    shutil.copy(theirs[1], ours[1])
+    with pytest.raises(RunError, match="16 of 100 surfaces are missing, from 16 on"):
+        merge(a)
+    run(scene, a)
+    np.testing.assert_array_equal(mcgw.open_ensemble(a).load, mcgw.simulate(scene).load)
+
+
+@pytest.mark.parametrize("way", ["run", "shard job", "merge"])
+def test_nobody_works_on_a_folder_that_was_just_removed(scene, tmp_path, way, monkeypatch):
+    """Another's run ends, and its folder goes, between our looking for the lock and our getting it."""
+    path = tmp_path / "e.h5"
+    begun(scene, path)
+
+    class Late(lock.ReadWriteLock):
+        def _late(self, name, blocking):
+            shutil.rmtree(parts_of(path), ignore_errors=True)
+            return getattr(super(), name)(blocking=blocking)
+
+        def read_lock(self, *, blocking):
+            return self._late("read_lock", blocking)
+
+        def write_lock(self, *, blocking):
+            return self._late("write_lock", blocking)
+
+    monkeypatch.setattr(lock, "ReadWriteLock", Late)
+    monkeypatch.setattr(lock, "PATIENCE", 0.0)
+    work = {
+        "run": lambda: run(scene, path),
+        "shard job": lambda: run(scene, path, shard="1/2"),
+        "merge": lambda: merge(path),
+    }[way]
+    with pytest.raises(
+        StoreError, match=r"its run has just ended; repeat the command|neither this file nor its blocks"
+    ):
+        work()
+    assert not path.exists()
+    assert not parts_of(path).exists()
+
+
+def test_a_shard_of_other_surfaces_than_its_block_is_drawn_again(scene, tmp_path):
+    """Eight surfaces where the block has sixteen, in order otherwise: not what is held."""
+    path = tmp_path / "e.h5"
+    third = begun(scene, path)[2]
+    there = RunFolder.open(parts_of(path))
+    assert there.held(shards.Span(32, 16)).span == shards.Span(32, 16)
+    arrays = {name: x[:8] for name, x in shards.open_shard(third, there.identity).arrays().items()}
+    shards.commit_shard(third, there.identity, shards.Span(32, 8), arrays, 0.0)
+    assert there.held(shards.Span(32, 16)) is None
+    assert there.held(shards.Span(32, 8)) is not None
+    run(scene, path)
+    np.testing.assert_array_equal(mcgw.open_ensemble(path).load, mcgw.simulate(scene).load)
+
+
+def test_seconds_of_all_blocks_and_of_the_file_before_add_up(scene, larger, tmp_path):
+    path = tmp_path / "e.h5"
+    begun(scene, path)
+    each = [shard.seconds for shard in RunFolder.open(parts_of(path)).shards()]
+    merge(path)
+    first = ensembles.read_attributes(path)["wall_seconds"]
+    assert first == pytest.approx(sum(each), rel=1e-12)
+    assert run(larger, path, shard="1/1") == 0
+    more = [shard.seconds for shard in RunFolder.open(parts_of(path)).shards()]
+    merge(path)
+    assert ensembles.read_attributes(path)["wall_seconds"] == pytest.approx(first + sum(more), rel=1e-12)
+    assert sum(more) > 0
+
+
+# --- what is small is checked whenever a file is opened -------------------------------------------------
+
+
+@pytest.fixture
+def file(scene, tmp_path):
+    """A finished file."""
+    run(scene, tmp_path / "e.h5")
+    return tmp_path / "e.h5"
+
+
+@pytest.mark.parametrize(
+    ("filetype", "version"), [("mcgw-ensemble", (1, 1)), ("mcgw-results", (1, 0)), ("mcgw-results", (3, 0))]
+)
+def test_files_of_other_formats_are_refused_in_one_line(scene, file, filetype, version, monkeypatch):
+    file.unlink()
+    monkeypatch.setattr(layout, "FILETYPE", filetype)
+    monkeypatch.setattr(layout, "FORMAT", version)
+    run(scene, file)  # as a version writes it that calls its files so
+    with pytest.raises(StoreError, match=r"is not read by this version") as caught:
+        mcgw.open_ensemble(file)
+    assert len(str(caught.value).splitlines()) == 1
+
+
+def test_a_new_file_without_the_checksum_is_refused(file):
+    """Nobody makes it an older one by leaving the checksum away."""
+    with h5py.File(file, "r+") as data:
+        data.attrs["seed"] = np.uint64(5)
+    body = file.read_bytes()
+    file.write_bytes(body + trailer_of(body))
+    with pytest.raises(StoreError, match="checksum mismatch of its scene, attributes or scales"):
+        mcgw.open_ensemble(file)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda data: data.attrs.__setitem__("title", "another"),
+        lambda data: data.attrs.__setitem__("wall_seconds", 1.0),
+        lambda data: data.attrs.__setitem__("note", "added"),
+        lambda data: data.attrs.__delitem__("cpu"),
+        lambda data: data["load"].attrs.__setitem__("units", "kN"),
+        lambda data: data["area"].attrs.__setitem__("long_name", "something else"),
+        lambda data: data["separation"].__setitem__(1, 1.0000000000000002),
+        lambda data: data["surface"].__setitem__(3, 4),
+        lambda data: data["load"].dims[1].detach_scale(data["separation"]),
+        lambda data: data.create_dataset("more", data=np.ones(3)),
+    ],
+)
+def test_whatever_is_small_is_checked(file, change):
+    """The trailer fits the bytes, only the checksum of the head is the old one."""
+    head = structure.describe(str(file))["head"]
+    with h5py.File(file, "r+") as data:
+        change(data)
+    body = file.read_bytes()
+    file.write_bytes(body + trailer_of(body, head=head))
+    with pytest.raises(StoreError, match="checksum mismatch of its scene, attributes or scales"):
+        mcgw.open_ensemble(file)
+
+
+def test_the_checksum_is_of_contents_alone(file):
+    """Rewritten by another layout and sealed again it is the same."""
+    head = structure.describe(str(file))["head"]
+    with h5py.File(file, "r+") as data:
+        values, units = data["load"][()], dict(data["load"].attrs)
+        del data["load"]
+        data.create_dataset("load", data=values)
+        data["load"].attrs.update({key: units[key] for key in ("long_name", "units")})
+        for axis, name in enumerate(("surface", "separation")):
+            data["load"].dims[axis].attach_scale(data[name])
+    assert structure.describe(str(file))["head"] == head
+
+
+@pytest.mark.parametrize(("name", "value"), [("separation", 1.5), ("surface", 7)])
+def test_scales_must_be_those_of_the_scene(file, name, value):
+    """Also where somebody sealed the file anew."""
+    with h5py.File(file, "r+") as data:
+        data[name][1] = value
+    trailer_again(file)
+    with pytest.raises(StoreError, match=f"{name} does not hold the values that its scene declares"):
+        mcgw.open_ensemble(file)
+
+
+def test_a_changed_number_is_an_error_when_it_is_read(file):
+    """Each chunk has a checksum: what HDF5 reads is what was written, or nothing."""
+    data, dice = bytearray(file.read_bytes()), np.random.default_rng(5)
+    with h5py.File(file) as opened:
+        chunk = opened["load"].id.get_chunk_info(0)
+    for at in dice.integers(chunk.byte_offset, chunk.byte_offset + chunk.size, 20):
+        changed = data.copy()
+        changed[at] ^= 1 << int(dice.integers(8))
+        file.write_bytes(changed)
+        with pytest.raises(StoreError, match="cannot be read; is it damaged"):
+            ensembles.FileResults(file).read("load", 0, None)
+
+
+@pytest.fixture
+def half(scene, tmp_path):
+    """A run of which half is done."""
+    run(scene, tmp_path / "b.h5", shard="1/2")
+    return parts_of(tmp_path / "b.h5")
+
+
+def test_another_scene_in_a_run_is_noticed(half):
+    file = half / "run.toml"
+    good = file.read_text()
+    assert "sigma = 1.37e-06" in good
+    file.write_text(good.replace("sigma = 1.37e-06", "sigma = 1.37e-05"))
+    with pytest.raises(StoreError, match=r"run\.toml: damaged \(checksum mismatch\)"):
+        RunFolder.open(half)
+    file.write_text(good[: good.index("sha256")])
+    with pytest.raises(StoreError, match=r"run\.toml: damaged"):
+        RunFolder.open(half)
+
+
+def test_a_run_of_an_older_format_is_refused(half, scene):
+    file = half / "run.toml"
+    text = file.read_text()
+    old = text[: text.index("sha256")].replace("    2,\n    0,\n", "    1,\n    1,\n")
+    file.write_text(old + f'sha256 = "{run_folder.hashlib.sha256(old.encode()).hexdigest()}"\n')
+    with pytest.raises(StoreError, match=r"is not a run of format 2\.x, but \[1, 1\]"):
+        run(scene, half.with_suffix(""))
+
+
+def test_the_checksum_of_a_run_is_of_its_text(half):
+    """Computed here anew, by what the format says: the last line is of all before it."""
+    text = (half / "run.toml").read_bytes()
+    *lines, last = text.splitlines(keepends=True)
+    expected = run_folder.hashlib.sha256(b"".join(lines)).hexdigest()
+    assert last == f'sha256 = "{expected}"\n'.encode()
+
+
+def test_a_trailer_has_room_for_so_much_and_no_more():
+    assert Trailer.from_bytes(Trailer(1, "0" * 64, {"note": "x" * 300}).to_bytes()).notes == {
+        "note": "x" * 300
+    }
+    with pytest.raises(ValueError, match="bytes of notes, more than 480"):
+        Trailer(1, "0" * 64, {"note": "x" * 480}).to_bytes()

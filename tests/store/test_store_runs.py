@@ -1,0 +1,518 @@
+"""Runs that are interrupted, gone on with, extended, shared, disturbed: always the same digest."""
+
+import errno
+import os
+import pydoc
+import shutil
+import signal
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from oracles.begun_runs import SIZE, SURFACES, begun, digest, halted, in_small_blocks
+from oracles.new_trailer import trailer_again
+from oracles.said import without_notes
+
+import mcgw
+from mcgw.cli import main
+from mcgw.errors import RunError, StoppedError, StoreError
+from mcgw.formats.files import state_of
+from mcgw.jobs import merging
+from mcgw.jobs.driver import part_of
+from mcgw.jobs.job import Job, commit_block
+from mcgw.jobs.merging import merge
+from mcgw.jobs.running import run
+from mcgw.store import ensembles, layout
+from mcgw.store.disk import parts_of
+from mcgw.store.place import write_body
+from mcgw.store.run_folder import RunFolder
+from mcgw.store.shards import Plan, Span
+
+HERE = Path(__file__).parents[1]
+
+
+@pytest.fixture(autouse=True)
+def _small_blocks(monkeypatch):
+    in_small_blocks(monkeypatch)
+
+
+@pytest.fixture
+def scene(make_scene):
+    return make_scene(separations=(2.0, 1.0, 3.0), sampler="tail", n_surfaces=SURFACES)
+
+
+@pytest.fixture
+def expected(scene, tmp_path):
+    """Digest of what was drawn in memory and saved, without blocks."""
+    mcgw.save(mcgw.simulate(scene), tmp_path / "expected" / "whole.h5")
+    return digest(tmp_path / "expected" / "whole.h5")
+
+
+def test_blocks_change_no_bit(scene, tmp_path, expected):
+    done = []
+    ensemble = run(scene, tmp_path / "e.h5", progress=lambda now, _: done.append(now))
+    assert done == [0, 16, 32, 48, 64, 80, 96, 100]
+    assert digest(tmp_path / "e.h5") == expected
+    assert not parts_of(tmp_path / "e.h5").exists()
+    np.testing.assert_array_equal(ensemble.load, mcgw.simulate(scene).load)
+
+
+def test_one_block_leaves_no_trace_beside_its_file(scene, tmp_path):
+    run(replace(scene, n_surfaces=SIZE), tmp_path / "e.h5")
+    assert [p.name for p in tmp_path.iterdir()] == ["e.h5"]
+
+
+@pytest.fixture
+def drawn(monkeypatch):
+    """First surfaces of the blocks that were drawn, in order."""
+    found, draw = [], Job.draw
+
+    def counted(job, span, *more):
+        found.append(span.first)
+        return draw(job, span, *more)
+
+    monkeypatch.setattr(Job, "draw", counted)
+    return found
+
+
+@pytest.mark.parametrize("keep", ["sums", "statistics"])
+@pytest.mark.parametrize("by", ["run", "shares", "workers"])
+def test_going_on_draws_each_missing_block_once(scene, tmp_path, drawn, by, keep):
+    """Blocks 0 to 2 and 5 are held: nobody draws them again, whoever goes on."""
+    scene, path = replace(scene, keep=keep), tmp_path / "e.h5"
+    run(scene, path, shard="1/1")
+    blocks = sorted(parts_of(path).glob("shards/block-*.h5"))
+    assert drawn == [0, 16, 32, 48, 64, 80, 96]
+    for lost in (3, 4, 6):
+        blocks[lost].unlink()
+    drawn.clear()
+    if by == "run":
+        told = []
+        run(scene, path, progress=lambda now, _: told.append(now))
+        assert (told[0], told[-1]) == (64, 100)
+    elif by == "shares":
+        assert [run(scene, path, shard=f"{k}/2") for k in (1, 2, 1)] == [16, 0, 0]
+    else:
+        for first, n in ((0, 16), (48, 16), (64, 16), (48, 16), (96, 4)):
+            commit_block(str(parts_of(path)), first, n)
+    assert sorted(drawn) == [48, 64, 96]
+
+
+@pytest.mark.parametrize("bytes_at_a_time", [1, 5_000, 2**23])
+def test_a_file_is_read_again_in_pieces_that_make_the_whole(
+    make_scene, tmp_path, monkeypatch, bytes_at_a_time
+):
+    """Each row once, in the piece of its surface."""
+    scene = make_scene(sampler="cells", n_surfaces=50)
+    whole = run(scene, tmp_path / "e.h5")
+    monkeypatch.setattr(layout, "_PIECE", bytes_at_a_time)
+    with h5py.File(tmp_path / "e.h5", "r") as file:
+        pieces = list(layout.file_pieces(file))
+    assert [span.first for span, _ in pieces[1:]] == [span.stop for span, _ in pieces[:-1]]
+    assert (len(pieces) > 1) == (bytes_at_a_time < 2**23)
+    for name in ("load", "contacts"):
+        read = np.concatenate([arrays[name] for _, arrays in pieces])
+        np.testing.assert_array_equal(read, whole.sums.read(name, 0, None))
+
+
+def test_n_surfaces_is_the_total(scene, tmp_path, expected, drawn):
+    """Extended in steps that are no multiple of a block, once in the middle of a run; each is drawn once."""
+    path = tmp_path / "e.h5"
+    run(replace(scene, n_surfaces=5), path)
+    run(replace(scene, n_surfaces=37), path)
+    assert drawn == [0, 5, 16, 32]
+    assert ensembles.open_ensemble(path).n_surfaces == 37
+    halted(replace(scene, n_surfaces=90), path, 64)
+    assert ensembles.open_ensemble(path).n_surfaces == 37  # the finished file stays as it is
+    drawn.clear()
+    run(scene, path)
+    assert 64 <= drawn[0] <= 90
+    assert digest(path) == expected
+    with pytest.raises(StoreError, match="holds 100 surfaces already"):
+        run(replace(scene, n_surfaces=99), path)
+
+
+def test_a_finished_run_is_not_drawn_again(scene, tmp_path, monkeypatch):
+    run(scene, tmp_path / "e.h5")
+    before = (tmp_path / "e.h5").stat()
+    monkeypatch.setattr(Job, "draw", None)
+    run(scene, tmp_path / "e.h5")
+    assert (tmp_path / "e.h5").stat().st_mtime_ns == before.st_mtime_ns
+
+
+@pytest.mark.parametrize("begun", [False, True], ids=["finished", "in progress"])
+@pytest.mark.parametrize(
+    ("change", "word"),
+    [({"seed": 2}, "ensemble.seed is 1 there and 2 here"), ({"separations": (0.5,)}, "contact.separations")],
+)
+def test_another_scene_or_seed_in_that_place_is_refused(scene, tmp_path, change, word, begun):
+    path = tmp_path / "e.h5"
+    if begun:
+        halted(scene, path, 40)
+    else:
+        run(replace(scene, n_surfaces=8), path)
+    with pytest.raises(StoreError, match=word):
+        run(replace(scene, **change), path)
+
+
+def test_another_version_is_refused(scene, tmp_path, monkeypatch):
+    path = tmp_path / "e.h5"
+    halted(scene, path, 40)
+    for module in ("store.identity", "jobs.job"):
+        monkeypatch.setattr(f"mcgw.{module}.versions", lambda **_: "mcgw 99")
+    with pytest.raises(StoreError, match=r"drawn with .*, but this is mcgw 99"):
+        run(scene, path)
+
+
+def test_damage_is_put_aside_and_drawn_again(scene, tmp_path, expected):
+    path = tmp_path / "e.h5"
+    halted(scene, path, 64)
+    shards = sorted(parts_of(path).glob("shards/*.h5"))
+    data = bytearray(shards[0].read_bytes())
+    data[1000] ^= 1
+    shards[0].write_bytes(data)  # a flipped bit
+    shards[1].write_bytes(shards[1].read_bytes()[:-700])  # truncated
+    shards[2].write_bytes(shards[3].read_bytes())  # another block
+    (shards[3].parent / ".left.tmp").write_bytes(b"half")
+    assert ensembles.open_ensemble(path).n_surfaces == min(SIZE * len(shards), SURFACES) - 3 * SIZE
+    halted(scene, path, 0)
+    assert len(list(parts_of(path).glob("shards/*.bad"))) == 3
+    assert not list(parts_of(path).glob("shards/.*.tmp"))
+    run(scene, path)
+    assert digest(path) == expected
+
+
+def test_damage_found_while_merging_is_mended(scene, tmp_path, expected, monkeypatch):
+    path, merged = tmp_path / "e.h5", merging.merge_into
+
+    def damage_first(run_of, *rest):
+        monkeypatch.setattr(merging, "merge_into", merged)
+        shard = min(run_of.folder.glob("shards/*.h5"))
+        shard.write_bytes(shard.read_bytes()[:-1])
+        merged(run_of, *rest)
+
+    monkeypatch.setattr(merging, "merge_into", damage_first)
+    run(scene, path)
+    assert digest(path) == expected
+
+
+def test_a_run_in_progress_can_be_read(scene, tmp_path):
+    path = tmp_path / "e.h5"
+    halted(scene, path, 48)
+    ensemble, whole = ensembles.open_ensemble(path), mcgw.simulate(scene)
+    m = ensemble.n_surfaces
+    assert m % SIZE == 0
+    np.testing.assert_array_equal(ensemble.load, whole.load[:m])
+    np.testing.assert_allclose(ensemble.mean("area"), whole.area[:m].mean(axis=0), rtol=1e-12)  # rounding
+    assert not ensembles.read_attributes(path)["complete"]
+
+
+def test_rows_of_a_run_in_progress_are_those_of_a_list(scene, tmp_path):
+    """From any surface to any other, within a block and beyond one."""
+    path, asked = tmp_path / "e.h5", replace(scene, sampler="cells")
+    shards = begun(asked, path)[:3]
+    every = ensembles.open_ensemble(path).sums
+    held = replace(every, shards=every.shards[:3])
+    whole = mcgw.simulate(asked)
+    for start in (0, 5, 15, 16, 33):
+        for stop in (16, 17, 40, 48, None):
+            rows = slice(start, 48 if stop is None else stop)
+            if rows.start < rows.stop:
+                np.testing.assert_array_equal(held.read("load", start, stop), whole.load[rows])
+    shards[1].unlink()
+    with pytest.raises(StoreError, match=r"block-0000000000016\.h5: no longer exists; its run has ended"):
+        held.read("load", 0, 20)
+    np.testing.assert_array_equal(held.read("load", 0, 16), whole.load[:16])
+
+
+def test_a_run_without_a_block_or_its_record_is_said_to_have_none(scene, tmp_path):
+    path = tmp_path / "e.h5"
+    begun(scene, path)
+    folder = parts_of(path)
+    for shard in folder.glob("shards/*"):
+        shard.unlink()
+    with pytest.raises(StoreError, match=r"e\.h5: no block of its run is finished yet$"):
+        ensembles.open_ensemble(path)
+    (folder / "shards").rmdir()
+    with pytest.raises(RunError, match=r"e\.h5\.parts: is missing or incomplete; run the command again$"):
+        ensembles.open_ensemble(path)
+    (folder / "run.toml").unlink()
+    with pytest.raises(StoreError, match=r"run\.toml: No such file or directory$"):
+        RunFolder.open(folder)
+
+
+def test_a_block_that_is_a_link_or_damaged_is_not_held(scene, tmp_path):
+    path = tmp_path / "e.h5"
+    first, second, third = begun(scene, path)[:3]
+    run_folder = RunFolder.open(parts_of(path))
+    assert [run_folder.held(Span(at, 16)).span for at in (0, 16, 32)] == [Span(at, 16) for at in (0, 16, 32)]
+    first.rename(tmp_path / "elsewhere.h5")
+    first.symlink_to(tmp_path / "elsewhere.h5")
+    second.write_bytes(second.read_bytes()[:-1])
+    third.unlink()
+    assert [run_folder.held(Span(at, 16)) for at in (0, 16, 32)] == [None] * 3
+    (parts_of(path) / ".left.tmp").touch()
+    run_folder.remove()
+    assert [left.name for left in parts_of(path).iterdir()] == ["lock.db"]
+
+
+def test_statistics_of_a_missing_block_are_not_merged(scene, tmp_path, monkeypatch):
+    """It goes between the look for gaps and the making of the file."""
+    path = tmp_path / "e.h5"
+    gone = begun(replace(scene, keep="statistics"), path)[2]
+    made = merging.merge_once
+
+    def late(*words):
+        gone.unlink()
+        return made(*words)
+
+    monkeypatch.setattr(merging, "merge_once", late)
+    with pytest.raises(RunError, match=r"a shard is damaged; run the jobs again to redraw it$"):
+        merge(path)
+    assert not path.exists()
+
+
+def test_a_file_that_appears_while_one_is_made_is_left_alone(tmp_path):
+    path = tmp_path / "e.h5"
+    write_body(path, (b"one", b"two"), None)
+    before = state_of(path)
+    with pytest.raises(StoreError, match=r"e\.h5: File exists; it was not changed; choose another"):
+        write_body(path, (b"three", b""), None)
+    assert path.read_bytes() == b"onetwo"
+    write_body(path, (b"three", b"four"), before)
+    assert path.read_bytes() == b"threefour"
+    with pytest.raises(StoreError, match="another file now has this name; it was not changed"):
+        write_body(path, (b"five", b""), before)
+    with pytest.raises(RunError, match=r"cannot be written \(No such file or directory\); free some space"):
+        write_body(tmp_path / "no" / "e.h5", (b"", b""), None)
+
+
+def test_progress_of_a_run_goes_on_from_what_it_holds(scene, tmp_path):
+    path, told = tmp_path / "e.h5", []
+    run(scene, path, shard="2/2", progress=lambda *pair: told.append(pair))  # of seven blocks three
+    assert told == [(0, 100), (16, 100), (32, 100), (48, 100)]
+    told.clear()
+    run(scene, path, progress=lambda *pair: told.append(pair))
+    assert told == [(48, 100), (64, 100), (80, 100), (96, 100), (100, 100)]
+    told.clear()
+    run(scene, path, progress=lambda *pair: told.append(pair))
+    assert told == [(100, 100)]
+    told.clear()
+    run(scene, tmp_path / "one.h5", n_surfaces=10, progress=lambda *pair: told.append(pair))
+    assert (told[0], told[-1]) == ((0, 10), (10, 10))
+
+
+def test_what_is_left_out_of_a_run_is_told(scene, tmp_path):
+    """Blocks of a share, by their numbers among all."""
+    path = tmp_path / "e.h5"
+    for k, held in ((2, [16, 64]), (3, [16, 32, 64, 80])):
+        run(scene, path, shard=f"{k}/3")
+        assert [shard.span.first for shard in RunFolder.open(parts_of(path)).shards()] == held
+    for wrong in ("0/3", "4/3", "1", "a/b", "1/0", "-1/3", "1/3/5", ""):
+        with pytest.raises(ValueError, match=r"^--shard .*: give i/n with 1 <= i <= n$"):
+            part_of(wrong)
+    assert (part_of("3/3").number, part_of("3/3").of) == (3, 3)
+
+
+def test_jobs_that_share_a_run(scene, tmp_path, expected):
+    path = tmp_path / "e.h5"
+    assert run(scene, path, shard="2/3") == SURFACES - 2 * SIZE
+    with pytest.raises(RunError, match="68 of 100 surfaces are missing, from 0 on"):
+        merge(path)
+    assert run(scene, path, shard="1/3") == 2 * SIZE
+    assert run(scene, path, shard="3/3") == 0
+    merge(path)
+    assert digest(path) == expected
+    with pytest.raises(ValueError, match="--shard 4/3: give i/n"):
+        part_of("4/3")
+
+
+def test_the_folder_of_a_run_vanishes(scene, tmp_path):
+    path = tmp_path / "e.h5"
+
+    def vanish(done, _):
+        if done:
+            shutil.rmtree(parts_of(path), ignore_errors=True)
+
+    with pytest.raises((RunError, StoreError)):
+        run(scene, path, progress=vanish)
+    assert not path.exists()
+
+
+def test_planted_links_are_not_followed(scene, tmp_path):
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    parts_of(tmp_path / "e.h5").symlink_to(elsewhere)
+    with pytest.raises(StoreError, match="is not a folder"):
+        run(scene, tmp_path / "e.h5")
+    assert not list(elsewhere.iterdir())
+    (tmp_path / "f.h5").symlink_to(elsewhere / "victim")
+    with pytest.raises(StoreError, match="is not a regular file"):
+        run(scene, tmp_path / "f.h5")
+
+
+def test_changed_data_with_a_good_trailer_are_noticed(scene, tmp_path):
+    path = tmp_path / "e.h5"
+    run(scene, path)
+    with h5py.File(path, "r+") as file:
+        file["load"][3, 1] *= 1 + 1e-15
+    trailer_again(path)
+    assert ensembles.verify(path)[0] == "digest mismatch of its data"
+
+
+def test_room_is_asked_for_what_is_not_there_yet(scene, tmp_path, monkeypatch):
+    path = tmp_path / "e.h5"
+    halted(scene, path, 64)
+    half = 8 * SURFACES * len(scene.separations) * len(scene.quantities)
+    free = shutil.disk_usage(tmp_path)._replace(free=2 * half - 1)
+    monkeypatch.setattr("mcgw.jobs.job.shutil.disk_usage", lambda folder: free)
+    with pytest.raises(StoreError, match="free some space"):
+        run(scene, tmp_path / "other.h5")
+    run(scene, path)
+
+
+def test_gaps_are_cut_at_multiples_of_a_block():
+    plan = Plan(((50, 16),))
+    assert plan.missing([]) == [Span(0, 16), Span(16, 16), Span(32, 16), Span(48, 2)]
+    assert plan.missing([Span(0, 20), Span(32, 16)]) == [Span(20, 12), Span(48, 2)]
+    assert plan.missing([Span(0, 50)]) == plan.missing([Span(0, 64)]) == []
+
+
+def test_blocks_of_several_groups_end_with_their_group():
+    """Two groups of 50 and 20 surfaces, in blocks of 16 and 20, one after the other."""
+    plan = Plan(((50, 16), (20, 20)), whole=True)
+    blocks = [Span(0, 16), Span(16, 16), Span(32, 16), Span(48, 2), Span(50, 20)]
+    assert plan.total == 70
+    assert plan.missing([]) == blocks
+    assert [plan.number(block) for block in blocks] == [0, 1, 2, 3, 4]
+    assert [plan.group(block) for block in blocks] == [(0, 0), (0, 16), (0, 32), (0, 48), (1, 0)]
+    for held in blocks:
+        assert plan.missing([held]) == [block for block in blocks if block != held]
+        assert plan.takes(held)
+    assert not any(map(plan.takes, (Span(0, 15), Span(8, 16), Span(50, 16), Span(48, 4))))
+    assert Plan(((50, 16),), whole=True).takes(Span(64, 16))  # of more than is asked for now
+    assert [Plan(((50, 16),), whole=True).kept(n) for n in (0, 20, 32, 50)] == [0, 16, 32, 50]
+
+
+def as_typed(scene, path):
+    """The command, called here: its exit code."""
+    file = path.with_suffix(".toml")
+    file.write_text(mcgw.scene_text(scene))
+    return main(["run", str(file), "-o", str(path)])
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_signals_stop_a_run_that_then_goes_on(
+    scene, tmp_path, number, code, expected, drawn, monkeypatch, capsys
+):
+    """Sent while the third block is drawn: that is kept, and the rest is drawn later."""
+    path, draw = tmp_path / "e.h5", Job.draw
+
+    def signalled(*arguments):
+        if len(drawn) == 2:
+            os.kill(os.getpid(), number)  # once: the second one ends everything
+        return draw(*arguments)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Job, "draw", signalled)
+        if number == signal.SIGINT:
+            assert as_typed(scene, path) == code
+        else:
+            with pytest.raises(StoppedError) as caught:
+                run(scene, path)
+            assert caught.value.code == code
+    said = capsys.readouterr()
+    assert said.out == ""
+    if number == signal.SIGINT:
+        assert "the same command resumes" in without_notes(said.err).splitlines()[-1]
+    assert not path.exists()
+    assert 3 <= len(drawn) < 7
+    run(scene, path)
+    assert digest(path) == expected
+
+
+def test_a_signal_while_the_only_block_is_drawn_leaves_nothing(scene, tmp_path, monkeypatch):
+    draw = Job.draw
+
+    def signalled(*arguments):
+        os.kill(os.getpid(), signal.SIGTERM)
+        return draw(*arguments)
+
+    monkeypatch.setattr(Job, "draw", signalled)
+    with pytest.raises(StoppedError, match="terminated: nothing was saved") as caught:
+        run(replace(scene, n_surfaces=SIZE), tmp_path / "e.h5")
+    assert caught.value.code == 143
+    assert list(tmp_path.iterdir()) == []
+
+
+KILLED = """
+import os, signal, sys
+import numpy
+from mcgw.jobs import job
+from mcgw.ensemble.simulation import Values
+from mcgw.jobs.job import Job
+Values.rows = 16
+commit, committed = job.commit_shard, []
+
+def killed_at_the_fourth(*words):
+    if len(committed) == 3:
+        os.kill(os.getpid(), signal.SIGKILL)
+    committed.append(words)
+    return commit(*words)
+
+job.commit_shard = killed_at_the_fourth
+drawn = dict(numpy.load(sys.argv[3]))  # so that no loop is loaded
+Job.draw = lambda job, span, *how: {name: x[span.first : span.stop] for name, x in drawn.items()}
+from mcgw.jobs.running import run
+from mcgw.scene.scene_file import scene_from
+run(scene_from(open(sys.argv[1]).read()), sys.argv[2])
+"""
+
+
+def test_killed_at_a_block_it_goes_on(scene, tmp_path, expected, drawn):
+    path, file = tmp_path / "e.h5", tmp_path / "e.toml"
+    file.write_text(mcgw.scene_text(scene))
+    np.savez(tmp_path / "drawn.npz", **mcgw.simulate(scene).sums.arrays)
+    call = [sys.executable, "-c", KILLED, str(file), str(path), str(tmp_path / "drawn.npz")]
+    done = subprocess.run(call, cwd=HERE.parent, capture_output=True, check=False)
+    assert done.returncode == -signal.SIGKILL
+    assert len(list(parts_of(path).glob("shards/block-*.h5"))) == 3
+    drawn.clear()
+    assert as_typed(scene, path) == 0
+    assert drawn == [48, 64, 80, 96]
+    assert digest(path) == expected
+
+
+FULL = [
+    ("jobs.job.commit_shard", "finished blocks are kept"),
+    ("jobs.merging.merge_into", "cannot be merged"),
+]
+
+
+@pytest.mark.parametrize(("where", "words"), FULL)
+def test_a_full_disk_is_one_line_and_the_run_completes_later(
+    scene, tmp_path, expected, where, words, monkeypatch, capsys
+):
+    """At the third block, which leaves two, and at the file."""
+    path, module = tmp_path / "e.h5", f"mcgw.{where}"
+    calls, work = [], pydoc.locate(module)
+
+    def full(*arguments):
+        calls.append(arguments)
+        if len(calls) == 3 or "merge" in where:
+            raise OSError(errno.ENOSPC, "No space left on device", str(path))
+        return work(*arguments)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(module, full)
+        assert as_typed(scene, path) == 1
+    (line,) = without_notes(capsys.readouterr().err).splitlines()
+    assert words in line
+    assert not path.exists()
+    assert len(list(parts_of(path).glob("shards/block-*.h5"))) >= 2
+    run(scene, path)
+    assert digest(path) == expected

@@ -1,0 +1,574 @@
+"""Sweeps: each point has the numbers that it has alone, and points over the same surfaces differ exactly."""
+
+import numpy as np
+import pytest
+from oracles.told import drawn
+from scipy.integrate import quad
+from scipy.stats import skew
+
+import mcgw
+from mcgw.sweeps import pooled
+from mcgw.sweeps.axes import axes_of, label
+
+SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+SCENE = mcgw.Scene(SURFACE, separations=[0.0, 0.4, 1.0, 1.5, 2.5], n_surfaces=300, n_asperities=2000, seed=7)
+GAMMA = "grading.gamma"
+SPECTRAL = mcgw.Scene(
+    mcgw.SpectralSurface(1e-12, 1e-3, 5e6, 1e-6, 78.6e9), separations=[0.0, 1.0, 1.5], n_surfaces=50,
+    n_asperities=2000, seed=7,
+)  # fmt: skip
+KINKED = [mcgw.Table((-1, kink, 6), (1.0, 1.5, 3.0)) for kink in (0.33, 0.7, 1.21)]
+
+
+def same_bits(sweep, at):
+    alone = mcgw.simulate(sweep.scene(at))
+    return all(
+        np.array_equal(sweep.mean(name)[at], alone.mean(name))
+        and np.array_equal(sweep.std(name)[at], alone.std(name))
+        for name in sweep.quantities
+    )
+
+
+def test_few_points_have_the_bits_of_single_runs():
+    sweep = mcgw.sweep(SCENE, {GAMMA: [0.5, 1.0, 2.0], "ensemble.n_asperities": [50, 2000]})
+    assert (sweep.mean("load").shape, sweep.edges, len(sweep.groups)) == ((3, 2, 5), ((), ()), 2)
+    assert all(same_bits(sweep, at) for at in np.ndindex(sweep.shape))
+    alone = mcgw.simulate(SCENE.replace(grading=mcgw.Exponential(2.0), n_asperities=50))
+    assert np.array_equal(sweep.std("load")[2, 0], alone.std("load"))
+
+
+@pytest.mark.parametrize("count", ["fixed", "poisson"])
+def test_many_exponential_gradings_have_the_numbers_of_single_runs(count):
+    gammas = np.linspace(0.2, 2.0, 12)
+    sweep = mcgw.sweep(
+        SCENE.replace(count=count, quantities=["load", "conductance", "contacts"]), {GAMMA: gammas}
+    )
+    assert len(sweep.groups[0].means["load"]) == 2  # of which all are weighted means
+    for i in range(12):
+        alone = mcgw.simulate(sweep.scene(i))
+        for name in sweep.quantities:
+            np.testing.assert_allclose(sweep.mean(name)[i], alone.mean(name), rtol=1e-12)
+            np.testing.assert_allclose(sweep.std(name)[i], alone.std(name), rtol=1e-12)
+
+
+@pytest.mark.parametrize("gammas", [np.linspace(0.2, 1.6, 8), [1.0, 0.4, 1.9, 0.9, 0.8, 0.7, 0.6, 0.5, 1.9]])
+def test_eight_gradings_are_means_of_the_softest_and_the_stiffest(gammas):
+    """In any order; and the two themselves have the bits of single runs."""
+    sweep = mcgw.sweep(SCENE.replace(n_surfaces=20), {GAMMA: gammas})
+    assert len(sweep.groups[0].means["load"]) == 2
+    assert same_bits(sweep, (int(np.argmin(gammas)),))
+    assert same_bits(sweep, (int(np.argmax(gammas)),))
+    for i in range(len(gammas)):
+        alone = mcgw.simulate(sweep.scene(i))
+        np.testing.assert_allclose(sweep.std("load")[i], alone.std("load"), rtol=1e-12)
+        for found, expected in zip(sweep.interval("contacts"), alone.interval("contacts"), strict=True):
+            np.testing.assert_allclose(found[i], expected, rtol=1e-12)
+
+
+def test_a_table_among_many_exponential_gradings_keeps_its_numbers():
+    """It is not taken for the homogeneous surface, a mean of two of them."""
+    gradings = [*(mcgw.Exponential(gamma) for gamma in np.linspace(0.2, 2.0, 9)), KINKED[0]]
+    sweep = mcgw.sweep(SCENE.replace(n_surfaces=20), {"grading": gradings})
+    for i in range(len(gradings)):
+        np.testing.assert_allclose(
+            sweep.mean("load")[i], mcgw.simulate(sweep.scene(i)).mean("load"), rtol=1e-12
+        )
+
+
+SEVERAL = {
+    "balance": (SCENE.replace(interaction="body"), {GAMMA: [1.0, 1.5]}),
+    "breaks where others begin": (
+        SCENE.replace(law=mcgw.KogutEtsion(critical=0.1), separations=[0.0, 0.1, 0.2, 0.3]),
+        {"contact.critical": [0.05, 0.1, 0.2]},
+    ),
+    "separations again and unsorted": (SCENE.replace(separations=[2.0, 0.0, 1.0, 1.0]), {GAMMA: [0.5, 2.0]}),
+    "without cells": (SCENE.replace(n_asperities=10), {GAMMA: [0.5, 2.0]}),
+    "laws of heights": (SCENE, {"heights": [{"law": "weibull", "shape": 2.0}, {}], GAMMA: [0.5, 2.0]}),
+    "not combinations": (  # for they are clipped
+        SCENE.replace(separations=[-1.0, 0.0], negative="clip", n_surfaces=20),
+        {GAMMA: np.linspace(1.5, 3.0, 9)},
+    ),
+    "radii": (SPECTRAL, {GAMMA: [0.5, 2.0, 3.0]}),
+    "radii, without cells": (SPECTRAL.replace(n_asperities=10), {GAMMA: [0.5, 2.0]}),
+    "radii under laws": (
+        SPECTRAL.replace(law=mcgw.KogutEtsion(critical=0.1)),
+        {"contact.critical": [0.1, 0.2]},
+    ),
+    "balance of many": (SCENE.replace(interaction="body", n_surfaces=20), {GAMMA: np.linspace(1.0, 2.0, 9)}),
+    "a yielding law of many": (
+        SCENE.replace(law=mcgw.KogutEtsion(critical=0.1), n_surfaces=5, n_asperities=10, sampler="tail"),
+        {GAMMA: np.linspace(1.0, 2.0, 8)},
+    ),
+    "seven gradings": (SCENE.replace(n_surfaces=20), {GAMMA: [0.5, 0.7, 0.9, 1.1, 1.3, 1.5, 1.7, 0.5]}),
+    "a function": (SCENE.replace(grading=lambda s: 1 + 0.3 * np.tanh(s)), {"surface.E_star": [7e10, 8e10]}),
+}
+
+
+@pytest.mark.parametrize("name", SEVERAL)
+def test_any_kind_of_scene_has_its_bits(name):
+    scene, over = SEVERAL[name]
+    sweep = mcgw.sweep(scene, over)
+    assert len(sweep.groups) == (2 if name == "laws of heights" else 1)
+    assert all(same_bits(sweep, at) for at in np.ndindex(sweep.shape))
+
+
+def test_contact_laws_with_other_breaks_share_their_surfaces():
+    metal = SCENE.replace(law=mcgw.KogutEtsion(hardness=1.2e9, poisson=0.3))
+    sweep = mcgw.sweep(metal, {"contact.hardness": [1e9, "1.2 GPa", 3e9]})
+    assert len(sweep.groups) == 1
+    assert sweep.edges[0]
+    assert all(same_bits(sweep, (i,)) for i in range(3))
+    contacts = [mcgw.simulate(sweep.scene(i)).contacts for i in range(3)]
+    assert all(np.array_equal(contacts[0], each) for each in contacts)
+    apart = mcgw.simulate(sweep.scene(0).replace(edges=None)).contacts  # what the edges are for
+    assert not np.array_equal(apart, mcgw.simulate(sweep.scene(1).replace(edges=None)).contacts)
+
+
+def test_edges_are_kept_by_a_scene_file():
+    sweep = mcgw.sweep(SCENE, {"grading": KINKED})
+    scene = sweep.scene(1)
+    assert {0.33, 0.7, 1.21} <= set(scene.edges)
+    again = mcgw.scene_from(mcgw.scene_text(scene))
+    assert again == scene
+    assert np.array_equal(mcgw.simulate(again).std("load"), sweep.std("load")[1])
+    assert "edges" not in mcgw.scene_text(SCENE)
+
+
+def test_any_edges_leave_the_exact_law_as_it_is():
+    """Cut elsewhere, other surfaces of the same law: fails by chance once in 2e6."""
+    cut = SCENE.replace(edges=[0.123, 2.2, 2.3, 99.0], n_surfaces=4000)
+    e = mcgw.simulate(cut)
+    z = (e.mean("load") - cut.theory.mean("load", e.separations)) / e.stderr("load")
+    assert np.abs(z).max() < 5
+    assert not np.array_equal(e.load[:300], mcgw.simulate(SCENE).load)
+    above = np.maximum(mcgw.heights(cut, 5)[:, None] - e.separations, 0.0)
+    unit = 4 / 3 * SURFACE.E_star * np.sqrt(SURFACE.radius) * SURFACE.sigma**1.5
+    np.testing.assert_allclose(unit * (above**1.5).sum(axis=0), e.load[5], rtol=1e-12)
+
+
+def exact_difference(one, other, h):
+    """Variance and mean of one surface: each asperity adds the difference of two loads, independently."""
+    unit = 4 / 3 * SURFACE.E_star * np.sqrt(SURFACE.radius) * SURFACE.sigma**1.5
+    breaks = sorted(k for k in {*one.breaks, *other.breaks} if h < k < 9)
+
+    def weighted(s, power):
+        term = unit * (s - h) ** 1.5 * float(one(np.array(s)) - other(np.array(s)))
+        return term**power * np.exp(-s * s / 2) / np.sqrt(2 * np.pi)
+
+    first, second = (quad(weighted, h, 9, (k,), points=breaks, limit=400)[0] for k in (1, 2))
+    return SCENE.n_asperities * (second - first**2), SCENE.n_asperities * first
+
+
+def test_paired_differences_have_the_variance_that_theory_gives():
+    """Sample variances of 8000 surfaces are known to 2 %; fails by chance once in 1e5."""
+    m = 8000
+    sweep = mcgw.sweep(SCENE, {"grading": KINKED, "ensemble.n_surfaces": [m]})
+    found = sweep.difference("load", (2, 0), (0, 0))
+    exact = np.array([exact_difference(KINKED[2], KINKED[0], h) for h in SCENE.separations[:4]])
+    paired = found.stderr[:4] ** 2 * m
+    assert np.abs(paired / exact[:, 0] - 1).max() < 0.1
+    assert np.abs((found.value[:4] - exact[:, 1]) / found.stderr[:4]).max() < 5
+    assert found.gain[:4].min() > 3  # and so a variance without the pairs would fail
+    alone = [mcgw.simulate(sweep.scene((i, 0)))["load"] for i in (2, 0)]
+    difference = alone[0] - alone[1]
+    np.testing.assert_allclose(found.value, difference.mean(axis=0), rtol=1e-11)
+    np.testing.assert_allclose(found.stderr, difference.std(axis=0, ddof=1) / np.sqrt(m), rtol=1e-9)
+
+
+def test_summits_keep_their_radii_from_point_to_point():
+    """A difference of pairs is that of the surfaces, one by one, and ten times as sharp as of others."""
+    sweep = mcgw.sweep(SPECTRAL, {GAMMA: [1.0, 1.5]})
+    found = sweep.difference("load", 1, 0)
+    one, other = (mcgw.simulate(sweep.scene(i))["load"] for i in (1, 0))
+    np.testing.assert_allclose(found.value, (one - other).mean(axis=0), rtol=1e-11)
+    np.testing.assert_allclose(found.stderr, (one - other).std(axis=0, ddof=1) / 50**0.5, rtol=1e-9)
+    assert found.gain.min() > 10
+
+
+def test_what_no_cells_resolve_is_drawn_one_by_one_at_all_points(monkeypatch):
+    monkeypatch.setattr("mcgw.sampling.samplers._CUTS", 0)
+    steep = mcgw.Scene(
+        SURFACE, separations=[-1.2, 1.8], grading=mcgw.Exponential(-1.5), negative="clip", n_surfaces=5,
+        n_asperities=3000, seed=7, law=mcgw.KogutEtsion(critical=0.0018),
+    )  # fmt: skip
+    over = {"surface.E_star": [7e10, 8e10]}
+    sweep = mcgw.sweep(steep, over)
+    assert len(sweep.groups) == 1
+    assert all(same_bits(sweep, (i,)) for i in range(2))
+    with pytest.raises(ValueError, match='use sampler = "tail"'):
+        mcgw.sweep(steep.replace(sampler="cells"), over)
+
+
+@pytest.mark.parametrize("gammas", [[1.0, 1.001, 1.5], np.linspace(0.5, 1.7, 9)])
+def test_slopes_from_pairs_are_those_of_theory(gammas):
+    slopes = mcgw.sweep(SCENE, {"ensemble.count": ["fixed", "poisson"], GAMMA: gammas}).slopes("load", GAMMA)
+    assert slopes.value.shape == (2, len(gammas) - 1, 5)
+    assert np.abs((slopes.value - slopes.theory) / slopes.stderr).max() < 5
+    assert (slopes.stderr < 0.05 * np.abs(slopes.value))[..., :3].all()  # so that a wrong sign would show
+    e = mcgw.simulate(SCENE, grading=mcgw.Exponential(float(gammas[0])))
+    other = mcgw.simulate(SCENE, grading=mcgw.Exponential(float(gammas[1])))
+    step = gammas[1] - gammas[0]
+    np.testing.assert_allclose(
+        slopes.stderr[0, 0], (other.load - e.load).std(axis=0, ddof=1) / 300**0.5 / step, rtol=1e-8
+    )
+    assert "theory" in repr(slopes)
+
+
+def test_quantities_that_the_modulus_does_not_enter_do_not_change():
+    sweep = mcgw.sweep(SCENE, {GAMMA: np.linspace(0.5, 1.7, 9)})
+    difference = sweep.difference("area", 0, 5)
+    assert not difference.value.any()
+    assert not difference.stderr.any()
+    per_area = sweep.difference("pressure", {GAMMA: 1.7}, {GAMMA: 0.5})
+    np.testing.assert_allclose(per_area.value * 1e-6, sweep.difference("load", 8, 0).value, rtol=1e-12)
+    np.testing.assert_allclose(sweep.mean("pressure") * 1e-6, sweep.mean("load"), rtol=1e-15)
+
+
+def test_neither_threads_nor_blocks_change_a_bit(monkeypatch):
+    over = {GAMMA: np.linspace(0.5, 1.7, 9), "surface.E_star": ["70 GPa", 8e10]}
+    one, two = (mcgw.sweep(SCENE, over, threads=n) for n in (1, 2))
+    for name in one.quantities:
+        assert np.array_equal(one.std(name), two.std(name))
+    monkeypatch.setattr(pooled, "_ROWS", 70)
+    parts = mcgw.sweep(SCENE, over)
+    np.testing.assert_allclose(parts.std("load"), one.std("load"), rtol=1e-13)
+    np.testing.assert_allclose(parts.mean("load"), one.mean("load"), rtol=1e-14)
+
+
+def test_scenes_that_share_nothing_are_simulated():
+    over = {"ensemble.sampler": ["direct", "tail", "cells", "aggregate"]}
+    sweep = mcgw.sweep(SCENE, over)
+    assert len(sweep.groups) == 4
+    assert all(same_bits(sweep, (i,)) for i in range(4))
+    assert "nan" in repr(sweep) or repr(sweep).count("+-") >= 16
+    with pytest.raises(ValueError, match="have different surfaces"):
+        sweep.difference("load", 0, 1)
+
+
+def test_labels_and_zipped_axes():
+    pytest.importorskip("xarray")
+    over = {GAMMA: [1.0, 2.0], "surface.sigma": ["1 um", "2 um"]}
+    sweep = mcgw.sweep(SCENE, over, zipped=True, statistics=["mean"])
+    data = sweep.to_xarray()
+    assert data.load_mean.dims == ("point", "separation")
+    assert "load_std" not in data
+    assert data["sigma"].values.tolist() == ["1 um", "2 um"]
+    assert sweep.scene({"surface.sigma": "2 um"}).surface.sigma == 2e-6
+    data = mcgw.sweep(SCENE, over).to_xarray()
+    assert data.load_std.sel(gamma=2.0, sigma="1 um").shape == (5,)
+    assert data.load_mean.attrs == {"units": "N", "long_name": "mean of the normal load"}
+
+
+def test_many_values_of_a_key_are_told_by_the_first_and_the_last():
+    axes = axes_of({GAMMA: [3.0, 1.0, 2.0, 5.0, 4.0, 6.0, 7.0], "ensemble.seed": [4, 2]}, zipped=False)
+    assert [axes.summary(key) for key in axes.keys] == ["7 from 3 to 7", "4, 2"]
+
+
+def test_what_nobody_gave_follows():
+    follows = SCENE.replace(n_asperities=None)
+    sweep = mcgw.sweep(follows, {"surface.nominal_area": ["1 mm^2", "2 mm^2"]})
+    assert [scene.n_asperities for scene in sweep.scenes] == [300, 600]
+    assert len({scene.seed for scene in sweep.scenes}) == 1
+
+
+MISTAKES = [
+    (
+        {"interaction": [{"reference": "body"}, {"reference": "located"}]},
+        "^sweep: the points differ in separations or quantities",
+    ),
+    ({GAMMA: [1, -3, 5]}, "negative from s = 0.2877.*at grading.gamma = -3"),
+    ({"grading.gama": [1]}, "grading.gama: unknown key.*at grading.gama = 1"),
+    ({"contact.separations": [[1]]}, "must be the same for all points"),
+    ({"foo": [1]}, "'foo': give \"section.key\""),
+    ({GAMMA: 2}, "grading.gamma = 2: give a list"),
+    ({GAMMA: []}, "give a list of at least one"),
+    ({"grading": [3]}, "grading = 3: must be a table"),
+    ({"grading": [np.sin]}, "is negative from s = 3.143"),
+    ({}, "at least one key"),
+    ({"contact.unload_from": [0, "x"]}, "contact.unload_from = 'x'"),
+    ({"ensemble.max_seconds": [3]}, "max_seconds: a sweep must be reproducible"),
+    ({"ensemble.seed": [-k for k in range(1, 99)]}, r"and 78 more"),
+    (
+        {"contact.unload_from": [-1.0, 0.0], "contact.quantities": [["load"]]},
+        "contact.quantities: must be the same",
+    ),
+]
+
+
+@pytest.mark.parametrize(("over", "words"), MISTAKES)
+def test_mistakes_name_the_point(over, words):
+    with pytest.raises(mcgw.SceneError, match=words):
+        mcgw.sweep(SCENE, over)
+
+
+def test_all_mistakes_at_once():
+    with pytest.raises(mcgw.SceneError) as caught:
+        mcgw.sweep(SCENE, {GAMMA: [-3, 1, 5], "ensemble.seed": [1, "a"]})
+    lines = str(caught.value).splitlines()
+    assert len(lines) == 4
+    assert sum("ensemble.seed = 'a'" in line for line in lines) == 3
+
+
+@pytest.mark.parametrize("edges", ["1", [0.5, "a"], [np.inf], True])
+def test_edges_that_are_none(edges):
+    with pytest.raises(mcgw.SceneError, match=r"ensemble.edges = .*: give a list of finite heights"):
+        SCENE.replace(edges=edges)
+
+
+def test_points_that_are_none():
+    sweep = mcgw.sweep(SCENE, {GAMMA: [1.0, 2.0], "ensemble.seed": [1, 2]})
+    for at in ({GAMMA: 3.0}, {GAMMA: 1.0}, {"gamma": 1.0}, (0, 2), 0):
+        with pytest.raises(ValueError, match=r"point|axis"):
+            sweep.scene(at)
+    with pytest.raises(KeyError, match="'depth' is not in this sweep"):
+        sweep.mean("depth")
+    with pytest.raises(ValueError, match="slopes need at least two numbers"):
+        mcgw.sweep(SCENE, {"ensemble.count": ["fixed", "poisson"]}).slopes("load", "ensemble.count")
+    with pytest.raises(ValueError, match="statistics = "):
+        mcgw.sweep(SCENE, {GAMMA: [1.0]}, statistics=["median"])
+
+
+def test_points_are_found_as_elements_of_a_list():
+    """From the front and from the back, and none beyond either end."""
+    over = {GAMMA: [1.0, 2.0, 3.0], "ensemble.seed": [1, 2, 3]}
+    square, line = axes_of(over, zipped=False), axes_of(over, zipped=True)
+    for i in range(-3, 3):
+        assert line.place(i) == line.place((i,)) == (range(3)[i],)
+        assert [square.place((i, k)) for k in range(-3, 3)] == [(range(3)[i], k) for k in 2 * [0, 1, 2]]
+    assert line.place({GAMMA: 3.0}) == (2,)
+    for axes, at in (
+        (line, 3),
+        (line, -4),
+        (square, (3, 0)),
+        (square, (0, -4)),
+        (square, (0,)),
+        (line, (0, 0)),
+    ):
+        with pytest.raises(ValueError, match="there is no point"):
+            axes.place(at)
+
+
+def test_values_are_told_as_numbers_or_words():
+    assert [label(x) for x in (2, 0.5, "1 um")] == [2, 0.5, "1 um"]
+    assert [label(x) for x in (True, [1, 2])] == ["True", "[1, 2]"]
+    assert label({"law": "weibull", "shape": 2.0}) == "law = weibull, shape = 2.0"
+    axes = axes_of({GAMMA: [1 / 3], "heights.resample": [True], "surface.sigma": ["1 um"]}, zipped=False)
+    assert axes.text((0, 0, 0)) == f"{GAMMA} = 0.333333, heights.resample = True, surface.sigma = 1 um"
+    assert axes.values_text((0, 0, 0)) == "0.333333, True, 1 um"
+    assert axes.names == {GAMMA: "gamma", "heights.resample": "resample", "surface.sigma": "sigma"}
+    both = axes_of({"heights.law": ["gaussian"], "grading.law": ["homogeneous"], GAMMA: [1]}, zipped=False)
+    assert both.dims == ("heights.law", "grading.law", "gamma")
+    six = axes_of({GAMMA: range(6)}, zipped=False)
+    assert six.summary(GAMMA) == "0, 1, 2, 3, 4, 5"
+
+
+@pytest.mark.parametrize(
+    "values", [[1e-6], [1e-6, "2 um"], ["1 um", "2 um"], [1e-6, 1e-6, 2e-6], [1e-6, 2e-6, 2e-6], [True, "x"]]
+)
+def test_slopes_are_between_numbers_that_differ(values):
+    key = "surface.sigma"
+    with pytest.raises(ValueError, match=r"^surface\.sigma: slopes need at least two numbers, with no equal"):
+        axes_of({key: values}, zipped=False).numbers(key)
+    with pytest.raises(
+        ValueError, match=r"^'grading\.gamma' is no axis of this sweep; it has surface\.sigma$"
+    ):
+        axes_of({key: values}, zipped=False).numbers(GAMMA)
+    assert axes_of({key: [1, 2.5, 1]}, zipped=False).numbers(key).tolist() == [1.0, 2.5, 1.0]
+
+
+def test_what_is_shown_of_slopes_and_points_is_what_there_is():
+    """Slopes at the first separation and the first values of other keys; points at the lowest separation."""
+    over = {"ensemble.count": ["fixed", "poisson"], GAMMA: [1.0, 1.5, 2.5, 3.0, 3.5]}
+    sweep = mcgw.sweep(SCENE.replace(n_surfaces=20, separations=[1.0, 0.0], quantities=["load"]), over)
+    slopes = sweep.slopes("load", GAMMA)
+    _, *lines = repr(slopes).splitlines()
+    assert lines[0].split() == [GAMMA, "slope", "stderr", "theory"]
+    shown = np.array([[float(word) for word in line.split()] for line in lines[1:]])
+    np.testing.assert_allclose(shown[:, 0], [1.25, 2.0, 2.75, 3.25])
+    np.testing.assert_allclose(shown[:, 1], slopes.value[0, :, 0], rtol=1e-4)
+    np.testing.assert_allclose(shown[:, 2], slopes.stderr[0, :, 0], rtol=0.5)
+    np.testing.assert_allclose(shown[:, 3], slopes.theory[0, :, 0], rtol=1e-4)
+    sheet = sweep.sheet()
+    assert sheet.title == "Sweep of 10 scenes"
+    assert sheet.facts == [
+        ("ensemble.count", "fixed, poisson"),
+        (GAMMA, "1, 1.5, 2.5, 3, 3.5"),
+        ("surfaces", "40 drawn, in 2 groups that share surfaces"),
+    ]
+    at, load = sheet.table.columns
+    where = [0, 2, 3, 4, 6, 8, 9]
+    assert list(at.values) == [sweep.axes.values_text(list(sweep.axes.points())[k]) for k in where]
+    np.testing.assert_array_equal(load.values, sweep.mean("load").reshape(10, 2)[where, 1])
+    np.testing.assert_array_equal(load.beside.values, sweep.stderr("load").reshape(10, 2)[where, 1])
+
+
+def test_progress_counts_what_a_group_takes():
+    """By hand: an asperity that touches at the lowest separation is one, a scene of a surface 3000."""
+    told, over = [], {"ensemble.n_asperities": [200, 40_000], GAMMA: [1.0, 1.5, 2.0]}
+    sweep = mcgw.sweep(SCENE.replace(n_surfaces=40), over, progress=lambda *pair: told.append(pair))
+    work = [n / 2 + 3000 * 3 for n in (200, 40_000)]  # half of the asperities lie above d = 0
+    assert len(sweep.groups) == 2
+    assert told == [(0, 80), (round(80 * work[0] / sum(work)), 80), (80, 80)]
+
+
+def test_progress_ends_at_all_surfaces():
+    told = []
+    mcgw.sweep(SCENE, {"ensemble.seed": [1, 2]}, progress=lambda *pair: told.append(pair))
+    assert told[0] == (0, 600)
+    assert told[-1] == (600, 600)
+
+
+def test_pictures(recorded):
+    import matplotlib as mpl
+
+    mpl.use("agg")
+
+    def check(container, x, mean, error):
+        marks, _, (bars,) = container.lines
+        np.testing.assert_allclose(marks.get_xydata(), np.stack([x, mean], axis=1))
+        ends = np.stack([mean - 1.96 * error, mean + 1.96 * error], axis=1)
+        np.testing.assert_allclose([segment[:, 1] for segment in bars.get_segments()], ends)
+
+    scene = SCENE.replace(separations=[1.0, 0.0, 2.0])
+    sweep = mcgw.sweep(scene, {"ensemble.seed": [1, 2], GAMMA: [1.0, 1.5, 2.0]})
+    axes, order = sweep.plot(quantity="area"), [1, 0, 2]
+    assert len(axes.get_legend().get_texts()) == len(axes.containers) == 6
+    assert axes.get_ylabel() == "mean area (m^2)"
+    recorded("drawn.sweep", drawn(axes))
+    for container, point in zip(axes.containers, sweep.axes.points(), strict=True):
+        mean, error = sweep.mean("area")[point], sweep.stderr("area")[point]
+        check(container, [0.0, 1.0, 2.0], mean[order], error[order])
+    alone = mcgw.sweep(SCENE, {GAMMA: [1.0]}).plot()
+    assert (alone.get_title(), alone.get_ylabel()) == (f"{GAMMA}: 1 points, 95 %", "mean load (N)")
+    slopes = sweep.slopes("load", GAMMA)
+    axes = slopes.plot(k=2)
+    check(axes.containers[0], slopes.at, slopes.value[0, :, 2], slopes.stderr[0, :, 2])
+    np.testing.assert_allclose(axes.lines[-1].get_ydata(), slopes.theory[0, :, 2])
+    assert axes.get_xlabel() == GAMMA
+
+
+def test_points_of_other_numbers_of_surfaces_have_errors_of_their_own():
+    """Two groups, of 30 and of 120 surfaces, in either order: each divided by the root of its own number."""
+    for numbers in ([30, 120], [120, 30]):
+        sweep = mcgw.sweep(SCENE, {GAMMA: [0.5, 2.0], "ensemble.n_surfaces": numbers})
+        assert len(sweep.groups) == 2
+        for i, gamma in enumerate((0.5, 2.0)):
+            for k, m in enumerate(numbers):
+                load = mcgw.simulate(SCENE, grading=mcgw.Exponential(gamma), n_surfaces=m).load
+                found = sweep.stderr("load")[i, k]
+                np.testing.assert_allclose(found, load.std(axis=0, ddof=1) / m**0.5, rtol=1e-12)
+                assert f"{found[0]:.1g}" in repr(sweep)
+        for k, m in enumerate(numbers):
+            loads = [mcgw.simulate(sweep.scene((i, k))).load for i in (1, 0)]
+            error = (loads[0] - loads[1]).std(axis=0, ddof=1) / m**0.5
+            np.testing.assert_allclose(sweep.difference("load", (1, k), (0, k)).stderr, error, rtol=1e-9)
+            np.testing.assert_allclose(sweep.slopes("load", GAMMA).stderr[0, k], error / 1.5, rtol=1e-9)
+
+
+@pytest.mark.parametrize("areas", [(1e-6, 3e-6), (3e-6, 1e-6)])
+def test_pressures_on_other_areas_are_each_divided_by_its_own(areas):
+    """The same asperities on one area and on three times as much: value, error and gain from the surfaces."""
+    sweep = mcgw.sweep(SCENE, {"surface.nominal_area": areas})
+    assert len(sweep.groups) == 1
+    load = mcgw.simulate(SCENE).load
+    for i, area in enumerate(areas):
+        np.testing.assert_allclose(sweep.mean("pressure")[i], load.mean(axis=0) / area, rtol=1e-13)
+        np.testing.assert_allclose(sweep.stderr("pressure")[i] * 300**0.5 * area, load.std(axis=0, ddof=1))
+        exact = SCENE.theory.mean("load", sweep.separations) / area
+        np.testing.assert_allclose(sweep.theory("pressure")[i], exact, rtol=1e-13)
+    found, pressure = sweep.difference("pressure", 1, 0), [load / area for area in areas]
+    between = pressure[1] - pressure[0]
+    np.testing.assert_allclose(found.value, between.mean(axis=0), rtol=1e-12)
+    np.testing.assert_allclose(found.stderr, between.std(axis=0, ddof=1) / 300**0.5, rtol=1e-9)
+    apart = sum(p.var(axis=0, ddof=1) for p in pressure) / between.var(axis=0, ddof=1)
+    np.testing.assert_allclose(found.gain, apart, rtol=1e-9)
+
+
+@pytest.mark.parametrize("lengths", [(2, 3), (2, 3, 1)])
+def test_zipped_axes_of_other_lengths_are_refused(lengths):
+    keys = ("grading.gamma", "ensemble.n_asperities", "ensemble.seed")
+    over = {key: [1, 2, 3][:n] for key, n in zip(keys, lengths, strict=False)}
+    with pytest.raises(mcgw.SceneError, match=r"zipped axes .* these have grading\.gamma 2, ens"):
+        mcgw.sweep(SCENE, over, zipped=True)
+
+
+# --- what an ensemble can -------------------------------------------------------------------------------
+
+
+def test_points_have_the_intervals_and_tables_of_single_runs():
+    sweep = mcgw.sweep(SCENE, {GAMMA: [0.5, 2.0], "ensemble.n_asperities": [50, 2000]})
+    frame = sweep.to_dataframe()
+    assert frame.index.names == ["gamma", "n_asperities", "separation"]
+    for i, gamma in enumerate((0.5, 2.0)):
+        for k, n in enumerate((50, 2000)):
+            alone = mcgw.simulate(sweep.scene((i, k)))
+            for name in ("load", "contacts", "pressure"):
+                low, high = sweep.interval(name, 0.9)
+                np.testing.assert_allclose((low[i, k], high[i, k]), alone.interval(name, 0.9), rtol=1e-12)
+            assert frame.loc[gamma, n].load_std.tolist() == alone.std("load").tolist()
+            assert mcgw.compare(sweep.ensemble((i, k))).verdict == mcgw.compare(alone).verdict
+    assert sweep.ensemble({GAMMA: 0.5, "ensemble.n_asperities": 50}).n_surfaces == 300
+    point = sweep.ensemble((0, 0))
+    for ask in (
+        point.values, lambda q: sweep.quantile(q, 0.5), sweep.skewness, point.extremes, point.covariance
+    ):  # fmt: skip
+        with pytest.raises(ValueError, match=r'load: a sweep only keeps mean and .* keep = "statistics"'):
+            ask("load")
+
+
+@pytest.mark.parametrize("gammas", [[0.5, 2.0], np.linspace(0.5, 2.0, 9)])
+def test_points_that_keep_statistics_have_the_quantiles_of_single_runs(tmp_path, gammas):
+    """Also of many exponential gradings, whose sums are combinations and whose quantiles are not."""
+    kept = SCENE.replace(keep="statistics", separations=[0.0, 1.5], quantities=["load", "contacts"])
+    memory = mcgw.sweep(kept, {GAMMA: gammas})
+    held = mcgw.sweep(kept, {GAMMA: gammas}, path=tmp_path / "a.h5")
+    for i in (0, len(gammas) - 1):
+        alone = mcgw.simulate(kept, grading=mcgw.Exponential(float(gammas[i])))
+        for sweep in (memory, held):
+            for share in (0.0, 0.05, 0.5, 1.0):
+                found = sweep.quantile("load", share)[i]
+                assert found.tolist() == alone.quantile("load", share).tolist()
+            assert sweep.skewness("contacts")[i].tolist() == alone.skewness("contacts").tolist()
+            assert sweep.mean("load")[i].tolist() == alone.mean("load").tolist()
+    import xarray
+
+    with xarray.open_dataset(tmp_path / "a.h5", engine="h5netcdf") as file:
+        assert file.load_quantile.dims == ("point", "probability", "separation")
+        data = held.to_xarray()
+        assert data.load_quantile.dims == ("gamma", "probability", "separation")
+        assert np.array_equal(file.load_quantile, data.load_quantile)
+        assert (
+            data.load_quantile.sel(probability=0.5)[-1].values.tolist()
+            == sweep.quantile("load", 0.5)[-1].tolist()
+        )
+    with pytest.raises(mcgw.SceneError, match=r"ensemble\.keep: must be the same for all points"):
+        mcgw.sweep(SCENE, {"ensemble.keep": ["sums", "statistics"]})
+
+
+@pytest.mark.parametrize("n", [1, 300])
+def test_points_that_keep_statistics_join_their_blocks(n, monkeypatch):
+    """Blocks of 128, the last one short, against the surfaces themselves; one surface has no spread."""
+    monkeypatch.setattr(pooled, "_ROWS", 128)
+    kept = SCENE.replace(keep="statistics", separations=[0.0, 1.5], quantities=["load", "contacts"])
+    sweep = mcgw.sweep(kept.replace(n_surfaces=n), {GAMMA: [0.5, 2.0]})
+    for i, gamma in enumerate((0.5, 2.0)):
+        full = mcgw.simulate(
+            SCENE.replace(grading=mcgw.Exponential(gamma), n_surfaces=n, separations=[0.0, 1.5])
+        )
+        point = sweep.ensemble(i)
+        for name in kept.quantities:
+            x = full[name].astype(float)
+            np.testing.assert_allclose(sweep.mean(name)[i], x.mean(axis=0), rtol=1e-13)
+            if n == 1:
+                assert np.isnan(sweep.std(name)[i]).all()
+                assert np.isnan(point.covariance(name)).all()
+                continue
+            np.testing.assert_allclose(sweep.std(name)[i], x.std(axis=0, ddof=1), rtol=1e-12)
+            np.testing.assert_allclose(point.covariance(name), np.cov(x.T), rtol=1e-11)
+            np.testing.assert_allclose(sweep.skewness(name)[i], skew(x), rtol=1e-9)
+            assert np.array_equal(point.extreme_surfaces(name), [x.argmin(axis=0), x.argmax(axis=0)])
+            ends = [sweep.quantile(name, share)[i] for share in (0.0, 1.0)]
+            np.testing.assert_allclose(ends, [x.min(axis=0), x.max(axis=0)], rtol=1e-12)
+            spread = np.abs(sweep.quantile(name, 0.3)[i] - np.quantile(x, 0.3, axis=0)) / x.std(axis=0)
+            assert spread.max() < 0.02
+    assert n == 1 or max(point.extreme_surfaces("load")[0]) >= 128  # a number within its block would show

@@ -1,0 +1,484 @@
+"""Sweeps in files: whole or not at all, drawn once, the same digest by whom and however interrupted."""
+
+import os
+import signal
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from oracles.begun_runs import settle
+from oracles.new_trailer import trailer_again
+
+import mcgw
+from mcgw.cli import main
+from mcgw.commands.sweep import _axis
+from mcgw.jobs import job
+from mcgw.jobs.executors import Jobs
+from mcgw.jobs.job import commit_block
+from mcgw.store.disk import parts_of
+from mcgw.store.ensembles import read_attributes
+from mcgw.store.layout import drawn_digest, drawn_tables
+from mcgw.store.run_folder import RunFolder
+from mcgw.sweeps import pooled
+
+SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+SCENE = mcgw.Scene(SURFACE, separations=[0.0, 1.0, 2.5], n_surfaces=300, n_asperities=2000, seed=7)
+GAMMA, N = "grading.gamma", "ensemble.n_asperities"
+OVER = {GAMMA: np.linspace(0.5, 1.7, 9), N: [200, 2000]}
+CHUNKS = 12
+FIRST = 2 * [0, 50, 100, 150, 200, 250]  # surfaces of the chunks
+TOML = """
+surface = {sigma = 1e-6, radius = 1e-5, eta = 1e9, nominal_area = 1e-6, E_star = 1e11}
+contact = {separations = [0.0, 1.0]}
+ensemble = {n_surfaces = 40, n_asperities = 300, seed = 4}
+"""
+
+
+def digest(path):
+    return read_attributes(path)["digest"]
+
+
+@pytest.fixture(autouse=True)
+def _small_chunks(monkeypatch):
+    """Six for each group; workers are told which chunk, so that theirs are the same."""
+    monkeypatch.setattr(pooled, "_ROWS", 50)
+    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[2]))
+
+
+@pytest.fixture
+def drawn(monkeypatch):
+    """First surfaces of the blocks that are drawn, within their groups."""
+    found, plain = [], pooled.Pooling.tables
+
+    def counted(pooling, first, *rest):
+        found.append(first)
+        return plain(pooling, first, *rest)
+
+    monkeypatch.setattr(pooled.Pooling, "tables", counted)
+    return found
+
+
+@pytest.fixture(scope="module")
+def expected(tmp_path_factory):
+    """Digest of what threads draw."""
+    path = tmp_path_factory.mktemp("threads") / "a.h5"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(pooled, "_ROWS", 50)
+        mcgw.sweep(SCENE, OVER, path=path)
+    return digest(path)
+
+
+def flip(path, share=0.5):
+    data = bytearray(path.read_bytes())
+    data[int(share * len(data))] ^= 4
+    path.write_bytes(bytes(data))
+
+
+def test_a_file_has_the_bits_of_memory(tmp_path):
+    pytest.importorskip("xarray")
+    tables = [mcgw.Table((-1, k, 6), (1.0, 1.5, 3.0)) for k in (0.33, 0.7)]
+    for over in (OVER, {"grading": tables, "surface.E_star": ["70 GPa", 8e10]}):
+        path = tmp_path / f"{len(over)}-{'grading' in over}.h5"
+        held, memory = mcgw.sweep(SCENE, over, path=path), mcgw.sweep(SCENE, over)
+        opened = mcgw.open_sweep(path)
+        for sweep in (held, opened):
+            for name in memory.quantities:
+                assert np.array_equal(sweep.mean(name), memory.mean(name))
+                assert np.array_equal(sweep.std(name), memory.std(name))
+            assert list(sweep.scenes) == list(memory.scenes)
+            assert repr(sweep) == repr(memory)
+            assert sweep.to_xarray().identical(memory.to_xarray())
+        last = tuple(n - 1 for n in memory.shape)
+        found, other = (x.difference("load", (0, 0), (last[0], 0)) for x in (opened, memory))
+        assert np.array_equal(found.stderr, other.stderr)
+        assert not (tmp_path / f"{path.name}.parts").exists()
+
+
+def test_other_programs_read_it(tmp_path):
+    xarray = pytest.importorskip("xarray")
+    pytest.importorskip("h5netcdf")
+    sweep = mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5")
+    with xarray.open_dataset(tmp_path / "a.h5", engine="h5netcdf") as data:
+        assert data.load_std.dims == ("point", "separation")
+        assert np.array_equal(data.load_std.values.reshape(9, 2, 3), sweep.std("load"))
+        assert data.n_asperities.values.tolist() == [200, 2000] * 9
+        assert data.attrs["filetype"] == "mcgw-results"
+
+
+@pytest.mark.parametrize("after", [1, 6])
+def test_interrupted_anywhere_it_goes_on_to_the_same_digest(tmp_path, monkeypatch, drawn, expected, after):
+    """A damaged chunk is drawn again; a finished file is not."""
+    path, counted = tmp_path / "a.h5", pooled.Pooling.tables
+
+    def stopped(*words):
+        if len(drawn) == after:
+            raise KeyboardInterrupt
+        return counted(*words)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(pooled.Pooling, "tables", stopped)
+        with pytest.raises(KeyboardInterrupt):
+            mcgw.sweep(SCENE, OVER, path=path)
+        settle()
+    assert not path.exists()
+    shards = sorted(parts_of(path).glob("shards/block-*.h5"))
+    assert len(shards) == after
+    flip(shards[0])
+    for _ in range(2):
+        mcgw.sweep(SCENE, OVER, path=path, threads=1)
+        assert drawn == [*FIRST[: len(shards)], 0, *FIRST[len(shards) :]]
+    assert digest(path) == expected
+    assert not (tmp_path / "a.h5.parts").exists()
+
+
+def test_progress_of_a_file_goes_on_from_what_it_holds(tmp_path):
+    """By hand: an asperity that touches at d = 0 is one, a scene of a surface 3000; 600 surfaces in all."""
+    over, path, told = {GAMMA: [0.5, 1.0, 1.7], N: [200, 20_000]}, tmp_path / "a.h5", []
+    each = [50 * (n / 2 + 3 * 3000) for n in (200, 20_000)]
+    whole = [0.0, *np.cumsum(6 * [each[0]] + 6 * [each[1]])]
+    left = mcgw.sweep(SCENE, over, path=path, shard="1/2", progress=lambda *pair: told.append(pair))
+    assert left == 300
+    part = np.cumsum([0, each[0], each[0], each[0], each[1], each[1], each[1]])
+    assert told == [(round(600 * x / whole[-1]), 600) for x in part]
+    told.clear()
+    mcgw.sweep(SCENE, over, path=path, threads=1, progress=lambda *pair: told.append(pair))
+    rest = part[-1] + part
+    assert told == [(round(600 * x / whole[-1]), 600) for x in rest]
+    told.clear()
+    mcgw.sweep(SCENE, over, path=path, progress=lambda *pair: told.append(pair))
+    assert told == [(600, 600)]
+
+
+def test_another_sweep_is_left_alone(tmp_path):
+    mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5")
+    for scene, over in ((SCENE, {GAMMA: [1.0]}), (SCENE.replace(seed=8), OVER)):
+        with pytest.raises(mcgw.StoreError, match=r"a\.h5: holds something else than this sweep; choose"):
+            mcgw.sweep(scene, over, path=tmp_path / "a.h5")
+    e = mcgw.simulate(SCENE, n_surfaces=3)
+    mcgw.save(e, tmp_path / "e.h5")
+    with pytest.raises(mcgw.StoreError, match="holds something else than this sweep"):
+        mcgw.sweep(SCENE, OVER, path=tmp_path / "e.h5")
+    with pytest.raises(mcgw.StoreError, match=r"holds a sweep; mcgw\.open_sweep opens it"):
+        mcgw.open_ensemble(tmp_path / "a.h5")
+
+    mcgw.sweep(SCENE, OVER, path=tmp_path / "b.h5", shard="1/2")
+    with pytest.raises(mcgw.StoreError, match=r"holds a different sweep: sweep is .* there and .* here"):
+        mcgw.sweep(SCENE, {GAMMA: [1.0]}, path=tmp_path / "b.h5")
+
+
+def test_a_seed_that_nobody_gave_is_that_of_the_file(tmp_path):
+    scene = mcgw.Scene(SURFACE, separations=[0.0], n_surfaces=5)
+    first = mcgw.sweep(scene, {GAMMA: [1.0, 2.0]}, path=tmp_path / "a.h5")
+    other = mcgw.Scene(SURFACE, separations=[0.0], n_surfaces=5)
+    again = mcgw.sweep(other, {GAMMA: [1.0, 2.0]}, path=tmp_path / "a.h5")
+    assert again.scenes[0].seed == first.scenes[0].seed == scene.seed != other.seed
+
+
+@pytest.mark.parametrize("share", [0.02, 0.6, 0.999])
+def test_damage_is_found(tmp_path, capsys, share):
+    path = tmp_path / "a.h5"
+    mcgw.sweep(SCENE, OVER, path=path)
+    assert main(["show", str(path), "--verify"]) == 0
+    good = path.read_bytes()
+    flip(path, share)
+    assert main(["show", str(path), "--verify"]) in (1, 2)
+    assert "a.h5" in "".join(capsys.readouterr())
+    path.write_bytes(good)
+    with h5py.File(path, "r+") as file:
+        file["drawn/load_means"][0, 0] *= 2  # with care
+    with pytest.raises(mcgw.StoreError):
+        mcgw.open_sweep(path)
+
+
+def put(file, name, values):
+    del file[f"drawn/{name}"]
+    file[f"drawn/{name}"] = values
+
+
+WRONG = {
+    "no data": lambda file: file.__delitem__("drawn"),
+    "no points": lambda file: file.__delitem__("drawn/points"),
+    "no products": lambda file: file.__delitem__("drawn/area_products"),
+    "products of fewer pairs": lambda file: put(file, "area_products", file["drawn/area_products"][:-1]),
+    "a group that is not there": lambda file: put(file, "points", file["drawn/points"][()] + [2, 0, 0]),
+    "fewer weights": lambda file: put(file, "weights", file["drawn/weights"][1:]),
+    "edges of no group": lambda file: put(file, "edges", np.zeros((1, 3))),
+    "axes that are no JSON": lambda file: file.attrs.__setitem__("axes", "{"),
+    "axes of another kind": lambda file: file.attrs.__setitem__("axes", "[1, 2]"),
+    "axes without values": lambda file: file.attrs.__setitem__("axes", '{"zipped": false}'),
+}
+
+
+@pytest.mark.parametrize("what", WRONG)
+def test_wrong_data_under_right_digests_are_refused_in_one_line(tmp_path, what):
+    """Whoever made the file meant them so."""
+    path = tmp_path / "a.h5"
+    mcgw.sweep(SCENE, {GAMMA: [0.5, 1.0], N: [20, 30]}, path=path)
+    with h5py.File(path, "r+") as file:
+        WRONG[what](file)
+        drawn = drawn_tables(file) if "drawn" in file else {}
+        file.attrs["digest"] = drawn_digest(drawn, file.attrs["scene"], file.attrs["axes"])
+    trailer_again(path)
+    with pytest.raises(mcgw.StoreError, match=r"a\.h5: damaged, or of another version \(.+\)$"):
+        mcgw.open_sweep(path)
+
+
+def test_a_number_changed_with_care_is_told_from_damage(tmp_path):
+    path = tmp_path / "a.h5"
+    mcgw.sweep(SCENE, {GAMMA: [0.5, 1.0]}, path=path)
+    with h5py.File(path, "r+") as file:
+        file["drawn/load_means"][0, 0] *= 2
+    trailer_again(path)
+    with pytest.raises(mcgw.StoreError, match=r"a\.h5: damaged \(digest mismatch of its data\)$"):
+        mcgw.open_sweep(path)
+
+
+def test_scenes_of_a_file_are_those_of_a_list(tmp_path):
+    """By any index or slice."""
+    mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5")
+    scenes, memory = mcgw.open_sweep(tmp_path / "a.h5").scenes, mcgw.sweep(SCENE, OVER).scenes
+    assert len(scenes) == len(memory) == 18
+    for some in (slice(None), slice(3, 9, 2), slice(None, None, -7), slice(-2, None), slice(5, 5)):
+        assert tuple(scenes[some]) == tuple(memory[some])
+    assert scenes[-1] == memory[-1]
+    with pytest.raises(IndexError):
+        scenes[18]
+
+
+@pytest.fixture
+def shell(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "s.toml").write_text(TOML)
+
+    def call(*words, code=0):
+        assert main(list(words)) == code
+        return capsys.readouterr()
+
+    return call
+
+
+def test_the_command(shell, tmp_path):
+    over = ["--over", f"{GAMMA}=0.5:1.5:3", "--over", f"{N}=200,1e3"]
+    plan = shell("sweep", "s.toml", *over, "--plan").out
+    assert "6 scenes" in plan
+    assert "80, with" in plan
+    alone = shell("sweep", "s.toml", "--over", "ensemble.n_surfaces=20,40", "--plan").out
+    assert "groups      2 that share" in alone
+    assert "computed    2 scenes" in alone
+    assert os.listdir(tmp_path) == ["s.toml"]
+    assert "out/s.sweep.h5: 6 scenes" in shell("sweep", "s.toml", *over).out
+    sweep = mcgw.open_sweep("out/s.sweep.h5")
+    assert sweep.axes.values == {GAMMA: (0.5, 1.0, 1.5), N: (200, 1000.0)}
+    assert sweep.scene((0, 1)).n_asperities == 1000
+    shown = shell("show", "out/s.sweep.h5", "--csv", "t.csv").out
+    assert "Sweep of 6 scenes" in shown
+    table = np.genfromtxt("t.csv", delimiter=",", names=True)
+    assert np.array_equal(table["load_mean"].reshape(3, 2, 2), sweep.mean("load"))
+    assert shell("show", "out/s.sweep.h5", "--digest").out.strip() == digest(tmp_path / "out/s.sweep.h5")
+    assert mcgw.scene_from(shell("show", "out/s.sweep.h5", "--scene").out).seed == sweep.scenes[0].seed
+    assert "intact" in shell("show", "out/s.sweep.h5", "--verify").out
+
+
+def test_the_command_with_zipped_axes_and_texts(shell):
+    over = ["--over", "surface.sigma=1 um,2 um", "--over", "ensemble.count=fixed,poisson"]
+    shell("sweep", "s.toml", *over, "--zip", "-o", "z.h5", "--threads", "1")
+    sweep = mcgw.open_sweep("z.h5")
+    assert sweep.shape == (2,)
+    assert (sweep.scene(1).surface.sigma, sweep.scene(1).count) == (2e-6, "poisson")
+
+
+@pytest.mark.parametrize(
+    ("over", "words"),
+    [
+        ("grading.gamma", "--over grading.gamma: give KEY=VALUES"),
+        ("grading.gamma=1:2:0", "0 values; give a whole number"),
+        ("grading.gamma=1:2:2.5", "2.5 values; give a whole number"),
+        ("grading.gamma=1:2:1000001", "1e+06 values; give a whole number from 1 to 1e6"),
+        *((over, f"--over {over}: give KEY=VALUES") for over in ("=1,2", "grading.gamma=")),
+    ],
+)
+def test_mistakes_of_the_command(shell, over, words):
+    assert words in shell("sweep", "s.toml", "--over", over, code=2).err
+
+
+def test_values_of_the_command_are_numbers_evenly_or_as_they_stand():
+    assert _axis("a.b=1:3:1") == ("a.b", [1.0])
+    assert _axis("a.b=3:1:5") == ("a.b", [3.0, 2.5, 2.0, 1.5, 1.0])
+    assert _axis("a.b=1,0.5,auto") == ("a.b", [1, 0.5, "auto"])
+    assert _axis("a.b=x:1:2") == ("a.b", ["x:1:2"])
+    _, values = _axis("a.b=0:1:1000000")
+    assert (len(values), values[-1]) == (10**6, 1.0)
+
+
+def test_a_disk_that_is_full(tmp_path, monkeypatch):
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(job, "commit_shard", full)
+        with pytest.raises(mcgw.RunError, match="No space left on device; finished blocks are kept in"):
+            mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5")
+    assert not (tmp_path / "a.h5").exists()
+    assert mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5").shape == (9, 2)
+
+
+# --- by others ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.slow
+def test_by_processes_of_which_some_are_killed(tmp_path, expected):
+    random, killed = np.random.default_rng(5), []
+
+    def kill(done, total):
+        if done and len(killed) < 2 and random.random() < 0.5:  # fewer than make a block a suspect for good
+            alive = [pid for pid in jobs._pool._processes or () if pid not in killed]
+            killed.extend(alive[:1])
+            for pid in alive[:1]:
+                os.kill(pid, signal.SIGKILL)
+
+    with Jobs(2) as jobs:
+        mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5", executor=jobs, progress=kill)
+    assert killed
+    assert digest(tmp_path / "a.h5") == expected
+    assert not list(tmp_path.glob("*.parts"))
+
+
+@pytest.mark.parametrize("order", [(1, 2, 3), (3, 1, 2)])
+def test_in_shares_in_any_order(tmp_path, expected, order):
+    path, left = tmp_path / "a.h5", []
+    with pytest.raises(mcgw.StoreError, match="neither this file nor its blocks"):
+        mcgw.merge(path)
+    for i in order:
+        left.append(mcgw.sweep(SCENE, OVER, path=path, shard=f"{i}/3"))
+        assert not path.exists()
+        if left[-1]:
+            with pytest.raises(mcgw.RunError, match=rf"{left[-1]} of 600 surfaces are missing, from \d+ on"):
+                mcgw.merge(path)
+    assert left == [400, 200, 0]
+    assert mcgw.sweep(SCENE, OVER, path=path, shard="2/3") == 0  # a job that is started again
+    merged = mcgw.merge(path)
+    assert digest(path) == expected
+    assert merged.shape == (9, 2)
+    assert not list(tmp_path.glob("*.parts"))
+    assert mcgw.sweep(SCENE, OVER, path=path, shard="1/3") == 0
+    assert repr(mcgw.merge(path)) == repr(merged)
+    with pytest.raises(mcgw.StoreError, match="holds something else than this sweep"):
+        mcgw.sweep(SCENE, {"grading.gamma": [1.0]}, path=path, shard="1/3")
+
+
+def test_a_damaged_share_is_drawn_again(tmp_path, expected):
+    path = tmp_path / "a.h5"
+    mcgw.sweep(SCENE, OVER, path=path, shard="1/1")
+    shard = sorted(parts_of(path).glob("shards/block-*.h5"))[4]
+    flip(shard)
+    with pytest.raises(mcgw.RunError, match="50 of 600 surfaces are missing, from 200 on"):
+        mcgw.merge(path)
+    assert mcgw.sweep(SCENE, OVER, path=path, shard="1/1") == 0
+    mcgw.merge(path)
+    assert digest(path) == expected
+
+
+def test_the_same_call_without_a_share_ends_what_shares_began(tmp_path, expected):
+    mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5", shard="2/2")
+    mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5")
+    assert digest(tmp_path / "a.h5") == expected
+
+
+SWEEPING = """
+import os, signal, sys
+import numpy as np
+import mcgw
+from mcgw.jobs import job
+from mcgw.sweeps import pooled
+pooled._ROWS = 50
+commit, committed = job.commit_shard, []
+
+def killed_at_the_next(*words):
+    if len(committed) == int(sys.argv[3]):
+        os.kill(os.getpid(), signal.SIGKILL)
+    committed.append(words)
+    return commit(*words)
+
+job.commit_shard = killed_at_the_next
+if __name__ == "__main__":
+    over = {"grading.gamma": np.linspace(0.5, 1.7, 9), "ensemble.n_asperities": [200, 2000]}
+    how = {"run": {}, "1/1": {"shard": "1/1"}}
+    mcgw.sweep(mcgw.scene_from(open(sys.argv[1]).read()), over, path="a.h5", **how[sys.argv[2]])
+"""
+
+
+@pytest.mark.parametrize(
+    ("how", "kills"),
+    [
+        ("run", [3]),
+        pytest.param("1/1", [0, 5, 0, 1, 2, 3], marks=pytest.mark.slow),
+    ],
+)
+def test_killed_at_a_chunk_it_goes_on(tmp_path, expected, how, kills, drawn):
+    """Killed as this chunk is about to be committed; the others are there, and none is drawn again."""
+    (tmp_path / "s.toml").write_text(mcgw.scene_text(SCENE))
+    (tmp_path / "sweeping.py").write_text(SWEEPING)
+    path, held = tmp_path / "a.h5", 0
+    for kill in kills:
+        call = [sys.executable, "sweeping.py", "s.toml", how, str(kill)]
+        done = subprocess.run(call, cwd=tmp_path, capture_output=True, check=False)
+        assert done.returncode == -signal.SIGKILL
+        assert not path.exists()
+        held += kill
+        assert len(list(parts_of(path).glob("shards/block-*.h5"))) == held
+    mcgw.sweep(SCENE, OVER, path=path)
+    assert len(drawn) == CHUNKS - held
+    assert digest(path) == expected
+    assert not list(tmp_path.glob("*.parts"))
+
+
+def test_a_worker_draws_no_chunk_that_is_there(tmp_path, drawn):
+    """A task may be given twice: to the next worker after one that died."""
+    mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5", shard="2/2")
+    folder = parts_of(tmp_path / "a.h5")
+    drawn.clear()
+    run = RunFolder.open(folder)
+    missing, held = run.missing(0, run.shards()), [shard.span for shard in run.shards()]
+    asked = (*held, missing[0], missing[0])
+    digests = [commit_block(str(folder), span.first, span.n) for span in asked]
+    assert drawn == [missing[0].first]
+    assert digests[-1] == digests[-2]
+
+
+def test_a_worker_draws_for_nobody_who_asked_something_else(tmp_path):
+    path = tmp_path / "a.h5"
+    mcgw.sweep(SCENE, OVER, path=path, shard="2/2")
+    asked = parts_of(path) / "run.toml"
+    good, run = asked.read_text(), RunFolder.open(parts_of(path))
+    for text in (good.replace("seed = 7\n", "seed = 8\n"), "identity = 3"):
+        asked.write_text(text)
+        with pytest.raises(mcgw.StoreError, match=r"run\.toml: damaged"):
+            commit_block(str(parts_of(path)), 0, 50)
+    replace(run, identity="0" * 64)._write(expected="anything")
+    with pytest.raises(mcgw.RunError, match="this worker cannot draw for that run"):
+        commit_block(str(parts_of(path)), 0, 50)
+
+
+def test_executors_draw_into_a_file():
+    pool = ThreadPoolExecutor(1)
+    for how in ({"executor": pool}, {"shard": "1/2"}):
+        with pytest.raises(ValueError, match=r"^executor, shard: they need a file; give path"):
+            mcgw.sweep(SCENE, OVER, **how)
+    with pytest.raises(ValueError, match="a share uses threads"):
+        mcgw.sweep(SCENE, OVER, path="a.h5", executor=pool, shard="1/2")
+
+
+def test_shares_by_command(shell, tmp_path):
+    call = ["sweep", "s.toml", "--over", f"{N}=100,200,300", "-o"]
+    shell(*call, "p.h5", "--threads", "1")
+    shell(*call, "s.h5", "--shard", "2/2")
+    shell("merge", "s.h5", code=1)
+    shell(*call, "s.h5", "--shard", "1/2")
+    assert shell("merge", "s.h5").out.startswith("s.h5: 3 scenes, seed ")
+    assert "was finished before, 3 scenes" in shell("merge", "s.h5").out
+    assert digest(tmp_path / "s.h5") == digest(tmp_path / "p.h5")

@@ -1,0 +1,205 @@
+"""Gradings and height laws that rise or fall as fast as the integrals reach: right, or refused in a line.
+
+Everything is held to closed forms and quadratures of mpmath: ``E (s-h)_+^n exp(k s) = exp(k^2/2) F_n(h-k)``
+under the normal law (parabolic cylinder functions), and the Weibull integrals in ``y = x^k``.
+"""
+
+import math
+
+import mpmath as mp
+import numpy as np
+import pytest
+import scipy.stats
+from oracles.reference import F
+
+import analytic
+from analytic import (
+    Clipped,
+    Custom,
+    Exponential,
+    ExponentialHeights,
+    Gaussian,
+    HeightRule,
+    ScipyHeights,
+    Table,
+    Weibull,
+)
+
+H = (-20.0, -3.0, 0.0, 2.0, 5.0, 20.0)
+TOO_STEEP = "^grading: (up to s = .* increases too steeply|E.* is not finite at s = )"
+
+
+def raised(k):
+    return Custom(lambda s: np.exp(k * s))
+
+
+def tilted(n, h, k):
+    """``E (s-h)_+^n exp(k s)``, exactly."""
+    return mp.exp(mp.mpf(k) ** 2 / 2) * F(n, mp.mpf(h) - k)
+
+
+def off(value, truth):
+    return abs(float(mp.mpf(float(value)) / truth - 1))
+
+
+@pytest.mark.parametrize(("n", "k"), [(0.5, 4.0), (1.5, 8.0), (0.5, 12.0), (1.5, 20.0)])
+def test_means_of_steep_gradings(n, k):
+    for h in H:
+        assert off(analytic.fn(n, h, raised(k)), tilted(n, h, k)) < 1e-12
+
+
+@pytest.mark.parametrize("k", [-4.0, -12.0])
+def test_gradings_that_are_steep_towards_the_valleys(k):
+    for h in (-40.0, -16.0, -3.0, 0.0):
+        assert off(analytic.fn(1.5, h, raised(k)), tilted(1.5, h, k)) < 1e-12
+
+
+def test_many_separations_reach_as_far_as_each_alone():
+    h = np.linspace(-30, 30, 301)
+    alone = [float(analytic.fn(1.5, x, raised(12.0))) for x in h[::25]]
+    np.testing.assert_allclose(analytic.fn(1.5, h, raised(12.0))[::25], alone, rtol=1e-12)
+
+
+@pytest.mark.parametrize("k", [30.0, 60.0])
+def test_means_beyond_double_precision_are_refused(k):
+    for h in (-3.0, 0.0, 20.0):
+        with pytest.raises(ValueError, match=TOO_STEEP):
+            analytic.fn(1.5, h, raised(k))
+    with pytest.raises(ValueError, match=TOO_STEEP):
+        analytic.fn(1.5, 0.0, Custom(lambda s: np.exp(0.51 * s * s)))  # there is no mean at all
+
+
+@pytest.mark.parametrize("k", [2.0, 4.0])
+def test_variances_and_skewness_of_steep_gradings(make_model, k):
+    for h in (-2.0, 0.0, 3.0):
+        one = make_model(grading=raised(k), n_asperities=1.0)
+        m1, m2, m3 = (tilted(1.5 * r, h, r * k) for r in (1, 2, 3))
+        variance = m2 - m1**2
+        exact = one.cumulants("load", h)
+        assert off(exact.mean, m1) < 1e-12
+        assert off(exact.variance, variance) < 1e-12
+        assert off(exact.skewness, (m3 - 3 * m2 * m1 + 2 * m1**3) / mp.sqrt(variance) ** 3) < 1e-11
+
+
+@pytest.mark.parametrize("k", [8.0, 20.0])
+def test_variances_beyond_double_precision_are_refused(make_model, k):
+    model = make_model(grading=raised(k))
+    with pytest.raises(ValueError, match=TOO_STEEP):
+        model.cumulants("load", 0.0)
+    with pytest.raises(ValueError, match=TOO_STEEP):
+        HeightRule.over([0.0, 1.0], raised(k), Gaussian())
+    assert off(model.mean("load", 0.0), tilted(1.5, 0.0, k) * mp.mpf(model.number)) < 1e-12
+
+
+@pytest.fixture
+def make_model():
+    unit = analytic.Surface(1.0, 1.0, 1.0, 1.0, 0.75)  # load and area of one asperity at unit approach: 1, pi
+
+    def make(**given):
+        return analytic.Model(unit, **given)
+
+    return make
+
+
+@pytest.mark.parametrize("rate", [0.5, 0.8, 0.9])
+def test_steep_gradings_under_exponential_heights(rate):
+    """``E (s-h)_+^n exp(k s) = Gamma(n+1) (1-k)^(-n-1) exp(k h - h - 1)``; at k = 1 there is no mean."""
+    for h in (-1.0, 0.0, 3.0):
+        found = analytic.fn(1.5, h, raised(rate), heights=ExponentialHeights())
+        k = mp.mpf(rate)
+        assert off(found, mp.gamma(2.5) * (1 - k) ** -2.5 * mp.exp(k * h - h - 1)) < 1e-12
+    with pytest.raises(ValueError, match=TOO_STEEP):
+        analytic.fn(1.5, 0.0, raised(1.01), heights=ExponentialHeights())
+
+
+def test_heavy_tails_reach_as_far_as_they_carry():
+    """Student's t of few degrees: the mean load to 1e-10 by mpmath, where the old end lost 1e-9."""
+    degrees = mp.mpf("2.1")
+    law = ScipyHeights(scipy.stats.t(2.1))
+    std = mp.sqrt(degrees / (degrees - 2))
+    constant = mp.gamma((degrees + 1) / 2) / mp.sqrt(degrees * mp.pi) / mp.gamma(degrees / 2)
+
+    def integrand(w):  # x = std s = w/(1-w)
+        x = w / (1 - w)
+        return (
+            (x / std) ** mp.mpf("1.5")
+            * constant
+            * (1 + x * x / degrees) ** (-(degrees + 1) / 2)
+            / (1 - w) ** 2
+        )
+
+    # over the tail by its power: x^(1.5-3.1) is w -> 1 like (1-w)^(-0.4), which tanh-sinh takes
+    truth = mp.quad(integrand, [0, 0.5, 0.9, 1])
+    assert off(analytic.fn(1.5, 0.0, heights=law), truth) < 1e-10
+    with pytest.raises(ValueError, match="tail of the heights is too heavy"):
+        analytic.fn(3, 0.0, heights=law)
+
+
+def soft(n, h, gamma):
+    """Logarithm of F*_n for a grading ``gamma - (gamma - 1) exp(-s)``."""
+    gamma, h = mp.mpf(gamma), mp.mpf(h)
+    return mp.log(gamma * F(n, h) - (gamma - 1) * mp.exp(mp.mpf(1) / 2) * F(n, h + 1))
+
+
+@pytest.mark.parametrize(
+    ("gamma", "n"), [(0.0, 1.5), (5e-324, 0), (1e-310, 0.5), (1e-300, 1.5), (1e-250, 0), (1e-9, 1.5)]
+)
+def test_logarithms_do_not_underflow_with_the_grading(n, gamma):
+    h = np.array([300.0, 600.0, 700.0, 744.0, 745.0, 746.0, 800.0, 1000.0])
+    found = analytic.fn(n, h, Exponential(gamma), log=True)
+    truth = [float(soft(n, x, gamma)) for x in h]
+    np.testing.assert_allclose(found, truth, rtol=1e-14)
+    np.testing.assert_array_equal(analytic.fn(n, h, Clipped.of(Exponential(gamma)), log=True), found)
+
+
+@pytest.mark.parametrize("size", [1e-305, 1e305])
+def test_gradings_of_any_size(size):
+    """A constant drops out of the logarithm, whatever it does to the integral itself."""
+    h = np.array([-5.0, 0.0, 30.0, 1000.0])
+    expected = analytic.fn(1.5, h, log=True) + math.log(size)
+    for grading in (Custom(lambda s: np.full_like(s, size)), Table([0.0, 1.0], [size, size])):
+        np.testing.assert_allclose(analytic.fn(1.5, h, grading, log=True), expected, rtol=1e-14, atol=1e-12)
+        np.testing.assert_allclose(analytic.mean_modulus(h, grading, weight="area"), size, rtol=1e-12)
+        scipys = analytic.fn(1.5, h[:2], grading, heights=ScipyHeights(scipy.stats.norm()), log=True)
+        np.testing.assert_allclose(scipys, expected[:2], rtol=1e-12)
+
+
+def test_ratios_of_soft_tips_far_out():
+    """gamma = 0 at h = 800: every quotient is a number, though its integrals are not."""
+    grading, h = Exponential(0.0), 800.0
+    for weight in ("number", "area", "load"):  # the modulus next to h, less by 1/h or so
+        n = {"number": 0, "area": 1, "load": 1.5}[weight]
+        above, below = (soft(n, h, 0), mp.log(F(n, mp.mpf(h))))
+        if weight == "load":
+            above, below = mp.log(mp.exp(2) * F(n, mp.mpf(h) + 2)), soft(n, h, 0)
+        expected = float(mp.exp(above - below))  # 1e-348: beyond double precision it is 0
+        assert float(analytic.mean_modulus(h, grading, weight=weight)) == pytest.approx(expected, rel=1e-12)
+    inside = 700.0
+    ratio = float(mp.exp(mp.log(F(1.5, mp.mpf(inside))) - soft(1.5, inside, 0)))
+    assert float(analytic.area_per_load_ratio(inside, grading)) == pytest.approx(ratio, rel=1e-12)
+    assert float(analytic.area_per_load_ratio(h, grading)) == math.inf  # 1e347
+    found = analytic.ratio_at_equal_load("conductance", 900.0, grading)
+    other = mp.findroot(lambda x: soft(1.5, x, 0) - mp.log(F(1.5, mp.mpf(900))), (mp.mpf(898), mp.mpf(900)))
+    assert float(found) == pytest.approx(float(F(0.5, other) / F(0.5, mp.mpf(900))), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("shape", "h"),
+    [(1.0, -20.0), (1.0, 4.0), (1.5, -3.0), (1.5, 2.0), (3.9, 0.0), (4.0, 2.0), (12.0, -20.0), (40.743, -3.0),
+     (40.743, 0.0), (100.0, 2.0)],
+)  # fmt: skip
+def test_weibull_integrals_of_any_shape(shape, h):
+    with mp.workdps(40):
+        k = mp.mpf(shape)
+        mean = mp.gamma(1 + 1 / k)
+        std = mp.sqrt(mp.gamma(1 + 2 / k) - mean**2)
+        low = max(mp.mpf(0), mean + std * h) ** k
+
+        def integrand(y):
+            return abs((y ** (1 / k) - mean) / std - h) ** mp.mpf("1.5") * mp.exp(low - y)
+
+        marks = ("0", "1e-6", "1e-3", "0.03", "0.3", "1", "2", "4", "9", "20", "40", "80", "150")
+        truth = mp.quad(integrand, [low + mp.mpf(c) for c in marks]) * mp.exp(-low)
+        share = mp.exp(-low)
+    assert off(analytic.fn(1.5, h, heights=Weibull(shape)), truth) < 1e-12
+    assert off(Weibull(shape).sf(np.array(h)), share) < 1e-12

@@ -1,0 +1,386 @@
+"""The exact theory under other laws of contact than Hertz's: check values, literal integrals, identities."""
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from oracles.law_means import term
+from oracles.laws_by_hand import (
+    GRADINGS as PLAIN,
+    SURFACE,
+    ChangEtsionBogy,
+    Film,
+    HalfSpace,
+    KogutEtsion,
+    differences,
+    reduced,
+)
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+import analytic
+from analytic import (
+    Clipped,
+    Custom,
+    Exponential,
+    ExponentialHeights,
+    Gaussian,
+    Homogeneous,
+    MeasuredHeights,
+    Model,
+    Table,
+    Weibull,
+    laws,
+    quantity_of,
+)
+from analytic.laws.law import ContactLaw
+
+LAWS = {
+    "kogut-etsion": KogutEtsion(0.05), "early": KogutEtsion(1e-3), "late": KogutEtsion(10.0),
+    "chang": ChangEtsionBogy(0.3), "half-space": HalfSpace(0.25), "film": Film(0.1),
+}  # fmt: skip
+GRADINGS = PLAIN | {
+    "stiff tips": Clipped.of(Exponential(2.0)),
+    "table": Table([-1.0, 0.0, 0.7, 1.5], [0.4, 1.0, 0.3, 2.0]),
+}
+HEIGHTS = {"gaussian": Gaussian(), "exponential": ExponentialHeights(), "weibull": Weibull(2.0)}
+PAIRS = [  # every law with two gradings or more, every grading with laws that jump, bend, and stay elastic
+    ("kogut-etsion", "uniform"), ("kogut-etsion", "table"), ("kogut-etsion", "no tips"),
+    ("early", "soft tips"), ("early", "stiff tips"), ("late", "stiff tips"), ("late", "uniform"),
+    ("chang", "no tips"), ("chang", "soft tips"), ("half-space", "table"), ("half-space", "no tips"),
+    ("film", "stiff tips"), ("film", "soft tips"),
+]  # fmt: skip
+pairs = pytest.mark.parametrize(
+    ("law", "grading"), [(LAWS[a], GRADINGS[b]) for a, b in PAIRS], ids=map(" ".join, PAIRS)
+)
+
+
+def found_by_hand(law, grading, h, low, high):
+    """Heights at which a piece ends: on a fine grid, then by Brent; and breaks of the grading."""
+    s = np.linspace(low, high, 20_001)
+    ends = []
+    for j in range(len(law.limits(np.ones(1)))):
+
+        def gap(x, j=j):
+            with np.errstate(divide="ignore"):
+                return x - h - law.limits(grading(np.array(x)))[j]
+
+        over = gap(s) >= 0
+        for k in np.flatnonzero(over[1:] != over[:-1]):
+            ends.append(brentq(gap, s[k], s[k + 1], xtol=1e-15))
+    return [x for x in [*ends, *grading.breaks, 0.0] if low < x < high]
+
+
+def literal(f, law, grading, heights, h, top=9.5):
+    """Integral of f(s) over the density, by scipy's adaptive rule in the root of s - h, piece by piece."""
+    low = max(h, heights.support[0])
+    inner = found_by_hand(law, grading, h, low, top)
+    if isinstance(heights, Weibull):
+        low += 1e-300
+    fine = [h + 4.0**-k for k in range(12) if h + 4.0**-k > low]
+    edges = np.sqrt(np.unique([low, *inner, *fine, top]) - h)
+
+    def integrand(v):
+        s = h + v * v
+        return 2 * v * float(f(np.array(s))) * float(heights.pdf(np.array(s)))
+
+    parts = [quad(integrand, a, b, epsabs=1e-17, epsrel=1e-13, limit=200)[0] for a, b in pairwise(edges)]
+    return math.fsum(parts)
+
+
+CHECKS = [  # physics.md A.1 to A.9: mpmath at 25 digits, Gaussian heights at h = 1
+    (laws.KogutEtsion(critical=0.05), "load", 0.05346624148043353),
+    (laws.KogutEtsion(critical=0.05), "area", 0.116420109265612),
+    (laws.KogutEtsion(critical=0.5), "load", 0.07383090928083739),
+    (laws.KogutEtsion(critical=0.5), "area", 0.08489960729421809),
+    (laws.ChangEtsionBogy(critical=0.05), "load", 0.05328285176044976),
+    (laws.ChangEtsionBogy(critical=0.05), "area", 0.1589956020772286),
+    (laws.ChangEtsionBogy(critical=0.5), "load", 0.1088808976941458),
+    (laws.ZhaoMaiettaChang(critical=0.05), "load", 0.04876778006841703),
+    (laws.ZhaoMaiettaChang(critical=0.05), "area", 0.1061380393980319),
+    (laws.ZhaoMaiettaChang(critical=0.5), "load", 0.06754575844782382),
+    (laws.ZhaoMaiettaChang(critical=0.5), "area", 0.08346351478218223),
+    (laws.JacksonGreen(yield_strength=4e6), "load", 0.06273249305786957),  # 0.004 E*, R/sigma = 1000
+    (laws.JacksonGreen(yield_strength=4e6), "area", 0.1030235128462129),
+    (laws.PowerLawGraded(0.5, reduced_c0=1.0), "area", 1.5 * 0.08331547058768628),
+    (laws.Coated(reduced_thickness=0.5, ratio=3.0, poisson=0.3), "stiffness", 0.1780682584080905),
+    (laws.Coated(reduced_thickness=0.5, ratio=3.0, poisson=0.3), "load", 0.1321165629933847),
+    (laws.Coated(reduced_thickness=0.5, ratio=0.2, poisson=0.3), "stiffness", 0.07458784206776457),
+    (laws.Coated(reduced_thickness=0.5, ratio=0.2, poisson=0.3), "load", 0.05308882315001123),
+]
+
+
+@pytest.mark.parametrize(("law", "quantity", "value"), CHECKS)
+def test_check_values(law, quantity, value):
+    surface = replace(SURFACE, radius=1e-3)
+    model = Model(surface, law=law)
+    found = float(model.mean(quantity, 1.0)) / model.number / quantity_of(quantity).scale(surface)
+    assert found == pytest.approx(value, rel=1e-12)
+
+
+@pairs
+def test_means_are_literal_integrals(law, grading):
+    model = Model(SURFACE, law=law, grading=grading)
+    own = "conductance" if isinstance(law, Film) else "load"
+    for h, quantity in ((-0.4, own), (1.2, own), (1.2, "yielded")):
+
+        def f(s, quantity=quantity, h=h):
+            with np.errstate(divide="ignore", invalid="ignore"):
+                return np.nan_to_num(term(quantity, law, s - h, grading(s)))
+
+        truth = literal(f, law, grading, Gaussian(), h)
+        assert reduced(model, quantity, h) == pytest.approx(truth, rel=1e-12, abs=1e-16)
+
+
+@pytest.mark.parametrize("name", ["uniform", "soft tips", "table"])
+def test_separations_that_share_a_rule_do_not_matter_to_each_other(name):
+    """A limit apart, close together, and far away."""
+    h = np.array([-0.5, 0.3, 0.35, 0.35 + 1e-9, 1.0, 8.0, 20.0])
+    for law, quantity in ((KogutEtsion(1e-3), "load"), (Film(0.1), "conductance")):
+        model = Model(SURFACE, law=law, grading=GRADINGS[name])
+        alone = [float(model.mean(quantity, x)) for x in h]
+        np.testing.assert_allclose(model.mean(quantity, h), alone, rtol=2e-12)
+
+
+@pytest.mark.parametrize("name", ["exponential", "weibull"])
+def test_means_under_other_height_laws(name):
+    heights, law, grading = HEIGHTS[name], KogutEtsion(0.05), Exponential(0.2)
+    model = Model(SURFACE, law=law, grading=grading, heights=heights)
+    for h in (-1.4, 0.3):
+        truth = literal(lambda s, h=h: term("load", law, s - h, grading(s)), law, grading, heights, h, 40.0)
+        assert reduced(model, "load", h) == pytest.approx(truth, rel=1e-10)
+
+
+def test_measured_heights_are_summed():
+    heights = MeasuredHeights(np.random.default_rng(3).standard_normal(200))
+    law, grading = KogutEtsion(0.05), Exponential(0.2)
+    model = Model(SURFACE, law=law, grading=grading, heights=heights)
+    s = np.array(heights.heights)
+    for quantity in ("load", "yielded", "load_slope"):
+        for h in (-0.5, 0.7):
+            truth = term(quantity, law, s - h, grading(s)).mean()
+            assert reduced(model, quantity, h) == pytest.approx(truth, rel=1e-14)
+    step = 1e-6
+    values = model.mean("load", [0.7 - step, 0.7 + step])
+    assert float(model.slope("load", 0.7)) == pytest.approx((values[0] - values[1]) / 2e-6, rel=1e-7)
+    np.testing.assert_allclose(model.separation_at("load", model.mean("load", [0.7, 1.5])), [0.7, 1.5])
+
+
+# Fluctuations
+
+
+def test_cumulants_are_literal_moments():
+    law, grading, n = KogutEtsion(0.05), Exponential(0.2), 70.0
+    model = Model(SURFACE, law=law, grading=grading, n_asperities=n)
+    for quantity, separations in (("load", (-0.4,)), ("yielded", (1.2,))):
+        scale = quantity_of(quantity).scale(SURFACE)
+        for h in separations:
+            m1, m2, m3 = (
+                literal(
+                    lambda s, k=k, h=h: term(quantity, law, s - h, grading(s)) ** k,  # noqa: B023
+                    law,
+                    grading,
+                    Gaussian(),
+                    h,
+                )
+                for k in (1, 2, 3)
+            )
+            fixed = model.cumulants(quantity, h)
+            assert float(fixed.variance) == pytest.approx(n * scale**2 * (m2 - m1**2), rel=1e-10)
+            k3 = m3 - 3 * m2 * m1 + 2 * m1**3
+            assert float(fixed.skewness) == pytest.approx(k3 / (m2 - m1**2) ** 1.5 / n**0.5, rel=1e-9)
+            poisson = replace(model, count="poisson").cumulants(quantity, h)
+            assert float(poisson.variance) == pytest.approx(n * scale**2 * m2, rel=1e-10)
+
+
+def test_covariance_across_separations_is_literal():
+    law, grading = KogutEtsion(0.05), Exponential(0.2)
+    model = Model(SURFACE, law=law, grading=grading, count="poisson", n_asperities=1.0)
+    h = np.array([0.2, 0.25, 0.25 + 1e-9, 1.1])  # the second is where asperities yield under the first
+    matrix = model.covariance(["load", "yielded", "load_slope"], h)
+    scale = quantity_of("load").scale(SURFACE)
+
+    def ends(s):
+        return [x for level in h for x in found_by_hand(law, grading, level, level, 9.5) if x > s]
+
+    for i, j in ((0, 1), (1, 2), (0, 3)):
+        edges = np.unique([h[j], *ends(h[j]), *(h[j] + 4.0**-k for k in range(16)), 9.5])
+
+        def integrand(s, i=i, j=j):
+            s = np.array(s)
+            both = term("load", law, s - h[i], grading(s)) * term("yielded", law, s - h[j], grading(s))
+            return float(both * Gaussian().pdf(s))
+
+        truth = math.fsum(quad(integrand, a, b, epsabs=1e-17, epsrel=1e-12)[0] for a, b in pairwise(edges))
+        assert matrix[0, i, 1, j] / scale == pytest.approx(truth, rel=1e-9)
+    for k, quantity in enumerate(("load", "yielded", "load_slope")):
+        np.testing.assert_allclose(np.diag(matrix[k, :, k, :]), model.std(quantity, h) ** 2, rtol=1e-11)
+
+
+# Slopes
+
+
+@pytest.mark.parametrize(
+    ("law", "grading", "quantity"),
+    [("kogut-etsion", "uniform", "load"), ("kogut-etsion", "stiff tips", "area"),
+     ("early", "soft tips", "load"), ("early", "uniform", "area"), ("late", "soft tips", "area"),
+     ("chang", "stiff tips", "load"),
+     ("chang", "soft tips", "load"), ("chang", "uniform", "area"), ("half-space", "soft tips", "load"),
+     ("half-space", "stiff tips", "contacts"), ("film", "stiff tips", "load"),
+     ("chang", "no tips", "load")],  # which yields between two heights, and jumps at the upper one as well
+)  # fmt: skip
+def test_slopes_count_the_jumps(law, grading, quantity):
+    model = Model(SURFACE, law=LAWS[law], grading=GRADINGS[grading])
+    h = np.array([[1.0], [0.3]])
+    exact = [differences(model, quantity, x) for x in h.ravel()]
+    np.testing.assert_allclose(model.slope(quantity, h).ravel(), exact, rtol=1e-10)
+
+
+@pytest.mark.parametrize("law", [
+    laws.KogutEtsion(critical=0.05, bridge="hermite"),
+    laws.ZhaoMaiettaChang(critical=0.05),
+    laws.JacksonGreen(yield_strength=4e6),
+    laws.Coated(ratio=3.0, reduced_thickness=0.5),
+], ids=["bridged", "zhao", "jackson", "coated"])  # fmt: skip
+def test_slopes_of_the_laws_of_the_package(law):
+    model = Model(replace(SURFACE, radius=1e-3), law=law, grading=Exponential(0.2))
+    for quantity in ("load", "area", "stiffness"):
+        slope = float(model.slope(quantity, 0.4))
+        assert slope == pytest.approx(differences(model, quantity, 0.4), rel=1e-10)
+
+
+def test_slope_with_jumps_of_the_modulus():
+    """Asperities beyond a jump of the modulus yield at its height whatever the separation: no term."""
+    grading = Custom(lambda s: np.where(s > 1.0, 0.5, 1.0), breaks=(1.0,))
+    model = Model(SURFACE, law=ChangEtsionBogy(0.3), grading=grading)
+    for h in (0.2, 0.9):  # of the two limits 0.3 and 1.2: one below the jump, or the jump itself
+        assert float(model.slope("load", h)) == pytest.approx(differences(model, "load", h), rel=1e-10)
+
+
+def test_check_values_of_slopes():
+    """physics.md, 0: Chang's law with a critical penetration of 0.05 at h = 1."""
+    model = Model(SURFACE, law=ChangEtsionBogy(0.05))
+    load = model.number * quantity_of("load").scale(SURFACE)
+    assert float(model.slope("load", 1.0)) / load == pytest.approx(0.1024253228584864, rel=1e-12)
+    assert 1.5 * reduced(model, "load_slope", 1.0) == pytest.approx(0.1011402426250286, rel=1e-12)
+    graded = replace(model, grading=Exponential(2.0))
+    assert float(graded.slope("load", 1.0)) / load == pytest.approx(0.10492023, abs=5e-9)
+    # Under Hertz's law too the number of contacts falls by the density at the separation.
+    model = Model(SURFACE, grading=Exponential(0.2))
+    assert float(model.slope("contacts", 0.7)) == pytest.approx(
+        1000 * math.exp(-0.245) / math.sqrt(2 * math.pi), rel=1e-13
+    )
+    for quantity in ("stiffness", "conductance"):
+        assert float(model.slope(quantity, 0.7)) == pytest.approx(
+            differences(model, quantity, 0.7), rel=1e-10
+        )
+
+
+# The separation of a load
+
+
+@pytest.mark.parametrize("heights", [Gaussian(), ExponentialHeights()], ids=["gaussian", "exponential"])
+def test_separations_belong_to_means(heights):
+    model = Model(SURFACE, law=KogutEtsion(0.05), grading=Exponential(0.2), heights=heights)
+    h = np.array([[-2.0], [15.0]])
+    np.testing.assert_allclose(model.separation_at("load", model.mean("load", h)), h, rtol=1e-12)
+
+
+def test_pressures_and_values_beyond_reach():
+    model = Model(SURFACE, law=KogutEtsion(0.05), grading=Exponential(2.0))
+    pressure = float(model.mean("pressure", 0.4))
+    assert float(model.mean("load", 0.4)) == pytest.approx(pressure * SURFACE.nominal_area, rel=1e-14)
+    assert float(model.separation_at("pressure", pressure)) == pytest.approx(0.4, abs=1e-12)
+    with pytest.raises(ValueError, match="contacts: not reached for h from -40 to 3"):
+        replace(model, grading=Homogeneous()).separation_at("contacts", 1001.0)
+    with pytest.raises(ValueError, match="give finite values > 0"):
+        model.separation_at("load", -1.0)
+
+
+# Who yields
+
+
+def test_shares_of_the_pieces_are_shares_of_heights():
+    """Homogeneous: beyond fixed penetrations. Graded: above the root of s - h = dc/e(s)^2."""
+    both, dc = np.array([0.9, 0.4]), 0.05
+    law, above = KogutEtsion(dc), Gaussian().sf
+    ends = both + dc * np.array([0.0, 1.0, 6.0, 110.0, np.inf])[:, None]
+    shares = [Model(SURFACE, law=law).share(piece, both) for piece in range(4)]
+    np.testing.assert_allclose(shares, -np.diff(above(ends), axis=0) / above(both), rtol=1e-11)
+    h = 0.4
+    model = Model(SURFACE, law=law, grading=Exponential(0.2))
+    t = brentq(lambda s: s - h - dc / (0.2 + 0.8 * math.exp(-s)) ** 2, h, 3, xtol=1e-15)
+    assert float(model.share(0, h)) == pytest.approx(
+        1 - float(above(np.array(t)) / above(np.array(h))), 1e-11
+    )
+    yielded = model.mean("yielded", h) / model.mean("contacts", h)
+    assert float(sum(model.share(piece, h) for piece in (1, 2, 3))) == pytest.approx(
+        float(yielded), rel=1e-13
+    )
+
+
+# Limits, and Hertz
+
+
+def test_hertz_named_is_hertz_left_out():
+    h = np.linspace(-2, 4, 9)
+    named, left_out = (Model(SURFACE, grading=Exponential(0.2), law=law) for law in (ContactLaw(), None))
+    for quantity in analytic.QUANTITIES:
+        np.testing.assert_array_equal(named.mean(quantity, h), left_out.mean(quantity, h))
+        np.testing.assert_array_equal(named.std(quantity, h), left_out.std(quantity, h))
+    np.testing.assert_array_equal(named.slope("load", h), left_out.slope("load", h))
+    np.testing.assert_allclose(named.mean("load_slope", h), named.mean("stiffness", h), rtol=1e-12)
+    np.testing.assert_allclose(named.std("load_slope", h), named.std("stiffness", h), rtol=1e-12)
+    np.testing.assert_array_equal(named.mean("yielded", h), 0.0)
+    np.testing.assert_array_equal(named.share(0, h), 1.0)
+
+
+# What is refused
+
+
+def test_negative_moduli_do_not_yield():
+    model = Model(SURFACE, law=KogutEtsion(0.05), grading=Exponential(2.0))
+    assert np.isfinite(model.mean("load", 0.0))
+    with pytest.raises(
+        ValueError, match=r"grading: E\*\(s\)/E\* = -.* needs a modulus >= 0; clip it"
+    ) as told:
+        model.mean("load", -1.0)
+    assert "\n" not in str(told.value)
+    elastic = Model(SURFACE, law=HalfSpace(0.5), grading=Exponential(2.0))
+    assert np.isfinite(elastic.mean("load", -1.0))
+
+
+def test_questions_without_an_answer_are_refused():
+    model = Model(SURFACE, law=KogutEtsion(0.05))
+    with pytest.raises(ValueError, match="load_slope"):
+        model.slope("load_slope", 0.0)
+    with pytest.raises(ValueError, match="every separation must be finite"):
+        model.mean("load", math.nan)
+    with pytest.raises(KeyError, match="load_slope, conductance_si, yielded"):
+        model.mean("force", 0.0)
+    for question in (model.mean, model.slope, model.std, model.separation_at):
+        with pytest.raises(ValueError, match="law = 'by hand: kogut-etsion': no unloading is known"):
+            question("load_unloading", 0.5)
+
+
+def test_a_grading_is_searched_once():
+    """Every quantity of a model asks where it jumps; a function that has changed is asked anew."""
+    asked, place = [], [0.7]
+
+    def step(s):
+        asked.append(s.size)
+        return np.where(s > place[0], 2.0, 0.5)
+
+    def model():
+        return Model(SURFACE, grading=Custom(step), law=laws.KogutEtsion(critical=0.1), heights=Weibull(3.0))
+
+    first, calls = model(), []
+    for quantity in ("load", "area", "contacts"):
+        calls.append(len(asked))
+        first.slope(quantity, [0.5, 1.0])
+    assert len(asked) - calls[1] < calls[1] / 20
+    place[0] = 0.9
+    there = replace(first, grading=Custom(lambda s: np.where(s > 0.9, 2.0, 0.5), breaks=(0.9,), smooth=True))
+    assert model().mean("load", 0.5) == pytest.approx(there.mean("load", 0.5), rel=1e-12)
