@@ -7,17 +7,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic import PER_AREA
-from analytic.arrays import Array, Ints
+from analytic.arrays import Array
 from mcgw.ensemble.intervals import CONFIDENCE, interval_of
-from mcgw.ensemble.labelled import Labelled, axes_of, axis, sheet_of, statistics_of, values_of
-from mcgw.ensemble.results import PROBABILITIES, Held
+from mcgw.ensemble.labelled import Labelled, axes_of, sheet_of, statistics_of, values_of
+from mcgw.ensemble.results import Held
 from mcgw.formats.sheet import Sheet, Shown, brief
 from mcgw.machine.terminal import plotted, quantity_and_axes
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 
 _SAME = 1e-9  # d/sigma
-STATISTICS = ("mean", "std", "skewness")  # kept in place of values, besides quantiles
+STATISTICS = ("mean", "std")  # of each quantity, kept in place of values, besides covariances
 
 
 @dataclass(frozen=True, repr=False)
@@ -192,44 +192,21 @@ class Ensemble(Shown):
         found = self.sums.covariance(name, second)
         return np.asarray(found / area / by)
 
-    def skewness(self, quantity: str) -> Array:
-        """Skewness over the surfaces (divisor M), shape (separations,); nan where nothing varies."""
-        return self.sums.skewness(self._held(quantity)[0])
-
     def quantile(self, quantity: str, share: float) -> Array:
         """Value below which the given share of the surfaces lies, as `numpy.quantile`, shape (separations,).
 
-        Where only statistics are kept, values are counted in bins, and the quantile is interpolated in one of
-        them: `quantile_range` bounds the error.
+        The exact one, of a surface that is not yet drawn, is ``scene.theory.distribution(quantity, h).ppf``.
 
         Raises
         ------
         KeyError
             If the ensemble does not hold this quantity.
         ValueError
-            If `share` is not from 0 to 1.
+            If `share` is not from 0 to 1, or values are not kept.
         """
-        return self._quantile(quantity, share)[0]
-
-    def quantile_range(self, quantity: str, share: float) -> tuple[Array, Array]:
-        """Lower and upper bound of the `quantile` of these surfaces; both equal it where values are kept.
-
-        With ``keep = "statistics"`` they differ by less than 1/64 of the distance from the mean plus one
-        standard deviation; beyond 16000 standard deviations they extend to the extremes. They do not include
-        the sampling error.
-        """
-        return self._quantile(quantity, share)[1:]
-
-    def extremes(self, quantity: str) -> tuple[Array, Array]:
-        """Smallest and largest value over the surfaces, each of shape (separations,)."""
-        name, area = self._held(quantity)
-        low, high, *_ = self.sums.extremes(name)
-        return np.asarray(low / area), np.asarray(high / area)
-
-    def extreme_surfaces(self, quantity: str) -> tuple[Ints, Ints]:
-        """Numbers of the first surfaces that have the `extremes`: `mcgw.heights` gives their asperities."""
-        *_, low, high = self.sums.extremes(self._held(quantity)[0])
-        return low, high
+        if not 0 <= share <= 1:
+            raise ValueError(f"share = {share!r}: give a fraction of the surfaces, 0 to 1")
+        return np.asarray(np.quantile(self.values(quantity), share, axis=0))
 
     def interval(self, quantity: str, level: float = CONFIDENCE) -> tuple[Array, Array]:
         """Confidence interval of the mean, from the exact spread and skewness of the scene.
@@ -263,8 +240,7 @@ class Ensemble(Shown):
     def to_xarray(self) -> Any:
         """All values as an `xarray.Dataset` with dimensions (surface, separation), as in the file.
 
-        With ``keep = "statistics"``: ``load_mean``, ``load_std``, ``load_skewness`` and so on, dimension
-        (separation), and ``load_quantile``, dimensions (probability, separation).
+        With ``keep = "statistics"``: ``load_mean``, ``load_std`` and so on, dimension (separation).
 
         Raises
         ------
@@ -278,7 +254,7 @@ class Ensemble(Shown):
     def to_dataframe(self) -> Any:
         """All values as a `pandas.DataFrame`: rows (surface, separation), a column for each quantity.
 
-        With ``keep = "statistics"``: a row for each separation, a column for each mean, deviation, skewness.
+        With ``keep = "statistics"``: a row for each separation, a column for each mean and deviation.
 
         Raises
         ------
@@ -292,8 +268,7 @@ class Ensemble(Shown):
         """All data with axes, units and descriptions, for the file, xarray and pandas alike."""
         if self.scene.keep != "statistics":
             return values_of(self.scene, {name: self.values(name) for name in self.scene.shapes})
-        found = statistics_of(self, self.scene.shapes, STATISTICS, quantiles=True)
-        return Labelled(found, {"probability": axis("probability", PROBABILITIES), **axes_of(self.scene)})
+        return Labelled(statistics_of(self, self.scene.shapes, STATISTICS), axes_of(self.scene))
 
     def plot(self, quantity: str | None = None, ax: Any = None) -> Any:
         """Draw the mean of a quantity with its confidence interval, and the spread of single surfaces.
@@ -316,13 +291,6 @@ class Ensemble(Shown):
     def sheet(self) -> Sheet:
         """How the ensemble was drawn, and means at the lowest, a middle and the highest separation."""
         return sheet_of(self)
-
-    def _quantile(self, quantity: str, share: float) -> tuple[Array, Array, Array]:
-        if not 0 <= share <= 1:
-            raise ValueError(f"share = {share!r}: give a fraction of the surfaces, 0 to 1")
-        name, area = self._held(quantity)
-        value, low, high = self.sums.quantile(name, float(share))
-        return value / area, low / area, high / area
 
     def _held(self, quantity: str) -> tuple[str, float]:
         """The stored quantity, and the area to divide by, or 1."""

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import Quantity
-from mcgw.ensemble.results import PROBABILITIES
 from mcgw.formats.sheet import Sheet
 from mcgw.formats.table import SEPARATION, Column, Table, optional
 from mcgw.scene.in_words import accuracy_facts, contact_facts, law_text
@@ -17,7 +16,6 @@ from mcgw.scene.scene import Scene
 AXES = {  # of tables, in their order: unit and long name
     "point": ("1", "number of the point"),
     "surface": ("1", "number of the surface"),
-    "probability": ("1", "share of the surfaces that are below"),
     "separation": ("1", "mean-plane separation d/sigma"),
 }
 _AT = "mean +- stderr, d/sigma ="
@@ -26,8 +24,6 @@ _OF_A_SURFACE = ("separation",)
 _WORDS = {
     "mean": "mean of the {}",
     "std": "standard deviation of the {} over surfaces",
-    "skewness": "skewness of the {} over surfaces",
-    "quantile": "quantiles of the {}",
 }
 
 
@@ -110,15 +106,8 @@ def values_of(scene: Scene, tables: Mapping[str, NDArray[Any]]) -> Labelled:
     return Labelled(found, {"surface": axis("surface", np.arange(rows)), **axes_of(scene)})
 
 
-def statistic(q: Quantity, kind: str, values: NDArray[Any], lead: tuple[str, ...] = ()) -> Variable:
-    """A statistic over the surfaces of a quantity, that may have axes before those of a surface."""
-    lead = (*lead, "probability") if kind == "quantile" else lead
-    dims = (*lead, *_OF_A_SURFACE)[: values.ndim]
-    return Variable(dims, values, "1" if kind == "skewness" else q.unit, _WORDS[kind].format(q.long_name))
-
-
 def statistics_of(
-    result: Any, names: Iterable[str], kinds: Sequence[str], *, quantiles: bool, lead: tuple[str, ...] = ()
+    result: Any, names: Iterable[str], kinds: Sequence[str], lead: tuple[str, ...] = ()
 ) -> dict[str, Variable]:
     """What a result tells over its surfaces of some quantities, with axes before those of a surface."""
     found: dict[str, Variable] = {}
@@ -126,10 +115,9 @@ def statistics_of(
     for name in names:
         q = scene.quantity(name)
         for kind in kinds:
-            found[f"{name}_{kind}"] = statistic(q, kind, getattr(result, kind)(name), lead)
-        if quantiles:
-            values = np.stack([result.quantile(name, share) for share in PROBABILITIES], axis=len(lead))
-            found[f"{name}_quantile"] = statistic(q, "quantile", values, lead)
+            values = getattr(result, kind)(name)
+            dims = (*lead, *_OF_A_SURFACE)[: values.ndim]
+            found[f"{name}_{kind}"] = Variable(dims, values, q.unit, _WORDS[kind].format(q.long_name))
     return found
 
 
@@ -139,17 +127,13 @@ def heading(q: Quantity) -> str:
 
 
 def statistics_table(ensemble: Any, name: str) -> Table:
-    """Of a quantity at every separation: mean, std, stderr; and where values are not kept, what else is."""
+    """Mean, std and stderr of a quantity at every separation."""
     q = ensemble.scene.quantity(name)
     unit = q.unit
     found = [("mean", ensemble.mean(name), ".6g"), ("std", ensemble.std(name), ".3g")]
     found.append(("stderr", ensemble.stderr(name), ".3g"))
     columns = [Column(kind, values, unit=unit, form=form) for kind, values, form in found]
     columns[0] = replace(columns[0], error=found[2][1])
-    if ensemble.scene.keep == "statistics":
-        columns.append(Column("skewness", ensemble.skewness(name), form=".3g"))
-        quantiles = ((f"quantile_{share:g}", ensemble.quantile(name, share)) for share in PROBABILITIES)
-        columns += [Column(kind, values, unit=unit) for kind, values in quantiles]
     separation = Column("separation", ensemble.separations, SEPARATION, form="g")
     return Table((separation, *columns), heading(q))
 

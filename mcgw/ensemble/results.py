@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.arrays import Array, Ints
+from analytic.arrays import Array
 
 Tables = dict[str, NDArray[Any]]  # numbers of surfaces by name, a row each
 
-PROBABILITIES = (0.0, 0.001, 0.01, 0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975, 0.99, 0.999, 1.0)
-
+BLOCK = "block_"  # begins the names of tables with one row for all surfaces of a block
 CHUNK_ROWS = 256  # surfaces of a chunk of a file; fewer, by powers of two, where a chunk would be too large
 _ROWS = 8192  # surfaces at a time, for ensembles larger than the memory
 _LOW = 2**32 - 1  # the lower half of an integer: sums of halves do not overflow
@@ -42,18 +41,6 @@ class Held(ABC):
 
     def covariance(self, name: str, other: str) -> Array:  # noqa: ARG002
         """Between all numbers of two tables (divisor M - 1), shape (*shape, *shape of the other)."""
-        raise ValueError(f"{name}: {self.no_more}")
-
-    def skewness(self, name: str) -> Array:
-        """Third cumulant over the 3/2 power of the second (divisor M); nan where nothing varies."""
-        raise ValueError(f"{name}: {self.no_more}")
-
-    def extremes(self, name: str) -> tuple[Array, Array, Ints, Ints]:
-        """Least and greatest value, and the first surfaces that have them."""
-        raise ValueError(f"{name}: {self.no_more}")
-
-    def quantile(self, name: str, share: float) -> tuple[Array, Array, Array]:  # noqa: ARG002
-        """Quantile of the values there are, as `numpy.quantile`, and both ends of where it lies."""
         raise ValueError(f"{name}: {self.no_more}")
 
 
@@ -92,25 +79,6 @@ class Results(Held):
         for x, y in zip(self._chunks(name), self._chunks(other), strict=True):
             total += (x.reshape(len(x), -1) - a).T @ (y.reshape(len(y), -1) - b)
         return (total / (m - 1)).reshape(shape)
-
-    def skewness(self, name: str) -> Array:
-        """From the deviations, some surfaces at a time."""
-        mean = self.mean_and_std(name)[0]
-        squares = np.asarray(sum(((chunk - mean) ** 2).sum(axis=0) for chunk in self._chunks(name)))
-        cubes = np.asarray(sum(((chunk - mean) ** 3).sum(axis=0) for chunk in self._chunks(name)))
-        with np.errstate(invalid="ignore", divide="ignore"):
-            return np.asarray(cubes * np.sqrt(self.rows()) / squares**1.5)
-
-    def extremes(self, name: str) -> tuple[Array, Array, Ints, Ints]:
-        """Of all values at once."""
-        values = self.read(name, 0, None)
-        at = values.argmin(axis=0), values.argmax(axis=0)
-        return values.min(axis=0), values.max(axis=0), *at
-
-    def quantile(self, name: str, share: float) -> tuple[Array, Array, Array]:
-        """Of all values at once: the ends are the quantile itself."""
-        exact = np.quantile(self.read(name, 0, None), share, axis=0)
-        return exact, exact, exact
 
     def _chunks(self, name: str, kind: type = np.float64) -> Iterator[NDArray[Any]]:
         m = self.rows()

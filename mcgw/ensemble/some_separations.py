@@ -50,20 +50,6 @@ class _Some(Held):
         across = found.ndim - self.whole.mean_and_std(other)[0].ndim
         return np.take(np.take(found, self.which, axis=0), self.which, axis=across)
 
-    def skewness(self, name: str) -> Array:
-        """Third cumulant over the 3/2 power of the second."""
-        return self.whole.skewness(name)[self.which]
-
-    def extremes(self, name: str) -> tuple[Array, Array, Ints, Ints]:
-        """Least and greatest value, and the first surfaces that have them."""
-        low, high, first, last = self.whole.extremes(name)
-        return low[self.which], high[self.which], first[self.which], last[self.which]
-
-    def quantile(self, name: str, share: float) -> tuple[Array, Array, Array]:
-        """Quantile of the values there are, and both ends of where it lies."""
-        exact, low, high = (found[self.which] for found in self.whole.quantile(name, share))
-        return exact, low, high
-
 
 def at_separations(ensemble: Ensemble, which: Ints) -> Ensemble:
     """Return the same surfaces at some of the separations.

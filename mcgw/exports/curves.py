@@ -7,10 +7,12 @@ import numpy as np
 from analytic.arrays import Array
 from mcgw.ensemble.at_load import pressures_of
 from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.simulation import simulate
 from mcgw.ensemble.solution import solutions
 from mcgw.formats.table import evenly
-from mcgw.scene.scene import Scene
+from mcgw.scene.scene import Scene, drawn_by
 
+_MOST = 2000  # surfaces drawn again where an ensemble keeps statistics alone
 _FEWEST = 2  # points of a curve
 
 
@@ -169,7 +171,8 @@ def _at_gaps(
     order = order[first]
     name = kind.answer(ensemble.scene)
     x = h * ensemble.scene.surface.sigma
-    return x, ensemble.mean(name)[order], [ensemble.quantile(name, q)[order] for q in quantiles]
+    some = _with_values(ensemble) if quantiles else ensemble
+    return x, ensemble.mean(name)[order], [some.quantile(name, q)[order] for q in quantiles]
 
 
 def _one_way(curve: Curve, kind: Kind) -> Curve:
@@ -189,3 +192,11 @@ def _one_way(curve: Curve, kind: Kind) -> Curve:
             "give fewer points, or a contact law without jumps"
         )
     return Curve(curve.name, x, y)
+
+
+def _with_values(ensemble: Ensemble) -> Ensemble:
+    """The ensemble itself; if it keeps only statistics, its first surfaces drawn again."""
+    if ensemble.scene.keep != "statistics":
+        return ensemble
+    scene = drawn_by(ensemble.scene, ensemble.sampler)
+    return simulate(scene, keep="sums", n_surfaces=min(ensemble.n_surfaces, _MOST))

@@ -175,7 +175,7 @@ def _asked(record: RunFolder) -> "Asked":
 
 
 def _of_groups(asked: "Asked") -> tuple[Reducer, ...]:
-    from mcgw.sweeps.pooled import Pooling
+    from mcgw.sweeps.pooling import Pooling
 
     return tuple(map(Pooling, asked.groups))
 

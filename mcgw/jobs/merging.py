@@ -129,12 +129,12 @@ def _merge_in_memory(job: Job, temporary: Path, check: Callable[[], None]) -> No
     run = job.record
     before, seconds = whole_blocks(job.record.path, run)
     shards = {shard.span: shard for shard in run.shards(bodies=False)}
-    spans = run.missing(sum(block.n for block in before), [])
+    spans = run.missing(sum(part.n for part in before), [])
     if lost := [span for span in spans if span not in shards]:
         raise StoreError(f"{run.folder}: {lost[0]} are missing")
 
     def blocks() -> Iterator[tuple[int, Tables]]:
-        yield from ((0, block.tables()) for block in before)
+        yield from ((0, part.block()) for part in before)
         for span in spans:
             check()
             yield run.plan.group(span)[0], shards[span].arrays()

@@ -12,7 +12,7 @@ from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import Scene, storable
 from mcgw.sweeps.axes import axes_of
 from mcgw.sweeps.points import Asked
-from mcgw.sweeps.pooled import draw, weighted
+from mcgw.sweeps.pooling import draw, weighted
 from mcgw.sweeps.sweep import STATISTICS, Sweep
 
 

@@ -17,7 +17,7 @@ from mcgw.scene.scene import Scene, storable
 from mcgw.scene.values import BALANCED, COARSEST, EXACT
 from mcgw.sweeps.groups import Group
 from mcgw.sweeps.points import Asked
-from mcgw.sweeps.pooled import Pooling
+from mcgw.sweeps.pooling import Pooling
 
 _TARGETS = (1e-2, 1e-3)  # 95 % bounds of means
 _NO_SURFACES = "means alone: no surfaces, scene.theory is exact"

@@ -70,19 +70,18 @@ def open_ensemble(path: str | Path) -> Ensemble:
             raise StoreError(f"{path}: no block of its run is finished yet")
         if run.scene.keep != "statistics":
             return Ensemble(run.scene, run.sampler, ShardResults(shards))
-        from mcgw.ensemble.summarised import Summarised  # for those scenes alone
-        from mcgw.ensemble.summary import Summary
+        from mcgw.ensemble.simulation import reducer_of  # for those scenes alone
 
-        blocks = (Summary.from_tables(shard.arrays()) for shard in shards)  # each read when its turn comes
-        return Ensemble(run.scene, run.sampler, Summarised.of(run.scene, blocks))
+        blocks = (shard.arrays() for shard in shards)  # each read when its turn comes
+        return Ensemble(run.scene, run.sampler, reducer_of(run.scene).held(blocks))
     attributes, scene = described(path)
     if "axes" in attributes:
         raise StoreError(f"{path}: holds a sweep; mcgw.open_sweep opens it, mcgw compare and show take it")
     results: Held = FileResults(path)
     if scene.keep == "statistics":
-        from mcgw.store.statistics_file import read_blocks
+        from mcgw.store.statistics_file import read_statistics
 
-        results = read_blocks(path, scene)
+        results = read_statistics(path, scene)
     return Ensemble(scene, str(attributes["sampler"]), results)
 
 

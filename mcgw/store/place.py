@@ -16,7 +16,7 @@ from mcgw.store.lock import locked
 from mcgw.store.run_folder import RunFolder, remove_run
 
 if TYPE_CHECKING:
-    from mcgw.ensemble.summary import Summary
+    from mcgw.ensemble.pooled import Pooled
 
 
 def recorded_scene(path: Path) -> Scene | None:
@@ -38,15 +38,15 @@ def recorded_seed(path: Path) -> int | None:
     return there.seed if there else None
 
 
-def whole_blocks(path: Path, run: RunFolder) -> tuple[list["Summary"], float]:
-    """Of a file that keeps statistics, the joined blocks that more may follow; and the seconds all took."""
+def whole_blocks(path: Path, run: RunFolder) -> tuple[list["Pooled"], float]:
+    """Of a file that keeps statistics, the whole blocks as one, if any; and the seconds that all took."""
     if run.axes or not path.exists():
         return [], 0.0
-    from mcgw.store.statistics_file import read_blocks  # for those scenes alone
+    from mcgw.store.statistics_file import read_statistics  # for those scenes alone
 
     ((_, size),) = run.plan.groups
-    blocks = [block for block in read_blocks(path, run.scene).blocks if block.n % size == 0]
-    return blocks, float(described(path)[0]["wall_seconds"])
+    parts = [part for part in read_statistics(path, run.scene).parts if part.n % size == 0]
+    return parts, float(described(path)[0]["wall_seconds"])
 
 
 def finished(path: Path, scene: Scene, sampler: str) -> int:

@@ -22,13 +22,12 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from mcgw.ensemble.results import Tables
+from mcgw.ensemble.results import BLOCK, Tables
 from mcgw.errors import StoreError
 from mcgw.formats.files import write_whole
 from mcgw.store.chunks import stored
 from mcgw.store.disk import Trailer, read_checked, read_trailer, trailer_of
 
-BLOCK = "block_"  # begins the names of tables with one row for all surfaces of a block
 LIBVER = ("v108", "v110")  # checksums on all metadata, and every HDF5 of the last decade reads it
 _MOST_DATASETS = 64
 

@@ -7,11 +7,11 @@ import numpy as np
 
 from analytic.arrays import Array
 from mcgw.ensemble.paired import Paired
+from mcgw.ensemble.pooled import Pooled
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
 from mcgw.machine.terminal import plotted
 from mcgw.sweeps.groups import Place
-from mcgw.sweeps.pooled import Pooled
 
 
 @dataclass(frozen=True)

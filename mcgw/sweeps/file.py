@@ -20,10 +20,6 @@ and in ``/drawn``, from which the statistics follow::
     /drawn/load_means     float64 (scenes, separations)   of all groups, one after the other
     /drawn/load_products  float64 (pairs, separations)    sums of products of deviations, all pairs of each
 
-With ``keep = "statistics"`` also ``/load_skewness``, and ``/load_quantile`` with the dimension
-`probability`, and a row for each scene of the tables of `mcgw.store.statistics_file`, as
-``/drawn/summary_mean``.
-
 `digest` is over the scene, the axes and ``/drawn``; `run` over all that they depend on: scene, axes and the
 versions in `draws`. After the HDF5 data stands a trailer, as in the files of ensembles.
 """
@@ -37,6 +33,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mcgw.ensemble.labelled import AXES, Labelled, Variable, axis
+from mcgw.ensemble.pooled import Pooled
 from mcgw.errors import StoreError
 from mcgw.formats.gate import open_h5
 from mcgw.formats.named_files import loads
@@ -46,7 +43,6 @@ from mcgw.store.run_folder import RunFolder
 from mcgw.sweeps.axes import Axes
 from mcgw.sweeps.groups import Place
 from mcgw.sweeps.points import Asked, Points
-from mcgw.sweeps.pooled import Pooled
 from mcgw.sweeps.sweep import STATISTICS, Sweep
 
 Tables = dict[str, NDArray[Any]]
@@ -157,7 +153,7 @@ def _groups(drawn: Tables) -> Iterator[Pooled]:
     for n, scenes in drawn["groups"].tolist():
         tables: Tables = {"n": np.array([n])}
         for name, values in drawn.items():
-            if name.endswith("_means") or name.startswith("summary_"):
+            if name.endswith("_means"):
                 tables[name] = values[first : first + scenes]
             elif name.endswith("_products"):
                 tables[name] = values[pair : pair + scenes**2]

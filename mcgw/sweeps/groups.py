@@ -11,8 +11,7 @@ are not negative let nothing cancel: the last digits are those of the two.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
-from functools import cached_property
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -21,9 +20,6 @@ from analytic.arrays import Array, Ints
 from mcgw.machine.progress import steps
 from mcgw.sampling.shared import on_common_cells, to_be_shared
 from mcgw.scene.scene import Scene
-
-if TYPE_CHECKING:
-    from mcgw.ensemble.summary import Bins
 
 _Item = TypeVar("_Item")
 _MANY = 8  # gradings; fewer are computed one by one, with the same bits as alone
@@ -74,13 +70,6 @@ class Group:
     scenes: tuple[Scene, ...]
     computed: tuple[Scene, ...]
     places: tuple[Place, ...]
-
-    @cached_property
-    def bins(self) -> "tuple[Bins, ...]":
-        """In which values of the computed scenes are counted, where these keep statistics."""
-        from mcgw.ensemble.summary import Bins  # for those scenes alone
-
-        return tuple(map(Bins.of, self.computed))
 
     @property
     def n_surfaces(self) -> int:
@@ -145,8 +134,7 @@ def between_two(scenes: Sequence[Scene]) -> tuple[tuple[int, int], Array] | None
     """
     one = scenes[0]
     # All that is kept must be linear in a modulus that is not negative.
-    linear = one.hertzian and one.interaction is None
-    linear = linear and one.negative == "error" and one.keep != "statistics"
+    linear = one.hertzian and one.interaction is None and one.negative == "error"
     gammas = [
         x.grading.gamma if isinstance(x.grading, Exponential) else 1.0 if x.grading == Homogeneous() else None
         for x in scenes

@@ -17,14 +17,13 @@ from analytic import PER_AREA
 from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.intervals import CONFIDENCE
+from mcgw.ensemble.pooled import Pooled
 from mcgw.ensemble.results import Held
-from mcgw.ensemble.summarised import Summarised
 from mcgw.sampling.samplers import name_of
 from mcgw.scene.cautions import cautions
 from mcgw.scene.scene import Scene
 from mcgw.sweeps.axes import Axes, Point
 from mcgw.sweeps.groups import Place
-from mcgw.sweeps.pooled import Pooled
 
 At = Mapping[str, Any] | Sequence[int] | int
 _NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
@@ -48,7 +47,7 @@ class OverPoints:
     edges : tuple of tuple of float
         Of each group, the edges of cells that its points got from each other.
     statistics : tuple of str
-        Statistics that `to_xarray` returns; with ``keep = "statistics"`` also skewness and quantiles.
+        Statistics that `to_xarray` returns.
     """
 
     axes: Axes
@@ -100,22 +99,6 @@ class OverPoints:
         )
         return self._arranged(low), self._arranged(high)
 
-    def quantile(self, quantity: str, share: float) -> Array:
-        """Value below which a share of the surfaces lies, for each point, as `mcgw.Ensemble.quantile`.
-
-        Raises
-        ------
-        KeyError
-            If there is no such quantity.
-        ValueError
-            If the scenes keep no statistics (``keep = "statistics"``), or `share` is not from 0 to 1.
-        """
-        return self._arranged(self.ensemble(p).quantile(quantity, share) for p in self.axes.points())
-
-    def skewness(self, quantity: str) -> Array:
-        """Skewness over the surfaces of each point; errors as of `quantile`."""
-        return self._arranged(self.ensemble(p).skewness(quantity) for p in self.axes.points())
-
     def theory(self, quantity: str) -> Array:
         """Exact mean of each point (`Scene.theory`), shape (axes ..., separations)."""
         name, per_area = self._held(quantity)
@@ -135,7 +118,7 @@ class OverPoints:
         return self.scenes[self._number(self.axes.place(at))]
 
     def ensemble(self, at: At) -> Ensemble:
-        """Statistics of a point as an ensemble of its scene; by default mean and standard deviation only.
+        """Mean and standard deviation of a point, as an ensemble of its scene.
 
         Raises
         ------
@@ -145,11 +128,9 @@ class OverPoints:
         i = self._number(self.axes.place(at))
         if i not in self._ensembles:
             scene, place = self.scenes[i], self.places[i]
-            pooled = self.groups[place.group]
-            held: Held = PointResults(pooled, place)
-            if pooled.blocks:
-                held = Summarised(scene, pooled.blocks[place.scenes[0]])
-            self._ensembles[i] = Ensemble(scene, name_of(scene), held)
+            self._ensembles[i] = Ensemble(
+                scene, name_of(scene), PointResults(self.groups[place.group], place)
+            )
         return self._ensembles[i]
 
     @cached_property
@@ -197,8 +178,8 @@ class PointResults(Held):
     place: Place
 
     no_more = (
-        "a sweep only keeps mean and standard deviation; for quantiles, skewness and extremes set keep = "
-        '"statistics" in its scene, or simulate the scene of the point'
+        "a sweep only keeps mean and standard deviation of a point; simulate(sweep.scene(point)) draws its "
+        "surfaces again"
     )
 
     def rows(self) -> int:

@@ -11,6 +11,7 @@ from typing import Any
 import tomli_w
 
 from mcgw.ensemble.forecast import without_rule
+from mcgw.ensemble.pooled import Pooled
 from mcgw.formats.named_files import loads
 from mcgw.machine.progress import steps
 from mcgw.scene.scene import Scene
@@ -18,7 +19,6 @@ from mcgw.scene.scene_file import scene_document, scene_of, with_changes
 from mcgw.scene.section import SceneError
 from mcgw.sweeps.axes import Axes
 from mcgw.sweeps.groups import Group, Place, groups_of
-from mcgw.sweeps.pooled import Pooled
 from mcgw.sweeps.sweep import Sweep
 
 _MOST_TOLD = 20  # most mistakes that are shown

@@ -8,9 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from mcgw.ensemble.labelled import Labelled, Variable, axes_of, axis, statistics_of
+from mcgw.ensemble.labelled import Labelled, Variable, axes_of, statistics_of
 from mcgw.ensemble.paired import Paired
-from mcgw.ensemble.results import PROBABILITIES
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import SEPARATION, Column, Table, evenly
 from mcgw.machine.terminal import plotted
@@ -142,11 +141,7 @@ class Sweep(OverPoints, Shown):
             )
             for key, name in self.axes.names.items()
         }
-        whole = bool(self.groups[0].blocks)
-        kinds = (*self.statistics, *(("skewness",) if whole else ()))
-        variables = statistics_of(self, self.quantities, kinds, quantiles=whole, lead=self.axes.dims)
-        if whole:
-            coordinates["probability"] = axis("probability", PROBABILITIES)
+        variables = statistics_of(self, self.quantities, self.statistics, self.axes.dims)
         return Labelled(variables, {**axes_of(self.scenes[0]), **coordinates})
 
     def plot(self, ax: Any = None, *, quantity: str | None = None) -> Any:

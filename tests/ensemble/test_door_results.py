@@ -73,7 +73,6 @@ def results(scene, ensemble, tmp_path_factory):
 
 
 OF_MEANS = "mean low_95 high_95 std theory residual"
-SHARES = "0 0.001 0.01 0.025 0.05 0.25 0.5 0.75 0.95 0.975 0.99 0.999 1"
 COLUMNS = {  # as files have them
     "comparison": [
         (lambda x: x.tables()["area"], f"separation {OF_MEANS}"),
@@ -82,10 +81,6 @@ COLUMNS = {  # as files have them
     ],
     "ensemble": [
         (lambda x: statistics_table(x, "load"), "separation mean std stderr"),
-        (
-            lambda x: statistics_table(mcgw.simulate(x.scene, keep="statistics"), "load"),
-            "separation mean std stderr skewness " + " ".join(f"quantile_{x}" for x in SHARES.split()),
-        ),
         (lambda x: x.sheet().table, "quantity 0 stderr 1 stderr 2 stderr"),
     ],
     "ratio": [(lambda x: x.table(), "separation ratio stderr variance_gain")],

@@ -271,7 +271,7 @@ def test_where_it_goes(tmp_path):
     np.testing.assert_array_equal(held["joint_conductance"], e["joint_conductance"])
     kept = mcgw.simulate(scene.replace(keep="statistics"))
     np.testing.assert_allclose(kept.mean("joint_conductance"), e.mean("joint_conductance"), rtol=1e-12)
-    np.testing.assert_allclose(kept.quantile("gap_conductance", 0.5), scene.filled(H), rtol=1e-12)
+    np.testing.assert_allclose(kept.mean("gap_conductance"), scene.filled(H), rtol=1e-12)
     swept = mcgw.sweep(scene, {"joint.gas_pressure": [1e4, 1e5]})
     gas = swept.mean("gap_conductance")
     assert (gas[0] < gas[1]).all()

@@ -39,11 +39,8 @@ def test_every_number_is_that_of_the_same_separation(whole):
     which = np.array([7, 50, 191])
     some = at_separations(whole, which)
     assert some.n_surfaces == whole.n_surfaces
-    for ask in ("mean", "std", "stderr", "skewness", "extremes", "extreme_surfaces"):
+    for ask in ("mean", "std", "stderr"):
         found, expected = (np.asarray(getattr(e, ask)("area_fraction")) for e in (some, whole))
-        np.testing.assert_array_equal(found, expected[..., which])
-    for ask in ("quantile", "quantile_range"):
-        found, expected = (np.asarray(getattr(e, ask)("load", 0.25)) for e in (some, whole))
         np.testing.assert_array_equal(found, expected[..., which])
     both = whole.covariance("load", "contacts")[np.ix_(which, which)]
     np.testing.assert_array_equal(some.covariance("load", "contacts"), both)
@@ -55,6 +52,7 @@ def test_every_number_is_that_of_the_same_separation(whole):
         )
     if whole.scene.keep == "sums":
         np.testing.assert_array_equal(some["load"], whole["load"][:, which])
+        np.testing.assert_array_equal(some.quantile("load", 0.25), whole.quantile("load", 0.25)[which])
 
 
 def test_a_comparison_shows_some_and_its_verdict_is_on_all(whole):

@@ -112,7 +112,7 @@ NOT_THERE = {
 }
 # What a scene that does not ask for it pays nothing for; and the step that asks, if one does.
 FEATURES = {
-    "mcgw.ensemble.summary": "statistics", "mcgw.ensemble.summarised": "statistics",
+    "mcgw.ensemble.pooled": "statistics", "mcgw.ensemble.summarised": "statistics",
     "mcgw.sampling.crowding": "law_error",
     "mcgw.sampling.own_radii": None, "mcgw.sampling.shared": None,
     "mcgw.sampling.weighted_sums": None, "mcgw.sweeps.sweep": None,

@@ -24,7 +24,7 @@ from mcgw.store.disk import parts_of
 from mcgw.store.ensembles import read_attributes
 from mcgw.store.layout import drawn_digest, drawn_tables
 from mcgw.store.run_folder import RunFolder
-from mcgw.sweeps import pooled
+from mcgw.sweeps import pooling
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
 SCENE = mcgw.Scene(SURFACE, separations=[0.0, 1.0, 2.5], n_surfaces=300, n_asperities=2000, seed=7)
@@ -46,20 +46,20 @@ def digest(path):
 @pytest.fixture(autouse=True)
 def _small_chunks(monkeypatch):
     """Six for each group; workers are told which chunk, so that theirs are the same."""
-    monkeypatch.setattr(pooled, "_ROWS", 50)
+    monkeypatch.setattr(pooling, "_ROWS", 50)
     monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[2]))
 
 
 @pytest.fixture
 def drawn(monkeypatch):
     """First surfaces of the blocks that are drawn, within their groups."""
-    found, plain = [], pooled.Pooling.tables
+    found, plain = [], pooling.Pooling.tables
 
     def counted(pooling, first, *rest):
         found.append(first)
         return plain(pooling, first, *rest)
 
-    monkeypatch.setattr(pooled.Pooling, "tables", counted)
+    monkeypatch.setattr(pooling.Pooling, "tables", counted)
     return found
 
 
@@ -68,7 +68,7 @@ def expected(tmp_path_factory):
     """Digest of what threads draw."""
     path = tmp_path_factory.mktemp("threads") / "a.h5"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(pooled, "_ROWS", 50)
+        patch.setattr(pooling, "_ROWS", 50)
         mcgw.sweep(SCENE, OVER, path=path)
     return digest(path)
 
@@ -113,7 +113,7 @@ def test_other_programs_read_it(tmp_path):
 @pytest.mark.parametrize("after", [1, 6])
 def test_interrupted_anywhere_it_goes_on_to_the_same_digest(tmp_path, monkeypatch, drawn, expected, after):
     """A damaged chunk is drawn again; a finished file is not."""
-    path, counted = tmp_path / "a.h5", pooled.Pooling.tables
+    path, counted = tmp_path / "a.h5", pooling.Pooling.tables
 
     def stopped(*words):
         if len(drawn) == after:
@@ -121,7 +121,7 @@ def test_interrupted_anywhere_it_goes_on_to_the_same_digest(tmp_path, monkeypatc
         return counted(*words)
 
     with monkeypatch.context() as patch:
-        patch.setattr(pooled.Pooling, "tables", stopped)
+        patch.setattr(pooling.Pooling, "tables", stopped)
         with pytest.raises(KeyboardInterrupt):
             mcgw.sweep(SCENE, OVER, path=path)
         settle()
@@ -394,8 +394,8 @@ import os, signal, sys
 import numpy as np
 import mcgw
 from mcgw.jobs import job
-from mcgw.sweeps import pooled
-pooled._ROWS = 50
+from mcgw.sweeps import pooling
+pooling._ROWS = 50
 commit, committed = job.commit_shard, []
 
 def killed_at_the_next(*words):

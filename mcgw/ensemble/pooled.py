@@ -1,0 +1,162 @@
+"""Count, means and covariances over surfaces: what is kept of them where no values are.
+
+Two are joined by the formulas of Chan, Golub and LeVeque (1979) [mem]. Rounding depends on what is joined
+with what, and that is fixed: blocks of a size that the scene decides are added up in their order. So the
+bits do not depend on who drew what, and when.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic.arrays import Array, Ints
+from mcgw.ensemble.results import BLOCK, Tables
+from mcgw.machine.compiling import njit
+from mcgw.machine.in_threads import in_threads
+
+Values = dict[str, Array]
+
+_MEANS, _PRODUCTS = "_means", "_products"
+_ROWS = 256  # of a column at a time: those of all columns stay near
+_BANDS = 16  # that threads share
+
+
+@dataclass(frozen=True)
+class Pooled:
+    """Statistics of some surfaces, of each of which there are several values of each quantity.
+
+    Of a sweep these are the values of its scenes, with covariances between scenes at each separation. Of one
+    scene that keeps statistics all its numbers are the values of one quantity, at one place.
+
+    Parameters
+    ----------
+    n : int
+        Number of surfaces.
+    means : dict of str to ndarray
+        Means of each quantity, shape (values, separations).
+    products : dict of str to ndarray
+        Sums over the surfaces of products of two values' deviations from their means, shape (values, values,
+        separations).
+    """
+
+    n: int
+    means: Values
+    products: Values
+
+    @classmethod
+    def of(cls, values: Sequence[Values]) -> "Pooled":
+        """From values of some surfaces: for each scene arrays (surfaces, separations).
+
+        Shifted by the first surface against cancellation; for one scene the same bits as an ensemble.
+        """
+        means, products = {}, {}
+        for name in values[0]:
+            rows = [one[name].astype(np.float64) for one in values]
+            means[name] = np.stack([(x - x[0]).sum(axis=0) / len(x) + x[0] for x in rows])
+            apart = [x - mean for x, mean in zip(rows, means[name], strict=True)]
+            products[name] = np.empty((len(rows), *means[name].shape))
+            for i, x in enumerate(apart):
+                for j in range(i + 1):
+                    products[name][i, j] = products[name][j, i] = (x * apart[j]).sum(axis=0)
+        return cls(len(next(iter(values[0].values()))), means, products)
+
+    @classmethod
+    def of_columns(cls, name: str, table: Array) -> "Pooled":
+        """From a table (surfaces, columns): its columns are the values of one quantity."""
+        first = table[0].astype(np.float64)
+        apart = np.ascontiguousarray((table - first).T)
+        shift = apart.mean(axis=1, keepdims=True)
+        apart -= shift
+        return cls(len(table), {name: first[:, None] + shift}, {name: products_of(apart)[..., None]})
+
+    @classmethod
+    def from_tables(cls, tables: Mapping[str, NDArray[Any]]) -> "Pooled":
+        """From what `tables` gave."""
+        means = {k.removesuffix(_MEANS): v for k, v in tables.items() if k.endswith(_MEANS)}
+        products = {
+            name: tables[name + _PRODUCTS].reshape(len(mean), *mean.shape) for name, mean in means.items()
+        }
+        return cls(int(tables["n"][0]), means, products)
+
+    def tables(self) -> Tables:
+        """As arrays: n, means (values, ...) and products (values^2, ...)."""
+        tables: Tables = {"n": np.array([self.n])}
+        for name, mean in self.means.items():
+            tables[name + _MEANS] = mean
+            tables[name + _PRODUCTS] = self.products[name].reshape(len(mean) ** 2, *mean.shape[1:])
+        return tables
+
+    @classmethod
+    def from_block(cls, block: Mapping[str, NDArray[Any]], row: int = 0) -> "Pooled":
+        """From a row of what `block` gave."""
+        return cls.from_tables({name.removeprefix(BLOCK): table[row] for name, table in block.items()})
+
+    def block(self) -> Tables:
+        """As tables of one row, for a block of surfaces."""
+        return {BLOCK + name: table[None] for name, table in self.tables().items()}
+
+    def __add__(self, other: "Pooled") -> "Pooled":
+        """Statistics of the surfaces of both."""
+        n, means, products = self.n + other.n, {}, {}
+        for name, mean in self.means.items():
+            step = other.means[name] - mean
+            means[name] = mean + step * (other.n / n)
+            between = step[:, None] * step[None] * (self.n * (other.n / n))
+            products[name] = self.products[name] + other.products[name] + between
+        return Pooled(n, means, products)
+
+    def mean(self, name: str, which: Ints, weights: Array) -> Array:
+        """Mean of a combination of some values, shape (separations,)."""
+        means = self.means[name]
+        return np.asarray(sum(w * means[i] for i, w in zip(which, weights, strict=True)))
+
+    def variance(self, name: str, which: Ints, weights: Array) -> Array:
+        """Variance of a combination over the surfaces (divisor n - 1); nan for one surface."""
+        products = self.products[name]
+        if self.n == 1:
+            return np.full(products.shape[2:], np.nan)
+        pairs = list(zip(which, weights, strict=True))
+        total = sum(v * w * products[i, j] for i, v in pairs for j, w in pairs)
+        return np.asarray(total / (self.n - 1))
+
+
+@njit(cache=True, fastmath={"reassoc", "contract"})
+def _sum_products(columns: Any, first: int, stop: int, out: Any) -> None:  # pragma: no cover - compiled
+    """Add the products of columns `first` ... `stop - 1` with all up to themselves."""
+    rows = columns.shape[1]
+    for start in range(0, rows, _ROWS):
+        end = min(start + _ROWS, rows)
+        for i in range(first, stop):
+            x = columns[i, start:end]
+            for j in range(i + 1):
+                y, total = columns[j, start:end], 0.0
+                for k in range(end - start):
+                    total += x[k] * y[k]
+                out[i, j] += total
+
+
+def products_of(columns: Array) -> Array:
+    """Sums over the rows of products of every two columns.
+
+    A library's matrix product adds in an order that depends on how many threads it has; this one does not.
+
+    Parameters
+    ----------
+    columns : ndarray
+        Shape (columns, rows), contiguous.
+
+    Returns
+    -------
+    ndarray
+        Shape (columns, columns).
+    """
+    width = len(columns)
+    out = np.zeros((width, width))
+    ends = np.unique((width * np.sqrt(np.linspace(0, 1, _BANDS + 1))).round().astype(int)).tolist()
+    bands = list(pairwise(ends))  # every second one: halves of about the same work
+    in_threads(lambda band: _sum_products(columns, *band, out), bands[::2] + bands[1::2])
+    return out + np.tril(out, -1).T
