@@ -236,8 +236,13 @@ def moved(scene: Scene, steps: dict[str, float]) -> Scene:
     return scene.replace(surface=replace(surface, **own), heights=heights, curvature=curvature)
 
 
-def corrected(validity: Validity, scene: Scene, name: str, answers: Answers, std: float) -> Corrected:
-    """Answer at a load without the bias of its model, with the remaining error; `std` is for specimens."""
+def corrected(
+    validity: Validity, scene: Scene, name: str, answers: Answers, std: float, drawn: float
+) -> Corrected:
+    """Answer at a load without the bias of its model, with the remaining error.
+
+    `std` is for specimens, and `drawn` the half-width of the 95 % interval of their mean.
+    """
     column = _ERROR_OF.get(name)
     if column is None:
         return Corrected.unknown(f"{name}: its error was not measured")
@@ -245,7 +250,7 @@ def corrected(validity: Validity, scene: Scene, name: str, answers: Answers, std
     if math.isnan(error):
         filmed = name in _SPOTS and _filmed(scene)
         return Corrected.unknown(_FILM if filmed else validity.unknown or f"{name}: not measured there")
-    value, besides = answers[name], _SURE * std * validity.listed
+    value, besides = answers[name], math.hypot(_SURE * std * validity.listed, drawn)
     if column == "separation":
         right, off = value - bias * scene.surface.sigma, (error - abs(bias)) * scene.surface.sigma
         off = math.hypot(off, besides)

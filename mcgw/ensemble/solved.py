@@ -326,8 +326,9 @@ class Solution(Shown):
             return Corrected.unknown("errors of models are measured at a given load")
         if why := yields(self.yielding):
             return Corrected.unknown(why)
-        std = float(self.surfaces[quantity].std(ddof=1))
-        return corrected(against_elasticity([self]), self.scene, quantity, self.value, std)
+        std, (_, error, freedom) = float(self.surfaces[quantity].std(ddof=1)), self._estimates[quantity]
+        drawn = float(stdtrit(freedom, 0.975)) * error if error else 0.0
+        return corrected(against_elasticity([self]), self.scene, quantity, self.value, std, drawn)
 
     def plot(self, ax: Any = None) -> Any:
         """Draw how the separation differs from surface to surface; returns the axes."""

@@ -38,6 +38,7 @@ from mcgw.maps.topography import Topography
 
 PATH = Path(__file__).with_name("fresh_maps.csv")
 MAPS, LOADS, SEED = 60, (1e-3, 1e-2, 3e-2), 9100
+SPECIMENS = 200  # drawn for each answer, for summits have radii of their own
 LOWEST, HIGHEST = 2.1, 50.0
 WAVES = ((8.0, 64), (14.0, 80), (24.0, 88), (math.inf, 96))  # across the cell, up to which alpha
 UNITS = {"area": 1.0, "stiffness": MODULUS / SIDE}  # an area of the cell
@@ -56,7 +57,7 @@ def scene_of(surface: GaussianMap) -> mcgw.Scene:
     """What is fitted to a map."""
     z = SLOPE * SIDE * surface.heights()
     fit = mcgw.fit(Topography(z, (SIDE / len(z),) * 2, periodic=True), cutoff=None, form="none")
-    return mcgw.fitted_scene(fit, heights="nayak", E_star=MODULUS, n_surfaces=2)
+    return mcgw.fitted_scene(fit, heights="nayak", E_star=MODULUS, n_surfaces=SPECIMENS)
 
 
 def measured() -> Iterator[tuple[int, Job, mcgw.Scene]]:
@@ -82,7 +83,7 @@ def solve() -> None:
 
 @dataclass(frozen=True)
 class Held:
-    """An answer over the right one, as it is and corrected, and whether its interval holds the right one."""
+    """`value` over the right answer and `best` over it, and whether 95 % about that hold the right one."""
 
     alpha: float
     p: float
@@ -106,7 +107,7 @@ def held() -> Iterator[Held]:
             solution = mcgw.solve(scene, pressure=p * MODULUS * SLOPE)
             for quantity, unit in UNITS.items():
                 right = number(rows[name], quantity) * unit * area
-                found, plain = solution.corrected(quantity), solution.theory[quantity] / right
+                found, plain = solution.corrected(quantity), solution.value[quantity] / right
                 inside = found.low <= right <= found.high
                 yield Held(job.map.alpha, p, quantity, plain, found.value / right, inside)
 
