@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from mcgw.commands.options import add_set_option, changes_of, spaced
+from mcgw.commands.options import add_set_option, changes_of, ranged
 
 HELP = "write pressure, conductance or stiffness as a table for a finite-element program"
 EXAMPLE = "mcgw export mine.toml --to calculix --units mm-N-s -o contact.inp"
@@ -28,9 +28,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     parser.add_argument("--points", type=int, default=40, metavar="N", help="number of rows; default: 40")
     parser.add_argument(
-        "--pressures", metavar="LO:HI:N",
-        help="N nominal pressures at a constant ratio, such as 10kPa:20MPa:30; default: those that the "
-        "separations of the scene span",
+        "--pressures", metavar="A:B:N",
+        help="N nominal pressures from A to B at a constant ratio, such as 10kPa:20MPa:30; default: those "
+        "that the separations of the scene span",
     )  # fmt: skip
     parser.add_argument(
         "--quantile", type=float, nargs="+", metavar="Q",
@@ -60,7 +60,7 @@ def execute(args: argparse.Namespace) -> int:
     whole = args.to == "json"
     if not whole:
         check_name(args.output.name, PROGRAMS[args.to])
-    pressures = None if args.pressures is None else spaced(args.pressures, "Pa", "--pressures")
+    pressures = None if args.pressures is None else ranged(args.pressures, "--pressures", "Pa")
     from_scene = args.scene.suffix.lower() == ".toml"
     if args.set and not from_scene:
         raise ValueError(f"--set {args.set[0]}: {args.scene} holds results; give a scene")

@@ -103,18 +103,41 @@ def changes_of(args: argparse.Namespace) -> dict[str, Any]:
     return changes
 
 
-def spaced(text: str, unit: str, option: str) -> list[float]:
-    """Numbers at a constant ratio from LO:HI:N, in a unit."""
+RANGE = "A:B:N for N of them from A to B"
+GEOMETRIC = ("Pa", "N")  # pressures and loads are at a constant ratio, all else evenly
+
+
+def ranged(text: str, option: str, unit: str = "") -> list[float]:
+    """Return the N numbers from A to B of a text A:B:N.
+
+    Pressures and loads are at a constant ratio, all else at equal steps.
+
+    Parameters
+    ----------
+    text : str
+        A and B are numbers with a unit, where one is given.
+    option : str
+        Name of the option, for messages.
+    unit : str, optional
+        SI unit of the numbers; default: plain numbers.
+
+    Raises
+    ------
+    ValueError
+        If it is none, N is not from 2 to 1e6, or a ratio would not be positive and rising.
+    """
     import numpy as np
 
     from mcgw.formats.numbers import parse
 
-    low, _, rest = text.partition(":")
-    high, _, number = rest.partition(":")
-    if not number.isdigit() or int(number) < 2:
-        example = "10kPa:20MPa:30" if unit == "Pa" else "1:100:30"
-        raise ValueError(f"{option} {text}: give LO:HI:N, such as {example}, with N of 2 or more")
-    ends = parse(low, unit, option), parse(high, unit, option)
-    if not 0 < ends[0] < ends[1]:
+    begin, _, rest = text.partition(":")
+    end, _, number = rest.partition(":")
+    if not number.isdigit() or not 2 <= int(number) <= 1e6:
+        example = {"Pa": "10kPa:20MPa:30", "N": "1N:100N:30"}.get(unit, "0.2:2:10")
+        raise ValueError(f"{option} {text}: give A:B:N, such as {example}, with N from 2 to 1e6")
+    first, last = (parse(each, unit, option) if unit else float(each) for each in (begin, end))
+    if unit not in GEOMETRIC:
+        return [float(x) for x in np.linspace(first, last, int(number))]
+    if not 0 < first < last:
         raise ValueError(f"{option} {text}: give the lower one first, above 0")
-    return [float(x) for x in np.geomspace(*ends, int(number))]
+    return [float(x) for x in np.geomspace(first, last, int(number))]

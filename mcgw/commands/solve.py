@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from mcgw.commands.options import add_set_option, changes_of, spaced
+from mcgw.commands.options import RANGE, add_set_option, changes_of, ranged
 
 HELP = "find separation, area, stiffness, contacts and conductance at given loads"
 EXAMPLE = "mcgw solve runs/demo.toml --pressure 100kPa 1MPa --csv solved.csv"
@@ -14,10 +14,8 @@ _GIVEN = {
     "load": ("F", "mN, N, kN, MN"),
     "area": ("A", "real area: um^2, mm^2, cm^2"),
     "area_fraction": ("A", "real over nominal area: 0.01 or 1%%"),
+    "nominal_separation": ("D", "separation of the bodies with an interaction, over sigma"),
 }
-
-
-_RANGE = "; or LO:HI:N for N of them at a constant ratio"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -25,7 +23,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("scene", type=Path, metavar="SCENE", help="TOML file, SI units")
     given = parser.add_mutually_exclusive_group(required=True)
     for name, (letter, words) in _GIVEN.items():
-        given.add_argument(f"--{name.replace('_', '-')}", nargs="+", metavar=letter, help=words + _RANGE)
+        how = "at a constant ratio" if name in ("pressure", "load") else "at equal steps"
+        words = f"{words}; or {RANGE}, {how}"
+        given.add_argument(f"--{name.replace('_', '-')}", nargs="+", metavar=letter, help=words)
     parser.add_argument(
         "--surfaces", type=int, metavar="M", help="number of surfaces to solve; default: that of the scene"
     )
@@ -59,7 +59,7 @@ def execute(args: argparse.Namespace) -> int:
     option = f"--{key.replace('_', '-')}"
     asked: list[str | float] = []
     for text in getattr(args, key):
-        asked += spaced(text, UNIT_OF[key], option) if ":" in text else [text]
+        asked += ranged(text, option, UNIT_OF[key]) if ":" in text else [text]
     given, values = given_values(
         scene, key, asked, lambda x, unit: x if isinstance(x, float) else parse(x, unit, option)
     )

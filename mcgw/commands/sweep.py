@@ -4,7 +4,15 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from mcgw.commands.options import add_drawing_options, add_set_option, changes_of, drawing, tell_share
+from mcgw.commands.options import (
+    RANGE,
+    add_drawing_options,
+    add_set_option,
+    changes_of,
+    drawing,
+    ranged,
+    tell_share,
+)
 
 HELP = "draw many scenes at once on the same surfaces: means, deviations, paired ratios; resumes"
 EXAMPLE = "mcgw sweep runs/demo.toml --over grading.gamma=0.2:2:10 -o gamma.h5"
@@ -20,8 +28,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         action="append",
         required=True,
         metavar="KEY=VALUES",
-        help="a key of the scene and its values, such as grading.gamma=0.2:2:10 (start:stop:number) or "
-        "ensemble.n_asperities=1e4,1e5; repeat for more axes",
+        help="a key of the scene and its values, such as ensemble.n_asperities=1e4,1e5 or "
+        f"grading.gamma=0.2:2:10 ({RANGE}, at equal steps); repeat for more axes",
     )
     parser.add_argument(
         "--zip", action="store_true", help="combine the first values of all keys into one point, and so on"
@@ -82,17 +90,9 @@ def _axis(text: str) -> tuple[str, list[Any]]:
         raise ValueError(f"--over {text}: give KEY=VALUES, such as grading.gamma=0.2:2:10 or =0.5,1,2")
     parts = values.split(":")
     if len(parts) == 3 and all(_number(part) is not None for part in parts):
-        return key, _evenly(text, *map(float, parts))
+        return key, ranged(values, f"--over {key}")
     found = [(value, _number(value)) for value in values.split(",")]
     return key, [value if number is None else number for value, number in found]
-
-
-def _evenly(text: str, start: float, stop: float, number: float) -> list[float]:
-    import numpy as np
-
-    if number != int(number) or not 1 <= number <= 1e6:
-        raise ValueError(f"--over {text}: {number:g} values; give a whole number from 1 to 1e6")
-    return [float(x) for x in np.linspace(start, stop, int(number))]
 
 
 def _number(text: str) -> int | float | None:

@@ -7,8 +7,9 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from scipy.optimize import brentq
 
-from analytic import QUANTITIES, SEPARATIONS, Quantity, quantity_of
+from analytic import QUANTITIES, SEPARATIONS, quantity_of
 from analytic.arrays import Array
 from analytic.laws.elastic_plastic import ElasticPlastic
 from mcgw.scene.scene import Scene
@@ -18,11 +19,12 @@ NEGATIVE = (
     "{} = {:g} {}: {} reaches it only with asperities of negative modulus, at s = {:.4g}; give less, "
     'or set negative = "clip" or "allow" under [grading]'
 )
+_STEP, _DEEP = 1 / 64, 8.0  # of the search for a nominal separation: sums may rise and fall
 
 
 def mean_surface(scene: Scene, given: str, value: float) -> dict[str, float]:
     """Values of `Solution.theory`, without drawing any surface."""
-    return answers_at(scene, theory_at(asperities_of(scene), quantity_of(given), value))
+    return answers_at(scene, theory_at(scene, given, value))
 
 
 def asperities_of(scene: Scene) -> Scene:
@@ -32,12 +34,34 @@ def asperities_of(scene: Scene) -> Scene:
     return replace(scene, interaction=None, joint=None) if together else scene
 
 
-def theory_at(scene: Scene, q: Quantity, value: float) -> dict[str, float]:
-    """Separation and all quantities of the mean surface."""
-    h = float(scene.theory.separation_at(q.name, value))
+def theory_at(whole: Scene, given: str, value: float) -> dict[str, float]:
+    """Separation and all quantities of the asperities of the mean surface."""
+    scene, q = asperities_of(whole), quantity_of(given)
+    if given == "nominal_separation":
+        h = nominal_of_mean(whole, value)
+    else:
+        h = float(scene.theory.separation_at(given, value))
     if scene.negative == "error" and (where := scene.negative_above(h)) is not None:
         raise ValueError(NEGATIVE.format(q.name, value, q.unit, "the mean surface", where))
     return {"separation": h, **{name: float(scene.theory.mean(name, h)) for name in quantities_at(scene)}}
+
+
+def nominal_of_mean(whole: Scene, value: float) -> float:
+    """Largest separation that the asperities feel at which the mean surface has a nominal one."""
+    mean = asperities_of(whole).theory.mean
+    sunk = whole.compliance / whole.surface.sigma
+
+    def excess(h: Any) -> Array:
+        return np.asarray(value - h + sunk * mean("load", h))
+
+    high = value + max(float(sunk * mean("load", value)), 0.0)
+    h = np.arange(high, min(value, high) - _DEEP, -_STEP)
+    beyond = np.flatnonzero(excess(h) >= 0)
+    if not beyond.size:
+        raise ValueError(f"nominal_separation = {value:g}: the mean surface does not reach it; give more")
+    at = max(int(beyond[0]), 1)
+    low, high = float(h[at]), float(h[at - 1])
+    return float(brentq(lambda h: float(excess(h)), low, high, xtol=1e-14)) if excess(high) < 0 else high
 
 
 def quantities_at(scene: Scene) -> tuple[str, ...]:

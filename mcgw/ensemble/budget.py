@@ -153,7 +153,7 @@ def budget_of(
     intervals: dict[str, tuple[float, float]],
     validity: Validity,
     again: Callable[[Scene], Answers],
-    at_load: bool,
+    given: str,
     yielding: float = math.nan,
 ) -> Budget:
     """Make the budget of a solution: see `mcgw.ensemble.solved.Solution.budget`, which calls this.
@@ -167,12 +167,12 @@ def budget_of(
         At the separation of the solution alone.
     again : callable
         The answers of another scene at the same load, or area.
-    at_load : bool
-        Whether a load was given: at a given area no error of a model was measured.
+    given : str
+        What was given: only at a load was the error of a model measured.
     yielding : float
         Share of the contacts past first yield under an elastic law, whose error is then not known.
     """
-    asked = [name for name in ("load", *_ERROR_OF) if name != ("area", "load")[at_load]]
+    asked = [name for name in ("load", *_ERROR_OF) if name != given]
     if scene.film is not None:  # in SI units instead
         asked.remove("conductance")
     names = tuple(name for name in asked if name in surfaces)
@@ -190,9 +190,9 @@ def budget_of(
         alone = _SURE * np.abs(slopes[0]) * np.sqrt(np.diag(scene.uncertainty.covariance))
         parts = dict(zip(scene.uncertainty.names, alone.tolist(), strict=True))
     model = np.array([_model_error(validity, name, scene, theory) for name in names])
-    if not at_load:
+    if given != "load":
         model[:] = np.nan
-        lacking["model"] = "its error was measured at a given load, not at a given area"
+        lacking["model"] = f"its error was measured at a given load, not at a given {given.replace('_', ' ')}"
     elif why := yields(yielding):
         model[:], lacking["model"] = np.nan, why
     elif np.isnan(model[0]):

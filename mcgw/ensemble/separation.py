@@ -14,7 +14,7 @@ from mcgw.scene.scene import Scene
 
 _ENOUGH = 1e-14  # relative excess of load where Newton's steps are rounding errors
 _FINE = 1 / 64  # step of the search where a negative modulus makes the sum rise and fall
-_LOWEST = -40.0  # separation where searches end
+LOWEST = -40.0  # separation where searches end
 _STEP = 0.5  # by which the search for a start goes down, where the margin was not enough
 _LAST_DIGITS = 4 * np.finfo(float).eps
 
@@ -55,9 +55,9 @@ def separation_on(heights: Array, modulus: Array, exponent: float, target: float
         h += step
 
 
-def crossing(excess: Callable[[float], float], high: float) -> float | None:
-    """Largest root below `high`, where the function is negative; None down to the end of theory's range."""
-    for low in np.arange(high - _FINE, _LOWEST, -_FINE).tolist():
+def crossing(excess: Callable[[float], float], high: float, lowest: float = LOWEST) -> float | None:
+    """Largest root up to `high`, where the function is not positive; None down to the end of the range."""
+    for low in np.arange(high - _FINE, lowest, -_FINE).tolist():
         if excess(low) >= 0:
             return float(brentq(excess, low, low + _FINE, xtol=1e-15, rtol=1e-14))
     return None
@@ -238,6 +238,14 @@ class Summits:
             start -= _STEP
         return separation_on(self.s, weights, q.exponent, target, start)
 
+    def nominal(self, value: float, sunk: float, lowest: float) -> float | None:
+        """Largest separation above `lowest` that is the `value` when lowered by `sunk` (1/N) times the load.
+
+        None if there is none.
+        """
+        high = max(float(self.s.max(initial=value)), value)
+        return crossing(lambda h: value - h + sunk * self.sums(("load",), h)["load"], high, lowest)
+
     def sums(self, names: Iterable[str], h: float) -> dict[str, float]:
         """Quantities at one separation, SI."""
         touching, found = self.above(h), {}
@@ -253,7 +261,7 @@ class Summits:
 
     def _going_down(self, q: Quantity, target: float, start: float) -> float | None:
         """As `separation_anywhere` under any law, step by step."""
-        softest = float(self.s[self.modulus < 0].max(initial=_LOWEST))
+        softest = float(self.s[self.modulus < 0].max(initial=LOWEST))
         while start > softest:
             start = max(start - _STEP, softest)
             if (found := self.above(start).largest_separation(q, target, start)) is not None:

@@ -1,4 +1,4 @@
-"""The separation at a given load or real area: by theory, and on every surface for itself."""
+"""The separation at a given load, real area or nominal one: by theory, and on every surface for itself."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -9,7 +9,7 @@ import numpy as np
 from analytic import QUANTITIES, Hertz, MeasuredHeights, MeasuredRadii, Quantity, quantity_of
 from mcgw.ensemble.at_load import NEGATIVE, answers_at, asperities_of, quantities_at, theory_at
 from mcgw.ensemble.forecast import surfaces_at_loads
-from mcgw.ensemble.separation import Summits
+from mcgw.ensemble.separation import LOWEST, Summits
 from mcgw.ensemble.solved import Solution
 from mcgw.machine.progress import Progress, told
 from mcgw.sampling.asperities import listing_sampler, summits, summits_drawn
@@ -29,6 +29,7 @@ _GIVEN = {
     "pressure": ("Pa", "load", True),
     "area": ("m^2", "area", False),
     "area_fraction": ("1", "area", True),
+    "nominal_separation": ("", "nominal_separation", False),
 }
 UNIT_OF = {key: unit for key, (unit, *_) in _GIVEN.items()}
 
@@ -40,10 +41,11 @@ def solve(
     pressure: Any = None,
     area: Any = None,
     area_fraction: Any = None,
+    nominal_separation: Any = None,
     progress: Progress = None,
     **changes: Any,
 ) -> "Solution | list[Solution]":
-    """Find the separation at which each surface has a given load, pressure or real area.
+    """Find the separation at which each surface has a given load, pressure, real area or nominal separation.
 
     Parameters
     ----------
@@ -52,7 +54,10 @@ def solve(
     *unnamed
         Refused: a number alone may be a load or a pressure.
     load, pressure, area, area_fraction : float, str or sequence of them
-        One of the four: P (N), P/A_n (Pa), A (m^2) or A/A_n; or texts with units, as "1 MPa".
+        One of these: P (N), P/A_n (Pa), A (m^2) or A/A_n; or texts with units, as "1 MPa".
+    nominal_separation : float or sequence of float
+        Or, with an interaction, the separation of the bodies, d/sigma: each surface finds the separation that
+        its asperities feel by its own load, the largest one that fits.
     progress : bool or callable, optional
         True: a bar; a function: called with (done, total) surfaces.
     **changes
@@ -69,7 +74,7 @@ def solve(
     SceneError, TypeError
         If a value is no such quantity or has no name; and as from `mcgw.Scene.replace`.
     ValueError
-        If not one of the four is given, or if surfaces cannot reach the value.
+        If not one of these is given, or if surfaces cannot reach the value.
 
     Examples
     --------
@@ -81,6 +86,7 @@ def solve(
     (2.0666, (20,))
     """
     asked = {"load": load, "pressure": pressure, "area": area, "area_fraction": area_fraction}
+    asked["nominal_separation"] = nominal_separation
     known = {key: value for key, value in asked.items() if value is not None}
     check_object("solve", scene, Scene)
     if unnamed:
@@ -102,16 +108,33 @@ def solve(
 def given_values(
     scene: Scene, key: str, values: Sequence[Any], read: Callable[[Any, str], float]
 ) -> tuple[str, list[float]]:
-    """Loads ("load", N) or real areas ("area", m^2) of what is given, each read as a number in a unit."""
+    """Loads ("load", N) or real areas ("area", m^2) of what is given, each read as a number in a unit.
+
+    Nominal separations are numbers (d/sigma).
+    """
     unit, given, per_area = _GIVEN[key]
+    if key == "nominal_separation":
+        if scene.interaction is None or scene.located:
+            raise ValueError(f'{key}: it needs [interaction] reference = "body" or "mean-plane"')
+        return given, [_reduced(value) for value in values]
     factor = scene.surface.nominal_area if per_area else 1.0
     return given, [factor * read(value, unit) for value in values]
+
+
+def _reduced(value: Any) -> float:
+    try:
+        found = float(value)
+    except (TypeError, ValueError):
+        found = np.nan
+    if not np.isfinite(found):
+        raise ValueError(f"nominal_separation = {value!r}: give a finite number, d/sigma")
+    return found
 
 
 def solutions(
     scene: Scene, given: str, values: Sequence[float], tell: Callable[[float, float], Any] | None = None
 ) -> list[Solution]:
-    """As `solve`, for loads ("load", N) or real areas ("area", m^2) of a scene.
+    """As `solve`, for loads ("load", N), real areas ("area", m^2) or nominal separations of a scene.
 
     The asperities of a surface are drawn one by one (sampler ``tail``), once for all values. So any
     separation is possible, and the mean differs from theory by an effect of the finite number of asperities,
@@ -135,12 +158,12 @@ def solutions(
     if scene.n_surfaces < 2 and not scene.as_measured:
         raise ValueError(f"n_surfaces = {scene.n_surfaces}: an interval needs at least 2 surfaces")
     least = q.scale(scene.surface) * _LAST_DIGITS**q.exponent
-    if small := [value for value in values if 0 <= value < least]:
+    if given == q.name and (small := [value for value in values if 0 <= value < least]):
         raise ValueError(
             f"{q.name} = {small[0]:g} {q.unit}: too small for double precision of the heights; "
             f"give {2 * least:.1g} {q.unit} or more"
         )
-    theory = [theory_at(scene, q, value) for value in values]
+    theory = [theory_at(whole, given, value) for value in values]
     if scene.rel_err is not None:
         n = surfaces_at_loads(scene, [at["separation"] for at in theory], given)
         whole, scene = (replace(x, n_surfaces=n, rel_err=None, max_seconds=None) for x in (whole, scene))
@@ -151,9 +174,11 @@ def solutions(
             f"{drawn.n_surfaces} surfaces with {drawn.touching:.3g} contacts each are too many to solve "
             f"singly; give fewer than {_MOST_HEIGHTS / drawn.touching:.0f} surfaces"
         )
-    rows, sampler = [], listing_sampler(drawn)
+    rows, sampler, sunk = [], listing_sampler(drawn), None
+    if given == "nominal_separation":
+        sunk = whole.compliance / whole.surface.sigma
     for number in range(drawn.n_surfaces):
-        rows.append(_surface(scene, sampler, number, q, values))
+        rows.append(_surface(scene, sampler, number, q, values, sunk))
         if tell is not None:
             tell(number + 1, drawn.n_surfaces)
     surfaces = [{x: np.array([row[k][x] for row in rows]) for x in at} for k, at in enumerate(theory)]
@@ -198,26 +223,35 @@ def _drawn(scene: Scene, q: Quantity, separations: Sequence[float]) -> Scene:
 
 
 def _surface(
-    scene: Scene, sampler: Sampler, number: int, q: Quantity, values: Sequence[float]
+    scene: Scene, sampler: Sampler, number: int, q: Quantity, values: Sequence[float], sunk: float | None
 ) -> list[dict[str, float]]:
-    """All quantities of one surface at each value."""
+    """All quantities of one surface at each value; with `sunk`, 1/N, at nominal separations."""
     drawn = sampler.scene
     touching = Summits.of(scene, *summits_drawn(drawn, sampler, number))
     whole: Summits | None = None
     rows = []
     for value in values:
-        target = value / q.scale(scene.surface)
+        target = value if sunk is not None else value / q.scale(scene.surface)
+        told = f"{q.name} = {value:g} {q.unit}" if sunk is None else f"nominal_separation = {value:g}"
         on = touching
-        h = on.largest_separation(q, target, drawn.lowest)
+        if sunk is None:
+            h = on.largest_separation(q, target, drawn.lowest)
+        else:
+            h = on.nominal(target, sunk, drawn.lowest)
         if h is None:  # rare: it lies below what was drawn
             whole = Summits.of(scene, *summits(drawn, number)) if whole is None else whole
             on = whole
             if not on.s.size:
                 raise ValueError(f"surface {number} has no asperity; increase n_asperities")
-            h = on.separation_anywhere(q, target, drawn.lowest)
+            if sunk is None:
+                h = on.separation_anywhere(q, target, drawn.lowest)
+            else:
+                h = on.nominal(target, sunk, LOWEST)
         negative = on.s[on.modulus < 0]
         if h is None and not negative.size:
-            raise ValueError(f"{q.name} = {value:g} {q.unit}: surface {number} does not reach it; give less")
+            raise ValueError(
+                f"{told}: surface {number} does not reach it; give {'less' if sunk is None else 'more'}"
+            )
         if h is None or (scene.negative == "error" and np.any(negative > h)):
             raise ValueError(NEGATIVE.format(q.name, value, q.unit, f"surface {number}", negative.max()))
         rows.append({"separation": h, **on.sums(quantities_at(scene), h)})

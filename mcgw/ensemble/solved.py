@@ -38,9 +38,9 @@ class Solution(Shown):
     scene : Scene
         The scene that describes the surfaces.
     given : str
-        Which quantity was given: "load" or "area".
+        Which quantity was given: "load", "area" or "nominal_separation".
     amount : float
-        Its value, N or m^2.
+        Its value, N, m^2 or d/sigma.
     theory : dict of str to float
         "separation" (d/sigma) and every quantity (SI) of an infinite surface at that pressure, on loading;
         the mean of finite ones is `value`.
@@ -66,6 +66,8 @@ class Solution(Shown):
         share = self.amount / self.scene.surface.nominal_area
         if self.given == "load":
             return f"At the load {self.amount:.6g} N = pressure {share / 1e6:.6g} MPa"
+        if self.given == "nominal_separation":
+            return f"At the nominal separation {self.amount:.6g} sigma"
         return f"At the real area {self.amount:.6g} m^2 = {share:.4%} of the nominal area"
 
     def heights(self, surface: int) -> Array:
@@ -162,8 +164,8 @@ class Solution(Shown):
     def _exact(self) -> dict[str, float]:
         """Means over specimens that need no draw: by quadrature, in the units of `surfaces`."""
         alone = asperities_of(self.scene)
-        if alone.curvature is not None or alone.as_measured:  # takes longer than to draw
-            return {}
+        if alone.curvature is not None or alone.as_measured or self.given == "nominal_separation":
+            return {}  # takes longer than to draw, or is not known
         scene, sigma = self.scene, self.scene.surface.sigma
         summed = [name for name in quantities_at(alone) if name in self.surfaces and name != self.given]
         summed = [name for name in summed if quantity_of(name).base != "load_slope"]
@@ -192,8 +194,11 @@ class Solution(Shown):
     def separation_law(self) -> "Law | None":
         """Exact distribution over surfaces of the effective separation, d/sigma; None if it is not known.
 
-        It is not known where sums may rise with the separation, as with adhesive asperities.
+        It is not known where sums may rise with the separation, as with adhesive asperities, nor at a nominal
+        separation.
         """
+        if self.given == "nominal_separation":
+            return None
         try:
             return asperities_of(self.scene).theory.separation_law(self.amount, self.given)
         except ValueError:
@@ -241,6 +246,8 @@ class Solution(Shown):
         dict of str to float
             For area, load, stiffness and conductance, to leading order in 1/N.
         """
+        if self.given == "nominal_separation":
+            raise ValueError("scatter: it is known at a given load or area, not at a nominal separation")
         alone = asperities_of(self.scene).theory
         names = [x for x in ("load", "area", "stiffness", "conductance") if x in self.theory]
         if self.scene.interaction is not None:
@@ -300,7 +307,7 @@ class Solution(Shown):
             {name: self.interval(name) for name in self.surfaces},
             against_elasticity([self]),
             lambda scene: mean_surface(scene, self.given, self.amount),
-            self.given == "load",
+            self.given,
             self.yielding,
         )
 

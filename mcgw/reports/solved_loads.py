@@ -88,6 +88,8 @@ def _by_load(scene: Scene, solutions: Sequence[Solution]) -> Table:
     area, budgets = scene.surface.nominal_area, [each.budget() for each in solutions]
     if solutions[0].given == "load":
         given = Column("pressure", [x.amount / area / 1e6 for x in solutions], unit="MPa", form=".4g")
+    elif solutions[0].given == "nominal_separation":
+        given = Column("nominal_separation", [x.amount for x in solutions], "nominal d/sigma", form=".4g")
     else:
         given = Column("area_fraction", [x.amount / area for x in solutions], "A/A_n", form=".4g")
     h = Column("separation", [x.value["separation"] for x in solutions], SEPARATION, form=".3f")
@@ -172,7 +174,8 @@ def solutions_table(scene: Scene, solutions: Sequence[Solution]) -> Table:
     for solution in solutions:
         table, area = solution.table(), scene.surface.nominal_area
         pressure = solution.amount / area if solution.given == "load" else np.nan
-        given = {"pressure_Pa": pressure, "load_or_area_SI": solution.amount}
+        amount = np.nan if solution.given == "nominal_separation" else solution.amount
+        given = {"pressure_Pa": pressure, "load_or_area_SI": amount}
         columns = (Column(name, np.full(len(table), value)) for name, value in given.items())
         tables.append(Table((*columns, *table.columns)))
     return joined(tables)

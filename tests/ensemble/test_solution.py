@@ -375,3 +375,41 @@ def test_so_many_asperities_scatter_so_little_at_a_given_value(make_scene, given
         x = found.surfaces[name]
         assert 0.01 * np.sqrt(n / found.scene.n_asperities) == pytest.approx(x.std() / x.mean(), rel=0.09)
     assert ("area" in found.asperities_for(0.01)) == ("load" in given)
+
+
+@pytest.mark.parametrize("reference", ["body", "mean-plane"])
+def test_nominal_separations_are_those_of_each_surfaces_own_load(reference, make_scene):
+    """The load is summed here over the heights of ten surfaces; their separation is the root of it."""
+    scene = make_scene(
+        grading=mcgw.Exponential(2.0), interaction={"reference": reference}, n_surfaces=10, separations=1.0
+    )
+    x, sunk = scene.surface, scene.compliance / scene.surface.sigma
+    for found in mcgw.solve(scene, nominal_separation=[0.5, 2.0]):
+        np.testing.assert_allclose(found.surfaces["nominal_separation"], found.amount, atol=1e-12)
+        assert found.value["nominal_separation"] == found.amount
+        assert found.theory["nominal_separation"] == pytest.approx(found.amount, abs=1e-12)
+        for i, h in enumerate(found.surfaces["separation"]):
+            s = found.heights(i)
+            loads = (2 - np.exp(-s)) * (s - h) ** 1.5
+            load = 4 / 3 * x.E_star * x.radius**0.5 * x.sigma**1.5 * loads.sum()
+            assert h - sunk * load == pytest.approx(found.amount, abs=1e-12)
+            assert found.surfaces["load"][i] == pytest.approx(load, rel=1e-12)
+        error = found.surfaces["load"].std(ddof=1) / np.sqrt(10)
+        assert abs(found.value["load"] - found.theory["load"]) < 6 * error
+
+
+def test_nominal_separations_need_an_interaction_and_a_number(make_scene):
+    scene = make_scene(n_surfaces=3, separations=1.0)
+    with pytest.raises(
+        ValueError, match=r'^nominal_separation: it needs \[interaction\] reference = "body" or'
+    ):
+        mcgw.solve(scene, nominal_separation=1.0)
+    pressed = scene.replace(interaction="body")
+    for wrong in ("1 um", np.inf):
+        with pytest.raises(ValueError, match=r"nominal_separation = .*: give a finite number, d/sigma"):
+            mcgw.solve(pressed, nominal_separation=wrong)
+    found = mcgw.solve(pressed, nominal_separation=1.0)
+    assert found.title == "At the nominal separation 1 sigma"
+    assert found.budget().lacking["model"].endswith("not at a given nominal separation")
+    with pytest.raises(ValueError, match=r"^scatter: it is known at a given load or area"):
+        found.asperities_for(0.01)

@@ -354,7 +354,7 @@ def test_command(tmp_path, monkeypatch, capsys):
     words = ["export", "s.toml", "--to", "moose", "-o"]
     for given, told in (
         (["t.inp"], "a table for moose is written there, whose name ends in .csv"),
-        (["t.csv", "--pressures", "1MPa"], "--pressures 1MPa: give LO:HI:N, such as 10kPa:20MPa:30"),
+        (["t.csv", "--pressures", "1MPa"], "--pressures 1MPa: give A:B:N, such as 10kPa:20MPa:30"),
         (["t.csv", "--pressures", "2MPa:1MPa:3"], "give the lower one first"),
         (["s.toml"], "is an input"),
     ):

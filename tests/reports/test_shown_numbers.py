@@ -14,6 +14,7 @@ import analytic
 import mcgw
 from mcgw import sweeps
 from mcgw.cli import main
+from mcgw.commands.options import ranged
 from mcgw.ensemble.results import MemoryResults
 from mcgw.jobs.running import run
 
@@ -261,13 +262,15 @@ def test_run_says_how_many_and_what_is_not_known(scene, tmp_path, capsys):
         assert float(width) == pytest.approx(high[0] / x.mean() - 1, rel=0.06)
 
 
-def test_loads_at_a_constant_ratio(scene, tmp_path, capsys):
-    """Of LO:HI:N, by what is between; the other grammar, of sweeps, is linear."""
+def test_ranges_are_at_a_constant_ratio_of_pressures_and_evenly_of_areas(scene, tmp_path, capsys):
+    """Of A:B:N, by what is between."""
     few = dataclasses.replace(scene, n_surfaces=5, keep="sums", sampler="tail")
     (tmp_path / "s.toml").write_text(mcgw.scene_text(few))
     out_of(["solve", tmp_path / "s.toml", "--pressure", "1MPa:4MPa:3", "--csv", tmp_path / "s.csv"], capsys)
     pressures = sorted({float(row["pressure_Pa"]) for row in rows_of(tmp_path / "s.csv")})
     assert pressures == pytest.approx([1e6, 2e6, 4e6], rel=1e-12)
-    for wrong, told in (("1MPa:4MPa", "give LO:HI:N"), ("4MPa:1MPa:3", "give the lower one first")):
+    assert ranged("1mm^2:5mm^2:3", "--area", "m^2") == pytest.approx([1e-6, 3e-6, 5e-6])
+    assert ranged("1N:100N:3", "--load", "N") == pytest.approx([1, 10, 100])
+    for wrong, told in (("1MPa:4MPa", "give A:B:N"), ("4MPa:1MPa:3", "give the lower one first")):
         assert main(["solve", str(tmp_path / "s.toml"), "--pressure", wrong]) == 2
         assert f"--pressure {wrong}: {told}" in capsys.readouterr().err

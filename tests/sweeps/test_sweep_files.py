@@ -296,9 +296,13 @@ def test_the_command_with_zipped_axes_and_texts(shell):
     ("over", "words"),
     [
         ("grading.gamma", "--over grading.gamma: give KEY=VALUES"),
-        ("grading.gamma=1:2:0", "0 values; give a whole number"),
-        ("grading.gamma=1:2:2.5", "2.5 values; give a whole number"),
-        ("grading.gamma=1:2:1000001", "1e+06 values; give a whole number from 1 to 1e6"),
+        *(
+            (
+                f"grading.gamma=1:2:{n}",
+                f"--over grading.gamma 1:2:{n}: give A:B:N, such as 0.2:2:10, with N from",
+            )
+            for n in ("0", "2.5", "1000001")
+        ),
         *((over, f"--over {over}: give KEY=VALUES") for over in ("=1,2", "grading.gamma=")),
     ],
 )
@@ -307,7 +311,7 @@ def test_mistakes_of_the_command(shell, over, words):
 
 
 def test_values_of_the_command_are_numbers_evenly_or_as_they_stand():
-    assert _axis("a.b=1:3:1") == ("a.b", [1.0])
+    assert _axis("a.b=-1:3:2") == ("a.b", [-1.0, 3.0])
     assert _axis("a.b=3:1:5") == ("a.b", [3.0, 2.5, 2.0, 1.5, 1.0])
     assert _axis("a.b=1,0.5,auto") == ("a.b", [1, 0.5, "auto"])
     assert _axis("a.b=x:1:2") == ("a.b", ["x:1:2"])
