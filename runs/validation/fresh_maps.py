@@ -9,14 +9,16 @@ what stands there is read.
 
 Of 70 maps drawn 60 were solved; nothing was measured for the others, by the skewness of their few long waves:
 
-    quantity   alpha     p/(E* g)  model, rms  corrected, rms  mean    interval of 95 % holds
-    area       up to 50  1e-3      15.7 %      7.2 %           -0.7 %   96.7 %
-                         1e-2      18.4 %      2.7 %           -0.3 %   91.7 %
-                         3e-2      20.8 %      1.6 %            0.0 %   98.3 %
-                         all       18.4 %      4.5 %           -0.4 %   95.6 %
-    stiffness  up to 10  all       18.7 %      7.5 %           -1.2 %   99.0 %
-               up to 50  all       16.7 %      9.6 %           -2.2 %   98.9 %
+    quantity   alpha     p/(E* g)  value, rms  best, rms  mean    interval of 95 % holds
+    area       up to 50  1e-3      15.7 %      7.2 %      -0.6 %  98.3 %
+                         1e-2      18.4 %      2.7 %      -0.3 %  93.3 %
+                         3e-2      20.9 %      1.6 %      -0.1 %  98.3 %
+                         all       18.4 %      4.5 %      -0.3 %  96.7 %
+    stiffness  up to 10  all       18.8 %      7.5 %      -0.8 %  99.0 %
+               up to 50  all       16.9 %      9.5 %      -1.5 %  98.9 %
 
+Value is the mean of 200 specimens. Of two of them instead, best is off by 6.2 % rms in all areas, and 87 % of
+the intervals hold if they leave out the error of that mean.
 """
 
 import argparse
@@ -119,7 +121,7 @@ def main() -> None:
     if parser.parse_args().solve:
         solve()
     every = list(held())
-    print("quantity    p/(E* g)  alpha       maps  model, rms  corrected, rms  mean   inside")
+    print("quantity    p/(E* g)  alpha       maps  value, rms       best, rms  mean   inside")
     for quantity in UNITS:
         for most in (BROAD, HIGHEST):
             for p in (*LOADS, math.nan):
