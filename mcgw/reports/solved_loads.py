@@ -5,17 +5,21 @@ from dataclasses import replace
 
 import numpy as np
 
+from analytic import Nayak, cooper_mikic_yovanovich, mean_absolute_slope, mikic_elastic
+from analytic.arrays import Array
 from mcgw.ensemble.at_load import GAPS
 from mcgw.ensemble.solved import Solution, elastic_verdict
 from mcgw.formats.table import SEPARATION, Column, Table, joined
 from mcgw.scene.in_words import contact_facts, joint_text
 from mcgw.scene.scene import Scene
+from mcgw.scene.validity_place import moments_of_nayak
 
 _SHOWN = ("contact law", "film", "interaction", "joint")  # what of the contacts counts at a given load
 _GAP = {
     "mean_gap": "mean gap between the mean planes of the surfaces",
     "gap_to_summits": "gap to the mean plane of the summits",
 }
+_OF_SPECIMENS = {"joint": "joint, mean of h", "correlation": "correlation (spots)"}
 _LINES = 2  # loads that the news names one by one
 # Left out of the short table; all but the first only where a film gives the conductance in SI units.
 _VARIANTS = ("load_slope", "conductance", "conductance_si", "specific_contact_resistance")
@@ -146,18 +150,46 @@ def conductances(scene: Scene, solutions: Sequence[Solution]) -> Table:
     if scene.joint is not None:
         found["gas"] = at["gap_conductance"]
     found["joint"] = at.get("joint_conductance", contact)
+    if (told := correlation(scene, at["load"] / area)) is not None:
+        found["correlation"] = told
     q = scene.quantity("thermal_resistance" if scene.thermal else "contact_resistance")
     columns = (
         Column("pressure", at["load"] / area / 1e6, unit="MPa", form=".4g"),
         Column("separation", at["separation"], SEPARATION, form=".3f"),
         Column("area_fraction", at["area"] / area, "A/A_n", form=".3g"),
         Column("stiffness", at["stiffness"] / area, unit="Pa/m", form=".4g"),
-        *(Column(name, values, form=".4g") for name, values in found.items()),
-        Column(q.name, at[q.name], "resistance", unit=q.unit, form=".4g"),
+        *(Column(name, values, _OF_SPECIMENS.get(name, ""), form=".4g") for name, values in found.items()),
+        Column(q.name, at[q.name], "resistance, mean of 1/(h A_n)", unit=q.unit, form=".4g"),
     )
     gas = f"; {joint_text(scene)}" if scene.thermal else ""
     unit = scene.quantity("contact_conductance").unit
     return Table(columns, f"Conductance by pressure, {unit}, means of specimens{gas}")
+
+
+def correlation(scene: Scene, pressure: Array) -> Array | None:
+    """Conductance of the spots by a correlation of the whole surface, per area, where m0 and m2 are known.
+
+    That of Cooper, Mikic and Yovanovich (1969) beside a law that yields at a hardness, that of Mikic (1974)
+    beside an elastic one: see `analytic.cooper_mikic_yovanovich` and `analytic.mikic_elastic`. None without
+    moments or hardness, and with a film or layer.
+    """
+    film, fitted = scene.film, scene.fitted
+    if fitted is not None:
+        moments = fitted.moments
+    elif isinstance(scene.heights, Nayak):
+        moments = moments_of_nayak(scene.surface, scene.heights.alpha)
+    else:
+        return None
+    if film is None or film.film_resistance or film.layer is not None:
+        return None
+    rms, slope, k = moments.m0**0.5, mean_absolute_slope(moments.m2), 2 / film.rho
+    if scene.law.elastic:
+        e = scene.surface.E_star
+        return mikic_elastic(pressure, E_star=e, rms=rms, slope=slope, conductivity=k)
+    hardness = getattr(scene.law, "hardness", None)
+    if hardness is None:
+        return None
+    return cooper_mikic_yovanovich(pressure, hardness=hardness, rms=rms, slope=slope, conductivity=k)
 
 
 def _sizes(solution: Solution, scatter: float) -> str:

@@ -16,6 +16,7 @@ import mcgw
 from analytic.joint import Gas, Joint, air, gap_integral
 from mcgw.cli import main
 from mcgw.figures.compared import Compared
+from mcgw.reports.solved_loads import correlation
 
 SURFACE = analytic.Surface(sigma=0.9e-6, radius=1e-5, eta=1e10, nominal_area=1e-4, E_star=1e11)
 
@@ -413,3 +414,20 @@ def test_figures_compare_its_surfaces_without_it():
     """They are of load, area and stiffness under gradings: those of the scene without a joint."""
     compared, plain = (Compared(scene_of(joint=joint)).scene for joint in (AIR, None))
     assert compared == plain
+
+
+@pytest.mark.parametrize("law", [{"law": "hertz"}, {"law": "kogut-etsion", "hardness": "2.5 GPa"}])
+def test_the_table_of_a_joint_has_its_correlation(law):
+    """By hand from m0 and m2: Mikic's of elastic spots, Cooper, Mikic and Yovanovich's of yielding ones."""
+    spectral = mcgw.SpectralSurface(1e-12, 1e-2, 5e8, "1 mm^2", "80 GPa")
+    film = mcgw.Film(conductivities=(150.0, 50.0))
+    scene = mcgw.Scene(spectral, separations=1.0, n_surfaces=2, seed=1, film=film, law=law)
+    m, k, p = np.sqrt(2e-2 / np.pi), 75.0, np.array([1e6, 1e7])
+    if law["law"] == "hertz":
+        by_hand = 1.55 * k * m / 1e-6 * (p * np.sqrt(2) / (80e9 * m)) ** 0.94
+    else:
+        by_hand = 1.25 * k * m / 1e-6 * (p / 2.5e9) ** 0.95
+    np.testing.assert_allclose(correlation(scene, p), by_hand, rtol=1e-9)
+    assert correlation(scene.replace(film=mcgw.Film(resistivity=1e-7, film_resistance=1e-12)), p) is None
+    plain = mcgw.Surface("1 um", "13 um", "300/mm^2", "1 mm^2", "80 GPa")
+    assert correlation(mcgw.Scene(plain, separations=1.0, n_surfaces=2, film=film), p) is None
