@@ -238,7 +238,7 @@ def test_corrected_answers_are_those_of_boundary_elements():
         n, side, slope = len(heights), fitted_maps.SIDE, fitted_maps.SLOPE
         z = Topography(slope * side * heights, (side / n,) * 2, periodic=True)
         fit = mcgw.fit(z, cutoff=None, form="none")
-        scene = mcgw.fitted_scene(fit, heights="nayak", E_star=fitted_maps.MODULUS, n_surfaces=2)
+        scene = mcgw.fitted_scene(fit, heights="nayak", E_star=fitted_maps.MODULUS, n_surfaces=60)
         area = scene.surface.nominal_area
         for row in solves[each.name]:
             solved = mcgw.solve(scene, load=row["p"] * fitted_maps.MODULUS * slope * area)
