@@ -97,16 +97,17 @@ def without_caps(monkeypatch):
     monkeypatch.setattr("mcgw.maps.fit.by_caps", lambda *_: None)
 
 
+def blank(figure, target, **_):
+    """In place of `Figure.savefig`, which takes a second each: the file, and nothing drawn in it."""
+    if isinstance(target, Path):
+        target.touch()
+    else:
+        target.write(b"" if isinstance(target, io.BytesIO) else "<svg></svg>")
+
+
 @pytest.fixture
 def blank_figures(monkeypatch):
-    """Figures are made and their files written, but nothing is drawn in them, which takes a second each."""
-
-    def blank(self, target, **_):
-        if isinstance(target, Path):
-            target.touch()
-        else:
-            target.write(b"" if isinstance(target, io.BytesIO) else "<svg></svg>")
-
+    """Figures are made and their files written, but nothing is drawn in them."""
     monkeypatch.setattr(Figure, "savefig", blank)
 
 

@@ -23,7 +23,7 @@ from mcgw.jobs.running import run
 from mcgw.maps.map_files import read_map
 from mcgw.store.ensembles import read_attributes
 
-pytestmark = pytest.mark.usefixtures("blank_figures", "looked_at_here", "without_layout")
+pytestmark = pytest.mark.usefixtures("blank_figures", "looked_at_here", "one_pressure", "without_layout")
 
 SCENE = """
 title = "Flags"
@@ -336,7 +336,8 @@ ROWS = [
      csv_columns("x.csv", "value", "infinite", "low_95", "high_95", "std")),
     ("export", "--output", INP, "+ -o b.inp", writes("b.inp", "b.q05.inp", instead=["a.inp"])),
     ("export", "--to", INP, "@e.h5 --to moose -o a.csv", writes("a.csv", "a.q95.csv", instead=["a.inp"])),
-    ("export", "--table", INP, "@e.h5 --to comsol --table stiffness-pressure -o a.txt",
+    ("export", "--table", INP,
+     "@e.h5 --to comsol --table stiffness-pressure --pressures 1MPa:2MPa:2 -o a.txt",
      says("a.txt: stiffness-pressure")),
     ("export", "--points", OF_SCENE, "+ --points 7", rows_are(8)),
     ("export", "--pressures", OF_SCENE, "+ --pressures 10MPa:200MPa:5", rows_are(6)),

@@ -3,6 +3,8 @@
 import re
 
 import pytest
+from conftest import blank
+from matplotlib.figure import Figure
 from oracles.said import call
 
 from mcgw.cli import COMMANDS
@@ -31,11 +33,14 @@ SAID = {  # what a command says, without its tables
 def answers(tmp_path_factory):
     """Each of them quietly, plainly and with all, in this order in one folder of each kind."""
     found = {}
-    for option in ("-q", "", "-v"):
-        folder = tmp_path_factory.mktemp("said")
-        (folder / "s.toml").write_text(SCENE)
-        for words in SAID:
-            found[words, option] = call(*words.split(), *filter(None, [option]), cwd=folder)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Figure, "savefig", blank)
+        patch.setattr("mcgw.reports.report_figures._PRESSURES", 1)
+        for option in ("-q", "", "-v"):
+            folder = tmp_path_factory.mktemp("said")
+            (folder / "s.toml").write_text(SCENE)
+            for words in SAID:
+                found[words, option] = call(*words.split(), *filter(None, [option]), cwd=folder)
     return found
 
 

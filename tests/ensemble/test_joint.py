@@ -380,13 +380,11 @@ def test_table_by_pressure(capsys, tmp_path):
     assert "ohm m^2" in text
 
 
-@pytest.mark.parametrize(
-    ("to", "ending"), [("calculix", "inp"), ("abaqus", "inp"), ("moose", "csv"), ("comsol", "txt")]
-)
+@pytest.mark.parametrize(("to", "ending"), [("calculix", "inp"), ("comsol", "txt")])
 def test_exports_of_a_joint(to, ending, tmp_path):
     """Rows are spots and gas together, and stay where nothing is carried."""
     scene = scene_of(separations=[0.0, 2.0]).replace(nominal_area="1 cm^2")
-    area, name = [1e6, 2e6, 5e6], f"j.{ending}"
+    area, name = [1e6, 5e6], f"j.{ending}"
     mcgw.export(scene, tmp_path / name, to=to, table="conductance-pressure", pressures=area)
     text = (tmp_path / name).read_text()
     lines = [line for line in text.splitlines() if line[0].isdigit()]
@@ -398,12 +396,11 @@ def test_exports_of_a_joint(to, ending, tmp_path):
     np.testing.assert_allclose(y[1:], spots + scene.filled(h), rtol=0.02)
     assert (y[1:] > 2 * spots).all(), "spots alone are something else"
     assert "joint: air" in text
-    mcgw.export(mcgw.simulate(scene), tmp_path / "j.json", to="json")
-    table = json.loads((tmp_path / "j.json").read_text())
-    np.testing.assert_allclose(
-        table["conductance"], mcgw.simulate(scene).mean("joint_conductance"), rtol=1e-12
-    )
-    if to != "calculix":
+    if to == "comsol":
+        drawn = mcgw.simulate(scene)
+        mcgw.export(drawn, tmp_path / "j.json", to="json")
+        table = json.loads((tmp_path / "j.json").read_text())
+        np.testing.assert_allclose(table["conductance"], drawn.mean("joint_conductance"), rtol=1e-12)
         mcgw.export(scene, tmp_path / name, to=to, table="conductance-gap", points=3)
         gap = (tmp_path / name).read_text()
         assert "gas also conducts beyond the last line" in gap

@@ -66,7 +66,7 @@ def test_report_and_figures_draw_one(told, monkeypatch):
     from mcgw.figures import catalogue
     from mcgw.reports import html
 
-    for name in ("comparison_figures", "pressure_pictures"):
+    for name in ("solved_pressures", "comparison_figures", "pressure_pictures"):
         monkeypatch.setattr(html, name, lambda _: [])
     assert "/3 [" in told("report e.h5 -o e.html", terminal=True)
 

@@ -187,6 +187,7 @@ def test_it_goes_through_files_and_is_shown(scene, tmp_path, capsys):
     assert scene.validity().verdict in capsys.readouterr().out
 
 
+@pytest.mark.usefixtures("blank_figures", "one_pressure")
 def test_cautions_of_a_fit_travel_the_gravest_first(fit, tmp_path, capsys):
     """Of five that were found three are shown, wherever the scene of the fit comes to light."""
     lines = tuple(f"{word}: told" for word in ("spikes", "lay", "skewness", "overlap", "waves"))

@@ -16,7 +16,7 @@ FLAT = Topography(1e-6 * np.arange(12.0).reshape(3, 4), (1e-6, 2e-6))
 
 
 @pytest.mark.parametrize("given", ["load", "pressure", "area", "area_fraction"])
-@pytest.mark.parametrize("value", [5e-324, 1e-320, 1e-200, 1e-30, 1e-15, 1e-12])
+@pytest.mark.parametrize("value", [5e-324, 1e-200, 1e-15])
 def test_loads_down_to_the_smallest_number_are_found_or_refused(make_scene, given, value):
     scene = make_scene(separations=(2.0,), n_surfaces=3)
     if value < 1e-20:

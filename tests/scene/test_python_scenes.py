@@ -153,6 +153,7 @@ def test_a_name_is_shown_and_nothing_else(make, tmp_path, capsys, request):
     assert "\x1b" not in capsys.readouterr().out
     assert main(["compare", str(tmp_path / "e.h5"), "-o", str(tmp_path / "e.png")]) == 0
     request.getfixturevalue("blank_figures")
+    request.getfixturevalue("one_pressure")
     assert main(["report", str(tmp_path / "e.h5"), "-o", str(tmp_path / "e.html")]) == 0
     page = (tmp_path / "e.html").read_text()
     assert "<b>$" not in page

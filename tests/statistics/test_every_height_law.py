@@ -53,7 +53,7 @@ def ensemble_of(make_scene):
 @pytest.fixture
 def no_figures(monkeypatch):
     """A report without its drawings, which take a second each."""
-    for name in ("comparison_figures", "pressure_pictures"):
+    for name in ("solved_pressures", "comparison_figures", "pressure_pictures"):
         monkeypatch.setattr(mcgw.reports.html, name, lambda _: [])
 
 
