@@ -29,11 +29,11 @@ def execute(args: argparse.Namespace) -> int:
     """Print the advice, save the record and the figure."""
     from mcgw.commands.outputs import CSV, Output, check_outputs, figure_format
     from mcgw.commands.voice import details, news, tell_cautions
+    from mcgw.ensemble.prices import TARGETS
     from mcgw.figures.studies import save_tradeoff
     from mcgw.formats.numbers import parse
     from mcgw.machine.progress import bar
     from mcgw.scene.scene_file import files_of, load_scene
-    from mcgw.statistics.prices import TARGETS
     from mcgw.statistics.tradeoff import tradeoff
 
     seconds = parse(args.seconds, "s", "--seconds")

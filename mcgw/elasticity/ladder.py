@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from mcgw.ensemble.drawing import in_words
-from mcgw.ensemble.needed import Needs
+from mcgw.ensemble.prices import Needs
 from mcgw.errors import RunError
 from mcgw.scene.scene import Scene
 from mcgw.scene.validity import percent

@@ -8,6 +8,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
+from mcgw.ensemble.prices import SOLVE, WANTS
 from mcgw.figures.style import (
     BAND,
     HOMOGENEOUS,
@@ -23,7 +24,6 @@ from mcgw.figures.style import (
 from mcgw.statistics.checks import Slope
 from mcgw.statistics.convergence import Convergence
 from mcgw.statistics.measured_ways import Point
-from mcgw.statistics.prices import SOLVE, WANTS
 from mcgw.statistics.tradeoff import Tradeoff
 from mcgw.statistics.verdict import FALSE_ALARM
 
@@ -155,7 +155,7 @@ def save_tradeoff(found: Tradeoff, path: str | Path) -> None:
 def draw_errors(axis: Any, found: Tradeoff, want: str) -> None:
     """95 % bounds against time: measured points, lines of the expected slope, and ways without draws."""
     axis.set(xscale="log", yscale="log", ylim=(_FLOOR / 3, 3), ylabel="error (95 % bound)")
-    axis.set_xlabel("time (s)")
+    axis.set_xlabel("CPU time (s)")
     kept = [way for way in found.ways if way.want == want and way.measured]
     for way in kept:
         own = _look_of(way.name)
@@ -211,7 +211,7 @@ def draw_ladder(axis: Any, found: Tradeoff) -> None:
             )  # fmt: skip
         if k == 0 and known:
             axis.axhline(rungs[0].model, color=LEVEL, lw=1, label="error of the model")
-    axis.set(xscale="log", yscale="log", xlabel="time (s)", ylabel="whole error (95 % bound)")
+    axis.set(xscale="log", yscale="log", xlabel="CPU time (s)", ylabel="whole error (95 % bound)")
     axis.set_title(
         "Conductance at its load, by numbers of surfaces or maps; dotted: without the model", fontsize=9
     )

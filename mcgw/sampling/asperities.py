@@ -7,7 +7,7 @@ from analytic.arrays import Array
 from mcgw.machine.memory import check_memory
 from mcgw.sampling.block import Sampler
 from mcgw.sampling.counts import counts_of, generator
-from mcgw.sampling.direct import Direct
+from mcgw.sampling.direct import Direct, asperity_sums
 from mcgw.sampling.outside import extra_heights, table_of
 from mcgw.sampling.philox import CELLS, RADII, RADII_LOW, REST, uniforms
 from mcgw.sampling.samplers import sampler_of
@@ -148,6 +148,18 @@ def summits_drawn(scene: Scene, sampler: Sampler, surface: int) -> Listed:
             ratios.append(table.root_ratios(heights[-1], *words) ** 2)
     s = np.concatenate([*heights, outside[:, 1]])
     return s, np.concatenate([*ratios, outside[:, 3]]) if table else None
+
+
+def worst_of_values(scene: Scene, surfaces: int) -> float:
+    """Largest relative error of values of the first surfaces against plain sums over their asperities."""
+    sampler, worst = sampler_of(scene), 0.0
+    for number in range(surfaces):
+        s, ratios = summits_drawn(scene, sampler, number)
+        plain = asperity_sums(scene, np.array([s.size]), s, np.ones(s.size), ratios)
+        for quantity, values in sampler.block(number, 1).sums.items():
+            if quantity in plain and plain[quantity].any():
+                worst = max(worst, float(np.abs(values / plain[quantity] - 1).max()))
+    return worst
 
 
 def _listed(sampler: Direct, surface: int, above: float) -> Listed:

@@ -1,30 +1,27 @@
 """Every way to every answer of a scene, run and timed in turn with all others.
 
 Each repeat has new surfaces and a separation moved by nothing that counts, so that no result is remembered.
+Times are of the CPU, all cores together: what else a machine does changes the clock, and hardly these.
 """
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
-from time import perf_counter
+from time import process_time
 from typing import Any
 
 import numpy as np
 
 from analytic.arrays import Array
 from analytic.at_load import specimen_means
-from mcgw.ensemble.drawing import rough_seconds
 from mcgw.ensemble.intervals import laws_are_quick
-from mcgw.ensemble.needed import PROBABILITY, Needs
+from mcgw.ensemble.prices import PROBABILITY, SOLVE, Needs, Way, changes_of, wants_of
 from mcgw.ensemble.simulation import simulate
 from mcgw.ensemble.solution import solve
-from mcgw.sampling.asperities import summits_drawn
-from mcgw.sampling.direct import asperity_sums
-from mcgw.sampling.samplers import sampler_of
-from mcgw.scene.promises import promise_of
+from mcgw.sampling.asperities import worst_of_values
+from mcgw.sampling.expected import expected
 from mcgw.scene.scene import Scene
-from mcgw.statistics.prices import SOLVE, Way, changes_of, wants_of
 
 REPEATS = 16
 _FEWEST = 3  # repeats of what draws nothing and takes long
@@ -37,27 +34,17 @@ _FEWEST_FOR_QUANTILE, _LEVELS = 2000, np.arange(1, 200) / 200  # surfaces; proba
 _MOST_LISTED, _LISTED = 3e6, 4  # asperities of a surface that are summed by themselves; surfaces
 _HERTZ, _OTHERS, _LAW = 1e-13, 1e-9, 1e-6  # errors that theory and exact laws are tested to
 
+_LEAST = 1e-9  # seconds: less than any clock tells
+
 Errors = dict[str, float]
 
 
 @dataclass(frozen=True)
 class Point:
-    """One way to an answer from so many surfaces.
+    """One way to an answer from so many surfaces, 0 where none is drawn.
 
-    Parameters
-    ----------
-    way, want : str
-        Of a `Way`.
-    n_surfaces : int
-        0 where none is drawn.
-    rms, stderr : float
-        Root mean square error over the repeats, and its own standard error.
-    bias : float
-        Mean error, if it cannot be chance; else 0.
-    seconds : float
-        Median time by the clock.
-    repeats : int
-        How many.
+    The root mean square of its error over the repeats with its own standard error, its mean error if that
+    cannot be chance (else 0), its median CPU time in seconds, and the number of repeats.
     """
 
     way: str
@@ -84,9 +71,9 @@ class Task:
         """Run it once; a long one that draws nothing not again once it has spent its limit of seconds."""
         if not self.n_surfaces and len(self.seconds) >= _FEWEST and sum(self.seconds) > limit:
             return
-        start = perf_counter()
+        start = process_time()
         found = self.call(scene)
-        self.seconds.append(perf_counter() - start)
+        self.seconds.append(max(process_time() - start, _LEAST))
         self.errors.append(self.compare(found))
 
     def points(self) -> Iterator[Point]:
@@ -190,7 +177,7 @@ def moved(scene: Scene, number: int) -> Scene:
 def sized(answers: Answers, name: str, scene: Scene, share: float) -> list[Task]:
     """A way at all sizes of which 16 repeats fit into its share of seconds, each run before."""
     tasks: list[Task] = []
-    rough = rough_seconds(scene.replace(**changes_of(name)), 1)
+    rough = expected(scene.replace(**changes_of(name))).seconds
     for size in _SIZES:
         each = tasks[-1].seconds[-1] / tasks[-1].n_surfaces if size >= _RELIABLE else rough
         if REPEATS * size * each > share:
@@ -210,12 +197,14 @@ def prices(scene: Scene, points: Sequence[Point], names: Sequence[str]) -> list[
     ways = [Way(p.way, p.want, max(tested[p.way], p.rms), p.seconds, 0.0) for p in still]
     for name in names:
         own = [p for p in points if p.way == name]
-        rough = rough_seconds(scene.replace(**changes_of(name)), 1)
-        worst, promised = _worst(scene, name), changes_of(name).get("accuracy", 0.0)
+        asked, worst = scene.replace(**changes_of(name)), 0.0
+        rough = expected(asked).seconds
+        if "values" in wants_of(name) and expected(asked).draws < _MOST_LISTED:
+            worst = worst_of_values(asked, _LISTED)
         for want in wants_of(name):
             timed = [p for p in own if p.want == ("conductance" if name == SOLVE else "mean")]
             bias = ([p.bias for p in own if p.want == want] or [p.bias for p in timed] or [0.0])[-1]
-            floor = max(promised, worst if want == "values" else bias)
+            floor = max(changes_of(name).get("accuracy", 0.0), worst if want == "values" else bias)
             if timed:
                 ways.append(Way(name, want, floor, *_price(timed[0], timed[-1], rough)))
             elif name != SOLVE:
@@ -230,20 +219,3 @@ def _price(small: Point, large: Point, rough: float) -> tuple[float, float]:
     else:
         each = (large.seconds - small.seconds) / (large.n_surfaces - small.n_surfaces)
     return max(small.seconds - each * small.n_surfaces, 0.0), each
-
-
-def _worst(scene: Scene, name: str) -> float:
-    """Largest relative error of values of a few surfaces against plain sums over their heights."""
-    everywhere = promise_of(changes_of(name)["sampler"]).places
-    listed = scene.n_asperities if everywhere else scene.touching
-    if "values" not in wants_of(name) or listed > _MOST_LISTED:
-        return 0.0
-    asked, worst = scene.replace(**changes_of(name)), 0.0
-    sampler = sampler_of(asked)
-    for number in range(_LISTED):
-        s, ratios = summits_drawn(asked, sampler, number)
-        plain = asperity_sums(asked, np.array([s.size]), s, np.ones(s.size), ratios)
-        for quantity, values in sampler.block(number, 1).sums.items():
-            if quantity in plain and plain[quantity].any():
-                worst = max(worst, float(np.abs(values / plain[quantity] - 1).max()))
-    return worst

@@ -12,7 +12,7 @@ from analytic import MeasuredHeights, MeasuredRadii
 from mcgw.elasticity.ladder import Ladder, ladder_of
 from mcgw.ensemble.drawing import in_words
 from mcgw.ensemble.half_space import scene_alone
-from mcgw.ensemble.needed import PROBABILITY, Needs
+from mcgw.ensemble.prices import PROBABILITY, TARGETS, WANTS, Advice, Needs, Way, advise, sampled_ways
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
 from mcgw.machine.progress import Progress, told
@@ -21,7 +21,6 @@ from mcgw.scene.arguments import argument, check_object
 from mcgw.scene.scene import Scene
 from mcgw.scene.values import EXACT
 from mcgw.statistics.measured_ways import REPEATS, Answers, Point, moved, prices, sized
-from mcgw.statistics.prices import TARGETS, WANTS, Advice, Way, advise, changes_of, sampled_ways
 
 SECONDS = 60.0
 _SHOWN = (1e-2,)
@@ -127,29 +126,10 @@ class Tradeoff(Shown):
             Column("error_95", [_errors(group) for group in groups], "95 %"),
             Column("way", ["none" if x.way is None else x.way.name for x in first], "cheapest"),
             Column("n_surfaces", drawn),
-            Column("seconds", [x.seconds for x in first], form=".2g", missing=""),
-            Column("type", [self.to_type(x) for x in first]),
+            Column("cpu_s", [x.seconds for x in first], "CPU (s)", form=".2g", missing=""),
+            Column("type", [x.code(self.scene, self.load) for x in first]),
         )
         return Table(columns)
-
-    def to_type(self, advice: Advice) -> str:
-        """Python that carries out an advice."""
-        way, h, q = advice.way, f"{self.scene.separations[0]:g}", self.scene.quantities[0]
-        if way is None:
-            return ""
-        if advice.want == "conductance":
-            n = f"n_surfaces={max(advice.n_surfaces, 2)}"
-            solved = f"mcgw.solve(scene, load={self.load:.6g}, {n})"
-            of = {"theory": "theory", "exact law": "value"}.get(way.name, "surfaces")
-            return f'{solved}.{of}["conductance"]{".mean()" if way.draws else ""}'
-        if not way.draws:
-            found = {"mean": f'mean("{q}", {h})', "std": f'std("{q}", {h})'}
-            law = f'distribution("{q}", {h})'
-            found |= {"quantile": f"{law}.ppf({PROBABILITY})", "distribution": law}
-            return f"scene.theory.{found[advice.want]}"
-        changes = {"separations": self.scene.separations[0], **changes_of(way.name)}
-        told = ", ".join(f"{key}={x!r}" for key, x in changes.items())
-        return f"mcgw.simulate(scene, {told}, n_surfaces={advice.n_surfaces})"
 
     def measurements(self) -> Table:
         """Errors and times of every way at every size."""

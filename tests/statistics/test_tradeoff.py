@@ -10,11 +10,11 @@ from scipy.stats import kstwobign, norm
 import analytic
 import mcgw
 from mcgw.elasticity.ladder import Ladder, Rung
-from mcgw.ensemble.needed import Needs
+from mcgw.ensemble.prices import WANTS, Needs, Way, advise, sampled_ways, wants_of
 from mcgw.sampling import samplers
+from mcgw.sampling.asperities import worst_of_values
 from mcgw.statistics import measured_ways
 from mcgw.statistics.measured_ways import Point, Task
-from mcgw.statistics.prices import WANTS, Way, advise, sampled_ways, wants_of
 from mcgw.statistics.tradeoff import Tradeoff, tradeoff
 
 
@@ -65,7 +65,7 @@ def test_each_way_states_what_it_can_give(study):
 def test_a_sampler_that_is_off_by_a_percent_is_not_advised(scene, monkeypatch):
     """The companion: its values, and with enough repeats its means, are found out."""
     right, ways = samplers._MAKERS["cells"], {}
-    before = {name: measured_ways._worst(scene, name) for name in ("cells", "tail", "direct")}
+    before = {name: worst_of_values(scene.replace(sampler=name), 4) for name in ("cells", "tail", "direct")}
     assert max(before.values()) < 1e-12
 
     def wrong(scene):
@@ -81,7 +81,7 @@ def test_a_sampler_that_is_off_by_a_percent_is_not_advised(scene, monkeypatch):
 
     for name, maker in (("right", right), ("wrong", wrong)):
         monkeypatch.setitem(samplers._MAKERS, "cells", maker)
-        off = measured_ways._worst(scene, "cells")
+        off = worst_of_values(scene.replace(sampler="cells"), 4)
         made = [Way("cells", "values", off, 0.0, 1e-6), Way("tail", "values", 0.0, 0.0, 1e-4)]
         ways[name] = advise("values", 1e-3, made, Needs(scene)).way.name
     assert ways == {"right": "cells", "wrong": "tail"}
@@ -212,9 +212,9 @@ def test_what_is_typed_is_python_that_runs(scene, study):
     """Of every way that draws nothing, and of one that draws."""
     names = {"scene": scene, "mcgw": mcgw}
     for want in ("mean", "std", "quantile"):
-        code = study.to_type(study.advice(want, 1e-5))
+        code = study.advice(want, 1e-5).code(study.scene, study.load)
         assert eval(code, names) > 0
-    assert eval(study.to_type(study.advice("values", 1e-5)), names).load.shape == (200, 1)
+    assert eval(study.advice("values", 1e-5).code(study.scene, study.load), names).load.shape == (200, 1)
     with pytest.raises(ValueError, match="want = 'median': give one of mean, std"):
         study.plot(want="median")
 

@@ -9,7 +9,7 @@ from oracles.exact_law_grid import faults, laws
 from scipy import stats
 
 import mcgw
-from mcgw.ensemble.needed import Needs
+from mcgw.ensemble.prices import Needs
 from mcgw.statistics.laws_of_values import laws_of_values
 
 HEAVY = [(stats.fisk(8.0), 58_000, 2.5), (stats.t(4), 3000, 1.5), (stats.lognorm(1.0), 20_000, 3.0)]

@@ -1,0 +1,199 @@
+"""Prices of answers: how many surfaces an error takes, what each way can give and costs, and the cheapest.
+
+An error is a 95 % bound: 1.96 standard errors of a mean, a standard deviation or a quantile over the answer,
+and for a whole distribution the largest difference of a probability, which Kolmogorov's law bounds.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import ceil, inf, nan
+from typing import Any
+
+import numpy as np
+from scipy.special import ndtri
+
+from mcgw.ensemble.forecast import MOST_SURFACES, forecast, surfaces_at_load
+from mcgw.ensemble.intervals import CONFIDENCE, moments
+from mcgw.sampling.expected import expected
+from mcgw.scene.promises import promise_of
+from mcgw.scene.scene import Scene
+from mcgw.scene.section import SceneError
+from mcgw.scene.values import EXACT
+
+WANTS = ("mean", "std", "quantile", "distribution", "conductance", "values")
+TARGETS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
+_COARSE = "cells, 0.001"  # cells whose values have this accuracy
+_FASTER = 1.5  # a way must be so much faster than one named before it
+SOLVE = "solve"  # surfaces drawn one by one, each at its own separation
+_GIVES = {
+    "theory": ("mean", "std", "conductance"), "exact law": ("quantile", "distribution", "conductance"),
+    SOLVE: ("conductance",),
+}  # fmt: skip
+PROBABILITY = 0.99  # of the quantile
+_BOUND = float(ndtri((1 + CONFIDENCE) / 2))
+_KOLMOGOROV = 1.3581  # sqrt(n) times the largest difference of probabilities, in 95 of 100 samples
+_FEWEST = {"std": 30, "quantile": 2000, "distribution": 1}  # 20 of 2000 lie beyond the quantile
+
+
+@dataclass(frozen=True)
+class Needs:
+    """How many surfaces answers need, by exact theory.
+
+    Parameters
+    ----------
+    scene : Scene
+        Of one separation and one quantity.
+    """
+
+    scene: Scene
+
+    def surfaces(self, want: str, target: float) -> float:
+        """Surfaces for which 1.96 standard errors are at most the target; infinite if none are enough."""
+        if not target > 0:
+            return inf
+        if want == "values":
+            return float(self.scene.n_surfaces)
+        if want == "mean":
+            asked = replace(self.scene, accuracy=EXACT, rel_err=target, n_surfaces=MOST_SURFACES)
+            found = forecast(asked)
+            return inf if found.out_of_reach else float(found.surfaces)
+        if want == "conductance":
+            return surfaces_at_load(self.scene, self.separation, {"conductance": target})
+        return float(max(ceil((self.of_one(want) / target) ** 2), _FEWEST[want]))
+
+    def of_one(self, want: str) -> float:
+        """Bound of the error from a single surface, which falls with the root of their number."""
+        return {"std": self._std, "quantile": self._quantile, "distribution": _KOLMOGOROV}[want]
+
+    @cached_property
+    def at_load(self) -> float:
+        """Bound of the error of the conductance of a single surface at the load of this separation."""
+        alone = float(self.scene.theory.asperities_for("conductance", self.separation, 1.0, given="load"))
+        return _BOUND * float(np.sqrt(alone / self.scene.n_asperities))
+
+    @property
+    def separation(self) -> float:
+        """The scene's."""
+        return self.scene.separations[0]
+
+    @cached_property
+    def _std(self) -> float:
+        """By the fourth moment of the sum over asperities."""
+        _, second, fourth = moments(self.scene, [self.scene.quantities[0]], (2, 4))[:, 0, 0]
+        alone = 0.0 if self.scene.count == "poisson" else 3.0  # moments are about 0, or about the mean
+        excess = (fourth / second**2 - alone) / self.scene.n_asperities
+        return _BOUND * float(np.sqrt(max(2 + excess, 0.0) / 4))
+
+    @cached_property
+    def _quantile(self) -> float:
+        """By the density there (order statistics); infinite where there is none."""
+        law = self.scene.theory.distribution(self.scene.quantities[0], self.separation)
+        value = float(law.ppf(PROBABILITY))
+        density = value * float(law.pdf(value))
+        return _BOUND * float(np.sqrt(PROBABILITY * (1 - PROBABILITY))) / density if density > 0 else inf
+
+
+@dataclass(frozen=True)
+class Way:
+    """One way to one answer.
+
+    Parameters
+    ----------
+    name : str
+        "theory", "exact law", "solve", or a sampler, with its accuracy if that is not the finest.
+    want : str
+        One of `WANTS`.
+    floor : float
+        Error that more surfaces do not reduce.
+    set_up, each : float
+        CPU seconds: before the first surface, and of each; `each` is 0 where none is drawn.
+    measured : bool
+        Whether it was timed; otherwise its price is arithmetic (`mcgw.sampling.expected`).
+    """
+
+    name: str
+    want: str
+    floor: float
+    set_up: float
+    each: float
+    measured: bool = True
+
+    @property
+    def draws(self) -> bool:
+        """Whether it draws surfaces."""
+        return self.each > 0
+
+    def seconds(self, n_surfaces: float) -> float:
+        """CPU time of an answer from so many surfaces."""
+        return self.set_up + n_surfaces * self.each
+
+
+def changes_of(name: str) -> dict[str, Any]:
+    """Fields of a scene that draws by a way."""
+    if name == SOLVE:
+        return {"sampler": "tail"}
+    sampler, _, accuracy = name.partition(", ")
+    return {"sampler": sampler} | ({"accuracy": float(accuracy)} if accuracy else {})
+
+
+def sampled_ways(scene: Scene) -> list[str]:
+    """Names of the ways that draw surfaces of a scene, first the one that ``auto`` takes."""
+    first = expected(scene.replace(sampler="auto")).name
+    names = dict.fromkeys((first, "cells", "tail", _COARSE, "direct", "aggregate", SOLVE))
+    return [name for name in names if _fits(scene, name)]
+
+
+def _fits(scene: Scene, name: str) -> bool:
+    try:
+        scene.replace(**changes_of(name))
+    except SceneError:
+        return False
+    return scene.curvature is None or promise_of(changes_of(name)["sampler"]).own_radii
+
+
+def wants_of(name: str) -> tuple[str, ...]:
+    """What a way can give: theory has no law of surfaces, nor has a sampler whose laws are a little off."""
+    if name in _GIVES:
+        return _GIVES[name]
+    if promise_of(changes_of(name)["sampler"]).spends:
+        return ("mean", "std")
+    return ("mean", "std", "quantile", "distribution", "values")
+
+
+@dataclass(frozen=True)
+class Advice:
+    """What to run for one of `WANTS` within a target: a way, or None, its surfaces (0: none) and seconds."""
+
+    want: str
+    target: float
+    way: Way | None
+    n_surfaces: int
+    seconds: float
+
+    def code(self, scene: Scene, load: float) -> str:
+        """Python that carries it out, for a scene of one separation and one quantity, and the load there."""
+        if self.way is None:
+            return ""
+        h, q = scene.separations[0], scene.quantities[0]
+        if self.want == "conductance":
+            solved = f"mcgw.solve(scene, load={load:.6g}, n_surfaces={max(self.n_surfaces, 2)})"
+            of = {"theory": "theory", "exact law": "value"}.get(self.way.name, "surfaces")
+            return f'{solved}.{of}["conductance"]{".mean()" if self.way.draws else ""}'
+        if self.way.draws:
+            changes = {"separations": h, **changes_of(self.way.name), "n_surfaces": self.n_surfaces}
+            return f"mcgw.simulate(scene, {', '.join(f'{key}={x!r}' for key, x in changes.items())})"
+        law = f'distribution("{q}", {h:g})'
+        found = {"quantile": f"{law}.ppf({PROBABILITY})", "distribution": law}
+        return "scene.theory." + found.get(self.want, f'{self.want}("{q}", {h:g})')
+
+
+def advise(want: str, target: float, ways: Sequence[Way], needs: Needs) -> Advice:
+    """Choose the cheapest way; of those that cost about the same, the one named first."""
+    best = Advice(want, target, None, 0, nan)
+    for way in (way for way in ways if way.want == want and way.floor <= target):
+        n = needs.surfaces(want, target - way.floor) if way.draws else 0
+        seconds = way.seconds(n)
+        if n <= MOST_SURFACES and (best.way is None or seconds * _FASTER < best.seconds):
+            best = Advice(want, target, way, int(n), seconds)
+    return best
