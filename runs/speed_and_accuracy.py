@@ -1,7 +1,7 @@
 """Speed and accuracy of three scenes, and whether what `mcgw tradeoff` advises holds.
 
 ``python runs/speed_and_accuracy.py [--seconds 20]`` writes to ``runs/speed`` the two pictures of each scene,
-its prices and its advice, and ``carried_out.csv``: every advice carried out 100 times (dear ones five), in turn
+its prices and advice, and ``carried_out.csv``: every advice carried out 100 times (dear ones 5), in turn
 with all other ways to the same answer. Times are medians of CPU time, all cores together, which other work
 on the machine hardly changes.
 """
