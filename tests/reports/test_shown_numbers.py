@@ -222,7 +222,7 @@ def test_solve(scene, words, given, pressure, title, tmp_path, capsys):
 
 def test_tradeoff(scene, tmp_path, capsys, monkeypatch):
     """Files hold what was measured and what is advised, in full; the terminal says the same in short."""
-    from test_tradeoff import made_up
+    from oracles.study_by_hand import made_up
 
     small = dataclasses.replace(scene, keep="sums", quantities=("load",), separations=(2.0,))
     study = made_up(small)

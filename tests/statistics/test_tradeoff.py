@@ -14,8 +14,8 @@ from mcgw.ensemble.prices import WANTS, Needs, Way, advise, sampled_ways, wants_
 from mcgw.sampling import samplers
 from mcgw.sampling.asperities import worst_of_values
 from mcgw.statistics import measured_ways
-from mcgw.statistics.measured_ways import Point, Task
-from mcgw.statistics.tradeoff import Tradeoff, tradeoff
+from mcgw.statistics.measured_ways import Task
+from mcgw.statistics.tradeoff import tradeoff
 
 
 @pytest.fixture(scope="module")
@@ -229,18 +229,3 @@ def test_what_cannot_be_traded_off_is_refused(make_scene):
     )
     with pytest.raises(ValueError, match="measured heights are summed exactly"):
         tradeoff(measured)
-
-
-def made_up(scene):
-    """A study by hand, for tables and figures."""
-    points = (
-        Point("tail", "mean", 10, 0.2, 0.02, 0.0, 1e-3, 16),
-        Point("tail", "mean", 100, 0.06, 0.006, 0.0, 4e-3, 16),
-        Point("theory", "mean", 0, 0.0, 0.0, 0.0, 5e-4, 16),
-    )  # fmt: skip
-    ways = (
-        way("theory", "mean", 1e-13, 5e-4), way("tail", "mean", 0.0, 1e-3, 3e-5),
-        way("cells", "values", 1e-14, 1e-3, 1e-6), way("exact law", "quantile", 1e-6, 0.01),
-    )  # fmt: skip
-    ladder = Ladder((Rung("formula", 0, 1e-3, 0.0, 0.03), Rung("surfaces", 10, 0.1, 0.02, 0.03)), "")
-    return Tradeoff(scene, 2.5, points, ways, ladder, 12.4)
