@@ -176,10 +176,12 @@ class Advice:
         if self.way is None:
             return ""
         h, q = scene.separations[0], scene.quantities[0]
+        if self.want == "conductance" and self.way.name == "theory":
+            return f'scene.theory.mean("conductance", scene.theory.separation_at("load", {load:.6g}))'
         if self.want == "conductance":
             solved = f"mcgw.solve(scene, load={load:.6g}, n_surfaces={max(self.n_surfaces, 2)})"
-            of = {"theory": "theory", "exact law": "value"}.get(self.way.name, "surfaces")
-            return f'{solved}.{of}["conductance"]{".mean()" if self.way.draws else ""}'
+            of = 'surfaces["conductance"].mean()' if self.way.draws else 'value["conductance"]'
+            return f"{solved}.{of}"
         if self.way.draws:
             changes = {"separations": h, **changes_of(self.way.name), "n_surfaces": self.n_surfaces}
             return f"mcgw.simulate(scene, {', '.join(f'{key}={x!r}' for key, x in changes.items())})"

@@ -168,7 +168,9 @@ def draw_errors(axis: Any, found: Tradeoff, want: str) -> None:
             points = [p for p in found.points if (p.way, p.want) == (way.name, want) and p.n_surfaces]
             _draw_points(axis, points, own, way.name)
     if not kept:
-        axis.text(0.5, 0.5, "no way to it", ha="center", va="center", transform=axis.transAxes)
+        some = any(way.want == want for way in found.ways)
+        why = "takes longer than the study" if some else "no way to it"
+        axis.text(0.5, 0.5, why, ha="center", va="center", transform=axis.transAxes)
     title = found.words(want)
     axis.set_title(f"{title} ({found.scene.n_surfaces})" if want == "values" else title)
 

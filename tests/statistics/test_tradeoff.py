@@ -211,7 +211,7 @@ def test_the_ladder_says_where_more_surfaces_do_not_help():
 def test_what_is_typed_is_python_that_runs(scene, study):
     """Of every way that draws nothing, and of one that draws."""
     names = {"scene": scene, "mcgw": mcgw}
-    for want in ("mean", "std", "quantile"):
+    for want in ("mean", "std", "quantile", "conductance"):
         code = study.advice(want, 1e-5).code(study.scene, study.load)
         assert eval(code, names) > 0
     assert eval(study.advice("values", 1e-5).code(study.scene, study.load), names).load.shape == (200, 1)
