@@ -4,6 +4,7 @@ Specimens are drawn here, and their separations found by bisection of sums writt
 """
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -65,6 +66,7 @@ def residuals(model, target, wanted):
     return np.abs([off[name] for name in off if name != "load"])
 
 
+@cache
 def of_yielding(share):
     """A model of contacts that pass several pieces of Kogut and Etsion's law, a load, and drawn means."""
     hardness = 4e9
