@@ -17,7 +17,7 @@ from mcgw.sampling.asperities import summits
 
 SURFACE = analytic.Surface(sigma=1e-6, radius=1e-5, eta=1e9, nominal_area=6e-8, E_star=1e11)
 NAMES = ["load", "area", "contacts", "conductance", "yielded"]
-POISSON, MANY = 0.3, 2000
+POISSON, MANY = 0.3, 1000
 K = 0.454 + 0.41 * POISSON
 
 
@@ -38,7 +38,7 @@ def kogut_etsion(d, critical):
 def drawn(heights, weight, critical, target, contact):
     """Means of specimens, each at its own separation, and their standard errors."""
     low, high = np.full(len(heights), -6.0), heights.max(axis=1)
-    for _ in range(45):
+    for _ in range(40):
         middle = (low + high) / 2
         sums = (weight * contact(np.maximum(heights - middle[:, None], 0.0), critical)[0]).sum(axis=1)
         low, high = np.where(sums >= target, middle, low), np.where(sums >= target, high, middle)
