@@ -20,7 +20,7 @@ _NOTHING = 1e-100  # less than any sum but 0
 _FEW = 1e-25  # probability of no contact above which sums of none and of one are taken apart
 _REACH = 9.0  # standard deviations that hold all but 1e-18
 _RARE = 1e-3, 1e-9  # asperities on a surface that add more, or less, than usual ones; than next to all
-_WIDER, _NARROWER, _LEVELS = 8, 16, 6
+_WIDER, _NARROWER, _LEVELS = 8, (256, 16), 6
 _SMOOTH, _DIED = 1e3, 45.0  # mean over standard deviation of sums without steps; logarithm of their transform
 _RESOLVED = 5.0  # lattice points in a standard deviation of the usual sums
 _NEVER = 1e3  # a logarithm of what is 0
@@ -137,7 +137,7 @@ class OneAsperity:
         usual, rarest = (min(float(x), 0.0) for x in self.values[np.minimum(at, self.values.size - 1)])
         if self.few:
             contacts = self.number * self.share
-            return rarest + usual * float(contacts + _REACH * np.sqrt(contacts) + 2 * _REACH)
+            return rarest + usual * float(contacts + _REACH * np.sqrt(contacts) + _REACH)
         mean, std, _ = self.usual
         return max(mean - _REACH * std + rarest, -np.inf if rarest < 0 else 0.0)
 
@@ -149,8 +149,8 @@ class OneAsperity:
         if not self.few:
             finest = std / _RESOLVED / (1 + _DAMPED * abs(mean) / width) ** (1 / 6)
             return [w for w in found if w <= max(width, points * finest)]
-        narrower = [width / _NARROWER**k for k in (2, 1)]
-        return [*(w for w in narrower if w > 2 * self.values[0] >= 0), *found]
+        narrower = [width / k for k in (_NARROWER if self.lowest >= 0 else (*_NARROWER, 2))]
+        return [*(w for w in narrower if w > max(2 * abs(self.values[0]), -self.lowest)), *found]
 
 
 def masses(one: OneAsperity, width: float, points: int) -> tuple[Array, Array]:
