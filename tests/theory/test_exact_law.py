@@ -543,6 +543,28 @@ def test_every_kind_of_contact_has_a_law_with_its_moments(kind):
     assert law.atom == pytest.approx(float(1 - of.rule(h).probabilities.sum()) ** n, abs=1e-6) or "un" in kind
 
 
+def test_sums_of_few_that_pull_by_plain_convolutions():
+    """Of 300 asperities, below no load: what k of them add above k times the least, by steps of its 1/200."""
+    n, h, pulls = 300, 2.5, {**PULLS, "count": "fixed"}
+    of = model(n, **pulls)
+    rule, added = of.asperities("load", h)
+    s = h + np.linspace(1e-6, 1.0, 200_000) ** 2
+    values = added(replace(rule, heights=s, probabilities=np.zeros(s.size)))
+    assert np.all(np.diff(values) > 0)
+    least, x = values[0], 1.2 * values[0]
+    step = -least / 200
+    edges = stats.norm.cdf(np.interp(least + step * np.arange(2401), values, s)) - stats.norm.cdf(h)
+    one = np.diff(edges) / stats.norm.sf(h)
+    known, sums = 0.0, np.ones(1)
+    for k in range(1, 13):
+        sums = np.convolve(sums, one)[: one.size]
+        upto = np.interp(
+            (x - k * least) / step - k / 2 + 0.5, np.arange(sums.size + 1), np.append(0, sums.cumsum())
+        )
+        known += stats.binom(n, stats.norm.sf(h)).pmf(k) * upto
+    assert of.distribution("load", h).cdf(x * unit(of, "load")) == pytest.approx(known, abs=1e-6)
+
+
 def test_nobody_pays_for_it_who_does_not_ask():
     code = "import analytic, mcgw.scene.scene, sys; sys.exit('analytic.distribution' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
