@@ -235,3 +235,19 @@ def test_a_file_has_a_name_of_its_own(package):
     files = Path(package.__file__).parent.rglob("[!_]*.py")
     names = Counter(file.name for file in files if file.parent.name != "commands")
     assert not [name for name, times in names.items() if times > 1]
+
+
+def test_tests_know_little_of_the_inside():
+    """Imports of inner modules, `mcgw.x.y`, and lines that patch: their numbers may fall, not rise."""
+    tests = [path for path in (ROOT.parent / "tests").rglob("*.py") if path.parent.name != "sampling"]
+    inner, patches = 0, 0
+    for path in tests:
+        text = path.read_text()
+        patches += sum("monkeypatch" in line for line in text.splitlines())
+        inner += sum(
+            isinstance(node, ast.ImportFrom) and (node.module or "").startswith(("mcgw.", "analytic."))
+            and node.module.count(".") > 1
+            for node in ast.walk(ast.parse(text))
+        )  # fmt: skip
+    assert inner <= 430, "of 120 that should do"
+    assert patches <= 470, "of 150 that should do"
