@@ -54,12 +54,11 @@ def _scenes() -> list[dict[str, Any]]:
     from mcgw.scene.surface import SpectralSurface
 
     yielding = {"law": KogutEtsion(critical=0.1)}
-    coarse = {"accuracy": 1e-3, "n_asperities": 10**5}
     spectrum = SpectralSurface(m0=1e-12, m2=1e-2, m4=4e8, nominal_area=1e-6, E_star=1e11)
     return [
         *(yielding, {**yielding, "unload_from": 0.0}, {**yielding, "sampler": "tail"}),
         *({"sampler": "direct"}, {"count": "poisson"}),
-        *(coarse, {"sampler": "aggregate", "n_asperities": 10**6}, {"keep": "statistics"}),
+        *({"sampler": "aggregate", "n_asperities": 10**6}, {"keep": "statistics"}),
         *({"surface": spectrum, "sampler": sampler} for sampler in ("cells", "tail")),
     ]
 

@@ -200,9 +200,7 @@ def interval_of(scene: Scene, sampler: str, sums: Held, name: str, level: float)
     if laws_are_quick(scene) and scene.interaction is None and name not in scene.of_joint:
         rare = spread.effective(m) < MANY
         low[rare], high[rare] = _by_law(scene, name, np.array(scene.separations)[rare], mean[rare], m, level)
-    # What values may be off by, all of them in one direction.
-    off = 0.0 if scene.exact else scene.accuracy * np.abs(mean)
-    return low - off, high + off
+    return low, high
 
 
 def _by_law(

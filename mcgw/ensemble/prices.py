@@ -19,11 +19,9 @@ from mcgw.sampling.expected import expected
 from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.section import SceneError
-from mcgw.scene.values import EXACT
 
 WANTS = ("mean", "std", "quantile", "distribution", "conductance", "values")
 TARGETS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
-_COARSE = "cells, 0.001"  # cells whose values have this accuracy
 _FASTER = 1.5  # a way must be so much faster than one named before it
 SOLVE = "solve"  # surfaces drawn one by one, each at its own separation
 _GIVES = {
@@ -55,7 +53,7 @@ class Needs:
         if want == "values":
             return float(self.scene.n_surfaces)
         if want == "mean":
-            asked = replace(self.scene, accuracy=EXACT, rel_err=target, n_surfaces=MOST_SURFACES)
+            asked = replace(self.scene, rel_err=target, n_surfaces=MOST_SURFACES)
             found = forecast(asked)
             return inf if found.out_of_reach else float(found.surfaces)
         if want == "conductance":
@@ -101,7 +99,7 @@ class Way:
     Parameters
     ----------
     name : str
-        "theory", "exact law", "solve", or a sampler, with its accuracy if that is not the finest.
+        "theory", "exact law", "solve", or a sampler.
     want : str
         One of `WANTS`.
     floor : float
@@ -133,14 +131,13 @@ def changes_of(name: str) -> dict[str, Any]:
     """Fields of a scene that draws by a way."""
     if name == SOLVE:
         return {"sampler": "tail"}
-    sampler, _, accuracy = name.partition(", ")
-    return {"sampler": sampler} | ({"accuracy": float(accuracy)} if accuracy else {})
+    return {"sampler": name}
 
 
 def sampled_ways(scene: Scene) -> list[str]:
     """Names of the ways that draw surfaces of a scene, first the one that ``auto`` takes."""
     first = expected(scene.replace(sampler="auto")).name
-    names = dict.fromkeys((first, "cells", "tail", _COARSE, "direct", "aggregate", SOLVE))
+    names = dict.fromkeys((first, "cells", "tail", "direct", "aggregate", SOLVE))
     return [name for name in names if _fits(scene, name)]
 
 

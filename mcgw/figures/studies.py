@@ -187,12 +187,10 @@ def _draw_points(axis: Any, points: list[Point], own: dict[str, Any], name: str)
 
 
 def _look_of(name: str) -> dict[str, Any]:
-    """Colour and marker of a way; a coarser accuracy is the same, open."""
+    """Colour and marker of a way."""
     if name in _RULES:
         return _RULES[name]
-    sampler, _, coarse = name.partition(", ")
-    own = {"color": _COLOURS[sampler], "marker": _MARKERS[sampler]}
-    return own | {"mfc": "none", "marker": "d"} if coarse else own
+    return {"color": _COLOURS[name], "marker": _MARKERS[name]}
 
 
 def draw_ladder(axis: Any, found: Tradeoff) -> None:

@@ -14,13 +14,14 @@ from mcgw.sampling.shared import shared
 from mcgw.scene.in_words import contact_facts
 from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene, storable
-from mcgw.scene.values import BALANCED, COARSEST, EXACT
 from mcgw.sweeps.groups import Group
 from mcgw.sweeps.points import Asked
 from mcgw.sweeps.pooling import Pooling
 
 _TARGETS = (1e-2, 1e-3)  # 95 % bounds of means
 _NO_SURFACES = "means alone: no surfaces, scene.theory is exact"
+
+_WORTH = 1.5  # times faster, to be told
 
 
 @dataclass(frozen=True)
@@ -45,8 +46,8 @@ class Plan:
         Of the results of all surfaces, before compression.
     seconds : float
         Expected for all surfaces on a machine of the last years with so many cores, within a factor of two.
-    at : dict of float to float
-        Seconds at other accuracies, where they would change.
+    crowds : float or None
+        Seconds with crowded cells, which an accuracy above 0 may buy; None where it buys none.
     """
 
     sampler: str
@@ -58,7 +59,7 @@ class Plan:
     moments: int
     bytes: int
     seconds: float
-    at: dict[float, float]
+    crowds: float | None
 
 
 def plan_of(scene: Scene) -> Plan:
@@ -75,20 +76,15 @@ def plan_of(scene: Scene) -> Plan:
         known.moments,
         reducer_of(scene, known).joined_bytes(surfaces),
         rough_seconds(scene, surfaces),
-        _at_others(scene, known, surfaces),
+        _with_crowds(scene, known, surfaces),
     )
 
 
-def _at_others(scene: Scene, known: Expected, surfaces: int) -> dict[float, float]:
-    """Seconds at neighbouring decades of accuracy; at two coarser ones for a scene to its last digits."""
-    if not known.cells or promise_of(known.name).spends:
-        return {}  # accuracy does not apply to this sampler or law
-    others = (1e-6, 1e-3) if scene.exact else (scene.accuracy / 10, scene.accuracy * 10)
-    return {
-        accuracy: rough_seconds(scene.replace(accuracy=accuracy, sampler=known.name), surfaces)
-        for accuracy in others
-        if EXACT <= accuracy <= COARSEST
-    }
+def _with_crowds(scene: Scene, known: Expected, surfaces: int) -> float | None:
+    """Seconds that an accuracy above 0 may buy: those of ``aggregate``, where ``auto`` takes ``cells``."""
+    if known.name != "cells" or scene.sampler != "auto" or scene.curvature is not None:
+        return None
+    return rough_seconds(scene.replace(sampler="aggregate"), surfaces)
 
 
 def plan_text(scene: Scene, plan: Plan) -> str:
@@ -105,7 +101,7 @@ def plan_text(scene: Scene, plan: Plan) -> str:
         *(f"  {word:13} {what}" for word, what in contact_facts(scene)),
         f"  results       {size if scene.keep == 'statistics' else f'{size} before compression'}",
         f"  time          about {in_words(plan.seconds)}",
-        *_accuracy_lines(scene, plan),
+        _accuracy_line(scene, plan),
         *_target_lines(scene, plan),
         *(f"  {line}" for line in scene.validity().lines),
         "not done:",
@@ -120,16 +116,13 @@ def plan_text(scene: Scene, plan: Plan) -> str:
     return "\n".join(lines)
 
 
-def _accuracy_lines(scene: Scene, plan: Plan) -> list[str]:
-    """What was chosen of the accuracy, and what others would cost."""
-    accuracy = max(scene.accuracy, BALANCED) if scene.located else scene.accuracy
-    lines = [f"  accuracy      {accuracy:g} of every value"]
-    if plan.at:
-        ratios = ", ".join(f"{a:g}: {t / plan.seconds:.2g} x" for a, t in plan.at.items())
-        lines.append(f"                time at others: {ratios}")
-    if scene.law_error:
-        lines.append(f"  law_error     up to {scene.law_error:g} allowed for Gaussian moments, if faster")
-    return lines
+def _accuracy_line(scene: Scene, plan: Plan) -> str:
+    """How far laws may be from the exact ones, and what more would buy."""
+    given = f"up to {scene.accuracy:g} from the exact laws" if scene.accuracy else "0: exact laws"
+    if plan.crowds is None or plan.crowds > plan.seconds / _WORTH:
+        return f"  accuracy      {given}"
+    bought = "buys" if scene.accuracy else "1e-3 would buy"
+    return f"  accuracy      {given}; {bought} crowded cells, {plan.crowds / plan.seconds:.2g} x the time"
 
 
 def _target_lines(scene: Scene, plan: Plan) -> list[str]:
@@ -137,7 +130,7 @@ def _target_lines(scene: Scene, plan: Plan) -> list[str]:
     if scene.interaction is not None or scene.as_measured or not laws_are_quick(scene):
         return []  # no theory, or one that takes longer than a plan may
     lines = []
-    for target in (x for x in _TARGETS if x > scene.accuracy):
+    for target in _TARGETS:
         found = forecast(replace(scene, rel_err=target, n_surfaces=MOST_SURFACES))
         some = f", all but {len(found.out_of_reach)} means" if found.out_of_reach else ""
         seconds = in_words(plan.seconds / plan.surfaces * found.surfaces)

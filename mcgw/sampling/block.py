@@ -109,7 +109,7 @@ class Sampler:
     mesh: Mesh
 
     @property
-    def law_error(self) -> float:
+    def distance(self) -> float:
         """Distance of the laws of its values from the exact ones; nan if nobody knows."""
         return 0.0
 

@@ -34,8 +34,6 @@ _SHORT, _MOST_HALVINGS = 16, 60  # terms for a grading on a cell, and how often 
 _DIGITS = 4.0  # of a height that coefficients without meaning may seem to be worth
 _EVEN, _LEAST = 4.0, 1 / 16  # see `evenness`
 _NARROW = 2.0**-6  # cells that are not cut because the modulus falls
-_ALONE = 1 / 2  # see `series_accuracy`
-CHANGING = 1 / 64  # share of the largest value that errors are held against where values change their sign
 _TOGETHER = 64  # cells whose densities stay in the cache
 _MANY = 32  # times that many: worth another thread
 _CLOSEST = 2.0**-40  # of a cell to an end of the support that is a broken power
@@ -120,19 +118,14 @@ def edges_before_grading(scene: Scene, *, split: bool = True) -> Array:
     if given.size:
         return refined(law, begins, marks)
     asked = (part.tobytes() for part in (begins, breaks, marks))
-    return _edges(law, scene.n_asperities if split else 0, digits_of(scene), *asked)
-
-
-def digits_of(scene: Scene) -> float:
-    """That the moments of a scene must give."""
-    return DIGITS - math.log10(series_accuracy(scene.accuracy) / EXACT)
+    return _edges(law, scene.n_asperities if split else 0, *asked)
 
 
 @kept(8)
-def _edges(law: HeightLaw, n: int, digits: float, *asked: bytes) -> Array:
+def _edges(law: HeightLaw, n: int, *asked: bytes) -> Array:
     """Edges that suit the height law and the contact law, whatever the grading."""
     begins, breaks, marks = (np.frombuffer(part) for part in asked)
-    return refined(law, begins, spaced(law, n, digits, begins, breaks, marks))
+    return refined(law, begins, spaced(law, n, DIGITS, begins, breaks, marks))
 
 
 def cut(scene: Scene, mesh: Mesh, starts: Array) -> Mesh:
@@ -145,15 +138,6 @@ def cut(scene: Scene, mesh: Mesh, starts: Array) -> Mesh:
         parts.append(high[end] - nearer)
     edges = np.unique(np.concatenate([mesh.edges, *parts]))
     return _mesh(scene.heights, float(scene.lowest), edges.tobytes())
-
-
-def series_accuracy(accuracy: float) -> float:
-    """How accurate series must be for values of single surfaces to be as accurate as is asked.
-
-    Every asperity may be off by so much in two ways, as it is itself and as part of a larger node. What is
-    asked by default is asked of the series.
-    """
-    return max(EXACT, _ALONE * accuracy)
 
 
 @kept(8)  # another grading asks for the same, and so does the number in each cell
@@ -211,15 +195,15 @@ def _resolving(scene: Scene, edges: Array) -> Array:
 
     And until errors are held against its least values.
     """
-    grading, law, accuracy = scene.modulus, scene.heights, series_accuracy(scene.accuracy)
+    grading, law = scene.modulus, scene.heights
     for _ in range(_MOST_HALVINGS):
         a, width = edges[:-1], np.diff(edges)
         stretch = _stretch(law, a, width, _mass(law, a, width[:, None])[:, 0])
         t = (1 + NODES) / 2 * chebyshev.chebval(NODES, stretch)
         e = grading(a[:, None] + t)
         tail = np.abs(product(TO_COEFFICIENTS, e.T))[_SHORT:].sum(axis=0)
-        share = evenness(grading, e) if scene.exact else _evenly(e, accuracy)
-        rough = tail > accuracy * share * np.abs(e).max(axis=1) + height_noise(a, t, e)
+        share = evenness(grading, e)
+        rough = tail > EXACT * share * np.abs(e).max(axis=1) + height_noise(a, t, e)
         least, changing = _least(e)  # next to a zero it falls as deep on every cell
         rough |= (share > _EVEN * least) & ~changing & (width > _NARROW)
         if not rough.any():
@@ -249,12 +233,6 @@ def evenness(grading: Grading, e: Array) -> Array:
         return np.ones(e.shape[:-1])
     least, changing = _least(e)
     return np.asarray(np.where(changing, 1.0, np.clip(_EVEN * least, _LEAST, 1.0)))
-
-
-def _evenly(e: Array, accuracy: float) -> Array:
-    """The same where less than the last digits is asked: to the least modulus, as near as digits allow."""
-    least, changing = _least(e)
-    return np.where(changing, CHANGING, np.maximum(least, EXACT / accuracy))
 
 
 def _least(e: Array) -> tuple[Array, NDArray[np.bool_]]:

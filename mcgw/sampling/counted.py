@@ -46,7 +46,7 @@ class Counted(Sampler):
         return int(self.response.layout.starts[-1])
 
     @property
-    def law_error(self) -> float:
+    def distance(self) -> float:
         """Distance of the laws of its values from the exact ones; nan if nobody knows."""
         return self.drawing.distance
 

@@ -52,7 +52,7 @@ class Crowding:
 
 
 def crowding(scene: Scene, mesh: Mesh) -> Crowding | None:
-    """The smallest crowd that keeps the laws of all values to `scene.law_error`.
+    """The smallest crowd that keeps the laws of all values to `scene.accuracy`.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def crowding(scene: Scene, mesh: Mesh) -> Crowding | None:
     while threshold <= _MOST:
         crowded = expected * pdtrc(threshold - 2, expected)  # n P(n - 1 crowd at least) = E[n; n a crowd]
         found = _distance(variance, product(crowded, third), product(crowded, fourth))
-        if found <= scene.law_error:
+        if found <= scene.accuracy:
             return Crowding(threshold, found, float((expected * pdtr(threshold - 2, expected)).sum()))
         threshold *= 2
     return None

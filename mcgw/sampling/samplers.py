@@ -18,12 +18,11 @@ import numpy as np
 
 from analytic import MeasuredHeights, quantity_of
 from mcgw.sampling.block import Sampler
-from mcgw.sampling.cells import Mesh, cut, mesh_of, no_cells, series_accuracy
+from mcgw.sampling.cells import Mesh, cut, mesh_of, no_cells
 from mcgw.sampling.counted import Counted
 from mcgw.sampling.direct import Direct
 from mcgw.sampling.drawn_moments import CROWDED, VARYING, Crowds, OneByOne
 from mcgw.sampling.response.response import Response, parts_of, response_of
-from mcgw.sampling.response.tree import Precision
 from mcgw.sampling.response.walk import UnresolvedError
 from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene, storable
@@ -52,7 +51,7 @@ def sampler_of(scene: Scene) -> Sampler:
     scene = storable(scene)
     name = name_of(scene)
     try:
-        if scene.law_error and scene.sampler == "auto" and name == "cells" and scene.curvature is None:
+        if scene.accuracy and scene.sampler == "auto" and name == "cells" and scene.curvature is None:
             return _perhaps_crowded(scene)
         return _MAKERS[name](scene)
     except UnresolvedError:
@@ -62,7 +61,7 @@ def sampler_of(scene: Scene) -> Sampler:
 
 
 def name_of(scene: Scene) -> str:
-    """The exact sampler that a scene asks for; `law_error` may buy another one than ``cells``.
+    """The exact sampler that a scene asks for; `accuracy` may buy another one than ``cells``.
 
     For ``auto`` the first that fits: cells, unless most of them would be empty (`runs/bench/auto.py`).
     """
@@ -80,9 +79,9 @@ def name_of(scene: Scene) -> str:
     return next(x for x, p in promises if (p.own_laws or breaks < 2) and not (p.needs_density and listed))
 
 
-def law_error_of(scene: Scene) -> float:
+def distance_of(scene: Scene) -> float:
     """Distance of the laws of its values from the exact ones that its sampler was chosen with."""
-    return sampler_of(scene).law_error if scene.law_error else 0.0
+    return sampler_of(scene).distance if scene.accuracy else 0.0
 
 
 def _perhaps_crowded(scene: Scene) -> Counted:
@@ -137,7 +136,7 @@ def aggregate_of(scene: Scene, crowded: int = CROWDED, distance: float = np.nan)
     mesh, response = _resolved(scene, mesh_of(scene, split=False))
     varying = response.layout
     with suppress(UnresolvedError):  # all of them vary where cells are too wide to tell
-        needed = parts_of(scene, mesh, _summed(scene.quantities), Precision(VARYING))
+        needed = parts_of(scene, mesh, _summed(scene.quantities), VARYING)
         varying = needed.layout.at_most(response.layout)
     return Counted("aggregate", scene, mesh, response, drawing=Crowds(varying, crowded, distance))
 
@@ -162,10 +161,9 @@ def _resolved(scene: Scene, mesh: Mesh) -> "tuple[Mesh, Response | Families]":
 
 def _response(scene: Scene, mesh: Mesh) -> "Response | Families":
     """Response for all that moments can tell; contacts are counted."""
-    precision = Precision(series_accuracy(scene.accuracy), not scene.exact)
 
     def response_to(names: tuple[str, ...]) -> Response:
-        return response_of(scene, mesh, names, precision=precision)
+        return response_of(scene, mesh, names)
 
     names = _summed(scene.quantities)
     if scene.curvature is None or not names:

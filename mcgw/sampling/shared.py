@@ -72,13 +72,13 @@ def to_be_shared(scene: Scene) -> tuple[Any, ...] | None:
     Crowds depend on what is asked.
     """
     name = name_of(scene)
-    perhaps_crowded = scene.law_error > 0 and scene.sampler == "auto"
+    perhaps_crowded = scene.accuracy > 0 and scene.sampler == "auto"
     listed = isinstance(scene.curvature, MeasuredRadii)
     if name not in ("cells", "tail") or listed or perhaps_crowded:
         return None
     drawn = scene.n_asperities, scene.seed, scene.count, scene.n_surfaces
     powers = {quantity_of(name).radius for name in scene.quantities} if scene.curvature else None
-    return *drawn, name, scene.accuracy, scene.lowest, scene.heights, scene.curvature, powers
+    return *drawn, name, scene.lowest, scene.heights, scene.curvature, powers
 
 
 def on_common_cells(scenes: Sequence[Scene]) -> list[Scene]:

@@ -10,7 +10,7 @@ import numpy as np
 import analytic
 from analytic.laws import Branch, ContactLaw, Hertz, Ways
 from mcgw.machine.memory import kept
-from mcgw.scene.values import EXACT, Values, values_of_scene
+from mcgw.scene.values import Values, values_of_scene
 
 if TYPE_CHECKING:
     from analytic.joint import Gap
@@ -157,11 +157,6 @@ class Fields(Values):
     def hertzian(self) -> bool:
         """Whether every sum is over powers of the penetration, as in Hertz's law."""
         return type(self.law) is Hertz and self.film is None
-
-    @property
-    def exact(self) -> bool:
-        """Whether every value is computed to its last digits, the default."""
-        return self.accuracy <= EXACT
 
     @property
     def contact(self) -> ContactLaw:

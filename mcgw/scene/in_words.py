@@ -99,13 +99,8 @@ def joint_text(scene: Fields) -> str:
 
 
 def accuracy_facts(scene: Fields) -> list[tuple[str, str]]:
-    """Facts, by name, about values that are not exact."""
-    facts = []
-    if not scene.exact:
-        facts.append(("accuracy", f"{scene.accuracy:g} of every value of a surface"))
-    if scene.law_error:
-        facts.append(("law_error", f"up to {scene.law_error:g} from the exact laws"))
-    return facts
+    """Facts, by name, about laws that are not exact."""
+    return [("accuracy", f"up to {scene.accuracy:g} from the exact laws")] if scene.accuracy else []
 
 
 def sheet_of(scene: Fields) -> Sheet:

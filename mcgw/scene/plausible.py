@@ -74,7 +74,7 @@ def perhaps_other_units(scene: "Fields") -> list[str]:
 
 def takes_hours(scene: "Fields") -> list[str]:
     """Return a line if `auto` would draw the scene for more than an hour, and the remedy."""
-    if scene.sampler != "auto" or scene.law_error or scene.rel_err is not None or scene.max_seconds:
+    if scene.sampler != "auto" or scene.accuracy or scene.rel_err is not None or scene.max_seconds:
         return []
     touching = scene.n_asperities * float(scene.heights.sf(np.array(min(scene.separations))))
     hours = touching * scene.n_surfaces * _A_CONTACT / 3600

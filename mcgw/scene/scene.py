@@ -281,6 +281,6 @@ def _resolved_law(scene: Fields) -> ContactLaw:
 
 def drawn_by(scene: AnyScene, sampler: str) -> AnyScene:
     """The scene that says by which sampler it was drawn, where it left the choice to ``auto``."""
-    if sampler != scene.sampler and scene.law_error and promise_of(sampler).spends:
+    if sampler != scene.sampler and scene.accuracy and promise_of(sampler).spends:
         return scene  # its crowds follow from what may be spent
     return scene if sampler == scene.sampler else _in_other_words(scene, sampler=sampler)

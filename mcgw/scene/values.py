@@ -54,7 +54,7 @@ else:
             return types[0]
 
 
-EXACT, COARSEST = 1e-13, 1e-2  # default accuracy, the last digits; and the lowest one
+EXACT = 1e-13  # relative error of a value that is right to the last digits
 BALANCED = 1e-11  # what is left over of a balance of located summits
 MOMENTS, SUMMITS = ("m0", "m2", "m4"), ("sigma", "radius", "eta")  # either describes the summits of a surface
 SUMS = tuple({**QUANTITIES, **LAW_QUANTITIES})
@@ -170,17 +170,10 @@ class Values:
     max_seconds: As[float | str | None, float | None] = key("ensemble", Number("s"), "1.0",
         "time limit, s; the block being drawn is completed")
     accuracy: float = key("ensemble",
-        Number("1", EXACT, COARSEST,
-               advice=f"give a number from {EXACT:g}, the last digits, to {COARSEST:g}"), "1e-13",
-        "error of each value against the exact sum over its heights, relative to it (or to the largest value "
-        "near by, where the sign changes): 1e-13 (default) to 0.01. A larger one uses fewer moments and "
-        "coarser cells, and the same seed then gives other surfaces. Steep gradings and layered laws reach "
-        "1e-11",
-        EXACT)
-    law_error: float = key("ensemble",
-        Number("1", high=0.1, zero=True, advice="give a number from 0, exact samplers only, to 0.1"), "0.0",
-        "error that `auto` may allow in the distribution of each value, as the largest difference of "
-        "distribution functions, 0 (default) to 0.1: it may then use `aggregate` for crowded cells", 0.0)
+        Number("1", high=0.1, zero=True, advice="give a number from 0, exact, to 0.1"), "0.0",
+        "how far the law of each value may be from the exact one, as the largest difference of distribution "
+        "functions, 0 (default: exact) to 0.1: `auto` may then use `aggregate` for crowded cells, whose time "
+        "does not grow with the number of asperities", 0.0)
     edges: As["ArrayLike | None", tuple[float, ...]] = key("ensemble",
         List(_ANY, 0, advice="give a list of finite heights s = z/sigma, or leave it out"), "[0.5, 1.5]",
         "additional edges of cells, which `mcgw.sweep` shares between scenes. Scenes with the same cells and "

@@ -17,7 +17,7 @@ from scipy.stats import binom, chi2, kstest, norm, t as student
 from analytic import Quantity, quantity_of
 from analytic.arrays import Array
 from mcgw.scene.scene import Scene
-from mcgw.statistics.verdict import allowance, bounded_theory, told_apart
+from mcgw.statistics.verdict import bounded_theory
 
 _LAGS = (1, 2, 4, 8, 16, 32, 64)
 _TOUCHING = 100  # asperities expected in contact, so that a single surface is nearly Gaussian
@@ -49,9 +49,7 @@ class PrincipalComponents:
     kurtosis: Array
 
     @classmethod
-    def of(
-        cls, scene: Scene, quantities: tuple[str, ...] = (), *, surfaces: int = 1
-    ) -> "PrincipalComponents":
+    def of(cls, scene: Scene, quantities: tuple[str, ...] = ()) -> "PrincipalComponents":
         """The axes of a scene: of those separations where single surfaces are nearly Gaussian.
 
         Of all its quantities, unless some are named; and of those combinations in which means over so many
@@ -64,8 +62,7 @@ class PrincipalComponents:
         touching = n * np.minimum(share, 1 - share + (scene.count == "poisson"))
         chosen = np.flatnonzero((touching > _TOUCHING) & (variance > 0))
         unit = np.sqrt(variance[chosen])
-        allowed = allowance(scene, n * parts.mean[chosen], np.sqrt(n / surfaces) * unit)
-        axes = parts.take(chosen, unit).whitening(max(_INDEPENDENT, told_apart(allowed)))
+        axes = parts.take(chosen, unit).whitening(_INDEPENDENT)
         along = parts.take(chosen, unit).turned(axes)
         third, fourth = along.moment(3), along.moment(4) - 3 * (scene.count == "fixed")
         good = np.abs(fourth) / n < _MOST_KURTOSIS

@@ -172,12 +172,7 @@ def converge(
             parts.append(draw(replace(scene, seed=(scene.seed + k) % 2**64)))
         tell(seeds, seeds)
     sums = joined([{name: part[name] for name in scene.quantities} for part in parts])
-    exact = PrincipalComponents.of(scene, surfaces=seeds * scene.n_surfaces)
-    if not scene.exact and exact.columns and not exact.axes.size:  # else the accuracy of values would show
-        raise ValueError(
-            f"ensemble.accuracy = {scene.accuracy:g}: means of {seeds * scene.n_surfaces} surfaces are more "
-            "accurate than that; use fewer surfaces, or a smaller accuracy"
-        )
+    exact = PrincipalComponents.of(scene)
     y = exact.turn(sums)
     whole = replace(scene, n_surfaces=len(y))
     means = verdict(Ensemble(whole, "drawn", MemoryResults(sums)))
@@ -271,7 +266,7 @@ def _slope_in_asperities(scene: Scene, draw: Draw) -> list[Slope]:
             quantities=(name,),
             seed=(scene.seed + 10**6 + divisor) % 2**64,
         )
-        exact = PrincipalComponents.of(small, (name,), surfaces=small.n_surfaces)
+        exact = PrincipalComponents.of(small, (name,))
         if exact.axes.size:
             y = exact.turn(draw(small))[:, 0]
             sizes.append(float(n))

@@ -33,8 +33,7 @@ class LawsOfValues:
     quantity, separation : str, float
         Of the values that are farthest off.
     distance : float
-        Largest difference there of the share of the surfaces up to a value and its probability, beyond what
-        the scene's accuracy allows.
+        Largest difference there of the share of the surfaces up to a value and its probability.
     p : float
         Probability of that by chance, of all laws together, at most.
     """
@@ -106,6 +105,6 @@ def _farthest(scene: Scene, name: str, h: float, x: Array, below: Array, upto: A
     if quantity_of(name).counts:
         least, most = law.cdf(x - 1), law.cdf(x)
     else:
-        off = 0.0 if scene.exact else scene.accuracy * np.abs(x)
-        least, most = law.cdf(x - off) - np.where(x == 0, law.atom, 0.0), law.cdf(x + off)
+        most = law.cdf(x)
+        least = most - np.where(x == 0, law.atom, 0.0)
     return float(max((upto - most).max(), (least - below).max(), 0.0))

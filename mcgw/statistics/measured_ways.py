@@ -204,7 +204,7 @@ def prices(scene: Scene, points: Sequence[Point], names: Sequence[str]) -> list[
         for want in wants_of(name):
             timed = [p for p in own if p.want == ("conductance" if name == SOLVE else "mean")]
             bias = ([p.bias for p in own if p.want == want] or [p.bias for p in timed] or [0.0])[-1]
-            floor = max(changes_of(name).get("accuracy", 0.0), worst if want == "values" else bias)
+            floor = worst if want == "values" else bias
             if timed:
                 ways.append(Way(name, want, floor, *_price(timed[0], timed[-1], rough)))
             elif name != SOLVE:

@@ -19,7 +19,6 @@ from mcgw.machine.progress import Progress, told
 from mcgw.machine.terminal import plotted
 from mcgw.scene.arguments import argument, check_object
 from mcgw.scene.scene import Scene
-from mcgw.scene.values import EXACT
 from mcgw.statistics.measured_ways import REPEATS, Answers, Point, moved, prices, sized
 
 SECONDS = 60.0
@@ -195,7 +194,7 @@ def tradeoff(
     h = sorted(whole.separations)[(len(whole.separations) - 1) // 2] if separation is None else separation
     scene = replace(
         scene_alone(whole), separations=(float(h),), quantities=whole.quantities[:1], keep="sums",
-        accuracy=EXACT, rel_err=None, max_seconds=None,
+        rel_err=None, max_seconds=None,
     )  # fmt: skip
     answers, names = Answers(scene), sampled_ways(scene)
     with told(progress, "s") as tell, warnings.catch_warnings():

@@ -6,17 +6,13 @@ Where each summit has a radius of its own, the fourth moment of the area is infi
 flattest summit. Whether a mean is Gaussian cannot be told from the kurtosis of all summits then, but from
 that of those an ensemble has. Left out are summits flatter than a bound, of which there is one in ten
 thousand ensembles: means and variances change by less than a thousandth of their errors.
-
-Tests of means whose values are only as accurate as the scene asks (`Scene.accuracy`).
-
-Every value may be off by its share, and so may the mean, in the same direction for all surfaces.
 """
 
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.special import chdtrc, ndtr
+from scipy.special import chdtrc
 
 from analytic import Fluctuations, Model, RandomCurvature, quantity_of
 from analytic.arrays import Array, Marks
@@ -35,12 +31,11 @@ _SKEW, _KURTOSIS = 0.1, 0.1  # allowed departure from a Gaussian of a combinatio
 _INDEPENDENT = 1e-9  # least variance of a combination, above rounding errors
 _SELDOM = 1e-4  # expected summits flatter than the bound, per ensemble
 _FLAT = 1e-3  # curvature down to which the share of flatter summits goes as its fourth power
-_UNSEEN = 0.3  # standard errors of a combination that go unnoticed
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """Result of a chi-square test of all means at once, or of the farthest mean if that is more sensitive.
+    """Result of a chi-square test of all means at once.
 
     Parameters
     ----------
@@ -50,10 +45,7 @@ class Verdict:
         How many: independent combinations of the means that are Gaussian to within 0.1 in skewness
         and excess kurtosis.
     p : float
-        Probability of so large a chi-square by chance, or of a mean so far off.
-    means, farthest : int, float
-        How many means were looked at one by one, and by how many standard errors the farthest of them lies
-        beyond what the scene's accuracy allows; 0 where chi-square decided.
+        Probability of so large a chi-square by chance.
     points : int
         Of a sweep how many are tested: then all else is of the least likely one, and p is so many times its
         own (Bonferroni), whatever points have in common. 0 for an ensemble.
@@ -64,8 +56,6 @@ class Verdict:
     chi_square: float
     degrees: int
     p: float
-    means: int = 0
-    farthest: float = 0.0
     points: int = 0
     laws: "LawsOfValues | None" = None
 
@@ -80,11 +70,6 @@ class Verdict:
         if self.laws is not None:
             return self.laws.seen
         where = f" at the least likely of {self.points} points" * (self.points > 0)
-        if self.means:
-            return (
-                f"the farthest of {self.means} means is {self.farthest:.1f} standard errors beyond the "
-                f"requested accuracy{where}"
-            )
         if not self.degrees:
             return f"no mean is close enough to Gaussian for a test{where}"
         return f"chi-square {self.chi_square:.1f} for {self.degrees} degrees of freedom{where}"
@@ -118,8 +103,7 @@ class Tested:
     mean, theory : ndarray
         Monte-Carlo and exact means, in SI units.
     residual : ndarray
-        Their difference over the exact standard error, beyond what the scene's accuracy allows; 0 where
-        nothing fluctuates.
+        Their difference over the exact standard error; 0 where nothing fluctuates.
     counts : ndarray of bool
         Whether the mean is Gaussian enough for that to be read as a normal number.
     verdict : Verdict
@@ -151,9 +135,7 @@ def verdict(ensemble: Ensemble) -> Verdict:
     The means are turned to the principal axes of their exact correlation. Of these, those count
     along which the mean of all asperities is Gaussian, which its exact skewness and kurtosis tell:
     so the false-alarm rate is the stated one also where few asperities touch. Of asperities that press each
-    other down the sums are tested, without the half-space. Of a scene that asks for less than the last
-    digits, what is beyond its accuracy counts, of the means one by one and of their combinations in which it
-    cannot be seen.
+    other down the sums are tested, without the half-space.
     """
     return tested(ensemble, _MOST_SEPARATIONS).verdict
 
@@ -184,20 +166,14 @@ def tested(ensemble: Ensemble, most: int) -> Tested:
     errors = np.sqrt(surfaces / scene.n_asperities) / unit
     z = difference[varies] * errors
     usable = _gaussian(parts, asperities)
-    allowed = allowance(scene, exact[varies], 1 / errors)
     residual, counts = np.zeros(len(means)), np.zeros(len(means), dtype=np.bool_)
-    residual[varies], counts[varies] = beyond(z, allowed), usable
-    parts, z, allowed = parts.take(usable), beyond(z, allowed)[usable], allowed[usable]
-    axes = parts.whitening(max(_INDEPENDENT, told_apart(allowed)))
+    residual[varies], counts[varies] = z, usable
+    parts, z = parts.take(usable), z[usable]
+    axes = parts.whitening(_INDEPENDENT)
     axes = axes[:, _gaussian(parts.turned(axes), asperities)]
     chi_square = float(np.sum((z @ axes) ** 2))
     degrees = axes.shape[1]
     p = float(chdtrc(degrees, chi_square)) if degrees else 1.0
-    found = Verdict(chi_square, degrees, p)
-    if not scene.exact:
-        alone = farthest(z)
-        told = (z.size, float(np.abs(z).max(initial=0.0))) if alone < p or not degrees else (0, 0.0)
-        found = Verdict(chi_square, degrees, min(1.0, 2 * min(p, alone)), *told)
     shape = len(scene.quantities), len(h)
     return Tested(
         quantities=scene.quantities,
@@ -206,7 +182,7 @@ def tested(ensemble: Ensemble, most: int) -> Tested:
         theory=(exact * scale).reshape(shape),
         residual=residual.reshape(shape),
         counts=counts.reshape(shape),
-        verdict=found,
+        verdict=Verdict(chi_square, degrees, p),
     )
 
 
@@ -226,33 +202,3 @@ def bounded_theory(scene: Scene, surfaces: int) -> Model:
     flatter = float(law.cdf(_FLAT, max(scene.lowest, scene.least))) * max(scene.touching, 1.0) * surfaces
     flattest = _FLAT * min((_SELDOM / flatter) ** 0.25, 1.0)
     return replace(theory, curvature=RandomCurvature(law.alpha, MEAN_CURVATURE / flattest))
-
-
-def allowance(scene: Scene, mean: Array, stderr: Array) -> Array:
-    """Allowed error of each mean in standard errors: 0 if only the last digit is uncertain.
-
-    Parameters
-    ----------
-    scene : Scene
-        What was asked.
-    mean, stderr : ndarray
-        Exact means and standard errors, in the same units.
-    """
-    if scene.exact:
-        return np.zeros(np.shape(mean))
-    return np.asarray(scene.accuracy * np.abs(mean) / stderr)
-
-
-def beyond(z: Array, allowed: Array) -> Array:
-    """The part of each deviation beyond the allowed error."""
-    return np.asarray(z - np.clip(z, -allowed, allowed))
-
-
-def told_apart(allowed: Array) -> float:
-    """Variance of a combination of means, each of variance 1, above which their errors do not show."""
-    return float(4 * (allowed**2).sum() / _UNSEEN**2)
-
-
-def farthest(z: Array) -> float:
-    """Probability that the largest deviation is this large by chance, whatever the correlation."""
-    return min(1.0, 2 * z.size * float(ndtr(-np.abs(z).max(initial=0.0)))) if z.size else 1.0

@@ -77,10 +77,10 @@ def describe(file: h5py.File, scene: Scene, sampler: str, digest: str, /, **attr
         "commit": commit(),
         "cpu": processor(),
     }
-    if scene.law_error:
-        from mcgw.sampling.samplers import law_error_of  # for those scenes alone
+    if scene.accuracy:
+        from mcgw.sampling.samplers import distance_of  # for those scenes alone
 
-        usual["law_error_spent"] = law_error_of(scene)  # how far from the exact laws it went
+        usual["accuracy_spent"] = distance_of(scene)  # how far from the exact laws it went
     file.attrs.update(**{**usual, **attributes})
 
 

@@ -33,7 +33,6 @@ seed = 1
 """
 FEATURES = {
     "Kogut and Etsion": "contact.law=kogut-etsion contact.critical=0.1",
-    "accuracy 1e-6": "ensemble.accuracy=1e-6",
 }
 Found = dict[str, list[tuple[float, float]]]
 

@@ -24,7 +24,7 @@ BENCHES = (
     "file",
     "interaction",
     "kept_statistics",
-    "law_error",
+    "crowds",
     "maps",
     "random_radii",
     "samplers",

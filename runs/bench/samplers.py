@@ -85,12 +85,6 @@ def aggregates() -> dict[str, Job]:
     return {name: block(scene) for name, scene in scenes.items()} | {"NumPy script, N = 1e4": script(10**4)}
 
 
-def accuracies() -> dict[str, Job]:
-    """Values of S1 to the last digits, and to fewer."""
-    asked = {"1e-13": 1e-13, "1e-10": 1e-10, "1e-6": 1e-6, "1e-3": 1e-3}
-    return {f"accuracy {name}": block(replace(S1, accuracy=value)) for name, value in asked.items()}
-
-
 def ratios(rounds: int) -> dict[str, float]:
     """Seconds a surface, to those of the peer named last: lower is better."""
     large = timed(one_million(), rounds)
@@ -100,7 +94,6 @@ def ratios(rounds: int) -> dict[str, float]:
     found |= against(timed(ten_thousand(), rounds), "NumPy script, N = 1e4", ["cells, N = 1e4"])
     first, *others = separations()
     found |= against(timed(separations(), rounds), first, others)
-    found |= against(timed(accuracies(), rounds), "accuracy 1e-13")
     small, large_one = "aggregate, N = 1e4", "aggregate, N = 1e15"
     return found | against(timed(aggregates(), rounds), "NumPy script, N = 1e4", [small, large_one])
 
@@ -111,7 +104,6 @@ def main() -> None:
     show("N = 1e6, 41 separations", timed(one_million(), rounds), "cells")
     show("N = 1e4", timed(ten_thousand(), rounds), "cells, N = 1e4")
     show("separations (N = 1e6)", timed(separations(), rounds), "h = 0 ... 4, 41 separations")
-    show("accuracy (N = 1e6)", timed(accuracies(), rounds), "accuracy 1e-13")
     show("aggregate", timed(aggregates(), rounds), "aggregate, N = 1e8")
 
 

@@ -45,7 +45,6 @@ SCENES = {
     "rare": scene(separations=[4.0, 6.0, 9.0], n_asperities=300),
     "own radii": scene(surface=SPECTRUM, n_surfaces=100),
     "one surface": scene(n_surfaces=1),
-    "less accurate": scene(accuracy=1e-5),
     "two alike": scene(separations=[1.0, 0.0, 1.0]),
 }
 

@@ -207,7 +207,7 @@ def test_tradeoff(make_scene, kept, tmp_path, recorded):
         Point("theory", "mean", 0, 0.0, 0.0, 0.0, 5e-4, 16),
     )
     ways = (Way("theory", "mean", 1e-13, 5e-4, 0.0), Way("tail", "mean", 0.0, 1e-3, 3e-6))
-    ways += (Way("cells, 0.001", "values", 1e-3, 0.25, 0.01), Way("exact law", "quantile", 1e-6, 0.01, 0.0))
+    ways += (Way("cells", "values", 1e-3, 0.25, 0.01), Way("exact law", "quantile", 1e-6, 0.01, 0.0))
     rungs = (Rung("formula", 0, 1e-3, 0.0, 0.03), Rung("surfaces", 10, 0.1, 0.04, 0.03))
     rungs += (Rung("surfaces", 1000, 9.0, 0.004, 0.03),)
     scene = make_scene(title="T", separations=(2.0,), quantities=("area",), n_surfaces=75)

@@ -1,4 +1,4 @@
-"""How far values of single surfaces are from exact sums over their very heights, against what was asked.
+"""How far values of single surfaces are from exact sums over their very heights, literally added up.
 
 The sums are literal: each asperity's own formula, added up. Where loads may be negative, as with adhesion,
 they are held against the sum over the contacts of what each presses or pulls and of its pull at first touch.
@@ -36,8 +36,8 @@ def drawn(scene, surfaces):
     return sums, numbers, s, ratios
 
 
-def worst_share(scene, surfaces):
-    """Largest error of any value, relative to its exact sum, over what the scene allows it."""
+def worst_error(scene, surfaces):
+    """Largest error of any value, relative to its exact sum."""
     sums, numbers, s, ratios = drawn(scene, surfaces)
     owner, worst = np.repeat(np.arange(surfaces), numbers), 0.0
     pull = abs(float(scene.law.on(scene.surface).load(0, 0.0, np.array(1.0))))
@@ -56,7 +56,7 @@ def worst_share(scene, surfaces):
             error = np.abs(sums[name][:, k] - exact) - digit  # what the last digit of a height is good for
             assert not sums[name][size == 0, k].any()
             worst = max(worst, (error[size > 0] / size[size > 0]).max(initial=0.0))
-    return worst / scene.accuracy
+    return worst
 
 
 def term(scene, name, h, s):

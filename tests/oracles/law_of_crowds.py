@@ -102,14 +102,14 @@ def table():
     """A line for each number of asperities and each law error."""
     surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 cm^2", "78.6 GPa")
     asked = {"separations": np.linspace(0, 4, 9), "grading": mcgw.Exponential(2.0), "count": "poisson"}
-    sys.stdout.write("| asperities | `law_error` | a crowd | promised | measured |\n|---|---|---|---|---|\n")
+    sys.stdout.write("| asperities | `accuracy` | a crowd | promised | measured |\n|---|---|---|---|---|\n")
     for n in (10**3, 10**4, 10**6, 10**8):
-        for law_error in (1e-3, 1e-4, 1e-5):
-            scene = mcgw.Scene(surface, n_asperities=n, law_error=law_error, **asked)
+        for accuracy in (1e-3, 1e-4, 1e-5):
+            scene = mcgw.Scene(surface, n_asperities=n, accuracy=accuracy, **asked)
             found = crowding(scene, mesh_of(scene, split=False))
             seen = farthest(scene, found.threshold)
             sys.stdout.write(
-                f"| {n:.0e} | {law_error:g} | {found.threshold} | {found.distance:.1e} | {seen:.1e} |\n"
+                f"| {n:.0e} | {accuracy:g} | {found.threshold} | {found.distance:.1e} | {seen:.1e} |\n"
             )
 
 

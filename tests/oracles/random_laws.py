@@ -52,7 +52,7 @@ def p_values(seed, faults, surfaces=SURFACES, **more):
     """Of one scene, one for each of the faults, nan where it has no such; or why there is none."""
     values = asked(seed)
     dice = np.random.default_rng([seed, 35])
-    values |= {"keep": "sums", "n_surfaces": surfaces, "accuracy": min(values["accuracy"], NEAR), **more}
+    values |= {"keep": "sums", "n_surfaces": surfaces, **more}
     if values["sampler"] == "aggregate":
         values["sampler"] = "auto"
     if isinstance(values["heights"], mcgw.MeasuredHeights):

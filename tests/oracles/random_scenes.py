@@ -1,7 +1,7 @@
 """Random scenes over all features: ``python -m oracles.random_scenes COUNT FIRST_SEED``.
 
 One JSON line a failure; run in `tests`. A scene that is accepted draws three surfaces within ten seconds of
-CPU; its values are literal sums over their heights to the accuracy asked, and means those of the values.
+CPU; its values are literal sums over their heights to the last digits, and means those of the values.
 Where heights are not told, means lie in 7 exact standard deviations: less than one false alarm in 1e5
 scenes. Another is refused when it is made, by a line with its key and a remedy.
 """
@@ -103,7 +103,6 @@ def asked(seed):
         "surface": SURFACE, "separations": h, "law": contact, "grading": grading(dice),
         "negative": str(dice.choice(["error", "clip", "allow"], p=[0.2, 0.7, 0.1])), "heights": heights(dice),
         "n_asperities": int(10 ** dice.uniform(0.5, 5)), "n_surfaces": SURFACES, "seed": seed,
-        "accuracy": float(dice.choice([1e-13, 1e-10, 1e-6, 1e-3, 1e-2], p=[0.4, 0.15, 0.15, 0.15, 0.15])),
         "count": str(dice.choice(["fixed", "poisson"])),
     }  # fmt: skip
     if isinstance(values["heights"], mcgw.Nayak) and dice.random() < 0.5:
@@ -175,7 +174,7 @@ def worst_share(ensemble):
     scene, worst, place = ensemble.scene, 0.0, ""
     pull = abs(float(scene.contact.load(0, 0.0, np.array(1.0))))
     plain = scene.hertzian and getattr(scene.grading, "smooth", False)
-    allowed = max(scene.accuracy, ROUNDING if plain else BENT)
+    allowed = ROUNDING if plain else BENT
     names = [n for n in scene.quantities if scene.interaction is None or n in ("load", "area", "contacts")]
     for surface in range(ensemble.n_surfaces):
         s, ratios = mcgw.heights(scene, surface), None

@@ -74,8 +74,8 @@ for sampler in ("cells", "tail", "direct", "aggregate"):
 repr(simulate())
 simulate().mean("load")
 tell("simulate")
-simulate(n_asperities=10**5, law_error=1e-2)
-tell("law_error")
+simulate(n_asperities=10**5, accuracy=1e-2)
+tell("accuracy")
 simulate(keep="statistics")
 tell("statistics")
 main("show", "--plan", scene)
@@ -113,7 +113,7 @@ NOT_THERE = {
 # What a scene that does not ask for it pays nothing for; and the step that asks, if one does.
 FEATURES = {
     "mcgw.ensemble.pooled": "statistics", "mcgw.ensemble.summarised": "statistics",
-    "mcgw.sampling.crowding": "law_error",
+    "mcgw.sampling.crowding": "accuracy",
     "mcgw.sampling.own_radii": None, "mcgw.sampling.shared": None,
     "mcgw.sampling.weighted_sums": None, "mcgw.sweeps.sweep": None,
 }  # fmt: skip

@@ -18,7 +18,7 @@ from mcgw.sampling.cells import mesh_of
 from mcgw.sampling.counts import counts_of
 from mcgw.sampling.crowding import crowding
 from mcgw.sampling.drawn_moments import _law_of_moments, _partly
-from mcgw.sampling.samplers import aggregate_of, law_error_of, sampler_of
+from mcgw.sampling.samplers import aggregate_of, distance_of, sampler_of
 
 GATE = 5.0
 
@@ -192,7 +192,7 @@ def test_root_of_the_covariance_keeps_all_digits(plain, rooted):
 @pytest.mark.parametrize("n", [10**3, 10**6])
 def test_a_promise_is_twice_the_distance_from_the_exact_law(make_scene, n):
     """By two transforms; of the value that is farthest off, where one term of the expansion is enough."""
-    scene = make_scene(separations=(1.5, 2.5, 3.5), n_asperities=n, law_error=1e-2, count="poisson")
+    scene = make_scene(separations=(1.5, 2.5, 3.5), n_asperities=n, accuracy=1e-2, count="poisson")
     found = crowding(scene, mesh_of(scene, split=False))
     seen = farthest(scene, found.threshold)
     assert seen <= found.distance / 2 * 1.05
@@ -202,7 +202,7 @@ def test_a_promise_is_twice_the_distance_from_the_exact_law(make_scene, n):
 
 def test_a_fixed_number_of_asperities_is_farther_off(make_scene):
     """Its values vary less: by the generating function of the number."""
-    scene = make_scene(separations=(0.0,), quantities=("stiffness",), n_asperities=1000, law_error=1e-2)
+    scene = make_scene(separations=(0.0,), quantities=("stiffness",), n_asperities=1000, accuracy=1e-2)
     found = crowding(scene, mesh_of(scene, split=False))
     seen = distance(scene, "stiffness", 0.0, found.threshold)
     poisson = distance(scene.replace(count="poisson"), "stiffness", 0.0, found.threshold)
@@ -212,7 +212,7 @@ def test_a_fixed_number_of_asperities_is_farther_off(make_scene):
 
 def test_smaller_crowds_are_farther_off(make_scene):
     """The companion: sixteen asperities in place of 256 break the promise."""
-    scene = make_scene(separations=(2.5, 3.5), n_asperities=10**4, count="poisson", law_error=1e-2)
+    scene = make_scene(separations=(2.5, 3.5), n_asperities=10**4, count="poisson", accuracy=1e-2)
     assert farthest(scene, 16) > 3 * crowding(scene, mesh_of(scene, split=False)).distance
 
 
@@ -243,16 +243,16 @@ def test_drawn_values_have_the_exact_law(make_scene, n):
             assert kstest(law.mean() + 0.95 * (drawn - law.mean()), law.cdf).statistic > limit
 
 
-@pytest.mark.parametrize("law_error", [1e-2, 1e-3, 1e-4, 1e-5])
+@pytest.mark.parametrize("accuracy", [1e-2, 1e-3, 1e-4, 1e-5])
 @pytest.mark.parametrize("n", [10**4, 10**6, 10**8])
-def test_a_crowd_keeps_what_is_asked_and_fewer_do_not(make_scene, n, law_error):
+def test_a_crowd_keeps_what_is_asked_and_fewer_do_not(make_scene, n, accuracy):
     """The bound falls with the threshold, to nothing where no cell is crowded."""
-    scene = make_scene(n_asperities=n, law_error=law_error)
+    scene = make_scene(n_asperities=n, accuracy=accuracy)
     found = crowding(scene, mesh_of(scene, split=False))
-    assert found.distance <= law_error
+    assert found.distance <= accuracy
     assert 0 <= found.alone <= scene.touching * (1 + 1e-9)
-    stricter = scene.replace(law_error=found.distance * 0.999)
-    if stricter.law_error > 0:
+    stricter = scene.replace(accuracy=found.distance * 0.999)
+    if stricter.accuracy > 0:
         less = crowding(stricter, mesh_of(stricter, split=False))
         assert less is None or (less.threshold > found.threshold and less.alone > found.alone)
 
@@ -260,23 +260,23 @@ def test_a_crowd_keeps_what_is_asked_and_fewer_do_not(make_scene, n, law_error):
 def test_what_auto_takes(make_scene):
     """Crowds where they buy something; `cells` where nobody may err, few touch, or a sampler is named."""
     names = {
-        "aggregate": {"n_asperities": 10**6, "law_error": 1e-3},
+        "aggregate": {"n_asperities": 10**6, "accuracy": 1e-3},
         "cells": {"n_asperities": 10**6},
-        "tail": {"n_asperities": 10, "law_error": 1e-2},
+        "tail": {"n_asperities": 10, "accuracy": 1e-2},
     }
     bought = {24_000: "cells", 30_000: "aggregate"}  # 300 a cell and those alone, by 1.5: 13 100; 13 600
     for name, changes in names.items():
         assert sampler_of(make_scene(**changes)).name == name
     for n, name in bought.items():
-        assert sampler_of(make_scene(n_asperities=n, law_error=1e-3)).name == name
-    named = make_scene(n_asperities=10**6, law_error=1e-3, sampler="cells")
+        assert sampler_of(make_scene(n_asperities=n, accuracy=1e-3)).name == name
+    named = make_scene(n_asperities=10**6, accuracy=1e-3, sampler="cells")
     assert sampler_of(named).name == "cells"
-    assert law_error_of(named) == law_error_of(make_scene()) == 0
-    assert 0 < law_error_of(make_scene(**names["aggregate"])) <= 1e-3
-    assert sampler_of(make_scene(n_asperities=3000, law_error=1e-9)).name == "cells"
+    assert distance_of(named) == distance_of(make_scene()) == 0
+    assert 0 < distance_of(make_scene(**names["aggregate"])) <= 1e-3
+    assert sampler_of(make_scene(n_asperities=3000, accuracy=1e-9)).name == "cells"
     strict, high = (
-        make_scene(n_asperities=10**15, law_error=1e-12),
-        make_scene(separations=9.0, law_error=0.01),
+        make_scene(n_asperities=10**15, accuracy=1e-12),
+        make_scene(separations=9.0, accuracy=0.01),
     )
     for scene in (strict, high):  # no crowd is large enough, or there is no cell
         assert crowding(scene, mesh_of(scene, split=False)) is None

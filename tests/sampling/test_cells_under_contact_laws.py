@@ -158,6 +158,6 @@ def test_contacts_that_dwindle_towards_asperities_which_soften(make_scene):
     scene = make_scene(
         separations=(-2.34, -1.45, -0.65), grading=lambda s: 1 + 0.8 * np.sin(13.2 * s + 0.56),
         law=laws.KogutEtsion(critical=0.0446), heights=analytic.ExponentialHeights(), unload_from=-6.6,
-        n_asperities=30, n_surfaces=60, quantities=("stiffness",), sampler="cells", accuracy=1e-12,
+        n_asperities=30, n_surfaces=60, quantities=("stiffness",), sampler="cells",
     )  # fmt: skip
     assert worst_share(scene, 60) < 100

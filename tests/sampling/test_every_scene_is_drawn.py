@@ -49,7 +49,6 @@ SCENES = {
         "negative": "clip",
         "separations": [-3.81, -1.713, -1.577, -1.086, 0.1313, 1.133, 1.734],
         "quantities": ["load", "conductance", "load_slope"],
-        "accuracy": 1e-10,
         "n_asperities": 52,
     },
     "sticks": {
@@ -75,7 +74,7 @@ def test_values_are_literal_sums_over_the_heights(scene_of, name):
         for quantity in scene.quantities:
             q, branch = quantity_of(quantity), scene.branch_of(quantity)
             terms = term_of(q.base, branch, np.array(scene.separations)[:, None], s, scene.modulus(s))
-            allowed = max(1e-11, scene.accuracy) * np.abs(terms).sum(axis=1) * q.scale(scene.surface)
+            allowed = 1e-11 * np.abs(terms).sum(axis=1) * q.scale(scene.surface)
             off = ensemble.values(quantity)[surface] - terms.sum(axis=1) * q.scale(scene.surface)
             assert np.all(np.abs(off) <= allowed), quantity
 
@@ -91,7 +90,7 @@ def test_crowds_where_cells_that_are_wide_do_not_tell_which_moments_vary(scene_o
         mcgw.Coated(reduced_thickness=0.002, ratio=3.0),
         analytic.Custom(lambda s: 1 + 0.9 * np.tanh(29 * (s - 1.47))),
     )
-    scene = scene_of(law=law, grading=grading, accuracy=1e-2, sampler="aggregate", separations=[0.3, 1.9])
+    scene = scene_of(law=law, grading=grading, sampler="aggregate", separations=[0.3, 1.9])
     assert mcgw.simulate(scene)["load"].shape == (2, 2)
 
 
@@ -166,7 +165,7 @@ def test_what_cannot_be_drawn_is_refused_when_it_is_made(scene_of, asked, line):
         scene_of(**asked)
 
 
-@pytest.mark.parametrize("wish", [{}, {"law_error": 1e-2}])
+@pytest.mark.parametrize("wish", [{}, {"accuracy": 1e-2}])
 def test_what_no_cell_resolves_is_drawn_one_by_one(scene_of, monkeypatch, wish):
     """Cells alone say what to do instead."""
     monkeypatch.setattr("mcgw.sampling.samplers._CUTS", 0)

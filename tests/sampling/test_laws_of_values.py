@@ -84,14 +84,6 @@ def test_a_wrong_law_of_the_right_mean_and_variance_is_seen(make_scene):
     assert mcgw.compare(drawn, laws=True).verdict.agrees
 
 
-def test_accuracy_is_allowed_for(make_scene):
-    """Values 1 % too high: within an accuracy of 0.01, not of 0.001."""
-    scene = make_scene(separations=(0.0,), n_surfaces=40_000, quantities=("load",))
-    high = 1.01 * mcgw.simulate(scene).load
-    found = [laws_of_values(holding(replace(scene, accuracy=a), load=high)).p for a in (0.01, 0.001)]
-    assert found[0] > 1e-3 > found[1]
-
-
 @pytest.mark.parametrize(
     "changes",
     [

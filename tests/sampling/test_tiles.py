@@ -12,8 +12,9 @@ from mcgw.machine.memory import aligned
 from mcgw.sampling.cells import mesh_of
 from mcgw.sampling.response.product import FOUR, Lines, Tiles
 from mcgw.sampling.response.rows import hertz_rows
-from mcgw.sampling.response.tree import LAST_DIGITS, Nodes, tree_over
+from mcgw.sampling.response.tree import Nodes, tree_over
 from mcgw.sampling.response.walk import walk
+from mcgw.scene.values import EXACT
 
 
 def random_blocks(rng, given, computed):
@@ -109,7 +110,7 @@ def asked(grading, number):
     tree = tree_over(mesh)
     return (
         mesh, tree, hertz_rows(scene, QUANTITIES),
-        Nodes.of(mesh, tree, grading, 10**5, LAST_DIGITS),
+        Nodes.of(mesh, tree, grading, 10**5, EXACT),
     )  # fmt: skip
 
 

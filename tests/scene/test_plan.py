@@ -44,9 +44,9 @@ def test_plan_counts_what_is_kept_and_says_who_chose(make_scene):
     kept = plan_of(alone)
     assert kept.bytes < 8 * 10**6  # not even one value of each surface
     assert f"statistics alone, about {kept.bytes / 1e6:.4g} MB" in plan_text(alone, kept)
-    wish = scene.replace(keep="sums", law_error=1e-4)
-    assert "law_error     up to 0.0001 allowed for Gaussian moments" in plan_text(wish, plan_of(wish))
-    assert "law_error" not in plan_text(scene, plan)
+    wish = scene.replace(keep="sums", sampler="auto", n_asperities=10**6)
+    assert "accuracy      0: exact laws; 1e-3 would buy crowded cells, 0." in plan_text(wish, plan_of(wish))
+    assert "accuracy      0: exact laws\n" in plan_text(scene, plan)
     assert "chosen by auto" not in plan_text(scene, plan)
     assert "sampler       cells" in plan_text(scene, plan)
     assert "chosen by auto" in plan_text(make_scene(sampler="auto"), plan)
@@ -75,7 +75,6 @@ def test_samplers_that_draw_all_and_hardly_any(make_scene):
 WISHES = {
     "one law of two": {"law": mcgw.KogutEtsion(critical=0.1), "unload_from": 0.0},
     "steep": {"grading": analytic.Table((0.0, 1.37, 3.0), (1.0, 2.0, 1.5))},
-    "coarse": {"accuracy": 1e-4, "n_asperities": 10**5},
     "contacts": {"quantities": ("contacts",)},
     "radii": {"heights": analytic.Nayak(5.0), "curvature": mcgw.RandomCurvature(5.0)},
     "beyond all": {"separations": (9.0, 10.0)},
@@ -122,7 +121,7 @@ from mcgw.reports.plan import plan_of
 surface = mcgw.Surface(1e-6, 1e-5, 3e8, 1e-4, 8e10)
 spectrum = mcgw.SpectralSurface(m0=1e-12, m2=1e-2, m4=4e8, nominal_area=1e-6, E_star=1e11)
 asked = {"separations": [2.0, 3.0], "n_asperities": 10**4, "n_surfaces": 100}
-for changes in ({}, {"keep": "statistics"}, {"law_error": 0.01}, {"sampler": "direct"},
+for changes in ({}, {"keep": "statistics"}, {"accuracy": 0.01}, {"sampler": "direct"},
                 {"law": mcgw.KogutEtsion(critical=0.1)}, {"grading": lambda s: 1 + abs(s - 2.5)},
                 {"interaction": mcgw.Interaction("mean-plane")}, {"rel_err": 0.1}):
     print(plan_of(mcgw.Scene(surface, **asked).replace(**changes)).seconds)

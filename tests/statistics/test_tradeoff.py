@@ -175,13 +175,13 @@ def way(name, want, floor, set_up, each=0.0):
 def test_the_cheapest_way_that_is_good_enough(scene):
     ways = [
         way("theory", "mean", 1e-13, 1e-3), way("cells", "mean", 0.0, 1e-5, 1e-9),
-        way("tail", "mean", 0.0, 0.9e-5, 1e-9), way("cells, 0.001", "mean", 1e-3, 0.0, 1e-10),
+        way("tail", "mean", 0.0, 0.9e-5, 1e-9), way("aggregate", "mean", 1e-3, 0.0, 1e-10),
     ]  # fmt: skip
     needs = Needs(scene)
     names = [advise("mean", target, ways, needs).way.name for target in (1e-1, 1e-2, 1e-3, 1e-5)]
-    assert names == ["cells, 0.001", "cells, 0.001", "cells", "theory"]
+    assert names == ["aggregate", "aggregate", "cells", "theory"]
     coarse = advise("mean", 1e-2, ways, needs)
-    assert coarse.n_surfaces == needs.surfaces("mean", 1e-2 - 1e-3)  # what the accuracy leaves
+    assert coarse.n_surfaces == needs.surfaces("mean", 1e-2 - 1e-3)  # what the floor leaves
     assert coarse.seconds == pytest.approx(1e-10 * coarse.n_surfaces)
     assert advise("std", 1e-2, ways, needs).way is None
 

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from oracles import exact
-from scipy.stats import chi2, norm
+from scipy.stats import chi2
 
 import analytic
 import mcgw
@@ -249,30 +249,6 @@ def test_one_surface(make_scene):
 
 
 # --- its parts, by hand ---
-
-
-def test_what_the_accuracy_allows_is_taken_off_either_side(make_scene):
-    scene, mean, stderr = make_scene(accuracy=1e-3), np.array([10.0, -20.0, 0.0]), np.array([0.01, 0.1, 1.0])
-    allowed = parts.allowance(scene, mean, stderr)
-    np.testing.assert_allclose(allowed, [1.0, 0.2, 0.0], rtol=1e-12)
-    assert not parts.allowance(make_scene(), mean, stderr).any()
-    np.testing.assert_allclose(
-        parts.beyond(np.array([3.0, -3.0, 0.5]), allowed), [2.0, -2.8, 0.5], rtol=1e-12
-    )
-    np.testing.assert_array_equal(parts.beyond(np.array([0.9, -0.9]), np.ones(2)), [0.0, 0.0])
-
-
-def test_combinations_in_which_errors_show_are_left_out():
-    """Of variance v: errors a of either sign add up to at most 2 |a|/sqrt(v), 0.3 of which goes unnoticed."""
-    for allowed in ([0.1, 0.2], [0.3], []):
-        least = parts.told_apart(np.array(allowed))
-        assert least == pytest.approx((2 * np.linalg.norm(allowed) / 0.3) ** 2, rel=1e-12)
-
-
-@pytest.mark.parametrize("z", [[0.0], [3.0, -1.0], [-4.0, 1.0, 2.0], [0.5, 0.4], []])
-def test_the_farthest_of_some_means_is_bonferroni_s(z):
-    p = min([1.0, *(2 * len(z) * norm.sf(abs(x)) for x in z)])
-    assert parts.farthest(np.array(z)) == pytest.approx(p, rel=1e-12)
 
 
 def test_radii_have_a_bound_that_one_in_ten_thousand_ensembles_passes(make_scene):

@@ -82,9 +82,7 @@ def test_a_height_law_that_no_file_can_hold_is_refused(make_scene, tmp_path, hei
 
 
 CASES = {name: {"sampler": name} for name in SAMPLERS[1:]} | {
-    "cells to 1e-6": {"sampler": "cells", "accuracy": 1e-6, "n_asperities": 200_000},
-    "cells to 1e-3": {"sampler": "cells", "accuracy": 1e-3},
-    "crowds to 1e-2": {"law_error": 1e-2, "n_asperities": 10**7},
+    "crowds to 1e-2": {"accuracy": 1e-2, "n_asperities": 10**7},
 }
 
 

@@ -17,9 +17,10 @@ from mcgw.sampling.block import Layout
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.response.product import Parts, Tiles, tiles_of
 from mcgw.sampling.response.rows import hertz_rows
-from mcgw.sampling.response.tree import LAST_DIGITS, Nodes, Precision, tree_over
+from mcgw.sampling.response.tree import Nodes, tree_over
 from mcgw.sampling.response.walk import walk
 from mcgw.scene.scene import Scene
+from mcgw.scene.values import EXACT
 
 
 def matrix_of(response: Any) -> Array:
@@ -59,11 +60,7 @@ class Response:
 
 
 def response_of(
-    scene: Scene,
-    mesh: Mesh,
-    quantities: tuple[str, ...],
-    *,
-    precision: Precision = LAST_DIGITS,
+    scene: Scene, mesh: Mesh, quantities: tuple[str, ...], *, accuracy: float = EXACT
 ) -> Response:
     """Build the response of a mesh.
 
@@ -76,7 +73,7 @@ def response_of(
     quantities : tuple of str
         Which answers there are. Each separation has its own once, in increasing order: repeated or
         permuted ones give the same bits.
-    precision : Precision, optional
+    accuracy : float, optional
         Take as many moments as this needs.
 
     Returns
@@ -90,12 +87,12 @@ def response_of(
     ValueError
         If the grading is not resolved on a cell.
     """
-    parts = parts_of(scene, mesh, quantities, precision)
+    parts = parts_of(scene, mesh, quantities, accuracy)
     shape = len(quantities), len(scene.all_separations)
     return Response(parts.layout, tiles_of(parts, parts.rows.order(shape[0] * shape[1])), shape)
 
 
-def parts_of(scene: Scene, mesh: Mesh, quantities: tuple[str, ...], precision: Precision) -> Parts:
+def parts_of(scene: Scene, mesh: Mesh, quantities: tuple[str, ...], accuracy: float) -> Parts:
     """Series of what is asked, each separation once, in increasing order, and the moments that they need.
 
     Raises
@@ -110,6 +107,6 @@ def parts_of(scene: Scene, mesh: Mesh, quantities: tuple[str, ...], precision: P
 
         rows = law_rows(scene, quantities, mesh)
     tree = tree_over(mesh)
-    nodes = Nodes.of(mesh, tree, scene.modulus, scene.n_asperities, precision)
+    nodes = Nodes.of(mesh, tree, scene.modulus, scene.n_asperities, accuracy)
     entries, plain, rooted = walk(mesh, tree, rows, nodes)
     return Parts(mesh, tree, rows, entries, plain, rooted)

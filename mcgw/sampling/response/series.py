@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 
 from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
-from mcgw.sampling.cells import CHANGING, NODES, TO_COEFFICIENTS
+from mcgw.sampling.cells import NODES, TO_COEFFICIENTS
 from mcgw.sampling.rules import multiply
-from mcgw.scene.values import EXACT
 
 MOST, MOST_IN_CELL = 12, 19  # moments: what is not resolved by so many is left to the children, or refused
 APART, _PARTLY, WHOLE = 0, 1, 2
@@ -58,9 +57,7 @@ class Entries(NamedTuple):
 
 
 @njit()
-def meeting(
-    low: Any, high: Any, rooted: Any, split: Any, start: Any, end: Any, parent: Any, of_least: Any
-) -> Any:
+def meeting(low: Any, high: Any, rooted: Any, split: Any, start: Any, end: Any) -> Any:
     """Whether a row and a node have no heights in common, some, or the row is one smooth function there.
 
     Parameters
@@ -73,28 +70,11 @@ def meeting(
         Whether a modulus that it depends on has a break inside the node.
     start, end : float
         Of the node.
-    parent : bool
-        Whether the node has children. Their moments are good to a share of its width, and a lone asperity may
-        be nearer to its start.
-    of_least : bool
-        As `Precision.of_least`.
     """
     if not (low < end and high > start):
         return APART
-    begun = low < start or (low == start and not rooted and not (parent and of_least))
+    begun = low < start or (low == start and not rooted)
     return WHOLE if begun and end <= high and not split else _PARTLY
-
-
-@njit()
-def _share_of_least(values: Any) -> Any:
-    """The least of some values over the largest, but no less than a share where they change their sign."""
-    low, high = np.inf, -np.inf
-    for value in values:
-        low, high = min(low, value), max(high, value)
-    least, largest = min(abs(low), abs(high)), max(abs(low), abs(high))
-    if low <= 0.0 <= high:
-        least = CHANGING * largest
-    return least / largest if largest > 0.0 else 1.0
 
 
 @njit(inline="always")
@@ -125,18 +105,14 @@ def series_of(
     int
         How many leading coefficients count: so many moments the node must have.
     """
-    even, noise, crowd, graded, total, accuracy, of_least = limits
+    even, noise, crowd, graded, total, accuracy = limits
     of_largest = even[node] if graded[row] else 1.0
-    if of_least:
-        of_largest = _share_of_least(values[0])
     multiply(values, transform, c)
     tail = 0.0
     for i in range(c.shape[1] - 1, -1, -1):
         tail += abs(c[0, i])
         values[0, i] = tail
     enough = max(of_largest * tail, total[row] / crowd[node])
-    if of_least:
-        enough = max(enough, EXACT / accuracy * tail)
     least = max(noise[node] if graded[row] else 0.0, rough) * tail
     alone, kept = max(accuracy * enough, least), max(accuracy / (_NODES if of_many else 1) * enough, least)
     count = c.shape[1]

@@ -9,7 +9,7 @@ their heights, their moduli, and how accurate a series must be there.
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +20,6 @@ from mcgw.machine.compiling import njit
 from mcgw.sampling.cells import NODES, TO_COEFFICIENTS, Mesh, evenness, height_noise
 from mcgw.sampling.response.rows import Rows
 from mcgw.sampling.rules import multiply
-from mcgw.scene.values import EXACT
 
 _SCATTER = 8  # asperities more than expected
 _DIGITS = 8.0  # last digits of a height that a formula may lose
@@ -132,24 +131,6 @@ def _transfer(x: Any, moments: Any, of_parent: Any, to_coefficients: Any, coeffi
             line += 1
 
 
-class Precision(NamedTuple):
-    """How accurate a series must be.
-
-    Attributes
-    ----------
-    accuracy : float
-        Relative to a value on the node, or to the sum of a surface where that is sure to be larger.
-    of_least : bool
-        Whether to the least value, that a single asperity may have, or to the largest.
-    """
-
-    accuracy: float = EXACT
-    of_least: bool = False
-
-
-LAST_DIGITS = Precision()
-
-
 @dataclass(frozen=True)
 class Nodes:
     """All nodes, one an array element.
@@ -166,12 +147,13 @@ class Nodes:
     broken : ndarray of bool
         Whether the grading has a break inside a parent, which its values at 20 heights may not show.
     crowd : ndarray
-        Asperities of a surface there, at most; with `Precision.of_least`, if all cells were such as its own.
+        Asperities of a surface there, at most.
     even, noise : ndarray
         Share of the largest value that errors are held against, and share that the last digit of a height
         makes: of rows that depend on the modulus.
-    precision : Precision
-        Of a series.
+    accuracy : float
+        Of a series, relative to a value on the node, or to the sum of a surface where that is sure to be
+        larger.
     """
 
     start: Array
@@ -183,10 +165,10 @@ class Nodes:
     crowd: Array
     even: Array
     noise: Array
-    precision: Precision
+    accuracy: float
 
     @classmethod
-    def of(cls, mesh: Mesh, tree: Tree, grading: Grading, n_asperities: int, precision: Precision) -> "Nodes":
+    def of(cls, mesh: Mesh, tree: Tree, grading: Grading, n_asperities: int, accuracy: float) -> "Nodes":
         """The nodes of a tree, for surfaces of so many asperities."""
         start, end = mesh.edges[tree.first], mesh.edges[tree.last]
         above = tree.above
@@ -195,8 +177,6 @@ class Nodes:
         inside = np.searchsorted(kinks, end) > np.searchsorted(kinks, start, side="right")
         largest = np.maximum(np.abs(moduli).max(axis=1), np.finfo(float).tiny)
         crowd = n_asperities * tree.probability + _SCATTER
-        if precision.of_least:  # each node is off by its part of what the sum of them all may be off by
-            crowd *= mesh.size / (tree.last - tree.first)
         return cls(
             start=start,
             end=end,
@@ -207,16 +187,16 @@ class Nodes:
             crowd=crowd,
             even=evenness(grading, moduli),
             noise=height_noise(start, above, moduli) / largest,
-            precision=precision,
+            accuracy=accuracy,
         )
 
     def at(self, node: Ints, h: Array) -> tuple[Array, Array]:
         """Heights above separations at the points of some nodes, and the moduli there: (points, nodes)."""
         return (self.start[node] - h) + self.above[node].T, self.moduli[node].T
 
-    def limits(self, rows: Rows) -> tuple[Array, Array, Array, NDArray[np.bool_], Array, float, bool]:
+    def limits(self, rows: Rows) -> tuple[Array, Array, Array, NDArray[np.bool_], Array, float]:
         """What the errors of series are held against, for compiled loops: `series_of` tells."""
-        return self.even, self.noise, self.crowd, rows.graded, rows.total, *self.precision
+        return self.even, self.noise, self.crowd, rows.graded, rows.total, self.accuracy
 
     def rough_noise(self, node: Ints, row: Ints, rows: Rows) -> Array:
         """What the last digit of a height makes of a power of its distance from the end of a row."""

@@ -90,10 +90,7 @@ class _Walk:
         """Nodes and rows that have heights in common, and whether the row is one smooth function there."""
         nodes, rows = self._nodes, self._rows
         split, low, high = nodes.broken[node] & rows.graded[row], rows.low[row], rows.high[row]
-        parent, of_least = nodes.parent[node], nodes.precision.of_least
-        how = _meetings(
-            low, high, rows.rooted[row], split, nodes.start[node], nodes.end[node], parent, of_least
-        )
+        how = _meetings(low, high, rows.rooted[row], split, nodes.start[node], nodes.end[node])
         here = how != APART
         return node[here], row[here], how[here] == WHOLE
 
@@ -150,13 +147,11 @@ def _together(pairs: Ints) -> list[Ints]:
 
 
 @njit(cache=True)
-def _meetings(
-    low: Any, high: Any, rooted: Any, split: Any, start: Any, end: Any, parent: Any, of_least: Any
-) -> Any:
+def _meetings(low: Any, high: Any, rooted: Any, split: Any, start: Any, end: Any) -> Any:
     """`meeting` of each row and node."""
     how = np.empty(low.size, dtype=np.int64)
     for k in range(low.size):
-        how[k] = meeting(low[k], high[k], rooted[k], split[k], start[k], end[k], parent[k], of_least)
+        how[k] = meeting(low[k], high[k], rooted[k], split[k], start[k], end[k])
     return how
 
 

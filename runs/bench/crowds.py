@@ -1,6 +1,6 @@
-"""What crowds buy: `law_error` with a hundred million asperities, against cells that are exact.
+"""What crowds buy: `accuracy` with a hundred million asperities, against cells that are exact.
 
-Run: ``python runs/bench/law_error.py [--rounds 7]``. What they change in the laws of values is computed, not
+Run: ``python runs/bench/accuracy.py [--rounds 7]``. What they change in the laws of values is computed, not
 drawn: `tests/oracles/law_of_crowds.py`.
 """
 
@@ -13,7 +13,7 @@ from timing import Job, against, parser_of, show, timed
 def crowds() -> dict[str, Job]:
     """A hundred million asperities with crowds and without."""
     scene = replace(S1, sampler="auto", n_asperities=10**8)
-    return {"law_error 1e-4, N = 1e8": block(replace(scene, law_error=1e-4)), "cells, N = 1e8": block(scene)}
+    return {"accuracy 1e-4, N = 1e8": block(replace(scene, accuracy=1e-4)), "cells, N = 1e8": block(scene)}
 
 
 def ratios(rounds: int) -> dict[str, float]:
@@ -24,7 +24,7 @@ def ratios(rounds: int) -> dict[str, float]:
 def main() -> None:
     """Print the times."""
     rounds = parser_of(__doc__).parse_args().rounds
-    show("N = 1e8, 41 separations", timed(crowds(), rounds), "law_error 1e-4, N = 1e8")
+    show("N = 1e8, 41 separations", timed(crowds(), rounds), "accuracy 1e-4, N = 1e8")
 
 
 if __name__ == "__main__":
