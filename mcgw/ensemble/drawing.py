@@ -29,7 +29,7 @@ _WORDS = 4_000_000  # numbers of a block that fit the outer cache
 _MOST_WORDS = 20_000_000  # numbers a block may hold
 _DRAWS = 1.5e8  # asperities a block may draw, so that a bar moves every second
 _PER_COUNT, _PER_PRODUCT = 4e-8, 2.5e-10  # rough seconds per number and per pair, for statistics
-_SHORT = 0.01  # seconds that are told in milliseconds
+_SHORT = 0.01  # s; times below are given in milliseconds
 _TRIED = 0.05  # rough seconds per surface up to which a block is drawn on trial
 
 
