@@ -21,7 +21,7 @@ from mcgw.sweeps.pooling import Pooling
 _TARGETS = (1e-2, 1e-3)  # 95 % bounds of means
 _NO_SURFACES = "means alone: no surfaces, scene.theory is exact"
 
-_WORTH = 1.5  # times faster, to be told
+_WORTH, _CROWD = 1.5, 300  # times faster, to be told; asperities of a cell, for crowds to pay
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,8 @@ def plan_of(scene: Scene) -> Plan:
 
 def _with_crowds(scene: Scene, known: Expected, surfaces: int) -> float | None:
     """Seconds that an accuracy above 0 may buy: those of ``aggregate``, where ``auto`` takes ``cells``."""
-    if known.name != "cells" or scene.sampler != "auto" or scene.curvature is not None:
+    few = known.draws < _WORTH * _CROWD * known.cells  # as crowds are chosen
+    if known.name != "cells" or scene.sampler != "auto" or scene.curvature is not None or few:
         return None
     return rough_seconds(scene.replace(sampler="aggregate"), surfaces)
 
