@@ -17,9 +17,6 @@ the sign:
                 sinking only that counts by which it differs from its mean: a summit lies outside the dent of
                 every other one, so ``compliance = -M/(E_b sqrt(N A_n))``, M that of a square lattice of
                 point loads. The asperities feel more than the nominal approach.
-``located``     the same plane, without a mean field: summits have places in a periodic cell, their own or
-                uniform at random, and each is pressed down by every other one by as much as it does there.
-                No theory.
 """
 
 import math
@@ -31,16 +28,12 @@ import numpy as np
 from analytic.quantities import quantity_of
 from analytic.surface import Surface
 
-Reference = Literal["body", "mean-plane", "located"]
+Reference = Literal["body", "mean-plane"]
 
 # Mean sinking of a square of side L under the pressure p, over p L/E*: (4 asinh 1 - 4/3 (sqrt 2 - 1))/pi.
 BOWL = (4 * math.asinh(1) - 4 / 3 * (math.sqrt(2) - 1)) / math.pi
 # Potential at a point of a square lattice in a neutral background, over charge/side: -4 zeta(1/2) beta(1/2).
 LATTICE = 3.900264920001956
-NO_THEORY = (
-    'interaction.reference = "located": no theory is known of summits at their places; use "mean-plane", '
-    "which has their mean field"
-)
 
 
 def in_series(value: Any, other: float) -> Any:
@@ -58,11 +51,10 @@ class Interaction:
 
     Parameters
     ----------
-    reference : {"body", "mean-plane", "located"}
-        What the nominal separation is measured from: the undeformed body, or the mean deformed plane; from
-        that with summits at their places, too, which takes `E_star`. Separations given are those that the
-        asperities feel, so that the nominal ones follow without a solver; but nominal ones of located
-        summits, which feel no one separation.
+    reference : {"body", "mean-plane"}
+        What the nominal separation is measured from: the undeformed body, or the mean deformed plane.
+        Separations given are those that the asperities feel, so that the nominal ones follow without a
+        solver.
     bulk_modulus : float, optional
         Composite modulus of the half-space E_b, Pa, where it is not that of the asperities.
 
@@ -86,29 +78,13 @@ class Interaction:
 
     def __post_init__(self) -> None:
         if self.reference not in get_args(Reference):
-            *others, last = (f'"{word}"' for word in get_args(Reference))
-            raise ValueError(f"reference = {self.reference!r}: give {', '.join(others)} or {last}")
-        if self.located and self.bulk_modulus is not None:
-            raise ValueError("bulk_modulus: located summits lie on a half-space of E_star; leave it out")
+            raise ValueError(f'reference = {self.reference!r}: give "body" or "mean-plane"')
         modulus = self.bulk_modulus
         if modulus is not None and not (math.isfinite(modulus) and modulus > 0):
             raise ValueError(f"bulk_modulus = {modulus!r}: give a finite number > 0, in Pa")
 
-    @property
-    def located(self) -> bool:
-        """Whether summits have places, so that interaction is not a mean field."""
-        return self.reference == "located"
-
     def compliance(self, surface: Surface, n_asperities: float) -> float:
-        """How far each newton on the surface lowers the plane that the asperities feel, m/N.
-
-        Raises
-        ------
-        ValueError
-            If summits are located: nothing that all of them feel alike.
-        """
-        if self.located:
-            raise ValueError(NO_THEORY)
+        """How far each newton on the surface lowers the plane that the asperities feel, m/N."""
         modulus = surface.E_star if self.bulk_modulus is None else self.bulk_modulus
         if self.reference == "body":
             return BOWL / (modulus * math.sqrt(surface.nominal_area))
@@ -135,8 +111,6 @@ class Interaction:
         -----
         Source: J. R. Barber, Proc. R. Soc. Lond. A 459 (2003) 53: ``C rho = 2 K/E*`` of rough bodies.
         """
-        if self.located:
-            return 0.0  # its stiffness is that of the whole
         q = quantity_of(quantity)
         name = q.unloading or q.of or q.name
         compliance = self.compliance(surface, n_asperities) * (surface.nominal_area if q.of else 1.0)

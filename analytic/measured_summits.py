@@ -1,6 +1,5 @@
 """Measured heights used as they are, and the radii that were measured with them."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -113,15 +112,11 @@ class MeasuredRadii:
         Of the same summits.
     ratios : sequence of float
         Radius of each over that of the surface, in the order of the heights; positive.
-    places : (sequence of float, sequence of float), optional
-        x and y of each, m, which located summits take.
-    aspect : float, optional
-        Width over height of the rectangle in which they lie, whose area is the nominal one; 1 without them.
 
     Raises
     ------
     ValueError
-        If there is not one positive finite ratio for each height, or not one place of its own.
+        If there is not one positive finite ratio for each height.
 
     Examples
     --------
@@ -132,28 +127,15 @@ class MeasuredRadii:
 
     heights: MeasuredHeights
     ratios: tuple[float, ...]
-    places: tuple[tuple[float, ...], ...] | None = None
-    aspect: float = 1.0
 
-    def __init__(
-        self,
-        heights: MeasuredHeights,
-        ratios: Sequence[float] | Array,
-        places: Sequence[Sequence[float]] | Array | None = None,
-        aspect: float = 1.0,
-    ) -> None:
+    def __init__(self, heights: MeasuredHeights, ratios: Sequence[float] | Array) -> None:
         c = np.asarray(ratios, dtype=np.float64)
         if c.shape != (len(heights.heights),):
             raise ValueError(f"ratios: {c.size} for {len(heights.heights)} heights; give one for each")
         wrong = np.flatnonzero(~(np.isfinite(c) & (c > 0)))
         if wrong.size:
             raise ValueError(f"ratios: number {wrong[0]} is {c[wrong[0]]:g}; give finite numbers > 0")
-        at = None if places is None else _checked_places(places, c.size)
-        hold(self, heights=heights, ratios=tuple(c.tolist()), places=at, aspect=aspect if at else 1.0)
-
-    def sides(self, area: float) -> tuple[float, float]:
-        """Width and height of the rectangle of this area in which the places lie."""
-        return math.sqrt(area * self.aspect), math.sqrt(area / self.aspect)
+        hold(self, heights=heights, ratios=tuple(c.tolist()))
 
     def summits(self, rng: np.random.Generator, n: int) -> tuple[Array, Array]:
         """Reduced heights and radius ratios of `n` summits, drawn with replacement; or of all, as they are.
@@ -172,19 +154,3 @@ class MeasuredRadii:
     @cached_property
     def _pairs(self) -> tuple[Array, Array]:
         return np.array(self.heights.heights), np.array(self.ratios)
-
-
-def _checked_places(places: Sequence[Sequence[float]] | Array, number: int) -> tuple[tuple[float, ...], ...]:
-    """One place for each summit."""
-    if (counts := [len(row) for row in places]) != [number] * 2:
-        raise ValueError(f"places: {counts} for {number} heights; give x and y of each")
-    at = np.asarray(places, dtype=np.float64)
-    wrong = np.flatnonzero(~np.isfinite(at).all(axis=0))
-    if wrong.size:
-        raise ValueError(f"places: number {wrong[0]} is not finite; give finite numbers in m")
-    _, first, of = np.unique(at, axis=1, return_index=True, return_inverse=True)
-    again = np.flatnonzero(first[of.ravel()] != np.arange(number))
-    if again.size:
-        k = int(again[0])
-        raise ValueError(f"places: numbers {first[of.ravel()[k]]} and {k} lie at one; leave one of them out")
-    return tuple(map(tuple, at.tolist()))

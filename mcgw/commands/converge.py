@@ -30,7 +30,6 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.statistics.convergence import SEEDS, converge
 
     scene = load_scene(args.scene, changes=changes_of(args))
-    scene.ask_theory()
     folder = args.output or args.scene.parent / "out"
     path = folder / f"{args.scene.stem}-converge.png"
     check_outputs([Output(path, figure_format())], inputs=files_of(args.scene))

@@ -37,7 +37,6 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.scene.scene_file import files_of, load_scene
 
     compared = Compared(load_scene(args.scene)) if args.scene else of_paper()
-    compared.asked.ask_theory()
     names = [row.name for row in CATALOGUE]
     if args.list:
         print(*names, sep="\n")

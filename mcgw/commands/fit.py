@@ -164,9 +164,7 @@ def _write_beside(args: argparse.Namespace, fit: "Fit", ready: "Prepared", pixel
 
     told = []
     if args.summits is not None:
-        width, height = fit.listed.size or (1.0, 1.0)
-        comment = f"{SUMMITS}; summits.aspect of a scene is {width / height:.7g}"
-        fit.listed.table().write(args.summits, comment=comment)
+        fit.listed.table().write(args.summits, comment=SUMMITS)
         told.append(f"{args.summits}: every summit")
     if args.tiles is not None:
         fit.tiles.write(args.tiles, comment=TILES)

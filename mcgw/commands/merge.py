@@ -37,5 +37,5 @@ def execute(args: argparse.Namespace) -> int:
     else:
         scene, made = merged.scenes[0], f"{merged.axes.size} scenes"
     news(f"{path}: {done}{made}, seed {scene.seed}")
-    look_next(scene, path)
+    look_next(path)
     return 0

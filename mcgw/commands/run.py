@@ -72,7 +72,7 @@ def _execute(args: argparse.Namespace) -> int:
     known = scene.validity()
     news(known.verdict)
     details(*filter(None, [known.details]))
-    look_next(scene, path)
+    look_next(path)
     tell_cautions(scene)
     return 0
 

@@ -72,7 +72,7 @@ def execute(args: argparse.Namespace) -> int:
     ratios = ratios_in_words(found)
     news(*ratios[:1])
     details(*ratios[1:])
-    look_next(scene, path)
+    look_next(path)
     details(found)
     return 0
 

@@ -38,7 +38,6 @@ def execute(args: argparse.Namespace) -> int:
 
     seconds = parse(args.seconds, "s", "--seconds")
     scene = load_scene(args.scene, changes=changes_of(args))
-    scene.ask_theory()
     folder = args.output or args.scene.parent / "out"
     table, measured, figure = (
         folder / f"{args.scene.stem}-tradeoff{end}" for end in (".csv", "-measured.csv", ".png")

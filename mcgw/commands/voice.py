@@ -59,9 +59,9 @@ def news(*lines: object) -> None:
         print(*lines, sep="\n")
 
 
-def look_next(scene: "Scene", path: "Path") -> None:
-    """Print the command that looks at a new file: surfaces are compared with theory where one is known."""
-    news(f"next: mcgw {'show' if scene.located else 'compare'} {path}")
+def look_next(path: "Path") -> None:
+    """Print the command that looks at a new file."""
+    news(f"next: mcgw compare {path}")
 
 
 def details(*lines: object) -> None:

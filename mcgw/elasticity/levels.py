@@ -9,13 +9,13 @@ from functools import cached_property
 import numpy as np
 
 from analytic.arrays import Array, Ints, Marks
+from mcgw.elasticity.equilibrium import Located
 from mcgw.elasticity.profiles import profile_spots
+from mcgw.elasticity.spots import Grid, HertzSpots, sized_grid
 from mcgw.errors import RunError, extra
 from mcgw.maps.summit_sums import summit_sums_of
 from mcgw.maps.summits import Summits, summits_of
 from mcgw.maps.topography import Topography
-from mcgw.sampling.located.equilibrium import Located
-from mcgw.sampling.located.spots import Grid, HertzSpots, sized_grid
 
 _EITHER = ("area", "stiffness", "conductance")
 QUANTITIES = {"pressure": (*_EITHER, "mean_gap"), "separation": (*_EITHER, "pressure")}  # by what is given

@@ -29,7 +29,6 @@ def mean_surface(scene: Scene, given: str, value: float) -> dict[str, float]:
 
 def asperities_of(scene: Scene) -> Scene:
     """The scene without asperity interaction, which at a given load only changes the separation."""
-    scene.ask_theory()
     together = scene.interaction is not None or scene.joint is not None
     return replace(scene, interaction=None, joint=None) if together else scene
 

@@ -29,8 +29,6 @@ def with_interaction(scene: Scene, sums: dict[str, NDArray[Any]]) -> dict[str, A
     sums : dict of str to ndarray
         Of the asperities, SI, shape (surfaces, separations).
     """
-    if scene.located:
-        return dict(sums)
     found = {name: _answer(scene, name, values) for name, values in sums.items()}
     h, sunk = np.array(scene.separations), scene.compliance / scene.surface.sigma
     for name in scene.other_separations:
@@ -75,28 +73,14 @@ class _Alone(Results):
 
 
 def scene_alone(scene: Scene) -> Scene:
-    """The scene without interaction.
-
-    Raises
-    ------
-    ValueError
-        If its summits are located: then no sum is one of independent asperities.
-    """
-    if scene.interaction is None:
-        return scene
-    scene.ask_theory()
-    return replace(scene, interaction=None)
+    """The scene without interaction."""
+    return scene if scene.interaction is None else replace(scene, interaction=None)
 
 
 def asperities_alone(ensemble: Ensemble) -> Ensemble:
     """The ensemble of the sums of the asperities.
 
     Of one that keeps no values those that are not in series with the half-space.
-
-    Raises
-    ------
-    ValueError
-        As from `scene_alone`.
     """
     scene = ensemble.scene
     if not isinstance(ensemble.sums, Results):  # of what is in series only each surface's would tell

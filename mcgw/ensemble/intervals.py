@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import betainc, betaincc, gammainccinv, gammaincinv, ndtri, stdtrit
+from scipy.special import betainc, betaincc, gammainccinv, gammaincinv, ndtri
 
 from analytic import Hertz, MeasuredHeights, RandomCurvature, quantity_of
 from analytic.arrays import Array, Marks
@@ -185,10 +185,6 @@ def interval_of(scene: Scene, sampler: str, sums: Held, name: str, level: float)
     mean, m = sums.mean_and_std(name)[0], sums.rows()
     if scene.as_measured:
         return mean, mean
-    if scene.located:  # no theory tells how much surfaces differ: they do
-        std, few = sums.mean_and_std(name)[1], max(m - 1, 1)
-        half = stdtrit(few, (1 + level) / 2) * (std if m > 1 else np.nan * std) / np.sqrt(m)
-        return mean - half, mean + half
     if name in scene.other_separations:
         return _of_separation(scene, sampler, sums, name, level)
     if quantity_of(name).counts:
@@ -236,7 +232,7 @@ def laws_are_quick(scene: Scene) -> bool:
     Under laws other than Hertz's, with radii of their own and of lists of summits it takes seconds.
     """
     plain = type(scene.law) is Hertz and scene.curvature is None
-    return plain and not (scene.as_measured or scene.located)
+    return plain and not scene.as_measured
 
 
 def exact_ends(scene: Scene, name: str, share: float) -> Array | None:
@@ -247,7 +243,7 @@ def exact_ends(scene: Scene, name: str, share: float) -> Array | None:
     """
     both = scene.curvature is not None and type(scene.law) is not Hertz
     longer = not laws_are_quick(scene) and len(scene.separations) > _MOST_OF_BAND
-    if both or longer or isinstance(scene.heights, MeasuredHeights) or scene.located:
+    if both or longer or isinstance(scene.heights, MeasuredHeights):
         return None
     try:
         laws = [scene.theory.distribution(name, h) for h in scene.separations]

@@ -114,7 +114,7 @@ def given_values(
     """
     unit, given, per_area = _GIVEN[key]
     if key == "nominal_separation":
-        if scene.interaction is None or scene.located:
+        if scene.interaction is None:
             raise ValueError(f'{key}: it needs [interaction] reference = "body" or "mean-plane"')
         return given, [_reduced(value) for value in values]
     factor = scene.surface.nominal_area if per_area else 1.0

@@ -91,11 +91,7 @@ def _zero(scene: Scene, system: UnitSystem) -> list[str]:
         rise = factor * scene.surface.sigma * scene.rise
         lines.append(f"(from the mean plane of the surface it is larger by {rise:.9e} {unit})")
     if scene.interaction is not None:
-        felt = (
-            "nominal"
-            if scene.located
-            else "the separation that asperities feel, without the displacement of the bulk"
-        )
+        felt = "the separation that asperities feel, without the displacement of the bulk"
         lines.append(f"with asperity interaction; d is {felt}")
     return lines
 

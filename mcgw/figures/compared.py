@@ -219,6 +219,5 @@ class Compared:
             return ""
         said, law = contact_label(self.scene), short(law_text(self.scene.heights))
         if self.scene.interaction is not None:
-            felt = "d/σ is nominal" if self.scene.located else "d/σ is effective"
-            said += f", interacting ({felt})"
+            said += ", interacting (d/σ is effective)"
         return f"This scene: {said}; heights {law}."

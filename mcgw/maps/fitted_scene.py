@@ -13,7 +13,6 @@ from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
 from mcgw.maps.waves import log_derivatives
 from mcgw.scene.arguments import argument
-from mcgw.scene.interaction_mistakes import MOST_LOCATED
 from mcgw.scene.measured import Fitted, Uncertainty
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_document
@@ -45,7 +44,7 @@ def fitted_scene(
     heights : {"gaussian", "nayak", "table", "measured", "summits"}
         Law of the heights; ``nayak`` is that of the isotropic Gaussian surface with the map's moments, whose
         summits have radii of their own; ``measured`` makes an ensemble of the one surface there is, and so
-        does ``summits``, each with its own height, radius and place.
+        does ``summits``, each with its own height and radius.
     E_star : float or str
         Composite modulus, which does not follow from a map, Pa or text such as "78.6 GPa".
     title : str
@@ -169,7 +168,7 @@ def _of_summits(fit: Fit, use: str, heights: Heights, modulus: float, title: str
     curvature: MeasuredRadii | None = None
     if heights == "summits":
         radius = float(1 / np.mean(1 / fit.radii))
-        curvature = MeasuredRadii(law, fit.radii / radius, *_places(fit))
+        curvature = MeasuredRadii(law, fit.radii / radius)
     elif use == "summits":
         radius = fit.estimates[use].radius.value
     else:
@@ -179,16 +178,6 @@ def _of_summits(fit: Fit, use: str, heights: Heights, modulus: float, title: str
     )  # summits between pixels have no heights
     alone = {"n_surfaces": 1, "n_asperities": z.size, "sampler": "direct"}
     return _scene(surface, title, heights=law, curvature=curvature, **alone)
-
-
-def _places(fit: Fit) -> tuple[Any, ...]:
-    """Places of the summits and aspect of the map; none on a strip, beside holes, or of too many."""
-    width, height = fit.listed.size or (math.nan, math.nan)
-    whole = math.isclose(width * height, fit.area, rel_tol=1e-6) and 0.01 <= width / height <= 100
-    if not whole or fit.summits.size > MOST_LOCATED:
-        return ()
-    places = [[float(f"{v:.7g}") for v in at] for at in (fit.listed.x, fit.listed.y)]  # short in a file
-    return places, width / height
 
 
 def _scene(surface: Surface, title: str, **more: Any) -> Scene:

@@ -68,7 +68,7 @@ def comparison_figures(comparison: Comparison) -> list[PageFigure]:
 
 def solved_pressures(scene: Scene) -> list[Solution]:
     """Answers at pressures that the scene's separations span; none where that is not known."""
-    if "load" not in scene.quantities or scene.located:
+    if "load" not in scene.quantities:
         return []
     try:
         pressures = pressures_of(scene, _PRESSURES)

@@ -51,7 +51,7 @@ class Direct(Sampler):
         scene = self.scene
         rng = generator(scene.seed, _PURPOSE, number)
         left = scene.n_asperities if scene.count == "fixed" else int(rng.poisson(scene.n_asperities))
-        most = left if scene.located or scene.as_measured else _PIECE
+        most = left if scene.as_measured else _PIECE
         while left:
             now = min(left, most)
             left -= now
@@ -59,10 +59,6 @@ class Direct(Sampler):
 
     def _surface(self, number: int) -> dict[str, Array]:
         scene = self.scene
-        if scene.located:
-            from mcgw.sampling.located.equilibrium import located_sums  # for those scenes alone
-
-            return located_sums(scene, number, *next(self.asperities(number), (np.empty(0), None)))
         total = asperity_sums(scene, np.array([0]), np.empty(0), np.empty(0))
         for s, ratios in self.asperities(number):
             sums = asperity_sums(scene, np.array([s.size]), s, np.ones(s.size), ratios)

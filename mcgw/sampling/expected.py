@@ -22,7 +22,6 @@ from mcgw.scene.scene import Scene
 _SURFACE, _INSIDE, _MOMENT, _OF_LAW = 2e-6, 1e-9, 1.1e-8, 2.5e-8
 _ALONE, _VALUE, _VALUE_OF_LAW, _GENERATOR = 1.2e-7, 1.9e-9, 3.5e-8, 3e-4
 _RADIUS, _DRAWS_WITH_RADIUS = 10, 6  # times an asperity with the radius of all
-_BALANCE_OF_PLACES, _GROWS = 5e-7, 1.6  # of located summits: seconds, by a power of their number
 
 
 @dataclass(frozen=True)
@@ -89,6 +88,4 @@ def _families(scene: Scene) -> int:
 
 def _alone(scene: Scene, asperities: float) -> float:
     """Seconds that asperities take which are drawn and added up one by one."""
-    if scene.located:
-        return float(len(scene.separations) * _BALANCE_OF_PLACES * asperities**_GROWS)
     return asperities * (_ALONE + scene.width * (_VALUE if scene.hertzian else _VALUE_OF_LAW))

@@ -67,8 +67,6 @@ def name_of(scene: Scene) -> str:
     """
     if scene.sampler != "auto":
         return scene.sampler
-    if scene.located:
-        return "direct"
     most = min(5 + len(scene.separations) / 20, 20)
     few = scene.touching < most
     names = ("tail", "cells", "direct") if few else ("cells", "tail", "direct")

@@ -21,15 +21,13 @@ def cautions(scene: Scene) -> list[str]:
     """Cautions about the numbers of a scene, one per line."""
     known = scene.validity()
     alone, together = "neither interact nor merge", "interact by a mean field, and do not merge"
-    together = "do not merge" if scene.located else together
     lines = [*off_elasticity(known, f"asperities {alone if scene.interaction is None else together}")]
     unmeasured = [] if known.measured.any() else [_crowd, _half]
     conducts = scene.film is not None or "conductance" in scene.quantities
     conducting = [_neighbours, _thick_film, _no_answer] if conducts else []
-    asked = [*unmeasured, _depth, _slope, _numbers, *conducting]
-    for caution in [_half, _numbers] if scene.located else asked:  # others use what the mean surface feels
+    for caution in [*unmeasured, _depth, _slope, _numbers, *conducting]:
         lines += caution(scene)
-    if type(scene.law) is not Hertz and not scene.located:
+    if type(scene.law) is not Hertz:
         from mcgw.scene.law_cautions import law_cautions  # Hertz is meant
 
         lines += law_cautions(scene)

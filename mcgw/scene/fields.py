@@ -50,26 +50,12 @@ class Fields(Values):
         if self.interaction is not None:
             from analytic import InteractingModel  # for those scenes alone
 
-            self.ask_theory()
             model = InteractingModel.of(model, self.interaction)
         if self.filled is not None:
             from analytic.joint_model import with_gap  # for those scenes alone
 
             model = with_gap(model, self.filled)
         return model
-
-    def ask_theory(self) -> None:
-        """Refuse a scene of which no theory is known.
-
-        Raises
-        ------
-        ValueError
-            If summits are located.
-        """
-        if self.located:
-            from analytic.interaction import NO_THEORY  # for those scenes alone
-
-            raise ValueError(NO_THEORY)
 
     @cached_property
     def _alone(self) -> analytic.Model:
@@ -123,16 +109,6 @@ class Fields(Values):
     def from_mean_plane(self) -> bool:
         """Whether nominal separations are measured from the mean of the deformed plane, as gaps are."""
         return self.interaction is not None and self.interaction.reference == "mean-plane"
-
-    @property
-    def located(self) -> bool:
-        """Whether summits have positions, at which they press each other down."""
-        return self.interaction is not None and self.interaction.located
-
-    @property
-    def own_places(self) -> bool:
-        """Whether its summits are measured ones, each taken once, whose places are known."""
-        return self.as_measured and getattr(self.curvature, "places", None) is not None
 
     @property
     def compliance(self) -> float:
@@ -213,7 +189,7 @@ class Fields(Values):
     @property
     def other_separations(self) -> tuple[str, ...]:
         """Nominal separations of an ensemble whose asperities press each other down."""
-        if self.interaction is None or self.interaction.located:
+        if self.interaction is None:
             return ()
         back = () if self.unload_from is None else ("nominal_separation_unloading",)
         return ("nominal_separation", *back)
@@ -226,7 +202,7 @@ class Fields(Values):
     @property
     def lowest(self) -> float:
         """Lowest separation that asperities ever feel: those below it never touch."""
-        lowest = self.least if self.located else min(self.separations)
+        lowest = min(self.separations)
         return lowest if self.unload_from is None else min(lowest, self.unload_from)
 
     @property

@@ -15,7 +15,7 @@ from mcgw.formats.numbers import signed
 
 _MOST_BYTES, _MOST_OF_MODULI = 2**28, 2**24
 _COLUMNS = {"s": "1", "z": "m", "ratio": "1", "E_star": "Pa"}
-_SUMMITS, _PLACES = ("height", "radius"), ("x", "y")
+_SUMMITS = ("height", "radius")
 _NAMED = re.compile(r"\s*(\w+)\s*(?:[(\[/ ]\s*([^()\[\]]*?)\s*[)\]]?)?\s*")  # z, z (um), z [um], z / um, z um
 
 
@@ -84,10 +84,8 @@ def read_heights(path: Path) -> Array:
         ) from None
 
 
-def read_summits(path: Path, places: bool) -> tuple[list[float], ...]:
+def read_summits(path: Path) -> tuple[list[float], ...]:
     """Columns height and radius of a CSV file with a line of names; # begins a comment.
-
-    Where it has both, x and y too if `places` are asked for.
 
     Raises
     ------
@@ -100,13 +98,12 @@ def read_summits(path: Path, places: bool) -> tuple[list[float], ...]:
     missing = [name for name in _SUMMITS if name not in names]
     if missing:
         raise ValueError(f"{path}: has no column {' and no column '.join(missing)}")
-    wanted = (*_SUMMITS, *(_PLACES if places and {*_PLACES} <= {*names} else ()))
-    where = [names.index(name) for name in wanted]
+    where = [names.index(name) for name in _SUMMITS]
     table: list[tuple[float, ...]] = []
     for row in rows:
         try:
             table.append(tuple(float(row[k]) for k in where))
         except (ValueError, IndexError):
-            what = f"summit {len(table) + 1} has no number as {' or '.join(wanted)}"
+            what = f"summit {len(table) + 1} has no number as {' or '.join(_SUMMITS)}"
             raise ValueError(f"{path}: {what}") from None
-    return tuple([row[k] for row in table] for k in range(len(wanted)))
+    return tuple([row[k] for row in table] for k in range(len(_SUMMITS)))

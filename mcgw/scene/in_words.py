@@ -12,7 +12,6 @@ from mcgw.scene.keys import SURFACE_UNITS
 from mcgw.scene.stop_rule import rel_err_text
 
 _PLANES = {"body": "undeformed body", "mean-plane": "mean deformed plane"}
-_PLANES["located"] = _PLANES["mean-plane"]
 _MOST = 4  # longest list that is printed whole
 
 
@@ -78,10 +77,8 @@ def contact_facts(scene: Fields) -> list[tuple[str, str]]:
     if scene.film is not None:
         facts.append(("film", conducting_text(scene.film)))
     if scene.interaction is not None:
-        felt = "nominal" if scene.located else "effective"
-        places = f", summits at {'their own' if scene.own_places else 'random'} places" * scene.located
         plane = _PLANES[scene.interaction.reference]
-        facts.append(("interaction", f"from the {plane}{places}, separations {felt}"))
+        facts.append(("interaction", f"from the {plane}, separations effective"))
     if scene.thermal:
         facts.append(("joint", joint_text(scene)))
     return facts

@@ -43,9 +43,7 @@ _SEPARATION = Number(low=-1e6, high=1e6)
 _SEPARATIONS = "give a list of finite numbers d/sigma, or {start = 0.0, stop = 4.0, num = 41}"
 _NUM = Whole(1, _MOST, f"give a whole number >= 1, at most {_MOST}")
 _BACK = 'give a number d/sigma, or "loop"'
-_PLANES = (
-    '"body", the undeformed body, "mean-plane", that of the deformed one, or "located": summits at places'
-)
+_PLANES = '"body", the undeformed body, or "mean-plane", that of the deformed one'
 _FORMULA = "give a list of {low, high, coefficients}, one for each piece, as mcgw writes them"
 _ENDS = (Key("low", _ANY, required=True), Key("high", _POSITIVE, required=True))
 _PIECES = List(Table((*_ENDS, Key("coefficients", _LISTED, required=True)), _FORMULA), advice=_FORMULA)
@@ -155,17 +153,12 @@ TABLES: dict[str, TableOfKeys] = {
         "with `m0`, `m2`, `m4`); `mean`: one radius"),
     Key("largest_radius", Number("m"), '"1 mm"', "upper limit of the radii, m"),
     Key("file", _FILE, '"summits.csv"',
-        "measured summits, written by `mcgw fit --summits`: columns `height`, `radius`, m; for `located` "
-        "`x`, `y`", excludes=("heights", "radii", "ratios", "x", "y", "curvature", "largest_radius")),
+        "measured summits, written by `mcgw fit --summits`: columns `height`, `radius`, m",
+        excludes=("heights", "radii", "ratios", "curvature", "largest_radius")),
     Key("heights", _LISTED, "[0.0, 1e-6, 3e-6]", "the same in the scene itself: heights, m",
         needs=("radii", "ratios"), excludes=("curvature", "largest_radius")),
     Key("radii", _RADII, "[1e-5, 2e-5, 3e-5]", "and radii, m", needs=("heights",), excludes=("ratios",)),
     Key("ratios", _RADII, "[1.0, 2.0, 3.0]", "or radii over their mean", needs=("heights",)),
-    Key("x", _LISTED, "[0.0, 1e-4, 0.0]", "and places, m, for `located`", needs=("heights",)),
-    Key("y", _LISTED, "[0.0, 1e-4, 1e-4]", "the same", needs=("heights",)),
-    Key("aspect", Number(low=0.01, high=100.0, advice="give a number from 0.01 to 100"), "1.0",
-        "width over height of the periodic rectangle of `nominal_area` that holds them; default: 1", 1.0,
-        needs=("x", "file")),
     Key("resample", Flag(), "true",
         "`true`: summits drawn in pairs from the list; `false`: one surface, the summits as they are", False,
         needs=("heights", "file")),
@@ -228,10 +221,9 @@ TABLES: dict[str, TableOfKeys] = {
 ), required=True),
 "interaction": TableOfKeys("[Asperity interaction](../explanation/interaction.md). Default: asperities are "
     "independent.", (
-    Key("reference", Word(("body", "mean-plane", "located"), f"give {_PLANES}"), '"body"',
-        "nominal separations are measured from the undeformed `body`, or from the deformed `mean-plane`; "
-        "`located`: from that, with summits at places instead of a mean field, their "
-        "own if `[summits]` lists them and `resample` is `false`, otherwise at random", required=True),
+    Key("reference", Word(("body", "mean-plane"), f"give {_PLANES}"), '"body"',
+        "nominal separations are measured from the undeformed `body`, or from the deformed `mean-plane`",
+        required=True),
     Key("bulk_modulus", Number("Pa"), "1e11", "composite modulus of the half-space, Pa; default: `E_star`"),
 ), make=lambda **keys: analytic.Interaction(**keys),
     advice='give mcgw.Interaction("body"), or mcgw.Interaction("mean-plane")'),

@@ -15,8 +15,6 @@ class Promise:
         It can draw a radius for each summit.
     own_laws : bool, optional
         It adds up summit by summit, so that each can have breaks of its own in the law of contact.
-    places : bool, optional
-        It has all asperities of a surface at once, those that do not touch too, and can place them.
     needs_density : bool, optional
         It draws from the density of the heights, which a list of measured ones has not.
     spends : bool, optional
@@ -28,7 +26,6 @@ class Promise:
     one_by_one: bool = True
     own_radii: bool = True
     own_laws: bool = False
-    places: bool = False
     needs_density: bool = False
     spends: bool = False
     not_done: tuple[str, ...] = ()
@@ -38,7 +35,7 @@ _UNTOUCHED = "{spared:.4g} asperities per surface lie below every separation and
 _CROWDED = "in crowded cells, Gaussian moments are drawn instead of asperities"
 
 _PROMISES = {
-    "direct": Promise(own_laws=True, places=True),
+    "direct": Promise(own_laws=True),
     "tail": Promise(own_laws=True, needs_density=True, not_done=(_UNTOUCHED,)),
     "cells": Promise(needs_density=True, not_done=(_UNTOUCHED,)),
     "aggregate": Promise(
@@ -54,4 +51,4 @@ SAMPLERS = ("auto", *_PROMISES)
 
 def promise_of(sampler: str) -> Promise:
     """What a sampler promises; ``auto`` takes one that promises all."""
-    return _PROMISES.get(sampler, Promise(own_laws=True, places=True))
+    return _PROMISES.get(sampler, Promise(own_laws=True))

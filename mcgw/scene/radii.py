@@ -1,7 +1,6 @@
 """Radii of summits: from the spectrum of the surface, or listed with their heights."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -21,7 +20,7 @@ from analytic.arrays import Array
 from mcgw.scene.files_beside import read_summits
 from mcgw.scene.section import Section
 
-LISTS = ("file", "heights", "radii", "ratios", "resample", "x", "y", "aspect")
+LISTS = ("file", "heights", "radii", "ratios", "resample")
 
 
 @dataclass(frozen=True)
@@ -59,18 +58,12 @@ class ListedSummits:
         Whether asperities are drawn from these, with replacement.
     over_surface : bool
         Whether `radii` are over that of the surface.
-    places : sequence of sequence of float or None
-        x and y, m.
-    aspect : float
-        Of the rectangle in which they lie.
     """
 
     heights: Array
     radii: Array
     resampled: bool
     over_surface: bool
-    places: Sequence[Sequence[float]] | None
-    aspect: float
 
     def of_surface(self, nominal_area: float) -> dict[str, float]:
         """Parameters of a surface of this area (m^2): eta (1/m^2) and, if in m, sigma and radius (m)."""
@@ -83,7 +76,7 @@ class ListedSummits:
         """Laws of the heights and radii on this surface."""
         heights = MeasuredHeights(self.heights, resampled=self.resampled)
         ratios = self.radii / (1.0 if self.over_surface else surface.radius)
-        return heights, MeasuredRadii(heights, ratios, self.places, self.aspect)
+        return heights, MeasuredRadii(heights, ratios)
 
 
 def curvature_of(
@@ -127,24 +120,18 @@ def datum_shift(section: Section, heights: HeightLaw | None) -> float:
     return heights.mean / heights.std
 
 
-def listed_of(section: Section, folder: Path, located: bool) -> ListedSummits | None:
-    """Read listed summits; None if there are none, or mistakes, which are noted.
-
-    Of a file places are read where summits are `located`: to others the columns mean nothing.
-    """
+def listed_of(section: Section, folder: Path) -> ListedSummits | None:
+    """Read listed summits; None if there are none, or mistakes, which are noted."""
     before = len(section.problems)
-    file, heights, radii, ratios, resample, x, y, aspect = section.read_all(LISTS).values()
+    file, heights, radii, ratios, resample = section.read_all(LISTS).values()
     section.known("curvature", "largest_radius")
     radius = ratios if radii is None else radii
     if len(section.problems) > before or (file is None) is (heights is None or radius is None):
         return None
     key = "file" if file is not None else "heights"
     try:
-        listed = (heights, radius) if x is None is y else (heights, radius, x or (), y or ())
-        z, radius, *places = listed if file is None else read_summits(folder / file, located)
-        z, radius = _checked(z, radius)
-        at = MeasuredRadii(MeasuredHeights(z), radius, places).places if places else None
-        return ListedSummits(z, radius, bool(resample), file is None and radii is None, at, aspect)
+        z, radius = _checked(*((heights, radius) if file is None else read_summits(folder / file)))
+        return ListedSummits(z, radius, bool(resample), file is None and radii is None)
     except (TypeError, ValueError) as error:
         advice = "give a CSV file with columns height and radius in m, or lists heights and radii"
         return section.fail(key, section.table.get(key), f"{advice}; {error}")
@@ -183,9 +170,7 @@ def summits_table(
     """
     if isinstance(curvature, MeasuredRadii):
         lists = {"heights": list(curvature.heights.heights), "ratios": list(curvature.ratios)}
-        lists |= dict(zip("xy", map(list, curvature.places or ()), strict=False))
-        aspect = {} if curvature.places is None else {"aspect": curvature.aspect}
         named = lists if file is None else {"file": file}
-        return {**named, **aspect, "resample": curvature.heights.resampled}
+        return {**named, "resample": curvature.heights.resampled}
     bound = {} if math.isinf(curvature.largest) else {"largest_radius": curvature.largest * surface.radius}
     return {"curvature": "random", **bound}

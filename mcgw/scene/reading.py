@@ -123,8 +123,7 @@ def _surface_and_summits(top: Section, of: Mapping[str, Section], objects: Value
     """A surface, the law of its heights, and that of its radii where summits have their own."""
     summits, radii = of["summits"], objects.get("curvature")
     if any(key in summits for key in LISTS):
-        located = of["interaction"].table.get("reference") == "located"
-        listed = listed_of(summits, folder, located)
+        listed = listed_of(summits, folder)
         return _with_listed(of, None if listed is None else read_surface(of["surface"], listed), listed)
     read = objects["surface"] if "surface" in objects else read_surface(of["surface"])
     surface, default = (read.surface, "random") if isinstance(read, Spectral) else (read, "mean")

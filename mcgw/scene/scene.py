@@ -32,7 +32,6 @@ if TYPE_CHECKING:
 _SURFACES, _MOST_SURFACES = 1000, 10**9  # where n_surfaces is left out; where rel_err is to decide
 _LOOKED_AT, _BEYOND = 4001, 1.1  # heights for the stiffest; and how much farther series reach
 _FARTHEST = 1e12  # penetrations over the first one, which few formulas are meant for
-_MARGIN = 1 / 16  # the lowest that is felt is a multiple of this, and may change by one with the series
 
 AnyScene = TypeVar("AnyScene", bound=Fields)
 
@@ -75,12 +74,10 @@ class Scene(Fields, Shown):
         "conductance_si". Default: none.
     layer : Layer, optional
         Layer of any thickness on the first body: `mcgw.Layer`; becomes a part of `film`.
-    interaction : Interaction, {"body", "mean-plane", "located"} or dict, optional
+    interaction : Interaction, {"body", "mean-plane"} or dict, optional
         Asperity interaction: `mcgw.Interaction`, its reference alone, or its keys in a scene file. Adds
         "nominal_separation", and puts stiffness and conductance in series with
-        the half-space. With "located" each surface is solved with its
-        summits at their own places where these are listed, or random ones. Default: asperities are
-        independent.
+        the half-space. Default: asperities are independent.
     joint : Joint, {"air", "vacuum"} or dict, optional
         Gas in the gap of a thermal joint: `mcgw.Joint`, its gas alone, or its keys in a scene file; needs
         the conductivities of a `film`. Adds "gap_conductance" and "joint_conductance", W/(m^2 K).
@@ -251,7 +248,7 @@ def _extent(scene: Fields) -> tuple[float, float]:
     """Lowest and highest height that count; asperities may have felt lower separations than those asked."""
     asked = scene.separations
     if scene.lowest < min(asked):
-        asked = (*asked, scene.lowest - (_MARGIN if scene.located else 0.0))
+        asked = (*asked, scene.lowest)
     low, high = extent(scene.grading, scene.heights, asked)
     return low, high
 

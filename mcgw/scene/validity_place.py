@@ -78,8 +78,6 @@ def moments_of_nayak(surface: Surface, alpha: float) -> SpectralMoments:
 
 def not_on_the_map(scene: Fields) -> str | None:
     """Why the model of a scene was never compared with elasticity; None if it was."""
-    if scene.located:
-        return "only for a mean field, not for summits at places"
     if type(scene.law) is not Hertz:
         return f'only for Hertz\'s law, not for contact.law = "{scene.law.name}"'
     if type(scene.heights) not in (Gaussian, Nayak):

@@ -55,7 +55,6 @@ else:
 
 
 EXACT = 1e-13  # relative error of a value that is right to the last digits
-BALANCED = 1e-11  # what is left over of a balance of located summits
 MOMENTS, SUMMITS = ("m0", "m2", "m4"), ("sigma", "radius", "eta")  # either describes the summits of a surface
 SUMS = tuple({**QUANTITIES, **LAW_QUANTITIES})
 

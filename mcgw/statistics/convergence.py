@@ -136,7 +136,7 @@ def converge(
     Raises
     ------
     ValueError
-        If nothing touches, summits are located, or means are known better than values.
+        If nothing touches, or means are known better than values.
     SceneError, TypeError
         As from `mcgw.Scene.replace`.
 

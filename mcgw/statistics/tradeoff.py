@@ -177,7 +177,7 @@ def tradeoff(
     SceneError, TypeError
         If `seconds` is not positive; and as from `mcgw.Scene.replace`.
     ValueError
-        If summits are located or used as measured, or the mean is 0.
+        If summits are used as measured, or the mean is 0.
 
     Examples
     --------
@@ -220,5 +220,4 @@ def _refused(scene: Scene) -> Scene:
         raise ValueError("summits: listed summits are summed or drawn, and have no other method")
     if isinstance(scene.heights, MeasuredHeights):
         raise ValueError("heights: measured heights are summed exactly; no answer is traded off")
-    scene.ask_theory()
     return scene

@@ -3,9 +3,8 @@
     python runs/validation/random_balances.py [--cases 500]     (15 minutes)
 
 Summits of Gaussian maps of random spectra, alpha from 2 to 50, H from 0.2 to 1, one to three longest waves
-wide; periodic or on a free half-space; summits with the surface around them, or as paraboloids under laws
-that yield, coats and gradings. Each under a load p/(E* g) of 1e-5 to 0.02, even in its logarithm, and under
-one of 0.02 to 0.1.
+wide; periodic or on a free half-space; summits with the surface around them, or as paraboloids. Each under a
+load p/(E* g) of 1e-5 to 0.02, even in its logarithm, and under one of 0.02 to 0.1.
 """
 
 import argparse
@@ -15,22 +14,21 @@ import time
 
 import numpy as np
 
-import mcgw
 from analytic import SpectralMoments
+from mcgw.elasticity.equilibrium import Located
 from mcgw.elasticity.levels import Pressed
+from mcgw.elasticity.spots import Grid
 from mcgw.errors import RunError
 from mcgw.maps.synthetic import Spectrum, gaussian_map
-from mcgw.sampling.located.equilibrium import Located
-from mcgw.sampling.located.spots import Grid, LawSpots
 
 SEED, M2, MODULUS = 20261124, 0.01, 1e11
-LAWS = ("profiles", "kogut-etsion", "zhao", "jackson-green", "coated", "graded")
+SHAPES = ("profiles", "paraboloids")
 
 
 def case(number, most_points=768):
     """Words, located summits, and two loads in N: light and heavy."""
     rng = np.random.default_rng([SEED, number])
-    periodic, law = bool(rng.integers(2)), LAWS[rng.integers(len(LAWS))]
+    periodic, shape = bool(rng.integers(2)), SHAPES[rng.integers(2)]
     while True:
         alpha, hurst = math.exp(rng.uniform(math.log(2), math.log(50))), rng.uniform(0.2, 1)
         spectrum = Spectrum.with_moments(SpectralMoments(1e-12, M2, alpha * M2**2 / 1e-12), hurst)
@@ -40,34 +38,16 @@ def case(number, most_points=768):
     pixel = spectrum.short / 8
     heights = gaussian_map(spectrum, (points, points), (pixel, pixel), rng).heights
     pressed = Pressed(heights - heights.mean(), (points * pixel, points * pixel), MODULUS)
-    own = pressed.profiles if law == "profiles" else pressed.summits
+    own = pressed.profiles if shape == "profiles" else pressed.summits
     grid = own.grid if periodic else Grid(own.grid.shape, own.grid.size, periodic=False)
-    spots = own.spots if law == "profiles" else _under(law, own.spots, grid.area, rng)
     shares = math.exp(rng.uniform(math.log(1e-5), math.log(0.02))), rng.uniform(0.02, 0.1)
-    words = f"alpha = {alpha:.1f}, H = {hurst:.2f}, {points}^2, {'periodic' if periodic else 'free'}, {law}"
+    words = f"alpha = {alpha:.1f}, H = {hurst:.2f}, {points}^2, {'periodic' if periodic else 'free'}, {shape}"
     full = MODULUS * math.sqrt(2 * M2) * grid.area
-    return words, Located(spots, own.places, grid), [(p, p * full) for p in shares]
-
-
-def _under(law, spots, area, rng):
-    """The same summits under a law of a scene; those that yield begin to at 0.01 to 1 sigma."""
-    z = spots.heights - spots.heights.mean()
-    radius, sigma = float(np.mean(spots.radii)), float(z.std())
-    yields = math.exp(rng.uniform(math.log(0.01), 0))
-    asked = {
-        "kogut-etsion": {"law": mcgw.KogutEtsion(critical=yields)},
-        "zhao": {"law": mcgw.ZhaoMaiettaChang(critical=yields)},
-        "jackson-green": {"law": mcgw.JacksonGreen(yield_strain=0.01, critical=yields)},
-        "coated": {"law": mcgw.Coated(reduced_thickness=rng.uniform(0.1, 2), ratio=rng.uniform(0.3, 3))},
-        "graded": {"grading": mcgw.Exponential(rng.uniform(0.5, 1.02))},
-    }[law]
-    surface = mcgw.Surface(sigma, radius, z.size / area, area, MODULUS)
-    scene = mcgw.Scene(surface, separations=0.0, n_surfaces=1, seed=1, **asked)
-    return LawSpots(scene, z, spots.radii / radius if law == "graded" else None)
+    return words, Located(own.spots, own.places, grid), [(p, p * full) for p in shares]
 
 
 def main():
-    """Print refusals, and shares by load and law."""
+    """Print refusals, and shares by load and shape."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--cases", type=int, default=500, metavar="N")
     parser.add_argument("--first", type=int, default=0, metavar="K")

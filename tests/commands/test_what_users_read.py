@@ -50,7 +50,7 @@ LINES = {
                "export pressed.toml --to moose --points 4 -o new/q.csv",
                "export joint.toml --to json --points 3 -o new/t.json"],
     "plans": [f"show --plan -v {name}.toml" for name in
-              ("pressed", "measured", "crowd", "sticks", "spectral", "located")],
+              ("pressed", "measured", "crowd", "sticks", "spectral")],
     "pages": ["report y.h5 -o new/y.html", "report s.h5 -o new/s.html", "show s.h5 -v",
               "sweep plain.toml --over grading.gamma=0.5:2:4 --plan"],
     "laws": ["surface scene.toml --at 0.5 --colour modulus -o new/o.svg",
@@ -81,9 +81,6 @@ conductivities = [150.0, 16.0]
 film_resistance = 1e-8
 """,
     "caps": """contact = {separations = [1.0]}
-""",
-    "located": """interaction = {reference = "located"}
-contact = {separations = [1.0, 1.5]}
 """,
 }
 

@@ -18,18 +18,17 @@ from scipy.signal import get_window
 from scipy.stats import t as student
 
 import mcgw
-from mcgw.elasticity import elastic as public
+from mcgw.elasticity import elastic as public, newton
+from mcgw.elasticity.equilibrium import BalanceError, Located
 from mcgw.elasticity.levels import LEVELS, Level, Pressed, alone, located, rimless
 from mcgw.elasticity.multilevel import design, differences, mean_of, terms_of
+from mcgw.elasticity.newton import Equations, State
 from mcgw.elasticity.profiles import ProfileSpots, _sneddon
 from mcgw.elasticity.sources import maps_of
+from mcgw.elasticity.spots import Grid, HertzSpots, field_beyond_point
 from mcgw.maps.map_files import write_map
 from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography
-from mcgw.sampling.located import newton
-from mcgw.sampling.located.equilibrium import BalanceError, Located
-from mcgw.sampling.located.newton import Equations, State
-from mcgw.sampling.located.spots import Grid, HertzSpots, LawSpots, field_beyond_point
 
 SPECTRUM = Spectrum(rms=1e-6, long=40e-6, short=5e-6)
 LATTICE = -3.900264920001956  # 4 zeta(1/2) beta(1/2), physics of a square lattice
@@ -164,26 +163,6 @@ class TestLocated:
         assert_allclose(balance.stiffness, 2 * step * 3e-3 / (down - up), rtol=1e-6)
         at = one.at_separation(balance.separation)
         assert_allclose([at.load, at.area], [balance.load, balance.area], rtol=1e-9)
-
-    def test_any_law_of_a_scene(self):
-        """A law that yields carries less at a separation; Hertz's of a scene is that of the radii."""
-        surface = mcgw.Surface("1 um", "10 um", 1e9, "0.09 mm^2", "1 GPa")
-        scene = mcgw.Scene(surface, separations=0.0, n_surfaces=1, seed=1)
-        yields = scene.replace(law=mcgw.KogutEtsion(critical=0.05))
-        rng = np.random.default_rng(3)
-        z = 1e-6 * rng.standard_normal(90)
-        places = some(90, (3e-4, 3e-4), rng).places
-        grid = Grid((64, 64), (3e-4, 3e-4), True)
-        found = {
-            name: Located(spots, places, grid).at_separation(0.5e-6)
-            for name, spots in {
-                "plain": HertzSpots(z, np.full(90, 1e-5), 1e9),
-                "scene": LawSpots(scene, z, None),
-                "yields": LawSpots(yields, z, None),
-            }.items()
-        }
-        assert_allclose(found["scene"].load, found["plain"].load, rtol=1e-9)
-        assert found["yields"].load < 0.95 * found["plain"].load
 
     def test_spots_within_each_other_are_one(self):
         """Two summits two points apart under a load that makes one contact of them."""

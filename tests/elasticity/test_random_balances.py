@@ -1,4 +1,4 @@
-"""Located balances of random maps, laws and loads: each is one by plain loops, too."""
+"""Located balances of random maps, shapes and loads: each is one by plain loops, too."""
 
 import sys
 from pathlib import Path
@@ -15,7 +15,7 @@ sys.path.remove(str(FOLDER))
 
 @pytest.mark.slow
 def test_random_balances_are_those_of_plain_loops():
-    """40 small maps, six laws, two loads each; not looked at where summits were left out."""
+    """40 small maps, two shapes of summits, two loads each; not looked at where summits were left out."""
     whole = 0
     for number in range(40):
         words, located, loads = case(number, most_points=96)

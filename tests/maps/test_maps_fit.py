@@ -529,31 +529,6 @@ def test_a_fit_tells_each_of_its_four_stages(rough, monkeypatch):
     assert (asked, len(done)) == ([4], 4)
 
 
-@pytest.mark.parametrize(("width", "height", "area", "number", "placed"), [
-    (1e-3, 1e-3, 1e-6, 30, True), (0.99e-2, 1e-4, 0.99e-6, 30, True), (1.01e-2, 1e-4, 1.01e-6, 30, False),
-    (1e-2, 1e-4, 1e-6, 30, True), (1e-4, 1e-2, 1e-6, 30, True),
-    (1e-4, 0.99e-2, 0.99e-6, 30, True), (1e-4, 1.01e-2, 1.01e-6, 30, False),
-    (1e-3, 1e-3, 1.0000009e-6, 30, True), (1e-3, 1e-3, 1.0000011e-6, 30, False),
-    (1e-3, 1e-3, 1e-6, 20_000, True), (1e-3, 1e-3, 1e-6, 20_001, False),
-])  # fmt: skip
-def test_summits_of_a_scene_have_places_where_there_are_few_on_a_whole_map(
-    width, height, area, number, placed, rough
-):
-    """Not on a strip, nor beside holes; each to seven digits, and the aspect of the map."""
-    x, y, z = rng(1).random((3, number))
-    listed = replace(
-        rough.listed, x=width * x, y=height * y, heights=z - z.mean(),
-        curvatures=np.full((2, number), 1e5), size=(width, height),
-    )  # fmt: skip
-    scene = mcgw.fitted_scene(replace(rough, listed=listed, area=area), heights="summits")
-    if not placed:
-        assert scene.curvature.places is None
-        return
-    expected = [width * x, height * y]
-    np.testing.assert_allclose(scene.curvature.places, expected, rtol=5.1e-7)
-    assert scene.curvature.sides(area) == pytest.approx((width, height), rel=1e-6)
-
-
 def test_a_scene_of_a_fit_asks_what_all_such_scenes_do(rough):
     """A table of heights has the radius and density of the estimate it names; a list has one surface."""
     scene = mcgw.fitted_scene(rough, title="of a map")

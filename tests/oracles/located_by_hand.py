@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from mcgw.sampling.located.spots import HertzSpots
+from mcgw.elasticity.spots import HertzSpots
 
 
 def residual(one, balance):

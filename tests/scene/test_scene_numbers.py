@@ -110,7 +110,6 @@ SPECTRUM = {"sigma": None, "radius": None, "eta": None, "m0": 1e-12, "m2": 1e-3,
 SPECTRAL = {"surface": SPECTRUM, "heights": None, "ensemble": {"n_asperities": None, "sampler": None}}
 LISTED = {"heights": None, "contact": {"separations": [reduced([0, 1, 3]) - 0.5]}}
 SUMMITS = {"heights": [0.0, 1e-6, 3e-6], "radii": [1e-5, 2e-5, 3e-5], "resample": "false"}
-PLACED = SUMMITS | {"x": [0.0, 1e-4, 2e-4], "y": [0.0, 2e-4, 1e-4]}
 SERIES = {"law": "'series'", "edges": [0.0, 5.0, 20.0], "coefficients": "[[1.0, 0.5], [1.5]]"}
 RAMP = 1 + 0.5 * (2 * TOP / 5 - 1)
 KE = {"law": "'kogut-etsion'", "critical": 0.05}
@@ -222,9 +221,6 @@ ROWS = [
     ("summits.radii", [1e-5, 2e-5, 4e-5], {**LISTED, "summits": SUMMITS}, simulated(), 2 * F),
     ("summits.ratios", [1.0, 2.0, 9.0], {**LISTED, "summits": SUMMITS | {"radii": None}}, simulated(), 3 * F),
     ("summits.resample", "false", {**LISTED, "summits": SUMMITS}, simulated("contacts"), 1),
-    ("summits.x", [0.0, 1e-4, 3e-4], {**LISTED, "summits": PLACED}, lambda s: s.curvature.places[0][2], 3e-4),
-    ("summits.y", [0.0, 1e-4, 3e-4], {**LISTED, "summits": PLACED}, lambda s: s.curvature.places[1][1], 1e-4),
-    ("summits.aspect", 4.0, {**LISTED, "summits": PLACED}, lambda s: s.curvature.sides(1e-6)[0], 2e-3),
     ("contact.separations", [TOP - 1.0], {}, simulated(), UNIT),
     ("contact.datum", "'surface'", SPECTRAL, lambda s: s.separations[0],
      H - mean_and_std(5.0)[0] / mean_and_std(5.0)[1]),

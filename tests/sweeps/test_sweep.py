@@ -271,10 +271,6 @@ def test_what_nobody_gave_follows():
 
 
 MISTAKES = [
-    (
-        {"interaction": [{"reference": "body"}, {"reference": "located"}]},
-        "^sweep: the points differ in separations or quantities",
-    ),
     ({GAMMA: [1, -3, 5]}, "negative from s = 0.2877.*at grading.gamma = -3"),
     ({"grading.gama": [1]}, "grading.gama: unknown key.*at grading.gama = 1"),
     ({"contact.separations": [[1]]}, "must be the same for all points"),

@@ -13,9 +13,9 @@ from scipy.sparse.linalg import LinearOperator, gmres
 from scipy.spatial import cKDTree
 
 from analytic.arrays import Array, Ints
-from mcgw.sampling.located.spots import Grid, Spots, field_beyond_point
-from mcgw.scene.values import BALANCED
+from mcgw.elasticity.spots import Grid, Spots, field_beyond_point
 
+_BALANCED = 1e-11  # what may be left over, of the deepest penetration and of the load
 _STEPS, _SHORTEST, _MEMORY = 60, 2**-7, 4  # a step may leave more over than the last, not than the last four
 _KRYLOV_CLOSE, _KRYLOV, _RESTARTS = 1e-10, 100, 5
 _DENSE = 2500  # spots, beyond which Fourier series sum faster than a matrix
@@ -35,7 +35,7 @@ class State:
     short : float
         Load that is missing, of the load that is wanted.
     field, by_radii : ndarray
-        Of each pair: see `mcgw.sampling.located.spots.field_beyond_point`.
+        Of each pair: see `mcgw.elasticity.spots.field_beyond_point`.
     """
 
     separation: float
@@ -53,7 +53,7 @@ class State:
     @property
     def converged(self) -> bool:
         """Whether nothing that counts is left over, of the deepest penetration and of the load."""
-        return self.residual < BALANCED
+        return self.residual < _BALANCED
 
     @property
     def size(self) -> float:

@@ -12,9 +12,7 @@ import numpy as np
 from scipy import fft
 from scipy.special import erfc
 
-from analytic import quantity_of
 from analytic.arrays import Array, Ints, Marks
-from mcgw.scene.scene import Scene
 
 # Two summits at one place are in neutral balance, whichever of them carries how much, if their fields are
 # those of a contact whose squared radius is this times the sum of theirs.
@@ -79,52 +77,6 @@ class HertzSpots:
     def only(self, which: Marks) -> "HertzSpots":
         """Some of them."""
         return HertzSpots(self.heights[which], self.radii[which], self.E_star)
-
-
-@dataclass(frozen=True)
-class LawSpots:
-    """Contacts under the law, the grading and the radii of a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-        Only asperities are taken from it, on the way in.
-    heights : ndarray
-        Of the summits about their mean, m, shape (n,).
-    ratios : ndarray or None
-        Their radii over the surface's, where they have their own.
-    """
-
-    scene: Scene
-    heights: Array
-    ratios: Array | None
-
-    @property
-    def E_star(self) -> float:  # noqa: N802 - as above
-        """Composite modulus of the half-space, Pa."""
-        return self.scene.surface.E_star
-
-    def load(self, penetration: Array) -> Array:
-        """Load of each, N."""
-        return self._each("load", penetration)
-
-    def slope(self, penetration: Array) -> Array:
-        """Derivative of the load by the penetration, N/m."""
-        return self._each("load_slope", penetration)
-
-    def squared_radius(self, penetration: Array) -> Array:
-        """Squared radius of each contact, m^2."""
-        return self._each("area", penetration) / math.pi
-
-    def only(self, which: Marks) -> "LawSpots":
-        """Some of them."""
-        return LawSpots(self.scene, self.heights[which], None if self.ratios is None else self.ratios[which])
-
-    def _each(self, name: str, penetration: Array) -> Array:
-        surface = self.scene.surface
-        s = self.heights / surface.sigma
-        h, e = s - penetration / surface.sigma, self.scene.modulus(s)
-        return quantity_of(name).scale(surface) * self.scene.ways.term(name, h, s, e, self.ratios)
 
 
 def field_beyond_point(squared_distance: Array, squared_radii: Array) -> tuple[Array, Array]:

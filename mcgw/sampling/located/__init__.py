@@ -1,1 +1,0 @@
-"""Summits at their places, each pressed down by all others."""
