@@ -92,8 +92,10 @@ def solve(
     if unnamed:
         raise TypeError(f"solve: {unnamed[0]!r} has no name: give one of {', '.join(f'{x}=' for x in asked)}")
     for key in changes:
-        if not (hasattr(scene, key) or hasattr(scene.surface, key)) and (meant := nearest(key, tuple(asked))):
-            raise TypeError(f"solve: there is no {key!r}; {meant.rstrip()}")
+        meant = nearest(key, [*asked, *Scene.__dataclass_fields__]).rstrip()
+        there = hasattr(scene, key) or hasattr(scene.surface, key)
+        if not there and meant.endswith(tuple(f" {x}?" for x in asked)):
+            raise TypeError(f"solve: there is no {key!r}; {meant}")
     if len(known) != 1:
         raise ValueError(f"solve: give one of {', '.join(asked)}, not {' and '.join(known) or 'none'}")
     ((key, value),) = known.items()

@@ -332,6 +332,8 @@ ROWS = [
     ("solve", "--scatter", "@s.toml --load 1N", "+ --scatter 0", refuses("--scatter = '0': give")),
     ("solve", "--scatter", "@s.toml --load 1N", "+ --scatter 1%", says("for std = 0.01 of the mean")),
     ("solve", "--surfaces", "@s.toml --load 1N -v", "+ --surfaces 9", says("specimens: 9 surfaces")),
+    ("solve", "--nominal-separation", "@s.toml --load 1N", "@s.toml --nominal-separation 1",
+     refuses("nominal_separation: it needs [interaction]")),
     ("solve", "--csv", "@s.toml --load 1N", "+ --csv x.csv",
      csv_columns("x.csv", "value", "infinite", "low_95", "high_95", "std")),
     ("export", "--output", INP, "+ -o b.inp", writes("b.inp", "b.q05.inp", instead=["a.inp"])),
@@ -460,7 +462,7 @@ def test_it_changes_what_is_said_or_written(command, option, words, given, check
 # Of a number on the command line: the last that is taken, and the first that is not.
 EXPORT = "export @s.toml --to moose -o t.csv"
 ENDS = [
-    ("sweep @s.toml --plan --over grading.gamma=1:2:", "1", "0"),
+    ("sweep @s.toml --plan --over grading.gamma=1:2:", "2", "1"),
     ("sweep @s.toml --plan --over grading.gamma=1:2:", "2", "1.5"),
     ("sweep @s.toml --plan --over grading.gamma=1:2:", "3", "1000001"),
     (f"{EXPORT} --pressures 1MPa:", "2MPa:2", "2MPa:1"),

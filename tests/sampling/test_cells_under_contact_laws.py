@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import SURFACE
-from oracles.accurately import exact_sums, worst_share
+from oracles.accurately import exact_sums, worst_error
 from test_cells_against_direct_sums import CLOSE_KINKS
 
 import analytic
@@ -160,4 +160,4 @@ def test_contacts_that_dwindle_towards_asperities_which_soften(make_scene):
         law=laws.KogutEtsion(critical=0.0446), heights=analytic.ExponentialHeights(), unload_from=-6.6,
         n_asperities=30, n_surfaces=60, quantities=("stiffness",), sampler="cells",
     )  # fmt: skip
-    assert worst_share(scene, 60) < 100
+    assert worst_error(scene, 60) < 1e-11

@@ -353,7 +353,7 @@ def one_more(name, where=(0, 0)):
 
 CHANGED = {
     "values": [one_more("load"), one_more("contacts", (3, 1)), one_more("separation", 1)],
-    "statistics": [one_more("drawn/block_mean")],
+    "statistics": [one_more("drawn/block_numbers_means", (0, 0, 0))],
 }
 
 

@@ -13,6 +13,7 @@ from scipy.optimize import brentq
 from scipy.special import binom, gammaln
 
 import analytic
+import mcgw
 from analytic.curvature import MEAN_CURVATURE
 from analytic.distribution import lattice, of_model
 
@@ -568,3 +569,16 @@ def test_sums_of_few_that_pull_by_plain_convolutions():
 def test_nobody_pays_for_it_who_does_not_ask():
     code = "import analytic, mcgw.scene.scene, sys; sys.exit('analytic.distribution' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_where_neighbours_stiffen_each_other_no_share_is_lost_beyond_the_pole():
+    """k / (1 + c k) with c < 0 turns negative for k beyond -1/c, which no surface reaches."""
+    surface = mcgw.Surface(1.37e-6, 13e-6, 3e8, 1e-5, 78.6e9)
+    stiff = mcgw.Interaction("mean-plane", bulk_modulus=1e12)
+    theory = mcgw.Scene(surface, separations=[1.0], interaction=stiff, n_surfaces=2, seed=1).theory
+    alone, c = theory.alone.distribution("stiffness", 1.0), theory.series("stiffness")
+    assert c < 0
+    k = alone.ppf([0.01, 0.3, 0.5, 0.9])
+    np.testing.assert_allclose(
+        theory.distribution("stiffness", 1.0).cdf(k / (1 + c * k)), [0.01, 0.3, 0.5, 0.9], rtol=1e-6
+    )
