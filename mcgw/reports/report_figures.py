@@ -23,7 +23,7 @@ from mcgw.scene.in_words import joint_text
 from mcgw.scene.scene import Scene
 from mcgw.statistics.comparison import Comparison
 
-_MOST_SURFACES, _MOST_HEIGHTS = 2000, 1e7  # drawn: more would move a band by less than a line is wide
+_MOST_SURFACES, _MOST_HEIGHTS = 2000, 3e6  # drawn at once for all pressures of a page
 _FEWEST = 20
 _PRESSURES = 7  # of the table and of the curves, straight where both scales are logarithmic
 _BAND, _OF_BAND = 0.9, " Band: 5 to 95 % of the specimens."

@@ -123,6 +123,7 @@ def test_points_and_prices_by_hand(scene):
 # What is needed
 
 
+@pytest.mark.slow
 def test_a_target_is_1_96_standard_errors(scene):
     """Against drawn scatter of 400 ensembles, to 15 %; of means by theory, to a sixteenth."""
     needs, n = Needs(scene), 2000
