@@ -221,8 +221,8 @@ def test_surfaces_within_the_margin_are_drawn_once(scene, monkeypatch):
 @pytest.mark.slow
 @pytest.mark.parametrize("level", [0.5, 0.95])
 def test_intervals_are_students(solved, level):
-    """Of a mean of drawn surfaces, as under laws whose exact law takes long; an exact mean has no width."""
-    scene = replace(solved[1].scene, law=analytic.KogutEtsion(critical=0.01))
+    """Of a mean of drawn surfaces, as under laws that pull; an exact mean has no width."""
+    scene = replace(solved[1].scene, law=analytic.DerjaguinMullerToporov(pull_off=0.01))
     drawn = mcgw.solve(scene, load=solved[1].amount)
     for name, x in drawn.surfaces.items():
         half = student.ppf((1 + level) / 2, x.size - 1) * x.std(ddof=1) / np.sqrt(x.size)
