@@ -31,7 +31,6 @@ DEARER = {
     "test_shown_numbers.py::test_loads_at_a_constant_ratio": "exact means at several loads",
     "test_solution.py::test_a_metal_under_an_elastic_law_is_not_said_to_be_within": "two loads",
     "test_solution.py::test_the_answer_is_the_mean_of_specimens": "exact means beside drawn ones",
-    "test_draws.py::test_pieces_of_a_huge_cell_lose_no_digit": "compiles the sums of a cell once more",
 }
 
 

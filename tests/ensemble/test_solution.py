@@ -280,6 +280,7 @@ def test_what_cannot_be_solved(scene):
         solutions(scene, "load", [1e12])
 
 
+@pytest.mark.slow
 def test_a_solution_of_too_few_contacts_has_no_interval(make_scene):
     """Of surfaces drawn: where the mean is exact, few do not matter."""
     scene = make_scene(n_surfaces=3, separations=(0.0,), law=analytic.KogutEtsion(critical=0.01))

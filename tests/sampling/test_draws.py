@@ -145,6 +145,7 @@ def piece_of_a_cell(start, stop):
     return w
 
 
+@pytest.mark.slow
 def test_pieces_of_a_huge_cell_lose_no_digit():
     """Each moment is the exact sum of its pieces, rounded once; without what the carry holds it is not."""
     n, orders = 6 * _PIECE + 77, (11, 6)
