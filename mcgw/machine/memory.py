@@ -68,23 +68,6 @@ def gibibytes(size: int) -> str:
     return f"{size / 2**30:.4g} GiB"
 
 
-def peak_growth(call: Callable[[], object]) -> float:
-    """Bytes of memory that a call takes at most on top of what there was (Linux; else nan)."""
-    try:
-        Path("/proc/self/clear_refs").write_text("5")  # reset the peak
-        before = _status("VmHWM")
-    except OSError:
-        call()
-        return float("nan")
-    call()
-    return float(_status("VmHWM") - before)
-
-
-def _status(key: str) -> int:
-    lines = Path("/proc/self/status").read_text().splitlines()
-    return next(int(line.split()[1]) * 1024 for line in lines if line.startswith(key))
-
-
 def aligned(*shape: int) -> NDArray[np.float64]:
     """Memory for an array of this shape, not filled: its first word begins a line of the cache.
 

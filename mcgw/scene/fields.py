@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 _CLEARLY = 1e-6  # no rounding makes such a modulus negative
 _BEYOND = 1e-16  # share of heights above those checked for negative moduli
-_ROUNDED = 16.0  # rounding of felt separations, so that cells do not depend on the last digit of an integral
 
 
 class LeftOut(int):

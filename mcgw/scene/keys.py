@@ -33,7 +33,7 @@ def _contact_laws() -> tuple[str, ...]:
     return (*by_name, "custom")
 
 
-_ANY, _POSITIVE, _NOT_NEGATIVE = Number(low=-math.inf), Number(), Number(zero=True)
+_ANY, _POSITIVE = Number(low=-math.inf), Number()
 _FILE = Text()
 YOUNG = Number("Pa", infinite=True)
 _RATIO = Number(low=1, advice="give the larger over the smaller, a number >= 1")

@@ -216,14 +216,6 @@ def _constants_of(law: str) -> tuple[Sequence[str], Sequence[str], Callable[...,
     return [f.name for f in known], [f.name for f in known if f.default is MISSING], by_name[law]
 
 
-def law_of_keys(given: Mapping[str, Any], problems: list[str]) -> ContactLaw:
-    """Read a law from keys; mistakes are noted and give Hertz's."""
-    section = Section("contact", {"law": None, **given}, problems, KEYS["contact"])
-    law = contact_law(section)
-    section.finish()
-    return law
-
-
 def contact_law_table(law: ContactLaw) -> dict[str, Any]:
     """Keys that describe a law other than Hertz's."""
     if law.name != "custom":

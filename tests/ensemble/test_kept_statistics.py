@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import scipy.stats
 from conftest import SURFACE
+from oracles.memory_growth import peak_growth
 from oracles.new_trailer import trailer_again
 
 import mcgw
@@ -19,7 +20,6 @@ from mcgw.ensemble.drawing import drawn as drawn_by
 from mcgw.ensemble.pooled import Pooled
 from mcgw.errors import StoreError
 from mcgw.jobs.running import run
-from mcgw.machine.memory import peak_growth
 from mcgw.store.ensembles import read_attributes, verify
 
 H = [0.0, 1.0, 2.5]

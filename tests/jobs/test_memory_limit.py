@@ -9,6 +9,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from oracles import memory_growth
+from oracles.memory_growth import peak_growth
 from oracles.said import without_notes
 
 import mcgw
@@ -18,7 +20,7 @@ from mcgw.errors import StoreError
 from mcgw.jobs.running import run
 from mcgw.machine import child_process, memory
 from mcgw.machine.child_process import end_with
-from mcgw.machine.memory import check_memory, memory_available, peak_growth
+from mcgw.machine.memory import check_memory, memory_available
 from mcgw.sweeps.pooling import Pooling
 
 resource = pytest.importorskip("resource")
@@ -232,6 +234,6 @@ def test_a_process_ends_when_the_other_end_of_its_pipe_is_closed(linux, waits, m
 
 def test_growth_that_the_system_does_not_tell_is_none(monkeypatch):
     called = []
-    monkeypatch.setattr(memory, "_status", lambda _: (_ for _ in ()).throw(OSError))
+    monkeypatch.setattr(memory_growth, "_status", lambda _: (_ for _ in ()).throw(OSError))
     assert np.isnan(peak_growth(lambda: called.append(1)))
     assert called == [1]

@@ -11,12 +11,12 @@ import h5py
 import numpy as np
 import pytest
 import scipy.stats
+from oracles.memory_growth import peak_growth
 
 import analytic
 import mcgw
 from mcgw.ensemble.simulation import Values
 from mcgw.jobs.running import run
-from mcgw.machine.memory import peak_growth
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.promises import SAMPLERS
 from mcgw.scene.scene import Scene
