@@ -236,15 +236,13 @@ class Table(Law):
         below, above = (self.above, self.below) if falls else (self.below, self.above)
         ends = np.array([float(forward(end)) for end in np.clip(self.ends, -_FAR, _FAR).tolist()])
         ends[np.abs(ends) > np.sqrt(_FAR)] *= np.inf
-        ends, x = ends[turned], forward(self.x)[turned]
-        ends = np.where([ends[0] <= x[-1], ends[1] >= x[0]], ends, (-np.inf, np.inf))  # beyond a pole
         return replace(
             self,
-            x=x,
+            x=forward(self.x)[turned],
             below=below[turned],
             above=above[turned],
             mean_and_variance=moments,
-            ends=tuple(ends.tolist()),
+            ends=tuple(ends[turned].tolist()),
             again=lambda: self._other.mapped(forward, falls=falls),
         )
 

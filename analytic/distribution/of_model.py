@@ -175,7 +175,13 @@ def interacting_distribution(model: Any, quantity: str, h: float) -> Law:
         return distribution_of(alone, "load", h).mapped(lambda p: h - c * p, falls=c > 0)
     law = distribution_of(alone, quantity, h)
     series = model.series(quantity)
-    return law.mapped(lambda k: k / (1 + series * k)) if series else law
+
+    def together(alone: Array) -> Array:
+        """Infinite from the pole on, which no surface reaches."""
+        with np.errstate(divide="ignore"):
+            return np.asarray(np.divide(alone, np.maximum(1 + series * alone, 0.0)))
+
+    return law.mapped(together) if series else law
 
 
 def _along(
