@@ -23,7 +23,7 @@ from analytic.arrays import Array
 from mcgw.machine.in_threads import in_threads
 from mcgw.machine.memory import kept
 from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, gauss_legendre, product
-from mcgw.sampling.spacing import DIGITS, refined, spaced
+from mcgw.sampling.spacing import refined, spaced
 from mcgw.sampling.stretches import SMALLEST, begins_and_breaks, losses
 from mcgw.scene.scene import Scene
 from mcgw.scene.values import EXACT
@@ -125,7 +125,7 @@ def edges_before_grading(scene: Scene, *, split: bool = True) -> Array:
 def _edges(law: HeightLaw, n: int, *asked: bytes) -> Array:
     """Edges that suit the height law and the contact law, whatever the grading."""
     begins, breaks, marks = (np.frombuffer(part) for part in asked)
-    return refined(law, begins, spaced(law, n, DIGITS, begins, breaks, marks))
+    return refined(law, begins, spaced(law, n, begins, breaks, marks))
 
 
 def cut(scene: Scene, mesh: Mesh, starts: Array) -> Mesh:

@@ -12,7 +12,7 @@ from analytic import quantity_of
 from analytic.arrays import Array, Ints
 from mcgw.sampling.cells import edges_before_grading
 from mcgw.sampling.samplers import name_of
-from mcgw.sampling.spacing import DIGITS, expected_orders, price
+from mcgw.sampling.spacing import expected_orders, price
 from mcgw.sampling.stretches import begins_and_breaks
 from mcgw.scene.scene import Scene
 
@@ -77,7 +77,7 @@ def _orders(scene: Scene, edges: Array) -> tuple[Ints, Ints]:
     if not edges.size:
         return np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64)
     begins, _ = begins_and_breaks(scene, float(edges[0]), float(edges[-1]))
-    return expected_orders(scene.heights, scene.n_asperities, DIGITS, begins, edges)
+    return expected_orders(scene.heights, scene.n_asperities, begins, edges)
 
 
 def _families(scene: Scene) -> int:

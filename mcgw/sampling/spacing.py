@@ -40,7 +40,7 @@ def _widest(law: HeightLaw, a: float, distance: float) -> float:
     return width
 
 
-def spaced(law: HeightLaw, n: int, digits: float, begins: Array, breaks: Array, marks: Array) -> Array:
+def spaced(law: HeightLaw, n: int, begins: Array, breaks: Array, marks: Array) -> Array:
     """Marks, and cells where contacts begin or change their law such that drawing costs the least."""
     low = marks[:-1]
     k = np.searchsorted(begins, low)
@@ -48,7 +48,7 @@ def spaced(law: HeightLaw, n: int, digits: float, begins: Array, breaks: Array, 
     before = low - np.concatenate([[-np.inf], begins])[k]
     some = root | (np.isin(low, breaks) & np.isfinite(before))
     gaps = Gaps(low[some], marks[1:][some], before[some], root[some])
-    return np.unique(np.concatenate([marks, cuts(law, n, gaps, digits)]))
+    return np.unique(np.concatenate([marks, cuts(law, n, gaps)]))
 
 
 def refined(law: HeightLaw, begins: Array, marks: Array) -> Array:
@@ -111,7 +111,7 @@ class _Cells:
         return np.asarray(self.width <= self.distance * (1 + 1e-9))
 
 
-def cuts(law: HeightLaw, n: int, gaps: Gaps, digits: float = DIGITS) -> Array:
+def cuts(law: HeightLaw, n: int, gaps: Gaps) -> Array:
     """Cut gaps into cells.
 
     Parameters
@@ -122,8 +122,6 @@ def cuts(law: HeightLaw, n: int, gaps: Gaps, digits: float = DIGITS) -> Array:
         Asperities of a surface; none asks for the fewest cells.
     gaps : Gaps
         What to cut.
-    digits : float, optional
-        That the moments must give.
 
     Returns
     -------
@@ -134,20 +132,20 @@ def cuts(law: HeightLaw, n: int, gaps: Gaps, digits: float = DIGITS) -> Array:
     for number in np.unique(fewest).tolist():
         some = gaps.take(fewest == number)
         if number == 1:
-            some = some.take(_worth_cutting(law, n, some, digits))
-        found.append(_cut(law, n, some, number, digits))
+            some = some.take(_worth_cutting(law, n, some))
+        found.append(_cut(law, n, some, number))
     return np.concatenate(found)
 
 
-def _worth_cutting(law: HeightLaw, n: int, gaps: Gaps, digits: float) -> NDArray[np.bool_]:
+def _worth_cutting(law: HeightLaw, n: int, gaps: Gaps) -> NDArray[np.bool_]:
     """Whether two cells might cost less than one, if an asperity in them cost the least there is: 1."""
     above, beyond = law.sf(gaps.low), law.sf(gaps.high)
     whole = _Cells(gaps.low, gaps.high - gaps.low, gaps.before, above, beyond)
     two = 2 * _CELL + n * (above - beyond)
-    return np.asarray(_prices(law, n, whole, gaps.root, digits) > two * (1 - _TIE))
+    return np.asarray(_prices(law, n, whole, gaps.root) > two * (1 - _TIE))
 
 
-def _cut(law: HeightLaw, n: int, gaps: Gaps, fewest: int, digits: float) -> Array:
+def _cut(law: HeightLaw, n: int, gaps: Gaps, fewest: int) -> Array:
     """Cut gaps that need so many cells: arrays are (gaps, growths, cells), the highest cell first."""
     low, high, before = (part[:, None, None] for part in (gaps.low, gaps.high, gaps.before))
     root = gaps.root[:, None, None]
@@ -162,9 +160,9 @@ def _cut(law: HeightLaw, n: int, gaps: Gaps, fewest: int, digits: float) -> Arra
         beyond=above[..., :-1],
     )
     lowest = _Cells(low, length * rungs[:, fewest - 1 :], before, least, above[..., fewest - 1 :])
-    uppers = np.cumsum(np.where(upper.allowed, _prices(law, n, upper, np.False_, digits), np.inf), axis=2)
+    uppers = np.cumsum(np.where(upper.allowed, _prices(law, n, upper, np.False_), np.inf), axis=2)
     uppers = np.concatenate([np.zeros((*uppers.shape[:2], 1)), uppers], axis=2)[..., fewest - 1 :]
-    prices = uppers + np.where(lowest.allowed, _prices(law, n, lowest, root, digits), np.inf)
+    prices = uppers + np.where(lowest.allowed, _prices(law, n, lowest, root), np.inf)
     prices = prices.reshape(len(prices), len(_GROWTHS) * (_MORE + 1))
     cheapest = np.argmax(prices <= prices.min(axis=1, keepdims=True, initial=np.inf) * (1 + _TIE), axis=1)
     growth, more = np.divmod(cheapest, _MORE + 1)  # the first one of the cheapest: rounding breaks no tie
@@ -178,17 +176,13 @@ def _rungs(most: int) -> Array:
     return np.array([np.cumprod([1.0, *[1 / growth] * (most - 1)]) for growth in _GROWTHS])
 
 
-def _prices(
-    law: HeightLaw, n: int, cells: _Cells, root: NDArray[np.bool_] | np.bool_, digits: float
-) -> Array:
+def _prices(law: HeightLaw, n: int, cells: _Cells, root: NDArray[np.bool_] | np.bool_) -> Array:
     """What the asperities of a surface cost in each cell; contacts begin where it starts, or not."""
-    plain, rooted = _orders(law, n, cells, root, digits)
+    plain, rooted = _orders(law, n, cells, root)
     return np.asarray(_CELL + n * (cells.above - cells.beyond) * price(plain, rooted))
 
 
-def _orders(
-    law: HeightLaw, n: int, cells: _Cells, root: NDArray[np.bool_] | np.bool_, digits: float
-) -> tuple[Array, Array]:
+def _orders(law: HeightLaw, n: int, cells: _Cells, root: NDArray[np.bool_] | np.bool_) -> tuple[Array, Array]:
     """How many T_j and R_j each cell should need: no whole numbers."""
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         bend = np.nan_to_num(np.abs(law.log_ratio(cells.start, cells.width)), nan=np.inf)
@@ -196,18 +190,18 @@ def _orders(
         touching, expected = n * cells.above, n * (cells.above - cells.beyond)
         reach = np.where(np.isfinite(cells.distance), cells.distance, 0.0) + cells.width
         share = np.log10(np.where(touching > SURE, expected / touching * np.sqrt(reach), 1.0))
-        plain = (digits + share) / _rate(np.minimum(1 + 2 * cells.distance / cells.width, 2 / bend))
-        rooted = np.where(root, 1 + (digits + share) / _rate(2 / bend), 0.0)
+        plain = (DIGITS + share) / _rate(np.minimum(1 + 2 * cells.distance / cells.width, 2 / bend))
+        rooted = np.where(root, 1 + (DIGITS + share) / _rate(2 / bend), 0.0)
     return plain, rooted
 
 
-def expected_orders(law: HeightLaw, n: int, digits: float, begins: Array, edges: Array) -> tuple[Ints, Ints]:
+def expected_orders(law: HeightLaw, n: int, begins: Array, edges: Array) -> tuple[Ints, Ints]:
     """About how many T_j and R_j each cell will need: what is known before any law is resolved on it.
 
     Parameters
     ----------
-    law, n, digits
-        As of `cuts`; `digits` one number or one a cell.
+    law, n
+        As of `cuts`.
     begins, edges : ndarray
         Where contacts begin, and where cells do; increasing.
 
@@ -221,7 +215,7 @@ def expected_orders(law: HeightLaw, n: int, digits: float, begins: Array, edges:
     before = low - np.concatenate([[-np.inf], begins])[k]
     root = np.append(begins, np.inf)[k] == low
     cells = _Cells(low, np.diff(edges), before, above[:-1], above[1:])
-    plain, rooted = (np.maximum(np.ceil(x), 0.0) for x in _orders(law, n, cells, root, digits))
+    plain, rooted = (np.maximum(np.ceil(x), 0.0) for x in _orders(law, n, cells, root))
     return np.maximum(plain, 1.0).astype(np.int64), rooted.astype(np.int64)
 
 
