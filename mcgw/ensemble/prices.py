@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import ceil, inf, nan
-from typing import Any
 
 import numpy as np
 from scipy.special import ndtri
@@ -127,11 +126,9 @@ class Way:
         return self.set_up + n_surfaces * self.each
 
 
-def changes_of(name: str) -> dict[str, Any]:
-    """Fields of a scene that draws by a way."""
-    if name == SOLVE:
-        return {"sampler": "tail"}
-    return {"sampler": name}
+def sampler_of(way: str) -> str:
+    """Name of the sampler by which a way draws."""
+    return "tail" if way == SOLVE else way
 
 
 def sampled_ways(scene: Scene) -> list[str]:
@@ -143,17 +140,17 @@ def sampled_ways(scene: Scene) -> list[str]:
 
 def _fits(scene: Scene, name: str) -> bool:
     try:
-        scene.replace(**changes_of(name))
+        scene.replace(sampler=sampler_of(name))
     except SceneError:
         return False
-    return scene.curvature is None or promise_of(changes_of(name)["sampler"]).own_radii
+    return scene.curvature is None or promise_of(sampler_of(name)).own_radii
 
 
 def wants_of(name: str) -> tuple[str, ...]:
     """What a way can give: theory has no law of surfaces, nor has a sampler whose laws are a little off."""
     if name in _GIVES:
         return _GIVES[name]
-    if promise_of(changes_of(name)["sampler"]).spends:
+    if promise_of(sampler_of(name)).spends:
         return ("mean", "std")
     return ("mean", "std", "quantile", "distribution", "values")
 
@@ -180,7 +177,7 @@ class Advice:
             of = 'surfaces["conductance"].mean()' if self.way.draws else 'value["conductance"]'
             return f"{solved}.{of}"
         if self.way.draws:
-            changes = {"separations": h, **changes_of(self.way.name), "n_surfaces": self.n_surfaces}
+            changes = {"separations": h, "sampler": sampler_of(self.way.name), "n_surfaces": self.n_surfaces}
             return f"mcgw.simulate(scene, {', '.join(f'{key}={x!r}' for key, x in changes.items())})"
         law = f'distribution("{q}", {h:g})'
         found = {"quantile": f"{law}.ppf({PROBABILITY})", "distribution": law}

@@ -16,7 +16,7 @@ import numpy as np
 from analytic.arrays import Array
 from analytic.at_load import specimen_means
 from mcgw.ensemble.intervals import laws_are_quick
-from mcgw.ensemble.prices import PROBABILITY, SOLVE, Needs, Way, changes_of, wants_of
+from mcgw.ensemble.prices import PROBABILITY, SOLVE, Needs, Way, sampler_of, wants_of
 from mcgw.ensemble.simulation import simulate
 from mcgw.ensemble.solution import solve
 from mcgw.sampling.asperities import worst_of_values
@@ -164,8 +164,13 @@ class Answers:
             return Task(
                 name, n_surfaces, lambda s: solved(s).surfaces["conductance"].mean(), self._off_at_load
             )
-        changes = {**changes_of(name), "n_surfaces": n_surfaces}
-        return Task(name, n_surfaces, lambda s: simulate(s, **changes)[self.q][:, 0], self.of_sample)
+        sampler = sampler_of(name)
+        return Task(
+            name,
+            n_surfaces,
+            lambda s: simulate(s, sampler=sampler, n_surfaces=n_surfaces)[self.q][:, 0],
+            self.of_sample,
+        )
 
 
 def moved(scene: Scene, number: int) -> Scene:
@@ -177,7 +182,7 @@ def moved(scene: Scene, number: int) -> Scene:
 def sized(answers: Answers, name: str, scene: Scene, share: float) -> list[Task]:
     """A way at all sizes of which 16 repeats fit into its share of seconds, each run before."""
     tasks: list[Task] = []
-    rough = expected(scene.replace(**changes_of(name))).seconds
+    rough = expected(scene.replace(sampler=sampler_of(name))).seconds
     for size in _SIZES:
         each = tasks[-1].seconds[-1] / tasks[-1].n_surfaces if size >= _RELIABLE else rough
         if REPEATS * size * each > share:
@@ -197,7 +202,7 @@ def prices(scene: Scene, points: Sequence[Point], names: Sequence[str]) -> list[
     ways = [Way(p.way, p.want, max(tested[p.way], p.rms), p.seconds, 0.0) for p in still]
     for name in names:
         own = [p for p in points if p.way == name]
-        asked, worst = scene.replace(**changes_of(name)), 0.0
+        asked, worst = scene.replace(sampler=sampler_of(name)), 0.0
         rough = expected(asked).seconds
         if "values" in wants_of(name) and expected(asked).draws < _MOST_LISTED:
             worst = worst_of_values(asked, _LISTED)
