@@ -232,28 +232,29 @@ def _surface(
     touching = Summits.of(scene, *summits_drawn(drawn, sampler, number))
     whole: Summits | None = None
     rows = []
+
+    def found(on: Summits, value: float) -> float | None:
+        """Look among the summits drawn, or on all heights of the surface."""
+        if sunk is not None:
+            return on.nominal(value, sunk, drawn.lowest if on is touching else LOWEST)
+        search = on.largest_separation if on is touching else on.separation_anywhere
+        return search(q, value / q.scale(scene.surface), drawn.lowest)
+
     for value in values:
-        target = value if sunk is not None else value / q.scale(scene.surface)
-        told = f"{q.name} = {value:g} {q.unit}" if sunk is None else f"nominal_separation = {value:g}"
         on = touching
-        if sunk is None:
-            h = on.largest_separation(q, target, drawn.lowest)
-        else:
-            h = on.nominal(target, sunk, drawn.lowest)
+        h = found(on, value)
         if h is None:  # rare: it lies below what was drawn
             whole = Summits.of(scene, *summits(drawn, number)) if whole is None else whole
             on = whole
             if not on.s.size:
                 raise ValueError(f"surface {number} has no asperity; increase n_asperities")
-            if sunk is None:
-                h = on.separation_anywhere(q, target, drawn.lowest)
-            else:
-                h = on.nominal(target, sunk, LOWEST)
+            h = found(on, value)
         negative = on.s[on.modulus < 0]
         if h is None and not negative.size:
-            raise ValueError(
-                f"{told}: surface {number} does not reach it; give {'less' if sunk is None else 'more'}"
-            )
+            told, give = f"{q.name} = {value:g} {q.unit}", "less"
+            if sunk is not None:
+                told, give = f"nominal_separation = {value:g}", "more"
+            raise ValueError(f"{told}: surface {number} does not reach it; give {give}")
         if h is None or (scene.negative == "error" and np.any(negative > h)):
             raise ValueError(NEGATIVE.format(q.name, value, q.unit, f"surface {number}", negative.max()))
         rows.append({"separation": h, **on.sums(quantities_at(scene), h)})
