@@ -335,14 +335,14 @@ def test_a_disk_that_is_full(tmp_path, monkeypatch):
 
 
 @pytest.mark.slow
-def test_by_processes_of_which_some_are_killed(tmp_path, expected):
+def test_by_processes_of_which_one_is_killed(tmp_path, expected):
+    """All blocks in hand are lost with it; a second kill might meet one again, which ends the sweep."""
     random, killed = np.random.default_rng(5), []
 
     def kill(done, total):
-        if done and len(killed) < 2 and random.random() < 0.5:  # fewer than make a block a suspect for good
-            alive = [pid for pid in jobs._pool._processes or () if pid not in killed]
-            killed.extend(alive[:1])
-            for pid in alive[:1]:
+        if done and not killed and random.random() < 0.5:
+            killed.extend(list(jobs._pool._processes or ())[:1])
+            for pid in killed:
                 os.kill(pid, signal.SIGKILL)
 
     with Jobs(2) as jobs:
