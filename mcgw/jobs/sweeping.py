@@ -56,10 +56,11 @@ def sweep(
 
     Points whose heights have the same law, number and seed share their surfaces, whatever their surfaces'
     parameters, gradings and contact laws are: these are drawn once, and differences between such points
-    have no sampling noise. A point that needs other cells gets the edges of all (`Scene.edges`); drawn
-    alone it has the same surfaces, and each the same bits. Of eight exponential gradings or more under
-    Hertz's law only the softest and the stiffest are computed, for sums are linear in gamma: the others
-    have the means and deviations of single runs to 1e-12.
+    have no sampling noise. Where points need other cells of heights, as tables with kinks and laws that
+    yield do, all are drawn on cells with the edges of all: there a point drawn alone has other surfaces, else
+    the same bits. Of eight exponential gradings or more under Hertz's law only the softest and the stiffest
+    are computed, for sums are linear in gamma: the others have the means and deviations of single runs to
+    1e-12.
 
     Parameters
     ----------

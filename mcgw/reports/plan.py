@@ -151,7 +151,6 @@ def sweep_plan_text(asked: Asked) -> str:
         f"  groups      {len(groups)} that share their surfaces",
         f"  surfaces    {sum(group.n_surfaces for group in groups)}, with {drawn:.4g} asperities that touch",
         f"  computed    {computed} scenes; the others are weighted means of them",
-        f"  edges       {sum(len(group.scenes[0].edges) for group in groups)} given to points by others",
         f"  time        about {in_words(_seconds(groups))} on this machine",
     ]
     return "\n".join(lines)

@@ -12,6 +12,7 @@ cells: those few are the extras.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -82,13 +83,15 @@ class Mesh:
         return np.asarray(u * chebyshev.chebval(2 * u - 1, self.stretch[:, cell], tensor=False))
 
 
-def mesh_of(scene: Scene, *, split: bool = True) -> Mesh:
+def mesh_of(scene: Scene, given: Sequence[float] = (), *, split: bool = True) -> Mesh:
     """Cut the contacting heights of a scene into cells.
 
     Parameters
     ----------
     scene : Scene
         Its separations, grading, height law and number of asperities are used.
+    given : sequence of float, optional
+        Edges of the cells of other scenes, which are to be edges here too: then no cell is cut further.
     split : bool, optional
         Cut crowded cells further, so that each needs fewer moments.
 
@@ -97,7 +100,7 @@ def mesh_of(scene: Scene, *, split: bool = True) -> Mesh:
     Mesh
         With every separation and every break of the grading on an edge.
     """
-    edges = edges_before_grading(scene, split=split)
+    edges = edges_before_grading(scene, given, split=split)
     if not edges.size:
         return no_cells(scene)
     if _steep(scene.modulus):
@@ -105,17 +108,16 @@ def mesh_of(scene: Scene, *, split: bool = True) -> Mesh:
     return _mesh(scene.heights, float(scene.lowest), edges.tobytes())
 
 
-def edges_before_grading(scene: Scene, *, split: bool = True) -> Array:
+def edges_before_grading(scene: Scene, given: Sequence[float] = (), *, split: bool = True) -> Array:
     """The edges of the cells of `mesh_of`, before those that a grading with kinks takes; none: no cell."""
     law = scene.heights
     low, high = _range(law, _RARE / scene.n_asperities, scene.lowest)
     if not low < high:
         return np.empty(0)
     begins, breaks = begins_and_breaks(scene, low, high)
-    given = np.array(scene.edges)
     marks = np.unique([low, *begins, *breaks, *bends(scene.modulus, low, high), *law.breaks, *given, high])
     marks = marks[(low <= marks) & (marks <= high)]
-    if given.size:
+    if len(given):
         return refined(law, begins, marks)
     asked = (part.tobytes() for part in (begins, breaks, marks))
     return _edges(law, scene.n_asperities if split else 0, *asked)

@@ -10,7 +10,7 @@ name            cells        numbers in them  moments     for
 ==============  ===========  ===============  ==========  =============================================
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
@@ -99,9 +99,9 @@ def tail_of(scene: Scene) -> Counted:
     return _counted("tail", scene, no_cells(scene))
 
 
-def cells_of(scene: Scene) -> Counted:
-    """Prepare ``cells``."""
-    return _counted("cells", scene, mesh_of(scene))
+def cells_of(scene: Scene, given: Sequence[float] = ()) -> Counted:
+    """Prepare ``cells``, with the edges of other scenes if they are given."""
+    return _counted("cells", scene, mesh_of(scene, given))
 
 
 def _counted(name: str, scene: Scene, mesh: Mesh) -> Counted:

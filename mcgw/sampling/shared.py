@@ -2,6 +2,7 @@
 
 Where a height lies in its cell is drawn without a look at gradings or contact laws. So scenes whose heights
 have the same law, number, seed and cells have the same surfaces, and each has the bits that it has alone.
+Where their own cells differ, all take the edges of all.
 """
 
 from collections.abc import Sequence
@@ -81,36 +82,40 @@ def to_be_shared(scene: Scene) -> tuple[Any, ...] | None:
     return *drawn, name, scene.lowest, scene.heights, scene.curvature, powers
 
 
-def on_common_cells(scenes: Sequence[Scene]) -> list[Scene]:
-    """Scenes that are to be shared with such `edges` that all have the same cells.
+def common_edges(scenes: Sequence[Scene]) -> tuple[float, ...] | None:
+    """Return edges that give scenes which share their surfaces the same cells.
 
-    They stay as they are if they have that already. What no cells resolve is to be drawn one by one.
+    Returns
+    -------
+    tuple of float or None
+        Nothing where their own cells are the same; None where no cells resolve one of them, and each asperity
+        is to be drawn by itself.
     """
-    alike = list(scenes)
-    if name_of(alike[0]) != "cells":
-        return alike
+    if name_of(scenes[0]) != "cells":
+        return ()
+    common: tuple[float, ...] = ()
     while True:
         try:
-            edges = [_edges(scene) for scene in alike]
+            edges = [_edges(scene, common) for scene in scenes]
         except UnresolvedError:
             if any(scene.sampler != "auto" for scene in scenes):
                 raise
-            return [scene.replace(sampler="tail") for scene in scenes]
+            return None
         if all(np.array_equal(each, edges[0]) for each in edges):
-            return alike
-        common = np.unique(np.concatenate(edges))
-        alike = [scene.replace(edges=common) for scene in alike]
+            return common
+        common = tuple(np.unique(np.concatenate(edges)).tolist())
 
 
-def _edges(scene: Scene) -> NDArray[np.float64]:
+def _edges(scene: Scene, given: Sequence[float]) -> NDArray[np.float64]:
     """Of its cells; the response may need more of them than the mesh has, but for plain gradings."""
     plain = scene.hertzian and isinstance(scene.modulus, Homogeneous | Exponential)
-    return (mesh_of(scene) if plain else cells_of(scene).mesh).edges
+    return (mesh_of(scene, given) if plain else cells_of(scene, given).mesh).edges
 
 
-def shared(scenes: Sequence[Scene]) -> Shared:
-    """Scenes on common cells, ready to draw; one alone may be any."""
-    if len(scenes) == 1:
+def shared(scenes: Sequence[Scene], edges: Sequence[float] = ()) -> Shared:
+    """Prepare to draw scenes on cells with these common edges; one alone may be any."""
+    if len(scenes) == 1 and not edges:
         return Shared((sampler_of(scenes[0]),))
-    make = cells_of if name_of(scenes[0]) == "cells" else tail_of
-    return Shared(tuple(make(scene) for scene in scenes))
+    if name_of(scenes[0]) == "cells":
+        return Shared(tuple(cells_of(scene, edges) for scene in scenes))
+    return Shared(tuple(map(tail_of, scenes)))

@@ -31,7 +31,7 @@ _OBJECTS = ("law", "curvature")  # which may be words, too
 _OF_YIELD = ("hardness", "poisson")
 _QUANTITIES = ("load", "area", "stiffness", "contacts")
 # Keys of [ensemble] that are no values of a scene as they are read.
-_DERIVED = ("max_surfaces", "n_surfaces", "n_asperities", "seed", "edges", "left_out")
+_DERIVED = ("max_surfaces", "n_surfaces", "n_asperities", "seed", "left_out")
 
 
 def of_arguments(**given: Any) -> Values:
@@ -250,7 +250,6 @@ def _ensemble(section: Section, surface: Surface | None, seed: Callable[[], int 
     """How many surfaces, and how they are drawn; numbers that nobody gave are marked."""
     most, number, n = section.read_all(("max_surfaces", "n_surfaces", "n_asperities")).values()
     values = section.read_all(key for key in section.rows if key not in _DERIVED)
-    values["edges"] = tuple(sorted({s + 0.0 for s in section.read("edges") or ()}))  # -0.0 is 0.0
     values["n_surfaces"] = _number(section, "n_surfaces", most if number is None else number)
     values["n_asperities"] = _number(section, "n_asperities", n)
     if "seed" in section:

@@ -173,10 +173,6 @@ class Values:
         "how far the law of each value may be from the exact one, as the largest difference of distribution "
         "functions, 0 (default: exact) to 0.1: `auto` may then use `aggregate` for crowded cells, whose time "
         "does not grow with the number of asperities", 0.0)
-    edges: As["ArrayLike | None", tuple[float, ...]] = key("ensemble",
-        List(_ANY, 0, advice="give a list of finite heights s = z/sigma, or leave it out"), "[0.5, 1.5]",
-        "additional edges of cells, which `mcgw.sweep` shares between scenes. Scenes with the same cells and "
-        "seed have the same surfaces", [])
     uncertainty: As["Uncertainty | dict[str, Any] | None", Uncertainty | None] = key("surface", _ERRORS,
         '{sigma = "20 %", radius = "15 %", eta = "12 %"}',
         "standard errors of `sigma`, `radius`, `eta` (or of `m0`, `m2`, `m4`) and `E_star`, relative to the "

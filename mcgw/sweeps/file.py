@@ -16,7 +16,6 @@ and in ``/drawn``, from which the statistics follow::
     /drawn/groups         int64 (groups, 2)               surfaces drawn, and scenes computed, of each group
     /drawn/points         int64 (points, 3)               group, and one or two scenes of it (-1: one)
     /drawn/weights        float64 (points, 2)             of these, for what the modulus enters
-    /drawn/edges          float64 (edges, 2)              group, and edge that its points got from others
     /drawn/load_means     float64 (scenes, separations)   of all groups, one after the other
     /drawn/load_products  float64 (pairs, separations)    sums of products of deviations, all pairs of each
 
@@ -79,12 +78,10 @@ def _drawn(sweep: Sweep) -> Tables:
     size = [len(next(iter(one.means.values()))) for one in sweep.groups]
     points = [(place.group, *place.scenes, -1)[:3] for place in sweep.places]
     weights = [(*place.weights, 0.0)[:2] for place in sweep.places]
-    edges = [(g, s) for g, some in enumerate(sweep.edges) for s in some]
     tables: Tables = {
         "groups": np.array([(one.n, n) for one, n in zip(sweep.groups, size, strict=True)], dtype=np.int64),
         "points": np.array(points, dtype=np.int64),
         "weights": np.array(weights, dtype=np.float64),
-        "edges": np.array(edges, dtype=np.float64).reshape(-1, 2),
     }
     for one in map(Pooled.tables, sweep.groups):
         for name, values in one.items():
@@ -134,12 +131,10 @@ def open_sweep(path: str | Path, statistics: tuple[str, ...] = STATISTICS) -> Sw
             raise StoreError(f"{path}: damaged (digest mismatch of its data)")
         axes, document = Axes.from_text(said["axes"]), loads(said["scene"])
         groups = tuple(_groups(drawn))
-        group, height = drawn["edges"].T
-        edges = tuple(tuple(height[group == g].tolist()) for g in range(len(groups)))
         rows = zip(drawn["points"].tolist(), drawn["points"][:, 1:], drawn["weights"], strict=True)
         places = tuple(Place(g, some[some >= 0], w[some >= 0]) for (g, *_), some, w in rows)
-        of_points = [(groups[place.group].n, edges[place.group]) for place in places]
-        return Sweep(axes, Points(document, axes, of_points), places, groups, edges, statistics)
+        of_points = [groups[place.group].n for place in places]
+        return Sweep(axes, Points(document, axes, of_points), places, groups, statistics)
     except StoreError:
         raise
     except (OSError, RuntimeError, KeyError, IndexError, TypeError, ValueError) as error:

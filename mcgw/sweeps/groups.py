@@ -18,7 +18,7 @@ import numpy as np
 from analytic import Exponential, Homogeneous, quantity_of
 from analytic.arrays import Array, Ints
 from mcgw.machine.progress import steps
-from mcgw.sampling.shared import on_common_cells, to_be_shared
+from mcgw.sampling.shared import common_edges, to_be_shared
 from mcgw.scene.scene import Scene
 
 _Item = TypeVar("_Item")
@@ -59,17 +59,20 @@ class Group:
     numbers : tuple of int
         Which points of the sweep.
     scenes : tuple of Scene
-        Their scenes, on common cells.
+        Their scenes.
     computed : tuple of Scene
         Those whose sums are computed for every surface.
     places : tuple of Place
         Places of all points.
+    edges : tuple of float
+        Common edges of cells, where the cells of the scenes would differ (`common_edges`).
     """
 
     numbers: tuple[int, ...]
     scenes: tuple[Scene, ...]
     computed: tuple[Scene, ...]
     places: tuple[Place, ...]
+    edges: tuple[float, ...]
 
     @property
     def n_surfaces(self) -> int:
@@ -85,7 +88,9 @@ def groups_of(scenes: Sequence[Scene]) -> list[Group]:
 
 
 def _group(group: int, numbers: list[int], scenes: list[Scene]) -> Group:
-    scenes = on_common_cells(scenes) if len(scenes) > 1 else scenes
+    edges = common_edges(scenes) if len(scenes) > 1 else ()
+    if edges is None:
+        scenes, edges = [scene.replace(sampler="tail") for scene in scenes], ()
     computed: list[int] = []
     places: dict[int, Place] = {}
     for members in _alike(
@@ -105,7 +110,7 @@ def _group(group: int, numbers: list[int], scenes: list[Scene]) -> Group:
             some = np.flatnonzero(pair)  # drop those with zero weight
             places[i] = Place(group, first + some, pair[some])
     in_order = tuple(places[i] for i in range(len(scenes)))
-    return Group(tuple(numbers), tuple(scenes), tuple(scenes[i] for i in computed), in_order)
+    return Group(tuple(numbers), tuple(scenes), tuple(scenes[i] for i in computed), in_order, edges)
 
 
 def _alike(items: Sequence[_Item], key: Callable[[_Item], Any]) -> list[list[_Item]]:

@@ -38,14 +38,11 @@ class OverPoints:
     axes : Axes
         The keys and their values.
     scenes : sequence of Scene
-        Of all points, the last axis fastest. Where points needed other cells they have the edges of all
-        (`edges`): drawn alone, each gives the same surfaces, and the same bits.
+        Of all points, the last axis fastest.
     places : tuple of Place
         Where the statistics of each point are.
     groups : tuple of Pooled
         What is kept of each group of points that share their surfaces.
-    edges : tuple of tuple of float
-        Of each group, the edges of cells that its points got from each other.
     statistics : tuple of str
         Statistics that `to_xarray` returns.
     """
@@ -54,7 +51,6 @@ class OverPoints:
     scenes: Sequence[Scene]
     places: tuple[Place, ...]
     groups: tuple[Pooled, ...]
-    edges: tuple[tuple[float, ...], ...]
     statistics: tuple[str, ...]
 
     @property
@@ -178,8 +174,8 @@ class PointResults(Held):
     place: Place
 
     no_more = (
-        "a sweep only keeps mean and standard deviation of a point; simulate(sweep.scene(point)) draws its "
-        "surfaces again"
+        "a sweep only keeps mean and standard deviation of a point; simulate(sweep.scene(point)) draws "
+        "surfaces of that scene"
     )
 
     def rows(self) -> int:

@@ -56,13 +56,11 @@ class Points(Sequence[Scene]):
         Tables of the base scene.
     axes : Axes
         What they differ in.
-    drawn : sequence of (int, tuple of float)
-        Of each point the number of surfaces, and the edges that it got from others.
+    drawn : sequence of int
+        Number of surfaces of each point.
     """
 
-    def __init__(
-        self, document: dict[str, Any], axes: Axes, drawn: Sequence[tuple[int, tuple[float, ...]]]
-    ) -> None:
+    def __init__(self, document: dict[str, Any], axes: Axes, drawn: Sequence[int]) -> None:
         self._document, self._axes, self._drawn = document, axes, drawn
         self._points = list(axes.points())
 
@@ -74,11 +72,10 @@ class Points(Sequence[Scene]):
         """A scene, or several."""
         if isinstance(i, slice):
             return [self[k] for k in range(*i.indices(len(self)))]
-        n, edges = self._drawn[i]
         scene = scene_of(with_changes(self._document, self._axes.at(self._points[i])))
-        if scene.n_surfaces == n and scene.rel_err is None and not edges:
+        if scene.n_surfaces == self._drawn[i] and scene.rel_err is None:
             return scene
-        return scene.replace(n_surfaces=n, rel_err=None, edges=edges or scene.edges)
+        return scene.replace(n_surfaces=self._drawn[i], rel_err=None)
 
 
 def document_of(scene: Scene) -> dict[str, Any]:
@@ -144,7 +141,6 @@ class Asked:
             scenes=tuple(scenes[i] for i in range(self.axes.size)),
             places=tuple(places[i] for i in range(self.axes.size)),
             groups=tuple(pooled),
-            edges=tuple(group.scenes[0].edges for group in self.groups),
             statistics=statistics,
         )
 

@@ -67,7 +67,7 @@ class Pooling(Reducer):
 
 @lru_cache(maxsize=1)  # blocks come in the order of groups
 def _source_of(pooling: Pooling) -> Shared:
-    return shared(pooling.group.computed)
+    return shared(pooling.group.computed, pooling.group.edges)
 
 
 def weighted(

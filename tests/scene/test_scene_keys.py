@@ -28,7 +28,7 @@ GOOD = {
     "ensemble": {
         "n_surfaces": "10", "n_asperities": "100", "count": "'fixed'", "seed": "1", "sampler": "'cells'",
         "keep": "'sums'", "max_seconds": "1.0", "left_out": "['seed']",
-        "accuracy": "1e-3", "edges": "[0.5, 2.0]",
+        "accuracy": "1e-3",
     },
 }  # fmt: skip
 SERIES = {"law": "'series'", "edges": "[0.0, 5.0, 20.0]", "coefficients": "[[1.0, 0.5], [1.5]]"}
@@ -174,7 +174,6 @@ WRONG_HERE = {
     ("grading", "s"): ["~[1.0]", "~[1.0, 0.0]", "~[0.0, nan]", "1"],
     ("heights", "s"): ["~[1.0]", "~[1.0, 0.0]", "1"],
     ("grading", "name"): ["1", "['x']"],
-    ("ensemble", "edges"): ["1.0", "'x'", "[1.0, 'x']", "~[nan]", "~[inf]", "[true]", "{a = 1.0}"],
     ("contact", "ratio"): ["0", "-1", "'x'"],
     **{(table, "checked"): ["0", "'no'"] for table in ("contact", "grading")},
     ("summits", "heights"): ["[]", "~[1.0]", "1", "~[1.0, nan, 2.0]"],
@@ -474,7 +473,7 @@ def test_init_puts_it_beside_the_scene(tmp_path, capsys):
 def test_what_is_asked_of_surfaces_is_an_argument_by_its_row():
     arguments, said = inspect.signature(mcgw.Scene).parameters, mcgw.Scene.__doc__
     rows = set(KEYS["ensemble"]) - {"max_surfaces", "left_out"} | {"uncertainty"}
-    assert len(rows) == 11
+    assert len(rows) == 10
     assert rows <= set(arguments)
     assert all(f"    {name} : " in said for name in arguments)
     assert all(

@@ -16,7 +16,6 @@ from test_scene_keys import FILES, keys
 
 import analytic.joint
 import mcgw
-from mcgw.sampling.samplers import sampler_of
 
 TOP = sqrt(1.5)  # of the heights -TOP, 0 and TOP, whose mean is 0 and variance 1
 BASE = {
@@ -275,7 +274,6 @@ ROWS = [
      lambda s: s.n_surfaces, 50),
     ("ensemble.max_seconds", "'2 min'", {}, lambda s: s.max_seconds, 120.0),
     ("ensemble.accuracy", "'0.1 %'", GAUSS, lambda s: s.accuracy, 0.001),
-    ("ensemble.edges", [1.25], GAUSS, lambda s: 1.25 in sampler_of(s).mesh.edges, True),
     ("ensemble.left_out", "['seed']", GAUSS, lambda s: s.left_out, ("n_asperities", "seed")),
     ("interaction.reference", "'body'", {}, nominal, sunk(1e11, 1e-6, 0.9464020088186771)),
     ("interaction.reference", "'mean-plane'", {}, nominal,

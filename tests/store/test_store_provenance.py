@@ -197,14 +197,14 @@ def test_a_processor_is_told_by_what_the_system_knows(tmp_path, monkeypatch):
 def test_what_keeps_two_runs_apart_is_said(make_scene):
     """What differs first; a key that only one has, on either side; then what draws, and on what."""
     one = make_scene(quantities=("load",))
-    cut = one.replace(edges=[0.5])
+    cut = one.replace(accuracy=0.5e-3)
     text, other = mcgw.scene_text(one), mcgw.scene_text(cut)
     told = identity.difference
     assert told((text, "", "a"), (mcgw.scene_text(one.replace(seed=9)), "", "b")) == (
         "ensemble.seed is 1 there and 9 here"
     )
-    assert told((other, "", "a"), (text, "", "a")) == "ensemble.edges is [0.5] there and not given here"
-    assert told((text, "", "a"), (other, "", "a")) == "ensemble.edges is None there and [0.5] here"
+    assert told((other, "", "a"), (text, "", "a")) == "ensemble.accuracy is 0.0005 there and not given here"
+    assert told((text, "", "a"), (other, "", "a")) == "ensemble.accuracy is None there and 0.0005 here"
     assert told((text, "x", "a"), (text, "y", "a")) == "sweep is 'x' there and 'y' here"
     more = mcgw.scene_text(one.replace(n_surfaces=7))
     assert told((text, "", "numpy 1"), (more, "", "numpy 2")) == (

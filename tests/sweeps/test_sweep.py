@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from oracles.drawn_together import check_points, drawn_together
 from oracles.told import drawn
 from scipy.integrate import quad
 
@@ -30,7 +31,7 @@ def same_bits(sweep, at):
 
 def test_few_points_have_the_bits_of_single_runs():
     sweep = mcgw.sweep(SCENE, {GAMMA: [0.5, 1.0, 2.0], "ensemble.n_asperities": [50, 2000]})
-    assert (sweep.mean("load").shape, sweep.edges, len(sweep.groups)) == ((3, 2, 5), ((), ()), 2)
+    assert (sweep.mean("load").shape, len(sweep.groups)) == ((3, 2, 5), 2)
     assert all(same_bits(sweep, at) for at in np.ndindex(sweep.shape))
     alone = mcgw.simulate(SCENE.replace(grading=mcgw.Exponential(2.0), n_asperities=50))
     assert np.array_equal(sweep.std("load")[2, 0], alone.std("load"))
@@ -67,26 +68,14 @@ def test_eight_gradings_are_means_of_the_softest_and_the_stiffest(gammas):
 def test_a_table_among_many_exponential_gradings_keeps_its_numbers():
     """It is not taken for the homogeneous surface, a mean of two of them."""
     gradings = [*(mcgw.Exponential(gamma) for gamma in np.linspace(0.2, 2.0, 9)), KINKED[0]]
-    sweep = mcgw.sweep(SCENE.replace(n_surfaces=20), {"grading": gradings})
-    for i in range(len(gradings)):
-        np.testing.assert_allclose(
-            sweep.mean("load")[i], mcgw.simulate(sweep.scene(i)).mean("load"), rtol=1e-12
-        )
+    check_points(mcgw.sweep(SCENE.replace(n_surfaces=20), {"grading": gradings}))
 
 
 SEVERAL = {
     "balance": (SCENE.replace(interaction="body"), {GAMMA: [1.0, 1.5]}),
-    "breaks where others begin": (
-        SCENE.replace(law=mcgw.KogutEtsion(critical=0.1), separations=[0.0, 0.1, 0.2, 0.3]),
-        {"contact.critical": [0.05, 0.1, 0.2]},
-    ),
     "separations again and unsorted": (SCENE.replace(separations=[2.0, 0.0, 1.0, 1.0]), {GAMMA: [0.5, 2.0]}),
     "without cells": (SCENE.replace(n_asperities=10), {GAMMA: [0.5, 2.0]}),
     "laws of heights": (SCENE, {"heights": [{"law": "weibull", "shape": 2.0}, {}], GAMMA: [0.5, 2.0]}),
-    "not combinations": (  # for they are clipped
-        SCENE.replace(separations=[-1.0, 0.0], negative="clip", n_surfaces=20),
-        {GAMMA: np.linspace(1.5, 3.0, 9)},
-    ),
     "radii": (SPECTRAL, {GAMMA: [0.5, 2.0, 3.0]}),
     "radii, without cells": (SPECTRAL.replace(n_asperities=10), {GAMMA: [0.5, 2.0]}),
     "radii under laws": (
@@ -111,38 +100,37 @@ def test_any_kind_of_scene_has_its_bits(name):
     assert all(same_bits(sweep, at) for at in np.ndindex(sweep.shape))
 
 
-def test_contact_laws_with_other_breaks_share_their_surfaces():
-    metal = SCENE.replace(law=mcgw.KogutEtsion(hardness=1.2e9, poisson=0.3))
-    sweep = mcgw.sweep(metal, {"contact.hardness": [1e9, "1.2 GPa", 3e9]})
+YIELDING = SCENE.replace(law=mcgw.KogutEtsion(hardness=1.2e9, poisson=0.3))
+OF_OTHER_CELLS = {
+    "tables with kinks": (SCENE, {"grading": KINKED}),
+    "laws that yield": (YIELDING, {"contact.hardness": [1e9, "1.2 GPa", 3e9]}),
+    "breaks where others begin": (
+        SCENE.replace(law=mcgw.KogutEtsion(critical=0.1), separations=[0.0, 0.1, 0.2, 0.3, 0.5]),
+        {"contact.critical": [0.05, 0.1, 0.2]},
+    ),
+    "not combinations": (  # for they are clipped
+        SCENE.replace(separations=[-1.0, -0.5, 0.0, 1.0, 2.0], negative="clip", n_surfaces=20),
+        {GAMMA: np.linspace(1.5, 3.0, 9)},
+    ),
+}
+
+
+@pytest.mark.parametrize("name", OF_OTHER_CELLS)
+def test_points_that_need_other_cells_share_their_surfaces(name):
+    """The same contacts on each; means by chance beyond 5 standard errors once in 1e5."""
+    scene, over = OF_OTHER_CELLS[name]
+    sweep = mcgw.sweep(scene.replace(n_surfaces=2000), over)
     assert len(sweep.groups) == 1
-    assert sweep.edges[0]
-    assert all(same_bits(sweep, (i,)) for i in range(3))
-    contacts = [mcgw.simulate(sweep.scene(i)).contacts for i in range(3)]
-    assert all(np.array_equal(contacts[0], each) for each in contacts)
-    apart = mcgw.simulate(sweep.scene(0).replace(edges=None)).contacts  # what the edges are for
-    assert not np.array_equal(apart, mcgw.simulate(sweep.scene(1).replace(edges=None)).contacts)
-
-
-def test_edges_are_kept_by_a_scene_file():
-    sweep = mcgw.sweep(SCENE, {"grading": KINKED})
-    scene = sweep.scene(1)
-    assert {0.33, 0.7, 1.21} <= set(scene.edges)
-    again = mcgw.scene_from(mcgw.scene_text(scene))
-    assert again == scene
-    assert np.array_equal(mcgw.simulate(again).std("load"), sweep.std("load")[1])
-    assert "edges" not in mcgw.scene_text(SCENE)
-
-
-def test_any_edges_leave_the_exact_law_as_it_is():
-    """Cut elsewhere, other surfaces of the same law: fails by chance once in 2e6."""
-    cut = SCENE.replace(edges=[0.123, 2.2, 2.3, 99.0], n_surfaces=4000)
-    e = mcgw.simulate(cut)
-    z = (e.mean("load") - cut.theory.mean("load", e.separations)) / e.stderr("load")
-    assert np.abs(z).max() < 5
-    assert not np.array_equal(e.load[:300], mcgw.simulate(SCENE).load)
-    above = np.maximum(mcgw.heights(cut, 5)[:, None] - e.separations, 0.0)
-    unit = 4 / 3 * SURFACE.E_star * np.sqrt(SURFACE.radius) * SURFACE.sigma**1.5
-    np.testing.assert_allclose(unit * (above**1.5).sum(axis=0), e.load[5], rtol=1e-12)
+    check_points(sweep)
+    mean, std = (
+        {tuple(row) for row in x.reshape(-1, 5)} for x in (sweep.mean("contacts"), sweep.std("contacts"))
+    )
+    assert (len(mean), len(std)) == (1, 1)
+    for quantity in ("load", "area"):
+        z = (sweep.mean(quantity) - sweep.theory(quantity)) / sweep.stderr(quantity)
+        assert np.abs(z).max() < 5
+    alone = [mcgw.simulate(one.replace(n_surfaces=9)).contacts for one in sweep.scenes[:2]]
+    assert not np.array_equal(*alone)  # what common cells are for
 
 
 def exact_difference(one, other, h):
@@ -168,8 +156,8 @@ def test_paired_differences_have_the_variance_that_theory_gives():
     assert np.abs(paired / exact[:, 0] - 1).max() < 0.1
     assert np.abs((found.value[:4] - exact[:, 1]) / found.stderr[:4]).max() < 5
     assert found.gain[:4].min() > 3  # and so a variance without the pairs would fail
-    alone = [mcgw.simulate(sweep.scene((i, 0)))["load"] for i in (2, 0)]
-    difference = alone[0] - alone[1]
+    _, values = drawn_together(sweep)
+    difference = values[2]["load"] - values[0]["load"]
     np.testing.assert_allclose(found.value, difference.mean(axis=0), rtol=1e-11)
     np.testing.assert_allclose(found.stderr, difference.std(axis=0, ddof=1) / np.sqrt(m), rtol=1e-9)
 
@@ -302,12 +290,6 @@ def test_all_mistakes_at_once():
     lines = str(caught.value).splitlines()
     assert len(lines) == 4
     assert sum("ensemble.seed = 'a'" in line for line in lines) == 3
-
-
-@pytest.mark.parametrize("edges", ["1", [0.5, "a"], [np.inf], True])
-def test_edges_that_are_none(edges):
-    with pytest.raises(mcgw.SceneError, match=r"ensemble.edges = .*: give a list of finite heights"):
-        SCENE.replace(edges=edges)
 
 
 def test_points_that_are_none():
@@ -505,7 +487,7 @@ def test_points_have_the_intervals_and_tables_of_single_runs():
     assert sweep.ensemble({GAMMA: 0.5, "ensemble.n_asperities": 50}).n_surfaces == 300
     point = sweep.ensemble((0, 0))
     for ask in (point.values, lambda q: point.quantile(q, 0.5), point.covariance):
-        with pytest.raises(ValueError, match=r"load: a sweep only keeps mean and .* its surfaces again"):
+        with pytest.raises(ValueError, match=r"load: a sweep only keeps mean and .* surfaces of that scene"):
             ask("load")
 
 

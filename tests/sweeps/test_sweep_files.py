@@ -207,7 +207,6 @@ WRONG = {
     "products of fewer pairs": lambda file: put(file, "area_products", file["drawn/area_products"][:-1]),
     "a group that is not there": lambda file: put(file, "points", file["drawn/points"][()] + [2, 0, 0]),
     "fewer weights": lambda file: put(file, "weights", file["drawn/weights"][1:]),
-    "edges of no group": lambda file: put(file, "edges", np.zeros((1, 3))),
     "axes that are no JSON": lambda file: file.attrs.__setitem__("axes", "{"),
     "axes of another kind": lambda file: file.attrs.__setitem__("axes", "[1, 2]"),
     "axes without values": lambda file: file.attrs.__setitem__("axes", '{"zipped": false}'),
