@@ -88,4 +88,5 @@ def _families(scene: Scene) -> int:
 
 def _alone(scene: Scene, asperities: float) -> float:
     """Seconds that asperities take which are drawn and added up one by one."""
-    return asperities * (_ALONE + scene.width * (_VALUE if scene.hertzian else _VALUE_OF_LAW))
+    drawn = _ALONE * (1 if scene.curvature is None else _RADIUS)
+    return asperities * (drawn + scene.width * (_VALUE if scene.hertzian else _VALUE_OF_LAW))

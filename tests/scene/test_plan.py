@@ -94,11 +94,16 @@ def test_what_is_expected_is_what_is_made(make_scene, name):
 
 ONE_BY_ONE, BY_LAW = 1.2e-7 + 4 * 2 * 1.9e-9, 1.2e-7 + 4 * 2 * 3.5e-8  # of four quantities at two separations
 LAW = mcgw.KogutEtsion(critical=0.1)
+SPECTRAL = mcgw.SpectralSurface(m0=1e-12, m2=1e-2, m4=4e8, nominal_area=1e-6, E_star=1e11)
 CROWDS = {"sampler": "aggregate", "n_asperities": 10**15}
 SECONDS = {
     "direct": ({"sampler": "direct"}, lambda n, moments: 3e-4 + n * ONE_BY_ONE),
     "tail": ({"sampler": "tail"}, lambda n, moments: 2e-6 + n * ONE_BY_ONE),
     "tail of a law": ({"sampler": "tail", "law": LAW}, lambda n, moments: 2e-6 + n * BY_LAW),
+    "tail of own radii": (
+        {"surface": SPECTRAL, "sampler": "tail"},
+        lambda n, moments: 2e-6 + n * (ONE_BY_ONE + 9 * 1.2e-7),
+    ),
     "crowds": (CROWDS, lambda n, moments: 2e-6 + moments * 1.1e-8),
     "crowds of a law": (CROWDS | {"law": LAW}, lambda n, moments: 2e-6 + moments * 2.5e-8),
 }

@@ -191,9 +191,16 @@ def test_auto_is_named_first(make_scene):
     few = make_scene(n_asperities=100, separations=(2.0,))
     assert sampled_ways(few)[0] == "tail"
     assert sampled_ways(make_scene(separations=(0.0,)))[0] == "cells"
-    assert "aggregate" not in sampled_ways(
-        make_scene(heights=analytic.Nayak(5.0), curvature=analytic.RandomCurvature(5.0), grading=None)
-    )
+    radii = {"heights": analytic.Nayak(5.0), "curvature": analytic.RandomCurvature(5.0), "grading": None}
+    assert "aggregate" not in sampled_ways(make_scene(**radii))
+
+
+def test_surfaces_at_a_load_are_drawn_one_by_one(make_scene):
+    """So `solve` is a way where cells are none, under a law whose breaks differ from summit to summit."""
+    radii = {"heights": analytic.Nayak(5.0), "curvature": analytic.RandomCurvature(5.0), "grading": None}
+    assert sampled_ways(make_scene(law=analytic.KogutEtsion(critical=0.1), **radii)) == [
+        "tail", "direct", "solve",
+    ]  # fmt: skip
 
 
 def test_the_ladder_says_where_more_surfaces_do_not_help():
