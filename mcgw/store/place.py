@@ -128,7 +128,7 @@ def _of_use(path: Path) -> bool:
         run, attributes = RunFolder.open(folder), read_attributes(path)
         same = attributes.get("run") == run.identity
         here = run.plan.total if run.axes else scene_from(attributes["scene"]).n_surfaces
-        held = here if same else 0
+        held = run.plan.kept(here) if same else 0
     except StoreError:
         return True  # a person must look
     return any(int(shard.stem.removeprefix("block-")) >= held for shard in shards)

@@ -274,15 +274,6 @@ def test_wrong_uncertainties_are_told(name):
     assert told in str(error.value)
 
 
-def test_a_scene_keeps_what_is_uncertain(tmp_path):
-    scene = scene_of()
-    assert mcgw.scene_from(mcgw.scene_text(scene)) == scene
-    assert scene.replace(n_surfaces=3).uncertainty == scene.uncertainty
-    mcgw.run(scene.replace(n_surfaces=2), tmp_path / "e.h5")
-    assert mcgw.open_ensemble(tmp_path / "e.h5").scene.uncertainty == scene.uncertainty
-    assert "uncertainty" not in mcgw.scene_text(scene_of(uncertainty=None))
-
-
 def test_a_fit_writes_what_it_knows(tmp_path, capsys):
     """Errors of the estimate in use; sigma^2 and eta go apart where m2 is uncertain."""
     z = fitted_maps.plain(rough_maps.GaussianMap(0.8, 4, 1, 32))

@@ -20,7 +20,7 @@ from mcgw.ensemble.drawing import drawn as drawn_by
 from mcgw.ensemble.pooled import Pooled
 from mcgw.errors import StoreError
 from mcgw.jobs.running import run
-from mcgw.store.ensembles import read_attributes, verify
+from mcgw.store.ensembles import verify
 
 H = [0.0, 1.0, 2.5]
 
@@ -131,33 +131,6 @@ def assert_same_bits(one, other):
         for get in ("mean", "std"):
             np.testing.assert_array_equal(getattr(one, get)(q), getattr(other, get)(q))
         np.testing.assert_array_equal(one.covariance(q, "load"), other.covariance(q, "load"))
-
-
-@pytest.mark.usefixtures("small_blocks")
-def test_same_bits_whoever_draws_them(tmp_path):
-    """In memory, in a file, on one thread, by jobs in any order, in steps, after a loss: one digest."""
-    asked = scene(n_surfaces=700, keep="statistics")
-    e = run(asked, tmp_path / "a.h5")
-    assert read_attributes(tmp_path / "a.h5")["filetype"] == "mcgw-results"
-    assert_same_bits(e, mcgw.simulate(asked))
-    assert_same_bits(e, mcgw.simulate(asked, threads=1))
-    wanted = read_attributes(tmp_path / "a.h5")["digest"]
-    mcgw.save(mcgw.simulate(asked), tmp_path / "saved.h5")
-    assert read_attributes(tmp_path / "saved.h5")["digest"] == wanted
-    for i in (3, 1, 2):
-        left = run(asked, tmp_path / "b.h5", shard=f"{i}/3")
-    assert left == 0
-    mcgw.merge(tmp_path / "b.h5")
-    for n in (150, 700):
-        run(asked, tmp_path / "c.h5", n_surfaces=n)
-    run(asked, tmp_path / "d.h5", shard="1/2", n_surfaces=350)  # its last block is not a whole one
-    run(asked, tmp_path / "d.h5", shard="2/2")
-    (tmp_path / "d.h5.parts" / "shards" / "block-0000000000128.h5").unlink()
-    run(asked, tmp_path / "d.h5", threads=1)
-    for name in "bcd":
-        assert read_attributes(tmp_path / f"{name}.h5")["digest"] == wanted, name
-        assert_same_bits(e, mcgw.open_ensemble(tmp_path / f"{name}.h5"))
-        assert not list((tmp_path / f"{name}.h5.parts").glob("shards/*"))
 
 
 @pytest.mark.usefixtures("small_blocks")

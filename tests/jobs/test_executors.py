@@ -3,13 +3,11 @@
 import multiprocessing
 import os
 import signal
-import socket
-import subprocess
 import sys
 import threading
 import time
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
-from contextlib import closing, nullcontext
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
@@ -73,15 +71,6 @@ def kill_one_now_and_then(pids, times):
 
 
 @pytest.mark.slow
-def test_a_killed_process_is_replaced(scene, tmp_path, expected):
-    with Jobs(2) as executor:
-        progress, killed = kill_one_now_and_then(lambda: list(executor._pool._processes), 1)
-        run(scene, tmp_path / "e.h5", executor=executor, progress=progress)
-    assert len(killed) == 1
-    assert digest(tmp_path / "e.h5") == expected(scene)
-
-
-@pytest.mark.slow
 def test_a_pool_of_the_user_that_breaks_is_one_line_and_the_run_goes_on_with_another(
     scene, tmp_path, expected
 ):
@@ -106,76 +95,13 @@ def test_killed_dask_workers_are_replaced(scene, tmp_path, expected):
     cluster = distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs="CRITICAL"
     )
-    with cluster, distributed.Client(cluster, set_as_default=False) as client:
+    with cluster, dask_executor(cluster.scheduler_address) as executor:
         nannies = cluster.workers
         progress, killed = kill_one_now_and_then(lambda: [x.process.process.pid for x in nannies.values()], 3)
-        executor = client.get_executor(pure=False)
         run(scene, tmp_path / "e.h5", executor=executor, progress=progress)
-        assert client.submit(sum, (1, 2)).result(timeout=30) == 3  # it stays open
+        assert executor.submit(sum, (1, 2)).result(timeout=30) == 3  # it stays open
     assert len(killed) == 3
     assert digest(tmp_path / "e.h5") == expected(scene)
-
-
-def free_port():
-    with socket.socket() as found:
-        found.bind(("127.0.0.1", 0))
-        return found.getsockname()[1]
-
-
-class Cluster:
-    """A scheduler and two workers as processes of their own."""
-
-    def __init__(self, folder):
-        self.address = f"tcp://127.0.0.1:{free_port()}"
-        self.folder = folder
-        port = self.address.rsplit(":", 1)[1]
-        self.scheduler = self._start("scheduler", "--port", port, "--host", "127.0.0.1", "--no-dashboard")
-        words = ("worker", self.address, "--nworkers", "2", "--nthreads", "1", "--no-dashboard")
-        self.workers = self._start(*words, "--host", "127.0.0.1", "--death-timeout", "20")
-
-    def _start(self, *words):
-        call = [sys.executable, "-m", "distributed.cli.dask_" + words[0], *words[1:]]
-        env = os.environ | {"PYTHONPATH": str(HERE.parent), "PYTHONWARNINGS": "ignore"}
-        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": self.folder}
-        return subprocess.Popen(call, env=env, start_new_session=True, **quiet)
-
-    def close(self):
-        for process in (self.scheduler, self.workers):
-            if process.poll() is None:
-                os.killpg(process.pid, signal.SIGKILL)
-            process.wait()
-
-    def draw(self, *arguments, **options):
-        """Run by its workers; the scheduler needs a moment to start."""
-        until = time.monotonic() + 30
-        while True:
-            try:
-                with dask_executor(self.address) as executor:
-                    return run(*arguments, executor=executor, **options)
-            except RunError as error:
-                if "no scheduler answers" not in str(error) or time.monotonic() > until:
-                    raise
-
-
-@pytest.mark.site
-def test_a_lost_scheduler_is_one_line_and_the_run_goes_on_with_another(scene, tmp_path, expected):
-    pytest.importorskip("distributed")
-    path, first = tmp_path / "e.h5", Cluster(tmp_path)
-
-    def kill_midway(done, _):
-        if done >= SURFACES // 3 and first.scheduler.poll() is None:
-            os.killpg(first.scheduler.pid, signal.SIGKILL)
-
-    lost = r"by the executor|takes no more work"
-    with closing(first), pytest.raises(RunError, match=lost) as told:
-        first.draw(scene, path, progress=kill_midway)
-    assert "\n" not in str(told.value)
-    assert str(told.value).endswith("finished blocks are kept; the same command resumes")
-    kept = len(list(parts_of(path).glob("shards/*.h5")))
-    assert SURFACES // 3 // SIZE <= kept < SURFACES // SIZE
-    with closing(Cluster(tmp_path)) as second:
-        second.draw(scene, path)
-    assert digest(path) == expected(scene)
 
 
 def test_dask_that_is_not_there_is_one_line(monkeypatch):

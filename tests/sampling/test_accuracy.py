@@ -6,7 +6,6 @@ back and individual summit radii. Nothing here is statistical: bounds hold.
 
 from dataclasses import replace
 
-import h5py
 import numpy as np
 import pytest
 import scipy.stats
@@ -16,15 +15,9 @@ from test_random_radii import spectral
 import analytic
 import mcgw
 from analytic import laws
-from mcgw.ensemble.simulation import Values
-from mcgw.jobs.merging import merge
-from mcgw.jobs.running import run
-from mcgw.reports.text import summary
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene.scene_file import scene_text
 from mcgw.statistics.comparison import compare
 from mcgw.statistics.convergence import converge
-from mcgw.store import ensembles
 
 H = tuple(np.linspace(0, 4, 21))
 CLOSE = (1.0, 1.0 + 1e-9, 1.0 + 1e-6, 1.5)
@@ -141,7 +134,6 @@ def test_values_of_summits_with_radii_of_their_own(alpha):
 
 
 WISH = {"accuracy": 1e-2, "n_asperities": 10**6}
-SIZE, NUMBER = 16, 70
 
 
 def assert_same(one, other):
@@ -157,52 +149,6 @@ def test_same_bits_by_any_threads_and_in_any_block(make_scene):
     for first, size in ((0, 1), (63, 7), (133, 7), (0, 64)):
         for name, values in drawn.block(first, size).sums.items():
             np.testing.assert_array_equal(values, whole[name][first : first + size])
-
-
-def test_exact_laws_are_what_nobody_has_to_ask_for(make_scene):
-    assert "accuracy" not in scene_text(make_scene())
-
-
-def digest(path):
-    problem, found = ensembles.verify(path)
-    assert problem == ""
-    return found
-
-
-class HaltError(Exception):
-    """Ends a run."""
-
-
-def test_stored_in_any_way_the_digest_is_one(make_scene, tmp_path, monkeypatch):
-    """At once, halted and gone on with, in shards; what is read is what is drawn; another wish is refused."""
-    monkeypatch.setattr(Values, "rows", SIZE)
-    scene = make_scene(n_surfaces=NUMBER, **WISH)
-    run(scene, tmp_path / "whole.h5")
-
-    def halt(done, _):
-        if done >= 40:
-            raise HaltError
-
-    halted, done = tmp_path / "halted.h5", []
-    with pytest.raises(HaltError):
-        run(scene, halted, progress=halt)
-    run(scene, halted, progress=lambda now, _: done.append(now))
-    assert done[0] >= 40
-    shards = tmp_path / "shards.h5"
-    for part in (2, 1):
-        run(scene, shards, shard=f"{part}/2")
-    merge(shards)
-    assert len({digest(tmp_path / f"{name}.h5") for name in ("whole", "halted", "shards")}) == 1
-    found = mcgw.open_ensemble(halted)
-    assert found.scene == scene
-    assert_same(found, mcgw.simulate(scene))
-    with h5py.File(halted) as file:
-        spent = file.attrs.get("accuracy_spent")
-        text = summary(found, file.attrs)
-    assert 0 < spent <= scene.accuracy
-    assert f"up to 0.01 from the exact laws, {spent:.2g} of it spent\n" in text
-    with pytest.raises(mcgw.StoreError, match=r"ensemble\.accuracy is"):
-        run(replace(scene, accuracy=2e-2), halted)
 
 
 def test_compare_agrees_and_sees_another_gamma(make_scene):

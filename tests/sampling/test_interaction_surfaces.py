@@ -8,7 +8,6 @@ from oracles.interacting_by_hand import QUANTITIES, SEPARATIONS, STRENGTHS, inte
 import analytic
 import mcgw
 from mcgw.sampling.samplers import sampler_of
-from mcgw.store import ensembles
 
 GRADINGS = {
     "exponential": analytic.Exponential(2.0),
@@ -108,20 +107,6 @@ def test_same_bits_in_any_block_by_any_threads(pressed, sampler):
         np.testing.assert_array_equal(one[name], two[name])
         for first, n in ((0, 1), (33, 7), (10, 20)):
             np.testing.assert_array_equal(drawn.block(first, n).sums[name], values[first : first + n])
-
-
-def test_a_file_holds_both_separations_and_goes_on(pressed, tmp_path):
-    """At once, in two goes, and in memory: one digest; the scene reads back from its text."""
-    scene, path = pressed(3.0, n_surfaces=100, n_asperities=500), tmp_path / "e.h5"
-    mcgw.run(scene.replace(n_surfaces=40), path)
-    mcgw.run(scene, path)
-    mcgw.run(scene, tmp_path / "at_once.h5", threads=1)
-    found, memory = mcgw.open_ensemble(path), mcgw.simulate(scene)
-    assert ensembles.verify(path) == ensembles.verify(tmp_path / "at_once.h5")
-    assert found.scene == scene
-    assert mcgw.scene_from(mcgw.scene_text(found.scene)) == scene
-    for name in (*QUANTITIES, *scene.other_separations):
-        np.testing.assert_array_equal(found[name], memory[name])
 
 
 LOAD = 'add "load" to contact.quantities'

@@ -152,13 +152,6 @@ def test_a_scene_reads_the_same_again(table):
     assert found.curvature.ratios == pytest.approx(RADII * np.mean(1 / RADII), rel=1e-14)
 
 
-def test_a_stored_ensemble_has_its_scene(table, tmp_path):
-    ensemble = mcgw.run(from_file(table, "resample = true\n"), tmp_path / "a.h5")
-    again = mcgw.open_ensemble(tmp_path / "a.h5")
-    assert again.scene == ensemble.scene
-    np.testing.assert_array_equal(again.load, ensemble.load)
-
-
 def test_what_the_surface_gives_is_used(table):
     x = mcgw.scene_from(
         HEAD + f'sigma = "2 um"\nradius = "20 um"\n[summits]\nfile = "{table.name}"\n' + ASKED,

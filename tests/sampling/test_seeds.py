@@ -1,22 +1,16 @@
 """All 64 bits of a seed, everywhere, and after a smaller seed in the same process."""
 
-from dataclasses import replace
 from pathlib import Path
 
-import h5py
 import numpy as np
 import pytest
 from oracles.said import call
 
-import mcgw
-from mcgw.errors import StoreError
 from mcgw.figures.compared import Compared
-from mcgw.jobs.running import run
 from mcgw.sampling.asperities import heights
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.promises import SAMPLERS
 from mcgw.statistics.convergence import converge
-from mcgw.store import ensembles, place
 
 SMALL, LARGE = 1, [2**63 - 1, 2**63, 2**64 - 1]
 QUICK = (Path(__file__).parents[2] / "runs" / "quick.toml").read_text()
@@ -32,25 +26,6 @@ def test_every_sampler_takes_every_seed(make_scene, sampler, count):
     ]
     np.testing.assert_array_equal(drawn[0], drawn[-1])
     assert len(np.unique(drawn)) == 3 * (len(drawn) - 1)
-
-
-@pytest.mark.parametrize("seed", LARGE)
-@pytest.mark.parametrize("sampler", ["cells", "direct"])
-def test_a_file_keeps_the_seed_and_goes_on_with_it(make_scene, tmp_path, sampler, seed):
-    scene = make_scene(sampler=sampler, seed=seed, n_surfaces=3, keep="sums")
-    path, whole = tmp_path / "a.h5", tmp_path / "b.h5"
-    run(make_scene(seed=SMALL, n_surfaces=3), tmp_path / "small.h5")
-    run(scene, path)
-    assert place.recorded_seed(path) == seed == mcgw.open_ensemble(path).scene.seed
-    with h5py.File(path) as file:
-        assert file.attrs["seed"].dtype == np.uint64
-        assert int(file.attrs["seed"]) == seed
-    longer = replace(scene, n_surfaces=6)
-    run(longer, path)
-    run(longer, whole)
-    assert ensembles.read_attributes(path)["digest"] == ensembles.read_attributes(whole)["digest"]
-    with pytest.raises(StoreError, match=r"ensemble\.seed is"):
-        run(replace(longer, seed=seed - 1), path)
 
 
 @pytest.mark.usefixtures("blank_figures")

@@ -116,15 +116,6 @@ def test_names_that_are_none(make_scene, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-def test_output_that_is_a_link(make_scene, tmp_path):
-    victim = tmp_path / "victim"
-    victim.write_bytes(b"precious")
-    (tmp_path / "e.h5").symlink_to(victim)
-    with pytest.raises(StoreError, match="is not a regular file"):
-        run(make_scene(n_surfaces=2), tmp_path / "e.h5")
-    assert victim.read_bytes() == b"precious"
-
-
 def test_inputs_that_are_no_files(make_scene, tmp_path):
     os.mkfifo(tmp_path / "pipe")
     for path in (tmp_path / "pipe", tmp_path, Path("/dev/zero")):

@@ -14,10 +14,9 @@ from mcgw.cli import main
 from mcgw.errors import RunError, StoreError
 from mcgw.jobs.merging import merge
 from mcgw.jobs.running import run
-from mcgw.store import ensembles, layout, lock, run_folder, saving, shards, structure
+from mcgw.store import ensembles, lock, run_folder, saving, shards, structure
 from mcgw.store.disk import (
     TRAILER_BYTES,
-    SteadyFile,
     Trailer,
     check_trailer,
     parts_of,
@@ -40,16 +39,6 @@ def scene(make_scene):
 @pytest.fixture
 def larger(scene):
     return replace(scene, n_surfaces=SURFACES + 30)
-
-
-def test_beyond_the_end_of_a_file_hdf5_reads_zeros(tmp_path):
-    file = SteadyFile(tmp_path / "f")
-    file.write(b"abc")
-    file.seek(1)
-    buffer = bytearray(b"?" * 6)
-    assert file.readinto(buffer) == 6
-    assert bytes(buffer) == b"bc\0\0\0\0"
-    file.close()
 
 
 def nobody():
@@ -273,19 +262,6 @@ def file(scene, tmp_path):
     """A finished file."""
     run(scene, tmp_path / "e.h5")
     return tmp_path / "e.h5"
-
-
-@pytest.mark.parametrize(
-    ("filetype", "version"), [("mcgw-ensemble", (1, 1)), ("mcgw-results", (1, 0)), ("mcgw-results", (3, 0))]
-)
-def test_files_of_other_formats_are_refused_in_one_line(scene, file, filetype, version, monkeypatch):
-    file.unlink()
-    monkeypatch.setattr(layout, "FILETYPE", filetype)
-    monkeypatch.setattr(layout, "FORMAT", version)
-    run(scene, file)  # as a version writes it that calls its files so
-    with pytest.raises(StoreError, match=r"is not read by this version") as caught:
-        mcgw.open_ensemble(file)
-    assert len(str(caught.value).splitlines()) == 1
 
 
 def test_a_new_file_without_the_checksum_is_refused(file):

@@ -152,57 +152,6 @@ def test_a_run_in_a_folder_open_to_all_leaves_nothing(tmp_path, make_scene, monk
     assert not parts_of(tmp_path / "e.h5").exists()
 
 
-HIDDEN = """
-import importlib.abc, sys
-class Hide(importlib.abc.MetaPathFinder):
-    def find_spec(self, name, path=None, target=None):
-        if name in ("fcntl", "resource"):
-            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
-sys.meta_path.insert(0, Hide())
-"""
-DOOR = """
-import sys, importlib, pkgutil
-try:
-    import fcntl
-except ModuleNotFoundError:
-    print("hidden")
-from pathlib import Path
-import mcgw, numpy
-from mcgw import cli
-from mcgw.ensemble.simulation import Values
-from mcgw.errors import StoreError
-from mcgw.store.lock import locked
-for found in pkgutil.walk_packages(mcgw.__path__, "mcgw."):
-    if found.name != "mcgw.__main__":
-        importlib.import_module(found.name)
-scene = mcgw.load_scene(sys.argv[1])
-loads = mcgw.simulate(scene).load
-for size, name in ((10**6, "whole.h5"), (64, "blocks.h5")):
-    Values.rows = size
-    assert cli.main(["run", sys.argv[1], "-o", name]) == 0
-    assert cli.main(["show", name]) == 0
-    assert numpy.array_equal(mcgw.open_ensemble(name).load, loads)
-with locked(Path()):
-    try:
-        locked(Path()).__enter__()
-    except StoreError:
-        print("locked")
-assert not {"fcntl", "resource"} & set(sys.modules)
-"""
-
-
-@pytest.mark.slow
-def test_all_works_where_fcntl_and_resource_are_missing(tmp_path):
-    """Hidden from this interpreter and from its children."""
-    (tmp_path / "sitecustomize.py").write_text(HIDDEN)
-    env = ENV | {"PYTHONPATH": os.pathsep.join([str(tmp_path), str(ROOT)])}
-    call = [sys.executable, "-c", DOOR, ROOT / "runs" / "quick.toml"]
-    done = subprocess.run(call, env=env, cwd=tmp_path, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    assert done.stdout.startswith("hidden\n")
-    assert done.stdout.endswith("locked\n")
-
-
 def test_a_holder_that_has_not_said_its_name_is_another_process(tmp_path):
     """On a full disk, or before it has written; and folders above the one that is held are made."""
     folder = tmp_path / "a" / "e.h5.parts"

@@ -207,16 +207,6 @@ def test_blocks_that_begin_within_a_chunk_go_on_as_well(scene, tmp_path, expecte
     assert sum(copied) == 60 * len(scene.quantities)
 
 
-def test_a_run_that_an_older_version_began_goes_on(scene, tmp_path, expected, copied, monkeypatch):
-    """Its shards are not in chunks."""
-    path = tmp_path / "e.h5"
-    with monkeypatch.context() as patch:
-        patch.setattr(shards, "stored", lambda file, name, values: file.create_dataset(name, data=values))
-        assert run(scene, path, shard="1/2") > 0
-    assert made(run, scene, path) == expected
-    assert copied
-
-
 @pytest.mark.parametrize("old", ["of this version", "all compressed"])
 def test_a_file_is_extended_whatever_it_is_packed_with(scene, tmp_path, expected, copied, monkeypatch, old):
     path = tmp_path / "e.h5"

@@ -20,30 +20,9 @@ from mcgw.jobs.running import run
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.promises import SAMPLERS
 from mcgw.scene.scene import Scene
-from mcgw.store import ensembles, identity
+from mcgw.store import identity
 
 GOLDEN = Path(__file__).parents[1] / "golden_samplers.json"
-
-
-CHANGES = {
-    "graded": {},
-    "poisson": {"grading": analytic.Homogeneous(), "count": "poisson", "separations": (0.1, 1 / 3)},
-    "table": {"grading": analytic.Table([-5.0, 0.0, 9.0], [0.5, 1.0, 1.7])},
-    "direct": {"sampler": "direct", "n_asperities": 500},
-    "python": {
-        "grading": lambda s: 1 + s * s, "heights": scipy.stats.lognorm(0.3), "separations": (0.5, 2.0)
-    },
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("change", CHANGES.values(), ids=CHANGES)
-def test_the_scene_in_a_file_reproduces_its_digest(make_scene, tmp_path, change):
-    run(make_scene(n_surfaces=10, title='Ra = 1 \u00b5m, "quoted"', **change), tmp_path / "a.h5")
-    attributes = ensembles.read_attributes(tmp_path / "a.h5")
-    again = mcgw.scene_from(attributes["scene"])
-    run(again, tmp_path / "b.h5")
-    assert ensembles.read_attributes(tmp_path / "b.h5")["digest"] == attributes["digest"]
-    assert ensembles.verify(tmp_path / "b.h5") == ("", attributes["digest"])
 
 
 def test_what_is_recorded(make_scene, tmp_path):

@@ -61,11 +61,6 @@ def test_blocks_change_no_bit(scene, tmp_path, expected):
     np.testing.assert_array_equal(ensemble.load, mcgw.simulate(scene).load)
 
 
-def test_one_block_leaves_no_trace_beside_its_file(scene, tmp_path):
-    run(replace(scene, n_surfaces=SIZE), tmp_path / "e.h5")
-    assert [p.name for p in tmp_path.iterdir()] == ["e.h5"]
-
-
 @pytest.fixture
 def drawn(monkeypatch):
     """First surfaces of the blocks that were drawn, in order."""
@@ -136,29 +131,6 @@ def test_n_surfaces_is_the_total(scene, tmp_path, expected, drawn):
         run(replace(scene, n_surfaces=99), path)
 
 
-def test_a_finished_run_is_not_drawn_again(scene, tmp_path, monkeypatch):
-    run(scene, tmp_path / "e.h5")
-    before = (tmp_path / "e.h5").stat()
-    monkeypatch.setattr(Job, "draw", None)
-    run(scene, tmp_path / "e.h5")
-    assert (tmp_path / "e.h5").stat().st_mtime_ns == before.st_mtime_ns
-
-
-@pytest.mark.parametrize("begun", [False, True], ids=["finished", "in progress"])
-@pytest.mark.parametrize(
-    ("change", "word"),
-    [({"seed": 2}, "ensemble.seed is 1 there and 2 here"), ({"separations": (0.5,)}, "contact.separations")],
-)
-def test_another_scene_or_seed_in_that_place_is_refused(scene, tmp_path, change, word, begun):
-    path = tmp_path / "e.h5"
-    if begun:
-        halted(scene, path, 40)
-    else:
-        run(replace(scene, n_surfaces=8), path)
-    with pytest.raises(StoreError, match=word):
-        run(replace(scene, **change), path)
-
-
 def test_another_version_is_refused(scene, tmp_path, monkeypatch):
     path = tmp_path / "e.h5"
     halted(scene, path, 40)
@@ -200,22 +172,12 @@ def test_damage_found_while_merging_is_mended(scene, tmp_path, expected, monkeyp
     assert digest(path) == expected
 
 
-def test_a_run_in_progress_can_be_read(scene, tmp_path):
-    path = tmp_path / "e.h5"
-    halted(scene, path, 48)
-    ensemble, whole = ensembles.open_ensemble(path), mcgw.simulate(scene)
-    m = ensemble.n_surfaces
-    assert m % SIZE == 0
-    np.testing.assert_array_equal(ensemble.load, whole.load[:m])
-    np.testing.assert_allclose(ensemble.mean("area"), whole.area[:m].mean(axis=0), rtol=1e-12)  # rounding
-    assert not ensembles.read_attributes(path)["complete"]
-
-
 def test_rows_of_a_run_in_progress_are_those_of_a_list(scene, tmp_path):
     """From any surface to any other, within a block and beyond one."""
     path, asked = tmp_path / "e.h5", replace(scene, sampler="cells")
     shards = begun(asked, path)[:3]
     every = ensembles.open_ensemble(path).sums
+    assert not ensembles.read_attributes(path)["complete"]
     held = replace(every, shards=every.shards[:3])
     whole = mcgw.simulate(asked)
     for start in (0, 5, 15, 16, 33):

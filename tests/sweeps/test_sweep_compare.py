@@ -1,7 +1,6 @@
 """A sweep against theory: each point as an ensemble is, one verdict on all, and what a reader sees of it."""
 
 import dataclasses
-import math
 import re
 from dataclasses import replace
 
@@ -94,27 +93,12 @@ def test_the_picture_shows_all_residuals_and_those_of_the_worst_point(sweep):
     compared = mcgw.compare(off(sweep, 1.03))
     left, right = sweep_figure(compared).axes
     assert sum(bar.get_height() for bar in left.patches) == len(compared.residuals) == 108
-    line = left.lines[-1].get_xydata()
-    width = left.patches[0].get_width()
+    line, width = left.lines[-1].get_xydata(), left.patches[0].get_width()
     np.testing.assert_allclose(line[:, 1], 108 * width * norm.pdf(line[:, 0]), rtol=1e-9)
     worst = compared.worst[0]
-    mean = mcgw.simulate(sweep.scenes[worst.number])
-    drawn = {line.get_label(): line for line in right.lines}
-    for name in ("load", "area", "stiffness", "contacts"):
-        h, shown = drawn[name].get_data()
-        exact = mean.scene.theory
-        z = mean.mean(name) - exact.mean(name, mean.separations)
-        z /= exact.std(name, mean.separations) / math.sqrt(200)
-        z = dict(zip(mean.separations, z, strict=True)) | ({0.0: shown[0]} if name == "load" else {})
-        np.testing.assert_allclose(shown, [z[x] for x in h], rtol=1e-6)
-    assert right.get_ylim()[1] == pytest.approx(1.5 * np.abs(worst.residual).max())
-    assert right.get_title().startswith("worst: grading.gamma = 2, ensemble.seed = 2")
-
-
-def test_means_too_low_are_counted_as_those_too_high(sweep):
-    for factor in (0.97, 1.03):
-        facts = dict(mcgw.compare(off(sweep, factor)).sheet().facts)
-        assert facts["residuals"] == "1 of 108 beyond 3 standard errors"
+    drawn = {line.get_label(): line.get_ydata() for line in right.lines}
+    for name, residual in zip(worst.quantities, worst.residual, strict=True):
+        np.testing.assert_allclose(drawn[name], residual, rtol=1e-12)
 
 
 @pytest.mark.slow
@@ -196,12 +180,3 @@ def test_a_report_is_of_one_ensemble(tmp_path, capsys):
     assert main(["report", str(tmp_path / "w.h5")]) == 2
     assert "w.h5: holds a sweep; mcgw.open_sweep opens it, mcgw compare" in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == ["w.h5"]
-
-
-def test_the_histogram_holds_every_mean(sweep):
-    import matplotlib.pyplot as plt
-
-    compared = mcgw.compare(sweep)
-    axis = compared.plot()
-    assert sum(patch.get_height() for patch in axis.patches) == len(compared.residuals)
-    plt.close(axis.figure)

@@ -2,8 +2,6 @@
 
 import os
 import signal
-import subprocess
-import sys
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
@@ -17,7 +15,6 @@ from oracles.new_trailer import trailer_again
 import mcgw
 from mcgw.cli import main
 from mcgw.commands.sweep import _axis
-from mcgw.jobs import job
 from mcgw.jobs.executors import Jobs
 from mcgw.jobs.job import commit_block
 from mcgw.store.disk import parts_of
@@ -30,7 +27,6 @@ SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
 SCENE = mcgw.Scene(SURFACE, separations=[0.0, 1.0, 2.5], n_surfaces=300, n_asperities=2000, seed=7)
 GAMMA, N = "grading.gamma", "ensemble.n_asperities"
 OVER = {GAMMA: np.linspace(0.5, 1.7, 9), N: [200, 2000]}
-CHUNKS = 12
 FIRST = 2 * [0, 50, 100, 150, 200, 250]  # surfaces of the chunks
 TOML = """
 surface = {sigma = 1e-6, radius = 1e-5, eta = 1e9, nominal_area = 1e-6, E_star = 1e11}
@@ -184,15 +180,9 @@ def test_damage_is_found(tmp_path, capsys, share):
     path = tmp_path / "a.h5"
     mcgw.sweep(SCENE, OVER, path=path)
     assert main(["show", str(path), "--verify"]) == 0
-    good = path.read_bytes()
     flip(path, share)
     assert main(["show", str(path), "--verify"]) in (1, 2)
     assert "a.h5" in "".join(capsys.readouterr())
-    path.write_bytes(good)
-    with h5py.File(path, "r+") as file:
-        file["drawn/load_means"][0, 0] *= 2  # with care
-    with pytest.raises(mcgw.StoreError):
-        mcgw.open_sweep(path)
 
 
 def put(file, name, values):
@@ -318,18 +308,6 @@ def test_values_of_the_command_are_numbers_evenly_or_as_they_stand():
     assert (len(values), values[-1]) == (10**6, 1.0)
 
 
-def test_a_disk_that_is_full(tmp_path, monkeypatch):
-    def full(*_):
-        raise OSError(28, "No space left on device")
-
-    with monkeypatch.context() as patch:
-        patch.setattr(job, "commit_shard", full)
-        with pytest.raises(mcgw.RunError, match="No space left on device; finished blocks are kept in"):
-            mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5")
-    assert not (tmp_path / "a.h5").exists()
-    assert mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5").shape == (9, 2)
-
-
 # --- by others ------------------------------------------------------------------------------------------
 
 
@@ -386,73 +364,6 @@ def test_a_damaged_share_is_drawn_again(tmp_path, expected):
     assert digest(path) == expected
 
 
-def test_the_same_call_without_a_share_ends_what_shares_began(tmp_path, expected):
-    mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5", shard="2/2")
-    mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5")
-    assert digest(tmp_path / "a.h5") == expected
-
-
-SWEEPING = """
-import os, signal, sys
-import numpy as np
-import mcgw
-from mcgw.jobs import job
-from mcgw.sweeps import pooling
-pooling._ROWS = 50
-commit, committed = job.commit_shard, []
-
-def killed_at_the_next(*words):
-    if len(committed) == int(sys.argv[3]):
-        os.kill(os.getpid(), signal.SIGKILL)
-    committed.append(words)
-    return commit(*words)
-
-job.commit_shard = killed_at_the_next
-if __name__ == "__main__":
-    over = {"grading.gamma": np.linspace(0.5, 1.7, 9), "ensemble.n_asperities": [200, 2000]}
-    how = {"run": {}, "1/1": {"shard": "1/1"}}
-    mcgw.sweep(mcgw.scene_from(open(sys.argv[1]).read()), over, path="a.h5", **how[sys.argv[2]])
-"""
-
-
-@pytest.mark.parametrize(
-    ("how", "kills"),
-    [
-        ("run", [3]),
-        pytest.param("1/1", [0, 5, 0, 1, 2, 3], marks=pytest.mark.slow),
-    ],
-)
-def test_killed_at_a_chunk_it_goes_on(tmp_path, expected, how, kills, drawn):
-    """Killed as this chunk is about to be committed; the others are there, and none is drawn again."""
-    (tmp_path / "s.toml").write_text(mcgw.scene_text(SCENE))
-    (tmp_path / "sweeping.py").write_text(SWEEPING)
-    path, held = tmp_path / "a.h5", 0
-    for kill in kills:
-        call = [sys.executable, "sweeping.py", "s.toml", how, str(kill)]
-        done = subprocess.run(call, cwd=tmp_path, capture_output=True, check=False)
-        assert done.returncode == -signal.SIGKILL
-        assert not path.exists()
-        held += kill
-        assert len(list(parts_of(path).glob("shards/block-*.h5"))) == held
-    mcgw.sweep(SCENE, OVER, path=path)
-    assert len(drawn) == CHUNKS - held
-    assert digest(path) == expected
-    assert not list(tmp_path.glob("*.parts"))
-
-
-def test_a_worker_draws_no_chunk_that_is_there(tmp_path, drawn):
-    """A task may be given twice: to the next worker after one that died."""
-    mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5", shard="2/2")
-    folder = parts_of(tmp_path / "a.h5")
-    drawn.clear()
-    run = RunFolder.open(folder)
-    missing, held = run.missing(0, run.shards()), [shard.span for shard in run.shards()]
-    asked = (*held, missing[0], missing[0])
-    digests = [commit_block(str(folder), span.first, span.n) for span in asked]
-    assert drawn == [missing[0].first]
-    assert digests[-1] == digests[-2]
-
-
 def test_a_worker_draws_for_nobody_who_asked_something_else(tmp_path):
     path = tmp_path / "a.h5"
     mcgw.sweep(SCENE, OVER, path=path, shard="2/2")
@@ -474,14 +385,3 @@ def test_executors_draw_into_a_file():
             mcgw.sweep(SCENE, OVER, **how)
     with pytest.raises(ValueError, match="a share uses threads"):
         mcgw.sweep(SCENE, OVER, path="a.h5", executor=pool, shard="1/2")
-
-
-def test_shares_by_command(shell, tmp_path):
-    call = ["sweep", "s.toml", "--over", f"{N}=100,200,300", "-o"]
-    shell(*call, "p.h5", "--threads", "1")
-    shell(*call, "s.h5", "--shard", "2/2")
-    shell("merge", "s.h5", code=1)
-    shell(*call, "s.h5", "--shard", "1/2")
-    assert shell("merge", "s.h5").out.startswith("s.h5: 3 scenes, seed ")
-    assert "was finished before, 3 scenes" in shell("merge", "s.h5").out
-    assert digest(tmp_path / "s.h5") == digest(tmp_path / "p.h5")
