@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from oracles.overwrites import prepare
 from oracles.said import call
 from oracles.told import ANSWERS, drawn, of_array
-from test_scene_keys import keys, text_of
+from tables.scene_keys import keys, text_of
 
 import mcgw
 from mcgw.cli import COMMANDS

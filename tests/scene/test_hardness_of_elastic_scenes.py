@@ -62,26 +62,19 @@ def test_a_law_by_its_word_takes_its_own():
 
 
 @pytest.mark.parametrize(
-    ("given", "line"),
+    ("given", "key"),
     [
-        ({"poisson": 0.3}, "contact.poisson = 0.3: give hardness too, or leave it out"),
-        (
-            {"hardness": 2e9, "poisson": -1.0},
-            "contact.poisson = -1.0: give a Poisson's ratio, above -1 and at most 0.5",
-        ),
-        (
-            {"hardness": 0.0},
-            "contact.hardness = 0.0: give a finite number > 0 in Pa, such as 1MPa, 78.6 GPa or 1e6 (Pa)",
-        ),
+        ({"poisson": 0.3}, "poisson"),
+        ({"hardness": 2e9, "poisson": -1.0}, "poisson"),
+        ({"hardness": 0.0}, "hardness"),
     ],
 )
-def test_wrong_numbers_beside_hertz(given, line):
-    with pytest.raises(SceneError) as error:
-        mcgw.Scene(_SURFACE, separations=[0.0], **given)
-    assert error.value.problems == [line]
-    with pytest.raises(SceneError) as error:
-        mcgw.scene_from(_TEXT + "".join(f"{key} = {value}\n" for key, value in given.items()))
-    assert error.value.problems == [line]
+def test_wrong_numbers_beside_hertz(given, key):
+    text = _TEXT + "".join(f"{name} = {value}\n" for name, value in given.items())
+    for make in (lambda: mcgw.Scene(_SURFACE, separations=[0.0], **given), lambda: mcgw.scene_from(text)):
+        with pytest.raises(SceneError, match=rf"^contact\.{key} = {given[key]}: give ") as error:
+            make()
+        assert len(error.value.problems) == 1
 
 
 @pytest.mark.parametrize(
@@ -107,12 +100,3 @@ def test_a_law_of_python_that_has_a_poisson_keeps_it():
     assert mcgw.Scene(_SURFACE, separations=[0.0], law=law, hardness=2e9).softer == (2e9, 0.25)
     with pytest.raises(SceneError, match=r"contact\.poisson = 0\.2: give it to the law, Coated"):
         mcgw.Scene(_SURFACE, separations=[0.0], law=law, hardness=2e9, poisson=0.2)
-
-
-def test_keys_that_no_law_has_are_unknown():
-    with pytest.raises(SceneError, match=r"contact\.hardnes: unknown key; did you mean hardness\?"):
-        mcgw.Scene(_SURFACE, separations=[0.0], law={"law": "hertz", "hardnes": 1e9, "hardness": 1e9})
-    with pytest.raises(SceneError, match=r"contact\.critical: unknown key"):
-        mcgw.Scene(_SURFACE, separations=[0.0], law={"law": "hertz", "critical": 0.05})
-    with pytest.raises(SceneError, match=r"contact\.hardness: unknown key"):
-        mcgw.scene_from(f'{_TEXT}law = "jackson-green"\nyield_strength = 4e8\nhardness = 1e9\n')

@@ -32,44 +32,6 @@ def test_a_separation_at_which_all_touch(make_scene):
     assert (ensemble.contacts == scene.n_asperities).all()
 
 
-def test_separations_at_which_nothing_touches(make_scene):
-    ensemble = mcgw.simulate(make_scene(separations=(38.6, 40.0, 1e3)))
-    for name in ensemble.scene.quantities:
-        assert not ensemble.values(name).any()
-        assert not ensemble.stderr(name).any()
-    assert np.isfinite(analytic.fn(1.5, 40.0, log=True))
-
-
-def test_separations_that_are_neither_sorted_nor_all_different(make_scene):
-    """Zero of either sign is one number."""
-    h = (2.0, 0.0, 1.0, -0.0, 2.0)
-    ensemble = mcgw.simulate(make_scene(separations=h, n_surfaces=5))
-    np.testing.assert_array_equal(ensemble.separations, h)
-    assert np.all(np.diff(ensemble.load[:, [0, 2, 1]], axis=1) > 0)
-    np.testing.assert_array_equal(ensemble.load[:, [3, 4]], ensemble.load[:, [1, 0]])
-
-
-def test_one_asperity(make_scene):
-    ensemble = mcgw.simulate(make_scene(n_asperities=1, separations=(0.0, 1.0)))
-    assert set(np.unique(ensemble.contacts)) == {0, 1}
-
-
-def test_many_asperities(make_scene):
-    """Far up, where few touch, drawn one by one; with aggregated cells anywhere."""
-    for change in ({"separations": (6.5,)}, {"separations": (1.0,), "sampler": "aggregate"}):
-        scene = make_scene(n_asperities=10**12, n_surfaces=3, **change)
-        contacts = mcgw.simulate(scene).contacts
-        expected = 10**12 * float(scene.heights.sf(np.array(scene.lowest)))
-        assert (np.abs(contacts - expected) < 6 * np.sqrt(expected)).all()
-
-
-def test_one_surface(make_scene):
-    ensemble = mcgw.simulate(make_scene(n_surfaces=1))
-    assert np.isnan(ensemble.std("load")).all()
-    assert np.isnan(ensemble.stderr("load")).all()
-    assert np.isfinite(ensemble.mean("load")).all()
-
-
 def test_beyond_64_bits(make_scene, tmp_path):
     scene = make_scene(n_surfaces=10**12, n_asperities=10**8, separations=(6.0,))
     with pytest.raises(StoreError, match=r"n_surfaces \* n_asperities = 1e\+20 is more than 2\^63 - 1"):

@@ -29,31 +29,14 @@ def test_plan_says_what_is_drawn(make_scene):
     assert plan.moments == pytest.approx(len(moments), rel=0.2)
     assert plan.bytes == 8 * 200 * 2 * 4
     assert plan.seconds > 0
-    text = plan_text(scene, plan)
-    assert "lie below every separation and are not drawn" in text
-    assert "conductance: not requested" in text
-    assert "time          about" in text
 
 
-def test_plan_counts_what_is_kept_and_says_who_chose(make_scene):
-    """Bytes of the sums, or of statistics alone; auto is named where it chose."""
+def test_plan_counts_what_is_kept(make_scene):
+    """Bytes of the sums, or of statistics alone: not even one value of each surface."""
     scene = make_scene(sampler="cells", separations=(1.0, 2.0))
-    plan = plan_of(scene)
-    assert plan.bytes == 8 * 200 * 2 * 4
-    alone = scene.replace(keep="statistics", n_surfaces=10**6)
-    kept = plan_of(alone)
-    assert kept.bytes < 8 * 10**6  # not even one value of each surface
-    assert f"statistics alone, about {kept.bytes / 1e6:.4g} MB" in plan_text(alone, kept)
-    wish = scene.replace(keep="sums", sampler="auto", n_asperities=10**6)
-    assert "accuracy      0: exact laws; 1e-3 would buy crowded cells, 0." in plan_text(wish, plan_of(wish))
-    assert "accuracy      0: exact laws\n" in plan_text(scene, plan)
-    assert "chosen by auto" not in plan_text(scene, plan)
-    assert "sampler       cells" in plan_text(scene, plan)
-    assert "chosen by auto" in plan_text(make_scene(sampler="auto"), plan)
-    text = plan_text(scene, plan)
-    assert f"touching      {plan.touching:.4g} per surface, at the smallest d/sigma = 1" in text
-    assert f"results       {plan.bytes / 1e6:.4g} MB" in text
-    assert f"  {3000 - plan.touching:.4g} asperities per surface lie below" in text
+    assert plan_of(scene).bytes == 8 * 200 * 2 * 4
+    assert plan_of(scene.replace(keep="statistics", n_surfaces=10**6)).bytes < 8 * 10**6
+    assert "chosen by auto" not in plan_text(scene, plan_of(scene))
 
 
 def test_contacts_alone_draw_no_height(make_scene):

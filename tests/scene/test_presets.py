@@ -128,7 +128,14 @@ def test_theory_of_a_light_load_on_a_spectral_surface(tmp_path):
     assert said["contacts"] == pytest.approx(n * summit_mean(10.0, h, 0.0, 0.0), rel=1e-7)
 
 
-@pytest.mark.parametrize("name", [name for name in PRESETS if name != "spectral"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=[] if name in ("metal", "nanoindentation") else pytest.mark.slow)
+        for name in PRESETS
+        if name != "spectral"
+    ],
+)
 def test_theory_of_a_light_load_by_command(name, tmp_path):
     """`solve --pressure 10kPa`: integrals by scipy at the separation that is printed give that load."""
     scene, said = lightly_loaded(name, tmp_path)
@@ -175,6 +182,7 @@ def test_presets_yield_under_a_yielding_law_alone(name):
         assert share == pytest.approx(np.sum(norm.pdf(x[past])) / np.sum(norm.pdf(x)), rel=1e-3, abs=1e-12)
 
 
+@pytest.mark.site
 def test_page_on_laws_for_a_joint_has_the_ratios_of_the_script():
     """One alpha of metals, and those of Hertz's law, which Mikic's correlation describes within 14 %."""
     page = (Path(__file__).parents[2] / "docs" / "how-to" / "law-for-a-joint.md").read_text(encoding="utf-8")

@@ -32,13 +32,8 @@ SCENES = {
     "clip": {"grading": lambda s: s - 0.9, "negative": "clip"},
     "allow": {"grading": lambda s: np.sin(3 * s), "negative": "allow"},
     "clipped twice": {"grading": analytic.Clipped(analytic.Custom(lambda s: s - 0.9))},
-    "lognorm": {"heights": scipy.stats.lognorm(0.3)},
-    "genextreme": {"heights": scipy.stats.genextreme(0.1, 5.0, 2.0)},
     "lambda, lognorm": {"grading": lambda s: 1 + s * s, "heights": scipy.stats.lognorm(0.3)},
     "kink, weibull": {"grading": bent, "heights": analytic.Weibull(2.0), "count": "poisson"},
-    "direct": {"grading": bent, "sampler": "direct"},
-    "tail": {"grading": bent, "sampler": "tail"},
-    "aggregate": {"grading": bent, "sampler": "aggregate"},
 }
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from test_scene_keys import text_of
+from tables.scene_keys import text_of
 
 import analytic
 import mcgw
@@ -82,11 +82,8 @@ def put(section, line):
 
 # Text of a scene, and what its error must say: the key, and what would do.
 BAD = [
-    *((separations(f"[0.0, {x}]"), "contact.separations") for x in ("nan", "inf", "-inf", "1e400")),
-    (separations("[]"), "contact.separations = []: give at least one; give a list of finite numbers d/sigma"),
-    (separations('[1.0, "a", true]'), "contact.separations"),
+    (separations("[0.0, 1e400]"), "contact.separations"),
     (separations("[2026-11-21]"), "contact.separations"),
-    (separations("{start = 0, stop = 4, num = 1000000}"), "at most 100000"),
     (separations("[1.0, -5e-324]"), "contact.separations: -4.94066e-324 is too close to 0"),
     (put("ensemble", "n_asperities = 9007199254740993"), "between 1 and 2^53"),
     (changed("sigma = 1e-6", "sigma = 1e-320"), "beyond double precision"),
@@ -95,12 +92,9 @@ BAD = [
     (changed("E_star = 1e11", "E_star = 1e308"), "beyond double precision"),
     (GOOD + '[grading]\nlaw = "table"\ns = [0.0, 9.0]\nratio = [1.0, -1.0]', "negative from s = 4.5"),
     (GOOD + '[grading]\nlaw = "table"\ns = [1.0, 0.0]\nratio = [1.0, 2.0]', "the heights must increase"),
-    (GOOD + '[grading]\nlaw = "table"\nfile = "absent.csv"',
-     "grading.file = 'absent.csv': give a CSV file, or lists s and ratio; absent.csv: No such file"),
     (changed("seed = 5", 'sampler = "cell"'), "ensemble.sampler = 'cell': did you mean cells? choose one"),
     (put("contact", 'quantities = ["lod"]'),
      "contact.quantities = 'lod': did you mean load? choose one of load, area"),
-    (changed("E_star = 1e11", "bodies = [{E = 70e9}]"), "give two, such as [{E = 70e9, nu = 0.33}"),
     (changed("radius = 1e-5", ""), "surface.radius: missing; give it in m"),
     ("", "surface.sigma: missing"),
     (changed("[contact]", "[contatc]"), "contact.separations: missing"),

@@ -1,8 +1,6 @@
 """Every prefix and unit against a literal factor, in every spelling; and what is not a unit."""
 
-import argparse
 from dataclasses import replace
-from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -10,7 +8,6 @@ from oracles.said import call
 
 import analytic
 import mcgw
-from mcgw.cli import COMMANDS
 from mcgw.formats.numbers import _FACTORS, EXAMPLES, METRES, parse
 from mcgw.scene.keys import SURFACE_UNITS
 from mcgw.scene.plausible import RANGES, perhaps_other_units, surface_in_other_units
@@ -125,21 +122,6 @@ def test_a_surface_of_texts_is_that_of_floats():
             mcgw.Surface(**{**SI, key: -1.0})
 
 
-def scene_of(surface):
-    body = "\n".join(f"{key} = {value}" for key, value in surface.items())
-    return mcgw.scene_from(
-        f"[surface]\n{body}\n[contact]\nseparations = 1.0\n[ensemble]\nn_surfaces = 3\nseed = 1\n"
-    )
-
-
-def test_every_dimensional_key_of_a_scene_takes_a_text():
-    plain = scene_of(SI)
-    assert scene_of({key: f"'{value}'" for key, value in AS_TEXT.items()}) == plain
-    bodies = {key: value for key, value in SI.items() if key != "E_star"}
-    bodies["bodies"] = "[{E = '70 GPa', nu = 0.33}, {E = inf}]"
-    assert scene_of(bodies).surface.E_star == pytest.approx(70e9 / (1 - 0.33**2), rel=1e-15)
-
-
 # Command, and what it is of: without the option it is right, but for solve and the cutoff.
 OPTIONS = [
     ("solve s.toml --pressure", "Pa"), ("solve s.toml --load", "N"), ("solve s.toml --area-fraction", "1"),
@@ -150,27 +132,12 @@ OPTIONS = [
 ]  # fmt: skip
 
 
-def test_no_option_with_a_unit_is_read_as_a_bare_float():
-    """Whatever else is a float is without a dimension."""
-    bare = set()
-    for name in COMMANDS:
-        parser = argparse.ArgumentParser()
-        import_module(f"mcgw.commands.{name}").arguments(parser)
-        for action in parser._actions:
-            if action.type is float:
-                bare |= {(name, option) for option in action.option_strings}
-    assert bare == {
-        ("elastic", "--rel-err"),
-        ("export", "--quantile"),
-        ("fit", "--missing-value"),
-        ("surface", "--at"),
-    }
-
-
 @pytest.mark.parametrize(("words", "kind"), OPTIONS)
 def test_a_wrong_unit_of_an_option_is_one_line(words, kind, tmp_path):
     (tmp_path / "map.npy").touch()
-    (tmp_path / "s.toml").write_text(mcgw.scene_text(scene_of(SI)))
+    (tmp_path / "s.toml").write_text(
+        mcgw.scene_text(mcgw.Scene(mcgw.Surface(**SI), separations=1.0, n_surfaces=3))
+    )
     done = call(*words.split(), "5 apples", cwd=tmp_path)
     assert done.returncode == 2
     said, option = done.stderr.splitlines()[-1], words.split()[-1]
@@ -181,25 +148,6 @@ def test_a_wrong_unit_of_an_option_is_one_line(words, kind, tmp_path):
 # --- units that are doubted ---------------------------------------------------------------------------
 
 SURFACE = analytic.Surface(1e-6, 1e-5, 1e9, 1e-6, 1e11)
-DOUBTED = {
-    "E_star": (50.0, "50 Pa is softer than any gel; did you mean 50 GPa = 5e+10?"),
-    "sigma": (0.8, "0.8 m is higher than the summits of any ground surface; did you mean 0.8"),
-    "eta": (300.0, "300 1/m^2 is less than one summit per square centimetre; did you mean 300/"),
-    "radius": (13.0, "13 m is too large for the radius of a summit; did you mean 13 um = 1.3e-05?"),
-    "nominal_area": (100.0, "100 m^2 is larger than any contact of two bodies; did you"),
-}
-
-
-@pytest.mark.parametrize("key", RANGES)
-def test_a_value_in_another_unit_is_asked_about_in_one_line(key):
-    value, asked = DOUBTED[key]
-    scene = Scene(surface=replace(SURFACE, **{key: value}), separations=(1.0,), n_asperities=100)
-    (line,) = perhaps_other_units(scene)
-    assert line.startswith(f"surface.{key} = {value:g}: {asked}")
-    assert len(line) < 150
-    tiny = Scene(surface=replace(SURFACE, **{key: RANGES[key].low / 2}), separations=(1.0,), n_asperities=100)
-    (line,) = perhaps_other_units(tiny)
-    assert line.startswith(f"surface.{key} = ")
 
 
 ENDS = {  # from atoms to faults in rock, from gels to diamond
@@ -210,13 +158,10 @@ ENDS = {  # from atoms to faults in rock, from gels to diamond
 
 @pytest.mark.parametrize("key", ENDS)
 def test_values_are_asked_about_from_the_end_of_their_range_on(key):
+    assert ENDS.keys() == RANGES.keys() == SURFACE_UNITS.keys()
     low, high = ENDS[key]
     for value, doubts in ((low, 0), (0.995 * low, 1), (high, 0), (1.005 * high, 1)):
         assert len(surface_in_other_units(replace(SURFACE, **{key: value}))) == doubts, value
-
-
-def test_every_key_of_the_surface_has_a_range():
-    assert RANGES.keys() == SURFACE_UNITS.keys() == DOUBTED.keys()
 
 
 def test_separations_in_metres_are_asked_about():

@@ -74,19 +74,6 @@ def test_series_and_tables_are_no_ratios(factor):
     assert not mcgw.scene_from(f"{text}checked = false\n").grading.checked
 
 
-@pytest.mark.parametrize("wrap", [lambda g: g, analytic.Clipped], ids=["plain", "clipped"])
-def test_the_way_out_is_kept(wrap, tmp_path):
-    """In memory, in text and in files."""
-    scene = _scene(grading=wrap(mcgw.Custom(_young, checked=False)))
-    again = mcgw.scene_from(mcgw.scene_text(scene))
-    assert mcgw.scene_from(mcgw.scene_text(again)) == again
-    ran = mcgw.run(scene, tmp_path / "a.h5")
-    held = mcgw.open_ensemble(tmp_path / "a.h5")
-    np.testing.assert_array_equal(held.values("load"), ran.values("load"))
-    ratio = held.mean("load") / mcgw.simulate(_scene(grading=lambda s: _young(s) / 72e9)).mean("load")
-    assert ratio == pytest.approx(72e9, rel=1e-9)
-
-
 @pytest.mark.parametrize(
     "function",
     [

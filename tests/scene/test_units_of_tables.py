@@ -146,6 +146,7 @@ def test_a_surface_in_another_unit_is_asked_about_in_python():
         ("E_star", "78600 GPa", "78.6 GPa = 7.86e+10"),
         ("E_star", 78.6, "78.6 GPa = 7.86e+10"),
         ("eta", 300.0, "300/mm^2 = 3e+08"),
+        ("nominal_area", 100.0, "100 mm^2 = 0.0001"),
     ],
 )
 def test_what_was_perhaps_meant_has_the_digits_as_people_write_them(key, given, meant):

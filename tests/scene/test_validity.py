@@ -19,7 +19,6 @@ from scipy.stats import norm
 
 import analytic
 import mcgw
-from mcgw.cli import main
 from mcgw.reports.html import report_html
 from mcgw.scene import validity_lookup, validity_table
 from mcgw.scene.validity_place import LEAST_CROWDING, moments_of, reduced_pressure
@@ -437,30 +436,6 @@ def without_pictures(monkeypatch):
         monkeypatch.setattr(f"mcgw.reports.html.{name}", lambda *_: [])
 
 
-COMMANDS = {
-    "run": ["run", "s.toml", "-o", "new.h5"],
-    "compare": ["compare", "s.h5", "-o", "s.png"],
-    "show": ["show", "s.h5"],
-    "plan": ["show", "--plan", "s.toml"],
-    "solve": ["solve", "s.toml", "--pressure", "1 MPa", "--surfaces", "5"],
-}
-
-
-@pytest.mark.parametrize("name", COMMANDS)
-def test_a_command_says_both_sentences(scene, paths, name, capsys, monkeypatch, blank_figures):
-    monkeypatch.chdir(paths)
-    assert main(COMMANDS[name]) == 0
-    out = capsys.readouterr().out
-    assert ("Monte Carlo and theory agree: chi-square" in out) == (name == "compare")
-    assert ("next: mcgw compare new.h5\n" in out) == (name == "run")
-    if name == "solve":
-        scene = scene.replace(separations=[mcgw.solve(scene, pressure="1 MPa").theory["separation"]])
-    known = scene.validity()
-    assert known.verdict in out
-    assert (f"  {known.details}\n" in out) == (name in ("show", "plan"))
-    assert re.match(r"Model error: within \d+ % at a given load( for d/sigma = 0.4 to 1.2)?, ", known.verdict)
-
-
 def test_the_report_has_the_sentences_and_a_table(paths, without_pictures):
     ensemble = mcgw.open_ensemble(paths / "s.h5")
     page = html.unescape(report_html(ensemble, read_attributes(paths / "s.h5")))
@@ -478,29 +453,6 @@ def test_the_report_has_the_sentences_and_a_table(paths, without_pictures):
         assert bias == pytest.approx(100 * known.bias["area"][k], abs=0.51)
         assert scatter == pytest.approx(100 * (known.error["area"] - abs(known.bias["area"]))[k], abs=0.51)
     assert rows[2][2] == "not measured"
-
-
-def test_the_report_of_a_model_that_was_not_measured(paths, without_pictures):
-    ensemble = mcgw.open_ensemble(paths / "s.h5")
-    other = dataclasses.replace(ensemble.scene, heights=analytic.ExponentialHeights())
-    page = report_html(dataclasses.replace(ensemble, scene=other), read_attributes(paths / "s.h5"))
-    part = page[page.index("<h2>Against elasticity") : page.index("<h2>Before you trust it")]
-    assert "not measured" in part
-    assert "<table>" not in part
-
-
-def test_results_in_python_say_it(scene):
-    ensemble = mcgw.simulate(scene)
-    known = scene.validity()
-    assert len(known.brief) <= 88
-    assert known.brief in repr(ensemble)
-    assert known.brief in repr(mcgw.compare(ensemble))
-    assert known.brief in ensemble._repr_html_()
-    solved = mcgw.solve(scene, pressure="1 MPa", n_surfaces=5)
-    assert scene.validity(solved.theory["separation"]).brief in repr(solved)
-    shown = repr(known).splitlines()
-    assert shown[0] == "Against elasticity"
-    assert [line.split()[0] for line in shown[4:]] == [f"{h:g}" for h in SEPARATIONS]
 
 
 def test_the_sentence_names_the_worst_at_a_load_and_at_a_gap(scene):
