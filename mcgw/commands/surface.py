@@ -43,7 +43,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=int, default=0, help="seed of a Gaussian map; default: 0")
     parser.add_argument(
         "-o", "--output", type=Path, required=True, metavar="FILE",
-        help="file ending in .npy, .h5, .sdf or .ascii.sdf; with --at in .png, .svg or .pdf",
+        help="file ending in .npy, .h5 or .sdf; with --at in .png, .svg or .pdf",
     )  # fmt: skip
 
 

@@ -26,12 +26,12 @@ from mcgw.maps.estimates import (
     roughness_of,
 )
 from mcgw.maps.form import ORDERS
+from mcgw.maps.form_left import form_left
 from mcgw.maps.hidden_caps import Visible, visible
 from mcgw.maps.preparation import Prepared
 from mcgw.maps.steps import Form
-from mcgw.maps.steps_and_forms import form_left
 from mcgw.maps.summit_sums import EDGE, SummitSums, coarse_sums_of, summit_sums_of
-from mcgw.maps.summits import Alone, Summits, alone_of, summits_of, tiles_of
+from mcgw.maps.summits import Summits, summits_of, tiles_of
 from mcgw.maps.topography import SMALLEST
 from mcgw.maps.waves import Uncertain, Waves, uncertain, waves_of
 
@@ -76,8 +76,6 @@ class Fit(Shown):
         The form that was removed, one of `mcgw.maps.steps`.
     waves : Waves
         Errors due to the small number of waves on the map.
-    alone : Alone or None
-        The sub-area that dominates the estimates on its own, if there is one.
     tiles : Table
         Estimates from each sub-area alone: see `mcgw.maps.summits.tiles_of`.
     roughness : Roughness
@@ -102,7 +100,6 @@ class Fit(Shown):
     mean_squares: dict[str, float]
     form: Form
     waves: Waves
-    alone: Alone | None
     tiles: Table
     roughness: Roughness
     notes: tuple[str, ...] = ()
@@ -228,7 +225,7 @@ def fit_prepared(ready: Prepared, *, across: int = 4) -> Fit:
         float(counted.heights.mean()) - mean_squares(counted)["z"],
         counted.area,
         seen,
-        mean_squares(counted), form, waves, alone_of(counted), tiles_of(counted),
+        mean_squares(counted), form, waves, tiles_of(counted),
         roughness_of(_inside(ready)), ready.notes,
     )  # fmt: skip
 

@@ -7,12 +7,12 @@ from scipy import ndimage
 
 from mcgw.maps.bad_points import spike_heights
 from mcgw.maps.fit import Fit
+from mcgw.maps.form_left import form_left
 from mcgw.maps.hidden_caps import CROWDED, visible
 from mcgw.maps.instrument import faults
 from mcgw.maps.preparation import Prepared
 from mcgw.maps.profile import Profile
 from mcgw.maps.profile_fit import ProfileFit
-from mcgw.maps.steps_and_forms import form_left, step_of
 from mcgw.maps.topography import STEEPEST, Topography
 
 _WIDEST = 1e-2  # m
@@ -27,7 +27,7 @@ _PEAKS, _UNSURE = 1.2, 0.2
 
 # First words of cautions, the most serious first: errors from a wrong unit to a few per cent.
 _GRAVEST = (
-    "slope", "unit", "spikes", "lines", "rounding", "step", "sub-area", "form", "range",
+    "slope", "unit", "spikes", "lines", "rounding", "form", "range",
     "cutoff", "pixel", "blur", "missing", "estimates", "lay", "skewness", "alpha", "peaks",
     "overlap", "summits", "waves", "x",
 )  # fmt: skip
@@ -56,30 +56,6 @@ def _spikes(topography: Topography) -> Iterator[str]:
         f"{abs(above[j, i]):.3g} m {kind} and narrower than five pixels; a single one can dominate R, eta "
         "and sigma: use --spikes remove, or crop the map"
     )
-
-
-def _alone(fit: Fit, topography: Topography) -> Iterator[str]:
-    alone = fit.alone
-    if alone is None:
-        return
-    place = (
-        f"{axis} = {size * n / alone.across:.4g} to {size * (n + 1) / alone.across:.4g} m"
-        for axis, size, n in zip("xy", topography.size, (alone.column, alone.row), strict=True)
-    )
-    yield (
-        f"sub-area: without the one at {', '.join(place)} {alone.moment} is {alone.left:.2g} times as large; "
-        "the stated errors are unreliable if one sub-area dominates: check it, and crop it"
-    )
-
-
-def _step(topography: Topography) -> list[str]:
-    step = step_of(topography)
-    if step is None:
-        return []
-    return [
-        f"step: two levels {step.height:.3g} m apart meet near {step.axis} = {step.place:.3g} m; keep the "
-        "larger terrace with --step crop"
-    ]
 
 
 def _form(fit: Fit, topography: Topography) -> list[str]:
@@ -111,8 +87,7 @@ def cautions(fit: Fit, ready: Prepared, use: str = "auto") -> list[str]:
         [
             *_units(level),
             *_spikes(level),
-            *_alone(fit, level),
-            *(_step(level) or _form(fit, level) or _waves(fit)),
+            *(_form(fit, level) or _waves(fit)),
             *faults(ready, _longer(ready)),
             *_of_the_pixel(fit, ready),
             *_of_the_heights(fit),

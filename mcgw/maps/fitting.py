@@ -12,7 +12,7 @@ from mcgw.maps.preparation import Preparation, Prepared, preparation_of, prepare
 from mcgw.maps.profile import Profile
 from mcgw.maps.profile_files import holds_profile, read_profile
 from mcgw.maps.profile_fit import ProfileFit, fit_profiles
-from mcgw.maps.steps import Form, LinesTo, Missing, SpikesTo, StepTo
+from mcgw.maps.steps import Form, LinesTo, Missing, SpikesTo
 from mcgw.maps.topography import Topography
 from mcgw.scene.arguments import argument
 
@@ -24,7 +24,6 @@ def fit(
     form: Form = "plane",
     missing: Missing = "auto",
     spikes: SpikesTo = "keep",
-    step: StepTo = "keep",
     trim: int = 0,
     long_cutoff: float | str | None = None,
     lines: LinesTo = "keep",
@@ -52,8 +51,6 @@ def fit(
         the fit state what was done.
     spikes : {"keep", "remove"}, optional
         Whether to remove points that stand out of the map, or have extreme curvature.
-    step : {"keep", "crop"}, optional
-        Whether to keep only the larger of two terraces.
     trim : int, optional
         Number of points to remove along each edge.
     long_cutoff : float, str or None, optional
@@ -95,7 +92,7 @@ def fit(
     ['moments', 'summits']
     """
     given = {
-        "cutoff": cutoff, "form": form, "missing": missing, "spikes": spikes, "step": step, "trim": trim,
+        "cutoff": cutoff, "form": form, "missing": missing, "spikes": spikes, "trim": trim,
         "long_cutoff": long_cutoff, "lines": lines, "parts": parts,
     }  # fmt: skip
     asked, across = preparation_of(given, lambda key, value: argument(key, value, "m"))

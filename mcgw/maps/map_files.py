@@ -27,7 +27,7 @@ from mcgw.maps.topography import (
 
 _FILETYPE = "mcgw-surface"
 _MOST_JSON = 2**16
-WRITTEN = (".npy", ".h5", ".sdf", ".ascii.sdf")
+WRITTEN = (".npy", ".h5", ".sdf")
 _TEXT = (".txt", ".csv", ".asc", ".dat", ".tsv", ".xyz")
 
 
@@ -183,7 +183,7 @@ def write_map(
     """
     match path.suffix.lower():
         case ".sdf":
-            write_sdf(topography, path, text=path.name.lower().endswith(".ascii.sdf"))
+            write_sdf(topography, path)
         case ".npy":
             write_npy(topography, path)
         case ".h5":

@@ -10,8 +10,7 @@ from scipy import ndimage
 from analytic.arrays import Marks
 from mcgw.maps.bad_points import Recorded, filled, recorded, small_spike_heights, spike_heights
 from mcgw.maps.form import lowpass, smooth, without_form, without_offsets
-from mcgw.maps.steps import STEPS, Form, LinesTo, Missing, SpikesTo, StepTo
-from mcgw.maps.steps_and_forms import step_of
+from mcgw.maps.steps import STEPS, Form, LinesTo, Missing, SpikesTo
 from mcgw.maps.topography import SMALLEST, Topography
 from mcgw.scene.arguments import arguments
 from mcgw.scene.kinds import Whole, Word
@@ -32,7 +31,7 @@ class Preparation:
     ----------
     cutoff, long_cutoff : float or None
         Shortest and longest wavelength that counts, m; None: as measured.
-    form, missing, spikes, step, lines : str, optional
+    form, missing, spikes, lines : str, optional
         Each by one of the words that its row of `mcgw.maps.steps.STEPS` knows.
     trim : int, optional
         Points that are left off along each edge.
@@ -42,7 +41,6 @@ class Preparation:
     form: Form = "plane"
     missing: Missing = "auto"
     spikes: SpikesTo = "keep"
-    step: StepTo = "keep"
     trim: int = 0
     long_cutoff: float | None = None
     lines: LinesTo = "keep"
@@ -108,8 +106,6 @@ def prepared(topography: Topography, asked: Preparation) -> Prepared:
     notes: list[str] = []
     kept = _within(_trimmed(topography, asked.trim, notes), notes)
     del topography  # frees the memory of a large map that nobody else uses
-    if asked.step == "crop":
-        kept = _terrace(kept, notes)
     if not np.nanmax(kept.heights) - np.nanmin(kept.heights) > SMALLEST:
         raise ValueError("the map is flat, without roughness")
     seen_by = recorded(kept.heights)
@@ -154,27 +150,6 @@ def _within(topography: Topography, notes: list[str]) -> Topography:
         notes.append(f"edges: {box.shape[1]} x {box.shape[0]} points kept; all points outside are missing")
         return replace(topography, heights=box, periodic=False)
     return topography
-
-
-def _terrace(topography: Topography, notes: list[str]) -> Topography:
-    """The larger side of a step, if there is one."""
-    whole = replace(topography, heights=filled(without_form(topography, "plane").heights))
-    step = step_of(whole)
-    if step is None:
-        notes.append("step: none found, nothing cropped")
-        return topography
-    along = "xy".index(step.axis)
-    size, pixel, n = topography.size[along], topography.pixel[along], topography.heights.shape[1 - along]
-    first = step.begin >= size - step.end
-    part = slice(0, round(step.begin / pixel)) if first else slice(round(step.end / pixel), n)
-    heights = topography.heights[:, part] if along == 0 else topography.heights[part]
-    if min(heights.shape) < 1:
-        raise ValueError("step: neither side is large enough; crop the map by hand")
-    end = f"up to {step.begin:.4g}" if first else f"from {step.end:.4g}"
-    notes.append(
-        f"step: {step.height:.3g} m near {step.axis} = {step.place:.4g} m; only the map {end} m kept"
-    )
-    return replace(topography, heights=heights, periodic=False)
 
 
 def _levelled(

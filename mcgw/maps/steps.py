@@ -6,7 +6,6 @@ from typing import Literal, get_args
 Form = Literal["plane", "none", "quadratic", "cubic", "quartic"]
 Missing = Literal["auto", "mask", "fill"]
 SpikesTo = Literal["keep", "remove"]
-StepTo = Literal["keep", "crop"]
 LinesTo = Literal["keep", "rows", "columns"]
 
 
@@ -42,6 +41,5 @@ STEPS = (
         get_args(Missing),
     ),
     Step("spikes", "remove points that stand out", get_args(SpikesTo)),
-    Step("step", "of two terraces, keep only the larger", get_args(StepTo)),
     Step("lines", "remove offsets between rows or columns, as from a line scan", get_args(LinesTo)),
 )

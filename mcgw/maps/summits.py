@@ -1,6 +1,6 @@
 """Every summit of a map: its place, height and two principal curvatures.
 
-Also estimates from each sub-area alone, and whether one of them dominates the whole map.
+Also estimates from each sub-area alone.
 """
 
 import math
@@ -143,7 +143,6 @@ TILES = (  # what stands above their table in a file
     "eta in 1/m^2, radius and sigma in m, by the summits of the tile; m0 in m^2, m2, m4 in 1/m^2; heights "
     "are about the mean of the tile"
 )
-_HALF = 0.5
 
 
 def tiles_of(counted: SummitSums) -> Table:
@@ -185,47 +184,3 @@ def variation(values: Array) -> float:
     values = values[np.isfinite(values)]
     mean = float(values.mean())
     return float(values.std(ddof=1) / mean) if values.size > 1 and mean else math.nan
-
-
-@dataclass(frozen=True, slots=True)
-class Alone:
-    """A sub-area without which a mean square is less than half.
-
-    Parameters
-    ----------
-    moment : {"m0", "m2", "m4"}
-        Of heights, slopes or second derivatives.
-    left : float
-        Share of it that is left without this sub-area.
-    column, row : int
-        Which sub-area, from 0.
-    across : int
-        Sub-areas along each axis.
-    """
-
-    moment: str
-    left: float
-    column: int
-    row: int
-    across: int
-
-
-def alone_of(counted: SummitSums) -> Alone | None:
-    """The sub-area that most of a mean square stands on, if there is one; m4 before m2 before m0."""
-    sums = dict(zip(SUMS, counted.sums, strict=True))
-    points = sums["points"]
-    if np.count_nonzero(points) == 1:
-        return None
-    mean = sums["z"].sum() / points.sum()
-    squares = {
-        "m4": sums["bend"],
-        "m2": sums["slope_x"] + sums["slope_y"],
-        "m0": sums["z2"] - 2 * mean * sums["z"] + mean**2 * points,
-    }
-    for moment, square in squares.items():
-        part = int(np.argmax(square))
-        rest = (square.sum() - square[part]) / (points.sum() - points[part])
-        left = float(rest / (square.sum() / points.sum()))
-        if left < _HALF:
-            return Alone(moment, left, part % counted.across, part // counted.across, counted.across)
-    return None

@@ -55,14 +55,13 @@ def material(tmp_path_factory):
     assert main(["surface", *SPECTRUM, "--seed", "3", "-o", str(folder / "map.h5")]) == 0
     z = read_map(folder / "map.h5").heights
     np.save(folder / "bare.npy", z)
-    holes, spiked, stepped = z.copy(), z.copy(), z.copy()
+    holes, spiked = z.copy(), z.copy()
     lined = z + 2e-7 * np.random.default_rng(9).normal(size=(len(z), 1))
     marked = z.copy()
     holes[25:35, 50:65], marked[25:35, 50:65] = np.nan, 8e-6
     spiked[25::30, 20::35] += 3e-5
-    stepped[:, 75:] += 1e-5
     np.save(folder / "marked.npy", marked)
-    for name, heights in (("holes", holes), ("spiked", spiked), ("stepped", stepped), ("lined", lined)):
+    for name, heights in (("holes", holes), ("spiked", spiked), ("lined", lined)):
         np.save(folder / f"{name}.npy", heights)
     return folder
 
@@ -380,8 +379,6 @@ ROWS = [
      fitted(lambda a, b: b.radius > a.radius)),
     ("fit", "--lines", "@lined.npy --cutoff none --pixel 1um -o f.toml", "+ --lines rows",
      fitted(lambda a, b: b.radius > a.radius)),
-    ("fit", "--step", "@stepped.npy --cutoff none --pixel 1um -o f.toml", "+ --step crop",
-     fitted(lambda a, b: b.nominal_area < 0.75 * a.nominal_area)),
     ("fit", "--trim", FIT, "+ --trim 15", fitted(lambda a, b: b.nominal_area < a.nominal_area)),
     ("fit", "--picture", FIT, "+ --picture f.png", writes("f.png")),
     ("fit", "--E-star", FIT, "+ --E-star 5e9", fitted(lambda a, b: (a.E_star, b.E_star) == (1e11, 5e9))),

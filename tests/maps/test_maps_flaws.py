@@ -15,15 +15,14 @@ from mcgw.maps.bad_points import recorded, small_spike_heights, spike_heights, u
 from mcgw.maps.fit import fit_prepared
 from mcgw.maps.fit_cautions import cautions
 from mcgw.maps.form import without_form
+from mcgw.maps.form_left import form_left
 from mcgw.maps.hidden_caps import visible
 from mcgw.maps.preparation import Preparation, prepared
-from mcgw.maps.steps_and_forms import form_left, step_of
 from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography
 
 N, PIXEL = 240, (1e-6, 2e-6)
-SIZE = (N * PIXEL[0], N * PIXEL[1])
-OF_THE_MAP = {"spikes", "sub-area", "step", "form", "waves", "slope"}
+OF_THE_MAP = {"spikes", "form", "waves", "slope"}
 
 pytestmark = pytest.mark.usefixtures("without_caps")
 
@@ -71,7 +70,7 @@ def test_clean_maps_are_left_in_peace(clean):
 
 
 def test_a_spike_of_a_millimetre_is_named():
-    """With its number, place and height; and the sub-area that carries all of m4."""
+    """With its number, place and height."""
     z = rough()
     before = fit_map(topography(z), cutoff=None)
     z[101, 200] += 1e-3
@@ -79,7 +78,6 @@ def test_a_spike_of_a_millimetre_is_named():
     assert fit_map(topography(z), cutoff=None).moments.radius < before.moments.radius / 50
     assert "1 place stands" in found["spikes"]
     assert "x = 0.0002005 m, y = 0.000203 m, 0.000999 m high" in found["spikes"]
-    assert "x = 0.00018 to 0.00024 m, y = 0.00012 to 0.00024 m m4" in found["sub-area"]
     assert "spikes" in lines(z, cutoff=20e-6)  # a filter smears it, but takes nothing of it away
 
 
@@ -98,34 +96,6 @@ def test_spikes_are_counted(number, height, word):
     assert (round(y / PIXEL[1] - 0.5), round(x / PIXEL[0] - 0.5)) in [
         (j + b, i + a) for j, i in places for b in range(2) for a in range(3)
     ]
-
-
-def test_the_sub_area_that_carries_the_map_is_named():
-    """A patch ten times as rough, which no spike is."""
-    x, y = grid()
-    z = rough() * np.where((x > 0.76) & (y < 0.24), 10, 1)
-    assert "x = 0.00018 to 0.00024 m, y = 0 to 0.00012 m m4" in lines(z)["sub-area"]
-
-
-@pytest.mark.parametrize(("axis", "place", "tilt"), [("x", 0.37, 0.0), ("y", 0.6, 3e-5)])
-def test_two_terraces_are_named(axis, place, tilt):
-    x, y = grid()
-    z = rough() + 12e-6 * ((x if axis == "x" else y) > place) + tilt * x
-    step = step_of(topography(z))
-    assert step.axis == axis
-    assert step.height == pytest.approx(12e-6, rel=0.1)
-    assert step.place / SIZE["xy".index(axis)] == pytest.approx(place, abs=0.045)  # an area and a bit
-    found = lines(z)
-    assert f"e-05 m apart meet near {axis} = {step.place:.3g} m" in found["step"]
-    assert not {"form", "waves"} & set(found)
-
-
-def test_an_oblique_step_is_named_and_a_ridge_is_none():
-    x, y = grid()
-    assert step_of(topography(rough() + 10e-6 * (x + 0.6 * y > 0.8))).height == pytest.approx(10e-6, rel=0.15)
-    assert step_of(topography(rough() + 10e-6 * (np.abs(x - 0.5) < 0.1))) is None
-    assert step_of(topography(rough() + 10e-6 * np.sin(7 * x))) is None
-    assert step_of(topography(rough() + 0.3e-6 * (x > 0.5))) is None  # less than the roughness
 
 
 @pytest.mark.parametrize(
@@ -387,45 +357,6 @@ def test_levels_and_ends_of_a_recording():
         assert recorded((np.arange(9 * number) % number + 0.0).reshape(9, -1)).step == step
 
 
-def terraces(jump, back=0.0, lines=240):
-    """A map of 24 areas across, and its differences over two of them, about their median.
-
-    Levels at random, a jump at the fourteenth on so many lines, and one back at the fifth.
-    """
-    plain = rng(7).normal(size=24) - back * (np.arange(24) >= 5)
-    levels = plain + jump * (np.arange(24) >= 14)
-    changes = levels[2:] - levels[:-2]
-    z = np.where(np.arange(240)[:, None] < lines, levels.repeat(10), plain.repeat(10))
-    return topography(z), changes - np.median(changes)
-
-
-def jump_to(times, *more):
-    """The jump whose difference is so many times the usual one."""
-
-    def over(jump):
-        changes = terraces(jump, *more)[1]
-        return changes.max() / np.median(np.abs(changes)) - times
-
-    return brentq(over, 3.0, 60.0)
-
-
-def test_a_step_is_six_usual_differences_on_half_of_all_lines():
-    """Place and height of the largest one; it lies between the areas on either side of it."""
-    assert step_of(terraces(jump_to(5.98))[0]) is None
-    z, changes = terraces(jump_to(6.02))
-    step, at = step_of(z), int(np.argmax(changes))
-    assert at in (12, 13)
-    assert step.axis == "x"
-    assert step.height == pytest.approx(changes.max(), rel=1e-9)
-    area = 10e-6
-    found = (step.begin, step.place, step.end)
-    assert found == pytest.approx(((at - 0.5) * area, (at + 1.5) * area, (at + 3.5) * area), rel=1e-9)
-    turned = step_of(Topography(z.heights.T.copy(), PIXEL[::-1]))
-    assert (turned.axis, turned.place, turned.height) == ("y", pytest.approx(step.place), step.height)
-    assert step_of(terraces(jump_to(12), 0.0, 120)[0]) is not None
-    assert step_of(terraces(jump_to(12), 0.0, 110)[0]) is None
-
-
 def test_what_a_form_of_second_order_leaves_is_of_fourth():
     """However far from zero the map lies."""
     form = "quadratic"
@@ -435,17 +366,6 @@ def test_what_a_form_of_second_order_leaves_is_of_fourth():
     assert left.form == "quartic"
     assert far.share == pytest.approx(left.share, rel=1e-9)
     assert form_left(without_form(z, "quartic"), form) is None
-
-
-def test_an_oblique_step_lies_between_quantiles_of_its_places():
-    """A twentieth of all lines may see it beyond its ends."""
-    levels, at = 0.1 * rng(7).normal(size=24), 8 + rng(2).integers(0, 8, 24)
-    rows = levels + 5.0 * (np.arange(24) >= at[:, None])
-    step = step_of(topography(rows.repeat(10, axis=0).repeat(10, axis=1)))
-    changes = rows[:, 2:] - rows[:, :-2]
-    seen = np.argmax(changes - np.median(changes), axis=1)
-    begin, place, end = 10e-6 * (np.quantile(seen, (0.05, 0.5, 0.95)) + 1.5)
-    assert (step.begin, step.place, step.end) == pytest.approx((begin - 20e-6, place, end + 20e-6), rel=1e-9)
 
 
 def test_a_form_is_three_times_the_longest_waves():
@@ -463,16 +383,6 @@ def test_a_form_is_three_times_the_longest_waves():
     for target, seen in ((2.98, False), (3.02, True)):
         size = brentq(lambda s, t=target: ratio(s)[0] - t, 1.0, 20.0)
         assert (form_left(ratio(size)[1], "plane") is not None) == seen
-
-
-def test_a_step_is_twice_what_goes_the_other_way():
-    for ratio, seen in ((1.98, False), (2.02, True)):
-
-        def off(back, ratio=ratio):
-            changes = terraces(20.0, back)[1]
-            return changes.max() / -changes.min() - ratio
-
-        assert (step_of(terraces(20.0, brentq(off, 5, 15))[0]) is not None) == seen
 
 
 @pytest.mark.parametrize("seen", [False, True])

@@ -1,7 +1,6 @@
 """What is done to a map before it is looked at: each step against a map that never needed it."""
 
 import math
-import re
 from typing import get_args
 
 import numpy as np
@@ -178,19 +177,7 @@ def test_spikes_are_taken_out():
     assert clean.notes[0].startswith("spikes: 10 places removed, up to 4.")
 
 
-@pytest.mark.parametrize("axis", [0, 1])
-def test_the_larger_terrace_is_kept(axis):
-    z = rough(6)
-    x = grid()[axis]
-    stepped = z + 2e-5 * (x > 0.3 * x.max())
-    found = ready(stepped, step="crop")
-    assert 0.5 < found.used.heights.shape[1 - axis] / N < 0.65
-    assert found.used.heights.std() < 1.1 * z.std()
-    assert "step" in found.notes[0]
-    assert ready(z, step="crop").notes == ("step: none found, nothing cropped",)
-
-
-@pytest.mark.parametrize("key", ["missing", "spikes", "step", "form"])
+@pytest.mark.parametrize("key", ["missing", "spikes", "form"])
 def test_words_that_are_none_are_refused_in_one_line(key):
     with pytest.raises(mcgw.SceneError, match=f"{key} = 'x'.*choose one of"):
         fitted(np.zeros((9, 9)), **{key: "x"})
@@ -363,9 +350,8 @@ def test_notes_tell_what_was_done_to_a_map():
     assert (periodic.filled, periodic.seen) == (0.0, None)
     edge = rough()
     edge[0] = np.nan
-    for z in (edge, rough() + 2e-5 * (np.arange(N) > 60)):  # what is left of a map does not repeat itself
-        part = prepared(Topography(z, PIXEL, periodic=True), Preparation(None, form="none", step="crop"))
-        assert not part.used.periodic
+    part = prepared(Topography(edge, PIXEL, periodic=True), Preparation(None, form="none"))
+    assert not part.used.periodic  # what is left of a map does not repeat itself
     for steps in ({"trim": 1}, {"form": "plane"}):
         asked = Preparation(None, **{"form": "none", **steps})
         assert not prepared(Topography(rough(), PIXEL, periodic=True), asked).used.periodic
@@ -375,29 +361,3 @@ def test_notes_tell_what_was_done_to_a_map():
     for turned in (narrow[:8], narrow[:8].T):
         with pytest.raises(ValueError, match="trim = 4: leaves nothing of"):
             ready(turned, trim=4)
-
-
-@pytest.mark.parametrize("axis", ["x", "y"])
-@pytest.mark.parametrize("first", [True, False])
-def test_a_terrace_ends_where_the_step_begins(axis, first):
-    """The larger one, to the point; what is kept is told."""
-    z = rough(6)
-    at = 140 if first else 60
-    step = 2e-5 * (np.arange(N) >= at)
-    stepped = z + (step if axis == "x" else step[:, None])
-    found = ready(stepped, step="crop", form="none")
-    kept = found.used.heights.shape["yx".index(axis)]
-    pixel = PIXEL["xy".index(axis)]
-    assert 110 < kept < 140
-    whole = z if axis == "x" else z.T
-    part = whole[:, :kept] if first else whole[:, N - kept :] + 2e-5
-    used = found.used.heights if axis == "x" else found.used.heights.T
-    np.testing.assert_allclose(used, part, atol=1e-15)
-    (note,) = found.notes
-    height, place, word, end = re.fullmatch(
-        rf"step: (\S+) m near {axis} = (\S+) m; only the map (up to|from) (\S+) m kept", note
-    ).groups()
-    assert float(height) == pytest.approx(2e-5, rel=0.1)
-    assert float(place) == pytest.approx(at * pixel, abs=9 * pixel)
-    assert word == ("up to" if first else "from")
-    assert float(end) == pytest.approx((kept if first else N - kept) * pixel, abs=pixel)

@@ -414,7 +414,7 @@ def test_the_command_tells_a_profile_by_its_shape(files, tmp_path, capsys):
 @pytest.mark.parametrize(("words", "told"), [
     (["--summits", "s.csv"], "--summits s.csv: a profile shows no summits"),
     *(([f"--{name}", value], f"--{name}: is for maps") for name, value in (
-        ("long-cutoff", "1mm"), ("missing", "fill"), ("spikes", "remove"), ("step", "crop"),
+        ("long-cutoff", "1mm"), ("missing", "fill"), ("spikes", "remove"),
         ("lines", "rows"), ("trim", "3"),
     )),
     (["--heights", "table"], "profiles do not show summits"),

@@ -12,7 +12,7 @@ import mcgw
 from mcgw.cli import main
 from mcgw.maps.map_files import write_map
 from mcgw.maps.summit_sums import SUMS, SummitSums, summit_sums_of
-from mcgw.maps.summits import Alone, alone_of, summits_of, tiles_of, variation
+from mcgw.maps.summits import summits_of, tiles_of, variation
 from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography
 
@@ -218,46 +218,6 @@ def test_tiles_without_summits_or_points_are_nan():
     nan = {"radius": [2, 3], "sigma": [1, 2, 3], "eta": [3], "m0": [3], "m2": [3], "m4": [3]}
     for name, places in nan.items():
         assert np.flatnonzero(np.isnan(found[name])).tolist() == places, name
-
-
-def sums_of(parts, **rows):
-    """Sums over so many sub-areas of 100 points, without summits."""
-    sums = np.zeros((len(SUMS), parts))
-    sums[0] = 100.0
-    for name, values in rows.items():
-        sums[SUMS.index(name)] = values
-    nothing = np.zeros(0)
-    return SummitSums(sums, nothing, nothing, np.zeros((2, 0)), np.zeros(0, dtype=int), 1e-12)
-
-
-@pytest.mark.parametrize(("moment", "rows"), [
-    ("m4", ("bend",)), ("m2", ("slope_x",)), ("m2", ("slope_y",)), ("m0", ("z2",)),
-])  # fmt: skip
-def test_a_sub_area_stands_alone_where_less_than_half_is_left_without_it(moment, rows):
-    """Of nine, all but one with 1: of 8/8 over (8 + x)/9 less than a half is left from x = 10 on."""
-    even = dict.fromkeys(("bend", "slope_x", "slope_y", "z2"), np.ones(9))
-    if moment == "m2":
-        even |= dict.fromkeys(("slope_x", "slope_y"), np.full(9, 0.5))
-    for most, found in ((9.9, False), (10.1, True)):
-        odd = even[rows[0]].copy()
-        odd[5] += most - 1
-        alone = alone_of(sums_of(9, **{**even, rows[0]: odd}))
-        left = 9 / (8 + most)
-        assert alone == (Alone(moment, pytest.approx(left), 2, 1, 3) if found else None)
-
-
-def test_heights_that_stand_alone_are_about_the_mean_of_the_map():
-    """Of a terrace, all of whose sub-areas are as high; and of one sub-area nothing is said."""
-    even = dict.fromkeys(("bend", "slope_x", "slope_y"), np.ones(4))
-    z = np.array([1e-3, 1e-3, 1e-3, 1e-3]) * 100
-    z2 = z * 1e-3 + np.array([1.0, 1.0, 40.0, 1.0]) * 1e-12
-    alone = alone_of(sums_of(4, z=z, z2=z2, **even))
-    assert (alone.moment, alone.column, alone.row) == ("m0", 0, 1)
-    assert alone.left == pytest.approx(1 / (43 / 4), rel=1e-3)
-    assert alone_of(sums_of(1, bend=5.0)) is None
-    few = sums_of(4, **even)
-    few.sums[0] = [0, 0, 100, 0]
-    assert alone_of(few) is None
 
 
 def test_variation_is_that_of_tiles_that_tell_something():

@@ -95,7 +95,6 @@ STEPS = {
     "masked": {"cutoff": "3 um", "missing": "mask", "parts": 3},
     "spikes": {"cutoff": "3 um", "spikes": "remove"},
     "lines": {"cutoff": "3 um", "lines": "rows"},
-    "step": {"cutoff": "3 um", "step": "crop"},
 }
 
 
@@ -115,8 +114,6 @@ def test_fits_of_maps(name, heights, recorded):
         z[10::30, 15::40] += 2e-5
     elif name == "lines":
         z += 1e-7 * rng.normal(size=(len(z), 1))
-    elif name == "step":
-        z[:, 90:] += 1e-5
     fit = mcgw.fit(Topography(z, size), **STEPS[name])
     recorded(
         f"fit.{name}", [*answers(fit, {"plot", "sheet"}), str(fit), mcgw.scene_text(mcgw.fitted_scene(fit))]
