@@ -54,7 +54,7 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.commands.outputs import JSONL, Output, check_outputs
     from mcgw.commands.voice import details, news
     from mcgw.elasticity.elastic import elastic
-    from mcgw.formats.numbers import parse
+    from mcgw.formats.units import parse
     from mcgw.machine.progress import bar
     from mcgw.maps.map_files import read_map
     from mcgw.scene.scene_file import load_scene

@@ -90,7 +90,7 @@ def execute(args: argparse.Namespace) -> int:
     """Write the scene with all estimates as comments; print it and its cautions."""
     from mcgw.commands.voice import details, news, notes
     from mcgw.formats.files import together
-    from mcgw.formats.numbers import parse
+    from mcgw.formats.units import parse
     from mcgw.maps.fit import Fit
     from mcgw.maps.fitted_scene import fitted_scene, write_scene
     from mcgw.maps.preparation import preparation_of

@@ -128,7 +128,7 @@ def ranged(text: str, option: str, unit: str = "") -> list[float]:
     """
     import numpy as np
 
-    from mcgw.formats.numbers import parse
+    from mcgw.formats.units import parse
 
     begin, _, rest = text.partition(":")
     end, _, number = rest.partition(":")

@@ -46,7 +46,7 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.commands.voice import ALL, says, tell_cautions
     from mcgw.ensemble.solution import UNIT_OF, given_values, solutions
     from mcgw.ensemble.solved import at_solutions
-    from mcgw.formats.numbers import parse
+    from mcgw.formats.units import parse
     from mcgw.machine.progress import bar
     from mcgw.reports.solved_loads import solutions_table, solutions_text
     from mcgw.scene.scene_file import files_of, load_scene

@@ -83,7 +83,7 @@ def _shape(text: str) -> tuple[int, int | None]:
 def _asperities(args: argparse.Namespace) -> int:
     from mcgw.commands.voice import news, notes, tell_cautions
     from mcgw.figures.contact_map import save_contact_map, spots_at
-    from mcgw.formats.numbers import parse
+    from mcgw.formats.units import parse
     from mcgw.maps.envelope import envelope
     from mcgw.maps.map_files import write_map
     from mcgw.maps.synthetic import asperities_of
@@ -141,7 +141,7 @@ def _spectrum(args: argparse.Namespace) -> int:
     import numpy as np
 
     from mcgw.commands.voice import news
-    from mcgw.formats.numbers import parse
+    from mcgw.formats.units import parse
     from mcgw.maps.map_files import write_map
     from mcgw.maps.synthetic import gaussian_map, moments_on_grid, spectrum_from
 

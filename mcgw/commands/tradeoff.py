@@ -31,7 +31,7 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.commands.voice import details, news, tell_cautions
     from mcgw.ensemble.prices import TARGETS
     from mcgw.figures.studies import save_tradeoff
-    from mcgw.formats.numbers import parse
+    from mcgw.formats.units import parse
     from mcgw.machine.progress import bar
     from mcgw.scene.scene_file import files_of, load_scene
     from mcgw.statistics.tradeoff import tradeoff

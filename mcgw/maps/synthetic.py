@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 
 from analytic import SpectralMoments
 from analytic.arrays import Array
-from mcgw.formats.numbers import parse
+from mcgw.formats.units import parse
 from mcgw.maps.topography import Topography, checked_shape
 from mcgw.sampling.asperities import summits
 from mcgw.sampling.philox import POSITIONS, uniforms

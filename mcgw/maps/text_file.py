@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from analytic.arrays import Array
-from mcgw.formats.numbers import METRES
+from mcgw.formats.units import METRES
 from mcgw.maps.foreign import ForeignError
 from mcgw.maps.grid_of_points import grid_of
 from mcgw.maps.topography import XYZ, Topography, checked_shape, height_unit, in_metres, metres_in

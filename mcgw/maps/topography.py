@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.arrays import Array
-from mcgw.formats.numbers import METRES
+from mcgw.formats.units import METRES
 
 MOST_PIXELS = 2**28  # 16384 x 16384: 2 GiB as float64
 SMALLEST, LARGEST = 1e-150, 1e150  # of what is squared, m: sums of squares and a dozen times that, too

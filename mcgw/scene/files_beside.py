@@ -11,7 +11,7 @@ import numpy as np
 from analytic import Surface, Table
 from analytic.arrays import Array
 from mcgw.formats.named_files import open_npy, read_text
-from mcgw.formats.numbers import signed
+from mcgw.formats.units import signed
 
 _MOST_BYTES, _MOST_OF_MODULI = 2**28, 2**24
 _COLUMNS = {"s": "1", "z": "m", "ratio": "1", "E_star": "Pa"}

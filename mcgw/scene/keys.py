@@ -34,6 +34,7 @@ def _contact_laws() -> tuple[str, ...]:
 
 
 _ANY, _POSITIVE = Number(low=-math.inf), Number()
+_CONDUCTIVITY = Key("conductivity", Number("W/(m K)"), required=True)
 _FILE = Text()
 YOUNG = Number("Pa", infinite=True)
 _RATIO = Number(low=1, advice="give the larger over the smaller, a number >= 1")
@@ -56,14 +57,14 @@ _BODY = Table(
     analytic.Body,
 )
 _LAYER = Table(
-    (Key("thickness", Number("m"), required=True), Key("conductivity", _POSITIVE, required=True)),
+    (Key("thickness", Number("m"), required=True), _CONDUCTIVITY),
     'give {thickness = "10 um", conductivity = 1.3} (m, W/(m K))',
     Layer,
 )
 _GAS = 'give "air", "vacuum", or {conductivity = 0.15, jump = "1 um"} (W/(m K), m)'
 _GASES = Either(
     (
-        Table((Key("conductivity", _POSITIVE, required=True), Key("jump", Number("m"), required=True)), _GAS),
+        Table((_CONDUCTIVITY, Key("jump", Number("m"), required=True)), _GAS),
         Word(("air", "vacuum"), _GAS),
     ),
     _GAS,
@@ -208,10 +209,10 @@ TABLES: dict[str, TableOfKeys] = {
     Key("unload_from", Either((Word(("loop",), _BACK), _ANY), _BACK), "-0.5",
         'smallest separation reached before unloading, d/σ, or `"loop"`: the smallest of the scene; adds '
         "`load_unloading` and so on"),
-    Key("resistivity", _POSITIVE, "1e-7", "electrical: ρ₁ + ρ₂, Ω m; adds `conductance_si`",
+    Key("resistivity", Number("ohm m"), "1e-7", "electrical: ρ₁ + ρ₂, Ω m; adds `conductance_si`",
         excludes=("conductivities",)),
     Key("conductivities",
-        List(_POSITIVE, 2, 2, "give two numbers > 0 in W/(m K), such as [150.0, 16.0]"),
+        List(Number("W/(m K)"), 2, 2, "give two numbers > 0 in W/(m K), such as [150.0, 16.0]"),
         "[150.0, 16.0]", "thermal: k₁ and k₂ of the bodies, W/(m K)"),
     Key("film_resistance", Number(zero=True, advice="give a finite number >= 0, in ohm m^2 or m^2 K/W"),
         "1e-12", "resistance of a thin film on the spots, Ω m² or m² K/W", needs=("resistivity",
@@ -236,7 +237,7 @@ TABLES: dict[str, TableOfKeys] = {
         "walls", required=True),
     Key("rms", Number("m"), '"2 um"', "root mean square height of the surface (both combined, not of the "
         "summits), m; not needed with Nayak's heights or `[fitted]`"),
-    Key("temperature", Number(advice="give a finite number > 0, in K"), "293.15", "of air, K"),
+    Key("temperature", Number("K"), '"20 degC"', "of air, K"),
     Key("gas_pressure", Number("Pa"), "101325.0", "of air, Pa"),
 ), make=lambda **keys: analytic.Joint(**keys),
     advice='give mcgw.Joint("air", rms="1 um"), or the keys of [joint] in a scene file'),

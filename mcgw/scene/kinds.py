@@ -5,8 +5,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from mcgw.formats.numbers import EXAMPLES, parse
 from mcgw.formats.sheet import brief
+from mcgw.formats.units import EXAMPLES, parse
 from mcgw.scene.section import Key, Kind, Section, nearest, table_shape
 
 _MOST_WHOLE = 10**30  # so that no message has hundreds of digits
@@ -21,7 +21,7 @@ class Number(Kind):
     Parameters
     ----------
     unit : str, optional
-        Of `mcgw.formats.numbers`.
+        Of `mcgw.formats.units`.
     low, high : float, optional
         Its range.
     zero : bool, optional

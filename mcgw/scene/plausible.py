@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from analytic import Surface, Table
-from mcgw.formats.numbers import parse
+from mcgw.formats.units import parse
 
 if TYPE_CHECKING:
     from mcgw.scene.fields import Fields

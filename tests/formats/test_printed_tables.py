@@ -10,9 +10,10 @@ import pytest
 from mcgw.formats.files import alive, check_output, temporary_beside, write_whole
 from mcgw.formats.gate import opened
 from mcgw.formats.named_files import loads, open_npy, read_text
-from mcgw.formats.numbers import columns, number, parse, typeset
+from mcgw.formats.numbers import columns, number, typeset
 from mcgw.formats.sheet import Sheet, listed
 from mcgw.formats.table import Column, Table, digits_of, evenly, stacked
+from mcgw.formats.units import parse
 
 LOAD = Column(
     "load", [12.3456, 0.0, np.nan], unit="N", error=[0.0123, 0.5, 1.0],

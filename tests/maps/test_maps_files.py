@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from mcgw.formats.numbers import METRES
+from mcgw.formats.units import METRES
 from mcgw.maps.envelope import envelope
 from mcgw.maps.form import smooth
 from mcgw.maps.map_files import read_map, write_map

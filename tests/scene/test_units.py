@@ -8,7 +8,7 @@ from oracles.said import call
 
 import analytic
 import mcgw
-from mcgw.formats.numbers import _FACTORS, EXAMPLES, METRES, parse
+from mcgw.formats.units import _FACTORS, EXAMPLES, METRES, parse
 from mcgw.scene.keys import SURFACE_UNITS
 from mcgw.scene.plausible import RANGES, perhaps_other_units, surface_in_other_units
 from mcgw.scene.scene import Scene
@@ -18,27 +18,43 @@ LITERAL = {
     "m": {
         "": 1, "m": 1, "fm": 1e-15, "pm": 1e-12, "nm": 1e-9, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "mm": 1e-3,
         "cm": 1e-2, "km": 1e3, "micron": 1e-6, "Angstrom": 1e-10, "\u00c5": 1e-10, "\u212b": 1e-10,
+        "in": 0.0254, "inch": 0.0254, "mil": 2.54e-5, "uin": 2.54e-8, "µin": 2.54e-8,
     },
     "m^2": {
         "": 1, "m^2": 1, "m2": 1, "m²": 1, "m**2": 1, "cm^2": 1e-4, "cm²": 1e-4, "mm^2": 1e-6, "mm²": 1e-6,
         "um^2": 1e-12, "µm²": 1e-12, "nm^2": 1e-18, "pm^2": 1e-24, "fm^2": 1e-30, "km^2": 1e6,
+        "in^2": 6.4516e-4,
     },
     "1/m^2": {
         "": 1, "1/m^2": 1, "/m^2": 1, "m^-2": 1, "m⁻²": 1, "1/cm^2": 1e4, "1/mm^2": 1e6, "/mm²": 1e6,
         "mm^-2": 1e6, "mm⁻²": 1e6, "mm**-2": 1e6, "1/um^2": 1e12, "1/µm²": 1e12, "um^-2": 1e12,
         "1/µm^2": 1e12, "1/nm^2": 1e18, "1/pm^2": 1e24, "1/fm^2": 1e30, "1/km^2": 1e-6,
+        "1/in^2": 1550.0031000062, "in^-2": 1550.0031000062,
     },
     "Pa": {
         "": 1, "Pa": 1, "nPa": 1e-9, "uPa": 1e-6, "µPa": 1e-6, "mPa": 1e-3, "kPa": 1e3, "MPa": 1e6,
         "GPa": 1e9,
-        "TPa": 1e12, "bar": 1e5, "psi": 6894.757293168361, "N/m^2": 1, "N/mm^2": 1e6,
+        "TPa": 1e12, "bar": 1e5, "mbar": 100, "kbar": 1e8, "psi": 6894.7572931683613, "ksi": 6894757.2931683613,
+        "N/m^2": 1, "N/cm^2": 1e4, "N/mm^2": 1e6, "kgf/m^2": 9.80665, "kgf/cm²": 98066.5, "kgf/cm^2": 98066.5,
+        "kgf/mm^2": 9806650, "atm": 101325, "Torr": 133.32236842105263, "mTorr": 0.13332236842105263,
+        "mmHg": 133.322387415,
     },
     "N": {
         "": 1, "N": 1, "nN": 1e-9, "uN": 1e-6, "µN": 1e-6, "μN": 1e-6, "mN": 1e-3, "kN": 1e3, "MN": 1e6,
-        "GN": 1e9,
+        "GN": 1e9, "kgf": 9.80665, "gf": 9.80665e-3, "lbf": 4.4482216152605,
     },
     "s": {"": 1, "s": 1, "ms": 1e-3, "min": 60, "h": 3600},
     "J/m^2": {"": 1, "J/m^2": 1, "J/m2": 1, "mJ/m^2": 1e-3, "N/m": 1, "mN/m": 1e-3},
+    "W/(m K)": {
+        "": 1, "W/(m K)": 1, "W/(m·K)": 1, "W/(m*K)": 1, "W/(mK)": 1, "W/mK": 1, "W/m/K": 1, "mW/(m K)": 1e-3,
+        "mW/(mK)": 1e-3, "mW/mK": 1e-3, "W/(cm K)": 100, "W/(cmK)": 100,
+    },
+    "ohm m": {
+        "": 1, "ohm m": 1, "ohmm": 1, "Ω m": 1, "Ωm": 1, "nohmm": 1e-9, "nΩ m": 1e-9, "uohmm": 1e-6,
+        "μohmm": 1e-6, "mohmm": 1e-3, "ohm cm": 1e-2, "ohmcm": 1e-2, "nohmcm": 1e-11, "uohmcm": 1e-8,
+        "µΩ cm": 1e-8, "μohmcm": 1e-8, "mohmcm": 1e-5,
+    },
+    "K": {"": 1, "K": 1},
     "1": {"": 1, "%": 1e-2},
 }  # fmt: skip
 CASES = [(kind, unit, factor) for kind, units in LITERAL.items() for unit, factor in units.items()]
@@ -53,10 +69,23 @@ def test_every_unit_is_its_literal_factor(kind, unit, factor):
 def test_the_table_leaves_no_unit_out():
     """What `parse` knows is in the table above, so that a new unit cannot come without its factor."""
     assert LITERAL.keys() == _FACTORS.keys() == EXAMPLES.keys()
+    of_a_scale = {"degC", "°C"}  # in the test after this
     for kind, factors in _FACTORS.items():
         there = {unit.replace("^", "").replace("µ", "μ") for unit in LITERAL[kind]}
         there |= {unit.replace("µ", "μ").replace("²", "2") for unit in LITERAL[kind]}
-        assert factors.keys() <= there, kind
+        assert factors.keys() <= there | of_a_scale, kind
+
+
+@pytest.mark.parametrize(("text", "kelvin"), [
+    ("20 degC", 293.15), ("-40 °C", 233.15), ("-40\u2103", 233.15), ("293.15 K", 293.15), ("0 degC", 273.15),
+])  # fmt: skip
+def test_temperatures_begin_where_their_scale_does(text, kelvin):
+    assert parse(text, "K") == kelvin
+
+
+def test_no_temperature_is_below_zero():
+    with pytest.raises(ValueError, match="such as 20 degC, "):
+        parse("-274 degC", "K")
 
 
 def test_units_of_maps_are_lengths():
