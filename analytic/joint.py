@@ -18,55 +18,13 @@ from numpy.polynomial import Chebyshev, HermiteE
 from numpy.typing import ArrayLike
 
 from analytic.arrays import Array, hold
+from analytic.gases import ATMOSPHERE, GASES, ROOM, Gas, gas_of
 from analytic.nayak import Nayak
 from analytic.quadrature import gauss_legendre
 from analytic.surface import SUMMIT_SPREAD, SpectralMoments, Surface
 
-# Of air; recalled. Sutherland's law of the U.S. Standard Atmosphere (1976); accommodation at engineering
-# surfaces, ratio of specific heats, Prandtl's number; mean free path at a temperature (K) and pressure (Pa).
-_SUTHERLAND = (2.64638e-3, 245.4, 12.0)
-_ACCOMMODATED, _HEATS, _PRANDTL = 0.87, 1.4, 0.71
-_FREE_PATH, _AT_TEMPERATURE, _AT_PRESSURE = 64e-9, 288.0, 101325.0
-_ROOM = 293.15  # K
-
 _REACH = 10.0  # standard deviations of heights that count
 _DIRECT, _PANEL, _DEGREE = 4096, 0.5, 17  # distances that are integrated one by one; or interpolated
-
-
-@dataclass(frozen=True, slots=True)
-class Gas:
-    """A gas in the gap.
-
-    Parameters
-    ----------
-    conductivity : float
-        W/(m K).
-    jump : float
-        Temperature-jump distance of both walls together, m.
-
-    Raises
-    ------
-    ValueError
-        If one is not a finite number > 0.
-    """
-
-    conductivity: float
-    jump: float
-
-    def __post_init__(self) -> None:
-        for key, unit in (("conductivity", "W/(m K)"), ("jump", "m")):
-            value = getattr(self, key)
-            if not (math.isfinite(value) and value > 0):
-                raise ValueError(f"gas.{key} = {value!r}: give a finite number > 0, in {unit}")
-
-
-def air(temperature: float = _ROOM, pressure: float = _AT_PRESSURE) -> Gas:
-    """Air between engineering surfaces, at a temperature (K) and pressure (Pa)."""
-    factor, constant, power = _SUTHERLAND
-    conductivity = factor * temperature**1.5 / (temperature + constant * 10 ** (-power / temperature))
-    walls = 2 * (2 - _ACCOMMODATED) / _ACCOMMODATED * 2 * _HEATS / ((_HEATS + 1) * _PRANDTL)
-    path = _FREE_PATH * temperature / _AT_TEMPERATURE * _AT_PRESSURE / pressure
-    return Gas(conductivity, walls * path)
 
 
 @dataclass(frozen=True)
@@ -75,12 +33,12 @@ class Joint:
 
     Parameters
     ----------
-    gas : {"air", "vacuum"}, Gas or mapping
+    gas : {"air", "argon", "helium", "hydrogen", "nitrogen", "vacuum"}, Gas or mapping
         Gas in the gap, by name or by its conductivity and jump distance.
     rms : float, optional
         Root mean square height of the surface (not of its summits), m, where the scene does not know it.
     temperature, gas_pressure : float, optional
-        Of air, K and Pa. Default: 293.15 K and 101325 Pa.
+        Of a gas given by name, K and Pa. Default: 293.15 K and 101325 Pa.
 
     Raises
     ------
@@ -104,23 +62,24 @@ class Joint:
     def __post_init__(self) -> None:
         if isinstance(self.gas, Mapping):
             hold(self, gas=Gas(**self.gas))
-        if not isinstance(self.gas, Gas) and self.gas not in ("air", "vacuum"):
-            raise ValueError(f'gas = {self.gas!r}: give "air", "vacuum" or {{conductivity, jump}}')
+        if not isinstance(self.gas, Gas) and self.gas not in (*GASES, "vacuum"):
+            names = ", ".join(GASES)
+            raise ValueError(f"gas = {self.gas!r}: give one of {names}, vacuum, or {{conductivity, jump}}")
         for key, unit in (("rms", "m"), ("temperature", "K"), ("gas_pressure", "Pa")):
             value = getattr(self, key)
             if value is not None and not (math.isfinite(value) and value > 0):
                 raise ValueError(f"{key} = {value!r}: give a finite number > 0, in {unit}")
-            if key != "rms" and value is not None and self.gas != "air":
-                raise ValueError(f'{key} = {value!r}: it is only for gas = "air"; leave it out')
+            if key != "rms" and value is not None and self.gas not in GASES:
+                raise ValueError(f"{key} = {value!r}: it is only for a gas by name, as air; leave it out")
 
     @property
     def held(self) -> Gas | None:
         """The gas; None for a vacuum."""
         if isinstance(self.gas, Gas):
             return self.gas
-        return (
-            air(self.temperature or _ROOM, self.gas_pressure or _AT_PRESSURE) if self.gas == "air" else None
-        )
+        if self.gas == "vacuum":
+            return None
+        return gas_of(self.gas, self.temperature or ROOM, self.gas_pressure or ATMOSPHERE)
 
     def gap(self, surface: Surface, heights: Any, moments: SpectralMoments | None = None) -> "Gap":
         """Gap conductance of a surface.

@@ -4,6 +4,7 @@ import math
 from typing import Any
 
 import analytic
+from analytic.gases import GASES
 from analytic.laws import Layer
 from mcgw.scene.kinds import ByName, Either, Flag, List, Number, Table, Text, Whole, Word
 from mcgw.scene.measured import Fitted
@@ -61,11 +62,12 @@ _LAYER = Table(
     'give {thickness = "10 um", conductivity = 1.3} (m, W/(m K))',
     Layer,
 )
-_GAS = 'give "air", "vacuum", or {conductivity = 0.15, jump = "1 um"} (W/(m K), m)'
+_NAMES = (*GASES, "vacuum")
+_GAS = f'give one of {", ".join(_NAMES)}, or {{conductivity = 0.15, jump = "1 um"}} (W/(m K), m)'
 _GASES = Either(
     (
         Table((_CONDUCTIVITY, Key("jump", Number("m"), required=True)), _GAS),
-        Word(("air", "vacuum"), _GAS),
+        Word(_NAMES, _GAS),
     ),
     _GAS,
 )
@@ -232,13 +234,13 @@ TABLES: dict[str, TableOfKeys] = {
     "and both in series with the bodies where `[interaction]` has them constrict the flux. Adds "
     "`gap_conductance` and `joint_conductance`, W/(m² K); needs `conductivities`. Default: "
     "spots only (vacuum).", (
-    Key("gas", _GASES, '"air"', "gas in the gap: `air`, `vacuum`, or its conductivity, W/(m K), and jump, m: "
-        "the thickness of gas across which the temperature drops by as much as it jumps at both "
-        "walls", required=True),
+    Key("gas", _GASES, '"air"', "gas in the gap: `air`, `argon`, `helium`, `hydrogen`, `nitrogen`, `vacuum`, "
+        "or its conductivity, W/(m K), and jump, m: the thickness of gas across which the temperature drops "
+        "by as much as it jumps at both walls", required=True),
     Key("rms", Number("m"), '"2 um"', "root mean square height of the surface (both combined, not of the "
         "summits), m; not needed with Nayak's heights or `[fitted]`"),
-    Key("temperature", Number("K"), '"20 degC"', "of air, K"),
-    Key("gas_pressure", Number("Pa"), "101325.0", "of air, Pa"),
+    Key("temperature", Number("K"), '"20 degC"', "of a gas by name, K"),
+    Key("gas_pressure", Number("Pa"), "101325.0", "of a gas by name, Pa"),
 ), make=lambda **keys: analytic.Joint(**keys),
     advice='give mcgw.Joint("air", rms="1 um"), or the keys of [joint] in a scene file'),
 "fitted": TableOfKeys("More about the fitted map, written by `mcgw fit`. It does not affect the results, but "

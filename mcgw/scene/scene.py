@@ -78,7 +78,7 @@ class Scene(Fields, Shown):
         Asperity interaction: `mcgw.Interaction`, its reference alone, or its keys in a scene file. Adds
         "nominal_separation", and puts stiffness and conductance in series with
         the half-space. Default: asperities are independent.
-    joint : Joint, {"air", "vacuum"} or dict, optional
+    joint : Joint, str or dict, optional
         Gas in the gap of a thermal joint: `mcgw.Joint`, its gas alone, or its keys in a scene file; needs
         the conductivities of a `film`. Adds "gap_conductance" and "joint_conductance", W/(m^2 K).
         Default: spots only, as in vacuum.

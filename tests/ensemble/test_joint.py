@@ -13,7 +13,8 @@ from test_layer import LAWS
 
 import analytic
 import mcgw
-from analytic.joint import Gas, Joint, air, gap_integral
+from analytic.gases import Gas, gas_of
+from analytic.joint import Joint, gap_integral
 from mcgw.cli import main
 from mcgw.figures.compared import Compared
 from mcgw.reports.solved_loads import correlation
@@ -46,7 +47,7 @@ def test_the_rms_is_that_of_the_surface():
     given = Joint("air", rms=SURFACE.sigma / heights.std).gap(SURFACE, analytic.Gaussian())
     assert given.rise == pytest.approx(known.rise, rel=1e-12)
     assert float(given(2.0)) == pytest.approx(float(known(2.0)), rel=1e-12)
-    wrong = air().conductivity / SURFACE.sigma * gap_integral(2.0, air().jump / SURFACE.sigma)
+    wrong = gas_of("air").conductivity / SURFACE.sigma * gap_integral(2.0, gas_of("air").jump / SURFACE.sigma)
     assert abs(float(wrong) / float(known(2.0)) - 1) > 0.1
     assert float(Joint("vacuum").gap(SURFACE, heights)(2.0)) == 0.0
     assert Joint({"conductivity": 0.15, "jump": 1e-6}).held == Gas(0.15, 1e-6)
@@ -54,13 +55,43 @@ def test_the_rms_is_that_of_the_surface():
 
 def test_air_is_that_of_the_standard_atmosphere():
     """0.025326 W/(m K) at sea level (1976); Sutherland's law at 373.15 K, and jumps, by hand."""
-    assert air(288.15).conductivity == pytest.approx(0.025326, rel=2e-5)
-    assert air(373.15).conductivity == pytest.approx(0.0317379, rel=2e-5)
+    assert gas_of("air", 288.15).conductivity == pytest.approx(0.025326, rel=2e-5)
+    assert gas_of("air", 373.15).conductivity == pytest.approx(0.0317379, rel=2e-5)
     paths = 2 * 1.13 / 0.87 * 2.8 / (2.4 * 0.71)
-    assert air(288.0, 101325.0).jump == pytest.approx(64e-9 * paths, rel=1e-12)
-    assert air(576.0, 101325.0 / 4).jump == pytest.approx(8 * 64e-9 * paths, rel=1e-12)
-    assert Joint("air").held == air() == air(293.15, 101325.0)
-    assert Joint("air", temperature=400.0, gas_pressure=5e4).held == air(400.0, 5e4)
+    assert gas_of("air", 288.0, 101325.0).jump == pytest.approx(64e-9 * paths, rel=1e-12)
+    assert gas_of("air", 576.0, 101325.0 / 4).jump == pytest.approx(8 * 64e-9 * paths, rel=1e-12)
+    assert Joint("air").held == gas_of("air") == gas_of("air", 293.15, 101325.0)
+    assert Joint("air", temperature=400.0, gas_pressure=5e4).held == gas_of("air", 400.0, 5e4)
+
+
+# mW/(m K) at 300, 400 and 500 K of the CRC Handbook; g/mol; viscosity at 288 K, uPa s; atoms in a molecule.
+PUBLISHED = {
+    "argon": ((17.9, 22.6, 26.8), 39.948, 22.1, 1),
+    "helium": ((156.7, 190.6, 222.3), 4.0026, 19.4, 1),
+    "hydrogen": ((186.9, 230.4, None), 2.0159, 8.7, 2),
+    "nitrogen": ((26.0, 32.3, 38.3), 28.013, 17.4, 2),
+}
+
+
+@pytest.mark.parametrize("name", PUBLISHED)
+def test_gases_are_those_of_tables_and_of_kinetic_theory(name):
+    """Conductivities to 1.5 %; jumps to 2 %, from L = mu/p sqrt(pi R T/(2 M)) and Song's accommodation."""
+    conductivities, molar, viscosity, atoms = PUBLISHED[name]
+    for t, known in zip((300, 400, 500), conductivities, strict=True):
+        if known is not None:
+            assert gas_of(name, t).conductivity == pytest.approx(known * 1e-3, rel=0.015)
+    mass = molar * 1e-3
+    path = viscosity * 1e-6 / 101325 * np.sqrt(np.pi * 8.314 * 288 / (2 * mass))
+    accommodation = molar * (1.4 if atoms == 2 else 1) / (molar * (1.4 if atoms == 2 else 1) + 6.8)
+    heats = 5 / 3 if atoms == 1 else 7 / 5
+    prandtl = 4 * heats / (9 * heats - 5)  # Eucken's
+    jump = 2 * (2 - accommodation) / accommodation * 2 * heats / ((heats + 1) * prandtl) * path
+    assert gas_of(name, 288).jump == pytest.approx(jump, rel=0.02 if atoms == 1 else 0.09)
+    assert gas_of(name, 576, 101325 / 4).jump == pytest.approx(8 * gas_of(name, 288).jump, rel=1e-12)
+    assert Joint(name, temperature=400.0, gas_pressure=5e4).held == gas_of(name, 400.0, 5e4)
+    if atoms == 1:  # where k = 15/4 R mu/M
+        at_288 = 3.75 * 8.314 * viscosity * 1e-6 / mass
+        assert gas_of(name, 288).conductivity == pytest.approx(at_288, rel=0.02)
 
 
 @pytest.mark.parametrize(("joint", "line"), [
@@ -95,9 +126,9 @@ def scene_of(**changes):
     return mcgw.Scene(ROUGH, **asked | changes)
 
 
-def by_hand(h):
+def by_hand(h, gas="air"):
     """Gap conductance at a distance over sigma, by the integral as it is written."""
-    rms, gas, sigma = 2e-6, air(), ROUGH.sigma
+    rms, gas, sigma = 2e-6, gas_of(gas), ROUGH.sigma
     alpha = (1 + 16 / math.pi - 3 * math.sqrt(3)) / (1 - (sigma / rms) ** 2)
     y, m = (h * sigma + 4 * rms / math.sqrt(math.pi * alpha)) / rms, gas.jump / rms
     ends = (0, m, 4 * m, 1, *((y,) if y > 1 else ()), y + 4, y + 12)
@@ -112,6 +143,12 @@ def before_bodies(contact, gas, constricted, area=ROUGH.nominal_area):
     """Spots (whose conductance has the bodies in series) and gas side by side, then the bodies, by hand."""
     bodies = MEAN_SINKING / 2 * (1 / 200 + 1 / 16) * math.sqrt(area) if constricted else 0.0
     return 1 / (1 / (1 / (1 / contact - bodies) + gas) + bodies)
+
+
+@pytest.mark.parametrize("name", ["helium", "argon", "nitrogen"])
+def test_a_gap_is_filled_by_a_gas_by_name(name):
+    scene = scene_of(joint={"gas": name, "rms": 2e-6}, n_surfaces=2)
+    assert float(scene.theory.mean("gap_conductance", H[-1])) == pytest.approx(by_hand(H[-1], name), rel=2e-4)
 
 
 @pytest.mark.parametrize("mode", OWN)
@@ -295,7 +332,7 @@ def test_where_it_goes(tmp_path):
     ({"film": analytic.Film(1e-7)}, r"joint: gas conducts heat; give contact\.conductivities"),
     ({"joint": "air"}, r"joint\.rms: give the root mean square height"),
     ({"joint": {"gas": "air", "rms": "1 um"}}, r"joint\.rms = 1e-06: give more than sigma"),
-    ({"joint": "steam"}, r"joint\.gas = 'steam': give \"air\""),
+    ({"joint": "steam"}, r"joint\.gas = 'steam': give one of air, "),
     ({"joint": {"gas": {"jump": 1e-6}}}, r"joint\.gas\.conductivity: missing"),
     ({"joint": {"gas": "vacuum", "temperature": 300.0}}, r"joint\.temperature = 300\.0: it is only for"),
     ({"joint": {"rms": 1e-6}}, r"joint\.gas: missing"),
