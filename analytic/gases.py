@@ -57,7 +57,7 @@ def _power(at_300: float, exponent: float) -> Callable[[float], float]:
 
 def _of_air(t: float) -> float:
     """Sutherland's law of the U.S. Standard Atmosphere (1976)."""
-    return 2.64638e-3 * t**1.5 / (t + 245.4 * math.pow(10, -12 / t))
+    return 2.64638e-3 * math.pow(t, 1.5) / (t + 245.4 * math.pow(10, -12 / t))
 
 
 # Conductivities: powers of T through 300 and 400 K of the CRC Handbook of Chemistry and Physics, which from
