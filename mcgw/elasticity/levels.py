@@ -9,9 +9,9 @@ from functools import cached_property
 import numpy as np
 
 from analytic.arrays import Array, Ints, Marks
-from mcgw.elasticity.equilibrium import Located
-from mcgw.elasticity.profiles import profile_spots
-from mcgw.elasticity.spots import Grid, HertzSpots, sized_grid
+from mcgw.elasticity.grid import Grid, sized_grid
+from mcgw.elasticity.located import Balance, balanced
+from mcgw.elasticity.spots import Spots, fallen
 from mcgw.errors import RunError, extra
 from mcgw.maps.summit_sums import summit_sums_of
 from mcgw.maps.summits import Summits, summits_of
@@ -26,6 +26,7 @@ Values = dict[str, float]
 # Tribol. Int. 114 (2017) 161; recalled).
 _OVERHANG = (math.pi - 1 + math.log(2)) / 24
 _TOLERANCE, _MOST_STEPS = 1e-6, 20_000  # of Tamaas, by its own measure
+_FITS = 2  # the second within contacts as wide as the first ones make them
 _STEP = 1.02  # from the pressure to that at which stiffness is found
 
 
@@ -59,24 +60,23 @@ class Pressed:
         return self.pressure * self.size[0] * self.size[1]
 
     @cached_property
-    def summits(self) -> Located:
-        """Its summits where they are, each on a paraboloid."""
-        heights, summits, places = self._counted
-        return Located(HertzSpots(heights, summits.radii, self.E_star), places, self._grid)
+    def spots(self) -> Spots:
+        """Hertz's contacts on its summits."""
+        heights, summits, _ = self._counted
+        return Spots.hertz(heights, summits.radii, self.E_star)
 
-    @cached_property
-    def profiles(self) -> Located:
-        """Its summits where they are, each with the surface around it."""
-        heights, summits, places = self._counted
-        return Located(profile_spots(self._map, summits, heights, self.E_star), places, self._grid)
+    def plane(self, spots: Spots) -> float:
+        """Separation, or that at which spots carry the load, none of which feels another one, m."""
+        return spots.separation_at(self.load) if self.separation is None else self.separation
 
     @property
-    def _grid(self) -> Grid:
-        return sized_grid(self.heights.shape, self.size, True)
+    def grid(self) -> Grid:
+        """Its points."""
+        return sized_grid(self.heights.shape, self.size)
 
     @cached_property
     def _map(self) -> Topography:
-        return Topography(self.heights, self._grid.pixel, periodic=True)
+        return Topography(self.heights, self.grid.pixel, periodic=True)
 
     @cached_property
     def _counted(self) -> tuple[Array, Summits, Ints]:
@@ -90,6 +90,18 @@ class Pressed:
         )
         return counted.heights, summits_of(self._map, counted, (0.0, 0.0)), np.array([rows, columns])
 
+    def touching(self, fits: int = _FITS) -> tuple[Spots, Ints]:
+        """Spots that may touch, fitted so many times to the map around them, and their rows and columns.
+
+        Those down to as far below the plane as the highest one, if none felt another one, rises above it.
+        """
+        heights, summits, places = self._counted
+        near = np.flatnonzero(heights > 2 * self.plane(self.spots) - heights.max())
+        spots = self.spots.only(near)
+        for _ in range(fits):
+            spots = fallen(self._map, summits, near, spots, spots.least_radii(self.plane(spots)))
+        return spots, places[:, near]
+
     def clear(self, highest: float) -> bool:
         """Whether the plane is above all there is."""
         return self.separation is not None and self.separation >= highest
@@ -100,28 +112,27 @@ class Pressed:
         found = {"area": area, "stiffness": stiffness, "conductance": conductance}
         return found | ({"mean_gap": mean_gap} if self.separation is None else {"pressure": pressure})
 
+    def of_spots(self, spots: Spots, found: Balance) -> Values:
+        """Sums over contacts in balance."""
+        area, load = (float(part(found.penetrations).sum()) for part in (spots.areas, spots.loads))
+        return self.values(area, found.stiffness, load / self.grid.area, found.separation)
+
 
 def alone(pressed: Pressed) -> Values:
     """Hertz's sums over the map's own summits, none of which feels another one."""
-    located, separation = pressed.summits, pressed.separation
-    spots = located.spots
-    if separation is None:
-        separation = located.alone_at(pressed.load)
-    depth = spots.heights - separation
-    area, stiffness, load = (
-        float(x.sum()) for x in (math.pi * spots.squared_radius(depth), spots.slope(depth), spots.load(depth))
-    )
-    return pressed.values(area, stiffness, load / located.grid.area, separation)
+    spots, separation = pressed.spots, pressed.plane(pressed.spots)
+    delta = spots.heights - separation
+    stiffness = float(spots.slopes(delta).sum())
+    return pressed.of_spots(spots, Balance(separation, delta, stiffness, 0.0))
 
 
 def located(pressed: Pressed) -> Values:
     """The same summits, each with the surface around it and pressed down by all others."""
-    summits, separation = pressed.profiles, pressed.separation
-    if pressed.clear(float(summits.spots.heights.max())):
+    if pressed.clear(float(pressed.spots.heights.max())):
         return alone(pressed)
-    balance = summits.at_load(pressed.load) if separation is None else summits.at_separation(separation)
-    pressure = balance.load / summits.grid.area
-    return pressed.values(balance.area, balance.stiffness, pressure, balance.separation)
+    spots, places = pressed.touching()
+    load = pressed.load if pressed.separation is None else None
+    return pressed.of_spots(spots, balanced(spots, places, pressed.grid, pressed.plane(spots), load))
 
 
 def boundary_elements(pressed: Pressed) -> Values:

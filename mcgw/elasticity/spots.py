@@ -1,202 +1,140 @@
-"""What single contacts do: load, slope and area of each from its penetration; and the field around one.
-
-How far a load at one point of a grid presses down the half-space at another one.
-"""
+"""What contacts on summits do alone: radius, load and stiffness of each from its penetration."""
 
 import math
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
-from typing import Protocol
 
 import numpy as np
-from scipy import fft
-from scipy.special import erfc
+from scipy.ndimage import map_coordinates
+from scipy.optimize import brentq
 
-from analytic.arrays import Array, Ints, Marks
+from analytic.arrays import Array, Ints
+from mcgw.maps.summits import Summits
+from mcgw.maps.topography import Topography
 
-# Two summits at one place are in neutral balance, whichever of them carries how much, if their fields are
-# those of a contact whose squared radius is this times the sum of theirs.
-_NEUTRAL = 1.125
-# Ewald's two sums, with so narrow a split that only the nearest image counts in the first: erfc(6) is 2e-17.
-_SPLIT = 12.0  # over the shorter side
-_FEWEST = 46  # points along the shorter side, at which the second sum has no more than the grid's waves
-
-
-class Spots(Protocol):
-    """Contacts of summits, none of which feels another one here: of each from its penetration, m."""
-
-    @property
-    def heights(self) -> Array:
-        """Of the summits, m, shape (n,)."""
-
-    @property
-    def E_star(self) -> float:  # noqa: N802 - as everywhere
-        """Composite modulus of the half-space, Pa."""
-
-    def load(self, penetration: Array) -> Array:
-        """N."""
-
-    def slope(self, penetration: Array) -> Array:
-        """Derivative of the load, N/m."""
-
-    def squared_radius(self, penetration: Array) -> Array:
-        """Of the contact, m^2."""
-
-    def only(self, which: Marks) -> "Spots":
-        """Some of them."""
+_RAYS, _STEPS = 8, 6  # from a summit to the rim of its contact
 
 
 @dataclass(frozen=True)
-class HertzSpots:
-    """Hertz's contacts on summits of their own radii.
+class Spots:
+    """Contacts on summits, none of which feels another one; arrays of shape (n,).
+
+    A summit that falls as r^n all around carries, with a contact of radius a (Sneddon, Int. J. Eng. Sci. 3
+    (1965) 47, recalled) ::
+
+        a = radius (delta/depth)^(1/n),    P = 2 E* n/(n + 1) a delta,    dP/ddelta = 2 E* a.
 
     Parameters
     ----------
-    heights, radii : ndarray
-        Of the summits, m, shape (n,).
+    heights : ndarray
+        Of the summits, m.
+    radii, depths : ndarray
+        Of one contact on each: its radius, and its penetration there, m.
+    powers : ndarray
+        n; 2 for a sphere.
     E_star : float
         Composite modulus, Pa.
+
+    Examples
+    --------
+    >>> one = Spots.hertz(np.zeros(1), np.array([1e-5]), 1e9)
+    >>> float(one.loads(np.array([1e-7]))[0] / (4 / 3 * 1e9 * 1e-5**0.5 * 1e-7**1.5))
+    1.0
     """
 
     heights: Array
     radii: Array
+    depths: Array
+    powers: Array
     E_star: float
 
-    def load(self, penetration: Array) -> Array:
-        """Load of each, N."""
-        return np.asarray(2 / 3 * penetration * self.slope(penetration))
+    @classmethod
+    def hertz(cls, heights: Array, radii: Array, E_star: float) -> "Spots":
+        """Spheres of radii in m: that of a contact is ``sqrt(R delta)``."""
+        return cls(heights, radii, radii, np.full(heights.shape, 2.0), E_star)
 
-    def slope(self, penetration: Array) -> Array:
-        """Stiffness of each, 2 E* a, N/m."""
-        return np.asarray(2 * self.E_star * np.sqrt(self.squared_radius(penetration)))
+    def contact_radii(self, penetrations: Array) -> Array:
+        """Of each, m; 0 where it does not touch."""
+        return np.asarray(self.radii * (np.maximum(penetrations, 0) / self.depths) ** (1 / self.powers))
 
-    def squared_radius(self, penetration: Array) -> Array:
-        """Squared radius of each contact, m^2."""
-        return np.asarray(self.radii * np.maximum(penetration, 0.0))
+    def loads(self, penetrations: Array) -> Array:
+        """Of each, N."""
+        return np.asarray(self.powers / (self.powers + 1) * penetrations * self.slopes(penetrations))
 
-    def only(self, which: Marks) -> "HertzSpots":
-        """Some of them."""
-        return HertzSpots(self.heights[which], self.radii[which], self.E_star)
+    def slopes(self, penetrations: Array) -> Array:
+        """Stiffness of each, N/m."""
+        return np.asarray(2 * self.E_star * self.contact_radii(penetrations))
 
+    def areas(self, penetrations: Array) -> Array:
+        """Of each contact, m^2."""
+        return np.asarray(math.pi * self.contact_radii(penetrations) ** 2)
 
-def field_beyond_point(squared_distance: Array, squared_radii: Array) -> tuple[Array, Array]:
-    """How much more or less a spot presses down a point than its load would from its centre, per load.
+    def separation_at(self, load: float) -> float:
+        """Separation at which all together carry a load in N, m."""
+        z = self.heights
+        depth = float(np.ptp(z)) or 1e-9
 
-    Around a Hertz contact of radius a (Johnson, Contact Mechanics, 1985, Eqs. 3.41 and 3.42, recalled and
-    checked against the integral)::
+        def missing(d: float) -> float:
+            return float(self.loads(z - d).sum()) - load
 
-        u pi E*/P = 3/4 [(2 a^2 - r^2) asin(min(a/r, 1)) + a sqrt(r^2 - a^2)_+ ] / a^3,
+        while missing(float(z.max()) - depth) < 0:
+            depth *= 2
+        return float(brentq(missing, z.max() - depth, z.max(), xtol=1e-14 * depth, rtol=1e-14))
 
-    of which 1/r is taken off. Between two spots a is that of both, so that the potential is mutual:
-    ``a^2 = 1.125 (a_i^2 + a_j^2)``; averaged over both contacts, 1 in place of 1.125 is exact to the
-    second order in a/r.
+    def least_radii(self, separation: float) -> Array:
+        """Radii of their contacts at a separation, at least the root of the mean square, m.
 
-    Parameters
-    ----------
-    squared_distance, squared_radii : ndarray
-        Of pairs: r^2 > 0 and a_i^2 + a_j^2, m^2.
-
-    Returns
-    -------
-    (ndarray, ndarray)
-        The difference, 1/m, and its derivative by a_i^2 or a_j^2, 1/m^3; both 0 where nothing touches.
-    """
-    touching = squared_radii > 0
-    a2 = _NEUTRAL * np.where(touching, squared_radii, 1.0)
-    x = squared_distance / a2
-    beyond = np.maximum(x, 1.0)
-    angle, root = np.arcsin(beyond**-0.5), np.sqrt(beyond - 1)
-    field = 0.75 * ((2 - x) * angle + root)
-    by_x = 0.75 * (root / beyond - angle)
-    more = field / np.sqrt(a2) - squared_distance**-0.5
-    by_radii = -_NEUTRAL * (field / 2 + x * by_x) / a2**1.5
-    return np.where(touching, more, 0.0), np.where(touching, by_radii, 0.0)
-
-
-@dataclass(frozen=True)
-class Grid:
-    """Points of a rectangle on a half-space, and the potential 1/r between them.
-
-    A load P at one point presses the surface down by ``P/(pi E*)`` times `potential` at another one.
-
-    Parameters
-    ----------
-    shape : (int, int)
-        Rows and columns.
-    size : (float, float)
-        Extent along x and y, m.
-    periodic : bool
-        Whether the rectangle repeats itself without end. Displacements then count from their mean: the
-        potential is the sum over all images in a neutral background (Ewald). Otherwise it is 1/r, and
-        displacements count from the undeformed body.
-
-    Raises
-    ------
-    ValueError
-        If a periodic grid has fewer than 46 points along its shorter side.
-    """
-
-    shape: tuple[int, int]
-    size: tuple[float, float]
-    periodic: bool
-
-    def __post_init__(self) -> None:
-        if self.periodic and min(self.size) / max(self.pixel) < _FEWEST:
-            raise ValueError(
-                f"{self.shape[1]} x {self.shape[0]} points: give {_FEWEST} or more per side of a periodic map"
-            )
-
-    @property
-    def pixel(self) -> tuple[float, float]:
-        """Distance of points along x and y, m."""
-        return self.size[0] / self.shape[1], self.size[1] / self.shape[0]
-
-    @property
-    def area(self) -> float:
-        """Nominal area, m^2."""
-        return self.size[0] * self.size[1]
-
-    @cached_property
-    def potential(self) -> Array:
-        """Potential by offsets of rows and columns, 1/m; at no offset that of a load's own images.
-
-        Offsets wrap around: its shape is that of the grid, doubled where there are no images.
+        Those of summits that hardly touch would tell nothing of what happens when they do.
         """
-        rows, columns = (n if self.periodic else 2 * n for n in self.shape)
-        dx, dy = self.pixel
-        x, y = columns * dx * fft.fftfreq(columns), rows * dy * fft.fftfreq(rows)[:, None]
-        r = np.hypot(x, y)
-        r[0, 0] = 1.0
-        if not self.periodic:
-            found = 1 / r
-            found[0, 0] = 0.0
-            return np.asarray(found)
-        split = _SPLIT / min(self.size)
-        near = erfc(split * r) / r
-        near[0, 0] = -2 * split / math.sqrt(math.pi)
-        k = 2 * math.pi * np.hypot(fft.rfftfreq(columns, dx), fft.fftfreq(rows, dy)[:, None])
-        k[0, 0] = 1.0
-        waves = 2 * math.pi * erfc(k / (2 * split)) / k
-        waves[0, 0] = -2 * math.sqrt(math.pi) / split
-        return np.asarray(near + fft.irfft2(waves, s=(rows, columns)) / (dx * dy))
+        squared = self.contact_radii(self.heights - separation) ** 2
+        return np.asarray(np.sqrt(np.maximum(squared, squared.mean(where=squared > 0))))
 
-    @cached_property
-    def _series(self) -> Array:
-        return np.asarray(fft.rfft2(self.potential))
-
-    def between(self, places: Ints) -> Array:
-        """Potential between all pairs of points, shape (n, n), of rows and columns of shape (2, n)."""
-        rows, columns = places
-        tall, wide = self.potential.shape
-        apart = (rows[:, None] - rows) % tall, (columns[:, None] - columns) % wide
-        return np.asarray(self.potential[apart])
-
-    def pressed(self, by: Ints, loads: Array, at: Ints) -> Array:
-        """Sum of the potentials of loads at some points, at others: by Fourier series, for many."""
-        spread = np.zeros(self.shape)
-        spread[tuple(by)] = loads
-        shape = self.potential.shape
-        return np.asarray(fft.irfft2(fft.rfft2(spread, shape) * self._series, shape)[tuple(at)])
+    def only(self, which: Ints) -> "Spots":
+        """Some of them."""
+        radii, depths, powers = self.radii[which], self.depths[which], self.powers[which]
+        return Spots(self.heights[which], radii, depths, powers, self.E_star)
 
 
-sized_grid = lru_cache(maxsize=2)(Grid)  # their potential takes as long as a balance
+def fallen(used: Topography, summits: Summits, which: Ints, spots: Spots, radii: Array) -> Spots:
+    """Make spots fall as a periodic map does around its summits, within contacts of some radii.
+
+    Along each of eight rays a summit falls as the map does down to the first valley, and from there on as its
+    paraboloid does: what rises again is another summit's. The mean over the rays is its profile, whose load
+    and penetration at that radius those of the new spots are, by Sneddon's integrals ::
+
+        depth = a int_0^a f'(r)/sqrt(a^2 - r^2) dr,    P = 2 E* int_0^a r^2 f'(r)/sqrt(a^2 - r^2) dr.
+
+    Parameters
+    ----------
+    used : Topography
+        Periodic.
+    summits : Summits
+        Of this map.
+    which : ndarray of int
+        Numbers of those that the spots are of, shape (n,).
+    spots : Spots
+        Whose heights and modulus stay.
+    radii : ndarray
+        Of contacts, m, shape (n,).
+    """
+    t, angle = np.arange(_STEPS + 1) / _STEPS, 2 * math.pi * np.arange(_RAYS) / _RAYS
+    r = radii[:, None] * t
+    rays = [
+        (x[which, None, None] + r[:, :, None] * f(angle)) / pixel - 0.5
+        for x, f, pixel in zip((summits.y, summits.x), (np.sin, np.cos), used.pixel[::-1], strict=True)
+    ]
+    falls = -np.diff(map_coordinates(used.heights, rays, order=3, mode="grid-wrap"), axis=1)
+    paraboloids = summits.curvatures.mean(axis=0)[which, None] / 2 * np.diff(r**2)
+    past = np.logical_or.accumulate(falls <= 0, axis=1)
+    falls = np.where(past, paraboloids[:, :, None], falls).mean(axis=2)
+    depths, loads = (falls @ weights for weights in _sneddon(t))
+    share = loads / depths
+    return Spots(spots.heights, radii, depths, share / (1 - share), spots.E_star)
+
+
+def _sneddon(t: Array) -> tuple[Array, Array]:
+    """Weights of what a profile falls in each step to the rim at t = 1, if it is linear in t^2 in between.
+
+    By them it is as deep, and carries as much over ``2 E* a``.
+    """
+    root, steps = np.sqrt(1 - t**2), np.diff(t**2)
+    return np.diff(-2 * root) / steps, np.diff(2 / 3 * root**3 - 2 * root) / steps

@@ -8,15 +8,14 @@ import warnings
 
 import numpy as np
 import pytest
+from oracles.rough import rough
 
 import mcgw
 from mcgw.cli import main
 from mcgw.elasticity import elastic as public, levels
 from mcgw.elasticity.levels import LEVELS, Level, located
-from mcgw.maps.synthetic import Spectrum, gaussian_map
 
-SPECTRUM = Spectrum(rms=1e-6, long=40e-6, short=5e-6)
-MAPS = [gaussian_map(SPECTRUM, (64, 64), (1e-6, 1e-6), np.random.default_rng(k)) for k in range(6)]
+MAPS = [rough(np.random.default_rng(k)) for k in range(6)]
 ASKED = {"pressure": 5e7, "E_star": 1e11, "solves": 4, "pilot": 4}
 
 

@@ -1,0 +1,84 @@
+"""Levels of a pressed map: summits alone and located, in any unit and either way around."""
+
+import math
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from oracles.located_by_hand import residual
+from oracles.rough import rough
+
+import mcgw
+from mcgw.elasticity.levels import Pressed, alone, located, rimless
+from mcgw.elasticity.located import balanced
+
+
+def test_heights_in_any_unit_give_the_same(rng):
+    heights = rough(rng).heights
+    one = Pressed(heights, (6.4e-5, 6.4e-5), 1e11, 5e7)
+    other = Pressed(1e3 * heights, (6.4e-2, 6.4e-2), 1e11, 5e7)
+    for level in (alone, located):
+        a, b = level(one), level(other)
+        powers = {"area": 2, "stiffness": 1, "conductance": 1, "mean_gap": 1}
+        for name, power in powers.items():
+            assert_allclose(b[name], a[name] * 1e3**power, rtol=1e-7)
+
+
+def test_the_rim_of_what_touches_is_counted_step_by_step(rng):
+    """On a torus, literally: of each pair of neighbours one of which touches."""
+    touching = rng.random((5, 7)) < 0.4
+    pairs = [((j, i), (j, (i + 1) % 7)) for j in range(5) for i in range(7)]
+    pairs += [((j, i), ((j + 1) % 5, i)) for j in range(5) for i in range(7)]
+    steps = sum(touching[a] != touching[b] for a, b in pairs)
+    assert rimless(touching) == pytest.approx((touching.sum() - 0.1181141597562 * steps) / 35, rel=1e-9)
+
+
+def test_a_map_without_a_summit_is_told():
+    bowl = np.zeros((64, 64))
+    bowl[8, 8] = -1e-6
+    with pytest.raises(mcgw.RunError, match="has no summit"):
+        located(Pressed(bowl, (6.4e-5, 6.4e-5), 1e11, 1e6))
+
+
+def test_alone_is_hertz_over_the_summits(rng):
+    heights = rough(rng).heights
+    one = Pressed(heights, (6.4e-5, 6.4e-5), 1e11, 5e7)
+    values, spots = alone(one), one.spots
+    depth = np.maximum(spots.heights - values["mean_gap"], 0)
+    assert_allclose((4 / 3 * 1e11 * np.sqrt(spots.radii) * depth**1.5).sum(), 5e7 * 6.4e-5**2, rtol=1e-9)
+    assert_allclose(values["area"], math.pi * (spots.radii * depth).sum(), rtol=1e-12)
+
+
+def test_at_the_gap_of_a_pressure_holds_what_holds_under_it(rng):
+    """Of located summits nearly: they are as wide to their neighbours as alone at what is given."""
+    heights = rough(rng).heights
+    size, p = (6.4e-5, 6.4e-5), 2e6
+    for level, off in ((alone, 1e-9), (located, 0.02)):
+        under = level(Pressed(heights, size, 1e11, p))
+        at = level(Pressed(heights, size, 1e11, separation=under["mean_gap"]))
+        assert at.pop("pressure") == pytest.approx(p, rel=off)
+        for name, value in at.items():
+            assert value == pytest.approx(under[name], rel=off)
+        clear = level(Pressed(heights, size, 1e11, separation=2 * float(np.ptp(heights))))
+        assert clear == dict.fromkeys(("area", "stiffness", "conductance", "pressure"), 0)
+
+
+def test_located_summits_are_in_balance(rng):
+    """Those that touch are among those that are looked at, and the surface around them makes them larger."""
+    heights = rough(rng).heights
+    one = Pressed(heights, (6.4e-5, 6.4e-5), 1e11, 5e7)
+    spots, places = one.touching()
+    found = balanced(spots, places, one.grid, one.plane(spots), one.load)
+    assert residual(spots, places, one.grid, one.plane(spots), found) < 1e-10
+    values, load = located(one), spots.loads(found.penetrations).sum()
+    assert values["area"] == pytest.approx(spots.areas(found.penetrations).sum(), rel=1e-12)
+    assert (values["stiffness"], values["mean_gap"]) == (found.stiffness, found.separation)
+    assert load == pytest.approx(5e7 * 6.4e-5**2, rel=1e-10)
+    pushed = one.grid.potential[tuple(one._counted[2][:, :, None] - places[:, None])] @ spots.loads(
+        found.penetrations
+    )
+    touch = one._counted[0] - found.separation > pushed / (math.pi * 1e11)
+    assert touch.sum() == (found.penetrations > 0).sum()
+    paraboloids, at = one.touching(fits=0)
+    sharp = balanced(paraboloids, at, one.grid, one.plane(paraboloids), one.load)
+    assert values["area"] > 1.02 * paraboloids.areas(sharp.penetrations).sum()
