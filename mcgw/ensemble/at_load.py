@@ -7,11 +7,11 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq
 
 from analytic import QUANTITIES, SEPARATIONS, quantity_of
 from analytic.arrays import Array
 from analytic.laws.elastic_plastic import ElasticPlastic
+from mcgw.ensemble.separation import crossing
 from mcgw.scene.scene import Scene
 
 GAPS = ("mean_gap", "gap_to_summits")  # m: see `answers_at`
@@ -19,7 +19,7 @@ NEGATIVE = (
     "{} = {:g} {}: {} reaches it only with asperities of negative modulus, at s = {:.4g}; give less, "
     'or set negative = "clip" or "allow" under [grading]'
 )
-_STEP, _DEEP = 1 / 64, 8.0  # of the search for a nominal separation: sums may rise and fall
+_DEEP = 8.0  # below a nominal separation, where the search for the other one ends
 
 
 def mean_surface(scene: Scene, given: str, value: float) -> dict[str, float]:
@@ -49,18 +49,11 @@ def nominal_of_mean(whole: Scene, value: float) -> float:
     """Largest separation that the asperities feel at which the mean surface has a nominal one."""
     mean = asperities_of(whole).theory.mean
     sunk = whole.compliance / whole.surface.sigma
-
-    def excess(h: Any) -> Array:
-        return np.asarray(value - h + sunk * mean("load", h))
-
     high = value + max(float(sunk * mean("load", value)), 0.0)
-    h = np.arange(high, min(value, high) - _DEEP, -_STEP)
-    beyond = np.flatnonzero(excess(h) >= 0)
-    if not beyond.size:
+    found = crossing(lambda h: value - h + sunk * mean("load", h), high, min(value, high) - _DEEP)
+    if found is None:
         raise ValueError(f"nominal_separation = {value:g}: the mean surface does not reach it; give more")
-    at = max(int(beyond[0]), 1)
-    low, high = float(h[at]), float(h[at - 1])
-    return float(brentq(lambda h: float(excess(h)), low, high, xtol=1e-14)) if excess(high) < 0 else high
+    return found
 
 
 def quantities_at(scene: Scene) -> tuple[str, ...]:

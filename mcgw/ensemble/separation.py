@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
@@ -13,7 +14,7 @@ from analytic.laws import Branch, Ways, term_of
 from mcgw.scene.scene import Scene
 
 _ENOUGH = 1e-14  # relative excess of load where Newton's steps are rounding errors
-_FINE = 1 / 64  # step of the search where a negative modulus makes the sum rise and fall
+_FINE, _AT_ONCE = 1 / 64, 16  # step of the search where sums may rise and fall, and steps at a time
 LOWEST = -40.0  # separation where searches end
 _STEP = 0.5  # by which the search for a start goes down, where the margin was not enough
 _LAST_DIGITS = 4 * np.finfo(float).eps
@@ -55,11 +56,19 @@ def separation_on(heights: Array, modulus: Array, exponent: float, target: float
         h += step
 
 
-def crossing(excess: Callable[[float], float], high: float, lowest: float = LOWEST) -> float | None:
-    """Largest root up to `high`, where the function is not positive; None down to the end of the range."""
-    for low in np.arange(high - _FINE, lowest, -_FINE).tolist():
-        if excess(low) >= 0:
-            return float(brentq(excess, low, low + _FINE, xtol=1e-15, rtol=1e-14))
+def crossing(excess: Callable[[Any], Any], high: float, lowest: float = LOWEST) -> float | None:
+    """Largest root up to `high`, where the function is not positive; None down to the end of the range.
+
+    The function takes a separation or an array of them.
+    """
+    if excess(high) >= 0:  # by a last digit
+        return high
+    lows = np.arange(high - _FINE, lowest, -_FINE)
+    for some in np.split(lows, range(_AT_ONCE, lows.size, _AT_ONCE)):
+        beyond = some[np.asarray(excess(some)) >= 0]
+        if beyond.size:
+            low = float(beyond[0])
+            return float(brentq(lambda h: float(excess(h)), low, low + _FINE, xtol=1e-15, rtol=1e-14))
     return None
 
 
@@ -233,7 +242,8 @@ class Summits:
             found = self.largest_separation(q, target, -np.inf)
             if found is not None or self.scene.negative == "error":
                 return found
-            return crossing(lambda h: self._power_sum(q, weights, h) - target, float(negative.max()))
+            power_sum = np.vectorize(lambda h: self._power_sum(q, weights, h), otypes=[float])
+            return crossing(lambda h: power_sum(h) - target, float(negative.max()))
         while self._power_sum(q, weights, start) < target:
             start -= _STEP
         return separation_on(self.s, weights, q.exponent, target, start)
@@ -244,7 +254,8 @@ class Summits:
         None if there is none.
         """
         high = max(float(self.s.max(initial=value)), value)
-        return crossing(lambda h: value - h + sunk * self.sums(("load",), h)["load"], high, lowest)
+        load = np.vectorize(lambda h: self.sums(("load",), h)["load"], otypes=[float])
+        return crossing(lambda h: value - h + sunk * load(h), high, lowest)
 
     def sums(self, names: Iterable[str], h: float) -> dict[str, float]:
         """Quantities at one separation, SI."""

@@ -246,15 +246,15 @@ class Solution(Shown):
         dict of str to float
             For area, load, stiffness and conductance, to leading order in 1/N.
         """
-        if self.given == "nominal_separation":
-            raise ValueError("scatter: it is known at a given load or area, not at a nominal separation")
-        alone = asperities_of(self.scene).theory
         names = [x for x in ("load", "area", "stiffness", "conductance") if x in self.theory]
-        if self.scene.interaction is not None:
+        model = asperities_of(self.scene).theory
+        if self.given == "nominal_separation":
+            model = self.scene.theory
+        elif self.scene.interaction is not None:
             names = names[:2]  # the medium counts in series for the others
         h = self.theory["separation"]
         return {
-            name: float(alone.asperities_for(name, h, scatter, given=self.given))
+            name: float(model.asperities_for(name, h, scatter, given=self.given))
             for name in names
             if name != self.given
         }
@@ -278,7 +278,7 @@ class Solution(Shown):
     def budget(self) -> "Budget":
         """Error budget: how much a real specimen may differ from `value`, cause by cause.
 
-        The causes are the number of surfaces drawn (none where `value` is exact), the
+        It is made once. The causes are the number of surfaces drawn (none where `value` is exact), the
         scatter of specimens (from one nominal area to another), the uncertainty of the parameters of the
         surface (``[surface] uncertainty``), and the error of the model against elasticity, where it was
         measured. The total is the root of the sum of their squares.
@@ -297,6 +297,10 @@ class Solution(Shown):
         >>> round(float(budget.shares["parameters"][0]), 2)  # of the area
         0.17
         """
+        return self._budget
+
+    @cached_property
+    def _budget(self) -> "Budget":
         from mcgw.ensemble.budget import budget_of
 
         return budget_of(
@@ -305,7 +309,7 @@ class Solution(Shown):
             self.value,
             self.surfaces,
             {name: self.interval(name) for name in self.surfaces},
-            against_elasticity([self]),
+            self._against_elasticity,
             lambda scene: mean_surface(scene, self.given, self.amount),
             self.given,
             self.yielding,
@@ -335,7 +339,12 @@ class Solution(Shown):
             return Corrected.unknown(why)
         std, (_, error, freedom) = float(self.surfaces[quantity].std(ddof=1)), self._estimates[quantity]
         drawn = float(stdtrit(freedom, 0.975)) * error if error else 0.0
-        return corrected(against_elasticity([self]), self.scene, quantity, self.value, std, drawn)
+        return corrected(self._against_elasticity, self.scene, quantity, self.value, std, drawn)
+
+    @cached_property
+    def _against_elasticity(self) -> Validity:
+        """Measured error of the model at this separation."""
+        return against_elasticity([self])
 
     def plot(self, ax: Any = None) -> Any:
         """Draw how the separation differs from surface to surface; returns the axes."""
@@ -347,7 +356,7 @@ class Solution(Shown):
 
         many = f"{self._many} surfaces of {self.scene.n_asperities} asperities"
         many += ", drawn from the measured summits" if self.scene.as_measured else ""
-        facts = [("over", many), ("elasticity", against_elasticity([self]).brief)]
+        facts = [("over", many), ("elasticity", self._against_elasticity.brief)]
         facts += [("yielding", why)] if (why := yields(self.yielding)) else []
         table = self.table()
         table = replace(table, columns=tuple(x for x in table.columns if x.name not in ("std", "infinite")))

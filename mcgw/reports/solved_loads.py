@@ -201,13 +201,15 @@ def _sizes(solution: Solution, scatter: float) -> str:
 
 
 def solutions_table(scene: Scene, solutions: Sequence[Solution]) -> Table:
-    """All of them under each other, each row with what was given."""
+    """All of them under each other, each row with what was given (SI; d/sigma) and the mean pressure."""
     tables = []
     for solution in solutions:
-        table, area = solution.table(), scene.surface.nominal_area
-        pressure = solution.amount / area if solution.given == "load" else np.nan
-        amount = np.nan if solution.given == "nominal_separation" else solution.amount
-        given = {"pressure_Pa": pressure, "load_or_area_SI": amount}
-        columns = (Column(name, np.full(len(table), value)) for name, value in given.items())
+        table = solution.table()
+        ahead = {
+            "given": solution.given,
+            "amount": solution.amount,
+            "pressure_Pa": solution.value["load"] / scene.surface.nominal_area,
+        }
+        columns = (Column(name, np.full(len(table), value)) for name, value in ahead.items())
         tables.append(Table((*columns, *table.columns)))
     return joined(tables)
