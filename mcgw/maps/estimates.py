@@ -26,7 +26,6 @@ METHODS = {
 _UNSURE = 0.25  # share of a correction that is uncertain, measured for hidden caps and summits between pixels
 _ORDER = 3  # losses scale as the pixel squared: one pixel loses a third of the difference between two and one
 _FLAT = 0.5  # share of the median curvature
-_BLOCK = 2**13  # heights processed at once: they fit the cache
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,15 +54,12 @@ class Roughness:
 
 def roughness_of(heights: Array) -> Roughness:
     """Roughness of an array of any shape without missing points, m."""
-    mean, sums = heights.mean(), np.zeros(4)
-    for some in np.array_split(heights, heights.size // _BLOCK + 1):
-        z = some - mean
-        square = z * z
-        sums += [t.sum() for t in (np.abs(z), square, square * z, square * square)]
-    a, variance, third, fourth = (sums / heights.size).tolist()
-    q = math.sqrt(variance)
-    sk, ku = (third / q**3, fourth / q**4) if q > 0 else (0.0, 0.0)
-    return Roughness(a, q, sk, ku)
+    z = heights - heights.mean()
+    square = z * z
+    a, q = float(np.abs(z).mean()), math.sqrt(square.mean())
+    if q == 0:
+        return Roughness(a, q, 0.0, 0.0)
+    return Roughness(a, q, float((square * z).mean()) / q**3, float((square * square).mean()) / q**4)
 
 
 @dataclass(frozen=True)

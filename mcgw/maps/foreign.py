@@ -7,7 +7,8 @@ process, by the first file that needs it.
 
 import warnings
 import zipfile
-from collections.abc import Callable
+from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -21,14 +22,11 @@ from mcgw.maps.topography import Topography, checked_shape, height_unit, in_metr
 
 _MOST_TEXT = 2**26  # bytes of a text, which it takes in whole
 _MAGIC = 64  # bytes that tell a text
+_PRINTABLE = bytes(range(32, 127)) + b"\t\r\n"
 
 
 class ForeignError(ValueError):
     """A file that is not in one of our formats, but may be in another."""
-
-
-class UnreadableError(ValueError):
-    """A file that SurfaceTopography refuses, or cannot read because it is missing."""
 
 
 def read_foreign(
@@ -67,10 +65,9 @@ def read_foreign(
         raise ValueError(f"{path}: does not give the size of a pixel; give --pixel")
     metre, assumed = height_unit(path, _unit(channel), unit)  # the unit also of x and y
     columns, rows = _points(path, channel)
-    more = {} if told else {"physical_sizes": (columns, rows)}
-    found, heights = _heights_of(path, channel, more, lambda found: found.heights())
-    z = np.ma.filled(np.ma.masked_invalid(heights), np.nan).T
-    checked_shape(*z.shape)
+    with _one_line_errors(path):
+        found = channel.topography(**({} if told else {"physical_sizes": (columns, rows)}))
+        z = np.ma.filled(np.ma.masked_invalid(found.heights()), np.nan).T
     dx, dy = pixel or (float(p) * metre for p in found.pixel_size)
     z = np.ascontiguousarray(in_metres(path, z, metre, missing))
     return Topography(z, (dx, dy), bool(found.is_periodic), assumed)
@@ -89,8 +86,8 @@ def read_foreign_line(path: Path, unit: str | None = None) -> tuple[Array, Array
         raise ValueError(f"{path}: is a map, not a profile; leave --profile out")
     metre, assumed = height_unit(path, _unit(channel), unit)
     _points(path, channel)
-    _, (x, z) = _heights_of(path, channel, {}, lambda found: found.positions_and_heights())
-    checked_shape(1, x.size, held=path.stat().st_size)
+    with _one_line_errors(path):
+        x, z = channel.topography().positions_and_heights()
     places, heights = np.array([x, np.ma.filled(z, np.nan)], dtype=np.float64) * metre
     return places, heights, assumed
 
@@ -112,50 +109,39 @@ def check_foreign(path: Path) -> None:
         try:
             open_h5(path).close()
         except OSError as error:
-            raise UnreadableError(f"{path}: is a damaged HDF5 file: {str(error)[:80]}") from None
+            raise ValueError(f"{path}: is a damaged HDF5 file: {str(error)[:80]}") from None
     elif zipfile.is_zipfile(path):
         check_archive(path)
     elif path.stat().st_size > _MOST_TEXT:
         with open(path, "rb") as file:
             start = file.read(_MAGIC)
-        if (
-            start.isascii()
-            and start.decode().replace("\t", " ").replace("\r", " ").replace("\n", " ").isprintable()
-        ):
-            raise UnreadableError(f"{path}: a text longer than {_MOST_TEXT} bytes; save it as .npy")
+        if not start.strip(_PRINTABLE):
+            raise ValueError(f"{path}: a text longer than {_MOST_TEXT} bytes; save it as .npy")
 
 
 def _channel(path: Path) -> Any:
     """The first channel of heights, of which nothing but facts is read."""
     if find_spec("SurfaceTopography") is None:
-        raise UnreadableError(
+        raise ValueError(
             f"{path}: {path.suffix or 'no ending'} is read by SurfaceTopography, which is not installed (the "
             "extra maps: pip install SurfaceTopography); or save it as .npy, .h5 of mcgw or text"
         )
     check_foreign(path)
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            from SurfaceTopography import (  # type: ignore[import-not-found, import-untyped, unused-ignore]
-                open_topography,
-            )
+    with _one_line_errors(path):
+        from SurfaceTopography import (  # type: ignore[import-not-found, import-untyped, unused-ignore]
+            open_topography,
+        )
 
-            reader = open_topography(str(path))
-            channels = reader.height_channels
-            channel = channels[0] if channels else reader.default_channel
-            channel.dim, channel.nb_grid_pts, channel.physical_sizes  # noqa: B018  # tells damage here
-    except (Exception, RecursionError) as error:
-        raise _unreadable(path, error) from None
+        reader = open_topography(str(path))
+        channels = reader.height_channels
+        channel = channels[0] if channels else reader.default_channel
+        channel.dim, channel.nb_grid_pts, channel.physical_sizes  # noqa: B018  # tells damage here
     if not channels:
         raise ValueError(
             f"{path}: holds no heights: its channels are "
-            + ", ".join(f"{c.name} in {_data_unit(c)}" for c in reader.channels)[:120]
+            + ", ".join(f"{c.name} in {c.data_unit or c.unit or 'no unit'}" for c in reader.channels)[:120]
         )
     return channel
-
-
-def _data_unit(channel: Any) -> str:
-    return str(channel.data_unit or channel.unit or "no unit")
 
 
 def _unit(channel: Any) -> str | None:
@@ -173,22 +159,15 @@ def _points(path: Path, channel: Any) -> tuple[int, int]:
     return columns, rows
 
 
-def _heights_of(
-    path: Path, channel: Any, more: dict[str, Any], what: Callable[[Any], Any]
-) -> tuple[Any, Any]:
-    """The topography of a channel, and what is asked of it."""
+@contextmanager
+def _one_line_errors(path: Path) -> Iterator[None]:
+    """Tell in one line what the readers of SurfaceTopography raise, of many kinds; mute their warnings."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            found = channel.topography(**more)
-            return found, what(found)
-    except (Exception, RecursionError) as error:
-        raise _unreadable(path, error) from None
-
-
-def _unreadable(path: Path, error: BaseException) -> UnreadableError:
-    """One line of an error of its readers, which raise many kinds."""
-    if isinstance(error, MemoryError):
-        return UnreadableError(f"{path}: needs more memory than there is")
-    said = " ".join(str(error).split())[:160] or type(error).__name__
-    return UnreadableError(f"{path}: SurfaceTopography cannot read it: {said}")
+            yield
+    except MemoryError:
+        raise ValueError(f"{path}: needs more memory than there is") from None
+    except Exception as error:
+        said = " ".join(str(error).split())[:160] or type(error).__name__
+        raise ValueError(f"{path}: SurfaceTopography cannot read it: {said}") from None

@@ -15,8 +15,6 @@ ORDERS = {"none": -1, "plane": 1, "quadratic": 2, "cubic": 3, "quartic": 4}
 
 _ALPHA = math.sqrt(math.log(2) / math.pi)  # ISO 16610-61: half the amplitude is left at the cutoff
 _REACH = 1.0  # of the filter's window, in cutoffs: beyond lies a share of 5e-7
-_WINDOWS = 32  # half windows of rows filtered together
-_BAND = 16  # rows processed together, too few for threads of BLAS
 _WIDTH = 10.0  # lines, standard deviation: of waves as long as 53 lines half is kept
 
 
@@ -47,11 +45,7 @@ def _without_polynomial(z: Array, order: int) -> Array:
     weights = np.zeros_like(projected)
     for (a, b), value in zip(terms, found, strict=True):
         weights[a, b] = value
-    left, down = np.empty(z.shape), y @ weights
-    for first in range(0, len(z), _BAND):
-        band = slice(first, first + _BAND)
-        np.subtract(z[band], down[band] @ x.T, out=left[band])
-    return left
+    return np.asarray(z - y @ weights @ x.T)
 
 
 def _powers(n: int, order: int) -> Array:
@@ -90,14 +84,10 @@ def smooth(topography: Topography, cutoff: float) -> Topography:
             f"cutoff = {cutoff:g} m: leaves nothing of a map of {columns * dx:g} x {rows * dy:g} m after "
             "removing a margin of one cutoff"
         )
-    if topography.periodic:
-        return replace(topography, heights=np.ascontiguousarray(lowpass(topography, cutoff)))
-    smoothed, most = np.empty((rows - 2 * radius[0], columns - 2 * radius[1])), _WINDOWS * radius[0]
-    for first in range(0, len(smoothed), most):
-        band = replace(topography, heights=topography.heights[first : first + most + 2 * radius[0]])
-        inside = lowpass(band, cutoff)[radius[0] : -radius[0], radius[1] : -radius[1]]
-        smoothed[first : first + most] = inside
-    return replace(topography, heights=smoothed)
+    smoothed = lowpass(topography, cutoff)
+    if not topography.periodic:
+        smoothed = smoothed[radius[0] : -radius[0], radius[1] : -radius[1]]
+    return replace(topography, heights=np.ascontiguousarray(smoothed))
 
 
 def lowpass(topography: Topography, cutoff: float) -> Array:

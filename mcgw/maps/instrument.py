@@ -1,4 +1,4 @@
-"""What an instrument did to a map: one list of checks, each a measure, how much of it is too much, and words.
+"""What an instrument did to a map: how much of each fault it shows, how much is too much, and words.
 
 Most faults put power into waves as short as a pixel, which is all of m4 and of the curvature of summits. So
 they are measured on the map between its cutoffs, where they count, by second differences; of a large map
@@ -7,8 +7,6 @@ than waves that cross it slantwise do.
 """
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 from scipy import fft
@@ -20,40 +18,36 @@ from mcgw.maps.preparation import Prepared
 _ENOUGH = 2**20  # second differences
 _NEAR = slice(1, 9)  # waves along a row that are nearly as long as those that do not change along it
 _ALTERNATE = -0.4  # correlation of second differences of neighbours: -2/3 of independent offsets
+LIMITS = {"range": 1e-3, "rounding": 0.05, "rows": 0.05, "columns": 0.05}  # shares that are let pass
 
 
-@dataclass(frozen=True, slots=True)
-class Check:
-    """One fault.
-
-    Parameters
-    ----------
-    name : str
-        First word of the caution.
-    measure : callable
-        Of a map: how much of the fault there is.
-    most : float
-        That is let pass.
-    words : str
-        What it is and which flag helps; ``{share}`` is the measure in per cent, ``{value}`` itself,
-        ``{step}`` that of the heights and ``{pixels}`` a cutoff that would do.
-    """
-
-    name: str
-    measure: Callable[[Prepared], float]
-    most: float
-    words: str
+def shares(ready: Prepared) -> dict[str, float]:
+    """Return how much of each fault a map shows: a share of its points (range) or of its mean square bend."""
+    return {
+        "range": ready.recorded.at_end,
+        "rounding": _rounding(ready),
+        "rows": _offsets(ready, 0),
+        "columns": _offsets(ready, 1),
+    }
 
 
 def faults(ready: Prepared, longer: float) -> list[str]:
-    """A line for each check that a map fails; `longer` is a cutoff to propose, in pixels."""
-    found = ((check, check.measure(ready)) for check in CHECKS)
-    return [
-        f"{check.name}: "
-        + check.words.format(share=100 * value, value=value, step=ready.recorded.step, pixels=longer)
-        for check, value in found
-        if value > check.most
-    ]
+    """Return a line for each fault beyond its limit; `longer` is a cutoff to propose, in pixels."""
+    lines = (
+        "lines: offsets between {0}, as in a line scan, make {{:.2g}} % of the curvature across them; level "
+        "them with --lines {0}"
+    )
+    words = {
+        "range": "range: {:.2g} % of the points have the same extreme height, as if the range of the "
+        "instrument cut off summits; measure with a larger range, or use --use moments, which is affected "
+        "less",
+        "rounding": f"rounding: heights are multiples of {ready.recorded.step:.3g} m; this rounding makes "
+        f"{{:.2g}} % of m4, and false summits; use --cutoff of {longer:.3g} pixels or more",
+        "rows": lines.format("rows"),
+        "columns": lines.format("columns"),
+    }
+    found = shares(ready).items()
+    return [words[name].format(100 * share) for name, share in found if share > LIMITS[name]]
 
 
 def _rounding(ready: Prepared) -> float:
@@ -77,51 +71,22 @@ def _kept_of_noise(cutoff: float | None, pixel: tuple[float, float]) -> list[flo
     return [float(b) * other for b, other in zip(x, y[::-1], strict=True)]
 
 
-def _lines(axis: int) -> Callable[[Prepared], float]:
-    """Of rows (0) or columns (1)."""
+def _offsets(ready: Prepared, axis: int) -> float:
+    """Share of the mean square bend across rows (0) or columns (1) that is the same all along a line.
 
-    def measure(ready: Prepared) -> float:
-        """Share of the mean square bend across lines that is the same all along a line.
-
-        Beyond twice what any of its neighbours in the spectrum has; nothing, if the means of lines do not
-        alternate as independent offsets do: grooves along the lines are as wide as several of them.
-        """
-        means = np.diff(ready.levelled.heights.mean(axis=1 - axis), 2)
-        if not float(means[1:] @ means[:-1]) < _ALTERNATE * float(means @ means):
-            return 0.0
-        bends = _second(np.moveaxis(ready.used.heights, axis, 0))
-        power = np.mean(np.abs(fft.rfft(bends)) ** 2, axis=0)
-        power[1:] *= 2
-        return float((power[0] - power[_NEAR].max()) / power.sum())
-
-    return measure
+    Beyond twice what any of its neighbours in the spectrum has; nothing, if the means of lines do not
+    alternate as independent offsets do: grooves along the lines are as wide as several of them.
+    """
+    means = np.diff(ready.levelled.heights.mean(axis=1 - axis), 2)
+    if not float(means[1:] @ means[:-1]) < _ALTERNATE * float(means @ means):
+        return 0.0
+    bends = _second(np.moveaxis(ready.used.heights, axis, 0))
+    power = np.mean(np.abs(fft.rfft(bends)) ** 2, axis=0)
+    power[1:] *= 2
+    return float((power[0] - power[_NEAR].max()) / power.sum())
 
 
 def _second(z: Array) -> Array:
     """Second differences from row to row, around rows that are equally far apart."""
     j = np.arange(1, len(z) - 1, max(z.size // _ENOUGH, 1))
     return np.asarray(z[j - 1] - 2 * z[j] + z[j + 1])
-
-
-CHECKS = (
-    Check(
-        "range", lambda ready: ready.recorded.at_end, 1e-3,
-        "{share:.2g} % of the points have the same extreme height, as if the range of the instrument cut off "
-        "summits; measure with a larger range, or use --use moments, which is affected less",
-    ),
-    Check(
-        "rounding", _rounding, 0.05,
-        "heights are multiples of {step:.3g} m; this rounding makes {share:.2g} % of m4, and false summits; "
-        "use --cutoff of {pixels:.3g} pixels or more",
-    ),
-    Check(
-        "lines", _lines(0), 0.05,
-        "offsets between rows, as in a line scan, make {share:.2g} % of the curvature across them; level "
-        "them with --lines rows",
-    ),
-    Check(
-        "lines", _lines(1), 0.05,
-        "offsets between columns, as in a line scan, make {share:.2g} % of the curvature across them; level "
-        "them with --lines columns",
-    ),
-)  # fmt: skip

@@ -11,18 +11,18 @@ from mcgw.formats.files import together, whole_file
 from mcgw.formats.gate import open_h5
 from mcgw.formats.named_files import loads_json, open_npy, read_bytes
 from mcgw.machine.terminal import one_line
-from mcgw.maps.foreign import ForeignError, UnreadableError, read_foreign
+from mcgw.maps.foreign import ForeignError, read_foreign
 from mcgw.maps.sdf import write_sdf
 from mcgw.maps.synthetic import Asperities
 from mcgw.maps.text_file import read_text
 from mcgw.maps.topography import (
     FLATTEST,
     STEEPEST,
+    XYZ,
     Topography,
     checked_shape,
     height_unit,
     in_metres,
-    single_points,
 )
 
 _FILETYPE = "mcgw-surface"
@@ -71,8 +71,11 @@ def read_npy(
     if array.ndim != 2:
         raise ValueError(f"{path}: holds {array.ndim} dimension(s); a map has rows and columns")
     checked_shape(*array.shape)
-    if points := single_points(*array.shape):
-        raise ValueError(f"{path}: {points}")
+    if array.shape[1] == XYZ < len(array):  # no map is three pixels wide
+        raise ValueError(
+            f"{path}: three numbers a line, {len(array)} lines: single points with x, y and z are not a map; "
+            "give rows of heights on a grid"
+        )
     periodic, told = False, None
     if pixel is None:
         pixel, periodic, told = _sidecar(path)
@@ -248,7 +251,10 @@ def read_map(
 def _read(
     path: Path, pixel: tuple[float, float] | None, unit: str | None, missing: float | None
 ) -> Topography:
-    """Read by our own readers, otherwise by SurfaceTopography."""
+    """Read by our own readers, otherwise by SurfaceTopography.
+
+    Since that skips text it does not know, text files must state their pixel.
+    """
     ending = path.suffix.lower()
     try:
         if ending == ".npy":
@@ -257,29 +263,17 @@ def _read(
             return read_text(path, pixel, unit, missing)
         if ending == ".h5":
             return _told(path, pixel, read_h5(path, unit, missing))
-    except ForeignError as refused:
-        return _otherwise(path, pixel, unit, missing, refused)
-    return read_foreign(path, pixel, unit, missing)
-
-
-def _otherwise(
-    path: Path,
-    pixel: tuple[float, float] | None,
-    unit: str | None,
-    missing: float | None,
-    refused: ForeignError,
-) -> Topography:
-    """Read by SurfaceTopography; since it skips unknown text, text files must state their pixel."""
-    if path.suffix.lower() not in _TEXT:
-        try:
-            return read_foreign(path, pixel, unit, missing)
-        except UnreadableError as too:
-            raise ValueError(f"{refused}; {str(too).removeprefix(f'{path}: ')}") from None
+    except ForeignError as error:
+        refused = error
+    else:
+        return read_foreign(path, pixel, unit, missing)
     try:
-        found = read_foreign(path, None, unit, missing)
-    except ValueError:
-        raise refused from None
-    return _told(path, pixel, found)
+        found = read_foreign(path, None if ending in _TEXT else pixel, unit, missing)
+    except ValueError as too:
+        if ending in _TEXT:
+            raise refused from None
+        raise ValueError(f"{refused}; {str(too).removeprefix(f'{path}: ')}") from None
+    return _told(path, pixel, found) if ending in _TEXT else found
 
 
 def _told(path: Path, pixel: tuple[float, float] | None, found: Topography) -> Topography:

@@ -18,6 +18,7 @@ SUMMITS = (  # what stands above their table in a file
     "summits, radius is 1/sqrt(curvature_1 curvature_2)"
 )
 # Of the fourth order, as in the sums: from two points before to two points after.
+_REACH = 2
 _SLOPE = np.array([1, -8, 0, 8, -1]) / 12
 _BEND = np.array([-1, 16, -30, 16, -1]) / 12
 
@@ -84,8 +85,9 @@ def summits_of(used: Topography, counted: SummitSums, origin: tuple[float, float
         np.rint(p * n - 0.5).astype(np.int64) + margin
         for p, n in zip(counted.places, shape[::-1], strict=True)
     )
-    curvatures, unresolved = _curvatures(used, j, i)
-    right, up = _apex(used.heights, j, i)
+    around = _around(used, j, i)
+    curvatures, unresolved = _curvatures(around, used.pixel)
+    right, up = _apex(around)
     dx, dy = used.pixel
     return Summits(
         origin[0] + (i + 0.5 + right) * dx,
@@ -98,45 +100,42 @@ def summits_of(used: Topography, counted: SummitSums, origin: tuple[float, float
     )
 
 
-def _at(z: Array, j: Ints, i: Ints) -> Array:
-    """Heights at points that may lie beyond the edges of a periodic map."""
-    return np.asarray(z[j % z.shape[0], i % z.shape[1]])
+def _around(used: Topography, j: Ints, i: Ints) -> Array:
+    """Heights of the five by five points around each summit above its own, shape (summits, 5, 5).
+
+    Of a periodic map they may lie beyond its edges.
+    """
+    rows, columns = used.heights.shape
+    near = np.arange(-_REACH, _REACH + 1)
+    z = used.heights[(j[:, None, None] + near[:, None]) % rows, (i[:, None, None] + near) % columns]
+    return np.asarray(z - z[:, _REACH, _REACH, None, None])  # differences lose no digits
 
 
-def _curvatures(used: Topography, j: Ints, i: Ints) -> tuple[Array, int]:
+def _curvatures(z: Array, pixel: tuple[float, float]) -> tuple[Array, int]:
     """Principal curvatures, and how many had to be taken from the mean curvature."""
-    z, (dx, dy) = used.heights, used.pixel
-    here = _at(z, j, i)  # differences from it lose no digits
-    steps = range(-2, 3)
-    xx = sum(w * (_at(z, j, i + s) - here) for s, w in zip(steps, _BEND, strict=True)) / dx**2
-    yy = sum(w * (_at(z, j + s, i) - here) for s, w in zip(steps, _BEND, strict=True)) / dy**2
-    xy = np.zeros(len(i))
-    for down, v in zip(steps, _SLOPE, strict=True):
-        for along, w in zip(steps, _SLOPE, strict=True):
-            if v * w != 0:
-                xy += v * w * (_at(z, j + down, i + along) - here)
-    mean, turn = -(xx + yy) / 2, np.hypot((xx - yy) / 2, xy / (dx * dy))
+    dx, dy = pixel
+    xx, yy = z[:, _REACH] @ _BEND / dx**2, z[:, :, _REACH] @ _BEND / dy**2
+    xy = z @ _SLOPE @ _SLOPE / (dx * dy)
+    mean, turn = -(xx + yy) / 2, np.hypot((xx - yy) / 2, xy)
     found = np.array([mean + turn, mean - turn])
     ridges = ~(found[1] > 0)
     # The neighbours next to it are lower, so these plain differences have a sign.
-    j, i, here = j[ridges], i[ridges], here[ridges]
-    plain = (2 * here - _at(z, j, i + 1) - _at(z, j, i - 1)) / dx**2
-    plain += (2 * here - _at(z, j + 1, i) - _at(z, j - 1, i)) / dy**2
-    found[:, ridges] = plain / 2
+    plain = (z[ridges, 2, 1] + z[ridges, 2, 3]) / dx**2 + (z[ridges, 1, 2] + z[ridges, 3, 2]) / dy**2
+    found[:, ridges] = -plain / 2
     return found, int(ridges.sum())
 
 
-def _apex(z: Array, j: Ints, i: Ints) -> tuple[Array, Array]:
+def _apex(z: Array) -> tuple[Array, Array]:
     """Vertex, within the summit's own pixel, of the paraboloid through it and its neighbours, in pixels."""
-    gx, gy = (_at(z, j, i + 1) - _at(z, j, i - 1)) / 2, (_at(z, j + 1, i) - _at(z, j - 1, i)) / 2
-    xx = _at(z, j, i + 1) - 2 * _at(z, j, i) + _at(z, j, i - 1)
-    yy = _at(z, j + 1, i) - 2 * _at(z, j, i) + _at(z, j - 1, i)
-    xy = (_at(z, j + 1, i + 1) - _at(z, j + 1, i - 1) - _at(z, j - 1, i + 1) + _at(z, j - 1, i - 1)) / 4
+    left, right, below, above = z[:, 2, 1], z[:, 2, 3], z[:, 1, 2], z[:, 3, 2]
+    gx, gy, xx, yy = (right - left) / 2, (above - below) / 2, right + left, above + below
+    xy = (z[:, 3, 3] - z[:, 3, 1] - z[:, 1, 3] + z[:, 1, 1]) / 4
     det = xx * yy - xy * xy
     flat = ~(det > 0)
     det = np.where(flat, 1.0, det)
-    right, up = ((gy * xy - gx * yy) / det, (gx * xy - gy * xx) / det)
-    return tuple(np.where(flat, 0.0, np.clip(t, -0.5, 0.5)) for t in (right, up))  # type: ignore[return-value]
+    ends = (gy * xy - gx * yy) / det, (gx * xy - gy * xx) / det
+    x, y = (np.where(flat, 0.0, np.clip(end, -0.5, 0.5)) for end in ends)
+    return x, y
 
 
 TILES = (  # what stands above their table in a file

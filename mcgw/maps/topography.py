@@ -117,16 +117,6 @@ def checked_shape(rows: int, columns: int, *, held: int | None = None) -> tuple[
     return rows, columns
 
 
-def single_points(rows: int, columns: int) -> str:
-    """Why an array that came without a word is no map: as x, y and z, since none is three pixels wide."""
-    if not columns == XYZ < rows:
-        return ""
-    return (
-        f"three numbers a line, {rows} lines: single points with x, y and z are not a map; give rows of "
-        "heights on a grid"
-    )
-
-
 def in_metres(path: Path, raw: NDArray[Any], metre: float, missing: float | None) -> Array:
     """Heights of a file in m, nan where it holds the number that stands for a missing point.
 

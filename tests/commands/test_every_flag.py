@@ -20,7 +20,7 @@ from mcgw.cli import _parser, main
 from mcgw.figures.contact_map import EllipseCollection
 from mcgw.jobs import executors
 from mcgw.jobs.running import run
-from mcgw.maps.map_files import read_map
+from mcgw.maps import read_map
 from mcgw.store.ensembles import read_attributes
 
 pytestmark = pytest.mark.usefixtures("blank_figures", "looked_at_here", "one_pressure", "without_layout")

@@ -12,9 +12,8 @@ from scipy.signal import get_window
 
 import mcgw
 from mcgw.elasticity.sources import maps_of
-from mcgw.maps.map_files import write_map
-from mcgw.maps.synthetic import SpectralMoments, Spectrum, gaussian_map, moments_on_grid
-from mcgw.maps.topography import Topography
+from mcgw.maps import Spectrum, Topography, gaussian_map, moments_on_grid, write_map
+from mcgw.maps.synthetic import SpectralMoments
 
 
 @pytest.mark.parametrize("periodic", [True, False])

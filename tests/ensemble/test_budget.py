@@ -13,7 +13,7 @@ from mcgw.cli import main
 from mcgw.ensemble.at_load import mean_surface
 from mcgw.ensemble.budget import moved, slopes_of
 from mcgw.ensemble.solved import against_elasticity
-from mcgw.maps.topography import Topography
+from mcgw.maps import Topography
 from mcgw.scene.section import SceneError
 
 FOLDER = Path(__file__).parents[2] / "runs" / "validation"

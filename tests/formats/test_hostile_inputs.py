@@ -16,8 +16,7 @@ import numpy as np
 import pytest
 from test_gate import HOSTILE
 
-from mcgw.maps.map_files import write_map
-from mcgw.maps.topography import Topography
+from mcgw.maps import Topography, write_map
 
 SECONDS, BYTES = 2.0, 400 * 2**20
 MAP = Topography(1e-6 * np.random.default_rng(1).normal(size=(16, 16)), (1e-6, 1e-6))

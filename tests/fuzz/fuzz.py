@@ -22,8 +22,8 @@ import numpy as np
 import mcgw
 from mcgw.errors import StoreError
 from mcgw.jobs.running import run
-from mcgw.maps.map_files import WRITTEN, write_map
-from mcgw.maps.topography import Topography
+from mcgw.maps import Topography, write_map
+from mcgw.maps.map_files import WRITTEN
 from mcgw.scene.section import SceneError
 from mcgw.store import ensembles, structure
 

@@ -7,9 +7,8 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from mcgw.maps import foreign as library
-from mcgw.maps.map_files import read_map
-from mcgw.maps.profile_files import holds_profile, read_profile
+from mcgw.maps import foreign as library, read_map, read_profile
+from mcgw.maps.profile_files import holds_profile
 
 STAND_IN = """
 from pathlib import Path

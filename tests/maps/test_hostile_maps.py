@@ -7,10 +7,8 @@ import numpy as np
 import pytest
 
 import mcgw
-from mcgw.maps import summit_sums
-from mcgw.maps.map_files import read_map, write_map
+from mcgw.maps import Topography, read_map, summit_sums, write_map
 from mcgw.maps.summit_sums import summit_sums_of
-from mcgw.maps.topography import Topography
 
 SHAPE = (8, 9)
 UNITS = 1e-6 * np.random.default_rng(1).normal(size=SHAPE)

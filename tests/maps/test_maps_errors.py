@@ -10,9 +10,8 @@ from scipy.special import polygamma
 from scipy.stats import gamma, norm, t as t_law
 
 from analytic import SpectralMoments
+from mcgw.maps import Spectrum, Topography, gaussian_map, moments_on_grid
 from mcgw.maps.fit_cautions import _waves
-from mcgw.maps.synthetic import Spectrum, gaussian_map, moments_on_grid
-from mcgw.maps.topography import Topography
 from mcgw.maps.waves import (
     Spread,
     Waves,

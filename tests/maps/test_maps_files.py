@@ -14,12 +14,20 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 from mcgw.formats.units import METRES
+from mcgw.maps import (
+    Asperities,
+    Spectrum,
+    Topography,
+    gaussian_map,
+    read_map,
+    read_profile,
+    spectrum_from,
+    write_map,
+)
 from mcgw.maps.envelope import envelope
 from mcgw.maps.form import smooth
-from mcgw.maps.map_files import read_map, write_map
-from mcgw.maps.profile_files import holds_profile, read_profile
-from mcgw.maps.synthetic import Asperities, Spectrum, gaussian_map, spectrum_from
-from mcgw.maps.topography import Topography, checked_shape, single_points
+from mcgw.maps.profile_files import holds_profile
+from mcgw.maps.topography import checked_shape
 
 NAMES = ["map.npy", "map.h5"]
 every_format = pytest.mark.parametrize("name", NAMES)
@@ -286,7 +294,6 @@ def test_the_largest_map_and_the_most_points_that_a_file_may_declare():
     for rows, columns in ((0, 1), (1, 0)):
         with pytest.raises(ValueError, match="one or more along each axis"):
             checked_shape(rows, columns)
-    assert [bool(single_points(*shape)) for shape in ((4, 3), (3, 3), (4, 4), (4, 2))] == [True] + 3 * [False]
 
 
 def test_the_largest_height_and_the_finest_pixel():

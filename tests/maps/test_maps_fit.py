@@ -16,16 +16,14 @@ from scipy.stats import kurtosis, skew
 import mcgw
 from analytic import MeasuredHeights
 from mcgw.cli import main
+from mcgw.maps import Asperities, Spectrum, Topography, gaussian_map, moments_on_grid, write_map
 from mcgw.maps.envelope import envelope, hidden_summits
 from mcgw.maps.estimates import SUMMITS, Estimate, by_summits, estimates_table, roughness_of
 from mcgw.maps.fit import fit_prepared
 from mcgw.maps.fitted_scene import write_scene
 from mcgw.maps.hidden_caps import visible
-from mcgw.maps.map_files import write_map
 from mcgw.maps.preparation import Preparation, prepared
 from mcgw.maps.summit_sums import coarse_sums_of, summit_sums_of
-from mcgw.maps.synthetic import Asperities, Spectrum, gaussian_map, moments_on_grid
-from mcgw.maps.topography import Topography
 from mcgw.reports.fitted import fit_lines
 
 PIXEL = (1e-6, 1e-6)

@@ -11,6 +11,7 @@ from scipy.optimize import brentq
 
 import mcgw
 from mcgw.cli import main
+from mcgw.maps import Spectrum, Topography, gaussian_map
 from mcgw.maps.bad_points import recorded, small_spike_heights, spike_heights, usual_bend
 from mcgw.maps.fit import fit_prepared
 from mcgw.maps.fit_cautions import cautions
@@ -18,8 +19,6 @@ from mcgw.maps.form import without_form
 from mcgw.maps.form_left import form_left
 from mcgw.maps.hidden_caps import visible
 from mcgw.maps.preparation import Preparation, prepared
-from mcgw.maps.synthetic import Spectrum, gaussian_map
-from mcgw.maps.topography import Topography
 
 N, PIXEL = 240, (1e-6, 2e-6)
 OF_THE_MAP = {"spikes", "form", "waves", "slope"}

@@ -5,15 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from oracles.fit_of_maps import fit_map
+from scipy.optimize import brentq
 
 import mcgw
-from mcgw.maps import instrument
-from mcgw.maps.bad_points import Recorded, recorded
+from mcgw.maps import Spectrum, Topography, gaussian_map
+from mcgw.maps.bad_points import Recorded
 from mcgw.maps.form import smooth
-from mcgw.maps.instrument import CHECKS, _kept_of_noise, faults
+from mcgw.maps.instrument import LIMITS, _kept_of_noise, faults, shares
 from mcgw.maps.preparation import Preparation, prepared
-from mcgw.maps.synthetic import Spectrum, gaussian_map
-from mcgw.maps.topography import Topography
 
 PIXEL = (1e-6, 1e-6)
 
@@ -29,14 +28,14 @@ def rough(seed=1, short=12e-6, long=120e-6, n=256, hurst=0.8):
 FAULTS = {
     "range": (lambda z, rng: np.minimum(z, 2.5 * z.std()), None),
     "rounding": (lambda z, rng: np.round(z / z.std() * 5) * z.std() / 5, {"cutoff": 10e-6}),
-    "lines": (lambda z, rng: z + 0.1 * z.std() * rng.normal(size=(len(z), 1)), {"lines": "rows"}),
+    "rows": (lambda z, rng: z + 0.1 * z.std() * rng.normal(size=(len(z), 1)), {"lines": "rows"}),
 }
 
 
 def named(z, pixel=PIXEL, **steps):
-    """Checks that a map fails."""
+    """Faults beyond their limits."""
     ready = prepared(Topography(z, pixel), Preparation(**{"cutoff": None, **steps}))
-    return {check.name for check in CHECKS if check.measure(ready) > check.most}
+    return {name for name, share in shares(ready).items() if share > LIMITS[name]}
 
 
 def numbers(z, **steps):
@@ -123,38 +122,12 @@ def test_grooves_along_rows_are_no_offsets():
     z = rough() * 0.2
     j = np.arange(256.0)
     for lines in (5, 8, 20):
-        assert "lines" not in named(z + 1e-6 * np.sin(2 * np.pi * j / lines)[:, None])
-    broken = FAULTS["lines"][0](rough(2), np.random.default_rng(1)).T.copy()
+        assert "rows" not in named(z + 1e-6 * np.sin(2 * np.pi * j / lines)[:, None])
+    broken = FAULTS["rows"][0](rough(2), np.random.default_rng(1)).T.copy()
     (line,) = (x for x in mcgw.fit(Topography(broken, PIXEL), cutoff=None).cautions if x.startswith("lines:"))
     assert "--lines columns" in line
-    assert "lines" in named(broken, lines="rows")
-    assert "lines" not in named(broken, lines="columns")
-
-
-def test_levelled_lines_keep_the_waves_of_the_surface():
-    """Of one across the lines, 120 lines long, what the window passes; a line without heights is none."""
-    z = rough(3)
-    wave = 1e-6 * np.sin(2 * np.pi * np.arange(256) / 120)[:, None]
-    broken = FAULTS["lines"][0](z + wave, np.random.default_rng(2))
-    broken[40] = np.nan
-    ready = prepared(Topography(broken, PIXEL), Preparation(None, form="none", lines="rows"))
-    assert ready.notes[0].startswith("lines: offsets of rows removed, 1")
-    off = np.delete(ready.used.heights - (z + wave), 40, axis=0).mean(axis=1)
-    lost = -(off @ np.delete(wave, 40)) / (wave**2).sum()
-    assert lost == pytest.approx(1 - np.exp(-((2 * np.pi * 10 / 120) ** 2) / 2), abs=0.03)
-    assert np.diff(off).std() < 0.02e-6  # of 0.1 um times the root of 2
-
-
-def test_what_a_recording_tells():
-    rng = np.random.default_rng(1)
-    z = rough(1)
-    assert recorded(z).step == recorded(z).at_end <= 1e-4
-    rounded = np.round(z / 2e-7) * 2e-7
-    assert recorded(rounded).step == pytest.approx(2e-7)
-    assert recorded(rounded).at_end == 0  # its highest level has fewer points than the next
-    cut = np.clip(rounded, -1.4e-6, None)
-    cut[rng.random(cut.shape) < 0.1] = np.nan
-    assert recorded(cut).at_end == pytest.approx(np.mean(rounded <= -1.4e-6) * 0.9, rel=0.1)
+    assert "columns" in named(broken, lines="rows")
+    assert "columns" not in named(broken, lines="columns")
 
 
 @pytest.mark.parametrize("pixel", [(1e-6, 1e-6), (1e-6, 2e-6)])
@@ -167,79 +140,72 @@ def test_what_a_filter_keeps_of_noise(pixel):
         assert _kept_of_noise(cutoff, pixel) == pytest.approx(seen, rel=0.05)
 
 
-def measured(ready):
-    """By name; of lines those of rows."""
-    return {check.name: check.measure(ready) for check in reversed(CHECKS)}
-
-
-def plain(z, cutoff=None, pixel=(1e-6, 2e-6), **known):
-    ready = prepared(Topography(z, pixel, periodic=True), Preparation(cutoff, form="none"))
+def plain(z, cutoff=None, **known):
+    ready = prepared(Topography(z, (1e-6, 2e-6), periodic=True), Preparation(cutoff, form="none"))
     return replace(ready, **known)
 
 
 def test_what_rounding_adds_to_bends():
     """Step^2/12 is its variance, of which second differences have six times as much, on the worse axis."""
     z = rough(1, n=64, long=50e-6)
-    seen = measured(plain(z, recorded=Recorded(3e-8, 0.0)))["rounding"]
     bends = [np.mean(np.diff(z, 2, axis=axis) ** 2) for axis in (0, 1)]
+    seen = shares(plain(z, recorded=Recorded(3e-8, 0.0)))["rounding"]
     assert seen == pytest.approx((3e-8) ** 2 / 12 * 6 / min(bends), rel=1e-3)
-    assert measured(plain(z, recorded=Recorded(0.0, 0.0)))["rounding"] == 0
-    cutoff = plain(z, 8e-6, recorded=Recorded(3e-8, 0.0))
-    bends = [np.mean(np.diff(cutoff.used.heights, 2, axis=axis) ** 2) for axis in (1, 0)]
+    assert shares(plain(z, recorded=Recorded(0.0, 0.0)))["rounding"] == 0
+    filtered = plain(z, 8e-6, recorded=Recorded(3e-8, 0.0))
+    bends = [np.mean(np.diff(filtered.used.heights, 2, axis=axis) ** 2) for axis in (1, 0)]
     each = [k * 7.5e-17 / b for k, b in zip(_kept_of_noise(8e-6, (1e-6, 2e-6)), bends, strict=True)]
-    assert measured(cutoff)["rounding"] == pytest.approx(max(each), rel=1e-9)
+    assert shares(filtered)["rounding"] == pytest.approx(max(each), rel=1e-9)
+
+
+def offsets(size, n=64):
+    """A rough map whose rows are off by so much."""
+    return rough(1, n=n, long=50e-6) + size * np.random.default_rng(1).normal(size=(n, 1))
 
 
 @pytest.mark.parametrize("turned", [False, True])
 def test_the_share_of_offsets_in_bends(turned):
     """The wave that does not change along a line, beyond the largest of the eight next to it, over all."""
-    z = rough(1, n=64, long=50e-6) + 3e-7 * np.random.default_rng(1).normal(size=(64, 1))
+    z = offsets(3e-7)
     power = np.mean(np.abs(np.fft.fft(np.diff(z, 2, axis=0))) ** 2, axis=0)
     share = (power[0] - 2 * power[1:9].max()) / power.sum()
-    rows, columns = (c.measure(plain(z.T.copy() if turned else z)) for c in CHECKS if c.name == "lines")
-    assert (columns if turned else rows) == pytest.approx(share, rel=1e-9)
-    assert (rows if turned else columns) < 0.05 < share
-
-
-def bisected(measure, low, high):
-    """Where a rising measure is next to zero, on either side."""
-    for _ in range(60):
-        middle = (low + high) / 2
-        low, high = (low, middle) if measure(middle) > 0 else (middle, high)
-    return low, high
+    found = shares(plain(z.T.copy() if turned else z))
+    one, other = (found[name] for name in (("columns", "rows") if turned else ("rows", "columns")))
+    assert one == pytest.approx(share, rel=1e-9)
+    assert other < 0.05 < share
 
 
 def test_offsets_alternate_and_waves_along_lines_do_not():
     """Second differences of the means of lines: neighbours have a correlation below -0.4."""
     noise, wave = np.random.default_rng(1).normal(size=64), 20 * np.sin(np.arange(64) * 2 * np.pi / 8)
 
-    def correlation(offsets):
-        bends = np.diff(offsets, 2)
+    def correlation(share):
+        bends = np.diff((1 - share) * noise + share * wave, 2)
         return (bends[1:] @ bends[:-1]) / (bends @ bends)
 
-    for target, some in ((-0.402, True), (-0.398, False)):
-        share, _ = bisected(lambda x, t=target: correlation((1 - x) * noise + x * wave) - t, 0.0, 1.0)
+    for target, seen in ((-0.402, True), (-0.398, False)):
+        share = brentq(lambda x, t=target: correlation(x) - t, 0.0, 1.0, xtol=1e-12)
         z = 1e-7 * ((1 - share) * noise + share * wave)[:, None] + np.zeros(64)
-        assert (measured(plain(z))["lines"] > 0.05) == some
+        assert (shares(plain(z))["rows"] > 0.05) == seen
 
 
-def test_cut_tops_are_told_as_they_were_found():
-    ready = plain(rough(1, n=64, long=50e-6), recorded=Recorded(0.0, 0.125))
-    assert measured(ready)["range"] == 0.125
-
-
-LIMITS = {"range": 1e-3, "rounding": 0.05, "lines": 0.05}
-
-
-def test_a_fault_is_named_from_its_limit_on_with_its_share(monkeypatch):
-    ready = plain(rough(1, n=64, long=50e-6), recorded=Recorded(3.25e-8, 0.0))
-    for factor, names in ((0.995, []), (1.005, [check.name for check in CHECKS])):
-        checks = [replace(c, measure=lambda _, x=factor * LIMITS[c.name]: x) for c in CHECKS]
-        monkeypatch.setattr(instrument, "CHECKS", checks)
-        lines = faults(ready, 12.34)
-        assert [line.partition(":")[0] for line in lines] == names
-    for check, line in zip(CHECKS, lines, strict=True):
-        share = LIMITS[check.name] * 1.005
-        assert f"{100 * share:.2g} %" in line
-        assert ("--cutoff of 12.3 pixels" in line) == (check.name == "rounding")
-        assert ("multiples of 3.25e-08 m" in line) == (check.name == "rounding")
+def test_a_fault_is_named_from_its_limit_on_with_its_share():
+    """Planted so that half a per cent is missing or too much; the proposed cutoff and the step are told."""
+    z = rough(1, n=64, long=50e-6)
+    one = shares(plain(z, recorded=Recorded(1e-8, 0.0)))["rounding"]
+    white = 1e-7 * np.random.default_rng(3).normal(size=(64, 64))  # whose means of lines alternate too
+    off = 1e-7 * np.random.default_rng(1).normal(size=(64, 1))
+    for factor, told in ((0.995, False), (1.005, True)):
+        step = 1e-8 * (factor * 0.05 / one) ** 0.5
+        size = brentq(lambda x, f=factor: shares(plain(white + x * off))["rows"] - 0.05 * f, 0.0, 1.0)
+        rows = white + size * off
+        for ready, line in (
+            (plain(z, recorded=Recorded(0.0, factor * 1e-3)), "range: 0.1 % of the points have the same"),
+            (plain(z, recorded=Recorded(step, 0.0)), f"rounding: heights are multiples of {step:.3g} m; "
+             "this rounding makes 5 % of m4, and false summits; use --cutoff of 12.3 pixels or more"),
+            (plain(rows), "lines: offsets between rows, as in a line scan, make 5 % of the curvature across"),
+            (plain(rows.T.copy()), "lines: offsets between columns, as in a line scan, make 5 %"),
+        ):  # fmt: skip
+            found = faults(ready, 12.34)
+            assert len(found) == told
+            assert all(x.startswith(line) for x in found)

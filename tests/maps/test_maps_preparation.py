@@ -10,12 +10,11 @@ from oracles.fit_of_maps import fit_map
 from scipy.ndimage import gaussian_filter1d, minimum_filter
 
 import mcgw
+from mcgw.maps import Spectrum, Topography, gaussian_map
 from mcgw.maps.bad_points import filled
 from mcgw.maps.form import gaussian_transmission, lowpass, smooth, without_form, without_offsets
 from mcgw.maps.preparation import Preparation, prepared
 from mcgw.maps.steps import Form
-from mcgw.maps.synthetic import Spectrum, gaussian_map
-from mcgw.maps.topography import Topography
 
 N, PIXEL = 200, (1e-6, 1.5e-6)
 

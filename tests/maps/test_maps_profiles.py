@@ -14,13 +14,13 @@ from scipy.stats import t as t_law
 import mcgw
 from analytic import Nayak, SpectralMoments
 from mcgw.cli import main
+from mcgw.maps import Profile, Spectrum, gaussian_map, read_profile
 from mcgw.maps.fit_cautions import profile_cautions
 from mcgw.maps.form import filter_variance, gaussian_transmission
-from mcgw.maps.profile import Profile, profile_at, smooth_profile, without_profile_form
-from mcgw.maps.profile_files import holds_profile, read_profile
+from mcgw.maps.profile import profile_at, smooth_profile, without_profile_form
+from mcgw.maps.profile_files import holds_profile
 from mcgw.maps.profile_fit import fit_profiles
 from mcgw.maps.profile_waves import areal_weights, stencil_weights, waves_of_profile
-from mcgw.maps.synthetic import Spectrum, gaussian_map
 
 UM = 1e-6
 SMOOTH = 3  # neighbouring waves whose power is averaged

@@ -10,11 +10,9 @@ from scipy.optimize import brentq
 
 import mcgw
 from mcgw.cli import main
-from mcgw.maps.map_files import write_map
+from mcgw.maps import Spectrum, Topography, gaussian_map, write_map
 from mcgw.maps.summit_sums import SUMS, SummitSums, summit_sums_of
 from mcgw.maps.summits import summits_of, tiles_of, variation
-from mcgw.maps.synthetic import Spectrum, gaussian_map
-from mcgw.maps.topography import Topography
 
 UM = 1e-6
 

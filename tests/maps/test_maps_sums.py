@@ -12,6 +12,7 @@ from scipy.stats import norm, t as t_law
 
 import analytic
 from analytic import SpectralMoments
+from mcgw.maps import Topography
 from mcgw.maps.estimates import (
     by_caps,
     by_moments,
@@ -23,7 +24,6 @@ from mcgw.maps.estimates import (
 )
 from mcgw.maps.hidden_caps import unhidden, visible
 from mcgw.maps.summit_sums import SUMS, SummitSums, _apex, coarse_sums_of, summit_sums_of
-from mcgw.maps.topography import Topography
 
 BUSH = 0.8968057562340189  # 3 sqrt 3 + ... of Bush, Gibson and Thomas (1975), by Nayak's integrals
 

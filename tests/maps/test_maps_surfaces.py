@@ -15,17 +15,17 @@ import analytic
 import mcgw
 from mcgw.cli import main
 from mcgw.figures.contact_map import spots_at
-from mcgw.maps.envelope import envelope, hidden_summits
-from mcgw.maps.hidden_caps import visible
-from mcgw.maps.map_files import read_map
-from mcgw.maps.synthetic import (
+from mcgw.maps import (
     Asperities,
     Spectrum,
     asperities_of,
     gaussian_map,
     moments_on_grid,
+    read_map,
     spectrum_from,
 )
+from mcgw.maps.envelope import envelope, hidden_summits
+from mcgw.maps.hidden_caps import visible
 from mcgw.scene.scene_file import scene_text
 
 RUNS = Path(__file__).parents[2] / "runs"

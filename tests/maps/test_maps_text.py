@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 
 from mcgw.cli import main
-from mcgw.maps.map_files import read_map, write_h5
-from mcgw.maps.synthetic import Spectrum, gaussian_map
+from mcgw.maps import Spectrum, Topography, gaussian_map, read_map
+from mcgw.maps.map_files import write_h5
 from mcgw.maps.text_file import read_text
-from mcgw.maps.topography import Topography
 
 NAN = np.nan
 PIXEL = (1e-6, 1e-6)

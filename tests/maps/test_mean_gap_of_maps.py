@@ -8,8 +8,7 @@ import mcgw
 from analytic import SpectralMoments
 from mcgw.elasticity.levels import LEVELS, Pressed
 from mcgw.elasticity.sources import drawn
-from mcgw.maps.synthetic import Spectrum
-from mcgw.maps.topography import Topography
+from mcgw.maps import Spectrum, Topography
 
 _E_STAR, _M0, _M2 = 1e11, 2.5e-13, 2.5e-3
 

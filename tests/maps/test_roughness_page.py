@@ -10,8 +10,8 @@ from scipy.optimize import brentq
 
 import analytic
 from analytic import SpectralMoments
+from mcgw.maps import Spectrum
 from mcgw.maps.form import gaussian_transmission
-from mcgw.maps.synthetic import Spectrum
 
 PAGE = (Path(__file__).parents[2] / "runs" / "ROUGHNESS.md").read_text(encoding="utf-8")
 TEXT = " ".join(PAGE.split())

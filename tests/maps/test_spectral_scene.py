@@ -11,7 +11,7 @@ from oracles.summits_by_hand import summit_contact
 import analytic
 import mcgw
 from mcgw.cli import main
-from mcgw.maps.synthetic import Spectrum, gaussian_map
+from mcgw.maps import Spectrum, gaussian_map
 
 
 @pytest.fixture(scope="module")

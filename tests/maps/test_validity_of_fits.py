@@ -9,8 +9,7 @@ import pytest
 
 import mcgw
 from mcgw.cli import main
-from mcgw.maps.synthetic import Spectrum, gaussian_map
-from mcgw.maps.topography import Topography
+from mcgw.maps import Spectrum, Topography, gaussian_map
 from mcgw.scene.section import SceneError
 
 FOLDER = Path(__file__).parents[2] / "runs" / "validation"

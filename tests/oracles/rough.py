@@ -1,6 +1,6 @@
 """Gaussian maps for tests, periodic."""
 
-from mcgw.maps.synthetic import Spectrum, gaussian_map
+from mcgw.maps import Spectrum, gaussian_map
 
 SPECTRUM = Spectrum(rms=1e-6, long=40e-6, short=5e-6)
 

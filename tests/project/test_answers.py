@@ -12,8 +12,7 @@ from scipy import stats
 
 import analytic
 import mcgw
-from mcgw.maps.synthetic import gaussian_map, spectrum_from
-from mcgw.maps.topography import Topography
+from mcgw.maps import Topography, gaussian_map, spectrum_from
 
 SCENES = {path.stem: path.read_text() for path in sorted((ANSWERS / "scenes").glob("*.toml"))}
 # --- results in Python ------------------------------------------------------------------------------------

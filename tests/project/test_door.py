@@ -18,8 +18,7 @@ import scipy.stats
 
 import analytic
 import mcgw
-from mcgw.maps.map_files import write_map
-from mcgw.maps.synthetic import gaussian_map, spectrum_from
+from mcgw.maps import gaussian_map, spectrum_from, write_map
 from mcgw.statistics import tradeoff
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")

@@ -9,8 +9,7 @@ import pytest
 import mcgw
 from mcgw.cli import main
 from mcgw.commands.outputs import CSV, Output, check_outputs
-from mcgw.maps.map_files import read_map, write_map
-from mcgw.maps.topography import Topography
+from mcgw.maps import Topography, read_map, write_map
 
 FLAT = Topography(1e-6 * np.arange(12.0).reshape(3, 4), (1e-6, 2e-6))
 
