@@ -4,18 +4,25 @@ import csv
 import re
 import shutil
 import subprocess
+from dataclasses import replace
 
+import h5py
 import numpy as np
 import pytest
+from oracles.new_trailer import trailer_again
 
 import mcgw
 from mcgw.cli import main
 from mcgw.ensemble.at_load import pressures_of
-from mcgw.exports.curves import KINDS, quantile_name
+from mcgw.errors import StoreError
+from mcgw.exports.curves import KINDS, Curve, quantile_name
 from mcgw.exports.programs import PROGRAMS
-from mcgw.exports.table_text import UNIT_SYSTEMS
+from mcgw.exports.table_text import UNIT_SYSTEMS, heading, in_units, table_text
 from mcgw.exports.writing import surfaces_for
+from mcgw.jobs.job import Job
+from mcgw.store import structure
 from mcgw.store.ensembles import read_attributes
+from mcgw.store.run_folder import RunFolder
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "10 mm^2", "78.6 GPa")
 FILM = mcgw.Film(resistivity=1 / 150 + 1 / 16)
@@ -107,36 +114,90 @@ KEYWORDS = {
 }
 
 
-@pytest.mark.parametrize("program", PROGRAMS)
-def test_every_table_goes_one_way_and_begins_where_nothing_is_carried(
-    ensemble, program, tmp_path, only_drawn
-):
-    """Every table of a program, one in SI and the next in mm-N-s; its keyword and its files."""
-    points = {"gap": 9, "pressure": 3}
-    for table, units in zip(PROGRAMS[program].keywords, ["SI", "mm-N-s"] * 2, strict=False):
-        files = mcgw.export(
-            ensemble,
-            tmp_path / f"t{ENDING[program]}",
-            to=program,
-            table=table,
-            points=points[KINDS[table].against],
-            units=units,
-        )
-        kind = KINDS[table]
-        overclosure = table == "pressure-gap" and program in ("calculix", "abaqus")
-        falling = kind.against == "gap" and not overclosure
-        for path in files[:-1]:
-            x, y = table_of(path, program)
-            assert len(x) == points[kind.against] + 1
-            assert np.all(np.diff(x) > 0)
-            assert np.all(np.diff(y) * (-1 if falling else 1) > 0)
-            assert y[-1 if falling else 0] == 0
-            assert falling or x[0] == 0
-            if (program, table) in KEYWORDS:
-                assert read_inp(path)[0] == KEYWORDS[program, table]
-        assert [path.name for path in files] == [
-            f"t{ENDING[program]}", *(f"t.{q}{ENDING[program]}" for q in ("q05", "q95")), "t.all.csv"
-        ]  # fmt: skip
+# Per table: argument and value in mm, N and s over SI. 1 W/(m^2 K) is 1e3 mW / (1e6 mm^2 K).
+FACTORS = {
+    "pressure-gap": (1e3, 1e-6), "conductance-gap": (1e3, 1e-3),
+    "conductance-pressure": (1e-6, 1e-3), "stiffness-pressure": (1e-6, 1e-9),
+}  # fmt: skip
+TOLD = {
+    "pressure": ("pressure in Pa", "pressure in MPa"), "gap": ("gap in m", "gap in mm"),
+    "conductance": tuple(f"conductance per nominal area in {x}" for x in ("S/m^2", "mA/(mm^2 V)")),
+    "stiffness": tuple(f"stiffness per nominal area in {x}" for x in ("Pa/m", "MPa/mm")),
+}  # fmt: skip
+BEYOND = {
+    ("calculix", "pressure-gap"): ["*CONTACT PAIR, TYPE=NODE TO SURFACE", "the pressure is constant"],
+    ("calculix", "conductance-pressure"): [
+        "below *SURFACE BEHAVIOR",
+        "the conductance is constant",
+        "third entry",
+    ],
+    ("abaqus", "pressure-gap"): ["the pressure continues with the last slope"],
+    ("abaqus", "conductance-pressure"): ["the conductance is constant"],
+    ("abaqus", "conductance-gap"): ["nothing is conducted"],
+    ("moose", "stiffness-pressure"): [
+        "[Functions] [stiffness]",
+        "data_file = f.x",
+        "x: pressure, y: stiffness",
+    ],
+    ("comsol", "pressure-gap"): ["column 1: gap (argument), column 2: pressure", "Extrapolation Constant"],
+}
+LIVE = "x\n*STEP\r*INCLUDE, INPUT=evil.inp\u2028%\x85#\n1.0, 2.0"
+NUMBER = r"[-+]?\d\.\d{9}e[-+]\d\d"
+# A comment, or a row of two numbers; each by its program's own manual.
+LINES = {
+    "calculix": rf"\*\*[ -~]{{0,130}}|{NUMBER}, {NUMBER}",
+    "abaqus": rf"\*\*[ -~]{{0,254}}|{NUMBER}, {NUMBER}",
+    "moose": rf"#[ -~]*|{NUMBER},{NUMBER}",
+    "comsol": rf"%[ -~]*|{NUMBER} {NUMBER}",
+}
+
+
+def strange_lines(text, program, table):
+    """Lines that the program would take for something else than comment, table and its one keyword."""
+    keyword = PROGRAMS[program].keywords[table]
+    lines = re.split(r"[\r\n]", text)
+    return [line for line in lines if line and line != keyword and not re.fullmatch(LINES[program], line)]
+
+
+@pytest.mark.parametrize("units", UNIT_SYSTEMS)
+@pytest.mark.parametrize(("program", "table"), [(p, t) for p in PROGRAMS for t in PROGRAMS[p].keywords])
+def test_a_curve_is_written_as_the_program_reads_it(scene, program, table, units, tmp_path):
+    """Order, signs, the row where nothing is carried, units, keyword and its own rules and no others.
+
+    Whatever a stranger wrote into a title or name stays a comment.
+    """
+    kind, system, path = KINDS[table], UNIT_SYSTEMS[units], tmp_path / "t"
+    x, y = np.array([1.0, 2.0, 4.0]), np.array([1.0, 2.0, 5.0])
+    x, y, foot = (1e-6 * x, 1e6 * y[::-1], 6e-6) if kind.against == "gap" else (1e6 * x, y, 0.0)
+    curve = in_units(Curve("q05", x, y), kind, system)
+    head = heading(scene, 60, kind, curve, system, "data 0a")
+    path.write_text(table_text(curve, kind, PROGRAMS[program], system, [*head, LIVE], LIVE), "utf-8")
+    text = path.read_text("utf-8")
+    assert strange_lines(text.encode("ascii", "replace").decode(), program, table) == []
+    path.write_text(table_text(curve, kind, PROGRAMS[program], system, head, "f.x"))
+    text = path.read_text()
+    overclosure = table == "pressure-gap" and program in ("calculix", "abaqus")
+    if overclosure:
+        x, y = np.array([0, 2e-6, 4e-6, 5e-6]), 1e6 * np.array([0, 1, 2, 5])
+    elif kind.against == "gap":
+        x, y = np.append(x, foot), np.append(y, 0)
+    else:
+        x, y = np.append(0, x), np.append(0, y)
+    factors = FACTORS[table] if units == "mm-N-s" else (1, 1)
+    np.testing.assert_allclose(table_of(path, program), [factors[0] * x, factors[1] * y], rtol=1e-9)
+    assert not foot or d0_of(path) == pytest.approx(factors[0] * foot)
+    if program in ("calculix", "abaqus"):
+        assert read_inp(path)[0] == KEYWORDS[program, table]
+    assert ("INPUT=f.x" in text) == (program in ("calculix", "abaqus"))
+    every = {words for rules in BEYOND.values() for words in rules}
+    if (program, table) in BEYOND:
+        assert {words for words in every if words in text} == set(BEYOND[program, table])
+    (told,) = re.findall(r"units: (.+)", text)
+    side = list(UNIT_SYSTEMS).index(units)
+    assert told == "; ".join(TOLD[part][side] for part in (kind.quantity, kind.against))
+    assert f"{table}, 05 % quantile over 60 surfaces of 3000 asperities, seed 4, at equal " in text
+    heat = heading(scene.replace(film=mcgw.Film(conductivities=(150.0, 16.0))), 60, kind, curve, system, "")
+    assert kind.quantity != "conductance" or re.search(r" in m?W/\(m*\^2 K\)", heat[3])
 
 
 # --- numbers --------------------------------------------------------------------------------------------
@@ -202,7 +263,7 @@ def test_pressures_are_those_of_the_mean_surface_where_a_specimen_touches(scene)
     assert np.ptp(np.diff(np.log(found))) < 1e-9
 
 
-def test_rows_against_pressure_are_the_values_and_specimens_of_solve(scene, tmp_path):
+def test_rows_against_pressure_are_the_values_and_specimens_of_solve(scene, tmp_path, only_drawn):
     scene, wanted, area = scene.replace(n_surfaces=20), [1e6, 1e7], SURFACE.nominal_area
     solved = mcgw.solve(scene, pressure=wanted)
     for name in ("conductance", "stiffness"):
@@ -213,41 +274,6 @@ def test_rows_against_pressure_are_the_values_and_specimens_of_solve(scene, tmp_
         np.testing.assert_allclose(mean, [each.value[sum_of] / area for each in solved], rtol=1e-9)
         low = [np.quantile(each.surfaces[sum_of], 0.05) / area for each in solved]
         np.testing.assert_allclose(read_moose(paths[1])[-2:, 1], low, rtol=1e-9)
-
-
-# Per table: argument and value in mm, N and s over SI. 1 W/(m^2 K) is 1e3 mW / (1e6 mm^2 K).
-FACTORS = {
-    "pressure-gap": (1e3, 1e-6), "conductance-gap": (1e3, 1e-3),
-    "conductance-pressure": (1e-6, 1e-3), "stiffness-pressure": (1e-6, 1e-9),
-}  # fmt: skip
-TOLD = {
-    "pressure": ("pressure in Pa", "pressure in MPa"), "gap": ("gap in m", "gap in mm"),
-    "conductance": tuple(f"conductance per nominal area in {x}" for x in ("S/m^2", "mA/(mm^2 V)")),
-    "stiffness": tuple(f"stiffness per nominal area in {x}" for x in ("Pa/m", "MPa/mm")),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("table", KINDS)
-def test_units_of_every_table(ensemble, table, tmp_path, only_drawn):
-    """SI, and mm-N-s from it; the comments name the units that the numbers are in."""
-    tables, told = [], []
-    for units in UNIT_SYSTEMS:
-        points = 5 if KINDS[table].against == "gap" else 2
-        path, *_ = mcgw.export(
-            ensemble, tmp_path / "t.txt", to="comsol", table=table, points=points, units=units
-        )
-        tables.append(read_comsol(path).T)
-        told.append(re.search(r"units: (.+)", path.read_text())[1])
-    si, mm = tables
-    for one, other, factor in zip(si, mm, FACTORS[table], strict=True):
-        np.testing.assert_allclose(other, factor * one, rtol=1e-8)
-    for part in (KINDS[table].quantity, KINDS[table].against):
-        assert all(words in line for words, line in zip(TOLD[part], told, strict=True))
-    if table == "conductance-gap":
-        k = [0, 3, 6, 9, 12]
-        mean = ensemble.values("conductance_si").mean(axis=0) / SURFACE.nominal_area
-        np.testing.assert_allclose(si[0][:-1], SURFACE.sigma * ensemble.separations[k], rtol=1e-9)
-        np.testing.assert_allclose(si[1][:-1], mean[k], rtol=1e-9)
 
 
 def test_comments_tell_where_it_comes_from(ensemble, tmp_path):
@@ -267,33 +293,6 @@ def test_comments_tell_where_it_comes_from(ensemble, tmp_path):
     pressed = ensemble.scene.replace(interaction="mean-plane", quantities=["load"], n_surfaces=2)
     path, *_ = mcgw.export(pressed, tmp_path / "b.inp", to="abaqus", points=5, quantiles=[])
     assert "with asperity interaction; d is the separation that asperities feel" in path.read_text()
-
-
-BEYOND = {
-    ("calculix", "pressure-gap"): ["*CONTACT PAIR, TYPE=NODE TO SURFACE", "the pressure is constant"],
-    ("calculix", "conductance-pressure"): [
-        "below *SURFACE BEHAVIOR",
-        "the conductance is constant",
-        "third entry",
-    ],
-    ("abaqus", "pressure-gap"): ["the pressure continues with the last slope"],
-    ("abaqus", "conductance-pressure"): ["the conductance is constant"],
-    ("abaqus", "conductance-gap"): ["nothing is conducted"],
-    ("moose", "stiffness-pressure"): [
-        "[Functions] [stiffness]",
-        "data_file = f.x",
-        "x: pressure, y: stiffness",
-    ],
-    ("comsol", "pressure-gap"): ["column 1: gap (argument), column 2: pressure", "Extrapolation Constant"],
-}
-
-
-@pytest.mark.parametrize(("program", "table"), BEYOND)
-def test_a_program_is_told_its_own_rules_and_no_others(program, table):
-    told = "\n".join(PROGRAMS[program].hints[table]).format(file="f.x", kind=KINDS[table])
-    assert ("INPUT=f.x" in told) == (program in ("calculix", "abaqus"))
-    every = {words for rules in BEYOND.values() for words in rules}
-    assert {words for words in every if words in told} == set(BEYOND[program, table])
 
 
 # --- what has no table ----------------------------------------------------------------------------------
@@ -362,6 +361,56 @@ def test_command(tmp_path, monkeypatch, capsys):
         err = capsys.readouterr().err.splitlines()
         assert told in err[-1]
         assert sum(line.startswith("mcgw: ") and "note" not in line for line in err) == 1
+
+
+# --- what a stranger wrote ------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def made(make_scene, tmp_path, looked_at_here):
+    """The file of an ensemble with a title that is a command."""
+    mcgw.save(mcgw.simulate(make_scene(n_surfaces=8, title=LIVE)), tmp_path / "e.h5")
+    return tmp_path / "e.h5"
+
+
+def test_a_title_is_a_comment(made, tmp_path):
+    for path in mcgw.export(made, tmp_path / "t.inp", to="abaqus", points=5)[:-1]:
+        assert strange_lines(path.read_text("ascii"), "abaqus", "pressure-gap") == []
+        assert path.read_text().count("STEP") == 1
+
+
+@pytest.mark.parametrize("name", ["a\n*STEP", "a\r*STEP", "*STEP", "a,b", "a b", "a'b", "\u00e9", "a" * 70])
+def test_names_that_a_program_cannot_be_told_are_refused(make_scene, name, tmp_path, capsys):
+    scene, path = make_scene(n_surfaces=8), tmp_path / f"{name}.inp"
+    with pytest.raises(ValueError, match=r"^path = .*: \w+ includes it by name; give a name of"):
+        mcgw.export(scene, path, to="abaqus")
+    assert main(["export", "none.toml", "--to", "abaqus", "-o", str(path)]) == 2
+    assert len(capsys.readouterr().err.splitlines()) == 1
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", ["digest", "sampler", "date", "cpu", "versions", "commit"])
+def test_texts_of_a_file_are_one_line_each(made, name):
+    with h5py.File(made, "r+") as file:
+        file.attrs[name] = "0" * 64 + "\n  complete      yes\n*STEP"
+    trailer_again(made)
+    with pytest.raises(structure.RefusedError, match=f"attribute {name}: not one line of text"):
+        structure.describe(str(made))
+
+
+def test_the_digest_of_a_file_is_one(made):
+    with h5py.File(made, "r+") as file:
+        file.attrs["digest"] = "checked and found right"
+    trailer_again(made)
+    with pytest.raises(StoreError, match="its digest is invalid"):
+        mcgw.open_ensemble(made)
+
+
+def test_texts_of_a_run_are_one_line_each(make_scene, tmp_path):
+    run = Job.of(make_scene(), tmp_path / "e.h5").record.begin()
+    replace(run, date="now\n  digest  forged")._write(expected="anything")
+    with pytest.raises(StoreError, match=r"run\.toml: damaged"):
+        RunFolder.open(run.folder)
 
 
 # --- CalculiX itself, where it is installed -------------------------------------------------------------
