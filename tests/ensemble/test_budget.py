@@ -136,15 +136,12 @@ def test_lines_of_surfaces_by_hand(solved):
 
 def test_what_dominates_is_said_with_what_would_lower_it(solved):
     assert "parameters (above all radius)" in solved.budget().advice
-    assert "a larger map" in solved.budget().advice
     bare = replace(solved, scene=solved.scene.replace(uncertainty=None)).budget()
     assert "mostly the model" in bare.advice
-    assert "Not included: parameters (give [surface] uncertainty" in bare.advice
     assert np.isnan(bare.shares["parameters"]).all()
     small = scene_of(uncertainty=None).replace(nominal_area="0.2 mm^2")
     few = mcgw.solve(small, pressure="50 MPa").budget()
     assert "mostly the specimens" in few.advice
-    assert "larger nominal area" in few.advice
     for each in (bare, few, solved.budget()):
         assert "draw more surfaces" not in each.advice
 

@@ -286,15 +286,6 @@ def test_whoever_asks_for_an_end_gets_what_is_drawn_by_then(keep):
     assert 15_000 <= held.rows() <= 20_000
 
 
-def test_a_block_takes_seconds_however_large_a_surface_is():
-    for n in (10, 10**5, 10**9):
-        asked = scene(n_asperities=n, keep="statistics")
-        reducer = summarised.Statistics(asked)
-        rows, sampler = reducer.rows, reducer.sampler
-        assert 1 <= rows <= 2**20
-        assert rows == 1 or rows * sampler.draws <= 1e9
-
-
 @pytest.mark.usefixtures("blank_figures", "one_pressure")
 @pytest.mark.parametrize("command", ["report", "compare", "show --csv", "export --to moose"])
 def test_commands_take_the_file(command, tmp_path, capsys):

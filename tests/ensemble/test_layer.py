@@ -217,17 +217,6 @@ class TestInput:
         with pytest.raises(mcgw.SceneError, match=r"contact\.layer = .*: give conductivities too, or leave"):
             scene_of(film=None, layer=LAYER)
 
-    @pytest.mark.parametrize(("keys", "line"), [
-        ('layer = {thickness = "1 um"}', "contact.layer.conductivity: missing"),
-        ('layer = {thickness = "1 K", conductivity = 1}', "contact.layer.thickness = '1 K': give"),
-        ("layer = 3", "contact.layer = 3: give {thickness"),
-    ])  # fmt: skip
-    def test_mistakes(self, keys, line):
-        text = mcgw.scene_text(scene_of(film=mcgw.Film(conductivities=(1.0, 2.0))))
-        with pytest.raises(mcgw.SceneError) as raised:
-            mcgw.scene_from(text.replace("[contact]", f"[contact]\n{keys}"))
-        assert line in str(raised.value)
-
     def test_layer_without_conductivities(self):
         with pytest.raises(ValueError, match="layer: it needs conductivities"):
             mcgw.Film(1e-7, layer=LAYER)

@@ -5,8 +5,6 @@ import pytest
 
 import mcgw
 from mcgw.ensemble.some_separations import MOST_SHOWN, at_separations, how_many, shown
-from mcgw.reports.html import opening_words
-from mcgw.reports.text import comparison_summary
 from mcgw.statistics.verdict import verdict
 
 WHOLE = np.linspace(1.5, 0.0, 2 * MOST_SHOWN + 1)  # falling: every other one is shown
@@ -67,13 +65,3 @@ def test_a_comparison_shows_some_and_its_verdict_is_on_all(whole):
         theory = table.only("theory").columns[0].values
         np.testing.assert_allclose(theory, whole.scene.theory.mean(name, h), rtol=1e-13)
     assert found.verdict == verdict(whole)
-
-
-def test_the_command_and_the_report_say_how_many(whole):
-    _, table, lines = comparison_summary(mcgw.compare(whole), whole=False)
-    said = f"at {MOST_SHOWN} of {len(WHOLE)} separations"
-    assert lines[-1] == f"tables and figure {said}; the verdict is on all of them"
-    assert len(table()) == MOST_SHOWN * len(whole.scene.quantities)
-    assert opening_words(whole).endswith(f" Tables and figures are {said}.")
-    few = shown(whole)
-    assert said not in "".join(comparison_summary(mcgw.compare(few), whole=False)[2]) + opening_words(few)

@@ -10,8 +10,6 @@ from scipy import stats
 import analytic
 import mcgw
 from analytic.laws.film import crowding_factor
-from mcgw.commands import warm
-from mcgw.scene.in_words import accuracy_facts, contact_facts, law_text
 from mcgw.scene.measured import Fitted, Uncertainty
 from mcgw.statistics.comparison import verdict
 
@@ -85,27 +83,6 @@ def test_what_a_fit_did_not_see_is_not_shown():
         shown = [f"fit: {'abcde'[k]}" for k in range(min(number, 3))]
         told = replace(known, cautions=tuple("abcde"[:number])).gravest
         assert told == [*shown[:-1], *(f"{line}{more}" for line in shown[-1:])]
-
-
-WARMED = {  # every sampler, laws that yield, there and back, radii, interaction, statistics
-    ("auto", "sums", "KogutEtsion"), ("tail", "sums", "KogutEtsion"),
-    ("direct", "sums", "Hertz"), ("auto", "sums", "Hertz"),
-    ("aggregate", "sums", "Hertz"), ("auto", "statistics", "Hertz"), ("cells", "sums", "Hertz"),
-    ("tail", "sums", "Hertz"),
-}  # fmt: skip
-
-
-def test_loops_are_compiled_for_every_kind_of_scene(monkeypatch):
-    scenes, fitted = [], []
-    monkeypatch.setattr("mcgw.ensemble.simulation.simulate", scenes.append)
-    monkeypatch.setattr("mcgw.maps.fitting.fit", lambda *given, **_: fitted.append(given))
-    warm.warm()
-    assert {(s.sampler, s.keep, type(s.law).__name__) for s in scenes} == WARMED
-    assert {s.count for s in scenes} == {"fixed", "poisson"}
-    assert [s.unload_from for s in scenes if s.unload_from is not None] == [0.0]
-    assert [s.sampler for s in scenes if s.curvature] == ["cells", "tail"]
-    assert max(s.n_asperities * s.n_surfaces for s in scenes) <= 2e7
-    assert len(fitted) == 1
 
 
 RADII = analytic.RandomCurvature(5.0)
@@ -202,52 +179,11 @@ CALLS = [
 ]  # fmt: skip
 
 
-def test_many_unknown_keys_are_counted():
-    keys = "".join(f", k{i} = 1" for i in range(30))
-    with pytest.raises(mcgw.SceneError) as caught:
-        mcgw.scene_from(FILE.format(**NONE | {"surface": keys}))
-    told = caught.value.problems
-    assert all(line.startswith("surface.k") for line in told[:-1])
-    assert told[-1] == f"[surface]: {31 - len(told)} more unknown keys"
-
-
 @pytest.mark.parametrize(("call", "told"), CALLS)
 def test_a_mistake_in_python_is_one_line(call, told, make_scene):
     with pytest.raises(ValueError) as caught:  # noqa: PT011
         call(make_scene(n_surfaces=3))
     assert told in str(caught.value)
-
-
-FACTS = [
-    ({"unload_from": -0.5}, ("way back", "from d/sigma = -0.5")),
-    ({"film": mcgw.Film(1e-7)}, ("film", "resistivity 1e-07 ohm m")),
-    ({"film": mcgw.Film(1e-7, 2e-12)}, ("film", "resistivity 1e-07 ohm m, film 2e-12 ohm m^2")),
-    ({"interaction": analytic.Interaction("body")},
-     ("interaction", "from the undeformed body, separations effective")),
-    ({"interaction": analytic.Interaction("mean-plane")},
-     ("interaction", "from the mean deformed plane, separations effective")),
-    ({"law": mcgw.KogutEtsion(critical=0.05)}, ("contact law", "KogutEtsion(critical=0.05, poisson=0.3)")),
-    ({"accuracy": 1e-3, "sampler": "auto"}, ("accuracy", "up to 0.001 from the exact laws")),
-]  # fmt: skip
-
-
-@pytest.mark.parametrize(("changes", "fact"), FACTS)
-def test_a_scene_says_what_it_has_and_nothing_else(changes, fact, make_scene):
-    def facts(scene):
-        return {*contact_facts(scene), *accuracy_facts(scene)}
-
-    assert facts(make_scene()) == set()
-    assert facts(make_scene(**changes)) == {fact}
-
-
-def test_laws_are_told_by_name_and_numbers():
-    for law, told in (
-        (analytic.MeasuredHeights([0.0, 1.0, 3.0]), "3 measured ones, as they are"),
-        (analytic.MeasuredHeights([0.0, 1.0, 3.0], resampled=True), "3 measured ones, resampled"),
-        (stats.norm, repr(stats.norm)),
-        (analytic.Custom(np.exp), "Custom(exp)"),
-    ):
-        assert law_text(law) == told
 
 
 def test_statistics_of_values_are_those_of_numpy(make_scene):
@@ -303,27 +239,6 @@ def test_theory_of_summits_with_their_own_radii_is_the_same_in_another_process()
     theory = scene.theory
     mean = theory.mean("load", [0.0, 1.0])
     np.testing.assert_array_equal(pickle.loads(pickle.dumps(theory)).mean("load", [0.0, 1.0]), mean)
-
-
-def test_files_of_the_other_kind_are_refused(make_scene, tmp_path):
-    scene, over = make_scene(n_surfaces=3), {"grading.gamma": [1.0, 2.0]}
-    one, many = tmp_path / "one.h5", tmp_path / "many.h5"
-    mcgw.run(scene, one)
-    mcgw.sweep(scene, over, path=many)
-    for call, told in (
-        (lambda: mcgw.open_sweep(one), "not the file of a sweep; mcgw.open_ensemble opens it"),
-        (lambda: mcgw.run(scene, many), "holds a sweep; choose another -o, or remove it"),
-        (
-            lambda: mcgw.sweep(scene, over, path=one),
-            "holds something else than this sweep; choose another -o",
-        ),
-    ):
-        with pytest.raises(mcgw.StoreError) as caught:
-            call()
-        assert told in str(caught.value)
-    np.testing.assert_array_equal(
-        mcgw.open_sweep(many).mean("load")[0, 0], mcgw.sweep(scene, over).mean("load")[0, 0]
-    )
 
 
 @pytest.mark.parametrize("quantity", ["load", "stiffness"])

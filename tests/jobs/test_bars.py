@@ -61,20 +61,6 @@ def test_commands_draw_one_on_terminals_alone(told, words, bars):
     assert "\r" not in log
 
 
-def test_report_and_figures_draw_one(told, monkeypatch):
-    """Of what they are made of, without what draws it."""
-    from mcgw.figures import catalogue
-    from mcgw.reports import html
-
-    for name in ("solved_pressures", "comparison_figures", "pressure_pictures"):
-        monkeypatch.setattr(html, name, lambda _: [])
-    assert "/3 [" in told("report e.h5 -o e.html", terminal=True)
-
-    rows = [catalogue.Row(name, catalogue.Row, (lambda _: "it has no meaning",)) for name in "abc"]
-    monkeypatch.setattr(catalogue, "CATALOGUE", rows)
-    assert "/3 [" in told("figures --scene s.toml -o drawn", terminal=True)
-
-
 def test_python_waits_only_if_it_says_so(monkeypatch):
     stream = Stream(terminal=True)
     monkeypatch.setattr(sys, "stderr", stream)

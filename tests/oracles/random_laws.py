@@ -1,5 +1,4 @@
-"""Drawn surfaces of random scenes against their exact laws: ``python -m oracles.random_laws COUNT FIRST``,
-with a first seed, or one of its two parts by a third number, 0 or 1; run in `tests`.
+"""Drawn surfaces of random scenes against their exact laws.
 
 Of each scene of `random_scenes` one quantity at one separation is taken by lot; 400 surfaces then give 400
 values of their distribution function, even ones between 0 and 1 at random where it jumps, and the test of
@@ -103,10 +102,7 @@ def even(p, seed=1):
     return (1 + np.count_nonzero(known >= statistic(np.asarray(p)))) / 4001
 
 
-FAULTS = (right, stiffer, miscounted, rootless)
-
-
-def judged(seeds, faults=FAULTS, **more):
+def judged(seeds, faults, **more):
     """Probability of the p-values of these scenes by each fault, how many there are, and what is left out."""
     rows, left = [], []
     for seed in seeds:
@@ -119,16 +115,3 @@ def judged(seeds, faults=FAULTS, **more):
             sys.stderr.write(f"{seed}: p = {found[0]:.2g}\n")
     columns = [np.array(column)[~np.isnan(column)] for column in zip(*rows, strict=True)]
     return [even(column) for column in columns], [column.size for column in columns], left
-
-
-if __name__ == "__main__":
-    count, first = int(sys.argv[1]), int(sys.argv[2])
-    kinds = (("as they come", FAULTS, {}), ("many asperities", FAULTS[:2], {"n_asperities": 10**6}))
-    for words, faults, more in kinds if len(sys.argv) < 4 else kinds[int(sys.argv[3]) :][:1]:
-        found, sizes, left = judged(range(first, first + count), faults, **more)
-        sys.stdout.write(f"{words}: {count} scenes, {len(left)} without a law or refused\n")
-        for fault, p, n in zip(faults, found, sizes, strict=True):
-            sys.stdout.write(f"  {fault.__name__}: p = {p:.3g} of {n}\n")
-        for why in sorted(set(left)):
-            sys.stdout.write(f"  left out: {left.count(why)} {why}\n")
-        sys.stdout.flush()

@@ -1,13 +1,11 @@
-"""Random scenes over all features: ``python -m oracles.random_scenes COUNT FIRST_SEED``.
+"""Random scenes over all features.
 
-One JSON line a failure; run in `tests`. A scene that is accepted draws three surfaces within ten seconds of
+A scene that is accepted draws three surfaces within ten seconds of
 CPU; its values are literal sums over their heights to the last digits, and means those of the values.
 Where heights are not told, means lie in 7 exact standard deviations: less than one false alarm in 1e5
 scenes. Another is refused when it is made, by a line with its key and a remedy.
 """
 
-import json
-import sys
 import time
 import traceback
 from dataclasses import replace
@@ -221,14 +219,3 @@ def far_from_theory(ensemble):
         if np.any(off[~rare] > 1e-12 * np.abs(mean)[~rare]):
             return f"mean of {name} is off"
     return ""
-
-
-if __name__ == "__main__":
-    count, first = int(sys.argv[1]), int(sys.argv[2])
-    found = [judged(seed) for seed in range(first, first + count)]
-    for one in found:
-        if one["wrong"]:
-            sys.stdout.write(json.dumps(one) + "\n")
-    accepted = [one for one in found if one["accepted"]]
-    worst = {name: max((one[name] for one in accepted), default=0.0) for name in ("seconds", "worst")}
-    sys.stdout.write(json.dumps({"scenes": count, "accepted": len(accepted), **worst}) + "\n")

@@ -15,7 +15,6 @@ from test_random_radii import spectral
 import analytic
 import mcgw
 from analytic import laws
-from mcgw.sampling.samplers import sampler_of
 from mcgw.statistics.comparison import compare
 from mcgw.statistics.convergence import converge
 
@@ -55,23 +54,12 @@ HERTZ = {
     "from -40": {"separations": (-40.0, -9.0, 0.0, 4.0)},
 }
 OTHERS = {
-    "step": {"grading": analytic.Custom(lambda s: np.where(s > 1.234, 2.0, 0.5), (1.234,))},
-    "untold step": {"grading": analytic.Custom(lambda s: np.where(s > 0.777, 2.0, 0.5))},
-    "steep": {"grading": steep(1e3, 0.5)},
-    "steeper": {"grading": steep(1e6, 0.5)},
-    "exp(-30 s)": {"grading": analytic.Custom(lambda s: np.exp(-30 * s))},
-    "exp(60 s)": {"grading": analytic.Custom(lambda s: np.exp(60 * (s - 3)), checked=False)},
     "exponential": heights(analytic.ExponentialHeights()),
     "weibull": heights(analytic.Weibull(1.5)),
     "nayak": heights(analytic.Nayak(2.0)),
     "table of heights": heights(analytic.HeightTable.of(np.random.default_rng(1).weibull(1.6, size=300))),
     "uniform": heights(analytic.ScipyHeights(scipy.stats.uniform())),
     "t": heights(analytic.ScipyHeights(scipy.stats.t(5))),
-    "steep weibull": {
-        "heights": analytic.Weibull(1.82),
-        "grading": steep(47, 2.12),
-        "separations": (-27.6, -21.7, -10.8),
-    },
     "Kogut": under(KOGUT, "yielded"),
     "Kogut, few": under(KOGUT, n_asperities=50, count="poisson"),
     "Kogut, soft": under(laws.KogutEtsion(critical=0.001), "yielded"),
@@ -112,12 +100,8 @@ def asked(make_scene):
 
 @pytest.mark.parametrize("name", SCENES)
 def test_values_are_right_to_the_last_digits(name, asked):
-    """A lone contact may be off twice, as it is itself and as part of a larger node.
-
-    Where the modulus grows by decades in a cell, the softest of its contacts keeps fewer digits.
-    """
-    bound = 2e-13 if name in HERTZ else 1e-10 if name == "exp(60 s)" else BENT
-    assert worst_error(asked(name), FEW) <= bound
+    """A lone contact may be off twice, as it is itself and as part of a larger node."""
+    assert worst_error(asked(name), FEW) <= (2e-13 if name in HERTZ else BENT)
 
 
 @pytest.mark.slow
@@ -134,21 +118,6 @@ def test_values_of_summits_with_radii_of_their_own(alpha):
 
 
 WISH = {"accuracy": 1e-2, "n_asperities": 10**6}
-
-
-def assert_same(one, other):
-    for name in one.scene.quantities:
-        np.testing.assert_array_equal(one.values(name), other.values(name))
-
-
-def test_same_bits_by_any_threads_and_in_any_block(make_scene):
-    scene = make_scene(n_surfaces=70, **WISH)
-    assert_same(mcgw.simulate(scene, threads=1), mcgw.simulate(scene, threads=2))
-    drawn = sampler_of(scene)
-    whole = drawn.block(0, 140).sums
-    for first, size in ((0, 1), (63, 7), (133, 7), (0, 64)):
-        for name, values in drawn.block(first, size).sums.items():
-            np.testing.assert_array_equal(values, whole[name][first : first + size])
 
 
 def test_compare_agrees_and_sees_another_gamma(make_scene):

@@ -258,21 +258,24 @@ def test_a_crowd_keeps_what_is_asked_and_fewer_do_not(make_scene, n, accuracy):
 
 
 def test_what_auto_takes(make_scene):
-    """Crowds where they buy something; `cells` where nobody may err, few touch, or a sampler is named."""
+    """Crowds where they buy something; one by one where a handful touches, more with many separations."""
+    many, crowd = tuple(np.linspace(0, 4, 601)), {"n_asperities": 10**6, "accuracy": 1e-3}
     names = {
-        "aggregate": {"n_asperities": 10**6, "accuracy": 1e-3},
-        "cells": {"n_asperities": 10**6},
-        "tail": {"n_asperities": 10, "accuracy": 1e-2},
-    }
+        "aggregate": [crowd],
+        "cells": [{}, {"n_asperities": 10**12}, {"separations": many}, {"n_asperities": 50},
+                  {"separations": many, "n_asperities": 60}],
+        "tail": [{"n_asperities": 1}, {"n_asperities": 8}, {"separations": many, "n_asperities": 36},
+                 {"separations": many[300:], "n_asperities": 800}, {"n_asperities": 10, "accuracy": 1e-2}],
+    }  # fmt: skip
     bought = {24_000: "cells", 30_000: "aggregate"}  # 300 a cell and those alone, by 1.5: 13 100; 13 600
-    for name, changes in names.items():
-        assert sampler_of(make_scene(**changes)).name == name
+    for name, scenes in names.items():
+        assert {sampler_of(make_scene(**changes)).name for changes in scenes} == {name}
     for n, name in bought.items():
         assert sampler_of(make_scene(n_asperities=n, accuracy=1e-3)).name == name
     named = make_scene(n_asperities=10**6, accuracy=1e-3, sampler="cells")
     assert sampler_of(named).name == "cells"
     assert distance_of(named) == distance_of(make_scene()) == 0
-    assert 0 < distance_of(make_scene(**names["aggregate"])) <= 1e-3
+    assert 0 < distance_of(make_scene(**crowd)) <= 1e-3
     assert sampler_of(make_scene(n_asperities=3000, accuracy=1e-9)).name == "cells"
     strict, high = (
         make_scene(n_asperities=10**15, accuracy=1e-12),

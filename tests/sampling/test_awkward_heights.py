@@ -198,9 +198,6 @@ def test_theory_takes_little_memory_and_is_right(freedom, unload_from):
 
 
 FEW = {"n_asperities": 500, "n_surfaces": 4, "seed": 3, "quantities": ["load", "area"]}
-BOUNDED = (
-    scipy.stats.uniform(), scipy.stats.beta(2, 3), mcgw.Weibull(2.0), mcgw.ExponentialHeights(),
-)  # fmt: skip
 
 
 def stiffening(s):

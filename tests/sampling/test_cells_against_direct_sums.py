@@ -32,15 +32,6 @@ GRADINGS = {
     "exp(-30 s)": analytic.Custom(lambda s: np.exp(-30 * s)),
     "exp(60 s)": analytic.Custom(lambda s: np.exp(60 * (s - 3)), checked=False),
 }
-MANY = 20  # surfaces: what goes wrong in rare cells does not show in each
-RANDOM = np.random.default_rng(3)
-SEPARATIONS = {
-    "equal": tuple(np.linspace(0, 4, 21)),
-    "geometric": tuple(np.geomspace(1e-3, 4, 25)),
-    "random, unsorted, repeated": (*RANDOM.uniform(-1, 3.5, 12), 0.5, 0.5, -0.0),
-    "close": (1.0, 1.0 + 1e-9, 1.0 + 3e-9, 1.0 + 1e-6, 1.5),
-    "one": (0.7,),
-}
 
 
 def last_digit(scene, heights, quantity):
@@ -74,46 +65,67 @@ def worst(scene, surface, sampler=None):
     return max(errors)
 
 
-def of_all_quantities(make_scene, **changes):
-    return make_scene(quantities=tuple(analytic.QUANTITIES), sampler="cells", **changes)
+def with_grading(name, **changes):
+    return {"grading": GRADINGS[name], "separations": np.linspace(0, 4, 11), "n_asperities": 4000} | changes
 
 
-def check(scene, surfaces):
-    """The accuracy promised; the response is built for 1e-13."""
-    sampler = sampler_of(scene)
-    assert max(worst(scene, surface, sampler) for surface in range(surfaces)) < 1e-12
+def at(*h, **changes):
+    return {"grading": GRADINGS["gamma 0.2"], "separations": h, "n_asperities": 300} | changes
 
 
-SIZES = [
-    pytest.param(4000, 6, 11, id="few"),
-    pytest.param(20_000, MANY, 41, id="many", marks=pytest.mark.slow),
-]
-
-
-@pytest.mark.parametrize(("n", "surfaces", "separations"), SIZES)
-@pytest.mark.parametrize("grading", GRADINGS)
-def test_gradings(make_scene, grading, n, surfaces, separations):
-    h = tuple(np.linspace(0, 4, separations))
-    check(of_all_quantities(make_scene, grading=GRADINGS[grading], separations=h, n_asperities=n), surfaces)
-
-
-@pytest.mark.parametrize(("k", "h"), [(-30.0, tuple(np.linspace(0, 4, 11))), (-60.0, (3.2, 3.6))])
-def test_lone_contacts_where_the_modulus_is_least(make_scene, k, h):
+def lone(k, h):
     """It falls by decades between two separations, and a single contact is as accurate as all of them."""
     steep = analytic.Custom(lambda s: np.exp(k * (s - 3)), checked=False)
-    check(of_all_quantities(make_scene, grading=steep, separations=h, n_asperities=1500), 40)
+    return {"grading": steep, "separations": h, "n_asperities": 1500}
 
 
-@pytest.mark.parametrize("separations", SEPARATIONS)
-@pytest.mark.parametrize(
-    ("n", "surfaces"), [(300, 10), (50_000, 1), pytest.param(10**6, 1, marks=pytest.mark.slow)]
-)
-def test_separations(make_scene, separations, n, surfaces):
-    """Few asperities, or so many that every cell is full."""
-    h = SEPARATIONS[separations]
-    check(
-        of_all_quantities(make_scene, grading=GRADINGS["gamma 0.2"], separations=h, n_asperities=n), surfaces
-    )
+def step(law, middle, slope, *h):
+    """The law of heights, the grading and the root bend together: cells are cut until all is resolved."""
+    grading = analytic.Custom(lambda s: 1.5 + np.tanh(slope * (s - middle)))
+    return {"heights": law, "grading": grading, "separations": h}
+
+
+def smooth(shape, gamma, n, *h):
+    """Where the law of heights bends as fast as cells allow, a cell needs all but one of its coefficients."""
+    grading = analytic.Exponential(gamma)
+    changes = {"grading": grading, "negative": "allow", "separations": h, "n_asperities": n}
+    return {"heights": analytic.Weibull(shape), **changes}
+
+
+MANY = {"n_asperities": 20_000, "separations": np.linspace(0, 4, 41)}
+FULL = 50_000  # asperities with which every cell is full
+DICE = np.random.default_rng(3).uniform(-1, 3.5, 12)  # unsorted
+# A scene, and of how many surfaces: what goes wrong in rare cells does not show in each.
+SCENES = {
+    **{name: (with_grading(name), 6) for name in GRADINGS},
+    "geometric": (at(*np.geomspace(1e-3, 4, 25)), 10),
+    "unsorted and repeated": (at(*DICE, 0.5, 0.5, -0.0), 10),
+    "close": (at(1.0, 1.0 + 1e-9, 1.0 + 3e-9, 1.0 + 1e-6, 1.5), 10),
+    "close, full": (at(1.0, 1.0 + 1e-9, 1.0 + 3e-9, 1.0 + 1e-6, 1.5, n_asperities=FULL), 1),
+    "one, full": (at(0.7, n_asperities=FULL), 1),
+    "equal, full": (at(*np.linspace(0, 4, 21), n_asperities=FULL), 1),
+    "lone": (lone(-30.0, np.linspace(0, 4, 11)), 40),
+    "lone, high": (lone(-60.0, (3.2, 3.6)), 40),
+    "step, weibull": (step(analytic.Weibull(2.55), 1.14, 24.0, 0.0, 1e-28, 0.6), 20),
+    "step, far down": (step(analytic.Weibull(1.82), 2.12, 47.0, -27.6, -21.7, -10.8), 20),
+    "step, exponential": (step(analytic.ExponentialHeights(), 2.65, 3.35, 0.01803722, 0.01803731), 20),
+    "step, below all": (step(analytic.ExponentialHeights(), 0.03, 5.0, -27.7, -27.3), 20),
+    "smooth 4.6": (smooth(4.63, 0.7144619, 17, -1.655150524, 2.22019398), 20),
+    "smooth 45": (smooth(45.423, 1.43735, 6, 0.46187410402, 3.14785127), 20),
+    "smooth 1.8": (smooth(1.80686, 0.6479186, 9407, -1.87281584, -1.85053286), 20),
+    "smooth 1.7": (smooth(1.6853, 0.69289, 1638, -3.42293094, 2.2294051), 20),
+}
+EVERY = [*SCENES, *(pytest.param(f"{name}, many", marks=pytest.mark.slow) for name in GRADINGS)]
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_values_are_those_of_the_very_heights(make_scene, name):
+    """The accuracy promised; the response is built for 1e-13."""
+    many = name.endswith(", many")
+    asked, surfaces = (with_grading(name[:-6], **MANY), 20) if many else SCENES[name]
+    scene = make_scene(quantities=tuple(analytic.QUANTITIES), sampler="cells", **asked)
+    sampler = sampler_of(scene)
+    assert max(worst(scene, surface, sampler) for surface in range(surfaces)) < 1e-12
 
 
 @pytest.mark.parametrize(
@@ -182,33 +194,6 @@ def test_what_is_not_asked_is_not_computed(make_scene):
     alone = dataclasses.replace(full, quantities=("contacts",))
     counted, all_of_it = (sampler_of(scene).block(0, 5).sums["contacts"] for scene in (alone, full))
     np.testing.assert_array_equal(counted, all_of_it)
-
-
-@pytest.mark.parametrize(("law", "middle", "slope", "separations"), [
-    (analytic.Weibull(2.55), 1.14, 24.0, (0.0, 1e-28, 0.6)),
-    (analytic.Weibull(1.82), 2.12, 47.0, (-27.6, -21.7, -10.8)),
-    (analytic.ExponentialHeights(), 2.65, 3.35, (0.01803722, 0.01803731)),
-    (analytic.ExponentialHeights(), 0.03, 5.0, (-27.7, -27.3)),
-])  # fmt: skip
-def test_a_smooth_step_under_any_law(make_scene, law, middle, slope, separations):
-    """The law of heights, the grading and the root bend together: cells are cut until all is resolved."""
-    grading = analytic.Custom(lambda s: 1.5 + np.tanh(slope * (s - middle)))
-    check(of_all_quantities(make_scene, heights=law, grading=grading, separations=separations), MANY)
-
-
-@pytest.mark.parametrize(("shape", "gamma", "separations", "n"), [
-    (4.63, 0.7144619, (-1.655150524, 2.22019398), 17),
-    (45.423, 1.43735, (0.46187410402, 3.14785127), 6),
-    (1.80686, 0.6479186, (-1.87281584, -1.85053286), 9407),
-    (1.6853, 0.69289, (-3.42293094, 2.2294051), 1638),
-])  # fmt: skip
-def test_a_smooth_grading_is_never_refused(make_scene, shape, gamma, separations, n):
-    """Where the law of heights bends as fast as cells allow, a cell needs all but one of its coefficients."""
-    scene = of_all_quantities(
-        make_scene, heights=analytic.Weibull(shape), grading=analytic.Exponential(gamma), negative="allow",
-        separations=separations, n_asperities=n,
-    )  # fmt: skip
-    check(scene, MANY)
 
 
 def mass(a, b):
@@ -297,29 +282,6 @@ def test_crowds_pay_for_more_cells():
     assert sizes == sorted(sizes)
     assert sizes[0] == sizes[1] == 1
     assert sizes[-1] > 4
-
-
-def test_what_auto_takes(make_scene):
-    """One by one where a handful touches, more with many separations; cells for all else, and for moments."""
-    many = tuple(np.linspace(0, 4, 601))
-    cases = {
-        "cells": (
-            {},
-            {"n_asperities": 10**12},
-            {"separations": many},
-            {"n_asperities": 50},
-            {"separations": many, "n_asperities": 60},
-        ),
-        "tail": (
-            {"n_asperities": 1},
-            {"n_asperities": 8},
-            {"separations": many, "n_asperities": 36},
-            {"separations": many[300:], "n_asperities": 800},
-        ),
-    }
-    for name, scenes in cases.items():
-        for changes in scenes:
-            assert sampler_of(make_scene(sampler="auto", **changes)).name == name
 
 
 def test_errors_are_held_against_the_least_modulus_of_a_cell():

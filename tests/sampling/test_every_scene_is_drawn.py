@@ -14,7 +14,7 @@ from mcgw.sampling.block import Layout
 from mcgw.sampling.response.rows import Powers, Rows
 from mcgw.sampling.response.walk import UnresolvedError
 from mcgw.sampling.samplers import sampler_of
-from mcgw.sampling.shared import on_common_cells, shared
+from mcgw.sampling.shared import common_edges, shared
 
 CLIPPED = {"grading": analytic.Exponential(5.5), "negative": "clip", "separations": [-2.4, -0.5, 2.0]}
 BELOW_ONE = {"grading": analytic.Exponential(-1.5), "negative": "clip", "separations": [-1.2, 1.8]}
@@ -81,7 +81,7 @@ def test_values_are_literal_sums_over_the_heights(scene_of, name):
 
 def test_scenes_that_share_surfaces_share_the_cells_that_were_cut_further(scene_of):
     scenes = [scene_of(**{**CLIPPED, "law": mcgw.ChangEtsionBogy(critical=c)}) for c in (0.08, 0.1)]
-    one, other = shared(on_common_cells(scenes)).scenes
+    one, other = shared(scenes, common_edges(scenes)).scenes
     np.testing.assert_array_equal(one.mesh.edges, other.mesh.edges)
 
 

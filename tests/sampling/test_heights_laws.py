@@ -158,38 +158,6 @@ separations = [0.0]
 """
 
 
-@pytest.mark.parametrize(
-    "section",
-    [
-        'law = "table"\ns = [0.0, 1.0, 3.0]\nshare = [0.0, 0.4, 1.0]',
-        'law = "scipy"\nname = "gamma"\nshapes = {a = 2.5}',
-        'law = "table"\nheights = [1.0, 2.0, 3.5, 7.0]\nresample = false\n'
-        '[ensemble]\nn_surfaces = 1\nn_asperities = 4\nsampler = "direct"',
-    ],
-)
-def test_a_scene_with_heights_reads_the_same_again(section):
-    scene = mcgw.scene_from(HEAD + "[heights]\n" + section)
-    assert not isinstance(scene.heights, Gaussian)
-    again = mcgw.scene_from(mcgw.scene_text(scene))
-    assert again == scene
-
-
-@pytest.mark.parametrize(("section", "told"), [
-    ('law = "weibul"', "did you mean weibull"),
-    ('law = "weibull"\nshape = 0.2', r"heights\.shape = 0\.2: give a number from 1 to 100"),
-    ('law = "table"\nheights = [1.0, 1.0]', "all equal"),
-    ('law = "table"\nfile = "nowhere.csv"', "No such file"),
-    ('law = "table"\ns = [0.0, 1.0]\nshare = [0.0, 0.4]', "share from 0 to 1"),
-    ('law = "scipy"\nname = "poisson"', "continuous distribution"),
-    ('law = "scipy"\nname = "gamma"', "give its shapes"),
-    ('law = "scipy"\nname = "cauchy"', "must be finite"),
-    ('law = "table"\nheights = [1.0, 2.0]\nresample = false', "measured heights"),
-])  # fmt: skip
-def test_mistakes_in_heights_are_named(section, told):
-    with pytest.raises(mcgw.SceneError, match=told):
-        mcgw.scene_from(HEAD + "[heights]\n" + section)
-
-
 def test_heights_from_files(tmp_path):
     np.save(tmp_path / "z.npy", SAMPLE)
     np.savetxt(tmp_path / "z.csv", SAMPLE, header="m")

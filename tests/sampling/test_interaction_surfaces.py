@@ -7,7 +7,6 @@ from oracles.interacting_by_hand import QUANTITIES, SEPARATIONS, STRENGTHS, inte
 
 import analytic
 import mcgw
-from mcgw.sampling.samplers import sampler_of
 
 GRADINGS = {
     "exponential": analytic.Exponential(2.0),
@@ -97,18 +96,6 @@ def test_effective_separations_change_stiffness_and_conductance_alone(pressed):
         np.testing.assert_array_equal(with_["nominal_separation"], np.array(SEPARATIONS) - sunk)
 
 
-@pytest.mark.parametrize("sampler", ["direct", "tail", "cells"])
-def test_same_bits_in_any_block_by_any_threads(pressed, sampler):
-    scene = pressed(3.0, sampler=sampler, n_asperities=200, n_surfaces=40)
-    one, two = mcgw.simulate(scene, threads=1), mcgw.simulate(scene, threads=2)
-    drawn = sampler_of(scene)
-    whole = drawn.block(0, 40).sums
-    for name, values in whole.items():
-        np.testing.assert_array_equal(one[name], two[name])
-        for first, n in ((0, 1), (33, 7), (10, 20)):
-            np.testing.assert_array_equal(drawn.block(first, n).sums[name], values[first : first + n])
-
-
 LOAD = 'add "load" to contact.quantities'
 # What is refused, a word of the line for it, and the neighbour that passes.
 REFUSED = {
@@ -137,21 +124,6 @@ def test_separations_below_the_fold(make_scene):
         scene.replace(interaction=pulled)
     assert len(caught.value.problems) == 1
     assert scene.replace(interaction=pulled, separations=(1.5, 2.0)).separations == (1.5, 2.0)
-
-
-@pytest.mark.parametrize(("given", "line"), [
-    ({"bulk_modulus": 1e9}, "interaction.reference: missing"),
-    ({"reference": "moon"}, "interaction.reference = 'moon'"),
-    ({"reference": "body", "at": "nominal"}, "interaction.at"),
-    ({"reference": "body", "bulk_modulus": -1.0}, "interaction.bulk_modulus = -1"),
-    ({"reference": "body", "bulk": 1.0}, "interaction.bulk"),
-    (3, "interaction = 3"),
-])  # fmt: skip
-def test_keys(make_scene, given, line):
-    with pytest.raises(mcgw.SceneError) as caught:
-        make_scene(interaction=given)
-    assert len(caught.value.problems) == 1
-    assert line.replace("'", "") in caught.value.problems[0].replace("'", "").replace('"', "")
 
 
 @pytest.mark.parametrize("given", [{"reference": "sea"}, {"bulk_modulus": float("inf")}])

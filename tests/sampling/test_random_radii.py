@@ -9,8 +9,6 @@ from scipy import stats
 
 import analytic
 import mcgw
-from analytic.summits import rule_of_radii, rules_of_radii
-from mcgw.ensemble import solution
 from mcgw.sampling.asperities import summits, summits_drawn
 from mcgw.sampling.own_radii import radius_table
 from mcgw.sampling.samplers import sampler_of
@@ -135,24 +133,6 @@ def test_radii_and_heights_have_the_joint_law():
     )  # were they independent
 
 
-def test_the_same_bits_in_any_block_and_on_any_number_of_threads():
-    import numba
-
-    scene = spectral(sampler="cells", n_asperities=300_000, separations=(0.0, 1.0))
-    sampler = sampler_of(scene)
-    whole = sampler.block(0, 4)
-    parts = [sampler.block(0, 1), sampler.block(1, 3)]
-    before = numba.get_num_threads()
-    try:
-        numba.set_num_threads(1)
-        alone = sampler.block(0, 4)
-    finally:
-        numba.set_num_threads(before)
-    for name, values in whole.sums.items():
-        np.testing.assert_array_equal(values, alone.sums[name])
-        np.testing.assert_array_equal(values, np.concatenate([part.sums[name] for part in parts]))
-
-
 @pytest.fixture(scope="module")
 def theory():
     """Mean and standard deviation of every value of a scene."""
@@ -193,17 +173,6 @@ def test_each_summit_has_the_law_of_its_own_radius(law):
         np.testing.assert_allclose(drawn[name][0], sums, rtol=1e-12)
 
 
-def test_a_comparison_asks_once_for_each_rule_over_heights_and_radii(monkeypatch):
-    """Once for those of one separation each, and once for that of all of them together."""
-    made = []
-    for build in (rule_of_radii, rules_of_radii):
-        name = f"analytic.summits.{build.__name__}"
-        monkeypatch.setattr(name, lambda *asked, build=build: made.append(build.__name__) or build(*asked))
-    scene = spectral(law=LAWS[0], n_asperities=1000, separations=(0.0, 1.0), quantities=("load", "area"))
-    assert mcgw.compare(mcgw.simulate(scene)).verdict.agrees
-    assert sorted(made) == ["rule_of_radii", "rules_of_radii"]
-
-
 def test_all_summits_of_a_surface():
     scene = spectral(sampler="cells", n_asperities=5000)
     s, ratios = summits(scene, 0)
@@ -212,34 +181,6 @@ def test_all_summits_of_a_surface():
     np.testing.assert_allclose(scene.surface.radius * ratios[: touching.size], touching, rtol=1e-15)
     assert stats.kstest(s, lambda x: analytic.Nayak(5.0).cdf(x)).pvalue > 1e-4
     assert np.mean(1 / ratios) == pytest.approx(2.34902690068464 / 2.60588006348224, abs=0.02)
-
-
-def test_file_keys():
-    text = """
-    [surface]
-    m0 = "1 um^2"
-    m2 = 1e-3
-    m4 = 5e6
-    nominal_area = "1 mm^2"
-    E_star = "78.6 GPa"
-    [contact]
-    separations = [0.0, 1.0]
-    """.replace('"1 um^2"', "1e-12")
-    scene = mcgw.scene_from(text)
-    assert scene.heights == analytic.Nayak(5.0)
-    assert scene.curvature == analytic.RandomCurvature(5.0)
-    again = mcgw.scene_from(mcgw.scene_text(scene))
-    assert again == scene
-    mean = mcgw.scene_from(text + '[summits]\ncurvature = "mean"\n')
-    assert mean.curvature is None
-    assert mean.heights == scene.heights
-    bound = mcgw.scene_from(text + '[summits]\nlargest_radius = "1 mm"\n')
-    assert bound.curvature.largest == pytest.approx(1e-3 / scene.surface.radius)
-    assert mcgw.scene_from(mcgw.scene_text(bound)) == bound
-    surface = mcgw.scene_from(text + 'datum = "surface"\n')
-    shift = 4 / math.sqrt(5 * math.pi) / math.sqrt(1 - 0.8968057562340189 / 5)
-    np.testing.assert_allclose(surface.separations, (-shift, 1 - shift), rtol=1e-12)
-    assert mcgw.scene_from(mcgw.scene_text(surface)) == surface
 
 
 AT_1 = "[contact]\nseparations = 1\n"
@@ -290,33 +231,3 @@ def test_a_wrong_area_is_seen_though_its_kurtosis_is_infinite(monkeypatch):
 
     monkeypatch.setattr(type(ensemble), "mean", wrong)
     assert not verdict(ensemble).agrees
-
-
-@pytest.mark.parametrize(
-    "law",
-    [
-        mcgw.Hertz(),
-        pytest.param(mcgw.KogutEtsion(hardness=1.2e9), marks=pytest.mark.slow),
-    ],  # its theory: 20 s
-    ids=lambda law: law.name,
-)
-def test_solved_on_each_surface(law, monkeypatch):
-    """At the separation of each surface measured summits carry the load; also where they yield."""
-    summits_of = []
-
-    def listed(*asked):
-        summits_of.append(summits_drawn(*asked))
-        return summits_of[-1]
-
-    monkeypatch.setattr(solution, "summits_drawn", listed)
-    scene = spectral(law=law, n_asperities=500, n_surfaces=3)
-    found = mcgw.solve(scene, load=2.0)
-    assert scene.theory.mean("load", found.theory["separation"]) == pytest.approx(2.0, rel=1e-9)
-    assert len(summits_of) == 3
-    for surface, h in enumerate(found.surfaces["separation"].tolist()):
-        there, (s, ratios) = scene.replace(separations=(h,), quantities=("load", "area")), summits_of[surface]
-        radii = scene.surface.radius * ratios
-        by_law = {name: own_terms(there, name, s, radii).sum(axis=1) for name in there.quantities}
-        sums = literal(there, s, radii) if law == mcgw.Hertz() else by_law
-        assert sums["load"][0] == pytest.approx(2.0, rel=1e-9)
-        assert found.surfaces["area"][surface] == pytest.approx(sums["area"][0], rel=1e-8)

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 from scipy.interpolate import PchipInterpolator
-from scipy.special import hyp1f1
 from scipy.stats import norm
 
 import analytic
@@ -80,28 +79,6 @@ def contact_of(scene):
     return contact, (dc, 6 * dc, 110 * dc)
 
 
-def summit_mean(alpha, h, n, power):
-    """Mean of ``(s - h)^n c^power`` of a summit of a Gaussian surface, by scipy alone."""
-    rho = np.sqrt(1.5 / alpha)
-    spread, mean = np.sqrt(1 - rho**2), 4 / np.sqrt(np.pi * alpha)
-    std = np.sqrt(1 - (1 + 16 / np.pi - 3 * np.sqrt(3)) / alpha)
-    x, r = mean + std * h, power / 2
-
-    def term(tau):
-        share = np.sqrt(3 / np.pi) / 2 * (tau**2 - 2 + 2 * np.exp(-(tau**2) / 2)) * np.exp(-(tau**2) / 4)
-        flat = tau ** (4 - 2 * r) / (2 - r) * hyp1f1(2 - r, 3 - r, tau**2 / 2)
-        flat /= tau**4 / 2 * hyp1f1(2, 3, tau**2 / 2)
-        z = (x - rho * tau / np.sqrt(2)) / spread
-        top, digits = max(12 - z, 4), {"epsabs": 0, "epsrel": 1e-12, "limit": 200}
-        above = quad(lambda t: t**n * norm.pdf(t + z), 0, top, **digits)[0]
-        return share * flat * (spread / std) ** n * above
-
-    parts = (
-        quad(term, *ends, epsabs=0, epsrel=1e-11, limit=200)[0] for ends in pairwise((0.05, 2, 4, 7, 12))
-    )
-    return (8 / np.sqrt(3 * np.pi)) ** power * sum(parts)
-
-
 def lightly_loaded(name, folder):
     """The scene of a preset, and its theory at 10 kPa as the command says it."""
     path, table = folder / "mine.toml", folder / "table.csv"
@@ -112,20 +89,6 @@ def lightly_loaded(name, folder):
     with table.open() as file:
         said = {row["quantity"]: float(row["infinite"]) for row in csv.DictReader(file)}
     return scene, said
-
-
-@pytest.mark.slow
-def test_theory_of_a_light_load_on_a_spectral_surface(tmp_path):
-    """As below, where each summit has a radius of its own."""
-    scene, said = lightly_loaded("spectral", tmp_path)
-    s, n, h = scene.surface, scene.n_asperities, said["separation"]
-    root = n * np.sqrt(s.radius * s.sigma)
-    load = 4 / 3 * s.E_star * s.sigma * root * summit_mean(10.0, h, 1.5, 0.5)
-    assert load == pytest.approx(1e4 * s.nominal_area, rel=1e-7)
-    area = np.pi * s.radius * s.sigma * n * summit_mean(10.0, h, 1.0, 1.0)
-    assert said["area"] == pytest.approx(area, rel=1e-7)
-    assert said["conductance"] == pytest.approx(4 * root * summit_mean(10.0, h, 0.5, 0.5), rel=1e-7)
-    assert said["contacts"] == pytest.approx(n * summit_mean(10.0, h, 0.0, 0.0), rel=1e-7)
 
 
 @pytest.mark.parametrize(

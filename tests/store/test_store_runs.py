@@ -52,15 +52,6 @@ def expected(scene, tmp_path):
     return digest(tmp_path / "expected" / "whole.h5")
 
 
-def test_blocks_change_no_bit(scene, tmp_path, expected):
-    done = []
-    ensemble = run(scene, tmp_path / "e.h5", progress=lambda now, _: done.append(now))
-    assert done == [0, 16, 32, 48, 64, 80, 96, 100]
-    assert digest(tmp_path / "e.h5") == expected
-    assert not parts_of(tmp_path / "e.h5").exists()
-    np.testing.assert_array_equal(ensemble.load, mcgw.simulate(scene).load)
-
-
 @pytest.fixture
 def drawn(monkeypatch):
     """First surfaces of the blocks that were drawn, in order."""
@@ -154,20 +145,6 @@ def test_damage_is_put_aside_and_drawn_again(scene, tmp_path, expected):
     halted(scene, path, 0)
     assert len(list(parts_of(path).glob("shards/*.bad"))) == 3
     assert not list(parts_of(path).glob("shards/.*.tmp"))
-    run(scene, path)
-    assert digest(path) == expected
-
-
-def test_damage_found_while_merging_is_mended(scene, tmp_path, expected, monkeypatch):
-    path, merged = tmp_path / "e.h5", merging.merge_into
-
-    def damage_first(run_of, *rest):
-        monkeypatch.setattr(merging, "merge_into", merged)
-        shard = min(run_of.folder.glob("shards/*.h5"))
-        shard.write_bytes(shard.read_bytes()[:-1])
-        merged(run_of, *rest)
-
-    monkeypatch.setattr(merging, "merge_into", damage_first)
     run(scene, path)
     assert digest(path) == expected
 
@@ -278,19 +255,6 @@ def test_what_is_left_out_of_a_run_is_told(scene, tmp_path):
         with pytest.raises(ValueError, match=r"^--shard .*: give i/n with 1 <= i <= n$"):
             part_of(wrong)
     assert (part_of("3/3").number, part_of("3/3").of) == (3, 3)
-
-
-def test_jobs_that_share_a_run(scene, tmp_path, expected):
-    path = tmp_path / "e.h5"
-    assert run(scene, path, shard="2/3") == SURFACES - 2 * SIZE
-    with pytest.raises(RunError, match="68 of 100 surfaces are missing, from 0 on"):
-        merge(path)
-    assert run(scene, path, shard="1/3") == 2 * SIZE
-    assert run(scene, path, shard="3/3") == 0
-    merge(path)
-    assert digest(path) == expected
-    with pytest.raises(ValueError, match="--shard 4/3: give i/n"):
-        part_of("4/3")
 
 
 def test_the_folder_of_a_run_vanishes(scene, tmp_path):

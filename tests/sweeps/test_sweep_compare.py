@@ -1,7 +1,6 @@
 """A sweep against theory: each point as an ensemble is, one verdict on all, and what a reader sees of it."""
 
 import dataclasses
-import re
 from dataclasses import replace
 
 import numpy as np
@@ -148,22 +147,6 @@ def test_cautions_are_counted():
     assert [int(line.split()[0]) for line in lines] == sorted(
         (int(x.split()[0]) for x in lines), reverse=True
     )
-
-
-def test_the_command(sweep, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    mcgw.sweep(SCENE, OVER, path="w.h5")
-    assert main(["compare", "w.h5", "--csv", "w.csv"]) == 0
-    said = capsys.readouterr()
-    assert re.search(r"the least likely of 9 points, p = ", said.out)
-    assert "w.png: figure" in said.out
-    assert re.search(r"note: \d+ cautions?: mcgw show w.h5", said.err)
-    assert (tmp_path / "w.png").stat().st_size > 10_000
-    table = np.genfromtxt("w.csv", delimiter=",", names=True, dtype=None, encoding="utf-8")
-    assert len(table) == 9 * 4 * 3
-    row = table[(table["gradinggamma"] == 2) & (table["ensembleseed"] == 3) & (table["quantity"] == "area")]
-    np.testing.assert_array_equal(row["mean"], sweep.mean("area")[2, 2][[1, 2, 0]])
-    assert main(["compare", "w.h5", "-o", "w.h5"]) == 2
 
 
 def test_the_commands_see_what_is_wrong(sweep, tmp_path, monkeypatch, capsys):

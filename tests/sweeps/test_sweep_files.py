@@ -161,6 +161,10 @@ def test_another_sweep_is_left_alone(tmp_path):
         mcgw.sweep(SCENE, OVER, path=tmp_path / "e.h5")
     with pytest.raises(mcgw.StoreError, match=r"holds a sweep; mcgw\.open_sweep opens it"):
         mcgw.open_ensemble(tmp_path / "a.h5")
+    with pytest.raises(mcgw.StoreError, match="holds a sweep; choose another -o, or remove it"):
+        mcgw.run(SCENE, tmp_path / "a.h5")
+    with pytest.raises(mcgw.StoreError, match=r"not the file of a sweep; mcgw\.open_ensemble opens it"):
+        mcgw.open_sweep(tmp_path / "e.h5")
 
     mcgw.sweep(SCENE, OVER, path=tmp_path / "b.h5", shard="1/2")
     with pytest.raises(mcgw.StoreError, match=r"holds a different sweep: sweep is .* there and .* here"):

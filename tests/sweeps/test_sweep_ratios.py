@@ -8,7 +8,6 @@ from oracles.drawn_together import drawn_together
 
 import analytic
 import mcgw
-from mcgw.cli import main
 from mcgw.ensemble.paired import paired_ratio
 from mcgw.sampling.asperities import same_heights
 
@@ -148,25 +147,6 @@ def test_points_of_other_surfaces_have_no_ratio(make_scene):
     assert "load_ratio" not in {column.name for column in swept.table().columns}
     with pytest.raises(ValueError, match="have different surfaces, so there are no pairs"):
         swept.ratio("load", 1, 0)
-
-
-def test_command_and_csv(make_scene, tmp_path, capsys):
-    """The news has the first quantity, the table all of them, each point over the first."""
-    scene = make_scene(separations=(0.0, 1.0), n_surfaces=40, grading=None)
-    (tmp_path / "s.toml").write_text(mcgw.scene_text(scene))
-    out, table = tmp_path / "w.h5", tmp_path / "w.csv"
-    assert main(["sweep", str(tmp_path / "s.toml"), "--over", "grading.gamma=1,1.5,2", "-o", str(out)]) == 0
-    pair = mcgw.open_sweep(out).ratio("load", 2, 0)
-    said = capsys.readouterr().out
-    assert (
-        f"grading.gamma = 2 over grading.gamma = 1: {pair.ratio[0]:.5g} ({pair.ratio_low[0]:.5g} to" in said
-    )
-    assert main(["show", str(out), "--csv", str(table)]) == 0
-    header, *rows = (line.split(",") for line in table.read_text().splitlines())
-    found = [[float(row[header.index(f"load_{kind}")]) for row in rows] for kind in ("ratio", "ratio_high")]
-    assert found[0][:2] == [1.0, 1.0]
-    np.testing.assert_allclose(found[0][4:], pair.ratio, rtol=1e-12)
-    np.testing.assert_allclose(found[1][4:], pair.ratio_high, rtol=1e-12)
 
 
 # --- two ensembles ----------------------------------------------------------------------------------------
