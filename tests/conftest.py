@@ -17,7 +17,6 @@ from touched import reached
 import analytic
 import mcgw
 from mcgw.commands.warm import warm
-from mcgw.scene.scene import Scene
 
 SURFACE = analytic.Surface(sigma=1.37e-6, radius=13e-6, eta=3.0e8, nominal_area=1e-4, E_star=78.6e9)
 
@@ -74,7 +73,7 @@ def make_scene():
             "n_surfaces": 200,
             "seed": 1,
         }
-        return Scene(**(values | changes))
+        return mcgw.Scene(**(values | changes))
 
     return make
 

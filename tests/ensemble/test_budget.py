@@ -14,7 +14,6 @@ from mcgw.ensemble.at_load import mean_surface
 from mcgw.ensemble.budget import moved, slopes_of
 from mcgw.ensemble.solved import against_elasticity
 from mcgw.maps import Topography
-from mcgw.scene.section import SceneError
 
 FOLDER = Path(__file__).parents[2] / "runs" / "validation"
 sys.path.insert(0, str(FOLDER))
@@ -266,7 +265,7 @@ WRONG = {
 @pytest.mark.parametrize("name", WRONG)
 def test_wrong_uncertainties_are_told(name):
     given, told = WRONG[name]
-    with pytest.raises(SceneError, match=r"surface\.uncertainty") as error:
+    with pytest.raises(mcgw.SceneError, match=r"surface\.uncertainty") as error:
         scene_of(uncertainty=given)
     assert told in str(error.value)
 

@@ -38,8 +38,6 @@ from mcgw.ensemble.intervals import (
 from mcgw.ensemble.results import MemoryResults
 from mcgw.formats.table import stacked
 from mcgw.reports.text import comparison_text
-from mcgw.scene.scene import Scene
-from mcgw.statistics.comparison import compare
 
 SEEDS = 4000
 LAWS = {"gaussian": Gaussian(), "exponential": ExponentialHeights(), "weibull": Weibull(3.6)}
@@ -50,7 +48,7 @@ def cut(expected, surfaces, law, count, gamma, seed=7):
     """One ensemble, long enough to be cut into 4000 of so many contacts each."""
     n = 2000
     h = float(law.isf(np.array(expected / (surfaces * n))))
-    scene = Scene(
+    scene = mcgw.Scene(
         surface=SURFACE, separations=(h,), grading=Exponential(gamma), heights=law, n_asperities=n,
         count=count, n_surfaces=SEEDS * surfaces, seed=seed, sampler="cells",
     )  # fmt: skip
@@ -237,7 +235,7 @@ def test_nothing_drawn_leaves_nothing_open(make_scene):
 def test_too_few_is_said_wherever_intervals_are(make_scene):
     """h = 4 and 8: one contact in 190 surfaces, and none."""
     h = (0.0, 4.0, 8.0)
-    comparison = compare(mcgw.simulate(make_scene(n_surfaces=20, separations=h, seed=3)))
+    comparison = mcgw.compare(mcgw.simulate(make_scene(n_surfaces=20, separations=h, seed=3)))
     effective = spread_of(comparison.ensemble.scene, "load").effective(20)
     assert (effective < FEWEST).tolist() == [False, True, True]
     lines = comparison_text(comparison).splitlines()
@@ -259,7 +257,7 @@ def test_quantiles_are_those_of_scipy(share):
 
 def test_summits_of_any_radius_take_their_separations_one_by_one():
     """Under another law the pieces of each are cut at all radii: a rule for twelve took ten times as much."""
-    scene = Scene(
+    scene = mcgw.Scene(
         surface=SURFACE, separations=np.linspace(-1, 3, 12),
         heights=Nayak(4.0), curvature=RandomCurvature(4.0),
         law=PowerLawGraded(0.1, reduced_c0=1.0), n_asperities=100, n_surfaces=2,

@@ -19,7 +19,6 @@ from mcgw.ensemble import simulation, summarised
 from mcgw.ensemble.drawing import drawn as drawn_by
 from mcgw.ensemble.pooled import Pooled
 from mcgw.errors import StoreError
-from mcgw.jobs.running import run
 from mcgw.store.ensembles import verify
 
 H = [0.0, 1.0, 2.5]
@@ -136,7 +135,7 @@ def assert_same_bits(one, other):
 @pytest.mark.usefixtures("small_blocks")
 def test_a_run_in_progress_can_be_looked_at(tmp_path):
     asked = scene(n_surfaces=1500, keep="statistics")
-    run(asked, tmp_path / "a.h5", shard="1/3")
+    mcgw.run(asked, tmp_path / "a.h5", shard="1/3")
     e = mcgw.open_ensemble(tmp_path / "a.h5")
     assert 0 < e.n_surfaces < 1500
     assert np.all(np.abs(e.mean("load") - asked.theory.mean("load", np.array(H))) < 5 * e.stderr("load"))
@@ -147,7 +146,7 @@ def test_the_file_is_read_by_others_and_says_when_it_is_damaged(tmp_path):
     for package in ("h5netcdf", "pandas"):
         pytest.importorskip(package)
     path = tmp_path / "a.h5"
-    e = run(scene(), path, keep="statistics")
+    e = mcgw.run(scene(), path, keep="statistics")
     with xarray.open_dataset(path, engine="h5netcdf") as file:
         np.testing.assert_array_equal(file["load_mean"], e.mean("load"))
         assert file["load_std"].dims == ("separation",)
@@ -199,7 +198,7 @@ def test_compare_takes_every_kind(name):
 
 
 def test_single_surfaces_are_refused_with_what_to_do(tmp_path, monkeypatch):
-    e = run(scene(n_surfaces=10), tmp_path / "a.h5", keep="statistics")
+    e = mcgw.run(scene(n_surfaces=10), tmp_path / "a.h5", keep="statistics")
     for ask in (lambda: e.load, lambda: e["contacts"], lambda: e.quantile("load", 0.5)):
         with pytest.raises(ValueError, match="single surfaces are not kept"):
             ask()
@@ -208,7 +207,7 @@ def test_single_surfaces_are_refused_with_what_to_do(tmp_path, monkeypatch):
     with pytest.raises(KeyError, match="conductance"):
         e.covariance("load", "conductance")
     with pytest.raises(StoreError, match=r"different"):
-        run(scene(n_surfaces=10), tmp_path / "a.h5")
+        mcgw.run(scene(n_surfaces=10), tmp_path / "a.h5")
     monkeypatch.setattr("mcgw.machine.memory.memory_available", lambda: 2**28)
     with pytest.raises(StoreError, match="covariances between 3200 numbers needs"):
         mcgw.simulate(scene(separations=np.linspace(0, 4, 800), n_surfaces=2, keep="statistics"))
@@ -227,7 +226,7 @@ def test_single_surfaces_are_refused_with_what_to_do(tmp_path, monkeypatch):
 def test_joined_blocks_that_are_not_as_they_must_be_are_one_line(change, tmp_path):
     """Under a trailer that fits: who made the file meant them so."""
     path = tmp_path / "a.h5"
-    run(scene(n_surfaces=10), path, keep="statistics")
+    mcgw.run(scene(n_surfaces=10), path, keep="statistics")
     with h5py.File(path, "r+") as file:
         change(file)
     trailer_again(path)
@@ -289,7 +288,7 @@ def test_whoever_asks_for_an_end_gets_what_is_drawn_by_then(keep):
 @pytest.mark.usefixtures("blank_figures", "one_pressure")
 @pytest.mark.parametrize("command", ["report", "compare", "show --csv", "export --to moose"])
 def test_commands_take_the_file(command, tmp_path, capsys):
-    run(scene(separations=np.linspace(0, 3, 5), n_surfaces=100), tmp_path / "a.h5", keep="statistics")
+    mcgw.run(scene(separations=np.linspace(0, 3, 5), n_surfaces=100), tmp_path / "a.h5", keep="statistics")
     name, *words = command.split()
     output = tmp_path / {"report": "a.html", "compare": "a.png"}.get(name, "a.csv")
     flag = [] if "--csv" in words else ["-o"]

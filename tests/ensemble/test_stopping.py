@@ -12,12 +12,8 @@ import mcgw
 from mcgw.cli import main
 from mcgw.ensemble.forecast import after, before, checkpoints, forecast, upper_contacts
 from mcgw.ensemble.intervals import mean_interval, spread_of
-from mcgw.ensemble.simulation import simulate
 from mcgw.errors import StoreError
 from mcgw.jobs import running
-from mcgw.jobs.merging import merge
-from mcgw.jobs.running import run
-from mcgw.scene.section import SceneError
 from mcgw.store.ensembles import read_attributes
 
 SEEDS = 2500
@@ -57,7 +53,7 @@ def test_the_interval_printed_is_as_narrow_as_asked(make_scene):
         scene = make_scene(
             rel_err=0.05, n_surfaces=10**6, separations=(0.0, 2.0), n_asperities=300, seed=seed
         )
-        ensemble = simulate(scene)
+        ensemble = mcgw.simulate(scene)
         for name, most in (("load", 0.05), ("area", 0.05), ("stiffness", 0.05), ("contacts", 0.055)):
             low, high = ensemble.interval(name)
             assert max((high / ensemble.mean(name) - 1).max(), (1 - low / ensemble.mean(name)).max()) <= most
@@ -83,7 +79,9 @@ def test_stopped_ensembles_cover(make_scene, rel_err, n_asperities):
         n_asperities=n_asperities, quantities=("load",),
     )  # fmt: skip
     n = forecast(scene).surfaces
-    means = simulate(replace(scene, rel_err=None, n_surfaces=SEEDS * n)).load.reshape(SEEDS, n).mean(axis=1)
+    means = (
+        mcgw.simulate(replace(scene, rel_err=None, n_surfaces=SEEDS * n)).load.reshape(SEEDS, n).mean(axis=1)
+    )
     assert covered(scene, means, n) >= 0.93
     assert covered(scene, means, 16 * n) < 0.5  # the companion: a quarter of the width
 
@@ -125,7 +123,7 @@ def test_stopped_ensembles_cover_with_very_rare_very_stiff_tips(make_scene):
     assert 30 < exact / body < 40
     n = forecast(scene).surfaces
     assert covered(scene, body + by_hand(scene, n, 4.5), n) >= 0.93
-    ensemble = simulate(scene)
+    ensemble = mcgw.simulate(scene)
     assert ensemble.n_surfaces == n
     low, high = ensemble.interval("load")
     assert low[0] < exact < high[0]
@@ -139,18 +137,18 @@ def test_whoever_draws_it_is_one_ensemble(make_scene, tmp_path, monkeypatch, cap
     scene = make_scene(rel_err=0.05, n_surfaces=10**6, separations=(0.0, 1.0), n_asperities=100)
     n = forecast(scene).surfaces
     assert n > 3 * 64
-    first = simulate(scene, threads=1)
-    run(scene, tmp_path / "a.h5", threads=2)
-    run(replace(scene, rel_err=0.1), tmp_path / "e.h5")
+    first = mcgw.simulate(scene, threads=1)
+    mcgw.run(scene, tmp_path / "a.h5", threads=2)
+    mcgw.run(replace(scene, rel_err=0.1), tmp_path / "e.h5")
     assert mcgw.open_ensemble(tmp_path / "e.h5").n_surfaces < n
-    run(scene, tmp_path / "e.h5")
+    mcgw.run(scene, tmp_path / "e.h5")
     (tmp_path / "scene.toml").write_text(mcgw.scene_text(scene))
     assert main(["run", str(tmp_path / "scene.toml"), "-o", str(tmp_path / "f.h5")]) == 0
     assert f"{n} surfaces" in capsys.readouterr().out
     monkeypatch.setattr("mcgw.ensemble.simulation.block_size", lambda *_: 37)
     monkeypatch.setattr("mcgw.ensemble.simulation._BYTES", 1)
-    assert [run(scene, tmp_path / "g.h5", shard=f"{k}/2") > 0 for k in (1, 2)] == [True, False]
-    merge(tmp_path / "g.h5")
+    assert [mcgw.run(scene, tmp_path / "g.h5", shard=f"{k}/2") > 0 for k in (1, 2)] == [True, False]
+    mcgw.merge(tmp_path / "g.h5")
     assert first.scene.rel_err is None
     assert len({read_attributes(tmp_path / f"{name}.h5")["digest"] for name in "aefg"}) == 1
     for name in "ag":
@@ -158,27 +156,27 @@ def test_whoever_draws_it_is_one_ensemble(make_scene, tmp_path, monkeypatch, cap
         assert ensemble.n_surfaces == first.n_surfaces == n
         np.testing.assert_array_equal(ensemble.load, first.load)
         assert ensemble.scene == first.scene
-    np.testing.assert_array_equal(simulate(first.scene).load, first.load)
+    np.testing.assert_array_equal(mcgw.simulate(first.scene).load, first.load)
 
 
 def test_the_same_again_draws_nothing_and_a_wider_rule_keeps_what_is_there(make_scene, tmp_path):
     scene = make_scene(rel_err=0.05, n_surfaces=10**6, separations=(0.0,), n_asperities=10)
     wider, path = replace(scene, rel_err=0.1), tmp_path / "a.h5"
-    n = run(scene, path).n_surfaces
+    n = mcgw.run(scene, path).n_surfaces
     before = path.stat().st_mtime_ns
-    assert run(scene, path).n_surfaces == n
+    assert mcgw.run(scene, path).n_surfaces == n
     assert forecast(wider).surfaces < n
-    assert run(wider, path).n_surfaces == n
+    assert mcgw.run(wider, path).n_surfaces == n
     assert path.stat().st_mtime_ns == before
-    assert run(replace(scene, rel_err=0.025), path).n_surfaces > 3 * n
+    assert mcgw.run(replace(scene, rel_err=0.025), path).n_surfaces > 3 * n
     with pytest.raises(StoreError, match="different ensemble"):
-        run(replace(scene, seed=2), path)
+        mcgw.run(replace(scene, seed=2), path)
 
 
 def test_what_nothing_reaches_is_reported_and_not_waited_for(make_scene):
     scene = make_scene(rel_err=0.1, n_surfaces=10**4, separations=(0.0, 12.0))
     with pytest.warns(UserWarning, match=r"4 means need more surfaces than max_surfaces allows; "):
-        ensemble = simulate(scene)
+        ensemble = mcgw.simulate(scene)
     assert ensemble.n_surfaces == 64
     assert f"no contact in {ensemble.n_surfaces} surfaces" in after(ensemble, scene)[0]
     assert upper_contacts(100) == pytest.approx(-np.log(0.05) / 100, rel=1e-14)
@@ -188,18 +186,18 @@ def test_means_without_a_wish_are_not_held_to_one(make_scene):
     """Neither where contacts are few nor where they are many: only what was asked is told."""
     scene = make_scene(n_surfaces=5, separations=(0.0, 2.0, 3.5), quantities=("load", "area"))
     wished = scene.replace(n_surfaces=10**9, rel_err={"load": [1e-6, np.inf, np.inf]})
-    (told,) = after(simulate(scene), wished)
+    (told,) = after(mcgw.simulate(scene), wished)
     assert told.startswith("load at d/sigma = 0 has a relative error of ")
     assert told.endswith(", not 1e-06")
-    (few,) = after(simulate(scene), wished.replace(rel_err={"area": [np.inf, np.inf, 0.1]}))
+    (few,) = after(mcgw.simulate(scene), wished.replace(rel_err={"area": [np.inf, np.inf, 0.1]}))
     assert few == "area at d/sigma = 3.5: too few contacts"
-    assert len(after(simulate(scene), scene)) == 2  # of no wish, one that any interval keeps
+    assert len(after(mcgw.simulate(scene), scene)) == 2  # of no wish, one that any interval keeps
 
 
 def test_a_mean_that_may_come_is_waited_for(make_scene):
     """h = 4.5 has one contact in 98 surfaces: it takes (1.96/0.1)^2 = 384 of them."""
     scene = make_scene(rel_err=0.1, n_surfaces=10**7, separations=(4.5,), quantities=("contacts",))
-    assert simulate(scene).contacts.sum() > 300
+    assert mcgw.simulate(scene).contacts.sum() > 300
 
 
 def test_a_limit_too_low_is_said_in_one_line(make_scene, tmp_path, capsys):
@@ -207,7 +205,7 @@ def test_a_limit_too_low_is_said_in_one_line(make_scene, tmp_path, capsys):
     assert forecast(scene).surfaces == 200
     assert ("load", 3.0) in forecast(scene).out_of_reach
     assert "\n" not in before(forecast(scene), 1.0)
-    for draw in (simulate, lambda scene: run(scene, tmp_path / "a.h5")):
+    for draw in (mcgw.simulate, lambda scene: mcgw.run(scene, tmp_path / "a.h5")):
         with pytest.warns(UserWarning, match="max_surfaces allows"):
             assert draw(scene).n_surfaces == 200
     (tmp_path / "scene.toml").write_text(mcgw.scene_text(scene))
@@ -221,7 +219,7 @@ def test_surfaces_that_all_agree_are_not_proof(make_scene):
     """One asperity that almost surely touches: the mean 0.99865 is not 1 to 1e-3 after 64 ones."""
     rule = {"rel_err": 1e-3, "n_surfaces": 10**5, "quantities": ("contacts",)}
     scene = make_scene(n_asperities=1, separations=(-3.0,), grading=analytic.Exponential(1.0), **rule)
-    assert simulate(scene).n_surfaces >= 2900
+    assert mcgw.simulate(scene).n_surfaces >= 2900
 
 
 @pytest.mark.parametrize(
@@ -250,21 +248,21 @@ def test_a_run_of_limited_time_doubles_what_it_has(seconds, held, made, make_sce
     wish = {"max_seconds": seconds} if seconds else {"rel_err": 1e-3}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of 3000 surfaces no mean is known so well
-        run(make_scene(separations=(0.0,), n_surfaces=3000, **wish), path)
+        mcgw.run(make_scene(separations=(0.0,), n_surfaces=3000, **wish), path)
     assert found == made
 
 
 def test_time_ends_a_run(make_scene, tmp_path):
     scene = make_scene(n_surfaces=10**9, max_seconds=0.2)
     for asked in (scene, replace(scene, rel_err=1e-3)):
-        assert 0 < simulate(asked).n_surfaces < 10**8
+        assert 0 < mcgw.simulate(asked).n_surfaces < 10**8
     path = tmp_path / "a.h5"
-    n = run(replace(scene, n_surfaces=10**7), path).n_surfaces
+    n = mcgw.run(replace(scene, n_surfaces=10**7), path).n_surfaces
     assert 64 <= n < 10**7
-    assert run(replace(scene, n_surfaces=10**7, max_seconds=1e-9), path).n_surfaces == n
-    assert run(replace(scene, n_surfaces=n + 5, max_seconds=600.0), path).n_surfaces == n + 5
+    assert mcgw.run(replace(scene, n_surfaces=10**7, max_seconds=1e-9), path).n_surfaces == n
+    assert mcgw.run(replace(scene, n_surfaces=n + 5, max_seconds=600.0), path).n_surfaces == n + 5
     with pytest.raises(ValueError, match="max_seconds: the jobs of a run end at different times"):
-        run(scene, path, shard="1/2")
+        mcgw.run(scene, path, shard="1/2")
 
 
 @pytest.fixture
@@ -289,7 +287,7 @@ def test_each_quantity_may_have_its_own_number(asked):
 
 def test_means_are_known_as_well_as_each_was_asked(asked, tmp_path):
     scene = asked({"load": 2e-2, "contacts": [5e-3, np.inf, 1e-2]})
-    for e in (run(scene, tmp_path / "a.h5"), simulate(scene, keep="statistics")):
+    for e in (mcgw.run(scene, tmp_path / "a.h5"), mcgw.simulate(scene, keep="statistics")):
         low, high = e.interval("load")
         assert np.all(np.maximum(high / e.mean("load") - 1, 1 - low / e.mean("load")) <= 2.1e-2)
         low, high = e.interval("contacts")
@@ -314,7 +312,7 @@ def test_keys_that_do_not_go_together_are_refused():
         ("rel_err = 0.01\nn_surfaces = 5", r"ensemble\.n_surfaces = 5: give it or rel_err, not both"),
         ("max_surfaces = 5", r"ensemble\.max_surfaces = 5: give rel_err too, or leave it out"),
     ):
-        with pytest.raises(SceneError, match=message):
+        with pytest.raises(mcgw.SceneError, match=message):
             mcgw.scene_from(text + keys)
 
 
@@ -333,5 +331,5 @@ def test_keys_that_do_not_go_together_are_refused():
     ],
 )
 def test_mistakes_are_told(asked, rel_err, told):
-    with pytest.raises(SceneError, match=told):
+    with pytest.raises(mcgw.SceneError, match=told):
         asked(rel_err)

@@ -17,7 +17,6 @@ import mcgw
 from mcgw.ensemble.drawing import block_size
 from mcgw.ensemble.simulation import Values, reducer_of
 from mcgw.errors import StoreError
-from mcgw.jobs.running import run
 from mcgw.machine import child_process, memory
 from mcgw.machine.child_process import end_with
 from mcgw.machine.memory import check_memory, memory_available
@@ -45,7 +44,7 @@ def limited(mib, *words):
 @pytest.fixture
 def file(make_scene, tmp_path):
     path = tmp_path / "e.h5"
-    run(make_scene(separations=(2.0, 3.0), sampler="tail", n_surfaces=20), path)
+    mcgw.run(make_scene(separations=(2.0, 3.0), sampler="tail", n_surfaces=20), path)
     return path
 
 

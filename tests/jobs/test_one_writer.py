@@ -20,14 +20,11 @@ from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import state_of
 from mcgw.jobs import merging
 from mcgw.jobs.job import Job
-from mcgw.jobs.merging import merge
-from mcgw.jobs.running import run
 from mcgw.store import ensembles, lock
 from mcgw.store.disk import parts_of
 from mcgw.store.lock import LockedError, locked
 from mcgw.store.place import tidy
 from mcgw.store.run_folder import RunFolder
-from mcgw.store.saving import save
 
 HERE = Path(__file__).parents[1]
 SIZE = 16
@@ -58,7 +55,7 @@ def drawing(monkeypatch):
 
         def start(self, scene, path):
             self.pool = ThreadPoolExecutor(1)
-            self.answer = self.pool.submit(run, scene, path)
+            self.answer = self.pool.submit(mcgw.run, scene, path)
             assert self.begun.wait(30)
 
         def finish(self):
@@ -83,12 +80,12 @@ def others(scene):
     """All that can be written to the same file meanwhile."""
     blocks = replace(scene, n_surfaces=3 * SIZE)
     return {
-        "the same run": lambda path: run(scene, path),
-        "its own seed": lambda path: run(replace(scene, seed=2), path),
-        "in blocks": lambda path: run(blocks, path),
-        "a share": lambda path: run(blocks, path, shard="1/2"),
-        "merge": merge,
-        "save": lambda path: save(mcgw.simulate(replace(scene, seed=3)), path),
+        "the same run": lambda path: mcgw.run(scene, path),
+        "its own seed": lambda path: mcgw.run(replace(scene, seed=2), path),
+        "in blocks": lambda path: mcgw.run(blocks, path),
+        "a share": lambda path: mcgw.run(blocks, path, shard="1/2"),
+        "merge": mcgw.merge,
+        "save": lambda path: mcgw.save(mcgw.simulate(replace(scene, seed=3)), path),
     }
 
 
@@ -106,7 +103,7 @@ def test_nothing_else_is_written_beside_a_run_of_one_block(other, scene, path, d
 
 @pytest.mark.parametrize("other", ["its own seed", "save"])
 def test_who_comes_too_late_finds_another_ensemble(other, scene, path):
-    run(scene, path)
+    mcgw.run(scene, path)
     before = path.read_bytes()
     with pytest.raises(StoreError, match="holds a different ensemble"):
         others(scene)[other](path)
@@ -118,8 +115,8 @@ def test_a_run_that_waited_sees_what_the_other_wrote(scene, path, drawing, monke
     monkeypatch.setattr(lock, "PATIENCE", 30.0)
     drawing.start(scene, path)
     with ThreadPoolExecutor(2) as pool:
-        same = pool.submit(run, scene, path)
-        other = pool.submit(run, replace(scene, seed=2), path)
+        same = pool.submit(mcgw.run, scene, path)
+        other = pool.submit(mcgw.run, replace(scene, seed=2), path)
         time.sleep(0.2)
         drawing.finish()
         assert same.result(30).n_surfaces == SIZE
@@ -131,11 +128,11 @@ def test_a_run_that_waited_sees_what_the_other_wrote(scene, path, drawing, monke
 def test_a_finished_file_needs_no_lock(scene, path):
     """Whoever holds it: nothing is to be done, and there is nobody to wait for."""
     over = {"grading.gamma": [0.5, 1.0]}
-    run(scene, path)
+    mcgw.run(scene, path)
     mcgw.sweep(scene, over, path=path.with_name("s.h5"))
     with locked(parts_of(path)), locked(parts_of(path.with_name("s.h5"))):
-        assert run(scene, path).n_surfaces == SIZE
-        assert run(scene, path, shard="1/2") == 0
+        assert mcgw.run(scene, path).n_surfaces == SIZE
+        assert mcgw.run(scene, path, shard="1/2") == 0
         assert mcgw.sweep(scene, over, path=path.with_name("s.h5")).shape == (2,)
         assert mcgw.sweep(scene, over, path=path.with_name("s.h5"), shard="2/2") == 0
 
@@ -143,39 +140,39 @@ def test_a_finished_file_needs_no_lock(scene, path):
 def test_jobs_share_and_others_wait(scene, path):
     blocks = replace(scene, n_surfaces=3 * SIZE)
     with locked(parts_of(path), shared=True):
-        run(blocks, path, shard="1/2")
+        mcgw.run(blocks, path, shard="1/2")
         for name in ("in blocks", "merge", "save", "the same run"):
             with pytest.raises(LockedError):
                 others(scene)[name](path)
         tidy(path)
-    assert run(blocks, path, shard="2/2") == 0
-    assert merge(path).n_surfaces == 3 * SIZE
+    assert mcgw.run(blocks, path, shard="2/2") == 0
+    assert mcgw.merge(path).n_surfaces == 3 * SIZE
 
 
 def test_an_unfinished_run_is_not_replaced(scene, path):
-    run(replace(scene, n_surfaces=3 * SIZE), path, shard="1/2")
+    mcgw.run(replace(scene, n_surfaces=3 * SIZE), path, shard="1/2")
     with pytest.raises(StoreError, match="a run that makes this file is not finished"):
-        save(mcgw.simulate(scene), path)
+        mcgw.save(mcgw.simulate(scene), path)
     with pytest.raises(StoreError, match="holds surfaces up to number 48 already, more than"):
-        run(scene, path)
+        mcgw.run(scene, path)
     with pytest.raises(StoreError, match="holds a different run"):
-        run(replace(scene, seed=2, n_surfaces=3 * SIZE), path)
-    assert run(replace(scene, n_surfaces=4 * SIZE), path).n_surfaces == 4 * SIZE
+        mcgw.run(replace(scene, seed=2, n_surfaces=3 * SIZE), path)
+    assert mcgw.run(replace(scene, n_surfaces=4 * SIZE), path).n_surfaces == 4 * SIZE
 
 
 def test_drawn_surfaces_are_kept_when_fewer_are_asked_for(scene, path):
     """An extension that stopped half-way is not thrown away by the run that it extends."""
-    run(scene, path)
-    run(replace(scene, n_surfaces=4 * SIZE), path, shard="2/2")
+    mcgw.run(scene, path)
+    mcgw.run(replace(scene, n_surfaces=4 * SIZE), path, shard="2/2")
     kept = sorted(p.name for p in parts_of(path).glob("shards/*.h5"))
     assert len(kept) == 2
     for _ in range(2):
-        assert run(scene, path).n_surfaces == SIZE
+        assert mcgw.run(scene, path).n_surfaces == SIZE
     assert sorted(p.name for p in parts_of(path).glob("shards/*.h5")) == kept
 
 
 def test_a_file_that_changes_while_it_is_extended_is_left_alone(scene, path, monkeypatch):
-    run(scene, path)
+    mcgw.run(scene, path)
     merged = merging.merge_into
 
     def replaced(*words):
@@ -185,7 +182,7 @@ def test_a_file_that_changes_while_it_is_extended_is_left_alone(scene, path, mon
 
     monkeypatch.setattr(merging, "merge_into", replaced)
     with pytest.raises(RunError, match="another file now has this name"):
-        run(replace(scene, n_surfaces=3 * SIZE), path)
+        mcgw.run(replace(scene, n_surfaces=3 * SIZE), path)
     assert path.read_bytes() == b"precious"
     assert len(list(parts_of(path).glob("shards/*.h5"))) == 2
     assert not list(parts_of(path).glob(".*"))
@@ -208,7 +205,7 @@ def leave_behind(path, scene, *, shards):
 @pytest.mark.parametrize("shards", [False, True], ids=["no run", "run"])
 @pytest.mark.parametrize("command", ["run", "merge", "show"])
 def test_leftovers_of_a_finished_file_are_cleared(command, shards, scene, path, capsys):
-    run(scene, path)
+    mcgw.run(scene, path)
     leave_behind(path, scene, shards=shards)
     toml = path.with_suffix(".toml")
     toml.write_text(mcgw.scene_text(scene))
@@ -223,7 +220,7 @@ def test_leftovers_of_a_finished_file_are_cleared(command, shards, scene, path, 
 
 def test_leftovers_of_a_run_of_one_block_do_not_stand_in_the_way_of_another(scene, path):
     leave_behind(path, scene, shards=False)
-    run(replace(scene, seed=2), path)
+    mcgw.run(replace(scene, seed=2), path)
     assert [p.name for p in path.parent.iterdir()] == ["e.h5"]
 
 
@@ -231,7 +228,7 @@ def test_an_empty_run_of_another_scene_gives_way(scene, path):
     folder = parts_of(path)
     with locked(folder):
         Job.of(scene, path).record.begin()
-    run(replace(scene, seed=2, n_surfaces=3 * SIZE), path, shard="1/2")
+    mcgw.run(replace(scene, seed=2, n_surfaces=3 * SIZE), path, shard="1/2")
     assert RunFolder.open(folder).scene.seed == 2
 
 

@@ -4,10 +4,10 @@ import threading
 
 import pytest
 
+import mcgw
 from mcgw.ensemble.simulation import Values
 from mcgw.ensemble.summarised import Statistics
 from mcgw.errors import StoreError
-from mcgw.jobs.running import run
 from mcgw.store import chunks, ensembles, structure
 from mcgw.store.disk import parts_of
 
@@ -52,7 +52,7 @@ def halted(scene, path, surfaces):
             raise HaltError
 
     with pytest.raises(HaltError):
-        run(scene, path, progress=progress)
+        mcgw.run(scene, path, progress=progress)
     settle()
     assert parts_of(path).is_dir()
 
@@ -60,7 +60,7 @@ def halted(scene, path, surfaces):
 def begun(scene, path, jobs=1):
     """All blocks of a run, not merged yet."""
     for k in range(1, jobs + 1):
-        run(scene, path, shard=f"{k}/{jobs}")
+        mcgw.run(scene, path, shard=f"{k}/{jobs}")
     assert not path.exists()
     return sorted(parts_of(path).glob("shards/block-*.h5"))
 

@@ -10,10 +10,10 @@ panels shrink towards both sides of every height at which another formula begins
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
+import mcgw
 from analytic import LAW_QUANTITIES, MeasuredHeights, Quantity, RandomCurvature, quantity_of, resolved_breaks
 from analytic.arrays import Array
 from analytic.laws import Hertz, term_of
-from mcgw.scene.scene import Scene
 
 _POINTS = 24
 _SMALLEST = -50  # power of two of the panel next to t = 0, which is left out
@@ -24,20 +24,20 @@ _NOTHING = 1e-18
 _BREAKS = 46.0  # t up to which kinks are looked for: p = 1e-20
 
 
-def reference(scene: Scene, chosen: tuple[int, ...]) -> Array:
+def reference(scene: mcgw.Scene, chosen: tuple[int, ...]) -> Array:
     """Exact mean of the first quantity of a scene, SI, at the chosen separations; shape (chosen,)."""
     q = quantity_of(scene.quantities[0])
     of_one = [_one_asperity(scene, q, scene.separations[k]) for k in chosen]
     return scene.n_asperities * q.scale(scene.surface) * np.array(of_one)
 
 
-def quantiles(scene: Scene, h: float, t: Array) -> Array:
+def quantiles(scene: mcgw.Scene, h: float, t: Array) -> Array:
     """Heights above which the share ``exp(-t)`` of the heights above `h` lies, rising with t."""
     with np.errstate(under="ignore"):  # a share of 0 is the end of the support
         return np.maximum(scene.heights.isf(np.exp(-t), h), h)
 
 
-def _one_asperity(scene: Scene, q: Quantity, h: float) -> float:
+def _one_asperity(scene: mcgw.Scene, q: Quantity, h: float) -> float:
     """Mean contribution of one asperity, in units of the scale."""
     heights, low = scene.heights, lowest(scene, q, h)
     if isinstance(heights, MeasuredHeights):
@@ -61,7 +61,7 @@ def _one_asperity(scene: Scene, q: Quantity, h: float) -> float:
     return touching * total
 
 
-def added(scene: Scene, q: Quantity, h: float, s: Array) -> Array:
+def added(scene: mcgw.Scene, q: Quantity, h: float, s: Array) -> Array:
     """What asperities at `s` above `h` add, in units of the scale: ``(s - h)^n e(s)`` under Hertz's law."""
     if by_powers(scene, q):
         weight = scene.modulus(s) if q.modulus else np.ones_like(s)
@@ -76,17 +76,17 @@ def added(scene: Scene, q: Quantity, h: float, s: Array) -> Array:
     return term_of(q.base, scene.branch_of(q.name), h, s, scene.modulus(s))
 
 
-def by_powers(scene: Scene, q: Quantity) -> bool:
+def by_powers(scene: mcgw.Scene, q: Quantity) -> bool:
     """Whether asperities add powers of their approach."""
     return type(scene.law) is Hertz and q.base not in LAW_QUANTITIES
 
 
-def lowest(scene: Scene, q: Quantity, h: float) -> float:
+def lowest(scene: mcgw.Scene, q: Quantity, h: float) -> float:
     """Height below which no asperity adds anything."""
     return h if by_powers(scene, q) else scene.branch_of(q.name).lowest(h)
 
 
-def formula_ends(scene: Scene, q: Quantity, h: float, low: float, high: float) -> Array:
+def formula_ends(scene: mcgw.Scene, q: Quantity, h: float, low: float, high: float) -> Array:
     """Heights between two others where the formula changes, increasing."""
     if by_powers(scene, q):
         return np.empty(0)
@@ -95,7 +95,7 @@ def formula_ends(scene: Scene, q: Quantity, h: float, low: float, high: float) -
     return np.asarray(ends[(low < ends) & (ends < high)])
 
 
-def _edges(scene: Scene, q: Quantity, h: float, touching: float) -> Array:
+def _edges(scene: mcgw.Scene, q: Quantity, h: float, touching: float) -> Array:
     """Ends of the panels in t: small ones first, and one at every kink of density, modulus and formula."""
     above, range_ends = scene.heights.sf, quantiles(scene, lowest(scene, q, h), np.array([0.0, _BREAKS]))
     low, high = range_ends.tolist()

@@ -15,8 +15,6 @@ from test_random_radii import spectral
 import analytic
 import mcgw
 from analytic import laws
-from mcgw.statistics.comparison import compare
-from mcgw.statistics.convergence import converge
 
 H = tuple(np.linspace(0, 4, 21))
 CLOSE = (1.0, 1.0 + 1e-9, 1.0 + 1e-6, 1.5)
@@ -124,11 +122,11 @@ def test_compare_agrees_and_sees_another_gamma(make_scene):
     """By 1 %, which is far more than anybody allowed for."""
     scene = make_scene(n_surfaces=1000, **WISH)
     ensemble = mcgw.simulate(scene)
-    assert compare(ensemble).verdict.agrees
+    assert mcgw.compare(ensemble).verdict.agrees
     wrong = replace(scene, grading=analytic.Exponential(2.02))
-    assert not compare(replace(ensemble, scene=wrong)).verdict.agrees
+    assert not mcgw.compare(replace(ensemble, scene=wrong)).verdict.agrees
 
 
 @pytest.mark.slow
 def test_converge_passes(make_scene):
-    assert converge(make_scene(**WISH), n_surfaces=64, seeds=8).passed
+    assert mcgw.converge(make_scene(**WISH), n_surfaces=64, seeds=8).passed

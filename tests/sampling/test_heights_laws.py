@@ -28,7 +28,6 @@ from analytic import (
     ScipyHeights,
     Weibull,
 )
-from mcgw.sampling.asperities import heights
 from mcgw.sampling.direct import asperity_sums
 
 SAMPLE = np.random.default_rng(1).weibull(1.6, size=3000)
@@ -91,7 +90,7 @@ def test_sums_over_the_listed_heights_equal_the_row(law, make_scene):
             heights=law, separations=separations, sampler="cells", n_surfaces=3, grading=Exponential(0.7)
         )
         ensemble = mcgw.simulate(scene)
-        listed = heights(scene, 2)
+        listed = mcgw.heights(scene, 2)
         sums = asperity_sums(scene, np.array([listed.size]), listed, np.ones(listed.size))
         for name in scene.quantities:
             assert ensemble.values(name)[2] == pytest.approx(sums[name][0], rel=1e-12)

@@ -4,7 +4,6 @@ import pytest
 
 import analytic
 import mcgw
-from mcgw.scene.section import SceneError
 
 _SURFACE = mcgw.Surface("1 um", "10 um", "1000/mm^2", "1 mm^2", "100 GPa")
 _LAWS = {
@@ -72,7 +71,7 @@ def test_a_law_by_its_word_takes_its_own():
 def test_wrong_numbers_beside_hertz(given, key):
     text = _TEXT + "".join(f"{name} = {value}\n" for name, value in given.items())
     for make in (lambda: mcgw.Scene(_SURFACE, separations=[0.0], **given), lambda: mcgw.scene_from(text)):
-        with pytest.raises(SceneError, match=rf"^contact\.{key} = {given[key]}: give ") as error:
+        with pytest.raises(mcgw.SceneError, match=rf"^contact\.{key} = {given[key]}: give ") as error:
             make()
         assert len(error.value.problems) == 1
 
@@ -89,7 +88,7 @@ def test_wrong_numbers_beside_hertz(given, key):
 )
 def test_a_law_that_yields_has_its_own(law):
     for key, value in (("hardness", 2e9), ("poisson", 0.2)):
-        with pytest.raises(SceneError) as error:
+        with pytest.raises(mcgw.SceneError) as error:
             mcgw.Scene(_SURFACE, separations=[0.0], law=law, **{key: value})
         advice = f"give it to the law, {type(law).__name__}, or leave it out"
         assert error.value.problems == [f"contact.{key} = {value}: {advice}"]
@@ -98,5 +97,5 @@ def test_a_law_that_yields_has_its_own(law):
 def test_a_law_of_python_that_has_a_poisson_keeps_it():
     law = analytic.Coated(ratio=2.0, thickness=1e-6, poisson=0.25)
     assert mcgw.Scene(_SURFACE, separations=[0.0], law=law, hardness=2e9).softer == (2e9, 0.25)
-    with pytest.raises(SceneError, match=r"contact\.poisson = 0\.2: give it to the law, Coated"):
+    with pytest.raises(mcgw.SceneError, match=r"contact\.poisson = 0\.2: give it to the law, Coated"):
         mcgw.Scene(_SURFACE, separations=[0.0], law=law, hardness=2e9, poisson=0.2)

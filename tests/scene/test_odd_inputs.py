@@ -12,9 +12,7 @@ import mcgw
 from mcgw.ensemble.simulation import Values
 from mcgw.errors import StoreError
 from mcgw.formats.files import check_output
-from mcgw.jobs.running import run
 from mcgw.machine.memory import memory_available
-from mcgw.scene.section import SceneError
 
 
 def load_share(scene):
@@ -35,7 +33,7 @@ def test_a_separation_at_which_all_touch(make_scene):
 def test_beyond_64_bits(make_scene, tmp_path):
     scene = make_scene(n_surfaces=10**12, n_asperities=10**8, separations=(6.0,))
     with pytest.raises(StoreError, match=r"n_surfaces \* n_asperities = 1e\+20 is more than 2\^63 - 1"):
-        run(scene, tmp_path / "e.h5")
+        mcgw.run(scene, tmp_path / "e.h5")
     assert not list(tmp_path.iterdir())
 
 
@@ -43,7 +41,7 @@ def test_more_asperities_than_memory(make_scene, tmp_path, monkeypatch):
     scene = make_scene(
         n_surfaces=4, n_asperities=memory_available() // 8, separations=(4.0,), sampler="aggregate"
     )
-    assert run(scene, tmp_path / "e.h5").n_surfaces == 4
+    assert mcgw.run(scene, tmp_path / "e.h5").n_surfaces == 4
     for sampler in ("cells", "direct"):
         with pytest.raises(ValueError, match=r"the heights of one surface needs .* GiB of memory but only"):
             mcgw.heights(replace(scene, sampler=sampler), 0, untouched=True)
@@ -56,13 +54,13 @@ def test_more_asperities_than_memory(make_scene, tmp_path, monkeypatch):
 def test_more_than_the_disk(make_scene, tmp_path):
     scene = make_scene(n_surfaces=10**12, n_asperities=1000, separations=(3.0,))
     with pytest.raises(StoreError, match=r"needs up to .* GiB more on the disk while made and .* are free"):
-        run(scene, tmp_path / "e.h5")
+        mcgw.run(scene, tmp_path / "e.h5")
     assert not list(tmp_path.iterdir())
 
 
 def test_an_extreme_gamma(make_scene):
     for gamma in (1e300, 1e308):  # the sums of stiffness, or all, would be infinite
-        with pytest.raises(SceneError, match=r"grading.gamma = 1e\+30\d: .* overflow"):
+        with pytest.raises(mcgw.SceneError, match=r"grading.gamma = 1e\+30\d: .* overflow"):
             make_scene(grading=analytic.Exponential(gamma))
     for gamma in (0.0, 1e-300, 1e280):
         ensemble = mcgw.simulate(make_scene(grading=analytic.Exponential(gamma), n_surfaces=3))
@@ -72,16 +70,16 @@ def test_an_extreme_gamma(make_scene):
 def test_names_that_are_none(make_scene, tmp_path):
     for name in ("..", "a\0b", "x" * 300, "a\nb"):
         with pytest.raises(StoreError):
-            run(make_scene(n_surfaces=2), tmp_path / name)
+            mcgw.run(make_scene(n_surfaces=2), tmp_path / name)
     with pytest.raises(StoreError, match="is not a valid file name"):
-        run(make_scene(n_surfaces=2), "")
+        mcgw.run(make_scene(n_surfaces=2), "")
     assert not list(tmp_path.iterdir())
 
 
 def test_inputs_that_are_no_files(make_scene, tmp_path):
     os.mkfifo(tmp_path / "pipe")
     for path in (tmp_path / "pipe", tmp_path, Path("/dev/zero")):
-        with pytest.raises(SceneError, match="is not a regular file"):
+        with pytest.raises(mcgw.SceneError, match="is not a regular file"):
             mcgw.load_scene(path)
         with pytest.raises(StoreError, match=r"is not a regular file|Is a directory"):
             mcgw.open_ensemble(path)
@@ -90,11 +88,11 @@ def test_inputs_that_are_no_files(make_scene, tmp_path):
 def test_folders_that_are_none(make_scene, tmp_path):
     (tmp_path / "file").touch()
     with pytest.raises(StoreError, match=r"cannot be written|Not a directory"):
-        run(make_scene(n_surfaces=2), tmp_path / "file" / "e.h5")
+        mcgw.run(make_scene(n_surfaces=2), tmp_path / "file" / "e.h5")
     folder = tmp_path / "closed"
     folder.mkdir(mode=0o500)
     if not os.access(folder, os.W_OK):  # the superuser may write anywhere
         with pytest.raises(StoreError, match="read-only"):
             check_output(folder / "e.h5")
     with pytest.raises(StoreError, match=r"0 GiB are free|cannot be written"):
-        run(make_scene(n_surfaces=2), "/proc/e.h5")
+        mcgw.run(make_scene(n_surfaces=2), "/proc/e.h5")

@@ -16,7 +16,6 @@ import analytic
 import mcgw
 from mcgw.cli import main
 from mcgw.commands.init import PRESETS
-from mcgw.statistics.comparison import compare
 
 HERE = Path(mcgw.__file__).parent / "scene" / "presets"
 
@@ -38,7 +37,7 @@ def test_preset_agrees_with_theory(name, tmp_path, capsys):
     scene = mcgw.load_scene(path)
     assert scene.title
     few = replace(scene, n_surfaces=40, separations=scene.separations[::8])
-    assert compare(mcgw.simulate(few)).verdict.agrees
+    assert mcgw.compare(mcgw.simulate(few)).verdict.agrees
 
 
 def test_never_over_another_file(tmp_path, capsys):

@@ -12,9 +12,7 @@ import analytic
 import mcgw
 from mcgw.cli import main
 from mcgw.errors import StoreError
-from mcgw.jobs.running import run
 from mcgw.scene.scene import storable
-from mcgw.scene.section import SceneError
 
 H = (2.0, 0.5, 3.0)
 
@@ -59,7 +57,7 @@ def make(make_scene):
 @pytest.mark.parametrize("name", [name for name in SCENES if "grading" in SCENES[name]])
 def test_the_curve_of_the_file_is_that_of_the_function(make, tmp_path, name):
     scene = make(name)
-    held = run(replace(scene, n_surfaces=1), tmp_path / "e.h5").scene.grading
+    held = mcgw.run(replace(scene, n_surfaces=1), tmp_path / "e.h5").scene.grading
     s = np.random.default_rng(1).uniform(scene.lowest, 8, 10_000)
     s = s[np.min([np.abs(s - k) for k in (0.4, 1.1, 0.777)], axis=0) > 1e-9]
     exact, slope = scene.grading(s), np.abs(scene.grading(s + 1e-7) - scene.grading(s - 1e-7)) / 2e-7
@@ -87,7 +85,7 @@ def test_sums_are_those_of_the_function(make, name):
 def test_other_last_digits_go_on_and_another_function_does_not(make, tmp_path):
     """As where another processor evaluates the function: the run keeps the series that it began with."""
     path = tmp_path / "e.h5"
-    run(make("lambda"), tmp_path / "whole.h5")
+    mcgw.run(make("lambda"), tmp_path / "whole.h5")
     halted(make("lambda"), path, SIZE)
 
     def elsewhere(s):
@@ -95,12 +93,12 @@ def test_other_last_digits_go_on_and_another_function_does_not(make, tmp_path):
 
     assert storable(make("lambda", grading=elsewhere)).grading != storable(make("lambda")).grading
     with pytest.raises(StoreError, match=r"holds a different run: grading\.coefficients is "):
-        run(make("lambda", grading=lambda s: 1 + (0.3 + 1e-11) * np.tanh(s)), path)
-    run(make("lambda", grading=elsewhere), path)
+        mcgw.run(make("lambda", grading=lambda s: 1 + (0.3 + 1e-11) * np.tanh(s)), path)
+    mcgw.run(make("lambda", grading=elsewhere), path)
     assert digest(path) == digest(tmp_path / "whole.h5")
-    run(make("lambda", grading=elsewhere, n_surfaces=70), path)
+    mcgw.run(make("lambda", grading=elsewhere, n_surfaces=70), path)
     with pytest.raises(StoreError, match="holds a different ensemble: grading"):
-        run(make("lambda", grading=np.cosh, n_surfaces=80), path)
+        mcgw.run(make("lambda", grading=np.cosh, n_surfaces=80), path)
 
 
 # --- looked at ------------------------------------------------------------------------------------------
@@ -108,13 +106,13 @@ def test_other_last_digits_go_on_and_another_function_does_not(make, tmp_path):
 
 def test_a_name_is_shown_and_nothing_else(make, tmp_path, capsys, request):
     """Whatever stands there: no markup, no formula, no control characters."""
-    run(make("kink", heights=scipy.stats.lognorm(0.3), quantities=("load",)), tmp_path / "k.h5")
+    mcgw.run(make("kink", heights=scipy.stats.lognorm(0.3), quantities=("load",)), tmp_path / "k.h5")
     assert main(["show", str(tmp_path / "k.h5")]) == 0
     shown = capsys.readouterr().out
     assert re.search(r"grading +PiecewiseSeries\('bent', \d+ pieces from s = 0.5 to ", shown)
     assert "scipy.stats.lognorm(s=0.3)" in shown
     series = replace(storable(make("lambda")).grading, name="<b>$\\frac{1}$\x1b[2J\n__import__('os')")
-    run(make("lambda", grading=series, quantities=("load",)), tmp_path / "e.h5")
+    mcgw.run(make("lambda", grading=series, quantities=("load",)), tmp_path / "e.h5")
     assert main(["show", str(tmp_path / "e.h5")]) == 0
     assert "\x1b" not in capsys.readouterr().out
     assert main(["compare", str(tmp_path / "e.h5"), "-o", str(tmp_path / "e.svg")]) == 0
@@ -132,7 +130,7 @@ def test_a_name_is_shown_and_nothing_else(make, tmp_path, capsys, request):
 
 
 def test_noise_is_one_line(make):
-    with pytest.raises(SceneError, match=r"^grading: not resolved by .* pieces near s = [^\n]*$"):
+    with pytest.raises(mcgw.SceneError, match=r"^grading: not resolved by .* pieces near s = [^\n]*$"):
         make("lambda", grading=lambda s: 1 + 1e-3 * np.modf(np.sin(1e9 * s) * 1e5)[0])
 
 
@@ -140,10 +138,10 @@ def test_series_are_not_taken_where_they_do_not_reach(make):
     known = storable(make("lambda"))
     assert replace(known, separations=(1.0, 3.0)).grading == known.grading
     with pytest.raises(
-        SceneError, match=r"^grading\.edges: the series reach from s = 0\.5 .*give the grading"
+        mcgw.SceneError, match=r"^grading\.edges: the series reach from s = 0\.5 .*give the grading"
     ):
         replace(known, separations=(-1.0, 3.0))
-    with pytest.raises(SceneError, match=r"^grading\.edges: "):
+    with pytest.raises(mcgw.SceneError, match=r"^grading\.edges: "):
         replace(known, heights=scipy.stats.lognorm(0.9))
 
 

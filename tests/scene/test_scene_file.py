@@ -11,8 +11,6 @@ from tables.scene_keys import text_of
 import analytic
 import mcgw
 from mcgw.scene.keys import SURFACE_UNITS
-from mcgw.scene.scene import Scene
-from mcgw.scene.section import SceneError
 
 GOOD = """
 [surface]
@@ -30,7 +28,7 @@ seed = 5
 
 
 def problems(text):
-    with pytest.raises(SceneError) as caught:
+    with pytest.raises(mcgw.SceneError) as caught:
         mcgw.scene_from(text)
     return caught.value.problems
 
@@ -52,7 +50,7 @@ def test_every_scene_of_runs_reads_back_the_same(path):
 def test_a_zero_has_no_sign():
     """Nor is a scene of such zeros another one."""
     drawn = {"n_surfaces": 5, "seed": 1}
-    one, other = (Scene(SURFACE, separations=(z, 1.0), **drawn) for z in (0.0, -0.0))
+    one, other = (mcgw.Scene(SURFACE, separations=(z, 1.0), **drawn) for z in (0.0, -0.0))
     assert mcgw.scene_text(one) == mcgw.scene_text(other)
     assert "-0.0" not in mcgw.scene_text(other)
 
@@ -143,12 +141,12 @@ def test_negative_moduli_are_named_clipped_or_allowed():
 
 
 def test_files_that_are_none(tmp_path):
-    with pytest.raises(SceneError, match="No such file"):
+    with pytest.raises(mcgw.SceneError, match="No such file"):
         mcgw.load_scene(tmp_path / "absent.toml")
-    with pytest.raises(SceneError, match="not a regular file"):
+    with pytest.raises(mcgw.SceneError, match="not a regular file"):
         mcgw.load_scene(tmp_path)
     (tmp_path / "long.toml").write_text(GOOD + "#" * 2**21)
-    with pytest.raises(SceneError, match="longer than 2097152 bytes"):
+    with pytest.raises(mcgw.SceneError, match="longer than 2097152 bytes"):
         mcgw.load_scene(tmp_path / "long.toml")
 
 
@@ -172,8 +170,8 @@ LARGE = replace(SURFACE, nominal_area=1e-5)
 
 
 def test_n_follows_the_surface_unless_it_was_given():
-    left_out = Scene(surface=SURFACE, separations=(1.0,), seed=1)
-    given = Scene(surface=SURFACE, separations=(1.0,), n_asperities=1000, seed=1)
+    left_out = mcgw.Scene(surface=SURFACE, separations=(1.0,), seed=1)
+    given = mcgw.Scene(surface=SURFACE, separations=(1.0,), n_asperities=1000, seed=1)
     assert left_out == given  # the same ensemble, by whatever way
     assert hash(left_out.n_asperities) == hash(1000)
     assert repr(left_out) == repr(given)
@@ -192,7 +190,7 @@ def test_n_follows_the_surface_unless_it_was_given():
 
 
 def test_the_text_marks_what_nobody_gave_and_older_texts_read_the_same():
-    scene = Scene(surface=SURFACE, separations=(1.0,), seed=1)
+    scene = mcgw.Scene(surface=SURFACE, separations=(1.0,), seed=1)
     text = mcgw.scene_text(scene)
     assert "n_asperities = 1000\n" in text
     assert re.search(r'left_out = \[\s*"n_asperities",\s*\]', text)
@@ -207,9 +205,9 @@ def test_the_text_marks_what_nobody_gave_and_older_texts_read_the_same():
 
 
 def test_a_mark_that_no_longer_holds_is_refused():
-    text = mcgw.scene_text(Scene(surface=SURFACE, separations=(1.0,)))
+    text = mcgw.scene_text(mcgw.Scene(surface=SURFACE, separations=(1.0,)))
     for change in (("n_asperities = 1000", "n_asperities = 500"), ("area = 1e-06", "area = 1e-05")):
-        with pytest.raises(SceneError, match="remove it from left_out, or leave n_asperities out"):
+        with pytest.raises(mcgw.SceneError, match="remove it from left_out, or leave n_asperities out"):
             mcgw.scene_from(text.replace(*change))
 
 
@@ -224,18 +222,18 @@ def test_a_drawn_seed_is_marked_and_stays():
 
 
 def test_the_most_surfaces_of_a_stop_rule_are_not_those_without_it():
-    ruled = Scene(surface=SURFACE, separations=(1.0,), rel_err=0.01)
+    ruled = mcgw.Scene(surface=SURFACE, separations=(1.0,), rel_err=0.01)
     assert (ruled.n_surfaces, replace(ruled, rel_err=None).n_surfaces) == (10**9, 1000)
     assert replace(ruled, n_surfaces=50).replace(rel_err=None).n_surfaces == 50
     text = mcgw.scene_text(ruled).replace("max_surfaces = 1000000000\n", "")
     assert mcgw.scene_from(text).replace(rel_err=None).n_surfaces == 1000
-    with pytest.raises(SceneError, match=r"ensemble\.n_surfaces = 0"):
-        Scene(surface=SURFACE, separations=(1.0,), n_surfaces=0)
+    with pytest.raises(mcgw.SceneError, match=r"ensemble\.n_surfaces = 0"):
+        mcgw.Scene(surface=SURFACE, separations=(1.0,), n_surfaces=0)
 
 
 def test_replace_takes_fields_of_scene_and_surface_only():
-    scene = Scene(surface=SURFACE, separations=(1.0,))
-    every = {f.name for f in fields(Scene)} | SURFACE_UNITS.keys()
+    scene = mcgw.Scene(surface=SURFACE, separations=(1.0,))
+    every = {f.name for f in fields(mcgw.Scene)} | SURFACE_UNITS.keys()
     assert every >= {"title", "sigma", "E_star"}
     assert scene.replace(sigma="2 um", title="t", max_seconds="1 min").surface.sigma == 2e-6
     assert scene.replace(max_seconds="1 min").max_seconds == 60

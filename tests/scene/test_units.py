@@ -11,7 +11,6 @@ import mcgw
 from mcgw.formats.units import _FACTORS, EXAMPLES, METRES, parse
 from mcgw.scene.keys import SURFACE_UNITS
 from mcgw.scene.plausible import RANGES, perhaps_other_units, surface_in_other_units
-from mcgw.scene.scene import Scene
 
 # One of each, in SI. Written out: a table that was computed would repeat the mistakes of the other.
 LITERAL = {
@@ -195,7 +194,7 @@ def test_values_are_asked_about_from_the_end_of_their_range_on(key):
 
 
 def test_separations_in_metres_are_asked_about():
-    scene = Scene(surface=SURFACE, separations=(0.0, 1e-6, 2e-6))
+    scene = mcgw.Scene(surface=SURFACE, separations=(0.0, 1e-6, 2e-6))
     (line,) = perhaps_other_units(scene)
     assert "did you mean 2e-06 m = 2 sigma?" in line
     assert perhaps_other_units(replace(scene, separations=(0.0,))) == []

@@ -15,8 +15,6 @@ import analytic
 import mcgw
 from mcgw.cli import main
 from mcgw.errors import StoreError
-from mcgw.jobs.running import run
-from mcgw.scene.scene import Scene
 from mcgw.store import ensembles, structure
 from mcgw.sweeps import open_results
 
@@ -28,7 +26,7 @@ SECRET = "key = correct horse battery staple"
 def good(tmp_path_factory):
     path = tmp_path_factory.mktemp("good") / "e.h5"
     surface = analytic.Surface(sigma=1e-6, radius=1e-5, eta=1e9, nominal_area=1e-6, E_star=1e11)
-    run(Scene(surface=surface, separations=(1.0, 2.0), n_surfaces=20, sampler="tail"), path)
+    mcgw.run(mcgw.Scene(surface=surface, separations=(1.0, 2.0), n_surfaces=20, sampler="tail"), path)
     return path.read_bytes()
 
 

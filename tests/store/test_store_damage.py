@@ -12,8 +12,6 @@ from oracles.new_trailer import trailer_again
 import mcgw
 from mcgw.cli import main
 from mcgw.errors import RunError, StoreError
-from mcgw.jobs.merging import merge
-from mcgw.jobs.running import run
 from mcgw.store import ensembles, lock, run_folder, saving, shards, structure
 from mcgw.store.disk import (
     TRAILER_BYTES,
@@ -90,9 +88,9 @@ DAMAGES = [
 
 # Every way to put more into a file.
 WAYS = {
-    "run": run,
-    "shard job": lambda scene, path: run(scene, path, shard="1/2"),
-    "stop rule": lambda scene, path: run(replace(scene, rel_err=1e-4), path),
+    "run": mcgw.run,
+    "shard job": lambda scene, path: mcgw.run(scene, path, shard="1/2"),
+    "stop rule": lambda scene, path: mcgw.run(replace(scene, rel_err=1e-4), path),
 }
 
 
@@ -104,7 +102,7 @@ def test_a_damaged_file_is_not_extended_nor_sealed_anew(
 ):
     """Of a large file only the head is looked at on opening: all of it before more is drawn for it."""
     damaged = tmp_path / "e.h5"
-    run(scene, damaged)
+    mcgw.run(scene, damaged)
     assert ensembles.verify(damaged)[0] == ""
     damage(damaged)
     if large:
@@ -125,8 +123,8 @@ def test_a_damaged_file_is_not_extended_nor_sealed_anew(
 def test_a_file_damaged_while_more_is_drawn_is_not_merged(scene, larger, tmp_path, damage, capsys):
     """Its own surfaces come first in the file that takes its place: they are looked at again."""
     path = tmp_path / "e.h5"
-    run(scene, path)
-    assert run(larger, path, shard="1/1") == 0
+    mcgw.run(scene, path)
+    assert mcgw.run(larger, path, shard="1/1") == 0
     assert main(["show", "--verify", str(path)]) == 0
     assert "intact" in capsys.readouterr().out
     damage(path)
@@ -134,7 +132,7 @@ def test_a_file_damaged_while_more_is_drawn_is_not_merged(scene, larger, tmp_pat
     assert "DAMAGED" in capsys.readouterr().out
     before = path.read_bytes()
     with pytest.raises((StoreError, RunError)):
-        merge(path)
+        mcgw.merge(path)
     assert path.read_bytes() == before
 
 
@@ -154,7 +152,7 @@ def test_a_shard_of_other_contents_never_becomes_a_file(scene, tmp_path, way):
             _ = mcgw.open_ensemble(path).load
     else:
         with pytest.raises((RunError, StoreError), match="damaged"):
-            merge(path) if way == "merge" else run(scene, path)
+            mcgw.merge(path) if way == "merge" else mcgw.run(scene, path)
     assert not path.exists()
 
 
@@ -179,7 +177,7 @@ def test_a_shard_that_is_gone_is_missing(scene, tmp_path, gone):
     with pytest.raises(StoreError):
         saving.merge_into(RunFolder.open(parts_of(path)), path, tmp_path / "x.tmp", nobody)
     with pytest.raises(RunError, match=f"surfaces are missing, from {16 * gone} on"):
-        merge(path)
+        mcgw.merge(path)
     assert not path.exists()
 
 
@@ -189,8 +187,8 @@ def test_shards_of_another_run_are_not_taken(scene, tmp_path):
     ours, theirs = begun(scene, a), begun(replace(scene, seed=99), b)
     shutil.copy(theirs[1], ours[1])
     with pytest.raises(RunError, match="16 of 100 surfaces are missing, from 16 on"):
-        merge(a)
-    run(scene, a)
+        mcgw.merge(a)
+    mcgw.run(scene, a)
     np.testing.assert_array_equal(mcgw.open_ensemble(a).load, mcgw.simulate(scene).load)
 
 
@@ -214,9 +212,9 @@ def test_nobody_works_on_a_folder_that_was_just_removed(scene, tmp_path, way, mo
     monkeypatch.setattr(lock, "ReadWriteLock", Late)
     monkeypatch.setattr(lock, "PATIENCE", 0.0)
     work = {
-        "run": lambda: run(scene, path),
-        "shard job": lambda: run(scene, path, shard="1/2"),
-        "merge": lambda: merge(path),
+        "run": lambda: mcgw.run(scene, path),
+        "shard job": lambda: mcgw.run(scene, path, shard="1/2"),
+        "merge": lambda: mcgw.merge(path),
     }[way]
     with pytest.raises(
         StoreError, match=r"its run has just ended; repeat the command|neither this file nor its blocks"
@@ -236,7 +234,7 @@ def test_a_shard_of_other_surfaces_than_its_block_is_drawn_again(scene, tmp_path
     shards.commit_shard(third, there.identity, shards.Span(32, 8), arrays, 0.0)
     assert there.held(shards.Span(32, 16)) is None
     assert there.held(shards.Span(32, 8)) is not None
-    run(scene, path)
+    mcgw.run(scene, path)
     np.testing.assert_array_equal(mcgw.open_ensemble(path).load, mcgw.simulate(scene).load)
 
 
@@ -244,12 +242,12 @@ def test_seconds_of_all_blocks_and_of_the_file_before_add_up(scene, larger, tmp_
     path = tmp_path / "e.h5"
     begun(scene, path)
     each = [shard.seconds for shard in RunFolder.open(parts_of(path)).shards()]
-    merge(path)
+    mcgw.merge(path)
     first = ensembles.read_attributes(path)["wall_seconds"]
     assert first == pytest.approx(sum(each), rel=1e-12)
-    assert run(larger, path, shard="1/1") == 0
+    assert mcgw.run(larger, path, shard="1/1") == 0
     more = [shard.seconds for shard in RunFolder.open(parts_of(path)).shards()]
-    merge(path)
+    mcgw.merge(path)
     assert ensembles.read_attributes(path)["wall_seconds"] == pytest.approx(first + sum(more), rel=1e-12)
     assert sum(more) > 0
 
@@ -260,7 +258,7 @@ def test_seconds_of_all_blocks_and_of_the_file_before_add_up(scene, larger, tmp_
 @pytest.fixture
 def file(scene, tmp_path):
     """A finished file."""
-    run(scene, tmp_path / "e.h5")
+    mcgw.run(scene, tmp_path / "e.h5")
     return tmp_path / "e.h5"
 
 
@@ -339,7 +337,7 @@ def test_a_changed_number_is_an_error_when_it_is_read(file):
 @pytest.fixture
 def half(scene, tmp_path):
     """A run of which half is done."""
-    run(scene, tmp_path / "b.h5", shard="1/2")
+    mcgw.run(scene, tmp_path / "b.h5", shard="1/2")
     return parts_of(tmp_path / "b.h5")
 
 
@@ -361,7 +359,7 @@ def test_a_run_of_an_older_format_is_refused(half, scene):
     old = text[: text.index("sha256")].replace("    2,\n    0,\n", "    1,\n    1,\n")
     file.write_text(old + f'sha256 = "{run_folder.hashlib.sha256(old.encode()).hexdigest()}"\n')
     with pytest.raises(StoreError, match=r"is not a run of format 2\.x, but \[1, 1\]"):
-        run(scene, half.with_suffix(""))
+        mcgw.run(scene, half.with_suffix(""))
 
 
 def test_the_checksum_of_a_run_is_of_its_text(half):

@@ -16,7 +16,6 @@ import mcgw
 from mcgw.cli import main
 from mcgw.ensemble.simulation import Values
 from mcgw.errors import StoreError
-from mcgw.jobs.running import run
 from mcgw.store import lock
 from mcgw.store.disk import parts_of
 from mcgw.store.lock import LOCK_FILES, LockedError, locked
@@ -145,7 +144,7 @@ def test_a_run_in_a_folder_open_to_all_leaves_nothing(tmp_path, make_scene, monk
     tmp_path.chmod(0o777)
     before = os.umask(0)
     try:
-        run(make_scene(separations=(2.0,), sampler="tail", n_surfaces=12), tmp_path / "e.h5")
+        mcgw.run(make_scene(separations=(2.0,), sampler="tail", n_surfaces=12), tmp_path / "e.h5")
     finally:
         os.umask(before)
     assert [path.name for path in tmp_path.iterdir()] == ["e.h5"]

@@ -15,8 +15,6 @@ import mcgw
 from mcgw.ensemble.simulation import Values
 from mcgw.errors import RunError, StoppedError
 from mcgw.jobs import merging
-from mcgw.jobs.merging import merge
-from mcgw.jobs.running import run
 from mcgw.store import chunks, shards
 from mcgw.store.chunks import add_rows, chunk_rows, empty_table, stored
 from mcgw.store.disk import parts_of, read_checked, trailer_of
@@ -190,7 +188,7 @@ def test_blocks_of_any_number_of_chunks_make_the_same(
     """Blocks of 16 rows and one of 4: whole chunks go as they are; of 12 rows only two begin in step."""
     monkeypatch.setattr(chunks, "CHUNK_ROWS", rows)
     path = tmp_path / "e.h5"
-    assert made(run, scene, path) == expected
+    assert made(mcgw.run, scene, path) == expected
     tables = len(scene.quantities)
     assert len(copied) == direct * tables
     for name, values in mcgw.simulate(scene).sums.arrays.items():
@@ -203,7 +201,7 @@ def test_blocks_that_begin_within_a_chunk_go_on_as_well(scene, tmp_path, expecte
     path = tmp_path / "e.h5"
     begun(scene, path)
     monkeypatch.setattr(Values, "rows", SIZE)
-    assert made(run, scene, path) == expected
+    assert made(mcgw.run, scene, path) == expected
     assert sum(copied) == 60 * len(scene.quantities)
 
 
@@ -213,11 +211,11 @@ def test_a_file_is_extended_whatever_it_is_packed_with(scene, tmp_path, expected
     with monkeypatch.context() as patch:
         if old == "all compressed":  # as before compression was chosen by what it saves
             patch.setattr(chunks, "_shrinks", lambda _: True)
-        run(replace(scene, n_surfaces=37), path)
+        mcgw.run(replace(scene, n_surfaces=37), path)
     with h5py.File(path) as file:
         assert (file["load"].compression == "gzip") == (old == "all compressed")
     copied.clear()
-    assert made(run, scene, path) == expected
+    assert made(mcgw.run, scene, path) == expected
     assert copied.count(37) == (4 if old == "of this version" else 1)  # contacts shrink
 
 
@@ -252,11 +250,11 @@ def test_a_damaged_chunk_is_never_copied_into_the_file(scene, tmp_path, expected
 
     monkeypatch.setattr(merging, "merge_into", damage_first)
     with pytest.raises(RunError, match="a shard is damaged; run the jobs again"):
-        merge(path)
+        mcgw.merge(path)
     assert not path.exists()
     assert not list(parts_of(path).glob(".*.tmp"))
     if not sealed:
-        assert made(run, scene, path) == expected
+        assert made(mcgw.run, scene, path) == expected
 
 
 def test_numbers_that_go_to_another_place_are_seen(scene, tmp_path, monkeypatch):
@@ -273,7 +271,7 @@ def test_numbers_that_go_to_another_place_are_seen(scene, tmp_path, monkeypatch)
 
     monkeypatch.setattr(chunks, "_add_chunks", swapped)
     with pytest.raises(RunError, match="was not written correctly"):
-        merge(path)
+        mcgw.merge(path)
     assert not path.exists()
 
 
@@ -293,8 +291,8 @@ def test_a_signal_while_merging_keeps_all_blocks(scene, tmp_path, expected, monk
     with monkeypatch.context() as patch:
         patch.setattr(*target, signalled)
         with pytest.raises(StoppedError, match=r"all blocks are kept in .*; the same command merges them"):
-            merge(path)
+            mcgw.merge(path)
     assert not path.exists()
     assert sorted(parts_of(path).glob("shards/*.h5")) == blocks
     assert not list(parts_of(path).glob(".*.tmp"))
-    assert made(merge, path) == expected
+    assert made(mcgw.merge, path) == expected

@@ -16,17 +16,15 @@ from oracles.memory_growth import peak_growth
 import analytic
 import mcgw
 from mcgw.ensemble.simulation import Values
-from mcgw.jobs.running import run
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.promises import SAMPLERS
-from mcgw.scene.scene import Scene
 from mcgw.store import identity
 
 GOLDEN = Path(__file__).parents[1] / "golden_samplers.json"
 
 
 def test_what_is_recorded(make_scene, tmp_path):
-    run(make_scene(n_surfaces=2), tmp_path / "a.h5")
+    mcgw.run(make_scene(n_surfaces=2), tmp_path / "a.h5")
     with h5py.File(tmp_path / "a.h5") as file:
         known = dict(file.attrs)
     for package in ("python", "mcgw", "numpy", "scipy", "numba", "h5py"):
@@ -55,7 +53,7 @@ def test_a_height_law_that_no_file_can_hold_is_refused(make_scene, tmp_path, hei
     with pytest.raises(
         ValueError, match=f"^heights: {name} is a Python class that a file cannot store; give a "
     ):
-        run(scene, tmp_path / "a.h5")
+        mcgw.run(scene, tmp_path / "a.h5")
     assert not list(tmp_path.iterdir())
     assert mcgw.simulate(scene).load.shape == (2, 9)
 
@@ -68,7 +66,7 @@ CASES = {name: {"sampler": name} for name in SAMPLERS[1:]} | {
 def drawn(case, seed=20240601):
     """Two surfaces of each sampler, and of those that are asked for less."""
     surface = analytic.Surface(sigma=1.37e-6, radius=13e-6, eta=3.0e8, nominal_area=1e-4, E_star=78.6e9)
-    scene = Scene(
+    scene = mcgw.Scene(
         surface=surface,
         separations=(0.0, 1.5, 3.0),
         grading=analytic.Exponential(2.0),
@@ -106,7 +104,7 @@ def test_memory_does_not_grow_with_the_ensemble(make_scene, tmp_path, monkeypatc
     def peak(m, n):
         separations = tuple(np.linspace(2, 4, 40))
         scene = make_scene(n_surfaces=m, n_asperities=n, separations=separations, sampler="aggregate")
-        return peak_growth(lambda: run(scene, tmp_path / f"{m}-{n}.h5"))
+        return peak_growth(lambda: mcgw.run(scene, tmp_path / f"{m}-{n}.h5"))
 
     first = peak(256, 10**4)
     assert not max(peak(8192, 10**4), peak(256, 10**8)) > first + 25e6  # nan where the system does not tell

@@ -24,8 +24,6 @@ from mcgw.formats.files import state_of
 from mcgw.jobs import merging
 from mcgw.jobs.driver import part_of
 from mcgw.jobs.job import Job, commit_block
-from mcgw.jobs.merging import merge
-from mcgw.jobs.running import run
 from mcgw.store import ensembles, layout
 from mcgw.store.disk import parts_of
 from mcgw.store.place import write_body
@@ -70,7 +68,7 @@ def drawn(monkeypatch):
 def test_going_on_draws_each_missing_block_once(scene, tmp_path, drawn, by, keep):
     """Blocks 0 to 2 and 5 are held: nobody draws them again, whoever goes on."""
     scene, path = replace(scene, keep=keep), tmp_path / "e.h5"
-    run(scene, path, shard="1/1")
+    mcgw.run(scene, path, shard="1/1")
     blocks = sorted(parts_of(path).glob("shards/block-*.h5"))
     assert drawn == [0, 16, 32, 48, 64, 80, 96]
     for lost in (3, 4, 6):
@@ -78,10 +76,10 @@ def test_going_on_draws_each_missing_block_once(scene, tmp_path, drawn, by, keep
     drawn.clear()
     if by == "run":
         told = []
-        run(scene, path, progress=lambda now, _: told.append(now))
+        mcgw.run(scene, path, progress=lambda now, _: told.append(now))
         assert (told[0], told[-1]) == (64, 100)
     elif by == "shares":
-        assert [run(scene, path, shard=f"{k}/2") for k in (1, 2, 1)] == [16, 0, 0]
+        assert [mcgw.run(scene, path, shard=f"{k}/2") for k in (1, 2, 1)] == [16, 0, 0]
     else:
         for first, n in ((0, 16), (48, 16), (64, 16), (48, 16), (96, 4)):
             commit_block(str(parts_of(path)), first, n)
@@ -94,7 +92,7 @@ def test_a_file_is_read_again_in_pieces_that_make_the_whole(
 ):
     """Each row once, in the piece of its surface."""
     scene = make_scene(sampler="cells", n_surfaces=50)
-    whole = run(scene, tmp_path / "e.h5")
+    whole = mcgw.run(scene, tmp_path / "e.h5")
     monkeypatch.setattr(layout, "_PIECE", bytes_at_a_time)
     with h5py.File(tmp_path / "e.h5", "r") as file:
         pieces = list(layout.file_pieces(file))
@@ -108,18 +106,18 @@ def test_a_file_is_read_again_in_pieces_that_make_the_whole(
 def test_n_surfaces_is_the_total(scene, tmp_path, expected, drawn):
     """Extended in steps that are no multiple of a block, once in the middle of a run; each is drawn once."""
     path = tmp_path / "e.h5"
-    run(replace(scene, n_surfaces=5), path)
-    run(replace(scene, n_surfaces=37), path)
+    mcgw.run(replace(scene, n_surfaces=5), path)
+    mcgw.run(replace(scene, n_surfaces=37), path)
     assert drawn == [0, 5, 16, 32]
     assert ensembles.open_ensemble(path).n_surfaces == 37
     halted(replace(scene, n_surfaces=90), path, 64)
     assert ensembles.open_ensemble(path).n_surfaces == 37  # the finished file stays as it is
     drawn.clear()
-    run(scene, path)
+    mcgw.run(scene, path)
     assert 64 <= drawn[0] <= 90
     assert digest(path) == expected
     with pytest.raises(StoreError, match="holds 100 surfaces already"):
-        run(replace(scene, n_surfaces=99), path)
+        mcgw.run(replace(scene, n_surfaces=99), path)
 
 
 def test_another_version_is_refused(scene, tmp_path, monkeypatch):
@@ -128,7 +126,7 @@ def test_another_version_is_refused(scene, tmp_path, monkeypatch):
     for module in ("store.identity", "jobs.job"):
         monkeypatch.setattr(f"mcgw.{module}.versions", lambda **_: "mcgw 99")
     with pytest.raises(StoreError, match=r"drawn with .*, but this is mcgw 99"):
-        run(scene, path)
+        mcgw.run(scene, path)
 
 
 def test_damage_is_put_aside_and_drawn_again(scene, tmp_path, expected):
@@ -145,7 +143,7 @@ def test_damage_is_put_aside_and_drawn_again(scene, tmp_path, expected):
     halted(scene, path, 0)
     assert len(list(parts_of(path).glob("shards/*.bad"))) == 3
     assert not list(parts_of(path).glob("shards/.*.tmp"))
-    run(scene, path)
+    mcgw.run(scene, path)
     assert digest(path) == expected
 
 
@@ -211,7 +209,7 @@ def test_statistics_of_a_missing_block_are_not_merged(scene, tmp_path, monkeypat
 
     monkeypatch.setattr(merging, "merge_once", late)
     with pytest.raises(RunError, match=r"a shard is damaged; run the jobs again to redraw it$"):
-        merge(path)
+        mcgw.merge(path)
     assert not path.exists()
 
 
@@ -232,16 +230,16 @@ def test_a_file_that_appears_while_one_is_made_is_left_alone(tmp_path):
 
 def test_progress_of_a_run_goes_on_from_what_it_holds(scene, tmp_path):
     path, told = tmp_path / "e.h5", []
-    run(scene, path, shard="2/2", progress=lambda *pair: told.append(pair))  # of seven blocks three
+    mcgw.run(scene, path, shard="2/2", progress=lambda *pair: told.append(pair))  # of seven blocks three
     assert told == [(0, 100), (16, 100), (32, 100), (48, 100)]
     told.clear()
-    run(scene, path, progress=lambda *pair: told.append(pair))
+    mcgw.run(scene, path, progress=lambda *pair: told.append(pair))
     assert told == [(48, 100), (64, 100), (80, 100), (96, 100), (100, 100)]
     told.clear()
-    run(scene, path, progress=lambda *pair: told.append(pair))
+    mcgw.run(scene, path, progress=lambda *pair: told.append(pair))
     assert told == [(100, 100)]
     told.clear()
-    run(scene, tmp_path / "one.h5", n_surfaces=10, progress=lambda *pair: told.append(pair))
+    mcgw.run(scene, tmp_path / "one.h5", n_surfaces=10, progress=lambda *pair: told.append(pair))
     assert (told[0], told[-1]) == ((0, 10), (10, 10))
 
 
@@ -249,7 +247,7 @@ def test_what_is_left_out_of_a_run_is_told(scene, tmp_path):
     """Blocks of a share, by their numbers among all."""
     path = tmp_path / "e.h5"
     for k, held in ((2, [16, 64]), (3, [16, 32, 64, 80])):
-        run(scene, path, shard=f"{k}/3")
+        mcgw.run(scene, path, shard=f"{k}/3")
         assert [shard.span.first for shard in RunFolder.open(parts_of(path)).shards()] == held
     for wrong in ("0/3", "4/3", "1", "a/b", "1/0", "-1/3", "1/3/5", ""):
         with pytest.raises(ValueError, match=r"^--shard .*: give i/n with 1 <= i <= n$"):
@@ -265,7 +263,7 @@ def test_the_folder_of_a_run_vanishes(scene, tmp_path):
             shutil.rmtree(parts_of(path), ignore_errors=True)
 
     with pytest.raises((RunError, StoreError)):
-        run(scene, path, progress=vanish)
+        mcgw.run(scene, path, progress=vanish)
     assert not path.exists()
 
 
@@ -274,16 +272,16 @@ def test_planted_links_are_not_followed(scene, tmp_path):
     elsewhere.mkdir()
     parts_of(tmp_path / "e.h5").symlink_to(elsewhere)
     with pytest.raises(StoreError, match="is not a folder"):
-        run(scene, tmp_path / "e.h5")
+        mcgw.run(scene, tmp_path / "e.h5")
     assert not list(elsewhere.iterdir())
     (tmp_path / "f.h5").symlink_to(elsewhere / "victim")
     with pytest.raises(StoreError, match="is not a regular file"):
-        run(scene, tmp_path / "f.h5")
+        mcgw.run(scene, tmp_path / "f.h5")
 
 
 def test_changed_data_with_a_good_trailer_are_noticed(scene, tmp_path):
     path = tmp_path / "e.h5"
-    run(scene, path)
+    mcgw.run(scene, path)
     with h5py.File(path, "r+") as file:
         file["load"][3, 1] *= 1 + 1e-15
     trailer_again(path)
@@ -297,8 +295,8 @@ def test_room_is_asked_for_what_is_not_there_yet(scene, tmp_path, monkeypatch):
     free = shutil.disk_usage(tmp_path)._replace(free=2 * half - 1)
     monkeypatch.setattr("mcgw.jobs.job.shutil.disk_usage", lambda folder: free)
     with pytest.raises(StoreError, match="free some space"):
-        run(scene, tmp_path / "other.h5")
-    run(scene, path)
+        mcgw.run(scene, tmp_path / "other.h5")
+    mcgw.run(scene, path)
 
 
 def test_gaps_are_cut_at_multiples_of_a_block():
@@ -349,7 +347,7 @@ def test_signals_stop_a_run_that_then_goes_on(
             assert as_typed(scene, path) == code
         else:
             with pytest.raises(StoppedError) as caught:
-                run(scene, path)
+                mcgw.run(scene, path)
             assert caught.value.code == code
     said = capsys.readouterr()
     assert said.out == ""
@@ -357,7 +355,7 @@ def test_signals_stop_a_run_that_then_goes_on(
         assert "the same command resumes" in without_notes(said.err).splitlines()[-1]
     assert not path.exists()
     assert 3 <= len(drawn) < 7
-    run(scene, path)
+    mcgw.run(scene, path)
     assert digest(path) == expected
 
 
@@ -370,7 +368,7 @@ def test_a_signal_while_the_only_block_is_drawn_leaves_nothing(scene, tmp_path, 
 
     monkeypatch.setattr(Job, "draw", signalled)
     with pytest.raises(StoppedError, match="terminated: nothing was saved") as caught:
-        run(replace(scene, n_surfaces=SIZE), tmp_path / "e.h5")
+        mcgw.run(replace(scene, n_surfaces=SIZE), tmp_path / "e.h5")
     assert caught.value.code == 143
     assert list(tmp_path.iterdir()) == []
 
@@ -440,5 +438,5 @@ def test_a_full_disk_is_one_line_and_the_run_completes_later(
     assert words in line
     assert not path.exists()
     assert len(list(parts_of(path).glob("shards/block-*.h5"))) >= 2
-    run(scene, path)
+    mcgw.run(scene, path)
     assert digest(path) == expected

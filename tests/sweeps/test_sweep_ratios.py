@@ -8,7 +8,6 @@ from oracles.drawn_together import drawn_together
 
 import analytic
 import mcgw
-from mcgw.ensemble.paired import paired_ratio
 from mcgw.sampling.asperities import same_heights
 
 H = (0.0, 1.0, 2.0)
@@ -164,7 +163,7 @@ def test_a_pair_is_of_the_same_surfaces(make_scene, told):
     """Anything but the grading that differs is named; below a pair of two gradings passes."""
     one = mcgw.simulate(make_scene(separations=(0.0, 1.0), sampler="cells", n_surfaces=9))
     with pytest.raises(ValueError, match=rf"the same surfaces; these differ in {told}$"):
-        paired_ratio(mcgw.simulate(one.scene, **OTHERS[told]), one, "load")
+        mcgw.paired_ratio(mcgw.simulate(one.scene, **OTHERS[told]), one, "load")
 
 
 def test_a_ratio_of_two_ensembles_by_hand(make_scene):
@@ -172,7 +171,7 @@ def test_a_ratio_of_two_ensembles_by_hand(make_scene):
     new, old = (
         mcgw.simulate(dataclasses.replace(scene, grading=analytic.Exponential(g))) for g in (0.5, 1.5)
     )
-    pair = paired_ratio(new, old, "load")
+    pair = mcgw.paired_ratio(new, old, "load")
     ratio, stderr, jackknife = by_hand(new.load, old.load)
     np.testing.assert_allclose(pair.ratio, ratio, rtol=1e-13)
     np.testing.assert_allclose(pair.stderr, stderr, rtol=1e-9)
