@@ -5,6 +5,8 @@ import json
 import h5py
 import numpy as np
 import pytest
+from hypothesis import assume, given, strategies as st
+from strategies import FEW, VALUES
 
 import mcgw
 from mcgw.cli import main
@@ -44,46 +46,33 @@ def test_solve_needs_a_value_of_what_is_given(option, capsys):
     assert f"{option}: expected at least one argument" in capsys.readouterr().err
 
 
-WRONG = [
-    ("pixel", "12", "must be [dx, dy], two numbers in m"),
-    ("pixel", ["1", "2"], "must be [dx, dy], two numbers in m"),
-    ("pixel", [True, True], "must be [dx, dy], two numbers in m"),
-    ("pixel", [1e-6], "must be [dx, dy], two numbers in m"),
-    ("pixel", [1e-6, 1e-6, 1e-6], "must be [dx, dy], two numbers in m"),
-    ("pixel", {"1": 1, "2": 2}, "must be [dx, dy], two numbers in m"),
-    ("pixel", None, "must be [dx, dy], two numbers in m"),
-    ("pixel", [0.0, 1e-6], "give its size in m, two numbers > 0"),
-    ("periodic", "no", "must be true or false"),
-    ("periodic", 0, "must be true or false"),
-    ("periodic", None, "must be true or false"),
-    ("periodic", [False], "must be true or false"),
-    ("unit", "um", "must be 'm'"),
-    ("unit", ["m"], "must be 'm'"),
-    ("unit", 1, "must be 'm'"),
-]
+RIGHT = {
+    "pixel": lambda x: isinstance(x, list) and len(x) == 2 and not any(isinstance(v, bool | str) for v in x),
+    "periodic": lambda x: isinstance(x, bool),
+    "unit": lambda x: x in ("m", None),
+}
 
 
-@pytest.mark.parametrize(("key", "value", "told"), WRONG)
-def test_a_sidecar_is_taken_at_its_word(key, value, told, tmp_path):
+@FEW
+@given(key=st.sampled_from(list(RIGHT)), value=VALUES | st.none())
+def test_a_sidecar_is_taken_at_its_word(key, value, tmp_path):
+    assume(not RIGHT[key](value))
     write_map(FLAT, tmp_path / "m.npy")
     facts = json.loads((tmp_path / "m.json").read_text())
     (tmp_path / "m.json").write_text(json.dumps(facts | {key: value}))
-    with pytest.raises(ValueError, match=rf"{key} = ") as refused:
+    with pytest.raises(ValueError, match=rf"^[^\n]*{key} = [^\n]* must be [^\n]*$"):
         read_map(tmp_path / "m.npy")
-    assert told in str(refused.value)
 
 
-IN_HDF5 = [row for row in WRONG if row[0] != "unit" and isinstance(row[1], str | list)]
-
-
-@pytest.mark.parametrize(("key", "value", "told"), IN_HDF5)
-def test_so_is_an_hdf5_map(key, value, told, tmp_path):
+@pytest.mark.parametrize(
+    ("key", "value"), [("pixel", "12"), ("pixel", [1e-6]), ("pixel", [0.0, 1e-6]), ("periodic", "no")]
+)
+def test_so_is_an_hdf5_map(key, value, tmp_path):
     write_map(FLAT, tmp_path / "m.h5")
     with h5py.File(tmp_path / "m.h5", "r+") as file:
         file.attrs[key] = value
-    with pytest.raises(ValueError, match=rf"{key} = ") as refused:
+    with pytest.raises(ValueError, match=rf"{key} = .*(must be|give its size)"):
         read_map(tmp_path / "m.h5")
-    assert told in str(refused.value)
 
 
 def test_a_folder_is_not_made_without_a_word(tmp_path, capsys):

@@ -10,7 +10,9 @@ from pathlib import Path
 
 import jsonschema
 import pytest
+from hypothesis import assume, given, strategies as st
 from oracles.docs_site import DOCS, ROOT, WRITTEN, blocks
+from strategies import FEW, VALUES
 from tables.scene_keys import BASE, FILES, GAUSS, ROWS, changed, good, keys, text as written, text_of
 from tables.wrong_values import ARGUMENTS, WRONG, WRONG_HERE
 
@@ -142,6 +144,23 @@ def test_an_unknown_table_is_named():
         with pytest.raises(mcgw.SceneError, match=f"{name}x: unknown key; did you mean {name}"):
             mcgw.scene_from(text)
         assert not passes(text)
+
+
+@FEW
+@given(path=st.sampled_from(keys()), value=VALUES)
+def test_whatever_a_key_is_given_is_taken_or_refused_by_name(path, value, tmp_path):
+    """No traceback, one line a mistake; what is taken can be written and read again."""
+    table, key = path
+    assume(table)
+    (tmp_path / "s.toml").write_text(text_of(table, key, None))
+    told = []
+    try:
+        scene = mcgw.load_scene(tmp_path / "s.toml", changes={f"{table}.{key}": value})
+    except mcgw.SceneError as error:
+        told = error.problems
+    assert all("\n" not in line and len(line) < 400 for line in told)
+    assert not told or any(line.startswith(table) for line in told)
+    assert told or mcgw.scene_from(mcgw.scene_text(scene)) == scene
 
 
 RANGE = {"start": "0.0", "stop": "1.0", "num": "3"}
