@@ -127,15 +127,6 @@ class TestCautions:
         lines = cautions(scene_of(interaction, **asked))
         return [line for line in lines if "conductance" in line and "law" not in line]
 
-    def test_neighbours(self):
-        """From 5 % on: A/A_n where (1 - sqrt(A/A_n))^-1.5 is 1.05."""
-        theory = scene_of(None, n_asperities=None).theory
-        at = theory.separation_at("area_fraction", (1 - 1.05 ** (-2 / 3)) ** 2)
-        assert self.lines(n_asperities=None, separations=at - 0.02)
-        assert not self.lines(n_asperities=None, separations=at + 0.02)
-        assert not self.lines(n_asperities=None, separations=0.0, quantities=["load"])
-        assert not self.lines(Interaction("body"), n_asperities=None, separations=0.0)
-
     def test_no_answer(self):
         """A stiff half-space has a balance all the same, and its surfaces say nan."""
         asked = {"eta": 0.2 / (SURFACE.radius * SURFACE.sigma), "separations": (-2.0, 3.0)}

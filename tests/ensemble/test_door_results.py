@@ -10,7 +10,6 @@ from oracles.told import drawn
 import analytic
 import mcgw
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.labelled import statistics_table
 from mcgw.ensemble.results import MemoryResults
 from mcgw.figures.plotting import draw
 from mcgw.formats.sheet import Sheet, brief
@@ -70,17 +69,7 @@ def results(scene, ensemble, tmp_path_factory):
     }
 
 
-OF_MEANS = "mean low_95 high_95 std theory residual"
 COLUMNS = {  # as files have them
-    "comparison": [
-        (lambda x: x.tables()["area"], f"separation {OF_MEANS}"),
-        (lambda x: x.worst(2), f"quantity unit separation {OF_MEANS}"),
-        (lambda x: x.sheet().table, f"quantity unit separation {OF_MEANS}"),
-    ],
-    "ensemble": [
-        (lambda x: statistics_table(x, "load"), "separation mean std stderr"),
-        (lambda x: x.sheet().table, "quantity 0 stderr 1 stderr 2 stderr"),
-    ],
     "ratio": [(lambda x: x.table(), "separation ratio stderr variance_gain")],
     "solution": [
         (
@@ -90,7 +79,6 @@ COLUMNS = {  # as files have them
         (lambda x: x.budget().table(), "95_% area stiffness conductance gap_to_summits"),
         (lambda x: x.budget().sheet().table, "95_% area stiffness conductance gap_to_summits"),
     ],
-    "convergence": [(lambda x: x.table(), "check p seen")],
     "sweep": [
         (
             lambda x: x.table(),

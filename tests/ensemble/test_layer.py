@@ -16,7 +16,6 @@ from scipy.special import j1
 import analytic
 import mcgw
 from analytic.laws.layer import LayeredSpot
-from mcgw.scene.cautions import cautions
 
 UNIT = math.sqrt(SURFACE.radius * SURFACE.sigma)
 LAYER = analytic.Layer(0.3 * UNIT, 1.3)
@@ -220,12 +219,3 @@ class TestInput:
     def test_layer_without_conductivities(self):
         with pytest.raises(ValueError, match="layer: it needs conductivities"):
             mcgw.Film(1e-7, layer=LAYER)
-
-    def test_thin_films_that_may_be_thick_are_cautioned(self):
-        def said(**film):
-            lines = cautions(scene_of(film=mcgw.Film(**film), separations=1.0))
-            return [line for line in lines if line.startswith("contact.film_resistance")]
-
-        assert said(conductivities=(200.0, 200.0), film_resistance=1e-5)
-        assert not said(conductivities=(200.0, 200.0), film_resistance=1e-11)
-        assert not said(resistivity=1e-7, film_resistance=1e-5)

@@ -126,13 +126,6 @@ def test_separations_below_the_fold(make_scene):
     assert scene.replace(interaction=pulled, separations=(1.5, 2.0)).separations == (1.5, 2.0)
 
 
-@pytest.mark.parametrize("given", [{"reference": "sea"}, {"bulk_modulus": float("inf")}])
-def test_words_of_the_theory(given):
-    ((key, value),) = given.items()
-    with pytest.raises(ValueError, match=f"{key} = '?{value}"):
-        analytic.Interaction(**({"reference": "body"} | given))
-
-
 @pytest.mark.parametrize("factor", [None, 1.0, 0.9, 1.1])
 def test_errors_were_measured_for_one_modulus_of_the_bulk(factor):
     """That of the asperities: of softer bulks and of stiffer ones nothing is known but the area."""

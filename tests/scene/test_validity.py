@@ -5,7 +5,6 @@ The numbers are read from the table, whatever it holds: nothing here knows one o
 
 import csv
 import dataclasses
-import html
 import math
 import re
 from pathlib import Path
@@ -19,11 +18,9 @@ from scipy.stats import norm
 
 import analytic
 import mcgw
-from mcgw.reports.html import report_html
 from mcgw.scene import validity_lookup, validity_table
 from mcgw.scene.validity_place import LEAST_CROWDING, moments_of, reduced_pressure
 from mcgw.scene.validity_table import COLUMNS, grid_of
-from mcgw.store.ensembles import read_attributes
 
 TABLE = Path(mcgw.__file__).parent / "scene" / "validity.csv"
 HEAD = ["map", "model", "interaction", "x", "p"]
@@ -419,40 +416,6 @@ def scene():
     """alpha = 4, and a separation at which hardly anything touches."""
     surface = analytic.SpectralMoments(1e-12, 1e-3, 4e6).surface(1e-4, 1e9)
     return mcgw.Scene(surface, separations=SEPARATIONS, n_surfaces=20, seed=1)
-
-
-@pytest.fixture(scope="module")
-def paths(scene, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("shown")
-    (folder / "s.toml").write_text(mcgw.scene_text(scene))
-    mcgw.save(mcgw.simulate(scene), folder / "s.h5")
-    return folder
-
-
-@pytest.fixture
-def without_pictures(monkeypatch):
-    """The report has its words and tables only."""
-    for name in ("comparison_figures", "pressure_pictures"):
-        monkeypatch.setattr(f"mcgw.reports.html.{name}", lambda *_: [])
-
-
-def test_the_report_has_the_sentences_and_a_table(paths, without_pictures):
-    ensemble = mcgw.open_ensemble(paths / "s.h5")
-    page = html.unescape(report_html(ensemble, read_attributes(paths / "s.h5")))
-    known = ensemble.scene.validity()
-    assert re.search(r'<p class="verdict">Monte Carlo and theory agree: [^<]*<br>\n', page)
-    assert f"<br>\n{known.verdict}.</p>" in page
-    part = page[page.index("<h2>Against elasticity") : page.index("<h2>Before you trust it")]
-    assert known.where in part
-    rows = re.findall(r"<tr><td>([^<]*)</td><td>([^<]*)</td><td>([^<]*)</td>", part)
-    assert [float(h) for h, _, _ in rows] == list(SEPARATIONS)
-    for k in (0, 1):
-        bias, scatter = (
-            float(x) for x in re.match(r"([-+]\d+) ± (\d+) %$", rows[k][2].replace("−", "-")).groups()
-        )
-        assert bias == pytest.approx(100 * known.bias["area"][k], abs=0.51)
-        assert scatter == pytest.approx(100 * (known.error["area"] - abs(known.bias["area"]))[k], abs=0.51)
-    assert rows[2][2] == "not measured"
 
 
 def test_the_sentence_names_the_worst_at_a_load_and_at_a_gap(scene):
