@@ -10,6 +10,7 @@ from scipy import stats
 import analytic
 import mcgw
 from analytic.laws.film import crowding_factor
+from mcgw.scene.in_words import contact_facts, law_text
 from mcgw.scene.measured import Fitted, Uncertainty
 from mcgw.statistics.comparison import verdict
 
@@ -184,6 +185,21 @@ def test_a_mistake_in_python_is_one_line(call, told, make_scene):
     with pytest.raises(ValueError) as caught:  # noqa: PT011
         call(make_scene(n_surfaces=3))
     assert told in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("changes", "fact"),
+    [
+        ({"film": mcgw.Film(1e-7)}, ("film", "resistivity 1e-07 ohm m")),
+        ({"interaction": "body"}, ("interaction", "from the undeformed body, separations effective")),
+    ],
+)
+def test_a_scene_says_what_it_has_and_nothing_else(changes, fact, make_scene):
+    """The others are recorded."""
+    assert contact_facts(make_scene()) == []
+    assert contact_facts(make_scene(**changes)) == [fact]
+    assert law_text(analytic.MeasuredHeights([0.0, 1.0, 3.0])) == "3 measured ones, as they are"
+    assert law_text(analytic.Custom(np.exp)) == "Custom(exp)"
 
 
 def test_statistics_of_values_are_those_of_numpy(make_scene):

@@ -310,3 +310,14 @@ def test_a_loop_that_gains_energy(make_scene):
     said = float(re.search(r"affects (\S+) % of", line)[1]) / 100
     assert said == pytest.approx(share / exact.share_above(scene, 0.5), abs=2e-3)
     assert not about(told_of(make_scene, METAL), "work")
+
+
+@pytest.mark.parametrize(("critical", "given"), [(0.04, 0), (0.02, 1), (0.005, 1), (0.001, 1)])
+def test_contacts_deeper_than_the_fit(make_scene, critical, given):
+    law = mcgw.KogutEtsion(critical=critical)
+    told = about(told_of(make_scene, law, separations=(0.0, 1.0)), "110 critical")
+    scene = make_scene(grading=analytic.Homogeneous())
+    share = exact.share_above(scene, 110 * critical) / exact.share_above(scene, 0.0)
+    assert len(told) == given == (share > 1e-3)
+    if told:
+        assert float(re.search(r"(\S+) % of", told[0])[1]) / 100 == pytest.approx(share, rel=0.05)
