@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from mcgw.ensemble.prices import SOLVE, WANTS
 from mcgw.figures.style import (
     BAND,
+    CATEGORIES,
     HOMOGENEOUS,
     LEVEL,
     MONTE_CARLO,
@@ -39,7 +40,8 @@ _RULES: dict[str, dict[str, Any]] = {
     SOLVE: {"color": _COLOURS["tail"], "marker": "o"},
 }
 _LADDER = {
-    "formula": (THEORY, "*"), "surfaces": (_COLOURS["tail"], "s"), "boundary elements": (HOMOGENEOUS, "D"),
+    "formula": (THEORY, "*"), "surfaces": (_COLOURS["tail"], "s"), "located": (CATEGORIES[2], "v"),
+    "boundary elements": (HOMOGENEOUS, "D"),
 }  # fmt: skip
 
 

@@ -75,19 +75,3 @@ def test_summits_as_they_were_measured_stay_on_their_own_area(capsys, law):
     assert line.startswith(f'mcgw: nominal_area = 0.0001: heights = "{law}" uses the measured summits')
     fit("--heights", law)
     assert mcgw.load_scene("f.toml").n_asperities < 10000
-
-
-@pytest.mark.parametrize("separator", [" ", ",", "\t", ";"])
-@pytest.mark.parametrize("header", ["", "# x y z\n"])
-@pytest.mark.usefixtures("folder")
-def test_points_in_space_are_taken_for_no_image(capsys, separator, header):
-    """Whether or not a pixel is given: more rows than three are no image three pixels wide."""
-    places = np.random.default_rng(1).uniform(0, 8, (64, 2))  # on no grid, for readers that know one
-    rows = [separator.join(f"{v:.6f}" for v in (*places[i], 0.1 * i % 1)) for i in range(64)]
-    with open("points.txt", "w") as file:
-        file.write(header + "\n".join(rows) + "\n")
-    for more in ([], ["--pixel", "1um"]):
-        assert main(["fit", "points.txt", "--cutoff", "none", "-o", "f.toml", *more]) == 2
-        (line,) = capsys.readouterr().err.splitlines()
-        assert "points.txt: " in line
-        assert "x, y and z" in line

@@ -1,87 +1,20 @@
 """Files that go to SurfaceTopography: what it takes of memory, or crashes on, harms nobody."""
 
+import os
 import sys
-from importlib.machinery import ModuleSpec
-from types import ModuleType
 
 import numpy as np
 import pytest
+from oracles import surface_topography
 
 from mcgw.maps import foreign as library, read_map, read_profile
 from mcgw.maps.profile_files import holds_profile
-
-STAND_IN = """
-from pathlib import Path
-import numpy as np
-
-class Channel:
-    dim, unit, is_periodic, physical_sizes = 2, "um", False, (3.0, 1.0)
-
-    def __init__(self, path, columns, rows):
-        self.path, self.nb_grid_pts = path, (columns, rows)
-        sizes = self.physical_sizes or (columns, rows)
-        self.pixel_size = tuple(length / n for length, n in zip(sizes, self.nb_grid_pts))
-        self.default_channel, self.height_channels = self, [self]
-
-    def topography(self):
-        self.path.with_name("read").touch()
-        return self
-
-    def heights(self):
-        return np.arange(6.0).reshape(self.nb_grid_pts)
-
-class Line(Channel):
-    dim = 1
-
-    def positions_and_heights(self):
-        x = np.arange(float(self.nb_grid_pts[0])) * 0.5
-        self.path.with_name("read").touch()
-        return x, np.ma.masked_array(x * x, mask=x == 2.0)
-
-class Bare(Channel):
-    physical_sizes, unit, is_periodic = None, None, True
-
-    def topography(self, physical_sizes):
-        assert physical_sizes == self.nb_grid_pts
-        return self
-
-    def heights(self):
-        found = np.ma.masked_array(super().heights(), mask=False)
-        found[0, 1], found[2, 0] = np.ma.masked, np.nan
-        return found
-
-def open_topography(path):
-    path = Path(path)
-    words = path.read_text().replace(";", "?").split()
-    if words[0] in ("line", "bare"):
-        kind = {"line": Line, "bare": Bare}[words[0]]
-        return kind(path, *map(int, words[1:3]))
-    if words[0] == "points":
-        heights = [float(word) for word in words[1:]]
-        one = Channel(path, len(heights), 1)
-        one.heights = lambda: np.array(heights)[:, None]
-        return one
-    if words[0] == "silent":
-        raise ValueError
-    if words[0] == "greedy":
-        raise MemoryError
-    if words[0] == "deep":
-        raise RecursionError("maximum recursion depth exceeded")
-    if words[0] == "current":
-        only = Channel(path, 3, 2)
-        only.height_channels, only.channels, only.name, only.data_unit = [], [only], "I", "nA"
-        return only
-    return Channel(path, int(words[0]), int(words[1]))
-"""
 
 
 @pytest.fixture
 def foreign(tmp_path, monkeypatch):
     """A library that does what a file asks for."""
-    library = ModuleType("SurfaceTopography")
-    library.__spec__ = ModuleSpec("SurfaceTopography", None)
-    exec(STAND_IN, library.__dict__)
-    monkeypatch.setitem(sys.modules, "SurfaceTopography", library)
+    monkeypatch.setitem(sys.modules, "SurfaceTopography", surface_topography)
 
     def write(text):
         (tmp_path / "map.plu").write_text(text)
@@ -188,6 +121,15 @@ def test_what_a_file_cannot_hold_is_never_read(foreign, tmp_path):
     with pytest.raises(ValueError, match=r"4000 x 2000 points: more than \d+ bytes hold of a map"):
         read_map(foreign("4000 2000"))
     assert not (tmp_path / "read").exists()
+
+
+def test_a_text_of_more_than_64_mebibytes_is_not_taken_in(foreign):
+    path = foreign("3 2 " * 20)
+    os.truncate(path, 2**26)
+    assert read_map(path).heights.shape == (2, 3)
+    os.truncate(path, 2**26 + 1)
+    with pytest.raises(ValueError, match=r"map\.plu: a text longer than 67108864 bytes; save it as .npy"):
+        read_map(path)
 
 
 @pytest.mark.parametrize("word", ["0x10", "[nan]", "1.2e-\x00"])

@@ -1,7 +1,6 @@
 """Stated errors: those of few waves and of sub-areas, literally; and against the scatter over maps."""
 
 import math
-from collections import defaultdict
 
 import numpy as np
 import pytest
@@ -11,10 +10,8 @@ from scipy.stats import gamma, norm, t as t_law
 
 from analytic import SpectralMoments
 from mcgw.maps import Spectrum, Topography, gaussian_map, moments_on_grid
-from mcgw.maps.fit_cautions import _waves
 from mcgw.maps.waves import (
     Spread,
-    Waves,
     _legendre_shares,
     _taken,
     block_means,
@@ -196,29 +193,3 @@ def test_intervals_hold_the_truth(alpha, waves, n, hurst, without_caps):
     scatter = {name: rows[:, 0].std() for name, rows in found.items()}
     # 1 would be right; with 13 summits on a map errors are a third too large, else a fifth at most
     assert {name: s for name, s in scatter.items() if not 0.55 < s < 1.35} == {}
-
-
-def test_sub_areas_alone_would_not_hold_it(without_caps, monkeypatch):
-    """With the jackknife alone many of the intervals of one-wave maps miss; with the waves hardly any."""
-    whole = compared(fits_of(10, 1, 160, number=12))
-    nothing = Spread(1e-9, 1e-9, 1e-9)
-    monkeypatch.setattr(
-        "mcgw.maps.fit.waves_of", lambda *_: Waves(defaultdict(lambda: nothing), 1e9, np.eye(3))
-    )
-    alone = compared(fits_of(10, 1, 160, number=12))
-    assert max(12 - rows[:, 1].sum() for rows in alone.values()) >= 4
-    assert max(12 - rows[:, 1].sum() for rows in whole.values()) <= 2
-
-
-def waves_named(long, short, number):
-    maps = (
-        gaussian_map(Spectrum(1e-6, long, short), (256, 256), (1e-6, 1e-6), np.random.default_rng(k))
-        for k in range(number)
-    )
-    return [bool(_waves(fit_map(Topography(m.heights, m.pixel), cutoff=None))) for m in maps]
-
-
-def test_few_long_waves_are_named(without_caps):
-    """One of the longest on the map: three of four maps say so. Ten of them: none does."""
-    assert sum(waves_named(256e-6, 18e-6, 5)) >= 3
-    assert not any(waves_named(25.6e-6, 10e-6, 2))

@@ -163,28 +163,6 @@ def test_a_damaged_file_gives_an_error_or_a_map(name, data, tmp_path_factory):
     assert size <= 2000
 
 
-def test_gigantic_declarations_allocate_nothing(tmp_path):
-    with open(tmp_path / "huge.npy", "wb") as file:
-        np.lib.format.write_array_header_1_0(
-            file, {"descr": "<f8", "fortran_order": False, "shape": (10**6, 10**6)}
-        )
-    with pytest.raises(ValueError, match=r"huge\.npy"):
-        read_map(tmp_path / "huge.npy", pixel=(1e-6, 1e-6))
-
-
-MAIN = """<?xml version="1.0" encoding="UTF-8"?>
-<p:ISO5436_2 xmlns:p="http://www.opengps.eu/2008/ISO5436_2">
-<Record1><Revision>ISO5436 - 2000</Revision><FeatureType>SUR</FeatureType><Axes>
-<CX><AxisType>I</AxisType><DataType>D</DataType><Increment>1.5e-6</Increment><Offset>0</Offset></CX>
-<CY><AxisType>I</AxisType><DataType>D</DataType><Increment>4e-6</Increment><Offset>0</Offset></CY>
-<CZ><AxisType>A</AxisType><DataType>I</DataType><Increment>2.5e-9</Increment><Offset>1e-6</Offset></CZ>
-</Axes></Record1>
-<Record3><MatrixDimension><SizeX>3</SizeX><SizeY>2</SizeY><SizeZ>1</SizeZ></MatrixDimension>
-<DataLink><PointDataLink>bindata/data.bin</PointDataLink></DataLink></Record3>
-<Record4><ChecksumFile>md5checksum.hex</ChecksumFile></Record4>
-</p:ISO5436_2>"""
-
-
 @pytest.mark.parametrize("kind", ["<f4", ">f8", ">i2", "<u1", "<i8", "<f2"])
 @pytest.mark.parametrize("order", ["C", "F"])
 def test_arrays_of_every_kind_are_read_as_numbers(kind, order, tmp_path):
@@ -501,33 +479,3 @@ def test_heights_that_are_no_real_numbers_are_refused(topography, tmp_path):
         read_map(tmp_path / "c.h5")
     with pytest.raises(ValueError, match="its heights were never written"):
         read_map(tmp_path / "n.h5")
-
-
-@pytest.mark.filterwarnings("ignore")
-def test_what_our_readers_refuse_surface_topography_is_asked(topography, tmp_path):
-    """Under endings that are ours: its own netCDF as HDF5, and a text with a header of its own."""
-    library = pytest.importorskip("SurfaceTopography")
-    theirs = library.Topography(topography.heights.T, topography.size, unit="m")
-    theirs.to_netcdf(str(tmp_path / "map.nc"))
-    for name in ("map.h5", "map.dat", "map.sdf"):
-        shutil.copy(tmp_path / "map.nc", tmp_path / name)
-        found = read_map(tmp_path / name)
-        assert found.heights == pytest.approx(topography.heights, rel=1e-12)
-        assert found.pixel == pytest.approx(topography.pixel, rel=1e-12)
-        with pytest.raises(ValueError, match="leave --pixel out"):
-            read_map(tmp_path / name, pixel=(1e-6, 1e-6))
-    (tmp_path / "own.txt").write_text("h=2 w=2\npixel size=1e-006 m\n1 2\n3 4\n")
-    with pytest.raises(ValueError, match=r"^[^;]*line 1: could not convert"):
-        read_map(tmp_path / "own.txt")
-
-
-@pytest.mark.filterwarnings("ignore")
-def test_a_foreign_map_without_a_pixel_takes_one(topography, tmp_path):
-    pytest.importorskip("SurfaceTopography")
-    with h5py.File(tmp_path / "bare.h5", "w") as file:
-        file["surface"] = topography.heights.T
-    with pytest.raises(ValueError, match="give --pixel"):
-        read_map(tmp_path / "bare.h5")
-    found = read_map(tmp_path / "bare.h5", pixel=(1e-6, 1e-6), unit="m")
-    assert found.heights == pytest.approx(topography.heights)
-    assert found.pixel == (1e-6, 1e-6)

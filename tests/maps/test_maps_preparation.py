@@ -1,7 +1,6 @@
 """What is done to a map before it is looked at: each step against a map that never needed it."""
 
 import math
-from typing import get_args
 
 import numpy as np
 import pytest
@@ -14,7 +13,6 @@ from mcgw.maps import Spectrum, Topography, gaussian_map
 from mcgw.maps.bad_points import filled
 from mcgw.maps.form import gaussian_transmission, lowpass, smooth, without_form, without_offsets
 from mcgw.maps.preparation import Preparation, prepared
-from mcgw.maps.steps import Form
 
 N, PIXEL = 200, (1e-6, 1.5e-6)
 
@@ -83,38 +81,6 @@ def test_holes_are_filled_with_harmonic_functions():
     assert np.array_equal(filled(corner), np.full((20, 30), 7.0))
 
 
-@pytest.mark.parametrize("cutoff", [None, 20e-6])
-def test_few_missing_points_change_nothing_much(cutoff):
-    """Of 40 000 points 21: estimates move by less than half of their errors, and nothing is refused."""
-    z = rough()
-    whole = fitted(z, cutoff=cutoff)
-    holes = z.copy()
-    generator = np.random.default_rng(5)
-    holes[generator.integers(0, N, 12), generator.integers(0, N, 12)] = np.nan
-    holes[120:123, 60:63] = np.nan
-    fits = {way: fitted(holes, cutoff=cutoff, missing=way) for way in ("auto", "mask", "fill")}
-    for way, fit in fits.items():
-        share = 0.8 if way == "fill" else 0.5  # a soap film has summits of its own beside a hole
-        assert f"missing: {np.isnan(holes).sum()} of {N * N} points" in fit.notes[0]
-        for name in ("eta", "radius", "sigma"):
-            found, expected = (getattr(f.estimates["summits"], name) for f in (fit, whole))
-            assert abs(found.value - expected.value) < share * expected.error
-    assert fits["auto"].estimates == fits["mask"].estimates
-    assert fits["mask"].area < fits["fill"].area == whole.area
-
-
-def test_a_masked_hole_counts_as_if_the_map_ended_there():
-    """A part of the map is missing: moments and summits are those of the other part."""
-    z = rough(2, n=120)
-    z[:, 74:] = np.nan
-    z[:40, 118] = 0.0  # not cropped as an edge
-    masked = fitted(z, form="none", missing="mask")
-    alone = fitted(z[:, :74].copy(), form="none", parts=2)
-    assert masked.area == pytest.approx(alone.area, rel=0.04)  # two points more at the edge
-    assert masked.moments.m4 == pytest.approx(alone.moments.m4, rel=0.03)
-    assert masked.summits.size == pytest.approx(alone.summits.size, abs=5)
-
-
 def test_points_missing_everywhere_are_filled_where_a_mask_leaves_nothing():
     z = rough(3, n=100)
     z[np.random.default_rng(1).random(z.shape) < 0.2] = np.nan
@@ -137,30 +103,6 @@ def test_edges_are_cropped_where_all_is_missing_and_trimmed():
     assert fitted(broken, trim=1).estimates == expected
     with pytest.raises(ValueError, match="leaves nothing"):
         ready(rough(), trim=N // 2)
-
-
-@pytest.mark.parametrize("kind", get_args(Form))
-def test_a_form_comes_off_and_the_roughness_stays(kind):
-    """Each form over the roughness, and nothing else: what is left is within what it takes of roughness."""
-    n = 160
-    x, y = grid(n)
-    u, v = x / 1e-4, y / 1e-4
-    shape = {
-        "none": 0.0 * x, "plane": 0.2 * x - 0.1 * y, "quadratic": 1e-5 * (u * u + 3 * u * v),
-        "cubic": 1e-5 * (u**3 - v * u), "quartic": 1e-5 * (u**4 - 3 * u * v**3),
-    }[kind]  # fmt: skip
-    bare = without_form(Topography(shape, PIXEL), kind).heights
-    assert np.abs(bare).max() < 1e-9 * max(np.ptp(shape), 1e-9)
-    z = rough(n=n)
-    left = without_form(Topography(shape + z, PIXEL), kind).heights
-    assert (left - (z - z.mean())).std() < 0.2 * z.std()
-    if kind != "none":
-        more = 1e-5 * (u**5 - v**5)  # and nothing more comes off
-        assert np.abs(without_form(Topography(more, PIXEL), kind).heights).max() > 1e-7
-        holed = shape + z
-        holed[40:60, 60:110] = np.nan
-        rest = without_form(Topography(holed, PIXEL), kind).heights
-        assert np.nanstd(rest - left) < 0.1 * z.std()
 
 
 def test_spikes_are_taken_out():

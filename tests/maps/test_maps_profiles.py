@@ -5,10 +5,9 @@ import re
 import sys
 from dataclasses import replace
 
-import matplotlib.pyplot as plt
-import mpmath
 import numpy as np
 import pytest
+from oracles.profile_weights import by_quadrature
 from scipy.stats import t as t_law
 
 import mcgw
@@ -25,20 +24,6 @@ from mcgw.maps.profile_waves import areal_weights, stencil_weights, waves_of_pro
 UM = 1e-6
 SMOOTH = 3  # neighbouring waves whose power is averaged
 NAMES = ("m0", "m2", "m4", "alpha", "eta", "radius", "sigma")
-
-
-def by_quadrature(x, order):
-    """m0, m2 or m4 of a wave k = 1 of a profile, with a = x^2: derivatives under an integral."""
-    with mpmath.workdps(25):
-        a = mpmath.mpf(x) ** 2
-
-        def under(r):  # cos(r) r exp(-r^2/(4a))/(2a), differentiated so often by a
-            first = r * r / (4 * a * a) - 1 / a
-            factor = (1, first, first**2 - r * r / (2 * a**3) + 1 / a**2)[order]
-            return mpmath.cos(r) * mpmath.exp(-r * r / (4 * a)) * r / (2 * a) * factor
-
-        whole = mpmath.quad(under, mpmath.linspace(0, 18 * mpmath.sqrt(a), 5))
-        return float((1, mpmath.mpf(-1) / 2, mpmath.mpf(3) / 8)[order] * whole)
 
 
 @pytest.mark.parametrize("x", [0.019, 0.021, 1.0, 3.0])
@@ -200,20 +185,6 @@ def test_errors_of_a_fit_literally():
         assert fit.numbers[name].relative == pytest.approx(max(by_waves, by_stretches), rel=1e-9), name
 
 
-def test_numbers_change_with_the_unit_of_length_as_their_units_say():
-    (profile, *_) = cut(Spectrum(UM, 60 * UM, 8 * UM), 900)
-    tables = [
-        fit_profiles([Profile(k * profile.heights, k * UM)], cutoff=k * 10 * UM).table() for k in (1, 1000)
-    ]
-    power = {"m": 1, "m^2": 2, "1/m^2": -2, "1": 0}
-    (names, units, own), (_, _, other) = (
-        [c.values for c in table.only("name", "unit", "value").columns] for table in tables
-    )
-    assert tuple(names) == NAMES
-    expected = [x * 1000.0 ** power[unit] for x, unit in zip(own, units, strict=True)]
-    np.testing.assert_allclose(other, expected, rtol=1e-9)
-
-
 CASES = {  # spectrum, cutoff, profiles together: 10 of the longest waves on a profile, or 4
     "alpha 12, four": (Spectrum(UM, 100 * UM, 8 * UM, 0.8), 10 * UM, 4),
     "noisy": (Spectrum(UM, 100 * UM, 4 * UM, -0.5), 16 * UM, 1),
@@ -266,28 +237,6 @@ def test_a_profile_and_its_map_agree(without_caps):
         assert math.sqrt(low * high) == pytest.approx(b, rel=1e-12)
 
 
-def test_peaks_of_a_profile_follow_rice_and_are_no_summits():
-    """A Gaussian surface has 2 pi/(3 sqrt 3) = 1.21 times as many summits as its profile's peaks squared."""
-    drawn = gaussian_map(Spectrum(UM, 60 * UM, 12 * UM), (640, 1024), (UM, UM), np.random.default_rng(3))
-    fit = fit_profiles([Profile(z, UM) for z in drawn.heights[::40]], cutoff=None)
-    counted, expected = fit.peaks
-    assert counted == pytest.approx(expected, rel=0.03)
-    assert fit.moments.eta / counted**2 == pytest.approx(2 * math.pi / (3 * math.sqrt(3)), rel=0.06)
-
-
-def test_roughness_is_that_of_what_is_left(without_caps):
-    drawn = gaussian_map(Spectrum(UM, 40 * UM, 8 * UM), (256, 256), (UM, UM), np.random.default_rng(3))
-    of_map = mcgw.fit(drawn, cutoff="10 um", form="none")
-    assert of_map.roughness.q == pytest.approx(math.sqrt(of_map.moments.m0), rel=1e-12)
-    assert of_map.roughness.sk == pytest.approx(of_map.skewness[0], rel=1e-9)
-    assert of_map.roughness.a / of_map.roughness.q == pytest.approx(math.sqrt(2 / math.pi), rel=0.02)
-    z = np.sin(np.arange(6280) / 10) * UM  # 100 waves
-    of_profile = fit_profiles([Profile(z, UM)], cutoff=None, form="none").roughness
-    assert of_profile.a == pytest.approx(2 / math.pi * UM, rel=1e-3)
-    assert of_profile.q == pytest.approx(UM / math.sqrt(2), rel=1e-3)
-    assert of_profile.sk == pytest.approx(0, abs=1e-3)
-
-
 @pytest.mark.parametrize("form", ["none", "plane", "quadratic"])
 def test_form_of_a_profile_is_taken_off(form):
     t = np.linspace(0, 1, 500)
@@ -308,27 +257,6 @@ def test_profiles_that_cannot_be_fitted_are_refused(heights, cutoff, told):
         fit_profiles([Profile(heights, UM)], cutoff=cutoff)
     with pytest.raises(ValueError, match="at least one profile"):
         fit_profiles([], cutoff=cutoff)
-
-
-def cautions(profiles, cutoff):
-    return [line.partition(":")[0] for line in mcgw.fit(profiles, cutoff=cutoff).cautions]
-
-
-def test_profiles_that_should_be_doubted_are():
-    (good, other, *_) = cut(Spectrum(UM, 60 * UM, 8 * UM), 2000)
-    assert cautions([good, other], 10 * UM) == []
-    assert cautions([good, other], None) == ["cutoff"]
-    assert "cutoff" in cautions([good], 4 * UM)
-    assert "cutoff" in cautions([good, Profile(other.heights, 3 * UM)], 10 * UM)  # of the coarser one
-    bent = Profile(np.exp(good.heights / UM) * UM, UM)
-    assert "skewness" in cautions([bent], 10 * UM)
-    assert "missing" in cautions([Profile(good.heights, UM, filled=3)], 10 * UM)
-    assert "x" in cautions([Profile(good.heights, UM, resampled=True)], 10 * UM)
-    assert "waves" in cautions([Profile(good.heights[:300], UM)], 10 * UM)
-    steps = np.round(good.heights / UM * 2) / 2 * UM + 1e-9 * np.random.default_rng(1).normal(size=2000)
-    assert "peaks" in cautions([Profile(steps, UM)], None)
-    drawn = gaussian_map(Spectrum(UM, 60 * UM, 50 * UM), (128, 4000), (UM, UM), np.random.default_rng(2))
-    assert "alpha" in cautions([Profile(drawn.heights[0], UM)], 10 * UM)
 
 
 def known(fit, name, relative):
@@ -370,6 +298,7 @@ def test_cautions_of_profiles_tell_their_numbers():
     assert uneven.startswith("x: ")
     (line,) = profile_cautions(fit, [one, two], None)
     assert "give ten points (1e-05 m) or more" in line
+    assert profile_cautions(fit, gaps, 19.9 * UM)[0].startswith("cutoff: 9.95 points")  # of the coarser one
     (line,) = profile_cautions(fit, [one, two], 9.95 * UM)
     assert line.startswith("cutoff: 9.95 points per wavelength; below 10 ")
     (line,) = profile_cautions(known(fit, "sigma", 0.345), [one, two], 10 * UM)
@@ -392,13 +321,8 @@ def test_the_command_tells_a_profile_by_its_shape(files, tmp_path, capsys):
     assert main(["fit", *paths, "--cutoff", "10um", "--E-star", "70 GPa", "-o", str(out), "-v"]) == 0
     told = capsys.readouterr().out
     assert "2 profiles, 0.002 m together" in told
-    assert "Pa = " in told
-    assert "Ra, Rq, Rsk" in told
     found = mcgw.fit(paths, cutoff="10 um")
-    for name, number in found.numbers.items():
-        shown = re.search(rf"^ +{name} +\S+ +(\S+) +(\S+) to (\S+)$", told, re.MULTILINE).groups()
-        ends = getattr(found.moments, name) * np.exp(np.array([0, -2, 2]) * number.relative)
-        np.testing.assert_allclose([float(x) for x in shown], ends, rtol=6e-3)
+    assert set(found.table().text().splitlines()) <= set(told.splitlines())
     scene = mcgw.load_scene(out)
     assert scene.surface.radius == found.moments.radius
     assert scene.surface.sigma == found.moments.sigma
@@ -407,8 +331,6 @@ def test_the_command_tells_a_profile_by_its_shape(files, tmp_path, capsys):
     assert mcgw.fitted_scene(found, heights="nayak").heights == Nayak(found.moments.alpha)
     with pytest.raises(ValueError, match="a profile has plane"):
         fit_profiles([Profile(np.arange(99.0) % 7, UM)], cutoff=None, form="cubic")
-    assert "95 %" in repr(found)
-    assert len(repr(found).splitlines()) <= 12
 
 
 @pytest.mark.parametrize(("words", "told"), [
@@ -429,32 +351,11 @@ def test_what_a_profile_cannot_be_asked(words, told, files, tmp_path, capsys, mo
     assert re.search(told, error), error
 
 
-@pytest.mark.parametrize("step", [{"missing": "fill"}, {"long_cutoff": "1 mm"}, {"trim": 3}])
-def test_python_refuses_what_the_command_does(step, files):
-    with pytest.raises(ValueError, match="is for maps only; prepare the profile before"):
-        mcgw.fit(files / "p0.txt", cutoff="10 um", **step)
-
-
 def test_two_maps_are_one_too_many(tmp_path, capsys):
     np.save(tmp_path / "m.npy", np.zeros((9, 9)))
     words = ["fit", str(tmp_path / "m.npy"), str(tmp_path / "n.npy"), "--cutoff", "none"]
     assert main([*words, "-o", str(tmp_path / "s.toml")]) == 2
     assert "give one map, or profiles" in capsys.readouterr().err
-
-
-def test_the_picture_shows_heights_and_summits(files):
-    found = mcgw.fit(files / "p0.txt", cutoff="10 um")
-    axes = found.plot()
-    heights, summits = (line.get_data() for line in axes.get_lines())
-    for (z, density), mean, spread in (
-        (heights, 0.0, math.sqrt(found.moments.m0)),
-        (summits, found.moments.mean_height, found.moments.sigma),
-    ):
-        whole = np.trapezoid(density, z)
-        assert whole == pytest.approx(1, abs=1e-3)
-        assert np.trapezoid(z * density, z) == pytest.approx(mean, abs=1e-2 * spread)
-        assert np.trapezoid((z - mean) ** 2 * density, z) == pytest.approx(spread**2, rel=1e-2)
-    plt.close("all")
 
 
 Z = np.array([0.1, 0.3, -0.2, 0.5, 0.4, 0.0, -0.1, 0.2, 0.35, 0.15])
@@ -557,7 +458,7 @@ def test_the_first_twenty_lines_tell_a_profile(full, found, tmp_path):
     assert holds_profile(tmp_path / "p.csv") == found
 
 
-def test_maps_are_no_profiles(tmp_path, monkeypatch):
+def test_maps_are_no_profiles(tmp_path):
     (tmp_path / "m.txt").write_text("1 2 3\n4 5 6\n")
     (tmp_path / "gaps.csv").write_text("1,2,,\n3,4,5,6\n")
     assert not holds_profile(tmp_path / "gaps.csv")
@@ -572,6 +473,10 @@ def test_maps_are_no_profiles(tmp_path, monkeypatch):
         assert not holds_profile(tmp_path / f"m{ending}")
     assert holds_profile(tmp_path / "p.npy")
     assert read_profile(tmp_path / "p.npy", spacing=UM).heights[6] == 6 * UM
+
+
+def test_profiles_that_cannot_be_read_name_their_file(tmp_path, monkeypatch):
+    np.save(tmp_path / "p.npy", np.arange(100.0) % 7 * UM)
     with pytest.raises(ValueError, match="give --pixel"):
         read_profile(tmp_path / "p.npy")
     with pytest.raises(ValueError, match="no such file"):
@@ -591,28 +496,16 @@ def test_maps_are_no_profiles(tmp_path, monkeypatch):
         read_profile(tmp_path / "p.plu")
 
 
-def test_gaps_are_filled_and_uneven_places_resampled():
-    """On a slope, which straight lines do not change."""
-    x = np.arange(50.0)
-    z = 3 * x + 1
-    z[[0, 7, 8, 49]] = np.nan
-    found = profile_at(x, z)
-    np.testing.assert_allclose(found.heights, 3 * x[1:49] + 1, rtol=1e-14)
-    assert (found.filled, found.resampled, found.spacing) == (2, False, 1.0)
-    uneven = x + 0.3 * np.sin(x)
-    found = profile_at(uneven, 3 * uneven + 1)
-    np.testing.assert_allclose(np.diff(found.heights), 3 * found.spacing, rtol=1e-12)
-    assert found.resampled
-    assert not profile_at(x + 0.04 * np.sin(x), z).resampled  # rounded
-    back = profile_at(-x, 3 * x + 1)
-    np.testing.assert_array_equal(back.heights, (3 * x + 1)[::-1])
-    with pytest.raises(ValueError, match="no heights"):
-        profile_at(x, np.full(50, np.nan))
-
-
 def test_the_limits_of_places_and_gaps():
     """A tenth of a step beside the grid, a tenth of the heights; at either end nothing is filled."""
     x, z = np.arange(40.0), np.arange(40.0) ** 2
+    line = np.where((x == 0) | (x == 39), np.nan, 3 * x + 1)  # straight lines do not change it
+    np.testing.assert_array_equal(profile_at(-x, line).heights, 3 * x[38:0:-1] + 1)
+    uneven = x + 0.3 * np.sin(x)
+    found = profile_at(uneven, 3 * uneven + 1)
+    np.testing.assert_allclose(np.diff(found.heights), 3 * found.spacing, rtol=1e-12)
+    with pytest.raises(ValueError, match="no heights"):
+        profile_at(x, np.full(40, np.nan))
     for shift, resampled in ((0.099, False), (0.101, True)):
         moved = x.copy()
         moved[20] += shift
@@ -695,7 +588,6 @@ def test_a_fit_of_profiles_shows_its_numbers_and_two_cautions():
 def test_peaks_are_counted_between_their_neighbours():
     """Of equal neighbours the first is one; Rice's formula takes mean squares of the same profiles."""
     z = np.tile([0.0, 2.0, 1.0, 1.0, 0.0, 3.0, 3.0, -1.0], 40) * UM
-    z += 1e-9 * np.arange(320) / 320
     long, short = Profile(z, UM), Profile(z[:160], 2 * UM)
     counted, expected = fit_profiles([long, short], cutoff=None, form="none").peaks
     slopes = bends = peaks = length = 0.0
@@ -737,36 +629,16 @@ def test_profiles_that_surface_topography_reads(tmp_path):
     assert fit.lengths == (pytest.approx(1.5 * MM),)
 
 
-def test_lists_of_numbers_without_a_header_go_to_surface_topography(tmp_path):
-    """An ending that is not read here: .xyz of two columns."""
-    pytest.importorskip("SurfaceTopography")
-    text = "\n".join(f"{i * 0.5e-6:.7e} {(i % 5) * 1e-7:.3e}" for i in range(60))
-    (tmp_path / "p.xyz").write_text(text)
-    assert holds_profile(tmp_path / "p.xyz")
-    found = read_profile(tmp_path / "p.xyz")
-    assert found.spacing == pytest.approx(0.5 * UM, rel=1e-6)
-    assert re.fullmatch("m?", found.assumed_unit)
-
-
-def test_whole_numbers_that_rise_before_a_comma_are_places(tmp_path):
-    path = tmp_path / "p.csv"
-    path.write_text("x (um),z (um)\n" + "\n".join(f"{i},{i % 3}" for i in range(9)))
-    assert read_profile(path).heights.tolist() == [i % 3 * UM for i in range(9)]
-    path.write_text("z (um)\n" + "\n".join(f"{i},0{i % 3}" for i in (0, 1, 1, 0, 2, 3, 1, 0)))
-    np.testing.assert_allclose(read_profile(path, spacing=UM).heights[4:6] / UM, [2.02, 3.0], rtol=1e-12)
-
-
-@pytest.mark.parametrize("whole", [8 * (0,), 4 * (0,) + 4 * (1,), 2 * (2,) + 6 * (1,)])
-def test_whole_numbers_that_stay_before_a_comma_are_no_places(whole, tmp_path):
-    path = tmp_path / "p.txt"
-    path.write_text("z (um)\n" + "\n".join(f"{n},{25 + i}" for i, n in enumerate(whole)))
-    heights = [float(f"{n}.{25 + i}") for i, n in enumerate(whole)]
-    np.testing.assert_allclose(read_profile(path, spacing=UM).heights / UM, heights, rtol=1e-12)
-
-
-def test_whole_numbers_that_fall_before_a_comma_are_places_too(tmp_path):
-    path = tmp_path / "back.csv"
-    path.write_text("# x (um), z (um)\n" + "\n".join(f"{8 - i},{i % 3}" for i in range(9)))
-    forth = [(8 - i) % 3 * UM for i in range(9)]
-    assert read_profile(path).heights.tolist() in (forth, forth[::-1])
-    assert read_profile(path).spacing == pytest.approx(UM)
+@pytest.mark.parametrize(("lines", "heights"), [
+    ([f"{i},{i % 3}" for i in range(9)], [i % 3 for i in range(9)]),  # rising: places
+    ([f"{8 - i},{i % 3}" for i in range(9)], [(8 - i) % 3 for i in range(9)]),  # falling
+    ([f"{i},0{i % 3}" for i in (0, 1, 1, 0, 2, 3, 1, 0)], [0, 1.01, 1.01, 0, 2.02, 3, 1.01, 0]),
+    *(([f"{n},{25 + i}" for i, n in enumerate(whole)], [float(f"{n}.{25 + i}") for i, n in enumerate(whole)])
+      for whole in (8 * (0,), 4 * (0,) + 4 * (1,), 2 * (2,) + 6 * (1,))),
+])  # fmt: skip
+def test_whole_numbers_that_rise_or_fall_before_a_comma_are_places(lines, heights, tmp_path):
+    path, places = tmp_path / "p.csv", len(lines) == 9
+    path.write_text(("x (um),z (um)\n" if places else "z (um)\n") + "\n".join(lines))
+    found = read_profile(path, spacing=None if places else UM)
+    np.testing.assert_allclose(found.heights / UM, heights, rtol=1e-12)
+    assert found.spacing == pytest.approx(UM)

@@ -208,17 +208,6 @@ def test_a_spectrum_has_the_moments_that_were_asked_for(alpha, hurst):
     assert asked.m0 * unit**4 * mean[2] / mean[0] * 3 / 8 == pytest.approx(asked.m4, rel=1e-9)
 
 
-@pytest.mark.parametrize("name", ["at.png", "at.svg"])
-def test_the_contact_map_is_drawn(name, tmp_path, capsys):
-    out = tmp_path / name
-    assert (
-        main(["surface", str(RUNS / "quick.toml"), "--at", "1", "--colour", "modulus", "-o", str(out)]) == 0
-    )
-    assert out.read_bytes()[:5] in (b"\x89PNG\r", b"<?xml")
-    assert capsys.readouterr().out.startswith(f"{out}: ")
-    assert list(tmp_path.iterdir()) == [out]
-
-
 @pytest.mark.parametrize(("arguments", "told"), [
     (["SCENE", "-o", "map.tiff"], "a map is written there"),
     (["SCENE", "-o", "map.h5", "--at", "1"], "a figure is written there"),

@@ -161,26 +161,6 @@ def test_a_command_takes_a_unit_and_tells_one_that_was_assumed(rough, tmp_path, 
         assert "heights assumed in m" in text
 
 
-@pytest.mark.parametrize(("unit", "metre"), [
-    ("m", 1), ("cm", 1e-2), ("mm", 1e-3), ("um", 1e-6), ("µm", 1e-6), ("nm", 1e-9), ("pm", 1e-12),
-    ("Å", 1e-10),
-])  # fmt: skip
-def test_every_unit(unit, metre, tmp_path):
-    (tmp_path / "map.txt").write_text("1 2\n3 4\n")
-    found = read_map(tmp_path / "map.txt", pixel=(metre, metre), unit=unit)
-    assert found.heights == pytest.approx(metre * np.array([[1, 2], [3, 4]]), rel=1e-15)
-
-
-def test_units_that_are_wrong_are_refused(tmp_path):
-    (tmp_path / "map.txt").write_text("# Value units: nm\n1 2\n3 4\n", encoding="utf-8")
-    with pytest.raises(ValueError, match="in nm as the file says, not in um"):
-        read_map(tmp_path / "map.txt", pixel=(1.0, 1.0), unit="um")
-    with pytest.raises(ValueError, match="give --pixel"):
-        read_map(tmp_path / "map.txt")
-    with pytest.raises(ValueError, match="'furlong' is not a known unit"):
-        read_map(tmp_path / "map.txt", pixel=(1.0, 1.0), unit="furlong")
-
-
 def test_steepness_is_that_of_the_map_and_not_of_a_spike():
     y, x = np.mgrid[0:40, 0:50]
     plane = 3e-6 * x + 8e-6 * y

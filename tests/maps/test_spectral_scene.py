@@ -10,7 +10,6 @@ from oracles.summits_by_hand import summit_contact
 
 import analytic
 import mcgw
-from mcgw.cli import main
 from mcgw.maps import Spectrum, gaussian_map
 
 
@@ -94,15 +93,3 @@ def test_the_very_summits_carry_what_they_carry_literally(fit, tmp_path):
     for name in ("load", "area", "stiffness", "contacts"):
         np.testing.assert_allclose(ensemble[name], getattr(exact, name), rtol=1e-11)
     assert exact.load[0, 0] > 0
-
-
-def test_from_map_to_verdict(tmp_path, without_caps):
-    """At one separation of the scene that is written: the theory of own radii takes its time for each."""
-    spectrum = "rms=1um,long=60um,short=12um"
-    path, scene = (str(tmp_path / name) for name in ("map.h5", "scene.toml"))
-    assert main(["surface", "--from-spectrum", spectrum, "--pixel", "1um", "--shape", "128", "-o", path]) == 0
-    assert main(["fit", path, "--cutoff", "none", "--heights", "nayak", "-o", scene]) == 0
-    read = mcgw.load_scene(scene)
-    assert isinstance(read.curvature, analytic.RandomCurvature)
-    few = read.replace(separations=[1.0], quantities=["load"], n_surfaces=50)
-    assert mcgw.compare(mcgw.simulate(few)).verdict.agrees

@@ -9,7 +9,7 @@ import pytest
 
 import mcgw
 from mcgw.cli import main
-from mcgw.maps import Spectrum, Topography, gaussian_map
+from mcgw.maps import Topography
 from mcgw.scene.section import SceneError
 
 FOLDER = Path(__file__).parents[2] / "runs" / "validation"
@@ -118,20 +118,6 @@ def test_a_surface_is_that_of_its_map_up_to_a_tenth(scene):
         assert ("differs from that of the map by a factor of 1.1" in found.unknown) != known
 
 
-def test_chance_is_left_to_maps_of_few_waves(scene):
-    """A skewness of .1 is one of a map with 500 independent heights, of one with a million it is its own."""
-    for independent, known in ((500.0, True), (1e6, False)):
-        fitted = replace(scene.fitted, skewness=0.1, kurtosis=3.05, independent=independent)
-        assert scene.replace(fitted=fitted).validity().measured.any() == known
-
-
-def test_chance_excuses_no_skewness_beyond_what_was_solved(scene):
-    """However few the waves are: the highest summits of such a map are no Gaussian ones."""
-    for skewness, known in ((0.14, True), (-0.14, True), (0.18, False), (-0.18, False)):
-        fitted = replace(scene.fitted, skewness=skewness, independent=100.0)
-        assert scene.replace(fitted=fitted).validity().measured.any() == known
-
-
 def test_alpha_is_the_maps_own(fit, scene):
     """Of counted summits eta R sigma would guess another one."""
     fitted = scene.fitted
@@ -207,19 +193,6 @@ def test_cautions_of_a_fit_travel_the_gravest_first(fit, tmp_path, capsys):
             assert (out + err).count(f"fit: {line}") == 1, command
         assert "(and 2 more under [fitted] in the scene)" in out + err
     assert "fit: skewness: told (and 2 more" in (tmp_path / "s.html").read_text()
-
-
-def test_the_gravest_caution_comes_first():
-    """A map in a wrong unit is wrong by a million: no lay and no overlap stands before that."""
-    z = (
-        1e6
-        * gaussian_map(
-            Spectrum(1e-6, 40e-6, 16e-6), (128, 128), (1e-6, 1e-6), np.random.default_rng(1)
-        ).heights
-    )
-    found = mcgw.fit(Topography(z, (1e-6, 1e-6)), cutoff=None).cautions
-    assert len(found) > 1
-    assert found[0].startswith("slope:")
 
 
 def test_it_draws_nothing(scene):
