@@ -200,9 +200,10 @@ class Compared:
     def caption(self) -> str:
         """In words."""
         scene = self.scene
+        same = "γ" if self.swept else "lines"
         markers = (
             f"Markers: Monte-Carlo means with 95 % intervals, {scene.n_surfaces} surfaces of "
-            f"{scene.n_asperities:g} asperities, seed {scene.seed}, the same for all lines."
+            f"{scene.n_asperities:g} asperities, seed {scene.seed}, the same for all {same}."
         )
         return " ".join(filter(None, (self.words, markers * (scene.n_surfaces > 1), "Lines: theory.")))
 

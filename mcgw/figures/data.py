@@ -68,7 +68,6 @@ class Panel:
     series: tuple[Series, ...]
     scales: tuple[str, str] = ("linear", "linear")
     level: float | None = None
-    ylim: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)

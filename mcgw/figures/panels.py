@@ -1,6 +1,5 @@
-"""The look of every figure, and the files it is written to."""
+"""One way to draw the panels of a figure, and the files it is written to."""
 
-import math
 import textwrap
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -9,23 +8,22 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.legend_handler import HandlerTuple
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
 from mcgw.ensemble.intervals import TOO_FEW
-from mcgw.figures.data import FigureData, Panel, Points, Series, figure_table
-from mcgw.figures.style import BACK, BAND, LEVEL, PAPER, STYLE, look, plain, power_of_ten, save_figure
+from mcgw.figures.data import GAMMA, FigureData, Panel, Points, Series, figure_table
+from mcgw.figures.style import BAND, LEVEL, PAPER, STYLE, look, power_of_ten, save_figure, tick_label
 
-# Inches. Places are given, since finding them takes as long as drawing.
-_WIDTH, _NARROWEST = 3.7, 4.4  # of a panel with its labels, and of a figure
-_LEFT, _RIGHT = 0.85, 0.12  # labels and ticks beside a panel
-_OVER, _HEIGHT, _BETWEEN, _RESIDUAL, _UNDER = 0.3, 2.4, 0.12, 0.7, 0.52
-_TITLE, _CAPTION, _EDGE = 0.19, 0.14, 0.08  # line heights of texts, and their margins
+_WIDTH, _NARROWEST = 3.7, 4.4  # inches, of a panel with its labels and of a figure
+_TALL, _RESIDUAL, _TEXTS = 3.2, 0.8, 0.6  # inches, of a panel, residuals under it, title and caption
 _KEY, _THEORY = "Monte Carlo, 95 %", "theory"
 _MARKS = look("Monte Carlo")
 _WHITE: Any = {"ms": 4, "mfc": "white", "mew": 0.9}
-_STEPS = (1, 2, 2.5, 5, 10)  # of ticks
 _FEW, _FEWER = 1.5, 0.5  # decades below which ticks at 2 and 5 times powers of ten are added
 _UNSEEN = 0.01  # share of the smallest mean: how far down theory is drawn
+_SMALL, _HANDLE, _LETTER, _ROW = 8, 34.0, 4.4, 13.0  # points, of a legend: text, line and gaps, letter, row
+_SAME = 0.25  # standard errors that markers of residuals cover
 
 
 def draw(data: FigureData) -> Figure:
@@ -44,49 +42,47 @@ def draw(data: FigureData) -> Figure:
     matplotlib.figure.Figure
         With title and caption.
     """
-    columns = min(data.columns, len(data.panels))
+    columns = 3 if len(data.panels) == 3 else min(data.columns, len(data.panels))
     rows = -(-len(data.panels) // columns)
-    below = _RESIDUAL + _BETWEEN if any(map(_has_errors, data.panels)) else 0.0
-    row_height, width = _OVER + _HEIGHT + below + _UNDER, max(_WIDTH * columns, _NARROWEST)
-    pitch = width / columns
-    title, caption = _wrapped(data.title, int(10 * width)), _wrapped(data.caption, int(16 * width))
-    head, foot = _EDGE + _TITLE * len(title), _EDGE + _CAPTION * len(caption)
-    height = head + rows * row_height + foot
+    checked = any(map(_has_errors, data.panels))
+    width = max(_WIDTH * columns, _NARROWEST)
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(width, height))
-
-        def axes(k: int, up: float, tall: float, beside: Any = None) -> Any:
-            left = pitch * (k % columns) + _LEFT
-            bottom = foot + row_height * (rows - 1 - k // columns) + _UNDER + up
-            inches = left / width, bottom / height, (pitch - _LEFT - _RIGHT) / width, tall / height
-            return figure.add_axes(inches, sharex=beside)
-
+        size = width, rows * (_TALL + checked * _RESIDUAL) + _TEXTS
+        figure = Figure(figsize=size, layout="constrained")
+        grid = figure.add_gridspec(2 * rows, columns, height_ratios=[_TALL, _RESIDUAL] * rows)
+        legends = [0] * rows
         for k, panel in enumerate(data.panels):
-            checked = _has_errors(panel)
-            axis = axes(k, below, _HEIGHT) if checked else axes(k, 0.0, below + _HEIGHT)
-            draw_panel(axis, panel, keyed=k == 0)
-            if checked:
-                _draw_residuals(axes(k, 0.0, _RESIDUAL, axis), panel, labelled=k % columns == 0)
-                axis.set_xlabel("")
-                axis.tick_params(labelbottom=False)
-        left = _EDGE / width
-        figure.suptitle(
-            "\n".join(title),
-            fontsize=11,
-            fontweight="bold",
-            x=left,
-            y=1 - _EDGE / height,
-            ha="left",
-            va="top",
-        )
-        figure.supxlabel(
-            "\n".join(caption), fontsize=8, color=PAPER, x=left, y=_EDGE / height, ha="left", va="bottom"
-        )
+            row, column = divmod(k, columns)
+            new = k == 0 or _labels(panel) != _labels(data.panels[0])
+            if not _has_errors(panel):
+                axis = figure.add_subplot(grid[2 * row : 2 * row + 2, column])
+                legends[row] = max(legends[row], draw_panel(axis, panel, keyed=new))
+                continue
+            above = figure.add_subplot(grid[2 * row, column])
+            legends[row] = max(legends[row], draw_panel(above, panel, keyed=new))
+            below = figure.add_subplot(grid[2 * row + 1, column], sharex=above)
+            _draw_residuals(below, panel, labelled=column == 0)
+            above.set_xlabel("")
+            above.tick_params(labelbottom=False)
+        figure.set_figheight(size[1] + _ROW / 72 * sum(legends))
+        write_around(figure, data.title, data.caption)
     return figure
 
 
-def _wrapped(text: str, width: int) -> list[str]:
-    return [line for part in text.splitlines() for line in textwrap.wrap(part, width)]
+def write_around(figure: Any, title: str, caption: str = "") -> None:
+    """Write title and caption of a figure, wrapped to its width."""
+    width = figure.bbox.width / figure.dpi  # inches, of a part of a figure too
+    figure.suptitle(_wrapped(title, int(10 * width)), fontsize=11, fontweight="bold", x=0.01, ha="left")
+    if caption:
+        figure.supxlabel(_wrapped(caption, int(16 * width)), fontsize=_SMALL, color=PAPER, x=0.01, ha="left")
+
+
+def _wrapped(text: str, width: int) -> str:
+    return "\n".join(line for part in text.splitlines() for line in textwrap.wrap(part, width))
+
+
+def _labels(panel: Panel) -> list[str]:
+    return [series.label for series in panel.series]
 
 
 def _known(panel: Panel) -> list[tuple[int, Series, Points]]:
@@ -94,45 +90,75 @@ def _known(panel: Panel) -> list[tuple[int, Series, Points]]:
     return [(k, s, s.points) for k, s in enumerate(panel.series) if s.points is not None]
 
 
-def draw_panel(axis: Any, panel: Panel, *, keyed: bool) -> None:
-    """Draw lines, points on them and the legend; if `keyed`, it says what points are."""
+def draw_panel(axis: Any, panel: Panel, *, keyed: bool) -> int:
+    """Draw lines, points on them and, if `keyed`, the legend between title and axes, where no data are.
+
+    Returns
+    -------
+    int
+        Rows of the legend.
+    """
     positive = [float(y[y > 0].min()) for y in (x.theory for x in panel.series) if np.any(y > 0)]
     logarithmic = panel.scales[1] == "log" and bool(positive)  # a log axis cannot show 0 alone
     yscale = "linear" if panel.scales[1] == "log" and not positive else panel.scales[1]
     axis.set(xlabel=panel.xlabel, ylabel=panel.ylabel, xscale=panel.scales[0], yscale=yscale)
-    axis.set_title(panel.title, loc="left")
     if panel.level is not None:
         axis.axhline(panel.level, color=LEVEL, lw=0.8, zorder=1)
     for k, series in enumerate(panel.series):
         _draw_series(axis, series, k, logarithmic)
     means = [points.mean for *_, points in _known(panel)]
-    if panel.ylim:
-        axis.set_ylim(panel.ylim)
-    elif logarithmic and any(np.any(mean > 0) and np.any(mean == 0) for mean in means):
+    if logarithmic and any(np.any(mean > 0) and np.any(mean == 0) for mean in means):
         axis.set_ylim(bottom=_UNSEEN * min(mean[mean > 0].min() for mean in means if np.any(mean > 0)))
     elif logarithmic:
         axis.set_ylim(bottom=0.6 * min(positive))
-    if keyed and means:
-        plain_theory = len(panel.series) == 1 and panel.series[0].label == _THEORY
-        color = _MARKS["color"] if plain_theory else BACK
-        axis.plot([], [], _MARKS["marker"] if plain_theory else "o", color=color, label=_KEY, **_WHITE)
-        if any(np.any((points.mean != 0) & ~np.isfinite(points.arms[0])) for *_, points in _known(panel)):
-            axis.plot([], [], "x", color=color, label=TOO_FEW, **_WHITE)
-    _set_ticks(axis.xaxis, axis.get_xscale(), *axis.get_xlim())
-    _set_ticks(axis.yaxis, axis.get_yscale(), *axis.get_ylim())
-    if keyed or len(panel.series) > 1:
-        axis.legend(fontsize=8, handlelength=3)
+    set_ticks(axis.xaxis)
+    set_ticks(axis.yaxis)
+    rows = _draw_legend(axis, panel) if keyed else 0
+    axis.set_title(panel.title, loc="left", pad=mpl.rcParams["axes.titlepad"] + _ROW * rows)
+    return rows
 
 
-def _set_ticks(ticks: Any, scale: str, low: float, high: float) -> None:
-    """Set few ticks as plain text: formulas take a quarter of a second."""
-    decades = math.log10(high / low) if scale == "log" else 0.0
+def _draw_legend(axis: Any, panel: Panel) -> int:
+    """Name the lines and the markers as they are drawn; return how many rows this takes."""
+    handles, labels = axis.get_legend_handles_labels()
+    marks = {_marks(s, k)["marker"]: _marks(s, k)["color"] for k, s, _ in _known(panel)}
+    if marks:
+        handles.append(
+            tuple(mpl.lines.Line2D([], [], ls="", marker=m, color=c, **_WHITE) for m, c in marks.items())
+        )
+        labels.append(_KEY)
+    if any(np.any((points.mean != 0) & ~np.isfinite(points.arms[0])) for *_, points in _known(panel)):
+        handles.append(mpl.lines.Line2D([], [], ls="", marker="x", color=PAPER, **_WHITE))
+        labels.append(TOO_FEW)
+    room = 72 * axis.get_figure().get_figwidth() * axis.get_position().width
+    if len(labels) < 2:
+        return 0
+    columns = _columns_within(room, [len(label) for label in labels])
+    axis.legend(
+        handles, labels, ncols=columns, fontsize=_SMALL, loc="lower left", bbox_to_anchor=(0, 1),
+        borderpad=0, borderaxespad=0.3, handlelength=2.5, columnspacing=1,
+        handler_map={tuple: HandlerTuple(ndivide=None)},
+    )  # fmt: skip
+    return -(-len(labels) // columns)
+
+
+def _columns_within(room: float, lengths: list[int]) -> int:
+    """Most columns of labels of these many letters within a width in points."""
+    for n in range(len(lengths), 1, -1):
+        if sum(_HANDLE + _LETTER * max(column) for column in np.array_split(lengths, n)) <= room:
+            return n
+    return 1
+
+
+def set_ticks(ticks: Any) -> None:
+    """Set the ticks of an axis, all labels of one kind; as plain text, since to read formulas takes long."""
+    low, high = sorted(ticks.get_view_interval())
+    decades = np.log10(high / low) if ticks.get_scale() == "log" else 0.0
     if decades > _FEWER:
         ticks.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if decades < _FEW else (1.0,), numticks=7))
-        ticks.set_major_formatter(FuncFormatter(power_of_ten))
     else:
-        ticks.set_major_locator(MaxNLocator(6, steps=_STEPS))
-        ticks.set_major_formatter(FuncFormatter(plain))
+        ticks.set_major_locator(MaxNLocator(6, steps=(1, 2, 2.5, 5, 10)))
+    ticks.set_major_formatter(FuncFormatter(power_of_ten if decades >= _FEW else tick_label(low, high)))
     ticks.set_minor_formatter(NullFormatter())
 
 
@@ -179,13 +205,16 @@ def _draw_residuals(axis: Any, panel: Panel, *, labelled: bool) -> None:
     for k, series, points in _known(panel):
         found = _marks(series, k)
         varies = points.stderr > 0
-        z = (points.mean - points.exact)[varies] / points.stderr[varies]
-        axis.plot(points.x[varies], z, found["marker"], color=found["color"], ms=3, mfc="white", mew=0.8)
+        x, z = points.x[varies], points.residual[varies]
+        if panel.xlabel == GAMMA and np.ptp(z) < _SAME:  # of the same surfaces: one point for all gamma
+            axis.plot(x[[0, -1]], z[[0, -1]], color=found["color"], lw=0.8)
+            x, z = x[[len(x) // 2]], z[[len(x) // 2]]
+        axis.plot(x, z, found["marker"], color=found["color"], ms=3, mfc="white", mew=0.8)
         reach = max(reach, 1.1 * float(np.abs(z).max(initial=0.0)))
     draw_residual(axis, reach)
     axis.set_xlabel(panel.xlabel)
     if labelled:
-        axis.set_ylabel("residual\n(std. errors)", fontsize=8, labelpad=0)
+        axis.set_ylabel("residual\n(std. errors)", fontsize=_SMALL, labelpad=0)
 
 
 def draw_residual(axis: Any, reach: float) -> None:
@@ -194,7 +223,7 @@ def draw_residual(axis: Any, reach: float) -> None:
     axis.axhline(0, color=LEVEL, lw=0.8, zorder=1)
     axis.set_ylim(-reach, reach)
     axis.yaxis.set_major_locator(FixedLocator([-2, 0, 2]) if reach < 8 else MaxNLocator(4, symmetric=True))
-    axis.yaxis.set_major_formatter(FuncFormatter(plain))
+    axis.yaxis.set_major_formatter(FuncFormatter(tick_label(-reach, reach)))
 
 
 def figure_files(folder: Path, name: str, formats: Sequence[str], *, csv: bool) -> list[Path]:

@@ -1,5 +1,6 @@
 """What ``.plot()`` of each result draws: one pair of axes."""
 
+from dataclasses import replace
 from functools import singledispatch
 from typing import Any
 
@@ -86,11 +87,9 @@ def _(result: Ensemble, ax: Any, *, quantity: str) -> None:
 
 @_draw.register
 def _(result: Comparison, ax: Any, *, quantity: str) -> None:
-    draw_panel(ax, quantity_panel(result, quantity), keyed=True)
+    title = f"Monte Carlo and theory {result.verdict.word}: p = {result.verdict.p:.3g} over all means"
+    draw_panel(ax, replace(quantity_panel(result, quantity), title=title), keyed=True)
     ax.set(ylabel=result.ensemble.scene.quantity(quantity).title)
-    ax.set_title(
-        f"Monte Carlo and theory {result.verdict.word}: p = {result.verdict.p:.3g} over all means", loc="left"
-    )
 
 
 @_draw.register
@@ -148,7 +147,6 @@ def _(result: Solution, ax: Any) -> None:
 @_draw.register
 def _(result: Convergence, ax: Any) -> None:
     draw_checks(ax, result)
-    ax.set_yticks(ax.get_yticks(), [check.name for check in result.checks])
     ax.set_xlabel("probability by chance; grey: fails")
     ax.set_title(f"Statistical convergence {result.word}: p = {result.p:.3g}")
 

@@ -101,8 +101,7 @@ def fluctuations(f: Compared) -> FigureData:
             _spreads(f"N = {power_of_ten(n)}", scene.replace(n_asperities=n), name, line, drawn.get(n), 400)
             for n in (100, 1000, 10_000, 100_000, 1_000_000)
         )
-        room = float(series[-1].theory.min()) / 2, 50 * float(series[0].theory.max())  # for the legend
-        panels.append(Panel(f"{key}  {name}", SEPARATION, "std / mean", series, ("linear", "log"), 1.0, room))
+        panels.append(Panel(f"{key}  {name}", SEPARATION, "std / mean", series, ("linear", "log"), 1.0))
     return FigureData(
         "Scatter of finite surfaces",
         f"N asperities per surface; 2000 surfaces (400 for N = 10⁶), seed {scene.seed}. Markers with 95 % "

@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from mcgw.ensemble.prices import SOLVE, WANTS
+from mcgw.figures.panels import set_ticks, write_around
 from mcgw.figures.style import (
     BAND,
     CATEGORIES,
@@ -67,11 +68,11 @@ def save_convergence(found: Convergence, path: str | Path) -> None:
             _say(axes[name], f"slope in {name}: too few contacts")
         _draw_scores(axes["z"], found.scores)
         draw_checks(bottom.subplots(), found)
-        figure.suptitle(
+        write_around(
+            figure,
             f"{shown_title(found.scene, 'Scene')}\n"
             f"Statistical convergence {found.word}: p = {found.p:.3g} over "
             f"{len(found.checks)} checks (false alarms: 1 in {1 / FALSE_ALARM:.0f})",
-            fontsize=10,
         )
         save_figure(figure, path)
 
@@ -83,14 +84,17 @@ def _say(axis: Any, text: str) -> None:
 
 def _draw_slope(axis: Any, curve: Slope) -> None:
     fit = np.exp(np.mean(np.log(curve.errors) + np.log(curve.sizes) / 2)) / np.sqrt(curve.sizes)
-    axis.loglog(curve.sizes, fit, color=THEORY, label="slope $-1/2$")
+    axis.loglog(curve.sizes, fit, color=THEORY, label="slope −1/2")
     axis.errorbar(
         curve.sizes, curve.errors, 1.96 * curve.stderr * curve.errors, fmt="o", ms=4, mfc="none",
         color=MONTE_CARLO, label="measured, 95 %",
     )  # fmt: skip
     axis.set_xlabel(_TITLES[curve.against])
     axis.set_ylabel("rms error (standard deviations)" if curve.against == "M" else "rms relative error")
-    axis.set_title(f"slope {curve.value:.4f} ± {1.96 * curve.uncertainty:.4f}")
+    slope = f"{curve.value:.4f}".replace("-", "−")
+    axis.set_title(f"slope {slope} ± {1.96 * curve.uncertainty:.4f}", loc="left")
+    set_ticks(axis.xaxis)
+    set_ticks(axis.yaxis)
     axis.legend(loc="lower left")
 
 
@@ -103,8 +107,8 @@ def _draw_scores(axis: Any, z: np.ndarray) -> None:
     x = np.linspace(-4, 4, 201)
     axis.plot(x, np.exp(-(x**2) / 2) / np.sqrt(2 * np.pi), color=THEORY, label="standard normal")
     axis.set_ylim(0, 0.58)
-    axis.set_xlabel("error of a mean (exact standard errors)")
-    axis.set_title("z-scores")
+    axis.set(xlabel="error of a mean (exact standard errors)", ylabel="density")
+    axis.set_title("z-scores", loc="left")
     axis.legend(loc="upper center", ncols=2, handlelength=1.2, columnspacing=1)
 
 
@@ -122,10 +126,11 @@ def draw_checks(axis: Any, found: Convergence) -> None:
         axis.scatter(p[some], rows[some], color=color, marker=marker, s=28, zorder=3)
     axis.set_xscale("log")
     axis.set_xlim(floor / 3, 2.5)
-    axis.set_yticks(rows, [f"{c.name}: {c.seen}" for c in found.checks], fontsize=8)
+    axis.set_yticks(rows, names, fontsize=8)
     axis.set_ylim(-0.7, len(names) - 0.3)
     axis.grid(visible=False, axis="y")
-    axis.set_xlabel("probability by chance; grey: fails (the far left stands for all below $10^{-12}$)")
+    set_ticks(axis.xaxis)
+    axis.set_xlabel("probability by chance; grey: fails (the far left stands for all below 10⁻¹²)")
 
 
 def save_tradeoff(found: Tradeoff, path: str | Path) -> None:
@@ -147,7 +152,7 @@ def save_tradeoff(found: Tradeoff, path: str | Path) -> None:
             draw_errors(axis, found, want)
         handles = {h.get_label(): h for axis in axes.flat for h in axis.get_legend_handles_labels()[0]}
         top.legend(handles=[*handles.values()], loc="outside lower center", ncols=6, fontsize=8)
-        top.suptitle(f"{shown_title(found.scene, 'Speed and accuracy')}\n{found.sentence}", fontsize=10)
+        write_around(top, f"{shown_title(found.scene, 'Speed and accuracy')}\n{found.sentence}")
         draw_ladder(bottom.subplots(), found)
         bottom.suptitle(_wrapped(found.ladder.sentence), fontsize=10)
         save_figure(figure, path)

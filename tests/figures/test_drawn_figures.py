@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from conftest import SURFACE
 from matplotlib.collections import LineCollection, PathCollection
+from matplotlib.lines import Line2D
 from oracles import told
 from oracles.crowding import crowded
 from scipy.stats import norm
@@ -19,7 +20,7 @@ from mcgw.figures.against_theory import quantity_panel, save_comparison
 from mcgw.figures.data import FigureData, Panel, Points, Series
 from mcgw.figures.panels import draw
 from mcgw.figures.studies import save_convergence, save_tradeoff
-from mcgw.figures.style import FAMILIES, PAIRS, THEORY, look, plain, power_of_ten
+from mcgw.figures.style import FAMILIES, PAIRS, THEORY, look, power_of_ten, tick_label
 from mcgw.statistics.checks import Check, Slope
 from mcgw.statistics.comparison import Comparison, Curve, compare
 from mcgw.statistics.convergence import Convergence
@@ -57,11 +58,13 @@ def test_panels_are_drawn_as_they_are(scale, recorded):
     assert (figure.get_suptitle(), figure.get_supxlabel()) == ("The title", "The caption.")
     used = [axis for axis in figure.axes if axis.get_title(loc="left")]
     assert len(used) == 2
-    for axis, key in zip(used, (["Monte Carlo, 95 %"], []), strict=True):
+    legend, none = (axis.get_legend() for axis in used)  # one for both: they name the same
+    assert none is None
+    assert [t.get_text() for t in legend.get_texts()] == [*(s.label for s in SERIES), "Monte Carlo, 95 %"]
+    for axis in used:
         assert (axis.get_xlabel(), axis.get_ylabel()) == ("", "y (N)")  # the residuals below say what x is
         assert axis.get_title(loc="left") == "the panel"
         assert (axis.get_xscale(), axis.get_yscale()) == ("linear", scale)
-        assert [t.get_text() for t in axis.get_legend().get_texts()] == [s.label for s in SERIES] + key
         lines = [x for x in axis.get_lines() if len(x.get_xdata()) == 3 and x.get_linestyle() != "None"]
         for line, series in zip(lines, SERIES, strict=True):
             np.testing.assert_array_equal(line.get_xydata(), np.stack([series.x, series.theory], axis=1))
@@ -118,8 +121,9 @@ def test_legends_name_the_line_that_is_drawn_so():
     figure = draw(FigureData("", "", (Panel("p", "x", "y", SERIES),)))
     axis, _ = figure.axes
     drawn = [x for x in axis.get_lines() if len(x.get_xdata()) == 3 and x.get_linestyle() != "None"]
-    *named, key = axis.get_legend().get_lines()
-    assert key.get_linestyle() == "None"  # a marker alone: any of the drawn
+    *named, _ = axis.get_legend().legend_handles
+    marks = [x for x in axis.get_legend().findobj(Line2D) if x.get_linestyle() == "None"]
+    assert [x.get_marker() for x in marks] == [x.get_marker() for x in markers_of(axis)]  # those of the data
     for entry, line in zip(named, drawn, strict=True):
         assert entry.get_color() == line.get_color()
         assert entry.get_linestyle() == line.get_linestyle()
@@ -128,11 +132,10 @@ def test_legends_name_the_line_that_is_drawn_so():
 
 def test_a_band_is_shaded():
     series = Series("edge", X, X, band=(X - 3, 2 * X))
-    (axis,) = draw(FigureData("", "", (Panel("p", "x", "y", (series,), ylim=(-3.0, 9.0)),))).axes
+    (axis,) = draw(FigureData("", "", (Panel("p", "x", "y", (series,)),))).axes
     (patch,) = axis.collections
     corners = {tuple(xy) for xy in patch.get_paths()[0].vertices.tolist()}
     assert corners >= set(zip(X, X - 3, strict=True)) | set(zip(X, 2 * X, strict=True))
-    assert axis.get_ylim() == (-3.0, 9.0)
 
 
 def slope(against, value):
@@ -157,7 +160,7 @@ def test_convergence(make_scene, kept, tmp_path, recorded):
         (n, found.slopes[1], "asperities $N$", "rms relative error"),
     ):
         assert (axis.get_xlabel(), axis.get_ylabel()) == (x, y)
-        assert axis.get_title() == f"slope {curve.value:.4f} ± 0.0392"
+        assert axis.get_title(loc="left") == f"slope −{-curve.value:.4f} ± 0.0392"
         (points,) = markers_of(axis)
         np.testing.assert_array_equal(points.get_xydata(), np.stack([curve.sizes, curve.errors], axis=1))
         bars = bars_of(axis)
@@ -179,7 +182,7 @@ def test_convergence(make_scene, kept, tmp_path, recorded):
         label.get_text(): y for label, y in zip(bottom.get_yticklabels(), bottom.get_yticks(), strict=True)
     }
     for check, row in zip(checks, places, strict=True):
-        assert labels[f"{check.name}: {check.seen}"] == row
+        assert labels[check.name] == row
     assert tuple(good.get_facecolors()[0]) != tuple(bad.get_facecolors()[0])
     assert len(good.get_paths()[0].vertices) != len(bad.get_paths()[0].vertices)  # nor by colour alone
     assert "T\nStatistical convergence FAILED: p = 0 over 3 checks" in figure.get_suptitle()
@@ -290,7 +293,19 @@ def test_contact_map(make_scene, kept, tmp_path, recorded):
 @pytest.mark.parametrize(("x", "label"), [(1e-12, "10⁻¹²"), (1.0, "10⁰"), (1e308, "10³⁰⁸"), (30.0, "30")])
 def test_labels_of_decades_are_plain_text(x, label):
     assert power_of_ten(x) == label
-    assert plain(-2.5e-12) == "−2.5e−12"
+
+
+@pytest.mark.parametrize(
+    ("high", "labels"),
+    [
+        (5e4, {0.0: "0", -5000.0: "−5000", 2e4: "20000"}),
+        (2e6, {0.0: "0", 5e5: "5·10⁵", 2e6: "2·10⁶"}),
+        (1e-11, {-2.5e-12: "−2.5·10⁻¹²", 1e-11: "1·10⁻¹¹"}),
+    ],
+)
+def test_labels_of_an_axis_are_of_one_kind(high, labels):
+    label = tick_label(0.0, high)
+    assert {x: label(x, None) for x in labels} == labels
 
 
 LABELS = (

@@ -64,8 +64,7 @@ def said(figures):
             continue
         yield f"{name}: {data.title}; {data.caption}; {data.columns} columns"
         for panel in data.panels:
-            ends = "" if panel.ylim is None else f" from {panel.ylim[0]:.6g} to {panel.ylim[1]:.6g}"
-            axes = f"{panel.xlabel} | {panel.ylabel}, {' '.join(panel.scales)}{ends}, level {panel.level}"
+            axes = f"{panel.xlabel} | {panel.ylabel}, {' '.join(panel.scales)}, level {panel.level}"
             yield f" {panel.title or '-'}: {axes}"
             for s in panel.series:
                 p, band = s.points, s.band or ()
