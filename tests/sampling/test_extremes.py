@@ -65,6 +65,14 @@ def test_no_asperities_and_too_many(make_scene):
             make_scene(n_asperities=n)
 
 
+def test_one_surface(make_scene):
+    ensemble = mcgw.simulate(make_scene(n_surfaces=1))
+    assert np.isnan(ensemble.std("load")).all()
+    low, high = (end[:3] for end in ensemble.interval("load"))
+    assert ((low < ensemble.mean("load")[:3]) & (ensemble.mean("load")[:3] < high)).all()
+    assert (ensemble.mean("load") == ensemble.load[0]).all()
+
+
 @pytest.mark.slow
 def test_10_000_separations(make_scene):
     h = tuple(np.linspace(0, 4, 10_000))
@@ -134,6 +142,14 @@ def test_gradings_that_are_not_finite(make_scene, value):
     grading = analytic.Custom(lambda s: np.where(s > 1, value, 1.0))
     with pytest.raises(mcgw.SceneError, match="not finite at s = 1"):
         make_scene(grading=grading)
+
+
+@pytest.mark.parametrize("quantity", list(analytic.QUANTITIES))
+def test_quantities_alone(make_scene, quantity):
+    alone = sampler_of(make_scene(quantities=(quantity,))).block(0, 3).sums
+    together = sampler_of(make_scene(quantities=tuple(analytic.QUANTITIES))).block(0, 3).sums
+    assert set(alone) == {quantity}
+    np.testing.assert_allclose(alone[quantity], together[quantity], rtol=1e-12)
 
 
 def test_count_law_far_in_the_tail(make_scene):
