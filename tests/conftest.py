@@ -152,3 +152,20 @@ def recorded(request):
 def one_pressure(monkeypatch):
     """Reports solve for one pressure: each takes half a second."""
     monkeypatch.setattr("mcgw.reports.report_figures._PRESSURES", 1)
+
+
+@pytest.fixture
+def cheap(monkeypatch):
+    """Boundary elements that are a known multiple of what located summits say."""
+    from mcgw.elasticity.levels import LEVELS, Level, located
+
+    def solve(pressed):
+        return {name: 1.25 * value for name, value in located(pressed).items()}
+
+    levels = (*LEVELS[:2], Level("elastic", "stand-in", solve, 1.0))
+    monkeypatch.setattr("mcgw.elasticity.elastic.LEVELS", levels)
+
+
+@pytest.fixture
+def rng():
+    return np.random.default_rng(20261124)

@@ -2,16 +2,15 @@
 
 from collections.abc import Sequence
 from contextlib import nullcontext
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from itertools import accumulate, pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from analytic.arrays import Array
 from mcgw.elasticity.levels import LEVELS, QUANTITIES
-from mcgw.elasticity.multilevel import FEWEST, Design, Mean, design, differences, mean_of, terms_of
+from mcgw.elasticity.multilevel import FEWEST, Design, Mean, design, difference, mean_of, terms_of
 from mcgw.elasticity.solves import Solves
 from mcgw.elasticity.sources import maps_of
 from mcgw.errors import RunError
@@ -22,6 +21,8 @@ from mcgw.maps.synthetic import Spectrum
 from mcgw.maps.topography import Topography
 from mcgw.scene.arguments import argument
 from mcgw.scene.scene import Scene
+from mcgw.store.disk import parts_of
+from mcgw.store.lock import locked
 
 _PILOT = 8
 _UNITS = {"area": "m^2", "stiffness": "N/m", "conductance": "m", "mean_gap": "m", "pressure": "Pa"}
@@ -138,8 +139,8 @@ def elastic(
     seed : int, optional
         Of the maps.
     path : str or Path, optional
-        File for the solves, one line with a checksum for each, the plan in the first; the same call again
-        resumes from it. Damaged lines are named in a warning and solved again.
+        File for the solves, one line with a checksum for each; the same call again resumes from it. Damaged
+        lines are named in a warning and solved again.
     progress : bool or callable, optional
         True: a bar; a function: called with (done, total) in solves of boundary elements, as planned.
 
@@ -189,40 +190,34 @@ def elastic(
         )
     if seed < 0:
         raise ValueError(f"seed = {seed}: give a whole number >= 0")
-    solved = Solves(maps, held, modulus, seed, known)
-    kept = nullcontext() if path is None else solved.kept_in(Path(path))
-    with kept, told(progress, "solves") as tell:
-        return _by_levels(solved, rel_err, solves, pilot, tell)
+    file = None if path is None else Path(path)
+    with nullcontext() if file is None else locked(parts_of(file)), told(progress, "solves") as tell:
+        return _by_levels(Solves(maps, held, modulus, seed, known, file), rel_err, solves, pilot, tell)
 
 
 def _by_levels(solved: Solves, rel_err: float, solves: int | None, pilot: int, tell: Any) -> Elastic:
     """Pilot, plan, terms."""
     population = solved.maps.number
     tried = _chosen(population, solved.seed, 0, [pilot])[0]
-    rows = [[solved.at(level, k) for level in LEVELS] for k in tried]
-    table = {i: np.array([row[i][0] for row in rows]) for i in range(len(LEVELS))}
+    rows = [solved.at(LEVELS, number) for number in tried]
+    values, seconds = (np.array(part) for part in zip(*rows, strict=True))
     costs = [level.cost for level in LEVELS]
-    seconds = [float(np.mean([row[i][1] for row in rows])) for i in range(len(LEVELS))]
-    if not table[len(LEVELS) - 1].any(axis=0).all():
+    if not values[:, -1].any(axis=0).all():
         raise RunError(f"none of {len(tried)} maps touches; give a smaller separation")
-    planned = design(table, costs, rel_err, solves)
-    solved.record({"pilot": pilot, "rel_err": rel_err, "solves": solves, "costs": costs, **asdict(planned)})
-    terms = terms_of(planned.chain)
-    done, samples, lines = 0.0, [], []
+    planned = design(values, costs, rel_err, solves)
+    terms, done, samples = terms_of(planned.chain), 0.0, []
     for term, numbers in zip(terms, _chosen(population, solved.seed, pilot, planned.maps), strict=True):
-        found: dict[int, list[Array]] = {level: [] for level in term}
+        found = []
         for number in numbers:
-            for level in term:
-                found[level].append(solved.at(LEVELS[level], number)[0])
-                done += costs[level]
+            found.append(solved.at([LEVELS[level] for level in term], number)[0])
+            done += sum(costs[level] for level in term)
             tell(min(done, planned.cost), planned.cost)
-        samples.append(differences({level: np.array(x) for level, x in found.items()}, term))
-        lines.append((" - ".join(LEVELS[level].words for level in term), len(samples[-1])))
+        samples.append(difference(np.array(found)))
     first = [x[:, 0] for x in samples]
     levels = Table((
-        Column("term", [words for words, _ in lines]),
-        Column("maps", [many for _, many in lines], form="d"),
-        Column("seconds", [sum(seconds[k] for k in term) for term in terms], "s a map", form=".2g"),
+        Column("term", [" - ".join(LEVELS[level].words for level in term) for term in terms]),
+        Column("maps", [len(x) for x in samples], form="d"),
+        Column("seconds", [seconds[:, term].mean(axis=0).sum() for term in terms], "s a map", form=".2g"),
         Column("mean", [x.mean() for x in first], f"mean {solved.quantities[0]}", form=".4g"),
         Column("std", [x.std(ddof=1) if len(x) > 1 else 0.0 for x in first], form=".2g"),
     ))  # fmt: skip

@@ -27,7 +27,7 @@ _NEUTRAL = 1.125
 _REACH = 4.0  # contact radii of spots, beyond which they are point loads to each other
 _SHARES = (0.5, 1.0)  # of the interaction, one after the other: from spots alone, a whole one is a leap
 _BALANCED = 1e-11  # what may be left over, of the deepest penetration and of the load
-_STEPS, _SHORTEST, _MEMORY = 60, 2**-10, 4  # a step may leave more over than the last, not than the last four
+_STEPS, _ASTRAY = 40, 1e3  # of Newton, and what is left over where they lead nowhere
 _CLOSE, _PRODUCTS = 1e-9, 200  # of conjugate gradients
 _DENSE = 2500  # spots, beyond which Fourier series sum faster than a matrix
 
@@ -137,35 +137,20 @@ def beyond_point(distance: Array, squared_radius: Array) -> Array:
 
 def _newton(spots: Spots, push: Push, start: Balance, load: float | None, share: float) -> Balance | None:
     """Balance under a share of the interaction, if steps from another balance lead to one."""
-    deepest, nothing = float(start.penetrations.max()), np.ones(spots.heights.shape)
-
-    def left(separation: float, delta: Array) -> tuple[Array, float, float]:
-        """Misfit of each, m; load that is missing, N; both as one number."""
-        loads = spots.loads(delta)
-        misfit = delta - spots.heights + separation + share * push(loads)
-        missing = 0.0 if load is None else load - float(loads.sum())
-        size = math.hypot(float(np.linalg.norm(misfit)) / deepest, missing / load if load else 0.0)
-        return misfit, missing, size if delta.max() > 0 else math.inf
-
-    d, delta = start.separation, start.penetrations
-    misfit, missing, size = left(d, delta)
-    sizes = [size]
+    deepest, d, delta = float(start.penetrations.max()), start.separation, start.penetrations
     for _ in range(_STEPS):
-        slopes = spots.slopes(delta)
-        under = _answered(slopes, push, share, nothing)  # loads that grow as the plane sinks by 1 m
+        slopes, loads = spots.slopes(delta), spots.loads(delta)
+        misfit = delta - spots.heights + d + share * push(loads)
+        missing = 0.0 if load is None else load - float(loads.sum())
+        size = max(float(np.abs(misfit).max()) / deepest, abs(missing) / load if load else 0.0)
+        if not slopes.any() or size > _ASTRAY:
+            return None
+        under = _answered(slopes, push, share, np.ones(delta.shape))  # more load as the plane sinks by 1 m
         if size < _BALANCED:
             return Balance(d, delta, float(under.sum()), share)
         own = _answered(slopes, push, share, -misfit)
         lower = 0.0 if load is None else (missing - float(own.sum())) / float(under.sum())
-        change = lower - misfit - share * push(own + lower * under)
-        step = 1.0
-        while (new := left(d - step * lower, delta + step * change))[2] >= max(sizes[-_MEMORY:]):
-            step /= 2
-            if step < _SHORTEST:
-                return None
-        d, delta = d - step * lower, delta + step * change
-        misfit, missing, size = new
-        sizes.append(size)
+        d, delta = d - lower, delta + lower - misfit - share * push(own + lower * under)
     return None
 
 

@@ -8,7 +8,7 @@ M. B. Giles, Oper. Res. 56 (2008) 607.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
 
@@ -20,7 +20,6 @@ from analytic.arrays import Array
 FEWEST = 4  # maps a term: fewer tell no variance
 
 Chain = tuple[int, ...]  # levels that are used, from cheap to dear
-Table = Mapping[int, Array]  # by level, shape (maps, quantities)
 
 
 @dataclass(frozen=True)
@@ -50,18 +49,18 @@ def terms_of(chain: Chain) -> list[Chain]:
     return [chain[:1], *((dear, cheap) for cheap, dear in pairwise(chain))]
 
 
-def differences(table: Table, term: Chain) -> Array:
-    """What a term is on each map, shape (maps, quantities)."""
-    return np.asarray(table[term[0]] - sum((table[level] for level in term[1:]), np.zeros(1)))
+def difference(values: Array) -> Array:
+    """First of a term's levels, shape (maps, levels, quantities), less the second if there is one."""
+    return np.asarray(values[:, 0] - values[:, 1:].sum(axis=1))
 
 
-def design(pilot: Table, costs: Sequence[float], rel_err: float, solves: int | None = None) -> Design:
+def design(pilot: Array, costs: Sequence[float], rel_err: float, solves: int | None = None) -> Design:
     """Find the chain that costs least.
 
     Parameters
     ----------
-    pilot : dict of int to ndarray
-        By level, shape (maps, quantities).
+    pilot : ndarray
+        Shape (maps, levels, quantities), the dearest level last.
     costs : sequence of float
         Of one map at each level.
     rel_err : float
@@ -69,11 +68,11 @@ def design(pilot: Table, costs: Sequence[float], rel_err: float, solves: int | N
     solves : int, optional
         Instead: how many solves of the dearest level there may be.
     """
-    top = max(pilot)
-    scale = np.abs(pilot[top].mean(axis=0)) * rel_err / student.ppf(0.975, 20)
+    top = pilot.shape[1] - 1
+    scale = np.abs(pilot[:, top].mean(axis=0)) * rel_err / student.ppf(0.975, 20)
 
     def spread(term: Chain) -> float:
-        x = differences(pilot, term)
+        x = difference(pilot[:, term])
         return float(((x - x[0]).var(axis=0, ddof=min(len(x) - 1, 1)) / scale**2).max())
 
     def planned(chain: Chain) -> Design:
@@ -87,10 +86,7 @@ def design(pilot: Table, costs: Sequence[float], rel_err: float, solves: int | N
         cost = sum(n * c for n, c in zip(maps, of_terms, strict=True))
         return Design(chain, maps, cost, max(many * spread((top,)) / base, FEWEST) * costs[top])
 
-    lower = [level for level in pilot if level != top]
-    chains = [(*some, top) for k in range(len(lower) + 1) for some in combinations(lower, k)]
-    if solves is None:
-        return min(map(planned, chains), key=lambda one: one.cost)
+    chains = [(*some, top) for k in range(top + 1) for some in combinations(range(top), k)]
     return max(map(planned, chains), key=lambda one: one.plain / one.cost)
 
 

@@ -12,7 +12,6 @@ from mcgw.ensemble.prices import SOLVE, WANTS
 from mcgw.figures.panels import set_ticks, write_around
 from mcgw.figures.style import (
     BAND,
-    CATEGORIES,
     HOMOGENEOUS,
     LEVEL,
     MONTE_CARLO,
@@ -41,8 +40,7 @@ _RULES: dict[str, dict[str, Any]] = {
     SOLVE: {"color": _COLOURS["tail"], "marker": "o"},
 }
 _LADDER = {
-    "formula": (THEORY, "*"), "surfaces": (_COLOURS["tail"], "s"), "located": (CATEGORIES[2], "v"),
-    "boundary elements": (HOMOGENEOUS, "D"),
+    "formula": (THEORY, "*"), "surfaces": (_COLOURS["tail"], "s"), "boundary elements": (HOMOGENEOUS, "D"),
 }  # fmt: skip
 
 

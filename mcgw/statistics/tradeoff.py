@@ -9,7 +9,6 @@ from time import monotonic
 from typing import Any
 
 from analytic import MeasuredHeights, MeasuredRadii
-from mcgw.elasticity.ladder import Ladder, ladder_of
 from mcgw.ensemble.drawing import in_words
 from mcgw.ensemble.half_space import scene_alone
 from mcgw.ensemble.prices import PROBABILITY, TARGETS, WANTS, Advice, Needs, Way, advise, sampled_ways
@@ -19,6 +18,7 @@ from mcgw.machine.progress import Progress, told
 from mcgw.machine.terminal import plotted
 from mcgw.scene.arguments import argument, check_object
 from mcgw.scene.scene import Scene
+from mcgw.statistics.ladder import Ladder, ladder_of
 from mcgw.statistics.measured_ways import REPEATS, Answers, Point, moved, prices, sized
 
 SECONDS = 60.0

@@ -130,8 +130,7 @@ def main():
             seconds = np.mean(costs, axis=0)
             saved = []
             for q in range(3):
-                table = {level: np.log(np.abs(x[level][:, q : q + 1])) + 30 for level in range(3)}
-                planned = design(table, seconds, 0.02 / 30)
+                planned = design(np.log(np.abs(x[:3, :, q : q + 1])).swapaxes(0, 1) + 30, seconds, 0.02 / 30)
                 saved.append(planned.plain / planned.cost)
             texts = [" ".join(f"{v:+.3f}" for v in part) for part in (*errors, together)]
             texts.append(" ".join(f"{v:.1f}" for v in saved))
@@ -140,7 +139,7 @@ def main():
                 f"{alpha:g}  {hurst:g}  {p:g}  {len(rows)} | {' | '.join(texts)} | {seconds.round(2)}",
                 flush=True,
             )
-    print(f"{tried - failed} of {tried} balances found")
+    print(f"{tried - failed} of {tried} maps with summits")
 
 
 if __name__ == "__main__":

@@ -22,7 +22,7 @@ from matplotlib.figure import Figure
 from analytic import SpectralMoments
 from mcgw.elasticity.elastic import _by_levels
 from mcgw.elasticity.levels import LEVELS, Pressed
-from mcgw.elasticity.multilevel import differences, terms_of
+from mcgw.elasticity.multilevel import difference, terms_of
 from mcgw.elasticity.sources import drawn
 from mcgw.figures.style import HOMOGENEOUS, MONTE_CARLO, STYLE, THEORY, save_figure
 from mcgw.maps.synthetic import Spectrum
@@ -80,15 +80,20 @@ def solve(many):
 
 
 def table_of(alpha):
-    """By level: values of the maps, shape (maps, quantities), and CPU seconds of one."""
+    """Values of the maps, shape (maps, levels, quantities), and CPU seconds of one at each level."""
     maps, known = maps_of(alpha), [row for row in rows() if row["alpha"] == alpha]
     summits = [
         [level.timed(one) for level in LEVELS[:2]] for one in (pressed(maps, row["map"]) for row in known)
     ]
-    found = {i: np.array([[row[i][0][name] for name in NAMES] for row in summits]) for i in (0, 1)}
-    found[2] = np.array([[row[name] for name in NAMES] for row in known])
+    found = [
+        [*([one[name] for name in NAMES] for one, _ in levels), [row[name] for name in NAMES]]
+        for levels, row in zip(summits, known, strict=True)
+    ]
     seconds = [[one for _, one in row] for row in summits]
-    return found, [*np.mean(seconds, axis=0).tolist(), float(np.mean([row["seconds"] for row in known]))]
+    return np.array(found), [
+        *np.mean(seconds, axis=0).tolist(),
+        float(np.mean([row["seconds"] for row in known])),
+    ]
 
 
 class Stored:
@@ -97,31 +102,28 @@ class Stored:
     maps, seed, quantities, seconds = SimpleNamespace(number=None, words="stored maps"), 0, NAMES, 0.0
 
     def __init__(self, table, costs, rng):
-        self.table, self.costs = table, costs
-        self.rows = rng.integers(len(table[2]), size=MOST)
+        self.table, self.costs = table, np.array(costs)
+        self.rows = rng.integers(len(table), size=MOST)
 
-    def at(self, level, number):
-        """Values of a map at a level, and their seconds."""
-        i = LEVELS.index(level)
-        return self.table[i][self.rows[number]], self.costs[i]
-
-    def record(self, plan):
-        """Keep no plan."""
+    def at(self, levels, number):
+        """Values of a map at levels, and their seconds."""
+        which = [LEVELS.index(level) for level in levels]
+        return self.table[self.rows[number], which], self.costs[which]
 
 
 def repeated(alpha):
     """Print how often the intervals hold; by quantity and chain seconds and errors."""
     table, costs = table_of(alpha)
-    many, truth = len(table[2]), table[2].mean(axis=0)
+    many, truth = len(table), table[:, 2].mean(axis=0)
     found = [
         _by_levels(Stored(table, costs, np.random.default_rng([alpha, k])), 0.05, FEW, PILOT, lambda *_: None)
         for k in range(REPEATED)
     ]
     low, high = np.array([one.found.interval() for one in found]).transpose(1, 0, 2)
     held = ((low <= truth) & (truth <= high)).sum(axis=0)
-    stderr = table[2].std(axis=0, ddof=1) / math.sqrt(many)
-    alone = np.abs(table[1].mean(axis=0) / truth - 1)
-    missed = ((low <= table[1].mean(axis=0)) & (table[1].mean(axis=0) <= high)).sum(axis=0)
+    stderr = table[:, 2].std(axis=0, ddof=1) / math.sqrt(many)
+    alone = np.abs(table[:, 1].mean(axis=0) / truth - 1)
+    missed = ((low <= table[:, 1].mean(axis=0)) & (table[:, 1].mean(axis=0) <= high)).sum(axis=0)
     used = [tuple(one.planned.chain) for one in found]
     print(f"alpha = {alpha}: {many} maps of {8 * WAVES[alpha]}^2, seconds a level {np.round(costs, 4)}")
     print("  levels used:", {chain: used.count(chain) for chain in sorted(set(used))})
@@ -147,9 +149,9 @@ def repeated(alpha):
 
 def _errors(table, costs, chain, q):
     """Seconds, and 1.96 rms errors of a quantity over its mean, for each number of solves."""
-    rng, truth, terms = np.random.default_rng(1), table[2][:, q].mean(), terms_of(chain)
+    rng, truth, terms = np.random.default_rng(1), table[:, 2, q].mean(), terms_of(chain)
     prices = [sum(costs[i] for i in term) for term in terms]
-    samples = [differences(table, term)[:, q] / truth for term in terms]
+    samples = [difference(table[:, term])[:, q] / truth for term in terms]
     shares = [math.sqrt(x.var() / price) for x, price in zip(samples, prices, strict=True)]
     found = []
     for solves in SOLVES:

@@ -1,4 +1,4 @@
-"""Means by levels: from the lines of their file, over lists and scenes, by the command; what is refused."""
+"""Means by levels: from the lines of their file, and over lists of maps; what is refused."""
 
 import json
 import math
@@ -18,37 +18,6 @@ from mcgw.elasticity.levels import LEVELS, Level, Pressed, located
 pytestmark = pytest.mark.usefixtures("cheap")
 
 
-def test_resumes(tmp_path):
-    path = tmp_path / "solves.jsonl"
-    asked = {"pressure": "50 MPa", "E_star": "100 GPa", "rel_err": 0.2, "path": path}
-    first = mcgw.elastic(SPECTRUM, **asked)
-    lines = path.read_text().splitlines()
-    rows = [json.loads(line) for line in lines[1:26]]  # a pilot of eight maps, and the first of others
-    assert [row["map"] for row in rows] == [k // 3 for k in range(24)] + [8]
-    assert json.loads(lines[0])["seed"] == 1
-    path.write_text("\n".join(lines[: len(lines) // 2]) + '\n{"level": "loc')
-    with pytest.warns(UserWarning, match=f"solved again where needed: {len(lines) // 2 + 1}$"):
-        again = mcgw.elastic(SPECTRUM, **asked)
-    assert again.found.mean.tolist() == first.found.mean.tolist()
-    assert again.found.stderr.tolist() == first.found.stderr.tolist()
-    whole = path.read_bytes()
-    assert whole.startswith("".join(f"{line}\n" for line in lines[: len(lines) // 2]).encode())
-    seen = []
-    once_more = mcgw.elastic(
-        SPECTRUM, progress=lambda *told: seen.append(told), **asked
-    )  # all lines can be read, and nothing is solved again
-    assert (once_more.mean("area"), path.read_bytes()) == (again.mean("area"), whole)
-    done, planned = np.array(seen).T
-    assert done[0] > 0
-    assert np.all(np.diff(done) >= 0)
-    assert_allclose(planned, again.planned.cost)
-    assert done[-1] == pytest.approx(planned[-1], rel=0.5)
-    assert once_more.seconds == pytest.approx(sum(json.loads(x)["seconds"] for x in whole.splitlines()[1:]))
-    assert set(json.loads(lines[0])) == {"maps", "pressure", "E_star", "seed", "plan", "check"}
-    with pytest.raises(mcgw.StoreError, match="another path"):
-        mcgw.elastic(SPECTRUM, **{**asked, "pressure": "60 MPa"})
-
-
 def test_is_what_its_solves_say(tmp_path):
     """Means, errors, table and cost from the lines of the file: a pilot, and fresh maps for each term."""
     path = tmp_path / "s.jsonl"
@@ -64,11 +33,8 @@ def test_is_what_its_solves_say(tmp_path):
     assert used[-1] == "elastic"
     first, means, variances, parts = 6, [], [], []
     shown = zip(*(column.values for column in found.levels.columns), strict=True)
-    for term, many in zip(
-        [used[:1], *([b, a] for a, b in pairwise(used))],
-        found.planned.maps,
-        strict=True,
-    ):
+    terms = [used[:1], *([b, a] for a, b in pairwise(used))]
+    for term, many in zip(terms, found.planned.maps, strict=True):
         maps = range(first, first + many)
         first += many
         x = np.array([[by[term[0], k]["values"][q] for q in found.quantities] for k in maps])
@@ -124,16 +90,6 @@ def test_says_what_levels_save():
     assert alone.verdict() == "no cheaper level helps; boundary elements alone: 31 for the same error"
 
 
-def test_a_list_has_its_own_mean(rng):
-    maps = [rough(rng) for _ in range(5)]
-    found = mcgw.elastic(maps, pressure=5e7, E_star=1e11, solves=5, pilot=4)
-    truth = np.mean([
-        1.25 * located(Pressed(one.heights - one.heights.mean(), one.size, 1e11, 5e7))["area"]
-        for one in maps
-    ])  # fmt: skip
-    assert_allclose(found.interval("area"), truth, rtol=1e-12)
-
-
 @pytest.mark.parametrize("solves", [None, 4])
 @pytest.mark.parametrize("maps", [1, 2, 5, 7])
 def test_equal_maps_leave_no_error(maps, solves, rng):
@@ -146,13 +102,11 @@ def test_equal_maps_leave_no_error(maps, solves, rng):
     assert (found.planned.chain, found.planned.maps, found.saved) == ((2,), (4,), 1.0)
 
 
-def test_takes_a_separation(tmp_path, rng, monkeypatch):
+def test_takes_a_separation(rng, monkeypatch):
     """The mean of a list, all of whose maps are solved, is theirs; one of five is clear of the plane."""
-    path = tmp_path / "s.jsonl"
     maps = [rough(rng) for _ in range(4)]
     maps.append(replace(maps[0], heights=0.01 * maps[0].heights))
-    asked = {"E_star": 1e11, "solves": 5, "pilot": 5, "path": path}
-    found = mcgw.elastic(maps, separation="1 um", **asked)
+    found = mcgw.elastic(maps, separation="1 um", E_star=1e11, solves=5, pilot=5)
     pressures = [
         1.25 * located(Pressed(x.heights - x.heights.mean(), x.size, 1e11, separation=1e-6))["pressure"]
         for x in maps
@@ -161,53 +115,12 @@ def test_takes_a_separation(tmp_path, rng, monkeypatch):
     assert found.quantities == ("area", "stiffness", "conductance", "pressure")
     assert found.mean("pressure") == pytest.approx(np.mean(pressures), rel=1e-12)
     assert "Pa" in str(found)
-    for other in ({"separation": "2 um"}, {"pressure": 1e-6}):
-        with pytest.raises(mcgw.StoreError, match="another path"):
-            mcgw.elastic(maps, **other, **asked)
     with pytest.raises(mcgw.RunError, match="smaller separation"):
         mcgw.elastic(maps, separation="1 mm", E_star=1e11)
     apart = Level("elastic", "stand-in", lambda pressed: dict.fromkeys(located(pressed), 0.0), 1.0)
     monkeypatch.setattr(public, "LEVELS", (*LEVELS[:2], apart))  # the dearest level decides
     with pytest.raises(mcgw.RunError, match="none of 5 maps touches"):
         mcgw.elastic(maps, separation="1 um", E_star=1e11)
-
-
-@pytest.mark.parametrize("held", [b"", b"my notes", b"my notes\n", b"\x89HDF\r\n\x1a\n", b"[1]\n"])
-def test_a_file_in_the_way_stays(held, tmp_path):
-    path = tmp_path / "solves.jsonl"
-    path.write_bytes(held)
-    with pytest.raises(mcgw.StoreError, match="another path"):
-        mcgw.elastic(SPECTRUM, pressure=5e7, E_star=1e11, rel_err=0.2, path=path)
-    assert path.read_bytes() == held
-
-
-def test_a_list_is_known_by_all_of_its_maps(tmp_path, rng):
-    maps = [rough(rng) for _ in range(5)]
-    asked = {"pressure": 5e7, "E_star": 1e11, "solves": 4, "pilot": 4, "path": tmp_path / "s.jsonl"}
-    mcgw.elastic(maps[:4], **asked)
-    with pytest.raises(mcgw.StoreError, match="another path"):
-        mcgw.elastic([*maps[:3], maps[4]], **asked)
-
-
-def test_command(tmp_path, capsys):
-    scene = tmp_path / "s.toml"
-    scene.write_text(
-        '[surface]\nm0 = 1e-12\nm2 = 0.3\nm4 = 3e11\nnominal_area = "1600 um^2"\nE_star = 1e11\n'
-        "[contact]\nseparations = [1.0]\n[ensemble]\nn_surfaces = 2\n"
-    )
-    from mcgw.cli import main
-
-    asked = {"pressure": 5e7, "solves": 4, "pilot": 4, "path": tmp_path / "own.jsonl", "E_star": "50 GPa"}
-    mcgw.elastic(mcgw.load_scene(scene), **asked)  # what is given counts, not the scene's
-    assert json.loads(asked["path"].read_text().splitlines()[0])["E_star"] == 5e10
-    out = tmp_path / "solves.jsonl"
-    code = main(["elastic", str(scene), "--pressure", "50MPa", "--rel-err", "0.3", "-o", str(out)])
-    printed = capsys.readouterr().out
-    assert code == 0
-    assert "mean_gap" in printed
-    assert str(out) in printed
-    header = json.loads(out.read_text().splitlines()[0])
-    assert (header["E_star"], header["pressure"]) == (1e11, 5e7)
 
 
 @pytest.mark.parametrize(
@@ -232,17 +145,6 @@ def test_command(tmp_path, capsys):
 def test_refuses(changes, words):
     with pytest.raises(ValueError, match=words):
         mcgw.elastic(SPECTRUM, **{"pressure": 5e7, "E_star": 1e11, **changes})
-
-
-def test_an_area_is_neither_too_small_nor_too_large_for_its_waves():
-    surface = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 mm^2", "78.6 GPa")
-    scene = mcgw.Scene(surface, separations=0.0, n_surfaces=2, seed=1)
-    for area, words in (
-        ("0.01 mm^2", "longer than the map.* or more"),
-        ("10 cm^2", "more than 2048; .* or less"),
-    ):
-        with pytest.raises(ValueError, match=words):
-            mcgw.elastic(scene.replace(nominal_area=area), pressure=1e6)
 
 
 def test_a_scene_without_a_spectrum_is_told():

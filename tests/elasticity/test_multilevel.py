@@ -7,34 +7,34 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.stats import t as student
 
-from mcgw.elasticity.multilevel import design, differences, mean_of, terms_of
+from mcgw.elasticity.multilevel import design, difference, mean_of, terms_of
 
 
 def made_up(rng, maps):
     """Three levels of two quantities: 0.9 of the variance is known to the second one."""
     common, own = rng.standard_normal((maps, 2)), rng.standard_normal((2, maps, 2))
     dear = 10 + common + 0.3 * own[0]
-    return {0: 7 + 0.8 * common + own[1], 1: 9 + common, 2: dear}
+    return np.stack([7 + 0.8 * common + own[1], 9 + common, dear], axis=1)
 
 
 @pytest.mark.parametrize("tried", [2, 5])
 def test_of_one_level_takes_the_maps_that_the_error_asks_for(tried, rng):
     pilot = rng.normal([3.0, 10.0], [0.6, 1.0], (tried, 2))
     asked = (student.ppf(0.975, 20) * pilot.std(axis=0, ddof=1) / pilot.mean(axis=0) / 0.02) ** 2
-    found = design({0: pilot}, [2.0], 0.02)
+    found = design(pilot[:, None], [2.0], 0.02)
     assert (found.chain, found.maps) == ((0,), (math.ceil(asked.max()),))
     assert (found.cost, found.plain) == pytest.approx((2 * found.maps[0], 2 * asked.max()))
-    assert design({0: pilot}, [2.0], 0.02, solves=7).maps == (7,)
-    assert design({0: pilot}, [2.0], 0.9).maps == (4,)
+    assert design(pilot[:, None], [2.0], 0.02, solves=7).maps == (7,)
+    assert design(pilot[:, None], [2.0], 0.9).maps == (4,)
 
 
 def test_takes_the_chain_that_costs_least(rng):
     pilot = made_up(rng, 2000)
     assert design(pilot, (0.01, 0.1, 10.0), 0.01).chain == (1, 2)
     assert design(pilot, (0.01, 9.0, 10.0), 0.01).chain != (1, 2)
-    useless = {0: rng.standard_normal((500, 2)), 2: pilot[2][:500]}
-    alone = design(useless, (1.0, 0.0, 1.5), 0.01)
-    assert alone.chain == (2,)
+    useless = np.stack([rng.standard_normal((500, 2)), pilot[:500, 2]], axis=1)
+    alone = design(useless, (1.0, 1.5), 0.01)
+    assert alone.chain == (1,)
     assert_allclose(alone.plain / alone.cost, 1, rtol=0.05)
 
 
@@ -59,7 +59,7 @@ def test_covers_and_has_no_bias(rng):
     true, covered, means, many = 10.0, 0, [], 2000
     for _ in range(many):
         samples = [
-            differences(made_up(rng, n), term) for n, term in zip((60, 12), terms_of((1, 2)), strict=True)
+            difference(made_up(rng, n)[:, term]) for n, term in zip((60, 12), terms_of((1, 2)), strict=True)
         ]
         found = mean_of(samples)
         low, high = found.interval()

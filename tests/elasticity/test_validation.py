@@ -113,13 +113,6 @@ def test_stiffness_is_the_slope_of_load_over_gap(interaction):
         assert summits.at(x).stiffness < 0.97 * slope
 
 
-def test_beyond_the_lowest_gap_there_is_no_load():
-    summits = models.summits_of("one radius", *MOMENTS[2.1])
-    model = models.Model(summits, "summits")
-    assert math.isnan(model.load_at(-50 * math.sqrt(MOMENTS[2.1][0])))
-    assert math.isnan(model.stiffness(-50 * math.sqrt(MOMENTS[2.1][0])))
-
-
 @pytest.mark.parametrize("k", [0, -1])
 def test_maps_come_again_from_their_seeds(k):
     """Moments of a solved map, also by derivatives of its heights."""
@@ -134,24 +127,6 @@ def test_maps_come_again_from_their_seeds(k):
     assert np.mean(z**2) == pytest.approx(row["m0"], rel=1e-8)
     assert np.mean(slope**2) + np.mean(across**2) == pytest.approx(2 * row["m2"], rel=1e-8)
     assert np.mean(bend**2) == pytest.approx(row["m4"], rel=0.03)  # one map is not quite isotropic
-
-
-def test_refined_maps_are_the_same_maps():
-    coarse = rough_maps.GaussianMap(0.8, 5.0, 3, 16)
-    fine = rough_maps.GaussianMap(0.8, 5.0, 3, 16, pixels=16)
-    assert np.abs(fine.heights()[::2, ::2] - coarse.heights()).max() < 1e-14
-
-
-def test_a_torn_line_does_not_count(tmp_path):
-    path = tmp_path / "solves.csv"
-    row = dict.fromkeys(solve_table.COLUMNS, 1.5) | {"kind": "caps", "job": "a", "purpose": "study"}
-    solve_table.append(row, path)
-    whole = path.read_bytes()
-    path.write_bytes(whole + whole.splitlines()[1][:20])
-    assert [x["job"] for x in solve_table.read(path)] == ["a"]
-    solve_table.append(row | {"job": "b"}, path)
-    solve_table.append(row | {"p": 2.5}, path)  # by two who did not know of each other
-    assert [(x["job"], x["p"]) for x in solve_table.read(path)] == [("a", 1.5), ("b", 1.5)]
 
 
 def test_the_solver_finds_hertz_and_the_square_lattice():

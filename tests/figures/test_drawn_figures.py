@@ -199,8 +199,8 @@ def test_convergence_without_slopes(make_scene, kept, tmp_path):
 
 
 def test_tradeoff(make_scene, kept, tmp_path, recorded):
-    from mcgw.elasticity.ladder import Ladder, Rung
     from mcgw.ensemble.prices import Way
+    from mcgw.statistics.ladder import Ladder, Rung
     from mcgw.statistics.measured_ways import Point
     from mcgw.statistics.tradeoff import Tradeoff
 

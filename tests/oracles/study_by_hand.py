@@ -1,7 +1,7 @@
 """A study of speed and accuracy by hand, for tables and figures."""
 
-from mcgw.elasticity.ladder import Ladder, Rung
 from mcgw.ensemble.prices import Way
+from mcgw.statistics.ladder import Ladder, Rung
 from mcgw.statistics.measured_ways import Point
 from mcgw.statistics.tradeoff import Tradeoff
 

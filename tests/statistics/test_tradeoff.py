@@ -9,11 +9,11 @@ from scipy.stats import kstwobign, norm
 
 import analytic
 import mcgw
-from mcgw.elasticity.ladder import Ladder, Rung
 from mcgw.ensemble.prices import WANTS, Needs, Way, advise, sampled_ways, wants_of
 from mcgw.sampling import samplers
 from mcgw.sampling.asperities import worst_of_values
 from mcgw.statistics import measured_ways
+from mcgw.statistics.ladder import Ladder, Rung
 from mcgw.statistics.measured_ways import Task
 from mcgw.statistics.tradeoff import tradeoff
 

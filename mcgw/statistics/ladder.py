@@ -83,22 +83,16 @@ def ladder_of(scene: Scene, alone: Scene, load: float, ways: Sequence[Any]) -> L
 
 
 def _of_maps(scene: Scene, pressure: float) -> Iterator[Rung]:
-    """Located summits and boundary elements: errors and seconds of a few maps, and what a mean takes."""
+    """Boundary elements: what means of `mcgw.elastic` within some errors take, by a few maps."""
     from mcgw.elasticity.levels import LEVELS  # for scenes with a spectrum alone
     from mcgw.elasticity.multilevel import design
     from mcgw.elasticity.solves import Solves
     from mcgw.elasticity.sources import maps_of
 
     solves = Solves(maps_of(scene), {"pressure": pressure}, scene.surface.E_star, 1, ["conductance"])
-    rows = [[solves.at(level, number) for level in LEVELS] for number in range(_PILOT)]
-    table = {k: np.array([row[k][0] for row in rows]) for k in range(len(LEVELS))}
-    seconds = [float(np.median([row[k][1] for row in rows])) for k in range(len(LEVELS))]
-    off = table[1][:, 0] / table[2][:, 0] - 1
-    model = abs(float(off.mean())) + 2 * float(off.std(ddof=1)) / _PILOT**0.5
-    scatter = 2 * float(table[1].std(ddof=1) / table[1].mean())
-    yield from (
-        Rung("located", n, n * seconds[1], scatter / n**0.5, hypot(model, _PIXELS)) for n in _SIZES[:4]
-    )
+    rows = [solves.at(LEVELS, number) for number in range(_PILOT)]
+    values, seconds = (np.array(part) for part in zip(*rows, strict=True))
+    solve = float(np.median(seconds[:, -1]))
     for target in _TARGETS:
-        planned = design(table, [level.cost for level in LEVELS], target)
-        yield Rung("boundary elements", planned.maps[-1], planned.cost * seconds[2], target, _PIXELS)
+        planned = design(values, [level.cost for level in LEVELS], target)
+        yield Rung("boundary elements", planned.maps[-1], planned.cost * solve, target, _PIXELS)
