@@ -11,6 +11,7 @@ from contextlib import redirect_stdout, suppress
 from importlib import import_module
 from pathlib import Path
 
+import house
 from paper_page import paper_page
 
 ROOT = Path(__file__).parent.parent
@@ -41,7 +42,8 @@ def pages() -> dict[str, str]:
     found |= {"reference/commands": commands_page(), "about/paper": paper_page()}
     found |= {f"reference/{package}": names_page(package) for package in ("mcgw", "analytic")}
     found |= {"explanation/errata-proofs": proofs()}
-    return {f"{name}.{'txt' if name in PARTS else 'md'}": text for name, text in found.items()}
+    named = {f"{name}.{'txt' if name in PARTS else 'md'}": text for name, text in found.items()}
+    return named | {"explanation/house.svg": house.svg()}
 
 
 def write(folder: Path) -> None:

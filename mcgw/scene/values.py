@@ -153,10 +153,10 @@ class Values:
         "seed of the random numbers, 0 to 2^64 - 1; default: a random one, which is recorded")
     sampler: str = key("ensemble", Word(SAMPLERS), '"cells"',
         "how surfaces are drawn: `auto` (default) uses the fastest exact one of `cells`, `tail`, `direct`; "
-        "or `aggregate` ([how they differ](../how-to/choose-a-sampler.md))", "auto")
+        "or `aggregate` ([how they differ](../how-to/speed-and-accuracy.md))", "auto")
     keep: Literal["sums", "statistics"] = key("ensemble",
         Word(("sums", "statistics")), '"statistics"',
-        "`sums` (default); `statistics`: [no surfaces](../how-to/keep-statistics.md), only mean, deviation "
+        "`sums` (default); `statistics`: [no surfaces](../how-to/speed-and-accuracy.md), only mean, deviation "
         "and covariance, of any number of surfaces in the same memory", "sums")
     rel_err: As["float | str | Mapping[str, Any] | None", float | Mapping[str, float | list[float]] | None
     ] = key("ensemble",

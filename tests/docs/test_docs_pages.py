@@ -103,6 +103,7 @@ def children(name):
     for block in re.findall(r"^```\{toctree\}\n(.*?)^```", pages()[name], flags=re.DOTALL | re.MULTILINE):
         for line in block.splitlines():
             if line and not line.startswith(":"):
+                line = line.rpartition("<")[2].rstrip(">")  # a title may stand before the page
                 yield (DOCS / name).parent.joinpath(line).resolve().relative_to(DOCS).as_posix() + ".md"
 
 

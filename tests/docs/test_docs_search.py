@@ -21,7 +21,7 @@ WANTED = {
     "Greenwood Williamson": "how-to/coming-from", "tamaas": "how-to/coming-from",
     "SurfaceTopography": "how-to/coming-from", "height map": "how-to/which-model",
     "profile": "how-to/profiles-and-ra", "plastic": "explanation/contact-laws",
-    "hardness": "how-to/choose-a-contact-law", "adhesion": "how-to/choose-a-contact-law",
+    "hardness": "how-to/law-for-a-joint", "adhesion": "how-to/law-for-a-joint",
     "JKR": "explanation/contact-laws", "coating": "tutorials/map-to-conductance",
     "oxide film": "how-to/which-model", "interaction": "explanation/interaction",
     "bandwidth": "reference/glossary", "Abaqus": "how-to/tables-for-other-programs",

@@ -86,7 +86,6 @@ def test_every_package_and_its_data_are_in_the_wheel():
         assert {p for p in others if p.parent.name != "__pycache__"} == data
 
 
-def test_contributing_names_every_layer_in_its_order():
-    rows = re.findall(r"^\| (`.+?`) \|", text_of("CONTRIBUTING.md"), flags=re.MULTILINE)
-    named = [name for row in rows for name in re.findall(r"`(\w+)`", row)]
+def test_the_page_on_architecture_names_every_layer_in_its_order():
+    named = re.findall(r"\*\*`(\w+)`\*\*", text_of("docs/explanation/architecture.md"))
     assert named == [name for name in LAYERS if name not in ("errors", "cli")]
