@@ -92,6 +92,8 @@ def line(start: tuple[int, int], end: tuple[int, int]) -> str:
 
 def box(name: str, lines: int, x: int, y: int) -> str:
     """Return the box of a package with its number of lines."""
-    frame = f'<rect x="{x}" y="{y}" width="{WIDTH}" height="{HEIGHT}" rx="5" fill="#dbe9f6" stroke="#004f8b"/>'
+    frame = (
+        f'<rect x="{x}" y="{y}" width="{WIDTH}" height="{HEIGHT}" rx="5" fill="#dbe9f6" stroke="#004f8b"/>'
+    )
     words = f'<text x="{x + WIDTH // 2}" y="{{}}" text-anchor="middle" font-size="{{}}">{{}}</text>'
     return frame + words.format(y + 18, 14, name) + words.format(y + 33, 10, f"{lines} lines")

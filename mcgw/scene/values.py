@@ -156,8 +156,8 @@ class Values:
         "or `aggregate` ([how they differ](../how-to/speed-and-accuracy.md))", "auto")
     keep: Literal["sums", "statistics"] = key("ensemble",
         Word(("sums", "statistics")), '"statistics"',
-        "`sums` (default); `statistics`: [no surfaces](../how-to/speed-and-accuracy.md), only mean, deviation "
-        "and covariance, of any number of surfaces in the same memory", "sums")
+        "`sums` (default); `statistics`: [no surfaces](../how-to/speed-and-accuracy.md), only mean, "
+        "deviation and covariance, of any number of surfaces in the same memory", "sums")
     rel_err: As["float | str | Mapping[str, Any] | None", float | Mapping[str, float | list[float]] | None
     ] = key("ensemble",
         Either((ByName(Either((_SHARES, _SHARE), _KNOWN_TO), "", (*SUMS, *UNLOADING)), _SHARE), _KNOWN_TO),
