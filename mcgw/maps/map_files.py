@@ -234,18 +234,18 @@ def read_map(
         raise ValueError(f"{path}: is not a regular file" if path.exists() else f"{path}: no such file")
     with np.errstate(over="ignore", invalid="ignore"):  # of scales: a map refuses what comes of it
         topography = _read(path, pixel, unit, missing)
-    if topography.assumed_unit and topography.steepness > STEEPEST:
+    slope = topography.steepness
+    if slope == 0 or FLATTEST <= slope <= STEEPEST:
+        return topography
+    if topography.assumed_unit and slope > STEEPEST:
         raise ValueError(
             f"{path}: gives no unit of its heights, and in {topography.assumed_unit} their typical slope "
-            f"would be {topography.steepness:.3g}; give --unit (um, nm, ...), or another --pixel"
+            f"would be {slope:.3g}; give --unit (um, nm, ...), or another --pixel"
         )
-    slope = topography.steepness
-    if not (slope == 0 or FLATTEST <= slope <= STEEPEST):
-        raise ValueError(
-            f"{path}: the typical slope of this map is {slope:.3g}, which no surface has ({FLATTEST:g} to "
-            f"{STEEPEST:g}): its heights, or its pixel of {topography.pixel[0]:.3g} m, are in another unit"
-        )
-    return topography
+    raise ValueError(
+        f"{path}: the typical slope of this map is {slope:.3g}, which no surface has ({FLATTEST:g} to "
+        f"{STEEPEST:g}): its heights, or its pixel of {topography.pixel[0]:.3g} m, are in another unit"
+    )
 
 
 def _read(

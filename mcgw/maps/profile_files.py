@@ -11,10 +11,9 @@ from mcgw.formats.named_files import open_npy
 from mcgw.maps.foreign import is_foreign_line, read_foreign_line
 from mcgw.maps.grid_of_points import along_line
 from mcgw.maps.profile import Profile, profile_at
-from mcgw.maps.text_file import header_units, lines_of, numbers_of, words_of
+from mcgw.maps.text_file import MOST_HEADER, header_units, lines_of, numbers_of, words_of
 from mcgw.maps.topography import XYZ, height_unit
 
-_MOST_HEADER = 500  # lines
 _MOST_POINTS = 2**26
 _LOOKED_AT = 20  # lines of numbers
 _COMMA_ALONE = re.compile(r"\s*[-+]?\d+(?:,\d+)?(?:[eE][-+]?\d+)?\s*")
@@ -82,8 +81,8 @@ def _table(path: Path, most: int) -> tuple[list[str], Lines]:
                 break
         else:
             header.append(line)
-            if len(header) > _MOST_HEADER:
-                raise ValueError(f"{path}: the first {_MOST_HEADER} lines are not numbers; is it a profile?")
+            if len(header) > MOST_HEADER:
+                raise ValueError(f"{path}: the first {MOST_HEADER} lines are not numbers; is it a profile?")
     if not lines:
         raise ValueError(f"{path}: holds no numbers")
     return header, lines
@@ -147,7 +146,10 @@ def holds_profile(path: Path) -> bool:
     ending = path.suffix.lower()
     try:
         if ending in _TEXT:
-            return _columns(path) in (1, 2) or (_columns(path) == XYZ and _is_line(path))
+            columns = _columns(path)
+            return columns < XYZ or (
+                columns == XYZ and along_line(_values(path, _table(path, _MOST_POINTS)[1])) is not None
+            )
         if ending == ".npy":
             return open_npy(path).ndim == 1
         if ending in _MAPS or not path.is_file():
@@ -155,12 +157,6 @@ def holds_profile(path: Path) -> bool:
         return is_foreign_line(path)
     except (OSError, ValueError):
         return False
-
-
-def _is_line(path: Path) -> bool:
-    """Whether points of x, y and z all have one x, or one y."""
-    points = _values(path, _table(path, _MOST_POINTS)[1])
-    return points.shape[1] == XYZ and along_line(points) is not None
 
 
 def read_profile(path: Path, *, spacing: float | None = None, unit: str | None = None) -> Profile:
@@ -184,24 +180,21 @@ def read_profile(path: Path, *, spacing: float | None = None, unit: str | None =
     """
     if not path.is_file():
         raise ValueError(f"{path}: is not a regular file" if path.exists() else f"{path}: no such file")
-    profile = _read(path, spacing, unit)
+    ending = path.suffix.lower()
+    if ending in _TEXT:
+        profile = read_profile_text(path, spacing, unit)
+    elif ending == ".npy":
+        profile = _array(path, spacing, unit)
+    elif spacing is not None:
+        raise ValueError(f"{path}: gives the distance between its points; leave --pixel out")
+    else:
+        profile = _profile(path, *read_foreign_line(path, unit))
     if profile.doubtful:
         raise ValueError(
             f"{path}: does not give all units, and in {profile.assumed_unit} {profile.doubtful}; give --unit "
             "(um, nm, ...) of the heights, and --pixel, the distance between points"
         )
     return profile
-
-
-def _read(path: Path, spacing: float | None, unit: str | None) -> Profile:
-    ending = path.suffix.lower()
-    if ending in _TEXT:
-        return read_profile_text(path, spacing, unit)
-    if ending == ".npy":
-        return _array(path, spacing, unit)
-    if spacing is not None:
-        raise ValueError(f"{path}: gives the distance between its points; leave --pixel out")
-    return _profile(path, *read_foreign_line(path, unit))
 
 
 def _array(path: Path, spacing: float | None, unit: str | None) -> Profile:

@@ -14,7 +14,7 @@ from mcgw.maps.grid_of_points import grid_of
 from mcgw.maps.topography import XYZ, Topography, checked_shape, height_unit, in_metres, metres_in
 
 _MOST_LINE = 2**24
-_MOST_HEADER = 500  # lines
+MOST_HEADER = 500  # lines
 _LENGTH = re.compile(r"#\s*(Width|Height|Breite|Höhe)\s*:\s*(.*?)\s*$")
 _SIZE = re.compile(r"([-+]?[.,\d]+(?:[eE][-+]?\d+)?)\s*([^\d\s.,+-]\S*)$")
 _UNITS = {name: name for name in METRES} | {"Nanometer": "nm", "Micrometer": "um", "Millimeter": "mm"}
@@ -110,7 +110,7 @@ def _rows(path: Path) -> tuple[_Header, list[Array]]:
         try:
             row = numbers_of(path, number, words)
         except ForeignError as error:
-            if not rows and len(header.lines) < _MOST_HEADER:
+            if not rows and len(header.lines) < MOST_HEADER:
                 header.refused = header.refused or error
                 header.lines.append(line)
                 continue
