@@ -99,12 +99,12 @@ class RandomCurvature:
         return Nayak(self.alpha)
 
     def ratio(self, g: ArrayLike) -> Array:
-        """Radius ratio of a curvature."""
+        """Return the radius ratio of a curvature."""
         with np.errstate(divide="ignore"):
             return np.minimum(MEAN_CURVATURE / np.asarray(g, dtype=np.float64), self.largest)
 
     def steepest(self, s: float) -> float:
-        """Curvature above which there is next to no summit as low as `s`."""
+        """Return the curvature above which there is next to no summit as low as `s`."""
         x = self.heights.over_rms([s])
         return float(CurvatureGivenHeight(self.alpha, x).highest(0 * x)[0])
 
@@ -114,24 +114,24 @@ class RandomCurvature:
         return tables_of(float(self.alpha)).width / self.heights.std / 2
 
     def pdf(self, g: ArrayLike, s: ArrayLike) -> Array:
-        """Probability density of the curvature at given heights, broadcast."""
+        """Return the probability density of the curvature at given heights, broadcast."""
         return self._broadcast(lambda a, x: CurvatureGivenHeight(self.alpha, x).pdf(a), g, s)
 
     def with_height(self, g: ArrayLike, s: ArrayLike) -> Array:
-        """Probability density of reduced heights and curvatures together, broadcast."""
+        """Return the probability density of reduced heights and curvatures together, broadcast."""
         found = self._broadcast(lambda a, x: CurvatureGivenHeight(self.alpha, x).with_height(a), g, s)
         return self.heights.std * found
 
     def cdf(self, g: ArrayLike, s: ArrayLike) -> Array:
-        """Probability of a smaller curvature, to full relative accuracy."""
+        """Return the probability of a smaller curvature, to full relative accuracy."""
         return self._broadcast(lambda a, x: CurvatureGivenHeight(self.alpha, x).between(0 * a, a), g, s)
 
     def sf(self, g: ArrayLike, s: ArrayLike) -> Array:
-        """Probability of a larger curvature, to full relative accuracy."""
+        """Return the probability of a larger curvature, to full relative accuracy."""
         return self._broadcast(lambda a, x: CurvatureGivenHeight(self.alpha, x).sf(a), g, s)
 
     def rule(self, s: ArrayLike) -> tuple[Array, Array]:
-        """Gauss's rule in the root of the ratio.
+        """Return Gauss's rule in the root of the ratio.
 
         Parameters
         ----------
@@ -153,7 +153,7 @@ class RandomCurvature:
         return MEAN_CURVATURE * root.reshape(shape) ** 2, probability.reshape(shape)
 
     def mean(self, power: float, s: ArrayLike) -> Array:
-        """Mean of a power of the radius ratio at given heights, in their shape.
+        """Return the mean of a power of the radius ratio at given heights, in their shape.
 
         Parameters
         ----------
@@ -179,7 +179,7 @@ class RandomCurvature:
         return np.ones_like(x) if power == 0 else _means(self.alpha, self.largest, float(power))(x)
 
     def summits(self, rng: np.random.Generator, n: int) -> tuple[Array, Array]:
-        """Reduced heights and radius ratios of `n` summits, drawn together (`analytic.Nayak.summits`)."""
+        """Draw reduced heights and radius ratios of `n` summits together (`analytic.Nayak.summits`)."""
         s, g = self.heights.summits(rng, n)
         return s, self.ratio(g)
 

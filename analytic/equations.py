@@ -25,7 +25,7 @@ def mean(
     *,
     heights: HeightLaw = GAUSSIAN,
 ) -> Array:
-    """Mean of a quantity over all surfaces: `Model.mean`, in the shape of `h`."""
+    """Return the mean of a quantity over all surfaces: `Model.mean`, in the shape of `h`."""
     return Model(surface, grading=Homogeneous() if grading is None else grading, heights=heights).mean(
         quantity, h
     )
@@ -34,24 +34,24 @@ def mean(
 def load(
     surface: Surface, h: ArrayLike, grading: Grading | None = None, *, heights: HeightLaw = GAUSSIAN
 ) -> Array:
-    """Normal load P, N: Eqs. (1b), (3), (5), (6), ``(4/3) A_n eta E* R^(1/2) sigma^(3/2) F*_{3/2}(h)``."""
+    """Return load P, N: Eqs. (1b), (3), (5), (6), ``(4/3) A_n eta E* R^(1/2) sigma^(3/2) F*_{3/2}(h)``."""
     return mean(surface, "load", h, grading, heights=heights)
 
 
 def area(surface: Surface, h: ArrayLike, *, heights: HeightLaw = GAUSSIAN) -> Array:
-    """Real contact area A, m^2: Eq. (1a), ``pi A_n eta sigma R F_1(h)``. The grading does not enter."""
+    """Return the real contact area A, m^2: Eq. (1a), ``pi A_n eta sigma R F_1(h)``, whatever the grading."""
     return mean(surface, "area", h, heights=heights)
 
 
 def contacts(surface: Surface, h: ArrayLike, *, heights: HeightLaw = GAUSSIAN) -> Array:
-    """Mean number of asperities in contact, ``A_n eta F_0(h)``."""
+    """Return the mean number of asperities in contact, ``A_n eta F_0(h)``."""
     return mean(surface, "contacts", h, heights=heights)
 
 
 def stiffness(
     surface: Surface, h: ArrayLike, grading: Grading | None = None, *, heights: HeightLaw = GAUSSIAN
 ) -> Array:
-    """Normal stiffness K = -dP/dd, N/m, ``2 A_n eta E* (R sigma)^(1/2) F*_{1/2}(h)``.
+    """Return the normal stiffness K = -dP/dd, N/m, ``2 A_n eta E* (R sigma)^(1/2) F*_{1/2}(h)``.
 
     What Eqs. (14) and (15) of the paper call conductance is this, up to a factor.
     """
@@ -59,7 +59,7 @@ def stiffness(
 
 
 def conductance(surface: Surface, h: ArrayLike, *, rho: float = 1.0, heights: HeightLaw = GAUSSIAN) -> Array:
-    """Contact conductance of the spots, each 4 a / rho: ``(4/rho) A_n eta (R sigma)^(1/2) F_{1/2}(h)``.
+    """Return the conductance of the spots, each 4 a / rho: ``(4/rho) A_n eta (R sigma)^(1/2) F_{1/2}(h)``.
 
     Barber's analogy holds spot by spot, ``C_i = 2 K_i/(E_i rho) = 4 a_i/rho`` with the spot's own
     modulus E_i, so at a given separation the conductance does not depend on the grading.
@@ -82,7 +82,7 @@ def barber_conductance(
     rho: float = 1.0,
     heights: HeightLaw = GAUSSIAN,
 ) -> Array:
-    """The paper's conductance, Eq. (14) corrected: the stiffness with the factor of a homogeneous body.
+    """Return the paper's conductance, Eq. (14) corrected: stiffness times the factor of a homogeneous body.
 
     Printed are ``-2 dP/d(d/sigma)``, which is a force, a stray ``1/sqrt(2 pi)`` in line 1, a wrong
     sign in line 2, and ``-8/3 F*_{1/2}`` in line 3 where ``dF*_{3/2}/dh = -(3/2) F*_{1/2}`` gives
@@ -107,7 +107,7 @@ def barber_conductance(
 def area_per_load(
     surface: Surface, h: ArrayLike, grading: Grading | None = None, *, heights: HeightLaw = GAUSSIAN
 ) -> Array:
-    """Real area per load A/P, m^2/N: Eq. (10), without a grading Eq. (11).
+    """Return the real area per load A/P, m^2/N: Eq. (10), without a grading Eq. (11).
 
     ``(3 pi/4) (R/sigma)^(1/2)/E* F_1(h)/F*_{3/2}(h)``, also where both underflow.
     """
@@ -116,7 +116,7 @@ def area_per_load(
 
 
 def area_per_load_ratio(h: ArrayLike, grading: Grading, *, heights: HeightLaw = GAUSSIAN) -> Array:
-    """A/P of the graded surface relative to the homogeneous one at the same separation, Eq. (12).
+    """Return A/P of the graded surface over that of the homogeneous one at the same separation, Eq. (12).
 
     ``F_{3/2}(h)/F*_{3/2}(h)``, in the shape of `h`.
     """
@@ -124,7 +124,7 @@ def area_per_load_ratio(h: ArrayLike, grading: Grading, *, heights: HeightLaw = 
 
 
 def stiffness_ratio(h: ArrayLike, grading: Grading, *, heights: HeightLaw = GAUSSIAN) -> Array:
-    """Stiffness of the graded surface relative to the homogeneous one at the same separation, Eq. (15).
+    """Return the stiffness of the graded over that of the homogeneous surface at equal separation, Eq. (15).
 
     The paper calls it the ratio of the conductances; that one is 1 (see `conductance`). At equal
     load even its trend is the opposite: see `analytic.ratio_at_equal_load`.
@@ -141,7 +141,7 @@ def mean_modulus(
     weight: Literal["number", "area", "load"] = "load",
     heights: HeightLaw = GAUSSIAN,
 ) -> Array:
-    """Mean of E*(s)/E* over the asperities in contact.
+    """Return the mean of E*(s)/E* over the asperities in contact.
 
     Parameters
     ----------
@@ -177,7 +177,7 @@ def mean_modulus(
 
 
 def plasticity_index(modulus: ArrayLike, *, E_star: float, slope: float, hardness: float) -> Array:
-    """Plasticity index of Sridhar and Yovanovich, ``psi = H_e/H_v``: Eq. (13).
+    """Return the plasticity index of Sridhar and Yovanovich, ``psi = H_e/H_v``: Eq. (13).
 
     The paper reads it at the just-touching height, s = d/sigma (its Fig. 4); that is
     ``modulus = grading(h)``. What the load rests on is ``modulus = mean_modulus(h, grading)``: at

@@ -69,7 +69,7 @@ class HeightRule:
         *,
         branches: Iterable[Branch] = (),
     ) -> "HeightRule":
-        """The rule for these reduced separations, this grading and law of the heights.
+        """Return the rule for these reduced separations, this grading and law of the heights.
 
         `branches` are those of what is summed, unless that is powers of the approach.
         """
@@ -79,11 +79,11 @@ class HeightRule:
         return cls(*law_rule(heights, h, grading, further=further), float(heights.cdf(h[0])))
 
     def mean(self, f: Array) -> Array:
-        """Mean of each column of `f`, of what lies above the lowest separation; in this thread alone."""
+        """Return the mean of each column of `f` above the lowest separation; in this thread alone."""
         return np.asarray(np.einsum("i,ij->j", self.probabilities, f))
 
     def fluctuations(self, f: Array, count: Count) -> "Fluctuations":
-        """What makes sums of the columns of `f` fluctuate.
+        """Return what makes sums of the columns of `f` fluctuate.
 
         For a fixed number of asperities the deviations of the terms from their means, counted from what
         almost every asperity contributes (nothing, or the same), so that a variance like 1e-89 keeps its
@@ -101,7 +101,7 @@ class HeightRule:
     def terms(
         self, quantities: Sequence[str], separations: ArrayLike, grading: Grading, ways: Ways | None = None
     ) -> Array:
-        """What one asperity adds to each quantity, over its scale: shape (m, quantities * separations).
+        """Return what an asperity adds to each quantity, over its scale: shape (m, quantities * separations).
 
         Without `ways` these are powers of the approach and of the radius, as under Hertz's law.
         """
@@ -171,14 +171,14 @@ class Fluctuations:
     radius: Array | None = None
 
     def moment(self, k: int) -> Array:
-        """Mean of the `k`-th power, shape (columns,); infinite where there is none."""
+        """Return the mean of the `k`-th power, shape (columns,); infinite where there is none."""
         rule = self.rule
         powers = reduce(np.multiply, [self.at_heights] * k)  # ten times as fast as **
         found = np.asarray(rule.mean(powers) + rule.below * self.below**k)
         return found if self.radius is None else np.where(k * self.radius < _DIVERGES, found, np.inf)
 
     def combined(self, mean: Array, own: Ints, factor: Array, other: Ints, press: Array) -> "Fluctuations":
-        """Of columns `own` times `factor` and columns `other` times `press`, to first order."""
+        """Return those of columns `own` times `factor` and columns `other` times `press`, to first order."""
         radius = self.radius
         if radius is not None:
             radius = np.maximum(
@@ -193,12 +193,12 @@ class Fluctuations:
         )
 
     def products(self) -> Array:
-        """Mean products of all columns, shape (columns, columns)."""
+        """Return the mean products of all columns, shape (columns, columns)."""
         weighted = self.at_heights * self.rule.probabilities[:, None]
         return np.asarray(weighted.T @ self.at_heights + self.rule.below * np.outer(self.below, self.below))
 
     def take(self, columns: NDArray[Any], unit: Array | float = 1.0) -> "Fluctuations":
-        """Some of the columns, in units of `unit`."""
+        """Return some of the columns, in units of `unit`."""
         return Fluctuations(
             self.rule,
             self.mean[columns] / unit,
@@ -208,12 +208,12 @@ class Fluctuations:
         )
 
     def turned(self, axes: Array) -> "Fluctuations":
-        """Combinations of the columns; `axes` has shape (columns, combinations)."""
+        """Return combinations of the columns; `axes` has shape (columns, combinations)."""
         radius = None if self.radius is None else np.where(axes, self.radius[:, None], 0.0).max(axis=0)
         return Fluctuations(self.rule, self.mean @ axes, self.at_heights @ axes, self.below @ axes, radius)
 
     def whitening(self, least: float) -> Array:
-        """Matrix that turns columns of unit variance into uncorrelated ones, shape (columns, axes).
+        """Return the matrix that makes columns of unit variance uncorrelated, shape (columns, axes).
 
         Combinations with a variance up to `least` are left out: differences of nearly equal columns.
         """

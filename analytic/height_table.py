@@ -72,7 +72,7 @@ class HeightTable(HeightLaw):
 
     @classmethod
     def of(cls, heights: ArrayLike) -> "HeightTable":
-        """The law of a sample, smooth between its order statistics.
+        """Return the law of a sample, smooth between its order statistics.
 
         Of K heights the ranks counted from either end are kept one by one up to 10, then in steps of a
         tenth: about 200 points, dense where the contacts are. Heights between two of them count as
@@ -113,7 +113,7 @@ class HeightTable(HeightLaw):
         return self.s
 
     def span(self, s: float) -> float:  # noqa: ARG002 - the same everywhere
-        """Any width: between the points the density is constant."""
+        """Return infinity: between the points the density is constant."""
         return np.inf
 
     @cached_property
@@ -122,37 +122,37 @@ class HeightTable(HeightLaw):
         return x, p, np.diff(p) / np.diff(x)
 
     def rvs(self, n: int, rng: np.random.Generator) -> Array:
-        """Interpolated between the points at uniform shares."""
+        """Draw by interpolation between the points at uniform fractions."""
         return np.asarray(np.interp(rng.random(n), self._points[1], self._points[0]))
 
     def pdf(self, s: Array) -> Array:
-        """Slope of the distribution function."""
+        """Return the slope of the distribution function."""
         x, _, slope = self._points
         piece = np.searchsorted(x, s, side="right") - 1
         inside = (piece >= 0) & (piece < slope.size)
         return np.asarray(np.where(inside, slope[np.clip(piece, 0, slope.size - 1)], 0.0))
 
     def log_ratio(self, s: Array, t: Array) -> Array:
-        """0 up to the next point, which no cell reaches beyond."""
+        """Return 0 up to the next point, which no cell reaches beyond."""
         return 0 * t + 0 * s
 
     def cdf(self, s: Array) -> Array:
-        """The distribution function."""
+        """Return the distribution function."""
         x, p, _ = self._points
         return np.asarray(np.interp(s, x, p))
 
     def sf(self, s: Array) -> Array:
-        """Counted from the top, so that the last shares keep their digits."""
+        """Return the upper tail, counted from the top, so that the last fractions keep their digits."""
         x, p, _ = self._points
         return np.asarray(np.interp(-np.asarray(s), -x[::-1], 1 - p[::-1]))
 
     def ppf(self, p: Array, below: float = np.inf) -> Array:
-        """Its inverse."""
+        """Return the inverse of the distribution function."""
         x, share, _ = self._points
         return np.asarray(np.interp(p * self.cdf(np.array(below)), share, x))
 
     def isf(self, p: Array, above: float = -np.inf) -> Array:
-        """Its inverse from the top."""
+        """Return the inverse, counted from the top."""
         x, share, _ = self._points
         return np.asarray(np.interp(p * self.sf(np.array(above)), 1 - share[::-1], x[::-1]))
 

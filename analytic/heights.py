@@ -41,30 +41,30 @@ class HeightLaw(Protocol):
         return ()
 
     def span(self, s: float) -> float:
-        """Width of a cell above `s` on which the density hardly bends; breaks and ends left aside."""
+        """Return the width of a cell above `s` on which the density hardly bends, without breaks and ends."""
         return narrowest(self, s)  # type: ignore[arg-type]  # laws are frozen
 
     def rvs(self, n: int, rng: np.random.Generator) -> Array:
-        """`n` heights from NumPy's generator."""
+        """Draw `n` heights by NumPy's generator."""
 
     def pdf(self, s: Array) -> Array:
-        """Probability density at `s`; at a jump, its value just above."""
+        """Return the probability density at `s`; at a jump, its value just above."""
 
     def log_ratio(self, s: Array, t: Array) -> Array:
-        """``log(pdf(s + t)/pdf(s))``, accurate for small `t`."""
+        """Return ``log(pdf(s + t)/pdf(s))``, accurate for small `t`."""
         return np.asarray(np.log(self.pdf(s + t) / self.pdf(s)))
 
     def cdf(self, s: Array) -> Array:
-        """Probability of a height below `s`, to full relative accuracy."""
+        """Return the probability of a height below `s`, to full relative accuracy."""
 
     def sf(self, s: Array) -> Array:
-        """Probability of a height above `s`, to full relative accuracy."""
+        """Return the probability of a height above `s`, to full relative accuracy."""
 
     def ppf(self, p: Array, below: float = np.inf) -> Array:
-        """Height at the share `p` of the heights below one, or of all."""
+        """Return the height at the share `p` of the heights below one, or of all."""
 
     def isf(self, p: Array, above: float = -np.inf) -> Array:
-        """Height at the share `p` of the heights above one, or of all, counted from the top."""
+        """Return the height at the share `p` of the heights above one, or of all, counted from the top."""
 
 
 @dataclass(frozen=True)
@@ -78,37 +78,37 @@ class Gaussian(HeightLaw):
     """
 
     def span(self, s: float) -> float:
-        """Where the logarithm of the density changes by about 0.8."""
+        """Return the width over which the logarithm of the density changes by about 0.8."""
         return 0.8 / (1 + abs(s))
 
     def rvs(self, n: int, rng: np.random.Generator) -> Array:
-        """Standard normal numbers."""
+        """Draw standard normal numbers."""
         return rng.standard_normal(n)
 
     def pdf(self, s: Array) -> Array:
-        """``exp(-s^2/2)/sqrt(2 pi)``."""
+        """Return ``exp(-s^2/2)/sqrt(2 pi)``."""
         return np.asarray(exp_minus_half_square(s) / np.sqrt(2 * np.pi))
 
     def log_ratio(self, s: Array, t: Array) -> Array:
-        """``-t (s + t/2)``."""
+        """Return ``-t (s + t/2)``."""
         return np.asarray(-t * (s + t / 2))
 
     def cdf(self, s: Array) -> Array:
-        """``Phi(s)``."""
+        """Return ``Phi(s)``."""
         return ndtr(s)
 
     def sf(self, s: Array) -> Array:
-        """``Phi(-s)``."""
+        """Return ``Phi(-s)``."""
         return ndtr(-s)
 
     def ppf(self, p: Array, below: float = np.inf) -> Array:
-        """``Phi^-1(p Phi(below))``, by logarithms where that underflows."""
+        """Return ``Phi^-1(p Phi(below))``, by logarithms where that underflows."""
         if below > _FAR:
             return ndtri(p * ndtr(below))
         return np.asarray(ndtri_exp(np.log(p) + log_ndtr(below)))
 
     def isf(self, p: Array, above: float = -np.inf) -> Array:
-        """``-Phi^-1(p Phi(-above))``."""
+        """Return ``-Phi^-1(p Phi(-above))``."""
         return -self.ppf(p, -above)
 
 
@@ -158,35 +158,35 @@ class ExponentialHeights(HeightLaw):
     breaks: ClassVar[tuple[float, ...]] = (-1.0,)
 
     def span(self, s: float) -> float:  # noqa: ARG002 - the same everywhere
-        """One half: the logarithm of the density is linear."""
+        """Return one half: the logarithm of the density is linear."""
         return _BEND
 
     def rvs(self, n: int, rng: np.random.Generator) -> Array:
-        """Standard exponential numbers, less their mean."""
+        """Draw standard exponential numbers minus their mean."""
         return rng.standard_exponential(n) - 1
 
     def pdf(self, s: Array) -> Array:
-        """``exp(-1 - s)`` for s >= -1."""
+        """Return ``exp(-1 - s)`` for s >= -1."""
         return np.asarray(np.where(s >= -1, exp(-1 - np.maximum(s, -1.0)), 0.0))
 
     def log_ratio(self, s: Array, t: Array) -> Array:
-        """``-t``."""
+        """Return ``-t``."""
         return -t + 0 * s
 
     def cdf(self, s: Array) -> Array:
-        """``1 - exp(-1 - s)``."""
+        """Return ``1 - exp(-1 - s)``."""
         return np.asarray(-expm1(-1 - np.maximum(s, -1.0)))
 
     def sf(self, s: Array) -> Array:
-        """``exp(-1 - s)``."""
+        """Return ``exp(-1 - s)``."""
         return np.asarray(exp(-1 - np.maximum(s, -1.0)))
 
     def ppf(self, p: Array, below: float = math.inf) -> Array:
-        """``-1 - log(1 - p cdf(below))``."""
+        """Return ``-1 - log(1 - p cdf(below))``."""
         return np.asarray(-1 - log1p(-p * self.cdf(np.array(below))))
 
     def isf(self, p: Array, above: float = -math.inf) -> Array:
-        """``max(above, -1) - log(p)``."""
+        """Return ``max(above, -1) - log(p)``."""
         return np.asarray(max(above, -1.0) - log(p))
 
 
@@ -267,11 +267,11 @@ class Weibull(HeightLaw):
             return np.asarray(np.expm1((np.log(power) - log_mean) / self.shape) / spread)
 
     def rvs(self, n: int, rng: np.random.Generator) -> Array:
-        """Powers of NumPy's standard exponential numbers, reduced."""
+        """Draw powers of NumPy's standard exponential numbers, reduced."""
         return self._s(rng.standard_exponential(n))
 
     def pdf(self, s: Array) -> Array:
-        """``k x^(k-1) exp(-x^k)`` times the standard deviation of x."""
+        """Return ``k x^(k-1) exp(-x^k)`` times the standard deviation of x."""
         spread, log_mean = self._spread
         rise = (self.shape - 1) * self._log_x(s) if self.shape > 1 else 0.0
         slope = self.shape * spread * np.exp(rise + log_mean)
@@ -279,7 +279,7 @@ class Weibull(HeightLaw):
         return np.asarray(np.where(inside, slope * np.exp(-self._power(s)), 0.0))
 
     def log_ratio(self, s: Array, t: Array) -> Array:
-        """Of the density, by the relative change of x."""
+        """Return the ratio of densities, by the relative change of x."""
         k = self.shape
         if k == 1:
             return np.asarray(-t + 0 * np.asarray(s))
@@ -287,17 +287,17 @@ class Weibull(HeightLaw):
         return np.asarray((k - 1) * step - self._power(s) * np.expm1(k * step))
 
     def cdf(self, s: Array) -> Array:
-        """``1 - exp(-x^k)``."""
+        """Return ``1 - exp(-x^k)``."""
         return np.asarray(-np.expm1(-self._power(s)))
 
     def sf(self, s: Array) -> Array:
-        """``exp(-x^k)``."""
+        """Return ``exp(-x^k)``."""
         return np.asarray(np.exp(-self._power(s)))
 
     def ppf(self, p: Array, below: float = math.inf) -> Array:
-        """``(-log(1 - p cdf(below)))^(1/k)``, reduced."""
+        """Return ``(-log(1 - p cdf(below)))^(1/k)``, reduced."""
         return self._s(-np.log1p(-p * self.cdf(np.array(below))))
 
     def isf(self, p: Array, above: float = -math.inf) -> Array:
-        """``(x(above)^k - log(p))^(1/k)``, reduced."""
+        """Return ``(x(above)^k - log(p))^(1/k)``, reduced."""
         return self._s(self._power(np.array(above)) - np.log(p))

@@ -104,7 +104,7 @@ def quotient(
 def fn_scaled(
     n: float, h: ArrayLike, grading: Grading | None = None, *, heights: HeightLaw = GAUSSIAN
 ) -> Array:
-    """F_n or F*_n relative to the density at the separation.
+    """Return F_n or F*_n relative to the density at the separation.
 
     Parameters
     ----------
@@ -139,7 +139,7 @@ def fn(
     log: bool = False,
     heights: HeightLaw = GAUSSIAN,
 ) -> Array:
-    r"""Integral F_n (Eq. 2), with a grading F*_n (Eqs. 3, 5, 7).
+    r"""Return the integral F_n (Eq. 2), with a grading F*_n (Eqs. 3, 5, 7).
 
     .. math:: F^*_n(h) = \int_h^\infty (s - h)^n \phi(s) E^*(s)/E^* ds
 
@@ -201,7 +201,7 @@ def fn_between(
     *,
     heights: HeightLaw = GAUSSIAN,
 ) -> Array:
-    """Share of F*_n(h) that comes from heights between `low` and `high`.
+    """Return the fraction of F*_n(h) that comes from heights between `low` and `high`.
 
     To 1e-13 of itself where the range reaches above s = -13; what lies below counts as nothing.
 
@@ -229,7 +229,7 @@ def fn_between(
 
 
 def fn_paper(n: float, h: ArrayLike, gamma: float, ngp: int) -> Array:
-    """F*_n by the paper's own scheme, Eq. (9) corrected: Gauss-Legendre in t = exp(-s).
+    """Return F*_n by the paper's own scheme, Eq. (9) corrected: Gauss-Legendre in t = exp(-s).
 
     As printed, Eqs. (8) and (9) do not compute F*_n: the exponential has the wrong sign
     (``exp[(-ln t)^2/2]`` diverges), and the abscissae and weights need ``exp(-h)`` in place of

@@ -59,7 +59,7 @@ class InteractingModel(Model):
 
     @classmethod
     def of(cls, model: Model, interaction: Interaction) -> "InteractingModel":
-        """The asperities of a model with an interaction."""
+        """Return the asperities of a model with an interaction."""
         return cls(**_values(model), interaction=interaction)
 
     @cached_property
@@ -73,12 +73,12 @@ class InteractingModel(Model):
         return self.interaction.compliance(self.surface, self.number) / self.surface.sigma
 
     def series(self, quantity: str) -> float:
-        """What the half-space adds to the inverse of a sum: `analytic.Interaction.series`."""
+        """Return what the half-space adds to the inverse of a sum: `analytic.Interaction.series`."""
         rho = 1.0 if self.film is None else self.film.rho
         return self.interaction.series(quantity, self.surface, self.number, rho)
 
     def mean(self, quantity: str, h: ArrayLike) -> Array:
-        """Mean over surfaces, to second order where a surface answers by itself; as `Model.mean`."""
+        """Return `Model.mean`, to second order where a surface answers by itself."""
         h = np.asarray(h, dtype=np.float64)
         if quantity in SEPARATIONS:
             return h - self.compliance * self.mean(_load_of(quantity), h)
@@ -90,18 +90,18 @@ class InteractingModel(Model):
         return np.asarray(in_series(mean, c)) - c * variance / (1 + c * mean) ** 3
 
     def slope(self, quantity: str, h: ArrayLike) -> Array:
-        """How fast the mean falls with the separation, of the mean surface."""
+        """Return how fast the mean falls with the separation, of the mean surface."""
         h = np.asarray(h, dtype=np.float64)
         if not (quantity in SEPARATIONS or self.series(quantity)):
             return self.alone.slope(quantity, h)
         return -derivative(lambda at: self.mean(quantity, at), h)
 
     def prepare(self, separations: ArrayLike, quantities: Sequence[str]) -> None:
-        """As `Model.prepare`, of the loads."""
+        """Return the same as `Model.prepare`, of the loads."""
         self.alone.prepare(separations, [_load_of(name) for name in quantities])
 
     def separation_at(self, quantity: str, value: ArrayLike) -> Array:
-        """As `Model.separation_at`, of the mean surface: at a given load only the separation differs."""
+        """Return the separation of the mean surface, as `Model.separation_at`."""
         if quantity in SEPARATIONS or self.series(quantity):
             raise ValueError(
                 f"quantity = {quantity!r}: give a load, an area, or another sum of the asperities"
@@ -109,7 +109,7 @@ class InteractingModel(Model):
         return self.alone.separation_at(quantity, value)
 
     def distribution(self, quantity: str, h: float) -> "Law":
-        """As `Model.distribution`, also of the nominal separation."""
+        """Return the same as `Model.distribution`, also of the nominal separation."""
         from analytic.distribution import interacting_distribution  # few ask
 
         if quantity not in SEPARATIONS:
@@ -117,11 +117,11 @@ class InteractingModel(Model):
         return interacting_distribution(self, quantity, float(h))
 
     def separation_law(self, load: float, quantity: str = "load") -> "Law":
-        """As `Model.separation_law`, of the separation that the asperities feel."""
+        """Return the same as `Model.separation_law`, of the separation that the asperities feel."""
         return self.alone.separation_law(load, quantity)
 
     def fluctuations(self, quantities: Sequence[str], separations: ArrayLike) -> Fluctuations:
-        """As `Model.fluctuations`, to leading order where a surface answers by itself."""
+        """Return the same as `Model.fluctuations`, to leading order where a surface answers by itself."""
         h = np.asarray(separations, dtype=np.float64)
         sums = [name for name in quantities if name not in SEPARATIONS]
         loads = tuple(dict.fromkeys(_load_of(name) for name in quantities))

@@ -84,14 +84,14 @@ class Interaction:
             raise ValueError(f"bulk_modulus = {modulus!r}: give a finite number > 0, in Pa")
 
     def compliance(self, surface: Surface, n_asperities: float) -> float:
-        """How far each newton on the surface lowers the plane that the asperities feel, m/N."""
+        """Return how far each newton on the surface lowers the plane that the asperities feel, m/N."""
         modulus = surface.E_star if self.bulk_modulus is None else self.bulk_modulus
         if self.reference == "body":
             return BOWL / (modulus * math.sqrt(surface.nominal_area))
         return -LATTICE / (math.pi * modulus * math.sqrt(n_asperities * surface.nominal_area))
 
     def series(self, quantity: str, surface: Surface, n_asperities: float, resistivity: float = 1.0) -> float:
-        """What the half-space adds to the inverse of a sum over spots, over its unit; 0 to most sums.
+        """Return what the half-space adds to the inverse of a sum over spots, over its unit; 0 to most sums.
 
         To that of a stiffness the compliance; to that of a conductance ``rho E_b/2`` of it, by which both
         bodies constrict the flux as a whole. For a homogeneous body then ``C rho = 2 K/E*``.

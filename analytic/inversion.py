@@ -81,7 +81,7 @@ def _about(n: float, grading: Grading | None, heights: HeightLaw) -> Array:
 def ratio_at_equal_load(
     quantity: str, h: ArrayLike, grading: Grading, *, heights: HeightLaw = GAUSSIAN
 ) -> Array:
-    """A mean of the graded surface relative to the homogeneous one under the same load, by Hertz's law.
+    """Return a mean of the graded surface over that of the homogeneous one at equal load, by Hertz's law.
 
     Parameters
     ----------

@@ -82,7 +82,7 @@ class Joint:
         return gas_of(self.gas, self.temperature or ROOM, self.gas_pressure or ATMOSPHERE)
 
     def gap(self, surface: Surface, heights: Any, moments: SpectralMoments | None = None) -> "Gap":
-        """Gap conductance of a surface.
+        """Return the gap conductance of a surface.
 
         Its rms height and the rise of its summits are those of Nayak's heights, or of the joint's `rms` with
         alpha from ``sigma^2 = (1 - .8968/alpha) rms^2``, or of spectral `moments`, in this order.

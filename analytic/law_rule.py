@@ -160,7 +160,7 @@ def law_integral(
 
 
 def extent(grading: Grading, heights: HeightLaw, separations: Sequence[float]) -> tuple[float, float]:
-    """Lowest and highest height that may touch, or count in a moment, at some separations.
+    """Return the lowest and highest height that may touch, or count in a moment, at some separations.
 
     Parameters
     ----------

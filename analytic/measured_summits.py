@@ -53,7 +53,7 @@ class MeasuredHeights(HeightLaw):
         return float(self._sorted[0]), float(self._sorted[-1])
 
     def span(self, s: float) -> float:
-        """There is no density.
+        """Return no width: there is no density.
 
         Raises
         ------
@@ -65,7 +65,7 @@ class MeasuredHeights(HeightLaw):
         )
 
     def rvs(self, n: int, rng: np.random.Generator) -> Array:
-        """The heights themselves, in their own order; or `n` of them, drawn with replacement.
+        """Return the heights themselves, in their own order; or draw `n` of them with replacement.
 
         Raises
         ------
@@ -79,25 +79,25 @@ class MeasuredHeights(HeightLaw):
         return np.array(self.heights)
 
     def pdf(self, s: Array) -> Array:
-        """There is none; see `span`."""
+        """Refuse to answer: there is no density; see `span`."""
         self.span(float(np.ravel(s)[0]))
         raise AssertionError
 
     def cdf(self, s: Array) -> Array:
-        """Share of lower heights."""
+        """Return the share of lower heights."""
         return np.asarray(np.searchsorted(self._sorted, s, side="right") / len(self.heights))
 
     def sf(self, s: Array) -> Array:
-        """Share of higher heights."""
+        """Return the share of higher heights."""
         return np.asarray(1 - self.cdf(s))
 
     def ppf(self, p: Array, below: float = np.inf) -> Array:
-        """The height at the share `p` of those below one."""
+        """Return the height at the share `p` of those below one."""
         n = int(np.searchsorted(self._sorted, below, side="right"))
         return np.asarray(self._sorted[np.clip((p * n).astype(np.int64), 0, max(n - 1, 0))])
 
     def isf(self, p: Array, above: float = -np.inf) -> Array:
-        """The height at the share `p` of those above one, counted from the top."""
+        """Return the height at the share `p` of those above one, counted from the top."""
         n = len(self.heights) - int(np.searchsorted(self._sorted, above, side="right"))
         return np.asarray(self._sorted[::-1][np.clip((p * n).astype(np.int64), 0, max(n - 1, 0))])
 
@@ -138,7 +138,7 @@ class MeasuredRadii:
         hold(self, heights=heights, ratios=tuple(c.tolist()))
 
     def summits(self, rng: np.random.Generator, n: int) -> tuple[Array, Array]:
-        """Reduced heights and radius ratios of `n` summits, drawn with replacement; or of all, as they are.
+        """Draw reduced heights and radius ratios of `n` summits with replacement; or return all, as they are.
 
         Raises
         ------

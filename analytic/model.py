@@ -88,7 +88,7 @@ class Model(MeanModel):
     """
 
     def cumulants(self, quantity: str, h: ArrayLike) -> Cumulants:
-        """Mean, variance, skewness and excess kurtosis over surfaces, in the shape of `h`."""
+        """Return the mean, variance, skewness and excess kurtosis over surfaces, in the shape of `h`."""
         h = np.asarray(h, dtype=np.float64)
         means = self._means(self._asked(quantity, h))
         means.prepare(h.ravel(), [quantity])
@@ -103,11 +103,11 @@ class Model(MeanModel):
             )  # k2 to a power would underflow long before these ratios overflow
 
     def std(self, quantity: str, h: ArrayLike) -> Array:
-        """Standard deviation over surfaces, in the shape of `h`."""
+        """Return the standard deviation over surfaces, in the shape of `h`."""
         return np.sqrt(self.cumulants(quantity, h).variance)
 
     def covariance(self, quantities: Sequence[str], separations: ArrayLike) -> Array:
-        """Covariance over surfaces between Q quantities at K separations.
+        """Return the covariance over surfaces between Q quantities at K separations.
 
         Returns
         -------
@@ -122,7 +122,7 @@ class Model(MeanModel):
         )
 
     def asperities_for(self, quantity: str, h: ArrayLike, std_over_mean: float, *, given: str = "") -> Array:
-        """Number of asperities that a surface needs for surfaces to differ by so little.
+        """Return the number of asperities that a surface needs for surfaces to differ by so little.
 
         The mean and the variance of a sum over N independent asperities grow as N. At a given load, each
         surface has its own separation: to first order its area A then deviates by ``dA - A'/P' dP``.
@@ -171,7 +171,7 @@ class Model(MeanModel):
             return np.asarray(self.number * variance / (self.mean(quantity, h) * std_over_mean) ** 2)
 
     def fluctuations(self, quantities: Sequence[str], separations: ArrayLike) -> Fluctuations:
-        """Contribution of one asperity to each quantity at each separation, over its scale.
+        """Return the contribution of one asperity to each quantity at each separation, over its scale.
 
         Columns are quantity by quantity, at increasing number of the separation.
         """
@@ -186,7 +186,7 @@ class Model(MeanModel):
     def asperities(
         self, quantity: str, h: float, farther: Sequence[float] = ()
     ) -> tuple[HeightRule, Callable[[HeightRule], Array]]:
-        """A rule over the asperities at one separation, and what takes rules to what one at each node adds.
+        """Return a rule over the asperities at one separation, and what maps rules to the sums of its nodes.
 
         Over the scale. The rule is over radii too, where they differ, and finer with heights `farther` above
         the separation that divide it.
@@ -197,7 +197,7 @@ class Model(MeanModel):
         return rule, lambda nodes: nodes.terms([quantity], [h], self.grading, means.ways)[:, 0]
 
     def distribution(self, quantity: str, h: float) -> "Law":
-        """Exact distribution over surfaces of a quantity at a separation, with the methods of `scipy.stats`.
+        """Return the exact distribution over surfaces of a quantity at a separation, as one of `scipy.stats`.
 
         Parameters
         ----------
@@ -226,7 +226,7 @@ class Model(MeanModel):
         return distribution_of(self, quantity, float(h))
 
     def separation_law(self, load: float, quantity: str = "load") -> "Law":
-        """Exact distribution of the separation at a given load: P(h* <= h) = P(S(h) <= load).
+        """Return the exact distribution of the separation at a given load: P(h* <= h) = P(S(h) <= load).
 
         Parameters
         ----------

@@ -215,11 +215,11 @@ class Nayak(HeightLaw):
         return np.asarray(self.mean + self.std * np.asarray(s, dtype=np.float64))
 
     def rvs(self, n: int, rng: np.random.Generator) -> Array:
-        """Heights, drawn together with their curvatures."""
+        """Draw heights together with their curvatures."""
         return self.summits(rng, n)[0]
 
     def summits(self, rng: np.random.Generator, n: int) -> tuple[Array, Array]:
-        """Reduced heights, and geometric mean curvatures over sqrt(m4/3), of `n` summits.
+        """Return the reduced heights, and geometric mean curvatures over sqrt(m4/3), of `n` summits.
 
         Points of a surface are summits if both principal curvatures are positive, and count by their
         product: 57.7 % of the points that are drawn are accepted.
@@ -236,33 +236,33 @@ class Nayak(HeightLaw):
         return np.asarray((x - self.mean) / self.std), np.sqrt(product[:n])
 
     def pdf(self, s: Array) -> Array:
-        """Nayak's density, in reduced heights."""
+        """Return Nayak's density, in reduced heights."""
         x = self.over_rms(s)
         return np.asarray(self.std * self._tables.density(x) * self._tables.envelope(x))
 
     def log_ratio(self, s: Array, t: Array) -> Array:
-        """That of the envelope, and that of the rest."""
+        """Return the ratio of the envelope, and that of the rest."""
         x, step = self.over_rms(s), self.std * np.asarray(t)
         rest = np.log(self._tables.density(x + step) / self._tables.density(x))
         return np.asarray(self._tables.log_envelope_step(x, step) + rest)
 
     def cdf(self, s: Array) -> Array:
-        """Integral of the density from below."""
+        """Return the integral of the density from below."""
         return self._tables.shares(self.over_rms(s))[0]
 
     def sf(self, s: Array) -> Array:
-        """Integral of the density from above."""
+        """Return the integral of the density from above."""
         return self._tables.shares(self.over_rms(s))[1]
 
     def ppf(self, p: Array, below: float = np.inf) -> Array:
-        """Newton's method on the logarithm of the smaller probability; `below` where there is none."""
+        """Find the height by Newton's method on the logarithm of the smaller probability, or `below`."""
         lower, higher = self._tables.shares(self.over_rms(below))
         p = np.asarray(p, dtype=np.float64)
         found = self._at(p * lower, higher + (1 - p) * lower)
         return np.minimum(found if lower > 0 else below + 0 * p, below)
 
     def isf(self, p: Array, above: float = -np.inf) -> Array:
-        """Quantile counted from the top."""
+        """Return the quantile, counted from the top."""
         lower, higher = self._tables.shares(self.over_rms(above))
         p = np.asarray(p, dtype=np.float64)
         found = self._at(lower + (1 - p) * higher, p * higher)

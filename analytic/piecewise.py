@@ -113,7 +113,7 @@ class PiecewiseSeries:
         return _clenshaw(c, piece, ((inside - a) - (b - inside)) / (b - a))
 
     def agrees(self, other: "PiecewiseSeries") -> bool:
-        """Whether both stand for one function, resolved perhaps where its last digits are others."""
+        """Return whether both stand for one function, resolved perhaps where its last digits are others."""
         if not np.allclose(
             [self.edges[0], self.edges[-1]], [other.edges[0], other.edges[-1]], atol=_SAME_END
         ):

@@ -68,7 +68,7 @@ class Quantity:
         return "conductance" if base == "spot_conductance" else base
 
     def scale(self, x: Surface) -> float:
-        """Dimensional factor of one asperity: ``factor E*^modulus R^radius sigma^exponent``, or per area."""
+        """Return the factor of one asperity: ``factor E*^modulus R^radius sigma^exponent``, or per area."""
         if self.name in SEPARATIONS:
             return 1.0
         both = x.radius * x.sigma
@@ -176,7 +176,7 @@ _KNOWN = {**ALL_QUANTITIES, **PER_AREA, **RESISTANCES}
 
 
 def quantity_of(name: str) -> Quantity:
-    """A quantity by its name.
+    """Return a quantity by its name.
 
     Raises
     ------

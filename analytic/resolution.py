@@ -146,7 +146,7 @@ def merged(fit: _Fit, grading: Grading, edges: Array, kept: Array) -> Array:
 def resolved_breaks(
     grading: Grading, low: float, high: float, noise_of_one: float = _NOISE
 ) -> tuple[float, ...]:
-    """Heights that cut ``[low, high]`` into pieces on which the grading is a smooth curve.
+    """Return the heights that cut ``[low, high]`` into pieces on which the grading is a smooth curve.
 
     A smooth grading is cut at its own breaks; another one is bisected until a polynomial of degree
     24 describes every piece to 1e-14 of its size there, or to its own rounding noise (as that of
@@ -200,7 +200,7 @@ def _found_breaks(same: Same, low: float, high: float, noise_of_one: float) -> t
 
 
 def first_negative(grading: Grading, low: float, high: float) -> float | None:
-    """First height between `low` and `high` where the modulus is negative, or None.
+    """Find the first height between `low` and `high` where the modulus is negative, or None.
 
     Parameters
     ----------

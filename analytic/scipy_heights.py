@@ -141,15 +141,15 @@ class ScipyHeights(HeightLaw):
         return np.asarray((np.asarray(x) - mean) / std)
 
     def rvs(self, n: int, rng: np.random.Generator) -> Array:
-        """Its own random variates, reduced."""
+        """Draw random variates of it, reduced."""
         return self._s(self.distribution.rvs(size=n, random_state=rng))
 
     def pdf(self, s: Array) -> Array:
-        """Its ``pdf``, reduced."""
+        """Return its ``pdf``, reduced."""
         return np.asarray(self._mean_std[1] * self.distribution.pdf(self._x(s)))
 
     def log_ratio(self, s: Array, t: Array) -> Array:
-        """Difference of its ``logpdf``."""
+        """Return the difference of its ``logpdf``."""
         low, high = self.support
         start = np.asarray(s)
         moved = np.clip(start + t, low, high)
@@ -159,15 +159,15 @@ class ScipyHeights(HeightLaw):
         return np.asarray(after.reshape(moved.shape) - before.reshape(start.shape))
 
     def cdf(self, s: Array) -> Array:
-        """Its ``cdf``."""
+        """Return its ``cdf``."""
         return np.asarray(self.distribution.cdf(self._x(s)))
 
     def sf(self, s: Array) -> Array:
-        """Its ``sf``."""
+        """Return its ``sf``."""
         return np.asarray(self.distribution.sf(self._x(s)))
 
     def ppf(self, p: Array, below: float = math.inf) -> Array:
-        """Its ``ppf``, or the height where its ``cdf`` is `p`: SciPy loses inverse Gaussian ones at 1e-17."""
+        """Return its ``ppf``, or where its ``cdf`` is `p`: SciPy loses inverse Gaussian ones at 1e-17."""
         share, middle = np.asarray(p * self.cdf(np.array(below))), self._median
         low, high = np.full(share.shape, self.support[0]), np.full(share.shape, middle)
         with np.errstate(all="ignore"), warnings.catch_warnings():
@@ -188,7 +188,7 @@ class ScipyHeights(HeightLaw):
         return float(self._s(self.distribution.median()))
 
     def isf(self, p: Array, above: float = -math.inf) -> Array:
-        """Its ``isf``, or where that loses the tail the inverse of its ``sf``, as far as that is good."""
+        """Return its ``isf``, or where that loses the tail the inverse of ``sf``, as far as that is good."""
         inverse, rarest = self._from_share
         return self._s(inverse(np.maximum(p * self.sf(np.array(above)), rarest)))
 

@@ -17,12 +17,12 @@ _ABOUT = 2.0**-8  # a kink is what no polynomial describes up to here on either 
 
 
 def is_data(grading: Grading) -> bool:
-    """Whether a grading is made of numbers alone, which a file can hold as they are."""
+    """Return whether a grading is made of numbers alone, which a file can hold as they are."""
     return type(grading) in _DATA  # a class made of one may do more
 
 
 def bends(grading: Grading, low: float, high: float) -> tuple[float, ...]:
-    """As `analytic.resolved_breaks`, without the edges over which series go on smoothly."""
+    """Return `analytic.resolved_breaks` without the edges over which series go on smoothly."""
     match grading:
         case PiecewiseSeries(kinks=kinks):
             found = kinks
@@ -34,7 +34,7 @@ def bends(grading: Grading, low: float, high: float) -> tuple[float, ...]:
 
 
 def name_of(grading: Any) -> str:
-    """What people call it: the name of the function, if there is one."""
+    """Return the name of the function, if there is one."""
     match grading:
         case Custom(function=function):
             return name_of(function)
@@ -49,7 +49,7 @@ def name_of(grading: Any) -> str:
 
 
 def resolved(grading: Grading, low: float, high: float) -> PiecewiseSeries:
-    """Chebyshev series that stand for a grading between two heights.
+    """Return the Chebyshev series that stand for a grading between two heights.
 
     The error is at most 1e-13 of the largest value that the grading has within 1/64 of a height, or what
     the last digit of a height makes of its slope: also where it spans many decades. Only what is below

@@ -42,7 +42,7 @@ class Body:
 
 
 def composite_modulus(bodies: Sequence[Body]) -> float:
-    """Composite modulus of two bodies in contact.
+    """Return the composite modulus of two bodies in contact.
 
     Parameters
     ----------
@@ -174,7 +174,7 @@ class SpectralMoments:
         return 4 * math.sqrt(self.m0 / (math.pi * self.alpha))
 
     def surface(self, nominal_area: float, E_star: float) -> Surface:
-        """The rough surface with these summits.
+        """Return the rough surface with these summits.
 
         Parameters
         ----------

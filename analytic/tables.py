@@ -102,7 +102,7 @@ class Table:
 
     @classmethod
     def from_lines(cls, lines: Iterable[str], *, sigma: float, E_star: float) -> "Table":
-        """As `from_csv`, of the lines of such a file.
+        """Read the lines of such a file, as `from_csv`.
 
         Raises
         ------

@@ -68,7 +68,7 @@ class DerjaguinMullerToporov(_Adhesive):
     name: ClassVar[str] = "derjaguin-muller-toporov"
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
-        """Hertz's load minus a constant: adhesion does not depend on the modulus."""
+        """Return Hertz's load minus a constant: adhesion does not depend on the modulus."""
         return super().load(piece, y, e) - 12 * (self.reduced / 3) ** 1.5
 
 
@@ -121,33 +121,33 @@ class JohnsonKendallRoberts(_Adhesive):
         return float(np.min(self.reduced))
 
     def stretch(self, e: Array) -> Array:
-        """D_e, in the shape of `e`; infinite without stiffness."""
+        """Return D_e, in the shape of `e`; infinite without stiffness."""
         with np.errstate(divide="ignore"):
             return np.asarray(self.reduced * np.asarray(e, dtype=np.float64) ** (-2 / 3))
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
-        """Load of a contact, in the shape of `y` and `e`."""
+        """Return the load of a contact, in the shape of `y` and `e`."""
         return self.load_at(_pressed(y * y, self.stretch(e)), e)
 
     def radius(self, piece: int, y: Any, e: Array) -> Any:
-        """Radius of a contact; its square is the area over pi R sigma."""
+        """Return the radius of a contact; its square is the area over pi R sigma."""
         return self.radius_at(_pressed(y * y, self.stretch(e)), e)
 
     def stiffness(self, piece: int, y: Array, e: Array) -> Array:
-        """Stiffness of a spot over 2 E* sqrt(R sigma): ``dP/d delta``."""
+        """Return the stiffness of a spot over 2 E* sqrt(R sigma): ``dP/d delta``."""
         z = _pressed(y * y, self.stretch(e))
         return np.asarray(e * self.radius_at(z, e) * (z**3 - 3) / (z**3 - 1))
 
     def load_at(self, z: Any, e: Array) -> Any:
-        """Load of contacts of this z."""
+        """Return the load of contacts of this z."""
         return e * (self.stretch(e) / 3) ** 1.5 * (z**6 - 6 * z**3)
 
     def radius_at(self, z: Any, e: Array) -> Any:
-        """Radius of contacts of this z."""
+        """Return the radius of contacts of this z."""
         return np.sqrt(self.stretch(e) / 3) * z * z
 
     def unloading(self) -> "_Stuck":
-        """A contact holds until it is stretched by D_e."""
+        """Return the law by which a contact holds until it is stretched by D_e."""
         return _Stuck(self)
 
 

@@ -179,19 +179,19 @@ class CustomLaw(ElasticPlastic):
         return self.beginnings
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
-        """Load of a contact, in the shape of `y` and `e`."""
+        """Return the load of a contact, in the shape of `y` and `e`."""
         e = np.asarray(e, dtype=np.float64)
         at_yield = self._root_of_critical**3 / np.square(np.where(e > 0, e, np.inf))
         return at_yield * self.load_of[piece](self._u(y, e))
 
     def radius(self, piece: int, y: Any, e: Array) -> Any:
-        """Radius of a contact; its square is the area over pi R sigma."""
+        """Return the radius of a contact; its square is the area over pi R sigma."""
         u = self._u(y, e)
         u = np.where(u == 0, 1.0, u)  # where the factor y is 0
         return y * np.sqrt(self.area_of[piece](u) / (u * u))
 
     def resolved(self, x_max: float) -> "CustomLaw":
-        """The law as plain numbers: `RootSeries` up to ``x = x_max`` in place of formulas.
+        """Return the law as plain numbers: `RootSeries` up to ``x = x_max`` in place of formulas.
 
         Parameters
         ----------
@@ -222,16 +222,16 @@ class CustomLaw(ElasticPlastic):
         return CustomLaw(series["load"], series["area"], kept, self.critical, self.checked)
 
     def as_data(self, deepest: float) -> "CustomLaw":
-        """Series in place of formulas, up to a penetration of an asperity of modulus E*."""
+        """Return the series in place of formulas, up to a penetration of an asperity of modulus E*."""
         assert self.critical is not None
         return self.resolved(deepest / self.critical)
 
     def given(self) -> dict[str, Any]:
-        """The number of pieces, and the critical penetration."""
+        """Return the number of pieces, and the critical penetration."""
         return {"pieces": len(self.load_of), "critical": self.critical}
 
     def agrees(self, other: object) -> bool:
-        """Whether another law is the same but for the last digits of its series."""
+        """Return whether another law is the same but for the last digits of its series."""
         if not (isinstance(other, CustomLaw) and self.is_data and other.is_data):
             return False
         alike = self.beginnings == other.beginnings and self.critical == other.critical

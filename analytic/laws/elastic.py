@@ -78,16 +78,16 @@ class PowerLawGraded(ContactLaw):
         return above / (sqrt(pi) * c * b * sin(b * pi / 2) * gamma((1 + k) / 2))
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
-        """Load of a contact, in the shape of `y` and `e`."""
+        """Return the load of a contact, in the shape of `y` and `e`."""
         factor = 3 * (1 + self.k) ** ((self.k - 1) / 2) / (3 + self.k)
         return factor * self._scale * e * y ** (3 + self.k)
 
     def radius(self, piece: int, y: Any, e: Array) -> Any:
-        """Radius of a contact; its square is the area over pi R sigma."""
+        """Return the radius of a contact; its square is the area over pi R sigma."""
         return sqrt(1 + self.k) * (y + 0.0 * e)
 
     def stiffness(self, piece: int, y: Array, e: Array) -> Array:
-        """Stiffness of a spot over 2 E* sqrt(R sigma)."""
+        """Return the stiffness of a spot over 2 E* sqrt(R sigma)."""
         return np.asarray((1 + self.k) ** ((self.k - 1) / 2) * self._scale * e * y ** (1 + self.k))
 
     @property
@@ -156,7 +156,7 @@ class Coated(ContactLaw):
         return float(np.min(self.reduced)) ** 2
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
-        """Load of a contact, in the shape of `y` and `e`: three times the integral of its stiffness y dy."""
+        """Return the load of a contact, in the shape of `y` and `e`, as an integral of its stiffness."""
         w, nu = np.asarray(y) / self.reduced, self.poisson
         _, tail, rise = _logarithms(w * w)
         atan = w**3 / 3 * (pi / 2 - np.arctan(w)) + tail / 6
@@ -164,7 +164,7 @@ class Coated(ContactLaw):
         return e * (y * y * y + 3 * (self.ratio - 1) * self.reduced**3 * integral)
 
     def stiffness(self, piece: int, y: Array, e: Array) -> Array:
-        """Stiffness of a spot over 2 E* sqrt(R sigma)."""
+        """Return the stiffness of a spot over 2 E* sqrt(R sigma)."""
         w = np.asarray(y) / self.reduced
         return np.asarray(e * (y * (1 + (self.ratio - 1) * self._share(w))))
 

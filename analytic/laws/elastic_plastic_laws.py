@@ -60,11 +60,11 @@ class ChangEtsionBogy(FromHardness, Bridgeable):
         return 0.6 if self.poisson is None else kogut_etsion_factor(self.poisson)
 
     def load_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
-        """``1.5 (2 x - 1)/x^1.5``."""
+        """Return ``1.5 (2 x - 1)/x^1.5``."""
         return 1.5 * self.area_over_hertz(fit, x, e) / np.sqrt(x)
 
     def area_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
-        """``(2 x - 1)/x``."""
+        """Return ``(2 x - 1)/x``."""
         return 2 - 1 / x
 
 
@@ -114,14 +114,14 @@ class ZhaoMaiettaChang(FromHardness):
         return 1.5 * self.first_yield
 
     def load_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
-        """Area times mean pressure: where x = 1, the pressure is k H."""
+        """Return the area times mean pressure: where x = 1, the pressure is k H."""
         pressure, k = 1.0, self.first_yield
         if fit == 1:
             pressure = 1 - (1 - k) * np.log(self.starts[1] / x) / math.log(self.starts[1])
         return self.area_over_hertz(fit, x, e) * pressure / (k * np.sqrt(x))
 
     def area_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
-        """Area over Hertz's, which rises smoothly from 1 to 2."""
+        """Return the area over Hertz's, which rises smoothly from 1 to 2."""
         if fit == 2:
             return 2.0 + 0 * x
         t = (x - 1) / (self.starts[1] - 1)
@@ -186,16 +186,16 @@ class KogutEtsion(FromHardness, Bridgeable):
         return kogut_etsion_factor(self.poisson)
 
     def unloading(self) -> EtsionKligermanKadin:
-        """Etsion, Kligerman and Kadin's, fitted for this law; with a bridge, from the bridged load."""
+        """Return the law of Etsion, Kligerman and Kadin; with a bridge, from the bridged load."""
         return EtsionKligermanKadin(self)
 
     def load_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
-        """Load from the powers of x, or from the hardness."""
+        """Return the load from the powers of x, or from the hardness."""
         factor, power = self.load_fits[fit - 1] if fit < 3 else (3 / self.yield_factor, 1.0)
         return factor * x ** (power - 1.5)
 
     def area_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
-        """Area from the powers of x; finally 2."""
+        """Return the area from the powers of x; finally 2."""
         factor, power = self.area_fits[fit - 1] if fit < 3 else (2.0, 1.0)
         return factor * x ** (power - 1.0)
 
@@ -271,7 +271,7 @@ class JacksonGreen(Bridgeable):
         return 1.295 * math.exp(0.736 * self.poisson)
 
     def on(self, surface: Surface) -> Self:
-        """The law on this surface, in reduced units, without `yield_strength`."""
+        """Return the law on this surface, in reduced units, without `yield_strength`."""
         if self.yield_strength is None:
             return self
         strain = self.yield_strength / surface.E_star
@@ -280,13 +280,13 @@ class JacksonGreen(Bridgeable):
         return replace(self, yield_strength=None, yield_strain=strain, critical=critical)
 
     def load_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
-        """The remaining part of Hertz's load, and the hardness on the yielded part."""
+        """Return the remaining part of Hertz's load, and the hardness on the yielded part."""
         left, gone = self.powers
         hardness = self._hardness(x, e) * (-np.expm1(-(x**gone) / 25)) / np.sqrt(x)
         return np.exp(-(x**left) / 4) + 4 / self.yield_factor * hardness
 
     def area_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
-        """``(x/1.9)^B``."""
+        """Return ``(x/1.9)^B``."""
         with np.errstate(over="ignore"):  # infinite where the fit has no meaning
             return (x / self.starts[0]) ** (0.14 * np.exp(23 * self._strain(e)))
 

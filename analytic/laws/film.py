@@ -49,7 +49,7 @@ class Layer:
                 raise ValueError(f"{key} = {getattr(self, key)!r}: give a finite number > 0, in {unit}")
 
     def between(self, under: float, other: float, unit: float) -> "LayeredSpot":
-        """Spots between the layer, on a body of conductivity `under`, and `other`; radii over `unit`, m."""
+        """Return spots between the layer, on a body of conductivity `under`, and `other`; radii in `unit`."""
         from analytic.laws.layer import LayeredSpot  # for those scenes alone
 
         return LayeredSpot(self.thickness / unit, self.conductivity, under, other)
@@ -119,7 +119,7 @@ class Film:
         return self.conductivities is not None
 
     def on(self, surface: Surface) -> "SpotConductance":
-        """Conductance of spots, in the reduced units of a surface."""
+        """Return the conductance of spots, in the reduced units of a surface."""
         unit = math.sqrt(surface.radius * surface.sigma)
         layered = None
         if self.layer is not None and self.conductivities is not None:

@@ -69,15 +69,15 @@ class ContactLaw:
         return True
 
     def as_data(self, deepest: float) -> "ContactLaw":
-        """The law as plain numbers, up to a given penetration of an asperity of modulus E*."""
+        """Return the law as plain numbers, up to a given penetration of an asperity of modulus E*."""
         return self
 
     def agrees(self, other: "ContactLaw") -> bool:
-        """Whether another law is the same, up to rounding in a stored series."""
+        """Return whether another law is the same, up to rounding in a stored series."""
         return self == other
 
     def given(self) -> dict[str, Any]:
-        """The constants of the law that the user gave, by name."""
+        """Return the constants of the law that the user gave, by name."""
         known: list[str] = [field.name for field in fields(self)] if is_dataclass(self) else []
         return {name: getattr(self, name) for name in known if getattr(self, name) is not None}
 
@@ -101,14 +101,14 @@ class ContactLaw:
             check_poisson(poisson)
 
     def on(self, surface: Surface) -> Self:
-        """The law on this surface, in reduced units: nothing is left in Pa or m."""
+        """Return the law on this surface, in reduced units: nothing is left in Pa or m."""
         if not (self.in_si and self.of_radius) or getattr(self, self.in_si[0]) is None:
             return self
         law: Any = self
         return replace(law, **{self.in_si[0]: None, self.of_radius[0]: self.reduced_on(surface)})  # type: ignore[no-any-return]
 
     def reduced_on(self, surface: Surface) -> float:
-        """The constant that follows the radius, on this surface: a length in SI units over sqrt(R sigma)."""
+        """Return the constant that follows the radius, on this surface: a length over sqrt(R sigma)."""
         length: float = getattr(self, self.in_si[0])  # type: ignore[index]
         return length / math.sqrt(surface.radius * surface.sigma)
 
@@ -130,7 +130,7 @@ class ContactLaw:
         return value
 
     def with_radii(self, ratios: Array) -> Self:
-        """The law in the units of summits whose radii are these multiples of the surface's.
+        """Return the law in the units of summits whose radii are these multiples of the surface's.
 
         Parameters
         ----------
@@ -155,7 +155,7 @@ class ContactLaw:
         return np.size(getattr(self, self.of_radius[0])) if self.each and self.of_radius else 1
 
     def of_some(self, which: NDArray[Any]) -> Self:
-        """The law of some of the summits that it was made for; itself where all have one radius.
+        """Return the law of some of the summits that it was made for; itself where all have one radius.
 
         Numbers beyond the last begin again with the first.
         """
@@ -170,27 +170,27 @@ class ContactLaw:
         return law
 
     def limits(self, e: Array) -> Array:
-        """Penetrations at which the next piece begins, increasing; shape ``(pieces - 1, *e.shape)``."""
+        """Return penetrations where the next piece begins, increasing; shape ``(pieces - 1, *e.shape)``."""
         return np.empty((0, *np.shape(e)))
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
-        """Load of a contact, in the shape of `y` and `e`."""
+        """Return the load of a contact, in the shape of `y` and `e`."""
         return e * (y * y * y)
 
     def radius(self, piece: int, y: Any, e: Array) -> Any:
-        """Radius of a contact; its square is the area over pi R sigma."""
+        """Return the radius of a contact; its square is the area over pi R sigma."""
         return y + 0.0 * e
 
     def slope(self, piece: int, y: Array, e: Array) -> Array:
-        """Derivative of the load with respect to the penetration, within the piece."""
+        """Return the derivative of the load with respect to the penetration, within the piece."""
         return slope_in_root(lambda v: self.load(piece, v, e), y)
 
     def stiffness(self, piece: int, y: Array, e: Array) -> Array:
-        """Stiffness of a spot over 2 E* sqrt(R sigma); after yield, that at the start of unloading."""
+        """Return the stiffness of a spot over 2 E* sqrt(R sigma); after yield, that as unloading starts."""
         return np.asarray(e * self.radius(piece, y, e))
 
     def unloading(self) -> Unloading:
-        """The law by which an asperity unloads.
+        """Return the law by which an asperity unloads.
 
         Raises
         ------

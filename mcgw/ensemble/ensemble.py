@@ -79,7 +79,7 @@ class Ensemble(Shown):
         return np.array(self.scene.separations)
 
     def values(self, quantity: str) -> Array:
-        """All values of a quantity in SI units, shape (surfaces, separations).
+        """Return all values of a quantity in SI units, shape (surfaces, separations).
 
         Raises
         ------
@@ -184,7 +184,7 @@ class Ensemble(Shown):
         return np.asarray(values[apart.argmin(axis=-1)])
 
     def covariance(self, quantity: str, other: str | None = None) -> Array:
-        """Covariance over the surfaces (divisor M - 1) of two quantities, or of one with itself.
+        """Return the covariance over the surfaces (divisor M - 1) of two quantities, or of one with itself.
 
         Shape (separations, separations of the other); nan for one surface.
         """
@@ -193,7 +193,7 @@ class Ensemble(Shown):
         return np.asarray(found / area / by)
 
     def quantile(self, quantity: str, share: float) -> Array:
-        """Value below which the given share of the surfaces lies, as `numpy.quantile`, shape (separations,).
+        """Return the quantile over the surfaces, as `numpy.quantile`, shape (separations,).
 
         The exact one, of a surface that is not yet drawn, is ``scene.theory.distribution(quantity, h).ppf``.
 
@@ -209,7 +209,7 @@ class Ensemble(Shown):
         return np.asarray(np.quantile(self.values(quantity), share, axis=0))
 
     def interval(self, quantity: str, level: float = CONFIDENCE) -> tuple[Array, Array]:
-        """Confidence interval of the mean, from the exact spread and skewness of the scene.
+        """Return the confidence interval of the mean, from the exact spread and skewness of the scene.
 
         It holds for any number of surfaces, even one. For `contacts` it is exact (Clopper-Pearson, or Garwood
         for a Poisson number of asperities). Measured heights used as they are do not fluctuate: both ends
@@ -238,7 +238,7 @@ class Ensemble(Shown):
         return low / area, high / area
 
     def to_xarray(self) -> Any:
-        """All values as an `xarray.Dataset` with dimensions (surface, separation), as in the file.
+        """Return all values as an `xarray.Dataset` with dimensions (surface, separation), as in the file.
 
         With ``keep = "statistics"``: ``load_mean``, ``load_std`` and so on, dimension (separation).
 
@@ -252,7 +252,7 @@ class Ensemble(Shown):
         return self.labelled().to_xarray(about)
 
     def to_dataframe(self) -> Any:
-        """All values as a `pandas.DataFrame`: rows (surface, separation), a column for each quantity.
+        """Return all values as a `pandas.DataFrame`: rows (surface, separation), a column for each quantity.
 
         With ``keep = "statistics"``: a row for each separation, a column for each mean and deviation.
 
@@ -265,7 +265,7 @@ class Ensemble(Shown):
         return self.labelled().to_dataframe((*over, "separation"))
 
     def labelled(self) -> Labelled:
-        """All data with axes, units and descriptions, for the file, xarray and pandas alike."""
+        """Return all data with axes, units and descriptions, for the file, xarray and pandas alike."""
         if self.scene.keep != "statistics":
             return values_of(self.scene, {name: self.values(name) for name in self.scene.shapes})
         return Labelled(statistics_of(self, self.scene.shapes, STATISTICS), axes_of(self.scene))
@@ -289,7 +289,7 @@ class Ensemble(Shown):
         return plotted(self, ax, quantity=quantity or self.scene.quantities[0])
 
     def sheet(self) -> Sheet:
-        """How the ensemble was drawn, and means at the lowest, a middle and the highest separation."""
+        """Return how the ensemble was drawn, and means at the lowest, a middle and the highest separation."""
         return sheet_of(self)
 
     def _held(self, quantity: str) -> tuple[str, float]:

@@ -85,7 +85,7 @@ class Paired(Shown):
 
 
 def paired_ratio(numerator: Ensemble, denominator: Ensemble, quantity: str) -> Paired:
-    """Ratio of two means over the same surfaces: Eqs. (12) and (15) of the paper by Monte Carlo.
+    """Return the ratio of two means over the same surfaces: Eqs. (12) and (15) of the paper by Monte Carlo.
 
     Parameters
     ----------

@@ -52,7 +52,7 @@ def sweep(
     shard: str | None = None,
     progress: Progress = None,
 ) -> Sweep | int:
-    """Means and standard deviations of many scenes, which share their surfaces where possible.
+    """Find means and standard deviations of many scenes, which share their surfaces where possible.
 
     Points whose heights have the same law, number and seed share their surfaces, whatever their surfaces'
     parameters, gradings and contact laws are: these are drawn once, and differences between such points

@@ -18,7 +18,7 @@ Listed = tuple[Array, Array | None]  # reduced heights; radii over the surface's
 
 
 def heights(scene: Scene, surface: int, *, untouched: bool = False) -> NDArray[np.float64]:
-    """Reduced heights of one surface of an ensemble.
+    """Return the reduced heights of one surface of an ensemble.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def heights(scene: Scene, surface: int, *, untouched: bool = False) -> NDArray[n
 
 
 def radii(scene: Scene, surface: int) -> NDArray[np.float64]:
-    """Radii of the summits of one surface of an ensemble that touch, in the order of `heights`.
+    """Return the radii of the summits of one surface of an ensemble that touch, in the order of `heights`.
 
     Parameters
     ----------

@@ -115,7 +115,7 @@ class Scene(Fields, Shown):
 
     @classmethod
     def of(cls, values: Mapping[str, Any]) -> "Scene":
-        """The scene of values that were read, checked as any other."""
+        """Return the scene of values that were read, checked as any other."""
         scene = object.__new__(cls)
         scene._made_of(values)
         return scene
@@ -136,7 +136,7 @@ class Scene(Fields, Shown):
         warn_of_units([*perhaps_other_units(self), *takes_hours(self)])
 
     def replace(self, **changes: Any) -> "Scene":
-        """The scene with other values; fields that were left out follow from them.
+        """Return the scene with other values; fields that were left out follow from them.
 
         Parameters
         ----------
@@ -176,17 +176,17 @@ class Scene(Fields, Shown):
         return dataclasses.replace(self, **changes) if changes else self
 
     def with_surfaces(self, n: int) -> "Scene":
-        """The scene with another number of surfaces, on which nothing else hangs: not checked anew."""
+        """Return the scene with another number of surfaces, on which nothing else hangs: not checked anew."""
         scene = copy(self)
         hold(scene, n_surfaces=n)
         return scene
 
     def sheet(self) -> Sheet:
-        """The scene as shown to people."""
+        """Return the scene as shown to people."""
         return sheet_of(self)
 
     def validity(self, separations: ArrayLike | None = None) -> "Validity":
-        """Expected error of this model against elasticity, for area, gap, stiffness and load.
+        """Return the expected error of this model against elasticity, for area, gap, stiffness and load.
 
         Parameters
         ----------

@@ -170,7 +170,7 @@ def with_changes(document: Mapping[str, Any], changes: Mapping[str, Any]) -> dic
 
 
 def scene_text(scene: Scene, *, heights_file: str | None = None, left_out: bool = True) -> str:
-    """TOML text of a scene with every value: read again, it gives the same scene.
+    """Write a scene with every value as TOML text: read again, it gives the same scene.
 
     Parameters
     ----------

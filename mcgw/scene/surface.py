@@ -49,7 +49,7 @@ def Surface(  # noqa: N802 - the door to a class of this name
     nominal_area: float | str,
     E_star: float | str,
 ) -> Plain:
-    """The equivalent rough surface of Greenwood and Williamson, pressed on a rigid plane.
+    """Make the equivalent rough surface of Greenwood and Williamson, pressed on a rigid plane.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def SpectralSurface(  # noqa: N802 - as above
     nominal_area: float | str,
     E_star: float | str,
 ) -> Spectral:
-    """An isotropic Gaussian surface, given by the moments of its spectrum, pressed on a rigid plane.
+    """Make an isotropic Gaussian surface, given by the moments of its spectrum, pressed on a rigid plane.
 
     Parameters
     ----------
