@@ -23,6 +23,7 @@ _WHITE: Any = {"ms": 4, "mfc": "white", "mew": 0.9}
 _FEW, _FEWER = 1.5, 0.5  # decades below which ticks at 2 and 5 times powers of ten are added
 _UNSEEN = 0.01  # share of the smallest mean: how far down theory is drawn
 _SMALL, _HANDLE, _LETTER, _ROW = 8, 34.0, 4.4, 13.0  # points, of a legend: text, line and gaps, letter, row
+_FINE = 12  # places from which on a line has no kinks
 _SAME = 0.25  # standard errors that markers of residuals cover
 
 
@@ -171,7 +172,15 @@ def _draw_series(axis: Any, series: Series, k: int, logarithmic: bool) -> None:
     found = look(series.label, k)
     line = {"color": found["color"], "linestyle": found["linestyle"]}
     alone = series.points is None or series.label == _THEORY
-    axis.plot(series.x, series.theory, label=series.label if alone else None, **line)
+    few = series.points is None and len(series.x) < _FINE  # a table: marked where it is known
+    axis.plot(
+        series.x,
+        series.theory,
+        marker=found["marker"] if few else None,
+        ms=4,
+        label=series.label if alone else None,
+        **line,
+    )
     if not alone:
         axis.plot([], [], label=series.label, marker=found["marker"], ms=4, mfc="white", **line)
     if series.points is not None:

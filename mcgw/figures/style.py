@@ -59,7 +59,7 @@ FAMILIES: tuple[tuple[str, ...], ...] = (  # what one figure may show together, 
     ("$m_0$", "$m_2$", "$m_4$"),
 )
 PAIRS: tuple[tuple[str, ...], ...] = (
-    ("pressed on", "let go"),
+    ("loading", "unloading"),
     ("in", "back"),
     ("interacting", "independent"),
     ("exact", "Gaussian"),

@@ -38,8 +38,8 @@ e
 
 # %%
 fig, ax = plt.subplots()
-ax.plot(h, e.mean("load"), **line("pressed on"))
-ax.plot(h, e.mean("load_unloading"), **line("let go"))
+ax.plot(h, e.mean("load"), **line("loading"))
+ax.plot(h, e.mean("load_unloading"), **line("unloading"))
 ax.set(xlabel="separation d/σ", ylabel="load (N)")
 ax.legend()
 

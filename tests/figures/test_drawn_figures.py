@@ -39,7 +39,8 @@ def bars_of(axis):
 
 def markers_of(axis):
     """Lines of markers alone."""
-    return [line for line in axis.get_lines() if line.get_marker() in list("os^Dv") and len(line.get_xdata())]
+    lines = (line for line in axis.get_lines() if line.get_linestyle() == "None" and len(line.get_xdata()))
+    return [line for line in lines if line.get_marker() in list("os^Dv")]
 
 
 X = np.array([1.0, 2.0, 4.0])

@@ -18,7 +18,7 @@ laws = {
     "Kogut, Etsion": mcgw.KogutEtsion(hardness=1.2e9, poisson=0.33),
     "Jackson, Green": mcgw.JacksonGreen(yield_strength=0.43e9, poisson=0.33),
 }
-pressure = np.geomspace(1e4, 1e7, 13)
+pressure = np.geomspace(1e4, 1e7, 31)
 elastic = hertz.mean("area", hertz.separation_at("pressure", pressure))
 fig, ax = plt.subplots()
 for k, (label, law) in enumerate(laws.items()):

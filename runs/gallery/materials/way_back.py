@@ -18,8 +18,8 @@ scene = mcgw.Scene(surface, separations=h, law=law, unload_from="loop", n_surfac
 e = mcgw.simulate(scene)
 elastic = mcgw.Scene(surface, separations=h).theory.mean("pressure", h) / 1e6
 fig, ax = plt.subplots()
-ax.plot(h, e.mean("load") / surface.nominal_area / 1e6, **line("pressed on"))
-ax.plot(h, e.mean("load_unloading") / surface.nominal_area / 1e6, **line("let go"))
+ax.plot(h, e.mean("load") / surface.nominal_area / 1e6, **line("loading"))
+ax.plot(h, e.mean("load_unloading") / surface.nominal_area / 1e6, **line("unloading"))
 ax.plot(h, elastic, linewidth=0.9, **line("Hertz") | {"label": "if nothing yielded (Hertz)"})
 ax.set(xlabel="separation d/σ", ylabel="pressure (MPa)", ylim=(0, None))
 ax.legend()
