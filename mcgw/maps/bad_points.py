@@ -17,6 +17,7 @@ _REACH = 3  # pixels from a point to the ring around it: a spike is narrower tha
 BENT = 7.0  # times the usual bend: exceeded once in 4e11 points of a Gaussian map
 _OF_MEDIAN = 0.6745  # median over standard deviation of a Gaussian
 _ENOUGH = 2**20  # rings: enough for their median to a thousandth
+_BAND = 64  # rows processed together: their intermediate results fit the cache
 _OUT = 3.0  # ranges of the ring: 12 deviations of white noise beyond it; ridges, pits and peaks stay below
 _LOOKED_AT = 2**18  # points tell the steps of up to some thousand levels
 _MOST_LEVELS = 2**12
@@ -67,16 +68,28 @@ def spike_heights(topography: Topography) -> Array:
     than three times the range of heights on that ring, and on half of all rings of the map. So the scale is
     that of the surface next to the point, and a few spikes do not change it.
     """
-    z = topography.heights
-    if min(z.shape) <= 2 * _REACH:
-        return np.zeros(z.shape)
-    low = _ring(z, ndimage.minimum_filter1d, np.minimum)
-    high = _ring(z, ndimage.maximum_filter1d, np.maximum)
-    between = high - low
-    some = between[:: max(z.size // _ENOUGH, 1)]
+    heights = topography.heights
+    above = np.zeros(heights.shape)
+    if min(heights.shape) <= 2 * _REACH:
+        return above
+    ranges, places, found = [], [], []
+    rows = np.pad(np.arange(len(heights)), _REACH, mode="reflect")
+    for first in range(0, len(heights), _BAND):
+        around = heights[rows[first : first + _BAND + 2 * _REACH]]
+        padded = np.pad(around, ((0, 0), (_REACH, _REACH)), mode="reflect")
+        low, high = _ring(padded, np.minimum), _ring(padded, np.maximum)
+        here, between = heights[first : first + _BAND], high - low
+        ranges.append(between[:: max(heights.size // _ENOUGH, 1)].copy())
+        out = np.maximum(here - high, 0.0) + np.minimum(here - low, 0.0)
+        at = np.flatnonzero(np.abs(out) > _OUT * between)
+        places.append(at + first * heights.shape[1])
+        found.append(out.ravel()[at])
+    some = np.concatenate(ranges)
     usual = float(np.median(some)) or float(some.mean())  # 0: most of it is flat
-    out = np.maximum(z - high, 0.0) + np.minimum(z - low, 0.0)
-    return np.where(np.abs(out) > _OUT * np.maximum(between, usual), out, 0.0)
+    at, out = np.concatenate(places), np.concatenate(found)
+    most = np.abs(out) > _OUT * usual
+    above.flat[at[most]] = out[most]
+    return above
 
 
 def small_spike_heights(topography: Topography) -> Array:
@@ -96,13 +109,18 @@ def usual_bend(bends: Array) -> float:
     return float(np.nanmedian(np.abs(bends - np.nanmedian(bends)))) / _OF_MEDIAN
 
 
-def _ring(z: Array, along_lines: Any, extreme: Any) -> Array:
-    """Lowest or highest value on the square of seven points around every one, mirrored at the edges."""
-    width = 2 * _REACH
-    rows, columns = (along_lines(z, width + 1, axis=axis, mode="mirror") for axis in (1, 0))
-    j, i = (np.pad(np.arange(n), _REACH, mode="reflect") for n in z.shape)
-    ends = extreme(rows[j[:-width]], rows[j[width:]])
-    return np.asarray(extreme(ends, extreme(columns[:, i[:-width]], columns[:, i[width:]])))
+def _ring(padded: Array, extreme: Any) -> Array:
+    """Lowest or highest value on the square of seven points around every one."""
+    along, down = _of_seven(padded, extreme), _of_seven(padded.T, extreme).T
+    rows = extreme(along[: -2 * _REACH], along[2 * _REACH :])
+    return np.asarray(extreme(rows, extreme(down[:, : -2 * _REACH], down[:, 2 * _REACH :])))
+
+
+def _of_seven(z: Array, extreme: Any) -> Array:
+    """Lowest or highest of seven neighbours along a line: of two, of two pairs, and of four and four."""
+    two = extreme(z[:, :-1], z[:, 1:])
+    four = extreme(two[:, :-2], two[:, 2:])
+    return np.asarray(extreme(four[:, :-3], four[:, 3:]))
 
 
 @dataclass(frozen=True, slots=True)
