@@ -8,24 +8,22 @@ from typing import Any
 import numpy as np
 from scipy.special import ndtr, ndtri
 
-from analytic.arrays import Array
+from analytic.arrays import Array, Ints
 from analytic.distribution.distribution import Counted, Law, Table
-from analytic.distribution.lattice import OneAsperity, resolved, share_at, shares
-from analytic.heights import HeightLaw
+from analytic.distribution.sums import OneAsperity, resolved, shares, shares_at
 from analytic.inversion import LOWEST
 from analytic.measured_summits import MeasuredHeights
 from analytic.quantities import quantity_of
 from analytic.summits import Radii
 
 _POINTS = 2**14, 5 * 2**12  # of a lattice, and of another one
-_CELLS = 4096, 8192  # of the heights, at least
-_FEW_WIDE, _MANY_WIDE = 20, 2000  # medians of the values, standard deviations of the sum, that cells divide
-_FAR_WIDE = 20  # of a value, in which are as many cells
+_CELLS = 6144, 10_240  # of the heights, at least
+_WIDE = 15  # medians of the values, or values, in which are as many cells
 _MOST = 64  # a share of the cells in one gap of the rule
 _SCORES, _APART, _NONE, _SMALLEST, _TABLE = 6.0, 0.4, 1e-14, 1e-3, 8192
 _LEVEL = 1e-9
-_GAUSS = 0.5 - 0.5 / np.sqrt(3)  # the first of two points of a cell
-_NEVER, _TAIL = 1e-14, 1e-5
+_GAUSS = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3)  # two points of a cell
+_NEVER = 1e-14  # asperities on a surface
 _ROUNDING = 1e-9  # of a law that goes on smoothly
 
 
@@ -36,16 +34,9 @@ def distribution_of(model: Any, quantity: str, h: float, *, other: bool = False)
         return Counted(float(model.mean(quantity, h) / model.number), model.number, poisson)
     one, unit = one_asperity(model, quantity, h, _CELLS[other]), q.scale(model.surface)
     x, below, above = shares(one, _POINTS[other])
-    low, high = one.ends
-    return Table(
-        unit * x,
-        below,
-        above,
-        (unit * one.mean, unit**2 * one.variance),
-        (unit * low, unit * high),
-        one.rounding,
-        partial(distribution_of, model, quantity, h, other=True),
-    )
+    moments, (low, high) = (unit * one.mean, unit**2 * one.variance), one.ends
+    again = partial(distribution_of, model, quantity, h, other=True)
+    return Table(unit * x, below, above, moments, (unit * low, unit * high), one.rounding, again)
 
 
 def one_asperity(model: Any, quantity: str, h: float, cells: int, top: float = np.inf) -> OneAsperity:
@@ -63,53 +54,20 @@ def one_asperity(model: Any, quantity: str, h: float, cells: int, top: float = n
     mean = float(p @ values)
     square = float(p @ values**2) - (0 if poisson else mean**2)
     bounded = listed or (model.curvature is None and bool(np.isfinite(model.heights.support[1])))
-
-    def of(values: Array, p: Array, upto: tuple[Array, Array]) -> OneAsperity:
-        return OneAsperity(values, p, *upto, n * mean, n * square, n, poisson, listed, bounded)
-
-    x, p_of_x = _touching(values, p)
-    one = of(x, p_of_x, (x, np.cumsum(p_of_x)))
-    if listed or not one.values.size:
+    x, p = _touching(values, p)
+    one = OneAsperity(x, p, x, np.cumsum(p), n * mean, n * square, n, poisson, listed, bounded)
+    if listed or not x.size:
         return one
-    std = one.usual[1]
-    gaps = np.abs(np.diff(values, prepend=values[0]))
-    gaps[(n * np.cumsum(p[::-1])[::-1] < _NEVER) | (values > top)] = 0.0
-    width = abs(one.median) * _FEW_WIDE / cells if one.few else std * _MANY_WIDE / cells
-    width = np.maximum(width, _FAR_WIDE / cells * np.abs(values))
-    parts = np.ceil(np.maximum(gaps / width, cells * p / one.share))
-    parts = np.clip(parts, -(-cells // p.size), cells // _MOST).astype(np.int64)
-    radius = np.zeros(p.size, dtype=np.int64)
-    if rule.ratios is not None:
-        radius = np.append(0, np.cumsum(np.diff(rule.ratios) != 0))
-    lowest = max(min(h, model.ways.of(quantity).lowest(h)), model.heights.support[0])
-    left = np.where(np.diff(radius, prepend=-1) > 0, lowest, np.append(lowest, rule.heights[:-1]))
-    part = (np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)) / np.repeat(parts, parts)
-    wide = np.repeat((rule.heights - left) / parts, parts)
-    left, radius = (
-        np.repeat(left, parts) + part * np.repeat(rule.heights - left, parts),
-        np.repeat(radius, parts),
-    )
-    s = left + wide * [[_GAUSS], [1 - _GAUSS]]
-    if rule.ratios is None:
-        p, ratios = _probabilities(model.heights, left, wide, s), None
-    else:
-        radii = Radii.over(model.curvature, h)
-        ratios = np.tile(np.repeat(rule.ratios, parts), 2)
-        which = np.searchsorted(-radii.ratios, -ratios)
-        p = radii.density(s.ravel(), which).reshape(s.shape) * wide / 2
-    p *= rule.probabilities.sum() / p.sum()
-    of_cells = replace(rule, heights=s.ravel(), probabilities=p.ravel(), ratios=ratios)
-    values = added(of_cells).reshape(s.shape)
-    own = 0.5 + np.sign(np.diff(values, axis=0)) * [[0.5 - 2 * _GAUSS], [2 * _GAUSS - 0.5]]
+    values, p, radius = _cells(model, h, rule, added, cells, one, top, model.ways.of(quantity).lowest(h))
     x, p_of_x = _touching(values.ravel(), p.ravel())
-    if rule.ratios is None:
-        return of(x, p_of_x, _upto(values, p, own))
-    places = x[:: -(-x.size // cells)]
-    upto = np.zeros(places.shape)
-    for k in range(radius[-1] + 1):
-        mine = slice(*np.searchsorted(radius, [k, k + 1]))
-        upto += np.interp(places, *_upto(values[:, mine], p[:, mine], own[:, mine]))
-    return of(x, p_of_x, (places, upto))
+    one = replace(one, values=x, probabilities=p_of_x, places=x, upto=np.cumsum(p_of_x))
+    if not one.few:
+        return one
+    places = x[:: -(-x.size // (3 * cells))]
+    upto = _distribution(places, values, p, radius)
+    between, share = (places[1:] + places[:-1]) / 2, np.diff(upto)
+    off = mean - float(share @ between + upto[0] * places[0])  # the rule has more digits
+    return replace(one, places=places + off * np.abs(places) / float(share @ np.abs(between)), upto=upto)
 
 
 def _touching(values: Array, p: Array) -> tuple[Array, Array]:
@@ -119,21 +77,50 @@ def _touching(values: Array, p: Array) -> tuple[Array, Array]:
     return values[order], p[order]
 
 
-def _upto(values: Array, p: Array, own: Array) -> tuple[Array, Array]:
-    """Values, and the share of asperities that touch and add no more; `own` parts of those at it do not."""
-    order = np.argsort(values, axis=None)
-    order = order[(values.flat[order] != 0) & (p.flat[order] > 0)]
-    x, p = values.flat[order], p.flat[order]
-    return x, np.cumsum(p) - own.flat[order] * p
+def _cells(
+    model: Any, h: float, rule: Any, added: Any, cells: int, one: OneAsperity, top: float, lowest: float
+) -> tuple[Array, Array, Ints]:
+    """Values at two points of each of the cells of the heights, its probability by half, and its radius."""
+    values, p, s = added(rule), rule.probabilities, rule.heights
+    new = np.diff(rule.ratios, prepend=np.inf) != 0 if rule.ratios is not None else np.arange(s.size) == 0
+    left = np.where(new, max(min(h, lowest), model.heights.support[0]), np.append(h, s[:-1]))
+    gaps = np.where(new, 0.0, np.abs(np.diff(values, prepend=values[0])))
+    gaps[(model.number * np.cumsum(p[::-1])[::-1] < _NEVER) | (values > top)] = 0.0
+    parts = np.maximum(
+        gaps * cells / (_WIDE * np.cbrt(new.sum())) / np.maximum(one.median, np.abs(values)),
+        cells * p / p.sum(),
+    )
+    parts = np.clip(np.ceil(parts), -(-cells // p.size), cells // _MOST).astype(np.int64)
+    part = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
+    wide = np.repeat((s - left) / parts, parts)
+    left = np.repeat(left, parts) + part * wide
+    s = left + wide * _GAUSS[:, None]
+    if rule.ratios is None:
+        ratios, density = None, model.heights.pdf(s)
+    else:
+        ratios, radii = np.tile(np.repeat(rule.ratios, parts), 2), Radii.over(model.curvature, h)
+        density = radii.density(s.ravel(), np.searchsorted(-radii.ratios, -ratios)).reshape(s.shape)
+    p = density * wide * (rule.probabilities.sum() / (density @ wide).sum())
+    of_cells = replace(rule, heights=s.ravel(), probabilities=p.ravel(), ratios=ratios)
+    return added(of_cells).reshape(s.shape), p, np.repeat(np.cumsum(new), parts)
 
 
-def _probabilities(law: HeightLaw, left: Array, wide: Array, s: Array) -> Array:
-    """Of heights s in cells, two in each, that share its probability as their densities are."""
-    with np.errstate(all="ignore"):
-        above, p = law.sf(np.append(left, left[-1] + wide[-1])), law.pdf(s) * wide / 2
-        exact = -np.diff(above) / p.sum(axis=0)
-    exact[(above[1:] < _TAIL) | ~np.isfinite(exact)] = 1.0  # differences there have lost their digits
-    return np.asarray(p * exact)
+def _distribution(places: Array, values: Array, p: Array, radius: Ints) -> Array:
+    """Share of asperities that touch and add no more: by stretches on which values rise, or fall."""
+    rising = np.sign(np.diff(values, axis=0)[0])
+    rising = rising[np.maximum.accumulate(np.where(rising != 0, np.arange(rising.size), 0))]
+    parts = np.append(0, np.cumsum((np.diff(rising) != 0) | (np.diff(radius) != 0)))
+    touching = values.T.ravel() != 0
+    values, p, parts = values.T.ravel()[touching], p.T.ravel()[touching], np.repeat(parts, 2)[touching]
+    own = np.tile([1 - 2 * _GAUSS[0], 2 * _GAUSS[0]], rising.size)[touching]
+    upto = np.zeros(places.size)
+    for stretch in np.split(np.arange(parts.size), 1 + np.flatnonzero(np.diff(parts))):
+        x, share, sum_up = values[stretch], p[stretch], np.cumsum(p[stretch])
+        upto_x = sum_up - own[stretch] * share
+        if x[0] > x[-1]:
+            x, upto_x = x[::-1], sum_up[-1] - upto_x[::-1]
+        upto += np.interp(places, np.maximum.accumulate(x), upto_x, left=0.0, right=sum_up[-1])
+    return upto
 
 
 def separation_law_of(model: Any, load: float, quantity: str, *, other: bool = False) -> Law:
@@ -151,7 +138,7 @@ def separation_law_of(model: Any, load: float, quantity: str, *, other: bool = F
 
     def shares(h: float) -> tuple[float, float]:
         one = one_asperity(model, quantity, h, _CELLS[other], target)
-        upto, above = share_at(one, np.array([target]), _POINTS[other] // 4)
+        upto, above = shares_at(one, np.array([target]), _POINTS[other] // 4)
         return float(upto[0]), float(above[0])
 
     again = partial(separation_law_of, model, load, quantity, other=True)
@@ -165,7 +152,7 @@ def shares_upto(model: Any, quantity: str, h: float, values: Array) -> Array:
     """
     x = values / quantity_of(quantity).scale(model.surface)
     one = one_asperity(model, quantity, h, _CELLS[False], float(x.max()))
-    return share_at(one, x, _POINTS[False] // 4)[0]
+    return shares_at(one, x, _POINTS[False] // 4)[0]
 
 
 def interacting_distribution(model: Any, quantity: str, h: float) -> Law:

@@ -18,9 +18,9 @@ AT_ONCE = 2_000_000
 
 
 def some():
-    """Each 7th and its neighbour of those with up to 3000 asperities: 40 laws."""
-    few = [each for each in laws() if each[0][3] <= 3000]
-    return few[:: len(few) // 40][:40]
+    """40 laws with up to 3000 asperities, spread over all of each number in turn."""
+    few = [[each for each in laws() if each[0][3] == n] for n in (100, 1000, 3000)]
+    return [few[k % 3][len(few[k % 3]) * k // 40] for k in range(40)]
 
 
 def drawn(model, h, surfaces, seed, quantity="load"):

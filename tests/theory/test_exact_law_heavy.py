@@ -26,22 +26,22 @@ def test_a_law_of_the_grid_has_no_fault(k):
     names, model, h = list(laws())[k]
     found, off, _, _ = faults(model, h)
     assert not found, names
-    assert off < 1e-6 or "jkr" in names  # a kink where asperities let go
+    assert off < 1e-6, names
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("k", range(0, 40, 5))
 def test_drawn_surfaces_are_beyond_quantiles_as_often_as_said(k):
-    """Numbers of 100 000 are binomial; a false alarm in 1e5 runs."""
+    """Numbers beyond are binomial; a false alarm in 1e4 runs, by the rarest of the fewer surfaces."""
     names, model, h = some()[k]
-    z = scores(model, h, 100_000, k)
+    z = scores(model, h, 100_000 if model.number == 100 else 20_000, k)
     assert np.all(np.isnan(z) | (np.abs(z) < 5)), names
     assert np.isfinite(z).sum() >= 4
 
 
 @pytest.mark.slow
 def test_a_tenth_more_asperities_would_be_seen():
-    _, model, h = some()[5]
+    _, model, h = some()[30]
     more = replace(model, n_asperities=1.1 * model.number)
     assert np.nanmax(np.abs(scores(model, h, 100_000, 1, of=more))) > 5
 
