@@ -16,7 +16,7 @@ NOTHING = 1e-100  # less than any sum but 0
 _SAFE = 8.0  # times what two computations differ by: their errors may have one sign
 _USUAL = 5e-7  # over the root of a share: what two computations may have in common, by a grid of 630 laws
 _NEIGHBOURS = 1 / 40  # of the table, in which the largest difference counts: differences pass through 0
-_LEAST = 1e-30  # less than any share that is told
+_LEAST = 1e-30  # less than any fraction that is reported
 _SCIPY = 1e-14
 
 
