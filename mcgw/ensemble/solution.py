@@ -6,13 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from analytic import QUANTITIES, Hertz, MeasuredHeights, MeasuredRadii, Quantity, quantity_of
+from analytic import Hertz, MeasuredHeights, MeasuredRadii, Quantity, quantity_of
+from analytic.arrays import Array
 from mcgw.ensemble.at_load import NEGATIVE, answers_at, asperities_of, quantities_at, theory_at
 from mcgw.ensemble.forecast import surfaces_at_loads
+from mcgw.ensemble.many_surfaces import ManySurfaces
 from mcgw.ensemble.separation import LOWEST, Summits
 from mcgw.ensemble.solved import Solution
 from mcgw.machine.progress import Progress, told
-from mcgw.sampling.asperities import listing_sampler, summits, summits_drawn
+from mcgw.sampling.asperities import listing_sampler, summits, summits_drawn, summits_of_many
 from mcgw.sampling.block import Sampler
 from mcgw.scene.arguments import argument, as_toml, check_object
 from mcgw.scene.scene import Scene, storable
@@ -21,6 +23,7 @@ from mcgw.scene.section import nearest
 _MARGIN = 6.0  # standard deviations of a surface's separation that are drawn at once
 _RESAMPLED = 200  # specimens in place of one measured surface
 _MOST_HEIGHTS = 3e9
+_AT_ONCE = 1e6  # asperities whose surfaces are solved together
 _LAST_DIGITS = 64 * float(np.finfo(float).eps)  # of a reduced height
 _NOTHING = 1e-16  # share of the heights below all that are drawn
 # What may be given: its unit, the quantity that it is, and whether per nominal area.
@@ -176,14 +179,19 @@ def solutions(
             f"{drawn.n_surfaces} surfaces with {drawn.touching:.3g} contacts each are too many to solve "
             f"singly; give fewer than {_MOST_HEIGHTS / drawn.touching:.0f} surfaces"
         )
-    rows, sampler, sunk = [], listing_sampler(drawn), None
-    if given == "nominal_separation":
-        sunk = whole.compliance / whole.surface.sigma
-    for number in range(drawn.n_surfaces):
-        rows.append(_surface(scene, sampler, number, q, values, sunk))
+    sampler, found = listing_sampler(drawn), []
+    sunk = whole.compliance / whole.surface.sigma if given == "nominal_separation" else None
+    about = [at["separation"] for at in theory]
+    step = max(int(_AT_ONCE / (drawn.touching + 1)), 1)
+    for first in range(0, drawn.n_surfaces, step):
+        n = min(step, drawn.n_surfaces - first)
+        found.append(_surfaces(scene, sampler, first, n, q, values, about, sunk))
         if tell is not None:
-            tell(number + 1, drawn.n_surfaces)
-    surfaces = [{x: np.array([row[k][x] for row in rows]) for x in at} for k, at in enumerate(theory)]
+            tell(first + n, drawn.n_surfaces)
+    surfaces = [
+        {name: np.concatenate([part[k][name] for part in found]) for name in theory[k]}
+        for k in range(len(values))
+    ]
     return [
         Solution(whole, given, float(value), answers_at(whole, at), answers_at(whole, on), drawn)
         for value, at, on in zip(values, theory, surfaces, strict=True)
@@ -216,7 +224,7 @@ def _drawn(scene: Scene, q: Quantity, separations: Sequence[float]) -> Scene:
         sampler="direct" if isinstance(scene.heights, MeasuredHeights) else "tail",
         keep="sums",
         separations=(min(starts),),
-        quantities=tuple(QUANTITIES),
+        quantities=("contacts",),
         law=Hertz(),  # heights are what is drawn, the same under every law
         unload_from=None,
         film=None,
@@ -224,38 +232,57 @@ def _drawn(scene: Scene, q: Quantity, separations: Sequence[float]) -> Scene:
     )
 
 
+def _surfaces(
+    scene: Scene,
+    sampler: Sampler,
+    first: int,
+    n: int,
+    q: Quantity,
+    values: Sequence[float],
+    about: Sequence[float],
+    sunk: float | None,
+) -> list[dict[str, Array]]:
+    """All quantities of some surfaces at each value: together where sums fall, else one by one."""
+    drawn, found = sampler.scene, []
+    many = ManySurfaces(scene, *summits_of_many(drawn, sampler, first, n))
+    for value, start in zip(values, about, strict=True):
+        h = np.full(n, np.nan)
+        if sunk is None and value > 0:
+            h = many.separations(q, value, drawn.lowest, start)
+        known = np.isfinite(h)
+        sums = {"separation": h, **many.sums(quantities_at(scene), np.where(known, h, np.inf))}
+        for k in np.flatnonzero(~known).tolist():
+            for name, x in _surface(scene, sampler, first + k, q, value, sunk).items():
+                sums[name][k] = x
+        found.append(sums)
+    return found
+
+
 def _surface(
-    scene: Scene, sampler: Sampler, number: int, q: Quantity, values: Sequence[float], sunk: float | None
-) -> list[dict[str, float]]:
-    """All quantities of one surface at each value; with `sunk`, 1/N, at nominal separations."""
+    scene: Scene, sampler: Sampler, number: int, q: Quantity, value: float, sunk: float | None
+) -> dict[str, float]:
+    """All quantities of one surface at a value; with `sunk`, 1/N, at a nominal separation."""
     drawn = sampler.scene
-    touching = Summits.of(scene, *summits_drawn(drawn, sampler, number))
-    whole: Summits | None = None
-    rows = []
-
-    def found(on: Summits, value: float) -> float | None:
-        """Look among the summits drawn, or on all heights of the surface."""
+    on = Summits.of(scene, *summits_drawn(drawn, sampler, number))
+    target = value / q.scale(scene.surface)
+    if sunk is None:
+        h = on.largest_separation(q, target, drawn.lowest)
+    else:
+        h = on.nominal(value, sunk, drawn.lowest)
+    if h is None:  # rare: it lies below what was drawn
+        on = Summits.of(scene, *summits(drawn, number))
+        if not on.s.size:
+            raise ValueError(f"surface {number} has no asperity; increase n_asperities")
+        if sunk is None:
+            h = on.separation_anywhere(q, target, drawn.lowest)
+        else:
+            h = on.nominal(value, sunk, LOWEST)
+    negative = on.s[on.modulus < 0]
+    if h is None and not negative.size:
+        told, give = f"{q.name} = {value:g} {q.unit}", "less"
         if sunk is not None:
-            return on.nominal(value, sunk, drawn.lowest if on is touching else LOWEST)
-        search = on.largest_separation if on is touching else on.separation_anywhere
-        return search(q, value / q.scale(scene.surface), drawn.lowest)
-
-    for value in values:
-        on = touching
-        h = found(on, value)
-        if h is None:  # rare: it lies below what was drawn
-            whole = Summits.of(scene, *summits(drawn, number)) if whole is None else whole
-            on = whole
-            if not on.s.size:
-                raise ValueError(f"surface {number} has no asperity; increase n_asperities")
-            h = found(on, value)
-        negative = on.s[on.modulus < 0]
-        if h is None and not negative.size:
-            told, give = f"{q.name} = {value:g} {q.unit}", "less"
-            if sunk is not None:
-                told, give = f"nominal_separation = {value:g}", "more"
-            raise ValueError(f"{told}: surface {number} does not reach it; give {give}")
-        if h is None or (scene.negative == "error" and np.any(negative > h)):
-            raise ValueError(NEGATIVE.format(q.name, value, q.unit, f"surface {number}", negative.max()))
-        rows.append({"separation": h, **on.sums(quantities_at(scene), h)})
-    return rows
+            told, give = f"nominal_separation = {value:g}", "more"
+        raise ValueError(f"{told}: surface {number} does not reach it; give {give}")
+    if h is None or (scene.negative == "error" and np.any(negative > h)):
+        raise ValueError(NEGATIVE.format(q.name, value, q.unit, f"surface {number}", negative.max()))
+    return {"separation": h, **on.sums(quantities_at(scene), h)}

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.arrays import Array
+from analytic.arrays import Array, Ints
 from mcgw.machine.memory import check_memory
 from mcgw.sampling.block import Sampler
 from mcgw.sampling.counts import counts_of, generator
@@ -148,6 +148,18 @@ def summits_drawn(scene: Scene, sampler: Sampler, surface: int) -> Listed:
             ratios.append(table.root_ratios(heights[-1], *words) ** 2)
     s = np.concatenate([*heights, outside[:, 1]])
     return s, np.concatenate([*ratios, outside[:, 3]]) if table else None
+
+
+def summits_of_many(scene: Scene, sampler: Sampler, first: int, n: int) -> tuple[Ints, Array, Array | None]:
+    """As `summits_drawn`, of surfaces `first` ... `first + n - 1`: how many each has, and those of all."""
+    if not isinstance(sampler, Direct) and not sampler.mesh.size:
+        counts, table = counts_of(scene, sampler.mesh, first, n), table_of(scene, scene.lowest)
+        rows = extra_heights(scene, sampler.mesh, first, counts, table)
+        return counts.low_extras + counts.high_extras, rows[:, 1], rows[:, 3] if table else None
+    every = [summits_drawn(scene, sampler, number) for number in range(first, first + n)]
+    own = [ratios for _, ratios in every if ratios is not None]
+    s = np.concatenate([s for s, _ in every])
+    return np.array([s.size for s, _ in every]), s, np.concatenate(own) if own else None
 
 
 def worst_of_values(scene: Scene, surfaces: int) -> float:

@@ -64,13 +64,13 @@ def drawn_by(monkeypatch, scene, given, values):
     """Solutions, and the scene whose heights were drawn for them."""
     import mcgw.ensemble.solution as module
 
-    listed, scenes = module.summits_drawn, []
+    listed, scenes = module.summits_of_many, []
 
     def spy(drawn, *rest):
         scenes.append(drawn)
         return listed(drawn, *rest)
 
-    monkeypatch.setattr(module, "summits_drawn", spy)
+    monkeypatch.setattr(module, "summits_of_many", spy)
     found = solutions(scene, given, values)
     monkeypatch.undo()
     return found, scenes[0]
