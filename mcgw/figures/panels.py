@@ -214,8 +214,8 @@ def _draw_residuals(axis: Any, panel: Panel, *, labelled: bool) -> None:
     for k, series, points in _known(panel):
         found = _marks(series, k)
         varies = points.stderr > 0
-        x, z = points.x[varies], points.residual[varies]
-        if panel.xlabel == GAMMA and np.ptp(z) < _SAME:  # of the same surfaces: one point for all gamma
+        x, z = points.x[varies], (points.mean - points.exact)[varies] / points.stderr[varies]
+        if panel.xlabel == GAMMA and z.size and np.ptp(z) < _SAME:  # of the same surfaces: one for all gamma
             axis.plot(x[[0, -1]], z[[0, -1]], color=found["color"], lw=0.8)
             x, z = x[[len(x) // 2]], z[[len(x) // 2]]
         axis.plot(x, z, found["marker"], color=found["color"], ms=3, mfc="white", mew=0.8)

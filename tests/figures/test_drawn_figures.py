@@ -17,7 +17,7 @@ import analytic
 import mcgw
 from mcgw.figures import style
 from mcgw.figures.against_theory import quantity_panel, save_comparison
-from mcgw.figures.data import FigureData, Panel, Points, Series
+from mcgw.figures.data import GAMMA, FigureData, Panel, Points, Series
 from mcgw.figures.panels import draw
 from mcgw.figures.studies import save_convergence, save_tradeoff
 from mcgw.figures.style import FAMILIES, PAIRS, THEORY, look, power_of_ten, tick_label
@@ -102,6 +102,15 @@ def test_residuals_are_below_their_panel():
     assert low == -high < -np.abs(SERIES[1].points.residual).max()
     (band,) = below.patches
     assert (band.get_y(), band.get_height()) == (-2, 4)
+
+
+@pytest.mark.parametrize(("residuals", "shown"), [([0.7, 0.8, 0.75], 1), ([0.7, -0.8, 0.0], 3)])
+def test_residuals_of_one_draw_over_gamma_are_one_point(residuals, shown):
+    """Beside a series without any error, which has none at all."""
+    points = Points(X, X + np.array(residuals), np.ones(3), X)
+    series = Series("a", X, X, points), Series("b", X, X, Points(X, X, 0 * X, X))
+    _, below = draw(FigureData("", "", (Panel("p", GAMMA, "y", series),))).axes
+    assert [len(line.get_xdata()) for line in markers_of(below)] == [shown]
 
 
 def test_there_are_no_residuals_of_points_whose_errors_are_not_known():
