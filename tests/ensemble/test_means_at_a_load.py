@@ -8,6 +8,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from oracles.laws_of_one_depth import kogut_etsion
 
 import analytic
 import mcgw
@@ -18,21 +19,11 @@ from mcgw.sampling.asperities import summits
 SURFACE = analytic.Surface(sigma=1e-6, radius=1e-5, eta=1e9, nominal_area=6e-8, E_star=1e11)
 NAMES = ["load", "area", "contacts", "conductance", "yielded"]
 POISSON, MANY = 0.3, 1000
-K = 0.454 + 0.41 * POISSON
+K = 0.577
 
 
-def hertz(d, _):
+def hertz(d, critical):
     return d**1.5, d
-
-
-def kogut_etsion(d, critical):
-    """Load and area of a contact as printed, in reduced units."""
-    x = np.maximum(d, 0.0) / critical
-    elastic, plastic = x < 1, x >= 110
-    load = np.where(x < 6, 1.03 * x**1.425, 1.4 * x**1.263)
-    area = np.where(x < 6, 0.93 * x**1.136, 0.94 * x**1.146)
-    load = np.where(elastic, x**1.5, np.where(plastic, 3 * x / K, load))
-    return critical**1.5 * load, critical * np.where(elastic, x, np.where(plastic, 2 * x, area))
 
 
 def drawn(heights, weight, critical, target, contact):
@@ -40,10 +31,12 @@ def drawn(heights, weight, critical, target, contact):
     low, high = np.full(len(heights), -6.0), heights.max(axis=1)
     for _ in range(40):
         middle = (low + high) / 2
-        sums = (weight * contact(np.maximum(heights - middle[:, None], 0.0), critical)[0]).sum(axis=1)
+        sums = (weight * contact(np.maximum(heights - middle[:, None], 0.0), critical=critical)[0]).sum(
+            axis=1
+        )
         low, high = np.where(sums >= target, middle, low), np.where(sums >= target, high, middle)
     depth = np.maximum(heights - low[:, None], 0.0)
-    load, area = contact(depth, critical)
+    load, area = contact(depth, critical=critical)
     area = np.where(depth > 0, area, 0.0)
     found = {
         "load": weight * load,

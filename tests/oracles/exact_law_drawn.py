@@ -1,11 +1,9 @@
-"""Forty exact laws against drawn surfaces: ``python -m oracles.exact_law_drawn [SURFACES [FIRST [LAST]]]``.
+"""Forty exact laws against drawn surfaces.
 
 Some of `exact_law_grid` that have few asperities. A surface is drawn as its touching asperities: their
 number, their heights by inversion, what they add. Shares beyond quantiles at 1e-1 to 1e-4 are binomial.
 """
 
-import sys
-import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -52,12 +50,3 @@ def scores(model, h, surfaces, seed, quantity="load", of=None):
             known = abs(p / share - 1) < 1e-3
             found.append((seen - surfaces * p) / np.sqrt(surfaces * p * (1 - p)) if known else np.nan)
     return np.array(found)
-
-
-if __name__ == "__main__":
-    surfaces, first, last = (*map(int, sys.argv[1:]), *(200_000, 0, 40)[len(sys.argv) - 1 :])
-    warnings.simplefilter("ignore")
-    for k, (names, model, h) in list(enumerate(some()))[first:last]:
-        z = scores(model, h, surfaces, k)
-        sys.stdout.write(f"{names} {h:.2f}: {' '.join(f'{each:5.1f}' for each in z)}\n")
-        sys.stdout.flush()

@@ -1,12 +1,10 @@
-"""Exact laws over a grid of 630 scenes: ``python -m oracles.exact_law_grid [FIRST [LAST]]``.
+"""Exact laws over a grid of 630 scenes.
 
 Ten laws of heights, three contact laws, three gradings, seven numbers of asperities. Of each: shares fall
 from 1 to 1e-6 in order, the error against more points and more cells is at most the one stated, and the time.
 """
 
-import sys
 import time
-import warnings
 from itertools import product
 from unittest import mock
 
@@ -77,19 +75,3 @@ def faults(model, h, quantity="load"):
         worst = np.argmax(off / stated)
         found.append(f"off by {off[worst]:.1e} where {stated[worst]:.1e} is stated, at {SHARES[worst]:.1e}")
     return found, off.max(), stated.max(), took
-
-
-if __name__ == "__main__":
-    first, last = (*map(int, sys.argv[1:3]), 0, 630)[:2] if len(sys.argv) > 2 else (0, 630)
-    warnings.simplefilter("ignore")
-    for names, model, h in list(laws())[first:last]:
-        try:
-            found, off, stated, took = faults(model, h)
-        except ValueError as error:
-            sys.stdout.write(f"{names}: refused: {str(error)[:80]}\n")
-            continue
-        words = "; ".join(found) or "good"
-        sys.stdout.write(
-            f"{names} {h:.2f}: {words}; off {off:.1e}, stated {stated:.1e}, {1e3 * took:.0f} ms\n"
-        )
-        sys.stdout.flush()

@@ -13,12 +13,34 @@ GRADINGS = {
     "uniform": Homogeneous(), "no tips": Exponential(0.0), "soft tips": Exponential(0.2),
     "stiff tips": Exponential(2.0),
 }  # fmt: skip
-OWN = CustomLaw(
-    load=(lambda u: u**3, lambda u: 1.03 * u**2.85, lambda u: 1.40 * u**2.526, lambda u: 3 / 0.577 * u**2),
-    area=(lambda u: u**2, lambda u: 0.93 * u**2.272, lambda u: 0.94 * u**2.292, lambda u: 2 * u**2),
-    limits=(1.0, 6.0, 110.0),
-    critical=0.05,
-)
+
+
+def kogut_etsion(critical=0.05):
+    """Kogut and Etsion (2002) with nu = 0.3: K = 0.577."""
+    return CustomLaw(
+        load=(
+            lambda u: u**3,
+            lambda u: 1.03 * u**2.85,
+            lambda u: 1.40 * u**2.526,
+            lambda u: 3 / 0.577 * u**2,
+        ),
+        area=(lambda u: u**2, lambda u: 0.93 * u**2.272, lambda u: 0.94 * u**2.292, lambda u: 2 * u**2),
+        limits=(1.0, 6.0, 110.0),
+        critical=critical,
+    )
+
+
+def chang_etsion_bogy(critical):
+    """Chang, Etsion and Bogy (1987): the load jumps by a half at yield, the area is continuous."""
+    return CustomLaw(
+        load=(lambda u: u**3, lambda u: 1.5 * (2 * u * u - 1)),
+        area=(lambda u: u**2, lambda u: 2 * u * u - 1),
+        limits=(1.0,),
+        critical=critical,
+    )
+
+
+OWN = kogut_etsion()
 
 
 def reduced(model, quantity, h):
@@ -30,58 +52,6 @@ def differences(model, quantity, h, step=4e-3):
     """-d mean/dh by differences of the eighth order: the mean is smooth, jumps are smeared over heights."""
     k, weights = step * np.array([1, 2, 3, 4]), np.array([4 / 5, -1 / 5, 4 / 105, -1 / 280]) / step
     return float((model.mean(quantity, h - k) - model.mean(quantity, h + k)) @ weights)
-
-
-@dataclass(frozen=True)
-class KogutEtsion(ContactLaw):
-    """Kogut and Etsion (2002) with nu = 0.3: K = 0.577."""
-
-    critical: float = 0.05
-    third: float = 1.4  # factor of the load between 6 and 110 critical penetrations
-
-    name = "by hand: kogut-etsion"
-    elastic = False
-
-    def limits(self, e):
-        e = np.asarray(e)
-        return np.array([1.0, 6.0, 110.0]).reshape(-1, *[1] * e.ndim) * (self.critical / e**2)
-
-    def load(self, piece, y, e):
-        if piece == 0:
-            return e * y**3
-        dc = self.critical / e**2
-        x, pc = y * y / dc, e * dc**1.5
-        factor, power = ((1.03, 1.425), (self.third, 1.263), (3 / 0.577, 1.0))[piece - 1]
-        return factor * pc * x**power
-
-    def radius(self, piece, y, e):
-        if piece == 0:
-            return y + 0 * e
-        dc = self.critical / e**2
-        factor, power = ((0.93, 1.136), (0.94, 1.146), (2.0, 1.0))[piece - 1]
-        return (dc * factor * (y * y / dc) ** power) ** 0.5
-
-
-@dataclass(frozen=True)
-class ChangEtsionBogy(ContactLaw):
-    """Chang, Etsion and Bogy (1987): the load jumps by a half at yield, the area is continuous."""
-
-    critical: float = 0.05
-
-    name = "by hand: chang-etsion-bogy"
-    elastic = False
-
-    def limits(self, e):
-        return (self.critical / np.asarray(e) ** 2)[None]
-
-    def load(self, piece, y, e):
-        if piece == 0:
-            return e * y**3
-        dc = self.critical / e**2
-        return e * 1.5 * dc**0.5 * (2 * y * y - dc)
-
-    def radius(self, piece, y, e):
-        return (2 * y * y - self.critical / e**2) ** 0.5 if piece else y + 0 * e
 
 
 @dataclass(frozen=True)

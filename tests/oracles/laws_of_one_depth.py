@@ -6,20 +6,18 @@ depth, yield `strain` or pull-off `stretch` at e = 1; `ratio` is R/sigma, or the
 
 from math import atan, cos, exp, gamma, log1p, pi, sin, sqrt
 
+import numpy as np
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
 
-def kogut_etsion(d, e=1.0, critical=0.05):
+def kogut_etsion(d, e=1.0, critical=0.05, k=0.577):
+    """Numbers or arrays; `k` is 0.454 + 0.41 nu."""
     dc = critical / e**2
-    x, pc = d / dc, e * dc**1.5
-    if x < 1:
-        return e * d**1.5, d
-    if x < 6:
-        return 1.03 * pc * x**1.425, 0.93 * dc * x**1.136
-    if x < 110:
-        return 1.40 * pc * x**1.263, 0.94 * dc * x**1.146
-    return 3 / 0.577 * pc * x, 2 * d
+    x, pc = np.maximum(d, 0) / dc, e * dc**1.5
+    pieces = [x < 1, x < 6, x < 110]
+    load = np.select(pieces, [x**1.5, 1.03 * x**1.425, 1.40 * x**1.263], 3 / k * x)
+    return pc * load, dc * np.select(pieces, [x, 0.93 * x**1.136, 0.94 * x**1.146], 2 * x)
 
 
 def unloaded_kogut_etsion(d, deepest, critical):

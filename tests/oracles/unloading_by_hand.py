@@ -10,7 +10,7 @@ import numpy as np
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from oracles.laws_by_hand import KogutEtsion
+from oracles.laws_by_hand import kogut_etsion
 
 TOP = 11.0  # e^-60
 
@@ -21,7 +21,7 @@ def carried(quantity, s, h, deepest, e=1.0, critical=0.05):
     if delta <= 0:
         return 0.0
     x = most / dc
-    law = KogutEtsion(critical)
+    law = kogut_etsion(critical)
     piece = sum(x >= limit for limit in (1, 6, 110))
     power = {"load": 1.5, "area": 1.0, "conductance": 0.5, "contacts": 0.0}[quantity]
     if piece == 0:

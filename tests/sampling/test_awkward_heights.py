@@ -7,6 +7,7 @@ import mpmath
 import numpy as np
 import pytest
 import scipy.stats
+from oracles.laws_of_one_depth import kogut_etsion
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
@@ -160,12 +161,6 @@ def stiffer(s):
     return 1 + 0.5 * np.tanh(s)
 
 
-def contact_area(u):
-    """Kogut and Etsion: a/a_c of the penetration over the critical one."""
-    conditions = [u < 1, u < 6, u < 110]
-    return np.select(conditions, [u, 0.93 * u**1.136, 0.94 * u**1.146], 2 * u)
-
-
 @pytest.mark.parametrize("freedom", [3.5, 6.0])
 @pytest.mark.parametrize("unload_from", [None, -1.0])
 def test_theory_takes_little_memory_and_is_right(freedom, unload_from):
@@ -184,8 +179,7 @@ def test_theory_takes_little_memory_and_is_right(freedom, unload_from):
     std = heights.std()
 
     def term(s):
-        yields = critical / stiffer(s) ** 2
-        return yields * contact_area((s - 1.0) / yields) * std * heights.pdf(std * s)
+        return kogut_etsion(s - 1.0, stiffer(s), critical)[1] * std * heights.pdf(std * s)
 
     ends = np.array([1.0, 1.2, 1.4, 2.0, 4.0, 7.0, 12.0, 30.0, 1e3, 1e5, 1e8])
     # Where a piece begins there is a small jump: the quadrature is told where.

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from oracles.laws_of_one_depth import kogut_etsion
 from scipy.integrate import quad
 from scipy.interpolate import PchipInterpolator
 from scipy.stats import norm
@@ -67,15 +68,7 @@ def contact_of(scene):
     k, s = 0.454 + 0.41 * 0.33, scene.surface
     dc = (np.pi * k * 1.2e9 / (2 * s.E_star)) ** 2 * s.radius / s.sigma
 
-    def contact(d):
-        x = d / dc
-        if x < 1:
-            return d**1.5, d
-        load, area = (1.03 * x**1.425, 0.93 * x**1.136) if x < 6 else (1.4 * x**1.263, 0.94 * x**1.146)
-        load, area = (load, area) if x < 110 else (3 * x / k, 2 * x)
-        return dc**1.5 * load, dc * area
-
-    return contact, (dc, 6 * dc, 110 * dc)
+    return lambda d: kogut_etsion(d, critical=dc, k=k), (dc, 6 * dc, 110 * dc)
 
 
 def lightly_loaded(name, folder):

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from oracles.laws_by_hand import GRADINGS, SURFACE, KogutEtsion as LoadingByHand, differences, reduced
+from oracles.laws_by_hand import GRADINGS, SURFACE, differences, kogut_etsion, reduced
 from oracles.unloading_by_hand import TOP, carried, ends, integral
 
 import analytic
@@ -129,7 +129,7 @@ def test_covariance_of_there_and_back_is_literal():
     names, h = ["load", "load_unloading", "contacts_unloading"], np.array([0.6, 0.9])
     model = replace(BACK, n_asperities=1.0, count="poisson")
     matrix = model.covariance(names, h)
-    law, scale = LoadingByHand(0.05), quantity_of("load").scale(SURFACE)
+    law, scale = kogut_etsion(0.05), quantity_of("load").scale(SURFACE)
 
     def loaded(s):
         if s <= 0.6:
@@ -252,7 +252,7 @@ def test_without_a_film_resistance_it_is_the_spots():
 def test_films_on_spots_that_yield(name, back):
     grading = GRADINGS[name]
     model, h, b = replace(BACK, grading=grading, film=film_of(0.03)), 0.8, 0.03
-    law = LoadingByHand(0.05)
+    law = kogut_etsion(0.05)
 
     def modulus(s):
         return float(grading(np.array(s)))

@@ -10,11 +10,11 @@ from oracles.law_means import term
 from oracles.laws_by_hand import (
     GRADINGS as PLAIN,
     SURFACE,
-    ChangEtsionBogy,
     Film,
     HalfSpace,
-    KogutEtsion,
+    chang_etsion_bogy,
     differences,
+    kogut_etsion,
     reduced,
 )
 from scipy.integrate import quad
@@ -38,8 +38,8 @@ from analytic import (
 from analytic.laws.law import ContactLaw
 
 LAWS = {
-    "kogut-etsion": KogutEtsion(0.05), "early": KogutEtsion(1e-3), "late": KogutEtsion(10.0),
-    "chang": ChangEtsionBogy(0.3), "half-space": HalfSpace(0.25), "film": Film(0.1),
+    "kogut-etsion": kogut_etsion(0.05), "early": kogut_etsion(1e-3), "late": kogut_etsion(10.0),
+    "chang": chang_etsion_bogy(0.3), "half-space": HalfSpace(0.25), "film": Film(0.1),
 }  # fmt: skip
 GRADINGS = PLAIN | {
     "stiff tips": Clipped.of(Exponential(2.0)),
@@ -138,7 +138,7 @@ def test_means_are_literal_integrals(law, grading):
 def test_separations_that_share_a_rule_do_not_matter_to_each_other(name):
     """A limit apart, close together, and far away."""
     h = np.array([-0.5, 0.3, 0.35, 0.35 + 1e-9, 1.0, 8.0, 20.0])
-    for law, quantity in ((KogutEtsion(1e-3), "load"), (Film(0.1), "conductance")):
+    for law, quantity in ((kogut_etsion(1e-3), "load"), (Film(0.1), "conductance")):
         model = Model(SURFACE, law=law, grading=GRADINGS[name])
         alone = [float(model.mean(quantity, x)) for x in h]
         np.testing.assert_allclose(model.mean(quantity, h), alone, rtol=2e-12)
@@ -146,7 +146,7 @@ def test_separations_that_share_a_rule_do_not_matter_to_each_other(name):
 
 @pytest.mark.parametrize("name", ["exponential", "weibull"])
 def test_means_under_other_height_laws(name):
-    heights, law, grading = HEIGHTS[name], KogutEtsion(0.05), Exponential(0.2)
+    heights, law, grading = HEIGHTS[name], kogut_etsion(0.05), Exponential(0.2)
     model = Model(SURFACE, law=law, grading=grading, heights=heights)
     for h in (-1.4, 0.3):
         truth = literal(lambda s, h=h: term("load", law, s - h, grading(s)), law, grading, heights, h, 40.0)
@@ -155,7 +155,7 @@ def test_means_under_other_height_laws(name):
 
 def test_measured_heights_are_summed():
     heights = MeasuredHeights(np.random.default_rng(3).standard_normal(200))
-    law, grading = KogutEtsion(0.05), Exponential(0.2)
+    law, grading = kogut_etsion(0.05), Exponential(0.2)
     model = Model(SURFACE, law=law, grading=grading, heights=heights)
     s = np.array(heights.heights)
     for quantity in ("load", "yielded", "load_slope"):
@@ -172,7 +172,7 @@ def test_measured_heights_are_summed():
 
 
 def test_cumulants_are_literal_moments():
-    law, grading, n = KogutEtsion(0.05), Exponential(0.2), 70.0
+    law, grading, n = kogut_etsion(0.05), Exponential(0.2), 70.0
     model = Model(SURFACE, law=law, grading=grading, n_asperities=n)
     for quantity, separations in (("load", (-0.4,)), ("yielded", (1.2,))):
         scale = quantity_of(quantity).scale(SURFACE)
@@ -196,7 +196,7 @@ def test_cumulants_are_literal_moments():
 
 
 def test_covariance_across_separations_is_literal():
-    law, grading = KogutEtsion(0.05), Exponential(0.2)
+    law, grading = kogut_etsion(0.05), Exponential(0.2)
     model = Model(SURFACE, law=law, grading=grading, count="poisson", n_asperities=1.0)
     h = np.array([0.2, 0.25, 0.25 + 1e-9, 1.1])  # the second is where asperities yield under the first
     matrix = model.covariance(["load", "yielded", "load_slope"], h)
@@ -254,14 +254,14 @@ def test_slopes_of_the_laws_of_the_package(law):
 def test_slope_with_jumps_of_the_modulus():
     """Asperities beyond a jump of the modulus yield at its height whatever the separation: no term."""
     grading = Custom(lambda s: np.where(s > 1.0, 0.5, 1.0), breaks=(1.0,))
-    model = Model(SURFACE, law=ChangEtsionBogy(0.3), grading=grading)
+    model = Model(SURFACE, law=chang_etsion_bogy(0.3), grading=grading)
     for h in (0.2, 0.9):  # of the two limits 0.3 and 1.2: one below the jump, or the jump itself
         assert float(model.slope("load", h)) == pytest.approx(differences(model, "load", h), rel=1e-10)
 
 
 def test_check_values_of_slopes():
     """physics.md, 0: Chang's law with a critical penetration of 0.05 at h = 1."""
-    model = Model(SURFACE, law=ChangEtsionBogy(0.05))
+    model = Model(SURFACE, law=chang_etsion_bogy(0.05))
     load = model.number * quantity_of("load").scale(SURFACE)
     assert float(model.slope("load", 1.0)) / load == pytest.approx(0.1024253228584864, rel=1e-12)
     assert 1.5 * reduced(model, "load_slope", 1.0) == pytest.approx(0.1011402426250286, rel=1e-12)
@@ -283,13 +283,13 @@ def test_check_values_of_slopes():
 
 @pytest.mark.parametrize("heights", [Gaussian(), ExponentialHeights()], ids=["gaussian", "exponential"])
 def test_separations_belong_to_means(heights):
-    model = Model(SURFACE, law=KogutEtsion(0.05), grading=Exponential(0.2), heights=heights)
+    model = Model(SURFACE, law=kogut_etsion(0.05), grading=Exponential(0.2), heights=heights)
     h = np.array([[-2.0], [15.0]])
     np.testing.assert_allclose(model.separation_at("load", model.mean("load", h)), h, rtol=1e-12)
 
 
 def test_pressures_and_values_beyond_reach():
-    model = Model(SURFACE, law=KogutEtsion(0.05), grading=Exponential(2.0))
+    model = Model(SURFACE, law=kogut_etsion(0.05), grading=Exponential(2.0))
     pressure = float(model.mean("pressure", 0.4))
     assert float(model.mean("load", 0.4)) == pytest.approx(pressure * SURFACE.nominal_area, rel=1e-14)
     assert float(model.separation_at("pressure", pressure)) == pytest.approx(0.4, abs=1e-12)
@@ -305,7 +305,7 @@ def test_pressures_and_values_beyond_reach():
 def test_shares_of_the_pieces_are_shares_of_heights():
     """Homogeneous: beyond fixed penetrations. Graded: above the root of s - h = dc/e(s)^2."""
     both, dc = np.array([0.9, 0.4]), 0.05
-    law, above = KogutEtsion(dc), Gaussian().sf
+    law, above = kogut_etsion(dc), Gaussian().sf
     ends = both + dc * np.array([0.0, 1.0, 6.0, 110.0, np.inf])[:, None]
     shares = [Model(SURFACE, law=law).share(piece, both) for piece in range(4)]
     np.testing.assert_allclose(shares, -np.diff(above(ends), axis=0) / above(both), rtol=1e-11)
@@ -341,7 +341,7 @@ def test_hertz_named_is_hertz_left_out():
 
 
 def test_negative_moduli_do_not_yield():
-    model = Model(SURFACE, law=KogutEtsion(0.05), grading=Exponential(2.0))
+    model = Model(SURFACE, law=kogut_etsion(0.05), grading=Exponential(2.0))
     assert np.isfinite(model.mean("load", 0.0))
     with pytest.raises(
         ValueError, match=r"grading: E\*\(s\)/E\* = -.* needs a modulus >= 0; clip it"
@@ -353,7 +353,7 @@ def test_negative_moduli_do_not_yield():
 
 
 def test_questions_without_an_answer_are_refused():
-    model = Model(SURFACE, law=KogutEtsion(0.05))
+    model = Model(SURFACE, law=kogut_etsion(0.05))
     with pytest.raises(ValueError, match="load_slope"):
         model.slope("load_slope", 0.0)
     with pytest.raises(ValueError, match="every separation must be finite"):
@@ -361,7 +361,7 @@ def test_questions_without_an_answer_are_refused():
     with pytest.raises(KeyError, match="load_slope, conductance_si, yielded"):
         model.mean("force", 0.0)
     for question in (model.mean, model.slope, model.std, model.separation_at):
-        with pytest.raises(ValueError, match="law = 'by hand: kogut-etsion': no unloading is known"):
+        with pytest.raises(ValueError, match="law = 'custom': no unloading is known"):
             question("load_unloading", 0.5)
 
 
