@@ -56,22 +56,3 @@ def test_an_option_and_an_argument_give_the_same_area(folder, law, heights):
         assert one.surface.nominal_area == 5e-7
         assert one.n_asperities == round(of_map.surface.eta * 5e-7)
         assert one.heights == of_map.heights
-
-
-@pytest.mark.usefixtures("folder")
-def test_profiles_have_an_area_too():
-    words = ["fit", "line.txt", "--cutoff", "none", "-o", "p.toml", "--nominal-area", "2 mm^2"]
-    assert main(words) == 0
-    scene = mcgw.load_scene("p.toml")
-    assert scene.surface.nominal_area == 2e-6
-    assert scene.n_asperities == round(scene.surface.eta * 2e-6)
-
-
-@pytest.mark.parametrize("law", ["measured", "summits"])
-@pytest.mark.usefixtures("folder")
-def test_summits_as_they_were_measured_stay_on_their_own_area(capsys, law):
-    fit("--heights", law, "--nominal-area", "1cm^2", code=2)
-    (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith(f'mcgw: nominal_area = 0.0001: heights = "{law}" uses the measured summits')
-    fit("--heights", law)
-    assert mcgw.load_scene("f.toml").n_asperities < 10000

@@ -15,7 +15,7 @@ from scipy.stats import kurtosis, skew
 import mcgw
 from analytic import MeasuredHeights
 from mcgw.cli import main
-from mcgw.maps import Asperities, Spectrum, Topography, gaussian_map, moments_on_grid, write_map
+from mcgw.maps import Asperities, Spectrum, Topography, gaussian_map, write_map
 from mcgw.maps.envelope import envelope, hidden_summits
 from mcgw.maps.estimates import SUMMITS, Estimate, by_summits, roughness_of
 from mcgw.maps.fit import fit_prepared
@@ -117,68 +117,6 @@ def test_where_summits_hide_the_bias_is_stated(crowded):
     assert [float(x) for x in told.groups()] == pytest.approx([share, share - 100], abs=0.6)
     is_found(fit.estimates["caps"], crowded.field, crowded.truth)
     assert {"overlap", "skewness"} <= words(fit)
-
-
-def test_the_best_estimate_is_that_of_the_kind_of_summits(sparse, rough):
-    """Caps of one radius: those hidden are added. A Gaussian surface: none is."""
-    for fit, best in ((sparse.fit, "caps"), (rough, "summits")):
-        assert fit.best == best
-        assert mcgw.fitted_scene(fit).surface.eta == fit.estimates[best].eta.value
-    assert sparse.fit.spread_of_curvatures < 0.1 < 0.25 < rough.spread_of_curvatures < 0.45
-    assert mcgw.fitted_scene(rough, use="moments").surface.eta == rough.estimates["moments"].eta.value
-    assert not {"cutoff", "pixel", "lay", "skewness"} & words(rough)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("hurst", [-1.0, 0.8])
-def test_a_gaussian_map_gives_nayaks_summits_by_both_methods(hurst, without_caps):
-    """Shortest wavelength 16 pixels: eta and R within 3 %; their errors here are below 1.5 %."""
-    spectrum = Spectrum(1e-6, 100e-6, 16e-6, hurst)
-    topography = gaussian_map(spectrum, (1280, 1280), PIXEL, rng())
-    truth = moments_on_grid(spectrum, topography.heights.shape, PIXEL)
-    fit = mcgw.fit(topography, cutoff=None, form="none")
-    for name in ("moments", "summits"):
-        estimate = fit.estimates[name]
-        assert estimate.eta.value == pytest.approx(truth.eta, rel=0.03)
-        assert estimate.radius.value == pytest.approx(truth.radius, rel=0.03)
-        # long waves: 400 of them, and Nayak's variance is itself a fit to 1 %
-        assert estimate.sigma.value == pytest.approx(truth.sigma, rel=0.1)
-        assert estimate.eta.error < 0.03 * truth.eta
-    assert fit.mean_summit == pytest.approx(truth.mean_height, rel=0.05)
-
-
-STEPS = {
-    "cutoff": {"cutoff": 18e-6},
-    "both cutoffs": {"cutoff": 12e-6, "long_cutoff": 60e-6, "form": "none"},
-    "holes": {"cutoff": None, "missing": "mask"},
-    "spikes": {"cutoff": None, "spikes": "remove", "form": "quadratic", "trim": 2},
-}
-
-
-@pytest.mark.parametrize("steps", STEPS)
-def test_a_turned_map_is_the_same(steps, without_caps):
-    """Rows for columns, pixels changed about: every estimate, its error, and every summit."""
-    drawn = gaussian_map(Spectrum(1e-6, 50e-6, 12e-6), (96, 140), (1e-6, 1.4e-6), rng(4))
-    z = drawn.heights.copy()
-    if steps == "holes":
-        z[30:33, 50:60] = np.nan
-    if steps == "spikes":
-        z[40, 70] += 3e-5
-    fits = [
-        fit_map(Topography(h.copy(), pixel), **STEPS[steps])
-        for h, pixel in ((z, drawn.pixel), (z.T, drawn.pixel[::-1]))
-    ]
-    this, other = fits
-    for name in ("moments", "summits"):
-        for a, b in zip(
-            vars(this.estimates[name]).values(), vars(other.estimates[name]).values(), strict=True
-        ):
-            assert a == pytest.approx(b, rel=1e-9)
-    assert this.mean_squares["slope_x"] == pytest.approx(other.mean_squares["slope_y"], rel=1e-12)
-    np.testing.assert_allclose(np.sort(this.radii), np.sort(other.radii), rtol=1e-9)
-    places = [sorted(zip(a.round(9), b.round(9), strict=True)) for a, b in
-              ((this.listed.x, this.listed.y), (other.listed.y, other.listed.x))]  # fmt: skip
-    np.testing.assert_allclose(*places, atol=1.1e-9)
 
 
 def test_a_lay_along_the_diagonal_is_seen(without_caps):
@@ -290,6 +228,7 @@ def test_a_command_writes_the_scene_with_measured_heights(sparse, tmp_path, caps
     (["--cutoff", "none", "--parts", "1"], "parts = 1: give a whole number >= 2"),
     (["--cutoff", "none", "--heights", "measured", "--use", "caps"], "measured heights"),
     (["--cutoff", "none", "--E-star", "-1"], "--E-star = '-1': give a number > 0"),
+    (["--cutoff", "none", "--trim=-1"], "trim = -1: give a whole number >= 0"),
 ])  # fmt: skip
 def test_mistakes_are_told_in_one_line_and_nothing_is_written(arguments, told, sparse, tmp_path, capsys):
     assert main(["fit", str(sparse.path), *arguments, "-o", str(tmp_path / "x.toml")]) == 2
@@ -297,15 +236,6 @@ def test_mistakes_are_told_in_one_line_and_nothing_is_written(arguments, told, s
     assert told in error
     assert error.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
-
-
-def test_summits_of_a_map_have_the_radius_of_their_mean_curvature(sparse):
-    """And each its own beside it: the product of the two is what was listed."""
-    scene = mcgw.fitted_scene(sparse.fit, heights="summits", E_star="70 GPa")
-    listed = sparse.fit.listed
-    assert scene.surface.radius == pytest.approx(1 / np.mean(1 / listed.radii), rel=1e-12)
-    own = np.array(scene.curvature.ratios) * scene.surface.radius
-    np.testing.assert_allclose(np.sort(own), np.sort(listed.radii), rtol=1e-12)
 
 
 def waves(along, down, n=160):

@@ -9,7 +9,6 @@ from oracles.fit_of_maps import fit_map
 from scipy.optimize import brentq
 
 import mcgw
-from mcgw.cli import main
 from mcgw.maps import Spectrum, Topography, gaussian_map
 from mcgw.maps.bad_points import recorded, small_spike_heights, spike_heights, usual_bend
 from mcgw.maps.fit import fit_prepared
@@ -133,13 +132,6 @@ def test_summits_that_are_all_equally_high_are_refused():
                 mcgw.fitted_scene(fit, use="summits")
         else:
             assert mcgw.fitted_scene(fit, use="summits").surface.sigma > 0
-
-
-def test_less_than_no_points_cannot_be_trimmed(tmp_path, capsys):
-    np.save(tmp_path / "z.npy", rng(1).normal(size=(40, 40)))
-    given = ["--pixel", "1um", "--cutoff", "none", "--E-star", "1GPa", "-o", str(tmp_path / "s.toml")]
-    assert main(["fit", str(tmp_path / "z.npy"), *given, "--trim=-1"]) == 2
-    assert "trim = -1: give a whole number >= 0" in capsys.readouterr().err
 
 
 @pytest.fixture(scope="module")

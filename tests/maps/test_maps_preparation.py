@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 from numpy.polynomial.polynomial import polyvander2d
-from oracles.fit_of_maps import fit_map
 from scipy.ndimage import gaussian_filter1d, minimum_filter
 
 import mcgw
@@ -55,15 +54,6 @@ def test_the_filter_halves_a_wave_at_its_cutoff(axis, periodic, wavelength):
     np.testing.assert_allclose(left.heights, share * inside, atol=2e-6)  # 5e-7 lies beyond the window
 
 
-def test_a_long_cutoff_leaves_short_waves():
-    """1 - 2^(-(cutoff/wavelength)^2): half the amplitude at the cutoff."""
-    x = grid(640)[0][:60]
-    for wavelength, left in ((40e-6, 0.5), (20e-6, 0.9375), (320e-6, 0.01077)):
-        wave = Topography(np.sin(2 * np.pi * x / wavelength), PIXEL, periodic=True)
-        used = prepared(wave, Preparation(None, form="none", long_cutoff=40e-6)).used
-        assert used.heights.std() / wave.heights.std() == pytest.approx(left, abs=2e-3)
-
-
 def test_holes_are_filled_with_harmonic_functions():
     """x^2 - y^2, xy and a plane solve the discrete equation too, so they come back exactly."""
     y, x = np.mgrid[0:60, 0:50] - 25.0
@@ -88,34 +78,6 @@ def test_points_missing_everywhere_are_filled_where_a_mask_leaves_nothing():
     z[::3, ::3] = np.nan
     with pytest.raises(ValueError, match="use --missing fill"):
         fitted(z, missing="mask")
-
-
-def test_edges_are_cropped_where_all_is_missing_and_trimmed():
-    expected = fit_map(Topography(rough(4), PIXEL), cutoff=None).estimates
-    z = np.full((N + 80, N + 180), np.nan)
-    z[30 : N + 30, 100 : N + 100] = rough(4)
-    fit = fitted(z)
-    assert fit.estimates == expected
-    assert f"{N} x {N} points kept" in fit.notes[0]
-    broken = np.pad(rough(4), 1)
-    broken[0] += 1.0
-    broken[:, -1] = np.nan
-    assert fitted(broken, trim=1).estimates == expected
-    with pytest.raises(ValueError, match="leaves nothing"):
-        ready(rough(), trim=N // 2)
-
-
-def test_spikes_are_taken_out():
-    z = rough()
-    spiked = z.copy()
-    spiked[50::60, 40::70] += 3e-5
-    spiked[101, 101] -= 5e-5
-    plain, kept, clean = fitted(z), fitted(spiked), fitted(spiked, spikes="remove")
-    assert kept.moments.m4 > 10 * plain.moments.m4
-    assert clean.moments.m4 == pytest.approx(plain.moments.m4, rel=0.03)
-    for fit, named in ((kept, True), (clean, False)):
-        assert any(line.startswith("spikes:") for line in fit.cautions) == named
-    assert clean.notes[0].startswith("spikes: 10 places removed, up to 4.")
 
 
 @pytest.mark.parametrize("key", ["missing", "spikes", "form"])

@@ -224,19 +224,6 @@ def test_intervals_hold_on_profiles_cut_from_maps(case):
         assert np.mean(outside) > 0.5
 
 
-def test_a_profile_and_its_map_agree(without_caps):
-    """Map and profiles of one surface, one cutoff: summits within the errors of both."""
-    drawn = gaussian_map(Spectrum(UM, 60 * UM, 6 * UM), (512, 640), (UM, UM), np.random.default_rng(8))
-    of_map = mcgw.fit(drawn, cutoff="10 um", form="none")
-    of_profiles = mcgw.fit([Profile(z, UM) for z in drawn.heights[::64]], cutoff="10 um")
-    for name in ("eta", "radius", "sigma"):
-        (a, da), (b, db) = (getattr(f.estimates["moments"], name)[:2] for f in (of_map, of_profiles))
-        assert abs(math.log(a / b)) < 3 * math.hypot(da / a, db / b)
-        *_, low, high = of_profiles.numbers[name]
-        assert low < b < high
-        assert math.sqrt(low * high) == pytest.approx(b, rel=1e-12)
-
-
 @pytest.mark.parametrize("form", ["none", "plane", "quadratic"])
 def test_form_of_a_profile_is_taken_off(form):
     t = np.linspace(0, 1, 500)
@@ -530,6 +517,9 @@ def test_the_limits_of_places_and_gaps():
         profile_at(np.array([0, 1, 2, 3, 4, 5, 5, 6, 7.0]), np.zeros(9))
     with pytest.raises(ValueError, match="1 points: a profile has"):
         profile_at(np.zeros(1), np.zeros(1))
+    for heights, spacing, told in ((np.zeros((3, 9)), 1.0, "not 2 dim"), (z, 0.0, "give a length > 0 m")):
+        with pytest.raises(ValueError, match=told):
+            Profile(heights, spacing)
 
 
 @pytest.mark.parametrize(("points", "height", "spacing", "said"), [
@@ -600,17 +590,6 @@ def test_peaks_are_counted_between_their_neighbours():
             length += h
     assert counted == pytest.approx(peaks / length, rel=1e-12)
     assert expected == pytest.approx(math.sqrt(bends / slopes) / (2 * math.pi), rel=1e-9)
-
-
-@pytest.mark.parametrize(("heights", "spacing", "told"), [
-    (np.zeros((3, 9)), 1.0, "not 2 dimensions"),
-    (np.zeros(7), 1.0, "8 or more"),
-    (np.full(9, np.nan), 1.0, "are missing"),
-    (np.zeros(9), 0.0, "give a length > 0 m"),
-])  # fmt: skip
-def test_no_such_profile(heights, spacing, told):
-    with pytest.raises(ValueError, match=told):
-        Profile(heights, spacing)
 
 
 def test_profiles_that_surface_topography_reads(tmp_path):

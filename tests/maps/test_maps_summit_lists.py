@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 
 import mcgw
 from mcgw.cli import main
-from mcgw.maps import Spectrum, Topography, gaussian_map, write_map
+from mcgw.maps import Topography, write_map
 from mcgw.maps.summit_sums import SUMS, SummitSums, summit_sums_of
 from mcgw.maps.summits import summits_of, tiles_of, variation
 
@@ -82,21 +82,6 @@ def test_waves_along_the_diagonals():
     np.testing.assert_allclose(found.curvatures[0], 3 * a, rtol=1e-3)
     np.testing.assert_allclose(found.curvatures[1], a, rtol=2e-3)
     np.testing.assert_allclose(found.x / (10 * UM) % 1, np.full(200, 0.05), atol=1e-6)  # half a pixel
-
-
-@pytest.mark.parametrize("periodic", [True, False])
-def test_mean_curvatures_and_heights_are_those_that_were_counted(periodic, without_caps):
-    spectrum = Spectrum(1e-6, 60e-6, 8e-6)
-    drawn = gaussian_map(spectrum, (200, 240), (1e-6, 1.2e-6), np.random.default_rng(3))
-    topography = Topography(drawn.heights, drawn.pixel, periodic)
-    counted = summit_sums_of(topography)
-    fit = fit_map(topography, cutoff=None, form="none")
-    resolved = fit.listed.curvatures[0] != fit.listed.curvatures[1]
-    assert fit.listed.unresolved == np.count_nonzero(~resolved)
-    mean = fit.listed.curvatures.mean(axis=0)
-    np.testing.assert_allclose(mean[resolved], counted.curvatures[resolved], rtol=1e-9)
-    np.testing.assert_array_equal(fit.summits, counted.heights - counted.heights.mean())
-    np.testing.assert_array_equal(fit.listed.tile, counted.part)
 
 
 def test_places_are_those_on_the_map_as_it_was_read(without_caps):

@@ -88,6 +88,7 @@ def test_summits_of_the_map_have_the_heights_and_curvatures_of_the_scene(fit):
 def test_the_very_summits_carry_what_they_carry_literally(fit, tmp_path):
     scene = mcgw.fitted_scene(fit, heights="summits", E_star=70e9)
     ensemble = mcgw.run(mcgw.scene_from(mcgw.scene_text(scene)), tmp_path / "summits.h5")
+    assert scene.surface.radius == pytest.approx(1 / np.mean(1 / fit.listed.radii), rel=1e-12)
     d = scene.surface.sigma * np.array(scene.separations)
     exact = summit_contact(fit.listed.heights, fit.listed.radii, 70e9, d)
     for name in ("load", "area", "stiffness", "contacts"):

@@ -151,13 +151,6 @@ def test_few_waves_widen_all_but_areas(scene):
         assert (larger.error[name] < once.error[name]).all()
 
 
-def test_a_surface_that_is_not_the_maps_has_no_figures(scene):
-    assert scene.replace(E_star="7 GPa", nominal_area="1 cm^2").validity().measured.any()
-    found = scene.replace(sigma=1.3 * scene.surface.sigma).validity()
-    assert not found.measured.any()
-    assert "eta, R or sigma differs from that of the map" in found.verdict
-
-
 def test_it_goes_through_files_and_is_shown(scene, tmp_path, capsys):
     text = mcgw.scene_text(scene)
     assert mcgw.scene_from(text) == scene
@@ -193,12 +186,6 @@ def test_cautions_of_a_fit_travel_the_gravest_first(fit, tmp_path, capsys):
             assert (out + err).count(f"fit: {line}") == 1, command
         assert "(and 2 more under [fitted] in the scene)" in out + err
     assert "fit: skewness: told (and 2 more" in (tmp_path / "s.html").read_text()
-
-
-def test_it_draws_nothing(scene):
-    """The very same surfaces with it and without."""
-    ours, plain = (mcgw.simulate(s) for s in (scene, scene.replace(fitted=None)))
-    np.testing.assert_array_equal(ours["load"], plain["load"])
 
 
 def test_python_takes_the_keys_of_the_file(scene):
