@@ -9,7 +9,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from oracles import memory_growth
 from oracles.memory_growth import peak_growth
 from oracles.said import without_notes
 
@@ -229,10 +228,3 @@ def test_a_process_ends_when_the_other_end_of_its_pipe_is_closed(linux, waits, m
             os.close(writing)
     kernel = [("F_SETOWN", os.getpid()), ("F_SETSIG", 9), ("F_GETFL",), ("F_SETFL", 4 | os.O_ASYNC)]
     assert asked == ([(reading, *words) for words in kernel] if linux else [])
-
-
-def test_growth_that_the_system_does_not_tell_is_none(monkeypatch):
-    called = []
-    monkeypatch.setattr(memory_growth, "_status", lambda _: (_ for _ in ()).throw(OSError))
-    assert np.isnan(peak_growth(lambda: called.append(1)))
-    assert called == [1]

@@ -202,8 +202,6 @@ def test_what_makes_no_map_is_refused(tmp_path):
     wave = Topography(np.sin(np.arange(400.0)).reshape(20, 20), (1e-6, 1e-6), periodic=True)
     for call, told in (
         (lambda: Topography(np.zeros(3), (1.0, 1.0)), "not 1 dimension"),
-        (lambda: Topography(np.zeros((0, 3)), (1.0, 1.0)), "one or more along each axis"),
-        (lambda: Topography(np.zeros((2, 3)), (1.0, 0.0)), "two numbers > 0"),
         (lambda: read_map(saved("v.npy", np.zeros(3)), pixel=(1.0, 1.0)), "a map has rows and columns"),
         (lambda: read_map(other_h5()), "not a mcgw-surface file|SurfaceTopography"),
         (lambda: Spectrum(0.0, 30e-6, 5e-6), "give a length > 0 m"),
@@ -222,10 +220,6 @@ def test_what_makes_no_map_is_refused(tmp_path):
         ),
         (lambda: read_map(tmp_path), "is not a regular file"),
         (lambda: read_profile(tmp_path), "is not a regular file"),
-        (
-            lambda: read_profile(saved("m.npy", np.zeros((3, 9))), spacing=1.0),
-            "2 dimensions; a profile has one",
-        ),
     ):
         with pytest.raises(ValueError, match=told):
             call()

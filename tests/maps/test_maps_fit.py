@@ -13,7 +13,6 @@ from scipy import ndimage
 from scipy.stats import kurtosis, skew
 
 import mcgw
-from analytic import MeasuredHeights
 from mcgw.cli import main
 from mcgw.maps import Asperities, Spectrum, Topography, gaussian_map, write_map
 from mcgw.maps.envelope import envelope, hidden_summits
@@ -185,43 +184,6 @@ def test_a_sigma_above_peak_to_valley_is_refused(monkeypatch):
         fit_map(topography, cutoff=None)
 
 
-@pytest.mark.parametrize(
-    ("law", "kind"), [("gaussian", "Gaussian"), ("table", "HeightTable"), ("measured", "MeasuredHeights")]
-)
-def test_the_scene_of_a_fit_has_its_numbers(law, kind, sparse):
-    scene = mcgw.fitted_scene(sparse.fit, heights=law, E_star="70 GPa")
-    found = sparse.fit.estimates["caps" if law == "gaussian" else "summits"]
-    assert scene.surface.radius == found.radius.value
-    number = sparse.fit.summits.size / sparse.fit.area if law == "measured" else found.eta.value
-    assert scene.surface.eta == pytest.approx(number, rel=1e-12)
-    sigma = found.sigma.value if law == "gaussian" else sparse.fit.summits.std()
-    assert scene.surface.sigma == pytest.approx(sigma, rel=1e-12)
-    assert scene.surface.E_star == 70e9
-    assert scene.surface.nominal_area == sparse.fit.area
-    assert type(scene.heights).__name__ == kind
-    assert mcgw.simulate(scene.replace(separations=[0.5], n_surfaces=1)).load[0, 0] > 0
-
-
-def test_a_command_writes_the_scene_with_measured_heights(sparse, tmp_path, capsys):
-    """Each is one of the field's own, to 1e-4 sigma, but for the few next to a valley.
-
-    Heights drawn anew would come so near to one of the 400 for one in twenty.
-    """
-    field, out = sparse.field, tmp_path / "fitted.toml"
-    arguments = ["--cutoff", "none", "--form", "none", "--heights", "measured", "-o", str(out)]
-    assert main(["fit", str(sparse.path), *arguments, "-v"]) == 0
-    told = capsys.readouterr().out
-    assert "form removed: none; cutoff: none" in told
-    assert str(out) in told
-    found = np.load(out.with_name("fitted.heights.npy"))
-    found += field.z.max() - found.max()
-    nearest = np.abs(found[:, None] - field.z).min(axis=1)
-    assert np.mean(nearest < 1e-4 * field.z.std()) > 0.95
-    scene = mcgw.load_scene(out)
-    assert scene.heights.heights == pytest.approx(MeasuredHeights(found).heights, rel=1e-9, abs=1e-9)
-    assert scene.surface.sigma == pytest.approx(found.std(), rel=1e-12)
-
-
 @pytest.mark.parametrize(("arguments", "told"), [
     (["--cutoff", "5"], "leaves nothing"),
     (["--cutoff", "wide"], "--cutoff = 'wide': give a number > 0 with its unit"),
@@ -372,8 +334,14 @@ def test_each_kind_of_heights_has_the_estimate_it_names(rough):
         assert one.uncertainty is None
         with pytest.raises(ValueError, match=f'nominal_area = 1: heights = "{heights}" uses the measured'):
             mcgw.fitted_scene(rough, heights=heights, nominal_area=1)
-    own = mcgw.fitted_scene(rough, heights="measured").surface
+    own = mcgw.fitted_scene(rough, heights="measured", E_star="70 GPa").surface
     assert own.radius == rough.estimates["summits"].radius.value
+    assert own.eta == pytest.approx(rough.summits.size / rough.area, rel=1e-12)
+    assert own.sigma == pytest.approx(rough.summits.std(), rel=1e-12)
+    assert (own.E_star, own.nominal_area) == (70e9, rough.area)
+    plain = mcgw.fitted_scene(rough).surface
+    found = rough.estimates["summits"]
+    assert (plain.radius, plain.eta, plain.sigma) == (found.radius.value, found.eta.value, found.sigma.value)
     with pytest.raises(
         ValueError, match='use = "moments": measured heights as they are need use = "summits"'
     ):
@@ -399,6 +367,8 @@ def test_a_written_scene_of_a_fit_leaves_out_what_follows(rough, tmp_path):
         tmp_path / "m.toml", tmp_path / "m.heights.npy",
     ]  # fmt: skip
     assert np.array_equal(np.load(tmp_path / "m.heights.npy"), rough.summits)
+    read = mcgw.load_scene(tmp_path / "m.toml")
+    assert read.heights.heights == pytest.approx(listed.heights.heights, rel=1e-9, abs=1e-9)
     assert "m.heights.npy" in (tmp_path / "m.toml").read_text()
     assert len((tmp_path / "m.toml").read_text()) < 4000
 

@@ -2,7 +2,6 @@
 
 import math
 import re
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -462,7 +461,7 @@ def test_maps_are_no_profiles(tmp_path):
     assert read_profile(tmp_path / "p.npy", spacing=UM).heights[6] == 6 * UM
 
 
-def test_profiles_that_cannot_be_read_name_their_file(tmp_path, monkeypatch):
+def test_profiles_that_cannot_be_read_name_their_file(tmp_path):
     np.save(tmp_path / "p.npy", np.arange(100.0) % 7 * UM)
     with pytest.raises(ValueError, match="give --pixel"):
         read_profile(tmp_path / "p.npy")
@@ -475,12 +474,6 @@ def test_profiles_that_cannot_be_read_name_their_file(tmp_path, monkeypatch):
     np.save(tmp_path / "short.npy", np.zeros(7))
     with pytest.raises(ValueError, match=r"short\.npy: 7 points: a profile has 8 or more"):
         read_profile(tmp_path / "short.npy", spacing=UM)
-    monkeypatch.setitem(sys.modules, "SurfaceTopography", None)  # as where it is not installed
-    (tmp_path / "p.plu").write_text("0 1\n" * 9)
-    with pytest.raises(
-        ValueError, match=r"p\.plu: \.plu is read by SurfaceTopography, which is not installed"
-    ):
-        read_profile(tmp_path / "p.plu")
 
 
 def test_the_limits_of_places_and_gaps():

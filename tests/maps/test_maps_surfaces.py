@@ -217,9 +217,6 @@ def test_a_spectrum_has_the_moments_that_were_asked_for(alpha, hurst):
     (["SCENE", "-o", "map.h5", "--shape", "99999"], "more than the"),
     (["SCENE", "-o", "map.h5", "--width", "far"], "--width = 'far': give a number > 0 with its unit"),
     (["-o", "map.h5"], "SCENE"),
-    (["-o", "map.h5", "--from-spectrum", "rms=1um,long=1um,short=9um", "--pixel", "1um"], "below long"),
-    (["-o", "map.h5", "--from-spectrum", "m0=1,m2=1,m4=1", "--pixel", "1um"], "above 1.5"),
-    (["-o", "map.h5", "--from-spectrum", "rms=1um", "--pixel", "1um"], "give rms, long and short"),
     (["-o", "map.h5", "--from-spectrum", "height=1um", "--pixel", "1um"], "give rms, long"),
     (["-o", "map.h5", "--from-spectrum", "rms=1um,long=90um,short=9um"], "--pixel"),
 ])  # fmt: skip

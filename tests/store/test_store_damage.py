@@ -181,17 +181,6 @@ def test_a_shard_that_is_gone_is_missing(scene, tmp_path, gone):
     assert not path.exists()
 
 
-def test_shards_of_another_run_are_not_taken(scene, tmp_path):
-    """The same place and numbers of another seed, trailer and digest in order."""
-    a, b = tmp_path / "a.h5", tmp_path / "b.h5"
-    ours, theirs = begun(scene, a), begun(replace(scene, seed=99), b)
-    shutil.copy(theirs[1], ours[1])
-    with pytest.raises(RunError, match="16 of 100 surfaces are missing, from 16 on"):
-        mcgw.merge(a)
-    mcgw.run(scene, a)
-    np.testing.assert_array_equal(mcgw.open_ensemble(a).load, mcgw.simulate(scene).load)
-
-
 @pytest.mark.parametrize("way", ["run", "shard job", "merge"])
 def test_nobody_works_on_a_folder_that_was_just_removed(scene, tmp_path, way, monkeypatch):
     """Another's run ends, and its folder goes, between our looking for the lock and our getting it."""
@@ -339,18 +328,6 @@ def half(scene, tmp_path):
     """A run of which half is done."""
     mcgw.run(scene, tmp_path / "b.h5", shard="1/2")
     return parts_of(tmp_path / "b.h5")
-
-
-def test_another_scene_in_a_run_is_noticed(half):
-    file = half / "run.toml"
-    good = file.read_text()
-    assert "sigma = 1.37e-06" in good
-    file.write_text(good.replace("sigma = 1.37e-06", "sigma = 1.37e-05"))
-    with pytest.raises(StoreError, match=r"run\.toml: damaged \(checksum mismatch\)"):
-        RunFolder.open(half)
-    file.write_text(good[: good.index("sha256")])
-    with pytest.raises(StoreError, match=r"run\.toml: damaged"):
-        RunFolder.open(half)
 
 
 def test_a_run_of_an_older_format_is_refused(half, scene):

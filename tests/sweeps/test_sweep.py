@@ -153,16 +153,6 @@ def test_paired_differences_have_the_variance_that_theory_gives():
     np.testing.assert_allclose(found.stderr, difference.std(axis=0, ddof=1) / np.sqrt(m), rtol=1e-9)
 
 
-def test_summits_keep_their_radii_from_point_to_point():
-    """A difference of pairs is that of the surfaces, one by one, and ten times as sharp as of others."""
-    sweep = mcgw.sweep(SPECTRAL, {GAMMA: [1.0, 1.5]})
-    found = sweep.difference("load", 1, 0)
-    one, other = (mcgw.simulate(sweep.scene(i))["load"] for i in (1, 0))
-    np.testing.assert_allclose(found.value, (one - other).mean(axis=0), rtol=1e-11)
-    np.testing.assert_allclose(found.stderr, (one - other).std(axis=0, ddof=1) / 50**0.5, rtol=1e-9)
-    assert found.gain.min() > 10
-
-
 def test_what_no_cells_resolve_is_drawn_one_by_one_at_all_points(monkeypatch):
     monkeypatch.setattr("mcgw.sampling.samplers._CUTS", 0)
     steep = mcgw.Scene(
@@ -197,9 +187,6 @@ def test_quantities_that_the_modulus_does_not_enter_do_not_change():
     difference = sweep.difference("area", 0, 5)
     assert not difference.value.any()
     assert not difference.stderr.any()
-    per_area = sweep.difference("pressure", {GAMMA: 1.7}, {GAMMA: 0.5})
-    np.testing.assert_allclose(per_area.value * 1e-6, sweep.difference("load", 8, 0).value, rtol=1e-12)
-    np.testing.assert_allclose(sweep.mean("pressure") * 1e-6, sweep.mean("load"), rtol=1e-15)
 
 
 def test_neither_threads_nor_blocks_change_a_bit(monkeypatch):

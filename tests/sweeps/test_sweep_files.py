@@ -356,18 +356,6 @@ def test_in_shares_in_any_order(tmp_path, expected, order):
         mcgw.sweep(SCENE, {"grading.gamma": [1.0]}, path=path, shard="1/3")
 
 
-def test_a_damaged_share_is_drawn_again(tmp_path, expected):
-    path = tmp_path / "a.h5"
-    mcgw.sweep(SCENE, OVER, path=path, shard="1/1")
-    shard = sorted(parts_of(path).glob("shards/block-*.h5"))[4]
-    flip(shard)
-    with pytest.raises(mcgw.RunError, match="50 of 600 surfaces are missing, from 200 on"):
-        mcgw.merge(path)
-    assert mcgw.sweep(SCENE, OVER, path=path, shard="1/1") == 0
-    mcgw.merge(path)
-    assert digest(path) == expected
-
-
 def test_a_worker_draws_for_nobody_who_asked_something_else(tmp_path):
     path = tmp_path / "a.h5"
     mcgw.sweep(SCENE, OVER, path=path, shard="2/2")

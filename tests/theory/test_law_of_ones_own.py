@@ -93,3 +93,5 @@ def test_a_law_of_the_penetration_itself_is_told_from_a_kink():
 def test_a_plain_function_is_sent_to_custom_laws(make_scene):
     with pytest.raises(SceneError, match="your own law is mcgw"):
         make_scene(law=lambda penetration: penetration**1.5)
+    with pytest.raises(SceneError, match=r"contact\.unload_from = 0: law = 'custom'"):
+        make_scene(law=OWN, unload_from=0.0)
