@@ -28,6 +28,11 @@ ERRORS = {
     "sigma": "20 %", "radius": 0.15, "eta": 0.12, "E_star": 0.05,
     "correlation": [[1, 0.1, -0.8, 0], [0.1, 1, 0.2, 0], [-0.8, 0.2, 1, 0], [0, 0, 0, 1]],
 }  # fmt: skip
+OTHERS = (
+    {"law": {"law": "kogut-etsion", "hardness": "8 GPa"}},
+    {"grading": mcgw.Exponential(0.5)},
+    {"heights": mcgw.Weibull(3.0)},
+)
 NAMES = ("area", "stiffness", "conductance", "gap_to_summits")
 
 
@@ -58,29 +63,16 @@ def redrawn(scene, pressure, draws):
     return np.log(found)
 
 
-def test_the_parameters_line_is_that_of_redraws(solved):
+@pytest.mark.parametrize("more", [{}, *(pytest.param(x, marks=pytest.mark.slow) for x in OTHERS)])
+def test_the_parameters_line_is_that_of_redraws(more):
     """128 points of a sequence tell a deviation to 1 %; 5 % are asked."""
+    solved = mcgw.solve(scene_of(**more), pressure="50 MPa")
     scatter = 1.96 * redrawn(solved.scene, 50e6, 128).std(axis=0)
     np.testing.assert_allclose(solved.budget().shares["parameters"][:3], scatter, rtol=0.05)
     together = [[1, 0.9, 0, 0], [0.9, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]  # sqrt(R/sigma) hardly changes
     other = replace(solved.scene.uncertainty, correlation=together)
     shares = replace(solved, scene=solved.scene.replace(uncertainty=other)).budget().shares
     assert shares["parameters"][0] < 0.8 * scatter[0]  # a wrong covariance would be seen
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "more",
-    [
-        {"law": {"law": "kogut-etsion", "hardness": "8 GPa"}},
-        {"grading": mcgw.Exponential(0.5)},
-        {"heights": mcgw.Weibull(3.0)},
-    ],
-)
-def test_the_same_under_laws_gradings_and_heights(more):
-    solved = mcgw.solve(scene_of(**more), pressure="50 MPa")
-    scatter = 1.96 * redrawn(solved.scene, 50e6, 128).std(axis=0)
-    np.testing.assert_allclose(solved.budget().shares["parameters"][:3], scatter, rtol=0.05)
 
 
 @pytest.mark.slow
@@ -145,18 +137,6 @@ def test_what_dominates_is_said_with_what_would_lower_it(solved):
         assert "draw more surfaces" not in each.advice
 
 
-def test_at_a_given_area_no_model_was_measured():
-    solved = mcgw.solve(scene_of(), area_fraction=0.01)
-    budget = solved.budget()
-    assert budget.quantities[0] == "load"
-    assert np.isnan(budget.shares["model"]).all()
-    assert "model (its error was measured at a given load" in budget.advice
-    assert np.isnan(solved.corrected("load").value)
-    assert "at a given load" in solved.corrected("load").why
-    assert np.isnan(solved.table().only("best").columns[0].values).all()
-    assert "best (95" not in repr(solved)
-
-
 def test_corrected_is_divided_by_its_bias(solved):
     v = solved.scene.validity(solved.theory["separation"])
     for name, column in (("area", "area"), ("stiffness", "stiffness"), ("conductance", "stiffness")):
@@ -215,13 +195,24 @@ def test_spots_with_a_film_have_no_corrected_conductance():
     assert budget.told("contact_conductance", 0.01).startswith("(scatter of specimens 1 %; error of the")
 
 
-def test_where_nothing_was_measured_the_answer_stays_alone():
-    pulls = {"law": "derjaguin-muller-toporov", "pull_off": 1e-3}
-    solved = mcgw.solve(scene_of(law=pulls), pressure="50 MPa")
-    assert solved.corrected("area").why.startswith("not measured: only for Hertz's law")
-    model = solved.budget().lacking["model"]
-    assert model == against_elasticity([solved]).unknown
-    assert "Hertz" in model
+PULLS = {"law": "derjaguin-muller-toporov", "pull_off": 1e-3}
+
+
+@pytest.mark.parametrize(
+    ("more", "given", "name", "why"),
+    [
+        ({}, {"area_fraction": 0.01}, "load", "model (its error was measured at a given load"),
+        ({"law": PULLS}, {"pressure": "50 MPa"}, "area", "not measured: only for Hertz's law"),
+    ],
+)
+def test_where_nothing_was_measured_the_answer_stays_alone(more, given, name, why):
+    solved = mcgw.solve(scene_of(**more), **given)
+    budget, corrected = solved.budget(), solved.corrected(name)
+    assert budget.quantities[0] == name
+    assert np.isnan(budget.shares["model"]).all()
+    assert why in f"{budget.advice} {corrected.why}"
+    assert np.isnan(corrected.value)
+    assert budget.lacking["model"] == against_elasticity([solved]).unknown or not more
     assert np.isnan(solved.table().only("best").columns[0].values).all()
     assert "best (95" not in repr(solved)
 

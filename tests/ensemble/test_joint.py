@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from oracles.interacting_by_hand import LATTICE, MEAN_SINKING
 from scipy.integrate import quad
-from test_layer import LAWS
 
 import analytic
 import mcgw
@@ -94,10 +93,6 @@ def test_gases_are_those_of_tables_and_of_kinetic_theory(name):
 @pytest.mark.parametrize(("joint", "line"), [
     (lambda: Joint("steam"), "gas = 'steam': give"),
     (lambda: Joint("vacuum", temperature=300.0), "temperature = 300.0: it is only for"),
-    (lambda: Joint("air").gap(SURFACE, analytic.Gaussian()), "rms: give the root mean square height"),
-    (lambda: Joint("air", rms=1e-7).gap(SURFACE, analytic.Gaussian()), "rms = 1e-07: give more than sigma"),
-    (lambda: Joint("air", rms=1e-6).gap(SURFACE, analytic.Nayak(5.0)), "rms = 1e-06: it follows from the "
-        "heights"),
     (lambda: Gas(0.0, 1.0), "gas.conductivity = 0.0: give"),
 ])  # fmt: skip
 def test_mistakes(joint, line):
@@ -136,30 +131,9 @@ def by_hand(h, gas="air"):
     return gas.conductivity / rms * sum(parts) / math.sqrt(2 * math.pi)
 
 
-def before_bodies(contact, gas, constricted, area=ROUGH.nominal_area):
-    """Spots (whose conductance has the bodies in series) and gas side by side, then the bodies, by hand."""
-    bodies = MEAN_SINKING / 2 * (1 / 200 + 1 / 16) * math.sqrt(area) if constricted else 0.0
-    return 1 / (1 / (1 / (1 / contact - bodies) + gas) + bodies)
-
-
-@pytest.mark.parametrize("name", ["helium", "argon", "nitrogen"])
-def test_a_gap_is_filled_by_a_gas_by_name(name):
-    scene = scene_of(joint={"gas": name, "rms": 2e-6}, n_surfaces=2)
-    assert float(scene.theory.mean("gap_conductance", H[-1])) == pytest.approx(by_hand(H[-1], name), rel=2e-4)
-
-
 @pytest.mark.parametrize("mode", OWN)
-def test_each_surface_at_its_own_distance(mode):
-    """The joint is its spots and its gas before the bodies; vacuum is the spots alone, no contact the gas."""
-    interaction, own = OWN[mode]
-    e = mcgw.simulate(scene_of(interaction=interaction))
-    h = np.tile(H, (40, 1)) if own is None else e[own]
-    for i in (0, 7):
-        np.testing.assert_allclose(e["gap_conductance"][i], [by_hand(x) for x in h[i]], rtol=2e-4)
-    network = before_bodies(e["contact_conductance"], e["gap_conductance"], "body" in mode)
-    np.testing.assert_allclose(e["joint_conductance"], network, rtol=1e-13)
-    assert (np.ptp(e["gap_conductance"], axis=0) > 0).all() == (own is not None)
-    vacuum = mcgw.simulate(scene_of(interaction=interaction, joint="vacuum"))
+def test_vacuum_is_the_spots_alone_and_no_contact_the_gas(mode):
+    vacuum = mcgw.simulate(scene_of(interaction=OWN[mode][0], joint="vacuum"))
     np.testing.assert_allclose(vacuum["joint_conductance"], vacuum["contact_conductance"], rtol=1e-14)
     far = mcgw.simulate(scene_of(separations=9.0))
     np.testing.assert_array_equal(far["joint_conductance"], far["gap_conductance"])
@@ -206,12 +180,9 @@ def test_network_by_hand(reference, area, film):
         spots = 1 / (1 / spots - rho / 2 * other * area)
         h = h + other * single["load"] / ROUGH.E_star / ROUGH.sigma
     gas = np.vectorize(by_hand)(h)
-    bodies = 0.4732010044 * rho * math.sqrt(area) if reference == "body" else 0.0
+    bodies = MEAN_SINKING / 2 * rho * math.sqrt(area) if reference == "body" else 0.0
     expected = 1 / (1 / (spots + gas) + bodies)
     np.testing.assert_allclose(e["gap_conductance"], gas, rtol=1e-11)
-    np.testing.assert_allclose(e["joint_conductance"], expected, rtol=1e-9)
-    gas, bodies = e["gap_conductance"], MEAN_SINKING / 2 * rho * math.sqrt(area) * (reference == "body")
-    expected = 1 / (1 / (spots + gas) + bodies)
     np.testing.assert_allclose(e["joint_conductance"], expected, rtol=1e-12)
     if reference == "body":
         assert (e["joint_conductance"] < 1 / bodies).all()
@@ -246,19 +217,10 @@ def test_distribution_of_a_joint_before_bodies():
         assert abs(np.mean(values <= law.ppf(share)) - share) < math.sqrt(math.log(2e6) / 2 / 2000)
 
 
-@pytest.mark.parametrize("name", LAWS)
-def test_every_law(name):
-    scene = scene_of(law=LAWS[name], negative="clip", n_surfaces=1500, n_asperities=300)
-    e = mcgw.simulate(scene)
-    mean, std = (get("joint_conductance", H) for get in (scene.theory.mean, scene.theory.std))
-    assert np.abs((e.mean("joint_conductance") - mean) / std * math.sqrt(1500)).max() < 5
-    np.testing.assert_allclose(
-        mean - scene.theory.mean("contact_conductance", H), [by_hand(h) for h in H], rtol=2e-4
-    )
-
-
 def test_way_back_and_laws():
-    scene = scene_of(law=LAWS["kogut"], unload_from=1.0, interaction="mean-plane", n_surfaces=2000)
+    scene = scene_of(
+        law=analytic.KogutEtsion(critical=0.05), unload_from=1.0, interaction="mean-plane", n_surfaces=2000
+    )
     e, name = mcgw.simulate(scene), "joint_conductance_unloading"
     gas = e["gap_conductance_unloading"]
     np.testing.assert_allclose(e[name], e["conductance_si_unloading"] / ROUGH.nominal_area + gas, rtol=1e-14)

@@ -10,6 +10,7 @@ import mpmath
 import numpy as np
 import pytest
 from conftest import SURFACE
+from oracles.accurately import term
 from scipy.integrate import quad
 from scipy.special import j1
 
@@ -116,17 +117,9 @@ class TestLaws:
         for sampler in ("cells", "tail"):
             scene = scene_of(law, sampler=sampler, n_asperities=40)
             e = mcgw.simulate(scene)
-            formulas = law.on(SURFACE)
+            s = mcgw.heights(scene, 1)
             for k, h in enumerate(H):
-                s = mcgw.heights(scene, 1)
-                d = s[s > h] - h
-                e_ = np.ones(d.size)
-                with np.errstate(divide="ignore"):
-                    piece = (formulas.limits(e_) <= d).sum(axis=0)
-                radii = [
-                    UNIT * float(np.ravel(formulas.radius(int(p), np.sqrt(x[None]), np.ones(1)))[0])
-                    for p, x in zip(piece, d, strict=True)
-                ]
+                radii = UNIT * term(scene, "conductance", h, s[s > h])
                 expected = math.fsum(1 / by_integral(a) for a in radii)
                 assert e["conductance_si"][1, k] == pytest.approx(expected, rel=1e-10), sampler
 

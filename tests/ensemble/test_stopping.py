@@ -295,25 +295,8 @@ def test_means_are_known_as_well_as_each_was_asked(asked, tmp_path):
         assert reach[0] <= 5.2e-3
         assert reach[2] <= 1.05e-2
         assert after(e, scene) == []
+        assert "until rel_err = load 0.02, contacts 0.005 at best" in str(scene)
         assert after(e, asked({"load": 1e-3}))[0].startswith("load at d/sigma = 0 has a relative error of")
-
-
-def test_a_scene_file_tells_them(asked):
-    scene = asked({"load": 1e-3, "contacts": [1e-2, np.inf, 5e-2]})
-    assert mcgw.scene_from(mcgw.scene_text(scene)) == scene
-    assert "until rel_err = load 0.001, contacts 0.01 at best" in str(scene)
-
-
-def test_keys_that_do_not_go_together_are_refused():
-    """What is wrong alone is in `test_scene_keys.py`."""
-    text = "[surface]\nsigma=1e-6\nradius=1e-5\neta=1e9\nnominal_area=1e-6\nE_star=1e11\n"
-    text += "[contact]\nseparations=[1.0]\n[ensemble]\n"
-    for keys, message in (
-        ("rel_err = 0.01\nn_surfaces = 5", r"ensemble\.n_surfaces = 5: give it or rel_err, not both"),
-        ("max_surfaces = 5", r"ensemble\.max_surfaces = 5: give rel_err too, or leave it out"),
-    ):
-        with pytest.raises(mcgw.SceneError, match=message):
-            mcgw.scene_from(text + keys)
 
 
 @pytest.mark.parametrize(

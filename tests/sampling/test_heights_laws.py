@@ -145,40 +145,17 @@ def test_a_table_of_any_heights_is_a_law(values):
     assert float(rule.probabilities @ rule.heights**2) == pytest.approx(1, rel=100 * known)
 
 
-HEAD = """
-[surface]
-sigma = 1e-6
-radius = 1e-5
-eta = 1e9
-nominal_area = 1e-6
-E_star = 1e9
-[contact]
-separations = [0.0]
-"""
-
-
-def test_heights_from_files(tmp_path):
-    np.save(tmp_path / "z.npy", SAMPLE)
-    np.savetxt(tmp_path / "z.csv", SAMPLE, header="m")
-    for name in ("z.npy", "z.csv"):
-        scene = mcgw.scene_from(HEAD + f'[heights]\nlaw = "table"\nfile = "{name}"', folder=tmp_path)
-        assert scene.heights == HeightTable.of(SAMPLE)
-
-
-def test_a_negative_modulus_is_found_far_up_a_heavy_tail(make_scene):
-    """Exponential heights reach s = 36, where a grading may turn negative that Gaussian ones never see."""
-    falling = analytic.Custom(lambda s: np.where(s > 20, -1.0, 1.0), breaks=(20.0,))
-    make_scene(grading=falling)
-    with pytest.raises(mcgw.SceneError, match="negative from s = 20"):
-        make_scene(grading=falling, heights=ExponentialHeights())
-
-
-def test_a_modulus_below_all_heights_does_not_matter(make_scene):
-    """Exponential heights begin at s = -1; Gaussian ones are found where the grading is negative."""
-    falling = analytic.Custom(lambda s: np.where(s < -1.5, -1.0, 1.0), breaks=(-1.5,))
-    make_scene(grading=falling, heights=ExponentialHeights(), separations=(-2.5,))
-    with pytest.raises(mcgw.SceneError, match="negative"):
-        make_scene(grading=falling, separations=(-2.5,))
+@pytest.mark.parametrize(
+    ("falls", "given", "refused"),
+    [((20.0, 1), {}, {"heights": ExponentialHeights()}), ((-1.5, -1), {"heights": ExponentialHeights()}, {})],
+)
+def test_a_modulus_may_be_negative_where_no_height_is(falls, given, refused, make_scene):
+    """Exponential heights begin at s = -1 and reach s = 36, where Gaussian ones never are."""
+    place, side = falls
+    falling = analytic.Custom(lambda s: np.where(side * (s - place) > 0, -1.0, 1.0), breaks=(place,))
+    make_scene(grading=falling, separations=(-2.5,), **given)
+    with pytest.raises(mcgw.SceneError, match="negative from s = "):
+        make_scene(grading=falling, separations=(-2.5,), **refused)
 
 
 DENSITIES = {  # p(0), p(2) of heights over sqrt(m0), above the mean plane of the surface

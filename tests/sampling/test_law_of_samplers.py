@@ -46,19 +46,13 @@ def ensembles():
 
 def scores(ensemble, *, gamma=None):
     """z-scores of means, variances and covariances of all quantities at all separations."""
-    scene = ensemble.scene
-    grading = scene.grading if gamma is None else analytic.Exponential(gamma)
-    surface, h, n = scene.surface, scene.separations, scene.n_asperities
-    mean, variance, kurtosis = [], [], []
-    for name in scene.quantities:
-        exact = analytic.Model(surface, grading=grading, n_asperities=n, count=scene.count).cumulants(name, h)
-        mean.append(exact.mean)
-        variance.append(exact.variance)
-        kurtosis.append(exact.excess_kurtosis)
-    mean, variance, kurtosis = (np.concatenate(part) for part in (mean, variance, kurtosis))
-    exact = analytic.Model(surface, grading=grading, n_asperities=n, count=scene.count).covariance(
-        scene.quantities, h
+    scene = ensemble.scene if gamma is None else ensemble.scene.replace(grading=analytic.Exponential(gamma))
+    exact = [scene.theory.cumulants(name, scene.separations) for name in scene.quantities]
+    mean, variance, kurtosis = (
+        np.concatenate([getattr(each, part) for each in exact])
+        for part in ("mean", "variance", "excess_kurtosis")
     )
+    exact = scene.theory.covariance(scene.quantities, scene.separations)
     exact = exact.reshape(mean.size, mean.size) / np.sqrt(np.outer(variance, variance))
 
     values = np.concatenate([ensemble.values(name).astype(float) for name in scene.quantities], axis=1)
@@ -139,9 +133,7 @@ def test_the_check_of_independence_sees_every_lag(lag):
 
 def test_skewness(ensembles):
     scene = ensembles["cells", "fixed"].scene
-    exact = analytic.Model(scene.surface, grading=scene.grading, n_asperities=600).cumulants(
-        "load", scene.separations
-    )
+    exact = scene.theory.cumulants("load", scene.separations)
     for sampler in EXACT:
         load = ensembles[sampler, "fixed"].load
         standard = (load - exact.mean) / np.sqrt(exact.variance)

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from oracles.accurately import worst_error
 from oracles.law_means import own_terms
 from scipy import stats
 
@@ -14,7 +15,7 @@ from mcgw.sampling.own_radii import radius_table
 from mcgw.sampling.samplers import sampler_of
 
 ALPHAS = (1.55, 2.0, 5.0, 50.0)
-POWERS = {"load": 0.5, "area": 1.0, "stiffness": 0.5, "conductance": 0.5, "contacts": 0.0}
+QUANTITIES = ("load", "area", "stiffness", "conductance", "contacts")
 
 
 def spectral(alpha=5.0, **changes):
@@ -23,40 +24,9 @@ def spectral(alpha=5.0, **changes):
     surface = mcgw.SpectralSurface(moments.m0, moments.m2, moments.m4, 1e-6, 78.6e9)
     values = {
         "separations": np.linspace(0, 4, 9), "n_asperities": 20_000, "n_surfaces": 20, "seed": 1,
-        "quantities": tuple(POWERS),
+        "quantities": QUANTITIES,
     }  # fmt: skip
     return mcgw.Scene(surface, **(values | changes))
-
-
-def literal(scene, s, radii):
-    """Hertz's formulas, summit by summit, exactly rounded."""
-    x, found = scene.surface, {}
-    e = scene.modulus(s)
-    for name in scene.quantities:
-        column = []
-        for h in scene.separations:
-            d = x.sigma * np.maximum(s - h, 0)
-            terms = {
-                "load": 4 / 3 * x.E_star * e * np.sqrt(radii) * d**1.5,
-                "area": math.pi * radii * d,
-                "stiffness": 2 * x.E_star * e * np.sqrt(radii * d),
-                "conductance": 4 * np.sqrt(radii * d),
-                "contacts": d > 0,
-            }[name]
-            column.append(math.fsum(terms.tolist()))
-        found[name] = np.array(column)
-    return found
-
-
-def worst(scene, sampler, surface):
-    s, ratios = summits_drawn(scene, sampler, surface)
-    exact, drawn = literal(scene, s, scene.surface.radius * ratios), sampler.block(surface, 1).sums
-    errors = []
-    for name, values in exact.items():
-        np.testing.assert_array_equal(drawn[name][0][values == 0], 0)
-        reached = values > 0
-        errors.append(np.abs(drawn[name][0][reached] / values[reached] - 1).max(initial=0))
-    return max(errors)
 
 
 @pytest.mark.parametrize(
@@ -64,8 +34,7 @@ def worst(scene, sampler, surface):
 )
 def test_sums_are_those_of_the_very_summits(sampler, alpha):
     scene = spectral(alpha, sampler=sampler, separations=[-1.0, 0.0, 0.3, 1.0, 2.5])
-    made = sampler_of(scene)
-    assert max(worst(scene, made, surface) for surface in range(3)) < 1e-12
+    assert worst_error(scene, 3) < 1e-12
 
 
 @pytest.mark.parametrize("changes", [
@@ -83,9 +52,7 @@ def test_sums_are_those_of_the_very_summits(sampler, alpha):
     {"quantities": ("contacts", "area", "load")},
 ], ids=lambda changes: ", ".join(changes))  # fmt: skip
 def test_crossings(changes):
-    scene = spectral(sampler="cells", **changes)
-    made = sampler_of(scene)
-    assert max(worst(scene, made, surface) for surface in range(2)) < 1e-12
+    assert worst_error(spectral(sampler="cells", **changes), 2) < 1e-12
 
 
 @pytest.mark.parametrize("alpha", ALPHAS)
@@ -133,23 +100,14 @@ def test_radii_and_heights_have_the_joint_law():
     )  # were they independent
 
 
-@pytest.fixture(scope="module")
-def theory():
-    """Mean and standard deviation of every value of a scene."""
-    scene = spectral(2.0, n_asperities=2000, separations=(0.0, 1.5))
-    return scene, {
-        name: (scene.theory.mean(name, scene.separations), scene.theory.std(name, scene.separations))
-        for name in scene.quantities
-    }
-
-
 @pytest.mark.parametrize("sampler", ["cells", "tail", "direct"])
-def test_means_are_those_of_theory(theory, sampler):
+def test_means_are_those_of_theory(sampler):
     """|z| < 5 by the exact variance, which exists though the kurtosis of the area does not."""
-    scene, exact = theory
-    ensemble = mcgw.simulate(scene.replace(sampler=sampler, n_surfaces=400))
-    for name, (mean, std) in exact.items():
-        assert (np.abs(ensemble[name].mean(axis=0) - mean) < 5 * std / 20).all(), name
+    scene = spectral(2.0, n_asperities=2000, separations=(0.0, 1.5), sampler=sampler, n_surfaces=400)
+    ensemble, theory = mcgw.simulate(scene), scene.theory
+    for name in scene.quantities:
+        mean, std = (get(name, scene.separations) for get in (theory.mean, theory.std))
+        assert (np.abs(ensemble.mean(name) - mean) < 5 * std / 20).all(), name
 
 
 LAWS = [
@@ -183,33 +141,28 @@ def test_all_summits_of_a_surface():
     assert np.mean(1 / ratios) == pytest.approx(2.34902690068464 / 2.60588006348224, abs=0.02)
 
 
-AT_1 = "[contact]\nseparations = 1\n"
 HEAD = '[surface]\nnominal_area = "1 mm^2"\nE_star = "78.6 GPa"\n'
+SPECTRUM, PLAIN = "m0 = 1e-12\nm2 = 1e-3\nm4 = 5e6\n", "sigma = 1e-6\nradius = 1e-5\neta = 1e9\n"
+METAL = "law = 'kogut-etsion'\nhardness = 1e9\n[ensemble]\nsampler = 'cells'\n"
 
 
 @pytest.mark.parametrize(
-    ("text", "says"),
+    ("surface", "more", "says"),
     [
-        (HEAD + "m0 = 1e-12\nm2 = 1e-3\nm4 = 1e6\n" + AT_1, "alpha"),
-        (HEAD + "m0 = 1e-12\nm2 = 1e-3\n" + AT_1, "m4: missing"),
-        (HEAD + "m0 = 1e-12\nm2 = 1e-3\nm4 = 5e6\nradius = 1\n" + AT_1, "m0 = 1e-12: give it or radius"),
-        (HEAD + "m0 = 1e-12\nm2 = 1e-3\nm4 = 5e6\n" + AT_1 + "[ensemble]\nsampler='aggregate'\n",
-         "aggregate"),
-        (HEAD + "m0 = 1e-12\nm2 = 1e-3\nm4 = 5e6\n[heights]\nlaw = 'gaussian'\n" + AT_1,
-         "nayak"),
-        (HEAD + "sigma = 1e-6\nradius = 1e-5\neta = 1e9\n" + AT_1 + "datum = 'surface'\n", "datum"),
-        (HEAD + "sigma = 1e-6\nradius = 1e-5\neta = 1e9\n" + AT_1 + "[summits]\ncurvature='random'\n",
-         "nayak"),
-        (HEAD + "sigma = 1e-6\nradius = 1e-5\neta = 1e9\n" + AT_1 + "[summits]\nlargest_radius = 1\n",
-         "largest_radius"),
-        (HEAD + "m0 = 1e-12\nm2 = 1e-3\nm4 = 5e6\n" + AT_1 + "law = 'kogut-etsion'\n"
-         "hardness = 1e9\n[ensemble]\nsampler = 'cells'\n", "tail"),
+        ("m0 = 1e-12\nm2 = 1e-3\nm4 = 1e6\n", "", "alpha"),
+        ("m0 = 1e-12\nm2 = 1e-3\n", "", "m4: missing"),
+        (SPECTRUM + "radius = 1\n", "", "m0 = 1e-12: give it or radius"),
+        (SPECTRUM, "[ensemble]\nsampler = 'aggregate'\n", "aggregate"),
+        (SPECTRUM, "[heights]\nlaw = 'gaussian'\n", "nayak"),
+        (PLAIN, "datum = 'surface'\n", "datum"),
+        (PLAIN, "[summits]\ncurvature = 'random'\n", "nayak"),
+        (PLAIN, "[summits]\nlargest_radius = 1\n", "largest_radius"),
+        (SPECTRUM, METAL, "tail"),
     ],
-    ids=["alpha", "m4", "radius", "aggregate", "gaussian", "datum", "curvature", "largest", "metal"],
-)  # fmt: skip
-def test_what_does_not_go_together_gets_one_line(text, says):
+)
+def test_what_does_not_go_together_gets_one_line(surface, more, says):
     with pytest.raises(mcgw.SceneError) as caught:
-        mcgw.scene_from(text)
+        mcgw.scene_from(f"{HEAD}{surface}[contact]\nseparations = 1\n{more}")
     assert len(caught.value.problems) == 1, caught.value.problems
     assert says in caught.value.problems[0]
 

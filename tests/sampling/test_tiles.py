@@ -39,11 +39,6 @@ def lines(blocks):
     return [Lines(row[x], start[x], length[x], at[x], values.ravel()) for x in cut]
 
 
-def swept(first, second, given, answers):
-    """Tiles of lines."""
-    return Tiles.of((first, second), given, answers)
-
-
 NONE = Lines(*np.empty((4, 0), dtype=np.int64), np.empty(0))
 
 
@@ -76,7 +71,7 @@ def test_every_row_is_that_of_a_dense_product(groups, computed, surfaces):
     )
     exact = np.empty((2 * computed, surfaces))
     exact[answers[answers >= 0]] = dense(blocks, given, computed, moments)[answers >= 0]
-    tiles = swept(*lines(blocks), given, answers.reshape(-1, FOUR))
+    tiles = Tiles.of(lines(blocks), given, answers.reshape(-1, FOUR))
     found = tiles.apply(moments, (2, computed))
     scale = np.abs(exact).max(axis=1, keepdims=True) + 1
     assert np.abs((found.transpose(0, 2, 1).reshape(-1, surfaces) - exact) / scale).max() < 1e-13
@@ -85,9 +80,9 @@ def test_every_row_is_that_of_a_dense_product(groups, computed, surfaces):
 
 def test_nothing_asked():
     none = np.empty((0, FOUR), dtype=np.int64)
-    tiles = swept(NONE, NONE, np.array([[0, 1, 2, 3], [4, -1, -1, -1]]), none)
+    tiles = Tiles.of((NONE, NONE), np.array([[0, 1, 2, 3], [4, -1, -1, -1]]), none)
     assert tiles.apply(np.ones((5, 3)), (0, 4)).shape == (0, 3, 4)
-    silent = swept(NONE, NONE, none, np.arange(8).reshape(-1, FOUR))  # a separation above all cells
+    silent = Tiles.of((NONE, NONE), none, np.arange(8).reshape(-1, FOUR))  # a separation above all cells
     np.testing.assert_array_equal(silent.apply(np.ones((5, 3)), (2, 4)), np.zeros((2, 3, 4)))
 
 
@@ -131,6 +126,6 @@ def test_a_row_of_very_many_groups_in_falling_order():
     start, at = FOUR * np.arange(n)[::-1].copy(), np.arange(n)
     first = Lines(np.full(n, FOUR * n), start, np.ones(n, dtype=np.int64), at, 1.0 + at)
     given = np.arange(FOUR * n).reshape(-1, FOUR)
-    tiles = swept(first, NONE, given, np.array([[0, -1, -1, -1]]))
+    tiles = Tiles.of((first, NONE), given, np.array([[0, -1, -1, -1]]))
     np.testing.assert_array_equal(tiles.columns, np.arange(n))
     np.testing.assert_array_equal(tiles.values[:, 0, 0], n - at)

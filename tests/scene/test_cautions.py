@@ -115,7 +115,9 @@ LIMITS = {
     "contact.ratio": lambda f: falling(law=mcgw.Coated(ratio=3 * f, thickness=1e-6)),
     "first-order coating": lambda f: falling(law=mcgw.Coated(ratio=1 / 3 / f, thickness=1e-6)),
     "Tabor number above 5": lambda f: falling(law=mcgw.JohnsonKendallRoberts(work=work_of(5 / f))),
+    "Tabor number above": lambda f: falling(law=mcgw.JohnsonKendallRoberts(pull_off=stretch(5 / f))),
     "Tabor number below 0.1": lambda f: falling(law=mcgw.DerjaguinMullerToporov(work=work_of(0.1 * f))),
+    "Tabor number below": lambda f: falling(law=mcgw.DerjaguinMullerToporov(pull_off=stretch(0.1 * f))),
 }
 
 
@@ -124,10 +126,24 @@ def work_of(tabor):
     return float(np.sqrt((tabor * 3e-10) ** 3 / SHALLOW.radius) * SHALLOW.E_star)
 
 
+def stretch(tabor):
+    """The pull-off that this work of adhesion gives, over sigma."""
+    work = work_of(tabor)
+    return 0.75 * (np.pi**2 * work**2 * SHALLOW.radius / SHALLOW.E_star**2) ** (1 / 3) / SHALLOW.sigma
+
+
+SAID = {  # with the number that is beyond its limit, and where
+    "compressed by more": f"surface.radius = {-np.log(1.005e-3) * 1e-6:g} m: at d/sigma = 0, 0.1 % of the",
+    "Tabor number above": "it is 4.98 (Maugis's: 5.76)",
+    "Tabor number above 5": "it is 4.98 (Maugis's: 5.76)",
+}
+
+
 @pytest.mark.parametrize("words", LIMITS)
 def test_each_limit_is_met_to_half_a_per_cent(make_scene, words):
     told, silent = (cautions(make_scene(**LIMITS[words](f))) for f in (1.005, 0.995))
-    assert len(about(told, words)) == 1
+    (line,) = about(told, words)
+    assert SAID.get(words, "") in line
     assert not about(silent, words)
 
 
@@ -179,21 +195,6 @@ def test_few_contacts_from_the_first_separation_where_they_are(make_scene, heigh
     assert f"from d/sigma = {min(x for x, n in zip(h, expected, strict=True) if n < 30):.3g} " in line
     many = dataclasses.replace(scene, separations=(0.0, 0.5))
     assert not about(cautions(many), "fewer than 30")
-
-
-@pytest.mark.parametrize("heights", [analytic.Gaussian(), analytic.ExponentialHeights()])
-@pytest.mark.parametrize("lowest", [0.0, 1.0, 8.0])
-def test_a_note_where_contacts_are_deeper_than_the_radius(make_scene, heights, lowest):
-    """Given from a share of 1e-3 of the contacts on, which it names; at R <= sigma always."""
-    for depth in (1.0, 2.0, 2.5, 3.0, 4.0, 8.0, 9.0):
-        surface = dataclasses.replace(make_scene().surface, radius=depth * 1.37e-6)
-        scene = make_scene(surface=surface, separations=(lowest + 1, lowest), heights=heights)
-        share = exact.share_above(scene, lowest + depth) / exact.share_above(scene, lowest)
-        told = about(cautions(scene), "compressed by more")
-        assert len(told) == (share > 1e-3 or depth <= 1), depth
-        if told:
-            where = f"surface.radius = {surface.radius:g} m: at d/sigma = {lowest:g}"
-            assert f"{where}, {100 * share:.2g} % of the contacts are" in told[0]
 
 
 def test_what_a_rule_will_not_reach_is_said_before(make_scene):
@@ -269,24 +270,6 @@ def test_loads_above_all_that_were_measured():
     assert not about(cautions(scene.replace(separations=[0.5, 6.0])), "loads heavier")
 
 
-@pytest.mark.parametrize(
-    ("law", "tabor", "given"),
-    [
-        (mcgw.JohnsonKendallRoberts, 4.9, True), (mcgw.JohnsonKendallRoberts, 5.1, False),
-        (mcgw.DerjaguinMullerToporov, 0.09, False), (mcgw.DerjaguinMullerToporov, 0.11, True),
-    ],
-)  # fmt: skip
-def test_adhesion_by_tabors_number(make_scene, law, tabor, given):
-    """(R w^2/(E*^2 z0^3))^(1/3) at z0 = 0.3 nm, by work of adhesion or by the pull-off that it gives."""
-    work = np.sqrt((tabor * 3e-10) ** 3 / SHALLOW.radius) * SHALLOW.E_star
-    stretch = 0.75 * (np.pi**2 * work**2 * SHALLOW.radius / SHALLOW.E_star**2) ** (1 / 3) / SHALLOW.sigma
-    for constant in ({"work": work}, {"pull_off": stretch}):
-        told = about(told_of(make_scene, law(**constant), separations=(1.0, 2.0)), "Tabor")
-        assert bool(told) == given
-        if told:
-            assert f"it is {tabor:.3g} (Maugis's: {1.157 * tabor:.3g})" in told[0]
-
-
 def test_the_choice_of_the_law_is_worth_ten_percent(make_scene):
     """Means of physics.md at h = 1 and delta_c = 0.05: CEB .0532829, KE .0534662, ZMC .0487678, Hertz."""
     (line,) = about(told_of(make_scene, METAL, separations=(0.0, 1.0, 2.0)), "laws differ by")
@@ -312,12 +295,10 @@ def test_a_loop_that_gains_energy(make_scene):
     assert not about(told_of(make_scene, METAL), "work")
 
 
-@pytest.mark.parametrize(("critical", "given"), [(0.04, 0), (0.02, 1), (0.005, 1), (0.001, 1)])
-def test_contacts_deeper_than_the_fit(make_scene, critical, given):
-    law = mcgw.KogutEtsion(critical=critical)
-    told = about(told_of(make_scene, law, separations=(0.0, 1.0)), "110 critical")
+def test_contacts_deeper_than_the_fit(make_scene):
+    (told,) = about(
+        told_of(make_scene, mcgw.KogutEtsion(critical=0.02), separations=(0.0, 1.0)), "110 critical"
+    )
     scene = make_scene(grading=analytic.Homogeneous())
-    share = exact.share_above(scene, 110 * critical) / exact.share_above(scene, 0.0)
-    assert len(told) == given == (share > 1e-3)
-    if told:
-        assert float(re.search(r"(\S+) % of", told[0])[1]) / 100 == pytest.approx(share, rel=0.05)
+    share = exact.share_above(scene, 110 * 0.02) / exact.share_above(scene, 0.0)
+    assert float(re.search(r"(\S+) % of", told)[1]) / 100 == pytest.approx(share, rel=0.05)

@@ -30,15 +30,6 @@ def test_loads_down_to_the_smallest_number_are_found_or_refused(make_scene, give
     assert np.isfinite(list(found.value.values())).all()
 
 
-@pytest.mark.parametrize("number", ["1e-320", "1e-200"])
-def test_solve_says_so_in_one_line(number, tmp_path, capsys):
-    assert main(["init", "-o", str(tmp_path / "s.toml")]) == 0
-    capsys.readouterr()
-    assert main(["solve", str(tmp_path / "s.toml"), "--surfaces", "2", f"--load={number}"]) == 2
-    (line,) = [x for x in capsys.readouterr().err.splitlines() if "note:" not in x]
-    assert line.startswith(f"mcgw: load = {float(number):g} N: too small for")
-
-
 @pytest.mark.parametrize("option", ["--load", "--pressure", "--area-fraction"])
 def test_solve_needs_a_value_of_what_is_given(option, capsys):
     with pytest.raises(SystemExit, match="2"):

@@ -15,21 +15,6 @@ from mcgw.formats.files import check_output
 from mcgw.machine.memory import memory_available
 
 
-def load_share(scene):
-    """Load in units of what one asperity carries at unit approach, a surface and asperity."""
-    unit = analytic.QUANTITIES["load"].scale(scene.surface)
-    return mcgw.simulate(scene).load / (unit * scene.n_asperities)
-
-
-def test_a_separation_at_which_all_touch(make_scene):
-    scene = make_scene(separations=(-40.0,), grading=analytic.Homogeneous(), n_surfaces=50)
-    share = load_share(scene)
-    error = share.std() / np.sqrt(share.size)
-    assert abs(share.mean() - 253.042) < 5 * error + 5e-4  # the last digit of the reference
-    ensemble = mcgw.simulate(scene)
-    assert (ensemble.contacts == scene.n_asperities).all()
-
-
 def test_beyond_64_bits(make_scene, tmp_path):
     scene = make_scene(n_surfaces=10**12, n_asperities=10**8, separations=(6.0,))
     with pytest.raises(StoreError, match=r"n_surfaces \* n_asperities = 1e\+20 is more than 2\^63 - 1"):

@@ -22,13 +22,8 @@ def test_a_plot_by_its_name(ensemble):
 
     for result in (ensemble, mcgw.compare(ensemble)):
         axes = Figure().subplots()
-        for drawn in (
-            result.plot("area"),
-            result.plot("area", axes),
-            result.plot(axes, "area"),
-            result.plot(quantity="area", ax=axes),
-        ):
-            assert "area" in drawn.get_ylabel().lower()
+        for given in (("area",), ("area", axes), (axes, "area")):
+            assert "area" in result.plot(*given).get_ylabel().lower()
         assert result.plot("area", axes) is axes
         assert result.plot(axes) is axes
         assert "load" in result.plot().get_ylabel().lower()
