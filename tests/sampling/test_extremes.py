@@ -24,9 +24,7 @@ def agree(ensemble):
     """Means within 5 exact standard errors of theory, wherever anything fluctuates."""
     scene = ensemble.scene
     for name in scene.quantities:
-        exact = analytic.Model(
-            scene.surface, grading=scene.modulus, n_asperities=scene.n_asperities
-        ).cumulants(name, scene.separations)
+        exact = scene.theory.cumulants(name, scene.separations)
         difference = np.abs(ensemble.mean(name) - exact.mean)
         assert (difference <= 5 * np.sqrt(exact.variance / ensemble.n_surfaces) + 1e-12 * exact.mean).all()
 
@@ -56,15 +54,6 @@ def test_1e15_asperities(make_scene):
     agree(mcgw.simulate(make_scene(n_asperities=10**15, sampler="aggregate", n_surfaces=64)))
 
 
-def test_no_asperities_and_too_many(make_scene):
-    for n, advice in ((0, "give a whole number >= 1"), (-1, "give a whole number >= 1")):
-        with pytest.raises(mcgw.SceneError, match=advice):
-            make_scene(n_asperities=n)
-    for n in (2**53 + 1, 10**30):
-        with pytest.raises(mcgw.SceneError, match="must lie between 1 and 2\\^53"):
-            make_scene(n_asperities=n)
-
-
 def test_one_surface(make_scene):
     ensemble = mcgw.simulate(make_scene(n_surfaces=1))
     assert np.isnan(ensemble.std("load")).all()
@@ -87,8 +76,6 @@ def test_10_000_separations(make_scene):
 def test_separations_next_to_zero(make_scene):
     scene = make_scene(separations=(-1e-100, 0.0, 1e-100, 1e-50, 1.0), sampler="cells")
     assert worst(scene, 0) < 1e-12
-    with pytest.raises(mcgw.SceneError, match=r"4\.94066e-324 is too close to 0"):
-        make_scene(separations=(5e-324,))
 
 
 def test_separations_1e_12_apart_and_equal(make_scene):
@@ -108,33 +95,10 @@ def test_gradings_at_their_limits(make_scene, gamma):
 
 
 def test_negative_gamma(make_scene):
-    with pytest.raises(mcgw.SceneError, match=r"negative from s = 1\.099"):
-        make_scene(grading=analytic.Exponential(-0.5))
     clipped = make_scene(grading=analytic.Exponential(-0.5), negative="clip")
     assert worst(clipped, 0) < 1e-12
     agree(mcgw.simulate(clipped))
     agree(mcgw.simulate(make_scene(grading=analytic.Exponential(-0.5), negative="allow")))
-
-
-@pytest.mark.parametrize("size", [1e-12, 1.0])
-@pytest.mark.parametrize("stress", [1.0, 1e15])
-def test_sizes_and_moduli(make_scene, size, stress):
-    """Lengths and stresses enter as factors: the reduced sums are the same to the last digits."""
-    surface = analytic.Surface(
-        sigma=size, radius=size, eta=1 / size**2, nominal_area=3000 * size**2, E_star=stress
-    )
-    scaled = sampler_of(make_scene(surface=surface)).block(0, 2).sums
-    unit = sampler_of(make_scene(surface=analytic.Surface(1.0, 1.0, 1.0, 3000.0, 1.0))).block(0, 2).sums
-    np.testing.assert_allclose(scaled["load"] / (stress * size**2), unit["load"], rtol=1e-13)
-    np.testing.assert_allclose(scaled["area"] / size**2, unit["area"], rtol=1e-13)
-    np.testing.assert_allclose(scaled["stiffness"] / (stress * size), unit["stiffness"], rtol=1e-13)
-
-
-@pytest.mark.parametrize(("sigma", "E_star"), [(1e-320, 1e9), (1e-150, 1e-100), (1e100, 1e250)])
-def test_products_beyond_double_precision(make_scene, sigma, E_star):
-    surface = analytic.Surface(sigma=sigma, radius=1e-5, eta=1e9, nominal_area=1e-6, E_star=E_star)
-    with pytest.raises(mcgw.SceneError, match="beyond double precision"):
-        make_scene(surface=surface)
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf])

@@ -7,6 +7,7 @@ import pytest
 from oracles.law_means import own_terms
 from oracles.summits_by_hand import summit_contact
 from scipy.optimize import brentq
+from test_random_radii import LAWS as OTHERS
 
 import analytic
 import mcgw
@@ -74,10 +75,7 @@ def test_file_as_it_is_gives_the_sums_over_its_summits(table):
     assert mcgw.compare(ensemble).verdict.agrees
 
 
-LAWS = [
-    None, mcgw.KogutEtsion(hardness=1.2e9), mcgw.JacksonGreen(yield_strength=4e8),
-    mcgw.JohnsonKendallRoberts(work=0.05), mcgw.PowerLawGraded(k=0.3, c0=1e-6),
-]  # fmt: skip
+LAWS = [None, *OTHERS]
 GRADINGS = [None, mcgw.Exponential(1.5), mcgw.Table([-1.0, 0.3, 1.0, 2.2], [0.3, 0.5, 1.4, 1.5])]
 
 
