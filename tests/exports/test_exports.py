@@ -244,6 +244,27 @@ def test_an_ensemble_gives_its_own_numbers(ensemble, tmp_path):
     np.testing.assert_allclose([float(row[1]) for row in rows[1:]], mean, rtol=1e-12)
 
 
+def test_points_that_carry_nothing_are_left_out(scene, tmp_path):
+    """A quantile of specimens that do not touch any more."""
+    far = mcgw.simulate(scene.replace(separations=[0, 1, 2, 4], n_surfaces=20))
+    path, low, *_ = mcgw.export(far, tmp_path / "t.csv", to="moose")
+    assert (len(read_moose(path)), len(read_moose(low))) == (4 + 1, 3 + 1)
+
+
+def test_pressures_of_a_scene_are_those_of_its_rows_against_the_gap(scene, tmp_path):
+    wanted = np.geomspace(1e6, 2e7, 5)
+    path, *_ = mcgw.export(scene.replace(n_surfaces=9), tmp_path / "t.csv", to="moose", pressures=wanted)
+    h = [float(scene.theory.separation_at("pressure", p)) for p in wanted[::-1]]
+    np.testing.assert_allclose(read_moose(path)[:-1, 0], SURFACE.sigma * np.array(h), rtol=1e-8)
+
+
+def test_fewer_rows_are_evenly_of_the_separations(ensemble, tmp_path):
+    path, *_ = mcgw.export(ensemble, tmp_path / "t.txt", to="comsol", table="conductance-gap", points=5)
+    mean = ensemble.mean("conductance_si") / SURFACE.nominal_area
+    rows = np.stack([SURFACE.sigma * ensemble.separations, mean], axis=1)
+    np.testing.assert_allclose(read_comsol(path)[:-1], rows[[0, 3, 6, 9, 12]], rtol=1e-9)
+
+
 def test_separations_are_as_many_as_rows(scene):
     plain = {"quantities": ["load"], "film": None, "n_surfaces": 2}
     few = scene.replace(separations=[2.0, 0.0, 0.5], keep="statistics", **plain)
@@ -307,6 +328,7 @@ WRONG = [
     ({"points": 1}, r"^points = 1: give a whole number from 2 to 10000$"),
     ({"points": 300}, r"^points = 300: calculix reads at most 200 lines; give fewer$"),
     ({"pressures": [2.0, 1.0]}, r"^pressures = \[2\.0, 1\.0\]: give two or more increasing numbers$"),
+    ({"pressures": [1.0]}, r"^pressures = \[1\.0\]: give two or more increasing numbers$"),
     ({"pressures": ["1 N", "2 N"]}, r"^pressures = '1 N': give a finite number > 0 in Pa"),
     ({"quantiles": [0.5, 1.0]}, r"^quantiles = \[0\.5, 1\.0\]: give numbers between 0 and 1"),
 ]

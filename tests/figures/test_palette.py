@@ -1,8 +1,6 @@
 """One colour for one meaning, told apart by readers who see no red or no green, and in grey print."""
 
 import itertools
-import re
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +12,8 @@ from mcgw.figures import style
 from mcgw.figures.catalogue import figures_of
 from mcgw.figures.compared import Compared
 from mcgw.figures.panels import draw
+
+pytestmark = pytest.mark.site
 
 # Machado, Oliveira and Fernandes 2009 (doi:10.1109/TVCG.2009.113), severity 1.0, on linear RGB.
 EYES = {
@@ -73,12 +73,6 @@ def test_colours_that_meet_are_told_apart():
         assert nearest_in_grey(palette) > LEAST_GREY, name
 
 
-def test_steps_reach_from_end_to_end():
-    """Sizes N from 10² to 10⁶, and spreads b of four decades."""
-    for labels in (("N = 10²", "N = 10⁶"), ("b = 0.01", "b = 100")):
-        assert [style.look(label)["color"] for label in labels] == [style.STEPS[0], style.STEPS[-1]]
-
-
 def test_gradings_are_ordered():
     """Lighter the farther from homogeneous, blue above it and orange below, in between too."""
     for gammas, blue in (
@@ -98,7 +92,6 @@ def test_what_a_figure_shows_together_has_other_dashes_and_markers_too():
             assert len({str(look[key]) for look in looks}) == len(family), (family, key)
 
 
-@pytest.mark.site
 def test_every_figure_has_one_colour_for_a_label():
     """Of lines, markers, residuals and legends, in all figures of the package."""
     scene = mcgw.Scene(SURFACE, separations=0.0, n_surfaces=30, n_asperities=3000, seed=1)
@@ -113,20 +106,3 @@ def test_every_figure_has_one_colour_for_a_label():
     assert len(found.pop("Monte Carlo, 95 %")) > 1  # it shows the markers of the data
     assert {"γ = 0.2", "γ = 2", "d/σ = 4", "N = 10⁶"} <= set(found)
     assert {label: colours for label, colours in found.items() if len(colours) > 1} == {}
-
-
-ROOT = Path(mcgw.__file__).parent.parent
-DRAWS = [
-    *(path for path in sorted((ROOT / "mcgw").rglob("*.py")) if path.name != "style.py"),
-    *sorted((ROOT / "runs" / "gallery").glob("*/*.py")),
-    *sorted((ROOT / "runs" / "notebooks").glob("*.py")),
-    *(ROOT / "runs" / name for name in ("pictures.py", "bem_check.py", "validation/validity_figures.py")),
-]
-COLOUR = re.compile(r"""["'](#[0-9A-Fa-f]{6}|C[0-9])["']""")
-
-
-def test_colours_are_named_in_one_place():
-    """Nobody else says which blue: neither by its number nor by its place in the cycle."""
-    found = {path.name: COLOUR.findall(path.read_text(encoding="utf-8")) for path in DRAWS}
-    assert {name: colours for name, colours in found.items() if colours} == {}
-    assert COLOUR.findall('plot(x, color="C1"); fill("#0072B2")') == ["C1", "#0072B2"]

@@ -122,9 +122,9 @@ def test_there_are_no_curves_where_no_pressures_are_spanned(scene, changes):
 
 
 KINDS = [
-    {"law": mcgw.KogutEtsion(critical=0.05), "unload_from": "loop"},
-    {"law": mcgw.DerjaguinMullerToporov(pull_off=0.3)},
-    {"interaction": {"reference": "mean-plane"}},
+    pytest.param({"law": mcgw.KogutEtsion(critical=0.05), "unload_from": "loop"}, marks=pytest.mark.slow),
+    pytest.param({"law": mcgw.DerjaguinMullerToporov(pull_off=0.3)}, marks=pytest.mark.slow),
+    pytest.param({"interaction": {"reference": "mean-plane"}}, marks=pytest.mark.slow),
     {"count": "poisson", "grading": mcgw.Exponential(0.5)},
     {"film": mcgw.Film(conductivities=(200.0, 16.0)), "joint": mcgw.Joint("air", rms=2e-6)},
 ]

@@ -14,7 +14,6 @@ import analytic
 import mcgw
 from mcgw import sweeps
 from mcgw.cli import main
-from mcgw.commands.options import ranged
 from mcgw.ensemble.results import MemoryResults
 from mcgw.jobs.running import run
 
@@ -163,9 +162,6 @@ def test_compare_ends_with_1_and_says_so_where_they_disagree(file, tmp_path, cap
     assert "theory DISAGREE" in out_of(["compare", file, "-o", tmp_path / "c.png"], capsys, code=1)
 
 
-SOLVED = ("value", "low_95", "high_95", "specimen_05", "specimen_95", "infinite")
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "given", "title"),
@@ -183,8 +179,6 @@ def test_solve(scene, words, given, title, tmp_path, capsys):
     out = out_of(["solve", tmp_path / "s.toml", *words, "-v", "--csv", tmp_path / "s.csv"], capsys)
     lines = out.splitlines()
     assert lines[0].startswith(f"{title}: ")
-    head = "quantity unit value 95 % interval 90 % of specimens infinite surface"
-    assert head + " best (95 %)" * (given[0] == "load") in [" ".join(x.split()) for x in lines]
     rows = {row["quantity"]: row for row in rows_of(tmp_path / "s.csv")}
     assert list(rows) == ["separation", "gap_to_summits", *analytic.QUANTITIES]
     h = float(rows["separation"]["infinite"])
@@ -200,23 +194,7 @@ def test_solve(scene, words, given, title, tmp_path, capsys):
             assert float(row["infinite"]) == pytest.approx(expected, rel=1e-8)
         assert row["low_95"] == row["value"] == row["high_95"]  # exact
         assert float(row["value"]) == mcgw.solve(few, **dict([given])).value[name]
-    told_by = mcgw.solve(few, **dict([given])).told_by
-    full = out_of(["solve", tmp_path / "s.toml", *words, "-v"], capsys)
-    assert ("90 % of specimens: for the separation from its exact" in full) == (told_by is not None)
     assert exact.mean(few, given[0], [h])[0] == pytest.approx(given[1], rel=1e-8)
-    shown = {}
-    for line in lines:
-        if match := re.match(
-            r"  (\S+) +(\S+) +(\S+) +(\S+) \.\.\. (\S+) +(\S+) \.\.\. (\S+) +(\S+)(?: +\S.*)?$", line
-        ):
-            assert match[2] == units[match[1]]
-            shown[match[1]] = [float(x) for x in match.groups()[2:]]
-    assert set(shown) == set(rows) - {given[0]}
-    for name, numbers in shown.items():
-        wanted = [float(rows[name][key]) for key in SOLVED]
-        np.testing.assert_allclose(numbers[:3], wanted[:3], rtol=6e-6)
-        np.testing.assert_allclose(numbers[3:5], wanted[3:5], rtol=6e-4)
-        assert numbers[5] == pytest.approx(wanted[5], rel=6e-5)
     assert [line for line in lines if line.startswith("specimens: 25 surfaces of 3000 asperities")]
     for name, x in mcgw.solve(few, **dict([given])).surfaces.items():
         assert float(rows[name]["std"]) == pytest.approx(x.std(ddof=1), rel=1e-7, abs=1e-12 * x.mean())
@@ -262,17 +240,3 @@ def test_run_says_how_many_and_what_is_not_known(scene, tmp_path, capsys):
         assert float(width) == pytest.approx(students, rel=0.15)
         _, high = ensemble.interval(name)
         assert float(width) == pytest.approx(high[0] / x.mean() - 1, rel=0.06)
-
-
-def test_ranges_are_at_a_constant_ratio_of_pressures_and_evenly_of_areas(scene, tmp_path, capsys):
-    """Of A:B:N, by what is between."""
-    few = dataclasses.replace(scene, n_surfaces=5, keep="sums", sampler="tail")
-    (tmp_path / "s.toml").write_text(mcgw.scene_text(few))
-    out_of(["solve", tmp_path / "s.toml", "--pressure", "1MPa:4MPa:3", "--csv", tmp_path / "s.csv"], capsys)
-    pressures = sorted({float(row["pressure_Pa"]) for row in rows_of(tmp_path / "s.csv")})
-    assert pressures == pytest.approx([1e6, 2e6, 4e6], rel=1e-12)
-    assert ranged("1mm^2:5mm^2:3", "--area", "m^2") == pytest.approx([1e-6, 3e-6, 5e-6])
-    assert ranged("1N:100N:3", "--load", "N") == pytest.approx([1, 10, 100])
-    for wrong, told in (("1MPa:4MPa", "give A:B:N"), ("4MPa:1MPa:3", "give the lower one first")):
-        assert main(["solve", str(tmp_path / "s.toml"), "--pressure", wrong]) == 2
-        assert f"--pressure {wrong}: {told}" in capsys.readouterr().err
