@@ -108,12 +108,12 @@ def test_without_a_balance_less_of_the_interaction_counts():
     rng = np.random.default_rng(4)
     places = np.array(np.divmod(rng.choice(24 * 24, 200, replace=False), 24)) + 20
     spots = Spots.hertz(1e-6 * rng.standard_normal(200), 1e-5 * rng.uniform(0.5, 20, 200), 1e9)
-    grid, shares = Grid((64, 64), (1e-4, 1e-4)), set()
-    for load in (0.01, 0.1, 3.0, 100.0):
+    grid, shares = Grid((64, 64), (1e-4, 1e-4)), []
+    for load in (0.01, 0.5, 10.0):
         start = spots.separation_at(load)
         found = balanced(spots, places, grid, start, load)
-        shares.add(found.share)
+        shares.append(found.share)
         assert spots.loads(found.penetrations).sum() == pytest.approx(load, rel=1e-10)
         assert residual(spots, places, grid, start, found) < 1e-10
         assert found.stiffness > 0
-    assert {1.0, 0.5} <= shares or {1.0, 0.0} <= shares
+    assert shares == [1.0, 0.5, 0.0]
