@@ -21,10 +21,6 @@ def heights():
 def folder(tmp_path, monkeypatch, heights):
     monkeypatch.chdir(tmp_path)
     np.save("map.npy", heights)
-    x = np.arange(heights.size // 4) * 1e-6
-    np.savetxt(
-        "line.txt", np.column_stack([x * 1e6, heights.ravel()[: x.size] * 1e6]), header="x (um), z (um)"
-    )
     return tmp_path
 
 

@@ -23,13 +23,6 @@ def foreign(tmp_path, monkeypatch):
     return write
 
 
-def test_a_map_comes_back_as_it_was_read(foreign):
-    found = read_map(foreign("3 2"))
-    assert found.heights == pytest.approx(1e-6 * np.array([[0, 2, 4], [1, 3, 5]]))
-    assert found.pixel == pytest.approx((1e-6, 0.5e-6))
-    assert found.heights.flags["C_CONTIGUOUS"]
-
-
 def test_a_map_without_a_pixel_takes_one_and_keeps_its_holes(foreign):
     """What it does not tell is given, or assumed; masked points and nan are missing."""
     path = foreign("bare 3 2")
@@ -97,6 +90,8 @@ def test_what_our_readers_refuse_is_shown_to_the_library_where_it_says_its_pixel
     for name in ("map.h5", "map.sdf"):
         found = read_map(foreign("3 2").rename(tmp_path / name))
         assert found.heights == pytest.approx(1e-6 * np.array([[0, 2, 4], [1, 3, 5]]))
+        assert found.pixel == pytest.approx((1e-6, 0.5e-6))
+        assert found.heights.flags["C_CONTIGUOUS"]
     with pytest.raises(
         ValueError, match=r"map\.h5: is not a valid HDF5 file; SurfaceTopography cannot read it: Val"
     ):

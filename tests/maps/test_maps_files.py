@@ -161,16 +161,6 @@ def test_arrays_of_every_kind_are_read_as_numbers(kind, order, tmp_path):
     assert found.heights.dtype == np.float64
 
 
-@pytest.mark.parametrize("name", ["map.h5"])
-def test_what_a_file_tells_is_not_told_again(name, topography, tmp_path):
-    write_map(topography, tmp_path / name)
-    with pytest.raises(ValueError, match="leave --pixel out"):
-        read_map(tmp_path / name, pixel=(1e-6, 1e-6))
-    with pytest.raises(ValueError, match="leave --unit out"):
-        read_map(tmp_path / name, unit="um")
-    assert np.array_equal(read_map(tmp_path / name, unit="m").heights, topography.heights)
-
-
 SOUND = '{"pixel": [1e-6, 1e-6]}'
 
 
@@ -251,21 +241,28 @@ def test_the_largest_height_and_the_finest_pixel():
         Topography(-1.005e150 * z, (1.0, 1.0))
 
 
-@pytest.mark.parametrize("name", ["m.txt", "m.npy"])
+@pytest.mark.parametrize("name", ["m.txt", "m.npy", "m.h5"])
 @pytest.mark.parametrize(
     ("slope", "doubted"), [(9.95, False), (10.05, True), (1.01e-6, False), (0.99e-6, True)]
 )
 def test_slopes_that_no_surface_has_are_refused(name, slope, doubted, tmp_path):
     """A unit that was assumed is named, one that was given or told is doubted too."""
     path, heights = tmp_path / name, slope * 1e-6 * np.arange(8.0) + np.zeros((8, 1))
-    np.savetxt(path, heights) if name == "m.txt" else np.save(path, heights)
+    pixel = (1e-6, 1e-6)
+    if name == "m.h5":
+        write_map(Topography(heights, pixel), path)
+        with h5py.File(path, "r+") as file:
+            del file["height"].attrs["units"]
+        pixel = None
+    else:
+        np.savetxt(path, heights) if name == "m.txt" else np.save(path, heights)
     for unit, told in ((None, "would be 10[.]1; give --unit" if slope > 1 else "are in another unit"),
                        ("m", "the typical slope of this map is .*, which no surface has")):  # fmt: skip
         if doubted:
             with pytest.raises(ValueError, match=told):
-                read_map(path, pixel=(1e-6, 1e-6), unit=unit)
+                read_map(path, pixel=pixel, unit=unit)
         else:
-            assert read_map(path, pixel=(1e-6, 1e-6), unit=unit).assumed_unit == ("" if unit else "m")
+            assert read_map(path, pixel=pixel, unit=unit).assumed_unit == ("" if unit else "m")
 
 
 def test_what_an_array_and_an_hdf5_map_say_of_themselves(topography, tmp_path):
@@ -300,6 +297,10 @@ def test_what_an_array_and_an_hdf5_map_say_of_themselves(topography, tmp_path):
         np.testing.assert_array_equal(again.heights, topography.heights)
         assert (again.pixel, again.periodic) == (topography.pixel, True)
         assert (again.missing, again.assumed_unit) == (1, "")
+    with pytest.raises(ValueError, match="leave --pixel out"):
+        read_map(tmp_path / "m.h5", pixel=(1e-6, 1e-6))
+    with pytest.raises(ValueError, match="leave --unit out"):
+        read_map(tmp_path / "m.h5", unit="um")
     write_map(topography, tmp_path / "n.h5")
     with h5py.File(tmp_path / "n.h5") as file:
         assert "asperities" not in file

@@ -510,7 +510,12 @@ def test_the_limits_of_places_and_gaps():
         profile_at(np.array([0, 1, 2, 3, 4, 5, 5, 6, 7.0]), np.zeros(9))
     with pytest.raises(ValueError, match="1 points: a profile has"):
         profile_at(np.zeros(1), np.zeros(1))
-    for heights, spacing, told in ((np.zeros((3, 9)), 1.0, "not 2 dim"), (z, 0.0, "give a length > 0 m")):
+    for heights, spacing, told in (
+        (np.zeros((3, 9)), 1.0, "not 2 dimensions"),
+        (z[:7], 1.0, "8 or more"),
+        (np.append(z, np.nan), 1.0, "are missing"),
+        (z, 0.0, "give a length > 0 m"),
+    ):
         with pytest.raises(ValueError, match=told):
             Profile(heights, spacing)
 

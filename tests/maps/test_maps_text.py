@@ -1,14 +1,10 @@
 """Text as instruments and spreadsheets of any country write it; and in which unit its heights are."""
 
-import json
-
-import h5py
 import numpy as np
 import pytest
 
 from mcgw.cli import main
 from mcgw.maps import Spectrum, Topography, gaussian_map, read_map
-from mcgw.maps.map_files import write_h5
 from mcgw.maps.text_file import read_text
 
 NAN = np.nan
@@ -26,7 +22,6 @@ def read(tmp_path, content, encoding="utf-8"):
     [
         ("1.5,2.5\n3,4\n", [[1.5, 2.5], [3, 4]]),
         ("1,2,3\n", [[1, 2, 3]]),  # nothing else parts the numbers
-        ("1, 2, 3\n", [[1, 2, 3]]),
         ("1,5\n2,5\n", [[1, 5], [2, 5]]),
         ("1.5 2.5\n  3   4\n", [[1.5, 2.5], [3, 4]]),
         ("1.5\t2.5\r\n3\t4\r\n", [[1.5, 2.5], [3, 4]]),
@@ -35,8 +30,6 @@ def read(tmp_path, content, encoding="utf-8"):
         ("1,23\t4,56\n7\t8\n", [[1.23, 4.56], [7, 8]]),
         ("-1,23 +4,56\n7 8,\n", [[-1.23, 4.56], [7, 8]]),
         ("1,5e-6;2,5E+06\n", [[1.5e-6, 2.5e6]]),
-        ("0,001;0,0002\n", [[1e-3, 2e-4]]),
-        ("1;2;3\n", [[1, 2, 3]]),
         ("1;2\t3 4\n", [[1, 2, 3, 4]]),
         ("1,,3\n4,5,6\n", [[1, NAN, 3], [4, 5, 6]]),
         ("1,5;;3\n4;5;6\n", [[1.5, NAN, 3], [4, 5, 6]]),
@@ -46,8 +39,6 @@ def read(tmp_path, content, encoding="utf-8"):
         ("1;2;\n3;4;\n", [[1, 2], [3, 4]]),  # every line ends with a separator
         (";1;2\n;3;4\n", [[1, 2], [3, 4]]),
         ("1;2;\n3;4;5\n", [[1, 2, NAN], [3, 4, 5]]),
-        ("1,5 2\n3 4\n", [[1.5, 2], [3, 4]]),
-        ("1,5e3;2\n", [[1500, 2]]),
         ("0;0.5\n", [[0, 0.5]]),
         ("# nm, as measured\n\n1 2\n", [[1, 2]]),
     ],
@@ -114,33 +105,9 @@ def rough():
     return gaussian_map(Spectrum(1e-6, 16e-6, 8e-6), (128, 128), PIXEL, np.random.default_rng(1))
 
 
-def without_unit(path, heights):
-    """The same numbers in a file that names no unit."""
-    if path.suffix == ".npy":
-        np.save(path, heights)
-        path.with_suffix(".json").write_text(json.dumps({"pixel": PIXEL}))
-    elif path.suffix == ".h5":
-        write_h5(Topography(heights, PIXEL), path)
-        with h5py.File(path, "r+") as file:
-            del file["height"].attrs["units"]
-    else:
-        np.savetxt(path, heights, delimiter=";", header="Width: 128 um\nHeight: 128 um")
-    return path
-
-
-@pytest.mark.parametrize("name", ["map.txt", "map.npy", "map.h5"])
-def test_heights_in_micrometres_do_not_pass_as_metres(name, rough, tmp_path):
-    path = without_unit(tmp_path / name, 1e6 * rough.heights)
-    with pytest.raises(ValueError, match="--unit"):
-        read_map(path)
-    assert read_map(path, unit="um").heights == pytest.approx(rough.heights, rel=1e-12)
-    path = without_unit(tmp_path / name, rough.heights)
-    assert read_map(path).assumed_unit == "m"
-    assert read_map(path, unit="m").assumed_unit == ""
-
-
 def test_a_command_takes_a_unit_and_tells_one_that_was_assumed(rough, tmp_path, capsys, without_caps):
-    path, out = without_unit(tmp_path / "map.txt", 1e6 * rough.heights), tmp_path / "x.toml"
+    path, out, head = tmp_path / "map.txt", tmp_path / "x.toml", "Width: 128 um\nHeight: 128 um"
+    np.savetxt(path, 1e6 * rough.heights, delimiter=";", header=head)
     words = ["fit", str(path), "--cutoff", "none", "-o", str(out)]
     assert main(words) == 2
     error = capsys.readouterr().err
@@ -151,7 +118,7 @@ def test_a_command_takes_a_unit_and_tells_one_that_was_assumed(rough, tmp_path, 
     told = capsys.readouterr()
     assert "slope" not in told.out + told.err
     assert "heights assumed in" not in told.out
-    without_unit(path, rough.heights)
+    np.savetxt(path, rough.heights, delimiter=";", header=head)
     assert main(words) == 0
     for text in (capsys.readouterr().out, out.read_text()):
         assert "heights assumed in m" in text
