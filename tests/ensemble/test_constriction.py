@@ -122,18 +122,18 @@ def test_no_answer_where_less_than_nothing_would_resist():
     np.testing.assert_array_equal(in_series(np.array([0.0, -2 / other]), other), [0.0, np.nan])
 
 
-class TestCautions:
-    def lines(self, interaction=None, **asked):
-        lines = cautions(scene_of(interaction, **asked))
-        return [line for line in lines if "conductance" in line and "law" not in line]
+def test_surfaces_without_an_answer_are_cautioned_of():
+    """A stiff half-space has a balance all the same, and its surfaces say nan."""
 
-    def test_no_answer(self):
-        """A stiff half-space has a balance all the same, and its surfaces say nan."""
-        asked = {"eta": 0.2 / (SURFACE.radius * SURFACE.sigma), "separations": (-2.0, 3.0)}
-        stiff = Interaction("mean-plane", bulk_modulus=20 * SURFACE.E_star)
-        (line,) = self.lines(stiff, n_asperities=None, **asked)
-        assert line.startswith("up to d/sigma = -2 conductance is nan: the correction for the mean plane")
-        e = mcgw.simulate(scene_of(stiff, **asked, n_asperities=None))
-        np.testing.assert_array_equal(np.isnan(e.conductance), [[True, False]] * 3)
-        assert not np.isnan(e.load).any()
-        assert not self.lines(stiff, n_asperities=None, eta=asked["eta"], separations=3.0)
+    def lines(*separations):
+        scene = scene_of(stiff, n_asperities=None, eta=eta, separations=separations)
+        return scene, [line for line in cautions(scene) if "conductance" in line and "law" not in line]
+
+    stiff = Interaction("mean-plane", bulk_modulus=20 * SURFACE.E_star)
+    eta = 0.2 / (SURFACE.radius * SURFACE.sigma)
+    scene, (line,) = lines(-2.0, 3.0)
+    assert line.startswith("up to d/sigma = -2 conductance is nan: the correction for the mean plane")
+    e = mcgw.simulate(scene)
+    np.testing.assert_array_equal(np.isnan(e.conductance), [[True, False]] * 3)
+    assert not np.isnan(e.load).any()
+    assert not lines(3.0)[1]

@@ -191,12 +191,6 @@ def test_compare_takes_them_and_sees_another_modulus():
     assert not mcgw.compare(told).verdict.agrees
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["yields, and back", "interacting", "crowds", "own radii"])
-def test_compare_takes_every_kind(name):
-    assert mcgw.compare(mcgw.simulate(SCENES[name], keep="statistics")).verdict.agrees
-
-
 def test_single_surfaces_are_refused_with_what_to_do(tmp_path, monkeypatch):
     e = mcgw.run(scene(n_surfaces=10), tmp_path / "a.h5", keep="statistics")
     for ask in (lambda: e.load, lambda: e["contacts"], lambda: e.quantile("load", 0.5)):

@@ -91,7 +91,6 @@ PRESSED = analytic.InteractingModel.of(analytic.Model(SPECTRAL.surface), analyti
 REFUSED = [
     (lambda: RADII.mean(0.3, np.ones(1)), "power = 0.3: give a multiple of 1/2"),
     (lambda: RADII.nothing, "nothing"),
-    (lambda: analytic.Weibull(0.99), "shape = 0.99: give a number from 1 to 100"),
     (lambda: analytic.Weibull(101), "shape = 101: give a number from 1 to 100"),
     (lambda: mcgw.Layer(0.0, 1.0), "thickness = 0.0: give a finite number > 0, in m"),
     (lambda: mcgw.Layer(1.0, np.inf), r"conductivity = inf: give a finite number > 0, in W/\(m K\)"),

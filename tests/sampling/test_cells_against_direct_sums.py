@@ -142,10 +142,6 @@ def test_the_sparse_product_is_that_of_the_matrix(make_scene, grading, number):
     assert np.all(np.abs(response @ moments - plain) <= 1e-14 * size)
 
 
-def test_tail_sums_its_own_heights(make_scene):
-    assert worst(make_scene(sampler="tail"), 3) < 1e-13
-
-
 def test_derivative_of_the_load_is_the_stiffness(make_scene):
     """-dP/dd = K on one surface: central differences in the separation, error O(step^2)."""
     step = 1e-4
