@@ -99,29 +99,16 @@ def test_units_of_comments_in_two_languages(word, tmp_path):
     assert found.assumed_unit == ""
 
 
-@pytest.fixture(scope="module")
-def rough():
-    """Heights of 1 um on pixels of 1 um: an rms slope of 0.4."""
-    return gaussian_map(Spectrum(1e-6, 16e-6, 8e-6), (128, 128), PIXEL, np.random.default_rng(1))
-
-
-def test_a_command_takes_a_unit_and_tells_one_that_was_assumed(rough, tmp_path, capsys, without_caps):
-    path, out, head = tmp_path / "map.txt", tmp_path / "x.toml", "Width: 128 um\nHeight: 128 um"
-    np.savetxt(path, 1e6 * rough.heights, delimiter=";", header=head)
-    words = ["fit", str(path), "--cutoff", "none", "-o", str(out)]
-    assert main(words) == 2
-    error = capsys.readouterr().err
-    assert "--unit" in error
-    assert error.count("\n") == 1
-    assert not out.exists()
-    assert main([*words, "--unit", "um"]) == 0
-    told = capsys.readouterr()
-    assert "slope" not in told.out + told.err
-    assert "heights assumed in" not in told.out
-    np.savetxt(path, rough.heights, delimiter=";", header=head)
-    assert main(words) == 0
-    for text in (capsys.readouterr().out, out.read_text()):
-        assert "heights assumed in m" in text
+def test_a_command_tells_a_unit_that_was_assumed(tmp_path, capsys, without_caps):
+    path, out = tmp_path / "map.npy", tmp_path / "x.toml"
+    np.save(
+        path, gaussian_map(Spectrum(1e-6, 16e-6, 8e-6), (128, 128), PIXEL, np.random.default_rng(1)).heights
+    )
+    words = ["fit", str(path), "--pixel", "1um", "--cutoff", "none", "-o", str(out)]
+    for more, assumed in ((["--unit", "m"], False), ([], True)):
+        assert main([*words, *more]) == 0
+        for text in (capsys.readouterr().out, out.read_text()):
+            assert ("heights assumed in m" in text) == assumed
 
 
 def test_steepness_is_that_of_the_map_and_not_of_a_spike():

@@ -156,6 +156,20 @@ def test_a_shard_of_other_contents_never_becomes_a_file(scene, tmp_path, way):
     assert not path.exists()
 
 
+def test_a_digest_that_is_written_wrong_is_seen(scene, tmp_path, monkeypatch):
+    path = tmp_path / "e.h5"
+    begun(scene, path)
+    describe = saving.describe
+
+    def forged(file, *arguments, **options):
+        describe(file, *arguments, **options)
+        file.attrs["digest"] = "0" * 64
+
+    monkeypatch.setattr(saving, "describe", forged)
+    with pytest.raises(OSError, match="was not written correctly"):
+        saving.merge_into(RunFolder.open(parts_of(path)), path, tmp_path / "x.tmp", nobody)
+
+
 @pytest.mark.parametrize("gone", [0, 3, 6])
 def test_a_shard_that_is_gone_is_missing(scene, tmp_path, gone):
     path = tmp_path / "e.h5"

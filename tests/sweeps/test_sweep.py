@@ -29,14 +29,6 @@ def same_bits(sweep, at):
     )
 
 
-def test_few_points_have_the_bits_of_single_runs():
-    sweep = mcgw.sweep(SCENE, {GAMMA: [0.5, 1.0, 2.0], "ensemble.n_asperities": [50, 2000]})
-    assert (sweep.mean("load").shape, len(sweep.groups)) == ((3, 2, 5), 2)
-    assert all(same_bits(sweep, at) for at in np.ndindex(sweep.shape))
-    alone = mcgw.simulate(SCENE.replace(grading=mcgw.Exponential(2.0), n_asperities=50))
-    assert np.array_equal(sweep.std("load")[2, 0], alone.std("load"))
-
-
 @pytest.mark.parametrize(
     ("gammas", "count"),
     [(np.linspace(0.2, 1.6, 8), "poisson"), ([1.0, 0.4, 1.9, 0.9, 0.8, 0.7, 0.6, 0.5, 1.9], "fixed")],
@@ -66,6 +58,7 @@ SEVERAL = {
     "balance": (SCENE.replace(interaction="body"), {GAMMA: [1.0, 1.5]}),
     "separations again and unsorted": (SCENE.replace(separations=[2.0, 0.0, 1.0, 1.0]), {GAMMA: [0.5, 2.0]}),
     "without cells": (SCENE.replace(n_asperities=10), {GAMMA: [0.5, 2.0]}),
+    "numbers of asperities": (SCENE, {GAMMA: [0.5, 1.0, 2.0], "ensemble.n_asperities": [50, 2000]}),
     "laws of heights": (SCENE, {"heights": [{"law": "weibull", "shape": 2.0}, {}], GAMMA: [0.5, 2.0]}),
     "radii": (SPECTRAL, {GAMMA: [0.5, 2.0, 3.0]}),
     "radii, without cells": (SPECTRAL.replace(n_asperities=10), {GAMMA: [0.5, 2.0]}),
@@ -87,7 +80,7 @@ SEVERAL = {
 def test_any_kind_of_scene_has_its_bits(name):
     scene, over = SEVERAL[name]
     sweep = mcgw.sweep(scene, over)
-    assert len(sweep.groups) == (2 if name == "laws of heights" else 1)
+    assert len(sweep.groups) == (2 if name in ("laws of heights", "numbers of asperities") else 1)
     assert all(same_bits(sweep, at) for at in np.ndindex(sweep.shape))
 
 

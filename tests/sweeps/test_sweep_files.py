@@ -277,14 +277,6 @@ def test_the_command(shell, tmp_path):
     assert "intact" in shell("show", "out/s.sweep.h5", "--verify").out
 
 
-def test_the_command_with_zipped_axes_and_texts(shell):
-    over = ["--over", "surface.sigma=1 um,2 um", "--over", "ensemble.count=fixed,poisson"]
-    shell("sweep", "s.toml", *over, "--zip", "-o", "z.h5", "--threads", "1")
-    sweep = mcgw.open_sweep("z.h5")
-    assert sweep.shape == (2,)
-    assert (sweep.scene(1).surface.sigma, sweep.scene(1).count) == (2e-6, "poisson")
-
-
 @pytest.mark.parametrize(
     ("over", "words"),
     [
