@@ -391,6 +391,7 @@ def test_shares_with_the_seed_of_the_first_are_merged(call):
     assert "was finished before, 70 surfaces" in call(f"merge -o {path}").stdout
 
 
+@pytest.mark.slow
 def test_a_study_lies_beside_its_scene(call, material, monkeypatch):
     """In a folder that is made."""
     monkeypatch.setattr("mcgw.statistics.tradeoff.sampled_ways", lambda scene: ["tail"])

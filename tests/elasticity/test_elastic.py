@@ -18,6 +18,7 @@ from mcgw.elasticity.levels import LEVELS, Level, Pressed, located
 pytestmark = pytest.mark.usefixtures("cheap")
 
 
+@pytest.mark.slow
 def test_is_what_its_solves_say(tmp_path):
     """Means, errors, table and cost from the lines of the file: a pilot, and fresh maps for each term."""
     path = tmp_path / "s.jsonl"

@@ -294,6 +294,7 @@ def checked(seen, total):
     return done
 
 
+@pytest.mark.slow
 def test_progress_means_the_same_everywhere(scene, tmp_path):
     calls = {
         60: lambda tell: mcgw.simulate(scene, progress=tell),
