@@ -96,7 +96,8 @@ LIMITS = {
     "nominal area is in contact": crowd,
     "more than half": lambda f: falling(-np.log(f / 2 * np.e)),
     "compressed by more": lambda f: falling(
-        surface=dataclasses.replace(SHALLOW, radius=-np.log(1e-3 * f) * SHALLOW.sigma)
+        surface=dataclasses.replace(SHALLOW, radius=-np.log(1e-3 * f) * SHALLOW.sigma),
+        separations=(1.0, 0.0),
     ),
     "too large for Hertz": lambda f: falling(surface=blunt(0.3 * f, np.log(3000) - 1)),
     "fewer than 30 contacts": lambda f: falling(np.log(3000 / 30 * f) - 1),

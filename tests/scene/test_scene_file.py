@@ -55,6 +55,18 @@ def test_a_zero_has_no_sign():
     assert "-0.0" not in mcgw.scene_text(other)
 
 
+def test_heights_from_a_file_of_numpy_are_those_of_a_text(tmp_path):
+    z = np.random.default_rng(1).weibull(1.6, size=3)
+    np.save(tmp_path / "z.npy", z)
+    np.savetxt(tmp_path / "z.csv", z, header="m")
+    one, other = (
+        mcgw.scene_from(text_of("heights", "file", f"'z.{kind}'"), folder=tmp_path).heights
+        for kind in ("npy", "csv")
+    )
+    assert one == other == type(one)(one.heights)
+    assert len(one.heights) == 3
+
+
 def changed(old, new):
     assert old in GOOD
     return GOOD.replace(old, new)
