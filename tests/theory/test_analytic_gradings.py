@@ -60,23 +60,16 @@ def test_jump_and_kink(n, declared):
     assert worst(grading, truth.get, n, both) < TOLERANCE
 
 
-@pytest.mark.parametrize("centre", [1.7, -0.4])
-def test_ramp_of_a_millionth_of_sigma(centre):
-    cuts = [mp.mpf(centre) + k * mp.mpf(10) ** -6 for k in (-60, -20, -8, -4, -2, -1, 0, 1, 2, 4, 8, 20, 60)]
+@pytest.mark.parametrize(
+    ("centre", "n", "h"),  # last: inside the ramp, a small part of the integral, known to few digits of s
+    [(1.7, 1.5, -2.5), (1.7, 1.5, 1.69999), (-0.4, 1.5, -2.5), (-0.4, 1.5, -0.41), (1.7, 0, 1.7 - 3e-7)],
+)
+def test_ramp_of_a_millionth_of_sigma(centre, n, h):
+    steps = (-600, -200, -80, -40, -20, -10, -2, -1, 0, 1, 2, 4, 8, 16, 32, 64, 128, 256, 600)
+    cuts = [mp.mpf(centre) + k * mp.mpf(10) ** -7 for k in steps]
+    truth = graded(n, h, lambda s: 2 + mp.tanh(10**6 * (s - mp.mpf(centre))), breaks=cuts)
     grading = Custom(lambda s: 2 + np.tanh(1e6 * (s - centre)))
-    for h in (-2.5, 1.69999 if centre > 0 else -0.41):
-        truth = graded(1.5, h, lambda s: 2 + mp.tanh(10**6 * (s - mp.mpf(centre))), breaks=cuts)
-        assert error(analytic.fn(1.5, h, grading), truth) < TOLERANCE
-
-
-def test_separation_inside_the_ramp():
-    """There the modulus itself is known to 1e6 times the last digit of s only: 2e-16 * 1e6 / 1.7."""
-    centre = 1.7
-    h = centre - 3e-7
-    cuts = [mp.mpf(centre) + k * mp.mpf(10) ** -7 for k in (-2, -1, 0, 1, 2, 4, 8, 16, 32, 64, 128, 256)]
-    truth = graded(0, h, lambda s: 2 + mp.tanh(10**6 * (s - mp.mpf(centre))), breaks=cuts)
-    grading = Custom(lambda s: 2 + np.tanh(1e6 * (s - centre)))
-    assert error(analytic.fn(0, h, grading), truth) < TOLERANCE  # the ramp is a small part of the integral
+    assert error(analytic.fn(n, h, grading), truth) < TOLERANCE
 
 
 @pytest.mark.parametrize(("width", "sign"), [(1.0, 1), (0.1, -1), (0.01, 1), (0.01, -1)])
@@ -167,13 +160,6 @@ def test_clipped_custom_finds_its_own_zero():
     for h in (-2.0, 0.0, 0.5):
         truth = graded(1.5, h, lambda s: max(s - mp.mpf(0.3), mp.mpf(0)), breaks=[mp.mpf(0.3)])
         assert error(analytic.fn(1.5, h, law), truth) < TOLERANCE
-
-
-def test_clipped_leaves_a_positive_modulus_alone():
-    h = np.linspace(0, 5, 11)
-    np.testing.assert_allclose(
-        analytic.fn(1.5, h, Clipped.of(Exponential(2.0))), analytic.fn(1.5, h, Exponential(2.0)), rtol=1e-14
-    )
 
 
 def test_zero_of_the_exponential_grading():
@@ -269,8 +255,6 @@ def test_every_header(tmp_path, text):
     ("s,ratio\n0,0.5\n1\n", "every line below the header must be two numbers"),
     ("s,ratio\n0,0.5\n1,2,3\n", "two numbers"),
     ("s,ratio\n0,0.5\n1,stiff\n", "two numbers"),
-    ("s,ratio\n", "two or more points"),
-    ("s,ratio\n0,1\n0,2\n", "must increase"),
     ("s,ratio\n0,1\n1,nan\n", "must be finite"),
 ])  # fmt: skip
 def test_every_mistake_in_a_file_is_named(tmp_path, text, message):

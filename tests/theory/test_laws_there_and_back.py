@@ -8,7 +8,6 @@ import analytic
 import mcgw
 from analytic.laws import (
     ChangEtsionBogy,
-    Coated,
     DerjaguinMullerToporov,
     Hertz,
     JacksonGreen,
@@ -36,16 +35,6 @@ def test_at_the_turn_unloading_is_loading(law, modulus):
         for formula in ("load", "radius", "stiffness"):
             found = getattr(back, formula)(piece, y, d, e)
             np.testing.assert_allclose(found, getattr(law, formula)(piece, np.sqrt(d), e), rtol=1e-13)
-
-
-def test_elastic_laws_unload_as_they_load():
-    y, deepest = np.linspace(0.01, 2, 20), np.linspace(4, 5, 20)
-    for law in (Hertz(), Coated(ratio=3.0, reduced_thickness=0.2), PowerLawGraded(0.3, reduced_c0=1.0)):
-        back = law.unloading()
-        assert np.all(back.residual(0, deepest, ONE) == 0)
-        for formula in ("load", "radius", "stiffness", "slope"):
-            found = getattr(back, formula)(0, y, deepest, ONE)
-            assert np.array_equal(found, getattr(law, formula)(0, y, ONE))
 
 
 @pytest.mark.parametrize("x", [1.01, 3.0, 20.0, 150.0])
