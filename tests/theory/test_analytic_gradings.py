@@ -157,6 +157,7 @@ def test_clipped_exponential(n, gamma):
 def test_clipped_custom_finds_its_own_zero():
     law = Clipped.of(Custom(lambda s: s - 0.3))
     assert not law.smooth
+    assert not Clipped(Exponential(2.0)).smooth  # its zero not given
     for h in (-2.0, 0.0, 0.5):
         truth = graded(1.5, h, lambda s: max(s - mp.mpf(0.3), mp.mpf(0)), breaks=[mp.mpf(0.3)])
         assert error(analytic.fn(1.5, h, law), truth) < TOLERANCE
