@@ -8,10 +8,7 @@ import mcgw
 from mcgw.maps import Topography, read_map, summit_sums, write_map
 from mcgw.maps.summit_sums import summit_sums_of
 
-SHAPE = (8, 9)
-UNITS = 1e-6 * np.random.default_rng(1).normal(size=SHAPE)
-
-
+UNITS = 1e-6 * np.random.default_rng(1).normal(size=(8, 9))
 HEIGHTS = {
     "missing": np.full((12, 12), np.nan),
     "some missing": np.where(np.random.default_rng(2).random((12, 12)) < 0.3, np.nan, 1.0),

@@ -29,9 +29,6 @@ from mcgw.maps.form import smooth
 from mcgw.maps.profile_files import holds_profile
 from mcgw.maps.topography import checked_shape
 
-NAMES = ["map.npy", "map.h5"]
-every_format = pytest.mark.parametrize("name", NAMES)
-
 
 @pytest.fixture
 def topography():
@@ -121,7 +118,7 @@ def test_the_header_of_sdf_is_written_literally(topography, tmp_path):
     assert abs(datetime.strptime(made.decode(), "%d%m%Y%H%M") - now) < timedelta(minutes=3)
 
 
-@every_format
+@pytest.mark.parametrize("name", ["map.npy", "map.h5"])
 def test_a_file_cut_short_is_refused(name, topography, tmp_path):
     path = tmp_path / name
     write_map(topography, path)
@@ -133,12 +130,11 @@ def test_a_file_cut_short_is_refused(name, topography, tmp_path):
         assert "\n" not in str(told.value)
 
 
-@pytest.mark.parametrize("name", NAMES[:-1])
 @settings(max_examples=25, deadline=None)
 @given(data=st.data())
-def test_a_damaged_file_gives_an_error_or_a_map(name, data, tmp_path_factory):
+def test_a_damaged_file_gives_an_error_or_a_map(data, tmp_path_factory):
     """One byte changed anywhere: never another kind of error, never more memory than the file is worth."""
-    path = tmp_path_factory.mktemp("damaged") / name
+    path = tmp_path_factory.mktemp("damaged") / "map.npy"
     write_map(Topography(np.arange(12.0).reshape(3, 4) * 1e-6, (1e-6, 1e-6)), path)
     content = bytearray(path.read_bytes())
     at = data.draw(st.integers(0, 2**16)) % len(content)  # dates make lengths differ

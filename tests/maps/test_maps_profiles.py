@@ -446,8 +446,6 @@ def test_the_first_twenty_lines_tell_a_profile(full, found, tmp_path):
 
 def test_maps_are_no_profiles(tmp_path):
     (tmp_path / "m.txt").write_text("1 2 3\n4 5 6\n")
-    (tmp_path / "gaps.csv").write_text("1,2,,\n3,4,5,6\n")
-    assert not holds_profile(tmp_path / "gaps.csv")
     np.save(tmp_path / "m.npy", np.zeros((3, 4)))
     np.save(tmp_path / "p.npy", np.arange(100.0) % 7 * UM)
     assert not holds_profile(tmp_path / "m.txt")

@@ -198,7 +198,6 @@ def test_scenes_that_share_nothing_are_simulated():
     sweep = mcgw.sweep(SCENE, over)
     assert len(sweep.groups) == 4
     assert all(same_bits(sweep, (i,)) for i in range(4))
-    assert "nan" in repr(sweep) or repr(sweep).count("+-") >= 16
     with pytest.raises(ValueError, match="have different surfaces"):
         sweep.difference("load", 0, 1)
 
