@@ -37,7 +37,7 @@ class Spots:
     Examples
     --------
     >>> one = Spots.hertz(np.zeros(1), np.array([1e-5]), 1e9)
-    >>> float(one.loads(np.array([1e-7]))[0] / (4 / 3 * 1e9 * 1e-5**0.5 * 1e-7**1.5))
+    >>> round(float(one.loads(np.array([1e-7]))[0] / (4 / 3 * 1e9 * 1e-5**0.5 * 1e-7**1.5)), 12)
     1.0
     """
 
