@@ -12,6 +12,7 @@ from time import process_time
 from typing import Any
 
 import numpy as np
+from scipy.optimize import nnls
 
 from analytic.arrays import Array
 from analytic.at_load import specimen_means
@@ -33,7 +34,6 @@ _BY_CHANCE = (0.8687, 0.2603)  # mean and standard deviation of Kolmogorov's law
 _FEWEST_FOR_QUANTILE, _LEVELS = 2000, np.arange(1, 200) / 200  # surfaces; probabilities that are compared
 _MOST_LISTED, _LISTED = 3e6, 4  # asperities of a surface that are summed by themselves; surfaces
 _HERTZ, _OTHERS, _LAW = 1e-13, 1e-9, 1e-6  # errors that theory and exact laws are tested to
-
 _LEAST = 1e-9  # seconds: less than any clock tells
 
 Errors = dict[str, float]
@@ -135,9 +135,8 @@ class Answers:
             return getattr(scene.theory, name)(self.q, scene.separations[0])
 
         def at_load(scene: Scene) -> float:
-            return float(
-                scene.theory.mean("conductance", scene.theory.separation_at("load", self._load(scene)))
-            )
+            h = scene.theory.separation_at("load", self._load(scene))
+            return float(scene.theory.mean("conductance", h))
 
         yield Task("theory", 0, partial(by_theory, "mean"), lambda _: {"mean": 0.0})
         yield Task("theory", 0, partial(by_theory, "std"), lambda _: {"std": 0.0})
@@ -196,7 +195,7 @@ def sized(answers: Answers, name: str, scene: Scene, share: float) -> list[Task]
 
 
 def prices(scene: Scene, points: Sequence[Point], names: Sequence[str]) -> list[Way]:
-    """Set-up and cost of a surface from the smallest and the largest size; floors from what is off."""
+    """Set-up and cost of a surface from the times of all sizes; floors from what is off."""
     tested = {"theory": _HERTZ if scene.hertzian and scene.curvature is None else _OTHERS, "exact law": _LAW}
     still = [p for p in points if p.way in tested]
     ways = [Way(p.way, p.want, max(tested[p.way], p.rms), p.seconds, 0.0) for p in still]
@@ -211,16 +210,16 @@ def prices(scene: Scene, points: Sequence[Point], names: Sequence[str]) -> list[
             bias = ([p.bias for p in own if p.want == want] or [p.bias for p in timed] or [0.0])[-1]
             floor = worst if want == "values" else bias
             if timed:
-                ways.append(Way(name, want, floor, *_price(timed[0], timed[-1], rough)))
+                ways.append(Way(name, want, floor, *_price(timed, rough)))
             elif name != SOLVE:
                 ways.append(Way(name, want, floor, 0.0, rough, measured=False))
     return ways
 
 
-def _price(small: Point, large: Point, rough: float) -> tuple[float, float]:
-    """Seconds before the first surface, and of each: between two sizes, or by arithmetic."""
-    if large.seconds < 2 * small.seconds:  # most of it is set-up
-        each = rough
-    else:
-        each = (large.seconds - small.seconds) / (large.n_surfaces - small.n_surfaces)
-    return max(small.seconds - each * small.n_surfaces, 0.0), each
+def _price(timed: Sequence[Point], rough: float) -> tuple[float, float]:
+    """Seconds before the first surface, and of each: the line nearest in ratio to the times of all sizes."""
+    sizes, seconds = np.array([(point.n_surfaces, point.seconds) for point in timed]).T
+    if seconds[-1] < 2 * seconds[0]:  # most of it is set-up: the price of each by arithmetic
+        return max(float(np.mean(seconds - rough * sizes)), 0.0), rough
+    set_up, each = nnls(np.stack([1 / seconds, sizes / seconds], axis=1), np.ones(len(timed)))[0]
+    return float(set_up), float(each)

@@ -115,9 +115,19 @@ def test_points_and_prices_by_hand(scene):
     assert (p.seconds, p.repeats, p.bias) == (2.0, 3, 0.0)
     assert p.rms == pytest.approx(math.sqrt(squares.mean()))
     assert p.stderr == pytest.approx(squares.std() / (2 * p.rms * math.sqrt(3)))
-    small, large = replace(p, n_surfaces=10, seconds=2.0), replace(p, n_surfaces=110, seconds=12.0)
-    assert measured_ways._price(small, large, 9.0) == pytest.approx((1.0, 0.1))
-    assert measured_ways._price(small, small, 0.05) == pytest.approx((1.5, 0.05))
+    sizes = (10, 110, 1010)
+    straight = [replace(p, n_surfaces=n, seconds=1 + n / 20) for n in sizes]
+    assert measured_ways._price(straight, 9.0) == pytest.approx((1.0, 0.05))
+    flat = [replace(p, n_surfaces=n, seconds=2.0) for n in sizes]
+    assert measured_ways._price(flat, 1e-3) == pytest.approx((2.0 - 0.001 * sum(sizes) / 3, 1e-3))
+    assert measured_ways._price(flat[:1], 9.0) == (0.0, 9.0)
+    bent = [replace(p, n_surfaces=n, seconds=s) for n, s in ((10, 3.0), (110, 6.5), (1010, 51.5))]
+    set_up, each = measured_ways._price(bent, 9.0)
+    ratios = np.array([(set_up + each * q.n_surfaces) / q.seconds for q in bent])
+    for change in (1e-3, -1e-3):  # no other line is nearer, in ratio, to all three
+        for other in ((set_up * (1 + change), each), (set_up, each * (1 + change))):
+            then = np.array([(other[0] + other[1] * q.n_surfaces) / q.seconds for q in bent])
+            assert np.sum((then - 1) ** 2) > np.sum((ratios - 1) ** 2)
 
 
 # What is needed
