@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 from analytic.laws.branch import Branch, UnloadingBranch, Ways, term_of
 from analytic.laws.film import Film, Layer, SpotConductance, crowding_factor
 from analytic.laws.law import ContactLaw, Hertz, of_spot, piece_of
-from analytic.laws.regimes import Regimes, merged_heights, regimes_of
+from analytic.laws.regimes import Regimes
 from analytic.laws.unloading import Unloading
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ __all__ = [
     "PowerLawGraded",
     "Regimes", "SpotConductance", "Unloading", "UnloadingBranch", "Ways",
     "ZhaoMaiettaChang", "by_name", "crowding_factor",
-    "merged_heights", "of_spot", "piece_of", "regimes_of", "term_of",
+    "of_spot", "piece_of", "term_of",
 ]  # fmt: skip
 
 _HOMES = {

@@ -16,7 +16,7 @@ from analytic.arrays import Array, Ints
 from analytic.gradings import Grading
 from analytic.laws.film import SpotConductance
 from analytic.laws.law import ContactLaw, of_spot, piece_of
-from analytic.laws.regimes import Regimes, crossings_of, merged_heights, regimes_of
+from analytic.laws.regimes import Bound, Regimes, crossings_of, limit_of, regimes_between
 from analytic.laws.unloading import Unloading
 from analytic.quantities import quantity_of
 
@@ -56,8 +56,26 @@ class Branch:
         return h
 
     def regimes(self, grading: Grading, separations: ArrayLike, low: float, high: float) -> Regimes:
-        """At which heights there is contact, and which formula holds there."""
-        return regimes_of(self.law, grading, separations, low, high)
+        """At which heights there is contact, and which formula holds there.
+
+        Under a law of several radii (`ContactLaw.with_radii`) separations have these in turn.
+        """
+        h = np.asarray(separations, dtype=np.float64)
+        start = np.broadcast_to(np.maximum(self.lowest(h), low), h.shape)
+        found = [
+            crossings_of(bound, grading, level, low, high, self.law.radii)
+            for level, bound in self.beginnings(grading, h)
+        ]
+
+        def piece(s: Array, which: Ints) -> Ints:
+            return self.of_some(which).pieces(h[which], s - h[which], grading(s))
+
+        return regimes_between(found, h, start, high, grading.breaks, piece)
+
+    def beginnings(self, grading: Grading, h: Array) -> list[tuple[Array, Bound]]:
+        """Where formulas begin or end: beyond penetrations above these heights, one for each separation."""
+        count = len(self.law.limits(np.ones(self.law.radii)))
+        return [(h, limit_of(self.law, grading, j)) for j in range(count)]
 
     def root(self, piece: int) -> bool:
         """Whether a contact of this piece is analytic in the root of the penetration where it begins."""
@@ -114,23 +132,10 @@ class UnloadingBranch(Branch):
         """As `Branch.lowest`: what has touched may stick."""
         return self.deepest
 
-    def regimes(self, grading: Grading, separations: ArrayLike, low: float, high: float) -> Regimes:
-        """As `Branch.regimes`: pieces are those of the deepest penetration."""
-        h = np.asarray(separations, dtype=np.float64)
-        laws = self.law.radii
-        turn = regimes_of(self.law, grading, np.full(laws, self.deepest), low, high)
-        if not turn.low.size:
-            return turn
-        turns = [(turn.low[turn.separation == k], turn.piece[turn.separation == k]) for k in range(laws)]
-        kinks = [starts.tolist() for starts, _ in turns]
-        lost = crossings_of(partial(self._lost, grading), grading, h, low, high, kinks)
-        height = merged_heights(lost.height, h[lost.separation], h)
-        touches = low - h >= self._lost(grading, np.full(h.shape, low), np.arange(h.size))
-        found = [
-            _intervals(k, *turns[k % laws], height[lost.separation == k], low, high, touches=touching)
-            for k, touching in enumerate(touches.tolist())
-        ]
-        return Regimes(*(np.concatenate(part) for part in zip(*found, strict=True)))
+    def beginnings(self, grading: Grading, h: Array) -> list[tuple[Array, Bound]]:
+        """As `Branch.beginnings`: pieces are those of the deepest penetration, until contact is lost."""
+        turn = super().beginnings(grading, np.full(h.shape, self.deepest))
+        return [*turn, (h, partial(self._lost, grading))]
 
     def _lost(self, grading: Grading, s: Array, which: Ints) -> Array:
         """Penetration at which asperities of a height are lost, under the law of which separation."""
@@ -172,18 +177,6 @@ class UnloadingBranch(Branch):
         unloading, deepest = self.law.unloading(), above + (h - self.deepest)
         y = sign * np.sqrt(np.maximum(above - unloading.residual(piece, deepest, e), 0.0))
         return self.added(quantity, unloading, piece, y, deepest, e)
-
-
-def _intervals(
-    separation: int, turn: Array, piece: Ints, crossings: Array, low: float, high: float, *, touches: bool
-) -> tuple[Ints, Array, Array, Ints]:
-    """Pieces of the deepest penetration, where there is contact."""
-    edges = np.unique([low, *crossings, *turn, high])
-    begin, end = edges[:-1], edges[1:]
-    contact = touches ^ (np.searchsorted(crossings, begin, side="right") % 2 == 1)
-    where = np.searchsorted(turn, begin, side="right") - 1
-    held = contact & (where >= 0)
-    return np.full(held.sum(), separation), begin[held], end[held], piece[where[held]]
 
 
 def term_of(quantity: str, branch: Branch, h: ArrayLike, heights: ArrayLike, e: ArrayLike) -> Array:

@@ -156,7 +156,7 @@ def _met(
 ) -> tuple[Crossings, Array]:
     """Where piece j + 1 begins or ends at some separations, and the heights that cross for each unit."""
     bound, separations = limit_of(law, same.grading, j), np.array(at)
-    found = crossings_of(bound, same.grading, separations, *ends, [()] * law.radii)
+    found = crossings_of(bound, same.grading, separations, *ends, law.radii)
     return found, _shares(bound, same.grading, found, separations, ends)
 
 

@@ -24,7 +24,7 @@ from analytic import (
     summits as summits_module,
 )
 from analytic.curvature import MEAN_CURVATURE
-from analytic.laws import Coated, Film, regimes
+from analytic.laws import Coated, Film, branch
 from analytic.summits import rule_of_radii, rules_of_radii
 
 ALPHA = 5.0
@@ -295,8 +295,8 @@ def test_heights_and_curvatures_together_have_the_product_of_their_densities():
 
 def test_forty_separations_of_own_radii_that_yield_are_looked_at_once(monkeypatch):
     """Whatever is asked of them: each bound of the law is sought once."""
-    asked, find = [], regimes.crossings_of
-    monkeypatch.setattr(regimes, "crossings_of", lambda *given: asked.append(given) or find(*given))
+    asked, find = [], branch.crossings_of
+    monkeypatch.setattr(branch, "crossings_of", lambda *given: asked.append(given) or find(*given))
     m = replace(model(grading=GRADED), law=KogutEtsion(critical=0.05))
     h = np.linspace(0.0, 2.9, 8)
     for name in ("load", "area"):

@@ -1,0 +1,70 @@
+"""Where functions change their sign: of many at once, each between two arguments."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from analytic.arrays import Array, Ints, Marks
+
+_MOST = 200  # steps; halving from 1e3 down to the smallest room takes 70
+_LAST_DIGITS = 2.0**-52
+_SMALLEST = 2.0**-66  # room around 0, where numbers have no last digit
+
+
+def sign_changes(excess: Callable[[Array, Ints], Array], left: Array, right: Array, unit: Array) -> Array:
+    """Return the arguments behind which functions have the sign that they have at `right`.
+
+    Parameters
+    ----------
+    excess : callable
+        Of arguments, shape (m,), and of the numbers of the functions; shape (m,). Nan is a negative value.
+    left, right : ndarray
+        Where the values are negative at one end and not at the other, shape (functions,).
+    unit : ndarray
+        Size of the numbers whose rounding the values have besides, shape (functions,).
+
+    Returns
+    -------
+    ndarray
+        To some last digits, shape (functions,). Where a function jumps past 0, right behind the jump.
+
+    Notes
+    -----
+    By Chandrupatla's rule: inverse quadratic steps where they are safe, else halves (T. R. Chandrupatla,
+    Adv. Eng. Softw. 28 (1997) 145).
+
+    Examples
+    --------
+    >>> sign_changes(lambda x, which: x**2 - [2, 3], np.zeros(2), np.full(2, 2.0), np.ones(2)).round(12)
+    array([1.41421356, 1.73205081])
+    """
+    found, active = right.copy(), np.arange(left.size)
+    a, fa, b, fb = right, excess(right, active), left, excess(left, active)
+    behind, step = fa >= 0, np.full(left.size, 0.5)
+    c, fc = b, fb
+    for _ in range(_MOST):
+        room = np.maximum(_LAST_DIGITS * np.maximum(np.abs(a), unit), _SMALLEST)
+        more = np.abs(b - a) > room
+        found[active] = np.where((fa >= 0) == behind, a, b)
+        if not more.any():
+            break
+        active, unit, behind, room = active[more], unit[more], behind[more], room[more]
+        a, fa, b, fb, c, fc, step = (x[more] for x in (a, fa, b, fb, c, fc, step))
+        least = np.minimum(room / (2 * np.abs(b - a)), 0.5)
+        new = a + np.clip(step, least, 1 - least) * (b - a)
+        f = excess(new, active)
+        same = (f >= 0) == (fa >= 0)
+        c, fc = np.where(same, a, b), np.where(same, fa, fb)
+        b, fb = np.where(same, b, a), np.where(same, fb, fa)
+        a, fa = new, f
+        step = _next_step(a, fa, b, fb, c, fc)
+    return found
+
+
+def _next_step(a: Array, fa: Array, b: Array, fb: Array, c: Array, fc: Array) -> Array:
+    """Share of the way from a to b at which the function is looked at next."""
+    with np.errstate(all="ignore"):
+        place, value = (a - b) / (c - b), (fa - fb) / (fc - fb)
+        safe: Marks = (value**2 < place) & ((1 - value) ** 2 < 1 - place)
+        inverse = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
+    return np.where(safe & np.isfinite(inverse), inverse, 0.5)
