@@ -12,10 +12,10 @@ from analytic.heights import GAUSSIAN, Gaussian, HeightLaw
 from analytic.integrals import fn, quotient
 from analytic.law_rule import law_rule
 from analytic.quantities import QUANTITIES, Quantity
+from analytic.roots import falling_root
 
 LOWEST = -40.0  # separation that is looked at
 _GRID = np.concatenate([np.linspace(LOWEST, 10, 251), np.geomspace(10.5, 1000, 60)])
-_LAST_DIGITS = 4 * np.finfo(float).eps
 
 
 def last_separations(
@@ -42,11 +42,7 @@ def last_separations(
             last = int(high_enough[-1])
             left, right = grid[max(last - farther, 0)], grid[min(last + 1 + farther, grid.size - 1)]
             if excess(left) > 0 > excess(right):
-                from scipy.optimize import (
-                    brentq,  # imports half of SciPy, which few separations are asked for
-                )
-
-                return float(brentq(excess, left, right, xtol=1e-15, rtol=_LAST_DIGITS))
+                return falling_root(excess, float(left), float(right))
             if not farther:  # right at an end of the bracket a target may lie beyond it by a last digit
                 return float(left if excess(left) <= 0 else right)
         raise ValueError(f"{name}: not reached for h from {grid[0]:g} to {grid[-1]:.4g}; give another value")

@@ -11,7 +11,16 @@ _LAST_DIGITS = 2.0**-52
 _SMALLEST = 2.0**-66  # room around 0, where numbers have no last digit
 
 
-def sign_changes(excess: Callable[[Array, Ints], Array], left: Array, right: Array, unit: Array) -> Array:
+def sign_changes(
+    excess: Callable[[Array, Ints], Array],
+    left: Array,
+    right: Array,
+    unit: Array,
+    *,
+    at_ends: tuple[Array, Array] | None = None,
+    about: float | None = None,
+    close: float = 0.0,
+) -> Array:
     """Return the arguments behind which functions have the sign that they have at `right`.
 
     Parameters
@@ -22,6 +31,12 @@ def sign_changes(excess: Callable[[Array, Ints], Array], left: Array, right: Arr
         Where the values are negative at one end and not at the other, shape (functions,).
     unit : ndarray
         Size of the numbers whose rounding the values have besides, shape (functions,).
+    at_ends : (ndarray, ndarray), optional
+        Values at `left` and `right`, where they are known.
+    about : float, optional
+        Where the search begins; by default half way.
+    close : float, optional
+        Size of a value that counts as 0.
 
     Returns
     -------
@@ -39,13 +54,16 @@ def sign_changes(excess: Callable[[Array, Ints], Array], left: Array, right: Arr
     array([1.41421356, 1.73205081])
     """
     found, active = right.copy(), np.arange(left.size)
-    a, fa, b, fb = right, excess(right, active), left, excess(left, active)
-    behind, step = fa >= 0, np.full(left.size, 0.5)
+    fb, fa = at_ends or (excess(left, active), excess(right, active))
+    a, b, behind, step = right, left, fa >= 0, np.full(left.size, 0.5)
+    if about is not None:
+        step = np.clip((about - a) / (b - a), 0.05, 0.95)
     c, fc = b, fb
     for _ in range(_MOST):
         room = np.maximum(_LAST_DIGITS * np.maximum(np.abs(a), unit), _SMALLEST)
-        more = np.abs(b - a) > room
-        found[active] = np.where((fa >= 0) == behind, a, b)
+        near = np.abs(fa) <= close
+        more = (np.abs(b - a) > room) & ~near
+        found[active] = np.where(((fa >= 0) == behind) | near, a, b)
         if not more.any():
             break
         active, unit, behind, room = active[more], unit[more], behind[more], room[more]
@@ -59,6 +77,20 @@ def sign_changes(excess: Callable[[Array, Ints], Array], left: Array, right: Arr
         a, fa = new, f
         step = _next_step(a, fa, b, fb, c, fc)
     return found
+
+
+def falling_root(excess: Callable[[float], float], low: float, high: float) -> float:
+    """Return the root of one function that is not negative at `low`, and negative at `high`.
+
+    Examples
+    --------
+    >>> round(falling_root(lambda x: 2 - x * x, 0.0, 2.0), 12)
+    1.414213562373
+    """
+    found = sign_changes(
+        lambda x, _: np.array([excess(float(y)) for y in x]), np.array([high]), np.array([low]), np.ones(1)
+    )
+    return float(found[0])
 
 
 def _next_step(a: Array, fa: Array, b: Array, fb: Array, c: Array, fc: Array) -> Array:

@@ -1,59 +1,60 @@
-"""The separation at which a sum over given heights has a given value, under Hertz's law and any other."""
+"""The separation at which a sum over given heights has a given value, where it may rise and fall."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq
 
 from analytic import Hertz, Quantity, quantity_of
 from analytic.arrays import Array, Ints
-from analytic.laws import Branch, Ways, term_of
+from analytic.laws import Branch, term_of
+from analytic.laws.branch import terms_of
+from analytic.roots import falling_root
 from mcgw.scene.scene import Scene
 
-_ENOUGH = 1e-14  # relative excess of load where Newton's steps are rounding errors
 _FINE, _AT_ONCE = 1 / 64, 16  # step of the search where sums may rise and fall, and steps at a time
 LOWEST = -40.0  # separation where searches end
 _STEP = 0.5  # by which the search for a start goes down, where the margin was not enough
-_LAST_DIGITS = 4 * np.finfo(float).eps
 
 
-def separation_on(heights: Array, modulus: Array, exponent: float, target: float, start: float) -> float:
-    """Separation h at which ``sum modulus (s - h)_+^exponent`` over given heights is `target`.
-
-    The root of order `exponent` of that sum is a norm of the approaches, so convex and decreasing
-    in h: Newton's steps on it run up to the solution from below and never pass it.
+def asperity_terms(
+    scene: Scene, names: Sequence[str], h: float | Array, s: Array, modulus: Array, ratios: Array | None
+) -> Array:
+    """What asperities add to quantities, on loading, over the scale of each.
 
     Parameters
     ----------
-    heights, modulus : ndarray
-        Reduced heights in falling order, and E*(s)/E* >= 0 of each; shape (n,).
-    exponent : float
-        At least 1.
-    target : float
-        Positive.
-    start : float
-        A separation where the sum is at least `target`.
+    scene : Scene
+        Whose contact law they have.
+    names : sequence of str
+        Of the quantities.
+    h : float or ndarray
+        Separation, or that of each.
+    s, modulus : ndarray
+        Reduced heights, and E*(s)/E* of each, shape (asperities,).
+    ratios : ndarray or None
+        Radii over that of the surface, where summits have their own.
 
     Returns
     -------
-    float
-        Reduced separation.
+    ndarray
+        Shape (quantities, asperities).
     """
-    rising, h = -heights, start  # as searchsorted wants it
-    while True:
-        n = int(np.searchsorted(rising, -h))
-        d = heights[:n] - h
-        forces = modulus[:n] * d ** (exponent - 1)
-        total = float(forces @ d)
-        if total <= target * (1 + _ENOUGH):
-            return h
-        step = total / float(forces.sum()) * (1 - (target / total) ** (1 / exponent))
-        if h + step <= h:
-            return h
-        h += step
+    quantities = [quantity_of(name) for name in names]
+    if scene.hertzian:
+        above = np.maximum(s - h, 0.0)
+        powers = (above**q.exponent if q.exponent else (above > 0) * 1.0 for q in quantities)
+        found = [modulus * x if q.modulus else x for q, x in zip(quantities, powers, strict=True)]
+    else:
+        loading = scene.ways.loading
+        found = list(
+            terms_of(names, loading if ratios is None else loading.with_radii(ratios), h, s, modulus)
+        )
+    if ratios is not None:
+        found = [ratios**q.radius * x for q, x in zip(quantities, found, strict=True)]
+    return np.asarray(found)
 
 
 def crossing(excess: Callable[[Any], Any], high: float, lowest: float = LOWEST) -> float | None:
@@ -68,7 +69,7 @@ def crossing(excess: Callable[[Any], Any], high: float, lowest: float = LOWEST) 
         beyond = some[np.asarray(excess(some)) >= 0]
         if beyond.size:
             low = float(beyond[0])
-            return float(brentq(lambda h: float(excess(h)), low, low + _FINE, xtol=1e-15, rtol=1e-14))
+            return falling_root(lambda h: float(excess(h)), low, low + _FINE)
     return None
 
 
@@ -112,7 +113,7 @@ class LawSum:
         if most < value:
             return None
         if smooth:
-            return float(brentq(lambda h: self._at(h) - value, low, high, xtol=1e-15, rtol=_LAST_DIGITS))
+            return falling_root(lambda h: self._at(h) - value, low, high)
         middle = low + (high - low) / 2
         if not low < middle < high:
             return low if at_low >= value else None
@@ -157,11 +158,9 @@ class LawSum:
 
     def _terms(self, h: float, n: int) -> Array:
         """What each of the first `n` adds."""
-        s, e = self.heights[:n], self.modulus[:n]
-        if self.ratios is None:
-            return term_of(self.quantity, self.branch, h, s, e)
-        ways = Ways(self.branch.law, None, self.branch.conductance)
-        return ways.term(self.quantity, h, s, e, self.ratios[:n])
+        first = slice(n)
+        terms = term_of(self.quantity, self._branch(first), h, self.heights[first], self.modulus[first])
+        return self._weight(first) * terms
 
     def _pieces(self, h: float, n: int) -> Ints:
         s, e = self.heights[:n], self.modulus[:n]
@@ -207,46 +206,32 @@ class Summits:
         order = np.argsort(-s, kind="stable")
         return cls(scene, s[order], None if ratios is None else ratios[order])
 
-    def above(self, h: float) -> "Summits":
-        """The first of them, that rise above a separation."""
-        n = int(np.searchsorted(-self.s, -h))
-        first = Summits(self.scene, self.s[:n], None if self.ratios is None else self.ratios[:n])
-        first.__dict__["modulus"] = self.modulus[:n]
-        return first
+    @cached_property
+    def softest(self) -> float:
+        """Height of the highest one of negative modulus; below it sums may rise with the separation."""
+        return float(self.s[self.modulus < 0].max(initial=-np.inf))
 
     def largest_separation(self, q: Quantity, target: float, start: float) -> float | None:
-        """The solution among separations from `start` on at which no modulus is negative, or None.
-
-        These are all summits above `start`. Above the highest one of negative modulus Hertz's sum falls with
-        the separation: so there is no larger solution.
-        """
-        if not self._by_powers:
-            e = self.modulus
-            start = float(self.s[e < 0].max(initial=start))
-            return LawSum(q.base, self.scene.ways.loading, self.s, e, self.ratios).largest_separation(
-                target, start
-            )
-        weights = self._weights(q)
-        start = float(self.s[weights < 0].max(initial=start))
-        if self._power_sum(q, weights, start) < target:
-            return None
-        return separation_on(self.s, weights, q.exponent, target, start)
+        """The solution among separations from `start` on at which no modulus is negative, or None."""
+        found = LawSum(q.base, self.scene.ways.loading, self.s, self.modulus, self.ratios)
+        return found.largest_separation(target, max(start, self.softest))
 
     def separation_anywhere(self, q: Quantity, target: float, start: float) -> float | None:
         """The largest solution on all heights of a surface; None if there is none."""
-        if not self._by_powers:
-            return self._going_down(q, target, start)
-        weights = self._weights(q)
-        negative = self.s[weights < 0]
-        if negative.size:
-            found = self.largest_separation(q, target, -np.inf)
-            if found is not None or self.scene.negative == "error":
+        end = max(LOWEST, self.softest)
+        while start > end:
+            start = max(start - _STEP, end)
+            if (found := self.largest_separation(q, target, start)) is not None:
                 return found
-            power_sum = np.vectorize(lambda h: self._power_sum(q, weights, h), otypes=[float])
-            return crossing(lambda h: power_sum(h) - target, float(negative.max()))
-        while self._power_sum(q, weights, start) < target:
-            start -= _STEP
-        return separation_on(self.s, weights, q.exponent, target, start)
+        if (
+            not np.isfinite(self.softest)
+            or self.scene.negative == "error"
+            or type(self.scene.law) is not Hertz
+        ):
+            return None
+        value = target * q.scale(self.scene.surface)
+        sums = np.vectorize(lambda h: self.sums([q.name], h)[q.name], otypes=[float])
+        return crossing(lambda h: sums(h) - value, self.softest)
 
     def nominal(self, value: float, sunk: float, lowest: float) -> float | None:
         """Largest separation above `lowest` that is the `value` when lowered by `sunk` (1/N) times the load.
@@ -259,35 +244,8 @@ class Summits:
 
     def sums(self, names: Iterable[str], h: float) -> dict[str, float]:
         """Quantities at one separation, SI."""
-        touching, found = self.above(h), {}
-        s, modulus = touching.s, touching.modulus
-        for name in names:
-            q = quantity_of(name)
-            if self.scene.hertzian:
-                terms = touching._weights(q) * (s - h) ** q.exponent
-            else:
-                terms = self.scene.ways.term(name, h, s, modulus, touching.ratios)
-            found[name] = q.scale(self.scene.surface) * float(np.sum(terms))
-        return found
-
-    def _going_down(self, q: Quantity, target: float, start: float) -> float | None:
-        """As `separation_anywhere` under any law, step by step."""
-        softest = float(self.s[self.modulus < 0].max(initial=LOWEST))
-        while start > softest:
-            start = max(start - _STEP, softest)
-            if (found := self.above(start).largest_separation(q, target, start)) is not None:
-                return found
-        return None
-
-    @property
-    def _by_powers(self) -> bool:
-        """Whether load and area are sums of powers of the approaches."""
-        return type(self.scene.law) is Hertz
-
-    def _weights(self, q: Quantity) -> Array:
-        modulus = self.modulus if q.modulus else np.ones_like(self.s)
-        return modulus if self.ratios is None else modulus * self.ratios**q.radius
-
-    def _power_sum(self, q: Quantity, weights: Array, h: float) -> float:
-        touching = self.s > h
-        return float(np.sum(weights[touching] * (self.s[touching] - h) ** q.exponent))
+        names, n = list(names), int(np.searchsorted(-self.s, -h))
+        ratios = None if self.ratios is None else self.ratios[:n]
+        terms = asperity_terms(self.scene, names, h, self.s[:n], self.modulus[:n], ratios)
+        scales = (quantity_of(name).scale(self.scene.surface) for name in names)
+        return {name: scale * float(np.sum(x)) for name, scale, x in zip(names, scales, terms, strict=True)}

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from mcgw.ensemble.many_surfaces import ManySurfaces
 from mcgw.ensemble.separation import LOWEST, Summits
 from mcgw.ensemble.solved import Solution
 from mcgw.machine.progress import Progress, told
-from mcgw.sampling.asperities import listing_sampler, summits, summits_drawn, summits_of_many
+from mcgw.sampling.asperities import listing_sampler, summits, summits_of_many
 from mcgw.sampling.block import Sampler
 from mcgw.scene.arguments import argument, as_toml, check_object
 from mcgw.scene.scene import Scene, storable
@@ -23,7 +24,7 @@ from mcgw.scene.section import nearest
 _MARGIN = 6.0  # standard deviations of a surface's separation that are drawn at once
 _RESAMPLED = 200  # specimens in place of one measured surface
 _MOST_HEIGHTS = 3e9
-_AT_ONCE = 1e6  # asperities whose surfaces are solved together
+_AT_ONCE = 1e5  # asperities whose surfaces are solved together
 _LAST_DIGITS = 64 * float(np.finfo(float).eps)  # of a reduced height
 _NOTHING = 1e-16  # share of the heights below all that are drawn
 # What may be given: its unit, the quantity that it is, and whether per nominal area.
@@ -243,27 +244,26 @@ def _surfaces(
     sunk: float | None,
 ) -> list[dict[str, Array]]:
     """All quantities of some surfaces at each value: together where sums fall, else one by one."""
-    drawn, found = sampler.scene, []
+    drawn, found, names = sampler.scene, [], quantities_at(scene)
     many = ManySurfaces(scene, *summits_of_many(drawn, sampler, first, n))
+    surface = cache(many.surface)  # once for all values
     for value, start in zip(values, about, strict=True):
-        h = np.full(n, np.nan)
+        h, sums = np.full(n, np.nan), {name: np.zeros(n) for name in ("separation", *names)}
         if sunk is None and value > 0:
             h = many.separations(q, value, drawn.lowest, start)
-        known = np.isfinite(h)
-        sums = {"separation": h, **many.sums(quantities_at(scene), np.where(known, h, np.inf))}
-        for k in np.flatnonzero(~known).tolist():
-            for name, x in _surface(scene, sampler, first + k, q, value, sunk).items():
+            sums = {"separation": h, **many.sums(names, np.where(np.isfinite(h), h, np.inf))}
+        for k in np.flatnonzero(np.isnan(h)).tolist():
+            for name, x in _singly(surface(k), drawn, first + k, q, value, sunk).items():
                 sums[name][k] = x
         found.append(sums)
     return found
 
 
-def _surface(
-    scene: Scene, sampler: Sampler, number: int, q: Quantity, value: float, sunk: float | None
+def _singly(
+    on: Summits, drawn: Scene, number: int, q: Quantity, value: float, sunk: float | None
 ) -> dict[str, float]:
     """All quantities of one surface at a value; with `sunk`, 1/N, at a nominal separation."""
-    drawn = sampler.scene
-    on = Summits.of(scene, *summits_drawn(drawn, sampler, number))
+    scene = on.scene
     target = value / q.scale(scene.surface)
     if sunk is None:
         h = on.largest_separation(q, target, drawn.lowest)

@@ -6,10 +6,11 @@ from functools import partial
 
 import numpy as np
 
-from analytic import Exponential, quantity_of
+from analytic import Exponential, Hertz, quantity_of
 from analytic.arrays import Array
+from analytic.laws import Branch
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.separation import separation_on
+from mcgw.ensemble.separation import LawSum
 from mcgw.ensemble.simulation import simulate
 from mcgw.figures.compared import SCENE, Compared
 from mcgw.figures.data import (
@@ -281,7 +282,8 @@ def _ratios_at_load(s: Array, h: float, starts: Array) -> tuple[Array, Array]:
     for gamma, start in zip(_GAMMAS, starts, strict=True):
         near = s[s > start]
         modulus = Exponential(float(gamma))(near)
-        h2 = separation_on(near, modulus, 1.5, load, float(start))
+        h2 = LawSum("load", Branch(Hertz()), near, modulus).largest_separation(load, float(start))
+        assert h2 is not None
         d = near[near > h2] - h2
         roots = np.sqrt(d)
         rows.append([roots.sum(), d.sum(), modulus[: len(d)] @ roots] / hom)

@@ -9,7 +9,7 @@ from scipy.stats import t as student
 import analytic
 import mcgw
 from mcgw.cli import main
-from mcgw.ensemble.separation import crossing, separation_on
+from mcgw.ensemble.separation import Summits, crossing
 from mcgw.ensemble.solution import solutions
 from mcgw.reports.solved_loads import solutions_text
 
@@ -54,18 +54,23 @@ def test_every_surface_inverts_the_simulator(scene, solved):
 def _separations_at(scene, lowest):
     """Solved as `solve` does, on heights drawn above a separation of our own."""
     scene = replace(scene, sampler="tail", separations=(lowest,))
-    scale = analytic.QUANTITIES["load"].scale(scene.surface)
-    rows = []
-    for number in range(12):
-        s = np.sort(mcgw.heights(scene, number))[::-1]
-        rows.append([separation_on(s, scene.grading(s), 1.5, load / scale, lowest) for load in LOADS])
-    return np.array(rows)
+    every = [Summits.of(scene, mcgw.heights(scene, number), None) for number in range(12)]
+    q = analytic.QUANTITIES["load"]
+    scale = q.scale(scene.surface)
+    return np.array([[on.largest_separation(q, load / scale, lowest) for load in LOADS] for on in every])
 
 
-def test_area_is_inverted_and_loads_of_one_asperity_are_hertz():
-    h = separation_on(np.array([2.0]), np.array([3.0]), 1.5, 0.375, 0.0)
+def test_area_is_inverted_and_loads_of_one_asperity_are_hertz(scene):
+    scene, load, area = (
+        scene.replace(grading=None),
+        analytic.quantity_of("load"),
+        analytic.quantity_of("area"),
+    )
+    stiff = scene.replace(grading=lambda s: 3.0 + 0 * s)
+    h = Summits.of(stiff, np.array([2.0]), None).largest_separation(load, 0.375, 0.0)
     assert h == pytest.approx(2 - 0.125 ** (2 / 3), rel=1e-15)
-    assert separation_on(np.array([1.0, 0.5]), np.ones(2), 1.0, 0.9, -1.0) == pytest.approx(0.3, rel=1e-14)
+    two = Summits.of(scene, np.array([0.5, 1.0]), None)
+    assert two.largest_separation(area, 0.9, -1.0) == pytest.approx(0.3, rel=1e-14)
 
 
 def test_other_quantities_belong_to_the_separation(scene, solved):
@@ -150,26 +155,21 @@ def test_the_branch_below_the_margin_is_entered(scene, monkeypatch):
 
     Six standard deviations leave none, one leaves a sixth. Each against a bisection over all its heights.
     """
-    from mcgw.ensemble import separation, solution
+    from mcgw.ensemble import solution
 
     few = replace(scene, n_asperities=3, grading=analytic.Homogeneous(), n_surfaces=200)
     monkeypatch.setattr(solution, "_MARGIN", 0.5)
-    drawn_whole, listed, starts = [], solution.summits, []
+    drawn_whole, listed = [], solution.summits
 
     def spy(asked, number):
         drawn_whole.append(number)
         return listed(asked, number)
 
-    def newton(s, modulus, exponent, target, start):
-        starts.append(start)
-        return separation_on(s, modulus, exponent, target, start)
-
     monkeypatch.setattr(solution, "summits", spy)
-    monkeypatch.setattr(separation, "separation_on", newton)
     (found,) = solutions(few, "load", [2.0])
     assert 0 < len(drawn_whole) < 200
     assert len(set(drawn_whole)) == len(drawn_whole)
-    assert min(starts) < found.drawn.lowest - 0.9  # the search for a start went down in steps
+    assert found.surfaces["separation"].min() < found.drawn.lowest - 0.9  # more than one step down
     asked = replace(
         few, sampler="tail", separations=(found.drawn.lowest,), quantities=tuple(analytic.QUANTITIES)
     )
