@@ -24,6 +24,7 @@ _SCORES, _APART, _NONE, _SMALLEST, _TABLE = 6.0, 0.4, 1e-14, 1e-3, 8192
 _LEVEL = 1e-9
 _GAUSS = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3)  # two points of a cell
 _NEVER = 1e-14  # asperities on a surface
+_NEIGHBOURS = 6
 _ROUNDING = 1e-9  # of a law that goes on smoothly
 
 
@@ -178,13 +179,11 @@ def _along(
     rounding: float,
     again: Callable[[], Any],
 ) -> Table:
-    """The law of y, of which the shares up to y and above are given: normal scores of some, and a spline."""
+    """The law of y, of which the shares up to y and above are given: by the normal scores of some."""
 
     def score(y: float) -> float:
         below, above = (max(share, _NONE) for share in shares(y))
         return float(ndtri(below) if below < above else -ndtri(above))
-
-    from scipy.interpolate import make_interp_spline  # imports half of SciPy
 
     scores = {start: score(start)}
     for way in (-1, 1):
@@ -206,9 +205,20 @@ def _along(
     z = np.maximum.accumulate([scores[at] for at in nodes.tolist()])
     nodes, z = nodes[np.abs(z) < -ndtri(_NONE)], z[np.abs(z) < -ndtri(_NONE)]
     y = np.interp(np.linspace(0, nodes.size - 1, _TABLE), np.arange(nodes.size), nodes)
-    z = np.maximum.accumulate(make_interp_spline(nodes, z, min(5, nodes.size - 1))(y))
+    z = np.maximum.accumulate(_interpolated(nodes, z, y))
     table = Table(*resolved(y, ndtr(z), ndtr(-z), rounding), (0.0, 0.0), (-np.inf, np.inf), rounding, again)
     return table.with_moments()
+
+
+def _interpolated(x: Array, y: Array, at: Array) -> Array:
+    """Values between points, by the polynomials through the six nearest (Neville)."""
+    n = min(_NEIGHBOURS, x.size)
+    which = np.clip(np.searchsorted(x, at) - n // 2, 0, x.size - n)[:, None] + np.arange(n)
+    away, found = at[:, None] - x[which], y[which]
+    for m in range(1, n):
+        left, right = away[:, :-m], away[:, m:]
+        found = (left * found[:, 1:] - right * found[:, :-1]) / (left - right)
+    return np.asarray(found[:, 0])
 
 
 def _falling(model: Any, quantity: str, h: float) -> None:

@@ -212,8 +212,10 @@ def terms_of(
     above, result = s - x, np.zeros((len(quantities), *reach.shape))
     pieces = touching.pieces(x, above, modulus)
     found = np.zeros((len(quantities), pieces.size))
-    for piece in np.unique(pieces[pieces >= 0]).tolist():
+    for piece in range(int(pieces.max(initial=-1)) + 1):
         here = pieces == piece
+        if not here.any():
+            continue
         of_piece, at = touching.of_some(here), (x[here], above[here], modulus[here])
         for values, quantity in zip(found, quantities, strict=True):
             values[here] = of_piece.value(quantity, piece, *at)

@@ -53,6 +53,14 @@ class ManySurfaces:
         its = slice(end - int(self.counts[number]), end)
         return Summits.of(self.scene, self.s[its], None if self.ratios is None else self.ratios[its])
 
+    def above(self, h: float) -> "ManySurfaces":
+        """The same surfaces, of which only the asperities above a separation are looked at."""
+        high = self.s > h
+        counts = np.bincount(self.owner[high], minlength=self.counts.size)
+        return ManySurfaces(
+            self.scene, counts, self.s[high], None if self.ratios is None else self.ratios[high]
+        )
+
     def separations(self, q: Quantity, value: float, lowest: float, about: float) -> Array:
         """Separation of each surface at which a sum has a value, or jumps past it; shape (surfaces,).
 

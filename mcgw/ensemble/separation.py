@@ -172,7 +172,7 @@ class LawSum:
             return self.branch
         return self.branch.with_radii(self.ratios[which])
 
-    def _weight(self, which: Ints) -> Array | float:
+    def _weight(self, which: slice | Ints) -> Array | float:
         """What a load or an area is worth by the radius."""
         return 1.0 if self.ratios is None else self.ratios[which] ** quantity_of(self.quantity).radius
 

@@ -174,7 +174,9 @@ def solutions(
         n = surfaces_at_loads(scene, [at["separation"] for at in theory], given)
         whole, scene = (replace(x, n_surfaces=n, rel_err=None, max_seconds=None) for x in (whole, scene))
     specimens = _resampled(scene) if scene.as_measured else scene
-    drawn = storable(_drawn(specimens, q, [at["separation"] for at in theory]))
+    about = [at["separation"] for at in theory]
+    lows = [_lowest(specimens, q, h) for h in about]
+    drawn = storable(_drawn(specimens, min(lows)))
     if drawn.touching * drawn.n_surfaces > _MOST_HEIGHTS:
         raise ValueError(
             f"{drawn.n_surfaces} surfaces with {drawn.touching:.3g} contacts each are too many to solve "
@@ -182,11 +184,12 @@ def solutions(
         )
     sampler, found = listing_sampler(drawn), []
     sunk = whole.compliance / whole.surface.sigma if given == "nominal_separation" else None
-    about = [at["separation"] for at in theory]
     step = max(int(_AT_ONCE / (drawn.touching + 1)), 1)
     for first in range(0, drawn.n_surfaces, step):
         n = min(step, drawn.n_surfaces - first)
-        found.append(_surfaces(scene, sampler, first, n, q, values, about, sunk))
+        found.append(
+            _surfaces(scene, sampler, first, n, q, values, list(zip(lows, about, strict=True)), sunk)
+        )
         if tell is not None:
             tell(first + n, drawn.n_surfaces)
     surfaces = [
@@ -209,22 +212,22 @@ def _resampled(scene: Scene) -> Scene:
     return replace(scene, heights=again, curvature=MeasuredRadii(again, ratios), n_surfaces=_RESAMPLED)
 
 
-def _drawn(scene: Scene, q: Quantity, separations: Sequence[float]) -> Scene:
-    """The scene whose contacts are drawn: those that nearly every surface has at its own solution.
+def _lowest(scene: Scene, q: Quantity, h: float) -> float:
+    """Below the solution h of the mean surface: lower than that of nearly every surface, or than all heights.
 
-    That is some standard deviations, to first order, below the solution of the mean surface, or all
-    heights. What the modulus is there does not matter yet.
+    That is some standard deviations, to first order. What the modulus is there does not matter yet.
     """
-    bottom = float(scene.heights.ppf(np.array(_NOTHING)))
-    starts = []
-    for h in separations:
-        spread = float(scene.theory.std(q.name, h) / scene.theory.slope(q.name, h))
-        starts.append(max(h - _MARGIN * spread, min(h, bottom)))
+    spread = float(scene.theory.std(q.name, h) / scene.theory.slope(q.name, h))
+    return max(h - _MARGIN * spread, min(h, float(scene.heights.ppf(np.array(_NOTHING)))))
+
+
+def _drawn(scene: Scene, lowest: float) -> Scene:
+    """The scene whose contacts are drawn: those above the lowest separation of nearly every surface."""
     return replace(
         scene,
         sampler="direct" if isinstance(scene.heights, MeasuredHeights) else "tail",
         keep="sums",
-        separations=(min(starts),),
+        separations=(lowest,),
         quantities=("contacts",),
         law=Hertz(),  # heights are what is drawn, the same under every law
         unload_from=None,
@@ -240,18 +243,22 @@ def _surfaces(
     n: int,
     q: Quantity,
     values: Sequence[float],
-    about: Sequence[float],
+    starts: Sequence[tuple[float, float]],
     sunk: float | None,
 ) -> list[dict[str, Array]]:
-    """All quantities of some surfaces at each value: together where sums fall, else one by one."""
+    """All quantities of some surfaces at each value: together where sums fall, else one by one.
+
+    Each value has a separation that nearly none of them is below, and one that they are about.
+    """
     drawn, found, names = sampler.scene, [], quantities_at(scene)
     many = ManySurfaces(scene, *summits_of_many(drawn, sampler, first, n))
     surface = cache(many.surface)  # once for all values
-    for value, start in zip(values, about, strict=True):
+    for value, (low, about) in zip(values, starts, strict=True):
         h, sums = np.full(n, np.nan), {name: np.zeros(n) for name in ("separation", *names)}
         if sunk is None and value > 0:
-            h = many.separations(q, value, drawn.lowest, start)
-            sums = {"separation": h, **many.sums(names, np.where(np.isfinite(h), h, np.inf))}
+            near = many.above(low)
+            h = near.separations(q, value, low, about)
+            sums = {"separation": h, **near.sums(names, np.where(np.isfinite(h), h, np.inf))}
         for k in np.flatnonzero(np.isnan(h)).tolist():
             for name, x in _singly(surface(k), drawn, first + k, q, value, sunk).items():
                 sums[name][k] = x

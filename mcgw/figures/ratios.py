@@ -268,7 +268,7 @@ def _jackknifed(listed: tuple[Array, ...], h: float) -> tuple[Array, Array]:
     s, group = s[order], group[order]
     s, group = s[s > h - 0.9], group[s > h - 0.9]  # what any of the gradings brings into contact
     whole, h2 = _ratios_at_load(s, h, np.full(len(_GAMMAS), h - 0.85))
-    near = h2 - 0.02  # a tenth of the surfaces less moves the separation by far less
+    near = h2 - 0.1  # a tenth of the surfaces less moves the separation by less
     parts = np.array([_ratios_at_load(s[group != g], h, near)[0] for g in range(_GROUPS)])
     return whole, np.sqrt((_GROUPS - 1) / _GROUPS * ((parts - parts.mean(axis=0)) ** 2).sum(axis=0))
 
