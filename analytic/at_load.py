@@ -20,7 +20,6 @@ import numpy as np
 
 from analytic.arrays import Array
 from analytic.distribution.of_model import shares_upto
-from analytic.laws.branch import Branch
 from analytic.laws.pieces import slope_term
 from analytic.measured_summits import MeasuredHeights
 from analytic.quadrature import gauss_legendre
@@ -130,10 +129,9 @@ def _rates(
     share = lowest
     if others is not model:  # one more asperity beside them, in contact or not
         share = float(rule.below * lowest + np.concatenate([x.probabilities for x in parts]) @ bearable)
-    rates, touching = {}, float(model.heights.pdf(np.array(h)) * lowest)
+    rates = {}
     for name in names:
         rate = float(np.concatenate([part.rates[name] for part in parts]) @ bearable)
-        rate += touching if name == "contacts" else 0.0  # begins with a step
         rates[name] = float(model.number * quantity_of(name).scale(model.surface) * rate)
     return rates, share
 
@@ -151,21 +149,14 @@ def _pressed(model: Any, given: str, names: Sequence[str], h: float, rule: Any, 
 
 
 def _jumping(model: Any, given: str, names: Sequence[str], h: float, rule: Any) -> Iterator[_Added]:
-    """Asperities that go on from piece to piece."""
+    """Asperities that touch, or go on from piece to piece."""
     if not rule.heights.size:
         return
     ends = float(rule.heights.min()), float(rule.heights.max())
-    scale = quantity_of(given).scale(model.surface)
-    for j, s, ratios, share in model.summits.jumping(model.ways.loading, model.grading, h, ends):
-        branch: Branch = model.ways.loading if ratios is None else model.ways.loading.with_radii(ratios)
-        y, e = np.sqrt(np.maximum(s - h, 0.0)), model.grading(s)
-        before = scale * _by_radius(given, ratios) * branch.of_root(quantity_of(given).base, j, y, e)
-        rates = {}
-        for name in names:
-            base = quantity_of(name).base
-            jump = branch.of_root(base, j + 1, y, e) - branch.of_root(base, j, y, e)
-            rates[name] = share * _by_radius(name, ratios) * jump
-        yield _Added(before, rates, np.zeros(s.size))
+    scale, base = quantity_of(given).scale(model.surface), quantity_of(given).base
+    for jumps in model.summits.jumps(model.ways.loading, model.grading, np.array([h]), ends):
+        rates = {name: jumps.share * jumps.step(quantity_of(name).base) for name in names}
+        yield _Added(scale * jumps.before(base), rates, np.zeros(jumps.share.shape))
 
 
 def _by_radius(name: str, ratios: Array | None) -> Array | float:

@@ -134,8 +134,10 @@ class MeanContact:
         s = np.concatenate([rule.heights for rule in rules])
         if not s.size:
             return np.zeros(np.shape(h))
-        found = self.summits.jumps(quantity, self.ways.loading, self.grading, flat, (s.min(), s.max()))
-        return np.broadcast_to(found, flat.shape).reshape(np.shape(h))
+        total, ends = np.zeros(flat.shape), (s.min(), s.max())
+        for jumps in self.summits.jumps(self.ways.loading, self.grading, flat, ends):
+            np.add.at(total, jumps.separation, jumps.share * jumps.step(quantity))
+        return total.reshape(np.shape(h))
 
     def _ways_of(self, rule: HeightRule) -> Ways:
         """In units of each summit, where radii differ."""

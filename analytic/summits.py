@@ -6,7 +6,7 @@ radius alone. So there are some radii, each with a rule over the heights of its 
 """
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any
 
@@ -19,10 +19,9 @@ from analytic.height_rule import HeightRule
 from analytic.heights import Gaussian, HeightLaw
 from analytic.law_rule import ends_of
 from analytic.laws.branch import Branch
-from analytic.laws.pieces import cuts_of_each, jump_terms, jumps_met
+from analytic.laws.pieces import Jumps, cuts_of_each, jumps_met
 from analytic.measured_summits import MeasuredHeights, MeasuredRadii
 from analytic.quadrature import SPANS, WIDEST, above_neighbours, gauss_legendre, rooted
-from analytic.quantities import quantity_of
 from analytic.resolution import resolved_breaks
 
 Branches = tuple[Branch, ...]
@@ -223,17 +222,9 @@ class Summits:
         """Leave out what is kept, which is large: other processes compute their own."""
         return {name: value for name, value in vars(self).items() if name != "_rules"}
 
-    def jumps(self, quantity: str, branch: Branch, grading: Grading, h: Array, ends: Ends) -> Array:
-        """What summits of heights between two add to the slope of a mean by jumping, at each separation."""
-        return jump_terms(quantity, branch, grading, lambda s, _: self.heights.pdf(s), h, ends)
-
-    def jumping(
-        self, branch: Branch, grading: Grading, h: float, ends: Ends
-    ) -> Iterator[tuple[int, Array, Array | None, Array]]:
-        """Summits that go on from piece to piece at a separation, as `jumps_met`, with their radii."""
-        met = jumps_met(branch, grading, lambda s, _: self.heights.pdf(s), np.array([h]), ends)
-        for j, s, _, share in met:
-            yield j, s, None, share
+    def jumps(self, branch: Branch, grading: Grading, h: Array, ends: Ends) -> Iterator[Jumps]:
+        """Summits of heights between two that jump at separations, as `jumps_met`."""
+        return jumps_met(branch, grading, lambda s, _: self.heights.pdf(s), h, ends)
 
 
 @dataclass(frozen=True)
@@ -273,23 +264,16 @@ class _RandomRadii(Summits):
         heights = np.broadcast_to(rule.heights, ratio.shape)
         return HeightRule(heights.ravel(), (rule.probabilities * share).ravel(), rule.below, ratio.ravel())
 
-    def jumps(self, quantity: str, branch: Branch, grading: Grading, h: Array, ends: Ends) -> Array:
+    def jumps(self, branch: Branch, grading: Grading, h: Array, ends: Ends) -> Iterator[Jumps]:
         radii = Radii.over(self.curvature, float(h.max()))
         number, own = radii.ratios.size, branch.with_radii(radii.ratios)
 
         def density(s: Array, which: Ints) -> Array:
             return radii.density(s, which % number)
 
-        found = jump_terms(quantity, own, grading, density, np.repeat(h, number), ends)
-        return found.reshape(h.size, number) @ radii.ratios ** quantity_of(quantity).radius
-
-    def jumping(
-        self, branch: Branch, grading: Grading, h: float, ends: Ends
-    ) -> Iterator[tuple[int, Array, Array | None, Array]]:
-        radii = Radii.over(self.curvature, h)
-        own, at = branch.with_radii(radii.ratios), np.full(radii.ratios.size, h)
-        for j, s, which, share in jumps_met(own, grading, radii.density, at, ends):
-            yield j, s, radii.ratios[which], share
+        for found in jumps_met(own, grading, density, np.repeat(h, number), ends):
+            which, ratios = found.separation // number, radii.ratios[found.separation % number]
+            yield replace(found, separation=which, ratios=ratios)
 
 
 @dataclass(frozen=True)
@@ -312,8 +296,8 @@ class _ListedSummits(Summits):
         number = int(touching.sum())
         return HeightRule(s[touching], np.full(number, 1 / s.size), 1 - number / s.size, ratios[touching])
 
-    def jumps(self, *_: Any) -> Array:
-        return np.zeros(1)
+    def jumps(self, *_: Any) -> Iterator[Jumps]:
+        return iter(())
 
 
 def summits_of(heights: HeightLaw, radii: RandomCurvature | MeasuredRadii | None) -> Summits:

@@ -5,6 +5,7 @@ comes nearer: within the pieces, and where pieces change.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from functools import lru_cache, partial
 
 import numpy as np
@@ -17,6 +18,7 @@ from analytic.laws.law import ContactLaw, piece_of
 from analytic.laws.regimes import Bound, Crossings, Regimes, crossings_of, limit_of
 from analytic.laws.unloading import slope_in_root
 from analytic.quadrature import NEAREST, towards
+from analytic.quantities import quantity_of
 from analytic.resolution import Same, resolved_breaks
 
 
@@ -98,33 +100,48 @@ def slope_term(quantity: str, branch: Branch, penetration: Array, e: Array) -> A
     return result
 
 
-def jump_terms(
-    quantity: str,
-    branch: Branch,
-    grading: Grading,
-    density: Callable[[Array, Ints], Array],
-    separations: Array,
-    ends: tuple[float, float],
-) -> Array:
-    """What asperities add to the slope of the mean by jumping: at first touch and from piece to piece.
+@dataclass(frozen=True)
+class Jumps:
+    """Asperities that go on to the next piece of a law where the surface comes nearer.
 
-    An asperity of height t jumps by D when the separation is that at which ``t - h = limit(e(t))``. As the
-    surface comes nearer by dh, those of a range of ``dh/abs(1 - d limit/dt)`` heights do so, in the range of
-    heights between the ends. `density` is that of heights and of the numbers of their separations, which have
-    the radii of the law in turn. Of shape (separations,).
+    An asperity of height t does so when the separation is that at which ``t - h = limit(e(t))``. As the
+    surface comes nearer by dh, those of a range of ``dh/abs(1 - d limit/dt)`` heights do.
+
+    Parameters
+    ----------
+    branch : Branch
+        Of these asperities.
+    piece : int
+        Number of the piece that they leave; -1 at first touch.
+    root, modulus, share : ndarray
+        Root of the penetration, E*(s)/E*, and the share of asperities for each unit of the separation.
+    separation : ndarray of int
+        Which of the separations; all of shape (jumps,).
+    ratios : ndarray, optional
+        Radii of the summits over that of the surface, where they differ.
     """
-    every = np.arange(separations.size)
-    e, first = grading(separations), branch.of_some(every)
-    law, total = first.law, np.zeros(separations.shape)
-    touch = np.full(separations.shape, _TOUCH)
-    for j in np.unique(piece_of(law, 0 * separations, e)):
-        added = first.of_root(quantity, int(j), touch, e)
-        total += np.where(piece_of(law, 0 * separations, e) == j, added, 0.0) * density(separations, every)
-    for j, t, which, share in jumps_met(branch, grading, density, separations, ends):
-        y, e, own = np.sqrt(np.maximum(t - separations[which], 0.0)), grading(t), branch.of_some(which)
-        jump = own.of_root(quantity, j + 1, y, e) - own.of_root(quantity, j, y, e)
-        np.add.at(total, which, jump * share)
-    return total
+
+    branch: Branch
+    piece: int
+    root: Array
+    modulus: Array
+    share: Array
+    separation: Ints
+    ratios: Array | None = None
+
+    def before(self, quantity: str) -> Array:
+        """What they add before, over the scale."""
+        if self.piece < 0:
+            return np.zeros(self.root.shape)
+        return self._by_radius(quantity) * self.branch.of_root(quantity, self.piece, self.root, self.modulus)
+
+    def step(self, quantity: str) -> Array:
+        """By how much what they add jumps."""
+        after = self.branch.of_root(quantity, self.piece + 1, self.root, self.modulus)
+        return self._by_radius(quantity) * after - self.before(quantity)
+
+    def _by_radius(self, quantity: str) -> Array:
+        return np.asarray(1.0 if self.ratios is None else self.ratios ** quantity_of(quantity).radius)
 
 
 def jumps_met(
@@ -133,21 +150,22 @@ def jumps_met(
     density: Callable[[Array, Ints], Array],
     separations: Array,
     ends: tuple[float, float],
-) -> Iterator[tuple[int, Array, Ints, Array]]:
-    """Where asperities go on to the next piece of a law, of `jump_terms`.
+) -> Iterator[Jumps]:
+    """Yield the asperities that jump between two heights: those that touch, then piece by piece.
 
-    Yields
-    ------
-    (int, ndarray, ndarray of int, ndarray)
-        Of each piece its number, heights, the numbers of their separations, and the share of asperities that
-        do so for each unit by which the surface comes nearer.
+    `density` is that of heights and of the numbers of their separations, which have the radii of the law in
+    turn.
     """
-    law = branch.of_some(np.arange(separations.size)).law
-    for j in range(len(law.limits(grading(separations)))):
+    law, every = branch.law, np.arange(separations.size)
+    touch = np.full(separations.shape, _TOUCH)
+    share = density(separations, every)
+    yield Jumps(branch.of_some(every), -1, touch, grading(separations), share, every)
+    for j in range(len(law.limits(np.ones(law.radii)))):
         find = _met.__wrapped__ if law.each else _met
-        found, shares = find(Same(grading), branch.law, j, tuple(separations.tolist()), ends)
-        t, which = found.height, found.separation
-        yield j, t, which, density(t, which) * shares
+        found, shares = find(Same(grading), law, j, tuple(separations.tolist()), ends)
+        s, which = found.height, found.separation
+        root = np.sqrt(np.maximum(s - separations[which], 0.0))
+        yield Jumps(branch.of_some(which), j, root, grading(s), density(s, which) * shares, which)
 
 
 @lru_cache(maxsize=_REMEMBERED)
