@@ -100,12 +100,12 @@ class Budget(Shown):
         squares["parameters"] = np.nan_to_num(squares["parameters"])
         return np.asarray(np.sqrt(np.sum([*squares.values()], axis=0)))
 
-    def told(self, name: str, scatter: float) -> str:
-        """Total of one answer; without one, the `scatter` of specimens and that more is not known."""
-        total = self.all[self.quantities.index(name)] if name in self.quantities else math.nan
-        if np.isnan(total):
+    def told(self, name: str, best: Corrected, scatter: float) -> str:
+        """95 % of a corrected answer; without one, the `scatter` of specimens and that more is not known."""
+        if np.isnan(best.value):
             return f"(scatter of specimens {percent(scatter)}; error of the model not known)"
-        return f"± {percent(total)}"
+        parameters = float(np.nan_to_num(self.shares["parameters"][self.quantities.index(name)]))
+        return f"± {percent(math.hypot((best.high - best.low) / (2 * best.value), parameters))}"
 
     def _largest(self) -> tuple[str, float]:
         """The line that dominates the first quantity, and its share."""

@@ -181,5 +181,6 @@ def tiles_of(counted: SummitSums) -> Table:
 def variation(values: Array) -> float:
     """Standard deviation over the tiles, over the mean; nan where fewer than two tell anything."""
     values = values[np.isfinite(values)]
-    mean = float(values.mean())
-    return float(values.std(ddof=1) / mean) if values.size > 1 and mean else math.nan
+    if values.size < 2 or not values.any():
+        return math.nan
+    return float(values.std(ddof=1) / values.mean())

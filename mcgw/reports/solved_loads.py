@@ -108,14 +108,14 @@ def _by_load(scene: Scene, solutions: Sequence[Solution]) -> Table:
 
 
 def _brief(solution: Solution) -> str:
-    """The answer in one line: conductance if there is any, else area or load, with its error; separation."""
+    """The answer in one line, `best` with its 95 %: conductance if there is any, else area or load."""
     budget, value, scene = solution.budget(), solution.value, solution.scene
     name = budget.quantities[0]
     if scene.film is not None:
         name = next(x for x in ("joint_conductance", "contact_conductance") if x in value)
-    best, scatter = solution.corrected(name).value, solution.surfaces[name].std(ddof=1) / abs(value[name])
-    first = value[name] if np.isnan(best) else best
-    told = f"{first:.4g} {scene.quantity(name).unit} {budget.told(name, scatter)}"
+    best, scatter = solution.corrected(name), solution.surfaces[name].std(ddof=1) / abs(value[name])
+    first = value[name] if np.isnan(best.value) else best.value
+    told = f"{first:.4g} {scene.quantity(name).unit} {budget.told(name, best, scatter)}"
     if f"{first:.4g}" != f"{value[name]:.4g}":
         told += f" (value {value[name]:.4g})"
     return f"{solution.title}: {name.replace('_', ' ')} = {told}, d/sigma = {value['separation']:.4g}"

@@ -14,6 +14,7 @@ from mcgw.ensemble.at_load import mean_surface
 from mcgw.ensemble.budget import moved, slopes_of
 from mcgw.ensemble.solved import against_elasticity
 from mcgw.maps import Topography
+from mcgw.reports.solved_loads import solutions_text
 
 FOLDER = Path(__file__).parents[2] / "runs" / "validation"
 sys.path.insert(0, str(FOLDER))
@@ -192,7 +193,22 @@ def test_spots_with_a_film_have_no_corrected_conductance():
     budget = solved.budget()
     assert np.isnan(budget.all[budget.quantities.index("contact_conductance")])
     assert solved.corrected("contact_conductance").why.startswith("a film or layer is not")
-    assert budget.told("contact_conductance", 0.01).startswith("(scatter of specimens 1 %; error of the")
+    best = solved.corrected("contact_conductance")
+    assert budget.told("contact_conductance", best, 0.01).startswith(
+        "(scatter of specimens 1 %; error of the"
+    )
+
+
+@pytest.mark.parametrize("uncertainty", [None, ERRORS])
+def test_the_first_line_is_the_corrected_answer_with_all_of_its_error(uncertainty):
+    """Not with that of `value`, which is off by the bias besides."""
+    solved = mcgw.solve(scene_of(uncertainty=uncertainty), pressure="5 MPa")
+    best, budget = solved.corrected("area"), solved.budget()
+    whole = np.hypot((best.high - best.low) / 2 / best.value, np.nan_to_num(budget.shares["parameters"][0]))
+    assert whole < budget.all[0]
+    assert uncertainty or f"{whole:.0%}" != f"{budget.all[0]:.0%}"
+    line = solutions_text(solved.scene, [solved]).split("\n")[0]
+    assert f"area = {best.value:.4g} m^2 ± {100 * whole:.0f} % (value {solved.value['area']:.4g})" in line
 
 
 PULLS = {"law": "derjaguin-muller-toporov", "pull_off": 1e-3}

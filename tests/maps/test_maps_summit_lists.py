@@ -194,3 +194,4 @@ def test_tiles_without_summits_or_points_are_nan():
 def test_variation_is_that_of_tiles_that_tell_something():
     assert variation(np.array([1.0, 3.0, np.nan])) == pytest.approx(math.sqrt(2) / 2)
     assert math.isnan(variation(np.array([1.0, np.nan])))
+    assert math.isnan(variation(np.array([np.nan])))
