@@ -190,13 +190,14 @@ class CustomLaw(ElasticPlastic):
         u = np.where(u == 0, 1.0, u)  # where the factor y is 0
         return y * np.sqrt(self.area_of[piece](u) / (u * u))
 
-    def resolved(self, x_max: float) -> "CustomLaw":
-        """Return the law as plain numbers: `RootSeries` up to ``x = x_max`` in place of formulas.
+    def as_data(self, deepest: float) -> "CustomLaw":
+        """Return the law as plain numbers: `RootSeries` in place of formulas, up to a penetration.
 
         Parameters
         ----------
-        x_max : float
-            Greatest delta/delta_c that is needed; pieces that begin there or beyond are left out.
+        deepest : float
+            Greatest penetration that is needed, of an asperity of modulus E*; pieces that begin there or
+            beyond are left out.
 
         Returns
         -------
@@ -208,6 +209,8 @@ class CustomLaw(ElasticPlastic):
         ValueError
             If a formula is no smooth function on its piece.
         """
+        assert self.critical is not None
+        x_max = deepest / self.critical
         kept = [x for x in self.beginnings if x < x_max]
         ends = np.sqrt([*kept, x_max]).tolist()
         starts = [-ends[0], *ends[:-1]]
@@ -218,13 +221,7 @@ class CustomLaw(ElasticPlastic):
                     series[name].append(resolved_in_root(formulas[piece], low, high))
                 except ValueError as error:
                     raise ValueError(f"{name}[{piece}]: {error}") from None
-        assert self.critical is not None
         return CustomLaw(series["load"], series["area"], kept, self.critical, self.checked)
-
-    def as_data(self, deepest: float) -> "CustomLaw":
-        """Return the series in place of formulas, up to a penetration of an asperity of modulus E*."""
-        assert self.critical is not None
-        return self.resolved(deepest / self.critical)
 
     def given(self) -> dict[str, Any]:
         """Return the number of pieces, and the critical penetration."""

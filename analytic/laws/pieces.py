@@ -60,7 +60,7 @@ def _above_beginnings(
     h = h[regimes.separation]
     start = np.where(regimes.low > low, regimes.low, np.minimum(h, low))
     rooted = smooth & (regimes.piece == 0) & (start == h)
-    begins = np.append(True, ~_goes_on(regimes))[: smooth.size]
+    begins = ~regimes.goes_on[:-1]
     rough = ~smooth & np.append(True, smooth[:-1])[: smooth.size]
     nearest = np.minimum(branch.finest, np.where(rooted, regimes.high - start, NEAREST))
     found = np.flatnonzero(begins | rough).tolist()
@@ -69,14 +69,9 @@ def _above_beginnings(
 
 def _below_losses(regimes: Regimes, smooth: Marks, high: float) -> list[tuple[int, Sequence[float]]]:
     """Towards heights above which asperities have lost contact, under lower ones that still touch."""
-    lost = np.append(~_goes_on(regimes), True)[: smooth.size] & (regimes.high < high) & ~smooth
+    lost = ~regimes.goes_on[1:] & (regimes.high < high) & ~smooth
     ends = [(i, float(regimes.high[i])) for i in np.flatnonzero(lost).tolist()]
     return [(i, [2 * end - x for x in towards(end, NEAREST)]) for i, end in ends]
-
-
-def _goes_on(regimes: Regimes) -> Marks:
-    """Whether the next interval goes on where each one ends."""
-    return np.asarray((regimes.low[1:] <= regimes.high[:-1]) & (np.diff(regimes.separation) == 0))
 
 
 _TOUCH = 1e-60  # root of the penetration at first touch: at 0 itself slopes are 0/0

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from analytic.arrays import Array, Ints
+from analytic.arrays import Array, Ints, Marks
 from analytic.gradings import Grading, Homogeneous
 from analytic.laws.law import ContactLaw
 from analytic.resolution import marks, resolved_breaks
@@ -46,6 +46,12 @@ class Regimes:
     low: Array
     high: Array
     piece: Ints
+
+    @property
+    def goes_on(self) -> Marks:
+        """Whether each goes on where the one before ends; shape (intervals + 1,), false at both ends."""
+        on = (self.low[1:] <= self.high[:-1]) & (np.diff(self.separation) == 0)
+        return np.concatenate([[False], on, [False]]) if self.low.size else np.zeros(1, dtype=bool)
 
 
 def regimes_between(
@@ -174,7 +180,7 @@ def _stretches(bound: Bound, grading: Grading, low: float, high: float, radii: i
     which, i = np.nonzero(rises[:, :-1] != rises[:, 1:])
     left, right, peak = s[i], s[i + 2], rises[which, i]
     sign = np.where(peak, 1.0, -1.0)[:, None]
-    for _ in range(_ROUNDS):
+    for _ in range(_ROUNDS if which.size else 0):
         x = (left + right)[:, None] / 2 + (right - left)[:, None] / 2 * _CLOSER
         top = np.argmax(sign * curve(x, which[:, None]), axis=1)[:, None]
         left, right = (np.take_along_axis(x, np.clip(top + k, 0, 16), 1)[:, 0] for k in (-1, 1))

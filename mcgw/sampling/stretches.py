@@ -54,7 +54,6 @@ def stretches_of(scene: Scene, branch: Branch, low: float, high: float) -> Stret
 def _stretches(branch: Branch, grading: Grading, separations: bytes, low: float, high: float) -> Stretches:
     h = np.frombuffer(separations)
     found = branch.regimes(grading, h, low, high)
-    goes_on = np.append(False, (found.low[1:] <= found.high[:-1]) & (np.diff(found.separation) == 0))
     inside = (found.low > low) | (h[found.separation] >= low)
     at = h[found.separation]
     left = branch.left(at, found.low - at, grading(found.low))
@@ -66,7 +65,7 @@ def _stretches(branch: Branch, grading: Grading, separations: bytes, low: float,
         low=np.where(inside, found.low, -np.inf),
         high=np.where(found.high < high, found.high, np.inf),
         piece=found.piece,
-        begins=inside & nothing & ~goes_on[: len(inside)],
+        begins=inside & nothing & ~found.goes_on[:-1],
         root=np.where(nothing, found.low, np.where(np.abs(begin - at) <= _NOTHING, at, begin)),
         lost=dwindling & (found.high < high) & (found.low < last),
     )

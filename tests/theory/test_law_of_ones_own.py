@@ -17,7 +17,7 @@ def film_like(u):
     return u**3 + 0.5 * u**4
 
 
-@pytest.mark.parametrize("law", [OWN, OWN.resolved(3000.0)], ids=["formulas", "series"])
+@pytest.mark.parametrize("law", [OWN, OWN.as_data(150.0)], ids=["formulas", "series"])
 @pytest.mark.parametrize("quantity", QUANTITIES)
 def test_kogut_and_etsion_written_by_a_user(law, quantity):
     delta, e = np.geomspace(1e-7, 30, 1001), np.array([[0.0], [0.3], [1.0], [2.0]])
@@ -30,7 +30,7 @@ def test_kogut_and_etsion_written_by_a_user(law, quantity):
 
 def test_series_go_on_below_first_touch():
     law = CustomLaw((film_like,), (lambda u: u**2 / (1 + u * u / 20),), (), 0.3)
-    series = law.resolved(2.0)
+    series = law.as_data(0.6)
     y, e = np.linspace(-0.7, 0.7, 29), np.array(1.0)
     np.testing.assert_allclose(series.load(0, y, e), law.load(0, y, e), rtol=0, atol=1e-14)
     np.testing.assert_allclose(series.radius(0, y, e), law.radius(0, y, e), rtol=0, atol=1e-14)
@@ -39,7 +39,7 @@ def test_series_go_on_below_first_touch():
 
 
 def test_pieces_out_of_reach_are_left_out():
-    series = OWN.resolved(5.0)
+    series = OWN.as_data(0.25)
     assert series.beginnings == (1.0,)
     assert len(series.load_of) == len(series.area_of) == 2
     assert all(len(formula.coefficients) < 33 for formula in series.load_of)
@@ -47,7 +47,7 @@ def test_pieces_out_of_reach_are_left_out():
 
 
 def test_another_law_does_not_agree():
-    series = OWN.resolved(30.0)
+    series = OWN.as_data(1.5)
     given = {"load": series.load_of, "area": series.area_of, "limits": (1.0, 6.0), "critical": 0.05}
     assert series.agrees(CustomLaw(**given))
     for other in ({"critical": 0.06}, {"limits": (1.0, 7.0)}, {"load": series.load_of[::-1]}):
@@ -61,7 +61,7 @@ def test_a_kink_inside_a_piece_is_seen():
     with pytest.raises(
         ValueError, match=r"load\[1\]: a series of 256 terms .* x = 1 and 50: give the penetration"
     ):
-        law.resolved(50.0)
+        law.as_data(5.0)
 
 
 @pytest.mark.parametrize(("arguments", "words"), [
@@ -85,9 +85,9 @@ def test_a_law_of_the_penetration_itself_is_told_from_a_kink():
     with pytest.raises(
         ValueError, match=r"load\[0\]: .* write u\*\*3 for \(u\*u\)\*\*1.5: it is also evaluated at -u"
     ):
-        law.resolved(4.0)
+        law.as_data(0.2)
     whole = CustomLaw(load=(lambda u: u**3,), area=(lambda u: u**2,), limits=(), critical=0.05)
-    assert whole.resolved(4.0).is_data
+    assert whole.as_data(0.2).is_data
 
 
 def test_a_plain_function_is_sent_to_custom_laws(make_scene):
