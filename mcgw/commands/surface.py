@@ -1,4 +1,4 @@
-"""``mcgw surface``: one surface of an ensemble as a map, its contacts as a figure; or a Gaussian map."""
+"""``mcgw surface``: one surface of an ensemble as a map; or a Gaussian map."""
 
 import argparse
 import re
@@ -26,15 +26,6 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--width", metavar="LENGTH", help="extent along x, such as 5mm; default: a square")
     parser.add_argument("--periodic", action="store_true", help="let caps reach across the edges")
     parser.add_argument(
-        "--at", type=float, metavar="H", help="draw the contacts at this d/sigma, with -o FILE.png"
-    )
-    parser.add_argument(
-        "--colour",
-        choices=("load", "modulus"),
-        default="load",
-        help="quantity shown by their colour; default: load",
-    )
-    parser.add_argument(
         "--from-spectrum",
         metavar="LIST",
         help="a Gaussian map instead: rms=1um,long=100um,short=5um[,hurst=0.8], or m0=..,m2=..,m4=.. (SI)",
@@ -43,12 +34,12 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=int, default=0, help="seed of a Gaussian map; default: 0")
     parser.add_argument(
         "-o", "--output", type=Path, required=True, metavar="FILE",
-        help="file ending in .npy, .h5 or .sdf; with --at in .png, .svg or .pdf",
+        help="file ending in .npy, .h5 or .sdf",
     )  # fmt: skip
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Write the map or the figure; print its path and the number of hidden summits."""
+    """Write the map; print its path and the number of hidden summits."""
     if args.from_spectrum is not None:
         return _spectrum(args)
     if args.scene is None:
@@ -57,14 +48,11 @@ def execute(args: argparse.Namespace) -> int:
 
 
 def _check_output(args: argparse.Namespace) -> None:
-    from mcgw.commands.outputs import JSON, Format, Output, check_outputs, figure_format
+    from mcgw.commands.outputs import JSON, Format, Output, check_outputs
     from mcgw.maps.map_files import WRITTEN, files_of_map
     from mcgw.scene.scene_file import files_of
 
     inputs = files_of(args.scene) if args.scene else []
-    if args.at is not None:
-        check_outputs([Output(args.output, figure_format())], inputs=inputs)
-        return
     map_file, *beside = files_of_map(args.output)
     outputs = [Output(map_file, Format("a map", WRITTEN)), *(Output(path, JSON) for path in beside)]
     check_outputs(outputs, inputs=inputs)
@@ -82,7 +70,6 @@ def _shape(text: str) -> tuple[int, int | None]:
 
 def _asperities(args: argparse.Namespace) -> int:
     from mcgw.commands.voice import news, notes, tell_cautions
-    from mcgw.figures.contact_map import save_contact_map, spots_at
     from mcgw.formats.units import parse
     from mcgw.maps.envelope import envelope
     from mcgw.maps.map_files import write_map
@@ -90,16 +77,9 @@ def _asperities(args: argparse.Namespace) -> int:
     from mcgw.scene.scene_file import load_scene, scene_text
 
     scene = load_scene(args.scene)
-    in_full = f"mcgw show --plan {args.scene}"
     width = None if args.width is None else parse(args.width, "m", "--width")
     _check_output(args)
     field = asperities_of(scene, args.surface, width=width)
-    if args.at is not None:
-        spots = spots_at(scene, field, args.at)
-        save_contact_map(field, spots, args.output, colour=args.colour, periodic=args.periodic)
-        news(f"{args.output}: {spots.radius.size} contacts, {spots.load.sum():.6g} N")
-        tell_cautions(scene, in_full)
-        return 0
     columns, rows = _shape(args.shape)
     if rows is None:
         rows = max(round(columns * field.size[1] / field.size[0]), 1)
@@ -108,7 +88,7 @@ def _asperities(args: argparse.Namespace) -> int:
     said, doubts = _account(scene, field, topography)
     news(*said)
     notes(*doubts)
-    tell_cautions(scene, in_full)
+    tell_cautions(scene, f"mcgw show --plan {args.scene}")
     return 0
 
 
@@ -145,8 +125,8 @@ def _spectrum(args: argparse.Namespace) -> int:
     from mcgw.maps.map_files import write_map
     from mcgw.maps.synthetic import gaussian_map, moments_on_grid, spectrum_from
 
-    if args.at is not None or args.scene is not None:
-        raise ValueError("--from-spectrum: draws a map without asperities; leave out SCENE and --at")
+    if args.scene is not None:
+        raise ValueError("--from-spectrum: draws a map without asperities; leave out SCENE")
     if args.pixel is None:
         raise ValueError("--pixel: give the size of a pixel, as --pixel 0.5um")
     if args.seed < 0:

@@ -31,7 +31,7 @@ ensemble = {n_surfaces = 70, n_asperities = 300, seed = 5}
 RUN, SWEEP = "run @s.toml -o a.h5", "sweep @s.toml --over grading.gamma=1,2 -o a.h5"
 COMPARE, EXPORT = "compare @e.h5 -o p.png", "export @s.toml --to abaqus -o a.inp"
 SOLVE, ELASTIC = "solve @s.toml --load 1N", "elastic @s.toml --pressure 1MPa"
-MAP, CONTACTS = "surface @s.toml --shape 50 -o m.h5", "surface @s.toml --at 1 -o m.png"
+MAP = "surface @s.toml --shape 50 -o m.h5"
 GAUSS = "surface --from-spectrum rms=1um,long=30um,short=6um --shape 64x32 --pixel 1um -o m.h5"
 FIT, LINES = "fit @map.npy --pixel 1um --cutoff none -o f.toml", "fit @p.txt --cutoff none -o f.toml"
 
@@ -93,10 +93,6 @@ ROWS = [
     (f"{MAP} --width 2mm", "maps.envelope:envelope", "--shape 40", {"shape": (10, 40)}),
     (MAP, "maps.envelope:envelope", "--periodic", {"periodic": True, "shape": (50, 50)}),
     (MAP, "maps.map_files:write_map", "--output n.npy", {"path.name": "n.npy"}),
-    (CONTACTS, "figures.contact_map:spots_at", "--at 2", {"separation": 2.0}),
-    (CONTACTS, "figures.contact_map:save_contact_map", "--colour modulus",
-     {"colour": "modulus", "periodic": False}),
-    (CONTACTS, "figures.contact_map:save_contact_map", "--periodic", {"colour": "load", "periodic": True}),
     (GAUSS, "maps.synthetic:spectrum_from", "--from-spectrum rms=3um", {"text": "rms=3um"}),
     (GAUSS, "maps.synthetic:gaussian_map", "--pixel 2um",
      {"pixel": near((2e-6, 2e-6)), "shape": (32, 64), "spectrum.rms": 1e-6}),
@@ -156,7 +152,6 @@ SAID = [
     ("init --output x.toml", "x.toml: lapped silicon carbide", ["x.toml"]),
     ("init --schema", "scene.schema.json: with it", ["demo.toml", "scene.schema.json"]),
     ("run @s.toml -o a.h5 --shard 1/2", "share 1/2 is done", None),
-    (f"{CONTACTS}", "m.png: ", ["m.png"]),
     ("figures --only figure-1 --format png pdf svg --csv -o .", ".: 1 figure;",
      ["figure-1.csv", "figure-1.pdf", "figure-1.png", "figure-1.svg"]),
     ("converge @s.toml -o there", "there/s-converge.png: figure", ["s-converge.png"]),
@@ -186,7 +181,7 @@ REFUSED = [
     (f"{EXPORT} --pressures 1MPa:2MPa:1000001", "to 1e6"),
     (f"{SWEEP} --over grading.gamma=1:2:1.5", "with N from 2"),
     (f"{GAUSS} --seed -1", "--seed -1: give a whole number >= 0"),
-    (f"{GAUSS} --at 1", "leave out"), (GAUSS.replace("surface", "surface @s.toml"), "leave out SCENE"),
+    (GAUSS.replace("surface", "surface @s.toml"), "leave out SCENE"),
     (f"{MAP} --width -1mm", "--width = '-1mm': give a number > 0"),
     (f"{MAP} --shape 0x", "--shape '0x': give"),
     ("elastic @s.toml --pressure 2MPa --pixel 2um", "--pixel 2um: is for a map"),

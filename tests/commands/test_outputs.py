@@ -124,7 +124,6 @@ ENDINGS = [
     ("export e.h5 --to calculix -o x.csv", "a table for calculix is written there, whose name ends in .inp"),
     ("solve scene.toml --pressure 1MPa --csv x.h5", "a table"),
     ("surface scene.toml -o x.tiff", "a map is written there, whose name ends in .npy"),
-    ("surface scene.toml --at 1 -o x.h5", "a figure"),
     ("fit map.npy --cutoff none -o x.h5", "a scene"),
     ("init -o x.h5", "a scene"),
 ]
@@ -175,7 +174,6 @@ WRITE = [
     ("show e.h5 --csv OUT", ".csv"),
     ("solve plain.toml --pressure 1MPa --csv OUT", ".csv"),
     ("surface plain.toml --shape 16 -o OUT", ".npy"),
-    ("surface plain.toml --at 0 -o OUT", ".svg"),
     ("init -o OUT", ".toml"),
 ]
 

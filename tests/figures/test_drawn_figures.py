@@ -249,51 +249,6 @@ def test_tradeoff(make_scene, kept, tmp_path, recorded):
     assert [text.get_text() for text in ladder.texts] == ["10", "1000"]
 
 
-def test_contact_map(make_scene, kept, tmp_path, recorded):
-    """Spots to scale at their places in micrometres, coloured by their loads in millinewtons."""
-    from mcgw.figures.contact_map import _DPI, contact_map_figure, save_contact_map, spots_at
-    from mcgw.maps.synthetic import Asperities, asperities_of
-
-    scene = make_scene(grading=analytic.Exponential(2.0))
-    sigma, radius = scene.surface.sigma, scene.surface.radius
-    x, y = np.array([10e-6, 30e-6, 45e-6]), np.array([15e-6, 20e-6, 5e-6])
-    field = Asperities(x, y, sigma * np.array([2.0, 1.5, 0.5]), np.full(3, radius), radius, (60e-6, 40e-6))
-    spots = spots_at(scene, field, 1.0)
-    delta = sigma * np.array([1.0, 0.5])
-    modulus = 2 - np.exp(-np.array([2.0, 1.5]))
-    load = 4 / 3 * scene.surface.E_star * modulus * math.sqrt(radius) * delta**1.5
-    np.testing.assert_allclose(spots.load, load, rtol=1e-12)
-    yields = make_scene(law=mcgw.KogutEtsion(critical=0.05), quantities=("load", "conductance"))
-    pressed = mcgw.simulate(yields)
-    for k, h in enumerate(yields.separations):
-        drawn = spots_at(yields, asperities_of(yields, 1), h)
-        np.testing.assert_allclose(drawn.load.sum(), pressed.load[1, k], rtol=1e-9)
-        np.testing.assert_allclose(4 * drawn.radius.sum(), pressed.conductance[1, k], rtol=1e-9)
-    for colour, values in (("load", 1e3 * load), ("modulus", modulus)):
-        kept.clear()
-        save_contact_map(field, spots, tmp_path / "x.png", colour=colour)
-        (figure,) = kept
-        recorded(f"drawn.map-{colour}", told.drawn(figure))
-        axis, *_ = figure.axes
-        (circles,) = axis.collections
-        np.testing.assert_allclose(circles.get_offsets(), 1e6 * np.column_stack([x[:2], y[:2]]))
-        np.testing.assert_allclose(circles.get_array(), values, rtol=1e-12)
-        widths = circles.get_widths() if hasattr(circles, "get_widths") else 2 * circles._widths
-        np.testing.assert_allclose(widths, 2e6 * np.sqrt(radius * delta), rtol=1e-12)
-        (image,) = axis.get_images()
-        assert image.get_extent() == pytest.approx([0, 60, 0, 40])
-        assert np.max(image.get_array()) == pytest.approx(1e6 * sigma * 2, rel=1e-2)
-        assert image.origin == "lower"
-    pixels = 20e-6 / np.median(spots.radius)  # so many to a radius, and the window is 20 um wide
-    beside = dataclasses.replace(spots, x=np.array([25e-6, 30e-6]))
-    for drawn, number in ((beside, 2), (spots, 1)):
-        axis, *_ = contact_map_figure(field, drawn, inches=1.0, visible=_DPI / pixels).axes
-        assert axis.get_title() == f"2 contacts at $d/\\sigma$ = 1, {number} in this window of the map"
-    (circles,) = axis.collections
-    np.testing.assert_allclose(circles.get_array(), 1e3 * load[1:], rtol=1e-12)
-    assert circles.norm.vmax == pytest.approx(1e3 * load[0], rel=1e-12)  # colours are those of the whole map
-
-
 @pytest.mark.parametrize(("x", "label"), [(1e-12, "10⁻¹²"), (1.0, "10⁰"), (1e308, "10³⁰⁸"), (30.0, "30")])
 def test_labels_of_decades_are_plain_text(x, label):
     assert power_of_ten(x) == label

@@ -14,7 +14,6 @@ from scipy.integrate import quad
 import analytic
 import mcgw
 from mcgw.cli import main
-from mcgw.figures.contact_map import spots_at
 from mcgw.maps import (
     Asperities,
     Spectrum,
@@ -101,17 +100,6 @@ def test_loads_of_the_listed_asperities_are_those_in_the_file(count, make_scene,
         assert ensemble.contacts[3, k] == delta.size
     if count == "fixed":
         assert z.size == scene.n_asperities
-
-
-@pytest.mark.parametrize(
-    "law", [mcgw.Hertz(), mcgw.KogutEtsion(critical=0.05), mcgw.PowerLawGraded(0.5, 1e-6)]
-)
-def test_spots_carry_the_load_of_the_row(make_scene, law):
-    scene = make_scene(separations=(0.5,), sampler="tail", n_surfaces=2, law=law)
-    spots = spots_at(scene, asperities_of(scene, 1), 0.5)
-    ensemble = mcgw.simulate(scene)
-    assert spots.load.sum() == pytest.approx(ensemble.load[1, 0], rel=1e-12)
-    assert np.pi * np.sum(spots.radius**2) == pytest.approx(ensemble.area[1, 0], rel=1e-12)
 
 
 def test_positions_are_uniform_and_belong_to_their_surface(make_scene):
@@ -210,8 +198,6 @@ def test_a_spectrum_has_the_moments_that_were_asked_for(alpha, hurst):
 
 @pytest.mark.parametrize(("arguments", "told"), [
     (["SCENE", "-o", "map.tiff"], "a map is written there"),
-    (["SCENE", "-o", "map.h5", "--at", "1"], "a figure is written there"),
-    (["SCENE", "-o", "map.png", "--at", "99"], "there is no contact"),
     (["SCENE", "-o", "map.h5", "--surface", "1000000"], "surfaces 0 to"),
     (["SCENE", "-o", "map.h5", "--shape", "1x"], "--shape"),
     (["SCENE", "-o", "map.h5", "--shape", "99999"], "more than the"),

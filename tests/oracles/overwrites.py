@@ -64,7 +64,6 @@ CASES = {
     "surface": ("scene.toml", "surface scene.toml --shape 16 -o OUT", ".sdf"),
     "surface, heights": ("heights.npy", "surface scene.toml --shape 16 -o OUT", ".npy"),
     "surface, to HDF5": ("table.csv", "surface scene.toml --shape 16 -o OUT", ".h5"),
-    "surface --at": ("scene.toml", "surface scene.toml --at 0 -o OUT", ".png"),
     "surface, sidecar": ("table.csv", "surface scene.toml --shape 16 -o DIR/m.npy", "m.json"),
     "fit": ("map.npy", "fit map.npy --cutoff none -o OUT", ".toml"),
     "fit, sidecar": ("map.json", "fit map.npy --cutoff none -o OUT", ".toml"),
