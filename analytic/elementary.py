@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from scipy.special import erfcx
 
-from analytic.arrays import Array, Marks
+from analytic.arrays import Array
 
 _PIECE = 2048  # numbers at a time: they stay in the innermost cache
 _LOG2_HIGH, _LOG2_LOW = 0.693147180369123816490, 1.90821492927058770002e-10  # the first has 33 bits
@@ -93,14 +93,6 @@ def log(x: Array) -> Array:
     value[x == 0] = -np.inf
     value[x == np.inf] = np.inf
     return value
-
-
-def halved(holds: Callable[[Array], Marks], left: Array, right: Array) -> Array:
-    """First numbers after `left` at which something holds, as at `right`, by halving down to neighbours."""
-    while np.any(inner := ((middle := left + (right - left) / 2) > left) & (middle < right)):
-        here = holds(middle)
-        right, left = np.where(inner & here, middle, right), np.where(inner & ~here, middle, left)
-    return right
 
 
 def expm1(x: Any) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from analytic.arrays import Array, Ints, hold
-from analytic.elementary import halved
+from analytic.roots import sign_changes
 
 MOST_PIECES = 4096  # as text they stay below two megabytes
 _MOST_TERMS, _MOST_NAME = 64, 200
@@ -144,7 +144,8 @@ class PiecewiseSeries:
         s = s[self(s) != 0]
         sign = np.sign(self(s))
         change = np.flatnonzero(sign[1:] != sign[:-1])
-        behind = halved(lambda x: np.sign(self(x)) != sign[change], s[change], s[change + 1])
+        left, right = s[change], s[change + 1]
+        behind = sign_changes(lambda x, _: self(x), left, right, np.zeros(change.size))
         return tuple(behind.tolist())  # the first heights on the far side
 
 
