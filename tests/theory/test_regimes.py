@@ -136,6 +136,14 @@ def test_a_jump_of_the_modulus_ends_a_regime(name):
     np.testing.assert_allclose([low for low, *_ in listed(regimes)], [0.2, 0.5, 1.0, 2.075], rtol=1e-15)
 
 
+def test_a_band_between_breaks_is_found_however_narrow():
+    """Elastic on 1/500 of a height, where dc/e^2 = 3.33: between two heights looked at far from breaks."""
+    soft = Custom(lambda s: np.where((s >= 1.001) & (s < 1.003), 0.3, 1.0), breaks=(1.001, 1.003))
+    regimes = Branch(Yielding(0.3)).regimes(soft, [0.2], -1.0, 13.0)
+    assert [piece for *_, piece in listed(regimes)] == [0, 1, 0, 1]
+    np.testing.assert_allclose([low for low, *_ in listed(regimes)], [0.2, 0.5, 1.001, 1.003], rtol=1e-15)
+
+
 def residual(deepest, dc):
     """Etsion, Kligerman and Kadin (2005)."""
     x = np.maximum(deepest / dc, 1.0)
