@@ -18,7 +18,6 @@ def sign_changes(
     unit: Array,
     *,
     at_ends: tuple[Array, Array] | None = None,
-    about: float | None = None,
     close: float = 0.0,
 ) -> Array:
     """Return the arguments behind which functions have the sign that they have at `right`.
@@ -32,9 +31,7 @@ def sign_changes(
     unit : ndarray
         Size of the numbers whose rounding the values have besides, shape (functions,).
     at_ends : (ndarray, ndarray), optional
-        Values at `left` and `right`, where they are known.
-    about : float, optional
-        Where the search begins; by default half way.
+        Values at `left` and `right`, where they are known and tell where to begin; else half way.
     close : float, optional
         Size of a value that counts as 0.
 
@@ -54,10 +51,13 @@ def sign_changes(
     array([1.41421356, 1.73205081])
     """
     found, active = right.copy(), np.arange(left.size)
-    fb, fa = at_ends or (excess(left, active), excess(right, active))
-    a, b, behind, step = right, left, fa >= 0, np.full(left.size, 0.5)
-    if about is not None:
-        step = np.clip((about - a) / (b - a), 0.05, 0.95)
+    a, b, step = right, left, np.full(left.size, 0.5)
+    if at_ends is None:
+        fb, fa = excess(left, active), excess(right, active)
+    else:
+        fb, fa = at_ends
+        step = np.clip(fa / (fa - fb), 0.05, 0.95)
+    behind = fa >= 0
     c, fc = b, fb
     for _ in range(_MOST):
         room = np.maximum(_LAST_DIGITS * np.maximum(np.abs(a), unit), _SMALLEST)

@@ -76,7 +76,7 @@ class ManySurfaces:
         lowest : float
             Reduced separation above which all asperities are listed.
         about : float
-            Where the search begins.
+            What most are near, on either side within its distance from the lowest one.
         """
         found, target = np.full(self.counts.size, np.nan), value / q.scale(self.scene.surface)
         if not (self.s.size and self._falls(q)):
@@ -94,13 +94,15 @@ class ManySurfaces:
         sound = np.flatnonzero(high > low)
         at_low = excess(low[sound], sound)
         sound, at_low = sound[at_low >= 0], at_low[at_low >= 0]
+        near = np.minimum(high, 2 * about - lowest)[sound]
+        at_high = excess(near, sound)
+        near, at_high = np.where(at_high < 0, [near, at_high], [high[sound], np.full(sound.size, -1.0)])
         found[sound] = sign_changes(
             lambda h, which: excess(h, sound[which]),
-            high[sound],
+            near,
             low[sound],
             np.ones(sound.size),
-            at_ends=(np.full(sound.size, -1.0), at_low),
-            about=about,
+            at_ends=(at_high, at_low),
             close=_CLOSE,
         )
         return found
