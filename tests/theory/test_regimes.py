@@ -11,6 +11,7 @@ from analytic import Clipped, Custom, Exponential, Homogeneous, Table
 from analytic.laws import Branch
 from analytic.laws.law import ContactLaw, piece_of
 from analytic.laws.regimes import crossings_of, merged_heights
+from analytic.roots import sign_changes
 
 
 class Yielding(ContactLaw):
@@ -142,6 +143,23 @@ def test_a_band_between_breaks_is_found_however_narrow():
     regimes = Branch(Yielding(0.3)).regimes(soft, [0.2], -1.0, 13.0)
     assert [piece for *_, piece in listed(regimes)] == [0, 1, 0, 1]
     np.testing.assert_allclose([low for low, *_ in listed(regimes)], [0.2, 0.5, 1.001, 1.003], rtol=1e-15)
+
+
+def test_a_smooth_function_is_looked_at_a_few_times():
+    """Halving takes some fifty looks; a jump takes as many, and the root is right behind it."""
+    asked = []
+
+    def excess(x, which):
+        asked.append(x.size)
+        return np.where(which == 0, x**3 - 2, np.where(x < 0.7, -1.0, 1.0))
+
+    ends = np.zeros(2), np.full(2, 2.0), np.zeros(2)
+    found = sign_changes(excess, *ends)
+    np.testing.assert_allclose(found, [2 ** (1 / 3), 0.7], rtol=4e-16)
+    assert found[1] >= 0.7
+    asked.clear()
+    sign_changes(lambda x, which: excess(x, 0 * which), *ends)
+    assert len(asked) < 15
 
 
 def residual(deepest, dc):
