@@ -18,5 +18,10 @@ def hold(frozen: Any, **values: Any) -> None:
 
 
 def some_of(values: Array, which: NDArray[Any]) -> Array:
-    """Some of the values, by a mask or by numbers; those beyond the last begin again with the first."""
-    return np.asarray(values[which if which.dtype == np.bool_ else which % len(values)])
+    """Some of the values, by a mask of any shape that they broadcast to, or by numbers.
+
+    Numbers beyond the last begin again with the first.
+    """
+    if which.dtype == np.bool_:
+        return np.asarray(np.broadcast_to(values, which.shape)[which])
+    return np.asarray(values[which % len(values)])

@@ -206,20 +206,17 @@ def terms_of(
 
     A law made for summits of different radii is that of the last axis.
     """
-    every = np.broadcast_arrays(*(np.asarray(x, dtype=np.float64) for x in (h, heights, e)))
-    reach = every[1] >= branch.lowest(every[0])
-    touching, (x, s, modulus) = branch.of_some(np.flatnonzero(reach)), (each[reach] for each in every)
-    above, result = s - x, np.zeros((len(quantities), *reach.shape))
-    pieces = touching.pieces(x, above, modulus)
-    found = np.zeros((len(quantities), pieces.size))
+    h, s, e = (np.asarray(x, dtype=np.float64) for x in (h, heights, e))
+    pieces = branch.pieces(h, s - h, e)
+    x, above, modulus = (np.broadcast_to(each, pieces.shape) for each in (h, s - h, e))
+    result = np.zeros((len(quantities), *pieces.shape))
     for piece in range(int(pieces.max(initial=-1)) + 1):
         here = pieces == piece
         if not here.any():
             continue
-        of_piece, at = touching.of_some(here), (x[here], above[here], modulus[here])
-        for values, quantity in zip(found, quantities, strict=True):
-            values[here] = of_piece.value(quantity, piece, *at)
-    result[:, reach] = found
+        of_piece, at = branch.of_some(here), (x[here], above[here], modulus[here])
+        for k, quantity in enumerate(quantities):
+            result[k, here] = of_piece.value(quantity, piece, *at)
     return result
 
 

@@ -276,7 +276,8 @@ def of_spot(quantity: str, formulas: "ContactLaw | Unloading", piece: int, *at: 
 
 def piece_of(law: ContactLaw, penetration: Array, e: Array) -> Ints:
     """Which piece of the law holds at these penetrations, in the shape of both."""
-    penetration, e = np.broadcast_arrays(penetration, e)
+    piece = np.zeros(np.broadcast_shapes(np.shape(penetration), np.shape(e)), dtype=np.int64)
     with np.errstate(divide="ignore", over="ignore"):  # without a modulus nothing yields
-        limits = law.limits(e)
-    return np.asarray((limits <= penetration).sum(axis=0), dtype=np.int64)
+        for limit in law.limits(e):
+            piece += limit <= penetration
+    return piece
