@@ -9,6 +9,7 @@ from scipy.stats import t as student
 import analytic
 import mcgw
 from mcgw.cli import main
+from mcgw.ensemble.many_surfaces import ManySurfaces
 from mcgw.ensemble.separation import Summits, crossing
 from mcgw.ensemble.solution import solutions
 from mcgw.reports.solved_loads import solutions_text
@@ -218,6 +219,39 @@ def test_surfaces_within_the_margin_are_drawn_once(scene, monkeypatch):
     solutions(replace(scene, n_surfaces=40), "load", [900.0])
     assert sum(n for *_, n in touching) == 40
     assert not whole
+
+
+def test_asperities_are_listed_once_and_a_light_load_looks_at_few(scene, monkeypatch):
+    listed, sizes, above, steps = entered(monkeypatch, "summits_of_many"), [], ManySurfaces.above, []
+
+    def looked_at(many, h):
+        sizes.append(above(many, h).s.size)
+        return above(many, h)
+
+    monkeypatch.setattr(ManySurfaces, "above", looked_at)
+    monkeypatch.setattr(mcgw.ensemble.solution, "_AT_ONCE", 10_000)
+    solutions(replace(scene, n_surfaces=40), "load", [3.0, 900.0], lambda *step: steps.append(step))
+    assert sum(n for *_, n in listed) == 40
+    assert sum(sizes[::2]) < sum(sizes[1::2]) / 5
+    assert len(steps) == len(listed) > 3
+    assert steps[-1] == (40, 40)
+
+
+def test_summits_of_other_radii_add_what_hertz_says(scene):
+    """P = 4/3 E sqrt(R) d^1.5, A = pi R d, dP/dd = 2 E sqrt(R d), by hand; two of three touch."""
+    scene = scene.replace(grading=None)
+    s, ratios, x = np.array([0.4, 2.0, 1.5]), np.array([1.0, 4.0, 0.25]), scene.surface
+    found = Summits.of(scene, s, ratios).sums(["load", "area", "stiffness", "contacts"], 1.0)
+    d, r = x.sigma * np.array([1.0, 0.5]), x.radius * ratios[1:]
+    assert found == pytest.approx(
+        {
+            "load": 4 / 3 * x.E_star * np.sum(np.sqrt(r) * d**1.5),
+            "area": np.pi * np.sum(r * d),
+            "stiffness": 2 * x.E_star * np.sum(np.sqrt(r * d)),
+            "contacts": 2.0,
+        },
+        rel=1e-12,
+    )
 
 
 @pytest.mark.slow
