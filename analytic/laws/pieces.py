@@ -85,12 +85,12 @@ def slope_term(quantity: str, branch: Branch, penetration: Array, e: Array) -> A
 
     Of reduced penetrations s - h, negative without contact, and moduli E*(s)/E*, in their common shape.
     """
-    penetration, e = np.broadcast_arrays(penetration, e)
-    piece = piece_of(branch.law, penetration, e)
-    result = np.zeros(penetration.shape)
-    for j in np.unique(piece[penetration > 0]):
-        here = (piece == j) & (penetration > 0)
-        of_root = partial(branch.of_some(here).of_root, quantity, int(j), e=e[here])
+    piece = np.where(penetration > 0, piece_of(branch.law, penetration, e), -1)
+    penetration, e = (np.broadcast_to(x, piece.shape) for x in (penetration, e))
+    result = np.zeros(piece.shape)
+    for j in range(int(piece.max(initial=-1)) + 1):
+        here = piece == j
+        of_root = partial(branch.of_some(here).of_root, quantity, j, e=e[here])
         result[here] = slope_in_root(of_root, np.sqrt(penetration[here]))
     return result
 

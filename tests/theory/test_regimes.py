@@ -39,6 +39,11 @@ def test_homogeneous_surface_yields_at_fixed_penetrations():
     assert listed(regimes, 2) == []
 
 
+def test_a_piece_holds_from_its_limit_on():
+    penetration = np.array([np.nextafter(0.5, 0), 0.5, 2.0])
+    np.testing.assert_array_equal(piece_of(Yielding(0.5, 2.0), penetration, np.ones(3)), [0, 1, 2])
+
+
 def test_soft_tips_yield_between_two_heights_or_nowhere():
     """gamma = 0: e = exp(-s), and s - dc exp(2 s) is highest, -(1 + log(2 dc))/2, at s = -log(2 dc)/2."""
     dc = 0.05
