@@ -155,6 +155,17 @@ def test_a_process_ends_with_the_code_of_its_command_and_looks_for_no_garbage(mo
         assert (end.value.code, capsys.readouterr().out) == (0, said)
 
 
+@pytest.mark.parametrize(("given", "used"), [(None, "1"), ("3", "3")])
+def test_a_process_has_one_thread_of_blas_unless_told_otherwise(given, used):
+    """It is read when NumPy is imported, so that must come later: two that wait took half of a report."""
+    words = "import os, sys; import mcgw.cli as c; assert 'numpy' not in sys.modules; c.main = lambda: 0\n"
+    words += "try: c.process()\nfinally: print(os.environ['OPENBLAS_NUM_THREADS'])"
+    others = {name: x for name, x in os.environ.items() if name != "OPENBLAS_NUM_THREADS"}
+    asked = others | ({} if given is None else {"OPENBLAS_NUM_THREADS": given})
+    done = subprocess.run([sys.executable, "-c", words], env=asked, capture_output=True, text=True)
+    assert done.stdout.split() == [used]
+
+
 @streams
 @pytest.mark.parametrize("words", ["--version", "--help", "show --help"])
 def test_help_is_what_was_asked_for(words, state, disturbed, monkeypatch):
