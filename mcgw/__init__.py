@@ -5,6 +5,7 @@ Describe a surface and a simulation:
 =======================  =========================================================================
 `Surface`                sigma, R, eta, A_n, E*, as numbers (SI) or texts with units
 `SpectralSurface`        the same by the moments m0, m2, m4 of an isotropic Gaussian surface
+`surface_from`           the same by numbers of ISO 25178 or of profiles: Sq, Sdq, Spc, ...
 `Body`                   one of two bodies; `composite_modulus`: E* of both
 `Scene`                  a surface, separations d/sigma, grading, heights, number of surfaces, seed
 `load_scene`             a scene from its TOML file; `scene_from`, `scene_text`: from and to text
@@ -119,6 +120,7 @@ if TYPE_CHECKING:
     from mcgw.jobs.sweeping import sweep as sweep
     from mcgw.maps.fitted_scene import fitted_scene as fitted_scene
     from mcgw.maps.fitting import fit as fit
+    from mcgw.maps.iso import surface_from as surface_from
     from mcgw.sampling.asperities import heights as heights, radii as radii
     from mcgw.scene.scene import Scene as Scene
     from mcgw.scene.scene_file import (
@@ -158,6 +160,7 @@ _HOMES = {
     "mcgw.jobs.sweeping": "sweep",
     "mcgw.maps.fitted_scene": "fitted_scene",
     "mcgw.maps.fitting": "fit",
+    "mcgw.maps.iso": "surface_from",
     "mcgw.sampling.asperities": "heights radii",
     "mcgw.scene.scene": "Scene",
     "mcgw.scene.scene_file": "load_scene scene_from scene_text",

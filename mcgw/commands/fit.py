@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 HELP = "fit summit density, radius and spread to a measured height map, and write a scene"
 EXAMPLE = "mcgw fit map.h5 --cutoff 5um -o fitted.toml"
 E_STAR = "100 GPa"  # default
+_AREA = "1 mm^2"  # default, of numbers alone
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -23,15 +24,20 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     from mcgw.maps.steps import STEPS
 
     parser.add_argument(
-        "map", type=Path, nargs="+", metavar="MAP",
+        "map", type=Path, nargs="*", metavar="MAP",
         help=".npy, .h5 or text (SDF, X3P, ... with the extra maps); or profiles of one surface (text with x "
             "and z), recognised by their shape",
+    )  # fmt: skip
+    parser.add_argument(
+        "--iso", nargs="+", metavar="NUMBER",
+        help="no map, but numbers that an instrument states: Sq=0.8um Sdq=0.12 Spc=0.043/um (or Spd; Rq, "
+        "Rdq, Rpd, RSm of profiles; Sal autocorrelation=gaussian; pruning=0 if all peaks counted)",
     )  # fmt: skip
     parser.add_argument("--profile", action="store_true", help="read each file as a profile")
     for step in STEPS:
         told = f"; default: {step.kinds[0]}" if step.kinds else ""
         parser.add_argument(
-            f"--{step.name.replace('_', '-')}", required=step.name == "cutoff", help=step.words + told,
+            f"--{step.name.replace('_', '-')}", help=step.words + told,
             choices=step.kinds or None, default=step.kinds[0] if step.kinds else None,
             metavar=None if step.kinds else "LENGTH",
         )  # fmt: skip
@@ -96,6 +102,12 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.maps.preparation import preparation_of
     from mcgw.maps.profile_files import holds_profile
 
+    if args.iso is not None:
+        return _of_numbers(args)
+    if not args.map:
+        raise ValueError("MAP: give a map or profiles, or --iso with numbers such as Sq=0.8um Sdq=0.12")
+    if args.cutoff is None:
+        raise ValueError("--cutoff: give the shortest wavelength of the roughness, such as 5um, or none")
     asked, across = preparation_of(
         vars(args), lambda key, text: parse(text, "m", f"--{key.replace('_', '-')}")
     )
@@ -129,6 +141,49 @@ def execute(args: argparse.Namespace) -> int:
         f"or at a load: mcgw solve {args.output} --pressure 1MPa"
     )
     return 0
+
+
+def _of_numbers(args: argparse.Namespace) -> int:
+    """Write the scene of an isotropic Gaussian surface with these numbers."""
+    from mcgw.commands.outputs import TOML, Output, check_outputs
+    from mcgw.commands.voice import news, notes
+    from mcgw.formats.units import parse
+    from mcgw.maps.fitted_scene import scene_of_moments, write_scene
+    from mcgw.maps.iso import moments_from
+
+    if args.map:
+        raise ValueError(f"{args.map[0]}: give a map, or --iso with numbers, not both")
+    pairs = [part.partition("=")[::2] for part in args.iso]
+    if wrong := next((part for part in args.iso if "=" not in part), None):
+        raise ValueError(f"--iso {wrong!r}: give NAME=VALUE, such as Sq=0.8um")
+    names = [key for key, _ in pairs]
+    if twice := next((key for key in names if names.count(key) > 1), None):
+        raise ValueError(f"--iso: gives {twice} more than once")
+    numbers = dict(pairs)
+    pruning = {} if "pruning" not in numbers else {"pruning": _share(numbers.pop("pruning"))}
+    moments, doubts = moments_from(numbers, **pruning)
+    area = parse(args.nominal_area or _AREA, "m^2", "--nominal-area")
+    E_star = parse(args.E_star or E_STAR, "Pa", "--E-star")
+    check_outputs([Output(args.output, TOML)])
+    scene = scene_of_moments(moments, area, E_star, "From " + " ".join(args.iso)[:60])
+    told = f"m0 = {moments.m0:.4g} m^2, m2 = {moments.m2:.4g}, m4 = {moments.m4:.4g} 1/m^2"
+    write_scene(scene, args.output, None, [" ".join(args.iso), told, *doubts])
+    news(
+        f"{args.output}: {told}, alpha = {moments.alpha:.4g}",
+        f"sigma = {moments.sigma:.4g} m, radius = {moments.radius:.4g} m, eta = {moments.eta:.4g} 1/m^2, "
+        f"E_star = {E_star:.4g} Pa{' (assumed; give --E-star)' * (args.E_star is None)}, "
+        f"nominal_area = {area:.4g} m^2{' (assumed; give --nominal-area)' * (args.nominal_area is None)}",
+    )
+    notes(*doubts)
+    return 0
+
+
+def _share(text: str) -> float:
+    """A share of Sz, which may be 0."""
+    try:
+        return float(text)
+    except ValueError:
+        raise ValueError(f"pruning = {text!r}: give a share of Sz, such as 0.05, or 0") from None
 
 
 def _of_map(args: argparse.Namespace, asked: "Preparation", pixel: float | None, across: int) -> "Fitted":

@@ -32,6 +32,7 @@ _FACTORS = {
     "m": _METRIC | _NAMED | {"in": _INCH},
     "m^2": {f"{name}2": factor**2 for name, factor in _SQUARED.items()},
     "1/m^2": {f"1/{name}2": factor**-2 for name, factor in _SQUARED.items()},
+    "1/m": {f"1/{name}": 1 / factor for name, factor in _SQUARED.items()},
     "Pa": _prefixed("Pa", f"{_SMALL}kMGT")
     | {f"N/{name}2": _METRIC[name] ** -2 for name in ("m", "cm", "mm")}
     | {f"kgf/{name}2": _KILOGRAM * _METRIC[name] ** -2 for name in ("m", "cm", "mm")}
@@ -52,6 +53,7 @@ EXAMPLES = {
     "m": "1.37um, 0.2 mm or 5e-6 (m)",
     "m^2": "1 cm^2, 4 mm^2 or 1e-4 (m^2)",
     "1/m^2": "300/mm^2, 300 mm^-2 or 3e8 (1/m^2)",
+    "1/m": "0.043/um, 43 mm^-1 or 4.3e4 (1/m)",
     "Pa": "1MPa, 78.6 GPa or 1e6 (Pa)",
     "N": "5N, 2kN or 0.3 (N)",
     "s": "90 s, 30 min or 2 h",
@@ -123,4 +125,4 @@ def _plain(written: str) -> str:
     plain = unicodedata.normalize("NFKC", written).replace("\N{MINUS SIGN}", "-")
     plain = plain.replace("\N{GREEK CAPITAL LETTER OMEGA}", "ohm")
     plain = re.sub(r"\^|\*|\N{MIDDLE DOT}|\s", "", plain)
-    return re.sub(r"^(?:/(\w+)|(\w+)-2)$", lambda m: f"1/{m[1] or m[2] + '2'}", plain)
+    return re.sub(r"^(?:/(\w+)|(\w+)-([12]))$", lambda m: f"1/{m[1] or m[2] + m[3].strip('1')}", plain)

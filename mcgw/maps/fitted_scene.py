@@ -7,7 +7,15 @@ from typing import Any, Literal
 import numpy as np
 import tomli_w
 
-from analytic import HeightTable, MeasuredHeights, MeasuredRadii, Nayak, RandomCurvature, Surface
+from analytic import (
+    HeightTable,
+    MeasuredHeights,
+    MeasuredRadii,
+    Nayak,
+    RandomCurvature,
+    SpectralMoments,
+    Surface,
+)
 from mcgw.formats.files import together, whole_file
 from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
@@ -145,8 +153,7 @@ def _as_fitted(fit: Fit | ProfileFit, use: str, heights: Heights, modulus: float
     if heights == "nayak":
         if use != "moments":
             raise ValueError(f'use = "{use}": heights = "nayak" follow from the "moments"')
-        law, surface = Nayak(fit.moments.alpha), fit.moments.surface(fit.area, modulus)
-        return _scene(surface, title, heights=law, curvature=RandomCurvature(law.alpha))
+        return scene_of_moments(fit.moments, fit.area, modulus, title)
     if heights != "summits" and use not in fit.estimates:
         raise ValueError(
             f"use = {use!r}: this map has no such estimate; give one of {', '.join(fit.estimates)}"
@@ -155,6 +162,12 @@ def _as_fitted(fit: Fit | ProfileFit, use: str, heights: Heights, modulus: float
         return _of_summits(fit, use, heights, modulus, title)
     found = fit.estimates[use]
     return _scene(Surface(found.sigma.value, found.radius.value, found.eta.value, fit.area, modulus), title)
+
+
+def scene_of_moments(moments: SpectralMoments, area: float, modulus: float, title: str) -> Scene:
+    """The scene of an isotropic Gaussian surface, each summit with its own radius."""
+    law = Nayak(moments.alpha)
+    return _scene(moments.surface(area, modulus), title, heights=law, curvature=RandomCurvature(law.alpha))
 
 
 def _of_summits(fit: Fit, use: str, heights: Heights, modulus: float, title: str) -> Scene:

@@ -139,6 +139,7 @@ ROWS = [
 
 # What a command prints or writes by itself: its line, a text that is said, and the files that are then there.
 SAID = [
+    ("fit --iso Sq=1um Sdq=0.1 Spc=20/mm -o f.toml", "f.toml: m0 = 1e-12 m^2", ["f.toml"]),
     ("show --scene @e.h5", "\n[surface]\n", []), ("show --verify @e.h5", "e.h5: intact (", []),
     ("show --digest @e.h5", "@digest", []), ("figures --list", "figure-1\nfigure-2", []),
     ("show @e.h5 --csv x.csv", "x.csv: the table", ["x.csv"]),

@@ -1,0 +1,188 @@
+"""Numbers of ISO 25178 and of profiles: formulas against drawn maps, and what is refused or told."""
+
+import math
+
+import numpy as np
+import pytest
+
+import mcgw
+from analytic import SpectralMoments
+from mcgw.cli import main
+from mcgw.maps import Spectrum, gaussian_map, moments_on_grid
+from mcgw.maps.iso import NUMBERS, moments_from
+from mcgw.maps.summit_sums import summit_sums_of
+
+MOMENTS = SpectralMoments(6.4e-13, 7.2e-3, 8.1e8)  # alpha = 10
+
+
+def numbers_seen(alpha: float, seed: int) -> tuple[SpectralMoments, dict[str, float]]:
+    """The moments that a periodic map was drawn from, and its numbers counted on the map."""
+    spectrum = Spectrum.with_moments(SpectralMoments(1e-12, 1e-2, alpha * 1e8))
+    pixel = spectrum.short / 16
+    n = max(math.ceil(4 * spectrum.long / pixel), 300)
+    drawn = gaussian_map(spectrum, (n, n), (pixel, pixel), np.random.default_rng(seed))
+    z = drawn.heights - drawn.heights.mean()
+    found = summit_sums_of(drawn, across=2)
+    slopes = [np.roll(z, -1, axis) - z for axis in (0, 1)]
+    crossings = np.count_nonzero((z < 0) & (np.roll(z, -1, 1) >= 0)) / (z.size * pixel)
+    right, left = np.roll(z, -1, 1), np.roll(z, 1, 1)
+    peaks = np.count_nonzero((z > right) & (z >= left)) / (z.size * pixel)
+    seen = {
+        "Sq": z.std(),
+        "Sdq": math.sqrt(sum(np.mean(s**2) for s in slopes)) / pixel,
+        "Spc": found.curvatures.mean(),
+        "Spd": found.heights.size / found.area,
+        "Rq": z.std(),
+        "Rdq": math.sqrt(np.mean(slopes[1] ** 2)) / pixel,
+        "Rpd": peaks,
+        "RSm": 1 / crossings,
+    }
+    return moments_on_grid(spectrum, (n, n), (pixel, pixel)), seen
+
+
+@pytest.mark.parametrize("alpha", [2.0, 5.0])
+def test_each_formula_against_drawn_maps(alpha):
+    """Mean over six maps: within four standard errors and 2 % of pixels."""
+    each = [numbers_seen(alpha, seed) for seed in range(6)]
+    moments = each[0][0]
+    for key, row in NUMBERS.items():
+        powers = np.prod(
+            [m**p for m, p in zip((moments.m0, moments.m2, moments.m4), row.powers, strict=True)]
+        )
+        logs = np.log([seen[key] / (row.factor * powers) for _, seen in each])
+        assert abs(logs.mean()) < 0.02 + 4 * logs.std(ddof=1) / math.sqrt(len(each)), key
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_from_numbers_to_a_map_and_back(seed):
+    """Ten spectra: moments of a map drawn for the numbers lie inside the intervals of its fit, or 2 % off."""
+    rng = np.random.default_rng(100 + seed)
+    alpha = float(rng.uniform(2, 5))
+    numbers = {"Sq": 1e-6, "Sdq": float(rng.uniform(0.05, 0.3))}
+    numbers["Spc"] = NUMBERS["Spc"].factor * math.sqrt(alpha) * numbers["Sdq"] ** 2 / 2 / numbers["Sq"]
+    moments = mcgw.surface_from(**numbers, pruning=0, nominal_area="1 mm^2", E_star="1 GPa").moments
+    spectrum = Spectrum.with_moments(moments)
+    pixel = spectrum.short / 10
+    n = math.ceil(6 * spectrum.long / pixel)
+    found = mcgw.fit(gaussian_map(spectrum, (n, n), (pixel, pixel), rng), cutoff=None, form="none")
+    for name in ("m0", "m2", "m4"):
+        told = getattr(found, name)
+        assert 0.98 * told.low < getattr(moments, name) < 1.02 * told.high, name
+
+
+def test_values():
+    """Against the printed arithmetic: alpha = 10, and 3.4e9 summits/m^2."""
+    moments, doubts = moments_from({"Sq": "0.8 um", "Sdq": 0.12, "Spc": "0.043/um"}, pruning=0)
+    assert moments.alpha == pytest.approx(10.08, abs=0.01)
+    assert moments.eta == pytest.approx(3.475e9, rel=1e-3)
+    assert not doubts
+    for spelled in ("43/mm", "43 mm^-1", "4.3e4", 4.3e4):
+        same = moments_from({"Sq": 0.8e-6, "Sdq": "12 %", "Spc": spelled}, pruning=0)[0]
+        assert same.m4 == pytest.approx(moments.m4, rel=1e-14)
+
+
+def numbers_of(m: SpectralMoments, *keys: str) -> dict[str, float]:
+    """The numbers of a surface, from printed formulas."""
+    all_of = {
+        "Sq": math.sqrt(m.m0), "Sdq": math.sqrt(2 * m.m2), "Rq": math.sqrt(m.m0), "Rdq": math.sqrt(m.m2),
+        "Spc": 8 * math.sqrt(m.m4 / math.pi) / 3, "Spd": m.m4 / (6 * math.pi * math.sqrt(3) * m.m2),
+        "Rpd": math.sqrt(m.m4 / m.m2) / (2 * math.pi), "RSm": 2 * math.pi * math.sqrt(m.m0 / m.m2),
+    }  # fmt: skip
+    return {key: all_of[key] for key in keys}
+
+
+@pytest.mark.parametrize(
+    "keys",
+    [("Sq", "Sdq", "Spc"), ("Sq", "Sdq", "Spd"), ("Rq", "Rdq", "Rpd"), ("Rq", "RSm", "Rpd"), (*NUMBERS,)],
+)
+def test_three_numbers_or_more_give_the_moments(keys):
+    """From printed formulas back; all eight agree."""
+    found, doubts = moments_from(numbers_of(MOMENTS, *keys), pruning=0)
+    for name in ("m0", "m2", "m4"):
+        assert getattr(found, name) == pytest.approx(getattr(MOMENTS, name), rel=1e-12)
+    assert not doubts
+
+
+def test_disagreement_is_told():
+    """A density four times too small is named, and the rest share it."""
+    numbers = numbers_of(MOMENTS, "Sq", "Sdq", "Spc", "Spd")
+    numbers["Spd"] /= 4
+    with pytest.warns(UserWarning, match=r"disagree.*Spc by a factor of .*Spd by a factor of"):
+        mcgw.surface_from(**numbers, pruning=0, nominal_area=1e-6, E_star=1e11)
+    numbers["Spd"] *= 4 * 1.02
+    assert not moments_from(numbers, pruning=0)[1]
+
+
+def test_pruned_peaks_are_told():
+    """By default an instrument has left out low peaks."""
+    with pytest.warns(UserWarning, match="Spc: the formula is for all summits.*pruning = 0"):
+        mcgw.surface_from(Sq=8e-7, Sdq=0.12, Spc=4.3e4, nominal_area=1e-6, E_star=1e11)
+    assert not moments_from(numbers_of(MOMENTS, "Rq", "Rdq", "Rpd"))[1]
+
+
+def test_autocorrelation():
+    """Gaussian: alpha = 3 and l = Sal/sqrt(ln 5); exponential: integrals of its spectrum by quadrature."""
+    sal, length = 10e-6, 10e-6 / math.sqrt(math.log(5))
+    m = moments_from({"Sq": 1e-6, "Sal": sal})[0]
+    assert (m.m0, m.m2, m.m4) == pytest.approx((1e-12, 2e-12 / length**2, 12e-12 / length**4), rel=1e-13)
+    m = moments_from({"Sq": 1e-6, "Sal": sal, "autocorrelation": "exponential", "short": "2 um"})[0]
+    u = 2 * math.pi * sal / math.log(5) / 2e-6
+    x, w = np.polynomial.legendre.leggauss(200)
+    q, w = (x + 1) * u / 2, w * u / 2
+    density = q * (1 + q * q) ** -1.5
+    q2, q4 = ((w * density * q**k).sum() / (w * density).sum() / (sal / math.log(5)) ** k for k in (2, 4))
+    assert (m.m2, m.m4) == pytest.approx((q2 / 2 * 1e-12, 3 * q4 / 8 * 1e-12), rel=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("numbers", "told"),
+    [
+        ({"Ra": 1e-6}, "Ra: is not a number"),
+        ({"Sq": 1e-6}, "Sq: does not tell m2, m4; add Sdq"),
+        ({"Rq": 1e-6, "Rdq": 0.1, "RSm": 1e-5}, "does not tell m4; add Spc, Spd or Rpd"),
+        ({}, "no number: does not tell m0"),
+        ({"Sq": "1 kg", "Sdq": 0.1, "Spc": 1e4}, "Sq = '1 kg': give a number"),
+        ({"Sq": -1.0, "Sdq": 0.1, "Spc": 1e4}, "Sq = -1.0"),
+        ({"Sq": 1e-6, "Sdq": 1.0, "Spc": 1e3}, "alpha = m0 m4/m2.* has at least 1.5"),
+        ({"Sq": 1e-6, "Sdq": 0.1, "Sal": 1e-5}, "go with Sq alone"),
+        ({"Sq": 1e-6, "autocorrelation": "gaussian"}, "needs Sal"),
+        ({"Sq": 1e-6, "Sal": 1e-5, "autocorrelation": "exponential"}, "diverge; give short"),
+        ({"Sq": 1e-6, "Sal": 1e-5, "autocorrelation": "x"}, "give gaussian or exponential"),
+        ({"Sq": 1e-6, "Sal": 1e-5, "short": 1e-6}, "short: is for autocorrelation = exponential"),
+        ({"Sq": 1e-6, "Sdq": 0.1, "Spc": 1e4, "pruning": 1.0}, "pruning = 1.0: give a share"),
+    ],
+)
+def test_refused_in_one_line(numbers, told):
+    """Named: the key, its value, and what would do."""
+    with pytest.raises(mcgw.SceneError, match=told) as caught:
+        mcgw.surface_from(**numbers, nominal_area=1e-6, E_star=1e11)
+    assert "\n" not in str(caught.value)
+
+
+def test_by_command(tmp_path, capsys):
+    """The scene has the surface; its summits have radii of their own."""
+    path = tmp_path / "iso.toml"
+    line = ["fit", "--iso", "Sq=0.8um", "Sdq=0.12", "Spc=0.043/um", "pruning=0", "-o", str(path)]
+    assert main(line) == 0
+    assert "alpha = 10.08" in capsys.readouterr().out
+    scene = mcgw.load_scene(path)
+    assert scene.heights.alpha == pytest.approx(10.08, abs=0.01)
+    assert scene.curvature is not None
+    assert (scene.surface.nominal_area, scene.surface.E_star) == (1e-6, 1e11)
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        (["--iso", "Sq"], "--iso 'Sq': give NAME=VALUE"),
+        (["--iso", "Sq=1um", "Sq=2um"], "gives Sq more than once"),
+        (["--iso", "Sq=1um", "pruning=x"], "pruning = 'x': give a share"),
+        (["map.npy", "--iso", "Sq=1um"], "map.npy: give a map, or --iso"),
+        ([], "MAP: give a map or profiles, or --iso"),
+        (["map.npy"], "--cutoff: give the shortest wavelength"),
+    ],
+)
+def test_commands_that_lack_something(given, told, tmp_path, capsys):
+    """One line, exit code 2."""
+    assert main(["fit", *given, "-o", str(tmp_path / "x.toml")]) == 2
+    assert told in capsys.readouterr().err
