@@ -1,6 +1,8 @@
 """The scene of a fit, ready to run."""
 
 import math
+import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Literal
 
@@ -28,6 +30,7 @@ from mcgw.scene.values import MOMENTS, SUMMITS
 
 Heights = Literal["gaussian", "nayak", "table", "measured", "summits"]
 _EQUAL = 1e-3  # of the standard deviation of the map: summits that differ less are equally high
+_ONE_LINE = 110  # characters of a list in a scene
 _FITTED = ("load", "area", "stiffness", "contacts", "conductance")  # wanted quantities of a fitted scene
 
 
@@ -199,6 +202,22 @@ def _scene(surface: Surface, title: str, **more: Any) -> Scene:
     )
 
 
+def _in_few_lines(text: str, separations: Sequence[float]) -> str:
+    """TOML text with its short lists on one line each, and even separations as a range."""
+
+    def short(found: re.Match[str]) -> str:
+        line = re.sub(r",? *\n *(?=\])|(?<=\[)\n *", "", found[0])
+        line = re.sub(r" *\n *", " ", line)
+        return line if len(line) <= _ONE_LINE else found[0]
+
+    start, stop, num = separations[0], separations[-1], len(separations)
+    even = [float(f"{h:.15g}") for h in np.linspace(start, stop, num)]  # as a range is read
+    if num > 1 and even == list(separations):
+        of_range = f"separations = {{start = {start!r}, stop = {stop!r}, num = {num}}}"
+        text = re.sub(r"^separations = \[[^\]]*\]", of_range, text, flags=re.MULTILINE)
+    return re.sub(r"^\w+ = \[\n(?: .*\n)*\]", short, text, flags=re.MULTILINE)
+
+
 def heights_beside(path: Path) -> Path:
     """Path of the file of summit heights."""
     return path.with_name(f"{path.stem}.heights.npy")
@@ -215,7 +234,7 @@ def write_scene(scene: Scene, path: Path, measured: Fit | None, comments: list[s
     document = scene_document(scene, heights_file=None if measured is None else beside.name)
     for key in document["ensemble"].pop("left_out", []):
         del document["ensemble"][key]
-    text += tomli_w.dumps(document)
+    text += _in_few_lines(tomli_w.dumps(document), scene.separations)
     if measured is None:
         with whole_file(path) as unfinished:
             unfinished.write_text(text, encoding="utf-8")

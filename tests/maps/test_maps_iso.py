@@ -9,6 +9,7 @@ import mcgw
 from analytic import SpectralMoments
 from mcgw.cli import main
 from mcgw.maps import Spectrum, gaussian_map, moments_on_grid
+from mcgw.maps.fitted_scene import write_scene
 from mcgw.maps.iso import NUMBERS, moments_from
 from mcgw.maps.summit_sums import summit_sums_of
 
@@ -186,3 +187,23 @@ def test_commands_that_lack_something(given, told, tmp_path, capsys):
     """One line, exit code 2."""
     assert main(["fit", *given, "-o", str(tmp_path / "x.toml")]) == 2
     assert told in capsys.readouterr().err
+
+
+def test_scenes_of_fits_are_read_by_people(tmp_path):
+    """A range of separations and short lists stand on a line, long lists do not; all is read back."""
+    spectrum = Spectrum(rms=1e-6, long=50e-6, short=10e-6)
+    drawn = gaussian_map(spectrum, (128, 128), (1e-6, 1e-6), np.random.default_rng(1))
+    found = mcgw.fit(drawn, cutoff=None)
+    for kind in ("gaussian", "table"):
+        scene = mcgw.fitted_scene(found, heights=kind)
+        write_scene(scene, tmp_path / "f.toml", None, ["of a test"])
+        text = (tmp_path / "f.toml").read_text()
+        assert "\nseparations = {start = 0.0, stop = 3.0, num = 31}\n" in text
+        assert '\nquantities = ["load", "area", "stiffness", "contacts", "conductance"]\n' in text
+        assert "\ncorrelation = [[1.0, " in text
+        assert max(map(len, text.partition("cautions")[0].splitlines())) < 130
+        assert mcgw.load_scene(tmp_path / "f.toml") == scene
+    uneven = scene.replace(separations=[0.0, 1.0, 3.0])
+    write_scene(uneven, tmp_path / "g.toml", None, [])
+    assert "\nseparations = [0.0, 1.0, 3.0]\n" in (tmp_path / "g.toml").read_text()
+    assert mcgw.load_scene(tmp_path / "g.toml") == uneven
