@@ -6,6 +6,7 @@ Describe a surface and a simulation:
 `Surface`                sigma, R, eta, A_n, E*, as numbers (SI) or texts with units
 `SpectralSurface`        the same by the moments m0, m2, m4 of an isotropic Gaussian surface
 `surface_from`           the same by numbers of ISO 25178 or of profiles: Sq, Sdq, Spc, ...
+`combine`                two rough bodies as one surface: their moments add
 `Body`                   one of two bodies; `composite_modulus`: E* of both
 `Scene`                  a surface, separations d/sigma, grading, heights, number of surfaces, seed
 `load_scene`             a scene from its TOML file; `scene_from`, `scene_text`: from and to text
@@ -121,6 +122,7 @@ if TYPE_CHECKING:
     from mcgw.maps.fitted_scene import fitted_scene as fitted_scene
     from mcgw.maps.fitting import fit as fit
     from mcgw.maps.iso import surface_from as surface_from
+    from mcgw.maps.two_bodies import combine as combine
     from mcgw.sampling.asperities import heights as heights, radii as radii
     from mcgw.scene.scene import Scene as Scene
     from mcgw.scene.scene_file import (
@@ -161,6 +163,7 @@ _HOMES = {
     "mcgw.maps.fitted_scene": "fitted_scene",
     "mcgw.maps.fitting": "fit",
     "mcgw.maps.iso": "surface_from",
+    "mcgw.maps.two_bodies": "combine",
     "mcgw.sampling.asperities": "heights radii",
     "mcgw.scene.scene": "Scene",
     "mcgw.scene.scene_file": "load_scene scene_from scene_text",
