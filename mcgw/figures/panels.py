@@ -9,26 +9,26 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.legend_handler import HandlerTuple
-from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, MaxNLocator, NullFormatter
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FixedLocator, MaxNLocator
 
 from mcgw.ensemble.intervals import TOO_FEW
 from mcgw.figures.data import GAMMA, FigureData, Panel, Points, Series, figure_table
-from mcgw.figures.style import BAND, LEVEL, PAPER, STYLE, look, power_of_ten, save_figure, tick_label
+from mcgw.figures.style import BAND, LEVEL, PAPER, STYLE, look, save_figure
 
 _WIDTH, _NARROWEST = 3.7, 4.4  # inches, of a panel with its labels and of a figure
 _TALL, _RESIDUAL, _TEXTS = 3.2, 0.8, 0.6  # inches, of a panel, residuals under it, title and caption
 _KEY, _THEORY = "Monte Carlo, 95 %", "theory"
 _MARKS = look("Monte Carlo")
 _WHITE: Any = {"ms": 4, "mfc": "white", "mew": 0.9}
-_FEW, _FEWER = 1.5, 0.5  # decades below which ticks at 2 and 5 times powers of ten are added
 _UNSEEN = 0.01  # share of the smallest mean: how far down theory is drawn
-_SMALL, _HANDLE, _LETTER, _ROW = 8, 34.0, 4.4, 13.0  # points, of a legend: text, line and gaps, letter, row
+_SMALL, _HANDLE, _LETTER = 8, 34.0, 4.4  # points, of a legend: text, line and gaps, letter
 _FINE = 12  # places from which on a line has no kinks
 _SAME = 0.25  # standard errors that markers of residuals cover
 
 
 def draw(data: FigureData) -> Figure:
-    """Draw the panels of a figure beside and below each other.
+    """Draw the panels of a figure beside and below each other, under one legend.
 
     Under a panel with Monte-Carlo points are their distances from theory in standard errors: five decades,
     or a scale of ten to one, hide what matters.
@@ -46,28 +46,37 @@ def draw(data: FigureData) -> Figure:
     columns = 3 if len(data.panels) == 3 else min(data.columns, len(data.panels))
     rows = -(-len(data.panels) // columns)
     checked = any(map(_has_errors, data.panels))
-    width = max(_WIDTH * columns, _NARROWEST)
     with mpl.rc_context(STYLE):
-        size = width, rows * (_TALL + checked * _RESIDUAL) + _TEXTS
+        size = max(_WIDTH * columns, _NARROWEST), rows * (_TALL + checked * _RESIDUAL) + _TEXTS
         figure = Figure(figsize=size, layout="constrained")
-        grid = figure.add_gridspec(2 * rows, columns, height_ratios=[_TALL, _RESIDUAL] * rows)
-        legends = [0] * rows
+        part: Any = figure.subfigures()  # its legend stands below the title of the figure
+        grid = part.add_gridspec(2 * rows, columns, height_ratios=[_TALL, _RESIDUAL] * rows)
         for k, panel in enumerate(data.panels):
             row, column = divmod(k, columns)
-            new = k == 0 or _labels(panel) != _labels(data.panels[0])
             if not _has_errors(panel):
-                axis = figure.add_subplot(grid[2 * row : 2 * row + 2, column])
-                legends[row] = max(legends[row], draw_panel(axis, panel, keyed=new))
+                draw_panel(part.add_subplot(grid[2 * row : 2 * row + 2, column]), panel)
                 continue
-            above = figure.add_subplot(grid[2 * row, column])
-            legends[row] = max(legends[row], draw_panel(above, panel, keyed=new))
-            below = figure.add_subplot(grid[2 * row + 1, column], sharex=above)
+            above = part.add_subplot(grid[2 * row, column])
+            draw_panel(above, panel)
+            below = part.add_subplot(grid[2 * row + 1, column], sharex=above)
             _draw_residuals(below, panel, labelled=column == 0)
             above.set_xlabel("")
             above.tick_params(labelbottom=False)
-        figure.set_figheight(size[1] + _ROW / 72 * sum(legends))
+        _draw_legend(part, data.panels, size[0])
         write_around(figure, data.title, data.caption)
     return figure
+
+
+def _draw_legend(part: Any, panels: Sequence[Panel], width: float) -> None:
+    """Name lines and markers above all panels, where no data are."""
+    named = keys(part.axes, panels)
+    if len(named) > 1:
+        longest = _HANDLE + _LETTER * max(map(len, named))
+        columns = max(int(72 * width / longest), 1)
+        part.legend(
+            named.values(), named.keys(), ncols=columns, fontsize=_SMALL, loc="outside upper left",
+            handlelength=2.5, columnspacing=1, handler_map={tuple: HandlerTuple(ndivide=None)},
+        )  # fmt: skip
 
 
 def write_around(figure: Any, title: str, caption: str = "") -> None:
@@ -82,23 +91,13 @@ def _wrapped(text: str, width: int) -> str:
     return "\n".join(line for part in text.splitlines() for line in textwrap.wrap(part, width))
 
 
-def _labels(panel: Panel) -> list[str]:
-    return [series.label for series in panel.series]
-
-
 def _known(panel: Panel) -> list[tuple[int, Series, Points]]:
     """Series with points, and which of the panel they are."""
     return [(k, s, s.points) for k, s in enumerate(panel.series) if s.points is not None]
 
 
-def draw_panel(axis: Any, panel: Panel, *, keyed: bool) -> int:
-    """Draw lines, points on them and, if `keyed`, the legend between title and axes, where no data are.
-
-    Returns
-    -------
-    int
-        Rows of the legend.
-    """
+def draw_panel(axis: Any, panel: Panel) -> None:
+    """Draw lines and the points on them."""
     positive = [float(y[y > 0].min()) for y in (x.theory for x in panel.series) if np.any(y > 0)]
     logarithmic = panel.scales[1] == "log" and bool(positive)  # a log axis cannot show 0 alone
     yscale = "linear" if panel.scales[1] == "log" and not positive else panel.scales[1]
@@ -112,55 +111,19 @@ def draw_panel(axis: Any, panel: Panel, *, keyed: bool) -> int:
         axis.set_ylim(bottom=_UNSEEN * min(mean[mean > 0].min() for mean in means if np.any(mean > 0)))
     elif logarithmic:
         axis.set_ylim(bottom=0.6 * min(positive))
-    set_ticks(axis.xaxis)
-    set_ticks(axis.yaxis)
-    rows = _draw_legend(axis, panel) if keyed else 0
-    axis.set_title(panel.title, loc="left", pad=mpl.rcParams["axes.titlepad"] + _ROW * rows)
-    return rows
+    axis.set_title(panel.title, loc="left")
 
 
-def _draw_legend(axis: Any, panel: Panel) -> int:
-    """Name the lines and the markers as they are drawn; return how many rows this takes."""
-    handles, labels = axis.get_legend_handles_labels()
-    marks = {_marks(s, k)["marker"]: _marks(s, k)["color"] for k, s, _ in _known(panel)}
+def keys(axes: Sequence[Any], panels: Sequence[Panel]) -> dict[str, Any]:
+    """Handles of a legend by label: each line as it is drawn, and the markers of points."""
+    found = {x.get_label(): x for axis in axes for x in axis.get_legend_handles_labels()[0]}
+    known = [each for panel in panels for each in _known(panel)]
+    marks = {_marks(s, k)["marker"]: _marks(s, k)["color"] for k, s, _ in known}
     if marks:
-        handles.append(
-            tuple(mpl.lines.Line2D([], [], ls="", marker=m, color=c, **_WHITE) for m, c in marks.items())
-        )
-        labels.append(_KEY)
-    if any(np.any((points.mean != 0) & ~np.isfinite(points.arms[0])) for *_, points in _known(panel)):
-        handles.append(mpl.lines.Line2D([], [], ls="", marker="x", color=PAPER, **_WHITE))
-        labels.append(TOO_FEW)
-    room = 72 * axis.get_figure().get_figwidth() * axis.get_position().width
-    if len(labels) < 2:
-        return 0
-    columns = _columns_within(room, [len(label) for label in labels])
-    axis.legend(
-        handles, labels, ncols=columns, fontsize=_SMALL, loc="lower left", bbox_to_anchor=(0, 1),
-        borderpad=0, borderaxespad=0.3, handlelength=2.5, columnspacing=1,
-        handler_map={tuple: HandlerTuple(ndivide=None)},
-    )  # fmt: skip
-    return -(-len(labels) // columns)
-
-
-def _columns_within(room: float, lengths: list[int]) -> int:
-    """Most columns of labels of these many letters within a width in points."""
-    for n in range(len(lengths), 1, -1):
-        if sum(_HANDLE + _LETTER * max(column) for column in np.array_split(lengths, n)) <= room:
-            return n
-    return 1
-
-
-def set_ticks(ticks: Any) -> None:
-    """Set the ticks of an axis, all labels of one kind; as plain text, since to read formulas takes long."""
-    low, high = sorted(ticks.get_view_interval())
-    decades = np.log10(high / low) if ticks.get_scale() == "log" else 0.0
-    if decades > _FEWER:
-        ticks.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if decades < _FEW else (1.0,), numticks=7))
-    else:
-        ticks.set_major_locator(MaxNLocator(6, steps=(1, 2, 2.5, 5, 10)))
-    ticks.set_major_formatter(FuncFormatter(power_of_ten if decades >= _FEW else tick_label(low, high)))
-    ticks.set_minor_formatter(NullFormatter())
+        found[_KEY] = tuple(Line2D([], [], ls="", marker=m, color=c, **_WHITE) for m, c in marks.items())
+    if any(np.any((points.mean != 0) & ~np.isfinite(points.arms[0])) for *_, points in known):
+        found[TOO_FEW] = Line2D([], [], ls="", marker="x", color=PAPER, **_WHITE)
+    return found
 
 
 def _marks(series: Series, k: int) -> dict[str, Any]:
@@ -232,7 +195,6 @@ def draw_residual(axis: Any, reach: float) -> None:
     axis.axhline(0, color=LEVEL, lw=0.8, zorder=1)
     axis.set_ylim(-reach, reach)
     axis.yaxis.set_major_locator(FixedLocator([-2, 0, 2]) if reach < 8 else MaxNLocator(4, symmetric=True))
-    axis.yaxis.set_major_formatter(FuncFormatter(tick_label(-reach, reach)))
 
 
 def figure_files(folder: Path, name: str, formats: Sequence[str], *, csv: bool) -> list[Path]:

@@ -15,7 +15,7 @@ from mcgw.ensemble.paired import Paired
 from mcgw.ensemble.solved import Solution
 from mcgw.ensemble.some_separations import shown
 from mcgw.figures.against_theory import draw_residuals, quantity_panel
-from mcgw.figures.panels import draw_panel
+from mcgw.figures.panels import draw_panel, keys
 from mcgw.figures.studies import draw_checks, draw_errors
 from mcgw.figures.style import MONTE_CARLO, SAMPLE, SEEN, STYLE, THEORY, shown_title, step
 from mcgw.formats.table import evenly
@@ -88,7 +88,10 @@ def _(result: Ensemble, ax: Any, *, quantity: str) -> None:
 @_draw.register
 def _(result: Comparison, ax: Any, *, quantity: str) -> None:
     title = f"Monte Carlo and theory {result.verdict.word}: p = {result.verdict.p:.3g} over all means"
-    draw_panel(ax, replace(quantity_panel(result, quantity), title=title), keyed=True)
+    panel = replace(quantity_panel(result, quantity), title=title)
+    draw_panel(ax, panel)
+    named = keys([ax], [panel])
+    ax.legend(named.values(), named.keys())
     ax.set(ylabel=result.ensemble.scene.quantity(quantity).title)
 
 

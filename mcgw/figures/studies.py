@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from mcgw.ensemble.prices import SOLVE, WANTS
-from mcgw.figures.panels import set_ticks, write_around
+from mcgw.figures.panels import write_around
 from mcgw.figures.style import (
     BAND,
     HOMOGENEOUS,
@@ -91,8 +91,6 @@ def _draw_slope(axis: Any, curve: Slope) -> None:
     axis.set_ylabel("rms error (standard deviations)" if curve.against == "M" else "rms relative error")
     slope = f"{curve.value:.4f}".replace("-", "−")
     axis.set_title(f"slope {slope} ± {1.96 * curve.uncertainty:.4f}", loc="left")
-    set_ticks(axis.xaxis)
-    set_ticks(axis.yaxis)
     axis.legend(loc="lower left")
 
 
@@ -127,7 +125,6 @@ def draw_checks(axis: Any, found: Convergence) -> None:
     axis.set_yticks(rows, names, fontsize=8)
     axis.set_ylim(-0.7, len(names) - 0.3)
     axis.grid(visible=False, axis="y")
-    set_ticks(axis.xaxis)
     axis.set_xlabel("probability by chance; grey: fails (the far left stands for all below 10⁻¹²)")
 
 

@@ -8,7 +8,7 @@ And how they become files, in the formats of matplotlib.
 
 import math
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import IO, Any
 
@@ -89,7 +89,6 @@ MEANINGS = {
 STYLE: Any = {
     "font.size": 9,
     "axes.titlesize": 10,
-    "axes.titley": 1.0,  # told, for it is looked for by measuring all ticks, at each drawing
     "axes.spines.top": False,
     "axes.spines.right": False,
     "axes.prop_cycle": cycler(color=list(_CYCLE)),
@@ -102,7 +101,6 @@ STYLE: Any = {
     "pdf.fonttype": 42,
 }
 
-_ROUNDING = 1e-9  # of a logarithm, so that 1000 is not 10·10²
 _LOWERED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789")
 
 
@@ -178,19 +176,6 @@ def power_of_ten(x: float, _: Any = None) -> str:
     """Label of a tick of a logarithmic axis as plain text: to read formulas takes a quarter of a second."""
     power = round(math.log10(x))
     return f"10{str(power).translate(RAISED)}" if math.isclose(x, 10.0**power) else f"{x:g}"
-
-
-def tick_label(low: float, high: float) -> Callable[[float, Any], str]:
-    """Labels of an axis from low to high, all of one kind: decimal numbers, or all with a power of ten."""
-    largest = max(abs(low), abs(high))
-
-    def label(x: float, _: Any = None) -> str:
-        if x == 0 or 1e-3 <= largest < 1e6:
-            return f"{x:.6g}".replace("-", "−")
-        power = math.floor(math.log10(abs(x)) + _ROUNDING)
-        return f"{x / 10.0**power:.4g}·10{str(power).translate(RAISED)}".replace("-", "−")
-
-    return label
 
 
 def shown_title(scene: Scene, otherwise: str) -> str:

@@ -20,7 +20,7 @@ from mcgw.figures.against_theory import quantity_panel, save_comparison
 from mcgw.figures.data import GAMMA, FigureData, Panel, Points, Series
 from mcgw.figures.panels import draw
 from mcgw.figures.studies import save_convergence, save_tradeoff
-from mcgw.figures.style import FAMILIES, PAIRS, THEORY, look, power_of_ten, tick_label
+from mcgw.figures.style import FAMILIES, PAIRS, THEORY, look, power_of_ten
 from mcgw.statistics.checks import Check, Slope
 from mcgw.statistics.comparison import Comparison, Curve, compare
 from mcgw.statistics.convergence import Convergence
@@ -59,8 +59,8 @@ def test_panels_are_drawn_as_they_are(scale, recorded):
         recorded("drawn.log", told.drawn(figure))
     used = [axis for axis in figure.axes if axis.get_title(loc="left")]
     assert len(used) == 2
-    legend, none = (axis.get_legend() for axis in used)  # one for both: they name the same
-    assert none is None
+    (legend,) = figure.subfigs[0].legends  # one for both, above them
+    assert [axis.get_legend() for axis in figure.axes] == [None] * 4
     assert [t.get_text() for t in legend.get_texts()] == [*(s.label for s in SERIES), "Monte Carlo, 95 %"]
     for axis in used:
         assert (axis.get_xlabel(), axis.get_ylabel()) == ("", "y (N)")  # the residuals below say what x is
@@ -131,8 +131,9 @@ def test_legends_name_the_line_that_is_drawn_so():
     figure = draw(FigureData("", "", (Panel("p", "x", "y", SERIES),)))
     axis, _ = figure.axes
     drawn = [x for x in axis.get_lines() if len(x.get_xdata()) == 3 and x.get_linestyle() != "None"]
-    *named, _ = axis.get_legend().legend_handles
-    marks = [x for x in axis.get_legend().findobj(Line2D) if x.get_linestyle() == "None"]
+    (legend,) = figure.subfigs[0].legends
+    *named, _ = legend.legend_handles
+    marks = [x for x in legend.findobj(Line2D) if x.get_linestyle() == "None"]
     assert [x.get_marker() for x in marks] == [x.get_marker() for x in markers_of(axis)]  # those of the data
     for entry, line in zip(named, drawn, strict=True):
         assert entry.get_color() == line.get_color()
@@ -254,19 +255,6 @@ def test_labels_of_decades_are_plain_text(x, label):
     assert power_of_ten(x) == label
 
 
-@pytest.mark.parametrize(
-    ("high", "labels"),
-    [
-        (5e4, {0.0: "0", -5000.0: "−5000", 2e4: "20000"}),
-        (2e6, {0.0: "0", 5e5: "5·10⁵", 2e6: "2·10⁶"}),
-        (1e-11, {-2.5e-12: "−2.5·10⁻¹²", 1e-11: "1·10⁻¹¹"}),
-    ],
-)
-def test_labels_of_an_axis_are_of_one_kind(high, labels):
-    label = tick_label(0.0, high)
-    assert {x: label(x, None) for x in labels} == labels
-
-
 # --- comparisons ----------------------------------------------------------------------------------------
 
 TITLES = {
@@ -342,8 +330,7 @@ def test_comparison(comparison, kept, tmp_path):
         check_residual(below[k], comparison.curves[name])
     assert {axis.get_xlabel() for axis in below} == {"separation d/σ"}
     assert below[0].get_ylabel() == "residual\n(std. errors)"
-    assert [axis.get_legend() is None for axis in above] == [False, *[True] * (len(QUANTITIES) - 1)]
-    legend = [text.get_text() for text in above[0].get_legend().get_texts()]
+    legend = named_in(figure)
     assert legend == ["theory", "Monte Carlo, 95 %"]
     verdict = comparison.verdict
     assert figure.get_suptitle() == (
@@ -354,6 +341,12 @@ def test_comparison(comparison, kept, tmp_path):
         "60 surfaces of 3000 asperities, exponential grading, γ = 2; "
         f"sampler {comparison.ensemble.sampler}, seed 4"
     )
+
+
+def named_in(figure):
+    """What the one legend says."""
+    (legend,) = figure.subfigs[0].legends
+    return [text.get_text() for text in legend.get_texts()]
 
 
 def drawn(comparison, name="load"):
@@ -371,7 +364,7 @@ def test_one_quantity(comparison):
     check_curve(above, comparison.curves["area"], TITLES["area"])
     check_residual(below, comparison.curves["area"])
     assert (below.get_xlabel(), below.get_ylabel()) == ("separation d/σ", "residual\n(std. errors)")
-    assert [t.get_text() for t in above.get_legend().get_texts()] == ["theory", "Monte Carlo, 95 %"]
+    assert named_in(above.get_figure(root=True)) == ["theory", "Monte Carlo, 95 %"]
 
 
 def test_of_residuals_that_read_alike_the_first_is_shown(comparison):
@@ -414,7 +407,7 @@ def test_too_few_contacts_have_a_marker_of_their_own_and_pulls_a_linear_axis(com
     (cross,) = (x for x in axis.get_lines() if x.get_marker() == "x" and len(x.get_xdata()))
     np.testing.assert_array_equal(points.get_xdata(), H[:2])
     np.testing.assert_array_equal(cross.get_xydata(), [(H[2], curve.mean[2])])
-    assert [t.get_text() for t in axis.get_legend().get_texts()][-1] == "too few contacts"
+    assert named_in(axis.get_figure(root=True))[-1] == "too few contacts"
     pull = Curve(-curve.mean, -curve.high, -curve.low, -curve.theory, curve.stderr)
     axis = drawn(one_of(comparison, pull))[0]
     assert axis.get_yscale() == "linear"
