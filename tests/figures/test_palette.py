@@ -97,10 +97,7 @@ def test_every_figure_has_one_colour_for_a_label():
     scene = mcgw.Scene(SURFACE, separations=0.0, n_surfaces=30, n_asperities=3000, seed=1)
     found = {}
     for _, data in figures_of(Compared(scene, swept=True, most_listed=20)):
-        for axis in draw(data).axes:
-            legend = axis.get_legend()
-            if legend is None:
-                continue
+        for legend in draw(data).subfigs[0].legends:
             for text, line in zip(legend.get_texts(), legend.get_lines(), strict=True):
                 found.setdefault(text.get_text(), set()).add(to_hex(line.get_color()))
     assert len(found.pop("Monte Carlo, 95 %")) > 1  # it shows the markers of the data
