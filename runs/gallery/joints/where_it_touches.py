@@ -2,7 +2,7 @@
 Where do the bodies touch?
 ==========================
 
-On a few spots among many summits: here 0.1 mm² at 100 MPa. Most of the spots carry little.
+On a few spots among many summits: here 0.1 mm² at 100 MPa. The lighter a spot, the more load.
 """
 
 import matplotlib.pyplot as plt
@@ -18,11 +18,10 @@ h = float(scene.theory.separation_at("pressure", 1e8))
 delta = surface.sigma * np.maximum(s - h, 0)
 load = 4 / 3 * surface.E_star * np.sqrt(surface.radius) * delta**1.5
 radius = 1e6 * np.sqrt(surface.radius * delta)  # µm
-shades = plt.cm.ScalarMappable(plt.Normalize(0, 1e3 * load.max()), "plasma")
+shades = plt.colormaps["plasma"](load / load.max())
 fig, ax = plt.subplots()
 ax.plot(x, y, "o", ms=1, zorder=0, color="0.75")
 for k in np.flatnonzero(delta):
-    ax.add_patch(plt.Circle((x[k], y[k]), radius[k], color=shades.to_rgba(1e3 * load[k]), zorder=3))
-fig.colorbar(shades, ax=ax, label="load of a spot (mN)")
+    ax.add_patch(plt.Circle((x[k], y[k]), radius[k], color=shades[k], zorder=3))
 title = f"{np.count_nonzero(delta)} spots of {len(s)} summits at d/σ = {h:.2f}"
 ax.set(xlabel="x (µm)", ylabel="y (µm)", aspect="equal", title=title)
