@@ -50,7 +50,7 @@ def fit(
         them; ``fill`` uses them; ``auto`` masks them if half of the measured points remain. ``notes`` of
         the fit state what was done.
     spikes : {"keep", "remove"}, optional
-        Whether to remove points that stand out of the map, or have extreme curvature.
+        Whether to remove spikes: points far above or below their neighbours, or of extreme curvature.
     trim : int, optional
         Number of points to remove along each edge.
     long_cutoff : float, str or None, optional

@@ -128,7 +128,8 @@ def _of_table(table: Table, scene: "Fields") -> Iterator[str]:
     share = float(touch - from_first + over_last) / float(touch) if touch > 0 else 0.0
     if share > _UNTOLD or high > table.s[-1]:
         where, share = (high, 1.0) if high > table.s[-1] else (low, share)
+        fraction = "all" if share == 1 else f"{share:.0%} of the"
         yield (
-            f"grading: the table reaches from s = {table.s[0]:.3g} to {table.s[-1]:.3g}, and {share:.0%} of "
-            f"the contacts at d/sigma = {where:g} lie beyond; they get the modulus at its end"
+            f"grading: {fraction} contacts at d/sigma = {where:g} are outside the table, which reaches from "
+            f"s = {table.s[0]:.3g} to {table.s[-1]:.3g}; the modulus at its end is used for them"
         )

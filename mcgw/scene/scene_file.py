@@ -131,10 +131,10 @@ def _document(text: str | bytes, path: str = "") -> dict[str, Any]:
         text = text if isinstance(text, str) else text.decode("utf-8")
         return loads(text)
     except UnicodeDecodeError as error:
-        raise SceneError([f"{path}not a TOML scene: not text in UTF-8 (byte {error.start})"]) from None
+        raise SceneError([f"{path}this is not TOML: not text in UTF-8 (byte {error.start})"]) from None
     except (ValueError, RecursionError) as error:
         reason = str(error).splitlines()[0] if str(error) else "nested too deeply"
-        raise SceneError([f"{path}not a TOML scene: {reason}{_cure(str(text), reason)}"]) from None
+        raise SceneError([f"{path}this is not TOML: {reason}{_cure(str(text), reason)}"]) from None
 
 
 def _cure(text: str, reason: str) -> str:

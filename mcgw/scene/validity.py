@@ -142,7 +142,7 @@ class Validity(Shown):
 
     @property
     def _homogeneous(self) -> str:
-        return ", without the grading" if self.graded else ""
+        return "; measured for a uniform modulus" if self.graded else ""
 
     def _here(self, where: Marks) -> str:
         return "" if where.all() else f" for d/sigma = {span(self.separations, where)}"
@@ -225,7 +225,7 @@ def _told(v: Validity, where: dict[str, Marks]) -> Iterator[str]:
 
 def _size(v: Validity, name: str, where: Marks) -> str:
     k = int(np.argmax(np.where(where, v.error[name], -np.inf)))
-    size = f"{name} up to {percent(float(v.error[name][k]))}"
+    size = percent(float(v.error[name][k]))
     if _scatters(v, name)[k]:
-        return f"{size} either way"
-    return f"{size} too {'large' if v.bias[name][k] > 0 else 'small'}"
+        return f"{name} ± {size}"
+    return f"{name} up to {size} too {'large' if v.bias[name][k] > 0 else 'small'}"

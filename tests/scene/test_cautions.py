@@ -220,14 +220,14 @@ def of_alpha(alpha, **changes):
     return mcgw.Scene(surface, seed=1, **changes)
 
 
-SIZE = re.compile(r"(area|stiffness|load) up to (\d+) % (too small|too large|either way)")
+SIZE = re.compile(r"(area|stiffness|load) (?:±|up to) (\d+) %")
 
 
 def off(scene):
     """Largest size that the cautions name of each quantity, and the separations where none is above 10 %."""
     found = {}
     for line in cautions(scene):
-        for name, size, _ in SIZE.findall(line):
+        for name, size in SIZE.findall(line):
             found[name] = max(found.get(name, 0), int(size))
     return found
 

@@ -93,10 +93,10 @@ def test_a_line_that_is_no_toml_is_quoted_with_its_cure(text, line, tmp_path, ca
     for command in (["run", str(path)], ["solve", str(path), "--load", "1"], ["show", "--plan", str(path)]):
         assert main(command) == 2
         told = capsys.readouterr().err
-        assert told.startswith(f"mcgw: {path}: not a TOML scene: ")
+        assert told.startswith(f"mcgw: {path}: this is not TOML: ")
         assert told.endswith(f"{line}\n")
         assert told.count("\n") == 1
-    with pytest.raises(mcgw.SceneError, match=r"^not a TOML scene: "):
+    with pytest.raises(mcgw.SceneError, match=r"^this is not TOML: "):
         mcgw.scene_from(text)
 
 

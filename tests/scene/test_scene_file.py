@@ -98,14 +98,14 @@ BAD = [
     (changed("radius = 1e-5", ""), "surface.radius: missing; give it in m"),
     ("", "surface.sigma: missing"),
     (changed("[contact]", "[contatc]"), "contact.separations: missing"),
-    (put("surface", "sigma = 2e-6"), "not a TOML scene"),
-    (GOOD + "[surface]\n", "not a TOML scene"),
-    (b"\xef\xbb\xbf" + GOOD.encode(), "not a TOML scene"),
-    (GOOD.encode() + b"\0", "not a TOML scene"),
-    (GOOD.encode("utf-16"), "not a TOML scene"),
-    (bytes(range(256)), "not a TOML scene"),
-    (put("ensemble", f"n_asperities = {'9' * 5000}"), "not a TOML scene"),
-    (separations("[" * 5000 + "]" * 5000), "not a TOML scene"),
+    (put("surface", "sigma = 2e-6"), "this is not TOML"),
+    (GOOD + "[surface]\n", "this is not TOML"),
+    (b"\xef\xbb\xbf" + GOOD.encode(), "this is not TOML"),
+    (GOOD.encode() + b"\0", "this is not TOML"),
+    (GOOD.encode("utf-16"), "this is not TOML"),
+    (bytes(range(256)), "this is not TOML"),
+    (put("ensemble", f"n_asperities = {'9' * 5000}"), "this is not TOML"),
+    (separations("[" * 5000 + "]" * 5000), "this is not TOML"),
 ]  # fmt: skip
 
 

@@ -96,9 +96,9 @@ def test_heights_in_other_units_are_doubted_by_every_door(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("ends", "separations", "doubt"),
     [
-        ((-1.0, 3.9), [0.0, 4.0], "100% of the contacts at d/sigma = 4 lie beyond"),
-        ((-1.0, 1.0), [0.0, 1.0], "32% of the contacts at d/sigma = 0 lie beyond"),  # erfc(1/sqrt 2)
-        ((0.5, 4.0), [0.0], "38% of the contacts at d/sigma = 0 lie beyond"),  # erf(0.5/sqrt 2)
+        ((-1.0, 3.9), [0.0, 4.0], "all contacts at d/sigma = 4 are outside the table"),
+        ((-1.0, 1.0), [0.0, 1.0], "32% of the contacts at d/sigma = 0 are outside"),  # erfc(1/sqrt 2)
+        ((0.5, 4.0), [0.0], "38% of the contacts at d/sigma = 0 are outside"),  # erf(0.5/sqrt 2)
     ],
 )
 def test_a_table_that_ends_short_of_the_contacts_is_doubted(ends, separations, doubt):

@@ -348,7 +348,7 @@ def test_a_grading_leaves_the_share_of_the_geometry():
         np.testing.assert_array_equal(plain.validity().error[name], graded.validity().error[name])
     for scene, word in ((plain, False), (graded, True)):
         for said in (scene.validity().verdict, scene.validity().brief):
-            assert ("without the grading" in said) == word
+            assert ("measured for a uniform modulus" in said) == word
 
 
 def test_few_contacts_widen_and_many_do_not_hide_how_few_maps_there_were(monkeypatch):

@@ -79,7 +79,7 @@ NO_RESULTS = "scene.toml: is not a file of results; make one from a scene with m
         ("show --plan mine.h5", RESULTS),
         ("solve mine.h5 --load 1N", RESULTS),
         ("sweep mine.h5 --over grading.gamma=1,2 -o s.h5", RESULTS),
-        ("run latin.toml", "latin.toml: not a TOML scene: not text in UTF-8 (byte 11)"),
+        ("run latin.toml", "latin.toml: this is not TOML: not text in UTF-8 (byte 11)"),
         ("compare scene.toml", NO_RESULTS),
         ("show scene.toml", NO_RESULTS),
         ("report scene.toml", NO_RESULTS),

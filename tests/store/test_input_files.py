@@ -100,7 +100,7 @@ HOSTILE = {
         lambda data, folder: data.create_group("drawn").__setitem__("x", h5py.SoftLink("/load")),
         "refused: drawn/x: a link to another place",
     ),
-    "scene bomb": (attribute("scene", "[" * 5000), "its scene cannot be read: not a TOML scene"),
+    "scene bomb": (attribute("scene", "[" * 5000), "its scene cannot be read: this is not TOML"),
     "no scene": (attribute("scene", None), "an attribute is missing"),
     "odd attribute": (attribute("wall_seconds", h5py.Empty("f8")),
      "refused: attribute wall_seconds|not an HDF5 file, or a damaged one"),
