@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     Fitted = tuple[Fit | ProfileFit, list[str], Callable[[], list[str]]]  # lines; writes the rest, tells what
 
-HELP = "fit summit density, radius and spread to a measured height map, and write a scene"
+HELP = "fit summit density, radius and spread to measured height maps, and write a scene"
 EXAMPLE = "mcgw fit map.h5 --cutoff 5um -o fitted.toml"
 E_STAR = "100 GPa"  # default
 _AREA = "1 mm^2"  # default, of numbers alone
@@ -25,8 +25,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
     parser.add_argument(
         "map", type=Path, nargs="*", metavar="MAP",
-        help=".npy, .h5 or text (SDF, X3P, ... with the extra maps); or profiles of one surface (text with x "
-            "and z), recognised by their shape",
+        help=".npy, .h5 or text (SDF, X3P, ... with the extra maps); several of one surface are pooled; or "
+            "profiles of one surface (text with x and z), recognised by their shape",
     )  # fmt: skip
     parser.add_argument(
         "--iso", nargs="+", metavar="NUMBER",
@@ -119,7 +119,8 @@ def execute(args: argparse.Namespace) -> int:
         _of_profiles(args, asked, pixel) if of_profiles else _of_map(args, asked, pixel, across)
     )
     on = {} if area is None else {"nominal_area": area}
-    title = f"Fitted to {args.map[0].name[:50]}"
+    more = f" and {len(args.map) - 1} more" if len(args.map) > 1 else ""
+    title = f"Fitted to {args.map[0].name[:50]}{more}"
     scene = fitted_scene(fit, use=args.use, heights=args.heights, E_star=E_star, title=title, **on)
     comments = [*lines, "", "units: sigma and radius in m, eta in 1/m^2, nominal_area in m^2, E_star in Pa"]
     measured = fit if isinstance(fit, Fit) and args.heights == "measured" else None
@@ -190,26 +191,36 @@ def _of_map(args: argparse.Namespace, asked: "Preparation", pixel: float | None,
     """Fit a map."""
     from mcgw.commands.outputs import CSV, NPY, TOML, Output, check_outputs, figure_format
     from mcgw.maps.fitted_scene import heights_beside
-    from mcgw.maps.fitting import fit_map
+    from mcgw.maps.fitting import fit_maps
     from mcgw.maps.map_files import files_of_map
     from mcgw.reports.fitted import fit_lines, map_line
 
     if len(args.map) > 1:
-        raise ValueError(
-            f"{args.map[1]}: the first of {len(args.map)} files is a map; give one map, or profiles"
-        )
-    (path_of_map,) = args.map
+        _check_several(args)
     beside = [Output(heights_beside(args.output), NPY)] if args.heights == "measured" else []
     tables = {"--summits": args.summits, "--tiles": args.tiles}
     beside += [Output(path, CSV, option) for option, path in tables.items() if path is not None]
     if args.picture is not None:
         beside.append(Output(args.picture, figure_format(), "--picture"))
-    check_outputs([Output(args.output, TOML), *beside], inputs=files_of_map(path_of_map))
-    fit, ready = fit_map(
-        path_of_map, asked, across, pixel=pixel, unit=args.unit, missing=args.missing_value, use=args.use
+    check_outputs(
+        [Output(args.output, TOML), *beside],
+        inputs=[file for path in args.map for file in files_of_map(path)],
     )
-    head = map_line(path_of_map.name, asked, ready.levelled.assumed_unit)
+    fit, ready = fit_maps(
+        args.map, asked, across, pixel=pixel, unit=args.unit, missing=args.missing_value, use=args.use
+    )
+    head = map_line([path.name for path in args.map], asked, ready.levelled.assumed_unit)
     return fit, [head, *fit.notes, *fit_lines(fit)], partial(_write_beside, args, fit, ready, pixel)
+
+
+def _check_several(args: argparse.Namespace) -> None:
+    """Refuse what one map alone has."""
+    from mcgw.maps.profile_files import holds_profile
+
+    if args.picture is not None:
+        raise ValueError(f"--picture {args.picture}: draws one map; give one")
+    if line := next((path for path in args.map[1:] if holds_profile(path)), None):
+        raise ValueError(f"{line}: a profile, and {args.map[0]} is a map; fit them apart")
 
 
 def _write_beside(args: argparse.Namespace, fit: "Fit", ready: "Prepared", pixel: float | None) -> list[str]:

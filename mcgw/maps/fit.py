@@ -84,6 +84,8 @@ class Fit(Shown):
         What was done to the map, one line per step.
     cautions : tuple of str, optional
         Reasons for caution found by `mcgw.fit`, one line each.
+    maps : tuple of str, optional
+        Names of the maps, if there are several, each of which is a sub-area.
     """
 
     estimates: dict[str, Estimate]
@@ -104,6 +106,7 @@ class Fit(Shown):
     roughness: Roughness
     notes: tuple[str, ...] = ()
     cautions: tuple[str, ...] = ()
+    maps: tuple[str, ...] = ()
 
     @property
     def summits(self) -> Array:

@@ -13,6 +13,7 @@ from mcgw.maps.instrument import faults
 from mcgw.maps.preparation import Prepared
 from mcgw.maps.profile import Profile
 from mcgw.maps.profile_fit import ProfileFit
+from mcgw.maps.several_maps import disagreement
 from mcgw.maps.topography import STEEPEST, Topography
 
 _WIDEST = 1e-2  # m
@@ -27,10 +28,12 @@ _PEAKS, _UNSURE = 1.2, 0.2
 
 # First words of cautions, the most serious first: errors from a wrong unit to a few per cent.
 _GRAVEST = (
-    "slope", "unit", "spikes", "lines", "rounding", "form", "range",
+    "slope", "unit", "maps", "spikes", "lines", "rounding", "form", "range",
     "cutoff", "pixel", "blur", "missing", "estimates", "lay", "skewness", "alpha", "peaks",
     "overlap", "summits", "waves", "x",
 )  # fmt: skip
+# Those of a single map, which others of the same surface do not mend.
+_OF_A_MAP = _GRAVEST[: _GRAVEST.index("missing") + 1]
 
 
 def _units(topography: Topography) -> Iterator[str]:
@@ -93,6 +96,20 @@ def cautions(fit: Fit, ready: Prepared, use: str = "auto") -> list[str]:
             *_of_the_heights(fit),
             *_of_the_summits(fit, use if use in fit.estimates else fit.best),
         ]
+    )
+
+
+def cautions_of_several(fit: Fit, fits: Sequence[Fit], use: str = "auto") -> list[str]:
+    """Warnings about maps of one surface: what each of them has, and what they tell together."""
+    own = [
+        f"{line} ({name})"
+        for name, each in zip(fit.maps, fits, strict=True)
+        for line in each.cautions
+        if line.partition(":")[0] in _OF_A_MAP
+    ]
+    used = use if use in fit.estimates else fit.best
+    return _gravest_first(
+        [*own, *disagreement(fits), *_waves(fit), *_of_the_heights(fit), *_of_the_summits(fit, used)]
     )
 
 

@@ -3,22 +3,24 @@
 from collections.abc import Sequence
 from dataclasses import fields, replace
 from pathlib import Path
+from typing import Any
 
 from mcgw.machine.progress import stages
 from mcgw.maps.fit import Fit, fit_prepared
-from mcgw.maps.fit_cautions import cautions, profile_cautions
+from mcgw.maps.fit_cautions import cautions, cautions_of_several, profile_cautions
 from mcgw.maps.map_files import read_map
 from mcgw.maps.preparation import Preparation, Prepared, preparation_of, prepared
 from mcgw.maps.profile import Profile
 from mcgw.maps.profile_files import holds_profile, read_profile
 from mcgw.maps.profile_fit import ProfileFit, fit_profiles
+from mcgw.maps.several_maps import pooled
 from mcgw.maps.steps import Form, LinesTo, Missing, SpikesTo
 from mcgw.maps.topography import Topography
 from mcgw.scene.arguments import argument
 
 
 def fit(
-    heights: str | Path | Topography | Profile | Sequence[str | Path | Profile],
+    heights: str | Path | Topography | Profile | Sequence[str | Path | Topography | Profile],
     *,
     cutoff: float | str | None,
     form: Form = "plane",
@@ -33,13 +35,14 @@ def fit(
     profile: bool = False,
     missing_value: float | None = None,
 ) -> Fit | ProfileFit:
-    """Fit summit density, radius and spread to a measured height map, or to profiles of one surface.
+    """Fit summit density, radius and spread to measured height maps, or to profiles of one surface.
 
     Parameters
     ----------
-    heights : str, Path, Topography or Profile
+    heights : str, Path, Topography or Profile, or a list of them
         A file (.npy, .h5, text; SDF, X3P and all that SurfaceTopography reads), or a map in memory; or
-        profiles, one or a list: text of x and z, or any file that holds heights along a line.
+        profiles: text of x and z, or any file that holds heights along a line. Of several maps of one
+        surface moments are pooled by area, and what the maps scatter is in the errors.
     cutoff : float, str or None
         Shortest wavelength of the roughness (Gaussian filter, ISO 16610-61), m or text such as "5 um";
         None or "none": as measured.
@@ -99,12 +102,41 @@ def fit(
     length = None if pixel is None else argument("pixel", pixel, "m")
     if isinstance(heights, str):
         heights = Path(heights)
-    if isinstance(heights, Topography) or (
-        isinstance(heights, Path) and not (profile or holds_profile(heights))
-    ):
-        return fit_map(heights, asked, across, pixel=length, unit=unit, missing=missing_value)[0]
-    several = [heights] if isinstance(heights, Path | Profile) else heights
-    return fit_lines(several, asked, spacing=length, unit=unit)[0]
+    if isinstance(heights, Path | Topography | Profile):
+        heights = [heights]
+    several = [Path(each) if isinstance(each, str) else each for each in heights]
+    maps: list[Path | Topography] = [
+        each
+        for each in several
+        if isinstance(each, Topography) or (isinstance(each, Path) and not (profile or holds_profile(each)))
+    ]
+    if not maps:
+        of_lines = [each for each in several if not isinstance(each, Topography)]
+        return fit_lines(of_lines, asked, spacing=length, unit=unit)[0]
+    if len(maps) < len(several):
+        raise ValueError("heights: some are maps and some profiles; fit them apart")
+    return fit_maps(maps, asked, across, pixel=length, unit=unit, missing=missing_value)[0]
+
+
+def fit_maps(
+    sources: Sequence[Path | Topography],
+    asked: Preparation,
+    across: int,
+    *,
+    pixel: float | None = None,
+    unit: str | None = None,
+    missing: float | None = None,
+    use: str = "auto",
+) -> tuple[Fit, Prepared]:
+    """Fit maps of one surface; return the fit of all, with its cautions, and the first map as prepared."""
+    more: dict[str, Any] = {"pixel": pixel, "unit": unit, "missing": missing, "use": use}
+    fit, first = fit_map(sources[0], asked, across, **more)
+    if len(sources) == 1:
+        return fit, first
+    fits = [fit, *(fit_map(source, asked, across, **more)[0] for source in sources[1:])]
+    names = [x.name if isinstance(x, Path) else f"map {k}" for k, x in enumerate(sources, 1)]
+    found = pooled(fits, names)
+    return replace(found, cautions=tuple(cautions_of_several(found, fits, use))), first
 
 
 def fit_map(

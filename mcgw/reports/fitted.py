@@ -11,10 +11,10 @@ from mcgw.maps.summits import variation
 from mcgw.maps.waves import Uncertain
 
 
-def map_line(name: str, asked: Preparation, assumed_unit: str) -> str:
-    """The map, its form and cutoff, and the assumed unit if none was given."""
+def map_line(names: Sequence[str], asked: Preparation, assumed_unit: str) -> str:
+    """The map or maps, their form and cutoff, and the assumed unit if none was given."""
     filtered = "none" if asked.cutoff is None else f"{asked.cutoff:g} m (Gaussian, ISO 16610-61)"
-    line = f"{name}: form removed: {asked.form}; cutoff: {filtered}"
+    line = f"{', '.join(names)}: form removed: {asked.form}; cutoff: {filtered}"
     if assumed_unit:
         line += f"; heights assumed in {assumed_unit}, since the file gives no unit"
     return line
@@ -32,9 +32,10 @@ def fit_lines(fit: Fit) -> list[str]:
         *estimates_table(fit.estimates).text().splitlines(),
     ]
     across = round(len(fit.tiles) ** 0.5)
+    between = f"{len(fit.maps)} maps" if fit.maps else f"{across} x {across} sub-areas"
     varies = fit.tiles.only("eta", "radius", "sigma").columns
     lines.append(
-        f"scatter of counted summits between {across} x {across} sub-areas (standard deviation): "
+        f"scatter of counted summits between {between} (standard deviation): "
         + ", ".join(f"{c.words or c.name} by {100 * variation(c.values):.2g} %" for c in varies)
     )
     why = f"spread of the curvatures of summits: {fit.spread_of_curvatures:.2g} (Gaussian surfaces: 0.35)"

@@ -337,13 +337,6 @@ def test_what_a_profile_cannot_be_asked(words, told, files, tmp_path, capsys, mo
     assert re.search(told, error), error
 
 
-def test_two_maps_are_one_too_many(tmp_path, capsys):
-    np.save(tmp_path / "m.npy", np.zeros((9, 9)))
-    words = ["fit", str(tmp_path / "m.npy"), str(tmp_path / "n.npy"), "--cutoff", "none"]
-    assert main([*words, "-o", str(tmp_path / "s.toml")]) == 2
-    assert "give one map, or profiles" in capsys.readouterr().err
-
-
 Z = np.array([0.1, 0.3, -0.2, 0.5, 0.4, 0.0, -0.1, 0.2, 0.35, 0.15])
 UM, MM = 1e-6, 1e-3
 

@@ -1,0 +1,178 @@
+"""Several maps of one surface as one fit, whose sub-areas are the maps."""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+from scipy.special import chdtrc, ndtr, stdtrit
+
+from analytic import SpectralMoments
+from analytic.arrays import Array
+from mcgw.formats.table import Column, Table
+from mcgw.maps.estimates import SUMMITS, Estimate, Roughness
+from mcgw.maps.fit import Fit
+from mcgw.maps.hidden_caps import Visible
+from mcgw.maps.summits import Summits
+from mcgw.maps.waves import Spread, Uncertain, Waves, uncertain
+
+_MOMENTS = ("m0", "m2", "m4", "alpha")
+_BY_CHANCE = 1e-3
+
+
+def pooled(fits: Sequence[Fit], names: Sequence[str]) -> Fit:
+    """Return one fit of several maps of a surface, without cautions.
+
+    Moments are means over the whole area, densities count all summits. An error is that of the single maps
+    taken together, or what the maps scatter if that is more: each map sees its own long waves alone.
+
+    Parameters
+    ----------
+    fits : sequence of Fit
+        Of two maps or more, prepared alike.
+    names : sequence of str
+        Of the maps, for notes and tables.
+    """
+    areas = np.array([fit.area for fit in fits])
+    weights = areas / areas.sum()
+    mean = _mean_by(weights)
+    moments = SpectralMoments(*(mean([getattr(fit.moments, x) for fit in fits]) for x in _MOMENTS[:3]))
+    told = {x: [getattr(fit, x) for fit in fits] for x in _MOMENTS}
+    of_all = {x: together(getattr(moments, x), told[x], weights) for x in _MOMENTS}
+    methods = [x for x in fits[0].estimates if all(x in fit.estimates for fit in fits)]
+    return replace(
+        fits[0],
+        m0=of_all["m0"],
+        m2=of_all["m2"],
+        m4=of_all["m4"],
+        alpha=of_all["alpha"],
+        moments=moments,
+        estimates={x: _estimate(x, fits, weights, moments) for x in methods},
+        skewness=_skewness(fits, weights, moments),
+        listed=_listed(fits),
+        mean_summit=_mean_by(weights * [len(fit.summits) / fit.area for fit in fits])(
+            [fit.mean_summit for fit in fits]
+        ),
+        area=float(areas.sum()),
+        visible=_visible(fits, mean),
+        mean_squares={x: mean([fit.mean_squares[x] for fit in fits]) for x in fits[0].mean_squares},
+        waves=_waves(fits, weights),
+        tiles=_tiles(fits, names),
+        roughness=_roughness([fit.roughness for fit in fits], mean),
+        maps=tuple(names),
+        notes=tuple(f"{name}: {line}" for name, fit in zip(names, fits, strict=True) for line in fit.notes),
+        cautions=(),
+    )
+
+
+def together(value: float, each: Sequence[Uncertain], weights: Array) -> Uncertain:
+    """Return a value of all maps with its error: that of each map, or of their scatter if that is larger.
+
+    The scatter is of logarithms, widened as Student's t asks for so few maps: two errors hold 95 %.
+    """
+    logs, n = np.log([x.value for x in each]), len(each)
+    between = math.sqrt(n / (n - 1) * float(np.sum(weights**2 * (logs - weights @ logs) ** 2)))
+    between *= float(stdtrit(n - 1, ndtr(2.0))) / 2
+    arms = ([x.relative for x in each], [math.log(x.value / x.low) for x in each], [_up(x) for x in each])
+    within = Spread(*(float(np.linalg.norm(weights * arm)) for arm in np.array(arms)))
+    return uncertain(value, value * between, within)
+
+
+def disagreement(fits: Sequence[Fit]) -> Iterator[str]:
+    """Say which moments differ between the maps by more than their errors, once in 1000 by chance."""
+    words = {"m0": "heights", "m2": "slopes", "m4": "curvatures"}
+    for name, word in words.items():
+        each = [getattr(fit, name) for fit in fits]
+        logs, certain = np.log([x.value for x in each]), 1 / np.array([x.relative for x in each]) ** 2
+        chi_square = float(certain @ (logs - np.average(logs, weights=certain)) ** 2)
+        if chdtrc(len(each) - 1, chi_square) < _BY_CHANCE / len(words):
+            yield (
+                f"maps: mean square {word} differ by a factor of {math.exp(np.ptp(logs)):.3g} between "
+                "maps, more than their own errors allow; are they of one surface, with one pixel?"
+            )
+
+
+def _up(x: Uncertain) -> float:
+    """Upper arm of the interval, in logarithms."""
+    return math.log(x.high / x.value) if math.isfinite(x.high) else math.inf
+
+
+def _mean_by(weights: Array) -> Callable[[Array | Sequence[float]], float]:
+    """A weighted mean."""
+    return lambda values: float(np.average(values, weights=weights))
+
+
+def _estimate(method: str, fits: Sequence[Fit], weights: Array, moments: SpectralMoments) -> Estimate:
+    """Density, radius and spread by one method: from pooled moments, or of all summits of all maps."""
+    found = [fit.estimates[method] for fit in fits]
+    if method == "moments":
+        values = [getattr(moments, x) for x in SUMMITS]
+    else:
+        eta, radius, sigma = np.array([[getattr(e, x).value for x in SUMMITS] for e in found]).T
+        of_summits = _mean_by(weights * eta)
+        levels = np.array([fit.mean_summit for fit in fits])
+        variance = of_summits(sigma**2 + (levels - of_summits(levels)) ** 2)
+        values = [float(weights @ eta), 1 / of_summits(1 / radius), math.sqrt(variance)]
+    each = ([getattr(e, x) for e in found] for x in SUMMITS)
+    return Estimate(*(together(value, x, weights) for value, x in zip(values, each, strict=True)))
+
+
+def _skewness(fits: Sequence[Fit], weights: Array, moments: SpectralMoments) -> tuple[float, float]:
+    """Of all heights about the mean plane of their map, and its standard error."""
+    shares = weights * [(fit.moments.m0 / moments.m0) ** 1.5 for fit in fits]
+    values, errors = np.array([fit.skewness for fit in fits]).T
+    return float(shares @ values), float(np.linalg.norm(shares * errors))
+
+
+def _listed(fits: Sequence[Fit]) -> Summits:
+    """Summits of one map after the other; heights are relative to the mean of all."""
+    listed = [fit.listed for fit in fits]
+    heights = np.concatenate([fit.summits + fit.mean_summit for fit in fits])
+    return Summits(
+        np.concatenate([x.x for x in listed]),
+        np.concatenate([x.y for x in listed]),
+        heights - heights.mean(),
+        np.concatenate([x.curvatures for x in listed], axis=1),
+        np.repeat(np.arange(len(fits)), [x.heights.size for x in listed]),
+        sum(x.unresolved for x in listed),
+    )
+
+
+def _visible(fits: Sequence[Fit], mean: Callable[[Array | Sequence[float]], float]) -> Visible | None:
+    """Of independent caps like these, if each map looks like a field of them."""
+    seen = [fit.visible for fit in fits if fit.visible is not None]
+    if len(seen) < len(fits):
+        return None
+    return Visible(mean([x.share for x in seen]), mean([x.mean for x in seen]), mean([x.std for x in seen]))
+
+
+def _waves(fits: Sequence[Fit], weights: Array) -> Waves:
+    """Errors due to the few waves on each map, which are others on the next."""
+
+    def spread(name: str) -> Spread:
+        each = np.array([(x.error, x.down, x.up) for x in (fit.waves.spreads[name] for fit in fits)])
+        return Spread(*np.linalg.norm(weights[:, None] * each, axis=0).tolist())
+
+    covariance = np.tensordot(weights**2, [fit.waves.covariance for fit in fits], 1)
+    independent = sum(fit.waves.independent for fit in fits)
+    return Waves({name: spread(name) for name in fits[0].waves.spreads}, independent, covariance)
+
+
+def _tiles(fits: Sequence[Fit], names: Sequence[str]) -> Table:
+    """A row for each map: its summits as counted, and its moments."""
+    by = "summits" if all("summits" in fit.estimates for fit in fits) else "moments"
+    found = {x: [getattr(fit.estimates[by], x).value for fit in fits] for x in SUMMITS}
+    units = {"eta": "1/m^2", "radius": "m", "sigma": "m", "m0": "m^2", "m2": "", "m4": "1/m^2"}
+    found |= {x: [getattr(fit.moments, x) for fit in fits] for x in _MOMENTS[:3]}
+    return Table((
+        Column("map", list(names)),
+        Column("summits", np.array([fit.summits.size for fit in fits])),
+        *(Column(x, np.array(values), unit=units[x]) for x, values in found.items()),
+    ))  # fmt: skip
+
+
+def _roughness(each: Sequence[Roughness], mean: Callable[[Array | Sequence[float]], float]) -> Roughness:
+    """Of the heights of all maps, each about its mean."""
+    q = math.sqrt(mean([x.q**2 for x in each]))
+    sk, ku = (mean([getattr(x, name) * (x.q / q) ** k for x in each]) for name, k in (("sk", 3), ("ku", 4)))
+    return Roughness(mean([x.a for x in each]), q, sk, ku)
