@@ -55,6 +55,8 @@ def test_moments_are_means_over_the_area(fits, found):
     assert found.roughness.q**2 == pytest.approx(weighted(fits, lambda fit: fit.roughness.q**2))
     third = weighted(fits, lambda fit: fit.roughness.sk * fit.roughness.q**3)
     assert found.roughness.sk == pytest.approx(third / found.roughness.q**3)
+    fourth = weighted(fits, lambda fit: fit.roughness.ku * fit.roughness.q**4)
+    assert found.roughness.ku == pytest.approx(fourth / found.roughness.q**4)
     third = weighted(fits, lambda fit: fit.skewness[0] * fit.m0.value**1.5)
     assert found.skewness[0] == pytest.approx(third / found.m0.value**1.5)
 
@@ -101,6 +103,7 @@ def test_one_map_four_times_has_its_numbers_and_half_of_its_errors(maps, fits):
         assert told.value == pytest.approx(own.value, rel=1e-12)
         assert told.relative == pytest.approx(own.relative / 2, rel=1e-9)
         assert math.log(told.high / told.value) == pytest.approx(math.log(own.high / own.value) / 2, rel=1e-9)
+        assert math.log(told.value / told.low) == pytest.approx(math.log(own.value / own.low) / 2, rel=1e-9)
     assert found.waves.independent == pytest.approx(4 * one.waves.independent)
     assert found.waves.covariance == pytest.approx(one.waves.covariance / 4)
     assert found.roughness.ku == pytest.approx(one.roughness.ku)
@@ -114,6 +117,15 @@ def test_maps_that_are_not_of_one_surface_are_named(maps, found):
     other = mcgw.fit([*maps, drawn(4, times=2.0)], cutoff=None)
     (line,) = [line for line in other.cautions if line.startswith("maps: mean square slopes")]
     assert 3.5 < float(line.partition("factor of ")[2].split()[0]) < 5
+
+
+@pytest.mark.parametrize(("errors", "named"), [(3.0, False), (4.5, True)])
+def test_maps_are_named_beyond_what_chance_makes(maps, fits, errors, named):
+    """A map and the same one higher, by so many errors of the difference: 3 in 370 pairs, 4.5 in 150 000."""
+    surest = min(getattr(fits[0], name).relative for name in ("m0", "m2", "m4"))
+    higher = Topography(maps[0].heights * math.exp(errors * surest / math.sqrt(2)), PIXEL)
+    cautions = mcgw.fit([maps[0], higher], cutoff=None).cautions
+    assert any(line.startswith("maps:") for line in cautions) == named
 
 
 def test_a_caution_of_one_map_names_it(maps):
