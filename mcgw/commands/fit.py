@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from analytic import Surface
     from mcgw.maps.fit import Fit
     from mcgw.maps.preparation import Preparation, Prepared
     from mcgw.maps.profile_fit import ProfileFit
@@ -129,8 +130,7 @@ def execute(args: argparse.Namespace) -> int:
         others = write()
     s = scene.surface
     news(
-        f"{path}: sigma = {s.sigma:.4g} m, radius = {s.radius:.4g} m, eta = {s.eta:.4g} 1/m^2, "
-        f"E_star = {E_star:.4g} Pa{' (assumed; give --E-star)' * (args.E_star is None)}",
+        f"{path}: {_parameters(s, args)}",
         lines[0],
         *beside,
         *others,
@@ -171,12 +171,20 @@ def _of_numbers(args: argparse.Namespace) -> int:
     write_scene(scene, args.output, None, [" ".join(args.iso), told, *doubts])
     news(
         f"{args.output}: {told}, alpha = {moments.alpha:.4g}",
-        f"sigma = {moments.sigma:.4g} m, radius = {moments.radius:.4g} m, eta = {moments.eta:.4g} 1/m^2, "
-        f"E_star = {E_star:.4g} Pa{' (assumed; give --E-star)' * (args.E_star is None)}, "
+        f"{_parameters(scene.surface, args)}, "
         f"nominal_area = {area:.4g} m^2{' (assumed; give --nominal-area)' * (args.nominal_area is None)}",
     )
     notes(*doubts)
     return 0
+
+
+def _parameters(s: "Surface", args: argparse.Namespace) -> str:
+    """The parameters of a surface, and whether its modulus was given."""
+    assumed = " (assumed; give --E-star)" if args.E_star is None else ""
+    return (
+        f"sigma = {s.sigma:.4g} m, radius = {s.radius:.4g} m, eta = {s.eta:.4g} 1/m^2, "
+        f"E_star = {s.E_star:.4g} Pa{assumed}"
+    )
 
 
 def _share(text: str) -> float:

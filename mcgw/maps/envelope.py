@@ -72,14 +72,14 @@ def _highest(
 
 
 @njit(parallel=True, cache=True)
-def _map(pixels: Any, pixel: Any, origin: Any, caps: Any, shape: Any, size: Any, periodic: Any) -> Any:
+def _map(pixels: Any, pixel: Any, caps: Any, shape: Any, size: Any, periodic: Any) -> Any:
     """Envelope above the centre of every pixel."""
     x, y, z, per, starts = caps
     result = np.empty(pixels)
     top, flattest = z.max(), per.min()
     for j in prange(pixels[0]):
         for i in range(pixels[1]):
-            px, py = origin[0] + (i + 0.5) * pixel[0], origin[1] + (j + 0.5) * pixel[1]
+            px, py = (i + 0.5) * pixel[0], (j + 0.5) * pixel[1]
             mine = (x, y, z, per, starts)
             result[j, i] = _highest(px, py, -np.inf, mine, top, flattest, shape, size, periodic)
     return result
@@ -102,7 +102,6 @@ def envelope(
     shape: tuple[int, int],
     *,
     periodic: bool = False,
-    window: tuple[float, float, float, float] | None = None,
 ) -> Topography:
     """Upper envelope of the caps ``z_i - r^2/(2R)`` on a grid of rows and columns, heights in m.
 
@@ -114,8 +113,6 @@ def envelope(
         Rows and columns of the map.
     periodic : bool, optional
         Whether caps reach across the edges.
-    window : (float, float, float, float), optional
-        Left, right, bottom and top of what is mapped, inside the area, m; default: all of it.
 
     Raises
     ------
@@ -125,10 +122,9 @@ def envelope(
     rows, columns = checked_shape(*shape)
     if not field.number:
         raise ValueError("the surface has no asperity: nothing to map")
-    left, right, bottom, top = window or (0.0, field.size[0], 0.0, field.size[1])
-    pixel = ((right - left) / columns, (top - bottom) / rows)
-    heights = _map((rows, columns), pixel, (left, bottom), *_binned(field)[1:], field.size, periodic)
-    return Topography(heights, pixel, periodic and window is None)
+    pixel = (field.size[0] / columns, field.size[1] / rows)
+    heights = _map((rows, columns), pixel, *_binned(field)[1:], field.size, periodic)
+    return Topography(heights, pixel, periodic)
 
 
 def hidden_summits(field: Asperities, *, periodic: bool = False) -> Marks:

@@ -32,8 +32,8 @@ _GRAVEST = (
     "cutoff", "pixel", "blur", "missing", "estimates", "lay", "skewness", "alpha", "peaks",
     "overlap", "summits", "waves", "x",
 )  # fmt: skip
-# Those of a single map, which others of the same surface do not mend.
-_OF_A_MAP = _GRAVEST[: _GRAVEST.index("missing") + 1]
+# Those that maps of one surface have together.
+_OF_ALL = ("blur", "estimates", "lay", "skewness", "alpha", "overlap", "summits", "waves")
 
 
 def _units(topography: Topography) -> Iterator[str]:
@@ -105,7 +105,7 @@ def cautions_of_several(fit: Fit, fits: Sequence[Fit], use: str = "auto") -> lis
         f"{line} ({name})"
         for name, each in zip(fit.maps, fits, strict=True)
         for line in each.cautions
-        if line.partition(":")[0] in _OF_A_MAP
+        if line.partition(":")[0] not in _OF_ALL
     ]
     used = use if use in fit.estimates else fit.best
     return _gravest_first(

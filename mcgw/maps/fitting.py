@@ -1,9 +1,9 @@
 """Fit a map from its file, in one call."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import fields, replace
+from functools import partial
 from pathlib import Path
-from typing import Any
 
 from mcgw.machine.progress import stages
 from mcgw.maps.fit import Fit, fit_prepared
@@ -129,36 +129,25 @@ def fit_maps(
     use: str = "auto",
 ) -> tuple[Fit, Prepared]:
     """Fit maps of one surface; return the fit of all, with its cautions, and the first map as prepared."""
-    more: dict[str, Any] = {"pixel": pixel, "unit": unit, "missing": missing, "use": use}
-    fit, first = fit_map(sources[0], asked, across, **more)
+    size = None if pixel is None else (pixel, pixel)
+    read = partial(read_map, pixel=size, unit=unit, missing=missing)
+    fit, first = _fit_map(sources[0], read, asked, across, use)
     if len(sources) == 1:
         return fit, first
-    fits = [fit, *(fit_map(source, asked, across, **more)[0] for source in sources[1:])]
+    fits = [fit, *(_fit_map(source, read, asked, across, use)[0] for source in sources[1:])]
     names = [x.name if isinstance(x, Path) else f"map {k}" for k, x in enumerate(sources, 1)]
     found = pooled(fits, names)
     return replace(found, cautions=tuple(cautions_of_several(found, fits, use))), first
 
 
-def fit_map(
-    source: Path | Topography,
-    asked: Preparation,
-    across: int,
-    *,
-    pixel: float | None = None,
-    unit: str | None = None,
-    missing: float | None = None,
-    use: str = "auto",
+def _fit_map(
+    source: Path | Topography, read: Callable[[Path], Topography], asked: Preparation, across: int, use: str
 ) -> tuple[Fit, Prepared]:
     """Fit a map; return the fit, its cautions for the estimate to `use`, and the prepared map."""
-    size = None if pixel is None else (pixel, pixel)
     with stages(4) as done:
-        read = [
-            source
-            if isinstance(source, Topography)
-            else read_map(source, pixel=size, unit=unit, missing=missing)
-        ]
+        raw = [source if isinstance(source, Topography) else read(source)]
         done()
-        ready = prepared(read.pop(), asked)  # the raw map is not kept: large ones fill the memory
+        ready = prepared(raw.pop(), asked)  # the raw map is not kept: large ones fill the memory
         done()
         found = fit_prepared(ready, across=across)
         done()

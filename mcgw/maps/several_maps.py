@@ -1,7 +1,7 @@
 """Several maps of one surface as one fit, whose sub-areas are the maps."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -16,7 +16,6 @@ from mcgw.maps.hidden_caps import Visible
 from mcgw.maps.summits import Summits
 from mcgw.maps.waves import Spread, Uncertain, Waves, uncertain
 
-_MOMENTS = ("m0", "m2", "m4", "alpha")
 _BY_CHANCE = 1e-3
 
 
@@ -35,37 +34,41 @@ def pooled(fits: Sequence[Fit], names: Sequence[str]) -> Fit:
     """
     areas = np.array([fit.area for fit in fits])
     weights = areas / areas.sum()
-    mean = _mean_by(weights)
-    moments = SpectralMoments(*(mean([getattr(fit.moments, x) for fit in fits]) for x in _MOMENTS[:3]))
-    told = {x: [getattr(fit, x) for fit in fits] for x in _MOMENTS}
-    of_all = {x: together(getattr(moments, x), told[x], weights) for x in _MOMENTS}
+    squares = np.array([[fit.moments.m0, fit.moments.m2, fit.moments.m4] for fit in fits])
+    moments = SpectralMoments(*(weights @ squares).tolist())
+    m0, m2, m4, alpha = (
+        _of_all(getattr(moments, x), [getattr(fit, x) for fit in fits], weights)
+        for x in ("m0", "m2", "m4", "alpha")
+    )
     methods = [x for x in fits[0].estimates if all(x in fit.estimates for fit in fits)]
     return replace(
         fits[0],
-        m0=of_all["m0"],
-        m2=of_all["m2"],
-        m4=of_all["m4"],
-        alpha=of_all["alpha"],
         moments=moments,
+        m0=m0,
+        m2=m2,
+        m4=m4,
+        alpha=alpha,
         estimates={x: _estimate(x, fits, weights, moments) for x in methods},
         skewness=_skewness(fits, weights, moments),
         listed=_listed(fits),
-        mean_summit=_mean_by(weights * [len(fit.summits) / fit.area for fit in fits])(
-            [fit.mean_summit for fit in fits]
+        mean_summit=float(
+            np.average([fit.mean_summit for fit in fits], weights=[fit.summits.size for fit in fits])
         ),
         area=float(areas.sum()),
-        visible=_visible(fits, mean),
-        mean_squares={x: mean([fit.mean_squares[x] for fit in fits]) for x in fits[0].mean_squares},
+        visible=_visible(fits, weights),
+        mean_squares={
+            x: float(weights @ [fit.mean_squares[x] for fit in fits]) for x in fits[0].mean_squares
+        },
         waves=_waves(fits, weights),
         tiles=_tiles(fits, names),
-        roughness=_roughness([fit.roughness for fit in fits], mean),
+        roughness=_roughness([fit.roughness for fit in fits], weights),
         maps=tuple(names),
         notes=tuple(f"{name}: {line}" for name, fit in zip(names, fits, strict=True) for line in fit.notes),
         cautions=(),
     )
 
 
-def together(value: float, each: Sequence[Uncertain], weights: Array) -> Uncertain:
+def _of_all(value: float, each: Sequence[Uncertain], weights: Array) -> Uncertain:
     """Return a value of all maps with its error: that of each map, or of their scatter if that is larger.
 
     The scatter is of logarithms, widened as Student's t asks for so few maps: two errors hold 95 %.
@@ -73,8 +76,8 @@ def together(value: float, each: Sequence[Uncertain], weights: Array) -> Uncerta
     logs, n = np.log([x.value for x in each]), len(each)
     between = math.sqrt(n / (n - 1) * float(np.sum(weights**2 * (logs - weights @ logs) ** 2)))
     between *= float(stdtrit(n - 1, ndtr(2.0))) / 2
-    arms = ([x.relative for x in each], [math.log(x.value / x.low) for x in each], [_up(x) for x in each])
-    within = Spread(*(float(np.linalg.norm(weights * arm)) for arm in np.array(arms)))
+    arms = [(x.relative, math.log(x.value / x.low), math.log(x.high / x.value)) for x in each]
+    within = _norms(weights, arms)
     return uncertain(value, value * between, within)
 
 
@@ -92,14 +95,9 @@ def disagreement(fits: Sequence[Fit]) -> Iterator[str]:
             )
 
 
-def _up(x: Uncertain) -> float:
-    """Upper arm of the interval, in logarithms."""
-    return math.log(x.high / x.value) if math.isfinite(x.high) else math.inf
-
-
-def _mean_by(weights: Array) -> Callable[[Array | Sequence[float]], float]:
-    """A weighted mean."""
-    return lambda values: float(np.average(values, weights=weights))
+def _norms(weights: Array, each: Sequence[tuple[float, float, float]]) -> Spread:
+    """Errors, lower and upper arms of independent maps taken together."""
+    return Spread(*np.linalg.norm(weights[:, None] * np.array(each), axis=0).tolist())
 
 
 def _estimate(method: str, fits: Sequence[Fit], weights: Array, moments: SpectralMoments) -> Estimate:
@@ -109,12 +107,12 @@ def _estimate(method: str, fits: Sequence[Fit], weights: Array, moments: Spectra
         values = [getattr(moments, x) for x in SUMMITS]
     else:
         eta, radius, sigma = np.array([[getattr(e, x).value for x in SUMMITS] for e in found]).T
-        of_summits = _mean_by(weights * eta)
-        levels = np.array([fit.mean_summit for fit in fits])
-        variance = of_summits(sigma**2 + (levels - of_summits(levels)) ** 2)
-        values = [float(weights @ eta), 1 / of_summits(1 / radius), math.sqrt(variance)]
+        density = float(weights @ eta)
+        shares, levels = weights * eta / density, np.array([fit.mean_summit for fit in fits])
+        variance = float(shares @ (sigma**2 + (levels - shares @ levels) ** 2))
+        values = [density, 1 / float(shares @ (1 / radius)), math.sqrt(variance)]
     each = ([getattr(e, x) for e in found] for x in SUMMITS)
-    return Estimate(*(together(value, x, weights) for value, x in zip(values, each, strict=True)))
+    return Estimate(*(_of_all(value, x, weights) for value, x in zip(values, each, strict=True)))
 
 
 def _skewness(fits: Sequence[Fit], weights: Array, moments: SpectralMoments) -> tuple[float, float]:
@@ -138,20 +136,17 @@ def _listed(fits: Sequence[Fit]) -> Summits:
     )
 
 
-def _visible(fits: Sequence[Fit], mean: Callable[[Array | Sequence[float]], float]) -> Visible | None:
+def _visible(fits: Sequence[Fit], weights: Array) -> Visible | None:
     """Of independent caps like these, if each map looks like a field of them."""
-    seen = [fit.visible for fit in fits if fit.visible is not None]
-    if len(seen) < len(fits):
-        return None
-    return Visible(mean([x.share for x in seen]), mean([x.mean for x in seen]), mean([x.std for x in seen]))
+    seen = [(x.share, x.mean, x.std) for x in (fit.visible for fit in fits) if x is not None]
+    return Visible(*(weights @ np.array(seen)).tolist()) if len(seen) == len(fits) else None
 
 
 def _waves(fits: Sequence[Fit], weights: Array) -> Waves:
     """Errors due to the few waves on each map, which are others on the next."""
 
     def spread(name: str) -> Spread:
-        each = np.array([(x.error, x.down, x.up) for x in (fit.waves.spreads[name] for fit in fits)])
-        return Spread(*np.linalg.norm(weights[:, None] * each, axis=0).tolist())
+        return _norms(weights, [(x.error, x.down, x.up) for x in (fit.waves.spreads[name] for fit in fits)])
 
     covariance = np.tensordot(weights**2, [fit.waves.covariance for fit in fits], 1)
     independent = sum(fit.waves.independent for fit in fits)
@@ -163,7 +158,7 @@ def _tiles(fits: Sequence[Fit], names: Sequence[str]) -> Table:
     by = "summits" if all("summits" in fit.estimates for fit in fits) else "moments"
     found = {x: [getattr(fit.estimates[by], x).value for fit in fits] for x in SUMMITS}
     units = {"eta": "1/m^2", "radius": "m", "sigma": "m", "m0": "m^2", "m2": "", "m4": "1/m^2"}
-    found |= {x: [getattr(fit.moments, x) for fit in fits] for x in _MOMENTS[:3]}
+    found |= {x: [getattr(fit.moments, x) for fit in fits] for x in ("m0", "m2", "m4")}
     return Table((
         Column("map", list(names)),
         Column("summits", np.array([fit.summits.size for fit in fits])),
@@ -171,8 +166,9 @@ def _tiles(fits: Sequence[Fit], names: Sequence[str]) -> Table:
     ))  # fmt: skip
 
 
-def _roughness(each: Sequence[Roughness], mean: Callable[[Array | Sequence[float]], float]) -> Roughness:
+def _roughness(each: Sequence[Roughness], weights: Array) -> Roughness:
     """Of the heights of all maps, each about its mean."""
-    q = math.sqrt(mean([x.q**2 for x in each]))
-    sk, ku = (mean([getattr(x, name) * (x.q / q) ** k for x in each]) for name, k in (("sk", 3), ("ku", 4)))
-    return Roughness(mean([x.a for x in each]), q, sk, ku)
+    a, q, sk, ku = np.array([(x.a, x.q, x.sk, x.ku) for x in each]).T
+    all_q = math.sqrt(float(weights @ q**2))
+    third, fourth = float(weights @ (sk * q**3)), float(weights @ (ku * q**4))
+    return Roughness(float(weights @ a), all_q, third / all_q**3, fourth / all_q**4)

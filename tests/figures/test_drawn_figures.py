@@ -127,6 +127,22 @@ def reach(points, scale):
     return 0.95 * points.mean if scale == "log" else np.inf
 
 
+def test_three_panels_are_one_row_under_a_legend_of_all_outside_them():
+    """Lines of any panel are in the one legend, which covers no panel and no title."""
+    series = [Series(name, X, k * X) for k, name in enumerate(("first", "second", "third"), 1)]
+    panels = tuple(Panel(one.label, "x", "y", (one,)) for one in series)
+    figure = draw(FigureData("The title", "", panels))
+    figure.draw_without_rendering()
+    (legend,) = figure.subfigs[0].legends
+    assert [text.get_text() for text in legend.get_texts()] == ["first", "second", "third"]
+    places = [axis.get_position() for axis in figure.axes]
+    assert len({round(place.y0, 3) for place in places}) == 1
+    assert [place.x0 for place in places] == sorted({place.x0 for place in places})
+    box = legend.get_window_extent()
+    assert not any(box.overlaps(axis.get_tightbbox()) for axis in figure.axes)
+    assert not box.overlaps(figure._suptitle.get_window_extent())
+
+
 def test_legends_name_the_line_that_is_drawn_so():
     figure = draw(FigureData("", "", (Panel("p", "x", "y", SERIES),)))
     axis, _ = figure.axes

@@ -54,7 +54,7 @@ def pixels(path):
 
 @pytest.mark.parametrize("make", [decades, labelled, sides])
 def test_pictures_are_those_of_matplotlib(make, tmp_path):
-    with mpl.rc_context({**STYLE, "axes.titley": None}):  # its search for a place ends where we put the title
+    with mpl.rc_context(STYLE):
         make().savefig(tmp_path / "plain.png")
     with mpl.rc_context(STYLE):
         save_figure(make(), tmp_path / "ours.png")

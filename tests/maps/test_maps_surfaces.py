@@ -62,12 +62,9 @@ def test_envelope_and_hidden_summits_against_all_pairs(number, width, radius, si
     assert np.array_equal(hidden_summits(field, periodic=periodic)[told], (above > 0)[told])
 
 
-def test_a_window_is_cut_from_the_same_envelope():
+def test_caps_reach_across_the_edges_if_the_surface_repeats():
     field = random_field(50, (2.0, 1.0), 0.5, 0.05)
     whole = envelope(field, (20, 40))
-    part = envelope(field, (10, 20), window=(0.5, 1.5, 0.25, 0.75))
-    assert not envelope(field, (10, 20), window=(0.5, 1.5, 0.25, 0.75), periodic=True).periodic
-    assert part.heights == pytest.approx(whole.heights[5:15, 10:30], abs=1e-14)
     assert not whole.periodic
     assert np.array_equal(whole.heights, envelope(field, (20, 40), periodic=False).heights)
     apart = Asperities(*np.array([[0.1, 1.9], [0.5, 0.5], [0.0, 1.0], [1.0, 1.0]]), 1.0, (2.0, 1.0))
