@@ -165,17 +165,20 @@ def test_by_command(tmp_path, monkeypatch, capsys, maps, found):
 def test_what_does_not_go_together_is_refused(tmp_path, monkeypatch, capsys, maps):
     monkeypatch.chdir(tmp_path)
     np.save("a.npy", maps[0].heights)
+    np.savetxt("b.csv", maps[1].heights)
     np.savetxt("p.txt", np.column_stack([np.arange(50) * 1e-6, np.random.default_rng(1).normal(size=50)]))
     words = ["--pixel", "1um", "--cutoff", "none", "-o", "f.toml"]
     for files, line in (
         (["a.npy", "p.txt"], "p.txt: a profile, and a.npy is a map; fit them apart"),
         (["a.npy", "a.npy", "--picture", "p.png"], "--picture p.png: draws one map; give one"),
+        (["a.npy", "b.csv", "--tiles", "b.csv"], "--tiles b.csv: is an input (b.csv)"),
     ):
         assert main(["fit", *files, *words]) == 2
         assert line in capsys.readouterr().err
     with pytest.raises(ValueError, match="some are maps and some profiles"):
         mcgw.fit(["a.npy", "p.txt"], cutoff=None, pixel="1 um")
     assert not (tmp_path / "f.toml").exists()
+    assert np.loadtxt("b.csv") == pytest.approx(maps[1].heights)
 
 
 @pytest.mark.slow
