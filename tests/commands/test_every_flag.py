@@ -97,7 +97,7 @@ ROWS = [
     (GAUSS, "maps.synthetic:gaussian_map", "--pixel 2um",
      {"pixel": near((2e-6, 2e-6)), "shape": (32, 64), "spectrum.rms": 1e-6}),
     (GAUSS, "numpy.random:default_rng", "--seed 4", {"seed": 4}),
-    *((FIT, "maps.fitting:fit_map", words, asked) for words, asked in (
+    *((FIT, "maps.fitting:fit_maps", words, asked) for words, asked in (
         ("--cutoff 10um", {"asked.cutoff": 1e-5}), ("--long-cutoff 20um", {"asked.long_cutoff": 2e-5}),
         ("--form quadratic", {"asked.form": "quadratic", "asked.cutoff": None}),
         ("--missing fill", {"asked.missing": "fill"}), ("--spikes remove", {"asked.spikes": "remove"}),
