@@ -40,13 +40,19 @@ def pytest_configure(config):
     worker, alone = hasattr(config, "workerinput"), not config.getoption("numprocesses", None)
     if not worker:
         forget_old_loops(Path(mcgw.__file__).parent)
-    if not worker and not alone:
-        warm()
     if config.getoption("--cost"):
         if worker or alone:
             config.pluginmanager.register(Meter())
         if not worker:
             config.pluginmanager.register(Bill(alone))
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_sessionstart(session):
+    """Compile all loops while the workers, which have begun, collect."""
+    yield
+    if session.config.getoption("numprocesses", None):
+        warm()
 
 
 @cache
@@ -104,10 +110,16 @@ def blank(figure, target, **_):
         target.write(b"" if isinstance(target, io.BytesIO) else "<svg></svg>")
 
 
+def draw_nothing(patch):
+    """Figures are made and their files written, but nothing is laid out or drawn in them."""
+    patch.setattr(Figure, "savefig", blank)
+    patch.setattr("matplotlib.layout_engine.ConstrainedLayoutEngine.execute", lambda *_: None)
+
+
 @pytest.fixture
 def blank_figures(monkeypatch):
-    """Figures are made and their files written, but nothing is drawn in them."""
-    monkeypatch.setattr(Figure, "savefig", blank)
+    """Draw nothing, which takes most of the time of commands with figures."""
+    draw_nothing(monkeypatch)
 
 
 @pytest.fixture

@@ -19,7 +19,7 @@ from mcgw.cli import _parser, main
 from mcgw.store.ensembles import read_attributes
 
 near = pytest.approx
-pytestmark = pytest.mark.usefixtures("blank_figures", "looked_at_here", "one_pressure", "without_layout")
+pytestmark = pytest.mark.usefixtures("blank_figures", "looked_at_here", "one_pressure")
 
 SCENE = """
 title = "Flags"
@@ -192,12 +192,6 @@ REFUSED = [
     (f"{FIT} --profile --summits s.csv", "--summits s.csv: a profile shows no summits"),
     (f"{LINES} --tiles t.csv", "--tiles t.csv"), (f"{LINES} --picture t.png", "--picture t.png"),
 ]  # fmt: skip
-
-
-@pytest.fixture
-def without_layout(monkeypatch):
-    """That of figures which nobody sees takes most of their time."""
-    monkeypatch.setattr("matplotlib.layout_engine.ConstrainedLayoutEngine.execute", lambda *_: None)
 
 
 @pytest.fixture(scope="module")

@@ -3,8 +3,7 @@
 import re
 
 import pytest
-from conftest import blank
-from matplotlib.figure import Figure
+from conftest import draw_nothing
 from oracles.said import call
 
 from mcgw.cli import COMMANDS
@@ -15,7 +14,7 @@ SCENE = """
 title = "Flags"
 surface = {sigma = 1e-6, radius = 1e-5, eta = 1e9, nominal_area = 1e-6, E_star = 1e11}
 grading = {gamma = 1.5}
-contact = {separations = [0.0, 0.1, 0.2, 0.3, 1.0, 2.0, 3.0, 3.5, 4.0]}
+contact = {separations = [0.0, 0.3, 4.0], quantities = ["load", "contacts"]}
 ensemble = {n_surfaces = 70, n_asperities = 3000, seed = 5}
 """
 SAID = {  # what a command says, without its tables
@@ -34,7 +33,7 @@ def answers(tmp_path_factory):
     """Each of them quietly and plainly, in this order in one folder of each kind; one with all."""
     found = {}
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Figure, "savefig", blank)
+        draw_nothing(patch)
         patch.setattr("mcgw.reports.report_figures._PRESSURES", 1)
         for option in ("-q", ""):
             folder = tmp_path_factory.mktemp("said")

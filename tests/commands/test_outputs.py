@@ -376,6 +376,7 @@ def test_files_written_together_appear_all_or_none(tmp_path):
     assert (tmp_path / "d").exists()
 
 
+@pytest.mark.usefixtures("blank_figures")
 @pytest.mark.parametrize(
     ("words", "where", "name", "first"),
     [
