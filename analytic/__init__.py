@@ -49,7 +49,7 @@ from analytic.gradings import Clipped, Custom, Exponential, Grading, Homogeneous
 from analytic.height_rule import Fluctuations, HeightRule
 from analytic.height_table import HeightTable
 from analytic.heights import ExponentialHeights, Gaussian, HeightLaw, Weibull
-from analytic.integrals import fn, fn_between, fn_paper, fn_scaled
+from analytic.integrals import fn, fn_paper, fn_scaled
 from analytic.inversion import ratio_at_equal_load
 from analytic.law_rule import extent
 from analytic.laws import ContactLaw, Film, Hertz, Layer
@@ -109,7 +109,7 @@ __all__ = [
     "ZhaoMaiettaChang",
     "area", "area_per_load", "area_per_load_ratio", "barber_conductance", "bends", "composite_modulus",
     "conductance", "contacts", "cooper_mikic_yovanovich", "critical_penetration", "extent", "first_negative",
-    "fn", "fn_between", "fn_paper", "fn_scaled", "harmonic_conductivity", "is_data", "load", "mean",
+    "fn", "fn_paper", "fn_scaled", "harmonic_conductivity", "is_data", "load", "mean",
     "mean_absolute_slope", "mean_modulus", "mikic_elastic", "name_of", "plasticity_index", "quantity_of",
     "ratio_at_equal_load", "resolved", "resolved_breaks", "stiffness", "stiffness_ratio",
     "summit_plasticity_index", "yielding_share",

@@ -2,7 +2,7 @@
 
 With s = h + v^2 the integrand ``2 v^(2n+1) g(h + v^2) phi(h + v^2)`` is analytic in v for every
 half-integer n, so Gauss-Legendre in v converges exponentially, whatever the smooth grading g; for other
-n the power is the weight of a Gauss-Jacobi rule. For h >= 0 everything is relative to phi(h), so nothing
+n pieces shrink towards the separation. For h >= 0 everything is relative to phi(h), so nothing
 underflows before the answer does.
 """
 
@@ -16,12 +16,11 @@ from analytic.elementary import exp_minus_half_square
 from analytic.gradings import Grading, Homogeneous
 from analytic.heights import GAUSSIAN, Gaussian, HeightLaw
 from analytic.law_rule import law_integral
-from analytic.quadrature import REACH, WIDEST, gauss_legendre, panels
+from analytic.quadrature import NEAREST, REACH, WIDEST, gauss_legendre, panel, towards
 from analytic.resolution import resolved_breaks
-from analytic.steep import Weight, log_unit, tame
+from analytic.steep import Weight, tame
 
 _TRIED = 9  # separations of a column at which the reach is looked for
-_ALL = (-np.inf, np.inf)
 _BLOCK = 192  # separations at a time: nodes x block x 8 bytes stay in the cache
 
 
@@ -30,7 +29,7 @@ def _top(above: Array, reach: float) -> Array:
     return np.asarray(above + reach**2 / (above + np.sqrt(above * above + reach**2)))
 
 
-def _reaches(grading: Grading, h: Array, above: Array, between: tuple[float, float]) -> tuple[float, float]:
+def _reaches(grading: Grading, h: Array, above: Array) -> tuple[float, float]:
     """Reach on either side that serves all separations of a sorted column."""
     if tame(grading):
         return REACH, REACH
@@ -38,67 +37,41 @@ def _reaches(grading: Grading, h: Array, above: Array, between: tuple[float, flo
     upper = lower = REACH
     for k in np.unique(np.linspace(0, len(h) - 1, _TRIED).astype(int)):
         start = max(float(above[k, 0]), 0.0)
-        end = min(float(_top(np.array(start), REACH)), between[1])
-        if start < end < between[1]:
-            found = weight.reach(start, end, between[1])
-            upper = max(upper, float(np.sqrt(found**2 - start**2)))
-    bottom = max(float(h[0, 0]), between[0])
-    if bottom < -REACH:
-        lower = -weight.reach(0.0, -REACH, bottom)
+        found = weight.reach(start, float(_top(np.array(start), REACH)), np.inf)
+        upper = max(upper, float(np.sqrt(found**2 - start**2)))
+    if h[0, 0] < -REACH:
+        lower = -weight.reach(0.0, -REACH, float(h[0, 0]))
     return upper, lower
 
 
-def _sorted(n: float, h: Array, grading: Grading, unit: Array, between: tuple[float, float]) -> Array:
+def _sorted(n: float, h: Array, grading: Grading) -> Array:
     """Scaled integral for a sorted column of separations, cut at the breaks and at the mean height."""
-    first = np.maximum(h, between[0])
-    upper, lower = _reaches(grading, h, first, between)
-    top = np.minimum(_top(np.maximum(first, 0.0), upper), between[1])
-    bottom = np.minimum(np.maximum(first, -lower), top)
-    cuts = {0.0, *resolved_breaks(grading, float(bottom[0, 0]), float(top[-1, 0]))}
+    above = np.maximum(h, 0.0)
+    upper, lower = _reaches(grading, h, above)
+    top = _top(above, upper)
+    bottom = np.minimum(np.maximum(h, -lower), top)
+    cuts = [0.0, *resolved_breaks(grading, float(bottom[0, 0]), float(top[-1, 0]))]
     if max(upper, lower) > REACH:  # farther than what one rule resolves of the density
-        cuts |= set(np.arange(np.ceil(bottom[0, 0] / WIDEST), top[-1, 0] / WIDEST) * WIDEST)
+        cuts += (np.arange(np.ceil(bottom[0, 0] / WIDEST), top[-1, 0] / WIDEST) * WIDEST).tolist()
+    inner = [h * 0 + cut for cut in cuts]
+    if (2 * n) % 1:  # the power is no polynomial of the root of s - h
+        inner += [h + step for step in towards(0.0, NEAREST)]
+    edges = np.sort(np.clip([bottom, *inner, top], bottom, top), axis=0)
     result = np.zeros_like(h)
-    for left, right in pairwise([-np.inf, *sorted(cuts), np.inf]):
-        low, high = np.clip(left, bottom, top), np.clip(right, bottom, top)
+    for low, high in pairwise(edges):
         inside = np.flatnonzero(high > low)
         for k in range(0, inside.size, _BLOCK):
             i = inside[k : k + _BLOCK]
-            result[i] += panels(n, h[i], grading, unit[i], low[i], high[i])
+            result[i] += panel(n, h[i], grading, low[i], high[i])
     return np.where(h >= 0, result, result / np.sqrt(2 * np.pi))
-
-
-def _in_units(
-    n: float, h: ArrayLike, grading: Grading | None, between: tuple[float, float], heights: HeightLaw
-) -> tuple[Array, Array]:
-    """As `fn_scaled`, over the unit of the grading at each separation; and the logarithm of that unit."""
-    h = np.asarray(h, dtype=np.float64)
-    if not 0 <= n < np.inf:
-        raise ValueError(f"n = {n!r}: give a finite number that is not negative")
-    if not np.all(np.isfinite(h)):
-        raise ValueError("h: every separation must be finite")
-    grading = Homogeneous() if grading is None else grading
-    if not isinstance(heights, Gaussian):
-        return law_integral(n, h, heights, grading, between)
-    unit = np.zeros(h.shape)
-    if not isinstance(grading, Homogeneous):
-        unit = log_unit(grading, np.maximum(h, -REACH))
-    order = np.argsort(h, axis=None)
-    ordered = h.reshape(-1, 1)[order] + 0.0  # makes -0.0 the same as 0.0
-    units = unit.reshape(-1, 1)[order]
-    result = np.empty(h.size)
-    gaps = np.flatnonzero(np.diff(ordered[:, 0]) > 2 * REACH) + 1  # no need to know the grading in between
-    for i in np.split(np.arange(h.size), gaps) if h.size else ():
-        result[order[i]] = _sorted(n, ordered[i], grading, units[i], between)[:, 0]
-    return result.reshape(h.shape), unit
 
 
 def quotient(
     h: ArrayLike, above: tuple[float, Grading | None], below: tuple[float, Grading | None], heights: HeightLaw
 ) -> Array:
     """Quotient of two integrals, each by its power and grading, also where both underflow."""
-    (a, unit_a), (b, unit_b) = (_in_units(n, h, g, _ALL, heights) for n, g in (above, below))
-    with np.errstate(over="ignore"):
-        return np.asarray(a / b * np.exp(unit_a - unit_b))
+    a, b = (fn_scaled(n, h, grading, heights=heights) for n, grading in (above, below))
+    return a / b
 
 
 def fn_scaled(
@@ -127,8 +100,21 @@ def fn_scaled(
     ValueError
         If `n` is negative or not finite, or a separation is not finite.
     """
-    value, unit = _in_units(n, h, grading, _ALL, heights)
-    return np.asarray(value * np.exp(unit))
+    h = np.asarray(h, dtype=np.float64)
+    if not 0 <= n < np.inf:
+        raise ValueError(f"n = {n!r}: give a finite number that is not negative")
+    if not np.all(np.isfinite(h)):
+        raise ValueError("h: every separation must be finite")
+    grading = Homogeneous() if grading is None else grading
+    if not isinstance(heights, Gaussian):
+        return law_integral(n, h, heights, grading)
+    order = np.argsort(h, axis=None)
+    ordered = h.reshape(-1, 1)[order] + 0.0  # makes -0.0 the same as 0.0
+    result = np.empty(h.size)
+    gaps = np.flatnonzero(np.diff(ordered[:, 0]) > 2 * REACH) + 1  # no need to know the grading in between
+    for i in np.split(np.arange(h.size), gaps) if h.size else ():
+        result[order[i]] = _sorted(n, ordered[i], grading)[:, 0]
+    return result.reshape(h.shape)
 
 
 def fn(
@@ -181,51 +167,15 @@ def fn(
     -5011.454471272
     """
     h = np.asarray(h, dtype=np.float64)
-    value, unit = _in_units(n, h, grading, _ALL, heights)
+    value = fn_scaled(n, h, grading, heights=heights)
     relative = (h >= 0) & isinstance(heights, Gaussian)
     above = np.where(relative, h, 0.0)
     if log:
         with np.errstate(divide="ignore", invalid="ignore"):
             density = np.where(relative, above * above / 2 + np.log(2 * np.pi) / 2, 0.0)
-            return np.asarray(np.log(value) + unit - density)
+            return np.asarray(np.log(value) - density)
     density = np.where(relative, exp_minus_half_square(above) / np.sqrt(2 * np.pi), 1.0)
-    return np.asarray(value * np.exp(unit) * density)
-
-
-def fn_between(
-    n: float,
-    h: ArrayLike,
-    low: float,
-    high: float,
-    grading: Grading | None = None,
-    *,
-    heights: HeightLaw = GAUSSIAN,
-) -> Array:
-    """Return the fraction of F*_n(h) that comes from heights between `low` and `high`.
-
-    To 1e-13 of itself where the range reaches above s = -13; what lies below counts as nothing.
-
-    Parameters
-    ----------
-    n : float
-        Power of the approach.
-    h : array_like
-        Reduced separations, any shape.
-    low, high : float
-        Range of reduced heights; infinite for no bound.
-    grading : Grading, optional
-        E*(s)/E*; default: homogeneous.
-    heights : HeightLaw, optional
-        Law of the heights.
-
-    Returns
-    -------
-    ndarray
-        A share, 0 to 1 where the modulus is positive, in the shape of `h`.
-    """
-    part, _ = _in_units(n, h, grading, (low, high), heights)
-    whole, _ = _in_units(n, h, grading, _ALL, heights)
-    return part / whole
+    return np.asarray(value * density)
 
 
 def fn_paper(n: float, h: ArrayLike, gamma: float, ngp: int) -> Array:

@@ -17,7 +17,7 @@ from analytic.heights import Gaussian, HeightLaw
 from analytic.measured_summits import MeasuredHeights
 from analytic.quadrature import NEAREST, NODES, REACH, SPANS, WIDEST, above_neighbours, rooted, towards
 from analytic.resolution import resolved_breaks
-from analytic.steep import Weight, log_unit, over_unit, tame
+from analytic.steep import Weight, tame
 
 POWER = 4  # of the modulus in the kurtosis
 _GROWTH = 8.0  # of the pieces away from a singular end
@@ -138,25 +138,14 @@ def _mass(law: HeightLaw, left: float, right: float) -> float:
     return float(law.sf(np.array(left)))
 
 
-def law_integral(
-    n: float, h: Array, law: HeightLaw, grading: Grading, between: tuple[float, float]
-) -> tuple[Array, Array]:
-    """``int_h^inf (s-h)^n density(s) grading(s) ds``, separation by separation, of heights between two only.
-
-    In the shape of `h`: the integral over a unit, and the logarithm of that unit, 0 where the grading is of
-    an ordinary size.
-    """
-    rows = []
-    for x in h.ravel():
-        finer = () if (2 * n) % 1 == 0 else towards(float(x), NEAREST)
-        cuts = [*finer, *(b for b in between if np.isfinite(b))]
+def law_integral(n: float, h: Array, law: HeightLaw, grading: Grading) -> Array:
+    """``int_h^inf (s-h)^n density(s) grading(s) ds``, separation by separation, in the shape of `h`."""
+    result = np.zeros(h.size)
+    for k, x in enumerate(h.ravel()):
+        cuts = [] if (2 * n) % 1 == 0 else towards(float(x), NEAREST)
         s, p = law_rule(law, np.array([x]), grading, power=1, exponent=n + 1, further=lambda *_, c=cuts: c)
-        unit = log_unit(grading, s[:1]) if s.size else np.zeros(1)
-        terms = (s - x) ** n * over_unit(grading, s, unit)
-        inside = (s >= between[0]) & (s <= between[1])
-        rows.append((float(p @ np.where(inside, terms, 0.0)), float(unit[0])))
-    value, units = np.array(rows, dtype=np.float64).reshape(-1, 2).T
-    return value.reshape(h.shape), units.reshape(h.shape)
+        result[k] = p @ ((s - x) ** n * grading(s))
+    return result.reshape(h.shape)
 
 
 def extent(grading: Grading, heights: HeightLaw, separations: Sequence[float]) -> tuple[float, float]:

@@ -1,9 +1,8 @@
 """Gauss rules on pieces of the heights, and integrals over them for many separations.
 
 With s = h + v^2 the integrand is ``2 v^(2n+1)`` times a smooth function of v. For half-integer n the whole of
-it is smooth and Gauss-Legendre converges exponentially. For other n ranges that begin at the separation take
-the power as the weight of a Gauss-Jacobi rule; later ones reach at most 16 times as far from it in v as they
-begin, where the power is smooth again.
+it is smooth and Gauss-Legendre converges exponentially. For other n it is so on pieces that are no wider than
+some times their distance from the separation.
 """
 
 from functools import cache
@@ -11,11 +10,9 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
-from scipy.special import roots_jacobi
 
 from analytic.arrays import Array
 from analytic.gradings import Grading, Homogeneous
-from analytic.steep import over_unit
 
 NEAREST = 2.0**-30  # below, a power >= 0 is 1e-9 of the whole, and integrated to 1e-7
 _GROWTH = 8.0  # of a piece to its distance from the separation below
@@ -23,7 +20,6 @@ NODES = 64  # of a piece
 SPANS = 6.0  # of a law in it: a density that changes by a factor of 50 over a piece needs some 30 nodes
 WIDEST = 4.0  # piece, on which they resolve the normal density as far down as s = -40
 REACH = 13.0  # no lower or rarer normal height counts: 2e-37 of the density, times a modulus up to exp(3|s|)
-_FARTHEST = 256.0  # of the approaches s - h at the ends of a range, for powers that are no half-integers
 
 
 @cache
@@ -80,62 +76,29 @@ def above_neighbours(separations: Array) -> list[float]:
     return [edge for lower, upper in pairwise(separations) for edge in towards(upper, upper - lower)]
 
 
-def panels(n: float, h: Array, grading: Grading, unit: Array, low: Array, high: Array) -> Array:
-    """``int (s-h)^n g phi / phi(max(h, 0))`` over s from `low` to `high`, in units of g.
+def panel(n: float, h: Array, grading: Grading, low: Array, high: Array) -> Array:
+    """``int (s-h)^n g phi / phi(max(h, 0))`` over s from `low` to `high`, by one rule for each separation.
 
-    Separations are a sorted column, shape (k, 1), and so are the logarithms of the units, the reduced heights
-    ``h <= low < high`` and the result.
+    Separations are a sorted column, shape (k, 1), and so are the reduced heights ``h <= low < high`` and the
+    result.
     """
-    if (2 * n) % 1 == 0:
-        return _panel(n, h, grading, unit, low, high)
-    result = np.zeros_like(h)
-    while (left := np.flatnonzero(low < high)).size:
-        first = (low == h)[left, 0]
-        stop = np.where(low == h, high, np.minimum(high, h + _FARTHEST * (low - h)))
-        stop = np.where(stop > low, stop, high)  # steps lost in rounding
-        for i in (left[first], left[~first]):
-            if i.size:
-                result[i] += _panel(n, h[i], grading, unit[i], low[i], stop[i])
-        low = stop
-    return result
-
-
-def _panel(n: float, h: Array, grading: Grading, unit: Array, low: Array, high: Array) -> Array:
-    """The same with one rule, for ranges that all begin at the separation or all do not."""
-    power = 2 * n + 1
     above = np.maximum(h, 0.0)
     start = np.sqrt(low - h)
     width = np.sqrt(high - h) - start
-    later = bool(start.any())
-    if later:
-        x, w = gauss_legendre(NODES)
-        v = start + width * x
-        approach = v * v
-    else:  # the panel begins at the separation: v^(2n+1) goes into the weights
-        x, w = _with_power(power)
-        approach = (width * width) * (x * x)
+    x, w = gauss_legendre(NODES)
+    v = start + width * x
+    approach = v * v
     beyond = approach + (h - above) if h[0, 0] < 0 else approach  # s - above, without cancellation
     terms = beyond * -0.5
     terms -= above
     terms *= beyond
     np.exp(terms, out=terms)
     if not isinstance(grading, Homogeneous):
-        terms *= over_unit(grading, beyond + above, unit)
-    if not later:
-        return np.asarray((terms @ (2 * w))[:, None] * width ** (power + 1))
+        terms *= grading(beyond + above)
+    power = 2 * n + 1
     if power % 1:
         terms *= v**power
     else:
         for _ in range(int(power)):  # products are ten times faster than a power
             terms *= v
     return np.asarray((terms @ (2 * w))[:, None] * width)
-
-
-@cache
-def _with_power(power: float) -> tuple[Array, Array]:
-    """Points on [0, 1], and weights that contain ``x^power``."""
-    if power % 1 == 0:
-        x, w = gauss_legendre(NODES)
-        return x, w * x ** int(power)
-    x, w = roots_jacobi(NODES, 0.0, power)
-    return (1 + x) / 2, w / 2 ** (power + 1)

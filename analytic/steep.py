@@ -1,8 +1,4 @@
-"""Gradings that rise or fall by many decades: how far heights count, and units in which values are numbers.
-
-``exp(-s)``, the softest exponential grading, underflows from s = 745 on; its integrals over that of the
-homogeneous surface do not.
-"""
+"""How far heights count where a grading rises, or the density of the heights falls, as nobody knows."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,15 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.arrays import Array
-from analytic.gradings import Clipped, Exponential, Grading, Homogeneous, Squared
+from analytic.gradings import Exponential, Grading, Homogeneous
 from analytic.tables import Table
 
 _LOST = 40.0  # logarithm of the weight lost outside: 4e-18 of its largest value
 _STEP = 1.25
 _MOST = 400  # steps: 1e38 times as far
 _POINTS = 65
-_ORDINARY = 345.0  # logarithms up to here, 1e150, need no unit
-_LARGEST = 700.0
 
 
 def tame(grading: Grading) -> bool:
@@ -68,8 +62,7 @@ class Weight:
             found = min(found, limit) if start < limit else max(found, limit)
         raise ValueError(
             f"grading: up to s = {found:.4g} E*(s)/E* increases too steeply, or the tail of the heights is "
-            f"too "
-            "heavy, for a mean and a variance in double precision; let the grading level off"
+            "too heavy, for a mean and a variance in double precision; let the grading level off"
         )
 
     def _along(self, start: float, end: float) -> tuple[Array, Array]:
@@ -83,36 +76,3 @@ class Weight:
         with np.errstate(divide="ignore"):
             modulus = self.power * np.log(np.abs(self.grading(s)))
         return self.log_density(s) + modulus + self.exponent * np.log1p(far), modulus
-
-
-def log_unit(grading: Grading, h: Array) -> Array:
-    """Logarithm of a unit for the grading at heights next to `h`: 0 where it is of an ordinary size."""
-    with np.errstate(divide="ignore"):
-        match grading:
-            case Exponential(gamma=gamma):
-                size = np.maximum(np.log(np.abs(gamma)), np.log(np.abs(gamma - 1)) - h)
-            case Clipped(grading=inner):
-                return log_unit(inner, h)
-            case Squared(grading=inner):
-                return 2 * log_unit(inner, h)
-            case _:
-                size = np.log(np.maximum(np.abs(grading(h)), np.abs(grading(h + 1 / (1 + np.abs(h))))))
-                size = np.where(np.isfinite(size), np.clip(size, -_LARGEST, _LARGEST), 0.0)
-    return np.asarray(np.where(np.abs(size) > _ORDINARY, size, 0.0))
-
-
-def over_unit(grading: Grading, s: Array, unit: Array) -> Array:
-    """Values of a grading divided by ``exp(unit)``, which need not be a number of double precision."""
-    if not unit.any():
-        return grading(s)
-    match grading:
-        case Exponential(gamma=gamma):
-            with np.errstate(divide="ignore"):
-                tips, slope = np.log(np.abs([gamma, gamma - 1]))
-            tip = np.sign(gamma) * np.exp(tips - unit)
-            return np.asarray(tip - np.sign(gamma - 1) * np.exp(slope - unit - s))
-        case Clipped(grading=inner):
-            return np.maximum(over_unit(inner, s, unit), 0.0)
-        case Squared(grading=inner):
-            return np.square(over_unit(inner, s, unit / 2))
-    return np.asarray(grading(s) * np.exp(-unit))

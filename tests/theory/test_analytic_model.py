@@ -82,7 +82,7 @@ CALLS = {
     "contacts": (SURFACE, 1.0), "stiffness": (SURFACE, 1.0), "conductance": (SURFACE, 1.0),
     "barber_conductance": (SURFACE, 1.0), "area_per_load": (SURFACE, 1.0),
     "area_per_load_ratio": (1.0, Exponential(2.0)), "stiffness_ratio": (1.0, Exponential(2.0)),
-    "fn": (1.5, 1.0), "fn_scaled": (1.5, 1.0), "fn_between": (1.5, 1.0, 1.0, 2.0),
+    "fn": (1.5, 1.0), "fn_scaled": (1.5, 1.0),
     "mean_modulus": (1.0, Exponential(2.0)),
 }  # fmt: skip
 
