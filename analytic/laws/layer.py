@@ -50,7 +50,10 @@ class LayeredSpot:
         return thinnest * float(min([1.0, *_REACH[np.maximum(changes[:1] - 1, 0)]]))
 
     def __call__(self, radius: Any) -> Any:
-        """Resistivity rho of spots, m K/W, in the shape of the radii, which may be negative or complex."""
+        """Resistivity rho of spots, m K/W, in the shape of the radii, negative ones too.
+
+        A small step of a radius into the complex plane gives the derivative.
+        """
         radius, thickness = np.broadcast_arrays(radius, self.thickness)
         side = np.where(np.real(radius) < 0, -1.0, 1.0)
         smallest = _SMALLEST * thickness
@@ -62,13 +65,11 @@ class LayeredSpot:
 
 
 def _image(p: Any) -> Any:
-    """G of what an image of the spot adds."""
-    found = _half(p - 1j)
-    return (found - _half(p + 1j)) / 2j if np.iscomplexobj(p) else found.imag
-
-
-def _half(s: Any) -> Any:
-    return -(s / (s + np.sqrt(1 + s * s)) + np.arcsinh(s)) / 2
+    """G of what an image of the spot adds, to first order in the imaginary part of p, a small step."""
+    s = np.real(p) - 1j
+    half = s + np.sqrt(1 + s * s)
+    value = -(s / half + np.arcsinh(s)).imag / 2
+    return value - 1j * np.imag(p) * (1 / half).imag if np.iscomplexobj(p) else value
 
 
 @lru_cache(64)

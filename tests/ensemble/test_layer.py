@@ -104,6 +104,15 @@ def test_pole_of_a_layer_that_conducts_well():
     assert (spot(-np.linspace(1e-6, nearest, 99)) > 0).all()
 
 
+@pytest.mark.parametrize("conductivity", [0.3, 30.0])
+def test_a_step_into_the_complex_plane_is_the_derivative(conductivity):
+    spot, x = LayeredSpot(1.0, conductivity, 1.0, 2.0), np.array([0.01, 0.3, 1.0, 20.0])
+    around = [spot(x * (1 + 1e-4 * k)) for k in (-2, -1, 1, 2)]
+    difference = np.tensordot([1, -8, 8, -1], around, 1) / (12 * 1e-4 * x)
+    found = np.imag(spot(x + 1e-30j * x)) / (1e-30 * x)
+    np.testing.assert_allclose(found, difference, rtol=1e-8)
+
+
 def scene_of(law=LAWS["hertz"], **changes):
     asked = {
         "separations": H, "law": law, "film": FILM, "quantities": ["load", "conductance_si"], "seed": 3,
@@ -143,6 +152,14 @@ class TestLaws:
         )
         wrong = scene_of(law, film=thin).theory.mean("conductance_si", H)
         assert (np.abs(wrong - mean) / std * math.sqrt(3000) > 20).all()
+
+
+@pytest.mark.slow
+def test_mean_at_a_load_is_that_of_surfaces():
+    found = mcgw.solve(scene_of(LAWS["kogut"]), pressure="1 MPa", n_surfaces=400)
+    drawn = found.surfaces["conductance_si"]
+    assert found.interval("conductance_si")[0] == found.value["conductance_si"], "it is exact"
+    assert abs(drawn.mean() - found.value["conductance_si"]) < 5 * drawn.std() / 20
 
 
 @pytest.mark.parametrize("thickness", [0.02, 0.1, 10.0])
