@@ -11,9 +11,9 @@ from oracles.rough import SPECTRUM, rough
 from scipy.signal import get_window
 
 import mcgw
+from analytic import SpectralMoments
 from mcgw.elasticity.sources import maps_of
 from mcgw.maps import Spectrum, Topography, gaussian_map, moments_on_grid, write_map
-from mcgw.maps.synthetic import SpectralMoments
 
 
 @pytest.mark.parametrize("periodic", [True, False])

@@ -9,7 +9,7 @@ from oracles.told import drawn
 
 import analytic
 import mcgw
-from mcgw.ensemble.ensemble import Ensemble
+from mcgw import Ensemble
 from mcgw.ensemble.results import MemoryResults
 from mcgw.figures.plotting import draw
 from mcgw.formats.sheet import Sheet, brief

@@ -23,7 +23,7 @@ from analytic import (
     quantity_of,
 )
 from analytic.laws import KogutEtsion, PowerLawGraded
-from mcgw.ensemble.ensemble import Ensemble
+from mcgw import Ensemble
 from mcgw.ensemble.forecast import forecast
 from mcgw.ensemble.intervals import (
     FEWEST,

@@ -9,7 +9,7 @@ from scipy import stats
 
 import analytic
 import mcgw
-from analytic.laws.film import crowding_factor
+from analytic.laws import crowding_factor
 from mcgw.scene.in_words import contact_facts, law_text
 from mcgw.scene.measured import Fitted, Uncertainty
 from mcgw.statistics.comparison import verdict

@@ -16,6 +16,7 @@ from scipy.stats import norm
 
 import analytic
 import mcgw
+from mcgw import scene_from
 from mcgw.figures.catalogue import CATALOGUE, figures_of
 from mcgw.figures.compared import Compared
 from mcgw.figures.data import GAMMA, FigureData, ratio_of_sums
@@ -23,7 +24,6 @@ from mcgw.figures.panels import draw, save_figure_files
 from mcgw.figures.populations import spread
 from mcgw.figures.ratios import _jackknifed
 from mcgw.figures.style import prefixed, short
-from mcgw.scene.scene_file import scene_from
 
 THEORY_ALONE = {"figure-1"}
 

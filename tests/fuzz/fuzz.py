@@ -20,11 +20,10 @@ from pathlib import Path
 import numpy as np
 
 import mcgw
+from mcgw import SceneError, run
 from mcgw.errors import StoreError
-from mcgw.jobs.running import run
 from mcgw.maps import Topography, write_map
 from mcgw.maps.map_files import WRITTEN
-from mcgw.scene.section import SceneError
 from mcgw.store import ensembles, structure
 
 MEMORY, SECONDS, OF_MAPS = 2**31, 4, 2**30

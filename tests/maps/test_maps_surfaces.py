@@ -13,6 +13,7 @@ from scipy.integrate import quad
 
 import analytic
 import mcgw
+from mcgw import scene_text
 from mcgw.cli import main
 from mcgw.maps import (
     Asperities,
@@ -25,7 +26,6 @@ from mcgw.maps import (
 )
 from mcgw.maps.envelope import envelope, hidden_summits
 from mcgw.maps.hidden_caps import visible
-from mcgw.scene.scene_file import scene_text
 
 RUNS = Path(__file__).parents[2] / "runs"
 

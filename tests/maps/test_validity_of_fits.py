@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import mcgw
+from mcgw import SceneError
 from mcgw.cli import main
 from mcgw.maps import Topography
-from mcgw.scene.section import SceneError
 
 FOLDER = Path(__file__).parents[2] / "runs" / "validation"
 sys.path.insert(0, str(FOLDER))

@@ -16,9 +16,9 @@ STARTS = {"subprocess.Popen", "os.system", "os.exec", "os.posix_spawn", "pickle.
 
 
 def read(path):
-    from mcgw.maps.map_files import read_map
+    from mcgw import load_scene
+    from mcgw.maps import read_map
     from mcgw.maps.profile_files import holds_profile, read_profile
-    from mcgw.scene.scene_file import load_scene
 
     if path.suffix == ".toml":
         return load_scene(path)

@@ -4,9 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic import Exponential, Homogeneous, Surface, quantity_of
+from analytic import ContactLaw, Exponential, Homogeneous, Surface, quantity_of
 from analytic.laws import CustomLaw
-from analytic.laws.law import ContactLaw
 
 SURFACE = Surface(sigma=1e-6, radius=1e-5, eta=1e9, nominal_area=1e-6, E_star=1e9)
 GRADINGS = {

@@ -11,11 +11,11 @@ from oracles import exact
 
 import analytic
 import mcgw
+from mcgw import compare
 from mcgw.cli import main
 from mcgw.formats.numbers import columns, number
 from mcgw.reports.html import report_html
 from mcgw.reports.report_figures import solved_pressures
-from mcgw.statistics.comparison import compare
 
 LOWERED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 H = (0.5, 0.0, 2.0, 1.0)

@@ -9,6 +9,7 @@ from oracles import exact
 
 import analytic
 import mcgw
+from mcgw import compare
 from mcgw.figures.panels import draw
 from mcgw.reports.report_figures import (
     _relative_error,
@@ -17,7 +18,6 @@ from mcgw.reports.report_figures import (
     pressure_curves,
     solved_pressures,
 )
-from mcgw.statistics.comparison import compare
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "10 mm^2", "78.6 GPa")
 

@@ -12,10 +12,9 @@ from scipy.stats import t as student
 
 import analytic
 import mcgw
-from mcgw import sweeps
+from mcgw import run, sweeps
 from mcgw.cli import main
 from mcgw.ensemble.results import MemoryResults
-from mcgw.jobs.running import run
 
 pytestmark = pytest.mark.usefixtures("blank_figures", "looked_at_here")
 

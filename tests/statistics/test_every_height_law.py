@@ -17,6 +17,7 @@ from oracles.thirteen_height_laws import LAWS, SAMPLE
 import analytic
 import mcgw
 from analytic import QUANTITIES, Exponential, Gaussian, MeasuredHeights
+from mcgw import compare, converge
 from mcgw.ensemble.forecast import forecast
 from mcgw.ensemble.intervals import spread_of
 from mcgw.ensemble.solution import solutions
@@ -24,8 +25,6 @@ from mcgw.reports.html import report_html
 from mcgw.reports.plan import plan_of
 from mcgw.reports.text import comparison_text, summary
 from mcgw.scene.cautions import cautions
-from mcgw.statistics.comparison import compare
-from mcgw.statistics.convergence import converge
 
 BOUNDED = {name: law for name, law in LAWS.items() if np.isfinite(law.support[1])}
 ATTRIBUTES = {

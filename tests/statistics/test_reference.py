@@ -11,7 +11,7 @@ from oracles.thirteen_height_laws import LAWS, SAMPLE
 import analytic
 import mcgw
 from analytic import ExponentialHeights, MeasuredHeights
-from mcgw.scene.scene import Scene
+from mcgw import Scene
 
 QUANTITIES = ("load", "area", "stiffness", "contacts")
 STIFFER = analytic.Table([-3, 0, 1, 3], [1, 1.2, 2, 2.5])

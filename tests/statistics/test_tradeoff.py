@@ -9,20 +9,20 @@ from scipy.stats import kstwobign, norm
 
 import analytic
 import mcgw
+from mcgw import tradeoff
 from mcgw.ensemble.prices import WANTS, Needs, Way, advise, sampled_ways, wants_of
 from mcgw.sampling import samplers
 from mcgw.sampling.asperities import worst_of_values
 from mcgw.statistics import measured_ways
 from mcgw.statistics.ladder import Ladder, Rung
 from mcgw.statistics.measured_ways import Task
-from mcgw.statistics.tradeoff import tradeoff
 
 
 @pytest.fixture(scope="module")
 def scene():
     from conftest import SURFACE
 
-    from mcgw.scene.scene import Scene
+    from mcgw import Scene
 
     one = {"separations": (1.0,), "quantities": ("load",), "n_asperities": 2000, "n_surfaces": 200}
     return Scene(surface=SURFACE, grading=analytic.Exponential(2.0), seed=1, **one)

@@ -11,12 +11,11 @@ from scipy.stats import chi2
 import analytic
 import mcgw
 from analytic.curvature import MEAN_CURVATURE
-from mcgw.ensemble.ensemble import Ensemble
+from mcgw import Ensemble, compare
 from mcgw.ensemble.results import Held, MemoryResults
 from mcgw.figures.against_theory import save_comparison
 from mcgw.sampling.samplers import sampler_of
 from mcgw.statistics import verdict as parts
-from mcgw.statistics.comparison import compare
 from mcgw.statistics.verdict import FALSE_ALARM, Verdict, verdict
 
 QUANTITIES = tuple(analytic.QUANTITIES)

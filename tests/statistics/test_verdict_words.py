@@ -4,7 +4,7 @@ import pytest
 from scipy.special import chdtrc
 
 import mcgw
-from mcgw.ensemble.ensemble import Ensemble
+from mcgw import Ensemble
 from mcgw.statistics.verdict import Verdict
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "3 mm^2", "78.6 GPa")

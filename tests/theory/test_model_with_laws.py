@@ -22,6 +22,7 @@ from scipy.optimize import brentq
 import analytic
 from analytic import (
     Clipped,
+    ContactLaw,
     Custom,
     Exponential,
     ExponentialHeights,
@@ -34,7 +35,6 @@ from analytic import (
     laws,
     quantity_of,
 )
-from analytic.laws.law import ContactLaw
 
 LAWS = {
     "kogut-etsion": kogut_etsion(0.05), "early": kogut_etsion(1e-3), "late": kogut_etsion(10.0),

@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from analytic import Clipped, Custom, Exponential, Homogeneous, Table
-from analytic.laws import Branch
-from analytic.laws.law import ContactLaw, piece_of
+from analytic import Clipped, ContactLaw, Custom, Exponential, Homogeneous, Table
+from analytic.laws import Branch, piece_of
 from analytic.laws.regimes import crossings_of, merged_heights
 from analytic.roots import sign_changes
 
