@@ -25,6 +25,7 @@ _MOST_SEPARATIONS, _FINE, _COARSE = 17, 49, 25  # separations of lines: own radi
 _SWEPT, _SWEPT_LINE = np.linspace(0, 4, 17), np.linspace(0, 4, 161)
 _LOWEST = -0.2  # lowest listed height of a sweep: at equal load it goes below its separations
 _MOST_HEIGHTS = 10_000_000
+_SAME_SEPARATION = 1e-12  # of searches for the same load
 ENOUGH = 20  # contacts in the ensemble; with fewer a mean is far from Gaussian
 
 
@@ -152,7 +153,9 @@ class Compared:
         place = (key, "at load", h.tobytes())
         if place not in self._kept:
             model = self.all[key].theory if isinstance(key, str) else self.model(key)
-            self._kept[place] = model.separation_at("load", self.theory(self.reference, "load", h))
+            found = model.separation_at("load", self.theory(self.reference, "load", h))
+            # Where both have the same load, the last digit would draw them in other cells.
+            self._kept[place] = np.where(np.abs(found - h) < _SAME_SEPARATION, h, found)
         return np.asarray(self._kept[place])
 
     def drawn(self, key: str | float) -> Ensemble:
