@@ -10,6 +10,7 @@ sys.path[:0] = [str(ROOT), str(Path(__file__).parent)]
 
 import from_the_code  # noqa: E402 - these lie beside this file
 import names_elsewhere  # noqa: E402
+import search_words  # noqa: E402
 
 project = "mcgw"
 author = "The mcgw developers"
@@ -58,6 +59,7 @@ html_theme_options = {
 html_show_sourcelink = False
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
+html_search_scorer = str(Path(__file__).parent / "search_scorer.js")
 copyright = f"{author}; BSD-3-Clause"  # noqa: A001 - Sphinx calls it so
 
 
@@ -108,4 +110,5 @@ def of_the_theory(app: Any, env: Any, node: Any, shown: Any) -> Any:
 def setup(app: Any) -> None:
     """Write the pages that the code itself tells before any page is read."""
     app.connect("config-inited", lambda *_: from_the_code.write(Path(__file__).parent))
+    app.connect("source-read", search_words.add_words)
     app.connect("missing-reference", of_the_theory)
