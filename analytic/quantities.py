@@ -107,7 +107,7 @@ LAW_QUANTITIES = _by_name(
         0.5, 1, 0.5, 2, words="slope of the loads",
     ),
     Quantity(
-        "conductance_si", "contact conductance, with films", "S or W/K",
+        "conductance_si", "contact conductance", "S or W/K",
         0.5, 0, 0.5, 4, words="conductance", symbol="C",
     ),
     Quantity(

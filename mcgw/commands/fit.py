@@ -132,10 +132,11 @@ def execute(args: argparse.Namespace) -> int:
     news(
         f"{path}: {_parameters(s, args)}",
         lines[0],
+        *(line for line in lines[1:] if line.startswith("missing: ")),
         *beside,
         *others,
     )
-    details(*lines[1:])
+    details(*(line for line in lines[1:] if not line.startswith("missing: ")))
     notes(*([] if scene.fitted is None else scene.fitted.gravest))
     news(
         f"next: mcgw run {args.output} -o {args.output.with_suffix('.h5')}, "
@@ -188,11 +189,11 @@ def _parameters(s: "Surface", args: argparse.Namespace) -> str:
 
 
 def _share(text: str) -> float:
-    """A share of Sz, which may be 0."""
+    """A fraction of Sz, which may be 0."""
     try:
         return float(text)
     except ValueError:
-        raise ValueError(f"pruning = {text!r}: give a share of Sz, such as 0.05, or 0") from None
+        raise ValueError(f"pruning = {text!r}: give a fraction of Sz, such as 0.05, or 0") from None
 
 
 def _of_map(args: argparse.Namespace, asked: "Preparation", pixel: float | None, across: int) -> "Fitted":

@@ -12,7 +12,7 @@ SCHEMA = "scene.schema.json"
 PRESETS = {
     "demo": "lapped silicon carbide with stiffened tips, which stays elastic",
     "aluminium": "bead-blasted aluminium of Greenwood and Williamson, whose asperities yield",
-    "metal": "the same, loading and unloading",
+    "metal": "bead-blasted aluminium whose asperities yield, loaded and unloaded",
     "spectral": "a Gaussian surface given by its spectrum, each summit with its own radius",
     "coating": "a graded hard coating",
     "degradation": "glass whose tips were softened by chemical attack",

@@ -117,8 +117,8 @@ class Budget(Shown):
         """Which line dominates the first quantity, what would lower a large one, and which are not known."""
         most, share = self._largest()
         remedy = f" ({_LOWERED[most]})" if share > _LARGE else ""
-        without = f", without {' and '.join(self.lacking)}" if self.lacking else ""
-        return f"Error: mostly the {most}{remedy}{without}"
+        without = f"; not included: {' and '.join(self.lacking)}" if self.lacking else ""
+        return f"Main error: {most}{remedy}{without}"
 
     @property
     def advice(self) -> str:

@@ -14,7 +14,7 @@ from mcgw.scene.in_words import contact_facts, joint_text
 from mcgw.scene.scene import Scene
 from mcgw.scene.validity_place import moments_of_nayak
 
-_SHOWN = ("contact law", "film", "interaction", "joint")  # what of the contacts counts at a given load
+_SHOWN = ("contact law", "bodies", "interaction", "joint")  # what of the contacts counts at a given load
 _GAP = {
     "mean_gap": "mean gap between the mean planes of the surfaces",
     "gap_to_summits": "gap to the mean plane of the summits",

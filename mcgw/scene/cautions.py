@@ -72,8 +72,9 @@ def _depth(scene: Scene) -> Iterator[str]:
     )
     share = deep / touching if touching > 0 else 0.0
     if share > _DEEP or surface.sigma >= surface.radius:
+        many = "all" if share > 0.995 else f"{100 * share:.2g} % of the"
         yield (
-            f"surface.radius = {surface.radius:g} m: at d/sigma = {lowest:g}, {100 * share:.2g} % of the "
+            f"surface.radius = {surface.radius:g} m: at d/sigma = {lowest:g}, {many} "
             f"contacts are compressed by more than R, where {_model(scene)} does not hold"
         )
 

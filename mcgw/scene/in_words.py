@@ -61,7 +61,7 @@ def conducting_text(film: Film) -> str:
     if film.conductivities is None:
         held, unit = f"resistivity {film.resistivity:g} ohm m", "ohm m^2"
     else:
-        held, unit = "between {:g} and {:g} W/(m K)".format(*film.conductivities), "m^2 K/W"
+        held, unit = "{:g} and {:g} W/(m K)".format(*film.conductivities), "m^2 K/W"
     thin = f", film {film.film_resistance:g} {unit}" if film.film_resistance else ""
     layer = f", layer {film.layer.thickness:g} m of {film.layer.conductivity:g} W/(m K)" if film.layer else ""
     return f"{held}{thin}{layer}"
@@ -73,9 +73,9 @@ def contact_facts(scene: Fields) -> list[tuple[str, str]]:
     if type(scene.law) is not Hertz:
         facts.append(("contact law", law_text(scene.law)))
     if scene.unload_from is not None:
-        facts.append(("way back", f"from d/sigma = {scene.unload_from:g}"))
+        facts.append(("unloading", f"from d/sigma = {scene.unload_from:g}"))
     if scene.film is not None:
-        facts.append(("film", conducting_text(scene.film)))
+        facts.append(("bodies", conducting_text(scene.film)))
     if scene.interaction is not None:
         plane = _PLANES[scene.interaction.reference]
         facts.append(("interaction", f"from the {plane}, separations effective"))
@@ -90,8 +90,8 @@ def joint_text(scene: Fields) -> str:
         return "spots only (vacuum)"
     name = scene.joint.gas if isinstance(scene.joint.gas, str) else "gas"
     return (
-        f"{name} of {gas.conductivity:.4g} W/(m K), jump {gas.jump:.3g} m, "
-        f"between surfaces of {scene.filled.rms:.4g} m rms"
+        f"{name}, {gas.conductivity:.4g} W/(m K), temperature-jump distance {gas.jump:.3g} m; "
+        f"combined rms roughness {scene.filled.rms:.4g} m"
     )
 
 

@@ -235,8 +235,8 @@ TABLES: dict[str, TableOfKeys] = {
     "`gap_conductance` and `joint_conductance`, W/(m² K); needs `conductivities`. Default: "
     "spots only (vacuum).", (
     Key("gas", _GASES, '"air"', "gas in the gap: `air`, `argon`, `helium`, `hydrogen`, `nitrogen`, `vacuum`, "
-        "or its conductivity, W/(m K), and jump, m: the thickness of gas across which the temperature drops "
-        "by as much as it jumps at both walls", required=True),
+        "or its `conductivity`, W/(m K), and `jump`, its temperature-jump distance, m: that across which the "
+        "temperature drops by as much as it jumps at both walls", required=True),
     Key("rms", Number("m"), '"2 um"', "root mean square height of the surface (both combined, not of the "
         "summits), m; not needed with Nayak's heights or `[fitted]`"),
     Key("temperature", Number("K"), '"20 degC"', "of a gas by name, K"),

@@ -160,7 +160,11 @@ class Sweep(OverPoints, Shown):
         """Display the axes, and means of some points at the lowest separation."""
         facts = [(key, self.axes.summary(key)) for key in self.axes.keys]
         surfaces = sum(group.n for group in self.groups)
-        facts.append(("surfaces", f"{surfaces} drawn, in {len(self.groups)} groups that share surfaces"))
+        same = f"the same for all {self.axes.size} scenes"
+        groups = (
+            same if len(self.groups) == 1 else f"in {len(self.groups)} groups of scenes with the same ones"
+        )
+        facts.append(("surfaces", f"{surfaces}, {groups}"))
         k = int(np.argmin(self.separations))
         names = [name for name in self.quantities if self.mean(name).ndim == len(self.shape) + 1]
         means = {name: self.mean(name).reshape(self.axes.size, -1)[:, k] for name in names}

@@ -152,7 +152,7 @@ SAID = [
     ("init coating", "coating.toml: a graded hard coating", ["coating.toml"]),
     ("init --output x.toml", "x.toml: lapped silicon carbide", ["x.toml"]),
     ("init --schema", "scene.schema.json: with it", ["demo.toml", "scene.schema.json"]),
-    ("run @s.toml -o a.h5 --shard 1/2", "share 1/2 is done", None),
+    ("run @s.toml -o a.h5 --shard 1/2", "shard 1/2 is done", None),
     ("figures --only figure-1 --format png pdf svg --csv -o .", ".: 1 figure;",
      ["figure-1.csv", "figure-1.pdf", "figure-1.png", "figure-1.svg"]),
     ("converge @s.toml -o there", "there/s-converge.png: figure", ["s-converge.png"]),

@@ -19,5 +19,5 @@ for gamma in (0.5, 1.0, 2.0):
     h = theory.separation_at("pressure", pressure)
     area = theory.mean("area_fraction", h)
     ax.semilogx(pressure / 1e6, area / pressure * 1e9, **line(f"γ = {gamma:g}"))
-ax.set(xlabel="pressure (MPa)", ylabel="real area share / pressure (1/GPa)", ylim=(0, None))
+ax.set(xlabel="pressure (MPa)", ylabel="real area fraction / pressure (1/GPa)", ylim=(0, None))
 ax.legend(title="E*(s)/E* = γ − (γ − 1) exp(−s)")

@@ -2,7 +2,7 @@
 How much does an oxide film reduce conductance?
 ===============================================
 
-By about the same share at every pressure: more load makes more spots, but hardly larger ones.
+By about the same fraction at every pressure: more load makes more spots, but hardly larger ones.
 """
 
 import matplotlib.pyplot as plt

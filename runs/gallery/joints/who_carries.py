@@ -25,7 +25,10 @@ for k, gamma in enumerate((0.2, 1.0, 2.0)):
     share, edges = np.histogram(touching, np.arange(1, 4.01, 0.25), weights=loads / loads.sum() / 0.25)
     ax.plot((edges[1:] + edges[:-1]) / 2, share, "o", markersize=4, color=look["color"])
 ax.set(
-    xlabel="summit height s = z/σ", ylabel="share of the load per σ, at d/σ = 1", ylim=(0, None), xlim=(1, 4)
+    xlabel="summit height s = z/σ",
+    ylabel="fraction of the load per σ, at d/σ = 1",
+    ylim=(0, None),
+    xlim=(1, 4),
 )
 ax.set_xlim(1, 4)
 ax.legend()

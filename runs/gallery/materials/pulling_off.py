@@ -22,5 +22,5 @@ for k, sigma in enumerate((0.1, 0.2, 0.5)):
     pressure = e.mean("load_unloading") / surface.nominal_area / 1e3
     ax.plot(d, pressure, **step(f"σ = {sigma:g} µm", k, 3))
 ax.axhline(0, color="0.5", linewidth=0.8, linestyle=":")
-ax.set(xlabel="separation d (µm)", ylabel="pressure on the way back (kPa)", ylim=(-12, 15))
+ax.set(xlabel="separation d (µm)", ylabel="pressure on unloading (kPa)", ylim=(-12, 15))
 ax.legend()

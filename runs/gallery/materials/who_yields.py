@@ -29,5 +29,7 @@ for k, hardness in enumerate(("2 GPa", "10 GPa", "40 GPa")):
     ax.plot(theory.mean("pressure", fine) / 1e6, 1 - theory.share(0, fine), **look)
     bars = np.maximum([share - low, high - share], 0)
     ax.errorbar(e.mean("pressure") / 1e6, share, bars, fmt="o", markersize=4, color=look["color"])
-ax.set(xscale="log", xlabel="pressure (MPa)", ylabel="share of the contacts that yielded", ylim=(-0.02, 1.05))
+ax.set(
+    xscale="log", xlabel="pressure (MPa)", ylabel="fraction of the contacts that yielded", ylim=(-0.02, 1.05)
+)
 ax.legend(title="lines: theory; markers: simulated, 95 %", loc=(0.3, 0.15))
