@@ -176,6 +176,11 @@ class Summits:
         return True
 
     @property
+    def listed(self) -> bool:
+        """Whether there is a list of them, so that means change summit by summit."""
+        return isinstance(self.heights, MeasuredHeights)
+
+    @property
     def unbounded(self) -> bool:
         """Whether the fourth power of the radius has no mean."""
         return False

@@ -3,27 +3,51 @@
 import math
 from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass
-from typing import Any, ClassVar, Literal
+from itertools import pairwise
+from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 
 from analytic.arrays import Array
 from analytic.laws.law import ContactLaw
-from analytic.laws.unloading import Unloading, derivative
+from analytic.laws.unloading import derivative
 from analytic.surface import Surface
 
-Formula = Callable[[int, Any, Array], Any]
+Formula = Callable[[Any, Any, Any], Any]  # of the law, of x = delta/delta_c, and of e = E*(s)/E*
 
 BRIDGE = 1.5  # a bridge ends at this multiple of the penetration of its jump
 
 
+class Piece(NamedTuple):
+    """What holds from a penetration on: load and area over those at delta_c by Hertz's law.
+
+    Attributes
+    ----------
+    start : float
+        ``x = delta/delta_c`` where it begins.
+    load, area : callable
+        Of the law, x and e.
+    """
+
+    start: float
+    load: Formula
+    area: Formula
+
+
+def power(factor: float, exponent: float) -> Formula:
+    """The formula ``factor x^exponent``."""
+    return lambda _law, x, _e: factor * x**exponent
+
+
+HERTZ = Piece(0.0, power(1.0, 1.5), power(1.0, 1.0))
+
+
 @dataclass(frozen=True)
 class ElasticPlastic(ContactLaw):
-    """A law in ``x = delta/delta_c``: Hertz's up to the first of its `starts`, then a fit.
+    """A law in ``x = delta/delta_c``: Hertz's, then the pieces of a fit.
 
     An asperity of modulus E*(s) yields at ``delta_c = critical/e^2``, because its hardness does not
-    depend on its height. A fit gives the load and area of the contact as multiples of Hertz's at the same
-    penetration.
+    depend on its height.
 
     Parameters
     ----------
@@ -37,15 +61,20 @@ class ElasticPlastic(ContactLaw):
     elastic: ClassVar[bool] = False
     yields: ClassVar[bool] = True
     of_radius: ClassVar[tuple[str, float]] = ("critical", 1.0)
-    starts: ClassVar[tuple[float, ...]] = (1.0,)
+    fits: ClassVar[tuple[Piece, ...]] = ()
 
     def __post_init__(self) -> None:
         self.check_constants()
 
     @property
+    def pieces(self) -> tuple[Piece, ...]:
+        """All of them: Hertz's law first."""
+        return (HERTZ, *self.fits)
+
+    @property
     def edges(self) -> tuple[float, ...]:
         """Penetrations over the critical one at which pieces from 1 on begin."""
-        return self.starts
+        return tuple(piece.start for piece in self.pieces[1:])
 
     @property
     def _root_of_critical(self) -> Any:
@@ -69,26 +98,18 @@ class ElasticPlastic(ContactLaw):
         hertz = super().load(piece, y, e)
         if piece == 0:
             return hertz
-        return hertz * self._of(self.load_over_hertz, 1.5, piece, self.x(y, e), e)
+        x = self.x(y, e)
+        return (
+            hertz * self.pieces[piece].load(self, x, np.where(np.asarray(e) > 0, e, 1.0)) / (x * np.sqrt(x))
+        )
 
     def radius(self, piece: int, y: Any, e: Array) -> Any:
         """Radius of a contact; its square is the area over pi R sigma."""
         hertz = super().radius(piece, y, e)
         if piece == 0:
             return hertz
-        return hertz * np.sqrt(self._of(self.area_over_hertz, 1.0, piece, self.x(y, e), e))
-
-    def _of(self, fit: Formula, power: float, piece: int, x: Any, e: Array) -> Any:
-        """A fit over Hertz's, which itself goes as x to this power."""
-        return fit(piece, x, np.where(np.asarray(e) > 0, e, 1.0))
-
-    def load_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
-        """Load beyond the start of this fit, over Hertz's at the same penetration."""
-        raise NotImplementedError
-
-    def area_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
-        """Area beyond the start of this fit, over Hertz's at the same penetration."""
-        raise NotImplementedError
+        x = self.x(y, e)
+        return hertz * np.sqrt(self.pieces[piece].area(self, x, np.where(np.asarray(e) > 0, e, 1.0)) / x)
 
 
 def kogut_etsion_factor(poisson: float) -> float:
@@ -146,94 +167,28 @@ class Bridgeable(ElasticPlastic):
             raise ValueError(f"bridge = {self.bridge!r}: give 'hermite', or leave it out")
 
     @property
-    def edges(self) -> tuple[float, ...]:
-        """Penetrations over the critical one at which pieces from 1 on begin: of bridges and fits in turn."""
+    def pieces(self) -> tuple[Piece, ...]:
+        """All of them: Hertz's law, then bridges and fits in turn."""
         if self.bridge is None:
-            return self.starts
-        return tuple(x for start in self.starts for x in (start, BRIDGE * start))
-
-    def _of(self, fit: Formula, power: float, piece: int, x: Any, e: Array) -> Any:
-        e = np.where(np.asarray(e) > 0, e, 1.0)
-        if self.bridge is None:
-            return fit(piece, x, e)
-        after = (piece + 1) // 2
-        if piece % 2 == 0:
-            return fit(after, x, e)
-        start = self.starts[after - 1]
-        left = _end(fit, power, after - 1, start, e)
-        right = _end(fit, power, after, BRIDGE * start, e)
-        return _hermite(left, right, x) / x**power
+            return super().pieces
+        found = [HERTZ]
+        for left, right in pairwise(super().pieces):
+            load = _bridge(right.start, left.load, right.load)
+            area = _bridge(right.start, left.area, right.area)
+            found += [Piece(right.start, load, area), right._replace(start=BRIDGE * right.start)]
+        return tuple(found)
 
 
-def _end(fit: Formula, power: float, index: int, x: float, e: Array) -> tuple[float, Array, Array]:
-    """Penetration, value and slope at an end of a bridge, of Hertz's or a fit."""
+def _bridge(start: float, left: Formula, right: Formula) -> Formula:
+    """The cubic that takes over value and slope of `left` where it starts, and of `right` where it ends."""
+    width = (BRIDGE - 1) * start
 
-    def value(x: Any) -> Any:
-        return x**power * (fit(index, x, e) if index else 1.0)
+    def formula(law: Any, x: Any, e: Any) -> Any:
+        first, last = np.array(start), np.array(start + width)
+        rise = right(law, last, e) - left(law, first, e)
+        begin = width * derivative(lambda x: left(law, x, e), first) - rise
+        end = rise - width * derivative(lambda x: right(law, x, e), last)
+        t = (x - start) / width
+        return left(law, first, e) + t * rise + t * (1 - t) * ((1 - t) * begin + t * end)
 
-    return x, np.asarray(value(x)), derivative(value, np.array(x))
-
-
-def _hermite(left: tuple[float, Array, Array], right: tuple[float, Array, Array], x: Any) -> Any:
-    """The cubic with these values and slopes at both ends."""
-    width, rise = right[0] - left[0], right[1] - left[1]
-    t = (x - left[0]) / width
-    start, end = width * left[2] - rise, rise - width * right[2]
-    return left[1] + t * rise + t * (1 - t) * ((1 - t) * start + t * end)
-
-
-class EtsionKligermanKadin(Unloading):
-    """Unloading after Etsion, Kligerman and Kadin (2005), fitted to the finite elements of Kogut and Etsion.
-
-    With ``x_m = delta_max/delta_c > 1``, contact is lost at ::
-
-        delta_res = delta_max (1 - x_m^-0.28) (1 - x_m^-0.69)
-
-    and down to there load and area are those at delta_max times
-    ``[(delta - delta_res)/(delta_max - delta_res)]`` to the powers ``1.5 x_m^-0.0331`` and
-    ``x_m^-0.12``. An asperity that has not yielded unloads as Hertz's. Fitted for x_m up to 170.
-
-    Known defects: the fit of loading jumps up by 3 % at delta_c, and unloading starts from there: up to
-    x_m = 1.248 a loading loop releases more work than it took, by up to 3 %. With ``bridge = "hermite"``
-    unloading starts from the bridged load, and the gain is at most 0.13 %, at x_m = 1.11.
-
-    Notes
-    -----
-    Source: I. Etsion, Y. Kligerman, Y. Kadin, Int. J. Solids Struct. 42 (2005) 3716 [mem: constants
-    recalled].
-    """
-
-    root: ClassVar[bool] = False
-
-    def residual(self, piece: int, deepest: Any, e: Array) -> Any:
-        """Penetration at which contact is lost, in the shape of `deepest` and `e`."""
-        if piece == 0:
-            return super().residual(piece, deepest, e)
-        log = np.log(self._x(deepest, e))
-        return deepest * np.expm1(-0.28 * log) * np.expm1(-0.69 * log)
-
-    def load(self, piece: int, y: Any, deepest: Any, e: Array) -> Any:
-        """Load of a contact, in the shape of all."""
-        if piece == 0:
-            return super().load(piece, y, deepest, e)
-        power = 1.5 * self._x(deepest, e) ** -0.0331
-        return self.loading.load(piece, np.sqrt(deepest), e) * self._share(y, piece, deepest, e) ** power
-
-    def radius(self, piece: int, y: Any, deepest: Any, e: Array) -> Any:
-        """Radius of a contact; its square is the area over pi R sigma."""
-        if piece == 0:
-            return super().radius(piece, y, deepest, e)
-        power = self._x(deepest, e) ** -0.12 / 2
-        return self.loading.radius(piece, np.sqrt(deepest), e) * self._share(y, piece, deepest, e) ** power
-
-    def stiffness(self, piece: int, y: Array, deepest: Array, e: Array) -> Array:
-        """Stiffness of a spot over 2 E* sqrt(R sigma)."""
-        return np.asarray(e * self.radius(piece, y, deepest, e))
-
-    def _x(self, deepest: Any, e: Array) -> Any:
-        """Deepest penetration over the critical one."""
-        return self.loading.x(np.sqrt(deepest), e)
-
-    def _share(self, y: Any, piece: int, deepest: Any, e: Array) -> Any:
-        """How much is left of the penetration that springs back."""
-        return y * y / (deepest - self.residual(piece, deepest, e))
+    return formula

@@ -1,4 +1,5 @@
 """Elastic-plastic asperities: Hertz's law up to the critical penetration, then a fit or an assumption."""
+# ruff: noqa: ARG001, ARG005 - formulas of pieces take the same arguments
 
 import math
 from dataclasses import KW_ONLY, dataclass, replace
@@ -6,9 +7,22 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from analytic.arrays import Array
-from analytic.laws.elastic_plastic import Bridgeable, EtsionKligermanKadin, FromHardness, kogut_etsion_factor
+from analytic.laws.elastic_plastic import Bridgeable, FromHardness, Piece, kogut_etsion_factor, power
+from analytic.laws.unloading import EtsionKligermanKadin
 from analytic.surface import Surface
+
+_FIRST_YIELD = 0.4  # k of Zhao, Maietta and Chang: mean pressure at first yield over hardness
+_PLASTIC = 54.0  # their delta_2/delta_1
+
+
+def _zhao_area(law: Any, x: Any, e: Any) -> Any:
+    t = (x - 1) / (_PLASTIC - 1)
+    return x * (1 + t * t * (3 - 2 * t))
+
+
+def _zhao_load(law: Any, x: Any, e: Any) -> Any:
+    pressure = 1 - (1 - _FIRST_YIELD) * np.log(_PLASTIC / x) / math.log(_PLASTIC)
+    return _zhao_area(law, x, e) * pressure / _FIRST_YIELD
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,20 +66,14 @@ class ChangEtsionBogy(FromHardness, Bridgeable):
     """
 
     name: ClassVar[str] = "chang-etsion-bogy"
+    fits: ClassVar = (Piece(1.0, load=lambda law, x, e: 3 * x - 1.5, area=lambda law, x, e: 2 * x - 1),)
+
     poisson: float | None = None
 
     @property
     def yield_factor(self) -> float:
         """K, the greatest contact pressure at the onset of yield over the hardness."""
         return 0.6 if self.poisson is None else kogut_etsion_factor(self.poisson)
-
-    def load_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
-        """Return ``1.5 (2 x - 1)/x^1.5``."""
-        return 1.5 * self.area_over_hertz(fit, x, e) / np.sqrt(x)
-
-    def area_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
-        """Return ``(2 x - 1)/x``."""
-        return 2 - 1 / x
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -105,27 +113,15 @@ class ZhaoMaiettaChang(FromHardness):
     """
 
     name: ClassVar[str] = "zhao-maietta-chang"
-    starts: ClassVar[tuple[float, ...]] = (1.0, 54.0)
-    first_yield: ClassVar[float] = 0.4  # k: mean pressure at first yield over hardness
+    fits: ClassVar = (
+        Piece(1.0, load=_zhao_load, area=_zhao_area),
+        Piece(_PLASTIC, load=power(2 / _FIRST_YIELD, 1.0), area=power(2.0, 1.0)),
+    )
 
     @property
     def yield_factor(self) -> float:
         """K, the greatest contact pressure at the onset of yield over the hardness: 1.5 k."""
-        return 1.5 * self.first_yield
-
-    def load_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
-        """Return the area times mean pressure: where x = 1, the pressure is k H."""
-        pressure, k = 1.0, self.first_yield
-        if fit == 1:
-            pressure = 1 - (1 - k) * np.log(self.starts[1] / x) / math.log(self.starts[1])
-        return self.area_over_hertz(fit, x, e) * pressure / (k * np.sqrt(x))
-
-    def area_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
-        """Return the area over Hertz's, which rises smoothly from 1 to 2."""
-        if fit == 2:
-            return 2.0 + 0 * x
-        t = (x - 1) / (self.starts[1] - 1)
-        return 1 + t * t * (3 - 2 * t)
+        return 1.5 * _FIRST_YIELD
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -174,9 +170,11 @@ class KogutEtsion(FromHardness, Bridgeable):
     """
 
     name: ClassVar[str] = "kogut-etsion"
-    starts: ClassVar[tuple[float, ...]] = (1.0, 6.0, 110.0)
-    load_fits: ClassVar[tuple[tuple[float, float], ...]] = ((1.03, 1.425), (1.40, 1.263))
-    area_fits: ClassVar[tuple[tuple[float, float], ...]] = ((0.93, 1.136), (0.94, 1.146))
+    fits: ClassVar = (
+        Piece(1.0, load=power(1.03, 1.425), area=power(0.93, 1.136)),
+        Piece(6.0, load=power(1.40, 1.263), area=power(0.94, 1.146)),
+        Piece(110.0, load=lambda law, x, e: 3 / law.yield_factor * x, area=power(2.0, 1.0)),
+    )
 
     poisson: float = 0.3
 
@@ -189,15 +187,19 @@ class KogutEtsion(FromHardness, Bridgeable):
         """Return the law of Etsion, Kligerman and Kadin; with a bridge, from the bridged load."""
         return EtsionKligermanKadin(self)
 
-    def load_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
-        """Return the load from the powers of x, or from the hardness."""
-        factor, power = self.load_fits[fit - 1] if fit < 3 else (3 / self.yield_factor, 1.0)
-        return factor * x ** (power - 1.5)
 
-    def area_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
-        """Return the area from the powers of x; finally 2."""
-        factor, power = self.area_fits[fit - 1] if fit < 3 else (2.0, 1.0)
-        return factor * x ** (power - 1.0)
+def _jackson_area(law: Any, x: Any, e: Any) -> Any:
+    with np.errstate(over="ignore"):  # infinite where the fit has no meaning
+        return x * (x / 1.9) ** (0.14 * np.exp(23 * law.yield_strain / e))
+
+
+def _jackson_load(law: Any, x: Any, e: Any) -> Any:
+    with np.errstate(over="ignore"):
+        at_yield = math.pi * law.yield_factor / 2 * law.yield_strain / e  # radius of contact over R
+        radius = at_yield * np.sqrt(_jackson_area(law, x, e))
+        hardness = -2.84 * np.expm1(-0.82 * radius**-0.7)  # over the yield strength
+    yielded = -np.expm1(-(x ** (5 / 9)) / 25) * x
+    return np.exp(-(x ** (5 / 12)) / 4) * x * np.sqrt(x) + 4 / law.yield_factor * hardness * yielded
 
 
 @dataclass(frozen=True)
@@ -247,8 +249,7 @@ class JacksonGreen(Bridgeable):
     """
 
     name: ClassVar[str] = "jackson-green"
-    starts: ClassVar[tuple[float, ...]] = (1.9,)
-    powers: ClassVar[tuple[float, float]] = (5 / 12, 5 / 9)
+    fits: ClassVar = (Piece(1.9, load=_jackson_load, area=_jackson_area),)
 
     yield_strength: float | None = None
     poisson: float = 0.3
@@ -278,25 +279,3 @@ class JacksonGreen(Bridgeable):
         root = math.pi * self.yield_factor * strain / 2
         critical = root * root * surface.radius / surface.sigma  # inf where a power would raise
         return replace(self, yield_strength=None, yield_strain=strain, critical=critical)
-
-    def load_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
-        """Return the remaining part of Hertz's load, and the hardness on the yielded part."""
-        left, gone = self.powers
-        hardness = self._hardness(x, e) * (-np.expm1(-(x**gone) / 25)) / np.sqrt(x)
-        return np.exp(-(x**left) / 4) + 4 / self.yield_factor * hardness
-
-    def area_over_hertz(self, fit: int, x: Any, e: Array) -> Any:
-        """Return ``(x/1.9)^B``."""
-        with np.errstate(over="ignore"):  # infinite where the fit has no meaning
-            return (x / self.starts[0]) ** (0.14 * np.exp(23 * self._strain(e)))
-
-    def _hardness(self, x: Any, e: Array) -> Any:
-        """H_G over the yield strength."""
-        with np.errstate(over="ignore"):
-            at_yield = math.pi * self.yield_factor / 2 * self._strain(e)  # radius of contact over R
-            radius = at_yield * np.sqrt(x * self.area_over_hertz(1, x, e))
-            return -2.84 * np.expm1(-0.82 * radius**-0.7)
-
-    def _strain(self, e: Array) -> Array:
-        assert self.yield_strain is not None  # `x` has said so
-        return np.asarray(self.yield_strain / e)

@@ -6,20 +6,18 @@ comes nearer: within the pieces, and where pieces change.
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import lru_cache, partial
+from functools import partial
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
 from analytic.arrays import Array, Ints, Marks
 from analytic.gradings import Grading
 from analytic.laws.branch import Branch
-from analytic.laws.law import ContactLaw, piece_of
-from analytic.laws.regimes import Bound, Crossings, Regimes, crossings_of, limit_of
+from analytic.laws.law import piece_of
+from analytic.laws.regimes import Bound, Regimes, crossings_of, limit_of
 from analytic.laws.unloading import slope_in_root
 from analytic.quadrature import NEAREST, towards
 from analytic.quantities import quantity_of
-from analytic.resolution import Same, resolved_breaks
 
 
 def cuts_of(
@@ -75,9 +73,7 @@ def _below_losses(regimes: Regimes, smooth: Marks, high: float) -> list[tuple[in
 
 
 _TOUCH = 1e-60  # root of the penetration at first touch: at 0 itself slopes are 0/0
-_ABOUT, _NODES = 2.0**-6, 16  # of the fit from which the slope of a bound is taken
-_REMEMBERED = 512  # bounds at some separations, where every quantity jumps
-_JUMP = 1e-9  # a bound that misses by more jumps over the penetration
+_NEAR = 2.0**-28  # heights on either side, from which the slope of a bound is taken
 
 
 def slope_term(quantity: str, branch: Branch, penetration: Array, e: Array) -> Array:
@@ -156,48 +152,16 @@ def jumps_met(
     share = density(separations, every)
     yield Jumps(branch.of_some(every), -1, touch, grading(separations), share, every)
     for j in range(len(law.limits(np.ones(law.radii)))):
-        find = _met.__wrapped__ if law.each else _met
-        found, shares = find(Same(grading), law, j, tuple(separations.tolist()), ends)
+        bound = limit_of(law, grading, j)
+        found = crossings_of(bound, grading, separations, *ends, law.radii)
         s, which = found.height, found.separation
         root = np.sqrt(np.maximum(s - separations[which], 0.0))
-        yield Jumps(branch.of_some(which), j, root, grading(s), density(s, which) * shares, which)
+        shares = density(s, which) * _moved(bound, s, which)
+        yield Jumps(branch.of_some(which), j, root, grading(s), shares, which)
 
 
-@lru_cache(maxsize=_REMEMBERED)
-def _met(
-    same: Same, law: ContactLaw, j: int, at: tuple[float, ...], ends: tuple[float, float]
-) -> tuple[Crossings, Array]:
-    """Where piece j + 1 begins or ends at some separations, and the heights that cross for each unit."""
-    bound, separations = limit_of(law, same.grading, j), np.array(at)
-    found = crossings_of(bound, same.grading, separations, *ends, law.radii)
-    return found, _shares(bound, same.grading, found, separations, ends)
-
-
-def _shares(
-    bound: Bound, grading: Grading, found: Crossings, separations: Array, ends: tuple[float, float]
-) -> Array:
-    """Heights that cross the bound for each unit of the separation; none where the bound jumps."""
-    breaks = np.array([ends[0], *resolved_breaks(grading, *ends), ends[1]])
-    t, which = found.height, found.separation
-    both = np.stack([np.nextafter(t, -np.inf), t])
-    above = both - separations[which]
-    with np.errstate(divide="ignore", over="ignore"):
-        missed = np.abs(above - bound(both, which))
-    met = np.all(missed <= _JUMP * np.maximum(1, np.abs(above)), axis=0)
-    t, which, shares = t[met], which[met], np.zeros(t.size)
-    k = np.clip(np.searchsorted(breaks, t, side="right"), 1, breaks.size - 1)
-    left = np.maximum(breaks[k - 1], t - _ABOUT)
-    right = np.minimum(np.nextafter(breaks[k], -np.inf), t + _ABOUT)
-    shares[met] = 1 / np.abs(1 - _slopes(bound, t, which, left, right))
-    return shares
-
-
-def _slopes(bound: Bound, t: Array, which: Ints, left: Array, right: Array) -> Array:
-    """Derivatives of a bound, by the polynomials through some of its values."""
-    if not t.size:
-        return t
-    x = chebyshev.chebpts1(_NODES)
-    values = bound(left + (right - left) * (1 + x[:, None]) / 2, which)
-    c = chebyshev.chebder(chebyshev.chebfit(x, np.broadcast_to(values, (_NODES, t.size)), _NODES - 1))
-    place = 2 * (t - left) / (right - left) - 1
-    return np.asarray(chebyshev.chebval(place, c, tensor=False) * 2 / (right - left))
+def _moved(bound: Bound, heights: Array, which: Ints) -> Array:
+    """How far heights where a piece begins move for each unit of separation: not where the bound jumps."""
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+        rise = bound(heights + _NEAR, which) - bound(heights - _NEAR, which)
+        return np.nan_to_num(1 / np.abs(1 - rise / (2 * _NEAR)))

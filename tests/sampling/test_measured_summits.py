@@ -128,7 +128,7 @@ def test_what_is_drawn_are_pairs():
 @pytest.mark.parametrize("law", [None, mcgw.KogutEtsion(hardness=1.2e9)], ids=("hertz", "kogut-etsion"))
 def test_slopes_inverses_and_shares(law):
     theory, h = scene(law=law).theory, 0.7123
-    for name in ("load", "area"):
+    for name in ("load", "area", "conductance"):
         step = 1e-6
         rise = (theory.mean(name, h - step) - theory.mean(name, h + step)) / (2 * step)
         assert theory.slope(name, h) == pytest.approx(rise, rel=1e-6)

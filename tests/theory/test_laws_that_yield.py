@@ -114,7 +114,7 @@ def test_hardness_and_strength_become_critical_penetrations():
 def test_limits_fall_with_the_square_of_the_modulus(law):
     e = np.array([[0.5, 1.0], [2.0, 10.0]])
     limits = law.limits(e)
-    assert limits.shape == (len(law.starts), 2, 2)
+    assert limits.shape == (len(law.edges), 2, 2)
     np.testing.assert_allclose(limits * e**2, law.limits(ONE)[:, None, None] * np.ones((2, 2)), rtol=1e-14)
 
 
