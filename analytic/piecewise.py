@@ -15,7 +15,6 @@ MOST_PIECES = 4096  # as text they stay below two megabytes
 _MOST_TERMS, _MOST_NAME = 64, 200
 _SAME, _SAME_END = 4e-13, 0.1  # of two resolutions: of the largest value next by, and of their ends
 _INSIDE = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
-_HALVINGS, _MOST_PARTS = 40, 4096  # in the search for zeros
 _NOISE = 3e-16
 
 
@@ -128,19 +127,13 @@ class PiecewiseSeries:
     def zeros(self) -> tuple[float, ...]:
         """Heights where it changes its sign; none is missed, but where it is zero to rounding alone."""
         low, high, c = self._table
-        steepest = (np.arange(len(c))[:, None] ** 2 * np.abs(c)).sum(axis=0)  # bound of the slope in x
-        piece, x, half = np.arange(len(low)), np.zeros(len(low)), 1.0
-        for _ in range(_HALVINGS):  # a part is dropped if it is sure to have no zero
-            near = np.abs(_clenshaw(c, piece, x)) < steepest[piece] * half
-            piece, x = piece[near], x[near]
-            if not 0 < 2 * piece.size <= _MOST_PARTS:
-                break
-            half /= 2
-            piece, x = np.concatenate([piece, piece]), np.concatenate([x - half, x + half])
-        middle, width = (low + high) / 2, (high - low) / 2
-        ends = np.concatenate([middle[piece] + width[piece] * (x + side * half) for side in (-1, 1)])
-        at_edges = np.concatenate([self.edges[1:-1], np.nextafter(self.edges[1:-1], -np.inf)])
-        s = np.unique(np.concatenate([np.clip(ends, self.edges[0], self.edges[-1]), at_edges, self.edges]))
+        places = [*self.edges, *np.nextafter(self.edges[1:-1], -np.inf)]
+        for k in np.flatnonzero(np.abs(c[0]) <= np.abs(c[1:]).sum(axis=0)):  # the others have none
+            own = np.trim_zeros(c[:, k], "b")
+            roots = np.sort(chebyshev.chebroots(own).real) if own.size > 1 else np.empty(0)
+            between = (1 + np.clip((roots[1:] + roots[:-1]) / 2, -1, 1)) / 2
+            places += (low[k] + (high[k] - low[k]) * between).tolist()
+        s = np.unique(places)
         s = s[self(s) != 0]
         sign = np.sign(self(s))
         change = np.flatnonzero(sign[1:] != sign[:-1])

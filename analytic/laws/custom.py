@@ -15,7 +15,6 @@ _NOTHING = 1e-16  # of the largest value
 _ALLOWED = 1e-13
 _BETWEEN = np.linspace(-1, 1, 301)
 Formula = Callable[[Any], Any]
-
 _PROBE = 1e-30j  # slopes are taken by a step into the complex plane
 
 
@@ -64,35 +63,30 @@ def _at(t: Any, low: float, high: float) -> Any:
     return middle * (1 + t) / (1 - t)
 
 
-def resolved_in_root(formula: Callable[[Any], Any], low: float, high: float) -> RootSeries:
+def resolved_in_root(formula: Formula, low: float, high: float) -> RootSeries:
     """The series that stands for a formula, to 1e-13 of the largest value of ``formula/u^2``.
 
     If 256 terms are not enough that is a ValueError.
     """
+
+    def over_square(t: Array) -> Array:
+        u = _at(t, low, high)
+        return np.asarray(formula(u) / (u * u))
+
+    between = _BETWEEN[_BETWEEN != 0]
     for terms in (16, 32, 64, 128, _MOST_TERMS):
         with np.errstate(all="ignore"):  # a piece may be too wide for any
-            found, over, largest = _tried(formula, low, high, terms)
-        if np.all(np.abs(over) <= _ALLOWED * largest):
-            return found
+            c: Array = chebyshev.chebinterpolate(over_square, terms - 1)  # type: ignore[type-var]
+            largest = np.abs(c).max()
+            c[np.abs(c) <= _NOTHING * largest] = 0  # so that what is even or odd stays it
+            off = np.abs(chebyshev.chebval(between, c) - over_square(between))
+        if np.all(off <= _ALLOWED * largest):
+            return RootSeries(low, high, tuple(np.trim_zeros(c, "b").tolist()))
     first = "; where it begins, write u**3 for (u*u)**1.5: it is also evaluated at -u" if low < 0 else ""
     raise ValueError(
         f"a series of {_MOST_TERMS} terms is not accurate enough between x = {low * abs(low):g} and "
         f"{high * high:g}: give the penetration of each jump and kink in limits{first}"
     )
-
-
-def _tried(
-    formula: Callable[[Any], Any], low: float, high: float, terms: int
-) -> tuple[RootSeries, Array, float]:
-    """A series, what it is off over u^2, and the largest of its coefficients."""
-    nodes = chebyshev.chebpts1(terms)
-    u = _at(nodes, low, high)
-    c = 2 / terms * (chebyshev.chebvander(nodes, terms - 1).T @ (formula(u) / (u * u)))
-    c[0] /= 2
-    c[np.abs(c) <= _NOTHING * np.abs(c).max()] = 0  # so that what is even or odd stays it
-    found = RootSeries(low, high, tuple(np.trim_zeros(c, "b").tolist()))
-    between = _at(_BETWEEN[_BETWEEN != 0], low, high)
-    return found, (found(between) - formula(between)) / between**2, float(np.abs(c).max())
 
 
 @dataclass(frozen=True)
@@ -160,13 +154,16 @@ class CustomLaw(ElasticPlastic):
         rising = [0.0, *self.beginnings]
         if not (np.all(np.isfinite(rising)) and np.all(np.diff(rising) > 0)):
             raise ValueError(f"limits = {list(self.beginnings)}: give numbers > 0 that increase")
-        for name, formulas in (("load", self.load_of), ("area", self.area_of)):
+        for name, formulas in self._formulas().items():
             if len(formulas) != len(rising):
                 raise ValueError(
                     f"{name}: give {len(rising)} formulas, one more than limits, not {len(formulas)}"
                 )
             for piece, formula in enumerate(formulas):
                 self._check(f"{name}[{piece}]", formula, piece)
+
+    def _formulas(self) -> dict[str, tuple[Formula, ...]]:
+        return {"load": self.load_of, "area": self.area_of}
 
     @property
     def is_data(self) -> bool:
@@ -215,7 +212,7 @@ class CustomLaw(ElasticPlastic):
         ends = np.sqrt([*kept, x_max]).tolist()
         starts = [-ends[0], *ends[:-1]]
         series: dict[str, list[Formula]] = {"load": [], "area": []}
-        for name, formulas in (("load", self.load_of), ("area", self.area_of)):
+        for name, formulas in self._formulas().items():
             for piece, (low, high) in enumerate(zip(starts, ends, strict=True)):
                 try:
                     series[name].append(resolved_in_root(formulas[piece], low, high))

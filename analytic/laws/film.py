@@ -1,14 +1,15 @@
 """Electrical and thermal contact conductance of spots with a film, and how spots crowd each other."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from analytic.arrays import Array, hold, some_of
-from analytic.laws.law import is_positive
+from analytic.arrays import Array, hold
+from analytic.laws.law import PerRadius, is_positive
 from analytic.surface import Surface
 
 if TYPE_CHECKING:
@@ -128,7 +129,7 @@ class Film:
 
 
 @dataclass(frozen=True)
-class SpotConductance:
+class SpotConductance(PerRadius):
     """Conductance of a spot by its radius: constriction, also in a layer, in series with a film.
 
     ``1/C = rho/(4 a) + r_f/(pi a^2)``, so that C over 4 sqrt(R sigma)/rho is ``a^2/(a + b)``; over a layer
@@ -150,6 +151,8 @@ class SpotConductance:
     path l, add ``16 l/(3 pi sqrt(R sigma))`` to b.
     """
 
+    of_radius: ClassVar[tuple[str, float]] = ("parameter", -0.5)
+
     parameter: Any
     resistivity: float
     layered: "LayeredSpot | None" = None
@@ -162,21 +165,9 @@ class SpotConductance:
             return self.layered.analytic_up_to(parameter * self.resistivity) ** 2
         return parameter**2 if parameter > 0 else math.inf
 
-    def with_radii(self, ratios: Array) -> "SpotConductance":
-        """In the units of summits whose radii are these multiples of the surface's."""
-        layered = self.layered
-        if layered is not None:
-            layered = replace(layered, thickness=layered.thickness * (1 / np.sqrt(ratios)))
-        return replace(self, parameter=self.parameter / np.sqrt(ratios), layered=layered)
-
-    def of_some(self, which: NDArray[Any]) -> "SpotConductance":
-        """That of some of these summits; as it is where all have one radius."""
-        if not np.ndim(self.parameter):
-            return self
-        layered = self.layered
-        if layered is not None:
-            layered = replace(layered, thickness=some_of(layered.thickness, which))
-        return replace(self, parameter=some_of(self.parameter, which), layered=layered)
+    def _with(self, change: Callable[[Any, float], Any]) -> Self:
+        layered = None if self.layered is None else self.layered._with(change)
+        return replace(super()._with(change), layered=layered)
 
     def __call__(self, radius: Array) -> Array:
         """Conductance over 4 sqrt(R sigma), in 1/(ohm m) or W/(m K), analytic in the radius up to -b."""

@@ -3,9 +3,11 @@
 import math
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
+
+from analytic.laws.law import PerRadius
 
 _DIRECT = 60  # images that are rather summed one by one
 _NEGLIGIBLE = 1e-18  # weight of an image
@@ -15,7 +17,7 @@ _REACH = np.geomspace(1e-4, 1e4, 401)  # radii over thicknesses at which a pole 
 
 
 @dataclass(frozen=True)
-class LayeredSpot:
+class LayeredSpot(PerRadius):
     """What takes the place of both bodies' resistivities under a spot, of its radius.
 
     ``rho(a) = 4 a R_1(a) + 1/k_other``. With the flux of an isothermal spot, as ``1/sqrt(1 - r^2/a^2)``, over
@@ -33,6 +35,8 @@ class LayeredSpot:
     conductivity, under, other : float
         Of the layer, the body under it, and the other body, W/(m K).
     """
+
+    of_radius: ClassVar[tuple[str, float]] = ("thickness", -0.5)
 
     thickness: Any
     conductivity: float

@@ -82,14 +82,16 @@ def regimes_between(
     """
     which = np.concatenate([np.empty(0, np.int64), *(c.separation for c in found)])
     height = np.concatenate([np.empty(0), *(c.height for c in found)])
-    height = merged_heights(height, h[which], np.array([*start, *h, *breaks]))
+    height = _anchored(height, h[which], np.unique([*start, *h, *breaks, high]))
 
     every = np.arange(h.size)
     which = np.concatenate([every, which, every])
     edge = np.concatenate([start, np.maximum(height, start[which[h.size : -h.size]]), np.full(h.size, high)])
     order = np.lexsort((edge, which))
     which, edge = which[order], edge[order]
-    held = np.flatnonzero((which[1:] == which[:-1]) & (edge[1:] > edge[:-1]))
+    apart = (np.diff(which) > 0) | (np.diff(edge) > _last_digits(edge, h[which])[1:])
+    which, edge = which[np.append(True, apart)], edge[np.append(True, apart)]
+    held = np.flatnonzero(which[1:] == which[:-1])
     which, begin, end = which[held], edge[held], edge[held + 1]
     numbers = piece(begin + (end - begin) / 2, which)
     goes_on = (which[1:] == which[:-1]) & (begin[1:] == end[:-1]) & (numbers[1:] == numbers[:-1])
@@ -98,29 +100,20 @@ def regimes_between(
     return Regimes(which[first][contact], begin[first][contact], end[last][contact], numbers[first][contact])
 
 
+def _last_digits(heights: Array, separations: Array) -> Array:
+    """Distance up to which heights are not told apart: they were found from ``s - h``."""
+    return np.asarray(_SAME * np.spacing(np.maximum(np.abs(heights), np.abs(separations))))
+
+
+def _anchored(heights: Array, separations: Array, anchors: Array) -> Array:
+    """Heights, each replaced by the anchor that it cannot be told from; anchors increase."""
+    nearest = anchors[np.searchsorted((anchors[1:] + anchors[:-1]) / 2, heights)]
+    return np.where(np.abs(nearest - heights) <= _last_digits(heights, separations), nearest, heights)
+
+
 def limit_of(law: ContactLaw, grading: Grading, j: int) -> Bound:
     """Return the penetration at which piece j + 1 begins, of the height and of which separation."""
     return lambda s, which: np.asarray(law.of_some(which).limits(grading(s))[j])
-
-
-def merged_heights(heights: Array, separations: Array, anchors: Array) -> Array:
-    """Heights, each replaced by the anchor, or the lowest height, that it cannot be told from.
-
-    They were found from ``s - h``, so the last digit of their separations counts too.
-    """
-    if not heights.size:
-        return heights
-    near = _SAME * np.spacing(np.maximum(np.abs(heights), np.abs(separations)))
-    order = np.argsort(heights)
-    first = np.append(True, np.diff(heights[order]) > np.maximum(near[order][1:], near[order][:-1]))
-    together = np.empty_like(heights)
-    together[order] = heights[order][np.maximum.accumulate(np.where(first, np.arange(first.size), 0))]
-    anchors = np.sort(anchors)
-    after = np.searchsorted(anchors, heights)
-    for candidate in (np.maximum(after - 1, 0), np.minimum(after, anchors.size - 1)):
-        anchor = anchors[candidate]
-        together = np.where(np.abs(anchor - heights) <= near, anchor, together)
-    return together
 
 
 class Crossings(NamedTuple):

@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 
 from analytic import Clipped, ContactLaw, Custom, Exponential, Homogeneous, Table
 from analytic.laws import Branch, piece_of
-from analytic.laws.regimes import crossings_of, merged_heights
+from analytic.laws.regimes import crossings_of
 from analytic.roots import sign_changes
 
 
@@ -202,10 +202,6 @@ def test_ends_that_cannot_be_told_apart_are_one():
     assert set(regimes.low) <= {*h, 1.05}
     tiny = Branch(Yielding(1e-17)).regimes(Homogeneous(), [1.0], -1.0, 13.0)
     assert listed(tiny) == [(1.0, 13.0, 1)]
-    np.testing.assert_array_equal(
-        merged_heights(np.array([1.0, 1.0 + 2**-52, 3.0]), np.zeros(3), np.array([3.0 + 2**-50])),
-        [1.0, 1.0, 3.0 + 2**-50],
-    )
     near = Branch(Yielding(0.05, 0.05 + 1e-12)).regimes(Homogeneous(), [0.0], -1.0, 13.0)
     assert [piece for *_, piece in listed(near)] == [0, 1, 2]
 
