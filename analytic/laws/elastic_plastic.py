@@ -61,20 +61,20 @@ class ElasticPlastic(ContactLaw):
     elastic: ClassVar[bool] = False
     yields: ClassVar[bool] = True
     of_radius: ClassVar[tuple[str, float]] = ("critical", 1.0)
-    fits: ClassVar[tuple[Piece, ...]] = ()
+    _fits: ClassVar[tuple[Piece, ...]] = ()
 
     def __post_init__(self) -> None:
         self.check_constants()
 
     @property
-    def pieces(self) -> tuple[Piece, ...]:
+    def _pieces(self) -> tuple[Piece, ...]:
         """All of them: Hertz's law first."""
-        return (HERTZ, *self.fits)
+        return (HERTZ, *self._fits)
 
     @property
     def edges(self) -> tuple[float, ...]:
         """Penetrations over the critical one at which pieces from 1 on begin."""
-        return tuple(piece.start for piece in self.pieces[1:])
+        return tuple(piece.start for piece in self._pieces[1:])
 
     @property
     def _root_of_critical(self) -> Any:
@@ -100,7 +100,7 @@ class ElasticPlastic(ContactLaw):
             return hertz
         x = self.x(y, e)
         return (
-            hertz * self.pieces[piece].load(self, x, np.where(np.asarray(e) > 0, e, 1.0)) / (x * np.sqrt(x))
+            hertz * self._pieces[piece].load(self, x, np.where(np.asarray(e) > 0, e, 1.0)) / (x * np.sqrt(x))
         )
 
     def radius(self, piece: int, y: Any, e: Array) -> Any:
@@ -109,7 +109,7 @@ class ElasticPlastic(ContactLaw):
         if piece == 0:
             return hertz
         x = self.x(y, e)
-        return hertz * np.sqrt(self.pieces[piece].area(self, x, np.where(np.asarray(e) > 0, e, 1.0)) / x)
+        return hertz * np.sqrt(self._pieces[piece].area(self, x, np.where(np.asarray(e) > 0, e, 1.0)) / x)
 
 
 def kogut_etsion_factor(poisson: float) -> float:
@@ -167,12 +167,12 @@ class Bridgeable(ElasticPlastic):
             raise ValueError(f"bridge = {self.bridge!r}: give 'hermite', or leave it out")
 
     @property
-    def pieces(self) -> tuple[Piece, ...]:
+    def _pieces(self) -> tuple[Piece, ...]:
         """All of them: Hertz's law, then bridges and fits in turn."""
         if self.bridge is None:
-            return super().pieces
+            return super()._pieces
         found = [HERTZ]
-        for left, right in pairwise(super().pieces):
+        for left, right in pairwise(super()._pieces):
             load = _bridge(right.start, left.load, right.load)
             area = _bridge(right.start, left.area, right.area)
             found += [Piece(right.start, load, area), right._replace(start=BRIDGE * right.start)]

@@ -66,7 +66,7 @@ class ChangEtsionBogy(FromHardness, Bridgeable):
     """
 
     name: ClassVar[str] = "chang-etsion-bogy"
-    fits: ClassVar = (Piece(1.0, load=lambda law, x, e: 3 * x - 1.5, area=lambda law, x, e: 2 * x - 1),)
+    _fits: ClassVar = (Piece(1.0, load=lambda law, x, e: 3 * x - 1.5, area=lambda law, x, e: 2 * x - 1),)
 
     poisson: float | None = None
 
@@ -113,7 +113,7 @@ class ZhaoMaiettaChang(FromHardness):
     """
 
     name: ClassVar[str] = "zhao-maietta-chang"
-    fits: ClassVar = (
+    _fits: ClassVar = (
         Piece(1.0, load=_zhao_load, area=_zhao_area),
         Piece(_PLASTIC, load=power(2 / _FIRST_YIELD, 1.0), area=power(2.0, 1.0)),
     )
@@ -170,7 +170,7 @@ class KogutEtsion(FromHardness, Bridgeable):
     """
 
     name: ClassVar[str] = "kogut-etsion"
-    fits: ClassVar = (
+    _fits: ClassVar = (
         Piece(1.0, load=power(1.03, 1.425), area=power(0.93, 1.136)),
         Piece(6.0, load=power(1.40, 1.263), area=power(0.94, 1.146)),
         Piece(110.0, load=lambda law, x, e: 3 / law.yield_factor * x, area=power(2.0, 1.0)),
@@ -249,7 +249,7 @@ class JacksonGreen(Bridgeable):
     """
 
     name: ClassVar[str] = "jackson-green"
-    fits: ClassVar = (Piece(1.9, load=_jackson_load, area=_jackson_area),)
+    _fits: ClassVar = (Piece(1.9, load=_jackson_load, area=_jackson_area),)
 
     yield_strength: float | None = None
     poisson: float = 0.3
