@@ -69,14 +69,14 @@ def resolved_in_root(formula: Formula, low: float, high: float) -> RootSeries:
     If 256 terms are not enough that is a ValueError.
     """
 
-    def over_square(t: Array) -> Array:
+    def over_square(t: Any) -> Any:
         u = _at(t, low, high)
-        return np.asarray(formula(u) / (u * u))
+        return formula(u) / (u * u)
 
     between = _BETWEEN[_BETWEEN != 0]
     for terms in (16, 32, 64, 128, _MOST_TERMS):
         with np.errstate(all="ignore"):  # a piece may be too wide for any
-            c: Array = chebyshev.chebinterpolate(over_square, terms - 1)  # type: ignore[type-var]
+            c = chebyshev.chebinterpolate(over_square, terms - 1)
             largest = np.abs(c).max()
             c[np.abs(c) <= _NOTHING * largest] = 0  # so that what is even or odd stays it
             off = np.abs(chebyshev.chebval(between, c) - over_square(between))
