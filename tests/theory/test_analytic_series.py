@@ -114,6 +114,8 @@ def test_zeros_are_found_where_the_sign_changes():
     assert resolved(Custom(lambda s: (s - 1) ** 2), 0.0, 3.0).zeros == ()
     assert resolved(Custom(lambda s: np.where(s > 1, 1.0, -1.0), (1.0,)), 0.0, 3.0).zeros == (1.0,)
     assert PiecewiseSeries([0, 1, 2], [[0.0], [1.0, 1.0]]).zeros == ()
+    there_and_back = PiecewiseSeries([0, 1, 2], [[0.25, -0.75], [1.0]])  # down to -1/2, and a jump to 1
+    np.testing.assert_allclose(there_and_back.zeros, [2 / 3, 1.0], rtol=1e-15)
 
 
 def test_a_zero_is_no_reason_for_narrow_pieces():

@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 
 from analytic import Clipped, ContactLaw, Custom, Exponential, Homogeneous, Table
 from analytic.laws import Branch, piece_of
+from analytic.laws import regimes as regimes_module
 from analytic.laws.regimes import crossings_of
 from analytic.roots import sign_changes
 
@@ -197,12 +198,15 @@ def test_lift_off_of_soft_tips():
 
 def test_ends_that_cannot_be_told_apart_are_one():
     """Separations a limit apart: h + 0.05 is the next of them but for its rounding."""
-    h = np.arange(21) * 0.05
-    regimes = Branch(Yielding(0.05, 0.05 * (1 + 1e-16))).regimes(Homogeneous(), h, -1.0, 13.0)
-    assert set(regimes.low) <= {*h, 1.05}
+    for step in (0.05, 0.07, 0.013, 0.3):
+        h = np.arange(21) * step
+        regimes = Branch(Yielding(step, step * (1 + 1e-16))).regimes(Homogeneous(), h, -1.0, 13.0)
+        assert set(regimes.low[regimes.low <= h[-1]]) <= set(h)
+    near, there = np.array([1 - 2**-53, 1 + 2**-52, 1 + 2**-40]), np.array([0.0, 1.0, 3.0])
+    np.testing.assert_array_equal(regimes_module._anchored(near, np.zeros(3), there), [1.0, 1.0, near[2]])
     tiny = Branch(Yielding(1e-17)).regimes(Homogeneous(), [1.0], -1.0, 13.0)
     assert listed(tiny) == [(1.0, 13.0, 1)]
-    near = Branch(Yielding(0.05, 0.05 + 1e-12)).regimes(Homogeneous(), [0.0], -1.0, 13.0)
+    near = Branch(Yielding(0.05, 0.05 + 1e-15)).regimes(Homogeneous(), [0.0], -1.0, 13.0)
     assert [piece for *_, piece in listed(near)] == [0, 1, 2]
 
 
