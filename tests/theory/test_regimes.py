@@ -8,8 +8,7 @@ import pytest
 from scipy.optimize import brentq
 
 from analytic import Clipped, ContactLaw, Custom, Exponential, Homogeneous, Table
-from analytic.laws import Branch, piece_of
-from analytic.laws import regimes as regimes_module
+from analytic.laws import Branch, piece_of, regimes as regimes_module
 from analytic.laws.regimes import crossings_of
 from analytic.roots import sign_changes
 
