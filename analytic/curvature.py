@@ -54,7 +54,7 @@ class WeightedHeights:
         return self.law.pdf(s) * self.weight(s)
 
     def __getattr__(self, name: str) -> Any:
-        """As the law's."""
+        """Delegate other attributes to the law."""
         if name.startswith("__"):  # what copying asks for before there is a law
             raise AttributeError(name)
         return getattr(self.law, name)

@@ -47,7 +47,7 @@ class Branch:
         return replace(self, law=self.law.with_radii(ratios), conductance=own)
 
     def of_some(self, which: NDArray[Any]) -> Self:
-        """That of some of the summits that the law was made for; as it is where all have one radius."""
+        """Return the law of selected summits; itself where all have one radius."""
         own = None if self.conductance is None else self.conductance.of_some(which)
         return replace(self, law=self.law.of_some(which), conductance=own)
 
@@ -222,7 +222,7 @@ def terms_of(
 
 @dataclass(frozen=True)
 class Ways:
-    """A law of contact, the history of the surface, and what its spots conduct through.
+    """Contact history: the law of contact, where unloading began, and what the spots conduct through.
 
     Parameters
     ----------

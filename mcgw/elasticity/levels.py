@@ -56,7 +56,7 @@ class Pressed:
 
     @property
     def load(self) -> float:
-        """N."""
+        """Return the load on the map, N."""
         return self.pressure * self.size[0] * self.size[1]
 
     @cached_property

@@ -37,7 +37,7 @@ def with_interaction(scene: Scene, sums: dict[str, NDArray[Any]]) -> dict[str, A
 
 
 def at_loads(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
-    """The same of what holds at given loads: with "nominal_separation" after the separation that is felt."""
+    """Add the half-space to answers at given loads; "nominal_separation" follows the effective separation."""
     felt = found["separation"]
     nominal = felt - scene.compliance / scene.surface.sigma * found["load"]
     rest = {name: _answer(scene, name, value) for name, value in found.items() if name != "separation"}

@@ -19,7 +19,7 @@ _LOW = 2**32 - 1  # the lower half of an integer: sums of halves do not overflow
 
 
 class Held(ABC):
-    """What is held of surfaces: mean and deviation of a table by its name, and perhaps more."""
+    """Stored results of surfaces: mean and deviation of each quantity, and perhaps more."""
 
     no_more = ""  # why there is no more, and what to do about it
 

@@ -14,7 +14,7 @@ MOST_SHOWN = 100  # separations in a table or figure beside theory
 
 @dataclass(frozen=True)
 class _Some(Held):
-    """What is held of surfaces, at some of the separations.
+    """Results of surfaces at some of the separations.
 
     Parameters
     ----------

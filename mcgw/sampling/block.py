@@ -125,12 +125,12 @@ class Sampler:
 
     @property
     def words(self) -> int:
-        """As of any `Source`."""
+        """Return the memory for one surface, in numbers."""
         return self.moments + 2 * self.mesh.size + _WORDS * int(min(self.outside, 1e12))
 
     @property
     def draws(self) -> float:
-        """As of any `Source`."""
+        """Return the random numbers that a surface takes."""
         return self.outside + self.inside
 
     @property

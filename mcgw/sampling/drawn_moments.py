@@ -110,7 +110,7 @@ class Crowds:
         return moments
 
     def draws(self, asperities: float, layout: Layout) -> float:
-        """One a moment where that is less."""
+        """Return the random numbers of a surface: one an asperity or one a moment, whichever are fewer."""
         return min(asperities, float(layout.sizes.sum()))
 
 

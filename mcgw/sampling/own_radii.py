@@ -234,7 +234,7 @@ class Families:
         return self.drawn or tuple(response.layout for response in self.responses)
 
     def apart(self, layout: Layout) -> tuple[Layout, ...]:
-        """The moments of each family, of those of all of them."""
+        """Split a layout by family of moments."""
         if not self.powers:
             return ()
         plain, rooted = (np.split(x, len(self.powers)) for x in (layout.plain, layout.rooted))

@@ -247,5 +247,5 @@ class _Rows:
 
 
 def _in_fours(rows: Any) -> Any:
-    """Rounded up."""
+    """Return the next multiple of four."""
     return (rows + FOUR - 1) // FOUR * FOUR
