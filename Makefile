@@ -6,4 +6,4 @@ check:  ## lint, types, and the tests that import what changed since main
 
 docs:  ## the site, in docs/_build
 	.venv/bin/pip install -q -e '.[docs]'
-	.venv/bin/python -m sphinx -W -b html docs docs/_build
+	.venv/bin/python -m sphinx -W -E -b html docs docs/_build

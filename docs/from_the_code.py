@@ -32,7 +32,7 @@ DOCUMENTS = {
     "runs/validation/published.md": "explanation/published-numbers",
 }
 _LINK = re.compile(r"(!?)\[([^\]]+)\]\(([^)#:]+)\)")
-PARTS = ("explanation/errata-table", "explanation/errata-proofs")  # no pages: parts of one
+PARTS = ("explanation/errata-table", "explanation/errata-proofs", "front")  # no pages: parts of one
 WIDTH = "100"  # columns of the help
 
 
@@ -42,6 +42,7 @@ def pages() -> dict[str, str]:
     found |= {"reference/commands": commands_page(), "about/paper": paper_page()}
     found |= {f"reference/{package}": names_page(package) for package in ("mcgw", "analytic")}
     found |= {"explanation/errata-proofs": proofs()}
+    found["front"] = front()
     named = {f"{name}.{'txt' if name in PARTS else 'md'}": text for name, text in found.items()}
     return named | {"explanation/house.svg": house.svg()}
 
@@ -69,6 +70,17 @@ def _moved(path: str) -> str:
         return f"[{words}](../{DOCUMENTS[place]}.md)" if place in DOCUMENTS else f"{words} (`{place}`)"
 
     return _LINK.sub(moved, (ROOT / path).read_text())
+
+
+def front() -> str:
+    """The README down to its table, as the first page of the site."""
+
+    def moved(match: re.Match[str]) -> str:
+        picture, words, target = match.groups()
+        page = f"{DOCUMENTS[target]}.md" if target in DOCUMENTS else target.removeprefix("docs/")
+        return f"{picture}[{words}]({f'../{target}' if picture else page.replace('errata-table', 'errata')})"
+
+    return _LINK.sub(moved, (ROOT / "README.md").read_text().partition("## On the command line")[0])
 
 
 def names_page(package: str) -> str:

@@ -1,4 +1,7 @@
-"""Words that people type, and the pages that answer: main entries of the index, found first."""
+"""Words that people type, and the pages that answer: main entries of the index, found first.
+
+Sphinx forgets those of pages that a later build does not read again: build the site with ``-E``.
+"""
 
 from typing import Any
 
