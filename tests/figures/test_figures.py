@@ -392,31 +392,26 @@ def test_another_scene_would_show(graded):
     assert np.median(np.abs(p.mean - other) / p.stderr) > 5
 
 
+LISTED = {
+    "heights": mcgw.MeasuredHeights(np.linspace(-2, 2, 99)), "n_asperities": 99, "separations": (0.5, 1.0),
+}  # fmt: skip
+
+
 @pytest.mark.parametrize(
     "changes",
     [
         {"separations": (4.9, 5.1), "n_surfaces": 4},
-        {
-            "heights": mcgw.MeasuredHeights(np.linspace(-2, 2, 99)),
-            "n_asperities": 99,
-            "n_surfaces": 1,
-            "separations": (0.5, 1.0),
-        },
+        {"separations": 1.0, "n_surfaces": 1},
+        LISTED | {"n_surfaces": 1},
     ],
+    ids=["hardly touches", "one surface", "measured"],
 )
 def test_what_hardly_touches_or_is_one_surface_has_no_markers(changes):
     figures, without = drawn(scene_of(grading=mcgw.Exponential(2.0), quantities=["load"], **changes))
     assert set(without) <= {"fluctuations", "equal-load"}
     assert not [p for x in figures.values() for p in points(x)]
-
-
-def test_one_surface_has_no_markers():
-    figures, without = drawn(
-        scene_of(n_surfaces=1, grading=mcgw.Exponential(2.0), separations=1.0, quantities=["load", "area"])
-    )
-    assert "fluctuations" in without
-    assert not [p for x in figures.values() for p in points(x)]
-    assert not any("Markers" in data.caption for data in figures.values())
+    one = changes["n_surfaces"] == 1
+    assert not (one and any("Markers" in data.caption for data in figures.values()))
     assert draw(figures["figure-2"]).axes
 
 

@@ -304,23 +304,6 @@ def test_what_an_array_and_an_hdf5_map_say_of_themselves(topography, tmp_path):
     assert not read_map(tmp_path / "n.h5").periodic
 
 
-@pytest.mark.parametrize(("key", "value", "told"), [
-    ("pixel", "12", "pixel = '12': must be"), ("pixel", [1, True], "two numbers in m"),
-    ("pixel", [1e-6] * 3, "two numbers in m"), ("periodic", "no", "periodic = 'no': must be true or false"),
-    ("unit", "um", "unit = 'um': must be 'm'"),
-])  # fmt: skip
-def test_words_in_place_of_numbers_are_refused(key, value, told, topography, tmp_path):
-    write_map(topography, tmp_path / "m.npy")
-    facts = json.loads((tmp_path / "m.json").read_text())
-    (tmp_path / "m.json").write_text(json.dumps({**facts, key: value}))
-    with pytest.raises(ValueError, match=rf"m\.json: {told}" if key == "periodic" else told):
-        read_map(tmp_path / "m.npy")
-    del facts["unit"], facts["periodic"]
-    (tmp_path / "m.json").write_text(json.dumps({"pixel": [1e-6, 2e-6]}))
-    found = read_map(tmp_path / "m.npy")
-    assert (found.pixel, found.periodic, found.assumed_unit) == ((1e-6, 2e-6), False, "m")
-
-
 def test_arrays_of_objects_are_never_unpickled(tmp_path):
     np.save(tmp_path / "map.npy", np.array([[object()]]), allow_pickle=True)
     with pytest.raises(ValueError, match="not a valid"):

@@ -11,7 +11,6 @@ from oracles import exact
 
 import analytic
 import mcgw
-from mcgw import compare
 from mcgw.cli import main
 from mcgw.formats.numbers import columns, number
 from mcgw.reports.html import report_html
@@ -169,29 +168,7 @@ def test_the_surface(ensemble, page):
     assert found["grading E*(s)/E*"] == "exponential grading, γ = 2"
 
 
-def test_many_separations_are_shown_from_the_first_to_the_last(small):
-    ((_, _, rows),) = tables(page_of(small, separations=tuple(np.linspace(0, 2, 33))))
-    assert [float(row[0]) for row in rows] == [0, 0.25, 0.5, 0.75, 1, 1.25, 1.5, 1.75, 2]
-
-
 # --- words that depend on the ensemble ------------------------------------------------------------------
-
-
-def test_opening_and_verdict(ensemble, page, small):
-    assert (
-        "150 rough surfaces of 3000 asperities, exponential grading, γ = 2, each pressed on a plane at "
-        "4 separations from d/σ = 0 to 2. Every asperity is a Hertzian contact."
-    ) in page
-    verdict = compare(ensemble).verdict
-    top = re.search(r'</h1>\s*<p class="verdict">(.*?)</p>', page, flags=re.DOTALL)[1]
-    first, second = (html.unescape(line) for line in top.split("<br>\n"))
-    seen = f"chi-square {verdict.chi_square:.1f} for {verdict.degrees} degrees of freedom"
-    assert first.startswith(f"Monte Carlo and theory agree: {seen}")
-    assert first.endswith(f"p = {verdict.p:.3g}.")
-    assert second == f"{ensemble.scene.validity().verdict}."
-    other = page_of(small, count="poisson", separations=(1.0,))
-    assert "3000 asperities on average (a Poisson number)" in other
-    assert "at 1 separation from" in other
 
 
 def test_disagreement_is_shown_and_names_are_no_markup(small):
@@ -229,18 +206,6 @@ def test_provenance_and_the_scene_to_run_again(page, small, tmp_path):
     again = (tmp_path / "e.html").read_text(encoding="utf-8")
     text = html.unescape(re.findall(r"<pre>(.*?)</pre>", again, flags=re.DOTALL)[-1])
     assert mcgw.scene_from(text) == small
-
-
-def test_figures_are_named_and_in_order(page):
-    labels = [html.unescape(x) for x in re.findall(r'aria-label="([^"]*)"', page)]
-    long = [analytic.QUANTITIES[name].long_name for name in HEADINGS]
-    assert labels[-6:] == [*long, "std over mean against separation"]
-    assert [x.partition(" against")[0] for x in labels[:-6]] == [
-        "Load: pressure at a separation",
-        "Real contact area",
-        "Normal stiffness",
-        "Contact conductance times ρ",
-    ]
 
 
 def test_one_surface_where_no_pressure_is_common(small):

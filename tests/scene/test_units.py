@@ -4,7 +4,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from oracles.said import call
 
 import analytic
 import mcgw
@@ -153,29 +152,6 @@ def test_a_surface_of_texts_is_that_of_floats():
             mcgw.Surface(**{**SI, key: "5 apples"})
         with pytest.raises(ValueError, match=f"^surface.{key} = -1"):
             mcgw.Surface(**{**SI, key: -1.0})
-
-
-# Command, and what it is of: without the option it is right, but for solve and the cutoff.
-OPTIONS = [
-    ("solve s.toml --pressure", "Pa"), ("solve s.toml --load", "N"), ("solve s.toml --area-fraction", "1"),
-    ("surface s.toml -o m.h5 --width", "m"),
-    ("surface --from-spectrum rms=1um,long=9um,short=1um -o m.h5 --pixel", "m"),
-    ("fit map.npy -o f.toml --cutoff", "m"), ("fit map.npy -o f.toml --cutoff none --pixel", "m"),
-    ("fit map.npy -o f.toml --cutoff none --E-star", "Pa"), ("tradeoff s.toml -o t --seconds", "s"),
-]  # fmt: skip
-
-
-@pytest.mark.parametrize(("words", "kind"), OPTIONS)
-def test_a_wrong_unit_of_an_option_is_one_line(words, kind, tmp_path):
-    (tmp_path / "map.npy").touch()
-    (tmp_path / "s.toml").write_text(
-        mcgw.scene_text(mcgw.Scene(mcgw.Surface(**SI), separations=1.0, n_surfaces=3))
-    )
-    done = call(*words.split(), "5 apples", cwd=tmp_path)
-    assert done.returncode == 2
-    said, option = done.stderr.splitlines()[-1], words.split()[-1]
-    assert said.startswith(f"mcgw: {option} = '5 apples': give a number > 0 with its unit")
-    assert EXAMPLES[kind] in said
 
 
 # --- units that are doubted ---------------------------------------------------------------------------

@@ -82,9 +82,3 @@ def test_another_radius_is_seen():
         assert getattr(on.with_radii(np.array([1.0, 2.0])), key)[1] == pytest.approx(
             2**power * getattr(on, key)
         )
-
-
-def test_one_radius_is_the_law_itself():
-    ways = Ways(LAWS["kogut-etsion"].on(SURFACE))
-    same = ways.term("load", 0.2, S, MODULI, np.ones(S.size))
-    np.testing.assert_array_equal(same, term_of("load", ways.of("load"), 0.2, S, MODULI))

@@ -21,7 +21,6 @@ from analytic import (
     RandomCurvature,
     SpectralMoments,
     quantity_of,
-    summits as summits_module,
 )
 from analytic.curvature import MEAN_CURVATURE
 from analytic.laws import Coated, Film, branch
@@ -33,33 +32,32 @@ SURFACE = MOMENTS.surface(1e-8, 1e9)
 H = np.array([-1.0, 0.4, 1.5])
 NAMES = ("load", "area", "stiffness", "contacts", "conductance")
 GRADED = Exponential(1.6)
-X, W = np.polynomial.legendre.leggauss(12)
 
 
 def model(largest=math.inf, **own):
     return Model(SURFACE, heights=Nayak(ALPHA), curvature=RandomCurvature(ALPHA, largest), **own)
 
 
-def panels(marks):
+def panels(marks, points):
     """Points and weights of Gauss's rule on each of the pieces, along the last axis."""
+    x, w = np.polynomial.legendre.leggauss(points)
     a, b = marks[..., :-1, None], marks[..., 1:, None]
     shape = (*marks.shape[:-1], -1)
-    return (a + (b - a) * (1 + X) / 2).reshape(shape), ((b - a) / 2 * W).reshape(shape)
+    return (a + (b - a) * (1 + x) / 2).reshape(shape), ((b - a) / 2 * w).reshape(shape)
 
 
-def summits(h, yields=()):
+def summits(h, yields=(), points=12):
     """Heights above h, radius ratios, probabilities; cut where ``s - h`` is `yields` times the ratio."""
     law = Nayak(ALPHA)
-    v, dv = panels(np.linspace(0, math.sqrt(12 - h), 13))
+    v, dv = panels(np.linspace(0, math.sqrt(12 - h), 13), points)
     s = h + v * v
     rho = math.sqrt(1.5 / ALPHA)
     mu, var = math.sqrt(2) * rho * (law.mean + law.std * s)[:, None], 2 * (1 - rho**2)
     ends = [MEAN_CURVATURE * x / (s - h) for x in yields] + [np.full_like(s, MEAN_CURVATURE / 3)]
     grid = np.broadcast_to(np.linspace(0, math.sqrt(14), 13), (s.size, 13))
     marks = np.concatenate([grid, np.sqrt(np.clip(np.transpose(ends), 0, 14))], axis=1)
-    r, dr = panels(
-        np.sort(marks, axis=1)
-    )  # in the root of the curvature, in which powers of radii are smooth
+    # In the root of the curvature powers of radii are smooth.
+    r, dr = panels(np.sort(marks, axis=1), points)
     g = r * r
     law_of_g = (
         2 * r * dr * g**3 * np.exp(g * g / 2 + log_ndtr((mu / (1 + var) - g) / math.sqrt(var / (1 + var))))
@@ -218,11 +216,9 @@ def test_means_of_summits_on_the_way_back_each_from_its_own_depth(name):
 
 
 @pytest.mark.slow
-def test_shares_of_summits_that_yield(monkeypatch):
+def test_shares_of_summits_that_yield():
     """The kinks of a share take more points than the means do: by 12 of them it is off by 4e-8."""
-    for name, value in zip("XW", np.polynomial.legendre.leggauss(32), strict=True):
-        monkeypatch.setitem(globals(), name, value)
-    s, c, p = summits(1.0, CRITICAL * np.array([1, 6, 110]))
+    s, c, p = summits(1.0, CRITICAL * np.array([1, 6, 110]), points=32)
     reached = np.searchsorted([1, 6, 110], (s - 1.0) / (CRITICAL * c))
     shares = [float(model(law=LAW).share(piece, 1.0)) for piece in range(4)]
     assert shares == pytest.approx(np.bincount(reached, p, 4) / p.sum(), rel=1e-9, abs=1e-12)
@@ -242,17 +238,10 @@ def test_slopes_count_the_jumps_of_summits_that_yield():
     assert float(m.slope("load", 1.0)) == pytest.approx(slope, rel=1e-6)
 
 
-def found_again(law):
-    m, h = model(law=law), np.array([1.0])
+def test_separations_and_shares_fit_the_means():
+    m, h = model(law=ChangEtsionBogy(critical=CRITICAL)), np.array([1.0])
     assert m.separation_at("load", m.mean("load", h)) == pytest.approx(h, abs=1e-10)
-    pieces = len(law.on(SURFACE).limits(np.ones(1))) + 1
-    assert sum(float(m.share(piece, h)[0]) for piece in range(pieces)) == pytest.approx(1, rel=1e-11)
-
-
-def test_separations_and_shares_fit_the_means(monkeypatch):
-    """Of two radii, whose sums are no less consistent."""
-    monkeypatch.setattr("analytic.summits._NODES", 1)
-    found_again(ChangEtsionBogy(critical=CRITICAL))
+    assert sum(float(m.share(piece, h)[0]) for piece in range(2)) == pytest.approx(1, rel=1e-11)
 
 
 def test_what_does_not_fit_is_refused():
@@ -303,16 +292,3 @@ def test_forty_separations_of_own_radii_that_yield_are_looked_at_once(monkeypatc
         m.mean(name, h)
         m.cumulants(name, h)
     assert len(asked) == len(m.ways.law.limits(np.ones(1)))
-
-
-def test_few_points_of_narrow_pieces_lose_nothing(monkeypatch):
-    """Against as many as of wide ones; four are too few."""
-    m = replace(model(largest=3.0, grading=GRADED), law=KogutEtsion(critical=0.05))
-    h, names, found = np.array([0.0, 0.1, 0.4]), ["load", "contacts"], {}
-    for points in (summits_module._PER_NARROW, summits_module._PER_PIECE, 4):
-        monkeypatch.setattr(summits_module, "_PER_NARROW", points)
-        rule = rule_of_radii(h, GRADED, m.curvature, m.ways.among(names))
-        found[points] = rule.fluctuations(rule.terms(names, h, GRADED, m.ways), m.count).products()
-    few, many, too_few = found.values()
-    np.testing.assert_allclose(few, many, rtol=1e-12)
-    assert np.abs(too_few / many - 1).max() > 1e-11
