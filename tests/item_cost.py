@@ -28,7 +28,6 @@ DEARER = {
     "test_maps_fit.py::test_where_summits_hide_the_bias_is_stated": "no smaller map has so many caps",
     "test_python_scenes.py::test_a_name_is_shown_and_nothing_else": "a name through run, show, compare",
     "test_what_users_read.py::test_commands": "whole tables of solve: exact means at several loads",
-    "test_shown_numbers.py::test_loads_at_a_constant_ratio": "exact means at several loads",
     "test_solution.py::test_a_metal_under_an_elastic_law_is_not_said_to_be_within": "two loads",
     "test_solution.py::test_the_answer_is_the_mean_of_specimens": "exact means beside drawn ones",
 }
