@@ -156,7 +156,7 @@ class _Stuck(Unloading):
 
     stiff: ClassVar[bool] = False
 
-    def residual(self, piece: int, deepest: Any, e: Array) -> Any:
+    def residual(self, deepest: Any, e: Array) -> Any:
         """Penetration at which contact is lost, in the shape of `deepest` and `e`."""
         return -self.loading.stretch(e) + 0.0 * deepest
 

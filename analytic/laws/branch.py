@@ -145,11 +145,8 @@ class UnloadingBranch(Branch):
     def _residual(self, s: Array, e: Array) -> Array:
         """Penetration at which an asperity is lost; infinite where it was never in contact."""
         deepest = s - self.deepest
-        piece, result = piece_of(self.law, deepest, e), np.zeros(np.shape(s))
-        for j in np.unique(piece):
-            here = piece == j
-            result[here] = self.law.of_some(here).unloading().residual(int(j), deepest[here], e[here])
-        return np.where(deepest >= 0, result, np.inf)
+        left = self.law.unloading().residual(np.maximum(deepest, 0.0), e)
+        return np.where(deepest >= 0, left, np.inf)
 
     def root(self, piece: int) -> bool:
         """As `Branch.root`."""
@@ -175,7 +172,7 @@ class UnloadingBranch(Branch):
     ) -> Array:
         """As `Branch.value`."""
         unloading, deepest = self.law.unloading(), above + (h - self.deepest)
-        y = sign * np.sqrt(np.maximum(above - unloading.residual(piece, deepest, e), 0.0))
+        y = sign * np.sqrt(np.maximum(above - unloading.residual(deepest, e), 0.0))
         return self.added(quantity, unloading, piece, y, deepest, e)
 
 

@@ -49,7 +49,7 @@ class Unloading:
     def __init__(self, loading: Any) -> None:
         self.loading = loading
 
-    def residual(self, piece: int, deepest: Any, e: Array) -> Any:
+    def residual(self, deepest: Any, e: Array) -> Any:
         """Penetration at which contact is lost, in the shape of `deepest` and `e`."""
         return 0.0 * deepest + 0.0 * e
 
@@ -93,11 +93,9 @@ class EtsionKligermanKadin(Unloading):
 
     root: ClassVar[bool] = False
 
-    def residual(self, piece: int, deepest: Any, e: Array) -> Any:
+    def residual(self, deepest: Any, e: Array) -> Any:
         """Penetration at which contact is lost, in the shape of `deepest` and `e`."""
-        if piece == 0:
-            return super().residual(piece, deepest, e)
-        log = np.log(self._x(deepest, e))
+        log = np.log(np.maximum(self._x(deepest, e), 1.0))
         return deepest * np.expm1(-0.28 * log) * np.expm1(-0.69 * log)
 
     def load(self, piece: int, y: Any, deepest: Any, e: Array) -> Any:
@@ -105,14 +103,14 @@ class EtsionKligermanKadin(Unloading):
         if piece == 0:
             return super().load(piece, y, deepest, e)
         power = 1.5 * self._x(deepest, e) ** -0.0331
-        return self.loading.load(piece, np.sqrt(deepest), e) * self._share(y, piece, deepest, e) ** power
+        return self.loading.load(piece, np.sqrt(deepest), e) * self._share(y, deepest, e) ** power
 
     def radius(self, piece: int, y: Any, deepest: Any, e: Array) -> Any:
         """Radius of a contact; its square is the area over pi R sigma."""
         if piece == 0:
             return super().radius(piece, y, deepest, e)
         power = self._x(deepest, e) ** -0.12 / 2
-        return self.loading.radius(piece, np.sqrt(deepest), e) * self._share(y, piece, deepest, e) ** power
+        return self.loading.radius(piece, np.sqrt(deepest), e) * self._share(y, deepest, e) ** power
 
     def stiffness(self, piece: int, y: Array, deepest: Array, e: Array) -> Array:
         """Stiffness of a spot over 2 E* sqrt(R sigma)."""
@@ -122,6 +120,6 @@ class EtsionKligermanKadin(Unloading):
         """Deepest penetration over the critical one."""
         return self.loading.x(np.sqrt(deepest), e)
 
-    def _share(self, y: Any, piece: int, deepest: Any, e: Array) -> Any:
+    def _share(self, y: Any, deepest: Any, e: Array) -> Any:
         """How much is left of the penetration that springs back."""
-        return y * y / (deepest - self.residual(piece, deepest, e))
+        return y * y / (deepest - self.residual(deepest, e))

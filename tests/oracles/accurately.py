@@ -98,7 +98,7 @@ def _of_spots(scene, radius):
 def _back(_, law, name, piece, d, most, e):
     """After lift-off nothing."""
     way, found = law.unloading(), np.zeros(len(d))
-    left = d - way.residual(piece, most, e)
+    left = d - way.residual(most, e)
     held = left > 0
     y, most, e = np.sqrt(left[held]), most[held], e[held]
     radius = way.radius(piece, y, most, e)

@@ -31,7 +31,7 @@ def test_at_the_turn_unloading_is_loading(law, modulus):
     piece_at = piece_of(law, deepest, e)
     for piece in np.unique(piece_at):
         d = deepest[piece_at == piece]
-        y = np.sqrt(d - back.residual(piece, d, e))
+        y = np.sqrt(d - back.residual(d, e))
         for formula in ("load", "radius", "stiffness"):
             found = getattr(back, formula)(piece, y, d, e)
             np.testing.assert_allclose(found, getattr(law, formula)(piece, np.sqrt(d), e), rtol=1e-13)
@@ -47,7 +47,7 @@ def test_the_fit_as_it_is_printed(x):
             dc = 0.05 / e**2
             deepest, modulus = x * dc, np.array(e)
             piece, back = int(piece_of(LAW, np.array(deepest), modulus)), LAW.unloading()
-            assert back.residual(piece, deepest, modulus) == pytest.approx(float(res) * deepest, rel=2e-13)
+            assert back.residual(deepest, modulus) == pytest.approx(float(res) * deepest, rel=2e-13)
             for share in (1e-9, 0.01, 0.5, 1.0):
                 y = np.sqrt(share * (deepest - float(res) * deepest))
                 power = mpmath.mpf("1.5") * m ** mpmath.mpf("-0.0331")
@@ -61,7 +61,7 @@ def test_the_fit_as_it_is_printed(x):
 def test_slope_of_unloading_is_that_of_a_difference():
     back, deepest = LAW.unloading(), np.array([0.2, 1.0, 4.0])
     for piece, d in ((1, deepest[:1]), (2, deepest[1:])):
-        left = (d - back.residual(piece, d, ONE)) * 0.6
+        left = (d - back.residual(d, ONE)) * 0.6
         step = 1e-3 * left
         loads = [back.load(piece, np.sqrt(left + k * step), d, ONE) for k in (-2, -1, 1, 2)]
         difference = (loads[0] - 8 * loads[1] + 8 * loads[2] - loads[3]) / (12 * step)
@@ -71,7 +71,7 @@ def test_slope_of_unloading_is_that_of_a_difference():
 def test_stiffness_after_the_turn_is_not_the_slope():
     """A spot of radius a is stiff by 2 E* a; the fit's own slope there differs by some per cent."""
     back, d = LAW.unloading(), np.array([0.3])
-    y = np.sqrt(d - back.residual(1, d, ONE))
+    y = np.sqrt(d - back.residual(d, ONE))
     assert back.stiffness(1, y, d, ONE) == pytest.approx(LAW.radius(1, np.sqrt(d), ONE), rel=1e-14)
     assert back.slope(1, y, d, ONE) / 1.5 != pytest.approx(back.stiffness(1, y, d, ONE), rel=0.01)
 
@@ -79,7 +79,7 @@ def test_stiffness_after_the_turn_is_not_the_slope():
 def test_without_stiffness_nothing_is_left_and_nothing_warns():
     back, e = LAW.unloading(), np.array([0.0, 1.0])
     for piece in (0, 1, 2, 3):
-        assert np.all(np.isfinite(back.residual(piece, 0.3, e)))
+        assert np.all(np.isfinite(back.residual(0.3, e)))
         assert back.load(piece, np.array(0.2), 0.3, e)[0] == 0
         assert np.all(np.isfinite(back.radius(piece, np.array(0.2), 0.3, e)))
 

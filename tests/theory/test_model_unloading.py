@@ -209,7 +209,7 @@ def test_a_law_of_one_piece_that_comes_off_late():
     """Contact is lost at a tenth of the deepest penetration: (s - h) > (s - h_min)/10, by hand."""
 
     class Late(Unloading):
-        def residual(self, piece, deepest, e):  # noqa: ARG002
+        def residual(self, deepest, e):
             return 0.1 * deepest + 0 * e
 
     class Law(analytic.ContactLaw):
