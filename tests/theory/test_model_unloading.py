@@ -20,7 +20,7 @@ from analytic import (
     PowerLawGraded,
     quantity_of,
 )
-from analytic.laws import DerjaguinMullerToporov, Film, JohnsonKendallRoberts, Unloading
+from analytic.laws import DerjaguinMullerToporov, Film, JohnsonKendallRoberts, Unloading, term_of
 
 LAW = KogutEtsion(critical=0.05)
 BACK = Model(SURFACE, law=LAW, unload_from=0.5)
@@ -300,6 +300,8 @@ def test_contacts_that_stick_at_their_check_values(stretch, quantity, value):
 def test_only_what_has_touched_sticks(h):
     """From a turn at 0.5 contacts are those above h - D, and above 0.5; and both ways have a covariance."""
     model = stuck(0.5, unload_from=0.5, n_asperities=1.0, count="poisson")
+    way, below_and_above = model.ways.of("contacts_unloading"), np.array([0.499, 0.501])
+    np.testing.assert_array_equal(term_of("contacts", way, 0.8, below_and_above, np.ones(2)), [0, 1])
     low, back = max(h - 0.5, 0.5), JohnsonKendallRoberts(pull_off=0.5).unloading()
     most = np.array(9.0)
 
