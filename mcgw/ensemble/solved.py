@@ -183,7 +183,9 @@ class Solution(Shown):
             rise = self.theory[scene.gap] - sigma * self.theory["separation"]
             found[scene.gap] = sigma * found["separation"] + rise
             if "conductance_si" in found:
-                found["contact_conductance"] = found["conductance_si"] / scene.surface.nominal_area
+                spots = found["contact_conductance"] = found["conductance_si"] / scene.surface.nominal_area
+                if scene.filled is not None and scene.filled.gas is None:
+                    found |= {"gap_conductance": 0.0, "joint_conductance": spots}
         elif self.given == "load":
             for name in ("nominal_separation", *GAPS):  # moved from the separation alike on all surfaces
                 if name in self.theory:

@@ -131,6 +131,12 @@ def by_hand(h, gas="air"):
     return gas.conductivity / rms * sum(parts) / math.sqrt(2 * math.pi)
 
 
+def test_answers_in_vacuum_are_those_of_the_spots():
+    value = mcgw.solve(scene_of(joint="vacuum"), pressure="1 MPa", n_surfaces=5).value
+    assert value["joint_conductance"] == value["contact_conductance"]
+    assert value["gap_conductance"] == 0
+
+
 @pytest.mark.parametrize("mode", OWN)
 def test_vacuum_is_the_spots_alone_and_no_contact_the_gas(mode):
     vacuum = mcgw.simulate(scene_of(interaction=OWN[mode][0], joint="vacuum"))
