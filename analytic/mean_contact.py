@@ -71,7 +71,7 @@ class MeanContact:
     def slope(self, quantity: str, h: ArrayLike) -> Array:
         """How fast the mean falls with the separation, jumps of asperities included.
 
-        If asperities have yielded, others than the load are refused on the way back.
+        If asperities have yielded, others than the load are refused on unloading.
         """
         q = quantity_of(quantity)
         if q.unloading and not self.ways.law.elastic:

@@ -93,7 +93,7 @@ class MeanModel:
         Parameters
         ----------
         quantity : str
-            Its name; not "load_slope", and of those on the way back where asperities have yielded
+            Its name; not "load_slope", and of those on unloading where asperities have yielded
             "load_unloading" only.
         h : array_like
             Reduced separations, any shape.

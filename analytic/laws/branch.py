@@ -153,7 +153,7 @@ class UnloadingBranch(Branch):
         return self.law.root if piece == 0 else self.law.unloading().root
 
     def root_at_touch(self, piece: int) -> bool:
-        """As `Branch.root_at_touch`: formulas of the way back take the root of what is left."""
+        """As `Branch.root_at_touch`: formulas of unloading take the root of what is left."""
         return self.root(piece)
 
     def left(self, h: Array, above: Array, e: Array) -> Array:

@@ -256,7 +256,7 @@ def of_spot(quantity: str, formulas: "ContactLaw | Unloading", piece: int, *at: 
     piece : int
         Which formula.
     *at : ndarray
-        What they take: the root of the penetration, on the way back that of what is left to lift-off and the
+        What they take: the root of the penetration, on unloading that of what is left to lift-off and the
         deepest penetration, and the modulus E*(s)/E*; of any shapes that broadcast.
 
     Returns

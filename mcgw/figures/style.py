@@ -117,7 +117,7 @@ def look(label: str, place: int = 0) -> dict[str, Any]:
     Parameters
     ----------
     label : str
-        A name of `MEANINGS`, of a quantity on the way back, "γ = 0.5", "d/σ = 2", "N = 10³", or "b = 0.1".
+        A name of `MEANINGS`, of a quantity on unloading, "γ = 0.5", "d/σ = 2", "N = 10³", or "b = 0.1".
     place : int, optional
         Which line of its panel it is: tells those of other labels apart.
 

@@ -33,7 +33,7 @@ class Stretches:
     root : ndarray
         About where it would begin from nothing, next to which formulas are singular: at `low` or below.
     lost : ndarray of bool
-        Whether contact dwindles to nothing towards `high`, as on the way back where asperities soften.
+        Whether contact dwindles to nothing towards `high`, as on unloading where asperities soften.
     """
 
     separation: Ints

@@ -15,7 +15,7 @@ PHRASES = [
     "shared out", "the gravest", "of one's own", "what would do", "the other way round", "turns round",
     "made anew", "take higher separations", "leaves double precision", "lacks all of", "counts from",
     "how far from elasticity", "shows itself", "show themselves", "says all", "what stands behind",
-    "a law of your own", "noise of its own", "bears nothing", "come back the way it went",
+    "the way back", "a law of your own", "noise of its own", "bears nothing", "come back the way it went",
 ]  # fmt: skip
 PLACES = ("*.md", "docs/*.md", "docs/*/*.md", "runs/*.md", "runs/*/*.md", "runs/gallery/**/*.py")
 PLACES += ("runs/notebooks/*.py", "mcgw/**/*.py", "analytic/**/*.py")
