@@ -29,7 +29,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         default="demo",
         choices=tuple(PRESETS),
         metavar="PRESET",
-        help=f"{listed} default: demo",
+        help=f"{listed}; default: demo",
     )
     parser.add_argument(
         "-o", "--output", type=Path, metavar="SCENE", help="default: PRESET.toml in the current folder"
