@@ -1,4 +1,4 @@
-"""Means over finite surfaces under a given load, each at its own separation, without a draw.
+"""Means and scatter of finite surfaces under a given load, each at its own separation, without a draw.
 
 A sum Q falls to 0 as a surface is lifted, so ``Q(H) = int_H^inf -Q'(h) dh`` where H is the separation where
 its load P is F. P falls too, so that H <= h where P(h) <= F; the mean over surfaces is ::
@@ -10,16 +10,21 @@ Mecke). It holds for any number of contacts; that of the load itself is F, which
 radii differ the inner integral is over them too. Where a law of contact jumps from piece to piece, an
 asperity adds the jump if the others bear what it leaves before: the sum of a surface then passes F without
 having it.
+
+In the mean of the square, ``-(Q^2)' = -2 Q Q'``, the others count with their own share of Q besides: that
+asperity has q(s), and each of the N - 1 others q(t) where the last N - 2 bear what both leave.
 """
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from analytic.arrays import Array
 from analytic.distribution.of_model import shares_upto
+from analytic.laws import term_of
 from analytic.laws.pieces import slope_term
 from analytic.measured_summits import MeasuredHeights
 from analytic.quadrature import gauss_legendre
@@ -34,12 +39,27 @@ _RAREST = 1e-9  # share of the surfaces beyond either end of the separations
 _DEEPEST = 20.0  # penetration over sigma that no asperity reaches
 _PARTS = np.array([0.25, 0.5, 0.75, 1.0])  # of the penetration at which one asperity has all of the load
 _HALVINGS = 60
+_CELLS = 4096  # of the heights, at least
+_GRID, _SPREADS = 4096, 12.0  # points, and standard deviations of the given sum, over which others bear it
 
 
-def specimen_means(
+class Moments(NamedTuple):
+    """Means and standard deviations over surfaces, by name.
+
+    Parameters
+    ----------
+    mean, std : dict of str to float
+        "separation" (d/sigma) and sums, SI.
+    """
+
+    mean: dict[str, float]
+    std: dict[str, float]
+
+
+def specimen_moments(
     model: Any, given: str, value: float, names: Sequence[str], law: "Law | None" = None
-) -> dict[str, float]:
-    """Return means over surfaces that all have the same load, or another sum.
+) -> Moments:
+    """Return means and standard deviations over surfaces that all have the same load, or another sum.
 
     Parameters
     ----------
@@ -56,84 +76,208 @@ def specimen_means(
 
     Returns
     -------
-    dict of str to float
-        "separation" (d/sigma) and each of `names`, SI.
+    Moments
+        Of "separation" (d/sigma) and each of `names`, SI.
 
     Raises
     ------
     ValueError
-        If the law of the separation is not known (see `Model.separation_law`), or some surfaces have none.
+        If the law of the separation is not known (see `Model.separation_law`), or some surfaces have none; if
+        there is one asperity alone.
 
     Examples
     --------
     >>> import analytic
     >>> surface = analytic.Surface(sigma=1e-6, radius=1e-5, eta=1e9, nominal_area=1e-8, E_star=1e9)
-    >>> found = specimen_means(analytic.Model(surface), "load", 1e-6, ["load", "contacts"])
-    >>> round(found["load"] / 1e-6, 6)
+    >>> found = specimen_moments(analytic.Model(surface), "load", 1e-6, ["load", "contacts"])
+    >>> round(found.mean["load"] / 1e-6, 6)
     1.0
     """
     if isinstance(model.heights, MeasuredHeights):
         raise ValueError("heights: means of listed summits at a load are those of drawn surfaces")
     if any(quantity_of(name).base == "load_slope" for name in names):
         raise ValueError("load_slope: its slope is not known; give other quantities")
+    if model.count == "fixed" and model.number < 2:
+        raise ValueError(f"n_asperities = {model.number:g}: give 2 or more; no other bears what one leaves")
     law = model.separation_law(value, given) if law is None else law
     low, high = float(law.ppf(_RAREST)), float(law.isf(_RAREST))
     if not np.isfinite(high - low):  # a Poisson number of asperities may be 0
         raise ValueError(f"{given} = {value:g}: not every surface has a separation with it")
-    many = float(model.mean("contacts", (low + high) / 2)) > _MANY
+    middle = (low + high) / 2
+    many = float(model.mean("contacts", middle)) > _MANY
     x, w = gauss_legendre(_LIFTS_OF_MANY if many else _LIFTS)
-    found = {name: float(model.mean(name, high)) for name in names}
-    found["separation"] = high
-    lifts = low + (high - low) * x
+    mean, again = (np.array([float(model.mean(name, high)) for name in names]) for _ in range(2))
+    square = np.array([float(model.std(name, high)) for name in names]) ** 2 + mean**2
+    separation, lifts = high, low + (high - low) * x
     deepest = _deepest(model, given, value / quantity_of(given).scale(model.surface), lifts)
     for h, most, width in zip(lifts, deepest, (high - low) * w, strict=True):
-        rates, share = _rates(model, given, value, names, float(h), float(most))
-        found["separation"] -= float(width * share)
-        for name, rate in rates.items():
-            found[name] += float(width * rate)
-    return found
+        lift = _Lift.of(model, given, value, names, float(h), float(most))
+        separation -= float(width * lift.lower)
+        mean += width * lift.rates
+        for sums, rates in zip((again, square), lift.rates_of_pairs, strict=True):
+            sums += width * rates
+    std = np.sqrt(np.maximum(square - again**2, 0.0))
+    return Moments(
+        {"separation": separation, **dict(zip(names, mean.tolist(), strict=True))},
+        {"separation": law.std(), **dict(zip(names, std.tolist(), strict=True))},
+    )
 
 
 @dataclass(frozen=True)
 class _Added:
-    """What asperities add to the given sum at a separation, and to others for each unit that it falls.
+    """What asperities add at a separation, SI.
 
     Parameters
     ----------
     given : ndarray
-        In the unit of the quantity, shape (m,).
-    rates : dict of str to ndarray
-        Over the scale, weighted by the probabilities, shape (m,).
+        To the given sum, shape (m,).
+    own : ndarray
+        To the others, where they fall; shape (names, m).
+    rates : ndarray
+        To the others for each unit that the separation falls, weighted by probabilities, shape (names, m).
     probabilities : ndarray
         Shape (m,); 0 of asperities that jump.
     """
 
     given: Array
-    rates: dict[str, Array]
+    own: Array
+    rates: Array
     probabilities: Array
 
 
-def _rates(
-    model: Any, given: str, value: float, names: Sequence[str], h: float, most: float
-) -> tuple[dict[str, float], float]:
-    """What the means gain for each unit of separation, and the share of surfaces that are lower.
+@dataclass(frozen=True, eq=False)
+class _Lift:
+    """What means over surfaces gain for each unit of separation, at one separation.
 
-    No asperity of the surface's radius alone penetrates deeper than `most`.
+    Parameters
+    ----------
+    model : Model
+        Of all asperities.
+    value : float
+        Of the given sum.
+    added : sequence of _Added
+        By asperities within the pieces of the law, then by those that go from one to the next.
+    cells : ndarray
+        See `_cells`.
+    below : float
+        Probability of an asperity that does not touch.
+    upto : callable
+        Shares of surfaces with so many asperities whose given sum is no more than some values.
+    lowest : float
+        Next to no surface has less of the given sum.
     """
-    rule, added = model.asperities(given, h, most * _PARTS)
-    parts = [_pressed(model, given, names, h, rule, added(rule)), *_jumping(model, given, names, h, rule)]
-    left = value - np.concatenate([part.given for part in parts])
-    others = _others(model)
-    *lower, lowest = shares_upto(others, given, h, np.append(np.maximum(left, 0.0), value)).tolist()
-    bearable = np.where(left >= 0, lower, 0.0)
-    share = lowest
-    if others is not model:  # one more asperity beside them, in contact or not
-        share = float(rule.below * lowest + np.concatenate([x.probabilities for x in parts]) @ bearable)
-    rates = {}
-    for name in names:
-        rate = float(np.concatenate([part.rates[name] for part in parts]) @ bearable)
-        rates[name] = float(model.number * quantity_of(name).scale(model.surface) * rate)
-    return rates, share
+
+    model: Any
+    value: float
+    added: Sequence[_Added]
+    cells: Array
+    below: float
+    upto: Callable[[float, Array], Array]
+    lowest: float
+
+    @classmethod
+    def of(cls, model: Any, given: str, value: float, names: Sequence[str], h: float, most: float) -> "_Lift":
+        """At a separation, where no asperity of the surface's radius alone penetrates deeper than `most`."""
+        rule, added = model.asperities(given, h, most * _PARTS)
+        pressed = _pressed(model, given, names, h, rule, added(rule))
+        parts, cells = (
+            [pressed, *_jumping(model, given, names, h, rule)],
+            _cells(model, given, names, h, rule, pressed),
+        )
+        lowest = min(float(model.mean(given, h)), value) - _SPREADS * float(model.std(given, h))
+        upto = shares_upto(model, given, h, value)
+        return cls(model, value, parts, cells, rule.below, upto, lowest)
+
+    @property
+    def _fewer(self) -> tuple[float, float]:
+        """Asperities beside one, and beside two: of a Poisson number as many as before."""
+        n = self.model.number
+        return (n, n) if self.model.count == "poisson" else (n - 1, n - 2)
+
+    @cached_property
+    def _left(self) -> Array:
+        """What an asperity leaves of the given sum."""
+        return self.value - np.concatenate([part.given for part in self.added])
+
+    @cached_property
+    def _rates(self) -> Array:
+        return np.concatenate([part.rates for part in self.added], axis=1)
+
+    @cached_property
+    def _bearable(self) -> Array:
+        """Share of the surfaces whose other asperities bear what one leaves; and what it is all."""
+        some = self.upto(self._fewer[0], np.append(np.maximum(self._left, 0.0), self.value))
+        return np.where(np.append(self._left, 0.0) >= 0, some, 0.0)
+
+    @property
+    def lower(self) -> float:
+        """Share of the surfaces that are lower: one more asperity than beside one, in contact or not."""
+        *bearable, alone = self._bearable
+        if self.model.count == "poisson":
+            return float(alone)
+        p = np.concatenate([part.probabilities for part in self.added])
+        return float(self.below * alone + p @ bearable)
+
+    @property
+    def rates(self) -> Array:
+        """Of the means, shape (names,)."""
+        return np.asarray(self.model.number * self._rates @ self._bearable[:-1])
+
+    @property
+    def rates_of_pairs(self) -> tuple[Array, Array]:
+        """Of the means once more and of the mean squares, with errors that cancel in the variance."""
+        others, (given, weights, *marks) = self._fewer[0], self.cells
+        start = max(self.lowest, 0.0)
+        step, places = (self.value - start) / (_GRID - 1), np.arange(_GRID)
+        bear = self.upto(self._fewer[1], np.asarray(start + step * places))
+        none = bear[0] if start == 0 else 0.0  # share of the surfaces where no other asperity touches
+        spectrum = np.fft.rfft(bear - none, 2 * _GRID)
+        left, place = (self._left - start) / step, given / step
+        inside = place < _GRID - 1
+        at = place[inside].astype(np.int64)
+        part, order = place[inside] - at, np.argsort(place)
+
+        def beside(weights: Array) -> Array:
+            """Sum over an asperity of its weight, where all others bear what it and one leave."""
+            w, upto = weights[inside], np.cumsum(weights[order])
+            shared = np.bincount(at, w * (1 - part), _GRID) + np.bincount(at + 1, w * part, _GRID)
+            both = np.fft.irfft(np.fft.rfft(shared, 2 * _GRID) * spectrum, 2 * _GRID)[:_GRID]
+            alone = np.interp(left, place[order], upto - weights[order] / 2, left=0.0)
+            return np.asarray(np.interp(left, places, both, left=0.0) + none * alone)
+
+        alone = beside(weights) + self.below * np.interp(left, places, bear, left=0.0)
+        own, n = np.concatenate([part.own for part in self.added], axis=1), self.model.number
+        squares = [
+            rate @ (mine * alone + others * beside(his))
+            for rate, mine, his in zip(self._rates, own, marks, strict=True)
+        ]
+        return n * self._rates @ alone, 2 * n * np.array(squares)
+
+
+def _cells(model: Any, given: str, names: Sequence[str], h: float, rule: Any, pressed: _Added) -> Array:
+    """What an asperity adds to the given sum, its probability, and that times what it adds to the others.
+
+    In cells of the heights between the nodes of a rule, with the means of that; shape (2 + names, cells).
+    """
+    p = rule.probabilities
+    whole = np.stack([pressed.given, p, *(p * pressed.own)])
+    if rule.ratios is not None or not p.size:
+        return whole
+    edges = np.append(h, rule.heights)
+    parts = -(-_CELLS // p.size)
+    edges = np.interp(np.arange(p.size * parts + 1) / parts, np.arange(p.size + 1), edges)
+    s, branch = (edges[1:] + edges[:-1]) / 2, model.ways.loading
+    found, weights, modulus = (
+        np.empty((2 + len(names), s.size)),
+        model.heights.pdf(s) * np.diff(edges),
+        model.grading(s),
+    )
+    for k, q in enumerate(map(quantity_of, [given, *names])):
+        found[k + (k > 0)] = q.scale(model.surface) * term_of(q.base, branch, h, s, modulus)
+    found[1] = 1.0
+    found[1:] *= weights
+    found[1:] *= (whole[1:].sum(axis=1) / found[1:].sum(axis=1))[:, None]
+    return found
 
 
 def _pressed(model: Any, given: str, names: Sequence[str], h: float, rule: Any, terms: Array) -> _Added:
@@ -141,11 +285,12 @@ def _pressed(model: Any, given: str, names: Sequence[str], h: float, rule: Any, 
     s, branch = rule.heights, model.ways.loading
     if rule.ratios is not None:
         branch = branch.with_radii(rule.ratios)
-    modulus, rates = model.grading(s), {}
-    for name in names:
-        weight = rule.probabilities * _by_radius(name, rule.ratios)
-        rates[name] = weight * slope_term(quantity_of(name).base, branch, s - h, modulus)
-    return _Added(quantity_of(given).scale(model.surface) * terms, rates, rule.probabilities)
+    modulus, own, rates = model.grading(s), np.zeros((len(names), s.size)), np.zeros((len(names), s.size))
+    for k, q in enumerate(map(quantity_of, names)):
+        unit = q.scale(model.surface) * _by_radius(q.name, rule.ratios)
+        own[k] = unit * term_of(q.base, branch, h, s, modulus)
+        rates[k] = unit * rule.probabilities * slope_term(q.base, branch, s - h, modulus)
+    return _Added(quantity_of(given).scale(model.surface) * terms, own, rates, rule.probabilities)
 
 
 def _jumping(model: Any, given: str, names: Sequence[str], h: float, rule: Any) -> Iterator[_Added]:
@@ -154,21 +299,17 @@ def _jumping(model: Any, given: str, names: Sequence[str], h: float, rule: Any) 
         return
     ends = float(rule.heights.min()), float(rule.heights.max())
     scale, base = quantity_of(given).scale(model.surface), quantity_of(given).base
+    units = np.array([quantity_of(name).scale(model.surface) for name in names])[:, None]
+    bases = [quantity_of(name).base for name in names]
     for jumps in model.summits.jumps(model.ways.loading, model.grading, np.array([h]), ends):
-        rates = {name: jumps.share * jumps.step(quantity_of(name).base) for name in names}
-        yield _Added(scale * jumps.before(base), rates, np.zeros(jumps.share.shape))
+        steps = units * [jumps.step(name) for name in bases]
+        own = units * [jumps.before(name) for name in bases] + steps / 2  # half way the square rises alike
+        yield _Added(scale * jumps.before(base), own, jumps.share * steps, np.zeros(jumps.share.shape))
 
 
 def _by_radius(name: str, ratios: Array | None) -> Array | float:
     """What a quantity is worth by the radius of an asperity."""
     return 1.0 if ratios is None else np.asarray(ratios ** quantity_of(name).radius)
-
-
-def _others(model: Any) -> Any:
-    """The asperities beside one: of a Poisson number as many as before."""
-    if model.count == "poisson" or model.number <= 1:
-        return model
-    return replace(model, n_asperities=model.number - 1)
 
 
 def _deepest(model: Any, given: str, target: float, h: Array) -> Array:

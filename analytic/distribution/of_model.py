@@ -146,14 +146,23 @@ def separation_law_of(model: Any, load: float, quantity: str, *, other: bool = F
     return _along(shares, start + other * spread / 7, spread, one.rounding, again)
 
 
-def shares_upto(model: Any, quantity: str, h: float, values: Array) -> Array:
-    """Return the shares of surfaces whose sum is no more than some values, SI, to 1e-6 or better.
+def shares_upto(model: Any, quantity: str, h: float, most: float) -> Callable[[float, Array], Array]:
+    """Return the shares of surfaces of a number of asperities whose sum is no more than some values, SI.
 
-    For what is integrated over: one lattice that suits the largest of them, without the far tails of a `Law`.
+    They are right to 1e-6 or better up to the value `most`. For what is integrated over: one lattice that
+    suits the largest of them, without the far tails of a `Law`.
     """
-    x = values / quantity_of(quantity).scale(model.surface)
-    one = one_asperity(model, quantity, h, _CELLS[False], float(x.max()))
-    return shares_at(one, x, _POINTS[False] // 4)[0]
+    unit = quantity_of(quantity).scale(model.surface)
+    one = one_asperity(model, quantity, h, _CELLS[False], most / unit)
+
+    def shares(number: float, values: Array) -> Array:
+        if number < 1:
+            return np.where(values >= 0, 1.0, 0.0)
+        part = number / one.number
+        some = replace(one, number=number, mean=part * one.mean, variance=part * one.variance)
+        return shares_at(some, values / unit, _POINTS[False] // 4)[0]
+
+    return shares
 
 
 def interacting_distribution(model: Any, quantity: str, h: float) -> Law:

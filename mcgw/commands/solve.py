@@ -67,7 +67,7 @@ def execute(args: argparse.Namespace) -> int:
     if scatter is not None and not 0 < scatter < 1:
         raise ValueError(f"--scatter {args.scatter}: give a number between 0 and 1, such as 1%")
     with bar("surfaces", terminal=True) as tell:
-        found = solutions(scene, given, values, tell)
+        found = solutions(scene, given, values, tell, draw=says(ALL))
     print(solutions_text(scene, found, scatter, full=says(ALL)))
     tell_cautions(at_solutions(scene, found), "add -v")
     write_table(args.csv, lambda: solutions_table(scene, found))

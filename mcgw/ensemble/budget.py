@@ -4,7 +4,7 @@ The answer is the mean over specimens; it is compared with a real specimen of th
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -21,7 +21,7 @@ from mcgw.scene.validity import Validity, percent
 from mcgw.scene.validity_place import moments_of_nayak
 
 LINES = ("drawn surfaces", "specimens", "parameters", "model")
-Answers = dict[str, float]
+Answers = Mapping[str, float]
 
 _SURE = 1.96  # standard deviations on either side that hold 95 %
 _LARGE = 0.2  # share of an answer
@@ -148,9 +148,9 @@ class Budget(Shown):
 def budget_of(
     scene: Scene,
     title: str,
-    theory: Answers,
-    surfaces: dict[str, Array],
-    intervals: dict[str, tuple[float, float]],
+    value: Answers,
+    std: Answers,
+    interval: Callable[[str], tuple[float, float]],
     validity: Validity,
     again: Callable[[Scene], Answers],
     given: str,
@@ -160,9 +160,9 @@ def budget_of(
 
     Parameters
     ----------
-    scene, title, theory, surfaces, intervals
-        From the solution: its scene and title, and for each quantity the answers and the interval of their
-        mean.
+    scene, title, value, std, interval
+        From the solution: its scene and title, and for each quantity the answer, the scatter of specimens and
+        the interval of the answer.
     validity : Validity
         At the separation of the solution alone.
     again : callable
@@ -175,12 +175,12 @@ def budget_of(
     asked = [name for name in ("load", *_ERROR_OF) if name != given]
     if scene.film is not None:  # in SI units instead
         asked.remove("conductance")
-    names = tuple(name for name in asked if name in surfaces)
-    value = np.array([theory[name] for name in names])
+    names = tuple(name for name in asked if name in value)
+    answers = np.array([value[name] for name in names])
     lacking, parts = {}, {}
     with np.errstate(divide="ignore", invalid="ignore"):
-        drawn = np.array([(high - low) / 2 for low, high in (intervals[name] for name in names)]) / value
-        scatter = _SURE * np.array([surfaces[name].std(ddof=1) for name in names]) / value
+        drawn = np.array([(high - low) / 2 for low, high in map(interval, names)]) / answers
+        scatter = _SURE * np.array([std[name] for name in names]) / answers
     parameters = np.full(len(names), np.nan)
     if scene.uncertainty is None:
         lacking["parameters"] = "give [surface] uncertainty, which mcgw fit writes"
@@ -189,7 +189,7 @@ def budget_of(
         parameters = _SURE * np.sqrt(np.einsum("ki,ij,kj->k", slopes, scene.uncertainty.covariance, slopes))
         alone = _SURE * np.abs(slopes[0]) * np.sqrt(np.diag(scene.uncertainty.covariance))
         parts = dict(zip(scene.uncertainty.names, alone.tolist(), strict=True))
-    model = np.array([_model_error(validity, name, scene, theory) for name in names])
+    model = np.array([_model_error(validity, name, scene, value) for name in names])
     if given != "load":
         model[:] = np.nan
         lacking["model"] = f"its error was measured at a given load, not at a given {given.replace('_', ' ')}"

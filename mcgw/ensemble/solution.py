@@ -2,31 +2,20 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import cache
 from typing import Any
 
 import numpy as np
 
-from analytic import Hertz, MeasuredHeights, MeasuredRadii, Quantity, quantity_of
-from analytic.arrays import Array
-from mcgw.ensemble.at_load import NEGATIVE, answers_at, asperities_of, quantities_at, theory_at
-from mcgw.ensemble.forecast import surfaces_at_loads
-from mcgw.ensemble.many_surfaces import ManySurfaces
-from mcgw.ensemble.separation import LOWEST, Summits
+from analytic import quantity_of
+from mcgw.ensemble.at_load import answers_at, asperities_of, theory_at
+from mcgw.ensemble.loaded_surfaces import LoadedSurfaces
 from mcgw.ensemble.solved import Solution
 from mcgw.machine.progress import Progress, told
-from mcgw.sampling.asperities import listing_sampler, summits, summits_of_many
-from mcgw.sampling.block import Sampler
 from mcgw.scene.arguments import argument, as_toml, check_object
-from mcgw.scene.scene import Scene, storable
+from mcgw.scene.scene import Scene
 from mcgw.scene.section import nearest
 
-_MARGIN = 6.0  # standard deviations of a surface's separation that are drawn at once
-_RESAMPLED = 200  # specimens in place of one measured surface
-_MOST_HEIGHTS = 3e9
-_AT_ONCE = 1e5  # asperities whose surfaces are solved together
 _LAST_DIGITS = 64 * float(np.finfo(float).eps)  # of a reduced height
-_NOTHING = 1e-16  # share of the heights below all that are drawn
 # What may be given: its unit, the quantity that it is, and whether per nominal area.
 _GIVEN = {
     "load": ("N", "load", False),
@@ -138,13 +127,18 @@ def _reduced(value: Any) -> float:
 
 
 def solutions(
-    scene: Scene, given: str, values: Sequence[float], tell: Callable[[float, float], Any] | None = None
+    scene: Scene,
+    given: str,
+    values: Sequence[float],
+    tell: Callable[[float, float], Any] | None = None,
+    draw: bool = False,
 ) -> list[Solution]:
     """As `solve`, for loads ("load", N), real areas ("area", m^2) or nominal separations of a scene.
 
-    The asperities of a surface are drawn one by one (sampler ``tail``), once for all values. So any
-    separation is possible, and the mean differs from theory by an effect of the finite number of asperities,
-    of order 1/N.
+    Where means and scatter of specimens are known exactly, surfaces are drawn when `Solution.surfaces` is
+    first asked for, or at once with `draw`; elsewhere at once. Their asperities are drawn one by one (sampler
+    ``tail``), once for all values. So any separation is possible, and the mean differs from that of an
+    infinite surface by an effect of the finite number of asperities, of order 1/N.
 
     For summits used as measured, the answer is that of the list itself. Beside it stand specimens with as
     many summits, drawn from the list independently: correlations between neighbours are ignored.
@@ -171,125 +165,16 @@ def solutions(
         )
     theory = [theory_at(whole, given, value) for value in values]
     if scene.rel_err is not None:
+        from mcgw.ensemble.forecast import surfaces_at_loads  # draws a pilot
+
         n = surfaces_at_loads(scene, [at["separation"] for at in theory], given)
         whole, scene = (replace(x, n_surfaces=n, rel_err=None, max_seconds=None) for x in (whole, scene))
-    specimens = _resampled(scene) if scene.as_measured else scene
-    about = [at["separation"] for at in theory]
-    lows = [_lowest(specimens, q, h) for h in about]
-    drawn = storable(_drawn(specimens, min(lows)))
-    if drawn.touching * drawn.n_surfaces > _MOST_HEIGHTS:
-        raise ValueError(
-            f"{drawn.n_surfaces} surfaces with {drawn.touching:.3g} contacts each are too many to solve "
-            f"singly; give fewer than {_MOST_HEIGHTS / drawn.touching:.0f} surfaces"
-        )
-    sampler, found = listing_sampler(drawn), []
     sunk = whole.compliance / whole.surface.sigma if given == "nominal_separation" else None
-    step = max(int(_AT_ONCE / (drawn.touching + 1)), 1)
-    for first in range(0, drawn.n_surfaces, step):
-        n = min(step, drawn.n_surfaces - first)
-        found.append(
-            _surfaces(scene, sampler, first, n, q, values, list(zip(lows, about, strict=True)), sunk)
-        )
-        if tell is not None:
-            tell(first + n, drawn.n_surfaces)
-    surfaces = [
-        {name: np.concatenate([part[k][name] for part in found]) for name in theory[k]}
-        for k in range(len(values))
+    loaded = LoadedSurfaces(scene, q, values, [at["separation"] for at in theory], sunk)
+    found = [
+        Solution(whole, given, float(value), answers_at(whole, at), loaded, k)
+        for k, (value, at) in enumerate(zip(values, theory, strict=True))
     ]
-    return [
-        Solution(whole, given, float(value), answers_at(whole, at), answers_at(whole, on), drawn)
-        for value, at, on in zip(values, theory, surfaces, strict=True)
-    ]
-
-
-def _resampled(scene: Scene) -> Scene:
-    """Specimens of the one surface whose summits were measured: each has as many, drawn from these."""
-    heights = scene.heights
-    assert isinstance(heights, MeasuredHeights)
-    again = MeasuredHeights(heights.heights, resampled=True)
-    own = scene.curvature
-    ratios = own.ratios if isinstance(own, MeasuredRadii) else np.ones(len(heights.heights))
-    return replace(scene, heights=again, curvature=MeasuredRadii(again, ratios), n_surfaces=_RESAMPLED)
-
-
-def _lowest(scene: Scene, q: Quantity, h: float) -> float:
-    """Below the solution h of the mean surface: lower than that of nearly every surface, or than all heights.
-
-    That is some standard deviations, to first order. What the modulus is there does not matter yet.
-    """
-    spread = float(scene.theory.std(q.name, h) / scene.theory.slope(q.name, h))
-    return max(h - _MARGIN * spread, min(h, float(scene.heights.ppf(np.array(_NOTHING)))))
-
-
-def _drawn(scene: Scene, lowest: float) -> Scene:
-    """The scene whose contacts are drawn: those above the lowest separation of nearly every surface."""
-    return replace(
-        scene,
-        sampler="direct" if isinstance(scene.heights, MeasuredHeights) else "tail",
-        keep="sums",
-        separations=(lowest,),
-        quantities=("contacts",),
-        law=Hertz(),  # heights are what is drawn, the same under every law
-        unload_from=None,
-        film=None,
-        negative="clip" if scene.negative == "clip" else "allow",
-    )
-
-
-def _surfaces(
-    scene: Scene,
-    sampler: Sampler,
-    first: int,
-    n: int,
-    q: Quantity,
-    values: Sequence[float],
-    starts: Sequence[tuple[float, float]],
-    sunk: float | None,
-) -> list[dict[str, Array]]:
-    """All quantities of some surfaces at each value: together where sums fall, else one by one.
-
-    Each value has a separation that nearly none of them is below, and one that they are about.
-    """
-    drawn, found, names = sampler.scene, [], quantities_at(scene)
-    many = ManySurfaces(scene, *summits_of_many(drawn, sampler, first, n))
-    surface = cache(many.surface)  # once for all values
-    for value, (low, about) in zip(values, starts, strict=True):
-        h, sums = np.full(n, np.nan), {name: np.zeros(n) for name in ("separation", *names)}
-        if sunk is None and value > 0:
-            near = many.above(low)
-            h = near.separations(q, value, low, about)
-            sums = {"separation": h, **near.sums(names, np.where(np.isfinite(h), h, np.inf))}
-        for k in np.flatnonzero(np.isnan(h)).tolist():
-            for name, x in _singly(surface(k), drawn, first + k, q, value, sunk).items():
-                sums[name][k] = x
-        found.append(sums)
+    if draw or not all(each.exact for each in found):
+        loaded.draw(tell)
     return found
-
-
-def _singly(
-    on: Summits, drawn: Scene, number: int, q: Quantity, value: float, sunk: float | None
-) -> dict[str, float]:
-    """All quantities of one surface at a value; with `sunk`, 1/N, at a nominal separation."""
-    scene = on.scene
-    target = value / q.scale(scene.surface)
-    if sunk is None:
-        h = on.largest_separation(q, target, drawn.lowest)
-    else:
-        h = on.nominal(value, sunk, drawn.lowest)
-    if h is None:  # rare: it lies below what was drawn
-        on = Summits.of(scene, *summits(drawn, number))
-        if not on.s.size:
-            raise ValueError(f"surface {number} has no asperity; increase n_asperities")
-        if sunk is None:
-            h = on.separation_anywhere(q, target, drawn.lowest)
-        else:
-            h = on.nominal(value, sunk, LOWEST)
-    negative = on.s[on.modulus < 0]
-    if h is None and not negative.size:
-        told, give = f"{q.name} = {value:g} {q.unit}", "less"
-        if sunk is not None:
-            told, give = f"nominal_separation = {value:g}", "more"
-        raise ValueError(f"{told}: surface {number} does not reach it; give {give}")
-    if h is None or (scene.negative == "error" and np.any(negative > h)):
-        raise ValueError(NEGATIVE.format(q.name, value, q.unit, f"surface {number}", negative.max()))
-    return {"separation": h, **on.sums(quantities_at(scene), h)}

@@ -1,6 +1,6 @@
 """The result of `mcgw.solve`: the state of surfaces at one given load or real area."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -10,13 +10,12 @@ from scipy.special import stdtrit
 
 from analytic import SEPARATIONS, quantity_of, yielding_share
 from analytic.arrays import Array
-from analytic.at_load import specimen_means
-from mcgw.ensemble.at_load import GAPS, asperities_of, mean_surface, quantities_at
+from analytic.at_load import Moments, specimen_moments
+from mcgw.ensemble.at_load import GAPS, answers_at, asperities_of, mean_surface, quantities_at
 from mcgw.ensemble.intervals import FEWEST, interval_column, laws_are_quick
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
 from mcgw.machine.terminal import plotted
-from mcgw.sampling.asperities import summits, touching_summits
 from mcgw.scene.scene import Scene
 from mcgw.scene.validity import Validity
 from mcgw.scene.validity_lookup import validity_of
@@ -24,9 +23,50 @@ from mcgw.scene.validity_lookup import validity_of
 if TYPE_CHECKING:
     from analytic.distribution import Law
     from mcgw.ensemble.budget import Budget, Corrected
+    from mcgw.ensemble.loaded_surfaces import LoadedSurfaces
 
 
 _ENOUGH = 10  # surfaces for each number that a control variate is fitted with
+
+
+class Answers(Mapping[str, float]):
+    """Answers by name, each found when it is first asked for.
+
+    Parameters
+    ----------
+    names : sequence of str
+        All that there are.
+    find : callable
+        Finds the one of a name.
+    """
+
+    def __init__(self, names: Sequence[str], find: Callable[[str], float]) -> None:
+        """Find nothing yet."""
+        self._names, self._find, self._found = tuple(names), find, dict[str, float]()
+
+    def __getitem__(self, name: str) -> float:
+        """Return an answer; KeyError if there is no such."""
+        if name not in self._names:
+            raise KeyError(name)
+        if name not in self._found:
+            self._found[name] = float(self._find(name))
+        return self._found[name]
+
+    def __contains__(self, name: object) -> bool:
+        """Tell whether there is such an answer, without finding it."""
+        return name in self._names
+
+    def __iter__(self) -> Iterator[str]:
+        """Iterate over the names."""
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        """Count the answers."""
+        return len(self._names)
+
+    def __repr__(self) -> str:
+        """Show all, as a dict."""
+        return repr(dict(self))
 
 
 @dataclass(frozen=True, repr=False)
@@ -47,18 +87,34 @@ class Solution(Shown):
         With asperity interaction the separation is the effective one, and "nominal_separation" is given as
         well. "mean_gap" is the distance of the mean planes of the surfaces, m; where they are not known there
         is "gap_to_summits" instead: see `answers_at`.
-    surfaces : dict of str to ndarray
-        The same for every surface at its own separation, shape (surfaces,).
-    drawn : Scene
-        The scene with which the surfaces were drawn.
+    loaded : LoadedSurfaces
+        Surfaces at this value, and at others given with it.
+    number : int
+        Of this value among them.
     """
 
     scene: Scene
     given: str
     amount: float
     theory: dict[str, float]
-    surfaces: dict[str, Array]
-    drawn: Scene
+    loaded: "LoadedSurfaces"
+    number: int
+
+    @cached_property
+    def surfaces(self) -> dict[str, Array]:
+        """The same as `theory` for every surface at its own separation, shape (surfaces,); drawn if need be.
+
+        Raises
+        ------
+        ValueError
+            If surfaces cannot reach the value, or if there are too many asperities to draw.
+        """
+        return answers_at(self.scene, self.loaded.sums[self.number])
+
+    @property
+    def drawn(self) -> Scene:
+        """The scene with which the surfaces are drawn."""
+        return self.loaded.drawn
 
     @property
     def title(self) -> str:
@@ -102,28 +158,34 @@ class Solution(Shown):
         separations = self.surfaces["separation"]
         if not 0 <= surface < separations.size:
             raise ValueError(f"surface = {surface}: give a number from 0 to {separations.size - 1}")
-        h = float(separations[surface])
-        s, ratios = (summits if h < self.drawn.lowest else touching_summits)(self.drawn, surface)
-        order = np.argsort(-s, kind="stable")[: np.count_nonzero(s > h)]
-        return s[order], None if ratios is None else ratios[order]
+        return self.loaded.contacts(surface, float(separations[surface]))
 
     @cached_property
-    def value(self) -> dict[str, float]:
+    def value(self) -> Answers:
         """Mean over specimens, each at its own separation under the given load: the answer of the model.
 
         Sums of asperities of one radius are averaged exactly where their law is known (see
-        `analytic.at_load`); what is not a sum, as a resistance, is then the mean of the surfaces drawn,
-        corrected by what their sums and separations lack (a control variate). Otherwise it is the mean of
-        the surfaces drawn.
+        `analytic.at_load`), without a draw; what is not a sum, as a resistance, is then the mean of the
+        surfaces drawn, corrected by what their sums and separations lack (a control variate). Otherwise it is
+        the mean of the surfaces drawn.
         """
-        return {name: estimate[0] for name, estimate in self._estimates.items()}
+        return Answers([*self.theory], lambda name: self._estimate(name)[0])
+
+    @cached_property
+    def std(self) -> Answers:
+        """Standard deviation over specimens: exact to 2e-4 where `value` is, else of the surfaces drawn."""
+        exact = self._exact.std
+        return Answers(
+            [*self.theory],
+            lambda name: exact[name] if name in exact else float(self.surfaces[name].std(ddof=1)),
+        )
 
     def interval(self, name: str, level: float = 0.95) -> tuple[float, float]:
         """Confidence interval of `value` (Student's t); of no width where that is exact.
 
         nan if the surfaces drawn have too few contacts.
         """
-        value, error, freedom = self._estimates[name]
+        value, error, freedom = self._estimate(name)
         if error == 0:
             return value, value
         if self.surfaces.get("contacts", np.full(self._many, np.inf)).sum() < FEWEST:
@@ -133,23 +195,34 @@ class Solution(Shown):
 
     @property
     def _many(self) -> int:
-        return len(next(iter(self.surfaces.values())))
+        return len(self.surfaces["separation"])
+
+    @property
+    def exact(self) -> bool:
+        """Whether the means and the scatter of the answers need no draw."""
+        return all(name in self._exact.mean for name in self.theory if name != "load_slope")
+
+    def _estimate(self, name: str) -> tuple[float, float, int]:
+        """Mean over specimens of an answer, its standard error, and the degrees of freedom of that."""
+        exact = self._exact.mean
+        return (exact[name], 0.0, 0) if name in exact else self._drawn_estimates[name]
 
     @cached_property
-    def _estimates(self) -> dict[str, tuple[float, float, int]]:
-        """Mean over specimens of each answer, its standard error, and the degrees of freedom of that."""
-        exact = {self.given: self.amount, **self._exact}
+    def _drawn_estimates(self) -> dict[str, tuple[float, float, int]]:
+        """The same of what is not known exactly."""
+        exact = self._exact.mean
         controls: list[str] = [
             name
             for name in ("separation", "conductance_si", "stiffness", "area")
             if name in exact and name != self.given  # which differs by rounding errors alone
         ]
         return {
-            name: (exact[name], 0.0, 0) if name in exact else self._estimate(x, exact, controls)
+            name: self._controlled(x, exact, controls)
             for name, x in self.surfaces.items()
+            if name not in exact
         }
 
-    def _estimate(self, x: Array, exact: dict[str, float], controls: list[str]) -> tuple[float, float, int]:
+    def _controlled(self, x: Array, exact: dict[str, float], controls: list[str]) -> tuple[float, float, int]:
         """Mean of what is no sum, less what the surfaces drawn have too much of those that are."""
         m = len(x)
         known = {name: self.surfaces[name] for name in controls if name in self.surfaces}
@@ -163,36 +236,42 @@ class Solution(Shown):
         return float(mean), float(np.sqrt(left @ left / freedom / m)), freedom
 
     @cached_property
-    def _exact(self) -> dict[str, float]:
-        """Means over specimens that need no draw: by quadrature, in the units of `surfaces`."""
-        alone = asperities_of(self.scene)
+    def _exact(self) -> Moments:
+        """Means and standard deviations that need no draw: by quadrature, in the units of `surfaces`."""
+        scene, sigma, alone = self.scene, self.scene.surface.sigma, asperities_of(self.scene)
+        given = Moments({self.given: self.amount}, {self.given: 0.0})
         if alone.curvature is not None or alone.as_measured or self.given == "nominal_separation":
-            return {}  # takes longer than to draw, or is not known
-        scene, sigma = self.scene, self.scene.surface.sigma
-        summed = [name for name in quantities_at(alone) if name in self.surfaces and name != self.given]
+            return given  # takes longer than to draw, or is not known
+        summed = [name for name in quantities_at(alone) if name in self.theory and name != self.given]
         summed = [name for name in summed if quantity_of(name).base != "load_slope"]
         try:
             with np.errstate(all="ignore"):
-                found = specimen_means(alone.theory, self.given, self.amount, summed, self.separation_law)
+                found = specimen_moments(alone.theory, self.given, self.amount, summed, self.separation_law)
         except (ValueError, IndexError):  # far up, where hardly any asperity of any surface is
-            return {}
-        if not np.isfinite(list(found.values())).all():
-            return {}
-        found = {name: x for name, x in found.items() if name == "separation" or not scene.series(name)}
+            return given
+        if not np.isfinite([*found.mean.values(), *found.std.values()]).all():
+            return given
+        mean, std = (
+            {name: x for name, x in part.items() if name == "separation" or not scene.series(name)}
+            for part in found
+        )
+        lift = mean["separation"] - self.theory["separation"]
+        moved: tuple[str, ...] = ()
         if scene.interaction is None:
-            rise = self.theory[scene.gap] - sigma * self.theory["separation"]
-            found[scene.gap] = sigma * found["separation"] + rise
-            if "conductance_si" in found:
-                spots = found["contact_conductance"] = found["conductance_si"] / scene.surface.nominal_area
-                if scene.filled is not None and scene.filled.gas is None:
-                    found |= {"gap_conductance": 0.0, "joint_conductance": spots}
+            moved = (scene.gap,)
+            if "conductance_si" in mean:
+                area = scene.surface.nominal_area
+                for part in (mean, std):
+                    spots = part["contact_conductance"] = part["conductance_si"] / area
+                    if scene.filled is not None and scene.filled.gas is None:
+                        part |= {"gap_conductance": 0.0, "joint_conductance": spots}
         elif self.given == "load":
-            for name in ("nominal_separation", *GAPS):  # moved from the separation alike on all surfaces
-                if name in self.theory:
-                    unit = sigma if name in GAPS else 1.0
-                    moved = found["separation"] - self.theory["separation"]
-                    found[name] = self.theory[name] + unit * moved
-        return found
+            moved = ("nominal_separation", *GAPS)
+        for name in moved:  # from the separation alike on all surfaces
+            if name in self.theory:
+                unit = sigma if name in GAPS else 1.0
+                mean[name], std[name] = self.theory[name] + unit * lift, unit * std["separation"]
+        return Moments(mean | given.mean, std | given.std)
 
     @cached_property
     def separation_law(self) -> "Law | None":
@@ -311,8 +390,8 @@ class Solution(Shown):
             self.scene,
             self.title,
             self.value,
-            self.surfaces,
-            {name: self.interval(name) for name in self.surfaces},
+            self.std,
+            self.interval,
             self._against_elasticity,
             lambda scene: mean_surface(scene, self.given, self.amount),
             self.given,
@@ -341,9 +420,11 @@ class Solution(Shown):
             return Corrected.unknown("errors of models are measured at a given load")
         if why := yields(self.yielding):
             return Corrected.unknown(why)
-        std, (_, error, freedom) = float(self.surfaces[quantity].std(ddof=1)), self._estimates[quantity]
+        _, error, freedom = self._estimate(quantity)
         drawn = float(stdtrit(freedom, 0.975)) * error if error else 0.0
-        return corrected(self._against_elasticity, self.scene, quantity, self.value, std, drawn)
+        return corrected(
+            self._against_elasticity, self.scene, quantity, self.value, self.std[quantity], drawn
+        )
 
     @cached_property
     def _against_elasticity(self) -> Validity:
@@ -358,56 +439,58 @@ class Solution(Shown):
         """The answers, and how specimens differ."""
         from mcgw.ensemble.budget import yields
 
-        many = f"{self._many} surfaces of {self.scene.n_asperities} asperities"
+        many = f"specimens of {self.scene.n_asperities} asperities"
         many += ", drawn from the measured summits" if self.scene.as_measured else ""
         facts = [("over", many), ("elasticity", self._against_elasticity.brief)]
         facts += [("yielding", why)] if (why := yields(self.yielding)) else []
         table = self.table()
-        table = replace(table, columns=tuple(x for x in table.columns if x.name not in ("std", "infinite")))
+        table = replace(table, columns=tuple(x for x in table.columns if x.name != "infinite"))
         if np.isnan(table.flat[-1].values).all():
             table = replace(table, columns=table.columns[:-1])
-        found = [k for k, name in enumerate(self.surfaces) if name != self.given]
+        found = [k for k, name in enumerate(self.theory) if name != self.given]
         return Sheet(table.title, facts, table.at(found))
 
-    def table(self) -> Table:
-        """The mean over specimens, their scatter and the corrected answer, a row for each quantity."""
+    def table(self, specimens: bool = False) -> Table:
+        """The mean over specimens, their scatter and the corrected answer, a row for each quantity.
+
+        Parameters
+        ----------
+        specimens : bool
+            Add the range of 90 % of them, for which surfaces are drawn.
+        """
         units = {**dict.fromkeys(GAPS, "m"), "separation": "sigma", **dict.fromkeys(SEPARATIONS, "sigma")}
-        names = list(self.surfaces)
+        names = list(self.theory)
         low, high = np.array([self.interval(name) for name in names]).T
-        found = [self.surfaces[name] for name in names]
-        least, most = np.array([self.specimens(name) for name in names]).T
         means = np.array([self.value[name] for name in names])
         error = np.where(high > low, (high - low) / 4, np.where(high == low, 1e-6 * np.abs(means), np.nan))
         right, below, above, _ = map(np.array, zip(*map(self.corrected, names), strict=True))
         off = Column("best_95", (above - below) / 2, form=".1g")
-        return Table(
-            (
-                Column("quantity", names),
-                Column("unit", [units.get(name) or self.scene.quantity(name).unit for name in names]),
-                Column("value", [self.value[name] for name in names], error=error),
-                interval_column(low, high),
-                Column("std", [x.std(ddof=1) for x in found], form=".3g"),
-                Column(
-                    "specimen_05",
-                    least,
-                    "90 % of specimens",
-                    form=".4g",
-                    between=" ... ",
-                    beside=Column("specimen_95", most, form=".4g"),
-                ),
-                Column("infinite", [self.theory[name] for name in names], "infinite surface", form=".5g"),
-                Column(
-                    "best",
-                    right,
-                    "best (95 %)",
-                    error=(above - below) / 2,
-                    missing="",
-                    beside=off,
-                    between=" ± ",
-                ),
+        columns = [
+            Column("quantity", names),
+            Column("unit", [units.get(name) or self.scene.quantity(name).unit for name in names]),
+            Column("value", means, error=error),
+            interval_column(low, high),
+            Column("std", [self.std[name] for name in names], "std of specimens", form=".2g"),
+        ]
+        if specimens:
+            least, most = np.array([self.specimens(name) for name in names]).T
+            ends = Column("specimen_95", most, form=".4g")
+            words = "90 % of specimens"
+            columns.append(Column("specimen_05", least, words, form=".4g", between=" ... ", beside=ends))
+        infinite = [self.theory[name] for name in names]
+        columns += [
+            Column("infinite", infinite, "infinite surface", form=".5g"),
+            Column(
+                "best",
+                right,
+                "best (95 %)",
+                error=(above - below) / 2,
+                missing="",
+                beside=off,
+                between=" ± ",
             ),
-            self.title,
-        )
+        ]
+        return Table(tuple(columns), self.title)
 
 
 def against_elasticity(solutions: Sequence[Solution]) -> Validity:

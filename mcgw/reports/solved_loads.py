@@ -54,19 +54,22 @@ def solutions_text(
 
 
 def _full(solution: Solution) -> Table:
-    """Every quantity but the given one, with that of an infinite surface."""
-    table = solution.table()
-    shown = tuple(x for x in table.columns if x.name != "std")
+    """Every quantity but the given one, with 90 % of specimens and that of an infinite surface."""
+    table = solution.table(specimens=True)
+    return _known(solution, replace(table, columns=tuple(x for x in table.columns if x.name != "std")))
+
+
+def _known(solution: Solution, table: Table) -> Table:
+    """Without the quantity that was given, and without a column of corrected answers that is empty."""
     if np.isnan(table.flat[-1].values).all():
-        shown = shown[:-1]
-    found = [k for k, name in enumerate(solution.surfaces) if name != solution.given]
-    return replace(table, columns=shown).at(found)
+        table = replace(table, columns=table.columns[:-1])
+    return table.at([k for k, name in enumerate(solution.theory) if name != solution.given])
 
 
 def _answer(solution: Solution) -> Table:
     """The answer and specimens to the digits that count, a row for each quantity that is not a variant."""
-    table = _full(solution)
-    name, unit, value, interval, least, _, *best = table.columns
+    table = _known(solution, solution.table())
+    name, unit, value, interval, std, _, *best = table.columns
     low, high = (np.asarray(column.values) for column in interval.flat)
     sure = high == low
     error = np.where(sure, 1e-4 * np.abs(np.asarray(value.values)), (high - low) / 2)
@@ -76,7 +79,7 @@ def _answer(solution: Solution) -> Table:
             name,
             unit,
             replace(value, words="value (95 %)", error=error, beside=half, between=" ± "),
-            least,
+            std,
             *best,
         ),
         joint_text(solution.scene) if solution.scene.thermal else "",
@@ -113,7 +116,7 @@ def _brief(solution: Solution) -> str:
     name = budget.quantities[0]
     if scene.film is not None:
         name = next(x for x in ("joint_conductance", "contact_conductance") if x in value)
-    best, scatter = solution.corrected(name), solution.surfaces[name].std(ddof=1) / abs(value[name])
+    best, scatter = solution.corrected(name), solution.std[name] / abs(value[name])
     first = value[name] if np.isnan(best.value) else best.value
     told = f"{first:.4g} {scene.quantity(name).unit} {budget.told(name, best, scatter)}"
     if f"{first:.4g}" != f"{value[name]:.4g}":

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.optimize import nnls
 
 from analytic.arrays import Array
-from analytic.at_load import specimen_means
+from analytic.at_load import specimen_moments
 from mcgw.ensemble.intervals import laws_are_quick
 from mcgw.ensemble.prices import PROBABILITY, SOLVE, Needs, Way, sampler_of, wants_of
 from mcgw.ensemble.simulation import simulate
@@ -107,7 +107,7 @@ class Answers:
             self.levels, self.known["quantile"] = np.array(law.cdf(self.at)), float(law.ppf(PROBABILITY))
         if laws_are_quick(scene):
             with suppress(KeyError, ValueError, IndexError):
-                found = specimen_means(theory, "load", self.load, ["conductance"])
+                found = specimen_moments(theory, "load", self.load, ["conductance"]).mean
                 self.known["conductance"] = found["conductance"]
 
     def _off(self, want: str, value: float) -> Errors:

@@ -113,9 +113,9 @@ def test_derivatives_obey_what_scales(interaction):
 def test_lines_of_surfaces_by_hand(solved):
     budget, n = solved.budget(), 20
     for k, name in enumerate(NAMES):
-        x, low, high = solved.surfaces[name], *solved.interval(name)
+        low, high = solved.interval(name)
         assert budget.shares["drawn surfaces"][k] == pytest.approx((high - low) / 2 / solved.value[name])
-        assert budget.shares["specimens"][k] == pytest.approx(1.96 * x.std(ddof=1) / solved.value[name])
+        assert budget.shares["specimens"][k] == pytest.approx(1.96 * solved.std[name] / solved.value[name])
     assert (budget.shares["drawn surfaces"] < 3 * budget.shares["specimens"] / np.sqrt(n)).all()
     v = solved.scene.validity(solved.theory["separation"])
     assert budget.shares["model"][0] == pytest.approx(v.error["area"][0])
@@ -145,13 +145,13 @@ def test_corrected_is_divided_by_its_bias(solved):
         bias = v.bias[column][0]
         assert found.value * (1 + bias) == pytest.approx(solved.value[name])
         most = (v.error[column][0] - abs(bias)) / (1 + bias)  # of the very summits of a surface
-        most = np.hypot(most, 1.96 * solved.surfaces[name].std(ddof=1) / solved.value[name])
+        most = np.hypot(most, 1.96 * solved.std[name] / solved.value[name])
         assert found.high / found.value == pytest.approx(1 + most)
         assert found.low * found.high == pytest.approx(found.value**2)
     gap, sigma = solved.corrected("gap_to_summits"), solved.scene.surface.sigma
     assert gap.value == pytest.approx(solved.value["gap_to_summits"] - sigma * v.bias["separation"][0])
     off = sigma * (v.error["separation"][0] - abs(v.bias["separation"][0]))
-    off = np.hypot(off, 1.96 * solved.surfaces["gap_to_summits"].std(ddof=1))
+    off = np.hypot(off, 1.96 * solved.std["gap_to_summits"])
     assert gap.high - gap.value == pytest.approx(off)
     assert "contacts: its error was not measured" in solved.corrected("contacts").why
     named = {column.name: column for column in solved.table().flat}

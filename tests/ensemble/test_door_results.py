@@ -72,8 +72,9 @@ def results(scene, ensemble, tmp_path_factory):
 COLUMNS = {  # as files have them
     "ratio": [(lambda x: x.table(), "separation ratio stderr variance_gain")],
     "solution": [
+        (lambda x: x.table(), "quantity unit value low_95 high_95 std infinite best best_95"),
         (
-            lambda x: x.table(),
+            lambda x: x.table(specimens=True),
             "quantity unit value low_95 high_95 std specimen_05 specimen_95 infinite best best_95",
         ),
         (lambda x: x.budget().table(), "95_% area stiffness conductance gap_to_summits"),

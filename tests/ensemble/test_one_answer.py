@@ -121,6 +121,9 @@ def test_the_answer_is_one_and_the_mean_of_specimens(name, tmp_path):
         error = np.hypot(x.std(ddof=1) / np.sqrt(many), own) + 1e-6 * abs(value)
         assert abs(value - x.mean()) < 5 * error, quantity
         assert abs(value + 10 * error - x.mean()) > 5 * error  # it would be seen
+        spread = np.sqrt(np.mean(((x - x.mean()) / x.std()) ** 4) - 1) / 2  # relative, of one surface
+        error = x.std() * (spread * np.sqrt(1 / many + (own > 0) / scene.n_surfaces) + 2e-4)
+        assert abs(found.std[quantity] - x.std(ddof=1)) < 5 * error, quantity
 
     def same(value, quantity):
         """To rounding; what is a mean of drawn surfaces, to five of its errors: others may be drawn."""

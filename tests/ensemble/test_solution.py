@@ -83,14 +83,14 @@ def test_other_quantities_belong_to_the_separation(scene, solved):
 
 
 def entered(monkeypatch, name):
-    """Calls of a function of `mcgw.ensemble.solution` from now on."""
-    calls, function = [], getattr(mcgw.ensemble.solution, name)
+    """Calls of a function of `mcgw.sampling.asperities` from now on."""
+    calls, function = [], getattr(mcgw.sampling.asperities, name)
 
     def counted(*args, **options):
         calls.append(args)
         return function(*args, **options)
 
-    monkeypatch.setattr(mcgw.ensemble.solution, name, counted)
+    monkeypatch.setattr(mcgw.sampling.asperities, name, counted)
     return calls
 
 
@@ -104,7 +104,7 @@ def test_light_loads_on_softer_tips(scene, gamma, monkeypatch):
     loads = [3e2, 3e1, 3.0, 3e-1, 3e-2, 3e-3, 3e-4]
     graded = replace(scene, grading=grading, n_surfaces=20)
     drawn = entered(monkeypatch, "summits_of_many")
-    found = solutions(graded, "load", loads)
+    found = solutions(graded, "load", loads, draw=True)
     assert drawn[0][0].lowest < grading.zero
     for number in range(20):
         s = mcgw.heights(drawn[0][0], number, untouched=True)
@@ -140,7 +140,7 @@ def test_negative_moduli_as_the_scene_wants_them(scene, negative, monkeypatch):
     """Clipped they carry nothing, allowed they pull: the heights are those of the search's own start."""
     drawn = entered(monkeypatch, "summits_of_many")
     wanted = replace(scene, negative=negative, n_asperities=20, n_surfaces=100)
-    (solution,) = solutions(wanted, "load", [14.0])
+    (solution,) = solutions(wanted, "load", [14.0], draw=True)
     starts = {args[0].lowest for args in drawn}
     below = 0
     for number, h in enumerate(solution.surfaces["separation"]):
@@ -156,18 +156,19 @@ def test_the_branch_below_the_margin_is_entered(scene, monkeypatch):
 
     Six standard deviations leave none, one leaves a sixth. Each against a bisection over all its heights.
     """
-    from mcgw.ensemble import solution
+    from mcgw.ensemble import loaded_surfaces
+    from mcgw.sampling import asperities
 
     few = replace(scene, n_asperities=3, grading=analytic.Homogeneous(), n_surfaces=200)
-    monkeypatch.setattr(solution, "_MARGIN", 0.5)
-    drawn_whole, listed = [], solution.summits
+    monkeypatch.setattr(loaded_surfaces, "_MARGIN", 0.5)
+    drawn_whole, listed = [], asperities.summits
 
     def spy(asked, number):
         drawn_whole.append(number)
         return listed(asked, number)
 
-    monkeypatch.setattr(solution, "summits", spy)
-    (found,) = solutions(few, "load", [2.0])
+    monkeypatch.setattr(asperities, "summits", spy)
+    (found,) = solutions(few, "load", [2.0], draw=True)
     assert 0 < len(drawn_whole) < 200
     assert len(set(drawn_whole)) == len(drawn_whole)
     assert found.surfaces["separation"].min() < found.drawn.lowest - 0.9  # more than one step down
@@ -216,7 +217,7 @@ def test_only_what_asperities_alone_decide_has_a_number_of_them(pressed_down, ma
 
 def test_surfaces_within_the_margin_are_drawn_once(scene, monkeypatch):
     touching, whole = entered(monkeypatch, "summits_of_many"), entered(monkeypatch, "summits")
-    solutions(replace(scene, n_surfaces=40), "load", [900.0])
+    solutions(replace(scene, n_surfaces=40), "load", [900.0], draw=True)
     assert sum(n for *_, n in touching) == 40
     assert not whole
 
@@ -229,8 +230,10 @@ def test_asperities_are_listed_once_and_a_light_load_looks_at_few(scene, monkeyp
         return above(many, h)
 
     monkeypatch.setattr(ManySurfaces, "above", looked_at)
-    monkeypatch.setattr(mcgw.ensemble.solution, "_AT_ONCE", 10_000)
-    solutions(replace(scene, n_surfaces=40), "load", [3.0, 900.0], lambda *step: steps.append(step))
+    monkeypatch.setattr(mcgw.ensemble.loaded_surfaces, "_AT_ONCE", 10_000)
+    solutions(
+        replace(scene, n_surfaces=40), "load", [3.0, 900.0], lambda *step: steps.append(step), draw=True
+    )
     assert sum(n for *_, n in listed) == 40
     assert sum(sizes[::2]) < sum(sizes[1::2]) / 5
     assert len(steps) == len(listed) > 3

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import mcgw
-from mcgw.ensemble import solution
+from mcgw.ensemble import loaded_surfaces
 
 PLAIN = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "0.5 mm^2", "78.6 GPa")
 SPECTRAL = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "0.2 mm^2", "78.6 GPa")
@@ -36,7 +36,7 @@ def test_their_loads_add_up_to_what_was_given(surface, count, grading):
 
 
 def test_of_areas_too_and_below_what_was_drawn_at_first(monkeypatch):
-    monkeypatch.setattr(solution, "_MARGIN", 0.1)  # so that surfaces lie lower than was expected
+    monkeypatch.setattr(loaded_surfaces, "_MARGIN", 0.1)  # so that surfaces lie lower than was expected
     scene = mcgw.Scene(PLAIN, separations=0.0, n_asperities=10, n_surfaces=40, seed=1)
     below = 0
     for share in (0.02, 0.4):

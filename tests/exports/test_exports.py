@@ -12,6 +12,7 @@ import pytest
 from oracles.new_trailer import trailer_again
 
 import mcgw
+from analytic.at_load import Moments
 from mcgw.cli import main
 from mcgw.ensemble.at_load import pressures_of
 from mcgw.errors import StoreError
@@ -52,7 +53,7 @@ def ensemble(scene):
 @pytest.fixture
 def only_drawn(monkeypatch):
     """Values at a load are means of the surfaces drawn: exact ones take half a second each."""
-    monkeypatch.setattr("mcgw.ensemble.solved.Solution._exact", {})
+    monkeypatch.setattr("mcgw.ensemble.solved.Solution._exact", Moments({}, {}))
 
 
 # --- small readers, each written from its program's rule ------------------------------------------------

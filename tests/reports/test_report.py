@@ -275,7 +275,7 @@ def test_the_budget_at_a_pressure_and_the_corrected_answer(small):
     assert found.corrected("area").value == searched.corrected("area").value > 0
     budget = found.budget()
     assert budget.quantities == ("area", "stiffness", "conductance", "gap_to_summits")
-    by_hand = 1.96 * found.surfaces["area"].std(ddof=1) / found.value["area"]
+    by_hand = 1.96 * found.std["area"] / found.value["area"]
     assert budget.shares["specimens"][0] == pytest.approx(by_hand)
     assert budget.shares["parameters"][0] == pytest.approx(searched.budget().shares["parameters"][0])
     text = " ".join(html.unescape(re.sub("<[^>]+>", " ", report_html(ensemble, ATTRIBUTES))).split())
