@@ -135,16 +135,6 @@ def kept(monkeypatch):
     return figures
 
 
-@pytest.fixture(scope="module")
-def looked_at_here():
-    """Files of ensembles are looked at in this process: a child for each takes most of the time."""
-    from mcgw.store import ensembles, structure
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(ensembles, "examine", lambda path: structure.describe(str(path)))
-        yield
-
-
 @pytest.fixture
 def recorded(request):
     """Compare lines with those of a file in `answers`; with `--record`, write them there."""

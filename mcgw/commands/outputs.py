@@ -10,7 +10,7 @@ from mcgw.commands.voice import news, notes
 from mcgw.errors import StoreError
 from mcgw.formats.files import check_output, refuse_read_only
 from mcgw.formats.table import Table
-from mcgw.store.disk import TRAILER_BYTES, TRAILER_MAGIC, parts_of
+from mcgw.store.disk import parts_of
 from mcgw.store.lock import LOCK_FILES
 
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
@@ -130,9 +130,7 @@ def _refuse_ensemble(output: Output) -> None:
         return
     with open(output.path, "rb") as file:
         start = file.read(len(_SIGNATURE))
-        file.seek(max(output.path.stat().st_size - TRAILER_BYTES, 0))
-        ours = file.read(len(TRAILER_MAGIC)) == TRAILER_MAGIC
-    if ours or (start == _SIGNATURE and _holds_results(output.path)):
+    if start == _SIGNATURE and _holds_results(output.path):
         raise output.refuse("is an ensemble of mcgw, which this would replace")
     if start == _SIGNATURE and not set(HDF5.endings) & set(output.format.endings):
         raise output.refuse("is an HDF5 file, which this would replace")

@@ -27,7 +27,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--csv", type=Path, metavar="CSV", help="also write the table of all separations to this file"
     )
-    what.add_argument("--verify", action="store_true", help="verify every bit by trailer and digest")
+    what.add_argument("--verify", action="store_true", help="verify every number by its checksum")
     add_set_option(parser)
 
 

@@ -94,7 +94,7 @@ def together() -> Iterator[None]:
 
 
 @contextmanager
-def whole_file(path: Path, *, expected: Expected = "anything") -> Iterator[Path]:
+def whole_file(path: Path, *, expected: Expected = "anything", folder: Path | None = None) -> Iterator[Path]:
     """Name to write a file under; at the end it takes the place of `path`, on an error it goes.
 
     Inside of `together` it takes that place when all files are whole.
@@ -105,6 +105,8 @@ def whole_file(path: Path, *, expected: Expected = "anything") -> Iterator[Path]
         Its name; a link of that name is replaced, not followed.
     expected : State or None, optional
         Which file is to be replaced, from `state_of`; None: there must be none.
+    folder : Path, optional
+        On the same disk, where it lies until it is whole. Default: beside `path`.
 
     Raises
     ------
@@ -113,7 +115,7 @@ def whole_file(path: Path, *, expected: Expected = "anything") -> Iterator[Path]
     OSError
         If it cannot be written; then nothing is left behind and an older file is as it was.
     """
-    temporary = temporary_beside(path)
+    temporary = temporary_beside((folder or path.parent) / path.name)
     try:
         refuse_read_only(path)
         yield temporary

@@ -12,7 +12,7 @@ from itertools import groupby
 from operator import itemgetter
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from analytic import PiecewiseSeries
 from analytic.arrays import hold
@@ -27,11 +27,14 @@ from mcgw.scene.fields import LeftOut
 from mcgw.scene.scene import Scene, storable
 from mcgw.store.disk import parts_of
 from mcgw.store.ensembles import described
+from mcgw.store.h5_file import Contents
 from mcgw.store.identity import difference, identity_of, now, versions
-from mcgw.store.layout import body_of, stored_text
+from mcgw.store.layout import stored_text
 from mcgw.store.place import finished, recorded_scene, with_recorded_seed
 from mcgw.store.run_folder import RunFolder
-from mcgw.store.shards import Plan, Span, commit_shard
+from mcgw.store.saving import contents_of
+from mcgw.store.shards import commit_shard
+from mcgw.store.spans import Plan, Span
 
 if TYPE_CHECKING:
     from mcgw.sweeps.points import Asked
@@ -149,23 +152,24 @@ class Job:
         with use_threads(threads):
             return self.reducers[g].tables(first, first + span.n, go_on)
 
-    def body(self, blocks: Iterable[tuple[int, Tables]], seconds: float) -> tuple[bytes, bytes]:
-        """The file and its trailer, of all blocks in their order, each with the number of its group."""
+    def contents(self, blocks: Iterable[tuple[int, Tables]], seconds: float) -> Contents:
+        """Those of the file, of all blocks in their order, each with the number of its group."""
         groups = groupby(blocks, itemgetter(0))
         held = [
             one.held(tables for _, tables in some)
             for one, (_, some) in zip(self.reducers, groups, strict=True)
         ]
         run = self.record
-        about = {"run": run.identity, "draws": run.drawn_with, "wall_seconds": seconds}
         if run.axes:
-            from mcgw.sweeps.file import body_of_sweep  # of which most runs are none
+            from mcgw.sweeps.file import contents_of_sweep  # of which most runs are none
 
-            return body_of_sweep(run, held, **about)
-        write = body_of
-        if run.plan.whole:
-            from mcgw.store.statistics_file import body_of_statistics as write  # of which most are none
-        return write(Ensemble(run.scene, run.sampler, held[0]), **about)
+            return contents_of_sweep(run, held, **self.about(seconds))
+        return contents_of(Ensemble(run.scene, run.sampler, held[0]), **self.about(seconds))
+
+    def about(self, seconds: float) -> dict[str, Any]:
+        """Attributes of the file, besides those of its scene."""
+        run = self.record
+        return {"run": run.identity, "draws": run.drawn_with, "wall_seconds": seconds}
 
 
 def _asked(record: RunFolder) -> "Asked":
@@ -199,24 +203,23 @@ def as_recorded(scene: Scene, path: Path) -> Scene:
     return resolved
 
 
-def commit_block(folder: str, first: int, n: int) -> str:
-    """Draw a block of a run into its folder, unless a valid shard is there; returns its digest."""
-    return draw_block(folder, first, n)()
+def commit_block(folder: str, first: int, n: int) -> None:
+    """Draw a block of a run into its folder, unless a valid shard is there."""
+    draw_block(folder, first, n)()
 
 
 def draw_block(
     folder: str, first: int, n: int, threads: int | None = 1, go_on: GoOn = always
-) -> Callable[[], str]:
+) -> Callable[[], object]:
     """Do the first half of `commit_block`; what it returns is the second, to be done beside the next."""
     run, job = _prepared(folder, state_of(Path(folder) / "run.toml"))
     span = Span(first, n)
-    if shard := run.held(span):
-        digest = shard.digest
-        return lambda: digest
+    if run.held(span):
+        return lambda: None
     started = perf_counter()
     tables = job.draw(span, threads, go_on)
     path, seconds = run.shards_folder / span.file_name, perf_counter() - started
-    return lambda: commit_shard(path, run.identity, span, tables, seconds).digest
+    return lambda: commit_shard(path, run.identity, span, tables, seconds)
 
 
 @lru_cache(maxsize=1)

@@ -1,20 +1,27 @@
 """Merge the blocks of a run into its file."""
 
 from collections.abc import Callable, Iterator
-from contextlib import suppress
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+from numpy.typing import NDArray
 
 from mcgw.ensemble.results import Tables
 from mcgw.errors import RunError, StoreError
-from mcgw.formats.files import rename_over, state_of, sync, temporary_beside, write_whole
+from mcgw.formats.files import state_of
+from mcgw.formats.gate import open_h5
 from mcgw.jobs.driver import Signals, heed_signals
 from mcgw.jobs.job import Job
+from mcgw.machine.in_threads import Items
 from mcgw.store.disk import parts_of
+from mcgw.store.ensembles import described
+from mcgw.store.h5_file import Contents, Rows, pieces_of
+from mcgw.store.layout import contents_of_values
 from mcgw.store.lock import locked
-from mcgw.store.place import tidy, whole_blocks
+from mcgw.store.place import tidy
 from mcgw.store.run_folder import RunFolder
-from mcgw.store.saving import merge_into
+from mcgw.store.saving import put
 
 if TYPE_CHECKING:
     from mcgw.ensemble.ensemble import Ensemble
@@ -79,65 +86,66 @@ def merge(path: str | Path) -> "Ensemble | Sweep":
 
 def merge_once(job: Job, signals: Signals) -> bool:
     """Make the file and remove the shards; False if a shard turned out damaged. Only with the lock."""
-    started, path = job.record, job.record.path
-    temporary, before = temporary_beside(started.folder / path.name), state_of(path)
+    run, before = job.record, state_of(job.record.path)
     job.done()
 
     def check() -> None:
-        signals.check(f"all blocks are kept in {started.folder}; the same command merges them")
+        signals.check(f"all blocks are kept in {run.folder}; the same command merges them")
 
     try:
-        if started.plan.whole:
-            _merge_in_memory(job, temporary, check)
-        else:
-            merge_into(started, path, temporary, check)
-        rename_over(temporary, path, before)
-        sync(path.parent)
+        put(run.path, _merged(job, check), before, check)
     except StoreError:
         return False
-    except RunError:
-        raise
-    except FileExistsError as error:
-        raise RunError(
-            f"{path}: {error.strerror}; it is left as it is. All blocks are kept in {started.folder}: move "
-            "that file away, the same command resumes"
-        ) from None
-    except (OSError, RuntimeError) as error:
-        said = error.strerror if isinstance(error, OSError) else None
-        why = said or next(iter(str(error).splitlines()), type(error).__name__)
-        raise RunError(
-            f"{path}: cannot be merged ({why}); is the disk full? All blocks are kept in {started.folder}; "
-            f"the same command resumes"
-        ) from None
-    finally:
-        with suppress(OSError):
-            temporary.unlink()
-    started.remove()
+    run.remove()
     return True
 
 
-def _merge_in_memory(job: Job, temporary: Path, check: Callable[[], None]) -> None:
-    """Write a file that holds no surfaces: of the blocks in the one that is there, then those of the shards.
+def _merged(job: Job, check: Callable[[], None]) -> Contents:
+    """What the surfaces of the file that is there, and then those of the shards, make.
 
     Raises
     ------
     StoreError
         If a shard is missing or damaged.
-    OSError
-        If the disk does not take it.
     """
     run = job.record
-    before, seconds = whole_blocks(job.record.path, run)
-    shards = {shard.span: shard for shard in run.shards(bodies=False)}
-    spans = run.missing(sum(part.n for part in before), [])
-    if lost := [span for span in spans if span not in shards]:
-        raise StoreError(f"{run.folder}: {lost[0]} are missing")
+    held, before, seconds = _before(run)
+    shards = [shard for shard in run.shards(numbers=False) if shard.span.first >= held]
+    ends = [held, *(shard.span.stop for shard in shards)]
+    if ends != [*(shard.span.first for shard in shards), run.plan.total]:
+        raise StoreError(f"{run.folder}: blocks are missing")
+    seconds += sum(shard.seconds for shard in shards)
 
     def blocks() -> Iterator[tuple[int, Tables]]:
-        yield from ((0, part.block()) for part in before)
-        for span in spans:
+        yield from ((0, block) for block in before)
+        for shard in shards:
             check()
-            yield run.plan.group(span)[0], shards[span].arrays()
+            yield run.plan.group(shard.span)[0], shard.tables()
 
-    seconds += sum(shards[span].seconds for span in spans)
-    write_whole(temporary, job.body(blocks(), seconds), expected=None)
+    def pieces(name: str) -> Items[NDArray[Any]]:
+        if held:
+            with open_h5(run.path) as file:
+                yield from pieces_of(file[name])
+        for shard in shards:
+            yield shard.tables(name)[name]
+
+    if run.plan.whole:
+        return job.contents(blocks(), seconds)
+    rows = partial(Rows, run.plan.total)
+    return contents_of_values(
+        run.scene, run.sampler, lambda name: rows(partial(pieces, name)), **job.about(seconds)
+    )
+
+
+def _before(run: RunFolder) -> tuple[int, list[Tables], float]:
+    """Of the file that is there: surfaces not drawn again, blocks of statistics, seconds that all took."""
+    if run.axes or not run.path.exists():
+        return 0, [], 0.0
+    attributes, scene = described(run.path)
+    if not run.plan.whole:
+        return scene.n_surfaces, [], attributes["wall_seconds"]
+    from mcgw.store.statistics_file import read_statistics  # for those scenes alone
+
+    ((_, size),) = run.plan.groups
+    parts = [part for part in read_statistics(run.path, scene).parts if part.n % size == 0]
+    return sum(part.n for part in parts), [part.block() for part in parts], attributes["wall_seconds"]

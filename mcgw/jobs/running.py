@@ -20,9 +20,10 @@ from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import Scene
 from mcgw.store.ensembles import FileResults, open_ensemble
 from mcgw.store.lock import locked
-from mcgw.store.place import drop_leftovers, tidy, write_body
+from mcgw.store.place import drop_leftovers, tidy
 from mcgw.store.run_folder import RunFolder
-from mcgw.store.shards import Span
+from mcgw.store.saving import put
+from mcgw.store.spans import Span
 
 _ROUNDS = 3  # attempts to merge, if shards turn out damaged
 
@@ -198,7 +199,7 @@ def _at_once(job: Job, by: By) -> None:
     tables = job.draw(Span(0, run.scene.n_surfaces), by.threads, go_on)
     before = state_of(run.path)
     job.done()  # else the file is another's
-    write_body(run.path, job.body([(0, tables)], perf_counter() - started), before)
+    put(run.path, job.contents([(0, tables)], perf_counter() - started), before)
 
 
 def _in_blocks(job: Job, by: By) -> None:
@@ -236,7 +237,7 @@ def _draw_missing(job: Job, started: RunFolder, spans: list[Span], by: By, part:
         spans = [span for span in spans if part.mine(plan.number(span))]
     folder = str(started.folder.resolve())
 
-    def note(span: Span, _: str) -> None:
+    def note(span: Span, _: object) -> None:
         nonlocal done, left
         done, left = done + job.work(span), left - span.n
         by.progress(done)

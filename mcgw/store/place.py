@@ -1,22 +1,19 @@
-"""What lies at the place of a file: surfaces, a seed, what the dead left behind; and a new file."""
+"""What lies at the place of a file: surfaces, a seed, and what the dead left behind."""
 
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from mcgw.errors import RunError, StoreError
-from mcgw.formats.files import State, remove_stale, write_whole
+from mcgw.errors import StoreError
+from mcgw.formats.files import remove_stale
 from mcgw.scene.fields import LeftOut
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from, scene_text
 from mcgw.store.disk import parts_of
-from mcgw.store.ensembles import check_whole, described, read_attributes
+from mcgw.store.ensembles import described, read_attributes
+from mcgw.store.h5_file import look
 from mcgw.store.identity import difference, identity_of, versions
 from mcgw.store.lock import locked
 from mcgw.store.run_folder import RunFolder, remove_run
-
-if TYPE_CHECKING:
-    from mcgw.ensemble.pooled import Pooled
 
 
 def recorded_scene(path: Path) -> Scene | None:
@@ -36,17 +33,6 @@ def recorded_seed(path: Path) -> int | None:
     """Its seed, for scenes that give none."""
     there = recorded_scene(path)
     return there.seed if there else None
-
-
-def whole_blocks(path: Path, run: RunFolder) -> tuple[list["Pooled"], float]:
-    """Of a file that keeps statistics, the whole blocks as one, if any; and the seconds that all took."""
-    if run.axes or not path.exists():
-        return [], 0.0
-    from mcgw.store.statistics_file import read_statistics  # for those scenes alone
-
-    ((_, size),) = run.plan.groups
-    parts = [part for part in read_statistics(path, run.scene).parts if part.n % size == 0]
-    return parts, float(described(path)[0]["wall_seconds"])
 
 
 def finished(path: Path, scene: Scene, sampler: str) -> int:
@@ -72,28 +58,8 @@ def finished(path: Path, scene: Scene, sampler: str) -> int:
             f"{scene.n_surfaces}; ask for as many or more, or choose another -o"
         )
     if there.n_surfaces < scene.n_surfaces:
-        check_whole(path)  # it is about to be copied
+        look(path)  # all of it: it is about to be copied
     return there.n_surfaces
-
-
-def write_body(path: Path, body: tuple[bytes, bytes], before: State | None) -> None:
-    """Write a file and its trailer in one atomic step, over what `before` says that was there. With the lock.
-
-    Raises
-    ------
-    StoreError
-        If something else has this name by now.
-    RunError
-        If the disk does not take it.
-    """
-    try:
-        write_whole(path, body, expected=before)
-    except FileExistsError as error:
-        raise StoreError(f"{path}: {error.strerror}; it was not changed; choose another -o") from None
-    except OSError as error:
-        raise RunError(
-            f"{path}: cannot be written ({error.strerror or error}); free some space and repeat"
-        ) from None
 
 
 def tidy(path: Path) -> None:

@@ -30,7 +30,8 @@ from mcgw.scene.scene_file import scene_from
 from mcgw.scene.section import SceneError
 from mcgw.store.identity import difference
 from mcgw.store.lock import refuse_link
-from mcgw.store.shards import Plan, Shard, Span, open_shard
+from mcgw.store.shards import Shard, open_shard
+from mcgw.store.spans import Plan, Span
 
 _FILETYPE, _FORMAT = "mcgw-run", [2, 0]
 _CHECKSUM = 'sha256 = "'
@@ -102,7 +103,7 @@ class RunFolder:
         try:
             old = RunFolder.open(self.folder)
         except _DamagedError:
-            if not self.shards(bodies=False):
+            if not self.shards(numbers=False):
                 raise
             self._write(expected="anything")  # its blocks say that they are of this very run
             return self
@@ -175,9 +176,9 @@ class RunFolder:
                 f"sweep, with their scene and seed, or remove {folder}"
             ) from None
 
-    def shards(self, *, bodies: bool = True) -> list[Shard]:
-        """Valid shards in order, each checked bit by bit; or by its trailer alone, without the `bodies`."""
-        return [shard for shard, _ in self._looked_at(bodies=bodies) if shard]
+    def shards(self, *, numbers: bool = True) -> list[Shard]:
+        """Valid shards in order, each looked at; or its head alone, without the `numbers`."""
+        return [shard for shard, _ in self._looked_at(numbers=numbers) if shard]
 
     def sweep(self) -> list[Shard]:
         """As `shards`; whatever else lies there is put aside. Only with the lock."""
@@ -191,12 +192,12 @@ class RunFolder:
                 path.rename(path.with_name(f"{path.name}.bad"))
         return valid
 
-    def _looked_at(self, *, bodies: bool = True) -> Iterator[tuple[Shard | None, Path]]:
+    def _looked_at(self, *, numbers: bool = True) -> Iterator[tuple[Shard | None, Path]]:
         if not self.shards_folder.is_dir():
             raise RunError(f"{self.folder}: is missing or incomplete; run the command again")
         for path in sorted(self.shards_folder.glob("block-*.h5")):
             try:
-                shard = None if path.is_symlink() else open_shard(path, self.identity, body=bodies)
+                shard = None if path.is_symlink() else open_shard(path, self.identity, numbers=numbers)
                 yield (shard if shard and self.plan.takes(shard.span) else None), path
             except StoreError:
                 yield None, path

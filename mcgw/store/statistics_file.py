@@ -16,7 +16,6 @@ points are the columns: a row for all whole blocks of surfaces, and one for what
     /drawn/block_numbers_means    float64 (rows, columns, 1)
     /drawn/block_numbers_products float64 (rows, pairs, 1)    sums of products of deviations, all pairs
 
-`digest` is over the scene and ``/drawn``.
 """
 
 from pathlib import Path
@@ -24,32 +23,32 @@ from typing import Any
 
 import numpy as np
 
-from mcgw.ensemble.ensemble import STATISTICS, Ensemble
+from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.labelled import Labelled, Variable
 from mcgw.ensemble.pooled import Pooled
 from mcgw.ensemble.results import BLOCK, joined
-from mcgw.ensemble.summarised import NUMBERS, Summarised
-from mcgw.errors import StoreError
-from mcgw.formats.gate import open_h5
+from mcgw.ensemble.summarised import Summarised
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
-from mcgw.store.layout import body_of_kept, drawn_tables, scales_of
+from mcgw.store.h5_file import Contents, drawn_tables
+from mcgw.store.layout import attributes_of, contents_of_kept, stored_text
 
 _COLUMNS = ("column", "other_column")  # of the covariance
 
 
-def body_of_statistics(ensemble: Ensemble, **attributes: Any) -> tuple[bytes, bytes]:
-    """The file of an ensemble that keeps statistics, and its trailer."""
+def contents_of_statistics(ensemble: Ensemble, **about: Any) -> Contents:
+    """Those of the file of an ensemble that keeps statistics."""
     sums, scene, found = ensemble.sums, ensemble.scene, ensemble.labelled()
     assert isinstance(sums, Summarised)
-    columns, about = np.arange(scene.width), ("1", "quantity and separation")
-    scales = {name: Variable((name,), columns, *about) for name in _COLUMNS}
+    columns, words = np.arange(scene.width), ("1", "quantity and separation")
+    scales = {name: Variable((name,), columns, *words) for name in _COLUMNS}
     order = ", ".join(f"{name} {'x'.join(map(str, shape))}" for name, shape in scene.shapes.items())
     rows = [[ensemble.covariance(one, other) for other in scene.shapes] for one in scene.shapes]
     covariance = Variable(_COLUMNS, np.block(rows), "product of units", f"covariance of {order}")
     labelled = Labelled({**found.variables, "covariance": covariance}, {**found.coordinates, **scales})
-    tables, texts = joined([part.block() for part in sums.parts]), (scene_text(scene, left_out=False),)
-    return body_of_kept(labelled, tables, texts, scene, ensemble.sampler, **attributes)
+    drawn = joined([part.block() for part in sums.parts])
+    attributes = attributes_of(scene, ensemble.sampler, stored_text(scene), **about)
+    return contents_of_kept(labelled, drawn, attributes, scene_text(scene, left_out=False))
 
 
 def read_statistics(path: Path, scene: Scene) -> Summarised:
@@ -60,24 +59,6 @@ def read_statistics(path: Path, scene: Scene) -> Summarised:
     StoreError
         If it cannot be read.
     """
-    try:
-        with open_h5(path) as file:
-            tables = drawn_tables(file)
-        rows = range(len(tables[f"{BLOCK}n"]))
-        parts = tuple(Pooled.from_block(tables, row) for row in rows)
-        if len(tables) != 3 or any(
-            part.products[NUMBERS].shape != (scene.width, scene.width, 1) for part in parts
-        ):
-            raise ValueError("its tables are not those of the scene")
-        return Summarised(scene, parts)
-    except (OSError, RuntimeError, KeyError, IndexError, TypeError, ValueError) as error:
-        raise StoreError(f"{path}: damaged, or of another version ({error})") from None
-
-
-def shapes_of(scene: Scene) -> dict[str, list[int]]:
-    """Shapes that a scene declares of the tables of its statistics."""
-    shapes = {"covariance": [scene.width, scene.width]}
-    shapes |= {name: [len(values)] for name, values in scales_of(scene, 0).items() if name != "surface"}
-    return shapes | {
-        f"{name}_{kind}": [*shape] for name, shape in scene.shapes.items() for kind in STATISTICS
-    }
+    tables = drawn_tables(path)
+    rows = range(len(tables[f"{BLOCK}n"]))
+    return Summarised(scene, tuple(Pooled.from_block(tables, row) for row in rows))

@@ -3,7 +3,7 @@
 The schema (that of `mcgw.store` for many scenes)::
 
     /                     attributes: those of `mcgw.store` (filetype, format, title, scene, seed, sampler,
-                          complete, digest, run, draws, versions, commit, date, cpu, wall_seconds), where
+                          digest, checksum, run, draws, versions, commit, date, cpu, wall_seconds), where
                           scene is what all points come from, and axes (JSON)
     /point                int64 (points,)                 dimension scale: the last axis fastest
     /separation           float64 (separations,)          dimension scale: d/sigma
@@ -19,8 +19,7 @@ and in ``/drawn``, from which the statistics follow::
     /drawn/load_means     float64 (scenes, separations)   of all groups, one after the other
     /drawn/load_products  float64 (pairs, separations)    sums of products of deviations, all pairs of each
 
-`digest` is over the scene, the axes and ``/drawn``; `run` over all that they depend on: scene, axes and the
-versions in `draws`. After the HDF5 data stands a trailer, as in the files of ensembles.
+`run` is over all that they depend on: scene, axes and the versions in `draws`.
 """
 
 from collections.abc import Iterator, Sequence
@@ -34,10 +33,10 @@ from numpy.typing import NDArray
 from mcgw.ensemble.labelled import AXES, Labelled, Variable, axis
 from mcgw.ensemble.pooled import Pooled
 from mcgw.errors import StoreError
-from mcgw.formats.gate import open_h5
 from mcgw.formats.named_files import loads
 from mcgw.store.ensembles import read_attributes
-from mcgw.store.layout import body_of_kept, drawn_digest, drawn_tables
+from mcgw.store.h5_file import Contents, drawn_tables
+from mcgw.store.layout import attributes_of, contents_of_kept
 from mcgw.store.run_folder import RunFolder
 from mcgw.sweeps.axes import Axes
 from mcgw.sweeps.groups import Place
@@ -47,13 +46,12 @@ from mcgw.sweeps.sweep import STATISTICS, Sweep
 Tables = dict[str, NDArray[Any]]
 
 
-def body_of_sweep(record: RunFolder, pooled: Sequence[Pooled], **about: Any) -> tuple[bytes, bytes]:
-    """Make the file of a sweep with more attributes, and its trailer."""
-    sweep = Asked.from_texts(record.text, record.axes).answered(pooled, STATISTICS)
-    texts = {"scene": record.text, "axes": record.axes}
-    return body_of_kept(
-        _by_point(sweep), _drawn(sweep), tuple(texts.values()), record.scene, "", **texts, **about
-    )
+def contents_of_sweep(record: RunFolder, pooled: Sequence[Pooled], **about: Any) -> Contents:
+    """Those of the file of a sweep, with more attributes."""
+    text, axes = record.text, record.axes
+    sweep = Asked.from_texts(text, axes).answered(pooled, STATISTICS)
+    attributes = attributes_of(record.scene, "", text, axes=axes, **about)
+    return contents_of_kept(_by_point(sweep), _drawn(sweep), attributes, text, axes)
 
 
 def _by_point(sweep: Sweep) -> Labelled:
@@ -124,22 +122,13 @@ def open_sweep(path: str | Path, statistics: tuple[str, ...] = STATISTICS) -> Sw
     said = read_attributes(path)
     if "axes" not in said:
         raise StoreError(f"{path}: not the file of a sweep; mcgw.open_ensemble opens it")
-    try:
-        with open_h5(path) as file:
-            drawn = drawn_tables(file)
-        if drawn_digest(drawn, said["scene"], said["axes"]) != said["digest"]:
-            raise StoreError(f"{path}: damaged (digest mismatch of its data)")
-        axes, document = Axes.from_text(said["axes"]), loads(said["scene"])
-        groups = tuple(_groups(drawn))
-        rows = zip(drawn["points"].tolist(), drawn["points"][:, 1:], drawn["weights"], strict=True)
-        places = tuple(Place(g, some[some >= 0], w[some >= 0]) for (g, *_), some, w in rows)
-        of_points = [groups[place.group].n for place in places]
-        return Sweep(axes, Points(document, axes, of_points), places, groups, statistics)
-    except StoreError:
-        raise
-    except (OSError, RuntimeError, KeyError, IndexError, TypeError, ValueError) as error:
-        what = str(error).partition("\n")[0]
-        raise StoreError(f"{path}: damaged, or of another version ({what})") from None
+    drawn = drawn_tables(path)
+    axes, document = Axes.from_text(said["axes"]), loads(said["scene"])
+    groups = tuple(_groups(drawn))
+    rows = zip(drawn["points"].tolist(), drawn["points"][:, 1:], drawn["weights"], strict=True)
+    places = tuple(Place(g, some[some >= 0], w[some >= 0]) for (g, *_), some, w in rows)
+    of_points = [groups[place.group].n for place in places]
+    return Sweep(axes, Points(document, axes, of_points), places, groups, statistics)
 
 
 def _groups(drawn: Tables) -> Iterator[Pooled]:

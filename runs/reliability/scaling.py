@@ -20,7 +20,8 @@ import numpy as np
 import mcgw
 from mcgw.jobs.driver import Signals, drive
 from mcgw.jobs.executors import Jobs
-from mcgw.store.shards import Span, commit_shard
+from mcgw.store.shards import commit_shard
+from mcgw.store.spans import Span
 
 SECONDS, ROWS, COLUMNS = 1.0, 1024, 128
 RUN = hashlib.sha256(b"scaling").hexdigest()
@@ -41,7 +42,7 @@ def commit(folder, first, rows):
     """Commit a shard of random numbers."""
     load = np.random.default_rng(first).random((rows, COLUMNS))
     span = Span(first, rows)
-    return commit_shard(Path(folder) / span.file_name, RUN, span, {"load": load}, SECONDS).digest
+    return commit_shard(Path(folder) / span.file_name, RUN, span, {"load": load}, SECONDS).path.name
 
 
 def wall(executor, blocks, seconds, task=wait_and_commit):

@@ -19,7 +19,7 @@ from mcgw.cli import _parser, main
 from mcgw.store.ensembles import read_attributes
 
 near = pytest.approx
-pytestmark = pytest.mark.usefixtures("blank_figures", "looked_at_here", "one_pressure")
+pytestmark = pytest.mark.usefixtures("blank_figures", "one_pressure")
 
 SCENE = """
 title = "Flags"

@@ -21,7 +21,6 @@ from oracles.overwrites import prepare
 import mcgw
 from mcgw.cli import COMMANDS, main, process
 from mcgw.errors import RunError
-from mcgw.store import ensembles, structure
 
 WORDS = {
     "init": "init demo -o new/i.toml",
@@ -194,7 +193,6 @@ def test_a_pipe_that_breaks_elsewhere_is_an_error(monkeypatch, capsys):
 
 @streams
 def test_a_damaged_file_is_damaged_whoever_reads_it(state, disturbed, make_scene, tmp_path, monkeypatch):
-    monkeypatch.setattr(ensembles, "examine", lambda path: structure.describe(str(path)))
     mcgw.save(mcgw.simulate(make_scene(separations=(2.0,), sampler="tail", n_surfaces=4)), tmp_path / "e.h5")
     data = bytearray((tmp_path / "e.h5").read_bytes())
     data[-1] ^= 1

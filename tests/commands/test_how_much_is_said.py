@@ -8,7 +8,7 @@ from oracles.said import call
 
 from mcgw.cli import COMMANDS
 
-pytestmark = pytest.mark.usefixtures("blank_figures", "looked_at_here")
+pytestmark = pytest.mark.usefixtures("blank_figures")
 
 SCENE = """
 title = "Flags"

@@ -22,13 +22,12 @@ from mcgw.commands.outputs import CSV, Output, check_outputs
 from mcgw.errors import StoreError, in_one_line
 from mcgw.formats.files import rename_over, state_of, together, whole_file, write_whole
 from mcgw.jobs.job import Job
-from mcgw.store import ensembles, structure
 
-pytestmark = pytest.mark.usefixtures("looked_at_here", "one_pressure")
+pytestmark = pytest.mark.usefixtures("one_pressure")
 
 
 @pytest.fixture(scope="module")
-def inputs(tmp_path_factory, looked_at_here):
+def inputs(tmp_path_factory):
     folder = tmp_path_factory.mktemp("inputs")
     prepare(folder)
     return folder
@@ -259,7 +258,6 @@ def test_without_hard_links_a_taken_name_is_refused_as_well(tmp_path, monkeypatc
 def test_a_file_that_appears_while_a_run_draws_is_left_alone(make_scene, tmp_path, monkeypatch):
     from mcgw.jobs import running
 
-    monkeypatch.setattr(ensembles, "examine", structure.examine)
     path, drawn = tmp_path / "e.h5", Job.draw
 
     def slowly(*arguments):
@@ -289,7 +287,6 @@ def test_leftovers_of_the_dead_go_with_the_next_output(here):
 
 
 def test_save_in_python_keeps_what_is_there(make_scene, tmp_path, monkeypatch):
-    monkeypatch.setattr(ensembles, "examine", structure.examine)
     (tmp_path / "f.h5").write_bytes(b"precious")
     with pytest.raises(StoreError, match="not an HDF5 file"):
         mcgw.save(mcgw.simulate(make_scene(n_surfaces=4)), tmp_path / "f.h5")

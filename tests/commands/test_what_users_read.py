@@ -20,7 +20,7 @@ from tables.scene_keys import keys, text_of
 import mcgw
 from mcgw.cli import COMMANDS
 
-pytestmark = pytest.mark.usefixtures("looked_at_here", "one_pressure")
+pytestmark = pytest.mark.usefixtures("one_pressure")
 
 # Command lines in the order in which they find their inputs; y.toml is a scene that yields, there and back.
 LINES = {

@@ -1,7 +1,7 @@
 """Single bits flipped where a file says what its numbers mean: ``python flips.py FOLDER FLIPS``.
 
-Prints one JSON line: for each kind of place the flips tried, those seen when the ensemble is opened, and
-where the others were.
+Prints one JSON line: for each kind of place the flips tried, those seen when the ensemble is opened, those in
+blocks that change nothing, and where the others were.
 """
 
 import json
@@ -12,12 +12,12 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-from harness import ROWS, forked, prepare, scene_of
+from harness import ROWS, forked, made_up, prepare, scene_of
 
 from mcgw.ensemble.simulation import Values
 from mcgw.errors import StoreError
 from mcgw.jobs.running import run
-from mcgw.store import ensembles, structure
+from mcgw.store import ensembles
 from mcgw.store.disk import parts_of
 
 BLOCKS = 5
@@ -45,12 +45,11 @@ def occurrences(data, piece, before=b""):
 
 
 def attribute_bytes(data, attributes):
-    """Offsets of attributes: texts, whose lengths stand before them, and numbers that are there once."""
+    """Offsets of attributes: texts, and numbers that are there once."""
     found = {}
     for name, value in attributes.items():
-        if isinstance(value, str):
-            text = value.encode()
-            found[name] = occurrences(data, text, len(text).to_bytes(8, "little"))
+        if isinstance(value, bytes):
+            found[name] = occurrences(data, value)
         elif isinstance(value, np.generic | np.ndarray) and value.nbytes >= 8 and value.dtype.kind in "iuf":
             places = occurrences(data, value.tobytes())
             found[name] = places if len(places) == value.nbytes else []
@@ -72,17 +71,24 @@ def places_of(file):
     return {f"{file.stem}: {kind}": (file, offsets) for kind, offsets in places.items()}
 
 
-def seen(file, whole):
-    """Whether opening tells: by an error, or because a damaged shard is left out."""
+def found(file, whole):
+    """What comes of a flip: "seen" as an error or a lost shard; "harmless" where HDF5 left room."""
 
     def look():
         sys.stderr = open(os.devnull, "w")  # noqa: SIM115
         try:
-            return int(ensembles.open_ensemble(file).n_surfaces < whole)
-        except (StoreError, structure.RefusedError, OSError, RuntimeError, ValueError, KeyError, TypeError):
+            ensemble = ensembles.open_ensemble(file)
+            if ensemble.n_surfaces < whole:
+                return 1
+            for shard in getattr(ensemble.sums, "shards", ()):
+                right, there = made_up(None, shard.span), shard.tables()
+                if any(not np.array_equal(there[name], right[name]) for name in right):
+                    return 0
+            return 2
+        except (StoreError, OSError, RuntimeError, ValueError, KeyError, TypeError):
             return 1
 
-    return forked(look) != 0
+    return {0: "unseen", 2: "harmless"}.get(forked(look), "seen")
 
 
 def main(folder, flips):
@@ -94,7 +100,7 @@ def main(folder, flips):
     for path in (parts_of(begun) / "run.toml", *shards):
         places[path.name] = (path, range(path.stat().st_size))
     held = {begun: ensembles.open_ensemble(begun).n_surfaces}
-    counted = {kind: {"flips": 0, "seen": 0, "unseen": []} for kind in places}
+    counted = {kind: {"flips": 0, "seen": 0, "harmless": 0, "unseen": []} for kind in places}
     for i in range(flips):
         kind = list(places)[i % len(places)]
         path, offsets = places[kind]
@@ -104,7 +110,10 @@ def main(folder, flips):
         data[at] ^= 1 << dice.randrange(8)
         path.write_bytes(data)
         counted[kind]["flips"] += 1
-        if seen(opened, held.get(opened, 0)):
+        what = found(opened, held.get(opened, 0))
+        if what == "harmless" and opened == begun:  # elsewhere the places are of what counts
+            counted[kind]["harmless"] += 1
+        elif what == "seen":
             counted[kind]["seen"] += 1
         else:
             counted[kind]["unseen"].append(at)

@@ -261,7 +261,7 @@ def test_every_dataset_of_a_sweep_is_described(tmp_path):
     quantities = {f"{name}_" for name in scene.quantities}
     with h5py.File(tmp_path / "a.h5") as file:
         found = set(file.attrs) | set(file) | set(file["drawn"])
-        assert file.attrs["filetype"] == "mcgw-results"
+        assert file.attrs["filetype"] == b"mcgw-results"
     told = {name for name in found if name.startswith(tuple(quantities))}  # as those of the load
     assert found - told - words == set()
     assert {"load_mean", "load_std"} <= told

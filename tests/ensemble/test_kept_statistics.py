@@ -5,13 +5,11 @@ from fractions import Fraction
 from functools import cache
 from itertools import pairwise
 
-import h5py
 import numpy as np
 import pytest
 import scipy.stats
 from conftest import SURFACE
 from oracles.memory_growth import peak_growth
-from oracles.new_trailer import trailer_again
 
 import mcgw
 from mcgw.cli import main
@@ -205,27 +203,6 @@ def test_single_surfaces_are_refused_with_what_to_do(tmp_path, monkeypatch):
     monkeypatch.setattr("mcgw.machine.memory.memory_available", lambda: 2**28)
     with pytest.raises(StoreError, match="covariances between 3200 numbers needs"):
         mcgw.simulate(scene(separations=np.linspace(0, 4, 800), n_surfaces=2, keep="statistics"))
-
-
-@pytest.mark.parametrize(
-    "change",
-    [
-        lambda file: file.__delitem__("drawn"),
-        lambda file: file.__delitem__("drawn/block_n"),
-        lambda file: file.__delitem__("drawn/block_numbers_means"),
-        lambda file: file.__setitem__("drawn/block_more", np.ones(1)),
-        lambda file: file.move("drawn/block_n", "drawn/n"),
-    ],
-)
-def test_joined_blocks_that_are_not_as_they_must_be_are_one_line(change, tmp_path):
-    """Under a trailer that fits: who made the file meant them so."""
-    path = tmp_path / "a.h5"
-    mcgw.run(scene(n_surfaces=10), path, keep="statistics")
-    with h5py.File(path, "r+") as file:
-        change(file)
-    trailer_again(path)
-    with pytest.raises(StoreError, match=r"a\.h5: damaged, or of another version \(.+\)$"):
-        mcgw.open_ensemble(path)
 
 
 @pytest.mark.slow

@@ -9,7 +9,7 @@ from dataclasses import replace
 import h5py
 import numpy as np
 import pytest
-from oracles.new_trailer import trailer_again
+from oracles.sealed_again import sealed_again
 
 import mcgw
 from analytic.at_load import Moments
@@ -21,7 +21,6 @@ from mcgw.exports.programs import PROGRAMS
 from mcgw.exports.table_text import UNIT_SYSTEMS, heading, in_units, table_text
 from mcgw.exports.writing import surfaces_for
 from mcgw.jobs.job import Job
-from mcgw.store import structure
 from mcgw.store.ensembles import read_attributes
 from mcgw.store.run_folder import RunFolder
 
@@ -390,7 +389,7 @@ def test_command(tmp_path, monkeypatch, capsys):
 
 
 @pytest.fixture
-def made(make_scene, tmp_path, looked_at_here):
+def made(make_scene, tmp_path):
     """The file of an ensemble with a title that is a command."""
     mcgw.save(mcgw.simulate(make_scene(n_surfaces=8, title=LIVE)), tmp_path / "e.h5")
     return tmp_path / "e.h5"
@@ -416,15 +415,14 @@ def test_names_that_a_program_cannot_be_told_are_refused(make_scene, name, tmp_p
 def test_texts_of_a_file_are_one_line_each(made, name):
     with h5py.File(made, "r+") as file:
         file.attrs[name] = "0" * 64 + "\n  complete      yes\n*STEP"
-    trailer_again(made)
-    with pytest.raises(structure.RefusedError, match=f"attribute {name}: not one line of text"):
-        structure.describe(str(made))
+    with pytest.raises(mcgw.StoreError, match=f"attribute {name}: not one line of text"):
+        mcgw.open_ensemble(made)
 
 
 def test_the_digest_of_a_file_is_one(made):
     with h5py.File(made, "r+") as file:
         file.attrs["digest"] = "checked and found right"
-    trailer_again(made)
+    sealed_again(made)
     with pytest.raises(StoreError, match="its digest is invalid"):
         mcgw.open_ensemble(made)
 

@@ -18,9 +18,8 @@ from mcgw.cli import main
 from mcgw.ensemble.simulation import Values
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import state_of
-from mcgw.jobs import merging
 from mcgw.jobs.job import Job
-from mcgw.store import ensembles, lock
+from mcgw.store import ensembles, lock, saving
 from mcgw.store.disk import parts_of
 from mcgw.store.lock import LockedError, locked
 from mcgw.store.place import tidy
@@ -31,7 +30,7 @@ SIZE = 16
 
 
 @pytest.fixture(autouse=True)
-def _small_blocks_and_no_patience(looked_at_here, monkeypatch):
+def _small_blocks_and_no_patience(monkeypatch):
     monkeypatch.setattr(Values, "rows", SIZE)
     monkeypatch.setattr(lock, "PATIENCE", 0.0)
 
@@ -173,14 +172,14 @@ def test_drawn_surfaces_are_kept_when_fewer_are_asked_for(scene, path):
 
 def test_a_file_that_changes_while_it_is_extended_is_left_alone(scene, path, monkeypatch):
     mcgw.run(scene, path)
-    merged = merging.merge_into
+    write = saving.write
 
     def replaced(*words):
-        merged(*words)
+        write(*words)
         path.unlink()
         path.write_bytes(b"precious")
 
-    monkeypatch.setattr(merging, "merge_into", replaced)
+    monkeypatch.setattr(saving, "write", replaced)
     with pytest.raises(RunError, match="another file now has this name"):
         mcgw.run(replace(scene, n_surfaces=3 * SIZE), path)
     assert path.read_bytes() == b"precious"

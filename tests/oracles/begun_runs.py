@@ -7,8 +7,7 @@ import pytest
 import mcgw
 from mcgw.ensemble.simulation import Values
 from mcgw.ensemble.summarised import Statistics
-from mcgw.errors import StoreError
-from mcgw.store import chunks, ensembles, structure
+from mcgw.store import chunks, ensembles
 from mcgw.store.disk import parts_of
 
 SIZE, SURFACES = 16, 100  # seven blocks, the last one short
@@ -18,23 +17,10 @@ class HaltError(Exception):
     """Stands for whatever ends a run."""
 
 
-def look_here(patch):
-    """Files are looked at in this process: children take most of the time."""
-
-    def examined(path):
-        try:
-            return structure.describe(str(path))
-        except OSError as error:
-            raise StoreError(f"{path}: {error}") from None
-
-    patch.setattr(ensembles, "examine", examined)
-
-
 def in_small_blocks(patch, size=SIZE):
     for kept in (Values, Statistics):
         patch.setattr(kept, "rows", size)
     patch.setattr(chunks, "CHUNK_ROWS", size // 2)
-    look_here(patch)
 
 
 def settle():

@@ -16,7 +16,7 @@ from mcgw import run, sweeps
 from mcgw.cli import main
 from mcgw.ensemble.results import MemoryResults
 
-pytestmark = pytest.mark.usefixtures("blank_figures", "looked_at_here")
+pytestmark = pytest.mark.usefixtures("blank_figures")
 
 QUANTITIES = ("conductance", "load", "contacts", "area", "stiffness")  # in no usual order
 H = (0.5, 0.0, 2.0, 1.0)

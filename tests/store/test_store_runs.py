@@ -10,11 +10,10 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-import h5py
 import numpy as np
 import pytest
 from oracles.begun_runs import SIZE, SURFACES, begun, digest, halted, in_small_blocks
-from oracles.new_trailer import trailer_again
+from oracles.flipped import flip_a_number
 from oracles.said import without_notes
 
 import mcgw
@@ -24,11 +23,11 @@ from mcgw.formats.files import state_of
 from mcgw.jobs import merging
 from mcgw.jobs.driver import part_of
 from mcgw.jobs.job import Job, commit_block
-from mcgw.store import ensembles, layout
+from mcgw.store import ensembles
 from mcgw.store.disk import parts_of
-from mcgw.store.place import write_body
 from mcgw.store.run_folder import RunFolder
-from mcgw.store.shards import Plan, Span
+from mcgw.store.saving import contents_of, put
+from mcgw.store.spans import Plan, Span
 
 HERE = Path(__file__).parents[1]
 
@@ -86,23 +85,6 @@ def test_going_on_draws_each_missing_block_once(scene, tmp_path, drawn, by, keep
     assert sorted(drawn) == [48, 64, 96]
 
 
-@pytest.mark.parametrize("bytes_at_a_time", [1, 5_000, 2**23])
-def test_a_file_is_read_again_in_pieces_that_make_the_whole(
-    make_scene, tmp_path, monkeypatch, bytes_at_a_time
-):
-    """Each row once, in the piece of its surface."""
-    scene = make_scene(sampler="cells", n_surfaces=50)
-    whole = mcgw.run(scene, tmp_path / "e.h5")
-    monkeypatch.setattr(layout, "_PIECE", bytes_at_a_time)
-    with h5py.File(tmp_path / "e.h5", "r") as file:
-        pieces = list(layout.file_pieces(file))
-    assert [span.first for span, _ in pieces[1:]] == [span.stop for span, _ in pieces[:-1]]
-    assert (len(pieces) > 1) == (bytes_at_a_time < 2**23)
-    for name in ("load", "contacts"):
-        read = np.concatenate([arrays[name] for _, arrays in pieces])
-        np.testing.assert_array_equal(read, whole.sums.read(name, 0, None))
-
-
 def test_n_surfaces_is_the_total(scene, tmp_path, expected, drawn):
     """Extended in steps that are no multiple of a block, once in the middle of a run; each is drawn once."""
     path = tmp_path / "e.h5"
@@ -133,9 +115,7 @@ def test_damage_is_put_aside_and_drawn_again(scene, tmp_path, expected):
     path = tmp_path / "e.h5"
     halted(scene, path, 64)
     shards = sorted(parts_of(path).glob("shards/*.h5"))
-    data = bytearray(shards[0].read_bytes())
-    data[1000] ^= 1
-    shards[0].write_bytes(data)  # a flipped bit
+    flip_a_number(shards[0])
     shards[1].write_bytes(shards[1].read_bytes()[:-700])  # truncated
     shards[2].write_bytes(shards[3].read_bytes())  # another block
     (shards[3].parent / ".left.tmp").write_bytes(b"half")
@@ -213,19 +193,23 @@ def test_statistics_of_a_missing_block_are_not_merged(scene, tmp_path, monkeypat
     assert not path.exists()
 
 
-def test_a_file_that_appears_while_one_is_made_is_left_alone(tmp_path):
-    path = tmp_path / "e.h5"
-    write_body(path, (b"one", b"two"), None)
-    before = state_of(path)
-    with pytest.raises(StoreError, match=r"e\.h5: File exists; it was not changed; choose another"):
-        write_body(path, (b"three", b""), None)
-    assert path.read_bytes() == b"onetwo"
-    write_body(path, (b"three", b"four"), before)
-    assert path.read_bytes() == b"threefour"
-    with pytest.raises(StoreError, match="another file now has this name; it was not changed"):
-        write_body(path, (b"five", b""), before)
-    with pytest.raises(RunError, match=r"cannot be written \(No such file or directory\); free some space"):
-        write_body(tmp_path / "no" / "e.h5", (b"", b""), None)
+def test_a_file_that_appears_while_one_is_made_is_left_alone(scene, tmp_path):
+    path, there = tmp_path / "e.h5", parts_of(tmp_path / "e.h5")
+    there.mkdir()
+    contents = contents_of(mcgw.simulate(scene), run="r", draws="d", wall_seconds=1.0)
+    put(path, contents, None)
+    before, data = state_of(path), path.read_bytes()
+    with pytest.raises(RunError, match=r"e\.h5: File exists; it was not changed, .* choose another"):
+        put(path, contents, None)
+    assert path.read_bytes() == data
+    put(path, contents, before)
+    assert state_of(path) != before
+    with pytest.raises(RunError, match="another file now has this name; it was not changed"):
+        put(path, contents, before)
+    assert list(there.iterdir()) == []
+    there.rmdir()
+    with pytest.raises(RunError, match=r"cannot be written \(No such file or directory\); is the disk full"):
+        put(path, contents, None)
 
 
 def test_progress_of_a_run_goes_on_from_what_it_holds(scene, tmp_path):
@@ -277,15 +261,6 @@ def test_planted_links_are_not_followed(scene, tmp_path):
     (tmp_path / "f.h5").symlink_to(elsewhere / "victim")
     with pytest.raises(StoreError, match="is not a regular file"):
         mcgw.run(scene, tmp_path / "f.h5")
-
-
-def test_changed_data_with_a_good_trailer_are_noticed(scene, tmp_path):
-    path = tmp_path / "e.h5"
-    mcgw.run(scene, path)
-    with h5py.File(path, "r+") as file:
-        file["load"][3, 1] *= 1 + 1e-15
-    trailer_again(path)
-    assert ensembles.verify(path)[0] == "digest mismatch of its data"
 
 
 def test_room_is_asked_for_what_is_not_there_yet(scene, tmp_path, monkeypatch):
@@ -413,7 +388,7 @@ def test_killed_at_a_block_it_goes_on(scene, tmp_path, expected, drawn):
 
 FULL = [
     ("jobs.job.commit_shard", "finished blocks are kept"),
-    ("jobs.merging.merge_into", "cannot be merged"),
+    ("store.saving.write", "is the disk full?"),
 ]
 
 
@@ -427,7 +402,7 @@ def test_a_full_disk_is_one_line_and_the_run_completes_later(
 
     def full(*arguments):
         calls.append(arguments)
-        if len(calls) == 3 or "merge" in where:
+        if len(calls) == 3 or "saving" in where:
             raise OSError(errno.ENOSPC, "No space left on device", str(path))
         return work(*arguments)
 
