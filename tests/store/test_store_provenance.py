@@ -26,7 +26,7 @@ GOLDEN = Path(__file__).parents[1] / "golden_samplers.json"
 def test_what_is_recorded(make_scene, tmp_path):
     mcgw.run(make_scene(n_surfaces=2), tmp_path / "a.h5")
     with h5py.File(tmp_path / "a.h5") as file:
-        known = dict(file.attrs)
+        known = {key: x.decode() if isinstance(x, bytes) else x for key, x in file.attrs.items()}
     for package in ("python", "mcgw", "numpy", "scipy", "numba", "h5py"):
         assert package in known["versions"]
     for key in ("commit", "date", "cpu", "wall_seconds", "sampler", "seed", "run", "draws"):
