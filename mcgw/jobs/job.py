@@ -12,7 +12,7 @@ from itertools import groupby
 from operator import itemgetter
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from analytic import PiecewiseSeries
 from analytic.arrays import hold
@@ -30,9 +30,8 @@ from mcgw.store.ensembles import described
 from mcgw.store.h5_file import Contents
 from mcgw.store.identity import difference, identity_of, now, versions
 from mcgw.store.layout import stored_text
-from mcgw.store.place import finished, recorded_scene, with_recorded_seed
+from mcgw.store.place import contents_of, finished, recorded_scene, with_recorded_seed
 from mcgw.store.run_folder import RunFolder
-from mcgw.store.saving import contents_of
 from mcgw.store.shards import commit_shard
 from mcgw.store.spans import Plan, Span
 
@@ -160,16 +159,12 @@ class Job:
             for one, (_, some) in zip(self.reducers, groups, strict=True)
         ]
         run = self.record
+        about = {"run": run.identity, "draws": run.drawn_with, "wall_seconds": seconds}
         if run.axes:
             from mcgw.sweeps.file import contents_of_sweep  # of which most runs are none
 
-            return contents_of_sweep(run, held, **self.about(seconds))
-        return contents_of(Ensemble(run.scene, run.sampler, held[0]), **self.about(seconds))
-
-    def about(self, seconds: float) -> dict[str, Any]:
-        """Attributes of the file, besides those of its scene."""
-        run = self.record
-        return {"run": run.identity, "draws": run.drawn_with, "wall_seconds": seconds}
+            return contents_of_sweep(run, held, **about)
+        return contents_of(Ensemble(run.scene, run.sampler, held[0]), **about)
 
 
 def _asked(record: RunFolder) -> "Asked":

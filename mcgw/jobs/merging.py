@@ -19,9 +19,8 @@ from mcgw.store.ensembles import described
 from mcgw.store.h5_file import Contents, Rows, pieces_of
 from mcgw.store.layout import contents_of_values
 from mcgw.store.lock import locked
-from mcgw.store.place import tidy
+from mcgw.store.place import put, tidy
 from mcgw.store.run_folder import RunFolder
-from mcgw.store.saving import put
 
 if TYPE_CHECKING:
     from mcgw.ensemble.ensemble import Ensemble
@@ -132,9 +131,8 @@ def _merged(job: Job, check: Callable[[], None]) -> Contents:
     if run.plan.whole:
         return job.contents(blocks(), seconds)
     rows = partial(Rows, run.plan.total)
-    return contents_of_values(
-        run.scene, run.sampler, lambda name: rows(partial(pieces, name)), **job.about(seconds)
-    )
+    about = {"run": run.identity, "draws": run.drawn_with, "wall_seconds": seconds}
+    return contents_of_values(run.scene, run.sampler, lambda name: rows(partial(pieces, name)), **about)
 
 
 def _before(run: RunFolder) -> tuple[int, list[Tables], float]:

@@ -20,9 +20,8 @@ from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import Scene
 from mcgw.store.ensembles import FileResults, open_ensemble
 from mcgw.store.lock import locked
-from mcgw.store.place import drop_leftovers, tidy
+from mcgw.store.place import drop_leftovers, put, tidy
 from mcgw.store.run_folder import RunFolder
-from mcgw.store.saving import put
 from mcgw.store.spans import Span
 
 _ROUNDS = 3  # attempts to merge, if shards turn out damaged

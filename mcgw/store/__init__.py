@@ -48,11 +48,11 @@ are merged at the end and then removed. What each mechanism is for:
 ``disk``         HDF5 may crash on a full disk, so it never sees its errors
 ``layout``       what a file of the schema above holds; ``statistics_file``: of scenes that keep no surface
 ``ensembles``    files and runs in progress opened, and verified
-``saving``       a file is written under another name, read back, and renamed
 ``spans``        which surfaces are drawn together, of a run or of all groups of a sweep
 ``shards``       a killed run loses at most the blocks in hand; workers elsewhere share no open file
 ``run_folder``   a run goes on only with what it was begun with: scene, sampler, versions
 ``identity``     which scenes, samplers and versions those are; and who made a file
 ``lock``         two processes never write one file; shared by jobs that each make a share
-``place``        what is there already: surfaces, a seed, and leftovers of the dead, which are cleared
+``place``        what is there already, leftovers of the dead, which are cleared, and a new file: written
+                 under another name, read back where blocks go with it, and renamed
 """

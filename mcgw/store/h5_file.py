@@ -28,7 +28,7 @@ from mcgw.formats.gate import open_h5
 from mcgw.formats.named_files import open_regular
 from mcgw.store.chunks import empty_table
 from mcgw.store.disk import SteadyFile
-from mcgw.store.structure import GROUP, add_attributes, attributes_in, table_names
+from mcgw.store.structure import GROUP, attributes_in, table_names
 
 FILETYPE, BLOCK_TYPE, FORMAT = "mcgw-results", "mcgw-block", [3, 0]
 LARGE = 2**30  # bytes of a file, from which on its numbers are compared with their checksums on request alone
@@ -133,17 +133,30 @@ def _fill(file: h5py.File, contents: Contents, raw: SteadyFile, go_on: Callable[
                 go_on()
         if first != n:
             raise StoreError(f"{name}: {first} rows, not {n}")
-        about = {**(one.about if one.dims else {}), "sha256": sha.hexdigest()}
-        add_attributes(data, about)
+        about = {"units": one.units, "long_name": one.long_name, "sha256": sha.hexdigest()}
+        _add_attributes(data, {key: text for key, text in about.items() if text})
         if one.dims == (name,):
             data.make_scale(name)
         for place, dim in enumerate(one.dims if one.dims != (name,) else ()):
             data.dims[place].attach_scale(file[dim])
-        heads[name] = [data.dtype.kind, data.shape, *(about.get(key, "") for key in _ABOUT)]
+        heads[name] = [data.dtype.kind, data.shape, *about.values()]
     lines = [f"{name} {head[1][0]} {head[-1]}" for name, head in sorted(heads.items())]
     digest = hashlib.sha256("\n".join([contents.of, *lines]).encode()).hexdigest()
     attributes = {**contents.attributes, "digest": digest}
-    add_attributes(file, {**attributes, "checksum": _checksum(attributes, heads)})
+    _add_attributes(file, {**attributes, "checksum": _checksum(attributes, heads)})
+
+
+def _add_attributes(item: "h5py.File | h5py.Dataset", attributes: Mapping[str, Any]) -> None:
+    """Give a file or a table attributes.
+
+    Texts have their length: those of any length lie in a heap without checksums, where a changed bit may keep
+    HDF5 from coming back.
+    """
+    for name, value in attributes.items():
+        if isinstance(value, str):
+            data = value.encode()
+            value = np.array(data, h5py.string_dtype("utf-8", max(len(data), 1)))
+        item.attrs[name] = value
 
 
 def _sha_of(table: "NDArray[Any] | h5py.Dataset") -> Any:

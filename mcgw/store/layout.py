@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from mcgw.ensemble.labelled import Labelled, Variable, axis
+from mcgw.ensemble.labelled import AXES, Labelled, Variable
 from mcgw.ensemble.results import Tables
 from mcgw.errors import StoreError
 from mcgw.scene.scene import Scene
@@ -18,8 +18,8 @@ from mcgw.store.structure import GROUP, MOST_TEXT
 def contents_of_values(scene: Scene, sampler: str, values: Callable[[str], Any], **about: Any) -> Contents:
     """Those of a scene of which the values of every surface are kept: arrays, or `Rows`."""
     variables = {
-        "surface": axis("surface", np.arange(scene.n_surfaces)),
-        "separation": axis("separation", scene.separations),
+        "surface": Variable(("surface",), np.arange(scene.n_surfaces), *AXES["surface"]),
+        "separation": Variable(("separation",), np.array(scene.separations), *AXES["separation"]),
     }
     for name, shape in sorted(scene.shapes.items()):
         q = scene.quantity(name)

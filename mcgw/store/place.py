@@ -1,17 +1,22 @@
-"""What lies at the place of a file: surfaces, a seed, and what the dead left behind."""
+"""What lies at the place of a file: surfaces, a seed, what the dead left behind; and a new file."""
 
+from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
+from typing import Any
 
-from mcgw.errors import StoreError
-from mcgw.formats.files import remove_stale
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.errors import RunError, StoreError
+from mcgw.formats.files import State, remove_stale, whole_file
 from mcgw.scene.fields import LeftOut
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from, scene_text
 from mcgw.store.disk import parts_of
-from mcgw.store.ensembles import described, read_attributes
-from mcgw.store.h5_file import look
+from mcgw.store.ensembles import described, read_attributes, verify
+from mcgw.store.h5_file import Contents, look, write
 from mcgw.store.identity import difference, identity_of, versions
+from mcgw.store.layout import contents_of_values
 from mcgw.store.lock import locked
 from mcgw.store.run_folder import RunFolder, remove_run
 
@@ -60,6 +65,49 @@ def finished(path: Path, scene: Scene, sampler: str) -> int:
     if there.n_surfaces < scene.n_surfaces:
         look(path)  # all of it: it is about to be copied
     return there.n_surfaces
+
+
+def contents_of(ensemble: Ensemble, **about: Any) -> Contents:
+    """Those of the file of an ensemble in memory, with more attributes."""
+    scene, sums = ensemble.scene, ensemble.sums
+    if scene.keep == "statistics":
+        from mcgw.store.statistics_file import contents_of_statistics  # for those scenes alone
+
+        return contents_of_statistics(ensemble, **about)
+    return contents_of_values(scene, ensemble.sampler, partial(sums.read, start=0, stop=None), **about)
+
+
+def put(
+    path: Path, contents: Contents, before: State | None, go_on: Callable[[], None] | None = None
+) -> None:
+    """Write a file in one atomic step over what `before` says that was there. With the lock.
+
+    With `go_on`, of a file of many blocks, it is read back before those go.
+
+    Raises
+    ------
+    RunError
+        If something else has this name by now, or the disk does not take it.
+    """
+    try:
+        with whole_file(path, expected=before, folder=parts_of(path)) as temporary:
+            write(temporary, contents, go_on)
+            if go_on and (problem := verify(temporary)[0]):
+                raise RunError(f"{path}: was not written correctly ({problem}); is the disk failing?")
+    except FileExistsError as error:
+        raise RunError(
+            f"{path}: {error.strerror}; it was not changed, and finished blocks are kept: move that file "
+            "away and repeat the command, or choose another -o"
+        ) from None
+    except (OSError, RuntimeError) as error:
+        if isinstance(error, RunError):
+            raise
+        said = error.strerror if isinstance(error, OSError) else None
+        why = said or next(iter(str(error).splitlines()), type(error).__name__)
+        raise RunError(
+            f"{path}: cannot be written ({why}); is the disk full? Finished blocks are kept; free some space "
+            "and repeat the command"
+        ) from None
 
 
 def tidy(path: Path) -> None:

@@ -1,64 +1,16 @@
-"""A file of results put in its place: written under another name, read back, renamed."""
+"""Ensembles in memory, saved to files."""
 
-from collections.abc import Callable
-from functools import partial
 from pathlib import Path
-from typing import Any
 
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.errors import RunError, StoreError
-from mcgw.formats.files import State, check_output, state_of, whole_file
+from mcgw.errors import StoreError
+from mcgw.formats.files import check_output, state_of
 from mcgw.scene.arguments import check_object
 from mcgw.store.disk import parts_of
-from mcgw.store.ensembles import open_ensemble, verify
-from mcgw.store.h5_file import Contents, write
+from mcgw.store.ensembles import open_ensemble
 from mcgw.store.identity import identity_of, versions
-from mcgw.store.layout import contents_of_values
 from mcgw.store.lock import locked
-from mcgw.store.place import finished
-
-
-def contents_of(ensemble: Ensemble, **about: Any) -> Contents:
-    """Those of the file of an ensemble in memory, with more attributes."""
-    scene, sums = ensemble.scene, ensemble.sums
-    if scene.keep == "statistics":
-        from mcgw.store.statistics_file import contents_of_statistics  # for those scenes alone
-
-        return contents_of_statistics(ensemble, **about)
-    return contents_of_values(scene, ensemble.sampler, partial(sums.read, start=0, stop=None), **about)
-
-
-def put(
-    path: Path, contents: Contents, before: State | None, go_on: Callable[[], None] | None = None
-) -> None:
-    """Write a file in one atomic step over what `before` says that was there. With the lock.
-
-    With `go_on`, of a file of many blocks, it is read back before those go.
-
-    Raises
-    ------
-    RunError
-        If something else has this name by now, or the disk does not take it.
-    """
-    try:
-        with whole_file(path, expected=before, folder=parts_of(path)) as temporary:
-            write(temporary, contents, go_on)
-            if go_on and (problem := verify(temporary)[0]):
-                raise RunError(f"{path}: was not written correctly ({problem}); is the disk failing?")
-    except FileExistsError as error:
-        raise RunError(
-            f"{path}: {error.strerror}; it was not changed, and finished blocks are kept: move that file "
-            "away and repeat the command, or choose another -o"
-        ) from None
-    except (OSError, RuntimeError) as error:
-        if isinstance(error, RunError):
-            raise
-        said = error.strerror if isinstance(error, OSError) else None
-        why = said or next(iter(str(error).splitlines()), type(error).__name__)
-        raise RunError(
-            f"{path}: cannot be written ({why}); is the disk full? Finished blocks are kept; free some space "
-            "and repeat the command"
-        ) from None
+from mcgw.store.place import contents_of, finished, put
 
 
 def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> Ensemble:

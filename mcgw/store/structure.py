@@ -6,7 +6,6 @@ whoever wrote the file.
 """
 
 import math
-from collections.abc import Mapping
 from typing import Any
 
 import h5py
@@ -56,19 +55,6 @@ def _hard(group: h5py.Group, prefix: str) -> list[str]:
         if not isinstance(group.get(name, getlink=True), h5py.HardLink):
             raise StoreError(f"{prefix}{name}: a link to another place")
     return [prefix + name for name in group]
-
-
-def add_attributes(item: "h5py.File | h5py.Dataset", attributes: Mapping[str, Any]) -> None:
-    """Give a file or a table attributes.
-
-    Texts have their length: those of any length lie in a heap without checksums, where a changed bit may keep
-    HDF5 from coming back.
-    """
-    for name, value in attributes.items():
-        if isinstance(value, str):
-            data = value.encode()
-            value = np.array(data, h5py.string_dtype("utf-8", max(len(data), 1)))
-        item.attrs[name] = value
 
 
 def attributes_in(file: h5py.File) -> dict[str, Any]:

@@ -19,7 +19,7 @@ from mcgw.ensemble.simulation import Values
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import state_of
 from mcgw.jobs.job import Job
-from mcgw.store import ensembles, lock, saving
+from mcgw.store import ensembles, lock, place
 from mcgw.store.disk import parts_of
 from mcgw.store.lock import LockedError, locked
 from mcgw.store.place import tidy
@@ -172,14 +172,14 @@ def test_drawn_surfaces_are_kept_when_fewer_are_asked_for(scene, path):
 
 def test_a_file_that_changes_while_it_is_extended_is_left_alone(scene, path, monkeypatch):
     mcgw.run(scene, path)
-    write = saving.write
+    write = place.write
 
     def replaced(*words):
         write(*words)
         path.unlink()
         path.write_bytes(b"precious")
 
-    monkeypatch.setattr(saving, "write", replaced)
+    monkeypatch.setattr(place, "write", replaced)
     with pytest.raises(RunError, match="another file now has this name"):
         mcgw.run(replace(scene, n_surfaces=3 * SIZE), path)
     assert path.read_bytes() == b"precious"

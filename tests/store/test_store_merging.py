@@ -14,7 +14,7 @@ import mcgw
 from mcgw.ensemble.simulation import Values
 from mcgw.errors import RunError, StoppedError
 from mcgw.jobs import merging
-from mcgw.store import chunks, saving
+from mcgw.store import chunks, place
 from mcgw.store.disk import parts_of
 
 ROWS, COLUMNS = 40, 5
@@ -117,7 +117,7 @@ def test_a_damaged_chunk_is_never_copied_into_the_file(scene, tmp_path, expected
 
 def test_numbers_that_go_to_another_place_are_seen(scene, tmp_path, monkeypatch):
     """Two chunks in the wrong order, each of them intact."""
-    path, write = tmp_path / "e.h5", saving.write
+    path, write = tmp_path / "e.h5", place.write
     begun(scene, path)
 
     def swapped(temporary, *words):
@@ -128,7 +128,7 @@ def test_numbers_that_go_to_another_place_are_seen(scene, tmp_path, monkeypatch)
             for row, part in zip((40, 32), parts, strict=True):
                 area.write_direct_chunk((row, 0), part)
 
-    monkeypatch.setattr(saving, "write", swapped)
+    monkeypatch.setattr(place, "write", swapped)
     with pytest.raises(RunError, match="was not written correctly"):
         mcgw.merge(path)
     assert not path.exists()

@@ -25,8 +25,8 @@ from mcgw.jobs.driver import part_of
 from mcgw.jobs.job import Job, commit_block
 from mcgw.store import ensembles
 from mcgw.store.disk import parts_of
+from mcgw.store.place import contents_of, put
 from mcgw.store.run_folder import RunFolder
-from mcgw.store.saving import contents_of, put
 from mcgw.store.spans import Plan, Span
 
 HERE = Path(__file__).parents[1]
@@ -388,7 +388,7 @@ def test_killed_at_a_block_it_goes_on(scene, tmp_path, expected, drawn):
 
 FULL = [
     ("jobs.job.commit_shard", "finished blocks are kept"),
-    ("store.saving.write", "is the disk full?"),
+    ("store.place.write", "is the disk full?"),
 ]
 
 
@@ -402,7 +402,7 @@ def test_a_full_disk_is_one_line_and_the_run_completes_later(
 
     def full(*arguments):
         calls.append(arguments)
-        if len(calls) == 3 or "saving" in where:
+        if len(calls) == 3 or "place" in where:
             raise OSError(errno.ENOSPC, "No space left on device", str(path))
         return work(*arguments)
 
