@@ -137,12 +137,13 @@ def _refuse_ensemble(output: Output) -> None:
 
 
 def _holds_results(path: Path) -> bool:
-    """Whether an HDF5 file says that it holds results, whoever wrote it last."""
+    """Whether an HDF5 file says that it holds results, or is too damaged to say what it holds."""
     from mcgw.formats.gate import opened
 
     with suppress(Exception), opened(path) as file:  # HDF5 reports damage as any of a dozen exceptions
-        return str(file.attrs.get("filetype", "")).startswith("mcgw-results")
-    return False
+        said = file.attrs.get("filetype", "")
+        return (said.decode() if isinstance(said, bytes) else str(said)).startswith("mcgw-results")
+    return True
 
 
 def table_output(path: Path | None) -> list[Output]:

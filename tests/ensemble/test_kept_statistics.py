@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import scipy.stats
 from conftest import SURFACE
+from oracles.flipped import flip_a_number
 from oracles.memory_growth import peak_growth
 
 import mcgw
@@ -158,9 +159,7 @@ def test_the_file_is_read_by_others_and_says_when_it_is_damaged(tmp_path):
         assert file["covariance"].long_name == f"covariance of {order}"
     assert e.to_dataframe()["load_std"].tolist() == e.std("load").tolist()
     assert verify(path)[0] == ""
-    data = bytearray(path.read_bytes())
-    data[len(data) // 2] ^= 1
-    path.write_bytes(data)
+    flip_a_number(path, "drawn/block_numbers_means")
     assert verify(path)[0] != ""
 
 
