@@ -2,126 +2,90 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
 from scipy.special import ndtr, ndtri
 
-from analytic.arrays import Array, Ints
-from analytic.distribution.distribution import Counted, Law, Table
-from analytic.distribution.sums import OneAsperity, resolved, shares, shares_at
+from analytic.arrays import Array
+from analytic.distribution.distribution import Counted, Law
+from analytic.distribution.sums import OneAsperity, shares, shares_at
 from analytic.inversion import LOWEST
 from analytic.measured_summits import MeasuredHeights
 from analytic.quantities import quantity_of
 from analytic.summits import Radii
 
-_POINTS = 2**14, 5 * 2**12  # of a lattice, and of another one
-_CELLS = 6144, 10_240  # of the heights, at least
-_WIDE = 15  # medians of the values, or values, in which are as many cells
-_MOST = 64  # a share of the cells in one gap of the rule
-_SCORES, _APART, _NONE, _SMALLEST, _TABLE = 6.0, 0.4, 1e-14, 1e-3, 8192
-_LEVEL = 1e-9
-_GAUSS = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3)  # two points of a cell
-_NEVER = 1e-14  # asperities on a surface
+_POINTS = 2**15, 5 * 2**13  # of a lattice, and of another one
+_CELLS = 12_288, 20_480  # of the heights, by the root of the probability, and as many evenly between nodes
+_SCORES, _HIGHEST, _APART = 6.0, 6.5, 0.5  # of normal scores: looked for, told, and from one to the next
+_LONGER, _SMALLEST, _TABLE = 1.25, 1e-3, 8192
+_LEVEL = 1e-9  # of a score: all asperities touch, and the rest of the surfaces have none
+_JUST = 1e-9  # of a cell
 _NEIGHBOURS = 6
 _ROUNDING = 1e-9  # of a law that goes on smoothly
 
 
 def distribution_of(model: Any, quantity: str, h: float, *, other: bool = False) -> Law:
     """As `analytic.Model.distribution`, of a model whose asperities are independent."""
-    q, poisson = quantity_of(quantity), model.count == "poisson"
+    q = quantity_of(quantity)
     if q.counts:
-        return Counted(float(model.mean(quantity, h) / model.number), model.number, poisson)
+        from scipy.stats import binom, poisson  # takes long to import
+
+        mean, n = float(model.mean(quantity, h)), model.number
+        return Counted(poisson(mean) if model.count == "poisson" else binom(round(n), mean / n))
     one, unit = one_asperity(model, quantity, h, _CELLS[other]), q.scale(model.surface)
-    x, below, above = shares(one, _POINTS[other])
-    moments, (low, high) = (unit * one.mean, unit**2 * one.variance), one.ends
+    x, upto = shares(one, _POINTS[other])
+    lowest = -np.inf if one.low.min(initial=0) < 0 else 0.0
     again = partial(distribution_of, model, quantity, h, other=True)
-    return Table(unit * x, below, above, moments, (unit * low, unit * high), one.rounding, again)
+    moments = unit * one.mean, unit**2 * one.variance
+    return Law(unit * x, upto, moments, (lowest, np.inf), one.rounding, again)
 
 
-def one_asperity(model: Any, quantity: str, h: float, cells: int, top: float = np.inf) -> OneAsperity:
-    """Return what one asperity adds, over the scale of the quantity: by cells of the heights of each radius.
-
-    Cells in which asperities add more than `top` are wide.
-    """
+def one_asperity(model: Any, quantity: str, h: float, cells: int) -> OneAsperity:
+    """Return what one asperity adds, over the scale of the quantity, by cells of heights."""
     rule, added = model.asperities(quantity, h)
     if rule.ratios is not None:  # radius by radius
         order = np.lexsort((rule.heights, -rule.ratios))
         s, p, ratios = (each[order] for each in (rule.heights, rule.probabilities, rule.ratios))
         rule = replace(rule, heights=s, probabilities=p, ratios=ratios)
-    values, p, n = added(rule), rule.probabilities, model.number
-    poisson, listed = model.count == "poisson", isinstance(model.heights, MeasuredHeights)
+    values, p, n, poisson = added(rule), rule.probabilities, model.number, model.count == "poisson"
     mean = float(p @ values)
     square = float(p @ values**2) - (0 if poisson else mean**2)
-    bounded = listed or (model.curvature is None and bool(np.isfinite(model.heights.support[1])))
-    x, p = _touching(values, p)
-    one = OneAsperity(x, p, x, np.cumsum(p), n * mean, n * square, n, poisson, listed, bounded)
-    if listed or not x.size:
-        return one
-    values, p, radius = _cells(model, h, rule, added, cells, one, top, model.ways.of(quantity).lowest(h))
-    x, p_of_x = _touching(values.ravel(), p.ravel())
-    one = replace(one, values=x, probabilities=p_of_x, places=x, upto=np.cumsum(p_of_x))
-    if not one.few:
-        return one
-    places = x[:: -(-x.size // (3 * cells))]
-    upto = _distribution(places, values, p, radius)
-    between, share = (places[1:] + places[:-1]) / 2, np.diff(upto)
-    off = mean - float(share @ between + upto[0] * places[0])  # the rule has more digits
-    return replace(one, places=places + off * np.abs(places) / float(share @ np.abs(between)), upto=upto)
-
-
-def _touching(values: Array, p: Array) -> tuple[Array, Array]:
-    """Of asperities that add something, in the order of what they add."""
-    order = np.argsort(values)
-    order = order[(values[order] != 0) & (p[order] > 0)]
-    return values[order], p[order]
+    low = high = values
+    if values.size and not isinstance(model.heights, MeasuredHeights):
+        lowest = max(min(h, model.ways.of(quantity).lowest(h)), model.heights.support[0])
+        low, high, p = _cells(model, h, rule, added, cells, lowest)
+        off = mean - float(p @ (low + high)) / 2
+        low, high = (x + off / float(p @ (np.abs(low) + np.abs(high)) / 2) * np.abs(x) for x in (low, high))
+    touching = ((low != 0) | (high != 0)) & (p > 0)
+    low, high, p = (x[touching] for x in (np.minimum(low, high), np.maximum(low, high), p))
+    order = np.argsort(low + high)
+    return OneAsperity(low[order], high[order], p[order], n * mean, n * square, n, poisson)
 
 
 def _cells(
-    model: Any, h: float, rule: Any, added: Any, cells: int, one: OneAsperity, top: float, lowest: float
-) -> tuple[Array, Array, Ints]:
-    """Values at two points of each of the cells of the heights, its probability by half, and its radius."""
-    values, p, s = added(rule), rule.probabilities, rule.heights
-    new = np.diff(rule.ratios, prepend=np.inf) != 0 if rule.ratios is not None else np.arange(s.size) == 0
-    left = np.where(new, max(min(h, lowest), model.heights.support[0]), np.append(h, s[:-1]))
-    gaps = np.where(new, 0.0, np.abs(np.diff(values, prepend=values[0])))
-    gaps[(model.number * np.cumsum(p[::-1])[::-1] < _NEVER) | (values > top)] = 0.0
-    parts = np.maximum(
-        gaps * cells / (_WIDE * np.cbrt(new.sum())) / np.maximum(one.median, np.abs(values)),
-        cells * p / p.sum(),
+    model: Any, h: float, rule: Any, added: Any, cells: int, lowest: float
+) -> tuple[Array, Array, Array]:
+    """Values at both ends of cells of the heights between the nodes of a rule, and their probabilities."""
+    s, ratios, root = rule.heights, rule.ratios, np.sqrt(rule.probabilities)
+    parts = np.ceil(cells * (root / root.sum() + 1 / root.size)).astype(np.int64)
+    new = np.arange(s.size) == 0 if ratios is None else np.diff(ratios, prepend=np.inf) != 0
+    start = np.where(new, lowest, np.append(lowest, s[:-1]))
+    wide = np.repeat((s - start) / parts, parts)
+    left = (
+        np.repeat(start, parts) + (np.arange(wide.size) - np.repeat(np.cumsum(parts) - parts, parts)) * wide
     )
-    parts = np.clip(np.ceil(parts), -(-cells // p.size), cells // _MOST).astype(np.int64)
-    part = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
-    wide = np.repeat((s - left) / parts, parts)
-    left = np.repeat(left, parts) + part * wide
-    s = left + wide * _GAUSS[:, None]
-    if rule.ratios is None:
-        ratios, density = None, model.heights.pdf(s)
+    middle = left + wide / 2
+    if ratios is None:
+        p = wide * model.heights.pdf(middle)
     else:
-        ratios, radii = np.tile(np.repeat(rule.ratios, parts), 2), Radii.over(model.curvature, h)
-        density = radii.density(s.ravel(), np.searchsorted(-radii.ratios, -ratios)).reshape(s.shape)
-    p = density * wide * (rule.probabilities.sum() / (density @ wide).sum())
-    of_cells = replace(rule, heights=s.ravel(), probabilities=p.ravel(), ratios=ratios)
-    return added(of_cells).reshape(s.shape), p, np.repeat(np.cumsum(new), parts)
-
-
-def _distribution(places: Array, values: Array, p: Array, radius: Ints) -> Array:
-    """Share of asperities that touch and add no more: by stretches on which values rise, or fall."""
-    rising = np.sign(np.diff(values, axis=0)[0])
-    rising = rising[np.maximum.accumulate(np.where(rising != 0, np.arange(rising.size), 0))]
-    parts = np.append(0, np.cumsum((np.diff(rising) != 0) | (np.diff(radius) != 0)))
-    touching = values.T.ravel() != 0
-    values, p, parts = values.T.ravel()[touching], p.T.ravel()[touching], np.repeat(parts, 2)[touching]
-    own = np.tile([1 - 2 * _GAUSS[0], 2 * _GAUSS[0]], rising.size)[touching]
-    upto = np.zeros(places.size)
-    for stretch in np.split(np.arange(parts.size), 1 + np.flatnonzero(np.diff(parts))):
-        x, share, sum_up = values[stretch], p[stretch], np.cumsum(p[stretch])
-        upto_x = sum_up - own[stretch] * share
-        if x[0] > x[-1]:
-            x, upto_x = x[::-1], sum_up[-1] - upto_x[::-1]
-        upto += np.interp(places, np.maximum.accumulate(x), upto_x, left=0.0, right=sum_up[-1])
-    return upto
+        ratios, radii = np.repeat(ratios, parts), Radii.over(model.curvature, h)
+        p = wide * radii.density(middle, np.searchsorted(-radii.ratios, -ratios))
+        ratios = np.tile(ratios, 2)
+    at = np.concatenate([left + _JUST * wide, left + wide])  # right of where contacts begin
+    low, high = added(replace(rule, heights=at, probabilities=0 * at, ratios=ratios)).reshape(2, -1)
+    return low, high, p * (rule.probabilities.sum() / p.sum())
 
 
 def separation_law_of(model: Any, load: float, quantity: str, *, other: bool = False) -> Law:
@@ -136,14 +100,42 @@ def separation_law_of(model: Any, load: float, quantity: str, *, other: bool = F
     unit = q.scale(model.surface)
     one, target = one_asperity(model, quantity, start, _CELLS[other]), load / unit
     spread = float(unit * one.usual[1] / model.slope(quantity, start))
-
-    def shares(h: float) -> tuple[float, float]:
-        one = one_asperity(model, quantity, h, _CELLS[other], target)
-        upto, above = shares_at(one, np.array([target]), _POINTS[other] // 4)
-        return float(upto[0]), float(above[0])
-
+    score = cache(lambda h: _score(model, quantity, h, target, other))
+    h = _between(score, start + other * spread / 7, spread)
+    z = np.array([score(at) for at in h])
+    x = np.interp(np.linspace(0, len(h) - 1, _TABLE), np.arange(len(h)), h)
+    upto = ndtr(np.maximum.accumulate(_interpolated(np.array(h), z, x)))
+    kept = (upto > one.rounding) & (upto < 1 - one.rounding)
+    middle, p = (x[kept][1:] + x[kept][:-1]) / 2, np.diff(upto[kept])
+    mean = float(p @ middle / p.sum())
+    moments = mean, float(p @ (middle - mean) ** 2)
     again = partial(separation_law_of, model, load, quantity, other=True)
-    return _along(shares, start + other * spread / 7, spread, one.rounding, again)
+    return Law(x[kept], upto[kept], moments, (-np.inf, np.inf), one.rounding, again)
+
+
+def _score(model: Any, quantity: str, h: float, target: float, other: bool) -> float:
+    """Normal score of the share of surfaces whose sum at a separation is no more than a target."""
+    one = one_asperity(model, quantity, h, _CELLS[other] // 2)
+    share = float(shares_at(one, np.array([target]), _POINTS[other] // 2)[0])
+    return float(np.clip(ndtri(np.clip(share, 0.0, 1.0)), -_HIGHEST, _HIGHEST))
+
+
+def _between(score: Callable[[float], float], start: float, spread: float) -> list[float]:
+    """Separations from one beyond next to all surfaces to one below them, their scores evenly apart."""
+    places, step, moved = [start], spread / 3, 1.0
+    while score(places[-1]) < _SCORES:  # far, where tails are heavy
+        places.append(places[-1] + step * _LONGER ** len(places))
+    while score(places[0]) > -_SCORES and moved > _LEVEL and places[0] > LOWEST:
+        places.insert(0, max(places[0] - step, LOWEST))
+        moved = score(places[1]) - score(places[0])
+    k = 1
+    while k < len(places):
+        left, right = places[k - 1], places[k]
+        if score(right) - score(left) > _APART and right - left > _SMALLEST * spread:
+            places.insert(k, (left + right) / 2)
+        else:
+            k += 1
+    return places
 
 
 def shares_upto(model: Any, quantity: str, h: float, most: float) -> Callable[[float, Array], Array]:
@@ -153,14 +145,14 @@ def shares_upto(model: Any, quantity: str, h: float, most: float) -> Callable[[f
     suits the largest of them, without the far tails of a `Law`.
     """
     unit = quantity_of(quantity).scale(model.surface)
-    one = one_asperity(model, quantity, h, _CELLS[False], most / unit)
+    one = one_asperity(model, quantity, h, _CELLS[False] // 2)
 
     def shares(number: float, values: Array) -> Array:
         if number < 1:
             return np.where(values >= 0, 1.0, 0.0)
         part = number / one.number
         some = replace(one, number=number, mean=part * one.mean, variance=part * one.variance)
-        return shares_at(some, values / unit, _POINTS[False] // 4)[0]
+        return shares_at(some, values / unit, _POINTS[False] // 4)
 
     return shares
 
@@ -179,44 +171,6 @@ def interacting_distribution(model: Any, quantity: str, h: float) -> Law:
             return np.asarray(np.divide(alone, np.maximum(1 + series * alone, 0.0)))
 
     return law.mapped(together) if series else law
-
-
-def _along(
-    shares: Callable[[float], tuple[float, float]],
-    start: float,
-    spread: float,
-    rounding: float,
-    again: Callable[[], Any],
-) -> Table:
-    """The law of y, of which the shares up to y and above are given: by the normal scores of some."""
-
-    def score(y: float) -> float:
-        below, above = (max(share, _NONE) for share in shares(y))
-        return float(ndtri(below) if below < above else -ndtri(above))
-
-    scores = {start: score(start)}
-    for way in (-1, 1):
-        at, reached, step = start, scores[start], spread / 4
-        while way * reached < _SCORES and at > LOWEST:
-            new = max(at + way * step, LOWEST)
-            found = score(new)
-            apart = abs(found - reached)
-            if apart > 1.5 * _APART and step > _SMALLEST * spread:
-                step /= 4
-                continue
-            scores[new] = found
-            if way < 0 and apart < _LEVEL:  # all asperities touch, and the rest of the surfaces have none
-                break
-            step *= float(np.clip(_APART / max(apart, _LEVEL), 0.25, 1.5))
-            step = min(step, spread / 3) if way < 0 else step
-            at, reached = new, found
-    nodes = np.array(sorted(scores))
-    z = np.maximum.accumulate([scores[at] for at in nodes.tolist()])
-    nodes, z = nodes[np.abs(z) < -ndtri(_NONE)], z[np.abs(z) < -ndtri(_NONE)]
-    y = np.interp(np.linspace(0, nodes.size - 1, _TABLE), np.arange(nodes.size), nodes)
-    z = np.maximum.accumulate(_interpolated(nodes, z, y))
-    table = Table(*resolved(y, ndtr(z), ndtr(-z), rounding), (0.0, 0.0), (-np.inf, np.inf), rounding, again)
-    return table.with_moments()
 
 
 def _interpolated(x: Array, y: Array, at: Array) -> Array:

@@ -34,7 +34,7 @@ LAWS = {
 GRADINGS = {"1": analytic.Homogeneous(), "2": analytic.Exponential(2.0), "0.5": analytic.Exponential(0.5)}
 NUMBERS = (100, 1000, 3000, 30_000, 10**5, 10**6, 10**7)
 SHARES = np.append(1 - np.geomspace(1e-6, 0.5, 60), np.geomspace(0.5, 1e-6, 60)[1:])
-FINER, CELLS = (3 * 2**13, 2**15), (10_000, 12_000)
+FINER, CELLS = (3 * 2**15, 2**17), (30_000, 36_000)
 
 
 def laws():
