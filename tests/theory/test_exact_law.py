@@ -160,7 +160,6 @@ def test_both_ways_meet_where_contacts_are_not_few_any_more(monkeypatch):
     """Of 34 contacts: with sums of none and of one taken apart, and without."""
     of = model(30_000)
     few = of.distribution("load", 3.05)
-    monkeypatch.setattr(sums.OneAsperity, "none", 0.0)
     monkeypatch.setattr(sums.OneAsperity, "alone", 0.0)
     many, x = of.distribution("load", 3.05), few.mean() * np.array([0.6, 1.0, 2.0, 4.0])
     assert not np.array_equal(many.upto, few.upto)
