@@ -185,7 +185,7 @@ class _Lift:
             _cells(model, given, names, h, rule, pressed),
         )
         lowest = min(float(model.mean(given, h)), value) - _SPREADS * float(model.std(given, h))
-        upto = shares_upto(model, given, h, value)
+        upto = shares_upto(model, given, h)
         return cls(model, value, parts, cells, rule.below, upto, lowest)
 
     @property

@@ -138,11 +138,11 @@ def _between(score: Callable[[float], float], start: float, spread: float) -> li
     return places
 
 
-def shares_upto(model: Any, quantity: str, h: float, most: float) -> Callable[[float, Array], Array]:
+def shares_upto(model: Any, quantity: str, h: float) -> Callable[[float, Array], Array]:
     """Return the shares of surfaces of a number of asperities whose sum is no more than some values, SI.
 
-    They are right to 1e-6 or better up to the value `most`. For what is integrated over: one lattice that
-    suits the largest of them, without the far tails of a `Law`.
+    They are right to 1e-6 or better. For what is integrated over: one lattice that suits the largest of
+    them, without the far tails of a `Law`.
     """
     unit = quantity_of(quantity).scale(model.surface)
     one = one_asperity(model, quantity, h, _CELLS[False] // 2)

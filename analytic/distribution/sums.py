@@ -180,7 +180,7 @@ def shares_at(one: OneAsperity, x: Array, points: int) -> Array:
     """Return the shares of surfaces with sums up to x, by the narrowest lattice that holds them."""
     for width in one.widths(points) if one.low.size else []:
         if one.lowest + width > x.max():
-            if one.alone > _FEW:  # what is beyond the largest does not count
+            if one.alone > _FEW and x.max() > one.lowest:  # what is beyond the largest does not count
                 width = min(width, _HOLDS * float(x.max() - one.lowest))
             return one.with_few(x, np.interp(x, *on_lattice(one, width, points), left=0.0))
     return np.where((x >= 0) | bool(one.low.size), 1.0, 0.0)
