@@ -17,25 +17,27 @@ asperity has q(s), and each of the N - 1 others q(t) where the last N - 2 bear w
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from functools import partial
+from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.special import ndtri
 
 from analytic.arrays import Array
-from analytic.distribution.of_model import shares_upto
+from analytic.distribution.of_model import check_falling, shares_upto
+from analytic.inversion import LOWEST
 from analytic.laws import term_of
 from analytic.laws.pieces import slope_term
 from analytic.measured_summits import MeasuredHeights
 from analytic.quadrature import gauss_legendre
 from analytic.quantities import quantity_of
-
-if TYPE_CHECKING:
-    from analytic.distribution import Law
+from analytic.roots import root
 
 _LIFTS = 24  # nodes in the separation: 1e-6 of the load and better
 _MANY, _LIFTS_OF_MANY = 100.0, 16  # contacts from which so many do as well
-_RAREST = 1e-9  # share of the surfaces beyond either end of the separations
+_SCORES, _CLOSE = 6.0, 0.1  # of the ends of the separations: 1e-9 of the surfaces are beyond
+_LEAST = 1e-14  # share of the surfaces
+_LONGER = 1.5  # steps, where tails are heavy
 _DEEPEST = 20.0  # penetration over sigma that no asperity reaches
 _PARTS = np.array([0.25, 0.5, 0.75, 1.0])  # of the penetration at which one asperity has all of the load
 _HALVINGS = 60
@@ -56,9 +58,7 @@ class Moments(NamedTuple):
     std: dict[str, float]
 
 
-def specimen_moments(
-    model: Any, given: str, value: float, names: Sequence[str], law: "Law | None" = None
-) -> Moments:
+def specimen_moments(model: Any, given: str, value: float, names: Sequence[str]) -> Moments:
     """Return means and standard deviations over surfaces that all have the same load, or another sum.
 
     Parameters
@@ -71,8 +71,6 @@ def specimen_moments(
         Its value, SI.
     names : sequence of str
         Sums to average on loading.
-    law : Law, optional
-        `Model.separation_law` of them, where it was made before.
 
     Returns
     -------
@@ -99,28 +97,47 @@ def specimen_moments(
         raise ValueError("load_slope: its slope is not known; give other quantities")
     if model.count == "fixed" and model.number < 2:
         raise ValueError(f"n_asperities = {model.number:g}: give 2 or more; no other bears what one leaves")
-    law = model.separation_law(value, given) if law is None else law
-    low, high = float(law.ppf(_RAREST)), float(law.isf(_RAREST))
-    if not np.isfinite(high - low):  # a Poisson number of asperities may be 0
-        raise ValueError(f"{given} = {value:g}: not every surface has a separation with it")
-    middle = (low + high) / 2
-    many = float(model.mean("contacts", middle)) > _MANY
+    low, high = _ends(model, given, value)
+    many = float(model.mean("contacts", (low + high) / 2)) > _MANY
     x, w = gauss_legendre(_LIFTS_OF_MANY if many else _LIFTS)
-    mean, again = (np.array([float(model.mean(name, high)) for name in names]) for _ in range(2))
+    mean = np.array([float(model.mean(name, high)) for name in names])
     square = np.array([float(model.std(name, high)) for name in names]) ** 2 + mean**2
-    separation, lifts = high, low + (high - low) * x
+    lowered, squared, lifts = 0.0, 0.0, low + (high - low) * x
     deepest = _deepest(model, given, value / quantity_of(given).scale(model.surface), lifts)
     for h, most, width in zip(lifts, deepest, (high - low) * w, strict=True):
-        lift = _Lift.of(model, given, value, names, float(h), float(most))
-        separation -= float(width * lift.lower)
-        mean += width * lift.rates
-        for sums, rates in zip((again, square), lift.rates_of_pairs, strict=True):
-            sums += width * rates
-    std = np.sqrt(np.maximum(square - again**2, 0.0))
+        lower, rates, of_squares = _Lift.of(model, given, value, names, float(h), float(most)).gains()
+        lowered += float(width * lower)
+        squared += float(2 * (high - h) * width * lower)
+        mean += width * rates
+        square += width * of_squares
+    std = np.sqrt(np.maximum(square - mean**2, 0.0))
     return Moments(
-        {"separation": separation, **dict(zip(names, mean.tolist(), strict=True))},
-        {"separation": law.std(), **dict(zip(names, std.tolist(), strict=True))},
+        {"separation": high - lowered, **dict(zip(names, mean.tolist(), strict=True))},
+        {
+            "separation": float(np.sqrt(max(squared - lowered**2, 0.0))),
+            **dict(zip(names, std.tolist(), strict=True)),
+        },
     )
+
+
+def _ends(model: Any, given: str, value: float) -> tuple[float, float]:
+    """Separations between which next to all surfaces have the given sum."""
+    check_falling(model, given, start := float(model.separation_at(given, value)))
+    spread, ends = float(model.std(given, start) / model.slope(given, start)), []
+
+    def beyond(h: float, way: int) -> float:
+        """Normal score of the share of surfaces above, or below, over that of next to all."""
+        upto = float(shares_upto(model, given, h)(model.number, np.array([value]))[0])
+        return float(way * ndtri(np.clip(upto, _LEAST, 1 - _LEAST)) - _SCORES)
+
+    for way in (-1, 1):
+        inner = outer = start
+        while beyond(outer, way) < 0 and outer > LOWEST:
+            inner, outer, spread = outer, outer + 2 * way * spread, _LONGER * spread
+        if outer <= LOWEST:  # a Poisson number of asperities may be 0
+            raise ValueError(f"{given} = {value:g}: not every surface has a separation with it")
+        ends.append(root(partial(beyond, way=way), inner, outer, close=_CLOSE))
+    return ends[0], ends[1]
 
 
 @dataclass(frozen=True)
@@ -188,51 +205,21 @@ class _Lift:
         upto = shares_upto(model, given, h)
         return cls(model, value, parts, cells, rule.below, upto, lowest)
 
-    @property
-    def _fewer(self) -> tuple[float, float]:
-        """Asperities beside one, and beside two: of a Poisson number as many as before."""
-        n = self.model.number
-        return (n, n) if self.model.count == "poisson" else (n - 1, n - 2)
+    def gains(self) -> tuple[float, Array, Array]:
+        """Return the share of surfaces that are lower, and the rates of means and of mean squares.
 
-    @cached_property
-    def _left(self) -> Array:
-        """What an asperity leaves of the given sum."""
-        return self.value - np.concatenate([part.given for part in self.added])
-
-    @cached_property
-    def _rates(self) -> Array:
-        return np.concatenate([part.rates for part in self.added], axis=1)
-
-    @cached_property
-    def _bearable(self) -> Array:
-        """Share of the surfaces whose other asperities bear what one leaves; and what it is all."""
-        some = self.upto(self._fewer[0], np.append(np.maximum(self._left, 0.0), self.value))
-        return np.where(np.append(self._left, 0.0) >= 0, some, 0.0)
-
-    @property
-    def lower(self) -> float:
-        """Share of the surfaces that are lower: one more asperity than beside one, in contact or not."""
-        *bearable, alone = self._bearable
-        if self.model.count == "poisson":
-            return float(alone)
-        p = np.concatenate([part.probabilities for part in self.added])
-        return float(self.below * alone + p @ bearable)
-
-    @property
-    def rates(self) -> Array:
-        """Of the means, shape (names,)."""
-        return np.asarray(self.model.number * self._rates @ self._bearable[:-1])
-
-    @property
-    def rates_of_pairs(self) -> tuple[Array, Array]:
-        """Of the means once more and of the mean squares, with errors that cancel in the variance."""
-        others, (given, weights, *marks) = self._fewer[0], self.cells
+        For each unit of separation; the rates have shape (names,).
+        """
+        n, poisson = self.model.number, self.model.count == "poisson"
+        one, two = (0, 0) if poisson else (1, 2)  # of a Poisson number there are as many beside one
+        given, weights, *marks = self.cells
         start = max(self.lowest, 0.0)
         step, places = (self.value - start) / (_GRID - 1), np.arange(_GRID)
-        bear = self.upto(self._fewer[1], np.asarray(start + step * places))
+        bear = self.upto(n - two, np.asarray(start + step * places))
         none = bear[0] if start == 0 else 0.0  # share of the surfaces where no other asperity touches
         spectrum = np.fft.rfft(bear - none, 2 * _GRID)
-        left, place = (self._left - start) / step, given / step
+        added = np.append(np.concatenate([part.given for part in self.added]), 0.0)
+        left, place = (self.value - added - start) / step, given / step
         inside = place < _GRID - 1
         at = place[inside].astype(np.int64)
         part, order = place[inside] - at, np.argsort(place)
@@ -245,13 +232,17 @@ class _Lift:
             alone = np.interp(left, place[order], upto - weights[order] / 2, left=0.0)
             return np.asarray(np.interp(left, places, both, left=0.0) + none * alone)
 
-        alone = beside(weights) + self.below * np.interp(left, places, bear, left=0.0)
-        own, n = np.concatenate([part.own for part in self.added], axis=1), self.model.number
+        *bearable, whole = beside(weights) + self.below * np.interp(left, places, bear, left=0.0)
+        p, own, rates = (
+            np.concatenate([getattr(part, name) for part in self.added], axis=-1)
+            for name in ("probabilities", "own", "rates")
+        )
         squares = [
-            rate @ (mine * alone + others * beside(his))
-            for rate, mine, his in zip(self._rates, own, marks, strict=True)
+            rate @ (mine * bearable + (n - one) * beside(his)[:-1])
+            for rate, mine, his in zip(rates, own, marks, strict=True)
         ]
-        return n * self._rates @ alone, 2 * n * np.array(squares)
+        lower = whole if poisson else self.below * whole + p @ bearable
+        return float(lower), n * rates @ bearable, 2 * n * np.array(squares)
 
 
 def _cells(model: Any, given: str, names: Sequence[str], h: float, rule: Any, pressed: _Added) -> Array:

@@ -87,8 +87,23 @@ def falling_root(excess: Callable[[float], float], low: float, high: float) -> f
     >>> round(falling_root(lambda x: 2 - x * x, 0.0, 2.0), 12)
     1.414213562373
     """
+    return root(excess, high, low)
+
+
+def root(excess: Callable[[float], float], left: float, right: float, *, close: float = 0.0) -> float:
+    """Return the root of one function: as `sign_changes`.
+
+    Examples
+    --------
+    >>> abs(root(lambda x: x * x - 2, 0.0, 2.0, close=0.1) ** 2 - 2) <= 0.1
+    True
+    """
     found = sign_changes(
-        lambda x, _: np.array([excess(float(y)) for y in x]), np.array([high]), np.array([low]), np.ones(1)
+        lambda x, _: np.array([excess(float(y)) for y in x]),
+        np.array([left]),
+        np.array([right]),
+        np.ones(1),
+        close=close,
     )
     return float(found[0])
 

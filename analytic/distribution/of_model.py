@@ -96,7 +96,7 @@ def separation_law_of(model: Any, load: float, quantity: str, *, other: bool = F
             f"quantity = {quantity!r}: give a sum that decreases with the separation, such as 'load'"
         )
     start = float(model.separation_at(quantity, load))
-    _falling(model, quantity, start)
+    check_falling(model, quantity, start)
     unit = q.scale(model.surface)
     one, target = one_asperity(model, quantity, start, _CELLS[other]), load / unit
     spread = float(unit * one.usual[1] / model.slope(quantity, start))
@@ -184,7 +184,7 @@ def _interpolated(x: Array, y: Array, at: Array) -> Array:
     return np.asarray(found[:, 0])
 
 
-def _falling(model: Any, quantity: str, h: float) -> None:
+def check_falling(model: Any, quantity: str, h: float) -> None:
     """Refuse sums that may rise with the separation."""
     rule, added = model.asperities(quantity, h)
     if np.any(added(rule) < 0):

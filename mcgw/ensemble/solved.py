@@ -246,7 +246,7 @@ class Solution(Shown):
         summed = [name for name in summed if quantity_of(name).base != "load_slope"]
         try:
             with np.errstate(all="ignore"):
-                found = specimen_moments(alone.theory, self.given, self.amount, summed, self.separation_law)
+                found = specimen_moments(alone.theory, self.given, self.amount, summed)
         except (ValueError, IndexError):  # far up, where hardly any asperity of any surface is
             return given
         if not np.isfinite([*found.mean.values(), *found.std.values()]).all():

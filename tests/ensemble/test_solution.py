@@ -314,9 +314,16 @@ def test_what_cannot_be_solved(scene):
     with pytest.raises(ValueError, match="at least 2 surfaces"):
         solutions(replace(scene, n_surfaces=1), "load", [1.0])
     with pytest.raises(ValueError, match="too many to solve"):
-        solutions(replace(scene, n_asperities=2**50), "load", [1e9])
+        solutions(replace(scene, n_asperities=2**50), "load", [1e9], draw=True)
     with pytest.raises(ValueError, match="not reached"):
         solutions(scene, "load", [1e12])
+
+
+def test_surfaces_too_many_to_draw_have_exact_answers(scene):
+    """They scatter as little as their number says: 1/N in the variance."""
+    few, many = (solutions(scene.replace(n_asperities=n), "load", [n * 1e-3])[0] for n in (2**30, 2**50))
+    assert many.value["area"] == pytest.approx(many.theory["area"], rel=1e-6)
+    assert many.std["area"] / few.std["area"] == pytest.approx(2**10, rel=1e-2)
 
 
 @pytest.mark.slow
