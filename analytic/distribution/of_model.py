@@ -56,8 +56,8 @@ def one_asperity(model: Any, quantity: str, h: float, cells: int) -> OneAsperity
     if values.size and not isinstance(model.heights, MeasuredHeights):
         lowest = max(min(h, model.ways.of(quantity).lowest(h)), model.heights.support[0])
         low, high, p = _cells(model, h, rule, added, cells, lowest)
-        off = mean - float(p @ (low + high)) / 2
-        low, high = (x + off / float(p @ (np.abs(low) + np.abs(high)) / 2) * np.abs(x) for x in (low, high))
+        share = (mean - (p * (low + high)).sum() / 2) / ((p * (np.abs(low) + np.abs(high))).sum() / 2)
+        low, high = low + share * np.abs(low), high + share * np.abs(high)
     touching = ((low != 0) | (high != 0)) & (p > 0)
     low, high, p = (x[touching] for x in (np.minimum(low, high), np.maximum(low, high), p))
     order = np.argsort(low + high)

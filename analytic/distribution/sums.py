@@ -98,8 +98,8 @@ class OneAsperity:
         x, p = (self.low + self.high) / 2, self.probabilities
         rarer = self.number * np.cumsum(p[::-1])[::-1]
         kept = rarer > min(_RARE[0], rarer[0] / 2)
-        mean = float(p[kept] @ x[kept])
-        variance = float(p[kept] @ x[kept] ** 2) - (0.0 if self.poisson else mean**2)
+        mean = float((p * x)[kept].sum())
+        variance = float((p * x**2)[kept].sum()) - (0.0 if self.poisson else mean**2)
         return self.number * mean, float(np.sqrt(self.number * max(variance, 0.0))), float(x[kept][-1])
 
     @cached_property
@@ -107,7 +107,7 @@ class OneAsperity:
         """A sum that next to no surface stays below: by all values, or by the negative ones alone."""
         x, p, n = np.minimum(self.low, 0.0), self.probabilities, self.number
         usual, rarest = x[np.minimum(np.searchsorted(np.cumsum(p), np.array(_RARE) / n), x.size - 1)].tolist()
-        negative = n * float(p @ x) - _REACH * float(np.sqrt(n * (p @ x**2)))
+        negative = n * (p * x).sum() - _REACH * np.sqrt(n * (p * x**2).sum())
         mean, std, _ = self.usual
         return float(max(mean - _REACH * std, negative) + 2 * (_REACH * usual + rarest))
 
@@ -133,7 +133,7 @@ def on_lattice(one: OneAsperity, width: float, points: int) -> tuple[Array, Arra
     k, damping = np.arange(size), 0.0 if smooth else _DAMPED / size
     signed = np.where(k < 3 * points // 2, k, k - size)
     f, lost = _stencil(one, step, size)
-    centre = float(f @ signed)
+    centre = float((f * signed).sum())
     f[[1, -1]] -= centre / 2, -centre / 2  # apart from what scatters: it takes digits where N is large
     f[0] = 0.0
     f[0] = -f.sum() - lost  # so that many small values lose no digits
