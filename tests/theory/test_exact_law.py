@@ -565,6 +565,19 @@ def test_sums_of_few_that_pull_by_plain_convolutions():
     assert of.distribution("load", h).cdf(x * unit(of, "load")) == pytest.approx(known, abs=1e-6)
 
 
+@pytest.mark.parametrize("contacts", [8, 30, 100])
+@pytest.mark.parametrize("pull_off", [2e-3, 0.3])
+def test_sums_of_tens_that_pull_have_the_mean_and_the_spread_of_their_model(contacts, pull_off):
+    """Nothing is lost below: the shares of the table add up to what integrals of one asperity give."""
+    law = analytic.JohnsonKendallRoberts(pull_off=pull_off)
+    of = model(3000, law=law, grading=analytic.Homogeneous())
+    law = of.distribution("load", float(stats.norm.isf(contacts / 3000)))
+    middle, shares = (law.x[1:] + law.x[:-1]) / 2, np.diff(law.upto)
+    mean = shares @ middle
+    assert mean == pytest.approx(law.mean(), abs=1e-5 * law.std())
+    assert np.sqrt(shares @ (middle - mean) ** 2) == pytest.approx(law.std(), rel=1e-4)
+
+
 def test_nobody_pays_for_it_who_does_not_ask():
     code = "import analytic, mcgw.scene.scene, sys; sys.exit('analytic.distribution' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
