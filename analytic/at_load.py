@@ -232,7 +232,8 @@ class _Lift:
             alone = np.interp(left, place[order], upto - weights[order] / 2, left=0.0)
             return np.asarray(np.interp(left, places, both, left=0.0) + none * alone)
 
-        *bearable, whole = beside(weights) + self.below * np.interp(left, places, bear, left=0.0)
+        bears = np.interp(left, places, bear, left=0.0)
+        *bearable, whole = bears if poisson else beside(weights) + self.below * bears
         p, own, rates = (
             np.concatenate([getattr(part, name) for part in self.added], axis=-1)
             for name in ("probabilities", "own", "rates")

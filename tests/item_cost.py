@@ -30,6 +30,8 @@ DEARER = {
     "test_what_users_read.py::test_commands": "whole tables of solve: exact means at several loads",
     "test_solution.py::test_a_metal_under_an_elastic_law_is_not_said_to_be_within": "two loads",
     "test_solution.py::test_the_answer_is_the_mean_of_specimens": "exact means beside drawn ones",
+    "test_door_results.py::test_one_load_by_four_names": "a dozen answers, each exact",
+    "tradeoff.py::mcgw.statistics.tradeoff.tradeoff": "each way is run and timed, the exact law too",
 }
 
 

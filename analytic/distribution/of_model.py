@@ -53,7 +53,7 @@ def one_asperity(model: Any, quantity: str, h: float, cells: int) -> OneAsperity
     mean = float(p @ values)
     square = float(p @ values**2) - (0 if poisson else mean**2)
     low = high = values
-    if values.size and not isinstance(model.heights, MeasuredHeights):
+    if p.any() and not isinstance(model.heights, MeasuredHeights):
         lowest = max(min(h, model.ways.of(quantity).lowest(h)), model.heights.support[0])
         low, high, p = _cells(model, h, rule, added, cells, lowest)
         share = (mean - (p * (low + high)).sum() / 2) / ((p * (np.abs(low) + np.abs(high))).sum() / 2)

@@ -439,7 +439,7 @@ class Solution(Shown):
         """The answers, and how specimens differ."""
         from mcgw.ensemble.budget import yields
 
-        many = f"specimens of {self.scene.n_asperities} asperities"
+        many = f"{'' if self.exact else f'{self._many} '}surfaces of {self.scene.n_asperities} asperities"
         many += ", drawn from the measured summits" if self.scene.as_measured else ""
         facts = [("over", many), ("elasticity", self._against_elasticity.brief)]
         facts += [("yielding", why)] if (why := yields(self.yielding)) else []

@@ -19,7 +19,7 @@ from analytic.at_load import specimen_moments
 from mcgw.ensemble.intervals import laws_are_quick
 from mcgw.ensemble.prices import PROBABILITY, SOLVE, Needs, Way, sampler_of, wants_of
 from mcgw.ensemble.simulation import simulate
-from mcgw.ensemble.solution import solve
+from mcgw.ensemble.solution import solutions
 from mcgw.sampling.asperities import worst_of_values
 from mcgw.sampling.expected import expected
 from mcgw.scene.scene import Scene
@@ -142,8 +142,7 @@ class Answers:
         yield Task("theory", 0, partial(by_theory, "std"), lambda _: {"std": 0.0})
         yield Task("theory", 0, at_load, self._off_at_load)
         if "conductance" in self.known and self.touching < _MOST_LISTED:
-            solved = partial(self._solved, 2)
-            yield Task("exact law", 0, lambda s: solved(s).value, lambda _: {"conductance": 0.0})
+            yield Task("exact law", 0, self._exactly, lambda _: {"conductance": 0.0})
         if self.at.size:
             law = partial(by_theory, "distribution")
             yield Task("exact law", 0, lambda s: law(s).ppf(PROBABILITY), lambda _: {"quantile": 0.0})
@@ -153,16 +152,18 @@ class Answers:
         """The load, moved as the scene of a repeat is."""
         return self.load * (1 + scene.separations[0] - self.h)
 
-    def _solved(self, n_surfaces: int, scene: Scene) -> Any:
-        return solve(scene, load=self._load(scene), n_surfaces=n_surfaces)
+    def _exactly(self, scene: Scene) -> float:
+        return specimen_moments(scene.theory, "load", self._load(scene), ["conductance"]).mean["conductance"]
+
+    def _drawn(self, n_surfaces: int, scene: Scene) -> float:
+        scene = scene.replace(n_surfaces=n_surfaces)
+        (found,) = solutions(scene, "load", [self._load(scene)], draw=True)
+        return float(found.surfaces["conductance"].mean())
 
     def sampled(self, name: str, n_surfaces: int) -> Task:
         """A way that draws so many surfaces: at the separation, or at the load."""
         if name == SOLVE:
-            solved = partial(self._solved, n_surfaces)
-            return Task(
-                name, n_surfaces, lambda s: solved(s).surfaces["conductance"].mean(), self._off_at_load
-            )
+            return Task(name, n_surfaces, partial(self._drawn, n_surfaces), self._off_at_load)
         sampler = sampler_of(name)
         return Task(
             name,

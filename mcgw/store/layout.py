@@ -40,7 +40,7 @@ def contents_of_kept(
 
 
 def attributes_of(scene: Scene, sampler: str, text: str, /, **about: Any) -> dict[str, Any]:
-    """Root attributes of a file, where the scene is told by a text, and more of them."""
+    """Root attributes of a file, where a text describes the scene, and more of them."""
     usual = {
         "filetype": FILETYPE,
         "format": FORMAT,

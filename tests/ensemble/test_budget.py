@@ -177,10 +177,10 @@ def test_a_joint_is_corrected_through_its_network(gas):
     off = np.hypot(
         spots.value * (error - abs(bias)) / (1 + bias), scene.filled(right, 1) * (gap - abs(lift))
     ) / (spots.value + scene.filled(right))
-    own = 1.96 * solved.surfaces["joint_conductance"].std(ddof=1) / value["joint_conductance"]
+    own = 1.96 * solved.std["joint_conductance"] / value["joint_conductance"]
     low, high = solved.interval("joint_conductance")  # not a sum of asperities: of 20 surfaces
     drawn = (high - low) / 2 / value["joint_conductance"]
-    assert drawn > 0
+    assert drawn > 0 or scene.filled.gas is None  # in vacuum it is the sum over spots, exactly
     assert found.high / found.value - 1 == pytest.approx(np.sqrt(off**2 + own**2 + drawn**2), rel=1e-5)
     budget = solved.budget()
     assert budget.quantities == ("area", "stiffness", "contact_conductance", "joint_conductance", "mean_gap")

@@ -115,13 +115,19 @@ def test_of_radii_of_their_own(law):
     assert residuals(model, target, wanted).max() < 5
 
 
-@pytest.mark.parametrize(("n", "contacts"), [(2, 0.3), (5, 2), (100, 1), (100, 20), (3000, 300)])
-def test_of_elastic_contacts(n, contacts):
+@pytest.mark.parametrize(
+    ("n", "contacts", "count"),
+    [(2, 0.3, "fixed"), (5, 2, "fixed"), (100, 1, "fixed"), (100, 20, "fixed"), (3000, 300, "fixed"),
+     (100, 1, "poisson"), (100, 20, "poisson")],
+)  # fmt: skip
+def test_of_elastic_contacts(n, contacts, count):
     """Six numbers, |z| < 5: one false alarm in 3e5 seeds."""
-    model = analytic.Model(replace(SURFACE, nominal_area=n / SURFACE.eta), grading=analytic.Exponential(0.5))
-    target = contacts * 0.1
+    surface, grading = replace(SURFACE, nominal_area=n / SURFACE.eta), analytic.Exponential(0.5)
+    model, target = analytic.Model(surface, grading=grading, count=count), contacts * 0.1
     rng, many = np.random.default_rng(11), 200_000 // n + 400
-    s = rng.normal(size=(many, n))
+    s = rng.normal(size=(many, n if count == "fixed" else 2 * n))
+    if count == "poisson":
+        s[np.arange(2 * n) >= rng.poisson(n, many)[:, None]] = -99.0  # is not there
     e, low, high = (1 + np.exp(-s)) / 2, np.full(many, -8.0), s.max(axis=1)
     for _ in range(50):
         middle = (low + high) / 2

@@ -189,7 +189,7 @@ def test_a_mistake_in_python_is_one_line(call, told, make_scene):
 @pytest.mark.parametrize(
     ("changes", "fact"),
     [
-        ({"film": mcgw.Film(1e-7)}, ("film", "resistivity 1e-07 ohm m")),
+        ({"film": mcgw.Film(1e-7)}, ("bodies", "resistivity 1e-07 ohm m")),
         ({"interaction": "body"}, ("interaction", "from the undeformed body, separations effective")),
     ],
 )

@@ -47,7 +47,7 @@ def told(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("words", "bars"),
     [
-        ("solve s.toml --pressure 1MPa", ["4 [", " surfaces/s"]),
+        ("solve s.toml --pressure 1MPa -v", ["4 [", " surfaces/s"]),
         ("fit map.npy --cutoff none --pixel 1um -o f.toml", ["/4 [", " steps/s"]),
         ("sweep s.toml --over grading.gamma=0.2:1:7 -o w.h5", ["/7 [", "? points/s"]),
     ],
@@ -73,6 +73,9 @@ def test_python_waits_only_if_it_says_so(monkeypatch):
     assert " points/s" in stream.getvalue()
     calls = []
     mcgw.solve(SCENE, pressure=[1e6, 2e6], progress=lambda done, total: calls.append((done, total)))
+    assert not calls  # nothing is drawn where answers are exact
+    drawn = SCENE.replace(interaction="body")
+    mcgw.solve(drawn, pressure=[1e6, 2e6], progress=lambda done, total: calls.append((done, total)))
     assert calls[-1] == (4, 4)
 
 
