@@ -17,7 +17,7 @@ asperity has q(s), and each of the N - 1 others q(t) where the last N - 2 bear w
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -35,9 +35,9 @@ from analytic.roots import root
 
 _LIFTS = 24  # nodes in the separation: 1e-6 of the load and better
 _MANY, _LIFTS_OF_MANY = 100.0, 16  # contacts from which so many do as well
-_SCORES, _CLOSE = 6.0, 0.1  # of the ends of the separations: 1e-9 of the surfaces are beyond
+_SCORES, _CLOSE = 6.0, 0.2  # of the ends of the separations: 1e-9 of the surfaces are beyond
 _LEAST = 1e-14  # share of the surfaces
-_LONGER = 1.5  # steps, where tails are heavy
+_FIRST, _LONGEST, _LONGER = 4.0, 5.0, 1.5  # step: in deviations to first order; at most; than the last
 _DEEPEST = 20.0  # penetration over sigma that no asperity reaches
 _PARTS = np.array([0.25, 0.5, 0.75, 1.0])  # of the penetration at which one asperity has all of the load
 _HALVINGS = 60
@@ -125,16 +125,21 @@ def _ends(model: Any, given: str, value: float) -> tuple[float, float]:
     check_falling(model, given, start := float(model.separation_at(given, value)))
     spread, ends = float(model.std(given, start) / model.slope(given, start)), []
 
-    def beyond(h: float, way: int) -> float:
-        """Normal score of the share of surfaces above, or below, over that of next to all."""
+    @cache
+    def score(h: float) -> float:
+        """Normal score of the share of surfaces that are lower."""
         upto = float(shares_upto(model, given, h)(model.number, np.array([value]))[0])
-        return float(way * ndtri(np.clip(upto, _LEAST, 1 - _LEAST)) - _SCORES)
+        return float(ndtri(np.clip(upto, _LEAST, 1 - _LEAST)))
+
+    def beyond(h: float, way: int) -> float:
+        """By how much it is over that of next to all surfaces, or none."""
+        return way * score(h) - _SCORES
 
     for way in (-1, 1):
-        inner = outer = start
+        inner, outer, step = start, start, min(_FIRST * spread, _LONGEST)
         while beyond(outer, way) < 0 and outer > LOWEST:
-            inner, outer, spread = outer, outer + 2 * way * spread, _LONGER * spread
-        if outer <= LOWEST:  # a Poisson number of asperities may be 0
+            inner, outer, step = outer, max(outer + way * step, LOWEST), _LONGER * step
+        if beyond(outer, way) < 0:  # a Poisson number of asperities may be 0
             raise ValueError(f"{given} = {value:g}: not every surface has a separation with it")
         ends.append(root(partial(beyond, way=way), inner, outer, close=_CLOSE))
     return ends[0], ends[1]
