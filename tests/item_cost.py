@@ -31,6 +31,10 @@ DEARER = {
     "test_solution.py::test_a_metal_under_an_elastic_law_is_not_said_to_be_within": "two loads",
     "test_solution.py::test_the_answer_is_the_mean_of_specimens": "exact means beside drawn ones",
     "test_door_results.py::test_one_load_by_four_names": "a dozen answers, each exact",
+    "test_report_figures.py::test_curves_are_values_and_specimens_of_solve": "exact answers at several loads",
+    "test_rude_surroundings.py::test_a_doubted_unit_is_told_by_every_command_that_speaks_of_the_scene": "six",
+    "test_architecture.py::test_packages_are_layers": "reads the imports of the whole house",
+    "test_tradeoff.py::test_a_sampler_that_is_off_by_a_percent_is_not_advised": "a study of every way",
     "tradeoff.py::mcgw.statistics.tradeoff.tradeoff": "each way is run and timed, the exact law too",
 }
 
