@@ -70,7 +70,7 @@ def residuals(model, target, wanted):
             off.append((std[name] / scale[name] - scatter) / (its_error + 2e-4 * scatter + 1e-5 * abs(mean)))
     beyond = wanted["load"][0] / target - 1
     assert found["load"] / load - 1 == pytest.approx(beyond, abs=1e-3)
-    assert std["load"] / load == pytest.approx(wanted["load"][2] / target, abs=2e-3)
+    assert std["load"] / load == pytest.approx(wanted["load"][2] / target, abs=5e-3)
     return np.abs(off)
 
 
