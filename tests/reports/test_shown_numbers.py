@@ -196,7 +196,9 @@ def test_solve(scene, words, given, title, tmp_path, capsys):
     assert exact.mean(few, given[0], [h])[0] == pytest.approx(given[1], rel=1e-8)
     assert [line for line in lines if line.startswith("specimens: 25 surfaces of 3000 asperities")]
     for name, x in mcgw.solve(few, **dict([given])).surfaces.items():
-        assert float(rows[name]["std"]) == pytest.approx(x.std(ddof=1), rel=1e-7, abs=1e-12 * x.mean())
+        far = (x - x.mean()) / (x.std() or 1.0)  # std is exact, that of x has an error of its own: |z| < 5
+        error = x.std() * math.sqrt(max(np.mean(far**4) - 1, 0.0) / len(x)) / 2
+        assert float(rows[name]["std"]) == pytest.approx(x.std(ddof=1), abs=5 * error + 1e-12 * x.mean())
 
 
 def test_tradeoff(scene, tmp_path, capsys, monkeypatch):
