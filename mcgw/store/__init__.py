@@ -53,6 +53,5 @@ are merged at the end and then removed. What each mechanism is for:
 ``run_folder``   a run goes on only with what it was begun with: scene, sampler, versions
 ``identity``     which scenes, samplers and versions those are; and who made a file
 ``lock``         two processes never write one file; shared by jobs that each make a share
-``place``        what is there already, leftovers of the dead, which are cleared, and a new file: written
-                 under another name, read back where blocks go with it, and renamed
+``place``        what is there already, leftovers of the dead, and a new file: renamed when it is whole
 """
