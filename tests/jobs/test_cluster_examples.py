@@ -56,7 +56,7 @@ def test_an_array_of_jobs_draws_it(shell, tmp_path, words):
     said = {path.stem: path.read_text() for path in (tmp_path / "slurm").glob("*.out")}
     assert sorted(said) == ["slurm-100_1", "slurm-100_2", "slurm-100_3", "slurm-101_None"]
     for i in (1, 2, 3):
-        assert f"share {i}/3 is done" in said[f"slurm-100_{i}"]
+        assert f"shard {i}/3 is done" in said[f"slurm-100_{i}"]
     alone = shell("mcgw", *words, "-o", "alone.h5")
     assert alone.returncode == 0, alone.stderr
     one, other = (shell("mcgw", "show", "--digest", name).stdout for name in ("e.h5", "alone.h5"))
