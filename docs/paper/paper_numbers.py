@@ -2,7 +2,7 @@
 
 `numbers.json` holds them as they are printed, by the names that stand in braces in ``paper.md.in``. Timings
 are ratios of ``runs/bench/history.csv``, with their machine; the errors of the model are
-those of ``mcgw/scene/validity.csv``, which ``runs/validation`` makes of boundary-element solves; all else is
+those of ``mcgw/validity/table.csv``, which ``runs/validation`` makes of boundary-element solves; all else is
 computed here, the same on every machine. Takes a few seconds. A test compares what is written with it.
 """
 
@@ -76,7 +76,7 @@ def solves() -> Numbers:
 
 def validity() -> Numbers:
     """Errors of models against boundary elements: means over maps."""
-    lines = [line for line in table(Path("mcgw/scene/validity.csv")) if line["map"] == "gaussian"]
+    lines = [line for line in table(Path("mcgw/validity/table.csv")) if line["map"] == "gaussian"]
 
     def errors(quantity: str, model: str, interaction: str, alphas: str, loads: str) -> list[float]:
         return [

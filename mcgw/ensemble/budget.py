@@ -15,10 +15,10 @@ from analytic.arrays import Array
 from mcgw.ensemble.at_load import GAPS
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
-from mcgw.scene.measured import Uncertainty
 from mcgw.scene.scene import Scene
-from mcgw.scene.validity import Validity, percent
-from mcgw.scene.validity_place import moments_of_nayak
+from mcgw.scene.uncertainty import Uncertainty
+from mcgw.validity.model_error import Validity, percent
+from mcgw.validity.place_in_table import moments_of_nayak
 
 LINES = ("drawn surfaces", "specimens", "parameters", "model")
 Answers = Mapping[str, float]

@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import Quantity
+from mcgw.formats.law_text import law_text
 from mcgw.formats.sheet import Sheet
 from mcgw.formats.table import SEPARATION, Column, Table, optional
-from mcgw.scene.in_words import accuracy_facts, contact_facts, law_text
+from mcgw.scene.in_words import accuracy_facts, contact_facts
 from mcgw.scene.scene import Scene
 
 AXES = {  # of tables, in their order: unit and long name

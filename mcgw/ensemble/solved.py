@@ -17,8 +17,8 @@ from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
 from mcgw.machine.terminal import plotted
 from mcgw.scene.scene import Scene
-from mcgw.scene.validity import Validity
-from mcgw.scene.validity_lookup import validity_of
+from mcgw.validity.lookup import validity_of
+from mcgw.validity.model_error import Validity
 
 if TYPE_CHECKING:
     from analytic.distribution import Law

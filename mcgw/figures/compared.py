@@ -13,9 +13,9 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.simulation import simulate
 from mcgw.figures.data import Estimate, Points
 from mcgw.figures.style import contact_label, short
+from mcgw.formats.law_text import law_text
 from mcgw.formats.table import evenly
 from mcgw.sampling.asperities import heights
-from mcgw.scene.in_words import law_text
 from mcgw.scene.scene import Scene
 
 SCENE = "this scene"

@@ -22,9 +22,9 @@ from matplotlib.figure import Figure
 from analytic import Exponential, Grading, Hertz, Homogeneous, PiecewiseSeries
 from analytic.arrays import Array
 from mcgw.formats.files import whole_file
+from mcgw.formats.law_text import law_text
 from mcgw.formats.numbers import RAISED
 from mcgw.machine.terminal import one_line
-from mcgw.scene.in_words import law_text
 from mcgw.scene.scene import Scene
 
 THEORY, MONTE_CARLO = "#00598F", "#E0701A"

@@ -23,10 +23,11 @@ from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
 from mcgw.maps.waves import log_derivatives
 from mcgw.scene.arguments import argument
-from mcgw.scene.measured import Fitted, Uncertainty
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_document
+from mcgw.scene.uncertainty import Uncertainty
 from mcgw.scene.values import MOMENTS, SUMMITS
+from mcgw.validity.fitted_map import Fitted
 
 Heights = Literal["gaussian", "nayak", "table", "measured", "summits"]
 _EQUAL = 1e-3  # of the standard deviation of the map: summits that differ less are equally high

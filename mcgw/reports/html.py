@@ -7,6 +7,7 @@ from analytic import Hertz
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.some_separations import how_many
 from mcgw.figures.style import grading_label
+from mcgw.formats.law_text import law_text
 from mcgw.formats.numbers import number, typeset
 from mcgw.formats.table import Column, Table
 from mcgw.machine.progress import stages
@@ -18,11 +19,11 @@ from mcgw.reports.report_figures import (
     solved_pressures,
 )
 from mcgw.scene.cautions import cautions
-from mcgw.scene.in_words import contact_facts, law_text
+from mcgw.scene.in_words import contact_facts
 from mcgw.scene.law_cautions import other_laws
 from mcgw.scene.scene import Scene
-from mcgw.scene.validity import Validity
 from mcgw.statistics.comparison import compare
+from mcgw.validity.model_error import Validity
 
 Facts = list[tuple[str, str]]
 

@@ -9,10 +9,11 @@ import numpy as np
 from analytic import quantity_of
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.labelled import statistics_table
+from mcgw.formats.law_text import law_text
 from mcgw.formats.sheet import listed
 from mcgw.formats.table import SEPARATION, Column, Table, stacked
 from mcgw.machine.terminal import one_line
-from mcgw.scene.in_words import accuracy_facts, contact_facts, law_text
+from mcgw.scene.in_words import accuracy_facts, contact_facts
 from mcgw.statistics.comparison import Comparison
 from mcgw.store.run_folder import RunFolder
 from mcgw.sweeps.axes import Axes

@@ -8,7 +8,7 @@ from analytic import Hertz
 from analytic.laws import crowding_factor
 from mcgw.scene.plausible import perhaps_other_units, takes_hours
 from mcgw.scene.scene import Scene
-from mcgw.scene.validity import off_elasticity
+from mcgw.validity.model_error import off_elasticity
 
 _DEEP = 1e-3  # share of the contacts compressed by more than their radius
 _CROWDED = 0.05  # real over nominal area: Gaussian maps and caps are far beyond 10 % of load there

@@ -7,9 +7,9 @@ import analytic
 from analytic.gases import GASES
 from analytic.laws import Layer
 from mcgw.scene.kinds import ByName, Either, Flag, List, Number, Table, Text, Whole, Word
-from mcgw.scene.measured import Fitted
 from mcgw.scene.section import Key, TableOfKeys
 from mcgw.scene.values import POISSON, SUMMITS, SUMS, rows_of
+from mcgw.validity.fitted_map import Fitted
 
 GRADINGS: dict[str, Any] = {  # laws by their words in a scene
     "homogeneous": analytic.Homogeneous,

@@ -27,7 +27,7 @@ from mcgw.scene.surface import Surface as GivenSurface
 from mcgw.scene.values import documented, values_of_scene
 
 if TYPE_CHECKING:
-    from mcgw.scene.validity import Validity
+    from mcgw.validity.model_error import Validity
 
 _SURFACES, _MOST_SURFACES = 1000, 10**9  # where n_surfaces is left out; where rel_err is to decide
 _LOOKED_AT, _BEYOND = 4001, 1.1  # heights for the stiffest; and how much farther series reach
@@ -205,7 +205,7 @@ class Scene(Fields, Shown):
         >>> bool(mcgw.Scene(surface, separations=[0.0, 1.0]).validity().error["area"][0] < 0.1)
         True
         """
-        from mcgw.scene.validity_lookup import validity_of  # reads a table, which not every scene needs
+        from mcgw.validity.lookup import validity_of  # reads a table, which not every scene needs
 
         return validity_of(self, separations)
 

@@ -26,9 +26,10 @@ from analytic import (
 )
 from analytic.laws import ContactLaw, Film, Layer
 from mcgw.scene.kinds import ByName, Either, List, Number, Table, Whole, Word
-from mcgw.scene.measured import Fitted, Uncertainty
 from mcgw.scene.promises import SAMPLERS
 from mcgw.scene.section import Key, Kind
+from mcgw.scene.uncertainty import Uncertainty
+from mcgw.validity.fitted_map import Fitted
 
 if TYPE_CHECKING:
     from numpy.random import Generator, SeedSequence

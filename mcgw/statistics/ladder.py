@@ -16,7 +16,7 @@ from mcgw.ensemble.drawing import in_words
 from mcgw.ensemble.prices import Needs
 from mcgw.errors import RunError
 from mcgw.scene.scene import Scene
-from mcgw.scene.validity import percent
+from mcgw.validity.model_error import percent
 
 _SIZES = (2, 10, 100, 1000, 10_000, 100_000)
 _PILOT = 4  # maps on which levels are compared

@@ -3,7 +3,7 @@
     python runs/validation/build.py
 
 Writes the README and the pictures of this folder, and the condensed table that the simulator reads,
-mcgw/scene/validity.csv. Takes a few minutes and needs no boundary-element solver.
+mcgw/validity/table.csv. Takes a few minutes and needs no boundary-element solver.
 """
 
 from pathlib import Path
@@ -16,7 +16,7 @@ from solve_table import Row
 from validity_figures import chart, one_map
 
 HERE = Path(__file__).resolve().parent
-CONDENSED = HERE.parents[1] / "mcgw" / "scene" / "validity.csv"
+CONDENSED = HERE.parents[1] / "mcgw" / "validity" / "table.csv"
 SHOWN_MAP = {"hurst": 0.8, "x": 5.0, "seed": 1.0, "purpose": "study"}
 
 

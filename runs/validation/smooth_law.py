@@ -19,7 +19,7 @@ from fresh_maps import PATH
 from numpy.typing import NDArray
 from scipy.interpolate import RBFInterpolator
 
-from mcgw.scene.validity_table import Grid, rows
+from mcgw.validity.error_table import Grid, rows
 
 Array = NDArray[np.float64]
 MODELS = (("one radius", "none"), ("own radii", "none"), ("own radii", "summits"))

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from analytic import Model, Nayak, RandomCurvature, SpectralMoments
-from mcgw.scene import validity_lookup, validity_table
+from mcgw.validity import error_table, lookup
 
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "runs" / "validation"
-CONDENSED = ROOT / "mcgw" / "scene" / "validity.csv"
+CONDENSED = ROOT / "mcgw" / "validity" / "table.csv"
 
 sys.path.insert(0, str(FOLDER))
 
@@ -195,7 +195,7 @@ def test_95_percent_hold_of_maps_left_out(monkeypatch):
         with monkeypatch.context() as patch:
             patch.setattr(deviations, "deviations", lambda row, known=known: [known[id(row)]])
             lines = deviations.table_text(deviations.condensed(others), b"", 0).splitlines()
-        grid = validity_table.Grid.of(
+        grid = error_table.Grid.of(
             list(csv.DictReader(line for line in lines if not line.startswith("#"))), along_separation=False
         )
         for row, one in found:
@@ -205,7 +205,7 @@ def test_95_percent_hold_of_maps_left_out(monkeypatch):
                 real = getattr(one, name)
                 at = np.array([row["p"] * (1 + real) if name == "load" else row["p"]])
                 said = grid.expected(row["x"], at)
-                (bias,), (off,) = said.bias[name], validity_lookup.farthest(said, name, np.ones(1))
+                (bias,), (off,) = said.bias[name], lookup.farthest(said, name, np.ones(1))
                 if math.isnan(bias):
                     continue
                 low = bias - off if name == "separation" else (1 + bias) ** 2 / (1 + bias + off) - 1

@@ -10,9 +10,11 @@ from scipy import stats
 import analytic
 import mcgw
 from analytic.laws import crowding_factor
-from mcgw.scene.in_words import contact_facts, law_text
-from mcgw.scene.measured import Fitted, Uncertainty
+from mcgw.formats.law_text import law_text
+from mcgw.scene.in_words import contact_facts
+from mcgw.scene.uncertainty import Uncertainty
 from mcgw.statistics.comparison import verdict
+from mcgw.validity.fitted_map import Fitted
 
 SPECTRAL = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 mm^2", "78.6 GPa")
 FILE = """

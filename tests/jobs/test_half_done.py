@@ -8,7 +8,7 @@ import pytest
 import mcgw
 from mcgw.cli import main
 from mcgw.ensemble.simulation import Values
-from mcgw.scene.in_words import law_text
+from mcgw.formats.law_text import law_text
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "0.1 mm^2", "78.6 GPa")
 SCENE = mcgw.Scene(SURFACE, separations=[0.0, 1.0], n_surfaces=100, seed=1)

@@ -14,8 +14,8 @@ from mcgw.scene.promises import SAMPLERS
 
 # Packages are layers: each imports only from those before it. Above all is the door, `mcgw` itself.
 LAYERS = (
-    "errors", "machine", "formats", "scene", "sampling", "ensemble", "store", "sweeps", "jobs", "exports",
-    "maps", "elasticity", "statistics", "figures", "reports", "commands", "cli",
+    "errors", "machine", "formats", "validity", "scene", "sampling", "ensemble", "store", "sweeps", "jobs",
+    "exports", "maps", "elasticity", "statistics", "figures", "reports", "commands", "cli",
 )  # fmt: skip
 ROOT = Path(mcgw.__file__).parent
 

@@ -98,12 +98,12 @@ def after(tmp_path_factory):
     return {step: set(names) for step, names in map(json.loads, done.stdout.splitlines())}
 
 
-VALIDITY = list(ROOT.glob("mcgw/scene/validity*.py"))
+VALIDITY = [path for path in ROOT.glob("mcgw/validity/*.py") if path.stem not in ("__init__", "fitted_map")]
 # None of them may be there after a step.
 NOT_THERE = {
     "analytic": {"mcgw", "matplotlib", "h5py", "numba", "mpmath", "tqdm"},
     "parser": {"numpy", "numba", "h5py", "matplotlib", "scipy"},
-    "scene": {"numba", "h5py", "matplotlib", *(f"mcgw.scene.{path.stem}" for path in VALIDITY)},
+    "scene": {"numba", "h5py", "matplotlib", *(f"mcgw.validity.{path.stem}" for path in VALIDITY)},
     "show": {"matplotlib", "numba", "scipy.optimize", "scipy.stats"},
     "compare": {"matplotlib.pyplot", "numba", "scipy.optimize", "scipy.stats"},
     "run": {"matplotlib", "scipy.optimize", "scipy.stats"},

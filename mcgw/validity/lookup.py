@@ -1,6 +1,7 @@
 """Measured error of the model of a scene against elasticity, or that there is none."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -8,22 +9,21 @@ from numpy.typing import ArrayLike
 from analytic import Homogeneous
 from analytic.arrays import Array
 from mcgw.formats.table import evenly
-from mcgw.scene.fields import Fields
-from mcgw.scene.validity import Validity
-from mcgw.scene.validity_place import Place, not_on_the_map, place_of, reduced_pressure
-from mcgw.scene.validity_table import COLUMNS, Expected, Grid, grid_of
+from mcgw.validity.error_table import COLUMNS, Expected, Grid, grid_of
+from mcgw.validity.model_error import Validity
+from mcgw.validity.place_in_table import Place, not_on_the_map, place_of, reduced_pressure
 
 _MOST_SEPARATIONS = 64
 _NONE = 1.0  # contacts per surface; no statement for fewer
 _SURE = 2.1  # standard deviations that hold 95 % of maps left out: light loads have long tails
 
 
-def validity_of(scene: Fields, separations: ArrayLike | None = None) -> Validity:
+def validity_of(scene: Any, separations: ArrayLike | None = None) -> Validity:
     """Look up the error of a scene's model against elasticity.
 
     Parameters
     ----------
-    scene : Fields
+    scene : mcgw.Scene
         Whose geometry counts: a grading, a film and friction do not.
     separations : array_like, optional
         Reduced separations. Default: those of the scene, or 64 of them.
@@ -54,7 +54,7 @@ def _nothing(h: Array, why: str) -> Validity:
     return Validity(h, none, empty, empty, unknown=why)
 
 
-def _looked_up(scene: Fields, place: Place, grid: Grid, h: Array, felt: Array) -> Validity:
+def _looked_up(scene: Any, place: Place, grid: Grid, h: Array, felt: Array) -> Validity:
     p = reduced_pressure(scene, felt) / place.slope
     found = grid.expected(place.x, p)
     share = _share(scene, place, found, felt)
@@ -84,7 +84,7 @@ def farthest(found: Expected, name: str, share: Array) -> Array:
     return off if name == "separation" else (1 + found.bias[name]) * np.expm1(off)  # ratios differ by factors
 
 
-def _share(scene: Fields, place: Place, found: Expected, felt: Array) -> dict[str, Array]:
+def _share(scene: Any, place: Place, found: Expected, felt: Array) -> dict[str, Array]:
     """Root of the contacts of a map over those of a surface; of waves, if fewer of them, for all but areas.
 
     A gap, and what follows from it, is as sure as the long waves are many, however many contacts lie on them.
@@ -120,7 +120,7 @@ def _loads(place: Place, found: Expected, p: Array) -> str:
     return f"{_load_axis(place)} = {here} (measured: {told}{lighter})"
 
 
-def _where(scene: Fields, place: Place, grid: Grid, maps: int, loads: str) -> str:
+def _where(scene: Any, place: Place, grid: Grid, maps: int, loads: str) -> str:
     many = f"{maps} maps" if maps > 1 else "one map"
     by, alone = "", f"; nothing else: {place.area_only}" if place.area_only else ""
     if scene.fitted is not None:

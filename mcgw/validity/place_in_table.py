@@ -2,15 +2,15 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from analytic import Gaussian, Hertz, Nayak, RandomCurvature, SpectralMoments, Surface
 from analytic.arrays import Array
 from analytic.surface import LEAST_ALPHA, SUMMIT_SPREAD
-from mcgw.scene.fields import Fields
-from mcgw.scene.in_words import law_text
-from mcgw.scene.measured import Fitted
+from mcgw.formats.law_text import law_text
+from mcgw.validity.fitted_map import Fitted
 
 _CROWDING = 1 / (16 * math.sqrt(3 * math.pi))  # eta R sigma over sqrt(alpha - SUMMIT_SPREAD)
 LEAST_CROWDING = _CROWDING * math.sqrt(LEAST_ALPHA - SUMMIT_SPREAD)  # 0.0158: all waves have one length
@@ -76,7 +76,7 @@ def moments_of_nayak(surface: Surface, alpha: float) -> SpectralMoments:
     return SpectralMoments(m0, math.sqrt(m0 * m4 / alpha), m4)
 
 
-def not_on_the_map(scene: Fields) -> str | None:
+def not_on_the_map(scene: Any) -> str | None:
     """Why the model of a scene was never compared with elasticity; None if it was."""
     if type(scene.law) is not Hertz:
         return f'only for Hertz\'s law, not for contact.law = "{scene.law.name}"'
@@ -117,12 +117,12 @@ def _not_gaussian(fitted: Fitted, surface: Surface) -> str | None:
     return f"the map is not isotropic and Gaussian ({why})"
 
 
-def _of_alpha(scene: Fields) -> Surface:
+def _of_alpha(scene: Any) -> Surface:
     assert isinstance(scene.heights, Nayak)
     return moments_of_nayak(scene.surface, scene.heights.alpha).surface(1.0, 1.0)
 
 
-def place_of(scene: Fields) -> Place:
+def place_of(scene: Any) -> Place:
     """Place of a scene for which `not_on_the_map` has no reason."""
     surface, fitted = scene.surface, scene.fitted
     if isinstance(scene.heights, Nayak):
@@ -141,7 +141,7 @@ def place_of(scene: Fields) -> Place:
     return Place("gaussian", model, interaction, moments.alpha, g, rms, area_only, alike)
 
 
-def _apart(scene: Fields) -> str:
+def _apart(scene: Any) -> str:
     """Why an interaction differs from that of the periodic cells, or empty; areas do not depend on it."""
     found, surface = scene.interaction, scene.surface
     if found is None:
@@ -155,7 +155,7 @@ def _apart(scene: Fields) -> str:
     return ""
 
 
-def reduced_pressure(scene: Fields, h: Array) -> Array:
+def reduced_pressure(scene: Any, h: Array) -> Array:
     """Load over E* and the area that the asperities stand on, by Hertz's law without a grading, shape of `h`.
 
     Gauss's rule over the heights above h, which are smooth for the laws of the map: to 1e-9.

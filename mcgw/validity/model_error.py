@@ -10,7 +10,7 @@ import numpy as np
 from analytic.arrays import Array, Marks
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import SEPARATION, Column, Table
-from mcgw.scene.validity_table import COLUMNS
+from mcgw.validity.error_table import COLUMNS
 
 _AT_LOAD = {"area": "area", "stiffness": "stiffness", "separation": "gap"}  # columns at a given load
 _COLUMNS = {"area": "area", "stiffness": "stiffness", "separation": "gap/sigma", "load": "load at d"}

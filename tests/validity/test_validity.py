@@ -18,13 +18,12 @@ from scipy.stats import norm
 
 import analytic
 import mcgw
-from mcgw.scene import validity_lookup, validity_table
-from mcgw.scene.validity_place import LEAST_CROWDING, moments_of, reduced_pressure
-from mcgw.scene.validity_table import COLUMNS, grid_of
+from mcgw.validity import error_table as grid, lookup
+from mcgw.validity.place_in_table import LEAST_CROWDING, moments_of, reduced_pressure
 
-TABLE = Path(mcgw.__file__).parent / "scene" / "validity.csv"
+TABLE = Path(mcgw.__file__).parent / "validity" / "table.csv"
 HEAD = ["map", "model", "interaction", "x", "p"]
-HEAD += [f"{name}{end}" for name in COLUMNS for end in ("", "_std")] + ["maps", "contacts", "waves"]
+HEAD += [f"{name}{end}" for name in grid.COLUMNS for end in ("", "_std")] + ["maps", "contacts", "waves"]
 
 
 def packaged():
@@ -54,7 +53,7 @@ def test_the_table_is_as_its_readers_take_it():
         assert row["interaction"] in ("none", "summits", "contacts")
         assert min(row["x"], row["p"], row["contacts"]) > 0
         assert row["waves"] > 0 if row["map"] == "gaussian" else math.isnan(row["waves"])
-        for name in COLUMNS:
+        for name in grid.COLUMNS:
             assert math.isnan(row[name]) or row[name] > -1 or name == "separation"
             assert not row[f"{name}_std"] < 0
     for model in MODELS:
@@ -68,15 +67,15 @@ def test_the_table_is_as_its_readers_take_it():
 @pytest.mark.parametrize("model", MODELS, ids="-".join)
 def test_at_a_row_of_the_table_its_bias_is_said(model):
     """Bit for bit; and its contacts and waves, by which scatter is taken over to other surfaces."""
-    grid = grid_of(*model)
+    own = grid.grid_of(*model)
     for row in EVERY:
         if tuple(row[key] for key in HEAD[:3]) != model:
             continue
-        for name in COLUMNS:
+        for name in grid.COLUMNS:
             p = row["p"] * (1 + row["load"]) if name == "load" else row["p"]
             if math.isnan(p):
                 continue
-            found = grid.expected(row["x"], np.array([p]))
+            found = own.expected(row["x"], np.array([p]))
             np.testing.assert_allclose(found.bias[name], row[name], rtol=1e-7, atol=1e-12)
             if name == "area":
                 np.testing.assert_allclose(found.contacts, row["contacts"], rtol=1e-9)
@@ -94,12 +93,12 @@ def law_of(model, name):
     return np.linalg.solve((A.T * nu) @ A, (A.T * nu) @ logs), told
 
 
-@pytest.mark.parametrize("name", COLUMNS[:-1])
+@pytest.mark.parametrize("name", grid.COLUMNS[:-1])
 @pytest.mark.parametrize("model", MODELS, ids="-".join)
 def test_scatter_is_a_law_of_all_rows_that_none_contradicts(model, name):
     """Sum of (maps - 1) s^2 over the law's is chi-squared but for what maps of one seed share over loads."""
     law, told = law_of(model, name)
-    found = grid_of(*model).scatter[name]
+    found = grid.grid_of(*model).scatter[name]
     np.testing.assert_allclose(found.law, law, rtol=1e-6, atol=1e-9)
     ratio = np.array([(s / float(found(row["x"], row["contacts"]))) ** 2 for row, s in told])
     nu = np.array([row["maps"] - 1 for row, _ in told])
@@ -261,7 +260,7 @@ def test_lighter_loads_are_those_of_what_contact_tends_to():
         model, last = row["model"], rows[tuple(row[key] for key in HEAD[:4])]
         assert row["p"] <= 1e-2 * last["p"]
         if row["map"] == "caps" or (model, row["interaction"]) == ("own radii", "none"):
-            for name in COLUMNS[:3]:
+            for name in grid.COLUMNS[:3]:
                 assert row[name] == pytest.approx(last[name] / 2, abs=1.01e-4)
                 assert row[f"{name}_std"] == pytest.approx(abs(row[name]) * (1 + (row["map"] == "gaussian")
                     * (name != "separation") * row[name]), abs=2e-4)  # fmt: skip
@@ -344,7 +343,7 @@ def test_far_away_and_far_down_are_outside():
 def test_a_grading_leaves_the_share_of_the_geometry():
     plain = mcgw.Scene(surface_of(4.0), separations=[0.5], seed=1)
     graded = plain.replace(grading=analytic.Exponential(1.2))
-    for name in COLUMNS:
+    for name in grid.COLUMNS:
         np.testing.assert_array_equal(plain.validity().error[name], graded.validity().error[name])
     for scene, word in ((plain, False), (graded, True)):
         for said in (scene.validity().verdict, scene.validity().brief):
@@ -353,9 +352,9 @@ def test_a_grading_leaves_the_share_of_the_geometry():
 
 def test_few_contacts_widen_and_many_do_not_hide_how_few_maps_there_were(monkeypatch):
     """A table of one surface, four maps: -.1 and .9 times 95 % of factors, no less than those of a mean."""
-    monkeypatch.setattr(validity_table, "rows", lambda: tuple(flat_table()))
-    validity_table.grid_of.cache_clear()
-    monkeypatch.setattr(validity_lookup, "grid_of", validity_table.grid_of.__wrapped__)
+    monkeypatch.setattr(grid, "rows", lambda: tuple(flat_table()))
+    grid.grid_of.cache_clear()
+    monkeypatch.setattr(lookup, "grid_of", grid.grid_of.__wrapped__)
     scene = mcgw.Scene(surface_of(4.0), separations=[1.0], seed=1)
     # four maps tell the logarithm of a deviation too low by this
     std = 0.02 / 0.9 * math.exp((math.log(1.5) - psi(1.5)) / 2)
@@ -384,7 +383,7 @@ def test_an_interaction_has_its_own_rows_and_a_body_the_area_alone():
     plain = mcgw.Scene(surface_of(4.0), separations=[1.2, 1.6], seed=1)
     body = plain.replace(interaction="body").validity()
     np.testing.assert_array_equal(body.error["area"], plain.validity().error["area"])
-    for name in COLUMNS[1:]:
+    for name in grid.COLUMNS[1:]:
         assert np.isnan(body.error[name]).all()
     assert "undeformed body" in body.details
     assert "load at a given" not in body.verdict
@@ -436,7 +435,7 @@ def test_each_error_is_said_where_it_was_measured(scene):
 
 @pytest.mark.parametrize("worst", [0.1, 0.1000001, 0.0999999, 2.345])
 def test_what_is_said_is_rounded_up(worst):
-    from mcgw.scene.validity import percent
+    from mcgw.validity.model_error import percent
 
     said = float(percent(worst).removesuffix(" %")) / 100
     assert worst - 1e-12 <= said < worst + 0.01

@@ -23,7 +23,7 @@ _SPECTRA = 0.02
 @cache
 def rows() -> tuple[dict[str, str], ...]:
     """Columns of the table by name; the head of the file describes them."""
-    text = (files("mcgw.scene") / "validity.csv").read_text(encoding="utf-8")
+    text = (files("mcgw.validity") / "table.csv").read_text(encoding="utf-8")
     return tuple(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
 
 
