@@ -1,7 +1,8 @@
 """All that users read, held to recorded text: what each command says, writes and draws, its help, its errors.
 
 As `test_answers` holds results: `--record` writes `tests/answers/read.*.txt` anew, and its reader reads the
-difference. What a clock, a disk or a version decides stands there as a #.
+difference. What a clock, a disk or a version decides stands there as a #. Of the lines of figures, files and
+helps each stands once in a record.
 """
 
 import re
@@ -67,7 +68,7 @@ OTHER = re.compile(
     r"(?<![.\d])[0-9a-f]{12,64}\b|(?<=^  (?:with|made) ).*|(?<=time at others: ).*|(?<=mcgw )\d+\.\d[\w.+]*"
     r"|\d{4}-\d\d-\d\d[T ][\d:.+Z-]*"
 )
-LONG, TABLE = 40, 12  # lines of a text, and of a file of numbers, that stand one by one
+LONG, TABLE = 40, 12  # lines of a text or figures, and of a file of numbers, that stand one by one
 TEXT = {".toml", ".csv", ".inp", ".txt", ".json"}
 SURFACE = """surface = {sigma = 1.37e-6, radius = 13e-6, eta = 3e8, nominal_area = 1e-6, E_star = 78.6e9}
 ensemble = {n_surfaces = 30, seed = 5, n_asperities = 300}
@@ -102,11 +103,11 @@ def written(path):
 
 
 def shortened(told, most=LONG):
-    """The first lines of many, and all numbers in the others as one line."""
+    """The first lines of many, and all numbers in the others, small beside large, as one line."""
     if len(told) <= most:
         return told
     rest = [float(x) for x in re.findall(r"-?\d+\.?\d*(?:e[-+]\d+)?", "\n".join(told[most:]))]
-    return [*told[:most], f"... {len(told) - most} lines: {of_array(rest)}"]
+    return [*told[:most], f"... {len(told) - most} lines: {of_array(np.arcsinh(1e12 * np.array(rest)))}"]
 
 
 @pytest.fixture(scope="module")
@@ -129,6 +130,13 @@ def material(tmp_path_factory):
     return folder
 
 
+def pictured(figures):
+    """The first lines of figures; of the others what the axes say, and all numbers as one line."""
+    rest = figures[LONG:]
+    said = [line for line in rest if not line.startswith("  ") or line.startswith("  says")]
+    return [*figures[:LONG], *said, *shortened(rest, 0)] if rest else figures
+
+
 def kept_in(figures):
     def keep(self, target, **_):
         figures.extend(drawn(self))
@@ -149,19 +157,24 @@ def test_commands(command, material, recorded, monkeypatch):
         before = {path: path.stat().st_mtime_ns for path in material.rglob("*")}
         done = call(*words.split(), cwd=material)
         told += [f"$ mcgw {words}", f"code {done.returncode}", *shortened(list(steady(done.stdout)))]
-        told += [f"! {line}" for line in steady(done.stderr)] + figures
+        told += [f"! {line}" for line in steady(done.stderr)]
+        told += [line for line in pictured(figures) if line not in told]
         figures.clear()
         for path in sorted(material.rglob("*")):
             if path.is_file() and before.get(path) != path.stat().st_mtime_ns:
                 told.append(f"> {path.relative_to(material)}")
-                told += written(path) if path.suffix in {*TEXT, ".html"} else []
+                lines = written(path) if path.suffix in {*TEXT, ".html"} else ()
+                told += [line for line in lines if line not in told]
     recorded(f"read.{command}", told)
 
 
 def test_helps(recorded, monkeypatch):
     monkeypatch.setenv("COLUMNS", "110")
-    helps = ((name, call(name, "--help").stdout) for name in COMMANDS)
-    recorded("read.helps", (line for name, text in helps for line in (f"== {name}", *text.splitlines())))
+    told = []
+    for name in COMMANDS:
+        told.append(f"== {name}")
+        told += [line for line in call(name, "--help").stdout.splitlines() if line and line not in told]
+    recorded("read.helps", told)
 
 
 VALUES = ["'a word'", "''", "-1", "0", "2.5", "nan", "true", "[]", "[1, 'x']", "{}"]

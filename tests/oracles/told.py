@@ -17,6 +17,7 @@ from matplotlib.ticker import FixedFormatter, FuncFormatter
 
 ANSWERS = Path(__file__).parents[1] / "answers"
 SHORT = 8  # numbers that stand one by one
+WIDTH = 240  # characters within which parts stand beside one another
 _NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?")
 
 
@@ -63,13 +64,13 @@ def drawn(figure):
     figure = figure.figure
     size = " x ".join(f"{x:.4g}" for x in figure.get_size_inches())
     yield f"figure: {figure.get_suptitle()!r} {figure.get_supxlabel()!r}, {size} inches"
-    for one in figure.texts:
+    for one in filter(lambda text: text.get_text(), figure.texts):
         x, y = one.get_position()
         yield f" text at {x:.4g} {y:.4g}, {one.get_fontsize():g} pt: {one.get_text()[:20]!r}"
     for axis in figure.axes:
         words = axis.get_title(loc="left"), axis.get_title(), axis.get_xlabel(), axis.get_ylabel()
         yield f" axes: {' | '.join(words)}, at {' '.join(f'{x:.4g}' for x in axis.get_position().bounds)}"
-        yield from (f"  {one}" for one in map(_axis, (axis.xaxis, axis.yaxis)))
+        yield f"  x {_axis(axis.xaxis)}; y {_axis(axis.yaxis)}"
         legend = axis.get_legend()
         entries = legend.get_texts() if legend else ()
         sizes = sorted({t.get_fontsize() for t in (axis.title, axis.xaxis.label, axis.yaxis.label, *entries)})
@@ -115,39 +116,62 @@ def _colour(one):
     return " ".join(f"{x:.3g}" for x in face[0]) if face.size else "no face"
 
 
-def lines(value, name="", depth=6):
-    """A value as lines, with its parts below it."""
+def fields_of(value):
+    """Public fields of a dataclass or named tuple that hold something, by name; of anything else None."""
+    if dataclasses.is_dataclass(value) and not inspect.isclass(value):
+        names = [f.name for f in dataclasses.fields(value)]
+    elif hasattr(value, "_fields"):
+        names = value._fields
+    else:
+        return None
+    held = ((name, getattr(value, name)) for name in names if not name.startswith("_"))
+    return {name: part for name, part in held if part is not None}
+
+
+def short(value, depth):
+    """A value on one line."""
     match value:
         case None | bool() | str() | bytes() | Enum() | Path():
-            yield f"{name} = {value!r}"
+            return repr(value)
         case int() | float() | np.number():
-            yield f"{name} = {number(value)}"
+            return number(value)
         case np.ndarray():
-            yield f"{name} = {of_array(value)}"
+            return of_array(value)
         case Mapping():
-            yield f"{name}: {len(value)}"
-            for key, part in value.items():
-                yield from lines(part, f"{name}[{key!r}]", depth - 1)
+            parts = (f"{key!r}: {short(part, depth - 1)}" for key, part in value.items())
+            return "{" + ", ".join(parts) + "}"
         case list() | tuple() if not hasattr(value, "_fields"):
             if value and all(isinstance(x, int | float | np.number) for x in value):
-                yield f"{name} = {of_array(value)}"
-            else:
-                yield f"{name}: {len(value)}"
-                for i, part in enumerate(value):
-                    yield from lines(part, f"{name}[{i}]", depth - 1)
-        case _ if depth and (dataclasses.is_dataclass(value) or hasattr(value, "_fields")):
-            yield f"{name}: {type(value).__name__}"
-            fields = getattr(value, "_fields", None) or [f.name for f in dataclasses.fields(value)]
-            for field in fields:
-                if not field.startswith("_"):
-                    yield from lines(getattr(value, field), f"{name}.{field}", depth - 1)
+                return of_array(value)
+            return "(" + ", ".join(short(part, depth - 1) for part in value) + ")"
+    parts = fields_of(value) if depth else None
+    if parts is None:
+        return f"a {type(value).__name__}"
+    return f"{type(value).__name__}({', '.join(f'{k}={short(v, depth - 1)}' for k, v in parts.items())})"
+
+
+def lines(value, name="", depth=6):
+    """A value as one line if it fits, else its parts as lines below it."""
+    text = short(value, depth)
+    match value:
+        case Mapping():
+            parts = {f"{name}[{key!r}]": part for key, part in value.items()}
+        case list() | tuple() if not hasattr(value, "_fields"):
+            parts = {f"{name}[{i}]": part for i, part in enumerate(value)}
         case _:
-            yield f"{name}: a {type(value).__name__}"
+            parts = {f"{name}.{key}": part for key, part in (fields_of(value) or {}).items()}
+    if len(text) <= WIDTH or not parts:
+        yield f"{name} = {text}"
+        return
+    yield f"{name}: {len(parts)} of a {type(value).__name__}"
+    for key, part in parts.items():
+        yield from lines(part, key, depth - 1)
 
 
 def answers(thing, without=(), **arguments):
     """All that an object says of itself: fields, properties, methods whose arguments are known."""
     yield f"{type(thing).__name__}:"
+    nothing = []
     for word in sorted(w for w in dir(thing) if not w.startswith("_") and w not in without):
         try:
             part = getattr(thing, word)
@@ -165,10 +189,13 @@ def answers(thing, without=(), **arguments):
                 for row in rows:
                     said = ", ".join(x if isinstance(x, str) else of_array(x) for x in row.values())
                     yield from answer(lambda part=part, row=row: part(*row.values()), f".{word}({said})")
+            elif part is None:
+                nothing.append(word)
             else:
                 yield from lines(part, f".{word}")
         except (ValueError, KeyError) as error:
             yield f".{word} ! {type(error).__name__}: {error}"
+    yield f"None: {', '.join(nothing)}"
 
 
 def answer(ask, name):
