@@ -15,15 +15,15 @@ In the mean of the square, ``-(Q^2)' = -2 Q Q'``, the others count with their ow
 asperity has q(s), and each of the N - 1 others q(t) where the last N - 2 bear what both leave.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import cache, cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.special import ndtri
 
-from analytic.arrays import Array
+from analytic.arrays import Array, Complex, Ints
 from analytic.distribution.of_model import check_falling, shares_upto
 from analytic.inversion import LOWEST
 from analytic.laws import term_of
@@ -105,7 +105,7 @@ def specimen_moments(model: Any, given: str, value: float, names: Sequence[str])
     lowered, squared, lifts = 0.0, 0.0, low + (high - low) * x
     deepest = _deepest(model, given, value / quantity_of(given).scale(model.surface), lifts)
     for h, most, width in zip(lifts, deepest, (high - low) * w, strict=True):
-        lower, rates, of_squares = _Lift.of(model, given, value, names, float(h), float(most)).gains()
+        lower, rates, of_squares = _gains(model, given, value, names, float(h), float(most))
         lowered += float(width * lower)
         squared += float(2 * (high - h) * width * lower)
         mean += width * rates
@@ -168,87 +168,83 @@ class _Added:
 
 
 @dataclass(frozen=True, eq=False)
-class _Lift:
-    """What means over surfaces gain for each unit of separation, at one separation.
+class _Beside:
+    """The asperities beside one, or beside two, and how many surfaces of them bear what these leave.
 
     Parameters
     ----------
-    model : Model
-        Of all asperities.
-    value : float
-        Of the given sum.
-    added : sequence of _Added
-        By asperities within the pieces of the law, then by those that go from one to the next.
-    cells : ndarray
-        See `_cells`.
-    below : float
-        Probability of an asperity that does not touch.
-    upto : callable
-        Shares of surfaces with so many asperities whose given sum is no more than some values.
-    lowest : float
-        Next to no surface has less of the given sum.
+    left : ndarray
+        What the one leaves of the given sum, over a step of the grid from its start.
+    given : ndarray
+        What the other one may add, in cells, over a step of the grid.
+    bear : ndarray
+        Share of the surfaces of all others with no more than each point of the grid, from its start.
+    none : float
+        What of that share jumps at the start: of surfaces where no other asperity touches.
     """
 
-    model: Any
-    value: float
-    added: Sequence[_Added]
-    cells: Array
-    below: float
-    upto: Callable[[float, Array], Array]
-    lowest: float
+    left: Array
+    given: Array
+    bear: Array
+    none: float
 
-    @classmethod
-    def of(cls, model: Any, given: str, value: float, names: Sequence[str], h: float, most: float) -> "_Lift":
-        """At a separation, where no asperity of the surface's radius alone penetrates deeper than `most`."""
-        rule, added = model.asperities(given, h, most * _PARTS)
-        pressed = _pressed(model, given, names, h, rule, added(rule))
-        parts, cells = (
-            [pressed, *_jumping(model, given, names, h, rule)],
-            _cells(model, given, names, h, rule, pressed),
-        )
-        lowest = min(float(model.mean(given, h)), value) - _SPREADS * float(model.std(given, h))
-        upto = shares_upto(model, given, h)
-        return cls(model, value, parts, cells, rule.below, upto, lowest)
+    @cached_property
+    def _spectrum(self) -> Complex:
+        return np.fft.rfft(self.bear - self.none, 2 * _GRID)
 
-    def gains(self) -> tuple[float, Array, Array]:
-        """Return the share of surfaces that are lower, and the rates of means and of mean squares.
+    @cached_property
+    def _order(self) -> Ints:
+        return np.argsort(self.given)
 
-        For each unit of separation; the rates have shape (names,).
-        """
-        n, poisson = self.model.number, self.model.count == "poisson"
-        one, two = (0, 0) if poisson else (1, 2)  # of a Poisson number there are as many beside one
-        given, weights, *marks = self.cells
-        start = max(self.lowest, 0.0)
-        step, places = (self.value - start) / (_GRID - 1), np.arange(_GRID)
-        bear = self.upto(n - two, np.asarray(start + step * places))
-        none = bear[0] if start == 0 else 0.0  # share of the surfaces where no other asperity touches
-        spectrum = np.fft.rfft(bear - none, 2 * _GRID)
-        added = np.append(np.concatenate([part.given for part in self.added]), 0.0)
-        left, place = (self.value - added - start) / step, given / step
-        inside = place < _GRID - 1
-        at = place[inside].astype(np.int64)
-        part, order = place[inside] - at, np.argsort(place)
+    def bears(self) -> Array:
+        """Return the share of surfaces that bear what the one leaves."""
+        return np.asarray(np.interp(self.left, np.arange(_GRID), self.bear, left=0.0))
 
-        def beside(weights: Array) -> Array:
-            """Sum over an asperity of its weight, where all others bear what it and one leave."""
-            w, upto = weights[inside], np.cumsum(weights[order])
-            shared = np.bincount(at, w * (1 - part), _GRID) + np.bincount(at + 1, w * part, _GRID)
-            both = np.fft.irfft(np.fft.rfft(shared, 2 * _GRID) * spectrum, 2 * _GRID)[:_GRID]
-            alone = np.interp(left, place[order], upto - weights[order] / 2, left=0.0)
-            return np.asarray(np.interp(left, places, both, left=0.0) + none * alone)
+    def sums(self, weights: Array) -> Array:
+        """Return sums of weights of the other one, where all others bear what the two leave."""
+        inside = self.given < _GRID - 1
+        w, at = weights[inside], self.given[inside].astype(np.int64)
+        part = self.given[inside] - at
+        shared = np.bincount(at, w * (1 - part), _GRID) + np.bincount(at + 1, w * part, _GRID)
+        both = np.fft.irfft(np.fft.rfft(shared, 2 * _GRID) * self._spectrum, 2 * _GRID)[:_GRID]
+        in_order = weights[self._order]
+        upto = np.cumsum(in_order) - in_order / 2
+        alone = np.interp(self.left, self.given[self._order], upto, left=0.0)
+        return np.asarray(np.interp(self.left, np.arange(_GRID), both, left=0.0) + self.none * alone)
 
-        bears = np.interp(left, places, bear, left=0.0)
-        *bearable, whole = bears if poisson else beside(weights) + self.below * bears
-        p, own, rates = (
-            np.concatenate([getattr(part, name) for part in self.added], axis=-1)
-            for name in ("probabilities", "own", "rates")
-        )
-        squares = [
-            rate @ (mine * bearable + (n - one) * beside(his)[:-1])
-            for rate, mine, his in zip(rates, own, marks, strict=True)
-        ]
-        lower = whole if poisson else self.below * whole + p @ bearable
-        return float(lower), n * rates @ bearable, 2 * n * np.array(squares)
+
+def _gains(
+    model: Any, given: str, value: float, names: Sequence[str], h: float, most: float
+) -> tuple[float, Array, Array]:
+    """Share of surfaces that are lower than a separation, and the rates of means and of mean squares there.
+
+    For each unit of separation; the rates have shape (names,). No asperity of the surface's radius alone
+    penetrates deeper than `most`.
+    """
+    n, poisson = model.number, model.count == "poisson"
+    one, two = (0, 0) if poisson else (1, 2)  # of a Poisson number there are as many beside one
+    rule, added = model.asperities(given, h, most * _PARTS)
+    pressed = _pressed(model, given, names, h, rule, added(rule))
+    parts = [pressed, *_jumping(model, given, names, h, rule)]
+    in_cells, weights, *marks = _cells(model, given, names, h, rule, pressed)
+    least = min(float(model.mean(given, h)), value) - _SPREADS * float(model.std(given, h))
+    start = max(least, 0.0)
+    step = (value - start) / (_GRID - 1)
+    bear = shares_upto(model, given, h)(n - two, np.asarray(start + step * np.arange(_GRID)))
+    left = value - np.append(np.concatenate([part.given for part in parts]), 0.0) - start
+    beside = _Beside(left / step, in_cells / step, bear, bear[0] if start == 0 else 0.0)
+    bears = beside.bears()
+    *bearable, whole = bears if poisson else beside.sums(weights) + rule.below * bears
+    p, own, rates = (
+        np.concatenate([getattr(part, name) for part in parts], axis=-1)
+        for name in ("probabilities", "own", "rates")
+    )
+    squares = [
+        rate @ (mine * bearable + (n - one) * beside.sums(his)[:-1])
+        for rate, mine, his in zip(rates, own, marks, strict=True)
+    ]
+    lower = whole if poisson else rule.below * whole + p @ bearable
+    return float(lower), n * rates @ bearable, 2 * n * np.array(squares)
 
 
 def _cells(model: Any, given: str, names: Sequence[str], h: float, rule: Any, pressed: _Added) -> Array:
@@ -264,15 +260,10 @@ def _cells(model: Any, given: str, names: Sequence[str], h: float, rule: Any, pr
     parts = -(-_CELLS // p.size)
     edges = np.interp(np.arange(p.size * parts + 1) / parts, np.arange(p.size + 1), edges)
     s, branch = (edges[1:] + edges[:-1]) / 2, model.ways.loading
-    found, weights, modulus = (
-        np.empty((2 + len(names), s.size)),
-        model.heights.pdf(s) * np.diff(edges),
-        model.grading(s),
-    )
-    for k, q in enumerate(map(quantity_of, [given, *names])):
-        found[k + (k > 0)] = q.scale(model.surface) * term_of(q.base, branch, h, s, modulus)
-    found[1] = 1.0
-    found[1:] *= weights
+    found, modulus = np.ones((2 + len(names), s.size)), model.grading(s)
+    for k, q in zip([0, *range(2, len(found))], map(quantity_of, [given, *names]), strict=True):
+        found[k] = q.scale(model.surface) * term_of(q.base, branch, h, s, modulus)
+    found[1:] *= model.heights.pdf(s) * np.diff(edges)
     found[1:] *= (whole[1:].sum(axis=1) / found[1:].sum(axis=1))[:, None]
     return found
 
