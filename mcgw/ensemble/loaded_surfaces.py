@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from analytic import Hertz, MeasuredHeights, MeasuredRadii, Quantity
-from analytic.arrays import Array
+from analytic.arrays import Array, hold
 from mcgw.ensemble.at_load import NEGATIVE, quantities_at
 from mcgw.ensemble.many_surfaces import ManySurfaces
 from mcgw.ensemble.separation import LOWEST, Summits
@@ -95,7 +95,7 @@ class LoadedSurfaces:
             {name: np.concatenate([part[k][name] for part in parts]) for name in parts[0][k]}
             for k in range(len(self.values))
         ]
-        self.__dict__["sums"] = found
+        hold(self, sums=found)
         return found
 
     def contacts(self, surface: int, h: float) -> tuple[Array, Array | None]:

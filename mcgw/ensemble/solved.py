@@ -1,6 +1,6 @@
 """The result of `mcgw.solve`: the state of surfaces at one given load or real area."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -10,8 +10,9 @@ from scipy.special import stdtrit
 
 from analytic import SEPARATIONS, quantity_of, yielding_share
 from analytic.arrays import Array
-from analytic.at_load import Moments, specimen_moments
-from mcgw.ensemble.at_load import GAPS, answers_at, asperities_of, mean_surface, quantities_at
+from analytic.at_load import Moments
+from mcgw.ensemble.answers import Answers, exact_moments
+from mcgw.ensemble.at_load import GAPS, answers_at, asperities_of, mean_surface
 from mcgw.ensemble.intervals import FEWEST, interval_column, laws_are_quick
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
@@ -27,46 +28,6 @@ if TYPE_CHECKING:
 
 
 _ENOUGH = 10  # surfaces for each number that a control variate is fitted with
-
-
-class Answers(Mapping[str, float]):
-    """Answers by name, each found when it is first asked for.
-
-    Parameters
-    ----------
-    names : sequence of str
-        All that there are.
-    find : callable
-        Finds the one of a name.
-    """
-
-    def __init__(self, names: Sequence[str], find: Callable[[str], float]) -> None:
-        """Find nothing yet."""
-        self._names, self._find, self._found = tuple(names), find, dict[str, float]()
-
-    def __getitem__(self, name: str) -> float:
-        """Return an answer; KeyError if there is no such."""
-        if name not in self._names:
-            raise KeyError(name)
-        if name not in self._found:
-            self._found[name] = float(self._find(name))
-        return self._found[name]
-
-    def __contains__(self, name: object) -> bool:
-        """Tell whether there is such an answer, without finding it."""
-        return name in self._names
-
-    def __iter__(self) -> Iterator[str]:
-        """Iterate over the names."""
-        return iter(self._names)
-
-    def __len__(self) -> int:
-        """Count the answers."""
-        return len(self._names)
-
-    def __repr__(self) -> str:
-        """Show all, as a dict."""
-        return repr(dict(self))
 
 
 @dataclass(frozen=True, repr=False)
@@ -237,41 +198,8 @@ class Solution(Shown):
 
     @cached_property
     def _exact(self) -> Moments:
-        """Means and standard deviations that need no draw: by quadrature, in the units of `surfaces`."""
-        scene, sigma, alone = self.scene, self.scene.surface.sigma, asperities_of(self.scene)
-        given = Moments({self.given: self.amount}, {self.given: 0.0})
-        if alone.curvature is not None or alone.as_measured or self.given == "nominal_separation":
-            return given  # takes longer than to draw, or is not known
-        summed = [name for name in quantities_at(alone) if name in self.theory and name != self.given]
-        summed = [name for name in summed if quantity_of(name).base != "load_slope"]
-        try:
-            with np.errstate(all="ignore"):
-                found = specimen_moments(alone.theory, self.given, self.amount, summed)
-        except (ValueError, IndexError):  # far up, where hardly any asperity of any surface is
-            return given
-        if not np.isfinite([*found.mean.values(), *found.std.values()]).all():
-            return given
-        mean, std = (
-            {name: x for name, x in part.items() if name == "separation" or not scene.series(name)}
-            for part in found
-        )
-        lift = mean["separation"] - self.theory["separation"]
-        moved: tuple[str, ...] = ()
-        if scene.interaction is None:
-            moved = (scene.gap,)
-            if "conductance_si" in mean:
-                area = scene.surface.nominal_area
-                for part in (mean, std):
-                    spots = part["contact_conductance"] = part["conductance_si"] / area
-                    if scene.filled is not None and scene.filled.gas is None:
-                        part |= {"gap_conductance": 0.0, "joint_conductance": spots}
-        elif self.given == "load":
-            moved = ("nominal_separation", *GAPS)
-        for name in moved:  # from the separation alike on all surfaces
-            if name in self.theory:
-                unit = sigma if name in GAPS else 1.0
-                mean[name], std[name] = self.theory[name] + unit * lift, unit * std["separation"]
-        return Moments(mean | given.mean, std | given.std)
+        """Means and standard deviations that need no draw, in the units of `surfaces`."""
+        return exact_moments(self.scene, self.given, self.amount, self.theory)
 
     @cached_property
     def separation_law(self) -> "Law | None":
