@@ -64,8 +64,8 @@ def drawing(args: argparse.Namespace) -> Iterator[dict[str, Any]]:
         yield {"threads": args.threads, "progress": show, **who}
 
 
-def tell_share(shard: str, path: Path, left: int) -> int:
-    """Print that a share is done and what remains; return the exit code."""
+def tell_shard(shard: str, path: Path, left: int) -> int:
+    """Print that a shard is done and what remains; return the exit code."""
     then = f"{left} surfaces are still missing" if left else f"all are done: mcgw merge {path}"
     news(f"{path}.parts: shard {shard} is done; {then}")
     return 0

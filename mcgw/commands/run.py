@@ -5,7 +5,7 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mcgw.commands.options import add_drawing_options, add_set_option, changes_of, drawing, tell_share
+from mcgw.commands.options import add_drawing_options, add_set_option, changes_of, drawing, tell_shard
 
 if TYPE_CHECKING:
     from mcgw.scene.scene import Scene
@@ -63,7 +63,7 @@ def _execute(args: argparse.Namespace) -> int:
             news(f"forecast: {before(expected, seconds_per_surface(scene, sampler_of(scene)))}")
         ensemble = run(scene, path, **how)
     if args.shard:
-        return tell_share(args.shard, path, ensemble)
+        return tell_shard(args.shard, path, ensemble)
     news(f"{path}: {ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, seed {scene.seed}")
     if ruled:
         from mcgw.ensemble.forecast import after

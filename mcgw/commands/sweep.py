@@ -11,7 +11,7 @@ from mcgw.commands.options import (
     changes_of,
     drawing,
     ranged,
-    tell_share,
+    tell_shard,
 )
 
 HELP = "draw many scenes at once on the same surfaces: means, deviations, paired ratios; resumes"
@@ -67,7 +67,7 @@ def execute(args: argparse.Namespace) -> int:
     with drawing(args) as how:
         found = sweep(scene, over, zipped=args.zip, path=path, **how)
     if args.shard is not None:
-        return tell_share(args.shard, path, found)
+        return tell_shard(args.shard, path, found)
     news(f"{path}: {found.axes.size} scenes, seed {scene.seed}")
     ratios = ratios_in_words(found)
     news(*ratios[:1])

@@ -12,7 +12,7 @@ from itertools import groupby
 from operator import itemgetter
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from analytic import PiecewiseSeries
 from analytic.arrays import hold
@@ -151,6 +151,10 @@ class Job:
         with use_threads(threads):
             return self.reducers[g].tables(first, first + span.n, go_on)
 
+    def about(self, seconds: float) -> dict[str, Any]:
+        """Root attributes of its file that tell of the run."""
+        return {"run": self.record.identity, "draws": self.record.drawn_with, "wall_seconds": seconds}
+
     def contents(self, blocks: Iterable[tuple[int, Tables]], seconds: float) -> Contents:
         """Those of the file, of all blocks in their order, each with the number of its group."""
         groups = groupby(blocks, itemgetter(0))
@@ -158,8 +162,7 @@ class Job:
             one.held(tables for _, tables in some)
             for one, (_, some) in zip(self.reducers, groups, strict=True)
         ]
-        run = self.record
-        about = {"run": run.identity, "draws": run.drawn_with, "wall_seconds": seconds}
+        run, about = self.record, self.about(seconds)
         if run.axes:
             from mcgw.sweeps.file import contents_of_sweep  # of which most runs are none
 

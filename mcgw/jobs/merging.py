@@ -130,9 +130,11 @@ def _merged(job: Job, check: Callable[[], None]) -> Contents:
 
     if run.plan.whole:
         return job.contents(blocks(), seconds)
-    rows = partial(Rows, run.plan.total)
-    about = {"run": run.identity, "draws": run.drawn_with, "wall_seconds": seconds}
-    return contents_of_values(run.scene, run.sampler, lambda name: rows(partial(pieces, name)), **about)
+
+    def rows(name: str) -> Rows:
+        return Rows(run.plan.total, partial(pieces, name))
+
+    return contents_of_values(run.scene, run.sampler, rows, **job.about(seconds))
 
 
 def _before(run: RunFolder) -> tuple[int, list[Tables], float]:

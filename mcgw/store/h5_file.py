@@ -201,20 +201,20 @@ def read_tables(path: Path, wanted: Iterable[str] | None = None) -> Tables:
         If the file is gone or damaged.
     """
     with _in_words(path), open_h5(path) as file:
-        found = {}
-        for name in table_names(file) if wanted is None else wanted:
-            found[name] = file[name][()]
-            _compare(file[name], [found[name]])
-        return found
+        return {name: _whole(file[name]) for name in (table_names(file) if wanted is None else wanted)}
 
 
 def drawn_tables(path: Path) -> Tables:
     """Of a file that holds no surfaces, all that its statistics follow from, read and compared."""
     with _in_words(path), open_h5(path) as file:
-        found = {name: file[GROUP][name][()] for name in file[GROUP]}
-        for name, values in found.items():
-            _compare(file[GROUP][name], [values])
-        return found
+        return {name: _whole(table) for name, table in file[GROUP].items()}
+
+
+def _whole(table: h5py.Dataset) -> NDArray[Any]:
+    """All numbers of a table, compared with its checksum."""
+    values = np.asarray(table[()])
+    _compare(table, [values])
+    return values
 
 
 def _compare(table: h5py.Dataset, pieces: Iterable[NDArray[Any]]) -> None:
