@@ -14,7 +14,7 @@ from mcgw.maps.map_files import read_map
 from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography
 from mcgw.scene.scene import Scene
-from mcgw.validity.place_in_table import moments_of_nayak
+from mcgw.validity.fitted_map import moments_of_nayak
 
 _POINTS = 8  # a shortest wave: twice as many change area by 2 %, and the rest by less
 _MOST_POINTS = 2048  # a side

@@ -17,8 +17,8 @@ from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
 from mcgw.scene.scene import Scene
 from mcgw.scene.uncertainty import Uncertainty
+from mcgw.validity.fitted_map import moments_of_nayak
 from mcgw.validity.model_error import Validity, percent
-from mcgw.validity.place_in_table import moments_of_nayak
 
 LINES = ("drawn surfaces", "specimens", "parameters", "model")
 Answers = Mapping[str, float]

@@ -1,43 +1,78 @@
 """Two rough bodies as one: the sum of two independent Gaussian surfaces is one whose moments are sums."""
 
-from analytic import SpectralMoments
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from analytic import SpectralMoments, harmonic_conductivity
 from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
 from mcgw.scene.radii import Spectral
+from mcgw.scene.rough_bodies import RoughBody, conductivities_of, in_series, moments_of, softer, summed
+from mcgw.scene.scene import Scene
 from mcgw.scene.section import SceneError
 from mcgw.scene.surface import SpectralSurface
 
+Described = Scene | Spectral | SpectralMoments | Fit | ProfileFit
+
+
+@dataclass(frozen=True)
+class Pair(Spectral):
+    """Two rough bodies as one rough surface on a rigid plane: the surface of a `mcgw.Scene`.
+
+    Parameters
+    ----------
+    moments : SpectralMoments
+        Moments of the gap.
+    surface : Surface
+        Its summits, with the composite modulus of the pair.
+    hardness : float or None
+        Hardness of the softer body, Pa; None unless it is known of both.
+    conductivities : (float, float) or None
+        Thermal conductivities of both bodies, W/(m K); None unless they are known.
+    """
+
+    hardness: float | None = None
+    conductivities: tuple[float, float] | None = None
+
+    @property
+    def conductivity(self) -> float | None:
+        """Harmonic mean of both conductivities, ``2 k1 k2/(k1 + k2)``, W/(m K)."""
+        return None if self.conductivities is None else harmonic_conductivity(*self.conductivities)
+
 
 def combine(
-    a: Spectral | SpectralMoments | Fit | ProfileFit,
-    b: Spectral | SpectralMoments | Fit | ProfileFit,
+    a: Described,
+    b: Described,
     *,
     nominal_area: float | str | None = None,
     E_star: float | str | None = None,
-) -> Spectral:
+) -> Pair:
     """Make the one rough surface, on a rigid plane, that stands for two rough bodies in contact.
 
     The gap between two independent isotropic Gaussian surfaces is such a surface: m0, m2 and m4 add.
 
     Parameters
     ----------
-    a, b : Spectral, SpectralMoments, Fit or ProfileFit
-        Surfaces from `mcgw.SpectralSurface` or `mcgw.surface_from`, fits, or moments.
+    a, b : Scene, Spectral, SpectralMoments, Fit or ProfileFit
+        Scenes of one rough body each on a rigid plane, whose hardness and conductivity count too; surfaces
+        from `mcgw.SpectralSurface` or `mcgw.surface_from`; fits; or moments.
     nominal_area : float or str, optional
-        m^2; or text such as "1 cm^2". Left out: that of both surfaces, if they are equal.
+        m^2; or text such as "1 cm^2". Default: that of both surfaces, if they are equal.
     E_star : float or str, optional
-        Composite modulus of the pair, Pa. Left out: ``1/(1/E_a + 1/E_b)`` of two surfaces, each of whose
-        E_star is that of its body alone on a rigid plane, E/(1 - nu^2).
+        Composite modulus of the pair, Pa. Default: ``1/(1/E_a + 1/E_b)`` of two scenes or surfaces. Each
+        must have the modulus of its own body on a rigid plane, E/(1 - nu^2). Two surfaces that both already
+        have the modulus of the pair would give half of it: then give it here once more.
 
     Returns
     -------
-    Spectral
-        The surface of a `mcgw.Scene`, as from `mcgw.SpectralSurface`.
+    Pair
+        The surface of a `mcgw.Scene`, with the hardness and the conductivities that the scenes tell.
 
     Raises
     ------
     SceneError
-        If the area or the modulus is neither given nor known of both.
+        If the area or the modulus is neither given nor known of both, a scene has no spectrum, or its
+        conductivities are two different ones, which a single body has not.
     TypeError
         If something else is given.
 
@@ -50,27 +85,44 @@ def combine(
     >>> pair.moments.m2, pair.surface.E_star
     (0.002, 100000000000.0)
     """
-    one, other = _moments(a), _moments(b)
-    surfaces = [x.surface for x in (a, b) if isinstance(x, Spectral)]
+    one, other = _body(a), _body(b)
     if nominal_area is None:
-        areas = {x.nominal_area for x in surfaces}
-        if len(surfaces) < 2 or len(areas) > 1:
+        areas = {x.surface.nominal_area for x in (a, b) if isinstance(x, Scene | Spectral)}
+        if len(areas) != 1 or not all(isinstance(x, Scene | Spectral) for x in (a, b)):
             raise SceneError(['nominal_area: is not the same known one of both; give it, such as "1 mm^2"'])
         (nominal_area,) = areas
+    E_star = in_series(one, other) if E_star is None else E_star
     if E_star is None:
-        if len(surfaces) < 2:
-            raise SceneError(['E_star: is not known of both; give that of the pair, such as "100 GPa"'])
-        E_star = 1 / sum(1 / x.E_star for x in surfaces)
-    sums = (one.m0 + other.m0, one.m2 + other.m2, one.m4 + other.m4)
-    return SpectralSurface(*sums, nominal_area, E_star)
+        raise SceneError(['E_star: is not known of both; give that of the pair, such as "100 GPa"'])
+    m = summed(one.moments, other.moments)
+    found = SpectralSurface(m.m0, m.m2, m.m4, nominal_area, E_star)
+    return Pair(found.moments, found.surface, softer(one, other), conductivities_of(one, other))
 
 
-def _moments(body: Spectral | SpectralMoments | Fit | ProfileFit) -> SpectralMoments:
-    if isinstance(body, SpectralMoments):
-        return body
-    if isinstance(body, Spectral | Fit | ProfileFit):
-        return body.moments
+def _body(given: Described) -> RoughBody:
+    if isinstance(given, Scene):
+        try:
+            moments = moments_of(given.fitted, given.heights, given.surface)
+        except ValueError as error:
+            raise SceneError([f"combine: the scene {error}"]) from None
+        hardness = given.hardness or getattr(given.law, "hardness", None)
+        pair = None if given.film is None else given.film.conductivities
+        return RoughBody(moments, given.surface.E_star, hardness, _conductivity(pair))
+    if isinstance(given, Spectral):
+        return RoughBody(given.moments, given.surface.E_star)
+    if isinstance(given, Fit | ProfileFit):
+        return RoughBody(given.moments)
+    if isinstance(given, SpectralMoments):
+        return RoughBody(given)
     raise TypeError(
-        f"combine: give surfaces from mcgw.SpectralSurface or mcgw.surface_from, fits, or moments, not "
-        f"{type(body).__name__}"
+        "combine: give scenes, surfaces from mcgw.SpectralSurface or mcgw.surface_from, fits, or moments, "
+        f"not {type(given).__name__}"
     )
+
+
+def _conductivity(pair: Sequence[float] | None) -> float | None:
+    if pair is None:
+        return None
+    if len(set(pair)) > 1:
+        raise SceneError([f"conductivities = {pair}: those of a pair; a scene of one body has equal ones"])
+    return pair[0]

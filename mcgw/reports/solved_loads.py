@@ -12,7 +12,7 @@ from mcgw.ensemble.solved import Solution, elastic_verdict
 from mcgw.formats.table import SEPARATION, Column, Table, joined
 from mcgw.scene.in_words import contact_facts, joint_text
 from mcgw.scene.scene import Scene
-from mcgw.validity.place_in_table import moments_of_nayak
+from mcgw.validity.fitted_map import moments_of_nayak
 
 _SHOWN = ("contact law", "bodies", "interaction", "joint")  # what of the contacts counts at a given load
 _GAP = {

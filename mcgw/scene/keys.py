@@ -57,6 +57,7 @@ _BODY = Table(
     "",
     analytic.Body,
 )
+_BODY_OF_FILE = Table((Key("file", _FILE, required=True),), "")
 _LAYER = Table(
     (Key("thickness", Number("m"), required=True), _CONDUCTIVITY),
     'give {thickness = "10 um", conductivity = 1.3} (m, W/(m K))',
@@ -84,10 +85,12 @@ TABLES: dict[str, TableOfKeys] = {
     Key("eta", Number("1/m^2"), "3.0e8", "η, summits per nominal area, 1/m²", required=True),
     Key("nominal_area", Number("m^2"), "1e-4", "A_n, nominal area of contact, m²", required=True),
     Key("E_star", Number("Pa"), "78.6e9", "composite modulus E\\*, Pa", required=True),
-    Key("bodies", List(_BODY, 2, 2,
+    Key("bodies", List(Either((_BODY, _BODY_OF_FILE)), 2, 2,
         "give two, such as [{E = 70e9, nu = 0.33}, {E = inf}], each with its E in Pa"),
         "[{E = 70e9, nu = 0.33}, {E = inf}]",
-        "instead of `E_star`: Young's modulus (Pa) and Poisson's ratio (default: 0.3) of the two bodies",
+        "instead of `E_star`: Young's modulus (Pa) and Poisson's ratio (default: 0.3) of the two bodies. Or "
+        '`[{file = "a.toml"}, {file = "b.toml"}]`, instead of all keys but `nominal_area`: [two rough '
+        "bodies](../how-to/numbers-of-iso.md#two-rough-bodies), each the scene of one on a rigid plane",
         excludes=("E_star",)),
     Key("m0", Number("m^2"), "1e-12", "mean square of the heights of an isotropic Gaussian surface, m²",
         required=True, needs=("m2",), excludes=SUMMITS),

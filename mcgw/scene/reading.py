@@ -16,6 +16,7 @@ from mcgw.scene.fields import LeftOut
 from mcgw.scene.keys import KEYS, TABLES
 from mcgw.scene.laws import contact_law, grading_given, grading_of, heights_given, heights_of
 from mcgw.scene.radii import LISTS, Spectral, curvature_of, datum_shift, listed_of
+from mcgw.scene.rough_bodies import with_bodies
 from mcgw.scene.section import SceneError, Section
 from mcgw.scene.surface import read_surface
 from mcgw.scene.values import MOMENTS, rows_of
@@ -80,6 +81,7 @@ def of_tables(
     SceneError
         With one line for each mistake.
     """
+    document = with_bodies(document, folder, lambda tables, near: of_tables(tables, {}, near, None))
     problems: list[str] = []
     top = Section("", document, problems, KEYS[""])
     python = "surface" in objects

@@ -17,6 +17,7 @@ from mcgw.scene.kinds import Word
 from mcgw.scene.laws import contact_law_table, grading_table, heights_table
 from mcgw.scene.radii import summits_table
 from mcgw.scene.reading import of_tables
+from mcgw.scene.rough_bodies import files_of_bodies
 from mcgw.scene.scene import Scene, storable
 from mcgw.scene.section import SceneError, shortened
 
@@ -75,10 +76,11 @@ def load_scene(
 
 
 def files_of(path: str | Path) -> list[Path]:
-    """The file of a scene that was read, then every ``file`` that its sections name."""
+    """The file of a scene that was read, then every ``file`` that its tables name."""
     path = Path(path)
-    sections = loads(read_bytes(path, _MOST_BYTES).decode()).values()
-    named = [section["file"] for section in sections if isinstance(section, dict) and "file" in section]
+    document = loads(read_bytes(path, _MOST_BYTES).decode())
+    named = [table["file"] for table in document.values() if isinstance(table, dict) and "file" in table]
+    named += files_of_bodies(document)
     return [path, *(path.parent / name for name in named)]
 
 

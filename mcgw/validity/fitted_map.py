@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 
 from analytic import SpectralMoments, Surface
+from analytic.surface import SUMMIT_SPREAD
 
 _SHOWN = 3  # cautions
 
@@ -70,3 +71,9 @@ class Fitted:
             f"alpha = {self.moments.alpha:.4g}, rms slope {math.sqrt(2 * self.m2):.3g}{lay}",
             f"skewness {self.skewness:.2f}, kurtosis {self.kurtosis:.2f}{apart}",
         )
+
+
+def moments_of_nayak(surface: Surface, alpha: float) -> SpectralMoments:
+    """Return the moments of the Gaussian surface with this alpha, sigma and R."""
+    m0, m4 = surface.sigma**2 / (1 - SUMMIT_SPREAD / alpha), 9 * math.pi / (64 * surface.radius**2)
+    return SpectralMoments(m0, math.sqrt(m0 * m4 / alpha), m4)

@@ -10,7 +10,7 @@ from analytic import Gaussian, Hertz, Nayak, RandomCurvature, SpectralMoments, S
 from analytic.arrays import Array
 from analytic.surface import LEAST_ALPHA, SUMMIT_SPREAD
 from mcgw.formats.law_text import law_text
-from mcgw.validity.fitted_map import Fitted
+from mcgw.validity.fitted_map import Fitted, moments_of_nayak
 
 _CROWDING = 1 / (16 * math.sqrt(3 * math.pi))  # eta R sigma over sqrt(alpha - SUMMIT_SPREAD)
 LEAST_CROWDING = _CROWDING * math.sqrt(LEAST_ALPHA - SUMMIT_SPREAD)  # 0.0158: all waves have one length
@@ -68,12 +68,6 @@ def moments_of(surface: Surface) -> SpectralMoments | None:
     if crowding < LEAST_CROWDING:
         return None
     return moments_of_nayak(surface, SUMMIT_SPREAD + (crowding / _CROWDING) ** 2)
-
-
-def moments_of_nayak(surface: Surface, alpha: float) -> SpectralMoments:
-    """Moments of the Gaussian surface with this alpha, sigma and R."""
-    m0, m4 = surface.sigma**2 / (1 - SUMMIT_SPREAD / alpha), 9 * math.pi / (64 * surface.radius**2)
-    return SpectralMoments(m0, math.sqrt(m0 * m4 / alpha), m4)
 
 
 def not_on_the_map(scene: Any) -> str | None:

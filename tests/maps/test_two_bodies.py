@@ -5,6 +5,7 @@ import pytest
 
 import mcgw
 from analytic import SpectralMoments
+from mcgw.cli import main
 from mcgw.maps import Spectrum, Topography, gaussian_map
 
 SPECTRA = (Spectrum(1e-6, 80e-6, 10e-6), Spectrum(0.2e-6, 40e-6, 8e-6))
@@ -57,5 +58,119 @@ def test_areas_that_differ_and_wrong_objects_are_refused():
     a, b = (mcgw.SpectralSurface(1e-12, 1e-3, 5e6, area, 3e11) for area in ("1 mm^2", "2 mm^2"))
     with pytest.raises(mcgw.SceneError, match="nominal_area: is not the same"):
         mcgw.combine(a, b)
-    with pytest.raises(TypeError, match=r"combine: give surfaces.*not str"):
+    with pytest.raises(TypeError, match=r"combine: give scenes, surfaces.*not str"):
         mcgw.combine("a.toml", a)
+
+
+def test_scenes_of_two_bodies_tell_hardness_and_conductivities_too():
+    """By hand: the softer one, both conductivities and 2 k1 k2/(k1 + k2); sigma, R and eta need [fitted]."""
+    surfaces = [mcgw.SpectralSurface(m0, 1e-3, 9e7, "1 mm^2", 2e11) for m0 in (1e-12, 2e-12)]
+    bodies = [
+        mcgw.Scene(x, separations=[0.0], hardness=hardness, film=mcgw.Film(conductivities=(k, k)))
+        for x, hardness, k in zip(surfaces, (3e9, 2e9), (150.0, 16.0), strict=True)
+    ]
+    pair = mcgw.combine(*bodies)
+    assert (pair.hardness, pair.conductivities, pair.surface.E_star) == (2e9, (150.0, 16.0), 1e11)
+    assert pair.conductivity == pytest.approx(2 * 150 * 16 / 166, rel=1e-14)
+    assert pair.moments.m0 == pytest.approx(3e-12, rel=1e-13)
+    law = bodies[0].replace(hardness=None, law=mcgw.KogutEtsion(hardness=1e9))
+    assert mcgw.combine(law, bodies[1]).hardness == 1e9
+    assert mcgw.combine(bodies[0], surfaces[1]).conductivity is None
+    with pytest.raises(mcgw.SceneError, match=r"conductivities = .*those of a pair"):
+        mcgw.combine(bodies[0].replace(film=mcgw.Film(conductivities=(150.0, 16.0))), bodies[1])
+    with pytest.raises(mcgw.SceneError, match="combine: the scene has no spectrum"):
+        mcgw.combine(mcgw.Scene(mcgw.Surface(1e-6, 1e-5, 1e9, 1e-6, 1e11), separations=[0.0]), bodies[1])
+
+
+ONE = """
+[surface]
+m0 = "1 um^2"
+m2 = 1e-3
+m4 = 9e7
+nominal_area = "1 mm^2"
+bodies = [{E = "182 GPa", nu = 0.3}, {E = inf}]
+[contact]
+separations = [0.0]
+hardness = "2 GPa"
+conductivities = [150, 150]
+"""
+OTHER = ONE.replace("1 um", "2 um").replace("2 GPa", "3 GPa").replace("150", "16")
+PAIR = """
+[surface]
+bodies = [{file = "a.toml"}, {file = "b.toml"}]
+nominal_area = 1e-6
+[contact]
+separations = [0.0, 1.0]
+"""
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """Scenes of both bodies."""
+    (tmp_path / "a.toml").write_text(ONE)
+    (tmp_path / "b.toml").write_text(OTHER)
+    return tmp_path
+
+
+def load(folder, text, **keys):
+    (folder / "pair.toml").write_text(text)
+    return mcgw.load_scene(folder / "pair.toml", **keys)
+
+
+def test_a_scene_names_the_files_of_two_bodies(folder):
+    """As `combine` of both scenes, read back from its text; what the scene gives itself counts."""
+    scene = load(folder, PAIR)
+    one, other = (mcgw.load_scene(folder / name) for name in ("a.toml", "b.toml"))
+    pair = mcgw.combine(one, other)
+    assert scene.surface == pair.surface
+    assert (scene.hardness, scene.film.conductivities) == (pair.hardness, pair.conductivities)
+    assert scene.heights.alpha == pytest.approx(3e-12 * 18e7 / 4e-6, rel=1e-12)
+    assert mcgw.scene_from(mcgw.scene_text(scene)) == scene
+    own = {"contact.hardness": 1e9, "contact.resistivity": 1e-7}
+    changed = load(folder, PAIR, changes=own)
+    assert (changed.hardness, changed.film.conductivities) == (1e9, None)
+    assert load(folder, PAIR, changes={"contact.law": "kogut-etsion"}).law.hardness == 2e9
+
+
+def test_no_table_takes_the_place_of_a_file_of_a_body(folder, capsys):
+    (folder / "pair.toml").write_text(PAIR.replace("b.toml", "b.csv"))
+    (folder / "b.toml").rename(folder / "b.csv")
+    assert main(["solve", str(folder / "pair.toml"), "--load", "1 N", "--csv", str(folder / "b.csv")]) == 2
+    assert "b.csv: is an input" in capsys.readouterr().err
+    assert (folder / "b.csv").read_text() == OTHER
+
+
+def test_a_file_of_mcgw_fit_is_a_body(folder, maps):
+    """Its moments under [fitted] count, whatever heights it has."""
+    found = mcgw.fit(maps[0], cutoff=None, form="none")
+    (folder / "a.toml").write_text(mcgw.scene_text(mcgw.fitted_scene(found, E_star=2e11)))
+    m, other = load(folder, PAIR).heights.alpha, mcgw.load_scene(folder / "b.toml")
+    assert m == pytest.approx(mcgw.combine(found.moments, other, nominal_area=1, E_star=1).moments.alpha)
+
+
+@pytest.mark.parametrize(
+    ("a", "pair", "told"),
+    [
+        (("", ""), ('{file = "b.toml"}', "{E = 1e9}"), "give {file = ...} of both, or E and nu of both"),
+        (("", ""), ('"b.toml"}', '"b.toml", nu = 0.3}'), "give {file = ...} of both, or E and nu of both"),
+        (("", ""), ('"b.toml"}', '"b.toml"}, {E = 1}'), "give {file = ...} of both, or E and nu of both"),
+        *(
+            (("", ""), ("nominal_area", f"{key} = 1\nnominal_area"), f"surface.{key}: follows from the files")
+            for key in ("sigma", "radius", "eta", "E_star", "m0", "m2", "m4")
+        ),
+        (("", ""), ("nominal_area = 1e-6", ""), "surface.nominal_area: missing"),
+        (("", ""), ("b.toml", "c.toml"), "c.toml: No such file"),
+        (("", ""), ("b.toml", "pair.toml"), "pair.toml: names the files of two bodies itself"),
+        (("inf", "9e9"), ("", ""), "two elastic bodies; a file describes one on a rigid plane, {E = inf}"),
+        (("150, 150", "150, 1"), ("", ""), "contact.conductivities = [150, 1]: those of a pair"),
+        (("m2 = 1e-3", "m2 = -1"), ("", ""), "a.toml: surface.m2 = -1: give a finite number > 0"),
+        (('m0 = "1 um^2"\nm2 = 1e-3\nm4', "sigma = 1e-6\nradius = 1e-5\neta"), ("", ""), "has no spectrum"),
+        (("[contact]", "[contact"), ("", ""), "a.toml: "),
+    ],
+)  # fmt: skip
+def test_files_that_do_not_describe_two_bodies_are_refused_in_one_line(folder, a, pair, told):
+    (folder / "a.toml").write_text(ONE.replace(*a))
+    with pytest.raises(mcgw.SceneError) as refused:
+        load(folder, PAIR.replace(*pair))
+    assert told in refused.value.problems[0]
+    assert len(refused.value.problems) == 1

@@ -1,0 +1,162 @@
+"""Two rough bodies in contact as one rough surface on a rigid plane; in files, `[surface] bodies`."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from analytic import HeightLaw, Nayak, SpectralMoments, Surface
+from mcgw.formats.named_files import loads, read_bytes
+from mcgw.scene.keys import YOUNG
+from mcgw.scene.kinds import Number
+from mcgw.scene.section import SceneError
+from mcgw.scene.values import MOMENTS, SUMMITS
+from mcgw.validity.fitted_map import Fitted, moments_of_nayak
+
+_MOST_BYTES = 2**21
+_FOLLOW = (*SUMMITS, "E_star", *MOMENTS)  # keys of [surface] that two files determine
+# Keys of [contact] beside which those of the files do not count.
+_CONDUCTION = {"resistivity", "conductivities"}
+_YIELD = {"hardness", "critical", "yield_strength", "yield_strain"}
+_HARDNESS, _CONDUCTIVITY = Number("Pa"), Number("W/(m K)")
+Tables = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class RoughBody:
+    """One of two rough bodies.
+
+    Parameters
+    ----------
+    moments : SpectralMoments
+        Moments of its surface.
+    E_star : float or None
+        Composite modulus of this body alone on a rigid plane, E/(1 - nu^2), Pa; None: unknown.
+    hardness : float or None
+        Hardness, Pa; None: unknown.
+    conductivity : float or None
+        Thermal conductivity, W/(m K); None: unknown.
+    """
+
+    moments: SpectralMoments
+    E_star: float | None = None
+    hardness: float | None = None
+    conductivity: float | None = None
+
+
+def summed(a: SpectralMoments, b: SpectralMoments) -> SpectralMoments:
+    """Return the moments of the gap between two independent isotropic Gaussian surfaces."""
+    return SpectralMoments(a.m0 + b.m0, a.m2 + b.m2, a.m4 + b.m4)
+
+
+def in_series(a: RoughBody, b: RoughBody) -> float | None:
+    """Return the composite modulus of two bodies, Pa, if it is known of both."""
+    return None if a.E_star is None or b.E_star is None else 1 / (1 / a.E_star + 1 / b.E_star)
+
+
+def softer(a: RoughBody, b: RoughBody) -> float | None:
+    """Return the hardness of the softer body, Pa, if it is known of both."""
+    return None if a.hardness is None or b.hardness is None else min(a.hardness, b.hardness)
+
+
+def conductivities_of(a: RoughBody, b: RoughBody) -> tuple[float, float] | None:
+    """Return the conductivities of two bodies, W/(m K), if they are known of both."""
+    return None if a.conductivity is None or b.conductivity is None else (a.conductivity, b.conductivity)
+
+
+def with_bodies(document: Tables, folder: Path, read: Callable[[Tables, Path], Tables]) -> Tables:
+    """Put the surface of two bodies into the tables of a scene in place of the files that describe them.
+
+    Parameters
+    ----------
+    document : mapping
+        Tables of the scene; those without files of bodies are returned as they are.
+    folder : Path
+        Where the files lie.
+    read : callable
+        Values of a scene by its tables and folder.
+
+    Returns
+    -------
+    mapping
+        With m0, m2, m4 and E_star of the pair; its hardness and conductivities under ``[contact]``, where
+        both files give them and the scene does not.
+
+    Raises
+    ------
+    SceneError
+        If a file cannot be read, does not describe one rough body, or a key contradicts the files.
+    """
+    if not (named := files_of_bodies(document)):
+        return document
+    surface, bodies = document["surface"], document["surface"]["bodies"]
+    if len(named) != 2 or any(set(body) != {"file"} for body in bodies) or len(bodies) != 2:
+        raise SceneError([f"surface.bodies = {bodies}: give {{file = ...}} of both, or E and nu of both"])
+    if beside := [key for key in _FOLLOW if key in surface]:
+        raise SceneError([f"surface.{beside[0]}: follows from the files of both bodies; leave it out"])
+    a, b = (_body(folder / name, read) for name in named)
+    total, contact = summed(a.moments, b.moments), dict(document.get("contact", {}))
+    known = {key: value for key, value in surface.items() if key != "bodies"}
+    known |= {"m0": total.m0, "m2": total.m2, "m4": total.m4, "E_star": in_series(a, b)}
+    if not _CONDUCTION & set(contact) and (pair := conductivities_of(a, b)):
+        contact["conductivities"] = list(pair)
+    if not _YIELD & set(contact) and (hardness := softer(a, b)):
+        contact["hardness"] = hardness
+    return {**document, "surface": known, "contact": contact}
+
+
+def files_of_bodies(document: Tables) -> list[str]:
+    """Return the files that `[surface] bodies` of a scene names, as they are written."""
+    surface = document.get("surface")
+    bodies = surface.get("bodies") if isinstance(surface, Mapping) else None
+    tables = [each for each in bodies if isinstance(each, Mapping)] if isinstance(bodies, list) else []
+    return [str(body["file"]) for body in tables if "file" in body]
+
+
+def _body(path: Path, read: Callable[[Tables, Path], Tables]) -> RoughBody:
+    """Read the scene of one body on a rigid plane."""
+    try:
+        document = loads(read_bytes(path, _MOST_BYTES).decode())
+        if files_of_bodies(document):
+            raise ValueError("names the files of two bodies itself; give one body")
+        values = read(document, path.parent)
+        bodies = document["surface"].get("bodies")
+        if bodies and not any(YOUNG.value(body["E"]) == math.inf for body in bodies):
+            raise ValueError(
+                "surface.bodies: two elastic bodies; a file describes one on a rigid plane, {E = inf}"
+            )
+        moments = moments_of(values["fitted"], values["heights"], values["surface"])
+        return RoughBody(moments, values["surface"].E_star, *_of_contact(document))
+    except SceneError as error:
+        raise SceneError([f"surface.bodies: {path}: {line}" for line in error.problems]) from None
+    except ValueError as error:
+        raise SceneError([f"surface.bodies: {path}: {str(error).removeprefix(f'{path}: ')}"]) from None
+
+
+def moments_of(fitted: Fitted | None, heights: HeightLaw, surface: Surface) -> SpectralMoments:
+    """Return the moments of the rough surface of a scene: those of the fitted map, or of Nayak's heights.
+
+    Raises
+    ------
+    ValueError
+        If it has neither.
+    """
+    if fitted is not None:
+        return fitted.moments
+    if isinstance(heights, Nayak):
+        return moments_of_nayak(surface, heights.alpha)
+    raise ValueError("has no spectrum; give m0, m2, m4 under [surface], or a scene written by mcgw fit")
+
+
+def _of_contact(document: Tables) -> tuple[float | None, float | None]:
+    """Return the hardness and the conductivity of one body, None for what it does not tell."""
+    contact = document["contact"]
+    hardness = _HARDNESS.value(contact.get("hardness"))
+    each = {_CONDUCTIVITY.value(k) for k in contact.get("conductivities", [])}
+    if len(each) > 1:
+        raise ValueError(
+            f"contact.conductivities = {contact['conductivities']}: those of a pair; a file describes one "
+            "body, as [150.0, 150.0]"
+        )
+    return hardness, each.pop() if each else None
