@@ -106,6 +106,6 @@ def cautions_of(source: "Scene | Ensemble | Sweep") -> list[str]:
 
     if isinstance(source, Ensemble):
         return cautions(source.scene)
-    from mcgw.sweeps.over_points import sweep_cautions
+    from mcgw.sweeps.points import sweep_cautions
 
     return sweep_cautions(source)

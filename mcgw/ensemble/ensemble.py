@@ -1,27 +1,29 @@
 """An ensemble: the sums of every surface, and their statistics over surfaces."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from analytic import PER_AREA
-from analytic.arrays import Array
-from mcgw.ensemble.intervals import CONFIDENCE, interval_of
-from mcgw.ensemble.labelled import Labelled, axes_of, sheet_of, statistics_of, values_of
-from mcgw.ensemble.results import Held
-from mcgw.formats.sheet import Sheet, Shown, brief
-from mcgw.machine.terminal import plotted, quantity_and_axes
+from analytic.arrays import Array, Ints
+from mcgw.ensemble.dataset import Dataset
+from mcgw.ensemble.labelled import Labelled, axes_of, statistics_of, values_of
+from mcgw.ensemble.results import Held, Selected
+from mcgw.formats.law_text import law_text
+from mcgw.formats.sheet import Sheet
+from mcgw.formats.table import Column, Table, evenly
+from mcgw.scene.in_words import accuracy_facts, contact_facts
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 
-_SAME = 1e-9  # d/sigma
+MOST_SHOWN = 100  # separations in a table or figure beside theory
+_MOST_READ = 20_000_000  # numbers that are read for a short look; of more, only how many there are
+_AT = "mean +- stderr, d/sigma ="
 STATISTICS = ("mean", "std")  # of each quantity, kept in place of values, besides covariances
 
 
 @dataclass(frozen=True, repr=False)
-class Ensemble(Shown):
+class Ensemble(Dataset):
     """The sums of every surface at every separation.
 
     The quantities are those of the scene, such as "load" (N); "pressure" (P/A_n, Pa) and "area_fraction"
@@ -74,9 +76,23 @@ class Ensemble(Shown):
         return self.sums.rows()
 
     @property
-    def separations(self) -> Array:
-        """Reduced separations d/sigma, shape (separations,)."""
-        return np.array(self.scene.separations)
+    def _points(self) -> tuple[Scene]:
+        """The scene alone."""
+        return (self.scene,)
+
+    @property
+    def shape(self) -> tuple[()]:
+        """No axis: there is one scene."""
+        return ()
+
+    def _held(self, point: int = 0) -> Held:  # noqa: ARG002
+        """The values of every surface, or their statistics."""
+        return self.sums
+
+    def _at(self, which: Ints) -> "Ensemble":
+        """The same surfaces at some of the separations, by their numbers; `surfaces_of` is as before."""
+        scene = replace(self.scene, separations=tuple(self.separations[which].tolist()))
+        return Ensemble(scene, self.sampler, Selected(self.sums, which), self.surfaces_of)
 
     def values(self, quantity: str) -> Array:
         """Return all values of a quantity in SI units, shape (surfaces, separations).
@@ -86,9 +102,9 @@ class Ensemble(Shown):
         KeyError
             If the ensemble does not hold this quantity.
         """
-        name, area = self._held(quantity)
+        name, per_area = self._stored(quantity)
         values = self.sums.read(name, 0, self.n_surfaces)
-        return values / area if name != quantity else values
+        return self._per_area(values) if per_area else values
 
     def __getitem__(self, quantity: str) -> Array:
         """The same as `values`."""
@@ -135,108 +151,6 @@ class Ensemble(Shown):
         """Real area per nominal area A/A_n, shape (surfaces, separations)."""
         return self.values("area_fraction")
 
-    def mean(self, quantity: str, separation: ArrayLike | None = None) -> Array:
-        """Return the mean over the surfaces.
-
-        Parameters
-        ----------
-        quantity : str
-            Its name.
-        separation : array_like, optional
-            Some of the separations of the ensemble, d/sigma. Default: all.
-
-        Returns
-        -------
-        ndarray
-            In the shape of the separations.
-
-        Raises
-        ------
-        KeyError
-            If the ensemble does not hold this quantity.
-        ValueError
-            If it has no such separation.
-        """
-        name, area = self._held(quantity)
-        return self._at(np.asarray(self.sums.mean_and_std(name)[0] / area), quantity, separation)
-
-    def std(self, quantity: str, separation: ArrayLike | None = None) -> Array:
-        """Return the standard deviation over the surfaces (divisor M - 1), nan for one; as `mean`."""
-        name, area = self._held(quantity)
-        return self._at(np.asarray(self.sums.mean_and_std(name)[1] / area), quantity, separation)
-
-    def stderr(self, quantity: str, separation: ArrayLike | None = None) -> Array:
-        """Return the standard error of the mean, nan for one surface; as `mean`."""
-        return np.asarray(self.std(quantity, separation) / np.sqrt(self.n_surfaces))
-
-    def _at(self, values: Array, quantity: str, separation: ArrayLike | None) -> Array:
-        """Values at some separations."""
-        if separation is None:
-            return values
-        asked = np.asarray(separation, dtype=np.float64)
-        apart = np.abs(asked[..., None] - self.separations)
-        if np.any(lacking := apart.min(axis=-1, initial=np.inf) > _SAME):
-            first, have = float(asked[lacking].flat[0]), ", ".join(f"{h:g}" for h in self.separations)
-            raise ValueError(
-                f"separation = {first:g}: the ensemble has {brief(have)}; "
-                f"scene.theory.mean({quantity!r}, {first:g}) is exact at any"
-            )
-        return np.asarray(values[apart.argmin(axis=-1)])
-
-    def covariance(self, quantity: str, other: str | None = None) -> Array:
-        """Return the covariance over the surfaces (divisor M - 1) of two quantities, or of one with itself.
-
-        Shape (separations, separations of the other); nan for one surface.
-        """
-        (name, area), (second, by) = self._held(quantity), self._held(other or quantity)
-        found = self.sums.covariance(name, second)
-        return np.asarray(found / area / by)
-
-    def quantile(self, quantity: str, share: float) -> Array:
-        """Return the quantile over the surfaces, as `numpy.quantile`, shape (separations,).
-
-        The exact one, of a surface that is not yet drawn, is ``scene.theory.distribution(quantity, h).ppf``.
-
-        Raises
-        ------
-        KeyError
-            If the ensemble does not hold this quantity.
-        ValueError
-            If `share` is not from 0 to 1, or values are not kept.
-        """
-        if not 0 <= share <= 1:
-            raise ValueError(f"share = {share!r}: give a fraction of the surfaces, 0 to 1")
-        return np.asarray(np.quantile(self.values(quantity), share, axis=0))
-
-    def interval(self, quantity: str, level: float = CONFIDENCE) -> tuple[Array, Array]:
-        """Return the confidence interval of the mean, from the exact spread and skewness of the scene.
-
-        It holds for any number of surfaces, even one. For `contacts` it is exact (Clopper-Pearson, or Garwood
-        for a Poisson number of asperities). Measured heights used as they are do not fluctuate: both ends
-        equal the value.
-
-        Parameters
-        ----------
-        quantity : str
-            Its name.
-        level : float, optional
-            Probability that the interval covers the mean of all surfaces.
-
-        Returns
-        -------
-        (ndarray, ndarray)
-            Lower and upper ends, shape (separations,); nan where the whole ensemble has fewer than ten
-            effective contacts (`mcgw.ensemble.intervals.Spread`).
-
-        Raises
-        ------
-        KeyError
-            If the ensemble does not hold this quantity.
-        """
-        name, area = self._held(quantity)
-        low, high = interval_of(self.scene, self.sampler, self.sums, name, level)
-        return low / area, high / area
-
     def to_xarray(self) -> Any:
         """Return all values as an `xarray.Dataset` with dimensions (surface, separation), as in the file.
 
@@ -270,33 +184,43 @@ class Ensemble(Shown):
             return values_of(self.scene, {name: self.values(name) for name in self.scene.shapes})
         return Labelled(statistics_of(self, self.scene.shapes, STATISTICS), axes_of(self.scene))
 
-    def plot(self, quantity: str | None = None, ax: Any = None) -> Any:
-        """Draw the mean of a quantity with its confidence interval, and the spread of single surfaces.
-
-        Parameters
-        ----------
-        quantity : str, optional
-            Default: the first quantity of the scene.
-        ax : matplotlib Axes, optional
-            Axes to draw on, also as the first argument; default: new ones.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            With labels.
-        """
-        quantity, ax = quantity_and_axes(quantity, ax)
-        return plotted(self, ax, quantity=quantity or self.scene.quantities[0])
-
     def sheet(self) -> Sheet:
         """Return how the ensemble was drawn, and means at the lowest, a middle and the highest separation."""
-        return sheet_of(self)
+        scene, m = self.scene, self.n_surfaces
+        title = f": {scene.title}" if scene.title else ""
+        order = np.argsort(scene.separations, kind="stable")
+        few = order[np.unique([0, len(order) // 2, len(order) - 1])]
+        facts = [
+            ("grading", law_text(scene.grading)),
+            ("heights", law_text(scene.heights)),
+            *contact_facts(scene),
+            ("drawn", f"by {self.sampler}, seed {scene.seed}"),
+            *accuracy_facts(scene),
+            ("elasticity", scene.validity().brief),
+        ]
+        head = f"Ensemble of {m} surfaces of {scene.n_asperities} asperities{title}"
+        if m * len(scene.separations) * len(scene.quantities) > _MOST_READ:
+            held = f"{', '.join(scene.quantities)} at {len(scene.separations)} separations"
+            return Sheet(head, [*facts, ("holds", held)])
+        names = scene.answers
+        columns = [Column("quantity", [f"{q} ({scene.quantity(q).unit})" for q in names], _AT)]
+        mean, error = (np.array([get(q)[few] for q in names]) for get in (self.mean, self.stderr))
+        for i, h in enumerate(self.separations[few]):
+            stderr = Column("stderr", error[:, i], form=".1g")
+            columns.append(Column(f"{h:g}", mean[:, i], form=".5g", beside=stderr))
+        return Sheet(head, facts, Table(tuple(columns)))
 
-    def _held(self, quantity: str) -> tuple[str, float]:
-        """The stored quantity, and the area to divide by, or 1."""
-        q = PER_AREA.get(quantity)
-        name, area = (q.of, self.scene.surface.nominal_area) if q else (quantity, 1.0)
-        if name not in self.scene.shapes:
-            have = ", ".join(self.scene.shapes)
-            raise KeyError(f"{quantity!r} is not in this ensemble; it has {have}")
-        return name, area
+
+def shown(ensemble: Ensemble) -> Ensemble:
+    """Return it at 100 of its separations, evenly over their number, or as it is if there are fewer."""
+    count = len(ensemble.scene.separations)
+    if count <= MOST_SHOWN:
+        return ensemble
+    rising = np.argsort(ensemble.separations, kind="stable")
+    return ensemble._at(np.sort(rising[evenly(count, MOST_SHOWN)]))
+
+
+def how_many(ensemble: Ensemble) -> str:
+    """Say at how many separations tables and figures are; nothing if at all of them."""
+    count = len(ensemble.scene.separations)
+    return f"at {MOST_SHOWN} of {count} separations" if count > MOST_SHOWN else ""

@@ -174,7 +174,7 @@ def interval_column(low: ArrayLike, high: ArrayLike, unit: str = "") -> Column:
     )  # fmt: skip
 
 
-def interval_of(scene: Scene, sampler: str, sums: Held, name: str, level: float) -> tuple[Array, Array]:
+def interval_of(scene: Scene, sums: Held, name: str, level: float) -> tuple[Array, Array]:
     """Ends of the interval of a mean, as `Ensemble.interval` says.
 
     Raises
@@ -186,7 +186,7 @@ def interval_of(scene: Scene, sampler: str, sums: Held, name: str, level: float)
     if scene.as_measured:
         return mean, mean
     if name in scene.other_separations:
-        return _of_separation(scene, sampler, sums, name, level)
+        return _of_separation(scene, sums, name, level)
     if quantity_of(name).counts:
         contacts, asperities = sums.total_number(name), float(scene.n_asperities) * m
         ends = count_interval(contacts, asperities, poisson=scene.count == "poisson", level=level)
@@ -214,10 +214,10 @@ def _by_law(
     return mean / high, mean / low
 
 
-def _of_separation(scene: Scene, sampler: str, sums: Held, name: str, level: float) -> tuple[Array, Array]:
+def _of_separation(scene: Scene, sums: Held, name: str, level: float) -> tuple[Array, Array]:
     """Of the other separation, which differs from the scene's by a multiple of the load."""
     load = "load_unloading" if quantity_of(name).unloading else "load"
-    low, high = interval_of(scene, sampler, sums, load, level)
+    low, high = interval_of(scene, sums, load, level)
     mean, here = (sums.mean_and_std(each)[0] for each in (load, name))
     separations = np.array(scene.separations)
     with np.errstate(divide="ignore", invalid="ignore"):

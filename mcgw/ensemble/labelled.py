@@ -8,10 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import Quantity
-from mcgw.formats.law_text import law_text
-from mcgw.formats.sheet import Sheet
 from mcgw.formats.table import SEPARATION, Column, Table, optional
-from mcgw.scene.in_words import accuracy_facts, contact_facts
 from mcgw.scene.scene import Scene
 
 AXES = {  # of tables, in their order: unit and long name
@@ -19,8 +16,6 @@ AXES = {  # of tables, in their order: unit and long name
     "surface": ("1", "number of the surface"),
     "separation": ("1", "mean-plane separation d/sigma"),
 }
-_AT = "mean +- stderr, d/sigma ="
-_MOST_SHOWN = 20_000_000  # numbers that are read for a short look; of more, only how many there are
 _OF_A_SURFACE = ("separation",)
 _WORDS = {
     "mean": "mean of the {}",
@@ -137,31 +132,3 @@ def statistics_table(ensemble: Any, name: str) -> Table:
     columns[0] = replace(columns[0], error=found[2][1])
     separation = Column("separation", ensemble.separations, SEPARATION, form="g")
     return Table((separation, *columns), heading(q))
-
-
-def sheet_of(ensemble: Any) -> Sheet:
-    """How it was drawn, and means at the lowest, a middle and the highest separation."""
-    scene, m = ensemble.scene, ensemble.n_surfaces
-    title = f": {scene.title}" if scene.title else ""
-    order = np.argsort(scene.separations, kind="stable")
-    shown = order[np.unique([0, len(order) // 2, len(order) - 1])]
-    facts = [
-        ("grading", law_text(scene.grading)),
-        ("heights", law_text(scene.heights)),
-        *contact_facts(scene),
-        ("drawn", f"by {ensemble.sampler}, seed {scene.seed}"),
-        *accuracy_facts(scene),
-        ("elasticity", scene.validity().brief),
-    ]
-    head = f"Ensemble of {m} surfaces of {scene.n_asperities} asperities{title}"
-    if m * len(scene.separations) * len(scene.quantities) > _MOST_SHOWN:
-        held = f"{', '.join(scene.quantities)} at {len(scene.separations)} separations"
-        return Sheet(head, [*facts, ("holds", held)])
-    names = scene.answers
-    columns = [Column("quantity", [f"{q} ({scene.quantity(q).unit})" for q in names], _AT)]
-    mean, error = (np.array([get(q)[shown] for q in names]) for get in (ensemble.mean, ensemble.stderr))
-    for i, h in enumerate(ensemble.separations[shown]):
-        columns.append(
-            Column(f"{h:g}", mean[:, i], form=".5g", beside=Column("stderr", error[:, i], form=".1g"))
-        )
-    return Sheet(head, facts, Table(tuple(columns)))

@@ -109,6 +109,11 @@ class Pooled:
             products[name] = self.products[name] + other.products[name] + between
         return Pooled(n, means, products)
 
+    def at(self, which: Ints) -> "Pooled":
+        """The same at some of the separations."""
+        means = {name: mean[..., which] for name, mean in self.means.items()}
+        return Pooled(self.n, means, {name: x[..., which] for name, x in self.products.items()})
+
     def mean(self, name: str, which: Ints, weights: Array) -> Array:
         """Mean of a combination of some values, shape (separations,)."""
         means = self.means[name]

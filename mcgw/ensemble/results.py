@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.arrays import Array
+from analytic.arrays import Array, Ints
 
 Tables = dict[str, NDArray[Any]]  # numbers of surfaces by name, a row each
 
@@ -38,6 +38,10 @@ class Held(ABC):
     def read(self, name: str, start: int, stop: int | None) -> Array:  # noqa: ARG002
         """Rows `start` to `stop` (None: to the end) of a table."""
         raise ValueError(f"{name}: {self.no_more}")
+
+    def quantile(self, name: str, share: float) -> Array:
+        """Quantile of each number of a table."""
+        return np.asarray(np.quantile(self.read(name, 0, None), share, axis=0))
 
     def covariance(self, name: str, other: str) -> Array:  # noqa: ARG002
         """Between all numbers of two tables (divisor M - 1), shape (*shape, *shape of the other)."""
@@ -99,6 +103,45 @@ class MemoryResults(Results):
     def rows(self) -> int:
         """Length of the arrays."""
         return len(next(iter(self.arrays.values())))
+
+
+@dataclass(frozen=True)
+class Selected(Held):
+    """Results of surfaces at some of the separations.
+
+    Parameters
+    ----------
+    whole : Held
+        At all separations.
+    which : ndarray of int
+        Numbers of the separations.
+    """
+
+    whole: Held
+    which: Ints
+
+    def rows(self) -> int:
+        """Number of surfaces there are."""
+        return self.whole.rows()
+
+    def mean_and_std(self, name: str) -> tuple[Array, Array]:
+        """Mean and standard deviation (divisor M - 1)."""
+        mean, std = self.whole.mean_and_std(name)
+        return mean[self.which], std[self.which]
+
+    def total_number(self, name: str) -> Array:
+        """Sum of whole numbers over all surfaces."""
+        return self.whole.total_number(name)[self.which]
+
+    def read(self, name: str, start: int, stop: int | None) -> Array:
+        """Rows `start` to `stop` (None: to the end) of a table."""
+        return self.whole.read(name, start, stop)[:, self.which]
+
+    def covariance(self, name: str, other: str) -> Array:
+        """Between all numbers of two tables (divisor M - 1)."""
+        found = self.whole.covariance(name, other)
+        across = found.ndim - self.whole.mean_and_std(other)[0].ndim
+        return np.take(np.take(found, self.which, axis=0), self.which, axis=across)
 
 
 def joined(parts: Sequence[Mapping[str, NDArray[Any]]]) -> Tables:

@@ -9,11 +9,10 @@ import numpy as np
 from scipy.stats import norm
 
 from analytic import quantity_of
-from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.ensemble import Ensemble, shown
 from mcgw.ensemble.intervals import exact_ends
 from mcgw.ensemble.paired import Paired
 from mcgw.ensemble.solved import Solution
-from mcgw.ensemble.some_separations import shown
 from mcgw.figures.against_theory import draw_residuals, quantity_panel
 from mcgw.figures.panels import draw_panel, keys
 from mcgw.figures.studies import draw_checks, draw_errors

@@ -1,6 +1,6 @@
 """``mcgw.sweep``: a sweep from Python."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from concurrent.futures import Executor
 from pathlib import Path
 from typing import Any, overload
@@ -13,7 +13,7 @@ from mcgw.scene.scene import Scene, storable
 from mcgw.sweeps.axes import axes_of
 from mcgw.sweeps.points import Asked
 from mcgw.sweeps.pooling import draw, weighted
-from mcgw.sweeps.sweep import STATISTICS, Sweep
+from mcgw.sweeps.sweep import Sweep
 
 
 @overload
@@ -21,7 +21,6 @@ def sweep(
     scene: Scene,
     over: Mapping[str, Iterable[Any]],
     *,
-    statistics: Sequence[str] = STATISTICS,
     zipped: bool = False,
     path: str | Path | None = None,
     threads: int | None = None,
@@ -44,7 +43,6 @@ def sweep(
     scene: Scene,
     over: Mapping[str, Iterable[Any]],
     *,
-    statistics: Sequence[str] = STATISTICS,
     zipped: bool = False,
     path: str | Path | None = None,
     threads: int | None = None,
@@ -70,8 +68,6 @@ def sweep(
         Keys as in a scene file, as "grading.gamma" or "ensemble.n_asperities", and the values of each as
         there; or a whole table, as "grading", whose values may also be gradings as `mcgw.Table`, or Python
         functions, which are resolved over the heights of `scene`.
-    statistics : sequence of {"mean", "std"}, optional
-        What `Sweep.to_xarray` tells. Default: both.
     zipped : bool, optional
         The first values of all keys make one point, the second ones another. Default: every value of one key
         goes with every value of all others.
@@ -79,9 +75,9 @@ def sweep(
         A file for it, which appears when all is drawn (`mcgw.open_sweep`). The same call again draws nothing,
         or resumes where it was interrupted; if the scene has no seed, it uses that of the file.
     threads : int, optional
-        Cores: threads, or processes or workers of the engine. Default: all. The result is the
+        Cores: threads, or processes or workers of the executor. Default: all. The result is the
         same, bit by bit, for any number.
-    engine : {"threads", "processes", "dask"}, address, distributed.Client or Engine, optional
+    executor : concurrent.futures.Executor, optional
         What draws into the file of `path`, as in `mcgw.run`.
     shard : str, optional
         "2/8": draw only the second of eight shares into the folder beside `path`, as one of eight jobs; then
@@ -125,19 +121,17 @@ def sweep(
     array([1.71, 1.86, 1.93])
     """
     check_object("sweep", scene, Scene)
-    if not statistics or not set(statistics) <= set(STATISTICS):
-        raise ValueError(f"statistics = {statistics!r}: give one or both of {', '.join(STATISTICS)}")
     if path is None and not (executor is None and shard is None):
         raise ValueError("executor, shard: they need a file; give path, or leave them out")
 
     def resolved(grading: Any) -> Any:
         return storable(scene.replace(grading=grading)).grading
 
-    axes, chosen = axes_of(over, zipped=zipped, resolve=resolved), tuple(statistics)
+    axes = axes_of(over, zipped=zipped, resolve=resolved)
     if path is None:
         with use_threads(threads), told(progress, "surfaces") as tell:
             asked = Asked.of(scene, axes)
-            return asked.answered(draw(asked.groups, tell), chosen)
+            return asked.answered(draw(asked.groups, tell))
     from mcgw.jobs.job import Job
     from mcgw.jobs.running import make  # files, which a sweep in memory has none of
     from mcgw.store.place import with_recorded_seed
@@ -150,4 +144,4 @@ def sweep(
         asked = Asked.from_texts(*Asked.of(scene, axes).texts())  # as workers read it
         job = Job.of_sweep(asked, path)
         left = make(job, By(executor, threads, weighted(job.reducers, tell)), part)
-    return left if part else open_sweep(path, chosen)
+    return left if part else open_sweep(path)

@@ -4,8 +4,7 @@ import re
 from typing import Any
 
 from analytic import Hertz
-from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.some_separations import how_many
+from mcgw.ensemble.ensemble import Ensemble, how_many
 from mcgw.figures.style import grading_label
 from mcgw.formats.law_text import law_text
 from mcgw.formats.numbers import number, typeset

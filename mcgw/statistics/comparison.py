@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from analytic.arrays import Array
-from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.ensemble import Ensemble, how_many, shown
 from mcgw.ensemble.intervals import interval_column
 from mcgw.ensemble.labelled import heading
-from mcgw.ensemble.some_separations import how_many, shown
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import SEPARATION, Column, Table, stacked
 from mcgw.machine.progress import Progress, told

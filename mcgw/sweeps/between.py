@@ -1,7 +1,7 @@
 """Two points of a sweep over the same surfaces: difference and ratio of means, and slopes along a key."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -34,21 +34,11 @@ class Difference:
     def of(
         cls, pooled: Pooled, points: tuple[Place, Place], quantity: str, areas: tuple[float, float]
     ) -> "Difference":
-        """First point minus second, each per area.
-
-        The variance is that of one combination of scenes, so that there is no cancellation.
-        """
-        (one, v), (other, w) = (point.of(quantity) for point in points)
-        a, b = areas
-        value = pooled.mean(quantity, one, v) / a - pooled.mean(quantity, other, w) / b
-        apart = pooled.variance(quantity, one, v) / a**2 + pooled.variance(quantity, other, w) / b**2
-        scenes = np.union1d(one, other)
-        weights = np.zeros(len(scenes))
-        weights[np.searchsorted(scenes, one)] += v / a
-        weights[np.searchsorted(scenes, other)] -= w / b
-        paired = np.maximum(pooled.variance(quantity, scenes, weights), 0.0)  # apart from rounding
+        """First point minus second, each per area."""
+        pair = _Pair.of(pooled, points, quantity, 1 / areas[0], 1 / areas[1])
+        value = pair.one / areas[0] - pair.other / areas[1]
         with np.errstate(divide="ignore", invalid="ignore"):
-            return cls(value, np.sqrt(paired / pooled.n), apart / paired)
+            return cls(value, np.sqrt(pair.together / pooled.n), pair.apart / pair.together)
 
 
 def ratio_of(pooled: Pooled, points: tuple[Place, Place], quantity: str, separations: Array) -> Paired:
@@ -56,18 +46,36 @@ def ratio_of(pooled: Pooled, points: tuple[Place, Place], quantity: str, separat
 
     The error is that of ``b - r a``, one combination of scenes: what both share cancels before it is rounded.
     """
-    (one, v), (other, w) = (point.of(quantity) for point in points)
-    b, a = pooled.mean(quantity, one, v), pooled.mean(quantity, other, w)
-    scenes = np.union1d(one, other)
+    b, a = (pooled.mean(quantity, *point.of(quantity)) for point in points)
     with np.errstate(divide="ignore", invalid="ignore"):  # without a contact there is no ratio
         ratio = b / np.where(a == 0, np.nan, a)
-        weights = np.zeros((len(scenes), *ratio.shape))
-        weights[np.searchsorted(scenes, one)] += np.multiply.outer(v, np.ones(ratio.shape))
-        weights[np.searchsorted(scenes, other)] -= np.multiply.outer(w, ratio)
-        residual = np.maximum(pooled.variance(quantity, scenes, weights), 0.0)  # apart from rounding
-        apart = pooled.variance(quantity, one, v) + ratio**2 * pooled.variance(quantity, other, w)
-        error = np.sqrt(residual / pooled.n) / np.abs(a)
-        return Paired(quantity, separations, ratio, error, apart / residual)
+        pair = _Pair.of(pooled, points, quantity, 1.0, ratio)
+        error = np.sqrt(pair.together / pooled.n) / np.abs(a)
+        return Paired(quantity, separations, ratio, error, pair.apart / pair.together)
+
+
+class _Pair(NamedTuple):
+    """Means of two points, and the variance of a combination of them over shared and over other surfaces."""
+
+    one: Array
+    other: Array
+    together: Array
+    apart: Array
+
+    @classmethod
+    def of(
+        cls, pooled: Pooled, points: tuple[Place, Place], quantity: str, x: float | Array, y: float | Array
+    ) -> "_Pair":
+        """`x` times the first less `y` times the second, as one combination of scenes: nothing cancels."""
+        (one, v), (other, w) = (point.of(quantity) for point in points)
+        a, b = pooled.mean(quantity, one, v), pooled.mean(quantity, other, w)
+        scenes = np.union1d(one, other)
+        weights = np.zeros((len(scenes), *a.shape))
+        weights[np.searchsorted(scenes, one)] += np.multiply.outer(v, x * np.ones(a.shape))
+        weights[np.searchsorted(scenes, other)] -= np.multiply.outer(w, y * np.ones(a.shape))
+        together = np.maximum(pooled.variance(quantity, scenes, weights), 0.0)  # apart from rounding
+        variances = pooled.variance(quantity, one, v), pooled.variance(quantity, other, w)
+        return cls(a, b, together, x**2 * variances[0] + y**2 * variances[1])
 
 
 @dataclass(frozen=True, repr=False)

@@ -41,7 +41,7 @@ from mcgw.store.run_folder import RunFolder
 from mcgw.sweeps.axes import Axes
 from mcgw.sweeps.groups import Place
 from mcgw.sweeps.points import Asked, Points
-from mcgw.sweeps.sweep import STATISTICS, Sweep
+from mcgw.sweeps.sweep import Sweep
 
 Tables = dict[str, NDArray[Any]]
 
@@ -49,7 +49,7 @@ Tables = dict[str, NDArray[Any]]
 def contents_of_sweep(record: RunFolder, pooled: Sequence[Pooled], **about: Any) -> Contents:
     """Those of the file of a sweep, with more attributes."""
     text, axes = record.text, record.axes
-    sweep = Asked.from_texts(text, axes).answered(pooled, STATISTICS)
+    sweep = Asked.from_texts(text, axes).answered(pooled)
     attributes = attributes_of(record.scene, "", text, axes=axes, **about)
     return contents_of_kept(_by_point(sweep), _drawn(sweep), attributes, text, axes)
 
@@ -88,15 +88,13 @@ def _drawn(sweep: Sweep) -> Tables:
     return tables
 
 
-def open_sweep(path: str | Path, statistics: tuple[str, ...] = STATISTICS) -> Sweep:
+def open_sweep(path: str | Path) -> Sweep:
     """Open the file of a sweep.
 
     Parameters
     ----------
     path : str or Path
         Written by `mcgw.sweep`.
-    statistics : tuple of {"mean", "std"}, optional
-        Statistics that `Sweep.to_xarray` returns.
 
     Returns
     -------
@@ -128,7 +126,7 @@ def open_sweep(path: str | Path, statistics: tuple[str, ...] = STATISTICS) -> Sw
     rows = zip(drawn["points"].tolist(), drawn["points"][:, 1:], drawn["weights"], strict=True)
     places = tuple(Place(g, some[some >= 0], w[some >= 0]) for (g, *_), some, w in rows)
     of_points = [groups[place.group].n for place in places]
-    return Sweep(axes, Points(document, axes, of_points), places, groups, statistics)
+    return Sweep(axes, Points(document, axes, of_points), places, groups)
 
 
 def _groups(drawn: Tables) -> Iterator[Pooled]:

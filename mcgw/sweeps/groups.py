@@ -17,6 +17,8 @@ import numpy as np
 
 from analytic import Exponential, Homogeneous, quantity_of
 from analytic.arrays import Array, Ints
+from mcgw.ensemble.pooled import Pooled
+from mcgw.ensemble.results import Held
 from mcgw.machine.progress import steps
 from mcgw.sampling.shared import common_edges, to_be_shared
 from mcgw.scene.scene import Scene
@@ -48,6 +50,40 @@ class Place:
         if len(self.scenes) == 1 or quantity_of(quantity).modulus:
             return self.scenes, self.weights
         return self.scenes[:1], np.ones(1)
+
+
+@dataclass(frozen=True)
+class PointResults(Held):
+    """Mean and deviation of a point, a weighted mean of what is pooled.
+
+    Parameters
+    ----------
+    pooled : Pooled
+        Statistics of its group.
+    place : Place
+        Its place in the group.
+    """
+
+    pooled: Pooled
+    place: Place
+
+    no_more = (
+        "a sweep only keeps mean and standard deviation of a point; simulate(sweep.scene(point)) draws "
+        "surfaces of that scene"
+    )
+
+    def rows(self) -> int:
+        """Number of surfaces."""
+        return self.pooled.n
+
+    def mean_and_std(self, name: str) -> tuple[Array, Array]:
+        """Mean and standard deviation (divisor M - 1)."""
+        some = self.place.of(name)
+        return self.pooled.mean(name, *some), np.sqrt(self.pooled.variance(name, *some))
+
+    def total_number(self, name: str) -> Array:
+        """The mean times the number of surfaces, as a whole number."""
+        return np.rint(self.pooled.mean(name, *self.place.of(name)) * self.pooled.n)
 
 
 @dataclass(frozen=True)

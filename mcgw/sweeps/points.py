@@ -3,6 +3,7 @@
 A sweep is checked and put into groups before anything is drawn.
 """
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -14,6 +15,7 @@ from mcgw.ensemble.forecast import without_rule
 from mcgw.ensemble.pooled import Pooled
 from mcgw.formats.named_files import loads
 from mcgw.machine.progress import steps
+from mcgw.scene.cautions import cautions
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_document, scene_of, with_changes
 from mcgw.scene.section import SceneError
@@ -21,6 +23,7 @@ from mcgw.sweeps.axes import Axes
 from mcgw.sweeps.groups import Group, Place, groups_of
 from mcgw.sweeps.sweep import Sweep
 
+_NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 _MOST_TOLD = 20  # most mistakes that are shown
 
 
@@ -129,7 +132,7 @@ class Asked:
         """
         return groups_of([_with_a_number(scene) for scene in scenes_of(self.document, self.axes)])
 
-    def answered(self, pooled: Sequence[Pooled], statistics: tuple[str, ...]) -> Sweep:
+    def answered(self, pooled: Sequence[Pooled]) -> Sweep:
         """The sweep, from the data of each group."""
         scenes: dict[int, Scene] = {}
         places: dict[int, Place] = {}
@@ -141,7 +144,6 @@ class Asked:
             scenes=tuple(scenes[i] for i in range(self.axes.size)),
             places=tuple(places[i] for i in range(self.axes.size)),
             groups=tuple(pooled),
-            statistics=statistics,
         )
 
 
@@ -150,3 +152,22 @@ def _with_a_number(scene: Scene) -> Scene:
     if scene.max_seconds is not None:
         raise SceneError(["ensemble.max_seconds: a sweep must be reproducible; give n_surfaces or rel_err"])
     return scene if scene.rel_err is None else without_rule(scene)
+
+
+def sweep_cautions(sweep: Sweep) -> list[str]:
+    """Cautions about all scenes, one line each, the most common first.
+
+    Cautions that differ in their numbers alone are one, with those of the first point that has it.
+    """
+    points = list(sweep.axes.points())
+    found: dict[str, list[tuple[int, str]]] = {}
+    for i in range(len(points)):
+        for line in cautions(sweep.scenes[i]):
+            found.setdefault(_NUMBER.sub("#", line), []).append((i, line))
+    lines = []
+    for some in sorted(found.values(), key=len, reverse=True):
+        first, line = some[0]
+        alike = len({text for _, text in some}) == 1
+        where = "" if alike else f" (numbers of {sweep.axes.text(points[first])})"
+        lines.append(f"{len({i for i, _ in some})} of {len(points)} points: {line}{where}")
+    return lines

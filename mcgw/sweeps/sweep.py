@@ -3,32 +3,93 @@
 Differences and ratios of its points are over the same surfaces (`mcgw.sweeps.between`).
 """
 
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from analytic.arrays import Ints
+from mcgw.ensemble.dataset import Dataset
+from mcgw.ensemble.ensemble import STATISTICS, Ensemble
 from mcgw.ensemble.labelled import Labelled, Variable, axes_of, statistics_of
 from mcgw.ensemble.paired import Paired
-from mcgw.formats.sheet import Sheet, Shown
+from mcgw.ensemble.pooled import Pooled
+from mcgw.formats.sheet import Sheet
 from mcgw.formats.table import SEPARATION, Column, Table, evenly
-from mcgw.machine.terminal import plotted
+from mcgw.sampling.samplers import name_of
+from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
-from mcgw.sweeps.axes import Point, label
+from mcgw.sweeps.axes import Axes, Point, label
 from mcgw.sweeps.between import Difference, Slopes, ratio_of
-from mcgw.sweeps.groups import Place
-from mcgw.sweeps.over_points import At, OverPoints
+from mcgw.sweeps.groups import Place, PointResults
 
-STATISTICS = ("mean", "std")
+At = Mapping[str, Any] | Sequence[int] | int
 _SHOWN = 7  # points displayed
 
 
 @dataclass(frozen=True, repr=False)
-class Sweep(OverPoints, Shown):
+class Sweep(Dataset):
     """Means and standard deviations over the surfaces of every point, their differences and slopes.
 
-    Its fields are those of `OverPoints`.
+    Parameters
+    ----------
+    axes : Axes
+        The keys and their values.
+    scenes : sequence of Scene
+        Of all points, the last axis fastest.
+    places : tuple of Place
+        Where the statistics of each point are.
+    groups : tuple of Pooled
+        What is kept of each group of points that share their surfaces.
     """
+
+    axes: Axes
+    scenes: Sequence[Scene]
+    places: tuple[Place, ...]
+    groups: tuple[Pooled, ...]
+
+    @property
+    def _points(self) -> Sequence[Scene]:
+        """The same as `scenes`."""
+        return self.scenes
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Number of points along each axis; along the one of zipped axes."""
+        return self.axes.shape
+
+    def _held(self, point: int) -> PointResults:
+        """Mean and deviation of a point."""
+        place = self.places[point]
+        return PointResults(self.groups[place.group], place)
+
+    def _at(self, which: Ints) -> "Sweep":
+        """The same surfaces at some of the separations, by their numbers."""
+        separations = tuple(self.separations[which].tolist())
+        scenes = tuple(replace(scene, separations=separations) for scene in self.scenes)
+        return replace(self, scenes=scenes, groups=tuple(one.at(which) for one in self.groups))
+
+    def scene(self, at: At) -> Scene:
+        """The scene of a point, given by the values of its keys or by its index along each axis.
+
+        Raises
+        ------
+        ValueError
+            If there is no such point.
+        """
+        return self.scenes[self._number(self.axes.place(at))]
+
+    def ensemble(self, at: At) -> Ensemble:
+        """Mean and standard deviation of a point, as an ensemble of its scene.
+
+        Raises
+        ------
+        ValueError
+            If there is no such point.
+        """
+        i = self._number(self.axes.place(at))
+        return Ensemble(self.scenes[i], name_of(self.scenes[i]), self._held(i))
 
     def difference(self, quantity: str, one: At, other: At) -> Difference:
         """Difference of a mean between two points, first minus second, over the same surfaces.
@@ -67,7 +128,7 @@ class Sweep(OverPoints, Shown):
             With its standard error over the surfaces, and `interval`.
         """
         points = self.axes.place(one), self.axes.place(other)
-        name, _ = self._held(quantity)
+        name, _ = self._stored(quantity)
         a, b = self._pair(*points)
         return ratio_of(self.groups[self.places[a].group], self._places(a, b), name, self.separations)
 
@@ -141,20 +202,8 @@ class Sweep(OverPoints, Shown):
             )
             for key, name in self.axes.names.items()
         }
-        variables = statistics_of(self, self.quantities, self.statistics, self.axes.dims)
+        variables = statistics_of(self, self.quantities, STATISTICS, self.axes.dims)
         return Labelled(variables, {**axes_of(self.scenes[0]), **coordinates})
-
-    def plot(self, ax: Any = None, *, quantity: str | None = None) -> Any:
-        """Draw the mean of a quantity against the separation, one line for each point; returns the axes.
-
-        Parameters
-        ----------
-        ax : matplotlib Axes, optional
-            Axes to draw on; default: new ones.
-        quantity : str, optional
-            Default: the first quantity of the scenes.
-        """
-        return plotted(self, ax, quantity=quantity or self.quantities[0])
 
     def sheet(self) -> Sheet:
         """Display the axes, and means of some points at the lowest separation."""
@@ -193,7 +242,7 @@ class Sweep(OverPoints, Shown):
                 unit = self.scenes[0].quantity(name).unit
                 columns += [
                     Column(f"{name}_{kind}", getattr(self, kind)(name).ravel(), unit=unit)
-                    for kind in self.statistics
+                    for kind in STATISTICS
                 ]
                 if name in ratios:
                     columns += [
@@ -220,7 +269,7 @@ class Sweep(OverPoints, Shown):
         return found
 
     def _difference(self, quantity: str, one: Point, other: Point) -> Difference:
-        name, per_area = self._held(quantity)
+        name, per_area = self._stored(quantity)
         a, b = self._pair(one, other)
         area = (self.scenes[k].surface.nominal_area if per_area else 1.0 for k in (a, b))
         pooled = self.groups[self.places[a].group]
@@ -238,3 +287,6 @@ class Sweep(OverPoints, Shown):
                 "are no pairs, but the same seed correlates them: give the ensemble of each its own seed"
             )
         return a, b
+
+    def _number(self, point: Point) -> int:
+        return int(np.ravel_multi_index(point, self.shape))

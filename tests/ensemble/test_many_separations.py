@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import mcgw
-from mcgw.ensemble.some_separations import MOST_SHOWN, at_separations, how_many, shown
+from mcgw.ensemble.ensemble import MOST_SHOWN, how_many, shown
 from mcgw.statistics.verdict import verdict
 
 WHOLE = np.linspace(1.5, 0.0, 2 * MOST_SHOWN + 1)  # falling: every other one is shown
@@ -19,7 +19,7 @@ def whole(request):
 
 @pytest.mark.parametrize("count", [1, MOST_SHOWN, MOST_SHOWN + 1])
 def test_up_to_the_limit_an_ensemble_is_shown_as_it_is(whole, count):
-    few = at_separations(whole, np.arange(count))
+    few = whole.sel(separation=WHOLE[:count])
     assert (shown(few) is few) == (count <= MOST_SHOWN)
     assert bool(how_many(few)) == (count > MOST_SHOWN)
     assert len(shown(few).separations) == min(count, MOST_SHOWN)
@@ -35,7 +35,7 @@ def test_the_first_and_the_last_separation_are_shown_and_the_order_is_kept(whole
 
 def test_every_number_is_that_of_the_same_separation(whole):
     which = np.array([7, 50, 191])
-    some = at_separations(whole, which)
+    some = whole.sel(separation=WHOLE[which])
     assert some.n_surfaces == whole.n_surfaces
     for ask in ("mean", "std", "stderr"):
         found, expected = (np.asarray(getattr(e, ask)("area_fraction")) for e in (some, whole))
@@ -45,7 +45,7 @@ def test_every_number_is_that_of_the_same_separation(whole):
     for name in ("contacts", "load"):
         np.testing.assert_allclose(
             np.asarray(some.interval(name))[:, 1],
-            np.asarray(at_separations(whole, which[[1]]).interval(name))[:, 0],
+            np.asarray(whole.sel(separation=WHOLE[50]).interval(name))[:, 0],
             rtol=1e-13,
         )
     if whole.scene.keep == "sums":

@@ -32,15 +32,12 @@ def test_a_plot_by_its_name(ensemble):
 def test_a_mean_at_a_separation(ensemble):
     for name in ("load", "pressure", "contacts"):
         for kind in ("mean", "std", "stderr"):
-            every, at = getattr(ensemble, kind)(name), getattr(ensemble, kind)
-            assert at(name, 2.0) == every[0]
-            assert at(name, 0.3) == every[1]
-            np.testing.assert_array_equal(at(name, [1.0, 2.0]), every[[2, 0]])
-            np.testing.assert_array_equal(at(name, [[1.0], [0.3]]), every[[[2], [1]]])
-    with pytest.raises(
-        ValueError, match=r"^separation = 1\.5: the ensemble has 2, 0\.3, 1; scene\.theory\.mean\("
-    ):
-        ensemble.mean("load", [1.0, 1.5])
+            every = getattr(ensemble, kind)(name)
+            for asked, which in ((2.0, [0]), (0.3, [1]), ([1.0, 2.0], [2, 0])):
+                found = getattr(ensemble.sel(separation=asked), kind)(name)
+                np.testing.assert_array_equal(found, every[which])
+    with pytest.raises(ValueError, match=r"^separation = 1\.5: there are 2, 0\.3, 1; scene\.theory has"):
+        ensemble.sel(separation=[1.0, 1.5])
 
 
 def test_a_body_with_units():

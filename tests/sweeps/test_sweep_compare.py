@@ -11,7 +11,7 @@ import mcgw
 from mcgw.cli import main
 from mcgw.figures.against_theory import sweep_figure
 from mcgw.statistics.verdict import FALSE_ALARM, verdict
-from mcgw.sweeps.over_points import sweep_cautions
+from mcgw.sweeps.points import sweep_cautions
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
 SCENE = mcgw.Scene(SURFACE, separations=[2.0, 0.0, 1.0], n_surfaces=200, n_asperities=2000, seed=5)

@@ -1,0 +1,225 @@
+"""What is held of the surfaces of one scene or of several: statistics over them, and other forms of them."""
+
+from abc import abstractmethod
+from collections.abc import Callable, Sequence
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from analytic import PER_AREA
+from analytic.arrays import Array, Ints
+from mcgw.ensemble.intervals import CONFIDENCE, interval_of
+from mcgw.ensemble.labelled import Labelled
+from mcgw.ensemble.results import Held
+from mcgw.formats.sheet import Shown, brief
+from mcgw.machine.terminal import plotted, quantity_and_axes
+from mcgw.scene.scene import Scene
+
+_SAME = 1e-9  # d/sigma
+
+
+class Dataset(Shown):
+    """Quantities of surfaces at the separations of their scenes, SI, and statistics over the surfaces.
+
+    What is an array has first the shape of the points, which a single scene does not have. The quantities
+    are those of the scenes, such as "load" (N); "pressure" (P/A_n, Pa) and "area_fraction" (A/A_n, 1) follow
+    from them.
+    """
+
+    @property
+    @abstractmethod
+    def _points(self) -> Sequence[Scene]:
+        """Scenes, the last axis fastest."""
+
+    @property
+    @abstractmethod
+    def shape(self) -> tuple[int, ...]:
+        """Number of points along each axis; nothing of a single scene."""
+
+    @abstractmethod
+    def _held(self, point: int) -> Held:
+        """What is held of the surfaces of a point."""
+
+    @abstractmethod
+    def _at(self, which: Ints) -> Self:
+        """The same surfaces at some of the separations, by their numbers."""
+
+    @abstractmethod
+    def labelled(self) -> Labelled:
+        """Return all data with axes, units and descriptions, for the file, xarray and pandas alike."""
+
+    @property
+    def separations(self) -> Array:
+        """Reduced separations d/sigma, shape (separations,)."""
+        return np.array(self._points[0].separations)
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """Quantities that are held."""
+        return tuple(self._points[0].shapes)
+
+    def mean(self, quantity: str) -> Array:
+        """Return the mean over the surfaces in SI units, shape (points ..., separations).
+
+        Raises
+        ------
+        KeyError
+            If this quantity is not held.
+        """
+        return self._of_each(quantity, lambda held, name: held.mean_and_std(name)[0])
+
+    def std(self, quantity: str) -> Array:
+        """Return the standard deviation over the surfaces (divisor M - 1), nan for one; as `mean`."""
+        return self._of_each(quantity, lambda held, name: held.mean_and_std(name)[1])
+
+    def stderr(self, quantity: str) -> Array:
+        """Return the standard error of the mean, nan for one surface; as `mean`."""
+        surfaces = [self._held(i).rows() for i in range(len(self._points))]
+        return np.asarray(self.std(quantity) / np.sqrt(self._of_points(surfaces)))
+
+    def covariance(self, quantity: str, other: str | None = None) -> Array:
+        """Return the covariance over the surfaces (divisor M - 1) of two quantities, or of one with itself.
+
+        Shape (points ..., separations, separations of the other); nan for one surface.
+
+        Raises
+        ------
+        KeyError
+            If this quantity is not held.
+        ValueError
+            If this is not kept, as of a sweep.
+        """
+        second, per_area = self._stored(other or quantity)
+        found = self._of_each(quantity, lambda held, name: held.covariance(name, second))
+        return self._per_area(found) if per_area else found
+
+    def quantile(self, quantity: str, share: float) -> Array:
+        """Return the quantile over the surfaces, as `numpy.quantile`, shape (points ..., separations).
+
+        The exact one, of a surface that is not yet drawn, is ``scene.theory.distribution(quantity, h).ppf``.
+
+        Raises
+        ------
+        KeyError
+            If this quantity is not held.
+        ValueError
+            If `share` is not from 0 to 1, or values are not kept.
+        """
+        if not 0 <= share <= 1:
+            raise ValueError(f"share = {share!r}: give a fraction of the surfaces, 0 to 1")
+        return self._of_each(
+            quantity, lambda held, name: np.quantile(held.read(name, 0, None), share, axis=0)
+        )
+
+    def interval(self, quantity: str, level: float = CONFIDENCE) -> tuple[Array, Array]:
+        """Return the confidence interval of the mean, from the exact spread and skewness of the scene.
+
+        It holds for any number of surfaces, even one. For `contacts` it is exact (Clopper-Pearson, or Garwood
+        for a Poisson number of asperities). Measured heights used as they are do not fluctuate: both ends
+        equal the value.
+
+        Parameters
+        ----------
+        quantity : str
+            Its name.
+        level : float, optional
+            Probability that the interval covers the mean of all surfaces.
+
+        Returns
+        -------
+        (ndarray, ndarray)
+            Lower and upper ends, each as `mean`; nan where the surfaces together have fewer than ten
+            effective contacts (`mcgw.ensemble.intervals.Spread`).
+
+        Raises
+        ------
+        KeyError
+            If this quantity is not held.
+        """
+        name, per_area = self._stored(quantity)
+        scenes = enumerate(self._points)
+        ends = zip(*(interval_of(one, self._held(i), name, level) for i, one in scenes), strict=True)
+        low, high = map(self._arranged, ends)
+        return (self._per_area(low), self._per_area(high)) if per_area else (low, high)
+
+    def theory(self, quantity: str) -> Array:
+        """Return the exact mean (`Scene.theory`), shape (points ..., separations)."""
+        self._stored(quantity)
+        h = self.separations
+        return self._arranged([np.asarray(scene.theory.mean(quantity, h)) for scene in self._points])
+
+    def sel(self, *, separation: ArrayLike) -> Self:
+        """Return the same surfaces at some of the separations.
+
+        Parameters
+        ----------
+        separation : array_like
+            One or several of `separations`, d/sigma.
+
+        Raises
+        ------
+        ValueError
+            If there is no such separation.
+
+        Examples
+        --------
+        >>> import mcgw
+        >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+        >>> e = mcgw.simulate(mcgw.Scene(surface, separations=[0, 1, 2], n_surfaces=100, seed=1))
+        >>> bool(e.sel(separation=1.0).mean("load")[0] == e.mean("load")[1])
+        True
+        """
+        wanted = np.atleast_1d(np.asarray(separation, dtype=np.float64)).ravel()
+        apart = np.abs(wanted[:, None] - self.separations)
+        if np.any(lacking := apart.min(axis=-1, initial=np.inf) > _SAME):
+            have = ", ".join(f"{h:g}" for h in self.separations)
+            raise ValueError(
+                f"separation = {wanted[lacking][0]:g}: there are {brief(have)}; scene.theory has the exact "
+                "mean at any"
+            )
+        return self._at(apart.argmin(axis=-1))
+
+    def plot(self, quantity: str | None = None, ax: Any = None) -> Any:
+        """Draw the mean of a quantity against the separation, with its interval; of each point.
+
+        Parameters
+        ----------
+        quantity : str, optional
+            Default: the first quantity of the scene.
+        ax : matplotlib Axes, optional
+            Axes to draw on, also as the first argument; default: new ones.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            With labels.
+        """
+        quantity, ax = quantity_and_axes(quantity, ax)
+        return plotted(self, ax, quantity=quantity or self.quantities[0])
+
+    def _of_each(self, quantity: str, get: Callable[[Held, str], Any]) -> Array:
+        """One array over all points, per area if requested."""
+        name, per_area = self._stored(quantity)
+        found = self._arranged([get(self._held(i), name) for i in range(len(self._points))])
+        return self._per_area(found) if per_area else found
+
+    def _arranged(self, found: Sequence[Any]) -> Array:
+        """Data of all points in the shape of the axes."""
+        return np.stack(found).reshape(*self.shape, *np.shape(found[0]))
+
+    def _per_area(self, values: Array) -> Array:
+        areas = self._of_points([scene.surface.nominal_area for scene in self._points])
+        return np.asarray(values / areas.reshape(*areas.shape, *[1] * (values.ndim - areas.ndim)))
+
+    def _of_points(self, numbers: Sequence[float]) -> Array:
+        """One number of each point, to go with what is at each separation."""
+        return np.array(numbers).reshape(*self.shape, 1)
+
+    def _stored(self, quantity: str) -> tuple[str, bool]:
+        """The stored quantity, and whether the requested one is per nominal area."""
+        name = PER_AREA[quantity].of if quantity in PER_AREA else quantity
+        if name not in self.quantities:
+            kind, have = type(self).__name__.lower(), ", ".join(self.quantities)
+            raise KeyError(f"{quantity!r} is not in this {kind}; it has {have}")
+        return name, quantity in PER_AREA
