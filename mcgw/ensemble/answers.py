@@ -6,6 +6,7 @@ import numpy as np
 
 from analytic import quantity_of
 from analytic.at_load import Moments, specimen_moments
+from analytic.distribution.of_model import check_falling
 from mcgw.ensemble.at_load import GAPS, asperities_of, quantities_at
 from mcgw.scene.scene import Scene
 
@@ -50,6 +51,48 @@ class Answers(Mapping[str, float]):
         return repr(dict(self))
 
 
+def all_are_known(scene: Scene, given: str, theory: Mapping[str, float]) -> bool:
+    """Tell whether `exact_moments` has all answers, if it has more than what is given.
+
+    Parameters
+    ----------
+    scene, given, theory
+        As there.
+
+    Returns
+    -------
+    bool
+        False where some answer is no sum, as a resistance, or where sums are not known at all.
+    """
+    known = {given, "load_slope", *_from_sums(scene, theory), *_from_the_separation(scene, given)}
+    return _known_by_quadrature(asperities_of(scene), given) and known.issuperset(theory)
+
+
+def surely_reached(scene: Scene, given: str, lowest: float) -> bool:
+    """Tell without integrals whether every surface reaches what is given.
+
+    Parameters
+    ----------
+    scene, given
+        As in `exact_moments`.
+    lowest : float
+        Separation that nearly every surface is above, d/sigma.
+
+    Returns
+    -------
+    bool
+        False where only `exact_moments` can tell, as with a Poisson number of asperities, which may be 0.
+    """
+    alone = asperities_of(scene)
+    if alone.count != "fixed" or alone.n_asperities < 2 or alone.negative_above(lowest) is not None:
+        return False
+    try:
+        check_falling(alone.theory, given, lowest)
+    except ValueError:
+        return False
+    return True
+
+
 def exact_moments(scene: Scene, given: str, amount: float, theory: Mapping[str, float]) -> Moments:
     """Means and standard deviations over specimens that need no draw: by quadrature, in SI units.
 
@@ -67,9 +110,9 @@ def exact_moments(scene: Scene, given: str, amount: float, theory: Mapping[str, 
     Moments
         Of what is given alone, where the rest is not known or takes longer than to draw.
     """
-    sigma, alone = scene.surface.sigma, asperities_of(scene)
+    alone = asperities_of(scene)
     known = Moments({given: amount}, {given: 0.0})
-    if alone.curvature is not None or alone.as_measured or given == "nominal_separation":
+    if not _known_by_quadrature(alone, given):
         return known
     summed = [name for name in quantities_at(alone) if name in theory and name != given]
     summed = [name for name in summed if quantity_of(name).base != "load_slope"]
@@ -80,22 +123,39 @@ def exact_moments(scene: Scene, given: str, amount: float, theory: Mapping[str, 
         return known
     if not np.isfinite([*found.mean.values(), *found.std.values()]).all():
         return known
+    sources = _from_sums(scene, theory)
     mean, std = (
-        {name: x for name, x in part.items() if name == "separation" or not scene.series(name)}
-        for part in found
+        {name: unit * part[of] for name, (of, unit) in sources.items() if of in part} | own
+        for part, own in zip(found, known, strict=True)
     )
-    lift = mean["separation"] - theory["separation"]
-    moved: tuple[str, ...] = ()
-    if scene.interaction is None:
-        moved = (scene.gap,)
-        for part in (mean, std) if "conductance_si" in mean else ():
-            spots = part["contact_conductance"] = part["conductance_si"] / scene.surface.nominal_area
-            if scene.filled is not None and scene.filled.gas is None:
-                part |= {"gap_conductance": 0.0, "joint_conductance": spots}
-    elif given == "load":
-        moved = ("nominal_separation", *GAPS)
-    for name in moved:  # from the separation alike on all surfaces
+    lift = found.mean["separation"] - theory["separation"]
+    for name, unit in _from_the_separation(scene, given).items():
         if name in theory:
-            unit = sigma if name in GAPS else 1.0
-            mean[name], std[name] = theory[name] + unit * lift, unit * std["separation"]
-    return Moments(mean | known.mean, std | known.std)
+            mean[name], std[name] = theory[name] + unit * lift, unit * found.std["separation"]
+    return Moments(mean, std)
+
+
+def _known_by_quadrature(alone: Scene, given: str) -> bool:
+    """Whether the law of the sums of its asperities is known, or quicker to find than to draw."""
+    return alone.curvature is None and not alone.as_measured and given != "nominal_separation"
+
+
+def _from_sums(scene: Scene, theory: Mapping[str, float]) -> dict[str, tuple[str, float]]:
+    """Answers that are a sum over asperities, or in proportion to one: which, and by how much."""
+    sums = [name for name in quantities_at(scene) if not scene.series(name)]
+    found = {name: (name, 1.0) for name in ("separation", *sums)}
+    if scene.interaction is None and scene.film is not None:
+        spots = ("conductance_si", 1 / scene.surface.nominal_area)
+        found["contact_conductance"] = spots
+        if scene.filled is not None and scene.filled.gas is None:
+            found |= {"gap_conductance": ("conductance_si", 0.0), "joint_conductance": spots}
+    return {name: found[name] for name in found if name in theory}
+
+
+def _from_the_separation(scene: Scene, given: str) -> dict[str, float]:
+    """Answers that differ from the separation by the same on all surfaces, with their unit over its own."""
+    if scene.interaction is None:
+        return {scene.gap: scene.surface.sigma}
+    if given != "load":
+        return {}
+    return {"nominal_separation": 1.0, **dict.fromkeys(GAPS, scene.surface.sigma)}

@@ -54,13 +54,14 @@ class LoadedSurfaces:
         return _resampled(self.scene) if self.scene.as_measured else self.scene
 
     @cached_property
-    def _lows(self) -> list[float]:
+    def lows(self) -> list[float]:
+        """Separation that nearly every surface is above, at each value."""
         return [_lowest(self.specimens, self.given, h) for h in self.about]
 
     @cached_property
     def drawn(self) -> Scene:
         """The scene with which the surfaces are drawn."""
-        return storable(_drawn(self.specimens, min(self._lows)))
+        return storable(_drawn(self.specimens, min(self.lows)))
 
     @cached_property
     def sums(self) -> list[dict[str, Array]]:
@@ -87,7 +88,7 @@ class LoadedSurfaces:
         step = max(int(_AT_ONCE / (drawn.touching + 1)), 1)
         for first in range(0, drawn.n_surfaces, step):
             n = min(step, drawn.n_surfaces - first)
-            starts = list(zip(self._lows, self.about, strict=True))
+            starts = list(zip(self.lows, self.about, strict=True))
             parts.append(_surfaces(self.scene, sampler, first, n, self.given, self.values, starts, self.sunk))
             if tell is not None:
                 tell(first + n, drawn.n_surfaces)

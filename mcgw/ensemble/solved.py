@@ -11,7 +11,7 @@ from scipy.special import stdtrit
 from analytic import SEPARATIONS, quantity_of, yielding_share
 from analytic.arrays import Array
 from analytic.at_load import Moments
-from mcgw.ensemble.answers import Answers, exact_moments
+from mcgw.ensemble.answers import Answers, all_are_known, exact_moments, surely_reached
 from mcgw.ensemble.at_load import GAPS, answers_at, asperities_of, mean_surface
 from mcgw.ensemble.intervals import FEWEST, interval_column, laws_are_quick
 from mcgw.formats.sheet import Sheet, Shown
@@ -161,7 +161,15 @@ class Solution(Shown):
     @property
     def exact(self) -> bool:
         """Whether the means and the scatter of the answers need no draw."""
-        return all(name in self._exact.mean for name in self.theory if name != "load_slope")
+        exact = all_are_known(self.scene, self.given, self.theory)
+        return exact and all(name in self._exact.mean for name in self.theory if name != "load_slope")
+
+    @property
+    def needs_draw(self) -> bool:
+        """Whether surfaces are drawn for the answers, or to tell that one of them has none; cheap if not."""
+        known = all_are_known(self.scene, self.given, self.theory)
+        lowest = self.loaded.lows[self.number]
+        return not (known and surely_reached(self.scene, self.given, lowest)) and not self.exact
 
     def _estimate(self, name: str) -> tuple[float, float, int]:
         """Mean over specimens of an answer, its standard error, and the degrees of freedom of that."""
