@@ -21,6 +21,7 @@ from mcgw.formats.gate import check_archive, open_h5
 from mcgw.maps.topography import Topography, checked_shape, height_unit, in_metres
 
 _MOST_TEXT = 2**26  # bytes of a text, which it takes in whole
+_LARGEST = 3.4e38  # in the numbers of a file, which mark a missing point by the least of their type
 _MAGIC = 64  # bytes that tell a text
 _PRINTABLE = bytes(range(32, 127)) + b"\t\r\n"
 
@@ -45,7 +46,6 @@ def read_foreign(
         Size of a pixel, m, where the file does not tell it.
     unit : str, optional
         Of all lengths, where the file tells none; m if left out.
-
     missing : float, optional
         Number that stands for a missing point, in the unit of the file.
 
@@ -68,6 +68,7 @@ def read_foreign(
     with _one_line_errors(path):
         found = channel.topography(**({} if told else {"physical_sizes": (columns, rows)}))
         z = np.ma.filled(np.ma.masked_invalid(found.heights()), np.nan).T
+    z[np.abs(z) > _LARGEST * abs(channel.height_scale_factor or 1.0)] = np.nan
     dx, dy = pixel or (float(p) * metre for p in found.pixel_size)
     z = np.ascontiguousarray(in_metres(path, z, metre, missing))
     return Topography(z, (dx, dy), bool(found.is_periodic), assumed)

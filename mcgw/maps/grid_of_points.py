@@ -59,7 +59,7 @@ def _places(path: Path, name: str, values: Array) -> tuple[int, float, NDArray[n
     first = ordered[begins]
     places = np.searchsorted(first, values, side="right") - 1
     centres = np.bincount(places, weights=values) / np.bincount(places)
-    distance = float(centres[-1] - centres[0]) / max(len(first) - 1, 1)
+    distance = float(f"{(centres[-1] - centres[0]) / max(len(first) - 1, 1):.12g}")  # as a text may give it
     even = centres[0] + distance * np.arange(len(first))
     if not np.all(np.abs(values - even[places]) <= _EVEN * distance):
         raise ValueError(

@@ -6,7 +6,7 @@ import numpy as np
 
 
 class Channel:
-    dim, unit, is_periodic, physical_sizes = 2, "um", False, (3.0, 1.0)
+    dim, unit, is_periodic, physical_sizes, height_scale_factor = 2, "um", False, (3.0, 1.0), None
 
     def __init__(self, path, columns, rows):
         self.path, self.nb_grid_pts = path, (columns, rows)
