@@ -68,7 +68,8 @@ def read_foreign(
     with _one_line_errors(path):
         found = channel.topography(**({} if told else {"physical_sizes": (columns, rows)}))
         z = np.ma.filled(np.ma.masked_invalid(found.heights()), np.nan).T
-    z[np.abs(z) > _LARGEST * abs(channel.height_scale_factor or 1.0)] = np.nan
+    if missing is None:
+        z[np.abs(z) > _LARGEST * abs(channel.height_scale_factor or 1.0)] = np.nan
     dx, dy = pixel or (float(p) * metre for p in found.pixel_size)
     z = np.ascontiguousarray(in_metres(path, z, metre, missing))
     return Topography(z, (dx, dy), bool(found.is_periodic), assumed)

@@ -403,10 +403,12 @@ def test_numbers_that_stand_for_missing_points_are_named(name, value, topography
     else:
         np.savetxt(path, z) if name == "m.txt" else np.save(path, z)
         given = {"pixel": topography.pixel, "unit": "um"}
-    with pytest.raises(
-        ValueError, match=rf"2 of 35 heights are {re.escape(f'{value:.8g}')}, .*--missing-value"
-    ):
-        read_map(path, **given)
+    if (name, value) == ("m.nc", -3.4028235e38):  # the least number of a foreign file is known
+        assert read_map(path).missing == 2
+    else:
+        refused = rf"2 of 35 heights are {re.escape(f'{value:.8g}')}, .*--missing-value"
+        with pytest.raises(ValueError, match=refused):
+            read_map(path, **given)
     found = read_map(path, missing=value, **given)
     assert np.isnan(found.heights[[1, 3], [2, 0]]).all()
     assert found.missing == 2
