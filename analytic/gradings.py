@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.arrays import Array
-from analytic.elementary import exp, log
 from analytic.piecewise import PiecewiseSeries
 
 
@@ -84,14 +83,14 @@ class Exponential:
 
     def __call__(self, s: Array) -> Array:
         """``gamma - (gamma - 1) exp(-s)``, Eq. (4)."""
-        return self.gamma - (self.gamma - 1) * exp(-s)
+        return self.gamma - (self.gamma - 1) * np.exp(-s)
 
     @property
     def zero(self) -> float:
         """Height where the modulus vanishes (nan for gamma in [0, 1]); it is negative on one side."""
         if 0 <= self.gamma <= 1:
             return math.nan
-        return -float(log(self.gamma / (self.gamma - 1)))
+        return -math.log(self.gamma / (self.gamma - 1))
 
 
 @dataclass(frozen=True)

@@ -9,14 +9,27 @@ from functools import cached_property, lru_cache
 from typing import Any, ClassVar, Protocol
 
 import numpy as np
-from scipy.special import gammaln, log_ndtr, ndtri_exp, zeta
+from scipy.special import erfcx, gammaln, log_ndtr, ndtri, ndtri_exp, zeta
 
 from analytic.arrays import Array
-from analytic.elementary import exp, exp_minus_half_square, expm1, log, log1p, ndtr, ndtri
 
 _FAR = -30.0  # below, where no height is ever drawn, probabilities underflow
 _SERIES = 4.0  # shape of a Weibull law from which on its spread is summed in powers of its inverse
 _BEND = 0.5  # change of the logarithm of the density over a span
+_NO_DENSITY = 1e4  # beyond, a normal density is 0
+
+
+def exp_minus_half_square(h: Any) -> Array:
+    """exp(-h^2/2) to full relative accuracy: the square is split so that its rounding drops out."""
+    h = np.clip(np.asarray(h, dtype=np.float64), -_NO_DENSITY, _NO_DENSITY)
+    a = np.round(16 * h) / 16
+    return np.asarray(np.exp(a * a * -0.5) * np.exp((h - a) * (h + a) * -0.5))
+
+
+def _below(x: Any) -> Array:
+    """Probability of a standard normal number below `x`, to full relative accuracy; in the shape of `x`."""
+    tail = erfcx(np.abs(x) * math.sqrt(0.5)) / 2 * exp_minus_half_square(x)
+    return np.asarray(np.where(np.greater(x, 0), 1 - tail, tail))
 
 
 class HeightLaw(Protocol):
@@ -95,16 +108,16 @@ class Gaussian(HeightLaw):
 
     def cdf(self, s: Array) -> Array:
         """Return ``Phi(s)``."""
-        return ndtr(s)
+        return _below(s)
 
     def sf(self, s: Array) -> Array:
         """Return ``Phi(-s)``."""
-        return ndtr(-s)
+        return _below(-s)
 
     def ppf(self, p: Array, below: float = np.inf) -> Array:
         """Return ``Phi^-1(p Phi(below))``, by logarithms where that underflows."""
         if below > _FAR:
-            return ndtri(p * ndtr(below))
+            return np.asarray(ndtri(p * _below(below)))
         return np.asarray(ndtri_exp(np.log(p) + log_ndtr(below)))
 
     def isf(self, p: Array, above: float = -np.inf) -> Array:
@@ -167,7 +180,7 @@ class ExponentialHeights(HeightLaw):
 
     def pdf(self, s: Array) -> Array:
         """Return ``exp(-1 - s)`` for s >= -1."""
-        return np.asarray(np.where(s >= -1, exp(-1 - np.maximum(s, -1.0)), 0.0))
+        return np.asarray(np.where(s >= -1, np.exp(-1 - np.maximum(s, -1.0)), 0.0))
 
     def log_ratio(self, s: Array, t: Array) -> Array:
         """Return ``-t``."""
@@ -175,19 +188,19 @@ class ExponentialHeights(HeightLaw):
 
     def cdf(self, s: Array) -> Array:
         """Return ``1 - exp(-1 - s)``."""
-        return np.asarray(-expm1(-1 - np.maximum(s, -1.0)))
+        return np.asarray(-np.expm1(-1 - np.maximum(s, -1.0)))
 
     def sf(self, s: Array) -> Array:
         """Return ``exp(-1 - s)``."""
-        return np.asarray(exp(-1 - np.maximum(s, -1.0)))
+        return np.asarray(np.exp(-1 - np.maximum(s, -1.0)))
 
     def ppf(self, p: Array, below: float = math.inf) -> Array:
         """Return ``-1 - log(1 - p cdf(below))``."""
-        return np.asarray(-1 - log1p(-p * self.cdf(np.array(below))))
+        return np.asarray(-1 - np.log1p(-p * self.cdf(np.array(below))))
 
     def isf(self, p: Array, above: float = -math.inf) -> Array:
         """Return ``max(above, -1) - log(p)``."""
-        return np.asarray(max(above, -1.0) - log(p))
+        return np.asarray(max(above, -1.0) - np.log(p))
 
 
 @dataclass(frozen=True)
@@ -299,5 +312,5 @@ class Weibull(HeightLaw):
         return self._s(-np.log1p(-p * self.cdf(np.array(below))))
 
     def isf(self, p: Array, above: float = -math.inf) -> Array:
-        """Return ``(x(above)^k - log(p))^(1/k)``, reduced."""
+        """Return ``(x(above)^k - np.log(p))^(1/k)``, reduced."""
         return self._s(self._power(np.array(above)) - np.log(p))

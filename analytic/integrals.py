@@ -12,9 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.arrays import Array
-from analytic.elementary import exp_minus_half_square
 from analytic.gradings import Grading, Homogeneous
-from analytic.heights import GAUSSIAN, Gaussian, HeightLaw
+from analytic.heights import GAUSSIAN, Gaussian, HeightLaw, exp_minus_half_square
 from analytic.law_rule import law_integral
 from analytic.quadrature import NEAREST, REACH, WIDEST, gauss_legendre, panel, towards
 from analytic.resolution import resolved_breaks

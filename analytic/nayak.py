@@ -21,8 +21,7 @@ from numpy.typing import ArrayLike
 from scipy.special import erfcx, ndtr
 
 from analytic.arrays import Array
-from analytic.elementary import exp_minus_half_square
-from analytic.heights import HeightLaw
+from analytic.heights import HeightLaw, exp_minus_half_square
 from analytic.piecewise import PiecewiseSeries, fitted
 from analytic.quadrature import panelled
 from analytic.surface import LEAST_ALPHA, SUMMIT_SPREAD
