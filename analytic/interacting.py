@@ -96,10 +96,6 @@ class InteractingModel(Model):
             return self.alone.slope(quantity, h)
         return -derivative(lambda at: self.mean(quantity, at), h)
 
-    def prepare(self, separations: ArrayLike, quantities: Sequence[str]) -> None:
-        """Return the same as `Model.prepare`, of the loads."""
-        self.alone.prepare(separations, [_load_of(name) for name in quantities])
-
     def separation_at(self, quantity: str, value: ArrayLike) -> Array:
         """Return the separation of the mean surface, as `Model.separation_at`."""
         if quantity in SEPARATIONS or self.series(quantity):

@@ -88,10 +88,6 @@ class MeanContact:
         """Heights, and radii, for integrals of what is added to these quantities at these separations."""
         return self.summits.rule(np.asarray(h, dtype=np.float64), self.grading, self.ways.among(quantities))
 
-    def prepare(self, h: Array, quantities: Sequence[str]) -> None:
-        """Make the rules of these separations together, where they are not made yet."""
-        self.summits.prepare(h, self.grading, self.ways.among(quantities))
-
     def separations_at(self, quantity: str, values: Array) -> Array:
         """Largest separations with given means, in the shape of `values`.
 
@@ -114,7 +110,6 @@ class MeanContact:
             raise ValueError("h: every separation must be finite")
         order = np.argsort(flat)
         result = np.empty(flat.size)
-        self.prepare(flat, [quantity])
         for k in range(0, flat.size, self.together):
             part = order[k : k + self.together]
             result[part] = function(flat[part], self.rule(flat[part], [quantity]))
@@ -189,9 +184,6 @@ class MeanPowers:
         if q.base == "contacts" or self.contact.summits.listed:
             return self.contact.slope(q.base, h)
         return fall_of(partial(self.mean, q.base), h)
-
-    def prepare(self, h: Array, quantities: Sequence[str]) -> None:
-        """Do nothing: a rule of powers is soon made."""
 
     def rule(self, h: ArrayLike, quantities: Sequence[str]) -> HeightRule:  # noqa: ARG002 - the same for all
         """Heights, and radii, for integrals of powers at these separations."""

@@ -164,14 +164,6 @@ class MeanModel:
             separations, quantities
         )
 
-    def prepare(self, separations: ArrayLike, quantities: Sequence[str]) -> None:
-        """Make together what sums of these quantities need at each of the separations.
-
-        Statistics at one of them are then found at once.
-        """
-        h = np.ravel(np.asarray(separations, dtype=np.float64))
-        self._means(*(self._asked(name, h) for name in quantities)).prepare(h, quantities)
-
     @cached_property
     def ways(self) -> Ways:
         """Contact law, loading history and film, in reduced units."""

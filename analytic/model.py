@@ -91,7 +91,6 @@ class Model(MeanModel):
         """Return the mean, variance, skewness and excess kurtosis over surfaces, in the shape of `h`."""
         h = np.asarray(h, dtype=np.float64)
         means = self._means(self._asked(quantity, h))
-        means.prepare(h.ravel(), [quantity])
         step = means.together
         parts = np.split(h.ravel(), range(step, h.size, step)) if h.size else []
         rows = np.concatenate([np.empty((0, 4)), *(self._one_asperity(quantity, x) for x in parts)])

@@ -2,10 +2,10 @@
 
 Where radii are random, sums over a surface, means as well as those of products, are integrals over the
 curvature, in the root of which they are smooth: the heights at which a contact changes its law depend on the
-radius alone. So there are some radii, each with a rule over the heights of its own; all are found at once.
+radius alone. So there are some radii, each with a rule over the heights of its own.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any
@@ -30,7 +30,6 @@ Ends = tuple[float, float]
 _HIGHEST = 1e-280  # share of heights above the highest separation that is looked at
 _NODES, _AS_WIDE = 64, 0.6  # points for curvatures, if their density bends over so many heights
 _NARROW, _PER_NARROW, _PER_PIECE = 0.25, 10, 32  # heights of a narrow piece, points of one and of a wider one
-_TOGETHER = 3.0  # separations of so wide a range have the same radii
 _RAREST = 1e-18  # share of the touching heights above which curvatures are left out
 _KEPT = 4_000_000  # points of rules over heights and radii
 
@@ -79,72 +78,29 @@ class Radii:
 
 
 def rule_of_radii(
-    separations: Array, grading: Grading, law: RandomCurvature, branches: Iterable[Branch]
+    separations: Array, grading: Grading, law: RandomCurvature, branches: Branches
 ) -> HeightRule:
-    """Rule over heights and radii for these separations, in any order, and for sums on these branches."""
+    """Rule over heights and radii for these separations, cut where the laws of the radii change."""
     h, radii = np.unique(separations), Radii.over(law, float(np.max(separations)))
-    cuts, which = _cuts_of_laws(h, grading, radii, tuple(branches))
-    return _rule(h, grading, radii, tuple(branches), cuts, which % radii.ratios.size)
-
-
-def rules_of_radii(
-    separations: Array, grading: Grading, law: RandomCurvature, branches: Iterable[Branch]
-) -> list[HeightRule]:
-    """One rule for each of these separations; where contacts change their laws is found for all together."""
-    h, radii, branches = separations, Radii.over(law, float(np.max(separations))), tuple(branches)
-    cuts, which = _cuts_of_laws(h, grading, radii, branches)
-    number = radii.ratios.size
-    order = np.argsort(which, kind="stable")
-    of = np.searchsorted(which[order], number * np.arange(h.size + 1))
-    parts = [order[of[k] : of[k + 1]] for k in range(h.size)]
-    return [
-        _rule(h[k : k + 1], grading, radii, branches, cuts[part], which[part] - number * k)
-        for k, part in enumerate(parts)
-    ]
-
-
-def _cuts_of_laws(h: Array, grading: Grading, radii: Radii, branches: Branches) -> tuple[Array, Ints]:
-    """Cuts of the law of each radius at each separation, which has the radii in turn."""
-    heights, at = radii.law.heights, np.repeat(h, radii.ratios.size)
-    lowest = _lowest(np.unique(h), branches)
-    ends = [ends_of(heights, each, grading) for each in (lowest, np.unique(h)[-1:])]
-    low, high = min(start for start, _ in ends), max(top for _, top in ends)
-    found = [(np.empty(0), np.empty(0, np.int64))]
-    if low < high:
-        found += [cuts_of_each(own.with_radii(radii.ratios), grading, at, low, high) for own in branches]
-    cuts, which = (np.concatenate(part) for part in zip(*found, strict=True))
-    return cuts, which
-
-
-def _lowest(h: Array, branches: Branches) -> Array:
-    """Separations, and where asperities stick that have touched before; increasing."""
-    return np.unique([*h, *(branch.lowest(float(h[0])) for branch in branches)])
-
-
-def _rule(
-    h: Array,
-    grading: Grading,
-    radii: Radii,
-    branches: Branches,
-    cuts: Array,
-    of_radius: Ints,
-) -> HeightRule:
-    """Rule over heights and radii, cut where the laws of these radii change."""
-    law, lowest = radii.law, _lowest(h, branches)
+    lowest = np.unique([*h, *(branch.lowest(float(h[0])) for branch in branches)])
     below, (start, top) = float(law.heights.cdf(lowest[0])), ends_of(law.heights, lowest, grading)
     if not start < top:
         return HeightRule(np.empty(0), np.empty(0), below, np.empty(0))
     widest = min(SPANS * law.narrowest, WIDEST)
     regular = np.linspace(start, top, int(np.ceil((top - start) / widest)) + 1)
-    breaks = resolved_breaks(grading, start, top)
-    common, number = np.concatenate([regular, breaks, lowest, above_neighbours(lowest)]), radii.ratios.size
-    cuts = np.append(cuts, np.tile(common, number))
-    of_radius = np.append(of_radius, np.repeat(np.arange(number), common.size))
-    left, right, of = _pieces(cuts, of_radius, start, top)
-    wide, found = right - left > _NARROW, []
+    breaks, number = resolved_breaks(grading, start, top), radii.ratios.size
+    common = np.concatenate([regular, breaks, lowest, above_neighbours(lowest)])
+    cuts, which = [np.tile(common, number)], [np.repeat(np.arange(number), common.size)]
+    for branch in branches:  # at each separation, which has the radii in turn
+        own = branch.with_radii(radii.ratios)
+        found, of = cuts_of_each(own, grading, np.repeat(h, number), start, top)
+        cuts.append(found)
+        which.append(of % number)
+    left, right, of = _pieces(np.concatenate(cuts), np.concatenate(which), start, top)
+    wide, parts = right - left > _NARROW, []
     for some, points in ((wide, _PER_PIECE), (~wide, _PER_NARROW)):
-        found.append((*rooted(left[some], right[some], lowest, points), np.repeat(of[some], points)))
-    s, weights, of = (np.concatenate(part) for part in zip(*found, strict=True))
+        parts.append((*rooted(left[some], right[some], lowest, points), np.repeat(of[some], points)))
+    s, weights, of = (np.concatenate(part) for part in zip(*parts, strict=True))
     return HeightRule(s, weights * radii.density(s, of), below, radii.ratios[of])
 
 
@@ -205,16 +161,10 @@ class Summits:
             return HeightRule.over(h, grading, self.heights)
         key = (branches, h.tobytes())  # of one model, every quantity and statistic of which asks again
         if key not in self._rules:
-            self._keep({key: self._new_rule(h, grading, branches)})
+            while sum(kept.heights.size for kept in self._rules.values()) > _KEPT:
+                self._rules.pop(next(iter(self._rules)))
+            self._rules[key] = self._new_rule(h, grading, branches)
         return self._rules[key]
-
-    def prepare(self, h: Array, grading: Grading, branches: Branches) -> None:
-        """Have the rules that are asked for next, each for one of these separations."""
-
-    def _keep(self, rules: dict[tuple[Branches, bytes], HeightRule]) -> None:
-        while sum(kept.heights.size for kept in self._rules.values()) > _KEPT:
-            self._rules.pop(next(iter(self._rules)))
-        self._rules.update(rules)
 
     def _new_rule(self, h: Array, grading: Grading, branches: Branches) -> HeightRule:
         return HeightRule.over(h, grading, self.heights, branches=branches)
@@ -251,13 +201,6 @@ class _RandomRadii(Summits):
 
     def _new_rule(self, h: Array, grading: Grading, branches: Branches) -> HeightRule:
         return rule_of_radii(h, grading, self.curvature, branches)
-
-    def prepare(self, h: Array, grading: Grading, branches: Branches) -> None:
-        new = np.array([x for x in np.unique(h) if (branches, x.tobytes()) not in self._rules])
-        for part in np.split(new, np.flatnonzero(np.diff(new // _TOGETHER)) + 1):
-            if part.size > 1:
-                rules = rules_of_radii(part, grading, self.curvature, branches)
-                self._keep({(branches, x.tobytes()): rule for x, rule in zip(part, rules, strict=True)})
 
     def _spread(self, rule: HeightRule) -> HeightRule:
         """A rule over heights, spread to heights and radii.

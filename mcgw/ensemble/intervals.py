@@ -112,9 +112,6 @@ def moments(scene: Scene, names: Sequence[str], orders: Sequence[int]) -> Array:
     (h, back), parts = np.unique(scene.separations, return_inverse=True), []
     cut_by_radius = isinstance(scene.curvature, RandomCurvature) and not scene.hertzian
     most = 1 if cut_by_radius else _AT_A_TIME
-    if cut_by_radius:
-        sums = [name for name in names if name in scene.quantities]
-        scene.theory.prepare(h, sums or ["load"])
     for few in np.array_split(h, -(-h.size // most)):
         one = scene.theory.fluctuations(names, few)
         found = np.stack([one.mean, *(one.moment(order) for order in orders)])
