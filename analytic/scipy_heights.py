@@ -3,7 +3,8 @@
 import math
 import sys
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property, partial
 from time import thread_time
@@ -15,15 +16,17 @@ import numpy as np
 from analytic.arrays import Array, hold
 from analytic.heights import HeightLaw
 from analytic.resolution import resolved_breaks
+from analytic.roots import sign_changes
 
 T = TypeVar("T")
 
 _SECONDS = 5.0  # for moments, or jumps, of a law of scipy: some are integrals of integrals
 _NOISE = 2.0**-30  # of a density that is the exponential of large terms, as of gamma(1e4)
-_RARE, _RARER = np.array([1e-3, 1e-9, 1e-15, 1e-24, 1e-36]), 10.0 ** -np.arange(1.0, 37.0)
-_ALIKE, _NEARLY = 1e-6, 1e-2  # how near shares come to themselves by way of heights: all of them, some
-_MOST_STEPS, _SETTLED = 100, 2.0**-30  # of Newton; a step whose square is nothing
-_HALVINGS, _NEXT = 60, 1e-8  # of a height, to its last digit; as near to the lower end as is as good as there
+_RARER, _NEARLY = (
+    10.0 ** -np.arange(1.0, 37.0),
+    1e-2,
+)  # shares, and how near they come to themselves by way of heights
+_NEXT = 1e-8  # as near to the lower end as is as good as there
 _NO_RARER = 1e-300  # share beyond which a law has no heights, if its density ends there:
 _INSIDE, _OUTSIDE = 1e-2, 1e-6  # it is positive so far inside, in standard deviations, and 0 so far outside
 _TRIAL, _TRIAL_SECONDS = np.array([1e-9, 0.1, 0.5, 0.9]), 1.0  # a few of the thousands of calls to come
@@ -114,8 +117,7 @@ class ScipyHeights(HeightLaw):
     def _end(self, inverse: Callable[[float], Any], outward: float) -> float:
         """Where heights end of which SciPy says that they do not, as Pearson's of type III; or infinity."""
         pdf = self.distribution.pdf
-        with np.errstate(all="ignore"), warnings.catch_warnings():
-            warnings.simplefilter("ignore", RuntimeWarning)  # Boost's, of what it does not find
+        with _quiet():
             end = float(inverse(_NO_RARER))
             ends = math.isfinite(end) and pdf(end + _OUTSIDE * outward) == 0 < pdf(end - _INSIDE * outward)
         return end if ends else math.copysign(math.inf, outward)
@@ -168,19 +170,13 @@ class ScipyHeights(HeightLaw):
 
     def ppf(self, p: Array, below: float = math.inf) -> Array:
         """Return its ``ppf``, or where its ``cdf`` is `p`: SciPy loses inverse Gaussian ones at 1e-17."""
-        share, middle = np.asarray(p * self.cdf(np.array(below))), self._median
-        low, high = np.full(share.shape, self.support[0]), np.full(share.shape, middle)
-        with np.errstate(all="ignore"), warnings.catch_warnings():
-            warnings.simplefilter("ignore", RuntimeWarning)  # Boost's, of what it does not find
+        share, low = np.asarray(p * self.cdf(np.array(below))), self.support[0]
+        with _quiet():
             s = self._s(self.distribution.ppf(share))
-            s = np.where((share < 0.5) & ~(s <= middle), low, s)
-            lost = (share > 0) & (s <= low) & np.isfinite(low)
-            if np.any(lost) and self.cdf(np.array(self.support[0] + _NEXT)) < share[lost].max():
-                for _ in range(_HALVINGS):
-                    half = low + (high - low) / 2
-                    under = self.cdf(half) < share
-                    low, high = np.where(under, half, low), np.where(under, high, half)
-                s = np.where(lost, low, s)
+        s = np.where((share < 0.5) & ~(s <= self._median), low, s)
+        lost = (share > 0) & (s <= low) & np.isfinite(low)
+        if np.any(lost) and self.cdf(np.array(low + _NEXT)) < share[lost].max():
+            s[lost] = self._sought(self.cdf, share[lost], -1.0)
         return s
 
     @cached_property
@@ -188,49 +184,44 @@ class ScipyHeights(HeightLaw):
         return float(self._s(self.distribution.median()))
 
     def isf(self, p: Array, above: float = -math.inf) -> Array:
-        """Return its ``isf``, or where that loses the tail the inverse of ``sf``, as far as that is good."""
-        inverse, rarest = self._from_share
-        return self._s(inverse(np.maximum(p * self.sf(np.array(above)), rarest)))
+        """Return its ``isf`` up to an upper end, else the inverse of ``sf``, as far as that tells the tail.
+
+        SciPy's inverse of F takes 1 - p, and is infinite soon; of Rice's law ``sf`` is 1 - ``cdf`` as well.
+        """
+        share = np.maximum(p * self.sf(np.array(above)), self._rarest)
+        if math.isfinite(self.support[1]):
+            return self._s(self.distribution.isf(share))
+        s, rare = self.ppf(1 - share), share < 0.5
+        s[rare] = self._sought(self.sf, share[rare], 1.0)
+        return s
 
     @cached_property
-    def _from_share(self) -> tuple[Callable[[Array], Array], float]:
-        """An inverse of ``sf``, and the least share that it is good for.
-
-        SciPy's of F takes 1 - p, and is infinite soon; of Rice's law ``sf`` is 1 - ``cdf`` as well.
-        """
+    def _rarest(self) -> float:
+        """The last of some shares, ever smaller, up to which ``sf`` of its inverse gives each again."""
         if math.isfinite(self.support[1]):
-            return self.distribution.isf, 0.0
-        for inverse in (self.distribution.isf, self._newton):
-            if self._good_to(inverse, _RARE, _ALIKE) == _RARE[-1]:
-                return inverse, 0.0
-        return self.distribution.isf, self._good_to(self.distribution.isf, _RARER, _NEARLY)
+            return 0.0
+        with _quiet():
+            again = self.sf(self._sought(self.sf, _RARER, 1.0))
+        good = np.cumprod(np.isclose(again, _RARER, rtol=_NEARLY, atol=0)).sum()
+        return 0.0 if good == _RARER.size else float(_RARER[max(good - 1, 0)])
 
-    def _good_to(self, inverse: Callable[[Array], Array], shares: Array, near: float) -> float:
-        """The last of some shares, ever smaller, up to which ``sf`` of an inverse gives each again."""
-        with np.errstate(all="ignore"), warnings.catch_warnings():
-            warnings.simplefilter("ignore", RuntimeWarning)  # Boost's, of what it does not find
-            good = np.isclose(self.distribution.sf(inverse(shares)), shares, rtol=near, atol=0)
-        return float(shares[max(np.cumprod(good).sum() - 1, 0)])
-
-    def _newton(self, share: Array) -> Array:
-        """Where ``sf`` has these values, by Newton's steps on its logarithm inside a bracket."""
-        law, sign = self.distribution, np.where(share < 0.5, 1.0, -1.0)
-        low = high = np.full(share.shape, float(law.median()))
-        step = float(law.std())
+    def _sought(self, tail: Callable[[Array], Array], share: Array, step: float) -> Array:
+        """Heights where a tail of the law has these shares, each less than half, one way from the median."""
+        start = far = np.full(share.shape, self._median)
         with np.errstate(all="ignore"):
-            wanted = np.log(share)
-            while np.any(far := sign * (law.sf(high) - share) > 0):
-                low, high, step = np.where(far, high, low), np.where(far, high + sign * step, high), 2 * step
-            low, high = np.minimum(low, high), np.maximum(low, high)
-            x = low + (high - low) / 2
-            for _ in range(_MOST_STEPS):
-                found = np.log(law.sf(x))  # logsf may take a thousand times as long
-                low, high = np.where(found > wanted, x, low), np.where(found > wanted, high, x)
-                last, x = x, x + (found - wanted) * np.exp(found - law.logpdf(x))
-                x = np.where((low <= x) & (x <= high), x, low + (high - low) / 2)
-                if np.all(np.abs(x - last) <= _SETTLED * np.abs(x)):
-                    break
-        return np.asarray(x)
+            while np.any(short := tail(far) > share):
+                far, step = np.where(short, np.clip(far + step, *self.support), far), 2 * step
+            return sign_changes(
+                lambda s, which: np.log(share[which]) - np.log(tail(s)), start, far, np.ones(share.shape)
+            )
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Without warnings of NumPy, and Boost's of what it does not find."""
+    with np.errstate(all="ignore"), warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)
+        yield
 
 
 def _without_place(distribution: Any) -> Any:
