@@ -98,6 +98,7 @@ DICE = np.random.default_rng(3).uniform(-1, 3.5, 12)  # unsorted
 # A scene, and of how many surfaces: what goes wrong in rare cells does not show in each.
 SCENES = {
     **{name: (with_grading(name), 6) for name in GRADINGS},
+    "steep": (with_grading("steep", n_asperities=4500), 6),  # a lone contact in its ramp is 6e-12 off
     "geometric": (at(*np.geomspace(1e-3, 4, 25)), 10),
     "unsorted and repeated": (at(*DICE, 0.5, 0.5, -0.0), 10),
     "close": (at(1.0, 1.0 + 1e-9, 1.0 + 3e-9, 1.0 + 1e-6, 1.5), 10),
