@@ -227,7 +227,9 @@ def files_in(folder):
     return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
 
 
-@pytest.mark.parametrize(("stream", "state"), [("both", "broken"), ("stderr", "full")])
+@pytest.mark.parametrize(
+    ("stream", "state"), [("both", "broken"), pytest.param("stderr", "full", marks=pytest.mark.slow)]
+)
 def test_a_run_makes_its_file(stream, state, tmp_path):
     scene = Path(mcgw.__file__).parents[1] / "runs" / "quick.toml"
     assert code_of(f"run {scene} -o e.h5", REDIRECT[stream, state], tmp_path) == 0

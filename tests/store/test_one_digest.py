@@ -58,6 +58,9 @@ SCENES = {
     "joint": {"film": mcgw.Film(conductivities=(200.0, 16.0)), "joint": {"gas": "air", "rms": "2 um"}},
     "unsure": {"uncertainty": {"sigma": "20 %", "eta": 0.1, "correlation": [[1, -0.5], [-0.5, 1]]}},
     "hardness": {"hardness": "2 GPa"},
+    "much": {"hardness": "2 GPa", "seed": 2**64 - 1, "film": mcgw.Film(conductivities=(200.0, 16.0)),
+             "joint": {"gas": "air", "rms": "2 um"}, "uncertainty": {"sigma": "20 %", "eta": 0.1},
+             "keep": "statistics", "grading": lambda s: 1 + 0.3 * np.tanh(s)},
     "Kogut": yields(laws.KogutEtsion(hardness=1.2e9)),
     "bridged": yields(laws.KogutEtsion(critical=0.05, bridge="hermite")),
     "Chang": yields(laws.ChangEtsionBogy(critical=0.05)),
@@ -67,10 +70,7 @@ SCENES = {
     "coated": there_and_back(laws.Coated(thickness=1e-6, ratio=3.0)),
     "own": yields(OWN),
 }  # fmt: skip
-OFTEN = {
-    "function", "weibull, poisson", "clip", "aggregate", "crowds", "statistics", "summits", "unsure", "own",
-    "hardness", "joint", "direct",
-}  # fmt: skip
+OFTEN = {"function", "weibull, poisson", "clip", "aggregate", "crowds", "summits", "own", "much"}
 EVERY = [pytest.param(name, marks=[] if name in OFTEN else pytest.mark.slow) for name in SCENES]
 
 
