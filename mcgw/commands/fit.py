@@ -100,8 +100,8 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.formats.units import parse
     from mcgw.maps.fit import Fit
     from mcgw.maps.fitted_scene import fitted_scene, write_scene
+    from mcgw.maps.fitting import are_profiles
     from mcgw.maps.preparation import preparation_of
-    from mcgw.maps.profile_files import holds_profile
 
     if args.iso is not None:
         return _of_numbers(args)
@@ -115,7 +115,7 @@ def execute(args: argparse.Namespace) -> int:
     E_star = parse(E_STAR if args.E_star is None else args.E_star, "Pa", "--E-star")
     area = None if args.nominal_area is None else parse(args.nominal_area, "m^2", "--nominal-area")
     pixel = None if args.pixel is None else parse(args.pixel, "m", "--pixel")
-    of_profiles = args.profile or holds_profile(args.map[0])
+    of_profiles = are_profiles(args.map, profile=args.profile)
     fit, lines, write = (
         _of_profiles(args, asked, pixel) if of_profiles else _of_map(args, asked, pixel, across)
     )
@@ -204,8 +204,8 @@ def _of_map(args: argparse.Namespace, asked: "Preparation", pixel: float | None,
     from mcgw.maps.map_files import files_of_map
     from mcgw.reports.fitted import fit_lines, map_line
 
-    if len(args.map) > 1:
-        _check_several(args)
+    if len(args.map) > 1 and args.picture is not None:
+        raise ValueError(f"--picture {args.picture}: draws one map; give one")
     beside = [Output(heights_beside(args.output), NPY)] if args.heights == "measured" else []
     tables = {"--summits": args.summits, "--tiles": args.tiles}
     beside += [Output(path, CSV, option) for option, path in tables.items() if path is not None]
@@ -220,16 +220,6 @@ def _of_map(args: argparse.Namespace, asked: "Preparation", pixel: float | None,
     )
     head = map_line([path.name for path in args.map], asked, ready.levelled.assumed_unit)
     return fit, [head, *fit.notes, *fit_lines(fit)], partial(_write_beside, args, fit, ready, pixel)
-
-
-def _check_several(args: argparse.Namespace) -> None:
-    """Refuse what one map alone has."""
-    from mcgw.maps.profile_files import holds_profile
-
-    if args.picture is not None:
-        raise ValueError(f"--picture {args.picture}: draws one map; give one")
-    if line := next((path for path in args.map[1:] if holds_profile(path)), None):
-        raise ValueError(f"{line}: a profile, and {args.map[0]} is a map; fit them apart")
 
 
 def _write_beside(args: argparse.Namespace, fit: "Fit", ready: "Prepared", pixel: float | None) -> list[str]:

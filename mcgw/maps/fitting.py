@@ -100,22 +100,35 @@ def fit(
     }  # fmt: skip
     asked, across = preparation_of(given, lambda key, value: argument(key, value, "m"))
     length = None if pixel is None else argument("pixel", pixel, "m")
-    if isinstance(heights, str):
-        heights = Path(heights)
-    if isinstance(heights, Path | Topography | Profile):
+    if isinstance(heights, str | Path | Topography | Profile):
         heights = [heights]
-    several = [Path(each) if isinstance(each, str) else each for each in heights]
-    maps: list[Path | Topography] = [
-        each
-        for each in several
-        if isinstance(each, Topography) or (isinstance(each, Path) and not (profile or holds_profile(each)))
-    ]
-    if not maps:
-        of_lines = [each for each in several if not isinstance(each, Topography)]
+    sources = [Path(each) if isinstance(each, str) else each for each in heights]
+    if are_profiles(sources, profile=profile):
+        of_lines = [each for each in sources if not isinstance(each, Topography)]
         return fit_lines(of_lines, asked, spacing=length, unit=unit)[0]
-    if len(maps) < len(several):
-        raise ValueError("heights: some are maps and some profiles; fit them apart")
+    maps = [each for each in sources if not isinstance(each, Profile)]
     return fit_maps(maps, asked, across, pixel=length, unit=unit, missing=missing_value)[0]
+
+
+def are_profiles(sources: Sequence[Path | Topography | Profile], *, profile: bool = False) -> bool:
+    """Whether sources are profiles, files by their shape unless they are to be read as a `profile`.
+
+    Raises
+    ------
+    ValueError
+        If some are profiles and some maps.
+    """
+    kinds = [
+        profile or holds_profile(each) if isinstance(each, Path) else isinstance(each, Profile)
+        for each in sources
+    ]
+    if any(kinds) and not all(kinds):
+        line, area = (
+            str(sources[k]) if isinstance(sources[k], Path) else f"number {k + 1}"
+            for k in (kinds.index(True), kinds.index(False))
+        )
+        raise ValueError(f"{line}: a profile, and {area} is a map; fit them apart")
+    return all(kinds)
 
 
 def fit_maps(
@@ -157,7 +170,7 @@ def _fit_map(
 
 
 def fit_lines(
-    sources: Sequence[str | Path | Profile], asked: Preparation, *, spacing: float | None, unit: str | None
+    sources: Sequence[Path | Profile], asked: Preparation, *, spacing: float | None, unit: str | None
 ) -> tuple[ProfileFit, list[Profile]]:
     """Fit profiles from files or memory; return the fit, its cautions and the profiles.
 
@@ -172,8 +185,6 @@ def fit_lines(
             raise ValueError(
                 f"--{field.name.replace('_', '-')}: is for maps only; prepare the profile before"
             )
-    profiles = [
-        p if isinstance(p, Profile) else read_profile(Path(p), spacing=spacing, unit=unit) for p in sources
-    ]
+    profiles = [p if isinstance(p, Profile) else read_profile(p, spacing=spacing, unit=unit) for p in sources]
     found = fit_profiles(profiles, cutoff=asked.cutoff, form=asked.form)
     return replace(found, cautions=tuple(profile_cautions(found, profiles, asked.cutoff))), profiles

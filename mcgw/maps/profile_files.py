@@ -11,14 +11,12 @@ from mcgw.formats.named_files import open_npy
 from mcgw.maps.foreign import is_foreign_line, read_foreign_line
 from mcgw.maps.grid_of_points import along_line
 from mcgw.maps.profile import Profile, profile_at
-from mcgw.maps.text_file import MOST_HEADER, header_units, lines_of, numbers_of, words_of
+from mcgw.maps.text_file import MOST_HEADER, header_units, lines_of, table_of
 from mcgw.maps.topography import XYZ, height_unit
 
-_MOST_POINTS = 2**26
 _LOOKED_AT = 20  # lines of numbers
 _COMMA_ALONE = re.compile(r"\s*[-+]?\d+(?:,\d+)?(?:[eE][-+]?\d+)?\s*")
 _TEXT = (".txt", ".csv", ".asc", ".dat", ".tsv", ".prf", ".xy", ".xyz")
-Lines = list[tuple[int, str]]  # with their numbers
 _MAPS = (".sdf", ".x3p", ".h5")  # endings that hold no profiles
 
 
@@ -45,16 +43,12 @@ def read_profile_text(path: Path, spacing: float | None = None, unit: str | None
         If there are more than two columns, a line is not numbers, no spacing is known, or x does not rise or
         fall.
     """
-    header, lines = _table(path, _MOST_POINTS + 1)
-    if len(lines) > _MOST_POINTS:
-        raise ValueError(f"{path}: more than {_MOST_POINTS} lines; cut it first")
-    values = _values(path, lines)
+    header, values = _lone_numbers(path) or _columns(path)
     told = header_units(header, values.shape[1])
-    if values.shape[1] == XYZ:
-        along = along_line(values)
-        if along is None:
-            raise ValueError(f"{path}: 3 numbers a line; a profile has z, or x and z")
+    if values.shape[1] == XYZ and (along := along_line(values)) is not None:
         values, told = values[:, [along, 2]], [told[along], told[2]]
+    if values.shape[1] > 2:
+        raise ValueError(f"{path}: {values.shape[1]} numbers a line; a profile has z, or x and z")
     metre, assumed = height_unit(path, told[-1], unit)
     if values.shape[1] == 1 and spacing is None:
         raise ValueError(f"{path}: has only a column of heights; give --pixel, the distance between points")
@@ -68,74 +62,27 @@ def read_profile_text(path: Path, spacing: float | None = None, unit: str | None
     return _profile(path, places, values[:, -1] * metre, assumed)
 
 
-def _table(path: Path, most: int) -> tuple[list[str], Lines]:
-    """Header of a file, and at most this many lines of numbers."""
+def _columns(path: Path) -> tuple[list[str], Array]:
+    header, values = table_of(path)
+    return header.lines, values
+
+
+def _lone_numbers(path: Path) -> tuple[list[str], Array] | None:
+    """Header and heights with decimal commas, if all lines are like 1,25 and not x and z."""
     header: list[str] = []
-    lines: Lines = []
-    for number, line in lines_of(path):
-        if line.startswith("#"):
-            header += [] if lines else [line.lstrip("# ")]
-        elif lines or _is_numbers(path, number, line):
-            lines.append((number, line))
-            if len(lines) == most:
-                break
+    lines: list[str] = []
+    for _, line in lines_of(path):
+        if _COMMA_ALONE.fullmatch(line):
+            lines.append(line)
+        elif (lines and not line.startswith("#")) or len(header) == MOST_HEADER:
+            return None
         else:
-            header.append(line)
-            if len(header) > MOST_HEADER:
-                raise ValueError(f"{path}: the first {MOST_HEADER} lines are not numbers; is it a profile?")
-    if not lines:
-        raise ValueError(f"{path}: holds no numbers")
-    return header, lines
-
-
-def _columns(path: Path) -> int:
-    """Number of columns on the first lines of numbers.
-
-    Separators at the end of all of them, as a Dektak writes, make no column.
-    """
-    columns, (_, lines) = 0, _table(path, _LOOKED_AT)
-    if _COMMA_ALONE.fullmatch(lines[0][1]):
-        return 1
-    for number, line in lines:
-        words = words_of(path, number, line)
-        columns = max(columns, _filled(words))
-        if _filled(words) == len(words):
-            break
-    return columns
-
-
-def _is_numbers(path: Path, number: int, line: str) -> bool:
-    if _COMMA_ALONE.fullmatch(line):
-        return True
-    try:
-        return bool(np.isfinite(numbers_of(path, number, words_of(path, number, line))).any())
-    except ValueError:
-        return False
-
-
-def _values(path: Path, lines: Lines) -> Array:
-    """Shape (points, columns), one or two of them."""
-    if all(_COMMA_ALONE.fullmatch(line) for _, line in lines):  # each may be one number
-        x, _, z = zip(*(line.partition(",") for _, line in lines), strict=True)
-        steps = np.diff([int(text) if text.isdigit() else math.nan for text in x])
-        if not (all(z) and (np.all(steps > 0) or np.all(steps < 0))):
-            return np.array([[float(line.replace(",", "."))] for _, line in lines])
-    cells = [(n, words_of(path, n, line)) for n, line in lines]
-    width = max(_filled(words) for _, words in cells)
-    rows = [numbers_of(path, n, words[: max(width, 1)]) for n, words in cells]
-    widths = np.array([row.size for row in rows])
-    other = np.nonzero(widths != widths[0])[0]
-    if widths[0] > XYZ:
-        raise ValueError(f"{path}: {widths[0]} numbers a line; a profile has z, or x and z")
-    if other.size:
-        number = lines[int(other[0])][0]
-        raise ValueError(f"{path}: line {number} has {widths[other[0]]} numbers, the first {widths[0]}")
-    return np.array(rows)
-
-
-def _filled(words: list[str]) -> int:
-    """Number of cells up to the last one that is not empty."""
-    return max((k for k, word in enumerate(words, 1) if word), default=0)
+            header.append(line.lstrip("# "))
+    x, _, z = zip(*(line.partition(",") for line in lines), strict=True) if lines else ((), (), ())
+    steps = np.diff([int(text) if text.isdigit() else math.nan for text in x])
+    if not lines or (all(z) and (np.all(steps > 0) or np.all(steps < 0))):
+        return None
+    return header, np.array([[float(line.replace(",", "."))] for line in lines])
 
 
 def holds_profile(path: Path) -> bool:
@@ -146,10 +93,8 @@ def holds_profile(path: Path) -> bool:
     ending = path.suffix.lower()
     try:
         if ending in _TEXT:
-            columns = _columns(path)
-            return columns < XYZ or (
-                columns == XYZ and along_line(_values(path, _table(path, _MOST_POINTS)[1])) is not None
-            )
+            columns = table_of(path, _LOOKED_AT)[1].shape[1] if _lone_numbers(path) is None else 1
+            return columns < XYZ or (columns == XYZ and along_line(table_of(path)[1]) is not None)
         if ending == ".npy":
             return open_npy(path).ndim == 1
         if ending in _MAPS or not path.is_file():

@@ -11,7 +11,15 @@ from analytic.arrays import Array
 from mcgw.formats.units import METRES
 from mcgw.maps.foreign import ForeignError
 from mcgw.maps.grid_of_points import grid_of
-from mcgw.maps.topography import XYZ, Topography, checked_shape, height_unit, in_metres, metres_in
+from mcgw.maps.topography import (
+    MOST_PIXELS,
+    XYZ,
+    Topography,
+    checked_shape,
+    height_unit,
+    in_metres,
+    metres_in,
+)
 
 _MOST_LINE = 2**24
 MOST_HEADER = 500  # lines
@@ -55,15 +63,12 @@ def read_text(
         If a row has another length than the first, a word is not a number, a comma may mean two things, no
         pixel size is known, or points are on no regular grid.
     """
-    header, rows = _rows(path)
-    table = np.array(rows)
-    del rows
-    # every row begins or ends with a separator: there is no column beyond it
-    table = table[:, int(header.open_left) : table.shape[1] - int(header.open_right)]
-    if table.shape[1] == XYZ < len(table):
-        return _of_points(path, header, table, pixel, unit, missing)
-    if header.refused is not None:
+    header, table = table_of(path)
+    points = table.shape[1] == XYZ < len(table)
+    if header.refused is not None and not (points and isinstance(header.refused, ForeignError)):
         raise header.refused
+    if points:
+        return _of_points(path, header, table, pixel, unit, missing)
     metre, assumed = height_unit(path, header.unit, unit)
     heights = in_metres(path, table, metre, missing)
     if pixel is None:
@@ -74,15 +79,14 @@ def read_text(
     return Topography(heights, pixel, assumed_unit=assumed)
 
 
-class _Header:
+class Header:
     """What a text says above and between its numbers."""
 
     def __init__(self) -> None:
         self.lines: list[str] = []
         self.extent: dict[str, float] = {}
         self.unit: str | None = None
-        self.refused: ForeignError | None = None  # why the first line that is not numbers is none
-        self.open_left = self.open_right = True
+        self.refused: ValueError | None = None  # why the first line that is not numbers is none
 
     def add(self, path: Path, number: int, line: str) -> None:
         """Understand a comment."""
@@ -92,47 +96,65 @@ class _Header:
                 raise ValueError(
                     f"{path}: line {number}: {found[1]} = {found[2]!r}: give one length, as 4 um"
                 )
-            length = numbers_of(path, number, [size[1].replace(",", ".")])[0]
+            length = _numbers_of(path, number, [size[1].replace(",", ".")])[0]
             self.extent[_ENGLISH.get(found[1], found[1])] = float(length) * metres_in(path, size[2])
         elif found := _VALUE_UNIT.match(line):
             self.unit = found[1]
 
 
-def _rows(path: Path) -> tuple[_Header, list[Array]]:
-    """Header of a text and its rows of equal length."""
-    header, total = _Header(), 0
+def table_of(path: Path, most: int = MOST_PIXELS) -> tuple[Header, Array]:
+    """Return the header of a text and its rows of numbers, at most so many, as a matrix.
+
+    Columns at its left or right end in which no row has anything are those beyond a separator.
+
+    Raises
+    ------
+    ValueError
+        If a row has another length than the first, or is no numbers; or there is none.
+    """
+    header, total = Header(), 0
     rows: list[Array] = []
+    first, last = 1, 0  # columns that hold anything
     for number, line in lines_of(path):
         if line.startswith("#"):
             header.add(path, number, line)
             continue
-        words = words_of(path, number, line)
         try:
-            row = numbers_of(path, number, words)
-        except ForeignError as error:
-            if not rows and len(header.lines) < MOST_HEADER:
-                header.refused = header.refused or error
-                header.lines.append(line)
-                continue
-            if rows and rows[0].size > XYZ:  # a matrix, which a wrong word makes no file of another program
-                raise ValueError(str(error)) from None
-            raise
-        header.open_left = header.open_left and not words[0]
-        header.open_right = header.open_right and not words[-1]
+            words = _words_of(path, number, line)
+            row = _numbers_of(path, number, words)
+        except ValueError as error:
+            if rows:  # a matrix, which a wrong word makes no file of another program
+                raise (ValueError(str(error)) if rows[0].size > XYZ else error) from None
+            header.refused = header.refused or error
+            header.lines.append(line)
+            if len(header.lines) > MOST_HEADER:
+                told = f"{path}: the first {MOST_HEADER} lines are not numbers; is it a map or a profile?"
+                raise ForeignError(told) from None
+            continue
         rows.append(row)
+        first, last = min(first, int(not words[0])), max(last, _filled(words))
         if row.size != rows[0].size:
             told = f"{path}: line {number} has {row.size} numbers, the first row {rows[0].size}"
-            raise header.refused or ValueError(told)
+            raise ForeignError(told) if header.refused else ValueError(told)
         total += row.size
         checked_shape(1, total)
+        if len(rows) == most:
+            break
     if not rows:
         raise header.refused or ForeignError(f"{path}: holds no numbers")
-    return header, rows
+    table = np.array(rows)
+    del rows
+    return header, table[:, first : max(last, first + 1)]
+
+
+def _filled(words: list[str]) -> int:
+    """Number of words up to the last one that is not empty."""
+    return next((k for k in range(len(words), 0, -1) if words[k - 1]), 0)
 
 
 def _of_points(
     path: Path,
-    header: _Header,
+    header: Header,
     points: Array,
     pixel: tuple[float, float] | None,
     unit: str | None,
@@ -163,7 +185,7 @@ def lines_of(path: Path) -> Iterator[tuple[int, str]]:
                 yield number, line.strip(_BLANKS)
 
 
-def words_of(path: Path, number: int, line: str) -> list[str]:
+def _words_of(path: Path, number: int, line: str) -> list[str]:
     """Numbers of a row as they stand, with decimal points."""
     words = _WITHOUT_COMMA.split(line)
     if "," not in line:
@@ -188,8 +210,8 @@ def words_of(path: Path, number: int, line: str) -> list[str]:
     return words
 
 
-def numbers_of(path: Path, number: int, words: list[str]) -> Array:
-    """What `words_of` found, nan where points are missing."""
+def _numbers_of(path: Path, number: int, words: list[str]) -> Array:
+    """What `_words_of` found, nan where points are missing."""
     try:
         row = np.array([float("nan" if word in _MISSING else word) for word in words])
     except ValueError as error:

@@ -401,11 +401,12 @@ def test_text_of_every_kind(name, encoding, tmp_path):
     ("\n".join(f"{i * 1.0004e-3} {i % 9 * 1e-4}" for i in range(1250)), {}, "it is 1.25 m long; give --unit"),
     ("\n".join(f"{i * 1e-6} {i % 2}" for i in range(20)), {}, "the typical slope is 1e\\+06; give --unit"),
     ("0 1\n1 2\n", {}, "2 points: a profile has 8 or more"),
-    ("0 1\n1 2 3\n2 2\n", {}, "line 2 has 3 numbers, the first 2"),
+    ("0 1\n1 2 3\n2 2\n", {}, "line 2 has 3 numbers, the first row 2"),
     ("0 1\n1 2\nend\n", {}, "line 3: could not convert"),
     ("0 1 2\n1 2 3\n", {}, "3 numbers a line; a profile has z, or x and z"),
-    ("x z\n", {}, "holds no numbers"),
-    ("word\n" * 501 + "0 1\n1 2\n", {}, "the first 500 lines are not numbers; is it a profile"),
+    ("x z\n", {}, "line 1: could not convert"),
+    ("# x z\n", {}, "holds no numbers"),
+    ("word\n" * 501 + "0 1\n1 2\n", {}, "the first 500 lines are not numbers; is it a map or a profile"),
     ("\n".join(f"{i} {'nan' if i % 3 else 1}" for i in range(30)), {}, "18 of the 28 heights are missing"),
 ])  # fmt: skip
 def test_what_is_no_profile_is_refused_in_one_line(text, given, told, tmp_path):

@@ -175,8 +175,9 @@ def test_what_does_not_go_together_is_refused(tmp_path, monkeypatch, capsys, map
     ):
         assert main(["fit", *files, *words]) == 2
         assert line in capsys.readouterr().err
-    with pytest.raises(ValueError, match="some are maps and some profiles"):
-        mcgw.fit(["a.npy", "p.txt"], cutoff=None, pixel="1 um")
+    refused = "^p.txt: a profile, and number 1 is a map; fit them apart"
+    with pytest.raises(ValueError, match=refused):
+        mcgw.fit([maps[0], "p.txt"], cutoff=None, pixel="1 um")
     assert not (tmp_path / "f.toml").exists()
     assert np.loadtxt("b.csv") == pytest.approx(maps[1].heights)
 
