@@ -116,9 +116,8 @@ if TYPE_CHECKING:
     from mcgw.ensemble.solution import solve as solve
     from mcgw.errors import RunError as RunError, StoreError as StoreError
     from mcgw.exports.writing import export as export
-    from mcgw.jobs.merging import merge as merge
-    from mcgw.jobs.running import run as run
-    from mcgw.jobs.sweeping import sweep as sweep
+    from mcgw.jobs.making import merge as merge
+    from mcgw.jobs.running import run as run, sweep as sweep
     from mcgw.maps.fitted_scene import fitted_scene as fitted_scene
     from mcgw.maps.fitting import fit as fit
     from mcgw.maps.iso import surface_from as surface_from
@@ -136,7 +135,7 @@ if TYPE_CHECKING:
     from mcgw.statistics.convergence import converge as converge
     from mcgw.statistics.tradeoff import tradeoff as tradeoff
     from mcgw.store.ensembles import open_ensemble as open_ensemble
-    from mcgw.store.saving import save as save
+    from mcgw.store.place import save as save
     from mcgw.sweeps.file import open_sweep as open_sweep
 
 # Threads that wait for others sleep. By default they spin, and a loop of microseconds takes a hundred
@@ -157,9 +156,8 @@ _HOMES = {
     "mcgw.ensemble.solution": "solve",
     "mcgw.errors": "RunError StoreError",
     "mcgw.exports.writing": "export",
-    "mcgw.jobs.merging": "merge",
-    "mcgw.jobs.running": "run",
-    "mcgw.jobs.sweeping": "sweep",
+    "mcgw.jobs.making": "merge",
+    "mcgw.jobs.running": "run sweep",
     "mcgw.maps.fitted_scene": "fitted_scene",
     "mcgw.maps.fitting": "fit",
     "mcgw.maps.iso": "surface_from",
@@ -173,7 +171,7 @@ _HOMES = {
     "mcgw.statistics.convergence": "converge",
     "mcgw.statistics.tradeoff": "tradeoff",
     "mcgw.store.ensembles": "open_ensemble",
-    "mcgw.store.saving": "save",
+    "mcgw.store.place": "save",
     "mcgw.sweeps.file": "open_sweep",
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names.split()}

@@ -21,7 +21,7 @@ def execute(args: argparse.Namespace) -> int:
     from mcgw.commands.voice import look_next, news
     from mcgw.ensemble.ensemble import Ensemble
     from mcgw.formats.files import state_of
-    from mcgw.jobs.merging import merge
+    from mcgw.jobs.making import merge
 
     path = args.file or args.output
     if path is None:

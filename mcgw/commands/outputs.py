@@ -10,8 +10,7 @@ from mcgw.commands.voice import news, notes
 from mcgw.errors import StoreError
 from mcgw.formats.files import check_output, refuse_read_only
 from mcgw.formats.table import Table
-from mcgw.store.disk import parts_of
-from mcgw.store.lock import LOCK_FILES
+from mcgw.store.lock import LOCK_FILES, parts_of
 
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 

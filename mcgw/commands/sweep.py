@@ -48,7 +48,7 @@ def execute(args: argparse.Namespace) -> int:
     """Draw and print the path of the file."""
     from mcgw.commands.outputs import HDF5, Output, check_outputs
     from mcgw.commands.voice import details, look_next, news
-    from mcgw.jobs.sweeping import sweep
+    from mcgw.jobs.running import sweep
     from mcgw.reports.text import ratios_in_words
     from mcgw.scene.scene_file import files_of, load_scene
     from mcgw.store.place import recorded_seed

@@ -21,8 +21,7 @@ from mcgw.maps.synthetic import Spectrum
 from mcgw.maps.topography import Topography
 from mcgw.scene.arguments import argument
 from mcgw.scene.scene import Scene
-from mcgw.store.disk import parts_of
-from mcgw.store.lock import locked
+from mcgw.store.lock import locked, parts_of
 
 _PILOT = 8
 _UNITS = {"area": "m^2", "stiffness": "N/m", "conductance": "m", "mean_gap": "m", "pressure": "Pa"}

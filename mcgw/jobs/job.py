@@ -15,7 +15,6 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from analytic import PiecewiseSeries
-from analytic.arrays import hold
 from mcgw.ensemble.drawing import GoOn, Reducer, always, use_threads
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import Tables
@@ -25,14 +24,13 @@ from mcgw.formats.files import State, check_output, refuse_read_only, state_of
 from mcgw.machine.memory import gibibytes
 from mcgw.scene.fields import LeftOut
 from mcgw.scene.scene import Scene, storable
-from mcgw.store.disk import parts_of
 from mcgw.store.ensembles import described
-from mcgw.store.h5_file import Contents
-from mcgw.store.identity import difference, identity_of, now, versions
-from mcgw.store.layout import stored_text
-from mcgw.store.place import contents_of, finished, recorded_scene, with_recorded_seed
-from mcgw.store.run_folder import RunFolder
-from mcgw.store.shards import commit_shard
+from mcgw.store.h5_writing import Contents
+from mcgw.store.identity import Written, difference, now, versions
+from mcgw.store.layout import contents_of
+from mcgw.store.lock import parts_of
+from mcgw.store.place import finished, recorded_scene, with_recorded_seed
+from mcgw.store.run_folder import RECORD, RunFolder, commit_shard
 from mcgw.store.spans import Plan, Span
 
 if TYPE_CHECKING:
@@ -49,10 +47,13 @@ class Job:
         What is drawn and in which blocks, as the folder beside the file will say it.
     reducers : tuple of Reducer
         What draws each group, and what of it is kept; a scene is one group.
+    written : Written or None
+        The scene of a run.
     """
 
     record: RunFolder
     reducers: tuple[Reducer, ...]
+    written: Written | None = None
 
     @classmethod
     def of(cls, scene: Scene, path: Path) -> "Job":
@@ -65,11 +66,11 @@ class Job:
         """
         check_output(path)
         one = reducer_of(scene)
-        sampler, plan = one.sampler.name, Plan(((one.n_surfaces, one.rows),), whole=one.whole)
-        known = identity_of(scene, sampler), versions(of_draws=True), now()
-        record = RunFolder(parts_of(path), stored_text(scene), "", sampler, plan, *known)
-        hold(record, scene=scene, path=path)  # which the text and the folder would give back
-        return cls(record, (one,))
+        written = Written.of(scene, one.sampler.name)
+        plan = Plan(((one.n_surfaces, one.rows),), whole=one.whole)
+        known = written.identity, versions(of_draws=True), now()
+        record = RunFolder(parts_of(path), written.text, "", written.sampler, plan, *known)
+        return cls(record, (one,), written)
 
     @classmethod
     def of_sweep(cls, asked: "Asked", path: Path) -> "Job":
@@ -81,25 +82,22 @@ class Job:
             With the mistakes of all points.
         """
         check_output(path)
-        reducers, texts = _of_groups(asked), asked.texts()
+        from mcgw.sweeps.pooling import Pooling  # of which most runs are none
+
+        reducers, texts = tuple(map(Pooling, asked.groups)), asked.texts()
         plan = Plan(tuple((one.n_surfaces, one.rows) for one in reducers), whole=True)
         draws = versions(of_draws=True)
         identity = hashlib.sha256("\0".join((*texts, draws)).encode()).hexdigest()
         return cls(RunFolder(parts_of(path), *texts, "", plan, identity, draws, now()), reducers)
 
     @classmethod
-    def begun(cls, record: RunFolder) -> "Job":
-        """That of which a folder holds blocks, to be merged."""
-        if not record.axes:
-            return cls(record, (reducer_of(record.scene),))
-        return cls(record, _of_groups(_asked(record)))
-
-    @classmethod
     def again(cls, record: RunFolder) -> "Job":
         """What this process makes of the words of a folder, whoever wrote them."""
         if not record.axes:
             return cls.of(record.scene, record.path)
-        return cls.of_sweep(_asked(record), record.path)
+        from mcgw.sweeps.points import Asked  # of which most runs are none
+
+        return cls.of_sweep(Asked.from_texts(record.text, record.axes), record.path)
 
     def check(self) -> None:
         """Refuse what fits neither the place, nor the memory, nor the disk.
@@ -133,8 +131,8 @@ class Job:
             If the file is another's, damaged, or holds more than is asked.
         """
         run = self.record
-        if not run.axes or not run.path.exists():
-            return finished(run.path, run.scene, run.sampler)
+        if self.written or not run.path.exists():
+            return finished(run.path, self.written) if self.written else 0
         if described(run.path)[0].get("run") != run.identity:
             raise StoreError(
                 f"{run.path}: holds something else than this sweep; choose another -o, or remove it"
@@ -163,23 +161,12 @@ class Job:
             for one, (_, some) in zip(self.reducers, groups, strict=True)
         ]
         run, about = self.record, self.about(seconds)
-        if run.axes:
-            from mcgw.sweeps.file import contents_of_sweep  # of which most runs are none
+        if self.written:
+            scene, sampler = self.written.scene, self.written.sampler
+            return contents_of(Ensemble(scene, sampler, held[0]), self.written, **about)
+        from mcgw.sweeps.file import contents_of_sweep  # of which most runs are none
 
-            return contents_of_sweep(run, held, **about)
-        return contents_of(Ensemble(run.scene, run.sampler, held[0]), **about)
-
-
-def _asked(record: RunFolder) -> "Asked":
-    from mcgw.sweeps.points import Asked  # of which most runs are none
-
-    return Asked.from_texts(record.text, record.axes)
-
-
-def _of_groups(asked: "Asked") -> tuple[Reducer, ...]:
-    from mcgw.sweeps.pooling import Pooling
-
-    return tuple(map(Pooling, asked.groups))
+        return contents_of_sweep(run, held, **about)
 
 
 def as_recorded(scene: Scene, path: Path) -> Scene:
@@ -210,7 +197,7 @@ def draw_block(
     folder: str, first: int, n: int, threads: int | None = 1, go_on: GoOn = always
 ) -> Callable[[], object]:
     """Do the first half of `commit_block`; what it returns is the second, to be done beside the next."""
-    run, job = _prepared(folder, state_of(Path(folder) / "run.toml"))
+    run, job = _prepared(folder, state_of(Path(folder) / RECORD))
     span = Span(first, n)
     if run.held(span):
         return lambda: None
@@ -222,7 +209,7 @@ def draw_block(
 
 @lru_cache(maxsize=1)
 def _prepared(folder: str, _state: State | None) -> tuple[RunFolder, Job]:
-    """A run and its job, as long as its run.toml is the same: preparing them may take as long as a block."""
+    """A run and its job, as long as its record is the same: preparing them may take as long as a block."""
     run = RunFolder.open(Path(folder))
     job = Job.again(run)
     if job.record.identity != run.identity:

@@ -1,30 +1,26 @@
-"""``mcgw.run``: from a scene to its file: begin, resume, extend, until its stop rule is met."""
+"""``mcgw.run`` and ``mcgw.sweep``: from a scene, or many, to a file: begin, resume, extend, share."""
 
-from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from collections.abc import Iterable, Iterator, Mapping
+from concurrent.futures import Executor
 from dataclasses import replace
 from pathlib import Path
-from threading import Event
-from time import monotonic, perf_counter
-from typing import Any, overload
+from time import monotonic
+from typing import TYPE_CHECKING, Any, overload
 
+from mcgw.ensemble.drawing import use_threads
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import checkpoints, forecast, without_rule
-from mcgw.errors import RunError, StoppedError, StoreError, in_one_line
-from mcgw.formats.files import state_of
-from mcgw.jobs.driver import By, Part, check_how, drive, heed_signals
-from mcgw.jobs.job import Job, as_recorded, commit_block, draw_block
-from mcgw.jobs.merging import merge_once
+from mcgw.jobs.driver import By, check_how
+from mcgw.jobs.job import Job, as_recorded
+from mcgw.jobs.making import make
 from mcgw.machine.progress import Progress, told
 from mcgw.scene.arguments import check_object
-from mcgw.scene.scene import Scene
+from mcgw.scene.scene import Scene, storable
 from mcgw.store.ensembles import FileResults, open_ensemble
-from mcgw.store.lock import locked
-from mcgw.store.place import drop_leftovers, put, tidy
-from mcgw.store.run_folder import RunFolder
-from mcgw.store.spans import Span
+from mcgw.store.place import with_recorded_seed
 
-_ROUNDS = 3  # attempts to merge, if shards turn out damaged
+if TYPE_CHECKING:
+    from mcgw.sweeps.sweep import Sweep
 
 
 @overload
@@ -120,9 +116,9 @@ def run(
             make(job, by)
             if scene.max_seconds is not None and monotonic() - started > scene.max_seconds:
                 break
-    if scene.keep == "statistics":
+    if job.written is None or scene.keep == "statistics":
         return open_ensemble(path)
-    return Ensemble(job.record.scene, job.record.sampler, FileResults(path))
+    return Ensemble(job.written.scene, job.written.sampler, FileResults(path))
 
 
 def _stages(scene: Scene, path: Path) -> Iterator[Scene]:
@@ -141,138 +137,132 @@ def _stages(scene: Scene, path: Path) -> Iterator[Scene]:
         yield replace(fixed, n_surfaces=last)
 
 
-def make(job: Job, by: By, part: Part | None = None) -> int:
-    """Draw what is missing of a file and make it; or of its blocks a share, for `mcgw.merge` to make it of.
+@overload
+def sweep(
+    scene: Scene,
+    over: Mapping[str, Iterable[Any]],
+    *,
+    zipped: bool = False,
+    path: str | Path | None = None,
+    threads: int | None = None,
+    executor: Executor | None = None,
+    shard: None = None,
+    progress: Progress = None,
+) -> "Sweep": ...
+@overload
+def sweep(
+    scene: Scene,
+    over: Mapping[str, Iterable[Any]],
+    *,
+    zipped: bool = False,
+    path: str | Path,
+    threads: int | None = None,
+    shard: str,
+    progress: Progress = None,
+) -> int: ...
+def sweep(
+    scene: Scene,
+    over: Mapping[str, Iterable[Any]],
+    *,
+    zipped: bool = False,
+    path: str | Path | None = None,
+    threads: int | None = None,
+    executor: Executor | None = None,
+    shard: str | None = None,
+    progress: Progress = None,
+) -> "Sweep | int":
+    """Find means and standard deviations of many scenes, which share their surfaces where possible.
+
+    Points whose heights have the same law, number and seed share their surfaces, whatever their surfaces'
+    parameters, gradings and contact laws are: these are drawn once, and differences between such points
+    have no sampling noise. Where points need other cells of heights, as tables with kinks and laws that
+    yield do, all are drawn on cells with the edges of all: there a point drawn alone has other surfaces, else
+    the same bits. Of eight exponential gradings or more under Hertz's law only the softest and the stiffest
+    are computed, for sums are linear in gamma: the others have the means and deviations of single runs to
+    1e-12.
+
+    Parameters
+    ----------
+    scene : Scene
+        What all points have in common, its seed too.
+    over : dict of str to sequence
+        Keys as in a scene file, as "grading.gamma" or "ensemble.n_asperities", and the values of each as
+        there; or a whole table, as "grading", whose values may also be gradings as `mcgw.Table`, or Python
+        functions, which are resolved over the heights of `scene`.
+    zipped : bool, optional
+        The first values of all keys make one point, the second ones another. Default: every value of one key
+        goes with every value of all others.
+    path : str or Path, optional
+        A file for it, which appears when all is drawn (`mcgw.open_sweep`). The same call again draws nothing,
+        or resumes where it was interrupted; if the scene has no seed, it uses that of the file.
+    threads : int, optional
+        Cores: threads, or processes or workers of the executor. Default: all. The result is the
+        same, bit by bit, for any number.
+    executor : concurrent.futures.Executor, optional
+        What draws into the file of `path`, as in `mcgw.run`.
+    shard : str, optional
+        "2/8": draw only the second of eight shares into the folder beside `path`, as one of eight jobs; then
+        `mcgw.merge`.
+    progress : bool or callable, optional
+        True: a bar; a function: called with (done, total) surfaces, each weighted by what it takes.
 
     Returns
     -------
-    int
-        How many surfaces are then missing of the whole.
+    Sweep
+        With arrays of the shape of the axes and separations. With `shard`: the number of surfaces of the
+        whole that are still missing.
 
     Raises
     ------
+    SceneError
+        With the mistakes of all points at once, each with the point it is of.
     StoreError
-        If the place belongs to something else, or the memory or the disk does not suffice.
+        If the memory is too small, the file cannot be written there, or the place belongs to something else.
     RunError
-        If it could not be finished; what is done is kept.
+        If it was interrupted, with a file; what is done is kept.
+    ValueError
+        If another argument is wrong.
+
+    Examples
+    --------
+    >>> import mcgw
+    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    >>> scene = mcgw.Scene(surface, separations=[0, 1, 2], n_surfaces=100, seed=1)
+    >>> sweep = mcgw.sweep(scene, {"grading.gamma": [0.5, 1.0, 2.0], "ensemble.count": ["fixed", "poisson"]})
+    >>> sweep.mean("load").shape
+    (3, 2, 3)
+    >>> alone = mcgw.simulate(sweep.scene((2, 0)))
+    >>> bool((alone.mean("load") == sweep.mean("load")[2, 0]).all())
+    True
+    >>> both = {"ensemble.count": "fixed"}
+    >>> stiffer = sweep.difference("load", {"grading.gamma": 2.0, **both}, {"grading.gamma": 1.0, **both})
+    >>> stiffer.gain.round()
+    array([6., 6., 5.])
+    >>> sweep.ratio("load", (2, 0), (1, 0)).ratio.round(2)
+    array([1.71, 1.86, 1.93])
     """
-    job.check()
-    run, total = job.record, sum(one.n_surfaces for one in job.reducers)
-    if job.done() < total:
-        if part:
-            tidy(run.path)
-        with heed_signals() as signals, locked(run.folder, shared=part is not None) as new:
-            by = replace(by, signals=signals)
-            if not (part or new):
-                drop_leftovers(run.path)
-            if job.done() < total:  # no other process was faster
-                try:
-                    if part:
-                        return _share(job, by, part)
-                    one, begun = job.reducers[0], (run.folder / "run.toml").exists()
-                    if by.executor is None and not run.axes and total <= one.rows > 1 and not begun:
-                        _at_once(job, by)
-                    else:
-                        _in_blocks(job, by)
-                except OSError as error:
-                    raise RunError(
-                        f"{in_one_line(error)}; finished blocks are kept in {run.folder}; once this is "
-                        "fixed, the same command resumes"
-                    ) from None
-                return 0
-    tidy(run.path)
-    by.progress(sum(one.n_surfaces * one.work for one in job.reducers))
-    return 0
+    from mcgw.sweeps.axes import axes_of  # of which a run needs nothing
+    from mcgw.sweeps.file import open_sweep
+    from mcgw.sweeps.points import Asked
+    from mcgw.sweeps.pooling import draw, weighted
 
+    check_object("sweep", scene, Scene)
+    if path is None and not (executor is None and shard is None):
+        raise ValueError("executor, shard: they need a file; give path, or leave them out")
 
-def _at_once(job: Job, by: By) -> None:
-    """All surfaces of a scene in this thread, and their file in one step. Only with the lock."""
-    run, started = job.record, perf_counter()
+    def resolved(grading: Any) -> Any:
+        return storable(scene.replace(grading=grading)).grading
 
-    def go_on(done: int) -> bool:
-        by.signals.check("nothing was saved, because the run is one block; the same command starts it again")
-        by.progress(done)
-        return True
-
-    by.progress(0)
-    tables = job.draw(Span(0, run.scene.n_surfaces), by.threads, go_on)
-    before = state_of(run.path)
-    job.done()  # else the file is another's
-    put(run.path, job.contents([(0, tables)], perf_counter() - started), before)
-
-
-def _in_blocks(job: Job, by: By) -> None:
-    """Draw missing shards, then make the file. Needs the lock."""
-    started = job.record.begin()
-    started.freeze()
-    for _ in range(_ROUNDS):
-        shards = started.sweep()
-        done = job.done()
-        n, wanted = max((shard.span.stop for shard in shards), default=0), started.plan.total
-        if n > wanted:  # blocks beyond those requested are kept
-            raise StoreError(
-                f"{started.folder}: holds surfaces up to number {n} already, more than ensemble.n_surfaces = "
-                f"{wanted}; ask for as many or more, or choose another -o"
-            )
-        _draw_missing(job, started, started.missing(done, shards), by)
-        if merge_once(replace(job, record=started), by.signals):
-            return
-    raise RunError(f"{job.record.folder}: shards are repeatedly damaged; is the disk failing?")
-
-
-def _share(job: Job, by: By, part: Part) -> int:
-    """Draw a share of the missing blocks; return how many surfaces are still missing. Needs the lock."""
-    started, done = job.record.begin(), job.done()
-    missing = started.missing(done, started.shards())
-    _draw_missing(job, started, missing, by, part)
-    return sum(span.n for span in started.missing(done, started.shards()))
-
-
-def _draw_missing(job: Job, started: RunFolder, spans: list[Span], by: By, part: Part | None = None) -> None:
-    """Draw and store every missing block, or a job's share of them."""
-    plan, left = started.plan, sum(span.n for span in spans)
-    done = sum(map(job.work, plan.missing(spans)))
-    if part:
-        spans = [span for span in spans if part.mine(plan.number(span))]
-    folder = str(started.folder.resolve())
-
-    def note(span: Span, _: object) -> None:
-        nonlocal done, left
-        done, left = done + job.work(span), left - span.n
-        by.progress(done)
-
-    by.progress(done)
-    if by.executor:
-        drive(by.executor, spans, commit_block, lambda s: (folder, s.first, s.n), note, by.signals)
-    else:
-        with _Overlapped(by.threads) as threads:
-            drive(threads, spans, draw_block, lambda s: (folder, s.first, s.n), note, by.signals)
-    by.signals.check(
-        f"{plan.total - left} of {plan.total} surfaces are kept in {started.folder}; the same command resumes"
-    )
-
-
-class _Overlapped(Executor):
-    """One thread of this process draws block after block, another one writes what is drawn."""
-
-    in_hand = 3  # one waits, one is drawn, one is written
-
-    def __init__(self, threads: int | None) -> None:
-        self._draws, self._writes = (ThreadPoolExecutor(1, thread_name_prefix="mcgw-blocks") for _ in "12")
-        self._threads, self._ended = threads, Event()
-
-    def submit(self, attempt: Callable[..., Any], draw: Callable[..., Any], /, *block: Any) -> Future[Any]:  # type: ignore[override]
-        """Submit the drawing of a block, and the writing that this returns."""
-        drawn = self._draws.submit(draw, *block, self._threads, self._go_on)
-        return self._writes.submit(attempt, lambda: drawn.result()())
-
-    def shutdown(self, wait: bool = True, *, cancel_futures: bool = True) -> None:
-        """End both; a long block does not keep an interrupted run alive."""
-        self._ended.set()
-        for pool in (self._draws, self._writes):
-            pool.shutdown(wait=wait, cancel_futures=cancel_futures)
-
-    def _go_on(self, _: int) -> bool:
-        if self._ended.is_set():
-            raise StoppedError("the run has ended")
-        return True
+    axes = axes_of(over, zipped=zipped, resolve=resolved)
+    if path is None:
+        with use_threads(threads), told(progress, "surfaces") as tell:
+            asked = Asked.of(scene, axes)
+            return asked.answered(draw(asked.groups, tell))
+    path = Path(path)
+    scene = with_recorded_seed(scene, path)
+    part = check_how(executor, threads, shard)
+    with told(progress, "surfaces") as tell:
+        asked = Asked.from_texts(*Asked.of(scene, axes).texts())  # as workers read it
+        job = Job.of_sweep(asked, path)
+        left = make(job, By(executor, threads, weighted(job.reducers, tell)), part)
+    return left if part else open_sweep(path)

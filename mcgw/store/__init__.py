@@ -7,7 +7,7 @@ which reads
 of                          holds                                     opened by
 ==========================  ========================================  ========================
 a scene                     values of every surface, as below         `mcgw.open_ensemble`
-``keep = "statistics"``     statistics over them (`statistics_file`)  `mcgw.open_ensemble`
+``keep = "statistics"``     statistics over them (`layout`)  `mcgw.open_ensemble`
 a sweep: attribute `axes`   statistics with the dimension `point`     `mcgw.open_sweep`
 any earlier format                                                    no reader: run it again
 ==========================  ========================================  ========================
@@ -27,14 +27,14 @@ Of a scene::
     /nominal_separation   float64 (surfaces, separations) 1   (interaction)
     /joint_conductance    float64 (surfaces, separations) W/(m^2 K)   (and gap_conductance: joint)
 
-With ``keep = "statistics"`` a file holds none of these tables: see `statistics_file`.
+With ``keep = "statistics"`` a file holds none of these tables: see `layout`.
 
 Every dataset of these has the attributes `units` and `long_name` (texts of a set length, UTF-8); only
 quantities that the scene asks for are there. Chunked, each chunk with a checksum (Fletcher); a table is
-shuffled and compressed with gzip if that saves half of it (`chunks`). `run` is over what the numbers of a
+shuffled and compressed with gzip if that saves half of it (`h5_writing`). `run` is over what the numbers of a
 surface depend on (scene but for the number of surfaces, sampler, and the versions in `draws`), `digest`
 over scene and numbers: it is the same whoever drew them, and when. Every table has the attribute `sha256`,
-over its numbers, and the root `checksum`, over all attributes above, types, shapes and these (`h5_file`).
+over its numbers, and the root `checksum`, over all attributes above, types, shapes and these (`h5_writing`).
 That is checked whenever a file is opened, and all numbers as well if it is smaller than a gibibyte; else
 by ``mcgw show --verify``. A file that another program has opened for writing, or written anew with the
 same contents, is as good.
@@ -42,15 +42,12 @@ same contents, is as good.
 A run that fits one block is written in one atomic step. Any other grows as shards in ``FILE.parts/``, which
 are merged at the end and then removed. What each mechanism is for:
 
-``h5_file``      the one writer and reader of files and shards, and their checksums
-``structure``    plain tables of numbers alone, looked at on every opening
-``chunks``       a table is compressed where that pays
-``disk``         HDF5 may crash on a full disk, so it never sees its errors
-``layout``       what a file of the schema above holds; ``statistics_file``: of scenes that keep no surface
+``h5_writing``   the one writer of files, shards and records, and their checksums; HDF5 sees no full disk
+``h5_reading``   the one reader: plain tables of numbers alone, looked at on every opening
+``layout``       what a file of the schema above holds, and of scenes that keep no surface
 ``ensembles``    files and runs in progress opened, and verified
 ``spans``        which surfaces are drawn together, of a run or of all groups of a sweep
-``shards``       a killed run loses at most the blocks in hand; workers elsewhere share no open file
-``run_folder``   a run goes on only with what it was begun with: scene, sampler, versions
+``run_folder``   a run goes on with what it was begun with; a killed one loses at most the blocks in hand
 ``identity``     which scenes, samplers and versions those are; and who made a file
 ``lock``         two processes never write one file; shared by jobs that each make a share
 ``place``        what is there already, leftovers of the dead, and a new file: renamed when it is whole

@@ -16,10 +16,10 @@ from mcgw.errors import StoreError
 from mcgw.formats.gate import open_h5
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from, scene_text
-from mcgw.store.disk import parts_of
-from mcgw.store.h5_file import examine, look
-from mcgw.store.run_folder import RunFolder
-from mcgw.store.shards import Shard
+from mcgw.store.h5_reading import examine, look
+from mcgw.store.layout import read_statistics
+from mcgw.store.lock import parts_of
+from mcgw.store.run_folder import RECORD, RunFolder, Shard
 
 
 def open_ensemble(path: str | Path) -> Ensemble:
@@ -67,8 +67,6 @@ def open_ensemble(path: str | Path) -> Ensemble:
         raise StoreError(f"{path}: holds a sweep; mcgw.open_sweep opens it, mcgw compare and show take it")
     results: Held = FileResults(path)
     if scene.keep == "statistics":
-        from mcgw.store.statistics_file import read_statistics
-
         results = read_statistics(path, scene)
     return Ensemble(scene, str(attributes["sampler"]), results)
 
@@ -98,7 +96,7 @@ def read_attributes(path: Path) -> dict[str, Any]:
 
 def unfinished_sweep(path: Path) -> RunFolder | None:
     """The folder of a sweep that is not yet in its file, if there is one."""
-    if path.exists() or not (parts_of(path) / "run.toml").is_file():
+    if path.exists() or not (parts_of(path) / RECORD).is_file():
         return None
     run = RunFolder.open(parts_of(path))
     return run if run.axes else None
@@ -106,7 +104,7 @@ def unfinished_sweep(path: Path) -> RunFolder | None:
 
 def _run_of(path: Path) -> RunFolder:
     """The run that makes a file; one that is a single block leaves no record."""
-    if not (parts_of(path) / "run.toml").exists():
+    if not (parts_of(path) / RECORD).exists():
         raise StoreError(f"{path}: no block of its run is finished yet")
     run = RunFolder.open(parts_of(path))
     if run.axes:

@@ -8,31 +8,84 @@ What is needed to repeat a run, besides its scene: versions, commit, processor, 
 """
 
 import hashlib
+import json
 import platform
 import subprocess
 import sys
 from collections.abc import Iterator
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
+import tomli_w
+
+from mcgw.errors import StoreError
 from mcgw.formats.named_files import loads
 from mcgw.scene.scene import Scene
-from mcgw.scene.scene_file import scene_from, scene_text
+from mcgw.scene.scene_file import scene_document, scene_from, scene_text
 from mcgw.scene.section import shortened
+from mcgw.store.h5_writing import MOST_TEXT
 
 Question = tuple[str, str, str]  # text of a scene, axes of a sweep or none, versions that draw
 _PACKAGES = ("mcgw", "numpy", "scipy", "numba", "h5py")
 _DRAW = ("mcgw", "numpy", "numba", "scipy")
 
 
-def identity_of(scene: Scene, sampler: str) -> str:
-    """SHA-256 of all that the numbers of a surface depend on: frozen scene, sampler, what draws."""
-    frozen = scene_text(scene.with_surfaces(1), left_out=False)  # its values, whoever gave them
-    parts = (frozen, sampler, versions(of_draws=True))
-    return hashlib.sha256("\0".join(parts).encode()).hexdigest()
+@dataclass(frozen=True)
+class Written:
+    """A scene written once, for its file, its run and what tells it from others.
+
+    Parameters
+    ----------
+    scene : Scene
+        As a file holds it.
+    sampler : str
+        What draws it, never "auto".
+    text : str
+        The scene as TOML.
+    key : str
+        SHA-256 of all its values, whoever gave them, but for the number of surfaces.
+    """
+
+    scene: Scene
+    sampler: str
+    text: str
+    key: str
+
+    @classmethod
+    def of(cls, scene: Scene, sampler: str) -> "Written":
+        """Write a scene.
+
+        Raises
+        ------
+        StoreError
+            If it is longer than a file may hold: a list of very many heights, or radii.
+        """
+        document = scene_document(scene)
+        text = tomli_w.dumps(document)
+        if len(text.encode()) > MOST_TEXT:
+            raise StoreError(
+                f"scene: its lists need {len(text)} characters, but a file of results holds at most "
+                f"{MOST_TEXT}; list fewer summits, or simulate in memory"
+            )
+        number = "n_surfaces", "max_surfaces", "left_out"
+        document["ensemble"] = {key: x for key, x in document["ensemble"].items() if key not in number}
+        key = hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()
+        return cls(scene, sampler, text, key)
+
+    @property
+    def identity(self) -> str:
+        """SHA-256 of all that the numbers of a surface depend on: scene, sampler, what draws."""
+        parts = (self.key, self.sampler, versions(of_draws=True))
+        return hashlib.sha256("\0".join(parts).encode()).hexdigest()
+
+    @property
+    def of_all(self) -> str:
+        """What the numbers of all surfaces are of."""
+        return f"{self.key} {self.scene.n_surfaces}"
 
 
 def difference(there: Question, here: Question) -> str:

@@ -1,22 +1,53 @@
-"""What the file of an ensemble holds; the schema is written out in `mcgw.store`."""
+"""What the file of an ensemble holds; the schema is written out in `mcgw.store`.
+
+Files may hold statistics over surfaces in place of the surfaces. The schema (of a scene with
+``keep = "statistics"``)::
+
+    /                     attributes: as of an ensemble (`mcgw.store`)
+    /separation           float64 (separations,)              dimension scale: d/sigma
+    /load_mean, /load_std float64 (separations,) N            (and so on for each quantity)
+    /column, /other_column int64  (columns,)                  dimension scales: see the next
+    /covariance           float64 (columns, columns)          between all quantities and separations: its
+                                                              long_name tells their order
+
+and in ``/drawn``, from which all that follows and with which a run goes on, as in the file of a sweep whose
+points are the columns: a row for all whole blocks of surfaces, and one for what is beyond::
+
+    /drawn/block_n                int64   (rows, 1)           surfaces
+    /drawn/block_numbers_means    float64 (rows, columns, 1)
+    /drawn/block_numbers_products float64 (rows, pairs, 1)    sums of products of deviations, all pairs
+"""
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.labelled import AXES, Labelled, Variable
-from mcgw.ensemble.results import Tables
-from mcgw.errors import StoreError
+from mcgw.ensemble.results import BLOCK, Tables, joined
 from mcgw.scene.scene import Scene
-from mcgw.scene.scene_file import scene_text
-from mcgw.store.h5_file import FILETYPE, FORMAT, Contents
-from mcgw.store.identity import commit, now, processor, versions
-from mcgw.store.structure import GROUP, MOST_TEXT
+from mcgw.store.h5_writing import FILETYPE, FORMAT, GROUP, Contents
+from mcgw.store.identity import Written, commit, now, processor, versions
+
+if TYPE_CHECKING:
+    from mcgw.ensemble.summarised import Summarised
+
+_COLUMNS = ("column", "other_column")  # of the covariance
 
 
-def contents_of_values(scene: Scene, sampler: str, values: Callable[[str], Any], **about: Any) -> Contents:
+def contents_of(ensemble: Ensemble, written: Written, **about: Any) -> Contents:
+    """Those of the file of an ensemble in memory, with more attributes."""
+    if written.scene.keep == "statistics":
+        return _contents_of_statistics(ensemble, written, **about)
+    return contents_of_values(written, partial(ensemble.sums.read, start=0, stop=None), **about)
+
+
+def contents_of_values(written: Written, values: Callable[[str], Any], **about: Any) -> Contents:
     """Those of a scene of which the values of every surface are kept: arrays, or `Rows`."""
+    scene = written.scene
     variables = {
         "surface": Variable(("surface",), np.arange(scene.n_surfaces), *AXES["surface"]),
         "separation": Variable(("separation",), np.array(scene.separations), *AXES["separation"]),
@@ -25,8 +56,7 @@ def contents_of_values(scene: Scene, sampler: str, values: Callable[[str], Any],
         q = scene.quantity(name)
         dims = ("surface", "separation")[: 1 + len(shape)]
         variables[name] = Variable(dims, values(name), q.unit, q.long_name)
-    text = scene_text(scene, left_out=False)
-    return Contents(variables, attributes_of(scene, sampler, stored_text(scene), **about), text)
+    return Contents(variables, attributes_of(scene, written.sampler, written.text, **about), written.of_all)
 
 
 def contents_of_kept(
@@ -60,18 +90,34 @@ def attributes_of(scene: Scene, sampler: str, text: str, /, **about: Any) -> dic
     return {**usual, **about}
 
 
-def stored_text(scene: Scene) -> str:
-    """The scene as its file holds it.
+def _contents_of_statistics(ensemble: Ensemble, written: Written, **about: Any) -> Contents:
+    from mcgw.ensemble.summarised import Summarised  # for those scenes alone
+
+    sums, scene, found = ensemble.sums, ensemble.scene, ensemble.labelled()
+    assert isinstance(sums, Summarised)
+    columns, words = np.arange(scene.width), ("1", "quantity and separation")
+    scales = {name: Variable((name,), columns, *words) for name in _COLUMNS}
+    order = ", ".join(f"{name} {'x'.join(map(str, shape))}" for name, shape in scene.shapes.items())
+    rows = [[ensemble.covariance(one, other) for other in scene.shapes] for one in scene.shapes]
+    covariance = Variable(_COLUMNS, np.block(rows), "product of units", f"covariance of {order}")
+    labelled = Labelled({**found.variables, "covariance": covariance}, {**found.coordinates, **scales})
+    drawn = joined([part.block() for part in sums.parts])
+    attributes = attributes_of(scene, ensemble.sampler, written.text, **about)
+    return contents_of_kept(labelled, drawn, attributes, written.of_all)
+
+
+def read_statistics(path: Path, scene: Scene) -> "Summarised":
+    """What a file holds.
 
     Raises
     ------
     StoreError
-        If it is longer than the file may be told: a list of very many heights, or radii.
+        If it cannot be read.
     """
-    text = scene_text(scene)
-    if len(text.encode()) > MOST_TEXT:
-        raise StoreError(
-            f"scene: its lists need {len(text)} characters, but a file of results holds at most {MOST_TEXT}; "
-            "list fewer summits, or simulate in memory"
-        )
-    return text
+    from mcgw.ensemble.pooled import Pooled  # for those scenes alone
+    from mcgw.ensemble.summarised import Summarised
+    from mcgw.store.h5_reading import drawn_tables
+
+    tables = drawn_tables(path)
+    rows = range(len(tables[f"{BLOCK}n"]))
+    return Summarised(scene, tuple(Pooled.from_block(tables, row) for row in rows))

@@ -1,6 +1,6 @@
 """The lock of a file being made: one process writes it, or several that each make a share of its blocks.
 
-It lies in the folder of the run (`mcgw.store.disk.parts_of`) and goes together with the folder when nothing
+It lies in the folder of the run (`parts_of`) and goes together with the folder when nothing
 else is left there. The system frees it when its holder dies, however that happens. It is the lock of an
 SQLite file that stays empty, which every system has. Such a lock goes when *any* descriptor of its file is
 closed, so nothing else may open that file: who holds it stands in another one.
@@ -29,13 +29,18 @@ _MOST_BYTES = 200
 _UNKNOWN = "another process (or by none, on a disk that keeps no locks)"
 
 
+def parts_of(path: Path) -> Path:
+    """Folder of the run that makes a file."""
+    return path.with_name(f"{path.name}.parts")
+
+
 class LockedError(StoreError):
     """Another process works on this file."""
 
 
 @contextmanager
 def locked(folder: Path, *, shared: bool = False, patience: float | None = None) -> Iterator[bool]:
-    """Hold the folder of a run, from `mcgw.store.disk.parts_of`; tells whether it had to be made.
+    """Hold the folder of a run, from `parts_of`; tells whether it had to be made.
 
     `shared` is for one of several jobs that each make a share of the blocks; `patience` is how many seconds
     to wait for another holder, by default `PATIENCE`. The files `LOCK_FILES` in the folder go with it.

@@ -2,30 +2,29 @@
 
 from collections.abc import Callable
 from contextlib import suppress
-from functools import partial
 from pathlib import Path
-from typing import Any
 
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.errors import RunError, StoreError
-from mcgw.formats.files import State, remove_stale, whole_file
+from mcgw.formats.files import State, check_output, remove_stale, state_of, whole_file
+from mcgw.scene.arguments import check_object
 from mcgw.scene.fields import LeftOut
-from mcgw.scene.scene import Scene
+from mcgw.scene.scene import Scene, storable
 from mcgw.scene.scene_file import scene_from, scene_text
-from mcgw.store.disk import parts_of
-from mcgw.store.ensembles import described, read_attributes, verify
-from mcgw.store.h5_file import Contents, look, write
-from mcgw.store.identity import difference, identity_of, versions
-from mcgw.store.layout import contents_of_values
-from mcgw.store.lock import locked
-from mcgw.store.run_folder import RunFolder, remove_run
+from mcgw.store.ensembles import described, open_ensemble, read_attributes, verify
+from mcgw.store.h5_reading import look
+from mcgw.store.h5_writing import Contents, write
+from mcgw.store.identity import Written, difference, versions
+from mcgw.store.layout import contents_of
+from mcgw.store.lock import locked, parts_of
+from mcgw.store.run_folder import RECORD, RunFolder, remove_run
 
 
 def recorded_scene(path: Path) -> Scene | None:
     """Scene of the ensemble or run that is at a place, if there is one."""
     if path.is_file():
         return described(path)[1]
-    return RunFolder.open(parts_of(path)).scene if (parts_of(path) / "run.toml").is_file() else None
+    return RunFolder.open(parts_of(path)).scene if (parts_of(path) / RECORD).is_file() else None
 
 
 def with_recorded_seed(scene: Scene, path: Path) -> Scene:
@@ -40,7 +39,7 @@ def recorded_seed(path: Path) -> int | None:
     return there.seed if there else None
 
 
-def finished(path: Path, scene: Scene, sampler: str) -> int:
+def finished(path: Path, wanted: Written) -> int:
     """Number of surfaces that a file holds of a scene; 0 if there is no file.
 
     Raises
@@ -53,28 +52,19 @@ def finished(path: Path, scene: Scene, sampler: str) -> int:
     attributes, there = described(path)
     if "axes" in attributes:
         raise StoreError(f"{path}: holds a sweep; choose another -o, or remove it")
-    if attributes.get("run") != identity_of(scene, sampler):
+    if attributes.get("run") != wanted.identity:
         before = scene_text(there), "", str(attributes.get("draws", "another version"))
-        what = difference(before, (scene_text(scene), "", versions(of_draws=True)))
+        what = difference(before, (wanted.text, "", versions(of_draws=True)))
         raise StoreError(f"{path}: holds a different ensemble: {what}; choose another -o, or remove it")
-    if there.n_surfaces > scene.n_surfaces:
+    asked = wanted.scene.n_surfaces
+    if there.n_surfaces > asked:
         raise StoreError(
-            f"{path}: holds {there.n_surfaces} surfaces already, more than ensemble.n_surfaces = "
-            f"{scene.n_surfaces}; ask for as many or more, or choose another -o"
+            f"{path}: holds {there.n_surfaces} surfaces already, more than ensemble.n_surfaces = {asked}; "
+            "ask for as many or more, or choose another -o"
         )
-    if there.n_surfaces < scene.n_surfaces:
+    if there.n_surfaces < asked:
         look(path)  # all of it: it is about to be copied
     return there.n_surfaces
-
-
-def contents_of(ensemble: Ensemble, **about: Any) -> Contents:
-    """Those of the file of an ensemble in memory, with more attributes."""
-    scene, sums = ensemble.scene, ensemble.sums
-    if scene.keep == "statistics":
-        from mcgw.store.statistics_file import contents_of_statistics  # for those scenes alone
-
-        return contents_of_statistics(ensemble, **about)
-    return contents_of_values(scene, ensemble.sampler, partial(sums.read, start=0, stop=None), **about)
 
 
 def put(
@@ -110,6 +100,57 @@ def put(
         ) from None
 
 
+def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> Ensemble:
+    """Write an ensemble in memory to a file, in one atomic step; never over another one.
+
+    Parameters
+    ----------
+    ensemble : Ensemble
+        With all surfaces of its scene.
+    path : str or Path
+        The file.
+    wall_seconds : float, optional
+        What making it took.
+
+    Returns
+    -------
+    Ensemble
+        That reads from the file.
+
+    Raises
+    ------
+    StoreError
+        If the place cannot be written, another process writes there, or another ensemble, or a run that
+        is not finished, has it.
+    RunError
+        If the disk does not take it.
+
+    Examples
+    --------
+    >>> import mcgw, tempfile
+    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    >>> scene = mcgw.Scene(surface, separations=[0, 1, 2], n_surfaces=20, seed=1)
+    >>> e = mcgw.simulate(scene)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     mcgw.save(e, f"{folder}/e.h5").n_surfaces
+    20
+    """
+    check_object("save", ensemble, Ensemble)
+    path = Path(path)
+    check_output(path)
+    with locked(parts_of(path)):
+        if (parts_of(path) / RECORD).exists():
+            raise StoreError(
+                f"{path}: a run that makes this file is not finished; finish it, choose another -o, "
+                f"or remove {parts_of(path)}"
+            )
+        before, written = state_of(path), Written.of(storable(ensemble.scene), ensemble.sampler)
+        finished(path, written)
+        about = {"run": written.identity, "draws": versions(of_draws=True), "wall_seconds": wall_seconds}
+        put(path, contents_of(ensemble, written, **about), before)
+    return open_ensemble(path)
+
+
 def tidy(path: Path) -> None:
     """Remove what dead processes left of the making of a file; nothing that a command could go on from.
 
@@ -134,7 +175,7 @@ def drop_leftovers(path: Path) -> None:
 def _of_use(path: Path) -> bool:
     """Whether a run has a block that its file does not have."""
     folder = parts_of(path)
-    begun = (folder / "run.toml").exists()  # without it nobody knows what the blocks are
+    begun = (folder / RECORD).exists()  # without it nobody knows what the blocks are
     shards = list((folder / "shards").glob("block-*.h5")) if begun else []
     if not shards or not path.exists():
         return bool(shards)

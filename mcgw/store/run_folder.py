@@ -2,40 +2,115 @@
 
 ::
 
-    run.toml    the frozen scene, the axes of a sweep, the identity of both, the versions that draw, the
-                surfaces and the size of a block of each group; last, the SHA-256 of all that stands before
+    run.h5      the frozen scene, the axes of a sweep, the identity of both, the versions that draw, the
+                surfaces and the size of a block of each group
     lock.db     held by whoever writes the file, freed by the system when it dies (`lock`)
     holder      who that is
     shards/     block-0000000000042.h5: the surfaces from number 42 on
 
-The set of valid shards is the only record of progress.
+All are files of the one writer. A shard holds the results of some consecutive surfaces and is there whole or
+not; its attributes are the identity of the run, the numbers of the surfaces, and how long these took. The set
+of valid shards is the only record of progress.
 """
 
-import hashlib
-import os
 import shutil
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
-import tomli_w
+import numpy as np
 
+from mcgw.ensemble.labelled import Variable
+from mcgw.ensemble.results import BLOCK, Tables
 from mcgw.errors import RunError, StoreError
-from mcgw.formats.files import Expected, sync, write_whole
-from mcgw.formats.named_files import loads
+from mcgw.formats.files import Expected, sync, whole_file
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from
 from mcgw.scene.section import SceneError
+from mcgw.store.h5_reading import look, read_tables
+from mcgw.store.h5_writing import BLOCK_TYPE, FORMAT, RUN_TYPE, Contents, write
 from mcgw.store.identity import difference
 from mcgw.store.lock import refuse_link
-from mcgw.store.shards import Shard, open_shard
 from mcgw.store.spans import Plan, Span
 
-_FILETYPE, _FORMAT = "mcgw-run", [2, 0]
-_CHECKSUM = 'sha256 = "'
-_MOST_BYTES = 2**23
+RECORD = "run.h5"
+
+
+@dataclass(frozen=True)
+class Shard:
+    """A shard that was looked at.
+
+    Parameters
+    ----------
+    path : Path
+        Where it lies.
+    span : Span
+        Its surfaces.
+    seconds : float
+        What drawing it took.
+    """
+
+    path: Path
+    span: Span
+    seconds: float
+
+    def tables(self, *wanted: str) -> Tables:
+        """Its tables, all or some, read and compared with their checksums.
+
+        Raises
+        ------
+        StoreError
+            If it was damaged or removed since.
+        """
+        if not self.path.exists():
+            raise StoreError(f"{self.path}: no longer exists; its run has ended, open the file again")
+        return read_tables(self.path, wanted or None)
+
+
+def commit_shard(path: Path, run: str, span: Span, tables: Tables, seconds: float) -> Shard:
+    """Write a shard of a run in one atomic step, with the seconds that drawing it took.
+
+    Raises
+    ------
+    StoreError
+        If a number is not finite: nothing is written.
+    OSError
+        If the disk does not take it.
+    """
+    for name, values in tables.items():
+        if len(values) != (1 if name.startswith(BLOCK) else span.n):
+            raise StoreError(f"{path}: {name} does not have the rows of {span}")
+        if not np.all(np.isfinite(values)):
+            raise StoreError(f"{path}: {name} holds numbers that are not finite")
+    about = {"filetype": BLOCK_TYPE, "format": FORMAT, "run": run, "first": span.first, "n": span.n}
+    _write_tables(path, tables, {**about, "wall_seconds": seconds})
+    return Shard(path, span, seconds)
+
+
+def _write_tables(path: Path, tables: Tables, about: dict[str, Any], expected: Expected = "anything") -> None:
+    variables = {name: Variable((), values, "", "") for name, values in tables.items()}
+    with whole_file(path, expected=expected) as temporary:
+        write(temporary, Contents(variables, about))
+
+
+def open_shard(path: Path, run: str, *, numbers: bool = True) -> Shard:
+    """A shard of this run; its numbers are compared with their checksums unless that is left out.
+
+    Raises
+    ------
+    StoreError
+        If it is not there, damaged, or belongs elsewhere.
+    """
+    said = look(path, BLOCK_TYPE, numbers=numbers).attributes
+    if said["run"] != run:
+        raise StoreError(f"{path}: belongs to another run")
+    shard = Shard(path, Span(said["first"], said["n"]), said["wall_seconds"])
+    if path.name != shard.span.file_name:
+        raise StoreError(f"{path}: holds {shard.span}, unlike its name")
+    return shard
 
 
 @dataclass(frozen=True)
@@ -102,7 +177,7 @@ class RunFolder:
             return self
         try:
             old = RunFolder.open(self.folder)
-        except _DamagedError:
+        except StoreError:
             if not self.shards(numbers=False):
                 raise
             self._write(expected="anything")  # its blocks say that they are of this very run
@@ -118,20 +193,18 @@ class RunFolder:
         return replace(self, plan=plan, date=old.date)
 
     def _write(self, *, expected: Expected) -> None:
-        document = {
-            "filetype": _FILETYPE,
-            "format": _FORMAT,
-            "identity": self.identity,
+        about = {
+            "filetype": RUN_TYPE,
+            "format": FORMAT,
+            "run": self.identity,
             "sampler": self.sampler,
-            "blocks": [list(group) for group in self.plan.groups],
-            "versions": self.drawn_with,
+            "draws": self.drawn_with,
             "date": self.date,
             "axes": self.axes,
             "scene": self.text,
         }
-        text = tomli_w.dumps(document, multiline_strings=True).encode()
-        checksum = f'{_CHECKSUM}{hashlib.sha256(text).hexdigest()}"\n'
-        write_whole(self.folder / "run.toml", (text, checksum.encode()), expected=expected)
+        blocks = {"blocks": np.array(self.plan.groups, dtype=np.int64)}
+        _write_tables(self.folder / RECORD, blocks, about, expected)
 
     def freeze(self) -> None:
         """Record how many surfaces are wanted now."""
@@ -148,32 +221,21 @@ class RunFolder:
             If there is none, or it cannot be read.
         """
         refuse_link(folder)
-        file = folder / "run.toml"
+        file = folder / RECORD
         try:
-            fd = os.open(file, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
-            with os.fdopen(fd, "rb") as opened:
-                data = opened.read(_MOST_BYTES)
-            said, text = loads(data.decode()), data.rpartition(_CHECKSUM.encode())[0]
-            if said.get("sha256") != hashlib.sha256(text).hexdigest():
-                raise _ChangedError
-            if said["filetype"] != _FILETYPE or said["format"][0] != _FORMAT[0]:
-                raise StoreError(f"{file}: is not a run of format {_FORMAT[0]}.x, but {said['format']}")
-            scene, axes, sampler = (str(said[key]) for key in ("scene", "axes", "sampler"))
-            known = [str(said[key]) for key in ("identity", "versions", "date")]
-            if not all(map(str.isprintable, (sampler, *known))):
-                raise ValueError
-            groups = tuple((int(n), int(size)) for n, size in said["blocks"])
+            said, blocks = look(file, RUN_TYPE).attributes, read_tables(file)["blocks"].tolist()
+            scene, axes = str(said["scene"]), str(said["axes"])
             whole = bool(axes) or scene_from(scene).keep == "statistics"
-            return cls(folder, scene, axes, sampler, Plan(groups, whole), *known)
-        except OSError as error:
-            raise StoreError(f"{file}: {error.strerror}") from None
-        except (SceneError, KeyError, TypeError, ValueError) as error:
-            if isinstance(error, StoreError):
-                raise
-            what = "checksum mismatch" if isinstance(error, _ChangedError) else "it cannot be read"
-            raise _DamagedError(
-                f"{file}: damaged ({what}); the blocks beside it are kept: resume with mcgw run or mcgw "
-                f"sweep, with their scene and seed, or remove {folder}"
+            known = (str(said[key]) for key in ("run", "draws", "date"))
+            plan = Plan(tuple((int(n), int(size)) for n, size in blocks), whole)
+            return cls(folder, scene, axes, str(said["sampler"]), plan, *known)
+        except (StoreError, SceneError, KeyError, ValueError) as error:
+            if not file.is_file():
+                raise StoreError(f"{file}: there is none") from None
+            what = str(error).splitlines()[0].removeprefix(f"{file}: ")
+            raise StoreError(
+                f"{file}: {what}; the blocks beside it are kept: resume with mcgw run or mcgw sweep, with "
+                f"their scene and seed, or remove {folder}"
             ) from None
 
     def shards(self, *, numbers: bool = True) -> list[Shard]:
@@ -227,13 +289,5 @@ class RunFolder:
 def remove_run(folder: Path) -> None:
     """Remove a run, readable or not; its lock stays, and with it the folder. Only with the lock."""
     shutil.rmtree(folder / "shards", ignore_errors=True)  # a worker that lost its driver may add to it
-    for left in (*folder.glob(".*.tmp"), folder / "run.toml"):
+    for left in (*folder.glob(".*.tmp"), folder / RECORD):
         left.unlink(missing_ok=True)
-
-
-class _DamagedError(StoreError):
-    """An empty run.toml."""
-
-
-class _ChangedError(ValueError):
-    """The checksum does not hold."""

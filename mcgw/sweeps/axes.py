@@ -17,7 +17,7 @@ from mcgw.scene.arguments import as_toml
 from mcgw.scene.keys import TABLES
 from mcgw.scene.laws import grading_table
 from mcgw.scene.section import SceneError
-from mcgw.store.structure import GROUP
+from mcgw.store.h5_writing import GROUP
 
 Point = tuple[int, ...]
 

@@ -35,7 +35,8 @@ from mcgw.ensemble.pooled import Pooled
 from mcgw.errors import StoreError
 from mcgw.formats.named_files import loads
 from mcgw.store.ensembles import read_attributes
-from mcgw.store.h5_file import Contents, drawn_tables
+from mcgw.store.h5_reading import drawn_tables
+from mcgw.store.h5_writing import Contents
 from mcgw.store.layout import attributes_of, contents_of_kept
 from mcgw.store.run_folder import RunFolder
 from mcgw.sweeps.axes import Axes

@@ -3,7 +3,7 @@
 Surfaces of S1 with 1e4 asperities: their loads, which are noise but for the first digits (areas and
 stiffnesses are alike), and their numbers of contacts. Chunks as in an ensemble file, each with a checksum;
 one thread, all in memory, seconds of the processor, the least of some rounds. The two last lines are a file
-of load, area, stiffness and contacts: all compressed, and as `mcgw.store.chunks` has it.
+of load, area, stiffness and contacts: all compressed, and as `mcgw.store.h5_writing` has it.
 
 Run: ``python runs/bench/compression.py [SURFACES]``.
 """
@@ -17,7 +17,7 @@ import numpy as np
 from scenes import S1
 
 import mcgw
-from mcgw.store.chunks import PACKED, chunk_rows, empty_table
+from mcgw.store.h5_writing import PACKED, chunk_rows, empty_table
 
 ROUNDS = 5
 WAYS = {

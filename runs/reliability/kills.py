@@ -24,10 +24,10 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "crash"))
 import harness
 
 from mcgw.errors import RunError, StoreError
-from mcgw.jobs import merging, running
+from mcgw.jobs import making, running
 from mcgw.store import ensembles, lock
-from mcgw.store.disk import parts_of
-from mcgw.store.run_folder import RunFolder
+from mcgw.store.lock import parts_of
+from mcgw.store.run_folder import RECORD, RunFolder
 
 BLOCKS = 12
 WANTED = harness.scene_of(BLOCKS)
@@ -51,8 +51,8 @@ KINDS = {
     "blocks": ([], [run(WANTED)]),
     "extension": ([run(HALF)], [run(WANTED)]),
     "one block grows": ([run(replace(ONE, n_surfaces=3))], [run(ONE)]),
-    "jobs": ([], [job(1), job(2), merging.merge]),
-    "merge": ([job(1), job(2)], [merging.merge]),
+    "jobs": ([], [job(1), job(2), making.merge]),
+    "merge": ([job(1), job(2)], [making.merge]),
 }
 
 
@@ -81,7 +81,7 @@ def committed(file):
     held = set()
     if file.exists():
         held.update(range(ensembles.open_ensemble(file).n_surfaces))
-    if (parts_of(file) / "run.toml").is_file():
+    if (parts_of(file) / RECORD).is_file():
         for shard in RunFolder.open(parts_of(file)).shards():
             held.update(range(shard.span.first, shard.span.stop))
     return held

@@ -20,7 +20,7 @@ import numpy as np
 import mcgw
 from mcgw.jobs.driver import Signals, drive
 from mcgw.jobs.executors import Jobs
-from mcgw.store.shards import commit_shard
+from mcgw.store.run_folder import commit_shard
 from mcgw.store.spans import Span
 
 SECONDS, ROWS, COLUMNS = 1.0, 1024, 128

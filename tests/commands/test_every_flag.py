@@ -39,7 +39,7 @@ FIT, LINES = "fit @map.npy --pixel 1um --cutoff none -o f.toml", "fit @p.txt --c
 ROWS = [
     *(
         row
-        for line, target in ((RUN, "jobs.running:run"), (SWEEP, "jobs.sweeping:sweep"))
+        for line, target in ((RUN, "jobs.running:run"), (SWEEP, "jobs.running:sweep"))
         for row in (
             (line, target, "--threads 1", {"threads": 1, "executor": None, "shard": None}),
             (line, target, "--shard 1/2", {"shard": "1/2", "executor": None, "threads": None}),
@@ -49,10 +49,10 @@ ROWS = [
             (line, "jobs.executors:dask_executor", "--dask tcp://h:1", {"address": "tcp://h:1"}),
         )
     ),
-    (SWEEP, "jobs.sweeping:sweep", "--over ensemble.seed=1:3:3 --over contact.law=hertz",
+    (SWEEP, "jobs.running:sweep", "--over ensemble.seed=1:3:3 --over contact.law=hertz",
      {"over": {"grading.gamma": [1, 2], "ensemble.seed": [1, 2, 3], "contact.law": ["hertz"]},
       "zipped": False}),
-    (SWEEP, "jobs.sweeping:sweep", "--zip", {"zipped": True}),
+    (SWEEP, "jobs.running:sweep", "--zip", {"zipped": True}),
     (f"{SWEEP} --zip --over ensemble.seed=1,2", "reports.plan:sweep_plan_text", "--plan",
      {"asked.axes.size": 2}),
     ("show @s.toml", "reports.plan:plan_text", "--plan", {"scene.title": "Flags", "plan.surfaces": 70}),
@@ -134,7 +134,7 @@ ROWS = [
       "f.scene.seed": 20240601}),
     ("figures", "figures.catalogue:figures_of", "--scene @s.toml",
      {"f.asked.title": "Flags", "f.swept": False}),
-    ("merge", "jobs.merging:merge", "--output a.h5", {"path.name": "a.h5"}),
+    ("merge", "jobs.making:merge", "--output a.h5", {"path.name": "a.h5"}),
 ]  # fmt: skip
 
 # What a command prints or writes by itself: its line, a text that is said, and the files that are then there.

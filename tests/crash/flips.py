@@ -18,7 +18,8 @@ from mcgw.ensemble.simulation import Values
 from mcgw.errors import StoreError
 from mcgw.jobs.running import run
 from mcgw.store import ensembles
-from mcgw.store.disk import parts_of
+from mcgw.store.lock import parts_of
+from mcgw.store.run_folder import RECORD
 
 BLOCKS = 5
 
@@ -97,7 +98,7 @@ def main(folder, flips):
     dice, (one, merged, begun) = random.Random(1), made(folder)
     places = places_of(one) | places_of(merged)
     shards = sorted(parts_of(begun).glob("shards/*.h5"))
-    for path in (parts_of(begun) / "run.toml", *shards):
+    for path in (parts_of(begun) / RECORD, *shards):
         places[path.name] = (path, range(path.stat().st_size))
     held = {begun: ensembles.open_ensemble(begun).n_surfaces}
     counted = {kind: {"flips": 0, "seen": 0, "harmless": 0, "unseen": []} for kind in places}

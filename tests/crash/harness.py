@@ -23,9 +23,9 @@ from mcgw.errors import RunError, StoreError
 from mcgw.jobs import running
 from mcgw.jobs.job import Job
 from mcgw.scene.scene import Scene
-from mcgw.store import chunks, ensembles, lock, shards
-from mcgw.store.disk import parts_of
-from mcgw.store.run_folder import RunFolder
+from mcgw.store import ensembles, h5_writing, lock, run_folder
+from mcgw.store.lock import parts_of
+from mcgw.store.run_folder import RECORD, RunFolder
 
 MODES = {"kill": 1, "torn": 2, "ENOSPC": 3, "EIO": 4}
 ROWS = 8
@@ -51,10 +51,10 @@ def made_up(job, span, *_):
 def prepare():
     Job.draw = made_up
     lock.PATIENCE = 0.0  # a second driver is refused at once
-    Values.rows = chunks.CHUNK_ROWS = ROWS  # blocks are merged by their packed chunks
+    Values.rows = h5_writing.CHUNK_ROWS = ROWS  # blocks are merged by their packed chunks
     Values.columns = 6
     if "MCGW_IN_PLACE" in os.environ:  # the wrong way, which the harness must notice
-        shards.whole_file = written_in_place
+        run_folder.whole_file = written_in_place
 
 
 @contextmanager
@@ -115,7 +115,7 @@ def found(scene, file, acked, digest):
     if file.exists():
         problem, now = ensembles.verify(file)
         return [] if not problem and now == digest else [f"final file: {problem or now}"]
-    if not (parts_of(file) / "run.toml").exists():
+    if not (parts_of(file) / RECORD).exists():
         return ["lost everything"] if acked else []
     run, wrong = RunFolder.open(parts_of(file)), []
     valid = run.shards()

@@ -15,8 +15,8 @@ from pathlib import Path
 from harness import ROWS, attempt, forked, prepare, scene_of
 
 from mcgw.store import ensembles
-from mcgw.store.disk import parts_of
-from mcgw.store.run_folder import RunFolder
+from mcgw.store.lock import parts_of
+from mcgw.store.run_folder import RECORD, RunFolder
 
 
 def begun(scene, file):
@@ -29,7 +29,7 @@ def begun(scene, file):
 
 
 def committed(file):
-    if not (parts_of(file) / "run.toml").is_file():
+    if not (parts_of(file) / RECORD).is_file():
         return set()
     return {shard.span.first for shard in RunFolder.open(parts_of(file)).shards()}
 

@@ -24,7 +24,7 @@ from mcgw import SceneError, run
 from mcgw.errors import StoreError
 from mcgw.maps import Topography, write_map
 from mcgw.maps.map_files import WRITTEN
-from mcgw.store import ensembles, h5_file
+from mcgw.store import ensembles, h5_reading
 
 MEMORY, SECONDS, OF_MAPS = 2**31, 4, 2**30
 SCENE = """title = "fuzz"
@@ -176,7 +176,7 @@ def files(count, seed):
 
 def look(path):
     try:
-        h5_file.look(path)
+        h5_reading.look(path)
     except StoreError:
         return 2
     return 0

@@ -21,7 +21,7 @@ from mcgw.jobs import driver, job
 from mcgw.jobs.driver import Signals, drive, heed_signals
 from mcgw.jobs.executors import Jobs, dask_executor
 from mcgw.jobs.running import run
-from mcgw.store.disk import parts_of
+from mcgw.store.lock import parts_of
 from mcgw.store.spans import Span
 
 SIZE, SURFACES = 8, 72

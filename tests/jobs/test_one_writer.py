@@ -20,8 +20,7 @@ from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import state_of
 from mcgw.jobs.job import Job
 from mcgw.store import ensembles, lock, place
-from mcgw.store.disk import parts_of
-from mcgw.store.lock import LockedError, locked
+from mcgw.store.lock import LockedError, locked, parts_of
 from mcgw.store.place import tidy
 from mcgw.store.run_folder import RunFolder
 

@@ -7,8 +7,8 @@ import pytest
 import mcgw
 from mcgw.ensemble.simulation import Values
 from mcgw.ensemble.summarised import Statistics
-from mcgw.store import chunks, ensembles
-from mcgw.store.disk import parts_of
+from mcgw.store import ensembles, h5_writing
+from mcgw.store.lock import parts_of
 
 SIZE, SURFACES = 16, 100  # seven blocks, the last one short
 
@@ -20,7 +20,7 @@ class HaltError(Exception):
 def in_small_blocks(patch, size=SIZE):
     for kept in (Values, Statistics):
         patch.setattr(kept, "rows", size)
-    patch.setattr(chunks, "CHUNK_ROWS", size // 2)
+    patch.setattr(h5_writing, "CHUNK_ROWS", size // 2)
 
 
 def settle():

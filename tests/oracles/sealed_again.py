@@ -4,7 +4,7 @@ import hashlib
 
 import h5py
 
-from mcgw.store.h5_file import checksum_of
+from mcgw.store.h5_reading import checksum_of
 
 
 def sealed_again(path):

@@ -13,7 +13,7 @@ import analytic
 import mcgw
 from mcgw.maps.summits import SUMMITS, Summits
 from mcgw.reports.solved_loads import solutions_text
-from mcgw.store import layout
+from mcgw.store import identity
 
 K = 200
 MODULUS = 78.6e9
@@ -267,7 +267,7 @@ def test_radii_of_other_heights_are_refused():
 def test_more_summits_than_a_file_can_tell_are_refused_before_anything_is_drawn(tmp_path, monkeypatch):
     """A file whose scene is longer would not be opened again."""
     x, path = scene(resampled=True, n_surfaces=2), tmp_path / "a.h5"
-    monkeypatch.setattr(layout, "MOST_TEXT", 5000)
+    monkeypatch.setattr(identity, "MOST_TEXT", 5000)
     for write in (lambda: mcgw.run(x, path), lambda: mcgw.save(mcgw.simulate(x), path)):
         with pytest.raises(mcgw.StoreError, match="list fewer summits"):
             write()

@@ -15,7 +15,7 @@ import analytic
 import mcgw
 from mcgw.cli import main
 from mcgw.errors import StoreError
-from mcgw.store import ensembles, h5_file, structure
+from mcgw.store import ensembles, h5_reading
 from mcgw.sweeps import open_results
 
 TESTS = Path(__file__).parents[1]
@@ -158,7 +158,7 @@ LIMITS = {
         attributes(format=np.zeros(64)), attributes(format=np.zeros(65)), "^attribute format: too large$"
     ),
     "a text": (
-        attributes(title="x" * structure.MOST_TEXT), attributes(title="x" * (structure.MOST_TEXT + 1)),
+        attributes(title="x" * h5_reading.MOST_TEXT), attributes(title="x" * (h5_reading.MOST_TEXT + 1)),
         "^attribute title: too large$",
     ),
     "axes": (
@@ -185,7 +185,7 @@ LIMITS = {
 
 def names_and_attributes(path):
     with h5py.File(path) as file:
-        return structure.table_names(file), structure.attributes_in(file)
+        return h5_reading.table_names(file), h5_reading.attributes_in(file)
 
 
 @pytest.mark.parametrize("what", LIMITS)
@@ -204,9 +204,9 @@ def test_a_file_may_hold_so_much_and_no_more(what, tmp_path):
 @pytest.mark.parametrize("large", [False, True])
 def test_a_file_is_looked_at_once_until_it_changes(path, monkeypatch, large):
     """Of a large one the head alone."""
-    size, (calls, look) = path.stat().st_size, ([], h5_file.look)
-    monkeypatch.setattr(h5_file, "LARGE", size if large else size + 1)
-    monkeypatch.setattr(h5_file, "look", lambda *a, **k: calls.append(k) or look(*a, **k))
+    size, (calls, look) = path.stat().st_size, ([], h5_reading.look)
+    monkeypatch.setattr(h5_reading, "LARGE", size if large else size + 1)
+    monkeypatch.setattr(h5_reading, "look", lambda *a, **k: calls.append(k) or look(*a, **k))
     for _ in range(2):
         mcgw.open_ensemble(path)
         assert calls == [{"numbers": not large}]

@@ -17,8 +17,7 @@ from mcgw.cli import main
 from mcgw.ensemble.simulation import Values
 from mcgw.errors import StoreError
 from mcgw.store import lock
-from mcgw.store.disk import parts_of
-from mcgw.store.lock import LOCK_FILES, LockedError, locked
+from mcgw.store.lock import LOCK_FILES, LockedError, locked, parts_of
 
 ROOT = Path(mcgw.__file__).parents[1]
 ENV = os.environ | {"PYTHONPATH": str(ROOT)}

@@ -13,9 +13,9 @@ from oracles.begun_runs import SIZE, SURFACES, begun, digest, in_small_blocks
 import mcgw
 from mcgw.ensemble.simulation import Values
 from mcgw.errors import RunError, StoppedError
-from mcgw.jobs import merging
-from mcgw.store import chunks, place
-from mcgw.store.disk import parts_of
+from mcgw.jobs import making
+from mcgw.store import h5_writing, place
+from mcgw.store.lock import parts_of
 
 ROWS, COLUMNS = 40, 5
 
@@ -34,7 +34,7 @@ def test_compressed_is_what_shrinks_by_half():
     }
     with h5py.File(io.BytesIO(), "w") as file:
         for name, values in tables.items():
-            data = chunks.empty_table(file, name, ROWS, values)
+            data = h5_writing.empty_table(file, name, ROWS, values)
             assert (data.compression, data.shuffle) == (
                 ("gzip", True) if name == "contacts" else (None, False)
             )
@@ -44,11 +44,11 @@ def test_compressed_is_what_shrinks_by_half():
 
 @pytest.mark.parametrize("columns", [0, 1, 41, 512, 513, 5000, 2**17, 2**20])
 def test_chunks_are_cut_at_powers_of_two_within_a_mebibyte(columns, monkeypatch):
-    monkeypatch.setattr(chunks, "CHUNK_ROWS", 256)
-    rows = chunks.chunk_rows(10**6, columns)
+    monkeypatch.setattr(h5_writing, "CHUNK_ROWS", 256)
+    rows = h5_writing.chunk_rows(10**6, columns)
     assert 256 % rows == 0  # so that blocks of whole chunks of the largest kind are whole chunks of any
     assert rows == 1 or 8 * rows * columns <= 2**20
-    assert chunks.chunk_rows(7, columns) == min(rows, 7)
+    assert h5_writing.chunk_rows(7, columns) == min(rows, 7)
 
 
 # --- blocks become a file -------------------------------------------------------------------------------
@@ -75,7 +75,7 @@ def made(way, *words):
 @pytest.mark.parametrize("rows", [4, 12, 256])
 def test_blocks_and_chunks_of_any_size_make_the_same(scene, tmp_path, expected, monkeypatch, rows):
     """The first three blocks as of a version with other blocks; the file is one of 37 surfaces that grows."""
-    monkeypatch.setattr(chunks, "CHUNK_ROWS", rows)
+    monkeypatch.setattr(h5_writing, "CHUNK_ROWS", rows)
     path = tmp_path / "e.h5"
     mcgw.run(replace(scene, n_surfaces=37), path)
     monkeypatch.setattr(Values, "rows", 20)
@@ -96,7 +96,7 @@ def chunk_of(path, name, number=1):
 @pytest.mark.parametrize("name", ["load", "contacts"])
 def test_a_damaged_chunk_is_never_copied_into_the_file(scene, tmp_path, expected, name, monkeypatch):
     """It is damaged after the shards were looked at."""
-    path, merged = tmp_path / "e.h5", merging._merged
+    path, merged = tmp_path / "e.h5", making._merged
     shard = begun(scene, path)[2]
 
     def damage_first(*words):
@@ -107,7 +107,7 @@ def test_a_damaged_chunk_is_never_copied_into_the_file(scene, tmp_path, expected
         return merged(*words)
 
     with monkeypatch.context() as patch:
-        patch.setattr(merging, "_merged", damage_first)
+        patch.setattr(making, "_merged", damage_first)
         with pytest.raises(RunError, match="a shard is damaged; run the jobs again"):
             mcgw.merge(path)
     assert not path.exists()

@@ -20,13 +20,12 @@ import mcgw
 from mcgw.cli import main
 from mcgw.errors import RunError, StoppedError, StoreError
 from mcgw.formats.files import state_of
-from mcgw.jobs import merging
+from mcgw.jobs import making
 from mcgw.jobs.driver import part_of
 from mcgw.jobs.job import Job, commit_block
-from mcgw.store import ensembles
-from mcgw.store.disk import parts_of
-from mcgw.store.place import contents_of, put
-from mcgw.store.run_folder import RunFolder
+from mcgw.store import ensembles, identity, layout, place
+from mcgw.store.lock import parts_of
+from mcgw.store.run_folder import RECORD, RunFolder
 from mcgw.store.spans import Plan, Span
 
 HERE = Path(__file__).parents[1]
@@ -157,8 +156,8 @@ def test_a_run_without_a_block_or_its_record_is_said_to_have_none(scene, tmp_pat
     (folder / "shards").rmdir()
     with pytest.raises(RunError, match=r"e\.h5\.parts: is missing or incomplete; run the command again$"):
         ensembles.open_ensemble(path)
-    (folder / "run.toml").unlink()
-    with pytest.raises(StoreError, match=r"run\.toml: No such file or directory$"):
+    (folder / RECORD).unlink()
+    with pytest.raises(StoreError, match=r"run\.h5: there is none$"):
         RunFolder.open(folder)
 
 
@@ -181,13 +180,13 @@ def test_statistics_of_a_missing_block_are_not_merged(scene, tmp_path, monkeypat
     """It goes between the look for gaps and the making of the file."""
     path = tmp_path / "e.h5"
     gone = begun(replace(scene, keep="statistics"), path)[2]
-    made = merging.merge_once
+    made = making.merge_once
 
     def late(*words):
         gone.unlink()
         return made(*words)
 
-    monkeypatch.setattr(merging, "merge_once", late)
+    monkeypatch.setattr(making, "merge_once", late)
     with pytest.raises(RunError, match=r"a shard is damaged; run the jobs again to redraw it$"):
         mcgw.merge(path)
     assert not path.exists()
@@ -196,20 +195,22 @@ def test_statistics_of_a_missing_block_are_not_merged(scene, tmp_path, monkeypat
 def test_a_file_that_appears_while_one_is_made_is_left_alone(scene, tmp_path):
     path, there = tmp_path / "e.h5", parts_of(tmp_path / "e.h5")
     there.mkdir()
-    contents = contents_of(mcgw.simulate(scene), run="r", draws="d", wall_seconds=1.0)
-    put(path, contents, None)
+    drawn = mcgw.simulate(scene)
+    written = identity.Written.of(drawn.scene, drawn.sampler)
+    contents = layout.contents_of(drawn, written, run="r", draws="d", wall_seconds=1.0)
+    place.put(path, contents, None)
     before, data = state_of(path), path.read_bytes()
     with pytest.raises(RunError, match=r"e\.h5: File exists; it was not changed, .* choose another"):
-        put(path, contents, None)
+        place.put(path, contents, None)
     assert path.read_bytes() == data
-    put(path, contents, before)
+    place.put(path, contents, before)
     assert state_of(path) != before
     with pytest.raises(RunError, match="another file now has this name; it was not changed"):
-        put(path, contents, before)
+        place.put(path, contents, before)
     assert list(there.iterdir()) == []
     there.rmdir()
     with pytest.raises(RunError, match=r"cannot be written \(No such file or directory\); is the disk full"):
-        put(path, contents, None)
+        place.put(path, contents, None)
 
 
 def test_progress_of_a_run_goes_on_from_what_it_holds(scene, tmp_path):

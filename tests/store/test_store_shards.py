@@ -10,8 +10,8 @@ import pytest
 
 from mcgw.errors import StoreError
 from mcgw.formats.files import write_whole
-from mcgw.store.disk import SteadyFile
-from mcgw.store.shards import commit_shard, open_shard
+from mcgw.store.h5_writing import SteadyFile
+from mcgw.store.run_folder import commit_shard, open_shard
 from mcgw.store.spans import Span
 
 RUN, SPAN = "a" * 64, Span(40, 5)

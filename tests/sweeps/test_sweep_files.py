@@ -17,9 +17,9 @@ from mcgw.cli import main
 from mcgw.commands.sweep import _axis
 from mcgw.jobs.executors import Jobs
 from mcgw.jobs.job import commit_block
-from mcgw.store.disk import parts_of
 from mcgw.store.ensembles import read_attributes
-from mcgw.store.run_folder import RunFolder
+from mcgw.store.lock import parts_of
+from mcgw.store.run_folder import RECORD, RunFolder
 from mcgw.sweeps import pooling
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
@@ -312,11 +312,11 @@ def test_in_shares_in_any_order(tmp_path, expected, order):
 def test_a_worker_draws_for_nobody_who_asked_something_else(tmp_path):
     path = tmp_path / "a.h5"
     mcgw.sweep(SCENE, OVER, path=path, shard="2/2")
-    asked = parts_of(path) / "run.toml"
-    good, run = asked.read_text(), RunFolder.open(parts_of(path))
-    for text in (good.replace("seed = 7\n", "seed = 8\n"), "identity = 3"):
-        asked.write_text(text)
-        with pytest.raises(mcgw.StoreError, match=r"run\.toml: damaged"):
+    asked = parts_of(path) / RECORD
+    good, run = asked.read_bytes(), RunFolder.open(parts_of(path))
+    for data in (good.replace(b"seed = 7\n", b"seed = 8\n"), good[:-9]):
+        asked.write_bytes(data)
+        with pytest.raises(mcgw.StoreError, match=r"run\.h5: .*damaged"):
             commit_block(str(parts_of(path)), 0, 50)
     replace(run, identity="0" * 64)._write(expected="anything")
     with pytest.raises(mcgw.RunError, match="this worker cannot draw for that run"):

@@ -1,0 +1,235 @@
+"""The one reader of what `mcgw.store.h5_writing` writes, and what files must be before they are read.
+
+They are plain tables of 64-bit numbers at the root or in one group, and none is a link. That they are all
+inside the file, and declare no more than it holds, is looked at by `mcgw.formats.gate`. A checksum is no
+signature, so that is looked at whoever wrote the file.
+"""
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from mcgw.ensemble.results import Tables
+from mcgw.errors import StoreError
+from mcgw.formats.gate import open_h5
+from mcgw.formats.named_files import open_regular
+from mcgw.store.h5_writing import FILETYPE, FORMAT, GROUP, MOST_TEXT, checksum, sha_of
+
+LARGE = 2**30  # bytes of a file, from which on its numbers are compared with their checksums on request alone
+_ATTRIBUTES = (  # that this program writes; another one may add its own, which are not looked at
+    *("filetype", "format", "title", "scene", "axes", "seed", "sampler", "digest", "checksum", "date"),
+    *("versions", "commit", "cpu", "accuracy_spent", "run", "draws", "wall_seconds", "first", "n"),
+)
+_MOST_TABLES, _MOST_NUMBERS = 128, 64
+_DOCUMENTS = ("title", "scene", "axes")  # other texts are shown and exported as they stand
+_ABOUT = ("units", "long_name", "sha256")  # attributes of a table that this program writes
+_PIECE = 2**23  # bytes of numbers processed at a time
+
+
+@dataclass(frozen=True)
+class Head:
+    """What a file says of itself.
+
+    Parameters
+    ----------
+    attributes : dict of str to Any
+        Root attributes.
+    shapes : dict of str to tuple of int
+        Of its tables.
+    """
+
+    attributes: dict[str, Any]
+    shapes: dict[str, tuple[int, ...]] = field(default_factory=dict)
+
+
+def look(path: Path, filetype: str = FILETYPE, *, numbers: bool = True) -> Head:
+    """Return what a file says of itself if it is as it was written; `numbers`: and all of its numbers are.
+
+    Raises
+    ------
+    StoreError
+        If it is not there, or no plain file of numbers, of another format, or damaged.
+    """
+    with _in_words(path), open_h5(path) as file:
+        names, attributes = table_names(file), attributes_in(file)
+        _check_format(attributes, filetype)
+        if checksum_of(file) != attributes.get("checksum"):
+            raise StoreError("damaged (checksum mismatch of its scene or attributes)")
+        for name in names if numbers else ():
+            _compare(file[name], (piece[name] for piece in pieces_of(file, [name])))
+        return Head(attributes, {name: file[name].shape for name in names})
+
+
+def examine(path: Path) -> Head:
+    """As `look`, once until the file changes; the numbers of one of a gibibyte or more are not compared.
+
+    Raises
+    ------
+    StoreError
+        As of `look`.
+    """
+    with open(open_regular(path), "rb") as file:
+        head, size = file.read(512), file.seek(0, 2)
+    if path.suffix == ".toml" and b"\0" not in head:
+        raise StoreError(f"{path}: is not a file of results; make one from a scene with mcgw run {path}")
+    status = path.stat()
+    return _examined(path.resolve(), path, (status.st_ino, size, status.st_mtime_ns))
+
+
+@lru_cache(maxsize=32)
+def _examined(path: Path, shown: Path, state: tuple[int, int, int]) -> Head:  # noqa: ARG001
+    return look(shown, numbers=state[1] < LARGE)
+
+
+def read_tables(path: Path, wanted: Iterable[str] | None = None) -> Tables:
+    """Tables of a file, all or some, each compared with its checksum.
+
+    Raises
+    ------
+    StoreError
+        If the file is gone or damaged.
+    """
+    with _in_words(path), open_h5(path) as file:
+        return {name: _whole(file[name]) for name in (table_names(file) if wanted is None else wanted)}
+
+
+def drawn_tables(path: Path) -> Tables:
+    """Of a file that holds no surfaces, all that its statistics follow from, read and compared."""
+    with _in_words(path), open_h5(path) as file:
+        return {name: _whole(table) for name, table in file[GROUP].items()}
+
+
+def _whole(table: h5py.Dataset) -> NDArray[Any]:
+    """All numbers of a table, compared with its checksum."""
+    values = np.asarray(table[()])
+    _compare(table, [values])
+    return values
+
+
+def _compare(table: h5py.Dataset, pieces: Iterable[NDArray[Any]]) -> None:
+    sha = sha_of(table)
+    for values in pieces:
+        sha.update(np.ascontiguousarray(values, values.dtype.newbyteorder("<")).reshape(-1))
+    if sha.hexdigest() != _text(table, "sha256"):
+        raise StoreError(f"damaged (checksum mismatch of {table.name.removeprefix('/')})")
+
+
+def checksum_of(file: h5py.File) -> str:
+    """Checksum of the head of an open, plain file; it does not depend on how HDF5 laid it out."""
+    heads = {}
+    for name in table_names(file):
+        data = file[name]
+        heads[name] = [data.dtype.kind, data.shape, *(_text(data, key) for key in _ABOUT)]
+    attributes = attributes_in(file)
+    attributes.pop("checksum", None)
+    return checksum(attributes, heads)
+
+
+def _text(table: h5py.Dataset, key: str) -> str:
+    value = table.attrs.get(key, "")
+    return value.decode() if isinstance(value, bytes) else str(value)
+
+
+def pieces_of(file: h5py.File, names: Sequence[str]) -> Iterator[Tables]:
+    """All rows of tables of an open file that have as many, some at a time."""
+    width = sum(math.prod(file[name].shape[1:]) for name in names)
+    step = max(_PIECE // (8 * width or 8), 1)
+    for start in range(0, len(file[names[0]]), step):
+        yield {name: file[name][start : start + step] for name in names}
+
+
+@contextmanager
+def _in_words(path: Path) -> Iterator[None]:
+    """Errors of HDF5 as one of the store, that names the file."""
+    try:
+        yield
+    except StoreError as error:
+        text = str(error)
+        raise StoreError(text if text.startswith(str(path)) else f"{path}: {text}") from None
+    except MemoryError:
+        raise StoreError(f"{path}: cannot be looked at: too little memory") from None
+    except Exception:  # HDF5 reports damage as any of a dozen exceptions
+        raise StoreError(f"{path}: not an HDF5 file, or a damaged one") from None
+
+
+def _check_format(attributes: dict[str, Any], filetype: str) -> None:
+    """Refuse files that are no results, or of a format that this version does not read."""
+    found, known = str(attributes.get("filetype", "")), attributes.get("format")
+    if found.startswith("mcgw-") and (found != filetype or known != FORMAT):
+        raise StoreError(
+            f"{found} {known} is not read by this version, which reads {filetype} {FORMAT}; "
+            "run the scene in its attribute scene again"
+        )
+    if found != filetype:
+        raise StoreError(f"holds no results of mcgw (its filetype is not {filetype!r})")
+
+
+def table_names(file: h5py.File) -> list[str]:
+    """Names of the tables of an open file, in order, each plain.
+
+    Raises
+    ------
+    StoreError
+        If there are too many, a link that is not hard, a group but `GROUP`, or a type but float64 or int64.
+    """
+    names = [name for name in _hard(file, "") if name != GROUP]
+    if GROUP in file:
+        if not isinstance(file[GROUP], h5py.Group):
+            raise StoreError(f"{GROUP}: not a group")
+        names += _hard(file[GROUP], f"{GROUP}/")
+    for name in names:
+        item = file[name]
+        if not isinstance(item, h5py.Dataset):
+            raise StoreError(f"{name}: not a dataset")
+        if item.dtype.kind not in "fi" or item.dtype.itemsize != 8:
+            raise StoreError(f"{name}: type {item.dtype}, not 64-bit numbers")
+        if not 1 <= len(item.shape or ()) <= 4:
+            raise StoreError(f"{name}: not a table of one to four axes")
+    return sorted(names)
+
+
+def _hard(group: h5py.Group, prefix: str) -> list[str]:
+    """Members of a group, all of them in this file."""
+    if len(group) > _MOST_TABLES:
+        raise StoreError(f"{len(group)} datasets; at most {_MOST_TABLES} are allowed")
+    for name in group:
+        if not isinstance(group.get(name, getlink=True), h5py.HardLink):
+            raise StoreError(f"{prefix}{name}: a link to another place")
+    return [prefix + name for name in group]
+
+
+def attributes_in(file: h5py.File) -> dict[str, Any]:
+    """Root attributes of an open file that this program writes: texts, numbers, lists of numbers.
+
+    Raises
+    ------
+    StoreError
+        If one is too large, something else, or a text of several lines.
+    """
+    return {name: _plain_value(name, file.attrs) for name in _ATTRIBUTES if name in file.attrs}
+
+
+def _plain_value(name: str, attributes: Any) -> Any:
+    identity = attributes.get_id(name)
+    if identity.get_storage_size() > MOST_TEXT or math.prod(identity.shape or (1,)) > _MOST_NUMBERS:
+        raise StoreError(f"attribute {name}: too large")
+    value = attributes[name]
+    if isinstance(value, bytes):
+        value = value.decode()
+    if isinstance(value, str):
+        if len(value) > MOST_TEXT:
+            raise StoreError(f"attribute {name}: too large")
+        if name not in _DOCUMENTS and not value.isprintable():
+            raise StoreError(f"attribute {name}: not one line of text")
+        return value
+    if isinstance(value, np.ndarray | np.generic) and value.dtype.kind in "iufb":
+        return value.item() if value.size == 1 else value.tolist()  # netCDF has no single numbers
+    raise StoreError(f"attribute {name}: neither text nor number")
