@@ -4,41 +4,20 @@ import argparse
 import errno
 import gc
 import os
-import re
 import signal
 import sys
 import threading
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from importlib import import_module
 from typing import Any, NoReturn
 
-from mcgw.commands.voice import QUIET, add_amount_options, speaking
+from mcgw.commands.declared import COMMANDS, execute, parser_of
+from mcgw.commands.voice import QUIET, speaking
 from mcgw.errors import RunError, in_one_line
 from mcgw.machine.terminal import Plain, one_line, plain_output
 
-COMMANDS = (
-    "init",
-    "run",
-    "sweep",
-    "show",
-    "compare",
-    "converge",
-    "tradeoff",
-    "merge",
-    "solve",
-    "export",
-    "figures",
-    "report",
-    "surface",
-    "fit",
-    "elastic",
-    "warm",
-    "completion",
-)
 _PRINTED = ("", "show", "solve", "elastic", "completion")  # their product is what they print
-_NEGATIVE = re.compile(r"-\.?\d")  # a value that looks like an option, such as -1MPa
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -74,14 +53,17 @@ def _printed(output: Plain, asked: argparse.Namespace) -> int:
 
 def _main(argv: Sequence[str] | None, asked: argparse.Namespace) -> int:
     try:
-        args = _parser().parse_args(argv, asked)
+        words = sys.argv[1:] if argv is None else argv
+        args = parser_of(words[:1] if words[:1] and words[0] in COMMANDS else COMMANDS).parse_args(
+            words, asked
+        )
         with warnings.catch_warnings(), _heeding_sigterm():
             warnings.showwarning = _show_warning  # type: ignore[assignment]
             warnings.filterwarnings("ignore", module=r"mcgw\.scene\.plausible")  # shown as notes
             if args.amount == QUIET:
                 warnings.simplefilter("ignore")
             with speaking(args.amount):
-                return int(args.execute(args))
+                return execute(args.function, args)
     except KeyboardInterrupt as stop:
         terminated = isinstance(stop, _Terminated)
         print(f"mcgw: {'terminated' if terminated else 'interrupted'}", file=sys.stderr)
@@ -125,47 +107,6 @@ def _heeding_sigterm() -> Iterator[None]:
 def _show_warning(message: Warning | str, *_: Any) -> None:
     """Show a warning in one line, without its place in the code."""
     print(f"mcgw: warning: {one_line(str(message))}", file=sys.stderr)
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(
-        prog="mcgw",
-        description="Monte-Carlo simulation of rough contacts with graded elasticity. SI units; "
-        "separations and heights in units of sigma.",
-    )
-    parser.add_argument("--version", action=_Version, nargs=0, help="show program's version number and exit")
-    commands = parser.add_subparsers(metavar="COMMAND", required=True)
-    for name in COMMANDS:
-        command = import_module(f"mcgw.commands.{name}")
-        sub = commands.add_parser(
-            name, help=command.HELP, description=f"{command.HELP}.", epilog=f"example: {command.EXAMPLE}"
-        )
-        sub._negative_number_matcher = _NEGATIVE
-        command.arguments(sub)
-        add_amount_options(sub)
-        sub.set_defaults(execute=command.execute, parser=parser, command=name)
-    return parser
-
-
-class _Parser(argparse.ArgumentParser):
-    """Errors are one line, without the usage, which has a dozen."""
-
-    def error(self, message: str) -> NoReturn:
-        self.exit(2, f"{self.prog}: error: {message}; see {self.prog} --help\n")
-
-
-class _Version(argparse.Action):
-    """The action "version", looked up only when needed."""
-
-    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
-        from importlib.metadata import PackageNotFoundError, version
-
-        try:
-            found = version("mcgw")
-        except PackageNotFoundError:
-            found = "unknown"
-        print(f"mcgw {found}")
-        parser.exit()
 
 
 def process() -> NoReturn:

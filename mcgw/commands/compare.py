@@ -1,53 +1,53 @@
 """``mcgw compare``: Monte Carlo against theory."""
 
-import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
 
-HELP = "compare an ensemble or a sweep with theory: verdict and figure (exit code 1 if they disagree)"
-EXAMPLE = "mcgw compare demo.h5 -o demo.png"
+from mcgw.commands.kinds import Out, Results, Table
+from mcgw.commands.outputs import source
+from mcgw.commands.voice import ALL, news, says
 
-
-def arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of this command."""
-    parser.add_argument("file", type=Path, metavar="FILE", help="file of an ensemble or of a sweep (HDF5)")
-    parser.add_argument(
-        "-o", "--output", type=Path, metavar="PNG", help="figure (.png, .pdf, .svg, ...); default: FILE.png"
-    )
-    parser.add_argument(
-        "--csv", type=Path, metavar="FILE", help="also write the table, of at most 100 separations"
-    )
-    parser.add_argument(
-        "--table", action="store_true", help="print all means beside theory, not only the worst three"
-    )
-    parser.add_argument(
-        "--laws",
-        action="store_true",
-        help="also test the values of single surfaces against their exact distribution",
-    )
+if TYPE_CHECKING:
+    from mcgw.ensemble.ensemble import Ensemble
 
 
-def execute(args: argparse.Namespace) -> int:
-    """Print the verdict and the means farthest from theory, save the figure."""
-    from mcgw.commands.outputs import Output, check_outputs, figure_format, table_output, write_table
-    from mcgw.commands.voice import ALL, news, says, tell_cautions
-    from mcgw.machine.progress import bar
-    from mcgw.statistics.comparison import compare
-    from mcgw.sweeps import open_results
+def compare(
+    file: Annotated["Ensemble", Results()],
+    *,
+    output: Annotated[Path, Out(None, "{}.png")],
+    csv: Table = None,
+    table: bool = False,
+    laws: bool = False,
+) -> bool:
+    """Compare an ensemble or a sweep with theory: verdict and figure (exit code 1 if they disagree).
 
-    path = args.output or args.file.with_suffix(".png")
-    result = open_results(args.file)
-    check_outputs([Output(path, figure_format()), *table_output(args.csv)], inputs=[args.file])
+    Parameters
+    ----------
+    output : PNG
+        figure (.png, .pdf, .svg, ...)
+    csv : FILE
+        also write the table, of at most 100 separations
+    table
+        print all means beside theory, not only the worst three
+    laws
+        also test the values of single surfaces against their exact distribution
+
+    Examples
+    --------
+    mcgw compare demo.h5 -o demo.png
+    """
     from mcgw.figures.against_theory import save_comparison
+    from mcgw.machine.progress import bar
     from mcgw.reports.text import comparison_summary
+    from mcgw.statistics.comparison import compare as compared
 
     with bar("points", terminal=True) as show:
-        comparison = compare(result, laws=args.laws, progress=show)
-    save_comparison(comparison, path)
-    whole = args.table or says(ALL)
-    text, table, verdict = comparison_summary(comparison, whole=whole)
-    news(*verdict, f"{path}: figure")
-    write_table(args.csv, table)
-    news(f"next: mcgw report {args.file}")
-    tell_cautions(result, f"mcgw show {args.file}")
-    news(text)
-    return 0 if comparison.verdict.agrees else 1
+        found = compared(file, laws=laws, progress=show)
+    save_comparison(found, output)
+    text, whole, verdict = comparison_summary(found, whole=table or says(ALL))
+    news(*verdict, f"{output}: figure")
+    if csv:
+        whole().write(csv)
+        news(f"{csv}: the table")
+    news(f"next: mcgw report {source()}", text)
+    return found.verdict.agrees

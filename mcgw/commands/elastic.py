@@ -1,82 +1,70 @@
 """``mcgw elastic``: the mean of elastic surfaces."""
 
-import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
-from mcgw.commands.options import add_set_option, changes_of
+from mcgw.commands.kinds import OneOf, Out, Pixel, SceneFile, Unit
+from mcgw.commands.outputs import JSONL
+from mcgw.commands.voice import details, news
 
 if TYPE_CHECKING:
-    from mcgw.maps.topography import Topography
     from mcgw.scene.scene import Scene
 
-HELP = "find mean area, stiffness, conductance and gap of elastic surfaces from few boundary-element solves"
-EXAMPLE = "mcgw elastic spectral.toml --pressure 1MPa --rel-err 0.05 -o solves.jsonl"
+_HELD = OneOf(required=True)
 
 
-def arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of this command."""
-    parser.add_argument(
-        "source", type=Path, metavar="SCENE|MAP",
-        help="a scene with m0, m2, m4 or from a fit (.toml); or a height map, for its spectrum",
-    )  # fmt: skip
-    held = parser.add_mutually_exclusive_group(required=True)
-    held.add_argument("--pressure", metavar="P", help="load per nominal area: kPa, MPa, GPa")
-    held.add_argument("--separation", metavar="D", help="mean gap of the deformed surface: nm, um")
-    parser.add_argument("--E-star", metavar="E", help="composite modulus of a map: MPa, GPa")
-    parser.add_argument("--pixel", metavar="LENGTH", help="size of a pixel, if the file does not give it")
-    parser.add_argument(
-        "--unit", metavar="UNIT", help="unit of the heights, such as um, if the file does not give it"
-    )
-    parser.add_argument(
-        "--rel-err", type=float, default=0.02, metavar="X",
-        help="relative half width of the 95 %% interval, for the worst quantity; default: 0.02",
-    )  # fmt: skip
-    parser.add_argument(
-        "--solves",
-        type=int,
-        metavar="N",
-        help="instead of --rel-err: maximum number of boundary-element solves",
-    )
-    parser.add_argument("--seed", type=int, default=1, metavar="K", help="seed of the maps; default: 1")
-    parser.add_argument(
-        "-o",
-        "--output",
-        type=Path,
-        metavar="FILE",
-        help="write each solve as a line (.jsonl), to resume from; default: no file",
-    )
-    add_set_option(parser)
+def elastic(
+    source: Annotated["Scene | Path", SceneFile(others=True, cautious="")],
+    *,
+    pressure: Annotated[str | None, _HELD] = None,
+    separation: Annotated[str | None, _HELD] = None,
+    E_star: str | None = None,
+    pixel: Pixel = None,
+    unit: Unit = None,
+    rel_err: float = 0.02,
+    solves: int | None = None,
+    seed: int = 1,
+    output: Annotated[Path | None, Out(JSONL)] = None,
+) -> None:
+    """Find mean area, stiffness, conductance and gap of elastic surfaces from few boundary-element solves.
 
+    Parameters
+    ----------
+    source : SCENE|MAP
+        a scene with m0, m2, m4 or from a fit (.toml); or a height map, for its spectrum
+    pressure : P
+        load per nominal area: kPa, MPa, GPa
+    separation : D
+        mean gap of the deformed surface: nm, um
+    E_star : E
+        composite modulus of a map: MPa, GPa
+    rel_err : X
+        relative half width of the 95 % interval, for the worst quantity
+    solves : N
+        instead of --rel-err: maximum number of boundary-element solves
+    seed : K
+        seed of the maps
+    output : FILE
+        write each solve as a line (.jsonl), to resume from; default: no file
 
-def execute(args: argparse.Namespace) -> int:
-    """Print the means, their intervals, and the solves that the levels saved."""
-    from mcgw.commands.outputs import JSONL, Output, check_outputs
-    from mcgw.commands.voice import details, news
-    from mcgw.elasticity.elastic import elastic
-    from mcgw.formats.units import parse
+    Examples
+    --------
+    mcgw elastic spectral.toml --pressure 1MPa --rel-err 0.05 -o solves.jsonl
+    """
+    from mcgw.elasticity.elastic import elastic as solved
     from mcgw.machine.progress import bar
     from mcgw.maps.map_files import read_map
-    from mcgw.scene.scene_file import load_scene
 
-    source: Scene | Topography
-    if args.source.suffix == ".toml":
-        for option, given in (("--pixel", args.pixel), ("--unit", args.unit)):
-            if given is not None:
-                raise ValueError(
-                    f"{option} {given}: is for a map, but {args.source} is a scene; leave it out"
-                )
-        source = load_scene(args.source, changes=changes_of(args))
-    else:
-        pixel = None if args.pixel is None else parse(args.pixel, "m", "--pixel")
-        source = read_map(args.source, pixel=None if pixel is None else (pixel, pixel), unit=args.unit)
-    check_outputs([Output(args.output, JSONL)] if args.output else [], inputs=[args.source])
+    if isinstance(source, Path):
+        surface = read_map(source, pixel=None if pixel is None else (pixel, pixel), unit=unit)
+    elif pixel is not None or unit is not None:
+        raise ValueError(f"--{'unit' if pixel is None else 'pixel'}: is for a map, not a scene; leave it out")
     with bar("s", terminal=True) as tell:
-        found = elastic(
-            source, pressure=args.pressure, separation=args.separation, E_star=args.E_star,
-            rel_err=args.rel_err, solves=args.solves, seed=args.seed, path=args.output, progress=tell,
+        found = solved(
+            surface if isinstance(source, Path) else source, pressure=pressure, separation=separation,
+            E_star=E_star, rel_err=rel_err, solves=solves, seed=seed, path=output, progress=tell,
         )  # fmt: skip
     print(found)
     details(found.levels)
-    news(*([f"{args.output}: solves; the same command resumes from them"] if args.output else []))
-    return 0
+    if output:
+        news(f"{output}: solves; the same command resumes from them")

@@ -1,17 +1,16 @@
 """Output files of a command, checked before anything is computed, and tables."""
 
 import os
-from collections.abc import Callable, Iterable
-from contextlib import suppress
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path
 
-from mcgw.commands.voice import news, notes
+from mcgw.commands.voice import notes
 from mcgw.errors import StoreError
-from mcgw.formats.files import check_output, refuse_read_only
-from mcgw.formats.table import Table
-from mcgw.store.lock import LOCK_FILES, parts_of
 
+_inputs: ContextVar[tuple[Path, ...]] = ContextVar("_inputs", default=())
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 
@@ -65,11 +64,25 @@ class Output:
         return StoreError(f"{self.option} {self.path}: {why}; choose another {self.option}")
 
 
-def check_outputs(outputs: Iterable[Output], *, inputs: Iterable[Path] = ()) -> None:
+@contextmanager
+def reading(inputs: Iterable[Path]) -> Iterator[None]:
+    """Let no output replace these files meanwhile."""
+    before = _inputs.set(tuple(inputs))
+    try:
+        yield
+    finally:
+        _inputs.reset(before)
+
+
+def source() -> Path:
+    """The file that the command reads first."""
+    return _inputs.get()[0]
+
+
+def check_outputs(outputs: Iterable[Output]) -> None:
     """Refuse outputs that would destroy something or cannot be written; make missing folders and say so.
 
-    `outputs` are all files that the command writes, `inputs` all that it reads; each may have a run folder,
-    which counts with it.
+    What the command is `reading` may have a run folder, which counts with it.
 
     Raises
     ------
@@ -77,7 +90,9 @@ def check_outputs(outputs: Iterable[Output], *, inputs: Iterable[Path] = ()) -> 
         If an output is an input or another output under any name, replaces an ensemble, has an ending
         that does not fit, or if there is no place for it.
     """
-    outputs, inputs = list(outputs), list(inputs)
+    from mcgw.formats.files import check_output, refuse_read_only
+
+    outputs, inputs = list(outputs), list(_inputs.get())
     for i, output in enumerate(outputs):
         for path in inputs:
             if same_file(output.path, path):
@@ -110,6 +125,8 @@ def same_file(one: Path, other: Path) -> bool:
 
 def _refuse_run(output: Output, inputs: list[Path]) -> None:
     """Refuse outputs inside or in place of a run folder."""
+    from mcgw.store.lock import LOCK_FILES, parts_of
+
     place = Path(os.path.realpath(output.path))
     for path in inputs:
         if place.is_relative_to(os.path.realpath(parts_of(path))):
@@ -121,6 +138,8 @@ def _refuse_run(output: Output, inputs: list[Path]) -> None:
 
 def _refuse_ensemble(output: Output) -> None:
     """Refuse to replace an ensemble unless the command makes ensembles."""
+    from mcgw.store.lock import parts_of
+
     if output.grows:
         return
     if parts_of(output.path).exists():
@@ -143,15 +162,3 @@ def _holds_results(path: Path) -> bool:
         said = file.attrs.get("filetype", "")
         return (said.decode() if isinstance(said, bytes) else str(said)).startswith("mcgw-results")
     return True
-
-
-def table_output(path: Path | None) -> list[Output]:
-    """The output of --csv, if given."""
-    return [Output(path, CSV, "--csv")] if path else []
-
-
-def write_table(path: Path | None, table: Callable[[], Table]) -> None:
-    """Write the table if requested, and print its path."""
-    if path:
-        table().write(path)
-        news(f"{path}: the table")

@@ -1,80 +1,82 @@
 """``mcgw run``: draw an ensemble into a file."""
 
-import argparse
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
-from mcgw.commands.options import add_drawing_options, add_set_option, changes_of, drawing, tell_shard
+from mcgw.commands.kinds import Out, SceneFile
+from mcgw.commands.options import Dask, Jobs, Share, Threads, drawing, share_done
+from mcgw.commands.outputs import HDF5
+from mcgw.commands.voice import details, look_next, news, notes
 
 if TYPE_CHECKING:
+    from mcgw.ensemble.ensemble import Ensemble
     from mcgw.scene.scene import Scene
 
-HELP = "simulate a scene: draw its surfaces and store load, area, ... in HDF5; resumes where it stopped"
-EXAMPLE = "mcgw run runs/demo.toml -o demo.h5"
 _LONG = 60.0  # seconds; longer runs state their duration beforehand
 
 
-def arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of this command."""
-    parser.description = (
-        f"{parser.description or ''} The first run on a machine compiles the loops that it needs, which "
-        "takes about 12 s; mcgw warm compiles all of them in advance."
-    )
-    parser.add_argument("scene", type=Path, metavar="SCENE", help="TOML file, SI units")
-    parser.add_argument(
-        "-o", "--output", type=Path, metavar="FILE.h5", help="default: out/NAME.h5 beside the scene"
-    )
-    add_drawing_options(parser)
-    add_set_option(parser)
+def run(
+    scene: Annotated["Scene", SceneFile(cautious="full")],
+    *,
+    output: Annotated[Path, Out(HDF5, "out/{}.h5", grows=True)],
+    threads: Threads = None,
+    jobs: Jobs = None,
+    dask: Dask = None,
+    shard: Share = None,
+) -> None:
+    """Simulate a scene: draw its surfaces and store load, area, ... in HDF5; resumes where it stopped.
 
+    The first run on a machine compiles the loops that it needs, which takes about 12 s; mcgw warm compiles
+    all of them in advance.
 
-def execute(args: argparse.Namespace) -> int:
-    """Run and print the path of the file."""
-    with warnings.catch_warnings():  # a limit that is too low is reported as a note, or by the forecast
-        warnings.filterwarnings("ignore", ".* max_surfaces allows")
-        return _execute(args)
+    Parameters
+    ----------
+    output : FILE.h5
+        the ensemble
 
+    Examples
+    --------
+    mcgw run runs/demo.toml -o demo.h5
+    """
+    from mcgw.ensemble.forecast import after, before, forecast
+    from mcgw.jobs.running import run as drawn
 
-def _execute(args: argparse.Namespace) -> int:
-    from mcgw.commands.outputs import HDF5, Output, check_outputs
-    from mcgw.commands.voice import details, look_next, news, notes, tell_cautions
-    from mcgw.ensemble.forecast import forecast
-    from mcgw.jobs.driver import part_of
-    from mcgw.jobs.running import run
-    from mcgw.scene.scene_file import files_of, load_scene
-    from mcgw.store.place import recorded_seed
-
-    path = args.output or args.scene.parent / "out" / f"{args.scene.stem}.h5"
-    if args.shard is not None:
-        part_of(args.shard)  # checked before anything is read
-    scene = load_scene(args.scene, changes=changes_of(args), seed=lambda: recorded_seed(path))
-    check_outputs([Output(path, HDF5, grows=True)], inputs=files_of(args.scene))
     expected = forecast(scene)
-    short = [expected.shortfall] if args.shard and expected.shortfall else []
     ruled = scene.rel_err is not None or scene.max_seconds is not None
-    with drawing(args) as how:
-        notes(*_of_threads(args.threads), *_of_time(scene), *short)
-        if ruled and not args.shard:
+    with warnings.catch_warnings(), drawing(threads, jobs, dask, shard) as how:
+        warnings.filterwarnings("ignore", ".* max_surfaces allows")  # said as a note, or by the forecast
+        notes(*_of_threads(threads), *([] if ruled else _of_time(scene)))
+        if shard is not None and expected.shortfall:
+            notes(expected.shortfall)
+        elif ruled and shard is None:
             from mcgw.ensemble.drawing import seconds_per_surface
-            from mcgw.ensemble.forecast import before
             from mcgw.sampling.samplers import sampler_of
 
             news(f"forecast: {before(expected, seconds_per_surface(scene, sampler_of(scene)))}")
-        ensemble = run(scene, path, **how)
-    if args.shard:
-        return tell_shard(args.shard, path, ensemble)
-    news(f"{path}: {ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, seed {scene.seed}")
-    if ruled:
-        from mcgw.ensemble.forecast import after
-
-        news(*after(ensemble, scene))
+        ensemble = drawn(scene, output, **how)
+    if shard is not None:
+        return news(share_done(shard, output, ensemble))
+    made = f"{ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, seed {scene.seed}"
+    news(f"{output}: {made}{_result(ensemble)}", *(after(ensemble, scene) if ruled else ()))
     known = scene.validity()
     news(known.verdict)
     details(*filter(None, [known.details]))
-    look_next(path)
-    tell_cautions(scene)
-    return 0
+    return look_next(output)
+
+
+def _result(ensemble: "Ensemble") -> str:
+    """Load and area at the smallest separation."""
+    from mcgw.formats.table import with_error
+
+    scene = ensemble.scene
+    k = scene.separations.index(scene.lowest)
+    found = [
+        f"{name} {with_error(ensemble.mean(name)[k], ensemble.stderr(name)[k])} {scene.quantity(name).unit}"
+        for name in ("load", "area")
+        if name in scene.quantities
+    ]
+    return f"; {', '.join(found)} at d/sigma = {scene.lowest:g}" if found else ""
 
 
 def _of_threads(threads: int | None) -> list[str]:
@@ -90,8 +92,6 @@ def _of_time(scene: "Scene") -> list[str]:
     from mcgw.ensemble.drawing import in_words, seconds_for
     from mcgw.sampling.samplers import sampler_of
 
-    if scene.rel_err is not None or scene.max_seconds is not None:
-        return []  # these print a forecast or have a known end
     sampler, m = sampler_of(scene), scene.n_surfaces
     seconds = seconds_for(scene, sampler, m, at_least=_LONG / 4)
     if seconds < _LONG:

@@ -1,74 +1,66 @@
 """``mcgw solve``: answers at a given load."""
 
-import argparse
-from pathlib import Path
+from typing import Annotated
 
-from mcgw.commands.options import RANGE, add_set_option, changes_of, ranged
+from mcgw.commands.kinds import Cautioned, OneOf, Quantity, Table, Values
+from mcgw.commands.voice import ALL, news, says, tell_cautions
 
-HELP = "find separation, area, stiffness, contacts and conductance at given loads"
-EXAMPLE = "mcgw solve runs/demo.toml --pressure 100kPa 1MPa --csv solved.csv"
-
-# Arguments of `mcgw.solve`: a letter and the help of each.
-_GIVEN = {
-    "pressure": ("P", "load per nominal area: Pa, kPa, MPa, GPa"),
-    "load": ("F", "mN, N, kN, MN"),
-    "area": ("A", "real area: um^2, mm^2, cm^2"),
-    "area_fraction": ("A", "real over nominal area: 0.01 or 1%%"),
-    "nominal_separation": ("D", "separation of the bodies with an interaction, over sigma"),
-}
+_ONE = OneOf(required=True)
 
 
-def arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of this command."""
-    parser.add_argument("scene", type=Path, metavar="SCENE", help="TOML file, SI units")
-    given = parser.add_mutually_exclusive_group(required=True)
-    for name, (letter, words) in _GIVEN.items():
-        how = "at a constant ratio" if name in ("pressure", "load") else "at equal steps"
-        words = f"{words}; or {RANGE}, {how}"
-        given.add_argument(f"--{name.replace('_', '-')}", nargs="+", metavar=letter, help=words)
-    parser.add_argument(
-        "--surfaces", type=int, metavar="M", help="number of surfaces to solve; default: that of the scene"
-    )
-    parser.add_argument(
-        "--scatter", metavar="S", help="also find the number of asperities for this scatter of specimens: 1%%"
-    )
-    parser.add_argument(
-        "--csv", type=Path, metavar="FILE", help="also write the table to this file; default: no file"
-    )
-    add_set_option(parser)
+def solve(
+    scene: Cautioned,
+    *,
+    pressure: Annotated[list[str] | None, Values("Pa"), _ONE] = None,
+    load: Annotated[list[str] | None, Values("N"), _ONE] = None,
+    area: Annotated[list[str] | None, Values("m^2"), _ONE] = None,
+    area_fraction: Annotated[list[str] | None, Values("1"), _ONE] = None,
+    nominal_separation: Annotated[list[str] | None, Values(""), _ONE] = None,
+    surfaces: int | None = None,
+    scatter: Annotated[float | None, Quantity("1")] = None,
+    csv: Table = None,
+) -> None:
+    """Find separation, area, stiffness, contacts and conductance at given loads.
 
+    Parameters
+    ----------
+    pressure : P
+        load per nominal area: Pa, kPa, MPa, GPa
+    load : F
+        mN, N, kN, MN
+    area : A
+        real area: um^2, mm^2, cm^2
+    area_fraction : A
+        real over nominal area: 0.01 or 1%
+    nominal_separation : D
+        separation of the bodies with an interaction, over sigma
+    surfaces : M
+        number of surfaces to solve; default: that of the scene
+    scatter : S
+        also find the number of asperities for this scatter of specimens: 1%
 
-def execute(args: argparse.Namespace) -> int:
-    """Print the answers as a table; with --csv, also write it."""
-    from dataclasses import replace
-
-    from mcgw.commands.outputs import check_outputs, table_output, write_table
-    from mcgw.commands.voice import ALL, says, tell_cautions
-    from mcgw.ensemble.solution import UNIT_OF, given_values, solutions
+    Examples
+    --------
+    mcgw solve runs/demo.toml --pressure 100kPa 1MPa --csv solved.csv
+    """
+    from mcgw.ensemble.solution import solve as solved
     from mcgw.ensemble.solved import at_solutions
-    from mcgw.formats.units import parse
     from mcgw.machine.progress import bar
     from mcgw.reports.solved_loads import solutions_table, solutions_text
-    from mcgw.scene.scene_file import files_of, load_scene
 
-    scene = load_scene(args.scene, changes=changes_of(args))
-    check_outputs(table_output(args.csv), inputs=files_of(args.scene))
-    if args.surfaces is not None:
-        scene = replace(scene, n_surfaces=args.surfaces)
-    key = next(name for name in _GIVEN if getattr(args, name))
-    option = f"--{key.replace('_', '-')}"
-    asked: list[str | float] = []
-    for text in getattr(args, key):
-        asked += ranged(text, option, UNIT_OF[key]) if ":" in text else [text]
-    given, values = given_values(
-        scene, key, asked, lambda x, unit: x if isinstance(x, float) else parse(x, unit, option)
-    )
-    scatter = None if args.scatter is None else parse(args.scatter, "1", "--scatter")
-    if scatter is not None and not 0 < scatter < 1:
-        raise ValueError(f"--scatter {args.scatter}: give a number between 0 and 1, such as 1%")
+    if scatter is not None and scatter >= 1:
+        raise ValueError(f"--scatter {scatter:g}: give a number between 0 and 1, such as 1%")
+    changes = {} if surfaces is None else {"n_surfaces": surfaces}
     with bar("surfaces", terminal=True) as tell:
-        found = solutions(scene, given, values, tell, draw=says(ALL))
+        found = solved(
+            scene, pressure=pressure, load=load, area=area, area_fraction=area_fraction,
+            nominal_separation=nominal_separation, progress=tell, **changes,
+        )  # fmt: skip
+        assert isinstance(found, list)
+        if says(ALL):  # it shows specimens
+            found[0].loaded.draw(tell)
     print(solutions_text(scene, found, scatter, full=says(ALL)))
     tell_cautions(at_solutions(scene, found), "add -v")
-    write_table(args.csv, lambda: solutions_table(scene, found))
-    return 0
+    if csv:
+        solutions_table(scene, found).write(csv)
+        news(f"{csv}: the table")

@@ -4,38 +4,28 @@ A run compiles what it needs by itself. Here small scenes need all there is: eve
 loops of their own, radii, interaction, statistics, maps.
 """
 
-import argparse
-import os
 from typing import Any
-
-HELP = "compile all loops now, once for this machine, so that later runs only load them"
-EXAMPLE = "mcgw warm"
-
-
-def arguments(parser: argparse.ArgumentParser) -> None:
-    """Add no argument."""
-
-
-def execute(_args: argparse.Namespace) -> int:
-    """Compile and print where the loops are stored."""
-    from mcgw.commands.voice import news
-    from mcgw.machine.compiling import loops_folder
-
-    warm()
-    folder = os.environ.get("NUMBA_CACHE_DIR") or loops_folder()
-    news(f"all loops are compiled; cached in {folder or 'no folder'}")
-    return 0
 
 
 def warm() -> None:
-    """Compile what is missing."""
+    """Compile all loops now, once for this machine, so that later runs only load them.
+
+    Examples
+    --------
+    mcgw warm
+    """
+    import os
+
+    from mcgw.commands.voice import news
     from mcgw.ensemble.simulation import simulate
+    from mcgw.machine.compiling import loops_folder
     from mcgw.machine.progress import steps
 
     _draws()
     for change in steps(_scenes(), "scenes"):
         simulate(_scene(**change))
     _maps()
+    news(f"all loops are compiled; cached in {os.environ.get('NUMBA_CACHE_DIR') or loops_folder()}")
 
 
 def _scene(**changes: Any) -> Any:

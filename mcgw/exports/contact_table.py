@@ -10,13 +10,11 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.exports.curves import KINDS
 from mcgw.scene.scene_file import scene_text
 
-FORMAT = "mcgw-contact-table-1"
 SCHEMA = Path(__file__).with_name("contact-table.schema.json")
-UNITS = {"gap": "m", "pressure": "Pa", "area": "1", "conductance": "per nominal area"}
 
 
 def contact_table(ensemble: Ensemble, digest: str) -> dict[str, Any]:
-    """Return what the file holds: means over the surfaces of an ensemble, where any of them carries a load.
+    """Return what the file holds, by ``contact-table.schema.json``: means where they carry a load, SI.
 
     Parameters
     ----------
@@ -25,19 +23,12 @@ def contact_table(ensemble: Ensemble, digest: str) -> dict[str, Any]:
     digest : str
         Of what it was made from, in words.
 
-    Returns
-    -------
-    dict
-        As ``contact-table.schema.json`` says: columns against rising gaps in SI units, the covariance of the
-        pressures over surfaces, provenance, and the error of the model.
-
     Raises
     ------
     ValueError
         If fewer than two separations carry a load, or the pressure does not fall as the gap rises.
     """
-    scene = ensemble.scene
-    order = np.argsort(ensemble.separations)
+    scene, order = ensemble.scene, np.argsort(ensemble.separations)
     order = order[ensemble.mean("pressure")[order] > 0]
     pressure = ensemble.mean("pressure")[order]
     if len(order) < 2:
@@ -46,21 +37,19 @@ def contact_table(ensemble: Ensemble, digest: str) -> dict[str, Any]:
         raise ValueError(
             "the mean pressure does not fall as the gap rises; give more surfaces, or fewer rows"
         )
-    columns = {
-        "gap": ensemble.separations[order] * scene.surface.sigma,
-        "pressure": pressure,
-        "area": ensemble.mean("area_fraction")[order],
-        "conductance": None,
-        "covariance": None,
-    }
+    conductance = covariance = None
     if "conductance_si" in scene.quantities:
-        columns["conductance"] = ensemble.mean(KINDS["conductance-gap"].answer(scene))[order]
+        conductance = ensemble.mean(KINDS["conductance-gap"].answer(scene))[order].tolist()
     if ensemble.n_surfaces > 1:
-        columns["covariance"] = ensemble.covariance("pressure")[np.ix_(order, order)]
+        covariance = ensemble.covariance("pressure")[np.ix_(order, order)].tolist()
     return {
-        "format": FORMAT,
-        "units": UNITS,
-        **{name: None if x is None else x.tolist() for name, x in columns.items()},
+        "format": "mcgw-contact-table-1",
+        "units": {"gap": "m", "pressure": "Pa", "area": "1", "conductance": "per nominal area"},
+        "gap": (ensemble.separations[order] * scene.surface.sigma).tolist(),
+        "pressure": pressure.tolist(),
+        "area": ensemble.mean("area_fraction")[order].tolist(),
+        "conductance": conductance,
+        "covariance": covariance,
         "provenance": {
             "program": f"mcgw {version('mcgw')}",
             "digest": digest,

@@ -13,37 +13,25 @@ from mcgw.formats.table import evenly
 from mcgw.scene.scene import Scene, drawn_by
 
 _MOST = 2000  # surfaces drawn again where an ensemble keeps statistics alone
-_FEWEST = 2  # points of a curve
 
 
 @dataclass(frozen=True)
 class Kind:
-    """A table.
+    """A table of "pressure", "conductance" or "stiffness" against "gap" or "pressure"."""
 
-    Parameters
-    ----------
-    name : str
-        Its name: quantity and argument.
-    quantity : {"pressure", "conductance", "stiffness", "contact", "conducting"}
-        The tabulated quantity; the last two stand for all columns of a contact table as JSON.
-    against : {"gap", "pressure"}
-        Its argument.
-    """
-
-    name: str
     quantity: str
     against: str
 
     @property
-    def needs(self) -> tuple[str, ...]:
-        """Quantities of an ensemble that the table needs."""
-        known = {"pressure": (), "contact": ("area",), "conducting": ("area", "conductance_si")}
-        return ("load", *known.get(self.quantity, (self.dataset,)))
+    def name(self) -> str:
+        """Quantity and argument."""
+        return f"{self.quantity}-{self.against}"
 
     @property
-    def dataset(self) -> str:
-        """Name of the quantity in an ensemble, a sum over asperities."""
-        return {"conductance": "conductance_si"}.get(self.quantity, self.quantity)
+    def needs(self) -> tuple[str, ...]:
+        """Quantities of an ensemble that the table needs."""
+        own = {"pressure": (), "conductance": ("conductance_si",)}
+        return ("load", *own.get(self.quantity, (self.quantity,)))
 
     def answer(self, scene: Scene) -> str:
         """The tabulated answer of a scene; the conductance is that of the joint, if there is one."""
@@ -57,23 +45,12 @@ class Kind:
 
 
 _ALL = (("pressure", "gap"), ("conductance", "pressure"), ("conductance", "gap"), ("stiffness", "pressure"))
-KINDS = {f"{what}-{against}": Kind(f"{what}-{against}", what, against) for what, against in _ALL}
-CONTACT, CONDUCTING = (Kind("contact table", what, "gap") for what in ("contact", "conducting"))
+KINDS = {kind.name: kind for kind in (Kind(*each) for each in _ALL)}
 
 
 @dataclass(frozen=True)
 class Curve:
-    """One curve of a table.
-
-    Parameters
-    ----------
-    name : str
-        "mean", or a quantile such as "q05".
-    x : ndarray
-        Gap (m) or pressure (Pa), rising.
-    y : ndarray
-        Pressure (Pa), or conductance or stiffness per nominal area, SI.
-    """
+    """One curve of a table: "mean" or a quantile such as "q05"; x rises."""
 
     name: str
     x: Array
@@ -81,9 +58,9 @@ class Curve:
 
 
 def curves_at_gaps(
-    ensemble: Ensemble, kind: Kind, pressures: Array | None, points: int, quantiles: tuple[float, ...]
+    ensemble: Ensemble, kind: Kind, bounds: Array | None, points: int, quantiles: tuple[float, ...]
 ) -> list[Curve]:
-    """Mean and quantiles over surfaces at equal gap.
+    """Mean and quantiles over surfaces at equal gap, m.
 
     Parameters
     ----------
@@ -91,8 +68,8 @@ def curves_at_gaps(
         Its own separations are the gaps.
     kind : Kind
         Of which table.
-    pressures : ndarray or None
-        The first and the last bound the gaps. Default: all there are.
+    bounds : ndarray or None
+        The first and the last pressure bound the gaps. Default: all there are.
     points : int
         How many rows.
     quantiles : tuple of float
@@ -103,58 +80,6 @@ def curves_at_gaps(
     ValueError
         If there are too few points, or something that is no function.
     """
-    x, mean, some = _at_gaps(ensemble, kind, pressures, points, quantiles)
-    return _named(kind, quantiles, x, mean, some)
-
-
-def curves_at_pressures(
-    scene: Scene, kind: Kind, pressures: Array | None, points: int, quantiles: tuple[float, ...]
-) -> list[Curve]:
-    """Mean and quantiles over specimens that all carry the same load: those of `mcgw.solve`.
-
-    Parameters
-    ----------
-    scene : Scene
-        Of the specimens.
-    kind : Kind
-        Of which table.
-    pressures : ndarray or None
-        Of the rows. Default: those that the scene's separations span.
-    points : int
-        How many rows, where no pressures are given.
-    quantiles : tuple of float
-        Between 0 and 1; empty for the mean alone.
-
-    Raises
-    ------
-    ValueError
-        As from `mcgw.solve`; and if something is no function.
-    """
-    if pressures is None:
-        pressures = pressures_of(scene, points)
-    area, name = scene.surface.nominal_area, kind.answer(scene)
-    solved = solutions(scene, "load", (area * pressures).tolist())
-    per = area if kind.quantity == "stiffness" else 1.0
-    mean = np.array([each.value[name] for each in solved]) / per
-    some = [np.array([np.quantile(each.surfaces[name], q) for each in solved]) / per for q in quantiles]
-    return _named(kind, quantiles, pressures, mean, some)
-
-
-def _named(kind: Kind, quantiles: tuple[float, ...], x: Array, mean: Array, some: list[Array]) -> list[Curve]:
-    names = ["mean", *map(quantile_name, quantiles)]
-    return [_one_way(Curve(name, x, y), kind) for name, y in zip(names, [mean, *some], strict=True)]
-
-
-def quantile_name(quantile: float) -> str:
-    """Name of a quantile in file names: q05 for 0.05."""
-    digits = f"{100 * quantile:.6g}"
-    return f"q{digits.zfill(2)}" if "." not in digits else f"q{digits}"
-
-
-def _at_gaps(
-    ensemble: Ensemble, kind: Kind, pressures: Array | None, points: int, quantiles: tuple[float, ...]
-) -> tuple[Array, Array, list[Array]]:
-    """Gaps with the means and each quantile."""
     order = np.argsort(ensemble.separations, kind="stable")
     mean = ensemble.mean("pressure")[order]
     if np.any(mean < 0):
@@ -163,35 +88,61 @@ def _at_gaps(
             f"contact.law: surfaces attract each other (mean pressure {mean.min():.3g} Pa at d/sigma = "
             f"{worst:g}), and a contact table has no negative pressures; give a law without adhesion"
         )
-    if pressures is not None:
-        inside = (mean >= pressures[0] * (1 - 1e-9)) & (mean <= pressures[-1] * (1 + 1e-9))
-        order = order[inside]
+    if bounds is not None:
+        order = order[(mean >= bounds[0] * (1 - 1e-9)) & (mean <= bounds[-1] * (1 + 1e-9))]
     order = order[evenly(len(order), points)] if len(order) else order
     h, first = np.unique(ensemble.separations[order], return_index=True)
     order = order[first]
     name = kind.answer(ensemble.scene)
-    x = h * ensemble.scene.surface.sigma
     some = _with_values(ensemble) if quantiles else ensemble
-    return x, ensemble.mean(name)[order], [some.quantile(name, q)[order] for q in quantiles]
+    values = [ensemble.mean(name)[order], *(some.quantile(name, q)[order] for q in quantiles)]
+    return _named(kind, quantiles, h * ensemble.scene.surface.sigma, values)
 
 
-def _one_way(curve: Curve, kind: Kind) -> Curve:
-    """Drop points without load; refuse a curve that is not monotonic."""
-    carries = curve.y > 0
-    x, y = curve.x[carries], curve.y[carries]
-    if x.size < _FEWEST:
+def curves_at_pressures(
+    scene: Scene, kind: Kind, pressures: Array | None, points: int, quantiles: tuple[float, ...]
+) -> list[Curve]:
+    """Mean and quantiles over specimens that all carry the same load: those of `mcgw.solve`.
+
+    Parameters and errors are those of `curves_at_gaps`; default pressures are those that the scene's
+    separations span.
+    """
+    if pressures is None:
+        pressures = pressures_of(scene, points)
+    area, name = scene.surface.nominal_area, kind.answer(scene)
+    solved = solutions(scene, "load", (area * pressures).tolist())
+    per = area if kind.quantity == "stiffness" else 1.0
+    values = [[each.value[name] for each in solved]]
+    values += [[float(np.quantile(each.surfaces[name], q)) for each in solved] for q in quantiles]
+    return _named(kind, quantiles, pressures, [np.array(each) / per for each in values])
+
+
+def _named(kind: Kind, quantiles: tuple[float, ...], x: Array, values: list[Array]) -> list[Curve]:
+    names = ["mean", *map(quantile_name, quantiles)]
+    return [_one_way(kind, name, x[y > 0], y[y > 0]) for name, y in zip(names, values, strict=True)]
+
+
+def _one_way(kind: Kind, name: str, x: Array, y: Array) -> Curve:
+    """A curve without points that carry nothing; refuse one that is not monotonic."""
+    if x.size < 2:
         raise ValueError(
-            f"{kind.name}, {curve.name}: {x.size} point(s) with load; give more or smaller separations, or a "
-            "wider range of pressures"
+            f"{kind.name}, {name}: {x.size} point(s) with load; give more or smaller separations, or a wider "
+            "range of pressures"
         )
     steps = np.diff(y) * (-1 if kind.against == "gap" else 1)
     if np.any(steps <= 0):
         at = x[int(np.argmin(steps))]
         raise ValueError(
-            f"{kind.name}, {curve.name}: is not monotone at {kind.against} = {at:.4g}, as programs require; "
-            "give fewer points, or a contact law without jumps"
+            f"{kind.name}, {name}: is not monotone at {kind.against} = {at:.4g}, as programs require; give "
+            "fewer points, or a contact law without jumps"
         )
-    return Curve(curve.name, x, y)
+    return Curve(name, x, y)
+
+
+def quantile_name(quantile: float) -> str:
+    """Name of a quantile in file names: q05 for 0.05."""
+    digits = f"{100 * quantile:.6g}"
+    return f"q{digits.zfill(2)}" if "." not in digits else f"q{digits}"
 
 
 def _with_values(ensemble: Ensemble) -> Ensemble:

@@ -4,6 +4,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import replace
 from hashlib import sha256
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -13,17 +14,19 @@ from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.simulation import simulate
 from mcgw.exports.contact_table import contact_table
-from mcgw.exports.curves import CONDUCTING, CONTACT, KINDS, Kind, curves_at_gaps, curves_at_pressures
-from mcgw.exports.programs import PROGRAMS, Program, check_name
-from mcgw.exports.table_text import UNIT_SYSTEMS, UnitSystem, all_curves, heading, in_units, table_text
+from mcgw.exports.curves import KINDS, Curve, Kind, curves_at_gaps, curves_at_pressures, quantile_name
+from mcgw.exports.programs import PROGRAMS
+from mcgw.exports.table_text import UNITS, heading, in_units, table_text, unit_of
 from mcgw.formats.files import write_whole
+from mcgw.formats.table import Column, Table
 from mcgw.scene.arguments import argument, as_toml
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 from mcgw.store.ensembles import open_ensemble, read_attributes
 
-DEFAULT_POINTS, DEFAULT_QUANTILES = 40, (0.05, 0.95)
+_QUANTILES = (0.05, 0.95)
 _MOST_POINTS = 10_000
+_NEEDED = ("load", "area", "conductance_si")  # of all columns, the last where something is conducted
 
 
 def export(
@@ -32,7 +35,7 @@ def export(
     *,
     to: str,
     table: str = "pressure-gap",
-    points: int = DEFAULT_POINTS,
+    points: int = 40,
     pressures: Any = None,
     quantiles: Sequence[float] | None = None,
     units: str = "SI",
@@ -90,96 +93,85 @@ def export(
     >>> [file.name for file in files]
     ['soft.inp', 'soft.q05.inp', 'soft.q95.inp', 'soft.all.csv']
     """
-    if to == "json":
-        if (table, quantiles, units) != ("pressure-gap", None, "SI"):
-            raise ValueError(
-                'to = "json": it has all columns, in SI units; leave out table, quantiles, units'
-            )
-        return [_contact_table(what, Path(path), _pressures(pressures), points)]
-    program, kind, system = _asked(to, table, units)
-    check_name(Path(path).name, program)
-    wanted = _pressures(pressures)
-    _check_points(points)
+    if to == "json" and (table, quantiles, units) != ("pressure-gap", None, "SI"):
+        raise ValueError('to = "json": it has all columns, in SI units; leave out table, quantiles, units')
+    for key, value, known in (
+        ("to", to, (*PROGRAMS, "json")),
+        ("table", table, KINDS),
+        ("units", units, UNITS),
+    ):
+        if value not in known:
+            raise ValueError(f"{key} = {value!r}: choose one of {', '.join(known)}")
+    if to != "json":
+        PROGRAMS[to].check_name(Path(path).name)
+        if table not in (taken := PROGRAMS[to].header):
+            raise ValueError(f"table = {table!r}: {to} does not support it; choose one of {', '.join(taken)}")
+    wanted, kind = _pressures(pressures), KINDS[table]
+    if isinstance(points, bool) or not isinstance(points, int) or not 2 <= points <= _MOST_POINTS:
+        raise ValueError(f"points = {points!r}: give a whole number from 2 to {_MOST_POINTS}")
     source, digest = _source(what)
     scene = source if isinstance(source, Scene) else source.scene
-    checked(scene, kind)
-    surfaces = scene.n_surfaces if source is scene else source.n_surfaces
+    if to == "json":
+        conducts = scene.film is not None and (source is scene or "conductance_si" in scene.quantities)
+        ensemble = surfaces_for(source, _NEEDED[: 2 + conducts], wanted, points)
+        text = json.dumps(contact_table(ensemble, digest), indent=1, allow_nan=False)
+        write_whole(Path(path), [text.encode()])
+        return [Path(path)]
+    if kind.quantity == "conductance" and scene.film is None:
+        raise ValueError(
+            "contact.conductivities: missing for a table of conductance; give conductivities = [k1, k2] in "
+            "W/(m K), or resistivity, in the scene"
+        )
+    surfaces = scene.n_surfaces if isinstance(source, Scene) else source.n_surfaces
     shares = _quantiles(quantiles, surfaces)
     if kind.against == "pressure":
         curves = curves_at_pressures(scene, kind, wanted, points, shares)
     else:
-        ensemble = _drawn(source, kind, wanted, points)
-        bounds, rows = wanted, points
-        if wanted is not None and ensemble is not source:
-            bounds, rows = None, len(wanted)  # drawn at the separations of the rows
-        curves = curves_at_gaps(ensemble, kind, bounds, rows, shares)
-    files = files_of_export(path, [curve.name for curve in curves])
-    scaled = [in_units(curve, kind, system) for curve in curves]
+        ensemble = surfaces_for(source, kind.needs, wanted, points)
+        if wanted is not None and ensemble is not source:  # drawn at the separations of the rows
+            curves = curves_at_gaps(ensemble, kind, None, len(wanted), shares)
+        else:
+            curves = curves_at_gaps(ensemble, kind, wanted, points, shares)
+    scaled = [in_units(curve, kind, units) for curve in curves]
+    files = files_of_export(path, shares)
+    origin, stays = f"mcgw {version('mcgw')}; SHA-256 of the {digest}", kind.stays(scene)
     texts = [
         table_text(
-            curve,
-            kind,
-            program,
-            system,
-            heading(scene, surfaces, kind, curve, system, digest),
-            file.name,
-            stays=kind.stays(scene),
+            from_zero(curve, kind, stays), kind, PROGRAMS[to], units,
+            heading(scene, surfaces, kind, curve, units, origin), file.name, stays=stays,
         )
         for file, curve in zip(files, scaled, strict=False)
-    ]
+    ]  # fmt: skip
     for file, text in zip(files, texts, strict=False):
         write_whole(file, [text.encode("ascii", "replace")])
-    all_curves(scaled, kind, system, scene).write(files[-1], comment=f"{kind.name}; SHA-256 of the {digest}")
+    _together(scaled, kind, units, scene).write(files[-1], comment=f"{kind.name}; SHA-256 of the {digest}")
     return files
 
 
-def _contact_table(
-    what: Scene | Ensemble | str | Path, path: Path, pressures: Array | None, points: int
-) -> Path:
-    """All columns against the gap, with their provenance."""
-    _check_points(points)
-    source, digest = _source(what)
-    scene = source if isinstance(source, Scene) else source.scene
-    conducts = scene.film is not None and (scene is source or "conductance_si" in scene.quantities)
-    ensemble = _drawn(source, CONDUCTING if conducts else CONTACT, pressures, points)
-    text = json.dumps(contact_table(ensemble, digest), indent=1, allow_nan=False)
-    write_whole(path, [text.encode()])
-    return path
-
-
-def _drawn(source: Scene | Ensemble, kind: Kind, pressures: Array | None, points: int) -> Ensemble:
-    """The ensemble itself, or that of a scene."""
-    if isinstance(source, Scene):
-        return surfaces_for(source, kind, pressures, points)
-    if missing := [name for name in kind.needs if name not in source.scene.quantities]:
-        raise ValueError(
-            f"contact.quantities: the ensemble has no {', '.join(missing)}; give its scene instead"
-        )
-    return source
-
-
-def files_of_export(path: str | Path, names: Sequence[str]) -> list[Path]:
+def files_of_export(path: str | Path, quantiles: Sequence[float] | None = None) -> list[Path]:
     """File of each curve, the mean first, and the file of all curves."""
     path = Path(path)
-    beside = [path.with_name(f"{path.stem}.{name}{path.suffix}") for name in names[1:]]
+    names = map(quantile_name, _QUANTILES if quantiles is None else quantiles)
+    beside = [path.with_name(f"{path.stem}.{name}{path.suffix}") for name in names]
     return [path, *beside, path.with_name(f"{path.stem}.all.csv")]
 
 
-def _asked(to: str, table: str, units: str) -> tuple[Program, Kind, UnitSystem]:
-    for key, value, known in (("to", to, PROGRAMS), ("table", table, KINDS), ("units", units, UNIT_SYSTEMS)):
-        if value not in known:
-            raise ValueError(f"{key} = {value!r}: choose one of {', '.join(known)}")
-    program = PROGRAMS[to]
-    if table not in program.keywords:
-        raise ValueError(
-            f"table = {table!r}: {to} does not support it; choose one of {', '.join(program.keywords)}"
-        )
-    return program, KINDS[table], UNIT_SYSTEMS[units]
+def from_zero(curve: Curve, kind: Kind, stays: bool) -> Curve:
+    """A curve against the pressure from 0 on, where nothing is carried."""
+    if kind.against == "gap":
+        return curve
+    return Curve(curve.name, np.append(0.0, curve.x), np.append(curve.y[0] if stays else 0.0, curve.y))
 
 
-def _check_points(points: int) -> None:
-    if isinstance(points, bool) or not isinstance(points, int) or not 2 <= points <= _MOST_POINTS:
-        raise ValueError(f"points = {points!r}: give a whole number from 2 to {_MOST_POINTS}")
+def _together(curves: Sequence[Curve], kind: Kind, units: str, scene: Scene) -> Table:
+    """All curves side by side, in the units of the files; empty where one carries nothing."""
+    x = np.unique(np.concatenate([curve.x for curve in curves])).tolist()
+    columns = [Column(f"{kind.against} ({unit_of(kind.against, units, scene)})", x)]
+    for curve in curves:
+        held = dict(zip(curve.x.tolist(), curve.y.tolist(), strict=True))
+        name = f"{kind.quantity} {curve.name} ({unit_of(kind.quantity, units, scene)})"
+        columns.append(Column(name, [held.get(at, "") for at in x]))
+    return Table(tuple(columns))
 
 
 def _pressures(given: Any) -> Array | None:
@@ -195,10 +187,9 @@ def _pressures(given: Any) -> Array | None:
 
 def _quantiles(given: Sequence[float] | None, n_surfaces: int) -> tuple[float, ...]:
     if given is None:
-        return DEFAULT_QUANTILES if n_surfaces > 1 else ()
+        return _QUANTILES if n_surfaces > 1 else ()
     found = tuple(float(q) for q in given)
-    wrong = [q for q in found if not 0 < q < 1]
-    if wrong or len(set(found)) < len(found):
+    if len(set(found)) < len(found) or not all(0 < q < 1 for q in found):
         raise ValueError(
             f"quantiles = {list(found)!r}: give numbers between 0 and 1, each once, such as 0.05"
         )
@@ -215,48 +206,27 @@ def _source(what: Scene | Ensemble | str | Path) -> tuple[Scene | Ensemble, str]
     return what, f"scene {sha256(scene_text(scene).encode()).hexdigest()}"
 
 
-def checked(scene: Scene, kind: Kind) -> None:
-    """Refuse a scene without such a table.
+def surfaces_for(
+    source: Scene | Ensemble, needs: tuple[str, ...], pressures: Array | None, points: int
+) -> Ensemble:
+    """The ensemble itself; of a scene its surfaces, with only what a table against the gap needs.
 
-    Raises
-    ------
-    ValueError
-        With what the scene lacks.
+    They are drawn at so many separations, evenly between the lowest and the highest of the scene, or at those
+    where the mean surface has the pressures.
     """
-    if kind.quantity == "conductance" and scene.film is None:
-        raise ValueError(
-            "contact.conductivities: missing for a table of conductance; give conductivities = [k1, k2] in "
-            "W/(m K), or resistivity, in the scene"
-        )
-
-
-def surfaces_for(scene: Scene, kind: Kind, pressures: Array | None, points: int) -> Ensemble:
-    """Draw the surfaces of a scene with only what a table against the gap needs.
-
-    Parameters
-    ----------
-    scene : Scene
-        Its surfaces; its lowest and highest separations bound the table where no pressures are given.
-    kind : Kind
-        Of table.
-    pressures : ndarray or None
-        Of the table, Pa.
-    points : int
-        Rows of the table.
-
-    Returns
-    -------
-    Ensemble
-        In memory, at as many separations as there are points, or at those where the mean surface has the
-        pressures.
-    """
+    if isinstance(source, Ensemble):
+        if missing := [name for name in needs if name not in source.scene.quantities]:
+            raise ValueError(
+                f"contact.quantities: the ensemble has no {', '.join(missing)}; give its scene instead"
+            )
+        return source
     if pressures is None:
-        h = np.linspace(min(scene.separations), max(scene.separations), points)
+        h = np.linspace(min(source.separations), max(source.separations), points)
     else:
-        h = np.array([float(scene.theory.separation_at("pressure", p)) for p in pressures])
+        h = np.array([float(source.theory.separation_at("pressure", p)) for p in pressures])
     return simulate(
         replace(
-            scene, separations=tuple(h.tolist()), quantities=kind.needs, keep="sums", unload_from=None,
+            source, separations=tuple(h.tolist()), quantities=needs, keep="sums", unload_from=None,
             rel_err=None, max_seconds=None,
         )
     )  # fmt: skip

@@ -266,6 +266,17 @@ def digits_of(x: float, error: float) -> int:
     return int(np.clip(np.floor(np.log10(abs(x))) - np.floor(np.log10(error)) + 2, 2, 7))
 
 
+def with_error(x: float, error: float) -> str:
+    """A number with its standard error, both to the second digit of that.
+
+    Examples
+    --------
+    >>> with_error(79.638, 2.95), with_error(1.2874e-10, 2.1e-12), with_error(3.0, float("nan"))
+    ('79.6 +- 3', '1.287e-10 +- 2.1e-12', '3')
+    """
+    return f"{x:.{digits_of(x, error)}g} +- {error:.2g}" if 0 < error < np.inf and x else f"{x:.6g}"
+
+
 def evenly(n: int, most: int) -> Ints:
     """Indices of at most `most` of `n` rows, rising."""
     return np.unique(np.linspace(0, n - 1, min(n, most)).round().astype(np.int64))

@@ -4,7 +4,6 @@ Every command, standard output and standard error, each closed, full, or a pipe 
 """
 
 import gc
-import importlib
 import importlib.metadata
 import os
 import shutil
@@ -100,7 +99,7 @@ def test_what_is_said_decides_nothing(command, stream, state, disturbed, tmp_pat
             raise ends[code]
         return code
 
-    monkeypatch.setattr(importlib.import_module(f"mcgw.commands.{command}"), "execute", work)
+    monkeypatch.setattr("mcgw.cli.execute", lambda _, args: work(args))
     for code in ends:
         monkeypatch.setattr(sys, stream, disturbed(state))
         assert main(WORDS[command].split()) == expected(command, stream, state, code)
@@ -129,7 +128,7 @@ def test_each_end_has_its_line_after_those_of_the_warnings(end, code, told, monk
             raise end
         return 0
 
-    monkeypatch.setattr("mcgw.commands.show.execute", work)
+    monkeypatch.setattr("mcgw.cli.execute", lambda _, args: work(args))
     for quiet, warned in ([], "mcgw: warning: two\\nlines\n"), (["--quiet"], ""):
         assert main(["show", "e.h5", *quiet]) == code
         assert capsys.readouterr() == ("", warned + told)
@@ -138,7 +137,7 @@ def test_each_end_has_its_line_after_those_of_the_warnings(end, code, told, monk
 def test_a_process_ends_with_the_code_of_its_command_and_looks_for_no_garbage(monkeypatch, capsys):
     frozen = []
     monkeypatch.setattr(gc, "freeze", lambda: frozen.append(True))
-    monkeypatch.setattr("mcgw.commands.show.execute", lambda args: 3)
+    monkeypatch.setattr("mcgw.cli.execute", lambda *_: 3)
     monkeypatch.setattr(sys, "argv", ["mcgw", "show", "e.h5"])
     with pytest.raises(SystemExit) as end:
         process()
@@ -186,7 +185,7 @@ def test_a_pipe_that_breaks_elsewhere_is_an_error(monkeypatch, capsys):
     def work(args):
         raise BrokenPipeError(32, "Broken pipe", "a worker")
 
-    monkeypatch.setattr("mcgw.commands.run.execute", work)
+    monkeypatch.setattr("mcgw.cli.execute", lambda _, args: work(args))
     assert main(["run", "s.toml"]) == 2
     assert capsys.readouterr().err == "mcgw: a worker: Broken pipe\n"
 
@@ -265,7 +264,7 @@ def test_a_termination_is_told_in_one_line(command, monkeypatch, capsys):
         time.sleep(5)
 
     before = signal.getsignal(signal.SIGTERM)
-    monkeypatch.setattr(f"mcgw.commands.{command}.execute", work)
+    monkeypatch.setattr("mcgw.cli.execute", lambda _, args: work(args))
     monkeypatch.chdir(Path(mcgw.__file__).parents[1])
     assert main(WORDS[command].split()) == 143
     assert capsys.readouterr().err == "mcgw: terminated\n"

@@ -147,7 +147,6 @@ def test_every_format_of_matplotlib_is_a_figure():
     ("words", "message"),
     [
         ("compare e.h5 -o a.svg --csv a.svg", "is also the output of -o"),
-        ("merge e.h5 -o other.h5", "leave out one of the two"),
         ("show e.h5 --digest --csv a.csv", "leave out the other option"),
         ("compare e.h5 -o e.h5.parts/a.png", "is the folder of the run that makes e.h5"),
         ("compare e.h5 -o map.npy/a.png", "map.npy/a.png: cannot be written"),

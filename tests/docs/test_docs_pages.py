@@ -16,7 +16,7 @@ import analytic
 import mcgw
 import mcgw.store
 import mcgw.sweeps.file
-from mcgw.cli import COMMANDS, _parser, main
+from mcgw.cli import COMMANDS, main, parser_of
 
 LOOSE = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 NOTHING = ("show", "solve", "merge", "warm")  # is written in the folder
@@ -48,7 +48,7 @@ def run_commands(code, page):
         if words[:1] != ["mcgw"]:
             continue
         assert "-o" in words or words[1] in NOTHING, f"{page}: where does {line} write?"
-        _parser().parse_args(words[1:])
+        parser_of().parse_args(words[1:])
         if words[1] not in LONG:
             assert main(words[1:]) == 0, f"{page}: {line}"
 
@@ -120,7 +120,7 @@ def test_every_page_is_reached_from_the_first():
 @pytest.fixture(scope="module")
 def parsers():
     """The parser of each command, by its name."""
-    (commands,) = (x for x in _parser()._actions if isinstance(x, argparse._SubParsersAction))
+    (commands,) = (x for x in parser_of()._actions if isinstance(x, argparse._SubParsersAction))
     assert tuple(commands.choices) == tuple(COMMANDS)
     return commands.choices
 

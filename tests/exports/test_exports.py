@@ -17,8 +17,8 @@ from mcgw.ensemble.at_load import pressures_of
 from mcgw.errors import StoreError
 from mcgw.exports.curves import KINDS, Curve, quantile_name
 from mcgw.exports.programs import PROGRAMS
-from mcgw.exports.table_text import UNIT_SYSTEMS, heading, in_units, table_text
-from mcgw.exports.writing import surfaces_for
+from mcgw.exports.table_text import UNITS, heading, in_units, table_text
+from mcgw.exports.writing import from_zero, surfaces_for
 from mcgw.jobs.job import Job
 from mcgw.store.ensembles import read_attributes
 from mcgw.store.run_folder import RunFolder
@@ -153,22 +153,22 @@ LINES = {
 
 def strange_lines(text, program, table):
     """Lines that the program would take for something else than comment, table and its one keyword."""
-    keyword = PROGRAMS[program].keywords[table]
+    keyword = PROGRAMS[program].header[table]
     lines = re.split(r"[\r\n]", text)
     return [line for line in lines if line and line != keyword and not re.fullmatch(LINES[program], line)]
 
 
-@pytest.mark.parametrize("units", UNIT_SYSTEMS)
-@pytest.mark.parametrize(("program", "table"), [(p, t) for p in PROGRAMS for t in PROGRAMS[p].keywords])
+@pytest.mark.parametrize("units", UNITS)
+@pytest.mark.parametrize(("program", "table"), [(p, t) for p in PROGRAMS for t in PROGRAMS[p].header])
 def test_a_curve_is_written_as_the_program_reads_it(scene, program, table, units, tmp_path):
     """Order, signs, the row where nothing is carried, units, keyword and its own rules and no others.
 
     Whatever a stranger wrote into a title or name stays a comment.
     """
-    kind, system, path = KINDS[table], UNIT_SYSTEMS[units], tmp_path / "t"
+    kind, system, path = KINDS[table], units, tmp_path / "t"
     x, y = np.array([1.0, 2.0, 4.0]), np.array([1.0, 2.0, 5.0])
     x, y, foot = (1e-6 * x, 1e6 * y[::-1], 6e-6) if kind.against == "gap" else (1e6 * x, y, 0.0)
-    curve = in_units(Curve("q05", x, y), kind, system)
+    curve = from_zero(in_units(Curve("q05", x, y), kind, system), kind, stays=False)
     head = heading(scene, 60, kind, curve, system, "data 0a")
     path.write_text(table_text(curve, kind, PROGRAMS[program], system, [*head, LIVE], LIVE), "utf-8")
     text = path.read_text("utf-8")
@@ -192,7 +192,7 @@ def test_a_curve_is_written_as_the_program_reads_it(scene, program, table, units
     if (program, table) in BEYOND:
         assert {words for words in every if words in text} == set(BEYOND[program, table])
     (told,) = re.findall(r"units: (.+)", text)
-    side = list(UNIT_SYSTEMS).index(units)
+    side = list(UNITS).index(units)
     assert told == "; ".join(TOLD[part][side] for part in (kind.quantity, kind.against))
     assert f"{table}, 05 % quantile over 60 surfaces of 3000 asperities, seed 4, at equal " in text
     heat = heading(scene.replace(film=mcgw.Film(conductivities=(150.0, 16.0))), 60, kind, curve, system, "")
@@ -268,13 +268,15 @@ def test_separations_are_as_many_as_rows(scene):
     plain = {"quantities": ["load"], "film": None, "n_surfaces": 2}
     few = scene.replace(separations=[2.0, 0.0, 0.5], keep="statistics", **plain)
     by_gap = KINDS["pressure-gap"]
-    drawn = surfaces_for(few, by_gap, None, 5)
+    drawn = surfaces_for(few, by_gap.needs, None, 5)
     np.testing.assert_allclose(drawn.separations, [0, 0.5, 1, 1.5, 2])
     assert (drawn.scene.quantities, drawn.scene.keep) == (("load",), "sums")
-    back = surfaces_for(few.replace(law=METAL, unload_from="loop", keep="sums"), by_gap, None, 5)
+    back = surfaces_for(few.replace(law=METAL, unload_from="loop", keep="sums"), by_gap.needs, None, 5)
     assert (back.scene.quantities, back.scene.unload_from) == (("load",), None)
     wanted = few.theory.mean("pressure", [1.5, 1.0, 0.5])
-    np.testing.assert_allclose(surfaces_for(few, by_gap, wanted, 9).separations, [1.5, 1.0, 0.5], rtol=1e-9)
+    np.testing.assert_allclose(
+        surfaces_for(few, by_gap.needs, wanted, 9).separations, [1.5, 1.0, 0.5], rtol=1e-9
+    )
 
 
 def test_pressures_are_those_of_the_mean_surface_where_a_specimen_touches(scene):
@@ -322,7 +324,7 @@ WRONG = [
     ({"table": "gap-pressure"}, r"^table = 'gap-pressure': choose one of pressure-gap, "),
     ({"table": "conductance-gap"}, r"^table = 'conductance-gap': calculix does not support it; choose"),
     ({"to": "abaqus", "table": "stiffness-pressure"}, r"pressure': abaqus does not support it; choose"),
-    ({"to": "ansys"}, r"^to = 'ansys': choose one of calculix, abaqus, moose, comsol$"),
+    ({"to": "ansys"}, r"^to = 'ansys': choose one of calculix, abaqus, moose, comsol, json$"),
     ({"units": "cgs"}, r"^units = 'cgs': choose one of SI, mm-N-s$"),
     ({"points": 1}, r"^points = 1: give a whole number from 2 to 10000$"),
     ({"points": 300}, r"^points = 300: calculix reads at most 200 lines; give fewer$"),

@@ -54,9 +54,8 @@ out = os.dup(1)
 os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
 branch(theory)
 import mcgw
-import mcgw.commands.surface, mcgw.commands.fit
-import mcgw.cli
-mcgw.cli._parser()
+from mcgw.cli import parser_of
+parser_of()
 tell("parser")
 from mcgw.scene.scene import Scene
 tell("scene")
