@@ -67,14 +67,6 @@ def test_the_history_has_what_the_benches_give(benches, names):
     assert len({(line["version"], line["machine"]) for line in lines}) == len(lines)
 
 
-@pytest.mark.parametrize(("change", "refused"), [(1.25, True), (1.15, False), (0.5, False)])
-def test_a_fifth_worse_is_refused(benches, change, refused):
-    records = benches["records"]
-    before = {"a / b": 0.02, "c / b": 3.0}
-    now = {"a / b": 0.02 * change, "c / b": 3.0, "new / b": 9.0}
-    assert records.worse(now, before) == (["a / b"] if refused else [])
-
-
 def test_lines_there_and_back(benches, tmp_path):
     records = benches["records"]
     path = tmp_path / "history.csv"

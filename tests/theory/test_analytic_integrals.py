@@ -14,18 +14,16 @@ from analytic import Custom, MeasuredHeights, ScipyHeights, Weibull
 
 # Promised: 1e-13. The quadrature itself is good to 1e-14; gamma = 2 loses a digit below h = -1.
 TOLERANCE = 1e-13
-HALVES = (0, 0.5, 1, 1.5, 2, 2.5, 3, 4.5, 6)
-OTHERS = (0.125, 0.25, 1 / 3, 0.625, 0.75, 1.3, 1.625, 1.75, 2.2, 5.3)
 FAR_H = np.random.default_rng(20240601).uniform(-40, 1000, 40)
 # Half the interval means little physically: the same again where contacts are.
 CLOSE_H = np.concatenate(
     [np.random.default_rng(20240602).uniform(-40, 40, 20), [-13, -1e-9, 0, 1e-9, 13, 37]]
 )
 PAIRS = [  # powers, and what the grading is: each of both, and neighbours of all
-    *((n, None) for n in (*HALVES[:6], *OTHERS)),
-    *((n, 0.2) for n in (0, 1, 2, 4.5, 1 / 3, 1.625)),
-    *((n, 1.5) for n in (0.5, 2, 3, 0.25, 1.3)),
-    *((n, 2.0) for n in (0, 0.5, 1.5, 2.5, 6, 0.125, 0.75, 5.3)),
+    *((n, None) for n in (0, 0.5, 1, 2, 2.5, 0.125, 1 / 3, 1.3, 2.2, 5.3)),
+    *((n, 0.2) for n in (1, 4.5, 1.625)),
+    *((n, 1.5) for n in (0.5, 3, 0.25)),
+    *((n, 2.0) for n in (0, 1.5, 6, 0.75)),
 ]
 
 
