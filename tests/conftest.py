@@ -157,6 +157,12 @@ def one_pressure(monkeypatch):
 
 
 @pytest.fixture
+def no_pressures(monkeypatch):
+    """Reports say nothing at loads, which takes most of their time."""
+    monkeypatch.setattr("mcgw.reports.report_figures._PRESSURES", 0)
+
+
+@pytest.fixture
 def cheap(monkeypatch):
     """Boundary elements that are a known multiple of what located summits say."""
     from mcgw.elasticity.levels import LEVELS, Level, located

@@ -19,7 +19,7 @@ from mcgw.cli import main, parser_of
 from mcgw.store.ensembles import read_attributes
 
 near = pytest.approx
-pytestmark = pytest.mark.usefixtures("blank_figures", "one_pressure")
+pytestmark = pytest.mark.usefixtures("blank_figures", "no_pressures")
 
 SCENE = """
 title = "Flags"

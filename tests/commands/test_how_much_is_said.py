@@ -7,7 +7,7 @@ from oracles.said import call
 
 from mcgw.cli import COMMANDS
 
-pytestmark = pytest.mark.usefixtures("blank_figures")
+pytestmark = pytest.mark.usefixtures("blank_figures", "no_pressures")
 
 SCENE = """
 title = "Flags"
@@ -23,9 +23,8 @@ LINES = (
 )  # fmt: skip
 
 
-def test_quiet_is_silent(tmp_path, monkeypatch):
+def test_quiet_is_silent(tmp_path):
     """What each says otherwise is recorded, see `test_what_users_read`."""
-    monkeypatch.setattr("mcgw.reports.report_figures._PRESSURES", 1)
     (tmp_path / "s.toml").write_text(SCENE)
     for words in LINES:
         quiet = call(*words.split(), "-q", cwd=tmp_path)

@@ -23,7 +23,7 @@ from mcgw.errors import StoreError, in_one_line
 from mcgw.formats.files import rename_over, state_of, together, whole_file, write_whole
 from mcgw.jobs.job import Job
 
-pytestmark = pytest.mark.usefixtures("one_pressure")
+pytestmark = pytest.mark.usefixtures("no_pressures")
 
 
 @pytest.fixture(scope="module")

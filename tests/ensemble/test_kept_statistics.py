@@ -255,7 +255,7 @@ def test_whoever_asks_for_an_end_gets_what_is_drawn_by_then(keep):
     assert 15_000 <= held.rows() <= 20_000
 
 
-@pytest.mark.usefixtures("blank_figures", "one_pressure")
+@pytest.mark.usefixtures("blank_figures", "no_pressures")
 @pytest.mark.parametrize("command", ["report", "compare", "show --csv", "export --to moose"])
 def test_commands_take_the_file(command, tmp_path, capsys):
     mcgw.run(scene(separations=np.linspace(0, 3, 5), n_surfaces=100), tmp_path / "a.h5", keep="statistics")

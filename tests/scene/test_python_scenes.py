@@ -118,7 +118,7 @@ def test_a_name_is_shown_and_nothing_else(make, tmp_path, capsys, request):
     assert main(["compare", str(tmp_path / "e.h5"), "-o", str(tmp_path / "e.svg")]) == 0
     assert "frac{1}" in (tmp_path / "e.svg").read_text()  # as it stands
     request.getfixturevalue("blank_figures")
-    request.getfixturevalue("one_pressure")
+    request.getfixturevalue("no_pressures")
     assert main(["report", str(tmp_path / "e.h5"), "-o", str(tmp_path / "e.html")]) == 0
     page = (tmp_path / "e.html").read_text()
     assert "<b>$" not in page
