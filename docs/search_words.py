@@ -1,7 +1,4 @@
-"""Words that people type, and the pages that answer: main entries of the index, found first.
-
-Sphinx forgets those of pages that a later build does not read again: build the site with ``-E``.
-"""
+"""Words that people type, and the pages that answer: main entries of the index, found first."""
 
 from typing import Any
 
@@ -45,3 +42,8 @@ def add_words(_: Any, page: str, source: list[str]) -> None:
     if page in WORDS:
         entries = ", ".join(f"! {word}" for word in WORDS[page].split(", "))
         source[0] += f"\n```{{index}} {entries}\n```\n"
+
+
+def read_again(*_: Any) -> list[str]:
+    """Return the pages that every build reads: Sphinx forgets main entries of pages that it does not read."""
+    return [*WORDS]
