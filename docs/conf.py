@@ -111,5 +111,5 @@ def setup(app: Any) -> None:
     """Write the pages that the code itself tells before any page is read."""
     app.connect("config-inited", lambda *_: from_the_code.write(Path(__file__).parent))
     app.connect("source-read", search_words.add_words)
-    app.connect("env-get-outdated", search_words.read_again)
+    app.connect("env-get-outdated", search_words.read_all)
     app.connect("missing-reference", of_the_theory)

@@ -74,7 +74,9 @@ def _looked_up(scene: Any, place: Place, grid: Grid, h: Array, felt: Array) -> V
     none = scene.n_asperities * scene.heights.sf(felt) < _NONE
     why = ["outside the measured range"] * bool(np.any(~none & ~found_at.measured))
     why += ["fewer than one contact per surface"] * bool(none.any())
-    told = f": {loads}" if not found_at.measured.any() else ""
+    if none.all():
+        return replace(found_at, unknown="not stated, with fewer than one contact per surface")
+    told = "" if found_at.measured.any() else f": {loads}"
     return replace(found_at, unknown=f"{' or '.join(why)}{told}")
 
 

@@ -84,11 +84,12 @@ class Validity(Shown):
         parts, at_load, at_gap = [], self.known("area", "stiffness"), self.known("load")
         if at_load.any():
             most = percent(self.worst("area", "stiffness"))
-            parts.append(f"within {most} at a given load{self._here(at_load)}")
+            which = " and ".join(name for name in ("area", "stiffness") if self.known(name).any())
+            parts.append(f"{which} within {most} at a load{self._here(at_load)}")
         if at_gap.any():
             where = "" if np.array_equal(at_gap, at_load) else self._here(at_gap)
-            parts.append(f"load within {percent(self.worst('load'))} at a given mean gap{where}")
-        line = f"Model error: {', '.join(parts)} (95 %{self._homogeneous})"
+            parts.append(f"load within {percent(self.worst('load'))} at a mean gap{where}")
+        line = f"Against an elastic half-space: {', '.join(parts)} (95 % of surfaces{self._homogeneous})"
         if not self.measured.all():
             line += f"; at d/sigma = {span(self.separations, ~self.measured)} {self.unknown}"
         return line
