@@ -118,10 +118,11 @@ def fit(
     """
     from mcgw.formats.files import together
     from mcgw.maps.fit import Fit
-    from mcgw.maps.fitted_scene import fitted_scene, heights_beside, write_scene
+    from mcgw.maps.fitted_scene import fitted_scene
     from mcgw.maps.fitting import are_profiles, fit_lines, fit_maps
     from mcgw.maps.map_files import read_map
     from mcgw.maps.preparation import preparation_of
+    from mcgw.maps.readable_scene import heights_beside, write_scene
     from mcgw.reports.fitted import fit_words, profile_words
 
     assumed = " (assumed; give --E-star)" if E_star is None else ""
@@ -202,8 +203,9 @@ def _of_numbers(
     iso: list[str], output: Path, E_star: float, assumed: str, nominal_area: float | None
 ) -> None:
     """Write the scene of an isotropic Gaussian surface with these numbers."""
-    from mcgw.maps.fitted_scene import scene_of_moments, write_scene
+    from mcgw.maps.fitted_scene import scene_of_moments
     from mcgw.maps.iso import moments_from
+    from mcgw.maps.readable_scene import write_scene
 
     numbers: dict[str, str] = {}
     for part in iso:

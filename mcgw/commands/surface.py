@@ -33,9 +33,9 @@ def surface(
     surface : I
         number of the surface
     shape : N
-        columns of the map, or COLUMNSxROWS
+        columns of a square map, or COLUMNSxROWS
     width : LENGTH
-        extent along x, such as 5mm; default: a square
+        extent of the map along x, such as 200um; default: that of the nominal area, a square
     periodic
         let caps reach across the edges
     from_spectrum : LIST
@@ -58,7 +58,7 @@ def surface(
         raise ValueError(
             f"--shape {shape!r}: give columns, such as 1024, or columns and rows, such as 1024x512"
         )
-    columns, rows = int(found[1]), int(found[2]) if found[2] else None
+    points = int(found[2] or found[1]), int(found[1])
     map_file, *beside = files_of_map(output)
     check_outputs([Output(map_file, Format("a map", WRITTEN)), *(Output(path, JSON) for path in beside)])
     if from_spectrum is not None:
@@ -68,16 +68,16 @@ def surface(
             raise ValueError("--pixel: give the size of a pixel, as --pixel 0.5um")
         if seed < 0:
             raise ValueError(f"--seed {seed}: give a whole number >= 0")
-        return _gaussian(from_spectrum, (rows or columns, columns), pixel, seed, output)
+        return _gaussian(from_spectrum, points, pixel, seed, output)
     if scene is None:
         raise ValueError("SCENE: give a scene (TOML), or --from-spectrum")
-    return _asperities(scene, surface, (rows, columns), width, periodic, output)
+    return _asperities(scene, surface, points, width, periodic, output)
 
 
 def _asperities(
     scene: "Scene",
     surface: int,
-    shape: tuple[int | None, int],
+    shape: tuple[int, int],
     width: float | None,
     periodic: bool,
     path: Path,
@@ -87,10 +87,8 @@ def _asperities(
     from mcgw.maps.synthetic import asperities_of
     from mcgw.scene.scene_file import scene_text
 
-    field = asperities_of(scene, surface, width=width)
-    rows, columns = shape
-    rows = max(round(columns * field.size[1] / field.size[0]), 1) if rows is None else rows
-    topography = envelope(field, (rows, columns), periodic=periodic)
+    field = asperities_of(scene, surface)
+    topography = envelope(field, shape, width=width, periodic=periodic)
     news(*write_map(topography, path, field, scene=scene_text(scene)))
     _tell(scene, field, topography)
 

@@ -101,6 +101,7 @@ def envelope(
     field: Asperities,
     shape: tuple[int, int],
     *,
+    width: float | None = None,
     periodic: bool = False,
 ) -> Topography:
     """Upper envelope of the caps ``z_i - r^2/(2R)`` on a grid of rows and columns, heights in m.
@@ -111,20 +112,30 @@ def envelope(
         One or more asperities.
     shape : (int, int)
         Rows and columns of the map.
+    width : float, optional
+        Extent along x of a map with square pixels, whose corner is that of the field, m. Default: the map
+        has the extent of the field.
     periodic : bool, optional
-        Whether caps reach across the edges.
+        Whether caps reach across the edges of the field.
 
     Raises
     ------
     ValueError
-        If there is no asperity, or no pixel, or more than 2^28.
+        If there is no asperity, or no pixel, or more than 2^28, or the map reaches beyond the field.
     """
     rows, columns = checked_shape(*shape)
     if not field.number:
         raise ValueError("the surface has no asperity: nothing to map")
     pixel = (field.size[0] / columns, field.size[1] / rows)
+    if width is not None:
+        widest = min(field.size[0], field.size[1] * columns / rows)
+        if not 0 < width <= (1 + 1e-9) * widest:
+            raise ValueError(
+                f"width = {width:g} m: give a length > 0, up to the nominal area's {widest:.4g} m"
+            )
+        pixel = (width / columns, width / columns)
     heights = _map((rows, columns), pixel, *_binned(field)[1:], field.size, periodic)
-    return Topography(heights, pixel, periodic)
+    return Topography(heights, pixel, periodic and width is None)
 
 
 def hidden_summits(field: Asperities, *, periodic: bool = False) -> Marks:

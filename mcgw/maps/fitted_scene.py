@@ -1,13 +1,9 @@
 """The scene of a fit, ready to run."""
 
 import math
-import re
-from collections.abc import Sequence
-from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-import tomli_w
 
 from analytic import (
     HeightTable,
@@ -18,20 +14,17 @@ from analytic import (
     SpectralMoments,
     Surface,
 )
-from mcgw.formats.files import together, whole_file
 from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
 from mcgw.maps.waves import log_derivatives
 from mcgw.scene.arguments import argument
 from mcgw.scene.scene import Scene
-from mcgw.scene.scene_file import scene_document
 from mcgw.scene.uncertainty import Uncertainty
 from mcgw.scene.values import MOMENTS, SUMMITS
 from mcgw.validity.fitted_map import Fitted
 
 Heights = Literal["gaussian", "nayak", "table", "measured", "summits"]
 _EQUAL = 1e-3  # of the standard deviation of the map: summits that differ less are equally high
-_ONE_LINE = 110  # characters of a list in a scene
 _FITTED = ("load", "area", "stiffness", "contacts", "conductance")  # wanted quantities of a fitted scene
 
 
@@ -201,47 +194,3 @@ def _scene(surface: Surface, title: str, **more: Any) -> Scene:
     return Scene(
         surface, separations=np.linspace(0, 3, 31).round(1), title=title, quantities=_FITTED, seed=1, **more
     )
-
-
-def _in_few_lines(text: str, separations: Sequence[float]) -> str:
-    """TOML text with its short lists on one line each, and even separations as a range."""
-
-    def short(found: re.Match[str]) -> str:
-        line = re.sub(r",? *\n *(?=\])|(?<=\[)\n *", "", found[0])
-        line = re.sub(r" *\n *", " ", line)
-        return line if len(line) <= _ONE_LINE else found[0]
-
-    start, stop, num = separations[0], separations[-1], len(separations)
-    even = [float(f"{h:.15g}") for h in np.linspace(start, stop, num)]  # as a range is read
-    if num > 1 and even == list(separations):
-        of_range = f"separations = {{start = {start!r}, stop = {stop!r}, num = {num}}}"
-        text = re.sub(r"^separations = \[[^\]]*\]", of_range, text, flags=re.MULTILINE)
-    return re.sub(r"^\w+ = \[\n(?: .*\n)*\]", short, text, flags=re.MULTILINE)
-
-
-def heights_beside(path: Path) -> Path:
-    """Path of the file of summit heights."""
-    return path.with_name(f"{path.stem}.heights.npy")
-
-
-def write_scene(scene: Scene, path: Path, measured: Fit | None, comments: list[str]) -> list[Path]:
-    """Write a scene from `fitted_scene` with comments above it; returns the files that were written.
-
-    The summit heights of a fit that is `measured` go to a file beside the scene, which names it in place
-    of a list. Numbers that nobody gave are left out: N follows when somebody writes another area.
-    """
-    text = "".join(f"# {line}\n" for line in comments) + "\n"
-    beside = heights_beside(path)
-    document = scene_document(scene, heights_file=None if measured is None else beside.name)
-    for key in document["ensemble"].pop("left_out", []):
-        del document["ensemble"][key]
-    text += _in_few_lines(tomli_w.dumps(document), scene.separations)
-    if measured is None:
-        with whole_file(path) as unfinished:
-            unfinished.write_text(text, encoding="utf-8")
-        return [path]
-    with together(), whole_file(path) as unfinished, whole_file(beside) as numbers:
-        with open(numbers, "wb") as file:
-            np.save(file, measured.summits)
-        unfinished.write_text(text, encoding="utf-8")
-    return [path, beside]

@@ -215,27 +215,22 @@ class Asperities:
         return len(self.z)
 
 
-def asperities_of(scene: Scene, surface: int, *, width: float | None = None) -> Asperities:
-    """Place the asperities of one surface of an ensemble, including those that cannot touch.
+def asperities_of(scene: Scene, surface: int) -> Asperities:
+    """Place the asperities of one surface of an ensemble, including those that cannot touch, on a square.
 
     The heights are those whose loads are in the ensemble's file. The positions are uniform and independent,
-    and a pure function of the seed and the surface. The nominal area is `width` m along x; it is
-    a square if that is left out.
+    and a pure function of the seed and the surface.
 
     Raises
     ------
     ValueError
-        If there is no such surface, the width is not positive, or the sampler keeps no heights.
+        If there is no such surface, or the sampler keeps no heights.
     """
     if not 0 <= surface < scene.n_surfaces:
         raise ValueError(f"surface = {surface}: the scene has surfaces 0 to {scene.n_surfaces - 1}")
-    area = scene.surface.nominal_area
-    width = math.sqrt(area) if width is None else width
-    if not (math.isfinite(width) and width > 0):
-        raise ValueError(f"width = {width}: give a length > 0 m")
-    size = (width, area / width)
+    side = math.sqrt(scene.surface.nominal_area)
     s, ratios = summits(scene, surface)
     z, radius = scene.surface.sigma * s, scene.surface.radius
     radii = np.full(s.shape, radius) if ratios is None else radius * ratios
     x, y = (uniforms(scene.seed, POSITIONS, surface, stream, len(z)) for stream in (_X, _Y))
-    return Asperities(size[0] * x, size[1] * y, z, radii, radius, size)
+    return Asperities(side * x, side * y, z, radii, radius, (side, side))

@@ -1,6 +1,8 @@
 """Numbers of ISO 25178 and of profiles: formulas against drawn maps, and what is refused or told."""
 
 import math
+import tomllib
+from dataclasses import astuple
 
 import numpy as np
 import pytest
@@ -9,8 +11,8 @@ import mcgw
 from analytic import SpectralMoments
 from mcgw.cli import main
 from mcgw.maps import Spectrum, gaussian_map, moments_on_grid
-from mcgw.maps.fitted_scene import write_scene
 from mcgw.maps.iso import NUMBERS, moments_from
+from mcgw.maps.readable_scene import write_scene
 from mcgw.maps.summit_sums import summit_sums_of
 
 MOMENTS = SpectralMoments(6.4e-13, 7.2e-3, 8.1e8)  # alpha = 10
@@ -189,6 +191,14 @@ def test_commands_that_lack_something(given, told, tmp_path, capsys):
     assert told in capsys.readouterr().err
 
 
+def same_in_four_digits(read, scene):
+    """Whether a scene that was read has the surface of another to four digits, and the rest of it."""
+    assert astuple(read.surface) == pytest.approx(astuple(scene.surface), rel=5e-4)
+    assert astuple(read.fitted)[:7] == pytest.approx(astuple(scene.fitted)[:7], rel=5e-4)
+    told = {name: getattr(scene, name) for name in ("surface", "fitted", "uncertainty")}
+    return read.replace(**told) == scene
+
+
 def test_scenes_of_fits_are_read_by_people(tmp_path):
     """A range of separations and short lists stand on a line, long lists do not; all is read back."""
     spectrum = Spectrum(rms=1e-6, long=50e-6, short=10e-6)
@@ -202,8 +212,40 @@ def test_scenes_of_fits_are_read_by_people(tmp_path):
         assert '\nquantities = ["load", "area", "stiffness", "contacts", "conductance"]\n' in text
         assert "\ncorrelation = [[1.0, " in text
         assert max(map(len, text.partition("cautions")[0].splitlines())) < 130
-        assert mcgw.load_scene(tmp_path / "f.toml") == scene
+        assert same_in_four_digits(mcgw.load_scene(tmp_path / "f.toml"), scene)
     uneven = scene.replace(separations=[0.0, 1.0, 3.0])
     write_scene(uneven, tmp_path / "g.toml", None, [])
     assert "\nseparations = [0.0, 1.0, 3.0]\n" in (tmp_path / "g.toml").read_text()
-    assert mcgw.load_scene(tmp_path / "g.toml") == uneven
+    assert same_in_four_digits(mcgw.load_scene(tmp_path / "g.toml"), uneven)
+
+
+@pytest.mark.parametrize(("sigma", "eta", "area", "told"), [
+    (1.23456e-6, 2.93e9, 1e-6, ('"1.235 um"', '"2930/mm^2"', '"1 mm^2"')),
+    (4.2e-9, 9.99951e15, 2e-12, ('"4.2 nm"', '"1e+04/um^2"', '"2 um^2"')),
+    (0.012e-6, 1.5e4, 1.0, ('"0.012 um"', '"0.015/mm^2"', '1.0')),
+    (20.0, 3.0, 1e4, ("20.0", "3.0", "10000.0")),
+])  # fmt: skip
+def test_numbers_have_units_in_which_they_are_short(sigma, eta, area, told, tmp_path):
+    """Four digits; what is natural in none of the units stays in SI, and defaults are left out."""
+    surface = mcgw.Surface(sigma, 1e-5, eta, area, 1e11)
+    write_scene(mcgw.Scene(surface, separations=[0.0], n_asperities=9, seed=3), tmp_path / "f.toml", None, [])
+    tables = tomllib.loads((tmp_path / "f.toml").read_text())
+    lines = (tmp_path / "f.toml").read_text().splitlines()
+    written = {f"{key} = {x}" for key, x in zip(("sigma", "eta", "nominal_area"), told, strict=True)}
+    assert written <= set(lines)
+    assert set(tables) == {"title", "surface", "contact", "ensemble"}
+    assert set(tables["ensemble"]) == {"n_surfaces", "n_asperities", "seed"}
+
+
+def test_nayaks_surfaces_are_written_by_their_moments(tmp_path):
+    """m0, m2 and m4 alone; with a bound on the radii, or one radius, the summits stand there."""
+    scene = mcgw.Scene(mcgw.SpectralSurface(1e-12, 1e-3, 5e6, 1e-6, 1e11), separations=[0.0], seed=1)
+    write_scene(scene, tmp_path / "f.toml", None, [])
+    tables = tomllib.loads((tmp_path / "f.toml").read_text())
+    surface = {"m0": "1 um^2", "m2": 0.001, "m4": "5/mm^2", "nominal_area": "1 mm^2", "E_star": "100 GPa"}
+    assert tables["surface"] == surface
+    assert not {"heights", "summits"} & set(tables)
+    for other in (scene.replace(curvature="mean"), scene.replace(curvature=type(scene.curvature)(5.0, 1e5))):
+        write_scene(other, tmp_path / "f.toml", None, [])
+        assert tomllib.loads((tmp_path / "f.toml").read_text())["heights"] == {"law": "nayak", "alpha": 5.0}
+        assert (mcgw.load_scene(tmp_path / "f.toml").curvature is None) == (other.curvature is None)

@@ -72,6 +72,19 @@ def test_caps_reach_across_the_edges_if_the_surface_repeats():
     assert hidden_summits(apart, periodic=True).tolist() == [True, False]
 
 
+def test_a_width_maps_a_corner_with_square_pixels():
+    """The same caps as on the whole map, up to its edges; those beyond its own edges reach into it."""
+    field = random_field(80, (2.0, 1.0), 0.5, 0.05)
+    whole = envelope(field, (40, 80), periodic=True)
+    part = envelope(field, (10, 20), width=0.5, periodic=True)
+    assert part.heights == pytest.approx(whole.heights[:10, :20], abs=1e-14)
+    assert (part.pixel, part.periodic) == ((0.025, 0.025), False)
+    assert envelope(field, (40, 80), width=2.0).heights == pytest.approx(envelope(field, (40, 80)).heights)
+    for width, shape in ((0.0, (4, 4)), (-1.0, (4, 4)), (math.nan, (4, 4)), (1.01, (4, 4)), (2.01, (1, 80))):
+        with pytest.raises(ValueError, match=r"width = .*: give a length > 0, up to the nominal area's \d"):
+            envelope(field, shape, width=width)
+
+
 @pytest.mark.parametrize("count", ["fixed", "poisson"])
 def test_loads_of_the_listed_asperities_are_those_in_the_file(count, make_scene, tmp_path):
     """Hertz's sums by NumPy over the asperities in the exported file, against the ensemble's row."""
@@ -102,16 +115,15 @@ def test_loads_of_the_listed_asperities_are_those_in_the_file(count, make_scene,
 def test_positions_are_uniform_and_belong_to_their_surface(make_scene):
     """Mean and variance of 40000 uniforms, |z| < 5: a false alarm in 2e6 each; and no two fields alike."""
     scene = make_scene(n_asperities=40000, sampler="cells")
-    field = asperities_of(scene, 5, width=0.02)
-    assert field.size == (0.02, pytest.approx(0.005))
-    for values, length in ((field.x, 0.02), (field.y, 0.005)):
+    field = asperities_of(scene, 5)
+    for values, length in zip((field.x, field.y), field.size, strict=True):
         u = values / length
         assert 0 < u.min() < u.max() < 1
         assert abs(u.mean() - 0.5) * math.sqrt(12 * u.size) < 5
         assert abs(np.var(u) - 1 / 12) * math.sqrt(180 * u.size) < 5
     assert abs(np.corrcoef(field.x, field.y)[0, 1]) * 200 < 5
     assert abs(np.corrcoef(field.x, field.z)[0, 1]) * 200 < 5
-    again, other = asperities_of(scene, 5, width=0.02), asperities_of(scene, 6, width=0.02)
+    again, other = asperities_of(scene, 5), asperities_of(scene, 6)
     assert np.array_equal(again.x, field.x)
     assert not np.any(np.isin(other.x, field.x[:1000]))
 
@@ -244,11 +256,8 @@ def test_a_spectrum_fills_its_grid_to_two_pixels_and_to_its_edge():
             gaussian_map(Spectrum(1e-6, 30e-6, 4e-6), (40, 40), pixel, one)
 
 
-@pytest.mark.parametrize("width", [0.0, -1.0, math.nan, math.inf])
-def test_a_surface_of_a_scene_has_a_width_and_a_number(width, make_scene):
+def test_a_surface_of_a_scene_has_a_number(make_scene):
     scene = make_scene(n_surfaces=3)
-    with pytest.raises(ValueError, match=r"width = .*: give a length > 0 m"):
-        asperities_of(scene, 0, width=width)
     for surface in (-1, 3):
         with pytest.raises(ValueError, match=f"surface = {surface}: the scene has surfaces 0 to 2"):
             asperities_of(scene, surface)

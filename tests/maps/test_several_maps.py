@@ -156,8 +156,8 @@ def test_by_command(tmp_path, monkeypatch, capsys, maps, found):
     assert "between 3 maps" in said
     scene = mcgw.load_scene("f.toml")
     assert scene.title == "Fitted to a.npy and 2 more"
-    assert scene.fitted.m2 == pytest.approx(found.moments.m2, rel=1e-9)
-    assert scene.surface.nominal_area == pytest.approx(found.area, rel=1e-9)
+    assert scene.fitted.m2 == pytest.approx(found.moments.m2, rel=5e-4)
+    assert scene.surface.nominal_area == pytest.approx(found.area, rel=5e-4)
     lines = (tmp_path / "t.csv").read_text(encoding="utf-8").splitlines()
     assert len([line for line in lines if line.partition(",")[0] in names]) == 3
 
