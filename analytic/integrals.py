@@ -6,63 +6,28 @@ n pieces shrink towards the separation. For h >= 0 everything is relative to phi
 underflows before the answer does.
 """
 
-from itertools import pairwise
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.arrays import Array
 from analytic.gradings import Grading, Homogeneous
 from analytic.heights import GAUSSIAN, Gaussian, HeightLaw, exp_minus_half_square
-from analytic.law_rule import law_integral
-from analytic.quadrature import NEAREST, REACH, WIDEST, gauss_legendre, panel, towards
-from analytic.resolution import resolved_breaks
-from analytic.steep import Weight, tame
-
-_TRIED = 9  # separations of a column at which the reach is looked for
-_BLOCK = 192  # separations at a time: nodes x block x 8 bytes stay in the cache
+from analytic.law_rule import beginnings_of, ends_of, law_integral, pieces_of
+from analytic.quadrature import NODES, gauss_legendre
+from analytic.resolution import resolved_once
 
 
-def _top(above: Array, reach: float) -> Array:
-    """Where the density is lower than at `above` by as much as it is at `reach` than at 0."""
-    return np.asarray(above + reach**2 / (above + np.sqrt(above * above + reach**2)))
-
-
-def _reaches(grading: Grading, h: Array, above: Array) -> tuple[float, float]:
-    """Reach on either side that serves all separations of a sorted column."""
-    if tame(grading):
-        return REACH, REACH
-    weight = Weight(lambda s: -s * s / 2, grading, 1)
-    upper = lower = REACH
-    for k in np.unique(np.linspace(0, len(h) - 1, _TRIED).astype(int)):
-        start = max(float(above[k, 0]), 0.0)
-        found = weight.reach(start, float(_top(np.array(start), REACH)), np.inf)
-        upper = max(upper, float(np.sqrt(found**2 - start**2)))
-    if h[0, 0] < -REACH:
-        lower = -weight.reach(0.0, -REACH, float(h[0, 0]))
-    return upper, lower
-
-
-def _sorted(n: float, h: Array, grading: Grading) -> Array:
-    """Scaled integral for a sorted column of separations, cut at the breaks and at the mean height."""
-    above = np.maximum(h, 0.0)
-    upper, lower = _reaches(grading, h, above)
-    top = _top(above, upper)
-    bottom = np.minimum(np.maximum(h, -lower), top)
-    cuts = [0.0, *resolved_breaks(grading, float(bottom[0, 0]), float(top[-1, 0]))]
-    if max(upper, lower) > REACH:  # farther than what one rule resolves of the density
-        cuts += (np.arange(np.ceil(bottom[0, 0] / WIDEST), top[-1, 0] / WIDEST) * WIDEST).tolist()
-    inner = [h * 0 + cut for cut in cuts]
-    if (2 * n) % 1:  # the power is no polynomial of the root of s - h
-        inner += [h + step for step in towards(0.0, NEAREST)]
-    edges = np.sort(np.clip([bottom, *inner, top], bottom, top), axis=0)
-    result = np.zeros_like(h)
-    for low, high in pairwise(edges):
-        inside = np.flatnonzero(high > low)
-        for k in range(0, inside.size, _BLOCK):
-            i = inside[k : k + _BLOCK]
-            result[i] += panel(n, h[i], grading, low[i], high[i])
-    return np.where(h >= 0, result, result / np.sqrt(2 * np.pi))
+def _relative(n: float, h: float, grading: Grading) -> float:
+    """``int (s-h)^n g phi / phi(max(h, 0))`` over s > h."""
+    left, right = pieces_of(GAUSSIAN, np.array([h]), grading, power=1, further=beginnings_of(n, [h]))
+    start, above = np.sqrt(left - h)[:, None], max(h, 0.0)
+    width = np.sqrt(right - h)[:, None] - start
+    x, w = gauss_legendre(NODES)
+    v = start + width * x
+    approach = v * v
+    beyond = approach + (h - above)  # s - above, without cancellation
+    density = np.exp(GAUSSIAN.log_ratio(np.array(above), beyond))
+    return float(np.sum(2 * width * w * v * approach**n * density * grading(above + beyond)))
 
 
 def quotient(
@@ -107,13 +72,11 @@ def fn_scaled(
     grading = Homogeneous() if grading is None else grading
     if not isinstance(heights, Gaussian):
         return law_integral(n, h, heights, grading)
-    order = np.argsort(h, axis=None)
-    ordered = h.reshape(-1, 1)[order] + 0.0  # makes -0.0 the same as 0.0
-    result = np.empty(h.size)
-    gaps = np.flatnonzero(np.diff(ordered[:, 0]) > 2 * REACH) + 1  # no need to know the grading in between
-    for i in np.split(np.arange(h.size), gaps) if h.size else ():
-        result[order[i]] = _sorted(n, ordered[i], grading)[:, 0]
-    return result.reshape(h.shape)
+    if h.size:
+        once = np.unique(h)
+        grading = resolved_once(grading, *ends_of(heights, once, grading, power=1))
+    values = [_relative(n, x, grading) for x in h.ravel().tolist()]
+    return np.where(h >= 0, 1.0, 1 / np.sqrt(2 * np.pi)) * np.reshape(values, h.shape)
 
 
 def fn(

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from analytic.arrays import Array
 from analytic.gradings import Grading, Homogeneous
-from analytic.heights import GAUSSIAN, Gaussian, HeightLaw
+from analytic.heights import GAUSSIAN, HeightLaw
 from analytic.integrals import fn, quotient
 from analytic.law_rule import law_rule
 from analytic.quantities import QUANTITIES, Quantity
@@ -60,8 +60,7 @@ def separations_of_powers(
     def log_mean(h: ArrayLike) -> Array:
         return fn(n, h, grading, log=True, heights=heights)
 
-    about = log_mean(_GRID) if isinstance(heights, Gaussian) else _about(n, grading, heights)
-    return last_separations(log_mean, log_targets, _GRID, about, quantity.name)
+    return last_separations(log_mean, log_targets, _GRID, _about(n, grading, heights), quantity.name)
 
 
 def _about(n: float, grading: Grading | None, heights: HeightLaw) -> Array:

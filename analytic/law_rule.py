@@ -8,6 +8,7 @@ entire: its pieces have one width. Means and variances underflow with its densit
 
 import math
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -30,6 +31,9 @@ _SURE = 1e-16  # up to such a rare height a grading must have values
 _SUMS = ((4, 0.0), (3, 0.0), (2, 0.0), (1, 3.0))  # powers of the modulus and of the approach in moments
 _LARGEST = 1e300
 _GRID = 16  # the upper end is rounded up to one over this
+_TOGETHER = 32  # separations that share a rule under the normal law
+
+Further = Callable[[float, float], Sequence[float]]
 
 
 def ends_of(
@@ -65,8 +69,7 @@ def _normal_ends(low: float, last: float, grading: Grading, power: int) -> tuple
     if tame(grading):
         return low, top
     weight = Weight(lambda s: -s * s / 2, grading, power)
-    start = max(low, -REACH)
-    top = max(weight.reach(max(x, start), top, np.inf) for x in (low, last))
+    top = max(weight.reach(max(x, 0.0), top, np.inf) for x in (low, last))
     return (weight.reach(0.0, -REACH, low) if low < -REACH else low), top
 
 
@@ -91,25 +94,26 @@ def _edges(law: HeightLaw, start: float, top: float) -> list[float]:
     return edges
 
 
-def law_rule(
+def beginnings_of(n: float, separations: Sequence[float]) -> Further:
+    """Ends of pieces that shrink towards separations, where the power of the approach is no half-integer."""
+    ends = [s for x in separations for s in towards(x, NEAREST)] if (2 * n) % 1 else []
+    return lambda *_: ends
+
+
+def pieces_of(
     law: HeightLaw,
     separations: Array,
     grading: Grading,
     *,
     power: int = POWER,
     exponent: float = 0.0,
-    further: Callable[[float, float], Sequence[float]] = lambda *_: (),
+    further: Further = lambda *_: (),
 ) -> tuple[Array, Array]:
-    """Heights and probabilities: ``E f(s) = probabilities @ f(heights)`` for sums of contacts.
+    """Ends of the pieces of a rule, increasing.
 
-    Arguments are those of `ends_of`; f may have a root above each separation, and bend at breaks of the
-    grading. `further` takes the lowest and the highest height of the rule and gives further ends of pieces.
-    Heights are those above the lowest separation, increasing.
+    Arguments are those of `ends_of`; `further` takes the lowest and the highest height of the rule and gives
+    further ends of pieces.
     """
-    if isinstance(law, MeasuredHeights):
-        s = np.array(law.heights)
-        s = s[s > separations[0]]
-        return s, np.full(s.size, 1 / len(law.heights))
     start, top = ends_of(law, separations, grading, power, exponent)
     if not start < top:
         return np.empty(0), np.empty(0)
@@ -121,7 +125,20 @@ def law_rule(
     inside = [*separations, *above_neighbours(separations), *further(lowest, top)]
     cuts = [*regular, *resolved_breaks(grading, lowest, top), *(s for s in inside if start < s < top)]
     edges = np.unique(cuts)
-    left, right = edges[:-1], edges[1:]
+    return edges[:-1], edges[1:]
+
+
+def law_rule(law: HeightLaw, separations: Array, grading: Grading, **given: Any) -> tuple[Array, Array]:
+    """Heights and probabilities: ``E f(s) = probabilities @ f(heights)`` for sums of contacts.
+
+    Arguments are those of `pieces_of`; f may have a root above each separation, and bend at breaks of the
+    grading. Heights are those above the lowest separation, increasing.
+    """
+    if isinstance(law, MeasuredHeights):
+        s = np.array(law.heights)
+        s = s[s > separations[0]]
+        return s, np.full(s.size, 1 / len(law.heights))
+    left, right = pieces_of(law, separations, grading, **given)
     at_end = np.isin(left, law.singular) | np.isin(right, law.singular)
     lump = (right - left <= 2 * _TINY) & at_end
     s, weights = rooted(left[~lump], right[~lump], separations, NODES)
@@ -139,12 +156,16 @@ def _mass(law: HeightLaw, left: float, right: float) -> float:
 
 
 def law_integral(n: float, h: Array, law: HeightLaw, grading: Grading) -> Array:
-    """``int_h^inf (s-h)^n density(s) grading(s) ds``, separation by separation, in the shape of `h`."""
-    result = np.zeros(h.size)
-    for k, x in enumerate(h.ravel()):
-        cuts = [] if (2 * n) % 1 == 0 else towards(float(x), NEAREST)
-        s, p = law_rule(law, np.array([x]), grading, power=1, exponent=n + 1, further=lambda *_, c=cuts: c)
-        result[k] = p @ ((s - x) ** n * grading(s))
+    """``int_h^inf (s-h)^n density(s) grading(s) ds`` in the shape of `h`, of some separations by one rule."""
+    result, order = np.zeros(h.size), np.argsort(h, axis=None)
+    together = _TOGETHER if isinstance(law, Gaussian) else 1
+    for k in range(0, h.size, together):
+        part = order[k : k + together]
+        x = h.ravel()[part]
+        further = beginnings_of(n, x.tolist())
+        s, p = law_rule(law, np.unique(x), grading, power=1, exponent=n + 1, further=further)
+        approach = np.maximum(s[:, None] - x, 0.0)
+        result[part] = (p * grading(s)) @ np.where(approach > 0, approach**n, 0.0)
     return result.reshape(h.shape)
 
 

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.arrays import Array
-from analytic.gradings import Grading
+from analytic.gradings import Grading, Homogeneous
 from analytic.height_rule import HeightRule
 from analytic.heights import HeightLaw
-from analytic.integrals import fn
 from analytic.inversion import LOWEST, last_separations, separations_of_powers
+from analytic.law_rule import law_integral
 from analytic.laws.branch import UnloadingBranch, Ways
 from analytic.laws.law import piece_of
 from analytic.laws.pieces import slope_term
@@ -174,16 +174,20 @@ class MeanPowers:
     def mean(self, quantity: str, h: ArrayLike) -> Array:
         """Mean at separations of any shape."""
         q = quantity_of(quantity)
-        return fn(q.exponent, h, self._grading(q), heights=self._heights(q))
+        return self._integral(q.exponent, q, h)
 
     def slope(self, quantity: str, h: ArrayLike) -> Array:
         """How fast the mean falls with the separation."""
         q = quantity_of(quantity)
         if q.exponent >= 1:
-            return q.exponent * fn(q.exponent - 1, h, self._grading(q), heights=self._heights(q))
+            return q.exponent * self._integral(q.exponent - 1, q, h)
         if q.base == "contacts" or self.contact.summits.listed:
             return self.contact.slope(q.base, h)
         return fall_of(partial(self.mean, q.base), h)
+
+    def _integral(self, n: float, q: Quantity, h: ArrayLike) -> Array:
+        h = np.asarray(h, dtype=np.float64)
+        return law_integral(n, h, self._heights(q), self._grading(q) or Homogeneous())
 
     def rule(self, h: ArrayLike, quantities: Sequence[str]) -> HeightRule:  # noqa: ARG002 - the same for all
         """Heights, and radii, for integrals of powers at these separations."""

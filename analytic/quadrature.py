@@ -12,7 +12,6 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from analytic.arrays import Array
-from analytic.gradings import Grading, Homogeneous
 
 NEAREST = 2.0**-30  # below, a power >= 0 is 1e-9 of the whole, and integrated to 1e-7
 _GROWTH = 8.0  # of a piece to its distance from the separation below
@@ -74,31 +73,3 @@ def above_neighbours(separations: Array) -> list[float]:
     The root of the approach to the lower one almost has its kink inside the next piece.
     """
     return [edge for lower, upper in pairwise(separations) for edge in towards(upper, upper - lower)]
-
-
-def panel(n: float, h: Array, grading: Grading, low: Array, high: Array) -> Array:
-    """``int (s-h)^n g phi / phi(max(h, 0))`` over s from `low` to `high`, by one rule for each separation.
-
-    Separations are a sorted column, shape (k, 1), and so are the reduced heights ``h <= low < high`` and the
-    result.
-    """
-    above = np.maximum(h, 0.0)
-    start = np.sqrt(low - h)
-    width = np.sqrt(high - h) - start
-    x, w = gauss_legendre(NODES)
-    v = start + width * x
-    approach = v * v
-    beyond = approach + (h - above) if h[0, 0] < 0 else approach  # s - above, without cancellation
-    terms = beyond * -0.5
-    terms -= above
-    terms *= beyond
-    np.exp(terms, out=terms)
-    if not isinstance(grading, Homogeneous):
-        terms *= grading(beyond + above)
-    power = 2 * n + 1
-    if power % 1:
-        terms *= v**power
-    else:
-        for _ in range(int(power)):  # products are ten times faster than a power
-            terms *= v
-    return np.asarray((terms @ (2 * w))[:, None] * width)
