@@ -8,6 +8,7 @@ entire: its pieces have one width. Means and variances underflow with its densit
 
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ from analytic.heights import Gaussian, HeightLaw
 from analytic.measured_summits import MeasuredHeights
 from analytic.quadrature import NEAREST, NODES, REACH, SPANS, WIDEST, above_neighbours, rooted, towards
 from analytic.resolution import resolved_breaks
-from analytic.steep import Weight, tame
+from analytic.steep import reach, tame
 
 POWER = 4  # of the modulus in the kurtosis
 _GROWTH = 8.0  # of the pieces away from a singular end
@@ -59,18 +60,18 @@ def ends_of(
         with np.errstate(divide="ignore"):
             return np.maximum(np.log(law.pdf(s)), _UNDERFLOW)
 
-    weight = Weight(log_density, grading, power, exponent)
+    far = partial(reach, log_density, grading, power=power, exponent=exponent)
     middle = float(np.clip(law.isf(np.array(0.5), start), start, top))
-    return weight.reach(middle, start, low), weight.reach(start, top, high)
+    return far(middle, start, low), far(start, top, high)
 
 
 def _normal_ends(low: float, last: float, grading: Grading, power: int) -> tuple[float, float]:
     top = last + REACH**2 / (last + np.hypot(last, REACH))
     if tame(grading):
         return low, top
-    weight = Weight(lambda s: -s * s / 2, grading, power)
-    top = max(weight.reach(max(x, 0.0), top, np.inf) for x in (low, last))
-    return (weight.reach(0.0, -REACH, low) if low < -REACH else low), top
+    far = partial(reach, lambda s: -s * s / 2, grading, power=power)
+    top = max(far(max(x, 0.0), top, np.inf) for x in (low, last))
+    return (far(0.0, -REACH, low) if low < -REACH else low), top
 
 
 def _edges(law: HeightLaw, start: float, top: float) -> list[float]:
