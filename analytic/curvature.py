@@ -130,28 +130,6 @@ class RandomCurvature:
         """Return the probability of a larger curvature, to full relative accuracy."""
         return self._broadcast(lambda a, x: CurvatureGivenHeight(self.alpha, x).sf(a), g, s)
 
-    def rule(self, s: ArrayLike) -> tuple[Array, Array]:
-        """Return Gauss's rule in the root of the ratio.
-
-        Parameters
-        ----------
-        s : array_like
-            Reduced heights.
-
-        Returns
-        -------
-        (ndarray, ndarray)
-            Ratios and their probabilities, shape ``(4, *s.shape)``: exact for ``c^(k/2)``, k = 0 ... 7; if
-            `largest` is finite there are five, up to k = 9.
-        """
-        x = self._over_rms(s)
-        nodes, flattest = (4, 0.0) if math.isinf(self.largest) else (5, MEAN_CURVATURE / self.largest)
-        parts = [x.ravel()[k : k + _BLOCK] for k in range(0, max(x.size, 1), _BLOCK)]
-        rules = [CurvatureGivenHeight(self.alpha, part).root_rule(nodes, flattest) for part in parts]
-        root, probability = (np.concatenate(part, axis=1) for part in zip(*rules, strict=True))
-        shape = (nodes, *x.shape)
-        return MEAN_CURVATURE * root.reshape(shape) ** 2, probability.reshape(shape)
-
     def mean(self, power: float, s: ArrayLike) -> Array:
         """Return the mean of a power of the radius ratio at given heights, in their shape.
 

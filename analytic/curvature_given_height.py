@@ -12,7 +12,6 @@ from analytic.nayak import NayakTables, tables_of, upper_tail
 from analytic.quadrature import panelled
 
 _WIDE = 9.5  # standard deviations, beyond which a normal density is 1e-20 of its largest value
-_FLATTEST = 1e-7  # curvature of which there is none flatter in 1e27 summits
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,35 +98,3 @@ class CurvatureGivenHeight:
         y, w = panelled(np.sqrt(self.edges(low, high)))  # of the root all powers that are asked for are whole
         rest = (w * 2 * y ** (7 - 2 * power) * self._parts(y * y)).sum(axis=0) / self._whole
         return np.asarray(rest if flattest == 0 else rest + flattest**-power * self.between(0 * low, low))
-
-    def root_rule(self, nodes: int, flattest: float) -> tuple[Array, Array]:
-        """Gauss's rule for functions of ``y = max(g, flattest)^(-1/2)``; of shape (nodes, n).
-
-        Powers up to ``y^(2 nodes - 1)`` have their exact means: radii have none from y^8 on, so there are 4
-        nodes at most if `flattest`, the smallest curvature, is 0.
-        """
-        low = np.full_like(self.x, flattest)
-        high = np.maximum(self.highest(low), low)
-        root, w = panelled(np.sqrt(self.edges(low, high)))  # y^7 of it leaves nothing to divide by
-        root = np.maximum(root, _FLATTEST)
-        mass, y = w * 2 * root**7 * self._parts(root * root) / self._whole, 1 / root
-        if flattest > 0:
-            mass = np.vstack([mass, self.between(0 * low, low)])
-            y = np.vstack([y, low**-0.5])
-        return _gauss(y, mass, nodes)
-
-
-def _gauss(y: Array, mass: Array, nodes: int) -> tuple[Array, Array]:
-    """Rules that match the first moments of discrete measures, one in each column (Golub and Welsch)."""
-    matrix = np.zeros((y.shape[1], nodes, nodes))
-    total = mass.sum(axis=0)
-    last, now, size = np.zeros_like(y), np.ones_like(y), total
-    for k in range(nodes):
-        middle = (mass * y * now * now).sum(axis=0) / size
-        matrix[:, k, k] = middle
-        last, now = now, (y - middle) * now - (matrix[:, k, k - 1] ** 2 * last if k else 0.0)
-        smaller, size = size, (mass * now * now).sum(axis=0)
-        if k + 1 < nodes:
-            matrix[:, k, k + 1] = matrix[:, k + 1, k] = np.sqrt(size / smaller)
-    values, vectors = np.linalg.eigh(matrix)
-    return values.T, (total[:, None] * vectors[:, 0] ** 2).T

@@ -191,7 +191,7 @@ class Model(MeanModel):
         the separation that divide it.
         """
         q = self._asked(quantity, h)
-        means = self._means(q) if self.curvature is None else self._contact
+        means = self._means(q)
         rule = means.rule(h + np.array([0.0, *farther]), [quantity])
         return rule, lambda nodes: nodes.terms([quantity], [h], self.grading, means.ways)[:, 0]
 

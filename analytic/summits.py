@@ -196,21 +196,10 @@ class _RandomRadii(Summits):
         return WeightedHeights(self.heights, partial(self.curvature.mean, power)) if power else self.heights
 
     def rule(self, h: Array, grading: Grading, branches: Branches | None = None) -> HeightRule:
-        rule = super().rule(h, grading, branches)
-        return self._spread(rule) if branches is None else rule
+        return super().rule(h, grading, branches or ())
 
     def _new_rule(self, h: Array, grading: Grading, branches: Branches) -> HeightRule:
         return rule_of_radii(h, grading, self.curvature, branches)
-
-    def _spread(self, rule: HeightRule) -> HeightRule:
-        """A rule over heights, spread to heights and radii.
-
-        Exact for sums, their products and third powers where one summit adds a power of its radius, up to 1;
-        fourth powers of the radius have a mean only if it is bounded.
-        """
-        ratio, share = self.curvature.rule(rule.heights)
-        heights = np.broadcast_to(rule.heights, ratio.shape)
-        return HeightRule(heights.ravel(), (rule.probabilities * share).ravel(), rule.below, ratio.ravel())
 
     def jumps(self, branch: Branch, grading: Grading, h: Array, ends: Ends) -> Iterator[Jumps]:
         radii = Radii.over(self.curvature, float(h.max()))
