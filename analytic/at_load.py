@@ -21,26 +21,23 @@ from functools import cache, cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.special import ndtri
 
 from analytic.arrays import Array, Complex, Ints
-from analytic.distribution.of_model import check_falling, shares_upto
+from analytic.distribution.of_model import check_falling, score_of, shares_upto
 from analytic.inversion import LOWEST
 from analytic.laws import term_of
 from analytic.laws.pieces import slope_term
 from analytic.measured_summits import MeasuredHeights
 from analytic.quadrature import gauss_legendre
 from analytic.quantities import quantity_of
-from analytic.roots import root
+from analytic.roots import root, sign_changes
 
 _LIFTS = 24  # nodes in the separation: 1e-6 of the load and better
 _MANY, _LIFTS_OF_MANY = 100.0, 16  # contacts from which so many do as well
 _SCORES, _CLOSE = 6.0, 0.2  # of the ends of the separations: 1e-9 of the surfaces are beyond
-_LEAST = 1e-14  # share of the surfaces
 _FIRST, _LONGEST, _LONGER = 4.0, 5.0, 1.5  # step: in deviations to first order; at most; than the last
 _DEEPEST = 20.0  # penetration over sigma that no asperity reaches
 _PARTS = np.array([0.25, 0.5, 0.75, 1.0])  # of the penetration at which one asperity has all of the load
-_HALVINGS = 60
 _CELLS = 4096  # of the heights, at least
 _GRID, _SPREADS = 4096, 12.0  # points, and standard deviations of the given sum, over which others bear it
 
@@ -124,12 +121,8 @@ def _ends(model: Any, given: str, value: float) -> tuple[float, float]:
     """Separations between which next to all surfaces have the given sum."""
     check_falling(model, given, start := float(model.separation_at(given, value)))
     spread, ends = float(model.std(given, start) / model.slope(given, start)), []
-
-    @cache
-    def score(h: float) -> float:
-        """Normal score of the share of surfaces that are lower."""
-        upto = float(shares_upto(model, given, h)(model.number, np.array([value]))[0])
-        return float(ndtri(np.clip(upto, _LEAST, 1 - _LEAST)))
+    target = value / quantity_of(given).scale(model.surface)
+    score = cache(partial(score_of, model, given, target))
 
     def beyond(h: float, way: int) -> float:
         """By how much it is over that of next to all surfaces, or none."""
@@ -302,10 +295,13 @@ def _by_radius(name: str, ratios: Array | None) -> Array | float:
 
 def _deepest(model: Any, given: str, target: float, h: Array) -> Array:
     """Penetration at which one asperity alone has the target, over the scale, at each separation."""
-    low, high = np.zeros_like(h), np.full_like(h, _DEEPEST)
-    for _ in range(_HALVINGS):
-        middle = (low + high) / 2
-        s = h + middle
-        beyond = model.ways.term(given, h, s, model.grading(s)) > target
-        low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
-    return high
+
+    def excess(penetration: Array, which: Ints) -> Array:
+        s = h[which] + penetration
+        return np.asarray(model.ways.term(given, h[which], s, model.grading(s)) - target)
+
+    deepest = np.full_like(h, _DEEPEST)
+    has = np.flatnonzero(excess(deepest, np.arange(h.size)) > 0)
+    first, unit = np.zeros(has.size), np.ones(has.size)
+    deepest[has] = sign_changes(lambda y, k: excess(y, has[k]), first, deepest[has], unit)
+    return deepest

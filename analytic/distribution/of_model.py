@@ -100,7 +100,7 @@ def separation_law_of(model: Any, load: float, quantity: str, *, other: bool = F
     unit = q.scale(model.surface)
     one, target = one_asperity(model, quantity, start, _CELLS[other]), load / unit
     spread = float(unit * one.usual[1] / model.slope(quantity, start))
-    score = cache(lambda h: _score(model, quantity, h, target, other))
+    score = cache(partial(score_of, model, quantity, target, other=other))
     h = _between(score, start + other * spread / 7, spread)
     z = np.array([score(at) for at in h])
     x = np.interp(np.linspace(0, len(h) - 1, _TABLE), np.arange(len(h)), h)
@@ -113,8 +113,8 @@ def separation_law_of(model: Any, load: float, quantity: str, *, other: bool = F
     return Law(x[kept], upto[kept], moments, (-np.inf, np.inf), one.rounding, again)
 
 
-def _score(model: Any, quantity: str, h: float, target: float, other: bool) -> float:
-    """Normal score of the share of surfaces whose sum at a separation is no more than a target."""
+def score_of(model: Any, quantity: str, target: float, h: float, *, other: bool = False) -> float:
+    """Return the normal score of the share of surfaces with no more than a target, over the scale."""
     one = one_asperity(model, quantity, h, _CELLS[other] // 2)
     share = float(shares_at(one, np.array([target]), _POINTS[other] // 2)[0])
     return float(np.clip(ndtri(np.clip(share, 0.0, 1.0)), -_HIGHEST, _HIGHEST))
