@@ -6,9 +6,9 @@ in series with the half-space, ``1/K = 1/K_asp + compliance`` and ``1/C = 1/C_sp
 Means are then to second order in what surfaces differ by, fluctuations to leading order.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, fields
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,20 +17,12 @@ from numpy.typing import ArrayLike
 from analytic.arrays import Array
 from analytic.height_rule import Fluctuations
 from analytic.interaction import Interaction, in_series
+from analytic.mean_contact import fall_of
 from analytic.model import Model
 from analytic.quantities import SEPARATIONS, quantity_of
 
 if TYPE_CHECKING:
     from analytic.distribution import Law
-
-_STEP = 0.01  # of the differences that give derivatives by h, whose error is its fourth power
-_WEIGHTS = np.array([1, -8, 0, 8, -1]) / 12.0
-
-
-def derivative(found: Callable[[Array], Array], x: Array) -> Array:
-    """Derivative of a function at x, by its values at five points about each."""
-    around = np.stack([found(x + k * _STEP) for k in range(-2, 3)])
-    return np.asarray(np.tensordot(_WEIGHTS, around, 1) / _STEP)
 
 
 @dataclass(frozen=True)
@@ -94,7 +86,7 @@ class InteractingModel(Model):
         h = np.asarray(h, dtype=np.float64)
         if not (quantity in SEPARATIONS or self.series(quantity)):
             return self.alone.slope(quantity, h)
-        return -derivative(lambda at: self.mean(quantity, at), h)
+        return fall_of(partial(self.mean, quantity), h)
 
     def separation_at(self, quantity: str, value: ArrayLike) -> Array:
         """Return the separation of the mean surface, as `Model.separation_at`."""

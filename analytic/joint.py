@@ -11,20 +11,22 @@ J. DeVaal, A. H. Hegazy, AIAA paper 82-0888 (1982); recalled, the paper was not 
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.polynomial import Chebyshev, HermiteE
+from numpy.polynomial import HermiteE
 from numpy.typing import ArrayLike
 
 from analytic.arrays import Array, hold
 from analytic.gases import ATMOSPHERE, GASES, ROOM, Gas, gas_of
 from analytic.nayak import Nayak
+from analytic.piecewise import fitted
 from analytic.quadrature import gauss_legendre
 from analytic.surface import SUMMIT_SPREAD, SpectralMoments, Surface
 
 _REACH = 10.0  # standard deviations of heights that count
-_DIRECT, _PANEL, _DEGREE = 4096, 0.5, 17  # distances that are integrated one by one; or interpolated
+_DIRECT, _PANEL, _TERMS = 4096, 0.5, 18  # distances that are integrated one by one; or interpolated
 
 
 @dataclass(frozen=True)
@@ -184,17 +186,13 @@ class Gap:
 
 def gap_integral(y: ArrayLike, m: float, order: int = 0) -> Array:
     """I(Y, M) to 1e-13, or a derivative of it by Y, in the shape of Y."""
-    y = np.asarray(y, dtype=np.float64)
-    once, back = np.unique(y, return_inverse=True)
+    once, back = np.unique(np.asarray(y, dtype=np.float64), return_inverse=True)
     if once.size <= _DIRECT:
-        return np.reshape(_integrals(once, m, order)[back], y.shape)
-    edges = np.linspace(once[0], once[-1], max(math.ceil((once[-1] - once[0]) / _PANEL), 1) + 1)
-    panel = np.clip(np.searchsorted(edges, once, side="right") - 1, 0, edges.size - 2)
-    found = np.empty(once.size)
-    for k in np.unique(panel):
-        series = Chebyshev.interpolate(lambda x: _integrals(x, m, order), _DEGREE, edges[k : k + 2])
-        found[panel == k] = series(once[panel == k])
-    return np.reshape(found[back], y.shape)
+        found = _integrals(once, m, order)
+    else:
+        edges = np.linspace(once[0], once[-1], math.ceil((once[-1] - once[0]) / _PANEL) + 1)
+        found = fitted(partial(_integrals, m=m, order=order), edges, _TERMS)(once)
+    return np.reshape(found[back], np.shape(y))
 
 
 def _integrals(y: Array, m: float, order: int) -> Array:

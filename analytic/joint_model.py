@@ -10,7 +10,7 @@ differ by, fluctuations to leading order; so they are in series with the bodies.
 
 from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, fields, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,9 +18,10 @@ from numpy.typing import ArrayLike
 
 from analytic.arrays import Array
 from analytic.height_rule import Fluctuations
-from analytic.interacting import InteractingModel, derivative
+from analytic.interacting import InteractingModel
 from analytic.interaction import in_series
 from analytic.joint import Gap
+from analytic.mean_contact import fall_of
 from analytic.model import Cumulants, Model
 from analytic.quantities import JOINT, Quantity, quantity_of
 
@@ -69,7 +70,7 @@ class JointModel(Model):
         """As of the spots."""
         if quantity not in JOINT:
             return super().slope(quantity, h)
-        return -derivative(lambda at: self.mean(quantity, at), np.asarray(h, dtype=np.float64))
+        return fall_of(partial(self.mean, quantity), h)
 
     def cumulants(self, quantity: str, h: ArrayLike) -> Cumulants:
         """As of the spots; the mean of a joint is exact where that of its spots is."""

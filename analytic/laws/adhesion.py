@@ -1,7 +1,6 @@
 """Adhesive elastic contacts: Derjaguin, Muller and Toporov (DMT), and Johnson, Kendall and Roberts (JKR)."""
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -11,8 +10,6 @@ from analytic.arrays import Array
 from analytic.laws.law import ContactLaw
 from analytic.laws.unloading import Unloading
 from analytic.surface import Surface
-
-_STEPS = 60  # of Newton's method at most; it takes six
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -127,15 +124,15 @@ class JohnsonKendallRoberts(_Adhesive):
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
         """Return the load of a contact, in the shape of `y` and `e`."""
-        return self.load_at(_pressed(y * y, self.stretch(e)), e)
+        return self.load_at(_root(np.sqrt(3 + 3 * y * y / self.stretch(e))), e)
 
     def radius(self, piece: int, y: Any, e: Array) -> Any:
         """Return the radius of a contact; its square is the area over pi R sigma."""
-        return self.radius_at(_pressed(y * y, self.stretch(e)), e)
+        return self.radius_at(_root(np.sqrt(3 + 3 * y * y / self.stretch(e))), e)
 
     def stiffness(self, piece: int, y: Array, e: Array) -> Array:
         """Return the stiffness of a spot over 2 E* sqrt(R sigma): ``dP/d delta``."""
-        z = _pressed(y * y, self.stretch(e))
+        z = _root(np.sqrt(3 + 3 * y * y / self.stretch(e)))
         return np.asarray(e * self.radius_at(z, e) * (z**3 - 3) / (z**3 - 1))
 
     def load_at(self, z: Any, e: Array) -> Any:
@@ -162,11 +159,11 @@ class _Stuck(Unloading):
 
     def load(self, piece: int, y: Any, deepest: Any, e: Array) -> Any:
         """Load of a contact, in the shape of all."""
-        return self.loading.load_at(_pulled(y, self.loading.stretch(e)), e) + 0.0 * deepest
+        return self.loading.load_at(_root(y * np.sqrt(3 / self.loading.stretch(e))), e) + 0.0 * deepest
 
     def radius(self, piece: int, y: Any, deepest: Any, e: Array) -> Any:
         """Radius of a contact; its square is the area over pi R sigma."""
-        return self.loading.radius_at(_pulled(y, self.loading.stretch(e)), e) + 0.0 * deepest
+        return self.loading.radius_at(_root(y * np.sqrt(3 / self.loading.stretch(e))), e) + 0.0 * deepest
 
     def stiffness(self, piece: int, y: Array, deepest: Array, e: Array) -> Array:
         """Refused: its variance is infinite."""
@@ -178,29 +175,12 @@ class _Stuck(Unloading):
     slope = stiffness
 
 
-def _pressed(delta: Any, stretch: Array) -> Any:
-    """Root z of ``z^4 - 4 z = 3 delta/D_e``, the larger root."""
-    wanted = 3 * delta / stretch
-    start = (wanted + 4 ** (4 / 3)) ** 0.25  # right at first touch, and far beyond it
-    return _settled(start, lambda z: (z * (z**3 - 4) - wanted) / (4 * z**3 - 4))
+def _root(q: Any) -> Any:
+    """Root z of ``z^4 - 4 z = q^2 - 3`` by Ferrari: the larger one, or for q < 0 the smaller one.
 
-
-def _pulled(y: Any, stretch: Array) -> Any:
-    """Root z of ``(z - 1) sqrt(z^2 + 2 z + 3) = y sqrt(3/D_e)``; below 1 for -y."""
-    wanted = y * np.sqrt(3 / stretch)
-
-    def step(z: Any) -> Any:
-        root = np.sqrt(z * z + 2 * z + 3)
-        return ((z - 1) * root - wanted) / (root + (z - 1) * (z + 1) / root)
-
-    return _settled(1 + wanted / np.sqrt(6 + np.abs(wanted) * 2), step)
-
-
-def _settled(z: Any, step: Callable[[Any], Any]) -> Any:
-    """Where Newton's steps lead from z."""
-    for _ in range(_STEPS):
-        taken = step(z)
-        z = z - taken
-        if np.all(np.abs(taken) <= 1e-9 * np.abs(z)):  # the next step would be the square of that
-            break
-    return z
+    q is 0 where contacts break off; ``m^3 + (q^2 - 3) m = 2`` by Cardano, no terms of which cancel.
+    """
+    p = q * q / 3
+    t = (1 + np.sqrt(3 * p * (1 - p + p * p / 3))) ** (1 / 3)
+    m = 2 / (t * t + (p - 1) + ((p - 1) / t) ** 2)
+    return np.sqrt(m / 2) + q / (2 * (m + 1)) * np.sqrt((m * m + 2 * m + 4) / (np.sqrt(2 / m) + m / 2))
