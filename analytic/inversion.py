@@ -7,11 +7,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.arrays import Array
-from analytic.gradings import Grading, Homogeneous
+from analytic.gradings import Grading
 from analytic.heights import GAUSSIAN, HeightLaw
 from analytic.integrals import fn, quotient
-from analytic.law_rule import law_rule
-from analytic.quantities import QUANTITIES, Quantity
+from analytic.quantities import QUANTITIES
 from analytic.roots import falling_root
 
 LOWEST = -40.0  # separation that is looked at
@@ -51,28 +50,6 @@ def last_separations(
     return np.array(roots, dtype=np.float64).reshape(log_targets.shape)
 
 
-def separations_of_powers(
-    quantity: Quantity, log_targets: Array, grading: Grading | None, heights: HeightLaw
-) -> Array:
-    """Find the largest h with ``log F*_n(h) = log_target``; arguments and errors of `last_separations`."""
-    n = quantity.exponent
-
-    def log_mean(h: ArrayLike) -> Array:
-        return fn(n, h, grading, log=True, heights=heights)
-
-    return last_separations(log_mean, log_targets, _GRID, _about(n, grading, heights), quantity.name)
-
-
-def _about(n: float, grading: Grading | None, heights: HeightLaw) -> Array:
-    """Logarithms on the grid to some digits, by the heights and probabilities of its lowest separation."""
-    grading = Homogeneous() if grading is None else grading
-    s, probabilities = law_rule(heights, _GRID[:1], grading, power=1, exponent=n + 1)
-    approach = s - _GRID[:, None]
-    terms = np.where(approach > 0, np.abs(approach) ** n, 0.0)
-    with np.errstate(all="ignore"):
-        return np.asarray(np.log(terms @ (probabilities * grading(s))))
-
-
 def ratio_at_equal_load(
     quantity: str, h: ArrayLike, grading: Grading, *, heights: HeightLaw = GAUSSIAN
 ) -> Array:
@@ -104,7 +81,12 @@ def ratio_at_equal_load(
     """
     q = QUANTITIES[quantity]
     h = np.asarray(h, dtype=np.float64)
-    other = separations_of_powers(QUANTITIES["load"], fn(1.5, h, log=True, heights=heights), grading, heights)
+
+    def log_load(at: ArrayLike) -> Array:
+        return fn(1.5, at, grading, log=True, heights=heights)
+
+    target = fn(1.5, h, log=True, heights=heights)
+    other = last_separations(log_load, target, _GRID, log_load(_GRID), "load")
 
     # Relative to the loads, which are equal: hardly sensitive to the last digits of h2, and no underflow.
     graded = quotient(other, (q.exponent, grading if q.modulus else None), (1.5, grading), heights)

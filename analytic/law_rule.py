@@ -158,6 +158,8 @@ def _mass(law: HeightLaw, left: float, right: float) -> float:
 
 def law_integral(n: float, h: Array, law: HeightLaw, grading: Grading) -> Array:
     """``int_h^inf (s-h)^n density(s) grading(s) ds`` in the shape of `h`, of some separations by one rule."""
+    if not np.all(np.isfinite(h)):
+        raise ValueError("h: every separation must be finite")
     result, order = np.zeros(h.size), np.argsort(h, axis=None)
     together = _TOGETHER if isinstance(law, Gaussian) else 1
     for k in range(0, h.size, together):

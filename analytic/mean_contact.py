@@ -12,7 +12,7 @@ from analytic.arrays import Array
 from analytic.gradings import Grading, Homogeneous
 from analytic.height_rule import HeightRule
 from analytic.heights import HeightLaw
-from analytic.inversion import LOWEST, last_separations, separations_of_powers
+from analytic.inversion import LOWEST, last_separations
 from analytic.law_rule import law_integral
 from analytic.laws.branch import UnloadingBranch, Ways
 from analytic.laws.law import piece_of
@@ -88,20 +88,18 @@ class MeanContact:
         """Heights, and radii, for integrals of what is added to these quantities at these separations."""
         return self.summits.rule(np.asarray(h, dtype=np.float64), self.grading, self.ways.among(quantities))
 
-    def separations_at(self, quantity: str, values: Array) -> Array:
-        """Largest separations with given means, in the shape of `values`.
+    def separations_at(
+        self, quantity: str, values: Array, mean: Callable[[ArrayLike], Array] | None = None
+    ) -> Array:
+        """Largest separations with given means, in the shape of `values`; perhaps by a closer `mean`.
 
         Refused if the mean does not have a value where it can be told from 0, at h = -40 or above.
         """
-        grid = self._grid(quantity)
+        grid, found = self._grid(quantity), mean or partial(self.mean, quantity)
         rough = self.rule(grid[:1], [])  # right to a percent, but in tails that this separation hardly needs
-        about = np.concatenate([self._mean(quantity, grid[k : k + 1], rough) for k in range(grid.size)])
         with np.errstate(divide="ignore", invalid="ignore"):
-
-            def log_mean(h: ArrayLike) -> Array:
-                return np.asarray(np.log(self.mean(quantity, h)))
-
-            return last_separations(log_mean, np.log(values), grid, np.log(about), quantity)
+            about = np.log(self._mean(quantity, grid, rough))
+            return last_separations(lambda h: np.log(found(h)), np.log(values), grid, about, quantity)
 
     def _in_parts(self, h: ArrayLike, quantity: str, function: Callable[[Array, HeightRule], Array]) -> Array:
         """A few separations at a time, which share a rule."""
@@ -195,8 +193,7 @@ class MeanPowers:
 
     def separations_at(self, quantity: str, values: Array) -> Array:
         """Largest separations with given means, in the shape of `values`."""
-        q = quantity_of(quantity)
-        return separations_of_powers(q, np.log(values), self._grading(q), self._heights(q))
+        return self.contact.separations_at(quantity, values, partial(self.mean, quantity))
 
     def _grading(self, q: Quantity) -> Grading | None:
         return self.contact.grading if q.modulus else None

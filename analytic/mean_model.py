@@ -149,8 +149,8 @@ class MeanModel:
         Raises
         ------
         ValueError
-            If a value is not positive or not reached between h = -40 and 1000 (under other laws than
-            Hertz's: up to where the probability of a contact underflows).
+            If a value is not positive, or not reached between h = -40 and where the probability of a contact
+            underflows.
         """
         q = self._asked(quantity)
         target = np.asarray(value, dtype=np.float64)

@@ -27,7 +27,7 @@ from analytic.resolution import resolved_breaks
 Branches = tuple[Branch, ...]
 Ends = tuple[float, float]
 
-_HIGHEST = 1e-280  # share of heights above the highest separation that is looked at
+_HIGHEST = 1e-300  # share of heights above the highest separation that is looked at
 _NODES, _AS_WIDE = 64, 0.6  # points for curvatures, if their density bends over so many heights
 _NARROW, _PER_NARROW, _PER_PIECE = 0.25, 10, 32  # heights of a narrow piece, points of one and of a wider one
 _RAREST = 1e-18  # share of the touching heights above which curvatures are left out

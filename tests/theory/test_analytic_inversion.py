@@ -9,7 +9,7 @@ import scipy.stats
 from oracles.reference import F, F_star
 
 import analytic
-from analytic import Custom, Exponential, inversion, law_rule
+from analytic import Custom, Exponential, height_rule, inversion, law_rule
 
 SURFACE = analytic.Surface(sigma=1.37e-6, radius=13e-6, eta=3e8, nominal_area=1e-4, E_star=78.6e9)
 H = np.array([-30.0, -8.0, -1.0, 0.0, 0.1, 2.0, 9.9, 10.2, 25.0, 36.0])
@@ -30,7 +30,8 @@ H = np.array([-30.0, -8.0, -1.0, 0.0, 0.1, 2.0, 9.9, 10.2, 25.0, 36.0])
 def test_separation_at_inverts_the_mean(quantity, grading, above):
     h = H[above < H]
     means = analytic.mean(SURFACE, quantity, h, grading)
-    found = analytic.Model(SURFACE, grading=grading).separation_at(quantity, means.reshape(1, -1))[0]
+    model = analytic.Model(SURFACE, grading=grading or analytic.Homogeneous())
+    found = model.separation_at(quantity, means.reshape(1, -1))[0]
     # The mean has 1e-14 of error; h^2/2 turns it into less where h is large, d ln F/dh ~ 1e-2 into more.
     np.testing.assert_allclose(found, h, rtol=1e-12, atol=2e-13)
 
@@ -49,7 +50,7 @@ def test_values_that_no_separation_has():
     for value in (0.0, -1.0, math.nan, math.inf, [1.0, -1.0]):
         with pytest.raises(ValueError, match=r"load = .*finite values > 0 N"):
             analytic.Model(SURFACE).separation_at("load", value)
-    with pytest.raises(ValueError, match="contacts: not reached for h from -40 to 1000"):
+    with pytest.raises(ValueError, match="contacts: not reached for h from -40 to 37"):
         analytic.Model(SURFACE).separation_at("contacts", 2 * SURFACE.n_asperities)
     with pytest.raises(ValueError, match="load: not reached"):
         analytic.Model(SURFACE, grading=Custom(lambda s: -np.ones_like(s))).separation_at("load", 1.0)
@@ -108,7 +109,7 @@ LAWS = {
 def test_any_law_is_inverted_by_few_integrals(law, grading, monkeypatch):
     """To 1e-12 with at most 20 rules of heights a value, one of which the values of a call share."""
     made = []
-    for module in (law_rule, inversion):
+    for module in (law_rule, height_rule):
 
         def counted(*given, rule=module.law_rule, **named):
             made.append(1)
