@@ -73,7 +73,7 @@ class Fit(Shown):
     mean_squares : dict of str to float
         Mean squares of slopes and second derivatives, by the names of `mcgw.maps.summit_sums.SUMS`.
     form : str
-        The form that was removed, one of `mcgw.maps.steps`.
+        The form that was removed.
     waves : Waves
         Errors due to the small number of waves on the map.
     tiles : Table

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 from scipy import ndimage
@@ -10,7 +10,7 @@ from scipy import ndimage
 from analytic.arrays import Marks
 from mcgw.maps.bad_points import Recorded, filled, recorded, small_spike_heights, spike_heights
 from mcgw.maps.form import lowpass, smooth, without_form, without_offsets
-from mcgw.maps.steps import STEPS, Form, LinesTo, Missing, SpikesTo
+from mcgw.maps.steps import Form, LinesTo, Missing, SpikesTo
 from mcgw.maps.topography import SMALLEST, Topography
 from mcgw.scene.arguments import arguments
 from mcgw.scene.kinds import Whole, Word
@@ -32,7 +32,7 @@ class Preparation:
     cutoff, long_cutoff : float or None
         Shortest and longest wavelength that counts, m; None: as measured.
     form, missing, spikes, lines : str, optional
-        Each by one of the words that its row of `mcgw.maps.steps.STEPS` knows.
+        Each by one of its words in `mcgw.maps.steps`.
     trim : int, optional
         Points that are left off along each edge.
     """
@@ -55,10 +55,11 @@ def preparation_of(given: Mapping[str, Any], length: Callable[[str, Any], float]
         If words or numbers are none of those known, all of them told at once.
     """
     kinds: dict[str, Kind] = {"parts": Whole(2), "trim": Whole()}
-    kinds |= {step.name: Word(tuple(step.kinds)) for step in STEPS if step.kinds}
+    words = {"form": Form, "missing": Missing, "spikes": SpikesTo, "lines": LinesTo}
+    kinds |= {name: Word(get_args(each)) for name, each in words.items()}
     chosen = arguments(given, kinds)
     parts = chosen.pop("parts")
-    for key in (step.name for step in STEPS if not step.kinds):
+    for key in ("cutoff", "long_cutoff"):
         value = given[key]
         chosen[key] = None if value is None or value == "none" else length(key, value)
     return Preparation(**chosen), parts

@@ -90,6 +90,16 @@ def test_gases_are_those_of_tables_and_of_kinetic_theory(name):
         assert gas_of(name, 288).conductivity == pytest.approx(at_288, rel=0.02)
 
 
+@pytest.mark.parametrize("gas", ["helium", "argon"])
+@pytest.mark.parametrize("rms", [0.5e-6, 2e-6, 8e-6])
+def test_gaps_of_helium_and_argon_are_those_of_a_published_formula(gas, rms):
+    """To 2 %, from Y = 2.5 rms on; K. J. Negus, M. M. Yovanovich, ASME HTD 96 (1988) 501, recalled."""
+    m = gas_of(gas).jump / rms
+    for y in (2.5, 3.0, 3.5, 4.0):
+        more = 1.063 + 0.0471 * (4 - y) ** 1.68 * math.log(1 / m) ** 0.84 if m < 1 else 1 + 0.06 / m**0.8
+        assert float(gap_integral(y, m)) == pytest.approx(more / (y + m), rel=0.02)
+
+
 @pytest.mark.parametrize(("joint", "line"), [
     (lambda: Joint("steam"), "gas = 'steam': give"),
     (lambda: Joint("vacuum", temperature=300.0), "temperature = 300.0: it is only for"),
