@@ -4,6 +4,7 @@ import hashlib
 import json
 import warnings
 from collections.abc import Mapping, Sequence
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +15,9 @@ from mcgw.elasticity.levels import Level, Pressed, Values
 from mcgw.elasticity.sources import Maps
 from mcgw.errors import StoreError
 from mcgw.formats.files import write_whole
-from mcgw.formats.named_files import read_bytes
+from mcgw.formats.named_files import loads_json, read_bytes
 
 _MOST_BYTES = 2**28  # of a file: a million solves
-_CHECK = ', "check": "{}"}}'
-_CHECK_LENGTH = len(_CHECK.format("0" * 16))
 
 
 class Solves:
@@ -91,12 +90,13 @@ class Solves:
         return {"maps": found.hexdigest()[:16], **self.held, "E_star": self.E_star, "seed": self.seed}
 
     def _resume(self, path: Path) -> None:
-        first = _with_check(self._header, "")
+        first = _written(self._question, "")
         if not path.exists():
             write_whole(path, [first.encode()])
             return
-        header, *lines = _lines_of(path)
-        if f"{header}\n" != first:
+        text = read_bytes(path, _MOST_BYTES).decode("utf-8", errors="replace")
+        header, *lines = StringIO(text, newline="\n") if text else [""]
+        if header != first:
             what = next(iter(self.held))
             raise StoreError(
                 f"{path}: its first line does not name these maps at this {what}; give another path"
@@ -119,25 +119,20 @@ class Solves:
     def _line(self, key: tuple[str, int]) -> str:
         values, seconds = self._rows[key]
         row = {"level": key[0], "map": key[1], "values": values, "seconds": seconds}
-        return _with_check(json.dumps(row), self._header)
+        return _written(row, self._header)
 
 
-def _lines_of(path: Path) -> list[str]:
-    """Lines of a file; the last one without its end, if it was cut, counts as one."""
-    *whole, cut = read_bytes(path, _MOST_BYTES).decode("utf-8", errors="replace").split("\n")
-    return [*whole, *([f"{cut}\0"] if cut or not whole else [])]
-
-
-def _with_check(body: str, header: str) -> str:
-    """A line with its checksum at the end, which binds it to the question of its file."""
-    checksum = hashlib.sha256(f"{header}\n{body}".encode()).hexdigest()[:16]
-    return body[:-1] + _CHECK.format(checksum) + "\n"
+def _written(row: Mapping[str, Any], header: str) -> str:
+    """A line with a checksum at its end, which binds it to the question of its file."""
+    checksum = hashlib.sha256(f"{header}\n{json.dumps(row)}".encode()).hexdigest()[:16]
+    return json.dumps({**row, "check": checksum}) + "\n"
 
 
 def _checked(line: str, header: str) -> dict[str, Any] | None:
-    """What a line holds, if it is as it was written; no parser sees any other."""
-    body = line[:-_CHECK_LENGTH] + "}"
-    if _with_check(body, header) != f"{line}\n":
+    """What a line holds, if it is as it was written."""
+    try:
+        row: dict[str, Any] = loads_json(line.encode())
+        del row["check"]
+    except (KeyError, TypeError, ValueError):
         return None
-    found: dict[str, Any] = json.loads(body)
-    return found
+    return row if _written(row, header) == line else None

@@ -8,13 +8,12 @@ from pathlib import Path
 import numpy as np
 from scipy import fft
 
-from analytic import Nayak, SpectralMoments
 from analytic.arrays import Array
 from mcgw.maps.map_files import read_map
 from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography
+from mcgw.scene.rough_bodies import moments_of
 from mcgw.scene.scene import Scene
-from mcgw.validity.fitted_map import moments_of_nayak
 
 _POINTS = 8  # a shortest wave: twice as many change area by 2 %, and the rest by less
 _MOST_POINTS = 2048  # a side
@@ -52,8 +51,11 @@ def maps_of(source: "Scene | Spectrum | Topography | str | Path | Sequence[Topog
         points, or those of a list are not periodic or not of one size.
     """
     if isinstance(source, Scene):
-        spectrum = Spectrum.with_moments(_moments_of(source))
-        return _drawn(spectrum, math.sqrt(source.surface.nominal_area))
+        try:
+            moments = moments_of(source.fitted, source.heights, source.surface)
+        except ValueError as error:
+            raise ValueError(f"the scene {error}") from None
+        return _drawn(Spectrum.with_moments(moments), math.sqrt(source.surface.nominal_area))
     if isinstance(source, Spectrum):
         return _drawn(source, source.long)
     if isinstance(source, str | Path | Topography):
@@ -73,14 +75,6 @@ def _whole(given: "Topography | str | Path") -> Topography:
     if read.missing:
         raise ValueError(f"{read.missing} points are missing; fill them first")
     return read
-
-
-def _moments_of(scene: Scene) -> SpectralMoments:
-    if scene.fitted is not None:
-        return scene.fitted.moments
-    if not isinstance(scene.heights, Nayak):
-        raise ValueError('the scene has no spectrum: give m0, m2, m4 under [surface], or law = "nayak"')
-    return moments_of_nayak(scene.surface, scene.heights.alpha)
 
 
 def _drawn(spectrum: Spectrum, side: float) -> Maps:

@@ -1,9 +1,9 @@
 """How well one map can tell of its surface: long waves are few on it, and form takes some of them away."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy import fft
@@ -101,14 +101,14 @@ def log_derivatives(moments: SpectralMoments) -> dict[str, Array]:
     }  # fmt: skip
 
 
-def block_means(heights: Array, most: int, of: Callable[..., Any] = np.mean) -> Array:
-    """Means (or medians) over blocks of pixels that leave `most` to twice as many along each axis."""
+def block_means(heights: Array, most: int) -> Array:
+    """Means over blocks of pixels that leave `most` to twice as many along each axis."""
     down, along = (max(n // most, 1) for n in heights.shape)
     if down == along == 1:
         return heights
     rows, columns = heights.shape[0] // down, heights.shape[1] // along
     blocks = heights[: rows * down, : columns * along].reshape(rows, down, columns, along)
-    return np.asarray(of(blocks, axis=(1, 3)))
+    return np.asarray(blocks.mean(axis=(1, 3)))
 
 
 def coarser(topography: Topography, most: int) -> Topography:

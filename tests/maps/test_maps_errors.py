@@ -122,9 +122,8 @@ def test_blocks_leave_so_many_points_to_twice_as_many():
     z = np.arange(7 * 10.0).reshape(7, 10)
     means = [[z[2 * j : 2 * j + 2, 3 * i : 3 * i + 3].mean() for i in range(3)] for j in range(3)]
     np.testing.assert_array_equal(block_means(z, 3), means)
-    odd = z**2
-    medians = [[np.median(odd[3 * j : 3 * j + 3, 5 * i : 5 * i + 5]) for i in range(2)] for j in range(2)]
-    np.testing.assert_array_equal(block_means(odd, 2, np.median), medians)
+    odd = [[z[3 * j : 3 * j + 3, 5 * i : 5 * i + 5].mean() for i in range(2)] for j in range(2)]
+    np.testing.assert_array_equal(block_means(z, 2), odd)
     assert block_means(z, 7) is z
     found = coarser(Topography(z, (1.0, 10.0)), 3)
     assert found.pixel == (3.0, 20.0)
