@@ -181,7 +181,7 @@ class Ensemble(Dataset):
     def labelled(self) -> Labelled:
         """Return all data with axes, units and descriptions, for the file, xarray and pandas alike."""
         if self.scene.keep != "statistics":
-            return values_of(self.scene, {name: self.values(name) for name in self.scene.shapes})
+            return values_of(self.scene, self.n_surfaces, self.values)
         return Labelled(statistics_of(self, self.scene.shapes, STATISTICS), axes_of(self.scene))
 
     def sheet(self) -> Sheet:

@@ -1,6 +1,6 @@
 """Results as named arrays with axes, units and words, for files, xarray and pandas, and as tables."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -92,14 +92,14 @@ def axes_of(scene: Scene) -> dict[str, Variable]:
     return {"separation": axis("separation", scene.separations)}
 
 
-def values_of(scene: Scene, tables: Mapping[str, NDArray[Any]]) -> Labelled:
-    """Values of every surface, as the tables hold them."""
-    rows = len(next(iter(tables.values())))
+def values_of(scene: Scene, n_surfaces: int, values: Callable[[str], Any]) -> Labelled:
+    """Values of so many surfaces: arrays by name, or what stands for them."""
     found = {}
-    for name, values in tables.items():
+    for name, shape in scene.shapes.items():
         q, dims = scene.quantity(name), ("surface", *_OF_A_SURFACE)
-        found[name] = Variable(dims[: values.ndim], values, q.unit, q.long_name)
-    return Labelled(found, {"surface": axis("surface", np.arange(rows)), **axes_of(scene)})
+        found[name] = Variable(dims[: 1 + len(shape)], values(name), q.unit, q.long_name)
+    axes = {"surface": np.arange(n_surfaces), "separation": scene.separations}
+    return Labelled(found, {name: axis(name, values) for name, values in axes.items()})
 
 
 def statistics_of(

@@ -95,24 +95,19 @@ class Values(OfScene):
     @cached_property
     def rows(self) -> int:
         """Surfaces of a block: whole chunks of a file."""
-        size, row = block_size(self.scene, self.sampler), 8 * self.columns
+        size, row = block_size(self.scene, self.sampler), 8 * self.scene.width
         fitting = min(_BYTES / (size * row), _DRAWS / (size * (self.sampler.draws + 1)))
         rows = size * int(max(fitting, 1))
         return rows - rows % CHUNK_ROWS if rows > CHUNK_ROWS else rows
 
     @property
-    def columns(self) -> int:
-        """Numbers kept of a surface."""
-        return self.scene.width
-
-    @property
     def disk(self) -> int:  # type: ignore[override]
         """Bytes of the blocks, and of the file they are merged into."""
-        return 2 * 8 * self.n_surfaces * self.columns
+        return 2 * self.joined_bytes(self.n_surfaces)
 
     def joined_bytes(self, surfaces: int) -> int:
         """What the file of so many surfaces takes."""
-        return 8 * surfaces * self.columns
+        return 8 * surfaces * self.scene.width
 
     def tables(self, first: int, stop: int, go_on: GoOn = always) -> Tables:
         """The numbers, a row a surface."""
@@ -143,7 +138,7 @@ class Values(OfScene):
             if value > _MOST:
                 raise StoreError(f"ensemble: {what} = {value:.4g} is more than 2^63 - 1; reduce the scene")
         rows = min(self.rows, n)
-        check_memory(f"contact.separations: a block of {rows} surfaces", 3 * 8 * rows * self.columns)
+        check_memory(f"contact.separations: a block of {rows} surfaces", 3 * 8 * rows * scene.width)
 
 
 def reducer_of(scene: Scene, expected: Expected | None = None) -> OfScene:

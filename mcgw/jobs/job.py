@@ -7,7 +7,7 @@ import hashlib
 import shutil
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from itertools import groupby
 from operator import itemgetter
 from pathlib import Path
@@ -99,6 +99,11 @@ class Job:
 
         return cls.of_sweep(Asked.from_texts(record.text, record.axes), record.path)
 
+    @cached_property
+    def total(self) -> int:
+        """Surfaces of all groups."""
+        return sum(one.n_surfaces for one in self.reducers)
+
     def check(self) -> None:
         """Refuse what fits neither the place, nor the memory, nor the disk.
 
@@ -108,7 +113,7 @@ class Job:
             With the numbers, or with what is there.
         """
         path = self.record.path
-        if self.done() < self.record.plan.total:
+        if self.done() < self.total:
             refuse_read_only(path)
         for one in self.reducers:
             one.check()
@@ -137,7 +142,7 @@ class Job:
             raise StoreError(
                 f"{run.path}: holds something else than this sweep; choose another -o, or remove it"
             )
-        return run.plan.total
+        return self.total
 
     def work(self, span: Span) -> float:
         """What some surfaces of one group take, in any unit."""

@@ -46,7 +46,7 @@ def make(job: Job, by: By, part: Part | None = None) -> int:
         If it could not be finished; what is done is kept.
     """
     job.check()
-    run, total = job.record, sum(one.n_surfaces for one in job.reducers)
+    run, total = job.record, job.total
     if job.done() < total:
         if part:
             tidy(run.path)
@@ -84,7 +84,7 @@ def _at_once(job: Job, by: By) -> None:
         return True
 
     by.progress(0)
-    tables = job.draw(Span(0, run.plan.total), by.threads, go_on)
+    tables = job.draw(Span(0, job.total), by.threads, go_on)
     before = state_of(run.path)
     job.done()  # else the file is another's
     put(run.path, job.contents([(0, tables)], perf_counter() - started), before)

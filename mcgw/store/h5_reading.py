@@ -27,6 +27,7 @@ LARGE = 2**30  # bytes of a file, from which on its numbers are compared with th
 _ATTRIBUTES = (  # that this program writes; another one may add its own, which are not looked at
     *("filetype", "format", "title", "scene", "axes", "seed", "sampler", "digest", "checksum", "date"),
     *("versions", "commit", "cpu", "accuracy_spent", "run", "draws", "wall_seconds", "first", "n"),
+    "coordinates",
 )
 _MOST_TABLES, _MOST_NUMBERS = 128, 64
 _DOCUMENTS = ("title", "scene", "axes")  # other texts are shown and exported as they stand

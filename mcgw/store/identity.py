@@ -48,12 +48,15 @@ class Written:
         The scene as TOML.
     key : str
         SHA-256 of all its values, whoever gave them, but for the number of surfaces.
+    identity : str
+        SHA-256 of all that the numbers of a surface depend on: scene, sampler, what draws.
     """
 
     scene: Scene
     sampler: str
     text: str
     key: str
+    identity: str
 
     @classmethod
     def of(cls, scene: Scene, sampler: str) -> "Written":
@@ -74,13 +77,9 @@ class Written:
         number = "n_surfaces", "max_surfaces", "left_out"
         document["ensemble"] = {key: x for key, x in document["ensemble"].items() if key not in number}
         key = hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()
-        return cls(scene, sampler, text, key)
-
-    @property
-    def identity(self) -> str:
-        """SHA-256 of all that the numbers of a surface depend on: scene, sampler, what draws."""
-        parts = (self.key, self.sampler, versions(of_draws=True))
-        return hashlib.sha256("\0".join(parts).encode()).hexdigest()
+        parts = (key, sampler, versions(of_draws=True))
+        identity = hashlib.sha256("\0".join(parts).encode()).hexdigest()
+        return cls(scene, sampler, text, key, identity)
 
     @property
     def of_all(self) -> str:

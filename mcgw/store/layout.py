@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.labelled import AXES, Labelled, Variable
+from mcgw.ensemble.labelled import Labelled, Variable, values_of
 from mcgw.ensemble.results import BLOCK, Tables, joined
 from mcgw.scene.scene import Scene
 from mcgw.store.h5_writing import FILETYPE, FORMAT, GROUP, Contents
@@ -47,16 +47,10 @@ def contents_of(ensemble: Ensemble, written: Written, **about: Any) -> Contents:
 
 def contents_of_values(written: Written, values: Callable[[str], Any], **about: Any) -> Contents:
     """Those of a scene of which the values of every surface are kept: arrays, or `Rows`."""
-    scene = written.scene
-    variables = {
-        "surface": Variable(("surface",), np.arange(scene.n_surfaces), *AXES["surface"]),
-        "separation": Variable(("separation",), np.array(scene.separations), *AXES["separation"]),
-    }
-    for name, shape in sorted(scene.shapes.items()):
-        q = scene.quantity(name)
-        dims = ("surface", "separation")[: 1 + len(shape)]
-        variables[name] = Variable(dims, values(name), q.unit, q.long_name)
-    return Contents(variables, attributes_of(scene, written.sampler, written.text, **about), written.of_all)
+    found = values_of(written.scene, written.scene.n_surfaces, values)
+    variables = {**found.coordinates, **dict(sorted(found.variables.items()))}
+    attributes = attributes_of(written.scene, written.sampler, written.text, **about)
+    return Contents(variables, attributes, written.of_all)
 
 
 def contents_of_kept(
@@ -64,9 +58,11 @@ def contents_of_kept(
 ) -> Contents:
     """Those of a file without surfaces: what others read, and in one group what that follows from."""
     scales = {name: one for name, one in labelled.coordinates.items() if one.dims == (name,)}
+    others = [name for name in labelled.coordinates if name not in scales]
+    named = {"coordinates": " ".join(others)} if others else {}  # by which xarray knows them
     drawn_from = {f"{GROUP}/{name}": Variable((), values, "", "") for name, values in drawn.items()}
     variables = {**scales, **labelled.coordinates, **labelled.variables, **drawn_from}
-    return Contents(variables, attributes, "\0".join(texts))
+    return Contents(variables, {**attributes, **named}, "\0".join(texts))
 
 
 def attributes_of(scene: Scene, sampler: str, text: str, /, **about: Any) -> dict[str, Any]:

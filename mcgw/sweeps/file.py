@@ -9,7 +9,8 @@ The schema (that of `mcgw.store` for many scenes)::
     /separation           float64 (separations,)          dimension scale: d/sigma
     /load_mean, /load_std float64 (points, separations) N (and so on for each quantity)
     /gamma                float64 (points,)               values of an axis, if they are numbers: by the last
-                                                          word of its key
+                                                          word of its key; the root attribute
+                                                          `coordinates` lists these
 
 and in ``/drawn``, from which the statistics follow::
 

@@ -55,7 +55,6 @@ def prepare():
     Job.draw = made_up
     lock.PATIENCE = 0.0  # a second driver is refused at once
     Values.rows = h5_writing.CHUNK_ROWS = ROWS  # blocks are merged by their packed chunks
-    Values.columns = 6
     if "MCGW_IN_PLACE" in os.environ:  # the wrong way, which the harness must notice
         run_folder.whole_file = written_in_place
 

@@ -8,6 +8,7 @@ import h5py
 import numpy as np
 import pytest
 
+import mcgw
 from mcgw.errors import StoreError
 from mcgw.formats.files import write_whole
 from mcgw.store.h5_writing import SteadyFile
@@ -197,3 +198,20 @@ def test_what_hdf5_writes_is_what_it_reads(tmp_path):
     assert path.read_bytes() == b"0123"
     with pytest.raises(FileExistsError):
         SteadyFile(path)
+
+
+@pytest.mark.parametrize("lacking", [1, 100, 1500])
+def test_what_does_not_fit_when_a_file_is_closed_is_an_error(lacking, make_scene, tmp_path):
+    """HDF5 keeps the last bytes until then: a disk that lacks a single one is full."""
+    resource = pytest.importorskip("resource")
+    drawn = mcgw.simulate(make_scene(separations=(2.0,), n_surfaces=8))
+    mcgw.save(drawn, tmp_path / "whole.h5")
+    room = (tmp_path / "whole.h5").stat().st_size - lacking
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (room, hard))
+    try:
+        with pytest.raises(mcgw.RunError, match=r"e\.h5: cannot be written"):
+            mcgw.save(drawn, tmp_path / "e.h5")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert [path.name for path in tmp_path.iterdir()] == ["whole.h5"]

@@ -95,6 +95,7 @@ def test_other_programs_read_it(tmp_path):
     with xarray.open_dataset(tmp_path / "a.h5", engine="h5netcdf") as data:
         assert data.load_std.dims == ("point", "separation")
         assert np.array_equal(data.load_std.values.reshape(9, 2, 3), sweep.std("load"))
+        assert set(data.coords) == {"point", "separation", "gamma", "n_asperities"}
         assert data.n_asperities.values.tolist() == [200, 2000] * 9
         assert data.attrs["filetype"] == "mcgw-results"
 
