@@ -74,12 +74,14 @@ def drive(
     arguments: Callable[[_Block], tuple[Any, ...]],
     done: Callable[[_Block, Any], None],
     signals: Signals,
+    in_hand: int = _IN_HAND,
 ) -> None:
     """Have an executor draw every block, in any order, and call `done` with each block and its result.
 
     `task` is called with what `arguments` gives for a block. A block that the executor lost, as with its
     worker, is submitted once more, alone; if it is lost again, it is given up and the others are drawn all
-    the same. When a signal has come, which is asked several times a second, this returns.
+    the same. At most `in_hand` blocks are submitted at a time. When a signal has come, which is asked several
+    times a second, this returns.
 
     Raises
     ------
@@ -92,7 +94,7 @@ def drive(
     lost: set[_Block] = set()
     answers: SimpleQueue[tuple[_Block, Future[Any]]] = SimpleQueue()
     running: dict[_Block, Future[Any]] = {}
-    in_hand: int = getattr(executor, "in_hand", _IN_HAND)
+    in_hand = getattr(executor, "in_hand", in_hand)
 
     def submit(block: _Block) -> None:
         try:

@@ -1,4 +1,4 @@
-"""Executors: worker processes of this machine, those of a dask scheduler, and two threads of this process.
+"""Executors of the command line: worker processes of this machine, and those of a dask scheduler.
 
 From Python any `concurrent.futures.Executor` draws blocks. A worker may die at any time and a block may be
 drawn twice: tasks are idempotent, and what counts is what lies on the disk.
@@ -7,13 +7,12 @@ drawn twice: tasks are idempotent, and what counts is what lies on the disk.
 import multiprocessing
 import signal
 from collections.abc import Callable, Iterator
-from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from importlib import import_module
-from threading import Event
 from typing import Any
 
-from mcgw.errors import RunError, StoppedError, extra
+from mcgw.errors import RunError, extra
 from mcgw.machine.child_process import end_with
 
 
@@ -91,29 +90,3 @@ def dask_executor(address: str) -> Iterator[Executor]:
         yield client.get_executor(pure=False)
     finally:
         client.close(timeout=2)
-
-
-class Overlapped(Executor):
-    """One thread of this process draws block after block, another one writes what is drawn."""
-
-    in_hand = 3  # one waits, one is drawn, one is written
-
-    def __init__(self, threads: int | None) -> None:
-        self._draws, self._writes = (ThreadPoolExecutor(1, thread_name_prefix="mcgw-blocks") for _ in "12")
-        self._threads, self._ended = threads, Event()
-
-    def submit(self, attempt: Callable[..., Any], draw: Callable[..., Any], /, *block: Any) -> Future[Any]:  # type: ignore[override]
-        """Submit the drawing of a block, and the writing that this returns."""
-        drawn = self._draws.submit(draw, *block, self._threads, self._go_on)
-        return self._writes.submit(attempt, lambda: drawn.result()())
-
-    def shutdown(self, wait: bool = True, *, cancel_futures: bool = True) -> None:
-        """End both; a long block does not keep an interrupted run alive."""
-        self._ended.set()
-        for pool in (self._draws, self._writes):
-            pool.shutdown(wait=wait, cancel_futures=cancel_futures)
-
-    def _go_on(self, _: int) -> bool:
-        if self._ended.is_set():
-            raise StoppedError("the run has ended")
-        return True

@@ -1,17 +1,18 @@
 """From a job to its file: its blocks are drawn, by whoever draws them, and merged."""
 
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
+from threading import Event
 from time import perf_counter
 from typing import TYPE_CHECKING
 
 from mcgw.ensemble.results import Tables
-from mcgw.errors import RunError, StoreError, in_one_line
+from mcgw.errors import RunError, StoppedError, StoreError, in_one_line
 from mcgw.formats.files import state_of
 from mcgw.formats.gate import open_h5
 from mcgw.jobs.driver import By, Part, Signals, drive, heed_signals
-from mcgw.jobs.executors import Overlapped
 from mcgw.jobs.job import Job, commit_block, draw_block
 from mcgw.machine.in_threads import Items
 from mcgw.store.ensembles import described
@@ -123,19 +124,30 @@ def _draw_missing(job: Job, started: RunFolder, spans: list[Span], by: By, part:
     done = sum(map(job.work, plan.missing(spans)))
     if part:
         spans = [span for span in spans if part.mine(plan.number(span))]
-    folder = str(started.folder.resolve())
+    folder, ended = str(started.folder.resolve()), Event()
 
-    def note(span: Span, _: object) -> None:
+    def note(span: Span, write: Callable[[], object] | None) -> None:
         nonlocal done, left
+        if write:  # in this thread, while the other one draws the next block
+            write()
         done, left = done + job.work(span), left - span.n
         by.progress(done)
+
+    def go_on(_: int) -> bool:
+        if ended.is_set():  # a long block does not keep an interrupted run alive
+            raise StoppedError("the run has ended")
+        return True
 
     by.progress(done)
     if by.executor:
         drive(by.executor, spans, commit_block, lambda s: (folder, s.first, s.n), note, by.signals)
     else:
-        with Overlapped(by.threads) as threads:
-            drive(threads, spans, draw_block, lambda s: (folder, s.first, s.n), note, by.signals)
+        with ThreadPoolExecutor(1, thread_name_prefix="mcgw-blocks") as thread:
+            try:
+                how = by.threads, go_on
+                drive(thread, spans, draw_block, lambda s: (folder, s.first, s.n, *how), note, by.signals, 2)
+            finally:
+                ended.set()
     by.signals.check(
         f"{plan.total - left} of {plan.total} surfaces are kept in {started.folder}; the same command resumes"
     )
