@@ -258,11 +258,11 @@ def test_mistakes_of_the_command(shell, over, words):
 
 
 def test_values_of_the_command_are_numbers_evenly_or_as_they_stand():
-    assert _axis("a.b=-1:3:2") == ("a.b", [-1.0, 3.0])
-    assert _axis("a.b=3:1:5") == ("a.b", [3.0, 2.5, 2.0, 1.5, 1.0])
-    assert _axis("a.b=1,0.5,auto") == ("a.b", [1, 0.5, "auto"])
-    assert _axis("a.b=x:1:2") == ("a.b", ["x:1:2"])
-    _, values = _axis("a.b=0:1:1000000")
+    assert _axis("a.b=-1:3:2", "--over") == ("a.b", [-1.0, 3.0])
+    assert _axis("a.b=3:1:5", "--over") == ("a.b", [3.0, 2.5, 2.0, 1.5, 1.0])
+    assert _axis("a.b=1,0.5,auto", "--over") == ("a.b", [1, 0.5, "auto"])
+    assert _axis("a.b=x:1:2", "--over") == ("a.b", ["x:1:2"])
+    _, values = _axis("a.b=0:1:1000000", "--over")
     assert (len(values), values[-1]) == (10**6, 1.0)
 
 
