@@ -117,6 +117,13 @@ def draw_nothing(patch):
 
 
 @pytest.fixture
+def in_tmp_path(tmp_path, monkeypatch):
+    """Work in an empty folder."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
 def blank_figures(monkeypatch):
     """Draw nothing, which takes most of the time of commands with figures."""
     draw_nothing(monkeypatch)
@@ -165,7 +172,7 @@ def no_pressures(monkeypatch):
 @pytest.fixture
 def cheap(monkeypatch):
     """Boundary elements that are a known multiple of what located summits say."""
-    from mcgw.elasticity.levels import LEVELS, Level, located
+    from oracles.inside import LEVELS, Level, located
 
     def solve(pressed):
         return {name: 1.25 * value for name, value in located(pressed).items()}

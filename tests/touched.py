@@ -10,6 +10,8 @@ import subprocess
 from functools import cache
 from pathlib import Path
 
+from oracles.inside import HOME
+
 import mcgw
 from mcgw.cli import COMMANDS
 
@@ -54,6 +56,8 @@ def named(tree):
                 yield from (f"{module}.{alias.name}" for alias in names)
                 if module == "mcgw":
                     yield from (f"mcgw.{mcgw._HOME.get(alias.name, '')}" for alias in names)
+                elif module == "oracles.inside":
+                    yield from (HOME[alias.name] for alias in names if alias.name in HOME)
             case ast.Attribute(value=ast.Name(id="mcgw"), attr=name):
                 yield f"mcgw.{mcgw._HOME.get(name, '')}"
 

@@ -12,11 +12,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 import pytest
+from oracles.inside import read_attributes
 from oracles.said import call as command_here, without_notes
 
 import mcgw
 from mcgw.cli import main, parser_of
-from mcgw.store.ensembles import read_attributes
 
 near = pytest.approx
 pytestmark = pytest.mark.usefixtures("blank_figures", "no_pressures")

@@ -12,16 +12,24 @@ from functools import partial
 import h5py
 import numpy as np
 import pytest
+from oracles.inside import (
+    CSV,
+    Job,
+    Output,
+    check_outputs,
+    rename_over,
+    state_of,
+    together,
+    whole_file,
+    write_whole,
+)
 from oracles.overwrites import CASES, attempt, contents, prepare, ways
 from scipy.ndimage import gaussian_filter
 
 import mcgw
 from mcgw.cli import main
 from mcgw.commands import outputs
-from mcgw.commands.outputs import CSV, Output, check_outputs
 from mcgw.errors import StoreError, in_one_line
-from mcgw.formats.files import rename_over, state_of, together, whole_file, write_whole
-from mcgw.jobs.job import Job
 
 pytestmark = pytest.mark.usefixtures("no_pressures")
 
@@ -273,7 +281,7 @@ def test_a_file_that_appears_while_a_run_draws_is_left_alone(make_scene, tmp_pat
 def test_leftovers_of_the_dead_go_with_the_next_output(here):
     call = [sys.executable, "-c", "import os; print(os.getpid())"]
     dead = subprocess.run(call, capture_output=True, text=True, check=True)
-    from mcgw.formats.files import temporary_beside
+    from oracles.inside import temporary_beside
 
     mine = temporary_beside(here / "x.csv")
     theirs = mine.with_name(mine.name.replace(f"-{os.getpid()}-", f"-{dead.stdout.strip()}-"))

@@ -12,11 +12,11 @@ import h5py
 import numpy as np
 import pytest
 import scipy.stats
+from oracles.inside import Job
 from oracles.said import call as call_here, without_notes
 
 import analytic
 import mcgw
-from mcgw.jobs.job import Job
 from mcgw.machine.terminal import one_line, plain_text
 
 ROOT = Path(__file__).parents[2]

@@ -13,13 +13,10 @@ from pathlib import Path
 import h5py
 import numpy as np
 from harness import ROWS, forked, made_up, prepare, scene_of
+from oracles.inside import RECORD, Values, parts_of, run
 
-from mcgw.ensemble.simulation import Values
 from mcgw.errors import StoreError
-from mcgw.jobs.running import run
 from mcgw.store import ensembles
-from mcgw.store.lock import parts_of
-from mcgw.store.run_folder import RECORD
 
 BLOCKS = 5
 

@@ -13,10 +13,9 @@ import time
 from pathlib import Path
 
 from harness import ROWS, attempt, forked, prepare, scene_of
+from oracles.inside import RECORD, RunFolder, parts_of
 
 from mcgw.store import ensembles
-from mcgw.store.lock import parts_of
-from mcgw.store.run_folder import RECORD, RunFolder
 
 
 def begun(scene, file):

@@ -69,8 +69,7 @@ def test_a_notebook_is_its_script():
 
 @pytest.mark.site
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_the_script_of_a_notebook_runs(path, monkeypatch, tmp_path):
-    monkeypatch.chdir(tmp_path)
+def test_the_script_of_a_notebook_runs(path, in_tmp_path, tmp_path):
     runpy.run_path(str(path))
     plt.close("all")
 

@@ -55,9 +55,8 @@ def run_commands(code, page):
 @pytest.mark.site
 @pytest.mark.usefixtures("blank_figures")
 @pytest.mark.parametrize("page", WITH_CODE)
-def test_code_of_a_page_runs(page, tmp_path, monkeypatch):
+def test_code_of_a_page_runs(page, tmp_path, in_tmp_path):
     """In its order, in an empty folder; a block whose first line names a file is that file."""
-    monkeypatch.chdir(tmp_path)
     names = {"__name__": "page"}
     with np.printoptions():
         for kind, code in blocks((DOCS / page).read_text()):
@@ -138,8 +137,7 @@ def readme(kind):
 
 @pytest.mark.site
 @pytest.mark.usefixtures("blank_figures")
-def test_commands_of_the_readme_run_in_their_order(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
+def test_commands_of_the_readme_run_in_their_order(tmp_path, in_tmp_path, capsys):
     lines = [line for block in readme("sh") for line in block.splitlines() if line.startswith("mcgw ")]
     found = [shlex.split(line, comments=True)[1:] for line in lines]
     assert len(found) >= 6
@@ -167,9 +165,8 @@ def test_the_whole_set_of_figures(tmp_path, capsys):
     assert {Path(path) for path in said} == set((tmp_path / "figures").iterdir())
 
 
-def test_python_of_the_readme_runs(tmp_path, monkeypatch):
+def test_python_of_the_readme_runs(tmp_path, in_tmp_path):
     """With a tenth of its separations."""
-    monkeypatch.chdir(tmp_path)
     (code,) = readme("python")
     names = {}
     exec(compile(code.replace("0, 4, 41", "0, 4, 5"), "README.md", "exec"), names)

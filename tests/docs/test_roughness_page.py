@@ -5,13 +5,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from oracles.inside import gaussian_transmission
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import analytic
 from analytic import SpectralMoments
 from mcgw.maps import Spectrum
-from mcgw.maps.form import gaussian_transmission
 
 PAGE = (Path(__file__).parents[2] / "runs" / "ROUGHNESS.md").read_text(encoding="utf-8")
 TEXT = " ".join(PAGE.split())

@@ -6,11 +6,11 @@ from types import ModuleType, SimpleNamespace
 
 import numpy as np
 import pytest
+from oracles.inside import LEVELS, Pressed, rimless
 from oracles.rough import rough
 from scipy.optimize import brentq
 
 import mcgw
-from mcgw.elasticity.levels import LEVELS, Pressed, rimless
 
 LATTICE = -3.900264920001956  # 4 zeta(1/2) beta(1/2), physics of a square lattice
 BED = 3.0  # pressure over modulus on a bed of springs, for a depth of one side of the map

@@ -8,12 +8,12 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from oracles.inside import LEVELS, Level, Pressed, located
 from oracles.rough import SPECTRUM, rough
 from scipy.stats import t as student
 
 import mcgw
 from mcgw.elasticity import elastic as public
-from mcgw.elasticity.levels import LEVELS, Level, Pressed, located
 
 pytestmark = pytest.mark.usefixtures("cheap")
 
@@ -78,8 +78,7 @@ def test_is_what_its_solves_say(tmp_path):
 
 
 def test_says_what_levels_save():
-    from mcgw.elasticity.multilevel import Design, Mean
-    from mcgw.formats.table import Table
+    from oracles.inside import Design, Mean, Table
 
     nothing = Mean(np.ones(1), np.ones(1), np.ones(1))
     by_levels = public.Elastic(("area",), nothing, Table(()), Design((0, 2), (9, 4), 2.5, 31.0), 1.0, "w")

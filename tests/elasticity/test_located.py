@@ -5,14 +5,12 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from oracles.inside import Grid, Spots, balanced, beyond_point, interaction
 from oracles.located_by_hand import residual
 from scipy.integrate import dblquad
 from scipy.optimize import brentq
 
 from mcgw.elasticity import located
-from mcgw.elasticity.grid import Grid
-from mcgw.elasticity.located import balanced, beyond_point, interaction
-from mcgw.elasticity.spots import Spots
 
 LATTICE = -3.900264920001956  # 4 zeta(1/2) beta(1/2), physics of a square lattice
 

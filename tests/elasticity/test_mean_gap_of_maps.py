@@ -3,10 +3,10 @@
 import math
 
 import pytest
+from oracles.inside import LEVELS, Pressed
 
 import mcgw
 from analytic import SpectralMoments
-from mcgw.elasticity.levels import LEVELS, Pressed
 from mcgw.elasticity.sources import drawn
 from mcgw.maps import Spectrum, Topography
 

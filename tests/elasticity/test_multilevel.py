@@ -5,9 +5,8 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from oracles.inside import design, difference, mean_of, terms_of
 from scipy.stats import t as student
-
-from mcgw.elasticity.multilevel import design, difference, mean_of, terms_of
 
 
 def made_up(rng, maps):

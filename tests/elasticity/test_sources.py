@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from oracles.inside import maps_of
 from oracles.rough import SPECTRUM, rough
 from scipy.signal import get_window
 
 import mcgw
 from analytic import SpectralMoments
-from mcgw.elasticity.sources import maps_of
 from mcgw.maps import Spectrum, Topography, gaussian_map, moments_on_grid, write_map
 
 

@@ -6,12 +6,10 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from oracles.inside import Pressed, Spots, fallen
 from oracles.rough import rough
 from scipy.integrate import quad
 from scipy.ndimage import map_coordinates
-
-from mcgw.elasticity.levels import Pressed
-from mcgw.elasticity.spots import Spots, fallen
 
 
 def test_of_spheres_are_hertz():

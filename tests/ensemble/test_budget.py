@@ -6,15 +6,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from oracles.inside import mean_surface, solutions_text
 from scipy.stats import norm, qmc
 
 import mcgw
 from mcgw.cli import main
-from mcgw.ensemble.at_load import mean_surface
 from mcgw.ensemble.budget import moved, slopes_of
 from mcgw.ensemble.solved import against_elasticity
 from mcgw.maps import Topography
-from mcgw.reports.solved_loads import solutions_text
 
 FOLDER = Path(__file__).parents[2] / "runs" / "validation"
 sys.path.insert(0, str(FOLDER))

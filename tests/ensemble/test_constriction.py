@@ -10,11 +10,11 @@ import mpmath
 import numpy as np
 import pytest
 from conftest import SURFACE
+from oracles.inside import cautions
 
 import analytic
 import mcgw
 from analytic.interaction import LATTICE, Interaction, in_series
-from mcgw.scene.cautions import cautions
 
 MODES = [Interaction(reference) for reference in ("body", "mean-plane")]
 NAMES = ("load", "stiffness", "conductance", "spot_conductance")

@@ -5,15 +5,13 @@ import math
 import matplotlib as mpl
 import numpy as np
 import pytest
+from oracles.inside import Column, MemoryResults, Sheet, Table, brief, joined, stacked
 from oracles.told import drawn
 
 import analytic
 import mcgw
 from mcgw import Ensemble
-from mcgw.ensemble.results import MemoryResults
 from mcgw.figures.plotting import draw
-from mcgw.formats.sheet import Sheet, brief
-from mcgw.formats.table import Column, Table, joined, stacked
 from mcgw.statistics import tradeoff
 
 mpl.use("agg")

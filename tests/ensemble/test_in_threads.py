@@ -8,10 +8,10 @@ from math import sqrt
 import pytest
 import scipy.stats
 from numba import get_num_threads
+from oracles.inside import use_threads
 
 import analytic
 from analytic.scipy_heights import in_time
-from mcgw.ensemble.drawing import use_threads
 from mcgw.machine.in_threads import in_threads, one_ahead, pieces
 
 

@@ -8,6 +8,20 @@ import tracemalloc
 import numpy as np
 import pytest
 from conftest import SURFACE
+from oracles.inside import (
+    FEWEST,
+    TOO_FEW,
+    MemoryResults,
+    Spread,
+    comparison_text,
+    count_interval,
+    exact_ends,
+    forecast,
+    moments,
+    pearson3_quantile,
+    spread_of,
+    stacked,
+)
 from scipy.special import gammaincinv
 from scipy.stats import binom, norm, pearson3, poisson, t as student
 
@@ -24,20 +38,6 @@ from analytic import (
 )
 from analytic.laws import KogutEtsion, PowerLawGraded
 from mcgw import Ensemble
-from mcgw.ensemble.forecast import forecast
-from mcgw.ensemble.intervals import (
-    FEWEST,
-    TOO_FEW,
-    Spread,
-    count_interval,
-    exact_ends,
-    moments,
-    pearson3_quantile,
-    spread_of,
-)
-from mcgw.ensemble.results import MemoryResults
-from mcgw.formats.table import stacked
-from mcgw.reports.text import comparison_text
 
 SEEDS = 4000
 LAWS = {"gaussian": Gaussian(), "exponential": ExponentialHeights(), "weibull": Weibull(3.6)}

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from oracles.inside import Compared, correlation
 from oracles.interacting_by_hand import LATTICE, MEAN_SINKING
 from scipy.integrate import quad
 
@@ -12,8 +13,6 @@ import analytic
 import mcgw
 from analytic.gases import Gas, gas_of
 from analytic.joint import Joint, gap_integral
-from mcgw.figures.compared import Compared
-from mcgw.reports.solved_loads import correlation
 
 SURFACE = analytic.Surface(sigma=0.9e-6, radius=1e-5, eta=1e10, nominal_area=1e-4, E_star=1e11)
 

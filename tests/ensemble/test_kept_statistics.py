@@ -10,15 +10,14 @@ import pytest
 import scipy.stats
 from conftest import SURFACE
 from oracles.flipped import flip_a_number
+from oracles.inside import drawn as drawn_by, verify
 from oracles.memory_growth import peak_growth
 
 import mcgw
 from mcgw.cli import main
 from mcgw.ensemble import simulation, summarised
-from mcgw.ensemble.drawing import drawn as drawn_by
 from mcgw.ensemble.pooled import Pooled
 from mcgw.errors import StoreError
-from mcgw.store.ensembles import verify
 
 H = [0.0, 1.0, 2.5]
 

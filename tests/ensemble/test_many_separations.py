@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from oracles.inside import verdict
 
 import mcgw
 from mcgw.ensemble.ensemble import MOST_SHOWN, how_many, shown
-from mcgw.statistics.verdict import verdict
 
 WHOLE = np.linspace(1.5, 0.0, 2 * MOST_SHOWN + 1)  # falling: every other one is shown
 

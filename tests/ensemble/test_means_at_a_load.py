@@ -10,13 +10,13 @@ from functools import cache
 
 import numpy as np
 import pytest
+from oracles.inside import summits
 from oracles.laws_of_one_depth import kogut_etsion
 
 import analytic
 import mcgw
 from analytic import at_load
 from analytic.at_load import specimen_moments
-from mcgw.sampling.asperities import summits
 
 SURFACE = analytic.Surface(sigma=1e-6, radius=1e-5, eta=1e9, nominal_area=6e-8, E_star=1e11)
 NAMES = ["load", "area", "contacts", "conductance", "yielded"]

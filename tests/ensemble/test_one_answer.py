@@ -5,11 +5,11 @@ import math
 
 import numpy as np
 import pytest
+from oracles.inside import solved_pressures
 from oracles.laws_of_one_depth import kogut_etsion
 
 import mcgw
 from mcgw.cli import main
-from mcgw.reports.report_figures import solved_pressures
 
 FILM = mcgw.Film(conductivities=(150.0, 16.0), film_resistance=1e-7)
 AIR = {"film": FILM, "joint": mcgw.Joint("air", rms=2e-6)}

@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from oracles.inside import law_text
 from scipy import stats
 
 import analytic
 import mcgw
 from analytic.laws import crowding_factor
-from mcgw.formats.law_text import law_text
 from mcgw.scene.in_words import contact_facts
 from mcgw.scene.uncertainty import Uncertainty
 from mcgw.statistics.comparison import verdict

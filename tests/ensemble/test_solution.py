@@ -4,15 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from oracles.inside import Summits, crossing, solutions, solutions_text
 from scipy.stats import t as student
 
 import analytic
 import mcgw
 from mcgw.cli import main
 from mcgw.ensemble.many_surfaces import ManySurfaces
-from mcgw.ensemble.separation import Summits, crossing
-from mcgw.ensemble.solution import solutions
-from mcgw.reports.solved_loads import solutions_text
 
 LOADS = (3.0, 100.0, 900.0)
 

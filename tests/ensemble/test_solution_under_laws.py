@@ -9,13 +9,11 @@ from math import pi, sqrt
 import numpy as np
 import oracles.laws_of_one_depth as by_hand
 import pytest
+from oracles.inside import LawSum, Summits, solutions, solutions_text
 
 import mcgw
 from analytic import quantity_of
 from analytic.laws import Branch
-from mcgw.ensemble.separation import LawSum, Summits
-from mcgw.ensemble.solution import solutions
-from mcgw.reports.solved_loads import solutions_text
 
 YIELD_OF_STEEL = by_hand.yields_at(0.004)
 

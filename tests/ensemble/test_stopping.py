@@ -6,15 +6,22 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from oracles.inside import (
+    after,
+    before,
+    checkpoints,
+    forecast,
+    mean_interval,
+    read_attributes,
+    spread_of,
+    upper_contacts,
+)
 
 import analytic
 import mcgw
 from mcgw.cli import main
-from mcgw.ensemble.forecast import after, before, checkpoints, forecast, upper_contacts
-from mcgw.ensemble.intervals import mean_interval, spread_of
 from mcgw.errors import StoreError
 from mcgw.jobs import running
-from mcgw.store.ensembles import read_attributes
 
 SEEDS = 2500
 

@@ -9,19 +9,16 @@ from dataclasses import replace
 import h5py
 import numpy as np
 import pytest
+from oracles.inside import Job, RunFolder, pressures_of, read_attributes
 
 import mcgw
 from analytic.at_load import Moments
 from mcgw.cli import main
-from mcgw.ensemble.at_load import pressures_of
 from mcgw.errors import StoreError
 from mcgw.exports.curves import KINDS, Curve, quantile_name
 from mcgw.exports.programs import PROGRAMS
 from mcgw.exports.table_text import UNITS, heading, in_units, table_text
 from mcgw.exports.writing import from_zero, surfaces_for
-from mcgw.jobs.job import Job
-from mcgw.store.ensembles import read_attributes
-from mcgw.store.run_folder import RunFolder
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "10 mm^2", "78.6 GPa")
 FILM = mcgw.Film(resistivity=1 / 150 + 1 / 16)
@@ -370,8 +367,7 @@ def test_what_has_no_table_is_told(scene, ensemble, tmp_path):
     mcgw.export(fine, tmp_path / "t.inp", **steps, units="mm-N-s")
 
 
-def test_command(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
+def test_command(tmp_path, in_tmp_path, capsys):
     assert main(["init", "demo", "-o", "s.toml"]) == 0
     words = ["export", "s.toml", "--to", "moose", "-o"]
     for given, told in (

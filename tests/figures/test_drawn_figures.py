@@ -10,19 +10,34 @@ from matplotlib.collections import LineCollection, PathCollection
 from matplotlib.lines import Line2D
 from oracles import told
 from oracles.crowding import crowded
+from oracles.inside import (
+    FAMILIES,
+    GAMMA,
+    PAIRS,
+    THEORY,
+    Check,
+    Comparison,
+    Convergence,
+    Curve,
+    FigureData,
+    Panel,
+    Points,
+    Series,
+    Slope,
+    Verdict,
+    compare,
+    draw,
+    look,
+    power_of_ten,
+    quantity_panel,
+    save_comparison,
+    save_convergence,
+    save_tradeoff,
+)
 
 import analytic
 import mcgw
 from mcgw.figures import style
-from mcgw.figures.against_theory import quantity_panel, save_comparison
-from mcgw.figures.data import GAMMA, FigureData, Panel, Points, Series
-from mcgw.figures.panels import draw
-from mcgw.figures.studies import save_convergence, save_tradeoff
-from mcgw.figures.style import FAMILIES, PAIRS, THEORY, look, power_of_ten
-from mcgw.statistics.checks import Check, Slope
-from mcgw.statistics.comparison import Comparison, Curve, compare
-from mcgw.statistics.convergence import Convergence
-from mcgw.statistics.verdict import Verdict
 
 
 def bars_of(axis):
@@ -199,10 +214,7 @@ def test_convergence_without_slopes(make_scene, kept, tmp_path):
 
 
 def test_tradeoff(make_scene, kept, tmp_path, recorded):
-    from mcgw.ensemble.prices import Way
-    from mcgw.statistics.ladder import Ladder, Rung
-    from mcgw.statistics.measured_ways import Point
-    from mcgw.statistics.tradeoff import Tradeoff
+    from oracles.inside import Ladder, Point, Rung, Tradeoff, Way
 
     points = (
         Point("tail", "mean", 10, 0.2, 0.02, 0.0, 1e-3, 16),

@@ -9,6 +9,18 @@ import numpy as np
 import pytest
 from conftest import SURFACE
 from oracles.crowding import crowded
+from oracles.inside import (
+    CATALOGUE,
+    GAMMA,
+    Compared,
+    FigureData,
+    draw,
+    figures_of,
+    prefixed,
+    ratio_of_sums,
+    save_figure_files,
+    short,
+)
 from oracles.told import mark
 from scipy.integrate import quad
 from scipy.optimize import brentq
@@ -17,13 +29,8 @@ from scipy.stats import norm
 import analytic
 import mcgw
 from mcgw import scene_from
-from mcgw.figures.catalogue import CATALOGUE, figures_of
-from mcgw.figures.compared import Compared
-from mcgw.figures.data import GAMMA, FigureData, ratio_of_sums
-from mcgw.figures.panels import draw, save_figure_files
 from mcgw.figures.populations import spread
 from mcgw.figures.ratios import _jackknifed
-from mcgw.figures.style import prefixed, short
 
 THEORY_ALONE = {"figure-1"}
 

@@ -6,12 +6,10 @@ import numpy as np
 import pytest
 from conftest import SURFACE
 from matplotlib.colors import to_hex
+from oracles.inside import Compared, draw, figures_of
 
 import mcgw
 from mcgw.figures import style
-from mcgw.figures.catalogue import figures_of
-from mcgw.figures.compared import Compared
-from mcgw.figures.panels import draw
 
 pytestmark = pytest.mark.site
 

@@ -5,9 +5,8 @@ import numpy as np
 import pytest
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
+from oracles.inside import STYLE, save_figure
 from PIL import Image
-
-from mcgw.figures.style import STYLE, save_figure
 
 pytestmark = pytest.mark.site
 X = np.linspace(0.0, 4.0, 9)

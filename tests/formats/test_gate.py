@@ -10,11 +10,10 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from oracles.inside import check_archive, loads, loads_json, open_h5
 from oracles.memory_growth import peak_growth
 
 from mcgw.errors import StoreError
-from mcgw.formats.gate import check_archive, open_h5
-from mcgw.formats.named_files import loads, loads_json
 
 SECRET = b"correct horse battery staple" * 64
 

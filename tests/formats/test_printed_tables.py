@@ -6,14 +6,27 @@ import stat
 import h5py
 import numpy as np
 import pytest
-
-from mcgw.formats.files import alive, check_output, temporary_beside, write_whole
-from mcgw.formats.gate import opened
-from mcgw.formats.named_files import loads, open_npy, read_text
-from mcgw.formats.numbers import columns, number, typeset
-from mcgw.formats.sheet import Sheet, listed
-from mcgw.formats.table import Column, Table, digits_of, evenly, stacked
-from mcgw.formats.units import parse
+from oracles.inside import (
+    Column,
+    Sheet,
+    Table,
+    alive,
+    check_output,
+    columns,
+    digits_of,
+    evenly,
+    listed,
+    loads,
+    number,
+    open_npy,
+    opened,
+    parse,
+    read_text,
+    stacked,
+    temporary_beside,
+    typeset,
+    write_whole,
+)
 
 LOAD = Column(
     "load", [12.3456, 0.0, np.nan], unit="N", error=[0.0123, 0.5, 1.0],

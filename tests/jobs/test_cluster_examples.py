@@ -7,9 +7,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from oracles.inside import verify
 
 import mcgw
-from mcgw.store.ensembles import verify
 
 pytestmark = pytest.mark.site
 

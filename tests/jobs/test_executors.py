@@ -12,17 +12,12 @@ from pathlib import Path
 
 import pytest
 from oracles.begun_runs import digest
+from oracles.inside import Jobs, Signals, Span, Values, dask_executor, drive, heed_signals, parts_of, run
 from oracles.lost_workers import deadly, deadly_once
 
 import mcgw
-from mcgw.ensemble.simulation import Values
 from mcgw.errors import RunError, StoppedError
 from mcgw.jobs import driver, job
-from mcgw.jobs.driver import Signals, drive, heed_signals
-from mcgw.jobs.executors import Jobs, dask_executor
-from mcgw.jobs.running import run
-from mcgw.store.lock import parts_of
-from mcgw.store.spans import Span
 
 SIZE, SURFACES = 8, 72
 HERE = Path(__file__).parents[1]

@@ -4,11 +4,10 @@ import re
 
 import numpy as np
 import pytest
+from oracles.inside import Values, law_text
 
 import mcgw
 from mcgw.cli import main
-from mcgw.ensemble.simulation import Values
-from mcgw.formats.law_text import law_text
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "0.1 mm^2", "78.6 GPa")
 SCENE = mcgw.Scene(SURFACE, separations=[0.0, 1.0], n_surfaces=100, seed=1)

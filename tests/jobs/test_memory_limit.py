@@ -9,16 +9,14 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from oracles.inside import Values, block_size, check_memory, memory_available, reducer_of
 from oracles.memory_growth import peak_growth
 from oracles.said import without_notes
 
 import mcgw
-from mcgw.ensemble.drawing import block_size
-from mcgw.ensemble.simulation import Values, reducer_of
 from mcgw.errors import StoreError
 from mcgw.machine import child_process, memory
 from mcgw.machine.child_process import end_with
-from mcgw.machine.memory import check_memory, memory_available
 from mcgw.sweeps.pooling import Pooling
 
 resource = pytest.importorskip("resource")

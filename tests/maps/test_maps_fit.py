@@ -9,19 +9,27 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from oracles.fit_of_maps import fit_map
+from oracles.inside import (
+    SUMMITS,
+    Estimate,
+    Preparation,
+    by_summits,
+    coarse_sums_of,
+    envelope,
+    fit_prepared,
+    hidden_summits,
+    prepared,
+    roughness_of,
+    summit_sums_of,
+    visible,
+    write_scene,
+)
 from scipy import ndimage
 from scipy.stats import kurtosis, skew
 
 import mcgw
 from mcgw.cli import main
 from mcgw.maps import Asperities, Spectrum, Topography, gaussian_map, write_map
-from mcgw.maps.envelope import envelope, hidden_summits
-from mcgw.maps.estimates import SUMMITS, Estimate, by_summits, roughness_of
-from mcgw.maps.fit import fit_prepared
-from mcgw.maps.hidden_caps import visible
-from mcgw.maps.preparation import Preparation, prepared
-from mcgw.maps.readable_scene import write_scene
-from mcgw.maps.summit_sums import coarse_sums_of, summit_sums_of
 from mcgw.reports.fitted import fit_lines
 
 PIXEL = (1e-6, 1e-6)

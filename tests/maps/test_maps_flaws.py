@@ -6,17 +6,23 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from oracles.fit_of_maps import fit_map
+from oracles.inside import (
+    Preparation,
+    fit_prepared,
+    prepared,
+    recorded,
+    small_spike_heights,
+    spike_heights,
+    usual_bend,
+    visible,
+    without_form,
+)
 from scipy.optimize import brentq
 
 import mcgw
 from mcgw.maps import Spectrum, Topography, gaussian_map
-from mcgw.maps.bad_points import recorded, small_spike_heights, spike_heights, usual_bend
-from mcgw.maps.fit import fit_prepared
 from mcgw.maps.fit_cautions import cautions
-from mcgw.maps.form import without_form
 from mcgw.maps.form_left import form_left
-from mcgw.maps.hidden_caps import visible
-from mcgw.maps.preparation import Preparation, prepared
 
 N, PIXEL = 240, (1e-6, 2e-6)
 OF_THE_MAP = {"spikes", "form", "waves", "slope"}

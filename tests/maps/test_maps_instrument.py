@@ -5,14 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from oracles.fit_of_maps import fit_map
+from oracles.inside import Preparation, Recorded, prepared, smooth
 from scipy.optimize import brentq
 
 import mcgw
 from mcgw.maps import Spectrum, Topography, gaussian_map
-from mcgw.maps.bad_points import Recorded
-from mcgw.maps.form import smooth
 from mcgw.maps.instrument import LIMITS, _kept_of_noise, faults, shares
-from mcgw.maps.preparation import Preparation, prepared
 
 PIXEL = (1e-6, 1e-6)
 

@@ -6,14 +6,13 @@ from dataclasses import astuple
 
 import numpy as np
 import pytest
+from oracles.inside import summit_sums_of, write_scene
 
 import mcgw
 from analytic import SpectralMoments
 from mcgw.cli import main
 from mcgw.maps import Spectrum, gaussian_map, moments_on_grid
 from mcgw.maps.iso import NUMBERS, moments_from
-from mcgw.maps.readable_scene import write_scene
-from mcgw.maps.summit_sums import summit_sums_of
 
 MOMENTS = SpectralMoments(6.4e-13, 7.2e-3, 8.1e8)  # alpha = 10
 

@@ -5,13 +5,20 @@ import math
 import numpy as np
 import pytest
 from numpy.polynomial.polynomial import polyvander2d
+from oracles.inside import (
+    Preparation,
+    filled,
+    gaussian_transmission,
+    lowpass,
+    prepared,
+    smooth,
+    without_form,
+    without_offsets,
+)
 from scipy.ndimage import gaussian_filter1d, minimum_filter
 
 import mcgw
 from mcgw.maps import Spectrum, Topography, gaussian_map
-from mcgw.maps.bad_points import filled
-from mcgw.maps.form import gaussian_transmission, lowpass, smooth, without_form, without_offsets
-from mcgw.maps.preparation import Preparation, prepared
 
 N, PIXEL = 200, (1e-6, 1.5e-6)
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from oracles.inside import filter_variance, gaussian_transmission, holds_profile, profile_cautions
 from oracles.profile_weights import by_quadrature
 from scipy.stats import t as t_law
 
@@ -13,10 +14,7 @@ import mcgw
 from analytic import Nayak, SpectralMoments
 from mcgw.cli import main
 from mcgw.maps import Profile, Spectrum, gaussian_map, read_profile
-from mcgw.maps.fit_cautions import profile_cautions
-from mcgw.maps.form import filter_variance, gaussian_transmission
 from mcgw.maps.profile import profile_at, smooth_profile, without_profile_form
-from mcgw.maps.profile_files import holds_profile
 from mcgw.maps.profile_fit import fit_profiles
 from mcgw.maps.profile_waves import areal_weights, stencil_weights, waves_of_profile
 
@@ -329,8 +327,7 @@ def test_the_command_tells_a_profile_by_its_shape(files, tmp_path, capsys):
     (["--pixel", "1um"], "gives x in mm; leave --pixel out"),
     (["--unit", "nm"], "heights are in .m as the file says, not in nm"),
 ])  # fmt: skip
-def test_what_a_profile_cannot_be_asked(words, told, files, tmp_path, capsys, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_what_a_profile_cannot_be_asked(words, told, files, tmp_path, capsys, in_tmp_path):
     assert main(["fit", str(files / "p0.txt"), "--cutoff", "10um", *words, "-o", "s.toml"]) == 2
     error = capsys.readouterr().err
     assert error.count("\n") == 1

@@ -6,12 +6,12 @@ import math
 import numpy as np
 import pytest
 from oracles.fit_of_maps import fit_map
+from oracles.inside import SUMS, SummitSums, summit_sums_of
 from scipy.optimize import brentq
 
 import mcgw
 from mcgw.cli import main
 from mcgw.maps import Topography, write_map
-from mcgw.maps.summit_sums import SUMS, SummitSums, summit_sums_of
 from mcgw.maps.summits import summits_of, tiles_of, variation
 
 UM = 1e-6

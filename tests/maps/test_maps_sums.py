@@ -6,23 +6,28 @@ import numpy as np
 import pytest
 from numpy.polynomial.legendre import leggauss
 from numpy.polynomial.polynomial import polyder, polyval2d
+from oracles.inside import (
+    SUMS,
+    SummitSums,
+    _apex,
+    by_caps,
+    by_moments,
+    by_summits,
+    coarse_sums_of,
+    jackknife,
+    mean_squares,
+    moments_of,
+    skewness_of,
+    summit_sums_of,
+    unhidden,
+    visible,
+)
 from scipy.integrate import quad
 from scipy.stats import norm, t as t_law
 
 import analytic
 from analytic import SpectralMoments
 from mcgw.maps import Topography
-from mcgw.maps.estimates import (
-    by_caps,
-    by_moments,
-    by_summits,
-    jackknife,
-    mean_squares,
-    moments_of,
-    skewness_of,
-)
-from mcgw.maps.hidden_caps import unhidden, visible
-from mcgw.maps.summit_sums import SUMS, SummitSums, _apex, coarse_sums_of, summit_sums_of
 
 BUSH = 0.8968057562340189  # 3 sqrt 3 + ... of Bush, Gibson and Thomas (1975), by Nayak's integrals
 

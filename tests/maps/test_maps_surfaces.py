@@ -9,6 +9,7 @@ import h5py
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
+from oracles.inside import envelope, hidden_summits, visible
 from scipy.integrate import quad
 
 import analytic
@@ -24,8 +25,6 @@ from mcgw.maps import (
     read_map,
     spectrum_from,
 )
-from mcgw.maps.envelope import envelope, hidden_summits
-from mcgw.maps.hidden_caps import visible
 
 RUNS = Path(__file__).parents[2] / "runs"
 
@@ -215,8 +214,7 @@ def test_a_spectrum_has_the_moments_that_were_asked_for(alpha, hurst):
     (["-o", "map.h5", "--from-spectrum", "height=1um", "--pixel", "1um"], "give rms, long"),
     (["-o", "map.h5", "--from-spectrum", "rms=1um,long=90um,short=9um"], "--pixel"),
 ])  # fmt: skip
-def test_mistakes_are_told_in_one_line_and_nothing_is_written(arguments, told, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
+def test_mistakes_are_told_in_one_line_and_nothing_is_written(arguments, told, tmp_path, in_tmp_path, capsys):
     arguments = [str(RUNS / "quick.toml") if a == "SCENE" else a for a in arguments]
     assert main(["surface", *arguments]) == 2
     error = capsys.readouterr().err

@@ -143,8 +143,7 @@ def test_a_scene_of_several_maps(found):
         assert scene.n_asperities == pytest.approx(found.summits.size, rel=0.2)
 
 
-def test_by_command(tmp_path, monkeypatch, capsys, maps, found):
-    monkeypatch.chdir(tmp_path)
+def test_by_command(tmp_path, in_tmp_path, capsys, maps, found):
     names = ["a.npy", "b.npy", "c.npy"]
     for name, z in zip(names, maps, strict=True):
         np.save(name, z.heights)
@@ -162,8 +161,7 @@ def test_by_command(tmp_path, monkeypatch, capsys, maps, found):
     assert len([line for line in lines if line.partition(",")[0] in names]) == 3
 
 
-def test_what_does_not_go_together_is_refused(tmp_path, monkeypatch, capsys, maps):
-    monkeypatch.chdir(tmp_path)
+def test_what_does_not_go_together_is_refused(tmp_path, in_tmp_path, capsys, maps):
     np.save("a.npy", maps[0].heights)
     np.savetxt("b.csv", maps[1].heights)
     np.savetxt("p.txt", np.column_stack([np.arange(50) * 1e-6, np.random.default_rng(1).normal(size=50)]))

@@ -9,8 +9,7 @@ import math
 import numpy as np
 
 from analytic import quantity_of
-from mcgw.sampling.asperities import summits_drawn
-from mcgw.sampling.samplers import sampler_of
+from oracles.inside import sampler_of, summits_drawn
 
 POWERS_OF_RADIUS = {"load": 0.5, "area": 1.0, "stiffness": 0.5, "conductance": 0.5, "contacts": 0.0}
 

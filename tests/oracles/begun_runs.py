@@ -5,10 +5,9 @@ import threading
 import pytest
 
 import mcgw
-from mcgw.ensemble.simulation import Values
 from mcgw.ensemble.summarised import Statistics
 from mcgw.store import ensembles, h5_writing
-from mcgw.store.lock import parts_of
+from oracles.inside import Values, parts_of
 
 SIZE, SURFACES = 16, 100  # seven blocks, the last one short
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from mcgw.ensemble.drawing import kept
 from mcgw.sampling.shared import common_edges, shared
+from oracles.inside import kept
 
 
 def drawn_together(sweep):

@@ -1,7 +1,6 @@
 """A map fitted in one call, without what speaks against the fit."""
 
-from mcgw.maps.fit import fit_prepared
-from mcgw.maps.preparation import Preparation, prepared
+from oracles.inside import Preparation, fit_prepared, prepared
 
 
 def fit_map(topography, *, cutoff, across=4, **steps):

@@ -14,7 +14,7 @@ from scipy import stats
 
 import mcgw
 from analytic import Exponential, quantity_of
-from mcgw.scene.promises import promise_of
+from oracles.inside import promise_of
 from oracles.random_scenes import asked
 
 SURFACES, NEAR, UNSURE = 400, 1e-6, 5e-3

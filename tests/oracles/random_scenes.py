@@ -15,8 +15,8 @@ import scipy.stats
 
 import mcgw
 from analytic import RandomCurvature, laws, quantity_of
-from mcgw.scene.promises import promise_of
 from oracles.accurately import term
+from oracles.inside import promise_of
 
 SECONDS, SURFACES, FAR = 10.0, 3, 7.0
 ROUNDING, BENT, NEAR_BY = 3e-13, 1e-11, 0.8  # of sums; under steep gradings and layered laws; width of a cell

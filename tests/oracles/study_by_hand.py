@@ -1,9 +1,6 @@
 """A study of speed and accuracy by hand, for tables and figures."""
 
-from mcgw.ensemble.prices import Way
-from mcgw.statistics.ladder import Ladder, Rung
-from mcgw.statistics.measured_ways import Point
-from mcgw.statistics.tradeoff import Tradeoff
+from oracles.inside import Ladder, Point, Rung, Tradeoff, Way
 
 
 def made_up(scene):

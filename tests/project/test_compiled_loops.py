@@ -13,12 +13,12 @@ import numpy as np
 import pytest
 from conftest import forget_old_loops
 from filelock import FileLock, Timeout
+from oracles.inside import read_attributes
 
 import mcgw
 from mcgw.commands.voice import NEWS, QUIET, speaking
 from mcgw.machine import compiling
 from mcgw.machine.compiling import loops_folder, njit
-from mcgw.store.ensembles import read_attributes
 
 LOOP = """
 from mcgw.machine.compiling import loops_folder, njit

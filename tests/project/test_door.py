@@ -57,14 +57,13 @@ SMALL = SMALL.replace("seed=1)", "seed=1, n_surfaces=100)")
 
 
 @pytest.mark.parametrize("whole", [False, pytest.param(True, marks=pytest.mark.slow)])
-def test_the_notebook_runs(whole, capsys, tmp_path, monkeypatch, request):
+def test_the_notebook_runs(whole, capsys, tmp_path, in_tmp_path, request):
     """Every line as in an interpreter that shows what it is given; the numbers against each other.
 
     Word for word in the slow tier; else of fewer surfaces and separations, and without studies and maps.
     """
     for package in ("xarray", "pandas"):
         pytest.importorskip(package)
-    monkeypatch.chdir(tmp_path)
     if whole:
         request.getfixturevalue("map_file")
     names = {"scipy": scipy, "h": [0.0, 2.0]}
@@ -235,8 +234,7 @@ CALLS = [
 
 
 @pytest.mark.parametrize(("call", "told"), CALLS, ids=[told for _, told in CALLS])
-def test_a_wrong_call_is_one_line_that_names_the_argument(call, told, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_a_wrong_call_is_one_line_that_names_the_argument(call, told, tmp_path, in_tmp_path):
     with pytest.raises(ValueError, match=told) as caught:
         call()
     assert "\n" not in str(caught.value)

@@ -9,10 +9,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from oracles.inside import SAMPLERS
 
 import analytic
 import mcgw
-from mcgw.scene.promises import SAMPLERS
 
 ROOT = Path(mcgw.__file__).parents[1]
 SCENE = ROOT / "runs" / "quick.toml"

@@ -61,10 +61,9 @@ def test_the_recipe_is_of_this_package(recipe):
     assert [recipe["about"]["license_file"]] == ABOUT["license-files"]
 
 
-def test_the_checks_of_the_recipe_pass_here(recipe, tmp_path, monkeypatch, capsys):
+def test_the_checks_of_the_recipe_pass_here(recipe, tmp_path, in_tmp_path, capsys):
     from mcgw.cli import main
 
-    monkeypatch.chdir(tmp_path)
     for name in recipe["test"]["imports"]:
         import_module(name)
     ours = [x.split()[1:] for x in recipe["test"]["commands"] if x.startswith("mcgw ")]

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from oracles.inside import number
 
 import mcgw
-from mcgw.formats.numbers import number
 
 PACKAGES = [Path(mcgw.__file__).parent, Path(mcgw.__file__).parents[1] / "analytic"]
 SURFACE = mcgw.Surface(sigma="1.37 um", radius="13 um", eta=3e8, nominal_area="1 cm^2", E_star="78.6 GPa")

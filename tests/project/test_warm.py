@@ -1,7 +1,8 @@
 """Compiling ahead: every kind of scene that has loops of its own."""
 
+from oracles.inside import SAMPLERS
+
 from mcgw.commands import warm
-from mcgw.scene.promises import SAMPLERS
 
 
 def test_scenes_of_every_kind_are_drawn(monkeypatch):

@@ -8,13 +8,11 @@ import numpy as np
 import pytest
 from conftest import SURFACE
 from oracles import exact
+from oracles.inside import columns, number, report_html, solved_pressures
 
 import analytic
 import mcgw
 from mcgw.cli import main
-from mcgw.formats.numbers import columns, number
-from mcgw.reports.html import report_html
-from mcgw.reports.report_figures import solved_pressures
 
 LOWERED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 H = (0.5, 0.0, 2.0, 1.0)

@@ -6,18 +6,11 @@ import numpy as np
 import pytest
 from conftest import SURFACE as COARSE
 from oracles import exact
+from oracles.inside import _relative_error, _spread, draw, line_figure, pressure_curves, solved_pressures
 
 import analytic
 import mcgw
 from mcgw import compare
-from mcgw.figures.panels import draw
-from mcgw.reports.report_figures import (
-    _relative_error,
-    _spread,
-    line_figure,
-    pressure_curves,
-    solved_pressures,
-)
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "10 mm^2", "78.6 GPa")
 

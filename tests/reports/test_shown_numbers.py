@@ -8,13 +8,13 @@ import re
 import numpy as np
 import pytest
 from oracles import exact
+from oracles.inside import MemoryResults
 from scipy.stats import t as student
 
 import analytic
 import mcgw
 from mcgw import run, sweeps
 from mcgw.cli import main
-from mcgw.ensemble.results import MemoryResults
 
 pytestmark = pytest.mark.usefixtures("blank_figures")
 

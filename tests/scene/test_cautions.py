@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 from conftest import SURFACE
 from oracles import exact
+from oracles.inside import before, cautions
 
 import analytic
 import mcgw
-from mcgw.ensemble.forecast import before
-from mcgw.scene.cautions import cautions
 
 SHALLOW = dataclasses.replace(SURFACE, radius=1e-3, sigma=1e-6)  # summits so blunt that nothing is steep
 METAL = mcgw.KogutEtsion(critical=0.05)
@@ -199,7 +198,7 @@ def test_few_contacts_from_the_first_separation_where_they_are(make_scene, heigh
 
 
 def test_what_a_rule_will_not_reach_is_said_before(make_scene):
-    from mcgw.ensemble.forecast import forecast
+    from oracles.inside import forecast
 
     scene = make_scene(rel_err=0.01, n_surfaces=1000, separations=(0.0, 3.0), quantities=("load",))
     found = forecast(scene)

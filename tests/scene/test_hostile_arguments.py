@@ -6,11 +6,11 @@ import h5py
 import numpy as np
 import pytest
 from hypothesis import assume, given, strategies as st
+from oracles.inside import CSV, Output, check_outputs
 from strategies import FEW, VALUES
 
 import mcgw
 from mcgw.cli import main
-from mcgw.commands.outputs import CSV, Output, check_outputs
 from mcgw.maps import Topography, read_map, write_map
 
 FLAT = Topography(1e-6 * np.arange(12.0).reshape(3, 4), (1e-6, 2e-6))

@@ -6,13 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from oracles.inside import Values, check_output, memory_available
 
 import analytic
 import mcgw
-from mcgw.ensemble.simulation import Values
 from mcgw.errors import StoreError
-from mcgw.formats.files import check_output
-from mcgw.machine.memory import memory_available
 
 
 def test_beyond_64_bits(make_scene, tmp_path):

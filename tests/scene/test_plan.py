@@ -8,13 +8,12 @@ from types import SimpleNamespace
 import numba
 import numpy as np
 import pytest
+from oracles.inside import plan_of, plan_text, sampler_of
 
 import analytic
 import mcgw
 from mcgw.ensemble import drawing
-from mcgw.reports.plan import plan_of, plan_text
 from mcgw.sampling.expected import expected
-from mcgw.sampling.samplers import sampler_of
 
 
 def test_plan_says_what_is_drawn(make_scene):

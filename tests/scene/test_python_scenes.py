@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 import scipy.stats
 from oracles.begun_runs import SIZE, digest, halted, in_small_blocks
+from oracles.inside import storable
 
 import analytic
 import mcgw
 from mcgw.cli import main
 from mcgw.errors import StoreError
-from mcgw.scene.scene import storable
 
 H = (2.0, 0.5, 3.0)
 

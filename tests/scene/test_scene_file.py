@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from oracles.inside import SURFACE_UNITS
 from tables.scene_keys import text_of
 
 import analytic
 import mcgw
-from mcgw.scene.keys import SURFACE_UNITS
 
 GOOD = """
 [surface]

@@ -12,13 +12,13 @@ import jsonschema
 import pytest
 from hypothesis import assume, given, strategies as st
 from oracles.docs_site import DOCS, ROOT, WRITTEN, blocks
+from oracles.inside import KEYS
 from strategies import FEW, VALUES
 from tables.scene_keys import BASE, FILES, GAUSS, ROWS, changed, good, keys, text as written, text_of
 from tables.wrong_values import ARGUMENTS, WRONG, WRONG_HERE
 
 import mcgw
 from mcgw.cli import main
-from mcgw.scene.keys import KEYS
 
 SCHEMA = Path(mcgw.__file__).parent / "scene" / "scene.schema.json"
 
@@ -55,8 +55,7 @@ def passes(text):
 
 
 @pytest.fixture(autouse=True)
-def files(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def files(tmp_path, in_tmp_path):
     for name, content in FILES.items():
         Path(name).write_text(content)
 

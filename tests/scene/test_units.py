@@ -4,12 +4,19 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from oracles.inside import (
+    _FACTORS,
+    EXAMPLES,
+    METRES,
+    RANGES,
+    SURFACE_UNITS,
+    parse,
+    perhaps_other_units,
+    surface_in_other_units,
+)
 
 import analytic
 import mcgw
-from mcgw.formats.units import _FACTORS, EXAMPLES, METRES, parse
-from mcgw.scene.keys import SURFACE_UNITS
-from mcgw.scene.plausible import RANGES, perhaps_other_units, surface_in_other_units
 
 # One of each, in SI. Written out: a table that was computed would repeat the mistakes of the other.
 LITERAL = {

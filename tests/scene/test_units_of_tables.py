@@ -4,11 +4,11 @@ import warnings
 
 import numpy as np
 import pytest
+from oracles.inside import perhaps_other_units
 from scipy.stats import norm
 
 import mcgw
 from mcgw.cli import main
-from mcgw.scene.plausible import perhaps_other_units
 
 SIGMA, E_STAR = 1.37e-6, 78.6e9
 Z, E = (-3.0, 0.5, 2.5, 7.0), (61.2, 70.0, 99.5, 138.25)  # um, GPa

@@ -61,8 +61,7 @@ def test_solve_knows_what_was_meant(word, meant):
 
 
 @pytest.fixture
-def files(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def files(tmp_path, in_tmp_path):
     (tmp_path / "scene.toml").write_text(mcgw.scene_text(SCENE))
     (tmp_path / "latin.toml").write_bytes('title = "größer"\n'.encode("latin-1"))
     mcgw.save(ENSEMBLE, tmp_path / "mine.h5")

@@ -8,6 +8,20 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from oracles import exact
+from oracles.inside import (
+    FALSE_ALARM,
+    Convergence,
+    PrincipalComponents,
+    _own as own,
+    converge,
+    covariances,
+    coverage,
+    independence,
+    save_convergence,
+    scores,
+    skewness,
+    variances,
+)
 from oracles.literal import ensemble_arrays
 from scipy.special import ndtri, polygamma, psi
 from scipy.stats import binom, chi2, kstest, norm, poisson, ttest_1samp
@@ -15,19 +29,7 @@ from scipy.stats import binom, chi2, kstest, norm, poisson, ttest_1samp
 import analytic
 import mcgw
 from mcgw.cli import main
-from mcgw.figures.studies import save_convergence
 from mcgw.statistics import convergence
-from mcgw.statistics.checks import (
-    PrincipalComponents,
-    covariances,
-    coverage,
-    independence,
-    scores,
-    skewness,
-    variances,
-)
-from mcgw.statistics.convergence import Convergence, _own as own, converge
-from mcgw.statistics.verdict import FALSE_ALARM
 
 H = (0.0, 1.0, 2.0)
 

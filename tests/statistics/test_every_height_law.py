@@ -12,19 +12,22 @@ import numpy as np
 import pytest
 from conftest import SURFACE
 from oracles import exact
+from oracles.inside import (
+    cautions,
+    comparison_text,
+    forecast,
+    plan_of,
+    report_html,
+    solutions,
+    spread_of,
+    summary,
+)
 from oracles.thirteen_height_laws import LAWS, SAMPLE
 
 import analytic
 import mcgw
 from analytic import QUANTITIES, Exponential, Gaussian, MeasuredHeights
 from mcgw import compare, converge
-from mcgw.ensemble.forecast import forecast
-from mcgw.ensemble.intervals import spread_of
-from mcgw.ensemble.solution import solutions
-from mcgw.reports.html import report_html
-from mcgw.reports.plan import plan_of
-from mcgw.reports.text import comparison_text, summary
-from mcgw.scene.cautions import cautions
 
 BOUNDED = {name: law for name, law in LAWS.items() if np.isfinite(law.support[1])}
 ATTRIBUTES = {

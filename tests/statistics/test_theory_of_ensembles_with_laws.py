@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import SURFACE
+from oracles.inside import FALSE_ALARM
 from oracles.literal import scores
 from oracles.reference_means import reference
 
 import analytic
 import mcgw
 from analytic import laws, quantity_of
-from mcgw.statistics.verdict import FALSE_ALARM
 
 FILM = laws.Film(2e-8, 1e-14)  # as much resistance as a spot of 0.15 sqrt(R sigma)
 KOGUT = {

@@ -5,17 +5,25 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from oracles.inside import (
+    WANTS,
+    Ladder,
+    Needs,
+    Rung,
+    Task,
+    Way,
+    advise,
+    sampled_ways,
+    wants_of,
+    worst_of_values,
+)
 from scipy.stats import kstwobign, norm
 
 import analytic
 import mcgw
 from mcgw import tradeoff
-from mcgw.ensemble.prices import WANTS, Needs, Way, advise, sampled_ways, wants_of
 from mcgw.sampling import samplers
-from mcgw.sampling.asperities import worst_of_values
 from mcgw.statistics import measured_ways
-from mcgw.statistics.ladder import Ladder, Rung
-from mcgw.statistics.measured_ways import Task
 
 
 @pytest.fixture(scope="module")

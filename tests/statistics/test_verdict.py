@@ -6,17 +6,14 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from oracles import exact
+from oracles.inside import FALSE_ALARM, Held, MemoryResults, Verdict, sampler_of, save_comparison, verdict
 from scipy.stats import chi2
 
 import analytic
 import mcgw
 from analytic.curvature import MEAN_CURVATURE
 from mcgw import Ensemble, compare
-from mcgw.ensemble.results import Held, MemoryResults
-from mcgw.figures.against_theory import save_comparison
-from mcgw.sampling.samplers import sampler_of
 from mcgw.statistics import verdict as parts
-from mcgw.statistics.verdict import FALSE_ALARM, Verdict, verdict
 
 QUANTITIES = tuple(analytic.QUANTITIES)
 H = (2.0, 0.0, 1.0)  # in no order: a verdict that sorts one of two lists would show

@@ -1,11 +1,11 @@
 """What a verdict says that it saw."""
 
 import pytest
+from oracles.inside import Verdict
 from scipy.special import chdtrc
 
 import mcgw
 from mcgw import Ensemble
-from mcgw.statistics.verdict import Verdict
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "3 mm^2", "78.6 GPa")
 

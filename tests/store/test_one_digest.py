@@ -9,6 +9,7 @@ import pytest
 import scipy.stats
 from conftest import SURFACE
 from oracles.begun_runs import SIZE, digest, halted, in_small_blocks
+from oracles.inside import read_attributes, storable
 from oracles.interacting_by_hand import interaction
 from oracles.laws_by_hand import OWN
 
@@ -16,8 +17,6 @@ import analytic
 import mcgw
 from analytic import laws
 from mcgw.errors import StoreError
-from mcgw.scene.scene import storable
-from mcgw.store.ensembles import read_attributes
 
 SURFACES = 60  # in four blocks, the last one short
 HEIGHTS = mcgw.MeasuredHeights(np.random.default_rng(1).normal(size=50), resampled=True)

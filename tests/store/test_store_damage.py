@@ -7,13 +7,12 @@ import h5py
 import numpy as np
 import pytest
 from oracles.begun_runs import SURFACES, begun, in_small_blocks
+from oracles.inside import RECORD, RunFolder, parts_of
 
 import mcgw
 from mcgw.cli import main
 from mcgw.errors import RunError, StoreError
 from mcgw.store import ensembles, h5_reading, lock, run_folder
-from mcgw.store.lock import parts_of
-from mcgw.store.run_folder import RECORD, RunFolder
 
 
 @pytest.fixture(autouse=True)

@@ -2,13 +2,10 @@
 
 import numpy as np
 import pytest
+from oracles.inside import RECORD, Job, RunFolder, Values, parts_of
 
 import mcgw
-from mcgw.ensemble.simulation import Values
 from mcgw.errors import StoreError
-from mcgw.jobs.job import Job
-from mcgw.store.lock import parts_of
-from mcgw.store.run_folder import RECORD, RunFolder
 
 
 def flip(path, what):

@@ -11,13 +11,12 @@ from pathlib import Path
 
 import pytest
 from filelock import Timeout
+from oracles.inside import LOCK_FILES, LockedError, Values, locked, parts_of
 
 import mcgw
 from mcgw.cli import main
-from mcgw.ensemble.simulation import Values
 from mcgw.errors import StoreError
 from mcgw.store import lock
-from mcgw.store.lock import LOCK_FILES, LockedError, locked, parts_of
 
 ROOT = Path(mcgw.__file__).parents[1]
 ENV = os.environ | {"PYTHONPATH": str(ROOT)}

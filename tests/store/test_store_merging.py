@@ -9,13 +9,12 @@ import h5py
 import numpy as np
 import pytest
 from oracles.begun_runs import SIZE, SURFACES, begun, digest, in_small_blocks
+from oracles.inside import Values, parts_of
 
 import mcgw
-from mcgw.ensemble.simulation import Values
 from mcgw.errors import RunError, StoppedError
 from mcgw.jobs import making
 from mcgw.store import h5_writing, place
-from mcgw.store.lock import parts_of
 
 ROWS, COLUMNS = 40, 5
 

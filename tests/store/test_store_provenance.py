@@ -11,13 +11,11 @@ import h5py
 import numpy as np
 import pytest
 import scipy.stats
+from oracles.inside import SAMPLERS, Values, sampler_of
 from oracles.memory_growth import peak_growth
 
 import analytic
 import mcgw
-from mcgw.ensemble.simulation import Values
-from mcgw.sampling.samplers import sampler_of
-from mcgw.scene.promises import SAMPLERS
 from mcgw.store import identity
 
 GOLDEN = Path(__file__).parents[1] / "golden_samplers.json"

@@ -14,19 +14,14 @@ import numpy as np
 import pytest
 from oracles.begun_runs import SIZE, SURFACES, begun, digest, halted, in_small_blocks
 from oracles.flipped import flip_a_number
+from oracles.inside import RECORD, Job, Plan, RunFolder, Span, commit_block, part_of, parts_of, state_of
 from oracles.said import without_notes
 
 import mcgw
 from mcgw.cli import main
 from mcgw.errors import RunError, StoppedError, StoreError
-from mcgw.formats.files import state_of
 from mcgw.jobs import making
-from mcgw.jobs.driver import part_of
-from mcgw.jobs.job import Job, commit_block
 from mcgw.store import ensembles, identity, layout, place
-from mcgw.store.lock import parts_of
-from mcgw.store.run_folder import RECORD, RunFolder
-from mcgw.store.spans import Plan, Span
 
 HERE = Path(__file__).parents[1]
 

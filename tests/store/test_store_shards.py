@@ -7,13 +7,11 @@ from contextlib import closing
 import h5py
 import numpy as np
 import pytest
+from oracles.inside import Span, commit_shard, open_shard, write_whole
 
 import mcgw
 from mcgw.errors import StoreError
-from mcgw.formats.files import write_whole
 from mcgw.store.h5_writing import SteadyFile
-from mcgw.store.run_folder import commit_shard, open_shard
-from mcgw.store.spans import Span
 
 RUN, SPAN = "a" * 64, Span(40, 5)
 FLIPS, TRUNCATIONS = 100, 50

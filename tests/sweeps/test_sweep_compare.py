@@ -5,12 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from oracles.inside import FALSE_ALARM, sweep_figure, verdict
 from scipy.stats import norm
 
 import mcgw
 from mcgw.cli import main
-from mcgw.figures.against_theory import sweep_figure
-from mcgw.statistics.verdict import FALSE_ALARM, verdict
 from mcgw.sweeps.points import sweep_cautions
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")

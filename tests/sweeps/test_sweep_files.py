@@ -11,15 +11,11 @@ import numpy as np
 import pytest
 from oracles.begun_runs import settle
 from oracles.flipped import flip_a_number
+from oracles.inside import RECORD, Jobs, RunFolder, commit_block, parts_of, read_attributes
 
 import mcgw
 from mcgw.cli import main
 from mcgw.commands.sweep import _axis
-from mcgw.jobs.executors import Jobs
-from mcgw.jobs.job import commit_block
-from mcgw.store.ensembles import read_attributes
-from mcgw.store.lock import parts_of
-from mcgw.store.run_folder import RECORD, RunFolder
 from mcgw.sweeps import pooling
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
@@ -206,8 +202,7 @@ def test_scenes_of_a_file_are_those_of_a_list(tmp_path):
 
 
 @pytest.fixture
-def shell(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
+def shell(tmp_path, in_tmp_path, capsys):
     (tmp_path / "s.toml").write_text(TOML)
 
     def call(*words, code=0):

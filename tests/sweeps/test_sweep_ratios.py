@@ -5,10 +5,10 @@ import dataclasses
 import numpy as np
 import pytest
 from oracles.drawn_together import drawn_together
+from oracles.inside import same_heights
 
 import analytic
 import mcgw
-from mcgw.sampling.asperities import same_heights
 
 H = (0.0, 1.0, 2.0)
 KE = mcgw.KogutEtsion(critical=0.05)

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from oracles.exact_law_drawn import scores, some
 from oracles.exact_law_grid import faults, laws
+from oracles.inside import Needs
 from scipy import stats
 
 import mcgw
-from mcgw.ensemble.prices import Needs
 from mcgw.statistics.laws_of_values import laws_of_values
 
 HEAVY = [(stats.fisk(8.0), 58_000, 2.5), (stats.t(4), 3000, 1.5), (stats.lognorm(1.0), 20_000, 3.0)]

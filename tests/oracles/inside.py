@@ -1,0 +1,96 @@
+"""Inner names of the product that several files of tests ask for: a module that moves changes this file.
+
+Each module is imported when the first of its names is asked for.
+"""
+
+from importlib import import_module
+from typing import Any
+
+MODULES = {
+    "mcgw.commands.outputs": "check_outputs CSV Output",
+    "mcgw.elasticity.grid": "Grid",
+    "mcgw.elasticity.levels": "alone Level LEVELS located Pressed rimless",
+    "mcgw.elasticity.located": "balanced beyond_point interaction",
+    "mcgw.elasticity.multilevel": "Design design difference Mean mean_of terms_of",
+    "mcgw.elasticity.sources": "maps_of",
+    "mcgw.elasticity.spots": "fallen Spots",
+    "mcgw.ensemble.at_load": "mean_surface pressures_of",
+    "mcgw.ensemble.drawing": "block_size drawn kept use_threads",
+    "mcgw.ensemble.forecast": "after before checkpoints forecast upper_contacts",
+    "mcgw.ensemble.intervals": (
+        "count_interval exact_ends FEWEST mean_interval moments pearson3_quantile Spread spread_of TOO_FEW"
+    ),
+    "mcgw.ensemble.prices": "advise Needs sampled_ways WANTS wants_of Way",
+    "mcgw.ensemble.results": "Held MemoryResults",
+    "mcgw.ensemble.separation": "crossing LawSum Summits",
+    "mcgw.ensemble.simulation": "reducer_of Values",
+    "mcgw.ensemble.solution": "solutions",
+    "mcgw.figures.against_theory": "quantity_panel save_comparison sweep_figure",
+    "mcgw.figures.catalogue": "CATALOGUE figures_of",
+    "mcgw.figures.compared": "Compared",
+    "mcgw.figures.data": "FigureData GAMMA Panel Points ratio_of_sums Series",
+    "mcgw.figures.panels": "draw save_figure_files",
+    "mcgw.figures.studies": "save_convergence save_tradeoff",
+    "mcgw.figures.style": "FAMILIES look PAIRS power_of_ten prefixed save_figure short STYLE THEORY",
+    "mcgw.formats.files": (
+        "alive check_output rename_over state_of temporary_beside together whole_file write_whole"
+    ),
+    "mcgw.formats.gate": "check_archive open_h5 opened",
+    "mcgw.formats.law_text": "law_text",
+    "mcgw.formats.named_files": "loads loads_json open_npy read_text",
+    "mcgw.formats.numbers": "columns number typeset",
+    "mcgw.formats.sheet": "brief listed Sheet",
+    "mcgw.formats.table": "Column digits_of evenly joined stacked Table",
+    "mcgw.formats.units": "_FACTORS EXAMPLES METRES parse",
+    "mcgw.jobs.driver": "drive heed_signals part_of Signals",
+    "mcgw.jobs.executors": "dask_executor Jobs",
+    "mcgw.jobs.job": "commit_block Job",
+    "mcgw.jobs.running": "run",
+    "mcgw.machine.memory": "check_memory memory_available",
+    "mcgw.maps.bad_points": "filled recorded Recorded small_spike_heights spike_heights usual_bend",
+    "mcgw.maps.envelope": "envelope hidden_summits",
+    "mcgw.maps.estimates": (
+        "by_caps by_moments by_summits Estimate jackknife mean_squares moments_of roughness_of "
+        "skewness_of SUMMITS"
+    ),
+    "mcgw.maps.fit": "fit_prepared",
+    "mcgw.maps.fit_cautions": "profile_cautions",
+    "mcgw.maps.form": "filter_variance gaussian_transmission lowpass smooth without_form without_offsets",
+    "mcgw.maps.hidden_caps": "unhidden visible",
+    "mcgw.maps.preparation": "Preparation prepared",
+    "mcgw.maps.profile_files": "holds_profile read_profile",
+    "mcgw.maps.readable_scene": "write_scene",
+    "mcgw.maps.summit_sums": "_apex coarse_sums_of summit_sums_of SummitSums SUMS",
+    "mcgw.reports.html": "report_html",
+    "mcgw.reports.plan": "plan_of plan_text",
+    "mcgw.reports.report_figures": "_relative_error _spread line_figure pressure_curves solved_pressures",
+    "mcgw.reports.solved_loads": "correlation solutions_text",
+    "mcgw.reports.text": "comparison_text summary",
+    "mcgw.sampling.asperities": "same_heights summits summits_drawn worst_of_values",
+    "mcgw.sampling.samplers": "sampler_of",
+    "mcgw.scene.cautions": "cautions",
+    "mcgw.scene.keys": "KEYS SURFACE_UNITS",
+    "mcgw.scene.plausible": "perhaps_other_units RANGES surface_in_other_units",
+    "mcgw.scene.promises": "promise_of SAMPLERS",
+    "mcgw.scene.scene": "Scene storable",
+    "mcgw.statistics.checks": (
+        "Check covariances coverage independence PrincipalComponents scores skewness Slope variances"
+    ),
+    "mcgw.statistics.comparison": "compare Comparison Curve",
+    "mcgw.statistics.convergence": "_own converge Convergence",
+    "mcgw.statistics.ladder": "Ladder Rung",
+    "mcgw.statistics.measured_ways": "Point Task",
+    "mcgw.statistics.tradeoff": "Tradeoff",
+    "mcgw.statistics.verdict": "FALSE_ALARM verdict Verdict",
+    "mcgw.store.ensembles": "read_attributes verify",
+    "mcgw.store.lock": "LOCK_FILES locked LockedError parts_of",
+    "mcgw.store.run_folder": "commit_shard open_shard RECORD RunFolder",
+    "mcgw.store.spans": "Plan Span",
+}
+HOME = {name: module for module, names in MODULES.items() for name in names.split()}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in HOME:
+        raise AttributeError(name)
+    return getattr(import_module(HOME[name]), name)
