@@ -12,10 +12,10 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-from harness import ROWS, forked, made_up, prepare, scene_of
-from oracles.inside import RECORD, Values, parts_of, run
+from harness import RECORD, ROWS, Values, forked, made_up, parts_of, prepare, scene_of
 
 from mcgw.errors import StoreError
+from mcgw.jobs.running import run
 from mcgw.store import ensembles
 
 BLOCKS = 5

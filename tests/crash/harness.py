@@ -16,12 +16,16 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from oracles.inside import RECORD, Job, RunFolder, Scene, Values, parts_of
 
 import analytic
+from mcgw.ensemble.simulation import Values
 from mcgw.errors import RunError, StoreError
 from mcgw.jobs import running
+from mcgw.jobs.job import Job
+from mcgw.scene.scene import Scene
 from mcgw.store import ensembles, h5_writing, lock, run_folder
+from mcgw.store.lock import parts_of
+from mcgw.store.run_folder import RECORD, RunFolder
 
 _DRAW = Job.draw
 MODES = {"kill": 1, "torn": 2, "ENOSPC": 3, "EIO": 4}

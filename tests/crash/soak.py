@@ -12,8 +12,7 @@ import sys
 import time
 from pathlib import Path
 
-from harness import ROWS, attempt, forked, prepare, scene_of
-from oracles.inside import RECORD, RunFolder, parts_of
+from harness import RECORD, ROWS, RunFolder, attempt, forked, parts_of, prepare, scene_of
 
 from mcgw.store import ensembles
 

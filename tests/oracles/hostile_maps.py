@@ -18,7 +18,7 @@ STARTS = {"subprocess.Popen", "os.system", "os.exec", "os.posix_spawn", "pickle.
 def read(path):
     from mcgw import load_scene
     from mcgw.maps import read_map
-    from oracles.inside import holds_profile, read_profile
+    from mcgw.maps.profile_files import holds_profile, read_profile
 
     if path.suffix == ".toml":
         return load_scene(path)
