@@ -17,9 +17,9 @@ from typing import Any
 import numpy as np
 
 import mcgw
-from mcgw.ensemble.prices import TARGETS, WANTS, Advice, Needs, Way, advise
 from mcgw.figures.studies import save_tradeoff
 from mcgw.statistics.measured_ways import Answers, moved
+from mcgw.statistics.prices import TARGETS, WANTS, Advice, Needs, Way, advise
 from mcgw.statistics.tradeoff import Tradeoff, tradeoff
 
 HERE = Path(__file__).parent

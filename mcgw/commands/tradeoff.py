@@ -28,9 +28,9 @@ def tradeoff(
     --------
     mcgw tradeoff runs/demo.toml -o out
     """
-    from mcgw.ensemble.prices import TARGETS
     from mcgw.figures.studies import save_tradeoff
     from mcgw.machine.progress import bar
+    from mcgw.statistics.prices import TARGETS
     from mcgw.statistics.tradeoff import tradeoff as studied
 
     table, measured, figure = output

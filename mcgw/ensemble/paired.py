@@ -1,20 +1,22 @@
 """Two ensembles of the same surfaces, compared surface by surface."""
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.special import ndtri
 
-from analytic.arrays import Array
+from analytic.arrays import Array, Ints
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.intervals import CONFIDENCE
+from mcgw.ensemble.pooled import Pooled
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import SEPARATION, Column, Table
 from mcgw.machine.terminal import plotted
 from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import drawn_by
 
+Some = tuple[Ints, Array]  # numbers of pooled scenes, and their weights
 _PAIRED = ("surface", "separations", "heights", "n_asperities", "count", "seed")
 
 
@@ -127,18 +129,54 @@ def paired_ratio(numerator: Ensemble, denominator: Ensemble, quantity: str) -> P
         raise ValueError(
             f"a paired ratio needs two ensembles of the same surfaces; these differ in {', '.join(differ)}"
         )
-    b, a = (e.values(quantity).astype(np.float64) for e in (numerator, denominator))
+    pooled, one = Pooled.of([{quantity: e.values(quantity)} for e in (numerator, denominator)]), np.ones(1)
+    both = (np.array([0]), one), (np.array([1]), one)
+    return ratio_of(pooled, quantity, *both, numerator.separations)
+
+
+class Pair(NamedTuple):
+    """Two means, and the variance of a combination of them over shared and over different surfaces.
+
+    Parameters
+    ----------
+    one, other : ndarray
+        Means.
+    together, apart : ndarray
+        Variances.
+    """
+
+    one: Array
+    other: Array
+    together: Array
+    apart: Array
+
+    @classmethod
+    def of(
+        cls, pooled: Pooled, quantity: str, first: Some, second: Some, x: float | Array, y: float | Array
+    ) -> "Pair":
+        """`x` times the first less `y` times the second, as one combination of scenes: nothing cancels."""
+        (one, v), (other, w) = first, second
+        a, b = pooled.mean(quantity, one, v), pooled.mean(quantity, other, w)
+        scenes = np.union1d(one, other)
+        weights = np.zeros((len(scenes), *a.shape))
+        weights[np.searchsorted(scenes, one)] += np.multiply.outer(v, x * np.ones(a.shape))
+        weights[np.searchsorted(scenes, other)] -= np.multiply.outer(w, y * np.ones(a.shape))
+        together = np.maximum(pooled.variance(quantity, scenes, weights), 0.0)  # apart from rounding
+        variances = pooled.variance(quantity, one, v), pooled.variance(quantity, other, w)
+        return cls(a, b, together, x**2 * variances[0] + y**2 * variances[1])
+
+
+def ratio_of(pooled: Pooled, quantity: str, first: Some, second: Some, separations: Array) -> Paired:
+    """Return the ratio of two means, first over second, over the surfaces that both share.
+
+    The error is that of ``b - r a``, one combination: what both share cancels before it is rounded.
+    """
+    b, a = pooled.mean(quantity, *first), pooled.mean(quantity, *second)
     with np.errstate(divide="ignore", invalid="ignore"):  # without a contact there is no ratio
-        ratio = b.mean(axis=0) / np.where(a.mean(axis=0) == 0, np.nan, a.mean(axis=0))
-        residual = _variance(b - ratio * a)
-        apart = _variance(b) + ratio**2 * _variance(a)
-        error = np.sqrt(residual / len(a)) / a.mean(axis=0)
-        return Paired(quantity, numerator.separations, ratio, error, apart / residual)
-
-
-def _variance(x: Array) -> Array:
-    """Over the surfaces; nan of one alone."""
-    return np.asarray(x.var(axis=0, ddof=1)) if len(x) > 1 else np.full(x.shape[1:], np.nan)
+        ratio = b / np.where(a == 0, np.nan, a)
+        pair = Pair.of(pooled, quantity, first, second, 1.0, ratio)
+        error = np.sqrt(pair.together / pooled.n) / np.abs(a)
+        return Paired(quantity, separations, ratio, error, pair.apart / pair.together)
 
 
 def _same_asperities(one: Ensemble, other: Ensemble) -> bool:

@@ -8,7 +8,6 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from mcgw.ensemble.prices import SOLVE, WANTS
 from mcgw.figures.panels import write_around
 from mcgw.figures.style import (
     BAND,
@@ -25,6 +24,7 @@ from mcgw.figures.style import (
 from mcgw.statistics.checks import Slope
 from mcgw.statistics.convergence import Convergence
 from mcgw.statistics.measured_ways import Point
+from mcgw.statistics.prices import SOLVE, WANTS
 from mcgw.statistics.tradeoff import Tradeoff
 from mcgw.statistics.verdict import FALSE_ALARM
 

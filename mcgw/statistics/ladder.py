@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 
 from mcgw.ensemble.drawing import in_words
-from mcgw.ensemble.prices import Needs
 from mcgw.errors import RunError
 from mcgw.scene.scene import Scene
+from mcgw.statistics.prices import Needs
 from mcgw.validity.model_error import percent
 
 _SIZES = (2, 10, 100, 1000, 10_000, 100_000)

@@ -17,12 +17,12 @@ from scipy.optimize import nnls
 from analytic.arrays import Array
 from analytic.at_load import specimen_moments
 from mcgw.ensemble.intervals import laws_are_quick
-from mcgw.ensemble.prices import PROBABILITY, SOLVE, Needs, Way, sampler_of, wants_of
 from mcgw.ensemble.simulation import simulate
 from mcgw.ensemble.solution import solutions
 from mcgw.sampling.asperities import worst_of_values
 from mcgw.sampling.expected import expected
 from mcgw.scene.scene import Scene
+from mcgw.statistics.prices import PROBABILITY, SOLVE, Needs, Way, sampler_of, wants_of
 
 REPEATS = 16
 _FEWEST = 3  # repeats of what draws nothing and takes long

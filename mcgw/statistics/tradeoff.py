@@ -11,7 +11,6 @@ from typing import Any
 from analytic import MeasuredHeights, MeasuredRadii
 from mcgw.ensemble.drawing import in_words
 from mcgw.ensemble.half_space import scene_alone
-from mcgw.ensemble.prices import PROBABILITY, TARGETS, WANTS, Advice, Needs, Way, advise, sampled_ways
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
 from mcgw.machine.progress import Progress, told
@@ -20,6 +19,7 @@ from mcgw.scene.arguments import argument, check_object
 from mcgw.scene.scene import Scene
 from mcgw.statistics.ladder import Ladder, ladder_of
 from mcgw.statistics.measured_ways import REPEATS, Answers, Point, moved, prices, sized
+from mcgw.statistics.prices import PROBABILITY, TARGETS, WANTS, Advice, Needs, Way, advise, sampled_ways
 
 SECONDS = 60.0
 _SHOWN = (1e-2,)

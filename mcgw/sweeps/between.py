@@ -1,12 +1,12 @@
-"""Two points of a sweep over the same surfaces: difference and ratio of means, and slopes along a key."""
+"""Two points of a sweep over the same surfaces: difference of means, and slopes along a key."""
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from analytic.arrays import Array
-from mcgw.ensemble.paired import Paired
+from mcgw.ensemble.paired import Pair
 from mcgw.ensemble.pooled import Pooled
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
@@ -35,47 +35,11 @@ class Difference:
         cls, pooled: Pooled, points: tuple[Place, Place], quantity: str, areas: tuple[float, float]
     ) -> "Difference":
         """First point minus second, each per area."""
-        pair = _Pair.of(pooled, points, quantity, 1 / areas[0], 1 / areas[1])
+        one, other = (point.of(quantity) for point in points)
+        pair = Pair.of(pooled, quantity, one, other, 1 / areas[0], 1 / areas[1])
         value = pair.one / areas[0] - pair.other / areas[1]
         with np.errstate(divide="ignore", invalid="ignore"):
             return cls(value, np.sqrt(pair.together / pooled.n), pair.apart / pair.together)
-
-
-def ratio_of(pooled: Pooled, points: tuple[Place, Place], quantity: str, separations: Array) -> Paired:
-    """Return the ratio of two means, first point over second, over the surfaces that both share.
-
-    The error is that of ``b - r a``, one combination of scenes: what both share cancels before it is rounded.
-    """
-    b, a = (pooled.mean(quantity, *point.of(quantity)) for point in points)
-    with np.errstate(divide="ignore", invalid="ignore"):  # without a contact there is no ratio
-        ratio = b / np.where(a == 0, np.nan, a)
-        pair = _Pair.of(pooled, points, quantity, 1.0, ratio)
-        error = np.sqrt(pair.together / pooled.n) / np.abs(a)
-        return Paired(quantity, separations, ratio, error, pair.apart / pair.together)
-
-
-class _Pair(NamedTuple):
-    """Means of two points, and the variance of a combination of them over shared and over other surfaces."""
-
-    one: Array
-    other: Array
-    together: Array
-    apart: Array
-
-    @classmethod
-    def of(
-        cls, pooled: Pooled, points: tuple[Place, Place], quantity: str, x: float | Array, y: float | Array
-    ) -> "_Pair":
-        """`x` times the first less `y` times the second, as one combination of scenes: nothing cancels."""
-        (one, v), (other, w) = (point.of(quantity) for point in points)
-        a, b = pooled.mean(quantity, one, v), pooled.mean(quantity, other, w)
-        scenes = np.union1d(one, other)
-        weights = np.zeros((len(scenes), *a.shape))
-        weights[np.searchsorted(scenes, one)] += np.multiply.outer(v, x * np.ones(a.shape))
-        weights[np.searchsorted(scenes, other)] -= np.multiply.outer(w, y * np.ones(a.shape))
-        together = np.maximum(pooled.variance(quantity, scenes, weights), 0.0)  # apart from rounding
-        variances = pooled.variance(quantity, one, v), pooled.variance(quantity, other, w)
-        return cls(a, b, together, x**2 * variances[0] + y**2 * variances[1])
 
 
 @dataclass(frozen=True, repr=False)

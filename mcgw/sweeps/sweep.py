@@ -13,7 +13,7 @@ from analytic.arrays import Ints
 from mcgw.ensemble.dataset import Dataset
 from mcgw.ensemble.ensemble import STATISTICS, Ensemble
 from mcgw.ensemble.labelled import Labelled, Variable, axes_of, statistics_of
-from mcgw.ensemble.paired import Paired
+from mcgw.ensemble.paired import Paired, ratio_of
 from mcgw.ensemble.pooled import Pooled
 from mcgw.formats.sheet import Sheet
 from mcgw.formats.table import SEPARATION, Column, Table, evenly
@@ -21,7 +21,7 @@ from mcgw.sampling.samplers import name_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 from mcgw.sweeps.axes import Axes, Point, label
-from mcgw.sweeps.between import Difference, Slopes, ratio_of
+from mcgw.sweeps.between import Difference, Slopes
 from mcgw.sweeps.groups import Place, PointResults
 
 At = Mapping[str, Any] | Sequence[int] | int
@@ -130,7 +130,8 @@ class Sweep(Dataset):
         points = self.axes.place(one), self.axes.place(other)
         name, _ = self._stored(quantity)
         a, b = self._pair(*points)
-        return ratio_of(self.groups[self.places[a].group], self._places(a, b), name, self.separations)
+        first, second = (place.of(name) for place in self._places(a, b))
+        return ratio_of(self.groups[self.places[a].group], name, first, second, self.separations)
 
     def slopes(self, quantity: str, along: str) -> Slopes:
         """Change of a mean with a key between neighbouring points, over the same surfaces, and by theory.

@@ -20,7 +20,6 @@ MODULES = {
     "mcgw.ensemble.intervals": (
         "count_interval exact_ends FEWEST mean_interval moments pearson3_quantile Spread spread_of TOO_FEW"
     ),
-    "mcgw.ensemble.prices": "advise Needs sampled_ways WANTS wants_of Way",
     "mcgw.ensemble.results": "Held MemoryResults",
     "mcgw.ensemble.separation": "crossing LawSum Summits",
     "mcgw.ensemble.simulation": "reducer_of Values",
@@ -80,6 +79,7 @@ MODULES = {
     "mcgw.statistics.convergence": "_own converge Convergence",
     "mcgw.statistics.ladder": "Ladder Rung",
     "mcgw.statistics.measured_ways": "Point Task",
+    "mcgw.statistics.prices": "advise Needs sampled_ways WANTS wants_of Way",
     "mcgw.statistics.tradeoff": "Tradeoff",
     "mcgw.statistics.verdict": "FALSE_ALARM verdict Verdict",
     "mcgw.store.ensembles": "read_attributes verify",
