@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, NoReturn
 
-from mcgw.commands.declared import COMMANDS, execute, parser_of
+from mcgw.commands.declared import COMMANDS as COMMANDS, all_commands, execute, parser_of
 from mcgw.commands.voice import QUIET, speaking
 from mcgw.errors import RunError, in_one_line
 from mcgw.machine.terminal import Plain, one_line, plain_output
@@ -54,9 +54,7 @@ def _printed(output: Plain, asked: argparse.Namespace) -> int:
 def _main(argv: Sequence[str] | None, asked: argparse.Namespace) -> int:
     try:
         words = sys.argv[1:] if argv is None else argv
-        args = parser_of(words[:1] if words[:1] and words[0] in COMMANDS else COMMANDS).parse_args(
-            words, asked
-        )
+        args = parser_of([word for word in words[:1] if word in all_commands()]).parse_args(words, asked)
         with warnings.catch_warnings(), _heeding_sigterm():
             warnings.showwarning = _show_warning  # type: ignore[assignment]
             warnings.filterwarnings("ignore", module=r"mcgw\.scene\.plausible")  # shown as notes

@@ -17,7 +17,8 @@ from typing import Any
 import numpy as np
 
 import mcgw
-from mcgw.figures.studies import save_tradeoff
+from mcgw.figures.panels import save
+from mcgw.figures.studies import tradeoff_figure
 from mcgw.statistics.measured_ways import Answers, moved
 from mcgw.statistics.prices import TARGETS, WANTS, Advice, Needs, Way, advise
 from mcgw.statistics.tradeoff import Tradeoff, tradeoff
@@ -161,7 +162,7 @@ def main() -> None:
     for name, scene in scenes().items():
         study = tradeoff(scene, seconds=seconds)
         print(study.sheet(TARGETS).text(), flush=True)
-        save_tradeoff(study, FOLDER / f"{name}.png")
+        save(tradeoff_figure(study), FOLDER / f"{name}.png")
         study.table().write(FOLDER / f"{name}.csv")
         study.measurements().write(FOLDER / f"{name}-measured.csv")
         for row in carried_out(name, study):

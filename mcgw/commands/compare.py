@@ -36,14 +36,15 @@ def compare(
     --------
     mcgw compare demo.h5 -o demo.png
     """
-    from mcgw.figures.against_theory import save_comparison
+    from mcgw.figures.against_theory import comparison_figure
+    from mcgw.figures.panels import save
     from mcgw.machine.progress import bar
     from mcgw.reports.text import comparison_summary
     from mcgw.statistics.comparison import compare as compared
 
     with bar("points", terminal=True) as show:
         found = compared(file, laws=laws, progress=show)
-    save_comparison(found, output)
+    save(comparison_figure(found), output)
     text, whole, verdict = comparison_summary(found, whole=table or says(ALL))
     news(*verdict, f"{output}: figure")
     if csv:

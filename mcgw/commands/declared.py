@@ -13,11 +13,13 @@ from inspect import cleandoc
 from pathlib import Path
 from typing import Any, NoReturn
 
+import mcgw.commands
 from mcgw.commands.kinds import Dry, In, Kind, OneOf, Out, SceneFile
 from mcgw.commands.outputs import check_outputs, reading
 from mcgw.commands.voice import add_amount_options, tell_cautions
 
-COMMANDS = (
+_HELPERS = ("declared", "kinds", "options", "outputs", "voice")
+_ORDER = (
     "init", "run", "sweep", "show", "compare", "converge", "tradeoff", "merge", "solve", "export", "figures",
     "report", "surface", "fit", "elastic", "warm", "completion",
 )  # fmt: skip
@@ -25,6 +27,15 @@ Command = Callable[..., bool | None]
 _NEGATIVE = re.compile(r"-\.?\d")  # a value that looks like an option, such as -1MPa
 _SECTION = re.compile(r"\n\n(?:Parameters|Examples)\n-+\n")
 _WORDS = re.compile(r"(\w+)(?: : (.+))?\n((?:    .+\n?)+)")
+
+
+def all_commands() -> tuple[str, ...]:
+    """Names of all commands: the files of this package, in the order of work."""
+    names = {path.stem for folder in mcgw.commands.__path__ for path in Path(folder).glob("[a-z]*.py")}
+    return (*(name for name in _ORDER if name in names), *sorted(names - {*_ORDER, *_HELPERS}))
+
+
+COMMANDS = all_commands()
 
 
 class Parser(argparse.ArgumentParser):
@@ -64,8 +75,8 @@ class _Version(argparse.Action):
         parser.exit()
 
 
-def parser_of(names: Sequence[str] = COMMANDS) -> argparse.ArgumentParser:
-    """The parser of some commands; only what these import is imported."""
+def parser_of(names: Sequence[str] = ()) -> argparse.ArgumentParser:
+    """The parser of some commands, or all; only what these import is imported."""
     parser = Parser(
         prog="mcgw",
         description="Monte-Carlo simulation of rough contacts with graded elasticity. SI units; "
@@ -73,7 +84,7 @@ def parser_of(names: Sequence[str] = COMMANDS) -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="show program's version number and exit")
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
-    for name in names:
+    for name in names or all_commands():
         function = getattr(import_module(f"mcgw.commands.{name}"), name)
         about, *sections = _SECTION.split(cleandoc(function.__doc__))
         about = f"{about[0].lower()}{' '.join(about.split())[1:]}"

@@ -168,11 +168,12 @@ def fit(
         if isinstance(found, Fit):
             told += _beside(found, summits, tiles)
         if picture and isinstance(found, Fit):
-            from mcgw.figures.map_fit import save_fit_picture
+            from mcgw.figures.map_fit import fit_figure
+            from mcgw.figures.panels import save
 
             size = None if pixel is None else (pixel, pixel)
             raw = read_map(map[0], pixel=size, unit=unit, missing=missing_value)
-            save_fit_picture(found, raw, ready, picture)
+            save(fit_figure(found, raw, ready), picture)
             told.append(f"{picture}: figure")
     lost = [line for line in said[1:] if line.startswith("missing: ")]
     news(f"{path}: {_parameters(scene.surface, assumed)}", said[0], *lost, *told)

@@ -102,6 +102,17 @@ class Values(Quantity):
         ]
 
 
+class Pressures(Values):
+    """Numbers with units, and ranges of them, as SI numbers."""
+
+    def read(self, given: Any, option: str) -> Any:
+        """A list of numbers."""
+        from mcgw.formats.units import parse
+
+        found = super().read(given, option)
+        return found and [parse(x, self.unit, option) if isinstance(x, str) else x for x in found]
+
+
 def ranged(text: str, option: str, unit: str = "") -> list[float]:
     """Return the N numbers from A to B of a text A:B:N; pressures and loads at a constant ratio.
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from mcgw.commands.kinds import Out, Results
+from mcgw.commands.kinds import Out, Pressures, Results
 from mcgw.commands.outputs import HTML, source
 from mcgw.commands.voice import news
 
@@ -12,7 +12,10 @@ if TYPE_CHECKING:
 
 
 def report(
-    file: Annotated["Ensemble", Results(sweeps=False)], *, output: Annotated[Path, Out(HTML, "{}.html")]
+    file: Annotated["Ensemble", Results(sweeps=False)],
+    *,
+    output: Annotated[Path, Out(HTML, "{}.html")],
+    pressures: Annotated[list[float] | None, Pressures("Pa")] = None,
 ) -> None:
     """Write a report: one HTML page with figures, tables, verdict and provenance.
 
@@ -20,6 +23,8 @@ def report(
     ----------
     output : HTML
         the page
+    pressures : P
+        nominal pressures of the answers: kPa, MPa, GPa; default: round ones that the separations span
 
     Examples
     --------
@@ -29,6 +34,6 @@ def report(
     from mcgw.reports.html import report_html
     from mcgw.store.ensembles import read_attributes
 
-    page = report_html(file, read_attributes(source()))
+    page = report_html(file, read_attributes(source()), pressures)
     write_whole(output, [page.encode()])
     news(f"{output}: report, {len(page.encode()) / 1e6:.2f} MB; open it in a browser")

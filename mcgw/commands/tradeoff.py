@@ -28,7 +28,8 @@ def tradeoff(
     --------
     mcgw tradeoff runs/demo.toml -o out
     """
-    from mcgw.figures.studies import save_tradeoff
+    from mcgw.figures.panels import save
+    from mcgw.figures.studies import tradeoff_figure
     from mcgw.machine.progress import bar
     from mcgw.statistics.prices import TARGETS
     from mcgw.statistics.tradeoff import tradeoff as studied
@@ -38,7 +39,7 @@ def tradeoff(
         found = studied(scene, seconds=seconds, progress=show)
     found.table().write(table)
     found.measurements().write(measured)
-    save_tradeoff(found, figure)
+    save(tradeoff_figure(found), figure)
     news(found.sheet(TARGETS).text())
     news(f"{table}: what to run for each error ({found.seconds:.0f} s)", f"{figure}: figure")
     details("", found.measurements().text())

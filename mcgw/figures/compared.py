@@ -11,7 +11,7 @@ from analytic import QUANTITIES, Exponential, Hertz, Homogeneous, MeasuredHeight
 from analytic.arrays import Array, Marks
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.simulation import simulate
-from mcgw.figures.data import Estimate, Points
+from mcgw.figures.data import Estimate, FigureData, Points
 from mcgw.figures.style import contact_label, short
 from mcgw.formats.law_text import law_text
 from mcgw.formats.table import evenly
@@ -225,3 +225,58 @@ class Compared:
         if self.scene.interaction is not None:
             said += ", interacting (d/σ is effective)"
         return f"This scene: {said}; heights {law}."
+
+
+@dataclass(frozen=True)
+class Row:
+    """A figure.
+
+    Parameters
+    ----------
+    name : str
+        Name of its files.
+    draw : callable
+        Computes its numbers from the scenes.
+    needs : tuple of callables, optional
+        Requirements: each returns what is missing, or nothing.
+    """
+
+    name: str
+    draw: Callable[[Compared], FigureData]
+    needs: tuple[Callable[[Compared], str], ...] = ()
+
+    def lacking(self, f: Compared) -> str:
+        """Say why the figure has no meaning for a scene, or nothing."""
+        return next(filter(None, (need(f) for need in self.needs)), "")
+
+
+def grading(f: Compared) -> str:
+    """Require a grading."""
+    return "" if f.graded else "the scene has no grading: E*(s) = E* at every height"
+
+
+def reference(f: Compared) -> str:
+    """Require another scene for ratios."""
+    alone = "the scene is its own reference (homogeneous, Hertz's law): every ratio is 1"
+    return "" if f.others else alone
+
+
+def pressing(f: Compared) -> str:
+    """Require positive loads, for ratios and logarithms."""
+    pulls = any(np.any(f.theory(label, "load", f.line) <= 0) for label in f.all)
+    return "the mean load is not positive at every separation" if pulls else ""
+
+
+def same_load(f: Compared) -> str:
+    """Require loads that every scene reaches."""
+    try:
+        for label in f.others:
+            f.at_load_of_reference(label, f.line)
+    except ValueError:
+        return "the scene does not reach the load of its reference at every separation"
+    return ""
+
+
+def several(f: Compared) -> str:
+    """Require more than one surface."""
+    return "" if f.scene.n_surfaces > 1 else "there is only one surface"

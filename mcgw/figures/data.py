@@ -1,6 +1,7 @@
 """Numbers of a figure: lines of theory and Monte-Carlo points, to draw, test or export."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -59,15 +60,66 @@ class Series:
 
 
 @dataclass(frozen=True)
+class Mark:
+    """Something else that a panel shows: a method of matplotlib's axes and its arguments.
+
+    Parameters
+    ----------
+    how : str
+        The method, such as "errorbar" or "hist".
+    given : tuple
+        Its arguments.
+    options : dict, optional
+        Its options.
+    bar : str, optional
+        Label of a colour bar beside an image.
+    """
+
+    how: str
+    given: tuple[Any, ...]
+    options: dict[str, Any] = field(default_factory=dict)
+    bar: str = ""
+
+
+def words(text: str, *, centred: bool = True) -> Mark:
+    """A text in place of axes: a few words, or a listing."""
+    look: dict[str, Any] = {"ha": "center", "va": "center"}
+    if not centred:
+        look = {"va": "top", "family": "monospace", "fontsize": 6.6}
+    return Mark("text", (0.5 * centred, 1 - 0.5 * centred, text), look)
+
+
+@dataclass(frozen=True)
 class Panel:
-    """One pair of axes; `scales` are those of x and y, `level` a value worth a line of its own."""
+    """One pair of axes.
+
+    Parameters
+    ----------
+    title, xlabel, ylabel : str
+        Its texts.
+    series : tuple of Series, optional
+        Lines of theory and points.
+    scales : (str, str), optional
+        Of x and y.
+    level : float, optional
+        A value of y worth a line of its own.
+    marks : tuple of Mark, optional
+        What else it shows.
+    settings : dict, optional
+        Other properties of the axes, such as limits.
+    wide : bool, optional
+        Whether it takes all columns.
+    """
 
     title: str
     xlabel: str
     ylabel: str
-    series: tuple[Series, ...]
+    series: tuple[Series, ...] = ()
     scales: tuple[str, str] = ("linear", "linear")
     level: float | None = None
+    marks: tuple[Mark, ...] = ()
+    settings: dict[str, Any] = field(default_factory=dict)
+    wide: bool = False
 
 
 @dataclass(frozen=True)

@@ -1,27 +1,16 @@
-"""A fitted map as one picture: before and after, the summits, their laws, and moments against cutoff."""
+"""A fitted map as one figure: before and after, the summits, their laws, and moments against cutoff."""
 
 import textwrap
 from contextlib import suppress
-from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
 import numpy as np
-from matplotlib.figure import Figure
 
 from analytic import Gaussian, Nayak
-from analytic.arrays import Marks
-from mcgw.figures.style import (
-    HOMOGENEOUS,
-    MARKED,
-    MISSING,
-    SAMPLE,
-    STYLE,
-    THEORY,
-    look,
-    prefixed,
-    save_figure,
-)
+from analytic.arrays import Array, Marks
+from mcgw.figures.data import FigureData, Mark, Panel, words
+from mcgw.figures.style import HOMOGENEOUS, MARKED, MISSING, SAMPLE, THEORY, look, prefixed
 from mcgw.maps.estimates import moments_of
 from mcgw.maps.fit import Fit
 from mcgw.maps.form import smooth
@@ -30,7 +19,6 @@ from mcgw.maps.summit_sums import summit_sums_of
 from mcgw.maps.topography import Topography
 from mcgw.maps.waves import Uncertain
 
-_SIZE, _DPI = (11.0, 6.8), 160
 _POINTS = 700  # points of a map along each side: more do not show
 _MOST_MARKS = 3000
 _CUTOFFS = 8
@@ -38,8 +26,8 @@ _WIDTH, _LINES = 42, 27  # of the text, in characters and lines
 _TIMES = 12.0  # from the shortest cutoff to the longest
 
 
-def save_fit_picture(fit: Fit, raw: Topography, ready: Prepared, path: Path) -> None:
-    """Draw the picture of a fit.
+def fit_figure(fit: Fit, raw: Topography, ready: Prepared) -> FigureData:
+    """Show a fit.
 
     Parameters
     ----------
@@ -49,45 +37,34 @@ def save_fit_picture(fit: Fit, raw: Topography, ready: Prepared, path: Path) -> 
         The map as it was read.
     ready : Prepared
         The prepared map.
-    path : Path
-        Ending in .png, .svg or .pdf.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written.
     """
-    with mpl.rc_context(STYLE | {"axes.axisbelow": True}):
-        figure = Figure(figsize=_SIZE, layout="constrained")
-        axes = figure.subplots(2, 3, width_ratios=(1, 1, 1.05))
-        _draw_map(figure, axes[0, 0], raw, None)
-        missing = f", {raw.missing} points missing" if raw.missing else ""
-        axes[0, 0].set_title(f"a  as read{missing}", loc="left")
-        _draw_map(figure, axes[0, 1], ready.used, ready.seen)
-        _draw_summits(axes[0, 1], fit, ready)
-        _draw_moments(axes[0, 2], ready)
-        _draw_heights(axes[1, 0], fit)
-        _draw_curvatures(axes[1, 1], fit)
-        _write(axes[1, 2], fit)
-        save_figure(figure, path, dpi=_DPI)
+    missing = f", {raw.missing} points missing" if raw.missing else ""
+    panels = (
+        _map_panel(f"a  as read{missing}", raw, None),
+        _summits_panel(fit, ready),
+        _moments_panel(ready),
+        _heights_panel(fit),
+        _curvatures_panel(fit),
+        Panel("f  estimates", "", "", marks=(words(_listing(fit), centred=False),)),
+    )
+    return FigureData("", "", panels, columns=3)
 
 
-def _draw_map(figure: Figure, axis: Any, topography: Topography, seen: Marks | None) -> None:
-    """Heights in grey; points that do not count are orange."""
+def _map_panel(title: str, topography: Topography, seen: Marks | None, *more: Mark) -> Panel:
+    """Heights in grey; points that do not count have a colour."""
     every = tuple(slice(None, None, max(n // _POINTS, 1)) for n in topography.heights.shape)
     z = topography.heights[every]
     z = np.where(np.isfinite(z) if seen is None else seen[every], z, np.nan)
     unit, factor = _unit(float(np.nanstd(z)))
     lateral, times = _unit(max(topography.size))
     low, high = np.nanpercentile(z, (0.5, 99.5)) * factor
-    grey = mpl.colormaps["gray"].with_extremes(bad=MISSING)
-    extent = (0, times * topography.size[0], 0, times * topography.size[1])
-    image = axis.imshow(
-        factor * z, cmap=grey, origin="lower", extent=extent, vmin=low, vmax=high, interpolation="nearest"
-    )
-    axis.grid(visible=False)
-    axis.set(xlabel=f"x ({lateral})", ylabel=f"y ({lateral})")
-    figure.colorbar(image, ax=axis, label=f"height ({unit})", shrink=0.8)
+    look_of_it = {
+        "cmap": mpl.colormaps["gray"].with_extremes(bad=MISSING), "origin": "lower",
+        "vmin": low, "vmax": high,
+        "extent": (0, times * topography.size[0], 0, times * topography.size[1]), "interpolation": "nearest",
+    }  # fmt: skip
+    image = Mark("imshow", (factor * z,), look_of_it, bar=f"height ({unit})")
+    return Panel(title, f"x ({lateral})", f"y ({lateral})", marks=(image, *more))
 
 
 def _unit(length: float) -> tuple[str, float]:
@@ -96,21 +73,21 @@ def _unit(length: float) -> tuple[str, float]:
     return f"{prefix}m", 1 / size
 
 
-def _draw_summits(axis: Any, fit: Fit, ready: Prepared) -> None:
-    """Where the summits are, some of them if there are many."""
+def _summits_panel(fit: Fit, ready: Prepared) -> Panel:
+    """The map with its summits, some of them if there are many."""
     used, times = ready.used, _unit(max(ready.used.size))[1]
     some = slice(None, None, max(fit.summits.size // _MOST_MARKS, 1))
     # the filter took a margin off the map on which they are placed
     margins = ((whole - part) / 2 for whole, part in zip(ready.levelled.size, used.size, strict=True))
     listed = (fit.listed.x, fit.listed.y)
     x, y = (times * (place[some] - margin) for place, margin in zip(listed, margins, strict=True))
-    marks = max(0.4, min(3.0, 90 / np.sqrt(x.size)))
-    axis.plot(x, y, "o", ms=marks, color=MARKED, mew=0)
+    size = max(0.4, min(3.0, 90 / np.sqrt(x.size)))
+    dots = Mark("plot", (x, y, "o"), {"ms": size, "color": MARKED, "mew": 0})
     shown = "" if x.size == fit.summits.size else f", {x.size} shown"
-    axis.set_title(f"b  as analysed: {fit.summits.size} summits{shown}", loc="left")
+    return _map_panel(f"b  as analysed: {fit.summits.size} summits{shown}", used, ready.seen, dots)
 
 
-def _draw_moments(axis: Any, ready: Prepared) -> None:
+def _moments_panel(ready: Prepared) -> Panel:
     """m0, m2, m4 over those at the cutoff that was chosen, against cutoff."""
     first = ready.asked.cutoff or 2 * max(ready.used.pixel)
     last = min(_TIMES * first, min(ready.levelled.size) / 4)
@@ -122,30 +99,30 @@ def _draw_moments(axis: Any, ready: Prepared) -> None:
             break
         rows.append((m.m0, m.m2, m.m4))
     unit, times = _unit(float(cutoffs[len(rows) // 2]))
-    for values, name in zip(np.array(rows).T, ("$m_0$", "$m_2$", "$m_4$"), strict=True):
-        x, y = times * cutoffs[: len(rows)], values / values[0]
-        axis.plot(x, y, **look(name), ms=4, mfc="white", label=name)
-    axis.set(xscale="log", yscale="log", xlabel=f"cutoff ({unit})", ylabel="over those at the first cutoff")
-    ticks = times * cutoffs[: len(rows) : 2]
-    axis.set_xticks(ticks, [f"{t:.3g}" for t in ticks])
-    axis.set_xticks([], minor=True)
-    axis.set_title("c  moments against cutoff", loc="left")
-    axis.legend()
+    marks = tuple(
+        Mark("plot", (times * cutoffs[: len(rows)], values / values[0]),
+             {**look(name), "ms": 4, "mfc": "white", "label": name})
+        for values, name in zip(np.array(rows).T, ("$m_0$", "$m_2$", "$m_4$"), strict=True)
+    )  # fmt: skip
+    label = "over those at the first cutoff"
+    return Panel("c  moments against cutoff", f"cutoff ({unit})", label, scales=("log", "log"), marks=marks)
 
 
-def _draw_heights(axis: Any, fit: Fit) -> None:
-    """Draw summit heights and the laws that they may follow."""
-    sigma = float(fit.summits.std())
-    z = np.linspace(-4.5, 4.5, 241)
-    axis.hist(fit.summits / sigma, bins="auto", density=True, color=SAMPLE, label="summits")
-    for (label, density), (color, dash) in zip(
-        height_laws(fit), ((HOMOGENEOUS, "--"), (THEORY, "-")), strict=False
-    ):
-        axis.plot(z, density(z), dash, color=color, label=label)
-    axis.set(xlabel="summit height, about its mean, over its std", ylabel="density")
-    axis.set_title("d  summit heights", loc="left")
-    axis.margins(y=0.5)
-    axis.legend()
+def bars(values: Array, label: str) -> Mark:
+    """A histogram as a density."""
+    return Mark("hist", (values,), {"bins": "auto", "density": True, "color": SAMPLE, "label": label})
+
+
+def _heights_panel(fit: Fit) -> Panel:
+    """Summit heights and the laws that they may follow."""
+    sigma, z = float(fit.summits.std()), np.linspace(-4.5, 4.5, 241)
+    looks = ({"color": HOMOGENEOUS, "ls": "--"}, {"color": THEORY})
+    laws = (
+        Mark("plot", (z, density(z)), {**own, "label": label})
+        for (label, density), own in zip(height_laws(fit), looks, strict=False)
+    )
+    label = "summit height, about its mean, over its std"
+    return Panel("d  summit heights", label, "density", marks=(bars(fit.summits / sigma, "summits"), *laws))
 
 
 def height_laws(fit: Fit) -> list[tuple[str, Any]]:
@@ -156,24 +133,20 @@ def height_laws(fit: Fit) -> list[tuple[str, Any]]:
     return laws
 
 
-def _draw_curvatures(axis: Any, fit: Fit) -> None:
-    """Draw summit curvatures over their mean, and Nayak's law (1971), which does not depend on alpha."""
+def _curvatures_panel(fit: Fit) -> Panel:
+    """Summit curvatures over their mean, and Nayak's law (1971), which does not depend on alpha."""
     k = fit.curvatures / fit.curvatures.mean()
-    k = k[(k > 0) & (k < 3)]
-    axis.hist(k, bins="auto", density=True, color=SAMPLE, label="summits")
-    axis.set_ylim(top=max(axis.get_ylim()[1], 1.5))
-    x = np.linspace(0.01, 3, 200)
-    mean = 8 / np.sqrt(3 * np.pi)
+    x, mean = np.linspace(0.01, 3, 200), 8 / np.sqrt(3 * np.pi)
     t = mean * x
     density = np.sqrt(3) / (2 * np.sqrt(np.pi)) * (t**2 - 2 + 2 * np.exp(-(t**2) / 2)) * np.exp(-(t**2) / 4)
-    axis.plot(x, mean * density, color=THEORY, label="Gaussian surface")
-    axis.set(xlabel="mean curvature over its mean", ylabel="density", xlim=(0, 3))
-    axis.set_title("e  summit curvatures", loc="left")
-    axis.legend()
+    law = Mark("plot", (x, mean * density), {"color": THEORY, "label": "Gaussian surface"})
+    marks = (bars(k[(k > 0) & (k < 3)], "summits"), law)
+    label = "mean curvature over its mean"
+    return Panel("e  summit curvatures", label, "density", marks=marks, settings={"xlim": (0, 3)})
 
 
-def _write(axis: Any, fit: Fit) -> None:
-    """Write the results and the steps of preparation."""
+def _listing(fit: Fit) -> str:
+    """The results and the steps of preparation."""
     lines = [f"{'':9}{'eta (1/m²)':>12}{'R (m)':>11}{'sigma (m)':>11}"]
     for name, e in fit.estimates.items():
         mark = "*" if name == fit.best else " "
@@ -182,10 +155,7 @@ def _write(axis: Any, fit: Fit) -> None:
     lines += ["* best here", "", f"alpha = {fit.alpha.value:.3g} ({_arms(fit.alpha)})", ""]
     for text in (*fit.notes, *fit.cautions):
         lines += textwrap.wrap(text, _WIDTH, subsequent_indent="  ")
-    shown = lines if len(lines) <= _LINES else [*lines[: _LINES - 1], "..."]
-    axis.axis("off")
-    axis.set_title("f  estimates", loc="left")
-    axis.text(0, 1, "\n".join(shown), va="top", family="monospace", fontsize=6.6, transform=axis.transAxes)
+    return "\n".join(lines if len(lines) <= _LINES else [*lines[: _LINES - 1], "..."])
 
 
 def _arms(x: Uncertain) -> str:

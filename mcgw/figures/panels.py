@@ -44,15 +44,15 @@ def draw(data: FigureData) -> Figure:
         With title and caption.
     """
     columns = 3 if len(data.panels) == 3 else min(data.columns, len(data.panels))
-    rows = -(-len(data.panels) // columns)
+    places = list(_places(data.panels, columns))
+    rows = places[-1][0] + 1
     checked = any(map(_has_errors, data.panels))
     with mpl.rc_context(STYLE):
         size = max(_WIDTH * columns, _NARROWEST), rows * (_TALL + checked * _RESIDUAL) + _TEXTS
         figure = Figure(figsize=size, layout="constrained")
         part: Any = figure.subfigures()  # its legend stands below the title of the figure
         grid = part.add_gridspec(2 * rows, columns, height_ratios=[_TALL, _RESIDUAL] * rows)
-        for k, panel in enumerate(data.panels):
-            row, column = divmod(k, columns)
+        for panel, (row, column) in zip(data.panels, places, strict=True):
             if not _has_errors(panel):
                 draw_panel(part.add_subplot(grid[2 * row : 2 * row + 2, column]), panel)
                 continue
@@ -65,6 +65,16 @@ def draw(data: FigureData) -> Figure:
         _draw_legend(part, data.panels, size[0])
         write_around(figure, data.title, data.caption)
     return figure
+
+
+def _places(panels: Sequence[Panel], columns: int) -> Iterator[tuple[int, Any]]:
+    """Row and column of each panel, from left to right; a wide one has a row of its own."""
+    row = column = 0
+    for panel in panels:
+        if column == columns or (panel.wide and column):
+            row, column = row + 1, 0
+        yield row, slice(None) if panel.wide else column
+        column = columns if panel.wide else column + 1
 
 
 def _draw_legend(part: Any, panels: Sequence[Panel], width: float) -> None:
@@ -100,7 +110,7 @@ def draw_panel(axis: Any, panel: Panel) -> None:
     """Draw lines and the points on them."""
     positive = [float(y[y > 0].min()) for y in (x.theory for x in panel.series) if np.any(y > 0)]
     logarithmic = panel.scales[1] == "log" and bool(positive)  # a log axis cannot show 0 alone
-    yscale = "linear" if panel.scales[1] == "log" and not positive else panel.scales[1]
+    yscale = panel.scales[1] if positive or not panel.series else "linear"
     axis.set(xlabel=panel.xlabel, ylabel=panel.ylabel, xscale=panel.scales[0], yscale=yscale)
     if panel.level is not None:
         axis.axhline(panel.level, color=LEVEL, lw=0.8, zorder=1)
@@ -112,6 +122,15 @@ def draw_panel(axis: Any, panel: Panel) -> None:
     elif logarithmic:
         axis.set_ylim(bottom=0.6 * min(positive))
     axis.set_title(panel.title, loc="left")
+    for mark in panel.marks:
+        if mark.how == "text":
+            axis.set_axis_off()
+        within = {"transform": axis.transAxes} if mark.how == "text" else {}
+        shown = getattr(axis, mark.how)(*mark.given, **mark.options, **within)
+        if mark.bar:
+            axis.grid(visible=False)
+            axis.figure.colorbar(shown, ax=axis, label=mark.bar, shrink=0.8)
+    axis.set(**panel.settings)
 
 
 def keys(axes: Sequence[Any], panels: Sequence[Panel]) -> dict[str, Any]:
@@ -195,6 +214,13 @@ def draw_residual(axis: Any, reach: float) -> None:
     axis.axhline(0, color=LEVEL, lw=0.8, zorder=1)
     axis.set_ylim(-reach, reach)
     axis.yaxis.set_major_locator(FixedLocator([-2, 0, 2]) if reach < 8 else MaxNLocator(4, symmetric=True))
+
+
+def save(data: FigureData, path: str | Path) -> None:
+    """Draw a figure into a file, whose ending chooses the format: .png, .pdf, .svg."""
+    figure = draw(data)
+    with mpl.rc_context(STYLE):
+        save_figure(figure, path)
 
 
 def figure_files(folder: Path, name: str, formats: Sequence[str], *, csv: bool) -> list[Path]:

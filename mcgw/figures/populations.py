@@ -6,7 +6,7 @@ from analytic import Exponential, Grading, mean_modulus
 from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.simulation import simulate
-from mcgw.figures.compared import ENOUGH, SCENE, Compared
+from mcgw.figures.compared import ENOUGH, SCENE, Compared, Row, grading, several
 from mcgw.figures.data import GAMMA, SEPARATION, Estimate, FigureData, Panel, Points, Series, ratio_of_sums
 from mcgw.figures.ratios import over_gamma
 from mcgw.figures.style import power_of_ten
@@ -133,3 +133,6 @@ def spread(x: Array, h: Array, exact: Array) -> Points | None:
     z = (x - mean) / std
     influence = std / mean * ((z**2 - 1) / 2 - z * std / mean)
     return Points(h, std / np.abs(mean), influence.std(axis=0) / np.sqrt(len(x)), exact)
+
+
+FIGURES = (Row("figure-4", mean_moduli, (grading,)), Row("fluctuations", fluctuations, (several,)))

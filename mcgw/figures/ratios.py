@@ -12,7 +12,7 @@ from analytic.laws import Branch
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.separation import LawSum
 from mcgw.ensemble.simulation import simulate
-from mcgw.figures.compared import SCENE, Compared
+from mcgw.figures.compared import SCENE, Compared, Row, grading, pressing, reference, same_load
 from mcgw.figures.data import (
     GAMMA,
     PRESSURE,
@@ -289,3 +289,14 @@ def _ratios_at_load(s: Array, h: float, starts: Array) -> tuple[Array, Array]:
         rows.append([roots.sum(), d.sum(), modulus[: len(d)] @ roots] / hom)
         found.append(h2)
     return np.array(rows), np.array(found)
+
+
+FIGURES = (
+    Row("figure-1", gradings, (grading,)),
+    Row("figure-2", load),
+    Row("figure-3", area_per_load, (reference, pressing)),
+    Row("figure-5", stiffness),
+    Row("figure-6", stiffness_ratios, (reference,)),
+    Row("equal-load", equal_load, (reference, pressing, same_load)),
+    Row("area-and-load", area_and_load, (pressing,)),
+)

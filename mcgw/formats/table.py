@@ -1,7 +1,6 @@
 """A table of named columns: printed, as HTML, as CSV and as a DataFrame."""
 
 import csv
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from html import escape
@@ -14,11 +13,10 @@ import numpy as np
 from analytic.arrays import Ints
 from mcgw.errors import extra
 from mcgw.formats.files import whole_file
-from mcgw.formats.numbers import columns as typeset_columns, typeset
+from mcgw.formats.numbers import typeset
 from mcgw.machine.terminal import one_line
 
 SEPARATION = "d/sigma"  # over a column of separations
-_DIGITS = re.compile(r"\.(\d+)g")
 
 
 @dataclass(frozen=True)
@@ -34,7 +32,7 @@ class Column:
     words : str, optional
         Its heading; default: `name`.
     unit : str, optional
-        Unit of the numbers; columns of one unit share one format.
+        Unit of the numbers.
     form : str, optional
         Format of a number for a reader; files have all digits.
     missing : str, optional
@@ -87,10 +85,6 @@ class Column:
     def alone(self) -> "Column":
         """The column without what is beside it."""
         return replace(self, beside=None)
-
-    def typeset(self) -> list[str]:
-        """Its cells as they are printed."""
-        return list(map(typeset, self.cells()))
 
     def _shown(self, x: float, error: float) -> str:
         if np.isnan(x):
@@ -161,11 +155,11 @@ class Table:
     __repr__ = text
 
     def html(self) -> str:
-        """A ``table`` without its title; numbers of one unit in one format, every text escaped."""
+        """A ``table`` without its title: the cells of a terminal, typeset, every text escaped."""
         head = "".join(f"<th>{escape(typeset(self.heading(column)))}</th>" for column in self.columns)
         rows = "".join(
             f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>"
-            for row in zip(*self._typeset(), strict=True)
+            for row in zip(*(map(typeset, column.cells()) for column in self.columns), strict=True)
         )
         return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>" if head else ""
 
@@ -199,20 +193,6 @@ class Table:
         """
         pandas = optional("pandas", "to_dataframe")
         return pandas.DataFrame({column.name: column.values for column in self.flat})
-
-    def _typeset(self) -> Iterator[list[str]]:
-        """Cells of each column: numbers of one unit in one format, others as in a terminal."""
-        found: dict[str, list[str]] = {}
-        for unit in dict.fromkeys(column.unit for column in self.flat if column.unit):
-            alike = [c for c in self.flat if c.unit == unit and not c.textual and _DIGITS.fullmatch(c.form)]
-            sized = [(c.values, int(c.form[1:-1])) for c in alike]
-            texts = typeset_columns(sized) if sized else []
-            for c, cells in zip(alike, texts, strict=True):
-                found[c.name] = [cell or typeset(c.missing) for cell in cells]
-        for column in self.columns:
-            own, *beside = (found.get(c.name) or c.typeset() for c in column.flat)
-            between = replace(column, between=typeset(column.between))
-            yield between.together(own, beside[0]) if beside else own
 
 
 def stacked(tables: Mapping[str, Table], key: str, words: str = "") -> Table:

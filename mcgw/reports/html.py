@@ -1,6 +1,7 @@
 """Report of an ensemble: one HTML page without network or scripts."""
 
 import re
+from collections.abc import Sequence
 from typing import Any
 
 from analytic import Hertz
@@ -27,13 +28,18 @@ from mcgw.validity.model_error import Validity
 Facts = list[tuple[str, str]]
 
 
-def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
-    """Make the page of an ensemble from it and the attributes of its file: scene, digest, versions, ..."""
+def report_html(
+    ensemble: Ensemble, attributes: dict[str, Any], pressures: Sequence[float] | None = None
+) -> str:
+    """Make the page of an ensemble from it and the attributes of its file: scene, digest, versions, ...
+
+    Answers are at some pressures, Pa; by default at round ones that its separations span.
+    """
     scene, against = ensemble.scene, ensemble.scene.validity()
     with stages(3) as done:
         comparison = compare(ensemble)
         done()
-        at_loads = solved_pressures(scene)
+        at_loads = solved_pressures(scene, pressures)
         at_pressure = list(pressure_pictures(at_loads))
         solved = at_loads[len(at_loads) // 2] if at_loads else None
         done()
@@ -48,7 +54,7 @@ def report_html(ensemble: Ensemble, attributes: dict[str, Any]) -> str:
         verdict=comparison.verdict.line,
         elastic=against.verdict,
         at_pressure=at_pressure,
-        by_pressure=pressure_table(at_pressure, scene),
+        by_pressure=pressure_table(at_loads),
         solved=solved and solved.sheet().table,
         budget=solved and solved.budget(),
         figures=figures,

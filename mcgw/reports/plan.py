@@ -8,6 +8,7 @@ from mcgw.ensemble.drawing import in_words, rough_seconds, seconds_per_surface
 from mcgw.ensemble.forecast import MOST_SURFACES, forecast
 from mcgw.ensemble.intervals import laws_are_quick
 from mcgw.ensemble.simulation import reducer_of
+from mcgw.formats.sheet import listed
 from mcgw.machine.terminal import one_line
 from mcgw.sampling.expected import Expected, expected
 from mcgw.sampling.shared import shared
@@ -90,43 +91,43 @@ def _with_crowds(scene: Scene, known: Expected, surfaces: int) -> float | None:
 
 def plan_text(scene: Scene, plan: Plan) -> str:
     """The plan in words, with what is left out and why."""
-    size = f"{'statistics alone, about ' * (scene.keep == 'statistics')}{plan.bytes / 1e6:.4g} MB"
-    lines = [
-        one_line(scene.title) or "scene",
-        f"  surfaces      {plan.surfaces} of {scene.n_asperities} asperities ({scene.count})",
-        f"  sampler       {plan.sampler}" + (" (chosen by auto)" if scene.sampler == "auto" else ""),
-        f"  touching      {plan.touching:.4g} per surface, at the smallest d/sigma = {scene.lowest:g}",
-        f"  drawn         {plan.drawn:.4g} per surface",
-        f"  cells         about {plan.cells}, with {plan.moments} moments per surface",
-        f"  quantities    {', '.join(scene.quantities)} at {len(scene.separations)} separations",
-        *(f"  {word:13} {what}" for word, what in contact_facts(scene)),
-        f"  results       {size if scene.keep == 'statistics' else f'{size} before compression'}",
-        f"  time          about {in_words(plan.seconds)}",
-        _accuracy_line(scene, plan),
-        *_target_lines(scene, plan),
-        *(f"  {line}" for line in scene.validity().lines),
-        "not done:",
+    size = f"{plan.bytes / 1e6:.4g} MB"
+    kept = f"statistics alone, about {size}" if scene.keep == "statistics" else f"{size} before compression"
+    facts = [
+        ("surfaces", f"{plan.surfaces} of {scene.n_asperities} asperities ({scene.count})"),
+        ("sampler", plan.sampler + (" (chosen by auto)" if scene.sampler == "auto" else "")),
+        ("touching", f"{plan.touching:.4g} per surface, at the smallest d/sigma = {scene.lowest:g}"),
+        ("drawn", f"{plan.drawn:.4g} per surface"),
+        ("cells", f"about {plan.cells}, with {plan.moments} moments per surface"),
+        ("quantities", f"{', '.join(scene.quantities)} at {len(scene.separations)} separations"),
+        *contact_facts(scene),
+        ("results", kept),
+        ("time", f"about {in_words(plan.seconds)}"),
+        ("accuracy", _accuracy(scene, plan)),
+        *(("for" if k == 0 else "", line) for k, line in enumerate(_targets(scene, plan))),
     ]
-    spared = plan.asperities - plan.touching
-    lines += [f"  {line.format(spared=spared)}" for line in promise_of(plan.sampler).not_done]
-    if plan.cells and not plan.moments:
-        lines.append("  no heights are drawn: contacts follow from the numbers in the cells")
     left_out = [name for name in QUANTITIES if name not in scene.quantities]
+    spared = plan.asperities - plan.touching
+    not_done = [line.format(spared=spared) for line in promise_of(plan.sampler).not_done]
+    if plan.cells and not plan.moments:
+        not_done.append("no heights are drawn: contacts follow from the numbers in the cells")
     if left_out:
-        lines.append(f"  {', '.join(left_out)}: not requested")
-    return "\n".join(lines)
+        not_done.append(f"{', '.join(left_out)}: not requested")
+    lines = [one_line(scene.title) or "scene", *listed(facts, 12)]
+    lines += [f"  {line}" for line in scene.validity().lines]
+    return "\n".join([*lines, "not done:", *(f"  {line}" for line in not_done)])
 
 
-def _accuracy_line(scene: Scene, plan: Plan) -> str:
+def _accuracy(scene: Scene, plan: Plan) -> str:
     """How far laws may be from the exact ones, and what more would buy."""
     given = f"up to {scene.accuracy:g} from the exact laws" if scene.accuracy else "0: exact laws"
     if plan.crowds is None or plan.crowds > plan.seconds / _WORTH:
-        return f"  accuracy      {given}"
+        return given
     bought = "buys" if scene.accuracy else "1e-3 would buy"
-    return f"  accuracy      {given}; {bought} crowded cells, {plan.crowds / plan.seconds:.2g} x the time"
+    return f"{given}; {bought} crowded cells, {plan.crowds / plan.seconds:.2g} x the time"
 
 
-def _target_lines(scene: Scene, plan: Plan) -> list[str]:
+def _targets(scene: Scene, plan: Plan) -> list[str]:
     """Surfaces and time for which every mean is within an error, and that theory needs none."""
     if scene.interaction is not None or scene.as_measured or not laws_are_quick(scene):
         return []  # no theory, or one that takes longer than a plan may
@@ -136,7 +137,7 @@ def _target_lines(scene: Scene, plan: Plan) -> list[str]:
         some = f", all but {len(found.out_of_reach)} means" if found.out_of_reach else ""
         seconds = in_words(plan.seconds / plan.surfaces * found.surfaces)
         lines.append(f"rel_err = {target:g}: {found.surfaces:.2g} surfaces, {seconds}{some}")
-    return [f"  {'for' if k == 0 else '':13} {line}" for k, line in enumerate([*lines, _NO_SURFACES])]
+    return [*lines, _NO_SURFACES]
 
 
 def sweep_plan_text(asked: Asked) -> str:
@@ -145,15 +146,14 @@ def sweep_plan_text(asked: Asked) -> str:
     title = str(asked.document["title"])
     computed = sum(len(group.computed) for group in groups)
     drawn = sum(group.n_surfaces * group.scenes[0].touching for group in groups)
-    lines = [
-        f"{one_line(title) or 'sweep'}: {asked.axes.size} scenes",
-        *(f"  {key}  {asked.axes.summary(key)}" for key in asked.axes.keys),
-        f"  groups      {len(groups)} that share their surfaces",
-        f"  surfaces    {sum(group.n_surfaces for group in groups)}, with {drawn:.4g} asperities that touch",
-        f"  computed    {computed} scenes; the others are weighted means of them",
-        f"  time        about {in_words(_seconds(groups))} on this machine",
+    facts = [
+        ("groups", f"{len(groups)} that share their surfaces"),
+        ("surfaces", f"{sum(group.n_surfaces for group in groups)}, with {drawn:.4g} asperities that touch"),
+        ("computed", f"{computed} scenes; the others are weighted means of them"),
+        ("time", f"about {in_words(_seconds(groups))} on this machine"),
     ]
-    return "\n".join(lines)
+    keys = [(key, asked.axes.summary(key)) for key in asked.axes.keys]
+    return "\n".join([f"{one_line(title) or 'sweep'}: {asked.axes.size} scenes", *listed([*keys, *facts])])
 
 
 def _seconds(groups: list[Group]) -> float:

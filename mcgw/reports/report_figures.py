@@ -11,22 +11,23 @@ from matplotlib.figure import Figure
 
 from analytic import quantity_of
 from analytic.arrays import Array
-from mcgw.ensemble.at_load import pressures_of
+from mcgw.ensemble.at_load import answers_at, asperities_of, pressures_of, quantities_at
+from mcgw.ensemble.intervals import laws_are_quick
 from mcgw.ensemble.solution import solutions
 from mcgw.ensemble.solved import Solution
 from mcgw.figures.against_theory import quantity_panel
-from mcgw.figures.data import FigureData, Panel, Points, Series
+from mcgw.figures.data import FigureData, Mark, Panel, Points, Series
 from mcgw.figures.panels import draw
-from mcgw.figures.style import STYLE, write_figure
-from mcgw.formats.table import Column, Table
+from mcgw.figures.style import SEEN, STYLE, write_figure
+from mcgw.formats.table import Column, Table, evenly
 from mcgw.scene.in_words import joint_text
 from mcgw.scene.scene import Scene
 from mcgw.statistics.comparison import Comparison
 
-_MOST_SURFACES, _MOST_HEIGHTS = 2000, 3e6  # drawn at once for all pressures of a page
-_FEWEST = 20
-_PRESSURES = 7  # of the table and of the curves, straight where both scales are logarithmic
-_BAND, _OF_BAND = 0.9, " Band: 5 to 95 % of the specimens."
+_FEW_HEIGHTS, _FEWEST = 3e6, 20  # drawn at once for all pressures of a page, where they are drawn
+_PRESSURES = 7  # of the table and of the curves, at most
+_ROUND = (1.0, 2.0, 5.0)
+_FINE = 49  # points of a curve
 _PER_AREA = (  # name, factor from SI, title, unit
     ("area", 100, "Real contact area", "%"),
     ("stiffness", 1e-12, "Normal stiffness", "MPa/µm"),
@@ -46,13 +47,10 @@ class PageFigure:
         What it shows.
     svg : str
         An element that takes the width it is given.
-    panel : Panel, optional
-        What is drawn, where a table has it too.
     """
 
     label: str
     svg: str
-    panel: Panel | None = None
 
 
 def comparison_figures(comparison: Comparison) -> list[PageFigure]:
@@ -66,36 +64,36 @@ def comparison_figures(comparison: Comparison) -> list[PageFigure]:
     return found
 
 
-def solved_pressures(scene: Scene) -> list[Solution]:
-    """Answers at pressures that the scene's separations span; none where that is not known."""
+def solved_pressures(scene: Scene, pressures: Sequence[float] | None = None) -> list[Solution]:
+    """Answers at pressures, Pa; by default at round ones that the scene's separations span, if any are."""
     if "load" not in scene.quantities:
         return []
     try:
-        pressures = pressures_of(scene, _PRESSURES)
-        most = int(_MOST_HEIGHTS / float(scene.theory.mean("contacts", scene.lowest)))
-        few = replace(scene, n_surfaces=min(scene.n_surfaces, _MOST_SURFACES, max(most, _FEWEST)))
-        return solutions(few, "load", (scene.surface.nominal_area * pressures).tolist())
+        low, high = pressures_of(scene, 2).tolist()
+        asked = round_pressures(low, high, _PRESSURES) if pressures is None else pressures
+        if not laws_are_quick(scene):  # specimens are drawn, their contacts one by one
+            most = int(_FEW_HEIGHTS / float(scene.theory.mean("contacts", scene.lowest)))
+            scene = replace(scene, n_surfaces=min(scene.n_surfaces, max(most, _FEWEST)))
+        return solutions(scene, "load", [scene.surface.nominal_area * pressure for pressure in asked])
     except ValueError:
-        return []
+        if pressures is None:
+            return []
+        raise
+
+
+def round_pressures(low: float, high: float, most: int) -> list[float]:
+    """At most so many pressures 1, 2 and 5 times a power of ten between two; these if there is none."""
+    powers = range(int(np.floor(np.log10(low))), int(np.ceil(np.log10(high))) + 1)
+    found = [float(f"{x:g}e{k}") for k in powers for x in _ROUND if low <= float(f"{x:g}e{k}") <= high]
+    return [found[k] for k in evenly(len(found), most)] if found else [low, high]
 
 
 def pressure_pictures(solved: Sequence[Solution]) -> Iterator[PageFigure]:
     """What holds at equal nominal pressure."""
-    for data in pressure_curves(solved):
-        (panel,) = data.panels
-        low, high = panel.series[0].x[[0, -1]]
+    for panel in pressure_curves(solved):
+        low, high = (each.amount / each.scene.surface.nominal_area / 1e6 for each in (solved[0], solved[-1]))
         label = f"{panel.title} against nominal pressure from {low:.3g} to {high:.3g} MPa"
-        yield replace(line_figure(draw(data), label), panel=panel)
-
-
-def pressure_table(figures: Sequence[PageFigure], scene: Scene) -> Table | None:
-    """Their means; None where there are none."""
-    panels = [figure.panel for figure in figures if figure.panel is not None]
-    if not panels:
-        return None
-    columns = [Column("nominal pressure (MPa)", panels[0].series[0].x, form=".3g")]
-    columns += [Column(panel.ylabel, panel.series[0].theory, form=".4g") for panel in panels]
-    return Table(tuple(columns), f"Means; conductances: {joint_text(scene)}" if scene.thermal else "Means")
+        yield line_figure(draw(FigureData("", "", (panel,))), label)
 
 
 def line_figure(figure: Figure, label: str) -> PageFigure:
@@ -142,24 +140,43 @@ def _relative_error(scene: Scene, name: str) -> Array:
         return np.asarray(np.sqrt((exact.excess_kurtosis + 2) / 4 + spread**2 - exact.skewness * spread))
 
 
-def pressure_curves(solved: Sequence[Solution]) -> list[FigureData]:
-    """Means over specimens at rising pressures in MPa, in the unit of the label.
-
-    The band holds 90 % of the specimens: of the separation by its exact law, where it is quickly known.
-    """
+def pressure_curves(solved: Sequence[Solution]) -> list[Panel]:
+    """Means over specimens at rising pressures, MPa, with their scatter, on those of an infinite surface."""
     if not solved:
         return []
-    scene = solved[0].scene
-    pressure = np.array([each.amount for each in solved]) / scene.surface.nominal_area / 1e6
+    scene, area = solved[0].scene, solved[0].scene.surface.nominal_area
+    alone, ends = asperities_of(scene).theory, [each.theory["separation"] for each in solved]
+    h = np.linspace(max(ends), min(ends), _FINE)
+    sums = {name: np.asarray(alone.mean(name, h)) for name in quantities_at(scene)}
+    line = answers_at(scene, {"separation": h, **sums})
+    pressure = np.array([each.amount for each in solved]) / area / 1e6
     curves = []
     for name, factor, title, label in _asked(scene):
-        mean = factor * np.array([each.value[name] for each in solved])
-        low, high = factor * np.array([each.specimens(name, _BAND) for each in solved]).T
-        series = Series("mean", pressure, mean, band=(low, high))
+        mean, std = (
+            factor * np.array([x[name] for x in some])
+            for some in ([each.value for each in solved], [each.std for each in solved])
+        )
+        dots = Mark("errorbar", (pressure, mean, std), {**SEEN, "fmt": "o", "label": "specimens: mean, std"})
+        series = Series("infinite surface", sums["load"] / area / 1e6, factor * np.asarray(line[name]))
         scales = ("log", "linear" if name == "separation" else "log")
-        panel = Panel(title, "nominal pressure P/Aₙ (MPa)", label, (series,), scales)
-        curves.append(FigureData("", f"Line: mean.{_OF_BAND}", (panel,)))
+        curves.append(Panel(title, "nominal pressure P/Aₙ (MPa)", label, (series,), scales, marks=(dots,)))
     return curves
+
+
+def pressure_table(solved: Sequence[Solution]) -> Table | None:
+    """Means over specimens to the digits of their scatter, a row a pressure; None where there are none."""
+    if not solved:
+        return None
+    scene = solved[0].scene
+    pressure = [each.amount / scene.surface.nominal_area / 1e6 for each in solved]
+    columns = [Column("pressure", pressure, "nominal pressure", "MPa", form=".4g")]
+    for name, factor, _, label in _asked(scene):
+        mean = [factor * each.value[name] for each in solved]
+        std = [factor * each.std[name] for each in solved]
+        beside = Column("std", std, form=".2g")
+        columns.append(Column(name, mean, label, error=std, beside=beside, between=" ± "))
+    words = "Means over specimens ± their standard deviation"
+    return Table(tuple(columns), f"{words}; {joint_text(scene)}" if scene.thermal else words)
 
 
 def _asked(scene: Scene) -> Iterator[tuple[str, float, str, str]]:

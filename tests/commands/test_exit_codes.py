@@ -73,6 +73,12 @@ def disturbed():
         stream.close()
 
 
+@pytest.fixture
+def instead(monkeypatch):
+    """Let something else stand in for the work of every command; it gets what was typed."""
+    return lambda work: monkeypatch.setattr("mcgw.cli.execute", lambda _, args: work(args))
+
+
 def test_all_commands_are_here():
     assert tuple(WORDS) == COMMANDS
 
@@ -85,7 +91,7 @@ DISTURBED += [
 
 
 @pytest.mark.parametrize(("command", "stream", "state"), sorted(set(DISTURBED)))
-def test_what_is_said_decides_nothing(command, stream, state, disturbed, tmp_path, monkeypatch):
+def test_what_is_said_decides_nothing(command, stream, state, disturbed, tmp_path, monkeypatch, instead):
     """The work stands in for that of the command: it says much before and after, and ends in every way."""
     ends = {0: None, 1: None, 2: ValueError("bad"), 3: RunError("failed", code=3), 130: KeyboardInterrupt()}
 
@@ -99,7 +105,7 @@ def test_what_is_said_decides_nothing(command, stream, state, disturbed, tmp_pat
             raise ends[code]
         return code
 
-    monkeypatch.setattr("mcgw.cli.execute", lambda _, args: work(args))
+    instead(work)
     for code in ends:
         monkeypatch.setattr(sys, stream, disturbed(state))
         assert main(WORDS[command].split()) == expected(command, stream, state, code)
@@ -120,7 +126,7 @@ def test_what_is_said_decides_nothing(command, stream, state, disturbed, tmp_pat
     ],
 )
 @pytest.mark.filterwarnings("always")
-def test_each_end_has_its_line_after_those_of_the_warnings(end, code, told, monkeypatch, capsys):
+def test_each_end_has_its_line_after_those_of_the_warnings(end, code, told, instead, capsys):
     def work(args):
         warnings.warn("two\nlines", stacklevel=1)
         warnings.warn_explicit("said as a note", UserWarning, "", 1, module="mcgw.scene.plausible")
@@ -128,7 +134,7 @@ def test_each_end_has_its_line_after_those_of_the_warnings(end, code, told, monk
             raise end
         return 0
 
-    monkeypatch.setattr("mcgw.cli.execute", lambda _, args: work(args))
+    instead(work)
     for quiet, warned in ([], "mcgw: warning: two\\nlines\n"), (["--quiet"], ""):
         assert main(["show", "e.h5", *quiet]) == code
         assert capsys.readouterr() == ("", warned + told)
@@ -181,11 +187,11 @@ def test_words_that_are_none_are_bad_input_all_the_same(state, disturbed, monkey
     assert end.value.code == 2
 
 
-def test_a_pipe_that_breaks_elsewhere_is_an_error(monkeypatch, capsys):
+def test_a_pipe_that_breaks_elsewhere_is_an_error(instead, capsys):
     def work(args):
         raise BrokenPipeError(32, "Broken pipe", "a worker")
 
-    monkeypatch.setattr("mcgw.cli.execute", lambda _, args: work(args))
+    instead(work)
     assert main(["run", "s.toml"]) == 2
     assert capsys.readouterr().err == "mcgw: a worker: Broken pipe\n"
 
@@ -258,13 +264,13 @@ def test_whole_commands_end_as_undisturbed(command, inputs, tmp_path):
 
 
 @pytest.mark.parametrize("command", ["run", "show"])
-def test_a_termination_is_told_in_one_line(command, monkeypatch, capsys):
+def test_a_termination_is_told_in_one_line(command, instead, monkeypatch, capsys):
     def work(args):
         os.kill(os.getpid(), signal.SIGTERM)
         time.sleep(5)
 
     before = signal.getsignal(signal.SIGTERM)
-    monkeypatch.setattr("mcgw.cli.execute", lambda _, args: work(args))
+    instead(work)
     monkeypatch.chdir(Path(mcgw.__file__).parents[1])
     assert main(WORDS[command].split()) == 143
     assert capsys.readouterr().err == "mcgw: terminated\n"

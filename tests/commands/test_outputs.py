@@ -385,7 +385,7 @@ def test_files_written_together_appear_all_or_none(tmp_path):
     ("words", "where", "name", "first"),
     [
         ("fit map.npy --cutoff none --pixel 1um --summits s.csv --tiles t.csv --picture p.png -o f.toml",
-         "mcgw.figures.map_fit", "save_fit_picture", 0),
+         "mcgw.figures.panels", "save", 0),
         ("figures --only figure-1 figure-2 --csv -o drawn", "mcgw.figures.panels", "save_figure_files", 1),
     ],
     ids=["fit", "figures"],

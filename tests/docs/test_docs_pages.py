@@ -176,7 +176,7 @@ def test_python_of_the_readme_runs(tmp_path, in_tmp_path):
 
 def test_the_contact_law_of_contributing_runs(capsys):
     text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
-    (example,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    *_, example = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
     exec(compile(example, "CONTRIBUTING.md", "exec"), {})
     assert "Ensemble of 100 surfaces of 300 asperities" in capsys.readouterr().out
 

@@ -273,7 +273,7 @@ def test_what_is_drawn_is_what_there_is(ensemble, results):
     low, high = ensemble.interval("pressure")
     ends = np.transpose([np.maximum(low, 0.001 * ensemble.mean("pressure")), high])[order]
     np.testing.assert_allclose(np.array(bars.get_segments())[..., 1], ends, rtol=1e-12)
-    assert results["study"].plot(want="quantile").get_title() == "99% quantile"
+    assert results["study"].plot(want="quantile").get_title(loc="left") == "99% quantile"
     with pytest.raises(ValueError, match="want = 'median': give one of "):
         results["study"].plot(want="median")
     with pytest.raises(KeyError, match="torque"):

@@ -26,13 +26,14 @@ from oracles.inside import (
     Slope,
     Verdict,
     compare,
+    comparison_figure,
+    convergence_figure,
     draw,
     look,
     power_of_ten,
     quantity_panel,
-    save_comparison,
-    save_convergence,
-    save_tradeoff,
+    save,
+    tradeoff_figure,
 )
 
 import analytic
@@ -191,7 +192,7 @@ def test_convergence(make_scene, kept, tmp_path, recorded):
     found = Convergence(make_scene(title="T"), checks, (slope("M", -0.49), slope("N", -0.55)), scores)
     assert repr(found).startswith("Statistical convergence FAILED")
     assert repr(dataclasses.replace(found, checks=checks[:1])).startswith("Statistical convergence passed")
-    save_convergence(found, tmp_path / "x.png")
+    save(convergence_figure(found), tmp_path / "x.png")
     (figure,) = kept
     recorded("drawn.converge", told.drawn(figure))
     for axis, curve in zip(figure.axes[:2], found.slopes, strict=True):
@@ -205,7 +206,7 @@ def test_convergence(make_scene, kept, tmp_path, recorded):
 
 def test_convergence_without_slopes(make_scene, kept, tmp_path):
     found = Convergence(make_scene(), (Check("means", "x", 0.3),), (), np.empty(0))
-    save_convergence(found, tmp_path / "x.png")
+    save(convergence_figure(found), tmp_path / "x.png")
     said = [text.get_text() for axis in kept[0].axes for text in axis.texts]
     assert sorted(said) == [
         "slope in M: too few contacts", "slope in N: too few contacts", "z-scores: too few contacts"
@@ -227,7 +228,7 @@ def test_tradeoff(make_scene, kept, tmp_path, recorded):
     rungs += (Rung("surfaces", 1000, 9.0, 0.004, 0.03),)
     scene = make_scene(title="T", separations=(2.0,), quantities=("area",), n_surfaces=75)
     found = Tradeoff(scene, 2.0, points, ways, Ladder(rungs, ""), 1.0)
-    save_tradeoff(found, tmp_path / "x.png")
+    save(tradeoff_figure(found), tmp_path / "x.png")
     (figure,) = kept
     recorded("drawn.tradeoff", told.drawn(figure))
     curve = next(line for line in figure.axes[-1].get_lines() if line.get_label() == "surfaces")
@@ -297,7 +298,7 @@ def check_residual(axis, curve):
 
 
 def test_comparison(comparison, kept, tmp_path):
-    save_comparison(comparison, tmp_path / "x.png")
+    save(comparison_figure(comparison), tmp_path / "x.png")
     (figure,) = kept
     assert len(figure.axes) == 2 * len(QUANTITIES)
     above, below = figure.axes[::2], figure.axes[1::2]
@@ -353,7 +354,7 @@ def test_a_large_residual_stays_in_sight_and_the_verdict_says_so(comparison, kep
     shift = 20 * curve.stderr
     off = Curve(curve.mean + shift, curve.low + shift, curve.high + shift, curve.theory, curve.stderr)
     wrong = dataclasses.replace(one_of(comparison, off), verdict=Verdict(99.0, 15, 1e-9))
-    save_comparison(wrong, tmp_path / "x.png")
+    save(comparison_figure(wrong), tmp_path / "x.png")
     low, high = kept[0].axes[1].get_ylim()
     assert low < off.residual.min() < off.residual.max() < high
     assert "theory DISAGREE: χ² = 99.0 for 15" in kept[0].get_suptitle().replace("\n", " ")
@@ -400,7 +401,8 @@ def test_panels_of_a_comparison_have_room(comparison, kept, tmp_path, panels, si
     one = comparison.curves["load"]
     mean, error = sign * 1e-12 * one.mean, 1e-13 * one.mean
     curve = Curve(mean, mean - error, mean + error, mean * (1 + 0.01 * size), 1e-13 * one.stderr)
-    save_comparison(dataclasses.replace(comparison, curves=dict.fromkeys(names, curve)), tmp_path / "x.png")
+    many = dataclasses.replace(comparison, curves=dict.fromkeys(names, curve))
+    save(comparison_figure(many), tmp_path / "x.png")
     assert len(kept[0].axes) == 2 * panels
     assert not crowded(kept[0])
     kept[0].axes[0].set_title("A title for which there is no room " * 9)  # which would be seen

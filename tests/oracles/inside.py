@@ -24,12 +24,12 @@ MODULES = {
     "mcgw.ensemble.separation": "crossing LawSum Summits",
     "mcgw.ensemble.simulation": "reducer_of Values",
     "mcgw.ensemble.solution": "solutions",
-    "mcgw.figures.against_theory": "quantity_panel save_comparison sweep_figure",
+    "mcgw.figures.against_theory": "comparison_figure quantity_panel",
     "mcgw.figures.catalogue": "CATALOGUE figures_of",
     "mcgw.figures.compared": "Compared",
     "mcgw.figures.data": "FigureData GAMMA Panel Points ratio_of_sums Series",
-    "mcgw.figures.panels": "draw save_figure_files",
-    "mcgw.figures.studies": "save_convergence save_tradeoff",
+    "mcgw.figures.panels": "draw save save_figure_files",
+    "mcgw.figures.studies": "convergence_figure tradeoff_figure",
     "mcgw.figures.style": "FAMILIES look PAIRS power_of_ten prefixed save_figure short STYLE THEORY",
     "mcgw.formats.files": (
         "alive check_output rename_over state_of temporary_beside together whole_file write_whole"
@@ -37,7 +37,7 @@ MODULES = {
     "mcgw.formats.gate": "check_archive open_h5 opened",
     "mcgw.formats.law_text": "law_text",
     "mcgw.formats.named_files": "loads loads_json open_npy read_text",
-    "mcgw.formats.numbers": "columns number typeset",
+    "mcgw.formats.numbers": "number typeset",
     "mcgw.formats.sheet": "brief listed Sheet",
     "mcgw.formats.table": "Column digits_of evenly joined stacked Table",
     "mcgw.formats.units": "_FACTORS EXAMPLES METRES parse",
@@ -62,7 +62,9 @@ MODULES = {
     "mcgw.maps.summit_sums": "_apex coarse_sums_of summit_sums_of SummitSums SUMS",
     "mcgw.reports.html": "report_html",
     "mcgw.reports.plan": "plan_of plan_text",
-    "mcgw.reports.report_figures": "_relative_error _spread line_figure pressure_curves solved_pressures",
+    "mcgw.reports.report_figures": (
+        "_relative_error _spread line_figure pressure_curves pressure_table round_pressures solved_pressures"
+    ),
     "mcgw.reports.solved_loads": "correlation solutions_text",
     "mcgw.reports.text": "comparison_text summary",
     "mcgw.sampling.asperities": "same_heights summits summits_drawn worst_of_values",

@@ -6,7 +6,17 @@ import numpy as np
 import pytest
 from conftest import SURFACE as COARSE
 from oracles import exact
-from oracles.inside import _relative_error, _spread, draw, line_figure, pressure_curves, solved_pressures
+from oracles.inside import (
+    FigureData,
+    _relative_error,
+    _spread,
+    draw,
+    line_figure,
+    pressure_curves,
+    pressure_table,
+    round_pressures,
+    solved_pressures,
+)
 
 import analytic
 import mcgw
@@ -75,7 +85,8 @@ def _few_pressures(monkeypatch):
     monkeypatch.setattr("mcgw.reports.report_figures._PRESSURES", 2)
 
 
-def test_curves_are_values_and_specimens_of_solve(scene):
+def test_curves_are_values_and_scatter_of_solve_on_theory(scene):
+    """The line is that of an infinite surface: of the means of theory at its own separation."""
     solved, area = solved_pressures(scene), SURFACE.nominal_area
     searched = mcgw.solve(scene, load=[each.amount for each in solved])
     expected = [
@@ -84,20 +95,35 @@ def test_curves_are_values_and_specimens_of_solve(scene):
         ("Normal stiffness", "K/Aₙ (MPa/µm)", "stiffness", 1e-12 / area),
         ("Contact conductance", "C/Aₙ (S/m²)", "conductance_si", 1 / area),
     ]
-    curves = pressure_curves(solved)
-    for curve, (title, label, name, factor) in zip(curves, expected, strict=True):
-        (panel,) = curve.panels
-        (series,) = panel.series
+    table = pressure_table(solved)
+    for k, (panel, (title, label, name, factor)) in enumerate(
+        zip(pressure_curves(solved), expected, strict=True)
+    ):
+        (series,), (dots,) = panel.series, panel.marks
         assert (panel.title, panel.ylabel) == (title, label)
-        np.testing.assert_allclose(series.theory, [factor * x.value[name] for x in searched], rtol=1e-12)
-        ends = factor * np.array([x.specimens(name) for x in searched]).T
-        np.testing.assert_allclose(series.band, ends, rtol=1e-9)
-        np.testing.assert_allclose(series.x, [1e-6 * x.amount / area for x in searched], rtol=1e-12)
-    figure = draw(curves[0])
+        pressure = [1e-6 * x.amount / area for x in searched]
+        told = pressure, [factor * x.value[name] for x in searched], [factor * x.std[name] for x in searched]
+        for given, wanted in zip(dots.given, told, strict=True):
+            np.testing.assert_allclose(given, wanted, rtol=1e-12)
+        np.testing.assert_allclose([column.values for column in table.flat[1 + 2 * k : 3 + 2 * k]], told[1:])
+        ends = [factor * x.theory[name] for x in (searched[0], searched[-1])]
+        np.testing.assert_allclose(series.theory[[0, -1]], ends, rtol=1e-9)
+        np.testing.assert_allclose(series.x[[0, -1]], [pressure[0], pressure[-1]], rtol=1e-9)
+    figure = draw(FigureData("", "", (pressure_curves(solved)[0],)))
     (axes,) = figure.axes
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("nominal pressure P/Aₙ (MPa)", "separation d/σ")
     assert (axes.get_xscale(), axes.get_yscale()) == ("log", "linear")
-    assert figure.get_supxlabel() == "Line: mean. Band: 5 to 95 % of the specimens."
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "found"),
+    [
+        (0.9e6, 5e6, [1e6, 2e6, 5e6]), (1.1e6, 1.9e6, [1.1e6, 1.9e6]), (3e-2, 0.2, [0.05, 0.1, 0.2]),
+        (1e3, 1e7, [1e3, 1e4, 1e5, 1e6, 1e7]),
+    ],
+)  # fmt: skip
+def test_pressures_of_a_page_are_round(low, high, found):
+    assert round_pressures(low, high, 5) == pytest.approx(found)
 
 
 @pytest.mark.parametrize(
@@ -128,10 +154,9 @@ def test_every_kind_has_its_curves(scene, changes):
     """Positive and rising with the pressure, also where adhesion lets a load fall below 0."""
     curves = pressure_curves(solved_pressures(scene.replace(**changes)))
     assert len(curves) >= 4
-    for curve in curves:
-        (panel,) = curve.panels
-        (series,) = panel.series
-        rising = -1 if "separation" in panel.ylabel else 1
-        assert np.all(rising * np.diff(series.theory) > 0), panel.title
-        assert np.all(series.band[0] <= series.theory)
-        assert np.all(series.theory <= series.band[1])
+    for panel in curves:
+        ((_, mean, std),) = (mark.given for mark in panel.marks)
+        for values in (mean, panel.series[0].theory):
+            rising = -1 if "separation" in panel.ylabel else 1
+            assert np.all(rising * np.diff(values) > 0), panel.title
+        assert np.all(std > 0)

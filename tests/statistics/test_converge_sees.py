@@ -14,10 +14,11 @@ from oracles.inside import (
     PrincipalComponents,
     _own as own,
     converge,
+    convergence_figure,
     covariances,
     coverage,
     independence,
-    save_convergence,
+    save,
     scores,
     skewness,
     variances,
@@ -342,7 +343,7 @@ def test_few_contacts_leave_the_exact_checks(make_scene, tmp_path):
     found = converge(make_scene(separations=(4.0, 5.0), n_asperities=1000))
     assert found.passed
     assert {"means", "number of contacts"} == {c.name for c in found.checks}
-    save_convergence(found, tmp_path / "few.png")
+    save(convergence_figure(found), tmp_path / "few.png")
     assert (tmp_path / "few.png").read_bytes().startswith(b"\x89PNG")
 
 

@@ -6,7 +6,16 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from oracles import exact
-from oracles.inside import FALSE_ALARM, Held, MemoryResults, Verdict, sampler_of, save_comparison, verdict
+from oracles.inside import (
+    FALSE_ALARM,
+    Held,
+    MemoryResults,
+    Verdict,
+    comparison_figure,
+    sampler_of,
+    save,
+    verdict,
+)
 from scipy.stats import chi2
 
 import analytic
@@ -233,7 +242,7 @@ def test_no_contact_at_all(make_scene, tmp_path):
     comparison = compare(mcgw.simulate(make_scene(separations=(9.0, 30.0))))
     assert comparison.verdict.agrees
     assert comparison.verdict.degrees == 0
-    save_comparison(comparison, tmp_path / "none.png")
+    save(comparison_figure(comparison), tmp_path / "none.png")
 
 
 def test_one_surface(make_scene):

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from oracles.inside import FALSE_ALARM, sweep_figure, verdict
+from oracles.inside import FALSE_ALARM, comparison_figure, draw, verdict
 from scipy.stats import norm
 
 import mcgw
@@ -89,7 +89,7 @@ def test_one_mean_of_one_point_that_is_off_breaks_it(sweep, name):
 
 def test_the_picture_shows_all_residuals_and_those_of_the_worst_point(sweep):
     compared = mcgw.compare(off(sweep, 1.03))
-    left, right = sweep_figure(compared).axes
+    left, right = draw(comparison_figure(compared)).axes
     assert sum(bar.get_height() for bar in left.patches) == len(compared.residuals) == 108
     line, width = left.lines[-1].get_xydata(), left.patches[0].get_width()
     np.testing.assert_allclose(line[:, 1], 108 * width * norm.pdf(line[:, 0]), rtol=1e-9)
