@@ -91,19 +91,23 @@ def with_bodies(document: Tables, folder: Path, read: Callable[[Tables, Path], T
     if not (named := files_of_bodies(document)):
         return document
     surface, bodies = document["surface"], document["surface"]["bodies"]
-    if len(named) != 2 or any(set(body) != {"file"} for body in bodies) or len(bodies) != 2:
+    if len(named) != 2 or bodies != [{"file": name} for name in named]:
         raise SceneError([f"surface.bodies = {bodies}: give {{file = ...}} of both, or E and nu of both"])
     if beside := [key for key in _FOLLOW if key in surface]:
         raise SceneError([f"surface.{beside[0]}: follows from the files of both bodies; leave it out"])
     a, b = (_body(folder / name, read) for name in named)
-    total, contact = summed(a.moments, b.moments), dict(document.get("contact", {}))
+    total, found = summed(a.moments, b.moments), dict(document)
     known = {key: value for key, value in surface.items() if key != "bodies"}
-    known |= {"m0": total.m0, "m2": total.m2, "m4": total.m4, "E_star": in_series(a, b)}
+    found["surface"] = known | {"m0": total.m0, "m2": total.m2, "m4": total.m4, "E_star": in_series(a, b)}
+    contact = document.get("contact", {})
+    if not isinstance(contact, Mapping):
+        return found  # which is refused
+    told: dict[str, Any] = {}
     if not _CONDUCTION & set(contact) and (pair := conductivities_of(a, b)):
-        contact["conductivities"] = list(pair)
+        told["conductivities"] = list(pair)
     if not _YIELD & set(contact) and (hardness := softer(a, b)):
-        contact["hardness"] = hardness
-    return {**document, "surface": known, "contact": contact}
+        told["hardness"] = hardness
+    return found | {"contact": {**contact, **told}}
 
 
 def files_of_bodies(document: Tables) -> list[str]:

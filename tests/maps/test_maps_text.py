@@ -51,6 +51,7 @@ def test_numbers_of_every_country(content, expected, tmp_path):
 
 @pytest.mark.parametrize(("content", "told"), [
     ("1,2, 3,4\n", "inside and between numbers"),
+    ("1,2, 3,4 5\n0 0 1\n1 0 2\n0 1 3\n1 1 4\n", "inside and between numbers"),  # no header of points
     ("1,2,3;4,5,6\n", "by commas and by something else"),
     ("1.234,5;6,5\n", "inside and between numbers|something else"),
     ("0,0012,0,0013\n", "begins with 0"),

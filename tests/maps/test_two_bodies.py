@@ -140,6 +140,11 @@ def test_no_table_takes_the_place_of_a_file_of_a_body(folder, capsys):
     assert (folder / "b.csv").read_text() == OTHER
 
 
+def test_a_contact_that_is_no_table_is_refused(folder):
+    with pytest.raises(mcgw.SceneError, match="contact = 3: must be a table"):
+        load(folder, "contact = 3\n" + PAIR.partition("[contact]")[0])
+
+
 def test_a_file_of_mcgw_fit_is_a_body(folder, maps):
     """Its moments under [fitted] count, whatever heights it has."""
     found = mcgw.fit(maps[0], cutoff=None, form="none")
