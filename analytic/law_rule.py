@@ -27,7 +27,7 @@ _TINY = 1e-14  # distance from such an end, below which heights are not told apa
 _UNDERFLOW = -745.0  # logarithm of the least density
 _RAREST = 1e-290  # share of the heights next to which densities underflow
 _NOTHING = 1e-32  # share of the touching heights that can be left out
-_RARE = (1e-37, 1e-32, 1e-24)  # a share that no sampler draws; others where a law cannot tell
+_RARE = 1e-37  # a share that no sampler draws
 _SURE = 1e-16  # up to such a rare height a grading must have values
 _SUMS = ((4, 0.0), (3, 0.0), (2, 0.0), (1, 3.0))  # powers of the modulus and of the approach in moments
 _LARGEST = 1e300
@@ -200,9 +200,9 @@ def extent(grading: Grading, heights: HeightLaw, separations: Sequence[float]) -
     h = np.unique(np.asarray(separations, dtype=np.float64))
     end = heights.support[1]
     sure = min(max(_above(heights, _SURE, -math.inf), h[-1] + 1), end)
-    bottom = max(float(heights.ppf(np.array(_RARE[0]))), heights.support[0])
+    bottom = max(float(heights.ppf(np.array(_RARE))), heights.support[0])
     low = max(float(h[0]), bottom)
-    high = max([sure, *(_above(heights, _RARE[0], start) for start in (-math.inf, h[-1]))])
+    high = max([sure, *(_above(heights, _RARE, start) for start in (-math.inf, h[-1]))])
     if not isinstance(heights, MeasuredHeights):
         ends = _of_moments(grading, heights, h)
         low, high = min(low, max(ends[0], float(h[0]))), max(high, ends[1])
@@ -211,13 +211,10 @@ def extent(grading: Grading, heights: HeightLaw, separations: Sequence[float]) -
 
 
 def _above(heights: HeightLaw, share: float, start: float) -> float:
-    """Height at a share of those above `start`, or at the rarest one that the law can tell."""
-    for rare in (share, *(r for r in _RARE if r > share)):
-        with np.errstate(all="ignore"):
-            found = float(heights.isf(np.array(rare), start))
-        if math.isfinite(found):
-            return found
-    return -math.inf
+    """Height at a share of those above `start`; minus infinity if the law cannot tell it."""
+    with np.errstate(all="ignore"):
+        found = float(heights.isf(np.array(share), start))
+    return found if math.isfinite(found) else -math.inf
 
 
 def _of_moments(grading: Grading, heights: HeightLaw, h: Array) -> tuple[float, float]:
