@@ -21,7 +21,7 @@ from mcgw.store.h5_writing import Contents, Rows
 from mcgw.store.layout import contents_of_values, read_statistics
 from mcgw.store.lock import locked, parts_of
 from mcgw.store.place import drop_leftovers, put, tidy
-from mcgw.store.run_folder import RECORD, RunFolder
+from mcgw.store.run_folder import RECORD, RunFolder, remove_run
 from mcgw.store.spans import Span
 
 if TYPE_CHECKING:
@@ -221,7 +221,7 @@ def merge_once(job: Job, signals: Signals) -> bool:
         put(run.path, _merged(job, check), before, check)
     except StoreError:
         return False
-    run.remove()
+    remove_run(run.folder)  # what identifies the run last
     return True
 
 

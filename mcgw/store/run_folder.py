@@ -281,10 +281,6 @@ class RunFolder:
         held = [*([Span(0, done)] if done else []), *(shard.span for shard in shards)]
         return self.plan.missing(held)
 
-    def remove(self) -> None:
-        """Remove all but the lock, what identifies the run last. Only with the lock."""
-        remove_run(self.folder)
-
 
 def remove_run(folder: Path) -> None:
     """Remove a run, readable or not; its lock stays, and with it the folder. Only with the lock."""

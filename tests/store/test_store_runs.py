@@ -21,7 +21,7 @@ import mcgw
 from mcgw.cli import main
 from mcgw.errors import RunError, StoppedError, StoreError
 from mcgw.jobs import making
-from mcgw.store import ensembles, identity, layout, place
+from mcgw.store import ensembles, identity, layout, place, run_folder as folders
 
 HERE = Path(__file__).parents[1]
 
@@ -167,7 +167,7 @@ def test_a_block_that_is_a_link_or_damaged_is_not_held(scene, tmp_path):
     third.unlink()
     assert [run_folder.held(Span(at, 16)) for at in (0, 16, 32)] == [None] * 3
     (parts_of(path) / ".left.tmp").touch()
-    run_folder.remove()
+    folders.remove_run(parts_of(path))
     assert [left.name for left in parts_of(path).iterdir()] == ["lock.db"]
 
 
