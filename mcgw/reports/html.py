@@ -2,10 +2,12 @@
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 from analytic import Hertz
 from mcgw.ensemble.ensemble import Ensemble, how_many
+from mcgw.ensemble.solved import Solution
 from mcgw.figures.style import grading_label
 from mcgw.formats.law_text import law_text
 from mcgw.formats.numbers import number, typeset
@@ -18,6 +20,7 @@ from mcgw.reports.report_figures import (
     pressure_table,
     solved_pressures,
 )
+from mcgw.reports.solved_loads import answer_table
 from mcgw.scene.cautions import cautions
 from mcgw.scene.in_words import contact_facts
 from mcgw.scene.law_cautions import other_laws
@@ -55,7 +58,7 @@ def report_html(
         elastic=against.verdict,
         at_pressure=at_pressure,
         by_pressure=pressure_table(at_loads),
-        solved=solved and solved.sheet().table,
+        solved=solved and _named(solved),
         budget=solved and solved.budget(),
         figures=figures,
         tables=[table.rows() for table in tables],
@@ -152,6 +155,13 @@ def contacts_sentence(scene: Scene) -> str:
     if scene.unload_from is not None:
         words += f"; unloading starts from d/σ = {scene.unload_from:g}"
     return f"{words}."
+
+
+def _named(solved: Solution) -> Table:
+    """The answer at a load, its quantities in words."""
+    names, *columns = answer_table(solved).columns
+    words = [name.replace("_", " ") for name in names.values]
+    return Table((replace(names, values=words), *columns), solved.title)
 
 
 def _elasticity_words(found: Validity) -> list[str]:

@@ -37,7 +37,7 @@ def solutions_text(
     one = len(solutions) == 1
     if not full:
         lines.append(f"{solutions[0].budget().brief}; more: add -v")
-        lines += ["", (_answer(solutions[0]) if one else _by_load(scene, solutions)).text()]
+        lines += ["", (answer_table(solutions[0]) if one else _by_load(scene, solutions)).text()]
     else:
         lines += _background(scene, solutions)
         for solution in solutions:
@@ -66,7 +66,7 @@ def _known(solution: Solution, table: Table) -> Table:
     return table.at([k for k, name in enumerate(solution.theory) if name != solution.given])
 
 
-def _answer(solution: Solution) -> Table:
+def answer_table(solution: Solution) -> Table:
     """The answer and specimens to the digits that count, a row for each quantity that is not a variant."""
     table = _known(solution, solution.table())
     name, unit, value, interval, std, _, *best = table.columns
