@@ -26,7 +26,6 @@ _NATURAL = {  # units of a scene that a person reads, and the numbers for which 
     "Pa": (" GPa", " MPa"),
 }
 _LEAST, _MOST = 0.01, 1e4
-_STAY = (("ensemble", "n_surfaces"), ("ensemble", "seed"))  # keys that are written though they are defaults
 
 
 def heights_beside(path: Path) -> Path:
@@ -65,7 +64,7 @@ def _readable(document: dict[str, Any]) -> dict[str, Any]:
         name: {
             key: _shortened(value, getattr(KEYS[name][key].kind, "unit", ""))
             for key, value in keys.items()
-            if value != KEYS[name][key].default or (name, key) in _STAY
+            if value != KEYS[name][key].default
         }
         for name, keys in tables.items()
     }

@@ -598,12 +598,13 @@ def test_profiles_that_surface_topography_reads(tmp_path):
 @pytest.mark.parametrize(("lines", "heights"), [
     ([f"{i},{i % 3}" for i in range(9)], [i % 3 for i in range(9)]),  # rising: places
     ([f"{8 - i},{i % 3}" for i in range(9)], [(8 - i) % 3 for i in range(9)]),  # falling
+    (["0,25", "# so", *(f"0,{26 + i}" for i in range(7))], [0.25, *(0.26 + i / 100 for i in range(7))]),
     ([f"{i},0{i % 3}" for i in (0, 1, 1, 0, 2, 3, 1, 0)], [0, 1.01, 1.01, 0, 2.02, 3, 1.01, 0]),
     *(([f"{n},{25 + i}" for i, n in enumerate(whole)], [float(f"{n}.{25 + i}") for i, n in enumerate(whole)])
       for whole in (8 * (0,), 4 * (0,) + 4 * (1,), 2 * (2,) + 6 * (1,))),
 ])  # fmt: skip
 def test_whole_numbers_that_rise_or_fall_before_a_comma_are_places(lines, heights, tmp_path):
-    path, places = tmp_path / "p.csv", len(lines) == 9
+    path, places = tmp_path / "p.csv", len(heights) == 9
     path.write_text(("x (um),z (um)\n" if places else "z (um)\n") + "\n".join(lines))
     found = read_profile(path, spacing=None if places else UM)
     np.testing.assert_allclose(found.heights / UM, heights, rtol=1e-12)
