@@ -76,7 +76,8 @@ def fn_scaled(
         once = np.unique(h)
         grading = resolved_once(grading, *ends_of(heights, once, grading, power=1))
     values = [_relative(n, x, grading) for x in h.ravel().tolist()]
-    return np.where(h >= 0, 1.0, 1 / np.sqrt(2 * np.pi)) * np.reshape(values, h.shape)
+    unit = np.where(h >= 0, 1.0, 1 / np.sqrt(2 * np.pi))
+    return np.asarray(unit * np.reshape(values, h.shape))
 
 
 def fn(
