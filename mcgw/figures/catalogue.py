@@ -5,17 +5,22 @@ from dataclasses import replace
 from importlib.resources import files
 
 from mcgw.figures import populations, ratios
-from mcgw.figures.compared import Compared
+from mcgw.figures.compared import Compared, Row
 from mcgw.figures.data import FigureData
 from mcgw.machine.progress import steps
 from mcgw.scene.scene_file import scene_from
 
 _SURFACES = 2000  # of the paper's figures
+_BEYOND = ("equal-load", "fluctuations", "area-and-load")
 
 
-CATALOGUE = tuple(
-    sorted((*populations.FIGURES, *ratios.FIGURES), key=lambda row: (row.name[:7] != "figure-", row.name))
-)
+def _place(row: Row) -> tuple[int, int, str]:
+    """Figures of the paper by number, then these, then all others by name."""
+    known = row.name in _BEYOND
+    return not row.name.startswith("figure-"), _BEYOND.index(row.name) if known else len(_BEYOND), row.name
+
+
+CATALOGUE = tuple(sorted((*ratios.FIGURES, *populations.FIGURES), key=_place))
 
 
 def of_paper() -> Compared:
