@@ -218,8 +218,8 @@ def test_the_command(shell, tmp_path):
     assert "6 scenes" in plan
     assert "80, with" in plan
     alone = shell("sweep", "s.toml", "--over", "ensemble.n_surfaces=20,40", "--plan").out
-    assert "groups      2 that share" in alone
-    assert "computed    2 scenes" in alone
+    assert "groups 2 that share" in " ".join(alone.split())
+    assert "computed 2 scenes" in " ".join(alone.split())
     assert os.listdir(tmp_path) == ["s.toml"]
     assert "out/s.sweep.h5: 6 scenes" in shell("sweep", "s.toml", *over).out
     sweep = mcgw.open_sweep("out/s.sweep.h5")
