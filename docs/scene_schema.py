@@ -25,9 +25,16 @@ def schema() -> Shape:
     """The schema, draft 2020-12."""
     top = table_shape(TABLES[""].rows)
     for name, table in TABLES.items():
+        outer, _, inner = name.rpartition(".")
         if name:
-            words = plain(table.words)
-            top["properties"][name] = {"description": words} | table_shape(table.rows)
+            shape = {"description": plain(table.words)} | table_shape(table.rows)
+            around = top["properties"][outer] if outer else top
+            around["properties"][inner] = shape
+    law = top["properties"]["contact"]["properties"]["law"]  # of one word, too
+    top["properties"]["contact"]["properties"]["law"] = {
+        "description": law.pop("description"),
+        "anyOf": [law, law["properties"]["name"]],
+    }
     top["required"] = [name for name, table in TABLES.items() if table.required]
     described(top)
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "Scene of mcgw", **top}

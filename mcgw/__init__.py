@@ -9,6 +9,8 @@ Describe a surface and a simulation:
 `combine`                two rough bodies as one surface: their moments add
 `Body`                   one of two bodies; `composite_modulus`: E* of both
 `Scene`                  a surface, separations d/sigma, grading, heights, number of surfaces, seed
+`Contact`, `Sampling`    its parts: law and quantities of the contacts; how surfaces are drawn;
+                         `Joint`: what conducts; `Graded`: a grading that may be negative
 `load_scene`             a scene from its TOML file; `scene_from`, `scene_text`: from and to text
 =======================  =========================================================================
 
@@ -32,8 +34,7 @@ Contact laws of an asperity, and other properties of contacts:
 `Hertz`                  the default; `PowerLawGraded`: graded in depth; `Coated`; `CustomLaw`:
                          your own formulas
 `JohnsonKendallRoberts`  contacts that stick; also `DerjaguinMullerToporov`
-`Film`, `Layer`          resistivity of the bodies, a thin film, a layer: conductance in S or W/K
-`Joint`                  gas in the gap, which conducts in parallel with the spots
+`Joint`, `Layer`         conductivities of the bodies, a film or layer, gas: conductance in S or W/K
 `Interaction`            asperity interaction: nominal and effective separations
 =======================  =========================================================================
 
@@ -87,7 +88,6 @@ if TYPE_CHECKING:
         DerjaguinMullerToporov as DerjaguinMullerToporov,
         Exponential as Exponential,
         ExponentialHeights as ExponentialHeights,
-        Film as Film,
         Gaussian as Gaussian,
         HeightTable as HeightTable,
         Hertz as Hertz,
@@ -95,7 +95,6 @@ if TYPE_CHECKING:
         Interaction as Interaction,
         JacksonGreen as JacksonGreen,
         JohnsonKendallRoberts as JohnsonKendallRoberts,
-        Joint as Joint,
         KogutEtsion as KogutEtsion,
         Layer as Layer,
         MeasuredHeights as MeasuredHeights,
@@ -123,6 +122,7 @@ if TYPE_CHECKING:
     from mcgw.maps.iso import surface_from as surface_from
     from mcgw.maps.two_bodies import combine as combine
     from mcgw.sampling.asperities import heights as heights, radii as radii
+    from mcgw.scene.parts import Contact as Contact, Graded as Graded, Joint as Joint, Sampling as Sampling
     from mcgw.scene.scene import Scene as Scene
     from mcgw.scene.scene_file import (
         load_scene as load_scene,
@@ -146,8 +146,8 @@ os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 # `mcgw --help` should not wait.
 _HOMES = {
     "analytic": "ChangEtsionBogy Coated Custom CustomLaw DerjaguinMullerToporov Exponential "
-    "ExponentialHeights Film Gaussian HeightTable Hertz Homogeneous Interaction JacksonGreen "
-    "JohnsonKendallRoberts Joint KogutEtsion Layer MeasuredHeights MeasuredRadii Nayak PowerLawGraded "
+    "ExponentialHeights Gaussian HeightTable Hertz Homogeneous Interaction JacksonGreen "
+    "JohnsonKendallRoberts KogutEtsion Layer MeasuredHeights MeasuredRadii Nayak PowerLawGraded "
     "RandomCurvature ScipyHeights Table Weibull ZhaoMaiettaChang composite_modulus",
     "mcgw.elasticity.elastic": "elastic",
     "mcgw.ensemble.ensemble": "Ensemble",
@@ -165,6 +165,7 @@ _HOMES = {
     "mcgw.sampling.asperities": "heights radii",
     "mcgw.scene.scene": "Scene",
     "mcgw.scene.scene_file": "load_scene scene_from scene_text",
+    "mcgw.scene.parts": "Contact Graded Joint Sampling",
     "mcgw.scene.section": "SceneError",
     "mcgw.scene.surface": "Body SpectralSurface Surface",
     "mcgw.statistics.comparison": "compare",

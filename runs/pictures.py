@@ -30,7 +30,7 @@ def from_the_catalogue():
 
 def how_it_works():
     """Heights into cells, cells into moments, moments times response."""
-    scene = replace(mcgw.load_scene(HERE / "demo.toml"), separations=(1.0, 2.0), n_asperities=300)
+    scene = mcgw.load_scene(HERE / "demo.toml").replace(separations=(1.0, 2.0), n_asperities=300)
     edges = mesh_of(scene, split=False).edges
     with mpl.rc_context(STYLE | {"axes.grid": False}):
         figure = Figure(figsize=(9.2, 3.0), layout="constrained")
@@ -91,7 +91,7 @@ def _draw_product(axis):
 
 
 def _draw_answer(axis, scene):
-    full = replace(scene, separations=tuple(np.linspace(0, 3, 31)), n_surfaces=12, n_asperities=300)
+    full = scene.replace(separations=tuple(np.linspace(0, 3, 31)), n_surfaces=12, n_asperities=300)
     ensemble = mcgw.simulate(full)
     axis.plot(
         ensemble.separations, ensemble.load.T / ensemble.mean("load")[0], color=ANSWERS, lw=0.7, alpha=0.7

@@ -11,6 +11,7 @@ import pytest
 from item_cost import Bill, Meter
 from matplotlib.figure import Figure
 from oracles.interacting_by_hand import QUANTITIES, SEPARATIONS, interaction
+from oracles.scenes import scene_by
 from oracles.told import ANSWERS, apart
 from touched import reached
 
@@ -79,7 +80,7 @@ def make_scene():
             "n_surfaces": 200,
             "seed": 1,
         }
-        return mcgw.Scene(**(values | changes))
+        return scene_by(**(values | changes))
 
     return make
 

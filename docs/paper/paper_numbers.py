@@ -148,10 +148,9 @@ def exactness() -> Numbers:
         surface,
         separations=h,
         grading=mcgw.Exponential(2.0),
-        n_asperities=10**6,
+        ensemble=mcgw.Sampling(n_asperities=10**6, sampler="cells"),
         n_surfaces=2,
         seed=1,
-        sampler="cells",
     )
     load, worst = mcgw.simulate(scene)["load"], 0.0
     for k in range(scene.n_surfaces):

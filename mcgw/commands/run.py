@@ -45,7 +45,7 @@ def run(
     expected = forecast(scene)
     ruled = scene.rel_err is not None or scene.max_seconds is not None
     with warnings.catch_warnings(), drawing(threads, jobs, dask, shard) as how:
-        warnings.filterwarnings("ignore", ".* max_surfaces allows")  # said as a note, or by the forecast
+        warnings.filterwarnings("ignore", ".* n_surfaces allows")  # said as a note, or by the forecast
         notes(*_of_threads(threads), *([] if ruled else _of_time(scene)))
         if shard is not None and expected.shortfall:
             notes(expected.shortfall)

@@ -28,14 +28,15 @@ def warm() -> None:
     news(f"all loops are compiled; cached in {os.environ.get('NUMBA_CACHE_DIR') or loops_folder()}")
 
 
-def _scene(**changes: Any) -> Any:
+def _scene(surface: Any = None, **changes: Any) -> Any:
     """Make a small scene with changes."""
     from mcgw.scene.scene import Scene
     from mcgw.scene.surface import Surface
 
-    surface = Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
-    asked = {"separations": [0.0, 0.5, 2.0], "n_asperities": 3000, "n_surfaces": 20, "seed": 1}
-    return Scene(**{"surface": surface, **asked, **changes})
+    surface = surface or Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    drawn = {"n_surfaces": 20, "n_asperities": 3000}
+    scene = Scene(surface, separations=[0.0, 0.5, 2.0], ensemble=drawn, seed=1)
+    return scene.replace(**changes)
 
 
 def _scenes() -> list[dict[str, Any]]:

@@ -3,7 +3,6 @@
 Also the pressures that the separations of a scene span.
 """
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -29,8 +28,10 @@ def mean_surface(scene: Scene, given: str, value: float) -> dict[str, float]:
 
 def asperities_of(scene: Scene) -> Scene:
     """The scene without asperity interaction, which at a given load only changes the separation."""
-    together = scene.interaction is not None or scene.joint is not None
-    return replace(scene, interaction=None, joint=None) if together else scene
+    together = scene.interaction is not None or scene.gas is not None
+    if not together:
+        return scene
+    return scene.replace(interaction=None, joint=scene.joint.without_gas)
 
 
 def theory_at(whole: Scene, given: str, value: float) -> dict[str, float]:
@@ -88,7 +89,7 @@ def _conducted(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
         return {}
     area, spots = scene.surface.nominal_area, found["conductance_si"]
     answers = {"contact_conductance": spots / area}
-    if scene.joint is not None:
+    if scene.gas is not None:
         from mcgw.ensemble.half_space import with_joint  # for those scenes alone
 
         answers |= with_joint(scene, found, ("gap_conductance", "joint_conductance"), found["separation"])

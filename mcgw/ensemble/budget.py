@@ -233,7 +233,7 @@ def moved(scene: Scene, steps: dict[str, float]) -> Scene:
             flattest = curvature.largest * scene.surface.radius / surface.radius
             curvature = RandomCurvature(m.alpha, flattest)
     own = {name: getattr(surface, name) * x for name, x in factors.items() if name not in ("m0", "m2", "m4")}
-    return scene.replace(surface=replace(surface, **own), heights=heights, curvature=curvature)
+    return scene.replace(surface=replace(surface, **own), heights=heights, summits=curvature)
 
 
 def corrected(

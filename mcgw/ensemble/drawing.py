@@ -61,7 +61,7 @@ def at_a_time(size: int) -> int:
 
 def kept(scene: Scene, block: Block) -> dict[str, Any]:
     """What is kept of a block: its sums, contacts as whole numbers."""
-    alone = scene.interaction is scene.joint is None
+    alone = scene.interaction is scene.gas is None
     arrays = dict(block.sums) if alone else answered(scene, block.sums)
     for name in filter(lambda name: quantity_of(name).counts, scene.quantities):
         arrays[name] = np.rint(arrays[name]).astype(np.int64)
@@ -75,7 +75,7 @@ def answered(scene: Scene, sums: dict[str, Any]) -> dict[str, Any]:
         from mcgw.ensemble.half_space import with_interaction  # for those scenes alone
 
         found = with_interaction(scene, sums)
-    if scene.joint is not None:
+    if scene.gas is not None:
         from mcgw.ensemble.half_space import with_joint  # for those scenes alone
 
         found |= with_joint(scene, found, scene.of_joint, np.array(scene.separations))

@@ -1,6 +1,6 @@
 """An ensemble: the sums of every surface, and their statistics over surfaces."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -91,7 +91,7 @@ class Ensemble(Dataset):
 
     def _at(self, which: Ints) -> "Ensemble":
         """The same surfaces at some of the separations, by their numbers; `surfaces_of` is as before."""
-        scene = replace(self.scene, separations=tuple(self.separations[which].tolist()))
+        scene = self.scene.replace(separations=tuple(self.separations[which].tolist()))
         return Ensemble(scene, self.sampler, Selected(self.sums, which), self.surfaces_of)
 
     def values(self, quantity: str) -> Array:

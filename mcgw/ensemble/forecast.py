@@ -7,7 +7,7 @@ chance before rare, stiff summits have come: the number of surfaces is a functio
 
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -53,7 +53,7 @@ class Forecast:
             return ""
         name, h = self.out_of_reach[-1]
         return (
-            f"{len(self.out_of_reach)} means need more surfaces than max_surfaces allows; {name} at d/sigma "
+            f"{len(self.out_of_reach)} means need more surfaces than n_surfaces allows; {name} at d/sigma "
             f"= {h:g} needs {max(self.needed[name]):.2g}"
         )
 
@@ -122,7 +122,7 @@ def without_rule(scene: Scene) -> Scene:
     expected = forecast(scene)
     if expected.shortfall:
         warnings.warn(expected.shortfall, stacklevel=3)
-    return replace(scene, n_surfaces=expected.surfaces, rel_err=None, max_seconds=None)
+    return scene.replace(n_surfaces=expected.surfaces, rel_err=None, max_seconds=None)
 
 
 def surfaces_at_load(scene: Scene, h: float, targets: Mapping[str, float], given: str = "load") -> float:

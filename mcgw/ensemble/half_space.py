@@ -74,7 +74,7 @@ class _Alone(Results):
 
 def scene_alone(scene: Scene) -> Scene:
     """The scene without interaction."""
-    return scene if scene.interaction is None else replace(scene, interaction=None)
+    return scene if scene.interaction is None else scene.replace(interaction=None)
 
 
 def asperities_alone(ensemble: Ensemble) -> Ensemble:
@@ -85,7 +85,7 @@ def asperities_alone(ensemble: Ensemble) -> Ensemble:
     scene = ensemble.scene
     if not isinstance(ensemble.sums, Results):  # of what is in series only each surface's would tell
         rest = tuple(name for name in scene.quantities if not scene.series(name))  # the load at least
-        return replace(ensemble, scene=scene_alone(replace(scene, quantities=rest)))
+        return replace(ensemble, scene=scene_alone(scene.replace(quantities=rest)))
     sums = _Alone(ensemble.sums, scene)
     return replace(ensemble, scene=scene_alone(scene), sums=sums)
 

@@ -1,7 +1,7 @@
 """Surfaces of a scene at given loads, each at its own separation: drawn when they are first needed."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -115,7 +115,7 @@ def _resampled(scene: Scene) -> Scene:
     again = MeasuredHeights(heights.heights, resampled=True)
     own = scene.curvature
     ratios = own.ratios if isinstance(own, MeasuredRadii) else np.ones(len(heights.heights))
-    return replace(scene, heights=again, curvature=MeasuredRadii(again, ratios), n_surfaces=_RESAMPLED)
+    return scene.replace(heights=again, summits=MeasuredRadii(again, ratios), n_surfaces=_RESAMPLED)
 
 
 def _lowest(scene: Scene, q: Quantity, h: float) -> float:
@@ -129,15 +129,14 @@ def _lowest(scene: Scene, q: Quantity, h: float) -> float:
 
 def _drawn(scene: Scene, lowest: float) -> Scene:
     """The scene whose contacts are drawn: those above the lowest separation of nearly every surface."""
-    return replace(
-        scene,
+    return scene.replace(
         sampler="direct" if isinstance(scene.heights, MeasuredHeights) else "tail",
         keep="sums",
         separations=(lowest,),
         quantities=("contacts",),
         law=Hertz(),  # heights are what is drawn, the same under every law
         unload_from=None,
-        film=None,
+        joint=None,
         negative="clip" if scene.negative == "clip" else "allow",
     )
 

@@ -1,6 +1,6 @@
 """Two ensembles of the same surfaces, compared surface by surface."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -181,7 +181,7 @@ def ratio_of(pooled: Pooled, quantity: str, first: Some, second: Some, separatio
 
 def _same_asperities(one: Ensemble, other: Ensemble) -> bool:
     """Whether the surfaces are the same, where contact laws put edges between cells."""
-    scenes = [replace(drawn_by(e.surfaces_of, e.sampler), n_surfaces=1) for e in (one, other)]
+    scenes = [drawn_by(e.surfaces_of, e.sampler).with_surfaces(1) for e in (one, other)]
     if scenes[0] == scenes[1] or all(s.hertzian for s in scenes):
         return True
     from mcgw.sampling.asperities import same_heights  # compiled loops, which few pairs need

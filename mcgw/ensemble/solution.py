@@ -1,7 +1,6 @@
 """The separation at a given load, real area or nominal one: by theory, and on every surface for itself."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -168,7 +167,7 @@ def solutions(
         from mcgw.ensemble.forecast import surfaces_at_loads  # draws a pilot
 
         n = surfaces_at_loads(scene, [at["separation"] for at in theory], given)
-        whole, scene = (replace(x, n_surfaces=n, rel_err=None, max_seconds=None) for x in (whole, scene))
+        whole, scene = (x.replace(n_surfaces=n, rel_err=None, max_seconds=None) for x in (whole, scene))
     sunk = whole.compliance / whole.surface.sigma if given == "nominal_separation" else None
     loaded = LoadedSurfaces(scene, q, values, [at["separation"] for at in theory], sunk)
     found = [

@@ -311,7 +311,8 @@ class Solution(Shown):
         --------
         >>> import mcgw
         >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 cm^2", "78.6 GPa")
-        >>> scene = mcgw.Scene(surface, separations=0, n_surfaces=20, seed=1, uncertainty={"sigma": "20 %"})
+        >>> scene = mcgw.Scene(surface, separations=0, n_surfaces=20, seed=1)
+        >>> scene = scene.replace(uncertainty={"sigma": "20 %"})
         >>> budget = mcgw.solve(scene, pressure="1 MPa").budget()
         >>> round(float(budget.shares["parameters"][0]), 2)  # of the area
         0.17
@@ -443,7 +444,7 @@ def elastic_verdict(solutions: Sequence[Solution]) -> str:
         return error
     most = max((each.yielding for each in solutions), key=lambda share: np.nan_to_num(share, nan=-1.0))
     if np.isnan(most):
-        return f"{error}; yielding not looked at: give contact.hardness"
+        return f"{error}; yielding not looked at: give contact.law.hardness"
     if most > MOST_YIELDING:
         return f"Model error: not known, {yields(most)}"
     return f"{error}; {most:.1%} of the contacts yield"

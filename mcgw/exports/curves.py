@@ -37,7 +37,7 @@ class Kind:
         """The tabulated answer of a scene; the conductance is that of the joint, if there is one."""
         if self.quantity != "conductance":
             return self.quantity
-        return "contact_conductance" if scene.joint is None else "joint_conductance"
+        return "contact_conductance" if scene.gas is None else "joint_conductance"
 
     def stays(self, scene: Scene) -> bool:
         """Whether gas still conducts at zero load."""

@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Sequence
-from dataclasses import replace
 from hashlib import sha256
 from importlib.metadata import version
 from pathlib import Path
@@ -119,7 +118,7 @@ def export(
         return [Path(path)]
     if kind.quantity == "conductance" and scene.film is None:
         raise ValueError(
-            "contact.conductivities: missing for a table of conductance; give conductivities = [k1, k2] in "
+            "joint.conductivities: missing for a table of conductance; give conductivities = [k1, k2] in "
             "W/(m K), or resistivity, in the scene"
         )
     surfaces = scene.n_surfaces if isinstance(source, Scene) else source.n_surfaces
@@ -225,8 +224,8 @@ def surfaces_for(
     else:
         h = np.array([float(source.theory.separation_at("pressure", p)) for p in pressures])
     return simulate(
-        replace(
-            source, separations=tuple(h.tolist()), quantities=needs, keep="sums", unload_from=None,
+        source.replace(
+            separations=tuple(h.tolist()), quantities=needs, keep="sums", unload_from=None,
             rel_err=None, max_seconds=None,
         )
     )  # fmt: skip

@@ -64,7 +64,6 @@ class Compared:
             separations=h[evenly(len(h), _MOST_SEPARATIONS)],
             quantities=tuple(QUANTITIES),
             unload_from=None,
-            film=None,
             joint=None,
             n_surfaces=max(min(self.asked.n_surfaces, _MOST_SURFACES, cheap), 1),
             keep="sums",

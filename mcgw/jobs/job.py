@@ -6,7 +6,7 @@ What a worker does: draw a block of surfaces. The same, whoever asks and however
 import hashlib
 import shutil
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from itertools import groupby
 from operator import itemgetter
@@ -187,9 +187,9 @@ def as_recorded(scene: Scene, path: Path) -> Scene:
         return resolved
     mine, before = resolved.grading, there.grading
     if isinstance(mine, PiecewiseSeries) and isinstance(before, PiecewiseSeries) and mine.agrees(before):
-        resolved = replace(resolved, grading=before)
+        resolved = resolved.replace(grading=before)
     if resolved.law.agrees(there.law):
-        resolved = replace(resolved, law=there.law)
+        resolved = resolved.replace(law=there.law)
     return resolved
 
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import Executor
-from dataclasses import replace
 from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Any, overload
@@ -128,13 +127,13 @@ def _stages(scene: Scene, path: Path) -> Iterator[Scene]:
     last = max(fixed.n_surfaces, held)
     if scene.max_seconds is not None:
         if held:
-            yield replace(fixed, n_surfaces=held)
+            yield fixed.replace(n_surfaces=held)
         for n in checkpoints(last):
             if held < n < last and n >= 2 * held:
-                yield replace(fixed, n_surfaces=n)
+                yield fixed.replace(n_surfaces=n)
                 held = n
     if held < last or scene.max_seconds is None:
-        yield replace(fixed, n_surfaces=last)
+        yield fixed.replace(n_surfaces=last)
 
 
 @overload

@@ -18,9 +18,10 @@ from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
 from mcgw.maps.waves import log_derivatives
 from mcgw.scene.arguments import argument
+from mcgw.scene.keys import MOMENTS, SUMMITS
+from mcgw.scene.parts import Contact, Sampling
 from mcgw.scene.scene import Scene
 from mcgw.scene.uncertainty import Uncertainty
-from mcgw.scene.values import MOMENTS, SUMMITS
 from mcgw.validity.fitted_map import Fitted
 
 Heights = Literal["gaussian", "nayak", "table", "measured", "summits"]
@@ -164,7 +165,7 @@ def _as_fitted(fit: Fit | ProfileFit, use: str, heights: Heights, modulus: float
 def scene_of_moments(moments: SpectralMoments, area: float, modulus: float, title: str) -> Scene:
     """The scene of an isotropic Gaussian surface, each summit with its own radius."""
     law = Nayak(moments.alpha)
-    return _scene(moments.surface(area, modulus), title, heights=law, curvature=RandomCurvature(law.alpha))
+    return _scene(moments.surface(area, modulus), title, heights=law, summits=RandomCurvature(law.alpha))
 
 
 def _of_summits(fit: Fit, use: str, heights: Heights, modulus: float, title: str) -> Scene:
@@ -186,11 +187,10 @@ def _of_summits(fit: Fit, use: str, heights: Heights, modulus: float, title: str
     surface = Surface(
         sigma, radius, z.size / fit.area, fit.area, modulus
     )  # summits between pixels have no heights
-    alone = {"n_surfaces": 1, "n_asperities": z.size, "sampler": "direct"}
-    return _scene(surface, title, heights=law, curvature=curvature, **alone)
+    alone = Sampling(1, z.size, sampler="direct")
+    return _scene(surface, title, heights=law, summits=curvature, ensemble=alone)
 
 
 def _scene(surface: Surface, title: str, **more: Any) -> Scene:
-    return Scene(
-        surface, separations=np.linspace(0, 3, 31).round(1), title=title, quantities=_FITTED, seed=1, **more
-    )
+    separations, contact = np.linspace(0, 3, 31).round(1), Contact(quantities=_FITTED)
+    return Scene(surface, separations=separations, title=title, contact=contact, seed=1, **more)

@@ -12,10 +12,9 @@ from analytic import Nayak
 from mcgw.formats.files import together, whole_file
 from mcgw.formats.units import parse
 from mcgw.maps.fit import Fit
-from mcgw.scene.keys import KEYS
+from mcgw.scene.keys import KEYS, SUMMITS
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_document
-from mcgw.scene.values import SUMMITS
 from mcgw.validity.fitted_map import moments_of_nayak
 
 _ONE_LINE = 110  # characters of a list in a scene
@@ -62,13 +61,19 @@ def _readable(document: dict[str, Any]) -> dict[str, Any]:
     tables = {name: keys for name, keys in document.items() if isinstance(keys, dict)}
     found = {
         name: {
-            key: _shortened(value, getattr(KEYS[name][key].kind, "unit", ""))
+            key: _shortened(value, _unit(name, key))
             for key, value in keys.items()
-            if value != KEYS[name][key].default
+            if key not in KEYS[name] or value != KEYS[name][key].default
         }
         for name, keys in tables.items()
     }
     return {name: value for name, value in (document | found).items() if value or name == "title"}
+
+
+def _unit(table: str, key: str) -> str:
+    """Return the unit of a key; of a table, such as a law, none."""
+    row = KEYS[table].get(key)
+    return "" if row is None else getattr(row.kind, "unit", "")
 
 
 def _shortened(value: Any, unit: str) -> Any:

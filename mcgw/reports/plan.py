@@ -1,6 +1,6 @@
 """Cost of a scene, estimated before anything is drawn."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from time import perf_counter
 
 from analytic import QUANTITIES
@@ -133,7 +133,7 @@ def _targets(scene: Scene, plan: Plan) -> list[str]:
         return []  # no theory, or one that takes longer than a plan may
     lines = []
     for target in _TARGETS:
-        found = forecast(replace(scene, rel_err=target, n_surfaces=MOST_SURFACES))
+        found = forecast(scene.replace(rel_err=target, n_surfaces=MOST_SURFACES))
         some = f", all but {len(found.out_of_reach)} means" if found.out_of_reach else ""
         seconds = in_words(plan.seconds / plan.surfaces * found.surfaces)
         lines.append(f"rel_err = {target:g}: {found.surfaces:.2g} surfaces, {seconds}{some}")

@@ -3,7 +3,7 @@
 import io
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import matplotlib as mpl
 import numpy as np
@@ -73,7 +73,7 @@ def solved_pressures(scene: Scene, pressures: Sequence[float] | None = None) -> 
         asked = round_pressures(low, high, _PRESSURES) if pressures is None else pressures
         if not laws_are_quick(scene):  # specimens are drawn, their contacts one by one
             most = int(_FEW_HEIGHTS / float(scene.theory.mean("contacts", scene.lowest)))
-            scene = replace(scene, n_surfaces=min(scene.n_surfaces, max(most, _FEWEST)))
+            scene = scene.replace(n_surfaces=min(scene.n_surfaces, max(most, _FEWEST)))
         return solutions(scene, "load", [scene.surface.nominal_area * pressure for pressure in asked])
     except ValueError:
         if pressures is None:

@@ -150,7 +150,7 @@ def conductances(scene: Scene, solutions: Sequence[Solution]) -> Table:
     found = {"spots": contact / (1 - other * area * contact)}
     if other:
         found["constriction"] = np.full(len(contact), 1 / (other * area))
-    if scene.joint is not None:
+    if scene.gas is not None:
         found["gas"] = at["gap_conductance"]
     found["joint"] = at.get("joint_conductance", contact)
     if (told := correlation(scene, at["load"] / area)) is not None:

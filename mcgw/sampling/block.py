@@ -145,7 +145,7 @@ class Sampler:
 
     def with_seed(self, seed: int) -> Self:
         """The same cells and physics with other draws."""
-        return replace(self, scene=replace(self.scene, seed=seed))
+        return replace(self, scene=self.scene.replace(seed=seed))
 
     def block(self, first: int, n: int) -> Block:
         """Results of surfaces `first` ... `first + n - 1`."""

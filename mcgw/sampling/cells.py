@@ -26,8 +26,8 @@ from mcgw.machine.memory import kept
 from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, gauss_legendre, product
 from mcgw.sampling.spacing import refined, spaced
 from mcgw.sampling.stretches import SMALLEST, begins_and_breaks, losses
+from mcgw.scene.promises import EXACT
 from mcgw.scene.scene import Scene
-from mcgw.scene.values import EXACT
 
 _RARE = 0.1  # asperities a surface that may be expected beyond the cells, on either side
 _CONVERGED = 1e-9  # a step of Newton whose square is nothing

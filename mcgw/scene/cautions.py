@@ -138,7 +138,7 @@ def _thick_film(scene: Scene) -> Iterator[str]:
     radius = float(np.sqrt(theory.mean("area", h) / contacts / np.pi))
     if (thick := film.film_resistance * 2 / film.rho) > radius / 5:
         yield (
-            f"contact.film_resistance: equals that of {thick:.2g} m of the bodies, and spots have a radius "
+            f"joint.film_resistance: equals that of {thick:.2g} m of the bodies, and spots have a radius "
             f"of {radius:.2g} m; unless the film is much thinner, use layer = {{thickness, conductivity}}"
         )
 

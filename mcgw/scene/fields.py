@@ -1,16 +1,21 @@
 """Quantities derived from the values of a scene, and the range of heights that matters."""
 
 import math
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 import analytic
-from analytic.laws import Branch, ContactLaw, Hertz, Ways
+from analytic import HeightLaw, MeasuredRadii, RandomCurvature, Surface
+from analytic.laws import Branch, ContactLaw, Film, Hertz, Ways
 from mcgw.machine.memory import kept
-from mcgw.scene.values import Values, values_of_scene
+from mcgw.scene.parts import Contact, Joint, Sampling
+from mcgw.scene.uncertainty import Uncertainty
+from mcgw.validity.fitted_map import Fitted
 
 if TYPE_CHECKING:
     from analytic.joint import Gap
@@ -23,9 +28,54 @@ class LeftOut(int):
     """An integer that was not given: it equals the same number, but is found anew when the scene changes."""
 
 
-@values_of_scene
-class Fields(Values):
-    """Values of a scene with what follows from them."""
+def _of(path: str) -> Any:
+    """A value of a part."""
+    return property(attrgetter(path))
+
+
+class Flat:
+    """Values of the parts of a scene, which others read as its own."""
+
+    law: ContactLaw = _of("contact.law")
+    quantities: tuple[str, ...] = _of("contact.quantities")
+    unload_from: float | None = _of("contact.unload_from")
+    hardness: float | None = _of("contact.hardness")
+    poisson: float | None = _of("contact.poisson")
+    curvature: RandomCurvature | MeasuredRadii | None = _of("summits")
+    film: Film | None = _of("joint.film")
+    gas: "analytic.Joint | None" = _of("joint.filling")
+    n_surfaces: int = _of("ensemble.n_surfaces")
+    n_asperities: int = _of("ensemble.n_asperities")
+    count: Literal["fixed", "poisson"] = _of("ensemble.count")
+    seed: int = _of("ensemble.seed")
+    sampler: str = _of("ensemble.sampler")
+    keep: str = _of("ensemble.keep")
+    rel_err: float | Mapping[str, float | list[float]] | None = _of("ensemble.rel_err")
+    max_seconds: float | None = _of("ensemble.max_seconds")
+    accuracy: float = _of("ensemble.accuracy")
+
+
+@dataclass(frozen=True, init=False, repr=False)
+class Fields(Flat):
+    """The parts of a scene, complete and checked, with what follows from them."""
+
+    surface: Surface
+    separations: tuple[float, ...]
+    title: str
+    grading: analytic.Grading
+    negative: str
+    heights: HeightLaw
+    summits: RandomCurvature | MeasuredRadii | None
+    contact: Contact
+    interaction: "analytic.Interaction | None"
+    joint: Joint
+    ensemble: Sampling
+    fitted: Fitted | None
+
+    @property
+    def uncertainty(self) -> Uncertainty | None:
+        """Standard errors of the parameters of the surface; None if they are known."""
+        return getattr(self.surface, "uncertainty", None)
 
     @property
     def left_out(self) -> tuple[str, ...]:
@@ -74,10 +124,10 @@ class Fields(Values):
     @cached_property
     def filled(self) -> "Gap | None":
         """Conduction by gas in the gap of the joint; None without one."""
-        if self.joint is None:
+        if self.gas is None:
             return None
         moments = None if self.fitted is None else self.fitted.moments
-        filled: Gap = self.joint.gap(self.surface, self.heights, moments)
+        filled: Gap = self.gas.gap(self.surface, self.heights, moments)
         return filled
 
     @cached_property
@@ -86,7 +136,7 @@ class Fields(Values):
         from analytic.joint import rise_of_summits  # few ask
 
         moments = None if self.fitted is None else self.fitted.moments
-        rms = None if self.joint is None else self.joint.rms
+        rms = None if self.gas is None else self.gas.rms
         return rise_of_summits(self.surface, self.heights, moments, rms)
 
     @property
@@ -134,7 +184,7 @@ class Fields(Values):
         return type(self.law) is Hertz and self.film is None
 
     @property
-    def contact(self) -> ContactLaw:
+    def reduced_law(self) -> ContactLaw:
         """The contact law in reduced units."""
         return self.law.on(self.surface)
 
@@ -150,7 +200,7 @@ class Fields(Values):
     def ways(self) -> Ways:
         """Loading or unloading: the ways that its quantities need."""
         conductance = None if self.film is None else self.film.on(self.surface)
-        return Ways(self.contact, self.unload_from, conductance)
+        return Ways(self.reduced_law, self.unload_from, conductance)
 
     def branch_of(self, quantity: str) -> Branch:
         """The way of a quantity, loading or unloading."""
@@ -167,14 +217,14 @@ class Fields(Values):
         shapes: dict[str, tuple[int, ...]] = {name: (len(self.separations),) for name in self.quantities}
         if self.interaction is not None:
             shapes |= dict.fromkeys(self.other_separations, (len(self.separations),))
-        if self.joint is not None:
+        if self.gas is not None:
             shapes |= dict.fromkeys(self.of_joint, (len(self.separations),))
         return shapes
 
     @property
     def of_joint(self) -> tuple[str, ...]:
         """Conductances of a joint other than those of its spots."""
-        if self.joint is None:
+        if self.gas is None:
             return ()
         return tuple(
             name for name, q in analytic.JOINT.items() if self.unload_from is not None or not q.unloading

@@ -41,9 +41,9 @@ def contact_facts(scene: Fields) -> list[tuple[str, str]]:
 
 def joint_text(scene: Fields) -> str:
     """What fills the gap; by default nothing: spots only, as in vacuum."""
-    if scene.joint is None or scene.filled is None or (gas := scene.filled.gas) is None:
+    if scene.gas is None or scene.filled is None or (gas := scene.filled.gas) is None:
         return "spots only (vacuum)"
-    name = scene.joint.gas if isinstance(scene.joint.gas, str) else "gas"
+    name = scene.gas.gas if isinstance(scene.gas.gas, str) else "gas"
     return (
         f"{name}, {gas.conductivity:.4g} W/(m K), temperature-jump distance {gas.jump:.3g} m; "
         f"combined rms roughness {scene.filled.rms:.4g} m"

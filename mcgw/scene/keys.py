@@ -4,11 +4,10 @@ import math
 from typing import Any
 
 import analytic
-from analytic.gases import GASES
-from analytic.laws import Layer
 from mcgw.scene.kinds import ByName, Either, Flag, List, Number, Table, Text, Whole, Word
+from mcgw.scene.parts import Contact, Joint, Sampling, rows_of
 from mcgw.scene.section import Key, TableOfKeys
-from mcgw.scene.values import POISSON, SUMMITS, SUMS, rows_of
+from mcgw.scene.uncertainty import Uncertainty
 from mcgw.validity.fitted_map import Fitted
 
 GRADINGS: dict[str, Any] = {  # laws by their words in a scene
@@ -34,8 +33,9 @@ def _contact_laws() -> tuple[str, ...]:
     return (*by_name, "custom")
 
 
+MOMENTS, SUMMITS = ("m0", "m2", "m4"), ("sigma", "radius", "eta")  # either describes summits of a surface
+POISSON = Number(low=-1.0, high=0.5)
 _ANY, _POSITIVE = Number(low=-math.inf), Number()
-_CONDUCTIVITY = Key("conductivity", Number("W/(m K)"), required=True)
 _FILE = Text()
 YOUNG = Number("Pa", infinite=True)
 _RATIO = Number(low=1, advice="give the larger over the smaller, a number >= 1")
@@ -44,7 +44,6 @@ _LISTED = List(_ANY)
 _SEPARATION = Number(low=-1e6, high=1e6)
 _SEPARATIONS = "give a list of finite numbers d/sigma, or {start = 0.0, stop = 4.0, num = 41}"
 _NUM = Whole(1, _MOST, f"give a whole number >= 1, at most {_MOST}")
-_BACK = 'give a number d/sigma, or "loop"'
 _PLANES = '"body", the undeformed body, or "mean-plane", that of the deformed one'
 _FORMULA = "give a list of {low, high, coefficients}, one for each piece, as mcgw writes them"
 _ENDS = (Key("low", _ANY, required=True), Key("high", _POSITIVE, required=True))
@@ -52,26 +51,25 @@ _PIECES = List(Table((*_ENDS, Key("coefficients", _LISTED, required=True)), _FOR
 _PIECES_EXAMPLE = (
     "[{low = -1.0, high = 1.0, coefficients = [1.0]}, {low = 1.0, high = 3.0, coefficients = [1.0]}]"
 )
+_KNOWN = 'give relative standard errors, such as {sigma = "20 %", radius = "15 %"}'
+_ERROR = Number("1", high=2.0, advice=_KNOWN)
+_ROWS = List(List(Number(low=-1.0, high=1.0)), advice="give rows of numbers from -1 to 1")
+_ERRORS = Table(
+    (
+        *(Key(name, _ERROR) for name in SUMMITS),
+        *(Key(name, _ERROR, excludes=SUMMITS) for name in MOMENTS),
+        Key("E_star", _ERROR),
+        Key("correlation", _ROWS),
+    ),
+    _KNOWN,
+    Uncertainty,
+)
 _BODY = Table(
     (Key("E", YOUNG, required=True), Key("nu", POISSON, default=0.3)),
     "",
     analytic.Body,
 )
 _BODY_OF_FILE = Table((Key("file", _FILE, required=True),), "")
-_LAYER = Table(
-    (Key("thickness", Number("m"), required=True), _CONDUCTIVITY),
-    'give {thickness = "10 um", conductivity = 1.3} (m, W/(m K))',
-    Layer,
-)
-_NAMES = (*GASES, "vacuum")
-_GAS = f'give one of {", ".join(_NAMES)}, or {{conductivity = 0.15, jump = "1 um"}} (W/(m K), m)'
-_GASES = Either(
-    (
-        Table((_CONDUCTIVITY, Key("jump", Number("m"), required=True)), _GAS),
-        Word(_NAMES, _GAS),
-    ),
-    _GAS,
-)
 # fmt: off
 TABLES: dict[str, TableOfKeys] = {
 "": TableOfKeys("", (
@@ -97,7 +95,10 @@ TABLES: dict[str, TableOfKeys] = {
     Key("m2", Number("1"), "1e-3", "mean square slope of a profile", required=True, needs=("m4",)),
     Key("m4", Number("1/m^2"), "5e6", "mean square of the second derivative of a profile, 1/m²",
         required=True, needs=("m0",)),
-    *rows_of("surface"),
+    Key("uncertainty", _ERRORS, '{sigma = "20 %", radius = "15 %", eta = "12 %"}',
+        "standard errors of `sigma`, `radius`, `eta` (or of `m0`, `m2`, `m4`) and `E_star`, relative to the "
+        "values, with their `correlation` in this order, if any; `mcgw fit` writes them, and `mcgw solve` "
+        "includes them in its error"),
 ), required=True),
 "grading": TableOfKeys("E\\*(s)/E\\* over the reduced height s. Default: 1 at every height.", (
     Key("law", Word((*GRADINGS,)), '"exponential"',
@@ -169,8 +170,7 @@ TABLES: dict[str, TableOfKeys] = {
         "`true`: summits drawn in pairs from the list; `false`: one surface, the summits as they are", False,
         needs=("heights", "file")),
 )),
-"contact": TableOfKeys("Separations, quantities and contact law. [How the laws "
-    "differ](../explanation/contact-laws.md).", (
+"contact": TableOfKeys("Separations, and what is computed of the contacts.", (
     Key("separations",
         Either((
             List(_SEPARATION, 1, _MOST, f"{_SEPARATIONS}, at most {_MOST} of them"),
@@ -179,17 +179,17 @@ TABLES: dict[str, TableOfKeys] = {
             Number(low=-1e6, high=1e6, advice=_SEPARATIONS),
         ), _SEPARATIONS),
         "{start = 0.0, stop = 1.0, num = 3}", "d/σ: a range, a list, or one number", required=True),
-    Key("datum", Word(("summits", "surface")), '"surface"',
-        "separations are measured from the mean plane of the `summits` (default) or of the `surface` "
-        "(Nayak's heights)", "summits"),
-    Key("quantities",
-        List(Word((*SUMS, *analytic.UNLOADING), f"choose one of {', '.join(SUMS)}"), once=True,
-             advice="give a list of names, each once"),
-        '["load"]', "any of `load`, `area`, `stiffness`, `contacts` (these four by default), `conductance`, "
-        "`spot_conductance`, `yielded`, `load_slope`"),
-    Key("law", Word(_contact_laws), '"kogut-etsion"', "contact law of an asperity; default: Hertz's",
-        "hertz"),
-    *rows_of("contact"),
+    *rows_of(Contact),
+), required=True, make=Contact, advice="give mcgw.Contact(...), or the keys of [contact] in a scene file"),
+"contact.law": TableOfKeys("Contact law of an asperity, and its constants: [how the laws "
+    "differ](../explanation/contact-laws.md). A law without constants may stand under `[contact]` as a word: "
+    "`law = \"hertz\"`. Default: Hertz's.", (
+    Key("name", Word(_contact_laws), '"kogut-etsion"', "`hertz` (default), `power-law-graded`, `coated`, "
+        "`chang-etsion-bogy`, `zhao-maietta-chang`, `kogut-etsion`, `jackson-green`, "
+        "`derjaguin-muller-toporov`, `johnson-kendall-roberts` or `custom`", "hertz"),
+    Key("hardness", Number("Pa"), '"1.2 GPa"', "hardness of the softer body, Pa, for elastic-plastic laws; "
+        "under an elastic law it only tells whether contacts yield"),
+    Key("poisson", POISSON, "0.3", "Poisson's ratio of the body that yields or coats"),
     Key("critical", _POSITIVE, "0.05",
         "instead of `hardness`: δ_c/σ, penetration at which an asperity yields"),
     Key("yield_strength", Number("Pa"), '"400 MPa"',
@@ -211,20 +211,7 @@ TABLES: dict[str, TableOfKeys] = {
     Key("area", _PIECES, _PIECES_EXAMPLE, "series of its area", laws=("custom",)),
     Key("checked", Flag(), "false", "`false`: a law far from Hertz's at all penetrations is meant so", True,
         laws=("custom",)),
-    Key("unload_from", Either((Word(("loop",), _BACK), _ANY), _BACK), "-0.5",
-        'smallest separation reached before unloading, d/σ, or `"loop"`: the smallest of the scene; adds '
-        "`load_unloading` and so on"),
-    Key("resistivity", Number("ohm m"), "1e-7", "electrical: ρ₁ + ρ₂, Ω m; adds `conductance_si`",
-        excludes=("conductivities",)),
-    Key("conductivities",
-        List(Number("W/(m K)"), 2, 2, "give two numbers > 0 in W/(m K), such as [150.0, 16.0]"),
-        "[150.0, 16.0]", "thermal: k₁ and k₂ of the bodies, W/(m K)"),
-    Key("film_resistance", Number(zero=True, advice="give a finite number >= 0, in ohm m^2 or m^2 K/W"),
-        "1e-12", "resistance of a thin film on the spots, Ω m² or m² K/W", needs=("resistivity",
-        "conductivities")),
-    Key("layer", _LAYER, '{thickness = "10 um", conductivity = 1.3}',
-        "layer of any thickness on the first body (k₁): m, W/(m K)", needs=("conductivities",)),
-), required=True),
+)),
 "interaction": TableOfKeys("[Asperity interaction](../explanation/interaction.md). Default: asperities are "
     "independent.", (
     Key("reference", Word(("body", "mean-plane"), f"give {_PLANES}"), '"body"',
@@ -233,19 +220,11 @@ TABLES: dict[str, TableOfKeys] = {
     Key("bulk_modulus", Number("Pa"), "1e11", "composite modulus of the half-space, Pa; default: `E_star`"),
 ), make=lambda **keys: analytic.Interaction(**keys),
     advice='give mcgw.Interaction("body"), or mcgw.Interaction("mean-plane")'),
-"joint": TableOfKeys("[A thermal joint](../how-to/conductance-of-a-joint.md): gas conducts beside the spots, "
-    "and both in series with the bodies where `[interaction]` has them constrict the flux. Adds "
-    "`gap_conductance` and `joint_conductance`, W/(m² K); needs `conductivities`. Default: "
-    "spots only (vacuum).", (
-    Key("gas", _GASES, '"air"', "gas in the gap: `air`, `argon`, `helium`, `hydrogen`, `nitrogen`, `vacuum`, "
-        "or its `conductivity`, W/(m K), and `jump`, its temperature-jump distance, m: that across which the "
-        "temperature drops by as much as it jumps at both walls", required=True),
-    Key("rms", Number("m"), '"2 um"', "root mean square height of the surface (both combined, not of the "
-        "summits), m; not needed with Nayak's heights or `[fitted]`"),
-    Key("temperature", Number("K"), '"20 degC"', "of a gas by name, K"),
-    Key("gas_pressure", Number("Pa"), "101325.0", "of a gas by name, Pa"),
-), make=lambda **keys: analytic.Joint(**keys),
-    advice='give mcgw.Joint("air", rms="1 um"), or the keys of [joint] in a scene file'),
+"joint": TableOfKeys("Conduction: through spots alone as in vacuum, or [a thermal "
+    "joint](../how-to/conductance-of-a-joint.md), in which gas conducts beside them, and both in series with "
+    "the bodies where `[interaction]` has them constrict the flux. Default: only `conductance`, without a "
+    "unit.", rows_of(Joint), make=Joint,
+    advice='give mcgw.Joint((150.0, 16.0), gas="air"), or the keys of [joint] in a scene file'),
 "fitted": TableOfKeys("More about the fitted map, written by `mcgw fit`. It does not affect the results, but "
     "the stated [error of the model](../explanation/validity.md). Default: the surface is assumed to be "
     "Gaussian.", (
@@ -265,14 +244,21 @@ TABLES: dict[str, TableOfKeys] = {
 ), make=Fitted, advice="give the `fitted` of a scene from mcgw.fitted_scene, or the keys of [fitted] in a "
     "scene file"),
 "ensemble": TableOfKeys("Number of surfaces, and sampling.", (
-    *rows_of("ensemble"),
-    Key("max_surfaces", Whole(1), "50", "with `rel_err`: maximum number of surfaces", needs=("rel_err",)),
+    *rows_of(Sampling),
     Key("left_out",
         List(Word(("n_asperities", "seed")), 0, advice="give a list of n_asperities, seed, or leave it out"),
         '["seed"]', "written by the program: which of `seed`, `n_asperities` the scene did not give", []),
-)),
+), make=Sampling, advice="give mcgw.Sampling(...), or the keys of [ensemble] in a scene file"),
 }
 # fmt: on
 
 KEYS = {table: {row.name: row for row in rows} for table, (_, rows, *_) in TABLES.items()}
 SURFACE_UNITS = {name: KEYS["surface"][name].kind.unit for name in (*SUMMITS, "nominal_area", "E_star")}
+
+
+def whole_key(key: str) -> str:
+    """A key with its table, where it is given without and only one table has it."""
+    tables = [name for name, rows in KEYS.items() if key in rows]
+    if "." in key or key in TABLES or len(tables) != 1:
+        return key
+    return f"{tables[0]}.{key}" if tables[0] else key

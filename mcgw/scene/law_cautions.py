@@ -97,7 +97,7 @@ def _fitted(scene: Scene) -> Iterator[str]:
 
 def _share(scene: Scene, multiple: float) -> float:
     """Share of contacts deeper than a multiple of the critical penetration, at the smallest separation."""
-    h, law = scene.lowest, scene.contact
+    h, law = scene.lowest, scene.reduced_law
     assert isinstance(law, ElasticPlastic)
     if not scene.heights.sf(np.array(h)) > 0:
         return 0.0
@@ -107,7 +107,7 @@ def _share(scene: Scene, multiple: float) -> float:
 
 def _strain(scene: Scene) -> Iterator[str]:
     """Caution about materials outside those of the finite elements."""
-    law: Any = scene.contact
+    law: Any = scene.reduced_law
     if not isinstance(law, analytic.JacksonGreen):
         return
     s = np.linspace(max(scene.lowest, scene.least), scene.highest, 101)
@@ -115,14 +115,14 @@ def _strain(scene: Scene) -> Iterator[str]:
     strains = law.yield_strain / e[e > 0] if law.yield_strain else np.empty(0)
     if strains.size and not (_STRAINS[0] <= strains.min() and strains.max() <= _STRAINS[1]):
         yield (
-            f"contact.yield_strength over E*(s) is {strains.min():.2g} to {strains.max():.2g}; the law was "
-            f"fitted from {_STRAINS[0]:g} to {_STRAINS[1]:g}"
+            f"contact.law.yield_strength over E*(s) is {strains.min():.2g} to {strains.max():.2g}; the law "
+            f"was fitted from {_STRAINS[0]:g} to {_STRAINS[1]:g}"
         )
 
 
 def _radius(scene: Scene) -> Iterator[str]:
     """Caution about contacts wider than those of the finite elements."""
-    law = scene.contact
+    law = scene.reduced_law
     if not isinstance(law, analytic.JacksonGreen):
         return
     h = scene.lowest
@@ -142,14 +142,12 @@ def _radius(scene: Scene) -> Iterator[str]:
 def _coating(scene: Scene) -> Iterator[str]:
     law = scene.law
     if isinstance(law, analytic.Coated) and not _RATIOS[0] <= law.ratio <= _RATIOS[1]:
-        yield (
-            f"contact.ratio = {law.ratio:g}: the first-order coating law is valid for ratios from 1/3 to 3"
-        )
+        yield (f"contact.law.ratio = {law.ratio:g}: the first-order coating law is valid from 1/3 to 3")
 
 
 def _adhesion(scene: Scene) -> Iterator[str]:
     """Tabor's number ``(R w^2/(E*^2 z0^3))^(1/3)``; Maugis's (1992) is a multiple of it."""
-    law = scene.contact  # in reduced units: it has its pull_off
+    law = scene.reduced_law  # in reduced units: it has its pull_off
     if not isinstance(law, analytic.JohnsonKendallRoberts | analytic.DerjaguinMullerToporov):
         return
     tabor = (law.pull_off or 0.0) * scene.surface.sigma / (0.75 * np.pi ** (2 / 3) * _REACH)
@@ -190,7 +188,7 @@ class OtherLaws:
 
 def other_laws(scene: Scene) -> OtherLaws | None:
     """Compare other laws; None if asperities do not yield or nothing touches."""
-    law = scene.contact
+    law = scene.reduced_law
     if not isinstance(law, ElasticPlastic) or law.critical is None:
         return None
     h = sorted(scene.separations)[len(scene.separations) // 2]

@@ -183,10 +183,10 @@ def heights_table(heights: HeightLaw, file: str | None = None) -> dict[str, Any]
 
 def contact_law(section: Section) -> ContactLaw:
     """Read the law and its constants; mistakes are noted in the section and give Hertz's."""
-    if section.table.get("law", Hertz.name) == Hertz.name:
-        section.known("law")
+    if section.table.get("name", Hertz.name) == Hertz.name:
+        section.known("name")
         return Hertz()
-    law = section.read("law")
+    law = section.read("name")
     if law is None:
         section.known(*section.table)  # unknown law: its constants cannot be checked
         return Hertz()
@@ -195,7 +195,7 @@ def contact_law(section: Section) -> ContactLaw:
     section.known(*names)
     for name in needed:
         if name not in section:
-            section.problems.append(f'contact.{name}: missing; law = "{law}" needs it')
+            section.problems.append(f'{section.path(name)}: missing; name = "{law}" needs it')
     constants = section.read_all(name for name in names if name in section)
     if len(section.problems) == before:
         try:
@@ -219,7 +219,7 @@ def _constants_of(law: str) -> tuple[Sequence[str], Sequence[str], Callable[...,
 def contact_law_table(law: ContactLaw) -> dict[str, Any]:
     """Keys that describe a law other than Hertz's."""
     if law.name != "custom":
-        return {"law": law.name, **law.given()}
+        return {"name": law.name, **law.given()}
     custom: Any = law
     series = {
         key: [{**asdict(x), "coefficients": list(x.coefficients)} for x in formulas]
@@ -227,7 +227,7 @@ def contact_law_table(law: ContactLaw) -> dict[str, Any]:
     }
     unchecked = {} if custom.checked else {"checked": False}
     return {
-        "law": law.name,
+        "name": law.name,
         "critical": custom.critical,
         "limits": list(custom.beginnings),
         **series,

@@ -28,7 +28,8 @@ def mistakes(scene: Fields) -> list[str]:
 def _values(scene: Fields) -> Iterator[str]:
     known = {**analytic.QUANTITIES, **analytic.LAW_QUANTITIES}
     if "conductance_si" in scene.quantities and scene.film is None:
-        yield 'contact.quantities: "conductance_si" needs resistivity, or conductivities = [k1, k2]; give one'
+        need = "joint.resistivity, or joint.conductivities = [k1, k2]"
+        yield f'contact.quantities: "conductance_si" needs {need}'
     if tiny := [h for h in scene.separations if 0 < abs(h) < _LEAST]:
         yield f"contact.separations: {tiny[0]:g} is too close to 0; give 0, or at least {_LEAST:g}"
     for name in scene.quantities:
@@ -52,7 +53,7 @@ def _history(scene: Fields) -> Iterator[str]:
             'give the smallest that was reached, or "loop"'
         )
     try:
-        way = scene.contact.unloading()
+        way = scene.reduced_law.unloading()
         stiff = [name for name in ("stiffness", "load_slope") if name in scene.quantities]
         rest = [
             x for x in scene.quantities if x.partition("_unloading")[0] not in ("stiffness", "load_slope")
@@ -80,7 +81,7 @@ def _law(scene: Fields) -> Iterator[str]:
         return
     try:
         with np.errstate(all="ignore"):
-            limits = scene.contact.limits(np.ones(1))
+            limits = scene.reduced_law.limits(np.ones(1))
     except ValueError as error:
         yield f'contact.law = "{scene.law.name}": {error}'
         return
@@ -98,10 +99,7 @@ def _together(scene: Fields) -> Iterator[str]:
         from mcgw.scene.interaction_mistakes import interaction_mistakes  # for those scenes alone
 
         yield from interaction_mistakes(scene)
-    if scene.joint is None:
-        return
-    if not scene.thermal:
-        yield "joint: gas conducts heat; give contact.conductivities = [k1, k2] in W/(m K), or leave it out"
+    if scene.gas is None:
         return
     try:
         assert scene.filled is not None

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+EXACT = 1e-13  # relative error of a value that is right to the last digits
+
 
 @dataclass(frozen=True)
 class Promise:

@@ -2,37 +2,34 @@
 
 import secrets
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, fields, is_dataclass
+from dataclasses import asdict, fields, is_dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from analytic import UNLOADING, Gaussian, HeightLaw, MeasuredRadii, Nayak, RandomCurvature, Surface
-from analytic.laws import ContactLaw, Film, Hertz
+from analytic.laws import ContactLaw, Hertz
 from analytic.laws.law import check_poisson
 from mcgw.scene.arguments import as_seed, as_toml
 from mcgw.scene.fields import LeftOut
-from mcgw.scene.keys import KEYS, TABLES
+from mcgw.scene.keys import KEYS, MOMENTS, TABLES
 from mcgw.scene.laws import contact_law, grading_given, grading_of, heights_given, heights_of
+from mcgw.scene.parts import Contact, Graded, Joint, Sampling
 from mcgw.scene.radii import LISTS, Spectral, curvature_of, datum_shift, listed_of
 from mcgw.scene.rough_bodies import with_bodies
 from mcgw.scene.section import SceneError, Section
 from mcgw.scene.surface import read_surface
-from mcgw.scene.values import MOMENTS, rows_of
 
 Values = dict[str, Any]
 Summits = tuple[Surface | None, HeightLaw | None, RandomCurvature | MeasuredRadii | None]
 
-_OF_SURFACE = tuple(row.name for row in rows_of("surface"))
-# Where arguments of `Scene` stand in a file. Others are whole tables or several keys: objects.
-_PLACES = {key: table for table in ("", "contact", "ensemble") for key in KEYS[table]}
-_PLACES |= {"negative": "grading", "curvature": "summits", **dict.fromkeys(_OF_SURFACE, "surface")}
-_OBJECTS = ("law", "curvature")  # which may be words, too
+_SHORT = {"law": "contact", "separations": "contact", "n_surfaces": "ensemble", "seed": "ensemble"}
+_OBJECTS = ("surface", "grading", "heights", "summits")  # which may be objects of other classes
 _OF_YIELD = ("hardness", "poisson")
 _QUANTITIES = ("load", "area", "stiffness", "contacts")
 # Keys of [ensemble] that are no values of a scene as they are read.
-_DERIVED = ("max_surfaces", "n_surfaces", "n_asperities", "seed", "left_out")
+_DERIVED = ("seed", "left_out")
 
 
 def of_arguments(**given: Any) -> Values:
@@ -44,29 +41,51 @@ def of_arguments(**given: Any) -> Values:
         With one line for each mistake.
     """
     document: dict[str, Any] = {}
-    objects: dict[str, Any] = {}
+    objects: Values = {}
     for name, value in given.items():
-        value = as_seed(value) if name == "seed" else value
-        plain = as_toml(value)
-        if value is None:
+        if value is None or name in _SHORT:
             continue
-        if name == "law" and isinstance(plain, dict):
-            document.setdefault("contact", {}).update(plain)
-        elif name in TABLES and TABLES[name].make:
-            document[name] = _keys_of(name, value, plain)
-        elif name in _PLACES and (name not in _OBJECTS or isinstance(plain, str)):
-            table = document.setdefault(_PLACES[name], {}) if _PLACES[name] else document
-            table[name] = value if isinstance(value, LeftOut) else plain
-        else:
+        if name == "summits" and isinstance(value, str):
+            document[name] = {"curvature": value}
+        elif isinstance(value, Graded):
+            document[name] = {"negative": value.negative}
+            objects |= {} if value.law is None else {name: value.law}
+        elif name in _OBJECTS and not isinstance(value, Mapping):
             objects[name] = value
-    return of_tables(document, objects, Path(), None)
+        else:
+            document[name] = _keys_of(name, value)
+    for name, table in _SHORT.items():
+        if given.get(name) is not None and isinstance(document.setdefault(table, {}), dict):
+            document[table][name] = given[name]
+    if isinstance(contact := document.get("contact"), dict):
+        _split_law(contact, objects)
+    if isinstance(ensemble := document.get("ensemble"), dict) and "seed" in ensemble:
+        ensemble["seed"] = as_seed(ensemble["seed"])
+    return of_tables(as_toml(document), objects, Path(), None)
 
 
-def _keys_of(name: str, value: Any, plain: Any) -> Any:
-    """The keys of an object that stands for a whole table; a word is its first key."""
-    if is_dataclass(value) and not isinstance(value, type):
-        return {key: as_toml(each) for key, each in asdict(value).items() if each is not None}
-    return {next(iter(KEYS[name])): plain} if isinstance(plain, str) else plain
+def _keys_of(name: str, value: Any) -> Any:
+    """The keys of what stands for a whole table; a word for an interaction is its reference."""
+    if isinstance(value, str) and name == "interaction":
+        return {"reference": value}
+    if not is_dataclass(value) or isinstance(value, type):
+        return dict(value) if isinstance(value, Mapping) else value
+    given = {each.name: getattr(value, each.name) for each in fields(value)}
+    return {
+        key: asdict(each) if is_dataclass(each) and key != "law" else each  # type: ignore[arg-type]
+        for key, each in given.items()
+        if each is not None
+    }
+
+
+def _split_law(contact: Values, objects: Values) -> None:
+    """The law as a table of its own, with what tells whether contacts yield; or an object."""
+    law = contact.pop("law", {})
+    table = dict(law) if isinstance(law, Mapping) else {"name": law} if isinstance(law, str) else {}
+    if not isinstance(law, Mapping | str):
+        objects["law"] = law
+    table |= {key: contact.pop(key) for key in _OF_YIELD if key in contact}
+    contact |= {"law": table} if table else {}
 
 
 def of_tables(
@@ -85,37 +104,38 @@ def of_tables(
     problems: list[str] = []
     top = Section("", document, problems, KEYS[""])
     python = "surface" in objects
-    of = {
-        name: top.section(name, KEYS[name], table.advice if python else "")
-        for name, table in TABLES.items()
-        if name
-    }
+    of: dict[str, Section] = {}
+    for name, table in TABLES.items():
+        outer, _, inner = name.rpartition(".")
+        if name:
+            of[name] = of.get(outer, top).section(inner, KEYS[name], table.advice if python else "")
     surface, heights, curvature = _surface_and_summits(top, of, objects, folder)
     if "grading" in objects:
         grading = grading_given(top, objects["grading"])
     else:
         grading = grading_of(of["grading"], surface, folder)
+    separations, contact = _contact(of["contact"], of["contact.law"], objects, heights)
     values = {
         "title": top.read("title"),
         "surface": surface,
+        "separations": separations,
         "grading": grading,
         "negative": of["grading"].read("negative"),
         "heights": heights,
-        "curvature": curvature,
-        **_contact(of["contact"], objects, heights),
-        **{name: _made(top, of[name], table.make) for name, table in TABLES.items() if table.make},
-        **of["surface"].read_all(_OF_SURFACE),
-        **_ensemble(of["ensemble"], surface, seed),
+        "summits": curvature,
+        "interaction": _made(top, of["interaction"]),
+        "joint": _joint(_made(top, of["joint"]), of["joint"]),
+        "ensemble": _ensemble(of["ensemble"], surface, seed),
+        "fitted": _made(top, of["fitted"]),
     }
-    uncertain = values["uncertainty"]
+    values["contact"] = _complete(contact, values["joint"])
+    uncertain = getattr(surface, "uncertainty", None)
     if uncertain and set(MOMENTS) & set(uncertain.names) and not isinstance(heights, Nayak | None):
         advice = 'm0, m2 and m4 need heights.law = "nayak"; otherwise give sigma, radius and eta'
-        of["surface"].fail("uncertainty", of["surface"].table["uncertainty"], advice)
+        of["surface"].fail("uncertainty", uncertain.names, advice)
     for name, section in (("", top), *of.items()):
-        if not python or TABLES[name].make:  # a file or a dict, where more may be wrong than values
+        if not python or name != "":  # a file or a dict, where more may be wrong than values
             section.finish()
-    if python:
-        of["contact"].note_unknown()  # of a law that is given by its keys
     if problems:
         raise SceneError(problems)
     return values
@@ -123,7 +143,7 @@ def of_tables(
 
 def _surface_and_summits(top: Section, of: Mapping[str, Section], objects: Values, folder: Path) -> Summits:
     """A surface, the law of its heights, and that of its radii where summits have their own."""
-    summits, radii = of["summits"], objects.get("curvature")
+    summits, radii = of["summits"], objects.get("summits")
     if any(key in summits for key in LISTS):
         listed = listed_of(summits, folder)
         return _with_listed(of, None if listed is None else read_surface(of["surface"], listed), listed)
@@ -144,7 +164,7 @@ def _surface_and_summits(top: Section, of: Mapping[str, Section], objects: Value
     if isinstance(radii, RandomCurvature | MeasuredRadii):
         return surface, heights, radii
     if radii is not None:
-        summits.fail("curvature", radii, 'give "random", "mean", or mcgw.MeasuredRadii(heights, ratios)')
+        top.fail("summits", radii, 'give "random", "mean", or mcgw.MeasuredRadii(heights, ratios)')
     return surface, heights, curvature_of(summits, heights, surface, default)
 
 
@@ -160,33 +180,38 @@ def _with_listed(of: Mapping[str, Section], surface: Any, listed: Any) -> Summit
     return surface, *listed.laws(surface)
 
 
-def _contact(section: Section, objects: Values, heights: HeightLaw | None) -> Values:
+def _contact(
+    section: Section, of_law: Section, objects: Values, heights: HeightLaw | None
+) -> tuple[tuple[float, ...], Contact]:
+    """Separations from the mean plane of the summits; and contacts, with the quantities that were given."""
     shift, given = datum_shift(section, heights), section.read("separations")
     if isinstance(given, dict):
         even = np.linspace(given["start"], given["stop"], given["num"])
         given = [float(f"{h:.15g}") for h in even]  # 0.3, where even steps give 0.30000000000000004
     listed = [0.0] if given is None else given if isinstance(given, list) else [given]
     separations = tuple(h - shift + 0.0 for h in listed)  # -0.0 is 0.0
-    back, film = section.read("unload_from"), _film(section, objects.get("film"))
+    back = section.read("unload_from")
     back = min(separations) if back == "loop" else back
-    names = section.read("quantities") or _QUANTITIES
-    names = (*names, *(["conductance_si"] if film and "conductance_si" not in names else []))
-    also = () if back is None else (q.name for n in names for q in UNLOADING.values() if q.unloading == n)
-    law = _law(section, objects)
-    return {
-        "separations": separations,
-        "law": law,
-        **_softer(section, law, of_python="law" in objects),
-        "unload_from": back,
-        "film": film,
-        "quantities": (*names, *(name for name in also if name not in names)),
-    }
+    law = _law(section, of_law, objects)
+    softer = _softer(of_law, law, of_python="law" in objects)
+    return separations, Contact(law, section.read("quantities") or _QUANTITIES, back, **softer)
 
 
-def _law(section: Section, objects: Values) -> ContactLaw:
+def _complete(contact: Contact, joint: Joint) -> Contact:
+    """Contacts with the quantities that follow: in SI units where there is a film, and of unloading."""
+    names = tuple(contact.quantities or ())
+    if joint.film is not None and "conductance_si" not in names:
+        names = (*names, "conductance_si")
+    back = contact.unload_from is not None
+    also = (q.name for n in names for q in UNLOADING.values() if back and q.unloading == n)
+    return replace(contact, quantities=(*names, *(name for name in also if name not in names)))
+
+
+def _law(section: Section, of_law: Section, objects: Values) -> ContactLaw:
     """Of Python, or by its keys."""
     if "law" not in objects:
-        return contact_law(section)
+        return contact_law(of_law)
+    of_law.known("name")
     given = objects["law"]
     if not isinstance(given, ContactLaw):
         section.fail("law", given, "your own law is mcgw.CustomLaw(load=..., area=..., ...)")
@@ -197,7 +222,7 @@ def _law(section: Section, objects: Values) -> ContactLaw:
 def _softer(section: Section, law: ContactLaw, *, of_python: bool) -> Values:
     """Hardness and Poisson's ratio that an elastic law does not take, to tell whether its contacts yield."""
     found: Values = dict.fromkeys(_OF_YIELD)
-    if not of_python and section.table.get("law", Hertz.name) != law.name:
+    if not of_python and section.table.get("name", Hertz.name) != law.name:
         return found  # what is wrong with the law is noted
     own: list[str] = [field.name for field in fields(law)] if is_dataclass(law) else []
     for key in _OF_YIELD:
@@ -213,31 +238,28 @@ def _softer(section: Section, law: ContactLaw, *, of_python: bool) -> Values:
         try:
             check_poisson(found["poisson"])
         except ValueError as error:
-            section.note(f"contact.{error}")
+            section.note(f"{section.name}.{error}")
         if "hardness" not in section:
             section.fail("poisson", found["poisson"], "give hardness too, or leave it out")
     return found
 
 
-def _film(section: Section, given: Any) -> Film | None:
-    """What spots conduct through; None where nobody asks for conductances."""
-    keys = section.read_all(field.name for field in fields(Film))
-    if given is not None and not isinstance(given, Film):
-        return section.fail(
-            "film", given, "give resistivity and film_resistance; in Python mcgw.Film of them"
-        )
-    if given is not None:
-        keys = {key: layer if key == "layer" else getattr(given, key) for key, layer in keys.items()}
-        keys["layer"] = keys["layer"] or given.layer
-    found = {key: value for key, value in keys.items() if value is not None}
-    if "layer" in found and "conductivities" not in found:
-        return section.fail("layer", found["layer"], "give conductivities too, or leave it out")
-    return Film(**found) if ("resistivity" in found) != ("conductivities" in found) else None
+def _joint(joint: Joint | None, section: Section) -> Joint:
+    """A joint of which film and gas can be made; what else is wrong is noted where its keys are."""
+    if joint is None or (joint.resistivity is None) == (joint.conductivities is None):
+        return Joint()
+    try:
+        assert joint.film is not None
+        assert joint.gas is None or joint.filling is not None
+    except ValueError as error:
+        section.note(f"joint.{error}")
+    return joint
 
 
-def _made(top: Section, section: Section, make: Callable[..., Any]) -> Any:
+def _made(top: Section, section: Section) -> Any:
     """What all keys of a table make; None where it is left out, or wrong, which is noted."""
-    if not isinstance(top.table.get(section.name), dict):
+    make = TABLES[section.name].make
+    if make is None or not isinstance(top.table.get(section.name), dict):
         return None
     before, found = len(top.problems), section.read_all(section.rows)
     if len(top.problems) > before:
@@ -248,12 +270,12 @@ def _made(top: Section, section: Section, make: Callable[..., Any]) -> Any:
         return section.note(f"{section.name}.{error}")
 
 
-def _ensemble(section: Section, surface: Surface | None, seed: Callable[[], int | None] | None) -> Values:
+def _ensemble(section: Section, surface: Surface | None, seed: Callable[[], int | None] | None) -> Sampling:
     """How many surfaces, and how they are drawn; numbers that nobody gave are marked."""
-    most, number, n = section.read_all(("max_surfaces", "n_surfaces", "n_asperities")).values()
     values = section.read_all(key for key in section.rows if key not in _DERIVED)
-    values["n_surfaces"] = _number(section, "n_surfaces", most if number is None else number)
-    values["n_asperities"] = _number(section, "n_asperities", n)
+    n = values["n_asperities"]
+    for key in ("n_surfaces", "n_asperities"):
+        values[key] = _number(section, key, values[key])
     if "seed" in section:
         values["seed"] = _number(section, "seed", section.read("seed"))
     else:
@@ -263,7 +285,7 @@ def _ensemble(section: Section, surface: Surface | None, seed: Callable[[], int 
     for key in _left_out(section, surface, n):
         if values[key] is not None:
             values[key] = LeftOut(values[key])
-    return values
+    return Sampling(**values)
 
 
 def _number(section: Section, key: str, value: int | None) -> int:

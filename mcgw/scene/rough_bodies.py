@@ -8,15 +8,14 @@ from typing import Any
 
 from analytic import HeightLaw, Nayak, SpectralMoments, Surface
 from mcgw.formats.named_files import loads, read_bytes
-from mcgw.scene.keys import YOUNG
+from mcgw.scene.keys import MOMENTS, SUMMITS, YOUNG
 from mcgw.scene.kinds import Number
 from mcgw.scene.section import SceneError
-from mcgw.scene.values import MOMENTS, SUMMITS
 from mcgw.validity.fitted_map import Fitted, moments_of_nayak
 
 _MOST_BYTES = 2**21
 _FOLLOW = (*SUMMITS, "E_star", *MOMENTS)  # keys of [surface] that two files determine
-# Keys of [contact] beside which those of the files do not count.
+# Keys of [joint] and [contact.law] beside which those of the files do not count.
 _CONDUCTION = {"resistivity", "conductivities"}
 _YIELD = {"hardness", "critical", "yield_strength", "yield_strain"}
 _HARDNESS, _CONDUCTIVITY = Number("Pa"), Number("W/(m K)")
@@ -80,8 +79,8 @@ def with_bodies(document: Tables, folder: Path, read: Callable[[Tables, Path], T
     Returns
     -------
     mapping
-        With m0, m2, m4 and E_star of the pair; its hardness and conductivities under ``[contact]``, where
-        both files give them and the scene does not.
+        With m0, m2, m4 and E_star of the pair; its hardness and conductivities under ``[contact.law]`` and
+        ``[joint]``, where both files give them and the scene does not.
 
     Raises
     ------
@@ -99,15 +98,21 @@ def with_bodies(document: Tables, folder: Path, read: Callable[[Tables, Path], T
     total, found = summed(a.moments, b.moments), dict(document)
     known = {key: value for key, value in surface.items() if key != "bodies"}
     found["surface"] = known | {"m0": total.m0, "m2": total.m2, "m4": total.m4, "E_star": in_series(a, b)}
+    contact, joint, law = document.get("contact", {}), document.get("joint", {}), law_of(document)
+    if isinstance(joint, Mapping) and not _CONDUCTION & set(joint) and (pair := conductivities_of(a, b)):
+        found["joint"] = {**joint, "conductivities": list(pair)}
+    if law is not None and not _YIELD & set(law) and (hardness := softer(a, b)):
+        found["contact"] = {**contact, "law": {**law, "hardness": hardness}}
+    return found
+
+
+def law_of(document: Tables) -> dict[str, Any] | None:
+    """Return the keys of the contact law of a scene, which may be a word; None if it is wrong."""
     contact = document.get("contact", {})
-    if not isinstance(contact, Mapping):
-        return found  # which is refused
-    told: dict[str, Any] = {}
-    if not _CONDUCTION & set(contact) and (pair := conductivities_of(a, b)):
-        told["conductivities"] = list(pair)
-    if not _YIELD & set(contact) and (hardness := softer(a, b)):
-        told["hardness"] = hardness
-    return found | {"contact": {**contact, **told}}
+    law = contact.get("law", {}) if isinstance(contact, Mapping) else None
+    if isinstance(law, str):
+        return {"name": law}
+    return dict(law) if isinstance(law, Mapping) else None
 
 
 def files_of_bodies(document: Tables) -> list[str]:
@@ -155,12 +160,11 @@ def moments_of(fitted: Fitted | None, heights: HeightLaw, surface: Surface) -> S
 
 def _of_contact(document: Tables) -> tuple[float | None, float | None]:
     """Return the hardness and the conductivity of one body, None for what it does not tell."""
-    contact = document["contact"]
-    hardness = _HARDNESS.value(contact.get("hardness"))
-    each = {_CONDUCTIVITY.value(k) for k in contact.get("conductivities", [])}
+    hardness = _HARDNESS.value((law_of(document) or {}).get("hardness"))
+    pair = document.get("joint", {}).get("conductivities", [])
+    each = {_CONDUCTIVITY.value(k) for k in pair}
     if len(each) > 1:
         raise ValueError(
-            f"contact.conductivities = {contact['conductivities']}: those of a pair; a file describes one "
-            "body, as [150.0, 150.0]"
+            f"joint.conductivities = {pair}: those of a pair; a file describes one body, as [150.0, 150.0]"
         )
     return hardness, each.pop() if each else None

@@ -3,41 +3,50 @@
 A scene with nothing left open: numbers in place of functions, and the sampler that drew it.
 """
 
+from __future__ import annotations
+
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from copy import copy
-from typing import TYPE_CHECKING, Any, TypeVar
+from functools import cache
+from inspect import signature
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic import MeasuredRadii, extent, is_data, resolved
+from analytic import Grading, MeasuredRadii, RandomCurvature, Surface, extent, is_data, resolved
 from analytic.arrays import hold
-from analytic.laws import ContactLaw, Layer
+from analytic.laws import ContactLaw
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.scene.fields import Fields, LeftOut
 from mcgw.scene.in_words import sheet_of
 from mcgw.scene.keys import SURFACE_UNITS
 from mcgw.scene.mistakes import mistakes
+from mcgw.scene.parts import Contact, Graded, Joint, Sampling
 from mcgw.scene.plausible import perhaps_other_units, takes_hours, warn_of_units
 from mcgw.scene.promises import promise_of
+from mcgw.scene.radii import Spectral
 from mcgw.scene.reading import of_arguments
 from mcgw.scene.section import SceneError, nearest
 from mcgw.scene.surface import Surface as GivenSurface
-from mcgw.scene.values import documented, values_of_scene
+from mcgw.validity.fitted_map import Fitted
 
 if TYPE_CHECKING:
+    from numpy.random import Generator, SeedSequence
+
+    from analytic import Interaction
     from mcgw.validity.model_error import Validity
 
 _SURFACES, _MOST_SURFACES = 1000, 10**9  # where n_surfaces is left out; where rel_err is to decide
 _LOOKED_AT, _BEYOND = 4001, 1.1  # heights for the stiffest; and how much farther series reach
 _FARTHEST = 1e12  # penetrations over the first one, which few formulas are meant for
+_PARTS: dict[str, type] = {"grading": Graded, "contact": Contact, "joint": Joint, "ensemble": Sampling}
 
 AnyScene = TypeVar("AnyScene", bound=Fields)
 
 
-@documented
-@values_of_scene
+@dataclasses.dataclass(frozen=True, init=False, repr=False)
 class Scene(Fields, Shown):
     """Everything that determines an ensemble.
 
@@ -47,52 +56,42 @@ class Scene(Fields, Shown):
         A `mcgw.Surface`, or a `mcgw.SpectralSurface`, which also determines the heights of the summits.
     separations : array_like
         Reduced separations d/sigma, in any order, repeated or not: an array, a list, or one number.
-    datum : {"summits", "surface"}, optional
-        Mean plane from which `separations` are measured; the scene converts them to that of the summits.
     title : str, optional
         Title of figures and reports.
-    grading : Grading or callable, optional
+    grading : Grading, callable or Graded, optional
         E*(s)/E*, or any function of an array of heights s, such as ``lambda s: 1 + 0.3*np.tanh(s)``; the
-        program finds its kinks and jumps, or `mcgw.Custom` declares them. Default: homogeneous.
-    negative : {"error", "clip", "allow"}, optional
-        What to do if the grading makes the modulus of a contacting asperity negative.
+        program finds its kinks and jumps, or `mcgw.Custom` declares them. `mcgw.Graded` also says what to
+        do where it is negative. Default: homogeneous.
     heights : HeightLaw or frozen distribution of scipy.stats, optional
         Distribution of the reduced heights; mean and scale of a SciPy distribution have no effect.
         Default: Gaussian.
-    curvature : {"random", "mean"}, RandomCurvature or MeasuredRadii, optional
+    contact : Contact or dict, optional
+        Law of the contacts, quantities to compute, and unloading: `mcgw.Contact`.
+    summits : {"random", "mean"}, RandomCurvature or MeasuredRadii, optional
         Whether each summit of an isotropic Gaussian surface has its own radius, which needs the heights
         of `mcgw.Nayak`. Default: "random" for a surface given by its spectrum, otherwise "mean". Or
         measured radii, which come with their measured heights.
-    law : ContactLaw or dict, optional
-        Contact law of an asperity, such as `mcgw.KogutEtsion(hardness=1.2e9)`; or its keys in a scene
-        file, ``{"law": "kogut-etsion", "hardness": "1.2 GPa"}``. Default: Hertz's.
-    unload_from : float or "loop", optional
-        Smallest separation reached before unloading, d/sigma; "loop": the smallest of `separations`.
-        Every quantity then also has an unloading branch, such as ``load_unloading``.
-    film : Film, optional
-        Resistivity of the bodies, and resistance of a film on the spots: `mcgw.Film`. Adds the quantity
-        "conductance_si". Default: none.
-    layer : Layer, optional
-        Layer of any thickness on the first body: `mcgw.Layer`; becomes a part of `film`.
     interaction : Interaction, {"body", "mean-plane"} or dict, optional
-        Asperity interaction: `mcgw.Interaction`, its reference alone, or its keys in a scene file. Adds
-        "nominal_separation", and puts stiffness and conductance in series with
-        the half-space. Default: asperities are independent.
-    joint : Joint, str or dict, optional
-        Gas in the gap of a thermal joint: `mcgw.Joint`, its gas alone, or its keys in a scene file; needs
-        the conductivities of a `film`. Adds "gap_conductance" and "joint_conductance", W/(m^2 K).
-        Default: spots only, as in vacuum.
-    quantities : sequence of str, optional
-        Quantities to compute: names of `analytic.QUANTITIES` and `analytic.LAW_QUANTITIES`. Default: load,
-        area, stiffness, contacts.
+        Asperity interaction: `mcgw.Interaction`, or its reference alone. Adds "nominal_separation", and
+        puts stiffness and conductance in series with the half-space. Default: asperities are independent.
+    joint : Joint or dict, optional
+        Conduction through the bodies, a film or layer, and gas: `mcgw.Joint`.
+    ensemble : Sampling or dict, optional
+        How many surfaces, of how many asperities, and how they are drawn: `mcgw.Sampling`.
     fitted : Fitted or dict, optional
-        Properties of the fitted map, from `mcgw.fitted_scene`; or its keys in a scene file.
-        It does not affect results: `validity` uses it to state the error of the model.
+        Properties of the fitted map, from `mcgw.fitted_scene`. It does not affect results: `validity` uses
+        it to state the error of the model.
+    law : ContactLaw, str or dict, optional
+        That of `contact`, alone.
+    n_surfaces : int, optional
+        That of `ensemble`, alone: number of surfaces. Default: 1000.
+    seed : int, Generator or SeedSequence, optional
+        That of `ensemble`, alone. Default: a random one, which is recorded.
 
     Raises
     ------
     SceneError
-        With one line for each mistake, as for a scene file.
+        With one line for each mistake, as for a scene file, whose keys are those of the parts.
 
     Examples
     --------
@@ -109,12 +108,45 @@ class Scene(Fields, Shown):
       ensemble     1000 surfaces of 30000 asperities (fixed), seed 1, sampler auto
     """
 
-    def __post_init__(self, datum: str | None, layer: Layer | None) -> None:
-        """Arguments are read by their names, as files by keys."""
-        self._made_of(of_arguments(**vars(self), datum=datum, layer=layer))
+    def __init__(
+        self,
+        surface: Surface | Spectral,
+        *,
+        separations: ArrayLike,
+        title: str = "",
+        grading: Grading | Callable[[Any], Any] | Graded | None = None,
+        heights: Any = None,
+        contact: Contact | Mapping[str, Any] | None = None,
+        summits: RandomCurvature | MeasuredRadii | Literal["random", "mean"] | None = None,
+        interaction: Interaction | str | Mapping[str, Any] | None = None,
+        joint: Joint | Mapping[str, Any] | None = None,
+        ensemble: Sampling | Mapping[str, Any] | None = None,
+        fitted: Fitted | Mapping[str, Any] | None = None,
+        law: ContactLaw | str | Mapping[str, Any] | None = None,
+        n_surfaces: int | None = None,
+        seed: int | Generator | SeedSequence | None = None,
+    ) -> None:
+        self._made_of(
+            of_arguments(
+                surface=surface,
+                separations=separations,
+                title=title,
+                grading=grading,
+                heights=heights,
+                contact=contact,
+                summits=summits,
+                interaction=interaction,
+                joint=joint,
+                ensemble=ensemble,
+                fitted=fitted,
+                law=law,
+                n_surfaces=n_surfaces,
+                seed=seed,
+            )
+        )
 
     @classmethod
-    def of(cls, values: Mapping[str, Any]) -> "Scene":
+    def of(cls, values: Mapping[str, Any]) -> Scene:
         """Return the scene of values that were read, checked as any other."""
         scene = object.__new__(cls)
         scene._made_of(values)
@@ -123,26 +155,26 @@ class Scene(Fields, Shown):
     def _made_of(self, values: Mapping[str, Any]) -> None:
         """Give what was left out its value, and refuse values that do not go together."""
         hold(self, **values)
-        listed = self.curvature if self.as_measured and isinstance(self.curvature, MeasuredRadii) else None
+        listed = self.summits if self.as_measured and isinstance(self.summits, MeasuredRadii) else None
         number = len(listed.ratios) if listed else round(min(self.surface.n_asperities, 2.0**62))
         most = _SURFACES if self.rel_err is None else _MOST_SURFACES
         for key, value in (("n_asperities", number), ("n_surfaces", 1 if listed else most)):
             if isinstance(getattr(self, key), LeftOut):  # now, or in the scene that this one was made of
-                hold(self, **{key: LeftOut(value)})
+                hold(self.ensemble, **{key: LeftOut(value)})
         if problems := mistakes(self):
             raise SceneError(problems)
         if not (self.law.is_data and is_data(self.grading)):
             in_numbers(self)  # a function that no series resolves is a mistake as well
         warn_of_units([*perhaps_other_units(self), *takes_hours(self)])
 
-    def replace(self, **changes: Any) -> "Scene":
-        """Return the scene with other values; fields that were left out follow from them.
+    def replace(self, **changes: Any) -> Scene:
+        """Return the scene with other values; numbers that were left out follow from them.
 
         Parameters
         ----------
         **changes
-            Fields of the scene or of its surface, each as `Scene` and `mcgw.Surface` take it; None leaves
-            a field out.
+            Parameters of the scene, or fields of its surface and parts by their own names, each as
+            `mcgw.Surface`, `Scene` and its parts take it; None leaves a field out.
 
         Returns
         -------
@@ -161,31 +193,24 @@ class Scene(Fields, Shown):
         >>> import mcgw
         >>> surface = mcgw.Surface("1 um", "10 um", "300/mm^2", "1 cm^2", "80 GPa")
         >>> scene = mcgw.Scene(surface, separations=1.0)
-        >>> scene.n_asperities, scene.replace(nominal_area="10 cm^2").n_asperities
+        >>> scene.n_asperities, scene.replace(nominal_area="10 cm^2", count="poisson").n_asperities
         (30000, 300000)
         """
-        fields = (*(each.name for each in dataclasses.fields(self)), *SURFACE_UNITS)
-        for key in changes:
-            if key not in fields:
-                meant = nearest(key, fields).rstrip() or f"it has {', '.join(fields)}"
-                raise TypeError(f"a scene has no {key!r}; {meant}")
-        of_surface = {key: changes.pop(key) for key in SURFACE_UNITS if key in changes}
-        if of_surface:
-            surface = changes.get("surface", self.surface)
-            changes["surface"] = GivenSurface(**{x: getattr(surface, x) for x in SURFACE_UNITS} | of_surface)
-        return dataclasses.replace(self, **changes) if changes else self
+        parts = {each.name: getattr(self, each.name) for each in dataclasses.fields(self)}
+        parts["grading"] = Graded(self.grading, parts.pop("negative"))
+        return Scene(**with_values(parts, changes)) if changes else self
 
-    def with_surfaces(self, n: int) -> "Scene":
+    def with_surfaces(self, n: int) -> Scene:
         """Return the scene with another number of surfaces, on which nothing else hangs: not checked anew."""
         scene = copy(self)
-        hold(scene, n_surfaces=n)
+        hold(scene, ensemble=dataclasses.replace(self.ensemble, n_surfaces=n))
         return scene
 
     def sheet(self) -> Sheet:
         """Return the scene as shown to people."""
         return sheet_of(self)
 
-    def validity(self, separations: ArrayLike | None = None) -> "Validity":
+    def validity(self, separations: ArrayLike | None = None) -> Validity:
         """Return the expected error of this model against elasticity, for area, gap, stiffness and load.
 
         Parameters
@@ -208,6 +233,52 @@ class Scene(Fields, Shown):
         from mcgw.validity.lookup import validity_of  # reads a table, which not every scene needs
 
         return validity_of(self, separations)
+
+
+@cache
+def _places() -> dict[str, str]:
+    """What each value that may be given by its own name is a field of; "" stands for the scene."""
+    places = dict.fromkeys(signature(Scene).parameters, "") | {"negative": "grading"}
+    places |= dict.fromkeys((*SURFACE_UNITS, "uncertainty"), "surface")
+    for name in ("contact", "joint", "ensemble"):
+        places |= {field.name: name for field in dataclasses.fields(_PARTS[name])}
+    return places
+
+
+def with_values(given: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
+    """Arguments of `Scene` that were given, with some values by the names of their fields.
+
+    Raises
+    ------
+    TypeError
+        If there is no such field.
+    """
+    places = _places()
+    for name in values:
+        if name not in places:
+            meant = nearest(name, places).rstrip() or f"it has {', '.join(places)}"
+            raise TypeError(f"a scene has no {name!r}; {meant}")
+    found, inner = dict(given), [name for name in values if places[name]]
+    found |= {name: value for name, value in values.items() if not places[name]}
+    before, now = given.get("grading"), found.get("grading")
+    if isinstance(before, Graded) and not isinstance(now, Graded | Mapping):
+        found["grading"] = Graded(now, before.negative)
+    for part in dict.fromkeys(places[name] for name in inner):
+        changes = {name: values[name] for name in inner if places[name] == part}
+        found[part] = _changed(part, found.get(part), changes)
+    return found
+
+
+def _changed(part: str, held: Any, changes: Mapping[str, Any]) -> Any:
+    """A part with other values."""
+    if part == "surface":
+        given: dict[str, Any] = {x: getattr(held, x, None) for x in (*SURFACE_UNITS, "uncertainty")}
+        return GivenSurface(**given | dict(changes))
+    if isinstance(held, Mapping):
+        return {**held, **changes}
+    if part == "grading" and not isinstance(held, Graded):
+        held = Graded(held)
+    return dataclasses.replace(held or _PARTS[part](), **changes)
 
 
 def storable(scene: AnyScene) -> AnyScene:
@@ -235,7 +306,9 @@ def _in_other_words(scene: AnyScene, **changes: Any) -> AnyScene:
 
 def in_numbers(scene: Fields) -> dict[str, Any]:
     """What of a scene a file does not hold as it is, resolved; raises as `storable`."""
-    changes: dict[str, Any] = {} if scene.law.is_data else {"law": _resolved_law(scene)}
+    changes: dict[str, Any] = {}
+    if not scene.law.is_data:
+        changes["contact"] = dataclasses.replace(scene.contact, law=_resolved_law(scene))
     if is_data(scene.grading):
         return changes
     try:
@@ -280,4 +353,6 @@ def drawn_by(scene: AnyScene, sampler: str) -> AnyScene:
     """The scene that says by which sampler it was drawn, where it left the choice to ``auto``."""
     if sampler != scene.sampler and scene.accuracy and promise_of(sampler).spends:
         return scene  # its crowds follow from what may be spent
-    return scene if sampler == scene.sampler else _in_other_words(scene, sampler=sampler)
+    if sampler == scene.sampler:
+        return scene
+    return _in_other_words(scene, ensemble=dataclasses.replace(scene.ensemble, sampler=sampler))

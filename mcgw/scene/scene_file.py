@@ -12,7 +12,7 @@ from analytic import MeasuredRadii
 from analytic.laws import Hertz
 from mcgw.formats.named_files import HDF5, loads, read_bytes
 from mcgw.machine.terminal import one_line
-from mcgw.scene.keys import KEYS, SURFACE_UNITS, TABLES
+from mcgw.scene.keys import KEYS, SURFACE_UNITS, whole_key
 from mcgw.scene.kinds import Word
 from mcgw.scene.laws import contact_law_table, grading_table, heights_table
 from mcgw.scene.radii import summits_table
@@ -160,13 +160,23 @@ def scene_of(
 
 
 def with_changes(document: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
-    """Tables with other values at some keys, dotted; a whole table takes the place of one."""
+    """Tables with other values at some keys, dotted; a whole table takes the place of one.
+
+    A key that one table alone has may stand without its table, and a word for a law is its name.
+    """
+    return _changed(document, {whole_key(key): value for key, value in changes.items()})
+
+
+def _changed(document: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
     changed = dict(document)
     for key, value in changes.items():
         table, _, inner = key.partition(".")
+        if key == "law" and isinstance(value, str) and isinstance(held := changed.get(key), Mapping):
+            value = {**held, "name": value}
         if inner:
             held = changed.get(table, {})
-            value = with_changes(held, {inner: value}) if isinstance(held, Mapping) else held
+            held = {"name": held} if table == "law" and isinstance(held, str) else held
+            value = _changed(held, {inner: value}) if isinstance(held, Mapping) else held
         changed[table] = value
     return changed
 
@@ -209,32 +219,31 @@ def scene_text(scene: Scene, *, heights_file: str | None = None, left_out: bool 
 def scene_document(scene: Scene, *, heights_file: str | None = None, left_out: bool = True) -> dict[str, Any]:
     """The tables that `scene_text` writes; arguments and errors as there."""
     scene = storable(scene)
-    listed = isinstance(scene.curvature, MeasuredRadii)  # whose heights stand there too
+    listed = isinstance(scene.summits, MeasuredRadii)  # whose heights stand there too
     law = {} if type(scene.law) is Hertz else contact_law_table(scene.law)
+    law |= {key: value for key in ("hardness", "poisson") if (value := getattr(scene, key)) is not None}
     document: dict[str, Any] = {
         "title": scene.title,
-        "surface": {key: float(getattr(scene.surface, key)) for key in SURFACE_UNITS}
-        | _written(scene, "surface"),
+        "surface": _written(scene.surface, "surface")
+        | {key: float(getattr(scene.surface, key)) for key in SURFACE_UNITS},
         "grading": {**grading_table(scene.grading), "negative": scene.negative},
         "heights": {} if listed else heights_table(scene.heights, heights_file),
-        "summits": scene.curvature and summits_table(scene.curvature, scene.surface, heights_file),
-        "contact": {**law, **_written(scene.film), **_written(scene, "contact")},
-        **{name: _written(getattr(scene, name), name) for name, table in TABLES.items() if table.make},
+        "summits": scene.summits and summits_table(scene.summits, scene.surface, heights_file),
+        "contact": _written(scene, "contact") | ({"law": law} if law else {}),
+        **{name: _written(getattr(scene, name), name) for name in ("interaction", "joint", "fitted")},
         "ensemble": _written(scene, "ensemble"),
     }
     ensemble = document["ensemble"]
-    if scene.rel_err is not None:
-        ensemble["max_surfaces"] = ensemble.pop("n_surfaces")
     if not left_out:
         ensemble.pop("left_out", None)
     return {key: value for key, value in document.items() if value or key == "title"}
 
 
-def _written(part: Any, table: str = "contact") -> dict[str, Any]:
+def _written(part: Any, table: str) -> dict[str, Any]:
     """The keys of a table that are values of a part of a scene; what is not asked for is not written."""
     found = {}
     for key, row in KEYS[table].items():
-        value = _plain(getattr(part, key, None)) if key != "law" else None
+        value = _plain(getattr(part, key, None))
         if value is not None and (value != row.default or isinstance(row.kind, Word)):
             found[key] = value
     return found

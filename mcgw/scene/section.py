@@ -155,10 +155,12 @@ class Section:
         """Read a table inside this one; empty if missing."""
         self.known(name)
         value = self.table.get(name, {})
+        if isinstance(value, str) and "name" in rows:  # of a law
+            value = {"name": value}
         if not isinstance(value, dict):
             self.fail(name, value, advice or f"must be a table: write [{name}] above its keys")
             value = {}
-        return Section(name, value, self.problems, rows)
+        return Section(self.path(name), value, self.problems, rows)
 
     def fail(self, name: str, value: Any, advice: str) -> _Value | None:
         """Note a mistake; return None as the value."""

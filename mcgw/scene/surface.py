@@ -1,16 +1,40 @@
 """Surfaces from numbers or texts with units."""
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from analytic import Body as PlainBody, Nayak, SpectralMoments, Surface as Plain, composite_modulus
 from mcgw.scene.arguments import arguments, as_toml
-from mcgw.scene.keys import KEYS, SURFACE_UNITS, YOUNG
+from mcgw.scene.keys import KEYS, MOMENTS, POISSON, SUMMITS, SURFACE_UNITS, YOUNG
 from mcgw.scene.plausible import surface_in_other_units, warn_of_units
 from mcgw.scene.radii import ListedSummits, Spectral
 from mcgw.scene.section import SceneError, Section
-from mcgw.scene.values import MOMENTS, POISSON, SUMMITS
+from mcgw.scene.uncertainty import Uncertainty
 
 _Kind = TypeVar("_Kind", Plain, Spectral)
+
+
+@dataclass(frozen=True)
+class UncertainSurface(Plain):
+    """A surface whose parameters have standard errors.
+
+    Parameters
+    ----------
+    uncertainty : Uncertainty
+        Standard errors of their logarithms.
+    """
+
+    uncertainty: Uncertainty | None = None
+
+    def __post_init__(self) -> None:
+        uncertain(self, None)  # whose numbers are checked
+
+
+def uncertain(surface: Plain, uncertainty: Uncertainty | None) -> Plain:
+    """Return the surface with these standard errors; None: without."""
+    given = {key: getattr(surface, key) for key in SURFACE_UNITS}
+    return Plain(**given) if uncertainty is None else UncertainSurface(**given, uncertainty=uncertainty)
 
 
 def Body(E: float | str, nu: float = 0.3) -> PlainBody:  # noqa: N802 - the door to a class of this name
@@ -48,6 +72,7 @@ def Surface(  # noqa: N802 - the door to a class of this name
     eta: float | str,
     nominal_area: float | str,
     E_star: float | str,
+    uncertainty: Uncertainty | Mapping[str, Any] | None = None,
 ) -> Plain:
     """Make the equivalent rough surface of Greenwood and Williamson, pressed on a rigid plane.
 
@@ -63,6 +88,9 @@ def Surface(  # noqa: N802 - the door to a class of this name
         Nominal contact area A_n, m^2; or text such as "1 cm^2".
     E_star : float or str
         Composite modulus E* of the homogeneous surface, Pa; or text such as "78.6 GPa".
+    uncertainty : dict, optional
+        Relative standard errors of sigma, radius, eta and E_star, such as ``{"sigma": "20 %"}``, with their
+        ``correlation`` in this order; `mcgw.solve` includes them in its error.
 
     Returns
     -------
@@ -81,7 +109,8 @@ def Surface(  # noqa: N802 - the door to a class of this name
     >>> mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 cm^2", "78.6 GPa").nominal_area
     0.0001
     """
-    return _read(Plain, sigma=sigma, radius=radius, eta=eta, nominal_area=nominal_area, E_star=E_star)
+    given = {"sigma": sigma, "radius": radius, "eta": eta, "nominal_area": nominal_area, "E_star": E_star}
+    return _read(Plain, given, uncertainty)
 
 
 def SpectralSurface(  # noqa: N802 - as above
@@ -90,6 +119,7 @@ def SpectralSurface(  # noqa: N802 - as above
     m4: float | str,
     nominal_area: float | str,
     E_star: float | str,
+    uncertainty: Uncertainty | Mapping[str, Any] | None = None,
 ) -> Spectral:
     """Make an isotropic Gaussian surface, given by the moments of its spectrum, pressed on a rigid plane.
 
@@ -105,6 +135,8 @@ def SpectralSurface(  # noqa: N802 - as above
         Nominal contact area A_n, m^2; or text such as "1 cm^2".
     E_star : float or str
         Composite modulus E*, Pa; or text such as "78.6 GPa".
+    uncertainty : dict, optional
+        Relative standard errors of m0, m2, m4 and E_star, as of `mcgw.Surface`.
 
     Returns
     -------
@@ -126,14 +158,19 @@ def SpectralSurface(  # noqa: N802 - as above
     >>> mcgw.Scene(surface, separations=[0, 1, 2]).heights
     Nayak(alpha=5.0)
     """
-    return _read(Spectral, m0=m0, m2=m2, m4=m4, nominal_area=nominal_area, E_star=E_star)
+    given = {"m0": m0, "m2": m2, "m4": m4, "nominal_area": nominal_area, "E_star": E_star}
+    return _read(Spectral, given, uncertainty)
 
 
-def _read(kind: type[_Kind], **given: Any) -> _Kind:
+def _read(kind: type[_Kind], given: Mapping[str, Any], uncertainty: Any) -> _Kind:
     """Read numbers or texts with units; implausible values give a warning."""
-    section = Section("surface", {key: as_toml(value) for key, value in given.items()}, [], KEYS["surface"])
+    plain = {key: as_toml(value) for key, value in given.items()}
+    if uncertainty is not None:
+        plain["uncertainty"] = as_toml(uncertainty)
+    section = Section("surface", plain, [], KEYS["surface"])
     surface = read_surface(section)
-    if surface is None:
+    section.finish()
+    if surface is None or section.problems:
         raise SceneError(section.problems)
     if isinstance(surface, Plain):
         warn_of_units(surface_in_other_units(surface))
@@ -163,16 +200,18 @@ def read_surface(section: Section, listed: ListedSummits | None = None) -> Plain
         key = next(key for key in MOMENTS if key in section)
         section.fail(key, section.table[key], "[summits] already lists the summits; leave it out")
     values = told | section.read_all(name for name in names if name not in told)
+    uncertainty = section.read("uncertainty")
     if len(section.problems) > before:
         return None
     if bodies := values.pop("bodies", None):
         values["E_star"] = composite_modulus(bodies)
     try:
         if not spectral:
-            return Plain(**values)
+            return uncertain(Plain(**values), uncertainty)
         moments = SpectralMoments(*(values[key] for key in MOMENTS))
         Nayak(moments.alpha)
-        return Spectral(moments, moments.surface(values["nominal_area"], values["E_star"]))
+        surface = moments.surface(values["nominal_area"], values["E_star"])
+        return Spectral(moments, uncertain(surface, uncertainty))
     except ValueError as error:
         section.problems.append(f"surface: {error}")
         return None

@@ -1,7 +1,7 @@
 """The statistical convergence test, for this simulator and for a user's sampler or contact law."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
@@ -157,8 +157,7 @@ def converge(
         )
     draw = draw or _own
     scene, h = scene_alone(scene), np.unique(scene.separations)
-    scene = replace(  # few separations, in order, and a feasible number of surfaces
-        scene,
+    scene = scene.replace(  # few separations, in order, and a feasible number of surfaces
         separations=tuple(h[evenly(len(h), _MOST_SEPARATIONS)].tolist()),
         n_surfaces=min(max(scene.n_surfaces, _FEWEST), _MOST),
         rel_err=None,
@@ -169,12 +168,12 @@ def converge(
     with told(progress, "ensembles") as tell:
         for k in range(seeds):
             tell(k, seeds)
-            parts.append(draw(replace(scene, seed=(scene.seed + k) % 2**64)))
+            parts.append(draw(scene.replace(seed=(scene.seed + k) % 2**64)))
         tell(seeds, seeds)
     sums = joined([{name: part[name] for name in scene.quantities} for part in parts])
     exact = PrincipalComponents.of(scene)
     y = exact.turn(sums)
-    whole = replace(scene, n_surfaces=len(y))
+    whole = scene.replace(n_surfaces=len(y))
     means = verdict(Ensemble(whole, "drawn", MemoryResults(sums)))
     checks = [Check("means", means.seen, means.p), *_contacts(whole, sums), *_repeats(scene, sums)]
     slopes: list[Slope] = []
@@ -196,7 +195,7 @@ def converge(
 
 
 def _own(scene: Scene) -> Sums:
-    sampler = _prepared(replace(scene, seed=0)).with_seed(scene.seed)
+    sampler = _prepared(scene.replace(seed=0)).with_seed(scene.seed)
     return joined([block.sums for block in blocks(scene, sampler)])
 
 
@@ -259,8 +258,7 @@ def _slope_in_asperities(scene: Scene, draw: Draw) -> list[Slope]:
         n = scene.n_asperities // divisor
         if n < 1:
             continue
-        small = replace(
-            scene,
+        small = scene.replace(
             n_asperities=n,
             separations=lowest,
             quantities=(name,),

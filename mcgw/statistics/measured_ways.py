@@ -6,7 +6,7 @@ Times are of the CPU, all cores together: what else a machine does changes the c
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from time import process_time
 from typing import Any
@@ -176,7 +176,7 @@ class Answers:
 def moved(scene: Scene, number: int) -> Scene:
     """The scene of one repeat."""
     seed = (scene.seed + 7919 * number + 104729) % 2**64
-    return replace(scene, separations=(scene.separations[0] + _SHIFT * number,), seed=seed)
+    return scene.replace(separations=(scene.separations[0] + _SHIFT * number,), seed=seed)
 
 
 def sized(answers: Answers, name: str, scene: Scene, share: float) -> list[Task]:

@@ -5,7 +5,7 @@ and for a whole distribution the largest difference of a probability, which Kolm
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from math import ceil, inf, nan
 
@@ -52,7 +52,7 @@ class Needs:
         if want == "values":
             return float(self.scene.n_surfaces)
         if want == "mean":
-            asked = replace(self.scene, rel_err=target, n_surfaces=MOST_SURFACES)
+            asked = self.scene.replace(rel_err=target, n_surfaces=MOST_SURFACES)
             found = forecast(asked)
             return inf if found.out_of_reach else float(found.surfaces)
         if want == "conductance":

@@ -2,7 +2,7 @@
 
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from itertools import groupby
 from operator import attrgetter
 from time import monotonic
@@ -192,8 +192,8 @@ def tradeoff(
     check_object("tradeoff", scene, Scene)
     whole = _refused(scene.replace(**changes))
     h = sorted(whole.separations)[(len(whole.separations) - 1) // 2] if separation is None else separation
-    scene = replace(
-        scene_alone(whole), separations=(float(h),), quantities=whole.quantities[:1], keep="sums",
+    scene = scene_alone(whole).replace(
+        separations=(float(h),), quantities=whole.quantities[:1], keep="sums",
         rel_err=None, max_seconds=None,
     )  # fmt: skip
     answers, names = Answers(scene), sampled_ways(scene)

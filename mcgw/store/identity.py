@@ -74,7 +74,7 @@ class Written:
                 f"scene: its lists need {len(text)} characters, but a file of results holds at most "
                 f"{MOST_TEXT}; list fewer summits, or simulate in memory"
             )
-        number = "n_surfaces", "max_surfaces", "left_out"
+        number = "n_surfaces", "left_out"
         document["ensemble"] = {key: x for key, x in document["ensemble"].items() if key not in number}
         key = hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()
         parts = (key, sampler, versions(of_draws=True))

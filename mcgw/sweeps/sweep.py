@@ -67,7 +67,7 @@ class Sweep(Dataset):
     def _at(self, which: Ints) -> "Sweep":
         """The same surfaces at some of the separations, by their numbers."""
         separations = tuple(self.separations[which].tolist())
-        scenes = tuple(replace(scene, separations=separations) for scene in self.scenes)
+        scenes = tuple(scene.replace(separations=separations) for scene in self.scenes)
         return replace(self, scenes=scenes, groups=tuple(one.at(which) for one in self.groups))
 
     def scene(self, at: At) -> Scene:

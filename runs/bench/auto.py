@@ -16,7 +16,9 @@ SPECTRUM = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, 1e-6, 78.6e9)
 SCENES = {
     "hertz": S1,
     "kogut-etsion": S1.replace(law=mcgw.KogutEtsion(critical=0.05)),
-    "radii": mcgw.Scene(SPECTRUM, separations=[0.0], n_surfaces=10, n_asperities=10, seed=1),
+    "radii": mcgw.Scene(
+        SPECTRUM, separations=[0.0], n_surfaces=10, ensemble=mcgw.Sampling(n_asperities=10), seed=1
+    ),
 }
 SAMPLERS = ("tail", "cells")
 

@@ -32,7 +32,7 @@ n_asperities = 1000
 seed = 1
 """
 FEATURES = {
-    "Kogut and Etsion": "contact.law=kogut-etsion contact.critical=0.1",
+    "Kogut and Etsion": "contact.law=kogut-etsion contact.law.critical=0.1",
 }
 Found = dict[str, list[tuple[float, float]]]
 

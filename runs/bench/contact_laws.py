@@ -23,7 +23,7 @@ PEER = "NumPy script of Kogut"
 
 def scene_of(**changes) -> Scene:
     """The scene of all cases."""
-    return mcgw.Scene(SURFACE, separations=SEPARATIONS, n_asperities=ASPERITIES, seed=1, **changes)
+    return mcgw.Scene(SURFACE, separations=SEPARATIONS, seed=1).replace(n_asperities=ASPERITIES, **changes)
 
 
 def cases() -> dict[str, Scene]:

@@ -4,16 +4,14 @@ Run: ``python runs/bench/accuracy.py [--rounds 7]``. What they change in the law
 drawn: `tests/oracles/law_of_crowds.py`.
 """
 
-from dataclasses import replace
-
 from scenes import S1, block
 from timing import Job, against, parser_of, show, timed
 
 
 def crowds() -> dict[str, Job]:
     """A hundred million asperities with crowds and without."""
-    scene = replace(S1, sampler="auto", n_asperities=10**8)
-    return {"accuracy 1e-4, N = 1e8": block(replace(scene, accuracy=1e-4)), "cells, N = 1e8": block(scene)}
+    scene = S1.replace(sampler="auto", n_asperities=10**8)
+    return {"accuracy 1e-4, N = 1e8": block(scene.replace(accuracy=1e-4)), "cells, N = 1e8": block(scene)}
 
 
 def ratios(rounds: int) -> dict[str, float]:

@@ -4,7 +4,6 @@ The separations and quantities of S1: 262 MB of results. Each round has a seed o
 the folder of temporary files, which should be on a disk. Run: ``python runs/bench/file.py [--rounds 7]``.
 """
 
-from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -13,7 +12,7 @@ from timing import Job, against, parser_of, seconds, show, timed
 
 import mcgw
 
-MANY = replace(S1, n_asperities=10**4, n_surfaces=200_000)
+MANY = S1.replace(n_asperities=10**4, n_surfaces=200_000)
 
 
 def into_memory() -> float:

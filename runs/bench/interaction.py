@@ -36,7 +36,7 @@ def pressed(scene: Scene, reference: str) -> Scene:
     model = InteractingModel.of(scene.theory, hard)
     sunk = model.compliance * float(model.alone.mean("load", FELT[reference]))
     softer = scene.surface.E_star * sunk / FELT[reference]
-    return replace(scene, interaction=replace(hard, bulk_modulus=softer))
+    return scene.replace(interaction=replace(hard, bulk_modulus=softer))
 
 
 def cases(scene: Scene) -> dict[str, Scene]:
@@ -50,7 +50,7 @@ def cases(scene: Scene) -> dict[str, Scene]:
 
 def jobs(n: int) -> dict[str, Job]:
     """Surfaces of so many asperities drawn and kept as a run does, and by the script without interaction."""
-    scenes = cases(replace(S1, n_asperities=n))
+    scenes = cases(S1.replace(n_asperities=n))
     return {name: block(scene, partial(kept, scene)) for name, scene in scenes.items()} | {PEER: script(n)}
 
 

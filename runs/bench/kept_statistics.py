@@ -4,8 +4,6 @@ A surface of 41 separations and four quantities, of 100 and of 30 000 asperities
 an array, and asks NumPy for mean, deviation and covariance.
 """
 
-from dataclasses import replace
-
 import numpy as np
 from scenes import S1
 from timing import Job, against, job, parser_of, show, timed
@@ -14,14 +12,14 @@ import mcgw
 
 PEER = "values, and NumPy"
 SCENES = {
-    "100 asperities": replace(S1, n_asperities=100, n_surfaces=32_768, sampler="auto"),
-    "30 000 asperities": replace(S1, n_asperities=30_000, n_surfaces=4096, sampler="auto"),
+    "100 asperities": S1.replace(n_asperities=100, n_surfaces=32_768, sampler="auto"),
+    "30 000 asperities": S1.replace(n_asperities=30_000, n_surfaces=4096, sampler="auto"),
 }
 
 
 def statistics(scene: mcgw.Scene) -> Job:
     """Drawn for its statistics."""
-    kept = replace(scene, keep="statistics")
+    kept = scene.replace(keep="statistics")
 
     def draw() -> None:
         e = mcgw.simulate(kept)

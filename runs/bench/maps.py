@@ -43,7 +43,9 @@ print(time.process_time(), 1024 * int(peak))
 def field_of(number: int) -> Asperities:
     """So many asperities at one density."""
     surface = analytic.Surface(sigma=1e-6, radius=1e-5, eta=1e10, nominal_area=number / 1e10, E_star=1e9)
-    return asperities_of(Scene(surface=surface, separations=(0.0,), n_asperities=number, sampler="cells"), 0)
+    return asperities_of(
+        Scene(surface=surface, separations=(0.0,), ensemble={"n_asperities": number, "sampler": "cells"}), 0
+    )
 
 
 def numpy_loop(field: Asperities, pixels: int) -> np.ndarray:

@@ -24,13 +24,13 @@ PEER = "NumPy over the same summits"
 
 def cases() -> dict[str, Scene]:
     """What is compared, one radius and Gaussian heights first."""
-    asked = {"separations": SEPARATIONS, "n_asperities": 10**5, "seed": 1}
+    asked = {"separations": SEPARATIONS, "ensemble": mcgw.Sampling(n_asperities=10**5), "seed": 1}
     return {
         FIRST: mcgw.Scene(SPECTRAL.surface, **asked),
-        "one radius, Nayak": mcgw.Scene(SPECTRAL, curvature="mean", **asked),
+        "one radius, Nayak": mcgw.Scene(SPECTRAL, summits="mean", **asked),
         OWN: mcgw.Scene(SPECTRAL, **asked),
-        "own radii, load alone": mcgw.Scene(SPECTRAL, quantities=["load"], **asked),
-        "own radii, contacts alone": mcgw.Scene(SPECTRAL, quantities=["contacts"], **asked),
+        "own radii, load alone": mcgw.Scene(SPECTRAL, contact={"quantities": ["load"]}, **asked),
+        "own radii, contacts alone": mcgw.Scene(SPECTRAL, contact={"quantities": ["contacts"]}, **asked),
     }
 
 

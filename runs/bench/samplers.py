@@ -5,8 +5,6 @@ the rounds of the ratios of one round, and its range. Scene S1: N asperities, ga
 0 ... 4, load, area, stiffness and contacts. Run: ``python runs/bench/samplers.py [--rounds 7]``.
 """
 
-from dataclasses import replace
-
 import numpy as np
 from numba import njit, prange
 from scenes import S1, block, script
@@ -55,14 +53,14 @@ def one_million() -> dict[str, Job]:
         "NumPy script": script(),
         "plain numba loop, all cores": job(lambda: numba_loop(1, 10**6, h, 4), 4),
         "Philox alone, the same uniforms": job(lambda: philox_alone(500_000, 64), 64),
-        "tail": block(replace(S1, sampler="tail")),
+        "tail": block(S1.replace(sampler="tail")),
     }
 
 
 def ten_thousand() -> dict[str, Job]:
     """Small surfaces."""
     return {
-        "cells, N = 1e4": block(replace(S1, n_asperities=10**4)),
+        "cells, N = 1e4": block(S1.replace(n_asperities=10**4)),
         "NumPy script, N = 1e4": script(10**4),
     }
 
@@ -71,15 +69,15 @@ def separations() -> dict[str, Job]:
     """More of them, or higher ones."""
     return {
         "h = 0 ... 4, 41 separations": block(S1),
-        "h = 0 ... 4, 401 separations": block(replace(S1, separations=tuple(np.linspace(0, 4, 401)))),
-        "h = 2 ... 4, 41 separations": block(replace(S1, separations=tuple(np.linspace(2, 4, 41)))),
+        "h = 0 ... 4, 401 separations": block(S1.replace(separations=tuple(np.linspace(0, 4, 401)))),
+        "h = 2 ... 4, 41 separations": block(S1.replace(separations=tuple(np.linspace(2, 4, 41)))),
     }
 
 
 def aggregates() -> dict[str, Job]:
     """Any number of asperities, and a small surface by the script."""
     scenes = {
-        f"aggregate, N = 1e{k}": replace(S1, sampler="aggregate", n_asperities=10**k)
+        f"aggregate, N = 1e{k}": S1.replace(sampler="aggregate", n_asperities=10**k)
         for k in (8, 4, 6, 10, 12, 15)
     }
     return {name: block(scene) for name, scene in scenes.items()} | {"NumPy script, N = 1e4": script(10**4)}

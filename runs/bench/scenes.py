@@ -21,9 +21,8 @@ S1 = Scene(
     surface=SURFACE,
     separations=tuple(np.linspace(0, 4, 41)),
     grading=analytic.Exponential(2.0),
-    n_asperities=10**6,
+    ensemble={"n_asperities": 10**6, "sampler": "cells"},
     seed=1,
-    sampler="cells",
 )
 _turn = count(1)
 

@@ -19,7 +19,7 @@ from analytic import Exponential, KogutEtsion
 from mcgw.scene.scene import Scene
 
 PEER = "NumPy script"
-ONE = replace(S1, n_surfaces=1, sampler="auto")
+ONE = S1.replace(n_surfaces=1, sampler="auto")
 FIRST = "first use in a process"
 FIRST_USE = """
 import sys
@@ -60,9 +60,9 @@ def jobs() -> dict[str, Job]:
     """What is compared."""
     return {
         "S1": one_surface(ONE),
-        "401 separations": one_surface(replace(ONE, separations=tuple(np.linspace(0, 4, 401)))),
-        "N = 1e4": one_surface(replace(ONE, n_asperities=10**4)),
-        "10 001 separations": one_surface(replace(ONE, separations=tuple(np.linspace(0, 4, 10_001))), 1),
+        "401 separations": one_surface(ONE.replace(separations=tuple(np.linspace(0, 4, 401)))),
+        "N = 1e4": one_surface(ONE.replace(n_asperities=10**4)),
+        "10 001 separations": one_surface(ONE.replace(separations=tuple(np.linspace(0, 4, 10_001))), 1),
         "Kogut-Etsion": one_surface(replace(ONE, law=KogutEtsion(critical=0.05))),
         "a change of gamma alone": gamma_alone,
         FIRST: first_use,

@@ -5,8 +5,6 @@ contacts. The peer is `mcgw.simulate` of the same scenes, one after the other. A
 to take at most 4 ms (`--points`); the history has fewer gradings, of which each takes a little longer.
 """
 
-from dataclasses import replace
-
 import numpy as np
 from scenes import S1
 from timing import Job, against, job, parser_of, show, timed
@@ -16,7 +14,7 @@ from analytic import Exponential, KogutEtsion, Table
 
 PEER = "simulate"
 N = [10_000, 30_000, 100_000]
-SCENE = replace(S1, n_surfaces=1000, sampler="auto")
+SCENE = S1.replace(n_surfaces=1000, sampler="auto")
 FEW = 20
 
 
@@ -35,19 +33,19 @@ def gradings(points: int) -> Job:
 def tables(points: int) -> Job:
     """The same of one N, where every grading has a kink of its own."""
     given = [Table((-1, k, 6), (1.0, 1.5, 3.0)) for k in np.linspace(0.2, 0.8, points)]
-    scene = replace(SCENE, n_asperities=N[1])
+    scene = SCENE.replace(n_asperities=N[1])
     return job(lambda: mcgw.sweep(scene, {"grading": given}), points)
 
 
 def hardness(points: int) -> Job:
     """The same of one N under a law with breaks; few, for every one cuts all cells."""
-    scene = replace(SCENE, n_asperities=N[1], law=KogutEtsion(hardness=1.2e9, poisson=0.3))
-    return job(lambda: mcgw.sweep(scene, {"contact.hardness": np.linspace(1e9, 3e9, points)}), points)
+    scene = SCENE.replace(n_asperities=N[1], law=KogutEtsion(hardness=1.2e9, poisson=0.3))
+    return job(lambda: mcgw.sweep(scene, {"contact.law.hardness": np.linspace(1e9, 3e9, points)}), points)
 
 
 def alone() -> Job:
     """A scene by itself: the mean over all N."""
-    scenes = [replace(SCENE, n_asperities=n, grading=Exponential(g)) for n in N for g in (0.7, 1.9)]
+    scenes = [SCENE.replace(n_asperities=n, grading=Exponential(g)) for n in N for g in (0.7, 1.9)]
 
     def simulate() -> None:
         for scene in scenes:

@@ -27,9 +27,8 @@ surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 cm^2", "78.6 GPa")
 metal = mcgw.KogutEtsion(hardness=1.2e9, poisson=0.33)
 h = np.linspace(0.5, 4.0, 71)
 asked = ["load", "area", "contacts", "yielded"]
-scene = mcgw.Scene(
-    surface, separations=h, law=metal, unload_from="loop", quantities=asked, n_surfaces=200, seed=1
-)
+contact = mcgw.Contact(metal, quantities=asked, unload_from="loop")
+scene = mcgw.Scene(surface, separations=h, contact=contact, n_surfaces=200, seed=1)
 e = mcgw.simulate(scene)
 e
 
@@ -77,11 +76,10 @@ ax.legend()
 
 # %%
 metal = mcgw.KogutEtsion(hardness=1e9, poisson=0.33)
-base = mcgw.Scene(
-    surface, separations=[1.0, 2.0, 3.0], law=metal, quantities=["load"], n_surfaces=100, seed=1
-)
+contact = mcgw.Contact(metal, quantities=["load"])
+base = mcgw.Scene(surface, separations=[1.0, 2.0, 3.0], contact=contact, n_surfaces=100, seed=1)
 hardness = [1e9, 4e9, 16e9, 64e9]
-sweep = mcgw.sweep(base, {"contact.hardness": hardness})
+sweep = mcgw.sweep(base, {"contact.law.hardness": hardness})
 for k in range(1, len(hardness)):
     ratio = sweep.ratio("load", k, 0).ratio
     print(f"{hardness[k] / 1e9:3.0f} GPa: load over that at 1 GPa", *(f"{x:.2f}" for x in ratio))

@@ -19,7 +19,6 @@ import signal
 import sys
 import tempfile
 import time
-from dataclasses import replace
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "crash"))
@@ -36,8 +35,8 @@ from mcgw.store.run_folder import RECORD, RunFolder
 BLOCKS, SMALL_DISK = 12, 2**24
 OVER = {"surface.E_star": [1e9, 2e9], "ensemble.seed": list(range(7, 13))}
 WANTED = harness.scene_of(BLOCKS)
-ONE = replace(WANTED, n_surfaces=harness.ROWS)
-HALF = replace(WANTED, n_surfaces=harness.ROWS * BLOCKS // 2 + 3)
+ONE = WANTED.replace(n_surfaces=harness.ROWS)
+HALF = WANTED.replace(n_surfaces=harness.ROWS * BLOCKS // 2 + 3)
 
 
 def run(scene):
@@ -52,12 +51,12 @@ def job(number):
 
 def sweep(file):
     """Draw twelve scenes in six groups, as `mcgw sweep` does."""
-    running.sweep(replace(WANTED, n_surfaces=40), OVER, path=file)
+    running.sweep(WANTED.replace(n_surfaces=40), OVER, path=file)
 
 
 def exported(file):
     """Write tables of means and quantiles, as `mcgw export` does."""
-    export(replace(WANTED, n_surfaces=200), file, to="calculix", points=100)
+    export(WANTED.replace(n_surfaces=200), file, to="calculix", points=100)
 
 
 # What lies there before, what is killed again and again, and what ends it.
@@ -65,7 +64,7 @@ KINDS = {
     "one block": ([], [run(ONE)]),
     "blocks": ([], [run(WANTED)]),
     "extension": ([run(HALF)], [run(WANTED)]),
-    "one block grows": ([run(replace(ONE, n_surfaces=3))], [run(ONE)]),
+    "one block grows": ([run(ONE.replace(n_surfaces=3))], [run(ONE)]),
     "jobs": ([], [job(1), job(2), making.merge]),
     "merge": ([job(1), job(2)], [making.merge]),
     "sweep": ([], [sweep]),

@@ -66,7 +66,9 @@ def held(number):
     fit = mcgw.fit(Topography(z, (PIXEL, PIXEL)), cutoff=None, form="none")
     fitted = mcgw.fitted_scene(fit, heights="nayak", E_star=MODULUS, separations=[1.0], n_surfaces=30)
     surface = mcgw.SpectralSurface(m0, m2, m4, fit.area, MODULUS)
-    true = mcgw.Scene(surface, separations=[1.0], n_surfaces=2, quantities=fitted.quantities, seed=1)
+    true = mcgw.Scene(
+        surface, separations=[1.0], n_surfaces=2, contact=mcgw.Contact(quantities=fitted.quantities), seed=1
+    )
     solved = mcgw.solve(fitted, pressure=[load * MODULUS * math.sqrt(2 * m2) for load in LOADS])
     for load, said in zip(LOADS, solved, strict=True):
         right, budget = mean_surface(true, "load", said.value), said.budget()

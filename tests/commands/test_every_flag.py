@@ -57,7 +57,7 @@ ROWS = [
      {"asked.axes.size": 2}),
     ("show @s.toml", "reports.plan:plan_text", "--plan", {"scene.title": "Flags", "plan.surfaces": 70}),
     ("show --plan @s.toml", "reports.plan:plan_text",
-     "--set contact.law=kogut-etsion --set contact.critical=0.05",
+     "--set contact.law=kogut-etsion --set contact.law.critical=0.05",
      {"scene.law": mcgw.KogutEtsion(critical=0.05)}),
     ("show @e.h5", "store.ensembles:verify", "--verify", {"path.name": "e.h5"}),
     (COMPARE, "statistics.comparison:compare", "--laws", {"laws": True}),
@@ -202,7 +202,7 @@ def material(tmp_path_factory):
     folder = tmp_path_factory.mktemp("material")
     (folder / "s.toml").write_text(SCENE)
     (folder / "noseed.toml").write_text(SCENE.replace(", seed = 5", ""))
-    (folder / "rule.toml").write_text(SCENE.replace("n_surfaces = 70", "rel_err = 0.05, max_surfaces = 500"))
+    (folder / "rule.toml").write_text(SCENE.replace("n_surfaces = 70", "rel_err = 0.05, n_surfaces = 500"))
     mcgw.run(mcgw.load_scene(folder / "s.toml"), folder / "e.h5")
     z = np.random.default_rng(3).normal(size=(48, 48))
     np.save(folder / "map.npy", 1e-7 * sum(np.roll(z, k, axis) for k in range(4) for axis in (0, 1)))

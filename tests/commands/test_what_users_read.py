@@ -74,11 +74,13 @@ SURFACE = """surface = {sigma = 1.37e-6, radius = 13e-6, eta = 3e8, nominal_area
 ensemble = {n_surfaces = 30, seed = 5, n_asperities = 300}
 """
 SCENES = {
-    "joint": """joint = {gas = "air", rms = "2 um"}
-[contact]
+    "joint": """[contact]
 separations = [0.0, 0.5, 1.0, 1.5]
+[joint]
 conductivities = [150.0, 16.0]
 film_resistance = 1e-8
+gas = "air"
+rms = "2 um"
 """,
     "caps": """contact = {separations = [1.0]}
 """,

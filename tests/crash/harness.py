@@ -37,10 +37,10 @@ def scene_of(blocks):
     return Scene(
         surface=SURFACE,
         separations=(0.0, 1.0, 2.0),
-        quantities=("load", "contacts"),
+        contact={"quantities": ("load", "contacts")},
         n_surfaces=ROWS * blocks,
         seed=7,
-        sampler="direct",
+        ensemble={"sampler": "direct"},
     )
 
 

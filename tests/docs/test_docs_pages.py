@@ -11,6 +11,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from oracles.docs_site import DOCS, ROOT, WRITTEN, blocks, file_name, pages
+from oracles.scenes import scene_by
 
 import mcgw
 import mcgw.store
@@ -200,7 +201,7 @@ SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
 
 def test_every_dataset_and_attribute_is_described(tmp_path):
     asked = {"quantities": ("load", "area", "stiffness", "contacts", "conductance")}
-    scene = mcgw.Scene(
+    scene = scene_by(
         SURFACE, separations=[0.0, 1.0], n_surfaces=3, seed=1, title="x", interaction="body", **asked
     )
     mcgw.run(scene, tmp_path / "a.h5")

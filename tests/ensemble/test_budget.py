@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from oracles.inside import mean_surface, solutions_text
+from oracles.scenes import scene_by
 from scipy.stats import norm, qmc
 
 import mcgw
@@ -29,7 +30,7 @@ ERRORS = {
     "correlation": [[1, 0.1, -0.8, 0], [0.1, 1, 0.2, 0], [-0.8, 0.2, 1, 0], [0, 0, 0, 1]],
 }  # fmt: skip
 OTHERS = (
-    {"law": {"law": "kogut-etsion", "hardness": "8 GPa"}},
+    {"law": {"name": "kogut-etsion", "hardness": "8 GPa"}},
     {"grading": mcgw.Exponential(0.5)},
     {"heights": mcgw.Weibull(3.0)},
 )
@@ -38,7 +39,7 @@ NAMES = ("area", "stiffness", "conductance", "gap_to_summits")
 
 def scene_of(**more):
     given = {"separations": 1.0, "n_surfaces": 20, "seed": 1, "uncertainty": ERRORS} | more
-    return mcgw.Scene(given.pop("surface", SURFACE), **given)
+    return scene_by(given.pop("surface", SURFACE), **given)
 
 
 @pytest.fixture(scope="module")
@@ -78,10 +79,9 @@ def test_the_parameters_line_is_that_of_redraws(more):
 @pytest.mark.slow
 def test_moments_change_heights_radii_and_their_laws():
     """Errors small enough for alpha to stay above 1.5."""
-    spectral = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 cm^2", "100 GPa")
-    scene = mcgw.Scene(
-        spectral, separations=1.0, n_surfaces=2, seed=1, uncertainty={"m0": 0.1, "m2": 0.05, "m4": 0.1}
-    )
+    errors = {"m0": 0.1, "m2": 0.05, "m4": 0.1}
+    spectral = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 cm^2", "100 GPa", errors)
+    scene = mcgw.Scene(spectral, separations=1.0, n_surfaces=2, seed=1)
     object.__setattr__(scene, "moments", spectral.moments)
     expected = 1.96 * redrawn(scene, 20e6, 64).std(axis=0)
     slopes = slopes_of(scene, scene.uncertainty, lambda s: mean_surface(s, "load", 2e3), NAMES[:3])
@@ -161,8 +161,8 @@ def test_corrected_is_divided_by_its_bias(solved):
 @pytest.mark.parametrize("gas", ["air", "vacuum"])
 def test_a_joint_is_corrected_through_its_network(gas):
     """Spots as stiffness, gas at the corrected gap, side by side: by hand."""
-    film, joint = mcgw.Film(conductivities=(200.0, 16.0)), mcgw.Joint(gas, rms=2e-6)
-    solved = mcgw.solve(scene_of(film=film, joint=joint, uncertainty=None), pressure="50 MPa")
+    joint = mcgw.Joint((200.0, 16.0), gas=gas, rms=2e-6)
+    solved = mcgw.solve(scene_of(joint=joint, uncertainty=None), pressure="50 MPa")
     scene, value, v = solved.scene, solved.value, against_elasticity([solved])
     (bias, error), (lift, gap) = ((v.bias[x][0], v.error[x][0]) for x in ("stiffness", "separation"))
     spots, found = solved.corrected("contact_conductance"), solved.corrected("joint_conductance")
@@ -187,8 +187,8 @@ def test_a_joint_is_corrected_through_its_network(gas):
 
 
 def test_spots_with_a_film_have_no_corrected_conductance():
-    film = mcgw.Film(resistivity=0.07, film_resistance=1e-8)
-    solved = mcgw.solve(scene_of(film=film, uncertainty=None), pressure="50 MPa")
+    film = mcgw.Joint(resistivity=0.07, film_resistance=1e-8)
+    solved = mcgw.solve(scene_of(joint=film, uncertainty=None), pressure="50 MPa")
     budget = solved.budget()
     assert np.isnan(budget.all[budget.quantities.index("contact_conductance")])
     assert solved.corrected("contact_conductance").why.startswith("a film or layer is not")
@@ -212,7 +212,7 @@ def test_the_first_line_is_the_corrected_answer_with_all_of_its_error(uncertaint
     )
 
 
-PULLS = {"law": "derjaguin-muller-toporov", "pull_off": 1e-3}
+PULLS = {"name": "derjaguin-muller-toporov", "pull_off": 1e-3}
 
 
 @pytest.mark.parametrize(
@@ -306,7 +306,7 @@ def test_a_moment_moves_all_that_is_made_of_it(name):
         m = {"m0": 1e-12, "m2": 1e-3, "m4": 5e6} | more
         spectral = mcgw.SpectralSurface(**m, nominal_area=1e-6, E_star=1e11)
         alpha, radius = m["m0"] * m["m4"] / m["m2"] ** 2, spectral.surface.radius
-        return mcgw.Scene(spectral, separations=[1.0], curvature=mcgw.RandomCurvature(alpha, 1e-5 / radius))
+        return mcgw.Scene(spectral, separations=[1.0], summits=mcgw.RandomCurvature(alpha, 1e-5 / radius))
 
     other = made(**{name: 1.1 * {"m0": 1e-12, "m2": 1e-3, "m4": 5e6}[name]})
     found = moved(made(), {name: np.log(1.1)})

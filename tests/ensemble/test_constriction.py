@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from conftest import SURFACE
 from oracles.inside import cautions
+from oracles.scenes import scene_by
 
 import analytic
 import mcgw
@@ -24,7 +25,7 @@ H = (0.8, 1.7, 2.6)
 def scene_of(interaction, **changes):
     surface = replace(SURFACE, eta=changes.pop("eta", SURFACE.eta))
     asked = {"quantities": NAMES, "n_asperities": 800, "n_surfaces": 3, "seed": 4}
-    return mcgw.Scene(surface, interaction=interaction, **{"separations": H} | asked | changes)
+    return scene_by(surface, interaction=interaction, **{"separations": H} | asked | changes)
 
 
 @pytest.mark.parametrize("mode", MODES, ids=lambda mode: mode.reference)
@@ -48,10 +49,10 @@ class TestBarber:
 
     def test_of_spots_that_resist_besides(self, mode):
         """A film adds to the spots, rho E_b compliance/2 to all of them; without E_b/2 it would not fit."""
-        film = mcgw.Film(2e-8, 1e-14)
-        scene = scene_of(mode, film=film, quantities=("load", "conductance_si"), sampler="tail")
+        film = mcgw.Joint(resistivity=2e-8, film_resistance=1e-14)
+        scene = scene_of(mode, joint=film, quantities=("load", "conductance_si"), sampler="tail")
         e = mcgw.simulate(scene)
-        between = film.rho * SURFACE.E_star * scene.compliance / 2
+        between = scene.film.rho * SURFACE.E_star * scene.compliance / 2
         for i in range(3):
             s = np.maximum(mcgw.heights(scene, i)[:, None] - H, 0)
             a = np.sqrt(SURFACE.radius * SURFACE.sigma * s)

@@ -31,7 +31,12 @@ LAWS = {
 def scene():
     quantities = tuple(analytic.QUANTITIES)
     return mcgw.Scene(
-        SURFACE, separations=H, grading=mcgw.Exponential(2.0), quantities=quantities, n_surfaces=60, seed=1
+        SURFACE,
+        separations=H,
+        grading=mcgw.Exponential(2.0),
+        contact=mcgw.Contact(quantities=quantities),
+        n_surfaces=60,
+        seed=1,
     )
 
 

@@ -49,9 +49,14 @@ def cut(expected, surfaces, law, count, gamma, seed=7):
     n = 2000
     h = float(law.isf(np.array(expected / (surfaces * n))))
     scene = mcgw.Scene(
-        surface=SURFACE, separations=(h,), grading=Exponential(gamma), heights=law, n_asperities=n,
-        count=count, n_surfaces=SEEDS * surfaces, seed=seed, sampler="cells",
-    )  # fmt: skip
+        surface=SURFACE,
+        separations=(h,),
+        grading=Exponential(gamma),
+        heights=law,
+        ensemble=mcgw.Sampling(n_asperities=n, count=count, sampler="cells"),
+        n_surfaces=SEEDS * surfaces,
+        seed=seed,
+    )
     return mcgw.simulate(scene)
 
 
@@ -252,10 +257,14 @@ def test_quantiles_are_those_of_scipy(share):
 def test_summits_of_any_radius_take_their_separations_one_by_one():
     """Under another law the pieces of each are cut at all radii: a rule for twelve took ten times as much."""
     scene = mcgw.Scene(
-        surface=SURFACE, separations=np.linspace(-1, 3, 12),
-        heights=Nayak(4.0), curvature=RandomCurvature(4.0),
-        law=PowerLawGraded(0.1, reduced_c0=1.0), n_asperities=100, n_surfaces=2,
-    )  # fmt: skip
+        surface=SURFACE,
+        separations=np.linspace(-1, 3, 12),
+        heights=Nayak(4.0),
+        summits=RandomCurvature(4.0),
+        law=PowerLawGraded(0.1, reduced_c0=1.0),
+        ensemble=mcgw.Sampling(n_asperities=100),
+        n_surfaces=2,
+    )
     tracemalloc.start()
     mean, variance = moments(scene, ["load", "area"], (2,))
     peak = tracemalloc.get_traced_memory()[1]
@@ -282,7 +291,7 @@ def test_ends_of_a_share_of_all_surfaces_are_those_of_the_exact_law(make_scene):
     listed = scene.replace(
         heights=MeasuredHeights([0.0, 1.0, 2.0]), sampler="direct", n_asperities=3, n_surfaces=1
     )
-    radii = scene.replace(heights=Nayak(5.0), curvature=RandomCurvature(5.0))
+    radii = scene.replace(heights=Nayak(5.0), summits=RandomCurvature(5.0))
     assert exact_ends(scene.replace(separations=many), "contacts", 0.9).shape == (2, 101)
     assert exact_ends(yielding.replace(separations=few[:2]), "load", 0.9).shape == (2, 2)
     assert exact_ends(radii, "load", 0.9).shape == (2, 2)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from oracles.inside import Compared, correlation
 from oracles.interacting_by_hand import LATTICE, MEAN_SINKING
+from oracles.scenes import scene_by
 from scipy.integrate import quad
 
 import analytic
@@ -111,9 +112,9 @@ def test_mistakes(joint, line):
 
 # --- in scenes ---
 
-FILM = analytic.Film(conductivities=(200.0, 16.0))
+FILM = {"conductivities": (200.0, 16.0)}
 ROUGH = analytic.Surface(sigma=1.37e-6, radius=13e-6, eta=3.0e8, nominal_area=1e-6, E_star=78.6e9)
-AIR = {"gas": "air", "rms": "2 um"}
+AIR, VACUUM = {**FILM, "gas": "air", "rms": "2 um"}, {**FILM, "gas": "vacuum"}
 H = (1.5, 2.0)
 OWN = {  # modes of interaction, and the separation that differs from surface to surface and tells the gap
     "alone": (None, None),
@@ -123,8 +124,8 @@ OWN = {  # modes of interaction, and the separation that differs from surface to
 
 
 def scene_of(**changes):
-    asked = {"separations": H, "film": FILM, "joint": AIR, "seed": 3, "n_surfaces": 40}
-    return mcgw.Scene(ROUGH, **asked | changes)
+    asked = {"separations": H, "joint": AIR, "seed": 3, "n_surfaces": 40}
+    return scene_by(ROUGH, **asked | changes)
 
 
 def by_hand(h, gas="air"):
@@ -141,14 +142,14 @@ def by_hand(h, gas="air"):
 
 
 def test_answers_in_vacuum_are_those_of_the_spots():
-    value = mcgw.solve(scene_of(joint="vacuum"), pressure="1 MPa", n_surfaces=5).value
+    value = mcgw.solve(scene_of(joint=VACUUM), pressure="1 MPa", n_surfaces=5).value
     assert value["joint_conductance"] == value["contact_conductance"]
     assert value["gap_conductance"] == 0
 
 
 @pytest.mark.parametrize("mode", OWN)
 def test_vacuum_is_the_spots_alone_and_no_contact_the_gas(mode):
-    vacuum = mcgw.simulate(scene_of(interaction=OWN[mode][0], joint="vacuum"))
+    vacuum = mcgw.simulate(scene_of(interaction=OWN[mode][0], joint=VACUUM))
     np.testing.assert_allclose(vacuum["joint_conductance"], vacuum["contact_conductance"], rtol=1e-14)
     far = mcgw.simulate(scene_of(separations=9.0))
     np.testing.assert_array_equal(far["joint_conductance"], far["gap_conductance"])
@@ -185,9 +186,9 @@ def test_many_have_the_mean_and_spread_of_theory(mode):
 def test_network_by_hand(reference, area, film):
     """1/h = 1/(h_spots + h_gas) + R_bodies A_n of every specimen; spots alone from the scene without it."""
     more = {"film": {"film_resistance": 1e-8}, "layer": {"layer": analytic.Layer(1e-5, 1.3)}}.get(film, {})
-    asked = {"film": analytic.Film(conductivities=(200.0, 16.0), **more), "n_asperities": 3000}
-    scene = scene_of(**asked, n_surfaces=6, interaction=reference).replace(nominal_area=area)
-    alone = scene_of(**asked, n_surfaces=6, joint=None).replace(nominal_area=area)
+    asked = {"n_asperities": 3000, "n_surfaces": 6}
+    scene = scene_of(**asked, joint=AIR | more, interaction=reference).replace(nominal_area=area)
+    alone = scene_of(**asked, joint=FILM | more).replace(nominal_area=area)
     e, single = mcgw.simulate(scene), mcgw.simulate(alone)
     spots, h, rho = single["conductance_si"] / area, np.tile(H, (6, 1)), 1 / 200 + 1 / 16
     if reference == "mean-plane":
@@ -208,7 +209,7 @@ def test_network_by_hand(reference, area, film):
 def test_network_of_the_infinite_surface(reference, area):
     """At a load: conductances and resistance of the mean surface by hand, and of each specimen."""
     scene = scene_of(n_surfaces=4, interaction=reference).replace(nominal_area=area)
-    alone = scene_of(n_surfaces=4, joint=None).replace(nominal_area=area)
+    alone = scene_of(n_surfaces=4, joint=FILM).replace(nominal_area=area)
     found, single = (mcgw.solve(x, pressure="1 MPa") for x in (scene, alone))
     rho, load = 1 / 200 + 1 / 16, 1e6 * area
     for at, by_itself in ((found.theory, single.theory), (found.surfaces, single.surfaces)):
@@ -277,17 +278,17 @@ def test_where_it_goes():
     gas = swept.mean("gap_conductance")
     assert (gas[0] < gas[1]).all()
     np.testing.assert_allclose(swept.theory("joint_conductance"), swept.mean("joint_conductance"), rtol=0.1)
-    without = mcgw.simulate(scene.replace(joint=None))
+    without = mcgw.simulate(scene.replace(joint=FILM))
     for name in without.scene.quantities:
         np.testing.assert_array_equal(without[name], e[name])
     assert e.labelled().variables["conductance_si"].about["units"] == "W/K"
 
 
 @pytest.mark.parametrize(("changes", "line"), [
-    ({"film": None}, r"joint: gas conducts heat; give contact\.conductivities"),
-    ({"film": analytic.Film(1e-7)}, r"joint: gas conducts heat; give contact\.conductivities"),
-    ({"joint": "air"}, r"joint\.rms: give the root mean square height"),
-    ({"joint": {"gas": "air", "rms": "1 um"}}, r"joint\.rms = 1e-06: give more than sigma"),
+    ({"joint": {"gas": "air"}}, r"joint\.gas = 'air': give conductivities too, or leave it out"),
+    ({"joint": mcgw.Joint(resistivity=1e-7, gas="air")}, r"joint\.gas = 'air': give conductivities too"),
+    ({"joint": {**FILM, "gas": "air"}}, r"joint\.rms: give the root mean square height"),
+    ({"joint": {**AIR, "rms": "1 um"}}, r"joint\.rms = 1e-06: give more than sigma"),
     ({"joint": 3}, r"joint = 3: give mcgw\.Joint"),
     ({"heights": analytic.Nayak(5.0)}, r"joint\.rms = 2e-06: it follows from the heights"),
 ])  # fmt: skip
@@ -300,13 +301,13 @@ def test_mistakes_of_scenes(changes, line):
 def test_a_fit_tells_the_surface():
     """[fitted] knows rms and alpha; what is given as rms goes before."""
     fitted = {"m0": 4e-12, "m2": 1e-3, "m4": 5e6, "skewness": 0.0, "kurtosis": 3.0, "independent": 900.0}
-    gap = scene_of(joint="air", fitted=fitted).filled
+    gap = scene_of(joint={**FILM, "gas": "air"}, fitted=fitted).filled
     assert (gap.rms, gap.rise) == (2e-6, pytest.approx(4 * 2e-6 / math.sqrt(math.pi * 20) / ROUGH.sigma))
-    assert scene_of(fitted=fitted, joint={"gas": "air", "rms": 3e-6}).filled.rms == 3e-6
+    assert scene_of(fitted=fitted, joint={**AIR, "rms": 3e-6}).filled.rms == 3e-6
 
 
 def test_models_without_gas_say_so():
-    scene = scene_of(joint=None)
+    scene = scene_of(joint=FILM)
     for name in ("gap_conductance", "thermal_resistance"):
         with pytest.raises(KeyError, match="this model has no gas"):
             scene.theory.mean(name, H)
@@ -322,18 +323,18 @@ def test_figures_compare_its_surfaces_without_it():
     assert compared == plain
 
 
-@pytest.mark.parametrize("law", [{"law": "hertz"}, {"law": "kogut-etsion", "hardness": "2.5 GPa"}])
+@pytest.mark.parametrize("law", [{"name": "hertz"}, {"name": "kogut-etsion", "hardness": "2.5 GPa"}])
 def test_the_table_of_a_joint_has_its_correlation(law):
     """By hand from m0 and m2: Mikic's of elastic spots, Cooper, Mikic and Yovanovich's of yielding ones."""
     spectral = mcgw.SpectralSurface(1e-12, 1e-2, 5e8, "1 mm^2", "80 GPa")
-    film = mcgw.Film(conductivities=(150.0, 50.0))
-    scene = mcgw.Scene(spectral, separations=1.0, n_surfaces=2, seed=1, film=film, law=law)
+    film = mcgw.Joint(conductivities=(150.0, 50.0))
+    scene = mcgw.Scene(spectral, separations=1.0, n_surfaces=2, seed=1, joint=film, law=law)
     m, k, p = np.sqrt(2e-2 / np.pi), 75.0, np.array([1e6, 1e7])
-    if law["law"] == "hertz":
+    if law["name"] == "hertz":
         by_hand = 1.55 * k * m / 1e-6 * (p * np.sqrt(2) / (80e9 * m)) ** 0.94
     else:
         by_hand = 1.25 * k * m / 1e-6 * (p / 2.5e9) ** 0.95
     np.testing.assert_allclose(correlation(scene, p), by_hand, rtol=1e-9)
-    assert correlation(scene.replace(film=mcgw.Film(resistivity=1e-7, film_resistance=1e-12)), p) is None
+    assert correlation(scene.replace(joint=mcgw.Joint(resistivity=1e-7, film_resistance=1e-12)), p) is None
     plain = mcgw.Surface("1 um", "13 um", "300/mm^2", "1 mm^2", "80 GPa")
-    assert correlation(mcgw.Scene(plain, separations=1.0, n_surfaces=2, film=film), p) is None
+    assert correlation(mcgw.Scene(plain, separations=1.0, n_surfaces=2, joint=film), p) is None

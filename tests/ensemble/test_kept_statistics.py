@@ -12,6 +12,7 @@ from conftest import SURFACE
 from oracles.flipped import flip_a_number
 from oracles.inside import drawn as drawn_by, verify
 from oracles.memory_growth import peak_growth
+from oracles.scenes import scene_by
 
 import mcgw
 from mcgw.cli import main
@@ -24,7 +25,7 @@ H = [0.0, 1.0, 2.5]
 
 def scene(**changes):
     given = {"separations": H, "seed": 3, "n_surfaces": 300, "n_asperities": 300, **changes}
-    return mcgw.Scene(given.pop("surface", SURFACE), **given)
+    return scene_by(given.pop("surface", SURFACE), **given)
 
 
 YIELDS = mcgw.KogutEtsion(hardness=1.2e9, poisson=0.3)

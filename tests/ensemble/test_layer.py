@@ -12,6 +12,7 @@ import pytest
 from conftest import SURFACE
 from oracles.accurately import term
 from oracles.literal import scores
+from oracles.scenes import scene_by
 from scipy.integrate import quad
 from scipy.special import j1
 
@@ -21,7 +22,7 @@ from analytic.laws.layer import LayeredSpot
 
 UNIT = math.sqrt(SURFACE.radius * SURFACE.sigma)
 LAYER = analytic.Layer(0.3 * UNIT, 1.3)
-FILM = analytic.Film(conductivities=(200.0, 16.0), layer=LAYER)
+FILM = mcgw.Joint(conductivities=(200.0, 16.0), layer=LAYER)
 H = (0.5, 1.5)
 LAWS = {
     "hertz": analytic.Hertz(), "chang": analytic.ChangEtsionBogy(critical=0.05),
@@ -115,10 +116,10 @@ def test_a_step_into_the_complex_plane_is_the_derivative(conductivity):
 
 def scene_of(law=LAWS["hertz"], **changes):
     asked = {
-        "separations": H, "law": law, "film": FILM, "quantities": ["load", "conductance_si"], "seed": 3,
+        "separations": H, "law": law, "joint": FILM, "quantities": ["load", "conductance_si"], "seed": 3,
         "n_asperities": 400, "n_surfaces": 2, "negative": "clip",
     }  # fmt: skip
-    return mcgw.Scene(SURFACE, **asked | changes)
+    return scene_by(SURFACE, **asked | changes)
 
 
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
@@ -150,7 +151,7 @@ class TestLaws:
         thin = analytic.Film(
             conductivities=FILM.conductivities, film_resistance=LAYER.thickness / LAYER.conductivity
         )
-        wrong = scene_of(law, film=thin).theory.mean("conductance_si", H)
+        wrong = scene_of(law, joint=thin).theory.mean("conductance_si", H)
         assert (np.abs(wrong - mean) / std * math.sqrt(3000) > 20).all()
 
 
@@ -167,8 +168,8 @@ def test_mean_at_a_load_is_that_of_surfaces():
 def test_mean_by_quadrature(thickness, conductivity):
     """A film besides, and layers of all kinds."""
     layer = analytic.Layer(thickness * UNIT, conductivity)
-    film = analytic.Film(conductivities=(200.0, 16.0), layer=layer, film_resistance=1e-9)
-    scene = scene_of(film=film, separations=1.0, n_asperities=1)
+    film = mcgw.Joint(conductivities=(200.0, 16.0), layer=layer, film_resistance=1e-9)
+    scene = scene_of(joint=film, separations=1.0, n_asperities=1)
     spot = film.layer.between(*film.conductivities, 1.0)
 
     def one(y):
@@ -189,12 +190,13 @@ def test_radii_of_their_own():
         ensemble = { seed = 1 }
         [contact]
         separations = [0.0]
+        quantities = ["conductance_si"]
+        [joint]
         conductivities = [200, 16]
         layer = { thickness = "10 um", conductivity = 1.3 }
-        quantities = ["conductance_si"]
     """)
-    film = analytic.Film(conductivities=(200.0, 16.0), layer=analytic.Layer(1e-5, 1.3))
-    assert scene.film == film
+    film = mcgw.Joint(conductivities=(200.0, 16.0), layer=analytic.Layer(1e-5, 1.3))
+    assert scene.joint == film
     a = math.sqrt(1e-5 * (4 - 7 / 3) * 1e-6)
     found = float(mcgw.simulate(scene)["conductance_si"][0, 0])
     assert found == pytest.approx(1 / by_integral(a, film), rel=1e-11)
@@ -220,11 +222,10 @@ def test_way_back_and_interaction():
 
 class TestInput:
     def test_python(self):
-        film = mcgw.Film(conductivities=(200.0, 16.0))
-        assert scene_of(film=film, layer=LAYER) == scene_of()
-        with pytest.raises(mcgw.SceneError, match=r"contact\.layer = .*: give conductivities too, or leave"):
-            scene_of(film=None, layer=LAYER)
+        assert scene_of(joint=mcgw.Joint((200.0, 16.0)), layer=LAYER) == scene_of()
+        with pytest.raises(mcgw.SceneError, match=r"joint\.layer = .*: give conductivities too, or leave"):
+            scene_of(joint=None, layer=LAYER)
 
     def test_layer_without_conductivities(self):
         with pytest.raises(ValueError, match="layer: it needs conductivities"):
-            mcgw.Film(1e-7, layer=LAYER)
+            analytic.Film(1e-7, layer=LAYER)

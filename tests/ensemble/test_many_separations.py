@@ -13,7 +13,9 @@ WHOLE = np.linspace(1.5, 0.0, 2 * MOST_SHOWN + 1)  # falling: every other one is
 @pytest.fixture(scope="module", params=["sums", "statistics"])
 def whole(request):
     surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
-    scene = mcgw.Scene(surface, separations=WHOLE, n_surfaces=40, seed=3, keep=request.param)
+    scene = mcgw.Scene(
+        surface, separations=WHOLE, n_surfaces=40, seed=3, ensemble=mcgw.Sampling(keep=request.param)
+    )
     return mcgw.simulate(scene)
 
 

@@ -102,7 +102,14 @@ def test_without_its_jumps_a_law_is_seen_to_be_wrong(monkeypatch):
 def test_of_radii_of_their_own(law):
     """Summits of a Gaussian surface, each with its radius, some six in contact."""
     surface = mcgw.SpectralSurface(m0=1e-12, m2=4e-3, m4=8e7, nominal_area=1e-8, E_star=1e11)
-    scene = mcgw.Scene(surface, separations=[-9.0], n_surfaces=3000, seed=3, sampler="direct", law=law)
+    scene = mcgw.Scene(
+        surface,
+        separations=[-9.0],
+        n_surfaces=3000,
+        seed=3,
+        ensemble=mcgw.Sampling(sampler="direct"),
+        law=law,
+    )
     pairs = [summits(scene, k) for k in range(scene.n_surfaces)]
     heights, ratios = (np.array(part) for part in zip(*pairs, strict=True))
     model, s = replace(scene.theory, law=law), scene.surface

@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 from oracles.inside import solved_pressures
 from oracles.laws_of_one_depth import kogut_etsion
+from oracles.scenes import scene_by
 
 import mcgw
 from mcgw.cli import main
 
-FILM = mcgw.Film(conductivities=(150.0, 16.0), film_resistance=1e-7)
-AIR = {"film": FILM, "joint": mcgw.Joint("air", rms=2e-6)}
+FILM = {"conductivities": (150.0, 16.0), "film_resistance": 1e-7}
+AIR = {"joint": mcgw.Joint(**FILM, gas="air", rms=2e-6)}
 HARDNESS, POISSON = 4e9, 0.3  # first yield at (pi 0.577 H/(2 E*))^2 R
 YIELDING = mcgw.KogutEtsion(hardness=HARDNESS, poisson=POISSON)
 BODY = {"interaction": {"reference": "body"}}
@@ -105,7 +106,7 @@ def test_the_answer_is_one_and_the_mean_of_specimens(name, tmp_path):
     surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", n / 3e8, "78.6 GPa")
     if "radii" in name:
         surface = mcgw.SpectralSurface(M0, M2, M4, n * 6 * np.pi * 3**0.5 * M2 / M4, "100 GPa")
-    scene = mcgw.Scene(
+    scene = scene_by(
         surface, separations=0.0, quantities=("load", "area", "stiffness"), n_asperities=n,
         n_surfaces=400, seed=5, **more,
     )  # fmt: skip

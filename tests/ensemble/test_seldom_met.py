@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from oracles.inside import law_text
+from oracles.scenes import scene_by
 from scipy import stats
 
 import analytic
@@ -21,23 +22,24 @@ FILE = """
 surface = {{sigma = 1e-6, radius = 1e-5, eta = 1e9, nominal_area = 1e-6, E_star = 1e11{surface}}}
 contact = {{separations = [0.0, 1.0]{contact}}}
 ensemble = {{n_surfaces = 10, n_asperities = 100, seed = 1{ensemble}}}
+joint = {{{joint}}}
 """
 
-NONE = {"surface": "", "contact": "", "ensemble": ""}
+NONE = {"surface": "", "contact": "", "ensemble": "", "joint": ""}
 # Of a scene file: what is added to a table, and the line that names it with what would do.
 ADDED = [
     ("surface", ", bodies = [{E = 7e10}, {E = inf}]",
      "give it or E_star, not both"),
-    ("contact", ", resistivity = 1e-7, conductivities = [1.0, 2.0]",
-     "contact.resistivity = 1e-07: give it or conductivities, not both"),
-    ("contact", ", film_resistance = 1e-12",
-     "contact.film_resistance = 1e-12: give resistivity or conductivities too, or leave it out"),
-    ("contact", ', law = "power-law-graded", c0 = "10 um"',
-     'contact.k: missing; law = "power-law-graded" needs it'),
-    ("contact", ', law = "kogut-etsion", critical = 0.05, hardness = 1e9', "give one of them"),
-    ("contact", ', law = "coated", ratio = 2.0', "give one of them, in m or over sqrt(R sigma)"),
+    ("joint", "resistivity = 1e-7, conductivities = [1.0, 2.0]",
+     "joint.resistivity = 1e-07: give it or conductivities, not both"),
+    ("joint", "film_resistance = 1e-12",
+     "joint.film_resistance = 1e-12: give resistivity or conductivities too, or leave it out"),
+    ("contact", ', law = {name = "power-law-graded", c0 = "10 um"}',
+     'contact.law.k: missing; name = "power-law-graded" needs it'),
+    ("contact", ', law = {name = "kogut-etsion", critical = 0.05, hardness = 1e9}', "give one of them"),
+    ("contact", ', law = {name = "coated", ratio = 2.0}', "give one of them, in m or over sqrt(R sigma)"),
     ("contact", ', quantities = ["conductance_si"]',
-     '"conductance_si" needs resistivity, or conductivities = [k1, k2]; give one'),
+     '"conductance_si" needs joint.resistivity, or joint.conductivities = [k1, k2]'),
     ("contact", ', quantities = ["load", "yielded"]', 'no contact yields with law = "hertz"; leave it out'),
     ("contact", ', quantities = ["load_unloading"]', "'load_unloading' needs unloading; give"),
     ("contact", ", yield_index = 3", "unknown key"),
@@ -96,10 +98,10 @@ REFUSED = [
     (lambda: analytic.Weibull(101), "shape = 101: give a number from 1 to 100"),
     (lambda: mcgw.Layer(0.0, 1.0), "thickness = 0.0: give a finite number > 0, in m"),
     (lambda: mcgw.Layer(1.0, np.inf), r"conductivity = inf: give a finite number > 0, in W/\(m K\)"),
-    (lambda: mcgw.Film(), r"resistivity: give it in ohm m, or conductivities = \(k1, k2\)"),
-    (lambda: mcgw.Film(conductivities=(1.0,)), "give two numbers > 0"),
-    (lambda: mcgw.Film(conductivities=(1.0, 0.0)), "give two numbers > 0"),
-    (lambda: mcgw.Joint("air", temperature=-1.0), "temperature = -1.0: give a finite number > 0, in K"),
+    (lambda: analytic.Film(), r"resistivity: give it in ohm m, or conductivities = \(k1, k2\)"),
+    (lambda: analytic.Film(conductivities=(1.0,)), "give two numbers > 0"),
+    (lambda: analytic.Film(conductivities=(1.0, 0.0)), "give two numbers > 0"),
+    (lambda: analytic.Joint("air", temperature=-1.0), "temperature = -1.0: give a finite number > 0, in K"),
     (lambda: analytic.MeasuredHeights([0.0, 1.0]).pdf(np.ones(2)), "no density at s = 1;"),
     (lambda: analytic.MeasuredHeights([0.0, 1.0]).rvs(3, None), "n = 3: give 2, the number"),
     (lambda: PRESSED.alone.separation_law(2.0, "contacts"), "give a sum that decreases with the separation"),
@@ -129,11 +131,11 @@ LIMITS = {
     "unload_from": (lambda x: analytic.Model(SURFACE, unload_from=x), [-9.0], [np.inf, np.nan]),
     "h": (lambda x: BACK.mean("load_unloading", x), [0.5], [0.4999]),
     "bulk_modulus": (lambda x: analytic.Interaction("body", bulk_modulus=x), [1e-300], [0.0, np.inf]),
-    "rms": (lambda x: mcgw.Joint("air", rms=x).gap(SURFACE, analytic.Gaussian()), [1.01 * SURFACE.sigma],
+    "rms": (lambda x: analytic.Joint("air", rms=x).gap(SURFACE, analytic.Gaussian()), [1.01 * SURFACE.sigma],
             [SURFACE.sigma]),
-    "gas_pressure": (lambda x: mcgw.Joint("air", gas_pressure=x), [1e-9], [0.0, np.inf]),
+    "gas_pressure": (lambda x: analytic.Joint("air", gas_pressure=x), [1e-9], [0.0, np.inf]),
     "k": (lambda x: mcgw.PowerLawGraded(x, reduced_c0=1.0), [0, 0.999], [-1e-9, 1]),
-    "film_resistance": (lambda x: mcgw.Film(1.0, x), [0.0], [-1e-30, np.inf]),
+    "film_resistance": (lambda x: analytic.Film(1.0, x), [0.0], [-1e-30, np.inf]),
     "area_fraction": (crowding_factor, [0.0, 0.999], [-1e-9, 1.0]),
     "terms": (lambda x: analytic.PiecewiseSeries([0, 1], [np.ones(x)]), [1, 64], [0, 65]),
     "pieces": (lambda x: analytic.PiecewiseSeries(range(x + 1), x * [[1.0]]), [1, 4096], [0, 4097]),
@@ -154,7 +156,7 @@ def test_numbers_at_their_limits_are_taken_and_those_beyond_are_not(name):
 
 def with_radii(**changes):
     radii = mcgw.RandomCurvature(5.0)
-    return lambda scene: mcgw.Scene(SPECTRAL, separations=[0, 1], curvature=radii, **changes)
+    return lambda scene: scene_by(SPECTRAL, separations=[0, 1], summits=radii, **changes)
 
 
 def listed(**changes):
@@ -164,8 +166,8 @@ def listed(**changes):
 
 # In Python: a call with a scene, and what its line says.
 CALLS = [
-    (lambda scene: scene.replace(film=3), "contact.film = 3: give resistivity and film_resistance"),
-    (lambda scene: scene.replace(law={"critical": 0.05}), "contact.critical: unknown key"),
+    (lambda scene: scene.replace(joint=3), "joint = 3: give mcgw.Joint"),
+    (lambda scene: scene.replace(law={"critical": 0.05}), "contact.law.critical: unknown key"),
     (lambda scene: mcgw.SpectralSurface(-1.0, 1e-3, 5e6, 1e-6, 1e11), "surface.m0 = -1"),
     (lambda scene: scene.replace(separations=np.zeros(100_001)), "at most 100000 of them"),
     (lambda scene: mcgw.run(scene, "e.h5", threads=0), "threads = 0: give a whole number >= 1"),
@@ -191,7 +193,7 @@ def test_a_mistake_in_python_is_one_line(call, told, make_scene):
 @pytest.mark.parametrize(
     ("changes", "fact"),
     [
-        ({"film": mcgw.Film(1e-7)}, ("bodies", "resistivity 1e-07 ohm m")),
+        ({"joint": mcgw.Joint(resistivity=1e-7)}, ("bodies", "resistivity 1e-07 ohm m")),
         ({"interaction": "body"}, ("interaction", "from the undeformed body, separations effective")),
     ],
 )
@@ -252,7 +254,7 @@ def test_the_interval_of_the_contacts_is_exact_for_each_count(count, make_scene)
 
 def test_theory_of_summits_with_their_own_radii_is_the_same_in_another_process():
     """What is kept between questions stays behind."""
-    scene = mcgw.Scene(SPECTRAL, separations=[0.0, 1.0], curvature=mcgw.RandomCurvature(5.0))
+    scene = mcgw.Scene(SPECTRAL, separations=[0.0, 1.0], summits=mcgw.RandomCurvature(5.0))
     theory = scene.theory
     mean = theory.mean("load", [0.0, 1.0])
     np.testing.assert_array_equal(pickle.loads(pickle.dumps(theory)).mean("load", [0.0, 1.0]), mean)

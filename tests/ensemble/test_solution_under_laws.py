@@ -79,9 +79,14 @@ def drawn_by(monkeypatch, scene, given, values):
 def test_a_literal_search_finds_the_same(name, given, monkeypatch):
     law, typed, starts, gamma_ = LAWS[name]
     scene = mcgw.Scene(
-        SURFACE, separations=0.0, grading=mcgw.Exponential(gamma_), law=law, n_asperities=60, n_surfaces=3,
+        SURFACE,
+        separations=0.0,
+        grading=mcgw.Exponential(gamma_),
+        law=law,
+        ensemble=mcgw.Sampling(n_asperities=60),
+        n_surfaces=3,
         seed=3,
-    )  # fmt: skip
+    )
     values = [float(x) for x in scene.theory.mean(given, [2.2, 1.0])]
     found, drawn = drawn_by(monkeypatch, scene, given, values)
     for number in range(3):
@@ -168,9 +173,14 @@ def test_the_mean_is_that_of_theory(name):
     """
     law, _, _, gamma_ = LAWS[name]
     scene = mcgw.Scene(
-        SURFACE, separations=0.0, grading=mcgw.Exponential(gamma_), law=law, n_asperities=3000,
-        n_surfaces=200, seed=9,
-    )  # fmt: skip
+        SURFACE,
+        separations=0.0,
+        grading=mcgw.Exponential(gamma_),
+        law=law,
+        ensemble=mcgw.Sampling(n_asperities=3000),
+        n_surfaces=200,
+        seed=9,
+    )
     value = float(scene.theory.mean("load", 1.0))
     (found,) = solutions(scene, "load", [value])
     h = found.surfaces["separation"]

@@ -25,7 +25,9 @@ def load_of(found, i):
 @pytest.mark.parametrize("count", ["fixed", "poisson"])
 @pytest.mark.parametrize("grading", [mcgw.Homogeneous(), GRADED], ids=["same", "graded"])
 def test_their_loads_add_up_to_what_was_given(surface, count, grading):
-    scene = mcgw.Scene(surface, separations=0.0, grading=grading, count=count, n_surfaces=3, seed=2)
+    scene = mcgw.Scene(
+        surface, separations=0.0, grading=grading, ensemble=mcgw.Sampling(count=count), n_surfaces=3, seed=2
+    )
     for found in mcgw.solve(scene, pressure=["0.1 MPa", "2 MPa"]):
         for i in (0, 2):
             assert load_of(found, i) == pytest.approx(found.amount, rel=1e-9)
@@ -37,7 +39,7 @@ def test_their_loads_add_up_to_what_was_given(surface, count, grading):
 
 def test_of_areas_too_and_below_what_was_drawn_at_first(monkeypatch):
     monkeypatch.setattr(loaded_surfaces, "_MARGIN", 0.1)  # so that surfaces lie lower than was expected
-    scene = mcgw.Scene(PLAIN, separations=0.0, n_asperities=10, n_surfaces=40, seed=1)
+    scene = mcgw.Scene(PLAIN, separations=0.0, ensemble=mcgw.Sampling(n_asperities=10), n_surfaces=40, seed=1)
     below = 0
     for share in (0.02, 0.4):
         found = mcgw.solve(scene, area_fraction=share * 1e-2)

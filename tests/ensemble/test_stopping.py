@@ -1,7 +1,6 @@
 """The stop rule: it keeps its promise, it is known beforehand, and it does not wait for what cannot come."""
 
 import warnings
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -66,7 +65,7 @@ def test_the_interval_printed_is_as_narrow_as_asked(make_scene):
             assert max((high / ensemble.mean(name) - 1).max(), (1 - low / ensemble.mean(name)).max()) <= most
         assert after(ensemble, scene) == []
         # The companion: only the load at h = 2 is known no better.
-        assert len(after(ensemble, replace(scene, rel_err=0.045))) == 1
+        assert len(after(ensemble, scene.replace(rel_err=0.045))) == 1
 
 
 def covered(scene, means, n):
@@ -87,7 +86,7 @@ def test_stopped_ensembles_cover(make_scene, rel_err, n_asperities):
     )  # fmt: skip
     n = forecast(scene).surfaces
     means = (
-        mcgw.simulate(replace(scene, rel_err=None, n_surfaces=SEEDS * n)).load.reshape(SEEDS, n).mean(axis=1)
+        mcgw.simulate(scene.replace(rel_err=None, n_surfaces=SEEDS * n)).load.reshape(SEEDS, n).mean(axis=1)
     )
     assert covered(scene, means, n) >= 0.93
     assert covered(scene, means, 16 * n) < 0.5  # the companion: a quarter of the width
@@ -125,7 +124,7 @@ def test_stopped_ensembles_cover_with_very_rare_very_stiff_tips(make_scene):
     What lies below contributes a thirtieth of the mean, with a relative error of 7e-4 that is left out.
     """
     scene = with_tips(make_scene, 1.0, 1e5, 4.5)
-    plain = replace(scene, grading=analytic.Homogeneous())
+    plain = scene.replace(grading=analytic.Homogeneous())
     body, exact = (float(x.theory.mean("load", 1.0)) for x in (plain, scene))
     assert 30 < exact / body < 40
     n = forecast(scene).surfaces
@@ -146,7 +145,7 @@ def test_whoever_draws_it_is_one_ensemble(make_scene, tmp_path, monkeypatch, cap
     assert n > 3 * 64
     first = mcgw.simulate(scene, threads=1)
     mcgw.run(scene, tmp_path / "a.h5", threads=2)
-    mcgw.run(replace(scene, rel_err=0.1), tmp_path / "e.h5")
+    mcgw.run(scene.replace(rel_err=0.1), tmp_path / "e.h5")
     assert mcgw.open_ensemble(tmp_path / "e.h5").n_surfaces < n
     mcgw.run(scene, tmp_path / "e.h5")
     (tmp_path / "scene.toml").write_text(mcgw.scene_text(scene))
@@ -168,21 +167,21 @@ def test_whoever_draws_it_is_one_ensemble(make_scene, tmp_path, monkeypatch, cap
 
 def test_the_same_again_draws_nothing_and_a_wider_rule_keeps_what_is_there(make_scene, tmp_path):
     scene = make_scene(rel_err=0.05, n_surfaces=10**6, separations=(0.0,), n_asperities=10)
-    wider, path = replace(scene, rel_err=0.1), tmp_path / "a.h5"
+    wider, path = scene.replace(rel_err=0.1), tmp_path / "a.h5"
     n = mcgw.run(scene, path).n_surfaces
     before = path.stat().st_mtime_ns
     assert mcgw.run(scene, path).n_surfaces == n
     assert forecast(wider).surfaces < n
     assert mcgw.run(wider, path).n_surfaces == n
     assert path.stat().st_mtime_ns == before
-    assert mcgw.run(replace(scene, rel_err=0.025), path).n_surfaces > 3 * n
+    assert mcgw.run(scene.replace(rel_err=0.025), path).n_surfaces > 3 * n
     with pytest.raises(StoreError, match="different ensemble"):
-        mcgw.run(replace(scene, seed=2), path)
+        mcgw.run(scene.replace(seed=2), path)
 
 
 def test_what_nothing_reaches_is_reported_and_not_waited_for(make_scene):
     scene = make_scene(rel_err=0.1, n_surfaces=10**4, separations=(0.0, 12.0))
-    with pytest.warns(UserWarning, match=r"4 means need more surfaces than max_surfaces allows; "):
+    with pytest.warns(UserWarning, match=r"4 means need more surfaces than n_surfaces allows; "):
         ensemble = mcgw.simulate(scene)
     assert ensemble.n_surfaces == 64
     assert f"no contact in {ensemble.n_surfaces} surfaces" in after(ensemble, scene)[0]
@@ -213,13 +212,13 @@ def test_a_limit_too_low_is_said_in_one_line(make_scene, tmp_path, capsys):
     assert ("load", 3.0) in forecast(scene).out_of_reach
     assert "\n" not in before(forecast(scene), 1.0)
     for draw in (mcgw.simulate, lambda scene: mcgw.run(scene, tmp_path / "a.h5")):
-        with pytest.warns(UserWarning, match="max_surfaces allows"):
+        with pytest.warns(UserWarning, match="n_surfaces allows"):
             assert draw(scene).n_surfaces == 200
     (tmp_path / "scene.toml").write_text(mcgw.scene_text(scene))
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert main(["run", str(tmp_path / "scene.toml"), "-o", str(tmp_path / "a.h5")]) == 0
-    assert capsys.readouterr().out.count("max_surfaces allows") == 1
+    assert capsys.readouterr().out.count("n_surfaces allows") == 1
 
 
 def test_surfaces_that_all_agree_are_not_proof(make_scene):
@@ -261,13 +260,13 @@ def test_a_run_of_limited_time_doubles_what_it_has(seconds, held, made, make_sce
 
 def test_time_ends_a_run(make_scene, tmp_path):
     scene = make_scene(n_surfaces=10**9, max_seconds=0.2)
-    for asked in (scene, replace(scene, rel_err=1e-3)):
+    for asked in (scene, scene.replace(rel_err=1e-3)):
         assert 0 < mcgw.simulate(asked).n_surfaces < 10**8
     path = tmp_path / "a.h5"
-    n = mcgw.run(replace(scene, n_surfaces=10**7), path).n_surfaces
+    n = mcgw.run(scene.replace(n_surfaces=10**7), path).n_surfaces
     assert 64 <= n < 10**7
-    assert mcgw.run(replace(scene, n_surfaces=10**7, max_seconds=1e-9), path).n_surfaces == n
-    assert mcgw.run(replace(scene, n_surfaces=n + 5, max_seconds=600.0), path).n_surfaces == n + 5
+    assert mcgw.run(scene.replace(n_surfaces=10**7, max_seconds=1e-9), path).n_surfaces == n
+    assert mcgw.run(scene.replace(n_surfaces=n + 5, max_seconds=600.0), path).n_surfaces == n + 5
     with pytest.raises(ValueError, match="max_seconds: the jobs of a run end at different times"):
         mcgw.run(scene, path, shard="1/2")
 

@@ -13,7 +13,11 @@ from mcgw.exports.contact_table import SCHEMA
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
 SURFACES = 400
 SCENE = mcgw.Scene(
-    SURFACE, separations=[0.0, 1.5], n_surfaces=SURFACES, seed=4, film=mcgw.Film(conductivities=(150.0, 16.0))
+    SURFACE,
+    separations=[0.0, 1.5],
+    n_surfaces=SURFACES,
+    seed=4,
+    joint=mcgw.Joint(conductivities=(150.0, 16.0)),
 )
 
 
@@ -51,9 +55,9 @@ def test_its_columns_are_those_of_theory(table):
 def test_gas_in_the_gap_conducts_too(table, tmp_path):
     """What it adds is Yovanovich's integral at each row's own gap."""
     gas = {"conductivity": 0.026, "jump": 3e-7}
-    scene = SCENE.replace(joint=mcgw.Joint(gas, rms=1.5e-6))
+    scene = SCENE.replace(gas=gas, rms=1.5e-6)
     joint = exported(scene, tmp_path / "a.json", points=11)
-    added = scene.joint.gap(SURFACE, scene.heights)(joint["gap"] / SURFACE.sigma)
+    added = scene.gas.gap(SURFACE, scene.heights)(joint["gap"] / SURFACE.sigma)
     np.testing.assert_allclose(joint["conductance"] - table["conductance"], added, rtol=1e-9)
 
 

@@ -21,7 +21,7 @@ from mcgw.exports.table_text import UNITS, heading, in_units, table_text
 from mcgw.exports.writing import from_zero, surfaces_for
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "10 mm^2", "78.6 GPa")
-FILM = mcgw.Film(resistivity=1 / 150 + 1 / 16)
+FILM = mcgw.Joint(resistivity=1 / 150 + 1 / 16)
 METAL = mcgw.KogutEtsion(critical=0.05)
 ENDING = {"calculix": ".inp", "abaqus": ".inp", "moose": ".csv", "comsol": ".txt"}
 CCX = shutil.which("ccx")
@@ -33,8 +33,8 @@ def scene():
         SURFACE,
         separations=np.linspace(0, 3, 13),
         grading=mcgw.Exponential(1.5),
-        film=FILM,
-        quantities=["load", "stiffness", "conductance_si"],
+        joint=FILM,
+        contact=mcgw.Contact(quantities=["load", "stiffness", "conductance_si"]),
         n_surfaces=60,
         seed=4,
     )
@@ -192,7 +192,7 @@ def test_a_curve_is_written_as_the_program_reads_it(scene, program, table, units
     side = list(UNITS).index(units)
     assert told == "; ".join(TOLD[part][side] for part in (kind.quantity, kind.against))
     assert f"{table}, 05 % quantile over 60 surfaces of 3000 asperities, seed 4, at equal " in text
-    heat = heading(scene.replace(film=mcgw.Film(conductivities=(150.0, 16.0))), 60, kind, curve, system, "")
+    heat = heading(scene.replace(joint=mcgw.Joint(conductivities=(150.0, 16.0))), 60, kind, curve, system, "")
     assert kind.quantity != "conductance" or re.search(r" in m?W/\(m*\^2 K\)", heat[3])
 
 
@@ -262,7 +262,7 @@ def test_fewer_rows_are_evenly_of_the_separations(ensemble, tmp_path):
 
 
 def test_separations_are_as_many_as_rows(scene):
-    plain = {"quantities": ["load"], "film": None, "n_surfaces": 2}
+    plain = {"quantities": ["load"], "joint": None, "n_surfaces": 2}
     few = scene.replace(separations=[2.0, 0.0, 0.5], keep="statistics", **plain)
     by_gap = KINDS["pressure-gap"]
     drawn = surfaces_for(few, by_gap.needs, None, 5)
@@ -304,7 +304,9 @@ def test_comments_tell_where_it_comes_from(ensemble, tmp_path):
     assert "60 surfaces of 3000 asperities, seed 4" in text
     assert "to the mean plane of the summits" in text
     of_spectrum = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 mm^2", "78.6 GPa")
-    spectral = mcgw.Scene(of_spectrum, separations=[0, 1, 2], n_surfaces=3, n_asperities=1000, seed=1)
+    spectral = mcgw.Scene(
+        of_spectrum, separations=[0, 1, 2], n_surfaces=3, ensemble=mcgw.Sampling(n_asperities=1000), seed=1
+    )
     path, *_ = mcgw.export(spectral, tmp_path / "n.inp", to="calculix", points=5)
     rise = float(re.search(r"larger by (\S+) m", path.read_text())[1])
     alpha = 1e-12 * 5e6 / 1e-3**2
@@ -343,13 +345,13 @@ def test_wrong_arguments_get_one_line(scene, change, told, tmp_path):
 def test_what_has_no_table_is_told(scene, ensemble, tmp_path):
     mean, stiffness = ensemble.mean("pressure"), {"table": "stiffness-pressure", "points": 5}
     conductance = {"table": "conductance-pressure", "pressures": [1e6, 1e12]}
-    bare = scene.replace(film=None, quantities=["load"], n_surfaces=3)
+    bare = scene.replace(joint=None, quantities=["load"], n_surfaces=3)
     pulls = bare.replace(law=mcgw.DerjaguinMullerToporov(pull_off=0.3))
     fine = bare.replace(surface=mcgw.Surface("2 nm", "13 um", "300/mm^2", "10 mm^2", "78.6 GPa"))
     steps = {"to": "calculix", "points": 80}
     for what, given, told in (
         (pulls, {}, r"^contact\.law: surfaces attract each other .* negative pressures"),
-        (bare, conductance, r"^contact\.conductivities: missing for a table of conductance"),
+        (bare, conductance, r"^joint\.conductivities: missing for a table of conductance"),
         (
             mcgw.simulate(bare, quantities=["area"]),
             {},

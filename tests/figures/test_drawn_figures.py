@@ -260,8 +260,8 @@ def comparison():
         title="A title",
         separations=H,
         grading=analytic.Exponential(2.0),
-        quantities=QUANTITIES,
-        n_asperities=3000,
+        contact=mcgw.Contact(quantities=QUANTITIES),
+        ensemble=mcgw.Sampling(n_asperities=3000),
         n_surfaces=60,
         seed=4,
     )

@@ -21,6 +21,7 @@ from oracles.inside import (
     save_figure_files,
     short,
 )
+from oracles.scenes import scene_by
 from oracles.told import mark
 from scipy.integrate import quad
 from scipy.optimize import brentq
@@ -39,7 +40,9 @@ THEORY_ALONE = {"figure-1"}
 def figures():
     """All of the sweep; eta A_n is 5000, as pressures are per nominal area."""
     surface = replace(SURFACE, nominal_area=5000 / SURFACE.eta)
-    scene = mcgw.Scene(surface, separations=0.0, n_surfaces=400, n_asperities=5000, seed=11)
+    scene = mcgw.Scene(
+        surface, separations=0.0, n_surfaces=400, ensemble=mcgw.Sampling(n_asperities=5000), seed=11
+    )
     return dict(figures_of(Compared(scene, swept=True, most_listed=10)))
 
 
@@ -252,7 +255,7 @@ RATIOS = {"figure-3", "figure-6", "equal-load"}
 
 
 def scene_of(surface=SURFACE, **given):
-    return mcgw.Scene(
+    return scene_by(
         surface, **{"separations": H, "n_asperities": 20_000, "n_surfaces": 200, "seed": 3} | given
     )
 

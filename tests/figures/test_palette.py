@@ -92,7 +92,9 @@ def test_what_a_figure_shows_together_has_other_dashes_and_markers_too():
 
 def test_every_figure_has_one_colour_for_a_label():
     """Of lines, markers, residuals and legends, in all figures of the package."""
-    scene = mcgw.Scene(SURFACE, separations=0.0, n_surfaces=30, n_asperities=3000, seed=1)
+    scene = mcgw.Scene(
+        SURFACE, separations=0.0, n_surfaces=30, ensemble=mcgw.Sampling(n_asperities=3000), seed=1
+    )
     found = {}
     for _, data in figures_of(Compared(scene, swept=True, most_listed=20)):
         for legend in draw(data).subfigs[0].legends:

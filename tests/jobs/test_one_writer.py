@@ -8,7 +8,6 @@ import sys
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -72,14 +71,14 @@ def drawing(monkeypatch):
 
 def others(scene):
     """All that can be written to the same file meanwhile."""
-    blocks = replace(scene, n_surfaces=3 * SIZE)
+    blocks = scene.replace(n_surfaces=3 * SIZE)
     return {
         "the same run": lambda path: mcgw.run(scene, path),
-        "its own seed": lambda path: mcgw.run(replace(scene, seed=2), path),
+        "its own seed": lambda path: mcgw.run(scene.replace(seed=2), path),
         "in blocks": lambda path: mcgw.run(blocks, path),
         "a share": lambda path: mcgw.run(blocks, path, shard="1/2"),
         "merge": mcgw.merge,
-        "save": lambda path: mcgw.save(mcgw.simulate(replace(scene, seed=3)), path),
+        "save": lambda path: mcgw.save(mcgw.simulate(scene.replace(seed=3)), path),
     }
 
 
@@ -110,7 +109,7 @@ def test_a_run_that_waited_sees_what_the_other_wrote(scene, path, drawing, monke
     drawing.start(scene, path)
     with ThreadPoolExecutor(2) as pool:
         same = pool.submit(mcgw.run, scene, path)
-        other = pool.submit(mcgw.run, replace(scene, seed=2), path)
+        other = pool.submit(mcgw.run, scene.replace(seed=2), path)
         time.sleep(0.2)
         drawing.finish()
         assert same.result(30).n_surfaces == SIZE
@@ -132,7 +131,7 @@ def test_a_finished_file_needs_no_lock(scene, path):
 
 
 def test_jobs_share_and_others_wait(scene, path):
-    blocks = replace(scene, n_surfaces=3 * SIZE)
+    blocks = scene.replace(n_surfaces=3 * SIZE)
     with locked(parts_of(path), shared=True):
         mcgw.run(blocks, path, shard="1/2")
         for name in ("in blocks", "merge", "save", "the same run"):
@@ -144,20 +143,20 @@ def test_jobs_share_and_others_wait(scene, path):
 
 
 def test_an_unfinished_run_is_not_replaced(scene, path):
-    mcgw.run(replace(scene, n_surfaces=3 * SIZE), path, shard="1/2")
+    mcgw.run(scene.replace(n_surfaces=3 * SIZE), path, shard="1/2")
     with pytest.raises(StoreError, match="a run that makes this file is not finished"):
         mcgw.save(mcgw.simulate(scene), path)
     with pytest.raises(StoreError, match="holds surfaces up to number 48 already, more than"):
         mcgw.run(scene, path)
     with pytest.raises(StoreError, match="holds a different run"):
-        mcgw.run(replace(scene, seed=2, n_surfaces=3 * SIZE), path)
-    assert mcgw.run(replace(scene, n_surfaces=4 * SIZE), path).n_surfaces == 4 * SIZE
+        mcgw.run(scene.replace(seed=2, n_surfaces=3 * SIZE), path)
+    assert mcgw.run(scene.replace(n_surfaces=4 * SIZE), path).n_surfaces == 4 * SIZE
 
 
 def test_drawn_surfaces_are_kept_when_fewer_are_asked_for(scene, path):
     """An extension that stopped half-way is not thrown away by the run that it extends."""
     mcgw.run(scene, path)
-    mcgw.run(replace(scene, n_surfaces=4 * SIZE), path, shard="2/2")
+    mcgw.run(scene.replace(n_surfaces=4 * SIZE), path, shard="2/2")
     kept = sorted(p.name for p in parts_of(path).glob("shards/*.h5"))
     assert len(kept) == 2
     for _ in range(2):
@@ -176,7 +175,7 @@ def test_a_file_that_changes_while_it_is_extended_is_left_alone(scene, path, mon
 
     monkeypatch.setattr(place, "write", replaced)
     with pytest.raises(RunError, match="another file now has this name"):
-        mcgw.run(replace(scene, n_surfaces=3 * SIZE), path)
+        mcgw.run(scene.replace(n_surfaces=3 * SIZE), path)
     assert path.read_bytes() == b"precious"
     assert len(list(parts_of(path).glob("shards/*.h5"))) == 2
     assert not list(parts_of(path).glob(".*"))
@@ -214,7 +213,7 @@ def test_leftovers_of_a_finished_file_are_cleared(command, shards, scene, path, 
 
 def test_leftovers_of_a_run_of_one_block_do_not_stand_in_the_way_of_another(scene, path):
     leave_behind(path, scene, shards=False)
-    mcgw.run(replace(scene, seed=2), path)
+    mcgw.run(scene.replace(seed=2), path)
     assert [p.name for p in path.parent.iterdir()] == ["e.h5"]
 
 
@@ -222,7 +221,7 @@ def test_an_empty_run_of_another_scene_gives_way(scene, path):
     folder = parts_of(path)
     with locked(folder):
         Job.of(scene, path).record.begin()
-    mcgw.run(replace(scene, seed=2, n_surfaces=3 * SIZE), path, shard="1/2")
+    mcgw.run(scene.replace(seed=2, n_surfaces=3 * SIZE), path, shard="1/2")
     assert RunFolder.open(folder).scene.seed == 2
 
 

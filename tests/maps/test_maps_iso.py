@@ -192,9 +192,9 @@ def test_commands_that_lack_something(given, told, tmp_path, capsys):
 
 def same_in_four_digits(read, scene):
     """Whether a scene that was read has the surface of another to four digits, and the rest of it."""
-    assert astuple(read.surface) == pytest.approx(astuple(scene.surface), rel=5e-4)
+    assert astuple(read.surface)[:5] == pytest.approx(astuple(scene.surface)[:5], rel=5e-4)
     assert astuple(read.fitted)[:7] == pytest.approx(astuple(scene.fitted)[:7], rel=5e-4)
-    told = {name: getattr(scene, name) for name in ("surface", "fitted", "uncertainty")}
+    told = {name: getattr(scene, name) for name in ("surface", "fitted")}
     return read.replace(**told) == scene
 
 
@@ -227,7 +227,12 @@ def test_scenes_of_fits_are_read_by_people(tmp_path):
 def test_numbers_have_units_in_which_they_are_short(sigma, eta, area, told, tmp_path):
     """Four digits; what is natural in none of the units stays in SI, and defaults are left out."""
     surface = mcgw.Surface(sigma, 1e-5, eta, area, 1e11)
-    write_scene(mcgw.Scene(surface, separations=[0.0], n_asperities=9, seed=3), tmp_path / "f.toml", None, [])
+    write_scene(
+        mcgw.Scene(surface, separations=[0.0], ensemble=mcgw.Sampling(n_asperities=9), seed=3),
+        tmp_path / "f.toml",
+        None,
+        [],
+    )
     tables = tomllib.loads((tmp_path / "f.toml").read_text())
     lines = (tmp_path / "f.toml").read_text().splitlines()
     written = {f"{key} = {x}" for key, x in zip(("sigma", "eta", "nominal_area"), told, strict=True)}
@@ -244,7 +249,7 @@ def test_nayaks_surfaces_are_written_by_their_moments(tmp_path):
     surface = {"m0": "1 um^2", "m2": 0.001, "m4": "5/mm^2", "nominal_area": "1 mm^2", "E_star": "100 GPa"}
     assert tables["surface"] == surface
     assert not {"heights", "summits"} & set(tables)
-    for other in (scene.replace(curvature="mean"), scene.replace(curvature=type(scene.curvature)(5.0, 1e5))):
+    for other in (scene.replace(summits="mean"), scene.replace(summits=type(scene.curvature)(5.0, 1e5))):
         write_scene(other, tmp_path / "f.toml", None, [])
         assert tomllib.loads((tmp_path / "f.toml").read_text())["heights"] == {"law": "nayak", "alpha": 5.0}
         assert (mcgw.load_scene(tmp_path / "f.toml").curvature is None) == (other.curvature is None)

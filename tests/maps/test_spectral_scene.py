@@ -50,7 +50,8 @@ def test_a_scene_of_a_fit_takes_what_scenes_have(fit):
     """The same as afterwards; what is wrong is told as it is there."""
     plain = mcgw.fitted_scene(fit, heights="nayak", E_star="70 GPa")
     changes = {
-        "grading": mcgw.Exponential(2.0), "nominal_area": "4 mm^2", "n_surfaces": 7, "film": mcgw.Film(0.1),
+        "grading": mcgw.Exponential(2.0), "nominal_area": "4 mm^2", "n_surfaces": 7,
+        "joint": mcgw.Joint(resistivity=0.1),
     }  # fmt: skip
     made = mcgw.fitted_scene(fit, heights="nayak", E_star="70 GPa", **changes)
     assert made == plain.replace(**changes) != plain

@@ -66,7 +66,12 @@ def test_scenes_of_two_bodies_tell_hardness_and_conductivities_too():
     """By hand: the softer one, both conductivities and 2 k1 k2/(k1 + k2); sigma, R and eta need [fitted]."""
     surfaces = [mcgw.SpectralSurface(m0, 1e-3, 9e7, "1 mm^2", 2e11) for m0 in (1e-12, 2e-12)]
     bodies = [
-        mcgw.Scene(x, separations=[0.0], hardness=hardness, film=mcgw.Film(conductivities=(k, k)))
+        mcgw.Scene(
+            x,
+            separations=[0.0],
+            contact=mcgw.Contact(hardness=hardness),
+            joint=mcgw.Joint(conductivities=(k, k)),
+        )
         for x, hardness, k in zip(surfaces, (3e9, 2e9), (150.0, 16.0), strict=True)
     ]
     pair = mcgw.combine(*bodies)
@@ -77,7 +82,7 @@ def test_scenes_of_two_bodies_tell_hardness_and_conductivities_too():
     assert mcgw.combine(law, bodies[1]).hardness == 1e9
     assert mcgw.combine(bodies[0], surfaces[1]).conductivity is None
     with pytest.raises(mcgw.SceneError, match=r"conductivities = .*those of a pair"):
-        mcgw.combine(bodies[0].replace(film=mcgw.Film(conductivities=(150.0, 16.0))), bodies[1])
+        mcgw.combine(bodies[0].replace(conductivities=(150.0, 16.0)), bodies[1])
     with pytest.raises(mcgw.SceneError, match="combine: the scene has no spectrum"):
         mcgw.combine(mcgw.Scene(mcgw.Surface(1e-6, 1e-5, 1e9, 1e-6, 1e11), separations=[0.0]), bodies[1])
 
@@ -91,7 +96,9 @@ nominal_area = "1 mm^2"
 bodies = [{E = "182 GPa", nu = 0.3}, {E = inf}]
 [contact]
 separations = [0.0]
+[contact.law]
 hardness = "2 GPa"
+[joint]
 conductivities = [150, 150]
 """
 OTHER = ONE.replace("1 um", "2 um").replace("2 GPa", "3 GPa").replace("150", "16")
@@ -126,7 +133,7 @@ def test_a_scene_names_the_files_of_two_bodies(folder):
     assert (scene.hardness, scene.film.conductivities) == (pair.hardness, pair.conductivities)
     assert scene.heights.alpha == pytest.approx(3e-12 * 18e7 / 4e-6, rel=1e-12)
     assert mcgw.scene_from(mcgw.scene_text(scene)) == scene
-    own = {"contact.hardness": 1e9, "contact.resistivity": 1e-7}
+    own = {"contact.law.hardness": 1e9, "joint.resistivity": 1e-7}
     changed = load(folder, PAIR, changes=own)
     assert (changed.hardness, changed.film.conductivities) == (1e9, None)
     assert load(folder, PAIR, changes={"contact.law": "kogut-etsion"}).law.hardness == 2e9
@@ -167,7 +174,7 @@ def test_a_file_of_mcgw_fit_is_a_body(folder, maps):
         (("", ""), ("b.toml", "c.toml"), "c.toml: No such file"),
         (("", ""), ("b.toml", "pair.toml"), "pair.toml: names the files of two bodies itself"),
         (("inf", "9e9"), ("", ""), "two elastic bodies; a file describes one on a rigid plane, {E = inf}"),
-        (("150, 150", "150, 1"), ("", ""), "contact.conductivities = [150, 1]: those of a pair"),
+        (("150, 150", "150, 1"), ("", ""), "joint.conductivities = [150, 1]: those of a pair"),
         (("m2 = 1e-3", "m2 = -1"), ("", ""), "a.toml: surface.m2 = -1: give a finite number > 0"),
         (('m0 = "1 um^2"\nm2 = 1e-3\nm4', "sigma = 1e-6\nradius = 1e-5\neta"), ("", ""), "has no spectrum"),
         (("[contact]", "[contact"), ("", ""), "a.toml: "),

@@ -20,6 +20,7 @@ import analytic
 import mcgw
 from mcgw.sampling.cells import mesh_of
 from mcgw.sampling.crowding import crowding
+from oracles.scenes import scene_by
 
 X, W = (1 + leggauss(24)[0]) / 2, leggauss(24)[1] / 2
 AT_ONCE = 256  # points of the transform
@@ -105,7 +106,7 @@ def table():
     sys.stdout.write("| asperities | `accuracy` | a crowd | promised | measured |\n|---|---|---|---|---|\n")
     for n in (10**3, 10**4, 10**6, 10**8):
         for accuracy in (1e-3, 1e-4, 1e-5):
-            scene = mcgw.Scene(surface, n_asperities=n, accuracy=accuracy, **asked)
+            scene = scene_by(surface, n_asperities=n, accuracy=accuracy, **asked)
             found = crowding(scene, mesh_of(scene, split=False))
             seen = farthest(scene, found.threshold)
             sys.stdout.write(

@@ -7,7 +7,6 @@ Anderson and Darling says so. Each fault is put into the law of the same values.
 """
 
 import sys
-from dataclasses import replace
 
 import numpy as np
 from scipy import stats
@@ -16,6 +15,7 @@ import mcgw
 from analytic import Exponential, quantity_of
 from oracles.inside import promise_of
 from oracles.random_scenes import asked
+from oracles.scenes import scene_by
 
 SURFACES, NEAR, UNSURE = 400, 1e-6, 5e-3
 ROOTED = {"area": "conductance", "conductance": "area"}  # of Hertz's law: an approach, and its root
@@ -25,13 +25,13 @@ def stiffer(scene, name, h, law):
     """The grading factor is half a percent larger."""
     if not isinstance(scene.grading, Exponential):
         return None
-    return replace(scene, grading=Exponential(1.005 * scene.grading.gamma)).theory.distribution(name, h).cdf
+    return scene.replace(grading=Exponential(1.005 * scene.grading.gamma)).theory.distribution(name, h).cdf
 
 
 def miscounted(scene, name, h, law):
     """A fixed number of asperities for a Poisson one, or the other way round."""
     other = "fixed" if scene.count == "poisson" else "poisson"
-    return replace(scene, count=other).theory.distribution(name, h).cdf
+    return scene.replace(count=other).theory.distribution(name, h).cdf
 
 
 def rootless(scene, name, h, law):
@@ -57,7 +57,7 @@ def p_values(seed, faults, surfaces=SURFACES, **more):
     if isinstance(values["heights"], mcgw.MeasuredHeights):
         return "measured"
     try:
-        scene = mcgw.Scene(**values)
+        scene = scene_by(**values)
     except mcgw.SceneError:
         return "refused"
     names = list(scene.quantities)

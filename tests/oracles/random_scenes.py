@@ -8,7 +8,6 @@ scenes. Another is refused when it is made, by a line with its key and a remedy.
 
 import time
 import traceback
-from dataclasses import replace
 
 import numpy as np
 import scipy.stats
@@ -17,6 +16,7 @@ import mcgw
 from analytic import RandomCurvature, laws, quantity_of
 from oracles.accurately import term
 from oracles.inside import promise_of
+from oracles.scenes import scene_by
 
 SECONDS, SURFACES, FAR = 10.0, 3, 7.0
 ROUNDING, BENT, NEAR_BY = 3e-13, 1e-11, 0.8  # of sums; under steep gradings and layered laws; width of a cell
@@ -104,13 +104,13 @@ def asked(seed):
         "count": str(dice.choice(["fixed", "poisson"])),
     }  # fmt: skip
     if isinstance(values["heights"], mcgw.Nayak) and dice.random() < 0.5:
-        values["curvature"] = RandomCurvature(values["heights"].alpha)
+        values["summits"] = RandomCurvature(values["heights"].alpha)
     if isinstance(values["heights"], mcgw.MeasuredHeights):
         values |= {"n_asperities": 400, "n_surfaces": 1, "count": "fixed"}
     if dice.random() < 0.3:
         values["unload_from"] = "loop" if dice.random() < 0.6 else float(h[0] - dice.exponential(2))
     if dice.random() < 0.1:
-        values["film"] = mcgw.Film(resistivity=1e-7, film_resistance=float(10 ** dice.uniform(-14, -10)))
+        values["joint"] = mcgw.Joint(resistivity=1e-7, film_resistance=float(10 ** dice.uniform(-14, -10)))
         names.append("conductance_si")
     if dice.random() < 0.15:
         bulk = SURFACE.E_star * float(10 ** dice.uniform(1, 4))
@@ -127,7 +127,7 @@ def judged(seed):
     """Of a scene: whether ``accepted``, ``seconds``, ``worst`` error over the allowed, ``wrong``."""
     start, told = time.process_time(), {"seed": seed, "accepted": False, "worst": 0.0, "wrong": ""}
     try:
-        scene = mcgw.Scene(**asked(seed))
+        scene = scene_by(**asked(seed))
     except mcgw.SceneError as error:
         unsaid = [line for line in error.problems if ":" not in line or ";" not in line]
         return told | {
@@ -155,7 +155,7 @@ def with_sums(ensemble):
     """The same surfaces with the values of each."""
     if ensemble.scene.keep != "statistics":
         return ensemble
-    return mcgw.simulate(replace(ensemble.scene, keep="sums", sampler=ensemble.sampler))
+    return mcgw.simulate(ensemble.scene.replace(keep="sums", sampler=ensemble.sampler))
 
 
 def other_means(ensemble, listed):
@@ -170,7 +170,7 @@ def other_means(ensemble, listed):
 def worst_share(ensemble):
     """Largest error of a value over what is allowed of the literal sum, and of which quantity and where."""
     scene, worst, place = ensemble.scene, 0.0, ""
-    pull = abs(float(scene.contact.load(0, 0.0, np.array(1.0))))
+    pull = abs(float(scene.reduced_law.load(0, 0.0, np.array(1.0))))
     plain = scene.hertzian and getattr(scene.grading, "smooth", False)
     allowed = ROUNDING if plain else BENT
     names = [n for n in scene.quantities if scene.interaction is None or n in ("load", "area", "contacts")]

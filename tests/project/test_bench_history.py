@@ -3,7 +3,6 @@
 import importlib
 import re
 import sys
-from dataclasses import replace
 from datetime import date
 from pathlib import Path
 
@@ -144,10 +143,10 @@ def test_the_script_answers_the_same_question(benches):
 
 def test_a_fresh_scene_differs_from_all_before(benches):
     """By its seed and all separations but 0, and in nothing else; and it is drawn."""
-    fresh, tiny = benches["scenes"].fresh, replace(benches["setup"].ONE, n_asperities=100)
+    fresh, tiny = benches["scenes"].fresh, benches["setup"].ONE.replace(n_asperities=100)
     one, two = fresh(tiny), fresh(tiny)
     assert one.seed != two.seed
     assert not set(one.separations[1:]) & set(two.separations[1:])
     np.testing.assert_allclose(one.separations, two.separations, rtol=1e-4)
-    assert replace(two, separations=one.separations, seed=one.seed) == one
+    assert two.replace(separations=one.separations, seed=one.seed) == one
     assert benches["setup"].one_surface(tiny)() > 0

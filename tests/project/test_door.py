@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import scipy.stats
+from oracles.scenes import scene_by
 
 import analytic
 import mcgw
@@ -156,7 +157,7 @@ def problems(call):
 
 
 def scene(**changes):
-    return mcgw.Scene(**({"surface": SURFACE, "separations": [0.0, 1.0], "seed": 1} | changes))
+    return scene_by(**({"surface": SURFACE, "separations": [0.0, 1.0], "seed": 1} | changes))
 
 
 def scalar_only(s):
@@ -165,7 +166,7 @@ def scalar_only(s):
 
 ONLY_PYTHON = [
     ({"surface": 3}, r"^surface = 3: give mcgw\.Surface\("),
-    ({"curvature": 3.0}, r'^summits\.curvature = 3\.0: give "random", "mean", or mcgw\.MeasuredRadii'),
+    ({"summits": 3.0}, r'^summits = 3\.0: give "random", "mean", or mcgw\.MeasuredRadii'),
     ({"law": mcgw.KogutEtsion(hardness=1e300)},
      r'^contact\.law = "kogut-etsion": critical = inf: give a finite number > 0$'),
     ({"law": mcgw.JacksonGreen(yield_strength=1e200)},

@@ -65,8 +65,7 @@ tell("run")
 surface = mcgw.Surface(1e-6, 1e-5, 3e8, 1e-4, 8e10)
 
 def simulate(**wish):
-    given = {"separations": [0.0, 1.0], "n_surfaces": 2, "seed": 1, **wish}
-    return mcgw.simulate(mcgw.Scene(surface, **given))
+    return mcgw.simulate(mcgw.Scene(surface, separations=[0.0, 1.0], n_surfaces=2, seed=1), **wish)
 
 for sampler in ("cells", "tail", "direct", "aggregate"):
     simulate(sampler=sampler, n_asperities=10**5)

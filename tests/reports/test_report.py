@@ -52,8 +52,8 @@ def scene():
         separations=H,
         grading=analytic.Exponential(2.0),
         heights=analytic.ExponentialHeights(),
-        quantities=tuple(HEADINGS),
-        n_asperities=3000,
+        contact=mcgw.Contact(quantities=tuple(HEADINGS)),
+        ensemble=mcgw.Sampling(n_asperities=3000),
         n_surfaces=150,
         seed=2,
     )
@@ -207,7 +207,11 @@ def test_a_run_that_goes_on_has_a_report(small, tmp_path):
 # --- contact laws ---------------------------------------------------------------------------------------
 
 
-METAL = {"law": mcgw.KogutEtsion(critical=0.05), "unload_from": "loop", "film": mcgw.Film(1e-7, 1e-14)}
+METAL = {
+    "law": mcgw.KogutEtsion(critical=0.05),
+    "unload_from": "loop",
+    "joint": mcgw.Joint(resistivity=1e-7, film_resistance=1e-14),
+}
 
 
 def test_the_contact_law_and_its_rivals_are_in_the_report(make_scene, page):

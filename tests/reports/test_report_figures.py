@@ -32,7 +32,7 @@ def scene():
         separations=[0.0, 0.5, 1.0, 1.5, 2.0],
         n_surfaces=12,
         seed=1,
-        film=mcgw.Film(resistivity=0.07),
+        joint=mcgw.Joint(resistivity=0.07),
     )
 
 
@@ -41,10 +41,16 @@ def test_spread_is_std_over_mean():
     h, names = (1.0, 0.0, 2.0), ("load", "area", "stiffness", "contacts", "conductance")
     ensemble = mcgw.simulate(
         mcgw.Scene(
-            COARSE, separations=h, grading=analytic.Exponential(2.0), heights=analytic.ExponentialHeights(),
-            quantities=names, n_asperities=3000, n_surfaces=60, seed=4,
+            COARSE,
+            separations=h,
+            grading=analytic.Exponential(2.0),
+            heights=analytic.ExponentialHeights(),
+            contact=mcgw.Contact(quantities=names),
+            ensemble=mcgw.Sampling(n_asperities=3000),
+            n_surfaces=60,
+            seed=4,
         )
-    )  # fmt: skip
+    )
     data = _spread(compare(ensemble))
     (panel,) = data.panels
     assert (panel.xlabel, panel.ylabel, panel.scales) == (
@@ -131,7 +137,7 @@ def test_pressures_of_a_page_are_round(low, high, found):
     [
         {"separations": 1.0},
         {"separations": [8.0, 9.0]},
-        {"quantities": ["contacts"], "film": None},
+        {"quantities": ["contacts"], "joint": None},
         {"n_surfaces": 1},
     ],
 )
@@ -145,7 +151,7 @@ KINDS = [
     pytest.param({"law": mcgw.DerjaguinMullerToporov(pull_off=0.3)}, marks=pytest.mark.slow),
     pytest.param({"interaction": {"reference": "mean-plane"}}, marks=pytest.mark.slow),
     {"count": "poisson", "grading": mcgw.Exponential(0.5)},
-    {"film": mcgw.Film(conductivities=(200.0, 16.0)), "joint": mcgw.Joint("air", rms=2e-6)},
+    {"joint": mcgw.Joint((200.0, 16.0), gas="air", rms=2e-6)},
 ]
 
 

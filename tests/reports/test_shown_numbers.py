@@ -173,7 +173,7 @@ def test_compare_ends_with_1_and_says_so_where_they_disagree(file, tmp_path, cap
 )  # fmt: skip
 def test_solve(scene, words, given, title, tmp_path, capsys):
     """An infinite surface by quadrature at its separation; `test_solution.py` has specimens, literally."""
-    few = dataclasses.replace(scene, n_surfaces=25, keep="sums", sampler="tail")
+    few = scene.replace(n_surfaces=25, keep="sums", sampler="tail")
     (tmp_path / "s.toml").write_text(mcgw.scene_text(few))
     out = out_of(["solve", tmp_path / "s.toml", *words, "-v", "--csv", tmp_path / "s.csv"], capsys)
     lines = out.splitlines()
@@ -205,7 +205,7 @@ def test_tradeoff(scene, tmp_path, capsys, monkeypatch):
     """Files hold what was measured and what is advised, in full; the terminal says the same in short."""
     from oracles.study_by_hand import made_up
 
-    small = dataclasses.replace(scene, keep="sums", quantities=("load",), separations=(2.0,))
+    small = scene.replace(keep="sums", quantities=("load",), separations=(2.0,))
     study = made_up(small)
     (tmp_path / "s.toml").write_text(mcgw.scene_text(small))
     monkeypatch.setattr("mcgw.statistics.tradeoff.tradeoff", lambda scene, *, seconds, progress: study)
@@ -224,7 +224,7 @@ def test_tradeoff(scene, tmp_path, capsys, monkeypatch):
 
 
 def test_run_says_how_many_and_what_is_not_known(scene, tmp_path, capsys):
-    asked = dataclasses.replace(scene, keep="sums", rel_err=1e-3, n_surfaces=70, separations=(0.0, 9.0))
+    asked = scene.replace(keep="sums", rel_err=1e-3, n_surfaces=70, separations=(0.0, 9.0))
     (tmp_path / "s.toml").write_text(mcgw.scene_text(asked))
     out = out_of(["run", tmp_path / "s.toml", "-o", tmp_path / "e.h5"], capsys)
     ensemble = mcgw.open_ensemble(tmp_path / "e.h5")

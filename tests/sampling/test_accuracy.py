@@ -20,7 +20,7 @@ H = tuple(np.linspace(0, 4, 21))
 CLOSE = (1.0, 1.0 + 1e-9, 1.0 + 1e-6, 1.5)
 BASIC = ("load", "area", "stiffness", "contacts", "conductance")
 KOGUT = laws.KogutEtsion(critical=0.05)
-FILM = mcgw.Film(resistivity=1e-7, film_resistance=1e-12)
+FILM = mcgw.Joint(resistivity=1e-7, film_resistance=1e-12)
 BENT = 1e-11  # where the modulus, the law or the radii bend
 SURFACES, FEW = 50, 10
 
@@ -79,7 +79,7 @@ OTHERS = {
         unload_from="loop",
         quantities=("load", "area", "contacts", "conductance"),
     ),
-    "film": {"film": FILM, "quantities": ("conductance_si", "load"), "law": KOGUT},
+    "film": {"joint": FILM, "quantities": ("conductance_si", "load"), "law": KOGUT},
 }
 SCENES = HERTZ | OTHERS
 
@@ -123,7 +123,7 @@ def test_compare_agrees_and_sees_another_gamma(make_scene):
     scene = make_scene(n_surfaces=1000, **WISH)
     ensemble = mcgw.simulate(scene)
     assert mcgw.compare(ensemble).verdict.agrees
-    wrong = replace(scene, grading=analytic.Exponential(2.02))
+    wrong = scene.replace(grading=analytic.Exponential(2.02))
     assert not mcgw.compare(replace(ensemble, scene=wrong)).verdict.agrees
 
 

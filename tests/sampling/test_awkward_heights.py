@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import scipy.stats
 from oracles.laws_of_one_depth import kogut_etsion
+from oracles.scenes import scene_by
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
@@ -28,7 +29,13 @@ NOISY = (
 def test_means_and_surfaces_are_literal(law):
     """Theory against quadrature over the law itself, each surface against plain sums over its heights."""
     scene = mcgw.Scene(
-        SURFACE, separations=H, heights=law, n_asperities=3000, n_surfaces=3, seed=1, quantities=["load"]
+        SURFACE,
+        separations=H,
+        heights=law,
+        ensemble=mcgw.Sampling(n_asperities=3000),
+        n_surfaces=3,
+        seed=1,
+        contact=mcgw.Contact(quantities=["load"]),
     )
     ensemble = mcgw.simulate(scene)
     heights = [mcgw.heights(scene, i) for i in range(3)]
@@ -93,7 +100,14 @@ def test_laws_that_begin_flat_are_made_and_right_below_their_support(shape):
     law = scipy.stats.invgauss(shape)
     mean, std = law.mean(), law.std()
     h = -mean / std - 0.22
-    scene = mcgw.Scene(SURFACE, separations=[h], heights=law, grading=stiffer, n_asperities=300, seed=1)
+    scene = mcgw.Scene(
+        SURFACE,
+        separations=[h],
+        heights=law,
+        grading=stiffer,
+        ensemble=mcgw.Sampling(n_asperities=300),
+        seed=1,
+    )
 
     def under(x):
         s = (x - mean) / std
@@ -140,7 +154,9 @@ def counting(function, calls):
 def test_tails_that_scipy_loses_altogether_are_those_of_the_density(shape, h, digits):
     """Rice: sf is 1 - cdf and isf infinite below 1e-16, but the density is good. Against mpmath."""
     law = scipy.stats.rice(shape)
-    theory = mcgw.Scene(SURFACE, separations=0.0, heights=law, n_asperities=3000, seed=1).theory
+    theory = mcgw.Scene(
+        SURFACE, separations=0.0, heights=law, ensemble=mcgw.Sampling(n_asperities=3000), seed=1
+    ).theory
 
     def mean(h):
         with mpmath.workdps(25):
@@ -167,9 +183,15 @@ def test_theory_takes_little_memory_and_is_right(freedom, unload_from):
     heights, critical = scipy.stats.t(freedom), 0.1
     law = mcgw.KogutEtsion(critical=critical)
     scene = mcgw.Scene(
-        SURFACE, separations=[0.0, 1.0], grading=stiffer, heights=heights, law=law, unload_from=unload_from,
-        n_asperities=1000, seed=1, quantities=["area"],
-    )  # fmt: skip
+        SURFACE,
+        separations=[0.0, 1.0],
+        grading=stiffer,
+        heights=heights,
+        law=law,
+        contact=mcgw.Contact(unload_from=unload_from, quantities=["area"]),
+        ensemble=mcgw.Sampling(n_asperities=1000),
+        seed=1,
+    )
     tracemalloc.start()
     found = scene.theory.mean("area", 1.0)
     peak = tracemalloc.get_traced_memory()[1]
@@ -201,7 +223,7 @@ def stiffening(s):
 def test_a_function_is_resolved_down_to_where_the_way_back_begins():
     """On the surface's own heights: elastic spots lose nothing on the way back."""
     law = mcgw.KogutEtsion(critical=1e3)
-    scene = mcgw.Scene(SURFACE, separations=[0.5, 2.0], grading=stiffening, law=law, unload_from=-1.0, **FEW)
+    scene = scene_by(SURFACE, separations=[0.5, 2.0], grading=stiffening, law=law, unload_from=-1.0, **FEW)
     ensemble = mcgw.simulate(scene)
     np.testing.assert_allclose(ensemble["load_unloading"], ensemble.load, rtol=1e-12)
     assert mcgw.scene_from(mcgw.scene_text(ensemble.scene)) == ensemble.scene
@@ -232,7 +254,13 @@ def test_contacts_on_the_way_back_where_a_soft_layer_keeps_them():
     ends = [law.mean() + law.std() * brentq(excess, *x) for x in ((0.8, 1.3), (1.6, 2.3), (8, 11))]
     expected = law.cdf(ends[1]) - law.cdf(ends[0]) + law.sf(ends[2])
     scene = mcgw.Scene(
-        SURFACE, separations=[h], grading=modulus, heights=law, law=mcgw.KogutEtsion(critical=critical),
-        unload_from=deepest, n_asperities=30, quantities=["contacts"], seed=1,
-    )  # fmt: skip
+        SURFACE,
+        separations=[h],
+        grading=modulus,
+        heights=law,
+        law=mcgw.KogutEtsion(critical=critical),
+        contact=mcgw.Contact(unload_from=deepest, quantities=["contacts"]),
+        ensemble=mcgw.Sampling(n_asperities=30),
+        seed=1,
+    )
     assert scene.theory.mean("contacts_unloading", h) == pytest.approx(30 * expected, rel=1e-9)

@@ -1,12 +1,12 @@
 """`cells` under every contact law against exactly rounded sums of each asperity's own formula."""
 
 import re
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from conftest import SURFACE
 from oracles.accurately import exact_sums, worst_error
+from oracles.scenes import scene_by
 from test_cells_against_direct_sums import CLOSE_KINKS
 
 import analytic
@@ -71,7 +71,7 @@ def scene_of(law, grading, separations, **changes):
     if "unload_from" in changes and not law.on(SURFACE).unloading().stiff:
         names = ("load", "area", "contacts", "conductance")
     values = {"quantities": names, "n_asperities": 5000, "n_surfaces": 1, "seed": 11, "negative": "clip"}
-    return mcgw.Scene(SURFACE, law=law, grading=grading, separations=separations, **(values | changes))
+    return scene_by(SURFACE, law=law, grading=grading, separations=separations, **(values | changes))
 
 
 def worst(scene):
@@ -120,7 +120,7 @@ def test_a_break_that_is_no_edge_is_refused(monkeypatch, number):
 def test_all_exact_samplers_sum_the_same_formulas(sampler):
     """Asperities drawn by themselves, outside the cells or in `tail`, follow the law too."""
     scene = scene_of(LAWS["kogut"], analytic.Exponential(2.0), (2.0, 2.5, 3.0, 4.5), n_asperities=20_000)
-    scene = replace(scene, sampler=sampler, n_surfaces=15)
+    scene = scene.replace(sampler=sampler, n_surfaces=15)
     heights = [mcgw.heights(scene, i) for i in range(15)]
     drawn = mcgw.simulate(scene)
     for name in scene.quantities:
@@ -148,7 +148,7 @@ def test_hertz_by_another_name_is_hertz():
 def test_contacts_are_counted_where_nothing_else_is_asked(name, way):
     """Under laws that yield or stick, of the very surfaces whose heights are told."""
     given = {"law": LAWS[name], "quantities": ["contacts"], "n_surfaces": 2, "n_asperities": 3000, "seed": 5}
-    scene = mcgw.Scene(SURFACE, separations=[0.0, 1.0], sampler="cells", **given, **way)
+    scene = scene_by(SURFACE, separations=[0.0, 1.0], sampler="cells", **given, **way)
     counted = [[np.sum(mcgw.heights(scene, i) > h) for h in scene.separations] for i in range(2)]
     assert np.array_equal(mcgw.simulate(scene).contacts, counted)
 

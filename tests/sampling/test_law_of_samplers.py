@@ -33,11 +33,9 @@ def ensembles():
                 surface=SURFACE,
                 separations=(0.0, 0.5, 1.0, 2.0),
                 grading=analytic.Exponential(1.5),
-                quantities=("load", "area", "stiffness", "contacts", "conductance"),
-                n_asperities=600,
+                contact=mcgw.Contact(quantities=("load", "area", "stiffness", "contacts", "conductance")),
+                ensemble=mcgw.Sampling(n_asperities=600, count=count, sampler=sampler),
                 n_surfaces=M,
-                count=count,
-                sampler=sampler,
                 seed=17 + k,
             )
             made[sampler, count] = mcgw.simulate(scene)
@@ -78,7 +76,7 @@ def test_a_grading_off_by_2_percent_fails(ensembles):
 
 def test_a_poisson_number_for_a_fixed_one_fails(ensembles):
     ensemble = ensembles["cells", "poisson"]
-    scene = dataclasses.replace(ensemble.scene, count="fixed")
+    scene = ensemble.scene.replace(count="fixed")
     assert scores(dataclasses.replace(ensemble, scene=scene))[1] > GATE
 
 

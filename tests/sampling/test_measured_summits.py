@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from oracles.law_means import own_terms
+from oracles.scenes import scene_by
 from oracles.summits_by_hand import summit_contact
 from scipy.optimize import brentq
 from test_random_radii import LAWS as OTHERS
@@ -38,8 +39,8 @@ def scene(*, resampled=False, radii=RADII, **changes):
     surface = mcgw.Surface(Z.std(), 1 / np.mean(1 / radii), K / 1e-6, 1e-6, MODULUS)
     heights = mcgw.MeasuredHeights(Z, resampled=resampled)
     values = {"separations": SEPARATIONS, "quantities": QUANTITIES, "seed": 1, "n_surfaces": 1}
-    return mcgw.Scene(
-        surface, curvature=mcgw.MeasuredRadii(heights, radii / surface.radius), **(values | changes)
+    return scene_by(
+        surface, summits=mcgw.MeasuredRadii(heights, radii / surface.radius), **(values | changes)
     )
 
 
@@ -219,7 +220,7 @@ def test_of_a_list_there_is_nothing_to_trade_off():
 @pytest.mark.parametrize("own", [True, False])
 def test_a_load_on_the_very_summits(own):
     """Against a root of plain sums over the list; specimens are lists resampled from it, and scatter so."""
-    x = scene() if own else scene().replace(curvature="mean")
+    x = scene() if own else scene().replace(summits="mean")
     s, r = np.array(x.heights.heights), np.array(x.curvature.ratios if own else np.ones(len(Z)))
     unit = 4 / 3 * x.surface.E_star * x.surface.radius**0.5 * x.surface.sigma**1.5
 
@@ -258,7 +259,7 @@ def test_radii_of_other_heights_are_refused():
     with pytest.raises(ValueError, match="their own heights"):
         analytic.Model(scene().surface, curvature=radii)
     with pytest.raises(mcgw.SceneError, match="HeightTable"):
-        scene().replace(heights=mcgw.MeasuredHeights(Z, resampled=True), curvature=None)
+        scene().replace(heights=mcgw.MeasuredHeights(Z, resampled=True), summits=None)
     for ratios, says in (([1.0], "1 for 200"), (np.where(Z > 0, 1.0, np.nan), "is nan")):
         with pytest.raises(ValueError, match=says):
             mcgw.MeasuredRadii(mcgw.MeasuredHeights(Z), ratios)
@@ -278,7 +279,7 @@ def test_a_film_on_summits_of_their_own_radii_that_yield():
     heights, ratios = np.array([-1.7, -0.3, 0.7, 1.3]), np.array([0.5, 2.0, 0.8, 1.5])
     heights /= heights.std()  # their mean is 0 as it is
     surface = mcgw.Surface("1 um", "10 um", 4e6, 1e-6, MODULUS)
-    film, critical = mcgw.Film(resistivity=1e-7, film_resistance=1e-13), 0.4
+    film, critical = analytic.Film(resistivity=1e-7, film_resistance=1e-13), 0.4
     model = analytic.Model(
         surface, heights=mcgw.MeasuredHeights(heights), law=mcgw.KogutEtsion(critical=critical), film=film,
         curvature=mcgw.MeasuredRadii(mcgw.MeasuredHeights(heights), ratios),

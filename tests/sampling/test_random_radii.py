@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from oracles.accurately import worst_error
 from oracles.law_means import own_terms
+from oracles.scenes import scene_by
 from scipy import stats
 
 import analytic
@@ -26,7 +27,7 @@ def spectral(alpha=5.0, **changes):
         "separations": np.linspace(0, 4, 9), "n_asperities": 20_000, "n_surfaces": 20, "seed": 1,
         "quantities": QUANTITIES,
     }  # fmt: skip
-    return mcgw.Scene(surface, **(values | changes))
+    return scene_by(surface, **(values | changes))
 
 
 @pytest.mark.parametrize(
@@ -47,7 +48,7 @@ def test_sums_are_those_of_the_very_summits(sampler, alpha):
     {"seed": 2**64 - 1},
     {"separations": np.linspace(0, 4, 41)},
     {"separations": (1.0, 1.0 + 1e-9, 1.5)},
-    {"curvature": analytic.RandomCurvature(5.0, 2.0)},
+    {"summits": analytic.RandomCurvature(5.0, 2.0)},
     {"quantities": ("contacts",)},
     {"quantities": ("contacts", "area", "load")},
 ], ids=lambda changes: ", ".join(changes))  # fmt: skip
@@ -143,7 +144,7 @@ def test_all_summits_of_a_surface():
 
 HEAD = '[surface]\nnominal_area = "1 mm^2"\nE_star = "78.6 GPa"\n'
 SPECTRUM, PLAIN = "m0 = 1e-12\nm2 = 1e-3\nm4 = 5e6\n", "sigma = 1e-6\nradius = 1e-5\neta = 1e9\n"
-METAL = "law = 'kogut-etsion'\nhardness = 1e9\n[ensemble]\nsampler = 'cells'\n"
+METAL = "law.name = 'kogut-etsion'\nlaw.hardness = 1e9\n[ensemble]\nsampler = 'cells'\n"
 
 
 @pytest.mark.parametrize(

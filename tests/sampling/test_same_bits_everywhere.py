@@ -52,7 +52,7 @@ SCENES = {name: {"sampler": name} for name in SAMPLERS[1:]} | {
     "radii": {
         "surface": SPECTRAL.surface,
         "heights": analytic.Nayak(5.0),
-        "curvature": mcgw.RandomCurvature(5.0),
+        "summits": mcgw.RandomCurvature(5.0),
     },
     "yields, and back": {"law": mcgw.KogutEtsion(critical=0.05), "unload_from": "loop"},
     "pressed": {"interaction": "mean-plane"},

@@ -14,7 +14,7 @@ from mcgw.sampling.response.product import FOUR, Lines, Tiles
 from mcgw.sampling.response.rows import hertz_rows
 from mcgw.sampling.response.tree import Nodes, tree_over
 from mcgw.sampling.response.walk import walk
-from mcgw.scene.values import EXACT
+from mcgw.scene.promises import EXACT
 
 
 def random_blocks(rng, given, computed):
@@ -98,9 +98,14 @@ QUANTITIES = ("load", "area", "stiffness", "conductance")
 def asked(grading, number):
     h = tuple(np.linspace(0, 4, number))
     scene = mcgw.Scene(
-        SURFACE, separations=h, grading=grading, quantities=QUANTITIES, n_asperities=10**5, n_surfaces=1,
+        SURFACE,
+        separations=h,
+        grading=grading,
+        contact=mcgw.Contact(quantities=QUANTITIES),
+        ensemble=mcgw.Sampling(n_asperities=10**5),
+        n_surfaces=1,
         seed=1,
-    )  # fmt: skip
+    )
     mesh = mesh_of(scene)
     tree = tree_over(mesh)
     return (

@@ -8,6 +8,7 @@ import pytest
 from conftest import SURFACE
 from oracles import exact
 from oracles.inside import before, cautions
+from oracles.scenes import scene_by
 
 import analytic
 import mcgw
@@ -83,8 +84,8 @@ def conducting(gain):
 
 def filmed(f):
     """A fifth of the radius sqrt(R sigma) of spots, of bodies that conduct 2 k1 k2/(k1 + k2) = 50."""
-    film = mcgw.Film(conductivities=(30.0, 150.0), film_resistance=f * (SHALLOW.radius * 1e-6) ** 0.5 / 250)
-    return falling(2.0, film=film)
+    film = mcgw.Joint(conductivities=(30.0, 150.0), film_resistance=f * (SHALLOW.radius * 1e-6) ** 0.5 / 250)
+    return falling(2.0, joint=film)
 
 
 def kogut(critical, **changes):
@@ -102,17 +103,17 @@ LIMITS = {
     "fewer than 30 contacts": lambda f: falling(np.log(3000 / 30 * f) - 1),
     "not eta * nominal_area": lambda f: falling(n_asperities=round(3e4 * (1 + 0.01 * f))),
     "Cooper, Mikic and Yovanovich": lambda f: conducting(1 + 0.05 * f),
-    "contact.film_resistance": filmed,
+    "joint.film_resistance": filmed,
     "have yielded": lambda f: kogut(-np.log(1e-3 * f)),
     # of 10 000 equally likely heights more than ten
     "than 110 critical": lambda f: kogut(-np.log(1e-3 * (1 + f) / 2 * 1.05) / 110),
     "than 170 critical": lambda f: kogut(-np.log(1e-3 * (1 + f) / 2 * 1.05) / 170, unload_from="loop"),
-    "contact.yield_strength": lambda f: falling(law=steel(1e-2 * f)),
+    "contact.law.yield_strength": lambda f: falling(law=steel(1e-2 * f)),
     "yield_strength over": lambda f: falling(law=steel(1e-3 / f)),
     "reach 0.4 of the summit": lambda f: falling(
         surface=blunt(0.4 * f, np.log(1000)), law=mcgw.JacksonGreen(yield_strain=1e-2, critical=100.0)
     ),
-    "contact.ratio": lambda f: falling(law=mcgw.Coated(ratio=3 * f, thickness=1e-6)),
+    "contact.law.ratio": lambda f: falling(law=mcgw.Coated(ratio=3 * f, thickness=1e-6)),
     "first-order coating": lambda f: falling(law=mcgw.Coated(ratio=1 / 3 / f, thickness=1e-6)),
     "Tabor number above 5": lambda f: falling(law=mcgw.JohnsonKendallRoberts(work=work_of(5 / f))),
     "Tabor number above": lambda f: falling(law=mcgw.JohnsonKendallRoberts(pull_off=stretch(5 / f))),
@@ -174,7 +175,7 @@ def test_a_crowd_that_was_not_measured_up_to_the_last_separation(make_scene, cha
     surface = dataclasses.replace(SHALLOW, eta=1e8, radius=5e-4)
     h = (0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0)
     scene = make_scene(surface=surface, separations=h, n_asperities=10_000, **changes)
-    plain = dataclasses.replace(scene, law=analytic.Hertz())
+    plain = scene.replace(law=analytic.Hertz())
     share = exact.mean(plain, "area") / surface.nominal_area
     assert share[0] > 0.05 > share[-1]
     (line,) = about(cautions(scene), "nominal area is in contact")
@@ -182,7 +183,7 @@ def test_a_crowd_that_was_not_measured_up_to_the_last_separation(make_scene, cha
     assert "load too large if d is that of a rigid punch, too small if it is the mean gap" in line
     pressed = about(cautions(scene.replace(interaction="body")), "nominal area is in contact")
     assert "punch" not in pressed[0]
-    sparse = dataclasses.replace(scene, n_asperities=500, n_surfaces=2)
+    sparse = scene.replace(n_asperities=500, n_surfaces=2)
     assert not about(cautions(sparse), "nominal area is in contact")
 
 
@@ -193,7 +194,7 @@ def test_few_contacts_from_the_first_separation_where_they_are(make_scene, heigh
     expected = 1000 * exact.share_above(scene, np.array(h))
     (line,) = about(cautions(scene), "fewer than 30 contacts")
     assert f"from d/sigma = {min(x for x, n in zip(h, expected, strict=True) if n < 30):.3g} " in line
-    many = dataclasses.replace(scene, separations=(0.0, 0.5))
+    many = scene.replace(separations=(0.0, 0.5))
     assert not about(cautions(many), "fewer than 30")
 
 
@@ -210,13 +211,13 @@ def test_what_a_rule_will_not_reach_is_said_before(make_scene):
     n = found.surfaces
     assert line.startswith(f"about {n:.2g} surfaces, {n * 0.25:.2g} s; 1 means need more")
     assert line.endswith(f"load at d/sigma = 3 needs {needed[1]:.2g}")
-    easy = dataclasses.replace(scene, n_surfaces=10**9)
+    easy = scene.replace(n_surfaces=10**9)
     assert ";" not in before(forecast(easy), 0.25)
 
 
 def of_alpha(alpha, **changes):
     surface = analytic.SpectralMoments(1e-12, 1e-3, 1e6 * alpha).surface(1e-2, 1e9)  # blunt, and many summits
-    return mcgw.Scene(surface, seed=1, **changes)
+    return scene_by(surface, seed=1, **changes)
 
 
 SIZE = re.compile(r"(area|stiffness|load) (?:±|up to) (\d+) %")
@@ -240,7 +241,7 @@ def test_no_error_above_ten_percent_goes_without_its_size(alpha, heights):
         scene = of_alpha(alpha, separations=[h])
         if heights != "gaussian":
             curvature = mcgw.RandomCurvature(alpha) if heights == "own radii" else None
-            scene = scene.replace(heights=analytic.Nayak(alpha), curvature=curvature)
+            scene = scene.replace(heights=analytic.Nayak(alpha), summits=curvature)
         known, told = scene.validity(), off(scene)
         for name in ("area", "stiffness", "load"):
             error = known.error[name][0]

@@ -1,7 +1,6 @@
 """Odd scenes, files and places: each works, fails in one line that names it, or degrades as stated."""
 
 import os
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -27,7 +26,7 @@ def test_more_asperities_than_memory(make_scene, tmp_path, monkeypatch):
     assert mcgw.run(scene, tmp_path / "e.h5").n_surfaces == 4
     for sampler in ("cells", "direct"):
         with pytest.raises(ValueError, match=r"the heights of one surface needs .* GiB of memory but only"):
-            mcgw.heights(replace(scene, sampler=sampler), 0, untouched=True)
+            mcgw.heights(scene.replace(sampler=sampler), 0, untouched=True)
     reducer = Values(scene)
     monkeypatch.setattr(Values, "columns", memory_available())
     with pytest.raises(StoreError, match=r"a block of 4 surfaces needs .* GiB of memory"):

@@ -52,7 +52,7 @@ WISHES = {
     "one law of two": {"law": mcgw.KogutEtsion(critical=0.1), "unload_from": 0.0},
     "steep": {"grading": analytic.Table((0.0, 1.37, 3.0), (1.0, 2.0, 1.5))},
     "contacts": {"quantities": ("contacts",)},
-    "radii": {"heights": analytic.Nayak(5.0), "curvature": mcgw.RandomCurvature(5.0)},
+    "radii": {"heights": analytic.Nayak(5.0), "summits": mcgw.RandomCurvature(5.0)},
     "beyond all": {"separations": (9.0, 10.0)},
 }
 
@@ -99,7 +99,7 @@ import mcgw
 from mcgw.reports.plan import plan_of
 surface = mcgw.Surface(1e-6, 1e-5, 3e8, 1e-4, 8e10)
 spectrum = mcgw.SpectralSurface(m0=1e-12, m2=1e-2, m4=4e8, nominal_area=1e-6, E_star=1e11)
-asked = {"separations": [2.0, 3.0], "n_asperities": 10**4, "n_surfaces": 100}
+asked = {"separations": [2.0, 3.0], "ensemble": mcgw.Sampling(100, 10**4)}
 for changes in ({}, {"keep": "statistics"}, {"accuracy": 0.01}, {"sampler": "direct"},
                 {"law": mcgw.KogutEtsion(critical=0.1)}, {"grading": lambda s: 1 + abs(s - 2.5)},
                 {"interaction": mcgw.Interaction("mean-plane")}, {"rel_err": 0.1}):

@@ -2,7 +2,6 @@
 
 import csv
 import runpy
-from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -37,7 +36,7 @@ def test_preset_agrees_with_theory(name, tmp_path, capsys):
     assert str(path) in capsys.readouterr().out
     scene = mcgw.load_scene(path)
     assert scene.title
-    few = replace(scene, n_surfaces=40, separations=scene.separations[::8])
+    few = scene.replace(n_surfaces=40, separations=scene.separations[::8])
     assert mcgw.compare(mcgw.simulate(few)).verdict.agrees
 
 

@@ -57,7 +57,7 @@ def make(make_scene):
 @pytest.mark.parametrize("name", [name for name in SCENES if "grading" in SCENES[name]])
 def test_the_curve_of_the_file_is_that_of_the_function(make, tmp_path, name):
     scene = make(name)
-    held = mcgw.run(replace(scene, n_surfaces=1), tmp_path / "e.h5").scene.grading
+    held = mcgw.run(scene.replace(n_surfaces=1), tmp_path / "e.h5").scene.grading
     s = np.random.default_rng(1).uniform(scene.lowest, 8, 10_000)
     s = s[np.min([np.abs(s - k) for k in (0.4, 1.1, 0.777)], axis=0) > 1e-9]
     exact, slope = scene.grading(s), np.abs(scene.grading(s + 1e-7) - scene.grading(s - 1e-7)) / 2e-7
@@ -136,13 +136,13 @@ def test_noise_is_one_line(make):
 
 def test_series_are_not_taken_where_they_do_not_reach(make):
     known = storable(make("lambda"))
-    assert replace(known, separations=(1.0, 3.0)).grading == known.grading
+    assert known.replace(separations=(1.0, 3.0)).grading == known.grading
     with pytest.raises(
         mcgw.SceneError, match=r"^grading\.edges: the series reach from s = 0\.5 .*give the grading"
     ):
-        replace(known, separations=(-1.0, 3.0))
+        known.replace(separations=(-1.0, 3.0))
     with pytest.raises(mcgw.SceneError, match=r"^grading\.edges: "):
-        replace(known, heights=scipy.stats.lognorm(0.9))
+        known.replace(heights=scipy.stats.lognorm(0.9))
 
 
 # --- distributions of scipy -----------------------------------------------------------------------------

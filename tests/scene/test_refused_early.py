@@ -6,6 +6,7 @@ import warnings
 import numpy as np
 import pytest
 import scipy.stats as st
+from oracles.scenes import scene_by
 from scipy.integrate import quad
 
 import analytic
@@ -51,7 +52,7 @@ def test_a_density_that_ends_where_scipy_does_not_say_or_vanishes_there(name, la
         assert float(model.mean("load", h)) == pytest.approx(scale * exact[0], rel=1e-9)
         assert float(model.std("load", h)) > 0
     asked = {"heights": given, "law": law, "grading": lambda s: 1 + 0.3 * np.tanh(s)}
-    scene = mcgw.Scene(_SURFACE, separations=[0.0, end - 0.047, 9.0], seed=1, n_surfaces=300, **asked)
+    scene = scene_by(_SURFACE, separations=[0.0, end - 0.047, 9.0], seed=1, n_surfaces=300, **asked)
     drawn, theory = mcgw.simulate(scene), scene.theory
     mean, exact = drawn.sel(separation=0.0).mean("load")[0], theory.mean("load", 0.0)
     z = (mean - exact) / theory.std("load", 0.0) * np.sqrt(300)
@@ -66,13 +67,20 @@ def test_the_low_end_too_and_none_where_there_is_none():
 
 @pytest.mark.parametrize("quantities", [None, ["stiffness"], ["area", "load_slope", "load"]])
 def test_what_breaks_off_is_told_with_the_list_to_give(quantities):
-    law = {"law": "johnson-kendall-roberts", "pull_off": 0.1}
+    law = {"name": "johnson-kendall-roberts", "pull_off": 0.1}
     with pytest.raises(mcgw.SceneError) as error:
-        mcgw.Scene(_SURFACE, separations=[0.0, 1.0], law=law, unload_from=0.0, quantities=quantities)
+        mcgw.Scene(
+            _SURFACE,
+            separations=[0.0, 1.0],
+            law=law,
+            contact=mcgw.Contact(unload_from=0.0, quantities=quantities),
+        )
     (line,) = error.value.problems
     names = re.search(r"; give \[(.*)\], or leave out unload_from$", line)[1].replace('"', "").split(", ")
     assert names == {0: ["load", "area", "contacts"], 1: ["load"], 3: ["area", "load"]}[len(quantities or ())]
-    mcgw.Scene(_SURFACE, separations=[0.0, 1.0], law=law, unload_from=0.0, quantities=names)
+    mcgw.Scene(
+        _SURFACE, separations=[0.0, 1.0], law=law, contact=mcgw.Contact(unload_from=0.0, quantities=names)
+    )
 
 
 @pytest.mark.parametrize(
@@ -109,7 +117,7 @@ def test_hours_of_drawing_are_told_when_the_scene_is_made(n, surfaces, separatio
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             asked = {"n_asperities": n, "n_surfaces": surfaces, "seed": 1} | others
-            scene = mcgw.Scene(_SURFACE, separations=[separation, separation + 1], **asked)
+            scene = scene_by(_SURFACE, separations=[separation, separation + 1], **asked)
         return scene, [str(each.message) for each in caught if "hours" in str(each.message)]
 
     scene, (line,) = made()

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from oracles.inside import SURFACE_UNITS
+from oracles.scenes import scene_by
 from tables.scene_keys import text_of
 
 import analytic
@@ -50,7 +51,7 @@ def test_every_scene_of_runs_reads_back_the_same(path):
 def test_a_zero_has_no_sign():
     """Nor is a scene of such zeros another one."""
     drawn = {"n_surfaces": 5, "seed": 1}
-    one, other = (mcgw.Scene(SURFACE, separations=(z, 1.0), **drawn) for z in (0.0, -0.0))
+    one, other = (scene_by(SURFACE, separations=(z, 1.0), **drawn) for z in (0.0, -0.0))
     assert mcgw.scene_text(one) == mcgw.scene_text(other)
     assert "-0.0" not in mcgw.scene_text(other)
 
@@ -171,17 +172,17 @@ LARGE = replace(SURFACE, nominal_area=1e-5)
 
 def test_n_follows_the_surface_unless_it_was_given():
     left_out = mcgw.Scene(surface=SURFACE, separations=(1.0,), seed=1)
-    given = mcgw.Scene(surface=SURFACE, separations=(1.0,), n_asperities=1000, seed=1)
+    given = mcgw.Scene(surface=SURFACE, separations=(1.0,), ensemble=mcgw.Sampling(n_asperities=1000), seed=1)
     assert left_out == given  # the same ensemble, by whatever way
     assert hash(left_out.n_asperities) == hash(1000)
     assert repr(left_out) == repr(given)
     changes = (
-        lambda s: replace(s, surface=LARGE), lambda s: s.replace(surface=LARGE),
+        lambda s: s.replace(surface=LARGE),
         lambda s: s.replace(nominal_area=1e-5), lambda s: s.replace(nominal_area="10 mm²"),
     )  # fmt: skip
     for change in changes:
         assert change(left_out).n_asperities == 10_000
-        assert change(replace(left_out, title="between")).n_asperities == 10_000
+        assert change(left_out.replace(title="between")).n_asperities == 10_000
         assert change(given).n_asperities == 1000
         assert change(left_out.replace(n_asperities=1000)).n_asperities == 1000
         assert change(mcgw.scene_from(mcgw.scene_text(left_out))).n_asperities == 10_000
@@ -222,10 +223,10 @@ def test_a_drawn_seed_is_marked_and_stays():
 
 
 def test_the_most_surfaces_of_a_stop_rule_are_not_those_without_it():
-    ruled = mcgw.Scene(surface=SURFACE, separations=(1.0,), rel_err=0.01)
-    assert (ruled.n_surfaces, replace(ruled, rel_err=None).n_surfaces) == (10**9, 1000)
-    assert replace(ruled, n_surfaces=50).replace(rel_err=None).n_surfaces == 50
-    text = mcgw.scene_text(ruled).replace("max_surfaces = 1000000000\n", "")
+    ruled = mcgw.Scene(surface=SURFACE, separations=(1.0,), ensemble=mcgw.Sampling(rel_err=0.01))
+    assert (ruled.n_surfaces, ruled.replace(rel_err=None).n_surfaces) == (10**9, 1000)
+    assert ruled.replace(n_surfaces=50).replace(rel_err=None).n_surfaces == 50
+    text = mcgw.scene_text(ruled).replace("n_surfaces = 1000000000\n", "")
     assert mcgw.scene_from(text).replace(rel_err=None).n_surfaces == 1000
     with pytest.raises(mcgw.SceneError, match=r"ensemble\.n_surfaces = 0"):
         mcgw.Scene(surface=SURFACE, separations=(1.0,), n_surfaces=0)

@@ -184,10 +184,10 @@ def test_separations_in_metres_are_asked_about():
     scene = mcgw.Scene(surface=SURFACE, separations=(0.0, 1e-6, 2e-6))
     (line,) = perhaps_other_units(scene)
     assert "did you mean 2e-06 m = 2 sigma?" in line
-    assert perhaps_other_units(replace(scene, separations=(0.0,))) == []
-    assert perhaps_other_units(replace(scene, separations=(1e-6, 1.0))) == []
-    assert perhaps_other_units(replace(scene, separations=(0.0, 1.005e-3))) == []  # a thousandth of sigma
-    assert len(perhaps_other_units(replace(scene, separations=(0.0, 0.995e-3)))) == 1
+    assert perhaps_other_units(scene.replace(separations=(0.0,))) == []
+    assert perhaps_other_units(scene.replace(separations=(1e-6, 1.0))) == []
+    assert perhaps_other_units(scene.replace(separations=(0.0, 1.005e-3))) == []  # a thousandth of sigma
+    assert len(perhaps_other_units(scene.replace(separations=(0.0, 0.995e-3)))) == 1
 
 
 def test_no_scene_of_ours_is_doubted():

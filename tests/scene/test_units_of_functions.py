@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+from oracles.scenes import scene_by
 
 import analytic
 import mcgw
@@ -39,7 +40,7 @@ _GRADINGS = {
 
 
 def _scene(**given):
-    return mcgw.Scene(_SURFACE, separations=[0.0, 1.0], n_surfaces=3, seed=1, **given)
+    return scene_by(_SURFACE, separations=[0.0, 1.0], n_surfaces=3, seed=1, **given)
 
 
 def _refused(match, **given):

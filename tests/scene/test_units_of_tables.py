@@ -131,7 +131,7 @@ def test_a_surface_in_another_unit_is_asked_about_in_python():
     with pytest.warns(UserWarning, match=r"surface\.sigma = 1\.37: .* did you mean 1\.37 um"):
         surface = mcgw.Surface(**(SURFACE | {"sigma": 1.37}))
     with pytest.warns(UserWarning, match=r"surface\.sigma = 1\.37: "):
-        mcgw.Scene(surface, separations=1.0, n_asperities=10)
+        mcgw.Scene(surface, separations=1.0, ensemble=mcgw.Sampling(n_asperities=10))
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,6 @@
 """Every check of the convergence test, each with a flaw that it alone is made for; and its exit codes."""
 
 import re
-from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
 
@@ -52,7 +51,7 @@ def mean_of(scene, name):
 
 def mean(scene, name):
     """Exact mean, computed once for all seeds."""
-    return mean_of(replace(scene, seed=0, quantities=("load",)), name)
+    return mean_of(scene.replace(seed=0, quantities=("load",)), name)
 
 
 @cache
@@ -73,7 +72,7 @@ def scaled_about_the_mean(factor):
 
 def of_other_asperities(scene):
     """Each separation has surfaces of its own: the same law for each, no covariance between them."""
-    columns = [right(replace(scene, seed=scene.seed + 10**9 * k)) for k in range(len(scene.separations))]
+    columns = [right(scene.replace(seed=scene.seed + 10**9 * k)) for k in range(len(scene.separations))]
     at = range(len(columns))
     return {name: np.stack([columns[k][name][:, k] for k in at], axis=1) for name in scene.quantities}
 
@@ -86,14 +85,14 @@ def mirrored(scene):
 def shifted_together(scene):
     """All surfaces of a seed off by the same, as large as one standard error of their mean."""
     sums, n = right(scene), len(scene.separations)
-    root = root_of(replace(scene, seed=0))
+    root = root_of(scene.replace(seed=0))
     shift = root @ np.random.default_rng(scene.seed).normal(size=len(root)) / np.sqrt(scene.n_surfaces)
     return {name: x + shift[k * n : (k + 1) * n] for k, (name, x) in enumerate(sums.items())}
 
 
 def in_lasting_groups(scene):
     """Sixteen surfaces in a row share half of their variance: their mean is known less well."""
-    own, shared = right(scene), right(replace(scene, seed=scene.seed + 10**9))
+    own, shared = right(scene), right(scene.replace(seed=scene.seed + 10**9))
     found = {}
     for name, x in own.items():
         centre = mean(scene, name)
@@ -222,7 +221,7 @@ def test_a_slope_is_a_least_squares_fit_and_its_p_two_sided():
 @pytest.fixture
 def scene_file(scene, tmp_path, blank_figures):
     path = tmp_path / "x.toml"
-    path.write_text(mcgw.scene_text(replace(scene, n_surfaces=100)))
+    path.write_text(mcgw.scene_text(scene.replace(n_surfaces=100)))
     return path
 
 
@@ -266,10 +265,10 @@ def drawn(*, gamma=None, shared=False, **flaw):
 
     def draw(scene):
         if gamma is not None:
-            scene = replace(scene, grading=analytic.Exponential(gamma))
+            scene = scene.replace(grading=analytic.Exponential(gamma))
         if not shared:
             return ensemble_arrays(scene, scene.seed, **flaw)
-        half = ensemble_arrays(replace(scene, n_surfaces=scene.n_surfaces // 2), scene.seed)
+        half = ensemble_arrays(scene.replace(n_surfaces=scene.n_surfaces // 2), scene.seed)
         return {name: np.repeat(x, 2, axis=0)[: scene.n_surfaces] for name, x in half.items()}
 
     return draw
@@ -309,7 +308,7 @@ def test_streams_shared_but_for_rounding_fail_too(asked):
         sums = drawn(shared=True)(scene)
         return {name: x * (1 + 1e-13 * np.arange(len(x))[:, None]) for name, x in sums.items()}
 
-    found = converge(replace(asked, quantities=("load", "area"), n_asperities=1000), draw)
+    found = converge(asked.replace(quantities=("load", "area"), n_asperities=1000), draw)
     assert {c.name: c.p for c in found.checks}["independence of surfaces"] < FALSE_ALARM / 100
     assert not found.passed
 

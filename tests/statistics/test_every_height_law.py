@@ -175,11 +175,11 @@ def test_a_stop_rule_does_not_wait_for_what_never_touches(name, make_scene):
     )  # fmt: skip
     expected = forecast(scene)
     assert {x for _, x in expected.out_of_reach} == set(h[3:])
-    with pytest.warns(UserWarning, match="more surfaces than max_surfaces allows"):
+    with pytest.warns(UserWarning, match="more surfaces than n_surfaces allows"):
         ensemble = mcgw.simulate(scene)
     assert np.all(ensemble.load[:, 3:] == 0)
     with pytest.raises(ValueError, match=r"no height reaches d/sigma = .*, so there is nothing to test"):
-        converge(replace(scene, separations=h[3:], rel_err=None), seeds=2)
+        converge(scene.replace(separations=h[3:], rel_err=None), seeds=2)
 
 
 def test_a_figure_of_nothing_is_drawn(ensemble_of):
@@ -194,10 +194,15 @@ NAMES = tuple(analytic.QUANTITIES)
 @pytest.fixture(scope="module")
 def scene():
     return mcgw.Scene(
-        surface=SURFACE, separations=(1.5, 0.0, 0.5), grading=analytic.Exponential(2.0),
-        heights=analytic.ExponentialHeights(), quantities=NAMES, n_asperities=3000, n_surfaces=300,
+        surface=SURFACE,
+        separations=(1.5, 0.0, 0.5),
+        grading=analytic.Exponential(2.0),
+        heights=analytic.ExponentialHeights(),
+        contact=mcgw.Contact(quantities=NAMES),
+        ensemble=mcgw.Sampling(n_asperities=3000),
+        n_surfaces=300,
         seed=6,
-    )  # fmt: skip
+    )
 
 
 @pytest.fixture(scope="module")
@@ -219,7 +224,7 @@ def test_compare(scene, ensemble):
 
 
 def test_compare_with_another_law_disagrees(scene, ensemble):
-    gaussian = dataclasses.replace(scene, heights=analytic.Gaussian())
+    gaussian = scene.replace(heights=analytic.Gaussian())
     assert not compare(dataclasses.replace(ensemble, scene=gaussian)).verdict.agrees
 
 
@@ -227,7 +232,7 @@ def test_forecast(scene):
     for name in NAMES:
         spread = exact.std(scene, name) / exact.mean(scene, name)
         np.testing.assert_allclose(spread_of(scene, name).relative, spread, rtol=1e-7)
-    found = forecast(dataclasses.replace(scene, rel_err=0.01, n_surfaces=10**6))
+    found = forecast(scene.replace(rel_err=0.01, n_surfaces=10**6))
     plain = (1.959963984540054 / 0.01 * exact.std(scene, "load") / exact.mean(scene, "load")) ** 2
     needed = found.needed["load"]
     assert np.all((plain < needed) & (needed < 1.01**2 * plain))  # an end 1 % away, of either of the two
@@ -243,7 +248,7 @@ def test_solve(scene):
     """Theory by the oracle; the mean over 100 surfaces within 5 standard errors and the 1/N of 3000."""
     given = "load"
     value = exact.mean(scene, given, [0.7])[0]
-    (found,) = solutions(dataclasses.replace(scene, n_surfaces=100), given, [value])
+    (found,) = solutions(scene.replace(n_surfaces=100), given, [value])
     assert found.theory["separation"] == pytest.approx(0.7, rel=1e-9)
     for name in NAMES:
         assert found.theory[name] == pytest.approx(exact.mean(scene, name, [0.7])[0], rel=1e-9)
@@ -258,7 +263,7 @@ def test_notes_of_deep_contacts(scene):
     """Compressed by more than the radius: the share of the law's own tail decides."""
     depth = 5.0
     surface = dataclasses.replace(scene.surface, radius=depth * scene.surface.sigma)
-    asked = dataclasses.replace(scene, surface=surface)
+    asked = scene.replace(surface=surface)
     share = exact.share_above(scene, depth) / exact.share_above(scene, 0.0)
     told = [line for line in cautions(asked) if "compressed by more" in line]
     assert bool(told) == (share > 1e-3)

@@ -1,22 +1,23 @@
 """Ensembles under contact laws, there and back, against their exact theory, and the tools that meet both."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from conftest import SURFACE
 from oracles.inside import FALSE_ALARM
 from oracles.literal import scores
 from oracles.reference_means import reference
+from oracles.scenes import scene_by
 
 import analytic
 import mcgw
 from analytic import laws, quantity_of
 
-FILM = laws.Film(2e-8, 1e-14)  # as much resistance as a spot of 0.15 sqrt(R sigma)
+FILM = mcgw.Joint(
+    resistivity=2e-8, film_resistance=1e-14
+)  # as much resistance as a spot of 0.15 sqrt(R sigma)
 KOGUT = {
     "law": laws.KogutEtsion(critical=0.05), "grading": analytic.Exponential(2.0), "unload_from": "loop",
-    "film": FILM,
+    "joint": FILM,
 }  # fmt: skip
 SCENES = {
     "Kogut, there and back": {**KOGUT, "quantities": ("load", "area", "contacts")},
@@ -28,14 +29,14 @@ SCENES = {
         "unload_from": "loop",
         "quantities": ("load", "area", "contacts"),
     },
-    "coated": {"law": laws.Coated(reduced_thickness=0.5, ratio=3.0), "film": FILM},
+    "coated": {"law": laws.Coated(reduced_thickness=0.5, ratio=3.0), "joint": FILM},
 }
 every_scene = pytest.mark.parametrize("values", SCENES.values(), ids=SCENES)
 
 
 def scene_of(values, **changes):
     asked = {"separations": (0.0, 0.3, 0.8, 1.5), "n_asperities": 5000, "n_surfaces": 64, "seed": 5}
-    return mcgw.Scene(SURFACE, **{**values, **asked, **changes})
+    return scene_by(SURFACE, **{**values, **asked, **changes})
 
 
 # Means and variances of many small surfaces
@@ -125,8 +126,8 @@ def test_scene_and_theory_are_of_one_law():
     """The theory of a scene knows its law, where it goes back from, and its film."""
     scene = scene_of(SCENES["Kogut, there and back"])
     theory = scene.theory
-    assert (theory.law, theory.unload_from, theory.film) == (scene.law, 0.0, FILM)
-    hertz = replace(scene, law=laws.Hertz(), unload_from=None, film=None, quantities=("load",))
+    assert (theory.law, theory.unload_from, theory.film) == (scene.law, 0.0, FILM.film)
+    hertz = scene.replace(law=laws.Hertz(), unload_from=None, joint=None, quantities=("load",))
     load = hertz.n_asperities * quantity_of("load").scale(SURFACE)
     expected = load * analytic.fn(1.5, np.array(hertz.separations), hertz.modulus)
     np.testing.assert_array_equal(hertz.theory.mean("load", hertz.separations), expected)

@@ -17,6 +17,7 @@ from oracles.inside import (
     wants_of,
     worst_of_values,
 )
+from oracles.scenes import scene_by
 from scipy.stats import kstwobign, norm
 
 import analytic
@@ -30,10 +31,8 @@ from mcgw.statistics import measured_ways
 def scene():
     from conftest import SURFACE
 
-    from mcgw import Scene
-
     one = {"separations": (1.0,), "quantities": ("load",), "n_asperities": 2000, "n_surfaces": 200}
-    return Scene(surface=SURFACE, grading=analytic.Exponential(2.0), seed=1, **one)
+    return scene_by(surface=SURFACE, grading=analytic.Exponential(2.0), seed=1, **one)
 
 
 @pytest.fixture(scope="module")
@@ -209,13 +208,13 @@ def test_auto_is_named_first(make_scene):
     few = make_scene(n_asperities=100, separations=(2.0,))
     assert sampled_ways(few)[0] == "tail"
     assert sampled_ways(make_scene(separations=(0.0,)))[0] == "cells"
-    radii = {"heights": analytic.Nayak(5.0), "curvature": analytic.RandomCurvature(5.0), "grading": None}
+    radii = {"heights": analytic.Nayak(5.0), "summits": analytic.RandomCurvature(5.0), "grading": None}
     assert "aggregate" not in sampled_ways(make_scene(**radii))
 
 
 def test_surfaces_at_a_load_are_drawn_one_by_one(make_scene):
     """So `solve` is a way where cells are none, under a law whose breaks differ from summit to summit."""
-    radii = {"heights": analytic.Nayak(5.0), "curvature": analytic.RandomCurvature(5.0), "grading": None}
+    radii = {"heights": analytic.Nayak(5.0), "summits": analytic.RandomCurvature(5.0), "grading": None}
     assert sampled_ways(make_scene(law=analytic.KogutEtsion(critical=0.1), **radii)) == [
         "tail", "direct", "solve",
     ]  # fmt: skip

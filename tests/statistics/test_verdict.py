@@ -107,7 +107,7 @@ def independent(ensemble):
     [("poisson", analytic.Gaussian()), ("fixed", analytic.ExponentialHeights())],
 )
 def test_chi_square_and_p_are_those_of_the_exact_covariance(ensemble, count, heights):
-    found = mcgw.simulate(dataclasses.replace(ensemble.scene, count=count, heights=heights))
+    found = mcgw.simulate(ensemble.scene.replace(count=count, heights=heights))
     chi_square, degrees, size = independent(found)
     assert size.min() > 1e-8  # far enough from where one would be thrown out
     said = verdict(found)
@@ -118,7 +118,7 @@ def test_chi_square_and_p_are_those_of_the_exact_covariance(ensemble, count, hei
 
 def test_a_quantity_that_is_a_multiple_of_another_adds_no_degree(ensemble):
     """Without a grading the stiffness is the conductance times E*/2."""
-    plain = dataclasses.replace(ensemble.scene, grading=analytic.Homogeneous())
+    plain = ensemble.scene.replace(grading=analytic.Homogeneous())
     assert verdict(mcgw.simulate(plain)).degrees == (len(QUANTITIES) - 1) * len(H)
 
 
@@ -201,7 +201,7 @@ def ensembles(scene, seeds):
     sampler = sampler_of(scene)
     for seed in seeds:
         sums = sampler.with_seed(seed).block(0, scene.n_surfaces).sums
-        yield Ensemble(dataclasses.replace(scene, seed=seed), sampler.name, MemoryResults(sums))
+        yield Ensemble(scene.replace(seed=seed), sampler.name, MemoryResults(sums))
 
 
 @pytest.mark.slow
@@ -259,7 +259,7 @@ def test_one_surface(make_scene):
 def test_radii_have_a_bound_that_one_in_ten_thousand_ensembles_passes(make_scene):
     """And none where there is one already, or where all radii are one."""
     scene = make_scene(
-        heights=analytic.Nayak(5.0), curvature=analytic.RandomCurvature(5.0), separations=(1.0,), grading=None
+        heights=analytic.Nayak(5.0), summits=analytic.RandomCurvature(5.0), separations=(1.0,), grading=None
     )
     law = scene.curvature
     for surfaces in (10**9, 10**12):
@@ -269,7 +269,7 @@ def test_radii_have_a_bound_that_one_in_ten_thousand_ensembles_passes(make_scene
     few = parts.bounded_theory(scene, 1000).curvature  # of which fewer are flatter than a thousandth
     assert few.largest == pytest.approx(MEAN_CURVATURE / 1e-3, rel=1e-12)
     assert float(law.cdf(1e-3, 1.0)) * scene.touching * 1000 < 1e-4
-    for known in (scene.replace(curvature=analytic.RandomCurvature(5.0, 50.0)), make_scene()):
+    for known in (scene.replace(summits=analytic.RandomCurvature(5.0, 50.0)), make_scene()):
         assert parts.bounded_theory(known, 10**6) is known.theory
 
 

@@ -26,7 +26,12 @@ SECRET = "key = correct horse battery staple"
 def good(tmp_path_factory):
     path = tmp_path_factory.mktemp("good") / "e.h5"
     surface = analytic.Surface(sigma=1e-6, radius=1e-5, eta=1e9, nominal_area=1e-6, E_star=1e11)
-    mcgw.run(mcgw.Scene(surface=surface, separations=(1.0, 2.0), n_surfaces=20, sampler="tail"), path)
+    mcgw.run(
+        mcgw.Scene(
+            surface=surface, separations=(1.0, 2.0), n_surfaces=20, ensemble=mcgw.Sampling(sampler="tail")
+        ),
+        path,
+    )
     return path.read_bytes()
 
 

@@ -1,7 +1,6 @@
 """What is damaged is never gone on with: each kind of damage, and then every way of going on."""
 
 import shutil
-from dataclasses import replace
 
 import h5py
 import numpy as np
@@ -27,7 +26,7 @@ def scene(make_scene):
 
 @pytest.fixture
 def larger(scene):
-    return replace(scene, n_surfaces=SURFACES + 30)
+    return scene.replace(n_surfaces=SURFACES + 30)
 
 
 def flip(path, place):
@@ -72,11 +71,11 @@ DAMAGES = [changed_in_place, flipped_in_a_result, a_changed_load, cut, with_anot
 WAYS = {
     "run": mcgw.run,
     "shard job": lambda scene, path: mcgw.run(scene, path, shard="1/2"),
-    "stop rule": lambda scene, path: mcgw.run(replace(scene, rel_err=1e-4), path),
+    "stop rule": lambda scene, path: mcgw.run(scene.replace(rel_err=1e-4), path),
 }
 
 
-@pytest.mark.filterwarnings("ignore:.* more surfaces than max_surfaces allows")  # said before it is opened
+@pytest.mark.filterwarnings("ignore:.* more surfaces than n_surfaces allows")  # said before it is opened
 @pytest.mark.parametrize(
     ("way", "damage", "large"),
     [*(("run", damage, False) for damage in DAMAGES),

@@ -3,7 +3,6 @@
 import io
 import os
 import signal
-from dataclasses import replace
 
 import h5py
 import numpy as np
@@ -76,7 +75,7 @@ def test_blocks_and_chunks_of_any_size_make_the_same(scene, tmp_path, expected, 
     """The first three blocks as of a version with other blocks; the file is one of 37 surfaces that grows."""
     monkeypatch.setattr(h5_writing, "CHUNK_ROWS", rows)
     path = tmp_path / "e.h5"
-    mcgw.run(replace(scene, n_surfaces=37), path)
+    mcgw.run(scene.replace(n_surfaces=37), path)
     monkeypatch.setattr(Values, "rows", 20)
     assert mcgw.run(scene, path, shard="1/1") == 0
     monkeypatch.setattr(Values, "rows", SIZE)

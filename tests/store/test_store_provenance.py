@@ -13,6 +13,7 @@ import pytest
 import scipy.stats
 from oracles.inside import SAMPLERS, Values, sampler_of
 from oracles.memory_growth import peak_growth
+from oracles.scenes import scene_by
 
 import analytic
 import mcgw
@@ -64,7 +65,7 @@ CASES = {name: {"sampler": name} for name in SAMPLERS[1:]} | {
 def drawn(case, seed=20240601):
     """Two surfaces of each sampler, and of those that are asked for less."""
     surface = analytic.Surface(sigma=1.37e-6, radius=13e-6, eta=3.0e8, nominal_area=1e-4, E_star=78.6e9)
-    scene = mcgw.Scene(
+    scene = scene_by(
         surface=surface,
         separations=(0.0, 1.5, 3.0),
         grading=analytic.Exponential(2.0),

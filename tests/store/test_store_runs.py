@@ -60,7 +60,7 @@ def drawn(monkeypatch):
 @pytest.mark.parametrize("by", ["run", "shares", "workers"])
 def test_going_on_draws_each_missing_block_once(scene, tmp_path, drawn, by, keep):
     """Blocks 0 to 2 and 5 are held: nobody draws them again, whoever goes on."""
-    scene, path = replace(scene, keep=keep), tmp_path / "e.h5"
+    scene, path = scene.replace(keep=keep), tmp_path / "e.h5"
     mcgw.run(scene, path, shard="1/1")
     blocks = sorted(parts_of(path).glob("shards/block-*.h5"))
     assert drawn == [0, 16, 32, 48, 64, 80, 96]
@@ -82,18 +82,18 @@ def test_going_on_draws_each_missing_block_once(scene, tmp_path, drawn, by, keep
 def test_n_surfaces_is_the_total(scene, tmp_path, expected, drawn):
     """Extended in steps that are no multiple of a block, once in the middle of a run; each is drawn once."""
     path = tmp_path / "e.h5"
-    mcgw.run(replace(scene, n_surfaces=5), path)
-    mcgw.run(replace(scene, n_surfaces=37), path)
+    mcgw.run(scene.replace(n_surfaces=5), path)
+    mcgw.run(scene.replace(n_surfaces=37), path)
     assert drawn == [0, 5, 16, 32]
     assert ensembles.open_ensemble(path).n_surfaces == 37
-    halted(replace(scene, n_surfaces=90), path, 64)
+    halted(scene.replace(n_surfaces=90), path, 64)
     assert ensembles.open_ensemble(path).n_surfaces == 37  # the finished file stays as it is
     drawn.clear()
     mcgw.run(scene, path)
     assert 64 <= drawn[0] <= 90
     assert digest(path) == expected
     with pytest.raises(StoreError, match="holds 100 surfaces already"):
-        mcgw.run(replace(scene, n_surfaces=99), path)
+        mcgw.run(scene.replace(n_surfaces=99), path)
 
 
 def test_another_version_is_refused(scene, tmp_path, monkeypatch):
@@ -123,7 +123,7 @@ def test_damage_is_put_aside_and_drawn_again(scene, tmp_path, expected):
 
 def test_rows_of_a_run_in_progress_are_those_of_a_list(scene, tmp_path):
     """From any surface to any other, within a block and beyond one."""
-    path, asked = tmp_path / "e.h5", replace(scene, sampler="cells")
+    path, asked = tmp_path / "e.h5", scene.replace(sampler="cells")
     shards = begun(asked, path)[:3]
     every = ensembles.open_ensemble(path).sums
     assert not ensembles.read_attributes(path)["complete"]
@@ -174,7 +174,7 @@ def test_a_block_that_is_a_link_or_damaged_is_not_held(scene, tmp_path):
 def test_statistics_of_a_missing_block_are_not_merged(scene, tmp_path, monkeypatch):
     """It goes between the look for gaps and the making of the file."""
     path = tmp_path / "e.h5"
-    gone = begun(replace(scene, keep="statistics"), path)[2]
+    gone = begun(scene.replace(keep="statistics"), path)[2]
     made = making.merge_once
 
     def late(*words):
@@ -339,7 +339,7 @@ def test_a_signal_while_the_only_block_is_drawn_leaves_nothing(scene, tmp_path, 
 
     monkeypatch.setattr(Job, "draw", signalled)
     with pytest.raises(StoppedError, match="terminated: nothing was saved") as caught:
-        mcgw.run(replace(scene, n_surfaces=SIZE), tmp_path / "e.h5")
+        mcgw.run(scene.replace(n_surfaces=SIZE), tmp_path / "e.h5")
     assert caught.value.code == 143
     assert list(tmp_path.iterdir()) == []
 

@@ -11,12 +11,21 @@ from mcgw.sweeps import pooling
 from mcgw.sweeps.axes import axes_of, label
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
-SCENE = mcgw.Scene(SURFACE, separations=[0.0, 0.4, 1.0, 1.5, 2.5], n_surfaces=300, n_asperities=2000, seed=7)
+SCENE = mcgw.Scene(
+    SURFACE,
+    separations=[0.0, 0.4, 1.0, 1.5, 2.5],
+    n_surfaces=300,
+    ensemble=mcgw.Sampling(n_asperities=2000),
+    seed=7,
+)
 GAMMA = "grading.gamma"
 SPECTRAL = mcgw.Scene(
-    mcgw.SpectralSurface(1e-12, 1e-3, 5e6, 1e-6, 78.6e9), separations=[0.0, 1.0, 1.5], n_surfaces=50,
-    n_asperities=2000, seed=7,
-)  # fmt: skip
+    mcgw.SpectralSurface(1e-12, 1e-3, 5e6, 1e-6, 78.6e9),
+    separations=[0.0, 1.0, 1.5],
+    n_surfaces=50,
+    ensemble=mcgw.Sampling(n_asperities=2000),
+    seed=7,
+)
 KINKED = [mcgw.Table((-1, kink, 6), (1.0, 1.5, 3.0)) for kink in (0.33, 0.7, 1.21)]
 
 
@@ -64,7 +73,7 @@ SEVERAL = {
     "radii, without cells": (SPECTRAL.replace(n_asperities=10), {GAMMA: [0.5, 2.0]}),
     "radii under laws": (
         SPECTRAL.replace(law=mcgw.KogutEtsion(critical=0.1)),
-        {"contact.critical": [0.1, 0.2]},
+        {"contact.law.critical": [0.1, 0.2]},
     ),
     "balance of many": (SCENE.replace(interaction="body", n_surfaces=20), {GAMMA: np.linspace(1.0, 2.0, 9)}),
     "a yielding law of many": (
@@ -87,10 +96,10 @@ def test_any_kind_of_scene_has_its_bits(name):
 YIELDING = SCENE.replace(law=mcgw.KogutEtsion(hardness=1.2e9, poisson=0.3))
 OF_OTHER_CELLS = {
     "tables with kinks": (SCENE, {"grading": KINKED}),
-    "laws that yield": (YIELDING, {"contact.hardness": [1e9, "1.2 GPa", 3e9]}),
+    "laws that yield": (YIELDING, {"contact.law.hardness": [1e9, "1.2 GPa", 3e9]}),
     "breaks where others begin": (
         SCENE.replace(law=mcgw.KogutEtsion(critical=0.1), separations=[0.0, 0.1, 0.2, 0.3, 0.5]),
-        {"contact.critical": [0.05, 0.1, 0.2]},
+        {"contact.law.critical": [0.05, 0.1, 0.2]},
     ),
     "not combinations": (  # for they are clipped
         SCENE.replace(separations=[-1.0, -0.5, 0.0, 1.0, 2.0], negative="clip", n_surfaces=20),
@@ -149,9 +158,14 @@ def test_paired_differences_have_the_variance_that_theory_gives():
 def test_what_no_cells_resolve_is_drawn_one_by_one_at_all_points(monkeypatch):
     monkeypatch.setattr("mcgw.sampling.samplers._CUTS", 0)
     steep = mcgw.Scene(
-        SURFACE, separations=[-1.2, 1.8], grading=mcgw.Exponential(-1.5), negative="clip", n_surfaces=5,
-        n_asperities=3000, seed=7, law=mcgw.KogutEtsion(critical=0.0018),
-    )  # fmt: skip
+        SURFACE,
+        separations=[-1.2, 1.8],
+        grading=mcgw.Graded(mcgw.Exponential(-1.5), negative="clip"),
+        n_surfaces=5,
+        ensemble=mcgw.Sampling(n_asperities=3000),
+        seed=7,
+        law=mcgw.KogutEtsion(critical=0.0018),
+    )
     over = {"surface.E_star": [7e10, 8e10]}
     sweep = mcgw.sweep(steep, over)
     assert len(sweep.groups) == 1

@@ -13,7 +13,9 @@ from mcgw.cli import main
 from mcgw.sweeps.points import sweep_cautions
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
-SCENE = mcgw.Scene(SURFACE, separations=[2.0, 0.0, 1.0], n_surfaces=200, n_asperities=2000, seed=5)
+SCENE = mcgw.Scene(
+    SURFACE, separations=[2.0, 0.0, 1.0], n_surfaces=200, ensemble=mcgw.Sampling(n_asperities=2000), seed=5
+)
 OVER = {"grading.gamma": [0.5, 1.0, 2.0], "ensemble.seed": [1, 2, 3]}
 
 

@@ -19,7 +19,9 @@ from mcgw.commands.sweep import _axis
 from mcgw.sweeps import pooling
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
-SCENE = mcgw.Scene(SURFACE, separations=[0.0, 1.0, 2.5], n_surfaces=300, n_asperities=2000, seed=7)
+SCENE = mcgw.Scene(
+    SURFACE, separations=[0.0, 1.0, 2.5], n_surfaces=300, ensemble=mcgw.Sampling(n_asperities=2000), seed=7
+)
 GAMMA, N = "grading.gamma", "ensemble.n_asperities"
 OVER = {GAMMA: np.linspace(0.5, 1.7, 9), N: [200, 2000]}
 FIRST = 2 * [0, 50, 100, 150, 200, 250]  # surfaces of the chunks

@@ -7,6 +7,7 @@ import pytest
 from oracles.exact_law_drawn import scores, some
 from oracles.exact_law_grid import faults, laws
 from oracles.inside import Needs
+from oracles.scenes import scene_by
 from scipy import stats
 
 import mcgw
@@ -17,7 +18,7 @@ HEAVY = [(stats.fisk(8.0), 58_000, 2.5), (stats.t(4), 3000, 1.5), (stats.lognorm
 
 def scene_of(heights, n, h, **more):
     surface = mcgw.Surface(1e-6, 1e-5, 1e9, 1e-6, 1e9)
-    return mcgw.Scene(surface, separations=[h], heights=heights, n_asperities=n, seed=3, **more)
+    return scene_by(surface, separations=[h], heights=heights, n_asperities=n, seed=3, **more)
 
 
 @pytest.mark.slow

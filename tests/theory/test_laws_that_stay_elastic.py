@@ -153,9 +153,10 @@ def test_conductance_of_one_spot_between_two_bodies():
         ensemble = { seed = 1 }
         [contact]
         separations = [0.0]
+        quantities = ["conductance_si"]
+        [joint]
         conductivities = [150, 16]
         film_resistance = 1e-7
-        quantities = ["conductance_si"]
     """)
     assert mcgw.simulate(scene)["conductance_si"][0, 0] == pytest.approx(1.6272240e-4, rel=1e-7)
     assert scene.film.rho == pytest.approx(0.06916666666666667, rel=1e-14)

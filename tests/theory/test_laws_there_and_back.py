@@ -3,6 +3,7 @@
 import mpmath
 import numpy as np
 import pytest
+from oracles.scenes import scene_by
 
 import analytic
 import mcgw
@@ -131,9 +132,14 @@ def test_surfaces_stick():
     """An ensemble both ways: the mean of theory, more contacts on the way back, and work that is lost."""
     h = np.linspace(-0.5, 1.5, 9)
     scene = mcgw.Scene(
-        SURFACE, separations=h, law=JohnsonKendallRoberts(pull_off=0.5), unload_from="loop",
-        quantities=["load", "area", "contacts"], n_asperities=3000, n_surfaces=500, seed=2,
-    )  # fmt: skip
+        SURFACE,
+        separations=h,
+        law=JohnsonKendallRoberts(pull_off=0.5),
+        contact=mcgw.Contact(unload_from="loop", quantities=["load", "area", "contacts"]),
+        ensemble=mcgw.Sampling(n_asperities=3000),
+        n_surfaces=500,
+        seed=2,
+    )
     drawn = mcgw.simulate(scene)
     assert np.all(drawn["contacts_unloading"][:, 1:] > drawn.contacts[:, 1:])
     np.testing.assert_array_equal(drawn["contacts_unloading"][:, 0], drawn.contacts[:, 0])
@@ -149,7 +155,7 @@ def test_surfaces_stick():
 ])  # fmt: skip
 def test_what_means_nothing_is_refused(changes, said):
     with pytest.raises(mcgw.SceneError) as caught:
-        mcgw.Scene(SURFACE, separations=[0, 1], law=JohnsonKendallRoberts(pull_off=0.1), **changes)
+        scene_by(SURFACE, separations=[0, 1], law=JohnsonKendallRoberts(pull_off=0.1), **changes)
     assert caught.value.problems[0].startswith(said)
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from oracles.scenes import scene_by
 from scipy.integrate import quad
 from scipy.interpolate import RegularGridInterpolator
 from scipy.special import psi
@@ -211,9 +212,9 @@ def test_the_load_is_looked_up_by_the_load_of_the_model():
 def test_pressure_is_that_of_theory_without_its_grading(heights):
     h = np.array([-3.0, 0.0, 1.5, 4.0])
     surface = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 mm^2", "1 GPa")
-    more = {"gaussian": {}, "nayak": {"curvature": "mean"}, "own radii": {"curvature": "random"}}[heights]
+    more = {"gaussian": {}, "nayak": {"summits": "mean"}, "own radii": {"summits": "random"}}[heights]
     given = surface.surface if heights == "gaussian" else surface
-    scene = mcgw.Scene(given, separations=h, seed=1, **more)
+    scene = scene_by(given, separations=h, seed=1, **more)
     graded = scene.replace(grading=analytic.Exponential(0.5))
     wanted = scene.theory.mean("load", h) / 1e9 / (scene.n_asperities / scene.surface.eta)
     np.testing.assert_allclose(reduced_pressure(scene, h), wanted, rtol=1e-8)
@@ -269,8 +270,8 @@ def test_lighter_loads_are_those_of_what_contact_tends_to():
                 "gaussian", "own radii", "none", row["x"]]  # fmt: skip
             own = mcgw.Scene(surface, separations=0.0, seed=1)
             given = surface.surface if model == "one radius" else surface
-            other = mcgw.Scene(
-                given, separations=0.0, seed=1, **{"curvature": "mean"} if model == "nayak" else {}
+            other = scene_by(
+                given, separations=0.0, seed=1, **{"summits": "mean"} if model == "nayak" else {}
             )
             load = row["p"] * math.sqrt(2e-3) * 1e9 * 1e-6
             at = {}
@@ -310,7 +311,7 @@ def test_radii_that_end_early_are_not_those_of_the_maps():
     surface = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 mm^2", "1 GPa")
     for bound, known in ((9.95, False), (10.05, True)):
         curvature = mcgw.RandomCurvature(surface.moments.alpha, bound)
-        scene = mcgw.Scene(surface, separations=[1.0], curvature=curvature, seed=1)
+        scene = mcgw.Scene(surface, separations=[1.0], summits=curvature, seed=1)
         assert scene.validity().measured.all() == known
 
 
@@ -359,7 +360,7 @@ def test_few_contacts_widen_and_many_do_not_hide_how_few_maps_there_were(monkeyp
     # four maps tell the logarithm of a deviation too low by this
     std = 0.02 / 0.9 * math.exp((math.log(1.5) - psi(1.5)) / 2)
     for contacts, share in ((4.0, 5.0), (25.0, 2.0), (100.0, 1.0), (1e4, 0.1)):
-        few = dataclasses.replace(scene, n_asperities=round(contacts / norm.sf(1.0)))
+        few = scene.replace(n_asperities=round(contacts / norm.sf(1.0)))
         actual = few.n_asperities * norm.sf(1.0)
         off = 2.1 * std * math.sqrt(100 / actual + 1 / 4)
         assert few.validity().error["area"][0] == pytest.approx(0.1 + 0.9 * math.expm1(off), rel=1e-9)

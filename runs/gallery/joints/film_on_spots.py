@@ -16,7 +16,8 @@ pressure = np.geomspace(1e4, 1e8, 25)
 resistivity = 1 / 150 + 1 / 16  # m K/W: of aluminium on stainless steel
 fig, ax = plt.subplots()
 for k, film in enumerate((0, -7, -6, -5)):
-    scene = mcgw.Scene(surface, separations=0.0, film=mcgw.Film(resistivity, film and 10.0**film))
+    joint = mcgw.Joint(resistivity=resistivity, film_resistance=10.0**film if film else None)
+    scene = mcgw.Scene(surface, separations=0.0, joint=joint)
     h = scene.theory.separation_at("pressure", pressure)
     conductance = scene.theory.mean("conductance_si", h) / surface.nominal_area
     label = f"film of $10^{{{film}}}$ m² K/W" if film else "clean"

@@ -16,8 +16,8 @@ d = np.linspace(-0.2, 1.2, 71)  # um
 fig, ax = plt.subplots()
 for k, sigma in enumerate((0.1, 0.2, 0.5)):
     surface = mcgw.Surface(f"{sigma} um", "50 um", "1000/mm^2", "1 mm^2", "10 MPa")
-    asked = {"law": law, "unload_from": "loop", "quantities": ["load"]}
-    scene = mcgw.Scene(surface, separations=d / sigma, n_surfaces=50, seed=1, **asked)
+    contact = mcgw.Contact(law, quantities=["load"], unload_from="loop")
+    scene = mcgw.Scene(surface, separations=d / sigma, contact=contact, n_surfaces=50, seed=1)
     e = mcgw.simulate(scene)
     pressure = e.mean("load_unloading") / surface.nominal_area / 1e3
     ax.plot(d, pressure, **step(f"σ = {sigma:g} µm", k, 3))

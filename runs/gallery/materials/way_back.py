@@ -14,7 +14,9 @@ from mcgw.figures.style import line
 surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 cm^2", "78.6 GPa")
 law = mcgw.KogutEtsion(hardness=1.2e9, poisson=0.33)
 h = np.linspace(0.5, 3.0, 51)
-scene = mcgw.Scene(surface, separations=h, law=law, unload_from="loop", n_surfaces=100, seed=1)
+scene = mcgw.Scene(
+    surface, separations=h, law=law, contact=mcgw.Contact(unload_from="loop"), n_surfaces=100, seed=1
+)
 e = mcgw.simulate(scene)
 elastic = mcgw.Scene(surface, separations=h).theory.mean("pressure", h) / 1e6
 fig, ax = plt.subplots()

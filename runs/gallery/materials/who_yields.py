@@ -18,7 +18,9 @@ fig, ax = plt.subplots()
 for k, hardness in enumerate(("2 GPa", "10 GPa", "40 GPa")):
     law = mcgw.KogutEtsion(hardness=float(hardness[:-4]) * 1e9, poisson=0.33)
     asked = ["load", "contacts", "yielded"]
-    scene = mcgw.Scene(surface, separations=h, law=law, quantities=asked, n_surfaces=100, seed=1)
+    scene = mcgw.Scene(
+        surface, separations=h, law=law, contact=mcgw.Contact(quantities=asked), n_surfaces=100, seed=1
+    )
     e = mcgw.simulate(scene)
     yielded, contacts = (e.values(name).sum(axis=0) for name in ("yielded", "contacts"))
     share = yielded / contacts

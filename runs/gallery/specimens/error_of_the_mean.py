@@ -14,7 +14,7 @@ from mcgw.figures.style import line
 surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 cm^2", "78.6 GPa")
 h = np.array([0.0, 2.0, 3.5])
 numbers = np.array([10, 30, 100, 300])
-scene = mcgw.Scene(surface, separations=h, quantities=["load"])
+scene = mcgw.Scene(surface, separations=h, contact=mcgw.Contact(quantities=["load"]))
 truth, std = scene.theory.mean("load", h), scene.theory.std("load", h)
 runs = [mcgw.simulate(scene, n_surfaces=300, seed=seed)["load"] for seed in range(30)]
 fig, ax = plt.subplots()

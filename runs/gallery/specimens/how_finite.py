@@ -12,7 +12,9 @@ import mcgw
 from mcgw.figures.style import SAMPLE, line
 
 surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "100 mm^2", "78.6 GPa")
-scene = mcgw.Scene(surface, separations=3.0, quantities=["load"], n_surfaces=40_000, seed=1)
+scene = mcgw.Scene(
+    surface, separations=3.0, contact=mcgw.Contact(quantities=["load"]), n_surfaces=40_000, seed=1
+)
 law = scene.theory.distribution("load", 3.0)
 fig, (a, b) = plt.subplots(1, 2, figsize=(8, 3.8), layout="constrained")
 

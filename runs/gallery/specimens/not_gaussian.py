@@ -13,7 +13,9 @@ from mcgw.figures.style import SAMPLE, line
 
 surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 cm^2", "78.6 GPa")
 h = [1.0, 3.5]
-scene = mcgw.Scene(surface, separations=h, quantities=["load", "contacts"], n_surfaces=20000, seed=1)
+scene = mcgw.Scene(
+    surface, separations=h, contact=mcgw.Contact(quantities=["load", "contacts"]), n_surfaces=20000, seed=1
+)
 e = mcgw.simulate(scene)
 x = np.linspace(-3, 5, 200)
 fig, axes = plt.subplots(1, 2, sharex=True, sharey=True, figsize=(8, 3.6))

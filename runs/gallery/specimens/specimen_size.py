@@ -17,7 +17,9 @@ for k, pressure in enumerate(("0.1 MPa", "1 MPa", "10 MPa")):
     simulated, exact = [], []
     for area in areas:
         surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", f"{area} mm^2", "78.6 GPa")
-        scene = mcgw.Scene(surface, separations=0.0, quantities=["load"], n_surfaces=400, seed=1)
+        scene = mcgw.Scene(
+            surface, separations=0.0, contact=mcgw.Contact(quantities=["load"]), n_surfaces=400, seed=1
+        )
         h = float(scene.theory.separation_at("pressure", 1e6 * float(pressure.split()[0])))
         e = mcgw.simulate(scene, separations=h)
         simulated.append(100 * e.std("load")[0] / e.mean("load")[0])

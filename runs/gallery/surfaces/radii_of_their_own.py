@@ -16,7 +16,7 @@ fig, ax = plt.subplots()
 for k, alpha in enumerate((2, 5, 20)):
     surface = mcgw.SpectralSurface(1e-12, 1e-3, alpha * 1e6, "1 mm^2", "100 GPa")
     own = mcgw.Scene(surface, separations=h)
-    mean = mcgw.Scene(surface, separations=h, curvature="mean")
+    mean = mcgw.Scene(surface, separations=h, summits="mean")
     ratio = mean.theory.mean("load", h) / own.theory.mean("load", h)
     ax.plot(h, ratio, **step(f"α = {alpha}", k, 3))
 ax.axhline(1, color="0.5", linewidth=0.8, linestyle=":")
