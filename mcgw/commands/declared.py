@@ -145,7 +145,7 @@ def _add_arguments(parser: argparse.ArgumentParser, function: Command, words: st
 def _options(
     kind: Kind, annotation: Any, placed: bool, default: Any, metavar: str, words: str
 ) -> dict[str, Any]:
-    """What argparse is told of a parameter; the default is ... where it must be given."""
+    """What argparse takes for a parameter; the default is ... where it must be given."""
     annotation = (
         getattr(annotation, "__origin__", annotation) if hasattr(annotation, "__metadata__") else annotation
     )

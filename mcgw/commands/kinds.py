@@ -30,7 +30,7 @@ class Kind:
     Parameters
     ----------
     metavar, about : str, optional
-        What stands for its value, and what it is, where the docstring of the command says nothing of it.
+        What stands for its value, and what it is, where the docstring of the command has no words for it.
     """
 
     file = False

@@ -8,7 +8,6 @@ NumPy script for one surface of S1.
 
 import subprocess
 import sys
-from dataclasses import replace
 
 import numpy as np
 from scenes import S1, fresh, script
@@ -45,7 +44,7 @@ def one_surface(scene: Scene, calls: int = 5) -> Job:
 def gamma_alone(calls: int = 5) -> float:
     """A surface whose scene was just drawn with other gammas."""
     before = fresh(ONE)
-    asked = [replace(before, grading=Exponential(2.0 + 0.01 * k)) for k in range(1, calls + 1)]
+    asked = [before.replace(grading=Exponential(2.0 + 0.01 * k)) for k in range(1, calls + 1)]
     mcgw.simulate(before)
     return seconds(lambda: [mcgw.simulate(each) for each in asked], calls)
 
@@ -63,7 +62,7 @@ def jobs() -> dict[str, Job]:
         "401 separations": one_surface(ONE.replace(separations=tuple(np.linspace(0, 4, 401)))),
         "N = 1e4": one_surface(ONE.replace(n_asperities=10**4)),
         "10 001 separations": one_surface(ONE.replace(separations=tuple(np.linspace(0, 4, 10_001))), 1),
-        "Kogut-Etsion": one_surface(replace(ONE, law=KogutEtsion(critical=0.05))),
+        "Kogut-Etsion": one_surface(ONE.replace(law=KogutEtsion(critical=0.05))),
         "a change of gamma alone": gamma_alone,
         FIRST: first_use,
         PEER: script(),
