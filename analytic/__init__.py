@@ -125,7 +125,7 @@ _LATER = {
 
 
 def __getattr__(name: str) -> Any:
-    """A law of contact or an interaction, loaded when it is asked for."""
+    """Return a law of contact or an interaction, loaded when it is asked for."""
     if name in _LATER:
         return getattr(import_module(f"analytic.{_LATER[name]}"), name)
     if name in __all__:

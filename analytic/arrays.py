@@ -18,7 +18,7 @@ def hold(frozen: Any, **values: Any) -> None:
 
 
 def some_of(values: Array, which: NDArray[Any]) -> Array:
-    """Some of the values, by a mask of any shape that they broadcast to, or by numbers.
+    """Return some of the values, by a mask of any shape that they broadcast to, or by numbers.
 
     Numbers beyond the last begin again with the first.
     """

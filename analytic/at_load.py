@@ -241,7 +241,7 @@ def _gains(
 
 
 def _cells(model: Any, given: str, names: Sequence[str], h: float, rule: Any, pressed: _Added) -> Array:
-    """What an asperity adds to the given sum, its probability, and that times what it adds to the others.
+    """Return what an asperity adds to the given sum, its probability, and that times what it adds to others.
 
     In cells of the heights between the nodes of a rule, with the means of that; shape (2 + names, cells).
     """
@@ -289,7 +289,7 @@ def _jumping(model: Any, given: str, names: Sequence[str], h: float, rule: Any) 
 
 
 def _by_radius(name: str, ratios: Array | None) -> Array | float:
-    """What a quantity is worth by the radius of an asperity."""
+    """Return what a quantity is worth by the radius of an asperity."""
     return 1.0 if ratios is None else np.asarray(ratios ** quantity_of(name).radius)
 
 

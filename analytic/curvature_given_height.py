@@ -56,7 +56,7 @@ class CurvatureGivenHeight:
         return np.asarray(np.where(z > 0, tail, body) / math.sqrt(1 + v))
 
     def edges(self, low: Array, high: Array) -> Array:
-        """Ends of pieces on which the law is smooth, between two curvatures at each height; shape (6, n)."""
+        """Return ends of pieces on which the law is smooth, between two curvatures at each height: (6, n)."""
         v, mu = self._v, self._mu
         turn, width = mu / (1 + v), _WIDE * math.sqrt(v / (1 + v))
         peak = mu - _WIDE * math.sqrt(v), self.highest(0 * mu)

@@ -157,7 +157,7 @@ class Squared:
         return self.grading.smooth
 
     def __call__(self, s: Array) -> Array:
-        """The squares of its values."""
+        """Return the squares of its values."""
         return np.square(self.grading(s))
 
 
@@ -194,7 +194,7 @@ class Clipped:
         return self.grading.smooth and bool(self.zeros)
 
     def __call__(self, s: Array) -> Array:
-        """The positive part of the grading."""
+        """Return the positive part of the grading."""
         return np.maximum(self.grading(s), 0.0)
 
     @classmethod

@@ -126,7 +126,7 @@ class HeightRule:
         return terms
 
     def _by_law(self, quantities: Sequence[str], h: Array, modulus: Array, ways: Ways) -> Array:
-        """The same by the formulas of a law, each piece of which is looked for once."""
+        """Return the same by the formulas of a law, each piece of which is looked for once."""
         terms = np.zeros((self.heights.size, len(quantities), h.size))
         for branch in ways.among(quantities):
             which = [k for k, name in enumerate(quantities) if ways.of(name) == branch]

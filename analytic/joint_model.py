@@ -127,7 +127,7 @@ class JointModel(Model):
         return JOINT[quantity] if quantity in JOINT else super()._asked(quantity, h)
 
     def _own_plane(self, quantity: str) -> str:  # noqa: ARG002
-        """The separation that tells the distance of mean planes where each surface has its own; or none."""
+        """Return the separation that tells the distance of mean planes, if surfaces have their own."""
         return ""
 
     def _parts(self, quantity: str, h: Array) -> tuple[Array, Array]:  # noqa: ARG002
@@ -197,5 +197,5 @@ def _way(quantity: str) -> str:
 
 
 def _spots(quantity: str) -> str | None:
-    """What of it the spots conduct."""
+    """Return what of it the spots conduct."""
     return f"conductance_si{_way(quantity)}" if quantity.startswith("joint") else None

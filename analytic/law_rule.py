@@ -96,7 +96,7 @@ def _edges(law: HeightLaw, start: float, top: float) -> list[float]:
 
 
 def beginnings_of(n: float, separations: Sequence[float]) -> Further:
-    """Ends of pieces that shrink towards separations, where the power of the approach is no half-integer."""
+    """Return ends of pieces that shrink towards separations, for powers that are no half-integers."""
     ends = [s for x in separations for s in towards(x, NEAREST)] if (2 * n) % 1 else []
     return lambda *_: ends
 
@@ -110,7 +110,7 @@ def pieces_of(
     exponent: float = 0.0,
     further: Further = lambda *_: (),
 ) -> tuple[Array, Array]:
-    """Ends of the pieces of a rule, increasing.
+    """Return the ends of the pieces of a rule, increasing.
 
     Arguments are those of `ends_of`; `further` takes the lowest and the highest height of the rule and gives
     further ends of pieces.

@@ -102,7 +102,7 @@ class MeanContact:
             return last_separations(lambda h: np.log(found(h)), np.log(values), grid, about, quantity)
 
     def _in_parts(self, h: ArrayLike, quantity: str, function: Callable[[Array, HeightRule], Array]) -> Array:
-        """A few separations at a time, which share a rule."""
+        """Return a few separations at a time, which share a rule."""
         flat = np.ravel(np.asarray(h, dtype=np.float64))
         if not np.all(np.isfinite(flat)):
             raise ValueError("h: every separation must be finite")

@@ -180,12 +180,12 @@ class MeanModel:
         return MeanContact(self.ways, self.grading, self.summits)
 
     def _means(self, *quantities: Quantity) -> MeanContact | MeanPowers:
-        """What one asperity adds to all of these in the mean, by powers of its approach if that is true."""
+        """Return what one asperity adds to all of these in the mean, by powers of its approach if it can."""
         powers = all(self._by_powers(q) for q in quantities)
         return MeanPowers(self._contact) if powers else self._contact
 
     def _asked(self, quantity: str, h: ArrayLike = np.inf) -> Quantity:
-        """A quantity that is known at these separations."""
+        """Return a quantity that is known at these separations."""
         q = quantity_of(quantity)
         if quantity in NOT_SUMS:
             raise KeyError(f"{quantity!r}: this model has no gas; use `theory` of a scene with a joint")

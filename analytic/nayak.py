@@ -81,7 +81,7 @@ class NayakTables:
         return np.unique([*(-self.width * steps), *(self.width * steps), *steps[steps > self.width]])
 
     def envelope(self, x: Array) -> Array:
-        """The Gaussian factor by which densities fall."""
+        """Return the Gaussian factor by which densities fall."""
         return exp_minus_half_square(np.where(x < 0, x / self.width, x))
 
     def log_envelope_step(self, x: Array, t: Array) -> Array:
@@ -160,7 +160,7 @@ class NayakTables:
 
 @lru_cache(maxsize=64)
 def tables_of(alpha: float) -> NayakTables:
-    """The same tables for all that ask for one alpha."""
+    """Return the same tables for all that ask for one alpha."""
     return NayakTables(alpha)
 
 

@@ -68,7 +68,7 @@ def towards(separation: float, nearest: float) -> list[float]:
 
 
 def above_neighbours(separations: Array) -> list[float]:
-    """The same above close separations, as near to the upper one as the lower one is.
+    """Return the same above close separations, as near to the upper one as the lower one is.
 
     The root of the approach to the lower one almost has its kink inside the next piece.
     """

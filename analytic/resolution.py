@@ -49,7 +49,7 @@ class _Fit:
         return np.asarray(np.linalg.inv(chebyshev.chebvander(self.nodes, self.degree)), dtype=np.float64)
 
     def heights(self, low: Array, high: Array) -> Array:
-        """The nodes on each interval, shape (intervals, degree + 1)."""
+        """Return the nodes on each interval, shape (intervals, degree + 1)."""
         return np.asarray(low[:, None] + (high - low)[:, None] * (1 + self.nodes) / 2)
 
     def at_nodes(self, grading: Grading, low: Array, high: Array) -> Array:
@@ -94,7 +94,7 @@ def spread_over(low: Array, high: Array) -> Array:
 
 
 def _rounding(fit: _Fit, grading: Grading, low: Array, high: Array) -> Array:
-    """Rounding noise of the grading itself: the misfit that is left on intervals 1000 times narrower."""
+    """Return the rounding noise of the grading: the misfit left on intervals 1000 times narrower."""
     width = np.maximum(_TINY * (high - low), 4 * np.spacing(np.maximum(np.abs(low), np.abs(high))))
     starts = [low + part * (high - low) for part in (0.19, 0.47, 0.83)]
     left = [fit.misfit(grading, s, s + width, spread_over(s, s + width))[0] for s in starts]

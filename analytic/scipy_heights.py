@@ -225,7 +225,7 @@ def _quiet() -> Iterator[None]:
 
 
 def _without_place(distribution: Any) -> Any:
-    """The same law frozen with nothing but its shapes, by name: however given, it has the same digits."""
+    """Return the same law frozen with its shapes alone, by name: however given, it has the same digits."""
     frozen = distribution() if hasattr(distribution, "freeze") else distribution
     if not hasattr(frozen, "dist"):
         return frozen
@@ -249,7 +249,7 @@ class _Density:
 
 
 def in_time(seconds: float, call: Callable[[], T], problem: str) -> T:
-    """Result of a call that takes no more than so many seconds of this thread's own CPU time.
+    """Return the result of a call that takes no more than so many seconds of this thread's own CPU time.
 
     Looks at the clock at each Python function that the call enters. So it does not depend on what else the
     machine does, and works in any thread; only a single compiled function cannot be interrupted. No bound

@@ -116,7 +116,7 @@ def _bends(grading: Grading, edges: Array) -> Marks:
 
 
 def _not_below(found: PiecewiseSeries, grading: Grading, left: Array, right: Array) -> PiecewiseSeries:
-    """The series raised by their rounding, on pieces where the grading is never negative and they are."""
+    """Return the series raised by their rounding where they are negative and the grading is not."""
     ends = np.stack([left, np.nextafter(right, left)], axis=1)
     heights = np.concatenate([spread_over(left, right), ends, SHORT.heights(left, right)], axis=1)
     lacking = np.where(np.all(grading(heights) >= 0, axis=1), -2 * found(heights).min(axis=1), 0.0)

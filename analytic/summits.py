@@ -105,7 +105,7 @@ def rule_of_radii(
 
 
 def _pieces(cuts: Array, which: Ints, start: float, top: float) -> tuple[Array, Array, Ints]:
-    """Ends of the pieces between the cuts of each radius, and the number of the radius."""
+    """Return the ends of the pieces between the cuts of each radius, and the number of the radius."""
     inside = (cuts >= start) & (cuts <= top)
     cuts, which = cuts[inside], which[inside]
     order = np.lexsort((cuts, which))
@@ -152,7 +152,7 @@ class Summits:
         return float(self.heights.isf(np.array(_HIGHEST), 0.0))
 
     def weighted(self, power: float) -> HeightLaw:  # noqa: ARG002 - of one radius
-        """The heights, each with the mean of this power of its radius over that of the surface."""
+        """Return the heights, each with the mean of this power of its radius over that of the surface."""
         return self.heights
 
     def rule(self, h: Array, grading: Grading, branches: Branches | None = None) -> HeightRule:

@@ -65,7 +65,7 @@ class Table:
         return PchipInterpolator(self.s, self.ratio)
 
     def __call__(self, s: Array) -> Array:
-        """The interpolant; outside the data the nearest value."""
+        """Return the interpolant; outside the data the nearest value."""
         return np.asarray(self._interpolant(np.clip(s, self.s[0], self.s[-1])), dtype=np.float64)
 
     @classmethod

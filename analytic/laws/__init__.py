@@ -45,7 +45,7 @@ _HOMES = {
 
 
 def __getattr__(name: str) -> Any:
-    """A law from its file; `by_name` has those of scene files."""
+    """Return a law from its file; `by_name` has those of scene files."""
     if name == "by_name":
         return {law.name: law for law in (Hertz, *map(__getattr__, _HOMES)) if law.name != "custom"}
     if name not in _HOMES:

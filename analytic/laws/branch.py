@@ -42,7 +42,7 @@ class Branch:
         return min(self.law.finest, self.conductance.finest) if self.conductance else self.law.finest
 
     def with_radii(self, ratios: Array) -> Self:
-        """That of summits whose radii are these multiples of the surface's, one for each separation asked."""
+        """Return that of summits whose radii are these multiples of the surface's, one a separation."""
         own = None if self.conductance is None else self.conductance.with_radii(ratios)
         return replace(self, law=self.law.with_radii(ratios), conductance=own)
 
@@ -82,7 +82,7 @@ class Branch:
         return piece > 0 or self.law.root
 
     def root_at_touch(self, piece: int) -> bool:
-        """The same where it begins from nothing, so that its formulas take negative roots as well."""
+        """Return the same where it begins from nothing, so that its formulas take negative roots as well."""
         return piece == 0 and self.law.root
 
     def left(self, h: Array, above: Array, e: Array) -> Array:
@@ -96,18 +96,18 @@ class Branch:
     def value(
         self, quantity: str, piece: int, h: Array, above: Array, e: Array, *, sign: float = 1.0
     ) -> Array:
-        """What contacts of a piece add at heights `above` the separations, over the scale.
+        """Return what contacts of a piece add at heights `above` the separations, over the scale.
 
         With a `sign` of -1 the formula goes on to negative roots of the penetration.
         """
         return self.added(quantity, self.law, piece, sign * np.sqrt(above), e)
 
     def of_root(self, quantity: str, piece: int, y: Any, e: Array) -> Array:
-        """The same, closer than ever before, of the root of the penetration, which may be complex."""
+        """Return the same, closer than ever before, of the root of the penetration, which may be complex."""
         return self.added(quantity, self.law, piece, y, e)
 
     def added(self, quantity: str, formulas: ContactLaw | Unloading, piece: int, *at: Any) -> Array:
-        """A quantity by formulas at what they take, and by what spots conduct through."""
+        """Return a quantity by formulas at what they take, and by what spots conduct through."""
         if quantity != "conductance_si":
             return of_spot(quantity, formulas, piece, *at)
         if self.conductance is None:
@@ -177,7 +177,7 @@ class UnloadingBranch(Branch):
 
 
 def term_of(quantity: str, branch: Branch, h: ArrayLike, heights: ArrayLike, e: ArrayLike) -> Array:
-    """What asperities add at a separation, 0 without contact: literally, each by its own formula.
+    """Return what asperities add at a separation, 0 without contact: literally, each by its own formula.
 
     Parameters
     ----------
@@ -241,7 +241,7 @@ class Ways:
         return replace(self, law=own.law, conductance=own.conductance)
 
     def term(self, quantity: str, h: float | Array, s: Array, e: Array, ratios: Array | None = None) -> Array:
-        """What summits, perhaps of radii of their own, add at a separation, 0 without contact.
+        """Return what summits, perhaps of radii of their own, add at a separation, 0 without contact.
 
         Parameters
         ----------
@@ -264,7 +264,7 @@ class Ways:
         return np.asarray(ratios**q.radius * term_of(q.base, self.with_radii(ratios).of(quantity), h, s, e))
 
     def of(self, quantity: str) -> Branch:
-        """The branch that a quantity is on.
+        """Return the branch that a quantity is on.
 
         Where nothing yields, unloading follows the loading curve, from any separation.
 
@@ -294,5 +294,5 @@ class Ways:
         return Branch(self.law, self.conductance)
 
     def among(self, quantities: Iterable[str]) -> tuple[Branch, ...]:
-        """The branches of some quantities, each once."""
+        """Return the branches of some quantities, each once."""
         return tuple(dict.fromkeys(self.of(name) for name in quantities))

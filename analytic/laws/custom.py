@@ -64,7 +64,7 @@ def _at(t: Any, low: float, high: float) -> Any:
 
 
 def resolved_in_root(formula: Formula, low: float, high: float) -> RootSeries:
-    """The series that stands for a formula, to 1e-13 of the largest value of ``formula/u^2``.
+    """Return the series that stands for a formula, to 1e-13 of the largest value of ``formula/u^2``.
 
     If 256 terms are not enough that is a ValueError.
     """

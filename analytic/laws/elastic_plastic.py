@@ -35,7 +35,7 @@ class Piece(NamedTuple):
 
 
 def power(factor: float, exponent: float) -> Formula:
-    """The formula ``factor x^exponent``."""
+    """Return the formula ``factor x^exponent``."""
     return lambda _law, x, _e: factor * x**exponent
 
 
@@ -180,7 +180,7 @@ class Bridgeable(ElasticPlastic):
 
 
 def _bridge(start: float, left: Formula, right: Formula) -> Formula:
-    """The cubic that takes over value and slope of `left` where it starts, and of `right` where it ends."""
+    """Return the cubic with value and slope of `left` where it starts, and of `right` where it ends."""
     width = (BRIDGE - 1) * start
 
     def formula(law: Any, x: Any, e: Any) -> Any:

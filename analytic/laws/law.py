@@ -62,7 +62,7 @@ class PerRadius:
         return self._with(lambda constant, _: some_of(constant, which)) if self.each else self
 
     def _with(self, change: Callable[[Any, float], Any]) -> Self:
-        """The same with another constant in place of the one that follows the radius."""
+        """Return the same with another constant in place of the one that follows the radius."""
         if not self.of_radius:
             return self
         changed, (name, power) = copy(self), self.of_radius
@@ -234,7 +234,7 @@ class Hertz(ContactLaw):
 
 
 def is_positive(value: Any) -> bool:
-    """False also for texts, which only scene files read."""
+    """Tell whether a value is a finite number > 0; texts, which only scene files read, are not."""
     return isinstance(value, Real) and 0 < float(value) < math.inf
 
 

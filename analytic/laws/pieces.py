@@ -23,7 +23,7 @@ from analytic.quantities import quantity_of
 def cuts_of(
     branches: Iterable[Branch], grading: Grading, separations: Array, low: float, high: float
 ) -> list[float]:
-    """Ends of the regimes, and heights that shrink towards those where a broken power begins, in no order.
+    """Return ends of regimes, and heights that shrink towards those where a broken power begins, unsorted.
 
     Formulas that begin at the separation and are smooth in the root of s - h are so up to the end of their
     regime, or as far as the branch says. Others are made of powers of the distance from first touch or
@@ -37,7 +37,7 @@ def cuts_of(
 def cuts_of_each(
     branch: Branch, grading: Grading, separations: Array, low: float, high: float
 ) -> tuple[Array, Ints]:
-    """The same of one branch, with repetitions, and of which separation each is."""
+    """Return the same of one branch, with repetitions, and of which separation each is."""
     regimes = branch.regimes(grading, separations, low, high)
     smooth = np.array([branch.root(j) for j in regimes.piece.tolist()], dtype=bool)
     towards_ends = _above_beginnings(branch, regimes, smooth, separations, low)
@@ -77,7 +77,7 @@ _NEAR = 2.0**-28  # heights on either side, from which the slope of a bound is t
 
 
 def slope_term(quantity: str, branch: Branch, penetration: Array, e: Array) -> Array:
-    """Derivative by the penetration of what asperities add, within the piece that holds; 0 without contact.
+    """Return the derivative by the penetration of what asperities add, within a piece; 0 without contact.
 
     Of reduced penetrations s - h, negative without contact, and moduli E*(s)/E*, in their common shape.
     """
@@ -121,7 +121,7 @@ class Jumps:
     ratios: Array | None = None
 
     def before(self, quantity: str) -> Array:
-        """What they add before, over the scale."""
+        """Return what they add before, over the scale."""
         if self.piece < 0:
             return np.zeros(self.root.shape)
         return self._by_radius(quantity) * self.branch.of_root(quantity, self.piece, self.root, self.modulus)

@@ -157,7 +157,7 @@ def crossings_of(
 
 
 def _stretches(bound: Bound, grading: Grading, low: float, high: float, radii: int) -> Array:
-    """Ends of stretches on each of which ``s - bound(s)`` only rises, or only falls, increasing."""
+    """Return increasing ends of stretches on each of which ``s - bound(s)`` only rises, or only falls."""
     if isinstance(grading, Homogeneous):
         return np.array([low, high])
     breaks = np.array(resolved_breaks(grading, low, high))

@@ -66,7 +66,7 @@ class Unloading:
         return np.asarray(self.loading.stiffness(piece, y, e) + 0.0 * deepest)
 
     def slope(self, piece: int, y: Array, deepest: Array, e: Array) -> Array:
-        """Derivative of the load with respect to the penetration, at a given deepest one."""
+        """Return the derivative of the load with respect to the penetration, at a given deepest one."""
         return slope_in_root(lambda v: self.load(piece, v, deepest, e), y)
 
 

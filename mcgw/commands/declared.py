@@ -76,7 +76,7 @@ class _Version(argparse.Action):
 
 
 def parser_of(names: Sequence[str] = ()) -> argparse.ArgumentParser:
-    """The parser of some commands, or all; only what these import is imported."""
+    """Return the parser of some commands, or all; only what these import is imported."""
     parser = Parser(
         prog="mcgw",
         description="Monte-Carlo simulation of rough contacts with graded elasticity. SI units; "
@@ -100,7 +100,7 @@ def parser_of(names: Sequence[str] = ()) -> argparse.ArgumentParser:
 
 
 def kinds_of(function: Command) -> dict[str, Kind]:
-    """The kind of each parameter of a command."""
+    """Return the kind of each parameter of a command."""
     found = {}
     for name, annotation in function.__annotations__.items():
         own = (x for x in getattr(annotation, "__metadata__", ()) if isinstance(x, Kind))
@@ -145,7 +145,7 @@ def _add_arguments(parser: argparse.ArgumentParser, function: Command, words: st
 def _options(
     kind: Kind, annotation: Any, placed: bool, default: Any, metavar: str, words: str
 ) -> dict[str, Any]:
-    """What argparse takes for a parameter; the default is ... where it must be given."""
+    """Return what argparse takes for a parameter; the default is ... where it must be given."""
     annotation = (
         getattr(annotation, "__origin__", annotation) if hasattr(annotation, "__metadata__") else annotation
     )

@@ -24,7 +24,7 @@ class Wave(Quantity):
         super().__init__("m")
 
     def read(self, given: Any, option: str) -> Any:
-        """The length."""
+        """Return the length."""
         return given if given == "none" else super().read(given, option)
 
 
@@ -231,7 +231,7 @@ def _of_numbers(
 
 
 def _parameters(s: "Surface", assumed: str) -> str:
-    """The parameters of a surface, and whether its modulus was given."""
+    """Return the parameters of a surface, and whether its modulus was given."""
     return (
         f"sigma = {s.sigma:.4g} m, radius = {s.radius:.4g} m, eta = {s.eta:.4g} 1/m^2, "
         f"E_star = {s.E_star:.4g} Pa{assumed}"
@@ -239,7 +239,7 @@ def _parameters(s: "Surface", assumed: str) -> str:
 
 
 def _share(text: str) -> float:
-    """A fraction of Sz, which may be 0."""
+    """Return a fraction of Sz, which may be 0."""
     try:
         return float(text)
     except ValueError:

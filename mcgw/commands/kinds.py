@@ -55,7 +55,7 @@ class Shard(Kind):
     """A share of the blocks, such as 2/8; checked before anything is read."""
 
     def read(self, given: Any, option: str) -> Any:  # noqa: ARG002
-        """The same text."""
+        """Return the same text."""
         from mcgw.jobs.driver import part_of
 
         if given is not None:
@@ -73,7 +73,7 @@ class Quantity(Kind):
         self.unit = unit
 
     def read(self, given: Any, option: str) -> Any:
-        """The number; what is no text, as a default, is one already."""
+        """Return the number; what is no text, as a default, is one already."""
         from mcgw.formats.units import parse
 
         return parse(given, self.unit, option) if isinstance(given, str) else given
@@ -96,7 +96,7 @@ class Values(Quantity):
         self.words = f"; or A:B:N for N of them from A to B, {how}"
 
     def read(self, given: Any, option: str) -> Any:
-        """A list, in which what is no range is left to the function."""
+        """Return a list, in which what is no range is left to the function."""
         return given and [
             x for text in given for x in (ranged(text, option, self.unit) if ":" in text else [text])
         ]
@@ -106,7 +106,7 @@ class Pressures(Values):
     """Numbers with units, and ranges of them, as SI numbers."""
 
     def read(self, given: Any, option: str) -> Any:
-        """A list of numbers."""
+        """Return a list of numbers."""
         from mcgw.formats.units import parse
 
         found = super().read(given, option)
@@ -152,7 +152,7 @@ class In(Kind):
     file = True
 
     def open(self, path: Any, args: argparse.Namespace, grown: Path | None) -> tuple[Any, list[Path]]:  # noqa: ARG002
-        """What the function gets, and all files that are read for it."""
+        """Return what the function gets, and all files that are read for it."""
         return path, path if isinstance(path, list) else [path]
 
     def cautions(self, path: Path, opened: Any) -> tuple[Any, str] | None:  # noqa: ARG002
@@ -168,7 +168,7 @@ class Results(In):
         self.sweeps = sweeps
 
     def open(self, path: Any, args: argparse.Namespace, grown: Path | None) -> tuple[Any, list[Path]]:  # noqa: ARG002
-        """The ensemble or the sweep."""
+        """Return the ensemble or the sweep."""
         from mcgw.store.ensembles import open_ensemble
         from mcgw.sweeps import open_results
 
@@ -195,7 +195,7 @@ class SceneFile(In):
         self.others, self.cautious = others, cautious
 
     def open(self, path: Any, args: argparse.Namespace, grown: Path | None) -> tuple[Any, list[Path]]:
-        """The scene, with the seed of what `grown` holds where it gives none."""
+        """Return the scene, with the seed of what `grown` holds where it gives none."""
         from mcgw.scene.scene_file import files_of, load_scene
         from mcgw.store.place import recorded_seed
 
@@ -251,7 +251,7 @@ class Out(Kind):
             self.words = f"; default: {beside.format('NAME')} beside what is read"
 
     def place(self, given: Any, option: str, source: Path | None) -> tuple[Any, list[Output]]:
-        """What the function gets, and what it will write."""
+        """Return what the function gets, and what it will write."""
         if given is None and self.beside and source is not None:
             given = source.parent / self.beside.format(source.stem)
         form = self.form or figure_format() if given else None
@@ -266,7 +266,7 @@ class Folder(Out):
         self.names = names
 
     def place(self, given: Any, option: str, source: Path | None) -> tuple[Any, list[Output]]:
-        """The paths of all files."""
+        """Return the paths of all files."""
         assert source is not None
         paths = [(given or source.parent / "out") / name.format(source.stem) for name in self.names]
         forms = [CSV if path.suffix == ".csv" else figure_format() for path in paths]

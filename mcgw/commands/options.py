@@ -40,7 +40,7 @@ def drawing(
 
 
 def _executor(jobs: int | None, dask: str | None) -> "AbstractContextManager[Executor | None]":
-    """The executor that the options name, ended at the end; None for threads of this process."""
+    """Return the executor that the options name, ended at the end; None for threads of this process."""
     from mcgw.jobs.executors import Jobs as Processes, dask_executor
 
     if jobs is not None:

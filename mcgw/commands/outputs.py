@@ -32,7 +32,7 @@ TOML = Format("a scene", (".toml",))
 
 
 def figure_format() -> Format:
-    """The formats that matplotlib writes."""
+    """Return the formats that matplotlib writes."""
     from mcgw.figures.style import figure_endings
 
     return Format("a figure", figure_endings())
@@ -75,7 +75,7 @@ def reading(inputs: Iterable[Path]) -> Iterator[None]:
 
 
 def source() -> Path:
-    """The file that the command reads first."""
+    """Return the file that the command reads first."""
     return _inputs.get()[0]
 
 

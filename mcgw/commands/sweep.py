@@ -87,7 +87,7 @@ def _axis(text: str, option: str) -> tuple[str, list[Any]]:
 
 
 def _number(text: str) -> int | float | None:
-    """An int or float as in TOML; None for other text."""
+    """Return an int or float as in TOML; None for other text."""
     for kind in (int, float):
         try:
             return kind(text)

@@ -40,7 +40,7 @@ def _scene(surface: Any = None, **changes: Any) -> Any:
 
 
 def _scenes() -> list[dict[str, Any]]:
-    """Changes of that scene: laws, samplers, crowds, statistics, radii."""
+    """Return changes of that scene: laws, samplers, crowds, statistics, radii."""
     from analytic import KogutEtsion
     from mcgw.scene.surface import SpectralSurface
 

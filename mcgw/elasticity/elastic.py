@@ -72,7 +72,7 @@ class Elastic(Shown):
         return self.planned.plain / self.planned.cost
 
     def table(self) -> Table:
-        """A row for each quantity: mean and interval."""
+        """Return a row for each quantity: mean and interval."""
         low, high = self.found.interval()
         return Table((
             Column("quantity", list(self.quantities)),

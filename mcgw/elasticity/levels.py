@@ -113,7 +113,7 @@ class Pressed:
         return found | ({"mean_gap": mean_gap} if self.separation is None else {"pressure": pressure})
 
     def of_spots(self, spots: Spots, found: Balance) -> Values:
-        """Sums over contacts in balance."""
+        """Return the sums over contacts in balance."""
         area, load = (float(part(found.penetrations).sum()) for part in (spots.areas, spots.loads))
         return self.values(area, found.stiffness, load / self.grid.area, found.separation)
 
@@ -127,7 +127,7 @@ def alone(pressed: Pressed) -> Values:
 
 
 def located(pressed: Pressed) -> Values:
-    """The same summits, each with the surface around it and pressed down by all others."""
+    """Return the same summits, each with the surface around it and pressed down by all others."""
     if pressed.clear(float(pressed.spots.heights.max())):
         return alone(pressed)
     spots, places = pressed.touching()
@@ -136,7 +136,7 @@ def located(pressed: Pressed) -> Values:
 
 
 def boundary_elements(pressed: Pressed) -> Values:
-    """The elastic half-space itself, by Tamaas (Polonsky, Keer and Rey); area less half of the rim's pixels.
+    """Solve the elastic half-space by Tamaas (Polonsky, Keer, Rey); area less half of the rim's pixels.
 
     Raises
     ------

@@ -102,7 +102,7 @@ def interaction(spots: Spots, places: Ints, grid: Grid, separation: float) -> Pu
 
 
 def _near(grid: Grid, places: Ints, radii: Array) -> csr_matrix:
-    """What pairs of spots within reach feel of each other beyond point loads, 1/m."""
+    """Return what pairs of spots within reach feel of each other beyond point loads, 1/m."""
     tree = cKDTree(places[::-1].T * np.array(grid.pixel), boxsize=np.array(grid.size))
     farthest = min(_REACH * math.sqrt(2) * float(radii.max()), min(grid.size) / 2)
     pairs = tree.sparse_distance_matrix(tree, farthest, output_type="coo_matrix")
@@ -155,7 +155,7 @@ def _newton(spots: Spots, push: Push, start: Balance, load: float | None, share:
 
 
 def _answered(slopes: Array, push: Push, share: float, sinking: Array) -> Array:
-    """Loads by which spots answer when each is lowered by so much, to first order, N."""
+    """Return loads by which spots answer when each is lowered by so much, to first order, N."""
     on = slopes > 0
     loads, shape = np.zeros(slopes.shape), (np.count_nonzero(on),) * 2
 

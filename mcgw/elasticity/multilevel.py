@@ -105,7 +105,7 @@ class Mean:
     degrees: Array
 
     def interval(self, level: float = 0.95) -> tuple[Array, Array]:
-        """Ends of the confidence interval."""
+        """Return the ends of the confidence interval."""
         half = student.ppf((1 + level) / 2, self.degrees) * self.stderr
         return self.mean - half, self.mean + half
 

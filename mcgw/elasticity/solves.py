@@ -123,13 +123,13 @@ class Solves:
 
 
 def _written(row: Mapping[str, Any], header: str) -> str:
-    """A line with a checksum at its end, which binds it to the question of its file."""
+    """Return a line with a checksum at its end, which binds it to the question of its file."""
     checksum = hashlib.sha256(f"{header}\n{json.dumps(row)}".encode()).hexdigest()[:16]
     return json.dumps({**row, "check": checksum}) + "\n"
 
 
 def _checked(line: str, header: str) -> dict[str, Any] | None:
-    """What a line holds, if it is as it was written."""
+    """Return what a line holds, if it is as it was written."""
     try:
         row: dict[str, Any] = loads_json(line.encode())
         del row["check"]

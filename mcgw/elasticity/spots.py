@@ -89,7 +89,7 @@ class Spots:
         return np.asarray(np.sqrt(np.maximum(squared, squared.mean(where=squared > 0))))
 
     def only(self, which: Ints) -> "Spots":
-        """Some of them."""
+        """Return some of them."""
         radii, depths, powers = self.radii[which], self.depths[which], self.powers[which]
         return Spots(self.heights[which], radii, depths, powers, self.E_star)
 

@@ -27,7 +27,7 @@ def mean_surface(scene: Scene, given: str, value: float) -> dict[str, float]:
 
 
 def asperities_of(scene: Scene) -> Scene:
-    """The scene without asperity interaction, which at a given load only changes the separation."""
+    """Return the scene without asperity interaction, which at a given load only changes the separation."""
     together = scene.interaction is not None or scene.gas is not None
     if not together:
         return scene

@@ -108,7 +108,7 @@ class Budget(Shown):
         return f"± {percent(math.hypot((best.high - best.low) / (2 * best.value), parameters))}"
 
     def _largest(self) -> tuple[str, float]:
-        """The line that dominates the first quantity, and its share."""
+        """Return the line that dominates the first quantity, and its share."""
         first = {line: float(share[0]) for line, share in self.shares.items() if not np.isnan(share[0])}
         return max(first.items(), key=lambda item: item[1], default=("specimens", math.nan))
 
@@ -132,7 +132,7 @@ class Budget(Shown):
         return f"{told}. Not included: {unknown}" if unknown else told
 
     def table(self) -> Table:
-        """A row for each line, and the total."""
+        """Return a row for each line, and the total."""
         rows = [*self.shares.values(), self.all]
         columns = (
             Column(name, [row[k] for row in rows], name.replace("_", " "), form=".2%", missing="not known")
@@ -141,7 +141,7 @@ class Budget(Shown):
         return Table((Column("95 %", [*self.shares, "all"]), *columns), self.title)
 
     def sheet(self) -> Sheet:
-        """The lines, and what would reduce the total."""
+        """Return the lines, and what would reduce the total."""
         return Sheet(self.title, [("advice", self.advice)], replace(self.table(), title=""))
 
 
@@ -211,7 +211,7 @@ def yields(share: float) -> str:
 def slopes_of(
     scene: Scene, uncertain: Uncertainty, again: Callable[[Scene], Answers], names: tuple[str, ...]
 ) -> Array:
-    """Derivatives of log(answer) at a given load with respect to log(parameter), shape (names, parameters).
+    """Return d log(answer) / d log(parameter) at a given load, shape (names, parameters).
 
     Central differences of the exact theory.
     """
@@ -221,7 +221,7 @@ def slopes_of(
 
 
 def moved(scene: Scene, steps: dict[str, float]) -> Scene:
-    """The scene with other parameters of its surface, by steps of their logarithms."""
+    """Return the scene with other parameters of its surface, by steps of their logarithms."""
     factors = {name: math.exp(step) for name, step in steps.items()}
     surface, heights, curvature = scene.surface, scene.heights, scene.curvature
     if any(name in factors for name in ("m0", "m2", "m4")):

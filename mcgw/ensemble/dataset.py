@@ -39,11 +39,11 @@ class Dataset(Shown):
 
     @abstractmethod
     def _held(self, point: int) -> Held:
-        """What is held of the surfaces of a point."""
+        """Return what is held of the surfaces of a point."""
 
     @abstractmethod
     def _at(self, which: Ints) -> Self:
-        """The same surfaces at some of the separations, by their numbers."""
+        """Return the same surfaces at some of the separations, by their numbers."""
 
     @abstractmethod
     def labelled(self) -> Labelled:
@@ -205,7 +205,7 @@ class Dataset(Shown):
         return self._per_area(found) if per_area else found
 
     def _arranged(self, found: Sequence[Any]) -> Array:
-        """Data of all points in the shape of the axes."""
+        """Return data of all points in the shape of the axes."""
         return np.stack(found).reshape(*self.shape, *np.shape(found[0]))
 
     def _per_area(self, values: Array) -> Array:
@@ -217,7 +217,7 @@ class Dataset(Shown):
         return np.array(numbers).reshape(*self.shape, 1)
 
     def _stored(self, quantity: str) -> tuple[str, bool]:
-        """The stored quantity, and whether the requested one is per nominal area."""
+        """Return the stored quantity, and whether the requested one is per nominal area."""
         name = PER_AREA[quantity].of if quantity in PER_AREA else quantity
         if name not in self.quantities:
             kind, have = type(self).__name__.lower(), ", ".join(self.quantities)

@@ -60,7 +60,7 @@ def at_a_time(size: int) -> int:
 
 
 def kept(scene: Scene, block: Block) -> dict[str, Any]:
-    """What is kept of a block: its sums, contacts as whole numbers."""
+    """Return what is kept of a block: its sums, contacts as whole numbers."""
     alone = scene.interaction is scene.gas is None
     arrays = dict(block.sums) if alone else answered(scene, block.sums)
     for name in filter(lambda name: quantity_of(name).counts, scene.quantities):
@@ -121,7 +121,7 @@ def use_threads(threads: int | None) -> Iterator[None]:
 
 
 def always(_: int) -> bool:
-    """Always continue."""
+    """Return True: continue always."""
     return True
 
 
@@ -148,14 +148,14 @@ class Reducer(ABC):
 
     @abstractmethod
     def tables(self, first: int, stop: int, go_on: GoOn = always) -> Tables:
-        """What is kept of a block or its beginning, whatever the number of threads.
+        """Return what is kept of a block or its beginning, whatever the number of threads.
 
         `go_on` is called after each piece that fits the memory.
         """
 
     @abstractmethod
     def held(self, blocks: Iterable[Tables]) -> Any:
-        """The result of all blocks, each read in its turn."""
+        """Return the result of all blocks, each read in its turn."""
 
     @abstractmethod
     def check(self, surfaces: int | None = None) -> None:
@@ -169,7 +169,7 @@ class Reducer(ABC):
 
 
 def drawn(reducer: Reducer, go_on: GoOn) -> Any:
-    """What is kept of all surfaces, or of as many as `go_on` allows, in memory."""
+    """Return what is kept of all surfaces, or of as many as `go_on` allows, in memory."""
     more = True
 
     def asked(done: int) -> bool:
@@ -209,7 +209,7 @@ class OfScene(Reducer):
 
 
 def seconds_for(scene: Scene, sampler: Sampler, surfaces: int, *, at_least: float = 0.0) -> float:
-    """Expected wall time of drawing some surfaces on this machine, s.
+    """Return the expected wall time of drawing some surfaces on this machine, s.
 
     Measured on a trial block if surfaces are cheap, unless a rough estimate is below `at_least`.
     """
@@ -220,7 +220,7 @@ def seconds_for(scene: Scene, sampler: Sampler, surfaces: int, *, at_least: floa
 
 
 def rough_seconds(scene: Scene, surfaces: int) -> float:
-    """Expected wall time of drawing some surfaces, within a factor of two or so, by arithmetic alone, s."""
+    """Estimate the wall time of drawing some surfaces by arithmetic alone, s, within a factor of two."""
     return surfaces * (expected(scene).seconds / numba.get_num_threads() + _for_statistics(scene))
 
 
@@ -230,7 +230,7 @@ def _for_statistics(scene: Scene) -> float:
 
 
 def in_words(seconds: float) -> str:
-    """A time as people say it.
+    """Return a time as people say it.
 
     Examples
     --------

@@ -86,11 +86,11 @@ class Ensemble(Dataset):
         return ()
 
     def _held(self, point: int = 0) -> Held:  # noqa: ARG002
-        """The values of every surface, or their statistics."""
+        """Return the values of every surface, or their statistics."""
         return self.sums
 
     def _at(self, which: Ints) -> "Ensemble":
-        """The same surfaces at some of the separations, by their numbers; `surfaces_of` is as before."""
+        """Return the same surfaces at some separations, by their numbers; `surfaces_of` is as before."""
         scene = self.scene.replace(separations=tuple(self.separations[which].tolist()))
         return Ensemble(scene, self.sampler, Selected(self.sums, which), self.surfaces_of)
 
@@ -107,7 +107,7 @@ class Ensemble(Dataset):
         return self._per_area(values) if per_area else values
 
     def __getitem__(self, quantity: str) -> Array:
-        """The same as `values`."""
+        """Return the same as `values`."""
         return self.values(quantity)
 
     @property

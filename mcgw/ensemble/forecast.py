@@ -59,7 +59,7 @@ class Forecast:
 
 
 def forecast(scene: Scene) -> Forecast:
-    """Number of surfaces of a scene, a function of the scene alone.
+    """Return the number of surfaces of a scene, a function of the scene alone.
 
     With `rel_err` it is the smallest of `checkpoints` with which the 95 % interval of every mean that is
     asked for reaches no farther than that share of it, but at most `n_surfaces`. A mean that would not be
@@ -103,7 +103,7 @@ def _needed(spread: Spread, asked: Array) -> Array:
 
 
 def checkpoints(limit: int) -> Iterator[int]:
-    """Allowed numbers of surfaces: multiples of 64, and `limit`."""
+    """Yield allowed numbers of surfaces: multiples of 64, and `limit`."""
     n = GROUP
     while n < limit:
         yield n
@@ -112,7 +112,7 @@ def checkpoints(limit: int) -> Iterator[int]:
 
 
 def without_rule(scene: Scene) -> Scene:
-    """The scene with a number of surfaces in place of its stop rules.
+    """Return the scene with a number of surfaces in place of its stop rules.
 
     Warns
     -----

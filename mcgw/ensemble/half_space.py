@@ -18,7 +18,7 @@ from mcgw.scene.scene import Scene
 
 
 def with_interaction(scene: Scene, sums: dict[str, NDArray[Any]]) -> dict[str, Any]:
-    """Sums of the asperities, stiffness and conductance with the half-space, and nominal separations.
+    """Return sums of asperities, stiffness and conductance with the half-space, and nominal separations.
 
     These follow from the load of each surface, without a search.
 
@@ -45,7 +45,7 @@ def at_loads(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
 
 
 def _answer(scene: Scene, name: str, value: Any) -> Any:
-    """What becomes of a sum of the asperities."""
+    """Return what becomes of a sum of the asperities."""
     from analytic.interaction import in_series  # for those scenes alone: every comparison imports this file
 
     other = scene.series(name)
@@ -68,17 +68,17 @@ class _Alone(Results):
         return np.asarray(in_series(values, -other)) if other else values
 
     def rows(self) -> int:
-        """Number of surfaces there are."""
+        """Return the number of surfaces there are."""
         return self.whole.rows()
 
 
 def scene_alone(scene: Scene) -> Scene:
-    """The scene without interaction."""
+    """Return the scene without interaction."""
     return scene if scene.interaction is None else scene.replace(interaction=None)
 
 
 def asperities_alone(ensemble: Ensemble) -> Ensemble:
-    """The ensemble of the sums of the asperities.
+    """Return the ensemble of the sums of the asperities.
 
     Of one that keeps no values those that are not in series with the half-space.
     """

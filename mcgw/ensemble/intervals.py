@@ -90,7 +90,7 @@ def pearson3_quantile(share: Array | float, skewness: Array) -> Array:
 
 
 def chebyshev(level: float = CONFIDENCE) -> float:
-    """Standard deviations within which any distribution has at least this share."""
+    """Return the standard deviations within which any distribution has at least this share."""
     return float(1 / np.sqrt(1 - level))
 
 
@@ -172,7 +172,7 @@ def interval_column(low: ArrayLike, high: ArrayLike, unit: str = "") -> Column:
 
 
 def interval_of(scene: Scene, sums: Held, name: str, level: float) -> tuple[Array, Array]:
-    """Ends of the interval of a mean, as `Ensemble.interval` says.
+    """Return the ends of the interval of a mean, as `Ensemble.interval` says.
 
     Raises
     ------
@@ -233,7 +233,7 @@ def laws_are_quick(scene: Scene) -> bool:
 
 
 def exact_ends(scene: Scene, name: str, share: float) -> Array | None:
-    """Ends between which this share of all surfaces lies at each separation, shape (2, separations).
+    """Return ends between which this share of all surfaces lies at each separation: (2, separations).
 
     None where no law is known, or where laws take a while: those of summits with radii of their own and of
     other contact laws take about six times as long as Hertz's, those of both, and of lists, much longer.

@@ -46,7 +46,7 @@ class Labelled:
     coordinates: Mapping[str, Variable]
 
     def to_xarray(self, attributes: Mapping[str, Any]) -> Any:
-        """An `xarray.Dataset`.
+        """Return an `xarray.Dataset`.
 
         Raises
         ------
@@ -61,7 +61,7 @@ class Labelled:
         return xarray.Dataset(*both, dict(attributes))
 
     def to_dataframe(self, dims: Sequence[str]) -> Any:
-        """A `pandas.DataFrame` of the tables with just these axes, a row for each place along them.
+        """Return a `pandas.DataFrame` of the tables with just these axes, a row for each place along them.
 
         Raises
         ------
@@ -83,12 +83,12 @@ class Labelled:
 
 
 def axis(name: str, values: Any) -> Variable:
-    """The coordinate of an axis of this name."""
+    """Return the coordinate of an axis of this name."""
     return Variable((name,), np.asarray(values), *AXES[name])
 
 
 def axes_of(scene: Scene) -> dict[str, Variable]:
-    """The coordinates that tables of one surface of a scene have."""
+    """Return the coordinates that tables of one surface of a scene have."""
     return {"separation": axis("separation", scene.separations)}
 
 
@@ -105,7 +105,7 @@ def values_of(scene: Scene, n_surfaces: int, values: Callable[[str], Any]) -> La
 def statistics_of(
     result: Any, names: Iterable[str], kinds: Sequence[str], lead: tuple[str, ...] = ()
 ) -> dict[str, Variable]:
-    """What a result tells over its surfaces of some quantities, with axes before those of a surface."""
+    """Return what a result tells over its surfaces of some quantities, with axes before those of one."""
     found: dict[str, Variable] = {}
     scene = result.scenes[0] if lead else result.scene
     for name in names:

@@ -128,7 +128,7 @@ def _lowest(scene: Scene, q: Quantity, h: float) -> float:
 
 
 def _drawn(scene: Scene, lowest: float) -> Scene:
-    """The scene whose contacts are drawn: those above the lowest separation of nearly every surface."""
+    """Return the scene whose contacts are drawn: above the lowest separation of nearly every surface."""
     return scene.replace(
         sampler="direct" if isinstance(scene.heights, MeasuredHeights) else "tail",
         keep="sums",

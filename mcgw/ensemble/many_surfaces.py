@@ -48,13 +48,13 @@ class ManySurfaces:
         return np.repeat(np.arange(self.counts.size), self.counts)
 
     def surface(self, number: int) -> Summits:
-        """The asperities of one of them."""
+        """Return the asperities of one of them."""
         end = int(np.sum(self.counts[: number + 1]))
         its = slice(end - int(self.counts[number]), end)
         return Summits.of(self.scene, self.s[its], None if self.ratios is None else self.ratios[its])
 
     def above(self, h: float) -> "ManySurfaces":
-        """The same surfaces, of which only the asperities above a separation are looked at."""
+        """Return the same surfaces, of which only the asperities above a separation are looked at."""
         high = self.s > h
         counts = np.bincount(self.owner[high], minlength=self.counts.size)
         return ManySurfaces(
@@ -119,7 +119,7 @@ class ManySurfaces:
         }
 
     def _total(self, q: Quantity, h: Array, which: Ints) -> Array:
-        """Sums of some surfaces at separations of theirs, over the scale."""
+        """Return the sums of some surfaces at separations of theirs, over the scale."""
         mine: slice | Ints = slice(None)
         if which.size < self.counts.size:
             chosen = np.zeros(self.counts.size, dtype=bool)
@@ -131,7 +131,7 @@ class ManySurfaces:
         return self._added(terms, counts)
 
     def _added(self, terms: Array, counts: Ints) -> Array:
-        """Sums of the terms of each surface."""
+        """Return the sums of the terms of each surface."""
         total, some = np.zeros(counts.size), counts > 0
         if some.any():
             total[some] = np.add.reduceat(terms, (np.cumsum(counts) - counts)[some])

@@ -110,7 +110,7 @@ class Pooled:
         return Pooled(n, means, products)
 
     def at(self, which: Ints) -> "Pooled":
-        """The same at some of the separations."""
+        """Return the same at some of the separations."""
         means = {name: mean[..., which] for name, mean in self.means.items()}
         return Pooled(self.n, means, {name: x[..., which] for name, x in self.products.items()})
 
@@ -145,7 +145,7 @@ def _sum_products(columns: Any, first: int, stop: int, out: Any) -> None:  # pra
 
 
 def products_of(columns: Array) -> Array:
-    """Sums over the rows of products of every two columns.
+    """Return the sums over the rows of products of every two columns.
 
     A library's matrix product adds in an order that depends on how many threads it has; this one does not.
 

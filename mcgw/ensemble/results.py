@@ -25,7 +25,7 @@ class Held(ABC):
 
     @abstractmethod
     def rows(self) -> int:
-        """Number of surfaces there are."""
+        """Return the number of surfaces there are."""
 
     @abstractmethod
     def mean_and_std(self, name: str) -> tuple[Array, Array]:
@@ -121,7 +121,7 @@ class Selected(Held):
     which: Ints
 
     def rows(self) -> int:
-        """Number of surfaces there are."""
+        """Return the number of surfaces there are."""
         return self.whole.rows()
 
     def mean_and_std(self, name: str) -> tuple[Array, Array]:
@@ -145,5 +145,5 @@ class Selected(Held):
 
 
 def joined(parts: Sequence[Mapping[str, NDArray[Any]]]) -> Tables:
-    """The tables of several blocks of surfaces, one below the other."""
+    """Return the tables of several blocks of surfaces, one below the other."""
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}

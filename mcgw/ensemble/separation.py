@@ -22,7 +22,7 @@ _STEP = 0.5  # by which the search for a start goes down, where the margin was n
 def asperity_terms(
     scene: Scene, names: Sequence[str], h: float | Array, s: Array, modulus: Array, ratios: Array | None
 ) -> Array:
-    """What asperities add to quantities, on loading, over the scale of each.
+    """Return what asperities add to quantities, on loading, over the scale of each.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ class LawSum:
         return self._within(value, low, middle) if found is None else found
 
     def _between(self, low: float, high: float) -> tuple[float, float, bool]:
-        """The sum at `low`, what it does not exceed up to `high`, and whether each contact keeps its piece.
+        """Return the sum at `low`, its bound up to `high`, and whether each contact keeps its piece.
 
         Each contact is at most what it is at `low`, or where one of its pieces ends.
         """
@@ -157,7 +157,7 @@ class LawSum:
         return int(np.searchsorted(-self.heights, -h))
 
     def _terms(self, h: float, n: int) -> Array:
-        """What each of the first `n` adds."""
+        """Return what each of the first `n` adds."""
         first = slice(n)
         terms = term_of(self.quantity, self._branch(first), h, self.heights[first], self.modulus[first])
         return self._weight(first) * terms
@@ -167,13 +167,13 @@ class LawSum:
         return self._branch(slice(n)).pieces(np.full(n, h), s - h, e)
 
     def _branch(self, which: slice | Ints) -> Branch:
-        """That of some asperities, each by the law of its own radius."""
+        """Return that of some asperities, each by the law of its own radius."""
         if self.ratios is None:
             return self.branch
         return self.branch.with_radii(self.ratios[which])
 
     def _weight(self, which: slice | Ints) -> Array | float:
-        """What a load or an area is worth by the radius."""
+        """Return what a load or an area is worth by the radius."""
         return 1.0 if self.ratios is None else self.ratios[which] ** quantity_of(self.quantity).radius
 
 
@@ -212,12 +212,12 @@ class Summits:
         return float(self.s[self.modulus < 0].max(initial=-np.inf))
 
     def largest_separation(self, q: Quantity, target: float, start: float) -> float | None:
-        """The solution among separations from `start` on at which no modulus is negative, or None."""
+        """Return the solution among separations from `start` on at which no modulus is negative, or None."""
         found = LawSum(q.base, self.scene.ways.loading, self.s, self.modulus, self.ratios)
         return found.largest_separation(target, max(start, self.softest))
 
     def separation_anywhere(self, q: Quantity, target: float, start: float) -> float | None:
-        """The largest solution on all heights of a surface; None if there is none."""
+        """Return the largest solution on all heights of a surface; None if there is none."""
         end = max(LOWEST, self.softest)
         while start > end:
             start = max(start - _STEP, end)

@@ -106,11 +106,11 @@ class Values(OfScene):
         return 2 * self.joined_bytes(self.n_surfaces)
 
     def joined_bytes(self, surfaces: int) -> int:
-        """What the file of so many surfaces takes."""
+        """Return what the file of so many surfaces takes."""
         return 8 * surfaces * self.scene.width
 
     def tables(self, first: int, stop: int, go_on: GoOn = always) -> Tables:
-        """The numbers, a row a surface."""
+        """Return the numbers, a row a surface."""
         parts, done = [], first
         for block in drawn_blocks(self.sampler, first, stop, block_size(self.scene, self.sampler)):
             parts.append(kept(self.scene, block))
@@ -142,7 +142,7 @@ class Values(OfScene):
 
 
 def reducer_of(scene: Scene, expected: Expected | None = None) -> OfScene:
-    """The one for what a scene keeps; of a sampler that is only expected, to be asked its size."""
+    """Return the one for what a scene keeps; of a sampler that is only expected, to be asked its size."""
     if scene.keep != "statistics":
         return Values(scene, expected)
     from mcgw.ensemble.summarised import Statistics  # for those scenes alone

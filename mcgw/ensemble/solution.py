@@ -102,7 +102,7 @@ def solve(
 def given_values(
     scene: Scene, key: str, values: Sequence[Any], read: Callable[[Any, str], float]
 ) -> tuple[str, list[float]]:
-    """Loads ("load", N) or real areas ("area", m^2) of what is given, each read as a number in a unit.
+    """Return loads ("load", N) or real areas ("area", m^2) of what is given, each read as a number in a unit.
 
     Nominal separations are numbers (d/sigma).
     """

@@ -253,7 +253,7 @@ class Solution(Shown):
         return {}
 
     def asperities_for(self, scatter: float) -> dict[str, float]:
-        """Number of asperities for which specimens at this pressure, or area fraction, scatter so little.
+        """Find how many asperities make specimens at this pressure, or area fraction, scatter so little.
 
         Parameters
         ----------
@@ -373,7 +373,7 @@ class Solution(Shown):
         return plotted(self, ax)
 
     def sheet(self) -> Sheet:
-        """The answers, and how specimens differ."""
+        """Return the answers, and how specimens differ."""
         from mcgw.ensemble.budget import yields
 
         many = f"{'' if self.exact else f'{self._many} '}surfaces of {self.scene.n_asperities} asperities"
@@ -388,7 +388,7 @@ class Solution(Shown):
         return Sheet(table.title, facts, table.at(found))
 
     def table(self, specimens: bool = False) -> Table:
-        """The mean over specimens, their scatter and the corrected answer, a row for each quantity.
+        """Return the mean over specimens, their scatter and the corrected answer, a row for each quantity.
 
         Parameters
         ----------
@@ -451,7 +451,7 @@ def elastic_verdict(solutions: Sequence[Solution]) -> str:
 
 
 def at_solutions(scene: Scene, solutions: Sequence[Solution]) -> Scene:
-    """The scene at the separations of the mean surface in these solutions, which stand for their loads."""
+    """Return the scene at the separations of the mean surface in these solutions, in place of their loads."""
     h = sorted({each.theory["separation"] for each in solutions})
     loading = [q for q in scene.quantities if not quantity_of(q).unloading] or ["load"]
     return scene.replace(separations=h, unload_from=None, quantities=loading)

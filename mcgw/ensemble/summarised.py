@@ -46,7 +46,7 @@ class Summarised(Held):
         return reduce(add, self.parts)
 
     def rows(self) -> int:
-        """Number of surfaces."""
+        """Return the number of surfaces."""
         return sum(part.n for part in self.parts)
 
     def _columns(self, name: str) -> Ints:
@@ -62,7 +62,7 @@ class Summarised(Held):
         return mean, np.sqrt(products[columns, columns, 0] / (m - 1 if m > 1 else np.nan))
 
     def total_number(self, name: str) -> Array:
-        """The mean times the number of surfaces, as a whole number."""
+        """Return the mean times the number of surfaces, as a whole number."""
         return np.asarray(np.rint(self.whole.means[NUMBERS][self._columns(name), 0] * self.rows()))
 
     def covariance(self, name: str, other: str) -> Array:
@@ -94,7 +94,7 @@ class Statistics(OfScene):
         return max(int(min(_ROWS, _BYTES // (8 * self.scene.width), most)), 1)
 
     def tables(self, first: int, stop: int, go_on: GoOn = always) -> Tables:
-        """The statistics of a block, as tables of one row."""
+        """Return the statistics of a block, as tables of one row."""
         size, piece, parts = block_size(self.scene, self.sampler), self._piece, list[Pooled]()
         for start in range(first, stop, piece):
             end = min(start + piece, stop)
@@ -129,7 +129,7 @@ class Statistics(OfScene):
         return -(-self.n_surfaces // self.rows) * self._block_bytes + self.joined_bytes(self.n_surfaces)
 
     def joined_bytes(self, surfaces: int) -> int:
-        """What the file of so many surfaces takes: whole blocks, the rest, and the covariance."""
+        """Return what the file of so many surfaces takes: whole blocks, the rest, and the covariance."""
         parts = (surfaces >= self.rows) + (surfaces % self.rows > 0)
         return parts * self._block_bytes + 8 * self.scene.width**2
 

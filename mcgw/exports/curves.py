@@ -34,7 +34,7 @@ class Kind:
         return ("load", *own.get(self.quantity, (self.quantity,)))
 
     def answer(self, scene: Scene) -> str:
-        """The tabulated answer of a scene; the conductance is that of the joint, if there is one."""
+        """Return the tabulated answer of a scene; the conductance is that of the joint, if there is one."""
         if self.quantity != "conductance":
             return self.quantity
         return "contact_conductance" if scene.gas is None else "joint_conductance"
@@ -123,7 +123,7 @@ def _named(kind: Kind, quantiles: tuple[float, ...], x: Array, values: list[Arra
 
 
 def _one_way(kind: Kind, name: str, x: Array, y: Array) -> Curve:
-    """A curve without points that carry nothing; refuse one that is not monotonic."""
+    """Return a curve without points that carry nothing; refuse one that is not monotonic."""
     if x.size < 2:
         raise ValueError(
             f"{kind.name}, {name}: {x.size} point(s) with load; give more or smaller separations, or a wider "
@@ -146,7 +146,7 @@ def quantile_name(quantile: float) -> str:
 
 
 def _with_values(ensemble: Ensemble) -> Ensemble:
-    """The ensemble itself; if it keeps only statistics, its first surfaces drawn again."""
+    """Return the ensemble itself; if it keeps only statistics, its first surfaces drawn again."""
     if ensemble.scene.keep != "statistics":
         return ensemble
     scene = drawn_by(ensemble.scene, ensemble.sampler)

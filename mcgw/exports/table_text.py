@@ -27,7 +27,7 @@ UNITS = {
 
 
 def unit_of(name: str, units: str, scene: Scene) -> str:
-    """Unit of a quantity or argument; of a conductance, for heat or current."""
+    """Return the unit of a quantity or argument; of a conductance, for heat or current."""
     current = name == "conductance" and scene.film is not None and not scene.film.thermal
     return UNITS[units]["current" if current else name][1]
 

@@ -156,7 +156,7 @@ def files_of_export(path: str | Path, quantiles: Sequence[float] | None = None) 
 
 
 def from_zero(curve: Curve, kind: Kind, stays: bool) -> Curve:
-    """A curve against the pressure from 0 on, where nothing is carried."""
+    """Return a curve against the pressure from 0 on, where nothing is carried."""
     if kind.against == "gap":
         return curve
     return Curve(curve.name, np.append(0.0, curve.x), np.append(curve.y[0] if stays else 0.0, curve.y))
@@ -196,7 +196,7 @@ def _quantiles(given: Sequence[float] | None, n_surfaces: int) -> tuple[float, .
 
 
 def _source(what: Scene | Ensemble | str | Path) -> tuple[Scene | Ensemble, str]:
-    """A scene or an ensemble, with the digest of its numbers or, without numbers, of its scene."""
+    """Return a scene or an ensemble, with the digest of its numbers or, without numbers, of its scene."""
     if isinstance(what, str | Path):
         return open_ensemble(what), f"data {read_attributes(Path(what))['digest']}"
     if not isinstance(what, Scene | Ensemble):
@@ -208,7 +208,7 @@ def _source(what: Scene | Ensemble | str | Path) -> tuple[Scene | Ensemble, str]
 def surfaces_for(
     source: Scene | Ensemble, needs: tuple[str, ...], pressures: Array | None, points: int
 ) -> Ensemble:
-    """The ensemble itself; of a scene its surfaces, with only what a table against the gap needs.
+    """Return the ensemble itself; of a scene its surfaces, with only what a table against the gap needs.
 
     They are drawn at so many separations, evenly between the lowest and the highest of the scene, or at those
     where the mean surface has the pressures.

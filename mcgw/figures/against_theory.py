@@ -75,7 +75,7 @@ def quantity_panel(comparison: Comparison, name: str) -> Panel:
 
 
 def residuals_panel(comparison: "SweepComparison") -> Panel:
-    """A histogram of all residuals on its expectation if theory holds; an outlier shows beside thousands."""
+    """Draw a histogram of all residuals on its expectation if theory holds; one outlier shows."""
     z = comparison.residuals
     most = max(4.0, _BIN * np.ceil(np.abs(z).max(initial=0.0) / _BIN))
     x = np.linspace(-most, most, 201)

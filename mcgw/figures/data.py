@@ -82,7 +82,7 @@ class Mark:
 
 
 def words(text: str, *, centred: bool = True) -> Mark:
-    """A text in place of axes: a few words, or a listing."""
+    """Return a text in place of axes: a few words, or a listing."""
     look: dict[str, Any] = {"ha": "center", "va": "center"}
     if not centred:
         look = {"va": "top", "family": "monospace", "fontsize": 6.6}

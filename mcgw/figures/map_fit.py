@@ -68,13 +68,13 @@ def _map_panel(title: str, topography: Topography, seen: Marks | None, *more: Ma
 
 
 def _unit(length: float) -> tuple[str, float]:
-    """A unit in which a length is 1 to 1000, and its number per metre."""
+    """Return a unit in which a length is 1 to 1000, and its number per metre."""
     size, prefix = prefixed(length)
     return f"{prefix}m", 1 / size
 
 
 def _summits_panel(fit: Fit, ready: Prepared) -> Panel:
-    """The map with its summits, some of them if there are many."""
+    """Return the map with its summits, some of them if there are many."""
     used, times = ready.used, _unit(max(ready.used.size))[1]
     some = slice(None, None, max(fit.summits.size // _MOST_MARKS, 1))
     # the filter took a margin off the map on which they are placed
@@ -109,7 +109,7 @@ def _moments_panel(ready: Prepared) -> Panel:
 
 
 def bars(values: Array, label: str) -> Mark:
-    """A histogram as a density."""
+    """Return a histogram as a density."""
     return Mark("hist", (values,), {"bins": "auto", "density": True, "color": SAMPLE, "label": label})
 
 
@@ -146,7 +146,7 @@ def _curvatures_panel(fit: Fit) -> Panel:
 
 
 def _listing(fit: Fit) -> str:
-    """The results and the steps of preparation."""
+    """Return the results and the steps of preparation."""
     lines = [f"{'':9}{'eta (1/m²)':>12}{'R (m)':>11}{'sigma (m)':>11}"]
     for name, e in fit.estimates.items():
         mark = "*" if name == fit.best else " "

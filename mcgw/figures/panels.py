@@ -134,7 +134,7 @@ def draw_panel(axis: Any, panel: Panel) -> None:
 
 
 def keys(axes: Sequence[Any], panels: Sequence[Panel]) -> dict[str, Any]:
-    """Handles of a legend by label: each line as it is drawn, and the markers of points."""
+    """Return the handles of a legend by label: each line as it is drawn, and the markers of points."""
     found = {x.get_label(): x for axis in axes for x in axis.get_legend_handles_labels()[0]}
     known = [each for panel in panels for each in _known(panel)]
     marks = {_marks(s, k)["marker"]: _marks(s, k)["color"] for k, s, _ in known}
@@ -209,7 +209,7 @@ def _draw_residuals(axis: Any, panel: Panel, *, labelled: bool) -> None:
 
 
 def draw_residual(axis: Any, reach: float) -> None:
-    """What is behind residuals in standard errors: zero, and the band in which 95 % of them lie."""
+    """Return what is behind residuals in standard errors: zero, and the band in which 95 % of them lie."""
     axis.axhspan(-2, 2, color=BAND, zorder=0)
     axis.axhline(0, color=LEVEL, lw=0.8, zorder=1)
     axis.set_ylim(-reach, reach)

@@ -63,7 +63,7 @@ def draw(result: Any, ax: Any = None, **options: Any) -> Any:
 
 @singledispatch
 def panel_of(result: Any) -> Panel:
-    """The panel of a result."""
+    """Return the panel of a result."""
     raise TypeError(f"{type(result).__name__}: there is no figure of it")
 
 
@@ -112,7 +112,7 @@ def _(result: Paired) -> Panel:
 
 @panel_of.register
 def _(result: Sweep, *, quantity: str) -> Panel:
-    """A line a point, from the first to the last along all axes."""
+    """Return a line a point, from the first to the last along all axes."""
     order, points = np.argsort(result.separations, kind="stable"), list(result.axes.points())
     means, errors = result.mean(quantity), result.stderr(quantity)
     some, marks = evenly(len(points), _MOST_LINES), []

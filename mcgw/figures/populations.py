@@ -113,7 +113,7 @@ def fluctuations(f: Compared) -> FigureData:
 def _spreads(
     label: str, scene: Scene, name: str, line: Array, drawn: Ensemble | None, fewest: float
 ) -> Series:
-    """A line of theory; points where surfaces are drawn and have enough contacts together."""
+    """Return a line of theory; points where surfaces are drawn and have enough contacts together."""
 
     def exact(h: Array) -> Array:
         return np.asarray(scene.theory.std(name, h) / np.abs(scene.theory.mean(name, h)))

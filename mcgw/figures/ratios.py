@@ -233,7 +233,7 @@ def _over_separation(f: Compared) -> FigureData:
 
 
 def _drawn_at(scene: Scene, h: Array) -> Ensemble | None:
-    """The ensemble at other separations, if its modulus is positive down to them."""
+    """Return the ensemble at other separations, if its modulus is positive down to them."""
     try:
         return simulate(scene, separations=h)
     except SceneError:

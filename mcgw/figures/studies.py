@@ -80,7 +80,7 @@ def _scores_panel(found: Convergence) -> Panel:
 
 
 def checks_panel(found: Convergence) -> Panel:
-    """The probability of every check."""
+    """Return the probability of every check."""
     p = np.array([max(check.p, _LEAST) for check in found.checks])
     limit, rows = FALSE_ALARM / len(p), np.arange(len(p))[::-1]
     failed = p <= limit

@@ -106,7 +106,7 @@ _LOWERED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789")
 
 
 def prefixed(largest: float) -> tuple[float, str]:
-    """A power of a thousand that leaves 1 to 1000 of a number, and its prefix: 2.5e6 -> (1e6, "M")."""
+    """Return a power of a thousand that leaves 1 to 1000 of a number, and its prefix: 2.5e6 -> (1e6, "M")."""
     power = math.floor(math.log10(largest) / 3) if largest > 0 else 0
     power = min(max(power, -5), 5)
     return 1000.0**power, "fpnµm kMGTP"[power + 5].strip()
@@ -185,7 +185,7 @@ def shown_title(scene: Scene, otherwise: str) -> str:
 
 
 def grading_label(grading: Grading) -> str:
-    """A few words for a caption."""
+    """Return a few words for a caption."""
     match grading:
         case Homogeneous():
             return "homogeneous"
@@ -203,7 +203,7 @@ def contact_label(scene: Scene) -> str:
 
 
 def short(law: str) -> str:
-    """A law as one line with numbers of a few digits: ``KogutEtsion(hardness=1.2e+09, poisson=0.33)``."""
+    """Write a law as one line with few digits: ``KogutEtsion(hardness=1.2e+09, poisson=0.33)``."""
     few = re.sub(r"[0-9]+\.[0-9]+(e[-+]?[0-9]+)?", lambda number: f"{float(number[0]):g}", one_line(law))
     return few.removesuffix("()").replace("$", "")
 
@@ -213,7 +213,7 @@ _UNDATED: dict[str, dict[str, Any]] = {"pdf": {"CreationDate": None}, "svg": {"D
 
 
 def figure_endings() -> tuple[str, ...]:
-    """Endings of the formats that matplotlib writes."""
+    """Return the endings of the formats that matplotlib writes."""
     return tuple(f".{name}" for name in FigureCanvasBase.get_supported_filetypes())
 
 

@@ -37,7 +37,7 @@ def state_of(path: Path) -> State | None:
 
 
 def temporary_beside(path: Path) -> Path:
-    """A new name in the same folder, of this process alone, on whatever host."""
+    """Return a new name in the same folder, of this process alone, on whatever host."""
     return path.with_name(f"{_stem(path)}{os.getpid()}-{secrets.token_hex(4)}.tmp")
 
 

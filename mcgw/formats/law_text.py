@@ -43,7 +43,7 @@ def _listed(given: Mapping[str, Any]) -> str:
 
 
 def _short(value: Any) -> str:
-    """A long list by its ends, so that no number is cut."""
+    """Return a long list by its ends, so that no number is cut."""
     if isinstance(value, tuple) and all(isinstance(x, float) for x in value):
         if len(value) > _MOST:
             return f"{len(value)} from {value[0]:.4g} to {value[-1]:.4g}"

@@ -43,7 +43,7 @@ def open_regular(path: Path) -> int:
 
 
 def read_bytes(path: Path, most: int) -> bytes:
-    """The contents of a regular file of at most so many bytes; a link is followed.
+    """Return the contents of a regular file of at most so many bytes; a link is followed.
 
     Raises
     ------

@@ -48,7 +48,7 @@ class Sheet:
         return "\n".join([brief(self.title), *facts, *([] if self.table is None else [self.table.text()])])
 
     def html(self) -> str:
-        """The same as HTML, with all texts escaped."""
+        """Return the same as HTML, with all texts escaped."""
         cells = "<tr><th>{}</th><td>{}</td></tr>".format
         facts = "".join(cells(escape(name), escape(brief(text))) for name, text in self.facts)
         facts = f"<table>{facts}</table>" if facts else ""
@@ -59,7 +59,7 @@ class Shown:
     """Displays itself as a sheet."""
 
     def sheet(self) -> Sheet:
-        """The sheet to show, at most a dozen lines."""
+        """Return the sheet to show, at most a dozen lines."""
         raise NotImplementedError
 
     def __repr__(self) -> str:

@@ -66,7 +66,7 @@ class Column:
         return any(isinstance(x, str) for x in self.values[:1])
 
     def cells(self) -> list[str]:
-        """The displayed text of each row."""
+        """Return the displayed text of each row."""
         errors = np.broadcast_to(np.nan if self.error is None else self.error, len(self.values))
         own = [
             x if isinstance(x, str) else self._shown(x, error)
@@ -83,7 +83,7 @@ class Column:
         ]
 
     def alone(self) -> "Column":
-        """The column without what is beside it."""
+        """Return the column without what is beside it."""
         return replace(self, beside=None)
 
     def _shown(self, x: float, error: float) -> str:
@@ -126,7 +126,7 @@ class Table:
         return (column.words or column.name) + ("" if unit in self.title else unit)
 
     def only(self, *names: str) -> "Table":
-        """Some of its columns, in this order."""
+        """Return some of its columns, in this order."""
         by_name = {column.name: column for column in self.columns}
         return replace(self, columns=tuple(by_name[name] for name in names))
 
@@ -135,7 +135,7 @@ class Table:
         return self.at(evenly(len(self), most).tolist())
 
     def at(self, k: Sequence[int]) -> "Table":
-        """Some of its rows, by number."""
+        """Return some of its rows, by number."""
         return replace(self, columns=tuple(_part(column, k) for column in self.columns))
 
     def text(self) -> str:
@@ -155,7 +155,7 @@ class Table:
     __repr__ = text
 
     def html(self) -> str:
-        """A ``table`` without its title: the cells of a terminal, typeset, every text escaped."""
+        """Return a ``table`` without its title: the cells of a terminal, typeset, every text escaped."""
         head = "".join(f"<th>{escape(typeset(self.heading(column)))}</th>" for column in self.columns)
         rows = "".join(
             f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>"
@@ -184,7 +184,7 @@ class Table:
             writer.writerows(zip(*map(_stored, columns), strict=True))
 
     def to_dataframe(self) -> Any:
-        """The same as a `pandas.DataFrame`.
+        """Return the same as a `pandas.DataFrame`.
 
         Raises
         ------
@@ -242,12 +242,12 @@ def _stored(column: Column) -> Iterator[str]:
 
 
 def digits_of(x: float, error: float) -> int:
-    """Number of digits down to the second digit of the error, from two to seven."""
+    """Return the number of digits down to the second digit of the error, from two to seven."""
     return int(np.clip(np.floor(np.log10(abs(x))) - np.floor(np.log10(error)) + 2, 2, 7))
 
 
 def with_error(x: float, error: float) -> str:
-    """A number with its standard error, both to the second digit of that.
+    """Return a number with its standard error, both to the second digit of that.
 
     Examples
     --------
@@ -258,7 +258,7 @@ def with_error(x: float, error: float) -> str:
 
 
 def evenly(n: int, most: int) -> Ints:
-    """Indices of at most `most` of `n` rows, rising."""
+    """Return the indices of at most `most` of `n` rows, rising."""
     return np.unique(np.linspace(0, n - 1, min(n, most)).round().astype(np.int64))
 
 

@@ -121,7 +121,7 @@ def signed(text: str, unit: str) -> float:
 
 
 def _plain(written: str) -> str:
-    """A unit in one spelling: ``mm²`` is ``mm2``, ``mm^-2`` and ``/mm^2`` are ``1/mm2``."""
+    """Return a unit in one spelling: ``mm²`` is ``mm2``, ``mm^-2`` and ``/mm^2`` are ``1/mm2``."""
     plain = unicodedata.normalize("NFKC", written).replace("\N{MINUS SIGN}", "-")
     plain = plain.replace("\N{GREEK CAPITAL LETTER OMEGA}", "ohm")
     plain = re.sub(r"\^|\*|\N{MIDDLE DOT}|\s", "", plain)

@@ -179,7 +179,7 @@ class Part:
 
 
 def part_of(shard: str) -> Part:
-    """The share that a text like "2/8" names.
+    """Return the share that a text like "2/8" names.
 
     Raises
     ------

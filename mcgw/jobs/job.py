@@ -57,7 +57,7 @@ class Job:
 
     @classmethod
     def of(cls, scene: Scene, path: Path) -> "Job":
-        """That of a scene with a number of surfaces, not a rule for it.
+        """Return that of a scene with a number of surfaces, not a rule for it.
 
         Raises
         ------
@@ -74,7 +74,7 @@ class Job:
 
     @classmethod
     def of_sweep(cls, asked: "Asked", path: Path) -> "Job":
-        """That of a sweep.
+        """Return that of a sweep.
 
         Raises
         ------
@@ -92,7 +92,7 @@ class Job:
 
     @classmethod
     def again(cls, record: RunFolder) -> "Job":
-        """What this process makes of the words of a folder, whoever wrote them."""
+        """Return what this process makes of the words of a folder, whoever wrote them."""
         if not record.axes:
             return cls.of(record.scene, record.path)
         from mcgw.sweeps.points import Asked  # of which most runs are none
@@ -145,11 +145,11 @@ class Job:
         return self.total
 
     def work(self, span: Span) -> float:
-        """What some surfaces of one group take, in any unit."""
+        """Return what some surfaces of one group take, in any unit."""
         return span.n * self.reducers[self.record.plan.group(span)[0]].work
 
     def draw(self, span: Span, threads: int | None, go_on: GoOn = always) -> Tables:
-        """What is kept of some surfaces of one group; it does not depend on `threads`."""
+        """Return what is kept of some surfaces of one group; it does not depend on `threads`."""
         g, first = self.record.plan.group(span) if len(self.reducers) > 1 else (0, span.first)
         with use_threads(threads):
             return self.reducers[g].tables(first, first + span.n, go_on)
@@ -175,7 +175,7 @@ class Job:
 
 
 def as_recorded(scene: Scene, path: Path) -> Scene:
-    """The scene with a seed and its functions resolved, or as they were when the run at this place began.
+    """Return the scene with seed and functions resolved, or as they were when the run at this place began.
 
     Another processor, or another NumPy, may give other last digits to a Python function.
     """
@@ -214,7 +214,7 @@ def draw_block(
 
 @lru_cache(maxsize=1)
 def _prepared(folder: str, _state: State | None) -> tuple[RunFolder, Job]:
-    """A run and its job, as long as its record is the same: preparing them may take as long as a block."""
+    """Return a run and its job, kept while its record is the same: preparing may take as long as a block."""
     run = RunFolder.open(Path(folder))
     job = Job.again(run)
     if job.record.identity != run.identity:

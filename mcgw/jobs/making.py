@@ -226,7 +226,7 @@ def merge_once(job: Job, signals: Signals) -> bool:
 
 
 def _merged(job: Job, check: Callable[[], None]) -> Contents:
-    """What the surfaces of the file that is there, and then those of the shards, make.
+    """Return what the surfaces of the file that is there, and then those of the shards, make.
 
     Raises
     ------

@@ -121,7 +121,7 @@ def run(
 
 
 def _stages(scene: Scene, path: Path) -> Iterator[Scene]:
-    """The scene with a number of surfaces in place of its stop rules; with `max_seconds`, growing numbers."""
+    """Yield the scene with a number of surfaces in place of its stop rules; growing with `max_seconds`."""
     held = min(open_ensemble(path).n_surfaces, scene.n_surfaces) if path.is_file() else 0
     fixed = without_rule(scene)
     last = max(fixed.n_surfaces, held)

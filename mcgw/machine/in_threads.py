@@ -55,7 +55,7 @@ def pieces(n: int, least: int) -> list[tuple[int, int]]:
 
 
 def one_ahead(items: Items[_Item]) -> Items[_Item]:
-    """The same items in order, each made in another thread while the previous one is used.
+    """Yield the same items in order, each made in another thread while the previous one is used.
 
     An error is raised in place of its item. The source is closed together with this generator.
     """
@@ -67,5 +67,5 @@ def one_ahead(items: Items[_Item]) -> Items[_Item]:
 
 
 def _next(items: Items[_Item]) -> list[_Item]:
-    """The next item in a list; an empty list at the end."""
+    """Return the next item in a list; an empty list at the end."""
     return list(islice(items, 1))

@@ -15,7 +15,7 @@ Progress = bool | Tell | None
 
 @contextmanager
 def told(progress: Progress, unit: str) -> Iterator[Tell]:
-    """The function to call with ``(done, total)``, from ``progress=`` of any call.
+    """Give the function to call with ``(done, total)``, from ``progress=`` of any call.
 
     True draws a bar that counts in `unit`; a function is called; None and False do nothing.
 
@@ -37,7 +37,7 @@ def told(progress: Progress, unit: str) -> Iterator[Tell]:
 
 @contextmanager
 def bar(unit: str, *, terminal: bool = False) -> Iterator[Tell]:
-    """A bar on standard error, with `terminal` only on one that is `watched`.
+    """Give a bar on standard error, with `terminal` only on one that is `watched`.
 
     Its rate is that of this call, without earlier work.
     """

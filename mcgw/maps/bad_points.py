@@ -105,7 +105,7 @@ def small_spike_heights(topography: Topography) -> Array:
 
 
 def usual_bend(bends: Array) -> float:
-    """Standard deviation of Gaussian bends that have the median of these; some may be nan."""
+    """Return the standard deviation of Gaussian bends that have the median of these; some may be nan."""
     return float(np.nanmedian(np.abs(bends - np.nanmedian(bends)))) / _OF_MEDIAN
 
 

@@ -48,7 +48,7 @@ class Roughness:
     ku: float
 
     def text(self, kind: str) -> str:
-        """The parameters in words, named as for a map ("S") or a profile ("P")."""
+        """Return the parameters in words, named as for a map ("S") or a profile ("P")."""
         return f"{kind}a = {self.a:.4g} m, {kind}q = {self.q:.4g} m, {kind}sk = {self.sk:.2f}"
 
 

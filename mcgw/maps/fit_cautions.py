@@ -118,7 +118,7 @@ def _gravest_first(lines: list[str]) -> list[str]:
 
 
 def _longer(ready: Prepared) -> float:
-    """A longer cutoff, in pixels."""
+    """Return a longer cutoff, in pixels."""
     return max(_PIXELS, 1.5 * (ready.asked.cutoff or 0.0) / max(ready.used.pixel))
 
 

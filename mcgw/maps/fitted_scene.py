@@ -107,14 +107,14 @@ def _check_spread(fit: Fit) -> None:
 
 
 def _best(fit: Fit | ProfileFit, heights: Heights) -> str:
-    """The estimate that suits a kind of heights."""
+    """Return the estimate that suits a kind of heights."""
     if isinstance(fit, ProfileFit) or heights == "nayak":
         return "moments"
     return fit.best if heights == "gaussian" else "summits"
 
 
 def _uncertainty(fit: Fit | ProfileFit, use: str, heights: Heights) -> Uncertainty | None:
-    """Standard errors of the parameters taken from the fit; measured summits have none.
+    """Return the standard errors of the parameters taken from the fit; measured summits have none.
 
     Their correlations are those of the moments over maps, whatever the estimate.
     """
@@ -142,7 +142,7 @@ def _known(fit: Fit | ProfileFit) -> Fitted:
 
 
 def _as_fitted(fit: Fit | ProfileFit, use: str, heights: Heights, modulus: float, title: str) -> Scene:
-    """The scene with the results of the fit alone; profiles stand for a square of their length."""
+    """Return the scene with the results of the fit alone; profiles stand for a square of their length."""
     if isinstance(fit, ProfileFit) and (use == "caps" or heights not in ("gaussian", "nayak")):
         raise ValueError(
             f'use = "{use}", heights = "{heights}": profiles do not show summits, only '
@@ -163,7 +163,7 @@ def _as_fitted(fit: Fit | ProfileFit, use: str, heights: Heights, modulus: float
 
 
 def scene_of_moments(moments: SpectralMoments, area: float, modulus: float, title: str) -> Scene:
-    """The scene of an isotropic Gaussian surface, each summit with its own radius."""
+    """Return the scene of an isotropic Gaussian surface, each summit with its own radius."""
     law = Nayak(moments.alpha)
     return _scene(moments.surface(area, modulus), title, heights=law, summits=RandomCurvature(law.alpha))
 

@@ -122,7 +122,7 @@ def check_foreign(path: Path) -> None:
 
 
 def _channel(path: Path) -> Any:
-    """The first channel of heights, of which nothing but facts is read."""
+    """Return the first channel of heights, of which nothing but facts is read."""
     if find_spec("SurfaceTopography") is None:
         raise ValueError(
             f"{path}: {path.suffix or 'no ending'} is read by SurfaceTopography, which is not installed (the "

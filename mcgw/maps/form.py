@@ -31,7 +31,7 @@ def without_form(topography: Topography, form: Form) -> Topography:
 
 
 def _without_polynomial(z: Array, order: int) -> Array:
-    """What that of least squares over the points that are there leaves."""
+    """Return what that of least squares over the points that are there leaves."""
     y, x = (_powers(n, order) for n in z.shape)
     terms = [(a, b) for a in range(order + 1) for b in range(order + 1 - a)]
     there = np.isfinite(z)
@@ -91,7 +91,7 @@ def smooth(topography: Topography, cutoff: float) -> Topography:
 
 
 def lowpass(topography: Topography, cutoff: float) -> Array:
-    """What the filter leaves of every point, in m; beyond its edges the map goes on as in a mirror.
+    """Return what the filter leaves of every point, in m; beyond its edges the map goes on as in a mirror.
 
     Unless it is periodic. No point may be missing.
     """
@@ -113,7 +113,7 @@ def _window(topography: Topography, cutoff: float) -> tuple[int, int]:
 
 
 def without_offsets(topography: Topography, lines: LinesTo) -> tuple[Topography, float]:
-    """A map whose lines are shifted by the medians of their differences; and the rms of the shifts, m.
+    """Return a map whose lines are shifted by the medians of their differences; and the rms of the shifts, m.
 
     Medians of the differences between neighbouring lines add up to offsets, and to waves that run across all
     lines. Those that a Gaussian window of ten lines lets pass are kept.

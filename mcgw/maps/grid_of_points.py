@@ -50,7 +50,7 @@ def grid_of(path: Path, points: Array) -> tuple[Array, tuple[float, float]]:
 
 
 def _places(path: Path, name: str, values: Array) -> tuple[int, float, NDArray[np.intp]]:
-    """Number of places along an axis, their distance, and which one each point has."""
+    """Return the number of places along an axis, their distance, and which one each point has."""
     ordered = np.unique(values)
     steps = np.diff(ordered)
     if not steps.size:

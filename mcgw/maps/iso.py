@@ -65,7 +65,7 @@ _DEFAULT_PRUNING = 0.05  # of Sz, ISO 25178-3
 
 
 def _number(key: str, value: float | str, unit: str) -> float:
-    """A number from Python or a command."""
+    """Return a number from Python or a command."""
     return parse(value, unit, key) if isinstance(value, str) else argument(key, value, unit)
 
 

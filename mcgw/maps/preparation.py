@@ -156,7 +156,7 @@ def _within(topography: Topography, notes: list[str]) -> Topography:
 def _levelled(
     topography: Topography, asked: Preparation, notes: list[str]
 ) -> tuple[Topography, Marks | None]:
-    """The map without spikes, form and holes; and where its holes are."""
+    """Return the map without spikes, form and holes; and where its holes are."""
     kept, number, largest = topography, 0, 0.0
     for _ in range(_ROUNDS):
         plain = without_form(kept, asked.form)

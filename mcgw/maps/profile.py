@@ -80,7 +80,7 @@ class Profile:
 
 
 def profile_at(places: Array, heights: Array, assumed_unit: str = "") -> Profile:
-    """A profile of heights at places along a line, on an even grid of as many points.
+    """Return a profile of heights at places along a line, on an even grid of as many points.
 
     Places a tenth of a step beside an even grid are taken as rounded. Otherwise, and where heights are
     missing (nan), those on the grid are interpolated along straight lines.

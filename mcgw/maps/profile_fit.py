@@ -86,7 +86,7 @@ class ProfileFit(Shown):
         return Sheet(title, facts, self.table())
 
     def table(self) -> Table:
-        """A row for each number, with its 95 % interval."""
+        """Return a row for each number, with its 95 % interval."""
         units = {"m0": "m^2", "m4": "1/m^2", "eta": "1/m^2", "radius": "m", "sigma": "m"}
         value, _, low, high = zip(*self.numbers.values(), strict=True)
         end = Column("high_95", high, form=".3g")

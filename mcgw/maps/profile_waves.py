@@ -69,7 +69,7 @@ def areal_weights(wave_numbers: Array, cutoff: float) -> Array:
 
 
 def stencil_weights(phases: Array) -> Array:
-    """The same without a cutoff: what the differences of the fourth order see, as a map is looked at.
+    """Return the same without a cutoff: what the differences of the fourth order see, as a map is looked at.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def _gains(frequencies: Array, spacing: float, cutoff: float | None) -> Array:
 
 
 def _stretches(u: Array, weights: Array, pieces: int) -> Array:
-    """Sums over distances of weight times mean product, from pairs that begin on each stretch."""
+    """Return the sums over distances of weight times mean product, from pairs that begin on each stretch."""
     n, reach = u.size, weights.size - 1
     size = fft.next_fast_len(n + reach, real=True)
     even = np.zeros(size)

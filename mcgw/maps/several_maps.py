@@ -154,7 +154,7 @@ def _waves(fits: Sequence[Fit], weights: Array) -> Waves:
 
 
 def _tiles(fits: Sequence[Fit], names: Sequence[str]) -> Table:
-    """A row for each map: its summits as counted, and its moments."""
+    """Return a row for each map: its summits as counted, and its moments."""
     by = "summits" if all("summits" in fit.estimates for fit in fits) else "moments"
     found = {x: [getattr(fit.estimates[by], x).value for fit in fits] for x in SUMMITS}
     units = {"eta": "1/m^2", "radius": "m", "sigma": "m", "m0": "m^2", "m2": "", "m4": "1/m^2"}

@@ -59,7 +59,7 @@ class Summits:
         return np.asarray(1 / np.sqrt(self.curvatures[0] * self.curvatures[1]))
 
     def table(self) -> Table:
-        """A row for each summit."""
+        """Return a row for each summit."""
         lengths = {"x": self.x, "y": self.y, "height": self.heights, "radius": self.radii}
         sharpness = zip(("curvature_1", "curvature_2"), self.curvatures, strict=True)
         columns = [Column(name, values, unit="m") for name, values in lengths.items()]
@@ -179,7 +179,7 @@ def tiles_of(counted: SummitSums) -> Table:
 
 
 def variation(values: Array) -> float:
-    """Standard deviation over the tiles, over the mean; nan where fewer than two tell anything."""
+    """Return the standard deviation over the tiles, over the mean; nan where fewer than two tell anything."""
     values = values[np.isfinite(values)]
     if values.size < 2 or not values.any():
         return math.nan

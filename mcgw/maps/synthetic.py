@@ -112,7 +112,7 @@ def _power(spectrum: Spectrum, shape: tuple[int, int], pixel: tuple[float, float
 def moments_on_grid(
     spectrum: Spectrum, shape: tuple[int, int], pixel: tuple[float, float]
 ) -> SpectralMoments:
-    """Expected moments of `gaussian_map` with the same arguments, averages over profiles along x and y.
+    """Return the expected moments of `gaussian_map` with the same arguments, means of profiles along x and y.
 
     They are sums over the waves of the grid instead of integrals over the spectrum.
     """

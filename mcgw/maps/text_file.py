@@ -148,7 +148,7 @@ def table_of(path: Path, most: int = MOST_PIXELS) -> tuple[Header, Array]:
 
 
 def _filled(words: list[str]) -> int:
-    """Number of words up to the last one that is not empty."""
+    """Return the number of words up to the last one that is not empty."""
     return next((k for k in range(len(words), 0, -1) if words[k - 1]), 0)
 
 
@@ -160,7 +160,7 @@ def _of_points(
     unit: str | None,
     missing: float | None,
 ) -> Topography:
-    """A map of points x, y and z."""
+    """Return a map of points x, y and z."""
     if pixel is not None:
         raise ValueError(f"{path}: three numbers a line are points with x, y and z; leave --pixel out")
     told = header_units(header.lines, XYZ)
@@ -211,7 +211,7 @@ def _words_of(path: Path, number: int, line: str) -> list[str]:
 
 
 def _numbers_of(path: Path, number: int, words: list[str]) -> Array:
-    """What `_words_of` found, nan where points are missing."""
+    """Return what `_words_of` found, nan where points are missing."""
     try:
         row = np.array([float("nan" if word in _MISSING else word) for word in words])
     except ValueError as error:
@@ -222,7 +222,7 @@ def _numbers_of(path: Path, number: int, words: list[str]) -> Array:
 
 
 def header_units(header: list[str], columns: int) -> list[str | None]:
-    """Unit of each column, from the last header line with units and no digits."""
+    """Return the unit of each column, from the last header line with units and no digits."""
     for line in reversed([line for line in header if not re.search(r"\d", line)]):
         cells = [cell for cell in re.split(r"[;,\t]|\s{2,}", line) if cell.strip()]
         units = [_unit(cell) for cell in cells]

@@ -160,7 +160,7 @@ def _equal(z: Array, value: float) -> NDArray[np.bool_]:
 
 
 def _sentinel(z: Array) -> tuple[float, int] | None:
-    """A number that stands for missing points, and how many of them there are."""
+    """Return a number that stands for missing points, and how many of them there are."""
     with np.errstate(invalid="ignore"):
         for value in _SENTINELS:
             end = np.fmin.reduce(z, axis=None) if value < 0 else np.fmax.reduce(z, axis=None)

@@ -112,7 +112,7 @@ def block_means(heights: Array, most: int) -> Array:
 
 
 def coarser(topography: Topography, most: int) -> Topography:
-    """The map of such means."""
+    """Return the map of such means."""
     z = block_means(topography.heights, most)
     along, down = (n // m for n, m in zip(topography.heights.shape[::-1], z.shape[::-1], strict=True))
     return replace(topography, heights=z, pixel=(topography.pixel[0] * along, topography.pixel[1] * down))
@@ -214,7 +214,7 @@ def _legendre_shares(shape: tuple[int, int], order: int) -> tuple[Array, Array]:
 
 
 def _taken(down: Array, along: Array) -> Array:
-    """What the polynomial takes of these waves, over what it leaves; 0 for the mean, which is none."""
+    """Return what the polynomial takes of these waves, over what it leaves; 0 for the mean, which is none."""
     share = down @ along
     return np.asarray(share / np.where(share < 1, 1 - share, np.inf))
 

@@ -12,19 +12,19 @@ from mcgw.maps.waves import Uncertain
 
 
 def fit_words(fit: Fit, names: Sequence[str], asked: Preparation, assumed_unit: str) -> list[str]:
-    """What was fitted and how, what was done to the map, and the results."""
+    """Return what was fitted and how, what was done to the map, and the results."""
     return [_map_line(names, asked, assumed_unit), *fit.notes, *fit_lines(fit)]
 
 
 def profile_words(
     fit: ProfileFit, names: Sequence[str], asked: Preparation, profiles: Sequence[Profile]
 ) -> list[str]:
-    """What was fitted and how, and the results."""
+    """Return what was fitted and how, and the results."""
     return [_profile_line(names, asked, profiles), *profile_lines(fit)]
 
 
 def _map_line(names: Sequence[str], asked: Preparation, assumed_unit: str) -> str:
-    """The map or maps, their form and cutoff, and the assumed unit if none was given."""
+    """Return the map or maps, their form and cutoff, and the assumed unit if none was given."""
     filtered = "none" if asked.cutoff is None else f"{asked.cutoff:g} m (Gaussian, ISO 16610-61)"
     line = f"{', '.join(names)}: form removed: {asked.form}; cutoff: {filtered}"
     if assumed_unit:
@@ -61,7 +61,7 @@ def fit_lines(fit: Fit) -> list[str]:
 
 
 def _profile_line(names: Sequence[str], asked: Preparation, profiles: Sequence[Profile]) -> str:
-    """The profiles, their form and cutoff, and the assumed unit if none was given."""
+    """Return the profiles, their form and cutoff, and the assumed unit if none was given."""
     filtered = "none" if asked.cutoff is None else f"{asked.cutoff:g} m (Gaussian)"
     taken = {"none": "mean", "plane": "line", "quadratic": "parabola"}[asked.form]
     line = f"{', '.join(names)}: profile; removed: {taken}; cutoff: {filtered}"

@@ -89,7 +89,7 @@ def rendered(template: str, **values: Any) -> str:
 
 
 def _shorter(scene: str) -> str:
-    """The scene as TOML with each list on one line."""
+    """Return the scene as TOML with each list on one line."""
     return re.sub(r"\[\n([^\]]*)\]", lambda found: f"[{' '.join(found[1].split()).rstrip(',')}]", scene)
 
 
@@ -158,7 +158,7 @@ def contacts_sentence(scene: Scene) -> str:
 
 
 def _named(solved: Solution) -> Table:
-    """The answer at a load, its quantities in words."""
+    """Return the answer at a load, its quantities in words."""
     names, *columns = answer_table(solved).columns
     words = [name.replace("_", " ") for name in names.values]
     return Table((replace(names, values=words), *columns), solved.title)

@@ -90,7 +90,7 @@ def _with_crowds(scene: Scene, known: Expected, surfaces: int) -> float | None:
 
 
 def plan_text(scene: Scene, plan: Plan) -> str:
-    """The plan in words, with what is left out and why."""
+    """Return the plan in words, with what is left out and why."""
     size = f"{plan.bytes / 1e6:.4g} MB"
     kept = f"statistics alone, about {size}" if scene.keep == "statistics" else f"{size} before compression"
     facts = [
@@ -141,7 +141,7 @@ def _targets(scene: Scene, plan: Plan) -> list[str]:
 
 
 def sweep_plan_text(asked: Asked) -> str:
-    """The plan in words; the group that takes the longest is tried out, of which nothing is kept."""
+    """Return the plan in words; the group that takes the longest is tried out, of which nothing is kept."""
     groups = asked.groups
     title = str(asked.document["title"])
     computed = sum(len(group.computed) for group in groups)

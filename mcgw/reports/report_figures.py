@@ -89,7 +89,7 @@ def round_pressures(low: float, high: float, most: int) -> list[float]:
 
 
 def pressure_pictures(solved: Sequence[Solution]) -> Iterator[PageFigure]:
-    """What holds at equal nominal pressure."""
+    """Yield what holds at equal nominal pressure."""
     for panel in pressure_curves(solved):
         low, high = (each.amount / each.scene.surface.nominal_area / 1e6 for each in (solved[0], solved[-1]))
         label = f"{panel.title} against nominal pressure from {low:.3g} to {high:.3g} MPa"
@@ -97,7 +97,7 @@ def pressure_pictures(solved: Sequence[Solution]) -> Iterator[PageFigure]:
 
 
 def line_figure(figure: Figure, label: str) -> PageFigure:
-    """An SVG element that takes the width it is given."""
+    """Return an SVG element that takes the width it is given."""
     buffer = io.StringIO()
     with mpl.rc_context(STYLE | {"svg.hashsalt": label}):
         write_figure(figure, buffer, format="svg", metadata={"Date": None, "Creator": None})

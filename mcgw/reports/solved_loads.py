@@ -28,7 +28,7 @@ _VARIANTS = ("load_slope", "conductance", "conductance_si", "specific_contact_re
 def solutions_text(
     scene: Scene, solutions: Sequence[Solution], scatter: float | None = None, full: bool = False
 ) -> str:
-    """The answers, a line for each given value, at most two; then a table of them.
+    """Return the answers, a line for each given value, at most two; then a table of them.
 
     With `scatter` also how many asperities it takes; `full` adds every quantity and the sources of error.
     """
@@ -67,7 +67,7 @@ def _known(solution: Solution, table: Table) -> Table:
 
 
 def answer_table(solution: Solution) -> Table:
-    """The answer and specimens to the digits that count, a row for each quantity that is not a variant."""
+    """Return the answer and specimens to the digits that count, a row a quantity that is no variant."""
     table = _known(solution, solution.table())
     name, unit, value, interval, std, _, *best = table.columns
     low, high = (np.asarray(column.values) for column in interval.flat)
@@ -111,7 +111,7 @@ def _by_load(scene: Scene, solutions: Sequence[Solution]) -> Table:
 
 
 def _brief(solution: Solution) -> str:
-    """The answer in one line, `best` with its 95 %: conductance if there is any, else area or load."""
+    """Return the answer in one line, `best` with its 95 %: conductance if there is any, else area or load."""
     budget, value, scene = solution.budget(), solution.value, solution.scene
     name = budget.quantities[0]
     if scene.film is not None:
@@ -125,7 +125,7 @@ def _brief(solution: Solution) -> str:
 
 
 def _background(scene: Scene, solutions: Sequence[Solution]) -> list[str]:
-    """What is meant by the numbers."""
+    """Return what is meant by the numbers."""
     ways = ", drawn from the measured ones" if scene.as_measured else ""
     many = f"{solutions[0].drawn.n_surfaces} surfaces of {scene.n_asperities:g} asperities{ways}"
     lines = [f"specimens: {many}, seed {scene.seed}; {_GAP[scene.gap]}"]
@@ -138,12 +138,12 @@ def _background(scene: Scene, solutions: Sequence[Solution]) -> list[str]:
 
 
 def _lowered(title: str) -> str:
-    """A title inside a line."""
+    """Return a title inside a line."""
     return f"{title[0].lower()}{title[1:]}"
 
 
 def conductances(scene: Scene, solutions: Sequence[Solution]) -> Table:
-    """What the joint conducts on average, a row for each load: spots, bodies in series, gas beside."""
+    """Return what the joint conducts on average, a row for each load: spots, bodies in series, gas beside."""
     area, other = scene.surface.nominal_area, scene.series("conductance_si")
     at = {name: np.array([x.value[name] for x in solutions]) for name in solutions[0].value}
     contact = at["contact_conductance"]

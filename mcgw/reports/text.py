@@ -29,7 +29,7 @@ _LISTED, _WORST = 12, 3  # points of a sweep; rows that are farthest from theory
 
 
 def summary(ensemble: Ensemble, attributes: dict[str, Any], full: bool = True) -> str:
-    """What a file holds: provenance and a table of means; if `full`, one of each quantity with its spread."""
+    """Tell what a file holds: provenance and a table of means; if `full`, one a quantity with its spread."""
     scene = ensemble.scene
     h = scene.separations
     facts = [
@@ -107,7 +107,7 @@ def ratios_in_words(sweep: "Sweep") -> list[str]:
 def comparison_summary(
     comparison: "Comparison | SweepComparison", *, whole: bool
 ) -> tuple[str, Callable[[], Table], list[str]]:
-    """The table for people, whole or its worst rows; what makes that for programs; the verdict's lines."""
+    """Return the table for people, whole or its worst rows; a maker of that for programs; the verdict."""
     lines = [comparison.verdict.line]
     if not isinstance(comparison, Comparison):
         return comparison.sheet(_LISTED if whole else _WORST).text(), comparison.table, lines
@@ -121,7 +121,7 @@ def comparison_summary(
 def summary_of(
     result: "Ensemble | Sweep", attributes: dict[str, Any], full: bool
 ) -> tuple[str, Callable[[], Table]]:
-    """The summary for people, and what makes the table for programs."""
+    """Return the summary for people, and what makes the table for programs."""
     if isinstance(result, Ensemble):
         names = result.scene.answers
         return summary(result, attributes, full), lambda: stacked(

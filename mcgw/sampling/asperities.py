@@ -87,7 +87,7 @@ def radii(scene: Scene, surface: int) -> NDArray[np.float64]:
 
 
 def listing_sampler(scene: Scene) -> Sampler:
-    """The sampler of a scene, if it can tell the heights.
+    """Return the sampler of a scene, if it can tell the heights.
 
     Raises
     ------
@@ -110,7 +110,7 @@ def same_heights(one: Scene, other: Scene) -> bool:
 
 
 def touching_summits(scene: Scene, surface: int) -> Listed:
-    """The asperities of one surface that touch."""
+    """Return the asperities of one surface that touch."""
     scene = storable(scene)
     return summits_drawn(scene, listing_sampler(scene), surface)
 
@@ -131,7 +131,7 @@ def summits(scene: Scene, surface: int) -> Listed:
 
 
 def summits_drawn(scene: Scene, sampler: Sampler, surface: int) -> Listed:
-    """The asperities of one surface that touch, by its sampler, which takes longer to make than they do."""
+    """Return the asperities of one surface that touch, by a sampler that is made once for many surfaces."""
     if isinstance(sampler, Direct):
         return _listed(sampler, surface, scene.lowest)
     mesh, table = sampler.mesh, table_of(scene, scene.lowest)
@@ -175,7 +175,7 @@ def worst_of_values(scene: Scene, surfaces: int) -> float:
 
 
 def _listed(sampler: Direct, surface: int, above: float) -> Listed:
-    """The asperities above a separation, of all that are drawn; those that touch first."""
+    """Return the asperities above a separation, of all that are drawn; those that touch first."""
     check_memory("the heights of one surface", 24 * sampler.scene.n_asperities)
     pieces = list(sampler.asperities(surface))
     s = np.concatenate([np.empty(0), *(heights for heights, _ in pieces)])

@@ -41,7 +41,7 @@ class Layout:
 
     @classmethod
     def covering(cls, layouts: Sequence["Layout"]) -> "Layout":
-        """The moments that any of some layouts of the same cells has."""
+        """Return the moments that any of some layouts of the same cells has."""
         return cls(
             np.max([layout.plain for layout in layouts], axis=0),
             np.max([layout.rooted for layout in layouts], axis=0),
@@ -144,7 +144,7 @@ class Sampler:
         return self.scene.n_asperities * (self.mesh.low_extras + self.mesh.high_extras)
 
     def with_seed(self, seed: int) -> Self:
-        """The same cells and physics with other draws."""
+        """Return the same cells and physics with other draws."""
         return replace(self, scene=self.scene.replace(seed=seed))
 
     def block(self, first: int, n: int) -> Block:

@@ -109,7 +109,7 @@ def mesh_of(scene: Scene, given: Sequence[float] = (), *, split: bool = True) ->
 
 
 def edges_before_grading(scene: Scene, given: Sequence[float] = (), *, split: bool = True) -> Array:
-    """The edges of the cells of `mesh_of`, before those that a grading with kinks takes; none: no cell."""
+    """Return the edges of the cells of `mesh_of` before those of a grading with kinks; none: no cell."""
     law = scene.heights
     low, high = _range(law, _RARE / scene.n_asperities, scene.lowest)
     if not low < high:
@@ -131,7 +131,7 @@ def _edges(law: HeightLaw, n: int, *asked: bytes) -> Array:
 
 
 def cut(scene: Scene, mesh: Mesh, starts: Array) -> Mesh:
-    """The mesh with the cells that begin at these heights cut in four, or towards where contacts are lost."""
+    """Cut the cells that begin at these heights in four, or towards where contacts are lost."""
     cell = np.searchsorted(mesh.edges, starts)
     low, high = mesh.edges[cell], mesh.edges[cell + 1]
     parts, width = [(low + (high - low) * part) for part in (0.25, 0.5, 0.75)], high - low
@@ -144,7 +144,7 @@ def cut(scene: Scene, mesh: Mesh, starts: Array) -> Mesh:
 
 @kept(8)  # another grading asks for the same, and so does the number in each cell
 def _mesh(law: HeightLaw, lowest: float, asked: bytes) -> Mesh:
-    """The mesh on these edges."""
+    """Return the mesh on these edges."""
     edges = np.frombuffer(asked)
     mass = _mass(law, edges[:-1], np.diff(edges)[:, None])[:, 0]
     probability = law.pdf(edges[:-1]) * mass
@@ -188,7 +188,7 @@ def _rare_heights(law: HeightLaw, share: float) -> tuple[float, float]:
 
 
 def _power_of_two_below(distance: float) -> float:
-    """Rounded down; far enough from the end that heights next to it are still told apart."""
+    """Round down; far enough from the end that heights next to it are still told apart."""
     return 2.0 ** math.floor(math.log2(max(distance, _CLOSEST)))
 
 
@@ -215,7 +215,7 @@ def _resolving(scene: Scene, edges: Array) -> Array:
 
 
 def height_noise(a: Array | float, t: Array, e: Array) -> Array:
-    """What a steep grading `e` makes of the last digit of a height ``a + t``, over the last axis."""
+    """Return what a steep grading `e` makes of the last digit of a height ``a + t``, over the last axis."""
     widest = t.max(axis=-1)
     return np.asarray(_DIGITS * np.spacing(np.abs(a) + widest) * np.ptp(e, axis=-1) / widest)
 

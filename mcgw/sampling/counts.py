@@ -64,7 +64,7 @@ def counts_of(scene: Scene, mesh: Mesh, first: int, n: int) -> Counts:
 
 
 def contacts_above(counts: Array, cells: Ints) -> Array:
-    """Number of asperities in some cells and all those above.
+    """Return the number of asperities in some cells and all those above.
 
     Parameters
     ----------

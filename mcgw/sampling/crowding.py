@@ -52,7 +52,7 @@ class Crowding:
 
 
 def crowding(scene: Scene, mesh: Mesh) -> Crowding | None:
-    """The smallest crowd that keeps the laws of all values to `scene.accuracy`.
+    """Return the smallest crowd that keeps the laws of all values to `scene.accuracy`.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ def _cumulants(scene: Scene, mesh: Mesh) -> tuple[Array, Array, Array]:
 
 
 def _values(scene: Scene, heights: Array) -> Array:
-    """What single asperities add to every value that is not counted, reduced; shape (heights, values)."""
+    """Return what single asperities add to every value that is not counted, reduced: (heights, values)."""
     one = np.ones(len(heights))
     sums = asperity_sums(scene, one.astype(np.int64), heights, one)
     parts = [

@@ -61,7 +61,7 @@ class OneByOne:
     distance = 0.0
 
     def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
-        """Sums over the uniforms of each cell."""
+        """Return the sums over the uniforms of each cell."""
         return cell_moments(seed, first, counts.cells, layout)
 
     def draws(self, asperities: float, layout: Layout) -> float:
@@ -145,7 +145,7 @@ def _law_of_moments(plain: int, rooted: int) -> tuple[Array, Array]:
 
 @cache
 def _partly(plain: int, rooted: int, plain_varying: int, rooted_varying: int) -> tuple[Array, Array]:
-    """The same with only the first ones varying."""
+    """Return the same with only the first ones varying."""
     mean, _ = _law_of_moments(plain, rooted)
     _, varying = _law_of_moments(plain_varying, rooted_varying)
     root = np.zeros((plain + rooted, varying.shape[1]))
@@ -156,7 +156,7 @@ def _partly(plain: int, rooted: int, plain_varying: int, rooted_varying: int) ->
 
 @njit(cache=True)
 def _words(seed: Any, first_surface: Any, words: Any, surfaces: Any) -> Any:
-    """Some centred uniforms of each surface, by their numbers: shape (words, surfaces)."""
+    """Return some centred uniforms of each surface, by their numbers: shape (words, surfaces)."""
     result = np.empty((words.size, surfaces))
     last = words[-1] + 1 if words.size else 0
     for first in range(0, surfaces, 8):  # as many as share a line of the cache

@@ -48,7 +48,7 @@ class Expected:
 
 
 def expected(scene: Scene) -> Expected:
-    """What the sampler of a scene is expected to have and to take."""
+    """Return what the sampler of a scene is expected to have and to take."""
     name, touching = name_of(scene), float(scene.touching)
     if name in ("direct", "tail"):
         draws = float(scene.n_asperities) if name == "direct" else touching

@@ -64,7 +64,7 @@ def _loop(plain: int, rooted: int, factor: str) -> list[str]:
 
 
 def _compiled(head: str, choices: list[tuple[str, list[str]]]) -> Callable[..., None]:
-    """A function of these loops, of which the first whose condition holds is taken, or the last."""
+    """Return a function of these loops, of which the first whose condition holds is taken, or the last."""
     lines = [head]
     for condition, loop in choices[:-1]:
         lines += [f"    if {condition}:", *(f"        {line}" for line in loop), "        return"]

@@ -241,7 +241,7 @@ class Families:
         return tuple(Layout(*each) for each in zip(plain, rooted, strict=True))
 
     def out_of(self, layout: Layout) -> "Families":
-        """The same, bit by bit, out of moments of which each cell may have more than this needs."""
+        """Return the same, bit by bit, out of moments of which each cell may have more than this needs."""
         drawn = self.apart(layout)
         responses = tuple(x.out_of(more) for x, more in zip(self.responses, drawn, strict=True))
         return replace(self, responses=responses, drawn=drawn)

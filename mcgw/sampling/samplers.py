@@ -61,7 +61,7 @@ def sampler_of(scene: Scene) -> Sampler:
 
 
 def name_of(scene: Scene) -> str:
-    """The exact sampler that a scene asks for; `accuracy` may buy another one than ``cells``.
+    """Return the exact sampler that a scene asks for; `accuracy` may buy another one than ``cells``.
 
     For ``auto`` the first that fits: cells, unless most of them would be empty (`runs/bench/auto.py`).
     """
@@ -105,7 +105,7 @@ def cells_of(scene: Scene, given: Sequence[float] = ()) -> Counted:
 
 
 def _counted(name: str, scene: Scene, mesh: Mesh) -> Counted:
-    """A sampler on a mesh, with radii where the scene has them."""
+    """Return a sampler on a mesh, with radii where the scene has them."""
     mesh, response = _resolved(scene, mesh)
     if not isinstance(response, Response):
         from mcgw.sampling.weighted_sums import with_radii
@@ -148,7 +148,7 @@ _MAKERS: dict[str, Callable[[Scene], Sampler]] = {
 
 
 def _resolved(scene: Scene, mesh: Mesh) -> "tuple[Mesh, Response | Families]":
-    """The mesh, cut further where the law of contact bends with the modulus; and the response on it."""
+    """Cut the mesh where the law of contact bends with the modulus; return it and its response."""
     for _ in range(_CUTS):
         try:
             return mesh, _response(scene, mesh)

@@ -60,7 +60,7 @@ class Shared:
         return self.scenes[0].draws
 
     def block(self, first: int, n: int) -> tuple[Block, ...]:
-        """What surfaces `first` ... `first + n - 1` answer to each scene."""
+        """Return what surfaces `first` ... `first + n - 1` answer to each scene."""
         if len(self.scenes) == 1:
             return (self.scenes[0].block(first, n),)
         drawn = self._counted[0].drawn(first, n, self.layout)
@@ -68,7 +68,7 @@ class Shared:
 
 
 def to_be_shared(scene: Scene) -> tuple[Any, ...] | None:
-    """What other scenes must agree in to have the same surfaces; None if it shares them with none.
+    """Return what other scenes must agree in to have the same surfaces; None if it shares them with none.
 
     Crowds depend on what is asked.
     """

@@ -41,7 +41,7 @@ def _widest(law: HeightLaw, a: float, distance: float) -> float:
 
 
 def spaced(law: HeightLaw, n: int, begins: Array, breaks: Array, marks: Array) -> Array:
-    """Marks, and cells where contacts begin or change their law such that drawing costs the least."""
+    """Return marks, and cells where contacts begin or change their law such that drawing costs the least."""
     low = marks[:-1]
     k = np.searchsorted(begins, low)
     root = begins[np.minimum(k, len(begins) - 1)] == low
@@ -91,7 +91,7 @@ class Gaps:
         return np.asarray(1 + np.ceil(np.maximum(halvings, 0.0) - 1e-9), dtype=np.int64)
 
     def take(self, which: NDArray[np.bool_]) -> "Gaps":
-        """Some of them."""
+        """Return some of them."""
         return Gaps(self.low[which], self.high[which], self.before[which], self.root[which])
 
 
@@ -177,7 +177,7 @@ def _rungs(most: int) -> Array:
 
 
 def _prices(law: HeightLaw, n: int, cells: _Cells, root: NDArray[np.bool_] | np.bool_) -> Array:
-    """What the asperities of a surface cost in each cell; contacts begin where it starts, or not."""
+    """Return what the asperities of a surface cost in each cell; contacts begin where it starts, or not."""
     plain, rooted = _orders(law, n, cells, root)
     return np.asarray(_CELL + n * (cells.above - cells.beyond) * price(plain, rooted))
 
@@ -220,7 +220,7 @@ def expected_orders(law: HeightLaw, n: int, begins: Array, edges: Array) -> tupl
 
 
 def price(plain: Array | Ints, rooted: Array | Ints) -> Array:
-    """What an asperity costs that gives so many moments: 1 for ten plain ones."""
+    """Return what an asperity costs that gives so many moments: 1 for ten plain ones."""
     roots = np.where(rooted > 0, _ROOT + _FIVE_ROOTS_MORE * _steps(rooted - 6), 0.0)
     more = np.where(plain > 12, _FIVE_MORE * _steps(plain - 10), _TWO_MORE * (plain > 10))
     return np.asarray(1 + more + roots)

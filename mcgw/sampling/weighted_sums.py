@@ -101,7 +101,7 @@ def with_radii(
     mesh: Mesh,
     response: Families,
 ) -> Counted:
-    """A sampler on a mesh that draws a radius for each asperity."""
+    """Return a sampler on a mesh that draws a radius for each asperity."""
     assert scene.curvature is not None
     table = radius_table(scene.curvature, scene.lowest)
     return Counted(name, scene, mesh, response, WithRadii(mesh, table, response), table)
@@ -127,7 +127,7 @@ class WithRadii:
     distance = 0.0
 
     def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
-        """Sums over the uniforms of each cell, each with a power of its radius, one family after the other.
+        """Draw sums over the uniforms of each cell, each with a power of its radius, family by family.
 
         The same bits for any number of threads and in any block.
         """
@@ -152,5 +152,5 @@ class WithRadii:
         return in_runs_of_cells(counts.cells, orders, _PRICE, sum_run)
 
     def draws(self, asperities: float, layout: Layout) -> float:
-        """A height and two words of a radius, which take about as long."""
+        """Return a height and two words of a radius, which take about as long."""
         return 6 * asperities if layout.sizes.any() else 0.0

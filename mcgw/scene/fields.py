@@ -29,7 +29,7 @@ class LeftOut(int):
 
 
 def _of(path: str) -> Any:
-    """A value of a part."""
+    """Return a value of a part."""
     return property(attrgetter(path))
 
 
@@ -145,7 +145,7 @@ class Fields(Flat):
         return "gap_to_summits" if self.rise is None else "mean_gap"
 
     def quantity(self, name: str) -> analytic.Quantity:
-        """A quantity with its unit in this scene, which conducts heat or current."""
+        """Return a quantity with its unit in this scene, which conducts heat or current."""
         q = analytic.quantity_of(name)
         return replace(q, unit=q.unit.split(" or ")[-1 if self.thermal else 0]) if " or " in q.unit else q
 
@@ -167,7 +167,7 @@ class Fields(Flat):
         return self.interaction.compliance(self.surface, float(self.n_asperities))
 
     def series(self, quantity: str) -> float:
-        """What the half-space adds to the inverse of a sum over spots, in units of that sum."""
+        """Return what the half-space adds to the inverse of a sum over spots, in units of that sum."""
         if self.interaction is None:
             return 0.0
         rho = 1.0 if self.film is None else self.film.rho
@@ -203,7 +203,7 @@ class Fields(Flat):
         return Ways(self.reduced_law, self.unload_from, conductance)
 
     def branch_of(self, quantity: str) -> Branch:
-        """The way of a quantity, loading or unloading."""
+        """Return the way of a quantity, loading or unloading."""
         return self.ways.of(quantity)
 
     @property

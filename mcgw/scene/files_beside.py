@@ -20,7 +20,7 @@ _NAMED = re.compile(r"\s*(\w+)\s*(?:[(\[/ ]\s*([^()\[\]]*?)\s*[)\]]?)?\s*")  # z
 
 
 def read_grading(path: Path, surface: Surface) -> Table:
-    """A grading from a CSV file of bounded length, as `analytic.Table.from_csv` reads it.
+    """Return a grading from a CSV file of bounded length, as `analytic.Table.from_csv` reads it.
 
     Units may follow the names, ``z (um), E_star (GPa)``, or the numbers, ``61.2 GPa``.
 
@@ -54,7 +54,7 @@ def _in_si(lines: list[str]) -> Iterator[str]:
 
 
 def _cell(text: str, name: str, unit: str) -> str:
-    """A number in its own unit or in that of its column."""
+    """Return a number in its own unit or in that of its column."""
     for written in (f"{text}{unit}", text):
         if math.isfinite(value := signed(written, _COLUMNS[name])):
             return repr(value)

@@ -40,7 +40,7 @@ def contact_facts(scene: Fields) -> list[tuple[str, str]]:
 
 
 def joint_text(scene: Fields) -> str:
-    """What fills the gap; by default nothing: spots only, as in vacuum."""
+    """Return what fills the gap; by default nothing: spots only, as in vacuum."""
     if scene.gas is None or scene.filled is None or (gas := scene.filled.gas) is None:
         return "spots only (vacuum)"
     name = scene.gas.gas if isinstance(scene.gas.gas, str) else "gas"

@@ -257,7 +257,7 @@ SURFACE_UNITS = {name: KEYS["surface"][name].kind.unit for name in (*SUMMITS, "n
 
 
 def whole_key(key: str) -> str:
-    """A key with its table, where it is given without and only one table has it."""
+    """Return a key with its table, where it is given without and only one table has it."""
     tables = [name for name, rows in KEYS.items() if key in rows]
     if "." in key or key in TABLES or len(tables) != 1:
         return key

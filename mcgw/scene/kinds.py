@@ -40,7 +40,7 @@ class Number(Kind):
     advice: str = ""
 
     def value(self, given: Any) -> float | None:
-        """The number, or None if it does not fit."""
+        """Return the number, or None if it does not fit."""
         try:
             if self.unit and isinstance(given, str):
                 number = parse(given, self.unit)
@@ -105,7 +105,7 @@ class Whole(Kind):
         return "give it"
 
     def shape(self) -> dict[str, Any]:
-        """An integer."""
+        """Return an integer."""
         most = {"maximum": self.most} if self.most < _MOST_WHOLE else {}
         return {"type": "integer", "minimum": self.least, **most}
 
@@ -130,7 +130,7 @@ class Word(Kind):
         return section.fail(name, value, f"{nearest(value, self.known)}{advice}")
 
     def shape(self) -> dict[str, Any]:
-        """These words."""
+        """Return these words."""
         return {"enum": list(self.known)}
 
 
@@ -147,7 +147,7 @@ class Text(Kind):
         return value if fits else section.fail(name, value, self.advice)
 
     def shape(self) -> dict[str, Any]:
-        """A string."""
+        """Return a string."""
         return {"type": "string", **({} if self.empty else {"minLength": 1})}
 
 
@@ -162,7 +162,7 @@ class Flag(Kind):
         return value if isinstance(value, bool) else section.fail(name, value, self.advice)
 
     def shape(self) -> dict[str, Any]:
-        """A boolean."""
+        """Return a boolean."""
         return {"type": "boolean"}
 
 
@@ -194,7 +194,7 @@ class List(Kind):
         return section.fail(name, value, f"{few}{self.advice}{reason}")
 
     def shape(self) -> dict[str, Any]:
-        """An array."""
+        """Return an array."""
         shape: dict[str, Any] = {"type": "array", "items": self.item.shape()}
         shape |= {"minItems": self.least} if self.least else {}
         shape |= {"maxItems": self.most} if self.most < 1000 else {}
@@ -227,7 +227,7 @@ class Table(Kind):
             return section.note(f"{section.path(name)}.{error}")
 
     def shape(self) -> dict[str, Any]:
-        """An object."""
+        """Return an object."""
         return table_shape(self.rows)
 
 
@@ -249,7 +249,7 @@ class ByName(Kind):
         return found if len(section.problems) == before else None
 
     def shape(self) -> dict[str, Any]:
-        """An object."""
+        """Return an object."""
         names = {"propertyNames": {"enum": list(self.names)}, "minProperties": 1} if self.names else {}
         return {"type": "object", "additionalProperties": self.item.shape(), **names}
 

@@ -74,7 +74,7 @@ def _listed(names: list[str]) -> str:
 
 
 def _law(scene: Fields) -> Iterator[str]:
-    """A law that means nothing for this surface."""
+    """Find a law that means nothing for this surface."""
     if scene.law.elastic and "yielded" in scene.quantities:
         yield f'contact.quantities: "yielded": no contact yields with law = "{scene.law.name}"; leave it out'
     if scene.hertzian:
@@ -178,7 +178,7 @@ def _radii(scene: Fields) -> Iterator[str]:
 
 
 def _function(scene: Fields) -> Iterator[str]:
-    """A Python function that does not take arrays."""
+    """Find a Python function that does not take arrays."""
     if not isinstance(scene.grading, analytic.Custom):
         return
     try:
@@ -243,7 +243,7 @@ def _modulus(scene: Fields) -> Iterator[str]:
 
 
 def _sums(scene: Fields) -> Iterator[str]:
-    """Sums that the grading makes larger than double precision holds."""
+    """Find the sums that the grading makes larger than double precision holds."""
     ends = np.array(sorted({scene.highest, *scene.separations}))
     stiff = [q for q in map(analytic.quantity_of, scene.quantities) if q.modulus]
     with np.errstate(all="ignore"):
@@ -257,7 +257,7 @@ def _sums(scene: Fields) -> Iterator[str]:
 
 
 def _fluctuating(scene: Fields) -> Iterator[str]:
-    """A Python function that has no variance."""
+    """Find a Python function that has no variance."""
     if scene.keep == "statistics" and not scene.grading.smooth:
         try:
             scene._alone.fluctuations(scene.quantities, np.array([scene.lowest]))
@@ -266,6 +266,6 @@ def _fluctuating(scene: Fields) -> Iterator[str]:
 
 
 def _key(scene: Fields) -> str:
-    """The key of a grading, and its value if that is one number."""
+    """Find the key of a grading, and its value if that is one number."""
     grading = scene.grading
     return f"grading.gamma = {grading.gamma:g}" if isinstance(grading, analytic.Exponential) else "grading"

@@ -62,13 +62,13 @@ _GASES = Either(
 
 
 def key(kind: Kind, example: str, words: str, default: Any = None, **others: Any) -> Any:
-    """A field with its row in the table of its part."""
+    """Return a field with its row in the table of its part."""
     row = {"kind": kind, "example": example, "words": words, "default": default, **others}
     return field(default=default, metadata=row)
 
 
 def rows_of(part: type) -> tuple[Key, ...]:
-    """The rows of a part: its fields that are keys of a table."""
+    """Return the rows of a part: its fields that are keys of a table."""
     return tuple(Key(each.name, **each.metadata) for each in fields(part) if each.metadata)
 
 

@@ -88,7 +88,7 @@ def takes_hours(scene: "Fields") -> list[str]:
 
 
 def surface_in_other_units(surface: Surface) -> list[str]:
-    """The same of a surface alone."""
+    """Return the same of a surface alone."""
     found = []
     for key, known in RANGES.items():
         value = float(getattr(surface, key))
@@ -99,7 +99,7 @@ def surface_in_other_units(surface: Surface) -> list[str]:
 
 
 def _meant(value: float, known: Range) -> str:
-    """These digits as people write them, from 0.01 to 9999, in a unit that makes them one of these values."""
+    """Write these digits as people do, from 0.01 to 9999, in a unit that makes them one of these values."""
     while value < 1e-2:
         value *= 1e3
     while value >= 1e4:

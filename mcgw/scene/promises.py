@@ -52,5 +52,5 @@ SAMPLERS = ("auto", *_PROMISES)
 
 
 def promise_of(sampler: str) -> Promise:
-    """What a sampler promises; ``auto`` takes one that promises all."""
+    """Return what a sampler promises; ``auto`` takes one that promises all."""
     return _PROMISES.get(sampler, Promise(own_laws=True))

@@ -65,7 +65,7 @@ def of_arguments(**given: Any) -> Values:
 
 
 def _keys_of(name: str, value: Any) -> Any:
-    """The keys of what stands for a whole table; a word for an interaction is its reference."""
+    """Return the keys of what stands for a whole table; a word for an interaction is its reference."""
     if isinstance(value, str) and name == "interaction":
         return {"reference": value}
     if not is_dataclass(value) or isinstance(value, type):
@@ -79,7 +79,7 @@ def _keys_of(name: str, value: Any) -> Any:
 
 
 def _split_law(contact: Values, objects: Values) -> None:
-    """The law as a table of its own, with what tells whether contacts yield; or an object."""
+    """Return the law as a table of its own, with what tells whether contacts yield; or an object."""
     law = contact.pop("law", {})
     table = dict(law) if isinstance(law, Mapping) else {"name": law} if isinstance(law, str) else {}
     if not isinstance(law, Mapping | str):
@@ -142,7 +142,7 @@ def of_tables(
 
 
 def _surface_and_summits(top: Section, of: Mapping[str, Section], objects: Values, folder: Path) -> Summits:
-    """A surface, the law of its heights, and that of its radii where summits have their own."""
+    """Return a surface, the law of its heights, and that of its radii where summits have their own."""
     summits, radii = of["summits"], objects.get("summits")
     if any(key in summits for key in LISTS):
         listed = listed_of(summits, folder)
@@ -169,7 +169,7 @@ def _surface_and_summits(top: Section, of: Mapping[str, Section], objects: Value
 
 
 def _with_listed(of: Mapping[str, Section], surface: Any, listed: Any) -> Summits:
-    """The same with summits that are given one by one, which tell what the surface leaves out."""
+    """Return the same with summits that are given one by one, which tell what the surface leaves out."""
     heights = of["heights"]
     heights.known(*heights.table)
     if heights.table:
@@ -245,7 +245,7 @@ def _softer(section: Section, law: ContactLaw, *, of_python: bool) -> Values:
 
 
 def _joint(joint: Joint | None, section: Section) -> Joint:
-    """A joint of which film and gas can be made; what else is wrong is noted where its keys are."""
+    """Return a joint of which film and gas can be made; what else is wrong is noted where its keys are."""
     if joint is None or (joint.resistivity is None) == (joint.conductivities is None):
         return Joint()
     try:
@@ -257,7 +257,7 @@ def _joint(joint: Joint | None, section: Section) -> Joint:
 
 
 def _made(top: Section, section: Section) -> Any:
-    """What all keys of a table make; None where it is left out, or wrong, which is noted."""
+    """Return what all keys of a table make; None where it is left out, or wrong, which is noted."""
     make = TABLES[section.name].make
     if make is None or not isinstance(top.table.get(section.name), dict):
         return None
@@ -289,7 +289,7 @@ def _ensemble(section: Section, surface: Surface | None, seed: Callable[[], int 
 
 
 def _number(section: Section, key: str, value: int | None) -> int:
-    """A number; one that nobody gave is marked as such, and stays."""
+    """Return a number; one that nobody gave is marked as such, and stays."""
     given = section.table.get(key)
     return given if isinstance(given, LeftOut) else LeftOut() if value is None else value
 

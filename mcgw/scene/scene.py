@@ -237,7 +237,7 @@ class Scene(Fields, Shown):
 
 @cache
 def _places() -> dict[str, str]:
-    """What each value that may be given by its own name is a field of; "" stands for the scene."""
+    """Return what each value that may be given by its own name is a field of; "" stands for the scene."""
     places = dict.fromkeys(signature(Scene).parameters, "") | {"negative": "grading"}
     places |= dict.fromkeys((*SURFACE_UNITS, "uncertainty"), "surface")
     for name in ("contact", "joint", "ensemble"):
@@ -270,7 +270,7 @@ def with_values(given: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str
 
 
 def _changed(part: str, held: Any, changes: Mapping[str, Any]) -> Any:
-    """A part with other values."""
+    """Return a part with other values."""
     if part == "surface":
         given: dict[str, Any] = {x: getattr(held, x, None) for x in (*SURFACE_UNITS, "uncertainty")}
         return GivenSurface(**given | dict(changes))
@@ -282,7 +282,7 @@ def _changed(part: str, held: Any, changes: Mapping[str, Any]) -> Any:
 
 
 def storable(scene: AnyScene) -> AnyScene:
-    """The scene with its grading and contact law resolved, unless a file holds them as they are.
+    """Return the scene with its grading and contact law resolved, unless a file holds them as they are.
 
     All samplers draw with this one, so that in memory, in a file, and resumed from there, a scene has
     the same bits. A Python function becomes an `analytic.PiecewiseSeries` over all heights that count.
@@ -298,14 +298,14 @@ def storable(scene: AnyScene) -> AnyScene:
 
 
 def _in_other_words(scene: AnyScene, **changes: Any) -> AnyScene:
-    """The scene with values that say the same: not checked anew, which may take as long as drawing it."""
+    """Return the scene with values that say the same; not checked anew, which may take long."""
     same = object.__new__(type(scene))
     hold(same, **{each.name: getattr(scene, each.name) for each in dataclasses.fields(scene)} | changes)
     return same
 
 
 def in_numbers(scene: Fields) -> dict[str, Any]:
-    """What of a scene a file does not hold as it is, resolved; raises as `storable`."""
+    """Return what of a scene a file does not hold as it is, resolved; raises as `storable`."""
     changes: dict[str, Any] = {}
     if not scene.law.is_data:
         changes["contact"] = dataclasses.replace(scene.contact, law=_resolved_law(scene))
@@ -327,7 +327,7 @@ def _extent(scene: Fields) -> tuple[float, float]:
 
 
 def _resolved_law(scene: Fields) -> ContactLaw:
-    """The series of a law up to the deepest penetration of the stiffest asperity."""
+    """Return the series of a law up to the deepest penetration of the stiffest asperity."""
     low, high = _extent(scene)
     deepest = high - min(scene.lowest, low if scene.unload_from is None else scene.unload_from)
     s = np.linspace(low, high, _LOOKED_AT)
@@ -350,7 +350,7 @@ def _resolved_law(scene: Fields) -> ContactLaw:
 
 
 def drawn_by(scene: AnyScene, sampler: str) -> AnyScene:
-    """The scene that says by which sampler it was drawn, where it left the choice to ``auto``."""
+    """Return the scene that says by which sampler it was drawn, where it left the choice to ``auto``."""
     if sampler != scene.sampler and scene.accuracy and promise_of(sampler).spends:
         return scene  # its crowds follow from what may be spent
     if sampler == scene.sampler:

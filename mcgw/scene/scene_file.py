@@ -76,7 +76,7 @@ def load_scene(
 
 
 def files_of(path: str | Path) -> list[Path]:
-    """The file of a scene that was read, then every ``file`` that its tables name."""
+    """Return the file of a scene that was read, then every ``file`` that its tables name."""
     path = Path(path)
     document = loads(read_bytes(path, _MOST_BYTES).decode())
     named = [table["file"] for table in document.values() if isinstance(table, dict) and "file" in table]
@@ -217,7 +217,7 @@ def scene_text(scene: Scene, *, heights_file: str | None = None, left_out: bool 
 
 
 def scene_document(scene: Scene, *, heights_file: str | None = None, left_out: bool = True) -> dict[str, Any]:
-    """The tables that `scene_text` writes; arguments and errors as there."""
+    """Return the tables that `scene_text` writes; arguments and errors as there."""
     scene = storable(scene)
     listed = isinstance(scene.summits, MeasuredRadii)  # whose heights stand there too
     law = {} if type(scene.law) is Hertz else contact_law_table(scene.law)
@@ -240,7 +240,7 @@ def scene_document(scene: Scene, *, heights_file: str | None = None, left_out: b
 
 
 def _written(part: Any, table: str) -> dict[str, Any]:
-    """The keys of a table that are values of a part of a scene; what is not asked for is not written."""
+    """Return the keys of a table that are values of a part of a scene, without what is not asked for."""
     found = {}
     for key, row in KEYS[table].items():
         value = _plain(getattr(part, key, None))

@@ -55,7 +55,7 @@ class Kind:
         raise NotImplementedError
 
     def shape(self) -> dict[str, Any]:
-        """The same as JSON Schema."""
+        """Return the same as JSON Schema."""
         raise NotImplementedError
 
 
@@ -109,7 +109,7 @@ class TableOfKeys(NamedTuple):
 
 
 def table_shape(rows: tuple[Key, ...]) -> dict[str, Any]:
-    """An object with these keys only, and which of them go together."""
+    """Return an object with these keys only, and which of them go together."""
     shape: dict[str, Any] = {
         "type": "object",
         "properties": {

@@ -74,7 +74,7 @@ def _grading(scene: Fields, inner: Any, s: Array, e: Array) -> Iterator[str]:
 
 
 def _larger_unit(e: Array) -> str | None:
-    """The unit that makes them ratios, if they are a column of moduli that was taken as pascals."""
+    """Return the unit that makes them ratios, if they are a column of moduli that was taken as pascals."""
     return next((unit for unit in ("MPa", "GPa") if _near(e * _UNITS[unit], _ABOUT)), None)
 
 

@@ -50,7 +50,7 @@ class PrincipalComponents:
 
     @classmethod
     def of(cls, scene: Scene, quantities: tuple[str, ...] = ()) -> "PrincipalComponents":
-        """The axes of a scene: of those separations where single surfaces are nearly Gaussian.
+        """Return the axes of a scene: of those separations where single surfaces are nearly Gaussian.
 
         Of all its quantities, unless some are named; and of those combinations in which means over so many
         surfaces do not show how accurate values are.
@@ -194,7 +194,7 @@ def skewness(exact: PrincipalComponents, y: Array) -> Check:
 
 
 def coverage(groups: Array, level: float = 0.95) -> Check:
-    """Number of Student intervals that cover the mean: `groups` has shape (seeds, surfaces, axes)."""
+    """Count the Student intervals that cover the mean: `groups` has shape (seeds, surfaces, axes)."""
     m = groups.shape[1]
     half = student.ppf((1 + level) / 2, m - 1) * groups.std(axis=1, ddof=1) / np.sqrt(m)
     covered, tried = int((np.abs(groups.mean(axis=1)) <= half).sum()), half.size

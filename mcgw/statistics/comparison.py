@@ -92,7 +92,7 @@ class Comparison(Shown):
         return plotted(self, ax, quantity=quantity or next(iter(self.curves)))
 
     def sheet(self) -> Sheet:
-        """The verdict, and each quantity at the separation where it is farthest from theory."""
+        """Return the verdict, and each quantity at the separation where it is farthest from theory."""
         farthest = {name: _farthest(table, 1) for name, table in self.tables().items()}
         v = self.verdict
         facts = [
@@ -108,7 +108,7 @@ class Comparison(Shown):
         return {name: self._table(name) for name in self.curves}
 
     def worst(self, rows: int) -> Table:
-        """The means farthest from theory, over all quantities."""
+        """Return the means farthest from theory, over all quantities."""
         table = replace(stacked(self.tables(), "quantity"), title="farthest from theory, in standard errors")
         return _farthest(table, rows)
 
@@ -168,7 +168,7 @@ class SweepComparison(Shown):
         return plotted(self, ax)
 
     def sheet(self, most: int = _LISTED) -> Sheet:
-        """The verdict, and the points that are farthest from theory."""
+        """Return the verdict, and the points that are farthest from theory."""
         v = self.verdict
         smallest = self.worst[0].verdict.p
         beyond = int((np.abs(self.residuals) > 3).sum())
@@ -187,7 +187,7 @@ class SweepComparison(Shown):
         return Sheet(title, facts, Table(columns))
 
     def table(self) -> Table:
-        """A row for each point, quantity and separation."""
+        """Return a row for each point, quantity and separation."""
         where, axes = list(self.sweep.axes.points()), self.sweep.axes
         rows = [
             (one, q, k)

@@ -89,7 +89,7 @@ class Convergence(Shown):
         return plotted(self, ax)
 
     def sheet(self) -> Sheet:
-        """The verdict and its worst checks."""
+        """Return the verdict and its worst checks."""
         worst = sorted(self.checks, key=lambda check: check.p)[:_MOST_SHOWN]
         facts = [("p", f"{self.p:.3g} over all {len(self.checks)} checks")]
         return Sheet(f"Statistical convergence {self.word}", facts, _table(worst, "worst"))
@@ -201,12 +201,12 @@ def _own(scene: Scene) -> Sums:
 
 @lru_cache(maxsize=1)
 def _prepared(scene: Scene) -> Sampler:
-    """The sampler for all seeds of a scene: preparing takes longer than drawing."""
+    """Return the sampler for all seeds of a scene: preparing takes longer than drawing."""
     return sampler_of(scene)
 
 
 def _contacts(scene: Scene, sums: Sums) -> list[Check]:
-    """Number of contacts of all surfaces together: binomial or Poisson, exact however few they are."""
+    """Test the number of contacts of all surfaces: binomial or Poisson, exact however few they are."""
     if "contacts" not in scene.quantities:
         return []
     total = np.rint(np.asarray(sums["contacts"], dtype=np.float64).sum(axis=0))

@@ -149,7 +149,7 @@ class Answers:
             yield Task("exact law", 0, lambda s: law(s).cdf(self.at), lambda _: {"distribution": 0.0})
 
     def _load(self, scene: Scene) -> float:
-        """The load, moved as the scene of a repeat is."""
+        """Return the load, moved as the scene of a repeat is."""
         return self.load * (1 + scene.separations[0] - self.h)
 
     def _exactly(self, scene: Scene) -> float:
@@ -161,7 +161,7 @@ class Answers:
         return float(found.surfaces["conductance"].mean())
 
     def sampled(self, name: str, n_surfaces: int) -> Task:
-        """A way that draws so many surfaces: at the separation, or at the load."""
+        """Return a way that draws so many surfaces: at the separation, or at the load."""
         if name == SOLVE:
             return Task(name, n_surfaces, partial(self._drawn, n_surfaces), self._off_at_load)
         sampler = sampler_of(name)
@@ -174,13 +174,13 @@ class Answers:
 
 
 def moved(scene: Scene, number: int) -> Scene:
-    """The scene of one repeat."""
+    """Return the scene of one repeat."""
     seed = (scene.seed + 7919 * number + 104729) % 2**64
     return scene.replace(separations=(scene.separations[0] + _SHIFT * number,), seed=seed)
 
 
 def sized(answers: Answers, name: str, scene: Scene, share: float) -> list[Task]:
-    """A way at all sizes of which 16 repeats fit into its share of seconds, each run before."""
+    """Return a way at all sizes of which 16 repeats fit into its share of seconds, each run before."""
     tasks: list[Task] = []
     rough = expected(scene.replace(sampler=sampler_of(name))).seconds
     for size in _SIZES:
@@ -196,7 +196,7 @@ def sized(answers: Answers, name: str, scene: Scene, share: float) -> list[Task]
 
 
 def prices(scene: Scene, points: Sequence[Point], names: Sequence[str]) -> list[Way]:
-    """Set-up and cost of a surface from the times of all sizes; floors from what is off."""
+    """Return set-up and cost of a surface from the times of all sizes; floors from what is off."""
     tested = {"theory": _HERTZ if scene.hertzian and scene.curvature is None else _OTHERS, "exact law": _LAW}
     still = [p for p in points if p.way in tested]
     ways = [Way(p.way, p.want, max(tested[p.way], p.rms), p.seconds, 0.0) for p in still]

@@ -147,7 +147,7 @@ def _fits(scene: Scene, name: str) -> bool:
 
 
 def wants_of(name: str) -> tuple[str, ...]:
-    """What a way can give: theory has no law of surfaces, nor has a sampler whose laws are a little off."""
+    """Return what a way can give: no law of surfaces by theory, nor by a sampler whose laws are off."""
     if name in _GIVES:
         return _GIVES[name]
     if promise_of(sampler_of(name)).spends:

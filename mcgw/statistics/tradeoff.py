@@ -101,7 +101,7 @@ class Tradeoff(Shown):
         return f"{text[0].upper()}{text[1:]}."
 
     def sheet(self, targets: Sequence[float] = _SHOWN) -> Sheet:
-        """What to run for each answer; targets with one and the same way in one row."""
+        """Return what to run for each answer; targets with one and the same way in one row."""
         scene = self.scene
         facts = [
             ("at", f"d/sigma = {scene.separations[0]:g}; an error is a 95 % bound, 1.96 standard errors"),
@@ -215,7 +215,7 @@ def tradeoff(
 
 
 def _refused(scene: Scene) -> Scene:
-    """The scene, if its answers can be traded off."""
+    """Return the scene, if its answers can be traded off."""
     if isinstance(scene.curvature, MeasuredRadii):
         raise ValueError("summits: listed summits are summed or drawn, and have no other method")
     if isinstance(scene.heights, MeasuredHeights):

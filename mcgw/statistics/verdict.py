@@ -195,7 +195,7 @@ def _gaussian(parts: Fluctuations, asperities: float) -> Marks:
 
 
 def bounded_theory(scene: Scene, surfaces: int) -> Model:
-    """The scene's own model, with a bound on the radii where there is none."""
+    """Return the scene's own model, with a bound on the radii where there is none."""
     theory, law = scene.theory, scene.curvature
     if not isinstance(law, RandomCurvature) or np.isfinite(law.largest):
         return theory

@@ -95,7 +95,7 @@ def read_attributes(path: Path) -> dict[str, Any]:
 
 
 def unfinished_sweep(path: Path) -> RunFolder | None:
-    """The folder of a sweep that is not yet in its file, if there is one."""
+    """Return the folder of a sweep that is not yet in its file, if there is one."""
     if path.exists() or not (parts_of(path) / RECORD).is_file():
         return None
     run = RunFolder.open(parts_of(path))
@@ -103,7 +103,7 @@ def unfinished_sweep(path: Path) -> RunFolder | None:
 
 
 def _run_of(path: Path) -> RunFolder:
-    """The run that makes a file; one that is a single block leaves no record."""
+    """Return the run that makes a file; one that is a single block leaves no record."""
     if not (parts_of(path) / RECORD).exists():
         raise StoreError(f"{path}: no block of its run is finished yet")
     run = RunFolder.open(parts_of(path))
@@ -146,7 +146,7 @@ class FileResults(Results):
             raise StoreError(f"{self.path}: cannot be read; is it damaged? See mcgw show --verify") from None
 
     def rows(self) -> int:
-        """Number of surfaces."""
+        """Return the number of surfaces."""
         with open_h5(self.path) as file:
             return int(file["surface"].shape[0])
 
@@ -168,5 +168,5 @@ class ShardResults(Results):
         return np.concatenate(parts)
 
     def rows(self) -> int:
-        """Number of surfaces."""
+        """Return the number of surfaces."""
         return sum(shard.span.n for shard in self.shards)

@@ -74,11 +74,11 @@ class Rows:
     pieces: Callable[[], Generator[Tables]]
 
     def __len__(self) -> int:
-        """Number of rows."""
+        """Return the number of rows."""
         return self.n
 
     def __iter__(self) -> Iterator[Tables]:
-        """The pieces, each made while the one before is used."""
+        """Yield the pieces, each made while the one before is used."""
         from mcgw.machine.in_threads import one_ahead  # imports numba, which reading does without
 
         with closing(one_ahead(self.pieces())) as pieces:
@@ -241,7 +241,7 @@ def _add_attributes(item: "h5py.File | h5py.Dataset", attributes: Mapping[str, A
 
 
 def sha_of(table: "NDArray[Any] | h5py.Dataset") -> Any:
-    """The beginning of a checksum: of the type of a table and the shape of its rows."""
+    """Return the beginning of a checksum: of the type of a table and the shape of its rows."""
     return hashlib.sha256(f"{table.dtype.newbyteorder('<').str} {table.shape[1:]}".encode())
 
 

@@ -88,7 +88,7 @@ class Written:
 
 
 def difference(there: Question, here: Question) -> str:
-    """What keeps two runs, or two sweeps, from being one, in words: scene, axes and what draws, of each."""
+    """Tell what keeps two runs, or two sweeps, from being one: scene, axes and what draws, of each."""
     before, now = _said(*there[:2]), _said(*here[:2])
     for key, value in now.items():
         if before.get(key) != value:

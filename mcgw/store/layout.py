@@ -103,7 +103,7 @@ def _contents_of_statistics(ensemble: Ensemble, written: Written, **about: Any) 
 
 
 def read_statistics(path: Path, scene: Scene) -> "Summarised":
-    """What a file holds.
+    """Return what a file holds.
 
     Raises
     ------

@@ -28,7 +28,7 @@ def recorded_scene(path: Path) -> Scene | None:
 
 
 def with_recorded_seed(scene: Scene, path: Path) -> Scene:
-    """The scene; with the seed of what lies there, if nobody gave it one."""
+    """Return the scene; with the seed of what lies there, if nobody gave it one."""
     recorded = recorded_seed(path) if isinstance(scene.seed, LeftOut) else None
     return scene if recorded is None else scene.replace(seed=LeftOut(recorded))
 
@@ -40,7 +40,7 @@ def recorded_seed(path: Path) -> int | None:
 
 
 def finished(path: Path, wanted: Written) -> int:
-    """Number of surfaces that a file holds of a scene; 0 if there is no file.
+    """Return the number of surfaces that a file holds of a scene; 0 if there is no file.
 
     Raises
     ------

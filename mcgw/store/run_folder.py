@@ -97,7 +97,7 @@ def _write_tables(path: Path, tables: Tables, about: dict[str, Any], expected: E
 
 
 def open_shard(path: Path, run: str, *, numbers: bool = True) -> Shard:
-    """A shard of this run; its numbers are compared with their checksums unless that is left out.
+    """Return a shard of this run; its numbers are compared with their checksums unless that is left out.
 
     Raises
     ------
@@ -239,7 +239,7 @@ class RunFolder:
             ) from None
 
     def shards(self, *, numbers: bool = True) -> list[Shard]:
-        """Valid shards in order, each looked at; or its head alone, without the `numbers`."""
+        """Return valid shards in order, each looked at; or its head alone, without the `numbers`."""
         return [shard for shard, _ in self._looked_at(numbers=numbers) if shard]
 
     def sweep(self) -> list[Shard]:
@@ -265,7 +265,7 @@ class RunFolder:
                 yield None, path
 
     def held(self, span: Span) -> Shard | None:
-        """The valid shard of a block, if there is one."""
+        """Return the valid shard of a block, if there is one."""
         path = self.shards_folder / span.file_name
         if path.is_symlink() or not path.is_file():
             return None

@@ -54,12 +54,12 @@ class Plan:
         return self._starts[-1] + self.groups[-1][0]
 
     def group(self, span: Span) -> tuple[int, int]:
-        """The group that some surfaces are of, and the number of the first one within it."""
+        """Return the group that some surfaces are of, and the number of the first one within it."""
         g = bisect_right(self._starts, span.first) - 1
         return g, span.first - self._starts[g]
 
     def number(self, span: Span) -> int:
-        """The number of the block, of all, that some surfaces are of."""
+        """Return the number of the block, of all, that some surfaces are of."""
         g, first = self.group(span)
         return sum(-(-n // size) for n, size in self.groups[:g]) + first // self.groups[g][1]
 

@@ -81,24 +81,24 @@ class Axes:
         return math.prod(self.shape)
 
     def points(self) -> Iterator[Point]:
-        """Indices of all points, the last dimension fastest."""
+        """Return the indices of all points, the last dimension fastest."""
         return product(*map(range, self.shape))
 
     def at(self, point: Point) -> dict[str, Any]:
-        """The value of each key at a point."""
+        """Return the value of each key at a point."""
         places = point * len(self.values) if self.zipped else point
         return {key: values[i] for (key, values), i in zip(self.values.items(), places, strict=True)}
 
     def text(self, point: Point) -> str:
-        """A point in words."""
+        """Return a point in words."""
         return brief(", ".join(f"{key} = {_short(value)}" for key, value in self.at(point).items()))
 
     def values_text(self, point: Point) -> str:
-        """The values in the order of the keys."""
+        """Return the values in the order of the keys."""
         return brief(", ".join(map(_short, self.at(point).values())))
 
     def dimension(self, key: str) -> int:
-        """The dimension that a key is along.
+        """Return the dimension that a key is along.
 
         Raises
         ------
@@ -126,7 +126,7 @@ class Axes:
         return np.array(values, dtype=np.float64)
 
     def summary(self, key: str) -> str:
-        """The values of a key in words: how many, from the first to the last."""
+        """Return the values of a key in words: how many, from the first to the last."""
         values = [_short(value) for value in self.values[key]]
         if len(values) <= _LISTED:
             return ", ".join(values)
@@ -194,7 +194,7 @@ def axes_of(over: Mapping[str, Any], *, zipped: bool, resolve: Callable[[Any], A
 
 
 def _value(key: str, value: Any, resolve: Callable[[Any], Any] | None = None) -> Any:
-    """A value as in a scene file; a whole grading may be an object, or a function that is resolved."""
+    """Return a value as in a scene file; a whole grading may be an object, or a function that is resolved."""
     if key == "grading" and callable(value):
         if resolve is not None:
             value = resolve(value)
@@ -205,7 +205,7 @@ def _value(key: str, value: Any, resolve: Callable[[Any], Any] | None = None) ->
 
 
 def label(value: Any) -> Any:
-    """A value as the coordinate of an axis: a number or a text."""
+    """Return a value as the coordinate of an axis: a number or a text."""
     if isinstance(value, Mapping):
         return brief(", ".join(f"{key} = {inner}" for key, inner in value.items()))
     if isinstance(value, bool) or not isinstance(value, int | float | str):

@@ -74,7 +74,7 @@ def _by_point(sweep: Sweep) -> Labelled:
 
 
 def _drawn(sweep: Sweep) -> Tables:
-    """The data behind the statistics."""
+    """Return the data behind the statistics."""
     size = [len(next(iter(one.means.values()))) for one in sweep.groups]
     points = [(place.group, *place.scenes, -1)[:3] for place in sweep.places]
     weights = [(*place.weights, 0.0)[:2] for place in sweep.places]
@@ -132,7 +132,7 @@ def open_sweep(path: str | Path) -> Sweep:
 
 
 def _groups(drawn: Tables) -> Iterator[Pooled]:
-    """Data of each group, from the rows of all groups."""
+    """Yield data of each group, from the rows of all groups."""
     first = pair = 0
     for n, scenes in drawn["groups"].tolist():
         tables: Tables = {"n": np.array([n])}

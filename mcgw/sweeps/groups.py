@@ -73,7 +73,7 @@ class PointResults(Held):
     )
 
     def rows(self) -> int:
-        """Number of surfaces."""
+        """Return the number of surfaces."""
         return self.pooled.n
 
     def mean_and_std(self, name: str) -> tuple[Array, Array]:
@@ -82,7 +82,7 @@ class PointResults(Held):
         return self.pooled.mean(name, *some), np.sqrt(self.pooled.variance(name, *some))
 
     def total_number(self, name: str) -> Array:
-        """The mean times the number of surfaces, as a whole number."""
+        """Return the mean times the number of surfaces, as a whole number."""
         return np.rint(self.pooled.mean(name, *self.place.of(name)) * self.pooled.n)
 
 

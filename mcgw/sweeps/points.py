@@ -68,11 +68,11 @@ class Points(Sequence[Scene]):
         self._points = list(axes.points())
 
     def __len__(self) -> int:
-        """Number of points."""
+        """Return the number of points."""
         return len(self._points)
 
     def __getitem__(self, i: Any) -> Any:
-        """A scene, or several."""
+        """Return a scene, or several."""
         if isinstance(i, slice):
             return [self[k] for k in range(*i.indices(len(self)))]
         scene = scene_of(with_changes(self._document, self._axes.at(self._points[i])))
@@ -118,7 +118,7 @@ class Asked:
         return Asked(loads(scene), Axes.from_text(axes))
 
     def texts(self) -> tuple[str, str]:
-        """The scene as TOML and the axes as JSON."""
+        """Return the scene as TOML and the axes as JSON."""
         return tomli_w.dumps(self.document), self.axes.text_of_all()
 
     @cached_property
@@ -133,7 +133,7 @@ class Asked:
         return groups_of([_with_a_number(scene) for scene in scenes_of(self.document, self.axes)])
 
     def answered(self, pooled: Sequence[Pooled]) -> Sweep:
-        """The sweep, from the data of each group."""
+        """Return the sweep, from the data of each group."""
         scenes: dict[int, Scene] = {}
         places: dict[int, Place] = {}
         for group in self.groups:
@@ -148,7 +148,7 @@ class Asked:
 
 
 def _with_a_number(scene: Scene) -> Scene:
-    """The same with a number of surfaces in place of a stop rule."""
+    """Return the same with a number of surfaces in place of a stop rule."""
     if scene.max_seconds is not None:
         raise SceneError(["ensemble.max_seconds: a sweep must be reproducible; give n_surfaces or rel_err"])
     return scene if scene.rel_err is None else without_rule(scene)

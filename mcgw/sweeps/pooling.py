@@ -53,7 +53,7 @@ class Pooling(Reducer):
         return Pooled.of(values).block()
 
     def held(self, blocks: Iterable[Tables]) -> Pooled:
-        """The sum of all blocks."""
+        """Return the sum of all blocks."""
         return reduce(add, map(Pooled.from_block, blocks))
 
     def check(self, surfaces: int | None = None) -> None:  # noqa: ARG002

@@ -65,13 +65,13 @@ class Sweep(Dataset):
         return PointResults(self.groups[place.group], place)
 
     def _at(self, which: Ints) -> "Sweep":
-        """The same surfaces at some of the separations, by their numbers."""
+        """Return the same surfaces at some of the separations, by their numbers."""
         separations = tuple(self.separations[which].tolist())
         scenes = tuple(scene.replace(separations=separations) for scene in self.scenes)
         return replace(self, scenes=scenes, groups=tuple(one.at(which) for one in self.groups))
 
     def scene(self, at: At) -> Scene:
-        """The scene of a point, given by the values of its keys or by its index along each axis.
+        """Return the scene of a point, given by the values of its keys or by its index along each axis.
 
         Raises
         ------
@@ -171,7 +171,7 @@ class Sweep(Dataset):
         )
 
     def to_xarray(self) -> Any:
-        """The statistics as an `xarray.Dataset`, with a dimension for each axis: ``load_mean`` and so on.
+        """Return the statistics as an `xarray.Dataset`, with a dimension an axis: ``load_mean`` and so on.
 
         Raises
         ------
@@ -183,7 +183,7 @@ class Sweep(Dataset):
         return self.labelled().to_xarray(about)
 
     def to_dataframe(self) -> Any:
-        """The statistics as a `pandas.DataFrame`: a row for each point and separation.
+        """Return the statistics as a `pandas.DataFrame`: a row for each point and separation.
 
         Raises
         ------
@@ -229,7 +229,7 @@ class Sweep(Dataset):
         return Sheet(f"Sweep of {self.axes.size} scenes", facts, Table(tuple(columns)))
 
     def table(self) -> Table:
-        """A row for each point and separation: the keys, and statistics of what has no further axes.
+        """Return a row for each point and separation: the keys, and statistics of what has no further axes.
 
         Ratios are those of `ratios`, with the ends of their 95 % intervals.
         """

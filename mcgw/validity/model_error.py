@@ -126,7 +126,7 @@ class Validity(Shown):
         return f"within {', '.join(told)} (95 %{self._homogeneous}){where}"
 
     def sheet(self) -> Sheet:
-        """The verdict, and the errors at some separations: mean over maps, and how far 95 % are from it."""
+        """Return the verdict, and errors at some separations: mean over maps, and ends of 95 % of them."""
         where = [("measured", self.where)] if self.where else []
         return Sheet("Against elasticity", [("verdict", self.brief), *where], self.table())
 
@@ -159,7 +159,7 @@ class Validity(Shown):
 
 
 def percent(x: float) -> str:
-    """A share in per cent, rounded up so that the statement holds."""
+    """Return a share in per cent, rounded up so that the statement holds."""
     return f"{100 * rounded_up(x):.0f} %"
 
 
@@ -215,7 +215,7 @@ def _any(masks: dict[str, Marks]) -> Marks:
 
 
 def _told(v: Validity, where: dict[str, Marks]) -> Iterator[str]:
-    """The largest error of each quantity among these separations, those at a given load first."""
+    """Yield the largest error of each quantity among these separations, those at a given load first."""
     sizes = {name: _size(v, name, mask) for name, mask in where.items() if mask.any()}
     at_load = [sizes[name] for name in _QUANTITIES[:2] if name in sizes]
     if at_load:

@@ -60,7 +60,7 @@ class Place:
 
 
 def moments_of(surface: Surface) -> SpectralMoments | None:
-    """The Gaussian surface with this density, curvature and spread of summits; None if there is none.
+    """Return the Gaussian surface with this density, curvature and spread of summits; None if there is none.
 
     ``eta R sigma = sqrt((alpha - 0.8968)/(3 pi))/16``, as `analytic.SpectralMoments` has it.
     """

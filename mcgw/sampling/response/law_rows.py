@@ -40,7 +40,7 @@ class _Pieces:
         return self._values(rows, above, e, 1.0)
 
     def at_start(self, rows: Ints, above: Array, e: Array, u: Array) -> list[tuple[bool, Ints, Array, Array]]:
-        """The same on the cell or node of variable u at which each row begins, at heights `above` its start.
+        """Return the same where each row begins, on the cell or node of variable u, `above` its start.
 
         Smooth functions of u: whether they are still to be multiplied by sqrt(u), of which of the rows they
         are, their values, and the whole powers of u that they are to be multiplied by besides. The even part

@@ -48,7 +48,7 @@ class Response:
     shape: tuple[int, int]
 
     def out_of(self, layout: Layout) -> "Response":
-        """The same, bit by bit, out of moments of which each cell may have more than this needs."""
+        """Return the same, bit by bit, out of moments of which each cell may have more than this needs."""
         there = np.append(layout.rows_of(self.layout), -1)
         return replace(self, tiles=replace(self.tiles, given=there[self.tiles.given]))
 

@@ -38,7 +38,7 @@ class Powers(NamedTuple):
         return np.asarray(self.scale[rows] * np.where(self.graded[rows], e, 1.0) * powers)
 
     def at_start(self, rows: Ints, above: Array, e: Array, u: Array) -> list[tuple[bool, Ints, Array, Array]]:
-        """The same on the cell or node of variable u at which each row begins, at heights `above` its start.
+        """Return the same where each row begins, on the cell or node of variable u, `above` its start.
 
         As ``s - h = u q(u)``, they are ``u^n q^n e`` with q^n e smooth: whether they are still to be
         multiplied by sqrt(u), of which of the rows they are, q^n e, and the whole powers of u.

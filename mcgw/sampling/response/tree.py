@@ -81,7 +81,7 @@ def _heights_above(mesh: Mesh, start: Array, end: Array) -> Array:
 
 
 def transfers(mesh: Mesh, tree: Tree, moments: Ints) -> tuple[Ints, Ints, Ints, Array]:
-    """What the moments T_k of each child add to the moments T_j of its parent.
+    """Return what the moments T_k of each child add to the moments T_j of its parent.
 
     Parameters
     ----------
@@ -169,7 +169,7 @@ class Nodes:
 
     @classmethod
     def of(cls, mesh: Mesh, tree: Tree, grading: Grading, n_asperities: int, accuracy: float) -> "Nodes":
-        """The nodes of a tree, for surfaces of so many asperities."""
+        """Return the nodes of a tree, for surfaces of so many asperities."""
         start, end = mesh.edges[tree.first], mesh.edges[tree.last]
         above = tree.above
         moduli = grading(start[:, None] + above)
@@ -195,11 +195,11 @@ class Nodes:
         return (self.start[node] - h) + self.above[node].T, self.moduli[node].T
 
     def limits(self, rows: Rows) -> tuple[Array, Array, Array, NDArray[np.bool_], Array, float]:
-        """What the errors of series are held against, for compiled loops: `series_of` tells."""
+        """Return what the errors of series are held against, for compiled loops: `series_of` tells."""
         return self.even, self.noise, self.crowd, rows.graded, rows.total, self.accuracy
 
     def rough_noise(self, node: Ints, row: Ints, rows: Rows) -> Array:
-        """What the last digit of a height makes of a power of its distance from the end of a row."""
+        """Return what the last digit of a height makes of a power of its distance from the end of a row."""
         noise = np.zeros(len(row))
         for at, far, which in (
             (self.start, rows.low, rows.rough & np.isfinite(rows.low)),

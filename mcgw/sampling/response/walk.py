@@ -48,7 +48,7 @@ class _Walk:
         self._limits = nodes.limits(rows)
 
     def entries(self) -> tuple[Entries, Ints, Ints, Array, float]:
-        """What each node gives; how many T_j and R_j it must have; where that fails.
+        """Return what each node gives; how many T_j and R_j it must have; where that fails.
 
         The last two are starts of cells on which a row is not resolved, increasing, and the lowest
         separation that is not an edge; infinite if there is none.
@@ -142,7 +142,7 @@ class _Walk:
 
 
 def _together(pairs: Ints) -> list[Ints]:
-    """A few at a time, whose series stay in the cache."""
+    """Return a few at a time, whose series stay in the cache."""
     return [pairs[first : first + _PAIRS] for first in range(0, len(pairs), _PAIRS)]
 
 
