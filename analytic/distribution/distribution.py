@@ -13,7 +13,7 @@ from analytic.arrays import Array, hold
 _NARROW = 1e-9  # of the table: cells that have no density to be told
 _FAR = 1e100  # beyond all sums
 _SAFE = 8.0  # times what two computations differ by: their errors may have one sign
-_USUAL = 5e-7  # over the root of a share: what two computations may have in common, by a grid of 630 laws
+_USUAL = 1e-6  # over the root of a share: what two computations may have in common, by a grid of 630 laws
 _NEIGHBOURS = 1 / 40  # of the table, in which the largest difference counts: differences pass through 0
 _NOTHING = 1e-50  # less than any value but 0
 _LEAST = 1e-30  # less than any share

@@ -60,7 +60,7 @@ def prepare():
 
 
 @contextmanager
-def written_in_place(path):
+def written_in_place(path, **_):
     path.unlink(missing_ok=True)
     yield path
 
@@ -119,7 +119,10 @@ def found(scene, file, acked, digest):
         return [] if not problem and now == digest else [f"final file: {problem or now}"]
     if not (parts_of(file) / RECORD).exists():
         return ["lost everything"] if acked else []
-    run, wrong = RunFolder.open(parts_of(file)), []
+    try:
+        run, wrong = RunFolder.open(parts_of(file)), []
+    except StoreError as error:
+        return [f"the record: {error}"]
     valid = run.shards()
     if sum(shard.span.n for shard in valid) < acked:
         wrong.append(f"{acked} surfaces were committed, {sum(s.span.n for s in valid)} are there")
