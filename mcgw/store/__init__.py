@@ -7,7 +7,7 @@ which reads
 of                          holds                                     opened by
 ==========================  ========================================  ========================
 a scene                     values of every surface, as below         `mcgw.open_ensemble`
-``keep = "statistics"``     statistics over them (`layout`)  `mcgw.open_ensemble`
+``keep = "statistics"``     statistics over them (`layout`)           `mcgw.open_ensemble`
 a sweep: attribute `axes`   statistics with the dimension `point`     `mcgw.open_sweep`
 any earlier format                                                    no reader: run it again
 ==========================  ========================================  ========================
