@@ -7,7 +7,7 @@ import numpy as np
 from analytic import quantity_of
 from analytic.at_load import Moments, specimen_moments
 from analytic.distribution.of_model import check_falling
-from mcgw.ensemble.at_load import GAPS, asperities_of, quantities_at
+from mcgw.ensemble.at_load import GAPS, quantities_at
 from mcgw.scene.scene import Scene
 
 
@@ -65,7 +65,7 @@ def all_are_known(scene: Scene, given: str, theory: Mapping[str, float]) -> bool
         False where some answer is no sum, as a resistance, or where sums are not known at all.
     """
     known = {given, "load_slope", *_from_sums(scene, theory), *_from_the_separation(scene, given)}
-    return _known_by_quadrature(asperities_of(scene), given) and known.issuperset(theory)
+    return _known_by_quadrature(scene, given) and known.issuperset(theory)
 
 
 def surely_reached(scene: Scene, given: str, lowest: float) -> bool:
@@ -83,11 +83,10 @@ def surely_reached(scene: Scene, given: str, lowest: float) -> bool:
     bool
         False where only `exact_moments` can tell, as with a Poisson number of asperities, which may be 0.
     """
-    alone = asperities_of(scene)
-    if alone.count != "fixed" or alone.n_asperities < 2 or alone.negative_above(lowest) is not None:
+    if scene.count != "fixed" or scene.n_asperities < 2 or scene.negative_above(lowest) is not None:
         return False
     try:
-        check_falling(alone.theory, given, lowest)
+        check_falling(scene.alone, given, lowest)
     except ValueError:
         return False
     return True
@@ -110,15 +109,14 @@ def exact_moments(scene: Scene, given: str, amount: float, theory: Mapping[str, 
     Moments
         Of what is given alone, where the rest is not known or takes longer than to draw.
     """
-    alone = asperities_of(scene)
     known = Moments({given: amount}, {given: 0.0})
-    if not _known_by_quadrature(alone, given):
+    if not _known_by_quadrature(scene, given):
         return known
-    summed = [name for name in quantities_at(alone) if name in theory and name != given]
+    summed = [name for name in quantities_at(scene) if name in theory and name != given]
     summed = [name for name in summed if quantity_of(name).base != "load_slope"]
     try:
         with np.errstate(all="ignore"):
-            found = specimen_moments(alone.theory, given, amount, summed)
+            found = specimen_moments(scene.alone, given, amount, summed)
     except (ValueError, IndexError):  # far up, where hardly any asperity of any surface is
         return known
     if not np.isfinite([*found.mean.values(), *found.std.values()]).all():
@@ -135,9 +133,9 @@ def exact_moments(scene: Scene, given: str, amount: float, theory: Mapping[str, 
     return Moments(mean, std)
 
 
-def _known_by_quadrature(alone: Scene, given: str) -> bool:
+def _known_by_quadrature(scene: Scene, given: str) -> bool:
     """Whether the law of the sums of its asperities is known, or quicker to find than to draw."""
-    return alone.curvature is None and not alone.as_measured and given != "nominal_separation"
+    return scene.curvature is None and not scene.as_measured and given != "nominal_separation"
 
 
 def _from_sums(scene: Scene, theory: Mapping[str, float]) -> dict[str, tuple[str, float]]:

@@ -26,30 +26,22 @@ def mean_surface(scene: Scene, given: str, value: float) -> dict[str, float]:
     return answers_at(scene, theory_at(scene, given, value))
 
 
-def asperities_of(scene: Scene) -> Scene:
-    """Return the scene without asperity interaction, which at a given load only changes the separation."""
-    together = scene.interaction is not None or scene.gas is not None
-    if not together:
-        return scene
-    return scene.replace(interaction=None, joint=scene.joint.without_gas)
-
-
-def theory_at(whole: Scene, given: str, value: float) -> dict[str, float]:
+def theory_at(scene: Scene, given: str, value: float) -> dict[str, float]:
     """Separation and all quantities of the asperities of the mean surface."""
-    scene, q = asperities_of(whole), quantity_of(given)
+    alone, q = scene.alone, quantity_of(given)
     if given == "nominal_separation":
-        h = nominal_of_mean(whole, value)
+        h = nominal_of_mean(scene, value)
     else:
-        h = float(scene.theory.separation_at(given, value))
+        h = float(alone.separation_at(given, value))
     if scene.negative == "error" and (where := scene.negative_above(h)) is not None:
         raise ValueError(NEGATIVE.format(q.name, value, q.unit, "the mean surface", where))
-    return {"separation": h, **{name: float(scene.theory.mean(name, h)) for name in quantities_at(scene)}}
+    return {"separation": h, **{name: float(alone.mean(name, h)) for name in quantities_at(scene)}}
 
 
-def nominal_of_mean(whole: Scene, value: float) -> float:
+def nominal_of_mean(scene: Scene, value: float) -> float:
     """Largest separation that the asperities feel at which the mean surface has a nominal one."""
-    mean = asperities_of(whole).theory.mean
-    sunk = whole.compliance / whole.surface.sigma
+    mean = scene.alone.mean
+    sunk = scene.compliance / scene.surface.sigma
     high = value + max(float(sunk * mean("load", value)), 0.0)
     found = crossing(lambda h: value - h + sunk * mean("load", h), high, min(value, high) - _DEEP)
     if found is None:
@@ -111,7 +103,7 @@ def pressures_of(scene: Scene, number: int) -> Array:
     ValueError
         If fewer than two separations have such.
     """
-    alone, h = asperities_of(scene).theory, np.array(scene.separations)
+    alone, h = scene.alone, np.array(scene.separations)
     pressures = np.asarray(alone.mean("pressure", h))
     pressures = pressures[(pressures > 0) & (np.asarray(alone.mean("contacts", h)) >= 1)]
     if len(np.unique(pressures)) < 2:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from analytic import quantity_of
-from mcgw.ensemble.at_load import answers_at, asperities_of, theory_at
+from mcgw.ensemble.at_load import answers_at, theory_at
 from mcgw.ensemble.loaded_surfaces import LoadedSurfaces
 from mcgw.ensemble.solved import Solution
 from mcgw.machine.progress import Progress, told
@@ -153,7 +153,7 @@ def solutions(
         negative modulus where the scene does not allow them, if there are too many asperities to draw, or if
         a surface has none.
     """
-    whole, scene, q = scene, asperities_of(scene), quantity_of(given)
+    whole, scene, q = scene, _asperities_of(scene), quantity_of(given)
     if scene.n_surfaces < 2 and not scene.as_measured:
         raise ValueError(f"n_surfaces = {scene.n_surfaces}: an interval needs at least 2 surfaces")
     least = q.scale(scene.surface) * _LAST_DIGITS**q.exponent
@@ -177,3 +177,10 @@ def solutions(
     if draw or any(each.needs_draw for each in found):
         loaded.draw(tell)
     return found
+
+
+def _asperities_of(scene: Scene) -> Scene:
+    """Return the scene without asperity interaction, which at a given load only changes the separation."""
+    if scene.interaction is None and scene.gas is None:
+        return scene
+    return scene.replace(interaction=None, joint=scene.joint.without_gas)

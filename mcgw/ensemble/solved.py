@@ -12,7 +12,7 @@ from analytic import SEPARATIONS, quantity_of, yielding_share
 from analytic.arrays import Array
 from analytic.at_load import Moments
 from mcgw.ensemble.answers import Answers, all_are_known, exact_moments, surely_reached
-from mcgw.ensemble.at_load import GAPS, answers_at, asperities_of, mean_surface
+from mcgw.ensemble.at_load import GAPS, answers_at, mean_surface
 from mcgw.ensemble.intervals import FEWEST, interval_column, laws_are_quick
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
@@ -219,7 +219,7 @@ class Solution(Shown):
         if self.given == "nominal_separation":
             return None
         try:
-            return asperities_of(self.scene).theory.separation_law(self.amount, self.given)
+            return self.scene.alone.separation_law(self.amount, self.given)
         except ValueError:
             return None
 
@@ -266,7 +266,7 @@ class Solution(Shown):
             For area, load, stiffness and conductance, to leading order in 1/N.
         """
         names = [x for x in ("load", "area", "stiffness", "conductance") if x in self.theory]
-        model = asperities_of(self.scene).theory
+        model = self.scene.alone
         if self.given == "nominal_separation":
             model = self.scene.theory
         elif self.scene.interaction is not None:
@@ -287,7 +287,7 @@ class Solution(Shown):
         softer = self.scene.softer
         if softer is None or not self.scene.law.elastic:
             return float("nan")
-        return float(yielding_share(asperities_of(self.scene).theory, self.theory["separation"], *softer))
+        return float(yielding_share(self.scene.alone, self.theory["separation"], *softer))
 
     @property
     def verdict(self) -> str:

@@ -209,7 +209,7 @@ def _draw_residuals(axis: Any, panel: Panel, *, labelled: bool) -> None:
 
 
 def draw_residual(axis: Any, reach: float) -> None:
-    """Return what is behind residuals in standard errors: zero, and the band in which 95 % of them lie."""
+    """Draw what is behind residuals in standard errors: zero, and the band in which 95 % of them lie."""
     axis.axhspan(-2, 2, color=BAND, zorder=0)
     axis.axhline(0, color=LEVEL, lw=0.8, zorder=1)
     axis.set_ylim(-reach, reach)

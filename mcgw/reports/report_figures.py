@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from analytic import quantity_of
 from analytic.arrays import Array
-from mcgw.ensemble.at_load import answers_at, asperities_of, pressures_of, quantities_at
+from mcgw.ensemble.at_load import answers_at, pressures_of, quantities_at
 from mcgw.ensemble.intervals import laws_are_quick
 from mcgw.ensemble.solution import solutions
 from mcgw.ensemble.solved import Solution
@@ -145,7 +145,7 @@ def pressure_curves(solved: Sequence[Solution]) -> list[Panel]:
     if not solved:
         return []
     scene, area = solved[0].scene, solved[0].scene.surface.nominal_area
-    alone, ends = asperities_of(scene).theory, [each.theory["separation"] for each in solved]
+    alone, ends = scene.alone, [each.theory["separation"] for each in solved]
     h = np.linspace(max(ends), min(ends), _FINE)
     sums = {name: np.asarray(alone.mean(name, h)) for name in quantities_at(scene)}
     line = answers_at(scene, {"separation": h, **sums})

@@ -95,7 +95,7 @@ class Fields(Flat):
     @cached_property
     def theory(self) -> analytic.Model:
         """The exact model of this scene: modulus, heights, contact law, history, asperities."""
-        model = self._alone
+        model = self.alone
         if self.interaction is not None:
             from analytic import InteractingModel  # for those scenes alone
 
@@ -107,8 +107,8 @@ class Fields(Flat):
         return model
 
     @cached_property
-    def _alone(self) -> analytic.Model:
-        """Kept, for it keeps what it has computed."""
+    def alone(self) -> analytic.Model:
+        """The same of its asperities alone, without interaction and gas."""
         return analytic.Model(
             self.surface,
             grading=self.modulus,

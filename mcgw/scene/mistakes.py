@@ -260,7 +260,7 @@ def _fluctuating(scene: Fields) -> Iterator[str]:
     """Find a Python function that has no variance."""
     if scene.keep == "statistics" and not scene.grading.smooth:
         try:
-            scene._alone.fluctuations(scene.quantities, np.array([scene.lowest]))
+            scene.alone.fluctuations(scene.quantities, np.array([scene.lowest]))
         except ValueError as error:
             yield f'ensemble.keep = "statistics": {error}; or use "sums"'
 

@@ -79,7 +79,7 @@ def _keys_of(name: str, value: Any) -> Any:
 
 
 def _split_law(contact: Values, objects: Values) -> None:
-    """Return the law as a table of its own, with what tells whether contacts yield; or an object."""
+    """Move the law to a table of its own, with what tells whether contacts yield; or to the objects."""
     law = contact.pop("law", {})
     table = dict(law) if isinstance(law, Mapping) else {"name": law} if isinstance(law, str) else {}
     if not isinstance(law, Mapping | str):
@@ -133,9 +133,8 @@ def of_tables(
     if uncertain and set(MOMENTS) & set(uncertain.names) and not isinstance(heights, Nayak | None):
         advice = 'm0, m2 and m4 need heights.law = "nayak"; otherwise give sigma, radius and eta'
         of["surface"].fail("uncertainty", uncertain.names, advice)
-    for name, section in (("", top), *of.items()):
-        if not python or name != "":  # a file or a dict, where more may be wrong than values
-            section.finish()
+    for section in (*([] if python else [top]), *of.values()):  # arguments of Python are known by name
+        section.finish()
     if problems:
         raise SceneError(problems)
     return values
