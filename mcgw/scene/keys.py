@@ -211,7 +211,7 @@ TABLES: dict[str, TableOfKeys] = {
     Key("area", _PIECES, _PIECES_EXAMPLE, "series of its area", laws=("custom",)),
     Key("checked", Flag(), "false", "`false`: a law far from Hertz's at all penetrations is meant so", True,
         laws=("custom",)),
-)),
+), word="name"),
 "interaction": TableOfKeys("[Asperity interaction](../explanation/interaction.md). Default: asperities are "
     "independent.", (
     Key("reference", Word(("body", "mean-plane"), f"give {_PLANES}"), '"body"',

@@ -108,7 +108,8 @@ def of_tables(
     for name, table in TABLES.items():
         outer, _, inner = name.rpartition(".")
         if name:
-            of[name] = of.get(outer, top).section(inner, KEYS[name], table.advice if python else "")
+            advice = table.advice if python else ""
+            of[name] = of.get(outer, top).section(inner, KEYS[name], advice, table.word)
     surface, heights, curvature = _surface_and_summits(top, of, objects, folder)
     if "grading" in objects:
         grading = grading_given(top, objects["grading"])

@@ -98,7 +98,7 @@ class TableOfKeys(NamedTuple):
     """A table of a scene file: its description, as Markdown, and its rows.
 
     Where all its keys `make` an object, the scene holds that in a field of its name, and Python gives it; or
-    else hears the `advice`.
+    else hears the `advice`. A text in place of the table is the value of its key `word`, if it has one.
     """
 
     words: str
@@ -106,6 +106,7 @@ class TableOfKeys(NamedTuple):
     required: bool = False
     make: Callable[..., Any] | None = None
     advice: str = ""
+    word: str = ""
 
 
 def table_shape(rows: tuple[Key, ...]) -> dict[str, Any]:
@@ -151,12 +152,12 @@ class Section:
         self.name, self.table, self.problems, self.rows = name, table, problems, rows
         self._asked: list[str] = []
 
-    def section(self, name: str, rows: Mapping[str, Key], advice: str = "") -> "Section":
-        """Read a table inside this one; empty if missing."""
+    def section(self, name: str, rows: Mapping[str, Key], advice: str = "", word: str = "") -> "Section":
+        """Read a table inside this one; empty if missing. A text in its place is the value of key `word`."""
         self.known(name)
         value = self.table.get(name, {})
-        if isinstance(value, str) and "name" in rows:  # of a law
-            value = {"name": value}
+        if word and isinstance(value, str):
+            value = {word: value}
         if not isinstance(value, dict):
             self.fail(name, value, advice or f"must be a table: write [{name}] above its keys")
             value = {}
