@@ -94,17 +94,16 @@ def _law(scene: Fields) -> Iterator[str]:
 
 
 def _together(scene: Fields) -> Iterator[str]:
-    """Asperities that press each other down where that finds no balance; gas that nobody knows the gap of."""
+    """Gas that nobody knows the gap of; asperities that press each other down where that finds no balance."""
+    try:
+        assert scene.gas is None or scene.filled is not None
+    except ValueError as error:
+        yield f"joint.{error}"
+        return  # there is no theory of it, which a balance asks
     if scene.interaction is not None:
         from mcgw.scene.interaction_mistakes import interaction_mistakes  # for those scenes alone
 
         yield from interaction_mistakes(scene)
-    if scene.gas is None:
-        return
-    try:
-        assert scene.filled is not None
-    except ValueError as error:
-        yield f"joint.{error}"
 
 
 def _scales(scene: Fields) -> Iterator[str]:
