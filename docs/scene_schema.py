@@ -1,24 +1,54 @@
 """The JSON Schema of scenes, from which editors complete, and the page of keys; run it to write both.
 
-Tables, keys, what may stand there and what it means are the rows of `mcgw.scene.keys`. A test holds both
-files to them.
+Tables, keys and what may stand there are the rows of `mcgw.scene.keys`, and what a key means is told there or
+by the docstring of what is made of it. A test holds both files to them.
 """
 
+import inspect
 import json
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from textwrap import wrap
 from typing import Any
 
-from mcgw.scene.keys import TABLES
-from mcgw.scene.section import table_shape
+import mcgw
+from mcgw.scene.keys import TABLES as ROWS
+from mcgw.scene.section import Key, table_shape
 
 PAGE = Path(__file__).parent / "reference" / "scene.md"
 SCHEMA = Path(__file__).parent.parent / "mcgw" / "scene" / "scene.schema.json"
 _START = "## Top of the file"
 
 Shape = dict[str, Any]
+DOCUMENTED = {
+    "surface": (mcgw.Surface, mcgw.SpectralSurface),
+    "interaction": (mcgw.Interaction,),
+}
+
+
+def parameters(documented: Any) -> dict[str, str]:
+    """Return the words of each parameter of a docstring, as Markdown."""
+    told = (inspect.getdoc(documented) or "").partition("Parameters\n----------\n")[2].partition("\n\n")[0]
+    found = re.findall(r"^(\w[\w, ]*) : .*\n((?: +.*\n?)+)", told, re.M)
+    return {name: markdown(words) for names, words in found for name in names.split(", ")}
+
+
+def markdown(words: str) -> str:
+    """Return words of a docstring as those of a page: one line, each code between single marks."""
+    return " ".join(words.split()).replace("*", r"\*").replace("``", "`")
+
+
+def in_words(name: str) -> tuple[Key, ...]:
+    """Return the rows of a table, each with its words."""
+    found: dict[str, str] = {}
+    for documented in DOCUMENTED.get(name, (ROWS[name].make,)):
+        found = parameters(documented) | found
+    return tuple(replace(row, words=row.words or found[row.name]) for row in ROWS[name].rows)
+
+
+TABLES = {name: table._replace(rows=in_words(name)) for name, table in ROWS.items()}
 
 
 def schema() -> Shape:

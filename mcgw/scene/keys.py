@@ -77,12 +77,11 @@ TABLES: dict[str, TableOfKeys] = {
 )),
 "surface": TableOfKeys("Either `sigma`, `radius`, `eta`, or the spectrum by `m0`, `m2`, `m4`; either "
     "`E_star` or `bodies`.", (
-    Key("sigma", Number("m"), "1.37e-6",
-        "σ, standard deviation of the summit heights (not the roughness of the surface), m", required=True),
-    Key("radius", Number("m"), "13e-6", "R, radius of the summits, m", required=True),
-    Key("eta", Number("1/m^2"), "3.0e8", "η, summits per nominal area, 1/m²", required=True),
-    Key("nominal_area", Number("m^2"), "1e-4", "A_n, nominal area of contact, m²", required=True),
-    Key("E_star", Number("Pa"), "78.6e9", "composite modulus E\\*, Pa", required=True),
+    Key("sigma", Number("m"), "1.37e-6", required=True),
+    Key("radius", Number("m"), "13e-6", required=True),
+    Key("eta", Number("1/m^2"), "3.0e8", required=True),
+    Key("nominal_area", Number("m^2"), "1e-4", required=True),
+    Key("E_star", Number("Pa"), "78.6e9", required=True),
     Key("bodies", List(Either((_BODY, _BODY_OF_FILE)), 2, 2,
         "give two, such as [{E = 70e9, nu = 0.33}, {E = inf}], each with its E in Pa"),
         "[{E = 70e9, nu = 0.33}, {E = inf}]",
@@ -90,11 +89,9 @@ TABLES: dict[str, TableOfKeys] = {
         '`[{file = "a.toml"}, {file = "b.toml"}]`, instead of all keys but `nominal_area`: [two rough '
         "bodies](../how-to/numbers-of-iso.md#two-rough-bodies), each the scene of one on a rigid plane",
         excludes=("E_star",)),
-    Key("m0", Number("m^2"), "1e-12", "mean square of the heights of an isotropic Gaussian surface, m²",
-        required=True, needs=("m2",), excludes=SUMMITS),
-    Key("m2", Number("1"), "1e-3", "mean square slope of a profile", required=True, needs=("m4",)),
-    Key("m4", Number("1/m^2"), "5e6", "mean square of the second derivative of a profile, 1/m²",
-        required=True, needs=("m0",)),
+    Key("m0", Number("m^2"), "1e-12", required=True, needs=("m2",), excludes=SUMMITS),
+    Key("m2", Number("1"), "1e-3", required=True, needs=("m4",)),
+    Key("m4", Number("1/m^2"), "5e6", required=True, needs=("m0",)),
     Key("uncertainty", _ERRORS, '{sigma = "20 %", radius = "15 %", eta = "12 %"}',
         "standard errors of `sigma`, `radius`, `eta` (or of `m0`, `m2`, `m4`) and `E_star`, relative to the "
         "values, with their `correlation` in this order, if any; `mcgw fit` writes them, and `mcgw solve` "
@@ -214,10 +211,8 @@ TABLES: dict[str, TableOfKeys] = {
 ), word="name"),
 "interaction": TableOfKeys("[Asperity interaction](../explanation/interaction.md). Default: asperities are "
     "independent.", (
-    Key("reference", Word(("body", "mean-plane"), f"give {_PLANES}"), '"body"',
-        "nominal separations are measured from the undeformed `body`, or from the deformed `mean-plane`",
-        required=True),
-    Key("bulk_modulus", Number("Pa"), "1e11", "composite modulus of the half-space, Pa; default: `E_star`"),
+    Key("reference", Word(("body", "mean-plane"), f"give {_PLANES}"), '"body"', required=True),
+    Key("bulk_modulus", Number("Pa"), "1e11"),
 ), make=lambda **keys: analytic.Interaction(**keys),
     advice='give mcgw.Interaction("body"), or mcgw.Interaction("mean-plane")'),
 "joint": TableOfKeys("Conduction: through spots alone as in vacuum, or [a thermal "
@@ -228,19 +223,17 @@ TABLES: dict[str, TableOfKeys] = {
 "fitted": TableOfKeys("More about the fitted map, written by `mcgw fit`. It does not affect the results, but "
     "the stated [error of the model](../explanation/validity.md). Default: the surface is assumed to be "
     "Gaussian.", (
-    Key("m0", Number("m^2"), "1e-12", "mean square of all heights, m²", required=True),
-    Key("m2", Number("1"), "1e-3", "mean square slope of a profile, over all directions", required=True),
-    Key("m4", Number("1/m^2"), "5e6", "mean square of its second derivative, 1/m²", required=True),
-    Key("skewness", _ANY, "-0.1", "of all heights", required=True),
-    Key("kurtosis", _POSITIVE, "3.0", "of all heights: 3 of Gaussian ones", required=True),
-    Key("independent", _POSITIVE, "800.0",
-        "number of independent heights that give m0 as accurately; few if waves are long", required=True),
-    Key("agreement", _RATIO, "1.02",
-        "largest ratio between the estimates of η, R or σ from moments and from counted summits"),
-    Key("lay", _RATIO, "1.1", "mean square slope across the lay over that along it"),
-    Key("area", Number("m^2"), "1e-6", "area of the map, m²"),
+    Key("m0", Number("m^2"), "1e-12", required=True),
+    Key("m2", Number("1"), "1e-3", required=True),
+    Key("m4", Number("1/m^2"), "5e6", required=True),
+    Key("skewness", _ANY, "-0.1", required=True),
+    Key("kurtosis", _POSITIVE, "3.0", required=True),
+    Key("independent", _POSITIVE, "800.0", required=True),
+    Key("agreement", _RATIO, "1.02"),
+    Key("lay", _RATIO, "1.1"),
+    Key("area", Number("m^2"), "1e-6"),
     Key("cautions", List(Text(), 0, advice="give a list of texts"), '["lay: mean square slopes 2 : 1"]',
-        "warnings of the fit, the most serious first", []),
+        default=[]),
 ), make=Fitted, advice="give the `fitted` of a scene from mcgw.fitted_scene, or the keys of [fitted] in a "
     "scene file"),
 "ensemble": TableOfKeys("Number of surfaces, and sampling.", (

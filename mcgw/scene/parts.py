@@ -1,7 +1,8 @@
 """The parts of a scene that it is made of: contacts, moduli, joint and sampling.
 
-A field is a row of the table of keys of its part: reader, checks, writer, schema, page and ``--set`` follow.
-A scene checks the values of its parts, so that all mistakes are listed at once.
+A field is a row of the table of keys of its part, whose words are those of the docstring: reader, checks,
+writer, schema, page and ``--set`` follow. A scene checks the values of its parts, so that all mistakes are
+listed at once.
 """
 
 import math
@@ -61,10 +62,9 @@ _GASES = Either(
 )
 
 
-def key(kind: Kind, example: str, words: str, default: Any = None, **others: Any) -> Any:
+def key(kind: Kind, example: str, default: Any = None, **others: Any) -> Any:
     """Return a field with its row in the table of its part."""
-    row = {"kind": kind, "example": example, "words": words, "default": default, **others}
-    return field(default=default, metadata=row)
+    return field(default=default, metadata={"kind": kind, "example": example, "default": default, **others})
 
 
 def rows_of(part: type) -> tuple[Key, ...]:
@@ -110,13 +110,14 @@ class Contact:
         Contact law of an asperity, such as `mcgw.KogutEtsion(hardness=1.2e9)`; or its keys in a scene
         file, ``{"name": "kogut-etsion", "hardness": "1.2 GPa"}``. Default: Hertz's.
     quantities : sequence of str, optional
-        Quantities to compute: names of `analytic.QUANTITIES` and `analytic.LAW_QUANTITIES`. Default: load,
-        area, stiffness, contacts.
+        Quantities to compute: any of "load", "area", "stiffness", "contacts" (these four by default),
+        "conductance", "spot_conductance", "yielded", "load_slope".
     unload_from : float or "loop", optional
         Smallest separation reached before unloading, d/sigma; "loop": the smallest of the scene. Every
         quantity then also has an unloading branch, such as ``load_unloading``.
     datum : {"summits", "surface"}, optional
-        Mean plane from which separations are measured; a scene converts them to that of the summits.
+        Mean plane from which separations are measured, by default that of the summits; that of the surface
+        needs Nayak's heights, and a scene converts them.
     hardness : float or str, optional
         Hardness of the softer body, Pa, beside an elastic law: only to tell whether contacts yield.
     poisson : float, optional
@@ -132,20 +133,9 @@ class Contact:
     """
 
     law: ContactLaw | str | Mapping[str, Any] | None = None
-    quantities: Sequence[str] | None = key(
-        _NAMES, '["load"]', "any of `load`, `area`, `stiffness`, `contacts` (these four by default), "
-        "`conductance`, `spot_conductance`, `yielded`, `load_slope`",
-    )  # fmt: skip
-    unload_from: float | Literal["loop"] | None = key(
-        Either((Word(("loop",), _BACK), _ANY), _BACK), "-0.5",
-        'smallest separation reached before unloading, d/σ, or `"loop"`: the smallest of the scene; adds '
-        "`load_unloading` and so on",
-    )  # fmt: skip
-    datum: Literal["summits", "surface"] = key(
-        Word(("summits", "surface")), '"surface"',
-        "separations are measured from the mean plane of the `summits` (default) or of the `surface` "
-        "(Nayak's heights)", "summits",
-    )  # fmt: skip
+    quantities: Sequence[str] | None = key(_NAMES, '["load"]')
+    unload_from: float | Literal["loop"] | None = key(Either((Word(("loop",), _BACK), _ANY), _BACK), "-0.5")
+    datum: Literal["summits", "surface"] = key(Word(("summits", "surface")), '"surface"', "summits")
     hardness: float | str | None = None
     poisson: float | None = None
 
@@ -159,20 +149,22 @@ class Joint:
     conductivities : (float, float), optional
         Thermal conductivities of both bodies, W/(m K). Adds the quantity "conductance_si".
     resistivity : float or str, optional
-        Instead of them: sum of the two bodies' electrical resistivities, ohm m.
+        Sum of the two bodies' electrical resistivities, ohm m, instead of conductivities.
     film_resistance : float, optional
         Resistance of a unit area of a film much thinner than spots are wide, ohm m^2 or m^2 K/W.
     layer : Layer or dict, optional
-        Layer of any thickness on the first body: `mcgw.Layer`.
+        Layer of any thickness on the first body (m, W/(m K)): `mcgw.Layer`.
     gas : str, Gas or dict, optional
         Gas in the gap: "air", "argon", "helium", "hydrogen", "nitrogen", "vacuum", or its
-        ``{"conductivity": 0.15, "jump": "1 um"}``. Adds "gap_conductance" and "joint_conductance",
-        W/(m^2 K). Default: spots only, as in vacuum.
+        conductivity, W/(m K), and temperature-jump distance, m: ``{"conductivity": 0.15, "jump": "1 um"}``.
+        Adds "gap_conductance" and "joint_conductance", W/(m^2 K). Default: spots only, as in vacuum.
     rms : float or str, optional
         Root mean square height of the surface (both combined, not of the summits), m; not needed with
         Nayak's heights or the `fitted` of a scene.
-    temperature, gas_pressure : float or str, optional
-        Of a gas by name, K and Pa. Default: 293.15 K and 101325 Pa.
+    temperature : float or str, optional
+        Temperature of a gas by name, K. Default: 293.15 K.
+    gas_pressure : float or str, optional
+        Pressure of a gas by name, Pa. Default: 101325 Pa.
 
     Examples
     --------
@@ -183,37 +175,16 @@ class Joint:
     ('gap_conductance', 'joint_conductance')
     """
 
-    conductivities: Sequence[float] | None = key(
-        _PAIR, "[150.0, 16.0]", "thermal: k₁ and k₂ of the bodies, W/(m K); adds `conductance_si`",
-    )  # fmt: skip
-    resistivity: float | str | None = key(
-        Number("ohm m"), "1e-7", "electrical: ρ₁ + ρ₂, Ω m; adds `conductance_si`",
-        excludes=("conductivities",),
-    )  # fmt: skip
-    film_resistance: float | None = key(
-        _FILM, "1e-12", "resistance of a thin film on the spots, Ω m² or m² K/W",
-        needs=("resistivity", "conductivities"),
-    )  # fmt: skip
+    conductivities: Sequence[float] | None = key(_PAIR, "[150.0, 16.0]")
+    resistivity: float | str | None = key(Number("ohm m"), "1e-7", excludes=("conductivities",))
+    film_resistance: float | None = key(_FILM, "1e-12", needs=("resistivity", "conductivities"))
     layer: Layer | Mapping[str, Any] | None = key(
-        _LAYER, '{thickness = "10 um", conductivity = 1.3}',
-        "layer of any thickness on the first body (k₁): m, W/(m K)", needs=("conductivities",),
-    )  # fmt: skip
-    gas: str | Gas | Mapping[str, Any] | None = key(
-        _GASES, '"air"', "gas in the gap: `air`, `argon`, `helium`, `hydrogen`, `nitrogen`, `vacuum`, or its "
-        "`conductivity`, W/(m K), and `jump`, its temperature-jump distance, m: that across which the "
-        "temperature drops by as much as it jumps at both walls; adds `gap_conductance` and "
-        "`joint_conductance`, W/(m² K)", needs=("conductivities",),
-    )  # fmt: skip
-    rms: float | str | None = key(
-        Number("m"), '"2 um"', "root mean square height of the surface (both combined, not of the summits), "
-        "m; not needed with Nayak's heights or `[fitted]`", needs=("gas",),
-    )  # fmt: skip
-    temperature: float | str | None = key(
-        Number("K"), '"20 degC"', "of a gas by name, K", needs=("gas",),
-    )  # fmt: skip
-    gas_pressure: float | str | None = key(
-        Number("Pa"), "101325.0", "of a gas by name, Pa", needs=("gas",),
-    )  # fmt: skip
+        _LAYER, '{thickness = "10 um", conductivity = 1.3}', needs=("conductivities",)
+    )
+    gas: str | Gas | Mapping[str, Any] | None = key(_GASES, '"air"', needs=("conductivities",))
+    rms: float | str | None = key(Number("m"), '"2 um"', needs=("gas",))
+    temperature: float | str | None = key(Number("K"), '"20 degC"', needs=("gas",))
+    gas_pressure: float | str | None = key(Number("Pa"), "101325.0", needs=("gas",))
 
     @cached_property
     def film(self) -> Film | None:
@@ -246,22 +217,23 @@ class Sampling:
     n_asperities : int, optional
         Asperities per surface, or their mean number if `count` is "poisson". Default: eta A_n, rounded.
     count : {"fixed", "poisson"}, optional
-        Fixed number on each surface; "poisson": a window on an unbounded surface.
+        "fixed" number on each surface (default), or "poisson": a window on an unbounded surface.
     seed : int, Generator or SeedSequence, optional
         Seed of the random numbers, 0 to 2^64 - 1. Default: a random one, which is recorded.
     sampler : {"auto", "direct", "tail", "cells", "aggregate"}, optional
-        How surfaces are drawn; "auto" uses the fastest exact way.
+        How surfaces are drawn; "auto" (default) uses the fastest exact way of "cells", "tail", "direct".
     keep : {"sums", "statistics"}, optional
-        "statistics": no surfaces, only mean, deviation and covariance, of any number of surfaces in the
-        same memory.
+        "sums" (default); "statistics": no surfaces, only mean, deviation and covariance, of any number of
+        surfaces in the same memory.
     rel_err : float, str or dict, optional
         Draw until the half width of the 95 % interval of every mean, relative to it, is at most this; or a
-        dict by quantity, with one number or one for each separation.
+        table by quantity, with one number or one for each separation.
     max_seconds : float or str, optional
         Time limit, s; the block being drawn is completed.
     accuracy : float, optional
         How far the law of each value may be from the exact one, as the largest difference of distribution
-        functions, 0 (exact) to 0.1: "auto" may then use "aggregate" for crowded cells.
+        functions, 0 (default: exact) to 0.1: "auto" may then use "aggregate" for crowded cells, whose time
+        does not grow with the number of asperities.
 
     Examples
     --------
@@ -272,41 +244,12 @@ class Sampling:
     'poisson'
     """
 
-    n_surfaces: int | None = key(Whole(1), "10", "number of surfaces, default 1000; with `rel_err` the "
-        "maximum number")  # fmt: skip
-    n_asperities: int | None = key(
-        Whole(1), "100",
-        "asperities per surface, or their mean number if `count` is `poisson`; default: η A_n, rounded",
-    )  # fmt: skip
-    count: Literal["fixed", "poisson"] = key(
-        Word(("fixed", "poisson")), '"poisson"',
-        "`fixed` number on each surface (default), or `poisson`: a window on an unbounded surface", "fixed",
-    )  # fmt: skip
-    seed: "int | Generator | SeedSequence | None" = key(
-        _SEED, "1", "seed of the random numbers, 0 to 2^64 - 1; default: a random one, which is recorded"
-    )
-    sampler: str = key(
-        Word(SAMPLERS), '"cells"',
-        "how surfaces are drawn: `auto` (default) uses the fastest exact one of `cells`, `tail`, `direct`; "
-        "or `aggregate` ([how they differ](../how-to/speed-and-accuracy.md))", "auto",
-    )  # fmt: skip
-    keep: Literal["sums", "statistics"] = key(
-        Word(("sums", "statistics")), '"statistics"',
-        "`sums` (default); `statistics`: [no surfaces](../how-to/speed-and-accuracy.md), only mean, "
-        "deviation and covariance, of any number of surfaces in the same memory", "sums",
-    )  # fmt: skip
-    rel_err: float | str | Mapping[str, Any] | None = key(
-        _REL_ERR, "0.01",
-        "draw until the half width of the 95 % interval of every mean, relative to it, is at most this; or a "
-        "table by quantity, `{load = 1e-3, contacts = [1e-2, 1e-2, inf]}`, with one number or one for each "
-        "separation",
-    )  # fmt: skip
-    max_seconds: float | str | None = key(
-        Number("s"), "1.0", "time limit, s; the block being drawn is completed"
-    )
-    accuracy: float = key(
-        _ACCURACY, "0.0",
-        "how far the law of each value may be from the exact one, as the largest difference of distribution "
-        "functions, 0 (default: exact) to 0.1: `auto` may then use `aggregate` for crowded cells, whose time "
-        "does not grow with the number of asperities", 0.0,
-    )  # fmt: skip
+    n_surfaces: int | None = key(Whole(1), "10")
+    n_asperities: int | None = key(Whole(1), "100")
+    count: Literal["fixed", "poisson"] = key(Word(("fixed", "poisson")), '"poisson"', "fixed")
+    seed: "int | Generator | SeedSequence | None" = key(_SEED, "1")
+    sampler: str = key(Word(SAMPLERS), '"cells"', "auto")
+    keep: Literal["sums", "statistics"] = key(Word(("sums", "statistics")), '"statistics"', "sums")
+    rel_err: float | str | Mapping[str, Any] | None = key(_REL_ERR, "0.01")
+    max_seconds: float | str | None = key(Number("s"), "1.0")
+    accuracy: float = key(_ACCURACY, "0.0", 0.0)

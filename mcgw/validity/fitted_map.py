@@ -18,7 +18,7 @@ class Fitted:
     m0, m2, m4 : float
         Spectral moments, m^2, 1, 1/m^2: means over all directions.
     skewness, kurtosis : float
-        Of all heights: 0 and 3 of Gaussian ones.
+        Skewness and kurtosis of all heights: 0 and 3 of Gaussian ones.
     independent : float
         How many independent heights would tell m0 as well: few where long waves are.
     agreement : float or None
@@ -28,7 +28,7 @@ class Fitted:
     lay : float or None
         Mean square slope across the lay over that along it, at least 1; None: nobody saw it.
     area : float or None
-        That was looked at, m^2; None: along lines only.
+        Area of the map, m^2; None: along lines only.
     cautions : tuple of str
         Warnings of `mcgw.fit`, the most serious first.
     """
