@@ -110,38 +110,26 @@ def _steepness(found: Sequence[Mapping[str, str]]) -> Array:
     return off / (1 + load) / gap
 
 
-@dataclass(frozen=True)
-class Scatter:
-    """Standard deviation between maps, as a power of x times one of the loaded spots.
+def scatter_law(found: Iterable[Mapping[str, str]], name: str) -> Array:
+    """Fit the standard deviation between maps as a power of x times one of the loaded spots.
 
     Eight maps tell a deviation to a quarter; all those of a model tell such a law to a few per cent, and over
-    the table it is theirs (`runs/validation/README.md`).
+    the table it is theirs (`runs/validation/README.md`). Weighted least squares of the logarithms.
 
-    Parameters
-    ----------
-    law : ndarray
+    Returns
+    -------
+    ndarray
         Logarithm of the deviation where x and spots are 1, and both powers.
     """
-
-    law: Array
-
-    @classmethod
-    def of(cls, found: Iterable[Mapping[str, str]], name: str) -> "Scatter":
-        """Fit by weighted least squares of the logarithms over rows of the table."""
-        bias, std, maps = (_numbers(found, key) for key in (name, f"{name}_std", "maps"))
-        share = std if name == "separation" else std / (1 + bias)
-        known = np.isfinite(share) & (share > 0) & (maps > 0)
-        nu = maps[known] - 1
-        x, contacts = (np.log(_numbers(found, key)[known]) for key in ("x", "contacts"))
-        # The mean logarithm of a variance of nu degrees of freedom lies below that of its mean.
-        told = np.log(share[known]) + (np.log(nu / 2) - digamma(nu / 2)) / 2
-        columns, weight = np.column_stack([np.ones_like(x), x, contacts]), np.sqrt(nu)
-        return cls(np.linalg.lstsq(columns * weight[:, None], told * weight, rcond=None)[0])
-
-    def __call__(self, x: float, contacts: Array) -> Array:
-        """Of separations over their unit, of all else over the value, as of its logarithm."""
-        start, of_x, of_contacts = self.law
-        return np.asarray(np.exp(start + of_x * np.log(x) + of_contacts * np.log(contacts)))
+    bias, std, maps = (_numbers(found, key) for key in (name, f"{name}_std", "maps"))
+    share = std if name == "separation" else std / (1 + bias)
+    known = np.isfinite(share) & (share > 0) & (maps > 0)
+    nu = maps[known] - 1
+    x, contacts = (np.log(_numbers(found, key)[known]) for key in ("x", "contacts"))
+    # The mean logarithm of a variance of nu degrees of freedom lies below that of its mean.
+    told = np.log(share[known]) + (np.log(nu / 2) - digamma(nu / 2)) / 2
+    columns, weight = np.column_stack([np.ones_like(x), x, contacts]), np.sqrt(nu)
+    return np.asarray(np.linalg.lstsq(columns * weight[:, None], told * weight, rcond=None)[0])
 
 
 @dataclass(frozen=True)
@@ -158,15 +146,16 @@ class Grid:
         Rising: alpha, or eta R sigma of caps.
     surfaces : tuple
         The rows of each.
-    scatter : dict of str to Scatter
-        Between maps, by column; loads at a gap scatter as gaps do, times their steepness.
+    scatter : dict of str to ndarray
+        Laws of that between maps, by column, of separations over their unit, else as of a logarithm; loads
+        at a gap scatter as gaps do, times their steepness.
     along_separation : bool
         Whether loads are taken over x.
     """
 
     x: Array
     surfaces: tuple[_Surface, ...]
-    scatter: dict[str, Scatter]
+    scatter: dict[str, Array]
     along_separation: bool
 
     @classmethod
@@ -177,7 +166,7 @@ class Grid:
             by_x[float(row["x"])].append(row)
         x = sorted(by_x)
         surfaces = tuple(_Surface.of(by_x[value], value if along_separation else 1.0) for value in x)
-        scatter = {name: Scatter.of(found, name) for name in COLUMNS if name != "load"}
+        scatter = {name: scatter_law(found, name) for name in COLUMNS if name != "load"}
         return cls(np.array(x), surfaces, scatter, along_separation)
 
     def holds(self, x: float) -> bool:
@@ -197,8 +186,8 @@ class Grid:
         scatter, unsure = {}, {}
         maps = min(s.maps for _, s in near)
         for name, (_, contacts, _, steep, theory) in found.items():
-            law = self.scatter["separation" if name == "load" else name]
-            scatter[name] = law(x, np.exp(contacts)) * np.exp(steep)
+            start, of_x, of_contacts = self.scatter["separation" if name == "load" else name]
+            scatter[name] = np.exp(start + of_x * np.log(x) + of_contacts * contacts + steep)
             # Few maps determine a mean, and alpha does not determine a spectrum.
             other = _SPECTRA * np.log(x / self.x[0]) if name in _OF_GAP and not self.along_separation else 0.0
             of_maps = np.hypot(scatter[name] / np.sqrt(maps), other * np.exp(steep))

@@ -14,6 +14,10 @@ from mcgw.validity.model_error import Validity
 from mcgw.validity.place_in_table import Place, not_on_the_map, place_of, reduced_pressure
 
 _MOST_SEPARATIONS = 64
+_IN_WORDS = {  # x and loads of the kinds of maps, the maps, and what lighter loads approach
+    "gaussian": ("alpha", "p/(E* g)", "Gaussian", "the limit of Bush, Gibson and Thomas"),
+    "caps": ("eta R sigma", "p/(E* sqrt(sigma/R))", "separate caps", "Hertz's law"),
+}
 _NONE = 1.0  # contacts per surface; no statement for fewer
 _SURE = 2.1  # standard deviations that hold 95 % of maps left out: light loads have long tails
 
@@ -43,7 +47,7 @@ def validity_of(scene: Any, separations: ArrayLike | None = None) -> Validity:
     grid = grid_of(place.kind, place.model, place.interaction)
     if not grid.holds(place.x):
         return _nothing(
-            h, f"outside the measured range ({_coordinate(place)} = {place.x:.4g}; {_span(grid)})"
+            h, f"outside the measured range ({_IN_WORDS[place.kind][0]} = {place.x:.4g}; {_span(grid)})"
         )
     return _looked_up(scene, place, grid, h, h)
 
@@ -68,7 +72,8 @@ def _looked_up(scene: Any, place: Place, grid: Grid, h: Array, felt: Array) -> V
     loads = _loads(place, found, p)
     graded = not isinstance(scene.modulus, Homogeneous)
     where = _where(scene, place, grid, found.maps, loads)
-    found_at = Validity(h, p, error, bias, graded, _load_axis(place), where, listed=place.kind == "caps")
+    axis = _IN_WORDS[place.kind][1]
+    found_at = Validity(h, p, error, bias, graded, axis, where, listed=place.kind == "caps")
     if found_at.measured.all():
         return found_at
     none = scene.n_asperities * scene.heights.sf(felt) < _NONE
@@ -99,30 +104,22 @@ def _share(scene: Any, place: Place, found: Expected, felt: Array) -> dict[str, 
     return {name: contacts if name == "area" else np.fmax(contacts, waves) for name in COLUMNS}
 
 
-def _coordinate(place: Place) -> str:
-    return "alpha" if place.kind == "gaussian" else "eta R sigma"
-
-
-def _load_axis(place: Place) -> str:
-    return "p/(E* g)" if place.kind == "gaussian" else "p/(E* sqrt(sigma/R))"
-
-
 def _span(grid: Grid) -> str:
     return f"measured: {grid.x[0]:g} to {grid.x[-1]:g}"
 
 
 def _loads(place: Place, found: Expected, p: Array) -> str:
     low, high = found.loads
+    _, axis, _, limit = _IN_WORDS[place.kind]
     told = f"{low:.2g} to {high:.2g}" if low <= high else "nothing in common"
-    here = " to ".join(dict.fromkeys(f"{x:.2g}" for x in (p.min(), p.max())))
-    lighter = ""
     if p.min() < low and found.lightest < low:
-        limit = "Hertz's law" if place.kind == "caps" else "the limit of Bush, Gibson and Thomas"
-        lighter = f"; lighter ones approach {limit}"
-    return f"{_load_axis(place)} = {here} (measured: {told}{lighter})"
+        told += f"; lighter ones approach {limit}"
+    here = " to ".join(dict.fromkeys(f"{x:.2g}" for x in (p.min(), p.max())))
+    return f"{axis} = {here} (measured: {told})"
 
 
 def _where(scene: Any, place: Place, grid: Grid, maps: int, loads: str) -> str:
+    x, _, kind, _ = _IN_WORDS[place.kind]
     many = f"{maps} maps" if maps > 1 else "one map"
     by, alone = "", f"; nothing else: {place.area_only}" if place.area_only else ""
     if scene.fitted is not None:
@@ -130,10 +127,6 @@ def _where(scene: Any, place: Place, grid: Grid, maps: int, loads: str) -> str:
     elif place.kind == "gaussian" and place.model == "one radius":
         by = f" as eta R sigma = {scene.surface.eta * scene.surface.radius * scene.surface.sigma:.3g} says"
     return (
-        f"boundary elements on homogeneous half-spaces, {many} ({_maps(place)}) a point: "
-        f"{_coordinate(place)} = {place.x:.3g}{by} ({_span(grid)}), {loads}{alone}"
+        f"boundary elements on homogeneous half-spaces, {many} ({kind}) a point: {x} = {place.x:.3g}{by} "
+        f"({_span(grid)}), {loads}{alone}"
     )
-
-
-def _maps(place: Place) -> str:
-    return "Gaussian" if place.kind == "gaussian" else "separate caps"

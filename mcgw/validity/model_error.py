@@ -185,14 +185,11 @@ _QUANTITIES = ("area", "stiffness", "load")  # the first two at a given load
 
 def off_elasticity(v: Validity, why: str) -> Iterator[str]:
     """Errors above 10 % by their size, and loads above those that were measured."""
-    biased = {name: _above(v, name) & ~_scatters(v, name) for name in _QUANTITIES}
-    if (off := _any(biased)).any():
-        yield (f"d/sigma = {span(v.separations, off)}: model error: {'; '.join(_told(v, biased))}: {why}")
-    loose = {name: _above(v, name) & _scatters(v, name) for name in _QUANTITIES}
-    if (off := _any(loose)).any():
-        yield (
-            f"d/sigma = {span(v.separations, off)}: scatter between surfaces: {'; '.join(_told(v, loose))}"
-        )
+    for loose, told, because in ((False, "model error", f": {why}"), (True, "scatter between surfaces", "")):
+        where = {name: (v.error[name] > _OFF) & (_scatters(v, name) == loose) for name in _QUANTITIES}
+        off = np.logical_or.reduce([*where.values()])
+        if off.any():
+            yield f"d/sigma = {span(v.separations, off)}: {told}: {'; '.join(_told(v, where))}{because}"
     heavier = np.arange(len(v.separations)) < np.argmax(v.measured)
     if heavier.any():
         yield (
@@ -201,17 +198,9 @@ def off_elasticity(v: Validity, why: str) -> Iterator[str]:
         )
 
 
-def _above(v: Validity, name: str) -> Marks:
-    return np.asarray(v.error[name] > _OFF)
-
-
 def _scatters(v: Validity, name: str) -> Marks:
     """Say where an error is mostly scatter, not bias."""
     return np.asarray(v.error[name] > 2 * np.abs(v.bias[name]))
-
-
-def _any(masks: dict[str, Marks]) -> Marks:
-    return np.asarray(np.any(np.array([*masks.values()]), axis=0))
 
 
 def _told(v: Validity, where: dict[str, Marks]) -> Iterator[str]:

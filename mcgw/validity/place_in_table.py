@@ -1,12 +1,12 @@
 """Place of a scene in the table of validity: kind of surface, model, load."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from analytic import Gaussian, Hertz, Nayak, RandomCurvature, SpectralMoments, Surface
+from analytic import Gaussian, Hertz, Homogeneous, Nayak, RandomCurvature, SpectralMoments, Surface
 from analytic.arrays import Array
 from analytic.surface import LEAST_ALPHA, SUMMIT_SPREAD
 from mcgw.formats.law_text import law_text
@@ -22,7 +22,6 @@ _BY_CHANCE = 2.0  # of their standard deviations over maps of so many independen
 _EVER_SKEWED = 0.15  # whatever the chance: four of 24 figures were false on a Gaussian map of -0.18
 _LAID, _APART = 1.5, 1.1
 _ROUND = 10.0  # bound on the ratio of radii from which on it changes areas by less than 1 %
-_NODES = 48
 
 
 @dataclass(frozen=True)
@@ -150,18 +149,7 @@ def _apart(scene: Any) -> str:
 
 
 def reduced_pressure(scene: Any, h: Array) -> Array:
-    """Load over E* and the area that the asperities stand on, by Hertz's law without a grading, shape of `h`.
-
-    Gauss's rule over the heights above h, which are smooth for the laws of the map: to 1e-9.
-    """
-    x, w = np.polynomial.legendre.leggauss(_NODES)
-    v, w = (x + 1) / 2, w / 2
-    start = np.maximum(h, scene.least)[:, None]
-    reach = np.maximum(scene.highest - start, 1.0)
-    s = start + reach * v**2  # the integrand begins as a root
-    weight = scene.heights.pdf(s)
-    if isinstance(scene.curvature, RandomCurvature):
-        weight = weight * scene.curvature.mean(0.5, s)
-    mean = np.sum(weight * (s - h[:, None]) ** 1.5 * 2 * v * w * reach, axis=1)
-    surface = scene.surface
-    return np.asarray(4 / 3 * surface.eta * surface.radius**0.5 * surface.sigma**1.5 * mean)
+    """Load over E* and the area that the asperities stand on, without a grading, shape of `h`."""
+    model = replace(scene.alone, grading=Homogeneous(), unload_from=None, film=None)
+    area = scene.n_asperities / scene.surface.eta
+    return np.asarray(model.mean("load", h) / (scene.surface.E_star * area))

@@ -100,8 +100,8 @@ def test_scatter_is_a_law_of_all_rows_that_none_contradicts(model, name):
     """Sum of (maps - 1) s^2 over the law's is chi-squared but for what maps of one seed share over loads."""
     law, told = law_of(model, name)
     found = grid.grid_of(*model).scatter[name]
-    np.testing.assert_allclose(found.law, law, rtol=1e-6, atol=1e-9)
-    ratio = np.array([(s / float(found(row["x"], row["contacts"]))) ** 2 for row, s in told])
+    np.testing.assert_allclose(found, law, rtol=1e-6, atol=1e-9)
+    ratio = np.array([(s / math.exp(found @ [1.0, math.log(row["x"]), row["log"]])) ** 2 for row, s in told])
     nu = np.array([row["maps"] - 1 for row, _ in told])
     assert 0.7 < np.sum(nu * ratio) / nu.sum() < 1.4
     assert np.mean(ratio > 3) < 0.1  # of a chi-squared variable of seven degrees of freedom one in 250
