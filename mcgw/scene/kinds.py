@@ -54,24 +54,16 @@ class Number(Kind):
         fits = (inside and math.isfinite(number)) or (self.infinite and number == math.inf)
         return number if fits else None
 
-    def read(self, section: Section, name: str, value: Any) -> Any:
-        """Read it."""
-        number = self.value(value)
-        if number is None:
-            section.fail(name, value, self.advice or self._wanted())
-        return number
-
-    def _wanted(self) -> str:
+    @property
+    def wanted(self) -> str:
+        """By range and unit, unless it is told."""
+        if self.advice:
+            return self.advice
         above = (" >= 0" if self.zero else " > 0") if self.low == 0 else ""
         below = f" and at most {self.high:g}" if self.high < math.inf else ""
         if self.unit:
             below += f"{f' in {self.unit}' if self.unit != '1' else ''}, such as {EXAMPLES[self.unit]}"
         return f"give a finite number{above}{below}"
-
-    @property
-    def missing(self) -> str:
-        """What to give."""
-        return f"give it in {self.unit}" if self.unit else "give it"
 
     def shape(self) -> dict[str, Any]:
         """Its range, a text with a unit, or null, which editors show for infinity."""
@@ -92,17 +84,15 @@ class Whole(Kind):
     most: int = _MOST_WHOLE
     advice: str = ""
 
-    def read(self, section: Section, name: str, value: Any) -> int | None:
-        """Read it."""
-        number = isinstance(value, int | float) and not isinstance(value, bool)
-        if not number or not self.least <= value <= self.most or value != int(value):
-            return section.fail(name, value, self.advice or f"give a whole number >= {self.least}")
-        return int(value)
+    def value(self, given: Any) -> int | None:
+        """Return it as an integer."""
+        number = isinstance(given, int | float) and not isinstance(given, bool)
+        return int(given) if number and self.least <= given <= self.most and given == int(given) else None
 
     @property
-    def missing(self) -> str:
-        """What to give."""
-        return "give it"
+    def wanted(self) -> str:
+        """By range, unless it is told."""
+        return self.advice or f"give a whole number >= {self.least}"
 
     def shape(self) -> dict[str, Any]:
         """Return an integer."""
@@ -141,10 +131,9 @@ class Text(Kind):
     empty: bool = False
     advice: str = "give a text in quotes"
 
-    def read(self, section: Section, name: str, value: Any) -> str | None:
-        """Read it."""
-        fits = isinstance(value, str) and (value or self.empty)
-        return value if fits else section.fail(name, value, self.advice)
+    def value(self, given: Any) -> str | None:
+        """Return the text."""
+        return given if isinstance(given, str) and (given or self.empty) else None
 
     def shape(self) -> dict[str, Any]:
         """Return a string."""
@@ -157,9 +146,9 @@ class Flag(Kind):
 
     advice: str = "give true or false"
 
-    def read(self, section: Section, name: str, value: Any) -> bool | None:
-        """Read it."""
-        return value if isinstance(value, bool) else section.fail(name, value, self.advice)
+    def value(self, given: Any) -> bool | None:
+        """Return true or false."""
+        return given if isinstance(given, bool) else None
 
     def shape(self) -> dict[str, Any]:
         """Return a boolean."""

@@ -1,7 +1,8 @@
 """Gradings, height laws and contact laws, read from the keys of their tables and written back."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import MISSING, asdict, fields
+from collections.abc import Callable, Mapping
+from dataclasses import asdict
+from inspect import Parameter, signature
 from pathlib import Path
 from typing import Any
 
@@ -22,32 +23,50 @@ from mcgw.scene.files_beside import read_grading, read_heights
 from mcgw.scene.keys import GRADINGS, HEIGHTS, KEYS
 from mcgw.scene.section import SceneError, Section
 
+OF_YIELD = ("hardness", "poisson")  # which tell beside an elastic law whether contacts yield
 _LAW_OF_HEIGHTS = ("support", "breaks", "span", "log_ratio", "pdf")
 
 
-def _made(section: Section, law: str | None, make: Callable[..., Any] | None) -> Any:
-    """Make a law from its keys; mistakes are noted in the section and give None."""
-    if law is None or make is None:
+def _law(section: Section, key: str, law: str | None, makes: Mapping[str, Callable[..., Any]]) -> Any:
+    """Make a law, whose name stands at `key`, from its keys: those arguments that are rows of the table.
+
+    Mistakes are noted in the section and give None.
+    """
+    if law is None or law not in makes:
         section.known(*section.table)  # unknown law: its keys cannot be checked
         return None
-    names, before = [row.name for row in section.rows.values() if law in row.laws], len(section.problems)
-    given = {name: value for name, value in section.read_all(names).items() if value is not None}
+    before, known = len(section.problems), {}
+    for name, parameter in signature(makes[law]).parameters.items():
+        if name in section.rows:
+            known[name] = parameter.default
+    for name, default in known.items():
+        if default is Parameter.empty and name not in section:
+            section.note(f'{section.path(name)}: missing; {key} = "{law}" needs it')
+    section.known(*known)
+    given = section.read_all(name for name in known if name in section)
+    for name in section.unknown():
+        laws = [repr(word) for word, make in makes.items() if name in signature(make).parameters]
+        if name in section.rows and name not in OF_YIELD and laws:
+            section.known(name)
+            section.note(
+                f"{section.path(name)}: unknown key; it is for {key} = {' or '.join(laws)} only; leave it out"
+            )
     if len(section.problems) > before:
         return None
     try:
-        return make(**given)
+        return makes[law](**given)
     except (TypeError, ValueError) as error:
-        return section.refuse(str(error), names)
+        return section.refuse(str(error), known)
 
 
 def _table(table: str, law: str, part: Any) -> dict[str, Any]:
-    """Keys that describe a part."""
-    rows = {key: row for key, row in KEYS[table].items() if law in row.laws}
-    found = {key: getattr(part, key, None) for key in rows}
+    """Keys that describe a part: its arguments, but for switches that stand as they do anyway."""
+    known = signature(type(part)).parameters
+    found = {key: getattr(part, key) for key in KEYS[table] if key in known}
     return {"law": law} | {
         key: _plain(value)
         for key, value in found.items()
-        if value is not None and not (isinstance(value, bool) and value is rows[key].default)
+        if not (isinstance(value, bool) and value is known[key].default)
     }
 
 
@@ -73,7 +92,7 @@ def grading_of(section: Section, surface: Surface | None, folder: Path) -> Gradi
             raise ValueError(advice if file is None else f"file: {advice}") from None
 
     law = section.read("law", "exponential" if "gamma" in section else "homogeneous")
-    return _made(section, law, table if law == "table" else GRADINGS.get(law)) or Homogeneous()
+    return _law(section, "law", law, GRADINGS | {"table": table}) or Homogeneous()
 
 
 def grading_given(section: Section, given: Any) -> Grading:
@@ -112,8 +131,9 @@ def heights_of(section: Section, folder: Path) -> HeightLaw | None:
             advice = "give heights (a list), a file of them, or points s and share"
             raise ValueError(f"{key}: {advice}; {error}") from None
 
-    law = section.read("law")
-    made: HeightLaw | None = _made(section, law, (HEIGHTS | {"table": table, "scipy": _of_scipy}).get(law))
+    made: HeightLaw | None = _law(
+        section, "law", section.read("law"), HEIGHTS | {"table": table, "scipy": _of_scipy}
+    )
     return made
 
 
@@ -183,37 +203,12 @@ def heights_table(heights: HeightLaw, file: str | None = None) -> dict[str, Any]
 
 def contact_law(section: Section) -> ContactLaw:
     """Read the law and its constants; mistakes are noted in the section and give Hertz's."""
-    if section.table.get("name", Hertz.name) == Hertz.name:
-        section.known("name")
-        return Hertz()
     law = section.read("name")
-    if law is None:
-        section.known(*section.table)  # unknown law: its constants cannot be checked
+    if law == Hertz.name and {*section.table} <= {"name", *OF_YIELD}:
         return Hertz()
-    names, needed, make = _constants_of(law)
-    before = len(section.problems)
-    section.known(*names)
-    for name in needed:
-        if name not in section:
-            section.problems.append(f'{section.path(name)}: missing; name = "{law}" needs it')
-    constants = section.read_all(name for name in names if name in section)
-    if len(section.problems) == before:
-        try:
-            return make(**constants)
-        except ValueError as error:
-            section.refuse(str(error), names)
-    return Hertz()
+    from analytic.laws import by_name  # which imports them all
 
-
-def _constants_of(law: str) -> tuple[Sequence[str], Sequence[str], Callable[..., ContactLaw]]:
-    """Constants of a law, those that are required, and the function that makes it."""
-    if law == "custom":
-        names = ("critical", "limits", "load", "area")
-        return (*names, "checked"), names, _custom
-    from analytic.laws import by_name
-
-    known = fields(by_name[law])  # type: ignore[arg-type]
-    return [f.name for f in known], [f.name for f in known if f.default is MISSING], by_name[law]
+    return _law(section, "name", law, {**by_name, "custom": _custom}) or Hertz()
 
 
 def contact_law_table(law: ContactLaw) -> dict[str, Any]:

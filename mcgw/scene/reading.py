@@ -13,8 +13,8 @@ from analytic.laws import ContactLaw, Hertz
 from analytic.laws.law import check_poisson
 from mcgw.scene.arguments import as_seed, as_toml
 from mcgw.scene.fields import LeftOut
-from mcgw.scene.keys import KEYS, MOMENTS, TABLES
-from mcgw.scene.laws import contact_law, grading_given, grading_of, heights_given, heights_of
+from mcgw.scene.keys import KEYS, MOMENTS, TABLES, whole_key
+from mcgw.scene.laws import OF_YIELD, contact_law, grading_given, grading_of, heights_given, heights_of
 from mcgw.scene.parts import Contact, Graded, Joint, Sampling
 from mcgw.scene.radii import LISTS, Spectral, curvature_of, datum_shift, listed_of
 from mcgw.scene.rough_bodies import with_bodies
@@ -26,7 +26,6 @@ Summits = tuple[Surface | None, HeightLaw | None, RandomCurvature | MeasuredRadi
 
 _SHORT = {"law": "contact", "separations": "contact", "n_surfaces": "ensemble", "seed": "ensemble"}
 _OBJECTS = ("surface", "grading", "heights", "summits")  # which may be objects of other classes
-_OF_YIELD = ("hardness", "poisson")
 _QUANTITIES = ("load", "area", "stiffness", "contacts")
 # Keys of [ensemble] that are no values of a scene as they are read.
 _DERIVED = ("seed", "left_out")
@@ -84,7 +83,7 @@ def _split_law(contact: Values, objects: Values) -> None:
     table = dict(law) if isinstance(law, Mapping) else {"name": law} if isinstance(law, str) else {}
     if not isinstance(law, Mapping | str):
         objects["law"] = law
-    table |= {key: contact.pop(key) for key in _OF_YIELD if key in contact}
+    table |= {key: contact.pop(key) for key in OF_YIELD if key in contact}
     contact |= {"law": table} if table else {}
 
 
@@ -135,7 +134,7 @@ def of_tables(
         advice = 'm0, m2 and m4 need heights.law = "nayak"; otherwise give sigma, radius and eta'
         of["surface"].fail("uncertainty", uncertain.names, advice)
     for section in (*([] if python else [top]), *of.values()):  # arguments of Python are known by name
-        section.finish()
+        section.finish(whole_key)
     if problems:
         raise SceneError(problems)
     return values
@@ -221,11 +220,11 @@ def _law(section: Section, of_law: Section, objects: Values) -> ContactLaw:
 
 def _softer(section: Section, law: ContactLaw, *, of_python: bool) -> Values:
     """Hardness and Poisson's ratio that an elastic law does not take, to tell whether its contacts yield."""
-    found: Values = dict.fromkeys(_OF_YIELD)
+    found: Values = dict.fromkeys(OF_YIELD)
     if not of_python and section.table.get("name", Hertz.name) != law.name:
         return found  # what is wrong with the law is noted
     own: list[str] = [field.name for field in fields(law)] if is_dataclass(law) else []
-    for key in _OF_YIELD:
+    for key in OF_YIELD:
         if key not in section:
             continue
         if key not in own and not law.yields:

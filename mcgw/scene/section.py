@@ -48,11 +48,21 @@ class Kind:
     @property
     def missing(self) -> str:
         """What to give if nothing is given."""
-        return self.advice
+        return f"give it in {self.unit}" if self.unit not in ("", "1") else self.advice or "give it"
 
     def read(self, section: "Section", name: str, value: Any) -> Any:
         """Read a value; mistakes are noted in the section and give None."""
+        found = self.value(value)
+        return section.fail(name, value, self.wanted) if found is None else found
+
+    def value(self, given: Any) -> Any:
+        """Return the value, or None if it does not fit."""
         raise NotImplementedError
+
+    @property
+    def wanted(self) -> str:
+        """What to give in place of a value that does not fit."""
+        return self.advice
 
     def shape(self) -> dict[str, Any]:
         """Return the same as JSON Schema."""
@@ -77,8 +87,6 @@ class Key:
         Value if it is left out.
     required : bool, optional
         Whether it must be there, in a table that is asked for it.
-    laws : tuple of str, optional
-        The values of ``law`` in its table that it goes with. Default: it goes with all.
     needs, excludes : tuple of str, optional
         Keys of its table of which one must be there too, and of which none may.
     """
@@ -89,7 +97,6 @@ class Key:
     words: str = ""
     default: Any = None
     required: bool = False
-    laws: tuple[str, ...] = ()
     needs: tuple[str, ...] = ()
     excludes: tuple[str, ...] = ()
 
@@ -119,7 +126,7 @@ def table_shape(rows: tuple[Key, ...]) -> dict[str, Any]:
         "additionalProperties": False,
     }
     replaced = {other for row in rows for other in row.excludes}
-    always = [row for row in rows if row.required and not (row.laws or row.needs or row.excludes)]
+    always = [row for row in rows if row.required and not (row.needs or row.excludes)]
     if required := [row.name for row in always if row.name not in replaced]:
         shape["required"] = required
     apart: list[dict[str, Any]] = []
@@ -207,9 +214,9 @@ class Section:
         """Mark keys as known, read or not."""
         self._asked += (name for name in names if name not in self._asked)
 
-    def finish(self) -> None:
-        """Note keys that were not read, and those that do not go together."""
-        self.note_unknown()
+    def finish(self, moved: Callable[[str], str] = str) -> None:
+        """Note keys that were not read, whose tables `moved` may know, and those that do not go together."""
+        self.note_unknown(moved)
         if any(line.startswith(f"{self.name}.") for line in self.problems):
             return  # this may be a consequence of them
         for row in (self.rows[name] for name in self.table if name in self.rows):
@@ -218,13 +225,17 @@ class Section:
             if others := [other for other in row.excludes if other in self]:
                 self.fail(row.name, self.table[row.name], f"give it or {_either(others)}, not both")
 
-    def note_unknown(self) -> None:
-        """Note keys that were not read."""
-        unknown = [key for key in self.table if key not in self._asked]
+    def unknown(self) -> list[str]:
+        """Keys that were not read."""
+        return [key for key in self.table if key not in self._asked]
+
+    def note_unknown(self, moved: Callable[[str], str]) -> None:
+        """Note keys that were not read, and what was meant: another key, or that of another table."""
+        unknown = self.unknown()
         for key in unknown[:_MOST_NAMED]:
             meant = nearest(key[:99], self._asked) or f"known keys: {', '.join(self._asked)}"
-            if key in self.rows and self.rows[key].laws:
-                meant = f"it is for law = {_either(map(repr, self.rows[key].laws))} only; leave it out"
+            if "." in (whole := moved(key)) and whole != self.path(key):
+                meant = f"did you mean {whole}?"
             self.problems.append(f"{self.path(key)}: unknown key; {meant.removesuffix(' ')}")
         if len(unknown) > _MOST_NAMED:
             self.problems.append(f"[{self.name}]: {len(unknown) - _MOST_NAMED} more unknown keys")
