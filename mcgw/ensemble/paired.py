@@ -14,7 +14,6 @@ from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import SEPARATION, Column, Table
 from mcgw.machine.terminal import plotted
 from mcgw.scene.arguments import check_object
-from mcgw.scene.scene import drawn_by
 
 Some = tuple[Ints, Array]  # numbers of pooled scenes, and their weights
 _PAIRED = ("surface", "separations", "heights", "n_asperities", "count", "seed")
@@ -181,7 +180,7 @@ def ratio_of(pooled: Pooled, quantity: str, first: Some, second: Some, separatio
 
 def _same_asperities(one: Ensemble, other: Ensemble) -> bool:
     """Whether the surfaces are the same, where contact laws put edges between cells."""
-    scenes = [drawn_by(e.surfaces_of, e.sampler).with_surfaces(1) for e in (one, other)]
+    scenes = [e.surfaces_of.drawn_by(e.sampler).with_surfaces(1) for e in (one, other)]
     if scenes[0] == scenes[1] or all(s.hertzian for s in scenes):
         return True
     from mcgw.sampling.asperities import same_heights  # compiled loops, which few pairs need

@@ -10,7 +10,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.simulation import simulate
 from mcgw.ensemble.solution import solutions
 from mcgw.formats.table import evenly
-from mcgw.scene.scene import Scene, drawn_by
+from mcgw.scene.scene import Scene
 
 _MOST = 2000  # surfaces drawn again where an ensemble keeps statistics alone
 
@@ -149,5 +149,5 @@ def _with_values(ensemble: Ensemble) -> Ensemble:
     """Return the ensemble itself; if it keeps only statistics, its first surfaces drawn again."""
     if ensemble.scene.keep != "statistics":
         return ensemble
-    scene = drawn_by(ensemble.scene, ensemble.sampler)
+    scene = ensemble.scene.drawn_by(ensemble.sampler)
     return simulate(scene, keep="sums", n_surfaces=min(ensemble.n_surfaces, _MOST))

@@ -7,7 +7,7 @@ from analytic import SpectralMoments, harmonic_conductivity
 from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
 from mcgw.scene.radii import Spectral
-from mcgw.scene.rough_bodies import RoughBody, conductivities_of, in_series, moments_of, softer, summed
+from mcgw.scene.rough_bodies import RoughBody, moments_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.section import SceneError
 from mcgw.scene.surface import SpectralSurface
@@ -32,7 +32,7 @@ class Pair(Spectral):
     """
 
     hardness: float | None = None
-    conductivities: tuple[float, float] | None = None
+    conductivities: tuple[float, ...] | None = None
 
     @property
     def conductivity(self) -> float | None:
@@ -85,18 +85,18 @@ def combine(
     >>> pair.moments.m2, pair.surface.E_star
     (0.002, 100000000000.0)
     """
-    one, other = _body(a), _body(b)
+    pair = _body(a).beside(_body(b))
     if nominal_area is None:
         areas = {x.surface.nominal_area for x in (a, b) if isinstance(x, Scene | Spectral)}
         if len(areas) != 1 or not all(isinstance(x, Scene | Spectral) for x in (a, b)):
             raise SceneError(['nominal_area: is not the same known one of both; give it, such as "1 mm^2"'])
         (nominal_area,) = areas
-    E_star = in_series(one, other) if E_star is None else E_star
+    E_star = pair.E_star if E_star is None else E_star
     if E_star is None:
         raise SceneError(['E_star: is not known of both; give that of the pair, such as "100 GPa"'])
-    m = summed(one.moments, other.moments)
+    m = pair.moments
     found = SpectralSurface(m.m0, m.m2, m.m4, nominal_area, E_star)
-    return Pair(found.moments, found.surface, softer(one, other), conductivities_of(one, other))
+    return Pair(found.moments, found.surface, pair.hardness, pair.conductivities or None)
 
 
 def _body(given: Described) -> RoughBody:
@@ -120,9 +120,9 @@ def _body(given: Described) -> RoughBody:
     )
 
 
-def _conductivity(pair: Sequence[float] | None) -> float | None:
+def _conductivity(pair: Sequence[float] | None) -> tuple[float, ...]:
     if pair is None:
-        return None
+        return ()
     if len(set(pair)) > 1:
         raise SceneError([f"conductivities = {pair}: those of a pair; a scene of one body has equal ones"])
-    return pair[0]
+    return (pair[0],)

@@ -6,6 +6,7 @@ import numpy as np
 
 from analytic import Hertz
 from analytic.laws import crowding_factor
+from mcgw.formats.table import evenly
 from mcgw.scene.plausible import perhaps_other_units, takes_hours
 from mcgw.scene.scene import Scene
 from mcgw.validity.model_error import off_elasticity
@@ -14,6 +15,7 @@ _DEEP = 1e-3  # share of the contacts compressed by more than their radius
 _CROWDED = 0.05  # real over nominal area: Gaussian maps and caps are far beyond 10 % of load there
 _STEEP = 0.3  # contact radius over summit radius from which a paraboloid is not a sphere and strain is large
 _NEIGHBOURS = 0.05  # constriction of neighbours over that of the spots
+_MOST_SEPARATIONS = 64  # looked at
 _FEW = 30.0  # contacts per surface; with fewer, single surfaces are far from Gaussian
 
 
@@ -36,22 +38,15 @@ def cautions(scene: Scene) -> list[str]:
 
 
 def _crowd(scene: Scene) -> Iterator[str]:
-    """Caution about crowded spots; the area falls with the separation, so bisection finds where it ends."""
-
-    def crowded(h: float) -> bool:
-        return float(scene.theory.mean("area", h)) > _CROWDED * scene.surface.nominal_area
-
-    separations = np.unique(scene.separations)
-    low, high = -1, len(separations)  # crowded, not crowded
-    while high - low > 1:
-        middle = 0 if low < 0 else (low + high) // 2  # most scenes are sparse throughout
-        low, high = (middle, high) if crowded(separations[middle]) else (low, middle)
-    apart = " (load too large if d is that of a rigid punch, too small if it is the mean gap)"
-    if low >= 0:
+    h = np.unique(scene.separations)
+    h = h[evenly(len(h), _MOST_SEPARATIONS)]
+    crowded = h[scene.theory.mean("area_fraction", h) > _CROWDED]
+    if crowded.size:
+        apart = " (load too large if d is that of a rigid punch, too small if it is the mean gap)"
         yield (
-            f"up to d/sigma = {separations[low]:.3g} more than {_CROWDED:.0%} of the nominal area is in "
-            f"contact; asperities interact "
-            f"there{apart * (scene.interaction is None)}; the error was not measured"
+            f"up to d/sigma = {crowded.max():.3g} more than {_CROWDED:.0%} of the nominal area is in "
+            f"contact; asperities interact there{'' if scene.interaction else apart}; the error was not "
+            "measured"
         )
 
 

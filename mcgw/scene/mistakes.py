@@ -100,10 +100,20 @@ def _together(scene: Fields) -> Iterator[str]:
     except ValueError as error:
         yield f"joint.{error}"
         return  # there is no theory of it, which a balance asks
-    if scene.interaction is not None:
-        from mcgw.scene.interaction_mistakes import interaction_mistakes  # for those scenes alone
-
-        yield from interaction_mistakes(scene)
+    if scene.interaction is not None and "load" not in scene.quantities:
+        yield 'interaction: separations depend on the load; add "load" to contact.quantities'
+    elif scene.interaction is not None:
+        h = np.unique(scene.separations)
+        try:
+            sinking = 1 + scene.compliance / scene.surface.sigma * scene.alone.slope("load", h) <= 0
+        except ValueError as error:
+            yield str(error)
+            return
+        if np.any(sinking):
+            yield (
+                f"interaction: at d/sigma = {h[sinking].max():g} the mean plane sinks faster than it is "
+                "pressed, so the nominal separation is not unique; give larger separations"
+            )
 
 
 def _scales(scene: Fields) -> Iterator[str]:
@@ -164,7 +174,7 @@ def _radii(scene: Fields) -> Iterator[str]:
             f'{scene.curvature.alpha:g}; use these heights, or curvature = "mean"'
         )
     promise = promise_of(scene.sampler)
-    if not promise.own_radii:
+    if not promise.one_by_one:
         yield (
             f'ensemble.sampler = "{scene.sampler}": sums over summits with individual radii are far '
             'from Gaussian; use "cells", or summits.curvature = "mean"'

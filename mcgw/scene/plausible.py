@@ -2,49 +2,27 @@
 
 import warnings
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from analytic import Surface, Table
 from mcgw.formats.units import parse
+from mcgw.scene.keys import SURFACE_UNITS
 
 if TYPE_CHECKING:
     from mcgw.scene.fields import Fields
 
 
-@dataclass(frozen=True)
-class Range:
-    """Values that need no question, SI, why others do, their unit, and those that were perhaps meant."""
-
-    low: float
-    high: float
-    below: str
-    above: str
-    si: str
-    units: tuple[str, ...]
-
-
-# Wide: from atoms to faults in rock, from gels to diamond.
+# Values that need no question, what others are, and units that were perhaps meant. Wide: from atoms to faults
+# in rock, from gels to diamond.
 RANGES = {
-    "sigma": Range(
-        1e-10, 1e-3, "is less than an atom", "is higher than the summits of any ground surface", "m",
-        ("um", "nm"),
-    ),
-    "radius": Range(1e-10, 0.1, "is less than an atom", "is too large for the radius of a "
-    "summit", "m", ("um", "mm")),
-    "eta": Range(
-        1e4, 1e19, "is less than one summit per square centimetre", "is more than one summit per "
-            "atom", "1/m^2",
-        ("/mm^2",),
-    ),
-    "nominal_area": Range(
-        1e-17, 10.0, "is less than a hundred atoms", "is larger than any contact of two bodies", "m^2",
-        ("mm^2", "um^2"),
-    ),
-    "E_star": Range(1e3, 2e12, "is softer than any gel", "is stiffer than diamond", "Pa", ("GPa", "MPa")),
-}  # fmt: skip
+    "sigma": (1e-10, 1e-3, "less than an atom", "higher than the summits of any ground surface", "um nm"),
+    "radius": (1e-10, 0.1, "less than an atom", "too large for the radius of a summit", "um mm"),
+    "eta": (1e4, 1e19, "less than one summit per square centimetre", "more than one per atom", "/mm^2"),
+    "nominal_area": (1e-17, 10.0, "less than a hundred atoms", "larger than any contact", "mm^2 um^2"),
+    "E_star": (1e3, 2e12, "softer than any gel", "stiffer than diamond", "GPa MPa"),
+}
 _HARDLY_APART = 1e-3  # d/sigma: separations that all lie so close to 0 are lengths
 _FARTHEST = 50.0  # reduced heights of which no surface has one
 _RATIOS = (1e-3, 50.0)  # from a gel on its rubber to diamond on its glue
@@ -90,23 +68,24 @@ def takes_hours(scene: "Fields") -> list[str]:
 def surface_in_other_units(surface: Surface) -> list[str]:
     """Return the same of a surface alone."""
     found = []
-    for key, known in RANGES.items():
-        value = float(getattr(surface, key))
-        if not known.low <= value <= known.high:
-            why = known.below if value < known.low else known.above
-            found.append(f"surface.{key} = {value:g}: {value:g} {known.si} {why}; {_meant(value, known)}")
+    for key, (low, high, below, above, units) in RANGES.items():
+        value, si = float(getattr(surface, key)), SURFACE_UNITS[key]
+        if not low <= value <= high:
+            meant = next(text for text in _written(value, units) if low <= parse(text, si) <= high)
+            found.append(
+                f"surface.{key} = {value:g}: {value:g} {si} is {below if value < low else above}; "
+                f"did you mean {meant} = {parse(meant, si):g}?"
+            )
     return found
 
 
-def _meant(value: float, known: Range) -> str:
-    """Write these digits as people do, from 0.01 to 9999, in a unit that makes them one of these values."""
+def _written(value: float, units: str) -> Iterator[str]:
+    """Write these digits as people do, from 0.01 to 9999, in each of these units."""
     while value < 1e-2:
         value *= 1e3
     while value >= 1e4:
         value /= 1e3
-    written = (f"{value:.6g}{unit}" if unit[0] == "/" else f"{value:.6g} {unit}" for unit in known.units)
-    meant = next(text for text in written if known.low <= parse(text, known.si) <= known.high)
-    return f"did you mean {meant} = {parse(meant, known.si):g}?"
+    return (f"{value:.6g}{unit}" if unit[0] == "/" else f"{value:.6g} {unit}" for unit in units.split())
 
 
 def _of_table(table: Table, scene: "Fields") -> Iterator[str]:

@@ -12,24 +12,19 @@ class Promise:
     Parameters
     ----------
     one_by_one : bool, optional
-        The heights are those of single asperities, which `mcgw.heights` can tell.
-    own_radii : bool, optional
-        It can draw a radius for each summit.
+        It draws single asperities, each with a radius of its own where summits have them, by the exact laws;
+        else sums of crowds, which are a little off: ``auto`` takes it where a scene allows that.
     own_laws : bool, optional
         It adds up summit by summit, so that each can have breaks of its own in the law of contact.
     needs_density : bool, optional
         It draws from the density of the heights, which a list of measured ones has not.
-    spends : bool, optional
-        Its laws are a little off the exact ones: ``auto`` takes it where a scene allows that.
     not_done : tuple of str, optional
         What it spares, for people; ``{spared}`` stands for the asperities that do not touch.
     """
 
     one_by_one: bool = True
-    own_radii: bool = True
     own_laws: bool = False
     needs_density: bool = False
-    spends: bool = False
     not_done: tuple[str, ...] = ()
 
 
@@ -40,13 +35,7 @@ _PROMISES = {
     "direct": Promise(own_laws=True),
     "tail": Promise(own_laws=True, needs_density=True, not_done=(_UNTOUCHED,)),
     "cells": Promise(needs_density=True, not_done=(_UNTOUCHED,)),
-    "aggregate": Promise(
-        one_by_one=False,
-        own_radii=False,
-        needs_density=True,
-        spends=True,
-        not_done=(_UNTOUCHED, _CROWDED),
-    ),
+    "aggregate": Promise(one_by_one=False, needs_density=True, not_done=(_UNTOUCHED, _CROWDED)),
 }
 SAMPLERS = ("auto", *_PROMISES)
 

@@ -24,7 +24,7 @@ Tables = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class RoughBody:
-    """One of two rough bodies.
+    """One of two rough bodies, or both as one.
 
     Parameters
     ----------
@@ -34,34 +34,32 @@ class RoughBody:
         Composite modulus of this body alone on a rigid plane, E/(1 - nu^2), Pa; None: unknown.
     hardness : float or None
         Hardness, Pa; None: unknown.
-    conductivity : float or None
-        Thermal conductivity, W/(m K); None: unknown.
+    conductivities : tuple of float
+        Its thermal conductivity, or those of both bodies of a pair, W/(m K); empty: unknown.
     """
 
     moments: SpectralMoments
     E_star: float | None = None
     hardness: float | None = None
-    conductivity: float | None = None
+    conductivities: tuple[float, ...] = ()
+
+    def beside(self, other: "RoughBody") -> "RoughBody":
+        """Return both as one on a rigid plane: the gap between two independent isotropic Gaussian surfaces.
+
+        Its hardness is that of the softer body. What is not known of both is unknown.
+        """
+        a, b = self.moments, other.moments
+        known = self.conductivities and other.conductivities
+        return RoughBody(
+            SpectralMoments(a.m0 + b.m0, a.m2 + b.m2, a.m4 + b.m4),
+            _of_both(self.E_star, other.E_star, lambda x, y: 1 / (1 / x + 1 / y)),
+            _of_both(self.hardness, other.hardness, min),
+            self.conductivities + other.conductivities if known else (),
+        )
 
 
-def summed(a: SpectralMoments, b: SpectralMoments) -> SpectralMoments:
-    """Return the moments of the gap between two independent isotropic Gaussian surfaces."""
-    return SpectralMoments(a.m0 + b.m0, a.m2 + b.m2, a.m4 + b.m4)
-
-
-def in_series(a: RoughBody, b: RoughBody) -> float | None:
-    """Return the composite modulus of two bodies, Pa, if it is known of both."""
-    return None if a.E_star is None or b.E_star is None else 1 / (1 / a.E_star + 1 / b.E_star)
-
-
-def softer(a: RoughBody, b: RoughBody) -> float | None:
-    """Return the hardness of the softer body, Pa, if it is known of both."""
-    return None if a.hardness is None or b.hardness is None else min(a.hardness, b.hardness)
-
-
-def conductivities_of(a: RoughBody, b: RoughBody) -> tuple[float, float] | None:
-    """Return the conductivities of two bodies, W/(m K), if they are known of both."""
-    return None if a.conductivity is None or b.conductivity is None else (a.conductivity, b.conductivity)
+def _of_both(a: float | None, b: float | None, of: Callable[[float, float], float]) -> float | None:
+    return None if a is None or b is None else of(a, b)
 
 
 def with_bodies(document: Tables, folder: Path, read: Callable[[Tables, Path], Tables]) -> Tables:
@@ -95,14 +93,15 @@ def with_bodies(document: Tables, folder: Path, read: Callable[[Tables, Path], T
     if beside := [key for key in _FOLLOW if key in surface]:
         raise SceneError([f"surface.{beside[0]}: follows from the files of both bodies; leave it out"])
     a, b = (_body(folder / name, read) for name in named)
-    total, found = summed(a.moments, b.moments), dict(document)
+    pair, found = a.beside(b), dict(document)
+    total = pair.moments
     known = {key: value for key, value in surface.items() if key != "bodies"}
-    found["surface"] = known | {"m0": total.m0, "m2": total.m2, "m4": total.m4, "E_star": in_series(a, b)}
+    found["surface"] = known | {"m0": total.m0, "m2": total.m2, "m4": total.m4, "E_star": pair.E_star}
     contact, joint, law = document.get("contact", {}), document.get("joint", {}), law_of(document)
-    if isinstance(joint, Mapping) and not _CONDUCTION & set(joint) and (pair := conductivities_of(a, b)):
-        found["joint"] = {**joint, "conductivities": list(pair)}
-    if law is not None and not _YIELD & set(law) and (hardness := softer(a, b)):
-        found["contact"] = {**contact, "law": {**law, "hardness": hardness}}
+    if isinstance(joint, Mapping) and not _CONDUCTION & set(joint) and pair.conductivities:
+        found["joint"] = {**joint, "conductivities": list(pair.conductivities)}
+    if law is not None and not _YIELD & set(law) and pair.hardness:
+        found["contact"] = {**contact, "law": {**law, "hardness": pair.hardness}}
     return found
 
 
@@ -158,13 +157,13 @@ def moments_of(fitted: Fitted | None, heights: HeightLaw, surface: Surface) -> S
     raise ValueError("has no spectrum; give m0, m2, m4 under [surface], or a scene written by mcgw fit")
 
 
-def _of_contact(document: Tables) -> tuple[float | None, float | None]:
-    """Return the hardness and the conductivity of one body, None for what it does not tell."""
+def _of_contact(document: Tables) -> tuple[float | None, tuple[float, ...]]:
+    """Return the hardness and the conductivity of one body, as far as it tells them."""
     hardness = _HARDNESS.value((law_of(document) or {}).get("hardness"))
     pair = document.get("joint", {}).get("conductivities", [])
-    each = {_CONDUCTIVITY.value(k) for k in pair}
+    each = tuple({k for k in map(_CONDUCTIVITY.value, pair) if k is not None})
     if len(each) > 1:
         raise ValueError(
             f"joint.conductivities = {pair}: those of a pair; a file describes one body, as [150.0, 150.0]"
         )
-    return hardness, each.pop() if each else None
+    return hardness, each

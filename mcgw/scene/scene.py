@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from copy import copy
 from functools import cache
 from inspect import signature
-from typing import TYPE_CHECKING, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -42,8 +42,6 @@ _SURFACES, _MOST_SURFACES = 1000, 10**9  # where n_surfaces is left out; where r
 _LOOKED_AT, _BEYOND = 4001, 1.1  # heights for the stiffest; and how much farther series reach
 _FARTHEST = 1e12  # penetrations over the first one, which few formulas are meant for
 _PARTS: dict[str, type] = {"grading": Graded, "contact": Contact, "joint": Joint, "ensemble": Sampling}
-
-AnyScene = TypeVar("AnyScene", bound=Fields)
 
 
 @dataclasses.dataclass(frozen=True, init=False, repr=False)
@@ -202,9 +200,18 @@ class Scene(Fields, Shown):
 
     def with_surfaces(self, n: int) -> Scene:
         """Return the scene with another number of surfaces, on which nothing else hangs: not checked anew."""
+        return self._drawn(n_surfaces=n)
+
+    def _drawn(self, **changes: Any) -> Scene:
         scene = copy(self)
-        hold(scene, ensemble=dataclasses.replace(self.ensemble, n_surfaces=n))
+        hold(scene, ensemble=dataclasses.replace(self.ensemble, **changes))
         return scene
+
+    def drawn_by(self, sampler: str) -> Scene:
+        """Return the scene that says by which sampler it was drawn, where it left the choice to ``auto``."""
+        if self.accuracy and not promise_of(sampler).one_by_one:
+            return self  # its crowds follow from what may be spent
+        return self._drawn(sampler=sampler)
 
     def sheet(self) -> Sheet:
         """Return the scene as shown to people."""
@@ -281,7 +288,7 @@ def _changed(part: str, held: Any, changes: Mapping[str, Any]) -> Any:
     return dataclasses.replace(held or _PARTS[part](), **changes)
 
 
-def storable(scene: AnyScene) -> AnyScene:
+def storable(scene: Scene) -> Scene:
     """Return the scene with its grading and contact law resolved, unless a file holds them as they are.
 
     All samplers draw with this one, so that in memory, in a file, and resumed from there, a scene has
@@ -294,17 +301,13 @@ def storable(scene: AnyScene) -> AnyScene:
     """
     if scene.law.is_data and is_data(scene.grading):
         return scene
-    return _in_other_words(scene, **in_numbers(scene))
-
-
-def _in_other_words(scene: AnyScene, **changes: Any) -> AnyScene:
-    """Return the scene with values that say the same; not checked anew, which may take long."""
-    same = object.__new__(type(scene))
-    hold(same, **{each.name: getattr(scene, each.name) for each in dataclasses.fields(scene)} | changes)
+    same = object.__new__(Scene)  # not checked anew, which may take long
+    hold(same, **{each.name: getattr(scene, each.name) for each in dataclasses.fields(scene)})
+    hold(same, **in_numbers(scene))
     return same
 
 
-def in_numbers(scene: Fields) -> dict[str, Any]:
+def in_numbers(scene: Scene) -> dict[str, Any]:
     """Return what of a scene a file does not hold as it is, resolved; raises as `storable`."""
     changes: dict[str, Any] = {}
     if not scene.law.is_data:
@@ -317,7 +320,7 @@ def in_numbers(scene: Fields) -> dict[str, Any]:
         raise SceneError([str(error)]) from None
 
 
-def _extent(scene: Fields) -> tuple[float, float]:
+def _extent(scene: Scene) -> tuple[float, float]:
     """Lowest and highest height that count; asperities may have felt lower separations than those asked."""
     asked = scene.separations
     if scene.lowest < min(asked):
@@ -326,7 +329,7 @@ def _extent(scene: Fields) -> tuple[float, float]:
     return low, high
 
 
-def _resolved_law(scene: Fields) -> ContactLaw:
+def _resolved_law(scene: Scene) -> ContactLaw:
     """Return the series of a law up to the deepest penetration of the stiffest asperity."""
     low, high = _extent(scene)
     deepest = high - min(scene.lowest, low if scene.unload_from is None else scene.unload_from)
@@ -347,12 +350,3 @@ def _resolved_law(scene: Fields) -> ContactLaw:
                 "; give a grading that is less steep, or a law of the package"
             )
         raise SceneError([f"contact.law = {type(scene.law).__name__}: {reason}"]) from None
-
-
-def drawn_by(scene: AnyScene, sampler: str) -> AnyScene:
-    """Return the scene that says by which sampler it was drawn, where it left the choice to ``auto``."""
-    if sampler != scene.sampler and scene.accuracy and promise_of(sampler).spends:
-        return scene  # its crowds follow from what may be spent
-    if sampler == scene.sampler:
-        return scene
-    return _in_other_words(scene, ensemble=dataclasses.replace(scene.ensemble, sampler=sampler))

@@ -13,9 +13,8 @@ from mcgw.scene.fields import Fields
 _FARTHEST = 1e3  # from 1: a ratio that differs from it by more at every height is none
 _APART = 10.0  # and one that differs by as much is none if it is what another unit gives,
 _CLOSE = 3.0  # within this factor
-_ABOUT = 30.0  # within which the unit is guessed of numbers that are no ratios
 _LOOKED_AT = np.array([0.9, 0.75, 0.5, 0.25, 0.1, 0.01])  # shares of the contacts that are higher
-_UNITS = {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9}
+_UNITS = (1.0, 1e6, 1e9)  # in which moduli are given, Pa
 _PARAMETERS = (analytic.Homogeneous, analytic.Exponential)
 _MEANT = "; if it is meant so, give "
 
@@ -34,7 +33,7 @@ def functions_in_units(scene: Fields) -> Iterator[str]:
     except ValueError:
         return  # a later check reports it
     if own_grading:
-        yield from _grading(scene, inner, s, e)
+        yield from _grading(scene, inner, e)
     if own_law and np.all(e > 0):
         yield from _law(scene, s - h, e)
 
@@ -45,44 +44,27 @@ def _far(ratios: Array, farthest: float = _FARTHEST) -> bool:
     return bool(np.all(size > farthest) or np.all(size < 1 / farthest))
 
 
-def _near(ratios: Array, within: float = _CLOSE) -> bool:
-    return bool(np.all((ratios > 1 / within) & (ratios < within)))
-
-
 def _given_in(ratios: Array, size: float) -> bool:
     """Whether they are no ratios: far from 1, or what one gives in a unit."""
-    return _far(ratios) or (_far(ratios, _APART) and _near(ratios / size))
+    near = np.all((ratios > size / _CLOSE) & (ratios < size * _CLOSE))
+    return _far(ratios) or (_far(ratios, _APART) and bool(near))
 
 
-def _grading(scene: Fields, inner: Any, s: Array, e: Array) -> Iterator[str]:
-    surface = scene.surface
-    if not any(_given_in(e, surface.E_star / size) for size in _UNITS.values()):
+def _grading(scene: Fields, inner: Any, e: Array) -> Iterator[str]:
+    E_star, sigma = scene.surface.E_star, scene.surface.sigma
+    if not any(_given_in(e, E_star / size) for size in _UNITS):
         return
-    unit = next((unit for unit, size in _UNITS.items() if _near(e * size / surface.E_star, _ABOUT)), None)
-    advice, way_out = "give a ratio, which is near 1", ""
-    if isinstance(inner, analytic.Custom) and _takes_metres(inner, s * surface.sigma):
-        advice = f"it is asked for s = z/sigma: multiply s by sigma = {surface.sigma:.6g} m"
-    elif isinstance(inner, analytic.Table) and (larger := _larger_unit(e)):
-        advice = f"moduli are perhaps in {larger}: say so in the header of the file, E_star ({larger})"
-    elif unit:
-        advice = f"divide by E_star = {surface.E_star / _UNITS[unit]:.6g} {unit}"
-    if isinstance(inner, analytic.Custom):
+    way_out = ""
+    if isinstance(inner, analytic.Table):
+        way_out = "; a file names other units in its header, z (um),E_star (GPa)"
+    elif isinstance(inner, analytic.Custom):
         way_out = f"{_MEANT}mcgw.Custom(function, checked=False)"
     elif isinstance(inner, analytic.PiecewiseSeries):
         way_out = f"{_MEANT}checked = false"
-    yield f"grading: E*(s)/E* is {_ends(e)} at all heights that touch; {advice}{way_out}"
-
-
-def _larger_unit(e: Array) -> str | None:
-    """Return the unit that makes them ratios, if they are a column of moduli that was taken as pascals."""
-    return next((unit for unit in ("MPa", "GPa") if _near(e * _UNITS[unit], _ABOUT)), None)
-
-
-def _takes_metres(grading: analytic.Custom, z: Array) -> bool:
-    try:
-        return _near(np.asarray(grading(z)), _ABOUT)
-    except ValueError:
-        return False
+    yield (
+        f"grading: E*(s)/E* is {_ends(e)} at all heights that touch; give a ratio near 1: moduli over E_star "
+        f"= {E_star:g} Pa, of s = z/sigma, sigma = {sigma:g} m{way_out}"
+    )
 
 
 def _law(scene: Fields, penetration: Array, e: Array) -> Iterator[str]:

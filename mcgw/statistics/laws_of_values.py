@@ -64,7 +64,7 @@ def laws_of_values(ensemble: Ensemble) -> LawsOfValues:
     if (
         scene.keep == "statistics"
         or isinstance(scene.heights, MeasuredHeights)
-        or promise_of(ensemble.sampler).spends
+        or not promise_of(ensemble.sampler).one_by_one
         or not (scene.hertzian or one_radius)
     ):
         raise ValueError(

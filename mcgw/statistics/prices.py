@@ -143,14 +143,14 @@ def _fits(scene: Scene, name: str) -> bool:
         scene.replace(sampler=sampler_of(name))
     except SceneError:
         return False
-    return scene.curvature is None or promise_of(sampler_of(name)).own_radii
+    return scene.curvature is None or promise_of(sampler_of(name)).one_by_one
 
 
 def wants_of(name: str) -> tuple[str, ...]:
     """Return what a way can give: no law of surfaces by theory, nor by a sampler whose laws are off."""
     if name in _GIVES:
         return _GIVES[name]
-    if promise_of(sampler_of(name)).spends:
+    if not promise_of(sampler_of(name)).one_by_one:
         return ("mean", "std")
     return ("mean", "std", "quantile", "distribution", "values")
 

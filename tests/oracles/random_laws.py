@@ -70,7 +70,7 @@ def p_values(seed, faults, surfaces=SURFACES, **more):
     if not law.error < UNSURE:  # jumps that are smoothed, values over forty decades
         return "its law says that it is too far off for this test"
     ensemble = mcgw.simulate(scene)
-    assert not promise_of(ensemble.sampler).spends
+    assert promise_of(ensemble.sampler).one_by_one
     x = ensemble.values(name)[:, k]
     lot = dice.random(x.size)
     off = 1e-9 * np.abs(x)  # values that are alike on many surfaces are so to the last digits

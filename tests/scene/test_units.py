@@ -1,5 +1,6 @@
 """Every prefix and unit against a literal factor, in every spelling; and what is not a unit."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -196,3 +197,22 @@ def test_no_scene_of_ours_is_doubted():
     assert len(scenes) > 5
     for path in scenes:
         assert perhaps_other_units(mcgw.load_scene(path)) == [], path
+
+
+@pytest.mark.parametrize(
+    ("key", "given", "meant"),
+    [
+        ("sigma", "1.37 mm", "1.37 um = 1.37e-06"),
+        ("sigma", 1.37, "1.37 um = 1.37e-06"),
+        ("radius", "13000 m", "13 um = 1.3e-05"),
+        ("E_star", "78600 GPa", "78.6 GPa = 7.86e+10"),
+        ("E_star", 78.6, "78.6 GPa = 7.86e+10"),
+        ("eta", 300.0, "300/mm^2 = 3e+08"),
+        ("nominal_area", 100.0, "100 mm^2 = 0.0001"),
+    ],
+)
+def test_what_was_perhaps_meant_has_the_digits_as_people_write_them(key, given, meant):
+    with pytest.warns(UserWarning, match=rf"surface\.{key} = .* did you mean {re.escape(meant)}\?"):
+        surface = mcgw.Surface(**(SI | {key: given}))
+    with pytest.warns(UserWarning, match=rf"surface\.{key} = "):
+        mcgw.Scene(surface, separations=1.0, ensemble=mcgw.Sampling(n_asperities=10))
