@@ -1,12 +1,16 @@
-"""The statistics of surfaces whose asperities press each other down: `analytic.Model` with an interaction.
+"""What a surface answers that is no sum over its asperities: `analytic.Model` with an interaction, or gas.
 
-At effective separations x everything but stiffness and conductance is that of independent asperities,
-exactly. What each surface answers by itself is not a sum over asperities any more: stiffness and conductance
-in series with the half-space, ``1/K = 1/K_asp + compliance`` and ``1/C = 1/C_spots + rho E_b compliance/2``.
-Means are then to second order in what surfaces differ by, fluctuations to leading order.
+At effective separations x loads, areas and numbers are those of independent asperities, exactly. The others
+follow, surface by surface, from its own sum S of stiffnesses or conductances and its load P ::
+
+    y = S/(1 + c S) + g(x - k P),    Q = y/(1 + b y)
+
+with the half-space in series (c), the nominal separation ``x - k P`` itself or what the gas conducts there
+(g), and the bodies in series with spots beside gas (b). Film, layer and neighbours are inside S. Means are to
+second order in what surfaces differ by, fluctuations to leading order.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import KW_ONLY, dataclass, fields
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
@@ -17,25 +21,118 @@ from numpy.typing import ArrayLike
 from analytic.arrays import Array
 from analytic.height_rule import Fluctuations
 from analytic.interaction import Interaction, in_series
-from analytic.mean_contact import fall_of
+from analytic.mean_model import fall_of
 from analytic.model import Model
-from analytic.quantities import SEPARATIONS, quantity_of
+from analytic.quantities import JOINT, SEPARATIONS, Quantity, quantity_of
 
 if TYPE_CHECKING:
     from analytic.distribution import Law
+    from analytic.joint import Gap
+
+
+def _itself(x: Array, order: int = 0) -> Array:
+    """Return the separation, or a derivative of it by itself."""
+    return x if order == 0 else np.full_like(x, float(order == 1))
+
+
+def _mean_in_series(mean: Array, variance: Array, other: float) -> Array:
+    """Return the mean of what is in series, to second order."""
+    return np.asarray(in_series(mean, other) - other * variance / (1 + other * mean) ** 3)
+
+
+@dataclass(frozen=True)
+class _Answer:
+    """How a quantity of a surface follows from a sum S over its spots and its load P.
+
+    Parameters
+    ----------
+    spots : str
+        Name of S; none of it counts if that is empty.
+    load : str
+        Name of P, on the same way.
+    per : float
+        Area that S counts for.
+    series, sunk, bodies : float
+        The constants c, k and b.
+    at_plane : callable, optional
+        g of separations and the order of a derivative.
+    """
+
+    spots: str
+    load: str
+    per: float = 1.0
+    series: float = 0.0
+    sunk: float = 0.0
+    bodies: float = 0.0
+    at_plane: Callable[[Array, int], Array] | None = None
+
+    @property
+    def is_sum(self) -> bool:
+        """Whether it is S itself."""
+        return not (self.series or self.at_plane)
+
+    def mean(self, model: Model, h: Array) -> Array:
+        """Mean over surfaces, to second order."""
+        y, variance = np.zeros(h.shape), np.zeros(h.shape)
+        if self.spots:
+            y = model.mean(self.spots, h) / self.per
+            if self.series or self.bodies:
+                variance = model.cumulants(self.spots, h).variance / self.per**2
+            if self.series:
+                y = _mean_in_series(y, variance, self.series * self.per)
+        if self.at_plane:
+            x = self._plane(model, h)
+            y = y + self.at_plane(x, 0)
+            if self.sunk and self.at_plane is not _itself:
+                y = y + self.at_plane(x, 2) * self.sunk**2 * model.cumulants(self.load, h).variance / 2
+        return _mean_in_series(y, variance, self.bodies) if self.bodies else y
+
+    def rates(self, model: Model, h: Array) -> tuple[Array, Array]:
+        """How much it deviates with S and with P, at their means."""
+        of_spots, of_load, y = np.zeros(h.shape), np.zeros(h.shape), np.zeros(h.shape)
+        if self.spots:
+            alone = model.mean(self.spots, h)
+            of_spots = (1 + self.series * alone) ** -2.0 / self.per
+            y = in_series(alone, self.series) / self.per
+        if self.at_plane:
+            x = self._plane(model, h)
+            of_load, y = -self.sunk * self.at_plane(x, 1), y + self.at_plane(x, 0)
+        whole = (1 + self.bodies * y) ** -2.0
+        return of_spots * whole, of_load * whole
+
+    def law(self, model: Model, h: float) -> "Law":
+        """Return the distribution over surfaces, of what follows from S or P alone."""
+        if not self.spots:
+            return model.distribution(self.load, h).mapped(lambda p: h - self.sunk * p, falls=self.sunk > 0)
+        law = model.distribution(self.spots, h)
+        gas = 0.0 if self.at_plane is None else float(self.at_plane(np.asarray(h), 0))
+
+        def together(spots: Array) -> Array:
+            """Infinite from the pole on, which no surface reaches."""
+            with np.errstate(divide="ignore"):
+                y = np.divide(spots, np.maximum(1 + self.series * spots, 0.0)) / self.per + gas
+            return np.asarray(y / (1 + self.bodies * y) if self.bodies else y)
+
+        return law if self.is_sum else law.mapped(together)
+
+    def _plane(self, model: Model, h: Array) -> Array:
+        return h - self.sunk * model.mean(self.load, h) if self.sunk else h
 
 
 @dataclass(frozen=True)
 class InteractingModel(Model):
-    """A rough surface whose asperities press each other down; otherwise as `analytic.Model`.
+    """A rough surface whose asperities press each other down, or with gas in its gap; otherwise a `Model`.
 
-    Its separations are those that the asperities feel. Besides the quantities of a `Model` it has
-    "nominal_separation", d/sigma, the separation of the bodies.
+    Its separations are those that the asperities feel. Besides the quantities of a `Model` it has, with an
+    interaction, "nominal_separation", d/sigma, the separation of the bodies; with gas "gap_conductance" and
+    "joint_conductance", W/(m^2 K); each on loading and unloading.
 
     Parameters
     ----------
-    interaction : Interaction
-        Which; needed.
+    interaction : Interaction, optional
+        Which.
+    filled : Gap, optional
+        The gap conductance.
 
     Examples
     --------
@@ -44,65 +141,73 @@ class InteractingModel(Model):
     >>> model = analytic.InteractingModel(surface, interaction=analytic.Interaction("body"))
     >>> float(model.mean("load", 1.0).round(4)), float(model.mean("nominal_separation", 1.0).round(4))
     (0.319, 0.6981)
+
+    Steel in air:
+
+    >>> film, air = analytic.Film(conductivities=(16.0, 16.0)), analytic.Joint("air", rms=1.1e-6)
+    >>> filled = air.gap(surface, analytic.Gaussian())
+    >>> model = analytic.InteractingModel(surface, film=film, filled=filled)
+    >>> [float(model.mean(name, 2.0).round(-2)) for name in ("contact_conductance", "joint_conductance")]
+    [1300.0, 10100.0]
     """
 
     _: KW_ONLY
-    interaction: Interaction
+    interaction: Interaction | None = None
+    filled: "Gap | None" = None
 
     @classmethod
-    def of(cls, model: Model, interaction: Interaction) -> "InteractingModel":
-        """Return the asperities of a model with an interaction."""
-        return cls(**_values(model), interaction=interaction)
+    def of(
+        cls, model: Model, interaction: Interaction | None = None, filled: "Gap | None" = None
+    ) -> "InteractingModel":
+        """Return the asperities of a model with an interaction, or gas."""
+        return cls(**_values(model), interaction=interaction, filled=filled)
 
     @cached_property
     def alone(self) -> Model:
-        """The same asperities without interaction."""
+        """The same asperities without interaction and gas."""
         return Model(**_values(self))
 
     @property
     def compliance(self) -> float:
         """Of the interaction, in units of sigma: d/sigma for each newton."""
+        if self.interaction is None:
+            return 0.0
         return self.interaction.compliance(self.surface, self.number) / self.surface.sigma
 
     def series(self, quantity: str) -> float:
         """Return what the half-space adds to the inverse of a sum: `analytic.Interaction.series`."""
+        if self.interaction is None:
+            return 0.0
         rho = 1.0 if self.film is None else self.film.rho
         return self.interaction.series(quantity, self.surface, self.number, rho)
 
     def mean(self, quantity: str, h: ArrayLike) -> Array:
         """Return `Model.mean`, to second order where a surface answers by itself."""
-        h = np.asarray(h, dtype=np.float64)
-        if quantity in SEPARATIONS:
-            return h - self.compliance * self.mean(_load_of(quantity), h)
-        self._asked(quantity, h)
-        mean = self.alone.mean(quantity, h)
-        if not (c := self.series(quantity)):
-            return mean
-        variance = self.alone.cumulants(quantity, h).variance
-        return np.asarray(in_series(mean, c)) - c * variance / (1 + c * mean) ** 3
+        return self._answer(quantity, h).mean(self.alone, np.asarray(h, dtype=np.float64))
 
     def slope(self, quantity: str, h: ArrayLike) -> Array:
         """Return how fast the mean falls with the separation, of the mean surface."""
-        h = np.asarray(h, dtype=np.float64)
-        if not (quantity in SEPARATIONS or self.series(quantity)):
+        if self._answer(quantity).is_sum:
             return self.alone.slope(quantity, h)
         return fall_of(partial(self.mean, quantity), h)
 
     def separation_at(self, quantity: str, value: ArrayLike) -> Array:
         """Return the separation of the mean surface, as `Model.separation_at`."""
-        if quantity in SEPARATIONS or self.series(quantity):
+        if not self._answer(quantity).is_sum:
             raise ValueError(
                 f"quantity = {quantity!r}: give a load, an area, or another sum of the asperities"
             )
         return self.alone.separation_at(quantity, value)
 
     def distribution(self, quantity: str, h: float) -> "Law":
-        """Return the same as `Model.distribution`, also of the nominal separation."""
-        from analytic.distribution import interacting_distribution  # few ask
-
-        if quantity not in SEPARATIONS:
-            self._asked(quantity, h)
-        return interacting_distribution(self, quantity, float(h))
+        """Return the same as `Model.distribution`, also of the nominal separation and the joint."""
+        answer = self._answer(quantity, h)
+        if quantity in JOINT and (answer.sunk or not answer.spots):
+            raise ValueError(
+                f"quantity = {quantity!r}: only 'joint_conductance' is known, for surfaces with one distance "
+                "of mean planes"
+            )
+        return answer.law(self.alone, float(h))
 
     def separation_law(self, load: float, quantity: str = "load") -> "Law":
         """Return the same as `Model.separation_law`, of the separation that the asperities feel."""
@@ -111,37 +216,52 @@ class InteractingModel(Model):
     def fluctuations(self, quantities: Sequence[str], separations: ArrayLike) -> Fluctuations:
         """Return the same as `Model.fluctuations`, to leading order where a surface answers by itself."""
         h = np.asarray(separations, dtype=np.float64)
-        sums = [name for name in quantities if name not in SEPARATIONS]
-        loads = tuple(dict.fromkeys(_load_of(name) for name in quantities))
-        columns = [*sums, *(name for name in loads if name not in sums)]
+        answers = [self._answer(name, h) for name in quantities]
+        pairs = [(each.spots or each.load, each.load if each.sunk else each.spots) for each in answers]
+        columns = list(dict.fromkeys(name or own for own, name in pairs for name in (own, name)))
         one = self.alone.fluctuations(columns, h)
-        own, loads_at, pressing, means = [], [], [], []
-        for name in quantities:
-            q = quantity_of(name)
-            load = columns.index(_load_of(name)) * h.size + np.arange(h.size)
-            own.append(load if name in SEPARATIONS else columns.index(name) * h.size + np.arange(h.size))
-            factor, press = self._linear(name, h)
-            loads_at.append(load)
-            scale = quantity_of(_load_of(name)).scale(self.surface) / q.scale(self.surface)
-            pressing.append((factor, press * scale))
-            means.append(self.mean(name, h) / self._unit(q))
-        factor, press = (np.concatenate(part) for part in zip(*pressing, strict=True))
-        return one.combined(
-            np.concatenate(means), np.concatenate(own), factor, np.concatenate(loads_at), press
+        means, parts = [], []
+        for name, answer, pair in zip(quantities, answers, pairs, strict=True):
+            unit = quantity_of(name).scale(self.surface)
+            means.append(self.mean(name, h) / (self.number * unit))
+            for column, rate in zip(pair, answer.rates(self.alone, h), strict=True):
+                at = columns.index(column or pair[0])
+                scale = quantity_of(columns[at]).scale(self.surface) / unit
+                parts.append((at * h.size + np.arange(h.size), rate * scale))
+        own, other = (tuple(np.concatenate(x) for x in zip(*parts[k::2], strict=True)) for k in (0, 1))
+        return one.combined(np.concatenate(means), *own, *other)
+
+    def _asked(self, quantity: str, h: ArrayLike = np.inf) -> Quantity:
+        known = (JOINT if self.filled else {}) | (SEPARATIONS if self.interaction else {})
+        return known[quantity] if quantity in known else super()._asked(quantity, h)
+
+    def _answer(self, quantity: str, h: ArrayLike = np.inf) -> _Answer:
+        q = self._asked(quantity, h)
+        way = "_unloading" if q.unloading else ""
+        load, sunk = f"load{way}", self.compliance
+        if quantity in SEPARATIONS:
+            return _Answer("", load, sunk=sunk, at_plane=_itself)
+        if quantity not in JOINT:
+            return _Answer(quantity, load, series=self.series(quantity))
+        spots = f"conductance_si{way}" if quantity.startswith("joint") else ""
+        from_body = self.interaction is not None and self.interaction.reference == "body"
+        series = self.series(spots) if spots and not from_body else 0.0
+        return _Answer(
+            spots,
+            load,
+            per=self.surface.nominal_area,
+            series=series,
+            sunk=0.0 if from_body else sunk,
+            bodies=self._bodies() if spots else 0.0,
+            at_plane=self.filled,
         )
 
-    def _linear(self, quantity: str, h: Array) -> tuple[Array, Array]:
-        """Deviation of a quantity on one surface by those of its own sum and of the load, SI."""
-        if quantity in SEPARATIONS:
-            return np.zeros_like(h), np.full_like(h, -self.compliance)
-        if not (other := self.series(quantity)):
-            return np.ones_like(h), np.zeros_like(h)
-        return (1 + other * self.alone.mean(quantity, h)) ** -2.0, np.zeros_like(h)
+    def _bodies(self) -> float:
+        """Their resistance times the nominal area, to what passes them."""
+        if self.film is None or self.interaction is None:
+            return 0.0
+        return self.interaction.bodies(self.surface, self.film.rho)
 
 
 def _values(model: Model) -> dict[str, Any]:
     return {each.name: getattr(model, each.name) for each in fields(Model)}
-
-
-def _load_of(quantity: str) -> str:
-    return "load_unloading" if quantity_of(quantity).unloading else "load"

@@ -1,8 +1,12 @@
-"""A rough surface with everything that determines its contact, and its means."""
+"""A rough surface with everything that determines its contact, and its means.
 
-from collections.abc import Sequence
+What an asperity adds in the mean is a sum over a rule of heights and radii, by the formulas of its law; where
+that is a power of its approach, as under Hertz's law, one integral over heights alone.
+"""
+
+from collections.abc import Callable, Sequence
 from dataclasses import KW_ONLY, dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,14 +16,28 @@ from analytic.curvature import RandomCurvature
 from analytic.gradings import Grading, Homogeneous
 from analytic.height_rule import Count, HeightRule
 from analytic.heights import Gaussian, HeightLaw
-from analytic.laws.branch import Ways
+from analytic.inversion import LOWEST, last_separations
+from analytic.law_rule import law_integral
+from analytic.laws.branch import UnloadingBranch, Ways
 from analytic.laws.film import Film
-from analytic.laws.law import ContactLaw
-from analytic.mean_contact import MeanContact, MeanPowers
+from analytic.laws.law import ContactLaw, piece_of
+from analytic.laws.pieces import slope_term
 from analytic.measured_summits import MeasuredRadii
+from analytic.quadrature import REACH
 from analytic.quantities import LAW_QUANTITIES, NOT_SUMS, Quantity, quantity_of
 from analytic.summits import Summits, summits_of
 from analytic.surface import Surface
+
+_HIGHEST = 1000.0  # separation that is looked at
+_STEP = 2e-3  # of differences: where the mean has 12 digits, those of the slope are off by 1e-9 of the mean
+
+
+def fall_of(mean: Callable[[Array], Array], h: ArrayLike) -> Array:
+    """How fast a mean falls with the separation, by differences of the fourth order; in the shape of `h`."""
+    h = np.asarray(h, dtype=np.float64)
+    step = _STEP / (1 + np.abs(h))
+    lower2, lower, upper, upper2 = mean(h + np.multiply.outer([-2, -1, 1, 2], step))
+    return np.asarray((8 * (lower - upper) - (lower2 - upper2)) / (12 * step))
 
 
 @dataclass(frozen=True)
@@ -81,7 +99,7 @@ class MeanModel:
             If unloading is requested but not known, or starts above `h`.
         """
         q = self._asked(quantity, h)
-        return self._unit(q) * self._means(q).mean(quantity, h)
+        return self._unit(q) * self._mean(q, h)
 
     def slope(self, quantity: str, h: ArrayLike) -> Array:
         """Rate at which the mean falls with the separation, per unit of h.
@@ -111,7 +129,7 @@ class MeanModel:
         q = self._asked(quantity, h)
         if q.base == "load_slope":
             raise ValueError(f"quantity = {quantity!r}: its slope is not known; give another quantity")
-        return self._unit(q) * self._means(q).slope(quantity, h)
+        return self._unit(q) * self._slope(q, h)
 
     def share(self, piece: int, h: ArrayLike) -> Array:
         """Mean share of the contacts to which a piece of the law applies, such as those that have yielded.
@@ -128,7 +146,7 @@ class MeanModel:
         ndarray
             In the shape of `h`; nan where no contact is to be expected in double precision.
         """
-        return self._contact.share(piece, h)
+        return self._in_parts(h, quantity_of("contacts"), partial(self._share_by, piece))
 
     def separation_at(self, quantity: str, value: ArrayLike) -> Array:
         """Separation at which the mean has a given value.
@@ -156,13 +174,20 @@ class MeanModel:
         target = np.asarray(value, dtype=np.float64)
         if not np.all(np.isfinite(target) & (target > 0)):
             raise ValueError(f"{quantity} = {value!r}: give finite values > 0 {q.unit}")
-        return self._means(q).separations_at(quantity, target / self._unit(q))
+        grid = self._grid(q)
+        rough = self.summits.rule(grid[:1], self.grading)  # to a percent, but in tails
+        with np.errstate(divide="ignore", invalid="ignore"):
+            about = np.log(self._mean_by(q, grid, rough))
+            found = partial(self._mean, q)
+            return last_separations(
+                lambda h: np.log(found(h)), np.log(target / self._unit(q)), grid, about, quantity
+            )
 
     def rule(self, separations: ArrayLike, quantities: Sequence[str] = ("load",)) -> HeightRule:
         """Heights and probabilities for integrals of these quantities of an asperity at these separations."""
-        return self._means(*(self._asked(name, separations) for name in quantities)).rule(
-            separations, quantities
-        )
+        h = np.asarray(separations, dtype=np.float64)
+        formulas = self._formulas([self._asked(name, h) for name in quantities])
+        return self.summits.rule(h, self.grading, formulas.among(quantities) if formulas else ())
 
     @cached_property
     def ways(self) -> Ways:
@@ -175,14 +200,92 @@ class MeanModel:
         """Their heights and radii."""
         return summits_of(self.heights, self.curvature)
 
-    @cached_property
-    def _contact(self) -> MeanContact:
-        return MeanContact(self.ways, self.grading, self.summits)
+    def _mean(self, q: Quantity, h: ArrayLike) -> Array:
+        """Mean of what one asperity adds, over the scale, at separations of any shape."""
+        h = np.asarray(h, dtype=np.float64)
+        if self._by_powers(q):
+            return self._integral(q.exponent, q, h)
+        beyond = np.isfinite(h) & (self.heights.sf(h) == 0)  # far ones would make a rule long
+        result = np.zeros(np.shape(h))
+        result[~beyond] = self._in_parts(h[~beyond], q, partial(self._mean_by, q))
+        return result
 
-    def _means(self, *quantities: Quantity) -> MeanContact | MeanPowers:
-        """Return what one asperity adds to all of these in the mean, by powers of its approach if it can."""
-        powers = all(self._by_powers(q) for q in quantities)
-        return MeanPowers(self._contact) if powers else self._contact
+    def _slope(self, q: Quantity, h: ArrayLike) -> Array:
+        """How fast that falls with the separation, jumps of asperities included."""
+        if q.unloading and not self.ways.law.elastic:
+            if q.base != "load":
+                raise ValueError(f"quantity = {q.name!r}: its slope is not known; give 'load_unloading'")
+            return q.exponent * self._mean(quantity_of("load_slope_unloading"), h)
+        if self._by_powers(q) and q.exponent >= 1:
+            return q.exponent * self._integral(q.exponent - 1, q, h)
+        if self.summits.listed:
+            return self._in_parts(h, quantity_of(q.base), partial(self._slope_by, q.base))
+        if q.base == "contacts":
+            return self.heights.pdf(np.asarray(h, dtype=np.float64))
+        return fall_of(partial(self._mean, q), h)
+
+    def _integral(self, n: float, q: Quantity, h: ArrayLike) -> Array:
+        """Mean of a power of the approach, and of the powers of radius and modulus in a quantity."""
+        grading = self.grading if q.modulus else Homogeneous()
+        return law_integral(n, np.asarray(h, dtype=np.float64), self.summits.weighted(q.radius), grading)
+
+    def _in_parts(self, h: ArrayLike, q: Quantity, function: Callable[[Array, HeightRule], Array]) -> Array:
+        """Return a few separations at a time, which share a rule by the formulas of the law."""
+        flat = np.ravel(np.asarray(h, dtype=np.float64))
+        if not np.all(np.isfinite(flat)):
+            raise ValueError("h: every separation must be finite")
+        order, together = np.argsort(flat), self.summits.together
+        result = np.empty(flat.size)
+        for k in range(0, flat.size, together):
+            part = order[k : k + together]
+            rule = self.summits.rule(flat[part], self.grading, self.ways.among([q.name]))
+            result[part] = function(flat[part], rule)
+        return result.reshape(np.shape(h))
+
+    def _mean_by(self, q: Quantity, h: Array, rule: HeightRule) -> Array:
+        return rule.mean(rule.terms([q.name], h, self.grading, self.ways))
+
+    def _share_by(self, piece: int, h: Array, rule: HeightRule) -> Array:
+        s, e, law = rule.heights, self.grading(rule.heights), self._ways_of(rule).law
+        inside = np.stack([(s > x) & (piece_of(law, s - x, e) == piece) for x in h], axis=1)
+        with np.errstate(invalid="ignore"):
+            return np.asarray(rule.mean(inside) / self._mean_by(quantity_of("contacts"), h, rule))
+
+    def _slope_by(self, quantity: str, h: Array, rule: HeightRule) -> Array:
+        s, p = rule.heights, rule.probabilities
+        if not s.size:
+            return np.zeros(h.shape)
+        if rule.ratios is not None:
+            p = p * rule.ratios ** quantity_of(quantity).radius
+        branch, e = self._ways_of(rule).loading, self.grading(s)
+        return np.array([np.sum(p * slope_term(quantity, branch, s - x, e)) for x in h])
+
+    def _ways_of(self, rule: HeightRule) -> Ways:
+        """In units of each summit, where radii differ."""
+        return self.ways if rule.ratios is None else self.ways.with_radii(rule.ratios)
+
+    def _grid(self, q: Quantity) -> Array:
+        """Separations from where all touches to where probabilities underflow, or the highest height."""
+        top = min(self.summits.highest, _HIGHEST)
+        near = min(top, 12.0)
+        far = np.geomspace(near, top, 25)[1:] if top > near else np.empty(0)
+        grid = np.concatenate([np.linspace(LOWEST, -4, 10)[:-1], np.linspace(-4, near, 41), far])
+        low = self._lowest(q, near)
+        return np.concatenate([[low], grid[grid > low]])
+
+    def _lowest(self, q: Quantity, near: float) -> float:
+        """Lowest separation of the grid: that of the turn, or above it one that has no negative modulus."""
+        if self.ways.law.elastic:
+            return LOWEST
+        branch = self.ways.of(q.name)
+        lowest = branch.deepest if isinstance(branch, UnloadingBranch) else LOWEST
+        s = np.linspace(max(self.heights.support[0], -REACH), near, 4001)
+        negative = np.flatnonzero(self.grading(s) < 0)
+        return max(lowest, float(s[min(negative[-1] + 1, s.size - 1)])) if negative.size else lowest
+
+    def _formulas(self, quantities: Sequence[Quantity]) -> Ways | None:
+        """Return the formulas of what one asperity adds; None if powers of its approach do for all."""
+        return None if all(map(self._by_powers, quantities)) else self.ways
 
     def _asked(self, quantity: str, h: ArrayLike = np.inf) -> Quantity:
         """Return a quantity that is known at these separations."""

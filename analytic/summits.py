@@ -155,10 +155,8 @@ class Summits:
         """Return the heights, each with the mean of this power of its radius over that of the surface."""
         return self.heights
 
-    def rule(self, h: Array, grading: Grading, branches: Branches | None = None) -> HeightRule:
-        """Heights and radii for sums on these branches, rough without any; None: of powers of both."""
-        if branches is None:
-            return HeightRule.over(h, grading, self.heights)
+    def rule(self, h: Array, grading: Grading, branches: Branches = ()) -> HeightRule:
+        """Heights and radii for sums on these branches, or of powers of both."""
         key = (branches, h.tobytes())  # of one model, every quantity and statistic of which asks again
         if key not in self._rules:
             while sum(kept.heights.size for kept in self._rules.values()) > _KEPT:
@@ -195,9 +193,6 @@ class _RandomRadii(Summits):
     def weighted(self, power: float) -> HeightLaw:
         return WeightedHeights(self.heights, partial(self.curvature.mean, power)) if power else self.heights
 
-    def rule(self, h: Array, grading: Grading, branches: Branches | None = None) -> HeightRule:
-        return super().rule(h, grading, branches or ())
-
     def _new_rule(self, h: Array, grading: Grading, branches: Branches) -> HeightRule:
         return rule_of_radii(h, grading, self.curvature, branches)
 
@@ -223,11 +218,11 @@ class _ListedSummits(Summits):
     def powers(self) -> bool:
         return self.radii is None
 
-    def rule(self, h: Array, grading: Grading, branches: Branches | None = None) -> HeightRule:
+    def _new_rule(self, h: Array, grading: Grading, branches: Branches) -> HeightRule:
         if self.radii is None:
-            return super().rule(h, grading, branches)
+            return super()._new_rule(h, grading, branches)
         lowest = float(h.min())
-        lowest = min([lowest, *(branch.lowest(lowest) for branch in branches or ())])
+        lowest = min([lowest, *(branch.lowest(lowest) for branch in branches)])
         s, ratios = np.array(self.radii.heights.heights), np.array(self.radii.ratios)
         touching = s > lowest
         number = int(touching.sum())

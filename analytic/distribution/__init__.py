@@ -5,6 +5,6 @@ number is a Poisson variable, with ``q(z) = E exp(-z X) - 1`` of what one adds. 
 """
 
 from analytic.distribution.distribution import Law
-from analytic.distribution.of_model import distribution_of, interacting_distribution, separation_law_of
+from analytic.distribution.of_model import distribution_of, separation_law_of
 
-__all__ = ["Law", "distribution_of", "interacting_distribution", "separation_law_of"]
+__all__ = ["Law", "distribution_of", "separation_law_of"]

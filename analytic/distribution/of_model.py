@@ -22,7 +22,7 @@ _SCORES, _HIGHEST, _APART = 6.0, 6.5, 0.5  # of normal scores: looked for, told,
 _LONGER, _SMALLEST, _TABLE = 1.25, 1e-3, 8192
 _LEVEL = 1e-9  # of a score: all asperities touch, and the rest of the surfaces have none
 _JUST = 1e-9  # of a cell
-_NEIGHBOURS = 6
+_DEGREE = 5  # of a spline through scores
 _ROUNDING = 1e-9  # of a law that goes on smoothly
 
 
@@ -90,6 +90,8 @@ def _cells(
 
 def separation_law_of(model: Any, load: float, quantity: str, *, other: bool = False) -> Law:
     """As `analytic.Model.separation_law`, of a model whose asperities are independent."""
+    from scipy.interpolate import make_interp_spline  # takes long to import
+
     q = quantity_of(quantity)
     if q.counts or q.unloading:
         raise ValueError(
@@ -104,7 +106,8 @@ def separation_law_of(model: Any, load: float, quantity: str, *, other: bool = F
     h = _between(score, start + other * spread / 7, spread)
     z = np.array([score(at) for at in h])
     x = np.interp(np.linspace(0, len(h) - 1, _TABLE), np.arange(len(h)), h)
-    upto = ndtr(np.maximum.accumulate(_interpolated(np.array(h), z, x)))
+    smooth = make_interp_spline(h, z, min(_DEGREE, len(h) - 1))
+    upto = ndtr(np.maximum.accumulate(smooth(x)))
     kept = (upto > one.rounding) & (upto < 1 - one.rounding)
     middle, p = (x[kept][1:] + x[kept][:-1]) / 2, np.diff(upto[kept])
     mean = float(p @ middle / p.sum())
@@ -155,33 +158,6 @@ def shares_upto(model: Any, quantity: str, h: float) -> Callable[[float, Array],
         return shares_at(some, values / unit, _POINTS[False] // 4)
 
     return shares
-
-
-def interacting_distribution(model: Any, quantity: str, h: float) -> Law:
-    """As `analytic.Model.distribution`, of a model whose asperities press each other down."""
-    c, alone = model.compliance, model.alone
-    if quantity == "nominal_separation":
-        return distribution_of(alone, "load", h).mapped(lambda p: h - c * p, falls=c > 0)
-    law = distribution_of(alone, quantity, h)
-    series = model.series(quantity)
-
-    def together(alone: Array) -> Array:
-        """Infinite from the pole on, which no surface reaches."""
-        with np.errstate(divide="ignore"):
-            return np.asarray(np.divide(alone, np.maximum(1 + series * alone, 0.0)))
-
-    return law.mapped(together) if series else law
-
-
-def _interpolated(x: Array, y: Array, at: Array) -> Array:
-    """Values between points, by the polynomials through the six nearest (Neville)."""
-    n = min(_NEIGHBOURS, x.size)
-    which = np.clip(np.searchsorted(x, at) - n // 2, 0, x.size - n)[:, None] + np.arange(n)
-    away, found = at[:, None] - x[which], y[which]
-    for m in range(1, n):
-        left, right = away[:, :-m], away[:, m:]
-        found = (left * found[:, 1:] - right * found[:, :-1]) / (left - right)
-    return np.asarray(found[:, 0])
 
 
 def check_falling(model: Any, quantity: str, h: float) -> None:

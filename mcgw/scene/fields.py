@@ -95,16 +95,11 @@ class Fields(Flat):
     @cached_property
     def theory(self) -> analytic.Model:
         """The exact model of this scene: modulus, heights, contact law, history, asperities."""
-        model = self.alone
-        if self.interaction is not None:
-            from analytic import InteractingModel  # for those scenes alone
+        if self.interaction is None and self.filled is None:
+            return self.alone
+        from analytic import InteractingModel  # for those scenes alone
 
-            model = InteractingModel.of(model, self.interaction)
-        if self.filled is not None:
-            from analytic.joint_model import with_gap  # for those scenes alone
-
-            model = with_gap(model, self.filled)
-        return model
+        return InteractingModel.of(self.alone, self.interaction, self.filled)
 
     @cached_property
     def alone(self) -> analytic.Model:

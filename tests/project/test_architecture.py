@@ -157,7 +157,7 @@ def test_the_root_has_only_the_door():
 
 # Theory, as modules of `analytic`; the first three are Gaussian unless they are told another law.
 GAUSSIAN = {"equations", "integrals", "inversion"}
-THEORY = GAUSSIAN | {"height_rule", "interacting", "law_rule", "mean_contact", "model"}
+THEORY = GAUSSIAN | {"height_rule", "interacting", "law_rule", "mean_model", "model"}
 
 
 def from_theory(tree, modules):

@@ -118,7 +118,7 @@ FEATURES = {
 # Laws of contact and height, interaction and joints: by the last part of their names.
 LAWS = {
     "adhesion", "custom", "elastic", "elastic_plastic", "elastic_plastic_laws", "law_rows",
-    "interacting", "interaction", "joint", "joint_model",
+    "interacting", "interaction", "joint",
 }  # fmt: skip
 
 
