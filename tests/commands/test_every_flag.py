@@ -164,6 +164,10 @@ SAID = [
 REFUSED = [
     (f"{RUN} --set grading.gama=2", "grading.gama: unknown key; did you mean gamma"),
     (f"{RUN} --set gamma", "--set gamma: give KEY=VALUE"),
+    (f"{RUN} --set nonsense=1", "nonsense: unknown key"),
+    (f"{RUN} --set poisson=0.2", "contact.law.poisson = 0.2: give hardness too"),
+    (f"{RUN} --set file=x.csv", "file: unknown key"),
+    (f"{RUN} --set contact.hardness=1", "contact.hardness: unknown key; did you mean contact.law.hardness?"),
     *((f"{line} --set ensemble.seed=-1", "ensemble.seed = -1: give a whole number")
       for line in (RUN, SWEEP, "converge @s.toml", "tradeoff @s.toml", SOLVE, EXPORT, ELASTIC)),
     ("show @e.h5 --set grading.gamma=2", "is no scene (.toml); give one"),

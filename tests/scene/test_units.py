@@ -147,19 +147,15 @@ def test_examples_of_the_messages_are_right(kind):
 
 
 SI = {"sigma": 1.37e-6, "radius": 13e-6, "eta": 3e8, "nominal_area": 1e-4, "E_star": 78.6e9}
-AS_TEXT = {
-    "sigma": "1.37 um", "radius": "13 µm", "eta": "300/mm^2", "nominal_area": "1 cm²", "E_star": "78.6 GPa",
-}  # fmt: skip
 
 
 def test_a_surface_of_texts_is_that_of_floats():
-    assert mcgw.Surface(**AS_TEXT) == mcgw.Surface(**SI) == analytic.Surface(**SI)
+    texts = ("1.37 um", "13 µm", "300/mm^2", "1 cm²", "78.6 GPa")
+    assert mcgw.Surface(*texts) == mcgw.Surface(**SI) == analytic.Surface(**SI)
     for key in SI:
-        assert mcgw.Surface(**{**SI, key: AS_TEXT[key]}) == analytic.Surface(**SI)
-        with pytest.raises(ValueError, match=f"^surface.{key} = '5 apples': give a finite number > 0 in "):
-            mcgw.Surface(**{**SI, key: "5 apples"})
-        with pytest.raises(ValueError, match=f"^surface.{key} = -1"):
-            mcgw.Surface(**{**SI, key: -1.0})
+        for wrong in ("5 apples", -1.0):
+            with pytest.raises(ValueError, match=f"^surface.{key} = {wrong!r}: give a finite number > 0 in "):
+                mcgw.Surface(**{**SI, key: wrong})
 
 
 # --- units that are doubted ---------------------------------------------------------------------------

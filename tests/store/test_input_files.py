@@ -230,8 +230,6 @@ def fuzzed(kind, count):
 @pytest.mark.parametrize(
     ("kind", "count"),
     [
-        ("scenes", 300),
-        pytest.param("scenes", 5000, marks=pytest.mark.slow),
         pytest.param("files", 100, marks=pytest.mark.slow),
     ],
 )

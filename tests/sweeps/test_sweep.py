@@ -244,6 +244,7 @@ MISTAKES = [
     ({GAMMA: 2}, "grading.gamma = 2: give a list"),
     ({GAMMA: []}, "give a list of at least one"),
     ({"grading": [3]}, "grading = 3: must be a table"),
+    ({"grading": ["exponential"]}, "grading = 'exponential': must be a table"),
     ({"grading": [np.sin]}, "is negative from s = 3.143"),
     ({}, "at least one key"),
     ({"contact.unload_from": [0, "x"]}, "contact.unload_from = 'x'"),

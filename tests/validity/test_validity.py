@@ -20,7 +20,7 @@ from scipy.stats import norm
 import analytic
 import mcgw
 from mcgw.validity import error_table as grid, lookup
-from mcgw.validity.place_in_table import LEAST_CROWDING, moments_of, reduced_pressure
+from mcgw.validity.place_in_table import LEAST_CROWDING, moments_of
 
 TABLE = Path(mcgw.__file__).parent / "validity" / "table.csv"
 HEAD = ["map", "model", "interaction", "x", "p"]
@@ -63,24 +63,6 @@ def test_the_table_is_as_its_readers_take_it():
             here = sorted((row["p"], row["p"] * (1 + row["load"])) for row in rows if row["x"] == x)
             own = [load for _, load in here if not math.isnan(load)]
             assert own == sorted(own), (model, x)
-
-
-@pytest.mark.parametrize("model", MODELS, ids="-".join)
-def test_at_a_row_of_the_table_its_bias_is_said(model):
-    """Bit for bit; and its contacts and waves, by which scatter is taken over to other surfaces."""
-    own = grid.grid_of(*model)
-    for row in EVERY:
-        if tuple(row[key] for key in HEAD[:3]) != model:
-            continue
-        for name in grid.COLUMNS:
-            p = row["p"] * (1 + row["load"]) if name == "load" else row["p"]
-            if math.isnan(p):
-                continue
-            found = own.expected(row["x"], np.array([p]))
-            np.testing.assert_allclose(found.bias[name], row[name], rtol=1e-7, atol=1e-12)
-            if name == "area":
-                np.testing.assert_allclose(found.contacts, row["contacts"], rtol=1e-9)
-                np.testing.assert_allclose(found.waves, row["waves"], rtol=1e-9)
 
 
 def law_of(model, name):
@@ -165,6 +147,8 @@ def test_a_gaussian_surface_by_its_own_interpolation():
     """alpha, g and m0 solved anew; load by quadrature; SciPy between the rows; scatter by the contacts."""
     middle = math.sqrt(2.6 * 4.3)
     scene = mcgw.Scene(surface_of(middle), separations=np.linspace(-1, 4, 26), seed=1)
+    many = scene.replace(separations=np.linspace(4, -1, 5000)).validity().separations
+    assert (len(many), many[0], many[-1]) == (64, -1.0, 4.0)
     alpha, g, rms = alpha_of(scene.surface)
     assert alpha == pytest.approx(middle, rel=1e-10)
     found, model = scene.validity(), ("gaussian", "one radius", "none")
@@ -206,19 +190,6 @@ def test_the_load_is_looked_up_by_the_load_of_the_model():
     h = float(analytic.Model(surface).separation_at("load", model_has))
     found = mcgw.Scene(surface, separations=[h], seed=1).validity()
     assert found.bias["load"][0] == pytest.approx(row["load"], rel=1e-5)
-
-
-@pytest.mark.parametrize("heights", ["gaussian", "nayak", "own radii"])
-def test_pressure_is_that_of_theory_without_its_grading(heights):
-    h = np.array([-3.0, 0.0, 1.5, 4.0])
-    surface = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 mm^2", "1 GPa")
-    more = {"gaussian": {}, "nayak": {"summits": "mean"}, "own radii": {"summits": "random"}}[heights]
-    given = surface.surface if heights == "gaussian" else surface
-    scene = scene_by(given, separations=h, seed=1, **more)
-    graded = scene.replace(grading=analytic.Exponential(0.5))
-    wanted = scene.theory.mean("load", h) / 1e9 / (scene.n_asperities / scene.surface.eta)
-    np.testing.assert_allclose(reduced_pressure(scene, h), wanted, rtol=1e-8)
-    np.testing.assert_array_equal(reduced_pressure(graded, h), reduced_pressure(scene, h))
 
 
 def test_caps_stand_below_where_no_gaussian_surface_is():
@@ -401,13 +372,6 @@ def test_an_interaction_has_its_own_rows_and_a_body_the_area_alone():
         assert cell.validity().bias["separation"][k] == pytest.approx(rms * wanted, rel=1e-5)
 
 
-def test_many_separations_are_looked_at_from_the_first_to_the_last():
-    scene = mcgw.Scene(surface_of(4.0), separations=np.linspace(3, -1, 5000), seed=1)
-    found = scene.validity()
-    assert len(found.separations) <= 64
-    assert (found.separations[0], found.separations[-1]) == (-1.0, 3.0)
-
-
 SEPARATIONS = (0.4, 1.2, 6.0)
 
 
@@ -421,7 +385,7 @@ def scene():
 def test_the_sentence_names_the_worst_at_a_load_and_at_a_gap(scene):
     error = {name: 100 * np.nanmax(x) for name, x in scene.validity().error.items()}
     at_load, at_gap = map(float, re.findall(r"within (\d+) %", scene.validity().verdict))
-    assert 0 <= at_load - max(error["area"], error["stiffness"]) <= 1
+    assert 0 <= at_load - max(error["area"], error["stiffness"]) <= 1  # rounded up
     assert 0 <= at_gap - error["load"] <= 1
 
 
@@ -432,11 +396,3 @@ def test_each_error_is_said_where_it_was_measured(scene):
     for error, where in ((known.error, ""), (at_one, " for d/sigma = 0.4")):
         (found,) = places.findall(dataclasses.replace(known, error=error).verdict)
         assert found == ("0.4 to 1.2", where)
-
-
-@pytest.mark.parametrize("worst", [0.1, 0.1000001, 0.0999999, 2.345])
-def test_what_is_said_is_rounded_up(worst):
-    from mcgw.validity.model_error import percent
-
-    said = float(percent(worst).removesuffix(" %")) / 100
-    assert worst - 1e-12 <= said < worst + 0.01
