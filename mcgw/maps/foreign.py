@@ -16,9 +16,8 @@ from typing import Any
 import h5py
 import numpy as np
 
-from analytic.arrays import Array
 from mcgw.formats.gate import check_archive, open_h5
-from mcgw.maps.topography import Topography, checked_shape, height_unit, in_metres
+from mcgw.maps.topography import Raw, checked_shape, height_unit
 
 _MOST_TEXT = 2**26  # bytes of a text, which it takes in whole
 _LARGEST = 3.4e38  # in the numbers of a file, which mark a missing point by the least of their type
@@ -31,29 +30,15 @@ class ForeignError(ValueError):
 
 
 def read_foreign(
-    path: Path,
-    pixel: tuple[float, float] | None = None,
-    unit: str | None = None,
-    missing: float | None = None,
-) -> Topography:
-    """Read a map by SurfaceTopography: the first channel of heights.
-
-    Parameters
-    ----------
-    path : Path
-        Of any format that it knows.
-    pixel : (float, float), optional
-        Size of a pixel, m, where the file does not tell it.
-    unit : str, optional
-        Of all lengths, where the file tells none; m if left out.
-    missing : float, optional
-        Number that stands for a missing point, in the unit of the file.
+    path: Path, pixel: tuple[float, float] | None, unit: str | None, missing: float | None
+) -> Raw:
+    """Read a map by SurfaceTopography: the first channel of heights. Its unit is also that of x and y.
 
     Raises
     ------
     ValueError
         If it is not installed or cannot read the file, or the file holds a profile or no heights, or tells
-        another unit or the size of a pixel that was given, or none that was not.
+        the size of a pixel that was given, or none that was not.
     """
     channel = _channel(path)
     if channel.dim != 2:
@@ -63,7 +48,7 @@ def read_foreign(
         raise ValueError(f"{path}: gives the size of a pixel; leave --pixel out")
     if not told and pixel is None:
         raise ValueError(f"{path}: does not give the size of a pixel; give --pixel")
-    metre, assumed = height_unit(path, _unit(channel), unit)  # the unit also of x and y
+    metre, _ = height_unit(path, _unit(channel), unit)
     columns, rows = _points(path, channel)
     with _one_line_errors(path):
         found = channel.topography(**({} if told else {"physical_sizes": (columns, rows)}))
@@ -71,12 +56,11 @@ def read_foreign(
     if missing is None:
         z[np.abs(z) > _LARGEST * abs(channel.height_scale_factor or 1.0)] = np.nan
     dx, dy = pixel or (float(p) * metre for p in found.pixel_size)
-    z = np.ascontiguousarray(in_metres(path, z, metre, missing))
-    return Topography(z, (dx, dy), bool(found.is_periodic), assumed)
+    return Raw(z, _unit(channel), (dx, dy), bool(found.is_periodic))
 
 
-def read_foreign_line(path: Path, unit: str | None = None) -> tuple[Array, Array, str]:
-    """Places and heights along a line, m, and the unit that was assumed; arguments as of `read_foreign`.
+def read_foreign_line(path: Path, unit: str | None) -> Raw:
+    """Read a profile, whose unit is also that of x.
 
     Raises
     ------
@@ -86,12 +70,11 @@ def read_foreign_line(path: Path, unit: str | None = None) -> tuple[Array, Array
     channel = _channel(path)
     if channel.dim != 1:
         raise ValueError(f"{path}: is a map, not a profile; leave --profile out")
-    metre, assumed = height_unit(path, _unit(channel), unit)
     _points(path, channel)
     with _one_line_errors(path):
         x, z = channel.topography().positions_and_heights()
-    places, heights = np.array([x, np.ma.filled(z, np.nan)], dtype=np.float64) * metre
-    return places, heights, assumed
+    told = _unit(channel)
+    return Raw(np.ma.filled(z, np.nan), told, places=x, unit_of_places=told or unit)
 
 
 def is_foreign_line(path: Path) -> bool:

@@ -19,7 +19,9 @@ from mcgw.maps.topography import (
     FLATTEST,
     STEEPEST,
     XYZ,
+    Raw,
     Topography,
+    check_file,
     checked_shape,
     height_unit,
     in_metres,
@@ -52,21 +54,8 @@ def write_npy(topography: Topography, path: Path) -> None:
         beside.write_text(json.dumps(facts, indent=2) + "\n", encoding="utf-8")
 
 
-def read_npy(
-    path: Path,
-    pixel: tuple[float, float] | None = None,
-    unit: str | None = None,
-    missing: float | None = None,
-) -> Topography:
-    """Read an array; its pixel size and the unit of its heights from the sidecar, unless given.
-
-    Raises
-    ------
-    ValueError
-        If it is not a matrix of real numbers, or no pixel size is known.
-    OSError
-        If a file cannot be read.
-    """
+def _read_npy(path: Path, pixel: tuple[float, float] | None) -> Raw:
+    """Read an array; its pixel size and the unit of its heights from the sidecar, unless a pixel is given."""
     array = open_npy(path)
     if array.ndim != 2:
         raise ValueError(f"{path}: holds {array.ndim} dimension(s); a map has rows and columns")
@@ -76,16 +65,8 @@ def read_npy(
             f"{path}: three numbers a line, {len(array)} lines: single points with x, y and z are not a map; "
             "give rows of heights on a grid"
         )
-    periodic, told = False, None
-    if pixel is None:
-        pixel, periodic, told = _sidecar(path)
-    metre, assumed = height_unit(path, told, unit)
-    heights = np.ascontiguousarray(in_metres(path, array, metre, missing))
-    return Topography(heights, pixel, periodic, assumed)
-
-
-def _sidecar(path: Path) -> tuple[tuple[float, float], bool, str | None]:
-    """Pixel, whether the map is periodic, and the unit of heights."""
+    if pixel is not None:
+        return Raw(array, pixel=pixel)
     beside = sidecar_of(path)
     if not beside.is_file():
         raise ValueError(f"{path}: there is no {beside.name} with the size of a pixel; give --pixel")
@@ -97,7 +78,7 @@ def _sidecar(path: Path) -> tuple[tuple[float, float], bool, str | None]:
         raise ValueError(f'{beside}: must hold "pixel": [dx, dy] in m: {error}') from None
     if unit not in (None, "m"):
         raise ValueError(f"{beside}: unit = {unit!r}: must be 'm'")
-    return _pixel(beside, pixel), _periodic(beside, periodic), unit
+    return Raw(array, unit, _pixel(beside, pixel), _periodic(beside, periodic))
 
 
 def _pixel(path: Path, told: Any) -> tuple[float, float]:
@@ -140,14 +121,8 @@ def write_h5(topography: Topography, path: Path, field: Asperities | None = None
         file["scene"] = scene  # a dataset: an attribute ends at 64 kB
 
 
-def read_h5(path: Path, unit: str | None = None, missing: float | None = None) -> Topography:
-    """Read the map of such a file; `unit` is that of heights, where it tells none.
-
-    Raises
-    ------
-    ValueError
-        If it is not one, or damaged.
-    """
+def _read_h5(path: Path) -> Raw:
+    """Read the map of such a file."""
     if not h5py.is_hdf5(path):
         raise ForeignError(f"{path}: is not a valid HDF5 file")
     try:
@@ -158,11 +133,9 @@ def read_h5(path: Path, unit: str | None = None, missing: float | None = None) -
             checked_shape(*data.shape, held=data.id.get_storage_size())
             pixel, periodic = _pixel(path, file.attrs["pixel"]), _periodic(path, file.attrs["periodic"])
             told = data.attrs.get("units")
-            metre, assumed = height_unit(path, None if told is None else str(told), unit)
             if data.size and not data.id.get_storage_size():
                 raise ValueError(f"{path}: its heights were never written")
-            heights = in_metres(path, data[...], metre, missing)
-            return Topography(heights, pixel, periodic, assumed)
+            return Raw(data[...], None if told is None else str(told), pixel, periodic)
     except (AttributeError, KeyError, OSError, RuntimeError, TypeError) as error:  # as HDF5 tells of damage
         raise ValueError(f"{path}: is a damaged {_FILETYPE} file: {one_line(str(error))}") from None
 
@@ -230,10 +203,12 @@ def read_map(
     OSError
         If it cannot be read.
     """
-    if not path.is_file():
-        raise ValueError(f"{path}: is not a regular file" if path.exists() else f"{path}: no such file")
+    check_file(path)
+    raw = _read(path, pixel, unit, missing)
+    metre, assumed = height_unit(path, raw.unit, unit)
     with np.errstate(over="ignore", invalid="ignore"):  # of scales: a map refuses what comes of it
-        topography = _read(path, pixel, unit, missing)
+        heights = np.ascontiguousarray(in_metres(path, raw.heights, metre, missing))
+    topography = Topography(heights, raw.pixel, raw.periodic, assumed or raw.assumed)
     slope = topography.steepness
     if slope == 0 or FLATTEST <= slope <= STEEPEST:
         return topography
@@ -248,9 +223,7 @@ def read_map(
     )
 
 
-def _read(
-    path: Path, pixel: tuple[float, float] | None, unit: str | None, missing: float | None
-) -> Topography:
+def _read(path: Path, pixel: tuple[float, float] | None, unit: str | None, missing: float | None) -> Raw:
     """Read by our own readers, otherwise by SurfaceTopography.
 
     Since that skips text it does not know, text files must state their pixel.
@@ -258,11 +231,11 @@ def _read(
     ending = path.suffix.lower()
     try:
         if ending == ".npy":
-            return read_npy(path, pixel, unit, missing)
+            return _read_npy(path, pixel)
         if ending in _TEXT:
-            return read_text(path, pixel, unit, missing)
+            return read_text(path, pixel, unit)
         if ending == ".h5":
-            return _told(path, pixel, read_h5(path, unit, missing))
+            return _told(path, pixel, _read_h5(path))
     except ForeignError as error:
         refused = error
     else:
@@ -276,7 +249,7 @@ def _read(
     return _told(path, pixel, found) if ending in _TEXT else found
 
 
-def _told(path: Path, pixel: tuple[float, float] | None, found: Topography) -> Topography:
+def _told(path: Path, pixel: tuple[float, float] | None, found: Raw) -> Raw:
     """Require that the file of a map contains its pixel size."""
     if pixel is not None:
         raise ValueError(f"{path}: gives the size of a pixel; leave --pixel out")

@@ -12,7 +12,7 @@ from mcgw.maps.foreign import is_foreign_line, read_foreign_line
 from mcgw.maps.grid_of_points import along_line
 from mcgw.maps.profile import Profile, profile_at
 from mcgw.maps.text_file import MOST_HEADER, header_units, lines_of, table_of
-from mcgw.maps.topography import XYZ, height_unit
+from mcgw.maps.topography import XYZ, Raw, check_file, height_unit
 
 _LOOKED_AT = 20  # lines of numbers
 _COMMA_ALONE = re.compile(r"\s*[-+]?\d+(?:,\d+)?(?:[eE][-+]?\d+)?\s*")
@@ -20,28 +20,13 @@ _TEXT = (".txt", ".csv", ".asc", ".dat", ".tsv", ".prf", ".xy", ".xyz")
 _MAPS = (".sdf", ".x3p", ".h5")  # endings that hold no profiles
 
 
-def read_profile_text(path: Path, spacing: float | None = None, unit: str | None = None) -> Profile:
-    """Read heights, or places x and heights z, one pair a line; lengths in m.
+def _read_text(path: Path) -> Raw:
+    """Read heights, or places x and heights z, one pair a line.
 
     Numbers are written as in maps (`mcgw.maps.text_file.read_text`). Lines above them that are not
     numbers are a header; units are taken from it where they stand in brackets, after a slash or alone: of
     heights in one column, of x and of z in two. Lines like 1,25 are x and z if what stands before the comma
     rises, and heights with decimal commas otherwise.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    spacing : float, optional
-        Between points, m, where the file has no x, or x without a unit, which then is not looked at.
-    unit : str, optional
-        Of the heights, where the file tells none; m if left out.
-
-    Raises
-    ------
-    ValueError
-        If there are more than two columns, a line is not numbers, no spacing is known, or x does not rise or
-        fall.
     """
     header, values = _lone_numbers(path) or _columns(path)
     told = header_units(header, values.shape[1])
@@ -49,17 +34,9 @@ def read_profile_text(path: Path, spacing: float | None = None, unit: str | None
         values, told = values[:, [along, 2]], [told[along], told[2]]
     if values.shape[1] > 2:
         raise ValueError(f"{path}: {values.shape[1]} numbers a line; a profile has z, or x and z")
-    metre, assumed = height_unit(path, told[-1], unit)
-    if values.shape[1] == 1 and spacing is None:
-        raise ValueError(f"{path}: has only a column of heights; give --pixel, the distance between points")
-    if values.shape[1] > 1 and spacing is not None and told[0] is not None:
-        raise ValueError(f"{path}: gives x in {told[0]}; leave --pixel out")
-    if spacing is not None:
-        places = spacing * np.arange(len(values), dtype=np.float64)
-    else:
-        of_x, assumed_x = height_unit(path, told[0], None)
-        places, assumed = values[:, 0] * of_x, assumed or assumed_x
-    return _profile(path, places, values[:, -1] * metre, assumed)
+    if values.shape[1] == 1:
+        return Raw(values[:, 0], told[0])
+    return Raw(values[:, 1], told[1], places=values[:, 0], unit_of_places=told[0])
 
 
 def _columns(path: Path) -> tuple[list[str], Array]:
@@ -112,28 +89,38 @@ def read_profile(path: Path, *, spacing: float | None = None, unit: str | None =
     path : Path
         The file.
     spacing : float, optional
-        Between points, m, where the file does not tell it.
+        Between points, m, where the file has no x, or x without a unit, which then is not looked at.
     unit : str, optional
         Of the heights, where the file does not tell it; m if left out.
 
     Raises
     ------
     ValueError
-        If it is no profile, is damaged, or tells no unit where m would make it too steep or too long.
+        If it is no profile, is damaged, tells no distance between its points or another one than given, or
+        tells no unit where m would make it too steep or too long.
     OSError
         If it cannot be read.
     """
-    if not path.is_file():
-        raise ValueError(f"{path}: is not a regular file" if path.exists() else f"{path}: no such file")
+    check_file(path)
     ending = path.suffix.lower()
     if ending in _TEXT:
-        profile = read_profile_text(path, spacing, unit)
-    elif ending == ".npy":
-        profile = _array(path, spacing, unit)
-    elif spacing is not None:
-        raise ValueError(f"{path}: gives the distance between its points; leave --pixel out")
+        raw = _read_text(path)
     else:
-        profile = _profile(path, *read_foreign_line(path, unit))
+        raw = _read_array(path) if ending == ".npy" else read_foreign_line(path, unit)
+    metre, assumed = height_unit(path, raw.unit, unit)
+    if raw.places is None and spacing is None:
+        raise ValueError(f"{path}: does not give the distance between its points; give --pixel")
+    if raw.places is not None and raw.unit_of_places is not None and spacing is not None:
+        raise ValueError(f"{path}: gives x in {raw.unit_of_places}; leave --pixel out")
+    if raw.places is None or spacing is not None:
+        places = (spacing or 0.0) * np.arange(raw.heights.size)
+    else:
+        of_x, assumed_x = height_unit(path, raw.unit_of_places, None)
+        places, assumed = raw.places * of_x, assumed or assumed_x
+    try:
+        profile = profile_at(places, raw.heights * metre, assumed)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
     if profile.doubtful:
         raise ValueError(
             f"{path}: does not give all units, and in {profile.assumed_unit} {profile.doubtful}; give --unit "
@@ -142,19 +129,8 @@ def read_profile(path: Path, *, spacing: float | None = None, unit: str | None =
     return profile
 
 
-def _array(path: Path, spacing: float | None, unit: str | None) -> Profile:
-    z = np.array(open_npy(path), dtype=np.float64)
+def _read_array(path: Path) -> Raw:
+    z = open_npy(path)
     if z.ndim != 1:
         raise ValueError(f"{path}: holds {z.ndim} dimensions; a profile has one")
-    if spacing is None:
-        raise ValueError(f"{path}: does not give the distance between its points; give --pixel")
-    metre, assumed = height_unit(path, None, unit)
-    return _profile(path, spacing * np.arange(z.size, dtype=np.float64), z * metre, assumed)
-
-
-def _profile(path: Path, places: Array, heights: Array, assumed: str) -> Profile:
-    """Make a profile; errors name the file."""
-    try:
-        return profile_at(places, heights, assumed)
-    except ValueError as error:
-        raise ValueError(f"{path}: {error}") from None
+    return Raw(z.astype(np.float64))

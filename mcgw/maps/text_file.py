@@ -14,10 +14,9 @@ from mcgw.maps.grid_of_points import grid_of
 from mcgw.maps.topography import (
     MOST_PIXELS,
     XYZ,
-    Topography,
+    Raw,
     checked_shape,
     height_unit,
-    in_metres,
     metres_in,
 )
 
@@ -42,12 +41,7 @@ _MORE_COMMAS = re.compile(r"[-+.,\deE]*\d,+[-+.\d][-+.,\deE]*")
 _MISSING = ("", "BAD", "---")
 
 
-def read_text(
-    path: Path,
-    pixel: tuple[float, float] | None = None,
-    unit: str | None = None,
-    missing: float | None = None,
-) -> Topography:
+def read_text(path: Path, pixel: tuple[float, float] | None, unit: str | None) -> Raw:
     """Read a matrix of numbers, a row a line, or a regular grid of points x, y and z, one a line.
 
     Numbers are separated by spaces, tabs, semicolons or commas. Where something else parts the numbers of a
@@ -55,7 +49,7 @@ def read_text(
     Gwyddion writes, ``Width``, ``Height`` and ``Value units`` are understood, in German too. Points may
     have a header with the units of x, y and z. ``nan``, ``BAD``, ``---`` and nothing between two separators
     are missing points. The text is UTF-8, or UTF-16 with its mark. What no comment tells is given: the size
-    of a pixel, m, the unit of the heights, by default m, and the number that stands for a missing point.
+    of a pixel, m, and the unit of points, by default m.
 
     Raises
     ------
@@ -68,15 +62,13 @@ def read_text(
     if header.refused is not None and not (points and isinstance(header.refused, ForeignError)):
         raise header.refused
     if points:
-        return _of_points(path, header, table, pixel, unit, missing)
-    metre, assumed = height_unit(path, header.unit, unit)
-    heights = in_metres(path, table, metre, missing)
+        return _of_points(path, header, table, pixel, unit)
     if pixel is None:
         if set(header.extent) != {"Width", "Height"}:
             message = f"{path}: does not give the size of a pixel; give --pixel"
             raise ForeignError(message) if header.lines and not header.extent else ValueError(message)
-        pixel = header.extent["Width"] / heights.shape[1], header.extent["Height"] / heights.shape[0]
-    return Topography(heights, pixel, assumed_unit=assumed)
+        pixel = header.extent["Width"] / table.shape[1], header.extent["Height"] / table.shape[0]
+    return Raw(table, header.unit, pixel)
 
 
 class Header:
@@ -153,23 +145,15 @@ def _filled(words: list[str]) -> int:
 
 
 def _of_points(
-    path: Path,
-    header: Header,
-    points: Array,
-    pixel: tuple[float, float] | None,
-    unit: str | None,
-    missing: float | None,
-) -> Topography:
+    path: Path, header: Header, points: Array, pixel: tuple[float, float] | None, unit: str | None
+) -> Raw:
     """Return a map of points x, y and z."""
     if pixel is not None:
         raise ValueError(f"{path}: three numbers a line are points with x, y and z; leave --pixel out")
-    told = header_units(header.lines, XYZ)
-    metre, assumed = height_unit(path, told[2], unit)
-    z = in_metres(path, points[:, 2], metre, missing)
-    places = [height_unit(path, told[k], unit if told[k] is None else None) for k in (0, 1)]
-    scaled = np.column_stack([*(points[:, k] * places[k][0] for k in (0, 1)), z])
-    heights, size = grid_of(path, scaled)
-    return Topography(heights, size, assumed_unit=assumed or places[0][1])
+    *of_places, told = header_units(header.lines, XYZ)
+    (dx, assumed), (dy, _) = (height_unit(path, x, unit if x is None else None) for x in of_places)
+    heights, size = grid_of(path, points * [dx, dy, 1])
+    return Raw(heights, told, size, assumed=assumed)
 
 
 def lines_of(path: Path) -> Iterator[tuple[int, str]]:

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -96,6 +96,48 @@ class Topography:
             if np.isfinite(differences := np.diff(lines[::every])).any()
         ]
         return math.hypot(*usual)
+
+
+class Raw(NamedTuple):
+    """What a file holds of a map or of a profile, before a user adds what it does not tell.
+
+    Parameters
+    ----------
+    heights : ndarray
+        In their unit, shape (rows, columns) or (points,).
+    unit : str, optional
+        Of the heights, where the file tells it.
+    pixel : (float, float), optional
+        Size of a pixel of a map, m.
+    periodic : bool, optional
+        Whether opposite edges fit together.
+    places : ndarray, optional
+        Of the points of a profile along its line, in their unit.
+    unit_of_places : str, optional
+        Where the file tells it.
+    assumed : str, optional
+        Unit that was assumed of places.
+    """
+
+    heights: NDArray[Any]
+    unit: str | None = None
+    pixel: tuple[float, float] | None = None
+    periodic: bool = False
+    places: Array | None = None
+    unit_of_places: str | None = None
+    assumed: str = ""
+
+
+def check_file(path: Path) -> None:
+    """Refuse a name that is none of a regular file.
+
+    Raises
+    ------
+    ValueError
+        If there is none, or it is something else.
+    """
+    if not path.is_file():
+        raise ValueError(f"{path}: is not a regular file" if path.exists() else f"{path}: no such file")
 
 
 def checked_shape(rows: int, columns: int, *, held: int | None = None) -> tuple[int, int]:

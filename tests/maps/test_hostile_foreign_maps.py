@@ -51,7 +51,7 @@ def test_heights_along_a_line_are_a_profile_and_no_map(foreign):
     assert (found.spacing, found.filled) == (pytest.approx(0.5e-6), 1)
     with pytest.raises(ValueError, match="is a profile along a line; a map has rows and columns"):
         read_map(path)
-    with pytest.raises(ValueError, match="gives the distance between its points; leave --pixel out"):
+    with pytest.raises(ValueError, match="gives x in um; leave --pixel out"):
         read_profile(path, spacing=1e-6)
     path = foreign("3 2")
     assert not holds_profile(path)

@@ -390,7 +390,7 @@ def test_text_of_every_kind(name, encoding, tmp_path):
 
 
 @pytest.mark.parametrize(("text", "given", "told"), [
-    ("1\n2\n3\n", {}, "has only a column of heights; give --pixel"),
+    ("1\n2\n3\n", {}, "does not give the distance between its points; give --pixel"),
     ("x (um);z (um)\n0;1\n1;2\n", {"spacing": 1e-6}, "gives x in um; leave --pixel out"),
     ("x (um);z (um)\n0;1\n1;2\n", {"unit": "nm"}, "heights are in um as the file says, not in nm"),
     ("0 1\n1 2\n2 1\n3 1\n1 2\n4 2\n5 2\n6 1\n7 1\n", {}, "x = 3 m is followed by 1 m"),
@@ -589,7 +589,7 @@ def test_profiles_that_surface_topography_reads(tmp_path):
     found = read_profile(tmp_path / "even.nc")
     np.testing.assert_allclose(found.heights, z * MM, rtol=1e-12)
     assert found.spacing == pytest.approx(0.5 * UM, rel=1e-9)
-    with pytest.raises(ValueError, match="distance between its points"):
+    with pytest.raises(ValueError, match="gives x in mm; leave --pixel out"):
         read_profile(tmp_path / "even.nc", spacing=UM)
     fit = mcgw.fit(tmp_path / "even.nc", cutoff="10 um")
     assert fit.lengths == (pytest.approx(1.5 * MM),)

@@ -14,7 +14,7 @@ PIXEL = (1e-6, 1e-6)
 def read(tmp_path, content, encoding="utf-8"):
     path = tmp_path / "map.csv"
     path.write_bytes(content.encode(encoding))
-    return read_text(path, pixel=(1.0, 1.0), unit="m").heights
+    return read_text(path, (1.0, 1.0), "m").heights
 
 
 @pytest.mark.parametrize(
