@@ -118,7 +118,7 @@ def read_profile(path: Path, *, spacing: float | None = None, unit: str | None =
         of_x, assumed_x = height_unit(path, raw.unit_of_places, None)
         places, assumed = raw.places * of_x, assumed or assumed_x
     try:
-        profile = profile_at(places, raw.heights * metre, assumed)
+        profile = profile_at(places, np.asarray(raw.heights * metre, dtype=np.float64), assumed)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
     if profile.doubtful:

@@ -108,7 +108,7 @@ class Raw(NamedTuple):
     unit : str, optional
         Of the heights, where the file tells it.
     pixel : (float, float), optional
-        Size of a pixel of a map, m.
+        Size of a pixel, m; of a profile nan.
     periodic : bool, optional
         Whether opposite edges fit together.
     places : ndarray, optional
@@ -121,7 +121,7 @@ class Raw(NamedTuple):
 
     heights: NDArray[Any]
     unit: str | None = None
-    pixel: tuple[float, float] | None = None
+    pixel: tuple[float, float] = (math.nan, math.nan)
     periodic: bool = False
     places: Array | None = None
     unit_of_places: str | None = None

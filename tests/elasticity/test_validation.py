@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from analytic import Model, Nayak, RandomCurvature, SpectralMoments
 from mcgw.validity import error_table, lookup
 
 ROOT = Path(__file__).parents[2]
@@ -20,7 +19,6 @@ CONDENSED = ROOT / "mcgw" / "validity" / "table.csv"
 sys.path.insert(0, str(FOLDER))
 
 import charted  # noqa: E402
-import conductance  # noqa: E402
 import deviations  # noqa: E402
 import models  # noqa: E402
 import rough_maps  # noqa: E402
@@ -62,55 +60,6 @@ def test_the_table_is_made_of_the_solves(kind, x, p):
     text = text[text.index(",".join(deviations.COLUMNS)) + 1 :]
     assert len(text) == (9 if kind == "gaussian" else 3)
     assert set(text) <= set(CONDENSED.read_text().splitlines())
-
-
-@pytest.mark.parametrize(("x", "p"), [(5.0, 0.1), (20.0, 1e-3)])
-def test_conductance_is_as_far_off_as_stiffness(x, p):
-    """Barber's relation, by sums over a grid of heights; at alpha = 5 the neighbours are half of all."""
-    row = next(row for row in rows_of("gaussian", x) if row["p"] == p)
-    alone, beside = conductance.errors(row)
-    stiffness = {
-        one.interaction: one.stiffness for one in deviations.deviations(row) if one.model == "own radii"
-    }
-    assert alone == pytest.approx(stiffness["none"], abs=1e-3)
-    assert beside == pytest.approx(stiffness["summits"], abs=2e-3)
-    if p == 0.1:
-        assert alone < -0.45
-        assert abs(beside) < 0.06
-
-
-@pytest.mark.parametrize("name", models.MODELS)
-@pytest.mark.parametrize("alpha", MOMENTS)
-def test_sums_over_heights_are_the_integrals_of_theory(name, alpha):
-    moments = SpectralMoments(*MOMENTS[alpha])
-    surface, heights = moments.surface(1.0, 1.0), Nayak(moments.alpha)
-    exact = {
-        "one radius": Model(surface),
-        "nayak": Model(surface, heights=heights),
-        "own radii": Model(
-            surface, heights=heights, curvature=RandomCurvature(moments.alpha, 1 / surface.radius)
-        ),
-    }[name]
-    summits = models.summits_of(name, *MOMENTS[alpha])
-    for x in (-1.0, 1.0, 3.0):
-        found = summits.at(moments.mean_height + moments.sigma * x)
-        for key, quantity, most in (
-            ("load", "load", 2e-6), ("area", "area", 2e-5), ("stiffness", "stiffness", 4e-4),
-            ("spots", "contacts", 2e-6),
-        ):  # fmt: skip
-            assert getattr(found, key) == pytest.approx(float(exact.mean(quantity, x)), rel=most), (x, key)
-
-
-@pytest.mark.parametrize("interaction", models.INTERACTIONS)
-def test_stiffness_is_the_slope_of_load_over_gap(interaction):
-    summits = models.summits_of("own radii", *MOMENTS[5.0])
-    model, p = models.Model(summits, interaction), 5e-3
-    x, near = summits.separation(p), [summits.separation(p * f) for f in (0.98, 1.02)]
-    slope = -0.04 * p / (model.gap(near[1]) - model.gap(near[0]))
-    assert model.stiffness(x) == pytest.approx(slope, rel=2e-3)
-    assert model.load_at(model.gap(x)) == pytest.approx(p, rel=2e-3)
-    if interaction != "none":  # what is left out would be seen
-        assert summits.at(x).stiffness < 0.97 * slope
 
 
 @pytest.mark.parametrize("k", [0, -1])

@@ -21,34 +21,9 @@ from mcgw.maps import Topography, write_map
 SECONDS, BYTES = 2.0, 400 * 2**20
 MAP = Topography(1e-6 * np.random.default_rng(1).normal(size=(16, 16)), (1e-6, 1e-6))
 WORDS = [
-    "1.5",
-    "-2",
-    "nan",
-    "1e999",
-    "9" * 400,
-    "0x10",
-    "x",
-    "",
-    "1,5",
-    "1_0",
-    "\0",
-    "é",
-    "--",
-    "1e-400",
-    "BAD",
-]
-SCENE = """[surface]
-sigma = 1e-6
-radius = 1e-5
-eta = 1e9
-nominal_area = 1e-6
-E_star = 1e11
-[contact]
-separations = [0.0, 2.0]
-[ensemble]
-n_surfaces = 10
-seed = 5
-"""
+    "1.5", "-2", "nan", "1e999", "9" * 400, "0x10", "x", "", "1,5", "1_0", "\0", "é", "--", "1e-400", "BAD",
+]  # fmt: skip
+SCENE = (Path(__file__).parents[2] / "runs" / "quick.toml").read_text(encoding="utf-8")
 
 
 def hdf5(folder, name, dice):
@@ -57,11 +32,11 @@ def hdf5(folder, name, dice):
     write_map(MAP, folder / "m.h5")
     os.replace(folder / "m.h5", path)
     if dice.random() < 0.6:
-        make = dice.choice(list(HOSTILE))
+        make = dice.choice(list(HOSTILE.values()))
         with h5py.File(path, "r+") as file:
             del file["height"]
             (folder / "secret").write_bytes(b"correct horse battery staple" * 64)
-            make(file, folder)
+            make[0](file, folder)
         return
     content = bytearray(path.read_bytes())
     for _ in range(dice.randint(1, 4)):
@@ -75,9 +50,8 @@ def text(folder, name, dice):
     for _ in range(dice.choice([1, 5, 40])):
         number = dice.choice([3, 5, 5, 5, 2000])
         lines.append(mark.join(dice.choice(WORDS) if dice.random() < 0.1 else "0.5" for _ in range(number)))
-    head = dice.choice(
-        ["", "# Width: 1-2 um\n", "x (um) y (um) z (A)\n", "[" * 1000 + "\n", "# Width: 9e999 m\n"]
-    )
+    heads = ["", "# Width: 1-2 um\n", "x (um) y (um) z (A)\n", "[" * 1000 + "\n", "# Width: 9e999 m\n"]
+    head = dice.choice(heads)
     (folder / f"{name}.{dice.choice(['txt', 'csv', 'xyz'])}").write_text(
         head + "\n".join(lines), encoding="utf-8"
     )

@@ -1,12 +1,11 @@
 """Maps that no instrument gives: heights that overflow, bombs, and words in place of numbers."""
 
-import h5py
 import numpy as np
 import pytest
 from oracles.inside import summit_sums_of
 
 import mcgw
-from mcgw.maps import Topography, read_map, summit_sums, write_map
+from mcgw.maps import Topography, summit_sums
 
 UNITS = 1e-6 * np.random.default_rng(1).normal(size=(8, 9))
 HEIGHTS = {
@@ -78,13 +77,3 @@ def test_moments_that_no_surface_has_are_refused_in_one_line(factor, place, heig
     z[place] = height
     with pytest.raises(ValueError, match=told):
         mcgw.fit(Topography(z, (1e-6, 1e-6)), cutoff=None)
-
-
-def test_an_hdf5_map_of_a_kilobyte_is_no_map_of_gigabytes(tmp_path):
-    """Its chunks were never written: HDF5 would make them up, 2 GiB of zeros."""
-    write_map(Topography(UNITS, (1e-6, 1e-6)), tmp_path / "m.h5")
-    with h5py.File(tmp_path / "m.h5", "r+") as file:
-        del file["height"]
-        file.create_dataset("height", shape=(2**14, 2**14), dtype="f8", chunks=(64, 64))
-    with pytest.raises(ValueError, match=r"m\.h5: refused: height: more bytes declared than a file"):
-        read_map(tmp_path / "m.h5")

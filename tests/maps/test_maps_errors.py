@@ -104,17 +104,14 @@ def test_a_ramp_has_no_waves():
 
 
 def test_the_larger_error_counts_and_arms_are_those_of_logarithms():
-    x = uncertain(2.0, 0.1, Spread(0.2, 0.3, 0.5))
-    assert x == pytest.approx((2.0, 0.4, 2 * math.exp(-0.3), 2 * math.exp(0.5)))
-    y = uncertain(2.0, 0.6, Spread(0.2, 0.3, 0.5))
-    assert y == pytest.approx((2.0, 0.6, 2 * math.exp(-0.6), 2 * math.exp(0.6)))
-
-
-def test_an_arm_without_an_end_is_infinite():
-    for error, end in ((349.9, 2 * math.exp(699.8)), (350.1, math.inf)):
+    """An arm without an end is infinite."""
+    waves = Spread(0.2, 0.3, 0.5)
+    for error, down, up, told in ((0.1, 0.3, 0.5, 0.4), (0.6, 0.6, 0.6, 0.6)):
+        x = uncertain(2.0, error, waves)
+        assert x == pytest.approx((2.0, told, 2 * math.exp(-down), 2 * math.exp(up)))
+    for error, end in ((349.9, 2 * math.exp(699.8)), (350.1, math.inf), (0.25, 2 * math.exp(0.5))):
         x = uncertain(2.0, 2 * error)
         assert (x.high, x.relative) == (pytest.approx(end), error)
-    assert uncertain(2.0, 0.5)[2:] == pytest.approx((2 * math.exp(-0.5), 2 * math.exp(0.5)))
 
 
 def test_blocks_leave_so_many_points_to_twice_as_many():

@@ -55,23 +55,6 @@ def test_each_formula_against_drawn_maps(alpha):
         assert abs(logs.mean()) < 0.02 + 4 * logs.std(ddof=1) / math.sqrt(len(each)), key
 
 
-@pytest.mark.parametrize("seed", range(10))
-def test_from_numbers_to_a_map_and_back(seed):
-    """Ten spectra: moments of a map drawn for the numbers lie inside the intervals of its fit, or 2 % off."""
-    rng = np.random.default_rng(100 + seed)
-    alpha = float(rng.uniform(2, 5))
-    numbers = {"Sq": 1e-6, "Sdq": float(rng.uniform(0.05, 0.3))}
-    numbers["Spc"] = NUMBERS["Spc"].factor * math.sqrt(alpha) * numbers["Sdq"] ** 2 / 2 / numbers["Sq"]
-    moments = mcgw.surface_from(**numbers, pruning=0, nominal_area="1 mm^2", E_star="1 GPa").moments
-    spectrum = Spectrum.with_moments(moments)
-    pixel = spectrum.short / 10
-    n = math.ceil(6 * spectrum.long / pixel)
-    found = mcgw.fit(gaussian_map(spectrum, (n, n), (pixel, pixel), rng), cutoff=None, form="none")
-    for name in ("m0", "m2", "m4"):
-        told = getattr(found, name)
-        assert 0.98 * told.low < getattr(moments, name) < 1.02 * told.high, name
-
-
 def test_values():
     """Against the printed arithmetic: alpha = 10, and 3.4e9 summits/m^2."""
     moments, doubts = moments_from({"Sq": "0.8 um", "Sdq": 0.12, "Spc": "0.043/um"}, pruning=0)

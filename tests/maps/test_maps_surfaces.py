@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
-from oracles.inside import envelope, hidden_summits, visible
+from oracles.inside import envelope, hidden_summits
 from scipy.integrate import quad
 
 import analytic
@@ -125,22 +125,6 @@ def test_positions_are_uniform_and_belong_to_their_surface(make_scene):
     again, other = asperities_of(scene, 5), asperities_of(scene, 6)
     assert np.array_equal(again.x, field.x)
     assert not np.any(np.isin(other.x, field.x[:1000]))
-
-
-def test_so_many_hide_as_the_theory_of_caps_says():
-    """A Poisson field is nearly this binomial one; 20000 summits, |z| < 5 (false alarm 1 in 2e6).
-
-    Hiding is correlated between neighbours; the binomial deviation is an upper bound to that of a
-    share this small within a factor of 2, for which the gate has room: leaving out the factor 2 pi R of
-    the exponent would be off by 30 deviations.
-    """
-    number, radius, overlap = 20000, 1e-3, 0.05
-    sigma = overlap / number / radius
-    field = random_field(number, (1.0, 1.0), radius, sigma, seed=3)
-    seen = ~hidden_summits(field, periodic=True)
-    theory = visible(overlap)
-    assert abs(seen.mean() - theory.share) < 5 * math.sqrt(theory.share * (1 - theory.share) / number)
-    assert abs(field.z[seen].std() / sigma / theory.std - 1) < 5 / math.sqrt(2 * number)
 
 
 @pytest.mark.slow

@@ -1,7 +1,6 @@
 """From a map or profiles to a scene whose summits have radii of their own."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,12 +9,15 @@ from oracles.summits_by_hand import summit_contact
 
 import analytic
 import mcgw
+from mcgw.cli import main
 from mcgw.maps import Spectrum, gaussian_map
+
+PIXEL, RNG = (1e-6, 1e-6), np.random.default_rng
 
 
 @pytest.fixture(scope="module")
 def drawn():
-    return gaussian_map(Spectrum(1e-6, 80e-6, 12e-6), (512, 512), (1e-6, 1e-6), np.random.default_rng(3))
+    return gaussian_map(Spectrum(1e-6, 80e-6, 12e-6), (512, 512), PIXEL, RNG(3))
 
 
 @pytest.fixture(scope="module")
@@ -33,17 +35,6 @@ def test_scene_has_the_moments_of_the_map(fit):
         math.sqrt((1 - 0.8968057562340189 / m.alpha) * m.m0), rel=1e-12
     )
     assert mcgw.scene_from(mcgw.scene_text(scene)) == scene
-
-
-def test_a_map_stretched_upwards_bears_as_much_on_the_same_area(drawn):
-    """What half-spaces obey: heights by c, loads by c. Radii of a polished map may be longer than the map."""
-    areas, c = [], 1e-3
-    for stretch in (1.0, c):
-        fit = fit_map(replace(drawn, heights=stretch * drawn.heights), cutoff=None)
-        scene = mcgw.fitted_scene(fit, heights="nayak", n_surfaces=2)
-        areas.append(mcgw.solve(scene, pressure=stretch * 2e8).theory["area"])
-    assert scene.surface.radius > math.sqrt(fit.area)
-    assert areas[1] == pytest.approx(areas[0], rel=1e-5)
 
 
 def test_a_scene_of_a_fit_takes_what_scenes_have(fit):
@@ -68,24 +59,6 @@ def test_other_estimates_know_no_such_heights(fit):
         mcgw.fitted_scene(fit, heights="nayak", use="summits")
 
 
-def test_summits_of_the_map_have_the_heights_and_curvatures_of_the_scene(fit):
-    """Density, spread, curvature, and that high summits are sharper: the law is that of such maps."""
-    scene = mcgw.fitted_scene(fit, heights="nayak")
-    counted = fit.summits.size / fit.area
-    assert counted == pytest.approx(scene.surface.eta, rel=0.15)
-    assert fit.summits.std() == pytest.approx(scene.surface.sigma, rel=0.15)
-    curvatures = 1 / fit.radii
-    geometric = 2.34902690068464 / 2.60588006348224 / scene.surface.radius
-    assert curvatures.mean() == pytest.approx(geometric, rel=0.1)
-    # High summits are sharper, as the joint law has it.
-    high = fit.summits > np.quantile(fit.summits, 0.75)
-    found = curvatures[high].mean() / curvatures.mean()
-    s, ratios = scene.curvature.summits(np.random.default_rng(1), 200_000)
-    expected = (1 / ratios[s > np.quantile(s, 0.75)]).mean() / (1 / ratios).mean()
-    assert found == pytest.approx(expected, rel=0.05)
-    assert expected > 1.1
-
-
 def test_the_very_summits_carry_what_they_carry_literally(fit, tmp_path):
     scene = mcgw.fitted_scene(fit, heights="summits", E_star=70e9)
     ensemble = mcgw.run(mcgw.scene_from(mcgw.scene_text(scene)), tmp_path / "summits.h5")
@@ -95,3 +68,24 @@ def test_the_very_summits_carry_what_they_carry_literally(fit, tmp_path):
     for name in ("load", "area", "stiffness", "contacts"):
         np.testing.assert_allclose(ensemble[name], getattr(exact, name), rtol=1e-11)
     assert exact.load[0, 0] > 0
+
+
+@pytest.mark.parametrize("law", ["gaussian", "nayak", "table"])
+def test_a_larger_area_has_more_summits(law, tmp_path, in_tmp_path):
+    """In a file that is changed by hand, as an option and as an argument."""
+    np.save("map.npy", gaussian_map(Spectrum(1e-6, 40e-6, 12e-6), (96, 96), PIXEL, RNG(1)).heights)
+    command = ["fit", "map.npy", "--pixel", "1um", "--cutoff", "none", "--heights", law, "-o"]
+    assert main([*command, "f.toml"]) == 0
+    before, text = mcgw.load_scene("f.toml"), (tmp_path / "f.toml").read_text()
+    (line,) = [line for line in text.splitlines() if line.startswith("nominal_area =")]
+    (tmp_path / "f.toml").write_text(text.replace(line, 'nominal_area = "1 cm^2"'))
+    after = mcgw.load_scene("f.toml")
+    assert after.surface.nominal_area == 1e-4
+    assert after.n_asperities == round(before.surface.eta * 1e-4) > 1000 * before.n_asperities
+    assert after.replace(nominal_area=before.surface.nominal_area) == before
+    assert main([*command, "g.toml", "--nominal-area", "0.5 mm^2"]) == 0
+    found = mcgw.fitted_scene(mcgw.fit("map.npy", cutoff=None, pixel="1 um"), heights=law, nominal_area=5e-7)
+    for one in (mcgw.load_scene("g.toml"), found):
+        assert one.surface.nominal_area == 5e-7
+        assert one.n_asperities == pytest.approx(before.surface.eta * 5e-7, rel=1e-3)
+        assert type(one.heights) is type(found.heights)

@@ -12,7 +12,7 @@ class Channel:
         self.path, self.nb_grid_pts = path, (columns, rows)
         sizes = self.physical_sizes or (columns, rows)
         self.pixel_size = tuple(length / n for length, n in zip(sizes, self.nb_grid_pts, strict=True))
-        self.default_channel, self.height_channels = self, [self]
+        self.default_channel, self.height_channels = None, [self]
 
     def topography(self):
         self.path.with_name("read").touch()
@@ -64,5 +64,6 @@ def open_topography(path):
     if words[0] == "current":
         only = Channel(path, 3, 2)
         only.height_channels, only.channels, only.name, only.data_unit = [], [only], "I", "nA"
+        only.default_channel = only
         return only
     return Channel(path, int(words[0]), int(words[1]))
