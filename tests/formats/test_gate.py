@@ -70,7 +70,9 @@ HOSTILE = {
     "many small": (lambda f, d: [small(f, f"x{i}") for i in range(40)], "more bytes declared than a file of"),
     "unknown filter": (unknown_filter, "height: unknown filter"),
     "deep": (lambda f, d: f.create_group("g/" * 100), "groups are nested more than 32 deep"),
-    "members": (lambda f, d: [f.create_group(f"{i}") for i in range(5000)], "/: 5000 members, more than 4096"),
+    "members": (
+        lambda f, d: [f.create_group(str(i)) for i in range(5000)], "/: 5000 members, more than 4096",
+    ),
 }  # fmt: skip
 
 

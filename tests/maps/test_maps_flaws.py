@@ -89,26 +89,6 @@ def test_spikes_are_counted(number, height, word):
     ]
 
 
-@pytest.mark.parametrize(
-    "form",
-    [lambda x, y: -(x * x + y * y), lambda x, y: 2 * y * y, lambda x, y: 2 * x * y],
-    ids=["bowl", "trough", "saddle"],
-)
-def test_a_form_left_under_a_plane_is_named(form):
-    n = 80
-    x, y = (2 * t - 1 for t in grid(n))
-    shape = 2e-6 * form(x, y)
-    z = rough(n=n) + shape
-    left = form_left(topography(z), "plane")
-    assert left.form == "quadratic"
-    assert left.height == pytest.approx(np.ptp(shape), rel=0.15)
-    assert left.share == pytest.approx(shape.var() / z.var(), abs=0.05)
-    found = lines(z)
-    assert "--form quadratic" in found["form"]
-    assert "waves" not in found
-    assert not OF_THE_MAP - {"waves"} & set(lines(z, form="quadratic"))
-
-
 def test_a_tilt_and_a_form_that_leaves_no_summit_are_named():
     x, _ = grid()
     assert "tilt" in lines(rough() + 1.2e-5 * x, form="none")["form"]

@@ -66,20 +66,6 @@ def test_a_fault_is_named_and_its_flag_helps(fault, short, long):
         assert left.max() < wrong.max() / 2
 
 
-def test_cut_tops_leave_the_moments_alone():
-    """What the caution says: R of counted summits is off by more than that of the moments."""
-    z = rough(n=384)
-    cut = FAULTS["range"][0](z, None)
-    (line,) = (x for x in mcgw.fit(Topography(cut, PIXEL), cutoff=None).cautions if x.startswith("range:"))
-    assert "--use moments" in line
-    before, after = (fit_map(Topography(x, PIXEL), cutoff=None) for x in (z, cut))
-    counted, moments = (
-        abs(np.log(of(after) / of(before)))
-        for of in (lambda f: f.estimates["summits"].radius.value, lambda f: f.moments.radius)
-    )
-    assert counted > 0.04 > 1.5 * moments
-
-
 def clean_maps(number, seed):
     """Isotropic or drawn out fourfold, of many spectra; some filtered, rounded, or in single precision."""
     rng = np.random.default_rng(seed)

@@ -15,7 +15,7 @@ from analytic import Nayak, SpectralMoments
 from mcgw.cli import main
 from mcgw.maps import Profile, Spectrum, gaussian_map, read_profile
 from mcgw.maps.profile import profile_at, smooth_profile, without_profile_form
-from mcgw.maps.profile_fit import fit_profiles
+from mcgw.maps.profile_fit import _checked, fit_profiles
 from mcgw.maps.profile_waves import areal_weights, stencil_weights, waves_of_profile
 
 UM = 1e-6
@@ -83,33 +83,16 @@ def test_power_of_a_profile_is_that_of_its_faded_waves(n):
     assert some.length == n * h
 
 
-@pytest.mark.parametrize(("values", "told"), [
-    ((1.0, 1.0, 0.905), None), ((1.0, 1.0, 0.895), r"m0 m4/m2\^2 = 0.895, impossible for an isotropic"),
-    ((1.0, 1.0, 0.0), "not all are > 0; the profile is too"), ((-1.0, 1.0, 1.0), "not all are > 0"),
-])  # fmt: skip
-def test_moments_that_no_surface_has_are_refused(values, told, monkeypatch):
+def test_moments_that_no_surface_has_are_refused():
     """Summits have no spread below 0.9 of alpha."""
-    seen = waves_of_profile(Profile(np.sin(np.arange(900.0)), UM), cutoff=None, terms=1, pieces=16)
-    monkeypatch.setattr(
-        "mcgw.maps.profile_fit.waves_of_profile", lambda *_, **__: replace(seen, moments=np.array(values))
-    )
-    profile = [Profile(np.sin(np.arange(900.0)), UM)]
-    if told is None:
-        assert fit_profiles(profile, cutoff=None).moments.m4 == 0.905
-    else:
+    assert _checked(np.array([1.0, 1.0, 0.905])).m4 == 0.905
+    for values, told in (
+        ((1.0, 1.0, 0.895), r"m0 m4/m2\^2 = 0.895, impossible for an isotropic"),
+        ((1.0, 1.0, 0.0), "not all are > 0; the profile is too"),
+        ((-1.0, 1.0, 1.0), "not all are > 0"),
+    ):
         with pytest.raises(ValueError, match=told):
-            fit_profiles(profile, cutoff=None)
-
-
-def test_the_fewest_points_of_a_fit():
-    """Four for each of sixteen stretches together, of the shortest profile."""
-    (one,) = list(cut(Spectrum(UM, 20 * UM, 8 * UM), 400))[:1]
-    z = one.heights
-    for several in ([64], [32, 400]):
-        fit_profiles([Profile(z[:n], UM) for n in several], cutoff=None)
-    for several, told in (([63], "63 points: too few for 16"), ([31, 400], "31 points: too few for 8 str")):
-        with pytest.raises(ValueError, match=told):
-            fit_profiles([Profile(z[:n], UM) for n in several], cutoff=None)
+            _checked(np.array(values))
 
 
 def test_without_a_cutoff_moments_are_mean_squares_of_stencils():
@@ -221,26 +204,23 @@ def test_intervals_hold_on_profiles_cut_from_maps(case):
         assert np.mean(outside) > 0.5
 
 
-@pytest.mark.parametrize("form", ["none", "plane", "quadratic"])
-def test_form_of_a_profile_is_taken_off(form):
-    t = np.linspace(0, 1, 500)
-    shape = np.full(500, 3.0) + (0 if form == "none" else 2 * t) + (t**2 if form == "quadratic" else 0)
-    assert np.abs(without_profile_form(Profile(shape, 1.0), form).heights).max() < 1e-13
-    assert np.abs(without_profile_form(Profile(shape + t**3, 1.0), form).heights).max() > 0.01
-
-
-@pytest.mark.parametrize(("heights", "cutoff", "told"), [
-    (np.ones(900), 10 * UM, "flat"),
-    (np.random.default_rng(1).normal(size=900) * UM, 800 * UM, "leaves nothing"),
-    (np.random.default_rng(1).normal(size=40) * UM, None, "too few for 16 stretches"),
-    (np.sin(np.arange(9000) / 10) * UM, 37 * UM, "impossible for an isotropic surface"),
-    (np.random.default_rng(3).normal(size=100) * UM, 40 * UM, "too short"),
-])  # fmt: skip
-def test_profiles_that_cannot_be_fitted_are_refused(heights, cutoff, told):
-    with pytest.raises(ValueError, match=told):
-        fit_profiles([Profile(heights, UM)], cutoff=cutoff)
-    with pytest.raises(ValueError, match="at least one profile"):
-        fit_profiles([], cutoff=cutoff)
+def test_profiles_that_cannot_be_fitted_are_refused():
+    """Four points for each of sixteen stretches together, of the shortest profile, are enough."""
+    noise = np.random.default_rng(1).normal(size=900) * UM
+    (one,) = list(cut(Spectrum(UM, 20 * UM, 8 * UM), 400))[:1]
+    for several in ([64], [32, 400]):
+        fit_profiles([Profile(one.heights[:n], UM) for n in several], cutoff=None)
+    for profiles, cutoff, told in (
+        ([], None, "at least one profile"),
+        ([np.ones(900)], 10 * UM, "flat"),
+        ([noise], 800 * UM, "leaves nothing"),
+        ([noise[:63]], None, "63 points: too few for 16 stretches"),
+        ([noise[:31], noise[:400]], None, "31 points: too few for 8 stretches"),
+        ([np.sin(np.arange(9000) / 10) * UM], 37 * UM, "impossible for an isotropic surface"),
+        ([np.random.default_rng(3).normal(size=100) * UM], 40 * UM, "too short"),
+    ):
+        with pytest.raises(ValueError, match=told):
+            fit_profiles([Profile(z, UM) for z in profiles], cutoff=cutoff)
 
 
 def known(fit, name, relative):
@@ -435,34 +415,28 @@ def test_the_first_twenty_lines_tell_a_profile(full, found, tmp_path):
     assert holds_profile(tmp_path / "p.csv") == found
 
 
-def test_maps_are_no_profiles(tmp_path):
+def test_profiles_and_what_is_none_by_their_files(tmp_path):
+    """Maps are no profiles; those that cannot be read name their file."""
     (tmp_path / "m.txt").write_text("1 2 3\n4 5 6\n")
     np.save(tmp_path / "m.npy", np.zeros((3, 4)))
     np.save(tmp_path / "p.npy", np.arange(100.0) % 7 * UM)
-    assert not holds_profile(tmp_path / "m.txt")
-    assert not holds_profile(tmp_path / "m.npy")
-    assert not holds_profile(tmp_path / "absent.txt")
-    assert not holds_profile(tmp_path / "absent.xyz")
+    np.save(tmp_path / "short.npy", np.zeros(7))
     for ending in (".sdf", ".x3p", ".h5"):  # no question to another library
         (tmp_path / f"m{ending}").touch()
-        assert not holds_profile(tmp_path / f"m{ending}")
+    for name in ("m.txt", "m.npy", "absent.txt", "absent.xyz", "m.sdf", "m.x3p", "m.h5"):
+        assert not holds_profile(tmp_path / name)
     assert holds_profile(tmp_path / "p.npy")
     assert read_profile(tmp_path / "p.npy", spacing=UM).heights[6] == 6 * UM
-
-
-def test_profiles_that_cannot_be_read_name_their_file(tmp_path):
-    np.save(tmp_path / "p.npy", np.arange(100.0) % 7 * UM)
-    with pytest.raises(ValueError, match="give --pixel"):
-        read_profile(tmp_path / "p.npy")
-    with pytest.raises(ValueError, match="no such file"):
-        read_profile(tmp_path / "absent.txt")
-    (tmp_path / "words.txt").write_text(
-        "word\n" * 500 + "\n".join(f"{i * UM} {i % 3 * UM}" for i in range(9))
-    )
+    for name, spacing, told in (
+        ("p.npy", None, "give --pixel"),
+        ("absent.txt", None, "no such file"),
+        ("short.npy", UM, r"short\.npy: 7 points: a profile has 8 or more"),
+    ):
+        with pytest.raises(ValueError, match=told):
+            read_profile(tmp_path / name, spacing=spacing)
+    lines = [*["word"] * 500, *(f"{i * UM} {i % 3 * UM}" for i in range(9))]
+    (tmp_path / "words.txt").write_text("\n".join(lines))
     assert read_profile(tmp_path / "words.txt").heights[5] == pytest.approx(2 * UM)
-    np.save(tmp_path / "short.npy", np.zeros(7))
-    with pytest.raises(ValueError, match=r"short\.npy: 7 points: a profile has 8 or more"):
-        read_profile(tmp_path / "short.npy", spacing=UM)
 
 
 def test_the_limits_of_places_and_gaps():

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import mcgw
-from analytic import SpectralMoments
 from mcgw.cli import main
 from mcgw.maps import Spectrum, Topography, gaussian_map
 
@@ -45,19 +44,15 @@ def test_sums_and_the_modulus_of_the_pair():
     assert (given.nominal_area, given.E_star) == (2e-6, 5e9)
 
 
-@pytest.mark.parametrize(
-    ("keys", "told"), [({"E_star": 1e9}, "nominal_area: "), ({"nominal_area": 1e-6}, "E_star: ")]
-)
-def test_what_is_not_known_of_both_is_asked_for(keys, told):
-    a = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 mm^2", 3e11)
-    with pytest.raises(mcgw.SceneError, match=told):
-        mcgw.combine(a, SpectralMoments(1e-12, 1e-3, 5e6), **keys)
-
-
-def test_areas_that_differ_and_wrong_objects_are_refused():
+def test_what_is_not_known_of_both_is_asked_for():
     a, b = (mcgw.SpectralSurface(1e-12, 1e-3, 5e6, area, 3e11) for area in ("1 mm^2", "2 mm^2"))
-    with pytest.raises(mcgw.SceneError, match="nominal_area: is not the same"):
-        mcgw.combine(a, b)
+    for other, keys, told in (
+        (a.moments, {"E_star": 1e9}, "nominal_area: "),
+        (a.moments, {"nominal_area": 1e-6}, "E_star: "),
+        (b, {}, "nominal_area: is not the same"),
+    ):
+        with pytest.raises(mcgw.SceneError, match=told):
+            mcgw.combine(a, other, **keys)
     with pytest.raises(TypeError, match=r"combine: give scenes, surfaces.*not str"):
         mcgw.combine("a.toml", a)
 

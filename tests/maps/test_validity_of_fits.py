@@ -205,12 +205,12 @@ def test_profiles_tell_what_they_saw():
 SOLVES = fitted_maps.read()
 
 
-@pytest.mark.parametrize("name", ["isotropic, alpha = 6", "mirrored Weibull"])
-def test_figures_of_fresh_maps_hold_against_their_solves(name):
-    """All of them."""
+def test_figures_of_a_fresh_map_hold_against_its_solves():
+    """All of them; of maps that are not Gaussian nothing is stated (see above)."""
+    name = "isotropic, alpha = 6"
     (each,) = (one for one in fitted_maps.MAPS if one.name == name)
     found = list(fitted_maps.stated(name, each.heights(), SOLVES[name]))
-    assert len(found) == (24 if name.startswith("isotropic") else 0)
+    assert len(found) == 24
     assert [one for one in found if one.false] == []
 
 
