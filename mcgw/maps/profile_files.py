@@ -113,7 +113,7 @@ def read_profile(path: Path, *, spacing: float | None = None, unit: str | None =
     if raw.places is not None and raw.unit_of_places is not None and spacing is not None:
         raise ValueError(f"{path}: gives x in {raw.unit_of_places}; leave --pixel out")
     if raw.places is None or spacing is not None:
-        places = (spacing or 0.0) * np.arange(raw.heights.size)
+        places = np.asarray((spacing or 0.0) * np.arange(raw.heights.size), dtype=np.float64)
     else:
         of_x, assumed_x = height_unit(path, raw.unit_of_places, None)
         places, assumed = raw.places * of_x, assumed or assumed_x
