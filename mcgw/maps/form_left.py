@@ -48,7 +48,7 @@ def form_left(topography: Topography, form: Form) -> FormLeft | None:
     rest = without_form(coarse, more).heights
     longest, left = _longest(rest), coarse.heights - rest
     variance = float(left.var())
-    share = variance / _variance(topography.heights)
+    share = variance / float(topography.heights.var())
     if share < _COUNTS or variance < _STRONGER * longest:
         return None
     return FormLeft(share, float(np.ptp(left)), more)
@@ -60,9 +60,3 @@ def _longest(z: Array) -> float:
     power = np.abs(fft.fft2(coarse) / coarse.size) ** 2
     along, down = (fft.fftfreq(n) * n for n in coarse.shape[::-1])
     return float(power[np.hypot(along, down[:, None]) < _LONGEST].sum())
-
-
-def _variance(z: Array) -> float:
-    """By two passes that make no second map: `z` is about its own mean, or near it."""
-    flat = z.ravel()
-    return float(flat @ flat) / flat.size - float(flat.mean()) ** 2

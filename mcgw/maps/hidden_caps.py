@@ -42,26 +42,18 @@ class Visible:
 
 
 @cache
-def _rule() -> tuple[Array, Array]:
-    """Of Gauss and Legendre: an eigenvalue problem, which is solved once."""
-    return leggauss(_NODES)
-
-
-@cache
 def _nodes() -> tuple[Array, Array]:
-    """Heights and their probabilities."""
-    x, w = _rule()
-    s = _REACH * x
-    return s, _REACH * w * np.exp(-s * s / 2) / math.sqrt(2 * math.pi)
+    """Heights by the rule of Gauss and Legendre, over their reach, and its weights."""
+    return leggauss(_NODES)
 
 
 @lru_cache(maxsize=64)
 def _taller_neighbours(blur: float) -> Array:
     """Mean number of neighbours that hide each height, over ``4 pi eta R sigma``."""
-    x, w = _rule()
+    x, w = _nodes()
     reach = blur + math.sqrt(blur**2 + 2 * _REACH)  # beyond, nobody is tall enough
     r, w = reach * (1 + x) / 2, reach * w / 2
-    return np.asarray(ndtr(-(_nodes()[0][:, None] + r * r - 2 * r * blur)) @ (w * r))
+    return np.asarray(ndtr(-(_REACH * x[:, None] + r * r - 2 * r * blur)) @ (w * r))
 
 
 def visible(overlap: float, blur: float = 0.0) -> Visible:
@@ -74,8 +66,14 @@ def visible(overlap: float, blur: float = 0.0) -> Visible:
     blur : float, optional
         Distance p from a valley that a summit needs, over ``sqrt(2 R sigma)``.
     """
-    s, w = _nodes()
-    p = w * np.exp(-4 * math.pi * overlap * _taller_neighbours(blur))
+    x, w = _nodes()
+    s = _REACH * x
+    p = (
+        _REACH
+        * w
+        * np.exp(-s * s / 2 - 4 * math.pi * overlap * _taller_neighbours(blur))
+        / math.sqrt(2 * math.pi)
+    )
     share = float(p.sum())
     if share == 0:
         return Visible(0.0, 0.0, 0.0)

@@ -11,7 +11,6 @@ from typing import NamedTuple
 import numpy as np
 
 from analytic import SpectralMoments
-from mcgw.formats.units import parse
 from mcgw.scene.arguments import argument
 from mcgw.scene.radii import Spectral
 from mcgw.scene.section import SceneError
@@ -50,23 +49,16 @@ NUMBERS = {
     "RSm": Row("m", 2 * math.pi, (0.5, -0.5, 0), "2 pi sqrt(m0/m2), between upward crossings: Rice 1945"),
 }
 _CORRELATED = ("Sal", "short", "autocorrelation")
-_LENGTHS = ("Sal", "short")
 _GIVES = {
     "m0": "Sq or Rq (heights)",
     "m2": "Sdq or Rdq (slopes), or RSm",
     "m4": "Spc, Spd or Rpd (peaks)",
 }
-_PRUNED = ("Spd", "Spc")
 # Of 15 drawn maps (hurst 0.8, 250 to 2500 summits, 10 pixels to the shortest wave), Wolf pruning at 5 % of
 # Sz over all summits: Spd 0.70, 0.50, 0.31, 0.19, 0.07 and Spc 1.13, 1.20, 1.24, 1.29, 1.31 times, for
 # alpha 2, 3, 5, 10 and 30.
 _APART = 1.05  # ratio of a number to that of the surface from all of them
 _DEFAULT_PRUNING = 0.05  # of Sz, ISO 25178-3
-
-
-def _number(key: str, value: float | str, unit: str) -> float:
-    """Return a number from Python or a command."""
-    return parse(value, unit, key) if isinstance(value, str) else argument(key, value, unit)
 
 
 def _moments_of_correlation(sq: float, given: Mapping[str, float], kind: str) -> SpectralMoments:
@@ -122,11 +114,11 @@ def moments_from(
             raise ValueError(f"{key}: is not a number that tells of summits; give some of {', '.join(known)}")
     if not 0 <= pruning < 1:
         raise ValueError(f"pruning = {pruning!r}: give a share of Sz from 0 (all peaks) to below 1")
-    given = {key: _number(key, numbers[key], row.unit) for key, row in NUMBERS.items() if key in numbers}
+    given = {key: argument(key, numbers[key], row.unit) for key, row in NUMBERS.items() if key in numbers}
     if any(key in numbers for key in _CORRELATED):
         if set(given) != {"Sq"}:
             raise ValueError("Sal, autocorrelation: go with Sq alone, since they tell m2 and m4")
-        lengths = {key: _number(key, numbers[key], "m") for key in _LENGTHS if key in numbers}
+        lengths = {key: argument(key, numbers[key], "m") for key in ("Sal", "short") if key in numbers}
         kind = str(numbers.get("autocorrelation", "gaussian"))
         return _moments_of_correlation(given["Sq"], lengths, kind), []
     powers = np.array([NUMBERS[key].powers for key in given]).reshape(-1, 3)
@@ -135,13 +127,17 @@ def moments_from(
     found = np.linalg.lstsq(powers, logs, rcond=None)[0]
     moments = SpectralMoments(*np.exp(found).tolist())
     doubts = _disagreement(dict(zip(given, (powers @ found - logs).tolist(), strict=True)))
-    if pruned := [key for key in _PRUNED if key in given and pruning > 0]:
+    if pruned := [key for key in ("Spd", "Spc") if key in given and pruning > 0]:
         doubts.append(
             f"{', '.join(pruned)}: the formula is for all summits; without those below "
             f"{100 * pruning:g} % of Sz an instrument states others: at 5 % Spd is 0.7 to 0.07 and Spc 1.1 "
             "to 1.3 times that of all, for alpha from 2 to 30; give pruning = 0 if none were left out"
         )
-    _check_alpha(moments, list(given))
+    if moments.alpha < 1.5:
+        raise ValueError(
+            f"{', '.join(given)}: alpha = m0 m4/m2^2 = {moments.alpha:.4g}, and an isotropic Gaussian "
+            "surface has at least 1.5; all numbers must be of one map with one cutoff"
+        )
     return moments, doubts
 
 
@@ -152,14 +148,6 @@ def _check_enough(powers: np.ndarray, given: list[str]) -> None:
     if missing:
         told = " and ".join(_GIVES[name] for name in missing)
         raise ValueError(f"{', '.join(given) or 'no number'}: does not tell {', '.join(missing)}; add {told}")
-
-
-def _check_alpha(moments: SpectralMoments, given: list[str]) -> None:
-    if moments.alpha < 1.5:
-        raise ValueError(
-            f"{', '.join(given)}: alpha = m0 m4/m2^2 = {moments.alpha:.4g}, and an isotropic Gaussian "
-            "surface has at least 1.5; all numbers must be of one map with one cutoff"
-        )
 
 
 def _disagreement(residuals: Mapping[str, float]) -> list[str]:

@@ -108,12 +108,12 @@ def read_profile(path: Path, *, spacing: float | None = None, unit: str | None =
     else:
         raw = _read_array(path) if ending == ".npy" else read_foreign_line(path, unit)
     metre, assumed = height_unit(path, raw.unit, unit)
-    if raw.places is None and spacing is None:
+    if spacing is not None:
+        if raw.unit_of_places is not None:
+            raise ValueError(f"{path}: gives x in {raw.unit_of_places}; leave --pixel out")
+        places = spacing * np.arange(raw.heights.size, dtype=np.float64)
+    elif raw.places is None:
         raise ValueError(f"{path}: does not give the distance between its points; give --pixel")
-    if raw.places is not None and raw.unit_of_places is not None and spacing is not None:
-        raise ValueError(f"{path}: gives x in {raw.unit_of_places}; leave --pixel out")
-    if raw.places is None or spacing is not None:
-        places = np.asarray((spacing or 0.0) * np.arange(raw.heights.size), dtype=np.float64)
     else:
         of_x, assumed_x = height_unit(path, raw.unit_of_places, None)
         places, assumed = raw.places * of_x, assumed or assumed_x

@@ -11,7 +11,10 @@ import pytest
 from oracles.fit_of_maps import fit_map
 from oracles.inside import (
     SUMMITS,
+    Estimate,
     Preparation,
+    by_summits,
+    coarse_sums_of,
     envelope,
     fit_prepared,
     hidden_summits,
@@ -208,6 +211,17 @@ def test_few_summits_have_few_sub_areas(shape, parts, tiles, counted, without_ca
     assert fit.summits.size == math.prod(shape)
     assert len(fit.tiles) == tiles
     assert ("summits" in fit.estimates) == counted
+
+
+@pytest.mark.parametrize("size", [72, 100, 130, 200])
+def test_errors_of_counted_summits_are_those_over_sub_areas_of_four(size, without_caps):
+    """As many along each axis as that makes, from two to four."""
+    drawn = gaussian_map(Spectrum(1e-6, 30e-6, 14e-6), (size, size), PIXEL, rng(2))
+    ready = prepared(drawn, Preparation(None, form="none"))
+    fit = fit_prepared(ready)
+    across = max(min(4, int(math.sqrt(fit.summits.size / 4))), 2)
+    pairs = by_summits(summit_sums_of(drawn, across=across), coarse_sums_of(drawn, across=across))
+    assert fit.estimates["summits"] == Estimate.of(pairs, fit.waves)
 
 
 @pytest.mark.parametrize("form", ["none", "plane", "quadratic", "cubic"])

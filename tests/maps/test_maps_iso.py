@@ -126,7 +126,7 @@ def test_autocorrelation():
         ({"Sq": 1e-6}, "Sq: does not tell m2, m4; add Sdq"),
         ({"Rq": 1e-6, "Rdq": 0.1, "RSm": 1e-5}, "does not tell m4; add Spc, Spd or Rpd"),
         ({}, "no number: does not tell m0"),
-        ({"Sq": "1 kg", "Sdq": 0.1, "Spc": 1e4}, "Sq = '1 kg': give a number"),
+        ({"Sq": "1 kg", "Sdq": 0.1, "Spc": 1e4}, "Sq = '1 kg': give a finite number"),
         ({"Sq": -1.0, "Sdq": 0.1, "Spc": 1e4}, "Sq = -1.0"),
         ({"Sq": 1e-6, "Sdq": 1.0, "Spc": 1e3}, "alpha = m0 m4/m2.* has at least 1.5"),
         ({"Sq": 1e-6, "Sdq": 0.1, "Sal": 1e-5}, "go with Sq alone"),
