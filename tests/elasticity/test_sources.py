@@ -50,13 +50,10 @@ def test_a_map_with_holes_is_refused(rng):
 @pytest.mark.usefixtures("cheap")
 def test_an_answer_says_of_which_maps_it_is(rng):
     maps = [rough(rng, 48) for _ in range(4)]
-    asked = {"pressure": 5e7, "E_star": 1e11, "solves": 4, "pilot": 4}
-    for source, said in (
-        (SPECTRUM, "Gaussian maps of 64 x 64 points, 4e-05 m wide"),
-        (maps[0], "Gaussian maps of the measured map's spectrum"),
-        (maps, "the 4 given maps"),
-    ):
-        assert f"Elastic mean over {said}" in repr(mcgw.elastic(source, **asked))
+    assert maps_of(SPECTRUM).words == "Gaussian maps of 64 x 64 points, 4e-05 m wide"
+    assert maps_of(maps[0]).words == "Gaussian maps of the measured map's spectrum"
+    found = mcgw.elastic(maps, pressure=5e7, E_star=1e11, solves=4, pilot=4)
+    assert "Elastic mean over the 4 given maps" in repr(found)
 
 
 def test_maps_of_a_scene_have_its_moments_and_area(tmp_path):
