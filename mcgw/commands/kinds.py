@@ -197,13 +197,13 @@ class SceneFile(In):
     def open(self, path: Any, args: argparse.Namespace, grown: Path | None) -> tuple[Any, list[Path]]:
         """Return the scene, with the seed of what `grown` holds where it gives none."""
         from mcgw.scene.scene_file import files_of, load_scene
-        from mcgw.store.place import recorded_seed
+        from mcgw.store.place import recorded_scene
 
         if self.others and path.suffix.lower() != ".toml":
             if args.set:
                 raise ValueError(f"--set {args.set[0]}: {path} is no scene (.toml); give one")
             return path, [path]
-        seed = None if grown is None else lambda: recorded_seed(grown)
+        seed = None if grown is None else lambda: getattr(recorded_scene(grown), "seed", None)
         return load_scene(path, changes=_changes(args.set), seed=seed), files_of(path)
 
     def cautions(self, path: Path, opened: Any) -> tuple[Any, str] | None:

@@ -6,13 +6,14 @@ The answer is the mean over specimens; it is compared with a real specimen of th
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from functools import partial
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from analytic import Nayak, RandomCurvature, SpectralMoments
 from analytic.arrays import Array
-from mcgw.ensemble.at_load import GAPS
+from mcgw.ensemble.at_load import GAPS, mean_surface
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
 from mcgw.scene.scene import Scene
@@ -108,8 +109,10 @@ class Budget(Shown):
         return f"± {percent(math.hypot((best.high - best.low) / (2 * best.value), parameters))}"
 
     def _largest(self) -> tuple[str, float]:
-        """Return the line that dominates the first quantity, and its share."""
+        """Return the line that dominates the first quantity, and its share; not surfaces that none drew."""
         first = {line: float(share[0]) for line, share in self.shares.items() if not np.isnan(share[0])}
+        if not first.get("drawn surfaces"):
+            first.pop("drawn surfaces", None)
         return max(first.items(), key=lambda item: item[1], default=("specimens", math.nan))
 
     @property
@@ -145,33 +148,9 @@ class Budget(Shown):
         return Sheet(self.title, [("advice", self.advice)], replace(self.table(), title=""))
 
 
-def budget_of(
-    scene: Scene,
-    title: str,
-    value: Answers,
-    std: Answers,
-    interval: Callable[[str], tuple[float, float]],
-    validity: Validity,
-    again: Callable[[Scene], Answers],
-    given: str,
-    yielding: float = math.nan,
-) -> Budget:
-    """Make the budget of a solution: see `mcgw.ensemble.solved.Solution.budget`, which calls this.
-
-    Parameters
-    ----------
-    scene, title, value, std, interval
-        From the solution: its scene and title, and for each quantity the answer, the scatter of specimens and
-        the interval of the answer.
-    validity : Validity
-        At the separation of the solution alone.
-    again : callable
-        The answers of another scene at the same load, or area.
-    given : str
-        What was given: only at a load was the error of a model measured.
-    yielding : float
-        Share of the contacts past first yield under an elastic law, whose error is then not known.
-    """
+def budget_of(solution: Any) -> Budget:
+    """Make the budget of a solution: see `mcgw.ensemble.solved.Solution.budget`, which calls this."""
+    scene, given, value = solution.scene, solution.given, solution.value
     asked = [name for name in ("load", *_ERROR_OF) if name != given]
     if scene.film is not None:  # in SI units instead
         asked.remove("conductance")
@@ -179,26 +158,28 @@ def budget_of(
     answers = np.array([value[name] for name in names])
     lacking, parts = {}, {}
     with np.errstate(divide="ignore", invalid="ignore"):
-        drawn = np.array([(high - low) / 2 for low, high in map(interval, names)]) / answers
-        scatter = _SURE * np.array([std[name] for name in names]) / answers
+        drawn = np.array([(high - low) / 2 for low, high in map(solution.interval, names)]) / answers
+        scatter = _SURE * np.array([solution.std[name] for name in names]) / answers
     parameters = np.full(len(names), np.nan)
     if scene.uncertainty is None:
         lacking["parameters"] = "give [surface] uncertainty, which mcgw fit writes"
     else:
+        again = partial(mean_surface, given=given, value=solution.amount)
         slopes = slopes_of(scene, scene.uncertainty, again, names)
         parameters = _SURE * np.sqrt(np.einsum("ki,ij,kj->k", slopes, scene.uncertainty.covariance, slopes))
         alone = _SURE * np.abs(slopes[0]) * np.sqrt(np.diag(scene.uncertainty.covariance))
         parts = dict(zip(scene.uncertainty.names, alone.tolist(), strict=True))
+    validity = solution.against_elasticity
     model = np.array([_model_error(validity, name, scene, value) for name in names])
     if given != "load":
         model[:] = np.nan
         lacking["model"] = f"its error was measured at a given load, not at a given {given.replace('_', ' ')}"
-    elif why := yields(yielding):
+    elif why := yields(solution.yielding):
         model[:], lacking["model"] = np.nan, why
     elif np.isnan(model[0]):
         lacking["model"] = validity.unknown or "not measured"
     lines = dict(zip(LINES, (np.abs(drawn), np.abs(scatter), parameters, model), strict=True))
-    return Budget(title, lines, names, lacking, parts)
+    return Budget(solution.title, lines, names, lacking, parts)
 
 
 def yields(share: float) -> str:
@@ -236,13 +217,13 @@ def moved(scene: Scene, steps: dict[str, float]) -> Scene:
     return scene.replace(surface=replace(surface, **own), heights=heights, summits=curvature)
 
 
-def corrected(
-    validity: Validity, scene: Scene, name: str, answers: Answers, std: float, drawn: float
-) -> Corrected:
-    """Answer at a load without the bias of its model, with the remaining error.
-
-    `std` is for specimens, and `drawn` the half-width of the 95 % interval of their mean.
-    """
+def corrected(solution: Any, name: str) -> Corrected:
+    """Return an answer without the bias of its model: see `mcgw.ensemble.solved.Solution.corrected`."""
+    if solution.given != "load":
+        return Corrected.unknown("errors of models are measured at a given load")
+    if why := yields(solution.yielding):
+        return Corrected.unknown(why)
+    scene, answers, validity = solution.scene, solution.value, solution.against_elasticity
     column = _ERROR_OF.get(name)
     if column is None:
         return Corrected.unknown(f"{name}: its error was not measured")
@@ -250,7 +231,8 @@ def corrected(
     if math.isnan(error):
         filmed = name in _SPOTS and _filmed(scene)
         return Corrected.unknown(_FILM if filmed else validity.unknown or f"{name}: not measured there")
-    value, besides = answers[name], math.hypot(_SURE * std * validity.listed, drawn)
+    value = answers[name]
+    besides = math.hypot(_SURE * solution.std[name] * validity.listed, solution.half_width(name))
     if column == "separation":
         right, off = value - bias * scene.surface.sigma, (error - abs(bias)) * scene.surface.sigma
         off = math.hypot(off, besides)

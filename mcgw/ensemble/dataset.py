@@ -49,6 +49,29 @@ class Dataset(Shown):
     def labelled(self) -> Labelled:
         """Return all data with axes, units and descriptions, for the file, xarray and pandas alike."""
 
+    def to_xarray(self) -> Any:
+        """Return all data as an `xarray.Dataset`.
+
+        Values of every surface have the dimensions (surface, separation), as in the file; what is a
+        statistic, ``load_mean``, ``load_std`` and so on, those of the points and (separation).
+
+        Raises
+        ------
+        ImportError
+            If xarray is not installed.
+        """
+        return self.labelled().to_xarray()
+
+    def to_dataframe(self) -> Any:
+        """Return all data as a `pandas.DataFrame`: a row for each place along the dimensions of `to_xarray`.
+
+        Raises
+        ------
+        ImportError
+            If pandas is not installed.
+        """
+        return self.labelled().to_dataframe()
+
     @property
     def separations(self) -> Array:
         """Reduced separations d/sigma, shape (separations,)."""

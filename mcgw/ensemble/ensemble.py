@@ -1,7 +1,6 @@
 """An ensemble: the sums of every surface, and their statistics over surfaces."""
 
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -151,38 +150,13 @@ class Ensemble(Dataset):
         """Real area per nominal area A/A_n, shape (surfaces, separations)."""
         return self.values("area_fraction")
 
-    def to_xarray(self) -> Any:
-        """Return all values as an `xarray.Dataset` with dimensions (surface, separation), as in the file.
-
-        With ``keep = "statistics"``: ``load_mean``, ``load_std`` and so on, dimension (separation).
-
-        Raises
-        ------
-        ImportError
-            If xarray is not installed.
-        """
+    def labelled(self) -> Labelled:
+        """Return the values of every surface, or with ``keep = "statistics"`` means and deviations."""
         scene = self.scene
         about = {"title": scene.title, "scene": scene_text(scene), "sampler": self.sampler}
-        return self.labelled().to_xarray(about)
-
-    def to_dataframe(self) -> Any:
-        """Return all values as a `pandas.DataFrame`: rows (surface, separation), a column for each quantity.
-
-        With ``keep = "statistics"``: a row for each separation, a column for each mean and deviation.
-
-        Raises
-        ------
-        ImportError
-            If pandas is not installed.
-        """
-        over = () if self.scene.keep == "statistics" else ("surface",)
-        return self.labelled().to_dataframe((*over, "separation"))
-
-    def labelled(self) -> Labelled:
-        """Return all data with axes, units and descriptions, for the file, xarray and pandas alike."""
-        if self.scene.keep != "statistics":
-            return values_of(self.scene, self.n_surfaces, self.values)
-        return Labelled(statistics_of(self, self.scene.shapes, STATISTICS), axes_of(self.scene))
+        if scene.keep != "statistics":
+            return replace(values_of(scene, self.n_surfaces, self.values), attributes=about)
+        return Labelled(statistics_of(self, scene.shapes, STATISTICS), axes_of(scene), about)
 
     def sheet(self) -> Sheet:
         """Return how the ensemble was drawn, and means at the lowest, a middle and the highest separation."""

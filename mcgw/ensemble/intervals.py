@@ -185,7 +185,7 @@ def interval_of(scene: Scene, sums: Held, name: str, level: float) -> tuple[Arra
     if name in scene.other_separations:
         return _of_separation(scene, sums, name, level)
     if quantity_of(name).counts:
-        contacts, asperities = sums.total_number(name), float(scene.n_asperities) * m
+        contacts, asperities = np.rint(mean * m), float(scene.n_asperities) * m
         ends = count_interval(contacts, asperities, poisson=scene.count == "poisson", level=level)
         return ends[0] / m, ends[1] / m
     spread = spread_of(scene, name)

@@ -1,7 +1,7 @@
 """Results as named arrays with axes, units and words, for files, xarray and pandas, and as tables."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -40,12 +40,13 @@ class Variable:
 
 @dataclass(frozen=True)
 class Labelled:
-    """Tables and the coordinates of their axes, by name."""
+    """Tables and the coordinates of their axes, by name, and what is said of all of them."""
 
     variables: Mapping[str, Variable]
     coordinates: Mapping[str, Variable]
+    attributes: Mapping[str, Any] = field(default_factory=dict)
 
-    def to_xarray(self, attributes: Mapping[str, Any]) -> Any:
+    def to_xarray(self) -> Any:
         """Return an `xarray.Dataset`.
 
         Raises
@@ -58,10 +59,10 @@ class Labelled:
             {name: (one.dims, one.values, one.about) for name, one in some.items()}
             for some in (self.variables, self.coordinates)
         )
-        return xarray.Dataset(*both, dict(attributes))
+        return xarray.Dataset(*both, dict(self.attributes))
 
-    def to_dataframe(self, dims: Sequence[str]) -> Any:
-        """Return a `pandas.DataFrame` of the tables with just these axes, a row for each place along them.
+    def to_dataframe(self) -> Any:
+        """Return a `pandas.DataFrame` of the tables with most axes, a row for each place along them.
 
         Raises
         ------
@@ -69,7 +70,8 @@ class Labelled:
             If pandas is not installed.
         """
         pandas = optional("pandas", "to_dataframe")
-        tables = {name: one.values for name, one in self.variables.items() if one.dims == tuple(dims)}
+        dims = max((one.dims for one in self.variables.values()), key=len)
+        tables = {name: one.values for name, one in self.variables.items() if one.dims == dims}
         size = next(iter(tables.values())).shape
         places = [
             self.coordinates[dim].values if dim in self.coordinates else np.arange(n)

@@ -1,7 +1,7 @@
-"""Two ensembles of the same surfaces, compared surface by surface."""
+"""Ensembles, or points of a sweep, over the same surfaces: ratios and differences of means, and slopes."""
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from scipy.special import ndtri
@@ -85,6 +85,82 @@ class Paired(Shown):
         )
 
 
+@dataclass(frozen=True)
+class Difference:
+    """Difference of two means over the same surfaces; arrays over the separations.
+
+    Parameters
+    ----------
+    value, stderr : ndarray
+        In SI units, and its standard error; nan for a single surface.
+    gain : ndarray
+        Variance of the difference of two independent ensembles of this size, divided by that of the pair.
+    """
+
+    value: Array
+    stderr: Array
+    gain: Array
+
+
+@dataclass(frozen=True, repr=False)
+class Slopes(Shown):
+    """Change of a mean with a key, between neighbouring points of a sweep.
+
+    Parameters
+    ----------
+    quantity, key : str
+        What changes, and the key with which it changes.
+    axis : int
+        Dimension of the arrays along which the key changes.
+    at : ndarray
+        Middle between two values of the key, shape (pairs,).
+    value, stderr : ndarray
+        Difference of the means over that of the key in SI units, and its standard error over the surfaces:
+        shape of the sweep and separations, one less along the key.
+    theory : ndarray
+        The same difference of the exact means.
+
+    Examples
+    --------
+    >>> import mcgw
+    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    >>> scene = mcgw.Scene(surface, separations=[0, 1], n_surfaces=200, seed=1)
+    >>> sweep = mcgw.sweep(scene, {"grading.gamma": [1.0, 1.5, 2.0]})
+    >>> slopes = sweep.slopes("load", "grading.gamma")
+    >>> slopes.at
+    array([1.25, 1.75])
+    >>> bool((abs(slopes.value - slopes.theory) < 5 * slopes.stderr).all())
+    True
+    """
+
+    quantity: str
+    key: str
+    axis: int
+    at: Array
+    value: Array
+    stderr: Array
+    theory: Array
+
+    def plot(self, ax: Any = None, *, k: int = 0) -> Any:
+        """Draw the slopes at one separation, given by its index; returns the axes."""
+        return plotted(self, ax, k=k)
+
+    def sheet(self) -> Sheet:
+        """Display slopes at the first separation, for some values of the key."""
+        flat = [
+            np.moveaxis(x, self.axis, 0).reshape(len(self.at), -1)[:, 0]
+            for x in (self.value, self.stderr, self.theory)
+        ]
+        columns = (
+            Column("at", self.at, self.key, form="g"),
+            Column("slope", flat[0], unit="1"),
+            Column("stderr", flat[1], unit="1", form=".1g"),
+            Column("theory", flat[2], unit="1"),
+        )
+        title = f"Change of the mean {self.quantity} with {self.key}"
+        return Sheet(title, table=Table(columns).rows())
+
+
 def paired_ratio(numerator: Ensemble, denominator: Ensemble, quantity: str) -> Paired:
     """Return the ratio of two means over the same surfaces: Eqs. (12) and (15) of the paper by Monte Carlo.
 
@@ -133,38 +209,6 @@ def paired_ratio(numerator: Ensemble, denominator: Ensemble, quantity: str) -> P
     return ratio_of(pooled, quantity, *both, numerator.separations)
 
 
-class Pair(NamedTuple):
-    """Two means, and the variance of a combination of them over shared and over different surfaces.
-
-    Parameters
-    ----------
-    one, other : ndarray
-        Means.
-    together, apart : ndarray
-        Variances.
-    """
-
-    one: Array
-    other: Array
-    together: Array
-    apart: Array
-
-    @classmethod
-    def of(
-        cls, pooled: Pooled, quantity: str, first: Some, second: Some, x: float | Array, y: float | Array
-    ) -> "Pair":
-        """`x` times the first less `y` times the second, as one combination of scenes: nothing cancels."""
-        (one, v), (other, w) = first, second
-        a, b = pooled.mean(quantity, one, v), pooled.mean(quantity, other, w)
-        scenes = np.union1d(one, other)
-        weights = np.zeros((len(scenes), *a.shape))
-        weights[np.searchsorted(scenes, one)] += np.multiply.outer(v, x * np.ones(a.shape))
-        weights[np.searchsorted(scenes, other)] -= np.multiply.outer(w, y * np.ones(a.shape))
-        together = np.maximum(pooled.variance(quantity, scenes, weights), 0.0)  # apart from rounding
-        variances = pooled.variance(quantity, one, v), pooled.variance(quantity, other, w)
-        return cls(a, b, together, x**2 * variances[0] + y**2 * variances[1])
-
-
 def ratio_of(pooled: Pooled, quantity: str, first: Some, second: Some, separations: Array) -> Paired:
     """Return the ratio of two means, first over second, over the surfaces that both share.
 
@@ -173,9 +217,38 @@ def ratio_of(pooled: Pooled, quantity: str, first: Some, second: Some, separatio
     b, a = pooled.mean(quantity, *first), pooled.mean(quantity, *second)
     with np.errstate(divide="ignore", invalid="ignore"):  # without a contact there is no ratio
         ratio = b / np.where(a == 0, np.nan, a)
-        pair = Pair.of(pooled, quantity, first, second, 1.0, ratio)
-        error = np.sqrt(pair.together / pooled.n) / np.abs(a)
-        return Paired(quantity, separations, ratio, error, pair.apart / pair.together)
+        together, apart = _variances(pooled, quantity, first, second, 1.0, ratio)
+        return Paired(
+            quantity, separations, ratio, np.sqrt(together / pooled.n) / np.abs(a), apart / together
+        )
+
+
+def difference_of(
+    pooled: Pooled, quantity: str, first: Some, second: Some, areas: tuple[float, float]
+) -> Difference:
+    """Return the first mean less the second, each per area, over the surfaces that both share."""
+    x, y = 1 / areas[0], 1 / areas[1]
+    together, apart = _variances(pooled, quantity, first, second, x, y)
+    value = pooled.mean(quantity, *first) / areas[0] - pooled.mean(quantity, *second) / areas[1]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return Difference(value, np.sqrt(together / pooled.n), apart / together)
+
+
+def _variances(
+    pooled: Pooled, quantity: str, first: Some, second: Some, x: float | Array, y: float | Array
+) -> tuple[Array, Array]:
+    """Variance of `x` times the first less `y` times the second: over shared, and over different surfaces.
+
+    The first is that of one combination of scenes: nothing cancels.
+    """
+    (one, v), (other, w) = first, second
+    scenes = np.union1d(one, other)
+    variances = pooled.variance(quantity, *first), pooled.variance(quantity, *second)
+    weights = np.zeros((len(scenes), *variances[0].shape))
+    weights[np.searchsorted(scenes, one)] += np.multiply.outer(v, x * np.ones(weights.shape[1:]))
+    weights[np.searchsorted(scenes, other)] -= np.multiply.outer(w, y * np.ones(weights.shape[1:]))
+    together = np.maximum(pooled.variance(quantity, scenes, weights), 0.0)  # apart from rounding
+    return together, np.asarray(x**2 * variances[0] + y**2 * variances[1])
 
 
 def _same_asperities(one: Ensemble, other: Ensemble) -> bool:

@@ -15,7 +15,6 @@ Tables = dict[str, NDArray[Any]]  # numbers of surfaces by name, a row each
 BLOCK = "block_"  # begins the names of tables with one row for all surfaces of a block
 CHUNK_ROWS = 256  # surfaces of a chunk of a file; fewer, by powers of two, where a chunk would be too large
 _ROWS = 8192  # surfaces at a time, for ensembles larger than the memory
-_LOW = 2**32 - 1  # the lower half of an integer: sums of halves do not overflow
 
 
 class Held(ABC):
@@ -31,17 +30,9 @@ class Held(ABC):
     def mean_and_std(self, name: str) -> tuple[Array, Array]:
         """Mean and standard deviation (divisor M - 1)."""
 
-    @abstractmethod
-    def total_number(self, name: str) -> Array:
-        """Sum of whole numbers over all surfaces: exact but for the rounding to double precision."""
-
     def read(self, name: str, start: int, stop: int | None) -> Array:  # noqa: ARG002
         """Rows `start` to `stop` (None: to the end) of a table."""
         raise ValueError(f"{name}: {self.no_more}")
-
-    def quantile(self, name: str, share: float) -> Array:
-        """Quantile of each number of a table."""
-        return np.asarray(np.quantile(self.read(name, 0, None), share, axis=0))
 
     def covariance(self, name: str, other: str) -> Array:  # noqa: ARG002
         """Between all numbers of two tables (divisor M - 1), shape (*shape, *shape of the other)."""
@@ -64,14 +55,6 @@ class Results(Held):
         squares = sum(((chunk - mean) ** 2).sum(axis=0) for chunk in few or self._chunks(name))
         return np.asarray(mean), np.sqrt(squares / (m - 1)) if m > 1 else np.full(np.shape(mean), np.nan)
 
-    def total_number(self, name: str) -> Array:
-        """By halves of the numbers, which do not overflow."""
-        total = [0] * len(self.read(name, 0, 1)[0])
-        for rows in self._chunks(name, np.int64):
-            halves = zip((rows >> 32).sum(axis=0).tolist(), (rows & _LOW).sum(axis=0).tolist(), strict=True)
-            total = [so_far + (high << 32) + low for so_far, (high, low) in zip(total, halves, strict=True)]
-        return np.array([float(x) for x in total])
-
     def covariance(self, name: str, other: str) -> Array:
         """From the deviations, some surfaces at a time."""
         m, means = self.rows(), [self.mean_and_std(each)[0] for each in (name, other)]
@@ -84,10 +67,10 @@ class Results(Held):
             total += (x.reshape(len(x), -1) - a).T @ (y.reshape(len(y), -1) - b)
         return (total / (m - 1)).reshape(shape)
 
-    def _chunks(self, name: str, kind: type = np.float64) -> Iterator[NDArray[Any]]:
+    def _chunks(self, name: str) -> Iterator[Array]:
         m = self.rows()
         for start in range(0, m, _ROWS):
-            yield self.read(name, start, min(start + _ROWS, m)).astype(kind)
+            yield self.read(name, start, min(start + _ROWS, m)).astype(np.float64)
 
 
 @dataclass(frozen=True)
@@ -128,10 +111,6 @@ class Selected(Held):
         """Mean and standard deviation (divisor M - 1)."""
         mean, std = self.whole.mean_and_std(name)
         return mean[self.which], std[self.which]
-
-    def total_number(self, name: str) -> Array:
-        """Sum of whole numbers over all surfaces."""
-        return self.whole.total_number(name)[self.which]
 
     def read(self, name: str, start: int, stop: int | None) -> Array:
         """Rows `start` to `stop` (None: to the end) of a table."""

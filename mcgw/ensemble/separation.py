@@ -9,7 +9,7 @@ import numpy as np
 
 from analytic import Hertz, Quantity, quantity_of
 from analytic.arrays import Array, Ints
-from analytic.laws import Branch, term_of
+from analytic.laws import Branch
 from analytic.laws.branch import terms_of
 from analytic.roots import falling_root
 from mcgw.scene.scene import Scene
@@ -74,110 +74,6 @@ def crossing(excess: Callable[[Any], Any], high: float, lowest: float = LOWEST) 
 
 
 @dataclass(frozen=True, eq=False)
-class LawSum:
-    """A sum over given asperities as the separation falls.
-
-    Each piece of the law rises with the penetration. From one piece to the next, and where it begins, a
-    contact may jump, up or down: so the sum need not be monotone, and may pass a value without having it.
-
-    Parameters
-    ----------
-    quantity : str
-        Load or area.
-    branch : Branch
-        With the law in reduced units.
-    heights, modulus : ndarray
-        Reduced heights in falling order, and E*(s)/E* >= 0 of each; shape (n,).
-    ratios : ndarray, optional
-        Radius of each over that of the surface, where summits have their own.
-    """
-
-    quantity: str
-    branch: Branch
-    heights: Array
-    modulus: Array
-    ratios: Array | None = None
-
-    def largest_separation(self, value: float, start: float) -> float | None:
-        """Largest separation from `start` on at which the sum is `value`, or jumps past it, or None.
-
-        Where it jumps past, the sum there is beyond the value.
-        """
-        if not self.heights.size or self.heights[0] <= start:
-            return None
-        return self._within(value, start, float(self.heights[0]))
-
-    def _within(self, value: float, low: float, high: float) -> float | None:
-        """As above between two separations, at the higher one of which the sum is less than the value."""
-        at_low, most, smooth = self._between(low, high)
-        if most < value:
-            return None
-        if smooth:
-            return falling_root(lambda h: self._at(h) - value, low, high)
-        middle = low + (high - low) / 2
-        if not low < middle < high:
-            return low if at_low >= value else None
-        found = self._within(value, middle, high)
-        return self._within(value, low, middle) if found is None else found
-
-    def _between(self, low: float, high: float) -> tuple[float, float, bool]:
-        """Return the sum at `low`, its bound up to `high`, and whether each contact keeps its piece.
-
-        Each contact is at most what it is at `low`, or where one of its pieces ends.
-        """
-        n = self._touching(low)
-        s, e, terms = self.heights[:n], self.modulus[:n], self._terms(low, n)
-        at_low = float(np.sum(terms))
-        first, last = self._pieces(high, n), self._pieces(low, n)
-        if self._snaps:
-            terms = np.where(first < 0, np.maximum(terms, 0.0), terms)
-        else:  # a contact begins as nothing
-            first = np.maximum(first, 0)
-        changed = np.flatnonzero(first < last)
-        if not changed.size:
-            return at_low, at_low, True
-        for j, limit in enumerate(self._branch(changed).law.limits(e[changed])):
-            ends = (first[changed] <= j) & (j < last[changed])
-            here, limit = changed[ends], limit[ends]
-            at_end = self._branch(here).value(self.quantity, j, s[here] - limit, limit, e[here])
-            terms[here] = np.maximum(terms[here], self._weight(here) * at_end)
-        return at_low, float(np.sum(terms)), False
-
-    @cached_property
-    def _snaps(self) -> bool:
-        """Whether contacts begin with a load or area of their own."""
-        none = np.zeros(1)
-        return bool(self.branch.value(self.quantity, 0, none, none, np.ones(1))[0] != 0)
-
-    def _at(self, h: float) -> float:
-        return float(np.sum(self._terms(h, self._touching(h))))
-
-    def _touching(self, h: float) -> int:
-        """How many rise above a separation: they come first."""
-        return int(np.searchsorted(-self.heights, -h))
-
-    def _terms(self, h: float, n: int) -> Array:
-        """Return what each of the first `n` adds."""
-        first = slice(n)
-        terms = term_of(self.quantity, self._branch(first), h, self.heights[first], self.modulus[first])
-        return self._weight(first) * terms
-
-    def _pieces(self, h: float, n: int) -> Ints:
-        s, e = self.heights[:n], self.modulus[:n]
-        return self._branch(slice(n)).pieces(np.full(n, h), s - h, e)
-
-    def _branch(self, which: slice | Ints) -> Branch:
-        """Return that of some asperities, each by the law of its own radius."""
-        if self.ratios is None:
-            return self.branch
-        return self.branch.with_radii(self.ratios[which])
-
-    def _weight(self, which: slice | Ints) -> Array | float:
-        """Return what a load or an area is worth by the radius."""
-        return 1.0 if self.ratios is None else self.ratios[which] ** quantity_of(self.quantity).radius
-
-
-@dataclass(frozen=True, eq=False)
 class Summits:
     """Asperities of one surface of a scene.
 
@@ -212,9 +108,74 @@ class Summits:
         return float(self.s[self.modulus < 0].max(initial=-np.inf))
 
     def largest_separation(self, q: Quantity, target: float, start: float) -> float | None:
-        """Return the solution among separations from `start` on at which no modulus is negative, or None."""
-        found = LawSum(q.base, self.scene.ways.loading, self.s, self.modulus, self.ratios)
-        return found.largest_separation(target, max(start, self.softest))
+        """Return the largest separation from `start` on at which a sum has a value or jumps past it; or None.
+
+        None, too, where a modulus is negative there. Each piece of the law rises with the penetration. From
+        one piece to the next, and where it begins, a contact may jump, up or down: so the sum need not be
+        monotone, and may pass a value without having it; the sum there is beyond the value.
+
+        Parameters
+        ----------
+        q : Quantity
+            Load or area.
+        target : float
+            Over its scale.
+        start : float
+            Reduced separation.
+        """
+        low = max(start, self.softest)
+        if not self.s.size or self.s[0] <= low:
+            return None
+        return self._within(q, target, low, float(self.s[0]))
+
+    def _within(self, q: Quantity, target: float, low: float, high: float) -> float | None:
+        """As above between two separations, at the higher one of which the sum is less than the value."""
+        at_low, most, smooth = self._between(q, low, high)
+        if most < target:
+            return None
+        if smooth:
+            return falling_root(lambda h: float(np.sum(self._terms([q.name], h))) - target, low, high)
+        middle = low + (high - low) / 2
+        if not low < middle < high:
+            return low if at_low >= target else None
+        found = self._within(q, target, middle, high)
+        return self._within(q, target, low, middle) if found is None else found
+
+    def _between(self, q: Quantity, low: float, high: float) -> tuple[float, float, bool]:
+        """Return the sum at `low`, its bound up to `high`, and whether each contact keeps its piece.
+
+        Each contact is at most what it is at `low`, or where one of its pieces ends.
+        """
+        (terms,) = self._terms([q.name], low)
+        s, e, at_low = self.s[: terms.size], self.modulus[: terms.size], float(np.sum(terms))
+        branch = self._branch(slice(terms.size))
+        first, last = (branch.pieces(np.full_like(s, h), s - h, e) for h in (high, low))
+        none = np.zeros(1)
+        if self.scene.ways.loading.value(q.base, 0, none, none, np.ones(1))[0]:  # contacts begin with a jump
+            terms = np.where(first < 0, np.maximum(terms, 0.0), terms)
+        else:
+            first = np.maximum(first, 0)
+        changed = np.flatnonzero(first < last)
+        if not changed.size:
+            return at_low, at_low, True
+        weight = np.ones_like(s) if self.ratios is None else self.ratios[: s.size] ** q.radius
+        for j, limit in enumerate(self._branch(changed).law.limits(e[changed])):
+            ends = (first[changed] <= j) & (j < last[changed])
+            here, limit = changed[ends], limit[ends]
+            at_end = self._branch(here).value(q.base, j, s[here] - limit, limit, e[here])
+            terms[here] = np.maximum(terms[here], weight[here] * at_end)
+        return at_low, float(np.sum(terms)), False
+
+    def _branch(self, which: slice | Ints) -> Branch:
+        """Return that of some asperities, each by the law of its own radius."""
+        loading = self.scene.ways.loading
+        return loading if self.ratios is None else loading.with_radii(self.ratios[which])
+
+    def _terms(self, names: Sequence[str], h: float) -> Array:
+        """Return what the asperities above a separation add, which come first: (quantities, asperities)."""
+        n = int(np.searchsorted(-self.s, -h))
+        ratios = None if self.ratios is None else self.ratios[:n]
+        return asperity_terms(self.scene, names, h, self.s[:n], self.modulus[:n], ratios)
 
     def separation_anywhere(self, q: Quantity, target: float, start: float) -> float | None:
         """Return the largest solution on all heights of a surface; None if there is none."""
@@ -244,8 +205,9 @@ class Summits:
 
     def sums(self, names: Iterable[str], h: float) -> dict[str, float]:
         """Quantities at one separation, SI."""
-        names, n = list(names), int(np.searchsorted(-self.s, -h))
-        ratios = None if self.ratios is None else self.ratios[:n]
-        terms = asperity_terms(self.scene, names, h, self.s[:n], self.modulus[:n], ratios)
-        scales = (quantity_of(name).scale(self.scene.surface) for name in names)
-        return {name: scale * float(np.sum(x)) for name, scale, x in zip(names, scales, terms, strict=True)}
+        names = list(names)
+        totals = np.sum(self._terms(names, h), axis=1).tolist()
+        return {
+            name: quantity_of(name).scale(self.scene.surface) * x
+            for name, x in zip(names, totals, strict=True)
+        }

@@ -12,7 +12,7 @@ from analytic import SEPARATIONS, quantity_of, yielding_share
 from analytic.arrays import Array
 from analytic.at_load import Moments
 from mcgw.ensemble.answers import Answers, all_are_known, exact_moments, surely_reached
-from mcgw.ensemble.at_load import GAPS, answers_at, mean_surface
+from mcgw.ensemble.at_load import GAPS, answers_at
 from mcgw.ensemble.intervals import FEWEST, interval_column, laws_are_quick
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table
@@ -146,13 +146,16 @@ class Solution(Shown):
 
         nan if the surfaces drawn have too few contacts.
         """
-        value, error, freedom = self._estimate(name)
-        if error == 0:
-            return value, value
-        if self.surfaces.get("contacts", np.full(self._many, np.inf)).sum() < FEWEST:
+        value, error, _ = self._estimate(name)
+        if error and self.surfaces.get("contacts", np.full(self._many, np.inf)).sum() < FEWEST:
             return float("nan"), float("nan")
-        half = stdtrit(freedom, (1 + level) / 2) * error
-        return float(value - half), float(value + half)
+        half = self.half_width(name, level)
+        return value - half, value + half
+
+    def half_width(self, name: str, level: float = 0.95) -> float:
+        """Return half of the width of `interval`, however few contacts there are; 0 if `value` is exact."""
+        _, error, freedom = self._estimate(name)
+        return float(stdtrit(freedom, (1 + level) / 2)) * error if error else 0.0
 
     @property
     def _many(self) -> int:
@@ -323,17 +326,7 @@ class Solution(Shown):
     def _budget(self) -> "Budget":
         from mcgw.ensemble.budget import budget_of
 
-        return budget_of(
-            self.scene,
-            self.title,
-            self.value,
-            self.std,
-            self.interval,
-            self._against_elasticity,
-            lambda scene: mean_surface(scene, self.given, self.amount),
-            self.given,
-            self.yielding,
-        )
+        return budget_of(self)
 
     def corrected(self, quantity: str) -> "Corrected":
         """`value`, corrected by the measured error of the model against boundary elements.
@@ -351,20 +344,12 @@ class Solution(Shown):
             With the ends between which 95 % of such surfaces lie; nan where nothing was measured, with the
             reason in `why`.
         """
-        from mcgw.ensemble.budget import Corrected, corrected, yields
+        from mcgw.ensemble.budget import corrected
 
-        if self.given != "load":
-            return Corrected.unknown("errors of models are measured at a given load")
-        if why := yields(self.yielding):
-            return Corrected.unknown(why)
-        _, error, freedom = self._estimate(quantity)
-        drawn = float(stdtrit(freedom, 0.975)) * error if error else 0.0
-        return corrected(
-            self._against_elasticity, self.scene, quantity, self.value, self.std[quantity], drawn
-        )
+        return corrected(self, quantity)
 
     @cached_property
-    def _against_elasticity(self) -> Validity:
+    def against_elasticity(self) -> Validity:
         """Measured error of the model at this separation."""
         return against_elasticity([self])
 
@@ -378,7 +363,7 @@ class Solution(Shown):
 
         many = f"{'' if self.exact else f'{self._many} '}surfaces of {self.scene.n_asperities} asperities"
         many += ", drawn from the measured summits" if self.scene.as_measured else ""
-        facts = [("over", many), ("elasticity", self._against_elasticity.brief)]
+        facts = [("over", many), ("elasticity", self.against_elasticity.brief)]
         facts += [("yielding", why)] if (why := yields(self.yielding)) else []
         table = self.table()
         table = replace(table, columns=tuple(x for x in table.columns if x.name != "infinite"))

@@ -61,10 +61,6 @@ class Summarised(Held):
         mean, products = self.whole.means[NUMBERS][columns, 0], self.whole.products[NUMBERS]
         return mean, np.sqrt(products[columns, columns, 0] / (m - 1 if m > 1 else np.nan))
 
-    def total_number(self, name: str) -> Array:
-        """Return the mean times the number of surfaces, as a whole number."""
-        return np.asarray(np.rint(self.whole.means[NUMBERS][self._columns(name), 0] * self.rows()))
-
     def covariance(self, name: str, other: str) -> Array:
         """Between all numbers of two tables (divisor M - 1)."""
         a, b, m = self._columns(name), self._columns(other), self.rows()

@@ -11,7 +11,7 @@ from scipy.stats import norm
 from analytic import quantity_of
 from mcgw.ensemble.ensemble import Ensemble, shown
 from mcgw.ensemble.intervals import exact_ends
-from mcgw.ensemble.paired import Paired
+from mcgw.ensemble.paired import Paired, Slopes
 from mcgw.ensemble.solved import Solution
 from mcgw.figures.against_theory import quantity_panel, residuals_panel
 from mcgw.figures.data import SEPARATION, Mark, Panel
@@ -25,7 +25,6 @@ from mcgw.maps.profile_fit import ProfileFit
 from mcgw.statistics.comparison import Comparison, SweepComparison
 from mcgw.statistics.convergence import Convergence
 from mcgw.statistics.tradeoff import Tradeoff
-from mcgw.sweeps.between import Slopes
 from mcgw.sweeps.sweep import Sweep
 
 _MOST_LINES = 7

@@ -6,11 +6,10 @@ from functools import partial
 
 import numpy as np
 
-from analytic import Exponential, Hertz, quantity_of
+from analytic import Exponential, quantity_of
 from analytic.arrays import Array
-from analytic.laws import Branch
+from analytic.roots import falling_root
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.separation import LawSum
 from mcgw.ensemble.simulation import simulate
 from mcgw.figures.compared import SCENE, Compared, Row, grading, pressing, reference, same_load
 from mcgw.figures.data import (
@@ -273,6 +272,11 @@ def _jackknifed(listed: tuple[Array, ...], h: float) -> tuple[Array, Array]:
     return whole, np.sqrt((_GROUPS - 1) / _GROUPS * ((parts - parts.mean(axis=0)) ** 2).sum(axis=0))
 
 
+def _load_beyond(s: Array, modulus: Array, load: float, h: float) -> float:
+    """Return how much asperities carry beyond a load, over its scale."""
+    return float(modulus @ np.maximum(s - h, 0.0) ** 1.5) - load
+
+
 def _ratios_at_load(s: Array, h: float, starts: Array) -> tuple[Array, Array]:
     """Conductance, area, stiffness over the homogeneous ones, shape (gammas, 3); the separations."""
     d = s[s > h] - h
@@ -282,8 +286,8 @@ def _ratios_at_load(s: Array, h: float, starts: Array) -> tuple[Array, Array]:
     for gamma, start in zip(_GAMMAS, starts, strict=True):
         near = s[s > start]
         modulus = Exponential(float(gamma))(near)
-        h2 = LawSum("load", Branch(Hertz()), near, modulus).largest_separation(load, float(start))
-        assert h2 is not None
+        excess = partial(_load_beyond, near, modulus, load)
+        h2 = falling_root(excess, float(start), float(near[0]))
         d = near[near > h2] - h2
         roots = np.sqrt(d)
         rows.append([roots.sum(), d.sum(), modulus[: len(d)] @ roots] / hom)

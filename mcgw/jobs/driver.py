@@ -4,18 +4,16 @@ import signal
 import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import CancelledError, Executor, Future
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, wait
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from queue import Empty, SimpleQueue
-from time import monotonic
 from typing import Any, TypeVar
 
 from mcgw.errors import RunError, StoppedError
 
 _Block = TypeVar("_Block")
 
-_IN_HAND = 4096  # blocks given at a time to an executor that does not say how many it takes
+_IN_HAND = 1024  # blocks given at a time to an executor that does not say how many it takes
 _RESUME = "finished blocks are kept; the same command resumes"
 _GRACE = 2.0  # seconds for running blocks to finish when the run stops
 
@@ -91,17 +89,14 @@ def drive(
         As the task raises.
     """
     todo, again, given_up = deque(blocks), deque[_Block](), list[tuple[_Block, str]]()
-    lost: set[_Block] = set()
-    answers: SimpleQueue[tuple[_Block, Future[Any]]] = SimpleQueue()
-    running: dict[_Block, Future[Any]] = {}
+    lost, running = set[_Block](), dict[Future[Any], _Block]()
     in_hand = getattr(executor, "in_hand", in_hand)
 
     def submit(block: _Block) -> None:
         try:
-            running[block] = executor.submit(outcome, task, *arguments(block))
+            running[executor.submit(outcome, task, *arguments(block))] = block
         except Exception as error:
             raise RunError(f"the executor takes no more work ({_in_words(error)}); {_RESUME}") from None
-        running[block].add_done_callback(lambda future: answers.put((block, future)))
 
     try:
         while (todo or again or running) and signals.number is None:
@@ -109,11 +104,11 @@ def drive(
                 submit(todo.popleft())
             if again and not running:
                 submit(again.popleft())
-            try:
-                block, future = answers.get(timeout=0.2)
-            except Empty:
+            wait(running, timeout=0.2, return_when=FIRST_COMPLETED)
+            future = next((one for one in running if one.done()), None)
+            if future is None:
                 continue
-            del running[block]
+            block = running.pop(future)
             try:
                 result, error = future.result()
             except CancelledError:  # by nobody here: not a worker, but its executor is lost
@@ -127,9 +122,13 @@ def drive(
                 raise error
             done(block, result)
         if signals.number is not None:
-            _last_answers(answers, running, done)
+            ended = wait(running, timeout=_GRACE).done
+            for future in [one for one in running if one in ended]:
+                block = running.pop(future)
+                if not future.cancelled() and future.exception() is None and future.result()[1] is None:
+                    done(block, future.result()[0])
     finally:
-        for future in running.values():
+        for future in running:
             future.cancel()
     if given_up and signals.number is None:
         block, why = given_up[0]
@@ -142,44 +141,8 @@ def _in_words(error: BaseException) -> str:
     return ": ".join([type(error).__name__, *str(error).splitlines()[:1]])
 
 
-def _last_answers(
-    answers: "SimpleQueue[tuple[_Block, Future[Any]]]",
-    running: dict[_Block, "Future[Any]"],
-    done: Callable[[_Block, Any], None],
-) -> None:
-    """Wait briefly for running tasks; drop those that do not finish."""
-    until = monotonic() + _GRACE
-    while running and (left := until - monotonic()) > 0:
-        try:
-            block, future = answers.get(timeout=left)
-        except Empty:
-            return
-        del running[block]
-        if not future.cancelled() and future.exception() is None and future.result()[1] is None:
-            done(block, future.result()[0])
-
-
-@dataclass(frozen=True)
-class Part:
-    """One of several jobs that share the blocks of a run.
-
-    Parameters
-    ----------
-    number, of : int
-        ``1 <= number <= of``.
-
-    """
-
-    number: int
-    of: int
-
-    def mine(self, block: int) -> bool:
-        """Whether a block belongs to this job."""
-        return block % self.of == self.number - 1
-
-
-def part_of(shard: str) -> Part:
-    """Return the share that a text like "2/8" names.
+def part_of(shard: str) -> tuple[int, int]:
+    """Return the share that a text like "2/8" names: its number, from 1, and of how many.
 
     Raises
     ------
@@ -189,7 +152,7 @@ def part_of(shard: str) -> Part:
     number, _, of = str(shard).partition("/")
     if not (number.isdecimal() and of.isdecimal() and 1 <= int(number) <= int(of)):
         raise ValueError(f"--shard {shard}: give i/n with 1 <= i <= n")
-    return Part(int(number), int(of))
+    return int(number), int(of)
 
 
 @dataclass(frozen=True)
@@ -214,7 +177,7 @@ class By:
     signals: Signals = field(default_factory=Signals)
 
 
-def check_how(executor: Any, threads: int | None, shard: str | None) -> Part | None:
+def check_how(executor: Any, threads: int | None, shard: str | None) -> tuple[int, int] | None:
     """Check the arguments of a call; return the share that it asks for.
 
     Raises

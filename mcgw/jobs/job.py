@@ -22,7 +22,6 @@ from mcgw.ensemble.simulation import reducer_of
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import State, check_output, refuse_read_only, state_of
 from mcgw.machine.memory import gibibytes
-from mcgw.scene.fields import LeftOut
 from mcgw.scene.scene import Scene, storable
 from mcgw.store.ensembles import described
 from mcgw.store.h5_writing import Contents
@@ -179,8 +178,7 @@ def as_recorded(scene: Scene, path: Path) -> Scene:
 
     Another processor, or another NumPy, may give other last digits to a Python function.
     """
-    if isinstance(scene.seed, LeftOut):
-        scene = with_recorded_seed(scene, path)
+    scene = with_recorded_seed(scene, path)
     resolved = storable(scene)
     there = None if resolved is scene else recorded_scene(path)
     if there is None:

@@ -12,7 +12,7 @@ from mcgw.ensemble.results import Tables
 from mcgw.errors import RunError, StoppedError, StoreError, in_one_line
 from mcgw.formats.files import state_of
 from mcgw.formats.gate import open_h5
-from mcgw.jobs.driver import By, Part, Signals, drive, heed_signals
+from mcgw.jobs.driver import By, Signals, drive, heed_signals
 from mcgw.jobs.job import Job, commit_block, draw_block
 from mcgw.machine.in_threads import Items
 from mcgw.store.ensembles import described
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 _ROUNDS = 3  # attempts to merge, if shards turn out damaged
 
 
-def make(job: Job, by: By, part: Part | None = None) -> int:
+def make(job: Job, by: By, part: tuple[int, int] | None = None) -> int:
     """Draw what is missing of a file and make it; or of its blocks a share, for `mcgw.merge` to make it of.
 
     Returns
@@ -110,7 +110,7 @@ def _in_blocks(job: Job, by: By) -> None:
     raise RunError(f"{job.record.folder}: shards are repeatedly damaged; is the disk failing?")
 
 
-def _share(job: Job, by: By, part: Part) -> int:
+def _share(job: Job, by: By, part: tuple[int, int]) -> int:
     """Draw a share of the missing blocks; return how many surfaces are still missing. Needs the lock."""
     started, done = job.record.begin(), job.done()
     missing = started.missing(done, started.shards())
@@ -118,12 +118,15 @@ def _share(job: Job, by: By, part: Part) -> int:
     return sum(span.n for span in started.missing(done, started.shards()))
 
 
-def _draw_missing(job: Job, started: RunFolder, spans: list[Span], by: By, part: Part | None = None) -> None:
-    """Draw and store every missing block, or a job's share of them."""
+def _draw_missing(
+    job: Job, started: RunFolder, spans: list[Span], by: By, part: tuple[int, int] | None = None
+) -> None:
+    """Draw and store every missing block, or a job's share of them: every so many-th block."""
     plan, left = started.plan, sum(span.n for span in spans)
     done = sum(map(job.work, plan.missing(spans)))
     if part:
-        spans = [span for span in spans if part.mine(plan.number(span))]
+        number, of = part
+        spans = [span for span in spans if plan.number(span) % of == number - 1]
     folder, ended = str(started.folder.resolve()), Event()
 
     def note(span: Span, write: Callable[[], object] | None) -> None:

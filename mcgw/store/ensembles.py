@@ -116,7 +116,7 @@ def _run_of(path: Path) -> RunFolder:
 
 def described(path: Path) -> tuple[dict[str, Any], Scene]:
     """Attributes and scene of a file that is as it was written."""
-    attributes = {**examine(path).attributes, "complete": True}
+    attributes = {**examine(path), "complete": True}
     try:
         return attributes, scene_from(str(attributes["scene"]))
     except ValueError as error:
@@ -126,7 +126,7 @@ def described(path: Path) -> tuple[dict[str, Any], Scene]:
 def verify(path: Path) -> tuple[str, str]:
     """Damage of a finished file, and its digest; the first is empty if every number is as it was written."""
     try:
-        return "", str(look(path).attributes["digest"])
+        return "", str(look(path)["digest"])
     except StoreError as error:
         return str(error).removeprefix(f"{path}: "), "unreadable"
 

@@ -8,7 +8,6 @@ signature, so that is looked at whoever wrote the file.
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -35,24 +34,8 @@ _ABOUT = ("units", "long_name", "sha256")  # attributes of a table that this pro
 _PIECE = 2**23  # bytes of numbers processed at a time
 
 
-@dataclass(frozen=True)
-class Head:
-    """What a file says of itself.
-
-    Parameters
-    ----------
-    attributes : dict of str to Any
-        Root attributes.
-    shapes : dict of str to tuple of int
-        Of its tables.
-    """
-
-    attributes: dict[str, Any]
-    shapes: dict[str, tuple[int, ...]] = field(default_factory=dict)
-
-
-def look(path: Path, filetype: str = FILETYPE, *, numbers: bool = True) -> Head:
-    """Return what a file says of itself if it is as it was written; `numbers`: and all of its numbers are.
+def look(path: Path, filetype: str = FILETYPE, *, numbers: bool = True) -> dict[str, Any]:
+    """Return the root attributes of a file if it is as it was written; `numbers`: and all of its numbers are.
 
     Raises
     ------
@@ -66,10 +49,10 @@ def look(path: Path, filetype: str = FILETYPE, *, numbers: bool = True) -> Head:
             raise StoreError("damaged (checksum mismatch of its scene or attributes)")
         for name in names if numbers else ():
             _compare(file[name], (piece[name] for piece in pieces_of(file, [name])))
-        return Head(attributes, {name: file[name].shape for name in names})
+        return attributes
 
 
-def examine(path: Path) -> Head:
+def examine(path: Path) -> dict[str, Any]:
     """As `look`, once until the file changes; the numbers of one of a gibibyte or more are not compared.
 
     Raises
@@ -86,7 +69,7 @@ def examine(path: Path) -> Head:
 
 
 @lru_cache(maxsize=32)
-def _examined(path: Path, shown: Path, state: tuple[int, int, int]) -> Head:  # noqa: ARG001
+def _examined(path: Path, shown: Path, state: tuple[int, int, int]) -> dict[str, Any]:  # noqa: ARG001
     return look(shown, numbers=state[1] < LARGE)
 
 

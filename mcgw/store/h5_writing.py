@@ -31,11 +31,11 @@ MATLAB and HDFView read it, and LZF only h5py.
 import hashlib
 import json
 import math
-import os
 import zlib
 from collections.abc import Callable, Generator, Iterator, Mapping
 from contextlib import closing
 from dataclasses import dataclass
+from io import FileIO
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -105,7 +105,7 @@ class Contents:
     of: str = ""
 
 
-class SteadyFile:
+class SteadyFile(FileIO):
     """A new file for the HDF5 library that never shows it an error, for it may crash on one.
 
     After the first error nothing more is written; `check` raises it.
@@ -117,8 +117,7 @@ class SteadyFile:
     """
 
     def __init__(self, path: Path) -> None:
-        flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
-        self._file = os.fdopen(os.open(path, flags, 0o644), "w+b", buffering=0)
+        super().__init__(path, "x+")
         self._error: OSError | None = None
 
     def check(self) -> None:
@@ -131,7 +130,7 @@ class SteadyFile:
         left = memoryview(data).cast("B")
         try:
             while left and not self._error:
-                left = left[self._file.write(left) or 0 :]
+                left = left[super().write(left) or 0 :]
         except OSError as error:
             self._error = error
         return memoryview(data).nbytes
@@ -139,7 +138,7 @@ class SteadyFile:
     def truncate(self, size: int | None = None) -> int:
         """Set the length."""
         try:
-            return self._file.truncate(size)
+            return super().truncate(size)
         except OSError as error:
             self._error = self._error or error
             return size or 0
@@ -147,30 +146,9 @@ class SteadyFile:
     def readinto(self, buffer: Any) -> int:
         """Read; beyond the end there are zeros."""
         view = memoryview(buffer).cast("B")
-        got = self._file.readinto(view) or 0
+        got = super().readinto(view) or 0
         view[got:] = bytes(len(view) - got)
         return len(view)
-
-    def read(self, size: int) -> bytes:
-        """Read as many bytes."""
-        data = bytearray(size)
-        self.readinto(data)
-        return bytes(data)
-
-    def seek(self, offset: int, whence: int = 0) -> int:
-        """Go to a place."""
-        return self._file.seek(offset, whence)
-
-    def tell(self) -> int:
-        """Tell the place."""
-        return self._file.tell()
-
-    def flush(self) -> None:
-        """Do nothing: there is no buffer."""
-
-    def close(self) -> None:
-        """Close the file, even after an error."""
-        self._file.close()
 
 
 def write(path: Path, contents: Contents, go_on: Callable[[], None] | None = None) -> None:

@@ -29,14 +29,8 @@ def recorded_scene(path: Path) -> Scene | None:
 
 def with_recorded_seed(scene: Scene, path: Path) -> Scene:
     """Return the scene; with the seed of what lies there, if nobody gave it one."""
-    recorded = recorded_seed(path) if isinstance(scene.seed, LeftOut) else None
-    return scene if recorded is None else scene.replace(seed=LeftOut(recorded))
-
-
-def recorded_seed(path: Path) -> int | None:
-    """Its seed, for scenes that give none."""
-    there = recorded_scene(path)
-    return there.seed if there else None
+    there = recorded_scene(path) if isinstance(scene.seed, LeftOut) else None
+    return scene if there is None else scene.replace(seed=LeftOut(there.seed))
 
 
 def finished(path: Path, wanted: Written) -> int:

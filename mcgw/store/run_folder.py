@@ -104,7 +104,7 @@ def open_shard(path: Path, run: str, *, numbers: bool = True) -> Shard:
     StoreError
         If it is not there, damaged, or belongs elsewhere.
     """
-    said = look(path, BLOCK_TYPE, numbers=numbers).attributes
+    said = look(path, BLOCK_TYPE, numbers=numbers)
     if said["run"] != run:
         raise StoreError(f"{path}: belongs to another run")
     shard = Shard(path, Span(said["first"], said["n"]), said["wall_seconds"])
@@ -223,7 +223,7 @@ class RunFolder:
         refuse_link(folder)
         file = folder / RECORD
         try:
-            said, blocks = look(file, RUN_TYPE).attributes, read_tables(file)["blocks"].tolist()
+            said, blocks = look(file, RUN_TYPE), read_tables(file)["blocks"].tolist()
             scene, axes = str(said["scene"]), str(said["axes"])
             whole = bool(axes) or scene_from(scene).keep == "statistics"
             known = (str(said[key]) for key in ("run", "draws", "date"))

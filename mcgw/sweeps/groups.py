@@ -81,10 +81,6 @@ class PointResults(Held):
         some = self.place.of(name)
         return self.pooled.mean(name, *some), np.sqrt(self.pooled.variance(name, *some))
 
-    def total_number(self, name: str) -> Array:
-        """Return the mean times the number of surfaces, as a whole number."""
-        return np.rint(self.pooled.mean(name, *self.place.of(name)) * self.pooled.n)
-
 
 @dataclass(frozen=True)
 class Group:

@@ -1,6 +1,6 @@
 """A sweep: many scenes that share their surfaces where possible.
 
-Differences and ratios of its points are over the same surfaces (`mcgw.sweeps.between`).
+Differences and ratios of its points are over the same surfaces (`mcgw.ensemble.paired`).
 """
 
 from collections.abc import Mapping, Sequence
@@ -13,15 +13,14 @@ from analytic.arrays import Ints
 from mcgw.ensemble.dataset import Dataset
 from mcgw.ensemble.ensemble import STATISTICS, Ensemble
 from mcgw.ensemble.labelled import Labelled, Variable, axes_of, statistics_of
-from mcgw.ensemble.paired import Paired, ratio_of
+from mcgw.ensemble.paired import Difference, Paired, Slopes, Some, difference_of, ratio_of
 from mcgw.ensemble.pooled import Pooled
 from mcgw.formats.sheet import Sheet
 from mcgw.formats.table import SEPARATION, Column, Table, evenly
 from mcgw.sampling.samplers import name_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
-from mcgw.sweeps.axes import Axes, Point, label
-from mcgw.sweeps.between import Difference, Slopes
+from mcgw.sweeps.axes import Axes, label
 from mcgw.sweeps.groups import Place, PointResults
 
 At = Mapping[str, Any] | Sequence[int] | int
@@ -78,7 +77,7 @@ class Sweep(Dataset):
         ValueError
             If there is no such point.
         """
-        return self.scenes[self._number(self.axes.place(at))]
+        return self.scenes[self._numbers(at)[0]]
 
     def ensemble(self, at: At) -> Ensemble:
         """Mean and standard deviation of a point, as an ensemble of its scene.
@@ -88,7 +87,7 @@ class Sweep(Dataset):
         ValueError
             If there is no such point.
         """
-        i = self._number(self.axes.place(at))
+        (i,) = self._numbers(at)
         return Ensemble(self.scenes[i], name_of(self.scenes[i]), self._held(i))
 
     def difference(self, quantity: str, one: At, other: At) -> Difference:
@@ -114,8 +113,11 @@ class Sweep(Dataset):
             If there is no such point, or the two have different surfaces: drawn from the same seed, these are
             correlated, and it is not known how strongly.
         """
-        points = self.axes.place(one), self.axes.place(other)
-        return self._difference(quantity, *points)
+        name, per_area = self._stored(quantity)
+        a, b = self._numbers(one, other)
+        pooled, both = self._pair(name, a, b)
+        areas = [self.scenes[k].surface.nominal_area if per_area else 1.0 for k in (a, b)]
+        return difference_of(pooled, name, *both, (areas[0], areas[1]))
 
     def ratio(self, quantity: str, one: At, other: At) -> Paired:
         """Ratio of a mean between two points, first over second, over the same surfaces.
@@ -127,11 +129,9 @@ class Sweep(Dataset):
         Paired
             With its standard error over the surfaces, and `interval`.
         """
-        points = self.axes.place(one), self.axes.place(other)
         name, _ = self._stored(quantity)
-        a, b = self._pair(*points)
-        first, second = (place.of(name) for place in self._places(a, b))
-        return ratio_of(self.groups[self.places[a].group], name, first, second, self.separations)
+        pooled, both = self._pair(name, *self._numbers(one, other))
+        return ratio_of(pooled, name, *both, self.separations)
 
     def slopes(self, quantity: str, along: str) -> Slopes:
         """Change of a mean with a key between neighbouring points, over the same surfaces, and by theory.
@@ -159,7 +159,7 @@ class Sweep(Dataset):
         step = np.diff(x).reshape(-1, *[1] * (len(self.shape) - axis))
         shape = tuple(n - (i == axis) for i, n in enumerate(self.shape))
         pairs = [(tuple(p + (np.arange(len(p)) == axis)), p) for p in map(np.array, np.ndindex(shape))]
-        errors = np.array([self._difference(quantity, after, tuple(p)).stderr for after, p in pairs])
+        errors = np.array([self.difference(quantity, after, tuple(p)).stderr for after, p in pairs])
         return Slopes(
             quantity=quantity,
             key=along,
@@ -170,30 +170,8 @@ class Sweep(Dataset):
             theory=np.diff(self.theory(quantity), axis=axis) / step,
         )
 
-    def to_xarray(self) -> Any:
-        """Return the statistics as an `xarray.Dataset`, with a dimension an axis: ``load_mean`` and so on.
-
-        Raises
-        ------
-        ImportError
-            If xarray is not installed.
-        """
-        first = self.scenes[0]
-        about = {"title": first.title, "first_scene": scene_text(first)}
-        return self.labelled().to_xarray(about)
-
-    def to_dataframe(self) -> Any:
-        """Return the statistics as a `pandas.DataFrame`: a row for each point and separation.
-
-        Raises
-        ------
-        ImportError
-            If pandas is not installed.
-        """
-        return self.labelled().to_dataframe((*self.axes.dims, "separation"))
-
     def labelled(self) -> Labelled:
-        """All data with axes, units and descriptions, for xarray and pandas."""
+        """Return means and deviations with a dimension for each axis."""
         coordinates = {
             name: Variable(
                 ("point",) if self.axes.zipped else (name,),
@@ -203,8 +181,10 @@ class Sweep(Dataset):
             )
             for key, name in self.axes.names.items()
         }
+        first = self.scenes[0]
         variables = statistics_of(self, self.quantities, STATISTICS, self.axes.dims)
-        return Labelled(variables, {**axes_of(self.scenes[0]), **coordinates})
+        about = {"title": first.title, "first_scene": scene_text(first)}
+        return Labelled(variables, {**axes_of(first), **coordinates}, about)
 
     def sheet(self) -> Sheet:
         """Display the axes, and means of some points at the lowest separation."""
@@ -269,25 +249,17 @@ class Sweep(Dataset):
                 found[name] = pairs
         return found
 
-    def _difference(self, quantity: str, one: Point, other: Point) -> Difference:
-        name, per_area = self._stored(quantity)
-        a, b = self._pair(one, other)
-        area = (self.scenes[k].surface.nominal_area if per_area else 1.0 for k in (a, b))
-        pooled = self.groups[self.places[a].group]
-        return Difference.of(pooled, self._places(a, b), name, (next(area), next(area)))
+    def _numbers(self, *at: At) -> list[int]:
+        """Numbers of points, given by the values of their keys or by indices."""
+        return [int(np.ravel_multi_index(self.axes.place(each), self.shape)) for each in at]
 
-    def _places(self, a: int, b: int) -> tuple[Place, Place]:
-        return self.places[a], self.places[b]
-
-    def _pair(self, one: Point, other: Point) -> tuple[int, int]:
-        """Numbers of two points that share their surfaces."""
-        a, b = self._number(one), self._number(other)
-        if self.places[a].group != self.places[b].group:
+    def _pair(self, name: str, a: int, b: int) -> tuple[Pooled, tuple[Some, Some]]:
+        """Return what is kept of the surfaces that two points share, and which part of it each is."""
+        one, other = self.places[a], self.places[b]
+        if one.group != other.group:
+            where = " and ".join(self.axes.text(list(self.axes.points())[k]) for k in (a, b))
             raise ValueError(
-                f"sweep: {self.axes.text(one)} and {self.axes.text(other)} have different surfaces, so there "
-                "are no pairs, but the same seed correlates them: give the ensemble of each its own seed"
+                f"sweep: {where} have different surfaces, so there are no pairs, but the same seed "
+                "correlates them: give the ensemble of each its own seed"
             )
-        return a, b
-
-    def _number(self, point: Point) -> int:
-        return int(np.ravel_multi_index(point, self.shape))
+        return self.groups[one.group], (one.of(name), other.of(name))

@@ -177,13 +177,6 @@ def test_count_interval_of_few_of_very_many_is_garwoods(k):
     np.testing.assert_allclose(of_all, few, rtol=1e-9)
 
 
-def test_contacts_are_counted_exactly(make_scene):
-    contacts = np.array([[2**53 - 1], [2**53], [3]])
-    scene = make_scene(separations=(0.0,), quantities=("contacts",), n_surfaces=3, n_asperities=2**53)
-    ensemble = Ensemble(scene, "cells", MemoryResults({"contacts": np.repeat(contacts, 3000, axis=0)}))
-    assert ensemble.sums.total_number("contacts")[0] == float(3000 * (2**54 + 2))
-
-
 def test_spread_of_many_separations_is_that_of_each(make_scene):
     """Unsorted, repeated, more than share a rule; and where the density underflows there is nothing."""
     h = (*np.linspace(3, -2.5, 40), 2.0, 2.0, 38.0)

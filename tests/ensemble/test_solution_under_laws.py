@@ -9,11 +9,10 @@ from math import pi, sqrt
 import numpy as np
 import oracles.laws_of_one_depth as by_hand
 import pytest
-from oracles.inside import LawSum, Summits, solutions, solutions_text
+from oracles.inside import Summits, solutions, solutions_text
 
 import mcgw
 from analytic import quantity_of
-from analytic.laws import Branch
 
 YIELD_OF_STEEL = by_hand.yields_at(0.004)
 
@@ -119,34 +118,39 @@ def test_below_all_that_was_drawn_at_once_the_search_finds_the_same(given):
     assert len(solved) > 1
 
 
+def solved_by_hand(law, given, value, heights=(2.0,), ratios=None, start=-3.0):
+    """Separation at which listed asperities of one modulus have a load or area over its scale."""
+    scene = mcgw.Scene(SURFACE, separations=0.0, law=law, n_surfaces=2, seed=1)
+    on = Summits(scene, np.array(heights), None if ratios is None else np.array(ratios))
+    return on.largest_separation(quantity_of(given), value, start)
+
+
 @pytest.mark.parametrize("given", ["load", "area"])
 def test_radii_of_their_own(given):
     """A summit r times as blunt yields r times as deep, at r^2 times the load and area."""
-    s, ratios, ones = np.array([2.2, 2.0, 1.0]), np.array([0.5, 2.0, 1.3]), np.ones(3)
-    total = LawSum(given, Branch(mcgw.KogutEtsion(critical=0.05)), s, ones, ratios)
+    s, ratios, law = (2.2, 2.0, 1.0), (0.5, 2.0, 1.3), mcgw.KogutEtsion(critical=0.05)
     which = ("load", "area").index(given)
     for h in (2.1, 1.7, 0.6):
         above = [(x - h, r) for x, r in zip(s, ratios, strict=True) if x > h]
         each = [r**2 * by_hand.kogut_etsion(x / r, 1.0)[which] for x, r in above]
-        assert total.largest_separation(sum(each), -3.0) == pytest.approx(h, abs=1e-12)
+        assert solved_by_hand(law, given, sum(each), s, ratios) == pytest.approx(h, abs=1e-12)
 
 
 def test_a_load_that_is_jumped_over_is_passed():
     """One asperity of Chang, Etsion and Bogy: between Hertz's load at yield and 1.5 times that."""
-    one = LawSum("load", Branch(mcgw.ChangEtsionBogy(critical=0.5)), np.array([2.0]), np.ones(1))
-    at_yield = 0.5**1.5
+    law, at_yield = mcgw.ChangEtsionBogy(critical=0.5), 0.5**1.5
     for value in (1.01 * at_yield, 1.49 * at_yield):
-        assert one.largest_separation(value, -3.0) == pytest.approx(1.5, abs=1e-15)
-    assert one.largest_separation(0.99 * at_yield, -3.0) == pytest.approx(2 - (0.99) ** (2 / 3) * 0.5)
-    assert one.largest_separation(1.8, 1.9) is None
+        assert solved_by_hand(law, "load", value) == pytest.approx(1.5, abs=1e-15)
+    assert solved_by_hand(law, "load", 0.99 * at_yield) == pytest.approx(2 - (0.99) ** (2 / 3) * 0.5)
+    assert solved_by_hand(law, "load", 1.8, start=1.9) is None
 
 
 def test_of_several_separations_the_largest_counts():
     """The area of one asperity of Kogut and Etsion falls by 7 % at yield: .049 is met three times."""
-    one = LawSum("area", Branch(mcgw.KogutEtsion(critical=0.05)), np.array([2.0]), np.ones(1))
-    assert one.largest_separation(0.049, -3.0) == pytest.approx(2 - 0.049, abs=1e-14)
+    law = mcgw.KogutEtsion(critical=0.05)
+    assert solved_by_hand(law, "area", 0.049) == pytest.approx(2 - 0.049, abs=1e-14)
     after = 2 - 0.05 * (0.0505 / 0.05 / 0.93) ** (1 / 1.136)
-    assert one.largest_separation(0.0505, -3.0) == pytest.approx(after, abs=1e-14)
+    assert solved_by_hand(law, "area", 0.0505) == pytest.approx(after, abs=1e-14)
 
 
 @pytest.mark.parametrize(("gamma_", "lowest"), [(2.0, -0.8), (1.0, -40.0)])

@@ -74,9 +74,6 @@ class Exact(Held):
     def mean_and_std(self, name):
         return self.scene.theory.mean(name, self.scene.separations), None
 
-    def total_number(self, name):
-        return self.mean_and_std(name)[0] * self.rows()
-
 
 def test_the_last_of_many_separations_counts(make_scene):
     """More separations than a verdict looks at: the first and the last are among those it takes."""

@@ -232,7 +232,7 @@ def test_what_is_left_out_of_a_run_is_told(scene, tmp_path):
     for wrong in ("0/3", "4/3", "1", "a/b", "1/0", "-1/3", "1/3/5", ""):
         with pytest.raises(ValueError, match=r"^--shard .*: give i/n with 1 <= i <= n$"):
             part_of(wrong)
-    assert (part_of("3/3").number, part_of("3/3").of) == (3, 3)
+    assert part_of("3/3") == (3, 3)
 
 
 def test_the_folder_of_a_run_vanishes(scene, tmp_path):
