@@ -43,6 +43,15 @@ def test_statistics_are_those_of_the_values(dataset, name):
         np.testing.assert_allclose(found.interval(name)[k], ends, rtol=1e-9)
 
 
+def test_their_scene_is_the_one_that_was_asked_for(dataset):
+    found, values = dataset
+    if isinstance(values, list):
+        assert list(found.scenes) == [one.scene for one in values]
+    else:
+        asked = SCENE.replace(nominal_area=AREAS[0])
+        assert found.scene in (asked, asked.replace(keep="statistics"))
+
+
 def test_what_is_not_kept_is_said_in_one_line(dataset):
     found, values = dataset
     if found is values:

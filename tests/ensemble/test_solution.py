@@ -195,6 +195,14 @@ def test_what_a_surface_does_not_reach_is_said_of_it(scene):
         solutions(few, "load", [most])
 
 
+def test_surfaces_without_a_stiff_asperity_are_told_at_once(make_scene):
+    """Both of two asperities lie above 1.1 in one surface of fifty, and carry nothing."""
+    softer = mcgw.Graded(mcgw.Exponential(-0.5), negative="clip")
+    scene = make_scene(separations=1.0, n_surfaces=400, grading=softer, n_asperities=2)
+    with pytest.raises(ValueError, match=r"^load = 0\.1 N: surface \d+ does not reach it; give less$"):
+        mcgw.solve(scene, load=0.1)
+
+
 def test_negative_sums_that_never_reach_a_value_have_no_crossing():
     assert crossing(lambda h: -1.0 - h * 0, 1.0) is None
     assert crossing(lambda h: 0.3 - h, 1.0) == pytest.approx(0.3, abs=1e-14)
