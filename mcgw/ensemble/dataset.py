@@ -80,7 +80,7 @@ class Dataset(Shown):
     @property
     def quantities(self) -> tuple[str, ...]:
         """Quantities that are held."""
-        return tuple(self._points[0].shapes)
+        return self._points[0].tables
 
     def mean(self, quantity: str) -> Array:
         """Return the mean over the surfaces in SI units, shape (points ..., separations).

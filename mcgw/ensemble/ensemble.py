@@ -156,7 +156,7 @@ class Ensemble(Dataset):
         about = {"title": scene.title, "scene": scene_text(scene), "sampler": self.sampler}
         if scene.keep != "statistics":
             return replace(values_of(scene, self.n_surfaces, self.values), attributes=about)
-        return Labelled(statistics_of(self, scene.shapes, STATISTICS), axes_of(scene), about)
+        return Labelled(statistics_of(self, scene.tables, STATISTICS), axes_of(scene), about)
 
     def sheet(self) -> Sheet:
         """Return how the ensemble was drawn, and means at the lowest, a middle and the highest separation."""

@@ -16,7 +16,6 @@ AXES = {  # of tables, in their order: unit and long name
     "surface": ("1", "number of the surface"),
     "separation": ("1", "mean-plane separation d/sigma"),
 }
-_OF_A_SURFACE = ("separation",)
 _WORDS = {
     "mean": "mean of the {}",
     "std": "standard deviation of the {} over surfaces",
@@ -62,7 +61,7 @@ class Labelled:
         return xarray.Dataset(*both, dict(self.attributes))
 
     def to_dataframe(self) -> Any:
-        """Return a `pandas.DataFrame` of the tables with most axes, a row for each place along them.
+        """Return a `pandas.DataFrame` of the tables, all of the same axes: a row for each place along them.
 
         Raises
         ------
@@ -70,18 +69,17 @@ class Labelled:
             If pandas is not installed.
         """
         pandas = optional("pandas", "to_dataframe")
-        dims = max((one.dims for one in self.variables.values()), key=len)
-        tables = {name: one.values for name, one in self.variables.items() if one.dims == dims}
-        size = next(iter(tables.values())).shape
+        first = next(iter(self.variables.values()))
         places = [
             self.coordinates[dim].values if dim in self.coordinates else np.arange(n)
-            for dim, n in zip(dims, size, strict=True)
+            for dim, n in zip(first.dims, first.values.shape, strict=True)
         ]
-        if len(dims) == 1:
-            index = pandas.Index(places[0], name=dims[0])
+        if len(places) == 1:
+            index = pandas.Index(places[0], name=first.dims[0])
         else:
-            index = pandas.MultiIndex.from_product(places, names=dims)
-        return pandas.DataFrame({name: values.ravel() for name, values in tables.items()}, index=index)
+            index = pandas.MultiIndex.from_product(places, names=first.dims)
+        columns = {name: one.values.ravel() for name, one in self.variables.items()}
+        return pandas.DataFrame(columns, index=index)
 
 
 def axis(name: str, values: Any) -> Variable:
@@ -97,9 +95,9 @@ def axes_of(scene: Scene) -> dict[str, Variable]:
 def values_of(scene: Scene, n_surfaces: int, values: Callable[[str], Any]) -> Labelled:
     """Values of so many surfaces: arrays by name, or what stands for them."""
     found = {}
-    for name, shape in scene.shapes.items():
-        q, dims = scene.quantity(name), ("surface", *_OF_A_SURFACE)
-        found[name] = Variable(dims[: 1 + len(shape)], values(name), q.unit, q.long_name)
+    for name in scene.tables:
+        q = scene.quantity(name)
+        found[name] = Variable(("surface", "separation"), values(name), q.unit, q.long_name)
     axes = {"surface": np.arange(n_surfaces), "separation": scene.separations}
     return Labelled(found, {name: axis(name, values) for name, values in axes.items()})
 
@@ -113,9 +111,10 @@ def statistics_of(
     for name in names:
         q = scene.quantity(name)
         for kind in kinds:
-            values = getattr(result, kind)(name)
-            dims = (*lead, *_OF_A_SURFACE)[: values.ndim]
-            found[f"{name}_{kind}"] = Variable(dims, values, q.unit, _WORDS[kind].format(q.long_name))
+            words = _WORDS[kind].format(q.long_name)
+            found[f"{name}_{kind}"] = Variable(
+                (*lead, "separation"), getattr(result, kind)(name), q.unit, words
+            )
     return found
 
 

@@ -10,8 +10,7 @@ import numpy as np
 from analytic import Hertz, MeasuredHeights, MeasuredRadii, Quantity
 from analytic.arrays import Array, hold
 from mcgw.ensemble.at_load import NEGATIVE, quantities_at
-from mcgw.ensemble.many_surfaces import ManySurfaces
-from mcgw.ensemble.separation import LOWEST, Summits
+from mcgw.ensemble.separation import LOWEST, ManySurfaces, Summits
 from mcgw.scene.scene import Scene, storable
 
 if TYPE_CHECKING:  # its loops are loaded where surfaces are drawn, in half of the time of a short command

@@ -35,7 +35,7 @@ class Held(ABC):
         raise ValueError(f"{name}: {self.no_more}")
 
     def covariance(self, name: str, other: str) -> Array:  # noqa: ARG002
-        """Between all numbers of two tables (divisor M - 1), shape (*shape, *shape of the other)."""
+        """Between all numbers of two tables (divisor M - 1), shape (separations, separations)."""
         raise ValueError(f"{name}: {self.no_more}")
 
 
@@ -57,15 +57,11 @@ class Results(Held):
 
     def covariance(self, name: str, other: str) -> Array:
         """From the deviations, some surfaces at a time."""
-        m, means = self.rows(), [self.mean_and_std(each)[0] for each in (name, other)]
-        shape = means[0].shape + means[1].shape
+        m, (a, b) = self.rows(), (self.mean_and_std(each)[0] for each in (name, other))
         if m == 1:
-            return np.full(shape, np.nan)
-        a, b = (mean.ravel() for mean in means)
-        total = np.zeros((a.size, b.size))
-        for x, y in zip(self._chunks(name), self._chunks(other), strict=True):
-            total += (x.reshape(len(x), -1) - a).T @ (y.reshape(len(y), -1) - b)
-        return (total / (m - 1)).reshape(shape)
+            return np.full((a.size, b.size), np.nan)
+        pairs = zip(self._chunks(name), self._chunks(other), strict=True)
+        return np.asarray(sum((x - a).T @ (y - b) for x, y in pairs) / (m - 1))
 
     def _chunks(self, name: str) -> Iterator[Array]:
         m = self.rows()
@@ -118,9 +114,7 @@ class Selected(Held):
 
     def covariance(self, name: str, other: str) -> Array:
         """Between all numbers of two tables (divisor M - 1)."""
-        found = self.whole.covariance(name, other)
-        across = found.ndim - self.whole.mean_and_std(other)[0].ndim
-        return np.take(np.take(found, self.which, axis=0), self.which, axis=across)
+        return self.whole.covariance(name, other)[np.ix_(self.which, self.which)]
 
 
 def joined(parts: Sequence[Mapping[str, NDArray[Any]]]) -> Tables:

@@ -11,8 +11,7 @@ from scipy.special import stdtrit
 from analytic import SEPARATIONS, quantity_of, yielding_share
 from analytic.arrays import Array
 from analytic.at_load import Moments
-from mcgw.ensemble.answers import Answers, all_are_known, exact_moments, surely_reached
-from mcgw.ensemble.at_load import GAPS, answers_at
+from mcgw.ensemble.at_load import GAPS, Answers, all_are_known, answers_at, exact_moments, surely_reached
 from mcgw.ensemble.intervals import FEWEST, interval_column, laws_are_quick
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import Column, Table

@@ -52,7 +52,7 @@ class Summarised(Held):
     def _columns(self, name: str) -> Ints:
         """Which of the numbers those of a table are, one at each separation."""
         k = len(self.scene.separations)
-        first = k * list(self.scene.shapes).index(name)
+        first = k * self.scene.tables.index(name)
         return np.arange(first, first + k)
 
     def mean_and_std(self, name: str) -> tuple[Array, Array]:
@@ -97,7 +97,7 @@ class Statistics(OfScene):
             values = joined(
                 [kept(self.scene, block) for block in drawn_blocks(self.sampler, start, end, size)]
             )
-            table = np.concatenate([values[name] for name in self.scene.shapes], axis=1)
+            table = np.concatenate([values[name] for name in self.scene.tables], axis=1)
             parts.append(Pooled.of_columns(NUMBERS, table))
             if not go_on(end):
                 break

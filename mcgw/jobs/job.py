@@ -29,8 +29,7 @@ from mcgw.store.identity import Written, difference, now, versions
 from mcgw.store.layout import contents_of
 from mcgw.store.lock import parts_of
 from mcgw.store.place import finished, recorded_scene, with_recorded_seed
-from mcgw.store.run_folder import RECORD, RunFolder, commit_shard
-from mcgw.store.spans import Plan, Span
+from mcgw.store.run_folder import RECORD, Plan, RunFolder, Span, commit_shard
 
 if TYPE_CHECKING:
     from mcgw.sweeps.points import Asked
@@ -81,7 +80,7 @@ class Job:
             With the mistakes of all points.
         """
         check_output(path)
-        from mcgw.sweeps.pooling import Pooling  # of which most runs are none
+        from mcgw.sweeps.groups import Pooling  # of which most runs are none
 
         reducers, texts = tuple(map(Pooling, asked.groups)), asked.texts()
         plan = Plan(tuple((one.n_surfaces, one.rows) for one in reducers), whole=True)

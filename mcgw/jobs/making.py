@@ -21,8 +21,7 @@ from mcgw.store.h5_writing import Contents, Rows
 from mcgw.store.layout import contents_of_values, read_statistics
 from mcgw.store.lock import locked, parts_of
 from mcgw.store.place import drop_leftovers, put, tidy
-from mcgw.store.run_folder import RECORD, RunFolder, remove_run
-from mcgw.store.spans import Span
+from mcgw.store.run_folder import RECORD, RunFolder, Span, remove_run
 
 if TYPE_CHECKING:
     from mcgw.ensemble.ensemble import Ensemble
@@ -253,7 +252,7 @@ def _merged(job: Job, check: Callable[[], None]) -> Contents:
     def pieces() -> Items[Tables]:
         if held:
             with open_h5(run.path) as file:
-                yield from pieces_of(file, tuple(job.written.scene.shapes) if job.written else ())
+                yield from pieces_of(file, job.written.scene.tables if job.written else ())
         yield from (shard.tables() for shard in shards)
 
     if run.plan.whole or not job.written:

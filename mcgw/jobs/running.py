@@ -242,8 +242,8 @@ def sweep(
     """
     from mcgw.sweeps.axes import axes_of  # of which a run needs nothing
     from mcgw.sweeps.file import open_sweep
+    from mcgw.sweeps.groups import draw, weighted
     from mcgw.sweeps.points import Asked
-    from mcgw.sweeps.pooling import draw, weighted
 
     check_object("sweep", scene, Scene)
     if path is None and not (executor is None and shard is None):

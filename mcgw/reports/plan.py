@@ -15,9 +15,8 @@ from mcgw.sampling.shared import shared
 from mcgw.scene.in_words import contact_facts
 from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene, storable
-from mcgw.sweeps.groups import Group
+from mcgw.sweeps.groups import Group, Pooling
 from mcgw.sweeps.points import Asked
-from mcgw.sweeps.pooling import Pooling
 
 _TARGETS = (1e-2, 1e-3)  # 95 % bounds of means
 _NO_SURFACES = "means alone: no surfaces, scene.theory is exact"

@@ -1,6 +1,5 @@
 """Quantities derived from the values of a scene, and the range of heights that matters."""
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -207,14 +206,10 @@ class Fields(Flat):
         return tuple(sorted(set(self.separations)))
 
     @property
-    def shapes(self) -> dict[str, tuple[int, ...]]:
-        """Shape of each table of an ensemble, for one surface."""
-        shapes: dict[str, tuple[int, ...]] = {name: (len(self.separations),) for name in self.quantities}
-        if self.interaction is not None:
-            shapes |= dict.fromkeys(self.other_separations, (len(self.separations),))
-        if self.gas is not None:
-            shapes |= dict.fromkeys(self.of_joint, (len(self.separations),))
-        return shapes
+    def tables(self) -> tuple[str, ...]:
+        """Names of the tables of an ensemble, which have a number for each surface and separation."""
+        nominal = () if self.interaction is None else self.other_separations
+        return (*self.quantities, *nominal, *self.of_joint)
 
     @property
     def of_joint(self) -> tuple[str, ...]:
@@ -241,7 +236,7 @@ class Fields(Flat):
     @property
     def width(self) -> int:
         """Count of numbers of one surface in all tables."""
-        return sum(math.prod(shape) for shape in self.shapes.values())
+        return len(self.tables) * len(self.separations)
 
     @property
     def lowest(self) -> float:

@@ -93,8 +93,8 @@ def _contents_of_statistics(ensemble: Ensemble, written: Written, **about: Any) 
     assert isinstance(sums, Summarised)
     columns, words = np.arange(scene.width), ("1", "quantity and separation")
     scales = {name: Variable((name,), columns, *words) for name in _COLUMNS}
-    order = ", ".join(f"{name} {'x'.join(map(str, shape))}" for name, shape in scene.shapes.items())
-    rows = [[ensemble.covariance(one, other) for other in scene.shapes] for one in scene.shapes]
+    order = ", ".join(f"{name} {len(scene.separations)}" for name in scene.tables)
+    rows = [[ensemble.covariance(one, other) for other in scene.tables] for one in scene.tables]
     covariance = Variable(_COLUMNS, np.block(rows), "product of units", f"covariance of {order}")
     labelled = Labelled({**found.variables, "covariance": covariance}, {**found.coordinates, **scales})
     drawn = joined([part.block() for part in sums.parts])

@@ -45,7 +45,7 @@ def scenes_of(document: dict[str, Any], axes: Axes) -> list[Scene]:
         problems = [*problems[:_MOST_TOLD], f"... and {len(problems) - _MOST_TOLD} more"]
     if problems:
         raise SceneError(problems)
-    if len({(one.separations, tuple(one.shapes)) for one in found}) > 1:
+    if len({(one.separations, one.tables) for one in found}) > 1:
         raise SceneError(["sweep: the points differ in separations or quantities; sweep them separately"])
     return found
 

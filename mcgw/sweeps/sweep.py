@@ -196,20 +196,17 @@ class Sweep(Dataset):
         )
         facts.append(("surfaces", f"{surfaces}, {groups}"))
         k = int(np.argmin(self.separations))
-        names = [name for name in self.quantities if self.mean(name).ndim == len(self.shape) + 1]
-        means = {name: self.mean(name).reshape(self.axes.size, -1)[:, k] for name in names}
-        errors = {name: self.stderr(name).reshape(self.axes.size, -1)[:, k] for name in names}
         points = list(self.axes.points())
         shown = evenly(len(points), _SHOWN)
         where = [self.axes.values_text(points[i]) for i in shown]
         columns = [Column("point", where, f"mean +- stderr at d/sigma = {self.separations[k]:g}")]
-        for name in names:
-            error = Column("stderr", errors[name][shown], form=".2g")
-            columns.append(Column(name, means[name][shown], form=".5g", beside=error))
+        for name in self.quantities:
+            mean, error = (get(name)[..., k].ravel()[shown] for get in (self.mean, self.stderr))
+            columns.append(Column(name, mean, form=".5g", beside=Column("stderr", error, form=".2g")))
         return Sheet(f"Sweep of {self.axes.size} scenes", facts, Table(tuple(columns)))
 
     def table(self) -> Table:
-        """Return a row for each point and separation: the keys, and statistics of what has no further axes.
+        """Return a row for each point and separation: the keys, means and standard deviations.
 
         Ratios are those of `ratios`, with the ends of their 95 % intervals.
         """
@@ -218,20 +215,13 @@ class Sweep(Dataset):
         columns = [Column(key, [label(values[key]) for values in at for _ in h]) for key in self.axes.keys]
         columns.append(Column("separation", np.tile(h, size), SEPARATION, form="g"))
         ratios = self.ratios()
-        for name, shape in self.scenes[0].shapes.items():
-            if len(shape) == 1:
-                unit = self.scenes[0].quantity(name).unit
-                columns += [
-                    Column(f"{name}_{kind}", getattr(self, kind)(name).ravel(), unit=unit)
-                    for kind in STATISTICS
-                ]
-                if name in ratios:
-                    columns += [
-                        Column(
-                            f"{name}_{kind}", np.ravel([getattr(one, kind) for one in ratios[name]]), unit="1"
-                        )
-                        for kind in ("ratio", "ratio_low", "ratio_high")
-                    ]
+        for name in self.quantities:
+            unit = self.scenes[0].quantity(name).unit
+            for kind in STATISTICS:
+                columns.append(Column(f"{name}_{kind}", getattr(self, kind)(name).ravel(), unit=unit))
+            for kind in ("ratio", "ratio_low", "ratio_high") if name in ratios else ():
+                values = np.ravel([getattr(one, kind) for one in ratios[name]])
+                columns.append(Column(f"{name}_{kind}", values, unit="1"))
         return Table(tuple(columns))
 
     def ratios(self) -> dict[str, list[Paired]]:
@@ -243,8 +233,8 @@ class Sweep(Dataset):
         if not others or any(place.group != self.places[0].group for place in self.places):
             return {}
         found = {}
-        for name, shape in self.scenes[0].shapes.items():
-            pairs = [self.ratio(name, point, first) for point in (first, *others)] if len(shape) == 1 else []
+        for name in self.quantities:
+            pairs = [self.ratio(name, point, first) for point in (first, *others)]
             if any((pair.ratio != 1).any() for pair in pairs[1:]):
                 found[name] = pairs
         return found

@@ -103,11 +103,11 @@ def test_joined_blocks_are_the_surfaces_of_all(sizes):
 def test_statistics_are_those_of_the_surfaces(name):
     """Mean and deviation against exact arithmetic, covariances against extended precision."""
     full, kept = surfaces_of(name), mcgw.simulate(SCENES[name], keep="statistics")
-    m, first = full.n_surfaces, next(iter(full.scene.shapes))
+    m, first = full.n_surfaces, full.scene.tables[0]
     assert kept.n_surfaces == m
-    apart = {q: full[q].reshape(m, -1).astype(np.longdouble) for q in full.scene.shapes}
+    apart = {q: full[q].reshape(m, -1).astype(np.longdouble) for q in full.scene.tables}
     apart = {q: x - x.mean(axis=0) for q, x in apart.items()}
-    for q in full.scene.shapes:
+    for q in full.scene.tables:
         mean, squares = np.transpose([exactly(x) for x in full[q].T])
         np.testing.assert_allclose(kept.mean(q).ravel(), mean, rtol=1e-13)
         if m == 1:
@@ -125,7 +125,7 @@ def test_statistics_are_those_of_the_surfaces(name):
 
 
 def assert_same_bits(one, other):
-    for q in one.scene.shapes:
+    for q in one.scene.tables:
         for get in ("mean", "std"):
             np.testing.assert_array_equal(getattr(one, get)(q), getattr(other, get)(q))
         np.testing.assert_array_equal(one.covariance(q, "load"), other.covariance(q, "load"))
@@ -152,10 +152,10 @@ def test_the_file_is_read_by_others_and_says_when_it_is_damaged(tmp_path):
         assert file["load_std"].units == "N"
         xarray.testing.assert_equal(file[list(e.to_xarray())].load(), e.to_xarray())
         full = mcgw.simulate(scene())
-        columns = np.concatenate([full[name].reshape(e.n_surfaces, -1) for name in full.scene.shapes], axis=1)
+        columns = np.concatenate([full[name].reshape(e.n_surfaces, -1) for name in full.scene.tables], axis=1)
         np.testing.assert_allclose(file["covariance"], np.cov(columns.T), rtol=1e-9, atol=1e-300)
         assert file["covariance"].dims == ("column", "other_column")
-        order = ", ".join(f"{name} {'x'.join(map(str, full[name].shape[1:]))}" for name in full.scene.shapes)
+        order = ", ".join(f"{name} {'x'.join(map(str, full[name].shape[1:]))}" for name in full.scene.tables)
         assert file["covariance"].long_name == f"covariance of {order}"
     assert e.to_dataframe()["load_std"].tolist() == e.std("load").tolist()
     assert verify(path)[0] == ""

@@ -10,7 +10,7 @@ from scipy.stats import t as student
 import analytic
 import mcgw
 from mcgw.cli import main
-from mcgw.ensemble.many_surfaces import ManySurfaces
+from mcgw.ensemble.separation import ManySurfaces
 
 LOADS = (3.0, 100.0, 900.0)
 

@@ -17,7 +17,7 @@ import mcgw
 from mcgw.errors import StoreError
 from mcgw.machine import child_process, memory
 from mcgw.machine.child_process import end_with
-from mcgw.sweeps.pooling import Pooling
+from mcgw.sweeps.groups import Pooling
 
 resource = pytest.importorskip("resource")
 

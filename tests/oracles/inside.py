@@ -86,8 +86,7 @@ MODULES = {
     "mcgw.statistics.verdict": "FALSE_ALARM verdict Verdict",
     "mcgw.store.ensembles": "read_attributes verify",
     "mcgw.store.lock": "LOCK_FILES locked LockedError parts_of",
-    "mcgw.store.run_folder": "commit_shard open_shard RECORD RunFolder",
-    "mcgw.store.spans": "Plan Span",
+    "mcgw.store.run_folder": "commit_shard open_shard Plan RECORD RunFolder Span",
 }
 HOME = {name: module for module, names in MODULES.items() for name in names.split()}
 

@@ -43,7 +43,7 @@ def entered(call):
     return {one for one in found if any(Path(one[0]).is_relative_to(folder) for folder in PACKAGES)}
 
 
-@pytest.mark.parametrize(("name", "functions", "files"), [("simulate", 145, 34), ("run", 206, 47)])
+@pytest.mark.parametrize(("name", "functions", "files"), [("simulate", 145, 34), ("run", 204, 47)])
 def test_the_simplest_scene_takes_few_steps(name, functions, files, tmp_path):
     asked = scene()
     calls = {"simulate": lambda _: mcgw.simulate(asked), "run": lambda path: mcgw.run(asked, path)}

@@ -125,7 +125,7 @@ def test_pressed_down_asperities_have_stiffnesses_in_series(make_scene):
     ensemble = mcgw.simulate(scene)
     assert laws_of_values(ensemble).p > 1e-3
     alone = mcgw.simulate(scene.replace(interaction=None))
-    sums = {name: ensemble[name] for name in scene.shapes} | {"stiffness": alone["stiffness"]}
+    sums = {name: ensemble[name] for name in scene.tables} | {"stiffness": alone["stiffness"]}
     assert laws_of_values(holding(scene, **sums)).p < 1e-3
 
 

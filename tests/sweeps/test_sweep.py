@@ -7,7 +7,7 @@ from oracles.told import drawn
 from scipy.integrate import quad
 
 import mcgw
-from mcgw.sweeps import pooling
+from mcgw.sweeps import groups
 from mcgw.sweeps.axes import axes_of, label
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
@@ -201,7 +201,7 @@ def test_neither_threads_nor_blocks_change_a_bit(monkeypatch):
     one, two = (mcgw.sweep(SCENE, over, threads=n) for n in (1, 2))
     for name in one.quantities:
         assert np.array_equal(one.std(name), two.std(name))
-    monkeypatch.setattr(pooling, "_ROWS", 70)
+    monkeypatch.setattr(groups, "_ROWS", 70)
     parts = mcgw.sweep(SCENE, over)
     np.testing.assert_allclose(parts.std("load"), one.std("load"), rtol=1e-13)
     np.testing.assert_allclose(parts.mean("load"), one.mean("load"), rtol=1e-14)

@@ -16,7 +16,7 @@ from oracles.inside import RECORD, Jobs, RunFolder, commit_block, parts_of, read
 import mcgw
 from mcgw.cli import main
 from mcgw.commands.sweep import _axis
-from mcgw.sweeps import pooling
+from mcgw.sweeps import groups
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
 SCENE = mcgw.Scene(
@@ -39,20 +39,20 @@ def digest(path):
 @pytest.fixture(autouse=True)
 def _small_chunks(monkeypatch):
     """Six for each group; workers are told which chunk, so that theirs are the same."""
-    monkeypatch.setattr(pooling, "_ROWS", 50)
+    monkeypatch.setattr(groups, "_ROWS", 50)
     monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[2]))
 
 
 @pytest.fixture
 def drawn(monkeypatch):
     """First surfaces of the blocks that are drawn, within their groups."""
-    found, plain = [], pooling.Pooling.tables
+    found, plain = [], groups.Pooling.tables
 
     def counted(pooling, first, *rest):
         found.append(first)
         return plain(pooling, first, *rest)
 
-    monkeypatch.setattr(pooling.Pooling, "tables", counted)
+    monkeypatch.setattr(groups.Pooling, "tables", counted)
     return found
 
 
@@ -61,7 +61,7 @@ def expected(tmp_path_factory):
     """Digest of what threads draw."""
     path = tmp_path_factory.mktemp("threads") / "a.h5"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(pooling, "_ROWS", 50)
+        patch.setattr(groups, "_ROWS", 50)
         mcgw.sweep(SCENE, OVER, path=path)
     return digest(path)
 
@@ -101,7 +101,7 @@ def test_other_programs_read_it(tmp_path):
 @pytest.mark.parametrize("after", [1, 6])
 def test_interrupted_anywhere_it_goes_on_to_the_same_digest(tmp_path, monkeypatch, drawn, expected, after):
     """A damaged chunk is drawn again; a finished file is not."""
-    path, counted = tmp_path / "a.h5", pooling.Pooling.tables
+    path, counted = tmp_path / "a.h5", groups.Pooling.tables
 
     def stopped(*words):
         if len(drawn) == after:
@@ -109,7 +109,7 @@ def test_interrupted_anywhere_it_goes_on_to_the_same_digest(tmp_path, monkeypatc
         return counted(*words)
 
     with monkeypatch.context() as patch:
-        patch.setattr(pooling.Pooling, "tables", stopped)
+        patch.setattr(groups.Pooling, "tables", stopped)
         with pytest.raises(KeyboardInterrupt):
             mcgw.sweep(SCENE, OVER, path=path)
         settle()
