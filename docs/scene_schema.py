@@ -4,48 +4,129 @@ Tables, keys and what may stand there are the rows of `mcgw.scene.keys`, and wha
 by the docstring of what is made of it. A test holds both files to them.
 """
 
-import inspect
 import json
+import math
 import re
 from collections.abc import Iterator
 from dataclasses import replace
+from inspect import getdoc, signature
 from pathlib import Path
 from textwrap import wrap
 from typing import Any
 
 import mcgw
-from mcgw.scene.keys import TABLES as ROWS
-from mcgw.scene.section import Key, table_shape
+from analytic.laws import by_name
+from mcgw.scene.keys import GRADINGS, HEIGHTS, TABLES as ROWS
+from mcgw.scene.kinds import ByName, Either, Flag, Kind, List, Number, Table, Text, Whole, Word
+from mcgw.scene.section import Key
 
 PAGE = Path(__file__).parent / "reference" / "scene.md"
 SCHEMA = Path(__file__).parent.parent / "mcgw" / "scene" / "scene.schema.json"
 _START = "## Top of the file"
 
 Shape = dict[str, Any]
-DOCUMENTED = {
+LAWS: dict[str, dict[str, Any]] = {
+    "grading": GRADINGS,
+    "heights": HEIGHTS,
+    "contact.law": {**by_name, "custom": mcgw.CustomLaw},
+}
+DOCUMENTED: dict[str, tuple[Any, ...]] = {
     "surface": (mcgw.Surface, mcgw.SpectralSurface),
+    "grading": (mcgw.Graded, *GRADINGS.values()),
+    "heights": (*HEIGHTS.values(),),
+    "contact.law": (*by_name.values(), mcgw.CustomLaw),
     "interaction": (mcgw.Interaction,),
 }
 
 
+# Units are checked by the program, which knows more spellings than a pattern could.
+WITH_UNIT = {"type": "string", "pattern": r"^\s*\+?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*([^\d\s.].*|1/.*)?$"}
+
+
+def shape_of(kind: Kind) -> Shape:
+    """Return a kind of values as JSON Schema."""
+    match kind:
+        case Number():
+            return number(kind)
+        case Whole():
+            most = {"maximum": kind.most} if kind.most < Whole().most else {}
+            return {"type": "integer", "minimum": kind.least, **most}
+        case Word():
+            return {"enum": list(kind.known)}
+        case Text():
+            return {"type": "string", **({} if kind.empty else {"minLength": 1})}
+        case Flag():
+            return {"type": "boolean"}
+        case List():
+            shape: Shape = {"type": "array", "items": shape_of(kind.item)}
+            shape |= {"minItems": kind.least} if kind.least else {}
+            shape |= {"maxItems": kind.most} if kind.most < 1000 else {}
+            return shape | ({"uniqueItems": True} if kind.once else {})
+        case Table():
+            return table_shape(kind.rows)
+        case ByName():
+            names = {"propertyNames": {"enum": list(kind.names)}, "minProperties": 1} if kind.names else {}
+            return {"type": "object", "additionalProperties": shape_of(kind.item), **names}
+        case Either():
+            shapes = map(shape_of, kind.kinds)
+            return {"anyOf": [each for shape in shapes for each in shape.get("anyOf", [shape])]}
+    raise TypeError(f"{type(kind).__name__} has no shape yet")
+
+
+def number(kind: Number) -> Shape:
+    """A range, a text with a unit, or null, which editors show for infinity."""
+    shape: Shape = {"type": "number"}
+    if kind.low > -math.inf:
+        shape["exclusiveMinimum" if kind.low == 0 and not kind.zero else "minimum"] = kind.low
+    if kind.high < math.inf and not kind.infinite:
+        shape["maximum"] = kind.high
+    others = [*([WITH_UNIT] if kind.unit else []), *([{"type": "null"}] if kind.infinite else [])]
+    return {"anyOf": [shape, *others]} if others else shape
+
+
+def table_shape(rows: tuple[Key, ...]) -> Shape:
+    """Return an object with these keys only, and which of them go together."""
+    told = {row.name: ({"description": row.words} if row.words else {}) | shape_of(row.kind) for row in rows}
+    shape: Shape = {"type": "object", "properties": told, "additionalProperties": False}
+    replaced = {other for row in rows for other in row.excludes}
+    always = [row for row in rows if row.required and not (row.needs or row.excludes)]
+    if required := [row.name for row in always if row.name not in replaced]:
+        shape["required"] = required
+    apart: list[Shape] = []
+    for row in rows:
+        if row.needs:
+            any_of = [{"required": [other]} for other in row.needs]
+            shape.setdefault("dependentSchemas", {})[row.name] = {"anyOf": any_of}
+        apart += [{"not": {"required": [row.name, other]}} for other in row.excludes]
+    return shape | ({"allOf": apart} if apart else {})
+
+
 def parameters(documented: Any) -> dict[str, str]:
     """Return the words of each parameter of a docstring, as Markdown."""
-    told = (inspect.getdoc(documented) or "").partition("Parameters\n----------\n")[2].partition("\n\n")[0]
+    told = (getdoc(documented) or "").partition("Parameters\n----------\n")[2].partition("\n\n")[0]
     found = re.findall(r"^(\w[\w, ]*) : .*\n((?: +.*\n?)+)", told, re.M)
     return {name: markdown(words) for names, words in found for name in names.split(", ")}
 
 
 def markdown(words: str) -> str:
-    """Return words of a docstring as those of a page: one line, each code between single marks."""
-    return " ".join(words.split()).replace("*", r"\*").replace("``", "`")
+    """Return words of a docstring as those of a page: one line, code between single marks, no other marks."""
+    parts = " ".join(words.split()).replace("``", "`").split("`")
+    return "`".join(part if k % 2 else part.replace("*", r"\*") for k, part in enumerate(parts))
 
 
 def in_words(name: str) -> tuple[Key, ...]:
-    """Return the rows of a table, each with its words."""
+    """Return the rows of a table, each with its words and the laws that it is for."""
     found: dict[str, str] = {}
     for documented in DOCUMENTED.get(name, (ROWS[name].make,)):
-        found = parameters(documented) | found
-    return tuple(replace(row, words=row.words or found[row.name]) for row in ROWS[name].rows)
+        found = parameters(documented) | found  # the first that has it
+    rows = []
+    for row in ROWS[name].rows:
+        laws = [
+            f"`{law}`" for law, make in LAWS.get(name, {}).items() if row.name in signature(make).parameters
+        ]
+        words = markdown(row.words) or found[row.name]
+        rows.append(replace(row, words=f"{words.removesuffix('.')} ({', '.join(laws)})" if laws else words))
+    return tuple(rows)
 
 
 TABLES = {name: table._replace(rows=in_words(name)) for name, table in ROWS.items()}
@@ -94,7 +175,7 @@ def tables() -> Iterator[str]:
     """Its lines."""
     for name, table in TABLES.items():
         yield f"## `[{name}]`"
-        yield from ("", *wrap(table.words, 120, break_on_hyphens=False)) if table.words else ()
+        yield from ("", *wrap(markdown(table.words), 120, break_on_hyphens=False)) if table.words else ()
         yield from ("", "| key | example | meaning |", "|---|---|---|")
         yield from (f"| `{row.name}` | `{row.example}` | {row.words} |" for row in table.rows)
         yield ""

@@ -7,11 +7,9 @@ from typing import Any
 
 from mcgw.formats.sheet import brief
 from mcgw.formats.units import EXAMPLES, parse
-from mcgw.scene.section import Key, Kind, Section, nearest, table_shape
+from mcgw.scene.section import Key, Kind, Section, nearest
 
 _MOST_WHOLE = 10**30  # so that no message has hundreds of digits
-# Units are checked by `parse`, which knows more spellings than a pattern could.
-_WITH_UNIT = {"type": "string", "pattern": r"^\s*\+?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*([^\d\s.].*|1/.*)?$"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,16 +63,6 @@ class Number(Kind):
             below += f"{f' in {self.unit}' if self.unit != '1' else ''}, such as {EXAMPLES[self.unit]}"
         return f"give a finite number{above}{below}"
 
-    def shape(self) -> dict[str, Any]:
-        """Its range, a text with a unit, or null, which editors show for infinity."""
-        shape: dict[str, Any] = {"type": "number"}
-        if self.low > -math.inf:
-            shape["exclusiveMinimum" if self.low == 0 and not self.zero else "minimum"] = self.low
-        if self.high < math.inf and not self.infinite:
-            shape["maximum"] = self.high
-        others = [*([_WITH_UNIT] if self.unit else []), *([{"type": "null"}] if self.infinite else [])]
-        return {"anyOf": [shape, *others]} if others else shape
-
 
 @dataclass(frozen=True, slots=True)
 class Whole(Kind):
@@ -93,11 +81,6 @@ class Whole(Kind):
     def wanted(self) -> str:
         """By range, unless it is told."""
         return self.advice or f"give a whole number >= {self.least}"
-
-    def shape(self) -> dict[str, Any]:
-        """Return an integer."""
-        most = {"maximum": self.most} if self.most < _MOST_WHOLE else {}
-        return {"type": "integer", "minimum": self.least, **most}
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,10 +102,6 @@ class Word(Kind):
         advice = self.advice or f"choose one of {', '.join(self.known)}"
         return section.fail(name, value, f"{nearest(value, self.known)}{advice}")
 
-    def shape(self) -> dict[str, Any]:
-        """Return these words."""
-        return {"enum": list(self.known)}
-
 
 @dataclass(frozen=True, slots=True)
 class Text(Kind):
@@ -135,10 +114,6 @@ class Text(Kind):
         """Return the text."""
         return given if isinstance(given, str) and (given or self.empty) else None
 
-    def shape(self) -> dict[str, Any]:
-        """Return a string."""
-        return {"type": "string", **({} if self.empty else {"minLength": 1})}
-
 
 @dataclass(frozen=True, slots=True)
 class Flag(Kind):
@@ -149,10 +124,6 @@ class Flag(Kind):
     def value(self, given: Any) -> bool | None:
         """Return true or false."""
         return given if isinstance(given, bool) else None
-
-    def shape(self) -> dict[str, Any]:
-        """Return a boolean."""
-        return {"type": "boolean"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,13 +153,6 @@ class List(Kind):
         few = "give at least one; " if value == [] and self.least == 1 else ""
         return section.fail(name, value, f"{few}{self.advice}{reason}")
 
-    def shape(self) -> dict[str, Any]:
-        """Return an array."""
-        shape: dict[str, Any] = {"type": "array", "items": self.item.shape()}
-        shape |= {"minItems": self.least} if self.least else {}
-        shape |= {"maxItems": self.most} if self.most < 1000 else {}
-        return shape | ({"uniqueItems": True} if self.once else {})
-
 
 @dataclass(frozen=True, slots=True)
 class Table(Kind):
@@ -215,10 +179,6 @@ class Table(Kind):
         except ValueError as error:
             return section.note(f"{section.path(name)}.{error}")
 
-    def shape(self) -> dict[str, Any]:
-        """Return an object."""
-        return table_shape(self.rows)
-
 
 @dataclass(frozen=True, slots=True)
 class ByName(Kind):
@@ -237,11 +197,6 @@ class ByName(Kind):
         found = {key: self.item.read(inner, key, each) for key, each in value.items()}
         return found if len(section.problems) == before else None
 
-    def shape(self) -> dict[str, Any]:
-        """Return an object."""
-        names = {"propertyNames": {"enum": list(self.names)}, "minProperties": 1} if self.names else {}
-        return {"type": "object", "additionalProperties": self.item.shape(), **names}
-
 
 @dataclass(frozen=True, slots=True)
 class Either(Kind):
@@ -256,11 +211,6 @@ class Either(Kind):
             if isinstance(value, _LOOKS[type(kind)]):
                 return kind.read(section, name, value)
         return section.fail(name, value, self.advice)
-
-    def shape(self) -> dict[str, Any]:
-        """Any of these."""
-        shapes = [kind.shape() for kind in self.kinds]
-        return {"anyOf": [each for shape in shapes for each in shape.get("anyOf", [shape])]}
 
 
 _LOOKS: dict[type[Kind], Any] = {

@@ -64,10 +64,6 @@ class Kind:
         """What to give in place of a value that does not fit."""
         return self.advice
 
-    def shape(self) -> dict[str, Any]:
-        """Return the same as JSON Schema."""
-        raise NotImplementedError
-
 
 @dataclass(frozen=True, slots=True)
 class Key:
@@ -114,28 +110,6 @@ class TableOfKeys(NamedTuple):
     make: Callable[..., Any] | None = None
     advice: str = ""
     word: str = ""
-
-
-def table_shape(rows: tuple[Key, ...]) -> dict[str, Any]:
-    """Return an object with these keys only, and which of them go together."""
-    shape: dict[str, Any] = {
-        "type": "object",
-        "properties": {
-            row.name: ({"description": row.words} if row.words else {}) | row.kind.shape() for row in rows
-        },
-        "additionalProperties": False,
-    }
-    replaced = {other for row in rows for other in row.excludes}
-    always = [row for row in rows if row.required and not (row.needs or row.excludes)]
-    if required := [row.name for row in always if row.name not in replaced]:
-        shape["required"] = required
-    apart: list[dict[str, Any]] = []
-    for row in rows:
-        if row.needs:
-            any_of = [{"required": [other]} for other in row.needs]
-            shape.setdefault("dependentSchemas", {})[row.name] = {"anyOf": any_of}
-        apart += [{"not": {"required": [row.name, other]}} for other in row.excludes]
-    return shape | ({"allOf": apart} if apart else {})
 
 
 class Section:
