@@ -253,7 +253,7 @@ def _variances(
 
 def _same_asperities(one: Ensemble, other: Ensemble) -> bool:
     """Whether the surfaces are the same, where contact laws put edges between cells."""
-    scenes = [e.surfaces_of.drawn_by(e.sampler).with_surfaces(1) for e in (one, other)]
+    scenes = [e.surfaces_of.drawn_by(e.sampler).with_sampling(n_surfaces=1) for e in (one, other)]
     if scenes[0] == scenes[1] or all(s.hertzian for s in scenes):
         return True
     from mcgw.sampling.asperities import same_heights  # compiled loops, which few pairs need

@@ -84,7 +84,7 @@ def simulate(
     with use_threads(threads), told(progress, "surfaces") as tell:
         tell(0, scene.n_surfaces)
         held = drawn(reducer, go_on)
-    return Ensemble(scene.with_surfaces(held.rows()), sampler, held)
+    return Ensemble(scene.with_sampling(n_surfaces=held.rows()), sampler, held)
 
 
 class Values(OfScene):

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 import numpy as np
 
 import analytic
-from mcgw.formats.sheet import brief
 from mcgw.scene.fields import Fields
 from mcgw.scene.promises import promise_of
 from mcgw.scene.stop_rule import rel_err_mistakes
@@ -18,11 +17,14 @@ _SAFELY = 1e4  # factor by which the sum over all asperities stays below the lar
 
 def mistakes(scene: Fields) -> list[str]:
     """All that is wrong, later checks only where the earlier ones find nothing."""
-    one_by_one = (_function,), (_range,), (_units,), (_modulus,), (_sums,), (_fluctuating,)
-    for checks in ((_values, _history, _measured, _radii), (_scales,), (_law, _together), *one_by_one):
+    for checks in ((_values, _history, _measured, _radii), (_scales,), (_law, _together)):
         if found := [line for check in checks for line in check(scene)]:
             return found
-    return []
+    if isinstance(scene.grading, analytic.Homogeneous) and scene.law.name != "custom":
+        return []
+    from mcgw.scene.moduli import mistakes_of_moduli  # for those scenes alone
+
+    return mistakes_of_moduli(scene)
 
 
 def _values(scene: Fields) -> Iterator[str]:
@@ -184,97 +186,3 @@ def _radii(scene: Fields) -> Iterator[str]:
             f'ensemble.sampler = "{scene.sampler}": summits with individual radii have different breaks of '
             f'contact.law = "{scene.law.name}"; use sampler = "tail", or summits.curvature = "mean"'
         )
-
-
-def _function(scene: Fields) -> Iterator[str]:
-    """Find a Python function that does not take arrays."""
-    if not isinstance(scene.grading, analytic.Custom):
-        return
-    try:
-        with np.errstate(all="ignore"):
-            scene.grading.function(np.array([scene.lowest, scene.highest]))
-    except Exception as error:  # of any kind: it is the user's own code
-        reason = brief(f"{type(error).__name__}: {error}")
-        yield (
-            f"grading: the function fails on an array of heights ({reason}); write it with numpy, or "
-            "give np.vectorize of it"
-        )
-
-
-def _range(scene: Fields) -> Iterator[str]:
-    """Heights that touch and that the series of a grading do not reach."""
-    if not isinstance(scene.grading, analytic.PiecewiseSeries) or scene.lowest >= scene.highest:
-        return
-    low, high = max(scene.lowest, scene.least), scene.highest
-    first, last = scene.grading.edges[0], scene.grading.edges[-1]
-    if not (first <= low and high <= last):
-        yield (
-            f"grading.edges: the series reach from s = {first:.6g} to {last:.6g}, but heights from {low:.6g} "
-            f"to {high:.6g} are needed; give the grading itself, or other separations"
-        )
-
-
-def _units(scene: Fields) -> Iterator[str]:
-    """Functions in other units."""
-    known = isinstance(scene.grading, analytic.Homogeneous | analytic.Exponential)
-    if known and scene.law.name != "custom":
-        return
-    from mcgw.scene.units_of_functions import functions_in_units  # for those scenes alone
-
-    yield from functions_in_units(scene)
-
-
-def _modulus(scene: Fields) -> Iterator[str]:
-    """Negative moduli among the heights that touch; none where contacts stick."""
-    sticks = scene.law.name == "johnson-kendall-roberts"
-    if scene.negative != "error" and not (sticks and scene.negative == "clip"):
-        return
-    try:
-        where = scene.negative_above(scene.lowest)
-    except ValueError as error:
-        yield str(error)
-        return
-    if where is None:
-        return
-    if isinstance(scene.grading, analytic.Exponential) and scene.grading.gamma < 0:
-        where = scene.grading.zero
-    if scene.negative == "clip":
-        yield (
-            f'grading.negative = "clip": from s = {where:.4g} asperities have no modulus, and contact.law = '
-            f'"{scene.law.name}" pulls them in without limit; increase the separations, or use another '
-            "grading"
-        )
-        return
-    yield (
-        f"{_key(scene)}: E*(s) is negative from s = {where:.4g}, which touches at h = {scene.lowest:g}; "
-        'increase the separations, or set negative = "clip" or "allow" under [grading]'
-    )
-
-
-def _sums(scene: Fields) -> Iterator[str]:
-    """Find the sums that the grading makes larger than double precision holds."""
-    ends = np.array(sorted({scene.highest, *scene.separations}))
-    stiff = [q for q in map(analytic.quantity_of, scene.quantities) if q.modulus]
-    with np.errstate(all="ignore"):
-        try:
-            steepest = float(np.max(np.abs(scene.modulus(ends))))
-        except ValueError:
-            return  # `_modulus` says why, unless negative moduli are allowed
-        sums = [q.scale(scene.surface) * steepest * float(scene.n_asperities) * _SAFELY for q in stiff]
-    if not all(value < np.finfo(float).max for value in sums):
-        yield (f"{_key(scene)}: E*(s)/E* reaches {steepest:.3g}, so sums overflow; give a smaller one")
-
-
-def _fluctuating(scene: Fields) -> Iterator[str]:
-    """Find a Python function that has no variance."""
-    if scene.keep == "statistics" and not scene.grading.smooth:
-        try:
-            scene.alone.fluctuations(scene.quantities, np.array([scene.lowest]))
-        except ValueError as error:
-            yield f'ensemble.keep = "statistics": {error}; or use "sums"'
-
-
-def _key(scene: Fields) -> str:
-    """Find the key of a grading, and its value if that is one number."""
-    grading = scene.grading
-    return f"grading.gamma = {grading.gamma:g}" if isinstance(grading, analytic.Exponential) else "grading"

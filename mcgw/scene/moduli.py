@@ -1,4 +1,7 @@
-"""Functions that are no ratios: moduli in pascals, heights in metres, a contact law in newtons."""
+"""Moduli against height, and laws of one's own: what is wrong with them, or perhaps in another unit.
+
+Scenes with neither do not import this.
+"""
 
 from collections.abc import Iterator
 from typing import Any
@@ -8,6 +11,7 @@ import numpy as np
 import analytic
 from analytic.arrays import Array
 from analytic.laws import piece_of
+from mcgw.formats.sheet import brief
 from mcgw.scene.fields import Fields
 
 _FARTHEST = 1e3  # from 1: a ratio that differs from it by more at every height is none
@@ -16,10 +20,50 @@ _CLOSE = 3.0  # within this factor
 _LOOKED_AT = np.array([0.9, 0.75, 0.5, 0.25, 0.1, 0.01])  # shares of the contacts that are higher
 _UNITS = (1.0, 1e6, 1e9)  # in which moduli are given, Pa
 _PARAMETERS = (analytic.Homogeneous, analytic.Exponential)
+_SAFELY = 1e4  # factor by which the sum over all asperities stays below the largest number
+_FARTHEST_HEIGHT = 50.0  # reduced, of which no surface has one
+_RATIOS = (1e-3, 50.0)  # from a gel on its rubber to diamond on its glue
+_UNTOLD = 0.1  # share of the contacts at a separation that a table may leave to the value of its end
 _MEANT = "; if it is meant so, give "
 
 
-def functions_in_units(scene: Fields) -> Iterator[str]:
+def mistakes_of_moduli(scene: Fields) -> list[str]:
+    """All that is wrong, later checks only where the earlier ones find nothing."""
+    for check in (_function, _range, _units, _modulus, _sums, _fluctuating):
+        if found := [*check(scene)]:
+            return found
+    return []
+
+
+def _function(scene: Fields) -> Iterator[str]:
+    """Find a Python function that does not take arrays."""
+    if not isinstance(scene.grading, analytic.Custom):
+        return
+    try:
+        with np.errstate(all="ignore"):
+            scene.grading.function(np.array([scene.lowest, scene.highest]))
+    except Exception as error:  # of any kind: it is the user's own code
+        reason = brief(f"{type(error).__name__}: {error}")
+        yield (
+            f"grading: the function fails on an array of heights ({reason}); write it with numpy, or "
+            "give np.vectorize of it"
+        )
+
+
+def _range(scene: Fields) -> Iterator[str]:
+    """Heights that touch and that the series of a grading do not reach."""
+    if not isinstance(scene.grading, analytic.PiecewiseSeries) or scene.lowest >= scene.highest:
+        return
+    low, high = max(scene.lowest, scene.least), scene.highest
+    first, last = scene.grading.edges[0], scene.grading.edges[-1]
+    if not (first <= low and high <= last):
+        yield (
+            f"grading.edges: the series reach from s = {first:.6g} to {last:.6g}, but heights from {low:.6g} "
+            f"to {high:.6g} are needed; give the grading itself, or other separations"
+        )
+
+
+def _units(scene: Fields) -> Iterator[str]:
     """Refuse a grading or a custom contact law that is far from 1 at all heights that touch."""
     own_law = scene.law.name == "custom" and getattr(scene.law, "checked", True)
     inner = getattr(scene.grading, "grading", scene.grading)  # of a clipped one
@@ -33,9 +77,9 @@ def functions_in_units(scene: Fields) -> Iterator[str]:
     except ValueError:
         return  # a later check reports it
     if own_grading:
-        yield from _grading(scene, inner, e)
+        yield from _no_ratio(scene, inner, e)
     if own_law and np.all(e > 0):
-        yield from _law(scene, s - h, e)
+        yield from _no_law(scene, s - h, e)
 
 
 def _far(ratios: Array, farthest: float = _FARTHEST) -> bool:
@@ -50,7 +94,7 @@ def _given_in(ratios: Array, size: float) -> bool:
     return _far(ratios) or (_far(ratios, _APART) and bool(near))
 
 
-def _grading(scene: Fields, inner: Any, e: Array) -> Iterator[str]:
+def _no_ratio(scene: Fields, inner: Any, e: Array) -> Iterator[str]:
     E_star, sigma = scene.surface.E_star, scene.surface.sigma
     if not any(_given_in(e, E_star / size) for size in _UNITS):
         return
@@ -67,7 +111,7 @@ def _grading(scene: Fields, inner: Any, e: Array) -> Iterator[str]:
     )
 
 
-def _law(scene: Fields, penetration: Array, e: Array) -> Iterator[str]:
+def _no_law(scene: Fields, penetration: Array, e: Array) -> Iterator[str]:
     law: Any = scene.law
     surface, y = scene.surface, np.sqrt(penetration)
     delta_c = law.critical * surface.sigma
@@ -88,3 +132,85 @@ def _law(scene: Fields, penetration: Array, e: Array) -> Iterator[str]:
 
 def _ends(values: Array) -> str:
     return " to ".join(dict.fromkeys(f"{end:.3g}" for end in (values.min(), values.max())))
+
+
+def _modulus(scene: Fields) -> Iterator[str]:
+    """Negative moduli among the heights that touch; none where contacts stick."""
+    sticks = scene.law.name == "johnson-kendall-roberts"
+    if scene.negative != "error" and not (sticks and scene.negative == "clip"):
+        return
+    try:
+        where = scene.negative_above(scene.lowest)
+    except ValueError as error:
+        yield str(error)
+        return
+    if where is None:
+        return
+    if isinstance(scene.grading, analytic.Exponential) and scene.grading.gamma < 0:
+        where = scene.grading.zero
+    if scene.negative == "clip":
+        yield (
+            f'grading.negative = "clip": from s = {where:.4g} asperities have no modulus, and contact.law = '
+            f'"{scene.law.name}" pulls them in without limit; increase the separations, or use another '
+            "grading"
+        )
+        return
+    yield (
+        f"{_key(scene)}: E*(s) is negative from s = {where:.4g}, which touches at h = {scene.lowest:g}; "
+        'increase the separations, or set negative = "clip" or "allow" under [grading]'
+    )
+
+
+def _sums(scene: Fields) -> Iterator[str]:
+    """Find the sums that the grading makes larger than double precision holds."""
+    ends = np.array(sorted({scene.highest, *scene.separations}))
+    stiff = [q for q in map(analytic.quantity_of, scene.quantities) if q.modulus]
+    with np.errstate(all="ignore"):
+        try:
+            steepest = float(np.max(np.abs(scene.modulus(ends))))
+        except ValueError:
+            return  # `_modulus` says why, unless negative moduli are allowed
+        sums = [q.scale(scene.surface) * steepest * float(scene.n_asperities) * _SAFELY for q in stiff]
+    if not all(value < np.finfo(float).max for value in sums):
+        yield (f"{_key(scene)}: E*(s)/E* reaches {steepest:.3g}, so sums overflow; give a smaller one")
+
+
+def _fluctuating(scene: Fields) -> Iterator[str]:
+    """Find a Python function that has no variance."""
+    if scene.keep == "statistics" and not scene.grading.smooth:
+        try:
+            scene.alone.fluctuations(scene.quantities, np.array([scene.lowest]))
+        except ValueError as error:
+            yield f'ensemble.keep = "statistics": {error}; or use "sums"'
+
+
+def _key(scene: Fields) -> str:
+    """Find the key of a grading, and its value if that is one number."""
+    grading = scene.grading
+    return f"grading.gamma = {grading.gamma:g}" if isinstance(grading, analytic.Exponential) else "grading"
+
+
+def doubts_of_table(table: analytic.Table, scene: Fields) -> Iterator[str]:
+    """Heights and moduli of a table in other units, and contacts beyond its ends."""
+    farthest = max(table.s, key=abs)
+    if abs(farthest) > _FARTHEST_HEIGHT:
+        yield (
+            f"grading: a point lies at s = {farthest:.3g} sigma, where there are no summits; s is z/sigma, "
+            "and z is in m unless the header of the file says z (um)"
+        )
+    ratios = [abs(ratio) for ratio in table.ratio if ratio != 0]
+    if odd := [ratio for ratio in ratios if not _RATIOS[0] <= ratio <= _RATIOS[1]]:
+        yield (
+            f"grading: E*(s)/E* = {odd[0]:.3g} of surface.E_star = {scene.surface.E_star:g} Pa; a ratio "
+            "should be near 1, and E_star is in Pa unless the header of the file says E_star (GPa)"
+        )
+    low, high = min(scene.separations), max(scene.separations)
+    touch, from_first, over_last = scene.heights.sf(np.maximum(low, (low, table.s[0], table.s[-1])))
+    share = float(touch - from_first + over_last) / float(touch) if touch > 0 else 0.0
+    if share > _UNTOLD or high > table.s[-1]:
+        where, share = (high, 1.0) if high > table.s[-1] else (low, share)
+        fraction = "all" if share == 1 else f"{share:.0%} of the"
+        yield (
+            f"grading: {fraction} contacts at d/sigma = {where:g} are outside the table, which reaches from "
+            f"s = {table.s[0]:.3g} to {table.s[-1]:.3g}; the modulus at its end is used for them"
+        )

@@ -24,10 +24,7 @@ RANGES = {
     "E_star": (1e3, 2e12, "softer than any gel", "stiffer than diamond", "GPa MPa"),
 }
 _HARDLY_APART = 1e-3  # d/sigma: separations that all lie so close to 0 are lengths
-_FARTHEST = 50.0  # reduced heights of which no surface has one
-_RATIOS = (1e-3, 50.0)  # from a gel on its rubber to diamond on its glue
 _A_CONTACT = 4.4e-9  # s: drawing 1e10 asperities, half of which touch, took 22 s
-_UNTOLD = 0.1  # share of the contacts at a separation that a table may leave to the value of its end
 
 
 def warn_of_units(doubts: Iterable[str]) -> None:
@@ -46,7 +43,9 @@ def perhaps_other_units(scene: "Fields") -> list[str]:
             f"{farthest / scene.surface.sigma:.4g} sigma? Separations are d/sigma"
         )
     if isinstance(scene.grading, Table):
-        found += _of_table(scene.grading, scene)
+        from mcgw.scene.moduli import doubts_of_table  # for those scenes alone
+
+        found += doubts_of_table(scene.grading, scene)
     return found
 
 
@@ -86,29 +85,3 @@ def _written(value: float, units: str) -> Iterator[str]:
     while value >= 1e4:
         value /= 1e3
     return (f"{value:.6g}{unit}" if unit[0] == "/" else f"{value:.6g} {unit}" for unit in units.split())
-
-
-def _of_table(table: Table, scene: "Fields") -> Iterator[str]:
-    """Heights and moduli of a table in other units, and contacts beyond its ends."""
-    farthest = max(table.s, key=abs)
-    if abs(farthest) > _FARTHEST:
-        yield (
-            f"grading: a point lies at s = {farthest:.3g} sigma, where there are no summits; s is z/sigma, "
-            "and z is in m unless the header of the file says z (um)"
-        )
-    ratios = [abs(ratio) for ratio in table.ratio if ratio != 0]
-    if odd := [ratio for ratio in ratios if not _RATIOS[0] <= ratio <= _RATIOS[1]]:
-        yield (
-            f"grading: E*(s)/E* = {odd[0]:.3g} of surface.E_star = {scene.surface.E_star:g} Pa; a ratio "
-            "should be near 1, and E_star is in Pa unless the header of the file says E_star (GPa)"
-        )
-    low, high = min(scene.separations), max(scene.separations)
-    touch, from_first, over_last = scene.heights.sf(np.maximum(low, (low, table.s[0], table.s[-1])))
-    share = float(touch - from_first + over_last) / float(touch) if touch > 0 else 0.0
-    if share > _UNTOLD or high > table.s[-1]:
-        where, share = (high, 1.0) if high > table.s[-1] else (low, share)
-        fraction = "all" if share == 1 else f"{share:.0%} of the"
-        yield (
-            f"grading: {fraction} contacts at d/sigma = {where:g} are outside the table, which reaches from "
-            f"s = {table.s[0]:.3g} to {table.s[-1]:.3g}; the modulus at its end is used for them"
-        )

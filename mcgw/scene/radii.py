@@ -148,14 +148,10 @@ def _checked(heights: Any, radii: Any) -> tuple[Array, Array]:
     z, radius = (np.asarray(x, dtype=np.float64) for x in (heights, radii))
     if z.ndim != 1 or z.shape != radius.shape:
         raise ValueError(f"there are {z.size} heights and {radius.size} radii")
-    for name, values, wrong in (
-        ("height", z, ~np.isfinite(z)),
-        ("radius", radius, ~(np.isfinite(radius) & (radius > 0))),
-    ):
-        if np.any(wrong):
-            k = int(np.flatnonzero(wrong)[0])
-            wanted = "a finite number" + (" > 0" if name == "radius" else "")
-            raise ValueError(f"{name} of summit {k + 1} is {values[k]:g}, not {wanted}")
+    wrong = ~(np.isfinite(z) & np.isfinite(radius) & (radius > 0))
+    if np.any(wrong):
+        k = int(np.flatnonzero(wrong)[0])
+        raise ValueError(f"summit {k + 1} has the height {z[k]:g} and the radius {radius[k]:g}, not > 0")
     MeasuredHeights(z)
     return z, radius
 

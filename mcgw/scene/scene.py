@@ -198,11 +198,8 @@ class Scene(Fields, Shown):
         parts["grading"] = Graded(self.grading, parts.pop("negative"))
         return Scene(**with_values(parts, changes)) if changes else self
 
-    def with_surfaces(self, n: int) -> Scene:
-        """Return the scene with another number of surfaces, on which nothing else hangs: not checked anew."""
-        return self._drawn(n_surfaces=n)
-
-    def _drawn(self, **changes: Any) -> Scene:
+    def with_sampling(self, **changes: Any) -> Scene:
+        """Return the scene drawn in another way, on which nothing else hangs: not checked anew."""
         scene = copy(self)
         hold(scene, ensemble=dataclasses.replace(self.ensemble, **changes))
         return scene
@@ -211,7 +208,7 @@ class Scene(Fields, Shown):
         """Return the scene that says by which sampler it was drawn, where it left the choice to ``auto``."""
         if self.accuracy and not promise_of(sampler).one_by_one:
             return self  # its crowds follow from what may be spent
-        return self._drawn(sampler=sampler)
+        return self.with_sampling(sampler=sampler)
 
     def sheet(self) -> Sheet:
         """Return the scene as shown to people."""

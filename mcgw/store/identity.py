@@ -102,7 +102,7 @@ def difference(there: Question, here: Question) -> str:
 def _said(scene: str, axes: str) -> dict[str, Any]:
     """Keys and values that decide the numbers: of a scene alone but for the number of surfaces."""
     if not axes:
-        return dict(_flat(loads(scene_text(scene_from(scene).with_surfaces(1), left_out=False))))
+        return dict(_flat(loads(scene_text(scene_from(scene).with_sampling(n_surfaces=1), left_out=False))))
     return {**dict(_flat(loads(scene))), "sweep": axes}
 
 
