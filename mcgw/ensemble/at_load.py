@@ -240,7 +240,7 @@ def exact_moments(scene: Scene, given: str, amount: float, theory: Mapping[str, 
 
 def _known_by_quadrature(scene: Scene, given: str) -> bool:
     """Whether the law of the sums of its asperities is known, or quicker to find than to draw."""
-    return scene.curvature is None and not scene.as_measured and given != "nominal_separation"
+    return scene.summits is None and not scene.as_measured and given != "nominal_separation"
 
 
 def _from_sums(scene: Scene, theory: Mapping[str, float]) -> dict[str, tuple[str, float]]:

@@ -204,7 +204,7 @@ def slopes_of(
 def moved(scene: Scene, steps: dict[str, float]) -> Scene:
     """Return the scene with other parameters of its surface, by steps of their logarithms."""
     factors = {name: math.exp(step) for name, step in steps.items()}
-    surface, heights, curvature = scene.surface, scene.heights, scene.curvature
+    surface, heights, curvature = scene.surface, scene.heights, scene.summits
     if any(name in factors for name in ("m0", "m2", "m4")):
         assert isinstance(heights, Nayak)  # only these have uncertain moments
         old = moments_of_nayak(surface, heights.alpha)

@@ -110,7 +110,7 @@ def moments(scene: Scene, names: Sequence[str], orders: Sequence[int]) -> Array:
     Shape (1 + orders, quantities, separations), over the scale of each quantity.
     """
     (h, back), parts = np.unique(scene.separations, return_inverse=True), []
-    cut_by_radius = isinstance(scene.curvature, RandomCurvature) and not scene.hertzian
+    cut_by_radius = isinstance(scene.summits, RandomCurvature) and not scene.hertzian
     most = 1 if cut_by_radius else _AT_A_TIME
     for few in np.array_split(h, -(-h.size // most)):
         one = scene.theory.fluctuations(names, few)
@@ -228,7 +228,7 @@ def laws_are_quick(scene: Scene) -> bool:
 
     Under laws other than Hertz's, with radii of their own and of lists of summits it takes seconds.
     """
-    plain = type(scene.law) is Hertz and scene.curvature is None
+    plain = type(scene.law) is Hertz and scene.summits is None
     return plain and not scene.as_measured
 
 
@@ -238,7 +238,7 @@ def exact_ends(scene: Scene, name: str, share: float) -> Array | None:
     None where no law is known, or where laws take a while: those of summits with radii of their own and of
     other contact laws take about six times as long as Hertz's, those of both, and of lists, much longer.
     """
-    both = scene.curvature is not None and type(scene.law) is not Hertz
+    both = scene.summits is not None and type(scene.law) is not Hertz
     longer = not laws_are_quick(scene) and len(scene.separations) > _MOST_OF_BAND
     if both or longer or isinstance(scene.heights, MeasuredHeights):
         return None

@@ -112,7 +112,7 @@ def _resampled(scene: Scene) -> Scene:
     heights = scene.heights
     assert isinstance(heights, MeasuredHeights)
     again = MeasuredHeights(heights.heights, resampled=True)
-    own = scene.curvature
+    own = scene.summits
     ratios = own.ratios if isinstance(own, MeasuredRadii) else np.ones(len(heights.heights))
     return scene.replace(heights=again, summits=MeasuredRadii(again, ratios), n_surfaces=_RESAMPLED)
 

@@ -14,6 +14,7 @@ from mcgw.formats.sheet import Sheet, Shown
 from mcgw.formats.table import SEPARATION, Column, Table
 from mcgw.machine.terminal import plotted
 from mcgw.scene.arguments import check_object
+from mcgw.scene.scene import with_sampling
 
 Some = tuple[Ints, Array]  # numbers of pooled scenes, and their weights
 _PAIRED = ("surface", "separations", "heights", "n_asperities", "count", "seed")
@@ -253,7 +254,7 @@ def _variances(
 
 def _same_asperities(one: Ensemble, other: Ensemble) -> bool:
     """Whether the surfaces are the same, where contact laws put edges between cells."""
-    scenes = [e.surfaces_of.drawn_by(e.sampler).with_sampling(n_surfaces=1) for e in (one, other)]
+    scenes = [with_sampling(e.surfaces_of.drawn_by(e.sampler), n_surfaces=1) for e in (one, other)]
     if scenes[0] == scenes[1] or all(s.hertzian for s in scenes):
         return True
     from mcgw.sampling.asperities import same_heights  # compiled loops, which few pairs need

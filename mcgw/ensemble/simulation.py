@@ -17,7 +17,7 @@ from mcgw.machine.memory import check_memory
 from mcgw.machine.progress import Progress, told
 from mcgw.sampling.expected import Expected
 from mcgw.scene.arguments import check_object
-from mcgw.scene.scene import Scene, storable
+from mcgw.scene.scene import Scene, storable, with_sampling
 
 _BYTES = 2**23  # of a block: large enough that its flushing costs little
 _DRAWS = 4e8  # numbers drawn for a block: a second or so
@@ -84,7 +84,7 @@ def simulate(
     with use_threads(threads), told(progress, "surfaces") as tell:
         tell(0, scene.n_surfaces)
         held = drawn(reducer, go_on)
-    return Ensemble(scene.with_sampling(n_surfaces=held.rows()), sampler, held)
+    return Ensemble(with_sampling(scene, n_surfaces=held.rows()), sampler, held)
 
 
 class Values(OfScene):

@@ -127,7 +127,7 @@ class Compared:
         """Separations of the lines."""
         if self.swept:
             return _SWEPT_LINE
-        fine = _FINE if self.scene.curvature is None else _COARSE
+        fine = _FINE if self.scene.summits is None else _COARSE
         return np.linspace(self.h.min(), self.h.max(), fine) if len(self.h) > 1 else self.h
 
     @cached_property
@@ -173,7 +173,7 @@ class Compared:
             return ()
         room = max(int(_MOST_HEIGHTS / max(self.scene.touching, 1.0)), 2)
         scene = self.scene
-        if scene.curvature is None:
+        if scene.summits is None:
             lowest = _LOWEST if self.swept else scene.separations
             scene = scene.replace(sampler="tail", keep="sums", separations=lowest)
         return tuple(heights(scene, k) for k in range(min(self.most_listed, scene.n_surfaces, room)))

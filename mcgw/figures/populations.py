@@ -30,7 +30,7 @@ def mean_moduli(f: Compared) -> FigureData:
     title = "Plasticity index over that of the homogeneous surface"
     if f.swept:
         return FigureData(title, f.listed_caption, _over_gamma(f))
-    plain = f.hertz and f.scene.curvature is None  # else area and load of a contact are not powers
+    plain = f.hertz and f.scene.summits is None  # else area and load of a contact are not powers
     series = []
     for weight in _POWERS if plain else ("number",):
         line, at = (_exact(f, weight, f.scene.modulus, h) for h in (f.line, f.h))

@@ -83,7 +83,7 @@ def plan_of(scene: Scene) -> Plan:
 def _with_crowds(scene: Scene, known: Expected, surfaces: int) -> float | None:
     """Seconds that an accuracy above 0 may buy: those of ``aggregate``, where ``auto`` takes ``cells``."""
     few = known.draws < _WORTH * _CROWD * known.cells  # as crowds are chosen
-    if known.name != "cells" or scene.sampler != "auto" or scene.curvature is not None or few:
+    if known.name != "cells" or scene.sampler != "auto" or scene.summits is not None or few:
         return None
     return rough_seconds(scene.replace(sampler="aggregate"), surfaces)
 

@@ -68,8 +68,8 @@ class Direct(Sampler):
 
     def _summits(self, rng: np.random.Generator, n: int) -> tuple[Array, Array | None]:
         """Heights of so many summits, and ratios of their radii where they have their own."""
-        if self.scene.curvature:
-            return self.scene.curvature.summits(rng, n)
+        if self.scene.summits:
+            return self.scene.summits.summits(rng, n)
         return self.scene.heights.rvs(n, rng), None
 
 

@@ -62,7 +62,7 @@ def _in_cells(name: str, scene: Scene) -> Expected:
     inside = scene.n_asperities * -np.diff(scene.heights.sf(edges)) if edges.size else np.empty(0)
     outside = max(scene.touching - float(inside.sum()), 0.0)
     plain, rooted = _orders(scene, edges)
-    moments, own = int(plain.sum() + rooted.sum()) * _families(scene), scene.curvature is not None
+    moments, own = int(plain.sum() + rooted.sum()) * _families(scene), scene.summits is not None
     draws = float(inside.sum()) * (_DRAWS_WITH_RADIUS if own else 1) * (moments > 0)
     seconds = _SURFACE + moments * (_MOMENT if scene.hertzian else _OF_LAW) + _alone(scene, outside)
     if name == "aggregate":
@@ -83,10 +83,10 @@ def _orders(scene: Scene, edges: Array) -> tuple[Ints, Ints]:
 def _families(scene: Scene) -> int:
     """Powers of the radius by which moments are kept apart; 0 where contacts are only counted."""
     powers = {quantity_of(name).radius for name in scene.quantities if not quantity_of(name).counts}
-    return len(powers) if scene.curvature is not None else min(len(powers), 1)
+    return len(powers) if scene.summits is not None else min(len(powers), 1)
 
 
 def _alone(scene: Scene, asperities: float) -> float:
     """Seconds that asperities take which are drawn and added up one by one."""
-    drawn = _ALONE * (1 if scene.curvature is None else _RADIUS)
+    drawn = _ALONE * (1 if scene.summits is None else _RADIUS)
     return asperities * (drawn + scene.width * (_VALUE if scene.hertzian else _VALUE_OF_LAW))

@@ -72,11 +72,11 @@ def extra_heights(
 
 def table_of(scene: Scene, lowest: float) -> "RadiusTable | None":
     """Radii of summits above a height, where they have their own."""
-    if scene.curvature is None:
+    if scene.summits is None:
         return None
     from mcgw.sampling.own_radii import radius_table  # for those scenes alone
 
-    return radius_table(scene.curvature, lowest)
+    return radius_table(scene.summits, lowest)
 
 
 def _wide_uniforms(seed: int, first: int, stream: int, numbers: Ints) -> Array:

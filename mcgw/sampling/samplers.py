@@ -51,7 +51,7 @@ def sampler_of(scene: Scene) -> Sampler:
     scene = storable(scene)
     name = name_of(scene)
     try:
-        if scene.accuracy and scene.sampler == "auto" and name == "cells" and scene.curvature is None:
+        if scene.accuracy and scene.sampler == "auto" and name == "cells" and scene.summits is None:
             return _perhaps_crowded(scene)
         return _MAKERS[name](scene)
     except UnresolvedError:
@@ -71,7 +71,7 @@ def name_of(scene: Scene) -> str:
     few = scene.touching < most
     names = ("tail", "cells", "direct") if few else ("cells", "tail", "direct")
     # Where two of these meet, each summit has breaks of its own.
-    breaks = (scene.curvature is not None) + (not scene.hertzian)
+    breaks = (scene.summits is not None) + (not scene.hertzian)
     listed = isinstance(scene.heights, MeasuredHeights)
     promises = ((name, promise_of(name)) for name in names)
     return next(x for x, p in promises if (p.own_laws or breaks < 2) and not (p.needs_density and listed))
@@ -164,7 +164,7 @@ def _response(scene: Scene, mesh: Mesh) -> "Response | Families":
         return response_of(scene, mesh, names)
 
     names = _summed(scene.quantities)
-    if scene.curvature is None or not names:
+    if scene.summits is None or not names:
         return response_to(names)
     from mcgw.sampling.own_radii import Families
 

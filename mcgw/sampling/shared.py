@@ -74,12 +74,12 @@ def to_be_shared(scene: Scene) -> tuple[Any, ...] | None:
     """
     name = name_of(scene)
     perhaps_crowded = scene.accuracy > 0 and scene.sampler == "auto"
-    listed = isinstance(scene.curvature, MeasuredRadii)
+    listed = isinstance(scene.summits, MeasuredRadii)
     if name not in ("cells", "tail") or listed or perhaps_crowded:
         return None
     drawn = scene.n_asperities, scene.seed, scene.count, scene.n_surfaces
-    powers = {quantity_of(name).radius for name in scene.quantities} if scene.curvature else None
-    return *drawn, name, scene.lowest, scene.heights, scene.curvature, powers
+    powers = {quantity_of(name).radius for name in scene.quantities} if scene.summits else None
+    return *drawn, name, scene.lowest, scene.heights, scene.summits, powers
 
 
 def common_edges(scenes: Sequence[Scene]) -> tuple[float, ...] | None:

@@ -102,8 +102,8 @@ def with_radii(
     response: Families,
 ) -> Counted:
     """Return a sampler on a mesh that draws a radius for each asperity."""
-    assert scene.curvature is not None
-    table = radius_table(scene.curvature, scene.lowest)
+    assert scene.summits is not None
+    table = radius_table(scene.summits, scene.lowest)
     return Counted(name, scene, mesh, response, WithRadii(mesh, table, response), table)
 
 

@@ -40,7 +40,6 @@ class Flat:
     unload_from: float | None = _of("contact.unload_from")
     hardness: float | None = _of("contact.hardness")
     poisson: float | None = _of("contact.poisson")
-    curvature: RandomCurvature | MeasuredRadii | None = _of("summits")
     film: Film | None = _of("joint.film")
     gas: "analytic.Joint | None" = _of("joint.filling")
     n_surfaces: int = _of("ensemble.n_surfaces")
@@ -107,7 +106,7 @@ class Fields(Flat):
             self.surface,
             grading=self.modulus,
             heights=self.heights,
-            curvature=self.curvature,
+            curvature=self.summits,
             law=self.law,
             unload_from=self.unload_from,
             film=self.film,

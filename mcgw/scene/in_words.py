@@ -66,7 +66,7 @@ def sheet_of(scene: Fields) -> Sheet:
         ("", f"{x['nominal_area']}, {x['E_star']}"),
         ("grading", law_text(scene.grading) + ("" if scene.negative == "error" else f", {scene.negative}")),
         ("heights", law_text(scene.heights)),
-        *([] if scene.curvature is None else [("radii", law_text(scene.curvature))]),
+        *([] if scene.summits is None else [("radii", law_text(scene.summits))]),
         *([] if scene.fitted is None else zip(("fitted to", ""), scene.fitted.lines(), strict=True)),
         *contact_facts(scene),
         ("separations", f"{among}{ends} (d/sigma)"),

@@ -138,14 +138,14 @@ def _measured(scene: Fields) -> Iterator[str]:
     """Measured heights are one surface, added up and not drawn; or drawn one by one, in pairs with radii."""
     if not isinstance(scene.heights, analytic.MeasuredHeights):
         return
-    table = "heights" if scene.curvature is None else "summits"
+    table = "heights" if scene.summits is None else "summits"
     if promise_of(scene.sampler).needs_density:
         yield (
             f'ensemble.sampler = "{scene.sampler}": it draws from a density, which measured heights do '
             'not have; use "direct"'
         )
     if not scene.as_measured:
-        if scene.curvature is None:
+        if scene.summits is None:
             yield "heights: heights that are resampled without radii have a smooth law; use mcgw.HeightTable"
         return
     number = len(scene.heights.heights)
@@ -164,16 +164,16 @@ def _measured(scene: Fields) -> Iterator[str]:
 
 def _radii(scene: Fields) -> Iterator[str]:
     """Radii of summits that do not go with their heights, or that a sampler does not draw."""
-    if scene.curvature is None:
+    if scene.summits is None:
         return
-    if isinstance(scene.curvature, analytic.MeasuredRadii):
-        if scene.heights != scene.curvature.heights:
+    if isinstance(scene.summits, analytic.MeasuredRadii):
+        if scene.heights != scene.summits.heights:
             yield "heights: they differ from those of the measured summits; leave them out"
         return
-    if not isinstance(scene.heights, analytic.Nayak) or scene.heights.alpha != scene.curvature.alpha:
+    if not isinstance(scene.heights, analytic.Nayak) or scene.heights.alpha != scene.summits.alpha:
         yield (
             'summits.curvature = "random": it needs heights.law = "nayak", alpha = '
-            f'{scene.curvature.alpha:g}; use these heights, or curvature = "mean"'
+            f'{scene.summits.alpha:g}; use these heights, or curvature = "mean"'
         )
     promise = promise_of(scene.sampler)
     if not promise.one_by_one:

@@ -198,17 +198,11 @@ class Scene(Fields, Shown):
         parts["grading"] = Graded(self.grading, parts.pop("negative"))
         return Scene(**with_values(parts, changes)) if changes else self
 
-    def with_sampling(self, **changes: Any) -> Scene:
-        """Return the scene drawn in another way, on which nothing else hangs: not checked anew."""
-        scene = copy(self)
-        hold(scene, ensemble=dataclasses.replace(self.ensemble, **changes))
-        return scene
-
     def drawn_by(self, sampler: str) -> Scene:
         """Return the scene that says by which sampler it was drawn, where it left the choice to ``auto``."""
         if self.accuracy and not promise_of(sampler).one_by_one:
             return self  # its crowds follow from what may be spent
-        return self.with_sampling(sampler=sampler)
+        return with_sampling(self, sampler=sampler)
 
     def sheet(self) -> Sheet:
         """Return the scene as shown to people."""
@@ -283,6 +277,13 @@ def _changed(part: str, held: Any, changes: Mapping[str, Any]) -> Any:
     if part == "grading" and not isinstance(held, Graded):
         held = Graded(held)
     return dataclasses.replace(held or _PARTS[part](), **changes)
+
+
+def with_sampling(scene: Scene, **changes: Any) -> Scene:
+    """Return the scene drawn in another way, on which nothing else hangs: not checked anew."""
+    scene = copy(scene)
+    hold(scene, ensemble=dataclasses.replace(scene.ensemble, **changes))
+    return scene
 
 
 def storable(scene: Scene) -> Scene:

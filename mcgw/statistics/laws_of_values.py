@@ -60,7 +60,7 @@ def laws_of_values(ensemble: Ensemble) -> LawsOfValues:
         Where values are not kept, are those of listed summits (laws with a step for each of them) or of
         radii of their own under a law that yields, or come from a sampler that spends some of the law.
     """
-    scene, one_radius = ensemble.scene, ensemble.scene.curvature is None
+    scene, one_radius = ensemble.scene, ensemble.scene.summits is None
     if (
         scene.keep == "statistics"
         or isinstance(scene.heights, MeasuredHeights)

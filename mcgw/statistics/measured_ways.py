@@ -197,7 +197,7 @@ def sized(answers: Answers, name: str, scene: Scene, share: float) -> list[Task]
 
 def prices(scene: Scene, points: Sequence[Point], names: Sequence[str]) -> list[Way]:
     """Return set-up and cost of a surface from the times of all sizes; floors from what is off."""
-    tested = {"theory": _HERTZ if scene.hertzian and scene.curvature is None else _OTHERS, "exact law": _LAW}
+    tested = {"theory": _HERTZ if scene.hertzian and scene.summits is None else _OTHERS, "exact law": _LAW}
     still = [p for p in points if p.way in tested]
     ways = [Way(p.way, p.want, max(tested[p.way], p.rms), p.seconds, 0.0) for p in still]
     for name in names:

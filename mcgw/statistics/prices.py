@@ -143,7 +143,7 @@ def _fits(scene: Scene, name: str) -> bool:
         scene.replace(sampler=sampler_of(name))
     except SceneError:
         return False
-    return scene.curvature is None or promise_of(sampler_of(name)).one_by_one
+    return scene.summits is None or promise_of(sampler_of(name)).one_by_one
 
 
 def wants_of(name: str) -> tuple[str, ...]:

@@ -216,7 +216,7 @@ def tradeoff(
 
 def _refused(scene: Scene) -> Scene:
     """Return the scene, if its answers can be traded off."""
-    if isinstance(scene.curvature, MeasuredRadii):
+    if isinstance(scene.summits, MeasuredRadii):
         raise ValueError("summits: listed summits are summed or drawn, and have no other method")
     if isinstance(scene.heights, MeasuredHeights):
         raise ValueError("heights: measured heights are summed exactly; no answer is traded off")

@@ -196,7 +196,7 @@ def _gaussian(parts: Fluctuations, asperities: float) -> Marks:
 
 def bounded_theory(scene: Scene, surfaces: int) -> Model:
     """Return the scene's own model, with a bound on the radii where there is none."""
-    theory, law = scene.theory, scene.curvature
+    theory, law = scene.theory, scene.summits
     if not isinstance(law, RandomCurvature) or np.isfinite(law.largest):
         return theory
     flatter = float(law.cdf(_FLAT, max(scene.lowest, scene.least))) * max(scene.touching, 1.0) * surfaces

@@ -24,7 +24,7 @@ import tomli_w
 
 from mcgw.errors import StoreError
 from mcgw.formats.named_files import loads
-from mcgw.scene.scene import Scene
+from mcgw.scene.scene import Scene, with_sampling
 from mcgw.scene.scene_file import scene_document, scene_from, scene_text
 from mcgw.scene.section import shortened
 from mcgw.store.h5_writing import MOST_TEXT
@@ -102,7 +102,7 @@ def difference(there: Question, here: Question) -> str:
 def _said(scene: str, axes: str) -> dict[str, Any]:
     """Keys and values that decide the numbers: of a scene alone but for the number of surfaces."""
     if not axes:
-        return dict(_flat(loads(scene_text(scene_from(scene).with_sampling(n_surfaces=1), left_out=False))))
+        return dict(_flat(loads(scene_text(with_sampling(scene_from(scene), n_surfaces=1), left_out=False))))
     return {**dict(_flat(loads(scene))), "sweep": axes}
 
 

@@ -84,8 +84,8 @@ def not_on_the_map(scene: Any) -> str | None:
                 f"Gaussian surfaces of alpha = {scene.heights.alpha:.4g} have eta R sigma = {found:.3g}, but "
                 f"this one has {told:.3g}"
             )
-    if isinstance(scene.curvature, RandomCurvature) and scene.curvature.largest < _ROUND:
-        return f"only for unlimited radii; here they are limited to {scene.curvature.largest:.3g} R"
+    if isinstance(scene.summits, RandomCurvature) and scene.summits.largest < _ROUND:
+        return f"only for unlimited radii; here they are limited to {scene.summits.largest:.3g} R"
     return None
 
 
@@ -120,7 +120,7 @@ def place_of(scene: Any) -> Place:
     surface, fitted = scene.surface, scene.fitted
     if isinstance(scene.heights, Nayak):
         moments: SpectralMoments | None = moments_of_nayak(surface, scene.heights.alpha)
-        model = "nayak" if scene.curvature is None else "own radii"
+        model = "nayak" if scene.summits is None else "own radii"
     else:
         moments, model = moments_of(surface) if fitted is None else fitted.moments, "one radius"
     area_only = _apart(scene)

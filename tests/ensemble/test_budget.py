@@ -313,5 +313,5 @@ def test_a_moment_moves_all_that_is_made_of_it(name):
     for key in ("sigma", "radius", "eta", "nominal_area", "E_star"):
         assert getattr(found.surface, key) == pytest.approx(getattr(other.surface, key), rel=1e-12)
     for key in ("alpha", "largest"):
-        assert getattr(found.curvature, key) == pytest.approx(getattr(other.curvature, key), rel=1e-12)
-    assert found.heights.alpha == found.curvature.alpha
+        assert getattr(found.summits, key) == pytest.approx(getattr(other.summits, key), rel=1e-12)
+    assert found.heights.alpha == found.summits.alpha

@@ -69,7 +69,7 @@ def specimens(scene, load, many, contacts):
     contact = hertz if scene.law.elastic else kogut_etsion
     for start in range(0, many, 2000):
         shape = min(2000, many - start), scene.n_asperities
-        if scene.curvature is None:
+        if scene.summits is None:
             s, r = rng.standard_normal(shape), np.full(shape, x.radius)
         else:
             s, r = summits(rng, shape)

@@ -152,7 +152,7 @@ def test_by_command(tmp_path, capsys):
     assert "alpha = 10.08" in capsys.readouterr().out
     scene = mcgw.load_scene(path)
     assert scene.heights.alpha == pytest.approx(10.08, abs=0.01)
-    assert scene.curvature is not None
+    assert scene.summits is not None
     assert (scene.surface.nominal_area, scene.surface.E_star) == (1e-6, 1e11)
 
 
@@ -232,7 +232,7 @@ def test_nayaks_surfaces_are_written_by_their_moments(tmp_path):
     surface = {"m0": "1 um^2", "m2": 0.001, "m4": "5/mm^2", "nominal_area": "1 mm^2", "E_star": "100 GPa"}
     assert tables["surface"] == surface
     assert not {"heights", "summits"} & set(tables)
-    for other in (scene.replace(summits="mean"), scene.replace(summits=type(scene.curvature)(5.0, 1e5))):
+    for other in (scene.replace(summits="mean"), scene.replace(summits=type(scene.summits)(5.0, 1e5))):
         write_scene(other, tmp_path / "f.toml", None, [])
         assert tomllib.loads((tmp_path / "f.toml").read_text())["heights"] == {"law": "nayak", "alpha": 5.0}
-        assert (mcgw.load_scene(tmp_path / "f.toml").curvature is None) == (other.curvature is None)
+        assert (mcgw.load_scene(tmp_path / "f.toml").summits is None) == (other.summits is None)

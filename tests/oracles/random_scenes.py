@@ -176,7 +176,7 @@ def worst_share(ensemble):
     names = [n for n in scene.quantities if scene.interaction is None or n in ("load", "area", "contacts")]
     for surface in range(ensemble.n_surfaces):
         s, ratios = mcgw.heights(scene, surface), None
-        if scene.curvature is not None:
+        if scene.summits is not None:
             ratios = mcgw.radii(scene, surface) / scene.surface.radius
         for name in names:
             q = quantity_of(name)

@@ -65,10 +65,10 @@ def added(scene: mcgw.Scene, q: Quantity, h: float, s: Array) -> Array:
     """What asperities at `s` above `h` add, in units of the scale: ``(s - h)^n e(s)`` under Hertz's law."""
     if by_powers(scene, q):
         weight = scene.modulus(s) if q.modulus else np.ones_like(s)
-        if isinstance(scene.curvature, RandomCurvature):  # of listed summits there is one method alone
-            weight = weight * scene.curvature.mean(q.radius, s)
+        if isinstance(scene.summits, RandomCurvature):  # of listed summits there is one method alone
+            weight = weight * scene.summits.mean(q.radius, s)
         return np.asarray((s - h) ** q.exponent * weight)
-    if scene.curvature:
+    if scene.summits:
         raise ValueError(
             f'contact.law = "{scene.law.name}" with summits.curvature = "random": means are integrals over '
             'heights and radii, which no other rule can check; use curvature = "mean"'

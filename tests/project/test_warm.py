@@ -16,7 +16,7 @@ def test_scenes_of_every_kind_are_drawn(monkeypatch):
     assert {scene.count for scene in scenes} == {"fixed", "poisson"}
     assert {scene.hertzian for scene in scenes} == {True, False}
     assert {scene.unload_from for scene in scenes} == {None, 0.0}
-    assert {scene.curvature is None for scene in scenes} == {True, False}
+    assert {scene.summits is None for scene in scenes} == {True, False}
     assert max(scene.n_asperities for scene in scenes) == 10**6
     assert [options for _, options in fitted] == [{"cutoff": "8 um"}]
     assert fitted[0][0][0].heights.shape == (64, 64)

@@ -148,7 +148,7 @@ def test_a_scene_reads_the_same_again(table):
     with_lists = HEAD + f"[summits]\nheights = {Z.tolist()}\nradii = {RADII.tolist()}\n" + ASKED
     found = mcgw.scene_from(with_lists)
     assert found.heights == from_file(table).heights
-    assert found.curvature.ratios == pytest.approx(RADII * np.mean(1 / RADII), rel=1e-14)
+    assert found.summits.ratios == pytest.approx(RADII * np.mean(1 / RADII), rel=1e-14)
 
 
 def test_what_the_surface_gives_is_used(table):
@@ -221,7 +221,7 @@ def test_of_a_list_there_is_nothing_to_trade_off():
 def test_a_load_on_the_very_summits(own):
     """Against a root of plain sums over the list; specimens are lists resampled from it, and scatter so."""
     x = scene() if own else scene().replace(summits="mean")
-    s, r = np.array(x.heights.heights), np.array(x.curvature.ratios if own else np.ones(len(Z)))
+    s, r = np.array(x.heights.heights), np.array(x.summits.ratios if own else np.ones(len(Z)))
     unit = 4 / 3 * x.surface.E_star * x.surface.radius**0.5 * x.surface.sigma**1.5
 
     def load(h, s=s, r=r):

@@ -68,7 +68,7 @@ def test_presets_yield_under_a_yielding_law_alone(name):
     first = (np.pi * (0.454 + 0.41 * poisson) * hardness / (2 * s.E_star)) ** 2 * s.radius / s.sigma
     assert index == pytest.approx(first**-0.5, rel=1e-12)
     assert (share > 0.05) == isinstance(scene.law, mcgw.KogutEtsion) == (index > 1)
-    if scene.curvature is None:
+    if scene.summits is None:
         h = float(scene.theory.separation_at("pressure", 1e6))
         x = np.linspace(h, h + 9, 400_001)
         past = x - h > first / modulus_of(scene)(x) ** 2

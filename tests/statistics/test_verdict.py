@@ -258,7 +258,7 @@ def test_radii_have_a_bound_that_one_in_ten_thousand_ensembles_passes(make_scene
     scene = make_scene(
         heights=analytic.Nayak(5.0), summits=analytic.RandomCurvature(5.0), separations=(1.0,), grading=None
     )
-    law = scene.curvature
+    law = scene.summits
     for surfaces in (10**9, 10**12):
         largest = parts.bounded_theory(scene, surfaces).curvature.largest
         flatter = float(law.cdf(MEAN_CURVATURE / largest, 1.0)) * scene.touching * surfaces

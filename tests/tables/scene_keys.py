@@ -222,7 +222,7 @@ ROWS = [
      theory("contacts"), 3 * (3 - 1.25 - 0.5 * sqrt(7 / 3 - 25 / 16)) / 4),
     ("summits.curvature", "'mean'", {**SPECTRAL, "summits": {"curvature": None}}, theory("contacts"),
      round(1e-6 * 5e6 / (6 * sqrt(3) * pi * 1e-3)) * summits_above(5.0, 0.5)),
-    ("summits.largest_radius", "'1 mm'", SPECTRAL, lambda s: s.curvature.largest,
+    ("summits.largest_radius", "'1 mm'", SPECTRAL, lambda s: s.summits.largest,
      1e-3 / (3 * sqrt(pi) / (8 * sqrt(5e6)))),
     ("summits.file", "'s.csv'", {**LISTED, "summits": {"resample": "false"}}, simulated(), sqrt(3) * F),
     ("summits.heights", [0.0, 1e-6, 5e-6], {**LISTED, "summits": SUMMITS}, simulated(),
