@@ -4,24 +4,13 @@ The sums are literal: each asperity's own formula, added up. Where loads may be 
 they are held against the sum over the contacts of what each presses or pulls and of its pull at first touch.
 """
 
-import math
-
 import numpy as np
 
 from analytic import quantity_of
 from oracles.inside import sampler_of, summits_drawn
+from oracles.literal import POWERS
 
 POWERS_OF_RADIUS = {"load": 0.5, "area": 1.0, "stiffness": 0.5, "conductance": 0.5, "contacts": 0.0}
-
-
-def exact_sums(scene, heights, name):
-    """Of what each asperity of one surface adds to a quantity, exactly rounded, at each separation."""
-    q = quantity_of(name)
-    lowest = [scene.unload_from if q.unloading else h for h in scene.separations]
-    terms = (
-        term(scene, name, h, heights[heights > low]) for h, low in zip(scene.separations, lowest, strict=True)
-    )
-    return q.scale(scene.surface) * np.array([math.fsum(x.tolist()) for x in terms])
 
 
 def drawn(scene, surfaces):
@@ -61,6 +50,9 @@ def worst_error(scene, surfaces):
 def term(scene, name, h, s):
     """What asperities of heights `s` add to a quantity at `h`, reduced: each by the piece it has reached."""
     q, law, e = quantity_of(name), scene.law.on(scene.surface), scene.modulus(s)
+    if scene.hertzian and name in POWERS:
+        power, modulus = POWERS[name]
+        return (s - h) ** power * e**modulus
     deepest = s - (scene.unload_from if q.unloading else h)
     with np.errstate(divide="ignore"):
         reached = (law.limits(e) <= deepest).sum(axis=0)

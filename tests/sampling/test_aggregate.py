@@ -283,3 +283,20 @@ def test_what_auto_takes(make_scene):
     )
     for scene in (strict, high):  # no crowd is large enough, or there is no cell
         assert crowding(scene, mesh_of(scene, split=False)) is None
+
+
+WISH = {"accuracy": 1e-2, "n_asperities": 10**6}
+
+
+def test_compare_agrees_and_sees_another_gamma(make_scene):
+    """By 1 %, which is far more than anybody allowed for."""
+    scene = make_scene(n_surfaces=1000, **WISH)
+    ensemble = mcgw.simulate(scene)
+    assert mcgw.compare(ensemble).verdict.agrees
+    wrong = scene.replace(grading=analytic.Exponential(2.02))
+    assert not mcgw.compare(dataclasses.replace(ensemble, scene=wrong)).verdict.agrees
+
+
+@pytest.mark.slow
+def test_converge_passes(make_scene):
+    assert mcgw.converge(make_scene(**WISH), n_surfaces=64, seeds=8).passed

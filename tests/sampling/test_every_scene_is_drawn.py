@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.stats
-from oracles.accurately import worst_error
+from tables.drawn_scenes import CLIPPED, LAWS
 
 import analytic
 import mcgw
@@ -15,58 +15,10 @@ from mcgw.sampling.response.walk import UnresolvedError
 from mcgw.sampling.samplers import sampler_of
 from mcgw.sampling.shared import common_edges, shared
 
-CLIPPED = {"grading": analytic.Exponential(5.5), "negative": "clip", "separations": [-2.4, -0.5, 2.0]}
-BELOW_ONE = {"grading": analytic.Exponential(-1.5), "negative": "clip", "separations": [-1.2, 1.8]}
-STEP = analytic.Table([1.0, 1.0004, 1.0008, 3.0], [1.0, 3.0, 1.0, 2.0])
-SCENES = {
-    "plastic at once": {**CLIPPED, "law": mcgw.ChangEtsionBogy(critical=0.08)},
-    "by and by": {**CLIPPED, "law": mcgw.ZhaoMaiettaChang(critical=0.0013)},
-    "powers": {**BELOW_ONE, "law": mcgw.KogutEtsion(critical=0.0018)},
-    "and back": {**BELOW_ONE, "law": mcgw.KogutEtsion(critical=0.0018), "unload_from": "loop"},
-    "a table": {"grading": STEP, "separations": [1.0, 2.0]},
-    "plastic at first touch": {
-        "law": mcgw.ZhaoMaiettaChang(critical=0.015),
-        "grading": analytic.Custom(lambda s: np.exp(29 * (s - 1))),
-        "separations": [0.2, 1.3, 2.2],
-        "quantities": ["load", "area", "stiffness", "load_slope"],
-    },
-    "up and down": {
-        "law": mcgw.KogutEtsion(critical=0.4),
-        "grading": analytic.Custom(lambda s: 1 + 0.5 * np.sin(30 * s)),
-        "separations": [0.5, 2.0],
-    },
-    "comes off where it softens": {
-        "law": mcgw.KogutEtsion(critical=0.0191),
-        "grading": analytic.Custom(lambda s: 1 + 0.8 * np.sin(8 * s - 0.376)),
-        "separations": [0.0, 1.1],
-        "unload_from": -1.6,
-        "sampler": "cells",
-    },
-    "elastic again where it softens": {
-        "law": mcgw.JacksonGreen(yield_strain=0.0059, critical=0.386),
-        "grading": analytic.Exponential(-1.2554),
-        "negative": "clip",
-        "separations": [-3.81, -1.713, -1.577, -1.086, 0.1313, 1.133, 1.734],
-        "quantities": ["load", "conductance", "load_slope"],
-        "n_asperities": 52,
-    },
-    "sticks": {
-        "law": mcgw.JohnsonKendallRoberts(pull_off=0.5),
-        "unload_from": "loop",
-        "separations": [1.0, 1.0 + 1e-9, 1.5],
-        "quantities": ["load", "area", "contacts"],
-    },
-}
-
 
 @pytest.fixture
 def scene_of(make_scene):
     return lambda **asked: make_scene(**{"n_surfaces": 2, "n_asperities": 3000, "seed": 5, **asked})
-
-
-@pytest.mark.parametrize("name", SCENES)
-def test_values_are_literal_sums_over_the_heights(scene_of, name):
-    assert worst_error(scene_of(**SCENES[name]), 2) <= 1e-11
 
 
 def test_scenes_that_share_surfaces_share_the_cells_that_were_cut_further(scene_of):
@@ -159,6 +111,6 @@ def test_what_cannot_be_drawn_is_refused_when_it_is_made(scene_of, asked, line):
 def test_what_no_cell_resolves_is_drawn_one_by_one(scene_of, monkeypatch, wish):
     """Cells alone say what to do instead."""
     monkeypatch.setattr("mcgw.sampling.samplers._CUTS", 0)
-    assert sampler_of(scene_of(**SCENES["powers"], **wish)).name == "tail"
+    assert sampler_of(scene_of(**LAWS["powers"], **wish)).name == "tail"
     with pytest.raises(UnresolvedError, match=r'not resolved near s = .*; use sampler = "tail"'):
-        sampler_of(scene_of(**SCENES["powers"], sampler="cells"))
+        sampler_of(scene_of(**LAWS["powers"], sampler="cells"))

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from oracles.literal import sums_of_heights
 from scipy.special import log_ndtr
-from test_cells_against_direct_sums import worst
 
 import analytic
 import mcgw
@@ -31,7 +30,6 @@ def agree(ensemble):
 
 def test_separations_from_minus_40_to_40(make_scene):
     scene = make_scene(separations=tuple(np.linspace(-40, 40, 17)), grading=analytic.Homogeneous())
-    assert worst(scene, 0) < 1e-12
     agree(mcgw.simulate(scene))
 
 
@@ -73,15 +71,9 @@ def test_10_000_separations(make_scene):
         np.testing.assert_allclose(sums[name][0][::500], sums_of_heights(some, heights, name), rtol=1e-12)
 
 
-def test_separations_next_to_zero(make_scene):
-    scene = make_scene(separations=(-1e-100, 0.0, 1e-100, 1e-50, 1.0), sampler="cells")
-    assert worst(scene, 0) < 1e-12
-
-
 def test_separations_1e_12_apart_and_equal(make_scene):
     h = (1.0, 1.0 + 1e-12, 1.0, 1.0 + 2e-12, 2.0)
     scene = make_scene(separations=h, n_asperities=10**5)
-    assert worst(scene, 0) < 1e-12
     load = sampler_of(scene).block(0, 3).sums["load"]
     np.testing.assert_array_equal(load[:, 0], load[:, 2])
     assert (load[:, 0] >= load[:, 1]).all()
@@ -90,13 +82,11 @@ def test_separations_1e_12_apart_and_equal(make_scene):
 @pytest.mark.parametrize("gamma", [0.0, GAMMA_STAR, 1e6, 1e60])
 def test_gradings_at_their_limits(make_scene, gamma):
     scene = make_scene(grading=analytic.Exponential(gamma))
-    assert worst(scene, 0) < 1e-12
     agree(mcgw.simulate(scene))
 
 
 def test_negative_gamma(make_scene):
     clipped = make_scene(grading=analytic.Exponential(-0.5), negative="clip")
-    assert worst(clipped, 0) < 1e-12
     agree(mcgw.simulate(clipped))
     agree(mcgw.simulate(make_scene(grading=analytic.Exponential(-0.5), negative="allow")))
 

@@ -28,7 +28,6 @@ from analytic import (
     ScipyHeights,
     Weibull,
 )
-from mcgw.sampling.direct import asperity_sums
 
 SAMPLE = np.random.default_rng(1).weibull(1.6, size=3000)
 LAWS = {
@@ -80,20 +79,6 @@ def test_functions_of_a_law_fit_each_other(law):
     expected = np.log(law.pdf(a + t) / law.pdf(np.array(a)))
     # absolute: the quotient of densities is known to a few last digits
     assert law.log_ratio(np.array(a), t) == pytest.approx(expected, abs=1e-13)
-
-
-@every_law
-def test_sums_over_the_listed_heights_equal_the_row(law, make_scene):
-    """Each cell's own moments against plain sums over the very heights, to the 1e-12 of the mesh."""
-    for separations in ((0.0, 0.4, 1.0), (-30.0, -0.9, 0.5)):
-        scene = make_scene(
-            heights=law, separations=separations, sampler="cells", n_surfaces=3, grading=Exponential(0.7)
-        )
-        ensemble = mcgw.simulate(scene)
-        listed = mcgw.heights(scene, 2)
-        sums = asperity_sums(scene, np.array([listed.size]), listed, np.ones(listed.size))
-        for name in scene.quantities:
-            assert ensemble.values(name)[2] == pytest.approx(sums[name][0], rel=1e-12)
 
 
 @pytest.mark.parametrize(

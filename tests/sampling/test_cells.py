@@ -1,11 +1,11 @@
-"""`cells` (moments times response) against exactly rounded sums over the very same heights."""
+"""Cells: their edges, probabilities and inverse distributions, and the response on them."""
 
 from itertools import product
 
 import mpmath as mp
 import numpy as np
 import pytest
-from oracles.literal import sums_of_heights
+from tables.drawn_scenes import GRADINGS
 
 import analytic
 import mcgw
@@ -13,119 +13,6 @@ from mcgw.sampling.asperities import summits_drawn
 from mcgw.sampling.cells import evenness, mesh_of, no_cells
 from mcgw.sampling.samplers import sampler_of
 from mcgw.sampling.spacing import Gaps, cuts
-
-CLOSE_KINKS = analytic.Table([-1.0, 1.03, 1.0304, 1.0308, 3.0], [1.0, 1.0, 1.1, 1.0, 1.0])
-GRADINGS = {
-    "gamma 0": analytic.Exponential(0.0),
-    "gamma 0.2": analytic.Exponential(0.2),
-    "homogeneous": analytic.Homogeneous(),
-    "gamma 2": analytic.Exponential(2.0),
-    "table": analytic.Table([-1.0, 0.3, 1.0, 2.2], [0.3, 0.5, 1.4, 1.5]),
-    "kinks nearer than a node's points": CLOSE_KINKS,
-    "step": analytic.Custom(lambda s: np.where(s > 1.234, 2.0, 0.5), (1.234,)),
-    "untold step": analytic.Custom(lambda s: np.where(s > 0.777, 2.0, 0.5)),
-    "steep": analytic.Custom(lambda s: 1.5 + np.tanh(1e3 * (s - 0.5))),
-    "steeper": analytic.Custom(lambda s: 1.5 + np.tanh(1e6 * (s - 0.5))),
-    "exp(12 s)": analytic.Custom(lambda s: np.exp(12 * s)),
-    "exp(30 s)": analytic.Custom(lambda s: np.exp(30 * s)),
-    "exp(-30 s)": analytic.Custom(lambda s: np.exp(-30 * s)),
-    "exp(60 s)": analytic.Custom(lambda s: np.exp(60 * (s - 3)), checked=False),
-}
-
-
-def last_digit(scene, heights, quantity):
-    """Relative change of each sum if all heights are one digit off."""
-    n = analytic.QUANTITIES[quantity].exponent
-    changes = []
-    for h in scene.separations:
-        d = heights[heights > h] - h
-        changes.append(
-            n * np.spacing(d.max() + abs(h)) * (d ** (n - 1)).sum() / (d**n).sum() if d.size and n else 0.0
-        )
-    return np.array(changes)
-
-
-def worst(scene, surface, sampler=None):
-    """Largest relative difference, over all quantities and separations that are reached.
-
-    Less what the last digit of a listed height is good for where a contact just touches.
-    """
-    sampler = sampler or sampler_of(scene)
-    drawn = sampler.block(surface, 1).sums
-    heights = summits_drawn(scene, sampler, surface)[0]
-    errors = []
-    for quantity in scene.quantities:
-        exact = sums_of_heights(scene, heights, quantity)
-        found = drawn[quantity][0]
-        reached = exact > 0
-        np.testing.assert_array_equal(found[~reached], 0.0)
-        error = np.abs(found[reached] / exact[reached] - 1)
-        errors.append((error - last_digit(scene, heights, quantity)[reached]).max(initial=0.0))
-    return max(errors)
-
-
-def with_grading(name, **changes):
-    return {"grading": GRADINGS[name], "separations": np.linspace(0, 4, 11), "n_asperities": 4000} | changes
-
-
-def at(*h, **changes):
-    return {"grading": GRADINGS["gamma 0.2"], "separations": h, "n_asperities": 300} | changes
-
-
-def lone(k, h):
-    """It falls by decades between two separations, and a single contact is as accurate as all of them."""
-    steep = analytic.Custom(lambda s: np.exp(k * (s - 3)), checked=False)
-    return {"grading": steep, "separations": h, "n_asperities": 1500}
-
-
-def step(law, middle, slope, *h):
-    """The law of heights, the grading and the root bend together: cells are cut until all is resolved."""
-    grading = analytic.Custom(lambda s: 1.5 + np.tanh(slope * (s - middle)))
-    return {"heights": law, "grading": grading, "separations": h}
-
-
-def smooth(shape, gamma, n, *h):
-    """Where the law of heights bends as fast as cells allow, a cell needs all but one of its coefficients."""
-    grading = analytic.Exponential(gamma)
-    changes = {"grading": grading, "negative": "allow", "separations": h, "n_asperities": n}
-    return {"heights": analytic.Weibull(shape), **changes}
-
-
-MANY = {"n_asperities": 20_000, "separations": np.linspace(0, 4, 41)}
-FULL = 50_000  # asperities with which every cell is full
-DICE = np.random.default_rng(3).uniform(-1, 3.5, 12)  # unsorted
-# A scene, and of how many surfaces: what goes wrong in rare cells does not show in each.
-SCENES = {
-    **{name: (with_grading(name), 6) for name in GRADINGS},
-    "steep": (with_grading("steep", n_asperities=4500), 6),  # a lone contact in its ramp is 6e-12 off
-    "geometric": (at(*np.geomspace(1e-3, 4, 25)), 10),
-    "unsorted and repeated": (at(*DICE, 0.5, 0.5, -0.0), 10),
-    "close": (at(1.0, 1.0 + 1e-9, 1.0 + 3e-9, 1.0 + 1e-6, 1.5), 10),
-    "close, full": (at(1.0, 1.0 + 1e-9, 1.0 + 3e-9, 1.0 + 1e-6, 1.5, n_asperities=FULL), 1),
-    "one, full": (at(0.7, n_asperities=FULL), 1),
-    "equal, full": (at(*np.linspace(0, 4, 21), n_asperities=FULL), 1),
-    "lone": (lone(-30.0, np.linspace(0, 4, 11)), 40),
-    "lone, high": (lone(-60.0, (3.2, 3.6)), 40),
-    "step, weibull": (step(analytic.Weibull(2.55), 1.14, 24.0, 0.0, 1e-28, 0.6), 20),
-    "step, far down": (step(analytic.Weibull(1.82), 2.12, 47.0, -27.6, -21.7, -10.8), 20),
-    "step, exponential": (step(analytic.ExponentialHeights(), 2.65, 3.35, 0.01803722, 0.01803731), 20),
-    "step, below all": (step(analytic.ExponentialHeights(), 0.03, 5.0, -27.7, -27.3), 20),
-    "smooth 4.6": (smooth(4.63, 0.7144619, 17, -1.655150524, 2.22019398), 20),
-    "smooth 45": (smooth(45.423, 1.43735, 6, 0.46187410402, 3.14785127), 20),
-    "smooth 1.8": (smooth(1.80686, 0.6479186, 9407, -1.87281584, -1.85053286), 20),
-    "smooth 1.7": (smooth(1.6853, 0.69289, 1638, -3.42293094, 2.2294051), 20),
-}
-EVERY = [*SCENES, *(pytest.param(f"{name}, many", marks=pytest.mark.slow) for name in GRADINGS)]
-
-
-@pytest.mark.parametrize("name", EVERY)
-def test_values_are_those_of_the_very_heights(make_scene, name):
-    """The accuracy promised; the response is built for 1e-13."""
-    many = name.endswith(", many")
-    asked, surfaces = (with_grading(name[:-6], **MANY), 20) if many else SCENES[name]
-    scene = make_scene(quantities=tuple(analytic.QUANTITIES), sampler="cells", **asked)
-    sampler = sampler_of(scene)
-    assert max(worst(scene, surface, sampler) for surface in range(surfaces)) < 1e-12
 
 
 @pytest.mark.parametrize(
