@@ -24,7 +24,7 @@ _RATIOS = (1 / 3, 3.0)  # ratio of moduli for which the perturbation of a coatin
 
 def law_cautions(scene: Scene) -> list[str]:
     """Cautions about the contact law, one per line; none for Hertz."""
-    found = [_choice, _yielded, _jumps, _gain, _fitted, _strain, _radius, _coating, _adhesion]
+    found = [_choice, _yielded, _jumps, _kogut_etsion, _jackson_green, _coating, _adhesion]
     return [line for caution in found for line in caution(scene)]
 
 
@@ -66,26 +66,17 @@ def _jumps(scene: Scene) -> Iterator[str]:
         yield f"{line}; load_slope is -dP/dd of loading"
 
 
-def _gain(scene: Scene) -> Iterator[str]:
-    """State the work gained because the fits of loading and unloading do not quite match."""
-    if (
-        isinstance(scene.law, analytic.KogutEtsion)
-        and scene.unload_from is not None
-        and scene.law.bridge is None
-    ):
-        share = _share(scene, 1.0) - _share(scene, 1.25)
-        if share > 0:
-            yield (
-                "contact.unload_from: contacts unloaded from 1 to 1.25 critical penetrations return up to 3 "
-                f"% more work than they took, because the fitted load jumps; this affects "
-                f"{100 * share:.2g} % of the contacts"
-            )
-
-
-def _fitted(scene: Scene) -> Iterator[str]:
+def _kogut_etsion(scene: Scene) -> Iterator[str]:
+    """State the work gained because the fits of loading and unloading do not quite match, and their ends."""
     if not isinstance(scene.law, analytic.KogutEtsion):
         return
     back = scene.unload_from is not None
+    if back and scene.law.bridge is None and (share := _share(scene, 1.0) - _share(scene, 1.25)) > 0:
+        yield (
+            "contact.unload_from: contacts unloaded from 1 to 1.25 critical penetrations return up to 3 "
+            f"% more work than they took, because the fitted load jumps; this affects "
+            f"{100 * share:.2g} % of the contacts"
+        )
     for most, what, applies in ((_FITTED, "loading", True), (_UNLOADED, "unloading", back)):
         share = _share(scene, most) if applies else 0.0
         if share > _DEEP:
@@ -105,27 +96,19 @@ def _share(scene: Scene, multiple: float) -> float:
     return float(np.mean(s - h > multiple * law.delta_c(scene.modulus(s))))
 
 
-def _strain(scene: Scene) -> Iterator[str]:
-    """Caution about materials outside those of the finite elements."""
+def _jackson_green(scene: Scene) -> Iterator[str]:
+    """Caution about materials outside those of the finite elements, and contacts wider than theirs."""
     law: Any = scene.reduced_law
     if not isinstance(law, analytic.JacksonGreen):
         return
-    s = np.linspace(max(scene.lowest, scene.least), scene.highest, 101)
-    e = scene.modulus(s)
+    h = scene.lowest
+    e = scene.modulus(np.linspace(max(h, scene.least), scene.highest, 101))
     strains = law.yield_strain / e[e > 0] if law.yield_strain else np.empty(0)
     if strains.size and not (_STRAINS[0] <= strains.min() and strains.max() <= _STRAINS[1]):
         yield (
             f"contact.law.yield_strength over E*(s) is {strains.min():.2g} to {strains.max():.2g}; the law "
             f"was fitted from {_STRAINS[0]:g} to {_STRAINS[1]:g}"
         )
-
-
-def _radius(scene: Scene) -> Iterator[str]:
-    """Caution about contacts wider than those of the finite elements."""
-    law = scene.reduced_law
-    if not isinstance(law, analytic.JacksonGreen):
-        return
-    h = scene.lowest
     if not scene.heights.sf(np.array(h)) > 0:
         return
     s = scene.heights.isf(np.array([_DEEP]), h)

@@ -231,11 +231,10 @@ def scene_document(scene: Scene, *, heights_file: str | None = None, left_out: b
         "summits": scene.summits and summits_table(scene.summits, scene.surface, heights_file),
         "contact": _written(scene, "contact") | ({"law": law} if law else {}),
         **{name: _written(getattr(scene, name), name) for name in ("interaction", "joint", "fitted")},
-        "ensemble": _written(scene, "ensemble"),
+        "ensemble": _written(scene.ensemble, "ensemble"),
     }
-    ensemble = document["ensemble"]
-    if not left_out:
-        ensemble.pop("left_out", None)
+    if left_out and scene.left_out:
+        document["ensemble"]["left_out"] = list(scene.left_out)
     return {key: value for key, value in document.items() if value or key == "title"}
 
 

@@ -50,6 +50,11 @@ def test_the_share_of_a_scene():
     [
         ("hertz", {"poisson": 0.3}, "poisson = 0.3: give hardness too, or leave it out"),
         (
+            {"name": "hertz", "k": 0.3},
+            {},
+            "k: unknown key; it is for name = 'power-law-graded' only; leave it out",
+        ),
+        (
             COATED,
             {"hardness": 2e9, "poisson": 0.2},
             "poisson = 0.2: give it to the law, Coated, or leave it out",

@@ -174,7 +174,9 @@ def test_values_are_asked_about_from_the_end_of_their_range_on(key):
     assert ENDS.keys() == RANGES.keys() == SURFACE_UNITS.keys()
     low, high = ENDS[key]
     for value, doubts in ((low, 0), (0.995 * low, 1), (high, 0), (1.005 * high, 1)):
-        assert len(surface_in_other_units(replace(SURFACE, **{key: value}))) == doubts, value
+        told = surface_in_other_units(replace(SURFACE, **{key: value}))
+        assert len(told) == doubts, value
+        assert all(("is less" in line or "is softer" in line) == (value < low) for line in told)
 
 
 def test_separations_in_metres_are_asked_about():
@@ -201,6 +203,7 @@ def test_no_scene_of_ours_is_doubted():
         ("sigma", "1.37 mm", "1.37 um = 1.37e-06"),
         ("sigma", 1.37, "1.37 um = 1.37e-06"),
         ("radius", "13000 m", "13 um = 1.3e-05"),
+        ("radius", 1300.0, "1300 um = 0.0013"),
         ("E_star", "78600 GPa", "78.6 GPa = 7.86e+10"),
         ("E_star", 78.6, "78.6 GPa = 7.86e+10"),
         ("eta", 300.0, "300/mm^2 = 3e+08"),
