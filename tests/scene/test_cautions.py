@@ -168,12 +168,13 @@ def test_more_than_half_of_all_summits_is_no_caution_where_the_error_was_measure
 
 def test_a_crowd_that_was_not_measured_up_to_the_last_separation(make_scene):
     """5 % of the nominal area, by quadrature at each of the separations."""
-    surface = dataclasses.replace(SHALLOW, eta=1e8, radius=5e-4)
+    surface = dataclasses.replace(SHALLOW, eta=1e8)
     h = (0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0)
     scene = make_scene(
         surface=surface, separations=h, n_asperities=10_000, heights=analytic.ExponentialHeights()
     )
     share = exact.mean(scene, "area") / surface.nominal_area
+    assert share[0] > share[2] > 0.05 > share[-1]
     (line,) = about(cautions(scene), "nominal area is in contact")
     assert f"up to d/sigma = {max(x for x, part in zip(h, share, strict=True) if part > 0.05):.3g} " in line
     assert "load too large if d is that of a rigid punch, too small if it is the mean gap" in line
