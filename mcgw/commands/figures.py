@@ -43,7 +43,7 @@ def figures(
     """
     from mcgw.figures.catalogue import CATALOGUE, figures_of, of_paper
     from mcgw.figures.compared import Compared
-    from mcgw.figures.panels import figure_files, save_figure_files
+    from mcgw.figures.panels import save
     from mcgw.formats.files import together
 
     names = [row.name for row in CATALOGUE]
@@ -53,21 +53,22 @@ def figures(
         if name not in names:
             raise ValueError(f"--only {name}: no such figure; give one of {', '.join(names)}")
     formats = [given.lower().removeprefix(".") for given in format or ["png"]]
+    files = {
+        name: [output / f"{name}.{ending}" for ending in (*formats, *["csv"] * csv)] for name in only or names
+    }
     known = figure_format()
     check_outputs(
-        Output(path, CSV if path.suffix == ".csv" else known)
-        for name in only or names
-        for path in figure_files(output, name, formats, csv=csv)
+        Output(path, CSV if path.suffix == ".csv" else known) for paths in files.values() for path in paths
     )
-    written: dict[str, Path] = {}
+    drawn: tuple[Path, ...] = ()
     with together():
-        for name, data in figures_of(of_paper() if scene is None else Compared(scene), only or ()):
+        for name, data in figures_of(of_paper() if scene is None else Compared(scene), only or names):
             if isinstance(data, str):
                 (news if only else details)(f"{name}: not drawn: {data}")
                 continue
-            for path in save_figure_files(data, output, formats, csv=csv):
-                written[f"{name}{path.suffix}"] = path
-    details(*written.values())
-    files = f"{output / '*'}.{formats[0]}" if len(formats) == 1 else output
-    drawn = len({path.stem for path in written.values()})
-    return news(f"{files}: {drawn} figure{'s' * (drawn != 1)}; mcgw figures --list for their names")
+            save(data, *files[name])
+            drawn += tuple(files[name])
+    details(*drawn)
+    where = f"{output / '*'}.{formats[0]}" if len(formats) == 1 else output
+    number = len({path.stem for path in drawn})
+    return news(f"{where}: {number} figure{'s' * (number != 1)}; mcgw figures --list for their names")

@@ -46,9 +46,9 @@ def show(
     if csv and (scene or digest or verify or plan):
         raise ValueError(f"--csv {csv}: belongs to the summary; leave out the other option")
     if not isinstance(file, Path):
-        from mcgw.reports.plan import plan_of, plan_text
+        from mcgw.reports.plan import plan_text
 
-        return print(plan_text(file, plan_of(file)))
+        return print(plan_text(file))
     if plan:
         raise ValueError(
             f"{file}: --plan is of a scene (.toml); print its scene with mcgw show --scene {file}"

@@ -1,18 +1,22 @@
 """Monte-Carlo means on curves of theory; for a sweep all residuals and the worst point."""
 
 import textwrap
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from analytic.arrays import Array
+from mcgw.ensemble.ensemble import Ensemble
 from mcgw.figures.data import SEPARATION, FigureData, Mark, Panel, Points, Series
 from mcgw.figures.style import BAND, LEVEL, SAMPLE, THEORY, contact_label, look, shown_title
 from mcgw.machine.terminal import one_line
+from mcgw.scene.scene import Scene
 from mcgw.statistics.comparison import Comparison
 
 if TYPE_CHECKING:
     from mcgw.statistics.comparison import SweepComparison
 
+ENOUGH = 20  # contacts in the ensemble; with fewer a mean is far from Gaussian
 _MOST_COLUMNS = 3  # more are too small to read on a page
 _BIN = 0.5  # standard errors
 _RESIDUAL = "residual (standard errors)"
@@ -72,6 +76,33 @@ def quantity_panel(comparison: Comparison, name: str) -> Panel:
     pulls = bool(np.any(curve.theory < 0) or np.any(curve.mean < 0))  # it does not fit a log axis
     scales, level = (("linear", "linear"), 0.0) if pulls else (("linear", "log"), None)
     return Panel(comparison.ensemble.scene.quantity(name).title, SEPARATION, "", (series,), scales, level)
+
+
+def spread(
+    label: str, scene: Scene, name: str, line: Array, drawn: Ensemble | None, fewest: float = ENOUGH
+) -> Series:
+    """Return the exact standard deviation over the mean of a quantity, and that of what was drawn.
+
+    Points have standard errors by the exact law of one surface, to first order: half of std's, that of the
+    mean, and both together. There are none at separations with fewer contacts in the ensemble.
+    """
+    exact = _std_over_mean(scene.theory.cumulants(name, line))
+    if drawn is None:
+        return Series(label, line, exact)
+    h = drawn.separations
+    known = scene.theory.mean("contacts", h) * drawn.n_surfaces >= fewest
+    if not known.any():
+        return Series(label, line, exact)
+    law = scene.theory.cumulants(name, h[known])
+    there = _std_over_mean(law)
+    relative = np.sqrt((law.excess_kurtosis + 2) / 4 + there**2 - law.skewness * there)
+    seen = drawn.std(name)[known] / np.abs(drawn.mean(name)[known])
+    return Series(label, line, exact, Points(h[known], seen, there * relative / drawn.n_surfaces**0.5, there))
+
+
+def _std_over_mean(law: Any) -> Array:
+    with np.errstate(divide="ignore", invalid="ignore"):  # nan where nothing touches
+        return np.asarray(np.sqrt(law.variance) / np.abs(law.mean))
 
 
 def residuals_panel(comparison: "SweepComparison") -> Panel:

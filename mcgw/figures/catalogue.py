@@ -11,13 +11,11 @@ from mcgw.machine.progress import steps
 from mcgw.scene.scene_file import scene_from
 
 _SURFACES = 2000  # of the paper's figures
-_BEYOND = ("equal-load", "fluctuations", "area-and-load")
 
 
-def _place(row: Row) -> tuple[int, int, str]:
-    """Figures of the paper by number, then these, then all others by name."""
-    known = row.name in _BEYOND
-    return not row.name.startswith("figure-"), _BEYOND.index(row.name) if known else len(_BEYOND), row.name
+def _place(row: Row) -> tuple[bool, str]:
+    """Figures of the paper by number, then all others by name."""
+    return not row.name.startswith("figure-"), row.name
 
 
 CATALOGUE = tuple(sorted((*ratios.FIGURES, *populations.FIGURES), key=_place))

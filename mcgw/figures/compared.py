@@ -1,32 +1,34 @@
 """Scenes on the same surfaces side by side: one and what it is measured by, or a preset swept over gamma."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from analytic import QUANTITIES, Exponential, Hertz, Homogeneous, MeasuredHeights, Model
+from analytic import QUANTITIES, Exponential, Hertz, Homogeneous, MeasuredHeights
 from analytic.arrays import Array, Marks
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.simulation import simulate
+from mcgw.figures.against_theory import ENOUGH
 from mcgw.figures.data import Estimate, FigureData, Points
 from mcgw.figures.style import contact_label, short
 from mcgw.formats.law_text import law_text
 from mcgw.formats.table import evenly
 from mcgw.sampling.asperities import heights
 from mcgw.scene.scene import Scene
+from mcgw.scene.section import SceneError
+
+Key = str | float  # label of a scene or, in a sweep, a gamma
 
 SCENE = "this scene"
 _STIFFER, _SOFTER = (2.0, 1.5, 1.2, 1.0), (1.0, 0.8, 0.5, 0.2)
 _MOST_SURFACES, _MOST_ASPERITIES = 1000, 1_000_000_000
 _MOST_SEPARATIONS, _FINE, _COARSE = 17, 49, 25  # separations of lines: own radii are slow
 _SWEPT, _SWEPT_LINE = np.linspace(0, 4, 17), np.linspace(0, 4, 161)
-_LOWEST = -0.2  # lowest listed height of a sweep: at equal load it goes below its separations
 _MOST_HEIGHTS = 10_000_000
 _SAME_SEPARATION = 1e-12  # of searches for the same load
-ENOUGH = 20  # contacts in the ensemble; with fewer a mean is far from Gaussian
 
 
 def of_gamma(gamma: float) -> str:
@@ -134,37 +136,42 @@ class Compared:
     def _kept(self) -> dict[Any, Any]:
         return {}
 
-    def model(self, gamma: float) -> Model:
-        """Theory of the surfaces of a sweep, with another grading."""
-        model: Model = self.scene.theory
-        return replace(model, grading=Homogeneous() if gamma == 1 else Exponential(gamma))
-
-    def theory(self, key: str | float, quantity: str, h: Array) -> Array:
-        """Exact means for a label or, in a sweep, a gamma, each computed once."""
-        place = (key, quantity, h.tobytes())
-        if place not in self._kept:
-            model = self.all[key].theory if isinstance(key, str) else self.model(key)
-            self._kept[place] = model.mean(quantity, h)
-        return np.asarray(self._kept[place])
-
-    def at_load_of_reference(self, key: str | float, h: Array) -> Array:
-        """Separations with the load that the reference has at these."""
-        place = (key, "at load", h.tobytes())
-        if place not in self._kept:
-            model = self.all[key].theory if isinstance(key, str) else self.model(key)
-            found = model.separation_at("load", self.theory(self.reference, "load", h))
-            # Where both have the same load, the last digit would draw them in other cells.
-            self._kept[place] = np.where(np.abs(found - h) < _SAME_SEPARATION, h, found)
-        return np.asarray(self._kept[place])
-
-    def drawn(self, key: str | float) -> Ensemble:
-        """Ensemble for a label or, in a sweep, a gamma, on the same surfaces."""
+    def of(self, key: Key) -> Scene:
+        """Return the scene of a label or gamma."""
         label = key if isinstance(key, str) else of_gamma(key)
-        if label not in self._kept:
-            graded = None if isinstance(key, str) else self.scene.replace(grading=Exponential(key))
-            self._kept[label] = simulate(graded or self.all[label])
-        found: Ensemble = self._kept[label]
-        return found
+        return self.all[label] if label in self.all else self.scene.replace(grading=Exponential(float(key)))
+
+    def _once(self, place: tuple[Any, ...], make: Callable[[], Any]) -> Any:
+        """Return what was made for this place, or make it."""
+        if place not in self._kept:
+            self._kept[place] = make()
+        return self._kept[place]
+
+    def theory(self, key: Key, quantity: str, h: Array) -> Array:
+        """Exact means, each computed once."""
+        made = self._once((key, quantity, h.tobytes()), lambda: self.of(key).theory.mean(quantity, h))
+        return np.asarray(made)
+
+    def at_load_of_reference(self, key: Key, h: Array) -> Array:
+        """Separations with the load that the reference has at these."""
+
+        def search() -> Array:
+            found = self.of(key).theory.separation_at("load", self.theory(self.reference, "load", h))
+            # Where both have the same load, the last digit would draw them in other cells.
+            return np.where(np.abs(found - h) < _SAME_SEPARATION, h, found)
+
+        return np.asarray(self._once((key, "at load", h.tobytes()), search))
+
+    def drawn(self, key: Key, h: Array | None = None) -> Ensemble:
+        """Ensemble on the same surfaces, at the separations of the scene or at others."""
+        there: dict[str, Any] = {} if h is None else {"separations": h}
+        place = (key, "drawn", b"" if h is None else h.tobytes())
+        made: Ensemble = self._once(place, lambda: simulate(self.of(key), **there))
+        return made
+
+    def values(self, key: Key, quantity: str, h: Array) -> Array:
+        """Return the sums of each surface at some of the separations of the scene."""
+        return np.asarray(self.drawn(key).values(quantity)[:, np.searchsorted(self.h, h)])
 
     @cached_property
     def listed(self) -> tuple[Array, ...]:
@@ -174,8 +181,7 @@ class Compared:
         room = max(int(_MOST_HEIGHTS / max(self.scene.touching, 1.0)), 2)
         scene = self.scene
         if scene.summits is None:
-            lowest = _LOWEST if self.swept else scene.separations
-            scene = scene.replace(sampler="tail", keep="sums", separations=lowest)
+            scene = scene.replace(sampler="tail", keep="sums")
         return tuple(heights(scene, k) for k in range(min(self.most_listed, scene.n_surfaces, room)))
 
     def enough(self, scene: Scene) -> Marks:
@@ -184,11 +190,17 @@ class Compared:
         return (scene.theory.mean("contacts", h) * scene.n_surfaces >= ENOUGH) & (scene.n_surfaces > 1)
 
     def points(self, found: Callable[[], Estimate], exact: Array, of: Scene | None = None) -> Points | None:
-        """Points at the separations where the ensemble of a scene has enough for an error."""
+        """Points at the separations where the ensemble of a scene has enough for an error.
+
+        There are none if its modulus is not positive at all separations of what is found.
+        """
         known = self.enough(of or self.scene)
         if not known.any():
             return None
-        mean, stderr = found()
+        try:
+            mean, stderr = found()
+        except SceneError:
+            return None
         return Points(self.h[known], mean[known], stderr[known], exact[known])
 
     def means(self, label: str, quantity: str, unit: float) -> Points | None:

@@ -216,45 +216,12 @@ def draw_residual(axis: Any, reach: float) -> None:
     axis.yaxis.set_major_locator(FixedLocator([-2, 0, 2]) if reach < 8 else MaxNLocator(4, symmetric=True))
 
 
-def save(data: FigureData, path: str | Path) -> None:
-    """Draw a figure into a file, whose ending chooses the format: .png, .pdf, .svg."""
+def save(data: FigureData, *paths: Path) -> None:
+    """Draw a figure into files, whose endings choose the format: .png, .pdf, .svg; .csv for its numbers."""
     figure = draw(data)
-    with mpl.rc_context(STYLE):
-        save_figure(figure, path)
-
-
-def figure_files(folder: Path, name: str, formats: Sequence[str], *, csv: bool) -> list[Path]:
-    """Files of the figure of this name."""
-    return [folder / f"{name}.{ending}" for ending in (*formats, *(["csv"] if csv else []))]
-
-
-def save_figure_files(
-    data: FigureData, folder: Path, formats: Sequence[str] = ("png",), *, csv: bool = False
-) -> Iterator[Path]:
-    """Write a figure in each of the formats.
-
-    Parameters
-    ----------
-    data : FigureData
-        What to draw.
-    folder : Path
-        Where; made if it is not there.
-    formats : sequence of str, optional
-        Endings of names, of those that matplotlib writes.
-    csv : bool, optional
-        Also write its numbers.
-
-    Yields
-    ------
-    Path
-        Of each file as it is there.
-    """
-    folder.mkdir(parents=True, exist_ok=True)
-    figure = draw(data)
-    for path in figure_files(folder, data.name, formats, csv=csv):
+    for path in paths:
         if path.suffix == ".csv":
             figure_table(data).write(path)
         else:
             with mpl.rc_context(STYLE):
                 save_figure(figure, path)
-        yield path

@@ -1,16 +1,17 @@
 """How contacts, and surfaces, of one population differ: moduli and scatter."""
 
+from functools import partial
+
 import numpy as np
 
-from analytic import Exponential, Grading, mean_modulus
+from analytic import mean_modulus
 from analytic.arrays import Array
-from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.simulation import simulate
-from mcgw.figures.compared import ENOUGH, SCENE, Compared, Row, grading, several
+from mcgw.figures.against_theory import spread
+from mcgw.figures.compared import SCENE, Compared, Key, Row, grading, several
 from mcgw.figures.data import GAMMA, SEPARATION, Estimate, FigureData, Panel, Points, Series, ratio_of_sums
-from mcgw.figures.ratios import over_gamma
+from mcgw.figures.ratios import ratio
 from mcgw.figures.style import power_of_ten
-from mcgw.scene.scene import Scene
 
 _SPREADING = ("load", "area", "stiffness")
 _PSI = r"$\psi/\psi_\mathrm{hom}$"
@@ -33,7 +34,7 @@ def mean_moduli(f: Compared) -> FigureData:
     plain = f.hertz and f.scene.summits is None  # else area and load of a contact are not powers
     series = []
     for weight in _POWERS if plain else ("number",):
-        line, at = (_exact(f, weight, f.scene.modulus, h) for h in (f.line, f.h))
+        line, at = (_exact(f, SCENE, h, weight=weight) for h in (f.line, f.h))
         label = "contacts" if weight == "number" else weight
         series.append(Series(label, f.line, line, _points(f, weight, at)))
     panel = Panel("", SEPARATION, _PSI, tuple(series), level=1.0)
@@ -47,39 +48,30 @@ def _over_gamma(f: Compared) -> tuple[Panel, ...]:
     just = tuple(Series(f"d/σ = {h:g}", _LINE, _LINE - (_LINE - 1) * np.exp(-h)) for h in _AT)
     panels = [Panel("a  as in the paper: just touching, s = d/σ", GAMMA, _PSI, just, level=1.0)]
     for weight, title in _TITLES.items():
-
-        def exact(gamma: str | float, h: Array, weight: str = weight) -> Array:
-            return _exact(f, weight, Exponential(float(gamma)), h)
-
-        found = [_drawn(f, weight, Exponential(float(g)), _AT) for g in _GAMMAS]
-        mean, stderr = np.array(found).transpose(1, 0, 2)
-        series = over_gamma(_LINE, _GAMMAS, _AT, exact, (mean, stderr))
-        panels.append(Panel(title, GAMMA, _PSI, series, level=1.0))
+        exact, drawn = partial(_exact, weight=weight), partial(_drawn, weight=weight)
+        panels.append(ratio(f, title, r"$\psi/\psi", exact, drawn, _LINE, _GAMMAS, _AT))
     return tuple(panels)
 
 
-def _exact(f: Compared, weight: str, modulus: Grading, h: Array) -> Array:
-    asked = {"weight": weight, "heights": f.scene.heights}
-    return mean_modulus(h, modulus, **asked)  # type: ignore[arg-type]
+def _exact(f: Compared, key: Key, h: Array, *, weight: str) -> Array:
+    return mean_modulus(h, f.of(key).modulus, heights=f.scene.heights, weight=weight)  # type: ignore[arg-type]
 
 
 def _points(f: Compared, weight: str, exact: Array) -> Points | None:
     """Points from the listed heights, where there are enough."""
     if len(f.listed) < 2:
         return None
-    known = f.enough(f.scene.replace(n_surfaces=len(f.listed)))
-    if not known.any():
-        return None
-    return Points(f.h[known], *_drawn(f, weight, f.scene.modulus, f.h[known]), exact[known])
+    of = f.scene.replace(n_surfaces=len(f.listed))
+    return f.points(lambda: _drawn(f, SCENE, f.h, weight=weight), exact, of)
 
 
-def _drawn(f: Compared, weight: str, modulus: Grading, h: Array) -> Estimate:
+def _drawn(f: Compared, key: Key, h: Array, *, weight: str) -> Estimate:
     """Mean of E*(s)/E* over the contacts of the listed surfaces."""
     above, below = np.zeros((2, len(f.listed), len(h)))
     for i, s in enumerate(f.listed):
         for k, separation in enumerate(h):
             touching = s[s > separation]
-            e = modulus(touching)
+            e = f.of(key).modulus(touching)
             weights = (touching - separation) ** _POWERS[weight] * (e if weight == "load" else 1.0)
             above[i, k], below[i, k] = np.sum(weights * e), np.sum(weights)
     return ratio_of_sums(above, below)
@@ -88,7 +80,7 @@ def _drawn(f: Compared, weight: str, modulus: Grading, h: Array) -> Estimate:
 def fluctuations(f: Compared) -> FigureData:
     """Show the standard deviation over the mean: of a sweep from a hundred asperities to a million."""
     if not f.swept:
-        series = tuple(_spreads(name, f.scene, name, f.line, f.drawn(SCENE), ENOUGH) for name in _SPREADING)
+        series = tuple(spread(name, f.scene, name, f.line, f.drawn(SCENE)) for name in _SPREADING)
         panel = Panel("", SEPARATION, "std / mean", series, ("linear", "log"), level=1.0)
         size = f"{f.scene.surface.nominal_area * 1e6:g} mm²"
         return FigureData(f"Scatter of surfaces of {size}", f.caption, (panel,))
@@ -98,7 +90,7 @@ def fluctuations(f: Compared) -> FigureData:
     line, panels = np.linspace(0, 4, 41), []
     for key, name in zip("abc", scene.quantities, strict=True):
         series = tuple(
-            _spreads(f"N = {power_of_ten(n)}", scene.replace(n_asperities=n), name, line, drawn.get(n), 400)
+            spread(f"N = {power_of_ten(n)}", scene.replace(n_asperities=n), name, line, drawn.get(n), 400)
             for n in (100, 1000, 10_000, 100_000, 1_000_000)
         )
         panels.append(Panel(f"{key}  {name}", SEPARATION, "std / mean", series, ("linear", "log"), 1.0))
@@ -108,31 +100,6 @@ def fluctuations(f: Compared) -> FigureData:
         "intervals, for 400 contacts or more.",
         tuple(panels),
     )
-
-
-def _spreads(
-    label: str, scene: Scene, name: str, line: Array, drawn: Ensemble | None, fewest: float
-) -> Series:
-    """Return a line of theory; points where surfaces are drawn and have enough contacts together."""
-
-    def exact(h: Array) -> Array:
-        return np.asarray(scene.theory.std(name, h) / np.abs(scene.theory.mean(name, h)))
-
-    if drawn is None:
-        return Series(label, line, exact(line))
-    h = drawn.separations
-    known = scene.theory.mean("contacts", h) * drawn.n_surfaces >= fewest
-    return Series(label, line, exact(line), spread(drawn.values(name)[:, known], h[known], exact(h)[known]))
-
-
-def spread(x: Array, h: Array, exact: Array) -> Points | None:
-    """Take std over mean of surfaces at each separation, and its standard error by its influence function."""
-    if not h.size:
-        return None
-    mean, std = x.mean(axis=0), x.std(axis=0, ddof=1)
-    z = (x - mean) / std
-    influence = std / mean * ((z**2 - 1) / 2 - z * std / mean)
-    return Points(h, std / np.abs(mean), influence.std(axis=0) / np.sqrt(len(x)), exact)
 
 
 FIGURES = (Row("figure-4", mean_moduli, (grading,)), Row("fluctuations", fluctuations, (several,)))

@@ -1,17 +1,14 @@
 """Gradings, means over separation and load, and their ratios at equal separation and equal load."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
-from analytic import Exponential, quantity_of
+from analytic import quantity_of
 from analytic.arrays import Array
-from analytic.roots import falling_root
-from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.simulation import simulate
-from mcgw.figures.compared import SCENE, Compared, Row, grading, pressing, reference, same_load
+from mcgw.figures.compared import SCENE, Compared, Key, Row, grading, pressing, reference, same_load
 from mcgw.figures.data import (
     GAMMA,
     PRESSURE,
@@ -25,17 +22,15 @@ from mcgw.figures.data import (
     ratio_of_sums,
 )
 from mcgw.figures.style import prefixed
-from mcgw.scene.scene import Scene
-from mcgw.scene.section import SceneError
 
-Exact = Callable[[str | float, Array], Array]  # of a label or gamma at separations
+Exact = Callable[[Compared, Key, Array], Array]  # of a label or gamma at separations
+Drawn = Callable[[Compared, Key, Array], Estimate]
 
 _BESIDE = 1.5  # sigma above the highest separation that a grading is shown
 _AT = np.arange(5.0)  # separations of the paper's ratios
 _STIFFER = np.linspace(1, 2, 81), np.array([1.2, 1.4, 1.6, 1.8, 2.0])
 _SOFTER = np.linspace(0.2, 1, 81), np.array([0.2, 0.4, 0.6, 0.8])
 _GRADES = ("γ = 2", "γ = 1", "γ = 0.5", "γ = 0.2")
-_GROUPS = 10  # of surfaces, for the jackknife
 _AT_LOAD = np.array([1.0, 2.0, 3.0])
 _LINE, _GAMMAS = np.linspace(0.2, 2, 46), np.array([0.2, 0.4, 0.6, 0.8, 1.2, 1.5, 2.0])
 _SHOWN = ("conductance", "area", "stiffness")
@@ -92,75 +87,63 @@ def _against_separation(f: Compared, title: str, quantity: str, words: str, unit
     return FigureData(title, f.caption, tuple(panels))
 
 
+def _area_per_load(f: Compared, key: Key, h: Array) -> Array:
+    area, load = (f.theory(key, name, h) / f.theory(f.reference, name, h) for name in ("area", "load"))
+    return area / load
+
+
+def _area_per_load_drawn(f: Compared, key: Key, h: Array) -> Estimate:
+    sums = [(f.values(x, "area", h), f.values(x, "load", h)) for x in (key, f.reference)]
+    return quotient_of_sums(*sums)
+
+
+def _stiffness(f: Compared, key: Key, h: Array) -> Array:
+    return f.theory(key, "stiffness", h) / f.theory(f.reference, "stiffness", h)
+
+
+def _stiffness_drawn(f: Compared, key: Key, h: Array) -> Estimate:
+    return ratio_of_sums(*(f.values(x, "stiffness", h) for x in (key, f.reference)))
+
+
 def area_per_load(f: Compared) -> FigureData:
     """Show the area per load over the reference's."""
-
-    def exact(key: str | float, h: Array) -> Array:
-        area, load = (f.theory(key, name, h) / f.theory(f.reference, name, h) for name in ("area", "load"))
-        return area / load
-
-    def drawn(key: str | float) -> Estimate:
-        ours, theirs = f.drawn(key), f.drawn(f.reference)
-        return quotient_of_sums(*((x.values("area"), x.values("load")) for x in (ours, theirs)))
-
-    return _ratios(f, "Area per load at a given separation (Eq. 12)", r"(A/P)\,/\,(A/P)", exact, drawn)
-
-
-def _stiffness_ratio(f: Compared) -> tuple[Exact, Callable[[str | float], Estimate]]:
-    """Give the stiffness over the reference's, exact and drawn."""
-
-    def exact(key: str | float, h: Array) -> Array:
-        return f.theory(key, "stiffness", h) / f.theory(f.reference, "stiffness", h)
-
-    def drawn(key: str | float) -> Estimate:
-        return ratio_of_sums(*(f.drawn(x).values("stiffness") for x in (key, f.reference)))
-
-    return exact, drawn
+    title = "Area per load at a given separation (Eq. 12)"
+    return _at_separation(f, title, r"(A/P)\,/\,(A/P)", _area_per_load, _area_per_load_drawn)
 
 
 def stiffness_ratios(f: Compared) -> FigureData:
     """Show the stiffness over the reference's."""
     title = "Stiffness at a given separation (Eq. 15: “conductance”)"
-    return _ratios(f, title, "K/K", *_stiffness_ratio(f))
+    return _at_separation(f, title, "K/K", _stiffness, _stiffness_drawn)
 
 
-def _ratios(
-    f: Compared, title: str, symbol: str, exact: Exact, drawn: Callable[[str | float], Estimate]
-) -> FigureData:
-    """Over gamma, if that is swept, else over the separation."""
-    if f.swept:
-        parts = (("a  stiffer tips", *_STIFFER), ("b  softer tips", *_SOFTER))
-        panels = [
-            Panel(
-                name, GAMMA, rf"${symbol}_\mathrm{{hom}}$",
-                over_gamma(line, gammas, _AT, exact, at_separations(f, _AT, map(drawn, gammas))), level=1.0,
-            )
-            for name, line, gammas in parts
-        ]  # fmt: skip
-        return FigureData(title, f.caption, tuple(panels))
+def _at_separation(f: Compared, title: str, symbol: str, exact: Exact, drawn: Drawn) -> FigureData:
+    """Return a panel; of a sweep one for stiffer and one for softer tips."""
+    parts = (("a  stiffer tips", _STIFFER), ("b  softer tips", _SOFTER)) if f.swept else (("", _STIFFER),)
+    panels = (ratio(f, name, f"${symbol}", exact, drawn, *gammas, _AT) for name, gammas in parts)
+    reference = "" if f.swept else f"Reference: {f.reference}, the same surface. "
+    return FigureData(title, f"{reference}{f.caption}", tuple(panels))
+
+
+def ratio(
+    f: Compared, title: str, symbol: str, exact: Exact, drawn: Drawn, line: Array, gammas: Array, at: Array
+) -> Panel:
+    """Draw a ratio to the reference over gamma, if that is swept, else over the separation."""
+    ylabel = rf"{symbol}_\mathrm{{{'hom' if f.swept else 'ref'}}}$"
+    if not f.swept:
+        series = tuple(
+            Series(label, f.line, exact(f, label, f.line),
+                   f.points(partial(drawn, f, label, f.h), exact(f, label, f.h)))
+            for label in f.others
+        )  # fmt: skip
+        return Panel(title, SEPARATION, ylabel, series, level=1.0)
+    mean, stderr = np.array([drawn(f, float(gamma), at) for gamma in gammas]).transpose(1, 2, 0)
+    curves, truth = (np.array([exact(f, float(gamma), at) for gamma in x]).T for x in (line, gammas))
     series = tuple(
-        Series(label, f.line, exact(label, f.line), f.points(partial(drawn, label), exact(label, f.h)))
-        for label in f.others
-    )
-    panel = Panel("", SEPARATION, rf"${symbol}_\mathrm{{ref}}$", series, level=1.0)
-    return FigureData(title, f"Reference: {f.reference}, the same surface. {f.caption}", (panel,))
-
-
-def at_separations(f: Compared, at: Array, found: Iterable[Estimate]) -> Estimate:
-    """Take some separations of estimates at all of them: shape (estimates, separations)."""
-    columns = np.searchsorted(f.h, at)
-    mean, stderr = np.array([[x[columns] for x in pair] for pair in found]).transpose(1, 0, 2)
-    return mean, stderr
-
-
-def over_gamma(line: Array, gammas: Array, at: Array, exact: Exact, found: Estimate) -> tuple[Series, ...]:
-    """Draw lines over gamma, one for each separation, with points of shape (gammas, separations)."""
-    curves, truth = (np.array([exact(float(g), at) for g in x]).T for x in (line, gammas))
-    mean, stderr = found
-    return tuple(
-        Series(f"d/σ = {h:g}", line, curves[k], Points(gammas, mean[:, k], stderr[:, k], truth[k]))
+        Series(f"d/σ = {h:g}", line, curves[k], Points(gammas, mean[k], stderr[k], truth[k]))
         for k, h in enumerate(at)
     )
+    return Panel(title, GAMMA, ylabel, series, level=1.0)
 
 
 def area_and_load(f: Compared) -> FigureData:
@@ -204,95 +187,28 @@ def _exponent(f: Compared, label: str) -> Series:
 
 def equal_load(f: Compared) -> FigureData:
     """Show conductance, area and stiffness over the reference's, where both carry the same load."""
-    return _over_gamma(f) if f.swept else _over_separation(f)
+    panels, keys = [], "abcd"
+    if f.swept:
+        title = "a  equal separation: stiffness (Eq. 15)"
+        panels.append(ratio(f, title, "$K/K", _stiffness, _stiffness_drawn, _LINE, _GAMMAS, _AT_LOAD))
+        keys = "bcd"
+    for key, name in zip(keys, _SHOWN, strict=False):
+        symbol = quantity_of(name).symbol.removesuffix("ρ")  # the resistivity is that of both
+        exact, drawn = partial(_of_load, name=name), partial(_of_load_drawn, name=name)
+        title = f"{key}  {'equal load: ' * f.swept}{name}"
+        panels.append(ratio(f, title, f"${symbol}/{symbol}", exact, drawn, _LINE, _GAMMAS, _AT_LOAD))
+    title = "At equal load the trend reverses: stiffer tips conduct less" if f.swept else "At the same load"
+    which = "homogeneous surface" if f.swept else f"reference ({f.reference}, the same surface)"
+    return FigureData(title, f"d/σ is that of the {which} and sets the load. {f.caption}", tuple(panels))
 
 
-def _over(name: str, reference: str) -> str:
-    symbol = quantity_of(name).symbol.removesuffix("ρ")  # the resistivity is that of both
-    return rf"${symbol}/{symbol}_\mathrm{{{reference}}}$"
-
-
-def _exact(f: Compared, name: str, key: str | float, h: Array) -> Array:
+def _of_load(f: Compared, key: Key, h: Array, *, name: str) -> Array:
     return f.theory(key, name, f.at_load_of_reference(key, h)) / f.theory(f.reference, name, h)
 
 
-def _over_separation(f: Compared) -> FigureData:
-    drawn = {label: _drawn_at(f.all[label], f.at_load_of_reference(label, f.h)) for label in f.others}
-    panels = []
-    for key, name in zip("abc", _SHOWN, strict=True):
-        here, series = f.drawn(f.reference).values(name), []
-        for label, there in drawn.items():
-            exact, curve = (_exact(f, name, label, h) for h in (f.h, f.line))
-            points = f.points(partial(ratio_of_sums, there.values(name), here), exact) if there else None
-            series.append(Series(label, f.line, curve, points))
-        ylabel = _over(name, "ref")
-        panels.append(Panel(f"{key}  {name}", SEPARATION, ylabel, tuple(series), level=1.0))
-    caption = f"d/σ is that of the reference ({f.reference}, the same surface) and sets the load. {f.caption}"
-    return FigureData("At the same load", caption, tuple(panels))
-
-
-def _drawn_at(scene: Scene, h: Array) -> Ensemble | None:
-    """Return the ensemble at other separations, if its modulus is positive down to them."""
-    try:
-        return simulate(scene, separations=h)
-    except SceneError:
-        return None
-
-
-def _over_gamma(f: Compared) -> FigureData:
-    """By theory, and by the listed heights, each gradings' at the load that these very surfaces carry."""
-    exact, drawn = _stiffness_ratio(f)
-    series = over_gamma(_LINE, _GAMMAS, _AT_LOAD, exact, at_separations(f, _AT_LOAD, map(drawn, _GAMMAS)))
-    title = "a  equal separation: stiffness (Eq. 15)"
-    panels = [Panel(title, GAMMA, r"$K/K_\mathrm{hom}$", series, level=1.0)]
-    found = np.array([_jackknifed(f.listed, float(h)) for h in _AT_LOAD])  # (separation, 2, gamma, quantity)
-    for k, name in enumerate(_SHOWN):
-        mean, stderr = found[..., k].transpose(1, 2, 0)
-        series = over_gamma(_LINE, _GAMMAS, _AT_LOAD, partial(_exact, f, name), (mean, stderr))
-        ylabel = _over(name, "hom")
-        panels.append(Panel(f"{'bcd'[k]}  equal load: {name}", GAMMA, ylabel, series, level=1.0))
-    return FigureData(
-        "At equal load the trend reverses: stiffer tips conduct less",
-        f"d/σ is that of the homogeneous surface and sets the load. {f.listed_caption} "
-        f"(a: {f.scene.n_surfaces} surfaces.)",
-        tuple(panels),
-    )
-
-
-def _jackknifed(listed: tuple[Array, ...], h: float) -> tuple[Array, Array]:
-    """Ratios (gamma, quantity) at the load of all listed surfaces, and their errors by leaving groups out."""
-    s = np.concatenate(listed)
-    group = np.repeat(np.arange(len(listed)) % _GROUPS, [len(x) for x in listed])
-    order = np.argsort(-s)
-    s, group = s[order], group[order]
-    s, group = s[s > h - 0.9], group[s > h - 0.9]  # what any of the gradings brings into contact
-    whole, h2 = _ratios_at_load(s, h, np.full(len(_GAMMAS), h - 0.85))
-    near = h2 - 0.1  # a tenth of the surfaces less moves the separation by less
-    parts = np.array([_ratios_at_load(s[group != g], h, near)[0] for g in range(_GROUPS)])
-    return whole, np.sqrt((_GROUPS - 1) / _GROUPS * ((parts - parts.mean(axis=0)) ** 2).sum(axis=0))
-
-
-def _load_beyond(s: Array, modulus: Array, load: float, h: float) -> float:
-    """Return how much asperities carry beyond a load, over its scale."""
-    return float(modulus @ np.maximum(s - h, 0.0) ** 1.5) - load
-
-
-def _ratios_at_load(s: Array, h: float, starts: Array) -> tuple[Array, Array]:
-    """Conductance, area, stiffness over the homogeneous ones, shape (gammas, 3); the separations."""
-    d = s[s > h] - h
-    load = float(np.sum(d**1.5))
-    hom = np.array([np.sum(np.sqrt(d)), d.sum(), np.sum(np.sqrt(d))])
-    rows, found = [], []
-    for gamma, start in zip(_GAMMAS, starts, strict=True):
-        near = s[s > start]
-        modulus = Exponential(float(gamma))(near)
-        excess = partial(_load_beyond, near, modulus, load)
-        h2 = falling_root(excess, float(start), float(near[0]))
-        d = near[near > h2] - h2
-        roots = np.sqrt(d)
-        rows.append([roots.sum(), d.sum(), modulus[: len(d)] @ roots] / hom)
-        found.append(h2)
-    return np.array(rows), np.array(found)
+def _of_load_drawn(f: Compared, key: Key, h: Array, *, name: str) -> Estimate:
+    there = f.drawn(key, f.at_load_of_reference(key, h))
+    return ratio_of_sums(there.values(name), f.values(f.reference, name, h))
 
 
 FIGURES = (

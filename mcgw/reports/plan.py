@@ -1,6 +1,5 @@
-"""Cost of a scene, estimated before anything is drawn."""
+"""Cost of a scene or a sweep, estimated before anything is drawn."""
 
-from dataclasses import dataclass
 from time import perf_counter
 
 from analytic import QUANTITIES
@@ -24,91 +23,33 @@ _NO_SURFACES = "means alone: no surfaces, scene.theory is exact"
 _WORTH, _CROWD = 1.5, 300  # times faster, to be told; asperities of a cell, for crowds to pay
 
 
-@dataclass(frozen=True)
-class Plan:
-    """What will be drawn.
+def plan_text(scene: Scene) -> str:
+    """Return the plan in words, with what is left out and why; nothing is drawn or compiled for it.
 
-    Parameters
-    ----------
-    sampler : str
-        The one that ``auto`` stands for, too.
-    surfaces : int
-        How many will be drawn; with `rel_err` by `forecast`.
-    asperities : float
-        On a surface.
-    touching : float
-        Expected to touch at the lowest separation.
-    drawn : float
-        Uniforms (or normals) expected to be drawn for a surface.
-    cells, moments : int
-        Of a surface, about; 0 for samplers without cells.
-    bytes : int
-        Of the results of all surfaces, before compression.
-    seconds : float
-        Expected for all surfaces on a machine of the last years with so many cores, within a factor of two.
-    crowds : float or None
-        Seconds with crowded cells, which an accuracy above 0 may buy; None where it buys none.
+    Seconds are expected on a machine of the last years with so many cores, within a factor of two.
     """
-
-    sampler: str
-    surfaces: int
-    asperities: float
-    touching: float
-    drawn: float
-    cells: int
-    moments: int
-    bytes: int
-    seconds: float
-    crowds: float | None
-
-
-def plan_of(scene: Scene) -> Plan:
-    """Estimate what a scene needs, without drawing or compiling anything."""
     scene = storable(scene)
     known, surfaces = expected(scene), forecast(scene).surfaces
-    return Plan(
-        known.name,
-        surfaces,
-        float(scene.n_asperities),
-        scene.touching,
-        known.draws,
-        known.cells,
-        known.moments,
-        reducer_of(scene, known).joined_bytes(surfaces),
-        rough_seconds(scene, surfaces),
-        _with_crowds(scene, known, surfaces),
-    )
-
-
-def _with_crowds(scene: Scene, known: Expected, surfaces: int) -> float | None:
-    """Seconds that an accuracy above 0 may buy: those of ``aggregate``, where ``auto`` takes ``cells``."""
-    few = known.draws < _WORTH * _CROWD * known.cells  # as crowds are chosen
-    if known.name != "cells" or scene.sampler != "auto" or scene.summits is not None or few:
-        return None
-    return rough_seconds(scene.replace(sampler="aggregate"), surfaces)
-
-
-def plan_text(scene: Scene, plan: Plan) -> str:
-    """Return the plan in words, with what is left out and why."""
-    size = f"{plan.bytes / 1e6:.4g} MB"
+    seconds = rough_seconds(scene, surfaces)
+    size = f"{reducer_of(scene, known).joined_bytes(surfaces) / 1e6:.4g} MB"
     kept = f"statistics alone, about {size}" if scene.keep == "statistics" else f"{size} before compression"
     facts = [
-        ("surfaces", f"{plan.surfaces} of {scene.n_asperities} asperities ({scene.count})"),
-        ("sampler", plan.sampler + (" (chosen by auto)" if scene.sampler == "auto" else "")),
-        ("touching", f"{plan.touching:.4g} per surface, at the smallest d/sigma = {scene.lowest:g}"),
-        ("drawn", f"{plan.drawn:.4g} per surface"),
-        ("cells", f"about {plan.cells}, with {plan.moments} moments per surface"),
+        ("surfaces", f"{surfaces} of {scene.n_asperities} asperities ({scene.count})"),
+        ("sampler", known.name + (" (chosen by auto)" if scene.sampler == "auto" else "")),
+        ("touching", f"{scene.touching:.4g} per surface, at the smallest d/sigma = {scene.lowest:g}"),
+        ("drawn", f"{known.draws:.4g} per surface"),
+        ("cells", f"about {known.cells}, with {known.moments} moments per surface"),
         ("quantities", f"{', '.join(scene.quantities)} at {len(scene.separations)} separations"),
         *contact_facts(scene),
         ("results", kept),
-        ("time", f"about {in_words(plan.seconds)}"),
-        ("accuracy", _accuracy(scene, plan)),
-        *(("for" if k == 0 else "", line) for k, line in enumerate(_targets(scene, plan))),
+        ("time", f"about {in_words(seconds)}"),
+        ("accuracy", _accuracy(scene, known, surfaces)),
+        *(("for" if k == 0 else "", line) for k, line in enumerate(_targets(scene, seconds / surfaces))),
     ]
     left_out = [name for name in QUANTITIES if name not in scene.quantities]
-    spared = plan.asperities - plan.touching
-    not_done = [line.format(spared=spared) for line in promise_of(plan.sampler).not_done]
-    if plan.cells and not plan.moments:
+    spared = scene.n_asperities - scene.touching
+    not_done = [line.format(spared=spared) for line in promise_of(known.name).not_done]
+    if known.cells and not known.moments:
         not_done.append("no heights are drawn: contacts follow from the numbers in the cells")
     if left_out:
         not_done.append(f"{', '.join(left_out)}: not requested")
@@ -117,24 +58,26 @@ def plan_text(scene: Scene, plan: Plan) -> str:
     return "\n".join([*lines, "not done:", *(f"  {line}" for line in not_done)])
 
 
-def _accuracy(scene: Scene, plan: Plan) -> str:
-    """How far laws may be from the exact ones, and what more would buy."""
+def _accuracy(scene: Scene, known: Expected, surfaces: int) -> str:
+    """How far laws may be from the exact ones, and what crowded cells, where ``auto`` has none, would buy."""
     given = f"up to {scene.accuracy:g} from the exact laws" if scene.accuracy else "0: exact laws"
-    if plan.crowds is None or plan.crowds > plan.seconds / _WORTH:
+    few = known.draws < _WORTH * _CROWD * known.cells  # as crowds are chosen
+    if known.name != "cells" or scene.sampler != "auto" or scene.summits is not None or few:
         return given
+    times = rough_seconds(scene.replace(sampler="aggregate"), surfaces) / rough_seconds(scene, surfaces)
     bought = "buys" if scene.accuracy else "1e-3 would buy"
-    return f"{given}; {bought} crowded cells, {plan.crowds / plan.seconds:.2g} x the time"
+    return f"{given}; {bought} crowded cells, {times:.2g} x the time" if times <= 1 / _WORTH else given
 
 
-def _targets(scene: Scene, plan: Plan) -> list[str]:
-    """Surfaces and time for which every mean is within an error, and that theory needs none."""
+def _targets(scene: Scene, each: float) -> list[str]:
+    """Surfaces, of so many seconds each, for errors of every mean, and that theory needs none."""
     if scene.interaction is not None or scene.as_measured or not laws_are_quick(scene):
         return []  # no theory, or one that takes longer than a plan may
     lines = []
     for target in _TARGETS:
         found = forecast(scene.replace(rel_err=target, n_surfaces=MOST_SURFACES))
         some = f", all but {len(found.out_of_reach)} means" if found.out_of_reach else ""
-        seconds = in_words(plan.seconds / plan.surfaces * found.surfaces)
+        seconds = in_words(each * found.surfaces)
         lines.append(f"rel_err = {target:g}: {found.surfaces:.2g} surfaces, {seconds}{some}")
     return [*lines, _NO_SURFACES]
 

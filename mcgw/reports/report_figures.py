@@ -10,13 +10,13 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from analytic import quantity_of
-from analytic.arrays import Array
 from mcgw.ensemble.at_load import answers_at, pressures_of, quantities_at
+from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.intervals import laws_are_quick
 from mcgw.ensemble.solution import solutions
 from mcgw.ensemble.solved import Solution
-from mcgw.figures.against_theory import quantity_panel
-from mcgw.figures.data import FigureData, Mark, Panel, Points, Series
+from mcgw.figures.against_theory import quantity_panel, spread
+from mcgw.figures.data import SEPARATION, FigureData, Mark, Panel, Series
 from mcgw.figures.panels import draw
 from mcgw.figures.style import SEEN, STYLE, write_figure
 from mcgw.formats.table import Column, Table, evenly
@@ -55,13 +55,17 @@ class PageFigure:
 
 def comparison_figures(comparison: Comparison) -> list[PageFigure]:
     """Each quantity with its theory, and how far surfaces spread."""
-    found = []
-    for name in comparison.ensemble.scene.answers:
-        figure = draw(FigureData("", "", (quantity_panel(comparison, name),)))
-        found.append(line_figure(figure, quantity_of(name).long_name))
-    if comparison.ensemble.n_surfaces > 1:
-        found.append(line_figure(draw(_spread(comparison)), "std over mean against separation"))
-    return found
+    ensemble = comparison.ensemble
+    panels = {
+        quantity_of(name).long_name: quantity_panel(comparison, name) for name in ensemble.scene.answers
+    }
+    if ensemble.n_surfaces > 1:
+        panels["std over mean against separation"] = spread_panel(ensemble)
+    return [_drawn(panel, label) for label, panel in panels.items()]
+
+
+def _drawn(panel: Panel, label: str) -> PageFigure:
+    return line_figure(draw(FigureData("", "", (panel,))), label)
 
 
 def solved_pressures(scene: Scene, pressures: Sequence[float] | None = None) -> list[Solution]:
@@ -93,7 +97,7 @@ def pressure_pictures(solved: Sequence[Solution]) -> Iterator[PageFigure]:
     for panel in pressure_curves(solved):
         low, high = (each.amount / each.scene.surface.nominal_area / 1e6 for each in (solved[0], solved[-1]))
         label = f"{panel.title} against nominal pressure from {low:.3g} to {high:.3g} MPa"
-        yield line_figure(draw(FigureData("", "", (panel,))), label)
+        yield _drawn(panel, label)
 
 
 def line_figure(figure: Figure, label: str) -> PageFigure:
@@ -111,33 +115,11 @@ def line_figure(figure: Figure, label: str) -> PageFigure:
     return PageFigure(label, svg=f"{head}>{rest}")
 
 
-def _spread(comparison: Comparison) -> FigureData:
-    ensemble = comparison.ensemble
-    scene, h = ensemble.scene, ensemble.separations
-    order = np.argsort(h, kind="stable")
-    series = []
-    for name in scene.quantities:
-        curve = comparison.curves[name]
-        touches = curve.theory != 0
-        exact = np.full(len(h), np.nan)
-        exact[touches] = (curve.stderr * np.sqrt(ensemble.n_surfaces))[touches] / np.abs(
-            curve.theory[touches]
-        )
-        error = exact * _relative_error(scene, name) / np.sqrt(ensemble.n_surfaces)
-        known = (ensemble.mean(name) > 0) & (exact > 0) & (error > 0)
-        mean, std = ensemble.mean(name)[known], ensemble.std(name)[known]
-        points = Points(h[known], std / mean, error[known], exact[known])
-        series.append(Series(name, h[order], exact[order], points))
-    panel = Panel("Spread over surfaces", "separation d/σ", "std / mean", tuple(series), ("linear", "log"))
-    return FigureData("", "Lines: exact. Markers: the ensemble, with standard errors.", (panel,), columns=1)
-
-
-def _relative_error(scene: Scene, name: str) -> Array:
-    """Of std over mean of one surface, to first order: half of std's, that of the mean, and both together."""
-    exact = scene.theory.cumulants(name, scene.separations)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        spread = np.sqrt(exact.variance) / np.abs(exact.mean)
-        return np.asarray(np.sqrt((exact.excess_kurtosis + 2) / 4 + spread**2 - exact.skewness * spread))
+def spread_panel(ensemble: Ensemble) -> Panel:
+    """Show how far surfaces spread."""
+    scene, line = ensemble.scene, np.sort(ensemble.separations)
+    series = tuple(spread(name, scene, name, line, ensemble) for name in scene.quantities)
+    return Panel("Spread over surfaces", SEPARATION, "std / mean", series, ("linear", "log"))
 
 
 def pressure_curves(solved: Sequence[Solution]) -> list[Panel]:

@@ -8,6 +8,7 @@ import inspect
 import shlex
 from concurrent.futures import ThreadPoolExecutor
 from importlib import import_module
+from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
@@ -55,15 +56,15 @@ ROWS = [
     (SWEEP, "jobs.running:sweep", "--zip", {"zipped": True}),
     (f"{SWEEP} --zip --over ensemble.seed=1,2", "reports.plan:sweep_plan_text", "--plan",
      {"asked.axes.size": 2}),
-    ("show @s.toml", "reports.plan:plan_text", "--plan", {"scene.title": "Flags", "plan.surfaces": 70}),
+    ("show @s.toml", "reports.plan:plan_text", "--plan", {"scene.title": "Flags"}),
     ("show --plan @s.toml", "reports.plan:plan_text",
      "--set contact.law=kogut-etsion --set contact.law.critical=0.05",
      {"scene.law": mcgw.KogutEtsion(critical=0.05)}),
     ("show @e.h5", "store.ensembles:verify", "--verify", {"path.name": "e.h5"}),
     (COMPARE, "statistics.comparison:compare", "--laws", {"laws": True}),
-    ("compare @e.h5", "figures.panels:save", "--output q.svg", {"path.name": "q.svg"}),
+    ("compare @e.h5", "figures.panels:save", "--output q.svg", {"paths": (Path("q.svg"),)}),
     (COMPARE, "reports.text:comparison_summary", "--table", {"whole": True}),
-    ("converge @s.toml", "figures.panels:save", "--output t", {"path.parent.name": "t"}),
+    ("converge @s.toml", "figures.panels:save", "--output t", {"paths": (Path("t/s-converge.png"),)}),
     ("converge @s.toml", "statistics.convergence:converge", "--set ensemble.n_surfaces=9",
      {"scene.n_surfaces": 9}),
     ("tradeoff @s.toml", "statistics.tradeoff:tradeoff", "--seconds 2min", {"seconds": 120.0}),
@@ -129,9 +130,11 @@ ROWS = [
      {"pixel": near((2e-6, 2e-6)), "unit": None}),
     ("elastic @map.npy --pressure 1MPa", "maps.map_files:read_map", "--unit mm",
      {"unit": "mm", "pixel": None}),
-    *(("figures", "figures.panels:save_figure_files", f"--only figure-1 {words}", asked) for words, asked in (
-        ("--output there", {"folder.name": "there", "csv": False, "formats": ["png"]}),
-        ("--format PDF .svg", {"formats": ["pdf", "svg"]}), ("--csv", {"csv": True}))),
+    *(("figures", "figures.panels:save", f"--only figure-1 {words}", {"paths": tuple(map(Path, paths))})
+      for words, paths in (
+        ("--output there", ["there/figure-1.png"]),
+        ("--format PDF .svg", ["figures/figure-1.pdf", "figures/figure-1.svg"]),
+        ("--csv", ["figures/figure-1.png", "figures/figure-1.csv"]))),
     ("figures", "figures.catalogue:figures_of", "--only figure-1",
      {"only": ["figure-1"], "f.swept": True, "f.scene.n_surfaces": 2000, "f.scene.n_asperities": 30_000,
       "f.scene.seed": 20240601}),

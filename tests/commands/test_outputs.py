@@ -1,7 +1,6 @@
 """What commands may write: never what they read, never an ensemble, never half a file."""
 
 import errno
-import importlib
 import os
 import shutil
 import stat
@@ -30,6 +29,7 @@ import mcgw
 from mcgw.cli import main
 from mcgw.commands import outputs
 from mcgw.errors import StoreError, in_one_line
+from mcgw.figures import panels
 
 pytestmark = pytest.mark.usefixtures("no_pressures")
 
@@ -382,23 +382,20 @@ def test_files_written_together_appear_all_or_none(tmp_path):
 
 @pytest.mark.usefixtures("blank_figures")
 @pytest.mark.parametrize(
-    ("words", "where", "name", "first"),
+    ("words", "first"),
     [
         ("fit map.npy --cutoff none --pixel 1um --summits s.csv --tiles t.csv --picture p.png -o f.toml",
-         "mcgw.figures.panels", "save", 0),
-        ("figures --only figure-1 figure-2 --csv -o drawn", "mcgw.figures.panels", "save_figure_files", 1),
+         0),
+        ("figures --only figure-1 figure-2 --csv -o drawn", 1),
     ],
     ids=["fit", "figures"],
 )  # fmt: skip
-def test_a_command_that_fails_at_its_last_output_leaves_none(
-    words, where, name, first, tmp_path, monkeypatch, capsys
-):
+def test_a_command_that_fails_at_its_last_output_leaves_none(words, first, tmp_path, monkeypatch, capsys):
     """The scene, tables and figures written before are not there."""
     z = 1e-6 * np.random.default_rng(1).normal(size=(64, 64))
     np.save(tmp_path / "map.npy", gaussian_filter(z, 2))
     monkeypatch.chdir(tmp_path)
-    module, calls = importlib.import_module(where), []
-    whole = getattr(module, name)
+    whole, calls = panels.save, []
 
     def fails(*arguments, **more):
         calls.append(arguments)
@@ -406,10 +403,10 @@ def test_a_command_that_fails_at_its_last_output_leaves_none(
             raise OSError(28, "No space left on device", "last")
         return whole(*arguments, **more)
 
-    monkeypatch.setattr(module, name, fails)
+    monkeypatch.setattr(panels, "save", fails)
     assert main(words.split()) != 0
     assert "last" in capsys.readouterr().err
     assert [path.name for path in tmp_path.rglob("*") if path.is_file()] == ["map.npy"]
-    monkeypatch.setattr(module, name, whole)
+    monkeypatch.setattr(panels, "save", whole)
     assert main(words.split()) == 0
     assert len([path for path in tmp_path.rglob("*") if path.is_file()]) == 5

@@ -18,20 +18,17 @@ from oracles.inside import (
     figures_of,
     prefixed,
     ratio_of_sums,
-    save_figure_files,
+    save,
     short,
 )
 from oracles.scenes import scene_by
 from oracles.told import mark
 from scipy.integrate import quad
-from scipy.optimize import brentq
 from scipy.stats import norm
 
 import analytic
 import mcgw
 from mcgw import scene_from
-from mcgw.figures.populations import spread
-from mcgw.figures.ratios import _jackknifed
 
 THEORY_ALONE = {"figure-1"}
 
@@ -156,39 +153,6 @@ def test_ratio_of_sums_against_repetition():
     assert spread == pytest.approx(np.mean([e for _, e in found]), rel=0.2)
 
 
-def test_error_of_a_spread_against_repetition():
-    """Of std/mean as of ratios: 300 repetitions know it to 4 %."""
-    rng, h = np.random.default_rng(4), np.array([0.0, 0.5])
-    found = [spread(rng.gamma([2.0, 5.0], size=(500, 2)), h, 0 * h) for _ in range(300)]
-    seen = np.std([p.mean for p in found], axis=0, ddof=1)
-    np.testing.assert_allclose(seen, np.mean([p.stderr for p in found], axis=0), rtol=0.16)
-
-
-def test_jackknife_at_equal_load_literally():
-    """Ten groups of surfaces, each left out in turn; ratios at equal load by bisection."""
-    rng, h = np.random.default_rng(5), 1.0
-    listed = tuple(rng.normal(size=n) for n in rng.integers(100, 300, 25))
-
-    def ratios(s, gamma):
-        modulus, d = gamma - (gamma - 1) * np.exp(-s), np.maximum(s - h, 0)
-
-        def excess(x):
-            return (modulus * np.maximum(s - x, 0) ** 1.5).sum() - (d**1.5).sum()
-
-        own = np.maximum(s - brentq(excess, h - 1, h + 1, xtol=1e-13), 0)
-        hom = np.sqrt(d).sum(), d.sum(), np.sqrt(d).sum()
-        return np.array([np.sqrt(own).sum(), own.sum(), (modulus * np.sqrt(own)).sum()]) / hom
-
-    found, errors = _jackknifed(listed, h)
-    for k, gamma in ((0, 0.2), (6, 2.0)):
-        np.testing.assert_allclose(found[k], ratios(np.concatenate(listed), gamma), rtol=1e-9)
-        left = [
-            ratios(np.concatenate([s for i, s in enumerate(listed) if i % 10 != group]), gamma)
-            for group in range(10)
-        ]
-        np.testing.assert_allclose(errors[k], np.std(left, axis=0) * 3, rtol=1e-7)  # sqrt(10 - 1)
-
-
 def test_curves_carry_the_label_of_their_grading_or_separation(figures):
     """A line drawn under another's label: theory by the label alone, in two panels of each kind."""
     for name, n in (("figure-2", 1.5), ("figure-5", 0.5)):
@@ -221,14 +185,10 @@ def test_pressures_and_area_fractions_are_those_of_the_paper(figures):
 def test_files_and_every_number_of_a_figure_in_its_csv(figures, tmp_path):
     data = figures["figure-6"]
     both = (data, figures["figure-1"])
-    paths = [
-        path
-        for one in both
-        for path in save_figure_files(one, tmp_path / "new", ("png", "pdf", "svg"), csv=True)
-    ]
-    assert sorted(p.suffix for p in paths) == [".csv", ".csv", ".pdf", ".pdf", ".png", ".png", ".svg", ".svg"]
-    assert set((tmp_path / "new").iterdir()) == set(paths)
-    rows = list(csv.DictReader((tmp_path / "new" / "figure-6.csv").read_text().splitlines()))
+    for one in both:
+        save(one, *(tmp_path / f"{one.name}.{ending}" for ending in ("png", "pdf", "svg", "csv")))
+    assert len(list(tmp_path.iterdir())) == 8
+    rows = list(csv.DictReader((tmp_path / "figure-6.csv").read_text().splitlines()))
     expected = []
     for panel in data.panels:
         for s in panel.series:

@@ -24,11 +24,11 @@ MODULES = {
     "mcgw.ensemble.separation": "crossing Summits",
     "mcgw.ensemble.simulation": "reducer_of Values",
     "mcgw.ensemble.solution": "solutions",
-    "mcgw.figures.against_theory": "comparison_figure quantity_panel",
+    "mcgw.figures.against_theory": "comparison_figure quantity_panel spread",
     "mcgw.figures.catalogue": "CATALOGUE figures_of",
     "mcgw.figures.compared": "Compared",
     "mcgw.figures.data": "FigureData GAMMA Panel Points ratio_of_sums Series",
-    "mcgw.figures.panels": "draw save save_figure_files",
+    "mcgw.figures.panels": "draw save",
     "mcgw.figures.studies": "convergence_figure tradeoff_figure",
     "mcgw.figures.style": "FAMILIES look PAIRS power_of_ten prefixed save_figure short STYLE THEORY",
     "mcgw.formats.files": (
@@ -61,9 +61,9 @@ MODULES = {
     "mcgw.maps.readable_scene": "write_scene",
     "mcgw.maps.summit_sums": "_apex coarse_sums_of summit_sums_of SummitSums SUMS",
     "mcgw.reports.html": "report_html",
-    "mcgw.reports.plan": "plan_of plan_text",
+    "mcgw.reports.plan": "plan_text",
     "mcgw.reports.report_figures": (
-        "_relative_error _spread line_figure pressure_curves pressure_table round_pressures solved_pressures"
+        "spread_panel line_figure pressure_curves pressure_table round_pressures solved_pressures"
     ),
     "mcgw.reports.solved_loads": "correlation solutions_text",
     "mcgw.reports.text": "comparison_text summary",

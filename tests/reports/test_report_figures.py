@@ -8,19 +8,18 @@ from conftest import SURFACE as COARSE
 from oracles import exact
 from oracles.inside import (
     FigureData,
-    _relative_error,
-    _spread,
     draw,
     line_figure,
     pressure_curves,
     pressure_table,
     round_pressures,
     solved_pressures,
+    spread,
+    spread_panel,
 )
 
 import analytic
 import mcgw
-from mcgw import compare
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "10 mm^2", "78.6 GPa")
 
@@ -51,8 +50,7 @@ def test_spread_is_std_over_mean():
             seed=4,
         )
     )
-    data = _spread(compare(ensemble))
-    (panel,) = data.panels
+    panel = spread_panel(ensemble)
     assert (panel.xlabel, panel.ylabel, panel.scales) == (
         "separation d/σ", "std / mean", ("linear", "log")
     )  # fmt: skip
@@ -67,7 +65,7 @@ def test_spread_is_std_over_mean():
         np.testing.assert_array_equal(series.x, np.sort(h))
         np.testing.assert_allclose(series.theory, spread[np.argsort(h)], rtol=1e-7)
     # One drawn of many: each id of a page is there once, and an SVG takes the width it is given.
-    one, two = (line_figure(draw(data), label).svg for label in ("one name", "two"))
+    one, two = (line_figure(draw(FigureData("", "", (panel,))), label).svg for label in ("one name", "two"))
     ids = [set(re.findall(r'\bid="([^"]+)"', svg)) for svg in (one, two)]
     assert ids[0]
     assert not ids[0] & ids[1]
@@ -79,10 +77,11 @@ def test_spread_is_std_over_mean():
 def test_error_of_std_over_mean_is_that_of_repetitions(make_scene):
     """400 ensembles of 100 surfaces: their deviation is known to 3.5 %, so 15 % is four of that."""
     scene = make_scene(separations=[0.0, 2.0], n_surfaces=40_000, seed=9, quantities=("load",))
-    values = mcgw.simulate(scene).load.reshape(400, 100, 2)
+    drawn = mcgw.simulate(scene)
+    values = drawn.load.reshape(400, 100, 2)
     ratio = values.std(axis=1, ddof=1) / values.mean(axis=1)
-    told = _relative_error(scene, "load") * exact.std(scene, "load") / exact.mean(scene, "load")
-    np.testing.assert_allclose(told / np.sqrt(100), ratio.std(axis=0), rtol=0.15)
+    told = spread("a", scene, "load", np.array([0.0, 2.0]), drawn).points.stderr
+    np.testing.assert_allclose(20 * told, ratio.std(axis=0), rtol=0.15)
 
 
 @pytest.fixture(autouse=True)

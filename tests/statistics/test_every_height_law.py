@@ -16,7 +16,6 @@ from oracles.inside import (
     cautions,
     comparison_text,
     forecast,
-    plan_of,
     report_html,
     solutions,
     spread_of,
@@ -240,8 +239,8 @@ def test_forecast(scene):
     assert most <= found.surfaces <= 1.07 * most + 64
 
 
-def test_plan(scene):
-    assert plan_of(scene).touching == pytest.approx(3000 * exact.share_above(scene, 0.0), rel=1e-12)
+def test_touching(scene):
+    assert scene.touching == pytest.approx(3000 * exact.share_above(scene, 0.0), rel=1e-12)
 
 
 def test_solve(scene):
