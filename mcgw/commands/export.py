@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Annotated, Literal
 
-from mcgw.commands.kinds import Range, SceneOrFile
+from mcgw.commands.kinds import SceneOrFile, Values
 from mcgw.commands.outputs import CSV, Format, Output, check_outputs
 from mcgw.commands.voice import news
 
@@ -16,7 +16,7 @@ def export(
         "pressure-gap", "conductance-pressure", "conductance-gap", "stiffness-pressure"
     ] = "pressure-gap",
     points: int = 40,
-    pressures: Annotated[str | None, Range("Pa")] = None,
+    pressures: Annotated[list[float] | None, Values("Pa")] = None,
     quantile: list[float] | None = None,
     units: Literal["SI", "mm-N-s"] = "SI",
     output: Path,
@@ -33,9 +33,8 @@ def export(
         the quantity and its argument
     points : N
         number of rows
-    pressures : A:B:N
-        N nominal pressures from A to B at a constant ratio, such as 10kPa:20MPa:30; default: those that the
-        separations of the scene span
+    pressures : P
+        nominal pressures, such as 10kPa:20MPa:30; default: those that the separations of the scene span
     quantile : Q
         quantiles over the surfaces, besides the mean; default: 0.05 and 0.95
     units

@@ -17,17 +17,6 @@ E_STAR = 100e9  # Pa, default
 _AREA = 1e-6  # m^2, default of numbers alone
 
 
-class Wave(Quantity):
-    """A length, or none."""
-
-    def __init__(self) -> None:
-        super().__init__("m")
-
-    def read(self, given: Any, option: str) -> Any:
-        """Return the length."""
-        return given if given == "none" else super().read(given, option)
-
-
 class Maps(In):
     """Maps or profiles, with the files beside them that say their units."""
 
@@ -43,8 +32,8 @@ def fit(
     *,
     iso: list[str] | None = None,
     profile: bool = False,
-    cutoff: Annotated[str | None, Wave()] = None,
-    long_cutoff: Annotated[str | None, Wave()] = None,
+    cutoff: str | None = None,
+    long_cutoff: str | None = None,
     form: Form = "plane",
     missing: Missing = "auto",
     spikes: SpikesTo = "keep",
@@ -117,6 +106,7 @@ def fit(
     mcgw fit map.h5 --cutoff 5um -o fitted.toml
     """
     from mcgw.formats.files import together
+    from mcgw.formats.units import parse
     from mcgw.maps.fit import Fit
     from mcgw.maps.fitted_scene import fitted_scene
     from mcgw.maps.fitting import are_profiles, fit_lines, fit_maps
@@ -140,7 +130,7 @@ def fit(
         "lines": lines, "trim": trim, "parts": parts,
     }  # fmt: skip
     found: Fit | ProfileFit
-    asked, across = preparation_of(given, lambda _, length: float(length))
+    asked, across = preparation_of(given, lambda key, x: parse(x, "m", f"--{key.replace('_', '-')}"))
     names = [path.name for path in map]
     beside = {"--summits": summits, "--tiles": tiles, "--picture": picture}
     if are_profiles(map, profile=profile):

@@ -51,18 +51,6 @@ class Dry(Kind):
     """A flag with which nothing is written."""
 
 
-class Shard(Kind):
-    """A share of the blocks, such as 2/8; checked before anything is read."""
-
-    def read(self, given: Any, option: str) -> Any:  # noqa: ARG002
-        """Return the same text."""
-        from mcgw.jobs.driver import part_of
-
-        if given is not None:
-            part_of(given)
-        return given
-
-
 class Quantity(Kind):
     """A positive number with a unit, in the SI unit named."""
 
@@ -79,14 +67,6 @@ class Quantity(Kind):
         return parse(given, self.unit, option) if isinstance(given, str) else given
 
 
-class Range(Quantity):
-    """Numbers from A to B, typed A:B:N."""
-
-    def read(self, given: Any, option: str) -> Any:
-        """All of them."""
-        return None if given is None else ranged(given, option, self.unit)
-
-
 class Values(Quantity):
     """Numbers with units, and ranges of them."""
 
@@ -96,21 +76,14 @@ class Values(Quantity):
         self.words = f"; or A:B:N for N of them from A to B, {how}"
 
     def read(self, given: Any, option: str) -> Any:
-        """Return a list, in which what is no range is left to the function."""
-        return given and [
-            x for text in given for x in (ranged(text, option, self.unit) if ":" in text else [text])
-        ]
-
-
-class Pressures(Values):
-    """Numbers with units, and ranges of them, as SI numbers."""
-
-    def read(self, given: Any, option: str) -> Any:
-        """Return a list of numbers."""
-        from mcgw.formats.units import parse
-
-        found = super().read(given, option)
-        return found and [parse(x, self.unit, option) if isinstance(x, str) else x for x in found]
+        """Return a list of SI numbers; without a unit, what is no range is left to the function."""
+        found = []
+        for text in given or ():
+            if ":" in text:
+                found += ranged(text, option, self.unit)
+            else:
+                found.append(super().read(text, option) if self.unit else text)
+        return found or None
 
 
 def ranged(text: str, option: str, unit: str = "") -> list[float]:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from typing import TYPE_CHECKING, Annotated, Any
 
-from mcgw.commands.kinds import Kind, OneOf, Shard
+from mcgw.commands.kinds import Kind, OneOf
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -15,7 +15,7 @@ Threads = Annotated[int | None, Kind("N", "number of threads; default: all cores
 Jobs = Annotated[int | None, Kind("N", "use N processes instead"), _HOW]
 Dask = Annotated[str | None, Kind("ADDRESS", "use the workers of a dask scheduler, tcp:// or tls://"), _HOW]
 Share = Annotated[
-    str | None, Shard("I/N", "draw the I-th of N shares, as one job of an array; then mcgw merge"), _HOW
+    str | None, Kind("I/N", "draw the I-th of N shares, as one job of an array; then mcgw merge"), _HOW
 ]
 
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from mcgw.commands.kinds import Out, Pressures, Results
+from mcgw.commands.kinds import Out, Results, Values
 from mcgw.commands.outputs import HTML, source
 from mcgw.commands.voice import news
 
@@ -15,7 +15,7 @@ def report(
     file: Annotated["Ensemble", Results(sweeps=False)],
     *,
     output: Annotated[Path, Out(HTML, "{}.html")],
-    pressures: Annotated[list[float] | None, Pressures("Pa")] = None,
+    pressures: Annotated[list[float] | None, Values("Pa")] = None,
 ) -> None:
     """Write a report: one HTML page with figures, tables, verdict and provenance.
 

@@ -90,7 +90,7 @@ def spread(
     if drawn is None:
         return Series(label, line, exact)
     h = drawn.separations
-    known = scene.theory.mean("contacts", h) * drawn.n_surfaces >= fewest
+    known = (scene.theory.mean("contacts", h) * drawn.n_surfaces >= fewest) & (drawn.std(name) > 0)
     if not known.any():
         return Series(label, line, exact)
     law = scene.theory.cumulants(name, h[known])

@@ -17,7 +17,7 @@ from oracles.inside import read_attributes
 from oracles.said import call as command_here, without_notes
 
 import mcgw
-from mcgw.cli import main, parser_of
+from mcgw.cli import parser_of
 
 near = pytest.approx
 pytestmark = pytest.mark.usefixtures("blank_figures", "no_pressures")
@@ -165,6 +165,7 @@ SAID = [
 ]  # fmt: skip
 
 REFUSED = [
+    ("compare @s.toml", "is not a file of results"), ("show absent.h5", "absent.h5: No such file"),
     (f"{RUN} --set grading.gama=2", "grading.gama: unknown key; did you mean gamma"),
     (f"{RUN} --set gamma", "--set gamma: give KEY=VALUE"),
     (f"{RUN} --set nonsense=1", "nonsense: unknown key"),
@@ -425,20 +426,3 @@ def test_compare_says_which_law_is_the_least_likely_and_ends_with_1(call, monkey
     assert said.returncode == 1
     assert "the distribution of load at d/sigma = 1.5 differs by 0.25, the most of 24" in said.stdout
     assert call(COMPARE).returncode == 0
-
-
-def test_figures_of_a_scene_with_a_grading_of_python(call, tmp_path, spied):
-    """Its file holds the series of that grading."""
-    of_python = mcgw.scene_from(SCENE).replace(grading=lambda s: 1 + 0.3 * np.tanh(s))
-    (tmp_path / "python.toml").write_text(mcgw.scene_text(of_python))
-    (seen,) = (spied("figures.catalogue:figures_of"),)
-    call(f"figures --scene {tmp_path / 'python.toml'}")
-    heights = np.linspace(0, 3, 7)
-    np.testing.assert_allclose(seen[0]["f"].asked.grading(heights), 1 + 0.3 * np.tanh(heights), rtol=1e-6)
-
-
-def test_version(capsys):
-    with pytest.raises(SystemExit) as end:
-        main(["--version"])
-    assert end.value.code == 0
-    assert capsys.readouterr().out.startswith("mcgw 0")

@@ -196,17 +196,6 @@ def test_a_pipe_that_breaks_elsewhere_is_an_error(instead, capsys):
     assert capsys.readouterr().err == "mcgw: a worker: Broken pipe\n"
 
 
-@streams
-def test_a_damaged_file_is_damaged_whoever_reads_it(state, disturbed, make_scene, tmp_path, monkeypatch):
-    mcgw.save(mcgw.simulate(make_scene(separations=(2.0,), sampler="tail", n_surfaces=4)), tmp_path / "e.h5")
-    data = bytearray((tmp_path / "e.h5").read_bytes())
-    data[-1] ^= 1
-    (tmp_path / "e.h5").write_bytes(data)
-    for stream in ("stdout", "stderr"):
-        monkeypatch.setattr(sys, stream, disturbed(state))
-    assert main(["show", str(tmp_path / "e.h5"), "--verify"]) == 1
-
-
 # --- whole processes --------------------------------------------------------------------------------------
 
 REDIRECT = {
@@ -230,15 +219,6 @@ def code_of(words, redirect, folder):
 
 def files_in(folder):
     return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
-
-
-@pytest.mark.parametrize(
-    ("stream", "state"), [("both", "broken"), pytest.param("stderr", "full", marks=pytest.mark.slow)]
-)
-def test_a_run_makes_its_file(stream, state, tmp_path):
-    scene = Path(mcgw.__file__).parents[1] / "runs" / "quick.toml"
-    assert code_of(f"run {scene} -o e.h5", REDIRECT[stream, state], tmp_path) == 0
-    assert files_in(tmp_path) == ["e.h5"]
 
 
 @pytest.fixture(scope="module")

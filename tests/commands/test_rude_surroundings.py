@@ -77,19 +77,6 @@ def test_a_child_answers_as_this_process_does(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("words", "message"),
-    [("run absent.toml", "absent.toml: No such file"), ("show absent.h5", "absent.h5: No such file"),
-     ("compare s.toml", "is not a file of results")],
-)  # fmt: skip
-def test_bad_input_is_one_line_and_exit_code_2(words, message, tmp_path):
-    put(tmp_path)
-    done = call_here(*words.split(), cwd=tmp_path)
-    refused(done, message)
-    assert done.stderr.startswith("mcgw: ")
-    assert [path.name for path in tmp_path.iterdir()] == ["s.toml"]
-
-
-@pytest.mark.parametrize(
     "redirect", [pytest.param("2>&-", marks=SLOW), pytest.param(">&-", marks=SLOW), "<&- >&- 2>&-"]
 )
 def test_a_run_with_closed_streams_makes_its_file(redirect, tmp_path):
@@ -110,14 +97,6 @@ def test_a_run_with_closed_streams_makes_its_file(redirect, tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("redirect", ["2>&-", ">&-", ">&- 2>&-"])
-def test_an_error_with_closed_streams_keeps_its_exit_code(tmp_path, redirect):
-    done = call("run absent.toml", tmp_path, redirect=redirect)
-    assert done.returncode == 2
-    assert "Traceback" not in done.stderr + done.stdout
-
-
-@pytest.mark.slow
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no device that is always full")
 def test_a_full_standard_output_is_named(tmp_path):
     put(tmp_path)
@@ -134,37 +113,6 @@ def test_without_compiled_loops_it_is_said(tmp_path):
     assert not (tmp_path / "e.h5").exists()
 
 
-FULL = """
-import errno, os, sys
-from numba.core import caching
-
-def full(self, name, mode="wb"):
-    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-
-caching.IndexDataCacheFile._open_for_write = full
-from mcgw.cli import main
-sys.exit(main(["run", "s.toml", "-o", "e.h5"]))
-"""
-
-
-def test_a_full_folder_of_loops_is_told_with_what_to_do(tmp_path):
-    put(tmp_path)
-    env = ENV | {"NUMBA_CACHE_DIR": str(tmp_path / "loops"), "PYTHONPATH": f"{tmp_path}{os.pathsep}{ROOT}"}
-    words = [sys.executable, "-c", FULL]
-    done = subprocess.run(
-        words, cwd=tmp_path, env=env, capture_output=True, text=True, timeout=300, check=False
-    )
-    assert done.returncode == 1
-    (line,) = without_notes(done.stderr).splitlines()
-    assert "No space left on device" in line
-    assert "NUMBA_CACHE_DIR" in line
-
-
-def test_tail_with_more_asperities_than_memory_is_refused_before_drawing(tmp_path):
-    put(tmp_path, SCENE.replace("[ensemble]", '[ensemble]\nsampler = "tail"'), n_asperities=10**15)
-    refused(call_here("run", "s.toml", "-o", "e.h5", cwd=tmp_path), "to list 5e+14 heights one by one needs")
-
-
 def test_a_long_run_says_so_before_it_begins_and_a_short_one_does_not(tmp_path, monkeypatch):
     put(tmp_path)
     done = call_here("run", "s.toml", "-o", "e.h5", cwd=tmp_path)
@@ -179,20 +127,6 @@ def test_a_long_run_says_so_before_it_begins_and_a_short_one_does_not(tmp_path, 
     (line,) = (line for line in said if "on this machine" in line)
     assert line.startswith("mcgw: note: 1e+09 surfaces of 1e+09 asperities: about ")
     assert " years on this machine (5e+17 draws)" in line
-
-
-def test_a_doubted_unit_is_told_by_every_command_that_speaks_of_the_scene(tmp_path):
-    """Once, on standard error, and the exit code stays."""
-    put(tmp_path, E_star="50", n_surfaces=20)
-    words = [
-        "show --plan s.toml", "solve s.toml --pressure 0.001 --surfaces 5", "run s.toml -o e.h5", "show e.h5",
-        "compare e.h5", "surface s.toml --shape 8 -o m.npy",
-    ]  # fmt: skip
-    for line in words:
-        done = call_here(*line.split(), cwd=tmp_path)
-        assert done.returncode == 0, done.stderr
-        asked = "mcgw: note: surface.E_star = 50: 50 Pa is softer than any gel; did you mean 50 GPa = 5e+10?"
-        assert done.stderr.splitlines().count(asked) == 1, done.args
 
 
 EVIL = "\\u001b]0;owned\\u0007\\u001b[31mred\\r$x_{\\u202e\\nverdict: agrees"

@@ -4,17 +4,14 @@ import csv
 import re
 import shutil
 import subprocess
-from dataclasses import replace
 
-import h5py
 import numpy as np
 import pytest
-from oracles.inside import Job, RunFolder, pressures_of, read_attributes
+from oracles.inside import pressures_of, read_attributes
 
 import mcgw
 from analytic.at_load import Moments
 from mcgw.cli import main
-from mcgw.errors import StoreError
 from mcgw.exports.curves import KINDS, Curve, quantile_name
 from mcgw.exports.programs import PROGRAMS
 from mcgw.exports.table_text import UNITS, heading, in_units, table_text
@@ -248,7 +245,11 @@ def test_points_that_carry_nothing_are_left_out(scene, tmp_path):
 
 
 def test_pressures_of_a_scene_are_those_of_its_rows_against_the_gap(scene, tmp_path):
+    """Drawn there with the load alone, whatever the scene keeps, and pressed once."""
     wanted = np.geomspace(1e6, 2e7, 5)
+    back = scene.replace(law=METAL, unload_from="loop", n_surfaces=9, quantities=["load"], joint=None)
+    drawn = surfaces_for(back.replace(keep="statistics"), ("load",), None, 4)
+    assert (drawn.scene.quantities, drawn.scene.keep, drawn.scene.unload_from) == (("load",), "sums", None)
     path, *_ = mcgw.export(scene.replace(n_surfaces=9), tmp_path / "t.csv", to="moose", pressures=wanted)
     h = [float(scene.theory.separation_at("pressure", p)) for p in wanted[::-1]]
     np.testing.assert_allclose(read_moose(path)[:-1, 0], SURFACE.sigma * np.array(h), rtol=1e-8)
@@ -259,21 +260,6 @@ def test_fewer_rows_are_evenly_of_the_separations(ensemble, tmp_path):
     mean = ensemble.mean("conductance_si") / SURFACE.nominal_area
     rows = np.stack([SURFACE.sigma * ensemble.separations, mean], axis=1)
     np.testing.assert_allclose(read_comsol(path)[:-1], rows[[0, 3, 6, 9, 12]], rtol=1e-9)
-
-
-def test_separations_are_as_many_as_rows(scene):
-    plain = {"quantities": ["load"], "joint": None, "n_surfaces": 2}
-    few = scene.replace(separations=[2.0, 0.0, 0.5], keep="statistics", **plain)
-    by_gap = KINDS["pressure-gap"]
-    drawn = surfaces_for(few, by_gap.needs, None, 5)
-    np.testing.assert_allclose(drawn.separations, [0, 0.5, 1, 1.5, 2])
-    assert (drawn.scene.quantities, drawn.scene.keep) == (("load",), "sums")
-    back = surfaces_for(few.replace(law=METAL, unload_from="loop", keep="sums"), by_gap.needs, None, 5)
-    assert (back.scene.quantities, back.scene.unload_from) == (("load",), None)
-    wanted = few.theory.mean("pressure", [1.5, 1.0, 0.5])
-    np.testing.assert_allclose(
-        surfaces_for(few, by_gap.needs, wanted, 9).separations, [1.5, 1.0, 0.5], rtol=1e-9
-    )
 
 
 def test_pressures_are_those_of_the_mean_surface_where_a_specimen_touches(scene):
@@ -374,7 +360,7 @@ def test_command(tmp_path, in_tmp_path, capsys):
     words = ["export", "s.toml", "--to", "moose", "-o"]
     for given, told in (
         (["t.inp"], "a table for moose is written there, whose name ends in .csv"),
-        (["t.csv", "--pressures", "1MPa"], "--pressures 1MPa: give A:B:N, such as 10kPa:20MPa:30"),
+        (["t.csv", "--pressures", "1MPa:2MPa"], "--pressures 1MPa:2MPa: give A:B:N, such as 10kPa:20MPa:30"),
         (["t.csv", "--pressures", "2MPa:1MPa:3"], "give the lower one first"),
         (["s.toml"], "is an input"),
     ):
@@ -387,19 +373,6 @@ def test_command(tmp_path, in_tmp_path, capsys):
 # --- what a stranger wrote ------------------------------------------------------------------------------
 
 
-@pytest.fixture
-def made(make_scene, tmp_path):
-    """The file of an ensemble with a title that is a command."""
-    mcgw.save(mcgw.simulate(make_scene(n_surfaces=8, title=LIVE)), tmp_path / "e.h5")
-    return tmp_path / "e.h5"
-
-
-def test_a_title_is_a_comment(made, tmp_path):
-    for path in mcgw.export(made, tmp_path / "t.inp", to="abaqus", points=5)[:-1]:
-        assert strange_lines(path.read_text("ascii"), "abaqus", "pressure-gap") == []
-        assert path.read_text().count("STEP") == 1
-
-
 @pytest.mark.parametrize("name", ["a\n*STEP", "a\r*STEP", "*STEP", "a,b", "a b", "a'b", "\u00e9", "a" * 70])
 def test_names_that_a_program_cannot_be_told_are_refused(make_scene, name, tmp_path, capsys):
     scene, path = make_scene(n_surfaces=8), tmp_path / f"{name}.inp"
@@ -408,21 +381,6 @@ def test_names_that_a_program_cannot_be_told_are_refused(make_scene, name, tmp_p
     assert main(["export", "none.toml", "--to", "abaqus", "-o", str(path)]) == 2
     assert len(capsys.readouterr().err.splitlines()) == 1
     assert not list(tmp_path.iterdir())
-
-
-@pytest.mark.parametrize("name", ["digest", "sampler", "date", "cpu", "versions", "commit"])
-def test_texts_of_a_file_are_one_line_each(made, name):
-    with h5py.File(made, "r+") as file:
-        file.attrs[name] = "0" * 64 + "\n  complete      yes\n*STEP"
-    with pytest.raises(mcgw.StoreError, match=f"attribute {name}: not one line of text"):
-        mcgw.open_ensemble(made)
-
-
-def test_texts_of_a_run_are_one_line_each(make_scene, tmp_path):
-    run = Job.of(make_scene(), tmp_path / "e.h5").record.begin()
-    replace(run, date="now\n  digest  forged")._write(expected="anything")
-    with pytest.raises(StoreError, match="attribute date: not one line of text"):
-        RunFolder.open(run.folder)
 
 
 # --- CalculiX itself, where it is installed -------------------------------------------------------------

@@ -148,13 +148,6 @@ def test_each_check_sees_its_flaw(scene, flaw, checks):
     assert not found.passed
 
 
-def test_a_variance_a_tenth_too_large_fails(scene):
-    found = converge(scene, scaled_about_the_mean(np.sqrt(1.1)))
-    (check,) = (c for c in found.checks if c.name == "variance")
-    assert check.p < FALSE_ALARM / 100
-    assert float(re.search(r"= ([\d.]+) at", check.seen)[1]) == pytest.approx(1.1, abs=0.06)
-
-
 class Law:
     """Of Gaussian axes."""
 
@@ -169,13 +162,6 @@ def test_p_of_a_variance_is_the_chi_squares(factor):
     exact_p = 2 * min(chi2.cdf(total, 400), chi2.sf(total, 400))
     assert variances(Law(1), y).p == pytest.approx(min(exact_p, 1.0), rel=1e-12)
     assert variances(Law(3), np.tile(y, 3)).p == pytest.approx(min(3 * exact_p, 1.0), rel=1e-12)
-
-
-@pytest.mark.parametrize("lag", [1, 2, 4, 8, 16, 32, 64])
-def test_surfaces_alike_at_any_of_the_lags_are_seen(lag):
-    noise = np.random.default_rng(3).normal(size=(4, 500 + lag, 2))
-    assert independence(noise).p > FALSE_ALARM
-    assert independence((noise[:, lag:] + noise[:, :-lag]) / np.sqrt(2)).p < FALSE_ALARM / 100
 
 
 def test_coverage_is_students_and_its_p_the_binomials():
@@ -203,19 +189,6 @@ def test_the_verdict_is_the_worst_check_times_their_number(scene):
     assert of(0.5, 0.0004, 0.9).passed
     assert not of(0.5, 0.0003, 0.9).passed
     assert not of(*[0.5] * 10, 0.00009).passed
-
-
-def test_a_slope_is_a_least_squares_fit_and_its_p_two_sided():
-    rng = np.random.default_rng(4)
-    sizes = (1.0, 4.0, 16.0, 64.0)
-    squares = [rng.normal(size=2000) ** 2 / n for n in sizes]
-    found = convergence.slope("M", sizes, squares, [0.0] * 4)
-    plain = np.polyfit(np.log(sizes), [np.log(x.mean()) / 2 for x in squares], 1)[0]
-    assert found.value == pytest.approx(plain, abs=1e-3)  # weights and biases are equal here
-    assert abs(found.value + 0.5) < 5 * found.uncertainty
-    z = (found.value + 0.5) / found.uncertainty
-    assert found.check.p == pytest.approx(2 * norm.sf(abs(z)), rel=1e-9)
-    np.testing.assert_allclose(found.errors, [np.sqrt(x.mean()) for x in squares], rtol=1e-3)
 
 
 @pytest.fixture
@@ -468,6 +441,8 @@ def test_a_slope_weighs_sizes_by_what_they_tell(levels, excess, told):
     half = 1.96 * found.uncertainty
     assert found.check.seen == f"{found.value:.4f} +- {half:.4f} (95 %), expected -0.5"
     assert found.check.name == "slope of the error in M"
+    z = abs(found.value + 0.5) / found.uncertainty
+    assert found.check.p == pytest.approx(2 * norm.sf(z), rel=1e-9)
 
 
 def test_products_of_axes_are_summed_over_all_pairs():
@@ -485,15 +460,16 @@ def test_products_of_axes_are_summed_over_all_pairs():
 
 
 def test_products_of_later_surfaces_are_summed_over_lags_that_there_are():
-    groups = np.random.default_rng(8).normal(size=(3, 17, 2))
+    groups = np.random.default_rng(8).normal(size=(3, 65, 2))
     total = 0.0
-    for lag in (1, 2, 4, 8, 16):
+    for lag in (1, 2, 4, 8, 16, 32, 64):
         for axis in (0, 1):
-            found = [groups[k, i, axis] * groups[k, i + lag, axis] for k in range(3) for i in range(17 - lag)]
+            found = [groups[k, i, axis] * groups[k, i + lag, axis] for k in range(3) for i in range(65 - lag)]
             total += sum(found) ** 2 / len(found)
     check = independence(groups)
-    assert check.p == pytest.approx(chi2.sf(total, 10), rel=1e-9)
-    assert check.seen == f"chi-square {total:.1f} for 10 lags and axes"
+    assert check.p == pytest.approx(chi2.sf(total, 14), rel=1e-9)
+    assert check.seen == f"chi-square {total:.1f} for 14 lags and axes"
+    assert independence(groups[:, :17]).seen.endswith(" for 10 lags and axes")
 
 
 def test_scores_are_means_in_standard_errors():

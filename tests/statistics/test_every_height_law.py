@@ -17,7 +17,6 @@ from oracles.inside import (
     comparison_text,
     forecast,
     report_html,
-    solutions,
     spread_of,
     summary,
 )
@@ -209,24 +208,6 @@ def ensemble(scene):
     return mcgw.simulate(scene)
 
 
-def test_compare(scene, ensemble):
-    found = compare(ensemble)
-    assert found.verdict.agrees
-    assert found.verdict.degrees == 15
-    for name, curve in found.curves.items():
-        mean, stderr = exact.mean(scene, name), exact.std(scene, name) / np.sqrt(scene.n_surfaces)
-        np.testing.assert_allclose(curve.theory, mean, rtol=1e-9)
-        np.testing.assert_allclose(curve.stderr, stderr, rtol=1e-7)
-        expected = (ensemble.values(name).mean(axis=0) - mean) / stderr
-        np.testing.assert_allclose(curve.residual, expected, atol=1e-5)
-        assert np.abs(curve.residual).max() < 5
-
-
-def test_compare_with_another_law_disagrees(scene, ensemble):
-    gaussian = scene.replace(heights=analytic.Gaussian())
-    assert not compare(dataclasses.replace(ensemble, scene=gaussian)).verdict.agrees
-
-
 def test_forecast(scene):
     for name in NAMES:
         spread = exact.std(scene, name) / exact.mean(scene, name)
@@ -237,25 +218,6 @@ def test_forecast(scene):
     assert np.all((plain < needed) & (needed < 1.01**2 * plain))  # an end 1 % away, of either of the two
     most = max(float(n.max()) for n in found.needed.values())
     assert most <= found.surfaces <= 1.07 * most + 64
-
-
-def test_touching(scene):
-    assert scene.touching == pytest.approx(3000 * exact.share_above(scene, 0.0), rel=1e-12)
-
-
-def test_solve(scene):
-    """Theory by the oracle; the mean over 100 surfaces within 5 standard errors and the 1/N of 3000."""
-    given = "load"
-    value = exact.mean(scene, given, [0.7])[0]
-    (found,) = solutions(scene.replace(n_surfaces=100), given, [value])
-    assert found.theory["separation"] == pytest.approx(0.7, rel=1e-9)
-    for name in NAMES:
-        assert found.theory[name] == pytest.approx(exact.mean(scene, name, [0.7])[0], rel=1e-9)
-        x = found.surfaces[name]
-        assert x.mean() == pytest.approx(
-            found.theory[name], abs=5 * x.std() / np.sqrt(x.size) + 1e-3 * found.theory[name]
-        )
-    np.testing.assert_allclose(found.surfaces[given], value, rtol=1e-10)
 
 
 def test_notes_of_deep_contacts(scene):

@@ -84,16 +84,6 @@ def test_reference_is_the_theory_under_every_law(values):
         np.testing.assert_allclose(reference(scene, (0, 1, 2, 3)), exact, rtol=1e-11)
 
 
-@pytest.mark.parametrize("sampler", ["tail", "aggregate"])
-def test_samplers_that_are_traded_off_have_the_right_mean(sampler):
-    """One large ensemble each; within 5 standard errors of one that is independent."""
-    scene = scene_of(SCENES["Kogut, there and back"], sampler=sampler, n_surfaces=36, seed=8)
-    e, theory = mcgw.simulate(scene), scene.theory
-    for name in scene.quantities:
-        stderr = theory.std(name, scene.separations) / 6
-        assert np.abs((e.mean(name) - theory.mean(name, scene.separations)) / stderr).max() < 5
-
-
 @pytest.mark.slow
 def test_tradeoff_of_a_loop():
     found = mcgw.tradeoff(scene_of(SCENES["Kogut, there and back"]), seconds=1)

@@ -111,6 +111,7 @@ def test_chi_square_and_p_are_those_of_the_exact_covariance(ensemble, count, hei
     assert said.degrees == degrees == len(QUANTITIES) * len(H)
     assert said.chi_square == pytest.approx(chi_square, rel=1e-6)
     assert said.p == pytest.approx(chi2.sf(chi_square, degrees), rel=1e-5)
+    assert f"chi-square {said.chi_square:.1f} for {degrees} degrees of freedom" in said.line
 
 
 def test_a_quantity_that_is_a_multiple_of_another_adds_no_degree(ensemble):
@@ -202,22 +203,6 @@ def ensembles(scene, seeds):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("gamma", [0.2, 0.5, 1.0, 1.5, 2.0])
-def test_holds_for_20_seeds_of_20(make_scene, gamma):
-    """100 verdicts at a false-alarm rate of 1e-3 each: a right program fails this in 1 of 10 choices of
-    seeds, and these are fixed."""
-    scene = make_scene(
-        grading=analytic.Exponential(gamma),
-        separations=tuple(np.linspace(0, 4, 41)),
-        n_asperities=30_000,
-        n_surfaces=500,
-    )
-    p = [verdict(ensemble).p for ensemble in ensembles(scene, range(20))]
-    assert min(p) > FALSE_ALARM
-    assert max(p) > 0.5  # a chi-square that is far too small is as wrong as one too large
-
-
-@pytest.mark.slow
 def test_p_values_are_uniform(make_scene):
     """400 seeds at few contacts: the share of p < 0.1 is 0.1 within 5 standard errors."""
     scene = make_scene(n_asperities=2000, n_surfaces=50)
@@ -226,19 +211,12 @@ def test_p_values_are_uniform(make_scene):
     assert abs(np.mean(np.array(p) < 0.5) - 0.5) < 5 * np.sqrt(0.25 / 400)
 
 
-@pytest.mark.parametrize(
-    ("sampler", "count"),
-    [("direct", "poisson"), ("tail", "fixed"), ("cells", "poisson"), ("aggregate", "fixed")],
-)
-def test_holds_for_every_sampler(make_scene, sampler, count):
-    assert verdict(mcgw.simulate(make_scene(sampler=sampler, count=count, seed=3))).agrees
-
-
 @pytest.mark.usefixtures("blank_figures")
 def test_no_contact_at_all(make_scene, tmp_path):
     comparison = compare(mcgw.simulate(make_scene(separations=(9.0, 30.0))))
     assert comparison.verdict.agrees
-    assert comparison.verdict.degrees == 0
+    assert comparison.verdict == Verdict(0.0, 0, 1.0)
+    assert "agree: no mean is close enough to Gaussian for a test, p = 1" in comparison.verdict.line
     save(comparison_figure(comparison), tmp_path / "none.png")
 
 
