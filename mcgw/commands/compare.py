@@ -1,18 +1,15 @@
 """``mcgw compare``: Monte Carlo against theory."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
-from mcgw.commands.kinds import Out, Results, Table
+from mcgw.commands.kinds import EnsembleOrSweep, Out, Table
 from mcgw.commands.outputs import source
 from mcgw.commands.voice import ALL, news, says
 
-if TYPE_CHECKING:
-    from mcgw.ensemble.ensemble import Ensemble
-
 
 def compare(
-    file: Annotated["Ensemble", Results()],
+    file: EnsembleOrSweep,
     *,
     output: Annotated[Path, Out(None, "{}.png")],
     csv: Table = None,

@@ -1,20 +1,17 @@
 """``mcgw elastic``: the mean of elastic surfaces."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
-from mcgw.commands.kinds import OneOf, Out, Pixel, SceneFile, Unit
+from mcgw.commands.kinds import OneOf, Out, Pixel, SceneOrMap, Unit
 from mcgw.commands.outputs import JSONL
 from mcgw.commands.voice import details, news
-
-if TYPE_CHECKING:
-    from mcgw.scene.scene import Scene
 
 _HELD = OneOf(required=True)
 
 
 def elastic(
-    source: Annotated["Scene | Path", SceneFile(others=True, cautious="")],
+    source: SceneOrMap,
     *,
     pressure: Annotated[str | None, _HELD] = None,
     separation: Annotated[str | None, _HELD] = None,

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from mcgw.commands.outputs import CSV, Format, Output, figure_format
 
 if TYPE_CHECKING:
+    from mcgw.ensemble.ensemble import Ensemble
     from mcgw.scene.scene import Scene
 
 _GEOMETRIC = ("Pa", "N")  # pressures and loads are at a constant ratio, all else evenly
@@ -249,6 +250,10 @@ class Folder(Out):
 SceneIn = Annotated["Scene", SceneFile()]
 Cautioned = Annotated["Scene", SceneFile(cautious="")]  # by the command itself
 SceneOrFile = Annotated["Scene | Path", SceneFile(others=True)]
+SceneOrMap = Annotated["Scene | Path", SceneFile(others=True, cautious="")]
+SceneOrResults = Annotated["Scene | Path", SceneFile(others=True, cautious="full")]
+EnsembleOrSweep = Annotated["Ensemble", Results()]
+EnsembleIn = Annotated["Ensemble", Results(sweeps=False)]
 Table = Annotated[Path | None, Out(CSV)]
 Length = Annotated[float | None, Quantity("m", "LENGTH")]
 Pixel = Annotated[float | None, Quantity("m", "LENGTH", "size of a pixel, if the file does not give it")]

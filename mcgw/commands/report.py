@@ -1,18 +1,15 @@
 """``mcgw report``: an ensemble as one HTML page."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
-from mcgw.commands.kinds import Out, Results, Values
+from mcgw.commands.kinds import EnsembleIn, Out, Values
 from mcgw.commands.outputs import HTML, source
 from mcgw.commands.voice import news
 
-if TYPE_CHECKING:
-    from mcgw.ensemble.ensemble import Ensemble
-
 
 def report(
-    file: Annotated["Ensemble", Results(sweeps=False)],
+    file: EnsembleIn,
     *,
     output: Annotated[Path, Out(HTML, "{}.html")],
     pressures: Annotated[list[float] | None, Values("Pa")] = None,

@@ -1,19 +1,16 @@
 """``mcgw show``: the contents of a file."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
-from mcgw.commands.kinds import OneOf, SceneFile, Table
+from mcgw.commands.kinds import OneOf, SceneOrResults, Table
 from mcgw.commands.voice import ALL, news, says, tell_cautions
-
-if TYPE_CHECKING:
-    from mcgw.scene.scene import Scene
 
 _WHAT = OneOf()
 
 
 def show(
-    file: Annotated["Scene | Path", SceneFile(others=True, cautious="full")],
+    file: SceneOrResults,
     *,
     scene: Annotated[bool, _WHAT] = False,
     digest: Annotated[bool, _WHAT] = False,

@@ -1,15 +1,12 @@
 """``mcgw sweep``: many scenes on the same surfaces."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from mcgw.commands.kinds import Cautioned, Dry, Kind, Out, ranged
 from mcgw.commands.options import Dask, Jobs, Share, Threads, drawing, share_done
 from mcgw.commands.outputs import HDF5
 from mcgw.commands.voice import details, look_next, news
-
-if TYPE_CHECKING:
-    pass
 
 
 class Axis(Kind):

@@ -5,7 +5,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from mcgw.machine.progress import watched
 from mcgw.machine.terminal import without_passing
@@ -83,29 +83,20 @@ def tell_cautions(source: "Scene | Ensemble | Sweep", instead: str = "") -> None
     """
     if not says():
         return
-    lines = cautions_of(source)
-    if instead and not says(ALL):
-        from mcgw.scene.plausible import perhaps_other_units
-        from mcgw.scene.scene import Scene
+    from mcgw.scene.scene import Scene
 
-        scene = getattr(source, "scene", source)
-        doubts = perhaps_other_units(scene) if isinstance(scene, Scene) else []
+    scene: Any = getattr(source, "scene", source)
+    doubts: list[str] = []
+    if isinstance(scene, Scene):
+        from mcgw.scene.cautions import cautions
+        from mcgw.scene.plausible import perhaps_other_units
+
+        lines, doubts = cautions(scene), perhaps_other_units(scene)
+    else:
+        from mcgw.sweeps.points import sweep_cautions
+
+        lines = sweep_cautions(scene)
+    if instead and not says(ALL):
         number = len(lines) - len(doubts)
         lines = [*doubts, *([f"{number} caution{'s' * (number > 1)}: {instead}"] if number else [])]
     notes(*lines)
-
-
-def cautions_of(source: "Scene | Ensemble | Sweep") -> list[str]:
-    """Cautions of a scene, of the scene of an ensemble, or of all points of a sweep."""
-    from mcgw.scene.cautions import cautions
-    from mcgw.scene.scene import Scene
-
-    if isinstance(source, Scene):
-        return cautions(source)
-    from mcgw.ensemble.ensemble import Ensemble  # imports results, which many commands do not need
-
-    if isinstance(source, Ensemble):
-        return cautions(source.scene)
-    from mcgw.sweeps.points import sweep_cautions
-
-    return sweep_cautions(source)

@@ -15,7 +15,7 @@ from mcgw.formats.table import Column, Table
 from mcgw.machine.progress import stages
 from mcgw.machine.terminal import one_line, plain_text
 from mcgw.reports.report_figures import (
-    comparison_figures,
+    comparison_pictures,
     pressure_pictures,
     pressure_table,
     solved_pressures,
@@ -43,10 +43,10 @@ def report_html(
         comparison = compare(ensemble)
         done()
         at_loads = solved_pressures(scene, pressures)
-        at_pressure = list(pressure_pictures(at_loads))
+        at_pressure = pressure_pictures(at_loads)
         solved = at_loads[len(at_loads) // 2] if at_loads else None
         done()
-        figures = comparison_figures(comparison)
+        figures = comparison_pictures(comparison)
         tables = list(comparison.tables().values())
         done()
     return rendered(

@@ -3,11 +3,9 @@
 import io
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import matplotlib as mpl
 import numpy as np
-from matplotlib.figure import Figure
 
 from analytic import quantity_of
 from mcgw.ensemble.at_load import answers_at, pressures_of, quantities_at
@@ -37,35 +35,14 @@ _PER_AREA = (  # name, factor from SI, title, unit
 _OF_JOINT = {"gap_conductance": "Gap conductance", "joint_conductance": "Joint conductance"}
 
 
-@dataclass(frozen=True)
-class PageFigure:
-    """A figure in a page.
-
-    Parameters
-    ----------
-    label : str
-        What it shows.
-    svg : str
-        An element that takes the width it is given.
-    """
-
-    label: str
-    svg: str
-
-
-def comparison_figures(comparison: Comparison) -> list[PageFigure]:
-    """Each quantity with its theory, and how far surfaces spread."""
+def comparison_pictures(comparison: Comparison) -> dict[str, str]:
+    """Draw each quantity with its theory, and how far surfaces spread: SVG elements by what they show."""
     ensemble = comparison.ensemble
-    panels = {
-        quantity_of(name).long_name: quantity_panel(comparison, name) for name in ensemble.scene.answers
-    }
+    names = ensemble.scene.answers
+    panels = {quantity_of(name).long_name: quantity_panel(comparison, name) for name in names}
     if ensemble.n_surfaces > 1:
         panels["std over mean against separation"] = spread_panel(ensemble)
-    return [_drawn(panel, label) for label, panel in panels.items()]
-
-
-def _drawn(panel: Panel, label: str) -> PageFigure:
-    return line_figure(draw(FigureData("", "", (panel,))), label)
+    return {label: svg_of(panel, label) for label, panel in panels.items()}
 
 
 def solved_pressures(scene: Scene, pressures: Sequence[float] | None = None) -> list[Solution]:
@@ -92,27 +69,28 @@ def round_pressures(low: float, high: float, most: int) -> list[float]:
     return [found[k] for k in evenly(len(found), most)] if found else [low, high]
 
 
-def pressure_pictures(solved: Sequence[Solution]) -> Iterator[PageFigure]:
-    """Yield what holds at equal nominal pressure."""
-    for panel in pressure_curves(solved):
-        low, high = (each.amount / each.scene.surface.nominal_area / 1e6 for each in (solved[0], solved[-1]))
-        label = f"{panel.title} against nominal pressure from {low:.3g} to {high:.3g} MPa"
-        yield _drawn(panel, label)
+def pressure_pictures(solved: Sequence[Solution]) -> dict[str, str]:
+    """Draw what holds at equal nominal pressure: SVG elements by what they show."""
+    if not solved:
+        return {}
+    low, high = (each.amount / each.scene.surface.nominal_area / 1e6 for each in (solved[0], solved[-1]))
+    against = f"against nominal pressure from {low:.3g} to {high:.3g} MPa"
+    panels = {f"{panel.title} {against}": panel for panel in pressure_curves(solved)}
+    return {label: svg_of(panel, label) for label, panel in panels.items()}
 
 
-def line_figure(figure: Figure, label: str) -> PageFigure:
-    """Return an SVG element that takes the width it is given."""
-    buffer = io.StringIO()
+def svg_of(panel: Panel, label: str) -> str:
+    """Draw a panel as an SVG element that takes the width it is given; its ids begin with the label."""
+    buffer, figure = io.StringIO(), draw(FigureData("", "", (panel,)))
     with mpl.rc_context(STYLE | {"svg.hashsalt": label}):
         write_figure(figure, buffer, format="svg", metadata={"Date": None, "Creator": None})
     text = buffer.getvalue()
     text = re.sub(r"<metadata>.*?</metadata>", "", text[text.index("<svg") :], flags=re.DOTALL)
     head, rest = text.split(">", 1)
     head = re.sub(r' (width|height)="[^"]*"', "", head)
-    # Ids are unique in a page: each figure has its own.
     mark = re.sub(r"\W+", "-", label)
     rest = re.sub(r'(id="|href="#|url\(#)', rf"\g<1>{mark}-", rest)
-    return PageFigure(label, svg=f"{head}>{rest}")
+    return f"{head}>{rest}"
 
 
 def spread_panel(ensemble: Ensemble) -> Panel:

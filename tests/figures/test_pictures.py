@@ -12,17 +12,6 @@ pytestmark = pytest.mark.site
 X = np.linspace(0.0, 4.0, 9)
 
 
-def decades():
-    """Panels that share a linear axis, logarithmic over several decades."""
-    figure = Figure(figsize=(6, 4), layout="constrained")
-    for k, row in enumerate(figure.subplots(2, 2, sharex=True)):
-        for axis in row:
-            axis.semilogy(X, 10.0 ** (-(1 + k) * X), label=r"$10^{-d}$")
-            axis.set_title("A title")
-    figure.supxlabel("separation")
-    return figure
-
-
 def labelled():
     """Less than a decade: the minor ticks have labels."""
     figure = Figure(figsize=(4, 3), layout="constrained")
@@ -51,7 +40,7 @@ def pixels(path):
     return np.asarray(Image.open(path).convert("RGB")).astype(int)
 
 
-@pytest.mark.parametrize("make", [decades, labelled, sides])
+@pytest.mark.parametrize("make", [labelled, sides])
 def test_pictures_are_those_of_matplotlib(make, tmp_path):
     with mpl.rc_context(STYLE):
         make().savefig(tmp_path / "plain.png")
@@ -66,7 +55,7 @@ def test_a_figure_is_drawn_once(tmp_path, monkeypatch):
     """That is what makes it fast."""
     drawn, draw = [], Figure.draw
     monkeypatch.setattr(Figure, "draw", lambda self, renderer: (drawn.append(self), draw(self, renderer)))
-    figures = [decades(), labelled()]
+    figures = [sides(), labelled()]
     for figure in figures:
         save_figure(figure, tmp_path / "x.png")
     assert drawn == figures

@@ -63,7 +63,7 @@ MODULES = {
     "mcgw.reports.html": "report_html",
     "mcgw.reports.plan": "plan_text",
     "mcgw.reports.report_figures": (
-        "spread_panel line_figure pressure_curves pressure_table round_pressures solved_pressures"
+        "spread_panel svg_of pressure_curves pressure_table round_pressures solved_pressures"
     ),
     "mcgw.reports.solved_loads": "correlation solutions_text",
     "mcgw.reports.text": "comparison_text summary",

@@ -9,13 +9,13 @@ from oracles import exact
 from oracles.inside import (
     FigureData,
     draw,
-    line_figure,
     pressure_curves,
     pressure_table,
     round_pressures,
     solved_pressures,
     spread,
     spread_panel,
+    svg_of,
 )
 
 import analytic
@@ -65,7 +65,7 @@ def test_spread_is_std_over_mean():
         np.testing.assert_array_equal(series.x, np.sort(h))
         np.testing.assert_allclose(series.theory, spread[np.argsort(h)], rtol=1e-7)
     # One drawn of many: each id of a page is there once, and an SVG takes the width it is given.
-    one, two = (line_figure(draw(FigureData("", "", (panel,))), label).svg for label in ("one name", "two"))
+    one, two = (svg_of(panel, label) for label in ("one name", "two"))
     ids = [set(re.findall(r'\bid="([^"]+)"', svg)) for svg in (one, two)]
     assert ids[0]
     assert not ids[0] & ids[1]

@@ -161,6 +161,7 @@ def test_p_of_a_variance_is_the_chi_squares(factor):
     total = float((y**2).sum())
     exact_p = 2 * min(chi2.cdf(total, 400), chi2.sf(total, 400))
     assert variances(Law(1), y).p == pytest.approx(min(exact_p, 1.0), rel=1e-12)
+    assert variances(Law(1), y).seen == f"measured/exact = {total / 400:.4f} at worst of 1 axes"
     assert variances(Law(3), np.tile(y, 3)).p == pytest.approx(min(3 * exact_p, 1.0), rel=1e-12)
 
 

@@ -200,9 +200,7 @@ def test_auto_is_named_first(make_scene):
     assert sampled_ways(make_scene(separations=(0.0,)))[0] == "cells"
     radii = {"heights": analytic.Nayak(5.0), "summits": analytic.RandomCurvature(5.0), "grading": None}
     assert "aggregate" not in sampled_ways(make_scene(**radii))
-    yields = make_scene(
-        law=analytic.KogutEtsion(critical=0.1), **radii
-    )
+    yields = make_scene(law=analytic.KogutEtsion(critical=0.1), **radii)
     assert sampled_ways(yields) == ["tail", "direct", "solve"]
 
 
