@@ -95,7 +95,7 @@ def tell_cautions(source: "Scene | Ensemble | Sweep", instead: str = "") -> None
     else:
         from mcgw.sweeps.points import sweep_cautions
 
-        lines = sweep_cautions(scene)
+        lines = sweep_cautions(source)  # type: ignore[arg-type]
     if instead and not says(ALL):
         number = len(lines) - len(doubts)
         lines = [*doubts, *([f"{number} caution{'s' * (number > 1)}: {instead}"] if number else [])]

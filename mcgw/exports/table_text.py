@@ -111,7 +111,7 @@ def table_text(
         if overclosure:
             lines.append("overclosure = d0 - d: place the two surfaces so that they meet where the gap is d0")
     lines += (line.format(file=file, kind=kind) for line in program.hints[kind.name])
-    rows = _rows(curve, kind, program, foot)
+    rows = _rows(curve, kind, program, foot, stays)
     if program.most is not None and len(rows) > program.most:
         raise ValueError(
             f"points = {len(rows) - 1}: {program.name} reads at most {program.most} lines; give fewer"
@@ -127,13 +127,15 @@ def table_text(
     return "\n".join([*lines, ""])
 
 
-def _rows(curve: Curve, kind: Kind, program: Program, foot: float) -> Array:
+def _rows(curve: Curve, kind: Kind, program: Program, foot: float, stays: bool) -> Array:
     """Rows in the order that a program reads, shape (rows, 2).
 
-    The one at pressure 0 or gap `foot` carries nothing; without a foot the curve stays as it is.
+    The one at pressure 0 or gap `foot` carries nothing; a curve that stays keeps its value there.
     """
     x, y = curve.x, curve.y
-    if foot:
+    if kind.against == "pressure":
+        x, y = np.append(0.0, x), np.append(y[0] if stays else 0.0, y)
+    elif not stays:
         x, y = np.append(x, foot), np.append(y, 0.0)
         if program.overclosure and kind.quantity == "pressure":
             x, y = (foot - x)[::-1], y[::-1]

@@ -136,7 +136,7 @@ def export(
     origin, stays = f"mcgw {version('mcgw')}; SHA-256 of the {digest}", kind.stays(scene)
     texts = [
         table_text(
-            from_zero(curve, kind, stays), kind, PROGRAMS[to], units,
+            curve, kind, PROGRAMS[to], units,
             heading(scene, surfaces, kind, curve, units, origin), file.name, stays=stays,
         )
         for file, curve in zip(files, scaled, strict=False)
@@ -153,13 +153,6 @@ def files_of_export(path: str | Path, quantiles: Sequence[float] | None = None) 
     names = map(quantile_name, _QUANTILES if quantiles is None else quantiles)
     beside = [path.with_name(f"{path.stem}.{name}{path.suffix}") for name in names]
     return [path, *beside, path.with_name(f"{path.stem}.all.csv")]
-
-
-def from_zero(curve: Curve, kind: Kind, stays: bool) -> Curve:
-    """Return a curve against the pressure from 0 on, where nothing is carried."""
-    if kind.against == "gap":
-        return curve
-    return Curve(curve.name, np.append(0.0, curve.x), np.append(curve.y[0] if stays else 0.0, curve.y))
 
 
 def _together(curves: Sequence[Curve], kind: Kind, units: str, scene: Scene) -> Table:

@@ -38,7 +38,7 @@ def comparison_figure(comparison: "Comparison | SweepComparison") -> FigureData:
     if not isinstance(comparison, Comparison):
         title = f"{shown_title(comparison.sweep.scenes[0], 'Sweep')}: {verdict.points} scenes"
         said = f"Monte Carlo and theory {verdict.word}: p = {verdict.p:.3g} for all points together"
-        panels = (residuals_panel(comparison), _worst_panel(comparison))
+        panels = (residuals_panel("all points", comparison.residuals), _worst_panel(comparison))
         return FigureData(f"{title}\n{said}", _CAPTION, panels)
     ensemble, scene = comparison.ensemble, comparison.ensemble.scene
     curves = tuple(quantity_panel(comparison, name) for name in comparison.curves)
@@ -105,9 +105,8 @@ def _std_over_mean(law: Any) -> Array:
         return np.asarray(np.sqrt(law.variance) / np.abs(law.mean))
 
 
-def residuals_panel(comparison: "SweepComparison") -> Panel:
-    """Draw a histogram of all residuals on its expectation if theory holds; one outlier shows."""
-    z = comparison.residuals
+def residuals_panel(title: str, z: Array) -> Panel:
+    """Draw a histogram of residuals on its expectation if theory holds; one outlier shows."""
     most = max(4.0, _BIN * np.ceil(np.abs(z).max(initial=0.0) / _BIN))
     x = np.linspace(-most, most, 201)
     expected = len(z) * _BIN * np.exp(-(x**2) / 2) / np.sqrt(2 * np.pi)
@@ -118,9 +117,7 @@ def residuals_panel(comparison: "SweepComparison") -> Panel:
         Mark("plot", (x, expected), line),
     )
     limits = {"ylim": (0.4, 3 * max(expected.max(), 1.0))}
-    return Panel(
-        "all points", _RESIDUAL, "means of all points", scales=("linear", "log"), marks=marks, settings=limits
-    )
+    return Panel(title, _RESIDUAL, "means", scales=("linear", "log"), marks=marks, settings=limits)
 
 
 def _worst_panel(comparison: "SweepComparison") -> Panel:

@@ -50,13 +50,12 @@ class Points:
 
 @dataclass(frozen=True)
 class Series:
-    """A line of theory, points on it if it has a counterpart by Monte Carlo, and ends of a shaded band."""
+    """A line of theory, and points on it if it has a counterpart by Monte Carlo."""
 
     label: str
     x: Array
     theory: Array
     points: Points | None = None
-    band: tuple[Array, Array] | None = None
 
 
 @dataclass(frozen=True)

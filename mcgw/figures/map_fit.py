@@ -2,7 +2,6 @@
 
 import textwrap
 from contextlib import suppress
-from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -43,7 +42,7 @@ def fit_figure(fit: Fit, raw: Topography, ready: Prepared) -> FigureData:
         _map_panel(f"a  as read{missing}", raw, None),
         _summits_panel(fit, ready),
         _moments_panel(ready),
-        _heights_panel(fit),
+        heights_panel(fit),
         _curvatures_panel(fit),
         Panel("f  estimates", "", "", marks=(words(_listing(fit), centred=False),)),
     )
@@ -108,29 +107,22 @@ def _moments_panel(ready: Prepared) -> Panel:
     return Panel("c  moments against cutoff", f"cutoff ({unit})", label, scales=("log", "log"), marks=marks)
 
 
-def bars(values: Array, label: str) -> Mark:
+def _bars(values: Array, label: str) -> Mark:
     """Return a histogram as a density."""
     return Mark("hist", (values,), {"bins": "auto", "density": True, "color": SAMPLE, "label": label})
 
 
-def _heights_panel(fit: Fit) -> Panel:
+def heights_panel(fit: Fit) -> Panel:
     """Summit heights and the laws that they may follow."""
-    sigma, z = float(fit.summits.std()), np.linspace(-4.5, 4.5, 241)
-    looks = ({"color": HOMOGENEOUS, "ls": "--"}, {"color": THEORY})
-    laws = (
-        Mark("plot", (z, density(z)), {**own, "label": label})
-        for (label, density), own in zip(height_laws(fit), looks, strict=False)
+    z, marks = np.linspace(-4.5, 4.5, 241), [_bars(fit.summits / fit.summits.std(), "summits")]
+    marks.append(
+        Mark("plot", (z, Gaussian().pdf(z)), {"color": HOMOGENEOUS, "ls": "--", "label": "Gaussian"})
     )
-    label = "summit height, about its mean, over its std"
-    return Panel("d  summit heights", label, "density", marks=(bars(fit.summits / sigma, "summits"), *laws))
-
-
-def height_laws(fit: Fit) -> list[tuple[str, Any]]:
-    """Densities of summit heights, mean 0 and standard deviation 1, that are drawn."""
-    laws: list[tuple[str, Any]] = [("Gaussian", Gaussian().pdf)]
     with suppress(ValueError):  # no isotropic surface has such an alpha
-        laws.append((f"Nayak, α = {fit.alpha.value:.3g}", Nayak(fit.alpha.value).pdf))
-    return laws
+        label = f"Nayak, α = {fit.alpha.value:.3g}"
+        marks.append(Mark("plot", (z, Nayak(fit.alpha.value).pdf(z)), {"color": THEORY, "label": label}))
+    label = "summit height, about its mean, over its std"
+    return Panel("d  summit heights", label, "density", marks=tuple(marks))
 
 
 def _curvatures_panel(fit: Fit) -> Panel:
@@ -140,7 +132,7 @@ def _curvatures_panel(fit: Fit) -> Panel:
     t = mean * x
     density = np.sqrt(3) / (2 * np.sqrt(np.pi)) * (t**2 - 2 + 2 * np.exp(-(t**2) / 2)) * np.exp(-(t**2) / 4)
     law = Mark("plot", (x, mean * density), {"color": THEORY, "label": "Gaussian surface"})
-    marks = (bars(k[(k > 0) & (k < 3)], "summits"), law)
+    marks = (_bars(k[(k > 0) & (k < 3)], "summits"), law)
     label = "mean curvature over its mean"
     return Panel("e  summit curvatures", label, "density", marks=marks, settings={"xlim": (0, 3)})
 

@@ -167,8 +167,6 @@ def _draw_series(axis: Any, series: Series, k: int, logarithmic: bool) -> None:
         axis.plot([], [], label=series.label, marker=found["marker"], ms=4, mfc="white", **line)
     if series.points is not None:
         _draw_points(axis, series.points, _marks(series, k), logarithmic)
-    if series.band is not None:
-        axis.fill_between(series.x, *series.band, color=found["color"], alpha=0.18, lw=0)
 
 
 def _draw_points(axis: Any, points: Points, found: dict[str, Any], logarithmic: bool) -> None:

@@ -15,7 +15,7 @@ from mcgw.ensemble.paired import Paired, Slopes
 from mcgw.ensemble.solved import Solution
 from mcgw.figures.against_theory import quantity_panel, residuals_panel
 from mcgw.figures.data import SEPARATION, Mark, Panel
-from mcgw.figures.map_fit import bars
+from mcgw.figures.map_fit import heights_panel
 from mcgw.figures.panels import draw_panel, keys
 from mcgw.figures.studies import checks_panel, errors_panel
 from mcgw.figures.style import MONTE_CARLO, SAMPLE, SEEN, STYLE, THEORY, shown_title, step
@@ -98,7 +98,7 @@ def _(result: Comparison, *, quantity: str) -> Panel:
 
 @panel_of.register
 def _(result: SweepComparison) -> Panel:
-    return residuals_panel(result)
+    return residuals_panel("all points", result.residuals)
 
 
 @panel_of.register
@@ -171,14 +171,7 @@ def _(result: Tradeoff, *, want: str) -> Panel:
 
 @panel_of.register
 def _(result: Fit) -> Panel:
-    sigma = float(result.summits.std())
-    z = np.linspace(-4 * sigma, 4 * sigma, 201)
-    marks = (
-        bars(result.summits, f"{result.summits.size} summits"),
-        Mark("plot", (z, norm.pdf(z, scale=sigma)), {"color": THEORY, "label": "Gaussian"}),
-        Mark("margins", (), {"y": 0.3}),
-    )
-    return Panel(f"sigma = {sigma:.4g} m", "summit height (m)", "density (1/m)", marks=marks)
+    return replace(heights_panel(result), title=f"sigma = {result.summits.std():.4g} m")
 
 
 @panel_of.register

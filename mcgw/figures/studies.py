@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from mcgw.figures.against_theory import residuals_panel
 from mcgw.figures.data import FigureData, Mark, Panel, words
-from mcgw.figures.style import BAND, HOMOGENEOUS, LEVEL, MONTE_CARLO, SAMPLE, SEEN, THEORY, look, shown_title
+from mcgw.figures.style import BAND, HOMOGENEOUS, LEVEL, MONTE_CARLO, SEEN, THEORY, look, shown_title
 from mcgw.statistics.checks import Slope
 from mcgw.statistics.convergence import Convergence
 from mcgw.statistics.ladder import Rung
@@ -39,7 +40,9 @@ def convergence_figure(found: Convergence) -> FigureData:
         f"Statistical convergence {found.word}: p = {found.p:.3g} over "
         f"{len(found.checks)} checks (false alarms: 1 in {1 / FALSE_ALARM:.0f})"
     )
-    panels = (slopes["M"], slopes["N"], _scores_panel(found), checks_panel(found))
+    few = Panel("", "", "", marks=(words("z-scores: too few contacts"),))
+    scores = residuals_panel("z-scores", found.scores) if found.scores.size else few
+    panels = (slopes["M"], slopes["N"], scores, checks_panel(found))
     return FigureData(title, "", panels, columns=3)
 
 
@@ -62,21 +65,6 @@ def _slope_panel(curve: Slope) -> Panel:
             ),
         ),
     )
-
-
-def _scores_panel(found: Convergence) -> Panel:
-    z, x = found.scores, np.linspace(-4, 4, 201)
-    if not z.size:
-        return Panel("", "", "", marks=(words("z-scores: too few contacts"),))
-    normal = np.exp(-(x**2) / 2) / np.sqrt(2 * np.pi)
-    bars = {"density": True, "color": SAMPLE, "label": f"{z.size} means"}
-    return Panel(
-        "z-scores", "error of a mean (exact standard errors)", "density",
-        marks=(
-            Mark("hist", (np.clip(z, -4, 4), np.linspace(-4, 4, 25)), bars),
-            Mark("plot", (x, normal), {"color": THEORY, "label": "standard normal"}),
-        ),
-    )  # fmt: skip
 
 
 def checks_panel(found: Convergence) -> Panel:

@@ -19,7 +19,6 @@ from mcgw.scene.scene import Scene
 
 _SEPARATIONS, _FEW = 8, 3  # laws per quantity, at most; few where a law takes 60 ms instead of 10
 _PLACES = 1000  # values at which shares and probabilities are compared, of more surfaces some of theirs
-_ROWS = 20_000  # surfaces read at a time
 
 
 @dataclass(frozen=True)
@@ -84,19 +83,13 @@ def laws_of_values(ensemble: Ensemble) -> LawsOfValues:
 
 def _distances(ensemble: Ensemble, name: str, which: list[int]) -> list[float]:
     """Distances of one quantity at some separations, by number."""
-    m, scene = ensemble.n_surfaces, ensemble.scene
-    first = np.sort(ensemble.sums.read(name, 0, min(m, _ROWS))[:, which], axis=0)
-    places = first[evenly(len(first), _PLACES)].astype(np.float64)
-    below, upto = np.zeros(places.shape), np.zeros(places.shape)
-    for start in range(0, m, _ROWS):
-        values = np.sort(ensemble.sums.read(name, start, min(start + _ROWS, m))[:, which], axis=0)
-        for k in range(len(which)):
-            below[:, k] += np.searchsorted(values[:, k], places[:, k], "left")
-            upto[:, k] += np.searchsorted(values[:, k], places[:, k], "right")
-    return [
-        _farthest(scene, name, scene.separations[number], places[:, k], below[:, k] / m, upto[:, k] / m)
-        for k, number in enumerate(which)
-    ]
+    m, found = ensemble.n_surfaces, []
+    values = np.sort(ensemble.sums.read(name, 0, m)[:, which].astype(np.float64), axis=0)
+    for k, number in enumerate(which):
+        x = values[evenly(m, _PLACES), k]
+        below, upto = (np.searchsorted(values[:, k], x, side) / m for side in ("left", "right"))
+        found.append(_farthest(ensemble.scene, name, ensemble.scene.separations[number], x, below, upto))
+    return found
 
 
 def _farthest(scene: Scene, name: str, h: float, x: Array, below: Array, upto: Array) -> float:

@@ -15,7 +15,7 @@ from mcgw.cli import main
 from mcgw.exports.curves import KINDS, Curve, quantile_name
 from mcgw.exports.programs import PROGRAMS
 from mcgw.exports.table_text import UNITS, heading, in_units, table_text
-from mcgw.exports.writing import from_zero, surfaces_for
+from mcgw.exports.writing import surfaces_for
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "10 mm^2", "78.6 GPa")
 FILM = mcgw.Joint(resistivity=1 / 150 + 1 / 16)
@@ -162,7 +162,7 @@ def test_a_curve_is_written_as_the_program_reads_it(scene, program, table, units
     kind, system, path = KINDS[table], units, tmp_path / "t"
     x, y = np.array([1.0, 2.0, 4.0]), np.array([1.0, 2.0, 5.0])
     x, y, foot = (1e-6 * x, 1e6 * y[::-1], 6e-6) if kind.against == "gap" else (1e6 * x, y, 0.0)
-    curve = from_zero(in_units(Curve("q05", x, y), kind, system), kind, stays=False)
+    curve = in_units(Curve("q05", x, y), kind, system)
     head = heading(scene, 60, kind, curve, system, "data 0a")
     path.write_text(table_text(curve, kind, PROGRAMS[program], system, [*head, LIVE], LIVE), "utf-8")
     text = path.read_text("utf-8")

@@ -170,14 +170,6 @@ def test_legends_name_the_line_that_is_drawn_so():
     assert drawn[2].get_color() == "#000000"  # homogeneous, in every figure alike
 
 
-def test_a_band_is_shaded():
-    series = Series("edge", X, X, band=(X - 3, 2 * X))
-    (axis,) = draw(FigureData("", "", (Panel("p", "x", "y", (series,)),))).axes
-    (patch,) = axis.collections
-    corners = {tuple(xy) for xy in patch.get_paths()[0].vertices.tolist()}
-    assert corners >= set(zip(X, X - 3, strict=True)) | set(zip(X, 2 * X, strict=True))
-
-
 def slope(against, value):
     sizes = np.array([1.0, 4.0, 16.0])
     return Slope(

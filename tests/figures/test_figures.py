@@ -74,8 +74,8 @@ def said(figures):
             axes = f"{panel.xlabel} | {panel.ylabel}, {' '.join(panel.scales)}, level {panel.level}"
             yield f" {panel.title or '-'}: {axes}"
             for s in panel.series:
-                p, band = s.points, s.band or ()
-                parts = (s.x, s.theory, *band, *((p.x, p.mean, p.stderr, p.exact) if p else ()))
+                p = s.points
+                parts = (s.x, s.theory, *((p.x, p.mean, p.stderr, p.exact) if p else ()))
                 yield f"  {s.label}: {'; '.join(map(mark, parts))}"
 
 
