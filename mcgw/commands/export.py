@@ -54,7 +54,6 @@ def export(
     if to == "json":
         check_outputs([Output(output, Format("a table", (".json",)))])
     else:
-        PROGRAMS[to].check_name(output.name)
         form = Format(f"a table for {to}", PROGRAMS[to].endings)
         check_outputs([*(Output(path, form) for path in tables), Output(together, CSV)])
     made = exported(

@@ -10,7 +10,6 @@ from mcgw.maps.steps import Form, LinesTo, Missing, SpikesTo
 
 if TYPE_CHECKING:
     from analytic import Surface
-    from mcgw.maps.fit import Fit
     from mcgw.maps.profile_fit import ProfileFit
 
 E_STAR = 100e9  # Pa, default
@@ -113,6 +112,7 @@ def fit(
     from mcgw.maps.map_files import read_map
     from mcgw.maps.preparation import preparation_of
     from mcgw.maps.readable_scene import heights_beside, write_scene
+    from mcgw.maps.summits import SUMMITS, TILES
     from mcgw.reports.fitted import fit_words, profile_words
 
     assumed = " (assumed; give --E-star)" if E_star is None else ""
@@ -155,8 +155,12 @@ def fit(
     with together():
         path, *written = write_scene(scene, output, measured, [*said, "", units])
         told = [str(each) for each in written]
-        if isinstance(found, Fit):
-            told += _beside(found, summits, tiles)
+        if summits and isinstance(found, Fit):
+            found.listed.table().write(summits, comment=SUMMITS)
+            told.append(f"{summits}: every summit")
+        if tiles and isinstance(found, Fit):
+            found.tiles.write(tiles, comment=TILES)
+            told.append(f"{tiles}: every sub-area")
         if picture and isinstance(found, Fit):
             from mcgw.figures.map_fit import fit_figure
             from mcgw.figures.panels import save
@@ -174,20 +178,6 @@ def fit(
         f"or at a load: mcgw solve {output} --pressure 1MPa"
     )
     return None
-
-
-def _beside(found: "Fit", summits: Path | None, tiles: Path | None) -> list[str]:
-    """Write the requested tables, and return a line for each."""
-    from mcgw.maps.summits import SUMMITS, TILES
-
-    told = []
-    if summits:
-        found.listed.table().write(summits, comment=SUMMITS)
-        told.append(f"{summits}: every summit")
-    if tiles:
-        found.tiles.write(tiles, comment=TILES)
-        told.append(f"{tiles}: every sub-area")
-    return told
 
 
 def _of_numbers(

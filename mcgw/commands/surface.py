@@ -9,8 +9,6 @@ from mcgw.commands.outputs import JSON, Format, Output, check_outputs
 from mcgw.commands.voice import news, notes
 
 if TYPE_CHECKING:
-    from mcgw.maps.synthetic import Asperities
-    from mcgw.maps.topography import Topography
     from mcgw.scene.scene import Scene
 
 
@@ -82,7 +80,9 @@ def _asperities(
     periodic: bool,
     path: Path,
 ) -> None:
-    from mcgw.maps.envelope import envelope
+    """Write the map, and tell how many of its summits are not independent."""
+    from mcgw.maps.envelope import envelope, hidden_summits
+    from mcgw.maps.hidden_caps import CROWDED
     from mcgw.maps.map_files import write_map
     from mcgw.maps.synthetic import asperities_of
     from mcgw.scene.scene_file import scene_text
@@ -90,14 +90,6 @@ def _asperities(
     field = asperities_of(scene, surface)
     topography = envelope(field, shape, width=width, periodic=periodic)
     news(*write_map(topography, path, field, scene=scene_text(scene)))
-    _tell(scene, field, topography)
-
-
-def _tell(scene: "Scene", field: "Asperities", topography: "Topography") -> None:
-    """Describe the map and how many of its summits are not independent."""
-    from mcgw.maps.envelope import hidden_summits
-    from mcgw.maps.hidden_caps import CROWDED
-
     hidden = hidden_summits(field, periodic=topography.periodic)
     touching = field.z > scene.lowest * scene.surface.sigma
     overlap = field.number / (field.size[0] * field.size[1]) * field.radius * scene.surface.sigma

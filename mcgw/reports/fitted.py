@@ -13,23 +13,11 @@ from mcgw.maps.waves import Uncertain
 
 def fit_words(fit: Fit, names: Sequence[str], asked: Preparation, assumed_unit: str) -> list[str]:
     """Return what was fitted and how, what was done to the map, and the results."""
-    return [_map_line(names, asked, assumed_unit), *fit.notes, *fit_lines(fit)]
-
-
-def profile_words(
-    fit: ProfileFit, names: Sequence[str], asked: Preparation, profiles: Sequence[Profile]
-) -> list[str]:
-    """Return what was fitted and how, and the results."""
-    return [_profile_line(names, asked, profiles), *profile_lines(fit)]
-
-
-def _map_line(names: Sequence[str], asked: Preparation, assumed_unit: str) -> str:
-    """Return the map or maps, their form and cutoff, and the assumed unit if none was given."""
     filtered = "none" if asked.cutoff is None else f"{asked.cutoff:g} m (Gaussian, ISO 16610-61)"
     line = f"{', '.join(names)}: form removed: {asked.form}; cutoff: {filtered}"
     if assumed_unit:
         line += f"; heights assumed in {assumed_unit}, since the file gives no unit"
-    return line
+    return [line, *fit.notes, *fit_lines(fit)]
 
 
 def fit_lines(fit: Fit) -> list[str]:
@@ -60,21 +48,19 @@ def fit_lines(fit: Fit) -> list[str]:
     return lines
 
 
-def _profile_line(names: Sequence[str], asked: Preparation, profiles: Sequence[Profile]) -> str:
-    """Return the profiles, their form and cutoff, and the assumed unit if none was given."""
+def profile_words(
+    fit: ProfileFit, names: Sequence[str], asked: Preparation, profiles: Sequence[Profile]
+) -> list[str]:
+    """Return what was fitted and how, statistics of the profiles and of the surface, one number per line."""
     filtered = "none" if asked.cutoff is None else f"{asked.cutoff:g} m (Gaussian)"
     taken = {"none": "mean", "plane": "line", "quadratic": "parabola"}[asked.form]
     line = f"{', '.join(names)}: profile; removed: {taken}; cutoff: {filtered}"
     if unit := next((p.assumed_unit for p in profiles if p.assumed_unit), ""):
         line += f"; lengths assumed in {unit} where the file gives no unit"
-    return line
-
-
-def profile_lines(fit: ProfileFit) -> list[str]:
-    """Statistics of the profiles and of the surface, one number per line."""
     counted, expected = fit.peaks
     number = len(fit.lengths)
     return [
+        line,
         f"{number} profile{'s' if number > 1 else ''}, {sum(fit.lengths):.4g} m together; filtered along the "
         f"line: {fit.roughness.text('P')} (primary profile; called Ra, Rq, Rsk if waves beyond a cutoff "
         "lambda_c were removed before)",

@@ -188,6 +188,7 @@ REFUSED = [
         ("1MPa:1MPa:2", "give the lower one first"))),
     (f"{EXPORT} --quantile 0", "quantiles"), (f"{EXPORT} --quantile 1", "quantiles"),
     (f"{EXPORT} --points 1", "points = 1: give"),
+    ("export @e.h5 --to json -o a.json --units mm-N-s", "SI units; leave out table, quantiles, units"),
     ("export @s.toml --to moose -o a.csv --points 10001", "points = 10001: give"),
     (f"{EXPORT} --pressures 1MPa:2MPa:1", "with N from 2"),
     (f"{EXPORT} --pressures 1MPa:2MPa:1000001", "to 1e6"),

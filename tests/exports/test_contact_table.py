@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import mcgw
-from mcgw.cli import main
 from mcgw.exports.contact_table import SCHEMA
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
@@ -83,13 +82,3 @@ def test_what_makes_no_table_is_refused(separations, said, tmp_path):
     with pytest.raises(ValueError, match=said):
         mcgw.export(ensemble, tmp_path / "a.json", to="json")
     assert not (tmp_path / "a.json").exists()
-
-
-def test_on_the_command_line_from_a_file(tmp_path, capsys):
-    mcgw.run(SCENE.replace(n_surfaces=5, separations=[0.0, 1.0, 2.0]), tmp_path / "e.h5")
-    words = ["export", str(tmp_path / "e.h5"), "--to", "json", "-o", str(tmp_path / "e.json")]
-    assert main(words) == 0
-    assert "e.json" in capsys.readouterr().out
-    assert len(json.loads((tmp_path / "e.json").read_text())["gap"]) == 3
-    assert main([*words, "--units", "mm-N-s"]) == 2
-    assert "leave out" in capsys.readouterr().err

@@ -11,7 +11,6 @@ from oracles import exact
 from oracles.inside import MemoryResults
 from scipy.stats import t as student
 
-import analytic
 import mcgw
 from mcgw import run, sweeps
 from mcgw.cli import main
@@ -159,46 +158,6 @@ def test_compare_ends_with_1_and_says_so_where_they_disagree(file, tmp_path, cap
     assert "theory agree" in out_of(["compare", file, "-o", tmp_path / "c.png"], capsys)
     monkeypatch.setattr(sweeps, "open_ensemble", lambda path: wrong)
     assert "theory DISAGREE" in out_of(["compare", file, "-o", tmp_path / "c.png"], capsys, code=1)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("words", "given", "title"),
-    [
-        (["--pressure", "1MPa"], ("load", 100.0), "At the load 100 N = pressure 1 MPa"),
-        (["--load", "0.2kN"], ("load", 200.0), "At the load 200 N = pressure 2 MPa"),
-        (["--area-fraction", "0.01%"], ("area", 1e-8),
-         "At the real area 1e-08 m^2 = 0.0100% of the nominal area"),
-    ],
-)  # fmt: skip
-def test_solve(scene, words, given, title, tmp_path, capsys):
-    """An infinite surface by quadrature at its separation; `test_solution.py` has specimens, literally."""
-    few = scene.replace(n_surfaces=25, keep="sums", sampler="tail")
-    (tmp_path / "s.toml").write_text(mcgw.scene_text(few))
-    out = out_of(["solve", tmp_path / "s.toml", *words, "-v", "--csv", tmp_path / "s.csv"], capsys)
-    lines = out.splitlines()
-    assert lines[0].startswith(f"{title}: ")
-    rows = {row["quantity"]: row for row in rows_of(tmp_path / "s.csv")}
-    assert list(rows) == ["separation", "gap_to_summits", *analytic.QUANTITIES]
-    h = float(rows["separation"]["infinite"])
-    units = {"separation": "sigma", "gap_to_summits": "m", **exact.UNITS}
-    for name, row in rows.items():
-        assert row["unit"] == units[name]
-        assert (row["given"], float(row["amount"])) == (given[0], pytest.approx(given[1]))
-        assert float(row["pressure_Pa"]) == pytest.approx(
-            float(rows["load"]["value"]) / few.surface.nominal_area
-        )
-        if name != "separation":
-            expected = h * few.surface.sigma if name == "gap_to_summits" else exact.mean(few, name, [h])[0]
-            assert float(row["infinite"]) == pytest.approx(expected, rel=1e-8)
-        assert row["low_95"] == row["value"] == row["high_95"]  # exact
-        assert float(row["value"]) == mcgw.solve(few, **dict([given])).value[name]
-    assert exact.mean(few, given[0], [h])[0] == pytest.approx(given[1], rel=1e-8)
-    assert [line for line in lines if line.startswith("specimens: 25 surfaces of 3000 asperities")]
-    for name, x in mcgw.solve(few, **dict([given])).surfaces.items():
-        far = (x - x.mean()) / (x.std() or 1.0)  # std is exact, that of x has an error of its own: |z| < 5
-        error = x.std() * math.sqrt(max(np.mean(far**4) - 1, 0.0) / len(x)) / 2
-        assert float(rows[name]["std"]) == pytest.approx(x.std(ddof=1), abs=5 * error + 1e-12 * x.mean())
 
 
 def test_tradeoff(scene, tmp_path, capsys, monkeypatch):

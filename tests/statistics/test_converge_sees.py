@@ -23,7 +23,7 @@ from oracles.inside import (
     variances,
 )
 from oracles.literal import ensemble_arrays
-from scipy.special import ndtri, polygamma, psi
+from scipy.special import polygamma, psi
 from scipy.stats import binom, chi2, kstest, norm, poisson, ttest_1samp
 
 import analytic
@@ -234,45 +234,21 @@ def asked(make_scene):
     return make_scene(separations=FIVE, n_asperities=5000, n_surfaces=64)
 
 
-def drawn(*, gamma=None, shared=False, **flaw):
-    """A sampler in NumPy with one flaw."""
+def drawn(*, shared=False):
+    """A sampler in NumPy, of which half the streams may be shared."""
 
     def draw(scene):
-        if gamma is not None:
-            scene = scene.replace(grading=analytic.Exponential(gamma))
         if not shared:
-            return ensemble_arrays(scene, scene.seed, **flaw)
+            return ensemble_arrays(scene, scene.seed)
         half = ensemble_arrays(scene.replace(n_surfaces=scene.n_surfaces // 2), scene.seed)
         return {name: np.repeat(x, 2, axis=0)[: scene.n_surfaces] for name, x in half.items()}
 
     return draw
 
 
-def of_12_bits(s):
-    """Normals by inversion of uniforms of 12 bits."""
-    k = np.random.default_rng(abs(int(s.flat[0] * 1e12))).integers(0, 4096, s.shape)
-    return ndtri((k + 0.5) / 4096)
-
-
 @pytest.mark.slow
 def test_a_right_sampler_from_outside_passes(asked):
     assert converge(asked, drawn()).passed
-
-
-NUMPYS_FLAWS = {
-    "exponent 1.49": {"exponent": 1.49},
-    "gamma off by 1 %": {"gamma": 2.02},
-    "uniforms of 12 bits": {"heights": of_12_bits},
-    "tail cut at 4 sigma": {"heights": lambda s: np.where(s > 4, 0.0, s)},
-    "variance off by 0.5 %": {"heights": lambda s: s * np.sqrt(1.005)},
-    "pairs of surfaces share a stream": {"shared": True},
-}
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("flaw", NUMPYS_FLAWS)
-def test_a_flaw_fails(asked, flaw):
-    assert not converge(asked, drawn(**NUMPYS_FLAWS[flaw])).passed
 
 
 def test_streams_shared_but_for_rounding_fail_too(asked):
