@@ -171,7 +171,9 @@ def _(result: Tradeoff, *, want: str) -> Panel:
 
 @panel_of.register
 def _(result: Fit) -> Panel:
-    return replace(heights_panel(result), title=f"sigma = {result.summits.std():.4g} m")
+    return replace(
+        heights_panel(result), title=f"{result.summits.size} summits, sigma = {result.summits.std():.4g} m"
+    )
 
 
 @panel_of.register
