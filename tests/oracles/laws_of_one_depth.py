@@ -4,7 +4,7 @@ Loads are over that of Hertz at d = 1 and e = 1, areas over the area there. Cons
 depth, yield `strain` or pull-off `stretch` at e = 1; `ratio` is R/sigma, or the moduli of coating and body.
 """
 
-from math import atan, cos, exp, gamma, log1p, pi, sin, sqrt
+from math import atan, cos, exp, gamma, log, log1p, pi, sin, sqrt
 
 import numpy as np
 from scipy.integrate import quad
@@ -30,6 +30,16 @@ def unloaded_kogut_etsion(d, deepest, critical):
 def chang_etsion_bogy(d, e=1.0, critical=0.5):
     dc = critical / e**2
     return (e * d**1.5, d) if d < dc else (1.5 * e * sqrt(dc) * (2 * d - dc), 2 * d - dc)
+
+
+def zhao_maietta_chang(d, e=1.0, critical=0.05):
+    """Fully plastic beyond 54 times the depth of yield, at a mean pressure of 0.4 H at yield."""
+    dc = critical / e**2
+    t, hardness = (d - dc) / (53 * dc), 1 / 0.4 * e * sqrt(dc)
+    if t < 0:
+        return e * d**1.5, d
+    area = d * (1 + min(t, 1) ** 2 * (3 - 2 * min(t, 1)))
+    return area * hardness * min(1 - 0.6 * log(54 * dc / d) / log(54), 1), area
 
 
 def yields_at(strain, nu=0.3, ratio=1000.0):

@@ -162,14 +162,6 @@ def test_stiffness_is_minus_the_slope_of_the_load(grading):
     np.testing.assert_allclose(-slope, analytic.stiffness(SURFACE, h, grading), rtol=2e-9)
 
 
-@pytest.mark.parametrize("quantity", ["load", "area", "stiffness", "contacts", "conductance"])
-def test_mean_by_name_is_the_function(quantity):
-    h = [0.0, 2.0]
-    np.testing.assert_array_equal(
-        analytic.mean(SURFACE, quantity, h), getattr(analytic, quantity)(SURFACE, h)
-    )
-
-
 def test_unknown_names():
     with pytest.raises(KeyError, match="torque"):
         analytic.mean(SURFACE, "torque", 0.0)

@@ -6,101 +6,96 @@ from dataclasses import replace
 import mpmath as mp
 import numpy as np
 import pytest
-from oracles.reference import F, error, graded, integral, pchip, phi
+from oracles.reference import F, error, graded, integral, pchip
 
 import analytic
 from analytic import Clipped, Custom, Exponential, Table
 
-TOLERANCE = 1e-13  # promised for every grading that is resolved; below: where the data do not allow it
-H = (-40.0, -9.0, -2.5, -0.5, 0.0, 0.3, 1.7, 4.0, 11.0, 35.0)
+TOLERANCE = 1e-13  # promised for every grading that is resolved
+S, RATIO = (-2.0, -0.7, 0.1, 0.4, 1.5, 3.0), (0.3, 0.6, 0.6, 1.4, 1.1, 2.0)
+JUMP, KINK, ZERO = mp.mpf(1.1), mp.mpf(0.4), mp.mpf(0.3)
 
 
-def worst(grading, truth, n, h=H):
-    values = analytic.fn_scaled(n, h, grading)  # fn itself is subnormal for exp(-3s) at h = 35
-    return max(error(v, truth(x) / (phi(x) if x >= 0 else 1)) for v, x in zip(values, h, strict=True))
+def jump_and_kink(s):
+    return np.where(s > 1.1, 2.0, 1.0) + np.abs(s - 0.4)
 
 
-@pytest.mark.parametrize(("n", "decay"), [(0, 3.0), (0.5, -3.0), (1.5, 1.0), (1.5, 3.0), (6, -3.0)])
-def test_pure_exponential(n, decay):
-    grading = Custom(lambda s: np.exp(-decay * s))
-    closed = mp.exp(mp.mpf(decay) ** 2 / 2)
-    assert worst(grading, lambda h: closed * F(n, mp.mpf(h) + decay), n) < TOLERANCE
-
-
-@pytest.mark.parametrize("n", [0, 1.5])
-def test_steep_growth_on_both_sides(n):
-    """A closed form above 0; below, the whole integral by quadrature."""
-    above = {h: mp.exp(mp.mpf(4.5)) * F(n, mp.mpf(h) - 3) for h in H[4:]}
-    truth = above | {h: graded(n, h, lambda s: mp.exp(3 * abs(s)), breaks=[0]) for h in (-9.0, -0.5)}
-    assert worst(Custom(lambda s: np.exp(3 * np.abs(s))), truth.get, n, sorted(truth)) < TOLERANCE
-
-
-@pytest.mark.parametrize(("b", "c"), [(4.0, 1.0), (400.0, 0.62), (0.5, -2.0)])
-@pytest.mark.parametrize("n", [0, 1.5])
-def test_gaussian_bump(n, b, c):
-    def closed(h):
-        root, h = mp.sqrt(1 + mp.mpf(b)), mp.mpf(h)
-        inside = F(n, root * (h - b * mp.mpf(c) / (1 + mp.mpf(b))))
-        return mp.exp(-b * mp.mpf(c) ** 2 / (2 * (1 + mp.mpf(b)))) * root ** (-n - 1) * inside
-
-    bump = Custom(lambda s: np.exp(-b * (s - c) ** 2 / 2))
-    assert worst(bump, closed, n, [-3.0, 0.0, 0.5, 0.62, 1.0]) < TOLERANCE
-
-
-@pytest.mark.parametrize(("n", "declared"), [(0, False), (0.5, True), (1.5, False), (1.5, True)])
-def test_jump_and_kink(n, declared):
-    grading = Custom(
-        lambda s: np.where(s > 1.1, 2.0, 1.0) + np.abs(s - 0.4), breaks=(0.4, 1.1) if declared else ()
-    )
-    jump, kink = mp.mpf(1.1), mp.mpf(0.4)
-    both = (-0.5, 0.3, 4.0) if declared else (-9.0, 0.3)
-    truth = {
-        h: graded(n, h, lambda s: (2 if s > jump else 1) + abs(s - kink), breaks=[kink, jump]) for h in both
-    }
-    assert worst(grading, truth.get, n, both) < TOLERANCE
-
-
-@pytest.mark.parametrize(
-    ("centre", "n", "h"),  # last: inside the ramp, a small part of the integral, known to few digits of s
-    [(1.7, 1.5, -2.5), (1.7, 1.5, 1.69999), (-0.4, 1.5, -2.5), (-0.4, 1.5, -0.41), (1.7, 0, 1.7 - 3e-7)],
-)
-def test_ramp_of_a_millionth_of_sigma(centre, n, h):
+def ramp(centre):
+    """Of a millionth of sigma; the function, the same of mpmath, and cuts."""
     steps = (-600, -200, -80, -40, -20, -10, -2, -1, 0, 1, 2, 4, 8, 16, 32, 64, 128, 256, 600)
     cuts = [mp.mpf(centre) + k * mp.mpf(10) ** -7 for k in steps]
-    truth = graded(n, h, lambda s: 2 + mp.tanh(10**6 * (s - mp.mpf(centre))), breaks=cuts)
-    grading = Custom(lambda s: 2 + np.tanh(1e6 * (s - centre)))
-    assert error(analytic.fn(n, h, grading), truth) < TOLERANCE
+    return (
+        Custom(lambda s: 2 + np.tanh(1e6 * (s - centre))),
+        lambda s: 2 + mp.tanh(10**6 * (s - centre)),
+        cuts,
+    )
 
 
-@pytest.mark.parametrize(("width", "sign"), [(1.0, 1), (0.1, -1), (0.01, 1), (0.01, -1)])
-def test_modulus_that_fades_into_rounding_noise(width, sign):
+def fading(width, sign):
     """1 +- tanh(s/w) has lost its relative digits where it is small: no reason to give up."""
     w = mp.mpf(width)
     cuts = [k * w for k in (-20, -10, -5, -2, -1, 1, 2, 5, 10, 20)]
-    grading = Custom(lambda s: 1 + sign * np.tanh(s / width))
-    for h in (-3.0, -width):
-        truth = graded(1.5, h, lambda s: 1 + sign * mp.tanh(s / w), breaks=cuts)
-        assert error(analytic.fn(1.5, h, grading), truth) < TOLERANCE
+    return Custom(lambda s: 1 + sign * np.tanh(s / width)), lambda s: 1 + sign * mp.tanh(s / w), cuts
+
+
+def both_ways(s):
+    return (2 if s > JUMP else 1) + abs(s - KINK)
+
+
+LITERAL = {  # grading, the same of mpmath, cuts of its quadrature, powers and separations
+    "jump and kink": (Custom(jump_and_kink), both_ways, [KINK, JUMP], (0, 1.5), (-9.0, 0.3)),
+    "told": (Custom(jump_and_kink, (0.4, 1.1)), both_ways, [KINK, JUMP], (0.5, 1.5), (-0.5, 0.3, 4.0)),
+    "ramp": (*ramp(1.7), (1.5,), (-2.5, 1.69999)),
+    "ramp below": (*ramp(-0.4), (1.5,), (-2.5, -0.41)),
+    "inside the ramp": (*ramp(1.7), (0,), (1.7 - 3e-7,)),
+    "fades": (*fading(1.0, 1), (1.5,), (-3.0, -1.0)),
+    "fades upwards": (*fading(0.1, -1), (1.5,), (-3.0, -0.1)),
+    "fades fast": (*fading(0.01, 1), (1.5,), (-3.0,)),
+    "fades fast upwards": (*fading(0.01, -1), (1.5,), (-0.01,)),
+    "both sides": (
+        Custom(lambda s: np.exp(3 * np.abs(s))), lambda s: mp.exp(3 * abs(s)), [0], (0, 1.5), (-9.0, -0.5),
+    ),
+    "table": (Table(S, RATIO), pchip(S, RATIO), S, (1.5,), (-1.0, 0.1, 2.9)),
+    "clipped": (
+        Clipped.of(Custom(lambda s: s - 0.3)), lambda s: max(s - ZERO, 0), [ZERO], (1.5,), (-2.0, 0.5),
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", LITERAL)
+def test_any_grading_against_the_definition(name):
+    grading, exact, cuts, powers, separations = LITERAL[name]
+    for n in powers:
+        for h, value in zip(separations, analytic.fn(n, separations, grading), strict=True):
+            assert error(value, graded(n, h, exact, breaks=cuts)) < TOLERANCE
+
+
+def bump(n, h, b, c):
+    """Closed form of exp(-b (s - c)^2/2)."""
+    b, c, h = mp.mpf(b), mp.mpf(c), mp.mpf(h)
+    root = mp.sqrt(1 + b)
+    return mp.exp(-b * c**2 / (2 * (1 + b))) * root ** (-n - 1) * F(n, root * (h - b * c / (1 + b)))
+
+
+@pytest.mark.parametrize(
+    ("n", "b", "c"), [(0, 4.0, 1.0), (1.5, 400.0, 0.62), (0, 400.0, 0.62), (1.5, 0.5, -2.0)]
+)
+def test_gaussian_bump(n, b, c):
+    h = (-3.0, 0.0, 0.5, 0.62, 1.0)
+    found = analytic.fn(n, h, Custom(lambda s: np.exp(-b * (s - c) ** 2 / 2)))
+    assert max(error(value, bump(n, x, b, c)) for x, value in zip(h, found, strict=True)) < TOLERANCE
 
 
 def test_waves():
-    grading = Custom(lambda s: 2 + np.sin(20 * s))
-    for h in (-4.0, 0.0, 3.3):
-        x, w = np.polynomial.legendre.leggauss(40)
+    """By 200 panels of a rule of its own."""
+    x, w = np.polynomial.legendre.leggauss(40)
+    for h in (-4.0, 3.3):
         edges = np.linspace(0, math.sqrt(13 - h), 200)
         v = edges[:-1, None] + np.diff(edges)[:, None] * (1 + x) / 2
         terms = 2 * v**4 * (2 + np.sin(20 * (h + v * v))) * np.exp(-((h + v * v) ** 2) / 2)
         truth = float(np.sum(np.diff(edges)[:, None] / 2 * w * terms)) / math.sqrt(2 * math.pi)
-        assert float(analytic.fn(1.5, h, grading)) == pytest.approx(truth, rel=TOLERANCE)
-
-
-@pytest.mark.parametrize("n", [0, 1.5])
-def test_table(n):
-    truth = pchip(S, RATIO)
-    h = (-1.0, 0.1, 2.9)
-    values = analytic.fn(n, h, Table(S, RATIO))
-    for x, value in zip(h, values, strict=True):
-        assert error(value, graded(n, x, truth, breaks=S)) < TOLERANCE
+        found = float(analytic.fn(1.5, h, Custom(lambda s: 2 + np.sin(20 * s))))
+        assert found == pytest.approx(truth, rel=TOLERANCE)
 
 
 KNOTS = (-1.0, 0.3, 0.30001, 0.30003, 0.3001, 2.0)
@@ -142,6 +137,7 @@ def test_knots_nearer_than_the_points_of_a_rule(h, law):
 def test_clipped_exponential(n, gamma):
     law = Clipped.of(Exponential(gamma))
     assert (law.smooth, law.breaks) == (True, (Exponential(gamma).zero,))
+    assert not Clipped(Exponential(2.0)).smooth  # its zero not given
     g = mp.mpf(gamma)
     zero = -mp.log(g / (g - 1))
     low, high = (None, zero) if gamma < 0 else (zero, None)
@@ -152,15 +148,6 @@ def test_clipped_exponential(n, gamma):
         truth = integral(f, h, low=low if low is not None and low > h else None, high=high)
         # The zero is where float arithmetic puts it; the modulus vanishes there, so it does not count.
         assert error(analytic.fn(n, h, law), truth) < TOLERANCE
-
-
-def test_clipped_custom_finds_its_own_zero():
-    law = Clipped.of(Custom(lambda s: s - 0.3))
-    assert not law.smooth
-    assert not Clipped(Exponential(2.0)).smooth  # its zero not given
-    for h in (-2.0, 0.0, 0.5):
-        truth = graded(1.5, h, lambda s: max(s - mp.mpf(0.3), mp.mpf(0)), breaks=[mp.mpf(0.3)])
-        assert error(analytic.fn(1.5, h, law), truth) < TOLERANCE
 
 
 def test_zero_of_the_exponential_grading():
@@ -187,10 +174,6 @@ def test_gamma_must_be_finite(gamma):
 # Measured gradings: interpolation and the CSV files they come from
 
 
-S = (-2.0, -0.7, 0.1, 0.4, 1.5, 3.0)
-RATIO = (0.3, 0.6, 0.6, 1.4, 1.1, 2.0)
-
-
 def csv(tmp_path, text, encoding="utf-8"):
     path = tmp_path / "grading.csv"
     path.write_text(text, encoding=encoding)
@@ -201,11 +184,9 @@ def csv(tmp_path, text, encoding="utf-8"):
     ("s", "ratio"), [(S, RATIO), ((0, 1), (1, 3)), ((0, 1, 2), (5, 1, 1.5)), (S, RATIO[::-1])]
 )
 def test_interpolant_against_its_definition(s, ratio):
-    heights = np.concatenate([np.linspace(-4, 5, 91), s])
-    truth = pchip(s, ratio)
-    literal = [float(truth(x)) for x in heights]
-    # Cubics of order 1 in doubles: some 10 roundings.
-    np.testing.assert_allclose(Table(s, ratio)(heights), literal, rtol=1e-14)
+    """To some ten roundings of a cubic."""
+    heights, truth = np.concatenate([np.linspace(-4, 5, 91), s]), pchip(s, ratio)
+    np.testing.assert_allclose(Table(s, ratio)(heights), [float(truth(x)) for x in heights], rtol=1e-14)
 
 
 def test_clamped_outside_and_monotone_inside():

