@@ -251,18 +251,17 @@ def with_values(given: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str
     TypeError
         If there is no such field.
     """
-    places = _places()
+    places, found = _places(), dict(given)
     for name in values:
         if name not in places:
             meant = nearest(name, places).rstrip() or f"it has {', '.join(places)}"
             raise TypeError(f"a scene has no {name!r}; {meant}")
-    found, inner = dict(given), [name for name in values if places[name]]
     found |= {name: value for name, value in values.items() if not places[name]}
     before, now = given.get("grading"), found.get("grading")
     if isinstance(before, Graded) and not isinstance(now, Graded | Mapping):
         found["grading"] = Graded(now, before.negative)
-    for part in dict.fromkeys(places[name] for name in inner):
-        changes = {name: values[name] for name in inner if places[name] == part}
+    for part in {places[name]: None for name in values if places[name]}:
+        changes = {name: value for name, value in values.items() if places[name] == part}
         found[part] = _changed(part, found.get(part), changes)
     return found
 

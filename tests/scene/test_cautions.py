@@ -182,6 +182,12 @@ def test_a_crowd_that_was_not_measured_up_to_the_last_separation(make_scene):
     assert "punch" not in pressed[0]
 
 
+def test_few_contacts_from_the_first_separation_where_they_are(make_scene):
+    """Of 3000 exp(-h - 1) fewer than 30 from ln 100 - 1 = 3.605 on."""
+    lines = cautions(make_scene(**falling(separations=(4.5, 0.0, 3.7, 4.0))))
+    assert about(lines, "from d/sigma = 3.7 fewer than 30 contacts")
+
+
 def test_what_a_rule_will_not_reach_is_said_before(make_scene):
     from oracles.inside import forecast
 

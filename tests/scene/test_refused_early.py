@@ -127,3 +127,15 @@ def test_hours_of_drawing_are_told_when_the_scene_is_made(n, surfaces, separatio
         warnings.simplefilter("ignore")
         assert main(["show", "--plan", str(tmp_path / "a.toml")]) == 0
     assert capsys.readouterr().err.count(line) == 1
+
+
+def test_a_plane_that_sinks_faster_than_it_is_pressed_is_told_up_to_where():
+    """The nominal separation h - c P(h)/sigma falls below 1.5 for a half-space as soft as this."""
+    plain = mcgw.Scene(_SURFACE, separations=[0.0, 1.0, 2.0], seed=1)
+    soft = mcgw.Interaction("mean-plane", bulk_modulus=1e9)
+    above, below = (float(plain.theory.mean("load", 1.5 + step)) for step in (-1e-4, 1e-4))
+    ratio = soft.compliance(_SURFACE, plain.n_asperities) * (above - below) / 2e-4 / _SURFACE.sigma
+    for_1_5 = 1e9 * abs(ratio)
+    plain.replace(interaction=mcgw.Interaction("mean-plane", bulk_modulus=1e3 * for_1_5))
+    with pytest.raises(mcgw.SceneError, match=r"^interaction: at d/sigma = 1 the mean plane sinks faster"):
+        plain.replace(interaction=mcgw.Interaction("mean-plane", bulk_modulus=for_1_5))
