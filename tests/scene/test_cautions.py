@@ -134,6 +134,7 @@ def stretch(tabor):
 
 
 SAID = {  # with the number that is beyond its limit, and where
+    "than 110 critical": "contact.law: 0.11 % of the contacts are deeper",
     "compressed by more": f"surface.radius = {-np.log(1.005e-3) * 1e-6:g} m: at d/sigma = 0, 0.1 % of the",
     "Tabor number above": "it is 4.98 (Maugis's: 5.76)",
     "Tabor number above 5": "it is 4.98 (Maugis's: 5.76)",
