@@ -173,6 +173,27 @@ def test_a_gaussian_surface_by_its_own_interpolation():
     assert (found.error["area"] >= np.abs(found.bias["area"]))[found.measured].all()
 
 
+def test_a_gap_is_as_sure_as_long_waves_are_many_and_spectra_are_alike():
+    """At a row of the table, of a fit that saw few independent heights: 2.1 deviations by hand."""
+    model, x = ("gaussian", "own radii", "none"), 5.0
+    row = max(
+        (r for r in ROWS if tuple(r[k] for k in HEAD[:3]) == model and r["x"] == x), key=lambda r: r["p"]
+    )
+    surface = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 cm^2", "1 GPa")
+    seen = {"skewness": 0.0, "kurtosis": 3.0, "independent": 100.0, "agreement": 1.0, "area": 1e-6}
+    scene = mcgw.Scene(surface, separations=0.0, seed=1, fitted={"m0": 1e-12, "m2": 1e-3, "m4": 5e6, **seen})
+    load = row["p"] * math.sqrt(2e-3) * 1e9 * scene.n_asperities / scene.surface.eta
+    h = float(scene.theory.separation_at("load", load))
+    law, _ = law_of(model, "separation")
+    scatter = math.exp(law @ [1.0, math.log(x), row["log"]])
+    share = math.sqrt(row["waves"] * 1e-8 * scene.surface.eta / scene.n_asperities)
+    assert share > math.sqrt(row["contacts"] / (scene.n_asperities * float(scene.heights.sf(np.array(h)))))
+    unsure = math.hypot(scatter / math.sqrt(fewest(model, x)), 0.02 * math.log(x / 2))
+    wanted = abs(row["separation"]) + 2.1 * math.hypot(scatter * share, unsure)
+    rms = 1e-6 / scene.surface.sigma
+    assert scene.validity(h).error["separation"][0] == pytest.approx(rms * wanted, rel=1e-4)
+
+
 def fewest(model, x):
     rows = [row for row in ROWS if tuple(row[key] for key in HEAD[:3]) == model]
     xs = sorted({row["x"] for row in rows})
