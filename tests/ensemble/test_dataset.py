@@ -56,6 +56,7 @@ def test_what_is_not_kept_is_said_in_one_line(dataset):
     found, values = dataset
     if found is values:
         np.testing.assert_array_equal(found.quantile("load", 0.3), np.quantile(found.load, 0.3, axis=0))
+        np.testing.assert_array_equal(found.sel(separation=2.0)["load"], found.load[:, [2]])
     else:
         with pytest.raises(ValueError, match=r"^load: (single surfaces are not kept|a sweep only keeps)"):
             found.quantile("load", 0.3)
@@ -66,6 +67,8 @@ def test_what_is_not_kept_is_said_in_one_line(dataset):
         both = np.concatenate([values["pressure"], values.area], axis=1)
         expected = np.cov(both, rowvar=False)[:3, 3:]
         np.testing.assert_allclose(found.covariance("pressure", "area"), expected, rtol=1e-9)
+        some = found.sel(separation=[2.0, 1.0]).covariance("pressure", "area")
+        np.testing.assert_allclose(some, expected[np.ix_([2, 0], [2, 0])], rtol=1e-9)
 
 
 def test_other_forms_have_a_row_a_separation_and_the_axes_before(dataset):

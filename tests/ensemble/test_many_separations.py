@@ -35,26 +35,6 @@ def test_the_first_and_the_last_separation_are_shown_and_the_order_is_kept(whole
     assert some.surfaces_of is whole.scene
 
 
-def test_every_number_is_that_of_the_same_separation(whole):
-    which = np.array([7, 50, 191])
-    some = whole.sel(separation=WHOLE[which])
-    assert some.n_surfaces == whole.n_surfaces
-    for ask in ("mean", "std", "stderr"):
-        found, expected = (np.asarray(getattr(e, ask)("area_fraction")) for e in (some, whole))
-        np.testing.assert_array_equal(found, expected[..., which])
-    both = whole.covariance("load", "contacts")[np.ix_(which, which)]
-    np.testing.assert_array_equal(some.covariance("load", "contacts"), both)
-    for name in ("contacts", "load"):
-        np.testing.assert_allclose(
-            np.asarray(some.interval(name))[:, 1],
-            np.asarray(whole.sel(separation=WHOLE[50]).interval(name))[:, 0],
-            rtol=1e-13,
-        )
-    if whole.scene.keep == "sums":
-        np.testing.assert_array_equal(some["load"], whole["load"][:, which])
-        np.testing.assert_array_equal(some.quantile("load", 0.25), whole.quantile("load", 0.25)[which])
-
-
 def test_a_comparison_shows_some_and_its_verdict_is_on_all(whole):
     found = mcgw.compare(whole)
     assert found.of_many == f"at {MOST_SHOWN} of {len(WHOLE)} separations"

@@ -72,14 +72,6 @@ def test_area_is_inverted_and_loads_of_one_asperity_are_hertz(scene):
     assert two.largest_separation(area, 0.9, -1.0) == pytest.approx(0.3, rel=1e-14)
 
 
-def test_other_quantities_belong_to_the_separation(scene, solved):
-    """Mean contacts at the solved separations: theory to 1 % at 900 N, where the 1/N bias is 0.1 %."""
-    last = solved[-1]
-    for name in ("area", "stiffness", "contacts", "conductance"):
-        assert last.surfaces[name].mean() == pytest.approx(last.theory[name], rel=0.01)
-    assert last.surfaces["area"].std() > 0
-
-
 def entered(monkeypatch, name):
     """Calls of a function of `mcgw.sampling.asperities` from now on."""
     calls, function = [], getattr(mcgw.sampling.asperities, name)
@@ -149,41 +141,6 @@ def test_negative_moduli_as_the_scene_wants_them(scene, negative, monkeypatch):
     assert below > 3
 
 
-def test_the_branch_below_the_margin_is_entered(scene, monkeypatch):
-    """Surfaces whose load is reached only below all that was drawn at once: drawn whole, and solved.
-
-    Six standard deviations leave none, one leaves a sixth. Each against a bisection over all its heights.
-    """
-    from mcgw.ensemble import loaded_surfaces
-    from mcgw.sampling import asperities
-
-    few = scene.replace(n_asperities=3, grading=analytic.Homogeneous(), n_surfaces=200)
-    monkeypatch.setattr(loaded_surfaces, "_MARGIN", 0.5)
-    drawn_whole, listed = [], asperities.summits
-
-    def spy(asked, number):
-        drawn_whole.append(number)
-        return listed(asked, number)
-
-    monkeypatch.setattr(asperities, "summits", spy)
-    (found,) = solutions(few, "load", [2.0], draw=True)
-    assert 0 < len(drawn_whole) < 200
-    assert len(set(drawn_whole)) == len(drawn_whole)
-    assert found.surfaces["separation"].min() < found.drawn.lowest - 0.9  # more than one step down
-    asked = few.replace(
-        sampler="tail", separations=(found.drawn.lowest,), quantities=tuple(analytic.QUANTITIES)
-    )
-    scale = analytic.QUANTITIES["load"].scale(few.surface)
-    for number in (*drawn_whole[:5], *(k for k in range(5) if k not in drawn_whole)):
-        s = listed(asked, number)[0]
-        low, high = -50.0, float(s.max())
-        for _ in range(100):
-            middle = (low + high) / 2
-            above = scale * (np.maximum(s - middle, 0) ** 1.5).sum() > 2.0
-            low, high = (middle, high) if above else (low, middle)
-        assert found.surfaces["separation"][number] == pytest.approx(low, rel=1e-9, abs=1e-9)
-
-
 def test_what_a_surface_does_not_reach_is_said_of_it(scene):
     """Some surfaces have fewer asperities than the mean one, or none."""
     none = scene.replace(n_asperities=2, count="poisson", n_surfaces=20, grading=analytic.Homogeneous())
@@ -219,13 +176,6 @@ def test_only_what_asperities_alone_decide_has_a_number_of_them(pressed_down, ma
         scene = scene.replace(interaction=mcgw.Interaction("body"))
     found = mcgw.solve(scene, load=10.0).asperities_for(0.01)
     assert set(found) == ({"area"} if pressed_down else {"area", "stiffness", "conductance"})
-
-
-def test_surfaces_within_the_margin_are_drawn_once(scene, monkeypatch):
-    touching, whole = entered(monkeypatch, "summits_of_many"), entered(monkeypatch, "summits")
-    solutions(scene.replace(n_surfaces=40), "load", [900.0], draw=True)
-    assert sum(n for *_, n in touching) == 40
-    assert not whole
 
 
 def test_asperities_are_listed_once_and_a_light_load_looks_at_few(scene, monkeypatch):

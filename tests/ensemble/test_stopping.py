@@ -11,7 +11,6 @@ from oracles.inside import (
     checkpoints,
     forecast,
     mean_interval,
-    read_attributes,
     spread_of,
     upper_contacts,
 )
@@ -138,37 +137,12 @@ def test_stopped_ensembles_cover_with_very_rare_very_stiff_tips(make_scene):
     assert spread_of(plain, "load").reach(64)[0] < 0.1
 
 
-def test_whoever_draws_it_is_one_ensemble(make_scene, tmp_path, monkeypatch, capsys):
-    """Blocks, threads, shares of a job array, a run that goes on, the command: one digest."""
-    scene = make_scene(rel_err=0.05, n_surfaces=10**6, separations=(0.0, 1.0), n_asperities=100)
-    n = forecast(scene).surfaces
-    assert n > 3 * 64
-    first = mcgw.simulate(scene, threads=1)
-    mcgw.run(scene, tmp_path / "a.h5", threads=2)
-    mcgw.run(scene.replace(rel_err=0.1), tmp_path / "e.h5")
-    assert mcgw.open_ensemble(tmp_path / "e.h5").n_surfaces < n
-    mcgw.run(scene, tmp_path / "e.h5")
-    (tmp_path / "scene.toml").write_text(mcgw.scene_text(scene))
-    assert main(["run", str(tmp_path / "scene.toml"), "-o", str(tmp_path / "f.h5")]) == 0
-    assert f"{n} surfaces" in capsys.readouterr().out
-    monkeypatch.setattr("mcgw.ensemble.simulation.block_size", lambda *_: 37)
-    monkeypatch.setattr("mcgw.ensemble.simulation._BYTES", 1)
-    assert [mcgw.run(scene, tmp_path / "g.h5", shard=f"{k}/2") > 0 for k in (1, 2)] == [True, False]
-    mcgw.merge(tmp_path / "g.h5")
-    assert first.scene.rel_err is None
-    assert len({read_attributes(tmp_path / f"{name}.h5")["digest"] for name in "aefg"}) == 1
-    for name in "ag":
-        ensemble = mcgw.open_ensemble(tmp_path / f"{name}.h5")
-        assert ensemble.n_surfaces == first.n_surfaces == n
-        np.testing.assert_array_equal(ensemble.load, first.load)
-        assert ensemble.scene == first.scene
-    np.testing.assert_array_equal(mcgw.simulate(first.scene).load, first.load)
-
-
 def test_the_same_again_draws_nothing_and_a_wider_rule_keeps_what_is_there(make_scene, tmp_path):
     scene = make_scene(rel_err=0.05, n_surfaces=10**6, separations=(0.0,), n_asperities=10)
     wider, path = scene.replace(rel_err=0.1), tmp_path / "a.h5"
-    n = mcgw.run(scene, path).n_surfaces
+    n, first = mcgw.run(scene, path).n_surfaces, mcgw.simulate(scene)
+    np.testing.assert_array_equal(mcgw.open_ensemble(path).load, first.load)
+    assert mcgw.open_ensemble(path).scene == first.scene == scene.replace(rel_err=None, n_surfaces=n)
     before = path.stat().st_mtime_ns
     assert mcgw.run(scene, path).n_surfaces == n
     assert forecast(wider).surfaces < n

@@ -240,15 +240,6 @@ def test_fuzzed_input(kind, count):
     assert found["failures"] == []
 
 
-def test_verify_names_what_is_wrong_with_a_hostile_file(path):
-    with h5py.File(path, "r+") as data:
-        del data["load"]
-        data["load"] = h5py.SoftLink("/load")
-    problem, found = ensembles.verify(path)
-    assert "a link to another place" in problem
-    assert found == "unreadable"
-
-
 KINDS = {
     "values": lambda scene, path: mcgw.run(scene, path),
     "statistics": lambda scene, path: mcgw.run(scene.replace(keep="statistics"), path),

@@ -118,15 +118,6 @@ def test_a_file_damaged_while_more_is_drawn_is_not_merged(scene, larger, tmp_pat
     assert path.read_bytes() == before
 
 
-@pytest.mark.parametrize("gone", [0, 3, 6])
-def test_a_shard_that_is_gone_is_missing(scene, tmp_path, gone):
-    path = tmp_path / "e.h5"
-    begun(scene, path, jobs=2)[gone].unlink()
-    with pytest.raises(RunError, match=f"surfaces are missing, from {16 * gone} on"):
-        mcgw.merge(path)
-    assert not path.exists()
-
-
 @pytest.mark.parametrize("way", ["run", "shard job", "merge"])
 def test_nobody_works_on_a_folder_that_was_just_removed(scene, tmp_path, way, monkeypatch):
     """Another's run ends, and its folder goes, between our looking for the lock and our getting it."""
@@ -157,20 +148,6 @@ def test_nobody_works_on_a_folder_that_was_just_removed(scene, tmp_path, way, mo
         work()
     assert not path.exists()
     assert not parts_of(path).exists()
-
-
-def test_a_shard_of_other_surfaces_than_its_block_is_drawn_again(scene, tmp_path):
-    """Eight surfaces where the block has sixteen, in order otherwise: not what is held."""
-    path = tmp_path / "e.h5"
-    third = begun(scene, path)[2]
-    there = RunFolder.open(parts_of(path))
-    assert there.held(run_folder.Span(32, 16)).span == run_folder.Span(32, 16)
-    arrays = {name: x[:8] for name, x in run_folder.open_shard(third, there.identity).tables().items()}
-    run_folder.commit_shard(third, there.identity, run_folder.Span(32, 8), arrays, 0.0)
-    assert there.held(run_folder.Span(32, 16)) is None
-    assert there.held(run_folder.Span(32, 8)) is not None
-    mcgw.run(scene, path)
-    np.testing.assert_array_equal(mcgw.open_ensemble(path).load, mcgw.simulate(scene).load)
 
 
 def test_seconds_of_all_blocks_and_of_the_file_before_add_up(scene, larger, tmp_path):

@@ -6,7 +6,6 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
-import h5py
 import numpy as np
 import pytest
 from oracles.begun_runs import settle
@@ -169,26 +168,6 @@ def test_a_seed_that_nobody_gave_is_that_of_the_file(tmp_path):
     other = mcgw.Scene(SURFACE, separations=[0.0], n_surfaces=5)
     again = mcgw.sweep(other, {GAMMA: [1.0, 2.0]}, path=tmp_path / "a.h5")
     assert again.scenes[0].seed == first.scenes[0].seed == scene.seed != other.seed
-
-
-@pytest.mark.parametrize("name", ["point", "load_mean", "drawn/points"])
-def test_damage_is_found(tmp_path, capsys, name):
-    path = tmp_path / "a.h5"
-    mcgw.sweep(SCENE, OVER, path=path)
-    assert main(["show", str(path), "--verify"]) == 0
-    flip_a_number(path, name)
-    assert main(["show", str(path), "--verify"]) in (1, 2)
-    assert "a.h5" in "".join(capsys.readouterr())
-
-
-def test_a_changed_number_is_damage(tmp_path):
-    """Written by HDF5 itself: each chunk is intact."""
-    path = tmp_path / "a.h5"
-    mcgw.sweep(SCENE, {GAMMA: [0.5, 1.0]}, path=path)
-    with h5py.File(path, "r+") as file:
-        file["drawn/load_means"][0, 0] *= 2
-    with pytest.raises(mcgw.StoreError, match=r"a\.h5: damaged \(checksum mismatch of drawn/load_means\)$"):
-        mcgw.open_sweep(path)
 
 
 def test_scenes_of_a_file_are_those_of_a_list(tmp_path):
