@@ -74,30 +74,22 @@ class Pooled:
         return cls(len(table), {name: first[:, None] + shift}, {name: products_of(apart)[..., None]})
 
     @classmethod
-    def from_tables(cls, tables: Mapping[str, NDArray[Any]]) -> "Pooled":
-        """From what `tables` gave."""
+    def from_block(cls, block: Mapping[str, NDArray[Any]], row: int = 0) -> "Pooled":
+        """From a row of what `block` gave."""
+        tables = {name.removeprefix(BLOCK): table[row] for name, table in block.items()}
         means = {k.removesuffix(_MEANS): v for k, v in tables.items() if k.endswith(_MEANS)}
         products = {
             name: tables[name + _PRODUCTS].reshape(len(mean), *mean.shape) for name, mean in means.items()
         }
         return cls(int(tables["n"][0]), means, products)
 
-    def tables(self) -> Tables:
-        """As arrays: n, means (values, ...) and products (values^2, ...)."""
+    def block(self) -> Tables:
+        """As tables of one row, for a block of surfaces: n, means (values, ...), products (values^2, ...)."""
         tables: Tables = {"n": np.array([self.n])}
         for name, mean in self.means.items():
             tables[name + _MEANS] = mean
             tables[name + _PRODUCTS] = self.products[name].reshape(len(mean) ** 2, *mean.shape[1:])
-        return tables
-
-    @classmethod
-    def from_block(cls, block: Mapping[str, NDArray[Any]], row: int = 0) -> "Pooled":
-        """From a row of what `block` gave."""
-        return cls.from_tables({name.removeprefix(BLOCK): table[row] for name, table in block.items()})
-
-    def block(self) -> Tables:
-        """As tables of one row, for a block of surfaces."""
-        return {BLOCK + name: table[None] for name, table in self.tables().items()}
+        return {BLOCK + name: table[None] for name, table in tables.items()}
 
     def __add__(self, other: "Pooled") -> "Pooled":
         """Statistics of the surfaces of both."""

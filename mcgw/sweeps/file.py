@@ -29,10 +29,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mcgw.ensemble.labelled import AXES, Labelled, Variable, axis
 from mcgw.ensemble.pooled import Pooled
+from mcgw.ensemble.results import BLOCK, Tables
 from mcgw.errors import StoreError
 from mcgw.formats.named_files import loads
 from mcgw.store.ensembles import read_attributes
@@ -44,8 +44,6 @@ from mcgw.sweeps.axes import Axes
 from mcgw.sweeps.groups import Place
 from mcgw.sweeps.points import Asked, Points
 from mcgw.sweeps.sweep import Sweep
-
-Tables = dict[str, NDArray[Any]]
 
 
 def contents_of_sweep(record: RunFolder, pooled: Sequence[Pooled], **about: Any) -> Contents:
@@ -65,11 +63,10 @@ def _by_point(sweep: Sweep) -> Labelled:
         given = [sweep.axes.at(point)[key] for point in sweep.axes.points()]
         if all(isinstance(value, int | float) for value in given):
             coordinates[name] = Variable(("point",), np.array(given, dtype=np.float64), "", key)
-    variables = {}
-    for name, one in found.variables.items():
-        values = one.values.reshape(sweep.axes.size, *one.values.shape[len(sweep.shape) :])
-        dims = ("point", *one.dims[len(sweep.shape) :])
-        variables[name] = replace(one, dims=dims, values=values)
+    variables = {
+        name: replace(one, dims=("point", "separation"), values=one.values.reshape(sweep.axes.size, -1))
+        for name, one in found.variables.items()
+    }
     return Labelled(variables, coordinates)
 
 
@@ -83,10 +80,9 @@ def _drawn(sweep: Sweep) -> Tables:
         "points": np.array(points, dtype=np.int64),
         "weights": np.array(weights, dtype=np.float64),
     }
-    for one in map(Pooled.tables, sweep.groups):
-        for name, values in one.items():
-            if name != "n":
-                tables[name] = np.concatenate([tables[name], values]) if name in tables else values
+    blocks = [one.block() for one in sweep.groups]
+    for name in filter(lambda name: name != f"{BLOCK}n", blocks[0]):
+        tables[name.removeprefix(BLOCK)] = np.concatenate([block[name][0] for block in blocks])
     return tables
 
 
@@ -135,11 +131,11 @@ def _groups(drawn: Tables) -> Iterator[Pooled]:
     """Yield data of each group, from the rows of all groups."""
     first = pair = 0
     for n, scenes in drawn["groups"].tolist():
-        tables: Tables = {"n": np.array([n])}
+        block: Tables = {f"{BLOCK}n": np.array([[n]])}
         for name, values in drawn.items():
             if name.endswith("_means"):
-                tables[name] = values[first : first + scenes]
+                block[BLOCK + name] = values[None, first : first + scenes]
             elif name.endswith("_products"):
-                tables[name] = values[pair : pair + scenes**2]
-        yield Pooled.from_tables(tables)
+                block[BLOCK + name] = values[None, pair : pair + scenes**2]
+        yield Pooled.from_block(block)
         first, pair = first + scenes, pair + scenes**2

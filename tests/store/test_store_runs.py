@@ -161,6 +161,7 @@ def test_a_block_that_is_a_link_or_damaged_is_not_held(scene, tmp_path):
     first, second, third = begun(scene, path)[:3]
     run_folder = RunFolder.open(parts_of(path))
     assert [run_folder.held(Span(at, 16)).span for at in (0, 16, 32)] == [Span(at, 16) for at in (0, 16, 32)]
+    assert run_folder.held(Span(32, 8)) is None  # of which the shard has more
     first.rename(tmp_path / "elsewhere.h5")
     first.symlink_to(tmp_path / "elsewhere.h5")
     second.write_bytes(second.read_bytes()[:-1])
