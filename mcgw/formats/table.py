@@ -58,7 +58,7 @@ class Column:
     @property
     def flat(self) -> "list[Column]":
         """The column itself, and what is beside it."""
-        return [self] if self.beside is None else [self.alone(), *self.beside.flat]
+        return [self] if self.beside is None else [replace(self, beside=None), *self.beside.flat]
 
     @property
     def textual(self) -> bool:
@@ -66,25 +66,18 @@ class Column:
         return any(isinstance(x, str) for x in self.values[:1])
 
     def cells(self) -> list[str]:
-        """Return the displayed text of each row."""
+        """Return the displayed text of each row: of two numbers the first one, where the second is nan."""
         errors = np.broadcast_to(np.nan if self.error is None else self.error, len(self.values))
         own = [
             x if isinstance(x, str) else self._shown(x, error)
             for x, error in zip(self.values, errors, strict=True)
         ]
-        return own if self.beside is None else self.together(own, self.beside.cells())
-
-    def together(self, own: Sequence[str], others: Sequence[str]) -> list[str]:
-        """Both numbers of each cell; only the first where the second is nan."""
-        numbers = () if self.beside is None else self.beside.values
+        if self.beside is None:
+            return own
         return [
             one if np.isnan(x) else f"{one}{self.between}{other}"
-            for one, other, x in zip(own, others, numbers, strict=True)
+            for one, other, x in zip(own, self.beside.cells(), self.beside.values, strict=True)
         ]
-
-    def alone(self) -> "Column":
-        """Return the column without what is beside it."""
-        return replace(self, beside=None)
 
     def _shown(self, x: float, error: float) -> str:
         if np.isnan(x):

@@ -1,19 +1,9 @@
-"""Processes: what memory they may have, and the end of workers with their parent, however that dies."""
+"""The end of workers with their parent, however that dies."""
 
 import os
 import signal
 import threading
 from collections.abc import Callable
-
-
-def memory_limit() -> int | None:
-    """Bytes of address space that this process and each child may have; None: no limit, or not known."""
-    try:
-        import resource
-    except ImportError:
-        return None
-    soft, _ = resource.getrlimit(resource.RLIMIT_AS)
-    return None if soft == resource.RLIM_INFINITY else soft
 
 
 def end_with(pipe: int, gone: Callable[[], object] | None = None) -> None:

@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mcgw.errors import StoreError
-from mcgw.machine.child_process import memory_limit
 
 _Result = TypeVar("_Result")
 _MOST = 2**63 - 1
@@ -50,6 +49,16 @@ def memory_available() -> int:
         taken = [_number(line.split()[1]) * 1024 for line in _lines("/proc/self/status") if "VmSize" in line]
         limits.append(max(limit - sum(taken), 0))
     return min(limits, default=_MOST)
+
+
+def memory_limit() -> int | None:
+    """Bytes of address space that this process and each child may have; None: no limit, or not known."""
+    try:
+        import resource
+    except ImportError:
+        return None
+    soft, _ = resource.getrlimit(resource.RLIMIT_AS)
+    return None if soft == resource.RLIM_INFINITY else soft
 
 
 def _lines(path: str) -> list[str]:

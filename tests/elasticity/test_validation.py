@@ -19,6 +19,7 @@ CONDENSED = ROOT / "mcgw" / "validity" / "table.csv"
 sys.path.insert(0, str(FOLDER))
 
 import charted  # noqa: E402
+import conductance  # noqa: E402
 import deviations  # noqa: E402
 import models  # noqa: E402
 import rough_maps  # noqa: E402
@@ -60,6 +61,21 @@ def test_the_table_is_made_of_the_solves(kind, x, p):
     text = text[text.index(",".join(deviations.COLUMNS)) + 1 :]
     assert len(text) == (9 if kind == "gaussian" else 3)
     assert set(text) <= set(CONDENSED.read_text().splitlines())
+
+
+@pytest.mark.parametrize(("x", "p"), [(5.0, 0.1), (20.0, 1e-3)])
+def test_conductance_is_as_far_off_as_stiffness(x, p):
+    """Barber's relation, by sums over a grid of heights; at alpha = 5 the neighbours are half of all."""
+    row = next(row for row in rows_of("gaussian", x) if row["p"] == p)
+    alone, beside = conductance.errors(row)
+    stiffness = {
+        one.interaction: one.stiffness for one in deviations.deviations(row) if one.model == "own radii"
+    }
+    assert alone == pytest.approx(stiffness["none"], abs=1e-3)
+    assert beside == pytest.approx(stiffness["summits"], abs=2e-3)
+    if p == 0.1:
+        assert alone < -0.45
+        assert abs(beside) < 0.06
 
 
 @pytest.mark.parametrize("k", [0, -1])
