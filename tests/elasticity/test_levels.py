@@ -12,17 +12,6 @@ from oracles.rough import rough
 import mcgw
 
 
-def test_heights_in_any_unit_give_the_same(rng):
-    heights = rough(rng).heights
-    one = Pressed(heights, (6.4e-5, 6.4e-5), 1e11, 5e7)
-    other = Pressed(1e3 * heights, (6.4e-2, 6.4e-2), 1e11, 5e7)
-    for level in (alone, located):
-        a, b = level(one), level(other)
-        powers = {"area": 2, "stiffness": 1, "conductance": 1, "mean_gap": 1}
-        for name, power in powers.items():
-            assert_allclose(b[name], a[name] * 1e3**power, rtol=1e-7)
-
-
 def test_the_rim_of_what_touches_is_counted_step_by_step(rng):
     """On a torus, literally: of each pair of neighbours one of which touches."""
     touching = rng.random((5, 7)) < 0.4

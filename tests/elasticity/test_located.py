@@ -8,7 +8,6 @@ from numpy.testing import assert_allclose
 from oracles.inside import Grid, Spots, balanced, beyond_point, interaction
 from oracles.located_by_hand import residual
 from scipy.integrate import dblquad
-from scipy.optimize import brentq
 
 from mcgw.elasticity import located
 
@@ -48,7 +47,7 @@ def test_two_summits_at_one_place_are_neutral():
 
 @pytest.mark.parametrize("load", [1e-4, 3e-3, 3e-2])
 def test_a_balance_is_one_by_plain_loops(load):
-    spots, places, grid = some(120)
+    spots, places, grid = some(80)
     start = spots.separation_at(load)
     found = balanced(spots, places, grid, start, load)
     assert found.share == 1
@@ -67,19 +66,6 @@ def test_series_where_there_are_too_many_for_a_matrix(monkeypatch):
     by_series = balanced(spots, places, grid, start, 3e-3)
     assert_allclose(by_series.penetrations, by_matrix.penetrations, rtol=1e-8, atol=1e-15)
     assert by_series.stiffness == pytest.approx(by_matrix.stiffness, rel=1e-8)
-
-
-def test_a_pair_is_found_by_hand():
-    """Two equal spots far apart: one unknown, of a point load and all images."""
-    spots, grid = Spots.hertz(np.zeros(2), np.full(2, 1e-5), 1e9), Grid((100, 100), (2e-4, 2e-4))
-    potential = grid.potential[0, 50] + grid.potential[0, 0]
-
-    def left(delta):
-        return delta + potential * 4 / 3 * math.sqrt(1e-5) * delta**1.5 / math.pi - 1e-7
-
-    delta = brentq(left, 0, 1e-6, xtol=1e-22)
-    found = balanced(spots, np.array([[0, 0], [0, 50]]), grid, -1e-7)
-    assert_allclose(found.penetrations, delta, rtol=1e-9)
 
 
 def test_a_lattice_rises_by_its_constant():
@@ -104,8 +90,8 @@ def test_stiffness_is_the_derivative():
 def test_without_a_balance_less_of_the_interaction_counts():
     """Wide spots side by side under a load that none of them can carry beside the others."""
     rng = np.random.default_rng(4)
-    places = np.array(np.divmod(rng.choice(24 * 24, 200, replace=False), 24)) + 20
-    spots = Spots.hertz(1e-6 * rng.standard_normal(200), 1e-5 * rng.uniform(0.5, 20, 200), 1e9)
+    places = np.array(np.divmod(rng.choice(17 * 17, 100, replace=False), 17)) + 20
+    spots = Spots.hertz(1e-6 * rng.standard_normal(100), 1e-5 * rng.uniform(0.5, 20, 100), 1e9)
     grid, shares = Grid((64, 64), (1e-4, 1e-4)), []
     for load in (0.01, 0.5, 10.0):
         start = spots.separation_at(load)

@@ -59,25 +59,6 @@ def test_other_programs_read_the_same(program, topography, tmp_path):
     assert size == pytest.approx(topography.size, rel=1e-14)
 
 
-@pytest.mark.filterwarnings("ignore")
-def test_files_of_surface_topography_are_read(topography, tmp_path):
-    """The other way round, with the integer matrix and the bit map of valid points it writes."""
-    library = pytest.importorskip("SurfaceTopography")
-    holes = np.ma.masked_array(topography.heights.T, mask=np.zeros((7, 5), dtype=bool))
-    holes.mask[3, 2] = True
-    theirs = library.Topography(holes, topography.size, unit="m")
-    theirs.to_x3p(str(tmp_path / "theirs.x3p"), dtype="L")
-    again = read_map(tmp_path / "theirs.x3p")
-    expected = topography.heights.copy()
-    expected[2, 3] = np.nan
-    # 32 bits over the range of heights
-    assert again.heights == pytest.approx(expected, abs=np.ptp(topography.heights) * 2**-32, nan_ok=True)
-    assert again.pixel == pytest.approx(topography.pixel, rel=1e-14)
-    theirs.to_netcdf(str(tmp_path / "theirs.nc"))
-    other = read_map(tmp_path / "theirs.nc")
-    assert other.size == pytest.approx(topography.size, rel=1e-14)
-
-
 BY_HAND = np.array([[1, 2, 3], [4, np.nan, 6]])  # what each of the files below holds, in nm
 
 
@@ -169,6 +150,7 @@ def test_what_makes_no_map_is_refused(tmp_path):
         (lambda: Topography(np.zeros(3), (1.0, 1.0)), "not 1 dimension"),
         (lambda: read_map(saved("v.npy", np.zeros(3)), pixel=(1.0, 1.0)), "a map has rows and columns"),
         (lambda: read_map(other_h5()), "not a mcgw-surface file|SurfaceTopography"),
+        (lambda: read_map(saved("o.npy", np.array([[object()]])), pixel=(1.0, 1.0)), "not a valid"),
         (lambda: Spectrum(0.0, 30e-6, 5e-6), "give a length > 0 m"),
         (lambda: gaussian_map(Spectrum(1e-6, 28e-6, 23e-6), (64, 64), (1e-6, 1e-6), rng), "give more pixels"),
         (lambda: spectrum_from("rms=1um,long=30um,short=5um,hurst=x"), "hurst = 'x': give a number"),
@@ -281,12 +263,6 @@ def test_what_an_array_and_an_hdf5_map_say_of_themselves(topography, tmp_path):
         assert "asperities" not in file
         assert file["scene"][()] == b""
     assert not read_map(tmp_path / "n.h5").periodic
-
-
-def test_arrays_of_objects_are_never_unpickled(tmp_path):
-    np.save(tmp_path / "map.npy", np.array([[object()]]), allow_pickle=True)
-    with pytest.raises(ValueError, match="not a valid"):
-        read_map(tmp_path / "map.npy", pixel=(1.0, 1.0))
 
 
 @pytest.mark.filterwarnings("ignore::ImportWarning")  # of SurfaceTopography, where it is installed

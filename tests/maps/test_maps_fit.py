@@ -24,7 +24,6 @@ from oracles.inside import (
     visible,
     write_scene,
 )
-from scipy import ndimage
 from scipy.stats import kurtosis, skew
 
 import mcgw
@@ -134,16 +133,6 @@ def test_a_lay_along_the_diagonal_is_seen(without_caps):
 def test_maps_that_cannot_be_fitted_are_refused(heights, cutoff, told):
     with pytest.raises(ValueError, match=told):
         fit_map(Topography(heights, PIXEL), cutoff=cutoff)
-
-
-@pytest.mark.parametrize("bits", [0, 0.3])
-def test_summits_of_one_height_are_no_field_of_caps(bits):
-    """A pattern; and one with lower ripples, where all of those that may be caps have one height."""
-    one = np.zeros((80, 80))
-    one[4::8, 4::8] = 1e-6
-    one[8::16, 8::16] = bits * 1e-6
-    z = ndimage.gaussian_filter(one, 1.5, mode="wrap")
-    assert "caps" not in mcgw.fit(Topography(z, PIXEL), cutoff=None, form="none").estimates
 
 
 @pytest.mark.parametrize("more", [{}, {"pixel": "1 um"}])

@@ -8,7 +8,6 @@ from oracles.fit_of_maps import fit_map
 from oracles.inside import Preparation, Recorded, prepared, smooth
 from scipy.optimize import brentq
 
-import mcgw
 from mcgw.maps import Spectrum, Topography, gaussian_map
 from mcgw.maps.instrument import LIMITS, _kept_of_noise, faults, shares
 
@@ -99,19 +98,6 @@ def test_clean_maps_raise_no_alarm():
 @pytest.mark.slow
 def test_many_clean_maps_raise_no_alarm():
     assert alarms(clean_maps(400, 2)) == []
-
-
-def test_grooves_along_rows_are_no_offsets():
-    """Of a turned surface, five or more lines wide; and offsets of columns are told from those of rows."""
-    z = rough() * 0.2
-    j = np.arange(256.0)
-    for lines in (5, 8, 20):
-        assert "rows" not in named(z + 1e-6 * np.sin(2 * np.pi * j / lines)[:, None])
-    broken = FAULTS["rows"][0](rough(2), np.random.default_rng(1)).T.copy()
-    (line,) = (x for x in mcgw.fit(Topography(broken, PIXEL), cutoff=None).cautions if x.startswith("lines:"))
-    assert "--lines columns" in line
-    assert "columns" in named(broken, lines="rows")
-    assert "columns" not in named(broken, lines="columns")
 
 
 @pytest.mark.parametrize("pixel", [(1e-6, 1e-6), (1e-6, 2e-6)])

@@ -78,12 +78,6 @@ def test_holes_are_filled_with_harmonic_functions():
     assert np.array_equal(filled(corner), np.full((20, 30), 7.0))
 
 
-@pytest.mark.parametrize("key", ["missing", "spikes", "form"])
-def test_words_that_are_none_are_refused_in_one_line(key):
-    with pytest.raises(mcgw.SceneError, match=f"{key} = 'x'.*choose one of"):
-        fitted(np.zeros((9, 9)), **{key: "x"})
-
-
 def test_the_filter_is_a_sum_over_its_window():
     """Literal, on a map of many bands of rows, mirrored beyond its edges or periodic."""
     z, pixel, cutoff = np.random.default_rng(1).normal(size=(150, 20)), (2e-6, 1e-6), 3.98e-6

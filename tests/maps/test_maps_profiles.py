@@ -46,21 +46,6 @@ def test_waves_of_one_length_in_all_directions_give_the_moments_of_the_filtered_
         assert np.all(plain.mean(axis=1) > 1.5 * expected)
 
 
-def test_a_profile_of_a_few_waves_has_their_weighted_power():
-    """Whole waves on the profile: products of neighbours meet every phase but for the margins."""
-    n, h, cutoff = 200_000, 0.5 * UM, 6 * UM
-    x = (np.arange(n) + 0.5) * h
-    waves = [(1e-6, 700 * UM, 0.3), (2e-7, 31 * UM, 1.0), (3e-8, 7 * UM, 2.0), (2e-8, 3 * UM, 0.1)]
-    z = sum(a * np.cos(2 * math.pi * x / length + p) for a, length, p in waves)
-    k = np.array([2 * math.pi / length for _, length, _ in waves])
-    power = np.array([a * a / 2 for a, _, _ in waves])
-    found = waves_of_profile(Profile(z, h), cutoff=cutoff, terms=0, pieces=8)
-    expected = (areal_weights(k, cutoff) * k ** np.array([[0], [2], [4]])) @ power
-    np.testing.assert_allclose(found.moments, expected, rtol=1.2e-3)  # 1/(2 pi) of one of the 143 longest
-    np.testing.assert_allclose(found.pieces.mean(axis=1), found.moments, rtol=1e-12)
-    assert found.power.sum() == pytest.approx(power.sum(), rel=1e-2)
-
-
 @pytest.mark.parametrize("n", [57, 200])
 def test_power_of_a_profile_is_that_of_its_faded_waves(n):
     """A tenth at each end is faded by a squared sine; a wave that the form took is as four of the longest."""

@@ -61,16 +61,6 @@ def test_envelope_and_hidden_summits_against_all_pairs(number, width, radius, si
     assert np.array_equal(hidden_summits(field, periodic=periodic)[told], (above > 0)[told])
 
 
-def test_caps_reach_across_the_edges_if_the_surface_repeats():
-    field = random_field(50, (2.0, 1.0), 0.5, 0.05)
-    whole = envelope(field, (20, 40))
-    assert not whole.periodic
-    assert np.array_equal(whole.heights, envelope(field, (20, 40), periodic=False).heights)
-    apart = Asperities(*np.array([[0.1, 1.9], [0.5, 0.5], [0.0, 1.0], [1.0, 1.0]]), 1.0, (2.0, 1.0))
-    assert hidden_summits(apart).tolist() == [False, False]  # across an edge it would be
-    assert hidden_summits(apart, periodic=True).tolist() == [True, False]
-
-
 def test_a_width_maps_a_corner_with_square_pixels():
     """The same caps as on the whole map, up to its edges; those beyond its own edges reach into it."""
     field = random_field(80, (2.0, 1.0), 0.5, 0.05)
@@ -236,17 +226,6 @@ def test_a_spectrum_fills_its_grid_to_two_pixels_and_to_its_edge():
     for pixel in ((2.01e-6, 2e-6), (2e-6, 2.01e-6)):
         with pytest.raises(ValueError, match="shows 2 pixels or more"):
             gaussian_map(Spectrum(1e-6, 30e-6, 4e-6), (40, 40), pixel, one)
-
-
-def test_a_surface_of_a_scene_has_a_number(make_scene):
-    scene = make_scene(n_surfaces=3)
-    for surface in (-1, 3):
-        with pytest.raises(ValueError, match=f"surface = {surface}: the scene has surfaces 0 to 2"):
-            asperities_of(scene, surface)
-    field = asperities_of(scene, 2)
-    assert field.size == pytest.approx((0.01, 0.01))
-    assert (field.number, field.radius) == (3000, 13e-6)
-    assert np.array_equal(field.radii, np.full(3000, 13e-6))
 
 
 def test_a_spectrum_is_read_key_by_key():
