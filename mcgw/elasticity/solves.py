@@ -55,8 +55,9 @@ class Solves:
         self._last: tuple[int, Pressed] | None = None
         self._path = path
         if path is not None:
-            self._header = json.dumps(self._question)
-            self._resume(path)
+            question = self._question()
+            self._header = json.dumps(question)
+            self._resume(path, _written(question, ""))
 
     def at(self, levels: Sequence[Level], number: int) -> tuple[Array, Array]:
         """Quantities of a map at levels, shape (levels, quantities), and the CPU seconds that each took."""
@@ -81,16 +82,14 @@ class Solves:
         """CPU seconds of all."""
         return sum(seconds for _, seconds in self._rows.values())
 
-    @property
     def _question(self) -> dict[str, Any]:
-        """What determines a value: all maps that were given, or the first one of those that are drawn."""
+        """Return what determines a value: all given maps, or the first one of those that are drawn."""
         found = hashlib.sha256()
         for number in range(self.maps.number or 1):
             found.update(self.maps.heights(number, self.seed).tobytes())
         return {"maps": found.hexdigest()[:16], **self.held, "E_star": self.E_star, "seed": self.seed}
 
-    def _resume(self, path: Path) -> None:
-        first = _written(self._question, "")
+    def _resume(self, path: Path, first: str) -> None:
         if not path.exists():
             write_whole(path, [first.encode()])
             return

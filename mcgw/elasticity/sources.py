@@ -91,17 +91,11 @@ def _drawn(spectrum: Spectrum, side: float) -> Maps:
             f"{points} points per side for waves of {spectrum.short:.3g} m on {side:.3g} m: more than "
             f"{_MOST_POINTS}; give nominal_area = {0.99 * wide**2:.3g} m^2 or less"
         )
-    return drawn(spectrum, points, side)
-
-
-def drawn(spectrum: Spectrum, points: int, side: float) -> Maps:
-    """Square Gaussian maps of a spectrum, with so many points along each side of a length in m."""
     shape, pixel = (points, points), (side / points, side / points)
-    words = f"Gaussian maps of {points} x {points} points, {side:.3g} m wide"
     return Maps(
         lambda k, seed: gaussian_map(spectrum, shape, pixel, np.random.default_rng([seed, k])).heights,
         (side, side),
-        words,
+        f"Gaussian maps of {points} x {points} points, {side:.3g} m wide",
     )
 
 

@@ -2,13 +2,13 @@
 
 import math
 
+import numpy as np
 import pytest
 from oracles.inside import LEVELS, Pressed
 
 import mcgw
 from analytic import SpectralMoments
-from mcgw.elasticity.sources import drawn
-from mcgw.maps import Spectrum, Topography
+from mcgw.maps import Spectrum, Topography, gaussian_map
 
 _E_STAR, _M0, _M2 = 1e11, 2.5e-13, 2.5e-3
 
@@ -20,8 +20,9 @@ def test_three_maps_at_three_loads(alpha, seed, waves):
     pytest.importorskip("tamaas")
     spectrum = Spectrum.with_moments(SpectralMoments(_M0, _M2, alpha * _M2**2 / _M0))
     points, side = 8 * waves, waves * spectrum.short
-    heights = drawn(spectrum, points, side).heights(0, seed)
-    plane = Topography(heights, pixel=(side / points, side / points), periodic=True)
+    pixel = (side / points, side / points)
+    heights = gaussian_map(spectrum, (points, points), pixel, np.random.default_rng([seed, 0])).heights
+    plane = Topography(heights, pixel=pixel, periodic=True)
     fit = mcgw.fit(plane, cutoff=None, form="none")
     scene = mcgw.fitted_scene(fit, E_star=_E_STAR, n_surfaces=100, seed=1)
     assert scene.gap == "mean_gap"
