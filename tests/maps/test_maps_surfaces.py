@@ -228,6 +228,14 @@ def test_a_spectrum_fills_its_grid_to_two_pixels_and_to_its_edge():
             gaussian_map(Spectrum(1e-6, 30e-6, 4e-6), (40, 40), pixel, one)
 
 
+def test_a_surface_of_a_scene_has_a_number(make_scene):
+    scene = make_scene(n_surfaces=3)
+    assert asperities_of(scene, 2).number == 3000
+    for surface in (-1, 3):
+        with pytest.raises(ValueError, match=f"surface = {surface}: the scene has surfaces 0 to 2"):
+            asperities_of(scene, surface)
+
+
 def test_a_spectrum_is_read_key_by_key():
     of_moments = spectrum_from("m0=1e-12, m2=1e-3,m4=5e6")
     assert of_moments.rms == pytest.approx(1e-6)

@@ -112,6 +112,13 @@ def test_one_map_four_times_has_its_numbers_and_half_of_its_errors(maps, fits):
         assert told.value == pytest.approx(own.value, rel=1e-9)
 
 
+def test_maps_that_are_not_of_one_surface_are_named(maps, found):
+    assert not any(line.startswith("maps:") for line in found.cautions)
+    other = mcgw.fit([*maps, drawn(4, times=2.0)], cutoff=None)
+    (line,) = [line for line in other.cautions if line.startswith("maps: mean square slopes")]
+    assert 3.5 < float(line.partition("factor of ")[2].split()[0]) < 5
+
+
 @pytest.mark.parametrize(("errors", "named"), [(3.0, False), (4.5, True)])
 def test_maps_are_named_beyond_what_chance_makes(maps, fits, errors, named):
     """A map and the same one higher, by so many errors of the difference: 3 in 370 pairs, 4.5 in 150 000."""
