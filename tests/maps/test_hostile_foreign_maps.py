@@ -2,7 +2,9 @@
 
 import os
 import sys
+import zipfile
 
+import h5py
 import numpy as np
 import pytest
 from oracles import surface_topography
@@ -125,6 +127,16 @@ def test_a_text_of_more_than_64_mebibytes_is_not_taken_in(foreign):
     os.truncate(path, 2**26 + 1)
     with pytest.raises(ValueError, match=r"map\.plu: a text longer than 67108864 bytes; save it as .npy"):
         read_map(path)
+
+
+def test_hdf5_and_archives_of_others_pass_the_gate_first(foreign, tmp_path):
+    with h5py.File(tmp_path / "m.nc", "w") as file:
+        file["height"] = h5py.ExternalLink("other.h5", "height")
+    with zipfile.ZipFile(tmp_path / "m.x3p", "w", zipfile.ZIP_DEFLATED) as file:
+        file.writestr("data.bin", bytes(10**8))
+    for name, told in (("m.nc", "a link to another file"), ("m.x3p", "unpacks to 100000000")):
+        with pytest.raises(ValueError, match=told):
+            read_map(tmp_path / name)
 
 
 @pytest.mark.parametrize("word", ["0x10", "[nan]", "1.2e-\x00"])
