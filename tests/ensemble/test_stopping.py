@@ -143,6 +143,8 @@ def test_the_same_again_draws_nothing_and_a_wider_rule_keeps_what_is_there(make_
     n, first = mcgw.run(scene, path).n_surfaces, mcgw.simulate(scene)
     np.testing.assert_array_equal(mcgw.open_ensemble(path).load, first.load)
     assert mcgw.open_ensemble(path).scene == first.scene == scene.replace(rel_err=None, n_surfaces=n)
+    assert mcgw.run(scene, tmp_path / "shares.h5", shard="1/1") == 0
+    assert mcgw.merge(tmp_path / "shares.h5").n_surfaces == n
     before = path.stat().st_mtime_ns
     assert mcgw.run(scene, path).n_surfaces == n
     assert forecast(wider).surfaces < n
