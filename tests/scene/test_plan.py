@@ -14,6 +14,7 @@ from oracles.inside import plan_text, sampler_of
 import analytic
 import mcgw
 from mcgw.ensemble import drawing
+from mcgw.reports import plan
 from mcgw.sampling.expected import expected
 
 
@@ -50,6 +51,13 @@ def test_samplers_that_draw_all_and_hardly_any(make_scene):
     assert huge.moments < 5000
     ruled = make_scene(rel_err=0.01, n_surfaces=10**6, separations=(0.0,))
     assert number("surfaces", plan_text(ruled)) < 10**6
+
+
+@pytest.mark.parametrize(("times", "told"), [(0.66, True), (0.67, False)])
+def test_crowds_are_offered_where_they_save_a_third(make_scene, monkeypatch, times, told):
+    monkeypatch.setattr(plan, "rough_seconds", lambda s, n: n * (times if s.sampler == "aggregate" else 1.0))
+    text = plan_text(make_scene(n_asperities=10**8, separations=(0.0,)))
+    assert (f"would buy crowded cells, {times} x the time" in text) == told
 
 
 WISHES = {
