@@ -54,7 +54,7 @@ class Number(Kind):
 
     @property
     def wanted(self) -> str:
-        """By range and unit, unless it is told."""
+        """By range and unit, unless given."""
         if self.advice:
             return self.advice
         above = (" >= 0" if self.zero else " > 0") if self.low == 0 else ""
@@ -79,7 +79,7 @@ class Whole(Kind):
 
     @property
     def wanted(self) -> str:
-        """By range, unless it is told."""
+        """By range, unless given."""
         return self.advice or f"give a whole number >= {self.least}"
 
 

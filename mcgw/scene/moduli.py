@@ -1,4 +1,4 @@
-"""Moduli against height, and laws of one's own: what is wrong with them, or perhaps in another unit.
+"""Moduli against height, and your own laws: what is wrong with them, or perhaps in another unit.
 
 Scenes with neither do not import this.
 """

@@ -81,9 +81,9 @@ NO_RESULTS = "scene.toml: is not a file of results; make one from a scene with m
         ("run latin.toml", "latin.toml: this is not TOML: not text in UTF-8 (byte 11)"),
         ("compare scene.toml", NO_RESULTS),
         ("report scene.toml", NO_RESULTS),
-        ("solve scene.toml --pressure -1MPa", "pressure = '-1MPa': give a finite number > 0 in Pa, such"),
-        ("solve scene.toml --load 1N -.5N", "load = '-.5N': give a finite number > 0 in N, such"),
-        ("solve scene.toml --area-fraction -1%", "area_fraction = '-1%': give a finite number > 0, such"),
+        ("solve scene.toml --pressure -1MPa", "--pressure = '-1MPa': give a number > 0 with its unit, such"),
+        ("solve scene.toml --load 1N -.5N", "--load = '-.5N': give a number > 0 with its unit, such"),
+        ("solve scene.toml --area-fraction -1%", "--area-fraction = '-1%': give a number > 0 with its unit"),
         ("fit scene.toml --cutoff -5um -o f.toml", "--cutoff = '-5um': give a number > 0 with its unit"),
     ],
 )
