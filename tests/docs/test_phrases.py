@@ -22,7 +22,8 @@ PLACES += ("runs/notebooks/*.py", "mcgw/**/*.py", "analytic/**/*.py")
 
 
 def found(text):
-    return [phrase for phrase in PHRASES if re.search(rf"\b{re.escape(phrase)}\b", text)]
+    here = [phrase for phrase in PHRASES if phrase in text]  # quicker than to search for each
+    return [phrase for phrase in here if re.search(rf"\b{re.escape(phrase)}\b", text)]
 
 
 @pytest.mark.parametrize("place", PLACES)

@@ -124,8 +124,8 @@ def test_of_radii_of_their_own(law):
 
 @pytest.mark.parametrize(
     ("n", "contacts", "count"),
-    [(2, 0.3, "fixed"), (5, 2, "fixed"), (100, 1, "fixed"), (100, 20, "fixed"), (3000, 300, "fixed"),
-     (100, 1, "poisson"), (100, 20, "poisson")],
+    [(2, 0.3, "fixed"), (5, 2, "fixed"), (100, 1, "fixed"), (100, 20, "fixed"), (100, 1, "poisson"),
+     (100, 20, "poisson"), pytest.param(3000, 300, "fixed", marks=pytest.mark.slow)],
 )  # fmt: skip
 def test_of_elastic_contacts(n, contacts, count):
     """Six numbers, |z| < 5: one false alarm in 3e5 seeds."""

@@ -297,7 +297,7 @@ def test_a_solution_of_too_few_contacts_has_no_interval(make_scene):
 SPECTRAL = {"m0": 1e-12, "m2": 5e-4, "m4": 2.5e6}  # alpha = 10
 
 
-@pytest.mark.parametrize("reference", ["body", "mean-plane"])
+@pytest.mark.parametrize("reference", ["body", pytest.param("mean-plane", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("spectral", [pytest.param(True, marks=pytest.mark.slow), False])
 def test_the_mean_gap(spectral, reference, make_scene):
     """From the mean plane of the surface where it is known: summits lie 4 sqrt(m0/(pi alpha)) above it.

@@ -189,7 +189,7 @@ def test_root_of_the_covariance_keeps_all_digits(plain, rooted):
     np.testing.assert_allclose(root[order], np.array(exact.tolist(), float), atol=1e-13)
 
 
-@pytest.mark.parametrize("n", [10**3, 10**6])
+@pytest.mark.parametrize("n", [10**3, pytest.param(10**6, marks=pytest.mark.slow)])
 def test_a_promise_is_twice_the_distance_from_the_exact_law(make_scene, n):
     """By two transforms; of the value that is farthest off, where one term of the expansion is enough."""
     scene = make_scene(separations=(1.5, 2.5, 3.5), n_asperities=n, accuracy=1e-2, count="poisson")

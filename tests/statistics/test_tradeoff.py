@@ -69,6 +69,7 @@ def test_each_way_states_what_it_can_give(study):
     assert "needs no surfaces" in study.sentence
 
 
+@pytest.mark.slow
 def test_a_sampler_that_is_off_by_a_percent_is_not_advised(scene, monkeypatch):
     """The companion: its values, and with enough repeats its means, are found out."""
     right, ways = samplers._MAKERS["cells"], {}
@@ -150,6 +151,7 @@ def test_a_target_is_1_96_standard_errors(scene):
     assert needs.surfaces("std", 0.0) == math.inf
 
 
+@pytest.mark.slow
 def test_poisson_numbers_widen_the_scatter_of_a_standard_deviation_as_drawn(scene):
     scene = scene.replace(count="poisson", n_asperities=100)
     load = mcgw.simulate(scene, n_surfaces=400_000).load[:, 0].reshape(400, 1000)

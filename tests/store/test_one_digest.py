@@ -70,7 +70,7 @@ SCENES = {
     "coated": there_and_back(laws.Coated(thickness=1e-6, ratio=3.0)),
     "own": yields(OWN),
 }  # fmt: skip
-OFTEN = {"function", "weibull, poisson", "clip", "aggregate", "crowds", "summits", "own", "much"}
+OFTEN = {"weibull, poisson", "aggregate", "own", "much"}
 EVERY = [pytest.param(name, marks=[] if name in OFTEN else pytest.mark.slow) for name in SCENES]
 
 
