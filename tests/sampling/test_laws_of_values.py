@@ -131,14 +131,14 @@ def test_pressed_down_asperities_have_stiffnesses_in_series(make_scene):
 
 @pytest.mark.slow
 def test_a_right_program_is_rarely_doubted(make_scene):
-    """Of 400 ensembles no more than the stated one in 1000, but for once in 1e4 such tests: 4 at most.
+    """Of 150 ensembles no more than the stated one in 1000, but for once in 5e4 such tests: 3 at most.
 
     The companion: half a percent more load, which 200 surfaces of 8e3 contacts each tell.
     """
     asked = {"separations": (0.0, 1.5, 3.0), "n_surfaces": 200, "quantities": ("load", "area", "contacts")}
-    p = [mcgw.compare(mcgw.simulate(make_scene(**asked, seed=k)), laws=True).verdict.p for k in range(400)]
-    assert sum(x < 1e-3 for x in p) <= 4
-    assert np.mean(np.array(p) < 0.05) < 0.05 + 4 * np.sqrt(0.05 * 0.95 / 400)
+    p = [mcgw.compare(mcgw.simulate(make_scene(**asked, seed=k)), laws=True).verdict.p for k in range(150)]
+    assert sum(x < 1e-3 for x in p) <= 3
+    assert np.mean(np.array(p) < 0.05) < 0.05 + 4 * np.sqrt(0.05 * 0.95 / 150)
     other = make_scene(**asked, grading=analytic.Exponential(2.02), n_asperities=16_000)
     wrong = replace(mcgw.simulate(other), scene=other.replace(grading=analytic.Exponential(2.0)))
     assert not mcgw.compare(wrong, laws=True).verdict.agrees
