@@ -46,8 +46,7 @@ are merged at the end and then removed. What each mechanism is for:
 ``h5_reading``   the one reader: plain tables of numbers alone, looked at on every opening
 ``layout``       what a file of the schema above holds, and of scenes that keep no surface
 ``ensembles``    files and runs in progress opened, and verified
-``run_folder``   which surfaces are drawn together, of a run or of all groups of a sweep; a run goes on with
-                 what it was begun with, and a killed one loses at most the blocks in hand
+``run_folder``   which surfaces are drawn together; a killed run loses at most the blocks in hand
 ``identity``     which scenes, samplers and versions those are; and who made a file
 ``lock``         two processes never write one file; shared by jobs that each make a share
 ``place``        what is there already, leftovers of the dead, and a new file: renamed when it is whole
