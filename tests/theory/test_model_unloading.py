@@ -149,8 +149,6 @@ def test_questions_without_an_answer_are_refused():
         Model(SURFACE, law=ChangEtsionBogy(critical=0.05), unload_from=0.5)
     with pytest.raises(KeyError, match="yielded_unloading"):
         BACK.mean("yielded_unloading", 0.6)
-    with pytest.raises(KeyError, match="without an interaction it is h itself"):
-        BACK.mean("nominal_separation", 0.6)
     with pytest.raises(ValueError, match="quantity = 'area_unloading': its slope is not known; give"):
         BACK.slope("area_unloading", 0.6)
     with pytest.raises(ValueError, match="load_slope_unloading"):
