@@ -1,12 +1,12 @@
 """Cautions: where a scene goes beyond the assumptions of the model. One list for every command."""
 
+from bisect import bisect_left
 from collections.abc import Iterator
 
 import numpy as np
 
 from analytic import Hertz
 from analytic.laws import crowding_factor
-from mcgw.formats.table import evenly
 from mcgw.scene.plausible import perhaps_other_units, takes_hours
 from mcgw.scene.scene import Scene
 from mcgw.validity.model_error import off_elasticity
@@ -15,7 +15,6 @@ _DEEP = 1e-3  # share of the contacts compressed by more than their radius
 _CROWDED = 0.05  # real over nominal area: Gaussian maps and caps are far beyond 10 % of load there
 _STEEP = 0.3  # contact radius over summit radius from which a paraboloid is not a sphere and strain is large
 _NEIGHBOURS = 0.05  # constriction of neighbours over that of the spots
-_MOST_SEPARATIONS = 64  # looked at
 _FEW = 30.0  # contacts per surface; with fewer, single surfaces are far from Gaussian
 
 
@@ -38,13 +37,15 @@ def cautions(scene: Scene) -> list[str]:
 
 
 def _crowd(scene: Scene) -> Iterator[str]:
-    h = np.unique(scene.separations)
-    h = h[evenly(len(h), _MOST_SEPARATIONS)]
-    crowded = h[scene.theory.mean("area_fraction", h) > _CROWDED]
-    if crowded.size:
+    def sparse(h: float) -> bool:
+        return bool(scene.theory.mean("area_fraction", h) <= _CROWDED)
+
+    separations = np.unique(scene.separations)
+    if not sparse(separations[0]):  # most scenes are throughout; the area falls with the separation
+        last = separations[bisect_left(separations, True, key=sparse) - 1]
         apart = " (load too large if d is that of a rigid punch, too small if it is the mean gap)"
         yield (
-            f"up to d/sigma = {crowded.max():.3g} more than {_CROWDED:.0%} of the nominal area is in "
+            f"up to d/sigma = {last:.3g} more than {_CROWDED:.0%} of the nominal area is in "
             f"contact; asperities interact there{'' if scene.interaction else apart}; the error was not "
             "measured"
         )
