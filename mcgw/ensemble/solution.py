@@ -23,7 +23,6 @@ _GIVEN = {
     "area_fraction": ("1", "area", True),
     "nominal_separation": ("", "nominal_separation", False),
 }
-UNIT_OF = {key: unit for key, (unit, *_) in _GIVEN.items()}
 
 
 def solve(

@@ -151,7 +151,8 @@ def _checked(heights: Any, radii: Any) -> tuple[Array, Array]:
     wrong = ~(np.isfinite(z) & np.isfinite(radius) & (radius > 0))
     if np.any(wrong):
         k = int(np.flatnonzero(wrong)[0])
-        raise ValueError(f"summit {k + 1} has the height {z[k]:g} and the radius {radius[k]:g}, not > 0")
+        has = f"summit {k + 1} has the height {z[k]:g} and the radius {radius[k]:g}"
+        raise ValueError(f"{has}; heights are finite, radii > 0")
     MeasuredHeights(z)
     return z, radius
 

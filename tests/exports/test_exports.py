@@ -20,7 +20,6 @@ from mcgw.exports.writing import surfaces_for
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "10 mm^2", "78.6 GPa")
 FILM = mcgw.Joint(resistivity=1 / 150 + 1 / 16)
 METAL = mcgw.KogutEtsion(critical=0.05)
-ENDING = {"calculix": ".inp", "abaqus": ".inp", "moose": ".csv", "comsol": ".txt"}
 CCX = shutil.which("ccx")
 
 

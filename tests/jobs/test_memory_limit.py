@@ -23,7 +23,6 @@ resource = pytest.importorskip("resource")
 
 ROOT = Path(mcgw.__file__).parents[1]
 MIB = 2**20
-TIGHT = 80  # MiB: Python starts, NumPy does not
 
 
 def limited(mib, *words):

@@ -116,7 +116,6 @@ SPECTRAL = {"surface": SPECTRUM, "heights": None, "ensemble": {"n_asperities": N
 LISTED = {"heights": None, "contact": {"separations": [reduced([0, 1, 3]) - 0.5]}}
 SUMMITS = {"heights": [0.0, 1e-6, 3e-6], "radii": [1e-5, 2e-5, 3e-5], "resample": "false"}
 SERIES = {"law": "'series'", "edges": [0.0, 5.0, 20.0], "coefficients": "[[1.0, 0.5], [1.5]]"}
-RAMP = 1 + 0.5 * (2 * TOP / 5 - 1)
 KE = {"name": "'kogut-etsion'", "critical": 0.05}
 JG = {"name": "'jackson-green'"}
 GRADED = {"name": "'power-law-graded'", "k": 0.5}
