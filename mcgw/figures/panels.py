@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.legend_handler import HandlerTuple
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FixedLocator, MaxNLocator
+from matplotlib.ticker import FixedLocator, MaxNLocator, NullLocator
 
 from mcgw.ensemble.intervals import TOO_FEW
 from mcgw.figures.data import GAMMA, FigureData, Panel, Points, Series, figure_table
@@ -130,6 +130,8 @@ def draw_panel(axis: Any, panel: Panel) -> None:
         if mark.bar:
             axis.grid(visible=False)
             axis.figure.colorbar(shown, ax=axis, label=mark.bar, shrink=0.8)
+    if "xticks" in panel.settings:  # a logarithmic axis of less than a decade would name others between
+        axis.xaxis.set_minor_locator(NullLocator())
     axis.set(**panel.settings)
 
 

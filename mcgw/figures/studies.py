@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from matplotlib.ticker import EngFormatter
 
 from mcgw.figures.against_theory import residuals_panel
 from mcgw.figures.data import FigureData, Mark, Panel, words
@@ -51,6 +52,7 @@ def _slope_panel(curve: Slope) -> Panel:
     bars = _TWO * curve.stderr * curve.errors
     found, half = f"{curve.value:.4f}".replace("-", "−"), _TWO * curve.uncertainty
     of_m = curve.against == "M"
+    ticks = {} if of_m else {"xticks": curve.sizes, "xticklabels": [*map(EngFormatter(), curve.sizes)]}
     return Panel(
         f"slope {found} ± {half:.4f}",
         _SURFACES if of_m else _ASPERITIES,
@@ -64,6 +66,7 @@ def _slope_panel(curve: Slope) -> Panel:
                 {**SEEN, "fmt": "o", "ms": 4, "label": "measured, 95 %"},
             ),
         ),
+        settings=ticks,
     )
 
 

@@ -171,7 +171,7 @@ def test_legends_name_the_line_that_is_drawn_so():
 
 
 def slope(against, value):
-    sizes = np.array([1.0, 4.0, 16.0])
+    sizes = np.array([1.0, 4.0, 16.0]) if against == "M" else np.array([1875.0, 7500.0, 30000.0])
     return Slope(
         against, sizes, 0.3 / np.sqrt(sizes) * [1, 1.1, 0.9], np.array([0.1, 0.2, 0.05]), value, 0.02
     )
@@ -186,6 +186,7 @@ def test_convergence(make_scene, kept, tmp_path, recorded):
     save(convergence_figure(found), tmp_path / "x.png")
     (figure,) = kept
     recorded("drawn.converge", told.drawn(figure))
+    assert not crowded(figure)
     for axis, curve in zip(figure.axes[:2], found.slopes, strict=True):
         fit = axis.get_lines()[0].get_ydata()
         np.testing.assert_allclose(fit * np.sqrt(curve.sizes), fit[0], rtol=1e-12)

@@ -6,7 +6,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 
 def crowded(figure):
-    """What runs out of a figure or into a neighbour, as matplotlib measures all of each panel."""
+    """What runs out of a figure or into a neighbour, panels and labels of ticks, as matplotlib measures them."""
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     texts = [text for text in (figure._suptitle, figure._supxlabel) if text and text.get_text()]
@@ -14,4 +14,11 @@ def crowded(figure):
     out = [
         box for box in boxes if box.x0 < 0 or box.y0 < 0 or box.x1 > figure.bbox.x1 or box.y1 > figure.bbox.y1
     ]
-    return out + [pair for pair in itertools.combinations(boxes, 2) if pair[0].overlaps(pair[1])]
+    groups = [boxes] + [
+        [label.get_window_extent() for label in axis.get_ticklabels(which="both") if label.get_text()]
+        for panel in figure.axes
+        for axis in (panel.xaxis, panel.yaxis)
+        if panel.axison
+    ]
+    pairs = itertools.chain.from_iterable(itertools.combinations(group, 2) for group in groups)
+    return out + [(a, b) for a, b in pairs if a.overlaps(b)]
