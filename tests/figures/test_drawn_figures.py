@@ -189,7 +189,7 @@ def test_convergence(make_scene, kept, tmp_path, recorded):
     assert not crowded(figure)
     for axis, curve in zip(figure.axes[:2], found.slopes, strict=True):
         fit = axis.get_lines()[0].get_ydata()
-        np.testing.assert_allclose(fit * np.sqrt(curve.sizes), fit[0], rtol=1e-12)
+        np.testing.assert_allclose(fit, fit[0] * np.sqrt(curve.sizes[0] / curve.sizes), rtol=1e-12)
         assert np.mean(np.log(curve.errors) - np.log(fit)) == pytest.approx(0, abs=1e-12)
     good, bad = (c for c in figure.axes[3].collections if isinstance(c, PathCollection))
     np.testing.assert_allclose(bad.get_offsets()[:, 0], [1e-5, 1e-12])  # the second and third fail

@@ -6,7 +6,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 
 def crowded(figure):
-    """What runs out of a figure or into a neighbour, panels and labels of ticks, as matplotlib measures them."""
+    """What runs out of a figure or into a neighbour: panels and labels of ticks, as matplotlib draws them."""
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     texts = [text for text in (figure._suptitle, figure._supxlabel) if text and text.get_text()]
