@@ -176,13 +176,6 @@ def test_python_of_the_readme_runs(tmp_path, in_tmp_path):
     assert mcgw.open_ensemble("demo.h5").load.shape == names["e"].load.shape == (1000, 5)
 
 
-def test_the_contact_law_of_contributing_runs(capsys):
-    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
-    *_, example = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
-    exec(compile(example, "CONTRIBUTING.md", "exec"), {})
-    assert "Ensemble of 100 surfaces of 300 asperities" in capsys.readouterr().out
-
-
 def test_the_table_of_the_tutorial_is_a_grading(tmp_path):
     found = [code for kind, code in blocks(pages()["tutorials/own-material.md"]) if kind == "text"]
     (tmp_path / "indents.csv").write_text(found[0].partition("\n")[2])
