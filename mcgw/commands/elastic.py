@@ -50,7 +50,7 @@ def elastic(
     """
     from mcgw.elasticity.elastic import elastic as solved
     from mcgw.machine.progress import bar
-    from mcgw.maps.map_files import read_map
+    from mcgw.maps.heights_files import read_map
 
     if isinstance(source, Path):
         surface = read_map(source, pixel=None if pixel is None else (pixel, pixel), unit=unit)

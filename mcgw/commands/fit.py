@@ -1,5 +1,6 @@
 """``mcgw fit``: a scene from a measured map, from profiles, or from numbers of an instrument."""
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -10,7 +11,6 @@ from mcgw.maps.steps import Form, LinesTo, Missing, SpikesTo
 
 if TYPE_CHECKING:
     from analytic import Surface
-    from mcgw.maps.profile_fit import ProfileFit
 
 E_STAR = 100e9  # Pa, default
 _AREA = 1e-6  # m^2, default of numbers alone
@@ -30,7 +30,6 @@ def fit(
     map: Annotated[list[Path], Maps()] = [],  # noqa: A002, B006
     *,
     iso: list[str] | None = None,
-    profile: bool = False,
     cutoff: str | None = None,
     long_cutoff: str | None = None,
     form: Form = "plane",
@@ -61,8 +60,6 @@ def fit(
     iso : NUMBER
         no map, but numbers that an instrument states: Sq=0.8um Sdq=0.12 Spc=0.043/um (or Spd; Rq, Rdq, Rpd,
         RSm of profiles; Sal autocorrelation=gaussian; pruning=0 if all peaks counted)
-    profile
-        read each file as a profile
     cutoff : LENGTH
         shortest wavelength of the roughness, such as 5um (Gaussian filter, ISO 16610-61); or none
     long_cutoff : LENGTH
@@ -108,12 +105,12 @@ def fit(
     from mcgw.formats.units import parse
     from mcgw.maps.fit import Fit
     from mcgw.maps.fitted_scene import fitted_scene
-    from mcgw.maps.fitting import are_profiles, fit_lines, fit_maps
-    from mcgw.maps.map_files import read_map
+    from mcgw.maps.fitting import fit_sources
+    from mcgw.maps.heights_files import read_heights, read_map
     from mcgw.maps.preparation import preparation_of
     from mcgw.maps.readable_scene import heights_beside, write_scene
     from mcgw.maps.summits import SUMMITS, TILES
-    from mcgw.reports.fitted import fit_words, profile_words
+    from mcgw.reports.fitted import fit_words
 
     assumed = " (assumed; give --E-star)" if E_star is None else ""
     E_star = E_STAR if E_star is None else E_star
@@ -129,24 +126,22 @@ def fit(
         "cutoff": cutoff, "long_cutoff": long_cutoff, "form": form, "missing": missing, "spikes": spikes,
         "lines": lines, "trim": trim, "parts": parts,
     }  # fmt: skip
-    found: Fit | ProfileFit
     asked, across = preparation_of(given, lambda key, x: parse(x, "m", f"--{key.replace('_', '-')}"))
     names = [path.name for path in map]
     beside = {"--summits": summits, "--tiles": tiles, "--picture": picture}
-    if are_profiles(map, profile=profile):
-        if wrong := next((option for option, path in beside.items() if path), None):
-            raise ValueError(
-                f"{wrong} {beside[wrong]}: a profile shows no summits, and has no sub-areas; give a map"
-            )
-        found, profiles = fit_lines(map, asked, spacing=pixel, unit=unit)
-        said = profile_words(found, names, asked, profiles)
-    else:
-        if picture and len(map) > 1:
-            raise ValueError(f"--picture {picture}: draws one map; give one")
-        if heights == "measured":
-            check_outputs([Output(heights_beside(output), NPY)])
-        of_map, ready = fit_maps(map, asked, across, pixel=pixel, unit=unit, missing=missing_value, use=use)
-        found, said = of_map, fit_words(of_map, names, asked, ready.levelled.assumed_unit)
+    if picture and len(map) > 1:
+        raise ValueError(f"--picture {picture}: draws one map; give one")
+    if heights == "measured":
+        check_outputs([Output(heights_beside(output), NPY)])
+    size = None if pixel is None else (pixel, pixel)
+    read = partial(read_heights, pixel=size, unit=unit, missing=missing_value)
+    found, ready, assumed_unit = fit_sources(map, read, asked, across, use)
+    wrong = next((option for option, path in beside.items() if path), None)
+    if wrong and ready is None:
+        raise ValueError(
+            f"{wrong} {beside[wrong]}: a profile shows no summits, and has no sub-areas; give a map"
+        )
+    said = fit_words(found, names, asked, assumed_unit)
     title = f"Fitted to {names[0][:50]}{f' and {len(map) - 1} more' * (len(map) > 1)}"
     on = {} if nominal_area is None else {"nominal_area": nominal_area}
     scene = fitted_scene(found, use=use, heights=heights, E_star=E_star, title=title, **on)
@@ -161,11 +156,10 @@ def fit(
         if tiles and isinstance(found, Fit):
             found.tiles.write(tiles, comment=TILES)
             told.append(f"{tiles}: every sub-area")
-        if picture and isinstance(found, Fit):
+        if picture and isinstance(found, Fit) and ready:
             from mcgw.figures.map_fit import fit_figure
             from mcgw.figures.panels import save
 
-            size = None if pixel is None else (pixel, pixel)
             raw = read_map(map[0], pixel=size, unit=unit, missing=missing_value)
             save(fit_figure(found, raw, ready), picture)
             told.append(f"{picture}: figure")

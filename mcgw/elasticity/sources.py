@@ -9,7 +9,7 @@ import numpy as np
 from scipy import fft
 
 from analytic.arrays import Array
-from mcgw.maps.map_files import read_map
+from mcgw.maps.heights_files import read_map
 from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography
 from mcgw.scene.rough_bodies import moments_of

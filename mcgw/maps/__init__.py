@@ -12,9 +12,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from mcgw.maps.map_files import read_map as read_map, write_map as write_map
+    from mcgw.maps.heights_files import read_heights as read_heights, read_map as read_map
+    from mcgw.maps.map_files import write_map as write_map
     from mcgw.maps.profile import Profile as Profile
-    from mcgw.maps.profile_files import read_profile as read_profile
     from mcgw.maps.synthetic import (
         Asperities as Asperities,
         Spectrum as Spectrum,
@@ -27,9 +27,9 @@ if TYPE_CHECKING:
 
 # Where names come from; they are imported on first use, as those of `mcgw` are.
 _HOMES = {
-    "map_files": "read_map write_map",
+    "map_files": "write_map",
     "profile": "Profile",
-    "profile_files": "read_profile",
+    "heights_files": "read_heights read_map",
     "synthetic": "Asperities Spectrum asperities_of gaussian_map moments_on_grid spectrum_from",
     "topography": "Topography",
 }

@@ -1,7 +1,6 @@
 """Bad points of a map: missing, spikes, or cut off."""
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -17,7 +16,6 @@ _REACH = 3  # pixels from a point to the ring around it: a spike is narrower tha
 BENT = 7.0  # times the usual bend: exceeded once in 4e11 points of a Gaussian map
 _OF_MEDIAN = 0.6745  # median over standard deviation of a Gaussian
 _ENOUGH = 2**20  # rings: enough for their median to a thousandth
-_BAND = 64  # rows processed together: their intermediate results fit the cache
 _OUT = 3.0  # ranges of the ring: 12 deviations of white noise beyond it; ridges, pits and peaks stay below
 _LOOKED_AT = 2**18  # points tell the steps of up to some thousand levels
 _MOST_LEVELS = 2**12
@@ -72,24 +70,14 @@ def spike_heights(topography: Topography) -> Array:
     above = np.zeros(heights.shape)
     if min(heights.shape) <= 2 * _REACH:
         return above
-    ranges, places, found = [], [], []
-    rows = np.pad(np.arange(len(heights)), _REACH, mode="reflect")
-    for first in range(0, len(heights), _BAND):
-        around = heights[rows[first : first + _BAND + 2 * _REACH]]
-        padded = np.pad(around, ((0, 0), (_REACH, _REACH)), mode="reflect")
-        low, high = _ring(padded, np.minimum), _ring(padded, np.maximum)
-        here, between = heights[first : first + _BAND], high - low
-        ranges.append(between[:: max(heights.size // _ENOUGH, 1)].copy())
-        out = np.maximum(here - high, 0.0) + np.minimum(here - low, 0.0)
-        at = np.flatnonzero(np.abs(out) > _OUT * between)
-        places.append(at + first * heights.shape[1])
-        found.append(out.ravel()[at])
-    some = np.concatenate(ranges)
+    ring = np.pad(np.zeros((2 * _REACH - 1,) * 2, dtype=np.bool_), 1, constant_values=True)
+    filters = ndimage.minimum_filter, ndimage.maximum_filter
+    low, high = (extreme(heights, footprint=ring, mode="mirror") for extreme in filters)
+    high -= low
+    some = high[:: max(heights.size // _ENOUGH, 1)]
     usual = float(np.median(some)) or float(some.mean())  # 0: most of it is flat
-    at, out = np.concatenate(places), np.concatenate(found)
-    most = np.abs(out) > _OUT * usual
-    above.flat[at[most]] = out[most]
-    return above
+    out = np.clip(heights - low, None, 0) + np.clip(heights - low - high, 0, None)
+    return np.where(np.abs(out) > _OUT * np.maximum(high, usual), out, 0.0)
 
 
 def small_spike_heights(topography: Topography) -> Array:
@@ -109,45 +97,19 @@ def usual_bend(bends: Array) -> float:
     return float(np.nanmedian(np.abs(bends - np.nanmedian(bends)))) / _OF_MEDIAN
 
 
-def _ring(padded: Array, extreme: Any) -> Array:
-    """Lowest or highest value on the square of seven points around every one."""
-    along, down = _of_seven(padded, extreme), _of_seven(padded.T, extreme).T
-    rows = extreme(along[: -2 * _REACH], along[2 * _REACH :])
-    return np.asarray(extreme(rows, extreme(down[:, : -2 * _REACH], down[:, 2 * _REACH :])))
+def recorded(heights: Array) -> tuple[float, float]:
+    """Return resolution and clipping of a map as it was read; some points may be missing.
 
-
-def _of_seven(z: Array, extreme: Any) -> Array:
-    """Lowest or highest of seven neighbours along a line: of two, of two pairs, and of four and four."""
-    two = extreme(z[:, :-1], z[:, 1:])
-    four = extreme(two[:, :-2], two[:, 2:])
-    return np.asarray(extreme(four[:, :-3], four[:, 3:]))
-
-
-@dataclass(frozen=True, slots=True)
-class Recorded:
-    """Resolution and clipping of a map as it was read.
-
-    Parameters
-    ----------
-    step : float
-        Between two heights that follow each other, m; 0 if they are as good as continuous.
-    at_end : float
-        Share of the points that have the greatest height, or the least, where they are more than a range
-        that holds all heights leaves there; else 0.
+    The step between two heights that follow each other, m, 0 if they are as good as continuous; and the
+    share of the points that have the greatest height, or the least, where they are more than a range that
+    holds all heights leaves there, else 0.
     """
-
-    step: float
-    at_end: float
-
-
-def recorded(heights: Array) -> Recorded:
-    """Examine a map before it is changed; some points may be missing."""
     some = heights.ravel()[:: max(heights.size // _LOOKED_AT, 1)]
     levels = np.unique(some[np.isfinite(some)])
     steps = np.diff(levels)
     step = float(np.median(steps)) if 1 < levels.size < min(_MOST_LEVELS, some.size / 8) else 0.0
     ends = ((np.nanmax(heights), -step), (np.nanmin(heights), step))
-    return Recorded(step, max(_at_end(heights, *end) for end in ends))
+    return step, max(_at_end(heights, *end) for end in ends)
 
 
 def _at_end(heights: Array, end: float, step: float) -> float:

@@ -25,8 +25,7 @@ from mcgw.maps.estimates import (
     moments_of,
     roughness_of,
 )
-from mcgw.maps.form import ORDERS
-from mcgw.maps.form_left import form_left
+from mcgw.maps.form import ORDERS, form_left
 from mcgw.maps.hidden_caps import Visible, visible
 from mcgw.maps.preparation import Prepared
 from mcgw.maps.steps import Form

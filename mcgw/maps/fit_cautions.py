@@ -7,7 +7,7 @@ from scipy import ndimage
 
 from mcgw.maps.bad_points import spike_heights
 from mcgw.maps.fit import Fit
-from mcgw.maps.form_left import form_left
+from mcgw.maps.form import form_left
 from mcgw.maps.hidden_caps import CROWDED, visible
 from mcgw.maps.instrument import faults
 from mcgw.maps.preparation import Prepared
@@ -65,10 +65,11 @@ def _form(fit: Fit, topography: Topography) -> list[str]:
     left = form_left(topography, fit.form)
     if left is None:
         return []
+    share, height, more = left
     kind = "a tilt or a curved form" if fit.form == "none" else "a curved form"
     return [
-        f"form: {kind} of {left.height:.3g} m from peak to valley remains, {100 * left.share:.0f} % of the "
-        f"variance; give --form {left.form}"
+        f"form: {kind} of {height:.3g} m from peak to valley remains, {100 * share:.0f} % of the "
+        f"variance; give --form {more}"
     ]
 
 

@@ -4,14 +4,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import fields, replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from mcgw.machine.progress import stages
 from mcgw.maps.fit import Fit, fit_prepared
 from mcgw.maps.fit_cautions import cautions, cautions_of_several, profile_cautions
-from mcgw.maps.map_files import read_map
+from mcgw.maps.heights_files import read_heights
 from mcgw.maps.preparation import Preparation, Prepared, preparation_of, prepared
 from mcgw.maps.profile import Profile
-from mcgw.maps.profile_files import holds_profile, read_profile
 from mcgw.maps.profile_fit import ProfileFit, fit_profiles
 from mcgw.maps.several_maps import pooled
 from mcgw.maps.steps import Form, LinesTo, Missing, SpikesTo
@@ -32,7 +32,6 @@ def fit(
     parts: int = 4,
     pixel: float | str | None = None,
     unit: str | None = None,
-    profile: bool = False,
     missing_value: float | None = None,
 ) -> Fit | ProfileFit:
     """Fit summit density, radius and spread to measured height maps, or to profiles of one surface.
@@ -67,10 +66,8 @@ def fit(
         Size of a pixel, m or text such as "1 um", where the file does not tell it.
     unit : str, optional
         Of the heights, as "um", where the file does not tell it.
-    profile : bool, optional
-        Read a file as a profile whatever its shape.
     missing_value : float, optional
-        Number that stands for a missing point of a map, in the unit of the file, such as -9999.
+        Number that stands for a missing point, in the unit of the file, such as -9999.
 
     Returns
     -------
@@ -99,68 +96,76 @@ def fit(
         "long_cutoff": long_cutoff, "lines": lines, "parts": parts,
     }  # fmt: skip
     asked, across = preparation_of(given, lambda key, value: argument(key, value, "m"))
-    length = None if pixel is None else argument("pixel", pixel, "m")
+    size = None if pixel is None else (argument("pixel", pixel, "m"),) * 2
     if isinstance(heights, str | Path | Topography | Profile):
         heights = [heights]
     sources = [Path(each) if isinstance(each, str) else each for each in heights]
-    if are_profiles(sources, profile=profile):
-        of_lines = [each for each in sources if not isinstance(each, Topography)]
-        return fit_lines(of_lines, asked, spacing=length, unit=unit)[0]
-    maps = [each for each in sources if not isinstance(each, Profile)]
-    return fit_maps(maps, asked, across, pixel=length, unit=unit, missing=missing_value)[0]
+    read = partial(read_heights, pixel=size, unit=unit, missing=missing_value)
+    return fit_sources(sources, read, asked, across)[0]
 
 
-def are_profiles(sources: Sequence[Path | Topography | Profile], *, profile: bool = False) -> bool:
-    """Whether sources are profiles, files by their shape unless they are to be read as a `profile`.
+def fit_sources(
+    sources: Sequence[Path | Topography | Profile],
+    read: Callable[[Path], Topography | Profile],
+    asked: Preparation,
+    across: int,
+    use: str = "auto",
+) -> tuple[Fit | ProfileFit, Prepared | None, str]:
+    """Fit maps or profiles of one surface.
+
+    Parameters
+    ----------
+    sources : sequence of Path, Topography or Profile
+        At least one, all maps or all profiles; a file is read when its turn comes.
+    read : callable
+        Reads a file.
+    asked : Preparation
+        Steps.
+    across : int
+        Sub-areas along each axis of a map.
+    use : str, optional
+        The estimate that cautions are about.
+
+    Returns
+    -------
+    (Fit or ProfileFit, Prepared or None, str)
+        The fit of all, with its cautions; the first map as prepared; and an assumed unit of lengths.
 
     Raises
     ------
     ValueError
-        If some are profiles and some maps.
+        If some are profiles and some maps, a step is asked for that maps alone have, or one cannot be read
+        or fitted.
     """
-    kinds = [
-        profile or holds_profile(each) if isinstance(each, Path) else isinstance(each, Profile)
-        for each in sources
-    ]
-    if any(kinds) and not all(kinds):
-        line, area = (
-            str(sources[k]) if isinstance(sources[k], Path) else f"number {k + 1}"
-            for k in (kinds.index(True), kinds.index(False))
-        )
-        raise ValueError(f"{line}: a profile, and {area} is a map; fit them apart")
-    return all(kinds)
-
-
-def fit_maps(
-    sources: Sequence[Path | Topography],
-    asked: Preparation,
-    across: int,
-    *,
-    pixel: float | None = None,
-    unit: str | None = None,
-    missing: float | None = None,
-    use: str = "auto",
-) -> tuple[Fit, Prepared]:
-    """Fit maps of one surface; return the fit of all, with its cautions, and the first map as prepared."""
-    size = None if pixel is None else (pixel, pixel)
-    read = partial(read_map, pixel=size, unit=unit, missing=missing)
-    fit, first = _fit_map(sources[0], read, asked, across, use)
-    if len(sources) == 1:
-        return fit, first
-    fits = [fit, *(_fit_map(source, read, asked, across, use)[0] for source in sources[1:])]
     names = [x.name if isinstance(x, Path) else f"map {k}" for k, x in enumerate(sources, 1)]
+    fits: list[Fit] = []
+    lines: list[Profile] = []
+    first, assumed = None, ""
+    for name, source in zip(names, sources, strict=True):
+        each = [read(source) if isinstance(source, Path) else source]
+        assumed = assumed or each[0].assumed_unit
+        if isinstance(each[0], Profile):
+            lines.append(each[0])
+            line, area = name, names[0]
+        else:
+            fit, ready = _fit_map(each, asked, across, use)
+            fits.append(fit)
+            first = first or ready
+            line, area = names[0], name
+        if fits and lines:
+            raise ValueError(f"{line}: a profile, and {area} is a map; fit them apart")
+    if lines:
+        return _fit_lines(lines, asked), None, assumed
+    if len(fits) == 1:
+        return fits[0], first, assumed
     found = pooled(fits, names)
-    return replace(found, cautions=tuple(cautions_of_several(found, fits, use))), first
+    return replace(found, cautions=tuple(cautions_of_several(found, fits, use))), first, assumed
 
 
-def _fit_map(
-    source: Path | Topography, read: Callable[[Path], Topography], asked: Preparation, across: int, use: str
-) -> tuple[Fit, Prepared]:
-    """Fit a map; return the fit, its cautions for the estimate to `use`, and the prepared map."""
-    with stages(4) as done:
-        raw = [source if isinstance(source, Topography) else read(source)]
-        done()
-        ready = prepared(raw.pop(), asked)  # the raw map is not kept: large ones fill the memory
+def _fit_map(raw: list[Any], asked: Preparation, across: int, use: str) -> tuple[Fit, Prepared]:
+    """Fit the map in a list, which is emptied: a large one would fill the memory."""
+    with stages(3) as done:
+        ready = prepared(raw.pop(), asked)
         done()
         found = fit_prepared(ready, across=across)
         done()
@@ -169,22 +174,12 @@ def _fit_map(
     return found, ready
 
 
-def fit_lines(
-    sources: Sequence[Path | Profile], asked: Preparation, *, spacing: float | None, unit: str | None
-) -> tuple[ProfileFit, list[Profile]]:
-    """Fit profiles from files or memory; return the fit, its cautions and the profiles.
-
-    Raises
-    ------
-    ValueError
-        If a step is asked for that maps alone have, or a profile cannot be read or fitted.
-    """
+def _fit_lines(profiles: list[Profile], asked: Preparation) -> ProfileFit:
     plain = Preparation(asked.cutoff, asked.form)
     for field in fields(asked):
         if getattr(asked, field.name) != getattr(plain, field.name):
             raise ValueError(
                 f"--{field.name.replace('_', '-')}: is for maps only; prepare the profile before"
             )
-    profiles = [p if isinstance(p, Profile) else read_profile(p, spacing=spacing, unit=unit) for p in sources]
     found = fit_profiles(profiles, cutoff=asked.cutoff, form=asked.form)
-    return replace(found, cautions=tuple(profile_cautions(found, profiles, asked.cutoff))), profiles
+    return replace(found, cautions=tuple(profile_cautions(found, profiles, asked.cutoff)))

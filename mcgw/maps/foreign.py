@@ -32,54 +32,34 @@ class ForeignError(ValueError):
 def read_foreign(
     path: Path, pixel: tuple[float, float] | None, unit: str | None, missing: float | None
 ) -> Raw:
-    """Read a map by SurfaceTopography: the first channel of heights. Its unit is also that of x and y.
+    """Read a map or a profile by SurfaceTopography: the first channel of heights. Its unit is that of x too.
 
     Raises
     ------
     ValueError
-        If it is not installed or cannot read the file, or the file holds a profile or no heights, or tells
-        the size of a pixel that was given, or none that was not.
+        If it is not installed or cannot read the file, or the file holds no heights, or tells the size of a
+        pixel that was given, or none that was not.
     """
     channel = _channel(path)
-    if channel.dim != 2:
-        raise ValueError(f"{path}: is a profile along a line; a map has rows and columns")
-    told = channel.physical_sizes is not None
-    if told and pixel is not None:
-        raise ValueError(f"{path}: gives the size of a pixel; leave --pixel out")
-    if not told and pixel is None:
-        raise ValueError(f"{path}: does not give the size of a pixel; give --pixel")
-    metre, _ = height_unit(path, _unit(channel), unit)
     columns, rows = _points(path, channel)
+    told = _unit(channel)
+    if channel.dim == 1:
+        with _one_line_errors(path):
+            x, z = channel.topography().positions_and_heights()
+        return Raw(np.ma.filled(z, np.nan), told, places=x, unit_of_places=told or unit)
+    sized = channel.physical_sizes is not None
+    if sized and pixel is not None:
+        raise ValueError(f"{path}: gives the size of a pixel; leave --pixel out")
+    if not sized and pixel is None:
+        raise ValueError(f"{path}: does not give the size of a pixel; give --pixel")
+    metre, _ = height_unit(path, told, unit)
     with _one_line_errors(path):
-        found = channel.topography(**({} if told else {"physical_sizes": (columns, rows)}))
+        found = channel.topography(**({} if sized else {"physical_sizes": (columns, rows)}))
         z = np.ma.filled(np.ma.masked_invalid(found.heights()), np.nan).T
     if missing is None:
         z[np.abs(z) > _LARGEST * abs(channel.height_scale_factor or 1.0)] = np.nan
     dx, dy = pixel or (float(p) * metre for p in found.pixel_size)
-    return Raw(z, _unit(channel), (dx, dy), bool(found.is_periodic))
-
-
-def read_foreign_line(path: Path, unit: str | None) -> Raw:
-    """Read a profile, whose unit is also that of x.
-
-    Raises
-    ------
-    ValueError
-        If SurfaceTopography is not installed or cannot read the file, or the file holds a map.
-    """
-    channel = _channel(path)
-    if channel.dim != 1:
-        raise ValueError(f"{path}: is a map, not a profile; leave --profile out")
-    _points(path, channel)
-    with _one_line_errors(path):
-        x, z = channel.topography().positions_and_heights()
-    told = _unit(channel)
-    return Raw(np.ma.filled(z, np.nan), told, places=x, unit_of_places=told or unit)
-
-
-def is_foreign_line(path: Path) -> bool:
-    """Whether SurfaceTopography finds heights along a line in a file."""
-    return bool(_channel(path).dim == 1)
+    return Raw(z, told, (dx, dy), bool(found.is_periodic))
 
 
 def check_foreign(path: Path) -> None:

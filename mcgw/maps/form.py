@@ -1,20 +1,25 @@
-"""Removal from a measured map: form, offsets of lines, and waves shorter than a cutoff."""
+"""Removal from a map: form, offsets of lines, waves shorter than a cutoff; and what form is left."""
 
 import math
 from dataclasses import replace
 from typing import Literal
 
 import numpy as np
+from scipy import fft
 from scipy.ndimage import gaussian_filter, gaussian_filter1d
 
 from analytic.arrays import Array
 from mcgw.maps.steps import Form, LinesTo
 from mcgw.maps.topography import Topography
+from mcgw.maps.waves import block_means, coarser
 
 ORDERS = {"none": -1, "plane": 1, "quadratic": 2, "cubic": 3, "quartic": 4}
 
 _ALPHA = math.sqrt(math.log(2) / math.pi)  # ISO 16610-61: half the amplitude is left at the cutoff
 _REACH = 1.0  # of the filter's window, in cutoffs: beyond lies a share of 5e-7
+_COARSE, _FINE = 192, 1024  # points along each axis tell the longest waves, and a form
+_LONGEST = 2.3  # waves on the map; there are 20 such wave vectors
+_STRONGER, _COUNTS = 3.0, 0.05
 _WIDTH = 10.0  # lines, standard deviation: of waves as long as 53 lines half is kept
 
 
@@ -129,3 +134,30 @@ def without_offsets(topography: Topography, lines: LinesTo) -> tuple[Topography,
     shifted = z - offsets[:, None]
     heights = shifted if lines == "rows" else np.ascontiguousarray(shifted.T)
     return replace(topography, heights=heights), float(np.sqrt(np.mean(offsets**2)))
+
+
+def form_left(topography: Topography, form: Form) -> tuple[float, float, Form] | None:
+    """Find a polynomial that is more than long waves, on a map that this form was taken off.
+
+    Its share of the variance of heights, its peak to valley in m, and what takes it off. It is of second
+    order, or of fourth where that was taken off already. It must hold more than a twentieth of the variance,
+    and three times what the longest waves do, two on the map, once it is taken off too. No point may be
+    missing.
+    """
+    more: Form = "quadratic" if ORDERS[form] < ORDERS["quadratic"] else "quartic"
+    coarse = coarser(topography, _FINE)
+    rest = without_form(coarse, more).heights
+    longest, left = _longest(rest), coarse.heights - rest
+    variance = float(left.var())
+    share = variance / float(topography.heights.var())
+    if share < _COUNTS or variance < _STRONGER * longest:
+        return None
+    return share, float(np.ptp(left)), more
+
+
+def _longest(z: Array) -> float:
+    """Variance of the longest waves on a map."""
+    coarse = block_means(z, _COARSE)
+    power = np.abs(fft.fft2(coarse) / coarse.size) ** 2
+    along, down = (fft.fftfreq(n) * n for n in coarse.shape[::-1])
+    return float(power[np.hypot(along, down[:, None]) < _LONGEST].sum())

@@ -33,7 +33,7 @@ def grid_of(path: Path, points: Array) -> tuple[Array, tuple[float, float]]:
         raise ValueError(f"{path}: a point lacks x or y")
     (columns, dx, i), (rows, dy, j) = (_places(path, name, points[:, k]) for k, name in enumerate("xy"))
     if min(columns, rows) == 1:
-        raise ValueError(f"{path}: all points lie on one line: a profile; read it with --profile")
+        raise ValueError(f"{path}: all points lie on one line: a profile; give x and z alone")
     checked_shape(rows, columns)
     if rows * columns > _SPARSE * len(points):
         raise ValueError(

@@ -24,7 +24,7 @@ LIMITS = {"range": 1e-3, "rounding": 0.05, "rows": 0.05, "columns": 0.05}  # sha
 def shares(ready: Prepared) -> dict[str, float]:
     """Return how much of each fault a map shows: a share of its points (range) or of its mean square bend."""
     return {
-        "range": ready.recorded.at_end,
+        "range": ready.recorded[1],
         "rounding": _rounding(ready),
         "rows": _offsets(ready, 0),
         "columns": _offsets(ready, 1),
@@ -41,7 +41,7 @@ def faults(ready: Prepared, longer: float) -> list[str]:
         "range": "range: {:.2g} % of the points have the same extreme height, as if the range of the "
         "instrument cut off summits; measure with a larger range, or use --use moments, which is affected "
         "less",
-        "rounding": f"rounding: heights are multiples of {ready.recorded.step:.3g} m; this rounding makes "
+        "rounding": f"rounding: heights are multiples of {ready.recorded[0]:.3g} m; this rounding makes "
         f"{{:.2g}} % of m4, and false summits; use --cutoff of {longer:.3g} pixels or more",
         "rows": lines.format("rows"),
         "columns": lines.format("columns"),
@@ -52,12 +52,12 @@ def faults(ready: Prepared, longer: float) -> list[str]:
 
 def _rounding(ready: Prepared) -> float:
     """Share of the mean square bend, by plain differences, that rounding to steps adds."""
-    if not ready.recorded.step:
+    if not ready.recorded[0]:
         return 0.0
     z = ready.used.heights
     kept = _kept_of_noise(ready.asked.cutoff, ready.used.pixel)
     return max(
-        ready.recorded.step**2 / 12 * gain / max(float(np.mean(_second(along) ** 2)), 1e-300)
+        ready.recorded[0] ** 2 / 12 * gain / max(float(np.mean(_second(along) ** 2)), 1e-300)
         for along, gain in zip((z.T, z), kept, strict=True)
     )
 

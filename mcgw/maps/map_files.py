@@ -1,36 +1,22 @@
-"""Maps in files: readers and writers by ending; arrays with a JSON sidecar, and HDF5."""
+"""Maps as files: an array with a JSON sidecar, HDF5, or SDF for other programs."""
 
 import json
+import struct
+from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
 
 import h5py
 import numpy as np
 
 from mcgw.formats.files import together, whole_file
-from mcgw.formats.gate import open_h5
-from mcgw.formats.named_files import loads_json, open_npy, read_bytes
-from mcgw.machine.terminal import one_line
-from mcgw.maps.foreign import ForeignError, read_foreign
-from mcgw.maps.sdf import write_sdf
 from mcgw.maps.synthetic import Asperities
-from mcgw.maps.text_file import read_text
-from mcgw.maps.topography import (
-    FLATTEST,
-    STEEPEST,
-    XYZ,
-    Raw,
-    Topography,
-    check_file,
-    checked_shape,
-    height_unit,
-    in_metres,
-)
+from mcgw.maps.topography import Topography
 
-_FILETYPE = "mcgw-surface"
-_MOST_JSON = 2**16
+FILETYPE = "mcgw-surface"
 WRITTEN = (".npy", ".h5", ".sdf")
-_TEXT = (".txt", ".csv", ".asc", ".dat", ".tsv", ".xyz")
+_HEADER = struct.Struct("<8s10s12s12sHHddddBBB")
+_DOUBLE = 7
+_MOST_POINTS = 65535  # along each axis: 16 bits
 
 
 def sidecar_of(path: Path) -> Path:
@@ -42,7 +28,7 @@ def write_npy(topography: Topography, path: Path) -> None:
     """Write an array and its sidecar."""
     dx, dy = topography.pixel
     facts = {
-        "filetype": _FILETYPE,
+        "filetype": FILETYPE,
         "pixel": [dx, dy],
         "unit": "m",
         "periodic": topography.periodic,
@@ -52,48 +38,6 @@ def write_npy(topography: Topography, path: Path) -> None:
         with open(unfinished, "wb") as file:
             np.save(file, topography.heights)
         beside.write_text(json.dumps(facts, indent=2) + "\n", encoding="utf-8")
-
-
-def _read_npy(path: Path, pixel: tuple[float, float] | None) -> Raw:
-    """Read an array; its pixel size and the unit of its heights from the sidecar, unless a pixel is given."""
-    array = open_npy(path)
-    if array.ndim != 2:
-        raise ValueError(f"{path}: holds {array.ndim} dimension(s); a map has rows and columns")
-    checked_shape(*array.shape)
-    if array.shape[1] == XYZ < len(array):  # no map is three pixels wide
-        raise ValueError(
-            f"{path}: three numbers a line, {len(array)} lines: single points with x, y and z are not a map; "
-            "give rows of heights on a grid"
-        )
-    if pixel is not None:
-        return Raw(array, pixel=pixel)
-    beside = sidecar_of(path)
-    if not beside.is_file():
-        raise ValueError(f"{path}: there is no {beside.name} with the size of a pixel; give --pixel")
-    data = read_bytes(beside, _MOST_JSON)
-    try:
-        facts: Any = loads_json(data)
-        pixel, periodic, unit = facts["pixel"], facts.get("periodic", False), facts.get("unit")
-    except (AttributeError, KeyError, TypeError, ValueError) as error:
-        raise ValueError(f'{beside}: must hold "pixel": [dx, dy] in m: {error}') from None
-    if unit not in (None, "m"):
-        raise ValueError(f"{beside}: unit = {unit!r}: must be 'm'")
-    return Raw(array, unit, _pixel(beside, pixel), _periodic(beside, periodic))
-
-
-def _pixel(path: Path, told: Any) -> tuple[float, float]:
-    """Pixel size from a file, if it is two numbers; a text of two digits is not."""
-    values = told.tolist() if isinstance(told, np.ndarray) else told
-    if not (isinstance(values, list) and len(values) == 2 and all(type(p) in (int, float) for p in values)):
-        raise ValueError(f"{path}: pixel = {told!r}: must be [dx, dy], two numbers in m")
-    return float(values[0]), float(values[1])
-
-
-def _periodic(path: Path, told: Any) -> bool:
-    """Whether a file says that its map is periodic; texts do not count, since "no" is true in Python."""
-    if not isinstance(told, bool | np.bool_):
-        raise ValueError(f"{path}: periodic = {told!r}: must be true or false")
-    return bool(told)
 
 
 def write_h5(topography: Topography, path: Path, field: Asperities | None = None, *, scene: str = "") -> None:
@@ -109,7 +53,7 @@ def write_h5(topography: Topography, path: Path, field: Asperities | None = None
     """
     with whole_file(path) as unfinished, h5py.File(unfinished, "w", locking=False) as file:
         file.attrs.update(
-            filetype=_FILETYPE, format=[1, 0], pixel=topography.pixel, periodic=topography.periodic
+            filetype=FILETYPE, format=[1, 0], pixel=topography.pixel, periodic=topography.periodic
         )
         data = file.create_dataset("height", data=topography.heights, compression="gzip", compression_opts=1)
         data.attrs.update(units="m", long_name="height above the mean of the summits", axes=["y", "x"])
@@ -121,23 +65,28 @@ def write_h5(topography: Topography, path: Path, field: Asperities | None = None
         file["scene"] = scene  # a dataset: an attribute ends at 64 kB
 
 
-def _read_h5(path: Path) -> Raw:
-    """Read the map of such a file."""
-    if not h5py.is_hdf5(path):
-        raise ForeignError(f"{path}: is not a valid HDF5 file")
-    try:
-        with open_h5(path) as file:
-            if file.attrs.get("filetype") != _FILETYPE:
-                raise ForeignError(f"{path}: is not a {_FILETYPE} file; it was not written by mcgw surface")
-            data = file["height"]
-            checked_shape(*data.shape, held=data.id.get_storage_size())
-            pixel, periodic = _pixel(path, file.attrs["pixel"]), _periodic(path, file.attrs["periodic"])
-            told = data.attrs.get("units")
-            if data.size and not data.id.get_storage_size():
-                raise ValueError(f"{path}: its heights were never written")
-            return Raw(data[...], None if told is None else str(told), pixel, periodic)
-    except (AttributeError, KeyError, OSError, RuntimeError, TypeError) as error:  # as HDF5 tells of damage
-        raise ValueError(f"{path}: is a damaged {_FILETYPE} file: {one_line(str(error))}") from None
+def write_sdf(topography: Topography, path: Path) -> None:
+    """Write ISO 25178-71, version ISO-1.0, binary, with every digit, as Gwyddion takes it.
+
+    Rows follow one another, points run fastest; lengths are in m, numbers little-endian, missing points nan.
+
+    Raises
+    ------
+    ValueError
+        If the map is too large for the format.
+    """
+    rows, columns = topography.heights.shape
+    if max(rows, columns) > _MOST_POINTS:
+        raise ValueError(
+            f"{columns} x {rows} points: SDF holds {_MOST_POINTS} along each axis; write .npy or .h5"
+        )
+    stamp = datetime.now(UTC).strftime("%d%m%Y%H%M").encode()
+    scales = (*topography.pixel, 1.0, 0.0)  # of x, y and z, and the resolution of z
+    head = (b"bISO-1.0", b"mcgw".ljust(10), stamp, stamp, columns, rows, *scales, 0, _DOUBLE, 0)
+    with whole_file(path) as unfinished, open(unfinished, "wb") as file:
+        file.write(_HEADER.pack(*head))
+        for row in topography.heights:
+            file.write(row.astype("<f8").tobytes())
 
 
 def files_of_map(path: Path) -> list[Path]:
@@ -167,90 +116,3 @@ def write_map(
         case _:
             raise ValueError(f"{path}: the ending determines the format; give one of {', '.join(WRITTEN)}")
     return files_of_map(path)
-
-
-def read_map(
-    path: Path,
-    *,
-    pixel: tuple[float, float] | None = None,
-    unit: str | None = None,
-    missing: float | None = None,
-) -> Topography:
-    """Read a map in the format of the file's ending.
-
-    Parameters
-    ----------
-    path : Path
-        ``.npy``, HDF5 of mcgw or text; any other (SDF, X3P, ...) goes to SurfaceTopography, where it is
-        installed, whatever its ending.
-    pixel : (float, float), optional
-        Size of a pixel, m, for arrays and text that do not tell it.
-    unit : str, optional
-        Of the heights, for files that do not tell it; m if left out.
-    missing : float, optional
-        Number that stands for a missing point, in the unit of the file, such as -9999.
-
-    Returns
-    -------
-    Topography
-        Heights in m.
-
-    Raises
-    ------
-    ValueError
-        If the file is damaged or of an unknown kind, tells another pixel or unit than given, or tells no
-        unit where m would make it too steep.
-    OSError
-        If it cannot be read.
-    """
-    check_file(path)
-    raw = _read(path, pixel, unit, missing)
-    metre, assumed = height_unit(path, raw.unit, unit)
-    with np.errstate(over="ignore", invalid="ignore"):  # of scales: a map refuses what comes of it
-        heights = np.ascontiguousarray(in_metres(path, raw.heights, metre, missing))
-    topography = Topography(heights, raw.pixel, raw.periodic, assumed or raw.assumed)
-    slope = topography.steepness
-    if slope == 0 or FLATTEST <= slope <= STEEPEST:
-        return topography
-    if topography.assumed_unit and slope > STEEPEST:
-        raise ValueError(
-            f"{path}: gives no unit of its heights, and in {topography.assumed_unit} their typical slope "
-            f"would be {slope:.3g}; give --unit (um, nm, ...), or another --pixel"
-        )
-    raise ValueError(
-        f"{path}: the typical slope of this map is {slope:.3g}, which no surface has ({FLATTEST:g} to "
-        f"{STEEPEST:g}): its heights, or its pixel of {topography.pixel[0]:.3g} m, are in another unit"
-    )
-
-
-def _read(path: Path, pixel: tuple[float, float] | None, unit: str | None, missing: float | None) -> Raw:
-    """Read by our own readers, otherwise by SurfaceTopography.
-
-    Since that skips text it does not know, text files must state their pixel.
-    """
-    ending = path.suffix.lower()
-    try:
-        if ending == ".npy":
-            return _read_npy(path, pixel)
-        if ending in _TEXT:
-            return read_text(path, pixel, unit)
-        if ending == ".h5":
-            return _told(path, pixel, _read_h5(path))
-    except ForeignError as error:
-        refused = error
-    else:
-        return read_foreign(path, pixel, unit, missing)
-    try:
-        found = read_foreign(path, None if ending in _TEXT else pixel, unit, missing)
-    except ValueError as too:
-        if ending in _TEXT:
-            raise refused from None
-        raise ValueError(f"{refused}; {str(too).removeprefix(f'{path}: ')}") from None
-    return _told(path, pixel, found) if ending in _TEXT else found
-
-
-def _told(path: Path, pixel: tuple[float, float] | None, found: Raw) -> Raw:
-    """Require that the file of a map contains its pixel size."""
-    if pixel is not None:
-        raise ValueError(f"{path}: gives the size of a pixel; leave --pixel out")
-    return found

@@ -8,7 +8,7 @@ import numpy as np
 from scipy import ndimage
 
 from analytic.arrays import Marks
-from mcgw.maps.bad_points import Recorded, filled, recorded, small_spike_heights, spike_heights
+from mcgw.maps.bad_points import filled, recorded, small_spike_heights, spike_heights
 from mcgw.maps.form import lowpass, smooth, without_form, without_offsets
 from mcgw.maps.steps import Form, LinesTo, Missing, SpikesTo
 from mcgw.maps.topography import SMALLEST, Topography
@@ -79,8 +79,8 @@ class Prepared:
         Points of `used` that count; None: all.
     filled : float
         Share of the points that were missing.
-    recorded : Recorded
-        What the map reveals about its instrument.
+    recorded : (float, float)
+        Step and clipping of its instrument: see `mcgw.maps.bad_points.recorded`.
     asked : Preparation
         What was asked for.
     notes : tuple of str
@@ -91,7 +91,7 @@ class Prepared:
     used: Topography
     seen: Marks | None
     filled: float
-    recorded: Recorded
+    recorded: tuple[float, float]
     asked: Preparation
     notes: tuple[str, ...]
 

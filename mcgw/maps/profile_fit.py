@@ -20,12 +20,11 @@ from mcgw.formats.table import Column, Table
 from mcgw.machine.terminal import plotted
 from mcgw.maps.estimates import Estimate, Roughness, roughness_of
 from mcgw.maps.profile import PROFILE_ORDERS, Profile, smooth_profile, without_profile_form
-from mcgw.maps.profile_waves import ProfileWaves, waves_of_profile
+from mcgw.maps.profile_waves import SMOOTH, waves_of_profile
 from mcgw.maps.steps import Form
 from mcgw.maps.waves import Uncertain, log_derivatives, uncertain
 
 _PIECES = 16
-_SMOOTH = 3  # waves over which power is averaged
 _LEAST_ALPHA = 0.9  # below it summit heights have no variance
 
 
@@ -141,21 +140,28 @@ def fit_profiles(profiles: Sequence[Profile], *, cutoff: float | None, form: For
     if shortest < 4 * pieces:
         raise ValueError(f"{shortest} points: too few for {pieces} stretches; give a longer profile")
     seen = [waves_of_profile(p, cutoff=cutoff, terms=PROFILE_ORDERS[form] + 1, pieces=pieces) for p in plain]
-    shares = np.array([w.length for w in seen]) / sum(w.length for w in seen)
-    values = np.asarray(sum(share * w.moments for share, w in zip(shares, seen, strict=True)))
-    moments = _checked(values)
-    numbers = {}
-    for name, derivative in log_derivatives(moments).items():
-        value = getattr(moments, name)
-        numbers[name] = uncertain(value, value * _error(derivative / values, seen, shares))
+    shares = np.array([p.length for p in plain]) / sum(p.length for p in plain)
+    stretches, waves = (
+        np.concatenate([share * part for share, part in zip(shares, each, strict=True)], axis=1)
+        for each in zip(*seen, strict=True)
+    )
+    values = stretches.sum(axis=1) / pieces
+    moments, stretches, waves = (
+        _checked(values),
+        len(plain) * stretches / values[:, None],
+        waves / values[:, None],
+    )
     return ProfileFit(
         moments,
-        numbers,
+        {
+            name: uncertain(value := getattr(moments, name), value * _error(by @ stretches, by @ waves))
+            for name, by in log_derivatives(moments).items()
+        },
         roughness_of(np.concatenate([p.heights for p in filtered])),
         _peaks(filtered),
         tuple(p.length for p in profiles),
         form,
-        _covariance(values, seen, shares),
+        waves @ waves.T,
     )
 
 
@@ -175,38 +181,16 @@ def _checked(values: Array) -> SpectralMoments:
     return moments
 
 
-def _error(derivative: Array, seen: list[ProfileWaves], shares: Array) -> float:
-    """Of the logarithm of a number with these derivatives by the moments, widened by Student's t.
+def _error(stretches: Array, waves: Array) -> float:
+    """Of the logarithm of a number, from what stretches and waves have in it, widened by Student's t.
 
     Two of them hold 95 %.
     """
-    squares = np.concatenate(
-        [
-            (share * _smooth(derivative @ w.weights, w.power)) ** 2
-            for share, w in zip(shares, seen, strict=True)
-        ]
-    )
-    by_waves = math.sqrt(float(squares.sum()) / (1 + 1 / _SMOOTH))
+    squares = waves**2
+    by_waves = math.sqrt(float(squares.sum()) / (1 + 1 / SMOOTH))
     freedom = max(float(squares.sum() ** 2 / (squares**2).sum()) / 2, 2.0)  # neighbours share power
-    stretches = np.concatenate(
-        [share * len(seen) * (derivative @ w.pieces) for share, w in zip(shares, seen, strict=True)]
-    )
     by_stretches = float(stretches.std(ddof=1)) / math.sqrt(stretches.size)
     return max(by_waves * _widened(freedom), by_stretches * _widened(stretches.size - 1))
-
-
-def _covariance(values: Array, seen: list[ProfileWaves], shares: Array) -> Array:
-    """Covariance of the logarithms of the moments, from the waves alone."""
-    terms = [
-        share * np.array([_smooth(row, w.power) for row in w.weights])
-        for share, w in zip(shares, seen, strict=True)
-    ]
-    return np.asarray(sum(t @ t.T for t in terms) / np.outer(values, values))
-
-
-def _smooth(weights: Array, power: Array) -> Array:
-    """Power averaged over neighbouring waves, times weights."""
-    return np.asarray(weights * np.convolve(power, np.full(_SMOOTH, 1 / _SMOOTH), mode="same"))
 
 
 def _widened(freedom: float) -> float:

@@ -18,7 +18,6 @@ without bias. They are negative for short waves: those take back what the longer
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from scipy import fft
@@ -34,6 +33,7 @@ _LEAST = 24  # points: with a short cutoff weights decay slowly
 _STENCIL = 4  # points, without a cutoff
 _FINE = 16  # points of a spectrum per weight
 _ENDS = 0.1  # share of a profile faded out at its ends
+SMOOTH = 3  # waves over which power is averaged
 _LOW = slice(1, 5)  # waves that show what the form removed
 
 
@@ -81,33 +81,10 @@ def stencil_weights(phases: Array) -> Array:
     return np.array([np.ones_like(c), (slope * half) ** 2, (bend * half**2) ** 2])
 
 
-@dataclass(frozen=True)
-class ProfileWaves:
-    """Moments of an isotropic surface from one profile.
-
-    Parameters
-    ----------
-    moments : ndarray
-        m0, m2, m4, shape (3,).
-    pieces : ndarray
-        The same of equal stretches, which they are the mean of, shape (3, pieces).
-    power : ndarray
-        Mean square of each wave, shape (waves,), m^2.
-    weights : ndarray
-        Of each wave in the moments, shape (3, waves).
-    length : float
-        m.
-    """
-
-    moments: Array
-    pieces: Array
-    power: Array
-    weights: Array
-    length: float
-
-
-def waves_of_profile(profile: Profile, *, cutoff: float | None, terms: int, pieces: int) -> ProfileWaves:
-    """Look at a profile without form.
+def waves_of_profile(
+    profile: Profile, *, cutoff: float | None, terms: int, pieces: int
+) -> tuple[Array, Array]:
+    """Return the moments of an isotropic surface from stretches of a profile, and the parts of its waves.
 
     A moment is the sum, over distances along the line, of the mean product of two heights (slopes, second
     differences) times a weight. No end has to fit the other, and no window bends it.
@@ -123,6 +100,13 @@ def waves_of_profile(profile: Profile, *, cutoff: float | None, terms: int, piec
         which m0 gets back.
     pieces : int
         Stretches.
+
+    Returns
+    -------
+    moments : ndarray
+        m0, m2 and m4 by each stretch, shape (3, pieces); their means are those by the profile.
+    waves : ndarray
+        What each wave has in these means, its power averaged over neighbours, shape (3, waves).
     """
     h, z = profile.spacing, profile.heights
     reach = _STENCIL if cutoff is None else max(math.ceil(_REACH * cutoff / h), _LEAST)
@@ -140,7 +124,8 @@ def waves_of_profile(profile: Profile, *, cutoff: float | None, terms: int, piec
     power = _power(z)
     taken = float(np.mean(power[_LOW] * of_waves[0, _LOW])) / 2  # a wave has two terms
     stretches[0] += terms * taken
-    return ProfileWaves(stretches.mean(axis=1), stretches, power, of_waves, profile.length)
+    smoothed = np.convolve(power, np.full(SMOOTH, 1 / SMOOTH), mode="same")
+    return stretches, np.asarray(of_waves * smoothed)
 
 
 def _gains(frequencies: Array, spacing: float, cutoff: float | None) -> Array:

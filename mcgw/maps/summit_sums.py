@@ -61,8 +61,7 @@ class SummitSums:
     def without(self, part: int) -> "SummitSums":
         """All but one sub-area."""
         kept = self.part != part
-        sums = self.sums.copy()
-        sums[:, part] = 0.0
+        sums = np.where(np.arange(self.parts) == part, 0.0, self.sums)
         of_summits = (self.heights[kept], self.curvatures[kept], self.places[:, kept], self.part[kept])
         return SummitSums(sums, *of_summits, self.pixel_area)
 

@@ -1,6 +1,7 @@
-"""Maps as plain text, one row a line, as instruments and spreadsheets of any country write them."""
+"""Maps and profiles as plain text, a row a line, as instruments and spreadsheets of any country write it."""
 
 import codecs
+import math
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,15 +11,8 @@ import numpy as np
 from analytic.arrays import Array
 from mcgw.formats.units import METRES
 from mcgw.maps.foreign import ForeignError
-from mcgw.maps.grid_of_points import grid_of
-from mcgw.maps.topography import (
-    MOST_PIXELS,
-    XYZ,
-    Raw,
-    checked_shape,
-    height_unit,
-    metres_in,
-)
+from mcgw.maps.grid_of_points import along_line, grid_of
+from mcgw.maps.topography import XYZ, Raw, checked_shape, height_unit, metres_in
 
 _MOST_LINE = 2**24
 MOST_HEADER = 500  # lines
@@ -36,20 +30,23 @@ _ENCODINGS = {codecs.BOM_UTF8: "utf-8-sig", codecs.BOM_UTF16_LE: "utf-16", codec
 _BLANKS = " \r\n\f\v"  # a tab parts two numbers, both of which may be missing
 _COMMA_TOO = re.compile(r"[ \f\v]*[;,\t][ \f\v]*|[ \f\v]+")
 _WITHOUT_COMMA = re.compile(r"[ \f\v]*[;\t][ \f\v]*|[ \f\v]+")
+_COMMA_ALONE = re.compile(r"\s*[-+]?\d+(?:,\d+)?(?:[eE][-+]?\d+)?\s*")
 _DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d*(?:[eE][-+]?\d+)?")
 _MORE_COMMAS = re.compile(r"[-+.,\deE]*\d,+[-+.\d][-+.,\deE]*")
 _MISSING = ("", "BAD", "---")
 
 
 def read_text(path: Path, pixel: tuple[float, float] | None, unit: str | None) -> Raw:
-    """Read a matrix of numbers, a row a line, or a regular grid of points x, y and z, one a line.
+    """Read a map or a profile: a matrix, a row a line; points x, y and z; or z, or x and z, of a profile.
 
     Numbers are separated by spaces, tabs, semicolons or commas. Where something else parts the numbers of a
     line, a comma inside one is its decimal mark. Lines that begin with # are comments; of those that
-    Gwyddion writes, ``Width``, ``Height`` and ``Value units`` are understood, in German too. Points may
-    have a header with the units of x, y and z. ``nan``, ``BAD``, ``---`` and nothing between two separators
-    are missing points. The text is UTF-8, or UTF-16 with its mark. What no comment tells is given: the size
-    of a pixel, m, and the unit of points, by default m.
+    Gwyddion writes, ``Width``, ``Height`` and ``Value units`` are understood, in German too. Points and
+    profiles may have a header, from which units are taken where they stand in brackets, after a slash or
+    alone. Lines like 1,25 are x and z if what stands before the comma rises, and heights with decimal commas
+    otherwise. ``nan``, ``BAD``, ``---`` and nothing between two separators are missing points. The text is
+    UTF-8, or UTF-16 with its mark. What no comment tells is given: the size of a pixel, m, and the unit of
+    points, by default m.
 
     Raises
     ------
@@ -57,7 +54,10 @@ def read_text(path: Path, pixel: tuple[float, float] | None, unit: str | None) -
         If a row has another length than the first, a word is not a number, a comma may mean two things, no
         pixel size is known, or points are on no regular grid.
     """
-    header, table = table_of(path)
+    header, table = _lone_numbers(path) or table_of(path)
+    along = along_line(table) if table.shape[1] == XYZ else None
+    if not header.extent and (along is not None or table.shape[1] < XYZ):
+        return _of_line(header, table, along)
     points = table.shape[1] == XYZ < len(table)
     if header.refused is not None and not (points and isinstance(header.refused, ForeignError)):
         raise header.refused
@@ -94,8 +94,8 @@ class Header:
             self.unit = found[1]
 
 
-def table_of(path: Path, most: int = MOST_PIXELS) -> tuple[Header, Array]:
-    """Return the header of a text and its rows of numbers, at most so many, as a matrix.
+def table_of(path: Path) -> tuple[Header, Array]:
+    """Return the header of a text and its rows of numbers, as a matrix.
 
     Columns at its left or right end in which no row has anything are those beyond a separator.
 
@@ -130,8 +130,6 @@ def table_of(path: Path, most: int = MOST_PIXELS) -> tuple[Header, Array]:
             raise ForeignError(told) if header.refused else ValueError(told)
         total += row.size
         checked_shape(1, total)
-        if len(rows) == most:
-            break
     if not rows:
         raise header.refused or ForeignError(f"{path}: holds no numbers")
     table = np.array(rows)
@@ -154,6 +152,33 @@ def _of_points(
     (dx, assumed), (dy, _) = (height_unit(path, x, unit if x is None else None) for x in of_places)
     heights, size = grid_of(path, points * [dx, dy, 1])
     return Raw(heights, told, size, assumed=assumed)
+
+
+def _of_line(header: Header, table: Array, along: int | None) -> Raw:
+    """Return a profile: z alone, x and z, or points along x (0) or y (1)."""
+    told = header_units(header.lines, table.shape[1])
+    if table.shape[1] == 1:
+        return Raw(table[:, 0], told[0])
+    x = along or 0
+    return Raw(table[:, -1], told[-1], places=table[:, x], unit_of_places=told[x])
+
+
+def _lone_numbers(path: Path) -> tuple[Header, Array] | None:
+    """Header and heights with decimal commas, if all lines are like 1,25 and not x and z."""
+    header = Header()
+    lines: list[str] = []
+    for _, line in lines_of(path):
+        if _COMMA_ALONE.fullmatch(line):
+            lines.append(line)
+        elif (lines and not line.startswith("#")) or len(header.lines) == MOST_HEADER:
+            return None
+        else:
+            header.lines.append(line.lstrip("# "))
+    x, _, z = zip(*(line.partition(",") for line in lines), strict=True) if lines else ((), (), ())
+    steps = np.diff([int(text) if text.isdigit() else math.nan for text in x])
+    if not lines or (all(z) and (np.all(steps > 0) or np.all(steps < 0))):
+        return None
+    return header, np.array([[float(line.replace(",", "."))] for line in lines])
 
 
 def lines_of(path: Path) -> Iterator[tuple[int, str]]:

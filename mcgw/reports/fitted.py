@@ -5,19 +5,24 @@ from collections.abc import Sequence
 from mcgw.maps.estimates import METHODS, estimates_table
 from mcgw.maps.fit import Fit
 from mcgw.maps.preparation import Preparation
-from mcgw.maps.profile import Profile
 from mcgw.maps.profile_fit import ProfileFit
 from mcgw.maps.summits import variation
 from mcgw.maps.waves import Uncertain
 
 
-def fit_words(fit: Fit, names: Sequence[str], asked: Preparation, assumed_unit: str) -> list[str]:
-    """Return what was fitted and how, what was done to the map, and the results."""
+def fit_words(
+    fit: Fit | ProfileFit, names: Sequence[str], asked: Preparation, assumed_unit: str
+) -> list[str]:
+    """Return what was fitted and how, what was done to it, and the results."""
+    taken = f"form removed: {asked.form}"
+    if isinstance(fit, ProfileFit):
+        removed = {"none": "mean", "plane": "line", "quadratic": "parabola"}[fit.form]
+        taken = f"profile; removed: {removed}"
     filtered = "none" if asked.cutoff is None else f"{asked.cutoff:g} m (Gaussian, ISO 16610-61)"
-    line = f"{', '.join(names)}: form removed: {asked.form}; cutoff: {filtered}"
+    line = f"{', '.join(names)}: {taken}; cutoff: {filtered}"
     if assumed_unit:
-        line += f"; heights assumed in {assumed_unit}, since the file gives no unit"
-    return [line, *fit.notes, *fit_lines(fit)]
+        line += f"; lengths assumed in {assumed_unit} where the file gives no unit"
+    return [line, *(profile_lines(fit) if isinstance(fit, ProfileFit) else [*fit.notes, *fit_lines(fit)])]
 
 
 def fit_lines(fit: Fit) -> list[str]:
@@ -48,19 +53,11 @@ def fit_lines(fit: Fit) -> list[str]:
     return lines
 
 
-def profile_words(
-    fit: ProfileFit, names: Sequence[str], asked: Preparation, profiles: Sequence[Profile]
-) -> list[str]:
-    """Return what was fitted and how, statistics of the profiles and of the surface, one number per line."""
-    filtered = "none" if asked.cutoff is None else f"{asked.cutoff:g} m (Gaussian)"
-    taken = {"none": "mean", "plane": "line", "quadratic": "parabola"}[asked.form]
-    line = f"{', '.join(names)}: profile; removed: {taken}; cutoff: {filtered}"
-    if unit := next((p.assumed_unit for p in profiles if p.assumed_unit), ""):
-        line += f"; lengths assumed in {unit} where the file gives no unit"
+def profile_lines(fit: ProfileFit) -> list[str]:
+    """Statistics of the profiles and of the surface, one number per line."""
     counted, expected = fit.peaks
     number = len(fit.lengths)
     return [
-        line,
         f"{number} profile{'s' if number > 1 else ''}, {sum(fit.lengths):.4g} m together; filtered along the "
         f"line: {fit.roughness.text('P')} (primary profile; called Ra, Rq, Rsk if waves beyond a cutoff "
         "lambda_c were removed before)",

@@ -102,22 +102,21 @@ ROWS = [
     (GAUSS, "maps.synthetic:gaussian_map", "--pixel 2um",
      {"pixel": near((2e-6, 2e-6)), "shape": (32, 64), "spectrum.rms": 1e-6}),
     (GAUSS, "numpy.random:default_rng", "--seed 4", {"seed": 4}),
-    *((FIT, "maps.fitting:fit_maps", words, asked) for words, asked in (
+    *((FIT, "maps.fitting:fit_sources", words, asked) for words, asked in (
         ("--cutoff 10um", {"asked.cutoff": 1e-5}), ("--long-cutoff 20um", {"asked.long_cutoff": 2e-5}),
         ("--form quadratic", {"asked.form": "quadratic", "asked.cutoff": None}),
         ("--missing fill", {"asked.missing": "fill"}), ("--spikes remove", {"asked.spikes": "remove"}),
         ("--lines rows", {"asked.lines": "rows"}), ("--trim 15", {"asked.trim": 15}),
         ("--parts 3", {"across": 3, "use": "auto"}), ("--use moments", {"use": "moments", "across": 4}),
-        ("--pixel 2um", {"pixel": 2e-6, "unit": None, "missing": None}),
-        ("--unit mm", {"unit": "mm", "pixel": 1e-6}), ("--missing-value 8e-6", {"missing": 8e-6}))),
+        ("--pixel 2um", {"read.keywords.pixel": near((2e-6, 2e-6)), "read.keywords.unit": None}),
+        ("--unit mm", {"read.keywords.unit": "mm"}),
+        ("--missing-value 8e-6", {"read.keywords.missing": 8e-6}))),
     (FIT, "maps.fitted_scene:fitted_scene", "--use moments", {"use": "moments", "heights": "gaussian"}),
     (FIT, "maps.fitted_scene:fitted_scene", "--heights table", {"heights": "table", "E_star": 1e11}),
     (FIT, "maps.fitted_scene:fitted_scene", "--E-star 5e9", {"E_star": 5e9, "changes": {}}),
     (FIT, "maps.fitted_scene:fitted_scene", "--nominal-area 1cm^2", {"changes": {"nominal_area": 1e-4}}),
     (FIT, "maps.readable_scene:write_scene", "--output g.toml", {"path.name": "g.toml", "measured": None}),
     (FIT, "figures.map_fit:fit_figure", "--picture f.png", {"raw.pixel": near((1e-6, 1e-6))}),
-    (FIT, "maps.fitting:fit_lines", "--profile", {"spacing": 1e-6, "unit": None}),
-    (LINES, "maps.fitting:fit_lines", "--pixel 2um --unit nm", {"spacing": 2e-6, "unit": "nm"}),
     *(("elastic @s.toml", "elasticity.elastic:elastic", words, asked) for words, asked in (
         ("--pressure 2MPa", {"pressure": "2MPa", "separation": None, "rel_err": 0.02, "solves": None}),
         ("--separation 2um", {"pressure": None, "separation": "2um", "seed": 1, "path": None}))),
@@ -126,9 +125,9 @@ ROWS = [
         ("--solves 9", {"solves": 9}), ("--seed 4", {"seed": 4}),
         ("--output e.jsonl", {"path.name": "e.jsonl"}),
         ("--set surface.sigma=3e-6", {"source.surface.sigma": 3e-6}))),
-    ("elastic @map.npy --pressure 1MPa", "maps.map_files:read_map", "--pixel 2um",
+    ("elastic @map.npy --pressure 1MPa", "maps.heights_files:read_map", "--pixel 2um",
      {"pixel": near((2e-6, 2e-6)), "unit": None}),
-    ("elastic @map.npy --pressure 1MPa", "maps.map_files:read_map", "--unit mm",
+    ("elastic @map.npy --pressure 1MPa", "maps.heights_files:read_map", "--unit mm",
      {"unit": "mm", "pixel": None}),
     *(("figures", "figures.panels:save", f"--only figure-1 {words}", {"paths": tuple(map(Path, paths))})
       for words, paths in (
@@ -200,7 +199,7 @@ REFUSED = [
     ("elastic @s.toml --pressure 2MPa --pixel 2um", "--pixel: is for a map"),
     ("elastic @s.toml --pressure 2MPa --unit um", "--unit: is for a map"),
     ("figures --only figure-9", "--only figure-9: no such figure; give one of figure-1, "),
-    (f"{FIT} --profile --summits s.csv", "--summits s.csv: a profile shows no summits"),
+    (f"{LINES} --summits s.csv", "--summits s.csv: a profile shows no summits"),
     (f"{LINES} --tiles t.csv", "--tiles t.csv"), (f"{LINES} --picture t.png", "--picture t.png"),
 ]  # fmt: skip
 
@@ -238,7 +237,7 @@ def of(arguments, path):
     name, *inner = path.split(".")
     value = arguments[name]
     for each in inner:
-        value = getattr(value, each)
+        value = value[each] if isinstance(value, dict) else getattr(value, each)
     return value
 
 

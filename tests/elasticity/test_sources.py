@@ -47,15 +47,6 @@ def test_a_map_with_holes_is_refused(rng):
         maps_of(replace(whole, heights=holed))
 
 
-@pytest.mark.usefixtures("cheap")
-def test_an_answer_says_of_which_maps_it_is(rng):
-    maps = [rough(rng, 48) for _ in range(4)]
-    assert maps_of(SPECTRUM).words == "Gaussian maps of 64 x 64 points, 4e-05 m wide"
-    assert maps_of(maps[0]).words == "Gaussian maps of the measured map's spectrum"
-    found = mcgw.elastic(maps, pressure=5e7, E_star=1e11, solves=4, pilot=4)
-    assert "Elastic mean over the 4 given maps" in repr(found)
-
-
 def test_maps_of_a_scene_have_its_moments_and_area(tmp_path):
     """Eight points to the shortest wave; the scene may have them from its surface, its law or a fit."""
     spectral = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "0.16 mm^2", "78.6 GPa")

@@ -8,9 +8,8 @@ import h5py
 import numpy as np
 import pytest
 from oracles import surface_topography
-from oracles.inside import holds_profile
 
-from mcgw.maps import foreign as library, read_map, read_profile
+from mcgw.maps import Topography, foreign as library, read_heights, read_map
 
 
 @pytest.fixture
@@ -45,20 +44,15 @@ def test_a_map_without_a_pixel_takes_one_and_keeps_its_holes(foreign):
 def test_heights_along_a_line_are_a_profile_and_no_map(foreign):
     """The gap in them is filled along a straight line."""
     path = foreign("line 12 1")
-    assert holds_profile(path)
-    assert not (path.with_name("read")).exists()  # its kind is known without its heights
-    found = read_profile(path, unit="um")
+    found = read_heights(path, unit="um")
     x = np.arange(12.0) / 2
     assert found.heights == pytest.approx(1e-6 * np.where(x == 2, (1.5**2 + 2.5**2) / 2, x * x), rel=1e-12)
     assert (found.spacing, found.filled) == (pytest.approx(0.5e-6), 1)
     with pytest.raises(ValueError, match="is a profile along a line; a map has rows and columns"):
         read_map(path)
     with pytest.raises(ValueError, match="gives x in um; leave --pixel out"):
-        read_profile(path, spacing=1e-6)
-    path = foreign("3 2")
-    assert not holds_profile(path)
-    with pytest.raises(ValueError, match="is a map, not a profile; leave --profile out"):
-        read_profile(path)
+        read_heights(path, pixel=(1e-6, 1e-6))
+    assert isinstance(read_heights(foreign("3 2")), Topography)
 
 
 def test_what_the_library_refuses_is_one_line(foreign):

@@ -159,7 +159,6 @@ def test_by_command(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("given", "told"),
     [
-        (["--iso", "Sq"], "--iso 'Sq': give NAME=VALUE"),
         (["--iso", "Sq=1um", "Sq=2um"], "gives Sq more than once"),
         (["--iso", "Sq=1um", "pruning=x"], "pruning = 'x': give a fraction"),
         (["map.npy", "--iso", "Sq=1um"], "map.npy: give a map, or --iso"),

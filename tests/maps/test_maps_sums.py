@@ -26,10 +26,7 @@ from scipy.integrate import quad
 from scipy.stats import norm, t as t_law
 
 import analytic
-from analytic import SpectralMoments
 from mcgw.maps import Topography
-
-BUSH = 0.8968057562340189  # 3 sqrt 3 + ... of Bush, Gibson and Thomas (1975), by Nayak's integrals
 
 
 @pytest.mark.parametrize("across", [1, 2])
@@ -328,17 +325,3 @@ def test_where_nothing_is_seen_nothing_is_found_again():
     assert unhidden(1e9, 1e-5, 0.0) is None
     assert unhidden(1e9, 1e-5, 1e-3) is None  # no field shows so many
     assert unhidden(1e3, 1e-5, 1e-6) == pytest.approx((1e3, 1e-6), rel=1e-5)
-
-
-def test_constants_of_the_spectral_moments():
-    """Nayak (1971): density 1/(6 sqrt 3 pi); mean curvature 8/(3 sqrt pi); Bush et al. (1975): 0.8968."""
-    unit = SpectralMoments(1.0, 1.0, 1.0)
-    assert unit.eta == pytest.approx(0.030629383079, rel=1e-10)
-    assert 1 / unit.radius == pytest.approx(1.50450555613, rel=1e-10)
-    assert 1 - unit.sigma**2 == pytest.approx(BUSH, rel=1e-14)
-    assert unit.mean_height == pytest.approx(2.25675833419, rel=1e-10)
-    other = SpectralMoments(4.0, 9.0, 25.0)  # powers: 25/9, 1/5, (1 - 0.8968 81/100) 4, sqrt(4 81/100)
-    assert other.eta == pytest.approx(unit.eta * 25 / 9, rel=1e-14)
-    assert other.radius == pytest.approx(unit.radius / 5, rel=1e-14)
-    assert other.sigma**2 == pytest.approx(4 * (1 - BUSH * 0.81), rel=1e-13)
-    assert other.mean_height == pytest.approx(unit.mean_height * 1.8, rel=1e-14)

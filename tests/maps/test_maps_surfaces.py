@@ -115,6 +115,9 @@ def test_positions_are_uniform_and_belong_to_their_surface(make_scene):
     again, other = asperities_of(scene, 5), asperities_of(scene, 6)
     assert np.array_equal(again.x, field.x)
     assert not np.any(np.isin(other.x, field.x[:1000]))
+    for surface in (-1, scene.n_surfaces):
+        with pytest.raises(ValueError, match=f"surface = {surface}: the scene has surfaces 0 to "):
+            asperities_of(scene, surface)
 
 
 @pytest.mark.slow
@@ -178,25 +181,6 @@ def test_a_spectrum_has_the_moments_that_were_asked_for(alpha, hurst):
     assert asked.m0 * unit**4 * mean[2] / mean[0] * 3 / 8 == pytest.approx(asked.m4, rel=1e-9)
 
 
-@pytest.mark.parametrize(("arguments", "told"), [
-    (["SCENE", "-o", "map.tiff"], "a map is written there"),
-    (["SCENE", "-o", "map.h5", "--surface", "1000000"], "surfaces 0 to"),
-    (["SCENE", "-o", "map.h5", "--shape", "1x"], "--shape"),
-    (["SCENE", "-o", "map.h5", "--shape", "99999"], "more than the"),
-    (["SCENE", "-o", "map.h5", "--width", "far"], "--width = 'far': give a number > 0 with its unit"),
-    (["-o", "map.h5"], "SCENE"),
-    (["-o", "map.h5", "--from-spectrum", "height=1um", "--pixel", "1um"], "give rms, long"),
-    (["-o", "map.h5", "--from-spectrum", "rms=1um,long=90um,short=9um"], "--pixel"),
-])  # fmt: skip
-def test_mistakes_are_told_in_one_line_and_nothing_is_written(arguments, told, tmp_path, in_tmp_path, capsys):
-    arguments = [str(RUNS / "quick.toml") if a == "SCENE" else a for a in arguments]
-    assert main(["surface", *arguments]) == 2
-    error = capsys.readouterr().err
-    assert told in error
-    assert error.count("\n") == 1
-    assert list(tmp_path.iterdir()) == []
-
-
 @pytest.mark.parametrize("hurst", [0.5, 0.8, 1.0])
 def test_the_bandwidths_of_a_spectrum_have_ends(hurst):
     """Of the narrowest one 1.5, of the widest a number that is told, up to which there is one."""
@@ -226,14 +210,6 @@ def test_a_spectrum_fills_its_grid_to_two_pixels_and_to_its_edge():
     for pixel in ((2.01e-6, 2e-6), (2e-6, 2.01e-6)):
         with pytest.raises(ValueError, match="shows 2 pixels or more"):
             gaussian_map(Spectrum(1e-6, 30e-6, 4e-6), (40, 40), pixel, one)
-
-
-def test_a_surface_of_a_scene_has_a_number(make_scene):
-    scene = make_scene(n_surfaces=3)
-    assert asperities_of(scene, 2).number == 3000
-    for surface in (-1, 3):
-        with pytest.raises(ValueError, match=f"surface = {surface}: the scene has surfaces 0 to 2"):
-            asperities_of(scene, surface)
 
 
 def test_a_spectrum_is_read_key_by_key():

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from mcgw.cli import main
-from mcgw.maps import Spectrum, Topography, gaussian_map, read_map
-from mcgw.maps.text_file import read_text
+from mcgw.maps import Profile, Topography, read_heights, read_map
+from mcgw.maps.text_file import table_of
 
 NAN = np.nan
 PIXEL = (1e-6, 1e-6)
@@ -14,7 +13,7 @@ PIXEL = (1e-6, 1e-6)
 def read(tmp_path, content, encoding="utf-8"):
     path = tmp_path / "map.csv"
     path.write_bytes(content.encode(encoding))
-    return read_text(path, (1.0, 1.0), "m").heights
+    return table_of(path)[1]
 
 
 @pytest.mark.parametrize(
@@ -56,16 +55,15 @@ def test_numbers_of_every_country(content, expected, tmp_path):
     ("1.234,5;6,5\n", "inside and between numbers|something else"),
     ("0,0012,0,0013\n", "begins with 0"),
     ('"1,5","2,5"\n', "line 1: could not convert"),
-    ("x in nm, y in nm\n1, 2\n", "line 1: could not convert"),
-    ("X;Y\n1;2\n", "line 1: could not convert"),
     ("1,5;2\n3;4;5\n", "line 2 has 3 numbers, the first row 2"),
     ("1 inf\n", "infinite"),
     ("# nothing\n", "holds no numbers"),
     ("1" * 2**24, r"map\.csv: line 1 has 16777216 characters or more; is it a map\?"),
 ], ids=lambda x: x[:20])  # fmt: skip
 def test_what_may_mean_two_things_is_refused_in_one_line(content, told, tmp_path):
+    (tmp_path / "map.csv").write_text(content)
     with pytest.raises(ValueError, match=told) as error:
-        read(tmp_path, content)
+        read_map(tmp_path / "map.csv", pixel=(1.0, 1.0))
     assert "\n" not in str(error.value)
 
 
@@ -100,18 +98,6 @@ def test_units_of_comments_in_two_languages(word, tmp_path):
     assert found.assumed_unit == ""
 
 
-def test_a_command_tells_a_unit_that_was_assumed(tmp_path, capsys, without_caps):
-    path, out = tmp_path / "map.npy", tmp_path / "x.toml"
-    np.save(
-        path, gaussian_map(Spectrum(1e-6, 16e-6, 8e-6), (128, 128), PIXEL, np.random.default_rng(1)).heights
-    )
-    words = ["fit", str(path), "--pixel", "1um", "--cutoff", "none", "-o", str(out)]
-    for more, assumed in ((["--unit", "m"], False), ([], True)):
-        assert main([*words, *more]) == 0
-        for text in (capsys.readouterr().out, out.read_text()):
-            assert ("heights assumed in m" in text) == assumed
-
-
 def test_steepness_is_that_of_the_map_and_not_of_a_spike():
     y, x = np.mgrid[0:40, 0:50]
     plane = 3e-6 * x + 8e-6 * y
@@ -120,3 +106,168 @@ def test_steepness_is_that_of_the_map_and_not_of_a_spike():
     assert Topography(plane, (1e-6, 2e-6)).steepness == pytest.approx(5)
     plane[20] = np.nan
     assert Topography(plane, (1e-6, 2e-6)).steepness == pytest.approx(5)
+
+
+POINTS = [(x, y, 10 * x + y * y) for y in range(4) for x in range(3)]  # um and nm
+
+
+@pytest.mark.parametrize(
+    "head", ["x (um) y (um) z (nm)", "# x[um]\ty[um]\tz[nm]", "x_um,y_um,z_nm", "X/um;Y/um;Z/nm"]
+)
+@pytest.mark.parametrize(("mark", "separator"), [(".", " "), (".", ","), (",", ";"), (",", "\t")])
+def test_points_on_a_grid_are_a_map_in_any_order(head, mark, separator, tmp_path):
+    """With the units of the header; a point that is not there is missing."""
+    rows = [row for row in np.random.default_rng(1).permutation(POINTS) if tuple(row[:2]) != (1, 2)]
+    texts = [f"{0.5 * x:.4f} {2 * y + 7:.4f} {z:.3f}".replace(".", mark).split() for x, y, z in rows]
+    (tmp_path / "map.txt").write_text("\n".join([head, *(separator.join(text) for text in texts)]) + "\n")
+    found = read_heights(tmp_path / "map.txt")
+    expected = np.array([[10.0 * x + y * y for x in range(3)] for y in range(4)])
+    expected[2, 1] = np.nan
+    assert found.heights == pytest.approx(1e-9 * expected, nan_ok=True, rel=1e-12, abs=1e-25)
+    assert found.pixel == pytest.approx((0.5e-6, 2e-6))
+    assert found.assumed_unit == ""
+
+
+def test_points_along_one_line_are_a_profile(tmp_path):
+    for name, columns in (("x.txt", "{i} 5 {z}"), ("y.xyz", "5 {i} {z}")):
+        lines = [columns.format(i=i, z=i % 3) for i in range(20)]
+        (tmp_path / name).write_text("x (um) y (um) z (nm)\n" + "\n".join(lines))
+        found = read_heights(tmp_path / name)
+        assert found.spacing == pytest.approx(1e-6)
+        assert found.heights == pytest.approx(1e-9 * (np.arange(20) % 3))
+        with pytest.raises(ValueError, match="is a profile along a line"):
+            read_map(tmp_path / name)
+
+
+@pytest.mark.parametrize(("change", "told"), [
+    (lambda p: [*p, p[0]], r"x = 0, y = 0 has two heights"),
+    (lambda p: [*p, (0.37, 0, 1)], "x of the points is not evenly spaced"),
+    (lambda p: [(x, x, z) for x, y, z in p[:3]] + [(9, 9, 1), (5, 5, 2), (7, 7, 0)], "evenly|scattered"),
+    (lambda p: [("nan", *p[0][1:]), *p[1:]], "a point lacks x or y"),
+])  # fmt: skip
+def test_points_that_are_no_grid_are_refused(change, told, tmp_path):
+    (tmp_path / "map.txt").write_text("\n".join(" ".join(map(str, p)) for p in change(POINTS)))
+    with pytest.raises(ValueError, match=told):
+        read_map(tmp_path / "map.txt", unit="um")
+    with pytest.raises(ValueError, match="leave --pixel out"):
+        read_map(tmp_path / "map.txt", unit="um", pixel=(1e-6, 1e-6))
+
+
+Z = np.array([0.1, 0.3, -0.2, 0.5, 0.4, 0.0, -0.1, 0.2, 0.35, 0.15])
+UM, MM = 1e-6, 1e-3
+
+
+def lines(columns, separator, comma):
+    rows = (separator.join(f"{v:g}" for v in row) for row in zip(*columns, strict=True))
+    return [row.replace(".", ",") if comma else row for row in rows]
+
+
+X = np.arange(10) * 0.5
+BOTH, ALONE = (X, Z), (Z,)
+ROWS = {  # name: text, ending, spacing given, spacing and unit of z expected in m
+    "two columns, SI": (lines((X * UM, Z * UM), " ", False), ".txt", None, (0.5 * UM, UM)),
+    "tabs, units in brackets": (["x [mm]\tz [um]", *lines(BOTH, "\t", False)], ".txt", None, (0.5 * MM, UM)),
+    "decimal commas": (["X (µm);Z (nm)", *lines(BOTH, ";", True)], ".csv", None, (0.5 * UM, 1e-9)),
+    "after a slash": (["Weg/mm;Hoehe/um", *lines(BOTH, ";", True)], ".asc", None, (0.5 * MM, UM)),
+    "commas": (["x,z", "um,nm", *lines(BOTH, ",", False)], ".csv", None, (0.5 * UM, 1e-9)),
+    "Gwyddion": (
+        ["Profile 1", "x [m] y [m]", *lines((X * UM, Z * UM), "  ", False)], ".txt", None, (0.5 * UM, UM),
+    ),
+    "comments": (["# x in um; z in nm", *lines(BOTH, " ", False)], ".dat", None, (0.5 * UM, 1e-9)),
+    "one unit for both": (["Units (um)", *lines(BOTH, ";", False)], ".txt", None, (0.5 * UM, UM)),
+    "metadata": (
+        ["Speed (mm/s): 0.5", "Length (mm): 4.8", "x (um);z (nm)", *lines(BOTH, ";", False)],
+        ".txt", None, (0.5 * UM, 1e-9),
+    ),
+    "Dektak": (
+        ["Scan Parameters", "ID,0", "Stylus,Radius: 2.5 um", "Length,4.5 um", "Location,0.0 um, 0.0 um", "",
+         "Analytical Results", "Function,R.Cur Pos,Result", "Ra,4.0 um,0.005 um", "Skew,4.0 um,6.96", "",
+         "Scan Data", "Lateral um,Raw Micrometer,", *(f"{x},,"  for x in lines(BOTH, ",", False))],
+        ".csv", None, (0.5 * UM, UM),
+    ),
+    **{
+        f"one column in {ending}": (["z (um)", *lines(ALONE, "", False)], ending, 2 * UM, (2 * UM, UM))
+        for ending in (".txt", ".csv", ".asc", ".dat", ".tsv", ".prf", ".xy", ".XY")
+    },
+    "one column of commas": (["z (um)", *lines(ALONE, "", True)], ".txt", 2 * UM, (2 * UM, UM)),
+    "a count for x": (["n z", *lines((np.arange(10), Z * UM), " ", False)], ".txt", 2 * UM, (2 * UM, UM)),
+}  # fmt: skip
+
+
+def profile(path, spacing=None, **given):
+    found = read_heights(path, pixel=None if spacing is None else (spacing, spacing), **given)
+    assert isinstance(found, Profile)
+    return found
+
+
+@pytest.mark.parametrize("name", ROWS)
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
+def test_profiles_of_every_kind(name, encoding, tmp_path):
+    text, ending, given, (spacing, unit) = ROWS[name]
+    path = tmp_path / f"p{ending}"
+    path.write_text("\n".join(text) + "\n", encoding=encoding)
+    found = profile(path, given)
+    assert found.spacing == pytest.approx(spacing, rel=1e-9)
+    np.testing.assert_allclose(found.heights, Z * unit, rtol=1e-9, atol=1e-20)
+    assert not found.filled
+    assert not found.resampled
+
+
+@pytest.mark.parametrize(("text", "given", "told"), [
+    ("1\n2\n3\n", {}, "does not give the distance between its points; give --pixel"),
+    ("x (um);z (um)\n0;1\n1;2\n", {"spacing": 1e-6}, "gives x in um; leave --pixel out"),
+    ("x (um);z (um)\n0;1\n1;2\n", {"unit": "nm"}, "heights are in um as the file says, not in nm"),
+    ("0 1\n1 2\n2 1\n3 1\n1 2\n4 2\n5 2\n6 1\n7 1\n", {}, "x = 3 m is followed by 1 m"),
+    ("\n".join(f"{i} {i % 2 * 1e-6}" for i in range(20)), {}, "the points are 1 m apart; give --unit"),
+    ("\n".join(f"{i * 1.0004e-3} {i % 9 * 1e-4}" for i in range(1250)), {}, "it is 1.25 m long; give --unit"),
+    ("\n".join(f"{i * 1e-6} {i % 2}" for i in range(20)), {}, "the typical slope is 1e\\+06; give --unit"),
+    ("0 1\n1 2\n", {}, "2 points: a profile has 8 or more"),
+    ("0 1\n1 2 3\n2 2\n", {}, "line 2 has 3 numbers, the first row 2"),
+    ("0 1\n1 2\nend\n", {}, "line 3: could not convert"),
+    ("word\n" * 501 + "0 1\n1 2\n", {}, "the first 500 lines are not numbers; is it a map or a profile"),
+    ("\n".join(f"{i} {'nan' if i % 3 else 1}" for i in range(30)), {}, "18 of the 28 heights are missing"),
+])  # fmt: skip
+def test_what_is_no_profile_is_refused_in_one_line(text, given, told, tmp_path):
+    path = tmp_path / "p.txt"
+    path.write_text(text)
+    with pytest.raises(ValueError, match=told) as error:
+        profile(path, **given)
+    assert "\n" not in str(error.value)
+    assert "p.txt" in str(error.value)
+
+
+@pytest.mark.parametrize("form", ["z ({})", "z [{}]", "z/{}", "height in {}", "Raw {}", "{}"])
+def test_every_unit_in_a_header(form, tmp_path):
+    units = {
+        "m": 1, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "micron": 1e-6, "nm": 1e-9,
+        "pm": 1e-12, "fm": 1e-15, "km": 1e3, "Angstrom": 1e-10, "Å": 1e-10, "Nanometer": 1e-9,
+        "Micrometer": 1e-6, "Millimeter": 1e-3,
+    }  # fmt: skip
+    for unit, metre in units.items():
+        (tmp_path / "p.txt").write_text("\n".join([form.format(unit), *map(str, Z)]), encoding="utf-8")
+        found = profile(tmp_path / "p.txt", 1e3)
+        np.testing.assert_allclose(found.heights, Z * metre, rtol=1e-12)
+        assert found.assumed_unit == ""
+
+
+@pytest.mark.parametrize(("lines", "heights"), [
+    ([f"{i},{i % 3}" for i in range(9)], [i % 3 for i in range(9)]),  # rising: places
+    ([f"{8 - i},{i % 3}" for i in range(9)], [(8 - i) % 3 for i in range(9)]),  # falling
+    (["0,25", "# so", *(f"0,{26 + i}" for i in range(7))], [0.25, *(0.26 + i / 100 for i in range(7))]),
+    ([f"{i},0{i % 3}" for i in (0, 1, 1, 0, 2, 3, 1, 0)], [0, 1.01, 1.01, 0, 2.02, 3, 1.01, 0]),
+    *(([f"{n},{25 + i}" for i, n in enumerate(whole)], [float(f"{n}.{25 + i}") for i, n in enumerate(whole)])
+      for whole in (8 * (0,), 4 * (0,) + 4 * (1,), 2 * (2,) + 6 * (1,))),
+])  # fmt: skip
+def test_whole_numbers_that_rise_or_fall_before_a_comma_are_places(lines, heights, tmp_path):
+    path, places = tmp_path / "p.csv", len(heights) == 9
+    path.write_text(("x (um),z (um)\n" if places else "z (um)\n") + "\n".join(lines))
+    found = profile(path, None if places else UM)
+    np.testing.assert_allclose(found.heights / UM, heights, rtol=1e-12)
+    assert found.spacing == pytest.approx(UM)
+
+
+def test_words_above_a_profile(tmp_path):
+    """Five hundred lines of them are a header."""
+    rows = [*["word"] * 500, *(f"{i * UM} {i % 3 * UM}" for i in range(9))]
+    (tmp_path / "words.txt").write_text("\n".join(rows))
+    assert profile(tmp_path / "words.txt").heights[5] == pytest.approx(2 * UM)

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import mcgw
-from mcgw.cli import main
 from mcgw.maps import Spectrum, Topography, gaussian_map
 
 SPECTRA = (Spectrum(1e-6, 80e-6, 10e-6), Spectrum(0.2e-6, 40e-6, 8e-6))
@@ -132,14 +131,6 @@ def test_a_scene_names_the_files_of_two_bodies(folder):
     changed = load(folder, PAIR, changes=own)
     assert (changed.hardness, changed.film.conductivities) == (1e9, None)
     assert load(folder, PAIR, changes={"contact.law": "kogut-etsion"}).law.hardness == 2e9
-
-
-def test_no_table_takes_the_place_of_a_file_of_a_body(folder, capsys):
-    (folder / "pair.toml").write_text(PAIR.replace("b.toml", "b.csv"))
-    (folder / "b.toml").rename(folder / "b.csv")
-    assert main(["solve", str(folder / "pair.toml"), "--load", "1 N", "--csv", str(folder / "b.csv")]) == 2
-    assert "b.csv: is an input" in capsys.readouterr().err
-    assert (folder / "b.csv").read_text() == OTHER
 
 
 def test_a_contact_that_is_no_table_is_refused(folder):

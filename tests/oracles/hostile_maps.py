@@ -17,15 +17,12 @@ STARTS = {"subprocess.Popen", "os.system", "os.exec", "os.posix_spawn", "pickle.
 
 def read(path):
     from mcgw import load_scene
-    from mcgw.maps import read_map
-    from mcgw.maps.profile_files import holds_profile, read_profile
+    from mcgw.maps import read_heights
 
     if path.suffix == ".toml":
         return load_scene(path)
-    if path.suffix in (".txt", ".csv", ".npy") and holds_profile(path):
-        return read_profile(path, spacing=1e-6)
     told = path.suffix in (".h5", ".x3p", ".nc") or path.with_suffix(".json").exists()
-    return read_map(path, pixel=None if told else (1e-6, 1e-6))
+    return read_heights(path, pixel=None if told else (1e-6, 1e-6))
 
 
 def main(folder):

@@ -46,7 +46,7 @@ MODULES = {
     "mcgw.jobs.job": "commit_block Job",
     "mcgw.jobs.running": "run",
     "mcgw.machine.memory": "check_memory memory_available",
-    "mcgw.maps.bad_points": "filled recorded Recorded small_spike_heights spike_heights usual_bend",
+    "mcgw.maps.bad_points": "filled recorded small_spike_heights spike_heights usual_bend",
     "mcgw.maps.envelope": "envelope hidden_summits",
     "mcgw.maps.estimates": (
         "by_caps by_moments by_summits Estimate jackknife mean_squares moments_of roughness_of "
@@ -57,7 +57,6 @@ MODULES = {
     "mcgw.maps.form": "filter_variance gaussian_transmission lowpass smooth without_form without_offsets",
     "mcgw.maps.hidden_caps": "unhidden visible",
     "mcgw.maps.preparation": "Preparation prepared",
-    "mcgw.maps.profile_files": "holds_profile read_profile",
     "mcgw.maps.readable_scene": "write_scene",
     "mcgw.maps.summit_sums": "_apex coarse_sums_of summit_sums_of SummitSums SUMS",
     "mcgw.reports.html": "report_html",
