@@ -24,7 +24,7 @@ from analytic.laws.law import ContactLaw, piece_of
 from analytic.laws.pieces import slope_term
 from analytic.measured_summits import MeasuredRadii
 from analytic.quadrature import REACH
-from analytic.quantities import LAW_QUANTITIES, NOT_SUMS, Quantity, quantity_of
+from analytic.quantities import LAW_QUANTITIES, NOT_SUMS, SEPARATIONS, Quantity, quantity_of
 from analytic.summits import Summits, summits_of
 from analytic.surface import Surface
 
@@ -292,6 +292,8 @@ class MeanModel:
         q = quantity_of(quantity)
         if quantity in NOT_SUMS:
             raise KeyError(f"{quantity!r}: this model has no gas; use `theory` of a scene with a joint")
+        if quantity in SEPARATIONS:
+            raise KeyError(f"{quantity!r}: this model has no interaction; use `theory` of a scene with one")
         self.ways.of(quantity)
         if q.unloading and self.unload_from is not None and np.any(np.less(h, self.unload_from)):
             raise ValueError(

@@ -134,9 +134,8 @@ if TYPE_CHECKING:
     from mcgw.statistics.comparison import compare as compare
     from mcgw.statistics.convergence import converge as converge
     from mcgw.statistics.tradeoff import tradeoff as tradeoff
-    from mcgw.store.ensembles import open_ensemble as open_ensemble
+    from mcgw.store.ensembles import open_ensemble as open_ensemble, open_sweep as open_sweep
     from mcgw.store.place import save as save
-    from mcgw.sweeps.file import open_sweep as open_sweep
 
 # Threads that wait for others sleep. By default they spin, and a loop of microseconds takes a hundred
 # times as long on a machine that has anything else to do. Read once, when the loops are loaded.
@@ -171,9 +170,8 @@ _HOMES = {
     "mcgw.statistics.comparison": "compare",
     "mcgw.statistics.convergence": "converge",
     "mcgw.statistics.tradeoff": "tradeoff",
-    "mcgw.store.ensembles": "open_ensemble",
+    "mcgw.store.ensembles": "open_ensemble open_sweep",
     "mcgw.store.place": "save",
-    "mcgw.sweeps.file": "open_sweep",
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names.split()}
 

@@ -143,8 +143,7 @@ class Results(In):
 
     def open(self, path: Any, args: argparse.Namespace, grown: Path | None) -> tuple[Any, list[Path]]:  # noqa: ARG002
         """Return the ensemble or the sweep."""
-        from mcgw.store.ensembles import open_ensemble
-        from mcgw.sweeps import open_results
+        from mcgw.store.ensembles import open_ensemble, open_results
 
         return (open_results if self.sweeps else open_ensemble)(path), [path]
 

@@ -37,7 +37,7 @@ def show(
     --------
     mcgw show demo.h5
     """
-    from mcgw.store.ensembles import read_attributes, unfinished_sweep, verify as verified
+    from mcgw.store.ensembles import open_results, read_attributes, unfinished_sweep, verify as verified
     from mcgw.store.place import tidy
 
     if csv and (scene or digest or verify or plan):
@@ -57,7 +57,7 @@ def show(
 
         if verify or digest or csv:
             raise StoreError(f"{file}: is an unfinished sweep; finish it with mcgw sweep")
-        return print(begun.text if scene else progress_of(begun, file), end="" if scene else "\n")
+        return print(begun.text if scene else progress_of(begun), end="" if scene else "\n")
     if verify:
         problem, found = verified(file)
         print(f"{file}: {f'DAMAGED, {problem}' if problem else 'intact'} ({found})")
@@ -66,7 +66,6 @@ def show(
     if scene or digest:
         return print(attributes["scene" if scene else "digest"], end="" if scene else "\n")
     from mcgw.reports.text import summary_of
-    from mcgw.sweeps import open_results
 
     result = open_results(file)
     text, table = summary_of(result, attributes, says(ALL))

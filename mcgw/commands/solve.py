@@ -43,8 +43,8 @@ def solve(
     --------
     mcgw solve runs/demo.toml --pressure 100kPa 1MPa --csv solved.csv
     """
+    from analytic import quantity_of
     from mcgw.ensemble.solution import solve as solved
-    from mcgw.ensemble.solved import at_solutions
     from mcgw.machine.progress import bar
     from mcgw.reports.solved_loads import solutions_table, solutions_text
 
@@ -60,7 +60,9 @@ def solve(
         if says(ALL):  # it shows specimens
             found[0].loaded.draw(tell)
     print(solutions_text(scene, found, scatter, full=says(ALL)))
-    tell_cautions(at_solutions(scene, found), "add -v")
+    h = sorted({each.theory["separation"] for each in found})  # in place of the loads
+    loading = [q for q in scene.quantities if not quantity_of(q).unloading] or ["load"]
+    tell_cautions(scene.replace(separations=h, unload_from=None, quantities=loading), "add -v")
     if csv:
         solutions_table(scene, found).write(csv)
         news(f"{csv}: the table")

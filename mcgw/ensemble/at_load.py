@@ -3,7 +3,8 @@
 Also the gap between the planes of a surface, and the pressures that the separations of a scene span.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections import UserDict
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,6 @@ import numpy as np
 from analytic import QUANTITIES, SEPARATIONS, quantity_of
 from analytic.arrays import Array
 from analytic.at_load import Moments, specimen_moments
-from analytic.distribution.of_model import check_falling
 from analytic.laws.elastic_plastic import ElasticPlastic
 from mcgw.ensemble.separation import crossing
 from mcgw.scene.scene import Scene
@@ -21,6 +21,7 @@ NEGATIVE = (
     "{} = {:g} {}: {} reaches it only with asperities of negative modulus, at s = {:.4g}; give less, "
     'or set negative = "clip" or "allow" under [grading]'
 )
+_ENOUGH = 10  # surfaces for each number that a control variate is fitted with
 _DEEP = 8.0  # below a nominal separation, where the search for the other one ends
 
 
@@ -116,7 +117,7 @@ def pressures_of(scene: Scene, number: int) -> Array:
     return np.geomspace(pressures.min(), pressures.max(), number)
 
 
-class Answers(Mapping[str, float]):
+class Answers(UserDict[str, Any]):
     """Answers by name, each found when it is first asked for.
 
     Parameters
@@ -129,72 +130,31 @@ class Answers(Mapping[str, float]):
 
     def __init__(self, names: Sequence[str], find: Callable[[str], float]) -> None:
         """Find nothing yet."""
-        self._names, self._find, self._found = tuple(names), find, dict[str, float]()
+        super().__init__(dict.fromkeys(names))
+        self._find = find
 
     def __getitem__(self, name: str) -> float:
         """Return an answer; KeyError if there is no such."""
-        if name not in self._names:
-            raise KeyError(name)
-        if name not in self._found:
-            self._found[name] = float(self._find(name))
-        return self._found[name]
-
-    def __contains__(self, name: object) -> bool:
-        """Tell whether there is such an answer, without finding it."""
-        return name in self._names
-
-    def __iter__(self) -> Iterator[str]:
-        """Iterate over the names."""
-        return iter(self._names)
-
-    def __len__(self) -> int:
-        """Count the answers."""
-        return len(self._names)
+        if self.data[name] is None:
+            self.data[name] = float(self._find(name))
+        return float(self.data[name])
 
     def __repr__(self) -> str:
         """Show all, as a dict."""
-        return repr(dict(self))
+        return repr(dict(self.items()))
 
 
-def all_are_known(scene: Scene, given: str, theory: Mapping[str, float]) -> bool:
-    """Tell whether `exact_moments` has all answers, if it has more than what is given.
+def controlled(x: Array, known: Sequence[tuple[Array, float]]) -> tuple[float, float, int]:
+    """Mean of what is no sum, less what the surfaces drawn have too much of those whose mean is known.
 
-    Parameters
-    ----------
-    scene, given, theory
-        As there.
-
-    Returns
-    -------
-    bool
-        False where some answer is no sum, as a resistance, or where sums are not known at all.
+    Its standard error, and the degrees of freedom of that.
     """
-    known = {given, "load_slope", *_from_sums(scene, theory), *_from_the_separation(scene, given)}
-    return _known_by_quadrature(scene, given) and known.issuperset(theory)
-
-
-def surely_reached(scene: Scene, given: str, lowest: float) -> bool:
-    """Tell without integrals whether every surface reaches what is given.
-
-    Parameters
-    ----------
-    scene, given
-        As in `exact_moments`.
-    lowest : float
-        Separation that nearly every surface is above, d/sigma.
-
-    Returns
-    -------
-    bool
-        False where only `exact_moments` can tell, as with a Poisson number of asperities, which may be 0.
-    """
-    if scene.count != "fixed" or scene.n_asperities < 2 or scene.negative_above(lowest) is not None:
-        return False
-    try:
-        check_falling(scene.alone, given, lowest)
-    except ValueError:
-        return False
-    return True
+    m = len(x)
+    known = known if m >= _ENOUGH * (1 + len(known)) else ()
+    columns = np.stack([np.ones(m), *((y - exact) / (y.std() or 1.0) for y, exact in known)], axis=1)
+    fitted = np.linalg.lstsq(columns, x, rcond=1e-9)[0]
+    left, freedom = x - columns @ fitted, max(m - 1 - len(known), 1)
+    return float(fitted[0]), float(np.sqrt(left @ left / freedom / m)), freedom
 
 
 def exact_moments(scene: Scene, given: str, amount: float, theory: Mapping[str, float]) -> Moments:

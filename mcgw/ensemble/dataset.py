@@ -11,7 +11,7 @@ from analytic import PER_AREA
 from analytic.arrays import Array, Ints
 from mcgw.ensemble.intervals import CONFIDENCE, interval_of
 from mcgw.ensemble.labelled import Labelled
-from mcgw.ensemble.results import Held
+from mcgw.ensemble.results import Held, Tables
 from mcgw.formats.sheet import Shown, brief
 from mcgw.machine.terminal import plotted, quantity_and_axes
 from mcgw.scene.scene import Scene
@@ -49,6 +49,14 @@ class Dataset(Shown):
     def labelled(self) -> Labelled:
         """Return all data with axes, units and descriptions, for the file, xarray and pandas alike."""
 
+    @abstractmethod
+    def about(self) -> dict[str, Any]:
+        """Return what is said of all data, for xarray."""
+
+    @abstractmethod
+    def drawn(self) -> Tables:
+        """Return what statistics are made of, for the file."""
+
     def to_xarray(self) -> Any:
         """Return all data as an `xarray.Dataset`.
 
@@ -60,7 +68,7 @@ class Dataset(Shown):
         ImportError
             If xarray is not installed.
         """
-        return self.labelled().to_xarray()
+        return self.labelled().to_xarray(self.about())
 
     def to_dataframe(self) -> Any:
         """Return all data as a `pandas.DataFrame`: a row for each place along the dimensions of `to_xarray`.

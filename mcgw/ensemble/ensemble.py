@@ -1,13 +1,15 @@
 """An ensemble: the sums of every surface, and their statistics over surfaces."""
 
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
 
 import numpy as np
 
 from analytic.arrays import Array, Ints
 from mcgw.ensemble.dataset import Dataset
-from mcgw.ensemble.labelled import Labelled, axes_of, statistics_of, values_of
-from mcgw.ensemble.results import Held, Selected
+from mcgw.ensemble.labelled import Labelled, Variable, axes_of, statistics_of, values_of
+from mcgw.ensemble.results import Held, Selected, Tables
 from mcgw.formats.law_text import law_text
 from mcgw.formats.sheet import Sheet
 from mcgw.formats.table import Column, Table, evenly
@@ -19,6 +21,7 @@ MOST_SHOWN = 100  # separations in a table or figure beside theory
 _MOST_READ = 20_000_000  # numbers that are read for a short look; of more, only how many there are
 _AT = "mean +- stderr, d/sigma ="
 STATISTICS = ("mean", "std")  # of each quantity, kept in place of values, besides covariances
+_COLUMNS = ("column", "other_column")  # of the covariance
 
 
 @dataclass(frozen=True, repr=False)
@@ -151,12 +154,25 @@ class Ensemble(Dataset):
         return self.values("area_fraction")
 
     def labelled(self) -> Labelled:
-        """Return the values of every surface, or with ``keep = "statistics"`` means and deviations."""
+        """Return the values of every surface; with ``keep = "statistics"`` means, deviations, covariances."""
         scene = self.scene
-        about = {"title": scene.title, "scene": scene_text(scene), "sampler": self.sampler}
         if scene.keep != "statistics":
-            return replace(values_of(scene, self.n_surfaces, self.values), attributes=about)
-        return Labelled(statistics_of(self, scene.tables, STATISTICS), axes_of(scene), about)
+            return values_of(scene, self.sums.rows(), partial(self.sums.read, start=0, stop=None))
+        order = ", ".join(f"{name} {len(scene.separations)}" for name in scene.tables)
+        rows = [[self.covariance(one, other) for other in scene.tables] for one in scene.tables]
+        covariance = Variable(_COLUMNS, np.block(rows), "product of units", f"covariance of {order}")
+        columns = Variable(("column",), np.arange(scene.width), "1", "quantity and separation")
+        scales = {name: replace(columns, dims=(name,)) for name in _COLUMNS}
+        variables = {**statistics_of(self, scene.tables, STATISTICS), "covariance": covariance}
+        return Labelled(variables, {**axes_of(scene), **scales})
+
+    def about(self) -> dict[str, Any]:
+        """Return the title, the scene as TOML and the sampler."""
+        return {"title": self.scene.title, "scene": scene_text(self.scene), "sampler": self.sampler}
+
+    def drawn(self) -> Tables:
+        """Return what statistics are made of."""
+        return self.sums.drawn()
 
     def sheet(self) -> Sheet:
         """Return how the ensemble was drawn, and means at the lowest, a middle and the highest separation."""

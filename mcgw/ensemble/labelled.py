@@ -11,6 +11,7 @@ from analytic import Quantity
 from mcgw.formats.table import SEPARATION, Column, Table, optional
 from mcgw.scene.scene import Scene
 
+GROUP = "drawn"  # the one group of a file: what its statistics are made of
 AXES = {  # of tables, in their order: unit and long name
     "point": ("1", "number of the point"),
     "surface": ("1", "number of the surface"),
@@ -45,8 +46,20 @@ class Labelled:
     coordinates: Mapping[str, Variable]
     attributes: Mapping[str, Any] = field(default_factory=dict)
 
-    def to_xarray(self) -> Any:
-        """Return an `xarray.Dataset`.
+    def in_file(self, drawn: Mapping[str, NDArray[Any]], attributes: Mapping[str, Any]) -> "Labelled":
+        """Return what a file holds: these, and in one group what statistics are made of."""
+        coordinates = {
+            name: one if one.values.dtype.kind in "iuf" else _numbered(one)
+            for name, one in self.coordinates.items()
+        }
+        others = [name for name, one in coordinates.items() if one.dims != (name,)]
+        named = {"coordinates": " ".join(others)} if others else {}  # by which xarray knows them
+        scales = {name: one for name, one in coordinates.items() if name not in others}
+        made_of = {f"{GROUP}/{name}": Variable((), values, "", "") for name, values in drawn.items()}
+        return Labelled({**self.variables, **made_of}, {**scales, **coordinates}, {**attributes, **named})
+
+    def to_xarray(self, about: Mapping[str, Any]) -> Any:
+        """Return an `xarray.Dataset` with these attributes.
 
         Raises
         ------
@@ -58,10 +71,10 @@ class Labelled:
             {name: (one.dims, one.values, one.about) for name, one in some.items()}
             for some in (self.variables, self.coordinates)
         )
-        return xarray.Dataset(*both, dict(self.attributes))
+        return xarray.Dataset(*both, dict(about))
 
     def to_dataframe(self) -> Any:
-        """Return a `pandas.DataFrame` of the tables, all of the same axes: a row for each place along them.
+        """Return a `pandas.DataFrame` of the tables with the axes of the first: a row for each place there.
 
         Raises
         ------
@@ -78,8 +91,15 @@ class Labelled:
             index = pandas.Index(places[0], name=first.dims[0])
         else:
             index = pandas.MultiIndex.from_product(places, names=first.dims)
-        columns = {name: one.values.ravel() for name, one in self.variables.items()}
+        alike = {name: one for name, one in self.variables.items() if one.dims == first.dims}
+        columns = {name: one.values.ravel() for name, one in alike.items()}
         return pandas.DataFrame(columns, index=index)
+
+
+def _numbered(one: Variable) -> Variable:
+    """Return a coordinate whose values are texts by their numbers, and these in words."""
+    words = ", ".join(f"{k} {value}" for k, value in enumerate(one.values))
+    return replace(one, values=np.arange(len(one.values)), long_name=f"{one.long_name}: {words}")
 
 
 def axis(name: str, values: Any) -> Variable:

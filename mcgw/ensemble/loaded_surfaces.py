@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from analytic import Hertz, MeasuredHeights, MeasuredRadii, Quantity
+from analytic import SEPARATIONS, Hertz, MeasuredHeights, MeasuredRadii, Quantity
 from analytic.arrays import Array, hold
 from mcgw.ensemble.at_load import NEGATIVE, quantities_at
 from mcgw.ensemble.separation import LOWEST, ManySurfaces, Summits
@@ -122,7 +122,8 @@ def _lowest(scene: Scene, q: Quantity, h: float) -> float:
 
     That is some standard deviations, to first order. What the modulus is there does not matter yet.
     """
-    spread = float(scene.theory.std(q.name, h) / scene.theory.slope(q.name, h))
+    name = "load" if q.name in SEPARATIONS else q.name  # that of a nominal separation follows from the load
+    spread = float(scene.theory.std(name, h) / scene.theory.slope(name, h))
     return max(h - _MARGIN * spread, min(h, float(scene.heights.ppf(np.array(_NOTHING)))))
 
 

@@ -5,16 +5,15 @@ with what, and that is fixed: blocks of a size that the scene decides are added 
 bits do not depend on who drew what, and when.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic.arrays import Array, Ints
-from mcgw.ensemble.results import BLOCK, Tables
+from mcgw.ensemble.results import Tables
 from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads
 
@@ -73,24 +72,6 @@ class Pooled:
         apart -= shift
         return cls(len(table), {name: first[:, None] + shift}, {name: products_of(apart)[..., None]})
 
-    @classmethod
-    def from_block(cls, block: Mapping[str, NDArray[Any]], row: int = 0) -> "Pooled":
-        """From a row of what `block` gave."""
-        tables = {name.removeprefix(BLOCK): table[row] for name, table in block.items()}
-        means = {k.removesuffix(_MEANS): v for k, v in tables.items() if k.endswith(_MEANS)}
-        products = {
-            name: tables[name + _PRODUCTS].reshape(len(mean), *mean.shape) for name, mean in means.items()
-        }
-        return cls(int(tables["n"][0]), means, products)
-
-    def block(self) -> Tables:
-        """As tables of one row, for a block of surfaces: n, means (values, ...), products (values^2, ...)."""
-        tables: Tables = {"n": np.array([self.n])}
-        for name, mean in self.means.items():
-            tables[name + _MEANS] = mean
-            tables[name + _PRODUCTS] = self.products[name].reshape(len(mean) ** 2, *mean.shape[1:])
-        return {BLOCK + name: table[None] for name, table in tables.items()}
-
     def __add__(self, other: "Pooled") -> "Pooled":
         """Statistics of the surfaces of both."""
         n, means, products = self.n + other.n, {}, {}
@@ -119,6 +100,32 @@ class Pooled:
         pairs = list(zip(which, weights, strict=True))
         total = sum(v * w * products[i, j] for i, v in pairs for j, w in pairs)
         return np.asarray(total / (self.n - 1))
+
+
+def tables_of(parts: Sequence[Pooled]) -> Tables:
+    """As tables: n and the number of values of each, then all means and all products, one below the other."""
+    sizes = [(one.n, len(next(iter(one.means.values())))) for one in parts]
+    tables: Tables = {"n": np.array(sizes, dtype=np.int64)}
+    for name in parts[0].means:
+        products = [one.products[name] for one in parts]
+        tables[name + _MEANS] = np.concatenate([one.means[name] for one in parts])
+        tables[name + _PRODUCTS] = np.concatenate([x.reshape(-1, x.shape[-1]) for x in products])
+    return tables
+
+
+def pooled_from(tables: Tables) -> tuple[Pooled, ...]:
+    """From what `tables_of` gave."""
+    found, sizes = [], tables["n"]
+    ends = np.cumsum(sizes[:, 1]), np.cumsum(sizes[:, 1] ** 2)
+    for (n, k), end, last in zip(sizes.tolist(), *ends, strict=True):
+        means = {
+            name.removesuffix(_MEANS): table[end - k : end]
+            for name, table in tables.items()
+            if name.endswith(_MEANS)
+        }
+        products = {name: tables[name + _PRODUCTS][last - k**2 : last].reshape(k, k, -1) for name in means}
+        found.append(Pooled(n, means, products))
+    return tuple(found)
 
 
 @njit(cache=True, fastmath={"reassoc", "contract"})

@@ -12,7 +12,6 @@ from analytic.arrays import Array, Ints
 
 Tables = dict[str, NDArray[Any]]  # numbers of surfaces by name, a row each
 
-BLOCK = "block_"  # begins the names of tables with one row for all surfaces of a block
 CHUNK_ROWS = 256  # surfaces of a chunk of a file; fewer, by powers of two, where a chunk would be too large
 _ROWS = 8192  # surfaces at a time, for ensembles larger than the memory
 
@@ -33,6 +32,10 @@ class Held(ABC):
     def read(self, name: str, start: int, stop: int | None) -> Array:  # noqa: ARG002
         """Rows `start` to `stop` (None: to the end) of a table."""
         raise ValueError(f"{name}: {self.no_more}")
+
+    def drawn(self) -> Tables:
+        """Return what the statistics of surfaces that are not kept are made of, for a file."""
+        return {}
 
     def covariance(self, name: str, other: str) -> Array:  # noqa: ARG002
         """Between all numbers of two tables (divisor M - 1), shape (separations, separations)."""

@@ -103,7 +103,7 @@ class Values(OfScene):
     @property
     def disk(self) -> int:  # type: ignore[override]
         """Bytes of the blocks, and of the file they are merged into."""
-        return 2 * self.joined_bytes(self.n_surfaces)
+        return 2 * 8 * self.scene.n_surfaces * self.scene.width
 
     def joined_bytes(self, surfaces: int) -> int:
         """Return what the file of so many surfaces takes."""

@@ -173,7 +173,7 @@ def solutions(
         Solution(whole, given, float(value), answers_at(whole, at), loaded, k)
         for k, (value, at) in enumerate(zip(values, theory, strict=True))
     ]
-    if draw or any(each.needs_draw for each in found):
+    if draw or not all(each.exact for each in found):
         loaded.draw(tell)
     return found
 

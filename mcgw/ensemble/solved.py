@@ -1,20 +1,19 @@
 """The result of `mcgw.solve`: the state of surfaces at one given load or real area."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.special import stdtrit
 
-from analytic import SEPARATIONS, quantity_of, yielding_share
+from analytic import SEPARATIONS, yielding_share
 from analytic.arrays import Array
 from analytic.at_load import Moments
-from mcgw.ensemble.at_load import GAPS, Answers, all_are_known, answers_at, exact_moments, surely_reached
-from mcgw.ensemble.intervals import FEWEST, interval_column, laws_are_quick
+from mcgw.ensemble.at_load import GAPS, Answers, answers_at, controlled, exact_moments
+from mcgw.ensemble.intervals import FEWEST, laws_are_quick
 from mcgw.formats.sheet import Sheet, Shown
-from mcgw.formats.table import Column, Table
+from mcgw.formats.table import Table
 from mcgw.machine.terminal import plotted
 from mcgw.scene.scene import Scene
 from mcgw.validity.lookup import validity_of
@@ -24,9 +23,6 @@ if TYPE_CHECKING:
     from analytic.distribution import Law
     from mcgw.ensemble.budget import Budget, Corrected
     from mcgw.ensemble.loaded_surfaces import LoadedSurfaces
-
-
-_ENOUGH = 10  # surfaces for each number that a control variate is fitted with
 
 
 @dataclass(frozen=True, repr=False)
@@ -163,15 +159,7 @@ class Solution(Shown):
     @property
     def exact(self) -> bool:
         """Whether the means and the scatter of the answers need no draw."""
-        exact = all_are_known(self.scene, self.given, self.theory)
-        return exact and all(name in self._exact.mean for name in self.theory if name != "load_slope")
-
-    @property
-    def needs_draw(self) -> bool:
-        """Whether surfaces are drawn for the answers, or to tell that one of them has none; cheap if not."""
-        known = all_are_known(self.scene, self.given, self.theory)
-        lowest = self.loaded.lows[self.number]
-        return not (known and surely_reached(self.scene, self.given, lowest)) and not self.exact
+        return all(name in self._exact.mean for name in self.theory if name != "load_slope")
 
     def _estimate(self, name: str) -> tuple[float, float, int]:
         """Mean over specimens of an answer, its standard error, and the degrees of freedom of that."""
@@ -181,30 +169,13 @@ class Solution(Shown):
     @cached_property
     def _drawn_estimates(self) -> dict[str, tuple[float, float, int]]:
         """The same of what is not known exactly."""
-        exact = self._exact.mean
-        controls: list[str] = [
-            name
+        exact, drawn = self._exact.mean, self.surfaces
+        known = [  # of what is given there are rounding errors alone
+            (drawn[name], exact[name])
             for name in ("separation", "conductance_si", "stiffness", "area")
-            if name in exact and name != self.given  # which differs by rounding errors alone
+            if name in exact and name in drawn and name != self.given
         ]
-        return {
-            name: self._controlled(x, exact, controls)
-            for name, x in self.surfaces.items()
-            if name not in exact
-        }
-
-    def _controlled(self, x: Array, exact: dict[str, float], controls: list[str]) -> tuple[float, float, int]:
-        """Mean of what is no sum, less what the surfaces drawn have too much of those that are."""
-        m = len(x)
-        known = {name: self.surfaces[name] for name in controls if name in self.surfaces}
-        if m < _ENOUGH * (1 + len(known)):
-            known = {}
-        off = [(y - exact[name]) / (y.std() or 1.0) for name, y in known.items()]
-        columns = np.stack([np.ones(m), *off], axis=1)
-        fitted = np.linalg.lstsq(columns, x, rcond=1e-9)[0]
-        mean, left = fitted[0], x - columns @ fitted
-        freedom = max(m - 1 - len(known), 1)
-        return float(mean), float(np.sqrt(left @ left / freedom / m)), freedom
+        return {name: controlled(x, known) for name, x in drawn.items() if name not in exact}
 
     @cached_property
     def _exact(self) -> Moments:
@@ -242,17 +213,10 @@ class Solution(Shown):
         exact = name in ("separation", *GAPS, *SEPARATIONS) and moved
         if exact and (law := self.told_by) is not None:
             unit = self.scene.surface.sigma if name in GAPS else 1.0
-            if share not in self._ends:
-                self._ends[share] = law.ppf(ends)
-            low, high = self.theory[name] + unit * (self._ends[share] - self.theory["separation"])
+            low, high = self.theory[name] + unit * (law.ppf(ends) - self.theory["separation"])
         else:
             low, high = np.quantile(self.surfaces[name], ends)
         return float(low), float(high)
-
-    @cached_property
-    def _ends(self) -> dict[float, Array]:
-        """Ends of the law of the separation, by share: each takes a search."""
-        return {}
 
     def asperities_for(self, scatter: float) -> dict[str, float]:
         """Find how many asperities make specimens at this pressure, or area fraction, scatter so little.
@@ -294,6 +258,8 @@ class Solution(Shown):
     @property
     def verdict(self) -> str:
         """Measured error of the model, and whether contacts yield that it takes as elastic, in one line."""
+        from mcgw.ensemble.solved_table import elastic_verdict
+
         return elastic_verdict([self])
 
     def budget(self) -> "Budget":
@@ -350,7 +316,7 @@ class Solution(Shown):
     @cached_property
     def against_elasticity(self) -> Validity:
         """Measured error of the model at this separation."""
-        return against_elasticity([self])
+        return validity_of(self.scene, [self.theory["separation"]])
 
     def plot(self, ax: Any = None) -> Any:
         """Draw how the separation differs from surface to surface; returns the axes."""
@@ -358,18 +324,9 @@ class Solution(Shown):
 
     def sheet(self) -> Sheet:
         """Return the answers, and how specimens differ."""
-        from mcgw.ensemble.budget import yields
+        from mcgw.ensemble.solved_table import sheet_of
 
-        many = f"{'' if self.exact else f'{self._many} '}surfaces of {self.scene.n_asperities} asperities"
-        many += ", drawn from the measured summits" if self.scene.as_measured else ""
-        facts = [("over", many), ("elasticity", self.against_elasticity.brief)]
-        facts += [("yielding", why)] if (why := yields(self.yielding)) else []
-        table = self.table()
-        table = replace(table, columns=tuple(x for x in table.columns if x.name != "infinite"))
-        if np.isnan(table.flat[-1].values).all():
-            table = replace(table, columns=table.columns[:-1])
-        found = [k for k, name in enumerate(self.theory) if name != self.given]
-        return Sheet(table.title, facts, table.at(found))
+        return sheet_of(self)
 
     def table(self, specimens: bool = False) -> Table:
         """Return the mean over specimens, their scatter and the corrected answer, a row for each quantity.
@@ -379,63 +336,6 @@ class Solution(Shown):
         specimens : bool
             Add the range of 90 % of them, for which surfaces are drawn.
         """
-        units = {**dict.fromkeys(GAPS, "m"), "separation": "sigma", **dict.fromkeys(SEPARATIONS, "sigma")}
-        names = list(self.theory)
-        low, high = np.array([self.interval(name) for name in names]).T
-        means = np.array([self.value[name] for name in names])
-        error = np.where(high > low, (high - low) / 4, np.where(high == low, 1e-6 * np.abs(means), np.nan))
-        right, below, above, _ = map(np.array, zip(*map(self.corrected, names), strict=True))
-        off = Column("best_95", (above - below) / 2, form=".1g")
-        columns = [
-            Column("quantity", names),
-            Column("unit", [units.get(name) or self.scene.quantity(name).unit for name in names]),
-            Column("value", means, error=error),
-            interval_column(low, high),
-            Column("std", [self.std[name] for name in names], "std of specimens", form=".2g"),
-        ]
-        if specimens:
-            least, most = np.array([self.specimens(name) for name in names]).T
-            ends = Column("specimen_95", most, form=".4g")
-            words = "90 % of specimens"
-            columns.append(Column("specimen_05", least, words, form=".4g", between=" ... ", beside=ends))
-        infinite = [self.theory[name] for name in names]
-        columns += [
-            Column("infinite", infinite, "infinite surface", form=".5g"),
-            Column(
-                "best",
-                right,
-                "best (95 %)",
-                error=(above - below) / 2,
-                missing="",
-                beside=off,
-                between=" ± ",
-            ),
-        ]
-        return Table(tuple(columns), self.title)
+        from mcgw.ensemble.solved_table import table_of
 
-
-def against_elasticity(solutions: Sequence[Solution]) -> Validity:
-    """Error of the model against elasticity at solutions of one scene, at their effective separations."""
-    return validity_of(solutions[0].scene, [each.theory["separation"] for each in solutions])
-
-
-def elastic_verdict(solutions: Sequence[Solution]) -> str:
-    """Measured error of the model at some solutions of one scene, and whether contacts yield, in one line."""
-    from mcgw.ensemble.budget import MOST_YIELDING, yields
-
-    error = against_elasticity(solutions).verdict
-    if not solutions[0].scene.law.elastic:
-        return error
-    most = max((each.yielding for each in solutions), key=lambda share: np.nan_to_num(share, nan=-1.0))
-    if np.isnan(most):
-        return f"{error}; yielding not looked at: give contact.law.hardness"
-    if most > MOST_YIELDING:
-        return f"Model error: not known, {yields(most)}"
-    return f"{error}; {most:.1%} of the contacts yield"
-
-
-def at_solutions(scene: Scene, solutions: Sequence[Solution]) -> Scene:
-    """Return the scene at the separations of the mean surface in these solutions, in place of their loads."""
-    h = sorted({each.theory["separation"] for each in solutions})
-    loading = [q for q in scene.quantities if not quantity_of(q).unloading] or ["load"]
-    return scene.replace(separations=h, unload_from=None, quantities=loading)
+        return table_of(self, specimens=specimens)

@@ -12,7 +12,7 @@ import numpy as np
 
 from analytic.arrays import Array, Ints
 from mcgw.ensemble.drawing import GoOn, OfScene, always, block_size, drawn_blocks, kept
-from mcgw.ensemble.pooled import Pooled
+from mcgw.ensemble.pooled import Pooled, pooled_from, tables_of
 from mcgw.ensemble.results import Held, Tables, joined
 from mcgw.machine.memory import check_memory
 from mcgw.scene.scene import Scene
@@ -55,6 +55,10 @@ class Summarised(Held):
         first = k * self.scene.tables.index(name)
         return np.arange(first, first + k)
 
+    def drawn(self) -> Tables:
+        """Return the tables of its parts."""
+        return tables_of(self.parts)
+
     def mean_and_std(self, name: str) -> tuple[Array, Array]:
         """Mean and standard deviation (divisor M - 1)."""
         columns, m = self._columns(name), self.rows()
@@ -90,7 +94,7 @@ class Statistics(OfScene):
         return max(int(min(_ROWS, _BYTES // (8 * self.scene.width), most)), 1)
 
     def tables(self, first: int, stop: int, go_on: GoOn = always) -> Tables:
-        """Return the statistics of a block, as tables of one row."""
+        """Return the statistics of a block."""
         size, piece, parts = block_size(self.scene, self.sampler), self._piece, list[Pooled]()
         for start in range(first, stop, piece):
             end = min(start + piece, stop)
@@ -101,12 +105,12 @@ class Statistics(OfScene):
             parts.append(Pooled.of_columns(NUMBERS, table))
             if not go_on(end):
                 break
-        return reduce(add, parts).block()
+        return tables_of([reduce(add, parts)])
 
     def held(self, blocks: Iterable[Tables]) -> Summarised:
         """All of them: whole blocks added up in their order, and the rest."""
         whole, rest = list[Pooled](), list[Pooled]()
-        for block in map(Pooled.from_block, blocks):
+        for (block,) in map(pooled_from, blocks):
             if block.n % self.rows:
                 rest = [block]
             else:

@@ -77,9 +77,8 @@ def drive(
     """Have an executor draw every block, in any order, and call `done` with each block and its result.
 
     `task` is called with what `arguments` gives for a block. A block that the executor lost, as with its
-    worker, is submitted once more, alone; if it is lost again, it is given up and the others are drawn all
-    the same. At most `in_hand` blocks are submitted at a time. When a signal has come, which is asked several
-    times a second, this returns.
+    worker, is submitted once more, alone. At most `in_hand` blocks are submitted at a time. When a signal has
+    come, which is asked several times a second, this returns.
 
     Raises
     ------
@@ -88,8 +87,7 @@ def drive(
     Exception
         As the task raises.
     """
-    todo, again, given_up = deque(blocks), deque[_Block](), list[tuple[_Block, str]]()
-    lost, running = set[_Block](), dict[Future[Any], _Block]()
+    todo, lost, running = deque(blocks), set[_Block](), dict[Future[Any], _Block]()
     in_hand = getattr(executor, "in_hand", in_hand)
 
     def submit(block: _Block) -> None:
@@ -99,11 +97,9 @@ def drive(
             raise RunError(f"the executor takes no more work ({_in_words(error)}); {_RESUME}") from None
 
     try:
-        while (todo or again or running) and signals.number is None:
-            while todo and len(running) < in_hand and not again:
+        while (todo or running) and signals.number is None:
+            while todo and len(running) < (1 if todo[0] in lost else in_hand):
                 submit(todo.popleft())
-            if again and not running:
-                submit(again.popleft())
             wait(running, timeout=0.2, return_when=FIRST_COMPLETED)
             future = next((one for one in running if one.done()), None)
             if future is None:
@@ -114,9 +110,11 @@ def drive(
             except CancelledError:  # by nobody here: not a worker, but its executor is lost
                 raise RunError(f"the executor takes no more work (it dropped {block}); {_RESUME}") from None
             except Exception as failure:
-                given_up += [(block, _in_words(failure))] if block in lost else []
-                again.extend(() if block in lost else [block])
+                if block in lost:
+                    told = f"{block} were lost twice by the executor ({_in_words(failure)}); {_RESUME}"
+                    raise RunError(told) from None
                 lost.add(block)
+                todo.appendleft(block)
                 continue
             if error is not None:
                 raise error
@@ -130,10 +128,6 @@ def drive(
     finally:
         for future in running:
             future.cancel()
-    if given_up and signals.number is None:
-        block, why = given_up[0]
-        more = f", as were {len(given_up) - 1} other blocks" if len(given_up) > 1 else ""
-        raise RunError(f"{block} were lost twice by the executor ({why}){more}; {_RESUME}")
 
 
 def _in_words(error: BaseException) -> str:

@@ -3,34 +3,34 @@
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from itertools import groupby
+from operator import itemgetter
 from pathlib import Path
 from threading import Event
 from time import perf_counter
 from typing import TYPE_CHECKING
 
+from mcgw.ensemble.labelled import Labelled, values_of
 from mcgw.ensemble.results import Tables
 from mcgw.errors import RunError, StoppedError, StoreError, in_one_line
 from mcgw.formats.files import state_of
 from mcgw.formats.gate import open_h5
 from mcgw.jobs.driver import By, Signals, drive, heed_signals
-from mcgw.jobs.job import Job, commit_block, draw_block
-from mcgw.machine.in_threads import Items
-from mcgw.store.ensembles import described
+from mcgw.jobs.worker import commit_block, draw_block
+from mcgw.store.blocks import Span
+from mcgw.store.ensembles import described, open_results, statistics_in
 from mcgw.store.h5_reading import pieces_of
-from mcgw.store.h5_writing import Contents, Rows
-from mcgw.store.layout import contents_of_values, read_statistics
+from mcgw.store.h5_writing import Rows
 from mcgw.store.lock import locked, parts_of
-from mcgw.store.place import drop_leftovers, put, tidy
-from mcgw.store.run_folder import RECORD, RunFolder, Span, remove_run
+from mcgw.store.place import check_room, drop_leftovers, finished, put, tidy
+from mcgw.store.run_plan import RECORD, Plan, remove_run
 
 if TYPE_CHECKING:
     from mcgw.ensemble.ensemble import Ensemble
     from mcgw.sweeps.sweep import Sweep
 
-_ROUNDS = 3  # attempts to merge, if shards turn out damaged
 
-
-def make(job: Job, by: By, part: tuple[int, int] | None = None) -> int:
+def make(plan: Plan, by: By, part: tuple[int, int] | None = None) -> int:
     """Draw what is missing of a file and make it; or of its blocks a share, for `mcgw.merge` to make it of.
 
     Returns
@@ -45,38 +45,37 @@ def make(job: Job, by: By, part: tuple[int, int] | None = None) -> int:
     RunError
         If it could not be finished; what is done is kept.
     """
-    job.check()
-    run, total = job.record, job.total
-    if job.done() < total:
+    check_room(plan)
+    if finished(plan) < plan.total:
         if part:
-            tidy(run.path)
-        with heed_signals() as signals, locked(run.folder, shared=part is not None) as new:
+            tidy(plan.path)
+        with heed_signals() as signals, locked(plan.folder, shared=part is not None) as new:
             by = replace(by, signals=signals)
             if not (part or new):
-                drop_leftovers(run.path)
-            if job.done() < total:  # no other process was faster
+                drop_leftovers(plan.path)
+            if finished(plan) < plan.total:  # no other process was faster
                 try:
                     if part:
-                        return _share(job, by, part)
-                    one, begun = job.reducers[0], (run.folder / RECORD).exists()
-                    if by.executor is None and not run.axes and total <= one.rows > 1 and not begun:
-                        _at_once(job, by)
+                        return _share(plan, by, part)
+                    rows, begun = plan.reducers[0].rows, (plan.folder / RECORD).exists()
+                    if by.executor is None and not plan.axes and plan.total <= rows > 1 and not begun:
+                        _at_once(plan, by)
                     else:
-                        _in_blocks(job, by)
+                        _in_blocks(plan, by)
                 except OSError as error:
                     raise RunError(
-                        f"{in_one_line(error)}; finished blocks are kept in {run.folder}; once this is "
+                        f"{in_one_line(error)}; finished blocks are kept in {plan.folder}; once this is "
                         "fixed, the same command resumes"
                     ) from None
                 return 0
-    tidy(run.path)
-    by.progress(sum(one.n_surfaces * one.work for one in job.reducers))
+    tidy(plan.path)
+    by.progress(sum(one.n_surfaces * one.work for one in plan.reducers))
     return 0
 
 
-def _at_once(job: Job, by: By) -> None:
+def _at_once(plan: Plan, by: By) -> None:
     """All surfaces of a scene in this thread, and their file in one step. Only with the lock."""
-    run, started = job.record, perf_counter()
+    started = perf_counter()
 
     def go_on(done: int) -> bool:
         by.signals.check("nothing was saved, because the run is one block; the same command starts it again")
@@ -84,55 +83,50 @@ def _at_once(job: Job, by: By) -> None:
         return True
 
     by.progress(0)
-    tables = job.draw(Span(0, job.total), by.threads, go_on)
-    before = state_of(run.path)
-    job.done()  # else the file is another's
-    put(run.path, job.contents([(0, tables)], perf_counter() - started), before)
+    tables = plan.draw(Span(0, plan.total), by.threads, go_on)
+    before = state_of(plan.path)
+    finished(plan)  # else the file is another's
+    found = plan.dataset([plan.reducers[0].held([tables])])
+    drawn = found.drawn() if plan.whole else None
+    put(plan, plan.contents(found.labelled(), perf_counter() - started, drawn), before)
 
 
-def _in_blocks(job: Job, by: By) -> None:
+def _in_blocks(plan: Plan, by: By) -> None:
     """Draw missing shards, then make the file. Needs the lock."""
-    started = job.record.begin()
-    started.freeze()
-    for _ in range(_ROUNDS):
-        shards = started.sweep()
-        done = job.done()
-        n, wanted = max((shard.span.stop for shard in shards), default=0), started.plan.total
-        if n > wanted:  # blocks beyond those requested are kept
-            raise StoreError(
-                f"{started.folder}: holds surfaces up to number {n} already, more than ensemble.n_surfaces = "
-                f"{wanted}; ask for as many or more, or choose another -o"
-            )
-        _draw_missing(job, started, started.missing(done, shards), by)
-        if merge_once(replace(job, record=started), by.signals):
-            return
-    raise RunError(f"{job.record.folder}: shards are repeatedly damaged; is the disk failing?")
+    plan.begin()
+    shards, done = plan.sweep(), finished(plan)
+    n = max((shard.span.stop for shard in shards), default=0)
+    if n > plan.total:  # blocks beyond those requested are kept
+        raise StoreError(
+            f"{plan.folder}: holds surfaces up to number {n} already, more than ensemble.n_surfaces = "
+            f"{plan.total}; ask for as many or more, or choose another -o"
+        )
+    _draw_missing(plan, plan.missing(done, shards), by)
+    make_file(plan, by.signals)
 
 
-def _share(job: Job, by: By, part: tuple[int, int]) -> int:
+def _share(plan: Plan, by: By, part: tuple[int, int]) -> int:
     """Draw a share of the missing blocks; return how many surfaces are still missing. Needs the lock."""
-    started, done = job.record.begin(), job.done()
-    missing = started.missing(done, started.shards())
-    _draw_missing(job, started, missing, by, part)
-    return sum(span.n for span in started.missing(done, started.shards()))
+    plan.begin(alone=False)
+    done = finished(plan)
+    _draw_missing(plan, plan.missing(done, plan.shards()), by, part)
+    return sum(span.n for span in plan.missing(done, plan.shards()))
 
 
-def _draw_missing(
-    job: Job, started: RunFolder, spans: list[Span], by: By, part: tuple[int, int] | None = None
-) -> None:
+def _draw_missing(plan: Plan, spans: list[Span], by: By, part: tuple[int, int] | None = None) -> None:
     """Draw and store every missing block, or a job's share of them: every so many-th block."""
-    plan, left = started.plan, sum(span.n for span in spans)
-    done = sum(map(job.work, plan.missing(spans)))
+    left = sum(span.n for span in spans)
+    done = sum(map(plan.work, plan.blocks.missing(spans)))
     if part:
         number, of = part
-        spans = [span for span in spans if plan.number(span) % of == number - 1]
-    folder, ended = str(started.folder.resolve()), Event()
+        spans = [span for span in spans if plan.blocks.number(span) % of == number - 1]
+    folder, ended = str(plan.folder.resolve()), Event()
 
     def note(span: Span, write: Callable[[], object] | None) -> None:
         nonlocal done, left
         if write:  # in this thread, while the other one draws the next block
             write()
-        done, left = done + job.work(span), left - span.n
+        done, left = done + plan.work(span), left - span.n
         by.progress(done)
 
     def go_on(_: int) -> bool:
@@ -151,7 +145,7 @@ def _draw_missing(
             finally:
                 ended.set()
     by.signals.check(
-        f"{plan.total - left} of {plan.total} surfaces are kept in {started.folder}; the same command resumes"
+        f"{plan.total - left} of {plan.total} surfaces are kept in {plan.folder}; the same command resumes"
     )
 
 
@@ -189,8 +183,6 @@ def merge(path: str | Path) -> "Ensemble | Sweep":
     (0, 20)
     ([20, 0], (2,))
     """
-    from mcgw.sweeps import open_results  # not needed by a run that merges its own blocks
-
     path = Path(path)
     tidy(path)
     if not parts_of(path).exists():
@@ -198,36 +190,35 @@ def merge(path: str | Path) -> "Ensemble | Sweep":
             return open_results(path)
         raise StoreError(f"{path}: neither this file nor its blocks ({parts_of(path)}) exist")
     with heed_signals() as signals, locked(parts_of(path)):
-        started = RunFolder.open(parts_of(path))
-        job = replace(Job.again(started), record=started)
-        gaps = started.missing(job.done(), started.sweep())
+        plan = Plan.open(parts_of(path))
+        gaps = plan.missing(finished(plan), plan.sweep())
         if gaps:
             raise RunError(
-                f"{path}: {sum(span.n for span in gaps)} of {started.plan.total} surfaces are missing, "
+                f"{path}: {sum(span.n for span in gaps)} of {plan.total} surfaces are missing, "
                 f"from {gaps[0].first} on; run the jobs that make them again"
             )
-        if not merge_once(job, signals):
-            raise RunError(f"{started.folder}: a shard is damaged; run the jobs again to redraw it")
+        make_file(plan, signals)
     return open_results(path)
 
 
-def merge_once(job: Job, signals: Signals) -> bool:
-    """Make the file and remove the shards; False if a shard turned out damaged. Only with the lock."""
-    run, before = job.record, state_of(job.record.path)
-    job.done()
+def make_file(plan: Plan, signals: Signals) -> None:
+    """Make the file of the shards, and remove them. Only with the lock."""
+    before = state_of(plan.path)
+    finished(plan)
 
     def check() -> None:
-        signals.check(f"all blocks are kept in {run.folder}; the same command merges them")
+        signals.check(f"all blocks are kept in {plan.folder}; the same command merges them")
 
     try:
-        put(run.path, _merged(job, check), before, check)
-    except StoreError:
-        return False
-    remove_run(run.folder)  # what identifies the run last
-    return True
+        put(plan, _merged(plan, check), before, check)
+    except StoreError as error:
+        raise RunError(
+            f"{plan.folder}: a shard is damaged; run the jobs again to redraw it ({error})"
+        ) from None
+    remove_run(plan.folder)  # what identifies the run last
 
 
-def _merged(job: Job, check: Callable[[], None]) -> Contents:
+def _merged(plan: Plan, check: Callable[[], None]) -> Labelled:
     """Return what the surfaces of the file that is there, and then those of the shards, make.
 
     Raises
@@ -235,39 +226,42 @@ def _merged(job: Job, check: Callable[[], None]) -> Contents:
     StoreError
         If a shard is missing or damaged.
     """
-    run = job.record
-    held, before, seconds = _before(run)
-    shards = [shard for shard in run.shards(numbers=False) if shard.span.first >= held]
+    held, parts, seconds = _before(plan)
+    shards = [shard for shard in plan.shards(numbers=False) if shard.span.first >= held]
     ends = [held, *(shard.span.stop for shard in shards)]
-    if ends != [*(shard.span.first for shard in shards), run.plan.total]:
-        raise StoreError(f"{run.folder}: blocks are missing")
+    if ends != [*(shard.span.first for shard in shards), plan.total]:
+        raise StoreError(f"{plan.folder}: blocks are missing")
     seconds += sum(shard.seconds for shard in shards)
 
     def blocks() -> Iterator[tuple[int, Tables]]:
-        yield from ((0, block) for block in before)
+        yield from ((0, part) for part in parts)
         for shard in shards:
             check()
-            yield run.plan.group(shard.span)[0], shard.tables()
+            yield plan.blocks.group(shard.span)[0], shard.tables()
 
-    def pieces() -> Items[Tables]:
+    def pieces() -> Iterator[Tables]:
         if held:
-            with open_h5(run.path) as file:
-                yield from pieces_of(file, job.written.scene.tables if job.written else ())
+            with open_h5(plan.path) as file:
+                yield from pieces_of(file, plan.scene.tables)
         yield from (shard.tables() for shard in shards)
 
-    if run.plan.whole or not job.written:
-        return job.contents(blocks(), seconds)
-    rows = Rows(run.plan.total, pieces)
-    return contents_of_values(job.written, lambda _: rows, **job.about(seconds))
+    if not plan.whole:
+        rows = Rows(plan.total, pieces)
+        return plan.contents(values_of(plan.scene, plan.total, lambda _: rows), seconds)
+    groups = zip(plan.reducers, groupby(blocks(), itemgetter(0)), strict=True)
+    found = plan.dataset([one.held(tables for _, tables in some) for one, (_, some) in groups])
+    return plan.contents(found.labelled(), seconds, found.drawn())
 
 
-def _before(run: RunFolder) -> tuple[int, list[Tables], float]:
+def _before(plan: Plan) -> tuple[int, list[Tables], float]:
     """Of the file that is there: surfaces not drawn again, blocks of statistics, seconds that all took."""
-    if run.axes or not run.path.exists():
+    if plan.axes or not plan.path.exists():
         return 0, [], 0.0
-    attributes, scene = described(run.path)
-    if not run.plan.whole:
+    attributes, scene = described(plan.path)
+    if not plan.whole:
         return scene.n_surfaces, [], attributes["wall_seconds"]
-    ((_, size),) = run.plan.groups
-    parts = [part for part in read_statistics(run.path, scene).parts if part.n % size == 0]
-    return sum(part.n for part in parts), [part.block() for part in parts], attributes["wall_seconds"]
+    from mcgw.ensemble.pooled import tables_of  # for those scenes alone
+
+    ((_, size),) = plan.blocks.groups
+    parts = [part for part in statistics_in(plan.path, scene).parts if part.n % size == 0]
+    return sum(part.n for part in parts), [tables_of([part]) for part in parts], attributes["wall_seconds"]

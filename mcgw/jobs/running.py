@@ -10,13 +10,13 @@ from mcgw.ensemble.drawing import use_threads
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import checkpoints, forecast, without_rule
 from mcgw.jobs.driver import By, check_how
-from mcgw.jobs.job import Job, as_recorded
 from mcgw.jobs.making import make
 from mcgw.machine.progress import Progress, told
 from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import Scene, storable
-from mcgw.store.ensembles import FileResults, open_ensemble
-from mcgw.store.place import with_recorded_seed
+from mcgw.store.ensembles import FileResults, open_ensemble, open_sweep
+from mcgw.store.place import as_recorded
+from mcgw.store.run_plan import Plan
 
 if TYPE_CHECKING:
     from mcgw.sweeps.sweep import Sweep
@@ -107,17 +107,17 @@ def run(
         by = By(executor, threads, lambda done: tell(done, total))
         scene = as_recorded(scene, path)
         if part:
-            return make(Job.of(without_rule(scene) if scene.rel_err is not None else scene, path), by, part)
+            return make(Plan.of(without_rule(scene) if scene.rel_err is not None else scene, path), by, part)
         started = monotonic()
         ruled = scene.rel_err is not None or scene.max_seconds is not None
         for stage in _stages(scene, path) if ruled else (scene,):
-            job = Job.of(stage, path)
-            make(job, by)
+            plan = Plan.of(stage, path)
+            make(plan, by)
             if scene.max_seconds is not None and monotonic() - started > scene.max_seconds:
                 break
-    if job.written is None or scene.keep == "statistics":
+    if plan.whole:
         return open_ensemble(path)
-    return Ensemble(job.written.scene, job.written.sampler, FileResults(path))
+    return Ensemble(plan.scene, plan.sampler, FileResults(path))
 
 
 def _stages(scene: Scene, path: Path) -> Iterator[Scene]:
@@ -241,7 +241,6 @@ def sweep(
     array([1.71, 1.86, 1.93])
     """
     from mcgw.sweeps.axes import axes_of  # of which a run needs nothing
-    from mcgw.sweeps.file import open_sweep
     from mcgw.sweeps.groups import draw, weighted
     from mcgw.sweeps.points import Asked
 
@@ -258,10 +257,10 @@ def sweep(
             asked = Asked.of(scene, axes)
             return asked.answered(draw(asked.groups, tell))
     path = Path(path)
-    scene = with_recorded_seed(scene, path)
+    scene = as_recorded(scene, path)
     part = check_how(executor, threads, shard)
     with told(progress, "surfaces") as tell:
         asked = Asked.from_texts(*Asked.of(scene, axes).texts())  # as workers read it
-        job = Job.of_sweep(asked, path)
-        left = make(job, By(executor, threads, weighted(job.reducers, tell)), part)
+        plan = Plan.of_sweep(asked, path)
+        left = make(plan, By(executor, threads, weighted(plan.reducers, tell)), part)
     return left if part else open_sweep(path)

@@ -5,14 +5,11 @@ that has just come free, one after the other, and move them to another core only
 
 No loop of the sampler is compiled to run in parallel: numba's threads take as long to wake, and not all of
 its kinds may be called from several threads at once.
-
-An iterator that works on the next item while the last one is used.
 """
 
-from collections.abc import Callable, Generator, Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import closing
-from itertools import chain, islice, pairwise
+from itertools import chain, pairwise
 from typing import TypeVar
 
 import numpy as np
@@ -20,7 +17,6 @@ from numba import get_num_threads, set_num_threads
 
 _Item = TypeVar("_Item")
 _Result = TypeVar("_Result")
-Items = Generator[_Item, None, None]
 
 
 def in_threads(call: Callable[[_Item], _Result], items: Sequence[_Item], *, least: int = 2) -> list[_Result]:
@@ -52,20 +48,3 @@ def pieces(n: int, least: int) -> list[tuple[int, int]]:
     groups = -(-n // least)
     ends = np.linspace(0, groups, min(get_num_threads(), max(groups, 1)) + 1).astype(np.int64) * least
     return list(pairwise(np.minimum(ends, n).tolist()))
-
-
-def one_ahead(items: Items[_Item]) -> Items[_Item]:
-    """Yield the same items in order, each made in another thread while the previous one is used.
-
-    An error is raised in place of its item. The source is closed together with this generator.
-    """
-    with closing(items), ThreadPoolExecutor(1, thread_name_prefix="mcgw-ahead") as thread:
-        coming = thread.submit(_next, items)
-        while found := coming.result():
-            coming = thread.submit(_next, items)
-            yield from found
-
-
-def _next(items: Items[_Item]) -> list[_Item]:
-    """Return the next item in a list; an empty list at the end."""
-    return list(islice(items, 1))

@@ -8,7 +8,8 @@ import numpy as np
 from analytic import Nayak, cooper_mikic_yovanovich, mean_absolute_slope, mikic_elastic
 from analytic.arrays import Array
 from mcgw.ensemble.at_load import GAPS
-from mcgw.ensemble.solved import Solution, elastic_verdict
+from mcgw.ensemble.solved import Solution
+from mcgw.ensemble.solved_table import elastic_verdict
 from mcgw.formats.table import SEPARATION, Column, Table, joined
 from mcgw.scene.in_words import contact_facts, joint_text
 from mcgw.scene.scene import Scene

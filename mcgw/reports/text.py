@@ -1,7 +1,6 @@
 """Ensembles, sweeps and comparisons with theory as plain text."""
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,7 +14,7 @@ from mcgw.formats.table import SEPARATION, Column, Table, stacked
 from mcgw.machine.terminal import one_line
 from mcgw.scene.in_words import accuracy_facts, contact_facts
 from mcgw.statistics.comparison import Comparison
-from mcgw.store.run_folder import RunFolder
+from mcgw.store.run_plan import Plan
 from mcgw.sweeps.axes import Axes
 
 if TYPE_CHECKING:
@@ -136,11 +135,11 @@ def summary_of(
     return "\n".join(lines), result.table
 
 
-def progress_of(run: RunFolder, path: Path) -> str:
+def progress_of(plan: Plan) -> str:
     """How far a sweep has come."""
-    axes, total = Axes.from_text(run.axes), run.plan.total
-    missing = sum(span.n for span in run.missing(0, run.shards()))
+    axes, total = Axes.from_text(plan.axes), plan.total
+    missing = sum(span.n for span in plan.missing(0, plan.shards()))
     return (
-        f"{path}: a sweep of {axes.size} points over {', '.join(axes.keys)}, not finished: {total - missing} "
-        f"of {total} surfaces are drawn; run mcgw sweep again to resume"
+        f"{plan.path}: a sweep of {axes.size} points over {', '.join(axes.keys)}, not finished: "
+        f"{total - missing} of {total} surfaces are drawn; run mcgw sweep again to resume"
     )

@@ -1,25 +1,30 @@
-"""Ensemble files: opened and verified; the schema stands in `mcgw.store`.
+"""Files of results, opened and verified: ensembles, sweeps, and what a run in progress has so far.
 
 The sums of an ensemble where they lie: in its file, or in the shards of a run in progress.
 """
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.results import Held, Results
+from mcgw.ensemble.results import Results
 from mcgw.errors import StoreError
 from mcgw.formats.gate import open_h5
 from mcgw.scene.scene import Scene
-from mcgw.scene.scene_file import scene_from, scene_text
-from mcgw.store.h5_reading import examine, look
-from mcgw.store.layout import read_statistics
+from mcgw.scene.scene_file import scene_from
+from mcgw.store.blocks import Shard
+from mcgw.store.h5_reading import drawn_tables, examine, look
+from mcgw.store.h5_writing import RUN_TYPE
 from mcgw.store.lock import parts_of
-from mcgw.store.run_folder import RECORD, RunFolder, Shard
+from mcgw.store.run_plan import RECORD, Plan
+
+if TYPE_CHECKING:
+    from mcgw.ensemble.summarised import Summarised
+    from mcgw.sweeps.sweep import Sweep
 
 
 def open_ensemble(path: str | Path) -> Ensemble:
@@ -52,75 +57,116 @@ def open_ensemble(path: str | Path) -> Ensemble:
     """
     path = Path(path)
     if not path.exists() and parts_of(path).is_dir():
-        run = _run_of(path)
-        shards = tuple(run.shards())
+        plan = _begun(path)
+        shards = tuple(plan.shards())
         if not shards:
             raise StoreError(f"{path}: no block of its run is finished yet")
-        if run.scene.keep != "statistics":
-            return Ensemble(run.scene, run.sampler, ShardResults(shards))
-        from mcgw.ensemble.simulation import reducer_of  # for those scenes alone
-
+        if not plan.whole:
+            return Ensemble(plan.scene, plan.sampler, ShardResults(shards))
         blocks = (shard.tables() for shard in shards)  # each read when its turn comes
-        return Ensemble(run.scene, run.sampler, reducer_of(run.scene).held(blocks))
+        return Ensemble(plan.scene, plan.sampler, plan.reducers[0].held(blocks))
     attributes, scene = described(path)
     if "axes" in attributes:
         raise StoreError(f"{path}: holds a sweep; mcgw.open_sweep opens it, mcgw compare and show take it")
-    results: Held = FileResults(path)
-    if scene.keep == "statistics":
-        results = read_statistics(path, scene)
-    return Ensemble(scene, str(attributes["sampler"]), results)
-
-
-def read_attributes(path: Path) -> dict[str, Any]:
-    """Root attributes of an ensemble file; of a run in progress, those that are known.
-
-    Raises
-    ------
-    StoreError
-        If it is not an ensemble file, damaged, or of another format.
-    """
-    if path.exists() or not parts_of(path).is_dir():
-        return described(path)[0]
-    run = _run_of(path)
-    seconds = sum(shard.seconds for shard in run.shards())
-    known = {"versions": run.drawn_with, "commit": "unknown", "cpu": "its workers", "wall_seconds": seconds}
-    return {
-        **known,
-        "scene": scene_text(run.scene),
-        "sampler": run.sampler,
-        "complete": False,
-        "digest": "none until it is complete",
-        "date": run.date,
-    }
-
-
-def unfinished_sweep(path: Path) -> RunFolder | None:
-    """Return the folder of a sweep that is not yet in its file, if there is one."""
-    if path.exists() or not (parts_of(path) / RECORD).is_file():
-        return None
-    run = RunFolder.open(parts_of(path))
-    return run if run.axes else None
-
-
-def _run_of(path: Path) -> RunFolder:
-    """Return the run that makes a file; one that is a single block leaves no record."""
-    if not (parts_of(path) / RECORD).exists():
-        raise StoreError(f"{path}: no block of its run is finished yet")
-    run = RunFolder.open(parts_of(path))
-    if run.axes:
-        raise StoreError(
-            f"{path}: is an unfinished sweep; mcgw show prints its progress, mcgw sweep resumes it"
-        )
-    return run
+    held = statistics_in(path, scene) if scene.keep == "statistics" else FileResults(path)
+    return Ensemble(scene, str(attributes["sampler"]), held)
 
 
 def described(path: Path) -> tuple[dict[str, Any], Scene]:
-    """Attributes and scene of a file that is as it was written."""
+    """Attributes and scene of a file that is as it was written; of a sweep what its points come from."""
     attributes = {**examine(path), "complete": True}
     try:
         return attributes, scene_from(str(attributes["scene"]))
     except ValueError as error:
         raise StoreError(f"{path}: its scene cannot be read: {str(error).splitlines()[0]}") from None
+
+
+def statistics_in(path: Path, scene: Scene) -> "Summarised":
+    """Return what a file of statistics holds."""
+    from mcgw.ensemble.pooled import pooled_from  # for those scenes alone
+    from mcgw.ensemble.summarised import Summarised
+
+    return Summarised(scene, pooled_from(drawn_tables(path)))
+
+
+def open_sweep(path: str | Path) -> "Sweep":
+    """Open the file of a sweep.
+
+    Parameters
+    ----------
+    path : str or Path
+        Written by `mcgw.sweep`.
+
+    Returns
+    -------
+    Sweep
+        In memory; the scene of a point is made when it is asked for.
+
+    Raises
+    ------
+    StoreError
+        If it is not the file of a sweep, damaged, or of another format.
+
+    Examples
+    --------
+    >>> import mcgw, tempfile
+    >>> surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    >>> scene = mcgw.Scene(surface, separations=[0, 1, 2], n_surfaces=20, seed=1)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     sweep = mcgw.sweep(scene, {"grading.gamma": [1.0, 2.0]}, path=f"{folder}/gamma.h5")
+    ...     mcgw.open_sweep(f"{folder}/gamma.h5").shape
+    (2,)
+    """
+    from mcgw.sweeps.points import sweep_of  # imports the samplers
+
+    path = Path(path)
+    said = read_attributes(path)
+    if "axes" not in said:
+        raise StoreError(f"{path}: not the file of a sweep; mcgw.open_ensemble opens it")
+    return sweep_of(said["scene"], said["axes"], drawn_tables(path))
+
+
+def open_results(path: Path) -> "Ensemble | Sweep":
+    """Open an ensemble, a sweep or a run in progress; errors as of `open_ensemble` and `open_sweep`."""
+    return (open_sweep if "axes" in read_attributes(path) else open_ensemble)(path)
+
+
+def read_attributes(path: Path) -> dict[str, Any]:
+    """Root attributes of a file of results; of a run in progress, those that are known.
+
+    Raises
+    ------
+    StoreError
+        If it is not such a file, damaged, or of another format.
+    """
+    if path.exists() or not parts_of(path).is_dir():
+        return described(path)[0]
+    plan = _begun(path)
+    said = look(plan.folder / RECORD, RUN_TYPE)
+    seconds = sum(shard.seconds for shard in plan.shards())
+    known = {"versions": plan.drawn_with, "commit": "unknown", "cpu": "its workers", "wall_seconds": seconds}
+    known |= {"complete": False, "digest": "none until it is complete"}
+    return {**{key: said[key] for key in ("scene", "sampler", "date")}, **known}
+
+
+def unfinished_sweep(path: Path) -> Plan | None:
+    """Return what a sweep is that is not yet in its file, if there is one."""
+    if path.exists() or not (parts_of(path) / RECORD).is_file():
+        return None
+    plan = Plan.open(parts_of(path))
+    return plan if plan.axes else None
+
+
+def _begun(path: Path) -> Plan:
+    """Return the run that makes a file; one that is a single block leaves no record."""
+    if not (parts_of(path) / RECORD).exists():
+        raise StoreError(f"{path}: no block of its run is finished yet")
+    plan = Plan.open(parts_of(path))
+    if plan.axes:
+        raise StoreError(
+            f"{path}: is an unfinished sweep; mcgw show prints its progress, mcgw sweep resumes it"
+        )
+    return plan
 
 
 def verify(path: Path) -> tuple[str, str]:

@@ -1,8 +1,8 @@
 """The one reader of what `mcgw.store.h5_writing` writes, and what files must be before they are read.
 
-They are plain tables of 64-bit numbers at the root or in one group, and none is a link. That they are all
-inside the file, and declare no more than it holds, is looked at by `mcgw.formats.gate`. A checksum is no
-signature, so that is looked at whoever wrote the file.
+They are tables of 64-bit numbers at the root or in one group. That they are all inside the file, and declare
+no more than it holds, is looked at by `mcgw.formats.gate`. A checksum is no signature, so that is looked at
+whoever wrote the file.
 """
 
 import math
@@ -16,11 +16,12 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from mcgw.ensemble.labelled import GROUP
 from mcgw.ensemble.results import Tables
 from mcgw.errors import StoreError
 from mcgw.formats.gate import open_h5
 from mcgw.formats.named_files import open_regular
-from mcgw.store.h5_writing import FILETYPE, FORMAT, GROUP, MOST_TEXT, checksum, sha_of
+from mcgw.store.h5_writing import FILETYPE, FORMAT, MOST_TEXT, checksum, sha_of
 
 LARGE = 2**30  # bytes of a file, from which on its numbers are compared with their checksums on request alone
 _ATTRIBUTES = (  # that this program writes; another one may add its own, which are not looked at
@@ -157,37 +158,22 @@ def _check_format(attributes: dict[str, Any], filetype: str) -> None:
 
 
 def table_names(file: h5py.File) -> list[str]:
-    """Names of the tables of an open file, in order, each plain.
+    """Names of the tables of an open file, in order, those of its group too.
 
     Raises
     ------
     StoreError
-        If there are too many, a link that is not hard, a group but `GROUP`, or a type but float64 or int64.
+        If one is none of 64-bit numbers, or there are too many.
     """
-    names = [name for name in _hard(file, "") if name != GROUP]
-    if GROUP in file:
-        if not isinstance(file[GROUP], h5py.Group):
-            raise StoreError(f"{GROUP}: not a group")
-        names += _hard(file[GROUP], f"{GROUP}/")
+    names = [name for name in file if name != GROUP]
+    names += [f"{GROUP}/{name}" for name in file.get(GROUP, ())]
+    if len(names) > _MOST_TABLES:
+        raise StoreError(f"{len(names)} datasets; at most {_MOST_TABLES} are allowed")
     for name in names:
         item = file[name]
-        if not isinstance(item, h5py.Dataset):
-            raise StoreError(f"{name}: not a dataset")
-        if item.dtype.kind not in "fi" or item.dtype.itemsize != 8:
-            raise StoreError(f"{name}: type {item.dtype}, not 64-bit numbers")
-        if not 1 <= len(item.shape or ()) <= 4:
-            raise StoreError(f"{name}: not a table of one to four axes")
+        if not (isinstance(item, h5py.Dataset) and item.shape and item.dtype.str[1:] in ("f8", "i8")):
+            raise StoreError(f"{name}: not a table of 64-bit numbers")
     return sorted(names)
-
-
-def _hard(group: h5py.Group, prefix: str) -> list[str]:
-    """Members of a group, all of them in this file."""
-    if len(group) > _MOST_TABLES:
-        raise StoreError(f"{len(group)} datasets; at most {_MOST_TABLES} are allowed")
-    for name in group:
-        if not isinstance(group.get(name, getlink=True), h5py.HardLink):
-            raise StoreError(f"{prefix}{name}: a link to another place")
-    return [prefix + name for name in group]
 
 
 def attributes_in(file: h5py.File) -> dict[str, Any]:

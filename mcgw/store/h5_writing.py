@@ -32,7 +32,7 @@ import hashlib
 import json
 import math
 import zlib
-from collections.abc import Callable, Generator, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import closing
 from dataclasses import dataclass
 from io import FileIO
@@ -44,12 +44,11 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.ensemble.labelled import Variable
+from mcgw.ensemble.labelled import Labelled
 from mcgw.ensemble.results import CHUNK_ROWS, Tables
 from mcgw.errors import StoreError
 
-FILETYPE, BLOCK_TYPE, RUN_TYPE, FORMAT = "mcgw-results", "mcgw-block", "mcgw-run", [3, 0]
-GROUP = "drawn"  # the one group that a file may have
+FILETYPE, BLOCK_TYPE, RUN_TYPE, FORMAT = "mcgw-results", "mcgw-block", "mcgw-run", [4, 0]
 MOST_TEXT = 2**22  # characters of an attribute, such as the scene
 _LIBVER = ("v108", "v110")  # checksums on all metadata, and every HDF5 of the last decade reads it
 _CHUNK = 2**20  # bytes of a chunk, at most
@@ -67,42 +66,15 @@ class Rows:
     n : int
         How many rows all have together.
     pieces : callable
-        Gives them in order.
+        Gives them in order, as an iterator.
     """
 
     n: int
-    pieces: Callable[[], Generator[Tables]]
+    pieces: Callable[[], Iterator[Tables]]
 
     def __len__(self) -> int:
         """Return the number of rows."""
         return self.n
-
-    def __iter__(self) -> Iterator[Tables]:
-        """Yield the pieces, each made while the one before is used."""
-        from mcgw.machine.in_threads import one_ahead  # imports numba, which reading does without
-
-        with closing(one_ahead(self.pieces())) as pieces:
-            yield from pieces
-
-
-@dataclass(frozen=True)
-class Contents:
-    """What a file is to hold.
-
-    Parameters
-    ----------
-    variables : dict of str to Variable
-        Its tables, those that are scales of others first; the values of those that come in pieces are one
-        `Rows`.
-    attributes : dict of str to Any
-        Root attributes.
-    of : str
-        What the numbers are of, in words that `digest` is over as well.
-    """
-
-    variables: Mapping[str, Variable]
-    attributes: Mapping[str, Any]
-    of: str = ""
 
 
 class SteadyFile(FileIO):
@@ -151,8 +123,11 @@ class SteadyFile(FileIO):
         return len(view)
 
 
-def write(path: Path, contents: Contents, go_on: Callable[[], None] | None = None) -> None:
-    """Write a new file; `go_on` is called often, and raises if this is to end.
+def write(path: Path, contents: Labelled, of: str = "", go_on: Callable[[], None] | None = None) -> None:
+    """Write a new file, of whose tables those that come in pieces have one `Rows` as values.
+
+    `of` says what the numbers are of, which `digest` is over as well; `go_on` is called often, and raises if
+    this is to end.
 
     Raises
     ------
@@ -162,17 +137,19 @@ def write(path: Path, contents: Contents, go_on: Callable[[], None] | None = Non
     with closing(SteadyFile(path)) as raw:
         try:
             with h5py.File(raw, "w", libver=_LIBVER) as file:
-                _fill(file, contents, raw, go_on)
+                _fill(file, contents, of, raw, go_on)
         except Exception:  # HDF5 reports a full disk as any of a dozen
             raw.check()
             raise
         raw.check()
 
 
-def _fill(file: h5py.File, contents: Contents, raw: SteadyFile, go_on: Callable[[], None] | None) -> None:
-    variables = contents.variables
+def _fill(
+    file: h5py.File, contents: Labelled, of: str, raw: SteadyFile, go_on: Callable[[], None] | None
+) -> None:
+    variables = {**contents.coordinates, **contents.variables}
     inside = {name: one.values for name, one in variables.items() if not isinstance(one.values, Rows)}
-    pieces = next((one.values for one in variables.values() if isinstance(one.values, Rows)), ())
+    pieces = next((one.values.pieces() for one in variables.values() if isinstance(one.values, Rows)), ())
     shas, filled = dict[str, Any](), dict.fromkeys(variables, 0)
     for tables in chain([inside], pieces):
         for name, piece in tables.items():
@@ -200,7 +177,7 @@ def _fill(file: h5py.File, contents: Contents, raw: SteadyFile, go_on: Callable[
             data.dims[place].attach_scale(file[dim])
         heads[name] = [data.dtype.kind, data.shape, *about.values()]
     lines = [f"{name} {head[1][0]} {head[-1]}" for name, head in sorted(heads.items())]
-    digest = hashlib.sha256("\n".join([contents.of, *lines]).encode()).hexdigest()
+    digest = hashlib.sha256("\n".join([of, *lines]).encode()).hexdigest()
     attributes = {**contents.attributes, "digest": digest}
     _add_attributes(file, {**attributes, "checksum": checksum(attributes, heads)})
 

@@ -13,13 +13,13 @@ import platform
 import subprocess
 import sys
 from collections.abc import Iterator
-from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import tomli_w
 
 from mcgw.errors import StoreError
@@ -27,64 +27,36 @@ from mcgw.formats.named_files import loads
 from mcgw.scene.scene import Scene, with_sampling
 from mcgw.scene.scene_file import scene_document, scene_from, scene_text
 from mcgw.scene.section import shortened
-from mcgw.store.h5_writing import MOST_TEXT
+from mcgw.store.h5_writing import FILETYPE, FORMAT, MOST_TEXT
 
 Question = tuple[str, str, str]  # text of a scene, axes of a sweep or none, versions that draw
 _PACKAGES = ("mcgw", "numpy", "scipy", "numba", "h5py")
 _DRAW = ("mcgw", "numpy", "numba", "scipy")
 
 
-@dataclass(frozen=True)
-class Written:
-    """A scene written once, for its file, its run and what tells it from others.
+def written(scene: Scene) -> tuple[str, str]:
+    """Return a scene as TOML, and SHA-256 of all its values, whoever gave them, but the number of surfaces.
 
-    Parameters
-    ----------
-    scene : Scene
-        As a file holds it.
-    sampler : str
-        What draws it, never "auto".
-    text : str
-        The scene as TOML.
-    key : str
-        SHA-256 of all its values, whoever gave them, but for the number of surfaces.
-    identity : str
-        SHA-256 of all that the numbers of a surface depend on: scene, sampler, what draws.
+    Raises
+    ------
+    StoreError
+        If it is longer than a file may hold: a list of very many heights, or radii.
     """
+    document = scene_document(scene)
+    text = tomli_w.dumps(document)
+    if len(text.encode()) > MOST_TEXT:
+        raise StoreError(
+            f"scene: its lists need {len(text)} characters, but a file of results holds at most "
+            f"{MOST_TEXT}; list fewer summits, or simulate in memory"
+        )
+    number = "n_surfaces", "left_out"
+    document["ensemble"] = {key: x for key, x in document["ensemble"].items() if key not in number}
+    return text, hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()
 
-    scene: Scene
-    sampler: str
-    text: str
-    key: str
-    identity: str
 
-    @classmethod
-    def of(cls, scene: Scene, sampler: str) -> "Written":
-        """Write a scene.
-
-        Raises
-        ------
-        StoreError
-            If it is longer than a file may hold: a list of very many heights, or radii.
-        """
-        document = scene_document(scene)
-        text = tomli_w.dumps(document)
-        if len(text.encode()) > MOST_TEXT:
-            raise StoreError(
-                f"scene: its lists need {len(text)} characters, but a file of results holds at most "
-                f"{MOST_TEXT}; list fewer summits, or simulate in memory"
-            )
-        number = "n_surfaces", "left_out"
-        document["ensemble"] = {key: x for key, x in document["ensemble"].items() if key not in number}
-        key = hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()
-        parts = (key, sampler, versions(of_draws=True))
-        identity = hashlib.sha256("\0".join(parts).encode()).hexdigest()
-        return cls(scene, sampler, text, key, identity)
-
-    @property
-    def of_all(self) -> str:
-        """What the numbers of all surfaces are of."""
-        return f"{self.key} {self.scene.n_surfaces}"
+def identity_of(*words: str) -> str:
+    """SHA-256 of all that the numbers of a surface depend on: scene or sweep, sampler, what draws."""
+    return hashlib.sha256("\0".join(words).encode()).hexdigest()
 
 
 def difference(there: Question, here: Question) -> str:
@@ -112,6 +84,27 @@ def _flat(table: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
             yield from _flat(value, f"{prefix}{key}.")
         else:
             yield prefix + key, value
+
+
+def attributes_of(scene: Scene, sampler: str, text: str, /, **about: Any) -> dict[str, Any]:
+    """Root attributes of a file, where a text describes the scene, and more of them."""
+    usual = {
+        "filetype": FILETYPE,
+        "format": FORMAT,
+        "title": scene.title,
+        "scene": text,
+        "seed": np.uint64(scene.seed),
+        "sampler": sampler,
+        "date": now(),
+        "versions": versions(),
+        "commit": commit(),
+        "cpu": processor(),
+    }
+    if scene.accuracy:
+        from mcgw.sampling.samplers import distance_of  # for those scenes alone
+
+        usual["accuracy_spent"] = distance_of(scene)  # how far from the exact laws it went
+    return {**usual, **about}
 
 
 @cache

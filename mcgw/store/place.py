@@ -1,56 +1,101 @@
 """What lies at the place of a file: surfaces, a seed, what the dead left behind; and a new file."""
 
+import shutil
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
+from analytic import PiecewiseSeries
 from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.labelled import Labelled
 from mcgw.errors import RunError, StoreError
-from mcgw.formats.files import State, check_output, remove_stale, state_of, whole_file
+from mcgw.formats.files import State, check_output, refuse_read_only, remove_stale, state_of, whole_file
+from mcgw.machine.memory import gibibytes
 from mcgw.scene.arguments import check_object
 from mcgw.scene.fields import LeftOut
 from mcgw.scene.scene import Scene, storable
-from mcgw.scene.scene_file import scene_from, scene_text
-from mcgw.store.ensembles import described, open_ensemble, read_attributes, verify
+from mcgw.scene.scene_file import scene_text
+from mcgw.store.ensembles import described, open_ensemble, verify
 from mcgw.store.h5_reading import look
-from mcgw.store.h5_writing import Contents, write
-from mcgw.store.identity import Written, difference, versions
-from mcgw.store.layout import contents_of
+from mcgw.store.h5_writing import write
+from mcgw.store.identity import difference
 from mcgw.store.lock import locked, parts_of
-from mcgw.store.run_folder import RECORD, RunFolder, remove_run
+from mcgw.store.run_plan import RECORD, Plan, remove_run
 
 
 def recorded_scene(path: Path) -> Scene | None:
     """Scene of the ensemble or run that is at a place, if there is one."""
     if path.is_file():
         return described(path)[1]
-    return RunFolder.open(parts_of(path)).scene if (parts_of(path) / RECORD).is_file() else None
+    return Plan.open(parts_of(path)).scene if (parts_of(path) / RECORD).is_file() else None
 
 
-def with_recorded_seed(scene: Scene, path: Path) -> Scene:
-    """Return the scene; with the seed of what lies there, if nobody gave it one."""
-    there = recorded_scene(path) if isinstance(scene.seed, LeftOut) else None
-    return scene if there is None else scene.replace(seed=LeftOut(there.seed))
+def as_recorded(scene: Scene, path: Path) -> Scene:
+    """Return the scene with seed and functions resolved, or as they were when the run at this place began.
+
+    The seed, if nobody gave one; another processor, or another NumPy, may give other last digits to a Python
+    function.
+    """
+    if isinstance(scene.seed, LeftOut) and (there := recorded_scene(path)) is not None:
+        scene = scene.replace(seed=LeftOut(there.seed))
+    resolved = storable(scene)
+    there = None if resolved is scene else recorded_scene(path)
+    if there is None:
+        return resolved
+    mine, before = resolved.grading, there.grading
+    if isinstance(mine, PiecewiseSeries) and isinstance(before, PiecewiseSeries) and mine.agrees(before):
+        resolved = resolved.replace(grading=before)
+    if resolved.law.agrees(there.law):
+        resolved = resolved.replace(law=there.law)
+    return resolved
 
 
-def finished(path: Path, wanted: Written) -> int:
-    """Return the number of surfaces that a file holds of a scene; 0 if there is no file.
+def check_room(plan: Plan) -> None:
+    """Refuse what fits neither the place, nor the memory, nor the disk.
 
     Raises
     ------
     StoreError
-        If the file is damaged, holds another ensemble, or more surfaces than asked for.
+        With the numbers, or with what is there.
     """
+    if finished(plan) < plan.total:
+        refuse_read_only(plan.path)
+    for one in plan.reducers:
+        one.check()
+    there = [plan.path, *plan.folder.glob("shards/block-*.h5")]
+    held = sum(file.stat().st_size for file in there if file.is_file())
+    needed = sum(one.disk for one in plan.reducers) - held
+    free = shutil.disk_usage(plan.path.parent).free
+    if needed > free:
+        raise StoreError(
+            f"{plan.path}: needs up to {gibibytes(needed)} more on the disk while made and {gibibytes(free)} "
+            "are free; free some space, choose another -o, or reduce surfaces or separations"
+        )
+
+
+def finished(plan: Plan) -> int:
+    """Return the number of surfaces that its file holds; of a sweep all or none.
+
+    Raises
+    ------
+    StoreError
+        If the file is another's, damaged, or holds more surfaces than asked for.
+    """
+    path = plan.path
     if not path.exists():
         return 0
     attributes, there = described(path)
-    if "axes" in attributes:
-        raise StoreError(f"{path}: holds a sweep; choose another -o, or remove it")
-    if attributes.get("run") != wanted.identity:
+    same = attributes.get("run") == plan.identity
+    if plan.axes and same:
+        return plan.total
+    if plan.axes or "axes" in attributes:
+        what = "something else than this sweep" if plan.axes else "a sweep"
+        raise StoreError(f"{path}: holds {what}; choose another -o, or remove it")
+    if not same:
         before = scene_text(there), "", str(attributes.get("draws", "another version"))
-        what = difference(before, (wanted.text, "", versions(of_draws=True)))
+        what = difference(before, (plan.text, "", plan.drawn_with))
         raise StoreError(f"{path}: holds a different ensemble: {what}; choose another -o, or remove it")
-    asked = wanted.scene.n_surfaces
+    asked = plan.scene.n_surfaces
     if there.n_surfaces > asked:
         raise StoreError(
             f"{path}: holds {there.n_surfaces} surfaces already, more than ensemble.n_surfaces = {asked}; "
@@ -62,9 +107,9 @@ def finished(path: Path, wanted: Written) -> int:
 
 
 def put(
-    path: Path, contents: Contents, before: State | None, go_on: Callable[[], None] | None = None
+    plan: Plan, contents: Labelled, before: State | None, go_on: Callable[[], None] | None = None
 ) -> None:
-    """Write a file in one atomic step over what `before` says that was there. With the lock.
+    """Write the file of a plan in one atomic step over what `before` says that was there. With the lock.
 
     With `go_on`, of a file of many blocks, it is read back before those go.
 
@@ -73,9 +118,10 @@ def put(
     RunError
         If something else has this name by now, or the disk does not take it.
     """
+    path = plan.path
     try:
-        with whole_file(path, expected=before, folder=parts_of(path)) as temporary:
-            write(temporary, contents, go_on)
+        with whole_file(path, expected=before, folder=plan.folder) as temporary:
+            write(temporary, contents, plan.of_all, go_on)
             if go_on and (problem := verify(temporary)[0]):
                 raise RunError(f"{path}: was not written correctly ({problem}); is the disk failing?")
     except FileExistsError as error:
@@ -138,10 +184,9 @@ def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> 
                 f"{path}: a run that makes this file is not finished; finish it, choose another -o, "
                 f"or remove {parts_of(path)}"
             )
-        before, written = state_of(path), Written.of(storable(ensemble.scene), ensemble.sampler)
-        finished(path, written)
-        about = {"run": written.identity, "draws": versions(of_draws=True), "wall_seconds": wall_seconds}
-        put(path, contents_of(ensemble, written, **about), before)
+        before, plan = state_of(path), Plan.of(storable(ensemble.scene), path, ensemble.sampler)
+        finished(plan)
+        put(plan, plan.contents(ensemble.labelled(), wall_seconds, ensemble.drawn()), before)
     return open_ensemble(path)
 
 
@@ -174,10 +219,9 @@ def _of_use(path: Path) -> bool:
     if not shards or not path.exists():
         return bool(shards)
     try:
-        run, attributes = RunFolder.open(folder), read_attributes(path)
-        same = attributes.get("run") == run.identity
-        here = run.plan.total if run.axes else scene_from(attributes["scene"]).n_surfaces
-        held = run.plan.kept(here) if same else 0
+        plan, (attributes, there) = Plan.open(folder), described(path)
+        same = attributes.get("run") == plan.identity
+        held = plan.blocks.kept(plan.total if plan.axes else there.n_surfaces) if same else 0
     except StoreError:
         return True  # a person must look
     return any(int(shard.stem.removeprefix("block-")) >= held for shard in shards)

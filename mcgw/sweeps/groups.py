@@ -20,7 +20,7 @@ import numpy as np
 from analytic import Exponential, Homogeneous, quantity_of
 from analytic.arrays import Array, Ints
 from mcgw.ensemble.drawing import GoOn, Reducer, always, block_size, drawn, drawn_blocks, kept
-from mcgw.ensemble.pooled import Pooled
+from mcgw.ensemble.pooled import Pooled, pooled_from, tables_of
 from mcgw.ensemble.results import Held, Tables, joined
 from mcgw.machine.memory import check_memory
 from mcgw.machine.progress import steps
@@ -221,16 +221,16 @@ class Pooling(Reducer):
         return self.group.scenes[0].touching
 
     def tables(self, first: int, stop: int, go_on: GoOn = always) -> Tables:
-        """Statistics of a block, as `Pooled` stores them."""
+        """Return the statistics of a block."""
         scenes, source = self.group.computed, _source_of(self)
         blocks = list(drawn_blocks(source, first, stop, block_size(scenes[0], source)))
         values = [joined([kept(scene, block[i]) for block in blocks]) for i, scene in enumerate(scenes)]
         go_on(stop)
-        return Pooled.of(values).block()
+        return tables_of([Pooled.of(values)])
 
     def held(self, blocks: Iterable[Tables]) -> Pooled:
         """Return the sum of all blocks."""
-        return reduce(add, map(Pooled.from_block, blocks))
+        return reduce(add, (pooled_from(block)[0] for block in blocks))
 
     def check(self, surfaces: int | None = None) -> None:  # noqa: ARG002
         """Refuse covariances that the memory cannot hold."""

@@ -6,13 +6,14 @@ A sweep is checked and put into groups before anything is drawn.
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cache, cached_property, lru_cache
 from typing import Any
 
 import tomli_w
 
 from mcgw.ensemble.forecast import without_rule
-from mcgw.ensemble.pooled import Pooled
+from mcgw.ensemble.pooled import Pooled, pooled_from
+from mcgw.ensemble.results import Tables
 from mcgw.formats.named_files import loads
 from mcgw.machine.progress import steps
 from mcgw.scene.cautions import cautions
@@ -51,7 +52,7 @@ def scenes_of(document: dict[str, Any], axes: Axes) -> list[Scene]:
 
 
 class Points(Sequence[Scene]):
-    """Scenes of a finished sweep, each made when needed.
+    """Scenes of a finished sweep, each made once, when needed.
 
     Parameters
     ----------
@@ -64,21 +65,23 @@ class Points(Sequence[Scene]):
     """
 
     def __init__(self, document: dict[str, Any], axes: Axes, drawn: Sequence[int]) -> None:
-        self._document, self._axes, self._drawn = document, axes, drawn
-        self._points = list(axes.points())
+        points = list(axes.points())
+
+        @cache
+        def made(i: int) -> Scene:
+            scene = scene_of(with_changes(document, axes.at(points[i])))
+            return scene.replace(n_surfaces=drawn[i], rel_err=None)
+
+        self._made, self._numbers = made, range(len(points))
 
     def __len__(self) -> int:
         """Return the number of points."""
-        return len(self._points)
+        return len(self._numbers)
 
     def __getitem__(self, i: Any) -> Any:
         """Return a scene, or several."""
-        if isinstance(i, slice):
-            return [self[k] for k in range(*i.indices(len(self)))]
-        scene = scene_of(with_changes(self._document, self._axes.at(self._points[i])))
-        if scene.n_surfaces == self._drawn[i] and scene.rel_err is None:
-            return scene
-        return scene.replace(n_surfaces=self._drawn[i], rel_err=None)
+        of = self._numbers[i]
+        return [self._made(k) for k in of] if isinstance(i, slice) else self._made(of)
 
 
 def document_of(scene: Scene) -> dict[str, Any]:
@@ -132,19 +135,20 @@ class Asked:
         """
         return groups_of([_with_a_number(scene) for scene in scenes_of(self.document, self.axes)])
 
-    def answered(self, pooled: Sequence[Pooled]) -> Sweep:
-        """Return the sweep, from the data of each group."""
-        scenes: dict[int, Scene] = {}
-        places: dict[int, Place] = {}
-        for group in self.groups:
-            scenes |= dict(zip(group.numbers, group.scenes, strict=True))
-            places |= dict(zip(group.numbers, group.places, strict=True))
-        return Sweep(
-            axes=self.axes,
-            scenes=tuple(scenes[i] for i in range(self.axes.size)),
-            places=tuple(places[i] for i in range(self.axes.size)),
-            groups=tuple(pooled),
-        )
+    def answered(self, pooled: Sequence[Pooled], places: Sequence[Place] = ()) -> Sweep:
+        """Return the sweep, from the data of each group, and where in them each point is."""
+        if not places:
+            found = {i: x for group in self.groups for i, x in zip(group.numbers, group.places, strict=True)}
+            places = [found[i] for i in range(self.axes.size)]
+        scenes = Points(self.document, self.axes, [pooled[place.group].n for place in places])
+        return Sweep(self.axes, scenes, tuple(places), tuple(pooled))
+
+
+def sweep_of(scene: str, axes: str, drawn: Tables) -> Sweep:
+    """Return a finished sweep from the words and tables of its file; scenes are made when needed."""
+    rows = zip(drawn["points"].tolist(), drawn["points"][:, 1:], drawn["weights"], strict=True)
+    places = [Place(g, some[some >= 0], w[some >= 0]) for (g, *_), some, w in rows]
+    return Asked(loads(scene), Axes.from_text(axes)).answered(pooled_from(drawn), places)
 
 
 def _with_a_number(scene: Scene) -> Scene:

@@ -30,7 +30,7 @@ from mcgw.errors import RunError, StoreError
 from mcgw.jobs import making, running
 from mcgw.store import ensembles, lock
 from mcgw.store.lock import parts_of
-from mcgw.store.run_folder import RECORD, RunFolder
+from mcgw.store.run_plan import RECORD, Plan
 
 BLOCKS, SMALL_DISK = 12, 2**24
 OVER = {"surface.E_star": [1e9, 2e9], "ensemble.seed": list(range(7, 13))}
@@ -113,7 +113,7 @@ def committed(file):
     if file.exists():  # of a sweep and an export all or none
         held.update(range(10**4 if file.suffix != ".h5" else _surfaces(file)))
     if (parts_of(file) / RECORD).is_file():
-        for shard in RunFolder.open(parts_of(file)).shards():
+        for shard in Plan.open(parts_of(file)).shards():
             held.update(range(shard.span.first, shard.span.stop))
     return held
 

@@ -20,7 +20,7 @@ import numpy as np
 import mcgw
 from mcgw.jobs.driver import Signals, drive
 from mcgw.jobs.executors import Jobs
-from mcgw.store.run_folder import Span, commit_shard
+from mcgw.store.blocks import Span, commit_shard
 
 SECONDS, ROWS, COLUMNS = 1.0, 1024, 128
 RUN = hashlib.sha256(b"scaling").hexdigest()

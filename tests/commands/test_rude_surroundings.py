@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 import pytest
 import scipy.stats
-from oracles.inside import Job
+from oracles.inside import Plan
 from oracles.said import call as call_here, without_notes
 
 import analytic
@@ -121,7 +121,7 @@ def test_a_long_run_says_so_before_it_begins_and_a_short_one_does_not(tmp_path, 
     def none(*_):
         raise OSError(errno.ENOSPC, "drawn")
 
-    monkeypatch.setattr(Job, "draw", none)
+    monkeypatch.setattr(Plan, "draw", none)
     put(tmp_path, n_surfaces="1000000000", n_asperities="1000000000")
     said = call_here("run", "s.toml", "-o", "f.h5", cwd=tmp_path).stderr.splitlines()
     (line,) = (line for line in said if "on this machine" in line)

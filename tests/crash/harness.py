@@ -21,13 +21,12 @@ import analytic
 from mcgw.ensemble.simulation import Values
 from mcgw.errors import RunError, StoreError
 from mcgw.jobs import running
-from mcgw.jobs.job import Job
 from mcgw.scene.scene import Scene
-from mcgw.store import ensembles, h5_writing, lock, run_folder
+from mcgw.store import blocks, ensembles, h5_writing, lock
 from mcgw.store.lock import parts_of
-from mcgw.store.run_folder import RECORD, RunFolder
+from mcgw.store.run_plan import RECORD, Plan
 
-_DRAW = Job.draw
+_DRAW = Plan.draw
 MODES = {"kill": 1, "torn": 2, "ENOSPC": 3, "EIO": 4}
 ROWS = 8
 SURFACE = analytic.Surface(sigma=1e-6, radius=1e-5, eta=1e8, nominal_area=1e-4, E_star=1e9)
@@ -45,18 +44,18 @@ def scene_of(blocks):
 
 
 def made_up(job, span, *how):
-    if job and job.record.axes:  # statistics of several scenes are not made up
+    if job and job.axes:  # statistics of several scenes are not made up
         return _DRAW(job, span, *how)
     i = np.arange(span.first, span.stop)[:, None] + np.arange(3) / 3
     return {"load": np.sqrt(i + 2), "contacts": np.floor(i**2).astype(np.int64)}
 
 
 def prepare():
-    Job.draw = made_up
+    Plan.draw = made_up
     lock.PATIENCE = 0.0  # a second driver is refused at once
     Values.rows = h5_writing.CHUNK_ROWS = ROWS  # blocks are merged by their packed chunks
     if "MCGW_IN_PLACE" in os.environ:  # the wrong way, which the harness must notice
-        run_folder.whole_file = written_in_place
+        blocks.whole_file = written_in_place
 
 
 @contextmanager
@@ -120,7 +119,7 @@ def found(scene, file, acked, digest):
     if not (parts_of(file) / RECORD).exists():
         return ["lost everything"] if acked else []
     try:
-        run, wrong = RunFolder.open(parts_of(file)), []
+        run, wrong = Plan.open(parts_of(file)), []
     except StoreError as error:
         return [f"the record: {error}"]
     valid = run.shards()

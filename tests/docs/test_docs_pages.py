@@ -15,7 +15,6 @@ from oracles.scenes import scene_by
 
 import mcgw
 import mcgw.store
-import mcgw.sweeps.file
 from mcgw.cli import COMMANDS, main, parser_of
 
 LOOSE = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
@@ -214,7 +213,7 @@ def test_every_dataset_and_attribute_is_described(tmp_path):
 def test_every_dataset_of_a_sweep_is_described(tmp_path):
     scene = mcgw.Scene(SURFACE, separations=[0.0, 1.0], n_surfaces=10, seed=1, title="x")
     mcgw.sweep(scene, {"grading.gamma": [0.5, 2.0]}, path=tmp_path / "a.h5")
-    words = set(re.findall(r"\w+", mcgw.sweeps.file.__doc__))
+    words = set(re.findall(r"\w+", mcgw.store.__doc__))
     quantities = {f"{name}_" for name in scene.quantities}
     with h5py.File(tmp_path / "a.h5") as file:
         found = set(file.attrs) | set(file) | set(file["drawn"])

@@ -13,7 +13,7 @@ from scipy.stats import norm, qmc
 import mcgw
 from mcgw.cli import main
 from mcgw.ensemble.budget import moved, slopes_of
-from mcgw.ensemble.solved import against_elasticity
+from mcgw.ensemble.solved_table import against_elasticity
 from mcgw.maps import Topography
 
 FOLDER = Path(__file__).parents[2] / "runs" / "validation"
@@ -254,28 +254,6 @@ def test_corrected_answers_are_those_of_boundary_elements():
     assert np.sqrt(np.mean(np.square(off))) < 0.06
     assert np.sqrt(np.mean(np.square(plain))) > 0.15  # as the model itself is
     assert missed <= 2
-
-
-WRONG = {
-    "sigma": ({"sigma": "20"}, "give relative standard errors"),
-    "both": ({"sigma": 0.1, "m0": 0.2}, "give it or sigma, not both"),
-    "gaussian": ({"m0": 0.1}, 'need heights.law = "nayak"'),
-    "none": ({}, "does not name a parameter"),
-    "rows": ({"sigma": 0.1, "correlation": [[1, 0], [0, 1]]}, "give 1 rows of 1 numbers"),
-    "symmetry": ({"sigma": 0.1, "eta": 0.1, "correlation": [[1, 0.5], [0, 1]]}, "must be symmetric"),
-    "sign": (
-        {"sigma": 0.1, "eta": 0.1, "radius": 0.1, "correlation": [[1, 1, -1], [1, 1, 1], [-1, 1, 1]]},
-        "impossible, because an eigenvalue",
-    ),
-}
-
-
-@pytest.mark.parametrize("name", WRONG)
-def test_wrong_uncertainties_are_told(name):
-    given, told = WRONG[name]
-    with pytest.raises(mcgw.SceneError, match=r"surface\.uncertainty") as error:
-        scene_of(uncertainty=given)
-    assert told in str(error.value)
 
 
 def test_a_fit_writes_what_it_knows(tmp_path, capsys):

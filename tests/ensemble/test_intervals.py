@@ -3,7 +3,6 @@
 Gate of coverage: of 4000 intervals that cover with probability 0.95, fewer than 0.93 do once in 6e7.
 """
 
-import tracemalloc
 from itertools import product
 
 import numpy as np
@@ -18,7 +17,6 @@ from oracles.inside import (
     count_interval,
     exact_ends,
     forecast,
-    moments,
     pearson3_quantile,
     spread_of,
     stacked,
@@ -35,9 +33,8 @@ from analytic import (
     Nayak,
     RandomCurvature,
     Weibull,
-    quantity_of,
 )
-from analytic.laws import KogutEtsion, PowerLawGraded
+from analytic.laws import KogutEtsion
 from mcgw import Ensemble
 
 SEEDS = 4000
@@ -246,29 +243,6 @@ def test_quantiles_are_those_of_scipy(share):
     np.testing.assert_allclose(pearson3_quantile(share, skewness), expected, rtol=1e-9, atol=1e-9)
     one = pearson3_quantile(share, np.array([1e-6]))
     assert abs(one[0] - norm.ppf(share)) < 1e-5
-
-
-def test_summits_of_any_radius_take_their_separations_one_by_one():
-    """Under another law the pieces of each are cut at all radii: a rule for twelve took ten times as much."""
-    scene = mcgw.Scene(
-        surface=SURFACE,
-        separations=np.linspace(-1, 3, 12),
-        heights=Nayak(4.0),
-        summits=RandomCurvature(4.0),
-        law=PowerLawGraded(0.1, reduced_c0=1.0),
-        ensemble=mcgw.Sampling(n_asperities=100),
-        n_surfaces=2,
-    )
-    tracemalloc.start()
-    mean, variance = moments(scene, ["load", "area"], (2,))
-    peak = tracemalloc.get_traced_memory()[1]
-    tracemalloc.stop()
-    assert peak < 2**26
-    for name, m, v in zip(("load", "area"), mean, variance, strict=True):
-        exact = scene.theory.cumulants(name, scene.separations)
-        scale = quantity_of(name).scale(scene.surface)
-        assert m * 100 * scale == pytest.approx(exact.mean, rel=1e-12)
-        assert v * 100 * scale**2 == pytest.approx(exact.variance, rel=1e-12)
 
 
 def test_ends_of_a_share_of_all_surfaces_are_those_of_the_exact_law(make_scene):

@@ -311,6 +311,9 @@ def test_models_without_gas_say_so():
     for name in ("gap_conductance", "thermal_resistance"):
         with pytest.raises(KeyError, match="this model has no gas"):
             scene.theory.mean(name, H)
+    for get in (scene.theory.mean, scene.theory.std, scene.theory.slope):
+        with pytest.raises(KeyError, match="'nominal_separation': this model has no interaction"):
+            get("nominal_separation", H)
     assert not scene.of_joint
 
 

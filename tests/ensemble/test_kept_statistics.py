@@ -10,7 +10,7 @@ import pytest
 import scipy.stats
 from conftest import SURFACE
 from oracles.flipped import flip_a_number
-from oracles.inside import drawn as drawn_by, verify
+from oracles.inside import verify
 from oracles.memory_growth import peak_growth
 from oracles.scenes import scene_by
 
@@ -159,7 +159,7 @@ def test_the_file_is_read_by_others_and_says_when_it_is_damaged(tmp_path):
         assert file["covariance"].long_name == f"covariance of {order}"
     assert e.to_dataframe()["load_std"].tolist() == e.std("load").tolist()
     assert verify(path)[0] == ""
-    flip_a_number(path, "drawn/block_numbers_means")
+    flip_a_number(path, "drawn/numbers_means")
     assert verify(path)[0] != ""
 
 
@@ -223,36 +223,6 @@ def test_time_ends_between_pieces_and_the_same_number_gives_the_same_bits(monkey
     assert e.n_surfaces == told[-1] == 32 * 32
     assert len(told) > 32
     assert_same_bits(e, mcgw.simulate(asked, max_seconds=None, n_surfaces=e.n_surfaces))
-
-
-@pytest.mark.parametrize("keep", ["sums", "statistics"])
-def test_whoever_asks_for_an_end_gets_what_is_drawn_by_then(keep):
-    """After one piece of a block, or two; of several blocks none is begun any more."""
-    asked = scene(n_surfaces=40_000, n_asperities=5, keep=keep)
-    reducer = simulation.reducer_of(asked)
-    for pieces in (1, 2):
-        told = []
-
-        def go_on(done, told=told, pieces=pieces):
-            told.append(done)
-            return len(told) < pieces
-
-        tables = reducer.tables(0, 40_000, go_on)
-        drawn = int(tables["block_n"][0, 0]) if keep == "statistics" else len(tables["load"])
-        assert len(told) == pieces
-        assert drawn == told[-1] < 40_000
-    blocks = []
-
-    class Short(type(reducer)):
-        rows = 10_000
-
-        def tables(self, first, stop, go_on):
-            blocks.append((first, stop))
-            return super().tables(first, stop, go_on)
-
-    held = drawn_by(Short(asked), lambda done: done < 15_000)
-    assert blocks == [(0, 10_000), (10_000, 20_000)]
-    assert 15_000 <= held.rows() <= 20_000
 
 
 @pytest.mark.usefixtures("blank_figures", "no_pressures")

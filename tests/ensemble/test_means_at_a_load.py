@@ -10,7 +10,6 @@ from functools import cache
 
 import numpy as np
 import pytest
-from oracles.inside import summits
 from oracles.laws_of_one_depth import kogut_etsion
 
 import analytic
@@ -95,31 +94,6 @@ def test_without_its_jumps_a_law_is_seen_to_be_wrong(monkeypatch):
     monkeypatch.setattr(at_load, "_jumping", lambda *_: iter(()))
     with pytest.raises(AssertionError):
         assert residuals(*of_yielding(1.0)).max() < 5
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("law", [None, analytic.KogutEtsion(hardness=4e9, poisson=POISSON)])
-def test_of_radii_of_their_own(law):
-    """Summits of a Gaussian surface, each with its radius, some six in contact."""
-    surface = mcgw.SpectralSurface(m0=1e-12, m2=4e-3, m4=8e7, nominal_area=1e-8, E_star=1e11)
-    scene = mcgw.Scene(
-        surface,
-        separations=[-9.0],
-        n_surfaces=3000,
-        seed=3,
-        ensemble=mcgw.Sampling(sampler="direct"),
-        law=law,
-    )
-    pairs = [summits(scene, k) for k in range(scene.n_surfaces)]
-    heights, ratios = (np.array(part) for part in zip(*pairs, strict=True))
-    model, s = replace(scene.theory, law=law), scene.surface
-    critical = (np.pi * K * 4e9 / (2 * s.E_star)) ** 2 * s.radius / s.sigma * ratios
-    contact = hertz if law is None else kogut_etsion
-    target = float(model.mean("load", 1.5)) / analytic.quantity_of("load").scale(s)
-    wanted = drawn(heights, np.sqrt(ratios), critical, target, contact)
-    if law is None:
-        del wanted["yielded"]
-    assert residuals(model, target, wanted).max() < 5
 
 
 @pytest.mark.parametrize(

@@ -1,70 +1,19 @@
 """What no other test meets: mistakes that few make, facts that few scenes have, statistics of values."""
 
 import pickle
-from dataclasses import replace
 
 import numpy as np
 import pytest
-from oracles.inside import law_text
 from oracles.scenes import scene_by
 from scipy import stats
 
 import analytic
 import mcgw
 from analytic.laws import crowding_factor
-from mcgw.scene.in_words import contact_facts
 from mcgw.scene.uncertainty import Uncertainty
 from mcgw.statistics.comparison import verdict
-from mcgw.validity.fitted_map import Fitted
 
 SPECTRAL = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 mm^2", "78.6 GPa")
-FILE = """
-surface = {{sigma = 1e-6, radius = 1e-5, eta = 1e9, nominal_area = 1e-6, E_star = 1e11{surface}}}
-contact = {{separations = [0.0, 1.0]{contact}}}
-ensemble = {{n_surfaces = 10, n_asperities = 100, seed = 1{ensemble}}}
-joint = {{{joint}}}
-"""
-
-NONE = {"surface": "", "contact": "", "ensemble": "", "joint": ""}
-# Of a scene file: what is added to a table, and the line that names it with what would do.
-ADDED = [
-    ("surface", ", bodies = [{E = 7e10}, {E = inf}]",
-     "give it or E_star, not both"),
-    ("joint", "resistivity = 1e-7, conductivities = [1.0, 2.0]",
-     "joint.resistivity = 1e-07: give it or conductivities, not both"),
-    ("joint", "film_resistance = 1e-12",
-     "joint.film_resistance = 1e-12: give resistivity or conductivities too, or leave it out"),
-    ("contact", ', law = {name = "power-law-graded", c0 = "10 um"}',
-     'contact.law.k: missing; name = "power-law-graded" needs it'),
-    ("contact", ', law = {name = "kogut-etsion", critical = 0.05, hardness = 1e9}', "give one of them"),
-    ("contact", ', law = {name = "coated", ratio = 2.0}', "give one of them, in m or over sqrt(R sigma)"),
-    ("contact", ', quantities = ["conductance_si"]',
-     '"conductance_si" needs joint.resistivity, or joint.conductivities = [k1, k2]'),
-    ("contact", ', quantities = ["load", "yielded"]', 'no contact yields with law = "hertz"; leave it out'),
-    ("contact", ', quantities = ["load_unloading"]', "'load_unloading' needs unloading; give"),
-    ("contact", ", yield_index = 3", "unknown key"),
-    ("contact", f", datum = '{58 * 'x'}'", f"contact.datum = '{58 * 'x'}': "),  # 60 characters as they are
-    ("contact", f", datum = '{59 * 'x'}'", f"contact.datum = '{56 * 'x'}...: "),
-]  # fmt: skip
-
-
-@pytest.mark.parametrize(("table", "more", "told"), ADDED)
-def test_a_mistake_is_one_line(table, more, told):
-    mcgw.scene_from(FILE.format(**NONE))
-    with pytest.raises(mcgw.SceneError) as caught:
-        mcgw.scene_from(FILE.format(**NONE | {table: more}))
-    assert any(told in line for line in caught.value.problems), caught.value.problems
-    assert len(caught.value.problems) == 1
-
-
-def test_of_many_unknown_keys_twenty_are_named():
-    for number, more in ((20, []), (23, ["[contact]: 3 more unknown keys"])):
-        keys = "".join(f", key_{k} = 1" for k in range(number))
-        with pytest.raises(mcgw.SceneError) as caught:
-            mcgw.scene_from(FILE.format(**NONE | {"contact": keys}))
-        named, rest = caught.value.problems[:20], caught.value.problems[20:]
-        assert [line.partition(":")[0] for line in named] == [f"contact.key_{k}" for k in range(20)]
-        assert rest == more
 
 
 def test_errors_of_a_fit_have_the_correlation_of_its_covariance():
@@ -77,41 +26,67 @@ def test_errors_of_a_fit_have_the_correlation_of_its_covariance():
     np.testing.assert_allclose(found.covariance, [[0.0625, 0.15], [0.15, 4.0]], rtol=1e-15)
 
 
-def test_what_a_fit_did_not_see_is_not_shown():
-    known = Fitted(1e-12, 1e-3, 5e6, skewness=-0.123, kurtosis=3.456, independent=100.0)
-    first, second = "alpha = 5, rms slope 0.0447", "skewness -0.12, kurtosis 3.46"
-    assert known.lines() == (first, second)
-    assert replace(known, lay=1.2345).lines() == (f"{first}, lay 1.23", second)
-    apart = f"{second}, estimates differ by a factor of 1.5"
-    assert replace(known, agreement=1.5).lines() == (first, apart)
-    for number, more in ((0, ""), (3, ""), (5, " (and 2 more under [fitted] in the scene)")):
-        shown = [f"fit: {'abcde'[k]}" for k in range(min(number, 3))]
-        told = replace(known, cautions=tuple("abcde"[:number])).gravest
-        assert told == [*shown[:-1], *(f"{line}{more}" for line in shown[-1:])]
-
-
 RADII = analytic.RandomCurvature(5.0)
 PRESSED = analytic.InteractingModel.of(analytic.Model(SPECTRAL.surface), analytic.Interaction("body"))
-REFUSED = [
-    (lambda: RADII.mean(0.3, np.ones(1)), "power = 0.3: give a multiple of 1/2"),
-    (lambda: RADII.nothing, "nothing"),
-    (lambda: analytic.Weibull(101), "shape = 101: give a number from 1 to 100"),
-    (lambda: mcgw.Layer(0.0, 1.0), "thickness = 0.0: give a finite number > 0, in m"),
-    (lambda: mcgw.Layer(1.0, np.inf), r"conductivity = inf: give a finite number > 0, in W/\(m K\)"),
-    (lambda: analytic.Film(), r"resistivity: give it in ohm m, or conductivities = \(k1, k2\)"),
-    (lambda: analytic.Film(conductivities=(1.0,)), "give two numbers > 0"),
-    (lambda: analytic.Film(conductivities=(1.0, 0.0)), "give two numbers > 0"),
-    (lambda: analytic.Joint("air", temperature=-1.0), "temperature = -1.0: give a finite number > 0, in K"),
-    (lambda: analytic.MeasuredHeights([0.0, 1.0]).pdf(np.ones(2)), "no density at s = 1;"),
-    (lambda: analytic.MeasuredHeights([0.0, 1.0]).rvs(3, None), "n = 3: give 2, the number"),
-    (lambda: PRESSED.alone.separation_law(2.0, "contacts"), "give a sum that decreases with the separation"),
-]
+LISTED = {"n_asperities": 3, "n_surfaces": 1, "sampler": "direct"}
+LISTED["heights"] = analytic.MeasuredHeights([0.0, 1.0, 3.0])
+BOTH = {"name": "kogut-etsion", "critical": 0.05, "hardness": 1e9}
+OWN = {"surface": SPECTRAL.surface, "summits": RADII, "heights": analytic.Nayak(5.0)}
+# Calls with a scene that are refused, by the word that names what is wrong.
+REFUSED = {
+    "nothing": lambda _: RADII.nothing,
+    "thickness": lambda _: mcgw.Layer(0.0, 1.0),
+    "conductivity": lambda _: mcgw.Layer(1.0, np.inf),
+    "resistivity": lambda _: analytic.Film(),
+    "conductivities": lambda _: analytic.Film(conductivities=(1.0,)),
+    "temperature": lambda _: analytic.Joint("air", temperature=-1.0),
+    "density": lambda _: analytic.MeasuredHeights([0.0, 1.0]).pdf(np.ones(2)),
+    "n = 3": lambda _: analytic.MeasuredHeights([0.0, 1.0]).rvs(3, None),
+    "a sum that decreases": lambda _: PRESSED.alone.separation_law(2.0, "contacts"),
+    "joint = 3": lambda scene: scene.replace(joint=3),
+    "joint.film_resistance": lambda scene: scene.replace(joint={"film_resistance": 1e-12}),
+    "contact.law.critical": lambda scene: scene.replace(law={"critical": 0.05}),
+    "one of them": lambda scene: scene.replace(law=BOTH),
+    "one of them, in m": lambda scene: scene.replace(law={"name": "coated", "ratio": 2.0}),
+    "contact.law.k: missing": lambda scene: scene.replace(law={"name": "power-law-graded", "c0": 1.0}),
+    "conductance_si": lambda scene: scene.replace(quantities=["conductance_si"]),
+    "no contact yields": lambda scene: scene.replace(quantities=["load", "yielded"]),
+    "needs unloading": lambda scene: scene.replace(quantities=["load_unloading"]),
+    "surface.m0 = -1": lambda _: mcgw.SpectralSurface(-1.0, 1e-3, 5e6, 1e-6, 1e11),
+    "at most 100000": lambda scene: scene.replace(separations=np.zeros(100_001)),
+    "threads = 0": lambda scene: mcgw.run(scene, "e.h5", threads=0),
+    "threads = -1": lambda scene: mcgw.sweep(scene, {"grading.gamma": [1]}, path="s.h5", threads=-1),
+    "ensemble.n_surfaces = 2": lambda scene: scene.replace(**LISTED | {"n_surfaces": 2}),
+    "ensemble.count": lambda scene: scene.replace(**LISTED, count="poisson"),
+    "ensemble.n_asperities = 4": lambda scene: scene.replace(**LISTED | {"n_asperities": 4}),
+    "alpha = 5": lambda scene: scene.replace(**OWN | {"heights": analytic.Nayak(4.0)}),
+    "is no axis": lambda scene: mcgw.sweep(scene, {"ensemble.seed": [1]}).slopes("load", "grading.gamma"),
+    "ensemble.rel_err.lod": lambda scene: scene.replace(rel_err={"lod": 1e-3}),
+    "ensemble.rel_err.load = inf": lambda scene: scene.replace(rel_err={"load": np.inf}),
+    "give one for each": lambda scene: scene.replace(rel_err={"load": [1e-3, 1e-3]}),
+    "value 2 is -1": lambda scene: scene.replace(rel_err={"load": [1e-3, -1.0, 1e-3]}),
+    "ensemble.rel_err.load = True": lambda scene: scene.replace(rel_err={"load": True}),
+    "relative standard errors": lambda scene: scene.replace(uncertainty={"sigma": "20"}),
+    "not both": lambda scene: scene.replace(uncertainty={"sigma": 0.1, "m0": 0.2}),
+    "need heights.law": lambda scene: scene.replace(uncertainty={"m0": 0.1}),
+    "does not name": lambda scene: scene.replace(uncertainty={}),
+    "rows of": lambda scene: scene.replace(uncertainty={"sigma": 0.1, "correlation": [[1, 0], [0, 1]]}),
+    "symmetric": lambda scene: scene.replace(
+        uncertainty={"sigma": 0.1, "eta": 0.1, "correlation": [[1, 0.5], [0, 1]]}
+    ),
+    "eigenvalue": lambda scene: scene.replace(
+        uncertainty=dict.fromkeys(("sigma", "eta", "radius"), 0.1)
+        | {"correlation": [[1, 1, -1], [1, 1, 1], [-1, 1, 1]]}
+    ),
+}
 
 
-@pytest.mark.parametrize(("call", "told"), REFUSED)
-def test_what_objects_refuse(call, told):
-    with pytest.raises((ValueError, KeyError, AttributeError), match=told):
-        call()
+@pytest.mark.parametrize("word", REFUSED)
+def test_what_is_refused_is_named_in_one_line(word, make_scene):
+    with pytest.raises((ValueError, KeyError, AttributeError)) as caught:
+        REFUSED[word](make_scene(n_surfaces=3, separations=(0.0, 1.0, 2.0)))
+    assert word in str(caught.value)
+    assert "\n" not in str(caught.value)
 
 
 SURFACE = SPECTRAL.surface
@@ -162,47 +137,6 @@ def with_radii(**changes):
 def listed(**changes):
     three = {"heights": analytic.MeasuredHeights([0.0, 1.0, 3.0]), "n_asperities": 3, "n_surfaces": 1}
     return lambda scene: scene.replace(sampler="direct", **(three | changes))
-
-
-# In Python: a call with a scene, and what its line says.
-CALLS = [
-    (lambda scene: scene.replace(joint=3), "joint = 3: give mcgw.Joint"),
-    (lambda scene: scene.replace(law={"critical": 0.05}), "contact.law.critical: unknown key"),
-    (lambda scene: mcgw.SpectralSurface(-1.0, 1e-3, 5e6, 1e-6, 1e11), "surface.m0 = -1"),
-    (lambda scene: scene.replace(separations=np.zeros(100_001)), "at most 100000 of them"),
-    (lambda scene: mcgw.run(scene, "e.h5", threads=0), "threads = 0: give a whole number >= 1"),
-    (lambda scene: mcgw.sweep(scene, {"grading.gamma": [1, 2]}, path="s.h5", threads=-1),
-     "threads = -1: give a whole number >= 1"),
-    (listed(n_surfaces=2), "ensemble.n_surfaces = 2: measured heights as they are need 1; or set resample"),
-    (listed(count="poisson"), "ensemble.count = 'poisson': measured heights as they are need 'fixed'; or"),
-    (listed(n_asperities=4), "ensemble.n_asperities = 4: there are 3 measured heights; give that number, or"),
-    (with_radii(heights=analytic.Gaussian()), 'it needs heights.law = "nayak", alpha = 5;'),
-    (with_radii(heights=analytic.Nayak(4.0)), 'it needs heights.law = "nayak", alpha = 5;'),
-    (lambda scene: mcgw.sweep(scene, over={"ensemble.seed": [1, 2]}).slopes("load", "grading.gamma"),
-     "'grading.gamma' is no axis of this sweep; it has ensemble.seed"),
-]  # fmt: skip
-
-
-@pytest.mark.parametrize(("call", "told"), CALLS)
-def test_a_mistake_in_python_is_one_line(call, told, make_scene):
-    with pytest.raises(ValueError) as caught:  # noqa: PT011
-        call(make_scene(n_surfaces=3))
-    assert told in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    ("changes", "fact"),
-    [
-        ({"joint": mcgw.Joint(resistivity=1e-7)}, ("bodies", "resistivity 1e-07 ohm m")),
-        ({"interaction": "body"}, ("interaction", "from the undeformed body, separations effective")),
-    ],
-)
-def test_a_scene_says_what_it_has_and_nothing_else(changes, fact, make_scene):
-    """The others are recorded."""
-    assert contact_facts(make_scene()) == []
-    assert contact_facts(make_scene(**changes)) == [fact]
-    assert law_text(analytic.MeasuredHeights([0.0, 1.0, 3.0])) == "3 measured ones, as they are"
-    assert law_text(analytic.Custom(np.exp)) == "Custom(exp)"
 
 
 def test_statistics_of_values_are_those_of_numpy(make_scene):

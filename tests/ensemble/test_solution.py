@@ -10,7 +10,6 @@ from scipy.stats import t as student
 import analytic
 import mcgw
 from mcgw.cli import main
-from mcgw.ensemble.separation import ManySurfaces
 
 LOADS = (3.0, 100.0, 900.0)
 
@@ -176,22 +175,6 @@ def test_only_what_asperities_alone_decide_has_a_number_of_them(pressed_down, ma
         scene = scene.replace(interaction=mcgw.Interaction("body"))
     found = mcgw.solve(scene, load=10.0).asperities_for(0.01)
     assert set(found) == ({"area"} if pressed_down else {"area", "stiffness", "conductance"})
-
-
-def test_asperities_are_listed_once_and_a_light_load_looks_at_few(scene, monkeypatch):
-    listed, sizes, above, steps = entered(monkeypatch, "summits_of_many"), [], ManySurfaces.above, []
-
-    def looked_at(many, h):
-        sizes.append(above(many, h).s.size)
-        return above(many, h)
-
-    monkeypatch.setattr(ManySurfaces, "above", looked_at)
-    monkeypatch.setattr(mcgw.ensemble.loaded_surfaces, "_AT_ONCE", 10_000)
-    solutions(scene.replace(n_surfaces=40), "load", [3.0, 900.0], lambda *step: steps.append(step), draw=True)
-    assert sum(n for *_, n in listed) == 40
-    assert sum(sizes[::2]) < sum(sizes[1::2]) / 5
-    assert len(steps) == len(listed) > 3
-    assert steps[-1] == (40, 40)
 
 
 def test_summits_of_other_radii_add_what_hertz_says(scene):

@@ -9,7 +9,7 @@ from math import pi, sqrt
 import numpy as np
 import oracles.laws_of_one_depth as by_hand
 import pytest
-from oracles.inside import Summits, solutions, solutions_text
+from oracles.inside import Summits, solutions
 
 import mcgw
 from analytic import quantity_of
@@ -193,22 +193,3 @@ def test_the_mean_is_that_of_theory(name):
     assert abs(h.mean() - 1.0) < 5 * stderr
     wrong = float(scene.theory.separation_at("load", 1.1 * value))
     assert abs(h.mean() - wrong) > 5 * stderr
-
-
-def test_what_is_told_belongs_to_the_law():
-    law = mcgw.KogutEtsion(critical=0.05)
-    scene = mcgw.Scene(SURFACE, separations=0.0, law=law, n_surfaces=3, seed=1)
-    found = mcgw.solve(scene, pressure="1 MPa")
-    assert list(found.theory) == [
-        "separation", "gap_to_summits", "load", "area", "stiffness", "contacts", "conductance", "load_slope",
-        "yielded",
-    ]  # fmt: skip
-    assert 0 < found.theory["yielded"] < found.theory["contacts"]
-    assert list(found.surfaces) == list(found.theory)
-    for asked in (scene, scene.replace(unload_from="loop", separations=(0.0, 1.0))):
-        text = solutions_text(asked, [found], full=True)
-        assert ("from first contact; unloading is not included" in text) == (asked is not scene)
-        assert "specimens: 3 surfaces of 300 asperities, seed 1; gap to the mean plane of the summits" in text
-    plain = mcgw.solve(scene.replace(law=mcgw.Hertz()), pressure="1 MPa")
-    assert len(plain.theory) == 7
-    assert plain.theory["separation"] > found.theory["separation"]

@@ -1,7 +1,6 @@
 """The stop rule: it keeps its promise, it is known beforehand, and it does not wait for what cannot come."""
 
 import warnings
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -19,7 +18,6 @@ import analytic
 import mcgw
 from mcgw.cli import main
 from mcgw.errors import StoreError
-from mcgw.jobs import running
 
 SEEDS = 2500
 
@@ -204,36 +202,6 @@ def test_surfaces_that_all_agree_are_not_proof(make_scene):
     assert mcgw.simulate(scene).n_surfaces >= 2900
 
 
-@pytest.mark.parametrize(
-    ("seconds", "held", "made"),
-    [
-        (100, 0, [64, 128, 256, 512]),  # three of them take 90 s
-        (90, 0, [64, 128, 256, 512]),
-        (89, 0, [64, 128, 256]),
-        (1000, 0, [64, 128, 256, 512, 1024, 2048, 3000]),
-        (1000, 100, [100, 256, 512, 1024, 2048, 3000]),
-        (1000, 3000, [3000]),
-        (10, 5000, [3000]),
-        (None, 0, [3000]),
-        (None, 5000, [3000]),
-    ],
-)
-def test_a_run_of_limited_time_doubles_what_it_has(seconds, held, made, make_scene, tmp_path, monkeypatch):
-    """By a clock that goes on by 30 s a stage. Without a limit of time there is one stage alone."""
-    path, found = tmp_path / "a.h5", []
-    if held:
-        path.touch()
-    monkeypatch.setattr(running, "open_ensemble", lambda _: SimpleNamespace(n_surfaces=held))
-    monkeypatch.setattr(running, "as_recorded", lambda scene, _: scene)
-    monkeypatch.setattr(running, "monotonic", lambda: 30.0 * len(found))
-    monkeypatch.setattr(running, "make", lambda job, by: found.append(job.record.scene.n_surfaces))
-    wish = {"max_seconds": seconds} if seconds else {"rel_err": 1e-3}
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of 3000 surfaces no mean is known so well
-        mcgw.run(make_scene(separations=(0.0,), n_surfaces=3000, **wish), path)
-    assert found == made
-
-
 def test_time_ends_a_run(make_scene, tmp_path):
     scene = make_scene(n_surfaces=10**9, max_seconds=0.2)
     for asked in (scene, scene.replace(rel_err=1e-3)):
@@ -279,22 +247,3 @@ def test_means_are_known_as_well_as_each_was_asked(asked, tmp_path):
         assert after(e, scene) == []
         assert "until rel_err = load 0.02, contacts 0.005 at best" in str(scene)
         assert after(e, asked({"load": 1e-3}))[0].startswith("load at d/sigma = 0 has a relative error of")
-
-
-@pytest.mark.parametrize(
-    ("rel_err", "told"),
-    [
-        ({}, "name at least one quantity"),
-        ({"lod": 1e-3}, r"ensemble\.rel_err\.lod: is not one of contact\.quantities"),
-        ({"load": 0.5}, r"ensemble\.rel_err\.load = 0\.5: give a number > 0 and at most 0\.1"),
-        ({"load": np.inf}, r"ensemble\.rel_err\.load = inf"),
-        ({"load": [1e-3, 1e-3]}, "has 2 values; give one for each of 3 separations"),
-        ({"load": [1e-3, -1.0, 1e-3]}, r"ensemble\.rel_err\.load = \[.*value 2 is -1\.0"),
-        ({"load": True}, r"ensemble\.rel_err\.load = True"),
-        ({"load": {"a": 1}}, r"ensemble\.rel_err\.load = "),
-        ([1e-3], r"ensemble\.rel_err = "),
-    ],
-)
-def test_mistakes_are_told(asked, rel_err, told):
-    with pytest.raises(mcgw.SceneError, match=told):
-        asked(rel_err)

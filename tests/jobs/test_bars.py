@@ -2,14 +2,13 @@
 
 import io
 import sys
-from contextlib import nullcontext
 
 import numpy as np
 import pytest
 
 import mcgw
 from mcgw.cli import main
-from mcgw.machine.progress import bar, stages, steps, told as asked, watched
+from mcgw.machine.progress import stages, steps, told as asked, watched
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "0.1 mm^2", "78.6 GPa")
 SCENE = mcgw.Scene(SURFACE, separations=[0.0, 1.0], n_surfaces=4, seed=1)
@@ -96,45 +95,6 @@ def test_a_bar_counts_what_is_done_and_ends_with_an_error(monkeypatch):
     with stages(3, "things") as done:  # nobody waits any more
         done()
     assert len(stream.getvalue()) == before
-
-
-@pytest.mark.parametrize("terminal", [True, False])
-@pytest.mark.parametrize("seen", [True, False])
-@pytest.mark.parametrize("person", [True, False])
-def test_a_line_beside_the_bar_is_said_once_and_to_terminals_alone(terminal, seen, person, monkeypatch):
-    """The bar too, where it is for watched terminals alone."""
-    stream = Stream(terminal=seen)
-    monkeypatch.setattr(sys, "stderr", stream)
-    with watched() if person else nullcontext(), bar("surfaces", terminal=terminal) as show:
-        show(0, 2)
-        show(2, 2)
-    drawn = not terminal or (seen and person)
-    assert ("0/2 [" in stream.getvalue()) == drawn
-
-
-def test_a_bar_goes_on_from_what_was_done_before(monkeypatch):
-    """At its rate in this call; it is closed at the end."""
-    made = []
-
-    class Bar:
-        def __init__(self, **options):
-            self.n, self.noted = options["initial"], [options]
-            made.append(self.noted)
-
-        def update(self, more):
-            self.n += more
-            self.noted.append(more)
-
-        def close(self):
-            self.noted.append("closed")
-
-    monkeypatch.setattr("tqdm.tqdm", Bar)
-    with bar("surfaces") as show:
-        assert made == []  # nothing is drawn before the first number
-        for done in (50, 60, 60, 100):
-            show(done, 100)
-    options = {"total": 100, "initial": 50, "unit": " surfaces", "leave": False, "smoothing": 0}
-    assert made == [[options, 0, 10, 0, 40, "closed"]]
 
 
 def test_progress_is_a_bar_a_function_or_nothing(monkeypatch):

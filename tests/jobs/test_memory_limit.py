@@ -3,20 +3,19 @@
 import os
 import subprocess
 import sys
-import threading
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from hypothesis import given, strategies as st
 from oracles.inside import Values, block_size, check_memory, memory_available, reducer_of
 from oracles.memory_growth import peak_growth
 from oracles.said import without_notes
 
 import mcgw
 from mcgw.errors import StoreError
-from mcgw.machine import child_process, memory
-from mcgw.machine.child_process import end_with
+from mcgw.machine import memory
 from mcgw.sweeps.groups import Pooling
 
 resource = pytest.importorskip("resource")
@@ -146,79 +145,22 @@ def test_disk_is_asked_for_blocks_and_file(make_scene):
         assert reducer.disk == blocks * SUMMARY + reducer.joined_bytes(n)
 
 
-@pytest.mark.parametrize(
-    ("words", "draws", "surfaces"),
-    [
-        (64, 0, 30 * 64),  # 20e6/100 would fit, but never more than thirty groups
-        (10_000 - WIDTH, 0, 6 * 64),  # 400 fit the cache: twice an odd number of groups
-        (62_500 - WIDTH, 0, 64),  # 64 fit
-        (10**6 - WIDTH, 0, 20),  # what memory allows
-        (10**8, 0, 1),
-        (0, 1.5e8 / 1000 - 1, 14 * 64),  # 1000 surfaces of so many draws
-        (0, 1.5e8 / 64 - 1, 64),
-        (0, 1.5e8 / 10 - 1, 10),
-        (0, 1.5e9, 1),
-    ],
-)
-def test_surfaces_of_a_block(words, draws, surfaces, make_scene):
-    assert block_size(make_scene(), SimpleNamespace(words=words, draws=draws)) == surfaces
+DRAWS = st.sampled_from([0.0, 1e3, 1e6, 1e9, 1e12])
 
 
-@pytest.mark.parametrize(
-    ("draws", "file", "piece", "rows"),
-    [
-        (0, 28_672, 8192, 2**20),  # 2^23 bytes are 15 blocks of 30 groups of 36 numbers, cut at chunks of 256
-        (4e8 / 3840 - 1, 2 * 22 * 64, 8192, 8192),  # 2.7 blocks of 22 groups draw 4e8 numbers
-        (1e9 / 32_768 - 1, 6 * 30 * 64, 8192, 32_768),  # 6.8 of 30 groups
-        (1e9 / 100 - 1, 2 * 15, 100, 100),  # 2.7 of 15 surfaces
-        (1e9, 1, 1, 1),
-    ],
-)
-def test_surfaces_of_what_is_written_at_once(draws, file, piece, rows, make_scene):
-    sampler = SimpleNamespace(draws=draws, words=0, moments=0, cells=0)
-    kept = reducer_of(make_scene(keep="statistics"), sampler)
-    assert (kept._piece, kept.rows) == (piece, rows)
-    assert reducer_of(make_scene(), sampler).rows == file
-
-
-def test_points_of_a_sweep_that_are_drawn_at_once(make_scene):
-    """As many surfaces as an ensemble has, fewer of many numbers or of many asperities; one at least."""
-
-    def rows(n, touching, keep=1):
-        one = SimpleNamespace(width=WIDTH, touching=touching)
-        return Pooling(SimpleNamespace(computed=(one,) * n, scenes=(one, None))).rows
-
-    assert rows(2, 0) == 8192
-    assert rows(1000, 0) == 2**28 // (8 * 1000 * WIDTH) == 932
-    assert rows(2, 1e10 / 50 - 1) == 50
-    assert rows(2, 1e12) == 1
-    assert rows(10**6, 0) == 1
-
-
-# --- limits of a process, by a stand-in for the system ---------------------------------------------------
-
-
-@pytest.mark.parametrize("linux", [True, False])
-@pytest.mark.parametrize("waits", [True, False])
-def test_a_process_ends_when_the_other_end_of_its_pipe_is_closed(linux, waits, monkeypatch):
-    """At once: the kernel is asked to kill it, and a thread does so too."""
-    asked, ended, gone = [], threading.Event(), threading.Event()
-    names = ("F_SETOWN", "F_SETSIG", "F_SETFL", "F_GETFL")
-    system = SimpleNamespace(fcntl=lambda *words: asked.append(words) or 4, **{name: name for name in names})
-    monkeypatch.setitem(sys.modules, "fcntl", system if linux else None)
-    monkeypatch.setattr(child_process.os, "_exit", lambda code: ended.set() if code == 1 else None)
-    reading, writing = os.pipe()
-    try:
-        end_with(reading, gone.wait if waits else None)
-        assert not ended.wait(timeout=0.05)
-        if waits:
-            gone.set()
-        else:
-            os.close(writing)
-        assert ended.wait(timeout=30)
-    finally:
-        os.close(reading)
-        if waits:
-            os.close(writing)
-    kernel = [("F_SETOWN", os.getpid()), ("F_SETSIG", 9), ("F_GETFL",), ("F_SETFL", 4 | os.O_ASYNC)]
-    assert asked == ([(reading, *words) for words in kernel] if linux else [])
+@given(st.integers(0, 10**8), DRAWS, st.sampled_from(["sums", "statistics"]))
+def test_blocks_are_as_large_as_the_memory_and_an_interruption_allow(words, draws, keep):
+    """A single surface may be beyond either limit; whole groups, and whole chunks of a file."""
+    surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
+    scene = mcgw.Scene(surface, separations=np.arange(9.0), ensemble={"keep": keep}, n_surfaces=1)
+    sampler = SimpleNamespace(words=words, draws=draws, moments=0, cells=0)
+    size, reducer = block_size(scene, sampler), reducer_of(scene, sampler)
+    assert size * (scene.width + words) <= 2e7 or size == 1
+    assert size * draws <= 1.5e8 or size == 1
+    assert size % 64 == 0 or size < 64
+    assert reducer.rows * draws <= 1e9 or reducer.rows == 1
+    assert reducer.rows % 256 == 0 or reducer.rows <= max(size, 256) or keep == "statistics"
+    computed = (SimpleNamespace(width=scene.width + words, touching=draws),)
+    rows = Pooling(SimpleNamespace(computed=computed, scenes=computed)).rows
+    assert rows == 1 or (8 * rows * (scene.width + words) <= 2**28 and rows * draws <= 1e10)
+    assert rows <= 8192

@@ -11,7 +11,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
-from oracles.inside import Job, LockedError, RunFolder, Values, locked, parts_of, state_of
+from oracles.inside import LockedError, Plan, Values, locked, parts_of, state_of
 
 import mcgw
 from mcgw.cli import main
@@ -57,7 +57,7 @@ def drawing(monkeypatch):
             self.pool.shutdown()
             return answer
 
-    held, drawn = Drawing(), Job.draw
+    held, drawn = Drawing(), Plan.draw
 
     def slowly(*arguments):
         held.blocks += 1
@@ -65,7 +65,7 @@ def drawing(monkeypatch):
         assert held.go_on.wait(30)
         return drawn(*arguments)
 
-    monkeypatch.setattr(Job, "draw", slowly)
+    monkeypatch.setattr(Plan, "draw", slowly)
     return held
 
 
@@ -92,15 +92,6 @@ def test_nothing_else_is_written_beside_a_run_of_one_block(other, scene, path, d
     assert first.n_surfaces == SIZE
     assert ensembles.verify(path)[0] == ""
     assert [p.name for p in path.parent.iterdir()] == ["e.h5"]
-
-
-@pytest.mark.parametrize("other", ["its own seed", "save"])
-def test_who_comes_too_late_finds_another_ensemble(other, scene, path):
-    mcgw.run(scene, path)
-    before = path.read_bytes()
-    with pytest.raises(StoreError, match="holds a different ensemble"):
-        others(scene)[other](path)
-    assert path.read_bytes() == before
 
 
 def test_a_run_that_waited_sees_what_the_other_wrote(scene, path, drawing, monkeypatch):
@@ -191,7 +182,7 @@ def leave_behind(path, scene, *, shards):
     (folder / "shards" / "block-0000000000016.h5").write_bytes(b"of a worker whose driver is gone")
     if shards:
         (folder / "shards" / "block-0000000000016.h5").unlink()
-        Job.of(scene, path).record.begin()
+        Plan.of(scene, path).begin()
         (folder / "shards" / "block-0000000000000.h5").write_bytes(b"whole")
 
 
@@ -220,9 +211,9 @@ def test_leftovers_of_a_run_of_one_block_do_not_stand_in_the_way_of_another(scen
 def test_an_empty_run_of_another_scene_gives_way(scene, path):
     folder = parts_of(path)
     with locked(folder):
-        Job.of(scene, path).record.begin()
+        Plan.of(scene, path).begin()
     mcgw.run(scene.replace(seed=2, n_surfaces=3 * SIZE), path, shard="1/2")
-    assert RunFolder.open(folder).scene.seed == 2
+    assert Plan.open(folder).scene.seed == 2
 
 
 def test_what_is_not_there_is_said_in_one_line(path, capsys):

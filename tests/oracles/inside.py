@@ -43,7 +43,7 @@ MODULES = {
     "mcgw.formats.units": "_FACTORS EXAMPLES METRES parse",
     "mcgw.jobs.driver": "drive heed_signals part_of Signals",
     "mcgw.jobs.executors": "dask_executor Jobs",
-    "mcgw.jobs.job": "commit_block Job",
+    "mcgw.jobs.worker": "commit_block",
     "mcgw.jobs.running": "run",
     "mcgw.machine.memory": "check_memory memory_available",
     "mcgw.maps.bad_points": "filled recorded small_spike_heights spike_heights usual_bend",
@@ -85,7 +85,8 @@ MODULES = {
     "mcgw.statistics.verdict": "FALSE_ALARM verdict Verdict",
     "mcgw.store.ensembles": "read_attributes verify",
     "mcgw.store.lock": "LOCK_FILES locked LockedError parts_of",
-    "mcgw.store.run_folder": "commit_shard open_shard Plan RECORD RunFolder Span",
+    "mcgw.store.blocks": "Blocks commit_shard open_shard Span",
+    "mcgw.store.run_plan": "Plan RECORD",
 }
 HOME = {name: module for module, names in MODULES.items() for name in names.split()}
 

@@ -14,7 +14,7 @@ import mcgw
 
 # Packages are layers: each imports only from those before it. Above all is the door, `mcgw` itself.
 LAYERS = (
-    "errors", "machine", "formats", "validity", "scene", "sampling", "ensemble", "store", "sweeps", "jobs",
+    "errors", "machine", "formats", "validity", "scene", "sampling", "ensemble", "sweeps", "store", "jobs",
     "exports", "maps", "elasticity", "statistics", "figures", "reports", "commands", "cli",
 )  # fmt: skip
 ROOT = Path(mcgw.__file__).parent

@@ -1,17 +1,15 @@
 """What is damaged is never gone on with: each kind of damage, and then every way of going on."""
 
-import shutil
-
 import h5py
 import numpy as np
 import pytest
 from oracles.begun_runs import SURFACES, begun, in_small_blocks
-from oracles.inside import RECORD, RunFolder, parts_of
+from oracles.inside import RECORD, Plan, parts_of
 
 import mcgw
 from mcgw.cli import main
 from mcgw.errors import RunError, StoreError
-from mcgw.store import ensembles, h5_reading, lock, run_folder
+from mcgw.store import ensembles, h5_reading
 
 
 @pytest.fixture(autouse=True)
@@ -118,47 +116,15 @@ def test_a_file_damaged_while_more_is_drawn_is_not_merged(scene, larger, tmp_pat
     assert path.read_bytes() == before
 
 
-@pytest.mark.parametrize("way", ["run", "shard job", "merge"])
-def test_nobody_works_on_a_folder_that_was_just_removed(scene, tmp_path, way, monkeypatch):
-    """Another's run ends, and its folder goes, between our looking for the lock and our getting it."""
-    path = tmp_path / "e.h5"
-    begun(scene, path)
-
-    class Late(lock.ReadWriteLock):
-        def _late(self, name, blocking):
-            shutil.rmtree(parts_of(path), ignore_errors=True)
-            return getattr(super(), name)(blocking=blocking)
-
-        def read_lock(self, *, blocking):
-            return self._late("read_lock", blocking)
-
-        def write_lock(self, *, blocking):
-            return self._late("write_lock", blocking)
-
-    monkeypatch.setattr(lock, "ReadWriteLock", Late)
-    monkeypatch.setattr(lock, "PATIENCE", 0.0)
-    work = {
-        "run": lambda: mcgw.run(scene, path),
-        "shard job": lambda: mcgw.run(scene, path, shard="1/2"),
-        "merge": lambda: mcgw.merge(path),
-    }[way]
-    with pytest.raises(
-        StoreError, match=r"its run has just ended; repeat the command|neither this file nor its blocks"
-    ):
-        work()
-    assert not path.exists()
-    assert not parts_of(path).exists()
-
-
 def test_seconds_of_all_blocks_and_of_the_file_before_add_up(scene, larger, tmp_path):
     path = tmp_path / "e.h5"
     begun(scene, path)
-    each = [shard.seconds for shard in RunFolder.open(parts_of(path)).shards()]
+    each = [shard.seconds for shard in Plan.open(parts_of(path)).shards()]
     mcgw.merge(path)
     first = ensembles.read_attributes(path)["wall_seconds"]
     assert first == pytest.approx(sum(each), rel=1e-12)
     assert mcgw.run(larger, path, shard="1/1") == 0
-    more = [shard.seconds for shard in RunFolder.open(parts_of(path)).shards()]
+    more = [shard.seconds for shard in Plan.open(parts_of(path)).shards()]
     mcgw.merge(path)
     assert ensembles.read_attributes(path)["wall_seconds"] == pytest.approx(first + sum(more), rel=1e-12)
     assert sum(more) > 0
@@ -220,4 +186,4 @@ def test_a_run_of_another_format_is_refused(half):
     with h5py.File(half / RECORD, "r+") as file:
         file.attrs["format"] = [2, 0]
     with pytest.raises(StoreError, match=r"mcgw-run \[2, 0\] is not read by this version, which reads"):
-        run_folder.RunFolder.open(half)
+        Plan.open(half)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from oracles.inside import RECORD, Job, RunFolder, Values, parts_of
+from oracles.inside import RECORD, Plan, Values, parts_of
 
 import mcgw
 from mcgw.errors import StoreError
@@ -24,14 +24,14 @@ def begun(make_scene, tmp_path, monkeypatch):
     return scene, tmp_path / "e.h5"
 
 
-@pytest.mark.parametrize("what", [b"HDF", b"mcgw-run", b"seed = ", b"tail", b"TREE", b"numba "])
+@pytest.mark.parametrize("what", [b"HDF", b"mcgw-run", b"seed = ", b"tail", b"numba "])
 def test_a_run_goes_on_from_its_blocks(begun, what, monkeypatch):
     scene, path = begun
     flip(parts_of(path) / RECORD, what)
     with pytest.raises(StoreError, match=r"damaged.* resume with mcgw run or mcgw sweep"):
-        RunFolder.open(parts_of(path))
-    drawn, draw = [], Job.draw
-    monkeypatch.setattr(Job, "draw", lambda job, span, *how: drawn.append(span) or draw(job, span, *how))
+        Plan.open(parts_of(path))
+    drawn, draw = [], Plan.draw
+    monkeypatch.setattr(Plan, "draw", lambda job, span, *how: drawn.append(span) or draw(job, span, *how))
     made = mcgw.run(scene, path)
     assert [span.first for span in drawn] == [4]
     assert np.array_equal(made.load, mcgw.simulate(scene).load)
@@ -50,7 +50,7 @@ def test_a_sweep_goes_on_from_its_shards(make_scene, what, tmp_path):
     path, scene = tmp_path / "s.h5", make_scene(separations=(2.0,), n_surfaces=8)
     axes = {"grading.gamma": [1.2, 1.5], "ensemble.seed": [1, 2]}
     mcgw.sweep(scene, axes, path=path, shard="1/2")
-    before = RunFolder.open(parts_of(path))
+    before = Plan.open(parts_of(path))
     flip(parts_of(path) / RECORD, what)
     mcgw.sweep(scene, axes, path=path, shard="1/2")
-    assert RunFolder.open(parts_of(path)).axes == before.axes
+    assert Plan.open(parts_of(path)).axes == before.axes

@@ -5,8 +5,6 @@ import os
 import pydoc
 import shutil
 import signal
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,14 +12,14 @@ import numpy as np
 import pytest
 from oracles.begun_runs import SIZE, SURFACES, begun, digest, halted, in_small_blocks
 from oracles.flipped import flip_a_number
-from oracles.inside import RECORD, Job, Plan, RunFolder, Span, commit_block, part_of, parts_of, state_of
+from oracles.inside import RECORD, Blocks, Plan, Span, commit_block, part_of, parts_of, state_of
 from oracles.said import without_notes
 
 import mcgw
 from mcgw.cli import main
 from mcgw.errors import RunError, StoppedError, StoreError
 from mcgw.jobs import making
-from mcgw.store import ensembles, identity, layout, place, run_folder as folders
+from mcgw.store import ensembles, place
 
 HERE = Path(__file__).parents[1]
 
@@ -46,13 +44,13 @@ def expected(scene, tmp_path):
 @pytest.fixture
 def drawn(monkeypatch):
     """First surfaces of the blocks that were drawn, in order."""
-    found, draw = [], Job.draw
+    found, draw = [], Plan.draw
 
     def counted(job, span, *more):
         found.append(span.first)
         return draw(job, span, *more)
 
-    monkeypatch.setattr(Job, "draw", counted)
+    monkeypatch.setattr(Plan, "draw", counted)
     return found
 
 
@@ -99,8 +97,7 @@ def test_n_surfaces_is_the_total(scene, tmp_path, expected, drawn):
 def test_another_version_is_refused(scene, tmp_path, monkeypatch):
     path = tmp_path / "e.h5"
     halted(scene, path, 40)
-    for module in ("store.identity", "jobs.job"):
-        monkeypatch.setattr(f"mcgw.{module}.versions", lambda **_: "mcgw 99")
+    monkeypatch.setattr("mcgw.store.run_plan.versions", lambda **_: "mcgw 99")
     with pytest.raises(StoreError, match=r"drawn with .*, but this is mcgw 99"):
         mcgw.run(scene, path)
 
@@ -114,6 +111,14 @@ def test_damage_is_put_aside_and_drawn_again(scene, tmp_path, expected):
     shards[2].write_bytes(shards[3].read_bytes())  # another block
     (shards[3].parent / ".left.tmp").write_bytes(b"half")
     assert ensembles.open_ensemble(path).n_surfaces == min(SIZE * len(shards), SURFACES) - 3 * SIZE
+    plan = Plan.open(parts_of(path))
+    assert [plan.held(Span(16 * k, 16)) is not None for k in range(4)] == [False, False, False, True]
+    assert plan.held(Span(48, 8)) is None  # of which the shard has more
+    shards[3].rename(tmp_path / "elsewhere.h5")
+    shards[3].symlink_to(tmp_path / "elsewhere.h5")
+    assert plan.held(Span(48, 16)) is None
+    shards[3].unlink()
+    (tmp_path / "elsewhere.h5").rename(shards[3])
     halted(scene, path, 0)
     assert len(list(parts_of(path).glob("shards/*.bad"))) == 3
     assert not list(parts_of(path).glob("shards/.*.tmp"))
@@ -153,37 +158,21 @@ def test_a_run_without_a_block_or_its_record_is_said_to_have_none(scene, tmp_pat
         ensembles.open_ensemble(path)
     (folder / RECORD).unlink()
     with pytest.raises(StoreError, match=r"run\.h5: there is none$"):
-        RunFolder.open(folder)
-
-
-def test_a_block_that_is_a_link_or_damaged_is_not_held(scene, tmp_path):
-    path = tmp_path / "e.h5"
-    first, second, third = begun(scene, path)[:3]
-    run_folder = RunFolder.open(parts_of(path))
-    assert [run_folder.held(Span(at, 16)).span for at in (0, 16, 32)] == [Span(at, 16) for at in (0, 16, 32)]
-    assert run_folder.held(Span(32, 8)) is None  # of which the shard has more
-    first.rename(tmp_path / "elsewhere.h5")
-    first.symlink_to(tmp_path / "elsewhere.h5")
-    second.write_bytes(second.read_bytes()[:-1])
-    third.unlink()
-    assert [run_folder.held(Span(at, 16)) for at in (0, 16, 32)] == [None] * 3
-    (parts_of(path) / ".left.tmp").touch()
-    folders.remove_run(parts_of(path))
-    assert [left.name for left in parts_of(path).iterdir()] == ["lock.db"]
+        Plan.open(folder)
 
 
 def test_statistics_of_a_missing_block_are_not_merged(scene, tmp_path, monkeypatch):
     """It goes between the look for gaps and the making of the file."""
     path = tmp_path / "e.h5"
     gone = begun(scene.replace(keep="statistics"), path)[2]
-    made = making.merge_once
+    made = making.make_file
 
     def late(*words):
         gone.unlink()
         return made(*words)
 
-    monkeypatch.setattr(making, "merge_once", late)
-    with pytest.raises(RunError, match=r"a shard is damaged; run the jobs again to redraw it$"):
+    monkeypatch.setattr(making, "make_file", late)
+    with pytest.raises(RunError, match=r"a shard is damaged; run the jobs again to redraw it"):
         mcgw.merge(path)
     assert not path.exists()
 
@@ -192,21 +181,21 @@ def test_a_file_that_appears_while_one_is_made_is_left_alone(scene, tmp_path):
     path, there = tmp_path / "e.h5", parts_of(tmp_path / "e.h5")
     there.mkdir()
     drawn = mcgw.simulate(scene)
-    written = identity.Written.of(drawn.scene, drawn.sampler)
-    contents = layout.contents_of(drawn, written, run="r", draws="d", wall_seconds=1.0)
-    place.put(path, contents, None)
+    plan = Plan.of(drawn.scene, path, drawn.sampler)
+    contents = plan.contents(drawn.labelled(), 1.0)
+    place.put(plan, contents, None)
     before, data = state_of(path), path.read_bytes()
     with pytest.raises(RunError, match=r"e\.h5: File exists; it was not changed, .* choose another"):
-        place.put(path, contents, None)
+        place.put(plan, contents, None)
     assert path.read_bytes() == data
-    place.put(path, contents, before)
+    place.put(plan, contents, before)
     assert state_of(path) != before
     with pytest.raises(RunError, match="another file now has this name; it was not changed"):
-        place.put(path, contents, before)
+        place.put(plan, contents, before)
     assert list(there.iterdir()) == []
     there.rmdir()
     with pytest.raises(RunError, match=r"cannot be written \(No such file or directory\); is the disk full"):
-        place.put(path, contents, None)
+        place.put(plan, contents, None)
 
 
 def test_progress_of_a_run_goes_on_from_what_it_holds(scene, tmp_path):
@@ -229,23 +218,11 @@ def test_what_is_left_out_of_a_run_is_told(scene, tmp_path):
     path = tmp_path / "e.h5"
     for k, held in ((2, [16, 64]), (3, [16, 32, 64, 80])):
         mcgw.run(scene, path, shard=f"{k}/3")
-        assert [shard.span.first for shard in RunFolder.open(parts_of(path)).shards()] == held
+        assert [shard.span.first for shard in Plan.open(parts_of(path)).shards()] == held
     for wrong in ("0/3", "4/3", "1", "a/b", "1/0", "-1/3", "1/3/5", ""):
         with pytest.raises(ValueError, match=r"^--shard .*: give i/n with 1 <= i <= n$"):
             part_of(wrong)
     assert part_of("3/3") == (3, 3)
-
-
-def test_the_folder_of_a_run_vanishes(scene, tmp_path):
-    path = tmp_path / "e.h5"
-
-    def vanish(done, _):
-        if done:
-            shutil.rmtree(parts_of(path), ignore_errors=True)
-
-    with pytest.raises((RunError, StoreError)):
-        mcgw.run(scene, path, progress=vanish)
-    assert not path.exists()
 
 
 def test_planted_links_are_not_followed(scene, tmp_path):
@@ -265,22 +242,15 @@ def test_room_is_asked_for_what_is_not_there_yet(scene, tmp_path, monkeypatch):
     halted(scene, path, 64)
     half = 8 * SURFACES * len(scene.separations) * len(scene.quantities)
     free = shutil.disk_usage(tmp_path)._replace(free=2 * half - 1)
-    monkeypatch.setattr("mcgw.jobs.job.shutil.disk_usage", lambda folder: free)
+    monkeypatch.setattr("mcgw.store.place.shutil.disk_usage", lambda folder: free)
     with pytest.raises(StoreError, match="free some space"):
         mcgw.run(scene, tmp_path / "other.h5")
     mcgw.run(scene, path)
 
 
-def test_gaps_are_cut_at_multiples_of_a_block():
-    plan = Plan(((50, 16),))
-    assert plan.missing([]) == [Span(0, 16), Span(16, 16), Span(32, 16), Span(48, 2)]
-    assert plan.missing([Span(0, 20), Span(32, 16)]) == [Span(20, 12), Span(48, 2)]
-    assert plan.missing([Span(0, 50)]) == plan.missing([Span(0, 64)]) == []
-
-
 def test_blocks_of_several_groups_end_with_their_group():
     """Two groups of 50 and 20 surfaces, in blocks of 16 and 20, one after the other."""
-    plan = Plan(((50, 16), (20, 20)), whole=True)
+    plan = Blocks(((50, 16), (20, 20)), whole=True)
     blocks = [Span(0, 16), Span(16, 16), Span(32, 16), Span(48, 2), Span(50, 20)]
     assert plan.total == 70
     assert plan.missing([]) == blocks
@@ -290,8 +260,8 @@ def test_blocks_of_several_groups_end_with_their_group():
         assert plan.missing([held]) == [block for block in blocks if block != held]
         assert plan.takes(held)
     assert not any(map(plan.takes, (Span(0, 15), Span(8, 16), Span(50, 16), Span(48, 4))))
-    assert Plan(((50, 16),), whole=True).takes(Span(64, 16))  # of more than is asked for now
-    assert [Plan(((50, 16),), whole=True).kept(n) for n in (0, 20, 32, 50)] == [0, 16, 32, 50]
+    assert Blocks(((50, 16),), whole=True).takes(Span(64, 16))  # of more than is asked for now
+    assert [Blocks(((50, 16),), whole=True).kept(n) for n in (0, 20, 32, 50)] == [0, 16, 32, 50]
 
 
 def as_typed(scene, path):
@@ -306,7 +276,7 @@ def test_signals_stop_a_run_that_then_goes_on(
     scene, tmp_path, number, code, expected, drawn, monkeypatch, capsys
 ):
     """Sent while the third block is drawn: that is kept, and the rest is drawn later."""
-    path, draw = tmp_path / "e.h5", Job.draw
+    path, draw = tmp_path / "e.h5", Plan.draw
 
     def signalled(*arguments):
         if len(drawn) == 2:
@@ -314,7 +284,7 @@ def test_signals_stop_a_run_that_then_goes_on(
         return draw(*arguments)
 
     with monkeypatch.context() as patch:
-        patch.setattr(Job, "draw", signalled)
+        patch.setattr(Plan, "draw", signalled)
         if number == signal.SIGINT:
             assert as_typed(scene, path) == code
         else:
@@ -332,59 +302,21 @@ def test_signals_stop_a_run_that_then_goes_on(
 
 
 def test_a_signal_while_the_only_block_is_drawn_leaves_nothing(scene, tmp_path, monkeypatch):
-    draw = Job.draw
+    draw = Plan.draw
 
     def signalled(*arguments):
         os.kill(os.getpid(), signal.SIGTERM)
         return draw(*arguments)
 
-    monkeypatch.setattr(Job, "draw", signalled)
+    monkeypatch.setattr(Plan, "draw", signalled)
     with pytest.raises(StoppedError, match="terminated: nothing was saved") as caught:
         mcgw.run(scene.replace(n_surfaces=SIZE), tmp_path / "e.h5")
     assert caught.value.code == 143
     assert list(tmp_path.iterdir()) == []
 
 
-KILLED = """
-import os, signal, sys
-import numpy
-from mcgw.jobs import job
-from mcgw.ensemble.simulation import Values
-from mcgw.jobs.job import Job
-Values.rows = 16
-commit, committed = job.commit_shard, []
-
-def killed_at_the_fourth(*words):
-    if len(committed) == 3:
-        os.kill(os.getpid(), signal.SIGKILL)
-    committed.append(words)
-    return commit(*words)
-
-job.commit_shard = killed_at_the_fourth
-drawn = dict(numpy.load(sys.argv[3]))  # so that no loop is loaded
-Job.draw = lambda job, span, *how: {name: x[span.first : span.stop] for name, x in drawn.items()}
-from mcgw.jobs.running import run
-from mcgw.scene.scene_file import scene_from
-run(scene_from(open(sys.argv[1]).read()), sys.argv[2])
-"""
-
-
-def test_killed_at_a_block_it_goes_on(scene, tmp_path, expected, drawn):
-    path, file = tmp_path / "e.h5", tmp_path / "e.toml"
-    file.write_text(mcgw.scene_text(scene))
-    np.savez(tmp_path / "drawn.npz", **mcgw.simulate(scene).sums.arrays)
-    call = [sys.executable, "-c", KILLED, str(file), str(path), str(tmp_path / "drawn.npz")]
-    done = subprocess.run(call, cwd=HERE.parent, capture_output=True, check=False)
-    assert done.returncode == -signal.SIGKILL
-    assert len(list(parts_of(path).glob("shards/block-*.h5"))) == 3
-    drawn.clear()
-    assert as_typed(scene, path) == 0
-    assert drawn == [48, 64, 80, 96]
-    assert digest(path) == expected
-
-
 FULL = [
-    ("jobs.job.commit_shard", "finished blocks are kept"),
+    ("jobs.worker.commit_shard", "finished blocks are kept"),
     ("store.place.write", "is the disk full?"),
 ]
 

@@ -1,12 +1,11 @@
 """Shards: every changed number and every lost byte is noticed."""
 
-import os
 from contextlib import closing, contextmanager
 
 import h5py
 import numpy as np
 import pytest
-from oracles.inside import Span, commit_shard, open_shard, write_whole
+from oracles.inside import Span, commit_shard, open_shard
 
 import mcgw
 from mcgw.errors import StoreError
@@ -75,12 +74,6 @@ def test_numbers_that_are_not_finite_are_never_committed(tmp_path, bad):
     assert not list(tmp_path.iterdir())
 
 
-def test_rows_must_be_those_of_the_block(tmp_path):
-    for wrong in ({"load": np.ones((4, 3))}, {"block_mean": np.ones((2, 3))}):
-        with pytest.raises(StoreError, match="does not have the rows"):
-            commit_shard(tmp_path / SPAN.file_name, RUN, SPAN, wrong, 0.0)
-
-
 def test_the_checksum_is_of_contents_alone(shard):
     """Laid out otherwise, by another program and in big-endian numbers, the numbers are as good."""
     with h5py.File(shard.path, "r+") as file:
@@ -95,30 +88,6 @@ def test_the_checksum_is_of_contents_alone(shard):
     for look in (lambda: open_shard(shard.path, RUN), lambda: shard.tables("load")):
         with pytest.raises(StoreError, match="checksum mismatch of load"):
             look()
-
-
-def test_a_file_appears_whole_or_not_at_all(tmp_path, monkeypatch):
-    path = tmp_path / "a"
-    write_whole(path, [b"old"])
-
-    def fail(fd):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(os, "fsync", fail)
-    with pytest.raises(OSError, match="No space"):
-        write_whole(path, [b"new"])
-    assert path.read_bytes() == b"old"
-    assert [p.name for p in tmp_path.iterdir()] == ["a"]
-
-
-def test_a_planted_link_is_replaced_not_followed(tmp_path):
-    victim, path = tmp_path / "victim", tmp_path / "a"
-    victim.write_bytes(b"precious")
-    path.symlink_to(victim)
-    write_whole(path, [b"new"])
-    assert victim.read_bytes() == b"precious"
-    assert not path.is_symlink()
-    assert path.read_bytes() == b"new"
 
 
 @contextmanager
@@ -148,22 +117,6 @@ def test_a_full_disk_is_an_error_only_when_it_is_asked_for(tmp_path, how):
         with pytest.raises(OSError, match="File too large"):
             file.check()
     assert (tmp_path / "a").read_bytes() == b"abcdef" + bytes(3) * (how == "write")
-
-
-def test_what_hdf5_writes_is_what_it_reads(tmp_path):
-    path = tmp_path / "a"
-    with closing(SteadyFile(path)) as file:
-        file.write(b"0123456789")
-        assert file.tell() == file.seek(0, os.SEEK_END) == 10
-        assert file.seek(-3, os.SEEK_CUR) == 7
-        buffer = bytearray(5)
-        assert file.readinto(buffer) == 5
-        assert buffer == b"789\0\0"
-        file.truncate(4)
-        file.flush()
-    assert path.read_bytes() == b"0123"
-    with pytest.raises(FileExistsError):
-        SteadyFile(path)
 
 
 @pytest.mark.parametrize("lacking", [1, 100, 1500])

@@ -233,14 +233,6 @@ def test_mistakes_name_the_point(over, words):
         mcgw.sweep(SCENE, over)
 
 
-def test_all_mistakes_at_once():
-    with pytest.raises(mcgw.SceneError) as caught:
-        mcgw.sweep(SCENE, {GAMMA: [-3, 1, 5], "ensemble.seed": [1, "a"]})
-    lines = str(caught.value).splitlines()
-    assert len(lines) == 4
-    assert sum("ensemble.seed = 'a'" in line for line in lines) == 3
-
-
 def test_points_that_are_none():
     sweep = mcgw.sweep(SCENE, {GAMMA: [1.0, 2.0], "ensemble.seed": [1, 2]})
     for at in ({GAMMA: 3.0}, {GAMMA: 1.0}, {"gamma": 1.0}, (0, 2), 0):
@@ -250,6 +242,17 @@ def test_points_that_are_none():
         sweep.mean("depth")
     with pytest.raises(ValueError, match="slopes need at least two numbers"):
         mcgw.sweep(SCENE, {"ensemble.count": ["fixed", "poisson"]}).slopes("load", "ensemble.count")
+
+
+def test_axes_have_names_of_their_own():
+    both = axes_of({"heights.law": ["gaussian"], "grading.law": ["homogeneous"], GAMMA: [1]}, zipped=False)
+    assert both.dims == ("heights.law", "grading.law", "gamma")
+    told = {2: 2, 0.5: 0.5, "1 um": "1 um", True: "True"}
+    assert {x: label(x) for x in told} == told
+    assert label({"law": "weibull"}) == "law = weibull"
+    for values in ([1e-6], [1e-6, "2 um"], [1e-6, 2e-6, 2e-6]):
+        with pytest.raises(ValueError, match=r"^surface\.sigma: slopes need at least two numbers"):
+            axes_of({"surface.sigma": values}, zipped=False).numbers("surface.sigma")
 
 
 def test_points_are_found_as_elements_of_a_list():
@@ -270,53 +273,6 @@ def test_points_are_found_as_elements_of_a_list():
     ):
         with pytest.raises(ValueError, match="there is no point"):
             axes.place(at)
-
-
-def test_values_are_told_as_numbers_or_words():
-    assert [label(x) for x in (2, 0.5, "1 um")] == [2, 0.5, "1 um"]
-    assert [label(x) for x in (True, [1, 2])] == ["True", "[1, 2]"]
-    assert label({"law": "weibull", "shape": 2.0}) == "law = weibull, shape = 2.0"
-    axes = axes_of({GAMMA: [1 / 3], "heights.resample": [True], "surface.sigma": ["1 um"]}, zipped=False)
-    assert axes.text((0, 0, 0)) == f"{GAMMA} = 0.333333, heights.resample = True, surface.sigma = 1 um"
-    assert axes.values_text((0, 0, 0)) == "0.333333, True, 1 um"
-    assert axes.names == {GAMMA: "gamma", "heights.resample": "resample", "surface.sigma": "sigma"}
-    both = axes_of({"heights.law": ["gaussian"], "grading.law": ["homogeneous"], GAMMA: [1]}, zipped=False)
-    assert both.dims == ("heights.law", "grading.law", "gamma")
-    many = axes_of({GAMMA: range(6), "ensemble.seed": [3.0, 1.0, 2.0, 5.0, 4.0, 6.0, 7.0]}, zipped=False)
-    assert [many.summary(key) for key in many.keys] == ["0, 1, 2, 3, 4, 5", "7 from 3 to 7"]
-
-
-@pytest.mark.parametrize(
-    "values", [[1e-6], [1e-6, "2 um"], ["1 um", "2 um"], [1e-6, 1e-6, 2e-6], [1e-6, 2e-6, 2e-6], [True, "x"]]
-)
-def test_slopes_are_between_numbers_that_differ(values):
-    key = "surface.sigma"
-    with pytest.raises(ValueError, match=r"^surface\.sigma: slopes need at least two numbers, with no equal"):
-        axes_of({key: values}, zipped=False).numbers(key)
-    with pytest.raises(
-        ValueError, match=r"^'grading\.gamma' is no axis of this sweep; it has surface\.sigma$"
-    ):
-        axes_of({key: values}, zipped=False).numbers(GAMMA)
-    assert axes_of({key: [1, 2.5, 1]}, zipped=False).numbers(key).tolist() == [1.0, 2.5, 1.0]
-
-
-def test_what_is_shown_of_slopes_and_points_is_what_there_is():
-    """Slopes at the first separation and the first values of other keys; points at the lowest separation."""
-    over = {"ensemble.count": ["fixed", "poisson"], GAMMA: [1.0, 1.5, 2.5, 3.0, 3.5]}
-    sweep = mcgw.sweep(SCENE.replace(n_surfaces=20, separations=[1.0, 0.0], quantities=["load"]), over)
-    slopes = sweep.slopes("load", GAMMA)
-    _, *lines = repr(slopes).splitlines()
-    assert lines[0].split() == [GAMMA, "slope", "stderr", "theory"]
-    shown = np.array([[float(word) for word in line.split()] for line in lines[1:]])
-    np.testing.assert_allclose(shown[:, 0], [1.25, 2.0, 2.75, 3.25])
-    np.testing.assert_allclose(shown[:, 1], slopes.value[0, :, 0], rtol=1e-4)
-    np.testing.assert_allclose(shown[:, 2], slopes.stderr[0, :, 0], rtol=0.5)
-    np.testing.assert_allclose(shown[:, 3], slopes.theory[0, :, 0], rtol=1e-4)
-    at, load = sweep.sheet().table.columns
-    where = [0, 2, 3, 4, 6, 8, 9]
-    assert list(at.values) == [sweep.axes.values_text(list(sweep.axes.points())[k]) for k in where]
-    np.testing.assert_array_equal(load.values, sweep.mean("load").reshape(10, 2)[where, 1])
-    np.testing.assert_array_equal(load.beside.values, sweep.stderr("load").reshape(10, 2)[where, 1])
 
 
 def test_progress_counts_what_a_group_takes():

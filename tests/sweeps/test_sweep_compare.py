@@ -113,18 +113,6 @@ def test_false_alarms_are_as_rare_as_stated():
     assert sum(x < 0.5 for x in p) >= 8
 
 
-def test_of_equally_likely_points_that_with_the_worst_mean_is_first(sweep):
-    compared = mcgw.compare(sweep)
-    alike = [replace(one, verdict=replace(one.verdict, p=0.5)) for one in compared.points]
-    found = replace(compared, points=tuple(alike)).worst
-    off = [abs(one.residual[one.worst]) for one in found]
-    assert off == sorted((np.abs(one.residual[one.counts]).max() for one in alike), reverse=True)
-    assert off[0] > off[-1]
-    shown = replace(compared, points=tuple(alike)).sheet().table.columns
-    assert [len(column.values) for column in shown] == [7] * 8
-    assert len(replace(compared, points=tuple(alike)).sheet(9).table.columns[0].values) == 9
-
-
 def test_points_whose_asperities_press_each_other_down(pressed):
     scene = pressed(0.05, n_surfaces=100)
     compared = mcgw.compare(mcgw.sweep(scene, {"grading.gamma": [1.0, 1.5]}))
@@ -153,7 +141,7 @@ def test_cautions_are_counted():
 def test_the_commands_see_what_is_wrong(sweep, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     mcgw.sweep(SCENE, OVER, path="w.h5")
-    monkeypatch.setattr("mcgw.sweeps.open_results", lambda path: off(sweep, 1.03))
+    monkeypatch.setattr("mcgw.store.ensembles.open_results", lambda path: off(sweep, 1.03))
     assert main(["compare", "w.h5", "-o", "w.svg"]) == 1
     assert "DISAGREE" in (tmp_path / "w.svg").read_text()
     assert "DISAGREE: chi-square" in capsys.readouterr().out

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from oracles.begun_runs import settle
 from oracles.flipped import flip_a_number
-from oracles.inside import RECORD, Jobs, RunFolder, commit_block, parts_of, read_attributes
+from oracles.inside import RECORD, Jobs, Plan, commit_block, parts_of, read_attributes
 
 import mcgw
 from mcgw.cli import main
@@ -23,6 +23,7 @@ SCENE = mcgw.Scene(
 )
 GAMMA, N = "grading.gamma", "ensemble.n_asperities"
 OVER = {GAMMA: np.linspace(0.5, 1.7, 9), N: [200, 2000]}
+WORDS = {GAMMA: [0.5, 2.0], "ensemble.count": ["poisson", "fixed"]}
 FIRST = 2 * [0, 50, 100, 150, 200, 250]  # surfaces of the chunks
 TOML = """
 surface = {sigma = 1e-6, radius = 1e-5, eta = 1e9, nominal_area = 1e-6, E_star = 1e11}
@@ -90,11 +91,19 @@ def test_other_programs_read_it(tmp_path):
     pytest.importorskip("h5netcdf")
     sweep = mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5")
     with xarray.open_dataset(tmp_path / "a.h5", engine="h5netcdf") as data:
-        assert data.load_std.dims == ("point", "separation")
-        assert np.array_equal(data.load_std.values.reshape(9, 2, 3), sweep.std("load"))
-        assert set(data.coords) == {"point", "separation", "gamma", "n_asperities"}
-        assert data.n_asperities.values.tolist() == [200, 2000] * 9
+        assert data.load_std.dims == ("gamma", "n_asperities", "separation")
+        assert np.array_equal(data.load_std, sweep.std("load"))
+        assert (data.gamma.values.tolist(), data.n_asperities.values.tolist()) == tuple(
+            map(list, OVER.values())
+        )
         assert data.attrs["filetype"] == "mcgw-results"
+    zipped = mcgw.sweep(SCENE, WORDS, zipped=True, path=tmp_path / "b.h5")
+    with xarray.open_dataset(tmp_path / "b.h5", engine="h5netcdf") as data:
+        assert data.load_mean.dims == ("point", "separation")
+        assert np.array_equal(data.load_mean, zipped.mean("load"))
+        assert data.gamma.values.tolist() == [0.5, 2.0]
+        assert data["count"].values.tolist() == [0, 1]
+        assert data["count"].attrs["long_name"] == "ensemble.count: 0 poisson, 1 fixed"
 
 
 @pytest.mark.parametrize("after", [1, 6])
@@ -289,7 +298,7 @@ def test_a_worker_draws_for_nobody_who_asked_something_else(tmp_path):
     path = tmp_path / "a.h5"
     mcgw.sweep(SCENE, OVER, path=path, shard="2/2")
     asked = parts_of(path) / RECORD
-    good, run = asked.read_bytes(), RunFolder.open(parts_of(path))
+    good, run = asked.read_bytes(), Plan.open(parts_of(path))
     for data in (good.replace(b"seed = 7\n", b"seed = 8\n"), good[:-9]):
         asked.write_bytes(data)
         with pytest.raises(mcgw.StoreError, match=r"run\.h5: .*damaged"):

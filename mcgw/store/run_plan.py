@@ -1,0 +1,296 @@
+"""What is drawn into a file, points x blocks; and its folder, beside the file: ``demo.h5.parts/``.
+
+::
+
+    run.h5      the frozen scene, the axes of a sweep, the identity of both, the versions that draw
+    lock.db     held by whoever writes the file, freed by the system when it dies (`lock`)
+    holder      who that is
+    shards/     block-0000000000042.h5: the surfaces from number 42 on
+
+All are files of the one writer. A shard holds the results of some consecutive surfaces and is there whole or
+not; its attributes are the identity of the run, the numbers of the surfaces, and how long these took. The set
+of valid shards is the only record of progress.
+"""
+
+import shutil
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from analytic.arrays import hold
+from mcgw.ensemble.ensemble import Ensemble
+from mcgw.ensemble.labelled import Labelled
+from mcgw.ensemble.results import Tables
+from mcgw.errors import RunError, StoreError
+from mcgw.formats.files import Expected, check_output, sync
+from mcgw.scene.scene import Scene
+from mcgw.scene.scene_file import scene_from
+from mcgw.scene.section import SceneError
+from mcgw.store.blocks import Blocks, Shard, Span, open_shard, write_tables
+from mcgw.store.h5_reading import look
+from mcgw.store.h5_writing import FORMAT, RUN_TYPE
+from mcgw.store.identity import attributes_of, difference, identity_of, now, versions, written
+from mcgw.store.lock import parts_of, refuse_link
+
+if TYPE_CHECKING:
+    from mcgw.ensemble.drawing import GoOn, Reducer
+    from mcgw.sweeps.points import Asked
+    from mcgw.sweeps.sweep import Sweep
+
+RECORD = "run.h5"
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """What is drawn into a file: a scene, or groups of scenes that share their surfaces.
+
+    Parameters
+    ----------
+    path : Path
+        The file to be.
+    text : str
+        The scene as TOML, frozen; of a sweep what all points have in common.
+    axes : str
+        Of a sweep, as JSON; empty for a scene.
+    sampler : str
+        Never "auto"; empty for a sweep.
+    identity : str
+        Of all that the numbers of a surface depend on, whatever their number.
+    drawn_with : str
+        Versions that draw.
+    """
+
+    path: Path
+    text: str
+    axes: str
+    sampler: str
+    identity: str
+    drawn_with: str
+
+    @classmethod
+    def of(cls, scene: Scene, path: Path, sampler: str = "") -> "Plan":
+        """Return that of a scene with a number of surfaces, not a rule for it; drawn by its own sampler.
+
+        Raises
+        ------
+        StoreError
+            If the scene cannot be told by a file, or none can be there.
+        """
+        check_output(path)
+        known: dict[str, Any] = {"scene": scene}
+        if not sampler:
+            from mcgw.ensemble.simulation import reducer_of  # imports the samplers
+
+            known["reducers"] = (reducer_of(scene),)
+            sampler = known["reducers"][0].sampler.name
+        (text, key), draws = written(scene), versions(of_draws=True)
+        plan = cls(path, text, "", sampler, identity_of(key, sampler, draws), draws)
+        hold(plan, of_all=f"{key} {scene.n_surfaces}", **known)
+        return plan
+
+    @classmethod
+    def of_sweep(cls, asked: "Asked", path: Path) -> "Plan":
+        """Return that of a sweep.
+
+        Raises
+        ------
+        StoreError
+            If no file can be there.
+        """
+        check_output(path)
+        texts, draws = asked.texts(), versions(of_draws=True)
+        return cls(path, *texts, "", identity_of(*texts, draws), draws)
+
+    @classmethod
+    def open(cls, folder: Path) -> "Plan":
+        """Return the one that a folder records.
+
+        Raises
+        ------
+        StoreError
+            If there is none, or it cannot be read.
+        """
+        refuse_link(folder)
+        file, path = folder / RECORD, folder.with_name(folder.name.removesuffix(".parts"))  # of `parts_of`
+        try:
+            said = look(file, RUN_TYPE)
+            plan = cls(path, *(str(said[key]) for key in ("scene", "axes", "sampler", "run", "draws")))
+            plan.scene  # noqa: B018 - that can be read
+        except (StoreError, SceneError, KeyError, ValueError) as error:
+            if not file.is_file():
+                raise StoreError(f"{file}: there is none") from None
+            what = str(error).splitlines()[0].removeprefix(f"{file}: ")
+            raise StoreError(
+                f"{file}: {what}; the blocks beside it are kept: resume with mcgw run or mcgw sweep, with "
+                f"their scene and seed, or remove {folder}"
+            ) from None
+        return plan
+
+    def again(self) -> "Plan":
+        """Return what this process makes of the same words, whoever wrote them."""
+        return Plan.of_sweep(self.asked, self.path) if self.axes else Plan.of(self.scene, self.path)
+
+    @cached_property
+    def scene(self) -> Scene:
+        """What is drawn; of a sweep what its points come from."""
+        return scene_from(self.text)
+
+    @cached_property
+    def asked(self) -> "Asked":
+        """The points of a sweep."""
+        from mcgw.sweeps.points import Asked  # of which most runs are none
+
+        return Asked.from_texts(self.text, self.axes)
+
+    @cached_property
+    def reducers(self) -> "tuple[Reducer, ...]":
+        """What draws each group, and what of it is kept; a scene is one group.
+
+        Raises
+        ------
+        SceneError
+            With the mistakes of all points of a sweep.
+        """
+        if not self.axes:
+            return self.again().reducers
+        from mcgw.sweeps.groups import Pooling  # of which most runs are none
+
+        return tuple(map(Pooling, self.asked.groups))
+
+    @cached_property
+    def of_all(self) -> str:
+        """What the numbers of all surfaces are of: the words under the digest."""
+        return f"{self.text}\0{self.axes}" if self.axes else self.again().of_all
+
+    @property
+    def whole(self) -> bool:
+        """Whether a block is of use as a whole only, since nothing is kept of a single surface."""
+        return bool(self.axes) or self.scene.keep == "statistics"
+
+    @cached_property
+    def blocks(self) -> Blocks:
+        """Blocks of the surfaces that are asked for."""
+        return Blocks(tuple((one.n_surfaces, one.rows) for one in self.reducers), self.whole)
+
+    @cached_property
+    def total(self) -> int:
+        """Surfaces of all groups."""
+        return sum(one.n_surfaces for one in self.reducers)
+
+    def work(self, span: Span) -> float:
+        """Return what some surfaces of one group take, in any unit."""
+        return span.n * self.reducers[self.blocks.group(span)[0]].work
+
+    def draw(self, span: Span, threads: int | None, *go_on: "GoOn") -> Tables:
+        """Return what is kept of some surfaces of one group; it does not depend on `threads`."""
+        from mcgw.ensemble.drawing import use_threads  # imports the samplers
+
+        group, first = self.blocks.group(span) if self.axes else (0, span.first)
+        with use_threads(threads):
+            return self.reducers[group].tables(first, first + span.n, *go_on)
+
+    def dataset(self, held: list[Any]) -> "Ensemble | Sweep":
+        """Return the ensemble or the sweep of what is held of each group."""
+        return self.asked.answered(held) if self.axes else Ensemble(self.scene, self.sampler, held[0])
+
+    def contents(self, held: Labelled, seconds: float, drawn: Tables | None = None) -> Labelled:
+        """Those of the file: what a dataset holds, what its statistics are made of, and how long it took."""
+        about = {"run": self.identity, "draws": self.drawn_with, "wall_seconds": seconds}
+        about |= {"axes": self.axes} if self.axes else {}
+        return held.in_file(drawn or {}, attributes_of(self.scene, self.sampler, self.text, **about))
+
+    @property
+    def folder(self) -> Path:
+        """Where the record and the shards lie."""
+        return parts_of(self.path)
+
+    @property
+    def shards_folder(self) -> Path:
+        """Where the shards lie."""
+        return self.folder / "shards"
+
+    def begin(self, *, alone: bool = True) -> None:
+        """Begin, or go on in the folder that is there, recording how many surfaces are wanted if `alone`.
+
+        Only with the lock.
+
+        Raises
+        ------
+        StoreError
+            If it belongs to another scene, seed or version, or is not a folder of a run.
+        """
+        refuse_link(self.folder)
+        self.shards_folder.mkdir(parents=True, exist_ok=True)
+        sync(self.folder.parent)
+        with suppress(FileExistsError):
+            return self._write(expected=None)
+        try:
+            old = Plan.open(self.folder)
+        except StoreError:
+            if not self.shards(numbers=False):
+                raise
+            return self._write(expected="anything")  # its blocks say that they are of this very run
+        if old.identity != self.identity:
+            there, here = ((plan.text, plan.axes, plan.drawn_with) for plan in (old, self))
+            raise StoreError(
+                f"{self.folder}: holds a different {'sweep' if self.axes else 'run'}: "
+                f"{difference(there, here)}; choose another -o, or remove it"
+            )
+        return self._write(expected="anything") if alone and old.text != self.text else None
+
+    def _write(self, *, expected: Expected) -> None:
+        about = {"filetype": RUN_TYPE, "format": FORMAT, "run": self.identity, "sampler": self.sampler}
+        about |= {"draws": self.drawn_with, "date": now(), "axes": self.axes, "scene": self.text}
+        write_tables(self.folder / RECORD, {}, about, expected)
+
+    def shards(self, *, numbers: bool = True) -> list[Shard]:
+        """Return valid shards in order, each looked at; or its head alone, without the `numbers`."""
+        return [shard for shard, _ in self._looked_at(numbers=numbers) if shard]
+
+    def sweep(self) -> list[Shard]:
+        """As `shards`; whatever else lies there is put aside. Only with the lock."""
+        for left in (*self.folder.glob(".*.tmp"), *self.shards_folder.glob(".*.tmp")):
+            left.unlink(missing_ok=True)
+        valid = []
+        for shard, path in self._looked_at():
+            if shard:
+                valid.append(shard)
+            else:
+                path.rename(path.with_name(f"{path.name}.bad"))
+        return valid
+
+    def _looked_at(self, *, numbers: bool = True) -> Iterator[tuple[Shard | None, Path]]:
+        if not self.shards_folder.is_dir():
+            raise RunError(f"{self.folder}: is missing or incomplete; run the command again")
+        for path in sorted(self.shards_folder.glob("block-*.h5")):
+            yield self._valid(path, numbers=numbers), path
+
+    def _valid(self, path: Path, *, numbers: bool = True) -> Shard | None:
+        """Return the shard of a name, if it is whole, of this run and of use."""
+        try:
+            shard = None if path.is_symlink() else open_shard(path, self.identity, numbers=numbers)
+        except StoreError:
+            return None
+        return shard if shard and (not self.whole or self.blocks.takes(shard.span)) else None
+
+    def held(self, span: Span) -> Shard | None:
+        """Return the valid shard of a block, if there is one."""
+        path = self.shards_folder / span.file_name
+        shard = self._valid(path) if path.is_file() else None
+        return shard if shard and shard.span == span else None
+
+    def missing(self, done: int, shards: Iterable[Shard]) -> list[Span]:
+        """Blocks that neither the file, of `done` surfaces, nor one of the shards holds."""
+        done = self.blocks.kept(done)
+        held = [*([Span(0, done)] if done else []), *(shard.span for shard in shards)]
+        return self.blocks.missing(held)
+
+
+def remove_run(folder: Path) -> None:
+    """Remove a run, readable or not; its lock stays, and with it the folder. Only with the lock."""
+    shutil.rmtree(folder / "shards", ignore_errors=True)  # a worker that lost its driver may add to it
+    for left in (*folder.glob(".*.tmp"), folder / RECORD):
+        left.unlink(missing_ok=True)
