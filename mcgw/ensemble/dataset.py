@@ -50,11 +50,11 @@ class Dataset(Shown):
         """Return all data with axes, units and descriptions, for the file, xarray and pandas alike."""
 
     @abstractmethod
-    def about(self) -> dict[str, Any]:
+    def _about(self) -> dict[str, Any]:
         """Return what is said of all data, for xarray."""
 
     @abstractmethod
-    def drawn(self) -> Tables:
+    def _drawn(self) -> Tables:
         """Return what statistics are made of, for the file."""
 
     def to_xarray(self) -> Any:
@@ -68,7 +68,7 @@ class Dataset(Shown):
         ImportError
             If xarray is not installed.
         """
-        return self.labelled().to_xarray(self.about())
+        return self.labelled().to_xarray(self._about())
 
     def to_dataframe(self) -> Any:
         """Return all data as a `pandas.DataFrame`: a row for each place along the dimensions of `to_xarray`.

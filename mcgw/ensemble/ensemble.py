@@ -166,11 +166,11 @@ class Ensemble(Dataset):
         variables = {**statistics_of(self, scene.tables, STATISTICS), "covariance": covariance}
         return Labelled(variables, {**axes_of(scene), **scales})
 
-    def about(self) -> dict[str, Any]:
+    def _about(self) -> dict[str, Any]:
         """Return the title, the scene as TOML and the sampler."""
         return {"title": self.scene.title, "scene": scene_text(self.scene), "sampler": self.sampler}
 
-    def drawn(self) -> Tables:
+    def _drawn(self) -> Tables:
         """Return what statistics are made of."""
         return self.sums.drawn()
 

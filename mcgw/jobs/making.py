@@ -87,7 +87,7 @@ def _at_once(plan: Plan, by: By) -> None:
     before = state_of(plan.path)
     finished(plan)  # else the file is another's
     found = plan.dataset([plan.reducers[0].held([tables])])
-    drawn = found.drawn() if plan.whole else None
+    drawn = found._drawn() if plan.whole else None
     put(plan, plan.contents(found.labelled(), perf_counter() - started, drawn), before)
 
 
@@ -250,7 +250,7 @@ def _merged(plan: Plan, check: Callable[[], None]) -> Labelled:
         return plan.contents(values_of(plan.scene, plan.total, lambda _: rows), seconds)
     groups = zip(plan.reducers, groupby(blocks(), itemgetter(0)), strict=True)
     found = plan.dataset([one.held(tables for _, tables in some) for one, (_, some) in groups])
-    return plan.contents(found.labelled(), seconds, found.drawn())
+    return plan.contents(found.labelled(), seconds, found._drawn())
 
 
 def _before(plan: Plan) -> tuple[int, list[Tables], float]:

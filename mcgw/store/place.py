@@ -186,7 +186,7 @@ def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> 
             )
         before, plan = state_of(path), Plan.of(storable(ensemble.scene), path, ensemble.sampler)
         finished(plan)
-        put(plan, plan.contents(ensemble.labelled(), wall_seconds, ensemble.drawn()), before)
+        put(plan, plan.contents(ensemble.labelled(), wall_seconds, ensemble._drawn()), before)
     return open_ensemble(path)
 
 

@@ -188,11 +188,11 @@ class Sweep(Dataset):
         variables = statistics_of(self, self.quantities, STATISTICS, self.axes.dims)
         return Labelled(variables, {**axes_of(first), **coordinates})
 
-    def about(self) -> dict[str, Any]:
+    def _about(self) -> dict[str, Any]:
         """Return the title and the first scene as TOML."""
         return {"title": self.scenes[0].title, "first_scene": scene_text(self.scenes[0])}
 
-    def drawn(self) -> Tables:
+    def _drawn(self) -> Tables:
         """Return statistics of the groups; group, one or two scenes (-1) of it and weights of points."""
         points = [(place.group, *place.scenes, -1)[:3] for place in self.places]
         weights = [(*place.weights, 0.0)[:2] for place in self.places]

@@ -12,8 +12,9 @@ from oracles.inside import MemoryResults
 from scipy.stats import t as student
 
 import mcgw
-from mcgw import run, sweeps
+from mcgw import run
 from mcgw.cli import main
+from mcgw.store import ensembles
 
 pytestmark = pytest.mark.usefixtures("blank_figures")
 
@@ -156,7 +157,7 @@ def test_compare_ends_with_1_and_says_so_where_they_disagree(file, tmp_path, cap
     arrays = {name: opened.values(name) * (1.05 if name == "load" else 1) for name in QUANTITIES}
     wrong = dataclasses.replace(opened, sums=MemoryResults(arrays))
     assert "theory agree" in out_of(["compare", file, "-o", tmp_path / "c.png"], capsys)
-    monkeypatch.setattr(sweeps, "open_ensemble", lambda path: wrong)
+    monkeypatch.setattr(ensembles, "open_ensemble", lambda path: wrong)
     assert "theory DISAGREE" in out_of(["compare", file, "-o", tmp_path / "c.png"], capsys, code=1)
 
 
