@@ -119,8 +119,10 @@ def heights_panel(fit: Fit) -> Panel:
         Mark("plot", (z, Gaussian().pdf(z)), {"color": HOMOGENEOUS, "ls": "--", "label": "Gaussian"})
     )
     with suppress(ValueError):  # no isotropic surface has such an alpha
-        label = f"Nayak, α = {fit.alpha.value:.3g}"
-        marks.append(Mark("plot", (z, Nayak(fit.alpha.value).pdf(z)), {"color": THEORY, "label": label}))
+        label = f"Nayak, α = {fit.numbers['alpha'].value:.3g}"
+        marks.append(
+            Mark("plot", (z, Nayak(fit.numbers["alpha"].value).pdf(z)), {"color": THEORY, "label": label})
+        )
     label = "summit height, about its mean, over its std"
     return Panel("d  summit heights", label, "density", marks=tuple(marks))
 
@@ -144,7 +146,12 @@ def _listing(fit: Fit) -> str:
         mark = "*" if name == fit.best else " "
         lines.append(f"{name:8}{mark}{e.eta.value:12.3g}{e.radius.value:11.3g}{e.sigma.value:11.3g}")
         lines.append(f"{'   95 %':9}{_arms(e.eta):>12}{_arms(e.radius):>11}{_arms(e.sigma):>11}")
-    lines += ["* best here", "", f"alpha = {fit.alpha.value:.3g} ({_arms(fit.alpha)})", ""]
+    lines += [
+        "* best here",
+        "",
+        f"alpha = {fit.numbers['alpha'].value:.3g} ({_arms(fit.numbers['alpha'])})",
+        "",
+    ]
     for text in (*fit.notes, *fit.cautions):
         lines += textwrap.wrap(text, _WIDTH, subsequent_indent="  ")
     return "\n".join(lines if len(lines) <= _LINES else [*lines[: _LINES - 1], "..."])

@@ -57,8 +57,8 @@ class Fit(Shown):
         only ``moments`` is there if the map has fewer than eight summits.
     moments : SpectralMoments
         m0, m2 and m4, averaged over both axes.
-    m0, m2, m4, alpha : Uncertain
-        The moments with their errors, m^2, 1 and 1/m^2; and m0 m4/m2^2.
+    numbers : dict of str to Uncertain
+        The moments m0, m2 and m4 with their errors, m^2, 1 and 1/m^2; and alpha, m0 m4/m2^2.
     skewness : (float, float)
         Skewness of the map's heights, and its standard error.
     listed : Summits
@@ -89,10 +89,7 @@ class Fit(Shown):
 
     estimates: dict[str, Estimate]
     moments: SpectralMoments
-    m0: Uncertain
-    m2: Uncertain
-    m4: Uncertain
-    alpha: Uncertain
+    numbers: dict[str, Uncertain]
     skewness: tuple[float, float]
     listed: Summits
     mean_summit: float
@@ -168,7 +165,9 @@ class Fit(Shown):
     def sheet(self) -> Sheet:
         """Estimates by all methods, with standard errors, and the first of the cautions."""
         facts = [("roughness", self.roughness.text("S"))]
-        facts += [("spectrum", f"alpha = {self.alpha.value:.3g}, skewness {self.skewness[0]:z.2f}")]
+        facts += [
+            ("spectrum", f"alpha = {self.numbers['alpha'].value:.3g}, skewness {self.skewness[0]:z.2f}")
+        ]
         facts += [("caution", line) for line in self.cautions[:_MOST_CAUTIONS]]
         more = len(self.cautions) - _MOST_CAUTIONS
         facts += [("", f"and {more} more in .cautions")] if more > 0 else []
@@ -219,9 +218,9 @@ def fit_prepared(ready: Prepared, *, across: int = 4) -> Fit:
     if found := estimates.get("caps"):
         seen = visible(found.overlap, blur / math.sqrt(2 * found.radius.value * found.sigma.value))
     x, y = ((a - b) / 2 for a, b in zip(ready.levelled.size, used.size, strict=True))  # of equal margins
-    m0, m2, m4, alpha = (uncertain(*told[x], waves.spreads[x]) for x in ("m0", "m2", "m4", "alpha"))
     return Fit(
-        estimates, moments, m0, m2, m4, alpha,
+        estimates, moments,
+        {x: uncertain(*told[x], waves.spreads[x]) for x in ("m0", "m2", "m4", "alpha")},
         told["skewness"],
         summits_of(used, counted, (x, y)),
         float(counted.heights.mean()) - mean_squares(counted)["z"],

@@ -146,8 +146,8 @@ def _of_the_heights(fit: Fit) -> Iterator[str]:
             f"skewness: {skewness:.2f} of the heights; spectral moments give the summits of Gaussian heights "
             "only; use the measured summits (--heights summits)"
         )
-    if fit.alpha.value < _ALPHA:
-        yield f"alpha: {fit.alpha.value:.3g} is below 1.5, which no isotropic Gaussian surface has"
+    if fit.numbers["alpha"].value < _ALPHA:
+        yield f"alpha: {fit.numbers['alpha'].value:.3g} is below 1.5, which no isotropic Gaussian surface has"
     if fit.lay > _STREAKY:
         yield (
             f"lay: mean square slopes across and along it have the ratio {fit.lay:.3g}; the map is not "

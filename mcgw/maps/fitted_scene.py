@@ -99,7 +99,7 @@ def fitted_scene(
 def _check_spread(fit: Fit) -> None:
     """Refuse summits that are all equally high."""
     spread = float(np.ptp(fit.summits))
-    if fit.summits.size > 1 and spread < _EQUAL * math.sqrt(fit.m0.value):
+    if fit.summits.size > 1 and spread < _EQUAL * math.sqrt(fit.numbers["m0"].value):
         raise ValueError(
             f"all {fit.summits.size} summits are equally high, within {spread:.2g} m: a regular texture has "
             "no distribution of summit heights; give sigma, radius and eta of its asperities in a scene"
@@ -122,8 +122,7 @@ def _uncertainty(fit: Fit | ProfileFit, use: str, heights: Heights) -> Uncertain
         return None
     of_moments = fit.covariance if isinstance(fit, ProfileFit) else fit.waves.covariance
     if heights == "nayak":
-        found = [fit.numbers[x] if isinstance(fit, ProfileFit) else getattr(fit, x) for x in MOMENTS]
-        return Uncertainty.correlated(MOMENTS, [x.relative for x in found], of_moments)
+        return Uncertainty.correlated(MOMENTS, [fit.numbers[x].relative for x in MOMENTS], of_moments)
     by = log_derivatives(fit.moments)
     rows = np.array([by[name] for name in SUMMITS])
     errors = [getattr(fit.estimates[use], name).relative for name in SUMMITS]

@@ -36,18 +36,14 @@ def pooled(fits: Sequence[Fit], names: Sequence[str]) -> Fit:
     weights = areas / areas.sum()
     squares = np.array([[fit.moments.m0, fit.moments.m2, fit.moments.m4] for fit in fits])
     moments = SpectralMoments(*(weights @ squares).tolist())
-    m0, m2, m4, alpha = (
-        _of_all(getattr(moments, x), [getattr(fit, x) for fit in fits], weights)
-        for x in ("m0", "m2", "m4", "alpha")
-    )
     methods = [x for x in fits[0].estimates if all(x in fit.estimates for fit in fits)]
     return replace(
         fits[0],
         moments=moments,
-        m0=m0,
-        m2=m2,
-        m4=m4,
-        alpha=alpha,
+        numbers={
+            x: _of_all(getattr(moments, x), [fit.numbers[x] for fit in fits], weights)
+            for x in fits[0].numbers
+        },
         estimates={x: _estimate(x, fits, weights, moments) for x in methods},
         skewness=_skewness(fits, weights, moments),
         listed=_listed(fits),
@@ -85,7 +81,7 @@ def disagreement(fits: Sequence[Fit]) -> Iterator[str]:
     """Say which moments differ between the maps by more than their errors, once in 1000 by chance."""
     words = {"m0": "heights", "m2": "slopes", "m4": "curvatures"}
     for name, word in words.items():
-        each = [getattr(fit, name) for fit in fits]
+        each = [fit.numbers[name] for fit in fits]
         logs, certain = np.log([x.value for x in each]), 1 / np.array([x.relative for x in each]) ** 2
         chi_square = float(certain @ (logs - np.average(logs, weights=certain)) ** 2)
         if chdtrc(len(each) - 1, chi_square) < _BY_CHANCE / len(words):

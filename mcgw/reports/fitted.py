@@ -27,7 +27,7 @@ def fit_words(
 
 def fit_lines(fit: Fit) -> list[str]:
     """Moments and the estimates by each method, one per line, with standard errors."""
-    m0, m2, m4, alpha = (_told(x) for x in (fit.m0, fit.m2, fit.m4, fit.alpha))
+    m0, m2, m4, alpha = (_told(x) for x in fit.numbers.values())
     lines = [
         f"m0 = {m0} m^2, m2 = {m2}, m4 = {m4} 1/m^2, alpha = {alpha}, "
         f"skewness {fit.skewness[0]:z.2f} +- {fit.skewness[1]:.1g}",

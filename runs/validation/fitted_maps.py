@@ -168,7 +168,7 @@ def stated(name: str, heights: Array, solves: Iterable[dict[str, float]]) -> Ite
     z = Topography(SLOPE * SIDE * heights, (SIDE / n, SIDE / n), periodic=True)
     fit = fit_prepared(prepared(z, Preparation(None, "none")))
     solves = list(solves)
-    for law in ("gaussian", "nayak") if fit.alpha.value > LEAST_ALPHA else ("gaussian",):
+    for law in ("gaussian", "nayak") if fit.numbers["alpha"].value > LEAST_ALPHA else ("gaussian",):
         scene = fitted_scene(fit, heights=law, E_star=MODULUS)
         for solve in solves:
             for figure, (at, real) in errors(scene, fit.mean_summit, solve).items():

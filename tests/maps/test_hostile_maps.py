@@ -47,7 +47,7 @@ NO_NUMBERS = "squares of their derivatives overflow, or points are missing"
 def test_moments_that_no_surface_has_are_refused_in_one_line():
     """Slopes on the margin count and heights do not; squares of sums overflow or vanish, sums do not."""
     once = 1e-6 * np.random.default_rng(1).normal(size=(64, 66))
-    assert mcgw.fit(Topography(once, (1e-6, 1e-6)), cutoff=None).alpha.value > 1
+    assert mcgw.fit(Topography(once, (1e-6, 1e-6)), cutoff=None).numbers["alpha"].value > 1
     for factor, place, height, told in (
         (1.0, (3, 30), -0.016, NO_SURFACE),
         (1e-90, (0, 0), 0.0, NO_SURFACE),

@@ -162,7 +162,7 @@ def compared(maps):
     """Of every estimate of every map: z of its logarithm, and whether its interval holds the truth."""
     found = {}
     for fit, truth in maps:
-        pairs = {name: (getattr(fit, name), getattr(truth, name)) for name in MOMENTS}
+        pairs = {name: (fit.numbers[name], getattr(truth, name)) for name in MOMENTS}
         for method, e in fit.estimates.items():
             pairs |= {f"{method} {p}": (getattr(e, p), getattr(truth, p)) for p in PARAMETERS}
         for name, (x, true) in pairs.items():

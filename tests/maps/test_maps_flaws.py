@@ -107,7 +107,7 @@ def test_summits_that_are_all_equally_high_are_refused():
                 mcgw.fitted_scene(fit, use=use)
     rougher = mcgw.fit(topography(waves + 0.05 * rough()), cutoff=None)
     for factor in (0.995e-3, 1.005e-3):  # of the standard deviation of the map
-        ends = np.linspace(0, factor * rougher.m0.value**0.5, rougher.summits.size)
+        ends = np.linspace(0, factor * rougher.numbers["m0"].value ** 0.5, rougher.summits.size)
         fit = replace(rougher, listed=replace(rougher.listed, heights=ends))
         if factor < 1e-3:
             with pytest.raises(ValueError, match="are equally high, within"):
@@ -133,6 +133,10 @@ def scaled(estimate, **factors):
         for name, x in factors.items()
     }
     return replace(estimate, **changes)
+
+
+def known(fit, name, value):
+    return replace(fit, numbers={**fit.numbers, name: fit.numbers[name]._replace(value=value)})
 
 
 def apart(fit, **factors):
@@ -166,7 +170,7 @@ def with_slope(ready, slope):
 LIMITS = {
     "skewness": (0.3, lambda f, r, x: (replace(f, skewness=(-x, 0.05)), r)),
     "skewness, little known": (0.6, lambda f, r, x: (replace(f, skewness=(x, 0.2)), r)),
-    "alpha": (1 / 1.5, lambda f, r, x: (replace(f, alpha=f.alpha._replace(value=1 / x)), r)),
+    "alpha": (1 / 1.5, lambda f, r, x: (known(f, "alpha", 1 / x), r)),
     "lay": (1.5, lambda f, r, x: (squares(f, slope_x=x, slope_y=1.0, slope_xy=0.0), r)),
     "estimates": (1.2, lambda f, r, x: (apart(f, eta=1.1, sigma=1 / x), r)),
     "estimates, radius": (1.2, lambda f, r, x: (apart(f, radius=x), r)),

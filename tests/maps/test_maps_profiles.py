@@ -14,7 +14,7 @@ from analytic import Nayak, SpectralMoments
 from mcgw.cli import main
 from mcgw.maps import Profile, Spectrum, gaussian_map
 from mcgw.maps.profile import profile_at, smooth_profile, without_profile_form
-from mcgw.maps.profile_fit import fit_profiles
+from mcgw.maps.profile_fit import _checked, fit_profiles
 from mcgw.maps.profile_waves import areal_weights, waves_of_profile
 
 UM = 1e-6
@@ -65,6 +65,13 @@ def test_parts_of_the_waves_of_a_profile_literally():
     np.testing.assert_allclose(waves, weights * shared, rtol=1e-9, atol=1e-12 * np.abs(waves).max())
     added = 3 * (seen[1:5] * weights[0, 1:5]).mean() / 2
     np.testing.assert_allclose(some - none, [[added] * 8, [0] * 8, [0] * 8], rtol=1e-6, atol=1e-30)
+
+
+def test_a_surface_has_an_alpha_of_nine_tenths_or_more():
+    """Below it summits have no spread."""
+    assert _checked(np.array([1.0, 1.0, 0.905])).m4 == 0.905
+    with pytest.raises(ValueError, match=r"m0 m4/m2\^2 = 0.895, impossible for an isotropic"):
+        _checked(np.array([1.0, 1.0, 0.895]))
 
 
 def test_without_a_cutoff_moments_are_mean_squares_of_stencils():

@@ -44,10 +44,12 @@ def weighted(fits, of):
 def test_moments_are_means_over_the_area(fits, found):
     assert found.area == pytest.approx(sum(fit.area for fit in fits))
     for name in ("m0", "m2", "m4"):
-        expected = weighted(fits, lambda fit: getattr(fit, name).value)  # noqa: B023
-        assert getattr(found, name).value == pytest.approx(expected, rel=1e-12)
+        expected = weighted(fits, lambda fit: fit.numbers[name].value)  # noqa: B023
+        assert found.numbers[name].value == pytest.approx(expected, rel=1e-12)
         assert getattr(found.moments, name) == pytest.approx(expected, rel=1e-12)
-    assert found.alpha.value == pytest.approx(found.moments.m0 * found.moments.m4 / found.moments.m2**2)
+    assert found.numbers["alpha"].value == pytest.approx(
+        found.moments.m0 * found.moments.m4 / found.moments.m2**2
+    )
     told = found.estimates["moments"]
     assert (told.eta.value, told.radius.value, told.sigma.value) == pytest.approx(
         (found.moments.eta, found.moments.radius, found.moments.sigma), rel=1e-12
@@ -57,8 +59,8 @@ def test_moments_are_means_over_the_area(fits, found):
     assert found.roughness.sk == pytest.approx(third / found.roughness.q**3)
     fourth = weighted(fits, lambda fit: fit.roughness.ku * fit.roughness.q**4)
     assert found.roughness.ku == pytest.approx(fourth / found.roughness.q**4)
-    third = weighted(fits, lambda fit: fit.skewness[0] * fit.m0.value**1.5)
-    assert found.skewness[0] == pytest.approx(third / found.m0.value**1.5)
+    third = weighted(fits, lambda fit: fit.skewness[0] * fit.numbers["m0"].value ** 1.5)
+    assert found.skewness[0] == pytest.approx(third / found.numbers["m0"].value ** 1.5)
 
 
 def test_summits_are_those_of_all_maps(fits, found):
@@ -85,12 +87,12 @@ def test_errors_are_of_the_maps_or_between_them(fits, found):
     weights = np.array([fit.area for fit in fits]) / found.area
     larger = set()
     for name in ("m0", "m2", "m4", "alpha"):
-        each = [getattr(fit, name) for fit in fits]
+        each = [fit.numbers[name] for fit in fits]
         within = math.sqrt(sum((w * x.error / x.value) ** 2 for w, x in zip(weights, each, strict=True)))
         logs = np.log([x.value for x in each])
         mean = sum(weights * logs)
         between = math.sqrt(1.5 * sum(weights**2 * (logs - mean) ** 2)) * student.ppf(0.977249868, 2) / 2
-        assert getattr(found, name).relative == pytest.approx(max(within, between), rel=1e-6)
+        assert found.numbers[name].relative == pytest.approx(max(within, between), rel=1e-6)
         larger.add(within > between)
     assert larger == {True, False}
 
@@ -99,7 +101,7 @@ def test_one_map_four_times_has_its_numbers_and_half_of_its_errors(maps, fits):
     """Four equal maps scatter by nothing; their own errors are taken as independent."""
     found, one = mcgw.fit([maps[0]] * 4, cutoff=None), fits[0]
     for name in ("m0", "m2", "m4", "alpha"):
-        told, own = getattr(found, name), getattr(one, name)
+        told, own = found.numbers[name], one.numbers[name]
         assert told.value == pytest.approx(own.value, rel=1e-12)
         assert told.relative == pytest.approx(own.relative / 2, rel=1e-9)
         assert math.log(told.high / told.value) == pytest.approx(math.log(own.high / own.value) / 2, rel=1e-9)
@@ -122,7 +124,7 @@ def test_maps_that_are_not_of_one_surface_are_named(maps, found):
 @pytest.mark.parametrize(("errors", "named"), [(3.0, False), (4.5, True)])
 def test_maps_are_named_beyond_what_chance_makes(maps, fits, errors, named):
     """A map and the same one higher, by so many errors of the difference: 3 in 370 pairs, 4.5 in 150 000."""
-    surest = min(getattr(fits[0], name).relative for name in ("m0", "m2", "m4"))
+    surest = min(fits[0].numbers[name].relative for name in ("m0", "m2", "m4"))
     higher = Topography(maps[0].heights * math.exp(errors * surest / math.sqrt(2)), PIXEL)
     cautions = mcgw.fit([maps[0], higher], cutoff=None).cautions
     assert any(line.startswith("maps:") for line in cautions) == named
@@ -165,6 +167,6 @@ def test_intervals_of_pooled_moments_cover():
         found = mcgw.fit(maps, cutoff=None, form="none")
         truth = moments_on_grid(SPECTRUM, (160, 160), PIXEL)
         for name, true in (("m0", truth.m0), ("m2", truth.m2), ("m4", truth.m4), ("alpha", truth.alpha)):
-            told = getattr(found, name)
+            told = found.numbers[name]
             held.append(told.low <= true <= told.high)
     assert sum(held) >= 72

@@ -113,15 +113,15 @@ def test_a_surface_is_that_of_its_map_up_to_a_tenth(scene):
 def test_alpha_is_the_maps_own(fit, scene):
     """Of counted summits eta R sigma would guess another one."""
     fitted = scene.fitted
-    assert fitted.moments.alpha == pytest.approx(fit.alpha.value, rel=1e-12)
+    assert fitted.moments.alpha == pytest.approx(fit.numbers["alpha"].value, rel=1e-12)
     assert fitted.agreement == fit.agreement
     assert 1.0 < fitted.agreement < 1.1
     few = scene.replace(fitted=replace(fitted, agreement=None)).validity()
     assert "too few summits" in few.verdict
     where, guessed = (s.validity().where for s in (scene, scene.replace(fitted=None)))
-    assert f"alpha = {fit.alpha.value:.3g} from the fit" in where
+    assert f"alpha = {fit.numbers['alpha'].value:.3g} from the fit" in where
     assert "as eta R sigma" in guessed
-    assert f"alpha = {fit.alpha.value:.3g} " not in guessed
+    assert f"alpha = {fit.numbers['alpha'].value:.3g} " not in guessed
 
 
 def test_the_same_figures_where_the_guess_is_right(fit):
