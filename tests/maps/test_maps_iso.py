@@ -144,18 +144,6 @@ def test_refused_in_one_line(numbers, told):
     assert "\n" not in str(caught.value)
 
 
-def test_by_command(tmp_path, capsys):
-    """The scene has the surface; its summits have radii of their own."""
-    path = tmp_path / "iso.toml"
-    line = ["fit", "--iso", "Sq=0.8um", "Sdq=0.12", "Spc=0.043/um", "pruning=0", "-o", str(path)]
-    assert main(line) == 0
-    assert "alpha = 10.08" in capsys.readouterr().out
-    scene = mcgw.load_scene(path)
-    assert scene.heights.alpha == pytest.approx(10.08, abs=0.01)
-    assert scene.summits is not None
-    assert (scene.surface.nominal_area, scene.surface.E_star) == (1e-6, 1e11)
-
-
 @pytest.mark.parametrize(
     ("given", "told"),
     [
