@@ -7,15 +7,15 @@ its load P is F. P falls too, so that H <= h where P(h) <= F; the mean over surf
 
 with q and p what an asperity of height s adds: the others share the load that it leaves (Campbell and
 Mecke). It holds for any number of contacts; that of the load itself is F, which checks the quadrature. Where
-radii differ the inner integral is over them too. Where a law of contact jumps from piece to piece, an
-asperity adds the jump if the others bear what it leaves before: the sum of a surface then passes F without
-having it.
+radii differ the inner integral is over them too. Rates are differences, so that an asperity that goes on to
+the next piece of a law adds its jump if the others bear what it leaves before: the sum of a surface then
+passes F without having it.
 
 In the mean of the square, ``-(Q^2)' = -2 Q Q'``, the others count with their own share of Q besides: that
 asperity has q(s), and each of the N - 1 others q(t) where the last N - 2 bear what both leave.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property, partial
 from typing import Any, NamedTuple
@@ -23,10 +23,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from analytic.arrays import Array, Complex, Ints
-from analytic.distribution.of_model import check_falling, score_of, shares_upto
+from analytic.distribution.of_model import cells_between, check_falling, score_of, shares_upto
+from analytic.height_rule import HeightRule
 from analytic.inversion import LOWEST
-from analytic.laws import term_of
-from analytic.laws.pieces import slope_term
 from analytic.measured_summits import MeasuredHeights
 from analytic.quadrature import gauss_legendre
 from analytic.quantities import quantity_of
@@ -38,7 +37,8 @@ _SCORES, _CLOSE = 6.0, 0.2  # of the ends of the separations: 1e-9 of the surfac
 _FIRST, _LONGEST, _LONGER = 4.0, 5.0, 1.5  # step: in deviations to first order; at most; than the last
 _DEEPEST = 20.0  # penetration over sigma that no asperity reaches
 _PARTS = np.array([0.25, 0.5, 0.75, 1.0])  # of the penetration at which one asperity has all of the load
-_CELLS = 4096  # of the heights, at least
+_CELLS = 8192  # of the heights, at least
+_STEP = 3e-4  # of differences, over the separation or the penetration of an asperity with all of the load
 _GRID, _SPREADS = 4096, 12.0  # points, and standard deviations of the given sum, over which others bear it
 
 
@@ -138,28 +138,6 @@ def _ends(model: Any, given: str, value: float) -> tuple[float, float]:
     return ends[0], ends[1]
 
 
-@dataclass(frozen=True)
-class _Added:
-    """What asperities add at a separation, SI.
-
-    Parameters
-    ----------
-    given : ndarray
-        To the given sum, shape (m,).
-    own : ndarray
-        To the others, where they fall; shape (names, m).
-    rates : ndarray
-        To the others for each unit that the separation falls, weighted by probabilities, shape (names, m).
-    probabilities : ndarray
-        Shape (m,); 0 of asperities that jump.
-    """
-
-    given: Array
-    own: Array
-    rates: Array
-    probabilities: Array
-
-
 @dataclass(frozen=True, eq=False)
 class _Beside:
     """The asperities beside one, or beside two, and how many surfaces of them bear what these leave.
@@ -214,83 +192,59 @@ def _gains(
     For each unit of separation; the rates have shape (names,). No asperity of the surface's radius alone
     penetrates deeper than `most`.
     """
-    n, poisson = model.number, model.count == "poisson"
+    n, poisson, several = model.number, model.count == "poisson", [given, *names]
     one, two = (0, 0) if poisson else (1, 2)  # of a Poisson number there are as many beside one
-    rule, added = model.asperities(given, h, most * _PARTS)
-    pressed = _pressed(model, given, names, h, rule, added(rule))
-    parts = [pressed, *_jumping(model, given, names, h, rule)]
-    in_cells, weights, *marks = _cells(model, given, names, h, rule, pressed)
+    step = _STEP * min(1 / (1 + abs(h)), most)
+    at = h - step * np.arange(3)
+    rule = model.rule([*at, *(h + most * _PARTS)], several)
+    terms = rule.terms(several, at, model.grading, model.ways).reshape(-1, len(several), at.size)
+    now, near, far = np.moveaxis(terms * _units(model, several)[:, None], -1, 0)
+    p, added = np.append(rule.probabilities, rule.below), np.append(now[:, 0], 0.0)
+    rates = rule.probabilities * _rate(now, near, far, step)[:, 1:].T
+    own_rates = rule.probabilities * _rate(now**2, near**2, far**2, step)[:, 1:].T
+    in_cells, weights, *marks = _cells(model, several, h, rule, now, float(at[-1]))
     least = min(float(model.mean(given, h)), value) - _SPREADS * float(model.std(given, h))
     start = max(least, 0.0)
-    step = (value - start) / (_GRID - 1)
-    bear = shares_upto(model, given, h)(n - two, np.asarray(start + step * np.arange(_GRID)))
-    left = value - np.append(np.concatenate([part.given for part in parts]), 0.0) - start
-    beside = _Beside(left / step, in_cells / step, bear, bear[0] if start == 0 else 0.0)
+    width = (value - start) / (_GRID - 1)
+    bear = shares_upto(model, given, h)(n - two, np.asarray(start + width * np.arange(_GRID)))
+    left = (value - start - added) / width
+    beside = _Beside(left, in_cells / width, bear, bear[0] if start == 0 else 0.0)
     bears = beside.bears()
-    *bearable, whole = bears if poisson else beside.sums(weights) + rule.below * bears
-    p, own, rates = (
-        np.concatenate([getattr(part, name) for part in parts], axis=-1)
-        for name in ("probabilities", "own", "rates")
-    )
+    bearable = bears if poisson else beside.sums(weights) + rule.below * bears
+    others = [(n - one) * beside.sums(each)[:-1] for each in marks]
     squares = [
-        rate @ (mine * bearable + (n - one) * beside.sums(his)[:-1])
-        for rate, mine, his in zip(rates, own, marks, strict=True)
+        rate @ bearable[:-1] + 2 * both @ other
+        for rate, both, other in zip(own_rates, rates, others, strict=True)
     ]
-    lower = whole if poisson else rule.below * whole + p @ bearable
-    return float(lower), n * rates @ bearable, 2 * n * np.array(squares)
+    lower = bearable[-1] if poisson else p @ bearable
+    return float(lower), n * rates @ bearable[:-1], n * np.array(squares)
 
 
-def _cells(model: Any, given: str, names: Sequence[str], h: float, rule: Any, pressed: _Added) -> Array:
+def _rate(now: Array, near: Array, far: Array, step: float) -> Array:
+    """By how much values rise with each unit that a surface comes nearer, from those one and two steps on."""
+    return np.asarray((4 * (near - now) - (far - now)) / (2 * step))
+
+
+def _cells(model: Any, several: Sequence[str], h: float, rule: Any, at_nodes: Array, lowest: float) -> Array:
     """Return what an asperity adds to the given sum, its probability, and that times what it adds to others.
 
-    In cells of the heights between the nodes of a rule, with the means of that; shape (2 + names, cells).
+    In cells of the heights between the nodes of a rule, with the means of that; shape (1 + several, cells).
+    Where radii differ, at the nodes.
     """
     p = rule.probabilities
-    whole = np.stack([pressed.given, p, *(p * pressed.own)])
+    whole = np.stack([at_nodes[:, 0], p, *(p * at_nodes[:, 1:].T)])
     if rule.ratios is not None or not p.size:
         return whole
-    edges = np.append(h, rule.heights)
-    parts = -(-_CELLS // p.size)
-    edges = np.interp(np.arange(p.size * parts + 1) / parts, np.arange(p.size + 1), edges)
-    s, branch = (edges[1:] + edges[:-1]) / 2, model.ways.loading
-    found, modulus = np.ones((2 + len(names), s.size)), model.grading(s)
-    for k, q in zip([0, *range(2, len(found))], map(quantity_of, [given, *names]), strict=True):
-        found[k] = q.scale(model.surface) * term_of(q.base, branch, h, s, modulus)
-    found[1:] *= model.heights.pdf(s) * np.diff(edges)
-    found[1:] *= (whole[1:].sum(axis=1) / found[1:].sum(axis=1))[:, None]
+    left, wide, p, _ = cells_between(model, h, rule, _CELLS, lowest)
+    cells = HeightRule(left + wide / 2, p, rule.below)
+    values = cells.terms(several, [h], model.grading, model.ways) * _units(model, several)
+    found = np.stack([values[:, 0], p, *(p * values[:, 1:].T)])
+    found[2:] *= (whole[2:].sum(axis=1) / found[2:].sum(axis=1))[:, None]
     return found
 
 
-def _pressed(model: Any, given: str, names: Sequence[str], h: float, rule: Any, terms: Array) -> _Added:
-    """Asperities within the pieces of the law."""
-    s, branch = rule.heights, model.ways.loading
-    if rule.ratios is not None:
-        branch = branch.with_radii(rule.ratios)
-    modulus, own, rates = model.grading(s), np.zeros((len(names), s.size)), np.zeros((len(names), s.size))
-    for k, q in enumerate(map(quantity_of, names)):
-        unit = q.scale(model.surface) * _by_radius(q.name, rule.ratios)
-        own[k] = unit * term_of(q.base, branch, h, s, modulus)
-        rates[k] = unit * rule.probabilities * slope_term(q.base, branch, s - h, modulus)
-    return _Added(quantity_of(given).scale(model.surface) * terms, own, rates, rule.probabilities)
-
-
-def _jumping(model: Any, given: str, names: Sequence[str], h: float, rule: Any) -> Iterator[_Added]:
-    """Asperities that touch, or go on from piece to piece."""
-    if not rule.heights.size:
-        return
-    ends = float(rule.heights.min()), float(rule.heights.max())
-    scale, base = quantity_of(given).scale(model.surface), quantity_of(given).base
-    units = np.array([quantity_of(name).scale(model.surface) for name in names])[:, None]
-    bases = [quantity_of(name).base for name in names]
-    for jumps in model.summits.jumps(model.ways.loading, model.grading, np.array([h]), ends):
-        steps = units * [jumps.step(name) for name in bases]
-        own = units * [jumps.before(name) for name in bases] + steps / 2  # half way the square rises alike
-        yield _Added(scale * jumps.before(base), own, jumps.share * steps, np.zeros(jumps.share.shape))
-
-
-def _by_radius(name: str, ratios: Array | None) -> Array | float:
-    """Return what a quantity is worth by the radius of an asperity."""
-    return 1.0 if ratios is None else np.asarray(ratios ** quantity_of(name).radius)
+def _units(model: Any, names: Sequence[str]) -> Array:
+    return np.array([quantity_of(name).scale(model.surface) for name in names])
 
 
 def _deepest(model: Any, given: str, target: float, h: Array) -> Array:

@@ -7,7 +7,7 @@ fixed set of heights and probabilities (`HeightRule`).
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import partial, reduce
+from functools import reduce
 from typing import Any, Literal
 
 import numpy as np
@@ -19,7 +19,6 @@ from analytic.heights import GAUSSIAN, HeightLaw
 from analytic.law_rule import law_rule
 from analytic.laws.branch import Branch, Ways, terms_of
 from analytic.laws.law import ContactLaw
-from analytic.laws.pieces import cuts_of
 from analytic.quantities import quantity_of
 
 Count = Literal["fixed", "poisson"]
@@ -74,9 +73,15 @@ class HeightRule:
         `branches` are those of what is summed, unless that is powers of the approach.
         """
         branches, h = tuple(branches), np.unique(np.asarray(separations, dtype=np.float64))
-        further = partial(cuts_of, branches, grading, h)
-        h = np.unique([*h, *(branch.lowest(h[0]) for branch in branches)])
-        return cls(*law_rule(heights, h, grading, further=further), float(heights.cdf(h[0])))
+        lowest = np.unique([*h, *(branch.lowest(h[0]) for branch in branches)])
+
+        def changes(low: float, high: float) -> list[float]:
+            """Heights where another formula holds."""
+            found = [branch.regimes(grading, h, low, high) for branch in branches]
+            return [s for each in found for s in (*each.low.tolist(), *each.high.tolist())]
+
+        rule = law_rule(heights, lowest, grading, further=changes)
+        return cls(*rule, float(heights.cdf(lowest[0])))
 
     def mean(self, f: Array) -> Array:
         """Return the mean of each column of `f` above the lowest separation; in this thread alone."""

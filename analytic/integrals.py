@@ -1,9 +1,7 @@
 """The integrals F_n and F*_n of the theory, to 1e-13 at any separation (Eqs. 2, 3, 7-9).
 
-With s = h + v^2 the integrand ``2 v^(2n+1) g(h + v^2) phi(h + v^2)`` is analytic in v for every
-half-integer n, so Gauss-Legendre in v converges exponentially, whatever the smooth grading g; for other
-n pieces shrink towards the separation. For h >= 0 everything is relative to phi(h), so nothing
-underflows before the answer does.
+By Gauss-Legendre in a root of the approach, whatever the power and the smooth grading. For h >= 0 everything
+is relative to phi(h), so nothing underflows before the answer does.
 """
 
 import numpy as np
@@ -12,22 +10,20 @@ from numpy.typing import ArrayLike
 from analytic.arrays import Array
 from analytic.gradings import Grading, Homogeneous
 from analytic.heights import GAUSSIAN, Gaussian, HeightLaw, exp_minus_half_square
-from analytic.law_rule import beginnings_of, ends_of, law_integral, pieces_of
-from analytic.quadrature import NODES, gauss_legendre
+from analytic.law_rule import ends_of, law_integral, pieces_of
+from analytic.quadrature import NODES, gauss_legendre, towards_both_ends
 from analytic.resolution import resolved_once
 
 
 def _relative(n: float, h: float, grading: Grading) -> float:
     """``int (s-h)^n g phi / phi(max(h, 0))`` over s > h."""
-    left, right = pieces_of(GAUSSIAN, np.array([h]), grading, power=1, further=beginnings_of(n, [h]))
-    start, above = np.sqrt(left - h)[:, None], max(h, 0.0)
-    width = np.sqrt(right - h)[:, None] - start
-    x, w = gauss_legendre(NODES)
-    v = start + width * x
-    approach = v * v
+    left, right = pieces_of(GAUSSIAN, np.array([h]), grading, power=1)
+    width, above = (right - left)[:, None], max(h, 0.0)
+    place, weight = towards_both_ends(NODES if (2 * n) % 1 == 0 else 2 * NODES)
+    approach = (left - h)[:, None] + width * place
     beyond = approach + (h - above)  # s - above, without cancellation
     density = np.exp(GAUSSIAN.log_ratio(np.array(above), beyond))
-    return float(np.sum(2 * width * w * v * approach**n * density * grading(above + beyond)))
+    return float(np.sum(width * weight * approach**n * density * grading(above + beyond)))
 
 
 def quotient(

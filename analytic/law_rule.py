@@ -17,7 +17,7 @@ from analytic.arrays import Array
 from analytic.gradings import Grading
 from analytic.heights import Gaussian, HeightLaw
 from analytic.measured_summits import MeasuredHeights
-from analytic.quadrature import NEAREST, NODES, REACH, SPANS, WIDEST, above_neighbours, rooted, towards
+from analytic.quadrature import REACH, SPANS, WIDEST, in_pieces
 from analytic.resolution import resolved_breaks
 from analytic.steep import reach, tame
 
@@ -95,12 +95,6 @@ def _edges(law: HeightLaw, start: float, top: float) -> list[float]:
     return edges
 
 
-def beginnings_of(n: float, separations: Sequence[float]) -> Further:
-    """Return ends of pieces that shrink towards separations, for powers that are no half-integers."""
-    ends = [s for x in separations for s in towards(x, NEAREST)] if (2 * n) % 1 else []
-    return lambda *_: ends
-
-
 def pieces_of(
     law: HeightLaw,
     separations: Array,
@@ -123,7 +117,7 @@ def pieces_of(
         regular = [start, *WIDEST * np.arange(np.floor(start / WIDEST) + 1, np.ceil(top / WIDEST)), top]
     else:
         lowest, regular = start, _edges(law, start, top)
-    inside = [*separations, *above_neighbours(separations), *further(lowest, top)]
+    inside = [*separations, *further(lowest, top)]
     cuts = [*regular, *resolved_breaks(grading, lowest, top), *(s for s in inside if start < s < top)]
     edges = np.unique(cuts)
     return edges[:-1], edges[1:]
@@ -142,7 +136,7 @@ def law_rule(law: HeightLaw, separations: Array, grading: Grading, **given: Any)
     left, right = pieces_of(law, separations, grading, **given)
     at_end = np.isin(left, law.singular) | np.isin(right, law.singular)
     lump = (right - left <= 2 * _TINY) & at_end
-    s, weights = rooted(left[~lump], right[~lump], separations, NODES)
+    s, weights = in_pieces(left[~lump], right[~lump])
     mass = [_mass(law, *ends) for ends in zip(left[lump].tolist(), right[lump].tolist(), strict=True)]
     s, probabilities = np.append(s, left[lump]), np.append(weights * law.pdf(s), mass)
     order = np.argsort(s, kind="stable")
@@ -165,8 +159,7 @@ def law_integral(n: float, h: Array, law: HeightLaw, grading: Grading) -> Array:
     for k in range(0, h.size, together):
         part = order[k : k + together]
         x = h.ravel()[part]
-        further = beginnings_of(n, x.tolist())
-        s, p = law_rule(law, np.unique(x), grading, power=1, exponent=n + 1, further=further)
+        s, p = law_rule(law, np.unique(x), grading, power=1, exponent=n + 1)
         approach = np.maximum(s[:, None] - x, 0.0)
         result[part] = (p * grading(s)) @ np.where(approach > 0, approach**n, 0.0)
     return result.reshape(h.shape)

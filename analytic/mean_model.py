@@ -18,10 +18,9 @@ from analytic.height_rule import Count, HeightRule
 from analytic.heights import Gaussian, HeightLaw
 from analytic.inversion import LOWEST, last_separations
 from analytic.law_rule import law_integral
-from analytic.laws.branch import UnloadingBranch, Ways
+from analytic.laws.branch import UnloadingBranch, Ways, slope_term
 from analytic.laws.film import Film
 from analytic.laws.law import ContactLaw, piece_of
-from analytic.laws.pieces import slope_term
 from analytic.measured_summits import MeasuredRadii
 from analytic.quadrature import REACH
 from analytic.quantities import LAW_QUANTITIES, NOT_SUMS, SEPARATIONS, Quantity, quantity_of

@@ -1,20 +1,16 @@
-"""Gauss rules on pieces of the heights, and integrals over them for many separations.
+"""Gauss rules on pieces of the heights.
 
-With s = h + v^2 the integrand is ``2 v^(2n+1)`` times a smooth function of v. For half-integer n the whole of
-it is smooth and Gauss-Legendre converges exponentially. For other n it is so on pieces that are no wider than
-some times their distance from the separation.
+Contacts begin and end with powers of the distance, whole or broken, and next to a height where others began.
+So places on a piece go as the fourth power of the variable at both ends, in which Gauss-Legendre converges.
 """
 
 from functools import cache
-from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from analytic.arrays import Array
 
-NEAREST = 2.0**-30  # below, a power >= 0 is 1e-9 of the whole, and integrated to 1e-7
-_GROWTH = 8.0  # of a piece to its distance from the separation below
 NODES = 64  # of a piece
 SPANS = 6.0  # of a law in it: a density that changes by a factor of 50 over a piece needs some 30 nodes
 WIDEST = 4.0  # piece, on which they resolve the normal density as far down as s = -40
@@ -28,6 +24,13 @@ def gauss_legendre(nodes: int) -> tuple[Array, Array]:
     x, w = (1 + x) / 2, w / 2
     x.flags.writeable = w.flags.writeable = False
     return x, w
+
+
+@cache
+def towards_both_ends(nodes: int) -> tuple[Array, Array]:
+    """Places and weights from 0 to 1, of a function that may have broken powers of the distance from both."""
+    x, w = gauss_legendre(nodes)
+    return x**4 * (35 - 84 * x + 70 * x**2 - 20 * x**3), 140 * w * (x * (1 - x)) ** 3
 
 
 def panelled(edges: Array) -> tuple[Array, Array]:
@@ -44,32 +47,14 @@ def panelled(edges: Array) -> tuple[Array, Array]:
     return points.reshape(-1, edges.shape[1]), (width * w[:, None]).reshape(-1, edges.shape[1])
 
 
-def rooted(left: Array, right: Array, separations: Array, nodes: int) -> tuple[Array, Array]:
-    """Points and weights in the root of the approach to the next separation below, piece by piece.
+def in_pieces(left: Array, right: Array, nodes: int = NODES) -> tuple[Array, Array]:
+    """Points and weights piece by piece, whatever power of the distance a function begins or ends with.
 
-    Pieces go from `left` to `right`, shape (k,); no separation divides one, and the first of them, which
-    increase, is below all pieces. Of shape (k nodes,); every point lies inside its piece.
+    Pieces go from `left` to `right`, shape (k,); every point lies inside its piece. Of shape (k nodes,).
     """
-    x, w = gauss_legendre(nodes)
-    anchor = separations[np.searchsorted(separations, left, side="right") - 1]
-    v0, v1 = np.sqrt(left - anchor)[:, None], np.sqrt(right - anchor)[:, None]
-    v = v0 + (v1 - v0) * x
-    s = np.clip(anchor[:, None] + v * v, left[:, None], np.nextafter(right, left)[:, None])
-    return s.ravel(), (2 * v * (v1 - v0) * w).ravel()
-
-
-def towards(separation: float, nearest: float) -> list[float]:
-    """Heights from as near as `nearest`, each 8 times as far from the separation, up to a distance of 1."""
-    edges, distance = [], nearest
-    while distance < 1:
-        edges.append(float(separation + distance))
-        distance *= _GROWTH
-    return edges
-
-
-def above_neighbours(separations: Array) -> list[float]:
-    """Return the same above close separations, as near to the upper one as the lower one is.
-
-    The root of the approach to the lower one almost has its kink inside the next piece.
-    """
-    return [edge for lower, upper in pairwise(separations) for edge in towards(upper, upper - lower)]
+    place, weight = towards_both_ends(nodes)
+    left, width = left[:, None], (right - left)[:, None]
+    last = np.nextafter(left + width, left)
+    near_left = np.minimum(left + width * place, last)
+    near_right = np.maximum(np.minimum(right[:, None] - width * place[::-1], last), left)
+    return np.where(place < 0.5, near_left, near_right).ravel(), (width * weight).ravel()

@@ -5,8 +5,7 @@ curvature, in the root of which they are smooth: the heights at which a contact 
 radius alone. So there are some radii, each with a rule over the heights of its own.
 """
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Any
 
@@ -19,17 +18,15 @@ from analytic.height_rule import HeightRule
 from analytic.heights import Gaussian, HeightLaw
 from analytic.law_rule import ends_of
 from analytic.laws.branch import Branch
-from analytic.laws.pieces import Jumps, cuts_of_each, jumps_met
 from analytic.measured_summits import MeasuredHeights, MeasuredRadii
-from analytic.quadrature import SPANS, WIDEST, above_neighbours, gauss_legendre, rooted
+from analytic.quadrature import SPANS, WIDEST, gauss_legendre, in_pieces
 from analytic.resolution import resolved_breaks
 
 Branches = tuple[Branch, ...]
-Ends = tuple[float, float]
 
 _HIGHEST = 1e-300  # share of heights above the highest separation that is looked at
 _NODES, _AS_WIDE = 64, 0.6  # points for curvatures, if their density bends over so many heights
-_NARROW, _PER_NARROW, _PER_PIECE = 0.25, 10, 32  # heights of a narrow piece, points of one and of a wider one
+_NARROW, _PER_NARROW, _PER_PIECE = 0.25, 16, 32  # heights of a narrow piece, points of one and of a wider one
 _RAREST = 1e-18  # share of the touching heights above which curvatures are left out
 _KEPT = 4_000_000  # points of rules over heights and radii
 
@@ -89,17 +86,17 @@ def rule_of_radii(
     widest = min(SPANS * law.narrowest, WIDEST)
     regular = np.linspace(start, top, int(np.ceil((top - start) / widest)) + 1)
     breaks, number = resolved_breaks(grading, start, top), radii.ratios.size
-    common = np.concatenate([regular, breaks, lowest, above_neighbours(lowest)])
+    common = np.concatenate([regular, breaks, lowest])
     cuts, which = [np.tile(common, number)], [np.repeat(np.arange(number), common.size)]
     for branch in branches:  # at each separation, which has the radii in turn
         own = branch.with_radii(radii.ratios)
-        found, of = cuts_of_each(own, grading, np.repeat(h, number), start, top)
-        cuts.append(found)
-        which.append(of % number)
+        found = own.regimes(grading, np.repeat(h, number), start, top)
+        cuts += [found.low, found.high]
+        which += [found.separation % number] * 2
     left, right, of = _pieces(np.concatenate(cuts), np.concatenate(which), start, top)
     wide, parts = right - left > _NARROW, []
     for some, points in ((wide, _PER_PIECE), (~wide, _PER_NARROW)):
-        parts.append((*rooted(left[some], right[some], lowest, points), np.repeat(of[some], points)))
+        parts.append((*in_pieces(left[some], right[some], points), np.repeat(of[some], points)))
     s, weights, of = (np.concatenate(part) for part in zip(*parts, strict=True))
     return HeightRule(s, weights * radii.density(s, of), below, radii.ratios[of])
 
@@ -175,10 +172,6 @@ class Summits:
         """Leave out what is kept, which is large: other processes compute their own."""
         return {name: value for name, value in vars(self).items() if name != "_rules"}
 
-    def jumps(self, branch: Branch, grading: Grading, h: Array, ends: Ends) -> Iterator[Jumps]:
-        """Summits of heights between two that jump at separations, as `jumps_met`."""
-        return jumps_met(branch, grading, lambda s, _: self.heights.pdf(s), h, ends)
-
 
 @dataclass(frozen=True)
 class _RandomRadii(Summits):
@@ -195,17 +188,6 @@ class _RandomRadii(Summits):
 
     def _new_rule(self, h: Array, grading: Grading, branches: Branches) -> HeightRule:
         return rule_of_radii(h, grading, self.curvature, branches)
-
-    def jumps(self, branch: Branch, grading: Grading, h: Array, ends: Ends) -> Iterator[Jumps]:
-        radii = Radii.over(self.curvature, float(h.max()))
-        number, own = radii.ratios.size, branch.with_radii(radii.ratios)
-
-        def density(s: Array, which: Ints) -> Array:
-            return radii.density(s, which % number)
-
-        for found in jumps_met(own, grading, density, np.repeat(h, number), ends):
-            which, ratios = found.separation // number, radii.ratios[found.separation % number]
-            yield replace(found, separation=which, ratios=ratios)
 
 
 @dataclass(frozen=True)
@@ -227,9 +209,6 @@ class _ListedSummits(Summits):
         touching = s > lowest
         number = int(touching.sum())
         return HeightRule(s[touching], np.full(number, 1 / s.size), 1 - number / s.size, ratios[touching])
-
-    def jumps(self, *_: Any) -> Iterator[Jumps]:
-        return iter(())
 
 
 def summits_of(heights: HeightLaw, radii: RandomCurvature | MeasuredRadii | None) -> Summits:

@@ -68,24 +68,34 @@ def _cells(
     model: Any, h: float, rule: Any, added: Any, cells: int, lowest: float
 ) -> tuple[Array, Array, Array]:
     """Values at both ends of cells of the heights between the nodes of a rule, and their probabilities."""
+    left, wide, p, ratios = cells_between(model, h, rule, cells, lowest)
+    at = np.concatenate([left + _JUST * wide, left + wide])  # right of where contacts begin
+    ratios = None if ratios is None else np.tile(ratios, 2)
+    low, high = added(replace(rule, heights=at, probabilities=0 * at, ratios=ratios)).reshape(2, -1)
+    return low, high, p
+
+
+def cells_between(
+    model: Any, h: float, rule: Any, cells: int, lowest: float
+) -> tuple[Array, Array, Array, Array | None]:
+    """Return the lower ends of cells between the nodes of a rule, widths, probabilities, and ratios of radii.
+
+    They are finer where more asperities are; the first begins at the lowest height.
+    """
     s, ratios, root = rule.heights, rule.ratios, np.sqrt(rule.probabilities)
     parts = np.ceil(cells * (root / root.sum() + 1 / root.size)).astype(np.int64)
     new = np.arange(s.size) == 0 if ratios is None else np.diff(ratios, prepend=np.inf) != 0
     start = np.where(new, lowest, np.append(lowest, s[:-1]))
     wide = np.repeat((s - start) / parts, parts)
-    left = (
-        np.repeat(start, parts) + (np.arange(wide.size) - np.repeat(np.cumsum(parts) - parts, parts)) * wide
-    )
+    number = np.arange(wide.size) - np.repeat(np.cumsum(parts) - parts, parts)
+    left = np.repeat(start, parts) + number * wide
     middle = left + wide / 2
     if ratios is None:
         p = wide * model.heights.pdf(middle)
     else:
         ratios, radii = np.repeat(ratios, parts), Radii.over(model.curvature, h)
         p = wide * radii.density(middle, np.searchsorted(-radii.ratios, -ratios))
-        ratios = np.tile(ratios, 2)
-    at = np.concatenate([left + _JUST * wide, left + wide])  # right of where contacts begin
-    low, high = added(replace(rule, heights=at, probabilities=0 * at, ratios=ratios)).reshape(2, -1)
-    return low, high, p * (rule.probabilities.sum() / p.sum())
+    return left, wide, p * (rule.probabilities.sum() / p.sum()), ratios
 
 
 def separation_law_of(model: Any, load: float, quantity: str, *, other: bool = False) -> Law:

@@ -17,7 +17,7 @@ from analytic.gradings import Grading
 from analytic.laws.film import SpotConductance
 from analytic.laws.law import ContactLaw, of_spot, piece_of
 from analytic.laws.regimes import Bound, Regimes, crossings_of, limit_of, regimes_between
-from analytic.laws.unloading import Unloading
+from analytic.laws.unloading import Unloading, slope_in_root
 from analytic.quantities import quantity_of
 
 
@@ -214,6 +214,21 @@ def terms_of(
         of_piece, at = branch.of_some(here), (x[here], above[here], modulus[here])
         for k, quantity in enumerate(quantities):
             result[k, here] = of_piece.value(quantity, piece, *at)
+    return result
+
+
+def slope_term(quantity: str, branch: Branch, penetration: Array, e: Array) -> Array:
+    """Return the derivative by the penetration of what asperities add, within a piece; 0 without contact.
+
+    Of reduced penetrations s - h, negative without contact, and moduli E*(s)/E*, in their common shape.
+    """
+    piece = np.where(penetration > 0, piece_of(branch.law, penetration, e), -1)
+    penetration, e = (np.broadcast_to(x, piece.shape) for x in (penetration, e))
+    result = np.zeros(piece.shape)
+    for j in range(int(piece.max(initial=-1)) + 1):
+        here = piece == j
+        of_root = partial(branch.of_some(here).of_root, quantity, j, e=e[here])
+        result[here] = slope_in_root(of_root, np.sqrt(penetration[here]))
     return result
 
 
