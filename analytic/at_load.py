@@ -36,7 +36,7 @@ _MANY, _LIFTS_OF_MANY = 100.0, 16  # contacts from which so many do as well
 _SCORES, _CLOSE = 6.0, 0.2  # of the ends of the separations: 1e-9 of the surfaces are beyond
 _FIRST, _LONGEST, _LONGER = 4.0, 5.0, 1.5  # step: in deviations to first order; at most; than the last
 _DEEPEST = 20.0  # penetration over sigma that no asperity reaches
-_PARTS = np.array([0.25, 0.5, 0.75, 1.0])  # of the penetration at which one asperity has all of the load
+_PARTS = np.linspace(0.125, 2.0, 16)  # of the penetration at which one asperity has all of the load
 _CELLS = 8192  # of the heights, at least
 _STEP = 3e-4  # of differences, over the separation or the penetration of an asperity with all of the load
 _GRID, _SPREADS = 4096, 12.0  # points, and standard deviations of the given sum, over which others bear it
@@ -146,6 +146,8 @@ class _Beside:
     ----------
     left : ndarray
         What the one leaves of the given sum, over a step of the grid from its start.
+    apart : ndarray
+        How far apart these are of neighbours for which each stands.
     given : ndarray
         What the other one may add, in cells, over a step of the grid.
     bear : ndarray
@@ -155,6 +157,7 @@ class _Beside:
     """
 
     left: Array
+    apart: Array
     given: Array
     bear: Array
     none: float
@@ -168,8 +171,9 @@ class _Beside:
         return np.argsort(self.given)
 
     def bears(self) -> Array:
-        """Return the share of surfaces that bear what the one leaves."""
-        return np.asarray(np.interp(self.left, np.arange(_GRID), self.bear, left=0.0))
+        """Return the share of surfaces that bear what the one leaves; none if it has all already."""
+        some = np.clip(self.left / np.maximum(self.apart, 1e-300) + 0.5, 0.0, 1.0)
+        return np.asarray(np.interp(self.left, np.arange(_GRID), self.bear) * some)
 
     def sums(self, weights: Array) -> Array:
         """Return sums of weights of the other one, where all others bear what the two leave."""
@@ -200,6 +204,7 @@ def _gains(
     terms = rule.terms(several, at, model.grading, model.ways).reshape(-1, len(several), at.size)
     now, near, far = np.moveaxis(terms * _units(model, several)[:, None], -1, 0)
     p, added = np.append(rule.probabilities, rule.below), np.append(now[:, 0], 0.0)
+    apart = np.append(_apart(rule, now[:, 0]), 0.0)
     rates = rule.probabilities * _rate(now, near, far, step)[:, 1:].T
     own_rates = rule.probabilities * _rate(now**2, near**2, far**2, step)[:, 1:].T
     in_cells, weights, *marks = _cells(model, several, h, rule, now, float(at[-1]))
@@ -208,7 +213,7 @@ def _gains(
     width = (value - start) / (_GRID - 1)
     bear = shares_upto(model, given, h)(n - two, np.asarray(start + width * np.arange(_GRID)))
     left = (value - start - added) / width
-    beside = _Beside(left, in_cells / width, bear, bear[0] if start == 0 else 0.0)
+    beside = _Beside(left, apart / width, in_cells / width, bear, bear[0] if start == 0 else 0.0)
     bears = beside.bears()
     bearable = bears if poisson else beside.sums(weights) + rule.below * bears
     others = [(n - one) * beside.sums(each)[:-1] for each in marks]
@@ -218,6 +223,14 @@ def _gains(
     ]
     lower = bearable[-1] if poisson else p @ bearable
     return float(lower), n * rates @ bearable[:-1], n * np.array(squares)
+
+
+def _apart(rule: Any, added: Array) -> Array:
+    """How far apart sums of neighbouring nodes are, among summits of one radius."""
+    apart = np.empty_like(added)
+    order = np.lexsort((rule.heights, np.zeros_like(added) if rule.ratios is None else rule.ratios))
+    apart[order] = np.abs(np.gradient(added[order])) if added.size > 1 else added
+    return np.minimum(apart, 2 * added)  # at the lowest ones it is that from the highest of another radius
 
 
 def _rate(now: Array, near: Array, far: Array, step: float) -> Array:

@@ -103,35 +103,11 @@ class HeightRule:
         shifted -= offset
         return Fluctuations(self, mean, shifted, -usual - offset)
 
-    def terms(
-        self, quantities: Sequence[str], separations: ArrayLike, grading: Grading, ways: Ways | None = None
-    ) -> Array:
-        """Return what an asperity adds to each quantity, over its scale: shape (m, quantities * separations).
-
-        Without `ways` these are powers of the approach and of the radius, as under Hertz's law.
-        """
-        h = np.asarray(separations, dtype=np.float64)
-        modulus = grading(self.heights)
-        if ways is None:
-            terms = self._powers(quantities, h, modulus)
-        else:
-            if not ways.law.elastic:
-                _check(self.heights, modulus, ways.law)
-            terms = self._by_law(quantities, h, modulus, ways)
-        return terms.reshape(self.heights.size, len(quantities) * h.size)
-
-    def _powers(self, quantities: Sequence[str], h: Array, modulus: Array) -> Array:
-        """Shape (m, quantities, separations)."""
-        approach = self.heights[:, None] - h
-        touch, terms = approach > 0, np.zeros((self.heights.size, len(quantities), h.size))
-        for k, q in enumerate(map(quantity_of, quantities)):
-            radius = 1.0 if self.ratios is None else self.ratios**q.radius
-            power = np.where(touch, np.abs(approach) ** q.exponent, 0.0)
-            terms[:, k] = power * (modulus**q.modulus)[:, None] * np.expand_dims(radius, -1)
-        return terms
-
-    def _by_law(self, quantities: Sequence[str], h: Array, modulus: Array, ways: Ways) -> Array:
-        """Return the same by the formulas of a law, each piece of which is looked for once."""
+    def terms(self, quantities: Sequence[str], separations: ArrayLike, grading: Grading, ways: Ways) -> Array:
+        """Return what an asperity adds, over scales of quantities: shape (m, quantities * separations)."""
+        h, modulus = np.asarray(separations, dtype=np.float64), grading(self.heights)
+        if not ways.law.elastic:
+            _check(self.heights, modulus, ways.law)
         terms = np.zeros((self.heights.size, len(quantities), h.size))
         for branch in ways.among(quantities):
             which = [k for k, name in enumerate(quantities) if ways.of(name) == branch]
@@ -146,7 +122,7 @@ class HeightRule:
                     radius = np.stack([ratios**q.radius for q in several])[:, None, :]
                 found = terms_of([q.base for q in several], of_part, h[:, None], s, e)
                 terms[part, which] = (radius * found).transpose(2, 0, 1)
-        return terms
+        return terms.reshape(self.heights.size, len(quantities) * h.size)
 
 
 @dataclass(frozen=True, slots=True)

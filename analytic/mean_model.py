@@ -18,7 +18,7 @@ from analytic.height_rule import Count, HeightRule
 from analytic.heights import Gaussian, HeightLaw
 from analytic.inversion import LOWEST, last_separations
 from analytic.law_rule import law_integral
-from analytic.laws.branch import UnloadingBranch, Ways, slope_term
+from analytic.laws.branch import Ways, slope_term
 from analytic.laws.film import Film
 from analytic.laws.law import ContactLaw, piece_of
 from analytic.measured_summits import MeasuredRadii
@@ -185,8 +185,9 @@ class MeanModel:
     def rule(self, separations: ArrayLike, quantities: Sequence[str] = ("load",)) -> HeightRule:
         """Heights and probabilities for integrals of these quantities of an asperity at these separations."""
         h = np.asarray(separations, dtype=np.float64)
-        formulas = self._formulas([self._asked(name, h) for name in quantities])
-        return self.summits.rule(h, self.grading, formulas.among(quantities) if formulas else ())
+        for name in quantities:
+            self._asked(name, h)
+        return self.summits.rule(h, self.grading, self.ways.among(quantities))
 
     @cached_property
     def ways(self) -> Ways:
@@ -276,15 +277,10 @@ class MeanModel:
         """Lowest separation of the grid: that of the turn, or above it one that has no negative modulus."""
         if self.ways.law.elastic:
             return LOWEST
-        branch = self.ways.of(q.name)
-        lowest = branch.deepest if isinstance(branch, UnloadingBranch) else LOWEST
+        lowest = float(self.ways.of(q.name).lowest(LOWEST))
         s = np.linspace(max(self.heights.support[0], -REACH), near, 4001)
         negative = np.flatnonzero(self.grading(s) < 0)
         return max(lowest, float(s[min(negative[-1] + 1, s.size - 1)])) if negative.size else lowest
-
-    def _formulas(self, quantities: Sequence[Quantity]) -> Ways | None:
-        """Return the formulas of what one asperity adds; None if powers of its approach do for all."""
-        return None if all(map(self._by_powers, quantities)) else self.ways
 
     def _asked(self, quantity: str, h: ArrayLike = np.inf) -> Quantity:
         """Return a quantity that is known at these separations."""

@@ -90,7 +90,7 @@ class Model(MeanModel):
     def cumulants(self, quantity: str, h: ArrayLike) -> Cumulants:
         """Return the mean, variance, skewness and excess kurtosis over surfaces, in the shape of `h`."""
         h = np.asarray(h, dtype=np.float64)
-        step = 1 if self._by_powers(self._asked(quantity, h)) else self.summits.together
+        step = self.summits.together
         parts = np.split(h.ravel(), range(step, h.size, step)) if h.size else []
         rows = np.concatenate([np.empty((0, 4)), *(self._one_asperity(quantity, x) for x in parts)])
         k1, k2, k3, k4 = rows.reshape(*h.shape, 4).transpose(-1, *range(h.ndim))
@@ -175,7 +175,7 @@ class Model(MeanModel):
         """
         asked = [self._asked(name, separations) for name in quantities]
         h, rule = np.asarray(separations, dtype=np.float64), self.rule(separations, quantities)
-        terms = rule.terms(quantities, h, self.grading, self._formulas(asked))
+        terms = rule.terms(quantities, h, self.grading, self.ways)
         result = rule.fluctuations(terms, self.count)
         if not self.summits.unbounded:
             return result
@@ -189,9 +189,9 @@ class Model(MeanModel):
         Over the scale. The rule is over radii too, where they differ, and finer with heights `farther` above
         the separation that divide it.
         """
-        formulas = self._formulas([self._asked(quantity, h)])
+        self._asked(quantity, h)
         rule = self.rule(h + np.array([0.0, *farther]), [quantity])
-        return rule, lambda nodes: nodes.terms([quantity], [h], self.grading, formulas)[:, 0]
+        return rule, lambda nodes: nodes.terms([quantity], [h], self.grading, self.ways)[:, 0]
 
     def distribution(self, quantity: str, h: float) -> "Law":
         """Return the exact distribution over surfaces of a quantity at a separation, as one of `scipy.stats`.

@@ -3,7 +3,7 @@
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from analytic.laws.branch import Branch, UnloadingBranch, Ways, term_of
+from analytic.laws.branch import Branch, Ways, term_of
 from analytic.laws.film import Film, Layer, SpotConductance, crowding_factor
 from analytic.laws.law import ContactLaw, Hertz, of_spot, piece_of
 from analytic.laws.regimes import Regimes
@@ -26,7 +26,7 @@ __all__ = [
     "Branch", "ChangEtsionBogy", "Coated", "ContactLaw", "CustomLaw", "DerjaguinMullerToporov", "Film",
     "Hertz", "JacksonGreen", "JohnsonKendallRoberts", "KogutEtsion", "Layer",
     "PowerLawGraded",
-    "Regimes", "SpotConductance", "Unloading", "UnloadingBranch", "Ways",
+    "Regimes", "SpotConductance", "Unloading", "Ways",
     "ZhaoMaiettaChang", "by_name", "crowding_factor",
     "of_spot", "piece_of", "term_of",
 ]  # fmt: skip

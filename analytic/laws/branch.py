@@ -5,7 +5,7 @@ So everything that sums over asperities treats loading, unloading and any law of
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import KW_ONLY, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Self
 
@@ -23,7 +23,7 @@ from analytic.quantities import quantity_of
 
 @dataclass(frozen=True)
 class Branch:
-    """Branch on which a surface reaches a separation: loading, unless a subclass changes it.
+    """Branch on which a surface reaches a separation: loading, or unloading from the lowest one.
 
     Parameters
     ----------
@@ -31,15 +31,23 @@ class Branch:
         In reduced units.
     conductance : SpotConductance, optional
         Of "conductance_si".
+    deepest : float, optional
+        Lowest separation that an unloaded surface has reached, d/sigma.
     """
 
     law: ContactLaw
     conductance: SpotConductance | None = None
+    deepest: float | None = None
 
     @property
     def finest(self) -> float:
         """How far above first touch formulas are analytic."""
         return min(self.law.finest, self.conductance.finest) if self.conductance else self.law.finest
+
+    @property
+    def formulas(self) -> Unloading:
+        """Of contacts that were once penetrated deepest; on loading they are now."""
+        return Unloading(self.law) if self.deepest is None else self.law.unloading()
 
     def with_radii(self, ratios: Array) -> Self:
         """Return that of summits whose radii are these multiples of the surface's, one a separation."""
@@ -53,7 +61,7 @@ class Branch:
 
     def lowest(self, h: Any) -> Any:
         """Height below which nothing touches, at a separation or at higher ones, in its shape."""
-        return h
+        return h if self.deepest is None else self.deepest
 
     def regimes(self, grading: Grading, separations: ArrayLike, low: float, high: float) -> Regimes:
         """At which heights there is contact, and which formula holds there.
@@ -73,25 +81,40 @@ class Branch:
         return regimes_between(found, h, start, high, grading.breaks, piece)
 
     def beginnings(self, grading: Grading, h: Array) -> list[tuple[Array, Bound]]:
-        """Where formulas begin or end: beyond penetrations above these heights, one for each separation."""
-        count = len(self.law.limits(np.ones(self.law.radii)))
-        return [(h, limit_of(self.law, grading, j)) for j in range(count)]
+        """Where formulas begin or end: beyond penetrations above these heights, one for each separation.
 
-    def root(self, piece: int) -> bool:
-        """Whether a contact of this piece is analytic in the root of the penetration where it begins."""
-        return piece > 0 or self.law.root
+        On unloading pieces are those of the deepest penetration, until contact is lost.
+        """
+        turn, count = np.broadcast_to(self.lowest(h), h.shape), len(self.law.limits(np.ones(self.law.radii)))
+        found = [(turn, limit_of(self.law, grading, j)) for j in range(count)]
+
+        def lost(s: Array, which: Ints) -> Array:
+            s, which = np.broadcast_arrays(s, which)
+            return np.asarray(self.of_some(which).residual(h[which], s, grading(s)))
+
+        return found if self.deepest is None else [*found, (h, lost)]
 
     def root_at_touch(self, piece: int) -> bool:
-        """Return the same where it begins from nothing, so that its formulas take negative roots as well."""
-        return piece == 0 and self.law.root
+        """Whether formulas of a piece that begins from nothing take negative roots as well."""
+        return self.law.root if piece == 0 else self.deepest is not None and self.formulas.root
+
+    def residual(self, h: Any, s: Array, e: Array) -> Any:
+        """Penetration at which asperities are lost; infinite of those that were never in contact."""
+        if self.deepest is None:
+            return 0.0
+        deepest = s - self.deepest
+        left = self.formulas.residual(np.maximum(deepest, 0.0), e)
+        return np.where(deepest >= 0, left, np.inf)
 
     def left(self, h: Array, above: Array, e: Array) -> Array:
         """Penetration left until contact is lost, whose root the formulas take."""
-        return above
+        return np.asarray(above - self.residual(h, h + above, e))
 
     def pieces(self, h: Array, above: Array, e: Array) -> Ints:
         """Which formula holds at heights `above` the separations, -1 without contact."""
-        return np.where(above > 0, piece_of(self.law, above, e), -1)
+        above, h, e = np.broadcast_arrays(above, h, e)
+        piece = piece_of(self.law, self._penetration(h, above), e)
+        return np.where(above > self.residual(h, h + above, e), piece, -1)
 
     def value(
         self, quantity: str, piece: int, h: Array, above: Array, e: Array, *, sign: float = 1.0
@@ -100,7 +123,9 @@ class Branch:
 
         With a `sign` of -1 the formula goes on to negative roots of the penetration.
         """
-        return self.added(quantity, self.law, piece, sign * np.sqrt(above), e)
+        deepest = self._penetration(h, above)
+        y = sign * np.sqrt(np.maximum(above - self.formulas.residual(deepest, e), 0.0))
+        return self.added(quantity, self.formulas, piece, y, deepest, e)
 
     def of_root(self, quantity: str, piece: int, y: Any, e: Array) -> Array:
         """Return the same, closer than ever before, of the root of the penetration, which may be complex."""
@@ -114,66 +139,9 @@ class Branch:
             raise ValueError("conductance_si: give a resistivity")
         return self.conductance(of_spot("conductance", formulas, piece, *at))
 
-
-@dataclass(frozen=True)
-class UnloadingBranch(Branch):
-    """The surface is unloaded from the lowest separation it has reached.
-
-    Parameters
-    ----------
-    deepest : float
-        That separation, d/sigma.
-    """
-
-    _: KW_ONLY
-    deepest: float
-
-    def lowest(self, h: Any) -> Any:
-        """As `Branch.lowest`: what has touched may stick."""
-        return self.deepest
-
-    def beginnings(self, grading: Grading, h: Array) -> list[tuple[Array, Bound]]:
-        """As `Branch.beginnings`: pieces are those of the deepest penetration, until contact is lost."""
-        turn = super().beginnings(grading, np.full(h.shape, self.deepest))
-        return [*turn, (h, partial(self._lost, grading))]
-
-    def _lost(self, grading: Grading, s: Array, which: Ints) -> Array:
-        """Penetration at which asperities of a height are lost, under the law of which separation."""
-        s, which = np.broadcast_arrays(s, which)
-        return self.of_some(which)._residual(s, grading(s))
-
-    def _residual(self, s: Array, e: Array) -> Array:
-        """Penetration at which an asperity is lost; infinite where it was never in contact."""
-        deepest = s - self.deepest
-        left = self.law.unloading().residual(np.maximum(deepest, 0.0), e)
-        return np.where(deepest >= 0, left, np.inf)
-
-    def root(self, piece: int) -> bool:
-        """As `Branch.root`."""
-        return self.law.root if piece == 0 else self.law.unloading().root
-
-    def root_at_touch(self, piece: int) -> bool:
-        """As `Branch.root_at_touch`: formulas of unloading take the root of what is left."""
-        return self.root(piece)
-
-    def left(self, h: Array, above: Array, e: Array) -> Array:
-        """As `Branch.left`."""
-        return above - self._residual(h + above, e)
-
-    def pieces(self, h: Array, above: Array, e: Array) -> Ints:
-        """As `Branch.pieces`."""
-        above, h, e = np.broadcast_arrays(above, h, e)
-        s = h + above
-        piece = piece_of(self.law, above + (h - self.deepest), e)
-        return np.where(above > self._residual(s, e), piece, -1)
-
-    def value(
-        self, quantity: str, piece: int, h: Array, above: Array, e: Array, *, sign: float = 1.0
-    ) -> Array:
-        """As `Branch.value`."""
-        unloading, deepest = self.law.unloading(), above + (h - self.deepest)
-        y = sign * np.sqrt(np.maximum(above - unloading.residual(deepest, e), 0.0))
-        return self.added(quantity, unloading, piece, y, deepest, e)
+    def _penetration(self, h: Array, above: Array) -> Array:
+        """Deepest one."""
+        return above if self.deepest is None else above + (h - self.deepest)
 
 
 def term_of(quantity: str, branch: Branch, h: ArrayLike, heights: ArrayLike, e: ArrayLike) -> Array:
@@ -301,7 +269,7 @@ class Ways:
                 f"quantity = {quantity!r}: asperities yield under law = {self.law.name!r}; give unload_from, "
                 "the lowest separation reached before"
             )
-        return UnloadingBranch(self.law, self.conductance, deepest=self.unload_from)
+        return Branch(self.law, self.conductance, self.unload_from)
 
     @property
     def loading(self) -> Branch:
