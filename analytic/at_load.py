@@ -36,7 +36,7 @@ _MANY, _LIFTS_OF_MANY = 100.0, 16  # contacts from which so many do as well
 _SCORES, _CLOSE = 6.0, 0.2  # of the ends of the separations: 1e-9 of the surfaces are beyond
 _FIRST, _LONGEST, _LONGER = 4.0, 5.0, 1.5  # step: in deviations to first order; at most; than the last
 _DEEPEST = 20.0  # penetration over sigma that no asperity reaches
-_PARTS = np.linspace(0.125, 2.0, 16)  # of the penetration at which one asperity has all of the load
+_PARTS = np.array([0.25, 0.5, 0.75, 1.0])  # of the penetration at which one asperity has all of the load
 _CELLS = 8192  # of the heights, at least
 _STEP = 3e-4  # of differences, over the separation or the penetration of an asperity with all of the load
 _GRID, _SPREADS = 4096, 12.0  # points, and standard deviations of the given sum, over which others bear it
@@ -100,9 +100,8 @@ def specimen_moments(model: Any, given: str, value: float, names: Sequence[str])
     mean = np.array([float(model.mean(name, high)) for name in names])
     square = np.array([float(model.std(name, high)) for name in names]) ** 2 + mean**2
     lowered, squared, lifts = 0.0, 0.0, low + (high - low) * x
-    deepest = _deepest(model, given, value / quantity_of(given).scale(model.surface), lifts)
-    for h, most, width in zip(lifts, deepest, (high - low) * w, strict=True):
-        lower, rates, of_squares = _gains(model, given, value, names, float(h), float(most))
+    for h, width in zip(lifts, (high - low) * w, strict=True):
+        lower, rates, of_squares = _gains(model, given, value, names, float(h))
         lowered += float(width * lower)
         squared += float(2 * (high - h) * width * lower)
         mean += width * rates
@@ -146,8 +145,6 @@ class _Beside:
     ----------
     left : ndarray
         What the one leaves of the given sum, over a step of the grid from its start.
-    apart : ndarray
-        How far apart these are of neighbours for which each stands.
     given : ndarray
         What the other one may add, in cells, over a step of the grid.
     bear : ndarray
@@ -157,7 +154,6 @@ class _Beside:
     """
 
     left: Array
-    apart: Array
     given: Array
     bear: Array
     none: float
@@ -171,9 +167,8 @@ class _Beside:
         return np.argsort(self.given)
 
     def bears(self) -> Array:
-        """Return the share of surfaces that bear what the one leaves; none if it has all already."""
-        some = np.clip(self.left / np.maximum(self.apart, 1e-300) + 0.5, 0.0, 1.0)
-        return np.asarray(np.interp(self.left, np.arange(_GRID), self.bear) * some)
+        """Return the share of surfaces that bear what the one leaves."""
+        return np.asarray(np.interp(self.left, np.arange(_GRID), self.bear, left=0.0))
 
     def sums(self, weights: Array) -> Array:
         """Return sums of weights of the other one, where all others bear what the two leave."""
@@ -189,22 +184,26 @@ class _Beside:
 
 
 def _gains(
-    model: Any, given: str, value: float, names: Sequence[str], h: float, most: float
+    model: Any, given: str, value: float, names: Sequence[str], h: float
 ) -> tuple[float, Array, Array]:
     """Share of surfaces that are lower than a separation, and the rates of means and of mean squares there.
 
-    For each unit of separation; the rates have shape (names,). No asperity of the surface's radius alone
-    penetrates deeper than `most`.
+    For each unit of separation; the rates have shape (names,).
     """
     n, poisson, several = model.number, model.count == "poisson", [given, *names]
     one, two = (0, 0) if poisson else (1, 2)  # of a Poisson number there are as many beside one
-    step = _STEP * min(1 / (1 + abs(h)), most)
+    target = value / quantity_of(given).scale(model.surface)
+    step = _STEP * min(1 / (1 + abs(h)), float(_deepest(model, given, target, h, np.ones(1))[0]))
     at = h - step * np.arange(3)
-    rule = model.rule([*at, *(h + most * _PARTS)], several)
+
+    def parts(ratios: Array) -> Array:
+        """Heights that are cut besides: beyond the highest an asperity alone has more than all."""
+        return np.asarray(h + np.multiply.outer(_PARTS, _deepest(model, given, target, h, ratios)))
+
+    rule = model.summits.rule(at, model.grading, model.ways.among(several), parts)
     terms = rule.terms(several, at, model.grading, model.ways).reshape(-1, len(several), at.size)
     now, near, far = np.moveaxis(terms * _units(model, several)[:, None], -1, 0)
     p, added = np.append(rule.probabilities, rule.below), np.append(now[:, 0], 0.0)
-    apart = np.append(_apart(rule, now[:, 0]), 0.0)
     rates = rule.probabilities * _rate(now, near, far, step)[:, 1:].T
     own_rates = rule.probabilities * _rate(now**2, near**2, far**2, step)[:, 1:].T
     in_cells, weights, *marks = _cells(model, several, h, rule, now, float(at[-1]))
@@ -213,7 +212,7 @@ def _gains(
     width = (value - start) / (_GRID - 1)
     bear = shares_upto(model, given, h)(n - two, np.asarray(start + width * np.arange(_GRID)))
     left = (value - start - added) / width
-    beside = _Beside(left, apart / width, in_cells / width, bear, bear[0] if start == 0 else 0.0)
+    beside = _Beside(left, in_cells / width, bear, bear[0] if start == 0 else 0.0)
     bears = beside.bears()
     bearable = bears if poisson else beside.sums(weights) + rule.below * bears
     others = [(n - one) * beside.sums(each)[:-1] for each in marks]
@@ -225,14 +224,6 @@ def _gains(
     return float(lower), n * rates @ bearable[:-1], n * np.array(squares)
 
 
-def _apart(rule: Any, added: Array) -> Array:
-    """How far apart sums of neighbouring nodes are, among summits of one radius."""
-    apart = np.empty_like(added)
-    order = np.lexsort((rule.heights, np.zeros_like(added) if rule.ratios is None else rule.ratios))
-    apart[order] = np.abs(np.gradient(added[order])) if added.size > 1 else added
-    return np.minimum(apart, 2 * added)  # at the lowest ones it is that from the highest of another radius
-
-
 def _rate(now: Array, near: Array, far: Array, step: float) -> Array:
     """By how much values rise with each unit that a surface comes nearer, from those one and two steps on."""
     return np.asarray((4 * (near - now) - (far - now)) / (2 * step))
@@ -242,14 +233,13 @@ def _cells(model: Any, several: Sequence[str], h: float, rule: Any, at_nodes: Ar
     """Return what an asperity adds to the given sum, its probability, and that times what it adds to others.
 
     In cells of the heights between the nodes of a rule, with the means of that; shape (1 + several, cells).
-    Where radii differ, at the nodes.
     """
     p = rule.probabilities
     whole = np.stack([at_nodes[:, 0], p, *(p * at_nodes[:, 1:].T)])
-    if rule.ratios is not None or not p.size:
+    if not p.size:
         return whole
-    left, wide, p, _ = cells_between(model, h, rule, _CELLS, lowest)
-    cells = HeightRule(left + wide / 2, p, rule.below)
+    left, wide, p, ratios = cells_between(model, h, rule, _CELLS, lowest)
+    cells = HeightRule(left + wide / 2, p, rule.below, ratios)
     values = cells.terms(several, [h], model.grading, model.ways) * _units(model, several)
     found = np.stack([values[:, 0], p, *(p * values[:, 1:].T)])
     found[2:] *= (whole[2:].sum(axis=1) / found[2:].sum(axis=1))[:, None]
@@ -260,15 +250,15 @@ def _units(model: Any, names: Sequence[str]) -> Array:
     return np.array([quantity_of(name).scale(model.surface) for name in names])
 
 
-def _deepest(model: Any, given: str, target: float, h: Array) -> Array:
-    """Penetration at which one asperity alone has the target, over the scale, at each separation."""
+def _deepest(model: Any, given: str, target: float, h: float, ratios: Array) -> Array:
+    """Penetration at which one asperity alone has the target, over the scale, by the ratio of its radius."""
 
     def excess(penetration: Array, which: Ints) -> Array:
-        s = h[which] + penetration
-        return np.asarray(model.ways.term(given, h[which], s, model.grading(s)) - target)
+        s = h + penetration
+        return np.asarray(model.ways.term(given, h, s, model.grading(s), ratios[which]) - target)
 
-    deepest = np.full_like(h, _DEEPEST)
-    has = np.flatnonzero(excess(deepest, np.arange(h.size)) > 0)
+    deepest = np.full_like(ratios, _DEEPEST)
+    has = np.flatnonzero(excess(deepest, np.arange(ratios.size)) > 0)
     first, unit = np.zeros(has.size), np.ones(has.size)
     deepest[has] = sign_changes(lambda y, k: excess(y, has[k]), first, deepest[has], unit)
     return deepest

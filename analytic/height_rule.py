@@ -67,10 +67,11 @@ class HeightRule:
         heights: HeightLaw = GAUSSIAN,
         *,
         branches: Iterable[Branch] = (),
+        cuts: Sequence[float] = (),
     ) -> "HeightRule":
         """Return the rule for these reduced separations, this grading and law of the heights.
 
-        `branches` are those of what is summed, unless that is powers of the approach.
+        `branches` are those of what is summed, `cuts` heights at which it jumps or bends besides.
         """
         branches, h = tuple(branches), np.unique(np.asarray(separations, dtype=np.float64))
         lowest = np.unique([*h, *(branch.lowest(h[0]) for branch in branches)])
@@ -78,7 +79,7 @@ class HeightRule:
         def changes(low: float, high: float) -> list[float]:
             """Heights where another formula holds."""
             found = [branch.regimes(grading, h, low, high) for branch in branches]
-            return [s for each in found for s in (*each.low.tolist(), *each.high.tolist())]
+            return [*cuts, *(s for each in found for s in (*each.low.tolist(), *each.high.tolist()))]
 
         rule = law_rule(heights, lowest, grading, further=changes)
         return cls(*rule, float(heights.cdf(lowest[0])))

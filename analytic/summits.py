@@ -5,6 +5,7 @@ curvature, in the root of which they are smooth: the heights at which a contact 
 radius alone. So there are some radii, each with a rule over the heights of its own.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Any
@@ -23,6 +24,7 @@ from analytic.quadrature import SPANS, WIDEST, gauss_legendre, in_pieces
 from analytic.resolution import resolved_breaks
 
 Branches = tuple[Branch, ...]
+Cuts = Callable[[Array], Array]  # of ratios of radii: heights, shape (cuts, radii)
 
 _HIGHEST = 1e-300  # share of heights above the highest separation that is looked at
 _NODES, _AS_WIDE = 64, 0.6  # points for curvatures, if their density bends over so many heights
@@ -74,8 +76,13 @@ class Radii:
         return np.asarray(self.weights[which] * own)
 
 
+def no_cuts(ratios: Array) -> Array:
+    """Return no heights."""
+    return np.empty((0, ratios.size))
+
+
 def rule_of_radii(
-    separations: Array, grading: Grading, law: RandomCurvature, branches: Branches
+    separations: Array, grading: Grading, law: RandomCurvature, branches: Branches, more: Cuts = no_cuts
 ) -> HeightRule:
     """Rule over heights and radii for these separations, cut where the laws of the radii change."""
     h, radii = np.unique(separations), Radii.over(law, float(np.max(separations)))
@@ -87,7 +94,9 @@ def rule_of_radii(
     regular = np.linspace(start, top, int(np.ceil((top - start) / widest)) + 1)
     breaks, number = resolved_breaks(grading, start, top), radii.ratios.size
     common = np.concatenate([regular, breaks, lowest])
-    cuts, which = [np.tile(common, number)], [np.repeat(np.arange(number), common.size)]
+    every, own_cuts = np.arange(number), more(radii.ratios)
+    cuts = [np.tile(common, number), own_cuts.ravel()]
+    which = [np.repeat(every, common.size), np.tile(every, len(own_cuts))]
     for branch in branches:  # at each separation, which has the radii in turn
         own = branch.with_radii(radii.ratios)
         found = own.regimes(grading, np.repeat(h, number), start, top)
@@ -152,8 +161,12 @@ class Summits:
         """Return the heights, each with the mean of this power of its radius over that of the surface."""
         return self.heights
 
-    def rule(self, h: Array, grading: Grading, branches: Branches = ()) -> HeightRule:
-        """Heights and radii for sums on these branches, or of powers of both."""
+    def rule(
+        self, h: Array, grading: Grading, branches: Branches = (), cuts: Cuts | None = None
+    ) -> HeightRule:
+        """Heights and radii for sums on these branches; `cuts` gives ends of pieces besides."""
+        if cuts is not None:
+            return self._new_rule(h, grading, branches, cuts)
         key = (branches, h.tobytes())  # of one model, every quantity and statistic of which asks again
         if key not in self._rules:
             while sum(kept.heights.size for kept in self._rules.values()) > _KEPT:
@@ -161,8 +174,9 @@ class Summits:
             self._rules[key] = self._new_rule(h, grading, branches)
         return self._rules[key]
 
-    def _new_rule(self, h: Array, grading: Grading, branches: Branches) -> HeightRule:
-        return HeightRule.over(h, grading, self.heights, branches=branches)
+    def _new_rule(self, h: Array, grading: Grading, branches: Branches, cuts: Cuts = no_cuts) -> HeightRule:
+        more = cuts(np.ones(1)).ravel().tolist()
+        return HeightRule.over(h, grading, self.heights, branches=branches, cuts=more)
 
     @cached_property
     def _rules(self) -> dict[tuple[Branches, bytes], HeightRule]:
@@ -186,8 +200,8 @@ class _RandomRadii(Summits):
     def weighted(self, power: float) -> HeightLaw:
         return WeightedHeights(self.heights, partial(self.curvature.mean, power)) if power else self.heights
 
-    def _new_rule(self, h: Array, grading: Grading, branches: Branches) -> HeightRule:
-        return rule_of_radii(h, grading, self.curvature, branches)
+    def _new_rule(self, h: Array, grading: Grading, branches: Branches, cuts: Cuts = no_cuts) -> HeightRule:
+        return rule_of_radii(h, grading, self.curvature, branches, cuts)
 
 
 @dataclass(frozen=True)
@@ -200,9 +214,9 @@ class _ListedSummits(Summits):
     def powers(self) -> bool:
         return self.radii is None
 
-    def _new_rule(self, h: Array, grading: Grading, branches: Branches) -> HeightRule:
+    def _new_rule(self, h: Array, grading: Grading, branches: Branches, cuts: Cuts = no_cuts) -> HeightRule:
         if self.radii is None:
-            return super()._new_rule(h, grading, branches)
+            return super()._new_rule(h, grading, branches, cuts)
         lowest = float(h.min())
         lowest = min([lowest, *(branch.lowest(lowest) for branch in branches)])
         s, ratios = np.array(self.radii.heights.heights), np.array(self.radii.ratios)

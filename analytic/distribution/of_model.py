@@ -45,10 +45,6 @@ def distribution_of(model: Any, quantity: str, h: float, *, other: bool = False)
 def one_asperity(model: Any, quantity: str, h: float, cells: int) -> OneAsperity:
     """Return what one asperity adds, over the scale of the quantity, by cells of heights."""
     rule, added = model.asperities(quantity, h)
-    if rule.ratios is not None:  # radius by radius
-        order = np.lexsort((rule.heights, -rule.ratios))
-        s, p, ratios = (each[order] for each in (rule.heights, rule.probabilities, rule.ratios))
-        rule = replace(rule, heights=s, probabilities=p, ratios=ratios)
     values, p, n, poisson = added(rule), rule.probabilities, model.number, model.count == "poisson"
     mean = float(p @ values)
     square = float(p @ values**2) - (0 if poisson else mean**2)
@@ -82,7 +78,11 @@ def cells_between(
 
     They are finer where more asperities are; the first begins at the lowest height.
     """
-    s, ratios, root = rule.heights, rule.ratios, np.sqrt(rule.probabilities)
+    s, p, ratios = rule.heights, rule.probabilities, rule.ratios
+    if ratios is not None:  # radius by radius
+        order = np.lexsort((s, -ratios))
+        s, p, ratios = s[order], p[order], ratios[order]
+    root = np.sqrt(p)
     parts = np.ceil(cells * (root / root.sum() + 1 / root.size)).astype(np.int64)
     new = np.arange(s.size) == 0 if ratios is None else np.diff(ratios, prepend=np.inf) != 0
     start = np.where(new, lowest, np.append(lowest, s[:-1]))
