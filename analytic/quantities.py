@@ -65,7 +65,7 @@ class Quantity:
     def base(self) -> str:
         """What one contact adds to it, on whatever way: `analytic.laws.of_spot` has the formulas."""
         base = self.unloading or self.of or self.name
-        return "conductance" if base == "spot_conductance" else base
+        return {"spot_conductance": "conductance", "nominal_separation": "load"}.get(base, base)
 
     def scale(self, x: Surface) -> float:
         """Return the factor of one asperity: ``factor E*^modulus R^radius sigma^exponent``, or per area."""

@@ -44,11 +44,6 @@ class Branch:
         """How far above first touch formulas are analytic."""
         return min(self.law.finest, self.conductance.finest) if self.conductance else self.law.finest
 
-    @property
-    def formulas(self) -> Unloading:
-        """Of contacts that were once penetrated deepest; on loading they are now."""
-        return Unloading(self.law) if self.deepest is None else self.law.unloading()
-
     def with_radii(self, ratios: Array) -> Self:
         """Return that of summits whose radii are these multiples of the surface's, one a separation."""
         own = None if self.conductance is None else self.conductance.with_radii(ratios)
@@ -90,31 +85,31 @@ class Branch:
 
         def lost(s: Array, which: Ints) -> Array:
             s, which = np.broadcast_arrays(s, which)
-            return np.asarray(self.of_some(which).residual(h[which], s, grading(s)))
+            return self.of_some(which).residual(s, grading(s))
 
         return found if self.deepest is None else [*found, (h, lost)]
 
     def root_at_touch(self, piece: int) -> bool:
         """Whether formulas of a piece that begins from nothing take negative roots as well."""
-        return self.law.root if piece == 0 else self.deepest is not None and self.formulas.root
+        return self.law.root if piece == 0 else self.deepest is not None and self.law.unloading().root
 
-    def residual(self, h: Any, s: Array, e: Array) -> Any:
-        """Penetration at which asperities are lost; infinite of those that were never in contact."""
-        if self.deepest is None:
-            return 0.0
+    def residual(self, s: Array, e: Array) -> Array:
+        """Penetration at which asperities are lost on unloading; infinite of those never in contact."""
+        assert self.deepest is not None
         deepest = s - self.deepest
-        left = self.formulas.residual(np.maximum(deepest, 0.0), e)
+        left = self.law.unloading().residual(np.maximum(deepest, 0.0), e)
         return np.where(deepest >= 0, left, np.inf)
 
     def left(self, h: Array, above: Array, e: Array) -> Array:
         """Penetration left until contact is lost, whose root the formulas take."""
-        return np.asarray(above - self.residual(h, h + above, e))
+        return above if self.deepest is None else above - self.residual(h + above, e)
 
     def pieces(self, h: Array, above: Array, e: Array) -> Ints:
         """Which formula holds at heights `above` the separations, -1 without contact."""
         above, h, e = np.broadcast_arrays(above, h, e)
         piece = piece_of(self.law, self._penetration(h, above), e)
-        return np.where(above > self.residual(h, h + above, e), piece, -1)
+        lost = 0.0 if self.deepest is None else self.residual(h + above, e)
+        return np.where(above > lost, piece, -1)
 
     def value(
         self, quantity: str, piece: int, h: Array, above: Array, e: Array, *, sign: float = 1.0
@@ -123,9 +118,12 @@ class Branch:
 
         With a `sign` of -1 the formula goes on to negative roots of the penetration.
         """
+        if self.deepest is None:
+            return self.of_root(quantity, piece, sign * np.sqrt(above), e)
         deepest = self._penetration(h, above)
-        y = sign * np.sqrt(np.maximum(above - self.formulas.residual(deepest, e), 0.0))
-        return self.added(quantity, self.formulas, piece, y, deepest, e)
+        unloading = self.law.unloading()
+        y = sign * np.sqrt(np.maximum(above - unloading.residual(deepest, e), 0.0))
+        return self.added(quantity, unloading, piece, y, deepest, e)
 
     def of_root(self, quantity: str, piece: int, y: Any, e: Array) -> Array:
         """Return the same, closer than ever before, of the root of the penetration, which may be complex."""

@@ -64,7 +64,7 @@ def test_steps_of_other_threads_are_counted_and_none_of_other_packages():
 
 @pytest.mark.parametrize(
     ("name", "functions", "files"),
-    [("compare", 106, 28), pytest.param("report", 380, 63, marks=pytest.mark.slow)],
+    [("compare", 115, 28), pytest.param("report", 380, 63, marks=pytest.mark.slow)],
 )
 def test_its_views_take_few_steps(name, functions, files, tmp_path):
     """A verdict; and the page with its figures, tables and answers at pressures."""
