@@ -70,9 +70,10 @@ def answers_at(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
     are included.
     """
     if scene.interaction is not None:
-        from mcgw.ensemble.half_space import at_loads  # for those scenes alone
+        from mcgw.ensemble.half_space import with_interaction  # for those scenes alone
 
-        found = at_loads(scene, found)
+        sums, felt = {name: x for name, x in found.items() if name != "separation"}, found["separation"]
+        found = {"separation": felt, **with_interaction(scene, sums, ("nominal_separation",), felt)}
     h = found["nominal_separation" if scene.from_mean_plane else "separation"]
     gap = scene.surface.sigma * (h + (scene.rise or 0.0))
     ahead = {name: found[name] for name in found if name in ("separation", *SEPARATIONS)}

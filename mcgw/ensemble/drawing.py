@@ -74,7 +74,7 @@ def answered(scene: Scene, sums: dict[str, Any]) -> dict[str, Any]:
     if scene.interaction is not None:
         from mcgw.ensemble.half_space import with_interaction  # for those scenes alone
 
-        found = with_interaction(scene, sums)
+        found = with_interaction(scene, sums, scene.other_separations, np.array(scene.separations))
     if scene.gas is not None:
         from mcgw.ensemble.half_space import with_joint  # for those scenes alone
 

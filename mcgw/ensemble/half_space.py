@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
@@ -17,7 +16,7 @@ from mcgw.ensemble.results import Held, Results
 from mcgw.scene.scene import Scene
 
 
-def with_interaction(scene: Scene, sums: dict[str, NDArray[Any]]) -> dict[str, Any]:
+def with_interaction(scene: Scene, sums: dict[str, Any], others: Iterable[str], h: Any) -> dict[str, Any]:
     """Return sums of asperities, stiffness and conductance with the half-space, and nominal separations.
 
     These follow from the load of each surface, without a search.
@@ -27,29 +26,19 @@ def with_interaction(scene: Scene, sums: dict[str, NDArray[Any]]) -> dict[str, A
     scene : Scene
         With an interaction.
     sums : dict of str to ndarray
-        Of the asperities, SI, shape (surfaces, separations).
+        Of the asperities, SI.
+    others : iterable of str
+        Of `analytic.SEPARATIONS`.
+    h : array_like
+        Separations that the asperities feel.
     """
-    found = {name: _answer(scene, name, values) for name, values in sums.items()}
-    h, sunk = np.array(scene.separations), scene.compliance / scene.surface.sigma
-    for name in scene.other_separations:
-        found[name] = h - sunk * sums["load_unloading" if name.endswith("_unloading") else "load"]
-    return found
-
-
-def at_loads(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
-    """Add the half-space to answers at given loads; "nominal_separation" follows the effective separation."""
-    felt = found["separation"]
-    nominal = felt - scene.compliance / scene.surface.sigma * found["load"]
-    rest = {name: _answer(scene, name, value) for name, value in found.items() if name != "separation"}
-    return {"separation": felt, "nominal_separation": nominal, **rest}
-
-
-def _answer(scene: Scene, name: str, value: Any) -> Any:
-    """Return what becomes of a sum of the asperities."""
     from analytic.interaction import in_series  # for those scenes alone: every comparison imports this file
 
-    other = scene.series(name)
-    return in_series(value, other) if other else value
+    series, sunk = {name: scene.series(name) for name in sums}, scene.compliance / scene.surface.sigma
+    found = {name: in_series(x, series[name]) if series[name] else x for name, x in sums.items()}
+    for name in others:
+        found[name] = h - sunk * sums["load_unloading" if name.endswith("_unloading") else "load"]
+    return found
 
 
 @dataclass(frozen=True)

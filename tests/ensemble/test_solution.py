@@ -231,22 +231,6 @@ def test_the_answer_is_the_mean_of_specimens(changes, load, bodies, make_scene):
     assert f"{found.value['contact_resistance']:.4g}" in solutions_text(scene, [found, again])
 
 
-def test_a_metal_under_an_elastic_law_is_not_said_to_be_within(make_scene):
-    scene = make_scene(separations=0.0, n_surfaces=20, grading=None)
-    lines = {
-        hardness: solutions_text(scene, [mcgw.solve(scene.replace(hardness=hardness), load=10.0)]).split("\n")
-        for hardness in (None, 1.2e9, 1e14)
-    }
-    assert "within" in lines[None][1]
-    assert "yielding not looked at: give contact.law.hardness" in lines[None][1]
-    assert "within" not in lines[1.2e9][1]
-    assert "of the contacts yield" in lines[1.2e9][1]
-    assert "±" not in lines[1.2e9][0]
-    assert "error of the model not known" in lines[1.2e9][0]
-    assert "within" in lines[1e14][1]
-    assert "0.0% of the contacts yield" in lines[1e14][1]
-
-
 def test_what_cannot_be_solved(scene):
     with pytest.raises(ValueError, match="at least 2 surfaces"):
         solutions(scene.replace(n_surfaces=1), "load", [1.0])

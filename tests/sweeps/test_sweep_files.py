@@ -224,24 +224,6 @@ def test_the_command(shell, tmp_path):
     assert "intact" in shell("show", "out/s.sweep.h5", "--verify").out
 
 
-@pytest.mark.parametrize(
-    ("over", "words"),
-    [
-        ("grading.gamma", "--over grading.gamma: give KEY=VALUES"),
-        *(
-            (
-                f"grading.gamma=1:2:{n}",
-                f"--over grading.gamma 1:2:{n}: give A:B:N, such as 0.2:2:10, with N from",
-            )
-            for n in ("0", "2.5", "1000001")
-        ),
-        *((over, f"--over {over}: give KEY=VALUES") for over in ("=1,2", "grading.gamma=")),
-    ],
-)
-def test_mistakes_of_the_command(shell, over, words):
-    assert words in shell("sweep", "s.toml", "--over", over, code=2).err
-
-
 def test_values_of_the_command_are_numbers_evenly_or_as_they_stand():
     assert _axis("a.b=-1:3:2", "--over") == ("a.b", [-1.0, 3.0])
     assert _axis("a.b=3:1:5", "--over") == ("a.b", [3.0, 2.5, 2.0, 1.5, 1.0])
