@@ -8,6 +8,7 @@ are made up: what is tried here is the store, and it knows nothing of physics.
 import ctypes
 import gc
 import json
+import multiprocessing
 import os
 import shutil
 import signal
@@ -26,6 +27,7 @@ from mcgw.store import blocks, ensembles, h5_writing, lock
 from mcgw.store.lock import parts_of
 from mcgw.store.run_plan import RECORD, Plan
 
+multiprocessing.set_start_method("spawn")  # else Numba has a lock for all forks, which a killed one keeps
 _DRAW = Plan.draw
 MODES = {"kill": 1, "torn": 2, "ENOSPC": 3, "EIO": 4}
 ROWS = 8

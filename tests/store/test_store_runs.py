@@ -94,6 +94,15 @@ def test_n_surfaces_is_the_total(scene, tmp_path, expected, drawn):
         mcgw.run(scene.replace(n_surfaces=99), path)
 
 
+def test_a_short_block_of_statistics_gives_way_to_a_whole_one(scene, tmp_path, drawn):
+    path, kept = tmp_path / "e.h5", scene.replace(keep="statistics")
+    mcgw.run(kept.replace(n_surfaces=20), path, shard="1/1")
+    mcgw.run(kept, path)
+    assert drawn == [0, 16, 16, 32, 48, 64, 80, 96]
+    mcgw.save(mcgw.simulate(kept), tmp_path / "whole.h5")
+    assert digest(path) == digest(tmp_path / "whole.h5")
+
+
 def test_another_version_is_refused(scene, tmp_path, monkeypatch):
     path = tmp_path / "e.h5"
     halted(scene, path, 40)
