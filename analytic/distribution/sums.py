@@ -149,7 +149,7 @@ def on_lattice(one: OneAsperity, width: float, points: int) -> tuple[Array, Arra
     if one.alone:
         spectrum -= (one.none + one.alone * (q + one.share)) * np.exp(z * first)
     p = np.fft.irfft(spectrum, size)[:points] * np.exp(damping * k[:points])
-    upto = np.cumsum(p) - p / 2 - np.gradient(p) / 12  # Euler and Maclaurin
+    upto = np.cumsum(p) - p / 2
     return np.asarray((first + k[:points]) * step), np.asarray(upto)
 
 

@@ -94,7 +94,7 @@ def regimes_between(
     held = np.flatnonzero(which[1:] == which[:-1])
     which, begin, end = which[held], edge[held], edge[held + 1]
     numbers = piece(begin + (end - begin) / 2, which)
-    goes_on = (which[1:] == which[:-1]) & (begin[1:] == end[:-1]) & (numbers[1:] == numbers[:-1])
+    goes_on = (which[1:] == which[:-1]) & (numbers[1:] == numbers[:-1])
     first, last = np.append(True, ~goes_on)[: which.size], np.append(~goes_on, True)[: which.size]
     contact = numbers[first] >= 0
     return Regimes(which[first][contact], begin[first][contact], end[last][contact], numbers[first][contact])

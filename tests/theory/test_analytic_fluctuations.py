@@ -145,18 +145,6 @@ def test_contacts_far_below_the_mean_height(count):
         assert error(values[i, j], truth) < 1e-12
 
 
-def test_covariance_is_positive_definite_for_crowded_separations():
-    h = np.linspace(0, 4, 9)
-    matrix = (
-        analytic.Model(UNIT, grading=Exponential(2.0))
-        .covariance(["load", "area", "contacts"], h)
-        .reshape(27, 27)
-    )
-    np.testing.assert_allclose(matrix, matrix.T, rtol=1e-14)
-    scale = np.sqrt(np.diag(matrix))
-    assert np.linalg.eigvalsh(matrix / np.outer(scale, scale)).min() > 0
-
-
 def test_rule_knows_its_own_probability():
     for h in ([-5.0], [0.0, 1e-9, 2.0], [-40.0, 3.0]):
         rule = analytic.HeightRule.over(h, Exponential(1.0))

@@ -1,7 +1,6 @@
 """A grading as Chebyshev series: next to every height as the function is, and the same bits everywhere."""
 
 import dataclasses
-import functools
 import math
 
 import mpmath as mp
@@ -11,7 +10,6 @@ import scipy.stats
 
 import analytic
 from analytic import Custom, Exponential, PiecewiseSeries, Table, extent, resolved, resolved_breaks
-from analytic.resolution import marks
 
 SPIKE = 0.03
 CURVES = {  # function of numpy, the same of mpmath, breaks that are told, kinks that are to be found
@@ -159,30 +157,6 @@ def test_it_is_a_value():
     assert len(repr(one)) < 80
 
 
-def named(s):
-    return 1 + s * s
-
-
-@pytest.mark.parametrize(("grading", "name"), [
-    (named, "named"),
-    (lambda s: s, "<lambda>"),
-    (functools.partial(named), "named"),
-    (np.cosh, "cosh"),
-    (Custom(named), "named"),
-    (analytic.Clipped(Custom(named)), "named, clipped"),
-    (analytic.gradings.Squared(Custom(named)), "named, squared"),
-    (Exponential(2.0), "Exponential"),
-    (PiecewiseSeries([0, 1], [[1]], "kept"), "kept"),
-])  # fmt: skip
-def test_names(grading, name):
-    assert analytic.name_of(grading) == name
-
-
-def test_marks_lie_on_either_side_ever_farther_apart():
-    found = sorted(marks(-110.0, 130.0, 32.0))
-    assert found == [-100, -80, -64, -64, -32, 0, 32, 64, 80, 100, 125]
-
-
 def test_two_resolutions_of_one_function_agree():
     one = resolved(Custom(lambda s: 1 + 0.3 * np.tanh(s)), 0.0, 13.0)
     assert one.agrees(resolved(Custom(lambda s: (1 + 0.3 * np.tanh(s)) * (1 + 1e-15)), 0.0, 13.0))
@@ -248,24 +222,6 @@ def test_declared_breaks_in_the_range_are_kept_and_sorted():
     assert resolved_breaks(grading, 5, 5) == ()
 
 
-def test_smooth_gradings_are_not_looked_at():
-    def fail(s):
-        raise AssertionError("a smooth grading was evaluated")
-
-    assert resolved_breaks(Custom(fail, breaks=(1.0,), smooth=True), -5, 5) == (1.0,)
-
-
-@pytest.mark.parametrize("function", [np.square, np.ones_like, lambda s: 1 + s**3 / 100])
-def test_polynomials_are_never_cut(function):
-    assert resolved_breaks(Custom(function), -13, 13) == ()
-
-
-def test_a_bump_is_cut_where_it_is():
-    cuts = np.array(resolved_breaks(Custom(lambda s: 1 + np.exp(-(((s - 1.2) / 0.03) ** 2))), -13, 13))
-    assert np.sum((cuts > 0.5) & (cuts < 2)) >= 4
-    assert cuts.size <= 12
-
-
 @pytest.mark.parametrize("sign", [1, -1])
 def test_rounding_noise_of_the_function_is_not_chased(sign):
     cuts = resolved_breaks(Custom(lambda s: 1 + sign * np.tanh(s / 0.1)), -13, 13)
@@ -284,19 +240,3 @@ def test_first_negative_modulus():
     spike, step = (lambda s: np.where(s == third, -1.0, 1.0)), (lambda s: np.where(s < third, -1.0, 1.0))
     assert analytic.first_negative(Custom(spike, (third,)), 0, 1) == third
     assert analytic.first_negative(Custom(step, (third,)), third, 1) is None
-
-
-@pytest.mark.parametrize("sign", [1, -1])
-def test_heavy_tails_reach_far_in_few_pieces(sign):
-    """A t law of 5 degrees has heights of a million deviations: that is no reason for a million pieces."""
-    seen = []
-    step = sign * 1234.5
-
-    def grading(s):
-        seen.append(s.size)
-        return np.where(s > step, 2.0, 1.0)
-
-    ends = sorted((sign * 0.3, sign * 4e6))
-    breaks = resolved_breaks(Custom(grading), *ends)
-    assert min(abs(b - step) for b in breaks) < 1e-9
-    assert sum(seen) < 10**6

@@ -59,12 +59,6 @@ def test_means_of_steep_gradings(n, k):
             assert off(analytic.fn(n, h, raised(k)), tilted(n, h, k)) < (1e-13 if abs(k) == 3 else 1e-12)
 
 
-def test_many_separations_reach_as_far_as_each_alone():
-    h = np.linspace(-30, 30, 301)
-    alone = [float(analytic.fn(1.5, x, raised(12.0))) for x in h[::25]]
-    np.testing.assert_allclose(analytic.fn(1.5, h, raised(12.0))[::25], alone, rtol=1e-12)
-
-
 @pytest.mark.parametrize("k", [30.0, 60.0])
 def test_means_beyond_double_precision_are_refused(k):
     for h in (-3.0, 0.0, 20.0):

@@ -1,9 +1,6 @@
 """The exact law of a finite surface against other ways to it, and the faults that these must see."""
 
-import subprocess
-import sys
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -14,7 +11,6 @@ from scipy.special import binom, gammaln
 
 import analytic
 from analytic.curvature import MEAN_CURVATURE
-from analytic.distribution import of_model, sums
 
 GRADED = analytic.Exponential(2.0)
 
@@ -45,19 +41,6 @@ def test_the_cdf_is_that_of_another_inversion(quantity, h, count, known):
     law = model(30_000, count=count).distribution(quantity, h)
     np.testing.assert_allclose(law.cdf(np.array(AT) * law.mean()), known, atol=law.error)
     assert law.error < 1e-6
-
-
-def test_what_is_wrong_by_little_would_be_seen():
-    fixed, poisson = (model(30_000, count=x).distribution("load", 2) for x in ("fixed", "poisson"))
-    x = 0.8 * fixed.mean()
-    assert abs(fixed.cdf(x) - poisson.cdf(x)) > 1e-5
-    stiffer = model(30_000, grading=analytic.Exponential(2.01)).distribution("load", 2)
-    assert abs(stiffer.cdf(x) - fixed.cdf(x)) > 1e-5
-    at_h = model(30_000, grading=analytic.Custom(lambda s: GRADED(0 * s + 2.0))).distribution("load", 2)
-    assert abs(at_h.cdf(x) - fixed.cdf(x)) > 1e-3
-
-
-# By mpmath's quadrature of one asperity and of two.
 
 
 # By mpmath's quadrature of two asperities.
@@ -136,17 +119,6 @@ def test_beyond_what_lattices_resolve_there_is_a_bound_that_says_so():
     np.testing.assert_array_equal(law.cdf(far) + law.sf(far), 1)
 
 
-def test_both_ways_meet_where_contacts_are_not_few_any_more(monkeypatch):
-    """Of 34 contacts: with sums of none and of one taken apart, and without."""
-    of = model(30_000)
-    few = of.distribution("load", 3.05)
-    monkeypatch.setattr(sums.OneAsperity, "alone", 0.0)
-    many, x = of.distribution("load", 3.05), few.mean() * np.array([0.6, 1.0, 2.0, 4.0])
-    assert not np.array_equal(many.upto, few.upto)
-    np.testing.assert_allclose(many.cdf(x), few.cdf(x), atol=1e-6)
-    np.testing.assert_allclose(many.pdf(x), few.pdf(x), rtol=1e-3, atol=1e-9 * few.pdf(x).max())
-
-
 @pytest.mark.parametrize(("n", "off"), [(1e15, 1e-5), (1e12, 1e-6), (1e9, 1e-6)])
 def test_a_law_of_very_many_is_gaussian_and_no_more(n, off):
     of = model(n)
@@ -165,17 +137,6 @@ def test_a_wrong_value_is_seen_by_the_error():
     x = law.mean() + law.std()
     assert law.error < 1e-6 < 1e-5 < wrong.error
     assert law.error_at(x) * law.sf(x) < 1e-6 < abs(wrong.sf(x) - law.sf(x)) < wrong.error_at(x) * wrong.sf(x)
-
-
-def test_the_error_is_of_other_lattices_and_other_cells(monkeypatch):
-    """Coarse ones in the first computation, which the second one does not share."""
-    monkeypatch.setattr(of_model, "_POINTS", (512, of_model._POINTS[1]))
-    for h in (0.0, 3.0):
-        law = model(30_000).distribution("load", h)
-        x, fine = law.ppf([0.01, 0.3, 0.9]), law.again()
-        off = np.abs(law.cdf(x) - fine.cdf(x))
-        assert np.all(off > 1e-6)
-        assert np.all(off < law.error_at(x) * np.minimum(law.cdf(x), law.sf(x)))
 
 
 HEAVY = {
@@ -201,15 +162,6 @@ def test_the_tail_of_heavy_tails_is_there(name, n):
     assert 0.8 * jumps < 1e-7  # one asperity alone that adds as much is a lower bound
 
 
-def test_a_heavy_tail_is_one_big_jump():
-    of = model(30_000, heights=analytic.ScipyHeights(stats.t(3)), grading=analytic.Homogeneous())
-    law = of.distribution("area", 1.0)
-    x = law.mean() + 300 * law.std()
-    alone = 30_000 * float(of.heights.sf(np.array(1.0 + (x - law.mean()) / unit(of, "area"))))
-    assert law.sf(x) == pytest.approx(alone, rel=3e-2)
-    assert law.error < 1e-5
-
-
 @pytest.mark.parametrize("count", ["fixed", "poisson"])
 def test_contacts_are_counted(count):
     law, share = model(3000, count=count).distribution("contacts", 2.0), stats.norm.sf(2.0)
@@ -232,20 +184,6 @@ def test_shapes_ends_and_the_atom():
     drawn = law.rvs(4000, random_state=3)
     assert np.mean(drawn == 0) == pytest.approx(law.atom, abs=0.03)
     assert stats.kstest(drawn[drawn > 0], lambda x: (law.cdf(x) - law.atom) / (1 - law.atom)).pvalue > 1e-3
-
-
-def drawn_load(n, h, surfaces, seed):
-    rng = np.random.default_rng(seed)
-    s = rng.standard_normal((surfaces, n))
-    return np.where(s > h, GRADED(s) * np.maximum(s - h, 0) ** 1.5, 0).sum(axis=1)
-
-
-def test_drawn_surfaces_follow_it_and_not_its_neighbours():
-    of, drawn = model(1000), drawn_load(1000, 1.0, 4000, 5)
-    law = of.distribution("load", 1.0)
-    assert stats.kstest(drawn * unit(of, "load"), law.cdf).pvalue > 1e-3
-    other = model(1000, grading=analytic.Exponential(2.2)).distribution("load", 1.0)
-    assert stats.kstest(drawn * unit(of, "load"), other.cdf).pvalue < 1e-3
 
 
 @pytest.mark.parametrize("reference", ["body", "mean-plane"])
@@ -326,7 +264,7 @@ def test_between_loads_of_both_signs_no_load_has_a_probability():
 
 @pytest.mark.parametrize("quantity", ["area", "conductance"])
 def test_what_snaps_into_contact_adds_no_little(quantity):
-    """Of one asperity: by its height; of two: an integral over the first."""
+    """Of one asperity: by its height."""
     h, more = 1.0, {"law": analytic.JohnsonKendallRoberts(pull_off=0.3), "grading": analytic.Homogeneous()}
     rule, added = model(1, **more).asperities(quantity, h)
 
@@ -339,54 +277,6 @@ def test_what_snaps_into_contact_adds_no_little(quantity):
     for x in (0.5 * one(h + 1e-13), one(2.5)):
         law = model(1, **more).distribution(quantity, h)
         assert law.sf(x * unit(model(1), quantity)) == pytest.approx(stats.norm.sf(least(x)), abs=1e-6)
-        ends = sorted({h, min(least(x), 12.0), 12.0})
-        second = sum(
-            quad(
-                lambda s, x=x: (
-                    stats.norm.pdf(s) * stats.norm.sf(least(max(x - one(s), 0)))
-                    if one(s) < x
-                    else stats.norm.pdf(s)
-                ),
-                a,
-                b,
-                epsabs=1e-12,
-                limit=200,
-            )[0]
-            for a, b in pairwise(ends)
-        )
-        known = second + stats.norm.cdf(h) * stats.norm.sf(least(x))
-        law = model(2, **more).distribution(quantity, h)
-        assert law.sf(x * unit(model(1), quantity)) == pytest.approx(known, abs=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("quantity", "law"), [("load", analytic.ZhaoMaiettaChang), ("area", analytic.ChangEtsionBogy)]
-)
-def test_the_error_of_a_law_that_jumps_is_as_large_as_said(monkeypatch, quantity, law):
-    """Against more cells and more points."""
-    of = model(30_000, law=law(critical=0.05))
-    rough = of.distribution(quantity, 4.0)
-    x = rough.isf([0.2, 0.05, 0.01, 1e-4])
-    said, seen = rough.error_at(x), rough.sf(x)
-    monkeypatch.setattr(of_model, "_POINTS", (2**16, 2**15))
-    monkeypatch.setattr(of_model, "_CELLS", (40_000, 30_000))
-    off = np.abs(seen / of.distribution(quantity, 4.0).sf(x) - 1)
-    assert np.all(off < np.fmax(said, 1e-13))
-    assert rough.error < 1e-4
-    assert off.max() > 1e-13  # the finer one is another
-
-
-def test_what_many_asperities_have_alike_is_no_density():
-    """Slopes of summits that flow: a value that all of them may have, over which the law is smoothed."""
-    heights = analytic.Nayak(7.35)
-    yields = analytic.KogutEtsion(critical=6e-4)
-    of = model(16, heights=heights, law=yields, grading=analytic.Exponential(1.09))
-    law = of.distribution("load_slope", -2.3)
-    x = law.mean() + law.std() * np.linspace(-4, 2, 30)
-    cdf = law.cdf(x)
-    assert np.all((cdf > -0.02) & (cdf < 1.02))
-    assert np.all(np.diff(cdf) > -0.02)
-    assert law.error_at(x).max() > 0.01
 
 
 def test_where_digits_end_is_said():
@@ -415,17 +305,6 @@ def test_all_asperities_touch_and_none_has_less():
     k, span = np.arange(8), 2 * np.sqrt(3) * unit(of, "area")
     hall = float(np.sum((-1.0) ** k * binom(40, k) * np.exp(40 * np.log(7.5 - k) - gammaln(41))))
     np.testing.assert_allclose(law.cdf(least + np.array([7.5, 20]) * span), [hall, 0.5], atol=1e-9)
-
-
-@pytest.mark.slow
-def test_heavy_tails_both_ways_leave_a_probability():
-    """Summits that pull, with radii that have no bound: no line can be shifted."""
-    heights = analytic.Nayak(14.475)
-    of = model(200, heights=heights, curvature=analytic.RandomCurvature(14.475), count="poisson",
-               grading=analytic.Homogeneous(), law=analytic.JohnsonKendallRoberts(pull_off=2e-3))  # fmt: skip
-    cdf = of.distribution("load", 1.9).cdf(unit(of, "load") * np.array([-5.0, 0.0, 1.0, 3.0, 30.0]))
-    assert np.all((cdf > -1e-4) & (cdf < 1 + 1e-4) & (np.diff(cdf, append=2) > -1e-4))
-    assert cdf[-1] == pytest.approx(1, abs=1e-3)
 
 
 RADII = analytic.RandomCurvature(5.0)
@@ -486,8 +365,3 @@ def test_sums_of_few_that_pull_by_plain_convolutions():
         )
         known += stats.binom(n, stats.norm.sf(h)).pmf(k) * upto
     assert of.distribution("load", h).cdf(x * unit(of, "load")) == pytest.approx(known, abs=1e-6)
-
-
-def test_nobody_pays_for_it_who_does_not_ask():
-    code = "import analytic, mcgw.scene.scene, sys; sys.exit('analytic.distribution' in sys.modules)"
-    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

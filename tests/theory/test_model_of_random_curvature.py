@@ -24,7 +24,7 @@ from analytic import (
     quantity_of,
 )
 from analytic.curvature import MEAN_CURVATURE
-from analytic.laws import Coated, Film, branch
+from analytic.laws import Coated, Film
 from analytic.summits import rule_of_radii
 
 ALPHA = 5.0
@@ -124,16 +124,6 @@ def test_the_kurtosis_of_the_area_is_infinite_unless_radii_have_a_bound():
         np.testing.assert_allclose(
             some.moment(k), every.moment(k)[[4, 0]] / np.array([2.0, 3.0]) ** k, rtol=1e-13
         )
-
-
-def test_moments_by_curvatures_one_by_one():
-    """Rules of five radii at each height against integrals over the curvature, cut at the largest radius."""
-    m, h = model(largest=3.0, grading=GRADED), H[1:2]
-    names = ["load", "area"]
-    by_rule, radii = m.fluctuations(names, h), rule_of_radii(h, GRADED, m.curvature, m.ways.among(names))
-    one_by_one = radii.fluctuations(radii.terms(names, h, GRADED, m.ways), m.count)
-    np.testing.assert_allclose(one_by_one.products(), by_rule.products(), rtol=1e-12)
-    np.testing.assert_allclose(one_by_one.moment(3), by_rule.moment(3), rtol=1e-11)
 
 
 @pytest.mark.parametrize("name", ["load", "area", "conductance"])
@@ -270,15 +260,3 @@ def test_a_rule_of_several_separations_is_that_of_each(law, unload_from):
 def test_heights_and_curvatures_together_have_the_product_of_their_densities():
     law, s, g = RandomCurvature(5.0), np.linspace(-3, 5, 17), np.linspace(0.01, 6, 17)[:, None]
     np.testing.assert_allclose(law.with_height(g, s), law.pdf(g, s) * law.heights.pdf(s), rtol=1e-13)
-
-
-def test_separations_of_own_radii_that_yield_are_looked_at_once(monkeypatch):
-    """Whatever is asked of them: at each of them a bound of the law is sought once."""
-    asked, find = [], branch.crossings_of
-    monkeypatch.setattr(branch, "crossings_of", lambda *given: asked.append(given) or find(*given))
-    m = replace(model(grading=GRADED), law=KogutEtsion(critical=0.05))
-    h = np.linspace(0.0, 2.9, 8)
-    for name in ("load", "area"):
-        m.mean(name, h)
-        m.cumulants(name, h)
-    assert len(asked) == h.size * len(m.ways.law.limits(np.ones(1)))

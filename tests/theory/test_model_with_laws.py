@@ -23,7 +23,6 @@ import analytic
 from analytic import (
     Clipped,
     ContactLaw,
-    Custom,
     Exponential,
     ExponentialHeights,
     Gaussian,
@@ -252,13 +251,6 @@ def test_check_values_of_slopes():
 # The separation of a load
 
 
-@pytest.mark.parametrize("heights", [Gaussian(), ExponentialHeights()], ids=["gaussian", "exponential"])
-def test_separations_belong_to_means(heights):
-    model = Model(SURFACE, law=kogut_etsion(0.05), grading=Exponential(0.2), heights=heights)
-    h = np.array([[-2.0], [15.0]])
-    np.testing.assert_allclose(model.separation_at("load", model.mean("load", h)), h, rtol=1e-12)
-
-
 def test_pressures_and_values_beyond_reach():
     model = Model(SURFACE, law=kogut_etsion(0.05), grading=Exponential(2.0))
     pressure = float(model.mean("pressure", 0.4))
@@ -334,24 +326,3 @@ def test_questions_without_an_answer_are_refused():
     for question in (model.mean, model.slope, model.std, model.separation_at):
         with pytest.raises(ValueError, match="law = 'custom': no unloading is known"):
             question("load_unloading", 0.5)
-
-
-def test_a_grading_is_searched_once():
-    """Every quantity of a model asks where it jumps; a function that has changed is asked anew."""
-    asked, place = [], [0.7]
-
-    def step(s):
-        asked.append(s.size)
-        return np.where(s > place[0], 2.0, 0.5)
-
-    def model():
-        return Model(SURFACE, grading=Custom(step), law=laws.KogutEtsion(critical=0.1), heights=Weibull(3.0))
-
-    first, calls = model(), []
-    for quantity in ("load", "area", "contacts"):
-        calls.append(len(asked))
-        first.slope(quantity, [0.5, 1.0])
-    assert len(asked) - calls[1] < calls[1] / 20
-    place[0] = 0.9
-    there = replace(first, grading=Custom(lambda s: np.where(s > 0.9, 2.0, 0.5), breaks=(0.9,), smooth=True))
-    assert model().mean("load", 0.5) == pytest.approx(there.mean("load", 0.5), rel=1e-12)

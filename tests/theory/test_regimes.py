@@ -10,7 +10,6 @@ from scipy.optimize import brentq
 from analytic import Clipped, ContactLaw, Custom, Exponential, Homogeneous, Table
 from analytic.laws import Branch, piece_of, regimes as regimes_module
 from analytic.laws.regimes import crossings_of
-from analytic.roots import sign_changes
 
 
 class Yielding(ContactLaw):
@@ -26,16 +25,6 @@ class Yielding(ContactLaw):
 def listed(regimes, k=0):
     here = regimes.separation == k
     return list(zip(regimes.low[here], regimes.high[here], regimes.piece[here], strict=True))
-
-
-def test_homogeneous_surface_yields_at_fixed_penetrations():
-    regimes = Branch(Yielding(0.05, 0.3, 5.5)).regimes(Homogeneous(), [0.0, 1.0, 20.0], -3.0, 13.0)
-    for k, h in enumerate((0.0, 1.0)):
-        ends = [h, h + 0.05, h + 0.3, h + 5.5, 13.0]
-        np.testing.assert_allclose([low for low, *_ in listed(regimes, k)], ends[:-1], atol=1e-15)
-        np.testing.assert_allclose([high for _, high, _ in listed(regimes, k)], ends[1:], atol=1e-15)
-        assert [piece for *_, piece in listed(regimes, k)] == [0, 1, 2, 3]
-    assert listed(regimes, 2) == []
 
 
 def test_a_piece_holds_from_its_limit_on():
@@ -149,23 +138,6 @@ def test_a_band_between_breaks_is_found_however_narrow():
     np.testing.assert_allclose([low for low, *_ in listed(regimes)], [0.2, 0.5, 1.001, 1.003], rtol=1e-15)
 
 
-def test_a_smooth_function_is_looked_at_a_few_times():
-    """Halving takes some fifty looks; a jump takes as many, and the root is right behind it."""
-    asked = []
-
-    def excess(x, which):
-        asked.append(x.size)
-        return np.where(which == 0, x**3 - 2, np.where(x < 0.7, -1.0, 1.0))
-
-    ends = np.zeros(2), np.full(2, 2.0), np.zeros(2)
-    found = sign_changes(excess, *ends)
-    np.testing.assert_allclose(found, [2 ** (1 / 3), 0.7], rtol=4e-16)
-    assert found[1] >= 0.7
-    asked.clear()
-    sign_changes(lambda x, which: excess(x, 0 * which), *ends)
-    assert len(asked) < 15
-
-
 def residual(deepest, dc):
     """Etsion, Kligerman and Kadin (2005)."""
     x = np.maximum(deepest / dc, 1.0)
@@ -193,8 +165,3 @@ def test_ends_that_cannot_be_told_apart_are_one():
     assert listed(tiny) == [(1.0, 13.0, 1)]
     near = Branch(Yielding(0.05, 0.05 + 1e-15)).regimes(Homogeneous(), [0.0], -1.0, 13.0)
     assert [piece for *_, piece in listed(near)] == [0, 1, 2]
-
-
-def test_a_law_of_one_piece_has_one_regime():
-    regimes = Branch(ContactLaw()).regimes(Exponential(2.0), [0.0, 1.0], -1.0, 13.0)
-    assert listed(regimes, 0) == [(0.0, 13.0, 0)]

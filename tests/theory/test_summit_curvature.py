@@ -61,14 +61,6 @@ def test_check_values(alpha_x):
     assert slope_of_area(alpha_x[0], *found[1:3]) == pytest.approx(kap, abs=6e-8 if kap < 10 else 0)
 
 
-def test_area_rises_to_that_of_the_limit():
-    """kap tends to sqrt(2 pi) as the surfaces part: slowly, from below."""
-    kap = [slope_of_area(2.0, *per_summit(2.0, x)[1:3]) for x in (4, 6, 10, 30)]
-    assert kap[:3] == pytest.approx((2.4809, 2.4952, 2.5025), abs=6e-4)
-    assert np.all(np.diff(kap) > 0)
-    assert kap[-1] == pytest.approx(math.sqrt(2 * math.pi), rel=5e-4)
-
-
 def test_moments_of_the_curvatures():
     """E tau, and the mean and the spread of g, free of alpha: means over heights of those at a height."""
     assert pytest.approx(2.60588006348224, rel=1e-14) == MEAN_CURVATURE
