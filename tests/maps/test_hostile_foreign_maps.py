@@ -53,6 +53,7 @@ def test_heights_along_a_line_are_a_profile_and_no_map(foreign):
     with pytest.raises(ValueError, match="gives x in um; leave --pixel out"):
         read_heights(path, pixel=(1e-6, 1e-6))
     assert isinstance(read_heights(foreign("3 2")), Topography)
+    assert read_heights(foreign("unknown 12 1"), unit="um").spacing == pytest.approx(0.5e-6)
 
 
 def test_what_the_library_refuses_is_one_line(foreign):
@@ -101,8 +102,10 @@ def test_what_our_readers_refuse_is_shown_to_the_library_where_it_says_its_pixel
 
 
 def test_three_columns_may_be_points_of_another_program(foreign, tmp_path):
-    found = read_map(foreign("3 2 1\n1 2 x").rename(tmp_path / "map.txt"))
-    assert found.heights == pytest.approx(1e-6 * np.array([[0, 2, 4], [1, 3, 5]]))
+    path = foreign("3 2 1\n1 2 x").rename(tmp_path / "map.txt")
+    assert read_map(path).heights == pytest.approx(1e-6 * np.array([[0, 2, 4], [1, 3, 5]]))
+    with pytest.raises(ValueError, match="gives the size of a pixel; leave --pixel out"):
+        read_map(path, pixel=(1e-6, 1e-6))
 
 
 def test_what_a_file_cannot_hold_is_never_read(foreign, tmp_path):

@@ -128,6 +128,12 @@ def test_points_on_a_grid_are_a_map_in_any_order(head, mark, separator, tmp_path
     assert found.assumed_unit == ""
 
 
+def test_places_of_points_without_a_unit_are_assumed_in_metres(tmp_path):
+    lines = (f"{x * 1e-6:g};{y * 1e-6:g};{z}" for x, y, z in POINTS)
+    (tmp_path / "map.txt").write_text("\n".join(["x;y;z (nm)", *lines]))
+    assert read_map(tmp_path / "map.txt").assumed_unit == "m"
+
+
 def test_points_along_one_line_are_a_profile(tmp_path):
     for name, columns in (("x.txt", "{i} 5 {z}"), ("y.xyz", "5 {i} {z}")):
         lines = [columns.format(i=i, z=i % 3) for i in range(20)]
@@ -142,7 +148,7 @@ def test_points_along_one_line_are_a_profile(tmp_path):
 @pytest.mark.parametrize(("change", "told"), [
     (lambda p: [*p, p[0]], r"x = 0, y = 0 has two heights"),
     (lambda p: [*p, (0.37, 0, 1)], "x of the points is not evenly spaced"),
-    (lambda p: [(x, x, z) for x, y, z in p[:3]] + [(9, 9, 1), (5, 5, 2), (7, 7, 0)], "evenly|scattered"),
+    (lambda p: [(k, k, k % 3) for k in range(9)], "9 points on a grid of 9 x 9: scattered points are not"),
     (lambda p: [("nan", *p[0][1:]), *p[1:]], "a point lacks x or y"),
 ])  # fmt: skip
 def test_points_that_are_no_grid_are_refused(change, told, tmp_path):
@@ -219,6 +225,7 @@ def test_profiles_of_every_kind(name, encoding, tmp_path):
     ("x (um);z (um)\n0;1\n1;2\n", {"unit": "nm"}, "heights are in um as the file says, not in nm"),
     ("0 1\n1 2\n2 1\n3 1\n1 2\n4 2\n5 2\n6 1\n7 1\n", {}, "x = 3 m is followed by 1 m"),
     ("\n".join(f"{i} {i % 2 * 1e-6}" for i in range(20)), {}, "the points are 1 m apart; give --unit"),
+    ("x;z (um)\n" + "\n".join(f"{i};{i % 2}" for i in range(20)), {}, "the points are 1 m apart; give"),
     ("\n".join(f"{i * 1.0004e-3} {i % 9 * 1e-4}" for i in range(1250)), {}, "it is 1.25 m long; give --unit"),
     ("\n".join(f"{i * 1e-6} {i % 2}" for i in range(20)), {}, "the typical slope is 1e\\+06; give --unit"),
     ("0 1\n1 2\n", {}, "2 points: a profile has 8 or more"),

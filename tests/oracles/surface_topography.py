@@ -31,6 +31,10 @@ class Line(Channel):
         return x, np.ma.masked_array(x * x, mask=x == 2.0)
 
 
+class Unknown(Line):
+    unit = None
+
+
 class Bare(Channel):
     physical_sizes, unit, is_periodic = None, None, True
 
@@ -47,8 +51,7 @@ class Bare(Channel):
 def open_topography(path):
     path = Path(path)
     words = path.read_text().replace(";", "?").split()
-    if words[0] in ("line", "bare"):
-        kind = {"line": Line, "bare": Bare}[words[0]]
+    if kind := {"line": Line, "unknown": Unknown, "bare": Bare}.get(words[0]):
         return kind(path, *map(int, words[1:3]))
     if words[0] == "points":
         heights = [float(word) for word in words[1:]]
