@@ -129,7 +129,7 @@ def fit_sources(
     Returns
     -------
     (Fit or ProfileFit, Prepared or None, str)
-        The fit of all, with its cautions; the first map as prepared; and an assumed unit of lengths.
+        The fit of all, with its cautions; the last map as prepared; and an assumed unit of lengths.
 
     Raises
     ------
@@ -140,7 +140,7 @@ def fit_sources(
     names = [x.name if isinstance(x, Path) else f"map {k}" for k, x in enumerate(sources, 1)]
     fits: list[Fit] = []
     lines: list[Profile] = []
-    first, assumed = None, ""
+    ready, assumed = None, ""
     for name, source in zip(names, sources, strict=True):
         each = [read(source) if isinstance(source, Path) else source]
         assumed = assumed or each[0].assumed_unit
@@ -150,16 +150,15 @@ def fit_sources(
         else:
             fit, ready = _fit_map(each, asked, across, use)
             fits.append(fit)
-            first = first or ready
             line, area = names[0], name
         if fits and lines:
             raise ValueError(f"{line}: a profile, and {area} is a map; fit them apart")
     if lines:
         return _fit_lines(lines, asked), None, assumed
     if len(fits) == 1:
-        return fits[0], first, assumed
+        return fits[0], ready, assumed
     found = pooled(fits, names)
-    return replace(found, cautions=tuple(cautions_of_several(found, fits, use))), first, assumed
+    return replace(found, cautions=tuple(cautions_of_several(found, fits, use))), ready, assumed
 
 
 def _fit_map(raw: list[Any], asked: Preparation, across: int, use: str) -> tuple[Fit, Prepared]:

@@ -322,7 +322,7 @@ def test_a_written_scene_of_a_fit_leaves_out_what_follows(rough, tmp_path):
 def test_overlap_is_that_of_the_estimate_that_is_used(tmp_path, capsys):
     """Counted summits of a Gaussian surface of alpha = 6 are apart; caps, added, would not be."""
     write_map(gaussian_map(Spectrum(1e-6, 80e-6, 8e-6), (240, 240), PIXEL, rng(1)), tmp_path / "m.h5")
-    for use, named in (("auto", False), ("caps", True)):
-        words_of = ["fit", str(tmp_path / "m.h5"), "--cutoff", "none", "--use", use]
+    for use, number, named in (("auto", 1, False), ("caps", 1, True), ("caps", 2, True)):
+        words_of = ["fit", *number * [str(tmp_path / "m.h5")], "--cutoff", "none", "--use", use]
         assert main([*words_of, "-o", str(tmp_path / "s.toml")]) == 0
         assert ("overlap:" in capsys.readouterr().err) == named

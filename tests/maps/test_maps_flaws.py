@@ -253,6 +253,9 @@ def test_a_map_as_small_as_a_ring_has_no_spikes(size):
     z[:, ::2] -= 0.01
     flat = spike_heights(topography(z))  # most of it has no range at all: the mean one counts
     assert flat.any() == (size == 7)
+    two = np.zeros((40, 40))
+    two[10, 10], two[30, 30] = 1.0, 1e-3
+    assert np.argwhere(spike_heights(topography(two))).tolist() == [[10, 10]]
 
 
 def test_a_small_spike_bends_by_seven_deviations_more_than_those_beside_it():
