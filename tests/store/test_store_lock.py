@@ -77,6 +77,8 @@ def test_alone_or_shared(tmp_path, ask):
         assert not ask(tmp_path, shared=True)
         with pytest.raises(StoreError, match=f"locked by pid {os.getpid()} on .*, which is working on"):
             locked(tmp_path).__enter__()
+    tmp_path.mkdir()
+    (tmp_path / "holder").write_text("pid 1 on another\n")  # as one that was killed leaves it
     with locked(tmp_path, shared=True):
         assert ask(tmp_path, shared=True)
         assert not ask(tmp_path, shared=False)
