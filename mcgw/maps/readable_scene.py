@@ -12,6 +12,7 @@ from analytic import Nayak
 from mcgw.formats.files import together, whole_file
 from mcgw.formats.units import parse
 from mcgw.maps.fit import Fit
+from mcgw.scene.fields import LeftOut
 from mcgw.scene.keys import KEYS, SUMMITS
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_document
@@ -41,8 +42,8 @@ def write_scene(scene: Scene, path: Path, measured: Fit | None, comments: list[s
     text = "".join(f"# {line}\n" for line in comments) + "\n"
     beside = heights_beside(path)
     document = scene_document(scene, heights_file=None if measured is None else beside.name)
-    for key in document["ensemble"].pop("left_out", []):
-        del document["ensemble"][key]
+    if isinstance(scene.seed, LeftOut):
+        del document["ensemble"]["seed"]
     document = _readable(_by_moments(document, scene))
     text += _in_few_lines(tomli_w.dumps(document), scene.separations)
     if measured is None:

@@ -76,11 +76,6 @@ class Fields(Flat):
         return getattr(self.surface, "uncertainty", None)
 
     @property
-    def left_out(self) -> tuple[str, ...]:
-        """Which of n_asperities and seed were not given."""
-        return tuple(key for key in ("n_asperities", "seed") if isinstance(getattr(self, key), LeftOut))
-
-    @property
     def touching(self) -> float:
         """Expected number of asperities of a surface above the lowest separation."""
         return self.n_asperities * share_above(self.heights, float(self.lowest))

@@ -218,12 +218,8 @@ TABLES: dict[str, TableOfKeys] = {
         default=[]),
 ), make=Fitted, advice="give the `fitted` of a scene from mcgw.fitted_scene, or the keys of [fitted] in a "
     "scene file"),
-"ensemble": TableOfKeys("Number of surfaces, and sampling.", (
-    *rows_of(Sampling),
-    Key("left_out",
-        List(Word(("n_asperities", "seed")), 0, advice="give a list of n_asperities, seed, or leave it out"),
-        '["seed"]', "written by the program: which of `seed`, `n_asperities` the scene did not give", []),
-), make=Sampling, advice="give mcgw.Sampling(...), or the keys of [ensemble] in a scene file"),
+"ensemble": TableOfKeys("Number of surfaces, and sampling.", rows_of(Sampling), make=Sampling,
+    advice="give mcgw.Sampling(...), or the keys of [ensemble] in a scene file"),
 }
 # fmt: on
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from mcgw.formats.sheet import brief
 from mcgw.formats.units import EXAMPLES, parse
-from mcgw.scene.section import Key, Kind, Section, nearest
+from mcgw.scene.section import Key, Kind, SceneError, Section, mistake, nearest
 
 _MOST_WHOLE = 10**30  # so that no message has hundreds of digits
 
@@ -75,7 +75,9 @@ class Whole(Kind):
     def value(self, given: Any) -> int | None:
         """Return it as an integer."""
         number = isinstance(given, int | float) and not isinstance(given, bool)
-        return int(given) if number and self.least <= given <= self.most and given == int(given) else None
+        if not number or not self.least <= given <= self.most or given != int(given):
+            return None
+        return given if isinstance(given, int) else int(given)
 
     @property
     def wanted(self) -> str:
@@ -95,12 +97,12 @@ class Word(Kind):
         """These words."""
         return self.words() if callable(self.words) else self.words
 
-    def read(self, section: Section, name: str, value: Any) -> str | None:
+    def read(self, path: str, value: Any) -> str:
         """Read it."""
         if isinstance(value, str) and value in self.known:
             return value
         advice = self.advice or f"choose one of {', '.join(self.known)}"
-        return section.fail(name, value, f"{nearest(value, self.known)}{advice}")
+        raise mistake(path, value, f"{nearest(value, self.known)}{advice}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,22 +138,23 @@ class List(Kind):
     advice: str = "give a list of finite numbers"
     once: bool = False
 
-    def read(self, section: Section, name: str, value: Any) -> list[Any] | None:
-        """Read all values; one mistake makes the list None."""
-        reason = ""
-        if isinstance(value, list) and self.least <= len(value) <= self.most:
-            of, found = Section(section.name, {}, [], {}), []
-            for each in value:
-                found.append(self.item.read(of, name, each))
-                if of.problems and isinstance(self.item, Word):
-                    return section.note(of.problems[0])
-                if of.problems:
-                    reason = f"; value {len(found)} is {brief(repr(each))}"
-                    break
-            if not of.problems and not (self.once and len(set(found)) < len(found)):
-                return found
-        few = "give at least one; " if value == [] and self.least == 1 else ""
-        return section.fail(name, value, f"{few}{self.advice}{reason}")
+    def read(self, path: str, value: Any) -> list[Any]:
+        """Read all values."""
+        found: list[Any] = []
+        few, reason = "", ""
+        try:
+            if isinstance(value, list) and self.least <= len(value) <= self.most:
+                for each in value:
+                    found.append(self.item.read(path, each))
+                if not (self.once and len(set(found)) < len(found)):
+                    return found
+        except SceneError:
+            if isinstance(self.item, Word):
+                raise
+            reason = f"; value {len(found) + 1} is {brief(repr(value[len(found)]))}"
+        if value == [] and self.least == 1:
+            few = "give at least one; "
+        raise mistake(path, value, f"{few}{self.advice}{reason}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,22 +165,19 @@ class Table(Kind):
     advice: str
     make: type | None = None
 
-    def read(self, section: Section, name: str, value: Any) -> Any:
+    def read(self, path: str, value: Any) -> Any:
         """Read its keys and make the object."""
         if self.make and isinstance(value, self.make):
             return value
         if not isinstance(value, dict):
-            return section.fail(name, value, self.advice)
-        before = len(section.problems)
-        inner = Section(section.path(name), value, section.problems, {row.name: row for row in self.rows})
+            raise mistake(path, value, self.advice)
+        inner = Section(path, value, {row.name: row for row in self.rows})
         found = inner.read_all(inner.rows)
         inner.finish()
-        if len(section.problems) > before:
-            return None
-        try:
-            return self.make(**found) if self.make else found
-        except ValueError as error:
-            return section.note(f"{section.path(name)}.{error}")
+        made = inner.made(self.make or dict, found)
+        if inner.problems:
+            raise SceneError(inner.problems)
+        return made
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,14 +188,15 @@ class ByName(Kind):
     advice: str
     names: tuple[str, ...] = ()
 
-    def read(self, section: Section, name: str, value: Any) -> dict[str, Any] | None:
+    def read(self, path: str, value: Any) -> dict[str, Any]:
         """Read its values."""
         if not isinstance(value, Mapping):
-            return section.fail(name, value, self.advice)
-        before = len(section.problems)
-        inner = Section(section.path(name), value, section.problems, {})
-        found = {key: self.item.read(inner, key, each) for key, each in value.items()}
-        return found if len(section.problems) == before else None
+            raise mistake(path, value, self.advice)
+        inner = Section(path, value, {name: Key(name, self.item) for name in value})
+        found = inner.read_all(value)
+        if inner.problems:
+            raise SceneError(inner.problems)
+        return found
 
 
 @dataclass(frozen=True, slots=True)
@@ -205,12 +206,12 @@ class Either(Kind):
     kinds: tuple[Kind, ...]
     advice: str = ""
 
-    def read(self, section: Section, name: str, value: Any) -> Any:
-        """Read it as the kind that it looks like; the last is the fallback."""
+    def read(self, path: str, value: Any) -> Any:
+        """Read it as the kind that it looks like."""
         for kind in self.kinds:
             if isinstance(value, _LOOKS[type(kind)]):
-                return kind.read(section, name, value)
-        return section.fail(name, value, self.advice)
+                return kind.read(path, value)
+        raise mistake(path, value, self.advice)
 
 
 _LOOKS: dict[type[Kind], Any] = {

@@ -33,30 +33,19 @@ def _law(section: Section, key: str, law: str | None, makes: Mapping[str, Callab
     Mistakes are noted in the section and give None.
     """
     if law is None or law not in makes:
-        section.known(*section.table)  # unknown law: its keys cannot be checked
-        return None
-    before, known = len(section.problems), {}
-    for name, parameter in signature(makes[law]).parameters.items():
-        if name in section.rows:
-            known[name] = parameter.default
-    for name, default in known.items():
-        if default is Parameter.empty and name not in section:
-            section.note(f'{section.path(name)}: missing; {key} = "{law}" needs it')
-    section.known(*known)
-    given = section.read_all(name for name in known if name in section)
-    for name in section.unknown():
-        laws = [repr(word) for word, make in makes.items() if name in signature(make).parameters]
-        if name in section.rows and name not in OF_YIELD and laws:
-            section.known(name)
-            section.note(
-                f"{section.path(name)}: unknown key; it is for {key} = {' or '.join(laws)} only; leave it out"
-            )
-    if len(section.problems) > before:
-        return None
-    try:
-        return makes[law](**given)
-    except (TypeError, ValueError) as error:
-        return section.refuse(str(error), known)
+        return None  # unknown law: its keys cannot be checked
+    known, given = signature(makes[law]).parameters, {}
+    for name in section.rows:
+        if own := known.get(name):
+            if name in section:
+                given[name] = section.read(name)
+            elif own.default is Parameter.empty:
+                section.note(f'{section.path(name)}: missing; {key} = "{law}" needs it')
+        elif name in section and name not in OF_YIELD:
+            laws = [repr(word) for word, make in makes.items() if name in signature(make).parameters]
+            only = f"it is for {key} = {' or '.join(laws)} only; leave it out"
+            section.problems += [f"{section.path(name)}: unknown key; {only}"] if laws else []
+    return section.made(makes[law], given)
 
 
 def _table(table: str, law: str, part: Any) -> dict[str, Any]:

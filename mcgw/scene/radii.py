@@ -46,37 +46,26 @@ class Spectral:
 
 @dataclass(frozen=True, eq=False)
 class ListedSummits:
-    """Heights and radii of summits.
+    """Heights (m) and radii of summits.
 
     Parameters
     ----------
-    heights : ndarray
-        m, above any plane, shape (summits,).
+    heights : MeasuredHeights
+        Their law.
     radii : ndarray
         m, or over that of the surface, shape (summits,).
-    resampled : bool
-        Whether asperities are drawn from these, with replacement.
-    over_surface : bool
-        Whether `radii` are over that of the surface.
+    parameters : dict of str to float
+        What they tell of their surface: their number ``eta`` on it and, if radii are in m, sigma and radius.
     """
 
-    heights: Array
+    heights: MeasuredHeights
     radii: Array
-    resampled: bool
-    over_surface: bool
-
-    def of_surface(self, nominal_area: float) -> dict[str, float]:
-        """Parameters of a surface of this area (m^2): eta (1/m^2) and, if in m, sigma and radius (m)."""
-        eta = self.heights.size / nominal_area
-        if self.over_surface:
-            return {"eta": eta}
-        return {"sigma": float(self.heights.std()), "radius": float(1 / np.mean(1 / self.radii)), "eta": eta}
+    parameters: dict[str, float]
 
     def laws(self, surface: Surface) -> tuple[MeasuredHeights, MeasuredRadii]:
         """Laws of the heights and radii on this surface."""
-        heights = MeasuredHeights(self.heights, resampled=self.resampled)
-        ratios = self.radii / (1.0 if self.over_surface else surface.radius)
-        return heights, MeasuredRadii(heights, ratios)
+        unit = surface.radius if "radius" in self.parameters else 1.0
+        return self.heights, MeasuredRadii(self.heights, self.radii / unit)
 
 
 def curvature_of(
@@ -122,38 +111,35 @@ def datum_shift(section: Section, heights: HeightLaw | None) -> float:
 
 def listed_of(section: Section, folder: Path) -> ListedSummits | None:
     """Read listed summits; None if there are none, or mistakes, which are noted."""
-    before = len(section.problems)
     file, heights, radii, ratios, resample = section.read_all(LISTS).values()
-    section.known("curvature", "largest_radius")
-    radius = ratios if radii is None else radii
-    if len(section.problems) > before or (file is None) is (heights is None or radius is None):
+    over_surface = file is None and radii is None
+    radius = ratios if over_surface else radii
+    if section.problems or (file is None) is (heights is None or radius is None):
         return None
     key = "file" if file is not None else "heights"
     try:
-        z, radius = _checked(*((heights, radius) if file is None else read_summits(folder / file)))
-        return ListedSummits(z, radius, bool(resample), file is None and radii is None)
+        z, R = _checked(*((heights, radius) if file is None else read_summits(folder / file)))
+        of_surface = {} if over_surface else {"sigma": float(z.std()), "radius": float(1 / np.mean(1 / R))}
+        return ListedSummits(MeasuredHeights(z, resampled=bool(resample)), R, {**of_surface, "eta": len(z)})
     except (TypeError, ValueError) as error:
         advice = "give a CSV file with columns height and radius in m, or lists heights and radii"
         return section.fail(key, section.table.get(key), f"{advice}; {error}")
 
 
 def _checked(heights: Any, radii: Any) -> tuple[Array, Array]:
-    """Check heights and radii; return arrays.
+    """Return heights and radii as arrays.
 
     Raises
     ------
     ValueError
-        If a law of them could not be made.
+        If they are not as many, or one is impossible.
     """
     z, radius = (np.asarray(x, dtype=np.float64) for x in (heights, radii))
     if z.ndim != 1 or z.shape != radius.shape:
         raise ValueError(f"there are {z.size} heights and {radius.size} radii")
-    wrong = ~(np.isfinite(z) & np.isfinite(radius) & (radius > 0))
-    if np.any(wrong):
-        k = int(np.flatnonzero(wrong)[0])
+    for k in np.flatnonzero(~(np.isfinite(z) & np.isfinite(radius) & (radius > 0)))[:1]:
         has = f"summit {k + 1} has the height {z[k]:g} and the radius {radius[k]:g}"
         raise ValueError(f"{has}; heights are finite, radii > 0")
-    MeasuredHeights(z)
     return z, radius
 
 

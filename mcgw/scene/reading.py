@@ -2,7 +2,7 @@
 
 import secrets
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, fields, is_dataclass, replace
+from dataclasses import asdict, fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
@@ -27,8 +27,6 @@ Summits = tuple[Surface | None, HeightLaw | None, RandomCurvature | MeasuredRadi
 _SHORT = {"law": "contact", "separations": "contact", "n_surfaces": "ensemble", "seed": "ensemble"}
 _OBJECTS = ("surface", "grading", "heights", "summits")  # which may be objects of other classes
 _QUANTITIES = ("load", "area", "stiffness", "contacts")
-# Keys of [ensemble] that are no values of a scene as they are read.
-_DERIVED = ("seed", "left_out")
 
 
 def of_arguments(**given: Any) -> Values:
@@ -100,9 +98,7 @@ def of_tables(
         With one line for each mistake.
     """
     document = with_bodies(document, folder, lambda tables, near: of_tables(tables, {}, near, None))
-    problems: list[str] = []
-    top = Section("", document, problems, KEYS[""])
-    python = "surface" in objects
+    top, python = Section("", document, KEYS[""]), "surface" in objects
     of: dict[str, Section] = {}
     for name, table in TABLES.items():
         outer, _, inner = name.rpartition(".")
@@ -114,7 +110,8 @@ def of_tables(
         grading = grading_given(top, objects["grading"])
     else:
         grading = grading_of(of["grading"], surface, folder)
-    separations, contact = _contact(of["contact"], of["contact.law"], objects, heights)
+    joint = _joint(_made(top, of["joint"]), of["joint"])
+    separations, contact = _contact(of["contact"], of["contact.law"], objects, heights, joint)
     values = {
         "title": top.read("title"),
         "surface": surface,
@@ -123,19 +120,19 @@ def of_tables(
         "negative": of["grading"].read("negative"),
         "heights": heights,
         "summits": curvature,
+        "contact": contact,
         "interaction": _made(top, of["interaction"]),
-        "joint": _joint(_made(top, of["joint"]), of["joint"]),
-        "ensemble": _ensemble(of["ensemble"], surface, seed),
+        "joint": joint,
+        "ensemble": _ensemble(of["ensemble"], seed),
         "fitted": _made(top, of["fitted"]),
     }
-    values["contact"] = _complete(contact, values["joint"])
     uncertain = getattr(surface, "uncertainty", None)
     if uncertain and set(MOMENTS) & set(uncertain.names) and not isinstance(heights, Nayak | None):
         advice = 'm0, m2 and m4 need heights.law = "nayak"; otherwise give sigma, radius and eta'
         of["surface"].fail("uncertainty", uncertain.names, advice)
     for section in (*([] if python else [top]), *of.values()):  # arguments of Python are known by name
         section.finish(whole_key)
-    if problems:
+    if problems := [line for section in (top, *of.values()) for line in section.problems]:
         raise SceneError(problems)
     return values
 
@@ -144,8 +141,13 @@ def _surface_and_summits(top: Section, of: Mapping[str, Section], objects: Value
     """Return a surface, the law of its heights, and that of its radii where summits have their own."""
     summits, radii = of["summits"], objects.get("summits")
     if any(key in summits for key in LISTS):
+        if of["heights"].table:
+            of["heights"].note("heights: [summits] already gives the heights; leave [heights] out")
         listed = listed_of(summits, folder)
-        return _with_listed(of, None if listed is None else read_surface(of["surface"], listed), listed)
+        surface = None if listed is None else read_surface(of["surface"], listed.parameters)
+        if listed is None or not isinstance(surface, Surface):
+            return None, Gaussian(), None
+        return surface, *listed.laws(surface)
     read = objects["surface"] if "surface" in objects else read_surface(of["surface"])
     surface, default = (read.surface, "random") if isinstance(read, Spectral) else (read, "mean")
     if "surface" in objects and not isinstance(surface, Surface):
@@ -167,22 +169,13 @@ def _surface_and_summits(top: Section, of: Mapping[str, Section], objects: Value
     return surface, heights, curvature_of(summits, heights, surface, default)
 
 
-def _with_listed(of: Mapping[str, Section], surface: Any, listed: Any) -> Summits:
-    """Return the same with summits that are given one by one, which tell what the surface leaves out."""
-    heights = of["heights"]
-    heights.known(*heights.table)
-    if heights.table:
-        heights.problems.append("heights: [summits] already gives the heights; leave [heights] out")
-    if surface is None:
-        of["surface"].known(*KEYS["surface"])  # what it lacks, nobody can say
-        return None, Gaussian(), None
-    return surface, *listed.laws(surface)
-
-
 def _contact(
-    section: Section, of_law: Section, objects: Values, heights: HeightLaw | None
+    section: Section, of_law: Section, objects: Values, heights: HeightLaw | None, joint: Joint
 ) -> tuple[tuple[float, ...], Contact]:
-    """Separations from the mean plane of the summits; and contacts, with the quantities that were given."""
+    """Separations from the mean plane of the summits; and contacts, with the quantities that follow.
+
+    These are in SI units where there is a film, and of unloading.
+    """
     shift, given = datum_shift(section, heights), section.read("separations")
     if isinstance(given, dict):
         even = np.linspace(given["start"], given["stop"], given["num"])
@@ -191,26 +184,19 @@ def _contact(
     separations = tuple(h - shift + 0.0 for h in listed)  # -0.0 is 0.0
     back = section.read("unload_from")
     back = min(separations) if back == "loop" else back
+    names = dict.fromkeys(section.read("quantities") or _QUANTITIES)
+    names |= {} if joint.film is None else {"conductance_si": None}
+    if back is not None:
+        names |= {q.name: None for name in names for q in UNLOADING.values() if q.unloading == name}
     law = _law(section, of_law, objects)
     softer = _softer(of_law, law, of_python="law" in objects)
-    return separations, Contact(law, section.read("quantities") or _QUANTITIES, back, **softer)
-
-
-def _complete(contact: Contact, joint: Joint) -> Contact:
-    """Contacts with the quantities that follow: in SI units where there is a film, and of unloading."""
-    names = tuple(contact.quantities or ())
-    if joint.film is not None and "conductance_si" not in names:
-        names = (*names, "conductance_si")
-    back = contact.unload_from is not None
-    also = (q.name for n in names for q in UNLOADING.values() if back and q.unloading == n)
-    return replace(contact, quantities=(*names, *(name for name in also if name not in names)))
+    return separations, Contact(law, tuple(names), back, **softer)
 
 
 def _law(section: Section, of_law: Section, objects: Values) -> ContactLaw:
     """Of Python, or by its keys."""
     if "law" not in objects:
         return contact_law(of_law)
-    of_law.known("name")
     given = objects["law"]
     if not isinstance(given, ContactLaw):
         section.fail("law", given, "your own law is mcgw.CustomLaw(load=..., area=..., ...)")
@@ -230,7 +216,6 @@ def _softer(section: Section, law: ContactLaw, *, of_python: bool) -> Values:
         if key not in own and not law.yields:
             found[key] = section.read(key)
         elif of_python:
-            section.known(key)
             advice = f"give it to the law, {type(law).__name__}, or leave it out"
             section.fail(key, section.table[key], advice)
     if found["poisson"] is not None:
@@ -252,6 +237,7 @@ def _joint(joint: Joint | None, section: Section) -> Joint:
         assert joint.gas is None or joint.filling is not None
     except ValueError as error:
         section.note(f"joint.{error}")
+        return Joint()
     return joint
 
 
@@ -260,47 +246,16 @@ def _made(top: Section, section: Section) -> Any:
     make = TABLES[section.name].make
     if make is None or not isinstance(top.table.get(section.name), dict):
         return None
-    before, found = len(top.problems), section.read_all(section.rows)
-    if len(top.problems) > before:
-        return None
-    try:
-        return make(**{key: tuple(x) if isinstance(x, list) else x for key, x in found.items()})
-    except ValueError as error:
-        return section.note(f"{section.name}.{error}")
+    found = section.read_all(section.rows)
+    return section.made(make, {key: tuple(x) if isinstance(x, list) else x for key, x in found.items()})
 
 
-def _ensemble(section: Section, surface: Surface | None, seed: Callable[[], int | None] | None) -> Sampling:
+def _ensemble(section: Section, seed: Callable[[], int | None] | None) -> Sampling:
     """How many surfaces, and how they are drawn; numbers that nobody gave are marked."""
-    values = section.read_all(key for key in section.rows if key not in _DERIVED)
-    n = values["n_asperities"]
-    for key in ("n_surfaces", "n_asperities"):
-        values[key] = _number(section, key, values[key])
-    if "seed" in section:
-        values["seed"] = _number(section, "seed", section.read("seed"))
-    else:
-        section.known("seed")
+    values = section.read_all(section.rows)
+    if "seed" not in section:
         other = None if seed is None else seed()
         values["seed"] = LeftOut(secrets.randbits(63) if other is None else other)
-    for key in _left_out(section, surface, n):
-        if values[key] is not None:
-            values[key] = LeftOut(values[key])
+    for key in ("n_surfaces", "n_asperities"):
+        values[key] = LeftOut() if values[key] is None else values[key]
     return Sampling(**values)
-
-
-def _number(section: Section, key: str, value: int | None) -> int:
-    """Return a number; one that nobody gave is marked as such, and stays."""
-    given = section.table.get(key)
-    return given if isinstance(given, LeftOut) else LeftOut() if value is None else value
-
-
-def _left_out(section: Section, surface: Surface | None, n_asperities: int | None) -> list[str]:
-    """Which values, though written here, nobody gave when the scene was asked: see `scene_text`."""
-    given = section.read("left_out") or []
-    if "n_asperities" in given and surface and n_asperities not in (None, round(surface.n_asperities)):
-        advice = (
-            f"left_out lists it, but eta * nominal_area is {surface.n_asperities:.10g}; remove it from "
-            "left_out, or leave n_asperities out"
-        )
-        section.fail("n_asperities", n_asperities, advice)
-        return []
-    return given

@@ -12,6 +12,7 @@ from analytic import MeasuredRadii
 from analytic.laws import Hertz
 from mcgw.formats.named_files import HDF5, loads, read_bytes
 from mcgw.machine.terminal import one_line
+from mcgw.scene.fields import LeftOut
 from mcgw.scene.keys import KEYS, SURFACE_UNITS, whole_key
 from mcgw.scene.kinds import Word
 from mcgw.scene.laws import contact_law_table, grading_table, heights_table
@@ -181,19 +182,17 @@ def _changed(document: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[st
     return changed
 
 
-def scene_text(scene: Scene, *, heights_file: str | None = None, left_out: bool = True) -> str:
+def scene_text(scene: Scene, *, heights_file: str | None = None) -> str:
     """Write a scene with every value as TOML text: read again, it gives the same scene.
 
     Parameters
     ----------
     scene : Scene
-        With any grading; a Python function becomes its series.
+        With any grading; a Python function becomes its series. A number of asperities that follows from the
+        surface is left out.
     heights_file : str, optional
         Name beside the scene of a file that holds its measured heights, or heights and radii, in place
         of lists.
-    left_out : bool, optional
-        Whether `left_out` under ``[ensemble]`` lists the numbers that nobody gave, so that
-        n_asperities follows when the surface of a scene that was read is replaced.
 
     Returns
     -------
@@ -213,10 +212,10 @@ def scene_text(scene: Scene, *, heights_file: str | None = None, left_out: bool 
     >>> mcgw.scene_from(mcgw.scene_text(scene)) == scene
     True
     """
-    return tomli_w.dumps(scene_document(scene, heights_file=heights_file, left_out=left_out))
+    return tomli_w.dumps(scene_document(scene, heights_file=heights_file))
 
 
-def scene_document(scene: Scene, *, heights_file: str | None = None, left_out: bool = True) -> dict[str, Any]:
+def scene_document(scene: Scene, *, heights_file: str | None = None) -> dict[str, Any]:
     """Return the tables that `scene_text` writes; arguments and errors as there."""
     scene = storable(scene)
     listed = isinstance(scene.summits, MeasuredRadii)  # whose heights stand there too
@@ -233,8 +232,8 @@ def scene_document(scene: Scene, *, heights_file: str | None = None, left_out: b
         **{name: _written(getattr(scene, name), name) for name in ("interaction", "joint", "fitted")},
         "ensemble": _written(scene.ensemble, "ensemble"),
     }
-    if left_out and scene.left_out:
-        document["ensemble"]["left_out"] = list(scene.left_out)
+    if isinstance(scene.n_asperities, LeftOut):
+        del document["ensemble"]["n_asperities"]
     return {key: value for key, value in document.items() if value or key == "title"}
 
 

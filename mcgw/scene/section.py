@@ -50,10 +50,18 @@ class Kind:
         """What to give if nothing is given."""
         return f"give it in {self.unit}" if self.unit not in ("", "1") else self.advice or "give it"
 
-    def read(self, section: "Section", name: str, value: Any) -> Any:
-        """Read a value; mistakes are noted in the section and give None."""
+    def read(self, path: str, value: Any) -> Any:
+        """Read the value of a key.
+
+        Raises
+        ------
+        SceneError
+            If it does not fit.
+        """
         found = self.value(value)
-        return section.fail(name, value, self.wanted) if found is None else found
+        if found is None:
+            raise mistake(path, value, self.wanted)
+        return found
 
     def value(self, given: Any) -> Any:
         """Return the value, or None if it does not fit."""
@@ -63,6 +71,11 @@ class Kind:
     def wanted(self) -> str:
         """What to give in place of a value that does not fit."""
         return self.advice
+
+
+def mistake(path: str, value: Any, advice: str) -> SceneError:
+    """Return the mistake of a value at a key, with what to give."""
+    return SceneError([f"{path} = {shortened(as_written(value))}: {advice}"])
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,50 +134,42 @@ class Section:
         Its name, "" for the document.
     table : mapping
         Its contents.
-    problems : list of str
-        Mistakes of the document, shared by all its sections, one line each.
     rows : mapping of str to Key
-        Its allowed keys.
+        Its keys.
+
+    Attributes
+    ----------
+    known : list of str
+        Its keys and tables.
+    problems : list of str
+        A line for each mistake.
     """
 
-    def __init__(
-        self, name: str, table: Mapping[str, Any], problems: list[str], rows: Mapping[str, Key]
-    ) -> None:
-        self.name, self.table, self.problems, self.rows = name, table, problems, rows
-        self._asked: list[str] = []
+    def __init__(self, name: str, table: Mapping[str, Any], rows: Mapping[str, Key]) -> None:
+        self.name, self.table, self.rows = name, table, rows
+        self.known = [*rows]
+        self.problems: list[str] = []
 
     def section(self, name: str, rows: Mapping[str, Key], advice: str = "", word: str = "") -> "Section":
-        """Read a table inside this one; empty if missing. A text in its place is the value of key `word`."""
-        self.known(name)
+        """Return a table inside this one; empty if missing. A text in its place is its key `word`."""
+        self.known.append(name)
         value = self.table.get(name, {})
         if word and isinstance(value, str):
             value = {word: value}
         if not isinstance(value, dict):
             self.fail(name, value, advice or f"must be a table: write [{name}] above its keys")
             value = {}
-        return Section(self.path(name), value, self.problems, rows)
+        return Section(self.path(name), value, rows)
 
     def fail(self, name: str, value: Any, advice: str) -> _Value | None:
         """Note a mistake; return None as the value."""
-        return self.note(f"{self.path(name)} = {shortened(as_written(value))}: {advice}")
+        self.problems += mistake(self.path(name), value, advice).problems
+        return None
 
     def note(self, line: str) -> _Value | None:
         """Note a mistake with this text."""
         self.problems.append(line)
         return None
-
-    def refuse(self, reason: str, names: Iterable[str]) -> _Value | None:
-        """Note a mistake in the object made of keys, at the key that it names or at the first."""
-        (key, _, advice), names = reason.partition(": "), list(names)
-        given = [name for name in names if name in self]
-        at = key.partition(" = ")[0].partition(",")[0]
-        if at in given:
-            return self.fail(at, self.table[at], advice)
-        if at in names:
-            return self.note(f"{self.name}.{reason}")
-        if given:
-            return self.fail(given[0], self.table[given[0]], reason)
-        return self.note(f"{self.name}: {reason}")
 
     def __contains__(self, name: str) -> bool:
         """Whether the key is given."""
@@ -173,46 +178,59 @@ class Section:
     def read(self, name: str, default: Any = _FROM_ROW) -> Any:
         """Read a key by its row; None if it is wrong, or left out without a default."""
         row = self.rows[name]
-        self.known(name)
         if name in self.table:
-            return row.kind.read(self, name, self.table[name])
+            try:
+                return row.kind.read(self.path(name), self.table[name])
+            except SceneError as error:
+                self.problems += error.problems
+                return None
         if row.required and default is _FROM_ROW:
-            self.problems.append(f"{self.path(name)}: missing; {row.kind.missing}")
+            self.note(f"{self.path(name)}: missing; {row.kind.missing}")
         return row.default if default is _FROM_ROW else default
 
     def read_all(self, names: Iterable[str]) -> dict[str, Any]:
         """Read several keys."""
         return {name: self.read(name) for name in names}
 
-    def known(self, *names: str) -> None:
-        """Mark keys as known, read or not."""
-        self._asked += (name for name in names if name not in self._asked)
+    def made(self, make: Callable[..., Any], given: Mapping[str, Any]) -> Any:
+        """Return what values of keys make; None if it cannot be made, or was wrong already.
+
+        A mistake is noted at the key that it names, or at the first that is given.
+        """
+        if self.problems:
+            return None
+        try:
+            return make(**given)
+        except (TypeError, ValueError) as error:
+            reason = str(error)
+        key, _, advice = reason.partition(": ")
+        at, there = key.partition(" = ")[0].partition(",")[0], [name for name in given if name in self]
+        if at in there:
+            return self.fail(at, self.table[at], advice)
+        if at in self.rows:
+            return self.note(f"{self.name}.{reason}")
+        if there:
+            return self.fail(there[0], self.table[there[0]], reason)
+        return self.note(f"{self.name}: {reason}")
 
     def finish(self, moved: Callable[[str], str] = str) -> None:
-        """Note keys that were not read, whose tables `moved` may know, and those that do not go together."""
-        self.note_unknown(moved)
-        if any(line.startswith(f"{self.name}.") for line in self.problems):
-            return  # this may be a consequence of them
+        """Note unknown keys, whose tables `moved` may know, and those that do not go together."""
+        wrong = bool(self.problems)
+        unknown = [key for key in self.table if key not in self.known]
+        for key in unknown[:_MOST_NAMED]:
+            meant = nearest(key[:99], self.known) or f"known keys: {', '.join(self.known)}"
+            if "." in (whole := moved(key)) and whole != self.path(key):
+                meant = f"did you mean {whole}?"
+            self.note(f"{self.path(key)}: unknown key; {meant.removesuffix(' ')}")
+        if len(unknown) > _MOST_NAMED:
+            self.note(f"[{self.name}]: {len(unknown) - _MOST_NAMED} more unknown keys")
+        if wrong:
+            return  # what does not go together may be a consequence
         for row in (self.rows[name] for name in self.table if name in self.rows):
             if row.needs and not any(other in self for other in row.needs):
                 self.fail(row.name, self.table[row.name], f"give {_either(row.needs)} too, or leave it out")
             if others := [other for other in row.excludes if other in self]:
                 self.fail(row.name, self.table[row.name], f"give it or {_either(others)}, not both")
-
-    def unknown(self) -> list[str]:
-        """Keys that were not read."""
-        return [key for key in self.table if key not in self._asked]
-
-    def note_unknown(self, moved: Callable[[str], str]) -> None:
-        """Note keys that were not read, and what was meant: another key, or that of another table."""
-        unknown = self.unknown()
-        for key in unknown[:_MOST_NAMED]:
-            meant = nearest(key[:99], self._asked) or f"known keys: {', '.join(self._asked)}"
-            if "." in (whole := moved(key)) and whole != self.path(key):
-                meant = f"did you mean {whole}?"
-            self.problems.append(f"{self.path(key)}: unknown key; {meant.removesuffix(' ')}")
-        if len(unknown) > _MOST_NAMED:
-            self.problems.append(f"[{self.name}]: {len(unknown) - _MOST_NAMED} more unknown keys")
 
     def path(self, name: str) -> str:
         """Name of a key with its table."""

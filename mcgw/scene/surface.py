@@ -8,7 +8,7 @@ from analytic import Body as PlainBody, Nayak, SpectralMoments, Surface as Plain
 from mcgw.scene.arguments import arguments, as_toml
 from mcgw.scene.keys import KEYS, MOMENTS, POISSON, SUMMITS, SURFACE_UNITS, YOUNG
 from mcgw.scene.plausible import surface_in_other_units, warn_of_units
-from mcgw.scene.radii import ListedSummits, Spectral
+from mcgw.scene.radii import Spectral
 from mcgw.scene.section import SceneError, Section
 from mcgw.scene.uncertainty import Uncertainty
 
@@ -167,10 +167,10 @@ def _read(kind: type[_Kind], given: Mapping[str, Any], uncertainty: Any) -> _Kin
     plain = {key: as_toml(value) for key, value in given.items()}
     if uncertainty is not None:
         plain["uncertainty"] = as_toml(uncertainty)
-    section = Section("surface", plain, [], KEYS["surface"])
+    section = Section("surface", plain, KEYS["surface"])
     surface = read_surface(section)
     section.finish()
-    if surface is None or section.problems:
+    if section.problems:
         raise SceneError(section.problems)
     if isinstance(surface, Plain):
         warn_of_units(surface_in_other_units(surface))
@@ -178,40 +178,39 @@ def _read(kind: type[_Kind], given: Mapping[str, Any], uncertainty: Any) -> _Kin
     return surface
 
 
-def read_surface(section: Section, listed: ListedSummits | None = None) -> Plain | Spectral | None:
+def read_surface(section: Section, listed: Mapping[str, float] | None = None) -> Plain | Spectral | None:
     """Read the table [surface], also from m0, m2 and m4; mistakes are noted in the section and give None.
 
-    What summits that are `listed` tell can be left out.
+    Parameters
+    ----------
+    section : Section
+        The table.
+    listed : mapping, optional
+        What summits that are listed tell: their number ``eta`` and, unless the table does, sigma and radius.
     """
-    before, spectral = len(section.problems), any(key in section for key in MOMENTS)
-    names = [
-        *(MOMENTS if spectral else SUMMITS),
-        "nominal_area",
-        "bodies" if "bodies" in section else "E_star",
-    ]
-    section.known(*SURFACE_UNITS, "bodies")
-    told = {"nominal_area": section.read("nominal_area")}
-    if listed and told["nominal_area"] is None:
-        return None
-    if listed:
-        known = listed.of_surface(told["nominal_area"])
-        told |= {key: value for key, value in known.items() if key not in section}
+    told, spectral = dict(listed or {}), [key for key in MOMENTS if key in section]
     if spectral and listed:
-        key = next(key for key in MOMENTS if key in section)
-        section.fail(key, section.table[key], "[summits] already lists the summits; leave it out")
-    values = told | section.read_all(name for name in names if name not in told)
+        section.fail(
+            spectral[0], section.table[spectral[0]], "[summits] already lists the summits; leave it out"
+        )
+    modulus = "bodies" if "bodies" in section else "E_star"
+    names = (*(MOMENTS if spectral else SUMMITS), "nominal_area", modulus)
+    values = told | section.read_all(name for name in names if name in section or name not in told)
     uncertainty = section.read("uncertainty")
-    if len(section.problems) > before:
-        return None
-    if bodies := values.pop("bodies", None):
-        values["E_star"] = composite_modulus(bodies)
-    try:
+    if listed and "eta" not in section and values["nominal_area"]:
+        values["eta"] /= values["nominal_area"]
+
+    def made(**given: Any) -> Plain | Spectral:
+        if modulus == "bodies":
+            given["E_star"] = composite_modulus(given.pop("bodies"))
         if not spectral:
-            return uncertain(Plain(**values), uncertainty)
-        moments = SpectralMoments(*(values[key] for key in MOMENTS))
+            return uncertain(Plain(**given), uncertainty)
+        moments = SpectralMoments(*(given[key] for key in MOMENTS))
         Nayak(moments.alpha)
-        surface = moments.surface(values["nominal_area"], values["E_star"])
+        surface = moments.surface(given["nominal_area"], given["E_star"])
         return Spectral(moments, uncertain(surface, uncertainty))
+
+    try:
+        return None if section.problems else made(**values)
     except ValueError as error:
-        section.problems.append(f"surface: {error}")
-        return None
+        return section.note(f"surface: {error}")

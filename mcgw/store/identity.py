@@ -24,8 +24,8 @@ import tomli_w
 
 from mcgw.errors import StoreError
 from mcgw.formats.named_files import loads
-from mcgw.scene.scene import Scene, with_sampling
-from mcgw.scene.scene_file import scene_document, scene_from, scene_text
+from mcgw.scene.scene import Scene
+from mcgw.scene.scene_file import scene_document, scene_from
 from mcgw.scene.section import shortened
 from mcgw.store.h5_writing import FILETYPE, FORMAT, MOST_TEXT
 
@@ -49,8 +49,8 @@ def written(scene: Scene) -> tuple[str, str]:
             f"scene: its lists need {len(text)} characters, but a file of results holds at most "
             f"{MOST_TEXT}; list fewer summits, or simulate in memory"
         )
-    number = "n_surfaces", "left_out"
-    document["ensemble"] = {key: x for key, x in document["ensemble"].items() if key not in number}
+    document["ensemble"] |= {"n_asperities": scene.n_asperities}  # whoever gave it
+    del document["ensemble"]["n_surfaces"]
     return text, hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()
 
 
@@ -74,7 +74,10 @@ def difference(there: Question, here: Question) -> str:
 def _said(scene: str, axes: str) -> dict[str, Any]:
     """Keys and values that decide the numbers: of a scene alone but for the number of surfaces."""
     if not axes:
-        return dict(_flat(loads(scene_text(with_sampling(scene_from(scene), n_surfaces=1), left_out=False))))
+        found = scene_from(scene)
+        return {key: value for key, value in _flat(scene_document(found)) if key != "ensemble.n_surfaces"} | {
+            "ensemble.n_asperities": found.n_asperities
+        }
     return {**dict(_flat(loads(scene))), "sweep": axes}
 
 

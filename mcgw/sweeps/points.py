@@ -86,9 +86,7 @@ class Points(Sequence[Scene]):
 
 def document_of(scene: Scene) -> dict[str, Any]:
     """Tables of the scene, without defaults and derived values."""
-    document = scene_document(scene, left_out=False)
-    if "n_asperities" in scene.left_out:
-        del document["ensemble"]["n_asperities"]
+    document = scene_document(scene)
     if document["grading"]["law"] == "homogeneous":
         del document["grading"]["law"]
     return document

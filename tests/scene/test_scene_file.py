@@ -179,36 +179,13 @@ def test_n_follows_the_surface_unless_it_was_given():
     assert left_out.replace(eta="2000/mm^2", nominal_area="1 cm^2").n_asperities == 200_000
 
 
-def test_the_text_marks_what_nobody_gave_and_older_texts_read_the_same():
-    scene = mcgw.Scene(surface=SURFACE, separations=(1.0,), seed=1)
-    text = mcgw.scene_text(scene)
-    assert "n_asperities = 1000\n" in text
-    assert re.search(r'left_out = \[\s*"n_asperities",\s*\]', text)
-    again = mcgw.scene_from(text)
-    assert again == scene
-    assert again.left_out == ("n_asperities",)
-    assert mcgw.scene_text(again) == text
-    older = mcgw.scene_text(scene, left_out=False)
-    assert "left_out" not in older
-    assert mcgw.scene_from(older) == scene
-    assert mcgw.scene_from(older).left_out == ()
-
-
-def test_a_mark_that_no_longer_holds_is_refused():
-    text = mcgw.scene_text(mcgw.Scene(surface=SURFACE, separations=(1.0,)))
-    for change in (("n_asperities = 1000", "n_asperities = 500"), ("area = 1e-06", "area = 1e-05")):
-        with pytest.raises(mcgw.SceneError, match="remove it from left_out, or leave n_asperities out"):
-            mcgw.scene_from(text.replace(*change))
-
-
-def test_a_drawn_seed_is_marked_and_stays():
-    text = text_of("", "title", "'x'").replace("seed = 1\n", "").replace("left_out = ['seed']\n", "")
-    scene = mcgw.scene_from(text)
-    assert scene.left_out == ("seed",)
-    again = mcgw.scene_from(mcgw.scene_text(scene))
-    assert (again.seed, again.left_out) == (scene.seed, ("seed",))
-    assert scene.replace(title="y").seed == scene.seed
-    assert scene.replace(seed=5).left_out == ()
+def test_a_drawn_seed_stays_and_a_number_that_follows_is_not_written():
+    text = text_of("", "title", "'x'").replace("seed = 1\n", "").replace("n_asperities = 3\n", "")
+    scene = mcgw.scene_from(text.replace("resample = false\n", ""))
+    written = mcgw.scene_text(scene)
+    assert "n_asperities" not in written
+    assert "n_asperities = 7\n" in mcgw.scene_text(scene.replace(n_asperities=7))
+    assert mcgw.scene_from(written).seed == scene.seed == scene.replace(title="y").seed
 
 
 def test_the_most_surfaces_of_a_stop_rule_are_not_those_without_it():

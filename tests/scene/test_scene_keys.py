@@ -109,8 +109,6 @@ def test_wrong_values_of_every_key_are_named(table, key):
     named = {path, f"{table}.s"} if key in ("share", "ratio") else {path}
     if key in ("radii", "ratios", "x", "y"):  # lists of two lengths are told by the first
         named.add("summits.heights")
-    if key == "left_out":
-        named.add("ensemble.n_asperities")
     if key == "law":  # of another law other keys are unknown
         named.add(f"{table}.")
     for value in WRONG_HERE.get((table, key)) or WRONG[key]:
@@ -274,4 +272,4 @@ def test_every_argument_is_documented(part):
     assert len(arguments) <= 14
     assert all(re.search(rf"^    (\w+, )*{name}(, \w+)* : ", part.__doc__, re.M) for name in arguments)
     table = {"Sampling": "ensemble", "Joint": "joint", "Contact": "contact"}.get(part.__name__)
-    assert table is None or KEYS[table].keys() - {"separations", "left_out"} <= arguments.keys()
+    assert table is None or KEYS[table].keys() - {"separations"} <= arguments.keys()

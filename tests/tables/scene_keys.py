@@ -285,8 +285,6 @@ ROWS = [
     ("ensemble.n_surfaces", 50, changed("ensemble.rel_err", 0.01, **GAUSS), lambda s: s.n_surfaces, 50),
     ("ensemble.max_seconds", "'2 min'", {}, lambda s: s.max_seconds, 120.0),
     ("ensemble.accuracy", "'0.1 %'", GAUSS, lambda s: s.accuracy, 0.001),
-    ("ensemble.left_out", "['seed']", changed("ensemble.n_asperities", 50, **GAUSS),
-     lambda s: s.left_out, ("seed",)),
     ("interaction.reference", "'body'", {}, nominal, sunk(1e11, 1e-6, 0.9464020088186771)),
     ("interaction.reference", "'mean-plane'", {}, nominal,
      sunk(1e11, 3e-6, -3.900264920001956 / pi)),

@@ -57,7 +57,6 @@ WRONG = {
     "largest_radius": ["0", "-1", "~'1 Pa'"], "datum": ["'top'", "1"],
     "radii": ["~[1e-5]", "1", "[1e-5, -1e-5, 1e-5]", "~[1e-5, nan, 1e-5]", "['x', 1, 1]"],
     "ratios": ["~[1.0]", "'x'", "[1.0, -1.0, 1.0]"],
-    "left_out": ["'seed'", "['gamma']", "[1]", "~['n_asperities']"],
 }  # fmt: skip
 WRONG_HERE = {
     ("grading", "s"): ["~[1.0]", "~[1.0, 0.0]", "~[0.0, nan]", "1"],
