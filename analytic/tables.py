@@ -1,10 +1,8 @@
-"""A measured grading: points of E*(s)/E* against height, from a CSV file or a nanoindenter."""
+"""A measured grading: points of E*(s)/E* against height."""
 
-import csv
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -67,61 +65,3 @@ class Table:
     def __call__(self, s: Array) -> Array:
         """Return the interpolant; outside the data the nearest value."""
         return np.asarray(self._interpolant(np.clip(s, self.s[0], self.s[-1])), dtype=np.float64)
-
-    @classmethod
-    def from_csv(cls, path: str | Path, *, sigma: float, E_star: float) -> "Table":
-        """Read a two-column CSV file with a header.
-
-        Parameters
-        ----------
-        path : str or Path
-            Header ``s`` or ``z`` (height, in sigma or in m), then ``ratio`` or ``E_star``
-            (E*(s)/E*, or E*(s) in Pa).
-        sigma : float
-            Makes z reduced, m.
-        E_star : float
-            Makes E_star relative, Pa.
-
-        Returns
-        -------
-        Table
-            Its points in the order of height.
-
-        Raises
-        ------
-        ValueError
-            If the header is another one, a row is not two numbers, or there is no such regular file.
-        """
-        if not Path(path).is_file():
-            raise ValueError(f"{path}: {'is not a regular' if Path(path).exists() else 'no such'} file")
-        try:
-            with open(path, newline="", encoding="utf-8-sig") as file:
-                return cls.from_lines(file, sigma=sigma, E_star=E_star)
-        except ValueError as error:
-            raise ValueError(f"{path}: {error}") from None
-
-    @classmethod
-    def from_lines(cls, lines: Iterable[str], *, sigma: float, E_star: float) -> "Table":
-        """Read the lines of such a file, as `from_csv`.
-
-        Raises
-        ------
-        ValueError
-            Which says what is wrong, and quotes nothing of what stands there.
-        """
-        try:
-            header, *rows = [row for row in csv.reader(lines) if row] or [[]]
-        except csv.Error as error:
-            raise ValueError(f"is not a table: {error}") from None
-        units = {"s": 1.0, "z": sigma, "ratio": 1.0, "E_star": E_star}
-        names = [name.strip() for name in header]
-        if len(names) != 2 or names[0] not in ("s", "z") or names[1] not in ("ratio", "E_star"):
-            raise ValueError("the first line must be s or z, a comma, and ratio or E_star (in m and Pa)")
-        try:
-            data = np.array([[float(a), float(b)] for a, b in rows]).reshape(-1, 2)
-        except ValueError:
-            raise ValueError(
-                "every line below the header must be two numbers, separated by a comma"
-            ) from None
-        data = data[np.argsort(data[:, 0], kind="stable")] / [units[names[0]], units[names[1]]]
-        return cls(data[:, 0].tolist(), data[:, 1].tolist())

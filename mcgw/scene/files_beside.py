@@ -3,7 +3,7 @@
 import csv
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -14,51 +14,60 @@ from mcgw.formats.named_files import open_npy, read_text
 from mcgw.formats.units import signed
 
 _MOST_BYTES, _MOST_OF_MODULI = 2**28, 2**24
-_COLUMNS = {"s": "1", "z": "m", "ratio": "1", "E_star": "Pa"}
-_SUMMITS = ("height", "radius")
+_MODULI = {"s": "1", "z": "m", "ratio": "1", "E_star": "Pa"}  # columns and their units
+_SUMMITS = {"height": "m", "radius": "m"}
 _NAMED = re.compile(r"\s*(\w+)\s*(?:[(\[/ ]\s*([^()\[\]]*?)\s*[)\]]?)?\s*")  # z, z (um), z [um], z / um, z um
 
 
-def read_grading(path: Path, surface: Surface) -> Table:
-    """Return a grading from a CSV file of bounded length, as `analytic.Table.from_csv` reads it.
+def _columns(path: Path, most: int, units: Mapping[str, str]) -> dict[str, list[float]]:
+    """Return columns of a CSV file by name, in SI; nan where there is no number, empty those of other names.
 
-    Units may follow the names, ``z (um), E_star (GPa)``, or the numbers, ``61.2 GPa``.
+    Units may follow the names, ``z (um), E_star (GPa)``, or the numbers, ``61.2 GPa``; # begins a comment.
+    """
+    lines = [line for line in read_text(path, most).splitlines() if line.strip() and line[0] != "#"]
+    try:
+        header, *rows = list(csv.reader(lines)) or [[]]
+    except csv.Error as error:
+        raise ValueError(f"{path}: is not a table: {error}") from None
+    found: dict[str, list[float]] = {}
+    for k, text in enumerate(header):
+        match = _NAMED.fullmatch(text)
+        name, unit = (match[1], match[2] or "") if match else (text, "")
+        known = name in units and not math.isnan(signed(f"1{unit}", units[name]))
+        cells = [row[k] if len(row) == len(header) else "" for row in rows if known]
+        found[name if known else text] = [_number(cell, unit, units[name]) for cell in cells]
+    return found
+
+
+def _number(text: str, unit: str, si: str) -> float:
+    """Return a number in its own unit or in that of its column; nan if it is none."""
+    value = signed(f"{text}{unit}", si)
+    value = value if math.isfinite(value) else signed(text, si)
+    return value if math.isfinite(value) else math.nan
+
+
+def read_grading(path: Path, surface: Surface) -> Table:
+    """Return a grading from a CSV file: heights ``s`` or ``z`` (m), and ``ratio`` or ``E_star`` (Pa).
 
     Raises
     ------
     ValueError
-        If it cannot be read, or is not such a table.
+        If it cannot be read, or is not such a table; nothing of what stands there is quoted.
     """
-    lines = read_text(path, _MOST_OF_MODULI).splitlines()
+    found = _columns(path, _MOST_OF_MODULI, _MODULI)
+    axes = {"s": 1.0, "z": surface.sigma}, {"ratio": 1.0, "E_star": surface.E_star}
+    named = [[np.array(found[name]) / size for name, size in axis.items() if name in found] for axis in axes]
+    if len(found) != 2 or not all(named):
+        first = "s or z, a comma, and ratio or E_star, such as z (um),E_star (GPa)"
+        raise ValueError(f"{path}: the first line must be {first}")
+    (s,), (ratio,) = named
+    if np.isnan([s, ratio]).any():
+        raise ValueError(f"{path}: every line below the header must be two numbers, separated by a comma")
+    order = np.argsort(s, kind="stable")
     try:
-        return Table.from_lines(_in_si(lines), sigma=surface.sigma, E_star=surface.E_star)
-    except (ValueError, csv.Error) as error:
+        return Table(s[order].tolist(), ratio[order].tolist())
+    except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
-
-
-def _in_si(lines: list[str]) -> Iterator[str]:
-    """Lines of a table in SI; text that is no number stays, to be refused later."""
-    header, *rows = [row for row in csv.reader(lines) if row] or [[]]
-    named = [
-        (match[1], match[2] or "") if (match := _NAMED.fullmatch(name)) else (name, "") for name in header
-    ]
-    known = [name in _COLUMNS and not math.isnan(signed(f"1{unit}", _COLUMNS[name])) for name, unit in named]
-    if not all(known):
-        raise ValueError(
-            "the first line must be s or z, a comma, and ratio or E_star, such as z (um),E_star (GPa)"
-        )
-    yield ",".join(name for name, _ in named)
-    for row in rows:
-        cells = [_cell(text, *column) for text, column in zip(row, named, strict=False)]
-        yield ",".join([*cells, *row[len(named) :]])
-
-
-def _cell(text: str, name: str, unit: str) -> str:
-    """Return a number in its own unit or in that of its column."""
-    for written in (f"{text}{unit}", text):
-        if math.isfinite(value := signed(written, _COLUMNS[name])):
-            return repr(value)
-    return text.replace(",", " ")
 
 
 def read_heights(path: Path) -> Array:
@@ -85,25 +94,17 @@ def read_heights(path: Path) -> Array:
 
 
 def read_summits(path: Path) -> tuple[list[float], ...]:
-    """Columns height and radius of a CSV file with a line of names; # begins a comment.
+    """Return the columns height and radius, m, of a CSV file.
 
     Raises
     ------
     ValueError
         If the file cannot be read, or lacks a column or a number; nothing of what stands there is quoted.
     """
-    lines = [line for line in read_text(path, _MOST_BYTES).splitlines() if line.strip()]
-    rows = csv.reader(line for line in lines if not line.startswith("#"))
-    names = [name.strip() for name in next(rows, [])]
-    missing = [name for name in _SUMMITS if name not in names]
-    if missing:
+    found = _columns(path, _MOST_BYTES, _SUMMITS)
+    if missing := [name for name in _SUMMITS if name not in found]:
         raise ValueError(f"{path}: has no column {' and no column '.join(missing)}")
-    where = [names.index(name) for name in _SUMMITS]
-    table: list[tuple[float, ...]] = []
-    for row in rows:
-        try:
-            table.append(tuple(float(row[k]) for k in where))
-        except (ValueError, IndexError):
-            what = f"summit {len(table) + 1} has no number as {' or '.join(_SUMMITS)}"
-            raise ValueError(f"{path}: {what}") from None
-    return tuple([row[k] for row in table] for k in range(len(_SUMMITS)))
+    columns = tuple(found[name] for name in _SUMMITS)
+    for k in np.flatnonzero(np.isnan(columns).any(axis=0))[:1]:
+        raise ValueError(f"{path}: summit {k + 1} has no number as {' or '.join(_SUMMITS)}")
+    return columns

@@ -119,8 +119,9 @@ def listed_of(section: Section, folder: Path) -> ListedSummits | None:
     key = "file" if file is not None else "heights"
     try:
         z, R = _checked(*((heights, radius) if file is None else read_summits(folder / file)))
+        law = MeasuredHeights(z, resampled=bool(resample))
         of_surface = {} if over_surface else {"sigma": float(z.std()), "radius": float(1 / np.mean(1 / R))}
-        return ListedSummits(MeasuredHeights(z, resampled=bool(resample)), R, {**of_surface, "eta": len(z)})
+        return ListedSummits(law, R, {**of_surface, "eta": len(z)})
     except (TypeError, ValueError) as error:
         advice = "give a CSV file with columns height and radius in m, or lists heights and radii"
         return section.fail(key, section.table.get(key), f"{advice}; {error}")

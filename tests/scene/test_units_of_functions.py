@@ -142,6 +142,8 @@ SPELT = {
     "z um,E_star GPa": BARE,
     "z,E_star": [(f"{z:g} um", f"{e:g} GPa") for z, e in zip(Z, E, strict=True)],
     "z (um),E_star (MPa)": [(a, f"{b} GPa") for a, b in BARE],  # a cell's own unit counts
+    "\ufeffz (um) , E_star (GPa)\r\n\r": BARE[::-1],  # spaces, empty lines, another order
+    "E_star (GPa),z (um)": [cells[::-1] for cells in BARE],
     "z (um),ratio (%)": [(a, repr(float(b) / 78.6 * 100)) for a, b in BARE],
 }
 
@@ -157,7 +159,14 @@ def test_units_in_header_or_cells_are_worked_in(tmp_path, header):
     ("header", "cells", "match"),
     [
         ("z (GPa),E_star (um)", BARE, "first line"),
-        ("s (um),ratio", BARE, "first line"),
+        *(
+            (header, BARE, "first line")
+            for header in ("s (um),ratio", "height,ratio", "s,z", "s", "0,0.5", "", "s,ratio,note")
+        ),
+        *(
+            ("s,ratio", [("0", "0.5"), row], "every line")
+            for row in (("1",), ("1", "2", "3"), ("1", "stiff"), ("1", "nan"), ("1,0", "2"))
+        ),
         ("z,E_star", [("1 um", "2 um"), ("2 um", "3 um")], "every line"),
         ("z (um),E_star (GPa)", [("1", "2 m"), ("2", "3")], "every line"),
         *((header, BARE, "E_star = 7.86e") for header in ("z,E_star", "s,ratio")),  # no um, no GPa

@@ -174,12 +174,6 @@ def test_gamma_must_be_finite(gamma):
 # Measured gradings: interpolation and the CSV files they come from
 
 
-def csv(tmp_path, text, encoding="utf-8"):
-    path = tmp_path / "grading.csv"
-    path.write_text(text, encoding=encoding)
-    return path
-
-
 @pytest.mark.parametrize(
     ("s", "ratio"), [(S, RATIO), ((0, 1), (1, 3)), ((0, 1, 2), (5, 1, 1.5)), (S, RATIO[::-1])]
 )
@@ -208,46 +202,3 @@ def test_clamped_outside_and_monotone_inside():
 def test_points_that_make_no_curve(s, ratio, message):
     with pytest.raises(ValueError, match=message):
         Table(s, ratio)
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "s,ratio\n0,0.5\n2,1.5\n",
-        "s,E_star\n0,1e9\n2,3e9\n",
-        "z,ratio\n0,0.5\n4e-6,1.5\n",
-        "z,E_star\n0,1e9\n4e-6,3e9\n",
-        "s , ratio\r\n 2, 1.5\r\n\r\n0,0.5\r\n",  # spaces, empty lines, another order
-    ],
-)
-def test_every_header(tmp_path, text):
-    encoding = "utf-8-sig" if "z" in text else "utf-8"
-    table = Table.from_csv(csv(tmp_path, text, encoding), sigma=2e-6, E_star=2e9)
-    assert table.s == pytest.approx((0, 2), rel=1e-15)
-    assert table.ratio == pytest.approx((0.5, 1.5), rel=1e-15)
-
-
-@pytest.mark.parametrize(("text", "message"), [
-    ("height,ratio\n0,1\n", "the first line must be s or z, a comma, and ratio or E_star"),
-    ("ratio,s\n0,1\n", "the first line must be"),
-    ("s\n0\n", "the first line must be"),
-    ("s,ratio,note\n0,1,2\n", "the first line must be"),
-    ("0,0.5\n2,1.5\n", "the first line must be"),
-    ("", "the first line must be"),
-    ("s,ratio\n0,0.5\n1\n", "every line below the header must be two numbers"),
-    ("s,ratio\n0,0.5\n1,2,3\n", "two numbers"),
-    ("s,ratio\n0,0.5\n1,stiff\n", "two numbers"),
-    ("s,ratio\n0,1\n1,nan\n", "must be finite"),
-])  # fmt: skip
-def test_every_mistake_in_a_file_is_named(tmp_path, text, message):
-    with pytest.raises(ValueError, match=message):
-        Table.from_csv(csv(tmp_path, text), sigma=2e-6, E_star=2e9)
-
-
-def test_what_is_no_file_of_a_table_is_told(tmp_path):
-    for path, told in (
-        (tmp_path / "none.csv", "none.csv: no such file"),
-        (tmp_path, "is not a regular file"),
-    ):
-        with pytest.raises(ValueError, match=told):
-            Table.from_csv(path, sigma=2e-6, E_star=2e9)
