@@ -52,7 +52,7 @@ def maps_of(source: "Scene | Spectrum | Topography | str | Path | Sequence[Topog
     """
     if isinstance(source, Scene):
         try:
-            moments = moments_of(source.fitted, source.heights, source.surface)
+            moments = moments_of(source)
         except ValueError as error:
             raise ValueError(f"the scene {error}") from None
         return _drawn(Spectrum.with_moments(moments), math.sqrt(source.surface.nominal_area))

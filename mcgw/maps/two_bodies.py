@@ -1,13 +1,12 @@
 """Two rough bodies as one: the sum of two independent Gaussian surfaces is one whose moments are sums."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from analytic import SpectralMoments, harmonic_conductivity
 from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
 from mcgw.scene.radii import Spectral
-from mcgw.scene.rough_bodies import RoughBody, moments_of
+from mcgw.scene.rough_bodies import RoughBody, body_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.section import SceneError
 from mcgw.scene.surface import SpectralSurface
@@ -102,12 +101,9 @@ def combine(
 def _body(given: Described) -> RoughBody:
     if isinstance(given, Scene):
         try:
-            moments = moments_of(given.fitted, given.heights, given.surface)
+            return body_of(given)
         except ValueError as error:
             raise SceneError([f"combine: the scene {error}"]) from None
-        hardness = given.hardness or getattr(given.law, "hardness", None)
-        pair = None if given.film is None else given.film.conductivities
-        return RoughBody(moments, given.surface.E_star, hardness, _conductivity(pair))
     if isinstance(given, Spectral):
         return RoughBody(given.moments, given.surface.E_star)
     if isinstance(given, Fit | ProfileFit):
@@ -118,11 +114,3 @@ def _body(given: Described) -> RoughBody:
         "combine: give scenes, surfaces from mcgw.SpectralSurface or mcgw.surface_from, fits, or moments, "
         f"not {type(given).__name__}"
     )
-
-
-def _conductivity(pair: Sequence[float] | None) -> tuple[float, ...]:
-    if pair is None:
-        return ()
-    if len(set(pair)) > 1:
-        raise SceneError([f"conductivities = {pair}: those of a pair; a scene of one body has equal ones"])
-    return (pair[0],)

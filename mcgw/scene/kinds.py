@@ -209,7 +209,7 @@ class Either(Kind):
     def read(self, path: str, value: Any) -> Any:
         """Read it as the kind that it looks like."""
         for kind in self.kinds:
-            if isinstance(value, _LOOKS[type(kind)]):
+            if isinstance(value, (_LOOKS[type(kind)], getattr(kind, "make", None) or ())):
                 return kind.read(path, value)
         raise mistake(path, value, self.advice)
 

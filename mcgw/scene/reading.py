@@ -2,7 +2,7 @@
 
 import secrets
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, fields, is_dataclass
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
@@ -13,82 +13,89 @@ from analytic.laws import ContactLaw, Hertz
 from analytic.laws.law import check_poisson
 from mcgw.scene.arguments import as_seed, as_toml
 from mcgw.scene.fields import LeftOut
-from mcgw.scene.keys import KEYS, MOMENTS, TABLES, whole_key
+from mcgw.scene.keys import KEYS, MOMENTS, SURFACE_UNITS, TABLES, whole_key
 from mcgw.scene.laws import OF_YIELD, contact_law, grading_given, grading_of, heights_given, heights_of
 from mcgw.scene.parts import Contact, Graded, Joint, Sampling
 from mcgw.scene.radii import LISTS, Spectral, curvature_of, datum_shift, listed_of
 from mcgw.scene.rough_bodies import with_bodies
-from mcgw.scene.section import SceneError, Section
+from mcgw.scene.section import SceneError, Section, nearest
 from mcgw.scene.surface import read_surface
 
 Values = dict[str, Any]
 Summits = tuple[Surface | None, HeightLaw | None, RandomCurvature | MeasuredRadii | None]
 
-_SHORT = {"law": "contact", "separations": "contact", "n_surfaces": "ensemble", "seed": "ensemble"}
 _OBJECTS = ("surface", "grading", "heights", "summits")  # which may be objects of other classes
+_WORDS = {"interaction": "reference", "summits": "curvature"}  # what a word in place of a part is
+# Parts of a scene, and of which of them a value that may be given by its own name is a field.
+PLACES = dict.fromkeys(("surface", "title", "grading", "heights", "contact", "summits"), "")
+PLACES |= dict.fromkeys(("interaction", "joint", "ensemble", "fitted"), "")
+PLACES |= {"separations": "contact", "negative": "grading"}
+PLACES |= dict.fromkeys((*SURFACE_UNITS, "uncertainty"), "surface")
+for _table, _part in (("contact", Contact), ("joint", Joint), ("ensemble", Sampling)):
+    PLACES |= {field.name: _table for field in fields(_part)}
 _QUANTITIES = ("load", "area", "stiffness", "contacts")
 
 
-def of_arguments(**given: Any) -> Values:
-    """Read the arguments of `mcgw.Scene` (None: left out) as its file would be read.
+def of_arguments(given: Mapping[str, Any]) -> Values:
+    """Read parts of a scene, and fields of them by their names, as its file would be read; None: left out.
 
     Raises
     ------
+    TypeError
+        If there is no such part or field.
     SceneError
         With one line for each mistake.
     """
     document: dict[str, Any] = {}
     objects: Values = {}
     for name, value in given.items():
-        if value is None or name in _SHORT:
+        if name not in PLACES:
+            meant = nearest(name, PLACES).rstrip() or f"it has {', '.join(PLACES)}"
+            raise TypeError(f"a scene has no {name!r}; {meant}")
+        if PLACES[name] or value is None:
             continue
-        if name == "summits" and isinstance(value, str):
-            document[name] = {"curvature": value}
-        elif isinstance(value, Graded):
-            document[name] = {"negative": value.negative}
-            objects |= {} if value.law is None else {name: value.law}
-        elif name in _OBJECTS and not isinstance(value, Mapping):
+        word = _WORDS[name] if isinstance(value, str) and name in _WORDS else ""
+        if name in _OBJECTS and not word and not isinstance(value, Mapping | Graded):
             objects[name] = value
         else:
-            document[name] = _keys_of(name, value)
-    for name, table in _SHORT.items():
-        if given.get(name) is not None and isinstance(document.setdefault(table, {}), dict):
-            document[table][name] = given[name]
+            document[name] = {word: value} if word else _keys_of(value)
+    for name, table in PLACES.items():
+        if not table or name not in given:
+            continue
+        if table == "surface" and table in objects:
+            document[table] = _keys_of(objects.pop(table))
+        if isinstance(keys := document.setdefault(table, {}), dict):
+            keys |= {name: given[name]}
+            document[table] = {key: value for key, value in keys.items() if value is not None}
     if isinstance(contact := document.get("contact"), dict):
-        _split_law(contact, objects)
+        law = contact.pop("law", {})
+        of_yield = {key: contact.pop(key) for key in OF_YIELD if key in contact}
+        objects |= {} if isinstance(law, str | Mapping) else {"law": law}
+        named = {"name": law} if isinstance(law, str) else law if isinstance(law, Mapping) else {}
+        contact["law"] = {**named, **of_yield}
+    if isinstance(grading := document.get("grading"), dict) and not isinstance(grading.get("law", ""), str):
+        objects["grading"] = grading.pop("law")
     if isinstance(ensemble := document.get("ensemble"), dict) and "seed" in ensemble:
         ensemble["seed"] = as_seed(ensemble["seed"])
     return of_tables(as_toml(document), objects, Path(), None)
 
 
-def _keys_of(name: str, value: Any) -> Any:
-    """Return the keys of what stands for a whole table; a word for an interaction is its reference."""
-    if isinstance(value, str) and name == "interaction":
-        return {"reference": value}
+def _keys_of(value: Any) -> Any:
+    """Return the keys of what stands for a whole table."""
+    if isinstance(value, Mapping):
+        return dict(value)
     if not is_dataclass(value) or isinstance(value, type):
-        return dict(value) if isinstance(value, Mapping) else value
-    given = {each.name: getattr(value, each.name) for each in fields(value)}
-    return {
-        key: asdict(each) if is_dataclass(each) and key != "law" else each  # type: ignore[arg-type]
-        for key, each in given.items()
-        if each is not None
-    }
-
-
-def _split_law(contact: Values, objects: Values) -> None:
-    """Move the law to a table of its own, with what tells whether contacts yield; or to the objects."""
-    law = contact.pop("law", {})
-    table = dict(law) if isinstance(law, Mapping) else {"name": law} if isinstance(law, str) else {}
-    if not isinstance(law, Mapping | str):
-        objects["law"] = law
-    table |= {key: contact.pop(key) for key in OF_YIELD if key in contact}
-    contact |= {"law": table} if table else {}
+        return value
+    return {each.name: x for each in fields(value) if (x := getattr(value, each.name)) is not None}
 
 
 def of_tables(
-    document: Mapping[str, Any], objects: Values, folder: Path, seed: Callable[[], int | None] | None
+    document: Mapping[str, Any],
+    python: Values | None,
+    folder: Path,
+    seed: Callable[[], int | None] | None,
 ) -> Values:
-    """Read the tables of a file, those beside it in `folder`; or the `objects` that Python gives for some.
+    """Read the tables of a file, those beside it in `folder`; or of `python`, which gives objects for some.
 
     Where nothing gives a seed, `seed` is asked first.
 
@@ -97,13 +104,13 @@ def of_tables(
     SceneError
         With one line for each mistake.
     """
-    document = with_bodies(document, folder, lambda tables, near: of_tables(tables, {}, near, None))
-    top, python = Section("", document, KEYS[""]), "surface" in objects
+    document = with_bodies(document, folder, lambda tables, near: of_tables(tables, None, near, None))
+    top, objects = Section("", document, KEYS[""]), python or {}
     of: dict[str, Section] = {}
     for name, table in TABLES.items():
         outer, _, inner = name.rpartition(".")
         if name:
-            advice = table.advice if python else ""
+            advice = "" if python is None else table.advice
             of[name] = of.get(outer, top).section(inner, KEYS[name], advice, table.word)
     surface, heights, curvature = _surface_and_summits(top, of, objects, folder)
     if "grading" in objects:
@@ -130,7 +137,9 @@ def of_tables(
     if uncertain and set(MOMENTS) & set(uncertain.names) and not isinstance(heights, Nayak | None):
         advice = 'm0, m2 and m4 need heights.law = "nayak"; otherwise give sigma, radius and eta'
         of["surface"].fail("uncertainty", uncertain.names, advice)
-    for section in (*([] if python else [top]), *of.values()):  # arguments of Python are known by name
+    if python is None:  # where arguments are known by name
+        top.finish(whole_key)
+    for section in of.values():
         section.finish(whole_key)
     if problems := [line for section in (top, *of.values()) for line in section.problems]:
         raise SceneError(problems)

@@ -4,21 +4,20 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
-from analytic import HeightLaw, Nayak, SpectralMoments, Surface
+from analytic import Nayak, SpectralMoments
 from mcgw.formats.named_files import loads, read_bytes
 from mcgw.scene.keys import MOMENTS, SUMMITS, YOUNG
-from mcgw.scene.kinds import Number
 from mcgw.scene.section import SceneError
-from mcgw.validity.fitted_map import Fitted, moments_of_nayak
+from mcgw.validity.fitted_map import moments_of_nayak
 
 _MOST_BYTES = 2**21
 _FOLLOW = (*SUMMITS, "E_star", *MOMENTS)  # keys of [surface] that two files determine
 # Keys of [joint] and [contact.law] beside which those of the files do not count.
 _CONDUCTION = {"resistivity", "conductivities"}
 _YIELD = {"hardness", "critical", "yield_strength", "yield_strain"}
-_HARDNESS, _CONDUCTIVITY = Number("Pa"), Number("W/(m K)")
 Tables = Mapping[str, Any]
 
 
@@ -134,15 +133,14 @@ def _body(path: Path, read: Callable[[Tables, Path], Tables]) -> RoughBody:
             raise ValueError(
                 "surface.bodies: two elastic bodies; a file describes one on a rigid plane, {E = inf}"
             )
-        moments = moments_of(values["fitted"], values["heights"], values["surface"])
-        return RoughBody(moments, values["surface"].E_star, *_of_contact(document))
+        return body_of(SimpleNamespace(**values))
     except SceneError as error:
         raise SceneError([f"surface.bodies: {path}: {line}" for line in error.problems]) from None
     except ValueError as error:
         raise SceneError([f"surface.bodies: {path}: {str(error).removeprefix(f'{path}: ')}"]) from None
 
 
-def moments_of(fitted: Fitted | None, heights: HeightLaw, surface: Surface) -> SpectralMoments:
+def moments_of(scene: Any) -> SpectralMoments:
     """Return the moments of the rough surface of a scene: those of the fitted map, or of Nayak's heights.
 
     Raises
@@ -150,20 +148,19 @@ def moments_of(fitted: Fitted | None, heights: HeightLaw, surface: Surface) -> S
     ValueError
         If it has neither.
     """
-    if fitted is not None:
-        return fitted.moments
-    if isinstance(heights, Nayak):
-        return moments_of_nayak(surface, heights.alpha)
+    if scene.fitted is not None:
+        return scene.fitted.moments  # type: ignore[no-any-return]
+    if isinstance(scene.heights, Nayak):
+        return moments_of_nayak(scene.surface, scene.heights.alpha)
     raise ValueError("has no spectrum; give m0, m2, m4 under [surface], or a scene written by mcgw fit")
 
 
-def _of_contact(document: Tables) -> tuple[float | None, tuple[float, ...]]:
-    """Return the hardness and the conductivity of one body, as far as it tells them."""
-    hardness = _HARDNESS.value((law_of(document) or {}).get("hardness"))
-    pair = document.get("joint", {}).get("conductivities", [])
-    each = tuple({k for k in map(_CONDUCTIVITY.value, pair) if k is not None})
-    if len(each) > 1:
+def body_of(scene: Any) -> RoughBody:
+    """Return the body of a scene on a rigid plane; errors as of `moments_of`, or if it conducts as a pair."""
+    pair = scene.joint.conductivities or ()
+    if len(set(pair)) > 1:
         raise ValueError(
-            f"joint.conductivities = {pair}: those of a pair; a file describes one body, as [150.0, 150.0]"
+            f"joint.conductivities = {list(pair)}: those of a pair; a body has equal ones, as [150.0, 150.0]"
         )
-    return hardness, each
+    hardness = scene.contact.hardness or getattr(scene.contact.law, "hardness", None)
+    return RoughBody(moments_of(scene), scene.surface.E_star, hardness, tuple(pair[:1]))

@@ -8,8 +8,6 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Mapping
 from copy import copy
-from functools import cache
-from inspect import signature
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -21,15 +19,13 @@ from analytic.laws import ContactLaw
 from mcgw.formats.sheet import Sheet, Shown
 from mcgw.scene.fields import Fields, LeftOut
 from mcgw.scene.in_words import sheet_of
-from mcgw.scene.keys import SURFACE_UNITS
 from mcgw.scene.mistakes import mistakes
 from mcgw.scene.parts import Contact, Graded, Joint, Sampling
 from mcgw.scene.plausible import perhaps_other_units, takes_hours, warn_of_units
 from mcgw.scene.promises import promise_of
 from mcgw.scene.radii import Spectral
 from mcgw.scene.reading import of_arguments
-from mcgw.scene.section import SceneError, nearest
-from mcgw.scene.surface import Surface as GivenSurface
+from mcgw.scene.section import SceneError
 from mcgw.validity.fitted_map import Fitted
 
 if TYPE_CHECKING:
@@ -41,7 +37,6 @@ if TYPE_CHECKING:
 _SURFACES, _MOST_SURFACES = 1000, 10**9  # where n_surfaces is left out; where rel_err is to decide
 _LOOKED_AT, _BEYOND = 4001, 1.1  # heights for the stiffest; and how much farther series reach
 _FARTHEST = 1e12  # penetrations over the first one, which few formulas are meant for
-_PARTS: dict[str, type] = {"grading": Graded, "contact": Contact, "joint": Joint, "ensemble": Sampling}
 
 
 @dataclasses.dataclass(frozen=True, init=False, repr=False)
@@ -124,24 +119,21 @@ class Scene(Fields, Shown):
         n_surfaces: int | None = None,
         seed: int | Generator | SeedSequence | None = None,
     ) -> None:
-        self._made_of(
-            of_arguments(
-                surface=surface,
-                separations=separations,
-                title=title,
-                grading=grading,
-                heights=heights,
-                contact=contact,
-                summits=summits,
-                interaction=interaction,
-                joint=joint,
-                ensemble=ensemble,
-                fitted=fitted,
-                law=law,
-                n_surfaces=n_surfaces,
-                seed=seed,
-            )
-        )
+        short = {"separations": separations, "law": law, "n_surfaces": n_surfaces, "seed": seed}
+        given = {
+            "surface": surface,
+            "title": title,
+            "grading": grading,
+            "heights": heights,
+            "contact": contact,
+            "summits": summits,
+            "interaction": interaction,
+            "joint": joint,
+            "ensemble": ensemble,
+            "fitted": fitted,
+            **{name: value for name, value in short.items() if value is not None},
+        }
+        self._made_of(of_arguments(given))
 
     @classmethod
     def of(cls, values: Mapping[str, Any]) -> Scene:
@@ -195,8 +187,9 @@ class Scene(Fields, Shown):
         (30000, 300000)
         """
         parts = {each.name: getattr(self, each.name) for each in dataclasses.fields(self)}
-        parts["grading"] = Graded(self.grading, parts.pop("negative"))
-        return Scene(**with_values(parts, changes)) if changes else self
+        if isinstance(changes.get("grading"), Graded | Mapping):
+            del parts["negative"]
+        return Scene.of(of_arguments(parts | changes)) if changes else self
 
     def drawn_by(self, sampler: str) -> Scene:
         """Return the scene that says by which sampler it was drawn, where it left the choice to ``auto``."""
@@ -231,51 +224,6 @@ class Scene(Fields, Shown):
         from mcgw.validity.lookup import validity_of  # reads a table, which not every scene needs
 
         return validity_of(self, separations)
-
-
-@cache
-def _places() -> dict[str, str]:
-    """Return what each value that may be given by its own name is a field of; "" stands for the scene."""
-    places = dict.fromkeys(signature(Scene).parameters, "") | {"negative": "grading"}
-    places |= dict.fromkeys((*SURFACE_UNITS, "uncertainty"), "surface")
-    for name in ("contact", "joint", "ensemble"):
-        places |= {field.name: name for field in dataclasses.fields(_PARTS[name])}
-    return places
-
-
-def with_values(given: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
-    """Arguments of `Scene` that were given, with some values by the names of their fields.
-
-    Raises
-    ------
-    TypeError
-        If there is no such field.
-    """
-    places, found = _places(), dict(given)
-    for name in values:
-        if name not in places:
-            meant = nearest(name, places).rstrip() or f"it has {', '.join(places)}"
-            raise TypeError(f"a scene has no {name!r}; {meant}")
-    found |= {name: value for name, value in values.items() if not places[name]}
-    before, now = given.get("grading"), found.get("grading")
-    if isinstance(before, Graded) and not isinstance(now, Graded | Mapping):
-        found["grading"] = Graded(now, before.negative)
-    for part in {places[name]: None for name in values if places[name]}:
-        changes = {name: value for name, value in values.items() if places[name] == part}
-        found[part] = _changed(part, found.get(part), changes)
-    return found
-
-
-def _changed(part: str, held: Any, changes: Mapping[str, Any]) -> Any:
-    """Return a part with other values."""
-    if part == "surface":
-        given: dict[str, Any] = {x: getattr(held, x, None) for x in (*SURFACE_UNITS, "uncertainty")}
-        return GivenSurface(**given | dict(changes))
-    if isinstance(held, Mapping):
-        return {**held, **changes}
-    if part == "grading" and not isinstance(held, Graded):
-        held = Graded(held)
-    return dataclasses.replace(held or _PARTS[part](), **changes)
 
 
 def with_sampling(scene: Scene, **changes: Any) -> Scene:

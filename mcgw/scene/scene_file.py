@@ -157,7 +157,7 @@ def scene_of(
     document: Mapping[str, Any], *, folder: Path | None = None, seed: Callable[[], int | None] | None = None
 ) -> Scene:
     """Make a scene of the tables that its TOML text holds; arguments and errors as of `scene_from`."""
-    return Scene.of(of_tables(document, {}, folder or Path(), seed))
+    return Scene.of(of_tables(document, None, folder or Path(), seed))
 
 
 def with_changes(document: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:

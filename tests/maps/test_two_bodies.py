@@ -160,7 +160,7 @@ def test_a_file_of_mcgw_fit_is_a_body(folder, maps):
         (("", ""), ("b.toml", "c.toml"), "c.toml: No such file"),
         (("", ""), ("b.toml", "pair.toml"), "pair.toml: names the files of two bodies itself"),
         (("inf", "9e9"), ("", ""), "two elastic bodies; a file describes one on a rigid plane, {E = inf}"),
-        (("150, 150", "150, 1"), ("", ""), "joint.conductivities = [150, 1]: those of a pair"),
+        (("150, 150", "150, 1"), ("", ""), "joint.conductivities = [150.0, 1.0]: those of a pair"),
         (("m2 = 1e-3", "m2 = -1"), ("", ""), "a.toml: surface.m2 = -1: give a finite number > 0"),
         (('m0 = "1 um^2"\nm2 = 1e-3\nm4', "sigma = 1e-6\nradius = 1e-5\neta"), ("", ""), "has no spectrum"),
         (("[contact]", "[contact"), ("", ""), "a.toml: "),
