@@ -1,6 +1,8 @@
 """Every key of a scene, one row each: source of reader, writer, checks, schema, page and ``--set``."""
 
 import math
+from collections.abc import Mapping
+from dataclasses import asdict, is_dataclass
 from typing import Any
 
 import analytic
@@ -233,3 +235,24 @@ def whole_key(key: str) -> str:
     if "." in key or key in TABLES or len(tables) != 1:
         return key
     return f"{tables[0]}.{key}" if tables[0] else key
+
+
+def written(part: Any, table: str) -> dict[str, Any]:
+    """Return the keys of a table that are values of a part of a scene, without what is not asked for."""
+    found = {}
+    for key, row in KEYS[table].items():
+        value = _plain(getattr(part, key, None))
+        if value is not None and (value != row.default or isinstance(row.kind, Word)):
+            found[key] = value
+    return found
+
+
+def _plain(value: Any) -> Any:
+    """Return a value as TOML has it."""
+    if is_dataclass(value) and not isinstance(value, type):
+        return _plain(asdict(value))
+    if isinstance(value, Mapping):
+        return {key: _plain(inner) for key, inner in value.items() if inner is not None}
+    if isinstance(value, list | tuple):
+        return [_plain(inner) for inner in value]
+    return float(value) if isinstance(value, float) else value

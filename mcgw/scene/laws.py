@@ -20,7 +20,7 @@ from analytic import (
 )
 from analytic.laws import ContactLaw, Hertz
 from mcgw.scene.files_beside import read_grading, read_heights
-from mcgw.scene.keys import GRADINGS, HEIGHTS, KEYS
+from mcgw.scene.keys import GRADINGS, HEIGHTS, written
 from mcgw.scene.section import SceneError, Section
 
 OF_YIELD = ("hardness", "poisson")  # which tell beside an elastic law whether contacts yield
@@ -46,23 +46,6 @@ def _law(section: Section, key: str, law: str | None, makes: Mapping[str, Callab
             only = f"it is for {key} = {' or '.join(laws)} only; leave it out"
             section.problems += [f"{section.path(name)}: unknown key; {only}"] if laws else []
     return section.made(makes[law], given)
-
-
-def _table(table: str, law: str, part: Any) -> dict[str, Any]:
-    """Keys that describe a part: its arguments, but for switches that stand as they do anyway."""
-    known = signature(type(part)).parameters
-    found = {key: getattr(part, key) for key in KEYS[table] if key in known}
-    return {"law": law} | {
-        key: _plain(value)
-        for key, value in found.items()
-        if not (isinstance(value, bool) and value is known[key].default)
-    }
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, tuple):
-        return [_plain(each) for each in value]
-    return value if isinstance(value, str | bool) else float(value)
 
 
 # --- gradings ---
@@ -98,7 +81,7 @@ def grading_given(section: Section, given: Any) -> Grading:
 def grading_table(grading: Grading) -> dict[str, Any]:
     """Write the table [grading] of a grading that is data; it reads back the same."""
     (law,) = [name for name, kind in GRADINGS.items() if isinstance(grading, kind)]
-    return _table("grading", law, grading)
+    return {"law": law, **written(grading, "grading")}
 
 
 # --- laws of heights ---
@@ -178,7 +161,7 @@ def heights_table(heights: HeightLaw, file: str | None = None) -> dict[str, Any]
             return {"law": "scipy", "name": name, "shapes": heights.shapes}
     elif type(heights) in HEIGHTS.values():  # a subclass may do more
         (law,) = [name for name, kind in HEIGHTS.items() if type(heights) is kind]
-        return _table("heights", law, heights)
+        return {"law": law, **written(heights, "heights")}
     raise SceneError(
         [
             f"heights: {type(own).__name__} is a Python class that a file cannot store; give a distribution "

@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, is_dataclass
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +12,7 @@ from analytic.laws import Hertz
 from mcgw.formats.named_files import HDF5, loads, read_bytes
 from mcgw.machine.terminal import one_line
 from mcgw.scene.fields import LeftOut
-from mcgw.scene.keys import KEYS, SURFACE_UNITS, whole_key
-from mcgw.scene.kinds import Word
+from mcgw.scene.keys import whole_key, written
 from mcgw.scene.laws import contact_law_table, grading_table, heights_table
 from mcgw.scene.radii import summits_table
 from mcgw.scene.reading import of_tables
@@ -223,33 +221,14 @@ def scene_document(scene: Scene, *, heights_file: str | None = None) -> dict[str
     law |= {key: value for key in ("hardness", "poisson") if (value := getattr(scene, key)) is not None}
     document: dict[str, Any] = {
         "title": scene.title,
-        "surface": _written(scene.surface, "surface")
-        | {key: float(getattr(scene.surface, key)) for key in SURFACE_UNITS},
+        "surface": written(scene.surface, "surface"),
         "grading": {**grading_table(scene.grading), "negative": scene.negative},
         "heights": {} if listed else heights_table(scene.heights, heights_file),
         "summits": scene.summits and summits_table(scene.summits, scene.surface, heights_file),
-        "contact": _written(scene, "contact") | ({"law": law} if law else {}),
-        **{name: _written(getattr(scene, name), name) for name in ("interaction", "joint", "fitted")},
-        "ensemble": _written(scene.ensemble, "ensemble"),
+        "contact": written(scene, "contact") | ({"law": law} if law else {}),
+        **{name: written(getattr(scene, name), name) for name in ("interaction", "joint", "fitted")},
+        "ensemble": written(scene.ensemble, "ensemble"),
     }
     if isinstance(scene.n_asperities, LeftOut):
         del document["ensemble"]["n_asperities"]
     return {key: value for key, value in document.items() if value or key == "title"}
-
-
-def _written(part: Any, table: str) -> dict[str, Any]:
-    """Return the keys of a table that are values of a part of a scene, without what is not asked for."""
-    found = {}
-    for key, row in KEYS[table].items():
-        value = _plain(getattr(part, key, None))
-        if value is not None and (value != row.default or isinstance(row.kind, Word)):
-            found[key] = value
-    return found
-
-
-def _plain(value: Any) -> Any:
-    if is_dataclass(value) and not isinstance(value, type):
-        return _plain(asdict(value))
-    if isinstance(value, Mapping):
-        return {key: _plain(inner) for key, inner in value.items() if inner is not None}
-    return [_plain(inner) for inner in value] if isinstance(value, list | tuple) else value

@@ -1,8 +1,7 @@
 """Errors of the model against boundary elements: the packaged table and its interpolation."""
 
 import csv
-from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -14,6 +13,7 @@ from analytic.arrays import Array
 
 COLUMNS = ("area", "stiffness", "separation", "load")  # quantities with an error
 _OF_GAP = ("separation", "load")
+_SURE = 2.1  # standard deviations that hold 95 % of maps left out: light loads have long tails
 _ROUNDING = 1e-9  # tolerance at the points of the table
 # Standard deviation of the gap over sqrt(m0) between spectra of H = 0.5 to 1 and one alpha, a unit of
 # ln(alpha/2): 0.01 to 0.02 at alpha = 3 and 7, 0.04 to 0.06 at 15, whatever the load (fresh maps, README).
@@ -63,54 +63,15 @@ class Expected:
     loads: tuple[float, float]
     lightest: float
 
-
-@dataclass(frozen=True)
-class _Surface:
-    """Rows of surfaces of one x: logarithms of loads, and the numbers there, by column."""
-
-    at: dict[str, Array]
-    numbers: dict[str, Array]  # bias, logarithms of contacts, waves and steepness, unsure: shape (5, rows)
-    maps: int
-    solved: tuple[float, float]  # logarithms of loads between which the area was measured
-
-    @classmethod
-    def of(cls, found: Iterable[Mapping[str, str]], unit: float) -> "_Surface":
-        ordered = sorted(found, key=lambda row: float(row["p"]))
-        p, contacts, waves = (_numbers(ordered, key) for key in ("p", "contacts", "waves"))
-        maps, at, numbers = _numbers(ordered, "maps"), {}, {}
-        for name in COLUMNS:
-            bias, off = _numbers(ordered, name), _numbers(ordered, f"{name}_std")
-            # The table's load is the right one; at a given gap the model is known by its own.
-            own = p * (1 + bias) if name == "load" else p
-            known = np.isfinite(own)
-            at[name] = np.log(own[known] / unit)
-            steep = np.log(_steepness(ordered)) if name == "load" else np.zeros_like(p)
-            unsure = np.where(maps > 0, 0.0, off if name == "separation" else off / (1 + bias))
-            numbers[name] = np.array([bias, np.log(contacts), np.log(waves), steep, unsure])[:, known]
-        solved = np.log(p[maps > 0][[0, -1]] / unit)
-        return cls(at, numbers, int(maps[maps > 0].min()), (float(solved[0]), float(solved[1])))
-
-    def __call__(self, name: str, at: Array) -> Array:
-        """Bias, logarithms of contacts, waves and steepness, and what is unsure, shape (5, loads)."""
-        points = self.at[name]
-        if not points.size:
-            return np.full((5, *at.shape), np.nan)
-        nearest = points[np.argmin(np.abs(points - at[:, None]), axis=1)]
-        at = np.where(np.abs(nearest - at) <= _ROUNDING, nearest, at)
-        return np.array([np.interp(at, points, y, np.nan, np.nan) for y in self.numbers[name]])
+    def farthest(self, name: str, share: Array) -> Array:
+        """How far 95 % of surfaces are from the bias, at most, if they scatter by a share of what maps do."""
+        off = _SURE * np.hypot(self.scatter[name] * share, self.unsure[name])
+        return (
+            off if name == "separation" else (1 + self.bias[name]) * np.expm1(off)
+        )  # ratios differ by factors
 
 
-def _numbers(found: Iterable[Mapping[str, str]], key: str) -> Array:
-    return np.array([float(row[key]) for row in found])
-
-
-def _steepness(found: Sequence[Mapping[str, str]]) -> Array:
-    """Change of the logarithm of the load per unit of gap, between maps."""
-    load, off, gap = (_numbers(found, key) for key in ("load", "load_std", "separation_std"))
-    return off / (1 + load) / gap
-
-
-def scatter_law(found: Iterable[Mapping[str, str]], name: str) -> Array:
+def scatter_law(rows: Mapping[str, Array], name: str) -> Array:
     """Fit the standard deviation between maps as a power of x times one of the loaded spots.
 
     Eight maps tell a deviation to a quarter; all those of a model tell such a law to a few per cent, and over
@@ -121,14 +82,14 @@ def scatter_law(found: Iterable[Mapping[str, str]], name: str) -> Array:
     ndarray
         Logarithm of the deviation where x and spots are 1, and both powers.
     """
-    bias, std, maps = (_numbers(found, key) for key in (name, f"{name}_std", "maps"))
-    share = std if name == "separation" else std / (1 + bias)
-    known = np.isfinite(share) & (share > 0) & (maps > 0)
-    nu = maps[known] - 1
-    x, contacts = (np.log(_numbers(found, key)[known]) for key in ("x", "contacts"))
+    std = rows[f"{name}_std"]
+    share = std if name == "separation" else std / (1 + rows[name])
+    known = np.isfinite(share) & (share > 0) & (rows["maps"] > 0)
+    nu = rows["maps"][known] - 1
     # The mean logarithm of a variance of nu degrees of freedom lies below that of its mean.
     told = np.log(share[known]) + (np.log(nu / 2) - digamma(nu / 2)) / 2
-    columns, weight = np.column_stack([np.ones_like(x), x, contacts]), np.sqrt(nu)
+    columns = np.column_stack([np.ones_like(nu), *(np.log(rows[key][known]) for key in ("x", "contacts"))])
+    weight = np.sqrt(nu)
     return np.asarray(np.linalg.lstsq(columns * weight[:, None], told * weight, rcond=None)[0])
 
 
@@ -144,8 +105,8 @@ class Grid:
     ----------
     x : ndarray
         Rising: alpha, or eta R sigma of caps.
-    surfaces : tuple
-        The rows of each.
+    rows : list of dict of str to ndarray
+        Columns of the rows of each, by rising load.
     scatter : dict of str to ndarray
         Laws of that between maps, by column, of separations over their unit, else as of a logarithm; loads
         at a gap scatter as gaps do, times their steepness.
@@ -154,20 +115,22 @@ class Grid:
     """
 
     x: Array
-    surfaces: tuple[_Surface, ...]
+    rows: list[dict[str, Array]]
     scatter: dict[str, Array]
     along_separation: bool
 
     @classmethod
     def of(cls, found: Iterable[Mapping[str, str]], *, along_separation: bool) -> "Grid":
         """Make a grid from rows of the table."""
-        by_x, found = defaultdict(list), list(found)
-        for row in found:
-            by_x[float(row["x"])].append(row)
-        x = sorted(by_x)
-        surfaces = tuple(_Surface.of(by_x[value], value if along_separation else 1.0) for value in x)
-        scatter = {name: scatter_law(found, name) for name in COLUMNS if name != "load"}
-        return cls(np.array(x), surfaces, scatter, along_separation)
+        ordered = sorted(found, key=lambda row: float(row["p"]))
+        words = ("map", "model", "interaction")
+        table = {
+            key: np.array([float(row[key]) for row in ordered]) for key in ordered[0] if key not in words
+        }
+        x = np.unique(table["x"])
+        rows = [{key: column[table["x"] == value] for key, column in table.items()} for value in x]
+        scatter = {name: scatter_law(table, name) for name in COLUMNS if name != "load"}
+        return cls(x, rows, scatter, along_separation)
 
     def holds(self, x: float) -> bool:
         """Whether surfaces on both sides of this x were measured."""
@@ -175,16 +138,24 @@ class Grid:
 
     def expected(self, x: float, p: Array) -> Expected:
         """Errors of surfaces of one x within the grid at loads p > 0 of the model, shape (loads,)."""
-        near = self._near(x)
+        place = float(np.interp(np.log(x), np.log(self.x), np.arange(len(self.x))))
+        k, nearest = int(place), round(place)
+        near = {k: k + 1 - place, k + 1: place - k} if abs(place - nearest) > _ROUNDING else {nearest: 1.0}
+        units = self.x if self.along_separation else np.ones_like(self.x)
         unit = x if self.along_separation else 1.0
         with np.errstate(divide="ignore"):
             at = np.log(p / unit)
-        found = {name: np.sum([share * s(name, at) for share, s in near], axis=0) for name in COLUMNS}
-        low, high = max(s.solved[0] for _, s in near), min(s.solved[1] for _, s in near)
-        lightest = max(s.at["area"][0] for _, s in near)
-        bias = {name: values[0] for name, values in found.items()}
+        found = {
+            name: np.sum(
+                [share * _between(self.rows[k], name, units[k], at) for k, share in near.items()], axis=0
+            )
+            for name in COLUMNS
+        }
+        solved = [self.rows[k]["p"][self.rows[k]["maps"] > 0] / units[k] for k in near]
+        low, high = max(loads[0] for loads in solved), min(loads[-1] for loads in solved)
+        lightest = max(self.rows[k]["p"][np.isfinite(self.rows[k]["area"])][0] / units[k] for k in near)
+        maps = min(int(m[m > 0].min()) for m in (self.rows[k]["maps"] for k in near))
         scatter, unsure = {}, {}
-        maps = min(s.maps for _, s in near)
         for name, (_, contacts, _, steep, theory) in found.items():
             start, of_x, of_contacts = self.scatter["separation" if name == "load" else name]
             scatter[name] = np.exp(start + of_x * np.log(x) + of_contacts * contacts + steep)
@@ -193,21 +164,30 @@ class Grid:
             of_maps = np.hypot(scatter[name] / np.sqrt(maps), other * np.exp(steep))
             unsure[name] = np.hypot(of_maps, theory)
         return Expected(
-            bias,
+            {name: values[0] for name, values in found.items()},
             scatter,
             unsure,
             np.exp(found["area"][1]),
             np.exp(found["area"][2]),
             maps,
-            (float(unit * np.exp(low)), float(unit * np.exp(high))) if low <= high else (np.nan, np.nan),
-            float(unit * np.exp(lightest)),
+            (float(unit * low), float(unit * high)) if low <= high else (np.nan, np.nan),
+            float(unit * lightest),
         )
 
-    def _near(self, x: float) -> list[tuple[float, _Surface]]:
-        """Neighbouring surfaces and their weights."""
-        place = float(np.interp(np.log(x), np.log(self.x), np.arange(len(self.x))))
-        nearest = round(place)
-        if abs(place - nearest) <= _ROUNDING:
-            return [(1.0, self.surfaces[nearest])]
-        k = int(place)
-        return [(k + 1 - place, self.surfaces[k]), (place - k, self.surfaces[k + 1])]
+
+def _between(rows: Mapping[str, Array], name: str, unit: float, at: Array) -> Array:
+    """Bias, logarithms of contacts, waves and steepness, and what is unsure, shape (5, loads)."""
+    bias, off = rows[name], rows[f"{name}_std"]
+    # The table's load is the right one; at a given gap the model is known by its own.
+    own = rows["p"] * (1 + bias) if name == "load" else rows["p"]
+    known = np.isfinite(own)
+    if not known.any():
+        return np.full((5, *at.shape), np.nan)
+    # Change of the logarithm of the load per unit of gap, between maps.
+    steep = np.log(off / (1 + bias) / rows["separation_std"]) if name == "load" else np.zeros_like(own)
+    unsure = np.where(rows["maps"] > 0, 0.0, off if name == "separation" else off / (1 + bias))
+    points = np.log(own[known] / unit)
+    nearest = points[np.argmin(np.abs(points - at[:, None]), axis=1)]
+    at = np.where(np.abs(nearest - at) <= _ROUNDING, nearest, at)
+    numbers = bias, np.log(rows["contacts"]), np.log(rows["waves"]), steep, unsure
+    return np.array([np.interp(at, points, y[known], np.nan, np.nan) for y in numbers])

@@ -19,7 +19,6 @@ _IN_WORDS = {  # x and loads of the kinds of maps, the maps, and what lighter lo
     "caps": ("eta R sigma", "p/(E* sqrt(sigma/R))", "separate caps", "Hertz's law"),
 }
 _NONE = 1.0  # contacts per surface; no statement for fewer
-_SURE = 2.1  # standard deviations that hold 95 % of maps left out: light loads have long tails
 
 
 def validity_of(scene: Any, separations: ArrayLike | None = None) -> Validity:
@@ -49,7 +48,7 @@ def validity_of(scene: Any, separations: ArrayLike | None = None) -> Validity:
         return _nothing(
             h, f"outside the measured range ({_IN_WORDS[place.kind][0]} = {place.x:.4g}; {_span(grid)})"
         )
-    return _looked_up(scene, place, grid, h, h)
+    return _looked_up(scene, place, grid, h)
 
 
 def _nothing(h: Array, why: str) -> Validity:
@@ -58,13 +57,13 @@ def _nothing(h: Array, why: str) -> Validity:
     return Validity(h, none, empty, empty, unknown=why)
 
 
-def _looked_up(scene: Any, place: Place, grid: Grid, h: Array, felt: Array) -> Validity:
-    p = reduced_pressure(scene, felt) / place.slope
+def _looked_up(scene: Any, place: Place, grid: Grid, h: Array) -> Validity:
+    p = reduced_pressure(scene, h) / place.slope
     found = grid.expected(place.x, p)
-    share = _share(scene, place, found, felt)
+    share = _share(scene, place, found, h)
     bias, error = {}, {}
     for name in COLUMNS:
-        off = farthest(found, name, share[name])
+        off = found.farthest(name, share[name])
         unit = place.rms if name == "separation" else 1.0
         unit = np.nan if place.area_only and name != "area" else unit
         bias[name] = unit * found.bias[name]
@@ -76,7 +75,7 @@ def _looked_up(scene: Any, place: Place, grid: Grid, h: Array, felt: Array) -> V
     found_at = Validity(h, p, error, bias, graded, axis, where, listed=place.kind == "caps")
     if found_at.measured.all():
         return found_at
-    none = scene.n_asperities * scene.heights.sf(felt) < _NONE
+    none = scene.n_asperities * scene.heights.sf(h) < _NONE
     why = ["outside the measured range"] * bool(np.any(~none & ~found_at.measured))
     why += ["fewer than one contact per surface"] * bool(none.any())
     if none.all():
@@ -85,20 +84,14 @@ def _looked_up(scene: Any, place: Place, grid: Grid, h: Array, felt: Array) -> V
     return replace(found_at, unknown=f"{' or '.join(why)}{told}")
 
 
-def farthest(found: Expected, name: str, share: Array) -> Array:
-    """How far 95 % of surfaces are from the bias, at most: those that scatter by a share of what maps do."""
-    off = _SURE * np.hypot(found.scatter[name] * share, found.unsure[name])
-    return off if name == "separation" else (1 + found.bias[name]) * np.expm1(off)  # ratios differ by factors
-
-
-def _share(scene: Any, place: Place, found: Expected, felt: Array) -> dict[str, Array]:
+def _share(scene: Any, place: Place, found: Expected, h: Array) -> dict[str, Array]:
     """Root of the contacts of a map over those of a surface; of waves, if fewer of them, for all but areas.
 
     A gap, and what follows from it, is as sure as the long waves are many, however many contacts lie on them.
     """
     area = scene.n_asperities / scene.surface.eta
     with np.errstate(divide="ignore", invalid="ignore"):
-        own = scene.n_asperities * scene.heights.sf(felt)
+        own = scene.n_asperities * scene.heights.sf(h)
         contacts = np.sqrt(found.contacts / np.where(own < _NONE, np.nan, own))
     waves = np.sqrt(found.waves * place.correlation_area / area)
     return {name: contacts if name == "area" else np.fmax(contacts, waves) for name in COLUMNS}

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mcgw.validity import error_table, lookup
+from mcgw.validity import error_table
 
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "runs" / "validation"
@@ -170,7 +170,7 @@ def test_95_percent_hold_of_maps_left_out(monkeypatch):
                 real = getattr(one, name)
                 at = np.array([row["p"] * (1 + real) if name == "load" else row["p"]])
                 said = grid.expected(row["x"], at)
-                (bias,), (off,) = said.bias[name], lookup.farthest(said, name, np.ones(1))
+                (bias,), (off,) = said.bias[name], said.farthest(name, np.ones(1))
                 if math.isnan(bias):
                     continue
                 low = bias - off if name == "separation" else (1 + bias) ** 2 / (1 + bias + off) - 1
