@@ -55,13 +55,9 @@ def grading_of(section: Section, surface: Surface | None, folder: Path) -> Gradi
     """Read the table [grading]; mistakes are noted and give a homogeneous one."""
 
     def table(file: str | None = None, s: Any = (), ratio: Any = ()) -> Table | None:
-        try:
-            if file is None:
-                return Table(s, ratio)
-            return read_grading(folder / file, surface) if surface else None
-        except ValueError as error:
-            advice = f"give a CSV file, or lists s and ratio; {error}"
-            raise ValueError(advice if file is None else f"file: {advice}") from None
+        if file is None:
+            return Table(s, ratio)
+        return read_grading(folder / file, surface) if surface else None
 
     law = section.read("law", "exponential" if "gamma" in section else "homogeneous")
     return _law(section, "law", law, GRADINGS | {"table": table}) or Homogeneous()
@@ -93,15 +89,10 @@ def heights_of(section: Section, folder: Path) -> HeightLaw | None:
     def table(
         heights: Any = None, file: str | None = None, resample: bool = True, s: Any = (), share: Any = ()
     ) -> HeightLaw:
-        try:
-            sample = heights if file is None else read_heights(folder / file)
-            if sample is None:
-                return HeightTable(s, share)
-            return HeightTable.of(sample) if resample else MeasuredHeights(sample)
-        except ValueError as error:
-            key = "s" if heights is file is None else "heights" if file is None else "file"
-            advice = "give heights (a list), a file of them, or points s and share"
-            raise ValueError(f"{key}: {advice}; {error}") from None
+        sample = heights if file is None else read_heights(folder / file)
+        if sample is None:
+            return HeightTable(s, share)
+        return HeightTable.of(sample) if resample else MeasuredHeights(sample)
 
     made: HeightLaw | None = _law(
         section, "law", section.read("law"), HEIGHTS | {"table": table, "scipy": _of_scipy}

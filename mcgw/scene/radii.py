@@ -111,20 +111,19 @@ def datum_shift(section: Section, heights: HeightLaw | None) -> float:
 
 def listed_of(section: Section, folder: Path) -> ListedSummits | None:
     """Read listed summits; None if there are none, or mistakes, which are noted."""
-    file, heights, radii, ratios, resample = section.read_all(LISTS).values()
-    over_surface = file is None and radii is None
-    radius = ratios if over_surface else radii
-    if section.problems or (file is None) is (heights is None or radius is None):
-        return None
-    key = "file" if file is not None else "heights"
-    try:
-        z, R = _checked(*((heights, radius) if file is None else read_summits(folder / file)))
+
+    def listed(file: Any, heights: Any, radii: Any, ratios: Any, resample: Any) -> ListedSummits:
+        own = (heights, ratios if radii is None else radii)
+        z, R = _checked(*(own if file is None else read_summits(folder / file)))
         law = MeasuredHeights(z, resampled=bool(resample))
-        of_surface = {} if over_surface else {"sigma": float(z.std()), "radius": float(1 / np.mean(1 / R))}
-        return ListedSummits(law, R, {**of_surface, "eta": len(z)})
-    except (TypeError, ValueError) as error:
-        advice = "give a CSV file with columns height and radius in m, or lists heights and radii"
-        return section.fail(key, section.table.get(key), f"{advice}; {error}")
+        in_metres = {"sigma": float(z.std()), "radius": float(1 / np.mean(1 / R))}
+        return ListedSummits(law, R, {"eta": len(z)} | (in_metres if file is not None or radii else {}))
+
+    given = section.read_all(LISTS)
+    if (given["file"] is None) is (given["heights"] is None or given["radii"] is given["ratios"]):
+        return None
+    made: ListedSummits | None = section.made(listed, given)
+    return made
 
 
 def _checked(heights: Any, radii: Any) -> tuple[Array, Array]:
