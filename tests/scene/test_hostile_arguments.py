@@ -10,7 +10,6 @@ from oracles.inside import CSV, Output, check_outputs
 from strategies import FEW, VALUES
 
 import mcgw
-from mcgw.cli import main
 from mcgw.maps import Topography, read_map, write_map
 
 FLAT = Topography(1e-6 * np.arange(12.0).reshape(3, 4), (1e-6, 2e-6))
@@ -28,13 +27,6 @@ def test_loads_down_to_the_smallest_number_are_found_or_refused(make_scene, give
     name = {"pressure": "load", "area_fraction": "area"}.get(given, given)
     assert found.surfaces[name] == pytest.approx(found.amount, rel=0.5)
     assert np.isfinite(list(found.value.values())).all()
-
-
-@pytest.mark.parametrize("option", ["--load", "--pressure", "--area-fraction"])
-def test_solve_needs_a_value_of_what_is_given(option, capsys):
-    with pytest.raises(SystemExit, match="2"):
-        main(["solve", "s.toml", option])
-    assert f"{option}: expected at least one argument" in capsys.readouterr().err
 
 
 RIGHT = {

@@ -150,33 +150,3 @@ def test_rough_times_are_counted_by_hand(keep, make_scene, monkeypatch):
     kept = 36 * 4e-8 + 36**2 / 2 * 2.5e-10 if keep == "statistics" else 0.0
     expected = 50 * (8.0 / numba.get_num_threads() + kept)
     assert drawing.rough_seconds(make_scene(keep=keep), 50) == pytest.approx(expected, rel=1e-14)
-
-
-@pytest.mark.parametrize(
-    ("rough", "at_least", "seconds"),
-    [(0.05, 0.0, 300.0), (0.051, 0.0, 5.1), (0.04, 4.1, 4.0), (0.04, 4.0, 300.0), (0.04, 3.9, 300.0)],
-)
-def test_a_trial_tells_the_time_where_it_is_short_and_asked_for(
-    rough, at_least, seconds, make_scene, monkeypatch
-):
-    """A hundred surfaces, each of 3 s if they are tried."""
-    monkeypatch.setattr(drawing, "rough_seconds", lambda _, n: n * rough)
-    monkeypatch.setattr(drawing, "seconds_per_surface", lambda *_: 3.0)
-    assert drawing.seconds_for(make_scene(), None, 100, at_least=at_least) == pytest.approx(seconds)
-    kept = make_scene(keep="statistics")
-    more = 100 * (36 * 4e-8 + 36**2 / 2 * 2.5e-10) if seconds == 300 else 0.0
-    told = drawing.seconds_for(kept, None, 100, at_least=at_least)
-    assert told - seconds == pytest.approx(more, abs=1e-12)
-
-
-def test_a_trial_is_the_median_of_three_after_one_that_does_not_count(make_scene, monkeypatch):
-    clock, asked = iter([0.0, 30.0, 100.0, 110.0, 200.0, 220.0]), []
-    monkeypatch.setattr(drawing, "perf_counter", lambda: next(clock))
-    monkeypatch.setattr(drawing, "drawn_blocks", lambda *words: asked.append(words) or [])
-    for words, size in ((0, 256), (10**6 - 36, 20), (10**8, 1)):
-        sampler = SimpleNamespace(words=words, draws=0)
-        n = size * numba.get_num_threads() if size > 1 else 1
-        assert drawing.seconds_per_surface(make_scene(), sampler) == 20.0 / n
-        assert asked == [(sampler, 0, n, size)] * 4
-        asked.clear()
-        clock = iter([0.0, 30.0, 100.0, 110.0, 200.0, 220.0])

@@ -25,10 +25,6 @@ def bent(s):
 SCENES = {
     "lambda": {"grading": lambda s: 1 + 0.3 * np.tanh(s)},
     "kink": {"grading": bent},
-    "told": {"grading": analytic.Custom(lambda s: np.where(s > 1.1, 2.0, 1.0) + np.abs(s - 0.4), (0.4, 1.1))},
-    "exp(12 s)": {"grading": analytic.Custom(lambda s: np.exp(12 * s), checked=False)},
-    "clip": {"grading": lambda s: s - 0.9, "negative": "clip"},
-    "lambda, lognorm": {"grading": lambda s: 1 + s * s, "heights": scipy.stats.lognorm(0.3)},
 }
 
 
@@ -49,20 +45,6 @@ def make(make_scene):
         return make_scene(**(values | SCENES[name] | changes))
 
     return of
-
-
-@pytest.mark.parametrize("name", ["kink", "exp(12 s)", "told", "clip", "lambda, lognorm"])
-def test_sums_are_those_of_the_function(make, name):
-    """The heights themselves, added up with the function and not with its series."""
-    scene = make(name, n_surfaces=2, count="fixed")
-    drawn = mcgw.simulate(scene)
-    modulus = analytic.Clipped(scene.grading) if scene.negative == "clip" else scene.grading
-    for surface in range(2):
-        s = mcgw.heights(scene, surface)
-        unit = 4 / 3 * scene.surface.E_star * scene.surface.radius**0.5 * scene.surface.sigma**1.5
-        for k, h in enumerate(H):
-            exact = np.sum(modulus(s[s > h]) * (s[s > h] - h) ** 1.5) * unit
-            assert drawn.load[surface, k] == pytest.approx(exact, rel=2e-12)
 
 
 # --- another machine, another function ------------------------------------------------------------------

@@ -74,23 +74,17 @@ def put(section, line):
 
 # Text of a scene, and what its error must say: the key, and what would do.
 BAD = [
-    (separations("[0.0, 1e400]"), "contact.separations"),
     (separations("[1.0, -5e-324]"), "contact.separations: -4.94066e-324 is too close to 0"),
     (put("ensemble", "n_asperities = 9007199254740993"), "between 1 and 2^53"),
     (changed("sigma = 1e-6", "sigma = 1e-320"), "beyond double precision"),
-    (changed("sigma = 1e-6", f"sigma = {10**400}"), "surface.sigma"),
     (changed("E_star = 1e11", "E_star = 1e308"), "beyond double precision"),
     (GOOD + '[grading]\nlaw = "table"\ns = [0.0, 9.0]\nratio = [1.0, -1.0]', "negative from s = 4.5"),
     (GOOD + '[grading]\nlaw = "table"\ns = [1.0, 0.0]\nratio = [1.0, 2.0]', "the heights must increase"),
-    (changed("seed = 5", 'sampler = "cell"'), "ensemble.sampler = 'cell': did you mean cells? choose one"),
     (put("contact", 'quantities = ["lod"]'),
      "contact.quantities = 'lod': did you mean load? choose one of load, area"),
-    (changed("radius = 1e-5", ""), "surface.radius: missing; give it in m"),
-    ("", "surface.sigma: missing"),
     (changed("[contact]", "[contatc]"), "contact.separations: missing"),
     (put("surface", "sigma = 2e-6"), "this is not TOML"),
     (b"\xef\xbb\xbf" + GOOD.encode(), "this is not TOML"),
-    (bytes(range(256)), "this is not TOML"),
     (put("ensemble", f"n_asperities = {'9' * 5000}"), "this is not TOML"),
     (separations("[" * 5000 + "]" * 5000), "this is not TOML"),
 ]  # fmt: skip
