@@ -192,7 +192,7 @@ TABLES: dict[str, TableOfKeys] = {
     Key("load", _PIECES, _PIECES_EXAMPLE),
     Key("area", _PIECES, _PIECES_EXAMPLE),
     Key("checked", Flag(), "false", "`false`: a law far from Hertz's at all penetrations is meant so", True),
-), word="name"),
+),),
 "interaction": TableOfKeys("[Asperity interaction](../explanation/interaction.md). Default: asperities are "
     "independent.", (
     Key("reference", Word(("body", "mean-plane"), f"give {_PLANES}"), '"body"', required=True),
@@ -235,6 +235,14 @@ def whole_key(key: str) -> str:
     if "." in key or key in TABLES or len(tables) != 1:
         return key
     return f"{tables[0]}.{key}" if tables[0] else key
+
+
+def as_tables(document: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return a document with its contact law as a table, which may be a word in its place."""
+    contact = document.get("contact")
+    if not isinstance(contact, Mapping) or not isinstance(law := contact.get("law"), str):
+        return document
+    return {**document, "contact": {**contact, "law": {"name": law}}}
 
 
 def written(part: Any, table: str) -> dict[str, Any]:

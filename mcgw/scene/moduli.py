@@ -22,7 +22,6 @@ _UNITS = (1.0, 1e6, 1e9)  # in which moduli are given, Pa
 _PARAMETERS = (analytic.Homogeneous, analytic.Exponential)
 _SAFELY = 1e4  # factor by which the sum over all asperities stays below the largest number
 _FARTHEST_HEIGHT = 50.0  # reduced, of which no surface has one
-_RATIOS = (1e-3, 50.0)  # from a gel on its rubber to diamond on its glue
 _UNTOLD = 0.1  # share of the contacts at a separation that a table may leave to the value of its end
 _MEANT = "; if it is meant so, give "
 
@@ -191,18 +190,12 @@ def _key(scene: Fields) -> str:
 
 
 def doubts_of_table(table: analytic.Table, scene: Fields) -> Iterator[str]:
-    """Heights and moduli of a table in other units, and contacts beyond its ends."""
+    """Heights of a table in other units, and contacts beyond its ends."""
     farthest = max(table.s, key=abs)
     if abs(farthest) > _FARTHEST_HEIGHT:
         yield (
             f"grading: a point lies at s = {farthest:.3g} sigma, where there are no summits; s is z/sigma, "
             "and z is in m unless the header of the file says z (um)"
-        )
-    ratios = [abs(ratio) for ratio in table.ratio if ratio != 0]
-    if odd := [ratio for ratio in ratios if not _RATIOS[0] <= ratio <= _RATIOS[1]]:
-        yield (
-            f"grading: E*(s)/E* = {odd[0]:.3g} of surface.E_star = {scene.surface.E_star:g} Pa; a ratio "
-            "should be near 1, and E_star is in Pa unless the header of the file says E_star (GPa)"
         )
     low, high = min(scene.separations), max(scene.separations)
     touch, from_first, over_last = scene.heights.sf(np.maximum(low, (low, table.s[0], table.s[-1])))

@@ -13,7 +13,7 @@ from analytic.laws import ContactLaw, Hertz
 from analytic.laws.law import check_poisson
 from mcgw.scene.arguments import as_seed, as_toml
 from mcgw.scene.fields import LeftOut
-from mcgw.scene.keys import KEYS, MOMENTS, SURFACE_UNITS, TABLES, whole_key
+from mcgw.scene.keys import KEYS, MOMENTS, SURFACE_UNITS, TABLES, as_tables, whole_key
 from mcgw.scene.laws import OF_YIELD, contact_law, grading_given, grading_of, heights_given, heights_of
 from mcgw.scene.parts import Contact, Graded, Joint, Sampling
 from mcgw.scene.radii import LISTS, Spectral, curvature_of, datum_shift, listed_of
@@ -104,14 +104,16 @@ def of_tables(
     SceneError
         With one line for each mistake.
     """
-    document = with_bodies(document, folder, lambda tables, near: of_tables(tables, None, near, None))
+    document = with_bodies(
+        as_tables(document), folder, lambda tables, near: of_tables(tables, None, near, None)
+    )
     top, objects = Section("", document, KEYS[""]), python or {}
     of: dict[str, Section] = {}
     for name, table in TABLES.items():
         outer, _, inner = name.rpartition(".")
         if name:
             advice = "" if python is None else table.advice
-            of[name] = of.get(outer, top).section(inner, KEYS[name], advice, table.word)
+            of[name] = of.get(outer, top).section(inner, KEYS[name], advice)
     surface, heights, curvature = _surface_and_summits(top, of, objects, folder)
     if "grading" in objects:
         grading = grading_given(top, objects["grading"])

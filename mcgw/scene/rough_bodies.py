@@ -96,21 +96,13 @@ def with_bodies(document: Tables, folder: Path, read: Callable[[Tables, Path], T
     total = pair.moments
     known = {key: value for key, value in surface.items() if key != "bodies"}
     found["surface"] = known | {"m0": total.m0, "m2": total.m2, "m4": total.m4, "E_star": pair.E_star}
-    contact, joint, law = document.get("contact", {}), document.get("joint", {}), law_of(document)
+    contact, joint = document.get("contact", {}), document.get("joint", {})
+    law = contact.get("law", {}) if isinstance(contact, Mapping) else None
     if isinstance(joint, Mapping) and not _CONDUCTION & set(joint) and pair.conductivities:
         found["joint"] = {**joint, "conductivities": list(pair.conductivities)}
-    if law is not None and not _YIELD & set(law) and pair.hardness:
+    if isinstance(law, Mapping) and not _YIELD & set(law) and pair.hardness:
         found["contact"] = {**contact, "law": {**law, "hardness": pair.hardness}}
     return found
-
-
-def law_of(document: Tables) -> dict[str, Any] | None:
-    """Return the keys of the contact law of a scene, which may be a word; None if it is wrong."""
-    contact = document.get("contact", {})
-    law = contact.get("law", {}) if isinstance(contact, Mapping) else None
-    if isinstance(law, str):
-        return {"name": law}
-    return dict(law) if isinstance(law, Mapping) else None
 
 
 def files_of_bodies(document: Tables) -> list[str]:

@@ -12,7 +12,7 @@ from analytic.laws import Hertz
 from mcgw.formats.named_files import HDF5, loads, read_bytes
 from mcgw.machine.terminal import one_line
 from mcgw.scene.fields import LeftOut
-from mcgw.scene.keys import whole_key, written
+from mcgw.scene.keys import as_tables, whole_key, written
 from mcgw.scene.laws import contact_law_table, grading_table, heights_table
 from mcgw.scene.radii import summits_table
 from mcgw.scene.reading import of_tables
@@ -163,7 +163,7 @@ def with_changes(document: Mapping[str, Any], changes: Mapping[str, Any]) -> dic
 
     A key that one table alone has may stand without its table, and a word for a law is its name.
     """
-    return _changed(document, {whole_key(key): value for key, value in changes.items()})
+    return _changed(as_tables(document), {whole_key(key): value for key, value in changes.items()})
 
 
 def _changed(document: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
@@ -174,7 +174,6 @@ def _changed(document: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[st
             value = {**held, "name": value}
         if inner:
             held = changed.get(table, {})
-            held = {"name": held} if table == "law" and isinstance(held, str) else held
             value = _changed(held, {inner: value}) if isinstance(held, Mapping) else held
         changed[table] = value
     return changed

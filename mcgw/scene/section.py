@@ -114,7 +114,7 @@ class TableOfKeys(NamedTuple):
     """A table of a scene file: its description, as Markdown, and its rows.
 
     Where all its keys `make` an object, the scene holds that in a field of its name, and Python gives it; or
-    else hears the `advice`. A text in place of the table is the value of its key `word`, if it has one.
+    else hears the `advice`.
     """
 
     words: str
@@ -122,7 +122,6 @@ class TableOfKeys(NamedTuple):
     required: bool = False
     make: Callable[..., Any] | None = None
     advice: str = ""
-    word: str = ""
 
 
 class Section:
@@ -150,12 +149,10 @@ class Section:
         self.known = [*rows]
         self.problems: list[str] = []
 
-    def section(self, name: str, rows: Mapping[str, Key], advice: str = "", word: str = "") -> "Section":
-        """Return a table inside this one; empty if missing. A text in its place is its key `word`."""
+    def section(self, name: str, rows: Mapping[str, Key], advice: str = "") -> "Section":
+        """Return a table inside this one; empty if missing."""
         self.known.append(name)
         value = self.table.get(name, {})
-        if word and isinstance(value, str):
-            value = {word: value}
         if not isinstance(value, dict):
             self.fail(name, value, advice or f"must be a table: write [{name}] above its keys")
             value = {}
