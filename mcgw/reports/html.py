@@ -134,12 +134,11 @@ def laws_table(scene: Scene) -> Table | None:
     others = other_laws(scene)
     if others is None:
         return None
-    low, high = others.spread
     names = [f"{scene.law.name} (this one)", *others.load]
     words = (
         f"Means at d/σ = {others.separation:g} by theory, over those of this report, for the same critical "
         f"penetration of {others.critical:.4g} σ. The choice between elastic-plastic laws changes the load "
-        f"by up to {high / low - 1:.0%}."
+        f"by up to {others.worth:.0%}."
     )
     load, area = ([1.0, *(each[name] for name in others.load)] for each in (others.load, others.area))
     numbers = (Column(name, x, unit="1", form=".4g") for name, x in (("load", load), ("area", area)))

@@ -1,7 +1,7 @@
 """Cautions about contact laws: use beyond their range, and what other plastic laws would give."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -22,21 +22,14 @@ _POISSON = 0.3  # if the law of the scene has none
 _RATIOS = (1 / 3, 3.0)  # ratio of moduli for which the perturbation of a coating holds
 
 
-def law_cautions(scene: Scene) -> list[str]:
-    """Cautions about the contact law, one per line; none for Hertz."""
-    found = [_choice, _yielded, _jumps, _kogut_etsion, _jackson_green, _coating, _adhesion]
-    return [line for caution in found for line in caution(scene)]
-
-
 def _choice(scene: Scene) -> Iterator[str]:
     """State how much comparable laws differ."""
     others = other_laws(scene)
     if others is None:
         return
-    low, high = others.spread
     ratios = ", ".join(f"{name} {ratio:.3g}" for name, ratio in others.load.items())
     yield (
-        f'contact.law = "{scene.law.name}": laws differ by {high / low - 1:.0%} in load at d/sigma = '
+        f'contact.law = "{scene.law.name}": laws differ by {others.worth:.0%} in load at d/sigma = '
         f"{others.separation:.3g}; ratios to this one at a critical penetration of "
         f"{others.critical:.3g} sigma: {ratios}"
     )
@@ -45,8 +38,6 @@ def _choice(scene: Scene) -> Iterator[str]:
 def _yielded(scene: Scene) -> Iterator[str]:
     """State how many contacts have yielded."""
     h = scene.lowest
-    if not isinstance(scene.law, ElasticPlastic) or not scene.heights.sf(np.array(h)) > 0:
-        return
     share = 1 - float(scene.theory.share(0, h))
     if share > _DEEP:
         yield (
@@ -57,8 +48,6 @@ def _yielded(scene: Scene) -> Iterator[str]:
 
 def _jumps(scene: Scene) -> Iterator[str]:
     """Say that stiffness is not the slope of the load."""
-    if not isinstance(scene.law, ElasticPlastic):
-        return
     line = f'contact.law = "{scene.law.name}": stiffness is that of initial unloading, 2 E*(s) a per contact'
     if getattr(scene.law, "bridge", "none to build") is None:
         yield f'{line}; load_slope ignores the jumps of the load (bridge = "hermite" smooths them)'
@@ -68,10 +57,9 @@ def _jumps(scene: Scene) -> Iterator[str]:
 
 def _kogut_etsion(scene: Scene) -> Iterator[str]:
     """State the work gained because the fits of loading and unloading do not quite match, and their ends."""
-    if not isinstance(scene.law, analytic.KogutEtsion):
-        return
+    law: Any = scene.law
     back = scene.unload_from is not None
-    if back and scene.law.bridge is None and (share := _share(scene, 1.0) - _share(scene, 1.25)) > 0:
+    if back and law.bridge is None and (share := _share(scene, 1.0) - _share(scene, 1.25)) > 0:
         yield (
             "contact.unload_from: contacts unloaded from 1 to 1.25 critical penetrations return up to 3 "
             f"% more work than they took, because the fitted load jumps; this affects "
@@ -90,8 +78,6 @@ def _share(scene: Scene, multiple: float) -> float:
     """Share of contacts deeper than a multiple of the critical penetration, at the smallest separation."""
     h, law = scene.lowest, scene.reduced_law
     assert isinstance(law, ElasticPlastic)
-    if not scene.heights.sf(np.array(h)) > 0:
-        return 0.0
     s = scene.heights.isf((np.arange(_QUANTILES) + 0.5) / _QUANTILES, h)  # share among contacts
     return float(np.mean(s - h > multiple * law.delta_c(scene.modulus(s))))
 
@@ -99,8 +85,6 @@ def _share(scene: Scene, multiple: float) -> float:
 def _jackson_green(scene: Scene) -> Iterator[str]:
     """Caution about materials outside those of the finite elements, and contacts wider than theirs."""
     law: Any = scene.reduced_law
-    if not isinstance(law, analytic.JacksonGreen):
-        return
     h = scene.lowest
     e = scene.modulus(np.linspace(max(h, scene.least), scene.highest, 101))
     strains = law.yield_strain / e[e > 0] if law.yield_strain else np.empty(0)
@@ -109,8 +93,6 @@ def _jackson_green(scene: Scene) -> Iterator[str]:
             f"contact.law.yield_strength over E*(s) is {strains.min():.2g} to {strains.max():.2g}; the law "
             f"was fitted from {_STRAINS[0]:g} to {_STRAINS[1]:g}"
         )
-    if not scene.heights.sf(np.array(h)) > 0:
-        return
     s = scene.heights.isf(np.array([_DEEP]), h)
     y, e = np.sqrt(np.maximum(s - h, 0)), scene.modulus(s)
     piece = int(np.sum(law.limits(e)[:, 0] <= s - h))
@@ -123,17 +105,15 @@ def _jackson_green(scene: Scene) -> Iterator[str]:
 
 
 def _coating(scene: Scene) -> Iterator[str]:
-    law = scene.law
-    if isinstance(law, analytic.Coated) and not _RATIOS[0] <= law.ratio <= _RATIOS[1]:
+    law: Any = scene.law
+    if not _RATIOS[0] <= law.ratio <= _RATIOS[1]:
         yield (f"contact.law.ratio = {law.ratio:g}: the first-order coating law is valid from 1/3 to 3")
 
 
 def _adhesion(scene: Scene) -> Iterator[str]:
     """Tabor's number ``(R w^2/(E*^2 z0^3))^(1/3)``; Maugis's (1992) is a multiple of it."""
-    law = scene.reduced_law  # in reduced units: it has its pull_off
-    if not isinstance(law, analytic.JohnsonKendallRoberts | analytic.DerjaguinMullerToporov):
-        return
-    tabor = (law.pull_off or 0.0) * scene.surface.sigma / (0.75 * np.pi ** (2 / 3) * _REACH)
+    law: Any = scene.reduced_law  # in reduced units: it has its pull_off
+    tabor = law.pull_off * scene.surface.sigma / (0.75 * np.pi ** (2 / 3) * _REACH)
     sticks = isinstance(law, analytic.JohnsonKendallRoberts)
     if tabor < _STICKY if sticks else tabor > _STIFF:
         holds = f"above {_STICKY:g}" if sticks else f"below {_STIFF:g}"
@@ -141,6 +121,23 @@ def _adhesion(scene: Scene) -> Iterator[str]:
             f'contact.law = "{law.name}" is for a Tabor number {holds}; for forces that reach '
             f"z0 = {_REACH * 1e9:g} nm it is {tabor:.3g} (Maugis's: {_MAUGIS * tabor:.3g})"
         )
+
+
+_OF_LAWS: dict[Any, tuple[Callable[[Scene], Iterator[str]], ...]] = {
+    ElasticPlastic: (_choice, _yielded, _jumps),
+    analytic.KogutEtsion: (_kogut_etsion,),
+    analytic.JacksonGreen: (_jackson_green,),
+    analytic.Coated: (_coating,),
+    analytic.JohnsonKendallRoberts | analytic.DerjaguinMullerToporov: (_adhesion,),
+}
+
+
+def law_cautions(scene: Scene) -> list[str]:
+    """Cautions about the contact law, one per line; none for Hertz's, or where nothing touches."""
+    if not scene.heights.sf(np.array(scene.lowest)) > 0:
+        return []
+    found = [caution for kind, each in _OF_LAWS.items() if isinstance(scene.law, kind) for caution in each]
+    return [line for caution in found for line in caution(scene)]
 
 
 @dataclass(frozen=True)
@@ -163,10 +160,10 @@ class OtherLaws:
     area: dict[str, float]
 
     @property
-    def spread(self) -> tuple[float, float]:
-        """Smallest and largest ratio of loads among plastic laws, relative to this one."""
+    def worth(self) -> float:
+        """By how much the largest of all loads of plastic laws exceeds the smallest, relative to that."""
         ratios = [1.0, *(ratio for name, ratio in self.load.items() if name != analytic.Hertz.name)]
-        return min(ratios), max(ratios)
+        return max(ratios) / min(ratios) - 1
 
 
 def other_laws(scene: Scene) -> OtherLaws | None:

@@ -135,7 +135,7 @@ class Contact:
     law: ContactLaw | str | Mapping[str, Any] | None = None
     quantities: Sequence[str] | None = key(_NAMES, '["load"]')
     unload_from: float | Literal["loop"] | None = key(Either((Word(("loop",), _BACK), _ANY), _BACK), "-0.5")
-    datum: Literal["summits", "surface"] = key(Word(("summits", "surface")), '"surface"', "summits")
+    datum: Literal["summits", "surface"] | None = key(Word(("summits", "surface")), '"surface"')
     hardness: float | str | None = None
     poisson: float | None = None
 

@@ -98,9 +98,9 @@ def curvature_of(
         return section.fail("largest_radius", section.table.get("largest_radius", largest), str(error))
 
 
-def datum_shift(section: Section, heights: HeightLaw | None) -> float:
+def datum_shift(section: Section, datum: str, heights: HeightLaw | None) -> float:
     """Shift to subtract from separations d/sigma measured from the plane named by ``datum``."""
-    if section.read("datum") != "surface" or heights is None:
+    if datum != "surface" or heights is None:
         return 0.0
     if not isinstance(heights, Nayak):
         advice = 'needs heights.law = "nayak", which defines the mean plane of the surface'

@@ -187,21 +187,24 @@ def _contact(
 
     These are in SI units where there is a film, and of unloading.
     """
-    shift, given = datum_shift(section, heights), section.read("separations")
+    values = section.read_all(section.rows)
+    given, shift = values.pop("separations"), datum_shift(section, values.pop("datum"), heights)
     if isinstance(given, dict):
         even = np.linspace(given["start"], given["stop"], given["num"])
         given = [float(f"{h:.15g}") for h in even]  # 0.3, where even steps give 0.30000000000000004
     listed = [0.0] if given is None else given if isinstance(given, list) else [given]
     separations = tuple(h - shift + 0.0 for h in listed)  # -0.0 is 0.0
-    back = section.read("unload_from")
-    back = min(separations) if back == "loop" else back
-    names = dict.fromkeys(section.read("quantities") or _QUANTITIES)
+    back = min(separations) if values["unload_from"] == "loop" else values["unload_from"]
+    names = dict.fromkeys(values["quantities"] or _QUANTITIES)
     names |= {} if joint.film is None else {"conductance_si": None}
     if back is not None:
         names |= {q.name: None for name in names for q in UNLOADING.values() if q.unloading == name}
-    law = _law(section, of_law, objects)
-    softer = _softer(of_law, law, of_python="law" in objects)
-    return separations, Contact(law, tuple(names), back, **softer)
+    values |= {
+        "law": (law := _law(section, of_law, objects)),
+        "quantities": tuple(names),
+        "unload_from": back,
+    }
+    return separations, Contact(**values, **_softer(of_law, law, of_python="law" in objects))
 
 
 def _law(section: Section, of_law: Section, objects: Values) -> ContactLaw:

@@ -224,7 +224,8 @@ def scene_document(scene: Scene, *, heights_file: str | None = None) -> dict[str
         "grading": {**grading_table(scene.grading), "negative": scene.negative},
         "heights": {} if listed else heights_table(scene.heights, heights_file),
         "summits": scene.summits and summits_table(scene.summits, scene.surface, heights_file),
-        "contact": written(scene, "contact") | ({"law": law} if law else {}),
+        "contact": {"separations": list(scene.separations), **written(scene.contact, "contact")}
+        | ({"law": law} if law else {}),
         **{name: written(getattr(scene, name), name) for name in ("interaction", "joint", "fitted")},
         "ensemble": written(scene.ensemble, "ensemble"),
     }
