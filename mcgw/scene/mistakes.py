@@ -16,9 +16,21 @@ _SAFELY = 1e4  # factor by which the sum over all asperities stays below the lar
 
 
 def mistakes(scene: Fields) -> list[str]:
-    """All that is wrong, later checks only where the earlier ones find nothing."""
-    for checks in ((_values, _history, _measured, _radii), (_scales,), (_law, _together)):
-        if found := [line for check in checks for line in check(scene)]:
+    """All that is wrong with what it has, later checks only where the earlier ones find nothing."""
+    has = {
+        _values: True,
+        _history: scene.unload_from is not None,
+        _measured: isinstance(scene.heights, analytic.MeasuredHeights),
+        _radii: scene.summits is not None,
+        rel_err_mistakes: scene.rel_err is not None,
+    }
+    later = {
+        _law: not scene.hertzian,
+        _gas: scene.joint.gas is not None,
+        _pressed: scene.interaction is not None,
+    }
+    for checks in (has, {_scales: True}, later):
+        if found := [line for check, there in checks.items() if there for line in check(scene)]:
             return found
     if isinstance(scene.grading, analytic.Homogeneous) and scene.law.name != "custom":
         return []
@@ -42,13 +54,13 @@ def _values(scene: Fields) -> Iterator[str]:
             f"ensemble.n_asperities = {scene.n_asperities}: must lie between 1 and 2^53; "
             "change it, or surface.eta and surface.nominal_area"
         )
-    yield from rel_err_mistakes(scene)
+    if scene.law.elastic and "yielded" in scene.quantities:
+        yield f'contact.quantities: "yielded": no contact yields with law = "{scene.law.name}"; leave it out'
 
 
 def _history(scene: Fields) -> Iterator[str]:
     """Unloading that nobody has fitted, or from above where the surface is."""
-    if scene.unload_from is None:
-        return
+    assert scene.unload_from is not None
     if scene.unload_from > min(scene.separations, default=math.inf):
         yield (
             f"contact.unload_from = {scene.unload_from:g}: the separation {scene.lowest:g} is smaller; "
@@ -77,10 +89,6 @@ def _listed(names: list[str]) -> str:
 
 def _law(scene: Fields) -> Iterator[str]:
     """Find a law that means nothing for this surface."""
-    if scene.law.elastic and "yielded" in scene.quantities:
-        yield f'contact.quantities: "yielded": no contact yields with law = "{scene.law.name}"; leave it out'
-    if scene.hertzian:
-        return
     try:
         with np.errstate(all="ignore"):
             limits = scene.reduced_law.limits(np.ones(1))
@@ -95,27 +103,30 @@ def _law(scene: Fields) -> Iterator[str]:
         )
 
 
-def _together(scene: Fields) -> Iterator[str]:
-    """Gas that nobody knows the gap of; asperities that press each other down where that finds no balance."""
+def _gas(scene: Fields) -> Iterator[str]:
+    """Gas that nobody knows the gap of."""
     try:
-        assert scene.gas is None or scene.filled is not None
+        assert scene.filled is not None
     except ValueError as error:
         yield f"joint.{error}"
-        return  # there is no theory of it, which a balance asks
-    if scene.interaction is not None and "load" not in scene.quantities:
+
+
+def _pressed(scene: Fields) -> Iterator[str]:
+    """Asperities that press each other down where that finds no balance."""
+    if "load" not in scene.quantities:
         yield 'interaction: separations depend on the load; add "load" to contact.quantities'
-    elif scene.interaction is not None:
-        h = np.unique(scene.separations)
-        try:
-            sinking = 1 + scene.compliance / scene.surface.sigma * scene.alone.slope("load", h) <= 0
-        except ValueError as error:
-            yield str(error)
-            return
-        if np.any(sinking):
-            yield (
-                f"interaction: at d/sigma = {h[sinking].max():g} the mean plane sinks faster than it is "
-                "pressed, so the nominal separation is not unique; give larger separations"
-            )
+        return
+    h = np.unique(scene.separations)
+    try:
+        sinking = 1 + scene.compliance / scene.surface.sigma * scene.alone.slope("load", h) <= 0
+    except ValueError as error:
+        yield str(error)
+        return
+    if np.any(sinking):
+        yield (
+            f"interaction: at d/sigma = {h[sinking].max():g} the mean plane sinks faster than it is pressed, "
+            "so the nominal separation is not unique; give larger separations"
+        )
 
 
 def _scales(scene: Fields) -> Iterator[str]:
@@ -136,8 +147,7 @@ def _scales(scene: Fields) -> Iterator[str]:
 
 def _measured(scene: Fields) -> Iterator[str]:
     """Measured heights are one surface, added up and not drawn; or drawn one by one, in pairs with radii."""
-    if not isinstance(scene.heights, analytic.MeasuredHeights):
-        return
+    assert isinstance(scene.heights, analytic.MeasuredHeights)
     table = "heights" if scene.summits is None else "summits"
     if promise_of(scene.sampler).needs_density:
         yield (
@@ -164,8 +174,7 @@ def _measured(scene: Fields) -> Iterator[str]:
 
 def _radii(scene: Fields) -> Iterator[str]:
     """Radii of summits that do not go with their heights, or that a sampler does not draw."""
-    if scene.summits is None:
-        return
+    assert scene.summits is not None
     if isinstance(scene.summits, analytic.MeasuredRadii):
         if scene.heights != scene.summits.heights:
             yield "heights: they differ from those of the measured summits; leave them out"

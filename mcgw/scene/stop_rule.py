@@ -11,8 +11,6 @@ from mcgw.scene.fields import Fields
 
 def rel_err_mistakes(scene: Fields) -> Iterator[str]:
     """Mistakes: wishes that the scene cannot have."""
-    if scene.rel_err is None:
-        return
     given = scene.rel_err if isinstance(scene.rel_err, Mapping) else {"": scene.rel_err}
     if not given:
         yield "ensemble.rel_err = {}: name at least one quantity, or give one number for all"
