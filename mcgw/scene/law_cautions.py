@@ -133,9 +133,7 @@ _OF_LAWS: dict[Any, tuple[Callable[[Scene], Iterator[str]], ...]] = {
 
 
 def law_cautions(scene: Scene) -> list[str]:
-    """Cautions about the contact law, one per line; none for Hertz's, or where nothing touches."""
-    if not scene.heights.sf(np.array(scene.lowest)) > 0:
-        return []
+    """Cautions about the contact law, one per line; none for Hertz's."""
     found = [caution for kind, each in _OF_LAWS.items() if isinstance(scene.law, kind) for caution in each]
     return [line for caution in found for line in caution(scene)]
 

@@ -212,7 +212,6 @@ class Section:
 
     def finish(self, moved: Callable[[str], str] = str) -> None:
         """Note unknown keys, whose tables `moved` may know, and those that do not go together."""
-        wrong = bool(self.problems)
         unknown = [key for key in self.table if key not in self.known]
         for key in unknown[:_MOST_NAMED]:
             meant = nearest(key[:99], self.known) or f"known keys: {', '.join(self.known)}"
@@ -221,8 +220,6 @@ class Section:
             self.note(f"{self.path(key)}: unknown key; {meant.removesuffix(' ')}")
         if len(unknown) > _MOST_NAMED:
             self.note(f"[{self.name}]: {len(unknown) - _MOST_NAMED} more unknown keys")
-        if wrong:
-            return  # what does not go together may be a consequence
         for row in (self.rows[name] for name in self.table if name in self.rows):
             if row.needs and not any(other in self for other in row.needs):
                 self.fail(row.name, self.table[row.name], f"give {_either(row.needs)} too, or leave it out")

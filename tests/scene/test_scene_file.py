@@ -153,12 +153,14 @@ SURFACE = analytic.Surface(1e-6, 1e-5, 1e9, 1e-6, 1e11)
 LARGE = replace(SURFACE, nominal_area=1e-5)
 
 
-def test_n_follows_the_surface_unless_it_was_given():
+def test_n_follows_the_surface_unless_it_was_given(tmp_path):
     left_out = mcgw.Scene(surface=SURFACE, separations=(1.0,), seed=1)
     given = mcgw.Scene(surface=SURFACE, separations=(1.0,), ensemble=mcgw.Sampling(n_asperities=1000), seed=1)
     assert left_out == given  # the same ensemble, by whatever way
     assert hash(left_out.n_asperities) == hash(1000)
     assert repr(left_out) == repr(given)
+    for scene in (left_out, given):  # and the same file
+        assert mcgw.run(scene.replace(n_surfaces=2), tmp_path / "e.h5").n_surfaces == 2
     changes = (
         lambda s: s.replace(surface=LARGE),
         lambda s: s.replace(nominal_area=1e-5), lambda s: s.replace(nominal_area="10 mm²"),
