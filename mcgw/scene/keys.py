@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, is_dataclass
 from typing import Any
 
 import analytic
@@ -243,24 +242,3 @@ def as_tables(document: Mapping[str, Any]) -> Mapping[str, Any]:
     if not isinstance(contact, Mapping) or not isinstance(law := contact.get("law"), str):
         return document
     return {**document, "contact": {**contact, "law": {"name": law}}}
-
-
-def written(part: Any, table: str) -> dict[str, Any]:
-    """Return the keys of a table that are values of a part of a scene, without what is not asked for."""
-    found = {}
-    for key, row in KEYS[table].items():
-        value = _plain(getattr(part, key, None))
-        if value is not None and (value != row.default or isinstance(row.kind, Word)):
-            found[key] = value
-    return found
-
-
-def _plain(value: Any) -> Any:
-    """Return a value as TOML has it."""
-    if is_dataclass(value) and not isinstance(value, type):
-        return _plain(asdict(value))
-    if isinstance(value, Mapping):
-        return {key: _plain(inner) for key, inner in value.items() if inner is not None}
-    if isinstance(value, list | tuple):
-        return [_plain(inner) for inner in value]
-    return float(value) if isinstance(value, float) else value

@@ -1,7 +1,7 @@
 """Gradings, height laws and contact laws, read from the keys of their tables and written back."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import asdict
+from dataclasses import asdict, is_dataclass
 from inspect import Parameter, signature
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,8 @@ from analytic import (
 )
 from analytic.laws import ContactLaw, Hertz
 from mcgw.scene.files_beside import read_grading, read_heights
-from mcgw.scene.keys import GRADINGS, HEIGHTS, written
+from mcgw.scene.keys import GRADINGS, HEIGHTS, KEYS
+from mcgw.scene.kinds import Word
 from mcgw.scene.section import SceneError, Section
 
 OF_YIELD = ("hardness", "poisson")  # which tell beside an elastic law whether contacts yield
@@ -46,6 +47,27 @@ def _law(section: Section, key: str, law: str | None, makes: Mapping[str, Callab
             only = f"it is for {key} = {' or '.join(laws)} only; leave it out"
             section.problems += [f"{section.path(name)}: unknown key; {only}"] if laws else []
     return section.made(makes[law], given)
+
+
+def written(part: Any, table: str) -> dict[str, Any]:
+    """Return the keys of a table that are values of a part of a scene, without what is not asked for."""
+    found = {}
+    for key, row in KEYS[table].items():
+        value = _plain(getattr(part, key, None))
+        if value is not None and (value != row.default or isinstance(row.kind, Word)):
+            found[key] = value
+    return found
+
+
+def _plain(value: Any) -> Any:
+    """Return a value as TOML has it."""
+    if is_dataclass(value) and not isinstance(value, type):
+        return _plain(asdict(value))
+    if isinstance(value, Mapping):
+        return {key: _plain(inner) for key, inner in value.items() if inner is not None}
+    if isinstance(value, list | tuple):
+        return [_plain(inner) for inner in value]
+    return float(value) if isinstance(value, float) else value
 
 
 # --- gradings ---

@@ -12,8 +12,8 @@ from analytic.laws import Hertz
 from mcgw.formats.named_files import HDF5, loads, read_bytes
 from mcgw.machine.terminal import one_line
 from mcgw.scene.fields import LeftOut
-from mcgw.scene.keys import as_tables, whole_key, written
-from mcgw.scene.laws import contact_law_table, grading_table, heights_table
+from mcgw.scene.keys import as_tables, whole_key
+from mcgw.scene.laws import contact_law_table, grading_table, heights_table, written
 from mcgw.scene.radii import summits_table
 from mcgw.scene.reading import of_tables
 from mcgw.scene.rough_bodies import files_of_bodies
