@@ -174,6 +174,7 @@ def _changed(document: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[st
             value = {**held, "name": value}
         if inner:
             held = changed.get(table, {})
+            held = {"name": held} if table == "law" and isinstance(held, str) else held
             value = _changed(held, {inner: value}) if isinstance(held, Mapping) else held
         changed[table] = value
     return changed
