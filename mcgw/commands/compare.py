@@ -35,17 +35,15 @@ def compare(
     """
     from mcgw.figures.against_theory import comparison_figure
     from mcgw.figures.panels import save
-    from mcgw.machine.progress import bar
     from mcgw.reports.text import comparison_summary
     from mcgw.statistics.comparison import compare as compared
 
-    with bar("points", terminal=True) as show:
-        found = compared(file, laws=laws, progress=show)
+    found = compared(file, laws=laws)
     save(comparison_figure(found), output)
-    text, whole, verdict = comparison_summary(found, whole=table or says(ALL))
+    text, verdict = comparison_summary(found, whole=table or says(ALL))
     news(*verdict, f"{output}: figure")
     if csv:
-        whole().write(csv)
+        found.table().write(csv)
         news(f"{csv}: the table")
     news(f"next: mcgw report {source()}", text)
     return found.verdict.agrees

@@ -21,11 +21,9 @@ def converge(scene: SceneIn, *, output: Annotated[list[Path], Folder("{}-converg
     """
     from mcgw.figures.panels import save
     from mcgw.figures.studies import convergence_figure
-    from mcgw.machine.progress import bar
     from mcgw.statistics.convergence import SEEDS, converge as tested
 
-    with bar("ensembles", terminal=True) as show:
-        found = tested(scene, progress=show)
+    found = tested(scene)
     save(convergence_figure(found), output[0])
     many = f"{SEEDS} ensembles of {found.scene.n_surfaces} surfaces"
     news(f"convergence {found.word}: p = {found.p:.3g} over all checks of {many}", f"{output[0]}: figure")

@@ -49,18 +49,16 @@ def elastic(
     mcgw elastic spectral.toml --pressure 1MPa --rel-err 0.05 -o solves.jsonl
     """
     from mcgw.elasticity.elastic import elastic as solved
-    from mcgw.machine.progress import bar
     from mcgw.maps.heights_files import read_map
 
     if isinstance(source, Path):
         surface = read_map(source, pixel=None if pixel is None else (pixel, pixel), unit=unit)
     elif pixel is not None or unit is not None:
         raise ValueError(f"--{'unit' if pixel is None else 'pixel'}: is for a map, not a scene; leave it out")
-    with bar("s", terminal=True) as tell:
-        found = solved(
-            surface if isinstance(source, Path) else source, pressure=pressure, separation=separation,
-            E_star=E_star, rel_err=rel_err, solves=solves, seed=seed, path=output, progress=tell,
-        )  # fmt: skip
+    found = solved(
+        surface if isinstance(source, Path) else source, pressure=pressure, separation=separation,
+        E_star=E_star, rel_err=rel_err, solves=solves, seed=seed, path=output,
+    )  # fmt: skip
     print(found)
     details(found.levels)
     if output:

@@ -1,5 +1,6 @@
 """``mcgw fit``: a scene from a measured map, from profiles, or from numbers of an instrument."""
 
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -110,7 +111,6 @@ def fit(
     from mcgw.maps.preparation import preparation_of
     from mcgw.maps.readable_scene import heights_beside, write_scene
     from mcgw.maps.summits import SUMMITS, TILES
-    from mcgw.reports.fitted import fit_words
 
     assumed = " (assumed; give --E-star)" if E_star is None else ""
     E_star = E_STAR if E_star is None else E_star
@@ -141,7 +141,10 @@ def fit(
         raise ValueError(
             f"{wrong} {beside[wrong]}: a profile shows no summits, and has no sub-areas; give a map"
         )
-    said = fit_words(found, names, asked, assumed_unit)
+    filtered = "none" if asked.cutoff is None else f"{asked.cutoff:g} m (Gaussian)"
+    said = [f"{', '.join(names)}: form removed: {asked.form}; cutoff: {filtered}"]
+    said[0] += f"; lengths in {assumed_unit}, since the file gives no unit" if assumed_unit else ""
+    said += [*getattr(found, "notes", ()), *repr(replace(found, cautions=())).splitlines()]
     title = f"Fitted to {names[0][:50]}{f' and {len(map) - 1} more' * (len(map) > 1)}"
     on = {} if nominal_area is None else {"nominal_area": nominal_area}
     scene = fitted_scene(found, use=use, heights=heights, E_star=E_star, title=title, **on)

@@ -23,18 +23,16 @@ Share = Annotated[
 def drawing(
     threads: int | None, jobs: int | None, dask: str | None, shard: str | None
 ) -> Iterator[dict[str, Any]]:
-    """Yield the arguments of `mcgw.run` and `mcgw.sweep` that say how, with a progress bar.
+    """Yield the arguments of `mcgw.run` and `mcgw.sweep` that say how.
 
     Libraries log nothing meanwhile: mcgw itself reports a lost worker or scheduler, in one line.
     """
-    from mcgw.machine.progress import bar
-
     before = logging.root.manager.disable
     logging.disable(logging.CRITICAL)
     try:
-        with _executor(jobs, dask) as executor, bar("surfaces", terminal=True) as show:
+        with _executor(jobs, dask) as executor:
             who = {"executor": executor} if shard is None else {"shard": shard}
-            yield {"threads": threads, "progress": show, **who}
+            yield {"threads": threads, **who}
     finally:
         logging.disable(before)
 

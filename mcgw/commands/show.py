@@ -65,13 +65,12 @@ def show(
     attributes = read_attributes(file)
     if scene or digest:
         return print(attributes["scene" if scene else "digest"], end="" if scene else "\n")
-    from mcgw.reports.text import summary_of
+    from mcgw.reports.text import summary_of, table_of
 
     result = open_results(file)
-    text, table = summary_of(result, attributes, says(ALL))
-    print(text)
+    print(summary_of(result, attributes, says(ALL)))
     if csv:
-        table().write(csv)
+        table_of(result).write(csv)
         news(f"{csv}: the table")
     tell_cautions(result)
     return None

@@ -45,13 +45,13 @@ def solve(
     """
     from analytic import quantity_of
     from mcgw.ensemble.solution import solve as solved
-    from mcgw.machine.progress import bar
+    from mcgw.machine.progress import told
     from mcgw.reports.solved_loads import solutions_table, solutions_text
 
     if scatter is not None and scatter >= 1:
         raise ValueError(f"--scatter {scatter:g}: give a number between 0 and 1, such as 1%")
     changes = {} if surfaces is None else {"n_surfaces": surfaces}
-    with bar("surfaces", terminal=True) as tell:
+    with told(None, "surfaces") as tell:
         found = solved(
             scene, pressure=pressure, load=load, area=area, area_fraction=area_fraction,
             nominal_separation=nominal_separation, progress=tell, **changes,

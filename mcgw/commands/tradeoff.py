@@ -30,13 +30,11 @@ def tradeoff(
     """
     from mcgw.figures.panels import save
     from mcgw.figures.studies import tradeoff_figure
-    from mcgw.machine.progress import bar
     from mcgw.statistics.prices import TARGETS
     from mcgw.statistics.tradeoff import tradeoff as studied
 
     table, measured, figure = output
-    with bar("s", terminal=True) as show:
-        found = studied(scene, seconds=seconds, progress=show)
+    found = studied(scene, seconds=seconds)
     found.table().write(table)
     found.measurements().write(measured)
     save(tradeoff_figure(found), figure)

@@ -3,12 +3,11 @@
 import argparse
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from contextvars import ContextVar
 from typing import TYPE_CHECKING, Any
 
 from mcgw.machine.progress import watched
-from mcgw.machine.terminal import without_passing
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -38,12 +37,8 @@ def speaking(amount: int) -> Iterator[None]:
     """Print this much; when quiet, no progress bars and no warnings either."""
     before = _AMOUNT.set(amount)
     try:
-        if amount == QUIET:
-            with without_passing():
-                yield
-        else:
-            with watched():
-                yield
+        with nullcontext() if amount == QUIET else watched():
+            yield
     finally:
         _AMOUNT.reset(before)
 

@@ -14,8 +14,7 @@ from mcgw.elasticity.multilevel import FEWEST, Design, Mean, design, difference,
 from mcgw.elasticity.solves import Solves
 from mcgw.elasticity.sources import maps_of
 from mcgw.errors import RunError
-from mcgw.formats.sheet import Sheet, Shown
-from mcgw.formats.table import Column, Table
+from mcgw.formats.table import Column, Shown, Table
 from mcgw.machine.progress import Progress, told
 from mcgw.maps.synthetic import Spectrum
 from mcgw.maps.topography import Topography
@@ -89,9 +88,9 @@ class Elastic(Shown):
             return f"no cheaper level helps; {plain}"
         return f"{self.planned.cost:.3g} solves by levels, {self.saved:.1f} times less than {plain}"
 
-    def sheet(self) -> Sheet:
+    def sheet(self) -> Table:
         """Means, intervals and what was saved."""
-        return Sheet(f"Elastic mean over {self.words}", [("cost", self.verdict())], self.table())
+        return self.table().under(f"Elastic mean over {self.words}", [("cost", self.verdict())])
 
 
 def elastic(

@@ -14,8 +14,7 @@ import numpy as np
 from analytic import Nayak, RandomCurvature, SpectralMoments
 from analytic.arrays import Array
 from mcgw.ensemble.at_load import GAPS, mean_surface
-from mcgw.formats.sheet import Sheet, Shown
-from mcgw.formats.table import Column, Table
+from mcgw.formats.table import Column, Shown, Table
 from mcgw.scene.scene import Scene
 from mcgw.scene.uncertainty import Uncertainty
 from mcgw.validity.fitted_map import moments_of_nayak
@@ -143,9 +142,9 @@ class Budget(Shown):
         )
         return Table((Column("95 %", [*self.shares, "all"]), *columns), self.title)
 
-    def sheet(self) -> Sheet:
+    def sheet(self) -> Table:
         """Return the lines, and what would reduce the total."""
-        return Sheet(self.title, [("advice", self.advice)], replace(self.table(), title=""))
+        return self.table().under(self.title, [("advice", self.advice)])
 
 
 def budget_of(solution: Any) -> Budget:

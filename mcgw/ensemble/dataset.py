@@ -12,8 +12,8 @@ from analytic.arrays import Array, Ints
 from mcgw.ensemble.intervals import CONFIDENCE, interval_of
 from mcgw.ensemble.labelled import Labelled
 from mcgw.ensemble.results import Held, Tables
-from mcgw.formats.sheet import Shown, brief
-from mcgw.machine.terminal import plotted, quantity_and_axes
+from mcgw.formats.table import Shown
+from mcgw.machine.terminal import brief, plotted, quantity_and_axes
 from mcgw.scene.scene import Scene
 
 _SAME = 1e-9  # d/sigma

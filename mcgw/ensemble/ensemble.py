@@ -11,8 +11,8 @@ from mcgw.ensemble.dataset import Dataset
 from mcgw.ensemble.labelled import Labelled, Variable, axes_of, statistics_of, values_of
 from mcgw.ensemble.results import Held, Selected, Tables
 from mcgw.formats.law_text import law_text
-from mcgw.formats.sheet import Sheet
 from mcgw.formats.table import Column, Table, evenly
+from mcgw.machine.terminal import brief
 from mcgw.scene.in_words import accuracy_facts, contact_facts
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
@@ -174,7 +174,7 @@ class Ensemble(Dataset):
         """Return what statistics are made of."""
         return self.sums.drawn()
 
-    def sheet(self) -> Sheet:
+    def sheet(self) -> Table:
         """Return how the ensemble was drawn, and means at the lowest, a middle and the highest separation."""
         scene, m = self.scene, self.n_surfaces
         title = f": {scene.title}" if scene.title else ""
@@ -188,17 +188,17 @@ class Ensemble(Dataset):
             *accuracy_facts(scene),
             ("elasticity", scene.validity().brief),
         ]
-        head = f"Ensemble of {m} surfaces of {scene.n_asperities} asperities{title}"
+        head = brief(f"Ensemble of {m} surfaces of {scene.n_asperities} asperities{title}")
         if m * len(scene.separations) * len(scene.quantities) > _MOST_READ:
             held = f"{', '.join(scene.quantities)} at {len(scene.separations)} separations"
-            return Sheet(head, [*facts, ("holds", held)])
+            return Table((), head, [*facts, ("holds", held)])
         names = scene.answers
         columns = [Column("quantity", [f"{q} ({scene.quantity(q).unit})" for q in names], _AT)]
         mean, error = (np.array([get(q)[few] for q in names]) for get in (self.mean, self.stderr))
         for i, h in enumerate(self.separations[few]):
             stderr = Column("stderr", error[:, i], form=".1g")
             columns.append(Column(f"{h:g}", mean[:, i], form=".5g", beside=stderr))
-        return Sheet(head, facts, Table(tuple(columns)))
+        return Table(tuple(columns), head, facts)
 
 
 def shown(ensemble: Ensemble) -> Ensemble:

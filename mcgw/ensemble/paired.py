@@ -1,7 +1,6 @@
 """Ensembles, or points of a sweep, over the same surfaces: ratios and differences of means, and slopes."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from scipy.special import ndtri
@@ -10,9 +9,7 @@ from analytic.arrays import Array, Ints
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.intervals import CONFIDENCE
 from mcgw.ensemble.pooled import Pooled
-from mcgw.formats.sheet import Sheet, Shown
-from mcgw.formats.table import SEPARATION, Column, Table
-from mcgw.machine.terminal import plotted
+from mcgw.formats.table import SEPARATION, Column, Shown, Table
 from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import with_sampling
 
@@ -65,14 +62,10 @@ class Paired(Shown):
         """Upper end of the 95 % interval."""
         return self.interval()[1]
 
-    def plot(self, ax: Any = None) -> Any:
-        """Draw the ratio with its 95 % interval; returns the axes."""
-        return plotted(self, ax)
-
-    def sheet(self) -> Sheet:
+    def sheet(self) -> Table:
         """Ratios at some separations."""
         title = f"Ratio of the mean {self.quantity} over the same surfaces"
-        return Sheet(title, table=self.table().rows())
+        return self.table().rows().under(title)
 
     def table(self) -> Table:
         """Ratio, standard error and gain at every separation."""
@@ -142,11 +135,7 @@ class Slopes(Shown):
     stderr: Array
     theory: Array
 
-    def plot(self, ax: Any = None, *, k: int = 0) -> Any:
-        """Draw the slopes at one separation, given by its index; returns the axes."""
-        return plotted(self, ax, k=k)
-
-    def sheet(self) -> Sheet:
+    def sheet(self) -> Table:
         """Display slopes at the first separation, for some values of the key."""
         flat = [
             np.moveaxis(x, self.axis, 0).reshape(len(self.at), -1)[:, 0]
@@ -159,7 +148,7 @@ class Slopes(Shown):
             Column("theory", flat[2], unit="1"),
         )
         title = f"Change of the mean {self.quantity} with {self.key}"
-        return Sheet(title, table=Table(columns).rows())
+        return Table(columns, title).rows()
 
 
 def paired_ratio(numerator: Ensemble, denominator: Ensemble, quantity: str) -> Paired:

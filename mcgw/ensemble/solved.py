@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.special import stdtrit
@@ -12,9 +12,7 @@ from analytic.arrays import Array
 from analytic.at_load import Moments
 from mcgw.ensemble.at_load import GAPS, Answers, answers_at, controlled, exact_moments
 from mcgw.ensemble.intervals import FEWEST, laws_are_quick
-from mcgw.formats.sheet import Sheet, Shown
-from mcgw.formats.table import Table
-from mcgw.machine.terminal import plotted
+from mcgw.formats.table import Shown, Table
 from mcgw.scene.scene import Scene
 from mcgw.validity.lookup import validity_of
 from mcgw.validity.model_error import Validity
@@ -318,11 +316,7 @@ class Solution(Shown):
         """Measured error of the model at this separation."""
         return validity_of(self.scene, [self.theory["separation"]])
 
-    def plot(self, ax: Any = None) -> Any:
-        """Draw how the separation differs from surface to surface; returns the axes."""
-        return plotted(self, ax)
-
-    def sheet(self) -> Sheet:
+    def sheet(self) -> Table:
         """Return the answers, and how specimens differ."""
         from mcgw.ensemble.solved_table import sheet_of
 

@@ -10,25 +10,24 @@ from analytic import SEPARATIONS
 from mcgw.ensemble.at_load import GAPS
 from mcgw.ensemble.budget import MOST_YIELDING, yields
 from mcgw.ensemble.intervals import interval_column
-from mcgw.formats.sheet import Sheet
 from mcgw.formats.table import Column, Table
 from mcgw.validity.lookup import validity_of
 from mcgw.validity.model_error import Validity
 
 
-def sheet_of(solution: Any) -> Sheet:
+def sheet_of(solution: Any) -> Table:
     """Return the answers, and how specimens differ."""
     drawn = "" if solution.exact else f"{len(solution.surfaces['separation'])} "
     many = f"{drawn}surfaces of {solution.scene.n_asperities} asperities"
     many += ", drawn from the measured summits" if solution.scene.as_measured else ""
     facts = [("over", many), ("elasticity", solution.against_elasticity.brief)]
     facts += [("yielding", why)] if (why := yields(solution.yielding)) else []
-    table = solution.table()
+    table: Table = solution.table()
     table = replace(table, columns=tuple(x for x in table.columns if x.name != "infinite"))
     if np.isnan(table.flat[-1].values).all():
         table = replace(table, columns=table.columns[:-1])
     found = [k for k, name in enumerate(solution.theory) if name != solution.given]
-    return Sheet(table.title, facts, table.at(found))
+    return table.at(found).under(table.title, facts)
 
 
 def table_of(solution: Any, *, specimens: bool) -> Table:

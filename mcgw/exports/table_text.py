@@ -7,8 +7,7 @@ import numpy as np
 from analytic.arrays import Array
 from mcgw.exports.curves import Curve, Kind
 from mcgw.exports.programs import Program
-from mcgw.formats.sheet import brief
-from mcgw.machine.terminal import one_line
+from mcgw.machine.terminal import brief, one_line
 from mcgw.scene.in_words import joint_text
 from mcgw.scene.scene import Scene
 

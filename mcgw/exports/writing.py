@@ -158,11 +158,11 @@ def files_of_export(path: str | Path, quantiles: Sequence[float] | None = None) 
 def _together(curves: Sequence[Curve], kind: Kind, units: str, scene: Scene) -> Table:
     """All curves side by side, in the units of the files; empty where one carries nothing."""
     x = np.unique(np.concatenate([curve.x for curve in curves])).tolist()
-    columns = [Column(f"{kind.against} ({unit_of(kind.against, units, scene)})", x)]
+    columns = [Column(kind.against, x, unit=unit_of(kind.against, units, scene))]
     for curve in curves:
         held = dict(zip(curve.x.tolist(), curve.y.tolist(), strict=True))
-        name = f"{kind.quantity} {curve.name} ({unit_of(kind.quantity, units, scene)})"
-        columns.append(Column(name, [held.get(at, "") for at in x]))
+        unit = unit_of(kind.quantity, units, scene)
+        columns.append(Column(f"{kind.quantity} {curve.name}", [held.get(at, "") for at in x], unit=unit))
     return Table(tuple(columns))
 
 

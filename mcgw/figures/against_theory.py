@@ -36,7 +36,7 @@ def comparison_figure(comparison: "Comparison | SweepComparison") -> FigureData:
     """
     verdict = comparison.verdict
     if not isinstance(comparison, Comparison):
-        title = f"{shown_title(comparison.sweep.scenes[0], 'Sweep')}: {verdict.points} scenes"
+        title = f"{shown_title(comparison.sweep.scenes[0], 'Sweep')}: {len(comparison.points)} scenes"
         said = f"Monte Carlo and theory {verdict.word}: p = {verdict.p:.3g} for all points together"
         panels = (residuals_panel("all points", comparison.residuals), _worst_panel(comparison))
         return FigureData(f"{title}\n{said}", _CAPTION, panels)

@@ -238,6 +238,32 @@ class Compared:
         return f"This scene: {said}; heights {law}."
 
 
+def _presses(f: Compared) -> bool:
+    return not any(np.any(f.theory(label, "load", f.line) <= 0) for label in f.all)
+
+
+def _same_load(f: Compared) -> bool:
+    try:
+        for label in f.others:
+            f.at_load_of_reference(label, f.line)
+    except ValueError:
+        return False
+    return True
+
+
+# What a figure may need of a scene, and what is said of one without it.
+_NEEDS: dict[str, tuple[Callable[[Compared], Any], str]] = {
+    "grading": (lambda f: f.graded, "the scene has no grading: E*(s) = E* at every height"),
+    "reference": (
+        lambda f: f.others,
+        "the scene is its own reference (homogeneous, Hertz's law): every ratio is 1",
+    ),
+    "pressing": (_presses, "the mean load is not positive at every separation"),
+    "same load": (_same_load, "the scene does not reach the load of its reference at every separation"),
+    "several": (lambda f: f.scene.n_surfaces > 1, "there is only one surface"),
+}
+
+
 @dataclass(frozen=True)
 class Row:
     """A figure.
@@ -248,46 +274,14 @@ class Row:
         Name of its files.
     draw : callable
         Computes its numbers from the scenes.
-    needs : tuple of callables, optional
-        Requirements: each returns what is missing, or nothing.
+    needs : tuple of str, optional
+        What it needs of them.
     """
 
     name: str
     draw: Callable[[Compared], FigureData]
-    needs: tuple[Callable[[Compared], str], ...] = ()
+    needs: tuple[str, ...] = ()
 
     def lacking(self, f: Compared) -> str:
         """Say why the figure has no meaning for a scene, or nothing."""
-        return next(filter(None, (need(f) for need in self.needs)), "")
-
-
-def grading(f: Compared) -> str:
-    """Require a grading."""
-    return "" if f.graded else "the scene has no grading: E*(s) = E* at every height"
-
-
-def reference(f: Compared) -> str:
-    """Require another scene for ratios."""
-    alone = "the scene is its own reference (homogeneous, Hertz's law): every ratio is 1"
-    return "" if f.others else alone
-
-
-def pressing(f: Compared) -> str:
-    """Require positive loads, for ratios and logarithms."""
-    pulls = any(np.any(f.theory(label, "load", f.line) <= 0) for label in f.all)
-    return "the mean load is not positive at every separation" if pulls else ""
-
-
-def same_load(f: Compared) -> str:
-    """Require loads that every scene reaches."""
-    try:
-        for label in f.others:
-            f.at_load_of_reference(label, f.line)
-    except ValueError:
-        return "the scene does not reach the load of its reference at every separation"
-    return ""
-
-
-def several(f: Compared) -> str:
-    """Require more than one surface."""
-    return "" if f.scene.n_surfaces > 1 else "there is only one surface"
+        return next((why for has, why in map(_NEEDS.__getitem__, self.needs) if not has(f)), "")

@@ -1,5 +1,6 @@
 """Numbers of a figure: lines of theory and Monte-Carlo points, to draw, test or export."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -80,12 +81,9 @@ class Mark:
     bar: str = ""
 
 
-def words(text: str, *, centred: bool = True) -> Mark:
-    """Return a text in place of axes: a few words, or a listing."""
-    look: dict[str, Any] = {"ha": "center", "va": "center"}
-    if not centred:
-        look = {"va": "top", "family": "monospace", "fontsize": 6.6}
-    return Mark("text", (0.5 * centred, 1 - 0.5 * centred, text), look)
+def words(text: str) -> Mark:
+    """Return a few words in place of axes."""
+    return Mark("text", (0.5, 0.5, text), {"ha": "center", "va": "center"})
 
 
 @dataclass(frozen=True)
@@ -132,45 +130,26 @@ class FigureData:
     name: str = ""
 
 
-def ratio_of_sums(b: Array, a: Array) -> Estimate:
-    """Take the ratio of two means over the same surfaces, and its standard error by the delta method.
+def ratio_of_sums(above: Sequence[Array], below: Sequence[Array]) -> Estimate:
+    """Take a product of means over the same surfaces over another, with its error by the delta method.
 
     Parameters
     ----------
-    b, a : ndarray
-        Sums of each surface, shape (surfaces, ...).
+    above, below : sequence of ndarray
+        Sums of each surface, shape (surfaces, ...), of the factors of numerator and denominator.
 
     Returns
     -------
     (ndarray, ndarray)
-        Of shape (...); nan where there is nothing. An error of the last digits alone is 0.
+        Value and standard error, of shape (...); nan where there is nothing. An error of the last digits
+        alone is 0.
     """
+    signed = [*((1, x) for x in above), *((-1, x) for x in below)]
     with np.errstate(invalid="ignore", divide="ignore"):
-        mean = a.mean(axis=0)
-        ratio = b.mean(axis=0) / mean
-        stderr = (b - ratio * a).std(axis=0, ddof=1) / np.sqrt(len(a)) / mean
-    return ratio, np.where(stderr <= _ROUNDING * np.abs(ratio), 0.0, stderr)
-
-
-def quotient_of_sums(above: tuple[Array, Array], below: tuple[Array, Array]) -> Estimate:
-    """Take a ratio of means over another such ratio, all over the same surfaces, and its standard error.
-
-    Parameters
-    ----------
-    above, below : (ndarray, ndarray)
-        Numerator and denominator of each: sums of each surface, shape (surfaces, ...).
-
-    Returns
-    -------
-    (ndarray, ndarray)
-        Of shape (...); nan where there is nothing.
-    """
-    parts = (*above, *below)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        means = [x.mean(axis=0) for x in parts]
-        value = means[0] / means[1] / (means[2] / means[3])
-        influence = sum(s * x / m for s, x, m in zip((1, -1, -1, 1), parts, means, strict=True))
-        return value, np.abs(value) * np.std(influence, axis=0, ddof=1) / np.sqrt(len(parts[0]))
+        value = np.prod([x.mean(axis=0) ** float(sign) for sign, x in signed], axis=0)
+        influence = np.sum([sign * x / x.mean(axis=0) for sign, x in signed], axis=0)
+        relative = influence.std(axis=0, ddof=1) / np.sqrt(len(influence))
+    return value, np.abs(value) * np.where(relative <= _ROUNDING, 0.0, relative)
 
 
 def figure_table(figure: FigureData) -> Table:

@@ -8,7 +8,7 @@ from analytic import mean_modulus
 from analytic.arrays import Array
 from mcgw.ensemble.simulation import simulate
 from mcgw.figures.against_theory import spread
-from mcgw.figures.compared import SCENE, Compared, Key, Row, grading, several
+from mcgw.figures.compared import SCENE, Compared, Key, Row
 from mcgw.figures.data import GAMMA, SEPARATION, Estimate, FigureData, Panel, Points, Series, ratio_of_sums
 from mcgw.figures.ratios import ratio
 from mcgw.figures.style import power_of_ten
@@ -74,7 +74,7 @@ def _drawn(f: Compared, key: Key, h: Array, *, weight: str) -> Estimate:
             e = f.of(key).modulus(touching)
             weights = (touching - separation) ** _POWERS[weight] * (e if weight == "load" else 1.0)
             above[i, k], below[i, k] = np.sum(weights * e), np.sum(weights)
-    return ratio_of_sums(above, below)
+    return ratio_of_sums([above], [below])
 
 
 def fluctuations(f: Compared) -> FigureData:
@@ -102,4 +102,4 @@ def fluctuations(f: Compared) -> FigureData:
     )
 
 
-FIGURES = (Row("figure-4", mean_moduli, (grading,)), Row("fluctuations", fluctuations, (several,)))
+FIGURES = (Row("figure-4", mean_moduli, ("grading",)), Row("fluctuations", fluctuations, ("several",)))

@@ -8,7 +8,7 @@ import numpy as np
 
 from analytic import quantity_of
 from analytic.arrays import Array
-from mcgw.figures.compared import SCENE, Compared, Key, Row, grading, pressing, reference, same_load
+from mcgw.figures.compared import SCENE, Compared, Key, Row
 from mcgw.figures.data import (
     GAMMA,
     PRESSURE,
@@ -18,7 +18,6 @@ from mcgw.figures.data import (
     Panel,
     Points,
     Series,
-    quotient_of_sums,
     ratio_of_sums,
 )
 from mcgw.figures.style import prefixed
@@ -87,40 +86,40 @@ def _against_separation(f: Compared, title: str, quantity: str, words: str, unit
     return FigureData(title, f.caption, tuple(panels))
 
 
-def _area_per_load(f: Compared, key: Key, h: Array) -> Array:
-    area, load = (f.theory(key, name, h) / f.theory(f.reference, name, h) for name in ("area", "load"))
-    return area / load
+def _exact(f: Compared, key: Key, h: Array, *, name: str, per: str = "") -> Array:
+    """Mean of a quantity over the reference's; `per` another one, over that of the reference."""
+    found = f.theory(key, name, h) / f.theory(f.reference, name, h)
+    return found / _exact(f, key, h, name=per) if per else found
 
 
-def _area_per_load_drawn(f: Compared, key: Key, h: Array) -> Estimate:
-    sums = [(f.values(x, "area", h), f.values(x, "load", h)) for x in (key, f.reference)]
-    return quotient_of_sums(*sums)
+def _drawn(f: Compared, key: Key, h: Array, *, name: str, per: str = "") -> Estimate:
+    (own, reference), *other = [[f.values(x, y, h) for x in (key, f.reference)] for y in (name, per) if y]
+    return ratio_of_sums([own, *(b for _, b in other)], [reference, *(a for a, _ in other)])
 
 
-def _stiffness(f: Compared, key: Key, h: Array) -> Array:
-    return f.theory(key, "stiffness", h) / f.theory(f.reference, "stiffness", h)
+def _of(name: str, per: str = "") -> tuple[Exact, Drawn]:
+    return partial(_exact, name=name, per=per), partial(_drawn, name=name, per=per)
 
 
-def _stiffness_drawn(f: Compared, key: Key, h: Array) -> Estimate:
-    return ratio_of_sums(*(f.values(x, "stiffness", h) for x in (key, f.reference)))
+_AREA_PER_LOAD, _STIFFNESS = _of("area", "load"), _of("stiffness")
 
 
 def area_per_load(f: Compared) -> FigureData:
     """Show the area per load over the reference's."""
     title = "Area per load at a given separation (Eq. 12)"
-    return _at_separation(f, title, r"(A/P)\,/\,(A/P)", _area_per_load, _area_per_load_drawn)
+    return _at_separation(f, title, r"(A/P)\,/\,(A/P)", _AREA_PER_LOAD)
 
 
 def stiffness_ratios(f: Compared) -> FigureData:
     """Show the stiffness over the reference's."""
     title = "Stiffness at a given separation (Eq. 15: “conductance”)"
-    return _at_separation(f, title, "K/K", _stiffness, _stiffness_drawn)
+    return _at_separation(f, title, "K/K", _STIFFNESS)
 
 
-def _at_separation(f: Compared, title: str, symbol: str, exact: Exact, drawn: Drawn) -> FigureData:
+def _at_separation(f: Compared, title: str, symbol: str, how: tuple[Exact, Drawn]) -> FigureData:
     """Return a panel; of a sweep one for stiffer and one for softer tips."""
     parts = (("a  stiffer tips", _STIFFER), ("b  softer tips", _SOFTER)) if f.swept else (("", _STIFFER),)
-    panels = (ratio(f, name, f"${symbol}", exact, drawn, *gammas, _AT) for name, gammas in parts)
+    panels = (ratio(f, name, f"${symbol}", *how, *gammas, _AT) for name, gammas in parts)
     reference = "" if f.swept else f"Reference: {f.reference}, the same surface. "
     return FigureData(title, f"{reference}{f.caption}", tuple(panels))
 
@@ -179,7 +178,7 @@ def _exponent(f: Compared, label: str) -> Series:
         return np.asarray(n / a / (k / p) * factor)
 
     def drawn() -> Estimate:
-        mean, stderr = quotient_of_sums((n, a), (k, p))
+        mean, stderr = ratio_of_sums((n, p), (a, k))
         return mean * factor, stderr * factor
 
     return Series(label, f.line, exact(f.line), f.points(drawn, exact(f.h)))
@@ -190,7 +189,17 @@ def equal_load(f: Compared) -> FigureData:
     panels, keys = [], "abcd"
     if f.swept:
         title = "a  equal separation: stiffness (Eq. 15)"
-        panels.append(ratio(f, title, "$K/K", _stiffness, _stiffness_drawn, _LINE, _GAMMAS, _AT_LOAD))
+        panels.append(
+            ratio(
+                f,
+                title,
+                "$K/K",
+                *_STIFFNESS,
+                _LINE,
+                _GAMMAS,
+                _AT_LOAD,
+            )
+        )
         keys = "bcd"
     for key, name in zip(keys, _SHOWN, strict=False):
         symbol = quantity_of(name).symbol.removesuffix("ρ")  # the resistivity is that of both
@@ -208,15 +217,15 @@ def _of_load(f: Compared, key: Key, h: Array, *, name: str) -> Array:
 
 def _of_load_drawn(f: Compared, key: Key, h: Array, *, name: str) -> Estimate:
     there = f.drawn(key, f.at_load_of_reference(key, h))
-    return ratio_of_sums(there.values(name), f.values(f.reference, name, h))
+    return ratio_of_sums([there.values(name)], [f.values(f.reference, name, h)])
 
 
 FIGURES = (
-    Row("figure-1", gradings, (grading,)),
+    Row("figure-1", gradings, ("grading",)),
     Row("figure-2", load),
-    Row("figure-3", area_per_load, (reference, pressing)),
+    Row("figure-3", area_per_load, ("reference", "pressing")),
     Row("figure-5", stiffness),
-    Row("figure-6", stiffness_ratios, (reference,)),
-    Row("equal-load", equal_load, (reference, pressing, same_load)),
-    Row("area-and-load", area_and_load, (pressing,)),
+    Row("figure-6", stiffness_ratios, ("reference",)),
+    Row("equal-load", equal_load, ("reference", "pressing", "same load")),
+    Row("area-and-load", area_and_load, ("pressing",)),
 )

@@ -91,39 +91,33 @@ def check_h5(file: h5py.File, size: int) -> None:
         if all datasets declare more than 1100 times the file, or a chunk is beyond its data or memory; if
         groups are nested too deeply, or there are too many objects. The line does not name the file.
     """
-    left = max(EXPANSION * size, ENOUGH)
-    seen: set[int] = set()
-    waiting: list[tuple[Any, str, int]] = [(file.id, "", 0)]
-    while waiting:
-        group, prefix, depth = waiting.pop()
-        if depth > DEEPEST:
+    left, seen = max(EXPANSION * size, ENOUGH), 0
+
+    def look(name: bytes, link: Any) -> None:
+        """Refuse what a link leads to; soft ones lead to what hard ones reach, in this file."""
+        nonlocal left, seen
+        path, seen = name.decode(errors="replace"), seen + 1
+        if seen > MOST_OBJECTS:
+            raise StoreError(f"more than {MOST_OBJECTS} groups and datasets")
+        if path.count("/") > DEEPEST:
             raise StoreError(f"groups are nested more than {DEEPEST} deep")
-        for name in _members(group, prefix):
-            item = h5py.h5o.open(group, name)
-            address = h5py.h5o.get_info(item).addr
-            if address in seen:
-                continue
-            seen.add(address)
-            if len(seen) > MOST_OBJECTS:
-                raise StoreError(f"more than {MOST_OBJECTS} groups and datasets")
-            path = prefix + name.decode(errors="replace")
-            if isinstance(item, h5py.h5g.GroupID):
-                waiting.append((item, f"{path}/", depth + 1))
-            elif isinstance(item, h5py.h5d.DatasetID):
-                left -= _declared(path[:80], item)
-                if left < 0:
-                    raise StoreError(f"{path[:80]}: more bytes declared than a file of {size} bytes holds")
+        if link.type not in (h5py.h5l.TYPE_HARD, h5py.h5l.TYPE_SOFT):
+            raise StoreError(f"{path[:80]}: a link to another file")
+        item = h5py.h5o.open(file.id, name) if link.type == h5py.h5l.TYPE_HARD else None
+        if isinstance(item, h5py.h5d.DatasetID):
+            left -= _declared(path[:80], item)
+            if left < 0:
+                raise StoreError(f"{path[:80]}: more bytes declared than a file of {size} bytes holds")
 
+    def refused(name: bytes, link: Any) -> Exception | None:
+        try:  # h5py loses what a visitor raises
+            look(name, link)
+        except Exception as error:
+            return error
+        return None
 
-def _members(group: Any, prefix: str) -> list[bytes]:
-    """Names of hard links; soft ones lead to what these reach, since no other file is linked."""
-    if len(group) > MOST_OBJECTS:
-        raise StoreError(f"{prefix or '/'}: {len(group)} members, more than {MOST_OBJECTS}")
-    kinds = {name: group.links.get_info(name).type for name in group}
-    for name, kind in kinds.items():
-        if kind not in (h5py.h5l.TYPE_HARD, h5py.h5l.TYPE_SOFT):
-            raise StoreError(f"{prefix}{name.decode(errors='replace')[:80]}: a link to another file")
-    return [name for name, kind in kinds.items() if kind == h5py.h5l.TYPE_HARD]
+    if (error := file.id.links.visit(refused, info=True)) is not None:
+        raise error
 
 
 def _declared(name: str, item: Any) -> int:

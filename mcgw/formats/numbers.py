@@ -7,15 +7,6 @@ _POWER, _MINUS = re.compile(r"(?<=\d)e([+-]\d+)\b"), re.compile(r"(?<![\w⁻])-(
 _PRINTED = {"d/sigma": "d/σ", "gap/sigma": "gap/σ", "^2": "²", "+-": "±", " ... ": " … "}
 
 
-def number(x: float, digits: int = 4) -> str:
-    """Format a number to some digits, without trailing zeros; with a power of ten below 1e-4 and from 1e4."""
-    text = f"{x:.{digits}g}"
-    if "e" not in text:
-        return text.replace("-", "−")
-    mantissa, power = text.split("e")
-    return f"{mantissa}×10{str(int(power)).translate(RAISED)}".replace("-", "−")
-
-
 def typeset(text: str) -> str:
     """Typeset plain text of a terminal: 1e-05, d/sigma, m^2, +-, ... and minus signs.
 

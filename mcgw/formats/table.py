@@ -14,7 +14,7 @@ from analytic.arrays import Ints
 from mcgw.errors import extra
 from mcgw.formats.files import whole_file
 from mcgw.formats.numbers import typeset
-from mcgw.machine.terminal import one_line
+from mcgw.machine.terminal import brief, listed, one_line
 
 SEPARATION = "d/sigma"  # over a column of separations
 
@@ -61,6 +61,11 @@ class Column:
         return [self] if self.beside is None else [replace(self, beside=None), *self.beside.flat]
 
     @property
+    def suffix(self) -> str:
+        """Its unit behind a name."""
+        return f" ({self.unit})" if self.unit not in ("", "1") else ""
+
+    @property
     def textual(self) -> bool:
         """Whether it holds texts."""
         return any(isinstance(x, str) for x in self.values[:1])
@@ -87,7 +92,16 @@ class Column:
 
 @dataclass(frozen=True)
 class Table:
-    """Columns of one length under a title.
+    """Columns of one length under a title and facts.
+
+    Parameters
+    ----------
+    columns : tuple of Column, optional
+        Its columns.
+    title : str, optional
+        Its title.
+    facts : sequence of (str, str), optional
+        Name and text of what stands above the columns.
 
     Examples
     --------
@@ -97,8 +111,9 @@ class Table:
       1            13.5
     """
 
-    columns: tuple[Column, ...]
+    columns: tuple[Column, ...] = ()
     title: str = ""
+    facts: Sequence[tuple[str, str]] = ()
 
     def __len__(self) -> int:
         return len(self.columns[0].values) if self.columns else 0
@@ -115,8 +130,11 @@ class Table:
 
     def heading(self, column: Column) -> str:
         """Heading of a column, with its unit unless the title has it."""
-        unit = f" ({column.unit})" if column.unit not in ("", "1") else ""
-        return (column.words or column.name) + ("" if unit in self.title else unit)
+        return (column.words or column.name) + ("" if column.suffix in self.title else column.suffix)
+
+    def under(self, title: str, facts: Sequence[tuple[str, str]] = ()) -> "Table":
+        """Return the same under a title and facts."""
+        return replace(self, title=title, facts=facts)
 
     def only(self, *names: str) -> "Table":
         """Return some of its columns, in this order."""
@@ -133,7 +151,8 @@ class Table:
 
     def text(self) -> str:
         """Plain text: texts are aligned left, numbers right."""
-        lines = [self.title] if self.title else []
+        lines = [one_line(self.title)] if self.title else []
+        lines += listed((name, brief(text)) for name, text in self.facts)
         cells = [[self.heading(column), *column.cells()] for column in self.columns]
         widths = [max(map(len, column)) for column in cells]
         left = [not k or column.textual for k, column in enumerate(self.columns)]
@@ -147,8 +166,14 @@ class Table:
 
     __repr__ = text
 
+    def _repr_html_(self) -> str:
+        cells = "<tr><th>{}</th><td>{}</td></tr>".format
+        facts = "".join(cells(escape(name), escape(brief(text))) for name, text in self.facts)
+        facts = f"<table>{facts}</table>" if facts else ""
+        return f"<b>{escape(one_line(self.title))}</b>{facts}{self.html()}"
+
     def html(self) -> str:
-        """Return a ``table`` without its title: the cells of a terminal, typeset, every text escaped."""
+        """Return its columns as a ``table``: the cells of a terminal, typeset, every text escaped."""
         head = "".join(f"<th>{escape(typeset(self.heading(column)))}</th>" for column in self.columns)
         rows = "".join(
             f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>"
@@ -157,7 +182,7 @@ class Table:
         return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>" if head else ""
 
     def write(self, path: str | Path, *, comment: str = "") -> None:
-        """Write it as CSV: names of the columns, then rows that read back to the last bit.
+        """Write it as CSV: names of the columns with units, then rows that read back to the last bit.
 
         Parameters
         ----------
@@ -173,7 +198,7 @@ class Table:
         ):
             file.write(f"# {one_line(comment)}\n" if comment else "")
             writer = csv.writer(file, lineterminator="\n")
-            writer.writerow([column.name for column in columns])
+            writer.writerow([column.name + column.suffix for column in columns])
             writer.writerows(zip(*map(_stored, columns), strict=True))
 
     def to_dataframe(self) -> Any:
@@ -186,6 +211,20 @@ class Table:
         """
         pandas = optional("pandas", "to_dataframe")
         return pandas.DataFrame({column.name: column.values for column in self.flat})
+
+
+class Shown:
+    """Displays itself as a table with facts above it."""
+
+    def sheet(self) -> Table:
+        """Return what is shown, at most a dozen lines."""
+        raise NotImplementedError
+
+    def __repr__(self) -> str:
+        return self.sheet().text()
+
+    def _repr_html_(self) -> str:
+        return self.sheet()._repr_html_()
 
 
 def stacked(tables: Mapping[str, Table], key: str, words: str = "") -> Table:

@@ -101,7 +101,7 @@ def run(
     scene = scene.replace(**changes) if changes else scene
     if shard is not None and scene.max_seconds is not None:
         raise ValueError("ensemble.max_seconds: the jobs of a run end at different times; give n_surfaces")
-    total = forecast(scene).surfaces if progress else 0
+    total = scene.n_surfaces if scene.rel_err is None else forecast(scene).surfaces
     part = check_how(executor, threads, shard)
     with told(progress, "surfaces") as tell:
         by = By(executor, threads, lambda done: tell(done, total))

@@ -5,6 +5,7 @@ compile at once may give two versions of it one number. Then one is loaded where
 loop that sums fewer moments, without a word. Who waits for the lock finds the loops compiled.
 """
 
+import sys
 import warnings
 from collections.abc import Callable
 from contextlib import suppress
@@ -17,7 +18,7 @@ from filelock import FileLock, SoftFileLock
 from numba.core import event
 
 from mcgw.errors import RunError
-from mcgw.machine.terminal import pass_by
+from mcgw.machine.progress import waited_for
 
 if numba.config.DISABLE_JIT:  # type: ignore[attr-defined, unused-ignore]
     raise RunError(
@@ -80,19 +81,17 @@ class _OneCompiles(event.Listener):  # type: ignore[misc, unused-ignore]
 
 
 class _Told(event.Listener):  # type: ignore[misc, unused-ignore]
-    """Says on a terminal that loops are being compiled, those that they call within them."""
+    """Says once to who waits that loops are being compiled."""
 
-    _depth = 0
+    _said = False
 
     def on_start(self, event: Any) -> None:  # noqa: ARG002
-        if not self._depth:
-            pass_by("compiling the loops, once for this machine")
-        self._depth += 1
+        if not self._said and waited_for():
+            sys.stderr.write("mcgw: compiling the loops, once for this machine\n")
+            self._said = True
 
-    def on_end(self, event: Any) -> None:  # noqa: ARG002
-        self._depth -= 1
-        if not self._depth:
-            pass_by("")
+    def on_end(self, event: Any) -> None:
+        """Say nothing."""
 
 
 if loops_folder() and FileLock is not SoftFileLock:  # a soft lock would outlive a process that is killed

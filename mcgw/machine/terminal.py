@@ -6,12 +6,12 @@ Readers do not affect the work: text that a stream refuses is lost, and its erro
 import os
 import re
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Any
 
 _bound: dict[str, Callable[..., Any]] = {}
-_passing = {"width": 0, "silent": False}
+_LONGEST = 88  # characters of one fact
 _SHORT = {"\n": "\\n", "\r": "\\r", "\t": "\\t"}
 
 
@@ -35,6 +35,19 @@ def plain_text(text: str) -> str:
 
 def _escape(code: int) -> str:
     return f"\\u{code:04x}" if code < 2**16 else f"\\U{code:08x}"
+
+
+def brief(text: str) -> str:
+    """Shorten a text to one line of at most 88 characters, with dots at its end."""
+    plain = one_line(text)
+    return plain if len(plain) <= _LONGEST else f"{plain[: _LONGEST - 3]}..."
+
+
+def listed(facts: Iterable[tuple[str, str]], width: int = 0) -> Iterator[str]:
+    """Lines of names and aligned texts; names take at least `width` characters."""
+    facts = list(facts)
+    width = max([width, *(len(name) for name, _ in facts)])
+    return (f"  {name:{width}}  {text}" for name, text in facts)
 
 
 class Plain:
@@ -93,26 +106,6 @@ def plain_output() -> Iterator[Plain]:
             sys.stdout.flush()
             sys.stderr.flush()
             sys.stdout, sys.stderr = before
-
-
-def pass_by(text: str) -> None:
-    """Write a line that the next one replaces; an empty one removes it."""
-    if _passing["silent"] or not (sys.stderr and sys.stderr.isatty()):
-        return
-    with suppress(OSError, ValueError):
-        sys.stderr.write(f"\r{' ' * _passing['width']}\r{text}")
-        sys.stderr.flush()
-    _passing["width"] = len(text)
-
-
-@contextmanager
-def without_passing() -> Iterator[None]:
-    """Write no such lines, in any thread."""
-    before, _passing["silent"] = _passing["silent"], True
-    try:
-        yield
-    finally:
-        _passing["silent"] = before
 
 
 def bind_drawing(draw: Callable[..., Any]) -> None:

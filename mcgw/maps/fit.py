@@ -9,8 +9,7 @@ import numpy as np
 
 from analytic import SpectralMoments
 from analytic.arrays import Array
-from mcgw.formats.sheet import Sheet, Shown
-from mcgw.formats.table import Table
+from mcgw.formats.table import Shown, Table
 from mcgw.machine.terminal import plotted
 from mcgw.maps.estimates import (
     METHODS,
@@ -30,7 +29,7 @@ from mcgw.maps.hidden_caps import Visible, visible
 from mcgw.maps.preparation import Prepared
 from mcgw.maps.steps import Form
 from mcgw.maps.summit_sums import EDGE, SummitSums, coarse_sums_of, summit_sums_of
-from mcgw.maps.summits import Summits, summits_of, tiles_of
+from mcgw.maps.summits import Summits, summits_of, tiles_of, variation
 from mcgw.maps.topography import SMALLEST
 from mcgw.maps.waves import Uncertain, Waves, uncertain, waves_of
 
@@ -43,7 +42,6 @@ _A_PART, _LEAST_ACROSS = 4, 2  # summits in a sub-area on average, for their own
 _A_LITTLE, _FEW_ACROSS = 2, 3  # the same for errors of the moments
 _OF_QUARTILES = 1 / 1.349
 _ONE_RADIUS = 0.17  # half of the spread of curvatures of Gaussian surfaces
-_MOST_CAUTIONS = 4  # in the display
 
 
 @dataclass(frozen=True, repr=False)
@@ -162,17 +160,28 @@ class Fit(Shown):
         """Draw the summit heights with the Gaussian distribution of the same spread; returns the axes."""
         return plotted(self, ax)
 
-    def sheet(self) -> Sheet:
+    def sheet(self) -> Table:
         """Estimates by all methods, with standard errors, and the first of the cautions."""
-        facts = [("roughness", self.roughness.text("S"))]
-        facts += [
-            ("spectrum", f"alpha = {self.numbers['alpha'].value:.3g}, skewness {self.skewness[0]:z.2f}")
+        told = {name: f"{x.value:.4g} +- {x.error:.1g}" for name, x in self.numbers.items()}
+        (skewness, error), across = self.skewness, round(len(self.tiles) ** 0.5)
+        parts = f"{len(self.maps)} maps" if self.maps else f"{across} x {across} sub-areas"
+        varies = self.tiles.only("eta", "radius", "sigma").columns
+        varied = ", ".join(f"{c.words or c.name} by {100 * variation(c.values):.2g} %" for c in varies)
+        curved = f"curvatures spread by {self.spread_of_curvatures:.2g} (Gaussian surfaces: 0.35)"
+        facts = [
+            ("moments", f"m0 = {told['m0']} m^2, m2 = {told['m2']}, skewness {skewness:z.2f} +- {error:.1g}"),
+            ("", f"m4 = {told['m4']} 1/m^2, alpha = {told['alpha']}"),
+            ("all heights", self.roughness.text("S")),
+            ("scatter", f"{varied} between {parts}"),
+            ("best here", f"{METHODS[self.best]}; {curved}"),
         ]
-        facts += [("caution", line) for line in self.cautions[:_MOST_CAUTIONS]]
-        more = len(self.cautions) - _MOST_CAUTIONS
-        facts += [("", f"and {more} more in .cautions")] if more > 0 else []
-        title = f"Fit of {self.summits.size} summits on {self.area:.4g} m^2"
-        return Sheet(title, facts, estimates_table(self.estimates).only("method", "eta", "radius", "sigma"))
+        if self.visible is not None and self.best == "caps":
+            eta, sigma = (f"{100 * (x - 1):+.2g} %" for x in (self.visible.share, self.visible.std))
+            facts.append(("hidden", f"of such caps counts are off by {eta} in eta and {sigma} in sigma"))
+        if self.cautions:
+            facts.append(("cautions", f"{len(self.cautions)} in .cautions; {self.cautions[0]}"))
+        where = f"on {self.area:.4g} m^2, {self.mean_summit:.3g} m above the mean plane"
+        return estimates_table(self.estimates).under(f"{self.summits.size} summits {where}", facts)
 
 
 def fit_prepared(ready: Prepared, *, across: int = 4) -> Fit:

@@ -6,7 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from mcgw.machine.progress import stages
+from mcgw.machine.progress import told
 from mcgw.maps.fit import Fit, fit_prepared
 from mcgw.maps.fit_cautions import cautions, cautions_of_several, profile_cautions
 from mcgw.maps.heights_files import read_heights
@@ -163,13 +163,14 @@ def fit_sources(
 
 def _fit_map(raw: list[Any], asked: Preparation, across: int, use: str) -> tuple[Fit, Prepared]:
     """Fit the map in a list, which is emptied: a large one would fill the memory."""
-    with stages(3) as done:
+    with told(None, "steps") as tell:
+        tell(0, 3)
         ready = prepared(raw.pop(), asked)
-        done()
+        tell(1, 3)
         found = fit_prepared(ready, across=across)
-        done()
+        tell(2, 3)
         found = replace(found, cautions=tuple(cautions(found, ready, use)))
-        done()
+        tell(3, 3)
     return found, ready
 
 

@@ -8,16 +8,13 @@ heights are Gaussian they determine density, curvature and heights of its summit
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from scipy.special import stdtrit
 
 from analytic import SpectralMoments
 from analytic.arrays import Array
-from mcgw.formats.sheet import Sheet, Shown
-from mcgw.formats.table import Column, Table
-from mcgw.machine.terminal import plotted
+from mcgw.formats.table import Column, Shown, Table
 from mcgw.maps.estimates import Estimate, Roughness, roughness_of
 from mcgw.maps.profile import PROFILE_ORDERS, Profile, smooth_profile, without_profile_form
 from mcgw.maps.profile_waves import SMOOTH, waves_of_profile
@@ -73,16 +70,18 @@ class ProfileFit(Shown):
         """The only estimate, ``moments``, under the same name as in the fit of a map."""
         return {"moments": Estimate(*(self.numbers[name] for name in ("eta", "radius", "sigma")))}
 
-    def plot(self, ax: Any = None) -> Any:
-        """Draw the distributions of all heights and, derived from it, of the summits; returns the axes."""
-        return plotted(self, ax)
-
-    def sheet(self) -> Sheet:
+    def sheet(self) -> Table:
         """Each number with its 95 % interval, and the first of the cautions."""
-        facts = [("profiles", self.roughness.text("P"))]
-        facts += [("caution", line) for line in self.cautions[:2]]
+        counted, expected = self.peaks
+        facts = [
+            ("profiles", self.roughness.text("P")),
+            ("peaks", f"{counted:.4g} per metre; {expected:.4g} expected from the moments"),
+            ("summits", f"{self.moments.mean_height:.3g} m above the mean plane; sigma is about that height"),
+            ("model", "isotropic surface, Gaussian heights (Nayak, McCool), after the areal filter"),
+        ]
+        facts += [("caution", line) for line in self.cautions[:1]]
         title = f"Fit of {len(self.lengths)} profile(s), {sum(self.lengths):.4g} m together"
-        return Sheet(title, facts, self.table())
+        return self.table().under(title, facts)
 
     def table(self) -> Table:
         """Return a row for each number, with its 95 % interval."""

@@ -13,10 +13,9 @@ from mcgw.formats.table import Column, Table
 from mcgw.maps.summit_sums import EDGE, SUMS, SummitSums
 from mcgw.maps.topography import Topography
 
-SUMMITS = (  # what stands above their table in a file
-    "x, y, height and radius in m, curvature_1 and curvature_2 in 1/m; height is above the mean of the "
-    "summits, radius is 1/sqrt(curvature_1 curvature_2)"
-)
+# What stands above their tables in a file.
+SUMMITS = "height is above the mean of the summits, radius is 1/sqrt(curvature_1 curvature_2)"
+TILES = "eta, radius and sigma by the summits of the tile; heights are about the mean of the tile"
 # Of the fourth order, as in the sums: from two points before to two points after.
 _REACH = 2
 _SLOPE = np.array([1, -8, 0, 8, -1]) / 12
@@ -136,12 +135,6 @@ def _apex(z: Array) -> tuple[Array, Array]:
     ends = (gy * xy - gx * yy) / det, (gx * xy - gy * xx) / det
     x, y = (np.where(flat, 0.0, np.clip(end, -0.5, 0.5)) for end in ends)
     return x, y
-
-
-TILES = (  # what stands above their table in a file
-    "eta in 1/m^2, radius and sigma in m, by the summits of the tile; m0 in m^2, m2, m4 in 1/m^2; heights "
-    "are about the mean of the tile"
-)
 
 
 def tiles_of(counted: SummitSums) -> Table:

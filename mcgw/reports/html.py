@@ -5,24 +5,20 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from analytic import Hertz
 from mcgw.ensemble.ensemble import Ensemble, how_many
 from mcgw.ensemble.solved import Solution
 from mcgw.figures.style import grading_label
-from mcgw.formats.law_text import law_text
-from mcgw.formats.numbers import number, typeset
+from mcgw.formats.numbers import typeset
 from mcgw.formats.table import Column, Table
-from mcgw.machine.progress import stages
+from mcgw.machine.progress import told
 from mcgw.machine.terminal import one_line, plain_text
 from mcgw.reports.report_figures import (
     comparison_pictures,
     pressure_pictures,
-    pressure_table,
     solved_pressures,
 )
-from mcgw.reports.solved_loads import answer_table
+from mcgw.reports.solved_loads import answer_table, by_load
 from mcgw.scene.cautions import cautions
-from mcgw.scene.in_words import contact_facts
 from mcgw.scene.law_cautions import other_laws
 from mcgw.scene.scene import Scene
 from mcgw.statistics.comparison import compare
@@ -39,16 +35,17 @@ def report_html(
     Answers are at some pressures, Pa; by default at round ones that its separations span.
     """
     scene, against = ensemble.scene, ensemble.scene.validity()
-    with stages(3) as done:
+    with told(None, "steps") as tell:
+        tell(0, 3)
         comparison = compare(ensemble)
-        done()
+        tell(1, 3)
         at_loads = solved_pressures(scene, pressures)
         at_pressure = pressure_pictures(at_loads)
         solved = at_loads[len(at_loads) // 2] if at_loads else None
-        done()
+        tell(2, 3)
         figures = comparison_pictures(comparison)
         tables = list(comparison.tables().values())
-        done()
+        tell(3, 3)
     return rendered(
         "report.html.j2",
         title=one_line(scene.title) or "Ensemble of rough surfaces",
@@ -57,7 +54,7 @@ def report_html(
         verdict=comparison.verdict.line,
         elastic=against.verdict,
         at_pressure=at_pressure,
-        by_pressure=pressure_table(at_loads),
+        by_pressure=by_load(scene, at_loads) if at_loads else None,
         solved=solved and _named(solved),
         budget=solved and solved.budget(),
         figures=figures,
@@ -65,7 +62,7 @@ def report_html(
         facts=surface_facts(ensemble),
         laws=laws_table(scene),
         elasticity=_elasticity_words(against),
-        errors=against.sheet().table,
+        errors=against.table(),
         cautions=cautions(scene),
         elastic_law=scene.law.elastic,
         provenance=provenance_facts(attributes, scene.seed),
@@ -101,24 +98,20 @@ def opening_words(ensemble: Ensemble) -> str:
     return (
         f"{ensemble.n_surfaces} rough surfaces of {scene.n_asperities:g} asperities{count}, "
         f"{grading_label(scene.grading)}, each pressed on a plane at {separations} from d/σ = "
-        f"{min(scene.separations):g} to {max(scene.separations):g}. {contacts_sentence(scene)}"
+        f"{min(scene.separations):g} to {max(scene.separations):g}."
         + (f" Tables and figures are {how_many(ensemble)}." if how_many(ensemble) else "")
     )
 
 
 def surface_facts(ensemble: Ensemble) -> Facts:
-    """Parameters in SI and in units of sigma."""
+    """Tell what the scene is, and its parameters in units of sigma."""
     scene, x = ensemble.scene, ensemble.scene.surface
-    contacts = float(scene.theory.mean("contacts", scene.lowest))
+    area, radius = x.nominal_area / x.sigma**2, x.radius / x.sigma
+    overlap, contacts = x.eta * x.radius * x.sigma, float(scene.theory.mean("contacts", scene.lowest))
     return [
-        ("standard deviation σ of the summit heights", f"{number(x.sigma)} m"),
-        ("summit radius R", f"{number(x.radius)} m = {number(x.radius / x.sigma)} σ"),
-        ("summits per area η", f"{number(x.eta)} m⁻²; ηRσ = {number(x.eta * x.radius * x.sigma)}"),
-        ("nominal area Aₙ", f"{number(x.nominal_area)} m² = {number(x.nominal_area / x.sigma**2)} σ²"),
-        ("composite modulus E*", f"{number(x.E_star)} Pa"),
-        ("grading E*(s)/E*", grading_label(scene.grading)),
-        *contact_facts(scene),
-        ("contacts expected at the smallest separation", number(contacts)),
+        *scene.sheet().facts,
+        ("reduced", f"R/σ = {radius:.4g}, ηRσ = {overlap:.4g}, Aₙ/σ² = {area:.4g}"),
+        ("contacts", f"{contacts:.4g} expected at the smallest separation"),
     ]
 
 
@@ -143,17 +136,6 @@ def laws_table(scene: Scene) -> Table | None:
     load, area = ([1.0, *(each[name] for name in others.load)] for each in (others.load, others.area))
     numbers = (Column(name, x, unit="1", form=".4g") for name, x in (("load", load), ("area", area)))
     return Table((Column("law", names, "contact law"), *numbers), words)
-
-
-def contacts_sentence(scene: Scene) -> str:
-    """Name the contact law and what else happens to the surfaces."""
-    if type(scene.law) is Hertz:
-        words = "Every asperity is a Hertzian contact"
-    else:
-        words = f"Every asperity is a contact by {law_text(scene.law)}"
-    if scene.unload_from is not None:
-        words += f"; unloading starts from d/σ = {scene.unload_from:g}"
-    return f"{words}."
 
 
 def _named(solved: Solution) -> Table:

@@ -7,8 +7,7 @@ from mcgw.ensemble.drawing import in_words, rough_seconds, seconds_per_surface
 from mcgw.ensemble.forecast import MOST_SURFACES, forecast
 from mcgw.ensemble.intervals import laws_are_quick
 from mcgw.ensemble.simulation import reducer_of
-from mcgw.formats.sheet import listed
-from mcgw.machine.terminal import one_line
+from mcgw.machine.terminal import listed, one_line
 from mcgw.sampling.expected import Expected, expected
 from mcgw.sampling.shared import shared
 from mcgw.scene.in_words import contact_facts

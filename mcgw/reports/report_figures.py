@@ -16,9 +16,8 @@ from mcgw.ensemble.solved import Solution
 from mcgw.figures.against_theory import quantity_panel, spread
 from mcgw.figures.data import SEPARATION, FigureData, Mark, Panel, Series
 from mcgw.figures.panels import draw
-from mcgw.figures.style import SEEN, STYLE, write_figure
-from mcgw.formats.table import Column, Table, evenly
-from mcgw.scene.in_words import joint_text
+from mcgw.figures.style import SEEN, STYLE
+from mcgw.formats.table import evenly
 from mcgw.scene.scene import Scene
 from mcgw.statistics.comparison import Comparison
 
@@ -83,7 +82,7 @@ def svg_of(panel: Panel, label: str) -> str:
     """Draw a panel as an SVG element that takes the width it is given; its ids begin with the label."""
     buffer, figure = io.StringIO(), draw(FigureData("", "", (panel,)))
     with mpl.rc_context(STYLE | {"svg.hashsalt": label}):
-        write_figure(figure, buffer, format="svg", metadata={"Date": None, "Creator": None})
+        figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})
     text = buffer.getvalue()
     text = re.sub(r"<metadata>.*?</metadata>", "", text[text.index("<svg") :], flags=re.DOTALL)
     head, rest = text.split(">", 1)
@@ -121,22 +120,6 @@ def pressure_curves(solved: Sequence[Solution]) -> list[Panel]:
         scales = ("log", "linear" if name == "separation" else "log")
         curves.append(Panel(title, "nominal pressure P/Aₙ (MPa)", label, (series,), scales, marks=(dots,)))
     return curves
-
-
-def pressure_table(solved: Sequence[Solution]) -> Table | None:
-    """Means over specimens to the digits of their scatter, a row a pressure; None where there are none."""
-    if not solved:
-        return None
-    scene = solved[0].scene
-    pressure = [each.amount / scene.surface.nominal_area / 1e6 for each in solved]
-    columns = [Column("pressure", pressure, "nominal pressure", "MPa", form=".4g")]
-    for name, factor, _, label in _asked(scene):
-        mean = [factor * each.value[name] for each in solved]
-        std = [factor * each.std[name] for each in solved]
-        beside = Column("std", std, form=".2g")
-        columns.append(Column(name, mean, label, error=std, beside=beside, between=" ± "))
-    words = "Means over specimens ± their standard deviation"
-    return Table(tuple(columns), f"{words}; {joint_text(scene)}" if scene.thermal else words)
 
 
 def _asked(scene: Scene) -> Iterator[tuple[str, float, str, str]]:

@@ -38,7 +38,7 @@ def solutions_text(
     one = len(solutions) == 1
     if not full:
         lines.append(f"{solutions[0].budget().brief}; more: add -v")
-        lines += ["", (answer_table(solutions[0]) if one else _by_load(scene, solutions)).text()]
+        lines += ["", (answer_table(solutions[0]) if one else by_load(scene, solutions)).text()]
     else:
         lines += _background(scene, solutions)
         for solution in solutions:
@@ -89,7 +89,7 @@ def answer_table(solution: Solution) -> Table:
     return table.at([k for k, x in enumerate(name.values) if x not in hidden])
 
 
-def _by_load(scene: Scene, solutions: Sequence[Solution]) -> Table:
+def by_load(scene: Scene, solutions: Sequence[Solution]) -> Table:
     """Means of specimens with their 95 % errors where known, a row for each given value."""
     if scene.film is not None:
         return conductances(scene, solutions)
@@ -209,11 +209,11 @@ def solutions_table(scene: Scene, solutions: Sequence[Solution]) -> Table:
     tables = []
     for solution in solutions:
         table = solution.table()
-        ahead = {
-            "given": solution.given,
-            "amount": solution.amount,
-            "pressure_Pa": solution.value["load"] / scene.surface.nominal_area,
-        }
-        columns = (Column(name, np.full(len(table), value)) for name, value in ahead.items())
+        pressure = solution.value["load"] / scene.surface.nominal_area
+        columns = (
+            Column("given", [solution.given] * len(table)),
+            Column("amount", [solution.amount] * len(table)),
+            Column("pressure", [pressure] * len(table), unit="Pa"),
+        )
         tables.append(Table((*columns, *table.columns)))
     return joined(tables)

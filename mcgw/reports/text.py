@@ -1,6 +1,5 @@
 """Ensembles, sweeps and comparisons with theory as plain text."""
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -9,9 +8,8 @@ from analytic import quantity_of
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.labelled import statistics_table
 from mcgw.formats.law_text import law_text
-from mcgw.formats.sheet import listed
 from mcgw.formats.table import SEPARATION, Column, Table, stacked
-from mcgw.machine.terminal import one_line
+from mcgw.machine.terminal import listed, one_line
 from mcgw.scene.in_words import accuracy_facts, contact_facts
 from mcgw.statistics.comparison import Comparison
 from mcgw.store.run_plan import Plan
@@ -103,36 +101,35 @@ def ratios_in_words(sweep: "Sweep") -> list[str]:
     return lines
 
 
-def comparison_summary(
-    comparison: "Comparison | SweepComparison", *, whole: bool
-) -> tuple[str, Callable[[], Table], list[str]]:
-    """Return the table for people, whole or its worst rows; a maker of that for programs; the verdict."""
+def comparison_summary(comparison: "Comparison | SweepComparison", *, whole: bool) -> tuple[str, list[str]]:
+    """Return the table, whole or its worst rows, as text; and the verdict."""
     lines = [comparison.verdict.line]
     if not isinstance(comparison, Comparison):
-        return comparison.sheet(_LISTED if whole else _WORST).text(), comparison.table, lines
+        return comparison.sheet(_LISTED if whole else _WORST).text(), lines
     lines.append(comparison.ensemble.scene.validity().verdict)
     if comparison.of_many:
         lines.append(f"tables and figure {comparison.of_many}; the verdict is on all of them")
-    text = comparison_text(comparison) if whole else comparison.worst(_WORST).text()
-    return text, lambda: stacked(comparison.tables(), "quantity"), lines
+    return comparison_text(comparison) if whole else comparison.worst(_WORST).text(), lines
 
 
-def summary_of(
-    result: "Ensemble | Sweep", attributes: dict[str, Any], full: bool
-) -> tuple[str, Callable[[], Table]]:
-    """Return the summary for people, and what makes the table for programs."""
+def summary_of(result: "Ensemble | Sweep", attributes: dict[str, Any], full: bool) -> str:
+    """Return the summary of the file of an ensemble or of a sweep."""
     if isinstance(result, Ensemble):
-        names = result.scene.answers
-        return summary(result, attributes, full), lambda: stacked(
-            {name: statistics_table(result, name) for name in names}, "quantity"
-        )
+        return summary(result, attributes, full)
     lines = [
         str(result),
         f"  digest  {attributes['digest']}",
         f"  made    {attributes['date']} in {attributes['wall_seconds']:.3g} s on {attributes['cpu']}",
         f"  with    {attributes['versions']}; commit {attributes['commit']}",
     ]
-    return "\n".join(lines), result.table
+    return "\n".join(lines)
+
+
+def table_of(result: "Ensemble | Sweep") -> Table:
+    """Return means, standard deviations and standard errors of all that a file holds."""
+    if not isinstance(result, Ensemble):
+        return result.table()
+    return stacked({name: statistics_table(result, name) for name in result.scene.answers}, "quantity")
 
 
 def progress_of(plan: Plan) -> str:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from mcgw.formats.sheet import brief
+from mcgw.machine.terminal import brief
 from mcgw.scene.kinds import Number
 from mcgw.scene.section import Key, Kind, SceneError, Section
 

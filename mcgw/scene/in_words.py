@@ -3,7 +3,8 @@
 from analytic import Hertz
 from analytic.laws import Film
 from mcgw.formats.law_text import law_text
-from mcgw.formats.sheet import Sheet
+from mcgw.formats.table import Table
+from mcgw.machine.terminal import brief
 from mcgw.scene.fields import Fields
 from mcgw.scene.keys import SURFACE_UNITS
 from mcgw.scene.stop_rule import rel_err_text
@@ -55,7 +56,7 @@ def accuracy_facts(scene: Fields) -> list[tuple[str, str]]:
     return [("accuracy", f"up to {scene.accuracy:g} from the exact laws")] if scene.accuracy else []
 
 
-def sheet_of(scene: Fields) -> Sheet:
+def sheet_of(scene: Fields) -> Table:
     """Display of a scene, at most a dozen lines."""
     x = {key: f"{key} = {getattr(scene.surface, key):g} {unit}" for key, unit in SURFACE_UNITS.items()}
     h, among = scene.separations, f"{len(scene.separations)} from " if len(scene.separations) > 1 else ""
@@ -78,4 +79,4 @@ def sheet_of(scene: Fields) -> Sheet:
         ),
         *accuracy_facts(scene),
     ]
-    return Sheet(f"Scene: {scene.title}" if scene.title else "Scene", facts)
+    return Table((), brief(f"Scene: {scene.title}") if scene.title else "Scene", facts)

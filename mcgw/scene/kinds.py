@@ -5,8 +5,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from mcgw.formats.sheet import brief
 from mcgw.formats.units import EXAMPLES, parse
+from mcgw.machine.terminal import brief
 from mcgw.scene.section import Key, Kind, SceneError, Section, mistake, nearest
 
 _MOST_WHOLE = 10**30  # so that no message has hundreds of digits

@@ -11,7 +11,7 @@ import numpy as np
 import analytic
 from analytic.arrays import Array
 from analytic.laws import piece_of
-from mcgw.formats.sheet import brief
+from mcgw.machine.terminal import brief
 from mcgw.scene.fields import Fields
 
 _FARTHEST = 1e3  # from 1: a ratio that differs from it by more at every height is none

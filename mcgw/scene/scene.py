@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from analytic import Grading, MeasuredRadii, RandomCurvature, Surface, extent, is_data, resolved
 from analytic.arrays import hold
 from analytic.laws import ContactLaw
-from mcgw.formats.sheet import Sheet, Shown
+from mcgw.formats.table import Shown, Table
 from mcgw.scene.fields import Fields, LeftOut
 from mcgw.scene.in_words import sheet_of
 from mcgw.scene.mistakes import mistakes
@@ -197,7 +197,7 @@ class Scene(Fields, Shown):
             return self  # its crowds follow from what may be spent
         return with_sampling(self, sampler=sampler)
 
-    def sheet(self) -> Sheet:
+    def sheet(self) -> Table:
         """Return the scene as shown to people."""
         return sheet_of(self)
 

@@ -17,7 +17,7 @@ from scipy.stats import binom, chi2, kstest, norm, t as student
 from analytic import Quantity, quantity_of
 from analytic.arrays import Array
 from mcgw.scene.scene import Scene
-from mcgw.statistics.verdict import bounded_theory
+from mcgw.statistics.verdict import Check, bounded_theory
 
 _LAGS = (1, 2, 4, 8, 16, 32, 64)
 _TOUCHING = 100  # asperities expected in contact, so that a single surface is nearly Gaussian
@@ -92,23 +92,6 @@ def _share(scene: Scene, q: Quantity, h: Array) -> Array:
     if q.unloading and not scene.law.elastic:
         return scene.theory.mean("contacts_unloading", h) / scene.n_asperities
     return scene.heights.sf(h)
-
-
-@dataclass(frozen=True)
-class Check:
-    """One check.
-
-    Parameters
-    ----------
-    name, seen : str
-        What is checked, and what was seen.
-    p : float
-        Probability of that, or worse, by chance.
-    """
-
-    name: str
-    seen: str
-    p: float
 
 
 @dataclass(frozen=True)

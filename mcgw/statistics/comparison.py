@@ -11,13 +11,12 @@ from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble, how_many, shown
 from mcgw.ensemble.intervals import interval_column
 from mcgw.ensemble.labelled import heading
-from mcgw.formats.sheet import Sheet, Shown
-from mcgw.formats.table import SEPARATION, Column, Table, stacked
+from mcgw.formats.table import SEPARATION, Column, Shown, Table, stacked
 from mcgw.machine.progress import Progress, told
 from mcgw.machine.terminal import plotted, quantity_and_axes
 from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import Scene
-from mcgw.statistics.verdict import Tested, Verdict, tested, verdict
+from mcgw.statistics.verdict import Check, Tested, tested, together, verdict
 from mcgw.sweeps.axes import label
 
 if TYPE_CHECKING:
@@ -62,15 +61,15 @@ class Comparison(Shown):
         What was compared, at the separations that are shown: 100 of them where there are more.
     curves : dict of str to Curve
         By quantity.
-    verdict : Verdict
-        On all means, and on the distributions of single surfaces if these were tested.
+    verdict : Check
+        Of all means, and on the distributions of single surfaces if these were tested.
     of_many : str, optional
         At how many of its separations it is shown; nothing if at all.
     """
 
     ensemble: Ensemble
     curves: dict[str, Curve]
-    verdict: Verdict
+    verdict: Check
     of_many: str = ""
 
     def plot(self, quantity: str | None = None, ax: Any = None) -> Any:
@@ -91,26 +90,29 @@ class Comparison(Shown):
         quantity, ax = quantity_and_axes(quantity, ax)
         return plotted(self, ax, quantity=quantity or next(iter(self.curves)))
 
-    def sheet(self) -> Sheet:
+    def sheet(self) -> Table:
         """Return the verdict, and each quantity at the separation where it is farthest from theory."""
         farthest = {name: _farthest(table, 1) for name, table in self.tables().items()}
         v = self.verdict
         facts = [
-            ("all means" if v.laws is None else "all values", f"{v.seen}, p = {v.p:.3g}"),
+            ("all means", f"{v.seen}, p = {v.p:.3g}"),
             ("elasticity", self.ensemble.scene.validity().brief),
             *([("shown", self.of_many)] if self.of_many else []),
         ]
         table = stacked(farthest, "quantity", "farthest off")
-        return Sheet(f"Monte Carlo and theory {v.word}", facts, table)
+        return table.under(f"Monte Carlo and theory {v.word}", facts)
 
     def tables(self) -> dict[str, Table]:
         """By quantity: mean, 95 % interval, standard deviation, theory, residual at each separation shown."""
         return {name: self._table(name) for name in self.curves}
 
+    def table(self) -> Table:
+        """Return a row for each quantity and separation shown."""
+        return stacked(self.tables(), "quantity")
+
     def worst(self, rows: int) -> Table:
         """Return the means farthest from theory, over all quantities."""
-        table = replace(stacked(self.tables(), "quantity"), title="farthest from theory, in standard errors")
-        return _farthest(table, rows)
+        return _farthest(self.table().under("farthest from theory, in standard errors"), rows)
 
     def _table(self, quantity: str) -> Table:
         c, q = self.curves[quantity], self.ensemble.scene.quantity(quantity)
@@ -148,10 +150,10 @@ class SweepComparison(Shown):
     points: tuple[Tested, ...]
 
     @property
-    def verdict(self) -> Verdict:
+    def verdict(self) -> Check:
         """On all points together."""
-        least, n = self.worst[0].verdict, len(self.points)
-        return replace(least, p=min(1.0, n * least.p), points=n)
+        found = together([one.verdict for one in self.points])
+        return replace(found, seen=f"{found.seen} at the least likely of {len(self.points)} points")
 
     @cached_property
     def worst(self) -> list[Tested]:
@@ -167,13 +169,16 @@ class SweepComparison(Shown):
         """Draw how the residuals of all points are distributed; returns the axes."""
         return plotted(self, ax)
 
-    def sheet(self, most: int = _LISTED) -> Sheet:
+    def sheet(self, most: int = _LISTED) -> Table:
         """Return the verdict, and the points that are farthest from theory."""
-        v = self.verdict
+        v, n = self.verdict, len(self.points)
         smallest = self.worst[0].verdict.p
         beyond = int((np.abs(self.residuals) > 3).sum())
         facts = [
-            ("all points", f"p = {v.p:.3g}: {v.points} times the smallest p of a point, {smallest:.3g}"),
+            (
+                "all points",
+                f"p = {v.p:.3g}: {n} times the smallest p of a point, {smallest:.3g}",
+            ),
             ("residuals", f"{beyond} of {len(self.residuals)} beyond 3 standard errors"),
         ]
         where = list(self.sweep.axes.points())
@@ -183,8 +188,8 @@ class SweepComparison(Shown):
             Column("point", at, ", ".join(self.sweep.axes.keys)),
             *_columns(shown, self.sweep.scenes[0]),
         )
-        title = f"Monte Carlo and theory of {v.points} scenes {v.word}"
-        return Sheet(title, facts, Table(columns))
+        title = f"Monte Carlo and theory of {n} scenes {v.word}"
+        return Table(columns, title, facts)
 
     def table(self) -> Table:
         """Return a row for each point, quantity and separation."""
@@ -271,7 +276,7 @@ def _of_ensemble(ensemble: Ensemble, laws: bool) -> Comparison:
     if laws:
         from mcgw.statistics.laws_of_values import laws_of_values  # imports the exact laws
 
-        result = result.with_laws(laws_of_values(ensemble))
+        result = together([result, laws_of_values(ensemble)])
     curves = {name: _curve(some, name) for name in some.scene.answers}
     return Comparison(some, curves, result, how_many(ensemble))
 

@@ -15,16 +15,14 @@ from mcgw.ensemble.drawing import blocks
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.half_space import scene_alone
 from mcgw.ensemble.results import MemoryResults, joined
-from mcgw.formats.sheet import Sheet, Shown, brief
-from mcgw.formats.table import Column, Table, evenly
+from mcgw.formats.table import Column, Shown, Table, evenly
 from mcgw.machine.progress import Progress, told
-from mcgw.machine.terminal import plotted
+from mcgw.machine.terminal import brief, plotted
 from mcgw.sampling.block import Sampler
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import Scene
 from mcgw.statistics.checks import (
-    Check,
     PrincipalComponents,
     Slope,
     covariances,
@@ -35,7 +33,7 @@ from mcgw.statistics.checks import (
     slope,
     variances,
 )
-from mcgw.statistics.verdict import FALSE_ALARM, verdict
+from mcgw.statistics.verdict import Check, together, verdict
 
 Sums = Mapping[str, NDArray[Any]]
 Draw = Callable[[Scene], Sums]
@@ -72,12 +70,12 @@ class Convergence(Shown):
     @property
     def p(self) -> float:
         """Probability that the worst check is this bad by chance alone (Bonferroni)."""
-        return min(1.0, len(self.checks) * min(check.p for check in self.checks))
+        return together(self.checks).p
 
     @property
     def passed(self) -> bool:
-        """Whether it passed; a correct sampler fails with a probability of at most `FALSE_ALARM`."""
-        return self.p > FALSE_ALARM
+        """Whether it passed; a correct sampler fails with a probability of 1/1000 at most."""
+        return together(self.checks).agrees
 
     @property
     def word(self) -> str:
@@ -88,11 +86,11 @@ class Convergence(Shown):
         """Draw the probability of every check; returns the axes."""
         return plotted(self, ax)
 
-    def sheet(self) -> Sheet:
+    def sheet(self) -> Table:
         """Return the verdict and its worst checks."""
         worst = sorted(self.checks, key=lambda check: check.p)[:_MOST_SHOWN]
         facts = [("p", f"{self.p:.3g} over all {len(self.checks)} checks")]
-        return Sheet(f"Statistical convergence {self.word}", facts, _table(worst, "worst"))
+        return _table(worst, "worst").under(f"Statistical convergence {self.word}", facts)
 
     def table(self) -> Table:
         """Every check."""
@@ -175,7 +173,7 @@ def converge(
     y = exact.turn(sums)
     whole = scene.replace(n_surfaces=len(y))
     means = verdict(Ensemble(whole, "drawn", MemoryResults(sums)))
-    checks = [Check("means", means.seen, means.p), *_contacts(whole, sums), *_repeats(scene, sums)]
+    checks = [means, *_contacts(whole, sums), *_repeats(scene, sums)]
     slopes: list[Slope] = []
     z = np.empty(0)
     if y.shape[1]:

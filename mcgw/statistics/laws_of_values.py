@@ -6,8 +6,6 @@ without contact needs no random number in place of its value. Of K laws the leas
 (Bonferroni), however much the laws have in common.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from analytic import MeasuredHeights, quantity_of
@@ -16,42 +14,26 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.formats.table import evenly
 from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
+from mcgw.statistics.verdict import Check
 
 _SEPARATIONS, _FEW = 8, 3  # laws per quantity, at most; few where a law takes 60 ms instead of 10
 _PLACES = 1000  # values at which shares and probabilities are compared, of more surfaces some of theirs
 
 
-@dataclass(frozen=True)
-class LawsOfValues:
-    """Largest distance of surfaces from their exact laws.
-
-    Parameters
-    ----------
-    number : int
-        Number of tested laws.
-    quantity, separation : str, float
-        Of the values that are farthest off.
-    distance : float
-        Largest difference there of the share of the surfaces up to a value and its probability.
-    p : float
-        Probability of that by chance, of all laws together, at most.
-    """
-
-    number: int
-    quantity: str
-    separation: float
-    distance: float
-    p: float
-
-    @property
-    def seen(self) -> str:
-        """What p refers to, in words."""
-        at = f"{self.quantity} at d/sigma = {self.separation:g}"
-        return f"the distribution of {at} differs by {self.distance:.3g}, the most of {self.number}"
+def laws_of_values(ensemble: Ensemble) -> Check:
+    """Test all surfaces against the exact laws of their quantities, all at once."""
+    found = distances(ensemble)
+    distance, name, h = max(found)
+    p = 2 * len(found) * float(np.exp(-2 * ensemble.n_surfaces * distance**2))
+    where = f"the distribution of {name} at d/sigma = {h:g}"
+    seen = f"{where} differs by {distance:.3g}, the most of {len(found)}"
+    return Check("distributions of values", seen, min(p, 1.0))
 
 
-def laws_of_values(ensemble: Ensemble) -> LawsOfValues:
-    """Test all surfaces against the exact law of each quantity, at eight separations at most.
+def distances(ensemble: Ensemble) -> list[tuple[float, str, float]]:
+    """Largest difference of the share of the surfaces up to a value and its probability, and of what law.
+
+    Of each quantity at eight separations at most.
 
     Raises
     ------
@@ -72,13 +54,11 @@ def laws_of_values(ensemble: Ensemble) -> LawsOfValues:
         )
     h = np.unique(scene.separations)
     chosen = h[evenly(len(h), _SEPARATIONS if scene.hertzian and one_radius else _FEW)].tolist()
-    found = []
+    found: list[tuple[float, str, float]] = []
     for name in scene.quantities:
         apart = _distances(ensemble, name, [scene.separations.index(x) for x in chosen])
         found += [(d, name, x) for d, x in zip(apart, chosen, strict=True)]
-    distance, name, x = max(found)
-    p = 2 * len(found) * float(np.exp(-2 * ensemble.n_surfaces * distance**2))
-    return LawsOfValues(len(found), name, x, distance, min(p, 1.0))
+    return found
 
 
 def _distances(ensemble: Ensemble, name: str, which: list[int]) -> list[float]:

@@ -11,8 +11,7 @@ from typing import Any
 from analytic import MeasuredHeights, MeasuredRadii
 from mcgw.ensemble.drawing import in_words
 from mcgw.ensemble.half_space import scene_alone
-from mcgw.formats.sheet import Sheet, Shown
-from mcgw.formats.table import Column, Table
+from mcgw.formats.table import Column, Shown, Table
 from mcgw.machine.progress import Progress, told
 from mcgw.machine.terminal import plotted
 from mcgw.scene.arguments import argument, check_object
@@ -100,7 +99,7 @@ class Tradeoff(Shown):
         text = "; ".join(parts)
         return f"{text[0].upper()}{text[1:]}."
 
-    def sheet(self, targets: Sequence[float] = _SHOWN) -> Sheet:
+    def sheet(self, targets: Sequence[float] = _SHOWN) -> Table:
         """Return what to run for each answer; targets with one and the same way in one row."""
         scene = self.scene
         facts = [
@@ -109,7 +108,7 @@ class Tradeoff(Shown):
             ("model", self.ladder.sentence),
         ]
         table = self._rows(targets, ("want", "way", "n_surfaces"))
-        return Sheet("Speed and accuracy", facts, table if len(targets) > 1 else Table(table.columns[:-1]))
+        return Table(table.columns[: None if len(targets) > 1 else -1], "Speed and accuracy", facts)
 
     def table(self) -> Table:
         """For each answer and error the cheapest way, its surfaces, its time, and what to type."""
@@ -198,6 +197,7 @@ def tradeoff(
     )  # fmt: skip
     answers, names = Answers(scene), sampled_ways(scene)
     with told(progress, "s") as tell, warnings.catch_warnings():
+        tell(0, limit)
         warnings.simplefilter("ignore", UserWarning)  # of ways that take long, which is what is asked
         tasks = [*answers.without_surfaces()]
         for name in names:

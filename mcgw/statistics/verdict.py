@@ -8,8 +8,8 @@ that of those an ensemble has. Left out are summits flatter than a bound, of whi
 thousand ensembles: means and variances change by less than a thousandth of their errors.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.special import chdtrc
@@ -22,9 +22,6 @@ from mcgw.ensemble.half_space import asperities_alone
 from mcgw.formats.table import evenly
 from mcgw.scene.scene import Scene
 
-if TYPE_CHECKING:
-    from mcgw.statistics.laws_of_values import LawsOfValues
-
 FALSE_ALARM = 1e-3
 _MOST_SEPARATIONS = 48
 _SKEW, _KURTOSIS = 0.1, 0.1  # allowed departure from a Gaussian of a combination of means
@@ -34,49 +31,34 @@ _FLAT = 1e-3  # curvature down to which the share of flatter summits goes as its
 
 
 @dataclass(frozen=True)
-class Verdict:
-    """Result of a chi-square test of all means at once.
+class Check:
+    """One check, or several as one.
 
     Parameters
     ----------
-    chi_square : float
-        Sum of squares of independent standard normal numbers if theory holds.
-    degrees : int
-        How many: independent combinations of the means that are Gaussian to within 0.1 in skewness
-        and excess kurtosis.
+    name, seen : str
+        What is checked, and what was seen.
     p : float
-        Probability of so large a chi-square by chance.
-    points : int
-        Of a sweep how many are tested: then all else is of the least likely one, and p is so many times its
-        own (Bonferroni), whatever points have in common. 0 for an ensemble.
-    laws : LawsOfValues, optional
-        How far single surfaces are from their exact laws, where that decided.
+        Probability of that, or worse, by chance if theory holds.
+    chi_square, degrees : float, int, optional
+        Of all means at once: sum of squares of independent standard normal numbers, and how many there are,
+        combinations of the means that are Gaussian to within 0.1 in skewness and excess kurtosis.
     """
 
-    chi_square: float
-    degrees: int
+    name: str
+    seen: str
     p: float
-    points: int = 0
-    laws: "LawsOfValues | None" = None
+    chi_square: float = 0.0
+    degrees: int = 0
 
     @property
     def agrees(self) -> bool:
-        """Whether they agree; an ensemble that follows theory is rejected with probability `FALSE_ALARM`."""
+        """Whether theory stands; what follows it is rejected with probability `FALSE_ALARM`."""
         return self.p > FALSE_ALARM
 
     @property
-    def seen(self) -> str:
-        """What p refers to, in words."""
-        if self.laws is not None:
-            return self.laws.seen
-        where = f" at the least likely of {self.points} points" * (self.points > 0)
-        if not self.degrees:
-            return f"no mean is close enough to Gaussian for a test{where}"
-        return f"chi-square {self.chi_square:.1f} for {self.degrees} degrees of freedom{where}"
-
-    @property
     def word(self) -> str:
-        """Whether they agree."""
+        """Whether Monte Carlo and theory agree."""
         return "agree" if self.agrees else "DISAGREE"
 
     @property
@@ -84,10 +66,11 @@ class Verdict:
         """One line: whether they agree, and how sure that is."""
         return f"Monte Carlo and theory {self.word}: {self.seen}, p = {self.p:.3g}"
 
-    def with_laws(self, laws: "LawsOfValues") -> "Verdict":
-        """Verdict on means and on single values together: twice the smaller probability."""
-        decided = laws if laws.p < self.p else None
-        return replace(self, p=min(1.0, 2 * min(self.p, laws.p)), laws=decided)
+
+def together(checks: Sequence[Check]) -> Check:
+    """Take checks as one, whatever they have in common: the least p, times their number (Bonferroni)."""
+    least = min(checks, key=lambda check: check.p)
+    return replace(least, p=min(1.0, len(checks) * least.p))
 
 
 @dataclass(frozen=True)
@@ -106,8 +89,8 @@ class Tested:
         Their difference over the exact standard error; 0 where nothing fluctuates.
     counts : ndarray of bool
         Whether the mean is Gaussian enough for that to be read as a normal number.
-    verdict : Verdict
-        On all of them.
+    verdict : Check
+        Of all of them.
     number : int
         Number of the point of a sweep, the last axis fastest.
     """
@@ -118,7 +101,7 @@ class Tested:
     theory: Array
     residual: Array
     counts: Marks
-    verdict: Verdict
+    verdict: Check
     number: int = 0
 
     @property
@@ -129,7 +112,7 @@ class Tested:
         return quantity, separation
 
 
-def verdict(ensemble: Ensemble) -> Verdict:
+def verdict(ensemble: Ensemble) -> Check:
     """Test all means at once, with their exact covariance.
 
     The means are turned to the principal axes of their exact correlation. Of these, those count
@@ -174,6 +157,8 @@ def tested(ensemble: Ensemble, most: int) -> Tested:
     chi_square = float(np.sum((z @ axes) ** 2))
     degrees = axes.shape[1]
     p = float(chdtrc(degrees, chi_square)) if degrees else 1.0
+    seen = f"chi-square {chi_square:.1f} for {degrees} degrees of freedom"
+    seen = seen if degrees else "no mean is close enough to Gaussian for a test"
     shape = len(scene.quantities), len(h)
     return Tested(
         quantities=scene.quantities,
@@ -182,7 +167,7 @@ def tested(ensemble: Ensemble, most: int) -> Tested:
         theory=(exact * scale).reshape(shape),
         residual=residual.reshape(shape),
         counts=counts.reshape(shape),
-        verdict=Verdict(chi_square, degrees, p),
+        verdict=Check("means", seen, p, chi_square, degrees),
     )
 
 

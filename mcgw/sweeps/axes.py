@@ -12,7 +12,7 @@ import numpy as np
 from analytic import is_data
 from analytic.arrays import Array
 from mcgw.ensemble.labelled import AXES, GROUP
-from mcgw.formats.sheet import brief
+from mcgw.machine.terminal import brief
 from mcgw.scene.arguments import as_toml
 from mcgw.scene.keys import TABLES
 from mcgw.scene.laws import grading_table

@@ -16,7 +16,6 @@ from mcgw.ensemble.labelled import Labelled, Variable, axes_of, axis, statistics
 from mcgw.ensemble.paired import Difference, Paired, Slopes, Some, difference_of, ratio_of
 from mcgw.ensemble.pooled import Pooled, tables_of
 from mcgw.ensemble.results import Tables
-from mcgw.formats.sheet import Sheet
 from mcgw.formats.table import SEPARATION, Column, Table, evenly
 from mcgw.sampling.samplers import name_of
 from mcgw.scene.scene import Scene
@@ -198,7 +197,7 @@ class Sweep(Dataset):
         weights = [(*place.weights, 0.0)[:2] for place in self.places]
         return {**tables_of(self.groups), "points": np.array(points), "weights": np.array(weights)}
 
-    def sheet(self) -> Sheet:
+    def sheet(self) -> Table:
         """Display the axes, and means of some points at the lowest separation."""
         facts = [(key, self.axes.summary(key)) for key in self.axes.keys]
         surfaces = sum(group.n for group in self.groups)
@@ -215,7 +214,7 @@ class Sweep(Dataset):
         for name in self.quantities:
             mean, error = (get(name)[..., k].ravel()[shown] for get in (self.mean, self.stderr))
             columns.append(Column(name, mean, form=".5g", beside=Column("stderr", error, form=".2g")))
-        return Sheet(f"Sweep of {self.axes.size} scenes", facts, Table(tuple(columns)))
+        return Table(tuple(columns), f"Sweep of {self.axes.size} scenes", facts)
 
     def table(self) -> Table:
         """Return a row for each point and separation: the keys, means and standard deviations.

@@ -8,8 +8,7 @@ from itertools import groupby
 import numpy as np
 
 from analytic.arrays import Array, Marks
-from mcgw.formats.sheet import Sheet, Shown
-from mcgw.formats.table import SEPARATION, Column, Table
+from mcgw.formats.table import SEPARATION, Column, Shown, Table
 from mcgw.validity.error_table import COLUMNS
 
 _AT_LOAD = {"area": "area", "stiffness": "stiffness", "separation": "gap"}  # columns at a given load
@@ -125,10 +124,10 @@ class Validity(Shown):
         where = "" if self.measured.all() else f"; d/sigma = {span(self.separations, self.measured)}"
         return f"within {', '.join(told)} (95 %{self._homogeneous}){where}"
 
-    def sheet(self) -> Sheet:
+    def sheet(self) -> Table:
         """Return the verdict, and errors at some separations: mean over maps, and ends of 95 % of them."""
         where = [("measured", self.where)] if self.where else []
-        return Sheet("Against elasticity", [("verdict", self.brief), *where], self.table())
+        return self.table().under("Against elasticity", [("verdict", self.brief), *where])
 
     def table(self) -> Table:
         """At some separations the bias of each quantity, and how far 95 % are from it; else empty."""

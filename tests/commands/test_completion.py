@@ -42,23 +42,18 @@ def tab(script, tmp_path):
     return ask
 
 
-def test_every_command(tab):
-    assert tab("mcgw", "") == sorted(COMMANDS)
-    assert tab("mcgw", "co") == ["compare", "completion", "converge"]
+TABS = [
+    ("", sorted(COMMANDS)), ("co", ["compare", "completion", "converge"]), ("run --sh", ["--shard"]),
+    ("export --to a", ["abaqus"]), ("init co", ["coating"]), ("run --no-such-", []),
+    ("run mi", ["mine.toml"]),
+    ("run mine.toml -o mi", ["mine.toml"]),
+]  # fmt: skip
 
 
-def test_options_words_and_no_others(tab):
-    assert tab("mcgw", "run", "--sh") == ["--shard"]
-    assert {"--to", "--units"} <= set(tab("mcgw", "export", "--"))
-    assert tab("mcgw", "export", "--to", "a") == ["abaqus"]
-    assert tab("mcgw", "init", "co") == ["coating"]
-    assert tab("mcgw", "run", "--no-such-") == []
-
-
-def test_files(tab, tmp_path):
+@pytest.mark.parametrize(("words", "found"), TABS)
+def test_commands_options_words_and_files(tab, tmp_path, words, found):
     (tmp_path / "mine.toml").touch()
-    assert tab("mcgw", "run", "mi") == ["mine.toml"]
-    assert tab("mcgw", "run", "mine.toml", "-o", "mi") == ["mine.toml"]
+    assert tab("mcgw", *words.split(" ")) == found
 
 
 @pytest.mark.parametrize("shell", ["zsh", "fish"])

@@ -6,10 +6,8 @@ That the function uses what it is given is tested where the function is.
 import argparse
 import inspect
 import shlex
-from concurrent.futures import ThreadPoolExecutor
 from importlib import import_module
 from pathlib import Path
-from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -46,7 +44,7 @@ ROWS = [
             (line, target, "--shard 1/2", {"shard": "1/2", "executor": None, "threads": None}),
             (line, target, "--output b.h5", {"path.name": "b.h5"}),
             (line, target, "--set ensemble.n_surfaces=9", {"scene.n_surfaces": 9, "scene.seed": 5}),
-            (line, "jobs.executors:Jobs", "--jobs 3", {"n": 3}),
+            (line, target, "--jobs 3", {"executor.n": 3, "shard": None}),
             (line, "jobs.executors:dask_executor", "--dask tcp://h:1", {"address": "tcp://h:1"}),
         )
     ),
@@ -157,7 +155,7 @@ SAID = [
     ("init coating", "coating.toml: a graded hard coating", ["coating.toml"]),
     ("init --output x.toml", "x.toml: lapped silicon carbide", ["x.toml"]),
     ("init --schema", "scene.schema.json: with it", ["demo.toml", "scene.schema.json"]),
-    ("run @s.toml -o a.h5 --shard 1/2", "shard 1/2 is done", None),
+    ("run @s.toml -o a.h5 --shard 1/2", "all are done: mcgw merge a.h5", None),
     ("figures --only figure-1 --format png pdf svg --csv -o .", ".: 1 figure;",
      ["figure-1.csv", "figure-1.pdf", "figure-1.png", "figure-1.svg"]),
     ("converge @s.toml -o there", "there/s-converge.png: figure", ["s-converge.png"]),
@@ -317,56 +315,6 @@ def test_more_threads_than_there_are_is_said_and_changes_no_bit(call):
     assert "--threads" not in plain.stderr
 
 
-class Recorder(ThreadPoolExecutor):
-    """An executor that draws in this process and remembers how it was made."""
-
-    made: ClassVar[list[Any]] = []
-
-    def __init__(self, *arguments):
-        super().__init__(1)
-        self.made.append(arguments)
-
-    def submit(self, attempt, task, *arguments):
-        self.made.append(task.__name__)
-        return super().submit(attempt, task, *arguments)
-
-    def shutdown(self, *arguments, **options):
-        self.made.append("ended")
-        super().shutdown(*arguments, **options)
-
-
-@pytest.mark.parametrize("line", [RUN, "run @rule.toml -o a.h5", SWEEP])
-def test_an_executor_is_given_the_blocks_and_ended(call, monkeypatch, line):
-    """The file is that of the threads."""
-    read = mcgw.open_sweep if line == SWEEP else mcgw.open_ensemble
-    monkeypatch.setattr("mcgw.jobs.executors.Jobs", Recorder)
-    Recorder.made.clear()
-    given = call(f"{line} --jobs 3")
-    assert given.returncode == 0, given.stderr
-    assert (Recorder.made[0], Recorder.made[1], Recorder.made[-1]) == ((3,), "commit_block", "ended")
-    plain = call(line)
-    np.testing.assert_array_equal(*(read(x.folder / "a.h5").mean("load") for x in (plain, given)))
-
-
-def test_threads_are_so_many_while_it_draws(call, monkeypatch):
-    import numba
-
-    from mcgw.sampling import counted
-
-    seen = []
-    block = counted.Counted.block
-
-    def spy(self, first, n):
-        seen.append(numba.get_num_threads())
-        return block(self, first, n)
-
-    monkeypatch.setattr(counted.Counted, "block", spy)
-    before = numba.get_num_threads()
-    assert call(f"{RUN} --threads 1").returncode == 0
-    assert seen[-1] == 1
-    assert numba.get_num_threads() == before
-
-
 def test_a_recorded_seed_is_taken_and_one_that_is_given_holds(call, material):
     """A scene without a seed goes on with the one that its file has; somewhere else it draws another."""
     path = call("run @noseed.toml -o a.h5").folder / "a.h5"
@@ -379,16 +327,6 @@ def test_a_recorded_seed_is_taken_and_one_that_is_given_holds(call, material):
     other = call("run @noseed.toml -o a.h5")
     assert mcgw.open_ensemble(other.folder / "a.h5").scene.seed != seed
     assert mcgw.open_ensemble(call(RUN).folder / "a.h5").scene.seed == 5
-
-
-def test_shares_with_the_seed_of_the_first_are_merged(call):
-    path = call("run @noseed.toml -o a.h5 --shard 1/2").folder / "a.h5"
-    assert call(f"run @noseed.toml -o {path} --shard 2/2").returncode == 0
-    assert not path.exists()
-    done = call(f"merge {path}")
-    assert done.returncode == 0, done.stderr
-    assert f"{path}: 70 surfaces, seed" in done.stdout
-    assert "was finished before, 70 surfaces" in call(f"merge {path}").stdout
 
 
 @pytest.mark.slow
@@ -420,9 +358,9 @@ def test_places_left_out(call, material):
 def test_compare_says_which_law_is_the_least_likely_and_ends_with_1(call, monkeypatch):
     from mcgw.statistics import laws_of_values
 
-    found = laws_of_values.LawsOfValues(24, "load", 1.5, 0.25, 1e-9)
-    monkeypatch.setattr(laws_of_values, "laws_of_values", lambda ensemble: found)
+    found = [(0.2, "area", 0.0), (0.5, "load", 1.5)]
+    monkeypatch.setattr(laws_of_values, "distances", lambda ensemble: found)
     said = call(f"{COMPARE} --laws")
     assert said.returncode == 1
-    assert "the distribution of load at d/sigma = 1.5 differs by 0.25, the most of 24" in said.stdout
+    assert "the distribution of load at d/sigma = 1.5 differs by 0.5, the most of 2" in said.stdout
     assert call(COMPARE).returncode == 0

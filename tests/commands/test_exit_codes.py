@@ -6,7 +6,6 @@ Every command, standard output and standard error, each closed, full, or a pipe 
 import gc
 import importlib.metadata
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -15,7 +14,6 @@ import warnings
 from pathlib import Path
 
 import pytest
-from oracles.overwrites import prepare
 
 import mcgw
 from mcgw.cli import COMMANDS, main, process
@@ -197,50 +195,6 @@ def test_a_pipe_that_breaks_elsewhere_is_an_error(instead, capsys):
 
 
 # --- whole processes --------------------------------------------------------------------------------------
-
-REDIRECT = {
-    ("stdout", "closed"): ">&-",
-    ("stdout", "full"): ">/dev/full",
-    ("stderr", "closed"): "2>&-",
-    ("stderr", "full"): "2>/dev/full",
-    ("both", "broken"): "2>&1 | head -c 0; exit ${PIPESTATUS[0]}",
-    ("stdout", "broken"): "| head -c 0; exit ${PIPESTATUS[0]}",
-    ("stderr", "broken"): "2>&1 >/dev/null | head -c 0; exit ${PIPESTATUS[0]}",
-}
-
-
-def code_of(words, redirect, folder):
-    env = os.environ | {"PYTHONPATH": str(Path(mcgw.__file__).parents[1])}
-    line = f"{sys.executable} -m mcgw {words} {redirect}"
-    return subprocess.run(
-        ["bash", "-c", line], cwd=folder, env=env, capture_output=True, check=False
-    ).returncode
-
-
-def files_in(folder):
-    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
-
-
-@pytest.fixture(scope="module")
-def inputs(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("inputs")
-    prepare(folder)
-    return folder
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("command", ["init", "show", "solve", "completion"])  # the others do so above
-def test_whole_commands_end_as_undisturbed(command, inputs, tmp_path):
-    """In processes of their own, through a shell: the same code, and the same files."""
-    made = {}
-    for stream, state in [("", ""), *REDIRECT]:
-        folder = tmp_path / f"{stream}-{state}"
-        shutil.copytree(inputs, folder)
-        code = code_of(WORDS[command], REDIRECT.get((stream, state), ""), folder)
-        made[stream, state] = (code, files_in(folder))
-    code, files = made["", ""]
-    assert code in (0, 1)
-    assert made == {key: (expected(command, *key, code), files) for key in made}
 
 
 @pytest.mark.parametrize("command", ["run", "show"])

@@ -26,7 +26,6 @@ from scipy.ndimage import gaussian_filter
 
 import mcgw
 from mcgw.cli import main
-from mcgw.commands import outputs
 from mcgw.errors import StoreError, in_one_line
 from mcgw.figures import panels
 
@@ -109,14 +108,6 @@ def test_an_earlier_output_is_replaced(here):
     for _ in range(2):
         assert main(["show", "e.h5", "--csv", "table2.csv"]) == 0
         assert main(["surface", "plain.toml", "--shape", "16", "-o", "m.h5"]) == 0
-
-
-def test_every_format_of_matplotlib_is_a_figure():
-    from matplotlib.figure import Figure
-
-    known = Figure().canvas.get_supported_filetypes()
-    assert set(outputs.figure_format().endings) == {f".{name}" for name in known}
-    assert {".png", ".pdf", ".svg"} <= set(outputs.figure_format().endings)
 
 
 PLACES = [
@@ -251,14 +242,6 @@ def test_leftovers_of_the_dead_go_with_the_next_output(here):
     assert main(["show", "e.h5", "--csv", "x.csv"]) == 0
     assert mine.exists()
     assert not theirs.exists()
-
-
-def test_save_in_python_keeps_what_is_there(make_scene, tmp_path, monkeypatch):
-    (tmp_path / "f.h5").write_bytes(b"precious")
-    with pytest.raises(StoreError, match="not an HDF5 file"):
-        mcgw.save(mcgw.simulate(make_scene(n_surfaces=4)), tmp_path / "f.h5")
-    assert (tmp_path / "f.h5").read_bytes() == b"precious"
-    assert [p.name for p in tmp_path.iterdir()] == ["f.h5"]
 
 
 def test_a_disk_that_does_not_flush_folders_is_no_error(tmp_path, make_scene, monkeypatch):

@@ -244,17 +244,6 @@ def test_hostile_texts_end_in_a_few_lines(tmp_path):
         assert all(line.startswith("mcgw: ") and len(line) < 400 for line in lines), kind
 
 
-def test_texts_with_many_dots_are_still_read():
-    """Numbers in one line, sentences, and dots in texts are no dotted keys."""
-    title = "one. two. three. " * 100 + "a.b" * 300
-    numbers = ", ".join(f"{i / 1000:.3f}" for i in range(2000))
-    text = SCENE.replace('"Quick look"', f'"{title}" # {"x." * 500}')
-    text = text.replace("{start = 0.0, stop = 4.0, num = 9}", f"[{numbers}]")
-    scene = mcgw.scene_from(text)
-    assert scene.title == title
-    assert len(scene.separations) == 2000
-
-
 SLOW_LAWS = [
     scipy.stats.kappa4(0.1, 0.0), scipy.stats.kstwo(10), scipy.stats.studentized_range(3.0, 10.0),
 ]  # fmt: skip

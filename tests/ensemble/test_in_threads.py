@@ -11,6 +11,7 @@ from numba import get_num_threads
 from oracles.inside import use_threads
 
 import analytic
+import mcgw
 from analytic.scipy_heights import in_time
 from mcgw.machine.in_threads import in_threads, pieces
 
@@ -57,6 +58,21 @@ def test_pieces_cover_everything_once(n, least):
         assert [i for first, last in cut for i in range(first, last)] == list(range(n))
         assert all(first % least == 0 for first, _ in cut)
         assert 1 <= len(cut) <= get_num_threads()
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_a_run_draws_with_so_many_threads(threads, make_scene, tmp_path, monkeypatch):
+    from mcgw.sampling.counted import Counted
+
+    seen, block = set(), Counted.block
+
+    def noted(self, first, n):
+        seen.add(threading.get_ident())
+        return block(self, first, n)
+
+    monkeypatch.setattr(Counted, "block", noted)
+    mcgw.run(make_scene(n_surfaces=200), tmp_path / "e.h5", threads=threads)
+    assert len(seen) == min(threads, get_num_threads())
 
 
 def endless():

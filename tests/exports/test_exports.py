@@ -2,8 +2,6 @@
 
 import csv
 import re
-import shutil
-import subprocess
 
 import numpy as np
 import pytest
@@ -20,7 +18,6 @@ from mcgw.exports.writing import surfaces_for
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "10 mm^2", "78.6 GPa")
 FILM = mcgw.Joint(resistivity=1 / 150 + 1 / 16)
 METAL = mcgw.KogutEtsion(critical=0.05)
-CCX = shutil.which("ccx")
 
 
 @pytest.fixture(scope="module")
@@ -383,48 +380,3 @@ def test_names_that_a_program_cannot_be_told_are_refused(make_scene, name, tmp_p
 
 
 # --- CalculiX itself, where it is installed -------------------------------------------------------------
-
-
-def nodes(first, level):
-    """Four corners of a unit square, numbered on from `first`."""
-    return [f"{first + k},{x},{y},{level}" for k, (x, y) in enumerate([(0, 0), (1, 0), (1, 1), (0, 1)])]
-
-
-DECK = "\n".join(
-    [
-        "*NODE, NSET=ALL", *nodes(1, 0), *nodes(5, 1), *nodes(11, 1), *nodes(15, 2),
-        "*ELEMENT, TYPE=C3D8, ELSET=BELOW", "1,1,2,3,4,5,6,7,8",
-        "*ELEMENT, TYPE=C3D8, ELSET=ABOVE", "2,11,12,13,14,15,16,17,18",
-        "*NSET, NSET=TOP", "15,16,17,18",
-        "*SURFACE, NAME=MASTER", "1,S2", "*SURFACE, NAME=SLAVE", "2,S1",
-        "*MATERIAL, NAME=STIFF", "*ELASTIC", "1E8,0",
-        "*SOLID SECTION, ELSET=BELOW, MATERIAL=STIFF", "*SOLID SECTION, ELSET=ABOVE, MATERIAL=STIFF",
-        "*SURFACE INTERACTION, NAME=ROUGH", "*INCLUDE, INPUT=contact.inp",
-        "*CONTACT PAIR, INTERACTION=ROUGH, TYPE=NODE TO SURFACE", "SLAVE,MASTER",
-        "*BOUNDARY", *(f"{k},1,3" for k in range(1, 5)), *(f"{k},1,2" for k in (5, 6, 7, 8, 11, 12, 13, 14)),
-        "*STEP", "*STATIC, DIRECT", "1,1",
-        "*BOUNDARY", "TOP,1,2", "TOP,3,3,{down}",
-        "*NODE PRINT, NSET=TOP, TOTALS=ONLY", "RF", "*END STEP", "",
-    ]
-)  # fmt: skip
-
-
-@pytest.mark.site
-@pytest.mark.skipif(CCX is None, reason="no CalculiX here")
-@pytest.mark.parametrize("share", [0.35, 0.6, 0.9])
-def test_calculix_presses_as_the_table_says(ensemble, share, tmp_path):
-    """Two blocks of 1 mm^3, nearly rigid, pressed into each other: the reaction is that of the ensemble."""
-    path, *_ = mcgw.export(ensemble, tmp_path / "contact.inp", to="calculix", units="mm-N-s", quantiles=[])
-    overclosure, pressure = table_of(path, "calculix")
-    depth = share * overclosure[-1]
-    expected = np.interp(depth, overclosure, pressure)
-    (tmp_path / "deck.inp").write_text(DECK.format(down=-depth))
-    done = subprocess.run([CCX, "deck"], cwd=tmp_path, capture_output=True, text=True, timeout=60)
-    assert "*ERROR" not in done.stdout, done.stdout[-2000:]
-    said = (tmp_path / "deck.dat").read_text()
-    force = [float(x) for x in re.findall(r"^\s+(\S+)\s+(\S+)\s+(\S+)\s*$", said, flags=re.M)[-1]]
-    assert -force[2] == pytest.approx(expected, rel=2e-3)
-    own = np.interp(
-        d0_of(path) - depth, 1e3 * SURFACE.sigma * ensemble.separations, 1e-6 * ensemble.mean("pressure")
-    )
-    assert -force[2] == pytest.approx(own, rel=2e-3)

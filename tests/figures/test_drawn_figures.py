@@ -325,8 +325,8 @@ def test_of_residuals_that_read_alike_the_first_is_shown(comparison):
         mean = curve.theory + np.array(pull) * curve.stderr
         compared = one_of(comparison, dataclasses.replace(curve, mean=mean))
         assert compared.worst(1).only("separation").columns[0].values == [H[shown]]
-        assert f"{H[shown]:g}" in compared.sheet().table.text()
-        assert compared.sheet().table.only("separation").columns[0].values == [H[shown]]
+        assert f"{H[shown]:g}" in compared.sheet().text()
+        assert compared.sheet().only("separation").columns[0].values == [H[shown]]
     still = dataclasses.replace(curve, mean=curve.theory - 1e-9 * curve.stderr)
     assert "-0.00" not in one_of(comparison, still).worst(3).text()
 

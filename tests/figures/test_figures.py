@@ -148,7 +148,9 @@ def test_ratio_of_sums_against_repetition():
     rng = np.random.default_rng(3)
     a = rng.gamma(3, size=(200, 500))
     b = 2 * a + rng.normal(size=a.shape)
-    found = [ratio_of_sums(y, x) for x, y in zip(a, b, strict=True)]
+    found = [ratio_of_sums([y, x], [x, x]) for x, y in zip(a, b, strict=True)]
+    np.testing.assert_allclose(found[0], ratio_of_sums([b[0]], [a[0]]), rtol=1e-12)
+    assert ratio_of_sums([0.3 * a[0]], [a[0]]) == (pytest.approx(0.3, rel=1e-14), 0.0)
     spread = np.std([r for r, _ in found], ddof=1)
     assert spread == pytest.approx(np.mean([e for _, e in found]), rel=0.2)
 
@@ -377,6 +379,7 @@ def test_what_hardly_touches_or_is_one_surface_has_no_markers(changes):
     assert set(without) <= {"fluctuations", "equal-load"}
     assert not [p for x in figures.values() for p in points(x)]
     one = changes["n_surfaces"] == 1
+    assert one <= ("fluctuations" in without)
     assert not (one and any("Markers" in data.caption for data in figures.values()))
     assert draw(figures["figure-2"]).axes
 

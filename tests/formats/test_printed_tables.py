@@ -8,19 +8,15 @@ import numpy as np
 import pytest
 from oracles.inside import (
     Column,
-    Sheet,
     Table,
     alive,
     check_output,
     digits_of,
     evenly,
     listed,
-    loads,
-    number,
     open_npy,
     opened,
     parse,
-    read_text,
     stacked,
     temporary_beside,
     typeset,
@@ -52,6 +48,10 @@ def test_a_table_is_aligned_and_shows_each_number_to_its_error():
     assert bare.text() == "  share  area (m^2)\n  0.25            2"
     assert (SMALL.unit, bare.unit, Table((Column("x", []),)).unit) == ("N", "1", "")
     assert [column.textual for column in (*SMALL.columns, Column("x", []))] == [False, False, True, False]
+
+
+def test_numbers_of_a_page_are_typeset():
+    assert typeset("gap/sigma 1e-05 x-1 -2 ... 3e+12") == "gap/σ 1×10⁻⁵ x-1 −2 … 3×10¹²"
 
 
 def test_rows_and_columns_are_picked_from_a_table():
@@ -95,11 +95,11 @@ def test_a_table_of_a_page_has_the_cells_of_a_terminal_typeset():
 def test_a_file_of_a_table_has_all_digits(tmp_path):
     kinds = Table((
         Column("i", [1, np.int64(-2)]), Column("t", ["a,b", "c"]),
-        Column("x", [0.1, np.float64(1e-300)], beside=Column("e", [1 / 3, 2.0])),
+        Column("x", [0.1, np.float64(1e-300)], unit="N", beside=Column("e", [1 / 3, 2.0], unit="1")),
     ))  # fmt: skip
     kinds.write(str(tmp_path / "t.csv"))
     lines = (tmp_path / "t.csv").read_bytes().decode().removesuffix("\n").split("\n")
-    assert lines == ["i,t,x,e", f'1,"a,b",0.1,{1 / 3!r}', "-2,c,1e-300,2.0"]
+    assert lines == ["i,t,x (N),e", f'1,"a,b",0.1,{1 / 3!r}', "-2,c,1e-300,2.0"]
     assert list(kinds.to_dataframe()["e"]) == [1 / 3, 2.0]
 
 
@@ -125,19 +125,12 @@ def test_a_sheet_is_its_title_its_facts_and_its_table():
     assert list(listed([("a", "x"), ("long", "y")])) == ["  a     x", "  long  y"]
     assert list(listed([("a", "x")], 6)) == ["  a       x"]
     few = Table((Column("n", [1]),))
-    whole = Sheet("One\ntwo", [("a", "x" * 100), ("long", "<y>")], few)
+    whole = few.under("One\ntwo", [("a", "x" * 100), ("long", "<y>")])
     assert whole.text() == f"One\\ntwo\n  a     {'x' * 85}...\n  long  <y>\n  n\n  1"
     facts = f"<tr><th>a</th><td>{'x' * 85}...</td></tr><tr><th>long</th><td>&lt;y&gt;</td></tr>"
-    assert whole.html() == f"<b>One\\ntwo</b><table>{facts}</table>{few.html()}"
-    assert (Sheet("t").text(), Sheet("t").html()) == ("t", "<b>t</b>")
-
-
-def test_numbers_for_a_page():
-    assert [number(x) for x in (1234.5, 12345.0, 1e-4, 0.99e-4, -6.698e-7)] == [
-        "1234", "1.234×10⁴", "0.0001", "9.9×10⁻⁵", "−6.698×10⁻⁷",
-    ]  # fmt: skip
-    assert (number(1234.5, 2), number(0.0)) == ("1.2×10³", "0")
-    assert typeset("gap/sigma 1e-05 x-1 -2 ... 3e+12") == "gap/σ 1×10⁻⁵ x-1 −2 … 3×10¹²"
+    assert whole._repr_html_() == f"<b>One\\ntwo</b><table>{facts}</table>{few.html()}"
+    alone = Table((), "t")
+    assert (alone.text(), alone._repr_html_()) == ("t", "<b>t</b>")
 
 
 @pytest.mark.parametrize("length", [60, 61])
@@ -198,30 +191,6 @@ def test_the_longest_name_can_be_written_and_leftovers_of_the_living_stay(tmp_pa
     assert mine.exists()
     assert odd.exists()
     assert (alive(os.getpid()), alive(10**30)) == (True, True)  # of what cannot be asked, nothing is removed
-
-
-def test_a_text_may_be_as_long_as_said_and_no_longer(tmp_path):
-    (tmp_path / "t").write_bytes(b"\xef\xbb\xbf12345")
-    assert read_text(tmp_path / "t", 8) == "12345"
-    with pytest.raises(Exception, match="longer than 7 bytes"):
-        read_text(tmp_path / "t", 7)
-    (tmp_path / "t").write_bytes(b"ab\xff")
-    with pytest.raises(Exception, match=r"not text in UTF-8 \(byte 2\)"):
-        read_text(tmp_path / "t", 8)
-
-
-def test_keys_have_a_hundred_parts_and_brackets_no_endless_depth():
-    """Brackets that close count no more, and those in texts or comments never did."""
-
-    def deep(number):
-        return "[a]\n[b]\n" + 't = "[[[[" # [[[\n' + f"x = {'[' * number}{']' * number}\n"
-
-    assert loads(deep(100))["b"]["t"] == "[[[["
-    with pytest.raises(ValueError, match="nested too deeply"):
-        loads(deep(10**4))
-    assert loads("a" + ".a" * 99 + " = 1 # a.b\n")
-    with pytest.raises(ValueError, match="a dotted key has more than 100 parts"):
-        loads("a" + ".a" * 100 + " = 1\n")
 
 
 @pytest.mark.parametrize("told", ["unable to lock file, errno = 37", "no such file"])

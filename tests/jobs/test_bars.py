@@ -2,13 +2,14 @@
 
 import io
 import sys
+from contextlib import nullcontext, suppress
 
 import numpy as np
 import pytest
 
 import mcgw
 from mcgw.cli import main
-from mcgw.machine.progress import stages, steps, told as asked, watched
+from mcgw.machine.progress import steps, told as asked, watched
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "0.1 mm^2", "78.6 GPa")
 SCENE = mcgw.Scene(SURFACE, separations=[0.0, 1.0], n_surfaces=4, seed=1)
@@ -47,7 +48,7 @@ def told(tmp_path, monkeypatch):
     ("words", "bars"),
     [
         ("solve s.toml --pressure 1MPa -v", ["4 [", " surfaces/s"]),
-        ("fit map.npy --cutoff none --pixel 1um -o f.toml", ["/4 [", " steps/s"]),
+        ("fit map.npy --cutoff none --pixel 1um -o f.toml", ["/3 [", " steps/s"]),
         ("sweep s.toml --over grading.gamma=0.2:1:7 -o w.h5", ["/7 [", "? points/s"]),
     ],
 )
@@ -78,38 +79,54 @@ def test_python_waits_only_if_it_says_so(monkeypatch):
     assert calls[-1] == (4, 4)
 
 
-def test_a_bar_counts_what_is_done_and_ends_with_an_error(monkeypatch):
-    stream = Stream(terminal=True)
+@pytest.mark.parametrize("terminal", [True, False])
+@pytest.mark.parametrize("person", [True, False])
+@pytest.mark.parametrize("progress", [True, False, None, print, 3, "bar"])
+def test_who_has_a_bar(terminal, person, progress, monkeypatch):
+    """Who asks for one, or a person who waits at a terminal; calls within it draw none beside it."""
+    stream = Stream(terminal)
     monkeypatch.setattr(sys, "stderr", stream)
+    if progress in (3, "bar"):
+        with pytest.raises(ValueError, match=f"progress = {progress!r}: give True, or a function"):
+            asked(progress, "surfaces").__enter__()
+        return
+    with watched() if person else nullcontext(), asked(progress, "surfaces") as tell:
+        assert not stream.getvalue()  # nothing is drawn before the first number
+        assert progress is not print or tell is print
+        if progress is not print:
+            tell(1, 3)
+        assert list(steps([4, 5], "things")) == [4, 5]
+        if progress is not print:
+            tell(3, 3)
+    drawn = progress is True or (progress is None and terminal and person)
+    assert ("1/3 [" in stream.getvalue()) == drawn
+    assert ("things/s" in stream.getvalue()) == (progress in (print, False) and terminal and person)
+    stream.truncate(0)
+    assert list(steps([4, 5], "things")) == [4, 5]  # nobody waits any more
+    assert not stream.getvalue()
 
-    def interrupted():
-        with watched(), stages(3, "things") as done:
-            done()
+
+def test_a_bar_goes_on_from_what_was_done_before_and_ends_with_an_error(monkeypatch):
+    """At its rate in this call."""
+    made = []
+
+    class Bar:
+        def __init__(self, **options):
+            self.n, self.noted = options["initial"], [options]
+            made.append(self.noted)
+
+        def update(self, more):
+            self.n += more
+            self.noted.append(more)
+
+        def close(self):
+            self.noted.append("closed")
+
+    monkeypatch.setattr("tqdm.tqdm", Bar)
+    for _ in range(2):
+        with suppress(KeyError), asked(True, "surfaces") as show:
+            for done in (50, 60, 60, 100):
+                show(done, 100)
             raise KeyError
-
-    with pytest.raises(KeyError):
-        interrupted()
-    assert "0/3 [" in stream.getvalue()
-    assert stream.getvalue().endswith("\r")  # it is wiped out
-    before = len(stream.getvalue())
-    with stages(3, "things") as done:  # nobody waits any more
-        done()
-    assert len(stream.getvalue()) == before
-
-
-def test_progress_is_a_bar_a_function_or_nothing(monkeypatch):
-    with asked(print, "surfaces") as tell:
-        assert tell is print
-    for none in (None, False):
-        with asked(none, "surfaces") as tell:
-            assert tell(1, 2) is None
-    for wrong in (3, "bar"):
-        with pytest.raises(ValueError, match=f"progress = {wrong!r}: give True, or a function"):
-            asked(wrong, "surfaces").__enter__()
-    stream = Stream(terminal=True)
-    monkeypatch.setattr(sys, "stderr", stream)
-    with asked(True, "surfaces") as tell:
-        tell(1, 3)
-        assert list(steps([4, 5], "things")) == [4, 5]  # watched, and so drawn
-    assert "1/3 [" in stream.getvalue()
-    assert "things/s" in stream.getvalue()
+    options = {"total": 100, "initial": 50, "unit": " surfaces", "leave": False, "smoothing": 0}
+    assert made == [[options, 0, 10, 0, 40, "closed"]] * 2

@@ -255,7 +255,7 @@ def test_the_command_tells_a_profile_by_its_shape(files, tmp_path, capsys):
     out = tmp_path / "scene.toml"
     assert main(["fit", *paths, "--cutoff", "10um", "--E-star", "70 GPa", "-o", str(out), "-v"]) == 0
     told = capsys.readouterr().out
-    assert "2 profiles, 0.002 m together" in told
+    assert "2 profile(s), 0.002 m together" in told
     found = mcgw.fit(paths, cutoff="10 um")
     assert set(found.table().text().splitlines()) <= set(told.splitlines())
     scene = mcgw.load_scene(out)

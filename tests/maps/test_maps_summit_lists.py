@@ -123,8 +123,8 @@ def tables(waves, tmp_path_factory):
 def rows(path):
     comment, *lines = path.read_text().splitlines()
     assert comment.startswith("# ")
-    assert "in m" in comment
-    return list(csv.DictReader(lines))
+    names = [name.partition(" (")[0] for name in lines[0].split(",")]
+    return list(csv.DictReader(lines[1:], names))
 
 
 def test_the_table_reads_back_to_the_last_bit(tables, waves):

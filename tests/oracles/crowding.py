@@ -21,4 +21,4 @@ def crowded(figure):
         if panel.axison
     ]
     pairs = itertools.chain.from_iterable(itertools.combinations(group, 2) for group in groups)
-    return out + [(a, b) for a, b in pairs if a.overlaps(b)]
+    return out + [(a, b) for a, b in pairs if a.padded(-1).overlaps(b)]  # of a pixel, by rounding

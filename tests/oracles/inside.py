@@ -37,8 +37,8 @@ MODULES = {
     "mcgw.formats.gate": "check_archive open_h5 opened",
     "mcgw.formats.law_text": "law_text",
     "mcgw.formats.named_files": "loads loads_json open_npy read_text",
-    "mcgw.formats.numbers": "number typeset",
-    "mcgw.formats.sheet": "brief listed Sheet",
+    "mcgw.formats.numbers": "typeset",
+    "mcgw.machine.terminal": "brief listed",
     "mcgw.formats.table": "Column digits_of evenly joined stacked Table",
     "mcgw.formats.units": "_FACTORS EXAMPLES METRES parse",
     "mcgw.jobs.driver": "drive heed_signals part_of Signals",
@@ -61,9 +61,7 @@ MODULES = {
     "mcgw.maps.summit_sums": "_apex coarse_sums_of summit_sums_of SummitSums SUMS",
     "mcgw.reports.html": "report_html",
     "mcgw.reports.plan": "plan_text",
-    "mcgw.reports.report_figures": (
-        "spread_panel svg_of pressure_curves pressure_table round_pressures solved_pressures"
-    ),
+    "mcgw.reports.report_figures": ("spread_panel svg_of pressure_curves round_pressures solved_pressures"),
     "mcgw.reports.solved_loads": "correlation solutions_text",
     "mcgw.reports.text": "comparison_text summary",
     "mcgw.sampling.asperities": "same_heights summits summits_drawn worst_of_values",
@@ -74,7 +72,7 @@ MODULES = {
     "mcgw.scene.promises": "promise_of SAMPLERS",
     "mcgw.scene.scene": "Scene storable",
     "mcgw.statistics.checks": (
-        "Check covariances coverage independence PrincipalComponents scores skewness Slope variances"
+        "covariances coverage independence PrincipalComponents scores skewness Slope variances"
     ),
     "mcgw.statistics.comparison": "compare Comparison Curve",
     "mcgw.statistics.convergence": "_own converge Convergence",
@@ -82,7 +80,7 @@ MODULES = {
     "mcgw.statistics.measured_ways": "Point Task",
     "mcgw.statistics.prices": "advise Needs sampled_ways WANTS wants_of Way",
     "mcgw.statistics.tradeoff": "Tradeoff",
-    "mcgw.statistics.verdict": "FALSE_ALARM verdict Verdict",
+    "mcgw.statistics.verdict": "Check FALSE_ALARM verdict",
     "mcgw.store.ensembles": "read_attributes verify",
     "mcgw.store.lock": "LOCK_FILES locked LockedError parts_of",
     "mcgw.store.blocks": "Blocks commit_shard open_shard Span",

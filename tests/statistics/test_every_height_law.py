@@ -4,7 +4,6 @@ What is printed of N, contacts and means is held to an independent integral over
 sum over measured heights); a separation that nothing reaches has mean and variance 0, and no warning.
 """
 
-import dataclasses
 import re
 from dataclasses import replace
 
@@ -203,11 +202,6 @@ def scene():
     )
 
 
-@pytest.fixture(scope="module")
-def ensemble(scene):
-    return mcgw.simulate(scene)
-
-
 def test_forecast(scene):
     for name in NAMES:
         spread = exact.std(scene, name) / exact.mean(scene, name)
@@ -218,15 +212,3 @@ def test_forecast(scene):
     assert np.all((plain < needed) & (needed < 1.01**2 * plain))  # an end 1 % away, of either of the two
     most = max(float(n.max()) for n in found.needed.values())
     assert most <= found.surfaces <= 1.07 * most + 64
-
-
-def test_notes_of_deep_contacts(scene):
-    """Compressed by more than the radius: the share of the law's own tail decides."""
-    depth = 5.0
-    surface = dataclasses.replace(scene.surface, radius=depth * scene.surface.sigma)
-    asked = scene.replace(surface=surface)
-    share = exact.share_above(scene, depth) / exact.share_above(scene, 0.0)
-    told = [line for line in cautions(asked) if "compressed by more" in line]
-    assert bool(told) == (share > 1e-3)
-    if told:
-        assert f"{100 * share:.2g} % of the contacts are" in told[0]

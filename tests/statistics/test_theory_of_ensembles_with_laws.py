@@ -5,7 +5,6 @@ import pytest
 from conftest import SURFACE
 from oracles.inside import FALSE_ALARM
 from oracles.literal import scores
-from oracles.reference_means import reference
 from oracles.scenes import scene_by
 
 import analytic
@@ -59,29 +58,6 @@ def test_means_and_variances_are_those_of_theory(ensemble):
 
 
 # Theory and its reference, and the studies that are held to either
-
-
-@pytest.mark.parametrize(
-    ("name", "grading"),
-    [("load", 0.0), ("conductance_si", 0.2), ("conductance_si", 2.0), ("load_unloading", 0.0),
-     ("load_unloading", 0.2), ("conductance_si_unloading", 0.0), ("conductance_si_unloading", 2.0)],
-)  # fmt: skip
-def test_reference_is_the_theory_there_and_back(name, grading):
-    """Two rules in different variables."""
-    values = {**KOGUT, "grading": analytic.Exponential(grading), "quantities": (name,)}
-    scene = scene_of(values, separations=(0.0, 0.03, 0.2, 0.8))
-    found, exact = reference(scene, (0, 1, 2, 3)), scene.theory.mean(name, scene.separations)
-    np.testing.assert_allclose(found, exact, rtol=1e-11)
-    assert np.abs(found * (1 + 1e-9) / exact - 1).max() > 1e-10
-
-
-@every_scene
-def test_reference_is_the_theory_under_every_law(values):
-    back = ("load_unloading", "area_unloading") if "unload_from" in values else ("stiffness", "load_slope")
-    for name in ("load", "area", "contacts", *back):
-        scene = scene_of({**values, "quantities": (name,)})
-        exact = scene.theory.mean(name, scene.separations)
-        np.testing.assert_allclose(reference(scene, (0, 1, 2, 3)), exact, rtol=1e-11)
 
 
 @pytest.mark.slow

@@ -218,7 +218,7 @@ def test_the_command(shell, tmp_path):
     shown = shell("show", "out/s.sweep.h5", "--csv", "t.csv").out
     assert "Sweep of 6 scenes" in shown
     table = np.genfromtxt("t.csv", delimiter=",", names=True)
-    assert np.array_equal(table["load_mean"].reshape(3, 2, 2), sweep.mean("load"))
+    assert np.array_equal(table["load_mean_N"].reshape(3, 2, 2), sweep.mean("load"))
     assert shell("show", "out/s.sweep.h5", "--digest").out.strip() == digest(tmp_path / "out/s.sweep.h5")
     assert mcgw.scene_from(shell("show", "out/s.sweep.h5", "--scene").out).seed == sweep.scenes[0].seed
     assert "intact" in shell("show", "out/s.sweep.h5", "--verify").out
