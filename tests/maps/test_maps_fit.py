@@ -319,6 +319,16 @@ def test_a_written_scene_of_a_fit_leaves_out_what_follows(rough, tmp_path):
     assert len((tmp_path / "m.toml").read_text()) < 1500
 
 
+def test_a_fit_shows_the_first_of_its_cautions(rough):
+    """And how many there are; agreement is the largest ratio of two of its estimates."""
+    for number in (0, 1, 6):
+        text = str(replace(rough, cautions=tuple(f"word: {k}" for k in range(number))))
+        assert (f"{number} in .cautions; word: 0" in text) == (number > 0)
+        assert ("caution" in text) == (number > 0)
+    pairs = [[getattr(rough.estimates[x], y).value for x in ("moments", "summits")] for y in SUMMITS]
+    assert rough.agreement == pytest.approx(max(max(pair) / min(pair) for pair in pairs))
+
+
 def test_overlap_is_that_of_the_estimate_that_is_used(tmp_path, capsys):
     """Counted summits of a Gaussian surface of alpha = 6 are apart; caps, added, would not be."""
     write_map(gaussian_map(Spectrum(1e-6, 80e-6, 8e-6), (240, 240), PIXEL, rng(1)), tmp_path / "m.h5")

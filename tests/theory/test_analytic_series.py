@@ -1,6 +1,7 @@
 """A grading as Chebyshev series: next to every height as the function is, and the same bits everywhere."""
 
 import dataclasses
+import functools
 import math
 
 import mpmath as mp
@@ -240,3 +241,22 @@ def test_first_negative_modulus():
     spike, step = (lambda s: np.where(s == third, -1.0, 1.0)), (lambda s: np.where(s < third, -1.0, 1.0))
     assert analytic.first_negative(Custom(spike, (third,)), 0, 1) == third
     assert analytic.first_negative(Custom(step, (third,)), third, 1) is None
+
+
+def named(s):
+    return 1 + s * s
+
+
+@pytest.mark.parametrize(("grading", "name"), [
+    (named, "named"),
+    (lambda s: s, "<lambda>"),
+    (functools.partial(named), "named"),
+    (np.cosh, "cosh"),
+    (Custom(named), "named"),
+    (analytic.Clipped(Custom(named)), "named, clipped"),
+    (analytic.gradings.Squared(Custom(named)), "named, squared"),
+    (Exponential(2.0), "Exponential"),
+    (PiecewiseSeries([0, 1], [[1]], "kept"), "kept"),
+])  # fmt: skip
+def test_names(grading, name):
+    assert analytic.name_of(grading) == name
