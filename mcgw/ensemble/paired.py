@@ -1,6 +1,7 @@
 """Ensembles, or points of a sweep, over the same surfaces: ratios and differences of means, and slopes."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.special import ndtri
@@ -10,6 +11,7 @@ from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.intervals import CONFIDENCE
 from mcgw.ensemble.pooled import Pooled
 from mcgw.formats.table import SEPARATION, Column, Shown, Table
+from mcgw.machine.terminal import plotted
 from mcgw.scene.arguments import check_object
 from mcgw.scene.scene import with_sampling
 
@@ -61,6 +63,10 @@ class Paired(Shown):
     def ratio_high(self) -> Array:
         """Upper end of the 95 % interval."""
         return self.interval()[1]
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draw the ratio with its 95 % interval; returns the axes."""
+        return plotted(self, ax)
 
     def sheet(self) -> Table:
         """Ratios at some separations."""
@@ -134,6 +140,10 @@ class Slopes(Shown):
     value: Array
     stderr: Array
     theory: Array
+
+    def plot(self, ax: Any = None, *, k: int = 0) -> Any:
+        """Draw the slopes at one separation, given by its index; returns the axes."""
+        return plotted(self, ax, k=k)
 
     def sheet(self) -> Table:
         """Display slopes at the first separation, for some values of the key."""

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.special import stdtrit
@@ -13,6 +13,7 @@ from analytic.at_load import Moments
 from mcgw.ensemble.at_load import GAPS, Answers, answers_at, controlled, exact_moments
 from mcgw.ensemble.intervals import FEWEST, laws_are_quick
 from mcgw.formats.table import Shown, Table
+from mcgw.machine.terminal import plotted
 from mcgw.scene.scene import Scene
 from mcgw.validity.lookup import validity_of
 from mcgw.validity.model_error import Validity
@@ -315,6 +316,10 @@ class Solution(Shown):
     def against_elasticity(self) -> Validity:
         """Measured error of the model at this separation."""
         return validity_of(self.scene, [self.theory["separation"]])
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draw how the separation differs from surface to surface; returns the axes."""
+        return plotted(self, ax)
 
     def sheet(self) -> Table:
         """Return the answers, and how specimens differ."""

@@ -6,23 +6,29 @@ from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+from scipy.stats import norm
 
+from analytic import quantity_of
 from mcgw.ensemble.ensemble import Ensemble, shown
 from mcgw.ensemble.intervals import exact_ends
+from mcgw.ensemble.paired import Paired, Slopes
+from mcgw.ensemble.solved import Solution
 from mcgw.figures.against_theory import quantity_panel, residuals_panel
 from mcgw.figures.data import SEPARATION, Mark, Panel
 from mcgw.figures.map_fit import heights_panel
 from mcgw.figures.panels import draw_panel, keys
 from mcgw.figures.studies import checks_panel, errors_panel
-from mcgw.figures.style import MONTE_CARLO, SEEN, STYLE, shown_title, step
+from mcgw.figures.style import MONTE_CARLO, SAMPLE, SEEN, STYLE, THEORY, shown_title, step
 from mcgw.formats.table import evenly
 from mcgw.maps.fit import Fit
+from mcgw.maps.profile_fit import ProfileFit
 from mcgw.statistics.comparison import Comparison, SweepComparison
 from mcgw.statistics.convergence import Convergence
 from mcgw.statistics.tradeoff import Tradeoff
 from mcgw.sweeps.sweep import Sweep
 
 _MOST_LINES = 7
+_SAME = {**SEEN, "label": "same surfaces, 95 %"}
 
 
 def draw(result: Any, ax: Any = None, **options: Any) -> Any:
@@ -96,6 +102,14 @@ def _(result: SweepComparison) -> Panel:
 
 
 @panel_of.register
+def _(result: Paired) -> Panel:
+    order = np.argsort(result.separations, kind="stable")
+    columns = tuple(x[order] for x in (result.separations, result.ratio, 1.96 * result.stderr))
+    marks = (Mark("errorbar", columns, {**_SAME, "fmt": "o-"}),)
+    return Panel("", SEPARATION, f"ratio of the mean {result.quantity}", marks=marks)
+
+
+@panel_of.register
 def _(result: Sweep, *, quantity: str) -> Panel:
     """Return a line a point, from the first to the last along all axes."""
     order, points = np.argsort(result.separations, kind="stable"), list(result.axes.points())
@@ -116,6 +130,35 @@ def _(result: Sweep, *, quantity: str) -> Panel:
 
 
 @panel_of.register
+def _(result: Slopes, *, k: int) -> Panel:
+    """At one separation, and at the first values of all other keys."""
+    value, error, theory = (
+        np.moveaxis(x, result.axis, 0)[..., k].reshape(len(result.at), -1)[:, 0]
+        for x in (result.value, result.stderr, result.theory)
+    )
+    marks = (
+        Mark("errorbar", (result.at, value, 1.96 * error), {**_SAME, "fmt": "o"}),
+        Mark("plot", (result.at, theory), {"color": THEORY, "label": "theory"}),
+    )
+    return Panel("", result.key, f"change of the mean {result.quantity.replace('_', ' ')}", marks=marks)
+
+
+@panel_of.register
+def _(result: Solution) -> Panel:
+    x = result.surfaces["separation"]
+    exact = {"color": THEORY, "label": "theory, infinite surface"}
+    mean = {"color": MONTE_CARLO, "ls": "--", "label": "mean of the surfaces"}
+    marks = (
+        Mark("hist", (x,), {"bins": "auto", "color": SAMPLE, "label": f"{x.size} surfaces"}),
+        Mark("axvline", (result.theory["separation"],), exact),
+        Mark("axvline", (x.mean(),), mean),
+        Mark("margins", (), {"y": 0.3}),  # room for the legend
+    )
+    title = f"at {result.given} = {result.amount:.6g} {quantity_of(result.given).unit}"
+    return Panel(title, SEPARATION, "surfaces", marks=marks)
+
+
+@panel_of.register
 def _(result: Convergence) -> Panel:
     title = f"Statistical convergence {result.word}: p = {result.p:.3g}"
     return replace(checks_panel(result), title=title, xlabel="probability by chance; grey: fails")
@@ -131,3 +174,18 @@ def _(result: Fit) -> Panel:
     return replace(
         heights_panel(result), title=f"{result.summits.size} summits, sigma = {result.summits.std():.4g} m"
     )
+
+
+@panel_of.register
+def _(result: ProfileFit) -> Panel:
+    m = result.moments
+    rms = float(np.sqrt(m.m0))
+    z = np.linspace(-4 * rms, m.mean_height + 4 * m.sigma, 401)
+    heights, summits = norm.pdf(z, scale=rms), norm.pdf(z, m.mean_height, m.sigma)
+    marks = (
+        Mark("plot", (z, heights), {"color": SAMPLE, "label": f"all heights, Sq = {rms:.4g} m"}),
+        Mark("plot", (z, summits), {"color": THEORY, "label": f"summits, sigma = {m.sigma:.4g} m"}),
+        Mark("margins", (), {"y": 0.3}),
+    )
+    title = f"from {len(result.lengths)} profile(s), alpha = {m.alpha:.3g}"
+    return Panel(title, "height above the mean plane (m)", "density (1/m)", marks=marks)

@@ -8,6 +8,7 @@ heights are Gaussian they determine density, curvature and heights of its summit
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.special import stdtrit
@@ -15,6 +16,7 @@ from scipy.special import stdtrit
 from analytic import SpectralMoments
 from analytic.arrays import Array
 from mcgw.formats.table import Column, Shown, Table
+from mcgw.machine.terminal import plotted
 from mcgw.maps.estimates import Estimate, Roughness, roughness_of
 from mcgw.maps.profile import PROFILE_ORDERS, Profile, smooth_profile, without_profile_form
 from mcgw.maps.profile_waves import SMOOTH, waves_of_profile
@@ -69,6 +71,10 @@ class ProfileFit(Shown):
     def estimates(self) -> dict[str, Estimate]:
         """The only estimate, ``moments``, under the same name as in the fit of a map."""
         return {"moments": Estimate(*(self.numbers[name] for name in ("eta", "radius", "sigma")))}
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draw the distributions of all heights and, derived from it, of the summits; returns the axes."""
+        return plotted(self, ax)
 
     def sheet(self) -> Table:
         """Each number with its 95 % interval, and the first of the cautions."""

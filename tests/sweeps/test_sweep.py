@@ -292,8 +292,8 @@ def test_pictures(recorded):
     sweep = mcgw.sweep(
         SCENE.replace(separations=[1.0, 0.0, 2.0]), {"ensemble.seed": [1, 2], GAMMA: [1.0, 1.5]}
     )
-    axes = sweep.plot(quantity="area")
-    recorded("drawn.sweep", drawn(axes))
+    axes, slopes = sweep.plot(quantity="area"), sweep.slopes("load", GAMMA).plot(k=2)
+    recorded("drawn.sweep", [*drawn(axes), *drawn(slopes)])
     mean, error = (x[0, 0][[1, 0, 2]] for x in (sweep.mean("area"), sweep.stderr("area")))
     (bars,) = axes.containers[0].lines[2]
     ends = np.stack([mean - 1.96 * error, mean + 1.96 * error], axis=1)
