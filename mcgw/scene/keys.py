@@ -106,7 +106,7 @@ TABLES: dict[str, TableOfKeys] = {
     Key("negative", Word(("error", "clip", "allow")), '"clip"', default="error"),
     Key("s", _LISTED, "[0.0, 1.0]", needs=("ratio",), excludes=("file",)),
     Key("ratio", _LISTED, "[1.0, 2.0]", needs=("s",)),
-    Key("file", _FILE, '"moduli.csv"',
+    Key("file", Text(advice="give a CSV file, or lists s and ratio"), '"moduli.csv"',
         "a CSV table beside the scene: columns `s` or `z` (m), and `ratio` or `E_star` (Pa); other units in "
         "the header, `z (um)`, or after a number, `61.2 GPa`"),
     Key("edges", _LISTED, "[0.0, 5.0, 20.0]"),
@@ -128,7 +128,7 @@ TABLES: dict[str, TableOfKeys] = {
         "α = m0 m4/m2² of the surface for Nayak's law, above 1.5"),
     Key("heights", _LISTED, "[0.0, 1.0, 3.0]", "measured heights of a `table`, in any unit",
         excludes=("file", "s")),
-    Key("file", _FILE, '"heights.csv"',
+    Key("file", Text(advice="give a list of heights, a file of them, or points s and share"), '"heights.csv"',
         "the same from a file beside the scene: `.npy`, or text with one per line", excludes=("s",)),
     Key("resample", Flag(), "true",
         "`true` (default): drawn from the measured distribution; `false`: one surface, as they are",
@@ -144,7 +144,7 @@ TABLES: dict[str, TableOfKeys] = {
         "`random`: the radius of each summit follows the exact joint distribution with its height (default "
         "with `m0`, `m2`, `m4`); `mean`: one radius"),
     Key("largest_radius", Number("m"), '"1 mm"', "upper limit of the radii, m"),
-    Key("file", _FILE, '"summits.csv"',
+    Key("file", Text(advice="give a CSV file of heights and radii, or lists of both"), '"summits.csv"',
         "measured summits, written by `mcgw fit --summits`: columns `height`, `radius`, m",
         excludes=("heights", "radii", "ratios", "curvature", "largest_radius")),
     Key("heights", _LISTED, "[0.0, 1e-6, 3e-6]", "the same in the scene itself: heights, m",

@@ -207,7 +207,8 @@ class Section:
         if at in self.rows:
             return self.note(f"{self.name}.{reason}")
         if there:
-            return self.fail(there[0], self.table[there[0]], reason)
+            cure = self.rows["file"].kind.advice if there[0] == "file" else ""
+            return self.fail(there[0], self.table[there[0]], "; ".join(filter(None, (reason, cure))))
         return self.note(f"{self.name}: {reason}")
 
     def finish(self, moved: Callable[[str], str] = str) -> None:
@@ -220,8 +221,9 @@ class Section:
             self.note(f"{self.path(key)}: unknown key; {meant.removesuffix(' ')}")
         if len(unknown) > _MOST_NAMED:
             self.note(f"[{self.name}]: {len(unknown) - _MOST_NAMED} more unknown keys")
+        told = [line.partition(":")[0] for line in self.problems]  # a key that is missing is told once
         for row in (self.rows[name] for name in self.table if name in self.rows):
-            if row.needs and not any(other in self for other in row.needs):
+            if row.needs and not any(other in self or self.path(other) in told for other in row.needs):
                 self.fail(row.name, self.table[row.name], f"give {_either(row.needs)} too, or leave it out")
             if others := [other for other in row.excludes if other in self]:
                 self.fail(row.name, self.table[row.name], f"give it or {_either(others)}, not both")

@@ -86,7 +86,7 @@ def test_a_run_with_closed_streams_makes_its_file(redirect, tmp_path):
     there = mcgw.open_ensemble(tmp_path / "e.h5")
     np.testing.assert_array_equal(there.load, mcgw.simulate(there.scene).load)
     with h5py.File(tmp_path / "e.h5") as data:
-        assert (data.attrs["filetype"], tuple(data.attrs["format"])) == (b"mcgw-results", (3, 0))
+        assert (data.attrs["filetype"], tuple(data.attrs["format"])) == (b"mcgw-results", (4, 0))
         assert {"seed", "sampler", "versions", "commit", "date", "cpu", "wall_seconds"} <= set(data.attrs)
         units = {name: data[name].attrs["units"].decode() for name in there.scene.quantities}
         kinds = {name: data[name].dtype for name in there.scene.quantities}
