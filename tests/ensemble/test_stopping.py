@@ -1,6 +1,7 @@
 """The stop rule: it keeps its promise, it is known beforehand, and it does not wait for what cannot come."""
 
 import warnings
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ import analytic
 import mcgw
 from mcgw.cli import main
 from mcgw.errors import StoreError
+from mcgw.jobs import running
 
 SEEDS = 2500
 
@@ -200,6 +202,37 @@ def test_surfaces_that_all_agree_are_not_proof(make_scene):
     rule = {"rel_err": 1e-3, "n_surfaces": 10**5, "quantities": ("contacts",)}
     scene = make_scene(n_asperities=1, separations=(-3.0,), grading=analytic.Exponential(1.0), **rule)
     assert mcgw.simulate(scene).n_surfaces >= 2900
+
+
+@pytest.mark.parametrize(
+    ("seconds", "held", "made"),
+    [
+        (100, 0, [64, 128, 256, 512]),  # three of them take 90 s
+        (90, 0, [64, 128, 256, 512]),
+        (89, 0, [64, 128, 256]),
+        (1000, 0, [64, 128, 256, 512, 1024, 2048, 3000]),
+        (1000, 100, [100, 256, 512, 1024, 2048, 3000]),
+        (1000, 3000, [3000]),
+        (10, 5000, [3000]),
+        (None, 0, [3000]),
+        (None, 5000, [3000]),
+    ],
+)
+def test_a_run_of_limited_time_doubles_what_it_has(seconds, held, made, make_scene, tmp_path, monkeypatch):
+    """By a clock that goes on by 30 s a stage. Without a limit of time there is one stage alone."""
+    path, found = tmp_path / "a.h5", []
+    if held:
+        path.touch()
+    monkeypatch.setattr(running, "open_ensemble", lambda _: SimpleNamespace(n_surfaces=held))
+    monkeypatch.setattr(running, "as_recorded", lambda scene, _: scene)
+    monkeypatch.setattr(running, "monotonic", lambda: 30.0 * len(found))
+    monkeypatch.setattr(running.Plan, "of", lambda scene, _: SimpleNamespace(scene=scene, whole=True))
+    monkeypatch.setattr(running, "make", lambda plan, by: found.append(plan.scene.n_surfaces))
+    wish = {"max_seconds": seconds} if seconds else {"rel_err": 1e-3}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of 3000 surfaces no mean is known so well
+        mcgw.run(make_scene(separations=(0.0,), n_surfaces=3000, **wish), path)
+    assert found == made
 
 
 def test_time_ends_a_run(make_scene, tmp_path):

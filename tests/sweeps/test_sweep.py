@@ -275,6 +275,20 @@ def test_points_are_found_as_elements_of_a_list():
             axes.place(at)
 
 
+def test_what_is_shown_of_slopes_is_what_there_is():
+    """Slopes at the first separation and the first values of other keys."""
+    over = {"ensemble.count": ["fixed", "poisson"], GAMMA: [1.0, 1.5, 2.5, 3.0, 3.5]}
+    sweep = mcgw.sweep(SCENE.replace(n_surfaces=20, separations=[1.0, 0.0], quantities=["load"]), over)
+    slopes = sweep.slopes("load", GAMMA)
+    _, *lines = repr(slopes).splitlines()
+    assert lines[0].split() == [GAMMA, "slope", "stderr", "theory"]
+    shown = np.array([[float(word) for word in line.split()] for line in lines[1:]])
+    np.testing.assert_allclose(shown[:, 0], [1.25, 2.0, 2.75, 3.25])
+    np.testing.assert_allclose(shown[:, 1], slopes.value[0, :, 0], rtol=1e-4)
+    np.testing.assert_allclose(shown[:, 2], slopes.stderr[0, :, 0], rtol=0.5)
+    np.testing.assert_allclose(shown[:, 3], slopes.theory[0, :, 0], rtol=1e-4)
+
+
 def test_progress_counts_what_a_group_takes():
     """By hand: an asperity that touches at the lowest separation is one, a scene of a surface 3000."""
     told, over = [], {"ensemble.n_asperities": [200, 40_000], GAMMA: [1.0, 1.5, 2.0]}
