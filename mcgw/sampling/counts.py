@@ -52,7 +52,9 @@ def counts_of(scene: Scene, mesh: Mesh, first: int, n: int) -> Counts:
     """
     probability = np.concatenate([[mesh.low_extras], mesh.probability, [mesh.high_extras]])
     touching = float(probability.sum())
-    falling = _rounded(probability[::-1] / (touching or 1.0))
+    mantissa, exponent = np.frexp(probability[::-1] / (touching or 1.0))
+    # To 44 bits: NumPy draws from the smaller side, and of two like cells a last digit would decide which.
+    falling = np.ldexp(np.round(mantissa * 2.0**44) / 2.0**44, exponent)
     groups = range(first // GROUP, -(-(first + n) // GROUP))
     drawn = []
     for group in groups:
@@ -61,12 +63,6 @@ def counts_of(scene: Scene, mesh: Mesh, first: int, n: int) -> Counts:
     skip = first - groups[0] * GROUP
     numbers = np.ascontiguousarray(np.concatenate(drawn)[skip : skip + n, ::-1].T)
     return Counts(numbers[1:-1], numbers[0], numbers[-1])
-
-
-def _rounded(probability: Array) -> Array:
-    """Round to 44 bits: NumPy draws from the smaller side, and a last digit decides which of two is that."""
-    mantissa, exponent = np.frexp(probability)
-    return np.ldexp(np.round(mantissa * 2.0**44) / 2.0**44, exponent)
 
 
 def contacts_above(counts: Array, cells: Ints) -> Array:

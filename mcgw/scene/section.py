@@ -221,7 +221,7 @@ class Section:
             self.note(f"{self.path(key)}: unknown key; {meant.removesuffix(' ')}")
         if len(unknown) > _MOST_NAMED:
             self.note(f"[{self.name}]: {len(unknown) - _MOST_NAMED} more unknown keys")
-        told = [line.partition(":")[0] for line in self.problems]  # a key that is missing is told once
+        told = [line.partition(":")[0] for line in self.problems]  # a missing key is noted once
         for row in (self.rows[name] for name in self.table if name in self.rows):
             if row.needs and not any(other in self or self.path(other) in told for other in row.needs):
                 self.fail(row.name, self.table[row.name], f"give {_either(row.needs)} too, or leave it out")
