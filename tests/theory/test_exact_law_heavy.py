@@ -31,7 +31,7 @@ def test_a_law_of_the_grid_has_no_fault(k):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("k", (0, 20))
+@pytest.mark.parametrize("k", [0, 20])
 def test_drawn_surfaces_are_beyond_quantiles_as_often_as_said(k):
     """Numbers beyond are binomial; a false alarm in 1e4 runs, by the rarest of the fewer surfaces."""
     names, model, h = some()[k]
