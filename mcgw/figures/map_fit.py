@@ -1,5 +1,6 @@
 """A fitted map as one figure: before and after, the summits, their laws, and moments against cutoff."""
 
+import textwrap
 from contextlib import suppress
 
 import matplotlib as mpl
@@ -15,10 +16,13 @@ from mcgw.maps.form import smooth
 from mcgw.maps.preparation import Prepared
 from mcgw.maps.summit_sums import summit_sums_of
 from mcgw.maps.topography import Topography
+from mcgw.maps.waves import Uncertain
 
 _POINTS = 700  # points of a map along each side: more do not show
 _MOST_MARKS = 3000
 _CUTOFFS = 8
+_WIDTH, _LINES = 42, 27  # of the text, in characters and lines
+_LISTED = {"va": "top", "family": "monospace", "fontsize": 6.6}
 _TIMES = 12.0  # from the shortest cutoff to the longest
 
 
@@ -41,6 +45,7 @@ def fit_figure(fit: Fit, raw: Topography, ready: Prepared) -> FigureData:
         _moments_panel(ready),
         heights_panel(fit),
         _curvatures_panel(fit),
+        Panel("f  estimates", "", "", marks=(Mark("text", (0, 1, _listing(fit)), _LISTED),)),
     )
     return FigureData("", "", panels, columns=3)
 
@@ -135,3 +140,26 @@ def _curvatures_panel(fit: Fit) -> Panel:
     marks = (_bars(k[(k > 0) & (k < 3)], "summits"), law)
     label = "mean curvature over its mean"
     return Panel("e  summit curvatures", label, "density", marks=marks, settings={"xlim": (0, 3)})
+
+
+def _listing(fit: Fit) -> str:
+    """Return the results and the steps of preparation."""
+    lines = [f"{'':9}{'eta (1/m²)':>12}{'R (m)':>11}{'sigma (m)':>11}"]
+    for name, e in fit.estimates.items():
+        mark = "*" if name == fit.best else " "
+        lines.append(f"{name:8}{mark}{e.eta.value:12.3g}{e.radius.value:11.3g}{e.sigma.value:11.3g}")
+        lines.append(f"{'   95 %':9}{_arms(e.eta):>12}{_arms(e.radius):>11}{_arms(e.sigma):>11}")
+    lines += [
+        "* best here",
+        "",
+        f"alpha = {fit.numbers['alpha'].value:.3g} ({_arms(fit.numbers['alpha'])})",
+        "",
+    ]
+    for text in (*fit.notes, *fit.cautions):
+        lines += textwrap.wrap(text, _WIDTH, subsequent_indent="  ")
+    return "\n".join(lines if len(lines) <= _LINES else [*lines[: _LINES - 1], "..."])
+
+
+def _arms(x: Uncertain) -> str:
+    """Both ends of an interval over the value."""
+    return f"{100 * (x.low / x.value - 1):+.0f} {100 * (x.high / x.value - 1):+.0f} %"
