@@ -1,6 +1,5 @@
 import io
 import os
-from functools import cache
 from pathlib import Path
 
 # Workers share the cores: threads of BLAS that wait for each other spin.
@@ -8,12 +7,10 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 import pytest
-from item_cost import Bill, Meter
 from matplotlib.figure import Figure
 from oracles.interacting_by_hand import QUANTITIES, SEPARATIONS, interaction
 from oracles.scenes import scene_by
 from oracles.told import ANSWERS, apart
-from touched import reached
 
 import analytic
 import mcgw
@@ -24,9 +21,7 @@ SURFACE = analytic.Surface(sigma=1.37e-6, radius=13e-6, eta=3.0e8, nominal_area=
 
 def pytest_addoption(parser):
     group = parser.getgroup("mcgw")
-    group.addoption("--cost", action="store_true", help="list what items cost; fail those that are too dear")
     group.addoption("--record", action="store_true", help="write tests/answers anew, to be read")
-    group.addoption("--touched", action="store_true", help="only what imports what has changed since main")
 
 
 def forget_old_loops(folder):
@@ -38,14 +33,8 @@ def forget_old_loops(folder):
 
 
 def pytest_configure(config):
-    worker, alone = hasattr(config, "workerinput"), not config.getoption("numprocesses", None)
-    if not worker:
+    if not hasattr(config, "workerinput"):
         forget_old_loops(Path(mcgw.__file__).parent)
-    if config.getoption("--cost"):
-        if worker or alone:
-            config.pluginmanager.register(Meter())
-        if not worker:
-            config.pluginmanager.register(Bill(alone))
 
 
 @pytest.hookimpl(wrapper=True)
@@ -54,17 +43,6 @@ def pytest_sessionstart(session):
     yield
     if session.config.getoption("numprocesses", None):
         warm()
-
-
-@cache
-def touched_files():
-    return reached()
-
-
-def pytest_ignore_collect(collection_path, config):
-    if config.getoption("--touched") and collection_path.suffix == ".py":
-        return collection_path not in touched_files() or None
-    return None
 
 
 @pytest.fixture(scope="session")

@@ -1,13 +1,12 @@
 """Imports point one way, whether by name or by string, and compiled loops stay in their layer."""
 
 import ast
-from collections import Counter
 from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
-from oracles.inside import MODULES, SAMPLERS
+from oracles.inside import MODULES
 
 import analytic
 import mcgw
@@ -105,15 +104,11 @@ def test_no_imports_go_round_in_a_circle():
 @pytest.mark.parametrize(
     "text",
     [
-        "import mcgw.figures.plotting",
         "from mcgw.figures import plotting",
-        "from mcgw.figures.plotting import draw",
         "def late():\n    from mcgw.figures.plotting import draw",
         "import_module('mcgw.figures.plotting').draw(1)",
-        "late = optional('mcgw.figures.plotting', 'a picture')",
         "import_module(f'mcgw.figures.{name}')",
         "import mcgw",
-        "from mcgw import simulate",
     ],
 )
 def test_each_way_of_importing_would_be_seen(text):
@@ -125,39 +120,17 @@ def test_each_way_of_importing_would_be_seen(text):
         assert set(around({low: Tree(ast.parse(text)), high: back})) == {low, high}
 
 
-def test_the_response_knows_no_randomness():
-    random = {"counts", "moments", "philox", "samplers", "kernels", "drawn_moments"}
-    for this, tree in inside():
-        if this.startswith("sampling.response"):
-            assert not {f"sampling.{name}" for name in random} & set(imports(tree)), this
-
-
-def test_nobody_outside_asks_which_sampler_it_is():
-    """What differs between them they tell themselves, or their `Promise` does."""
-    names = set(SAMPLERS) - {"auto", "cells"}  # there is a dataset called cells
-    for this, tree in inside():
-        if this.startswith(("sampling.", "scene.promises")):
-            continue
-        compared = [x for node in tree.nodes if isinstance(node, ast.Compare) for x in ast.walk(node)]
-        assert not {x.value for x in compared if isinstance(x, ast.Constant)} & names, this
-        assert not {"Cells", "Counted", "Direct"} & {x.id for x in asked_for(tree)}, this
-
-
-def asked_for(tree):
-    """Names in all calls of `isinstance`."""
-    for node in tree.nodes:
-        match node:
-            case ast.Call(func=ast.Name(id="isinstance")):
-                yield from (x for x in ast.walk(node) if isinstance(x, ast.Name))
-
-
-def test_the_root_has_only_the_door():
-    assert {path.name for path in ROOT.glob("*.py")} == {"__init__.py", "__main__.py", "cli.py", "errors.py"}
-
-
-# Theory, as modules of `analytic`; the first three are Gaussian unless they are told another law.
-GAUSSIAN = {"equations", "integrals", "inversion"}
-THEORY = GAUSSIAN | {"height_rule", "interacting", "law_rule", "mean_model", "model"}
+# Theory, as modules of `analytic`.
+THEORY = {
+    "equations",
+    "integrals",
+    "inversion",
+    "height_rule",
+    "interacting",
+    "law_rule",
+    "mean_model",
+    "model",
+}
 
 
 def from_theory(tree, modules):
@@ -186,12 +159,6 @@ def test_the_simulator_takes_no_integral_from_theory():
             assert "theory" not in attributes, name
 
 
-def test_no_default_stands_for_the_height_law_of_a_scene():
-    """`scene.theory` knows the scene's own law; the Gaussian functions are for the paper's own figures."""
-    asking = {name.partition(".")[0] for name, tree in inside() if set(from_theory(tree, GAUSSIAN))}
-    assert asking == {"figures"}
-
-
 def test_compiled_functions_call_those_of_their_own_layer():
     """Whose files are all that is looked at to know whether what was kept is old."""
     for name, tree in inside():
@@ -199,21 +166,6 @@ def test_compiled_functions_call_those_of_their_own_layer():
             assert name.startswith(("sampling.", "maps.", "ensemble.")), name
             if name.startswith("maps."):
                 assert not any(other.startswith("sampling") for other in imports(tree)), name
-
-
-def test_no_compiled_function_is_made_several_times():
-    """Of two with one name, one is called in place of the other (`mcgw.machine.compiling`)."""
-    for name, tree in inside():
-        outer = {id(node) for node in tree.body}
-        for node in tree.nodes:
-            if isinstance(node, ast.FunctionDef) and id(node) not in outer:
-                assert not any("njit" in ast.unparse(call) for call in node.decorator_list), (name, node.name)
-
-
-def test_no_loop_of_the_sampler_has_threads_of_its_own():
-    """It is called from several threads, which not every kind of numba's own threads allows."""
-    for path in (ROOT / "sampling").rglob("*.py"):
-        assert "prange" not in path.read_text(), path.name
 
 
 def test_every_dataclass_is_frozen():
@@ -227,14 +179,6 @@ def test_every_dataclass_is_frozen():
         if mark.startswith("dataclass") and "frozen=True" not in mark
     ]
     assert not thawed
-
-
-@pytest.mark.parametrize("package", [analytic, mcgw])
-def test_a_file_has_a_name_of_its_own(package):
-    """Commands alone have the names of what they are about."""
-    files = Path(package.__file__).parent.rglob("[!_]*.py")
-    names = Counter(file.name for file in files if file.parent.name != "commands")
-    assert not [name for name, times in names.items() if times > 1]
 
 
 def test_tests_know_little_of_the_inside():

@@ -27,20 +27,6 @@ def benches():
         del sys.modules[name]
 
 
-@pytest.fixture
-def names(benches, monkeypatch):
-    """Names of all ratios of each bench, as it gives them where every job takes a second."""
-    found = {}
-    for bench in benches["history"].BENCHES:
-        monkeypatch.setattr(
-            benches[bench], "timed", lambda jobs, rounds: dict.fromkeys(jobs, np.ones(rounds))
-        )
-        found[bench] = benches["history"].ratios_of(bench, 3)
-        assert found[bench], bench
-        assert set(found[bench].values()) == {1.0}
-    return found
-
-
 def about(version, machine=HERE):
     return {"version": version, "date": "2025-11-22", "machine": machine}
 
@@ -51,14 +37,10 @@ def test_every_bench_with_ratios_is_in_the_history(benches):
     )
 
 
-def test_the_history_has_what_the_benches_give(benches, names):
+def test_the_history_is_one_line_for_a_version_and_a_machine(benches):
     records = benches["records"]
-    """Not each line all of it: a bench may be younger than a version."""
-    known = {name for ratios in names.values() for name in ratios}
-    assert all(re.fullmatch(r"\w+: [^/]+ / [^/]+", name) for name in known)  # a job and its peer
     lines = records.read(records.HISTORY)
     for line in lines:
-        assert set(line) <= known | set(records.ABOUT)
         assert re.fullmatch(r"\d+\.\d+\.\d+", line["version"])
         assert re.search(r"\(\d+ cores\)$", line["machine"])
         assert date.fromisoformat(line["date"])
@@ -112,16 +94,6 @@ def test_the_command_refuses_what_is_worse_twice(run, capsys):
     assert run(3.0) == 0
 
 
-def test_first_round_does_not_count_and_ratios_are_those_within_a_round(benches):
-    """A job three times as long as its peer, whatever the machine does meanwhile."""
-    timing = benches["timing"]
-    peer = iter([50.0, 1.0, 10.0, 2.0])
-    slow = iter([1.0, 3.0, 30.0, 8.0])
-    times = timing.timed({"slow": lambda: next(slow), "peer": lambda: next(peer)}, 3)
-    assert timing.against(times, "peer", ["slow"]) == {"slow / peer": 3.0}
-    assert timing.seconds(lambda: None, 2) >= 0
-
-
 def test_the_script_answers_the_same_question(benches):
     """Means of 4000 surfaces against theory: 5 standard errors (false alarm 1e-5), and gamma = 2, not 1."""
     h, asperities, surfaces = (0.0, 1.0, 2.0), 100, 4000
@@ -139,14 +111,3 @@ def test_the_script_answers_the_same_question(benches):
 
     assert off(benches["scenes"].S1.grading) < 5
     assert off(None) > 20
-
-
-def test_a_fresh_scene_differs_from_all_before(benches):
-    """By its seed and all separations but 0, and in nothing else; and it is drawn."""
-    fresh, tiny = benches["scenes"].fresh, benches["setup"].ONE.replace(n_asperities=100)
-    one, two = fresh(tiny), fresh(tiny)
-    assert one.seed != two.seed
-    assert not set(one.separations[1:]) & set(two.separations[1:])
-    np.testing.assert_allclose(one.separations, two.separations, rtol=1e-4)
-    assert two.replace(separations=one.separations, seed=one.seed) == one
-    assert benches["setup"].one_surface(tiny)() > 0

@@ -1,21 +1,17 @@
 """Compiled loops kept on the disk are those that are asked for, whoever compiles at the same time."""
 
 import importlib.util
-import io
 import os
 import pty
 import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
-from conftest import forget_old_loops
 from filelock import FileLock, Timeout
 from oracles.inside import read_attributes
 
 import mcgw
-from mcgw.commands.voice import NEWS, QUIET, speaking
 from mcgw.machine import compiling
 from mcgw.machine.compiling import loops_folder, njit
 
@@ -65,11 +61,6 @@ def test_one_process_compiles_at_a_time(loop, monkeypatch):
     assert len(loop.overloads) == 2
 
 
-def test_a_lock_that_cannot_be_had_stops_nobody(loop, monkeypatch):
-    monkeypatch.setattr(FileLock, "acquire", lambda *_, **__: (_ for _ in ()).throw(OSError("no locks")))
-    assert loop(2) == 4
-
-
 def test_where_nothing_can_be_kept_it_is_said_once(monkeypatch):
     def nowhere(**options):
         if options.get("cache"):
@@ -86,34 +77,6 @@ def test_where_nothing_can_be_kept_it_is_said_once(monkeypatch):
         assert len(said) == 1
     finally:
         loops_folder.cache_clear()
-
-
-def test_what_was_kept_before_a_loop_changed_goes(tmp_path):
-    """Numba alone looks at the own file of a loop, and goes on with the old code of what that calls."""
-    (tmp_path / "__pycache__").mkdir()
-    old, new, source = (
-        tmp_path / "__pycache__" / "a.nbi",
-        tmp_path / "__pycache__" / "b.nbi",
-        tmp_path / "c.py",
-    )
-    for time, path in enumerate((old, source, new)):
-        path.write_text("@njit()")
-        os.utime(path, (time, time))
-    forget_old_loops(tmp_path)
-    assert not old.exists()
-    assert new.exists()
-
-
-def test_a_line_says_so_once_on_a_terminal_alone(loop, monkeypatch):
-    monkeypatch.setattr(compiling._Told, "_said", False)
-    sizes = iter((1, 2, 3, 4))  # of each a version
-    for terminal, amount, said in ((True, QUIET, 0), (False, NEWS, 0), (True, NEWS, 1), (True, NEWS, 0)):
-        stream = io.StringIO()
-        stream.isatty = lambda terminal=terminal: terminal
-        monkeypatch.setattr(sys, "stderr", stream)
-        with speaking(amount):
-            assert loop(np.zeros((1,) * next(sizes))).sum() == 0
-        assert stream.getvalue() == "mcgw: compiling the loops, once for this machine\n" * said
 
 
 SCENE = Path(mcgw.__file__).parents[1] / "runs" / "quick.toml"

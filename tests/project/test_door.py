@@ -117,15 +117,6 @@ def test_the_public_names_are_what_completion_shows():
         mcgw.simulat  # noqa: B018 - it is not there
 
 
-def test_what_a_checker_of_types_sees_is_what_there_is():
-    tree = ast.parse(Path(mcgw.__file__).read_text())
-    (seen,) = [node for node in tree.body if isinstance(node, ast.If)]
-    names = {alias.name: node.module for node in seen.body for alias in node.names}
-    assert sorted(names) == dir(mcgw)
-    for name, module in names.items():
-        assert getattr(import_module(module), name) is getattr(mcgw, name)
-
-
 def test_help_is_a_map_of_the_names():
     named = set(re.findall(r"`(\w+)`", mcgw.__doc__))
     assert named == set(dir(mcgw))
