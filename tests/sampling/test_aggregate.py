@@ -1,4 +1,4 @@
-"""`aggregate` against the exact cumulants, and where it stops being right."""
+"""`aggregate` against the exact laws, and where it stops being right."""
 
 import dataclasses
 
@@ -7,69 +7,16 @@ import pytest
 from mpmath import mp
 from oracles.law_of_crowds import distance, farthest
 from scipy.integrate import quad
-from scipy.stats import kstest, kurtosis, skew
+from scipy.stats import kstest
 
 import analytic
 import mcgw
-from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.results import MemoryResults
 from mcgw.sampling import samplers
 from mcgw.sampling.cells import mesh_of
 from mcgw.sampling.counts import counts_of
 from mcgw.sampling.crowding import crowding
 from mcgw.sampling.drawn_moments import _law_of_moments, _partly
 from mcgw.sampling.samplers import aggregate_of, distance_of, sampler_of
-
-GATE = 5.0
-
-
-def scores(ensemble, quantity="load"):
-    """z of mean, variance, skewness and excess kurtosis, the largest over the separations.
-
-    Their errors are estimated from 50 batches of surfaces.
-    """
-    scene = ensemble.scene
-    exact = analytic.Model(scene.surface, grading=scene.grading, n_asperities=scene.n_asperities).cumulants(
-        quantity, scene.separations
-    )
-    values = (ensemble.values(quantity) - exact.mean) / np.sqrt(exact.variance)
-    batches = values.reshape(50, -1, values.shape[1])
-    found = np.array(
-        [
-            batches.mean(axis=1),
-            (batches**2).mean(axis=1) - 1,
-            skew(batches, axis=1) - exact.skewness,
-            kurtosis(batches, axis=1) - exact.excess_kurtosis,
-        ]
-    )
-    z = found.mean(axis=1) / (found.std(axis=1, ddof=1) / np.sqrt(50))
-    return np.abs(z).max(axis=1)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("n", [10**4, 10**9])
-def test_four_cumulants_of_1e5_surfaces(make_scene, n):
-    """Batches of 2000 surfaces bias skewness and kurtosis by less than 1e-3 of their errors' scale."""
-    scene = make_scene(
-        separations=(0.0, 1.0, 2.0), n_asperities=n, n_surfaces=100_000, sampler="aggregate", seed=11
-    )
-    ensemble = mcgw.simulate(scene)
-    for quantity in ("load", "area", "stiffness"):
-        assert scores(ensemble, quantity).max() < GATE
-
-
-@pytest.mark.slow
-def test_the_scores_can_fail(make_scene):
-    """The companions: 2 % fewer asperities show in the variance, a Gaussian in the skewness."""
-    scene = make_scene(
-        separations=(2.0,), n_asperities=10**4, n_surfaces=100_000, sampler="aggregate", seed=11
-    )
-    ensemble = mcgw.simulate(scene)
-    fewer = scene.replace(n_asperities=9800)
-    assert scores(dataclasses.replace(ensemble, scene=fewer))[1] > GATE
-    rng = np.random.default_rng(1)
-    gaussian = ensemble.mean("load") + ensemble.std("load") * rng.standard_normal((100_000, 1))
-    assert scores(Ensemble(scene, "aggregate", MemoryResults({"load": gaussian})))[2] > GATE
 
 
 def test_where_the_approximation_begins_to_show(make_scene):
@@ -93,17 +40,6 @@ def test_price_does_not_depend_on_n(make_scene):
         counts = counts_of(sampler.scene, sampler.mesh, 0, 4).cells
         singly.append(counts[counts < samplers.CROWDED].sum() / 4)
     assert max(singly) < 3000
-
-
-def test_counts_are_exact(make_scene):
-    ensemble = mcgw.simulate(make_scene(n_asperities=10**15, n_surfaces=50, sampler="aggregate"))
-    same = mcgw.simulate(
-        make_scene(n_asperities=10**15, n_surfaces=50, sampler="aggregate", quantities=("contacts",))
-    )
-    np.testing.assert_array_equal(ensemble.contacts, same.contacts)
-    p = analytic.fn(0, ensemble.separations)
-    z = (ensemble.contacts - 1e15 * p) / np.sqrt(1e15 * p * (1 - p))
-    assert np.abs(z).max() < GATE
 
 
 def dense(response):
@@ -140,10 +76,8 @@ def extras(sampler, name):
 
 
 @pytest.mark.parametrize(("n", "grading", "separations"), [
-    (10**6, analytic.Exponential(2.0), tuple(np.linspace(-0.5, 4, 7))),
     (10**9, analytic.Custom(lambda s: 2 + np.tanh(8 * (s - 1))), tuple(np.linspace(-0.5, 4, 7))),
     (10**15, analytic.Exponential(2.0), (0.0,)),
-    (10**6, analytic.Custom(lambda s: 2 + np.tanh(8 * (s - 1))), (0.0,)),
 ])  # fmt: skip
 def test_moments_that_stay_at_their_means_hide_a_millionth_of_the_variance(
     make_scene, n, grading, separations
@@ -243,8 +177,7 @@ def test_drawn_values_have_the_exact_law(make_scene, n):
             assert kstest(law.mean() + 0.95 * (drawn - law.mean()), law.cdf).statistic > limit
 
 
-@pytest.mark.parametrize("accuracy", [1e-2, 1e-3, 1e-4, 1e-5])
-@pytest.mark.parametrize("n", [10**4, 10**6, 10**8])
+@pytest.mark.parametrize(("n", "accuracy"), [(10**4, 1e-2), (10**4, 1e-5), (10**6, 1e-3), (10**8, 1e-5)])
 def test_a_crowd_keeps_what_is_asked_and_fewer_do_not(make_scene, n, accuracy):
     """The bound falls with the threshold, to nothing where no cell is crowded."""
     scene = make_scene(n_asperities=n, accuracy=accuracy)
@@ -285,18 +218,10 @@ def test_what_auto_takes(make_scene):
         assert crowding(scene, mesh_of(scene, split=False)) is None
 
 
-WISH = {"accuracy": 1e-2, "n_asperities": 10**6}
-
-
 def test_compare_agrees_and_sees_another_gamma(make_scene):
     """By 1 %, which is far more than anybody allowed for."""
-    scene = make_scene(n_surfaces=1000, **WISH)
+    scene = make_scene(n_surfaces=1000, accuracy=1e-2, n_asperities=10**6)
     ensemble = mcgw.simulate(scene)
     assert mcgw.compare(ensemble).verdict.agrees
     wrong = scene.replace(grading=analytic.Exponential(2.02))
     assert not mcgw.compare(dataclasses.replace(ensemble, scene=wrong)).verdict.agrees
-
-
-@pytest.mark.slow
-def test_converge_passes(make_scene):
-    assert mcgw.converge(make_scene(**WISH), n_surfaces=64, seeds=8).passed

@@ -7,20 +7,18 @@ from itertools import combinations, product
 import numpy as np
 import pytest
 from numpy.polynomial.chebyshev import chebvander
-from scipy.stats import binom, chi2, kstest, norm
+from scipy.stats import binom, chi2, norm
 
-from mcgw.machine.compiling import njit
 from mcgw.sampling.block import Layout
 from mcgw.sampling.cells import mesh_of
 from mcgw.sampling.counts import counts_of
-from mcgw.sampling.kernels import BUFFER, PLAIN, ROOTED, TOGETHER, WORDS, add_uniforms
-from mcgw.sampling.moments import _PIECE, add_compensated, cell_moments
+from mcgw.sampling.moments import add_compensated, cell_moments
 from mcgw.sampling.philox import CELLS, centred, philox, uniforms
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.promises import SAMPLERS
 
 FALSE_ALARM = 1e-6  # of each chi-square test; the seeds are fixed
-MANY = 2**20
+MANY = 2**18
 
 
 def p_value(numbers, n, p, most):
@@ -34,7 +32,7 @@ def p_value(numbers, n, p, most):
     return chi2.sf(((found - expected) ** 2 / expected).sum(), most)
 
 
-@pytest.mark.parametrize(("n", "h"), [(2, 2.4), (3, 2.4), (300, 4.0)])
+@pytest.mark.parametrize(("n", "h"), [(2, 2.4), (300, 4.0)])
 def test_rare_contacts_are_binomial_and_not_poisson(make_scene, n, h):
     """The number that touches, and that in the highest cells, where few do."""
     scene = make_scene(n_asperities=n, separations=(h, h + 0.5))
@@ -131,37 +129,6 @@ def test_a_compensated_sum_is_the_exact_one():
     assert (carry != 0).all()
 
 
-@njit(cache=True)
-def piece_of_a_cell(start, stop):
-    """Its eleven T_j and six R_j, folded, by a plain sum."""
-    w = np.zeros(WORDS)
-    for first in range(start, stop, BUFFER):
-        n = min(BUFFER, stop - first)
-        filled = -n % TOGETHER
-        centred(w, np.uint64(5), CELLS, 0, 0, first, n)
-        w[n : n + filled] = 1.0
-        add_uniforms(w, n + filled, filled, 11, 6)
-    w[PLAIN] = stop - start
-    return w
-
-
-@pytest.mark.slow
-def test_pieces_of_a_huge_cell_lose_no_digit():
-    """Each moment is the exact sum of its pieces, rounded once; without what the carry holds it is not."""
-    n, orders = 6 * _PIECE + 77, (11, 6)
-    parts = []
-    for start in range(0, n, _PIECE):
-        w = piece_of_a_cell(start, min(start + _PIECE, n))
-        parts.append(np.concatenate([w[PLAIN : PLAIN + 6], w[ROOTED : ROOTED + 6]]))  # what is not unfolded
-    moments = cell_moments(5, 0, np.array([[n]]), Layout(*(np.array([order]) for order in orders)))[:, 0]
-    found = np.concatenate([moments[:6], moments[11:17]])
-    np.testing.assert_array_equal(found, [math.fsum(column) for column in zip(*parts, strict=True)])
-    plain = np.zeros(found.size)
-    for part in parts:
-        plain += part
-    assert (plain != found).any()
-
-
 # Random123, kat_vectors: philox4x32 10, counter, key, output.
 KNOWN = [
     ((0, 0, 0, 0), (0, 0), (0x6627E8D5, 0xE169C58D, 0xBC57AC4C, 0x9B00DBD8)),
@@ -174,31 +141,10 @@ KNOWN = [
 ]
 
 
-@pytest.mark.parametrize(("counter", "key", "output"), KNOWN)
-def test_published_vectors(counter, key, output):
-    words = [np.uint64(word) for word in (*counter, *key)]
-    assert tuple(int(word) for word in philox.py_func(*words)) == output
-
-
-def test_a_word_depends_on_its_own_index_only():
-    whole = uniforms(7, CELLS, 3, 5, 1000)
-    for first in (64, 512, 960):
-        x = np.empty(64)
-        centred(x, np.uint64(7), CELLS, 3, 5, first, 64)
-        np.testing.assert_array_equal((1 + x[: min(64, 1000 - first)]) / 2, whole[first : first + 64])
-
-
-def test_uniform_and_never_at_the_ends():
-    u = uniforms(11, CELLS, 0, 0, 200_000)
-    assert 0 < u.min() < u.max() < 1
-    assert kstest(u, "uniform").pvalue > 1e-6  # false alarms: 1 in 1e6, seed fixed
-    assert kstest(u**1.02, "uniform").pvalue < 1e-6  # and a law that is off by 2 % fails
-
-
 ORDERS = np.array(list(product(range(1, 22), range(22))))
 
 
-@pytest.mark.parametrize("n", [1, 8, 61, 700, 2500])
+@pytest.mark.parametrize("n", [0, 1, 61, 2500])
 def test_moments_are_sums_of_chebyshev_polynomials(n):
     layout = Layout(ORDERS[:, 0], ORDERS[:, 1])
     moments = cell_moments(7, 0, np.full((len(ORDERS), 1), n), layout)[:, 0]
@@ -210,9 +156,14 @@ def test_moments_are_sums_of_chebyshev_polynomials(n):
         np.testing.assert_allclose(found, exact, rtol=0, atol=1e-13 * n)
 
 
-def test_an_empty_cell_has_none():
-    moments = cell_moments(7, 0, np.zeros((len(ORDERS), 2), np.int64), Layout(ORDERS[:, 0], ORDERS[:, 1]))
-    assert not moments.any()
+def test_moments_of_a_huge_cell_lose_no_digit():
+    """Summed in pieces: each is the exact sum, rounded, but for the rounding of plain sums of 1024."""
+    n = 2 * 512 * 512 + 77
+    found = cell_moments(7, 0, np.array([[n]]), Layout(np.array([3]), np.array([2])))[:, 0]
+    u = uniforms(7, CELLS, 0, 0, n)
+    terms = chebvander(2 * u - 1, 2)
+    columns = [*terms.T, np.sqrt(u), np.sqrt(u) * terms[:, 1]]
+    np.testing.assert_allclose(found, [math.fsum(column) for column in columns], rtol=0, atol=2e-15 * n)
 
 
 def philox_by_integers(counter, key):
@@ -241,7 +192,10 @@ def uniforms_by_integers(seed, surface, cell, n):
 
 
 @pytest.mark.parametrize(("counter", "key", "output"), KNOWN)
-def test_the_generator_by_integers_is_the_published_one(counter, key, output):
+def test_published_vectors(counter, key, output):
+    """Of the compiled generator, and of the one by integers."""
+    words = [np.uint64(word) for word in (*counter, *key)]
+    assert tuple(int(word) for word in philox.py_func(*words)) == output
     assert philox_by_integers(counter, key) == output
 
 

