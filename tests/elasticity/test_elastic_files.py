@@ -1,17 +1,17 @@
 """The file of `mcgw.elastic`: resumed, damaged, shared, and the same numbers whatever the clock says."""
 
 import json
-import threading
 import warnings
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from oracles.inside import locked, parts_of
 from oracles.rough import rough
 
 import mcgw
 from mcgw.cli import main
-from mcgw.elasticity import elastic as public, levels
+from mcgw.elasticity import levels
 
 MAPS = [rough(np.random.default_rng(k)) for k in range(6)]
 ASKED = {"pressure": 5e7, "E_star": 1e11, "solves": 4, "pilot": 4}
@@ -65,12 +65,9 @@ def _digit(line):
 DAMAGE = {
     "cut": lambda x: x[:40],
     "digit": _digit,
-    "another map": lambda x: x.replace(b'"map": ', b'"map": 1'),
     "no checksum": lambda x: x[: x.index(b', "check"')] + b"}",
-    "other checksum": lambda x: x[:-3] + (b"0" if x[-3:-2] != b"0" else b"1") + x[-2:],
     "deep": lambda x: b"[" * 100_000,
     "not UTF-8": lambda x: b"\xff\xfe" + x,
-    "carriage return": lambda x: x + b"\r",
 }
 
 
@@ -89,7 +86,7 @@ def test_a_damaged_line_is_named_and_solved_again(kind, whole):
         assert mcgw.elastic(MAPS, path=path, **ASKED).found.mean.tolist() == mean
 
 
-@pytest.mark.parametrize("head", [b"", b"\x89HDF\r\n\x1a\n", b'{"seed": 1}'])
+@pytest.mark.parametrize("head", [b"", b'{"seed": 1}'])
 def test_another_file_stays_as_it_is(head, whole):
     path, data, _ = whole
     held = b"\n".join([head, *data.split(b"\n")[1:]])
@@ -127,29 +124,11 @@ def test_repeated_lines_are_left_out(whole):
     assert len(path.read_bytes().splitlines()) == n
 
 
-def test_a_second_writer_is_refused(whole, monkeypatch):
-    """While one call adds its solves, another one waits a moment and says why; the file stays as it would."""
-    path, data, mean = whole
-    path.unlink()
-    running, refused, solve = threading.Event(), threading.Event(), public.LEVELS[-1].solve
-
-    def slow(pressed):
-        running.set()
-        refused.wait(10)
-        return solve(pressed)
-
-    dear = levels.Level("elastic", "stand-in", slow, 1.0)
-    monkeypatch.setattr(public, "LEVELS", (*public.LEVELS[:2], dear))
-    answers = []
-    first = threading.Thread(target=lambda: answers.append(mcgw.elastic(MAPS, path=path, **ASKED)))
-    first.start()
-    assert running.wait(10)
-    with pytest.raises(mcgw.StoreError, match=r"s\.jsonl\.parts: locked by"):
+def test_a_second_writer_is_refused(whole):
+    path, data, _ = whole
+    with locked(parts_of(path)), pytest.raises(mcgw.StoreError, match=r"s\.jsonl\.parts: locked by"):
         mcgw.elastic(MAPS, path=path, **ASKED)
-    refused.set()
-    first.join()
-    assert answers[0].found.mean.tolist() == mean
-    assert len(path.read_bytes().splitlines()) == len(data.splitlines())
+    assert path.read_bytes() == data
     assert [file.name for file in path.parent.iterdir()] == ["s.jsonl"]
 
 
@@ -164,10 +143,6 @@ def test_the_command_resumes_and_tells_damage_in_one_line(tmp_path, capsys):
     assert main(command) == 0
     first = capsys.readouterr()
     assert "mean_gap" in first.out
-    header = json.loads(out.read_text().splitlines()[0])
-    assert {**header, "maps": 0, "check": 0} == {
-        "maps": 0, "pressure": 5e7, "E_star": 1e11, "seed": 1, "check": 0
-    }  # fmt: skip
     out.write_bytes(out.read_bytes()[:-9])
     with warnings.catch_warnings():
         warnings.simplefilter("default")

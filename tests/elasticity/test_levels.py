@@ -29,8 +29,7 @@ def test_a_map_without_a_summit_is_told():
 
 
 def test_alone_is_hertz_over_the_summits(rng):
-    heights = rough(rng).heights
-    one = Pressed(heights, (6.4e-5, 6.4e-5), 1e11, 5e7)
+    one = Pressed(rough(rng).heights, (6.4e-5, 6.4e-5), 1e11, 5e7)
     values, spots = alone(one), one.spots
     depth = np.maximum(spots.heights - values["mean_gap"], 0)
     assert_allclose((4 / 3 * 1e11 * np.sqrt(spots.radii) * depth**1.5).sum(), 5e7 * 6.4e-5**2, rtol=1e-9)
@@ -64,11 +63,6 @@ def test_located_summits_are_in_balance():
     assert values["area"] == pytest.approx(spots.areas(found.penetrations).sum(), rel=1e-12)
     assert (values["stiffness"], values["mean_gap"]) == (found.stiffness, found.separation)
     assert load == pytest.approx(2e9 * 6.4e-5**2, rel=1e-10)
-    pushed = one.grid.potential[tuple(one._counted[2][:, :, None] - places[:, None])] @ spots.loads(
-        found.penetrations
-    )
-    touch = one._counted[0] - found.separation > pushed / (math.pi * 1e11)
-    assert touch.sum() == (found.penetrations > 0).sum()
     assert np.any((found.penetrations > 0) & (spots.heights < one.plane(one.spots)))
     paraboloids, at = one.touching(fits=0)
     sharp = balanced(paraboloids, at, one.grid, one.plane(paraboloids), one.load)

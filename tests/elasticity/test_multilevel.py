@@ -62,7 +62,3 @@ def test_covers_and_has_no_bias(rng):
     error = np.std(means) / math.sqrt(many)
     assert abs(np.mean(means) - true) < 4.5 * error
     assert abs(np.mean(means) - 9.0) > 50 * error  # the cheap level's mean alone is seen
-
-
-def test_a_whole_list_has_no_error(rng):
-    assert mean_of([rng.random((7, 2))], population=7).stderr.max() == 0

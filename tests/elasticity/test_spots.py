@@ -57,21 +57,6 @@ def test_contacts_are_at_least_as_wide_as_their_mean_square():
     assert_allclose(spots.least_radii(-5e-7) ** 2, [5e-12, 4.5e-12, squared.mean()], rtol=1e-12)
 
 
-def test_of_waves_fall_as_their_mean_around_a_top():
-    """cos kx + cos ky is 2 J0(kr) around it: 2 - 2 cos ka deep under 4 E*/k (sin ka - ka cos ka)."""
-    n, waves = 96, 4
-    k, phase = 2 * math.pi * waves, 2 * math.pi * waves * np.arange(n) / n
-    one = Pressed(np.cos(phase)[:, None] + np.cos(phase), (1.0, 1.0), 1.0, 1e-3)
-    spots, every = one.spots, np.arange(waves**2)
-    assert spots.heights.size == waves**2
-    for ka in (0.4, 1.0, 1.5):
-        found = fallen(one._map, one._counted[1], every, spots, np.full(waves**2, ka / k))
-        assert_allclose(found.depths, 2 - 2 * math.cos(ka), rtol=0.02)
-        assert_allclose(found.loads(found.depths), 4 / k * (math.sin(ka) - ka * math.cos(ka)), rtol=0.02)
-    beyond = fallen(one._map, one._counted[1], every, spots, np.full(waves**2, 6 / k))
-    assert np.all(beyond.depths > 2.5)  # what rises again is another summit's
-
-
 def test_of_a_map_are_means_over_eight_rays():
     """Literal: six steps to the rim, each ray down to its first valley."""
     rng = np.random.default_rng(20261124)
