@@ -67,13 +67,6 @@ def test_a_notebook_is_its_script():
         assert not any(cell.get("outputs") for cell in notebook["cells"])
 
 
-@pytest.mark.site
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_the_script_of_a_notebook_runs(path, in_tmp_path, tmp_path):
-    runpy.run_path(str(path))
-    plt.close("all")
-
-
 # --- numbers --------------------------------------------------------------------------------------------
 
 SURFACE = analytic.Surface(sigma=1.37e-6, radius=13e-6, eta=3e8, nominal_area=1e-6, E_star=78.6e9)

@@ -49,14 +49,18 @@ def run_commands(code, page):
         assert "-o" in words or words[1] in NOTHING, f"{page}: where does {line} write?"
         parser_of().parse_args(words[1:])
         if words[1] not in LONG:
-            assert main(words[1:]) == 0, f"{page}: {line}"
+            fewer = [re.sub(r"^(.+Pa:.+Pa):\d+$", r"\1:4", word) for word in words[1:]]
+            assert main(fewer) == 0, f"{page}: {line}"
 
 
 @pytest.mark.site
 @pytest.mark.usefixtures("blank_figures")
 @pytest.mark.parametrize("page", WITH_CODE)
 def test_code_of_a_page_runs(page, tmp_path, in_tmp_path):
-    """In its order, in an empty folder; a block whose first line names a file is that file."""
+    """In its order, in an empty folder; a block whose first line names a file is that file.
+
+    Ranges of pressures have four points, whatever the page asks for.
+    """
     names = {"__name__": "page"}
     with np.printoptions():
         for kind, code in blocks((DOCS / page).read_text()):
@@ -158,11 +162,9 @@ def test_commands_of_the_readme_run_in_their_order(tmp_path, in_tmp_path, capsys
 
 @pytest.mark.site
 def test_the_whole_set_of_figures(tmp_path, capsys):
-    """A minute."""
-    formats = ["--format", "png", "pdf", "svg"]
-    assert main(["figures", "-v", "-o", str(tmp_path / "figures"), *formats]) == 0
-    said = [x for x in capsys.readouterr().out.split() if x.endswith((".png", ".pdf", ".svg"))]
-    assert len(said) == 3 * (6 + 3)  # of the paper, and those it lacks
+    assert main(["figures", "-v", "-o", str(tmp_path / "figures")]) == 0
+    said = [x for x in capsys.readouterr().out.split() if x.endswith(".png")]
+    assert len(said) == 6 + 3  # of the paper, and those it lacks
     assert {Path(path) for path in said} == set((tmp_path / "figures").iterdir())
 
 
