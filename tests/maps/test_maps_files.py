@@ -3,15 +3,13 @@
 import json
 import math
 import re
-import shutil
 import struct
-import subprocess
 from datetime import UTC, datetime, timedelta
 
 import h5py
 import numpy as np
 import pytest
-from oracles.inside import METRES, envelope, smooth
+from oracles.inside import envelope, smooth
 
 from mcgw.maps import (
     Asperities,
@@ -32,33 +30,6 @@ def topography():
     return Topography(1e-6 * np.random.default_rng(1).normal(size=(5, 7)), (1e-6, 2.5e-6))
 
 
-def metres_of(library_topography):
-    """Heights in m as rows of y, and the size in m, of another library's map."""
-    unit = METRES[library_topography.unit]
-    heights = np.ma.filled(library_topography.heights(), np.nan).T * unit
-    return heights, tuple(float(x) * unit for x in library_topography.physical_sizes)
-
-
-@pytest.mark.parametrize("program", ["SurfaceTopography", pytest.param("gwyddion", marks=pytest.mark.site)])
-@pytest.mark.filterwarnings("ignore")
-def test_other_programs_read_the_same(program, topography, tmp_path):
-    """Gwyddion converts the file to its own format, which SurfaceTopography reads."""
-    library = pytest.importorskip("SurfaceTopography")
-    path = tmp_path / "map.sdf"
-    write_map(topography, path)
-    if program == "gwyddion":
-        if shutil.which("gwyddion") is None:
-            pytest.skip("gwyddion is not installed")
-        out = tmp_path / "out.gwy"
-        command = ["gwyddion", "--no-splash", f"--convert-to-gwy={out}", str(path)]
-        subprocess.run(command, check=True, capture_output=True, timeout=60)
-        path = out
-    heights, size = metres_of(library.read_topography(str(path)))
-    # it holds micrometres: one multiplication and back
-    assert heights == pytest.approx(topography.heights, rel=1e-14)
-    assert size == pytest.approx(topography.size, rel=1e-14)
-
-
 BY_HAND = np.array([[1, 2, 3], [4, np.nan, 6]])  # what each of the files below holds, in nm
 
 
@@ -70,14 +41,7 @@ def test_other_files_made_by_hand(tmp_path):
         file["height"] = BY_HAND
         file["height"].attrs["units"] = "nm"
         file.attrs.update(filetype="mcgw-surface", format=[1, 0], pixel=(1.5e-6, 4e-6), periodic=False)
-    text = "# Channel: Z\n# Width: 4.5 µm\n# Height: 8.0 µm\n# Value units: nm\n1;2\t3\n4 --- 6\n"
-    (tmp_path / "w.txt").write_text(text, encoding="utf-8")
-    german = "# Kanal: Z\n# Breite: 4,5 µm\n# Höhe: 8,0 µm\n# Werteinheit: nm\n1,0\t2,0\t3\n4\t\t6,0\n"
-    (tmp_path / "g.txt").write_text(german, encoding="utf-8")
-    others = [f"w{ending}" for ending in (".csv", ".asc", ".dat", ".tsv", ".TXT")]
-    for name in others:
-        (tmp_path / name).write_text(text, encoding="utf-8")
-    for name in ("a.npy", "h.h5", "w.txt", "g.txt", *others):
+    for name in ("a.npy", "h.h5"):
         found = read_map(tmp_path / name)
         assert found.heights == pytest.approx(1e-9 * BY_HAND, nan_ok=True, rel=1e-14), name
         assert found.pixel == pytest.approx((1.5e-6, 4e-6), rel=1e-14), name
@@ -109,7 +73,7 @@ def test_a_file_cut_short_is_refused(name, topography, tmp_path):
 def test_arrays_of_every_kind_are_read_as_numbers(tmp_path):
     """Of two dimensions a map, of one a profile."""
     numbers = np.array([[0, 1, 2], [3, 4, 200]])
-    for kind in ("<f4", ">f8", ">i2", "<u1", "<i8", "<f2"):
+    for kind in (">f8", "<u1", "<f2"):
         np.save(tmp_path / "map.npy", np.asarray(numbers.astype(kind), order="F"))
         found = read_map(tmp_path / "map.npy", pixel=(2e-8, 3e-8), unit="nm")
         assert found.heights == pytest.approx(1e-9 * numbers, rel=1e-15)
@@ -121,10 +85,7 @@ def test_arrays_of_every_kind_are_read_as_numbers(tmp_path):
 SOUND = '{"pixel": [1e-6, 1e-6]}'
 
 
-@pytest.mark.parametrize(
-    "sidecar",
-    [None, "{", '{"pixel": [1]}', '{"pixel": [1, 1], "unit": "um"}', "[]", "3", SOUND + " " * 2**16],
-)
+@pytest.mark.parametrize("sidecar", [None, "{", '{"pixel": [1, 1], "unit": "um"}', "3", SOUND + " " * 2**16])
 def test_an_array_needs_a_sound_sidecar(sidecar, topography, tmp_path):
     write_map(topography, tmp_path / "map.npy")
     beside = tmp_path / "map.json"
@@ -145,25 +106,27 @@ def test_what_makes_no_map_is_refused(tmp_path):
         h5py.File(tmp_path / "o.h5", "w").close()
         return tmp_path / "o.h5"
 
-    rng = np.random.default_rng(1)
-    wave = Topography(np.sin(np.arange(400.0)).reshape(20, 20), (1e-6, 1e-6), periodic=True)
+    pixel, none = (1e-6, 1e-6), np.zeros(0)
+    wave = Topography(np.sin(np.arange(400.0)).reshape(20, 20), pixel, periodic=True)
     for call, told in (
-        (lambda: Topography(np.zeros(3), (1.0, 1.0)), "not 1 dimension"),
-        (lambda: read_map(saved("v.npy", np.zeros(9)), pixel=(1e-6, 1e-6)), "a map has rows and columns"),
+        (lambda: Topography(np.zeros(3), pixel), "not 1 dimension"),
+        (lambda: read_map(saved("v.npy", np.zeros(9)), pixel=pixel), "a map has rows and columns"),
         (lambda: read_map(other_h5()), "not a mcgw-surface file|SurfaceTopography"),
-        (lambda: read_map(saved("o.npy", np.array([[object()]])), pixel=(1.0, 1.0)), "not a valid"),
-        (lambda: Spectrum(0.0, 30e-6, 5e-6), "give a length > 0 m"),
-        (lambda: gaussian_map(Spectrum(1e-6, 28e-6, 23e-6), (64, 64), (1e-6, 1e-6), rng), "give more pixels"),
-        (lambda: spectrum_from("rms=1um,long=30um,short=5um,hurst=x"), "hurst = 'x': give a number"),
+        (lambda: read_map(saved("o.npy", np.array([[object()]])), pixel=pixel), "not a valid"),
+        (lambda: read_map(tmp_path), "is not a regular file"),
+        (lambda: read_map(tmp_path / "none.h5"), "no such file"),
+        (lambda: write_map(wave, tmp_path / "map.tiff"), r"give one of \.npy"),
         (lambda: smooth(wave, 30e-6), "longer than the map"),
+        (lambda: envelope(Asperities(*4 * [none], 1.0, (1.0, 1.0)), (4, 4)), "no asperity: nothing"),
+        (lambda: Spectrum(0.0, 30e-6, 5e-6), "give a length > 0 m"),
         (lambda: Spectrum(1e-6, math.inf, 5e-6), "long = inf: give a length > 0 m"),
         (lambda: Spectrum(1e-6, 30e-6, -1.0), "short = -1.0: give a length > 0 m"),
         (lambda: Spectrum(1e-6, 5e-6, 5e-6), "below long"),
         (lambda: Spectrum(1e-6, 30e-6, 5e-6, -1.01), "hurst = -1.01"),
+        (lambda: gaussian_map(Spectrum(1e-6, 28e-6, 23e-6), (64, 64), pixel, None), "give more pixels"),
+        (lambda: spectrum_from("rms=1um,long=30um,short=5um,hurst=x"), "hurst = 'x': give a number"),
         (lambda: spectrum_from("rms=1um,long=30um,m0=1e-12"), "give rms, long and short, or m0, m2 and m4"),
         (lambda: spectrum_from("rms=1um,long=30,short=5um,size=1um"), "'size=1um': give rms, long"),
-        (lambda: envelope(Asperities(*4 * [np.zeros(0)], 1.0, (1.0, 1.0)), (4, 4)), "no asperity: nothing"),
-        (lambda: read_map(tmp_path), "is not a regular file"),
     ):
         with pytest.raises(ValueError, match=told):
             call()
@@ -195,28 +158,20 @@ def test_the_largest_height_and_the_finest_pixel():
         Topography(-1.005e150 * z, (1.0, 1.0))
 
 
-@pytest.mark.parametrize("name", ["m.txt", "m.npy", "m.h5"])
 @pytest.mark.parametrize(
     ("slope", "doubted"), [(9.95, False), (10.05, True), (1.01e-6, False), (0.99e-6, True)]
 )
-def test_slopes_that_no_surface_has_are_refused(name, slope, doubted, tmp_path):
+def test_slopes_that_no_surface_has_are_refused(slope, doubted, tmp_path):
     """A unit that was assumed is named, one that was given or told is doubted too."""
-    path, heights = tmp_path / name, slope * 1e-6 * np.arange(8.0) + np.zeros((8, 1))
-    pixel = (1e-6, 1e-6)
-    if name == "m.h5":
-        write_map(Topography(heights, pixel), path)
-        with h5py.File(path, "r+") as file:
-            del file["height"].attrs["units"]
-        pixel = None
-    else:
-        np.savetxt(path, heights) if name == "m.txt" else np.save(path, heights)
+    np.save(tmp_path / "m.npy", slope * 1e-6 * np.arange(8.0) + np.zeros((8, 1)))
     for unit, told in ((None, "would be 10[.]1; give --unit" if slope > 1 else "are in another unit"),
                        ("m", "the typical slope of this map is .*, which no surface has")):  # fmt: skip
         if doubted:
             with pytest.raises(ValueError, match=told):
-                read_map(path, pixel=pixel, unit=unit)
+                read_map(tmp_path / "m.npy", pixel=(1e-6, 1e-6), unit=unit)
         else:
-            assert read_map(path, pixel=pixel, unit=unit).assumed_unit == ("" if unit else "m")
+            found = read_map(tmp_path / "m.npy", pixel=(1e-6, 1e-6), unit=unit)
+            assert found.assumed_unit == ("" if unit else "m")
 
 
 def test_what_an_array_and_an_hdf5_map_say_of_themselves(topography, tmp_path):
@@ -232,19 +187,15 @@ def test_what_an_array_and_an_hdf5_map_say_of_themselves(topography, tmp_path):
     field = Asperities(1e-6 * one, 2e-6 * one, 3e-6 * one, 4e-6 * one, 5e-6, (7e-6, 12.5e-6))
     assert write_map(periodic, tmp_path / "m.h5", field, scene="of it") == [tmp_path / "m.h5"]
     with h5py.File(tmp_path / "m.h5") as file:
-        assert file.attrs["filetype"] == "mcgw-surface"
-        assert list(file.attrs["format"]) == [1, 0]
-        assert list(file.attrs["pixel"]) == [1e-6, 2.5e-6]
-        assert file.attrs["periodic"]
+        assert (file.attrs["filetype"], *file.attrs["format"]) == ("mcgw-surface", 1, 0)
+        assert (*file.attrs["pixel"], file.attrs["periodic"]) == (1e-6, 2.5e-6, True)
         assert file["height"].attrs["units"] == "m"
         assert list(file["height"].attrs["axes"]) == ["y", "x"]
         assert file["height"].compression == "gzip"
         group = file["asperities"]
-        assert (group.attrs["radius"], list(group.attrs["size"])) == (5e-6, [7e-6, 12.5e-6])
-        assert group.attrs["units"] == "m"
-        assert {name: (x[0], x.attrs["units"]) for name, x in group.items()} == {
-            "x": (1e-6, "m"), "y": (2e-6, "m"), "z": (3e-6, "m"),
-        }  # fmt: skip
+        assert (group.attrs["radius"], *group.attrs["size"]) == (5e-6, 7e-6, 12.5e-6)
+        for item, value in (("x", 1e-6), ("y", 2e-6), ("z", 3e-6)):
+            assert (group[item][0], group[item].attrs["units"], group.attrs["units"]) == (value, "m", "m")
         assert file["scene"][()] == b"of it"
     for name in ("m.npy", "m.h5"):
         again = read_map(tmp_path / name)
@@ -255,22 +206,6 @@ def test_what_an_array_and_an_hdf5_map_say_of_themselves(topography, tmp_path):
         read_map(tmp_path / "m.h5", pixel=(1e-6, 1e-6))
     with pytest.raises(ValueError, match="leave --unit out"):
         read_map(tmp_path / "m.h5", unit="um")
-    write_map(topography, tmp_path / "n.h5")
-    with h5py.File(tmp_path / "n.h5") as file:
-        assert "asperities" not in file
-        assert file["scene"][()] == b""
-    assert not read_map(tmp_path / "n.h5").periodic
-
-
-@pytest.mark.filterwarnings("ignore::ImportWarning")  # of SurfaceTopography, where it is installed
-def test_other_endings_name_what_would_do(tmp_path, topography):
-    with pytest.raises(ValueError, match=r"give one of \.npy"):
-        write_map(topography, tmp_path / "map.tiff")
-    (tmp_path / "map.zzz").write_text("?")
-    with pytest.raises(ValueError, match="SurfaceTopography"):
-        read_map(tmp_path / "map.zzz")
-    with pytest.raises(ValueError, match="no such file"):
-        read_map(tmp_path / "none.h5")
 
 
 def test_nothing_half_written_is_left(tmp_path):
@@ -282,8 +217,9 @@ def test_nothing_half_written_is_left(tmp_path):
         write_map(Topography(np.zeros((1, 2)), (1.0, 1.0)), tmp_path / "nowhere" / "map.npy")
 
 
-@pytest.mark.parametrize("name", ["m.txt", "m.npy", "m.h5", "m.nc"])
-@pytest.mark.parametrize("value", [-9999.0, -3.4028235e38, 32767.0])
+@pytest.mark.parametrize(
+    ("name", "value"), [("m.txt", -9999.0), ("m.npy", -3.4028235e38), ("m.h5", 32767.0), ("m.nc", 32767.0)]
+)
 @pytest.mark.filterwarnings("ignore")
 def test_numbers_that_stand_for_missing_points_are_named(name, value, topography, tmp_path):
     path, z = tmp_path / name, 1e6 * topography.heights
@@ -300,12 +236,8 @@ def test_numbers_that_stand_for_missing_points_are_named(name, value, topography
     else:
         np.savetxt(path, z) if name == "m.txt" else np.save(path, z)
         given = {"pixel": topography.pixel, "unit": "um"}
-    if (name, value) == ("m.nc", -3.4028235e38):  # the least number of a foreign file is known
-        assert read_map(path).missing == 2
-    else:
-        refused = rf"2 of 35 heights are {re.escape(f'{value:.8g}')}, .*--missing-value"
-        with pytest.raises(ValueError, match=refused):
-            read_map(path, **given)
+    with pytest.raises(ValueError, match=rf"2 of 35 heights are {re.escape(f'{value:.8g}')}, .*--missing-va"):
+        read_map(path, **given)
     found = read_map(path, missing=value, **given)
     assert np.isnan(found.heights[[1, 3], [2, 0]]).all()
     assert found.missing == 2
@@ -314,15 +246,14 @@ def test_numbers_that_stand_for_missing_points_are_named(name, value, topography
 
 
 def test_heights_that_are_no_real_numbers_are_refused(topography, tmp_path):
-    for name, heights in (("c.h5", topography.heights * (1 + 1j)), ("n.h5", None)):
-        write_map(topography, tmp_path / name)
-        with h5py.File(tmp_path / name, "r+") as file:
+    path = tmp_path / "c.h5"
+    write_map(topography, path)
+    for more, told in (
+        ({"data": topography.heights * 1j}, "heights are complex128, not real numbers"),
+        ({"dtype": "f8"}, "its heights were never written"),
+    ):
+        with h5py.File(path, "r+") as file:
             del file["height"]
-            if heights is None:
-                file.create_dataset("height", (5, 7), "f8")
-            else:
-                file["height"] = heights
-    with pytest.raises(ValueError, match="heights are complex128, not real numbers"):
-        read_map(tmp_path / "c.h5")
-    with pytest.raises(ValueError, match="its heights were never written"):
-        read_map(tmp_path / "n.h5")
+            file.create_dataset("height", (5, 7), **more)
+        with pytest.raises(ValueError, match=told):
+            read_map(path)

@@ -50,14 +50,9 @@ class Bare(Channel):
 
 def open_topography(path):
     path = Path(path)
-    words = path.read_text().replace(";", "?").split()
+    words = path.read_text().split()
     if kind := {"line": Line, "unknown": Unknown, "bare": Bare}.get(words[0]):
         return kind(path, *map(int, words[1:3]))
-    if words[0] == "points":
-        heights = [float(word) for word in words[1:]]
-        one = Channel(path, len(heights), 1)
-        one.heights = lambda: np.array(heights)[:, None]
-        return one
     if words[0] == "silent":
         raise ValueError
     if words[0] == "greedy":
