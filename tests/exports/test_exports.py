@@ -16,8 +16,6 @@ from mcgw.exports.table_text import UNITS, heading, in_units, table_text
 from mcgw.exports.writing import surfaces_for
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "10 mm^2", "78.6 GPa")
-FILM = mcgw.Joint(resistivity=1 / 150 + 1 / 16)
-METAL = mcgw.KogutEtsion(critical=0.05)
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +24,7 @@ def scene():
         SURFACE,
         separations=np.linspace(0, 3, 13),
         grading=mcgw.Exponential(1.5),
-        joint=FILM,
+        joint=mcgw.Joint(resistivity=1 / 150 + 1 / 16),
         contact=mcgw.Contact(quantities=["load", "stiffness", "conductance_si"]),
         n_surfaces=60,
         seed=4,
@@ -38,12 +36,6 @@ def ensemble(scene):
     return mcgw.simulate(scene)
 
 
-@pytest.fixture
-def only_drawn(monkeypatch):
-    """Values at a load are means of the surfaces drawn: exact ones take half a second each."""
-    monkeypatch.setattr("mcgw.ensemble.solved.Solution._exact", Moments({}, {}))
-
-
 # --- small readers, each written from its program's rule ------------------------------------------------
 
 
@@ -52,11 +44,10 @@ def read_inp(path):
     keyword, rows = "", []
     for line in path.read_text().splitlines():
         assert len(line) <= 132  # CalculiX cuts there
-        if line.startswith("**"):
-            continue
         if line.startswith("*"):
-            assert not keyword
-            keyword = line.replace(" ", "").upper()
+            if not line.startswith("**"):
+                assert not keyword
+                keyword = line.replace(" ", "").upper()
             continue
         fields = [field.strip() for field in line.split(",")]
         assert len(fields) == 2
@@ -65,27 +56,17 @@ def read_inp(path):
     return keyword, np.array(rows)
 
 
-def read_moose(path):
-    """Comments from #, a header if the first line is not made of numbers, values between commas."""
-    lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
-    assert all(re.fullmatch(r"[-+.\de]+,[-+.\de]+", line) for line in lines)
-    return np.array([[float(x) for x in line.split(",")] for line in lines])
-
-
-def read_comsol(path):
-    """Rows of comments begin with %; columns between blanks."""
-    rows = [line.split() for line in path.read_text().splitlines() if not line.startswith("%")]
-    return np.array(rows, dtype=float)
+def read_columns(path, comment, separator):
+    """MOOSE: comments from #, values between commas. COMSOL: comments from %, columns between blanks."""
+    lines = [line for line in path.read_text().splitlines() if not line.startswith(comment)]
+    return np.array([line.split(separator) for line in lines], dtype=float)
 
 
 def table_of(path, program):
     """Argument and value, whatever stands first."""
-    if program == "moose":
-        return read_moose(path).T
-    if program == "comsol":
-        return read_comsol(path).T
-    _, rows = read_inp(path)
-    return rows[:, 1], rows[:, 0]
+    if program in ("moose", "comsol"):
+        return read_columns(path, *{"moose": ("#", ","), "comsol": ("%", None)}[program]).T
+    return read_inp(path)[1].T[::-1]
 
 
 def d0_of(path):
@@ -113,23 +94,6 @@ TOLD = {
     "conductance": tuple(f"conductance per nominal area in {x}" for x in ("S/m^2", "mA/(mm^2 V)")),
     "stiffness": tuple(f"stiffness per nominal area in {x}" for x in ("Pa/m", "MPa/mm")),
 }  # fmt: skip
-BEYOND = {
-    ("calculix", "pressure-gap"): ["*CONTACT PAIR, TYPE=NODE TO SURFACE", "the pressure is constant"],
-    ("calculix", "conductance-pressure"): [
-        "below *SURFACE BEHAVIOR",
-        "the conductance is constant",
-        "third entry",
-    ],
-    ("abaqus", "pressure-gap"): ["the pressure continues with the last slope"],
-    ("abaqus", "conductance-pressure"): ["the conductance is constant"],
-    ("abaqus", "conductance-gap"): ["nothing is conducted"],
-    ("moose", "stiffness-pressure"): [
-        "[Functions] [stiffness]",
-        "data_file = f.x",
-        "x: pressure, y: stiffness",
-    ],
-    ("comsol", "pressure-gap"): ["column 1: gap (argument), column 2: pressure", "Extrapolation Constant"],
-}
 LIVE = "x\n*STEP\r*INCLUDE, INPUT=evil.inp\u2028%\x85#\n1.0, 2.0"
 NUMBER = r"[-+]?\d\.\d{9}e[-+]\d\d"
 # A comment, or a row of two numbers; each by its program's own manual.
@@ -141,17 +105,10 @@ LINES = {
 }
 
 
-def strange_lines(text, program, table):
-    """Lines that the program would take for something else than comment, table and its one keyword."""
-    keyword = PROGRAMS[program].header[table]
-    lines = re.split(r"[\r\n]", text)
-    return [line for line in lines if line and line != keyword and not re.fullmatch(LINES[program], line)]
-
-
 @pytest.mark.parametrize("units", UNITS)
 @pytest.mark.parametrize(("program", "table"), [(p, t) for p in PROGRAMS for t in PROGRAMS[p].header])
 def test_a_curve_is_written_as_the_program_reads_it(scene, program, table, units, tmp_path):
-    """Order, signs, the row where nothing is carried, units, keyword and its own rules and no others.
+    """Order, signs, the row where nothing is carried, units and keyword.
 
     Whatever a stranger wrote into a title or name stays a comment.
     """
@@ -160,9 +117,9 @@ def test_a_curve_is_written_as_the_program_reads_it(scene, program, table, units
     x, y, foot = (1e-6 * x, 1e6 * y[::-1], 6e-6) if kind.against == "gap" else (1e6 * x, y, 0.0)
     curve = in_units(Curve("q05", x, y), kind, system)
     head = heading(scene, 60, kind, curve, system, "data 0a")
-    path.write_text(table_text(curve, kind, PROGRAMS[program], system, [*head, LIVE], LIVE), "utf-8")
-    text = path.read_text("utf-8")
-    assert strange_lines(text.encode("ascii", "replace").decode(), program, table) == []
+    text = table_text(curve, kind, PROGRAMS[program], system, [*head, LIVE], LIVE)
+    for line in re.split(r"[\r\n]", text.encode("ascii", "replace").decode()):
+        assert line in ("", PROGRAMS[program].header[table]) or re.fullmatch(LINES[program], line)
     path.write_text(table_text(curve, kind, PROGRAMS[program], system, head, "f.x"))
     text = path.read_text()
     overclosure = table == "pressure-gap" and program in ("calculix", "abaqus")
@@ -178,15 +135,9 @@ def test_a_curve_is_written_as_the_program_reads_it(scene, program, table, units
     if program in ("calculix", "abaqus"):
         assert read_inp(path)[0] == KEYWORDS[program, table]
     assert ("INPUT=f.x" in text) == (program in ("calculix", "abaqus"))
-    every = {words for rules in BEYOND.values() for words in rules}
-    if (program, table) in BEYOND:
-        assert {words for words in every if words in text} == set(BEYOND[program, table])
     (told,) = re.findall(r"units: (.+)", text)
     side = list(UNITS).index(units)
     assert told == "; ".join(TOLD[part][side] for part in (kind.quantity, kind.against))
-    assert f"{table}, 05 % quantile over 60 surfaces of 3000 asperities, seed 4, at equal " in text
-    heat = heading(scene.replace(joint=mcgw.Joint(conductivities=(150.0, 16.0))), 60, kind, curve, system, "")
-    assert kind.quantity != "conductance" or re.search(r" in m?W/\(m*\^2 K\)", heat[3])
 
 
 # --- numbers --------------------------------------------------------------------------------------------
@@ -195,7 +146,7 @@ def test_a_curve_is_written_as_the_program_reads_it(scene, program, table, units
 def test_pressure_against_gap_is_that_of_theory(scene, tmp_path):
     """Against the exact mean, in its standard errors; |z| < 5 at 12 points: a false alarm in 1e5 seeds."""
     path, *_ = mcgw.export(scene, tmp_path / "t.txt", to="comsol", points=12)
-    gap, pressure = read_comsol(path)[:-1].T
+    gap, pressure = table_of(path, "comsol")[:, :-1]
     h = gap / SURFACE.sigma
     np.testing.assert_allclose(h, np.linspace(0, 3, 12), atol=1e-9)
     exact = scene.theory.mean("pressure", h)
@@ -215,10 +166,9 @@ def test_an_ensemble_gives_its_own_numbers(ensemble, tmp_path):
     overclosure, pressure = table_of(path, "abaqus")
     mean = 1e-6 * ensemble.mean("pressure")
     np.testing.assert_allclose(pressure[:0:-1], mean, rtol=1e-9)
-    inner, *_ = mcgw.export(
-        ensemble, tmp_path / "i.txt", to="comsol", pressures=[1e6 * mean[6], 1e6 * mean[2]]
-    )
-    np.testing.assert_allclose(read_comsol(inner)[:-1, 1], 1e6 * mean[2:7], rtol=1e-9)  # they bound the gaps
+    bounds = [1e6 * mean[6], 1e6 * mean[2]]
+    inner, *_ = mcgw.export(ensemble, tmp_path / "i.txt", to="comsol", pressures=bounds)
+    np.testing.assert_allclose(table_of(inner, "comsol")[1, :-1], 1e6 * mean[2:7], rtol=1e-9)
     gap = 1e3 * SURFACE.sigma * ensemble.separations
     d0 = d0_of(path)
     np.testing.assert_allclose(overclosure[:0:-1], d0 - gap, atol=1e-11)
@@ -227,9 +177,7 @@ def test_an_ensemble_gives_its_own_numbers(ensemble, tmp_path):
         expected = np.quantile(1e-6 * ensemble.values("pressure"), q, axis=0)
         np.testing.assert_allclose(table_of(file, "abaqus")[1][:0:-1], expected[expected > 0], rtol=1e-9)
     rows = list(csv.reader(every.read_text().splitlines()[1:]))
-    assert rows[0] == [
-        "gap (mm)", "pressure mean (MPa)", "pressure q05 (MPa)", "pressure q95 (MPa)"
-    ]  # fmt: skip
+    assert rows[0] == ["gap (mm)", *(f"pressure {name} (MPa)" for name in ("mean", "q05", "q95"))]
     np.testing.assert_allclose([float(row[1]) for row in rows[1:]], mean, rtol=1e-12)
 
 
@@ -237,25 +185,27 @@ def test_points_that_carry_nothing_are_left_out(scene, tmp_path):
     """A quantile of specimens that do not touch any more."""
     far = mcgw.simulate(scene.replace(separations=[0, 1, 2, 4], n_surfaces=20))
     path, low, *_ = mcgw.export(far, tmp_path / "t.csv", to="moose")
-    assert (len(read_moose(path)), len(read_moose(low))) == (4 + 1, 3 + 1)
+    assert [len(table_of(file, "moose")[0]) for file in (path, low)] == [4 + 1, 3 + 1]
 
 
 def test_pressures_of_a_scene_are_those_of_its_rows_against_the_gap(scene, tmp_path):
     """Drawn there with the load alone, whatever the scene keeps, and pressed once."""
     wanted = np.geomspace(1e6, 2e7, 5)
-    back = scene.replace(law=METAL, unload_from="loop", n_surfaces=9, quantities=["load"], joint=None)
+    back = scene.replace(
+        law=mcgw.KogutEtsion(critical=0.05), unload_from="loop", quantities=["load"], joint=None
+    )
     drawn = surfaces_for(back.replace(keep="statistics"), ("load",), None, 4)
     assert (drawn.scene.quantities, drawn.scene.keep, drawn.scene.unload_from) == (("load",), "sums", None)
     path, *_ = mcgw.export(scene.replace(n_surfaces=9), tmp_path / "t.csv", to="moose", pressures=wanted)
     h = [float(scene.theory.separation_at("pressure", p)) for p in wanted[::-1]]
-    np.testing.assert_allclose(read_moose(path)[:-1, 0], SURFACE.sigma * np.array(h), rtol=1e-8)
+    np.testing.assert_allclose(table_of(path, "moose")[0, :-1], SURFACE.sigma * np.array(h), rtol=1e-8)
 
 
 def test_fewer_rows_are_evenly_of_the_separations(ensemble, tmp_path):
     path, *_ = mcgw.export(ensemble, tmp_path / "t.txt", to="comsol", table="conductance-gap", points=5)
     mean = ensemble.mean("conductance_si") / SURFACE.nominal_area
     rows = np.stack([SURFACE.sigma * ensemble.separations, mean], axis=1)
-    np.testing.assert_allclose(read_comsol(path)[:-1], rows[[0, 3, 6, 9, 12]], rtol=1e-9)
+    np.testing.assert_allclose(table_of(path, "comsol")[:, :-1].T, rows[[0, 3, 6, 9, 12]], rtol=1e-9)
 
 
 def test_pressures_are_those_of_the_mean_surface_where_a_specimen_touches(scene):
@@ -264,17 +214,19 @@ def test_pressures_are_those_of_the_mean_surface_where_a_specimen_touches(scene)
     assert np.ptp(np.diff(np.log(found))) < 1e-9
 
 
-def test_rows_against_pressure_are_the_values_and_specimens_of_solve(scene, tmp_path, only_drawn):
+def test_rows_against_pressure_are_the_values_and_specimens_of_solve(scene, tmp_path, monkeypatch):
+    """Means of the surfaces drawn: exact ones take half a second each."""
+    monkeypatch.setattr("mcgw.ensemble.solved.Solution._exact", Moments({}, {}))
     scene, wanted, area = scene.replace(n_surfaces=20), [1e6, 1e7], SURFACE.nominal_area
     solved = mcgw.solve(scene, pressure=wanted)
     for name in ("conductance", "stiffness"):
         paths = mcgw.export(scene, tmp_path / "t.csv", to="moose", table=f"{name}-pressure", pressures=wanted)
-        x, mean = read_moose(paths[0])[-2:].T
+        x, mean = table_of(paths[0], "moose")[:, -2:]
         np.testing.assert_allclose(x, wanted, rtol=1e-9)
         sum_of = {"conductance": "conductance_si"}.get(name, name)
         np.testing.assert_allclose(mean, [each.value[sum_of] / area for each in solved], rtol=1e-9)
         low = [np.quantile(each.surfaces[sum_of], 0.05) / area for each in solved]
-        np.testing.assert_allclose(read_moose(paths[1])[-2:, 1], low, rtol=1e-9)
+        np.testing.assert_allclose(table_of(paths[1], "moose")[1, -2:], low, rtol=1e-9)
 
 
 def test_comments_tell_where_it_comes_from(ensemble, tmp_path):
@@ -285,17 +237,6 @@ def test_comments_tell_where_it_comes_from(ensemble, tmp_path):
     assert f"SHA-256 of the data {read_attributes(file)['digest']}" in text
     assert "60 surfaces of 3000 asperities, seed 4" in text
     assert "to the mean plane of the summits" in text
-    of_spectrum = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 mm^2", "78.6 GPa")
-    spectral = mcgw.Scene(
-        of_spectrum, separations=[0, 1, 2], n_surfaces=3, ensemble=mcgw.Sampling(n_asperities=1000), seed=1
-    )
-    path, *_ = mcgw.export(spectral, tmp_path / "n.inp", to="calculix", points=5)
-    rise = float(re.search(r"larger by (\S+) m", path.read_text())[1])
-    alpha = 1e-12 * 5e6 / 1e-3**2
-    assert rise == pytest.approx(4 * np.sqrt(1e-12 / (np.pi * alpha)), rel=1e-9)  # Nayak 1971
-    pressed = ensemble.scene.replace(interaction="mean-plane", quantities=["load"], n_surfaces=2)
-    path, *_ = mcgw.export(pressed, tmp_path / "b.inp", to="abaqus", points=5, quantiles=[])
-    assert "with asperity interaction; d is the separation that asperities feel" in path.read_text()
 
 
 # --- what has no table ----------------------------------------------------------------------------------
@@ -307,10 +248,8 @@ WRONG = [
     ({"to": "abaqus", "table": "stiffness-pressure"}, r"pressure': abaqus does not support it; choose"),
     ({"to": "ansys"}, r"^to = 'ansys': choose one of calculix, abaqus, moose, comsol, json$"),
     ({"units": "cgs"}, r"^units = 'cgs': choose one of SI, mm-N-s$"),
-    ({"points": 1}, r"^points = 1: give a whole number from 2 to 10000$"),
     ({"points": 300}, r"^points = 300: calculix reads at most 200 lines; give fewer$"),
     ({"pressures": [2.0, 1.0]}, r"^pressures = \[2\.0, 1\.0\]: give two or more increasing numbers$"),
-    ({"pressures": [1.0]}, r"^pressures = \[1\.0\]: give two or more increasing numbers$"),
     ({"pressures": ["1 N", "2 N"]}, r"^pressures = '1 N': give a finite number > 0 in Pa"),
     ({"quantiles": [0.5, 1.0]}, r"^quantiles = \[0\.5, 1\.0\]: give numbers between 0 and 1"),
 ]
@@ -328,17 +267,14 @@ def test_what_has_no_table_is_told(scene, ensemble, tmp_path):
     mean, stiffness = ensemble.mean("pressure"), {"table": "stiffness-pressure", "points": 5}
     conductance = {"table": "conductance-pressure", "pressures": [1e6, 1e12]}
     bare = scene.replace(joint=None, quantities=["load"], n_surfaces=3)
+    areas = mcgw.simulate(bare, quantities=["area"])
     pulls = bare.replace(law=mcgw.DerjaguinMullerToporov(pull_off=0.3))
     fine = bare.replace(surface=mcgw.Surface("2 nm", "13 um", "300/mm^2", "10 mm^2", "78.6 GPa"))
     steps = {"to": "calculix", "points": 80}
     for what, given, told in (
         (pulls, {}, r"^contact\.law: surfaces attract each other .* negative pressures"),
         (bare, conductance, r"^joint\.conductivities: missing for a table of conductance"),
-        (
-            mcgw.simulate(bare, quantities=["area"]),
-            {},
-            r"^contact\.quantities: the ensemble has no load; give its scene",
-        ),
+        (areas, {}, r"^contact\.quantities: the ensemble has no load; give its scene"),
         (fine, steps, r'closer than 1e-10, .*units = "mm-N-s"'),
         (ensemble, {"pressures": [0.9 * mean[3], 1.1 * mean[3]]}, r"mean: 1 point\(s\) with load"),
         (scene.replace(separations=[8, 9]), stiffness, r"^contact\.separations: give two or more at which a"),
@@ -351,25 +287,20 @@ def test_what_has_no_table_is_told(scene, ensemble, tmp_path):
     mcgw.export(fine, tmp_path / "t.inp", **steps, units="mm-N-s")
 
 
-def test_command(tmp_path, in_tmp_path, capsys):
+@pytest.mark.parametrize(("given", "told"), [
+    ("1MPa:2MPa", "--pressures 1MPa:2MPa: give A:B:N, such as 10kPa:20MPa:30"),
+    ("2MPa:1MPa:3", "give the lower one first"),
+])  # fmt: skip
+def test_pressures_that_are_no_range_are_refused(given, told, in_tmp_path, capsys):
     assert main(["init", "demo", "-o", "s.toml"]) == 0
-    words = ["export", "s.toml", "--to", "moose", "-o"]
-    for given, told in (
-        (["t.inp"], "a table for moose is written there, whose name ends in .csv"),
-        (["t.csv", "--pressures", "1MPa:2MPa"], "--pressures 1MPa:2MPa: give A:B:N, such as 10kPa:20MPa:30"),
-        (["t.csv", "--pressures", "2MPa:1MPa:3"], "give the lower one first"),
-        (["s.toml"], "is an input"),
-    ):
-        assert main([*words, *given]) == 2
-        err = capsys.readouterr().err.splitlines()
-        assert told in err[-1]
-        assert sum(line.startswith("mcgw: ") and "note" not in line for line in err) == 1
+    assert main(["export", "s.toml", "--to", "moose", "-o", "t.csv", "--pressures", given]) == 2
+    assert told in capsys.readouterr().err
 
 
 # --- what a stranger wrote ------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["a\n*STEP", "a\r*STEP", "*STEP", "a,b", "a b", "a'b", "\u00e9", "a" * 70])
+@pytest.mark.parametrize("name", ["a\n*STEP", "*STEP", "a,b", "a'b", "\u00e9", "a" * 70])
 def test_names_that_a_program_cannot_be_told_are_refused(make_scene, name, tmp_path, capsys):
     scene, path = make_scene(n_surfaces=8), tmp_path / f"{name}.inp"
     with pytest.raises(ValueError, match=r"^path = .*: \w+ includes it by name; give a name of"):
@@ -377,6 +308,3 @@ def test_names_that_a_program_cannot_be_told_are_refused(make_scene, name, tmp_p
     assert main(["export", "none.toml", "--to", "abaqus", "-o", str(path)]) == 2
     assert len(capsys.readouterr().err.splitlines()) == 1
     assert not list(tmp_path.iterdir())
-
-
-# --- CalculiX itself, where it is installed -------------------------------------------------------------

@@ -21,9 +21,9 @@ SECRET = b"correct horse battery staple" * 64
 OUTSIDE = "height: its data are in another file"
 
 
-def virtual(file, name):
+def virtual(file, folder):
     layout = h5py.VirtualLayout((8, 8), "f8")
-    layout[:] = h5py.VirtualSource(name, "height" if name != "." else "real", (8, 8))
+    layout[:] = h5py.VirtualSource(str(folder / "other.h5"), "height", (8, 8))
     file.create_virtual_dataset("height", layout)
 
 
@@ -43,16 +43,16 @@ def external(file, folder):
     file.create_dataset("height", (8, 8), "f8", external=[(str(folder / "secret"), 0, 512)])
 
 
-def small(file, name):
-    file.create_dataset(name, (2**8, 2**10), "f8", chunks=(64, 64))
+def small(file, folder):
+    for k in range(40):
+        file.create_dataset(f"x{k}", (2**8, 2**10), "f8", chunks=(64, 64))
 
 
 # By name: what makes it of a file in a folder, and what is said.
 HOSTILE = {
     "external storage": (external, OUTSIDE),
     "external storage below": (lambda f, d: external(f.create_group("a/b/c"), d), f"a/b/c/{OUTSIDE}"),
-    "virtual": (lambda f, d: virtual(f, str(d / "other.h5")), OUTSIDE),
-    "virtual of itself": (lambda f, d: virtual(f, "."), OUTSIDE),
+    "virtual": (virtual, OUTSIDE),
     "external link": (
         lambda f, d: f.update(height=h5py.ExternalLink(str(d / "other.h5"), "height")),
         "height: a link to another file",
@@ -67,7 +67,7 @@ HOSTILE = {
         lambda f, d: f.create_dataset("height", (2**14, 2**14), "f8", chunks=(64, 64)),
         "height: more bytes declared than a file of",
     ),
-    "many small": (lambda f, d: [small(f, f"x{i}") for i in range(40)], "more bytes declared than a file of"),
+    "many small": (small, "more bytes declared than a file of"),
     "unknown filter": (unknown_filter, "height: unknown filter"),
     "deep": (lambda f, d: f.create_group("g/" * 100), "groups are nested more than 32 deep"),
     "members": (
@@ -104,12 +104,8 @@ def test_plain_files_pass(folder):
     """Groups, a soft link, cycles, empty and scalar data, resizable and compressed ones."""
     with h5py.File(folder / "map.h5", "w") as file:
         file["a/b"], file["scalar"], file["text"] = np.ones(8), 1.0, "a text"
-        file["a/self"], file["soft"], file["dangling"] = (
-            file["/"],
-            h5py.SoftLink("/a/b"),
-            h5py.SoftLink("/no"),
-        )
-        file["empty"] = h5py.Empty("f8")
+        file["a/self"], file["empty"] = file["/"], h5py.Empty("f8")
+        file["soft"], file["dangling"] = h5py.SoftLink("/a/b"), h5py.SoftLink("/no")
         file.create_dataset("none", (0, 5), "f8", maxshape=(None, 5))
         file.create_dataset("zeros", data=np.zeros((1000, 1000)), compression="gzip")
         file.create_dataset("grows", data=np.ones(10), maxshape=(None,), compression="lzf", shuffle=True)
@@ -120,12 +116,13 @@ def test_plain_files_pass(folder):
 
 def test_what_is_no_regular_file_is_not_waited_for(folder):
     os.mkfifo(folder / "pipe.h5")
-    with pytest.raises(StoreError, match=r"pipe\.h5: is not a regular file"):
-        open_h5(folder / "pipe.h5")
-    with pytest.raises(StoreError, match="is not a regular file"):
-        open_h5("/dev/zero")
-    with pytest.raises(StoreError, match="No such file"):
-        open_h5(folder / "absent.h5")
+    for path, told in (
+        (folder / "pipe.h5", r"pipe\.h5: is not a regular file"),
+        ("/dev/zero", "is not a regular file"),
+        (folder / "absent.h5", "No such file"),
+    ):
+        with pytest.raises(StoreError, match=told):
+            open_h5(path)
 
 
 def test_an_audit_of_what_is_opened_sees_no_other_file(folder):
@@ -133,22 +130,20 @@ def test_an_audit_of_what_is_opened_sees_no_other_file(folder):
     with h5py.File(folder / "map.h5", "w") as file:
         external(file, folder)
         file["far"] = h5py.ExternalLink(str(folder / "other.h5"), "height")
-    script = f"""
+    script = """
 import os, sys
-opened = []
 from mcgw.formats.gate import open_h5
+opened, folder = [], "/proc/self/fd/"
 sys.addaudithook(lambda name, args: opened.append(str(args[0])) if name == "open" else None)
-before = os.stat({str(folder / "secret")!r}).st_atime_ns
 try:
-    open_h5({str(folder / "map.h5")!r})
+    open_h5(sys.argv[1])
 except ValueError as error:
     print(error)
-kept = [os.readlink(f"/proc/self/fd/{{n}}") for n in os.listdir("/proc/self/fd") if n.isdigit() and
-        os.path.exists(f"/proc/self/fd/{{n}}")]
+kept = [os.readlink(folder + n) for n in os.listdir(folder) if os.path.exists(folder + n)]
 print(*(name for name in opened + kept if name.endswith(("secret", "other.h5"))), sep="|")
 """
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
-    told, others = done.stdout.splitlines()
+    command = [sys.executable, "-c", script, str(folder / "map.h5")]
+    told, others = subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
     assert "refused" in told
     assert others == ""
 
@@ -160,21 +155,16 @@ def archive(path: Path, members: dict[str, bytes], method=zipfile.ZIP_DEFLATED) 
     return path
 
 
+PACKED = zipfile.ZIP_DEFLATED
 ARCHIVES = {
-    "unpacks to 100 MB": (
-        {"bindata/data.bin": bytes(10**8)},
-        zipfile.ZIP_DEFLATED,
-        "that unpacks to 100000000",
-    ),
-    "many": ({str(i): b"" for i in range(2000)}, zipfile.ZIP_DEFLATED, "an archive of 2000 members"),
+    "unpacks to 100 MB": ({"bindata/data.bin": bytes(10**8)}, PACKED, "that unpacks to 100000000"),
+    "many": ({str(i): b"" for i in range(2000)}, PACKED, "an archive of 2000 members"),
     "bzip2": ({"a": b"1"}, zipfile.ZIP_BZIP2, "'a' is encrypted, or not packed by deflate"),
-    "entities": (
-        {"main.xml": b"<!DOCTYPE a><a/>"},
-        8,
-        "'main.xml' declares entities",
+    "entities": ({"main.xml": b"<!DOCTYPE a><a/>"}, PACKED, "'main.xml' declares entities"),
+    "wide": (
+        {"index.xml": "<a/>".encode("utf-16")}, PACKED, "'index.xml' declares entities, or is not UTF-8",
     ),
-    "wide": ({"index.xml": "<a/>".encode("utf-16")}, 8, "'index.xml' declares entities, or is not UTF-8"),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", ARCHIVES)
@@ -194,11 +184,10 @@ def test_a_whole_archive_passes_and_a_cut_one_does_not(tmp_path):
 
 
 TEXTS = {
-    "deep": ("[" * 10**5, "nested too deeply|Invalid|Unclosed"),
+    "deep": ("a = " + "[" * 10**5, "nested too deeply|Invalid|Unclosed"),
     "digits": ("a = " + "1" * 10**5, "line 1: a number has more than 4000 digits"),
     "hexadecimal": ("a = 0x" + "f" * 10**6, "line 1: a number has more than 4000 digits"),
     "underscores": ("a = " + "1_" * 10**5 + "1", "line 1: a number has more than 4000 digits"),
-    "key": (".".join(["a"] * 10**5) + " = 1", "a dotted key has more than 100 parts"),
     "quoted key": (".".join(['"a"'] * 10**5) + " = 1", "a dotted key has more than 100 parts"),
     "101 parts": ("a" + ".a" * 100 + " = 1\n", "a dotted key has more than 100 parts"),
     "long word": ("a" * 10**6, "Expected"),
@@ -210,7 +199,7 @@ def test_toml_that_would_stop_its_parser_is_refused_at_once(name):
     text, told = TEXTS[name]
     began = time.process_time()
     with pytest.raises(ValueError, match=told):
-        loads(text if name != "deep" else "a = " + text)
+        loads(text)
     assert time.process_time() - began < 1
 
 
