@@ -2,57 +2,18 @@
 
 import math
 import tomllib
-from dataclasses import astuple
 
 import numpy as np
 import pytest
-from oracles.inside import summit_sums_of, write_scene
+from oracles.inside import write_scene
 
 import mcgw
 from analytic import SpectralMoments
 from mcgw.cli import main
-from mcgw.maps import Spectrum, gaussian_map, moments_on_grid
 from mcgw.maps.iso import NUMBERS, moments_from
 
-MOMENTS = SpectralMoments(6.4e-13, 7.2e-3, 8.1e8)  # alpha = 10
-
-
-def numbers_seen(alpha: float, seed: int) -> tuple[SpectralMoments, dict[str, float]]:
-    """The moments that a periodic map was drawn from, and its numbers counted on the map."""
-    spectrum = Spectrum.with_moments(SpectralMoments(1e-12, 1e-2, alpha * 1e8))
-    pixel = spectrum.short / 16
-    n = max(math.ceil(4 * spectrum.long / pixel), 300)
-    drawn = gaussian_map(spectrum, (n, n), (pixel, pixel), np.random.default_rng(seed))
-    z = drawn.heights - drawn.heights.mean()
-    found = summit_sums_of(drawn, across=2)
-    slopes = [np.roll(z, -1, axis) - z for axis in (0, 1)]
-    crossings = np.count_nonzero((z < 0) & (np.roll(z, -1, 1) >= 0)) / (z.size * pixel)
-    right, left = np.roll(z, -1, 1), np.roll(z, 1, 1)
-    peaks = np.count_nonzero((z > right) & (z >= left)) / (z.size * pixel)
-    seen = {
-        "Sq": z.std(),
-        "Sdq": math.sqrt(sum(np.mean(s**2) for s in slopes)) / pixel,
-        "Spc": found.curvatures.mean(),
-        "Spd": found.heights.size / found.area,
-        "Rq": z.std(),
-        "Rdq": math.sqrt(np.mean(slopes[1] ** 2)) / pixel,
-        "Rpd": peaks,
-        "RSm": 1 / crossings,
-    }
-    return moments_on_grid(spectrum, (n, n), (pixel, pixel)), seen
-
-
-@pytest.mark.parametrize("alpha", [2.0, 5.0])
-def test_each_formula_against_drawn_maps(alpha):
-    """Mean over six maps: within four standard errors and 2 % of pixels."""
-    each = [numbers_seen(alpha, seed) for seed in range(6)]
-    moments = each[0][0]
-    for key, row in NUMBERS.items():
-        powers = np.prod(
-            [m**p for m, p in zip((moments.m0, moments.m2, moments.m4), row.powers, strict=True)]
-        )
-        logs = np.log([seen[key] / (row.factor * powers) for _, seen in each])
-        assert abs(logs.mean()) < 0.02 + 4 * logs.std(ddof=1) / math.sqrt(len(each)), key
+MOMENTS = ("m0", "m2", "m4")
+SURFACE = SpectralMoments(6.4e-13, 7.2e-3, 8.1e8)  # alpha = 10
 
 
 def test_values():
@@ -82,15 +43,15 @@ def numbers_of(m: SpectralMoments, *keys: str) -> dict[str, float]:
 )
 def test_three_numbers_or_more_give_the_moments(keys):
     """From printed formulas back; all eight agree."""
-    found, doubts = moments_from(numbers_of(MOMENTS, *keys), pruning=0)
-    for name in ("m0", "m2", "m4"):
-        assert getattr(found, name) == pytest.approx(getattr(MOMENTS, name), rel=1e-12)
+    found, doubts = moments_from(numbers_of(SURFACE, *keys), pruning=0)
+    expected = [getattr(SURFACE, name) for name in MOMENTS]
+    assert [getattr(found, name) for name in MOMENTS] == pytest.approx(expected, rel=1e-12)
     assert not doubts
 
 
 def test_disagreement_is_told():
     """A density four times too small is named, and the rest share it."""
-    numbers = numbers_of(MOMENTS, "Sq", "Sdq", "Spc", "Spd")
+    numbers = numbers_of(SURFACE, "Sq", "Sdq", "Spc", "Spd")
     numbers["Spd"] /= 4
     with pytest.warns(UserWarning, match=r"disagree.*Spc by a factor of .*Spd by a factor of"):
         mcgw.surface_from(**numbers, pruning=0, nominal_area=1e-6, E_star=1e11)
@@ -102,7 +63,7 @@ def test_pruned_peaks_are_told():
     """By default an instrument has left out low peaks."""
     with pytest.warns(UserWarning, match="Spc: the formula is for all summits.*pruning = 0"):
         mcgw.surface_from(Sq=8e-7, Sdq=0.12, Spc=4.3e4, nominal_area=1e-6, E_star=1e11)
-    assert not moments_from(numbers_of(MOMENTS, "Rq", "Rdq", "Rpd"))[1]
+    assert not moments_from(numbers_of(SURFACE, "Rq", "Rdq", "Rpd"))[1]
 
 
 def test_autocorrelation():
@@ -127,7 +88,6 @@ def test_autocorrelation():
         ({"Rq": 1e-6, "Rdq": 0.1, "RSm": 1e-5}, "does not tell m4; add Spc, Spd or Rpd"),
         ({}, "no number: does not tell m0"),
         ({"Sq": "1 kg", "Sdq": 0.1, "Spc": 1e4}, "Sq = '1 kg': give a finite number"),
-        ({"Sq": -1.0, "Sdq": 0.1, "Spc": 1e4}, "Sq = -1.0"),
         ({"Sq": 1e-6, "Sdq": 1.0, "Spc": 1e3}, "alpha = m0 m4/m2.* has at least 1.5"),
         ({"Sq": 1e-6, "Sdq": 0.1, "Sal": 1e-5}, "go with Sq alone"),
         ({"Sq": 1e-6, "autocorrelation": "gaussian"}, "needs Sal"),
@@ -160,34 +120,6 @@ def test_commands_that_lack_something(given, told, tmp_path, capsys):
     assert told in capsys.readouterr().err
 
 
-def same_in_four_digits(read, scene):
-    """Whether a scene that was read has the surface of another to four digits, and the rest of it."""
-    assert astuple(read.surface)[:5] == pytest.approx(astuple(scene.surface)[:5], rel=5e-4)
-    assert astuple(read.fitted)[:7] == pytest.approx(astuple(scene.fitted)[:7], rel=5e-4)
-    told = {name: getattr(scene, name) for name in ("surface", "fitted")}
-    return read.replace(**told) == scene
-
-
-def test_scenes_of_fits_are_read_by_people(tmp_path):
-    """A range of separations and short lists stand on a line, long lists do not; all is read back."""
-    spectrum = Spectrum(rms=1e-6, long=50e-6, short=10e-6)
-    drawn = gaussian_map(spectrum, (128, 128), (1e-6, 1e-6), np.random.default_rng(1))
-    found = mcgw.fit(drawn, cutoff=None)
-    for kind in ("gaussian", "table"):
-        scene = mcgw.fitted_scene(found, heights=kind)
-        write_scene(scene, tmp_path / "f.toml", None, ["of a test"])
-        text = (tmp_path / "f.toml").read_text()
-        assert "\nseparations = {start = 0.0, stop = 3.0, num = 31}\n" in text
-        assert '\nquantities = ["load", "area", "stiffness", "contacts", "conductance"]\n' in text
-        assert "\ncorrelation = [[1.0, " in text
-        assert max(map(len, text.partition("cautions")[0].splitlines())) < 130
-        assert same_in_four_digits(mcgw.load_scene(tmp_path / "f.toml"), scene)
-    uneven = scene.replace(separations=[0.0, 1.0, 3.0])
-    write_scene(uneven, tmp_path / "g.toml", None, [])
-    assert "\nseparations = [0.0, 1.0, 3.0]\n" in (tmp_path / "g.toml").read_text()
-    assert same_in_four_digits(mcgw.load_scene(tmp_path / "g.toml"), uneven)
-
-
 @pytest.mark.parametrize(("sigma", "eta", "area", "told"), [
     (1.23456e-6, 2.93e9, 1e-6, ('"1.235 um"', '"2930/mm^2"', '"1 mm^2"')),
     (4.2e-9, 9.99951e15, 2e-12, ('"4.2 nm"', '"1e+04/um^2"', '"2 um^2"')),
@@ -197,16 +129,12 @@ def test_scenes_of_fits_are_read_by_people(tmp_path):
 def test_numbers_have_units_in_which_they_are_short(sigma, eta, area, told, tmp_path):
     """Four digits; what is natural in none of the units stays in SI, and defaults are left out."""
     surface = mcgw.Surface(sigma, 1e-5, eta, area, 1e11)
-    write_scene(
-        mcgw.Scene(surface, separations=[0.0], ensemble=mcgw.Sampling(n_asperities=9), seed=3),
-        tmp_path / "f.toml",
-        None,
-        [],
-    )
-    tables = tomllib.loads((tmp_path / "f.toml").read_text())
-    lines = (tmp_path / "f.toml").read_text().splitlines()
+    scene = mcgw.Scene(surface, separations=[0.0], ensemble=mcgw.Sampling(n_asperities=9), seed=3)
+    write_scene(scene, tmp_path / "f.toml", None, [])
+    text = (tmp_path / "f.toml").read_text()
+    tables = tomllib.loads(text)
     written = {f"{key} = {x}" for key, x in zip(("sigma", "eta", "nominal_area"), told, strict=True)}
-    assert written <= set(lines)
+    assert written <= set(text.splitlines())
     assert set(tables) == {"title", "surface", "contact", "ensemble"}
     assert set(tables["ensemble"]) == {"n_surfaces", "n_asperities", "seed"}
 

@@ -1,7 +1,5 @@
 """From a map or profiles to a scene whose summits have radii of their own."""
 
-import math
-
 import numpy as np
 import pytest
 from oracles.fit_of_maps import fit_map
@@ -16,36 +14,22 @@ PIXEL, RNG = (1e-6, 1e-6), np.random.default_rng
 
 
 @pytest.fixture(scope="module")
-def drawn():
-    return gaussian_map(Spectrum(1e-6, 80e-6, 12e-6), (512, 512), PIXEL, RNG(3))
-
-
-@pytest.fixture(scope="module")
-def fit(drawn):
+def fit():
+    drawn = gaussian_map(Spectrum(1e-6, 80e-6, 12e-6), (256, 256), PIXEL, RNG(3))
     return fit_map(drawn, cutoff=None)
-
-
-def test_scene_has_the_moments_of_the_map(fit):
-    scene = mcgw.fitted_scene(fit, heights="nayak", E_star="70 GPa")
-    m = fit.moments
-    assert scene.heights == analytic.Nayak(m.alpha)
-    assert scene.surface.radius == pytest.approx(3 * math.sqrt(math.pi / m.m4) / 8, rel=1e-12)
-    assert scene.surface.eta == pytest.approx(m.m4 / (6 * math.sqrt(3) * math.pi * m.m2), rel=1e-12)
-    assert scene.surface.sigma == pytest.approx(
-        math.sqrt((1 - 0.8968057562340189 / m.alpha) * m.m0), rel=1e-12
-    )
-    assert mcgw.scene_from(mcgw.scene_text(scene)) == scene
 
 
 def test_a_scene_of_a_fit_takes_what_scenes_have(fit):
     """The same as afterwards; what is wrong is told as it is there."""
     plain = mcgw.fitted_scene(fit, heights="nayak", E_star="70 GPa")
     changes = {
-        "grading": mcgw.Exponential(2.0), "nominal_area": "4 mm^2", "n_surfaces": 7,
+        "grading": mcgw.Exponential(2.0),
+        "nominal_area": "4 mm^2",
         "joint": mcgw.Joint(resistivity=0.1),
-    }  # fmt: skip
+    }
     made = mcgw.fitted_scene(fit, heights="nayak", E_star="70 GPa", **changes)
     assert made == plain.replace(**changes) != plain
+    assert made.heights == analytic.Nayak(fit.moments.alpha)
     assert made.surface.nominal_area == 4e-6
     assert made.n_asperities == round(made.surface.eta * 4e-6)
     with pytest.raises(mcgw.SceneError, match="n_surfaces = -1"):
@@ -54,9 +38,15 @@ def test_a_scene_of_a_fit_takes_what_scenes_have(fit):
         mcgw.fitted_scene(fit, gradient=2.0)
 
 
-def test_other_estimates_know_no_such_heights(fit):
-    with pytest.raises(ValueError, match='use = "summits": heights = "nayak" follow from the "moments"'):
-        mcgw.fitted_scene(fit, heights="nayak", use="summits")
+@pytest.mark.parametrize(("asked", "told"), [
+    ({"heights": "nayak", "use": "summits"}, 'use = "summits": heights = "nayak" follow from the "moments"'),
+    ({"heights": "measured", "use": "moments"}, "measured heights as they are need use = .summits"),
+    ({"heights": "measured", "nominal_area": 1}, 'nominal_area = 1: heights = "measured" uses the measured'),
+    ({"heights": "summits", "nominal_area": 1}, 'nominal_area = 1: heights = "summits" uses the measured'),
+])  # fmt: skip
+def test_estimates_that_do_not_suit_the_heights_are_refused(asked, told, fit):
+    with pytest.raises(ValueError, match=told):
+        mcgw.fitted_scene(fit, **asked)
 
 
 def test_the_very_summits_carry_what_they_carry_literally(fit, tmp_path):
