@@ -1,4 +1,4 @@
-"""Benches (`runs/bench`): the history of their ratios, and what refuses a worse one, without any timing."""
+"""Benches (`runs/bench`): the history of their ratios, and the script that they are measured against."""
 
 import importlib
 import re
@@ -60,38 +60,6 @@ def test_lines_there_and_back(benches, tmp_path):
     assert records.last(records.read(path), ELSEWHERE) == {"x, 0.05 / y": 7.0}
     (line,) = records.written(lines[-1:], about("0.6.0"), {"z / y": 3.0})  # a version is one line
     assert records.last([line], HERE) == {"z / y": 3.0}
-
-
-@pytest.fixture
-def run(benches, tmp_path, monkeypatch):
-    """The command with ratios that are given: one bench, `file`, measured as often as there are values."""
-    history = benches["history"]
-    monkeypatch.setattr(benches["records"], "HISTORY", tmp_path / "history.csv")
-
-    def run(*values, machine=HERE, record=False):
-        values = list(values)
-        monkeypatch.setattr(history, "ratios_of", lambda *_: {"file: run / simulate": values.pop(0)})
-        monkeypatch.setattr(history, "processor", lambda: machine)
-        monkeypatch.setattr(sys, "argv", ["history.py", "--only", "file", *(["--record"] if record else [])])
-        status = history.main()
-        assert not values
-        return status
-
-    return run
-
-
-def test_the_command_refuses_what_is_worse_twice(run, capsys):
-    assert run(2.0, record=True) == 0
-    assert run(2.3) == 0
-    assert run(2.5, 2.2) == 0
-    assert run(2.5, 2.6) == 1
-    assert "worse by more than 20%: file: run / simulate" in capsys.readouterr().out
-    assert run(9.0, machine=ELSEWHERE) == 0
-    out = capsys.readouterr().out
-    assert f"no record of {ELSEWHERE}" in out
-    assert "+350%" in out
-    assert run(3.0, 3.0, record=True) == 1  # and it is recorded, as was asked
-    assert run(3.0) == 0
 
 
 def test_the_script_answers_the_same_question(benches):

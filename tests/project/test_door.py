@@ -47,7 +47,6 @@ def map_file(tmp_path, monkeypatch):
     spectrum = spectrum_from("rms=1um,long=100um,short=8um")
     z = gaussian_map(spectrum, (256, 256), (1e-6, 1e-6), np.random.default_rng(1))
     write_map(z, tmp_path / "map.h5")
-    monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(tradeoff, "SECONDS", 0.1)
     monkeypatch.setattr(tradeoff, "sampled_ways", lambda scene: ["tail"])
 
