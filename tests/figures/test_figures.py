@@ -3,24 +3,13 @@
 import csv
 from dataclasses import replace
 from functools import cache
-from importlib.resources import files
 
 import numpy as np
 import pytest
 from conftest import SURFACE
+from oracles import inside
 from oracles.crowding import crowded
-from oracles.inside import (
-    CATALOGUE,
-    GAMMA,
-    Compared,
-    FigureData,
-    draw,
-    figures_of,
-    prefixed,
-    ratio_of_sums,
-    save,
-    short,
-)
+from oracles.inside import CATALOGUE, Compared, FigureData, draw, figures_of, ratio_of_sums
 from oracles.scenes import scene_by
 from oracles.told import mark
 from scipy.integrate import quad
@@ -28,7 +17,6 @@ from scipy.stats import norm
 
 import analytic
 import mcgw
-from mcgw import scene_from
 
 THEORY_ALONE = {"figure-1"}
 
@@ -37,30 +25,12 @@ THEORY_ALONE = {"figure-1"}
 def figures():
     """All of the sweep; eta A_n is 5000, as pressures are per nominal area."""
     surface = replace(SURFACE, nominal_area=5000 / SURFACE.eta)
-    scene = mcgw.Scene(
-        surface, separations=0.0, n_surfaces=400, ensemble=mcgw.Sampling(n_asperities=5000), seed=11
-    )
+    scene = scene_by(surface, separations=0.0, n_surfaces=400, n_asperities=5000, seed=11)
     return dict(figures_of(Compared(scene, swept=True, most_listed=10)))
 
 
 def points(data):
     return [s.points for panel in data.panels for s in panel.series if s.points is not None]
-
-
-def test_all_are_there(figures):
-    assert [f"figure-{k}" for k in range(1, 7)] == list(figures)[:6]
-    assert [row.name for row in CATALOGUE] == list(figures)  # the names that are checked before one is drawn
-    assert [data.name for data in figures.values()] == list(figures)
-    assert set(list(figures)[6:]) == {"equal-load", "fluctuations", "area-and-load"}
-    assert {name for name, data in figures.items() if not points(data)} == THEORY_ALONE
-
-
-@pytest.mark.parametrize(
-    "name",
-    [pytest.param(row.name, marks=() if row.name == "figure-3" else pytest.mark.site) for row in CATALOGUE],
-)
-def test_panels_have_room(figures, name):
-    assert not crowded(draw(figures[name]))
 
 
 def said(figures):
@@ -79,8 +49,19 @@ def said(figures):
                 yield f"  {s.label}: {'; '.join(map(mark, parts))}"
 
 
-def test_nothing_else_of_the_sweep_moves(figures, recorded):
+def test_all_are_there_and_nothing_moves(figures, recorded):
+    assert [row.name for row in CATALOGUE] == list(figures)  # the names that are checked before one is drawn
+    assert [data.name for data in figures.values()] == list(figures)
+    assert {name for name, data in figures.items() if not points(data)} == THEORY_ALONE
     recorded("figures.sweep", said(figures))
+
+
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(row.name, marks=() if row.name == "figure-3" else pytest.mark.site) for row in CATALOGUE],
+)
+def test_panels_have_room(figures, name):
+    assert not crowded(draw(figures[name]))
 
 
 def test_every_point_agrees_with_theory(figures):
@@ -106,16 +87,6 @@ def test_points_with_wrong_theory_would_show(figures):
             assert np.median(np.abs((p.mean - p.exact - 0.03 * slope) / p.stderr)) > 5
 
 
-def test_lines_pass_through_what_theory_says_at_the_points(figures):
-    """The line is drawn from the function the points are held to: interpolated to 2 % of a coarse grid."""
-    for name in figures.keys() - THEORY_ALONE - {"area-and-load"}:
-        for panel in figures[name].panels:
-            for series in panel.series:
-                if series.points:
-                    on_line = np.interp(series.points.x, series.x, series.theory)
-                    np.testing.assert_allclose(on_line, series.points.exact, rtol=0.02)
-
-
 def test_numbers_of_the_paper(figures):
     """Independent of the functions behind the figures: theory.md's and the paper's own figures."""
     just, *_, by_load = figures["figure-4"].panels
@@ -133,16 +104,6 @@ def test_numbers_of_the_paper(figures):
     assert homogeneous.theory[-1] < 1  # area grows slower than load, ever less so
 
 
-def test_ratios_have_a_line_of_their_own_at_one(figures):
-    """What is 1 for every curve where nothing is graded, and nothing else over gamma."""
-    panels = [p for data in figures.values() for p in data.panels if p.xlabel == GAMMA]
-    ones = [
-        all(np.interp(1.0, s.x, s.theory) == pytest.approx(1.0, abs=1e-6) for s in p.series) for p in panels
-    ]
-    assert len(panels) > 8
-    assert [p.level for p in panels] == [1.0 if one else None for one in ones]
-
-
 def test_ratio_of_sums_against_repetition():
     """The stated error is the spread of repeated ratios: 200 of them know it to 5 %, four times that."""
     rng = np.random.default_rng(3)
@@ -155,54 +116,20 @@ def test_ratio_of_sums_against_repetition():
     assert spread == pytest.approx(np.mean([e for _, e in found]), rel=0.2)
 
 
-def test_curves_carry_the_label_of_their_grading_or_separation(figures):
-    """A line drawn under another's label: theory by the label alone, in two panels of each kind."""
-    for name, n in (("figure-2", 1.5), ("figure-5", 0.5)):
-        for panel in figures[name].panels:
-            for series in panel.series:
-                grading = analytic.Exponential(float(series.label.removeprefix("γ = ")))
-                np.testing.assert_allclose(series.theory, analytic.fn(n, series.x, grading), rtol=1e-12)
-    for panel in figures["figure-6"].panels:
-        for series in panel.series:
-            h = float(series.label.removeprefix("d/σ = "))
-            for gamma, value in list(zip(series.x, series.theory, strict=True))[::20]:
-                exact = analytic.stiffness_ratio(h, analytic.Exponential(gamma))
-                assert value == pytest.approx(float(exact), rel=1e-12)
-
-
-def test_pressures_and_area_fractions_are_those_of_the_paper(figures):
-    """P/A_n in MPa and A/A_n at d = 0, gamma = 2: closed forms of F_1 and F*_{3/2}."""
-    series = figures["area-and-load"].panels[0].series[0]
-    assert series.label == "γ = 2"
-    x = SURFACE
-    area = np.pi * x.eta * x.radius * x.sigma / np.sqrt(2 * np.pi)
-    f = float(analytic.fn(1.5, 0.0, analytic.Exponential(2.0)))
-    pressure = 4 / 3 * x.eta * x.E_star * x.radius**0.5 * x.sigma**1.5 * f / 1e6
-    assert (series.x[0], series.theory[0]) == (pytest.approx(pressure), pytest.approx(area))
-    assert series.points.x[0] == pytest.approx(pressure, rel=0.01)
-    assert series.points.mean[0] == pytest.approx(area, rel=0.01)
-
-
 @pytest.mark.usefixtures("blank_figures")
 def test_files_and_every_number_of_a_figure_in_its_csv(figures, tmp_path):
-    data = figures["figure-6"]
-    both = (data, figures["figure-1"])
-    for one in both:
-        save(one, *(tmp_path / f"{one.name}.{ending}" for ending in ("png", "pdf", "svg", "csv")))
-    assert len(list(tmp_path.iterdir())) == 8
-    found = list(csv.reader((tmp_path / "figure-6.csv").read_text().splitlines()))[1:]
-    for panel in data.panels:
+    paths = [tmp_path / f"f.{ending}" for ending in ("png", "pdf", "svg", "csv")]
+    inside.save(figures["figure-6"], *paths)
+    assert all(path.exists() for path in paths)
+    found = list(csv.reader(paths[-1].read_text().splitlines()))[1:]
+    wanted = []
+    for panel in figures["figure-6"].panels:
         for s in panel.series:
-            parts = (
-                ("line", s.x, s.theory),
-                ("point", s.points.x, s.points.exact, s.points.mean, s.points.stderr),
-            )
-            for kind, *columns in parts:
-                for numbers in zip(*columns, strict=True):
-                    row = found.pop(0)
-                    assert row[:3] == [panel.title, s.label, kind]
-                    assert [float(x) for x in row[3:] if x] == list(numbers)
-    assert not found
+            p = s.points
+            wanted += [(panel.title, s.label, "line", *row) for row in zip(s.x, s.theory, strict=True)]
+            told = zip(p.x, p.exact, p.mean, p.stderr, strict=True)
+            wanted += [(panel.title, s.label, "point", *row) for row in told]
+    assert [(*row[:3], *(float(x) for x in row[3:] if x)) for row in found] == wanted
 
 
 # --- figures of a scene ----------------------------------------------------------------------------------
@@ -218,11 +145,6 @@ def scene_of(surface=SURFACE, **given):
     )
 
 
-def preset(name):
-    scene = scene_from((files("mcgw.scene") / "presets" / f"{name}.toml").read_text(encoding="utf-8"))
-    return scene.replace(separations=H, n_surfaces=60)
-
-
 def drawn(scene):
     """Figures by name, the names of those with no meaning, and why."""
     compared = Compared(scene)
@@ -233,13 +155,6 @@ def drawn(scene):
         isinstance(x, str) and x and "\n" not in x for x in found.values() if x not in figures.values()
     )
     return figures, {name: why for name, why in found.items() if name not in figures}
-
-
-def residuals(figures):
-    """Of points that scatter by more than rounding."""
-    every = [p for x in figures for p in points(x)]
-    scatter = [p.stderr > 1e-14 * np.abs(p.mean) for p in every]
-    return np.concatenate([(p.mean - p.exact)[s] / p.stderr[s] for p, s in zip(every, scatter, strict=True)])
 
 
 YIELDS = {"law": mcgw.KogutEtsion(hardness=1.2e9, poisson=0.3), "grading": mcgw.Exponential(1.5)}
@@ -261,11 +176,6 @@ SCENES = {
     ),
     "interacting": (lambda: scene_of(interaction="body"), {"figure-1", "figure-4"}),
     "homogeneous": (scene_of, {"figure-1", "figure-4"} | RATIOS),
-    "preset nanoindentation": (lambda: preset("nanoindentation"), set()),
-    "own grading": (lambda: scene_of(grading=lambda s: 1 + 0.3 * np.tanh(s), count="poisson"), set()),
-    "other heights": (
-        lambda: scene_of(grading=mcgw.Exponential(2.0), heights=mcgw.Weibull(10.0)), set()
-    ),
     # At d/sigma = 0 Hertz's asperities carry more than those that yield can.
     "yields, and back": (lambda: scene_of(**YIELDS, unload_from="loop"), {"equal-load"}),
     "own radii": (
@@ -275,8 +185,8 @@ SCENES = {
         set(),
     ),
 }  # fmt: skip
-RECORDED = ("graded", "coated", "sticks", "interacting", "preset nanoindentation")
-DEAR = ("own grading", "other heights", "yields, and back", "own radii")  # 2 s to half a minute of theory
+RECORDED = ("graded", "coated", "sticks", "interacting")
+DEAR = ("yields, and back", "own radii")  # seconds to half a minute of theory
 
 
 @cache
@@ -286,26 +196,23 @@ def drawn_of(name):
 
 @pytest.fixture
 def graded():
-    figures, _ = drawn_of("graded")
-    return figures
-
-
-def check(figures):
-    """|z| < 5 at each of some 100 points, of Gaussian means one false alarm in 10^4 seeds."""
-    z = residuals(figures)
-    assert z.size > 10
-    assert 0.05 < np.abs(z).max() < 5
+    return drawn_of("graded")[0]
 
 
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.slow if name in DEAR else ()) for name in SCENES]
 )
 def test_every_kind_of_scene_has_its_figures(name, recorded):
+    """|z| < 5 at each of some 100 points, of Gaussian means one false alarm in 10^4 seeds."""
     figures, without = drawn_of(name)
     assert set(without) == SCENES[name][1]
     if name in RECORDED:
-        recorded(f"figures.{name.split()[-1]}", said(figures | without))
-    check(figures.values())
+        recorded(f"figures.{name}", said(figures | without))
+    every = [p for figure in figures.values() for p in points(figure)]
+    scatter = [p.stderr > 1e-14 * np.abs(p.mean) for p in every]  # more than rounding
+    z = np.concatenate([(p.mean - p.exact)[s] / p.stderr[s] for p, s in zip(every, scatter, strict=True)])
+    assert z.size > 10
+    assert 0.05 < np.abs(z).max() < 5
     for panel in (panel for figure in figures.values() for panel in figure.panels):
         assert len({one.label for one in panel.series}) == len(panel.series), panel.title
 
@@ -353,46 +260,27 @@ def test_numbers_are_integrals_over_the_heights(graded):
     assert {s.label for s in graded["figure-2"].panels[0].series} == {"this scene", "homogeneous"}
 
 
-def test_another_scene_would_show(graded):
-    """The companion: an error of 0.02 in gamma is more than 5 standard errors at most points of figure 6."""
-    p = graded["figure-6"].panels[0].series[0].points
-    other = analytic.stiffness_ratio(p.x, analytic.Exponential(0.52))
-    assert np.median(np.abs(p.mean - other) / p.stderr) > 5
+LISTED = {"heights": mcgw.MeasuredHeights(np.linspace(-2, 2, 99)), "n_asperities": 99}
+FEW = {
+    "hardly touches": {"separations": (4.9, 5.1), "n_surfaces": 4},
+    "one surface": {"separations": 1.0, "n_surfaces": 1},
+    "measured": LISTED | {"separations": (0.5, 1.0), "n_surfaces": 1},
+}
 
 
-LISTED = {
-    "heights": mcgw.MeasuredHeights(np.linspace(-2, 2, 99)), "n_asperities": 99, "separations": (0.5, 1.0),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"separations": (4.9, 5.1), "n_surfaces": 4},
-        {"separations": 1.0, "n_surfaces": 1},
-        LISTED | {"n_surfaces": 1},
-    ],
-    ids=["hardly touches", "one surface", "measured"],
-)
-def test_what_hardly_touches_or_is_one_surface_has_no_markers(changes):
-    figures, without = drawn(scene_of(grading=mcgw.Exponential(2.0), quantities=["load"], **changes))
+@pytest.mark.parametrize("name", FEW)
+def test_what_hardly_touches_or_is_one_surface_has_no_markers(name):
+    figures, without = drawn(scene_of(grading=mcgw.Exponential(2.0), quantities=["load"], **FEW[name]))
     assert set(without) <= {"fluctuations", "equal-load"}
     assert not [p for x in figures.values() for p in points(x)]
-    one = changes["n_surfaces"] == 1
-    assert one <= ("fluctuations" in without)
-    assert not (one and any("Markers" in data.caption for data in figures.values()))
-    assert draw(figures["figure-2"]).axes
+    if FEW[name]["n_surfaces"] == 1:
+        assert "fluctuations" in without
+        assert not any("Markers" in data.caption for data in figures.values())
 
 
-@pytest.mark.parametrize(
-    ("largest", "found"),
-    [(2.5e6, (1e6, "M")), (999.0, (1, "")), (1000.0, (1e3, "k")), (0.02, (1e-3, "m")), (3e-6, (1e-6, "µ"))],
-)
-def test_prefixes(largest, found):
-    assert prefixed(largest) == (pytest.approx(found[0]), found[1])
-
-
-def test_a_law_in_a_caption_keeps_six_digits():
+def test_prefixes_and_digits_of_captions():
+    for largest, size, prefix in ((999.0, 1, ""), (1000.0, 1e3, "k"), (0.02, 1e-3, "m"), (3e-6, 1e-6, "µ")):
+        assert inside.prefixed(largest) == (pytest.approx(size), prefix)
     law = "KogutEtsion(hardness=1234567000.0, poisson=0.3333333333)"
-    assert short(law) == "KogutEtsion(hardness=1.23457e+09, poisson=0.333333)"
-    assert short("Hertz()") == "Hertz"
+    assert inside.short(law) == "KogutEtsion(hardness=1.23457e+09, poisson=0.333333)"
+    assert inside.short("Hertz()") == "Hertz"

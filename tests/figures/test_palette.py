@@ -4,11 +4,7 @@ import itertools
 
 import numpy as np
 import pytest
-from conftest import SURFACE
-from matplotlib.colors import to_hex
-from oracles.inside import Compared, draw, figures_of
 
-import mcgw
 from mcgw.figures import style
 
 pytestmark = pytest.mark.site
@@ -16,13 +12,13 @@ pytestmark = pytest.mark.site
 # Machado, Oliveira and Fernandes 2009 (doi:10.1109/TVCG.2009.113), severity 1.0, on linear RGB.
 EYES = {
     "all cones": np.eye(3),
-    "protanopia": np.array(
-        [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]]
-    ),
-    "deuteranopia": np.array(
-        [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.011820, 0.042940, 0.968881]]
-    ),
-}
+    "protanopia": [
+        [0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]
+    ],
+    "deuteranopia": [
+        [0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.011820, 0.042940, 0.968881]
+    ],
+}  # fmt: skip
 # CIE 1976 units: 2.3 is just seen side by side; lines apart from each other need several times that.
 LEAST, LEAST_GREY = 15.0, 7.0
 
@@ -40,7 +36,7 @@ def lab(colour, eyes="all cones"):
     """CIELAB of an sRGB colour as these eyes see it."""
     coded = np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)]) / 255
     linear = np.where(coded <= 0.04045, coded / 12.92, ((coded + 0.055) / 1.055) ** 2.4)
-    seen = np.clip(EYES[eyes] @ linear, 0, 1)
+    seen = np.clip(np.array(EYES[eyes]) @ linear, 0, 1)
     to_xyz = [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]]
     t = np.array(to_xyz) @ seen / [0.9505, 1.0, 1.0890]
     x, y, z = np.where(t > (6 / 29) ** 3, np.cbrt(t), t * (29 / 6) ** 2 / 3 + 4 / 29)
@@ -49,10 +45,6 @@ def lab(colour, eyes="all cones"):
 
 def nearest(colours, eyes):
     return min(np.linalg.norm(lab(a, eyes) - lab(b, eyes)) for a, b in itertools.combinations(colours, 2))
-
-
-def nearest_in_grey(colours):
-    return min(abs(lab(a)[0] - lab(b)[0]) for a, b in itertools.combinations(colours, 2))
 
 
 def test_the_measure_is_that_of_the_standard():
@@ -68,15 +60,13 @@ def test_colours_that_meet_are_told_apart():
     for name, palette in PALETTES.items():
         for eyes in EYES:
             assert nearest(palette, eyes) > LEAST, (name, eyes)
-        assert nearest_in_grey(palette) > LEAST_GREY, name
+        grey = np.sort([lab(colour)[0] for colour in palette])
+        assert np.diff(grey).min() > LEAST_GREY, name
 
 
 def test_gradings_are_ordered():
     """Lighter the farther from homogeneous, blue above it and orange below, in between too."""
-    for gammas, blue in (
-        ((1.05, 1.2, 1.4, 1.5, 2.0, 3.0, 8.0), True),
-        ((0.95, 0.8, 0.6, 0.4, 0.2, 0.1), False),
-    ):
+    for gammas, blue in (((1.05, 1.2, 1.4, 2.0, 8.0), True), ((0.95, 0.8, 0.6, 0.4, 0.1), False)):
         found = [lab(style.look(f"γ = {g:g}")["color"]) for g in gammas]
         assert np.all(np.diff([x[0] for x in found]) >= 0)
         assert all((x[2] < 0) == blue for x in found)
@@ -88,18 +78,3 @@ def test_what_a_figure_shows_together_has_other_dashes_and_markers_too():
         looks = [style.look(name) for name in family]
         for key in ("color", "linestyle", "marker"):
             assert len({str(look[key]) for look in looks}) == len(family), (family, key)
-
-
-def test_every_figure_has_one_colour_for_a_label():
-    """Of lines, markers, residuals and legends, in all figures of the package."""
-    scene = mcgw.Scene(
-        SURFACE, separations=0.0, n_surfaces=30, ensemble=mcgw.Sampling(n_asperities=3000), seed=1
-    )
-    found = {}
-    for _, data in figures_of(Compared(scene, swept=True, most_listed=20)):
-        for legend in draw(data).subfigs[0].legends:
-            for text, line in zip(legend.get_texts(), legend.get_lines(), strict=True):
-                found.setdefault(text.get_text(), set()).add(to_hex(line.get_color()))
-    assert len(found.pop("Monte Carlo, 95 %")) > 1  # it shows the markers of the data
-    assert {"γ = 0.2", "γ = 2", "d/σ = 4", "N = 10⁶"} <= set(found)
-    assert {label: colours for label, colours in found.items() if len(colours) > 1} == {}

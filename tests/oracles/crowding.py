@@ -6,11 +6,12 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 
 def crowded(figure):
-    """What runs out of a figure or into a neighbour: panels and labels of ticks, as matplotlib draws them."""
+    """What runs out of a figure or into a neighbour, as it is drawn: panels, legends, labels of ticks."""
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     texts = [text for text in (figure._suptitle, figure._supxlabel) if text and text.get_text()]
-    boxes = [part.get_tightbbox(canvas.get_renderer()) for part in (*figure.axes, *texts)]
+    legends = [legend for part in figure.subfigs for legend in part.legends]
+    boxes = [part.get_tightbbox(canvas.get_renderer()) for part in (*figure.axes, *texts, *legends)]
     out = [
         box for box in boxes if box.x0 < 0 or box.y0 < 0 or box.x1 > figure.bbox.x1 or box.y1 > figure.bbox.y1
     ]

@@ -15,7 +15,7 @@ MODULES = {
     "mcgw.elasticity.sources": "maps_of",
     "mcgw.elasticity.spots": "fallen Spots",
     "mcgw.ensemble.at_load": "mean_surface pressures_of",
-    "mcgw.ensemble.drawing": "block_size drawn kept use_threads",
+    "mcgw.ensemble.drawing": "block_size drawn in_words kept rough_seconds use_threads",
     "mcgw.ensemble.forecast": "after before checkpoints forecast upper_contacts",
     "mcgw.ensemble.intervals": (
         "count_interval exact_ends FEWEST mean_interval moments pearson3_quantile Spread spread_of TOO_FEW"

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from conftest import SURFACE
 from oracles import exact
-from oracles.inside import before, cautions
+from oracles.inside import cautions
 from oracles.scenes import scene_by
 
 import analytic
@@ -37,6 +37,19 @@ def graded(h, negative):
     return {"separations": (h,), "negative": negative}
 
 
+def falling(h=0.0, **changes):
+    """Exponential heights, of which exp(-h - 1) lie above h, deeper by 1 on average."""
+    plain = {"grading": analytic.Homogeneous(), "surface": SHALLOW, "heights": analytic.ExponentialHeights()}
+    return plain | {"separations": (h,), "n_surfaces": 2} | changes
+
+
+def crowd(f, **changes):
+    """3000 summits, a real area of 5 % f exp(-h): a mean of pi R sigma for each that touches."""
+    area = 3000 * np.pi * SHALLOW.radius * SHALLOW.sigma * np.exp(-1) / (0.05 * f)
+    return falling(surface=dataclasses.replace(SHALLOW, nominal_area=area, eta=3000 / area), **changes)
+
+
+LADDER = {"separations": (0.0, 0.5, 1.0, 1.5, 2.0)}
 # Words, a scene of which they are told in one line, and one beside it of which they are not.
 BESIDE = [
     ("set to zero", graded(-0.8, "clip"), graded(-0.6, "clip")),  # gamma = 2: negative below -ln 2 = -0.693
@@ -44,6 +57,10 @@ BESIDE = [
     ("ignores the jumps", on(METAL), on(dataclasses.replace(METAL, bridge="hermite"))),
     ("ignores the jumps", on(METAL), on(mcgw.ZhaoMaiettaChang(critical=0.05))),
     ("stiffness is that of initial unloading", on(METAL), on(None)),
+    # of 3000 exp(-h - 1) fewer than 30 from ln 100 - 1 = 3.605 on
+    ("from d/sigma = 3.7 fewer than 30", falling(separations=(4.5, 0.0, 3.7, 4.0)), falling(3.6)),
+    ("up to d/sigma = 1 more than 5%", crowd(np.exp(1.2), **LADDER), crowd(np.exp(0.9), **LADDER)),
+    ("load too large if d is that of a rigid punch", crowd(2.0), crowd(2.0, interaction="body")),
     ('metals yield much earlier: use contact.law = "kogut-etsion"', {}, {"law": METAL}),  # steep and elastic
 ]
 
@@ -54,21 +71,6 @@ def test_told_here_and_not_beside(make_scene, words, told, silent):
     assert not about(cautions(make_scene(**silent)), words)
 
 
-# --- limits -------------------------------------------------------------------------------------------------
-
-
-def falling(h=0.0, **changes):
-    """Exponential heights, of which exp(-h - 1) lie above h, deeper by 1 on average."""
-    plain = {"grading": analytic.Homogeneous(), "surface": SHALLOW, "heights": analytic.ExponentialHeights()}
-    return plain | {"separations": (h,), "n_surfaces": 2} | changes
-
-
-def crowd(f):
-    """3000 summits, a real area of 5 % f: a mean of pi R sigma for each that touches."""
-    area = 3000 * np.pi * SHALLOW.radius * SHALLOW.sigma * np.exp(-1) / (0.05 * f)
-    return falling(surface=dataclasses.replace(SHALLOW, nominal_area=area, eta=3000 / area))
-
-
 def blunt(ratio, depth):
     """A depth in sigma at which the radius of a contact by Hertz is so much of that of its summit."""
     return dataclasses.replace(SHALLOW, radius=depth * SHALLOW.sigma / ratio**2)
@@ -76,10 +78,7 @@ def blunt(ratio, depth):
 
 def conducting(gain):
     """Factor (1 - sqrt(A/A_n))^-1.5 of spots that constrict each other."""
-    share = (1 - gain ** (-2 / 3)) ** 2
-    area = 3000 * np.pi * SHALLOW.radius * SHALLOW.sigma * np.exp(-1) / share
-    surface = dataclasses.replace(SHALLOW, nominal_area=area, eta=3000 / area)
-    return falling(surface=surface, quantities=("load", "conductance"))
+    return crowd((1 - gain ** (-2 / 3)) ** 2 / 0.05, quantities=("load", "conductance"))
 
 
 def filmed(f):
@@ -116,8 +115,6 @@ LIMITS = {
     "contact.law.ratio": lambda f: falling(law=mcgw.Coated(ratio=3 * f, thickness=1e-6)),
     "first-order coating": lambda f: falling(law=mcgw.Coated(ratio=1 / 3 / f, thickness=1e-6)),
     "Tabor number above 5": lambda f: falling(law=mcgw.JohnsonKendallRoberts(work=work_of(5 / f))),
-    "Tabor number above": lambda f: falling(law=mcgw.JohnsonKendallRoberts(pull_off=stretch(5 / f))),
-    "Tabor number below 0.1": lambda f: falling(law=mcgw.DerjaguinMullerToporov(work=work_of(0.1 * f))),
     "Tabor number below": lambda f: falling(law=mcgw.DerjaguinMullerToporov(pull_off=stretch(0.1 * f))),
 }
 
@@ -136,7 +133,6 @@ def stretch(tabor):
 SAID = {  # with the number that is beyond its limit, and where
     "than 110 critical": "contact.law: 0.11 % of the contacts are deeper",
     "compressed by more": f"surface.radius = {-np.log(1.005e-3) * 1e-6:g} m: at d/sigma = 0, 0.1 % of the",
-    "Tabor number above": "it is 4.98 (Maugis's: 5.76)",
     "Tabor number above 5": "it is 4.98 (Maugis's: 5.76)",
 }
 
@@ -153,57 +149,14 @@ def test_each_limit_is_met_to_half_a_per_cent(make_scene, words):
 def test_where_nothing_touches_nothing_is_said_of_contacts(make_scene, law):
     flat = analytic.HeightTable.of([0.0, 1.0, 2.0, 3.0])
     told = told_of(make_scene, law, heights=flat, separations=(9.0,), n_asperities=30_000)
-    kinds = [" ".join(line.split()[:4]) for line in told if "stiffness is that of initial" not in line]
-    assert kinds == ["from d/sigma = 9"]  # fewer than 30 contacts
-
-
-def test_a_calm_scene_has_no_caution(make_scene):
-    assert cautions(make_scene(separations=(2.0,), n_asperities=30_000, surface=SHALLOW)) == []
+    assert [line[:30] for line in told if "initial" not in line] == ["from d/sigma = 9 fewer than 30"]
+    assert cautions(make_scene(separations=(2.0,), n_asperities=30_000, surface=SHALLOW)) == []  # calm
 
 
 def test_more_than_half_of_all_summits_is_no_caution_where_the_error_was_measured():
     measured = of_alpha(4.0, separations=[-0.05, 1.0])
     assert measured.validity().measured.any()
     assert not about(cautions(measured), "more than half")  # the map says how far off it is
-
-
-def test_a_crowd_that_was_not_measured_up_to_the_last_separation(make_scene):
-    """5 % of the nominal area, by quadrature at each of the separations."""
-    surface = dataclasses.replace(SHALLOW, eta=1e8)
-    h = (0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0)
-    scene = make_scene(
-        surface=surface, separations=h, n_asperities=10_000, heights=analytic.ExponentialHeights()
-    )
-    share = exact.mean(scene, "area") / surface.nominal_area
-    assert share[0] > share[2] > 0.05 > share[-1]
-    (line,) = about(cautions(scene), "nominal area is in contact")
-    assert f"up to d/sigma = {max(x for x, part in zip(h, share, strict=True) if part > 0.05):.3g} " in line
-    assert "load too large if d is that of a rigid punch, too small if it is the mean gap" in line
-    pressed = about(cautions(scene.replace(interaction="body")), "nominal area is in contact")
-    assert "punch" not in pressed[0]
-
-
-def test_few_contacts_from_the_first_separation_where_they_are(make_scene):
-    """Of 3000 exp(-h - 1) fewer than 30 from ln 100 - 1 = 3.605 on."""
-    lines = cautions(make_scene(**falling(separations=(4.5, 0.0, 3.7, 4.0))))
-    assert about(lines, "from d/sigma = 3.7 fewer than 30 contacts")
-
-
-def test_what_a_rule_will_not_reach_is_said_before(make_scene):
-    from oracles.inside import forecast
-
-    scene = make_scene(rel_err=0.01, n_surfaces=1000, separations=(0.0, 3.0), quantities=("load",))
-    found = forecast(scene)
-    needed = found.needed["load"]
-    plain = (1.959963984540054 / 0.01 * exact.std(scene, "load") / exact.mean(scene, "load")) ** 2
-    assert np.all((plain < needed) & (needed < 1.01**2 * plain))  # an end 1 % away, of either of the two
-    assert found.out_of_reach == (("load", 3.0),)
-    line = before(found, 0.25)
-    n = found.surfaces
-    assert line.startswith(f"about {n:.2g} surfaces, {n * 0.25:.2g} s; 1 means need more")
-    assert line.endswith(f"load at d/sigma = 3 needs {needed[1]:.2g}")
-    easy = scene.replace(n_surfaces=10**9)
-    assert ";" not in before(forecast(easy), 0.25)
 
 
 def of_alpha(alpha, **changes):
@@ -214,33 +167,21 @@ def of_alpha(alpha, **changes):
 SIZE = re.compile(r"(area|stiffness|load) (?:±|up to) (\d+) %")
 
 
-def off(scene):
-    """Largest size that the cautions name of each quantity, and the separations where none is above 10 %."""
-    found = {}
-    for line in cautions(scene):
-        for name, size in SIZE.findall(line):
-            found[name] = max(found.get(name, 0), int(size))
-    return found
-
-
-@pytest.mark.parametrize("alpha", [2.0, 3.0, 4.5])
-@pytest.mark.parametrize("heights", ["gaussian", "nayak", "own radii"])
+@pytest.mark.parametrize(
+    ("alpha", "heights"), [(2.0, "gaussian"), (4.5, "gaussian"), (3.0, "nayak"), (3.0, "own radii")]
+)
 def test_no_error_above_ten_percent_goes_without_its_size(alpha, heights):
     """At single separations, each alone: by the errors of the map, rounded up."""
-    seen = set()
-    for h in np.linspace(-0.5, 3, 15):
+    for h in np.linspace(-0.5, 3, 8):
         scene = of_alpha(alpha, separations=[h])
         if heights != "gaussian":
             curvature = mcgw.RandomCurvature(alpha) if heights == "own radii" else None
             scene = scene.replace(heights=analytic.Nayak(alpha), summits=curvature)
-        known, told = scene.validity(), off(scene)
+        told = {name: int(size) / 100 for line in cautions(scene) for name, size in SIZE.findall(line)}
         for name in ("area", "stiffness", "load"):
-            error = known.error[name][0]
+            error = scene.validity().error[name][0]
             assert (name in told) == (error > 0.1), (h, name)
-            if name in told:
-                assert error <= told[name] / 100 <= error + 0.01
-            seen.add(name in told)
-    assert seen == {True, False} or heights != "gaussian"
+            assert name not in told or error <= told[name] <= error + 0.01
 
 
 def test_the_direction_of_an_error_and_whose_separation_it_is():
@@ -273,8 +214,8 @@ def test_the_choice_of_the_law_is_worth_ten_percent(make_scene):
     assert said["hertz"] == pytest.approx(float(analytic.fn(1.5, 1.0)) / here, abs=6e-3)
     worth = max(1.0, said["jackson-green"]) / min(x for n, x in said.items() if n != "hertz") - 1
     assert f"laws differ by {worth:.0%} in load at d/sigma = 1;" in line
-    assert not about(told_of(make_scene, None), "laws differ by")
-    assert not about(told_of(make_scene, mcgw.PowerLawGraded(0.5, c0=1e-6)), "laws differ by")
+    for elastic in (None, mcgw.PowerLawGraded(0.5, c0=1e-6)):
+        assert not about(told_of(make_scene, elastic), "laws differ by")
 
 
 def test_a_loop_that_gains_energy(make_scene):

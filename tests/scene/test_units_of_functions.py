@@ -1,7 +1,5 @@
 """Gradings and laws in other units: worked in where a file names them, refused or doubted where not."""
 
-import warnings
-
 import numpy as np
 import pytest
 from oracles.inside import perhaps_other_units
@@ -12,20 +10,21 @@ import analytic
 import mcgw
 from mcgw.cli import main
 
-SURFACE = mcgw.Surface("2 um", "10 um", "1000/mm^2", "1 mm^2", "72 GPa")
+SIGMA, E_STAR = 1.37e-6, 78.6e9
+SURFACE = mcgw.Surface(SIGMA, 13e-6, 3e8, 1e-6, E_STAR)
 NO_RATIO = (
     r"^grading: E\*\(s\)/E\* is \S+( to \S+)? at all heights that touch; give a ratio near 1: moduli over "
-    r"E_star = 7\.2e\+10 Pa, of s = z/sigma, sigma = 2e-06 m"
+    r"E_star = 7\.86e\+10 Pa, of s = z/sigma, sigma = 1\.37e-06 m"
 )
 LIMITS = {"limits": (1.0,), "critical": 0.05}
 AREA = (lambda u: u**2, lambda u: 0.93 * u**2.272)
 LOAD = (lambda u: u**3, lambda u: 1.03 * u**2.85)
-NEWTON = 4 / 3 * 72e9 * 1e-5**0.5 * 1e-7**1.5
-METRES = np.pi * 1e-5 * 1e-7
+NEWTON = 4 / 3 * E_STAR * 13e-6**0.5 * (0.05 * SIGMA) ** 1.5  # load and area at first yield
+METRES = np.pi * 13e-6 * 0.05 * SIGMA
 
 
 def scene(**given):
-    return scene_by(SURFACE, separations=[0.0, 1.0], n_surfaces=3, seed=1, **given)
+    return scene_by(SURFACE, **{"separations": [0.0, 1.0], "n_surfaces": 3, "seed": 1} | given)
 
 
 def refused(match, **given):
@@ -36,69 +35,56 @@ def refused(match, **given):
 
 GRADINGS = [
     lambda s: 80e9 * (1 + 0.1 * s),  # Pa
-    lambda s: 80e3 * (1 + 0.1 * s),
     lambda s: 80 * (1 + 0.1 * s),
     lambda z: 1 + 0.1 * z / 1e-6,  # of metres
     lambda s: 1 / (80e9 * (1 + 0.1 * s)),
     lambda s: 0 * s,
-    lambda s: 1e30 + s,
 ]
 
 
 @pytest.mark.parametrize("function", GRADINGS)
 def test_a_function_is_no_ratio(function):
-    for negative in ("error", "clip"):
-        for grading in (function, mcgw.Custom(function, (0.5,))):
-            refused(f"{NO_RATIO}; if it is meant so, give mcgw.Custom\\(function, checked=False\\)$",
-                    grading=grading, negative=negative)  # fmt: skip
+    way_out = r"; if it is meant so, give mcgw.Custom\(function, checked=False\)$"
+    for grading, negative in ((function, "error"), (mcgw.Custom(function, (0.5,)), "clip")):
+        refused(f"{NO_RATIO}{way_out}", grading=grading, negative=negative)
 
 
-@pytest.mark.parametrize("factor", [1e9, 1.0, 1e-20])
-def test_series_and_tables_are_no_ratios(factor):
-    """A table of pascals or gigapascals, and series of a file; with a way out that the file can say."""
-    refused(f"{NO_RATIO}; a file names", grading=mcgw.Table([-1.0, 6.0], [80 * factor, 90 * factor]))
-    series = {"edges": [-50.0, 50.0], "coefficients": [[80 * factor]]}
-    refused(f"{NO_RATIO}; .* give checked = false$", grading=analytic.PiecewiseSeries(**series))
-    refused(NO_RATIO, grading={"law": "series", **series})
-    assert not scene(grading={"law": "series", **series, "checked": False}).grading.checked
+def test_series_and_tables_are_no_ratios():
+    """With a way out that a file can say; where nothing touches nothing is looked at."""
+    refused(f"{NO_RATIO}; a file names", grading=mcgw.Table([-1.0, 6.0], [80e9, 90e9]))
+    series = {"law": "series", "edges": [-50.0, 50.0], "coefficients": [[80.0]]}
+    refused(f"{NO_RATIO}; .* give checked = false$", grading=series)
+    assert not scene(grading=series | {"checked": False}).grading.checked
+    heights = analytic.HeightTable.of(np.linspace(0.0, 1.0, 50))
+    scene(separations=[9.0], heights=heights, grading=GRADINGS[0])
 
 
-@pytest.mark.parametrize(
-    "function",
-    [
-        lambda s: np.exp(3 * s),
-        lambda s: 900.0 + 0 * s,  # far, but not what another unit gives
-        lambda s: 0.002 + 0 * s,
-        lambda s: np.where(s > 1, 1e6, 1.0),
-        lambda s: s - 0.9,
-        lambda s: 72.0 * np.exp(-s),
-    ],
-)
+RATIOS = [
+    lambda s: 900.0 + 0 * s,  # far, but not what another unit gives
+    lambda s: 0.002 + 0 * s,
+    lambda s: np.where(s > 1, 1e6, 1.0),
+    lambda s: 72.0 * np.exp(-s),
+]
+
+
+@pytest.mark.parametrize("function", RATIOS)
 def test_ratios_are_taken(function):
     assert scene(grading=function, negative="clip").grading.function is function
 
 
-@pytest.mark.parametrize(
-    ("load", "area", "line"),
-    [
-        ((lambda u: NEWTON * u**3, lambda u: NEWTON * 1.03 * u**2.85), AREA,
-         r"its load is \S+ to \S+ of Hertz's at all penetrations that occur; divide it by \(4/3\) E\*\(s\) "
-         r"sqrt\(R\) delta_c\^1\.5 = 0\.0096 N at E\*"),
-        ((lambda u: 1e6 * u**3, lambda u: 1e6 * u**2.85), AREA, r"its load is \S+ to \S+ of Hertz's"),
-        (LOAD, (lambda u: METRES * u**2, lambda u: METRES * 0.93 * u**2.272),
-         r"its area is \S+ to \S+ of Hertz's .* divide it by pi R delta_c = 3\.142e-12 m\^2 at E\*"),
-    ],
-    ids=["newtons", "far", "square metres"],
-)  # fmt: skip
-def test_a_law_in_other_units(load, area, line):
-    way_out = "; if it is meant so, give checked=False$"
-    refused(rf"contact\.law = CustomLaw: {line}.*{way_out}", law=mcgw.CustomLaw(load, area, **LIMITS))
-    meant = scene(law=mcgw.CustomLaw(load, area, **LIMITS, checked=False))
-    again = mcgw.scene_from(mcgw.scene_text(meant))
-    assert not again.law.checked
-    text = mcgw.scene_text(meant).replace("checked = false\n", "")
-    with pytest.raises(mcgw.SceneError, match="of Hertz's at all penetrations"):
-        mcgw.scene_from(text)
+@pytest.mark.parametrize("what", ["load", "area"])
+def test_a_law_in_other_units(what):
+    """In newtons and square metres, to be divided by what Hertz has at first yield."""
+    load = (lambda u: NEWTON * u**3, lambda u: NEWTON * 1.03 * u**2.85), AREA
+    area = LOAD, (lambda u: METRES * u**2, lambda u: METRES * 0.93 * u**2.272)
+    given, number = {"load": (load, NEWTON), "area": (area, METRES)}[what]
+    refused(
+        rf"contact\.law = CustomLaw: its {what} is \S+ to \S+ of Hertz's at all penetrations that occur; .*"
+        rf" = {number:.4g} .* at E\*.*; if it is meant so, give checked=False$",
+        law=mcgw.CustomLaw(*given, **LIMITS),
+    )
+    meant = scene(law=mcgw.CustomLaw(*given, **LIMITS, checked=False))
+    assert not mcgw.scene_from(mcgw.scene_text(meant)).law.checked
 
 
 def test_a_law_that_is_right_on_a_graded_surface():
@@ -111,32 +97,21 @@ def test_a_law_that_is_right_on_a_graded_surface():
         refused(line, law=law, grading=mcgw.Custom(lambda s, k=steep: np.exp(k * s), checked=False))
 
 
-def test_nothing_that_touches_is_looked_at():
-    heights = analytic.HeightTable.of(np.linspace(0.0, 1.0, 50))
-    mcgw.Scene(SURFACE, separations=[9.0], heights=heights, grading=GRADINGS[0])
-
-
 # --- tables ---
 
-SIGMA, E_STAR = 1.37e-6, 78.6e9
 Z, E = (-3.0, 0.5, 2.5, 7.0), (61.2, 70.0, 99.5, 138.25)  # um, GPa
-OF_TABLE = {"sigma": SIGMA, "radius": 13e-6, "eta": 3e8, "nominal_area": 1e-6, "E_star": E_STAR}
 
 
 def scene_of(folder, header, cells):
     (folder / "moduli.csv").write_text("\n".join([header, *(",".join(row) for row in cells)]) + "\n")
-    surface = "\n".join(f"{key} = {value!r}" for key, value in OF_TABLE.items())
     path = folder / "graded.toml"
-    path.write_text(
-        f'[surface]\n{surface}\n[grading]\nlaw = "table"\nfile = "moduli.csv"\n'
-        "[contact]\nseparations = [0.0, 2.0]\n[ensemble]\nn_surfaces = 2\nseed = 1\n"
-    )
+    written = mcgw.scene_text(scene(separations=[0.0, 2.0]))
+    path.write_text(written.replace('"homogeneous"', '"table"\nfile = "moduli.csv"'))
     return path
 
 
 BARE = [(f"{z:g}", f"{e:g}") for z, e in zip(Z, E, strict=True)]
 SPELT = {
-    "z (um),E_star (GPa)": BARE,
     "z [µm], E_star [GPa]": BARE,
     "z/um,E_star / GPa": BARE,
     "z um,E_star GPa": BARE,
@@ -155,72 +130,48 @@ def test_units_in_header_or_cells_are_worked_in(tmp_path, header):
     assert np.allclose(table.ratio, np.array(E) * 1e9 / E_STAR, rtol=1e-14, atol=0)
 
 
-@pytest.mark.parametrize(
-    ("header", "cells", "match"),
-    [
-        ("z (GPa),E_star (um)", BARE, "first line"),
-        *(
-            (header, BARE, "first line")
-            for header in ("s (um),ratio", "height,ratio", "s,z", "s", "0,0.5", "", "s,ratio,note")
-        ),
-        *(
-            ("s,ratio", [("0", "0.5"), row], "every line")
-            for row in (("1",), ("1", "2", "3"), ("1", "stiff"), ("1", "nan"), ("1,0", "2"))
-        ),
-        ("z,E_star", [("1 um", "2 um"), ("2 um", "3 um")], "every line"),
-        ("z (um),E_star (GPa)", [("1", "2 m"), ("2", "3")], "every line"),
-        *((header, BARE, "E_star = 7.86e") for header in ("z,E_star", "s,ratio")),  # no um, no GPa
-    ],
-)
-def test_another_unit_is_refused_in_one_line(tmp_path, capsys, header, cells, match):
-    path = scene_of(tmp_path, header, cells)
+HEADERS = ("z (GPa),E_star (um)", "s (um),ratio", "s,z", "s", "0,0.5", "", "s,ratio,note")
+ROWS = (("1",), ("1", "2", "3"), ("1", "stiff"), ("1", "nan"))
+WRONG = [
+    *((header, BARE, "first line") for header in HEADERS),
+    *(("s,ratio", [("0", "0.5"), row], "every line") for row in ROWS),
+    ("z (um),E_star (GPa)", [("1", "2 m"), ("2", "3")], "every line"),
+    *((header, BARE, r"E_star = 7\.86e") for header in ("z,E_star", "s,ratio")),  # no um, no GPa
+]
+
+
+@pytest.mark.parametrize(("header", "cells", "match"), WRONG)
+def test_another_unit_is_refused_in_one_line(tmp_path, header, cells, match):
     with pytest.raises(mcgw.SceneError, match=f"^grading.* {match}") as error:
-        mcgw.load_scene(path)
-    assert main(["show", "--plan", str(path)]) == 2
-    assert capsys.readouterr().err.count(error.value.problems[0]) == len(error.value.problems) == 1
+        mcgw.load_scene(scene_of(tmp_path, header, cells))
+    assert len(error.value.problems) == 1
 
 
 def test_heights_in_other_units_are_doubted_by_every_door(tmp_path, capsys):
     path = scene_of(tmp_path, "z,ratio", [(a, repr(float(b) / 78.6)) for a, b in BARE])
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
+    doubt = r"s = 5\.11e\+06 sigma"
+    with pytest.warns(UserWarning, match=doubt):
         found = mcgw.load_scene(path)
+    with pytest.warns(UserWarning, match=doubt):
         mcgw.Scene(found.surface, separations=[0.0, 2.0], grading=found.grading)
-    assert sum("s = 5.11e+06 sigma" in str(each.message) for each in caught) == 2
     assert main(["show", "--plan", str(path)]) == 0
     assert capsys.readouterr().err.count("s = 5.11e+06 sigma") == 1
 
 
-def doubts_of(s, ratio, separations=0.0):
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        grading = mcgw.Table(s, ratio)
-        return perhaps_other_units(
-            mcgw.Scene(mcgw.Surface(**OF_TABLE), separations=separations, grading=grading)
-        )
+SHORT = [  # ends of a table, separations, and what is doubted
+    ((-1.0, 3.9), [0.0, 4.0], "all contacts at d/sigma = 4 are outside the table"),
+    ((-1.0, 1.0), [0.0, 1.0], "32% of the contacts at d/sigma = 0 are outside"),  # erfc(1/sqrt 2)
+    ((0.5, 4.0), [0.0], "38% of the contacts at d/sigma = 0 are outside"),  # erf(0.5/sqrt 2)
+    ((-4.0, norm.isf(0.05 * 1.005)), 0.0, "10% of the contacts"),
+    ((-4.0, norm.isf(0.05 * 0.995)), 0.0, None),
+    *(((-4.0, end), 0.0, doubt) for end, doubt in ((50.25, "s = 50.2 sigma"), (49.75, None))),
+    *(((end, 9.0), 0.0, doubt) for end, doubt in ((-50.25, "s = -50.2 sigma"), (-49.75, None))),
+]
 
 
-@pytest.mark.parametrize(
-    ("ends", "separations", "doubt"),
-    [
-        ((-1.0, 3.9), [0.0, 4.0], "all contacts at d/sigma = 4 are outside the table"),
-        ((-1.0, 1.0), [0.0, 1.0], "32% of the contacts at d/sigma = 0 are outside"),  # erfc(1/sqrt 2)
-        ((0.5, 4.0), [0.0], "38% of the contacts at d/sigma = 0 are outside"),  # erf(0.5/sqrt 2)
-    ],
-)
-def test_a_table_that_ends_short_of_the_contacts_is_doubted(ends, separations, doubt):
-    (found,) = doubts_of(ends, [1.0, 2.0], separations)
-    assert doubt in found
-
-
-@pytest.mark.parametrize(
-    ("s", "ratio"),
-    [
-        (lambda f: (-4.0, 50 * f), lambda f: (1.0, 2.0)),
-        (lambda f: (-50 * f, 9.0), lambda f: (1.0, 2.0)),
-        (lambda f: (-4.0, norm.isf(0.05 * f)), lambda f: (1.0, 2.0)),  # 10 % of the contacts at d = 0
-    ],
-)
-def test_tables_are_doubted_from_a_limit_on(s, ratio):
-    for f, doubts in ((0.995, 0), (1.005, 1)):
-        assert len(doubts_of(s(f), ratio(f))) == doubts
+@pytest.mark.filterwarnings("ignore::UserWarning")
+@pytest.mark.parametrize(("ends", "separations", "doubt"), SHORT)
+def test_a_table_that_ends_short_of_the_contacts_or_far_beyond_is_doubted(ends, separations, doubt):
+    found = perhaps_other_units(scene(separations=separations, grading=mcgw.Table(ends, (1.0, 2.0))))
+    assert len(found) == (doubt is not None)
+    assert all(doubt in line for line in found)

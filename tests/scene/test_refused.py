@@ -1,0 +1,213 @@
+"""What no scene has, no call takes and no place allows: one line with the key, the value and the cure."""
+
+import re
+import warnings
+
+import numpy as np
+import pytest
+import scipy.stats as st
+from oracles.scenes import scene_by
+from tables.scene_keys import text
+
+import analytic
+import mcgw
+from mcgw.cli import main
+
+SURFACE = mcgw.Surface("1 um", "10 um", "1000/mm^2", "1 mm^2", "100 GPa")
+SCENE = mcgw.Scene(SURFACE, separations=[0.0, 1.0], n_surfaces=4, seed=1)
+COATED = analytic.Coated(ratio=2.0, thickness=1e-6, poisson=0.25)
+
+
+def scene(**given):
+    return scene_by(SURFACE, **{"separations": [0.0, 1.0], "n_surfaces": 3, "seed": 1} | given)
+
+
+def read(**tables):
+    """A text that is right but for these keys."""
+    return mcgw.scene_from(text(**tables))
+
+
+def table(s, ratio):
+    return {"grading": {"law": "'table'", "s": s, "ratio": ratio}, "heights": None}
+
+
+OTHERS = [  # other objects and words than a call takes
+    (lambda: mcgw.simulate(SURFACE),
+     r"simulate: give a mcgw\.Scene, not Surface; mcgw\.Scene\(surface, separations=\.\.\.\) makes one"),
+    (lambda: mcgw.run("mine.toml", "never.h5"),
+     r"run: give a mcgw\.Scene, not str 'mine\.toml'; mcgw\.load_scene\(path\) reads one"),
+    (lambda: mcgw.solve(mcgw.simulate(SCENE), pressure=1e6),
+     r"solve: give a mcgw\.Scene, not Ensemble; that of an ensemble is its \.scene"),
+    (lambda: mcgw.sweep(3, {"grading.gamma": [1.0]}), r"sweep: give a mcgw\.Scene, not int; "),
+    (lambda: mcgw.converge(SURFACE), r"converge: give a mcgw\.Scene, not Surface"),
+    (lambda: mcgw.tradeoff(SURFACE), r"tradeoff: give a mcgw\.Scene, not Surface"),
+    (lambda: mcgw.compare(SCENE),
+     r"compare: give a mcgw\.Ensemble, not Scene; mcgw\.simulate\(scene\) draws one"),
+    (lambda: mcgw.save("file.h5", "never.h5"),
+     r"save: give a mcgw\.Ensemble, not str 'file\.h5'; mcgw\.open_ensemble\(path\) opens one"),
+    (lambda: mcgw.paired_ratio(mcgw.simulate(SCENE), None, "load"),
+     r"paired_ratio: give a mcgw\.Ensemble, not NoneType; "),
+    (lambda: mcgw.solve(SCENE, pressures=[1e6]), r"solve: there is no 'pressures'; did you mean pressure\?$"),
+    (lambda: SCENE.replace(sigma="2 N"), r"surface\.sigma = '2 N': give a finite number > 0"),
+]  # fmt: skip
+BODIES = [
+    (lambda given=given: mcgw.Body(*given), words)
+    for given, words in (
+        (("70 m",), "E = '70 m': give a finite number > 0 in Pa"),
+        ((-1.0,), r"E = -1\.0: give a finite number > 0 in Pa"),
+        ((7e10, 0.6), r"nu = 0\.6: give a finite number"),
+        ((7e10, "x"), "nu = 'x': give a finite number"),
+    )
+]
+HARDNESS = [  # what says nothing beside a law
+    (lambda: scene(law="hertz", poisson=0.3), r"contact\.law\.poisson = 0\.3: give hardness too, or leave"),
+    (lambda: scene(law={"name": "hertz", "k": 0.3}),
+     r"contact\.law\.k: unknown key; it is for name = 'power-law-graded' only; leave it out"),
+    (lambda: scene(law=COATED, hardness=2e9, poisson=0.2),
+     r"contact\.law\.poisson = 0\.2: give it to the law, Coated, or leave it out"),
+    (lambda: scene(law=analytic.JacksonGreen(yield_strength=4e8), hardness=2e9),
+     r"contact\.law\.hardness = 2.*: give it to the law, JacksonGreen, or leave it out"),
+]  # fmt: skip
+TEXTS = [
+    (lambda: read(contact={"separations": [1.0, -5e-324]}),
+     r"contact\.separations: -4\.94066e-324 is too close to 0"),
+    (lambda: read(ensemble={"n_asperities": 2**53 + 1}), r"ensemble\.n_asperities = .*between 1 and 2\^53"),
+    (lambda: read(surface={"sigma": 1e-320}), "surface.*beyond double precision"),
+    (lambda: read(surface={"E_star": 1e308}), "surface.*beyond double precision"),
+    (lambda: read(**table([0.0, 9.0], [1.0, -1.0])), r"grading.*negative from s = 4\.5"),
+    (lambda: read(**table([1.0, 0.0], [1.0, 2.0])), "grading.*the heights must increase"),
+    (lambda: read(contact={"quantities": ["lod"]}),
+     r"contact\.quantities = 'lod': did you mean load\? choose one of load, area"),
+    (lambda: mcgw.scene_from(b"\xef\xbb\xbf" + text().encode()), "this is not TOML"),
+    (lambda: read(ensemble={"n_asperities": "9" * 5000}), "this is not TOML"),
+    (lambda: read(contact={"separations": "[" * 5000 + "]" * 5000}), "this is not TOML"),
+]  # fmt: skip
+FAR = [  # beyond numbers, memory, disk and folders
+    (lambda: mcgw.run(scene(n_surfaces=10**12, n_asperities=10**8), "e.h5"),
+     r"n_surfaces \* n_asperities = 1e\+20 is more than 2\^63 - 1"),
+    (lambda: mcgw.run(scene(n_surfaces=10**12, separations=3.0), "e.h5"),
+     r"needs up to .* GiB more on the disk while made and .* are free"),
+    (lambda: scene(grading=analytic.Exponential(1e300)), r"grading.gamma = 1e\+300: .* overflow"),
+    *((lambda name=name: mcgw.run(SCENE, name), words) for name, words in (
+        ("..", ""), ("a\0b", ""), ("x" * 300, ""), ("a\nb", ""), ("", "is not a valid file name"),
+        ("/proc/e.h5", "0 GiB are free|cannot be written"))),
+    (lambda: mcgw.load_scene("."), "is not a regular file"),
+    (lambda: mcgw.load_scene("absent.toml"), "No such file"),
+    (lambda: mcgw.open_ensemble("/dev/zero"), "is not a regular file"),
+    (lambda: mcgw.solve(SCENE, load=5e-324), r"load = .*double precision of the heights; give .* or more"),
+]  # fmt: skip
+REFUSED = [*OTHERS, *BODIES, *HARDNESS, *TEXTS, *FAR]
+
+
+@pytest.mark.parametrize(("action", "words"), REFUSED, ids=[words for _, words in REFUSED])
+def test_one_line_names_what_is_wrong_and_the_cure(action, words, in_tmp_path):
+    """And nothing is written."""
+    with pytest.raises((ValueError, TypeError)) as caught:
+        action()
+    said = getattr(caught.value, "problems", [str(caught.value)])
+    assert any(re.search(words, line) for line in said), said
+    assert all("\n" not in line and len(line) < 350 for line in said)
+    assert not list(in_tmp_path.iterdir())
+
+
+def test_all_mistakes_at_once():
+    wrong = text(surface={"sigma": None, "sigam": 1e-6}, ensemble={"seed": -1, "n_asperities": "true"})
+    with pytest.raises(mcgw.SceneError) as caught:
+        mcgw.scene_from(wrong.replace("[contact]", "[contatc]"))
+    found = {re.split(" = |:", line)[0] for line in caught.value.problems}
+    wanted = {"surface.sigma", "surface.sigam", "contatc", "contact.separations"}
+    assert found == {*wanted, "ensemble.n_asperities", "ensemble.seed"}
+
+
+NO_TOML = [
+    ("[surface]\nsigma = 1 um\n", 'sigma = 1 um; quote a text with its unit: sigma = "1 um"'),
+    ("[surface]\nradius = 1.3e-5m # R\n", 'quote a text with its unit: radius = "1.3e-5m"'),
+    ("[contact]\nlaw = hertz\n", 'law = hertz; quote a text: law = "hertz"'),
+    ("[surface]\nradius 1e-5\n", "radius 1e-5; write key = value"),
+    ("[surface]\nsigma = 1e-6\n[surface]\n", ": [surface]"),
+    ("[grading\n", ": [grading"),
+    ('title = "a\n', ': title = "a'),
+    ("a = [1,\n", ""),
+]
+
+
+@pytest.mark.parametrize(("written", "line"), NO_TOML)
+def test_a_line_that_is_no_toml_is_quoted_with_its_cure(written, line, tmp_path, capsys):
+    path = tmp_path / "bad.toml"
+    path.write_text(written)
+    assert main(["run", str(path)]) == 2
+    (told,) = capsys.readouterr().err.splitlines()
+    assert told.startswith(f"mcgw: {path}: this is not TOML: ")
+    assert told.endswith(line)
+
+
+@pytest.mark.parametrize("name", ["latin.toml", "mine.h5", "long.toml"])
+def test_a_file_that_is_no_scene_is_one_line(name, capsys, in_tmp_path):
+    (in_tmp_path / "latin.toml").write_bytes('title = "größer"\n'.encode("latin-1"))
+    (in_tmp_path / "long.toml").write_text(text() + "#" * 2**21)
+    mcgw.save(mcgw.simulate(SCENE), in_tmp_path / "mine.h5")
+    said = {
+        "latin.toml": "this is not TOML: not text in UTF-8 (byte 11)",
+        "mine.h5": "holds results, not a scene; print their scene with mcgw show --scene mine.h5",
+        "long.toml": "longer than 2097152 bytes",
+    }[name]
+    assert main(["run", name]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"mcgw: {name}: ")
+    assert said in line
+
+
+def test_extreme_gammas_have_finite_sums():
+    for gamma in (0.0, 1e-300, 1e280):
+        assert np.isfinite(mcgw.simulate(scene(grading=analytic.Exponential(gamma))).load).all()
+
+
+@pytest.mark.parametrize("quantities", [None, ["stiffness"], ["area", "load_slope", "load"]])
+def test_what_breaks_off_is_told_with_the_list_to_give(quantities):
+    law = {"name": "johnson-kendall-roberts", "pull_off": 0.1}
+    with pytest.raises(mcgw.SceneError) as error:
+        scene(law=law, unload_from=0.0, quantities=quantities)
+    (line,) = error.value.problems
+    names = re.search(r"; give \[(.*)\], or leave out unload_from$", line)[1].replace('"', "").split(", ")
+    assert names == {0: ["load", "area", "contacts"], 1: ["load"], 3: ["area", "load"]}[len(quantities or ())]
+    assert set(names) < set(scene(law=law, unload_from=0.0, quantities=names).quantities)
+
+
+def test_negative_moduli_are_named_clipped_or_allowed():
+    """Below -ln 2 for gamma = 2, touched from -2 on; above ln 3 for gamma = -0.5."""
+    with pytest.raises(mcgw.SceneError, match=r"^grading\.gamma = 2.* negative from s = (-2|-1\.99)"):
+        scene(grading=analytic.Exponential(2.0), separations=-2.0)
+    with pytest.raises(mcgw.SceneError, match=r"^grading\.gamma = -0\.5.* negative from s = 1\.099"):
+        scene(grading=analytic.Exponential(-0.5))
+    for word in ("clip", "allow"):
+        found = scene(grading=analytic.Exponential(2.0), separations=-2.0, negative=word)
+        assert (found.modulus(np.array([-1.0]))[0] < 0) == (word == "allow")
+
+
+@pytest.mark.parametrize(("n", "surfaces", "separation"), [(10**12, 1000, 0.0), (10**14, 1000, 4.0)])
+def test_hours_of_drawing_are_told_when_the_scene_is_made(n, surfaces, separation):
+    def hours(**others):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            scene(**{"separations": separation, "n_asperities": n, "n_surfaces": surfaces} | others)
+        return [str(each.message) for each in caught if "hours" in str(each.message)]
+
+    (line,) = hours()
+    told = re.fullmatch(r'ensemble: .* take about (\S+) hours; give fewer, .* = "aggregate".*', line)
+    assert float(told[1]) == pytest.approx(n * st.norm.sf(separation) * surfaces * 4.4e-9 / 3600, rel=0.06)
+    assert not hours(sampler="aggregate")
+    assert not hours(max_seconds=60.0)
+    assert not hours(n_asperities=int(n / float(told[1]) * 0.9))
+    assert hours(n_asperities=min(int(n / float(told[1]) * 1.1), 2**53))
+
+
+def test_a_plane_that_sinks_faster_than_it_is_pressed_is_told_up_to_where():
+    """The nominal separation h - c P(h)/sigma falls below 1.5 for a half-space as soft as this."""
+    plain = scene(separations=[0.0, 1.0, 2.0])
+    soft = mcgw.Interaction("mean-plane", bulk_modulus=1e9)
+    above, below = (float(plain.theory.mean("load", 1.5 + step)) for step in (-1e-4, 1e-4))
+    ratio = soft.compliance(SURFACE, plain.n_asperities) * (above - below) / 2e-4 / SURFACE.sigma
+    for_1_5 = 1e9 * abs(ratio)
+    plain.replace(interaction=mcgw.Interaction("mean-plane", bulk_modulus=1e3 * for_1_5))
+    with pytest.raises(mcgw.SceneError, match=r"^interaction: at d/sigma = 1 the mean plane sinks faster"):
+        plain.replace(interaction=mcgw.Interaction("mean-plane", bulk_modulus=for_1_5))
