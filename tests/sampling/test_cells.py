@@ -5,24 +5,11 @@ from itertools import product
 import mpmath as mp
 import numpy as np
 import pytest
-from tables.drawn_scenes import GRADINGS
+from oracles.inside import sampler_of, summits_drawn
 
 import analytic
 import mcgw
-from mcgw.sampling.asperities import summits_drawn
 from mcgw.sampling.cells import mesh_of, no_cells
-from mcgw.sampling.samplers import sampler_of
-
-
-@pytest.mark.parametrize(("grading", "number"), [("homogeneous", 1), ("table", 17)])
-def test_the_sparse_product_is_that_of_the_matrix(make_scene, grading, number):
-    h = tuple(np.linspace(0, 4, number)) if number > 1 else (1.0,)
-    scene = make_scene(grading=GRADINGS[grading], separations=h, n_asperities=30_000)
-    response = sampler_of(scene).response
-    moments = np.random.default_rng(1).normal(size=(response.layout.starts[-1], 70))
-    plain = np.einsum("qhm,mi->qih", response.matrix(), moments)
-    size = np.einsum("qhm,mi->qih", np.abs(response.matrix()), np.abs(moments))
-    assert np.all(np.abs(response @ moments - plain) <= 1e-14 * size)
 
 
 def test_heights_in_all_are_the_asperities_asked_for(make_scene):

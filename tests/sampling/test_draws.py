@@ -7,6 +7,7 @@ from itertools import combinations, product
 import numpy as np
 import pytest
 from numpy.polynomial.chebyshev import chebvander
+from oracles.inside import SAMPLERS, sampler_of
 from scipy.stats import binom, chi2, norm
 
 from mcgw.sampling.block import Layout
@@ -14,8 +15,6 @@ from mcgw.sampling.cells import mesh_of
 from mcgw.sampling.counts import counts_of
 from mcgw.sampling.moments import add_compensated, cell_moments
 from mcgw.sampling.philox import CELLS, centred, philox, uniforms
-from mcgw.sampling.samplers import sampler_of
-from mcgw.scene.promises import SAMPLERS
 
 FALSE_ALARM = 1e-6  # of each chi-square test; the seeds are fixed
 MANY = 2**18

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from oracles.inside import sampler_of
 from tables.drawn_scenes import CLIPPED, LAWS
 
 import analytic
 import mcgw
 from mcgw.sampling.response.walk import UnresolvedError
-from mcgw.sampling.samplers import sampler_of
 from mcgw.sampling.shared import common_edges, shared
 
 

@@ -8,13 +8,13 @@ import math
 
 import numpy as np
 import pytest
+from oracles.inside import sampler_of
 from oracles.literal import sums_of_heights
 from scipy.special import log_ndtr
 
 import analytic
 import mcgw
 from mcgw.sampling.counts import counts_of
-from mcgw.sampling.samplers import sampler_of
 
 GAMMA_STAR = math.exp(0.5) / (math.exp(0.5) - 1)
 

@@ -2,14 +2,13 @@
 
 import numpy as np
 import pytest
+from oracles.inside import MemoryResults, verdict
 from scipy import stats
 
 import analytic
 import mcgw
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.results import MemoryResults
 from mcgw.statistics.laws_of_values import distances, laws_of_values
-from mcgw.statistics.verdict import verdict
 
 
 def holding(scene, **values):

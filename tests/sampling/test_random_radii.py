@@ -6,15 +6,14 @@ import math
 import numpy as np
 import pytest
 from oracles.accurately import worst_error
+from oracles.inside import sampler_of, summits, summits_drawn
 from oracles.law_means import own_terms
 from oracles.scenes import scene_by
 from scipy import stats
 
 import analytic
 import mcgw
-from mcgw.sampling.asperities import summits, summits_drawn
 from mcgw.sampling.own_radii import radius_table
-from mcgw.sampling.samplers import sampler_of
 
 ALPHAS = (1.55, 2.0, 5.0, 50.0)
 QUANTITIES = ("load", "area", "stiffness", "conductance", "contacts")

@@ -2,12 +2,11 @@
 
 import numpy as np
 import pytest
+from oracles.inside import SAMPLERS, sampler_of
 
 import analytic
 import mcgw
 from analytic.heights import GAUSSIAN
-from mcgw.sampling.samplers import sampler_of
-from mcgw.scene.promises import SAMPLERS
 
 
 def test_normal_law_against_mpmath():

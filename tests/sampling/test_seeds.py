@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
+from oracles.inside import SAMPLERS, sampler_of
 
 import mcgw
-from mcgw.sampling.samplers import sampler_of
-from mcgw.scene.promises import SAMPLERS
 
 SMALL, LARGE = 1, [2**63 - 1, 2**63, 2**64 - 1]
 
