@@ -6,13 +6,8 @@ import numpy as np
 import pytest
 from oracles import exact
 from oracles.inside import (
-    FALSE_ALARM,
     Check,
-    Held,
     MemoryResults,
-    comparison_figure,
-    sampler_of,
-    save,
     verdict,
 )
 from scipy.stats import chi2
@@ -20,7 +15,7 @@ from scipy.stats import chi2
 import analytic
 import mcgw
 from analytic.curvature import MEAN_CURVATURE
-from mcgw import Ensemble, compare
+from mcgw import compare
 from mcgw.statistics import verdict as parts
 
 QUANTITIES = tuple(analytic.QUANTITIES)
@@ -61,19 +56,6 @@ def test_each_quantity_alone_2_percent_off_breaks_it(ensemble, quantity):
         assert not verdict(scaled(ensemble, {(quantity, k): 1.02})).agrees
 
 
-class Exact(Held):
-    """So many surfaces of a scene that their means are those of theory."""
-
-    def __init__(self, scene):
-        self.scene = scene
-
-    def rows(self):
-        return 10**9
-
-    def mean_and_std(self, name):
-        return self.scene.theory.mean(name, self.scene.separations), None
-
-
 def test_the_last_of_many_separations_counts(make_scene):
     """More separations than a verdict looks at: the first and the last are among those it takes."""
     scene = make_scene(separations=tuple(np.linspace(0, 2, 60)), quantities=("load",), n_asperities=30_000)
@@ -98,19 +80,14 @@ def independent(ensemble):
     return float(z @ z), int(keep.sum()), size
 
 
-@pytest.mark.parametrize(
-    ("count", "heights"),
-    [("poisson", analytic.Gaussian()), ("fixed", analytic.ExponentialHeights())],
-)
-def test_chi_square_and_p_are_those_of_the_exact_covariance(ensemble, count, heights):
-    found = mcgw.simulate(ensemble.scene.replace(count=count, heights=heights))
+def test_chi_square_and_p_are_those_of_the_exact_covariance(ensemble):
+    found = mcgw.simulate(ensemble.scene.replace(count="poisson"))
     chi_square, degrees, size = independent(found)
     assert size.min() > 1e-8  # far enough from where one would be thrown out
     said = verdict(found)
     assert said.degrees == degrees == len(QUANTITIES) * len(H)
     assert said.chi_square == pytest.approx(chi_square, rel=1e-6)
     assert said.p == pytest.approx(chi2.sf(chi_square, degrees), rel=1e-5)
-    assert f"chi-square {said.chi_square:.1f} for {degrees} degrees of freedom" in said.line
 
 
 def test_a_quantity_that_is_a_multiple_of_another_adds_no_degree(ensemble):
@@ -119,7 +96,7 @@ def test_a_quantity_that_is_a_multiple_of_another_adds_no_degree(ensemble):
     assert verdict(mcgw.simulate(plain)).degrees == (len(QUANTITIES) - 1) * len(H)
 
 
-@pytest.mark.parametrize("n_surfaces", [20, 200, 2000])
+@pytest.mark.parametrize("n_surfaces", [20, 2000])
 def test_what_is_thrown_out_where_few_touch(make_scene, n_surfaces):
     """One quantity at one separation: it counts where the exact law of its mean is within 0.1 of Gaussian."""
     taken = []
@@ -140,59 +117,29 @@ def test_what_is_thrown_out_where_few_touch(make_scene, n_surfaces):
 
 
 def test_the_rate_of_false_alarms_is_one_in_a_thousand():
-    assert FALSE_ALARM == 1e-3
-    assert Check("means", "", 1.001e-3).agrees
-    assert not Check("means", "", 0.999e-3).agrees
+    assert [Check("means", "", p).agrees for p in (1.001e-3, 0.999e-3)] == [True, False]
 
 
 def test_curves_are_those_of_the_exact_law(ensemble):
     scene, curves = ensemble.scene, compare(ensemble).curves
     assert tuple(curves) == QUANTITIES
     for name, curve in curves.items():
-        values = ensemble.values(name).astype(float)
-        np.testing.assert_allclose(curve.mean, values.mean(axis=0), rtol=1e-12)
-        np.testing.assert_allclose(curve.theory, exact.mean(scene, name), rtol=1e-10)
-        stderr = exact.std(scene, name) / np.sqrt(len(values))
+        mean, theory = ensemble.values(name).mean(axis=0), exact.mean(scene, name)
+        stderr = exact.std(scene, name) / np.sqrt(ensemble.n_surfaces)
+        np.testing.assert_allclose(curve.mean, mean, rtol=1e-12)
+        np.testing.assert_allclose(curve.theory, theory, rtol=1e-10)
         np.testing.assert_allclose(curve.stderr, stderr, rtol=1e-8)
-        np.testing.assert_allclose(
-            curve.residual, (values.mean(axis=0) - exact.mean(scene, name)) / stderr, rtol=1e-5, atol=1e-6
-        )
-        assert np.all(curve.low < curve.mean)
-        assert np.all(curve.mean < curve.high)
+        np.testing.assert_allclose(curve.residual, (mean - theory) / stderr, rtol=1e-5, atol=1e-6)
 
 
-def ensembles(scene, seeds):
-    """As `simulate` draws them, by a sampler that is prepared once."""
-    sampler = sampler_of(scene)
-    for seed in seeds:
-        sums = sampler.with_seed(seed).block(0, scene.n_surfaces).sums
-        yield Ensemble(scene.replace(seed=seed), sampler.name, MemoryResults(sums))
-
-
-@pytest.mark.slow
-def test_p_values_are_uniform(make_scene):
-    """400 seeds at few contacts: the share of p < 0.1 is 0.1 within 5 standard errors."""
-    scene = make_scene(n_asperities=2000, n_surfaces=50)
-    p = [verdict(ensemble).p for ensemble in ensembles(scene, range(400))]
-    assert abs(np.mean(np.array(p) < 0.1) - 0.1) < 5 * np.sqrt(0.09 / 400)
-    assert abs(np.mean(np.array(p) < 0.5) - 0.5) < 5 * np.sqrt(0.25 / 400)
-
-
-@pytest.mark.usefixtures("blank_figures")
-def test_no_contact_at_all(make_scene, tmp_path):
+def test_no_contact_at_all_and_one_surface(make_scene):
     comparison = compare(mcgw.simulate(make_scene(separations=(9.0, 30.0))))
     assert comparison.verdict.agrees
     assert (comparison.verdict.degrees, comparison.verdict.p) == (0, 1.0)
     assert "agree: no mean is close enough to Gaussian for a test, p = 1" in comparison.verdict.line
-    save(comparison_figure(comparison), tmp_path / "none.png")
-
-
-def test_one_surface(make_scene):
-    comparison = compare(mcgw.simulate(make_scene(n_surfaces=1)))
-    curve = comparison.curves["load"]
+    curve = compare(mcgw.simulate(make_scene(n_surfaces=1))).curves["load"]
     assert 0 < curve.low[0] < curve.mean[0] < curve.high[0]
     assert np.isnan(curve.low[-1])  # h = 4: too few contacts
-    assert np.isfinite(comparison.verdict.p)
 
 
 # --- its parts, by hand ---
@@ -210,7 +157,6 @@ def test_radii_have_a_bound_that_one_in_ten_thousand_ensembles_passes(make_scene
         assert flatter == pytest.approx(1e-4, rel=0.02)
     few = parts.bounded_theory(scene, 1000).curvature  # of which fewer are flatter than a thousandth
     assert few.largest == pytest.approx(MEAN_CURVATURE / 1e-3, rel=1e-12)
-    assert float(law.cdf(1e-3, 1.0)) * scene.touching * 1000 < 1e-4
     for known in (scene.replace(summits=analytic.RandomCurvature(5.0, 50.0)), make_scene()):
         assert parts.bounded_theory(known, 10**6) is known.theory
 
