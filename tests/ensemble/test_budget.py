@@ -1,8 +1,6 @@
-"""What an answer may be off by, line by line: against redraws, scaling laws, and boundary elements."""
+"""What an answer may be off by, line by line: against redraws and scaling laws."""
 
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,26 +12,14 @@ import mcgw
 from mcgw.cli import main
 from mcgw.ensemble.budget import moved, slopes_of
 from mcgw.ensemble.solved_table import against_elasticity
-from mcgw.maps import Topography
-
-FOLDER = Path(__file__).parents[2] / "runs" / "validation"
-sys.path.insert(0, str(FOLDER))
-
-import fitted_maps  # noqa: E402
-import rough_maps  # noqa: E402
-
-sys.path.remove(str(FOLDER))
+from mcgw.maps import gaussian_map, spectrum_from
 
 SURFACE = mcgw.Surface("1 um", "13 um", "1000/mm^2", "1 cm^2", "78.6 GPa")  # eta R sigma = 0.013
 ERRORS = {
     "sigma": "20 %", "radius": 0.15, "eta": 0.12, "E_star": 0.05,
     "correlation": [[1, 0.1, -0.8, 0], [0.1, 1, 0.2, 0], [-0.8, 0.2, 1, 0], [0, 0, 0, 1]],
 }  # fmt: skip
-OTHERS = (
-    {"law": {"name": "kogut-etsion", "hardness": "8 GPa"}},
-    {"grading": mcgw.Exponential(0.5)},
-    {"heights": mcgw.Weibull(3.0)},
-)
+YIELDS = mcgw.KogutEtsion(hardness=8e9)
 NAMES = ("area", "stiffness", "conductance", "gap_to_summits")
 
 
@@ -54,20 +40,16 @@ def redrawn(scene, pressure, draws):
     load, found = pressure * scene.surface.nominal_area, []
     for row in steps:
         factors = dict(zip(scene.uncertainty.names, np.exp(row), strict=True))
-        if "m0" in factors:
-            m = [getattr(scene.moments, name) * factors[name] for name in ("m0", "m2", "m4")]
-            again = mcgw.Scene(mcgw.SpectralSurface(*m, 1e-4, 1e11), separations=1.0, seed=1)
-        else:
-            again = scene.replace(**{x: getattr(scene.surface, x) * f for x, f in factors.items()})
+        again = scene.replace(**{x: getattr(scene.surface, x) * f for x, f in factors.items()})
         h = float(again.theory.separation_at("load", load))
         found.append([float(again.theory.mean(x, h)) for x in NAMES[:3]])
     return np.log(found)
 
 
-@pytest.mark.parametrize("more", [{}, *(pytest.param(x, marks=pytest.mark.slow) for x in OTHERS)])
-def test_the_parameters_line_is_that_of_redraws(more):
+@pytest.mark.parametrize("law", [None, pytest.param(YIELDS, marks=pytest.mark.slow)])
+def test_the_parameters_line_is_that_of_redraws(law):
     """128 points of a sequence tell a deviation to 1 %; 5 % are asked."""
-    solved = mcgw.solve(scene_of(**more), pressure="50 MPa")
+    solved = mcgw.solve(scene_of(law=law), pressure="50 MPa")
     scatter = 1.96 * redrawn(solved.scene, 50e6, 128).std(axis=0)
     np.testing.assert_allclose(solved.budget().shares["parameters"][:3], scatter, rtol=0.05)
     together = [[1, 0.9, 0, 0], [0.9, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]  # sqrt(R/sigma) hardly changes
@@ -76,46 +58,30 @@ def test_the_parameters_line_is_that_of_redraws(more):
     assert shares["parameters"][0] < 0.8 * scatter[0]  # a wrong covariance would be seen
 
 
-@pytest.mark.slow
-def test_moments_change_heights_radii_and_their_laws():
-    """Errors small enough for alpha to stay above 1.5."""
-    errors = {"m0": 0.1, "m2": 0.05, "m4": 0.1}
-    spectral = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 cm^2", "100 GPa", errors)
-    scene = mcgw.Scene(spectral, separations=1.0, n_surfaces=2, seed=1)
-    object.__setattr__(scene, "moments", spectral.moments)
-    expected = 1.96 * redrawn(scene, 20e6, 64).std(axis=0)
-    slopes = slopes_of(scene, scene.uncertainty, lambda s: mean_surface(s, "load", 2e3), NAMES[:3])
-    found = 1.96 * np.sqrt(np.einsum("ki,ij,kj->k", slopes, scene.uncertainty.covariance, slopes))
-    np.testing.assert_allclose(found, expected, rtol=0.05)
-
-
 @pytest.mark.parametrize("interaction", [None, "mean-plane"])
 def test_derivatives_obey_what_scales(interaction):
-    """By E* as by one over the load; by eta as A_n would: both alike, and a length has no other unit."""
+    """By E* as by one over the load; by eta as A_n would, where no asperity feels another."""
     every = dict.fromkeys(("sigma", "radius", "eta", "E_star"), 0.1)
     scene = scene_of(interaction=interaction, uncertainty=every)
     of = ("area", "stiffness", "gap_to_summits")
     by = slopes_of(scene, scene.uncertainty, lambda s: mean_surface(s, "load", 5e3), of)
     ends = [mean_surface(scene, "load", 5e3 * np.exp(step)) for step in (1e-3, -1e-3)]
-    by_load = [(ends[0][x] - ends[1][x]) / 2e-3 / mean_surface(scene, "load", 5e3)[x] for x in of]
-    np.testing.assert_allclose(by[:, 3], np.array([0, 1, 0]) - by_load, atol=1e-5)
-    # lengths by c, eta by c^-2, A_n by c^2: P/E* A_n is the same at c^2 P
-    for name, row, slope in zip(of, by, by_load, strict=True):
-        powers = {"area": 2, "stiffness": 1, "gap_to_summits": 1}[name]
-        if interaction is None:  # then A_n counts as eta does
-            extensive = 0 if name == "gap_to_summits" else 1
-            assert row[2] == pytest.approx(extensive - slope, abs=1e-5)
-            whole = row[0] + row[1] - 2 * row[2] + 2 * (extensive - slope) + 2 * slope
-            assert whole == pytest.approx(powers, abs=1e-5)
+    by_load = np.array([(ends[0][x] - ends[1][x]) / 2e-3 / mean_surface(scene, "load", 5e3)[x] for x in of])
+    np.testing.assert_allclose(by[:, 3], [0, 1, 0] - by_load, atol=1e-5)
+    if interaction is None:
+        extensive = np.array([1, 1, 0])
+        np.testing.assert_allclose(by[:, 2], extensive - by_load, atol=1e-5)
+        lengths = by[:, 0] + by[:, 1] - 2 * by[:, 2] + 2 * extensive  # all by c, with eta by c^-2, A_n by c^2
+        np.testing.assert_allclose(lengths, [2, 1, 1], atol=1e-5)
 
 
 def test_lines_of_surfaces_by_hand(solved):
-    budget, n = solved.budget(), 20
+    budget = solved.budget()
     for k, name in enumerate(NAMES):
         low, high = solved.interval(name)
         assert budget.shares["drawn surfaces"][k] == pytest.approx((high - low) / 2 / solved.value[name])
         assert budget.shares["specimens"][k] == pytest.approx(1.96 * solved.std[name] / solved.value[name])
-    assert (budget.shares["drawn surfaces"] < 3 * budget.shares["specimens"] / np.sqrt(n)).all()
+    assert (budget.shares["drawn surfaces"] < 3 * budget.shares["specimens"] / np.sqrt(20)).all()
     v = solved.scene.validity(solved.theory["separation"])
     assert budget.shares["model"][0] == pytest.approx(v.error["area"][0])
     assert budget.shares["model"][2] == budget.shares["model"][1]
@@ -129,12 +95,9 @@ def test_what_dominates_is_said_with_what_would_lower_it(solved):
     assert "parameters (above all radius)" in solved.budget().advice
     bare = replace(solved, scene=solved.scene.replace(uncertainty=None)).budget()
     assert "mostly the model" in bare.advice
-    assert np.isnan(bare.shares["parameters"]).all()
     small = scene_of(uncertainty=None).replace(nominal_area="0.2 mm^2")
     few = mcgw.solve(small, pressure="50 MPa").budget()
     assert "mostly the specimens" in few.advice
-    for each in (bare, few, solved.budget()):
-        assert "draw more surfaces" not in each.advice
 
 
 def test_corrected_is_divided_by_its_bias(solved):
@@ -153,9 +116,7 @@ def test_corrected_is_divided_by_its_bias(solved):
     off = np.hypot(off, 1.96 * solved.std["gap_to_summits"])
     assert gap.high - gap.value == pytest.approx(off)
     assert "contacts: its error was not measured" in solved.corrected("contacts").why
-    named = {column.name: column for column in solved.table().flat}
-    row = list(named["quantity"].values).index("area")
-    assert named["best"].values[row] == solved.corrected("area").value
+    assert solved.corrected("area").value in solved.table().only("best").columns[0].values
 
 
 @pytest.mark.parametrize("gas", ["air", "vacuum"])
@@ -181,21 +142,7 @@ def test_a_joint_is_corrected_through_its_network(gas):
     drawn = (high - low) / 2 / value["joint_conductance"]
     assert drawn > 0 or scene.filled.gas is None  # in vacuum it is the sum over spots, exactly
     assert found.high / found.value - 1 == pytest.approx(np.sqrt(off**2 + own**2 + drawn**2), rel=1e-5)
-    budget = solved.budget()
-    assert budget.quantities == ("area", "stiffness", "contact_conductance", "joint_conductance", "mean_gap")
-    assert np.isfinite(budget.all).all()
-
-
-def test_spots_with_a_film_have_no_corrected_conductance():
-    film = mcgw.Joint(resistivity=0.07, film_resistance=1e-8)
-    solved = mcgw.solve(scene_of(joint=film, uncertainty=None), pressure="50 MPa")
-    budget = solved.budget()
-    assert np.isnan(budget.all[budget.quantities.index("contact_conductance")])
-    assert solved.corrected("contact_conductance").why.startswith("a film or layer is not")
-    best = solved.corrected("contact_conductance")
-    assert budget.told("contact_conductance", best, 0.01).startswith(
-        "(scatter of specimens 1 %; error of the"
-    )
+    assert np.isfinite(solved.budget().all).all()
 
 
 PULLS = {"name": "derjaguin-muller-toporov", "pull_off": 1e-3}
@@ -220,32 +167,11 @@ def test_where_nothing_was_measured_the_answer_stays_alone(more, given, name, wh
     assert "best (95" not in repr(solved)
 
 
-@pytest.mark.slow
-def test_corrected_answers_are_those_of_boundary_elements():
-    """Four fresh isotropic maps, three loads: within 6 % rms of area; 95 % intervals (12: two may miss)."""
-    solves, off, missed, plain = fitted_maps.read(), [], 0, []
-    for each in fitted_maps.MAPS[:4]:
-        heights = each.heights()
-        n, side, slope = len(heights), fitted_maps.SIDE, fitted_maps.SLOPE
-        z = Topography(slope * side * heights, (side / n,) * 2, periodic=True)
-        fit = mcgw.fit(z, cutoff=None, form="none")
-        scene = mcgw.fitted_scene(fit, heights="nayak", E_star=fitted_maps.MODULUS, n_surfaces=60)
-        area = scene.surface.nominal_area
-        for row in solves[each.name]:
-            solved = mcgw.solve(scene, load=row["p"] * fitted_maps.MODULUS * slope * area)
-            found, right = solved.corrected("area"), row["area"] * area
-            off.append(found.value / right - 1)
-            plain.append(solved.value["area"] / right - 1)
-            missed += not found.low <= right <= found.high
-    assert np.sqrt(np.mean(np.square(off))) < 0.06
-    assert np.sqrt(np.mean(np.square(plain))) > 0.15  # as the model itself is
-    assert missed <= 2
-
-
 def test_a_fit_writes_what_it_knows(tmp_path, capsys):
     """Errors of the estimate in use; sigma^2 and eta go apart where m2 is uncertain."""
-    z = fitted_maps.plain(rough_maps.GaussianMap(0.8, 4, 1, 32))
-    fit = mcgw.fit(Topography(1e-6 * z / z.std(), (4e-6,) * 2, periodic=True), cutoff=None)
+    spectrum = spectrum_from("rms=1um,long=8um,short=2um")
+    z = gaussian_map(spectrum, (128, 128), (0.25e-6, 0.25e-6), np.random.default_rng(7))
+    fit = mcgw.fit(z, cutoff=None)
     scene = mcgw.fitted_scene(fit, use="summits", separations=[1.0], n_surfaces=5, E_star="1 GPa")
     used = fit.estimates["summits"]
     for name in ("sigma", "radius", "eta"):

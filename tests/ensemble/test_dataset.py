@@ -43,15 +43,6 @@ def test_statistics_are_those_of_the_values(dataset, name):
         np.testing.assert_allclose(found.interval(name)[k], ends, rtol=1e-9)
 
 
-def test_their_scene_is_the_one_that_was_asked_for(dataset):
-    found, values = dataset
-    if isinstance(values, list):
-        assert list(found.scenes) == [one.scene for one in values]
-    else:
-        asked = SCENE.replace(nominal_area=AREAS[0])
-        assert found.scene in (asked, asked.replace(keep="statistics"))
-
-
 def test_what_is_not_kept_is_said_in_one_line(dataset):
     found, values = dataset
     if found is values:
@@ -60,6 +51,8 @@ def test_what_is_not_kept_is_said_in_one_line(dataset):
     else:
         with pytest.raises(ValueError, match=r"^load: (single surfaces are not kept|a sweep only keeps)"):
             found.quantile("load", 0.3)
+    with pytest.raises(ValueError, match=r"share = 1\.5"):
+        found.quantile("load", 1.5)
     if isinstance(values, list):
         with pytest.raises(ValueError, match=r"^load: a sweep only keeps"):
             found.covariance("load", "area")
@@ -79,15 +72,7 @@ def test_other_forms_have_a_row_a_separation_and_the_axes_before(dataset):
     lead = ("surface",) if found is values else ("nominal_area",) if isinstance(values, list) else ()
     assert dims == (*lead, "separation")
     assert len(found.to_dataframe()) == np.prod([60 if found is values else 1, *found.shape, 3])
-    one = found.sel(separation=0.0).to_xarray()
-    assert one.separation.values.tolist() == [0.0]
-    assert one[next(iter(one))].dims == dims
-
-
-def test_a_figure_of_a_quantity_is_asked_for_alike(dataset):
-    found, _ = dataset
-    assert "area" in found.plot("area").get_ylabel()
-    assert "load" in found.plot().get_ylabel()
+    assert found.sel(separation=0.0).to_xarray().separation.values.tolist() == [0.0]
 
 
 def test_no_such_quantity_nor_separation(dataset):

@@ -3,8 +3,6 @@
 Gate of coverage: of 4000 intervals that cover with probability 0.95, fewer than 0.93 do once in 6e7.
 """
 
-from itertools import product
-
 import numpy as np
 import pytest
 from conftest import SURFACE
@@ -39,22 +37,14 @@ from mcgw import Ensemble
 
 SEEDS = 4000
 LAWS = {"gaussian": Gaussian(), "exponential": ExponentialHeights(), "weibull": Weibull(3.6)}
-CONTACTS = (0.01, 0.03, 0.1, 0.3, 1.0, 3.8, 10.0, 30.0, 100.0, 300.0, 1000.0)
 
 
-def cut(expected, surfaces, law, count, gamma, seed=7):
+def cut(expected, surfaces, law, count, gamma):
     """One ensemble, long enough to be cut into 4000 of so many contacts each."""
     n = 2000
     h = float(law.isf(np.array(expected / (surfaces * n))))
-    scene = mcgw.Scene(
-        surface=SURFACE,
-        separations=(h,),
-        grading=Exponential(gamma),
-        heights=law,
-        ensemble=mcgw.Sampling(n_asperities=n, count=count, sampler="cells"),
-        n_surfaces=SEEDS * surfaces,
-        seed=seed,
-    )
+    drawn = mcgw.Sampling(n_asperities=n, count=count, sampler="cells", n_surfaces=SEEDS * surfaces, seed=7)
+    scene = mcgw.Scene(SURFACE, separations=(h,), grading=Exponential(gamma), heights=law, ensemble=drawn)
     return mcgw.simulate(scene)
 
 
@@ -87,7 +77,6 @@ def coverage(ensemble, surfaces):
     [
         (0.03, 10, "gaussian", 1.0, "fixed"), (3.8, 2, "exponential", 2.0, "poisson"),
         (15.0, 2, "gaussian", 2.0, "poisson"), (30.0, 10, "weibull", 0.2, "fixed"),
-        (60.0, 2, "exponential", 0.2, "fixed"),
     ],
 )  # fmt: skip
 def test_intervals_cover(expected, surfaces, law, gamma, count):
@@ -104,41 +93,13 @@ def test_few_contacts_have_the_interval_of_their_exact_law(count, contacts):
     assert np.isnan([low, high]).all()
 
 
-ANY = [(law, m, gamma) for m, gamma in (*product((2, 10), (0.2, 1.0, 2.0)), (100, 1.0)) for law in LAWS]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("law", "surfaces", "gamma"), ANY)
-def test_intervals_cover_at_any_number_of_contacts(law, surfaces, gamma):
-    """Of a fixed number of asperities and of a Poisson one in turn: each law meets both."""
-    count = ("fixed", "poisson")[ANY.index((law, surfaces, gamma)) % 2]
-    for number, expected in enumerate(CONTACTS):
-        found = coverage(cut(expected, surfaces, LAWS[law], count, gamma, number), surfaces)
-        assert min(found.values()) >= 0.93, expected
-
-
-@pytest.mark.parametrize(("expected", "most"), [(0.03, 0.05), (3.8, 0.93)])
-def test_students_interval_does_not_cover_few_contacts(expected, most):
+def test_students_interval_does_not_cover_few_contacts():
     """The companion: the same gate throws out the interval of one variance from few surfaces."""
-    ensemble = cut(expected, 10, LAWS["gaussian"], "fixed", 1.0)
+    ensemble = cut(3.8, 10, LAWS["gaussian"], "fixed", 1.0)
     x = ensemble.load.reshape(SEEDS, 10)
     half = student.ppf(0.975, 9) * x.std(axis=1, ddof=1) / np.sqrt(10)
     exact = float(ensemble.scene.theory.mean("load", ensemble.separations)[0])
-    assert np.mean(np.abs(x.mean(axis=1) - exact) <= half) < most
-
-
-def test_many_contacts_have_the_gaussian_interval(make_scene):
-    """1e15 asperities: mean -+ 1.96 exact standard errors but for the skewness, 2e-6 of them."""
-    scene = make_scene(n_asperities=10**15, n_surfaces=4, sampler="aggregate", separations=(0.0, 2.0))
-    ensemble = mcgw.simulate(scene)
-    exact = np.sqrt(np.diag(scene.theory.covariance(scene.quantities, scene.separations).reshape(8, 8)) / 4)
-    for name, stderr in zip(scene.quantities, exact.reshape(4, 2), strict=True):
-        low, high = ensemble.interval(name)
-        mean = ensemble.mean(name)
-        assert high - mean == pytest.approx(1.959963984540054 * stderr, rel=3e-5)
-        assert mean - low == pytest.approx(1.959963984540054 * stderr, rel=3e-5)
-        low, high = ensemble.interval(name, 0.5)
-        assert (high - low) / 2 == pytest.approx(0.6744897501960817 * stderr, rel=3e-5)
+    assert np.mean(np.abs(x.mean(axis=1) - exact) <= half) < 0.93
 
 
 @pytest.mark.parametrize("count", ["fixed", "poisson"])
@@ -155,8 +116,7 @@ def test_interval_is_a_shifted_gamma_law_turned_round(make_scene, count):
     np.testing.assert_allclose(ensemble.interval("load"), ensemble.mean("load") / [high, low], rtol=1e-9)
 
 
-@pytest.mark.parametrize("k", [0, 1, 7, 500, 999, 1000])
-@pytest.mark.parametrize("level", [0.5, 0.95])
+@pytest.mark.parametrize(("k", "level"), [(0, 0.95), (7, 0.5), (7, 0.95), (1000, 0.95)])
 def test_count_interval_by_definition(k, level):
     """Each end is where so few, or so many, contacts have half of what the level leaves."""
     tail = (1 - level) / 2
@@ -168,10 +128,10 @@ def test_count_interval_by_definition(k, level):
     assert poisson.cdf(k, high[0]) == pytest.approx(tail)
 
 
-@pytest.mark.parametrize("k", [1.0, 1e3, 1e9, 1e12])
-def test_count_interval_of_few_of_very_many_is_garwoods(k):
+def test_count_interval_of_few_of_very_many_is_garwoods():
     """Of 1e18 asperities: SciPy's own inverse of the beta law fails there."""
-    few, of_all = (count_interval(np.array([k]), 1e18, poisson=law) for law in (True, False))
+    k = np.array([1.0, 1e3, 1e9, 1e12])
+    few, of_all = (count_interval(k, 1e18, poisson=law) for law in (True, False))
     np.testing.assert_allclose(of_all, few, rtol=1e-9)
 
 
@@ -188,7 +148,7 @@ def test_spread_of_many_separations_is_that_of_each(make_scene):
     assert np.isnan(spread.reach(10**6)[-1])
 
 
-@pytest.mark.parametrize("share", [0.05, 0.3, 1.0])
+@pytest.mark.parametrize("share", [0.05, 1.0])
 def test_a_few_equal_terms_are_covered(share):
     """A share of the mean from a Poisson number of equal terms, the rest steady: exact sums over that law."""
     number, given = np.arange(400), 0
@@ -203,7 +163,7 @@ def test_a_few_equal_terms_are_covered(share):
     assert given > 375
 
 
-@pytest.mark.parametrize("contacts", [0.01, 0.5, 3.0])
+@pytest.mark.parametrize("contacts", [0.01, 3.0])
 def test_where_hardly_any_asperity_does_not_touch(make_scene, contacts):
     """The number of contacts is N but for a rare one: too skew for a gamma law, within Chebyshev's bound."""
     h = -float(Gaussian().isf(np.array(contacts / 1000)))
@@ -228,21 +188,20 @@ def test_too_few_is_said_wherever_intervals_are(make_scene):
     comparison = mcgw.compare(mcgw.simulate(make_scene(n_surfaces=20, separations=h, seed=3)))
     effective = spread_of(comparison.ensemble.scene, "load").effective(20)
     assert (effective < FEWEST).tolist() == [False, True, True]
-    lines = comparison_text(comparison).splitlines()
-    words = [TOO_FEW in line for line in lines if line.split()[0] in ("0", "4", "8")]
+    words = [
+        TOO_FEW in x for x in comparison_text(comparison).splitlines() if x.split()[0] in ("0", "4", "8")
+    ]
     assert words == 3 * [False, True, True] + 3 * [False]
-    stored = {column.name: column for column in stacked(comparison.tables(), "quantity").flat}
-    assert np.isnan(stored["low_95"].values).tolist() == words
-    assert np.isnan(stored["high_95"].values).tolist() == words
+    stored = stacked(comparison.tables(), "quantity").only("low_95").columns[0].values
+    assert np.isnan(stored).tolist() == words
 
 
-@pytest.mark.parametrize("share", [1e-4, 0.0125, 0.025, 0.3, 0.5, 0.975])
+@pytest.mark.parametrize("share", [1e-4, 0.025, 0.5, 0.975])
 def test_quantiles_are_those_of_scipy(share):
     skewness = np.array([-3.0, -0.5, -1e-3, -2e-5, 0.0, 2e-5, 1e-3, 0.5, 3.0])
     expected = pearson3.ppf(share, skewness)
     np.testing.assert_allclose(pearson3_quantile(share, skewness), expected, rtol=1e-9, atol=1e-9)
-    one = pearson3_quantile(share, np.array([1e-6]))
-    assert abs(one[0] - norm.ppf(share)) < 1e-5
+    assert pearson3_quantile(share, np.array([1e-6])) == pytest.approx(norm.ppf(share), abs=1e-5)
 
 
 def test_ends_of_a_share_of_all_surfaces_are_those_of_the_exact_law(make_scene):
@@ -254,20 +213,14 @@ def test_ends_of_a_share_of_all_surfaces_are_those_of_the_exact_law(make_scene):
         assert ends.shape == (2, 2)
         below = [[float(law.cdf(ends[i, k])) for k, law in enumerate(laws)] for i in (0, 1)]
         np.testing.assert_allclose(below, [[(1 - share) / 2] * 2, [(1 + share) / 2] * 2], atol=1e-9)
-    few, many = np.linspace(0, 3, 100), np.linspace(0, 3, 101)
-    yielding = scene.replace(law=KogutEtsion(critical=0.1))
-    listed = scene.replace(
-        heights=MeasuredHeights([0.0, 1.0, 2.0]), sampler="direct", n_asperities=3, n_surfaces=1
-    )
-    radii = scene.replace(heights=Nayak(5.0), summits=RandomCurvature(5.0))
-    assert exact_ends(scene.replace(separations=many), "contacts", 0.9).shape == (2, 101)
-    assert exact_ends(yielding.replace(separations=few[:2]), "load", 0.9).shape == (2, 2)
-    assert exact_ends(radii, "load", 0.9).shape == (2, 2)
-    for none in (
-        yielding.replace(separations=many),
-        radii.replace(separations=many),
-        radii.replace(law=KogutEtsion(critical=0.1)),
-        listed,
-    ):
-        assert exact_ends(none, "load", 0.9) is None
+    many = scene.replace(separations=np.linspace(0, 3, 101))
+    yielding = {"law": KogutEtsion(critical=0.1)}
+    listed = {"heights": MeasuredHeights([0.0, 1.0, 2.0]), "sampler": "direct"}
+    radii = {"heights": Nayak(5.0), "summits": RandomCurvature(5.0)}
+    assert exact_ends(many, "contacts", 0.9).shape == (2, 101)
+    for quick in (yielding, radii):
+        assert exact_ends(scene.replace(**quick), "load", 0.9).shape == (2, 2)
+        assert exact_ends(many.replace(**quick), "load", 0.9) is None
+    for none in (radii | yielding, listed | {"n_asperities": 3, "n_surfaces": 1}):
+        assert exact_ends(scene.replace(**none), "load", 0.9) is None
     assert exact_ends(scene, "depth", 0.9) is None

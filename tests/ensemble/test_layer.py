@@ -25,13 +25,11 @@ LAYER = analytic.Layer(0.3 * UNIT, 1.3)
 FILM = mcgw.Joint(conductivities=(200.0, 16.0), layer=LAYER)
 H = (0.5, 1.5)
 LAWS = {
-    "hertz": analytic.Hertz(), "chang": analytic.ChangEtsionBogy(critical=0.05),
-    "zhao": analytic.ZhaoMaiettaChang(critical=0.05), "kogut": analytic.KogutEtsion(critical=0.05),
+    "hertz": analytic.Hertz(), "kogut": analytic.KogutEtsion(critical=0.05),
     "jackson": analytic.JacksonGreen(critical=0.05, yield_strain=0.004, poisson=0.3),
     "half-space": analytic.PowerLawGraded(0.5, reduced_c0=1.0, poisson=0.3),
     "coated": analytic.Coated(reduced_thickness=0.5, ratio=2.0, poisson=0.3),
     "jkr": analytic.JohnsonKendallRoberts(pull_off=0.05),
-    "dmt": analytic.DerjaguinMullerToporov(pull_off=0.05),
 }  # fmt: skip
 
 
@@ -66,7 +64,7 @@ def test_check_values(tau, ratio, value):
     assert abs(thin / value - 1) > 0.15, "a thin film in series is something else"
 
 
-@pytest.mark.parametrize("ratio", [1e-3, 0.3, 30.0, 1e3])
+@pytest.mark.parametrize("ratio", [1e-3, 30.0])
 def test_against_mpmath(ratio):
     """With few images and many, by the integral over the flux."""
     tau, big = 0.7, (ratio - 1) / (ratio + 1)
@@ -88,32 +86,6 @@ def test_limits():
     assert over_thickness(tau, ratio) == pytest.approx(ratio + 4 * tau / math.pi, rel=1e-3)
 
 
-def test_negative_radii_go_on_from_positive_ones():
-    """Through 0 as a series of odd powers of radius over thickness, which is how cells take them."""
-    spot = LayeredSpot(1.0, 0.3, 1.0, 2.0)
-    x = np.cos(math.pi * (np.arange(40) + 0.5) / 40) * 0.5
-    series = np.polynomial.chebyshev.chebfit(2 * x, spot(x), 39)
-    assert np.abs(series[26:]).max() < 1e-13
-    assert spot(0.3 + 1e-12j).real == pytest.approx(float(spot(0.3)), rel=1e-13)
-
-
-def test_pole_of_a_layer_that_conducts_well():
-    """At negative radii some resist nothing: cells end before."""
-    spot = LayeredSpot(1.0, 30.0, 1.0, 200.0)
-    nearest = spot.analytic_up_to(0.0)
-    assert 0 < nearest <= 1
-    assert (spot(-np.linspace(1e-6, nearest, 99)) > 0).all()
-
-
-@pytest.mark.parametrize("conductivity", [0.3, 30.0])
-def test_a_step_into_the_complex_plane_is_the_derivative(conductivity):
-    spot, x = LayeredSpot(1.0, conductivity, 1.0, 2.0), np.array([0.01, 0.3, 1.0, 20.0])
-    around = [spot(x * (1 + 1e-4 * k)) for k in (-2, -1, 1, 2)]
-    difference = np.tensordot([1, -8, 8, -1], around, 1) / (12 * 1e-4 * x)
-    found = np.imag(spot(x + 1e-30j * x)) / (1e-30 * x)
-    np.testing.assert_allclose(found, difference, rtol=1e-8)
-
-
 def scene_of(law=LAWS["hertz"], **changes):
     asked = {
         "separations": H, "law": law, "joint": FILM, "quantities": ["load", "conductance_si"], "seed": 3,
@@ -122,49 +94,36 @@ def scene_of(law=LAWS["hertz"], **changes):
     return scene_by(SURFACE, **asked | changes)
 
 
-@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
-class TestLaws:
-    def test_one_surface_is_the_sum_of_its_spots(self, law):
-        for sampler in ("cells", "tail"):
-            scene = scene_of(law, sampler=sampler, n_asperities=40)
-            e = mcgw.simulate(scene)
-            s = mcgw.heights(scene, 1)
-            for k, h in enumerate(H):
-                radii = UNIT * term(scene, "conductance", h, s[s > h])
-                expected = math.fsum(1 / by_integral(a) for a in radii)
-                assert e["conductance_si"][1, k] == pytest.approx(expected, rel=1e-10), sampler
+GOOD = mcgw.Joint(conductivities=(200.0, 16.0), layer=analytic.Layer(LAYER.thickness, 2000.0))
 
-    def test_per_nominal_area(self, law):
-        """Also in series with the half-space, drawn and by theory."""
-        scene = scene_of(law, interaction="body", n_asperities=40)
-        e, area = mcgw.simulate(scene), SURFACE.nominal_area
-        np.testing.assert_allclose(e["contact_conductance"] * area, e["conductance_si"], rtol=1e-14)
-        for get in (scene.theory.mean, scene.theory.std):
-            found = get("contact_conductance", H) * area
-            np.testing.assert_allclose(found, get("conductance_si", H), rtol=1e-12)
 
-    def test_many_have_the_mean_and_spread_of_theory(self, law):
-        scene = scene_of(law, n_surfaces=3000)
+@pytest.mark.parametrize(
+    ("law", "film"), [*((law, FILM) for law in LAWS.values()), (analytic.Hertz(), GOOD)], ids=[*LAWS, "good"]
+)
+def test_one_surface_is_the_sum_of_its_spots(law, film):
+    for sampler in ("cells", "tail"):
+        scene = scene_of(law, sampler=sampler, n_asperities=40, joint=film)
         e = mcgw.simulate(scene)
-        assert max(scores(e)) < 5
-        mean, std = (get("conductance_si", H) for get in (scene.theory.mean, scene.theory.std))
-        thin = analytic.Film(
-            conductivities=FILM.conductivities, film_resistance=LAYER.thickness / LAYER.conductivity
-        )
-        wrong = scene_of(law, joint=thin).theory.mean("conductance_si", H)
-        assert (np.abs(wrong - mean) / std * math.sqrt(3000) > 20).all()
+        s = mcgw.heights(scene, 1)
+        for k, h in enumerate(H):
+            radii = UNIT * term(scene, "conductance", h, s[s > h])
+            expected = math.fsum(1 / by_integral(a, film) for a in radii)
+            assert e["conductance_si"][1, k] == pytest.approx(expected, rel=1e-10), sampler
 
 
-@pytest.mark.slow
-def test_mean_at_a_load_is_that_of_surfaces():
-    found = mcgw.solve(scene_of(LAWS["kogut"]), pressure="1 MPa", n_surfaces=400)
-    drawn = found.surfaces["conductance_si"]
-    assert found.interval("conductance_si")[0] == found.value["conductance_si"], "it is exact"
-    assert abs(drawn.mean() - found.value["conductance_si"]) < 5 * drawn.std() / 20
+@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
+def test_many_have_the_mean_and_spread_of_theory(law):
+    scene = scene_of(law, n_surfaces=3000)
+    assert max(scores(mcgw.simulate(scene))) < 5
+    mean, std = (get("conductance_si", H) for get in (scene.theory.mean, scene.theory.std))
+    thin = analytic.Film(
+        conductivities=FILM.conductivities, film_resistance=LAYER.thickness / LAYER.conductivity
+    )
+    wrong = scene_of(law, joint=thin).theory.mean("conductance_si", H)
+    assert (np.abs(wrong - mean) / std * math.sqrt(3000) > 20).all()
 
 
-@pytest.mark.parametrize("thickness", [0.02, 0.1, 10.0])
-@pytest.mark.parametrize("conductivity", [1.3, 2000.0])
+@pytest.mark.parametrize(("thickness", "conductivity"), [(0.02, 2000.0), (0.1, 1.3), (10.0, 1.3)])
 def test_mean_by_quadrature(thickness, conductivity):
     """A film besides, and layers of all kinds."""
     layer = analytic.Layer(thickness * UNIT, conductivity)
@@ -201,31 +160,3 @@ def test_radii_of_their_own():
     found = float(mcgw.simulate(scene)["conductance_si"][0, 0])
     assert found == pytest.approx(1 / by_integral(a, film), rel=1e-11)
     assert mcgw.scene_from(mcgw.scene_text(scene)) == scene
-
-
-def test_way_back_and_interaction():
-    """On spots that have yielded, in series with the bodies as a whole: of these, not of the layer."""
-    asked = {
-        "unload_from": 0.2,
-        "interaction": "body",
-        "quantities": ["load", "conductance"],
-        "n_asperities": 40,
-    }
-    scene = scene_of(LAWS["kogut"], **asked, separations=(0.2, 0.5))
-    e = mcgw.simulate(scene)
-    alone = mcgw.simulate(scene.replace(interaction=None))
-    rho = 1 / 200 + 1 / 16
-    for name in ("conductance_si", "conductance_si_unloading"):
-        extra = 1 / e[name] - 1 / alone[name]
-        assert extra == pytest.approx(rho * 0.4732010044093386 / math.sqrt(SURFACE.nominal_area), rel=1e-6)
-
-
-class TestInput:
-    def test_python(self):
-        assert scene_of(joint=mcgw.Joint((200.0, 16.0)), layer=LAYER) == scene_of()
-        with pytest.raises(mcgw.SceneError, match=r"joint\.layer = .*: give conductivities too, or leave"):
-            scene_of(joint=None, layer=LAYER)
-
-    def test_layer_without_conductivities(self):
-        with pytest.raises(ValueError, match="layer: it needs conductivities"):
-            analytic.Film(1e-7, layer=LAYER)

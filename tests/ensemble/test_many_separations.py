@@ -5,7 +5,7 @@ import pytest
 from oracles.inside import verdict
 
 import mcgw
-from mcgw.ensemble.ensemble import MOST_SHOWN, how_many, shown
+from mcgw.ensemble.ensemble import MOST_SHOWN, shown
 
 WHOLE = np.linspace(1.5, 0.0, 2 * MOST_SHOWN + 1)  # falling: every other one is shown
 
@@ -13,21 +13,15 @@ WHOLE = np.linspace(1.5, 0.0, 2 * MOST_SHOWN + 1)  # falling: every other one is
 @pytest.fixture(scope="module", params=["sums", "statistics"])
 def whole(request):
     surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
-    scene = mcgw.Scene(
-        surface, separations=WHOLE, n_surfaces=40, seed=3, ensemble=mcgw.Sampling(keep=request.param)
-    )
-    return mcgw.simulate(scene)
+    scene = mcgw.Scene(surface, separations=WHOLE, n_surfaces=40, seed=3)
+    return mcgw.simulate(scene, keep=request.param)
 
 
-@pytest.mark.parametrize("count", [1, MOST_SHOWN, MOST_SHOWN + 1])
-def test_up_to_the_limit_an_ensemble_is_shown_as_it_is(whole, count):
-    few = whole.sel(separation=WHOLE[:count])
-    assert (shown(few) is few) == (count <= MOST_SHOWN)
-    assert bool(how_many(few)) == (count > MOST_SHOWN)
-    assert len(shown(few).separations) == min(count, MOST_SHOWN)
-
-
-def test_the_first_and_the_last_separation_are_shown_and_the_order_is_kept(whole):
+def test_up_to_a_limit_all_are_shown_and_then_the_first_the_last_and_some_between_in_their_order(whole):
+    few = whole.sel(separation=WHOLE[:MOST_SHOWN])
+    assert shown(few) is few
+    some = shown(whole.sel(separation=WHOLE[: MOST_SHOWN + 1]))
+    assert len(some.separations) == MOST_SHOWN
     some = shown(whole)
     assert some.separations[[0, -1]].tolist() == [1.5, 0.0]
     assert np.all(np.diff(some.separations) < 0)
@@ -44,6 +38,4 @@ def test_a_comparison_shows_some_and_its_verdict_is_on_all(whole):
         assert len(h) == MOST_SHOWN
         index = [WHOLE.tolist().index(x) for x in h]
         np.testing.assert_array_equal(mean, whole.mean(name)[index])
-        theory = table.only("theory").columns[0].values
-        np.testing.assert_allclose(theory, whole.scene.theory.mean(name, h), rtol=1e-13)
     assert found.verdict == verdict(whole)

@@ -18,45 +18,21 @@ HARDNESS, POISSON = 4e9, 0.3  # first yield at (pi 0.577 H/(2 E*))^2 R
 YIELDING = mcgw.KogutEtsion(hardness=HARDNESS, poisson=POISSON)
 BODY = {"interaction": {"reference": "body"}}
 # What the scene has besides, asperities, contacts of the mean surface, specimens drawn here.
+QUICK = {
+    "Hertz, two asperities": ({}, 2, 0.3, 20_000),
+    "Hertz, 2 contacts": ({}, 100, 2, 4000),
+    "Poisson, 20 contacts": ({"count": "poisson"}, 100, 20, 2000),
+    "graded, 2 contacts": ({"grading": mcgw.Exponential(0.5)}, 100, 2, 4000),
+    "yielding, 10 contacts": ({"law": YIELDING}, 60, 10, 1000),
+}
 SCENES = {
     "Hertz, 0.06 contacts": ({}, 200, 0.06, 20_000),
-    "Hertz, 2 contacts": ({}, 200, 2, 20_000),
-    "Hertz, 60 contacts": ({}, 200, 60, 20_000),
     "Hertz, 3000 contacts": ({}, 10_000, 3000, 400),
-    "graded, 2 contacts": ({"grading": mcgw.Exponential(2.0)}, 200, 2, 20_000),
     "interaction, 2 contacts": (BODY, 200, 2, 20_000),
-    "interaction, 60 contacts": (BODY, 200, 60, 20_000),
     "film and gas, 0.06 contacts": (AIR, 200, 0.06, 20_000),
-    "film and gas, 2 contacts": (AIR, 200, 2, 20_000),
     "film and gas, 60 contacts": (AIR, 200, 60, 20_000),
     "yielding, 2 contacts": ({"law": YIELDING}, 200, 2, 20_000),
-    "yielding, 60 contacts": ({"law": YIELDING}, 200, 60, 20_000),
-    "own radii, 60 contacts": ({}, 200, 60, 20_000),
-    "own radii and yielding, 2 contacts": ({"law": YIELDING}, 200, 2, 20_000),
 }
-M0, M2, M4 = 1e-12, 4e-3, 8e7  # spectral moments of the surfaces with radii of their own
-
-
-def summits(rng, shape):
-    """Reduced heights of summits of a Gaussian surface, and the radii of their geometric mean curvatures, m.
-
-    Nayak (1971): at a summit the mean curvature t has a density of exp(-3 t^2/(4 m4)) times the mean of
-    t^2 - u over u <= t^2, exponential of mean 2 m4/3; the height is linear in t and Gaussian about it.
-    """
-    c = 2 * M4 / 3
-    t = np.linspace(0, 9, 20_001) * np.sqrt(c)
-    density = np.exp(-(t**2) / (2 * c)) * (t**2 + c * np.expm1(-(t**2) / c))
-    share = np.concatenate([[0.0], np.cumsum(density[1:] + density[:-1])])
-    mean, square = (float(density @ t**k / density.sum()) for k in (1, 2))
-    own = np.interp(rng.random(shape) * share[-1], share, t)
-    z = M2 / c * own + np.sqrt(M0 - M2**2 / c) * rng.standard_normal(shape)
-    sigma = np.sqrt(M0 - M2**2 / c + (M2 / c) ** 2 * (square - mean**2))
-    apart = np.full(shape, np.nan)  # t^2 less the product of the two principal curvatures
-    while np.isnan(apart).any():
-        u = -c * np.log1p(rng.random(shape) * np.expm1(-(own**2) / c))
-        taken = np.isnan(apart) & (rng.random(shape) < 1 - u / own**2)
-        apart = np.where(taken, u, apart)
-    return (z - M2 / c * mean) / sigma, 1 / np.sqrt(own**2 - apart)
 
 
 def hertz(d, critical):
@@ -69,12 +45,11 @@ def specimens(scene, load, many, contacts):
     contact = hertz if scene.law.elastic else kogut_etsion
     for start in range(0, many, 2000):
         shape = min(2000, many - start), scene.n_asperities
-        if scene.summits is None:
-            s, r = rng.standard_normal(shape), np.full(shape, x.radius)
-        else:
-            s, r = summits(rng, shape)
-        highest = np.argsort(-s, axis=1)[:, : 3 * contacts + 40]  # no others touch
-        s, r = np.take_along_axis(s, highest, 1), np.take_along_axis(r, highest, 1)
+        s, r = rng.standard_normal(shape), x.radius
+        if scene.count == "poisson":  # twice as many, of which those beyond the number are not there
+            s = np.hstack([s, rng.standard_normal(shape)])
+            s[np.arange(s.shape[1]) >= rng.poisson(shape[1], shape[0])[:, None]] = -99.0
+        s = -np.sort(-s, axis=1)[:, : 3 * contacts + 40]  # no others touch
         critical = (np.pi * 0.577 * HARDNESS / (2 * x.E_star)) ** 2 * r / x.sigma
         e = scene.grading(s) * 4 / 3 * x.E_star * np.sqrt(r) * x.sigma**1.5
         low, high = np.full((len(s), 1), -8.0), s.max(axis=1, keepdims=True)
@@ -82,11 +57,13 @@ def specimens(scene, load, many, contacts):
             h = (low + high) / 2
             sums = (e * contact(np.maximum(s - h, 0.0), critical=critical)[0]).sum(1, keepdims=True)
             low, high = np.where(sums > load, h, low), np.where(sums > load, high, h)
-        assert np.all(s.min(axis=1, keepdims=True) < low)
+        assert s.shape[1] == shape[1] or np.all(s.min(axis=1, keepdims=True) < low)
         d = np.maximum(s - low, 0.0)
         areas = np.pi * r * x.sigma * np.where(d > 0, contact(d, critical=critical)[1], 0.0)
-        one = {"area": areas.sum(axis=1), "separation": low[:, 0]}
-        if scene.law.elastic:
+        one = {"area": areas.sum(axis=1), "separation": low[:, 0], "contacts": (d > 0).sum(axis=1)}
+        if not scene.law.elastic:
+            one["yielded"] = (d >= critical).sum(axis=1)
+        else:
             stiffness = 2 * x.E_star * (scene.grading(s) * np.sqrt(r * x.sigma * d)).sum(axis=1)
             one["stiffness"] = 1 / (1 / stiffness + scene.compliance)
         if scene.film is not None:
@@ -98,33 +75,58 @@ def specimens(scene, load, many, contacts):
     return {name: np.concatenate([each[name] for each in found]) for name in found[0]}
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", SCENES)
-def test_the_answer_is_one_and_the_mean_of_specimens(name, tmp_path):
-    """|z| < 5: a false alarm in 1e6; 10 deviations would be seen. All ways agree as `same` says."""
-    more, n, contacts, many = SCENES[name]
+def asked(name):
+    """The scene of a name, its answer at the load of its mean surface, and those of specimens."""
+    more, n, contacts, many = {**QUICK, **SCENES}[name]
     surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", n / 3e8, "78.6 GPa")
-    if "radii" in name:
-        surface = mcgw.SpectralSurface(M0, M2, M4, n * 6 * np.pi * 3**0.5 * M2 / M4, "100 GPa")
     scene = scene_by(
         surface, separations=0.0, quantities=("load", "area", "stiffness"), n_asperities=n,
         n_surfaces=400, seed=5, **more,
     )  # fmt: skip
-    h, surface = float(scene.heights.isf(np.array(contacts / n))), scene.surface
+    h = float(scene.heights.isf(np.array(contacts / n)))
     scene = scene.replace(separations=(h, h - 0.5))
-    pressure = float(scene.theory.mean("pressure", h))
-    found = mcgw.solve(scene, pressure=pressure)
-    drawn = specimens(scene, found.amount, many, math.ceil(contacts))
+    found = mcgw.solve(scene, pressure=float(scene.theory.mean("pressure", h)))
+    return scene, found, specimens(scene, found.amount, many, math.ceil(contacts))
+
+
+def hold(found, drawn):
+    """Means and standard deviations are those of the specimens: |z| < 5, a false alarm in 1e6."""
     for quantity, x in drawn.items():
         value = found.value[quantity]
         low, high = found.interval(quantity)
-        own = 0.0 if np.isnan(low) else (high - low) / 4
+        own, many = 0.0 if np.isnan(low) else (high - low) / 4, len(x)
         error = np.hypot(x.std(ddof=1) / np.sqrt(many), own) + 1e-6 * abs(value)
         assert abs(value - x.mean()) < 5 * error, quantity
-        assert abs(value + 10 * error - x.mean()) > 5 * error  # it would be seen
-        spread = np.sqrt(np.mean(((x - x.mean()) / x.std()) ** 4) - 1) / 2  # relative, of one surface
-        error = x.std() * (spread * np.sqrt(1 / many + (own > 0) / scene.n_surfaces) + 2e-4)
-        assert abs(found.std[quantity] - x.std(ddof=1)) < 5 * error, quantity
+        kurtosis = np.mean(((x - x.mean()) / (x.std() or 1.0)) ** 4)
+        spread = np.sqrt(max(kurtosis - 1, 0)) / 2  # relative, of one surface
+        error = x.std() * (spread * np.sqrt(1 / many + (own > 0) / found.scene.n_surfaces) + 2e-4)
+        assert abs(found.std[quantity] - x.std(ddof=1)) < 5 * error + 1e-5 * abs(value), quantity
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_the_answer_is_the_mean_of_specimens_and_exact(name):
+    _, found, drawn = asked(name)
+    hold(found, drawn)
+    for quantity in drawn:
+        assert found.interval(quantity) == (found.value[quantity],) * 2
+
+
+def test_of_one_asperity_alone():
+    """Surfaces are drawn: the load of each is that of one contact, as are its area and approach."""
+    surface = mcgw.Surface("1 um", "10 um", "1000/mm^2", 1e-9, "100 GPa")
+    found = mcgw.solve(mcgw.Scene(surface, separations=0.0, n_surfaces=200, seed=4), load=1e-3)
+    depth = (1e-3 / (4 / 3 * surface.E_star * np.sqrt(surface.radius))) ** (2 / 3)
+    assert found.value["area"] == pytest.approx(np.pi * surface.radius * depth, rel=1e-9)
+    assert found.std["area"] == pytest.approx(0, abs=1e-9 * found.value["area"])
+    assert found.std["separation"] == pytest.approx(1, abs=0.3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SCENES)
+def test_the_answer_is_one_wherever_it_is_asked_for(name, tmp_path):
+    scene, found, drawn = asked(name)
+    hold(found, drawn)
+    pressure, surface = found.amount / scene.surface.nominal_area, scene.surface
 
     def same(value, quantity):
         """To rounding; what is a mean of drawn surfaces, to five of its errors: others may be drawn."""
@@ -152,7 +154,7 @@ def test_the_answer_is_one_and_the_mean_of_specimens(name, tmp_path):
     exported = np.loadtxt(path, comments="%")
     row = exported[np.argmin(np.abs(exported[:, 0] - pressure))]
     assert same(row[1] * per, quantity)
-    if contacts >= 1:  # where the report has answers
-        (first,) = solved_pressures(scene, [found.amount / scene.surface.nominal_area])
+    if scene.theory.mean("contacts", scene.separations[0]) >= 1:  # where the report has answers
+        (first,) = solved_pressures(scene, [pressure])
         assert first.amount == pytest.approx(found.amount, rel=1e-12)
         assert same(first.value["area"], "area")

@@ -57,40 +57,18 @@ def literal_search(law, starts, given, s, gamma_, value):
     return below
 
 
-def drawn_by(monkeypatch, scene, given, values):
-    """Solutions, and the scene whose heights were drawn for them."""
-    import mcgw.sampling.asperities as module
-
-    listed, scenes = module.summits_of_many, []
-
-    def spy(drawn, *rest):
-        scenes.append(drawn)
-        return listed(drawn, *rest)
-
-    monkeypatch.setattr(module, "summits_of_many", spy)
-    found = solutions(scene, given, values, draw=True)
-    monkeypatch.undo()
-    return found, scenes[0]
-
-
 @pytest.mark.parametrize("given", ["load", "area"])
 @pytest.mark.parametrize("name", LAWS)
-def test_a_literal_search_finds_the_same(name, given, monkeypatch):
+def test_a_literal_search_finds_the_same(name, given):
     law, typed, starts, gamma_ = LAWS[name]
     scene = mcgw.Scene(
-        SURFACE,
-        separations=0.0,
-        grading=mcgw.Exponential(gamma_),
-        law=law,
-        ensemble=mcgw.Sampling(n_asperities=60),
-        n_surfaces=3,
-        seed=3,
-    )
+        SURFACE, separations=0.0, grading=mcgw.Exponential(gamma_), law=law,
+        ensemble=mcgw.Sampling(n_asperities=60), n_surfaces=3, seed=3,
+    )  # fmt: skip
     values = [float(x) for x in scene.theory.mean(given, [2.2, 1.0])]
-    found, drawn = drawn_by(monkeypatch, scene, given, values)
-    for number in range(3):
-        s = mcgw.heights(drawn, number, untouched=True)
-        for value, solution in zip(values, found, strict=True):
+    for value, solution in zip(values, solutions(scene, given, values, draw=True), strict=True):
+        for number in range(3):
+            s = solution.heights(number)
             expected = literal_search(typed, starts, given, s, gamma_, value / SCALES[given])
             h = solution.surfaces["separation"][number]
             assert h == pytest.approx(expected, abs=3e-12)
@@ -103,19 +81,10 @@ def test_a_literal_search_finds_the_same(name, given, monkeypatch):
 
 
 @pytest.mark.parametrize("given", ["load", "area"])
-def test_below_all_that_was_drawn_at_once_the_search_finds_the_same(given):
+def test_below_all_that_was_drawn_at_once_the_search_finds_the_same(given, monkeypatch):
     """Step by step, on the whole of each surface."""
-    import mcgw.sampling.asperities as module
-    from mcgw.ensemble import loaded_surfaces
-
-    listed, whole = module.summits, []
-    with pytest.MonkeyPatch.context() as patch, pytest.MonkeyPatch.context() as inner:
-        patch.setattr(loaded_surfaces, "_MARGIN", -1.0)
-        patch.setattr(module, "summits", lambda drawn, number: whole.append(number) or listed(drawn, number))
-        test_a_literal_search_finds_the_same("kogut-etsion", given, inner)
-    solved = whole[:-3]  # the last ones are asked for by the test itself
-    assert solved == sorted(set(solved))  # once for all values
-    assert len(solved) > 1
+    monkeypatch.setattr("mcgw.ensemble.loaded_surfaces._MARGIN", -1.0)
+    test_a_literal_search_finds_the_same("kogut-etsion", given)
 
 
 def solved_by_hand(law, given, value, heights=(2.0,), ratios=None, start=-3.0):
@@ -143,26 +112,3 @@ def test_a_load_that_is_jumped_over_is_passed():
         assert solved_by_hand(law, "load", value) == pytest.approx(1.5, abs=1e-15)
     assert solved_by_hand(law, "load", 0.99 * at_yield) == pytest.approx(2 - (0.99) ** (2 / 3) * 0.5)
     assert solved_by_hand(law, "load", 1.8, start=1.9) is None
-
-
-def test_of_several_separations_the_largest_counts():
-    """The area of one asperity of Kogut and Etsion falls by 7 % at yield: .049 is met three times."""
-    law = mcgw.KogutEtsion(critical=0.05)
-    assert solved_by_hand(law, "area", 0.049) == pytest.approx(2 - 0.049, abs=1e-14)
-    after = 2 - 0.05 * (0.0505 / 0.05 / 0.93) ** (1 / 1.136)
-    assert solved_by_hand(law, "area", 0.0505) == pytest.approx(after, abs=1e-14)
-
-
-@pytest.mark.parametrize(("gamma_", "lowest"), [(2.0, -0.8), (1.0, -40.0)])
-def test_a_search_on_all_heights_ends_where_a_modulus_is_negative(gamma_, lowest):
-    """At the highest such summit, or at 40 below the mean: what is solved there and not beyond is literal."""
-    s = np.array([0.3, -1.5, 2.0, -0.8, 1.1, -0.4])  # moduli of 2 - exp(-s) are negative below -0.69
-    scene = mcgw.Scene(
-        SURFACE, separations=0.0, grading=mcgw.Exponential(gamma_), law=mcgw.KogutEtsion(critical=0.05),
-        n_surfaces=2, seed=1,
-    )  # fmt: skip
-    asperities, load = Summits.of(scene, s, None), quantity_of("load")
-    for h in (1.9, 0.4, -0.7, lowest + 1e-3, lowest - 1e-3):
-        value = literal_sum(by_hand.kogut_etsion, "load", s[s > lowest], gamma_, h)
-        found = asperities.separation_anywhere(load, value, 1.95)
-        assert found == (pytest.approx(h, abs=1e-11) if h > lowest else None)

@@ -219,6 +219,21 @@ def test_scenes_at_the_edge_of_what_it_can_test(make_scene):
 
 
 @pytest.mark.parametrize(
+    "law", [analytic.KogutEtsion(critical=0.05), analytic.JohnsonKendallRoberts(pull_off=0.3)]
+)
+def test_a_loop_under_a_contact_law_passes_and_one_percent_of_the_load_is_seen(make_scene, law):
+    asked = {"law": law, "unload_from": "loop", "quantities": ("load", "area", "contacts"), "grading": None}
+    scene = make_scene(separations=(0.0, 0.3, 0.8, 1.5), n_asperities=5000, n_surfaces=64, **asked)
+
+    def off(one):
+        drawn = right(one)
+        return drawn | {"load": 1.01 * drawn["load"]}
+
+    assert converge(scene, seeds=12).passed
+    assert not converge(scene, off, seeds=12).passed
+
+
+@pytest.mark.parametrize(
     ("quantity", "adds", "count"),
     [("load", "contacts", "fixed"), ("load", "contacts", "poisson"), ("yielded", "yielded", "poisson"),
      ("area_unloading", "contacts_unloading", "fixed")],

@@ -24,7 +24,7 @@ from scipy.stats import kstwobign, norm
 import analytic
 import mcgw
 from mcgw import tradeoff
-from mcgw.sampling import samplers
+from mcgw.sampling import asperities
 from mcgw.statistics import measured_ways
 
 
@@ -63,29 +63,23 @@ def test_each_way_states_what_it_can_give(study):
     assert wants_of("aggregate") == ("mean", "std")
     assert study.advice("mean", 1e-4).way.name == "theory"
     assert study.advice("mean", 1e-14).way is None  # a gap, not a number
+    of_mean_surface = next(x.floor for x in study.ways if (x.name, x.want) == ("theory", "conductance"))
+    assert 1e-6 < of_mean_surface < 1e-2  # its order is one over the number of contacts
     assert study.advice("values", 1e-6).way.floor < 1e-12
     assert len(study.table()) == 6 * len(WANTS)
     assert "needs no surfaces" in study.sentence
 
 
 def test_values_of_a_sampler_that_is_off_by_a_percent_are_found_out(scene, monkeypatch):
-    """The companion: the same sums, each of them 1.01 times as large."""
+    """The companion: each sum over its asperities is 1.01 times as large."""
     assert max(worst_of_values(scene.replace(sampler=name), 4) for name in ("cells", "direct")) < 1e-12
-    right = samplers._MAKERS["cells"]
+    right = asperities.asperity_sums
 
-    def wrong(scene):
-        sampler = right(scene)
-        block = sampler.block
+    def wrong(*asked):
+        return {name: 1.01 * x for name, x in right(*asked).items()}
 
-        def scaled(first, n):
-            found = block(first, n)
-            return replace(found, sums={name: 1.01 * x for name, x in found.sums.items()})
-
-        object.__setattr__(sampler, "block", scaled)
-        return sampler
-
-    monkeypatch.setitem(samplers._MAKERS, "cells", wrong)
-    assert worst_of_values(scene.replace(sampler="cells"), 4) == pytest.approx(0.01, rel=1e-9)
+    monkeypatch.setattr(asperities, "asperity_sums", wrong)
+    assert worst_of_values(scene.replace(sampler="cells"), 4) == pytest.approx(0.01 / 1.01, rel=1e-9)
 
 
 def test_points_and_prices_by_hand(scene):

@@ -161,16 +161,6 @@ def test_radii_have_a_bound_that_one_in_ten_thousand_ensembles_passes(make_scene
         assert parts.bounded_theory(known, 10**6) is known.theory
 
 
-def test_the_worst_mean_is_one_that_counts():
-    residual = np.array([[1.0, -9.0, 2.0], [3.0, 0.0, -2.5]])
-    counts = np.array([[True, False, True], [False, True, True]])
-    found = parts.Tested(
-        quantities=("a", "b"), separations=np.arange(3.0), mean=residual, theory=residual, residual=residual,
-        counts=counts, verdict=Check("means", "", 1.0),
-    )  # fmt: skip
-    assert found.worst == (1, 2)
-
-
 def test_a_sweep_is_judged_at_twelve_separations_and_never_more_than_surely(make_scene):
     scene = make_scene(separations=tuple(np.linspace(2, 0, 30)), n_surfaces=20, quantities=("load",))
     compared = compare(mcgw.sweep(scene, {"grading.gamma": [0.5, 1.0, 2.0]}))
