@@ -46,7 +46,7 @@ def flips(folder):
 
 def fuzz(folder):  # noqa: ARG001
     """Read what is wrong in every way."""
-    call(TESTS / "fuzz" / "fuzz.py", "files", 10_000, 7)
+    call(TESTS / "fuzz" / "fuzz.py", 10_000, 7)
 
 
 if __name__ == "__main__":
