@@ -7,13 +7,11 @@
 import math
 from types import SimpleNamespace
 
-import numpy as np
-
 import analytic
 from oracles.literal import factor, sums_of_heights
 
-# Of a square under uniform pressure, at its mean and at its centre; and of a square lattice of point loads.
-MEAN_SINKING, SINKING_OF_THE_CENTRE = 0.9464020088186771, 1.12219970467836
+# Of a square under uniform pressure, at its mean; and of a square lattice of point loads.
+MEAN_SINKING = 0.9464020088186771
 LATTICE = 3.900264920001956
 
 QUANTITIES = ("load", "area", "stiffness", "contacts", "conductance")
@@ -35,20 +33,3 @@ def literal_sums(scene, heights, felt, quantity):
     """Exactly rounded sums over the asperities of one surface at what they feel."""
     asked = SimpleNamespace(separations=felt, modulus=scene.modulus, surface=scene.surface)
     return sums_of_heights(asked, heights, quantity)
-
-
-def drawn(n, surfaces, grading, seed, highest):
-    """The highest of n Gaussian heights, and their moduli, of many surfaces: shape (surfaces, highest)."""
-    s = np.random.default_rng(seed).standard_normal((surfaces, n))
-    s = np.partition(s, n - highest, axis=1)[:, -highest:].copy()
-    return s, grading(s)
-
-
-def sums_at(s, e, x):
-    """Reduced load, stiffness, area, conductance and contacts of each surface at a separation."""
-    d = np.maximum(s - x, 0.0)
-    root = np.sqrt(d)
-    return {
-        "load": (e * d * root).sum(axis=1), "stiffness": (e * root).sum(axis=1), "area": d.sum(axis=1),
-        "conductance": root.sum(axis=1), "contacts": (d > 0).sum(axis=1).astype(float),
-    }  # fmt: skip

@@ -1,8 +1,4 @@
-"""Gradings and height laws that rise or fall as fast as the integrals reach: right, or refused in a line.
-
-Everything is held to closed forms and quadratures of mpmath: ``E (s-h)_+^n exp(k s) = exp(k^2/2) F_n(h-k)``
-under the normal law (parabolic cylinder functions), and the Weibull integrals in ``y = x^k``.
-"""
+"""Gradings and height laws that rise or fall as fast as the integrals reach: right, or refused in a line."""
 
 import mpmath as mp
 import numpy as np
@@ -11,16 +7,7 @@ import scipy.stats
 from oracles.reference import F
 
 import analytic
-from analytic import (
-    Clipped,
-    Custom,
-    Exponential,
-    ExponentialHeights,
-    Gaussian,
-    HeightRule,
-    ScipyHeights,
-    Weibull,
-)
+from analytic import Clipped, Custom, Exponential, ExponentialHeights, ScipyHeights, Weibull
 
 H = (-20.0, -3.0, 0.0, 2.0, 5.0, 20.0)
 TOO_STEEP = "^grading: (up to s = .* increases too steeply|E.* is not finite at s = )"
@@ -40,18 +27,7 @@ def off(value, truth):
 
 
 @pytest.mark.parametrize(
-    ("n", "k"),
-    [
-        (0, -3.0),
-        (0.5, 3.0),
-        (6, 3.0),
-        (0.5, 4.0),
-        (1.5, 8.0),
-        (0.5, 12.0),
-        (1.5, 20.0),
-        (1.5, -4.0),
-        (1.5, -12.0),
-    ],
+    ("n", "k"), [(0, -3.0), (6, 3.0), (0.5, 4.0), (0.5, 12.0), (1.5, 20.0), (1.5, -12.0)]
 )
 def test_means_of_steep_gradings(n, k):
     for h in (-40.0, *H) if k < 4 else H:
@@ -59,19 +35,13 @@ def test_means_of_steep_gradings(n, k):
             assert off(analytic.fn(n, h, raised(k)), tilted(n, h, k)) < (1e-13 if abs(k) == 3 else 1e-12)
 
 
-@pytest.mark.parametrize("k", [30.0, 60.0])
-def test_means_beyond_double_precision_are_refused(k):
-    for h in (-3.0, 0.0, 20.0):
-        with pytest.raises(ValueError, match=TOO_STEEP):
-            analytic.fn(1.5, h, raised(k))
-    with pytest.raises(ValueError, match=TOO_STEEP):
-        analytic.fn(1.5, 0.0, Custom(lambda s: np.exp(0.51 * s * s)))  # there is no mean at all
+UNIT = analytic.Surface(1.0, 1.0, 1.0, 1.0, 0.75)  # load of one asperity at unit approach: 1
 
 
 @pytest.mark.parametrize("k", [2.0, 4.0])
-def test_variances_and_skewness_of_steep_gradings(make_model, k):
-    for h in (-2.0, 0.0, 3.0):
-        one = make_model(grading=raised(k), n_asperities=1.0)
+def test_variances_and_skewness_of_steep_gradings(k):
+    one = analytic.Model(UNIT, grading=raised(k), n_asperities=1.0)
+    for h in (-2.0, 3.0):
         m1, m2, m3 = (tilted(1.5 * r, h, r * k) for r in (1, 2, 3))
         variance = m2 - m1**2
         exact = one.cumulants("load", h)
@@ -80,35 +50,31 @@ def test_variances_and_skewness_of_steep_gradings(make_model, k):
         assert off(exact.skewness, (m3 - 3 * m2 * m1 + 2 * m1**3) / mp.sqrt(variance) ** 3) < 1e-11
 
 
-@pytest.mark.parametrize("k", [8.0, 20.0])
-def test_variances_beyond_double_precision_are_refused(make_model, k):
-    model = make_model(grading=raised(k))
+def test_what_is_beyond_double_precision_is_refused():
+    for k in (30.0, 60.0):
+        for h in (-3.0, 20.0):
+            with pytest.raises(ValueError, match=TOO_STEEP):
+                analytic.fn(1.5, h, raised(k))
     with pytest.raises(ValueError, match=TOO_STEEP):
-        model.cumulants("load", 0.0)
+        analytic.fn(1.5, 0.0, Custom(lambda s: np.exp(0.51 * s * s)))  # there is no mean at all
     with pytest.raises(ValueError, match=TOO_STEEP):
-        HeightRule.over([0.0, 1.0], raised(k), Gaussian())
-    assert off(model.mean("load", 0.0), tilted(1.5, 0.0, k) * mp.mpf(model.number)) < 1e-12
+        analytic.fn(1.5, 0.0, raised(1.01), heights=ExponentialHeights())
+    for k in (8.0, 20.0):
+        model = analytic.Model(UNIT, grading=raised(k))
+        with pytest.raises(ValueError, match=TOO_STEEP):
+            model.cumulants("load", 0.0)  # but the mean there is
+        assert off(model.mean("load", 0.0), tilted(1.5, 0.0, k)) < 1e-12
+    with pytest.raises(ValueError, match="tail of the heights is too heavy"):
+        analytic.fn(3, 0.0, heights=ScipyHeights(scipy.stats.t(2.1)))
 
 
-@pytest.fixture
-def make_model():
-    unit = analytic.Surface(1.0, 1.0, 1.0, 1.0, 0.75)  # load and area of one asperity at unit approach: 1, pi
-
-    def make(**given):
-        return analytic.Model(unit, **given)
-
-    return make
-
-
-@pytest.mark.parametrize("rate", [0.5, 0.8, 0.9])
+@pytest.mark.parametrize("rate", [0.5, 0.9])
 def test_steep_gradings_under_exponential_heights(rate):
     """``E (s-h)_+^n exp(k s) = Gamma(n+1) (1-k)^(-n-1) exp(k h - h - 1)``; at k = 1 there is no mean."""
     for h in (-1.0, 0.0, 3.0):
         found = analytic.fn(1.5, h, raised(rate), heights=ExponentialHeights())
         k = mp.mpf(rate)
         assert off(found, mp.gamma(2.5) * (1 - k) ** -2.5 * mp.exp(k * h - h - 1)) < 1e-12
-    with pytest.raises(ValueError, match=TOO_STEEP):
-        analytic.fn(1.5, 0.0, raised(1.01), heights=ExponentialHeights())
 
 
 def test_heavy_tails_reach_as_far_as_they_carry():
@@ -120,18 +86,12 @@ def test_heavy_tails_reach_as_far_as_they_carry():
 
     def integrand(w):  # x = std s = w/(1-w)
         x = w / (1 - w)
-        return (
-            (x / std) ** mp.mpf("1.5")
-            * constant
-            * (1 + x * x / degrees) ** (-(degrees + 1) / 2)
-            / (1 - w) ** 2
-        )
+        density = constant * (1 + x * x / degrees) ** (-(degrees + 1) / 2)
+        return (x / std) ** mp.mpf("1.5") * density / (1 - w) ** 2
 
     # over the tail by its power: x^(1.5-3.1) is w -> 1 like (1-w)^(-0.4), which tanh-sinh takes
     truth = mp.quad(integrand, [0, 0.5, 0.9, 1])
     assert off(analytic.fn(1.5, 0.0, heights=law), truth) < 1e-10
-    with pytest.raises(ValueError, match="tail of the heights is too heavy"):
-        analytic.fn(3, 0.0, heights=law)
 
 
 def soft(n, h, gamma):
@@ -140,7 +100,7 @@ def soft(n, h, gamma):
     return mp.log(gamma * F(n, h) - (gamma - 1) * mp.exp(mp.mpf(1) / 2) * F(n, h + 1))
 
 
-@pytest.mark.parametrize(("gamma", "n"), [(0.0, 1.5), (1e-300, 1.5), (1e-250, 0), (1e-9, 1.5)])
+@pytest.mark.parametrize(("gamma", "n"), [(0.0, 1.5), (1e-250, 0), (1e-9, 1.5)])
 def test_logarithms_far_out_where_the_grading_nearly_vanishes(n, gamma):
     h = np.array([300.0, 600.0, 680.0])
     found = analytic.fn(n, h, Exponential(gamma), log=True)
@@ -164,9 +124,8 @@ def test_ratios_of_soft_tips_far_out():
 
 @pytest.mark.parametrize(
     ("shape", "h"),
-    [(1.0, -20.0), (1.0, 4.0), (1.5, -3.0), (1.5, 2.0), (3.9, 0.0), (4.0, 2.0), (12.0, -20.0), (40.743, -3.0),
-     (40.743, 0.0), (100.0, 2.0)],
-)  # fmt: skip
+    [(1.5, -3.0), (3.9, 0.0), (100.0, 2.0)],
+)
 def test_weibull_integrals_of_any_shape(shape, h):
     with mp.workdps(40):
         k = mp.mpf(shape)
@@ -182,13 +141,3 @@ def test_weibull_integrals_of_any_shape(shape, h):
         share = mp.exp(-low)
     assert off(analytic.fn(1.5, h, heights=Weibull(shape)), truth) < 1e-12
     assert off(Weibull(shape).sf(np.array(h)), share) < 1e-12
-
-
-def test_the_rarest_height_is_the_last_that_scipy_tells():
-    """Of Rice's law, whose tail SciPy takes as 1 - cdf: beyond some 1e-14 its inverse is of no share."""
-    law = ScipyHeights(scipy.stats.rice(2.0))
-    rarest = law.isf(np.array([1e-20, 1e-36]))
-    assert rarest[0] == rarest[1]
-    share = float(law.sf(rarest[0]))
-    assert share == pytest.approx(10.0 ** round(np.log10(share)), rel=1e-2)
-    assert 1e-16 < share < 2e-15

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 import oracles.laws_of_one_depth as by_hand
 import pytest
-from oracles.law_means import BRIDGED, FOUR, ONE, STEEL, SURFACE, mean, name, term
+from oracles.law_means import BRIDGED, FOUR, ONE, STEEL, SURFACE, name, term
 
 import analytic
 import mcgw
@@ -53,41 +53,6 @@ def test_every_law_is_the_one_typed_anew(law):
             assert found == pytest.approx([float(x) for x in anew(d, e)], rel=1e-12), (d, e)
 
 
-@pytest.mark.parametrize("law", [*FOUR, *BRIDGED], ids=name)
-def test_above_yield_out_of_reach_every_law_is_hertz(law):
-    far = replace(law, critical=1e3)
-    for quantity, value in (("load", analytic.fn(1.5, 1.0)), ("area", analytic.fn(1, 1.0))):
-        assert mean(far, quantity) == pytest.approx(float(value), rel=1e-12)
-        assert mean(Hertz(), quantity) == pytest.approx(float(value), rel=1e-12)
-    assert mean(far, "yielded") == 0
-
-
-def ratios(law, j):
-    """Load, area and slope right over left of a limit."""
-    y = np.sqrt(law.limits(ONE)[j])
-    load = law.load(j + 1, y, ONE) / law.load(j, y, ONE)
-    area = (law.radius(j + 1, y, ONE) / law.radius(j, y, ONE)) ** 2
-    return float(load), float(area), float(law.slope(j + 1, y, ONE) / law.slope(j, y, ONE))
-
-
-@pytest.mark.parametrize(("law", "j", "load", "area", "slope"), [
-    (FOUR[0], 0, 1.5, 1.0, None),
-    (FOUR[1], 0, 1.0, 1.0, 0.91736),
-    (FOUR[1], 1, 1.0, 1.0, 0.86925),
-    (FOUR[2], 0, 1.03, 0.93, None),
-    (FOUR[2], 1, 1.016787757, 1.029026, None),
-    (FOUR[2], 2, 1.0788, 1.071171, None),
-    (STEEL, 0, 1.0047, 1.0, 0.9468),
-])  # fmt: skip
-def test_defects_of_the_fits_are_as_the_docstrings_say(law, j, load, area, slope):
-    found = ratios(law, j)
-    digits = {1.016787757: 1e-9, 1.029026: 1e-6, 1.071171: 1e-6, 1.0788: 5e-5, 1.0047: 5e-5}
-    assert found[0] == pytest.approx(load, abs=digits.get(load, 1e-12))
-    assert found[1] == pytest.approx(area, abs=digits.get(area, 1e-12))
-    if slope is not None:
-        assert found[2] == pytest.approx(slope, abs=6e-5 if slope == 0.9468 else 6e-6)
-
-
 def test_hardness_and_strength_become_critical_penetrations():
     kogut = KogutEtsion(hardness=1e9, poisson=0.3).on(SURFACE)
     assert kogut.critical == pytest.approx((np.pi * 0.577 * 1e9 / 2e11) ** 2 * 1e3, rel=1e-14)
@@ -99,24 +64,6 @@ def test_hardness_and_strength_become_critical_penetrations():
     assert STEEL.critical / 1e3 == pytest.approx(1.0296e-4, rel=1e-4)
     for law in (kogut, chang, zhao, STEEL):
         assert law.on(SURFACE) is law
-
-
-@pytest.mark.parametrize("law", [*FOUR, *BRIDGED], ids=name)
-def test_asperities_without_stiffness_never_yield(law):
-    """Nor does anything warn: warnings are errors here."""
-    e = np.array([0.0, 1e-200, 1e-3, 1.0])
-    limits = law.limits(e)
-    assert np.all(np.isposinf(limits[:, :2]))
-    assert np.all(np.isfinite(limits[:, 2:]))
-    delta = np.geomspace(1e-12, 30, 200)[:, None]
-    for quantity in ("load", "area", "stiffness", "conductance", "load_slope", "yielded"):
-        value = term(quantity, law, delta, e)
-        assert np.all(np.isfinite(value))
-        if quantity in ("load", "stiffness", "load_slope", "yielded"):
-            assert np.all(value[:, 0] == 0)
-    for piece in range(len(limits) + 1):
-        assert np.all(law.load(piece, np.sqrt(delta), e[:1]) == 0)
-        assert np.all(np.isfinite(law.radius(piece, np.sqrt(delta), e[:1])))
 
 
 @pytest.mark.parametrize("law", [*FOUR, *BRIDGED], ids=name)
@@ -138,45 +85,33 @@ def test_slopes_are_those_of_a_difference(law):
     assert np.array_equal(law.radius(0, -y, e), -law.radius(0, y, e))
 
 
-@pytest.mark.parametrize(("make", "words"), [
-    (lambda: KogutEtsion(), "hardness = None, critical = None: give one"),
-    (lambda: KogutEtsion(hardness=1e9, critical=0.1), "critical = 0.1: give one"),
-    (lambda: ZhaoMaiettaChang(hardness=-1.0), "hardness = -1.0: give a finite number > 0"),
-    (lambda: ChangEtsionBogy(critical=0.0), "critical = 0.0: give"),
-    (lambda: ChangEtsionBogy(critical=0.1, poisson=0.7), "poisson = 0.7: give"),
-    (lambda: KogutEtsion(critical=0.1, bridge="linear"), "bridge = 'linear': give 'hermite'"),
-    (lambda: JacksonGreen(), "yield_strength = None, yield_strain = None"),
-    (lambda: JacksonGreen(yield_strain=0.004), "critical = None: give a yield strength"),
-    (lambda: JacksonGreen(yield_strength=1e9, yield_strain=0.01, critical=1.0), "or both of the other two"),
-    (lambda: JacksonGreen(yield_strength=np.nan), "yield_strength = nan: give"),
-    (lambda: KogutEtsion(hardness=1e9).limits(ONE), "hardness=1000000000.0.*law.on"),
-    (lambda: JacksonGreen(yield_strength=1e9).limits(ONE), "strength=1000000000.0.*law.on"),
-])  # fmt: skip
-def test_errors_name_the_key_the_value_and_what_would_do(make, words):
-    with pytest.raises(ValueError, match=words) as caught:
-        make()
-    assert "\n" not in str(caught.value)
+ELASTIC = Hertz(), PowerLawGraded(0.4, reduced_c0=0.7), Coated(ratio=3.0, reduced_thickness=0.5)
+
+
+@pytest.mark.parametrize("law", [*FOUR, *BRIDGED, *ELASTIC], ids=name)
+def test_asperities_without_stiffness_carry_nothing_and_never_yield(law):
+    """Nor does anything warn: warnings are errors here."""
+    e, delta = np.array([0.0, 1e-200, 1e-3, 1.0]), np.geomspace(1e-12, 30, 200)[:, None]
+    limits = law.limits(e)
+    assert np.all(np.isposinf(limits[:, :2]))
+    assert np.all(np.isfinite(limits[:, 2:]))
+    for quantity in ("load", "area", "stiffness", "conductance", "load_slope", "yielded"):
+        value = term(quantity, law, delta, e)
+        assert np.all(np.isfinite(value))
+        assert quantity in ("area", "conductance") or np.all(value[:, 0] == 0)
+    for piece in range(len(limits) + 1):
+        assert np.all(law.load(piece, np.sqrt(delta), e[:1]) == 0)
+        assert np.all(np.isfinite(law.radius(piece, np.sqrt(delta), e[:1])))
 
 
 @pytest.mark.parametrize("law", BRIDGED, ids=name)
-@pytest.mark.parametrize("modulus", [0.8, 1.0, 2.0])
-def test_bridges_join_load_area_and_slopes(law, modulus):
-    e = np.array(modulus)
+def test_bridges_join_load_area_and_slopes(law):
+    e = np.array(0.8)
     for j, limit in enumerate(law.limits(e)):
         y = np.sqrt(limit)
         assert law.load(j, y, e) == pytest.approx(law.load(j + 1, y, e), rel=1e-13)
         assert law.radius(j, y, e) == pytest.approx(law.radius(j + 1, y, e), rel=1e-13)
         assert law.slope(j, y, e) == pytest.approx(law.slope(j + 1, y, e), rel=1e-12)
-
-
-@pytest.mark.parametrize("law", BRIDGED, ids=name)
-def test_with_bridges_load_and_area_always_rise(law):
-    """Without them Kogut and Etsion's area does not: the test can fail."""
-    delta = np.unique([*np.geomspace(1e-4, 20, 20001), *np.nextafter(law.limits(ONE), 0)])
-    for quantity in ("load", "area"):
-        assert np.all(np.diff(term(quantity, law, delta, ONE)) > 0)
-        assert np.all(np.diff(term(quantity, law, delta, np.array(0.9))) > 0)
-    assert np.any(np.diff(term("area", FOUR[2], delta, ONE)) < 0)
 
 
 @pytest.mark.parametrize("law", BRIDGED, ids=name)

@@ -19,14 +19,12 @@ from oracles.laws_by_hand import (
 )
 from scipy.optimize import brentq
 
-import analytic
 from analytic import (
     Clipped,
     ContactLaw,
     Exponential,
     ExponentialHeights,
     Gaussian,
-    Homogeneous,
     MeasuredHeights,
     Model,
     Table,
@@ -43,16 +41,10 @@ GRADINGS = PLAIN | {
     "stiff tips": Clipped.of(Exponential(2.0)),
     "table": Table([-1.0, 0.0, 0.7, 1.5], [0.4, 1.0, 0.3, 2.0]),
 }
-HEIGHTS = {"gaussian": Gaussian(), "exponential": ExponentialHeights(), "weibull": Weibull(2.0)}
-PAIRS = [  # every law with two gradings or more, every grading with laws that jump, bend, and stay elastic
-    ("kogut-etsion", "uniform"), ("kogut-etsion", "table"), ("kogut-etsion", "no tips"),
-    ("early", "soft tips"), ("early", "stiff tips"), ("late", "stiff tips"), ("late", "uniform"),
-    ("chang", "no tips"), ("chang", "soft tips"), ("half-space", "table"), ("half-space", "no tips"),
-    ("film", "stiff tips"), ("film", "soft tips"),
+PAIRS = [  # every law, every grading
+    ("kogut-etsion", "uniform"), ("kogut-etsion", "table"), ("early", "soft tips"), ("late", "stiff tips"),
+    ("chang", "no tips"), ("half-space", "table"), ("film", "soft tips"),
 ]  # fmt: skip
-pairs = pytest.mark.parametrize(
-    ("law", "grading"), [(LAWS[a], GRADINGS[b]) for a, b in PAIRS], ids=map(" ".join, PAIRS)
-)
 
 
 def found_by_hand(law, grading, h, low, high):
@@ -89,22 +81,11 @@ def literal(f, law, grading, heights, h, top=9.5):
 
 CHECKS = [  # physics.md A.1 to A.9: mpmath at 25 digits, Gaussian heights at h = 1
     (laws.KogutEtsion(critical=0.05), "load", 0.05346624148043353),
-    (laws.KogutEtsion(critical=0.05), "area", 0.116420109265612),
-    (laws.KogutEtsion(critical=0.5), "load", 0.07383090928083739),
-    (laws.KogutEtsion(critical=0.5), "area", 0.08489960729421809),
     (laws.ChangEtsionBogy(critical=0.05), "load", 0.05328285176044976),
-    (laws.ChangEtsionBogy(critical=0.05), "area", 0.1589956020772286),
-    (laws.ChangEtsionBogy(critical=0.5), "load", 0.1088808976941458),
-    (laws.ZhaoMaiettaChang(critical=0.05), "load", 0.04876778006841703),
-    (laws.ZhaoMaiettaChang(critical=0.05), "area", 0.1061380393980319),
     (laws.ZhaoMaiettaChang(critical=0.5), "load", 0.06754575844782382),
-    (laws.ZhaoMaiettaChang(critical=0.5), "area", 0.08346351478218223),
     (laws.JacksonGreen(yield_strength=4e6), "load", 0.06273249305786957),  # 0.004 E*, R/sigma = 1000
-    (laws.JacksonGreen(yield_strength=4e6), "area", 0.1030235128462129),
     (laws.PowerLawGraded(0.5, reduced_c0=1.0), "area", 1.5 * 0.08331547058768628),
     (laws.Coated(reduced_thickness=0.5, ratio=3.0, poisson=0.3), "stiffness", 0.1780682584080905),
-    (laws.Coated(reduced_thickness=0.5, ratio=3.0, poisson=0.3), "load", 0.1321165629933847),
-    (laws.Coated(reduced_thickness=0.5, ratio=0.2, poisson=0.3), "stiffness", 0.07458784206776457),
     (laws.Coated(reduced_thickness=0.5, ratio=0.2, poisson=0.3), "load", 0.05308882315001123),
 ]
 
@@ -117,8 +98,9 @@ def test_check_values(law, quantity, value):
     assert found == pytest.approx(value, rel=1e-12)
 
 
-@pairs
+@pytest.mark.parametrize(("law", "grading"), PAIRS)
 def test_means_are_literal_integrals(law, grading):
+    law, grading = LAWS[law], GRADINGS[grading]
     model = Model(SURFACE, law=law, grading=grading)
     own = "conductance" if isinstance(law, Film) else "load"
     for h, quantity in ((-0.4, own), (1.2, own), (1.2, "yielded")):
@@ -131,65 +113,45 @@ def test_means_are_literal_integrals(law, grading):
         assert reduced(model, quantity, h) == pytest.approx(truth, rel=1e-12, abs=1e-16)
 
 
-@pytest.mark.parametrize("name", ["uniform", "soft tips", "table"])
-def test_separations_that_share_a_rule_do_not_matter_to_each_other(name):
+def test_separations_that_share_a_rule_do_not_matter_to_each_other():
     """A limit apart, close together, and far away."""
     h = np.array([-0.5, 0.3, 0.35, 0.35 + 1e-9, 1.0, 8.0, 20.0])
-    for law, quantity in ((kogut_etsion(1e-3), "load"), (Film(0.1), "conductance")):
-        model = Model(SURFACE, law=law, grading=GRADINGS[name])
+    for law, quantity, grading in (("early", "load", "table"), ("film", "conductance", "uniform")):
+        model = Model(SURFACE, law=LAWS[law], grading=GRADINGS[grading])
         alone = [float(model.mean(quantity, x)) for x in h]
         np.testing.assert_allclose(model.mean(quantity, h), alone, rtol=2e-12)
 
 
-@pytest.mark.parametrize("name", ["exponential", "weibull"])
-def test_means_under_other_height_laws(name):
-    heights, law, grading = HEIGHTS[name], kogut_etsion(0.05), Exponential(0.2)
-    model = Model(SURFACE, law=law, grading=grading, heights=heights)
-    for h in (-1.4, 0.3):
+def test_means_under_other_height_laws():
+    law, grading = kogut_etsion(0.05), Exponential(0.2)
+    for heights, h in ((ExponentialHeights(), 0.3), (Weibull(2.0), -1.4)):
+        model = Model(SURFACE, law=law, grading=grading, heights=heights)
         truth = literal(lambda s, h=h: term("load", law, s - h, grading(s)), law, grading, heights, h, 40.0)
         assert reduced(model, "load", h) == pytest.approx(truth, rel=1e-10)
-
-
-def test_measured_heights_are_summed():
-    heights = MeasuredHeights(np.random.default_rng(3).standard_normal(200))
-    law, grading = kogut_etsion(0.05), Exponential(0.2)
-    model = Model(SURFACE, law=law, grading=grading, heights=heights)
-    s = np.array(heights.heights)
+    measured = MeasuredHeights(np.random.default_rng(3).standard_normal(200))
+    model, s = Model(SURFACE, law=law, grading=grading, heights=measured), np.array(measured.heights)
     for quantity in ("load", "yielded", "load_slope"):
-        for h in (-0.5, 0.7):
-            truth = term(quantity, law, s - h, grading(s)).mean()
-            assert reduced(model, quantity, h) == pytest.approx(truth, rel=1e-14)
-    step = 1e-6
-    values = model.mean("load", [0.7 - step, 0.7 + step])
+        truth = term(quantity, law, s - 0.7, grading(s)).mean()
+        assert reduced(model, quantity, 0.7) == pytest.approx(truth, rel=1e-14)
+    values = model.mean("load", [0.7 - 1e-6, 0.7 + 1e-6])
     assert float(model.slope("load", 0.7)) == pytest.approx((values[0] - values[1]) / 2e-6, rel=1e-7)
-    np.testing.assert_allclose(model.separation_at("load", model.mean("load", [0.7, 1.5])), [0.7, 1.5])
 
 
-# Fluctuations
-
-
-def test_cumulants_are_literal_moments():
+@pytest.mark.parametrize(("quantity", "h"), [("load", -0.4), ("yielded", 1.2)])
+def test_cumulants_are_literal_moments(quantity, h):
     law, grading, n = kogut_etsion(0.05), Exponential(0.2), 70.0
     model = Model(SURFACE, law=law, grading=grading, n_asperities=n)
-    for quantity, separations in (("load", (-0.4,)), ("yielded", (1.2,))):
-        scale = quantity_of(quantity).scale(SURFACE)
-        for h in separations:
-            m1, m2, m3 = (
-                literal(
-                    lambda s, k=k, h=h: term(quantity, law, s - h, grading(s)) ** k,  # noqa: B023
-                    law,
-                    grading,
-                    Gaussian(),
-                    h,
-                )
-                for k in (1, 2, 3)
-            )
-            fixed = model.cumulants(quantity, h)
-            assert float(fixed.variance) == pytest.approx(n * scale**2 * (m2 - m1**2), rel=1e-10)
-            k3 = m3 - 3 * m2 * m1 + 2 * m1**3
-            assert float(fixed.skewness) == pytest.approx(k3 / (m2 - m1**2) ** 1.5 / n**0.5, rel=1e-9)
-            poisson = replace(model, count="poisson").cumulants(quantity, h)
-            assert float(poisson.variance) == pytest.approx(n * scale**2 * m2, rel=1e-10)
+    scale = quantity_of(quantity).scale(SURFACE)
+    m1, m2, m3 = (
+        literal(lambda s, k=k: term(quantity, law, s - h, grading(s)) ** k, law, grading, Gaussian(), h)
+        for k in (1, 2, 3)
+    )
+    fixed = model.cumulants(quantity, h)
+    assert float(fixed.variance) == pytest.approx(n * scale**2 * (m2 - m1**2), rel=1e-10)
+    k3 = m3 - 3 * m2 * m1 + 2 * m1**3
+    assert float(fixed.skewness) == pytest.approx(k3 / (m2 - m1**2) ** 1.5 / n**0.5, rel=1e-9)
+    poisson = replace(model, count="poisson").cumulants(quantity, h)
+    assert float(poisson.variance) == pytest.approx(n * scale**2 * m2, rel=1e-10)
 
 
 def test_covariance_across_separations_is_literal():
@@ -215,9 +177,6 @@ def test_covariance_across_separations_is_literal():
         np.testing.assert_allclose(np.diag(matrix[k, :, k, :]), model.std(quantity, h) ** 2, rtol=1e-11)
 
 
-# Slopes
-
-
 @pytest.mark.parametrize(
     ("law", "grading", "quantity"), [("chang", "no tips", "load"), ("film", "stiff tips", "area")]
 )
@@ -233,36 +192,14 @@ def test_check_values_of_slopes():
     load = model.number * quantity_of("load").scale(SURFACE)
     assert float(model.slope("load", 1.0)) / load == pytest.approx(0.1024253228584864, rel=1e-12)
     assert 1.5 * reduced(model, "load_slope", 1.0) == pytest.approx(0.1011402426250286, rel=1e-12)
-    graded = replace(model, grading=Exponential(2.0))
-    assert float(graded.slope("load", 1.0)) / load == pytest.approx(0.10492023, abs=5e-9)
     edge = replace(model, heights=ExponentialHeights())  # no height is below -1
     assert float(edge.slope("contacts", -0.9999)) == pytest.approx(1000 * math.exp(-1e-4), rel=1e-12)
     # Under Hertz's law too the number of contacts falls by the density at the separation.
     model = Model(SURFACE, grading=Exponential(0.2))
-    assert float(model.slope("contacts", 0.7)) == pytest.approx(
-        1000 * math.exp(-0.245) / math.sqrt(2 * math.pi), rel=1e-13
-    )
-    for quantity in ("stiffness", "conductance"):
-        assert float(model.slope(quantity, 0.7)) == pytest.approx(
-            differences(model, quantity, 0.7), rel=1e-10
-        )
-
-
-# The separation of a load
-
-
-def test_pressures_and_values_beyond_reach():
-    model = Model(SURFACE, law=kogut_etsion(0.05), grading=Exponential(2.0))
-    pressure = float(model.mean("pressure", 0.4))
-    assert float(model.mean("load", 0.4)) == pytest.approx(pressure * SURFACE.nominal_area, rel=1e-14)
-    assert float(model.separation_at("pressure", pressure)) == pytest.approx(0.4, abs=1e-12)
-    with pytest.raises(ValueError, match="contacts: not reached for h from -40 to 3"):
-        replace(model, grading=Homogeneous()).separation_at("contacts", 1001.0)
-    with pytest.raises(ValueError, match="give finite values > 0"):
-        model.separation_at("load", -1.0)
-
-
-# Who yields
+    density = math.exp(-0.245) / math.sqrt(2 * math.pi)
+    assert float(model.slope("contacts", 0.7)) == pytest.approx(1000 * density, rel=1e-13)
+    for name in ("stiffness", "conductance"):
+        assert float(model.slope(name, 0.7)) == pytest.approx(differences(model, name, 0.7), rel=1e-10)
 
 
 def test_shares_of_the_pieces_are_shares_of_heights():
@@ -275,54 +212,17 @@ def test_shares_of_the_pieces_are_shares_of_heights():
     h = 0.4
     model = Model(SURFACE, law=law, grading=Exponential(0.2))
     t = brentq(lambda s: s - h - dc / (0.2 + 0.8 * math.exp(-s)) ** 2, h, 3, xtol=1e-15)
-    assert float(model.share(0, h)) == pytest.approx(
-        1 - float(above(np.array(t)) / above(np.array(h))), 1e-11
-    )
-    yielded = model.mean("yielded", h) / model.mean("contacts", h)
-    assert float(sum(model.share(piece, h) for piece in (1, 2, 3))) == pytest.approx(
-        float(yielded), rel=1e-13
-    )
-
-
-# Limits, and Hertz
+    elastic = 1 - float(above(np.array(t)) / above(np.array(h)))
+    assert float(model.share(0, h)) == pytest.approx(elastic, 1e-11)
+    yielded = float(model.mean("yielded", h) / model.mean("contacts", h))
+    assert float(sum(model.share(piece, h) for piece in (1, 2, 3))) == pytest.approx(yielded, rel=1e-13)
 
 
 def test_hertz_named_is_hertz_left_out():
     h = np.linspace(-2, 4, 9)
     named, left_out = (Model(SURFACE, grading=Exponential(0.2), law=law) for law in (ContactLaw(), None))
-    for quantity in analytic.QUANTITIES:
-        np.testing.assert_array_equal(named.mean(quantity, h), left_out.mean(quantity, h))
-        np.testing.assert_array_equal(named.std(quantity, h), left_out.std(quantity, h))
+    np.testing.assert_array_equal(named.std("load", h), left_out.std("load", h))
     np.testing.assert_array_equal(named.slope("load", h), left_out.slope("load", h))
-    np.testing.assert_allclose(named.mean("load_slope", h), named.mean("stiffness", h), rtol=1e-12)
-    np.testing.assert_allclose(named.std("load_slope", h), named.std("stiffness", h), rtol=1e-12)
+    np.testing.assert_allclose(named.mean("load_slope", h), left_out.mean("stiffness", h), rtol=1e-12)
     np.testing.assert_array_equal(named.mean("yielded", h), 0.0)
     np.testing.assert_array_equal(named.share(0, h), 1.0)
-
-
-# What is refused
-
-
-def test_negative_moduli_do_not_yield():
-    model = Model(SURFACE, law=kogut_etsion(0.05), grading=Exponential(2.0))
-    assert np.isfinite(model.mean("load", 0.0))
-    with pytest.raises(
-        ValueError, match=r"grading: E\*\(s\)/E\* = -.* needs a modulus >= 0; clip it"
-    ) as told:
-        model.mean("load", -1.0)
-    assert "\n" not in str(told.value)
-    elastic = Model(SURFACE, law=HalfSpace(0.5), grading=Exponential(2.0))
-    assert np.isfinite(elastic.mean("load", -1.0))
-
-
-def test_questions_without_an_answer_are_refused():
-    model = Model(SURFACE, law=kogut_etsion(0.05))
-    with pytest.raises(ValueError, match="load_slope"):
-        model.slope("load_slope", 0.0)
-    with pytest.raises(ValueError, match="every separation must be finite"):
-        model.mean("load", math.nan)
-    with pytest.raises(KeyError, match="load_slope, conductance_si, yielded"):
-        model.mean("force", 0.0)
-    for question in (model.mean, model.slope, model.std, model.separation_at):
-        with pytest.raises(ValueError, match="law = 'custom': no unloading is known"):
-            question("load_unloading", 0.5)

@@ -8,8 +8,7 @@ import pytest
 from scipy.optimize import brentq
 
 from analytic import Clipped, ContactLaw, Custom, Exponential, Homogeneous, Table
-from analytic.laws import Branch, piece_of, regimes as regimes_module
-from analytic.laws.regimes import crossings_of
+from analytic.laws import Branch, piece_of
 
 
 class Yielding(ContactLaw):
@@ -27,32 +26,25 @@ def listed(regimes, k=0):
     return list(zip(regimes.low[here], regimes.high[here], regimes.piece[here], strict=True))
 
 
-def test_a_piece_holds_from_its_limit_on():
-    penetration = np.array([np.nextafter(0.5, 0), 0.5, 2.0])
-    np.testing.assert_array_equal(piece_of(Yielding(0.5, 2.0), penetration, np.ones(3)), [0, 1, 2])
-
-
 def test_soft_tips_yield_between_two_heights_or_nowhere():
     """gamma = 0: e = exp(-s), and s - dc exp(2 s) is highest, -(1 + log(2 dc))/2, at s = -log(2 dc)/2."""
     dc = 0.05
     highest = -(1 + math.log(2 * dc)) / 2
     assert highest == pytest.approx(0.65129, abs=1e-5)
-    h = np.array([0.0, 0.6, highest - 1e-14, highest + 1e-14, 0.7])
+    h = np.array([0.6, highest - 1e-14, highest + 1e-14])
     regimes = Branch(Yielding(dc)).regimes(Exponential(0.0), h, -1.0, 13.0)
 
     def gap(s, level):
         return s - level - dc * math.exp(2 * s)
 
     top = -math.log(2 * dc) / 2
-    for k in (0, 1):
-        (_, one, _), (_, two, _), _ = listed(regimes, k)
-        assert one == pytest.approx(brentq(gap, h[k], top, (h[k],), xtol=1e-15), abs=4e-15)
-        assert two == pytest.approx(brentq(gap, top, 13, (h[k],), xtol=1e-15), abs=4e-15)
-        assert [piece for *_, piece in listed(regimes, k)] == [0, 1, 0]
-    (_, one, _), (_, two, _), _ = listed(regimes, 2)
+    (_, one, _), (_, two, _), _ = listed(regimes)
+    assert one == pytest.approx(brentq(gap, h[0], top, (h[0],), xtol=1e-15), abs=4e-15)
+    assert two == pytest.approx(brentq(gap, top, 13, (h[0],), xtol=1e-15), abs=4e-15)
+    assert [piece for *_, piece in listed(regimes)] == [0, 1, 0]
+    (_, one, _), (_, two, _), _ = listed(regimes, 1)
     assert two - one == pytest.approx(2 * math.sqrt(1e-14), rel=0.05)  # the curvature there is -2
-    assert [piece for *_, piece in listed(regimes, 3)] == [0]
-    assert [piece for *_, piece in listed(regimes, 4)] == [0]
+    assert [piece for *_, piece in listed(regimes, 2)] == [0]
 
 
 def bumpy(s):
@@ -60,13 +52,9 @@ def bumpy(s):
 
 
 GRADINGS = {
-    "uniform": Homogeneous(),
-    "soft tips": Exponential(0.2),
     "no tips": Exponential(0.0),
-    "stiff tips": Exponential(2.0),
     "clipped": Clipped.of(Exponential(3.0)),
     "table": Table([-1.0, 0.0, 0.7, 1.5], [0.4, 1.0, 0.3, 2.0]),
-    "jump behind a break": Custom(lambda s: np.where(s > 1, 0.4, 1.0), breaks=(1.0,)),
     "jump at a break": Custom(lambda s: np.where(s >= 1, 0.4, 1.0), breaks=(1.0,)),
     "untold jump": Custom(lambda s: np.where(s > 1.1, 0.4, 1.0)),
     "untold kink": Custom(lambda s: 0.3 + np.abs(s - 0.7)),
@@ -96,61 +84,23 @@ def test_regimes_are_what_the_literal_comparison_says(name):
                 assert np.all(piece_of(law, s - h[k], grading(s)) == piece)
 
 
-@pytest.mark.parametrize("name", GRADINGS)
-def test_every_crossing_is_right_to_the_last_digits(name):
-    grading = GRADINGS[name]
-
-    def bound(s, _=None):
-        with np.errstate(divide="ignore"):
-            return 0.05 / grading(s) ** 2
-
-    h = np.linspace(-2, 3, 11)
-    found = crossings_of(bound, grading, h, -2.5, 6.0)
-    level = h[found.separation]
-    few = 4 * np.spacing(np.maximum(np.abs(found.height), np.abs(level)))
-    before, behind = found.height - few, found.height + few
-    assert np.all((before - level >= bound(before)) != (behind - level >= bound(behind)))
+JUMPS = {  # moduli, and where they are elastic again: where dc/e^2 = 1.875, or 3.33 on 1/500 of a height
+    "at a break": (Custom(lambda s: np.where(s >= 1, 0.4, 1.0), breaks=(1.0,)), (1.0, 2.075)),
+    "behind a break": (Custom(lambda s: np.where(s > 1, 0.4, 1.0), breaks=(1.0,)), (1.0, 2.075)),
+    "narrow": (
+        Custom(lambda s: np.where((s >= 1.001) & (s < 1.003), 0.3, 1.0), breaks=(1.001, 1.003)),
+        (1.001, 1.003),
+    ),
+}
 
 
-def test_no_pair_of_crossings_next_to_a_tangency_is_missed():
-    """Literal: a million heights in [0, 6] see all but pairs closer than they are."""
-    s = np.linspace(0, 6, 1_000_001)
-    grading = GRADINGS["waves"]
-    for h in np.linspace(-0.2, 1.5, 18):
-        crossing = np.flatnonzero(np.diff(s - h >= 0.2 / grading(s) ** 2))
-        found = crossings_of(lambda x, _: 0.2 / grading(x) ** 2, grading, np.array([h]), 0.0, 6.0)
-        np.testing.assert_allclose(found.height, s[crossing + 1], atol=6.1e-6)
-
-
-@pytest.mark.parametrize("name", ["jump behind a break", "jump at a break"])
+@pytest.mark.parametrize("name", JUMPS)
 def test_a_jump_of_the_modulus_ends_a_regime(name):
-    """Yielded up to s = 1 and elastic above, where dc/e^2 = 1.875, until s - h is that large."""
-    regimes = Branch(Yielding(0.3)).regimes(GRADINGS[name], [0.2], -1.0, 13.0)
+    """Yielded up to the jump and elastic above, until s - h is large enough, or a jump back."""
+    grading, again = JUMPS[name]
+    regimes = Branch(Yielding(0.3)).regimes(grading, [0.2], -1.0, 13.0)
     assert [piece for *_, piece in listed(regimes)] == [0, 1, 0, 1]
-    np.testing.assert_allclose([low for low, *_ in listed(regimes)], [0.2, 0.5, 1.0, 2.075], rtol=1e-15)
-
-
-def test_a_band_between_breaks_is_found_however_narrow():
-    """Elastic on 1/500 of a height, where dc/e^2 = 3.33: between two heights looked at far from breaks."""
-    soft = Custom(lambda s: np.where((s >= 1.001) & (s < 1.003), 0.3, 1.0), breaks=(1.001, 1.003))
-    regimes = Branch(Yielding(0.3)).regimes(soft, [0.2], -1.0, 13.0)
-    assert [piece for *_, piece in listed(regimes)] == [0, 1, 0, 1]
-    np.testing.assert_allclose([low for low, *_ in listed(regimes)], [0.2, 0.5, 1.001, 1.003], rtol=1e-15)
-
-
-def residual(deepest, dc):
-    """Etsion, Kligerman and Kadin (2005)."""
-    x = np.maximum(deepest / dc, 1.0)
-    return deepest * (1 - x**-0.28) * (1 - x**-0.69)
-
-
-def test_lift_off_is_a_crossing_too():
-    """Unloaded from h_min = 0.5: heights that still touch, by mpmath at 30 digits."""
-    found = crossings_of(
-        lambda s, _: residual(s - 0.5, 0.05), Homogeneous(), np.array([0.6, 0.7, 0.9]), 0.5, 13.0
-    )
-    touching = [0.608849771991328907, 0.769773542969503951, 1.21658942136438179]
-    np.testing.assert_allclose(found.height, touching, rtol=1e-13)
+    np.testing.assert_allclose([low for low, *_ in listed(regimes)], [0.2, 0.5, *again], rtol=1e-15)
 
 
 def test_ends_that_cannot_be_told_apart_are_one():
@@ -159,8 +109,6 @@ def test_ends_that_cannot_be_told_apart_are_one():
         h = np.arange(21) * step
         regimes = Branch(Yielding(step, step * (1 + 1e-16))).regimes(Homogeneous(), h, -1.0, 13.0)
         assert set(regimes.low[regimes.low <= h[-1]]) <= set(h)
-    near, there = np.array([1 - 2**-53, 1 + 2**-52, 1 + 2**-40]), np.array([0.0, 1.0, 3.0])
-    np.testing.assert_array_equal(regimes_module._anchored(near, np.zeros(3), there), [1.0, 1.0, near[2]])
     tiny = Branch(Yielding(1e-17)).regimes(Homogeneous(), [1.0], -1.0, 13.0)
     assert listed(tiny) == [(1.0, 13.0, 1)]
     near = Branch(Yielding(0.05, 0.05 + 1e-15)).regimes(Homogeneous(), [0.0], -1.0, 13.0)

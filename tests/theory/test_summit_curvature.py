@@ -16,23 +16,15 @@ from analytic import HeightRule, Homogeneous, Nayak, RandomCurvature, SpectralMo
 from analytic.curvature import MEAN_CURVATURE
 
 VALUES = {
-    (1.6, 1): (0.888293413654686, 0.3036956121514147, 0.5189530616922176, 0.5029355458390308, 2.2818489),
     (1.6, 2): (0.3517724494908437, 0.04927359299064154, 0.07895799938442455, 0.122753436260124, 2.4332938),
-    (2, 2): (0.2852230161151171, 0.04260601204160218, 0.06566624072252187, 0.1018374596744787, 2.3926418),
     (5, 2): (0.1371804861479188, 0.02348253758298309, 0.032156778412333, 0.05103261613338234, 2.1415905),
-    (10, 2): (0.088960295574169, 0.01594392212504669, 0.02045428400384436, 0.03349541393768213, 1.922283),
     (10, 3): (
         0.008427784831721935, 0.0009854417450848941, 0.001155105342234502, 0.002545680458901638, 2.103855,
-    ),
-    (100, 2): (
-        0.03735397215512889, 0.007093871562627524, 0.008019818952040003, 0.01426849605349182, 1.2266628,
     ),
     (100, 3): (
         0.002663262506931592, 0.0003674578406350325, 0.0003702569003428179, 0.0008624363327222108, 1.3762927,
     ),
 }  # fmt: skip
-EXPONENTS_AND_POWERS = ((0, 0), (1, 1), (1.5, 0.5), (0.5, 0.5))
-ALPHAS = (1.6, 2.0, 5.0, 10.0, 100.0)
 
 
 def per_summit(alpha, x):
@@ -44,33 +36,31 @@ def per_summit(alpha, x):
     depth = law.over_rms(rule.heights) - x
     return [
         float(rule.probabilities @ (depth**n * mean_power(q, rule.heights))) / MEAN_CURVATURE**q
-        for n, q in EXPONENTS_AND_POWERS
+        for n, q in ((0, 0), (1, 1), (1.5, 0.5), (0.5, 0.5))
     ]
 
 
-def slope_of_area(alpha, area, load):
-    """kap of `VALUES`, m0 = 1 and q = 1."""
-    return math.pi * area / (4 / 3 * load) * math.sqrt(2 * math.sqrt(3 / alpha))
-
-
-@pytest.mark.parametrize("alpha_x", VALUES, ids=str)
-def test_check_values(alpha_x):
-    *exact, kap = VALUES[alpha_x]
-    found = per_summit(*alpha_x)
+@pytest.mark.parametrize(("alpha", "x"), VALUES)
+def test_check_values(alpha, x):
+    *exact, slope = VALUES[alpha, x]
+    found = per_summit(alpha, x)
     assert found == pytest.approx(exact, rel=1e-12)
-    assert slope_of_area(alpha_x[0], *found[1:3]) == pytest.approx(kap, abs=6e-8 if kap < 10 else 0)
+    area, load = found[1:3]
+    kap = math.pi * area / (4 / 3 * load) * math.sqrt(2 * math.sqrt(3 / alpha))
+    assert kap == pytest.approx(slope, abs=6e-8)
 
 
 def test_moments_of_the_curvatures():
     """E tau, and the mean and the spread of g, free of alpha: means over heights of those at a height."""
     assert pytest.approx(2.60588006348224, rel=1e-14) == MEAN_CURVATURE
-    for alpha in (1.6, 10.0):
-        law, rule = RandomCurvature(alpha), HeightRule.over([-60.0], Homogeneous(), Nayak(alpha))
-        g, w = np.polynomial.legendre.leggauss(100)
-        g, w = 10 * (1 + g), 10 * w
-        marginal = law.pdf(g[:, None], rule.heights) @ rule.probabilities
-        assert w @ marginal == pytest.approx(1, rel=1e-12)
-        assert (w * g) @ marginal == pytest.approx(2.34902690068464, rel=1e-12)
+    law, rule = RandomCurvature(1.6), HeightRule.over([-60.0], Homogeneous(), Nayak(1.6))
+    g, w = np.polynomial.legendre.leggauss(100)
+    g, w = 10 * (1 + g), 10 * w
+    marginal = law.pdf(g[:, None], rule.heights) @ rule.probabilities
+    assert w @ marginal == pytest.approx(1, rel=1e-12)
+    assert (w * g) @ marginal == pytest.approx(2.34902690068464, rel=1e-12)
+    density = law.with_height(g[:, None], np.array([-3.0, 0.4]))
+    np.testing.assert_allclose(density, law.pdf(g[:, None], [-3.0, 0.4]) * law.heights.pdf([-3.0, 0.4]))
 
 
 def given_height(alpha, s):
@@ -98,9 +88,7 @@ def points(density, cuts):
     return g, values * ((b - a) / 2 * w).ravel(), unit
 
 
-@pytest.mark.parametrize(
-    ("alpha", "s"), [(1.6, -5.0), (1.6, 9.0), (5.0, 0.3), (5.0, 9.0), (100.0, -5.0), (100.0, 0.3)]
-)
+@pytest.mark.parametrize(("alpha", "s"), [(1.6, 9.0), (5.0, 0.3), (100.0, -5.0)])
 def test_the_law_at_a_height_against_quadrature(alpha, s):
     law = RandomCurvature(alpha)
     density, cuts = given_height(alpha, s)
@@ -131,31 +119,16 @@ def four_gaussians(alpha, rng, n):
     return z, xx + yy, xx * yy - xy * xy
 
 
-def drawn(alpha, n):
-    """As `four_gaussians` has them with their weights; the weight of a point decides whether it is kept."""
-    rng = np.random.default_rng(4)
-    z, trace, det = four_gaussians(alpha, rng, n)
-    kept = (det > 0) & (trace < 0) & (rng.random(n) * 30 < det)  # above 30 one in 1e5
-    return z[kept], np.sqrt(det[kept])
-
-
-def ks(alpha, z, g):
-    """p values: heights under Nayak's law, curvatures each at its own height, and all of them."""
-    heights = Nayak(alpha)
-    s = (z - heights.mean) / heights.std
-    law = RandomCurvature(alpha)
-    return (
-        scipy.stats.kstest(heights.cdf(s), "uniform").pvalue,
-        scipy.stats.kstest(law.cdf(g, s), "uniform").pvalue,
-    )
-
-
-@pytest.mark.parametrize("alpha", [1.6, 5.0])
-def test_same_law_as_four_gaussians(alpha):
-    """p > 1e-4 for fixed seeds: a false alarm in 5000."""
-    z, g = drawn(alpha, 400_000)
-    assert z.size > 7000
-    assert min(ks(alpha, z, g)) > 1e-4
+def test_same_law_as_four_gaussians():
+    """The weight of a point decides whether it is kept. p > 1e-4 for a fixed seed: a false alarm in 5000."""
+    alpha, rng = 5.0, np.random.default_rng(4)
+    z, trace, det = four_gaussians(alpha, rng, 400_000)
+    kept = (det > 0) & (trace < 0) & (rng.random(det.size) * 30 < det)  # above 30 one in 1e5
+    assert kept.sum() > 7000
+    law, heights = RandomCurvature(alpha), Nayak(alpha)
+    s = (z[kept] - heights.mean) / heights.std
+    assert scipy.stats.kstest(heights.cdf(s), "uniform").pvalue > 1e-4
+    assert scipy.stats.kstest(law.cdf(np.sqrt(det[kept]), s), "uniform").pvalue > 1e-4
 
 
 def test_draws_follow_the_law():
@@ -180,18 +153,6 @@ def test_bounded_radii():
         assert bounded.mean(power, s) == pytest.approx(sums, rel=1e-12)
     assert np.all(bounded.mean(1, s) < free.mean(1, s))
     assert bounded.summits(np.random.default_rng(1), 500)[1].max() == 2.0
-
-
-def test_what_there_is_not_is_refused():
-    with pytest.raises(ValueError, match="power = 4"):
-        RandomCurvature(2.0).mean(4, 0.0)
-    with pytest.raises(ValueError, match=r"alpha = 1\.5"):
-        RandomCurvature(1.5)
-    with pytest.raises(ValueError, match="largest = 0"):
-        RandomCurvature(2.0, 0)
-    with pytest.raises(ValueError, match=r"alpha = m0 m4/m2\^2 = 1.4"):
-        SpectralMoments(1.4, 1.0, 1.0).surface(1.0, 1.0)
-    assert SpectralMoments(1.4, 1.0, 1.0).sigma > 0  # a measured map may have it
 
 
 def test_the_surface_of_spectral_moments():
