@@ -6,13 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from oracles.fit_of_maps import fit_map
-from oracles.inside import (
-    SUMMITS,
-    envelope,
-    hidden_summits,
-    visible,
-)
+from oracles.inside import SUMMITS, envelope, hidden_summits, visible, write_scene
+from oracles.summits_by_hand import summit_contact
 
+import analytic
 import mcgw
 from mcgw.cli import main
 from mcgw.maps import Asperities, Spectrum, Topography, gaussian_map, write_map
@@ -152,7 +149,7 @@ def test_one_radius_is_one_to_a_sixth(rough):
 
 
 def test_what_a_file_does_not_tell_is_given_to_a_fit(tmp_path, without_caps):
-    """Pixel, unit and mark of missing points of an array; spacing and unit of a column."""
+    """Pixel, unit and mark of missing points."""
     z = gaussian_map(Spectrum(1e-6, 40e-6, 14e-6), (100, 100), PIXEL, rng(1)).heights
     z[50, 50] = np.nan
     np.save(tmp_path / "m.npy", np.where(np.isnan(z), -7.0, z * 1e6))
@@ -160,10 +157,6 @@ def test_what_a_file_does_not_tell_is_given_to_a_fit(tmp_path, without_caps):
     found = mcgw.fit(tmp_path / "m.npy", cutoff="20 um", pixel="2 um", unit="um", missing_value=-7.0)
     assert found.moments.m4 == pytest.approx(same.moments.m4, rel=1e-9)
     assert found.notes == same.notes
-    np.savetxt(tmp_path / "p.txt", z[:20].ravel() * 1e9)
-    same = mcgw.fit(mcgw.maps.profile.Profile(z[:20].ravel(), 2e-6), cutoff="20 um")
-    found = mcgw.fit(tmp_path / "p.txt", cutoff="20 um", pixel="2 um", unit="nm")
-    assert found.moments.m4 == pytest.approx(same.moments.m4, rel=1e-6)
 
 
 def test_each_kind_of_heights_has_the_estimate_it_names(rough):
@@ -195,3 +188,58 @@ def test_overlap_is_that_of_the_estimate_that_is_used(tmp_path, capsys):
         words_of = ["fit", *number * [str(tmp_path / "m.h5")], "--cutoff", "none", "--use", use]
         assert main([*words_of, "-o", str(tmp_path / "s.toml")]) == 0
         assert ("overlap:" in capsys.readouterr().err) == named
+
+
+def test_a_scene_of_a_fit_takes_what_scenes_have(rough):
+    """The same as afterwards; what is wrong is told as it is there."""
+    plain = mcgw.fitted_scene(rough, heights="nayak", E_star="70 GPa")
+    changes = {
+        "grading": mcgw.Exponential(2.0),
+        "nominal_area": "4 mm^2",
+        "joint": mcgw.Joint(resistivity=0.1),
+    }
+    made = mcgw.fitted_scene(rough, heights="nayak", E_star="70 GPa", **changes)
+    assert made == plain.replace(**changes) != plain
+    assert made.heights == analytic.Nayak(rough.moments.alpha)
+    assert made.surface.nominal_area == 4e-6
+    assert made.n_asperities == round(made.surface.eta * 4e-6)
+    with pytest.raises(mcgw.SceneError, match="n_surfaces = -1"):
+        mcgw.fitted_scene(rough, n_surfaces=-1)
+    with pytest.raises(TypeError, match="gradient"):
+        mcgw.fitted_scene(rough, gradient=2.0)
+
+
+@pytest.mark.parametrize(("asked", "told"), [
+    ({"heights": "nayak", "use": "summits"}, 'use = "summits": heights = "nayak" follow from the "moments"'),
+    ({"heights": "measured", "use": "moments"}, "measured heights as they are need use = .summits"),
+    ({"heights": "measured", "nominal_area": 1}, 'nominal_area = 1: heights = "measured" uses the measured'),
+    ({"heights": "summits", "nominal_area": 1}, 'nominal_area = 1: heights = "summits" uses the measured'),
+])  # fmt: skip
+def test_estimates_that_do_not_suit_the_heights_are_refused(asked, told, rough):
+    with pytest.raises(ValueError, match=told):
+        mcgw.fitted_scene(rough, **asked)
+
+
+def test_the_very_summits_carry_what_they_carry_literally(rough, tmp_path):
+    scene = mcgw.fitted_scene(rough, heights="summits", E_star=70e9)
+    ensemble = mcgw.run(mcgw.scene_from(mcgw.scene_text(scene)), tmp_path / "summits.h5")
+    assert scene.surface.radius == pytest.approx(1 / np.mean(1 / rough.listed.radii), rel=1e-12)
+    d = scene.surface.sigma * np.array(scene.separations)
+    exact = summit_contact(rough.listed.heights, rough.listed.radii, 70e9, d)
+    for name in ("load", "area", "stiffness", "contacts"):
+        np.testing.assert_allclose(ensemble[name], getattr(exact, name), rtol=1e-11)
+    assert exact.load[0, 0] > 0
+
+
+@pytest.mark.parametrize("law", ["gaussian", "nayak", "table"])
+def test_a_larger_area_has_more_summits(law, rough, tmp_path):
+    """In a file that is changed by hand, and as an argument."""
+    before, path = mcgw.fitted_scene(rough, heights=law), tmp_path / "f.toml"
+    write_scene(before, path, None, [])
+    (line,) = [line for line in path.read_text().splitlines() if line.startswith("nominal_area =")]
+    path.write_text(path.read_text().replace(line, 'nominal_area = "1 cm^2"'))
+    for after in (mcgw.load_scene(path), mcgw.fitted_scene(rough, heights=law, nominal_area="1 cm^2")):
+        assert after.surface.nominal_area == 1e-4
+        assert after.n_asperities == pytest.approx(before.surface.eta * 1e-4, rel=1e-3)
+        assert after.n_asperities > 1000 * before.n_asperities
+        assert type(after.heights) is type(before.heights)

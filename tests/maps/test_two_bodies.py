@@ -1,33 +1,10 @@
-"""Two rough bodies as one, against a drawn sum of two maps."""
+"""Two rough bodies as one: sums by hand, and files of scenes that name two files."""
 
 import numpy as np
 import pytest
 
 import mcgw
-from mcgw.maps import Spectrum, Topography, gaussian_map
-
-SPECTRA = (Spectrum(1e-6, 80e-6, 10e-6), Spectrum(0.2e-6, 40e-6, 8e-6))
-PIXEL = (1e-6, 1e-6)
-
-
-@pytest.fixture(scope="module")
-def maps():
-    """Two maps of different spectra."""
-    return [gaussian_map(s, (512, 512), PIXEL, np.random.default_rng(k)) for k, s in enumerate(SPECTRA)]
-
-
-def test_two_fits_give_the_fit_of_the_drawn_sum(maps):
-    """Sigma, R and eta within 2 %, load at three separations within 4 %."""
-    total = Topography(maps[0].heights - maps[1].heights, PIXEL, periodic=True)
-    a, b, both = (mcgw.fit(z, cutoff=None, form="none") for z in (*maps, total))
-    pair = mcgw.combine(a, b, nominal_area=both.area, E_star=1e11)
-    for name in ("sigma", "radius", "eta"):
-        assert getattr(pair.surface, name) == pytest.approx(getattr(both.moments, name), rel=0.02)
-    h = [0.0, 1.0, 2.0]
-    drawn = mcgw.fitted_scene(both, heights="nayak", E_star=1e11)
-    loads = mcgw.Scene(pair, separations=h).theory.mean("load", h)
-    assert loads == pytest.approx(drawn.theory.mean("load", h), rel=0.04)
-    assert pair.surface.sigma > 1.01 * a.moments.sigma
+from mcgw.maps import Topography
 
 
 def test_sums_of_two_bodies_and_what_lies_in_series():
@@ -118,9 +95,10 @@ def test_a_scene_names_the_files_of_two_bodies(tmp_path):
     assert load(tmp_path, PAIR, changes={"contact.law": "kogut-etsion"}).law.hardness == 2e9
 
 
-def test_a_file_of_mcgw_fit_is_a_body(tmp_path, maps):
+def test_a_file_of_mcgw_fit_is_a_body(tmp_path):
     """Its moments under [fitted] count, whatever heights it has."""
-    found = mcgw.fit(maps[0], cutoff=None, form="none")
+    rough = Topography(1e-7 * np.random.default_rng(1).normal(size=(64, 64)), (1e-6, 1e-6))
+    found = mcgw.fit(rough, cutoff=None)
     scene = load(tmp_path, PAIR, one=mcgw.scene_text(mcgw.fitted_scene(found, E_star=2e11)))
     expected = mcgw.combine(found.moments, mcgw.load_scene(tmp_path / "b.toml"), nominal_area=1, E_star=1)
     assert scene.heights.alpha == pytest.approx(expected.moments.alpha)
