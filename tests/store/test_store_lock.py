@@ -1,24 +1,21 @@
-"""One driver alone or several that share: between threads and processes, freed however a holder ends."""
+"""One driver alone or several that share: freed however a holder ends; `test_one_writer` has threads."""
 
 import os
 import sqlite3
 import subprocess
 import sys
-import threading
 from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
 from filelock import Timeout
-from oracles.inside import LOCK_FILES, Values, locked, parts_of
+from oracles.inside import LOCK_FILES, Values, locked
 
 import mcgw
-from mcgw.cli import main
 from mcgw.errors import StoreError
 from mcgw.store import lock
 
 ROOT = Path(mcgw.__file__).parents[1]
-ENV = os.environ | {"PYTHONPATH": str(ROOT)}
 
 # A process that holds the lock until it is killed; its own child, made by a fork, lives on.
 HOLD = """
@@ -39,7 +36,7 @@ def _at_once(monkeypatch):
     monkeypatch.setattr(lock, "PATIENCE", 0.1)
 
 
-def free(folder, *, shared):
+def free(folder, *, shared=False):
     try:
         with locked(folder, shared=shared):
             return True
@@ -58,58 +55,42 @@ def test_a_folder_that_goes_between_two_steps_is_made_again(tmp_path, monkeypatc
         return take(folder, shared)
 
     monkeypatch.setattr(lock, "_lock", too_late)
-    assert free(tmp_path / "f.parts", shared=False)
+    assert free(tmp_path / "f.parts")
     assert len(made) == 3
 
 
-def in_a_thread(folder, *, shared):
-    found = []
-    thread = threading.Thread(target=lambda: found.append(free(folder, shared=shared)))
-    thread.start()
-    thread.join()
-    return found[0]
-
-
-@pytest.mark.parametrize("ask", [free, in_a_thread])
-def test_alone_or_shared(tmp_path, ask):
+def test_alone_or_shared_until_the_last_one_leaves(tmp_path):
     with locked(tmp_path):
-        assert not ask(tmp_path, shared=False)
-        assert not ask(tmp_path, shared=True)
+        assert not free(tmp_path)
+        assert not free(tmp_path, shared=True)
         with pytest.raises(StoreError, match=f"locked by pid {os.getpid()} on .*, which is working on"):
             locked(tmp_path).__enter__()
     tmp_path.mkdir()
     (tmp_path / "holder").write_text("pid 1 on another\n")  # as one that was killed leaves it
-    with locked(tmp_path, shared=True):
-        assert ask(tmp_path, shared=True)
-        assert not ask(tmp_path, shared=False)
+    with ExitStack() as first, locked(tmp_path, shared=True):
+        first.enter_context(locked(tmp_path, shared=True))
         with pytest.raises(StoreError, match="locked by another process"):  # whoever held it before
             locked(tmp_path).__enter__()
-    assert ask(tmp_path, shared=False)
-    assert not tmp_path.exists()
-
-
-def test_several_share_until_the_last_one_leaves(tmp_path):
-    with ExitStack() as first, ExitStack() as second:
-        first.enter_context(locked(tmp_path, shared=True))
-        second.enter_context(locked(tmp_path, shared=True))
         first.close()
-        assert not free(tmp_path, shared=False)
-    assert free(tmp_path, shared=False)
+        assert not free(tmp_path)
+    assert free(tmp_path)
+    assert not tmp_path.exists()
 
 
 @pytest.mark.parametrize("how", ["shared", "alone"])
 def test_kill_9_frees_it_though_a_child_of_the_holder_lives(tmp_path, how):
-    holder = subprocess.Popen([sys.executable, "-c", HOLD, tmp_path, how], env=ENV, stdout=subprocess.PIPE)
+    env = os.environ | {"PYTHONPATH": str(ROOT)}
+    holder = subprocess.Popen([sys.executable, "-c", HOLD, tmp_path, how], env=env, stdout=subprocess.PIPE)
     child = int(holder.stdout.readline())
     try:
         assert free(tmp_path, shared=True) == (how == "shared")
         if how == "alone":
             with pytest.raises(StoreError, match=f"locked by pid {holder.pid} on"):
                 locked(tmp_path).__enter__()
-        assert not free(tmp_path, shared=False)
+        assert not free(tmp_path)
         holder.kill()
         holder.wait()
-        assert free(tmp_path, shared=False)
+        assert free(tmp_path)
     finally:
         holder.kill()
         os.kill(child, 9)
@@ -142,19 +123,16 @@ def test_a_run_in_a_folder_open_to_all_leaves_nothing(tmp_path, make_scene, monk
     finally:
         os.umask(before)
     assert [path.name for path in tmp_path.iterdir()] == ["e.h5"]
-    assert not parts_of(tmp_path / "e.h5").exists()
 
 
 @pytest.mark.parametrize(
     "error", [sqlite3.OperationalError("disk I/O error"), ValueError("not writable"), Timeout("x")]
 )
-def test_a_disk_that_keeps_no_locks_is_refused_in_one_line(error, make_scene, tmp_path, monkeypatch, capsys):
+def test_a_disk_that_keeps_no_locks_is_refused_in_one_line(error, make_scene, tmp_path, monkeypatch):
     def none(*_, **__):
         raise error
 
-    monkeypatch.setattr(lock, "PATIENCE", 0.0)
     monkeypatch.setattr(lock, "_lock", none)
-    (tmp_path / "s.toml").write_text(mcgw.scene_text(make_scene(n_surfaces=4)))
-    assert main(["run", str(tmp_path / "s.toml"), "-o", str(tmp_path / "e.h5")]) == 2
-    assert "disk that keeps" in "".join(capsys.readouterr().err.splitlines()[-1:])
+    with pytest.raises(StoreError, match=r"^[^\n]*disk that keeps[^\n]*$"):
+        mcgw.run(make_scene(n_surfaces=4), tmp_path / "e.h5")
     assert not (tmp_path / "e.h5").exists()

@@ -3,19 +3,19 @@
 import io
 import os
 import signal
+from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
 from oracles.begun_runs import SIZE, SURFACES, begun, digest, in_small_blocks
+from oracles.flipped import flip_a_number
 from oracles.inside import Values, parts_of
 
 import mcgw
 from mcgw.errors import RunError, StoppedError
 from mcgw.jobs import making
 from mcgw.store import h5_writing, place
-
-ROWS, COLUMNS = 40, 5
 
 
 @pytest.fixture(autouse=True)
@@ -26,26 +26,22 @@ def _small_blocks(monkeypatch):
 
 def test_compressed_is_what_shrinks_by_half():
     """Whole numbers of contacts do, loads do not."""
-    tables = {
-        "load": np.random.default_rng(1).random((ROWS, COLUMNS)),
-        "contacts": np.random.default_rng(2).integers(0, 9, (ROWS, COLUMNS)),
-    }
-    with h5py.File(io.BytesIO(), "w") as file:
-        for name, values in tables.items():
-            data = h5_writing.empty_table(file, name, ROWS, values)
-            assert (data.compression, data.shuffle) == (
-                ("gzip", True) if name == "contacts" else (None, False)
-            )
+    dice = np.random.default_rng(1)
+    for values, packed in ((dice.random((40, 5)), None), (dice.integers(0, 9, (40, 5)), "gzip")):
+        with h5py.File(io.BytesIO(), "w") as file:
+            data = h5_writing.empty_table(file, "x", 40, values)
+            assert (data.compression, data.shuffle) == (packed, packed is not None)
             assert data.fletcher32
-            assert data.chunks == (8, COLUMNS)
+            assert data.chunks == (8, 5)
 
 
-@pytest.mark.parametrize("columns", [0, 1, 41, 512, 513, 5000, 2**17, 2**20])
+@pytest.mark.parametrize("columns", [0, 41, 512, 513, 2**17, 2**20])
 def test_chunks_are_cut_at_powers_of_two_within_a_mebibyte(columns, monkeypatch):
     monkeypatch.setattr(h5_writing, "CHUNK_ROWS", 256)
     rows = h5_writing.chunk_rows(10**6, columns)
     assert 256 % rows == 0  # so that blocks of whole chunks of the largest kind are whole chunks of any
     assert rows == 1 or 8 * rows * columns <= 2**20
+    assert rows == 256 or 16 * rows * columns > 2**20
     assert h5_writing.chunk_rows(7, columns) == min(rows, 7)
 
 
@@ -58,16 +54,10 @@ def scene(make_scene):
 
 
 @pytest.fixture
-def expected(scene, tmp_path, monkeypatch):
+def expected(scene, tmp_path):
     """Digest of the ensemble that was drawn in memory and saved, without blocks."""
     mcgw.save(mcgw.simulate(scene), tmp_path / "whole.h5")
     return digest(tmp_path / "whole.h5")
-
-
-def made(way, *words):
-    """Digest of the file that comes out."""
-    way(*words)
-    return digest(words[-1])
 
 
 @pytest.mark.parametrize("rows", [4, 12, 256])
@@ -79,38 +69,32 @@ def test_blocks_and_chunks_of_any_size_make_the_same(scene, tmp_path, expected, 
     monkeypatch.setattr(Values, "rows", 20)
     assert mcgw.run(scene, path, shard="1/1") == 0
     monkeypatch.setattr(Values, "rows", SIZE)
-    assert made(mcgw.run, scene, path) == expected
-    for name, values in mcgw.simulate(scene).sums.arrays.items():
-        np.testing.assert_array_equal(mcgw.open_ensemble(path).sums.read(name, 0, None), values)
+    made, drawn = mcgw.run(scene, path), mcgw.simulate(scene)
+    assert digest(path) == expected
+    for name in scene.quantities:
+        np.testing.assert_array_equal(made[name], drawn[name])
 
 
-def chunk_of(path, name, number=1):
-    """Where a chunk lies in a file."""
-    with h5py.File(path) as file:
-        info = file[name].id.get_chunk_info(number)
-    return info.byte_offset, info.size
+@pytest.mark.parametrize("keep", ["sums", "statistics"])
+@pytest.mark.parametrize("damage", [flip_a_number, Path.unlink], ids=["flipped", "gone"])
+def test_a_block_that_is_lost_late_never_comes_into_the_file(scene, tmp_path, keep, damage, monkeypatch):
+    """After the shards were looked at."""
+    path, merged, kept = tmp_path / "e.h5", making._merged, scene.replace(keep=keep)
+    block = begun(kept, path)[2]
 
-
-@pytest.mark.parametrize("name", ["load", "contacts"])
-def test_a_damaged_chunk_is_never_copied_into_the_file(scene, tmp_path, expected, name, monkeypatch):
-    """It is damaged after the shards were looked at."""
-    path, merged = tmp_path / "e.h5", making._merged
-    shard = begun(scene, path)[2]
-
-    def damage_first(*words):
-        offset, size = chunk_of(shard, name)
-        data = bytearray(shard.read_bytes())
-        data[offset + size // 2] ^= 16
-        shard.write_bytes(data)
+    def damaged_first(*words):
+        damage(block)
         return merged(*words)
 
     with monkeypatch.context() as patch:
-        patch.setattr(making, "_merged", damage_first)
-        with pytest.raises(RunError, match="a shard is damaged; run the jobs again"):
+        patch.setattr(making, "_merged", damaged_first)
+        with pytest.raises(RunError, match="a shard is damaged; run the jobs again to redraw it"):
             mcgw.merge(path)
     assert not path.exists()
     assert not list(parts_of(path).glob(".*.tmp"))
-    assert made(mcgw.run, scene, path) == expected
+    mcgw.run(kept, path)
+    mcgw.save(mcgw.simulate(kept), tmp_path / "whole.h5")
+    assert digest(path) == digest(tmp_path / "whole.h5")
 
 
 def test_numbers_that_go_to_another_place_are_seen(scene, tmp_path, monkeypatch):
@@ -132,12 +116,11 @@ def test_numbers_that_go_to_another_place_are_seen(scene, tmp_path, monkeypatch)
     assert not path.exists()
 
 
-@pytest.mark.parametrize("where", ["writing", "reading back"])
-def test_a_signal_while_merging_keeps_all_blocks(scene, tmp_path, expected, monkeypatch, where):
-    path = tmp_path / "e.h5"
+@pytest.mark.parametrize("step", ["__setitem__", "__getitem__"])
+def test_a_signal_while_merging_keeps_all_blocks(scene, tmp_path, expected, monkeypatch, step):
+    """While the file is written, or read back."""
+    path, work, struck = tmp_path / "e.h5", getattr(h5py.Dataset, step), []
     blocks = begun(scene, path)
-    target = (h5py.Dataset, "__setitem__" if where == "writing" else "__getitem__")
-    work, struck = getattr(*target), []
 
     def signalled(*arguments):
         if not struck:
@@ -146,10 +129,11 @@ def test_a_signal_while_merging_keeps_all_blocks(scene, tmp_path, expected, monk
         return work(*arguments)
 
     with monkeypatch.context() as patch:
-        patch.setattr(*target, signalled)
+        patch.setattr(h5py.Dataset, step, signalled)
         with pytest.raises(StoppedError, match=r"all blocks are kept in .*; the same command merges them"):
             mcgw.merge(path)
     assert not path.exists()
     assert sorted(parts_of(path).glob("shards/*.h5")) == blocks
     assert not list(parts_of(path).glob(".*.tmp"))
-    assert made(mcgw.merge, path) == expected
+    mcgw.merge(path)
+    assert digest(path) == expected

@@ -5,23 +5,17 @@ import os
 import pydoc
 import shutil
 import signal
-from dataclasses import replace
-from pathlib import Path
+from itertools import product
 
 import numpy as np
 import pytest
 from oracles.begun_runs import SIZE, SURFACES, begun, digest, halted, in_small_blocks
 from oracles.flipped import flip_a_number
-from oracles.inside import RECORD, Blocks, Plan, Span, commit_block, part_of, parts_of, state_of
-from oracles.said import without_notes
+from oracles.inside import RECORD, Blocks, Plan, Span, commit_block, part_of, parts_of
 
 import mcgw
-from mcgw.cli import main
 from mcgw.errors import RunError, StoppedError, StoreError
-from mcgw.jobs import making
-from mcgw.store import ensembles, place
-
-HERE = Path(__file__).parents[1]
+from mcgw.store import ensembles
 
 
 @pytest.fixture(autouse=True)
@@ -52,55 +46,6 @@ def drawn(monkeypatch):
 
     monkeypatch.setattr(Plan, "draw", counted)
     return found
-
-
-@pytest.mark.parametrize("keep", ["sums", "statistics"])
-@pytest.mark.parametrize("by", ["run", "shares", "workers"])
-def test_going_on_draws_each_missing_block_once(scene, tmp_path, drawn, by, keep):
-    """Blocks 0 to 2 and 5 are held: nobody draws them again, whoever goes on."""
-    scene, path = scene.replace(keep=keep), tmp_path / "e.h5"
-    mcgw.run(scene, path, shard="1/1")
-    blocks = sorted(parts_of(path).glob("shards/block-*.h5"))
-    assert drawn == [0, 16, 32, 48, 64, 80, 96]
-    for lost in (3, 4, 6):
-        blocks[lost].unlink()
-    drawn.clear()
-    if by == "run":
-        told = []
-        mcgw.run(scene, path, progress=lambda now, _: told.append(now))
-        assert (told[0], told[-1]) == (64, 100)
-    elif by == "shares":
-        assert [mcgw.run(scene, path, shard=f"{k}/2") for k in (1, 2, 1)] == [16, 0, 0]
-    else:
-        for first, n in ((0, 16), (48, 16), (64, 16), (48, 16), (96, 4)):
-            commit_block(str(parts_of(path)), first, n)
-    assert sorted(drawn) == [48, 64, 96]
-
-
-def test_n_surfaces_is_the_total(scene, tmp_path, expected, drawn):
-    """Extended in steps that are no multiple of a block, once in the middle of a run; each is drawn once."""
-    path = tmp_path / "e.h5"
-    mcgw.run(scene.replace(n_surfaces=5), path)
-    mcgw.run(scene.replace(n_surfaces=37), path)
-    assert drawn == [0, 5, 16, 32]
-    assert ensembles.open_ensemble(path).n_surfaces == 37
-    halted(scene.replace(n_surfaces=90), path, 64)
-    assert ensembles.open_ensemble(path).n_surfaces == 37  # the finished file stays as it is
-    drawn.clear()
-    mcgw.run(scene, path)
-    assert 64 <= drawn[0] <= 90
-    assert digest(path) == expected
-    with pytest.raises(StoreError, match="holds 100 surfaces already"):
-        mcgw.run(scene.replace(n_surfaces=99), path)
-
-
-def test_a_short_block_of_statistics_gives_way_to_a_whole_one(scene, tmp_path, drawn):
-    path, kept = tmp_path / "e.h5", scene.replace(keep="statistics")
-    mcgw.run(kept.replace(n_surfaces=20), path, shard="1/1")
-    mcgw.run(kept, path)
-    assert drawn == [0, 16, 16, 32, 48, 64, 80, 96]
-    mcgw.save(mcgw.simulate(kept), tmp_path / "whole.h5")
-    assert digest(path) == digest(tmp_path / "whole.h5")
 
 
 def test_another_version_is_refused(scene, tmp_path, monkeypatch):
@@ -135,25 +80,6 @@ def test_damage_is_put_aside_and_drawn_again(scene, tmp_path, expected):
     assert digest(path) == expected
 
 
-def test_rows_of_a_run_in_progress_are_those_of_a_list(scene, tmp_path):
-    """From any surface to any other, within a block and beyond one."""
-    path, asked = tmp_path / "e.h5", scene.replace(sampler="cells")
-    shards = begun(asked, path)[:3]
-    every = ensembles.open_ensemble(path).sums
-    assert not ensembles.read_attributes(path)["complete"]
-    held = replace(every, shards=every.shards[:3])
-    whole = mcgw.simulate(asked)
-    for start in (0, 5, 15, 16, 33):
-        for stop in (16, 17, 40, 48, None):
-            rows = slice(start, 48 if stop is None else stop)
-            if rows.start < rows.stop:
-                np.testing.assert_array_equal(held.read("load", start, stop), whole.load[rows])
-    shards[1].unlink()
-    with pytest.raises(StoreError, match=r"block-0000000000016\.h5: no longer exists; its run has ended"):
-        held.read("load", 0, 20)
-    np.testing.assert_array_equal(held.read("load", 0, 16), whole.load[:16])
-
-
 def test_a_run_without_a_block_or_its_record_is_said_to_have_none(scene, tmp_path):
     path = tmp_path / "e.h5"
     begun(scene, path)
@@ -168,58 +94,6 @@ def test_a_run_without_a_block_or_its_record_is_said_to_have_none(scene, tmp_pat
     (folder / RECORD).unlink()
     with pytest.raises(StoreError, match=r"run\.h5: there is none$"):
         Plan.open(folder)
-
-
-def test_statistics_of_a_missing_block_are_not_merged(scene, tmp_path, monkeypatch):
-    """It goes between the look for gaps and the making of the file."""
-    path = tmp_path / "e.h5"
-    gone = begun(scene.replace(keep="statistics"), path)[2]
-    made = making.make_file
-
-    def late(*words):
-        gone.unlink()
-        return made(*words)
-
-    monkeypatch.setattr(making, "make_file", late)
-    with pytest.raises(RunError, match=r"a shard is damaged; run the jobs again to redraw it"):
-        mcgw.merge(path)
-    assert not path.exists()
-
-
-def test_a_file_that_appears_while_one_is_made_is_left_alone(scene, tmp_path):
-    path, there = tmp_path / "e.h5", parts_of(tmp_path / "e.h5")
-    there.mkdir()
-    drawn = mcgw.simulate(scene)
-    plan = Plan.of(drawn.scene, path, drawn.sampler)
-    contents = plan.contents(drawn.labelled(), 1.0)
-    place.put(plan, contents, None)
-    before, data = state_of(path), path.read_bytes()
-    with pytest.raises(RunError, match=r"e\.h5: File exists; it was not changed, .* choose another"):
-        place.put(plan, contents, None)
-    assert path.read_bytes() == data
-    place.put(plan, contents, before)
-    assert state_of(path) != before
-    with pytest.raises(RunError, match="another file now has this name; it was not changed"):
-        place.put(plan, contents, before)
-    assert list(there.iterdir()) == []
-    there.rmdir()
-    with pytest.raises(RunError, match=r"cannot be written \(No such file or directory\); is the disk full"):
-        place.put(plan, contents, None)
-
-
-def test_progress_of_a_run_goes_on_from_what_it_holds(scene, tmp_path):
-    path, told = tmp_path / "e.h5", []
-    mcgw.run(scene, path, shard="2/2", progress=lambda *pair: told.append(pair))  # of seven blocks three
-    assert told == [(0, 100), (16, 100), (32, 100), (48, 100)]
-    told.clear()
-    mcgw.run(scene, path, progress=lambda *pair: told.append(pair))
-    assert told == [(48, 100), (64, 100), (80, 100), (96, 100), (100, 100)]
-    told.clear()
-    mcgw.run(scene, path, progress=lambda *pair: told.append(pair))
-    assert told == [(100, 100)]
-    told.clear()
-    mcgw.run(scene, tmp_path / "one.h5", n_surfaces=10, progress=lambda *pair: told.append(pair))
-    assert (told[0], told[-1]) == ((0, 10), (10, 10))
 
 
 def test_what_is_left_out_of_a_run_is_told(scene, tmp_path):
@@ -246,6 +120,72 @@ def test_planted_links_are_not_followed(scene, tmp_path):
         mcgw.run(scene, tmp_path / "f.h5")
 
 
+@pytest.mark.parametrize(
+    ("by", "keep"), [("run", "sums"), ("shares", "sums"), ("workers", "sums"), ("run", "statistics")]
+)
+def test_going_on_draws_each_missing_block_once(scene, tmp_path, drawn, by, keep):
+    """Blocks 0 to 2 and 5 are held: nobody draws them again, whoever goes on."""
+    scene, path = scene.replace(keep=keep), tmp_path / "e.h5"
+    blocks = begun(scene, path)
+    assert drawn == [0, 16, 32, 48, 64, 80, 96]
+    for lost in (3, 4, 6):
+        blocks[lost].unlink()
+    drawn.clear()
+    if by == "run":
+        told = []
+        mcgw.run(scene, path, progress=lambda *pair: told.append(pair))
+        assert told == [(64, 100), (80, 100), (96, 100), (100, 100)]
+        mcgw.run(scene, path, progress=lambda *pair: told.append(pair))
+        assert told[4:] == [(100, 100)]
+    elif by == "shares":
+        assert [mcgw.run(scene, path, shard=f"{k}/2") for k in (1, 2, 1)] == [16, 0, 0]
+    else:
+        for first, n in ((0, 16), (48, 16), (64, 16), (48, 16), (96, 4)):
+            commit_block(str(parts_of(path)), first, n)
+    assert sorted(drawn) == [48, 64, 96]
+
+
+def test_n_surfaces_is_the_total(scene, tmp_path, expected, drawn):
+    """Extended in steps that are no multiple of a block, once in the middle of a run; each is drawn once."""
+    path = tmp_path / "e.h5"
+    mcgw.run(scene.replace(n_surfaces=5), path)
+    mcgw.run(scene.replace(n_surfaces=37), path)
+    assert drawn == [0, 5, 16, 32]
+    halted(scene.replace(n_surfaces=90), path, 64)
+    assert ensembles.open_ensemble(path).n_surfaces == 37  # the finished file stays as it is
+    drawn.clear()
+    mcgw.run(scene, path)
+    assert 64 <= drawn[0] <= 90
+    assert digest(path) == expected
+    with pytest.raises(StoreError, match="holds 100 surfaces already"):
+        mcgw.run(scene.replace(n_surfaces=99), path)
+
+
+def test_a_short_block_of_statistics_gives_way_to_a_whole_one(scene, tmp_path, drawn):
+    path, kept = tmp_path / "e.h5", scene.replace(keep="statistics")
+    mcgw.run(kept.replace(n_surfaces=20), path, shard="1/1")
+    mcgw.run(kept, path)
+    assert drawn == [0, 16, 16, 32, 48, 64, 80, 96]
+    mcgw.save(mcgw.simulate(kept), tmp_path / "whole.h5")
+    assert digest(path) == digest(tmp_path / "whole.h5")
+
+
+def test_rows_of_a_run_in_progress_are_those_of_a_list(scene, tmp_path):
+    """From any surface to any other, within a block and beyond one."""
+    path, asked = tmp_path / "e.h5", scene.replace(sampler="cells")
+    *shards, last = begun(asked, path)
+    last.unlink()
+    held, whole = ensembles.open_ensemble(path).sums, mcgw.simulate(asked)
+    assert not ensembles.read_attributes(path)["complete"]
+    for start, stop in product((0, 5, 15, 16, 33), (16, 17, 40, 48, None)):
+        if start < (stop or 96):
+            np.testing.assert_array_equal(held.read("load", start, stop), whole.load[start : stop or 96])
+    shards[1].unlink()
+    with pytest.raises(StoreError, match=r"block-0000000000016\.h5: no longer exists; its run has ended"):
+        held.read("load", 0, 20)
+    np.testing.assert_array_equal(held.read("load", 0, 16), whole.load[:16])
+
+
 def test_room_is_asked_for_what_is_not_there_yet(scene, tmp_path, monkeypatch):
     path = tmp_path / "e.h5"
     halted(scene, path, 64)
@@ -268,87 +208,64 @@ def test_blocks_of_several_groups_end_with_their_group():
     for held in blocks:
         assert plan.missing([held]) == [block for block in blocks if block != held]
         assert plan.takes(held)
+    assert plan.missing([Span(0, 37), Span(16, 16), Span(50, 9)]) == [
+        Span(37, 11),
+        Span(48, 2),
+        Span(59, 11),
+    ]  # one lies inside a longer one
     assert not any(map(plan.takes, (Span(0, 15), Span(8, 16), Span(50, 16), Span(48, 4))))
     assert Blocks(((50, 16),), whole=True).takes(Span(64, 16))  # of more than is asked for now
     assert [Blocks(((50, 16),), whole=True).kept(n) for n in (0, 20, 32, 50)] == [0, 16, 32, 50]
 
 
-def as_typed(scene, path):
-    """The command, called here: its exit code."""
-    file = path.with_suffix(".toml")
-    file.write_text(mcgw.scene_text(scene))
-    return main(["run", str(file), "-o", str(path)])
-
-
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
-def test_signals_stop_a_run_that_then_goes_on(
-    scene, tmp_path, number, code, expected, drawn, monkeypatch, capsys
-):
-    """Sent while the third block is drawn: that is kept, and the rest is drawn later."""
-    path, draw = tmp_path / "e.h5", Plan.draw
+@pytest.mark.parametrize("surfaces", [SIZE, SURFACES])
+def test_signals_stop_a_run_that_then_goes_on(scene, tmp_path, number, code, surfaces, expected, monkeypatch):
+    """Sent while the third block is drawn: it is kept, and the rest drawn later; of one block nothing is."""
+    path, draw, seen = tmp_path / "e.h5", Plan.draw, []
 
-    def signalled(*arguments):
-        if len(drawn) == 2:
+    def signalled(job, span, *more):
+        seen.append(span.first)
+        if len(seen) == (3 if surfaces > SIZE else 1):
             os.kill(os.getpid(), number)  # once: the second one ends everything
-        return draw(*arguments)
+        return draw(job, span, *more)
 
-    with monkeypatch.context() as patch:
-        patch.setattr(Plan, "draw", signalled)
-        if number == signal.SIGINT:
-            assert as_typed(scene, path) == code
-        else:
-            with pytest.raises(StoppedError) as caught:
-                mcgw.run(scene, path)
-            assert caught.value.code == code
-    said = capsys.readouterr()
-    assert said.out == ""
-    if number == signal.SIGINT:
-        assert "the same command resumes" in without_notes(said.err).splitlines()[-1]
+    monkeypatch.setattr(Plan, "draw", signalled)
+    told = "kept in .*; the same command resumes" if surfaces > SIZE else "nothing was saved"
+    with pytest.raises(StoppedError, match=told) as caught:
+        mcgw.run(scene.replace(n_surfaces=surfaces), path)
+    assert caught.value.code == code
     assert not path.exists()
-    assert 3 <= len(drawn) < 7
+    assert parts_of(path).exists() == (surfaces > SIZE)
+    assert (3 if surfaces > SIZE else 1) <= len(seen) < 7
     mcgw.run(scene, path)
     assert digest(path) == expected
 
 
-def test_a_signal_while_the_only_block_is_drawn_leaves_nothing(scene, tmp_path, monkeypatch):
-    draw = Plan.draw
-
-    def signalled(*arguments):
-        os.kill(os.getpid(), signal.SIGTERM)
-        return draw(*arguments)
-
-    monkeypatch.setattr(Plan, "draw", signalled)
-    with pytest.raises(StoppedError, match="terminated: nothing was saved") as caught:
-        mcgw.run(scene.replace(n_surfaces=SIZE), tmp_path / "e.h5")
-    assert caught.value.code == 143
-    assert list(tmp_path.iterdir()) == []
-
-
-FULL = [
-    ("jobs.worker.commit_shard", "finished blocks are kept"),
-    ("store.place.write", "is the disk full?"),
-]
-
-
-@pytest.mark.parametrize(("where", "words"), FULL)
+@pytest.mark.parametrize(
+    ("where", "calls", "words"),
+    [
+        ("jobs.worker.commit_shard", 2, "finished blocks are kept"),
+        ("store.place.write", 0, "is the disk full"),
+    ],
+)
 def test_a_full_disk_is_one_line_and_the_run_completes_later(
-    scene, tmp_path, expected, where, words, monkeypatch, capsys
+    scene, tmp_path, expected, where, calls, words, monkeypatch
 ):
     """At the third block, which leaves two, and at the file."""
-    path, module = tmp_path / "e.h5", f"mcgw.{where}"
-    calls, work = [], pydoc.locate(module)
+    path, done, work = tmp_path / "e.h5", [], pydoc.locate(f"mcgw.{where}")
 
     def full(*arguments):
-        calls.append(arguments)
-        if len(calls) == 3 or "place" in where:
+        if len(done) == calls:
             raise OSError(errno.ENOSPC, "No space left on device", str(path))
+        done.append(arguments)
         return work(*arguments)
 
     with monkeypatch.context() as patch:
-        patch.setattr(module, full)
-        assert as_typed(scene, path) == 1
-    (line,) = without_notes(capsys.readouterr().err).splitlines()
-    assert words in line
+        patch.setattr(f"mcgw.{where}", full)
+        with pytest.raises(RunError, match=words) as caught:
+            mcgw.run(scene, path)
+    assert "\n" not in str(caught.value)
     assert not path.exists()
     assert len(list(parts_of(path).glob("shards/block-*.h5"))) >= 2
     mcgw.run(scene, path)
