@@ -4,9 +4,8 @@ import multiprocessing
 import os
 import signal
 import sys
-import threading
 import time
-from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
 from contextlib import nullcontext
 from pathlib import Path
 
@@ -14,23 +13,20 @@ import pytest
 from oracles.begun_runs import digest
 from oracles.inside import (
     Jobs,
-    Plan,
     Signals,
     Span,
     Values,
     dask_executor,
     drive,
     heed_signals,
-    parts_of,
-    run,
 )
 from oracles.lost_workers import deadly, deadly_once
 
 import mcgw
 from mcgw.errors import RunError, StoppedError
-from mcgw.jobs import driver, worker
+from mcgw.jobs import driver
 
-SIZE, SURFACES = 8, 72
+SIZE = 8
 HERE = Path(__file__).parents[1]
 SPANS = [Span(8 * i, 8) for i in range(6)]
 
@@ -42,72 +38,30 @@ def _small_blocks(monkeypatch):
     monkeypatch.setenv("PYTHONPATH", str(HERE.parent))
 
 
-@pytest.fixture
-def scene(make_scene):
-    """Blocks of some tenths of a second: long enough to be killed in."""
-    return make_scene(sampler="direct", n_asperities=250_000, n_surfaces=SURFACES, separations=(1.0, 2.0))
-
-
-@pytest.fixture(scope="module")
-def expected(tmp_path_factory):
-    """Digest from threads."""
-    found = []
-
-    def of(scene):
-        if not found:
-            path = tmp_path_factory.mktemp("threads") / "e.h5"
-            run(scene, path)
-            found.append(digest(path))
-        return found[0]
-
-    return of
-
-
-def kill_one_now_and_then(pids, times):
-    """Progress that kills a worker each time a few more blocks are done."""
+@pytest.mark.site
+def test_killed_dask_workers_are_replaced(make_scene, tmp_path):
+    """One each time a few more blocks are done, of some tenths of a second: long enough to be killed in."""
+    distributed = pytest.importorskip("distributed")
+    scene = make_scene(sampler="direct", n_asperities=250_000, n_surfaces=9 * SIZE, separations=(1.0, 2.0))
     killed = []
 
-    def progress(done, _):
-        if done and done % (3 * SIZE) == 0 and len(killed) < times:
-            alive = [pid for pid in pids() if pid not in killed]
-            killed.append(alive[0])
-            os.kill(alive[0], signal.SIGKILL)
+    def kill(done, _):
+        if done and done % (3 * SIZE) == 0:
+            pids = [nanny.process.process.pid for nanny in cluster.workers.values()]
+            killed.append(next(pid for pid in pids if pid not in killed))
+            os.kill(killed[-1], signal.SIGKILL)
 
-    return progress, killed
-
-
-@pytest.mark.slow
-def test_a_pool_of_the_user_that_breaks_is_one_line_and_the_run_goes_on_with_another(
-    scene, tmp_path, expected
-):
-    path, spawn = tmp_path / "e.h5", multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(2, spawn) as pool:
-        progress, killed = kill_one_now_and_then(lambda: list(pool._processes), 1)
-        lost = r"^the executor takes no more work \(BrokenProcessPool: .*\); finished"
-        with pytest.raises(RunError, match=lost):
-            run(scene, path, executor=pool, progress=progress)
-    assert killed
-    kept = len(list(parts_of(path).glob("shards/*.h5")))
-    assert 3 <= kept < SURFACES // SIZE
-    with ProcessPoolExecutor(2, spawn) as pool:
-        run(scene, path, executor=pool)
-        assert pool.submit(abs, -1).result(timeout=60) == 1  # it stays open
-    assert digest(path) == expected(scene)
-
-
-@pytest.mark.site
-def test_killed_dask_workers_are_replaced(scene, tmp_path, expected):
-    distributed = pytest.importorskip("distributed")
-    cluster = distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs="CRITICAL"
-    )
-    with cluster, dask_executor(cluster.scheduler_address) as executor:
-        nannies = cluster.workers
-        progress, killed = kill_one_now_and_then(lambda: [x.process.process.pid for x in nannies.values()], 3)
-        run(scene, tmp_path / "e.h5", executor=executor, progress=progress)
+    with (
+        distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs="CRITICAL"
+        ) as cluster,
+        dask_executor(cluster.scheduler_address) as executor,
+    ):
+        mcgw.run(scene, tmp_path / "e.h5", executor=executor, progress=kill)
         assert executor.submit(sum, (1, 2)).result(timeout=30) == 3  # it stays open
     assert len(killed) == 3
-    assert digest(tmp_path / "e.h5") == expected(scene)
+    mcgw.run(scene, tmp_path / "threads.h5")
+    assert digest(tmp_path / "e.h5") == digest(tmp_path / "threads.h5")
 
 
 def test_dask_that_is_not_there_is_one_line(monkeypatch):
@@ -132,28 +86,6 @@ def test_any_executor_draws_the_surfaces_that_this_process_draws(make_scene, tmp
     assert (drawn.load == mcgw.simulate(scene).load).all()
 
 
-def test_a_block_is_written_while_the_next_one_is_drawn(make_scene, tmp_path, monkeypatch):
-    """Each commit but the last waits until the next block is begun; with one thread it would for ever."""
-    draw, commit, begun, written = Plan.draw, worker.commit_shard, [], []
-    next_one = {first: threading.Event() for first in range(0, 4 * SIZE, SIZE)}
-    next_one[3 * SIZE].set()
-
-    def drawn(self, span, *how):
-        next_one[span.first].set()
-        begun.append(span.first)
-        return draw(self, span, *how)
-
-    def committed(path, run, span, *rest):
-        assert next_one[span.stop].wait(timeout=30)
-        written.append(span.first)
-        return commit(path, run, span, *rest)
-
-    monkeypatch.setattr(Plan, "draw", drawn)
-    monkeypatch.setattr(worker, "commit_shard", committed)
-    mcgw.run(make_scene(n_surfaces=3 * SIZE), tmp_path / "e.h5")
-    assert begun == written == [0, SIZE, 2 * SIZE]
-
-
 class Now(Executor):
     """Does a task when it is submitted; some blocks are lost so many times, after some it is broken."""
 
@@ -174,32 +106,27 @@ class Now(Executor):
         return future
 
 
-def driven(executor, task=abs):
-    done = []
+def driven(executor, done, task=abs):
     drive(
         executor, SPANS, task, lambda span: (span.first,), lambda span, _: done.append(span.first), Signals()
     )
-    return done
 
 
-def test_a_block_that_is_lost_is_submitted_once_more():
-    executor = Now(lost={8: 1, 24: 1})
-    assert sorted(driven(executor)) == [0, 8, 16, 24, 32, 40]
-    assert sorted(executor.begun) == [0, 8, 8, 16, 24, 24, 32, 40]
-
-
-def test_a_block_that_is_lost_twice_ends_the_run_when_the_others_are_done():
-    executor, done = Now(lost={8: 2, 24: 2}), []
-    told = r"^surfaces 24 \.\.\. 31 were lost twice by the executor \(KeyError: .*\); finished"
-    with pytest.raises(RunError, match=told):
-        drive(executor, SPANS, abs, lambda s: (s.first,), lambda s, _: done.append(s.first), Signals())
-    assert sorted(done) == [0, 16, 32, 40]
-
-
-def test_an_executor_that_takes_no_more_work_ends_the_run_in_one_line():
-    told = r"^the executor takes no more work \(BrokenExecutor: no worker\); finished"
-    with pytest.raises(RunError, match=told):
-        driven(Now(takes=3))
+@pytest.mark.parametrize(
+    ("executor", "told", "kept"),
+    [
+        (Now(lost={8: 1, 24: 1}), None, [0, 8, 16, 24, 32, 40]),
+        (Now(lost={8: 2, 24: 2}), r"^surfaces 24 \.\.\. 31 were lost twice by the executor \(KeyError: ",
+         [0, 16, 32, 40]),
+        (Now(takes=3), r"^the executor takes no more work \(BrokenExecutor: no worker\); finished", []),
+    ],
+)  # fmt: skip
+def test_a_block_that_is_lost_is_submitted_once_more_when_the_others_are_done(executor, told, kept):
+    done = []
+    with pytest.raises(RunError, match=told) if told else nullcontext():
+        driven(executor, done)
+    assert sorted(done) == kept
+    assert told or sorted(executor.begun) == [0, 8, 8, 16, 24, 24, 32, 40]
 
 
 @pytest.mark.parametrize("mark", ["once", None])
@@ -222,7 +149,7 @@ def test_an_error_of_a_task_ends_the_run_and_what_is_not_begun_is_dropped():
             return 1 / first
 
         with pool, pytest.raises(ZeroDivisionError):
-            driven(pool, task)
+            driven(pool, [], task)
         assert len(begun) < len(SPANS) or isinstance(pool, Now)
 
 
@@ -251,11 +178,6 @@ def test_workers_are_killed_at_the_end_whatever_they_do():
     while worker.exitcode is None and time.monotonic() < end:  # the pool's own thread waits for it, too
         time.sleep(0.01)
     assert worker.exitcode == -signal.SIGKILL
-
-
-def test_no_workers_are_an_error():
-    with pytest.raises(ValueError, match=r"^--jobs 0: give a whole number >= 1$"):
-        Jobs(0)
 
 
 # --- signals ---------------------------------------------------------------------------------------------

@@ -36,21 +36,10 @@ def limited(mib, *words):
     return subprocess.run(call, env=env, preexec_fn=limit, capture_output=True, text=True, check=False)
 
 
-@pytest.fixture
-def file(make_scene, tmp_path):
-    path = tmp_path / "e.h5"
-    mcgw.run(make_scene(separations=(2.0, 3.0), sampler="tail", n_surfaces=20), path)
-    return path
-
-
 @pytest.mark.slow
 def test_commands_work_where_the_memory_suffices(tmp_path):
     path = tmp_path / "e.h5"
-    for words in (
-        ["run", ROOT / "runs" / "quick.toml", "-o", path],
-        ["show", path],
-        ["show", path, "--verify"],
-    ):
+    for words in (["run", ROOT / "runs" / "quick.toml", "-o", path], ["show", path, "--verify"]):
         done = limited(1024, "-m", "mcgw", *words)
         assert (done.returncode, without_notes(done.stderr)) == (0, "")
 
@@ -71,7 +60,6 @@ FIVE = ["MemTotal: 9 kB", "MemFree: 3 kB", "MemAvailable: 5 kB"]
         (FIVE, ["100"], ["4000"], None, 3900),
         (FIVE, ["100"], ["90"], None, 0),
         (FIVE, ["100"], ["9000"], 4096, 2048),
-        (FIVE, [], [], 1024, 0),
         ([], ["100"], [], None, 2**63 - 1),
     ],
 )
@@ -97,17 +85,14 @@ WIDTH = 4 * 9  # numbers of a surface: quantities and separations of `make_scene
 SUMMARY = 8 * WIDTH * (WIDTH + 1)  # bytes of products and means
 
 
-def points(scene, n):
-    return Pooling(SimpleNamespace(computed=(scene,) * n))
-
-
-PART = {"n_surfaces": 30_000}
 NEEDS = {
     "surfaces in memory": ({}, lambda scene: reducer_of(scene).check(100_000), 2 * 8 * 100_000 * WIDTH),
     "a block": ({"n_surfaces": 10**6}, lambda scene: reducer_of(scene).check(), 3 * 8 * 50_000 * WIDTH),
-    "less than a block": (PART, lambda scene: reducer_of(scene).check(), 3 * 8 * 30_000 * WIDTH),
+    "less than a block": ({"n_surfaces": 30_000}, lambda scene: reducer_of(scene).check(),
+                          3 * 8 * 30_000 * WIDTH),
     "statistics": ({"keep": "statistics"}, lambda scene: reducer_of(scene).check(), 4 * SUMMARY + 3 * 2**26),
-    "points": ({}, lambda scene: points(scene, 300).check(), 2 * 8 * WIDTH * 300**2),
+    "points": ({}, lambda scene: Pooling(SimpleNamespace(computed=(scene,) * 300)).check(),
+               2 * 8 * WIDTH * 300**2),
 }  # fmt: skip
 
 

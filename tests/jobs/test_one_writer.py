@@ -12,14 +12,15 @@ from pathlib import Path
 
 import pytest
 from oracles.inside import LockedError, Plan, Values, locked, parts_of, state_of
+from oracles.said import call
 
 import mcgw
-from mcgw.cli import main
 from mcgw.errors import RunError, StoreError
 from mcgw.store import ensembles, lock, place
 from mcgw.store.place import tidy
 
-HERE = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
+ENV = os.environ | {"PYTHONPATH": str(ROOT)}
 SIZE = 16
 
 
@@ -74,7 +75,6 @@ def others(scene):
     blocks = scene.replace(n_surfaces=3 * SIZE)
     return {
         "the same run": lambda path: mcgw.run(scene, path),
-        "its own seed": lambda path: mcgw.run(scene.replace(seed=2), path),
         "in blocks": lambda path: mcgw.run(blocks, path),
         "a share": lambda path: mcgw.run(blocks, path, shard="1/2"),
         "merge": mcgw.merge,
@@ -82,14 +82,13 @@ def others(scene):
     }
 
 
-@pytest.mark.parametrize("other", ["the same run", "its own seed", "in blocks", "a share", "merge", "save"])
+@pytest.mark.parametrize("other", ["the same run", "in blocks", "a share", "merge", "save"])
 def test_nothing_else_is_written_beside_a_run_of_one_block(other, scene, path, drawing):
     drawing.start(scene, path)
     with pytest.raises(LockedError, match=f"locked by pid {os.getpid()} on"):
         others(scene)[other](path)
     tidy(path)  # what `show` does; it takes nothing away
-    first = drawing.finish()
-    assert first.n_surfaces == SIZE
+    assert drawing.finish().n_surfaces == SIZE
     assert ensembles.verify(path)[0] == ""
     assert [p.name for p in path.parent.iterdir()] == ["e.h5"]
 
@@ -155,20 +154,23 @@ def test_drawn_surfaces_are_kept_when_fewer_are_asked_for(scene, path):
     assert sorted(p.name for p in parts_of(path).glob("shards/*.h5")) == kept
 
 
-def test_a_file_that_changes_while_it_is_extended_is_left_alone(scene, path, monkeypatch):
-    mcgw.run(scene, path)
+@pytest.mark.parametrize("there", [True, False], ids=["extended", "new"])
+def test_a_file_that_changes_while_it_is_made_is_left_alone(there, scene, path, monkeypatch):
+    if there:
+        mcgw.run(scene, path)
     write = place.write
 
     def replaced(*words):
         write(*words)
-        path.unlink()
+        path.unlink(missing_ok=True)
         path.write_bytes(b"precious")
 
     monkeypatch.setattr(place, "write", replaced)
-    with pytest.raises(RunError, match="another file now has this name"):
+    told = "another file now has this name" if there else "File exists"
+    with pytest.raises(RunError, match=rf"e\.h5: {told}; it was not changed, .* choose another"):
         mcgw.run(scene.replace(n_surfaces=3 * SIZE), path)
     assert path.read_bytes() == b"precious"
-    assert len(list(parts_of(path).glob("shards/*.h5"))) == 2
+    assert len(list(parts_of(path).glob("shards/*.h5"))) == 3 - there
     assert not list(parts_of(path).glob(".*"))
 
 
@@ -186,60 +188,44 @@ def leave_behind(path, scene, *, shards):
         (folder / "shards" / "block-0000000000000.h5").write_bytes(b"whole")
 
 
-@pytest.mark.parametrize("shards", [False, True], ids=["no run", "run"])
-@pytest.mark.parametrize("command", ["run", "merge", "show"])
-def test_leftovers_of_a_finished_file_are_cleared(command, shards, scene, path, capsys):
+@pytest.mark.parametrize(
+    ("command", "shards"), [("run", True), ("merge", False), ("merge", True), ("show", True)]
+)
+def test_leftovers_of_a_finished_file_are_cleared(command, shards, scene, path):
     mcgw.run(scene, path)
     leave_behind(path, scene, shards=shards)
-    toml = path.with_suffix(".toml")
-    toml.write_text(mcgw.scene_text(scene))
+    path.with_suffix(".toml").write_text(mcgw.scene_text(scene))
     before = state_of(path)
-    words = {"run": ["run", str(toml), "-o", str(path)]}.get(command, [command, str(path)])
-    assert main(words) == 0
+    done = call(*(("run", path.with_suffix(".toml"), "-o", path) if command == "run" else (command, path)))
+    assert done.returncode == 0, done.stderr
     assert state_of(path) == before
     assert sorted(p.name for p in path.parent.iterdir()) == ["e.h5", "e.toml"]
-    if command == "merge":
-        assert "was finished before, 16 surfaces" in capsys.readouterr().out
-
-
-def test_leftovers_of_a_run_of_one_block_do_not_stand_in_the_way_of_another(scene, path):
-    leave_behind(path, scene, shards=False)
-    mcgw.run(scene.replace(seed=2), path)
-    assert [p.name for p in path.parent.iterdir()] == ["e.h5"]
+    assert ("was finished before, 16 surfaces" in done.stdout) == (command == "merge")
 
 
 def test_an_empty_run_of_another_scene_gives_way(scene, path):
-    folder = parts_of(path)
+    folder, other = parts_of(path), scene.replace(seed=2, n_surfaces=3 * SIZE)
     with locked(folder):
         Plan.of(scene, path).begin()
-    mcgw.run(scene.replace(seed=2, n_surfaces=3 * SIZE), path, shard="1/2")
+    mcgw.run(other, path, shard="1/2")
     assert Plan.open(folder).scene.seed == 2
-
-
-def test_what_is_not_there_is_said_in_one_line(path, capsys):
-    with locked(parts_of(path)):
-        assert main(["show", str(path)]) == 2
-    assert capsys.readouterr().err == f"mcgw: {path}: no block of its run is finished yet\n"
-    tidy(path)
-    assert main(["merge", str(path)]) == 2
-    assert capsys.readouterr().err.startswith(f"mcgw: {path}: neither this file nor its blocks")
-
-
-def lives(pid):
-    try:
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
-    except OSError:
-        return False
+    leave_behind(path.with_name("f.h5"), scene, shards=False)
+    mcgw.run(other, path.with_name("f.h5"))
+    assert not parts_of(path.with_name("f.h5")).exists()
 
 
 def gone(pid, seconds=30):
+    """Whether a process ends within some seconds."""
     until = time.monotonic() + seconds
-    while lives(pid):
-        if time.monotonic() > until:
-            os.kill(pid, signal.SIGKILL)
-            return False
+    while time.monotonic() < until:
+        try:
+            if Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] in "ZX":
+                return True
+        except OSError:
+            return True
         time.sleep(0.01)
-    return True
+    os.kill(pid, signal.SIGKILL)
+    return False
 
 
 POOL = """
@@ -258,26 +244,19 @@ if __name__ == "__main__":
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="needs /proc")
 def test_workers_end_with_the_driver(tmp_path):
     (tmp_path / "pool.py").write_text(POOL)
-    env = os.environ | {"PYTHONPATH": str(HERE.parent)}
-    driver = subprocess.Popen(
-        [sys.executable, tmp_path / "pool.py"], stdout=subprocess.PIPE, text=True, env=env
-    )
-    workers = [int(word) for word in driver.stdout.readline().split()]
-    assert len(workers) == 2
-    driver.kill()
-    driver.wait()
-    stayed = [pid for pid in workers if not gone(pid)]
-    assert stayed == []
-    driver.stdout.close()
+    words = [sys.executable, tmp_path / "pool.py"]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, text=True, env=ENV) as driver:
+        workers = [int(word) for word in driver.stdout.readline().split()]
+        driver.kill()
+        assert len(workers) == 2
+        assert [pid for pid in workers if not gone(pid)] == []
 
 
 @pytest.mark.slow
-def test_random_kills_of_everything(tmp_path):
+def test_random_kills_of_everything():
     """A short one of `runs/reliability/kills.py`."""
-    script = HERE.parent / "runs" / "reliability" / "kills.py"
-    env = os.environ | {"PYTHONPATH": str(HERE.parent)}
-    call = [sys.executable, str(script), "6", "7"]
-    done = subprocess.run(call, env=env, capture_output=True, text=True, timeout=500, check=True)
+    words = [sys.executable, str(ROOT / "runs" / "reliability" / "kills.py"), "6", "7"]
+    done = subprocess.run(words, env=ENV, capture_output=True, text=True, timeout=500, check=True)
     found = json.loads(done.stdout)
     assert found["kills"] >= 6
     bad = {key: found[key] for key in ("lost", "wrong", "left", "stuck")}

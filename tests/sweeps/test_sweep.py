@@ -47,11 +47,9 @@ def test_eight_gradings_are_means_of_the_softest_and_the_stiffest(gammas, count)
     assert len(sweep.groups[0].means["load"]) == 2  # of which all are weighted means
     assert same_bits(sweep, (int(np.argmin(gammas)),))
     assert same_bits(sweep, (int(np.argmax(gammas)),))
+    check_points(sweep)
     for i in range(len(gammas)):
         alone = mcgw.simulate(sweep.scene(i))
-        for name in sweep.quantities:
-            np.testing.assert_allclose(sweep.mean(name)[i], alone.mean(name), rtol=1e-12)
-            np.testing.assert_allclose(sweep.std(name)[i], alone.std(name), rtol=1e-12)
         for found, expected in zip(sweep.interval("contacts"), alone.interval("contacts"), strict=True):
             np.testing.assert_allclose(found[i], expected, rtol=1e-12)
 
@@ -63,17 +61,11 @@ def test_a_table_among_many_exponential_gradings_keeps_its_numbers():
 
 
 SEVERAL = {
-    "balance": (SCENE.replace(interaction="body"), {GAMMA: [1.0, 1.5]}),
     "separations again and unsorted": (SCENE.replace(separations=[2.0, 0.0, 1.0, 1.0]), {GAMMA: [0.5, 2.0]}),
     "without cells": (SCENE.replace(n_asperities=10), {GAMMA: [0.5, 2.0]}),
     "numbers of asperities": (SCENE, {GAMMA: [0.5, 1.0, 2.0], "ensemble.n_asperities": [50, 2000]}),
     "laws of heights": (SCENE, {"heights": [{"law": "weibull", "shape": 2.0}, {}], GAMMA: [0.5, 2.0]}),
     "radii": (SPECTRAL, {GAMMA: [0.5, 2.0, 3.0]}),
-    "radii, without cells": (SPECTRAL.replace(n_asperities=10), {GAMMA: [0.5, 2.0]}),
-    "radii under laws": (
-        SPECTRAL.replace(law=mcgw.KogutEtsion(critical=0.1)),
-        {"contact.law.critical": [0.1, 0.2]},
-    ),
     "balance of many": (SCENE.replace(interaction="body", n_surfaces=20), {GAMMA: np.linspace(1.0, 2.0, 9)}),
     "a yielding law of many": (
         SCENE.replace(law=mcgw.KogutEtsion(critical=0.1), n_surfaces=5, n_asperities=10, sampler="tail"),
@@ -92,10 +84,8 @@ def test_any_kind_of_scene_has_its_bits(name):
     assert all(same_bits(sweep, at) for at in np.ndindex(sweep.shape))
 
 
-YIELDING = SCENE.replace(law=mcgw.KogutEtsion(hardness=1.2e9, poisson=0.3))
 OF_OTHER_CELLS = {
     "tables with kinks": (SCENE, {"grading": KINKED}),
-    "laws that yield": (YIELDING, {"contact.law.hardness": [1e9, "1.2 GPa", 3e9]}),
     "breaks where others begin": (
         SCENE.replace(law=mcgw.KogutEtsion(critical=0.1), separations=[0.0, 0.1, 0.2, 0.3, 0.5]),
         {"contact.law.critical": [0.05, 0.1, 0.2]},
@@ -127,21 +117,17 @@ def test_points_that_need_other_cells_share_their_surfaces(name):
 
 def test_what_no_cells_resolve_is_drawn_one_by_one_at_all_points(monkeypatch):
     monkeypatch.setattr("mcgw.sampling.samplers._CUTS", 0)
-    steep = mcgw.Scene(
-        SURFACE,
-        separations=[-1.2, 1.8],
-        grading=mcgw.Graded(mcgw.Exponential(-1.5), negative="clip"),
-        n_surfaces=5,
-        ensemble=mcgw.Sampling(n_asperities=3000),
-        seed=7,
-        law=mcgw.KogutEtsion(critical=0.0018),
+    steep = mcgw.Graded(mcgw.Exponential(-1.5), negative="clip")
+    few = {"n_surfaces": 5, "n_asperities": 3000, "law": mcgw.KogutEtsion(critical=0.0018)}
+    scene, over = (
+        SCENE.replace(separations=[-1.2, 1.8], grading=steep, **few),
+        {"surface.E_star": [7e10, 8e10]},
     )
-    over = {"surface.E_star": [7e10, 8e10]}
-    sweep = mcgw.sweep(steep, over)
+    sweep = mcgw.sweep(scene, over)
     assert len(sweep.groups) == 1
     assert all(same_bits(sweep, (i,)) for i in range(2))
     with pytest.raises(ValueError, match='use sampler = "tail"'):
-        mcgw.sweep(steep.replace(sampler="cells"), over)
+        mcgw.sweep(scene.replace(sampler="cells"), over)
 
 
 @pytest.mark.parametrize("gammas", [[1.0, 1.001, 1.5], np.linspace(0.5, 1.7, 9)])
@@ -169,8 +155,7 @@ def test_quantities_that_the_modulus_does_not_enter_do_not_change():
 def test_neither_threads_nor_blocks_change_a_bit(monkeypatch):
     over = {GAMMA: np.linspace(0.5, 1.7, 9), "surface.E_star": ["70 GPa", 8e10]}
     one, two = (mcgw.sweep(SCENE, over, threads=n) for n in (1, 2))
-    for name in one.quantities:
-        assert np.array_equal(one.std(name), two.std(name))
+    assert all(np.array_equal(one.std(name), two.std(name)) for name in one.quantities)
     monkeypatch.setattr(groups, "_ROWS", 70)
     parts = mcgw.sweep(SCENE, over)
     np.testing.assert_allclose(parts.std("load"), one.std("load"), rtol=1e-13)
@@ -184,19 +169,6 @@ def test_scenes_that_share_nothing_are_simulated():
     assert all(same_bits(sweep, (i,)) for i in range(4))
     with pytest.raises(ValueError, match="have different surfaces"):
         sweep.difference("load", 0, 1)
-
-
-def test_labels_and_zipped_axes():
-    pytest.importorskip("xarray")
-    over = {GAMMA: [1.0, 2.0], "surface.sigma": ["1 um", "2 um"]}
-    sweep = mcgw.sweep(SCENE, over, zipped=True)
-    data = sweep.to_xarray()
-    assert data.load_mean.dims == ("point", "separation")
-    assert data["sigma"].values.tolist() == ["1 um", "2 um"]
-    assert sweep.scene({"surface.sigma": "2 um"}).surface.sigma == 2e-6
-    data = mcgw.sweep(SCENE, over).to_xarray()
-    assert data.load_std.sel(gamma=2.0, sigma="1 um").shape == (5,)
-    assert data.load_mean.attrs == {"units": "N", "long_name": "mean of the normal load"}
 
 
 def test_what_nobody_gave_follows():
@@ -214,15 +186,19 @@ MISTAKES = [
     ({GAMMA: 2}, "grading.gamma = 2: give a list"),
     ({GAMMA: []}, "give a list of at least one"),
     ({"grading": [3]}, "grading = 3: must be a table"),
-    ({"grading": ["exponential"]}, "grading = 'exponential': must be a table"),
     ({"grading": [np.sin]}, "is negative from s = 3.143"),
     ({}, "at least one key"),
     ({"contact.unload_from": [0, "x"]}, "contact.unload_from = 'x'"),
+    ({"ensemble.keep": ["sums", "statistics"]}, r"ensemble\.keep: must be the same for all points"),
     ({"ensemble.max_seconds": [3]}, "max_seconds: a sweep must be reproducible"),
     ({"ensemble.seed": [-k for k in range(1, 99)]}, r"and 78 more"),
     (
-        {"contact.unload_from": [-1.0, 0.0], "contact.quantities": [["load"]]},
+        {"contact.unload_from": [-1.0], "contact.quantities": [["load"]]},
         "contact.quantities: must be the same",
+    ),
+    (
+        {GAMMA: [1, 2], "ensemble.seed": [1, 2, 3]},
+        r"zipped axes .* these have grading\.gamma 2, ensemble\.seed 3",
     ),
 ]
 
@@ -230,7 +206,7 @@ MISTAKES = [
 @pytest.mark.parametrize(("over", "words"), MISTAKES)
 def test_mistakes_name_the_point(over, words):
     with pytest.raises(mcgw.SceneError, match=words):
-        mcgw.sweep(SCENE, over)
+        mcgw.sweep(SCENE, over, zipped="zipped" in words)
 
 
 def test_points_that_are_none():
@@ -240,8 +216,6 @@ def test_points_that_are_none():
             sweep.scene(at)
     with pytest.raises(KeyError, match="'depth' is not in this sweep"):
         sweep.mean("depth")
-    with pytest.raises(ValueError, match="slopes need at least two numbers"):
-        mcgw.sweep(SCENE, {"ensemble.count": ["fixed", "poisson"]}).slopes("load", "ensemble.count")
 
 
 def test_axes_have_names_of_their_own():
@@ -250,7 +224,7 @@ def test_axes_have_names_of_their_own():
     told = {2: 2, 0.5: 0.5, "1 um": "1 um", True: "True"}
     assert {x: label(x) for x in told} == told
     assert label({"law": "weibull"}) == "law = weibull"
-    for values in ([1e-6], [1e-6, "2 um"], [1e-6, 2e-6, 2e-6]):
+    for values in (["a", "b"], [1e-6], [1e-6, "2 um"], [1e-6, 2e-6, 2e-6]):
         with pytest.raises(ValueError, match=r"^surface\.sigma: slopes need at least two numbers"):
             axes_of({"surface.sigma": values}, zipped=False).numbers("surface.sigma")
 
@@ -266,8 +240,8 @@ def test_points_are_found_as_elements_of_a_list():
     for axes, at in (
         (line, 3),
         (line, -4),
-        (square, (3, 0)),
-        (square, (0, -4)),
+        (square, (0, 3)),
+        (square, (-4, 0)),
         (square, (0,)),
         (line, (0, 0)),
     ):
@@ -280,13 +254,12 @@ def test_what_is_shown_of_slopes_is_what_there_is():
     over = {"ensemble.count": ["fixed", "poisson"], GAMMA: [1.0, 1.5, 2.5, 3.0, 3.5]}
     sweep = mcgw.sweep(SCENE.replace(n_surfaces=20, separations=[1.0, 0.0], quantities=["load"]), over)
     slopes = sweep.slopes("load", GAMMA)
-    _, *lines = repr(slopes).splitlines()
-    assert lines[0].split() == [GAMMA, "slope", "stderr", "theory"]
-    shown = np.array([[float(word) for word in line.split()] for line in lines[1:]])
-    np.testing.assert_allclose(shown[:, 0], [1.25, 2.0, 2.75, 3.25])
-    np.testing.assert_allclose(shown[:, 1], slopes.value[0, :, 0], rtol=1e-4)
-    np.testing.assert_allclose(shown[:, 2], slopes.stderr[0, :, 0], rtol=0.5)
-    np.testing.assert_allclose(shown[:, 3], slopes.theory[0, :, 0], rtol=1e-4)
+    _, head, *lines = repr(slopes).splitlines()
+    assert head.split() == [GAMMA, "slope", "stderr", "theory"]
+    errors = [float(f"{x:.1g}") for x in slopes.stderr[0, :, 0]]
+    expected = [[1.25, 2.0, 2.75, 3.25], slopes.value[0, :, 0], errors, slopes.theory[0, :, 0]]
+    shown = np.transpose([[float(word) for word in line.split()] for line in lines])
+    np.testing.assert_allclose(shown, expected, rtol=1e-4)
 
 
 def test_progress_counts_what_a_group_takes():
@@ -351,36 +324,19 @@ def test_pressures_on_other_areas_are_each_divided_by_its_own(areas):
     np.testing.assert_allclose(found.gain, apart, rtol=1e-9)
 
 
-@pytest.mark.parametrize("lengths", [(2, 3), (2, 3, 1)])
-def test_zipped_axes_of_other_lengths_are_refused(lengths):
-    keys = ("grading.gamma", "ensemble.n_asperities", "ensemble.seed")
-    over = {key: [1, 2, 3][:n] for key, n in zip(keys, lengths, strict=False)}
-    with pytest.raises(mcgw.SceneError, match=r"zipped axes .* these have grading\.gamma 2, ens"):
-        mcgw.sweep(SCENE, over, zipped=True)
-
-
-# --- what an ensemble can -------------------------------------------------------------------------------
-
-
 def test_points_have_the_intervals_and_tables_of_single_runs():
     sweep = mcgw.sweep(SCENE, {GAMMA: [0.5, 2.0], "ensemble.n_asperities": [50, 2000]})
-    frame, alone = sweep.to_dataframe(), mcgw.simulate(sweep.scene((1, 0)))
+    frame, alone, point = sweep.to_dataframe(), mcgw.simulate(sweep.scene((1, 0))), sweep.ensemble((1, 0))
     assert frame.index.names == ["gamma", "n_asperities", "separation"]
     assert frame.loc[2.0, 50].load_std.tolist() == alone.std("load").tolist()
-    for k in (0, 1):
-        found = sweep.interval("pressure", 0.9)[k][1, 0]
-        np.testing.assert_allclose(found, alone.interval("pressure", 0.9)[k], rtol=1e-12)
-    assert mcgw.compare(sweep.ensemble((1, 0))).verdict == mcgw.compare(alone).verdict
-    assert sweep.ensemble({GAMMA: 0.5, "ensemble.n_asperities": 50}).n_surfaces == 300
-    point = sweep.ensemble((0, 0))
+    for found, expected in zip(sweep.interval("pressure", 0.9), alone.interval("pressure", 0.9), strict=True):
+        np.testing.assert_allclose(found[1, 0], expected, rtol=1e-12)
+    assert mcgw.compare(point).verdict == mcgw.compare(alone).verdict
     for ask in (point.values, lambda q: point.quantile(q, 0.5), point.covariance):
         with pytest.raises(ValueError, match=r"load: a sweep only keeps mean and .* surfaces of that scene"):
             ask("load")
 
 
-@pytest.mark.parametrize("gammas", [[0.5, 2.0], np.linspace(0.5, 2.0, 9)])
-def test_what_a_scene_keeps_changes_no_sweep(gammas):
-    kept = mcgw.sweep(SCENE.replace(keep="statistics"), {GAMMA: gammas})
-    assert np.array_equal(kept.std("load"), mcgw.sweep(SCENE, {GAMMA: gammas}).std("load"))
-    with pytest.raises(mcgw.SceneError, match=r"ensemble\.keep: must be the same for all points"):
-        mcgw.sweep(SCENE, {"ensemble.keep": ["sums", "statistics"]})
+def test_what_a_scene_keeps_changes_no_sweep():
+    kept, over = SCENE.replace(keep="statistics"), {GAMMA: [0.5, 2.0]}
+    assert np.array_equal(mcgw.sweep(kept, over).std("load"), mcgw.sweep(SCENE, over).std("load"))

@@ -145,10 +145,3 @@ def test_the_commands_see_what_is_wrong(sweep, tmp_path, monkeypatch, capsys):
     assert main(["compare", "w.h5", "-o", "w.svg"]) == 1
     assert "DISAGREE" in (tmp_path / "w.svg").read_text()
     assert "DISAGREE: chi-square" in capsys.readouterr().out
-
-
-def test_a_report_is_of_one_ensemble(tmp_path, capsys):
-    mcgw.sweep(SCENE.replace(n_surfaces=2), {"grading.gamma": [0.5, 1.0]}, path=tmp_path / "w.h5")
-    assert main(["report", str(tmp_path / "w.h5")]) == 2
-    assert "w.h5: holds a sweep; mcgw.open_sweep opens it, mcgw compare" in capsys.readouterr().err
-    assert [path.name for path in tmp_path.iterdir()] == ["w.h5"]
