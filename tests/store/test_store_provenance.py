@@ -23,9 +23,14 @@ GOLDEN = Path(__file__).parents[1] / "golden_samplers.json"
 
 
 def test_what_is_recorded(make_scene, tmp_path):
-    mcgw.run(make_scene(n_surfaces=2), tmp_path / "a.h5")
+    scene = make_scene(n_surfaces=2)
+    mcgw.run(scene, tmp_path / "a.h5")
     with h5py.File(tmp_path / "a.h5") as file:
         known = {key: x.decode() if isinstance(x, bytes) else x for key, x in file.attrs.items()}
+        units = {name: file[name].attrs["units"].decode() for name in scene.quantities}
+        whole = [name for name in scene.quantities if file[name].dtype == "<i8"]
+    assert units == {"load": "N", "area": "m^2", "stiffness": "N/m", "contacts": "1"}
+    assert whole == ["contacts"]
     for package in ("mcgw", "numpy", "scipy", "numba", "h5py"):
         assert f"{package} {version(package)}" in known["versions"]
         assert (package in known["draws"]) == (package != "h5py")
