@@ -174,17 +174,6 @@ def comparison(make_scene):
     return mcgw.compare(mcgw.simulate(scene))
 
 
-def test_theory_of_a_comparison_is_in_the_order_of_the_separations(comparison):
-    order = np.argsort(H)
-    for panel, curve in zip(
-        inside.comparison_figure(comparison).panels, comparison.curves.values(), strict=True
-    ):
-        (series,) = panel.series
-        np.testing.assert_array_equal(series.x, np.array(H)[order])
-        np.testing.assert_array_equal(series.theory, curve.theory[order])
-        np.testing.assert_array_equal(series.points.exact, curve.theory)
-
-
 def drawn(comparison, curve):
     """Axes of the load alone, as in a report, with another curve."""
     changed = Comparison(comparison.ensemble, {"load": curve}, comparison.verdict)
@@ -192,13 +181,18 @@ def drawn(comparison, curve):
 
 
 def test_lopsided_intervals_and_large_residuals_are_drawn_as_they_are(comparison):
-    """Longer upwards than downwards, and the other way round; 20 standard errors stay in sight."""
+    """Longer upwards than downwards, and the other way round; 20 standard errors stay in sight.
+
+    Theory is a line in the order of the separations.
+    """
     curve = comparison.curves["load"]
     mean = curve.theory + 20 * curve.stderr
     lopsided = Curve(mean, mean * [0.9, 0.7, 0.99], mean * [1.3, 1.1, 1.5], curve.theory, curve.stderr)
     above, below = drawn(comparison, lopsided)
     bars = np.column_stack([H, lopsided.low, lopsided.high])
     np.testing.assert_allclose(bars_of(above), bars, rtol=1e-12)
+    (line,) = (x for x in above.get_lines() if x.get_label() == "theory")
+    np.testing.assert_array_equal(line.get_xydata(), np.column_stack([H, curve.theory])[np.argsort(H)])
     low, high = below.get_ylim()
     assert low < lopsided.residual.min() < lopsided.residual.max() < high
 
@@ -251,3 +245,17 @@ def test_panels_of_a_comparison_have_room(comparison, panels, sign, size):
     assert not crowded(figure)
     figure.axes[0].set_title("A title for which there is no room " * 9)  # which would be seen
     assert crowded(figure)
+
+
+@pytest.mark.site
+@pytest.mark.parametrize("ending", ["svg", "pdf", "png"])
+def test_files_have_the_same_bytes_twice_and_texts_stay_texts(ending, tmp_path, monkeypatch):
+    """SOURCE_DATE_EPOCH, matplotlib's clock, is a year later; ticks of less than a decade."""
+    for at in ("1", "31536000"):
+        monkeypatch.setenv("SOURCE_DATE_EPOCH", at)
+        panel = Panel("p", "approach", "y", SERIES[:1], ("log", "log"), settings={"xlim": (2.0, 7.0)})
+        inside.save(FigureData("", "", (panel,)), tmp_path / f"{at}.{ending}")
+    one, two = (path.read_bytes() for path in tmp_path.iterdir())
+    assert one == two
+    assert ending != "svg" or b">approach</text>" in one
+    assert ending != "pdf" or (b"/FontFile2" in one and b"/Type3" not in one)  # TrueType

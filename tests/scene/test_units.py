@@ -123,9 +123,6 @@ SI = {"sigma": 1.37e-6, "radius": 13e-6, "eta": 3e8, "nominal_area": 1e-4, "E_st
 def test_a_surface_of_texts_is_that_of_floats():
     texts = ("1.37 um", "13 µm", "300/mm^2", "1 cm²", "78.6 GPa")
     assert mcgw.Surface(*texts) == mcgw.Surface(**SI) == analytic.Surface(**SI)
-    for key in SI:
-        with pytest.raises(ValueError, match=f"^surface.{key} = '5 apples': give a finite number > 0 in "):
-            mcgw.Surface(**{**SI, key: "5 apples"})
 
 
 # --- units that are doubted ---------------------------------------------------------------------------
