@@ -1,15 +1,18 @@
 """Tables for finite-element programs: read by each program's rule, against theory and literal sums."""
 
 import csv
+import json
 import re
 
+import jsonschema
 import numpy as np
 import pytest
-from oracles.inside import pressures_of, read_attributes
+from oracles.inside import pressures_of
 
 import mcgw
 from analytic.at_load import Moments
 from mcgw.cli import main
+from mcgw.exports.contact_table import SCHEMA
 from mcgw.exports.curves import KINDS, Curve, quantile_name
 from mcgw.exports.programs import PROGRAMS
 from mcgw.exports.table_text import UNITS, heading, in_units, table_text
@@ -143,18 +146,6 @@ def test_a_curve_is_written_as_the_program_reads_it(scene, program, table, units
 # --- numbers --------------------------------------------------------------------------------------------
 
 
-def test_pressure_against_gap_is_that_of_theory(scene, tmp_path):
-    """Against the exact mean, in its standard errors; |z| < 5 at 12 points: a false alarm in 1e5 seeds."""
-    path, *_ = mcgw.export(scene, tmp_path / "t.txt", to="comsol", points=12)
-    gap, pressure = table_of(path, "comsol")[:, :-1]
-    h = gap / SURFACE.sigma
-    np.testing.assert_allclose(h, np.linspace(0, 3, 12), atol=1e-9)
-    exact = scene.theory.mean("pressure", h)
-    stderr = scene.theory.std("load", h) / SURFACE.nominal_area / np.sqrt(60)
-    assert np.all(np.abs(pressure - exact) < 5 * stderr)
-    assert not np.all(np.abs(1.3 * pressure - exact) < 5 * stderr)  # it would be seen
-
-
 def test_quantiles_have_names_of_their_own():
     shares = (0.05, 0.5, 0.025, 0.975, 0.9999)
     assert [quantile_name(q) for q in shares] == ["q05", "q50", "q2.5", "q97.5", "q99.99"]
@@ -201,13 +192,6 @@ def test_pressures_of_a_scene_are_those_of_its_rows_against_the_gap(scene, tmp_p
     np.testing.assert_allclose(table_of(path, "moose")[0, :-1], SURFACE.sigma * np.array(h), rtol=1e-8)
 
 
-def test_fewer_rows_are_evenly_of_the_separations(ensemble, tmp_path):
-    path, *_ = mcgw.export(ensemble, tmp_path / "t.txt", to="comsol", table="conductance-gap", points=5)
-    mean = ensemble.mean("conductance_si") / SURFACE.nominal_area
-    rows = np.stack([SURFACE.sigma * ensemble.separations, mean], axis=1)
-    np.testing.assert_allclose(table_of(path, "comsol")[:, :-1].T, rows[[0, 3, 6, 9, 12]], rtol=1e-9)
-
-
 def test_pressures_are_those_of_the_mean_surface_where_a_specimen_touches(scene):
     found = pressures_of(scene.replace(separations=[8.0, 2.0, 0.0, 0.5]), 5)
     assert found[[0, -1]] == pytest.approx(scene.theory.mean("pressure", [2.0, 0.0]), rel=1e-9)
@@ -227,16 +211,6 @@ def test_rows_against_pressure_are_the_values_and_specimens_of_solve(scene, tmp_
         np.testing.assert_allclose(mean, [each.value[sum_of] / area for each in solved], rtol=1e-9)
         low = [np.quantile(each.surfaces[sum_of], 0.05) / area for each in solved]
         np.testing.assert_allclose(table_of(paths[1], "moose")[1, -2:], low, rtol=1e-9)
-
-
-def test_comments_tell_where_it_comes_from(ensemble, tmp_path):
-    file = tmp_path / "e.h5"
-    mcgw.save(ensemble, file)
-    path, *_ = mcgw.export(file, tmp_path / "t.inp", to="calculix", quantiles=[])
-    text = path.read_text()
-    assert f"SHA-256 of the data {read_attributes(file)['digest']}" in text
-    assert "60 surfaces of 3000 asperities, seed 4" in text
-    assert "to the mean plane of the summits" in text
 
 
 # --- what has no table ----------------------------------------------------------------------------------
@@ -308,3 +282,61 @@ def test_names_that_a_program_cannot_be_told_are_refused(make_scene, name, tmp_p
     assert main(["export", "none.toml", "--to", "abaqus", "-o", str(path)]) == 2
     assert len(capsys.readouterr().err.splitlines()) == 1
     assert not list(tmp_path.iterdir())
+
+
+# --- as JSON ----------------------------------------------------------------------------------------------
+
+JOINT = mcgw.Joint(conductivities=(150.0, 16.0))
+JOINED = mcgw.Scene(SURFACE, separations=[0.0, 1.5], n_surfaces=400, seed=4, joint=JOINT)
+
+
+def as_json(what, path, **options):
+    """The table, after its file kept its schema; columns as arrays."""
+    (found,) = mcgw.export(what, path, to="json", **options)
+    table = json.loads(found.read_text())
+    jsonschema.validate(table, json.loads(SCHEMA.read_text()))
+    columns = {key: np.array(value) for key, value in table.items() if isinstance(value, list)}
+    return table | columns
+
+
+@pytest.fixture(scope="module")
+def table(tmp_path_factory):
+    return as_json(JOINED, tmp_path_factory.mktemp("table") / "a.json", points=11)
+
+
+def test_its_columns_are_those_of_theory(table):
+    """At its rows, within five standard errors."""
+    assert mcgw.scene_from(table["provenance"]["scene"]).surface == SURFACE
+    assert len(table["gap"]) == 11
+    h = table["gap"] / SURFACE.sigma
+    error = np.sqrt(np.diag(table["covariance"]) / 400) / table["pressure"]
+    for name, exact, area in (
+        ("pressure", "pressure", 1.0), ("area", "area_fraction", 1.0),
+        ("conductance", "conductance_si", SURFACE.nominal_area),
+    ):  # fmt: skip
+        off = np.abs(table[name] / JOINED.theory.mean(exact, h) * area - 1)
+        assert np.all(off < 5 * error), name
+    assert error.max() < 0.02
+
+
+def test_gas_in_the_gap_conducts_too(table, tmp_path):
+    """What it adds is Yovanovich's integral at each row's own gap."""
+    gas = {"conductivity": 0.026, "jump": 3e-7}
+    scene = JOINED.replace(gas=gas, rms=1.5e-6)
+    joint = as_json(scene, tmp_path / "a.json", points=11)
+    added = scene.gas.gap(SURFACE, scene.heights)(joint["gap"] / SURFACE.sigma)
+    np.testing.assert_allclose(joint["conductance"] - table["conductance"], added, rtol=1e-9)
+
+
+def test_one_surface_without_a_film_has_neither_covariance_nor_conductance(tmp_path):
+    scene = mcgw.Scene(SURFACE, separations=[0.0, 1.0], n_surfaces=1, seed=1)
+    table = as_json(scene, tmp_path / "a.json", points=3)
+    assert table["covariance"] is table["conductance"] is None
+
+
+@pytest.mark.parametrize("separations", [1.0, [0.0, 40.0]])
+def test_what_makes_no_table_is_refused(separations, tmp_path):
+    ensemble = mcgw.simulate(JOINED, n_surfaces=2, separations=separations)
+    with pytest.raises(ValueError, match="two separations or more"):
+        mcgw.export(ensemble, tmp_path / "a.json", to="json")
+    assert not (tmp_path / "a.json").exists()

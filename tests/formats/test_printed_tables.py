@@ -44,6 +44,7 @@ def test_a_table_is_aligned_and_shows_each_number_to_its_error():
     bare = Table((Column("share", [0.25], unit="1"), Column("area", [2.0], unit="m^2")))
     assert bare.text() == "  share  area (m^2)\n  0.25            2"
     assert (SMALL.unit, bare.unit, Table((Column("x", []),)).unit) == ("N", "1", "")
+    assert [column.textual for column in (*SMALL.columns, Column("x", []))] == [False, False, True, False]
 
 
 def test_rows_and_columns_are_picked_from_a_table():
@@ -81,14 +82,6 @@ def test_a_file_of_a_table_has_all_digits(tmp_path):
     lines = (tmp_path / "t.csv").read_bytes().decode().removesuffix("\n").split("\n")
     assert lines == ["i,t,x (N),e", f'1,"a,b",0.1,{1 / 3!r}', "-2,c,1e-300,2.0"]
     assert list(kinds.to_dataframe()["e"]) == [1 / 3, 2.0]
-
-
-def test_a_sheet_is_its_title_its_facts_and_its_table():
-    few = Table((Column("n", [1]),))
-    whole = few.under("One\ntwo", [("a", "x" * 100), ("long", "<y>")])
-    assert whole.text() == f"One\\ntwo\n  a     {'x' * 85}...\n  long  <y>\n  n\n  1"
-    facts = f"<tr><th>a</th><td>{'x' * 85}...</td></tr><tr><th>long</th><td>&lt;y&gt;</td></tr>"
-    assert whole._repr_html_() == f"<b>One\\ntwo</b><table>{facts}</table>{few.html()}"
 
 
 def test_a_long_text_is_shortened_where_it_is_no_number():

@@ -159,7 +159,7 @@ LIMITS = {
     "blur": (0.1, lambda f, r, x: (crowded(f, 0.01, x), r)),
     "waves": (1 / 50, lambda f, r, x: (replace(f, waves=replace(f.waves, independent=1 / x)), r)),
     "summits": (0.01, lambda f, r, x: (listing(f, np.zeros(int(1 / x))), r)),
-    "pixel": (1.05, lambda f, r, x: (squares(f, bend=x, bend_1=1.0), r)),
+    "pixel": (0.05, lambda f, r, x: (squares(f, bend=1 + x, bend_1=1.0), r)),
     "cutoff": (1 / 20e-6, lambda f, r, x: (f, replace(r, asked=replace(r.asked, cutoff=1 / x)))),
     "slope": (10.0, lambda f, r, x: (f, with_slope(r, x))),
     "unit": (1e-2, lambda f, r, x: (f, replace(r, levelled=replace(r.levelled, pixel=(1e-3, x))))),
