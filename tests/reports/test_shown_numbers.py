@@ -74,10 +74,8 @@ def rows_of(path):
     return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
 
 
-TABLES = {
-    "show -v": "mean std stderr",
-    "compare --table -o c.png": "mean low_95 high_95 std theory residual",
-}
+COMPARED = "mean low_95 high_95 std theory residual"
+TABLES = {"show -v": "mean std stderr", "compare --table -o c.png": COMPARED}
 
 
 @pytest.mark.parametrize("words", TABLES)

@@ -153,12 +153,6 @@ def test_where_nothing_touches_nothing_is_said_of_contacts(make_scene, law):
     assert cautions(make_scene(separations=(2.0,), n_asperities=30_000, surface=SHALLOW)) == []  # calm
 
 
-def test_more_than_half_of_all_summits_is_no_caution_where_the_error_was_measured():
-    measured = of_alpha(4.0, separations=[-0.05, 1.0])
-    assert measured.validity().measured.any()
-    assert not about(cautions(measured), "more than half")  # the map says how far off it is
-
-
 def of_alpha(alpha, **changes):
     surface = analytic.SpectralMoments(1e-12, 1e-3, 1e6 * alpha).surface(1e-2, 1e9)  # blunt, and many summits
     return scene_by(surface, seed=1, **changes)
@@ -177,6 +171,7 @@ def test_no_error_above_ten_percent_goes_without_its_size(alpha, heights):
         if heights != "gaussian":
             curvature = mcgw.RandomCurvature(alpha) if heights == "own radii" else None
             scene = scene.replace(heights=analytic.Nayak(alpha), summits=curvature)
+        assert not about(cautions(scene), "more than half")  # the map says how far off it is
         told = {name: int(size) / 100 for line in cautions(scene) for name, size in SIZE.findall(line)}
         for name in ("area", "stiffness", "load"):
             error = scene.validity().error[name][0]
@@ -194,13 +189,8 @@ def test_the_direction_of_an_error_and_whose_separation_it_is():
     assert int(size[1]) / 100 == pytest.approx(scene.validity().error["load"][0], abs=0.01)
     assert line.startswith("d/sigma = 0.5: ")
     assert "neither interact nor merge" in line
-
-
-def test_loads_above_all_that_were_measured():
-    scene = of_alpha(4.0, separations=[-30.0, -20.0, 0.5])
-    (line,) = about(cautions(scene), "loads heavier than measured")
+    (line,) = about(cautions(scene.replace(separations=[-30.0, -20.0, 0.5])), "loads heavier than measured")
     assert line.startswith("d/sigma = -30 to -20: ")
-    assert not about(cautions(scene.replace(separations=[0.5, 6.0])), "loads heavier")
 
 
 def test_the_choice_of_the_law_is_worth_ten_percent(make_scene):

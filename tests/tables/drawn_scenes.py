@@ -124,11 +124,6 @@ LAWS = {
         "separations": [0.2, 1.3, 2.2],
         "quantities": ["load", "area", "stiffness", "load_slope"],
     },
-    "up and down": {
-        "law": mcgw.KogutEtsion(critical=0.4),
-        "grading": analytic.Custom(lambda s: 1 + 0.5 * np.sin(30 * s)),
-        "separations": [0.5, 2.0],
-    },
     "comes off where it softens": {
         "law": mcgw.KogutEtsion(critical=0.0191),
         "grading": analytic.Custom(lambda s: 1 + 0.8 * np.sin(8 * s - 0.376)),
