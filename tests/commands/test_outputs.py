@@ -10,8 +10,9 @@ from functools import partial
 
 import h5py
 import pytest
-from oracles.inside import rename_over, state_of, temporary_beside, together, whole_file, write_whole
+from oracles.inside import rename_over, state_of, temporary_beside, whole_file, write_whole
 from oracles.overwrites import CASES, attempt, contents, prepare, ways
+from oracles.said import without_notes
 
 import mcgw
 from mcgw.cli import main
@@ -36,11 +37,11 @@ def here(inputs, tmp_path, monkeypatch):
     return tmp_path / "here"
 
 
-def told(capsys, words, code=2):
+def told(capsys, words):
     """The one line that a command ends with."""
     capsys.readouterr()
-    assert main([str(word) for word in words]) == code
-    err = "".join(x for x in capsys.readouterr().err.splitlines(True) if not x.startswith("mcgw: note: "))
+    assert main(words.split()) == 2
+    err = without_notes(capsys.readouterr().err)
     assert len(err.splitlines()) == 1, err
     return err
 
@@ -51,43 +52,10 @@ OVERWRITES = [(case, ways(case)[i % len(ways(case))]) for i, case in enumerate(C
 
 @pytest.mark.parametrize(("case", "way"), OVERWRITES)
 def test_no_command_writes_over_what_it_reads(case, way, here, capsys):
-    code, changed = attempt(case, way)
-    assert (code, changed) == (2, [])
-    err = capsys.readouterr().err.splitlines()
-    assert sum(line.startswith("mcgw: ") for line in err) == 1
-    assert "is an input" in err[-1]
-
-
-# Of a kind of output that is declared, and of commands that check theirs themselves.
-OVER_AN_ENSEMBLE = [
-    "show e.h5 --csv OTHER.csv",
-    "export e.h5 --to comsol -o OTHER.txt",
-    "surface plain.toml -o OTHER.h5",
-    "init -o OTHER.toml",
-]
-
-
-@pytest.mark.parametrize("words", OVER_AN_ENSEMBLE)
-def test_no_ensemble_is_replaced_by_something_else(words, here, capsys):
-    ending = words.rpartition(".")[2]
-    shutil.copy("e.h5", f"other.{ending}")
-    before = contents()
-    err = told(capsys, words.replace("OTHER", "other").split())
-    assert "is an ensemble of mcgw, which this would replace" in err
-    assert contents() == before
-
-
-@pytest.mark.parametrize("kind", ["cut", "other"])
-def test_a_damaged_ensemble_is_not_replaced_either(kind, here, capsys):
-    with h5py.File(here / "other.csv", "w") as file:
-        file["x"] = [1.0]
-    if kind == "cut":
-        (here / "other.csv").write_bytes((here / "e.h5").read_bytes()[:-100])
-    before = contents()
-    said = told(capsys, ["show", "e.h5", "--csv", "other.csv"])
-    what = "an ensemble of mcgw" if kind == "cut" else "an HDF5 file"
-    assert f"is {what}, which this would replace" in said
-    assert contents() == before
+    assert attempt(case, way) == (2, [])
+    *notes, last = capsys.readouterr().err.splitlines()
+    assert "is an input" in last
+    assert not any(line.startswith("mcgw: ") for line in notes)
 
 
 PLACES = [
@@ -108,15 +76,24 @@ PLACES = [
     ("converge scene.toml -o e.h5", "e.h5/scene-converge.png: cannot be written"),
     ("figures -o e.h5", "cannot be written"),
     ("show e.h5 --csv .", "a table is written there"),
-]
+    *((f"{words} -o whole.{end}", "is an ensemble of mcgw, which this would replace") for words, end in (
+        ("export e.h5 --to comsol", "txt"), ("surface plain.toml", "h5"), ("init", "toml"))),
+    ("show e.h5 --csv cut.csv", "is an ensemble of mcgw, which this would replace"),
+    ("show e.h5 --csv other.csv", "is an HDF5 file, which this would replace"),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(("words", "message"), PLACES)
 def test_places_and_endings_that_will_not_do(words, message, here, capsys):
     (here / "a.h5.parts").mkdir()
     (here / "a.h5.parts" / "lock.db").touch()
+    for name in ("whole.txt", "whole.h5", "whole.toml"):
+        shutil.copy("e.h5", name)
+    (here / "cut.csv").write_bytes((here / "e.h5").read_bytes()[:-100])
+    with h5py.File("other.csv", "w") as file:
+        file["x"] = [1.0]
     before = contents()
-    assert message in told(capsys, words.split())
+    assert message in told(capsys, words)
     assert contents() == before
 
 
@@ -136,7 +113,7 @@ WRITE = [
 def test_something_in_the_way_is_one_line(words, ending, here, capsys):
     out = here / f"x{ending}"
     out.mkdir() if len(ending) % 2 else os.mkfifo(out)
-    assert "is not a regular file" in told(capsys, words.replace("OUT", str(out)).split())
+    assert "is not a regular file" in told(capsys, words.replace("OUT", str(out)))
 
 
 @pytest.mark.usefixtures("blank_figures")
@@ -221,30 +198,23 @@ def test_a_disk_that_does_not_flush_folders_is_no_error(tmp_path, make_scene, mo
         mcgw.run(make_scene(n_surfaces=20), tmp_path / "2.h5")
 
 
-def test_a_replaced_file_keeps_its_mode(here):
-    """Of an ensemble that grows, and of what a command writes anew."""
-    run = "run scene.toml -o r.h5 --set ensemble.n_surfaces="
-    export = "export scene.toml --to abaqus --points 3 -o x.inp"
-    for name, calls in (("r.h5", (f"{run}30", f"{run}60")), ("x.inp", (export, export))):
-        assert main(calls[0].split()) == 0
-        (here / name).chmod(0o640)
-        assert main(calls[1].split()) == 0
-        assert stat.S_IMODE((here / name).stat().st_mode) == 0o640
-
-
-def test_a_read_only_file_is_refused_in_one_line(here, capsys):
+def test_a_replaced_file_keeps_its_mode_and_a_read_only_one_is_refused(here, capsys):
     """Before anything is drawn; what needs no writing is done as ever."""
-    run = ["run", "scene.toml", "-o", "r.h5", "--set", "ensemble.n_surfaces="]
-    export = ["export", "scene.toml", "--to", "abaqus", "--points", "3", "-o", "x.inp"]
-    run[-1], more = f"{run[-1]}30", [*run[:-1], f"{run[-1]}60"]
-    assert main(run) == main(export) == 0
-    for name in ("r.h5", "x.inp"):
-        (here / name).chmod(0o444)
-    before = contents()
-    assert "r.h5: is read-only; choose another -o" in told(capsys, more)
-    assert "x.inp: is read-only" in told(capsys, export)
-    assert main(run) == 0
-    assert contents() == before
+    run, more = (f"run scene.toml -o r.h5 --set ensemble.n_surfaces={n}" for n in (30, 60))
+    export = "export scene.toml --to abaqus --points 3 -o x.inp"
+    for mode in (0o640, 0o444):
+        for name, words, again in (("r.h5", run, more), ("x.inp", export, export)):
+            (here / name).unlink(missing_ok=True)
+            assert main(words.split()) == 0
+            (here / name).chmod(mode)
+            before = contents()
+            if mode == 0o640:
+                assert main(again.split()) == 0
+                assert stat.S_IMODE((here / name).stat().st_mode) == mode
+                continue
+            assert f"{name}: is read-only" in told(capsys, again)
+            assert words is export or main(words.split()) == 0
+            assert contents() == before
 
 
 def test_a_full_disk_names_the_file(tmp_path, monkeypatch):
@@ -256,28 +226,6 @@ def test_a_full_disk_names_the_file(tmp_path, monkeypatch):
     assert in_one_line(error.value) == f"{tmp_path / 'a.csv'}: No space left on device"
     assert in_one_line(OSError(errno.ENOSPC, "full")).startswith("compiled loops (NUMBA_CACHE_DIR)")
     assert in_one_line(OSError("no number")) == "no number"
-
-
-def test_files_written_together_appear_all_or_none(tmp_path):
-    (tmp_path / "b").write_text("older")
-
-    def written(error):
-        with together():
-            for name in "abc":
-                with together():  # in vain
-                    write_whole(tmp_path / name, [name.encode()])
-            assert not (tmp_path / "a").exists()
-            if error:
-                raise error
-
-    for error in (ValueError("x"), KeyboardInterrupt()):
-        with pytest.raises(type(error)):
-            written(error)
-        assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {"b": "older"}
-    written(None)
-    assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {"a": "a", "b": "b", "c": "c"}
-    write_whole(tmp_path / "d", [b"alone again"])
-    assert (tmp_path / "d").exists()
 
 
 @pytest.mark.usefixtures("blank_figures", "without_caps")

@@ -2,6 +2,7 @@
 
 import io
 import sys
+import time
 from contextlib import nullcontext, suppress
 
 import numpy as np
@@ -87,26 +88,13 @@ def test_what_is_no_function_is_refused(progress):
 
 
 def test_a_bar_goes_on_from_what_was_done_before_and_ends_with_an_error(monkeypatch):
-    """At its rate in this call."""
-    noted = []
-
-    class Bar:
-        def __init__(self, **options):
-            self.n = options["initial"]
-            noted.append(options)
-
-        def update(self, more):
-            self.n += more
-            noted.append(more)
-
-        def close(self):
-            noted.append("closed")
-
-    monkeypatch.setattr("tqdm.tqdm", Bar)
     for _ in range(2):
+        monkeypatch.setattr(sys, "stderr", Stream(terminal=True))
         with suppress(KeyError), asked(True, "surfaces") as show:
-            for done in (50, 60, 60, 100):
+            for done in (50, 60, 100):
                 show(done, 100)
+                time.sleep(0.11)  # so often it is drawn
             raise KeyError
-    options = {"total": 100, "initial": 50, "unit": " surfaces", "leave": False, "smoothing": 0}
-    assert noted == [options, 0, 10, 0, 40, "closed"] * 2
+        shown = sys.stderr.getvalue()
+        assert all(part in shown for part in (" 50/100 [", " 60/100 [", " 100/100 [", " surfaces/s]"))
+        assert shown.endswith("\r")  # it leaves nothing

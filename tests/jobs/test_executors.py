@@ -65,16 +65,12 @@ def test_killed_dask_workers_are_replaced(make_scene, tmp_path):
 
 
 def test_dask_that_is_not_there_is_one_line(monkeypatch):
-    with (
-        pytest.raises(RunError, match=r"^--dask ftp://x: no scheduler answers|^dask is not installed"),
-        dask_executor("ftp://x"),
-    ):
+    told = r"^--dask ftp://x: no scheduler answers|^dask is not installed"
+    with pytest.raises(RunError, match=told), dask_executor("ftp://x"):
         pass
     monkeypatch.setitem(sys.modules, "distributed", None)  # it cannot be imported
-    with (
-        pytest.raises(RunError, match=r"dask is not installed: in a clone of mcgw, pip install -e '\.\["),
-        dask_executor("tcp://127.0.0.1:1"),
-    ):
+    told = r"dask is not installed: in a clone of mcgw, pip install -e '\.\["
+    with pytest.raises(RunError, match=told), dask_executor("tcp://127.0.0.1:1"):
         pass
 
 
@@ -139,18 +135,18 @@ def test_a_task_that_kills_its_worker_is_tried_once_more_and_given_up(mark, tmp_
     assert sorted(done) == [span for span in SPANS[:3] if mark or span.first != 16]
 
 
-def test_an_error_of_a_task_ends_the_run_and_what_is_not_begun_is_dropped():
-    for pool in (ThreadPoolExecutor(1), Now()):
-        begun = []
+@pytest.mark.parametrize("pool", [ThreadPoolExecutor(1), Now()])
+def test_an_error_of_a_task_ends_the_run_and_what_is_not_begun_is_dropped(pool):
+    begun = []
 
-        def task(first, begun=begun):
-            begun.append(first)
-            time.sleep(0.01)
-            return 1 / first
+    def task(first):
+        begun.append(first)
+        time.sleep(0.01)
+        return 1 / first
 
-        with pool, pytest.raises(ZeroDivisionError):
-            driven(pool, [], task)
-        assert len(begun) < len(SPANS) or isinstance(pool, Now)
+    with pool, pytest.raises(ZeroDivisionError):
+        driven(pool, [], task)
+    assert len(begun) < len(SPANS) or isinstance(pool, Now)
 
 
 def test_a_long_block_is_left_when_the_run_is_interrupted(make_scene, tmp_path):
@@ -178,9 +174,6 @@ def test_workers_are_killed_at_the_end_whatever_they_do():
     while worker.exitcode is None and time.monotonic() < end:  # the pool's own thread waits for it, too
         time.sleep(0.01)
     assert worker.exitcode == -signal.SIGKILL
-
-
-# --- signals ---------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(

@@ -1,25 +1,16 @@
-"""What is said of runs and sweeps before they are finished, and of laws that are lists of numbers."""
+"""What is said of a sweep before it is finished, and of laws that are lists of numbers."""
 
 import re
 
 import numpy as np
 import pytest
-from oracles.inside import Values, law_text
+from oracles.inside import law_text
 from oracles.said import call
 
 import mcgw
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "0.1 mm^2", "78.6 GPa")
 SCENE = mcgw.Scene(SURFACE, separations=[0.0, 1.0], n_surfaces=100, seed=1)
-
-
-def test_a_run_half_done_tells_surfaces_from_asperities(tmp_path, monkeypatch):
-    monkeypatch.setattr(Values, "rows", 16)
-    path = tmp_path / "a.h5"
-    done = 100 - mcgw.run(SCENE, path, shard="1/2")
-    assert 0 < done < 100
-    said = call("show", path).stdout
-    assert f"  surfaces      {done} so far, of 100, of 30 asperities each (fixed)" in said
 
 
 def test_a_sweep_half_done_says_how_far_it_is(tmp_path):

@@ -78,9 +78,6 @@ def test_growth_is_of_the_call_alone():
     assert peak_growth(lambda: np.ones(2**23)) == pytest.approx(2**26, rel=0.2)
 
 
-# --- what is asked for, by hand -------------------------------------------------------------------------
-
-
 WIDTH = 4 * 9  # numbers of a surface: quantities and separations of `make_scene`
 SUMMARY = 8 * WIDTH * (WIDTH + 1)  # bytes of products and means
 

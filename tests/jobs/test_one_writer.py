@@ -40,36 +40,6 @@ def path(tmp_path):
     return tmp_path / "e.h5"
 
 
-@pytest.fixture
-def drawing(monkeypatch):
-    """A run that has begun to draw its only block and waits: others may try."""
-
-    class Drawing:
-        begun, go_on, blocks = threading.Event(), threading.Event(), 0
-
-        def start(self, scene, path):
-            self.pool = ThreadPoolExecutor(1)
-            self.answer = self.pool.submit(mcgw.run, scene, path)
-            assert self.begun.wait(30)
-
-        def finish(self):
-            self.go_on.set()
-            answer = self.answer.result(30)
-            self.pool.shutdown()
-            return answer
-
-    held, drawn = Drawing(), Plan.draw
-
-    def slowly(*arguments):
-        held.blocks += 1
-        held.begun.set()
-        assert held.go_on.wait(30)
-        return drawn(*arguments)
-
-    monkeypatch.setattr(Plan, "draw", slowly)
-    return held
-
-
 def others(scene):
     """All that can be written to the same file meanwhile."""
     blocks = scene.replace(n_surfaces=3 * SIZE)
@@ -82,42 +52,46 @@ def others(scene):
     }
 
 
-@pytest.mark.parametrize("other", ["the same run", "in blocks", "a share", "merge", "save"])
-def test_nothing_else_is_written_beside_a_run_of_one_block(other, scene, path, drawing):
-    drawing.start(scene, path)
-    with pytest.raises(LockedError, match=f"locked by pid {os.getpid()} on"):
-        others(scene)[other](path)
-    tidy(path)  # what `show` does; it takes nothing away
-    assert drawing.finish().n_surfaces == SIZE
+def test_nothing_else_is_written_beside_a_run_of_one_block(scene, path, monkeypatch):
+    """Who waits looks again, with the lock: both looked before either wrote, and nothing is drawn twice."""
+    draw, begun, go_on, blocks = Plan.draw, threading.Event(), threading.Event(), []
+
+    def slowly(*arguments):
+        blocks.append(arguments)
+        begun.set()
+        assert go_on.wait(30)
+        return draw(*arguments)
+
+    monkeypatch.setattr(Plan, "draw", slowly)
+    with ThreadPoolExecutor(3) as pool:
+        first = pool.submit(mcgw.run, scene, path)
+        assert begun.wait(30)
+        for other in others(scene).values():
+            with pytest.raises(LockedError, match=f"locked by pid {os.getpid()} on"):
+                other(path)
+        tidy(path)  # what `show` does; it takes nothing away
+        monkeypatch.setattr(lock, "PATIENCE", 30.0)
+        same, another = (pool.submit(mcgw.run, scene.replace(seed=seed), path) for seed in (1, 2))
+        time.sleep(0.2)
+        go_on.set()
+        assert first.result(30).n_surfaces == same.result(30).n_surfaces == SIZE
+        with pytest.raises(StoreError, match="seed is 1 there and 2 here"):
+            another.result(30)
+    assert len(blocks) == 1
     assert ensembles.verify(path)[0] == ""
     assert [p.name for p in path.parent.iterdir()] == ["e.h5"]
 
 
-def test_a_run_that_waited_sees_what_the_other_wrote(scene, path, drawing, monkeypatch):
-    """Both looked before either wrote: the second one looks again, with the lock."""
-    monkeypatch.setattr(lock, "PATIENCE", 30.0)
-    drawing.start(scene, path)
-    with ThreadPoolExecutor(2) as pool:
-        same = pool.submit(mcgw.run, scene, path)
-        other = pool.submit(mcgw.run, scene.replace(seed=2), path)
-        time.sleep(0.2)
-        drawing.finish()
-        assert same.result(30).n_surfaces == SIZE
-        with pytest.raises(StoreError, match="seed is 1 there and 2 here"):
-            other.result(30)
-    assert drawing.blocks == 1  # and nothing is drawn twice
-
-
 def test_a_finished_file_needs_no_lock(scene, path):
     """Whoever holds it: nothing is to be done, and there is nobody to wait for."""
-    over = {"grading.gamma": [0.5, 1.0]}
+    swept, over = path.with_name("s.h5"), {"grading.gamma": [0.5, 1.0]}
     mcgw.run(scene, path)
-    mcgw.sweep(scene, over, path=path.with_name("s.h5"))
-    with locked(parts_of(path)), locked(parts_of(path.with_name("s.h5"))):
+    mcgw.sweep(scene, over, path=swept)
+    with locked(parts_of(path)), locked(parts_of(swept)):
         assert mcgw.run(scene, path).n_surfaces == SIZE
         assert mcgw.run(scene, path, shard="1/2") == 0
-        assert mcgw.sweep(scene, over, path=path.with_name("s.h5")).shape == (2,)
-        assert mcgw.sweep(scene, over, path=path.with_name("s.h5"), shard="2/2") == 0
+        assert mcgw.sweep(scene, over, path=swept).shape == (2,)
+        assert mcgw.sweep(scene, over, path=swept, shard="2/2") == 0
 
 
 def test_jobs_share_and_others_wait(scene, path):
@@ -133,13 +107,14 @@ def test_jobs_share_and_others_wait(scene, path):
 
 
 def test_an_unfinished_run_is_not_replaced(scene, path):
-    mcgw.run(scene.replace(n_surfaces=3 * SIZE), path, shard="1/2")
+    blocks = scene.replace(n_surfaces=3 * SIZE)
+    mcgw.run(blocks, path, shard="1/2")
     with pytest.raises(StoreError, match="a run that makes this file is not finished"):
         mcgw.save(mcgw.simulate(scene), path)
     with pytest.raises(StoreError, match="holds surfaces up to number 48 already, more than"):
         mcgw.run(scene, path)
-    with pytest.raises(StoreError, match="holds a different run"):
-        mcgw.run(scene.replace(seed=2, n_surfaces=3 * SIZE), path)
+    with pytest.raises(StoreError, match=r"holds a different run: .*seed is 1 there and 2"):
+        mcgw.run(blocks.replace(seed=2), path)
     assert mcgw.run(scene.replace(n_surfaces=4 * SIZE), path).n_surfaces == 4 * SIZE
 
 

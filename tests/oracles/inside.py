@@ -31,9 +31,7 @@ MODULES = {
     "mcgw.figures.panels": "draw save",
     "mcgw.figures.studies": "convergence_figure tradeoff_figure",
     "mcgw.figures.style": "FAMILIES look PAIRS power_of_ten prefixed save_figure short STYLE THEORY",
-    "mcgw.formats.files": (
-        "alive check_output rename_over state_of temporary_beside together whole_file write_whole"
-    ),
+    "mcgw.formats.files": ("alive check_output rename_over state_of temporary_beside whole_file write_whole"),
     "mcgw.formats.gate": "check_archive open_h5 opened",
     "mcgw.formats.law_text": "law_text",
     "mcgw.formats.named_files": "loads loads_json open_npy read_text",
@@ -64,7 +62,7 @@ MODULES = {
     "mcgw.reports.report_figures": ("spread_panel svg_of pressure_curves round_pressures solved_pressures"),
     "mcgw.reports.solved_loads": "correlation solutions_text",
     "mcgw.reports.text": "comparison_text summary",
-    "mcgw.sampling.asperities": "same_heights summits summits_drawn worst_of_values",
+    "mcgw.sampling.asperities": "summits summits_drawn worst_of_values",
     "mcgw.sampling.samplers": "sampler_of",
     "mcgw.scene.cautions": "cautions",
     "mcgw.scene.keys": "KEYS SURFACE_UNITS",

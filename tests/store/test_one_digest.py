@@ -6,7 +6,6 @@ A row is a feature that changes what is drawn, or what its scene must remember.
 import h5py
 import numpy as np
 import pytest
-import scipy.stats
 from conftest import SURFACE
 from oracles.begun_runs import SIZE, digest, halted, in_small_blocks
 from oracles.inside import read_attributes, storable
@@ -28,22 +27,10 @@ def bent(s):
     return 1 + 0.3 * np.abs(s - 0.777)
 
 
-def there_and_back(law):
-    return {"law": law, "unload_from": "loop", "grading": analytic.Exponential(1.5)}
-
-
-def yields(law):
-    return {"law": law, "grading": analytic.Exponential(1.5)}
-
-
 SCENES = {
     "function": {"grading": lambda s: 1 + 0.3 * np.tanh(s), "title": 'Ra = 1 µm, "quoted"'},
     "kinks told": {"grading": analytic.Custom(lambda s: abs(s - 0.4) + (s > 1.1), (0.4, 1.1))},
-    "clip": {"grading": lambda s: s - 0.9, "negative": "clip"},
-    "allow": {"grading": lambda s: np.sin(3 * s), "negative": "allow"},
-    "extremes": {"heights": scipy.stats.genextreme(0.1, 5.0, 2.0)},
     "weibull, poisson": {"grading": bent, "heights": analytic.Weibull(2.0), "count": "poisson"},
-    "table": {"grading": analytic.Table([-5.0, 0.0, 9.0], [0.5, 1.0, 1.7]), "separations": (0.1, 1 / 3)},
     "direct": {"grading": bent, "sampler": "direct", "seed": 2**64 - 1},
     "tail": {"grading": bent, "sampler": "tail", "seed": 2**63},
     "aggregate": {"grading": bent, "sampler": "aggregate"},
@@ -54,11 +41,8 @@ SCENES = {
              "joint": mcgw.Joint((200.0, 16.0), gas="air", rms="2 um"),
              "uncertainty": {"sigma": "20 %", "eta": 0.1, "correlation": [[1, -0.5], [-0.5, 1]]},
              "keep": "statistics", "grading": lambda s: 1 + 0.3 * np.tanh(s)},
-    "Kogut": yields(laws.KogutEtsion(hardness=1.2e9)),
-    "bridged": yields(laws.KogutEtsion(critical=0.05, bridge="hermite")),
-    "half-space": there_and_back(laws.PowerLawGraded(0.3, c0=1e-5)),
-    "coated": there_and_back(laws.Coated(thickness=1e-6, ratio=3.0)),
-    "own": yields(OWN),
+    "coated": {"law": laws.Coated(thickness=1e-6, ratio=3.0), "unload_from": "loop"},
+    "own": {"law": OWN, "grading": analytic.Exponential(1.5)},
 }  # fmt: skip
 OFTEN = {"aggregate", "own", "much"}
 EVERY = [pytest.param(name, marks=[] if name in OFTEN else pytest.mark.slow) for name in SCENES]
@@ -111,7 +95,6 @@ def test_one_file_and_one_memory(name, make, tmp_path):
 # A change of a scene, and the key by which it is told from what a file holds.
 OTHERS = {
     "function": ({"grading": np.cosh}, "grading"),
-    "direct": ({"seed": 2**64 - 2}, r"ensemble\.seed"),
     "much": ({"keep": "sums"}, r"ensemble\.keep"),
     "weibull, poisson": ({"law": laws.KogutEtsion(critical=0.05)}, "contact"),  # beside a function
     "own": ({"law": laws.KogutEtsion(critical=0.05)}, "contact"),

@@ -1,5 +1,7 @@
 """What is damaged is never gone on with: each kind of damage, and then every way of going on."""
 
+from contextlib import suppress
+
 import h5py
 import numpy as np
 import pytest
@@ -35,50 +37,42 @@ def file(scene, tmp_path):
     return tmp_path / "e.h5"
 
 
-def changed_in_place(path):
-    """A bit of a coordinate; HDF5 opens the file as if nothing were."""
-    flip_a_number(path, "separation")
+def edited(change):
+    """What HDF5 itself writes over the old contents."""
+
+    def edit(path):
+        with h5py.File(path, "r+") as data:
+            change(data)
+
+    return edit
 
 
-def flipped_in_a_result(path):
-    """A bit of the stored loads: only who reads them, or all bytes, can see it."""
-    flip_a_number(path, "load")
-
-
-def a_changed_load(path):
-    """A number of a result, written by HDF5 itself over the old one."""
-    with h5py.File(path, "r+") as file:
-        file["load"][3, 1] *= 1 + 1e-12
-
-
-def cut(path):
-    path.write_bytes(path.read_bytes()[:-100])
-
-
-def with_another_checksum(path):
-    with h5py.File(path, "r+") as file:
-        file.attrs["checksum"] = "0" * 64
-
-
-DAMAGES = [changed_in_place, flipped_in_a_result, a_changed_load, cut, with_another_checksum]
+DAMAGES = {
+    "a bit of a coordinate": lambda path: flip_a_number(path, "separation"),
+    "a bit of a result": lambda path: flip_a_number(path, "load"),  # seen by who reads it, or all bytes
+    "a result": edited(lambda data: data["load"].__setitem__((3, 1), data["load"][3, 1] * (1 + 1e-12))),
+    "the end": lambda path: path.write_bytes(path.read_bytes()[:-100]),
+    "the checksum": edited(lambda data: data.attrs.update(checksum="0" * 64)),
+}
 # Every way to put more into a file.
 WAYS = {
     "run": mcgw.run,
     "shard job": lambda scene, path: mcgw.run(scene, path, shard="1/2"),
     "stop rule": lambda scene, path: mcgw.run(scene.replace(rel_err=1e-4), path),
 }
+OF_LARGE = "a bit of a result"
 
 
 @pytest.mark.filterwarnings("ignore:.* more surfaces than n_surfaces allows")  # said before it is opened
 @pytest.mark.parametrize(
     ("way", "damage"),
-    [*(("run", damage) for damage in DAMAGES), *((way, flipped_in_a_result) for way in WAYS)],
+    [*(("run", damage) for damage in DAMAGES), ("shard job", OF_LARGE), ("stop rule", OF_LARGE)],
 )
 def test_a_damaged_file_is_not_extended_nor_sealed_anew(way, damage, file, larger, monkeypatch):
     """Of a large file only the head is looked at on opening: all of it before more is drawn for it."""
     assert ensembles.verify(file)[0] == ""
-    damage(file)
-    if damage is flipped_in_a_result:
+    DAMAGES[damage](file)
+    if damage == OF_LARGE:
         monkeypatch.setattr(h5_reading, "LARGE", 0)
         assert ensembles.open_ensemble(file).n_surfaces == SURFACES
         with pytest.raises(StoreError, match="cannot be read; is it damaged"):
@@ -91,7 +85,7 @@ def test_a_damaged_file_is_not_extended_nor_sealed_anew(way, damage, file, large
     assert ensembles.verify(file)[1] == "unreadable"
 
 
-@pytest.mark.parametrize("damage", DAMAGES[1:4])
+@pytest.mark.parametrize("damage", [OF_LARGE, "a result", "the end"])
 def test_a_file_damaged_while_more_is_drawn_is_not_merged(file, larger, damage, capsys):
     """Its own surfaces come first in the file that takes its place: they are looked at again."""
     assert mcgw.run(larger, file, shard="1/1") == 0
@@ -99,7 +93,7 @@ def test_a_file_damaged_while_more_is_drawn_is_not_merged(file, larger, damage, 
         assert main(["show", "--verify", str(file)]) == code
         assert said in capsys.readouterr().out
         if not code:
-            damage(file)
+            DAMAGES[damage](file)
     before = file.read_bytes()
     with pytest.raises((StoreError, RunError)):
         mcgw.merge(file)
@@ -117,25 +111,39 @@ def test_seconds_of_all_blocks_and_of_the_file_before_add_up(scene, larger, tmp_
         assert ensembles.read_attributes(path)["wall_seconds"] == pytest.approx(total, rel=1e-12)
 
 
-@pytest.mark.parametrize(
-    "change",
-    [
-        lambda data: data.attrs.__setitem__("title", "another"),
-        lambda data: data.attrs.__delitem__("cpu"),
-        lambda data: data["load"].attrs.__setitem__("units", "kN"),
-        lambda data: data["area"].attrs.__setitem__("long_name", "something else"),
-        lambda data: data["separation"].__setitem__(1, 1.0000000000000002),
-        lambda data: data["surface"].__setitem__(3, 4),
-        lambda data: data.create_dataset("more", data=np.ones(3)),
-    ],
-)
+SMALL = [
+    lambda data: data.attrs.update(title="another"),
+    lambda data: data.attrs.pop("cpu"),
+    lambda data: data["load"].attrs.update(units="kN"),
+    lambda data: data["area"].attrs.update(long_name="something else"),
+    lambda data: data["separation"].__setitem__(1, 1.0000000000000002),
+    lambda data: data["surface"].__setitem__(3, 4),
+    lambda data: data.update(more=np.ones(3)),
+]
+
+
+@pytest.mark.parametrize("change", SMALL)
 def test_whatever_is_small_is_checked(file, change):
-    with h5py.File(file, "r+") as data:
-        change(data)
-    with pytest.raises(
-        StoreError, match=r"checksum mismatch of (its scene or attributes|separation|surface)"
-    ):
+    edited(change)(file)
+    told = r"checksum mismatch of (its scene or attributes|separation|surface)"
+    with pytest.raises(StoreError, match=told):
         mcgw.open_ensemble(file)
+
+
+def test_a_flipped_bit_anywhere_is_seen_or_changes_nothing(file):
+    """HDF5 leaves room that nobody reads; where the scene stands all is read."""
+    whole, said, data = mcgw.open_ensemble(file), ensembles.read_attributes(file), file.read_bytes()
+    dice, scene = np.random.default_rng(1), data.index(said["scene"].encode())
+    of_scene = dice.integers(scene, scene + len(said["scene"].encode()), 30)
+    for k, at in enumerate([*of_scene, *dice.integers(len(data), size=60)]):
+        changed = bytearray(data)
+        changed[at] ^= 1 << int(dice.integers(8))
+        file.write_bytes(changed)
+        with suppress(StoreError):
+            found = mcgw.open_ensemble(file)
+            assert k >= 30
+            assert (found.scene, ensembles.read_attributes(file)) == (whole.scene, said)
+            assert all(np.array_equal(found[name], whole[name]) for name in whole.scene.quantities)
 
 
 # --- the record of a run or a sweep: its blocks are whole, and the scene is at hand ------------------------
@@ -177,7 +185,6 @@ def test_a_sweep_goes_on_from_its_shards(make_scene, tmp_path):
 
 def test_a_run_of_another_format_is_refused(scene, tmp_path):
     mcgw.run(scene, tmp_path / "b.h5", shard="1/2")
-    with h5py.File(parts_of(tmp_path / "b.h5") / RECORD, "r+") as file:
-        file.attrs["format"] = [2, 0]
+    edited(lambda data: data.attrs.update(format=[2, 0]))(parts_of(tmp_path / "b.h5") / RECORD)
     with pytest.raises(StoreError, match=r"mcgw-run \[2, 0\] is not read by this version, which reads"):
         Plan.open(parts_of(tmp_path / "b.h5"))

@@ -44,21 +44,6 @@ def free(folder, *, shared=False):
         return False
 
 
-def test_a_folder_that_goes_between_two_steps_is_made_again(tmp_path, monkeypatch):
-    """Whoever ends removes it, while the next one is about to lock it."""
-    take, made = lock._lock, []
-
-    def too_late(folder, shared):
-        made.append(folder)
-        if len(made) < 3:
-            folder.rmdir()
-        return take(folder, shared)
-
-    monkeypatch.setattr(lock, "_lock", too_late)
-    assert free(tmp_path / "f.parts")
-    assert len(made) == 3
-
-
 def test_alone_or_shared_until_the_last_one_leaves(tmp_path):
     with locked(tmp_path):
         assert not free(tmp_path)

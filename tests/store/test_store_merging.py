@@ -1,6 +1,5 @@
 """Tables in chunks, and blocks that become a file: the same numbers and digest, however that fails."""
 
-import io
 import os
 import signal
 from pathlib import Path
@@ -22,17 +21,6 @@ from mcgw.store import h5_writing, place
 def _small_blocks(monkeypatch):
     """Of 16 surfaces, in chunks of 8."""
     in_small_blocks(monkeypatch)
-
-
-def test_compressed_is_what_shrinks_by_half():
-    """Whole numbers of contacts do, loads do not."""
-    dice = np.random.default_rng(1)
-    for values, packed in ((dice.random((40, 5)), None), (dice.integers(0, 9, (40, 5)), "gzip")):
-        with h5py.File(io.BytesIO(), "w") as file:
-            data = h5_writing.empty_table(file, "x", 40, values)
-            assert (data.compression, data.shuffle) == (packed, packed is not None)
-            assert data.fletcher32
-            assert data.chunks == (8, 5)
 
 
 @pytest.mark.parametrize("columns", [0, 41, 512, 513, 2**17, 2**20])

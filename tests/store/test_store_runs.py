@@ -12,6 +12,7 @@ import pytest
 from oracles.begun_runs import SIZE, SURFACES, begun, digest, halted, in_small_blocks
 from oracles.flipped import flip_a_number
 from oracles.inside import RECORD, Blocks, Plan, Span, commit_block, part_of, parts_of
+from oracles.said import call
 
 import mcgw
 from mcgw.errors import RunError, StoppedError, StoreError
@@ -177,6 +178,7 @@ def test_rows_of_a_run_in_progress_are_those_of_a_list(scene, tmp_path):
     last.unlink()
     held, whole = ensembles.open_ensemble(path).sums, mcgw.simulate(asked)
     assert not ensembles.read_attributes(path)["complete"]
+    assert "  surfaces      96 so far, of 100, of 3000 asperities each (fixed)" in call("show", path).stdout
     for start, stop in product((0, 5, 15, 16, 33), (16, 17, 40, 48, None)):
         if start < (stop or 96):
             np.testing.assert_array_equal(held.read("load", start, stop), whole.load[start : stop or 96])

@@ -1,12 +1,10 @@
 """A sweep against theory: each point as an ensemble is, one verdict on all, and what a reader sees of it."""
 
-import dataclasses
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from oracles.inside import FALSE_ALARM, comparison_figure, draw, verdict
-from scipy.stats import norm
+from oracles.inside import FALSE_ALARM, verdict
 
 import mcgw
 from mcgw.cli import main
@@ -24,14 +22,12 @@ def sweep():
     return mcgw.sweep(SCENE, OVER)
 
 
-def off(sweep, factor, *, group=1, scene=2, name="load", k=1):
+def off(sweep, factor, name="load"):
     """The same with one mean of one scene of one group multiplied."""
-    groups = list(sweep.groups)
-    means = dict(groups[group].means)
-    means[name] = means[name].copy()
-    means[name][scene, k] *= factor
-    groups[group] = dataclasses.replace(groups[group], means=means)
-    return dataclasses.replace(sweep, groups=tuple(groups))
+    means = {key: values.copy() for key, values in sweep.groups[1].means.items()}
+    means[name][2, 1] *= factor
+    one, two, three = sweep.groups
+    return replace(sweep, groups=(one, replace(two, means=means), three))
 
 
 def test_each_point_is_tested_as_its_ensemble_is(sweep):
@@ -79,26 +75,11 @@ def test_one_mean_of_one_point_that_is_off_breaks_it(sweep, name):
     compared = mcgw.compare(off(sweep, 1.03, name=name))
     assert not compared.verdict.agrees
     worst = compared.worst[0]
-    assert sweep.axes.at(list(sweep.axes.points())[worst.number]) == {
-        "grading.gamma": 2.0,
-        "ensemble.seed": 2,
-    }
+    at = sweep.axes.at(list(sweep.axes.points())[worst.number])
+    assert at == {"grading.gamma": 2.0, "ensemble.seed": 2}
     assert worst.quantities[worst.worst[0]] == name
     assert compared.sheet().columns[0].values[0] == "2, 2"
     assert "DISAGREE" in repr(compared)
-    assert len(repr(compared).splitlines()) <= 12
-
-
-def test_the_picture_shows_all_residuals_and_those_of_the_worst_point(sweep):
-    compared = mcgw.compare(off(sweep, 1.03))
-    left, right = draw(comparison_figure(compared)).axes
-    assert sum(bar.get_height() for bar in left.patches) == len(compared.residuals) == 108
-    line, width = left.lines[-1].get_xydata(), left.patches[0].get_width()
-    np.testing.assert_allclose(line[:, 1], 108 * width * norm.pdf(line[:, 0]), rtol=1e-9)
-    worst = compared.worst[0]
-    drawn = {line.get_label(): line.get_ydata() for line in right.lines}
-    for name, residual in zip(worst.quantities, worst.residual, strict=True):
-        np.testing.assert_allclose(drawn[name], residual, rtol=1e-12)
 
 
 @pytest.mark.slow
@@ -113,29 +94,17 @@ def test_false_alarms_are_as_rare_as_stated():
     assert sum(x < 0.5 for x in p) >= 8
 
 
-def test_points_whose_asperities_press_each_other_down(pressed):
-    scene = pressed(0.05, n_surfaces=100)
-    compared = mcgw.compare(mcgw.sweep(scene, {"grading.gamma": [1.0, 1.5]}))
-    assert compared.verdict.agrees
-    names = set(compared.points[0].quantities)
-    assert "load" in names
-    assert "stiffness" not in names
-    assert all(one.verdict.degrees for one in compared.points)
-
-
 def test_cautions_are_counted():
     """At the third number of asperities fewer than 30 touch at d = 2, as `cautions` says of it alone."""
     over = {"ensemble.n_asperities": [200_000, 100_000, 300], "grading.gamma": [1.0, 2.0]}
     lines = sweep_cautions(mcgw.sweep(SCENE.replace(n_surfaces=2), over))
-    few = [line for line in lines if "fewer than 30 contacts" in line]
-    assert len(few) == 1
-    assert few[0].startswith("2 of 6 points: from d/sigma = 2 fewer")
-    other = [line for line in lines if "not eta * nominal_area" in line]
-    assert other[0].startswith("4 of 6 points: 200000 asperities")
-    assert other[0].endswith("(numbers of ensemble.n_asperities = 200000, grading.gamma = 1)")
-    assert [int(line.split()[0]) for line in lines] == sorted(
-        (int(x.split()[0]) for x in lines), reverse=True
-    )
+    (few,) = [line for line in lines if "fewer than 30 contacts" in line]
+    assert few.startswith("2 of 6 points: from d/sigma = 2 fewer")
+    other = next(line for line in lines if "not eta * nominal_area" in line)
+    assert other.startswith("4 of 6 points: 200000 asperities")
+    assert other.endswith("(numbers of ensemble.n_asperities = 200000, grading.gamma = 1)")
+    numbers = [int(line.split()[0]) for line in lines]
+    assert numbers == sorted(numbers, reverse=True)
 
 
 def test_the_commands_see_what_is_wrong(sweep, tmp_path, monkeypatch, capsys):

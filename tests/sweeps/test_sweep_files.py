@@ -1,16 +1,13 @@
 """Sweeps in files: whole or not at all, drawn once, the same digest by whom and however interrupted."""
 
-import os
-import signal
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from oracles.begun_runs import settle
 from oracles.flipped import flip_a_number
-from oracles.inside import RECORD, Jobs, Plan, commit_block, parts_of, read_attributes
+from oracles.inside import RECORD, Plan, commit_block, parts_of, read_attributes
 from oracles.said import call
 
 import mcgw
@@ -30,33 +27,19 @@ def digest(path):
     return read_attributes(path)["digest"]
 
 
-@pytest.fixture(autouse=True)
-def _small_chunks(monkeypatch):
-    """Three for each group; workers are told which chunk, so that theirs are the same."""
-    monkeypatch.setattr(groups, "_ROWS", 100)
-    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[2]))
-
-
-@pytest.fixture
-def drawn(monkeypatch):
-    """First surfaces of the blocks that are drawn, within their groups."""
-    found, plain = [], groups.Pooling.tables
-
-    def counted(pooling, first, *rest):
-        found.append(first)
-        return plain(pooling, first, *rest)
-
-    monkeypatch.setattr(groups.Pooling, "tables", counted)
-    return found
+@pytest.fixture(autouse=True, scope="module")
+def _small_chunks():
+    """Three for each group."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(groups, "_ROWS", 100)
+        yield
 
 
 @pytest.fixture(scope="module")
-def expected(tmp_path_factory):
+def expected(_small_chunks, tmp_path_factory):
     """Digest of what threads draw."""
     path = tmp_path_factory.mktemp("threads") / "a.h5"
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(groups, "_ROWS", 100)
-        mcgw.sweep(SCENE, OVER, path=path)
+    mcgw.sweep(SCENE, OVER, path=path)
     return digest(path)
 
 
@@ -102,29 +85,30 @@ def test_other_programs_read_it(tmp_path):
 
 
 @pytest.mark.parametrize("after", [1, 3])
-def test_interrupted_anywhere_it_goes_on_to_the_same_digest(tmp_path, monkeypatch, drawn, expected, after):
+def test_interrupted_anywhere_it_goes_on_to_the_same_digest(tmp_path, monkeypatch, expected, after):
     """A damaged chunk is drawn again; a finished file is not."""
-    path, counted = tmp_path / "a.h5", groups.Pooling.tables
+    path, tables, drawn, stops = tmp_path / "a.h5", groups.Pooling.tables, [], [after]
 
-    def stopped(*words):
-        if len(drawn) == after:
+    def counted(pooling, first, *rest):
+        if len(drawn) in stops:
             raise KeyboardInterrupt
-        return counted(*words)
+        drawn.append(first)
+        return tables(pooling, first, *rest)
 
-    with monkeypatch.context() as patch:
-        patch.setattr(groups.Pooling, "tables", stopped)
-        with pytest.raises(KeyboardInterrupt):
-            mcgw.sweep(SCENE, OVER, path=path)
-        settle()
+    monkeypatch.setattr(groups.Pooling, "tables", counted)
+    with pytest.raises(KeyboardInterrupt):
+        mcgw.sweep(SCENE, OVER, path=path)
+    settle()
+    stops.clear()
     assert not path.exists()
     shards = sorted(parts_of(path).glob("shards/block-*.h5"))
     assert len(shards) == after
     flip_a_number(shards[0])
     for _ in range(2):
         mcgw.sweep(SCENE, OVER, path=path, threads=1)
-        assert drawn == [*FIRST[: len(shards)], 0, *FIRST[len(shards) :]]
+        assert drawn == [*FIRST[:after], 0, *FIRST[after:]]
     assert digest(path) == expected
-    assert not (tmp_path / "a.h5.parts").exists()
+    assert not parts_of(path).exists()
 
 
 def test_progress_of_a_file_goes_on_from_what_it_holds(tmp_path):
@@ -191,27 +175,6 @@ def test_commands_show_it(tmp_path):
     assert "intact" in call("show", path, "--verify").stdout
 
 
-# --- by others ------------------------------------------------------------------------------------------
-
-
-@pytest.mark.slow
-def test_by_processes_of_which_one_is_killed(tmp_path, expected):
-    """All blocks in hand are lost with it; a second kill might meet one again, which ends the sweep."""
-    random, killed = np.random.default_rng(5), []
-
-    def kill(done, total):
-        if done and not killed and random.random() < 0.5:
-            killed.extend(list(jobs._pool._processes or ())[:1])
-            for pid in killed:
-                os.kill(pid, signal.SIGKILL)
-
-    with Jobs(2) as jobs:
-        mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5", executor=jobs, progress=kill)
-    assert killed
-    assert digest(tmp_path / "a.h5") == expected
-    assert not list(tmp_path.glob("*.parts"))
-
-
 def test_in_shares_in_any_order(tmp_path, expected):
     path, left = tmp_path / "a.h5", []
     with pytest.raises(mcgw.StoreError, match="neither this file nor its blocks"):
@@ -246,10 +209,12 @@ def test_a_worker_draws_for_nobody_who_asked_something_else(tmp_path):
         commit_block(str(parts_of(path)), 0, 100)
 
 
-def test_executors_draw_into_a_file():
-    pool = ThreadPoolExecutor(1)
-    for how in ({"executor": pool}, {"shard": "1/2"}):
-        with pytest.raises(ValueError, match=r"^executor, shard: they need a file; give path"):
-            mcgw.sweep(SCENE, OVER, **how)
-    with pytest.raises(ValueError, match="a share uses threads"):
-        mcgw.sweep(SCENE, OVER, path="a.h5", executor=pool, shard="1/2")
+def test_executors_draw_into_a_file(tmp_path, expected):
+    with ThreadPoolExecutor(1) as pool:
+        for how in ({"executor": pool}, {"shard": "1/2"}):
+            with pytest.raises(ValueError, match=r"^executor, shard: they need a file; give path"):
+                mcgw.sweep(SCENE, OVER, **how)
+        with pytest.raises(ValueError, match="a share uses threads"):
+            mcgw.sweep(SCENE, OVER, path="a.h5", executor=pool, shard="1/2")
+        mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5", executor=pool)
+    assert digest(tmp_path / "a.h5") == expected
