@@ -81,7 +81,6 @@ def test_lines_of_surfaces_by_hand(solved):
         low, high = solved.interval(name)
         assert budget.shares["drawn surfaces"][k] == pytest.approx((high - low) / 2 / solved.value[name])
         assert budget.shares["specimens"][k] == pytest.approx(1.96 * solved.std[name] / solved.value[name])
-    assert (budget.shares["drawn surfaces"] < 3 * budget.shares["specimens"] / np.sqrt(20)).all()
     v = solved.scene.validity(solved.theory["separation"])
     assert budget.shares["model"][0] == pytest.approx(v.error["area"][0])
     assert budget.shares["model"][2] == budget.shares["model"][1]
@@ -143,6 +142,14 @@ def test_a_joint_is_corrected_through_its_network(gas):
     assert drawn > 0 or scene.filled.gas is None  # in vacuum it is the sum over spots, exactly
     assert found.high / found.value - 1 == pytest.approx(np.sqrt(off**2 + own**2 + drawn**2), rel=1e-5)
     assert np.isfinite(solved.budget().all).all()
+
+
+def test_spots_with_a_film_have_no_corrected_conductance():
+    film = mcgw.Joint(resistivity=0.07, film_resistance=1e-8)
+    solved = mcgw.solve(scene_of(joint=film, uncertainty=None), pressure="50 MPa")
+    budget = solved.budget()
+    assert np.isnan(budget.all).tolist() == [x == "contact_conductance" for x in budget.quantities]
+    assert solved.corrected("contact_conductance").why.startswith("a film or layer is not")
 
 
 PULLS = {"name": "derjaguin-muller-toporov", "pull_off": 1e-3}

@@ -126,6 +126,14 @@ def test_compare_takes_them_and_sees_another_modulus():
     assert not mcgw.compare(told).verdict.agrees
 
 
+def test_what_is_not_kept_or_does_not_fit_is_refused(monkeypatch):
+    with pytest.raises(ValueError, match="single surfaces are not kept"):
+        mcgw.simulate(scene(n_surfaces=10, keep="statistics"))["contacts"]
+    monkeypatch.setattr("mcgw.machine.memory.memory_available", lambda: 2**28)
+    with pytest.raises(ValueError, match="covariances between 3200 numbers needs"):
+        mcgw.simulate(scene(separations=np.linspace(0, 4, 800), n_surfaces=2, keep="statistics"))
+
+
 @pytest.mark.slow
 def test_memory_does_not_grow_with_surfaces():
     few, many = (

@@ -2,15 +2,7 @@
 
 import numpy as np
 import pytest
-from oracles.inside import (
-    after,
-    before,
-    checkpoints,
-    forecast,
-    mean_interval,
-    spread_of,
-    upper_contacts,
-)
+from oracles.inside import after, checkpoints, forecast, mean_interval, spread_of, upper_contacts
 
 import analytic
 import mcgw
@@ -125,10 +117,8 @@ def test_a_limit_too_low_is_said_in_one_line(make_scene, tmp_path, capsys):
     scene = make_scene(rel_err=0.01, n_surfaces=200, separations=(0.0, 3.0), n_asperities=300)
     assert forecast(scene).surfaces == 200
     assert ("load", 3.0) in forecast(scene).out_of_reach
-    assert "\n" not in before(forecast(scene), 1.0)
-    for draw in (mcgw.simulate, lambda scene: mcgw.run(scene, tmp_path / "a.h5")):
-        with pytest.warns(UserWarning, match="n_surfaces allows"):
-            assert draw(scene).n_surfaces == 200
+    with pytest.warns(UserWarning, match="n_surfaces allows"):
+        assert mcgw.simulate(scene).n_surfaces == 200
     (tmp_path / "scene.toml").write_text(mcgw.scene_text(scene))
     assert main(["run", str(tmp_path / "scene.toml"), "-o", str(tmp_path / "a.h5")]) == 0
     assert capsys.readouterr().out.count("n_surfaces allows") == 1
@@ -146,9 +136,9 @@ def test_time_ends_a_run(make_scene, tmp_path):
     for asked in (scene, scene.replace(rel_err=1e-3)):
         assert 0 < mcgw.simulate(asked).n_surfaces < 10**8
     path = tmp_path / "a.h5"
-    n = mcgw.run(scene.replace(n_surfaces=10**7), path).n_surfaces
-    assert 64 <= n < 10**7
-    assert mcgw.run(scene.replace(n_surfaces=10**7, max_seconds=1e-9), path).n_surfaces == n
+    n = mcgw.run(scene.replace(n_surfaces=10**6), path).n_surfaces
+    assert 64 <= n < 10**6
+    assert mcgw.run(scene.replace(n_surfaces=10**6, max_seconds=1e-9), path).n_surfaces == n
     assert mcgw.run(scene.replace(n_surfaces=n + 5, max_seconds=600.0), path).n_surfaces == n + 5
     with pytest.raises(ValueError, match="max_seconds: the jobs of a run end at different times"):
         mcgw.run(scene, path, shard="1/2")

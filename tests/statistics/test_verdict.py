@@ -5,11 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 from oracles import exact
-from oracles.inside import (
-    Check,
-    MemoryResults,
-    verdict,
-)
+from oracles.inside import Check, MemoryResults, verdict
 from scipy.stats import chi2
 
 import analytic
