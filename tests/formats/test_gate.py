@@ -43,11 +43,6 @@ def external(file, folder):
     file.create_dataset("height", (8, 8), "f8", external=[(str(folder / "secret"), 0, 512)])
 
 
-def small(file, folder):
-    for k in range(40):
-        file.create_dataset(f"x{k}", (2**8, 2**10), "f8", chunks=(64, 64))
-
-
 # By name: what makes it of a file in a folder, and what is said.
 HOSTILE = {
     "external storage": (external, OUTSIDE),
@@ -67,7 +62,6 @@ HOSTILE = {
         lambda f, d: f.create_dataset("height", (2**14, 2**14), "f8", chunks=(64, 64)),
         "height: more bytes declared than a file of",
     ),
-    "many small": (small, "more bytes declared than a file of"),
     "unknown filter": (unknown_filter, "height: unknown filter"),
     "deep": (lambda f, d: f.create_group("g/" * 100), "groups are nested more than 32 deep"),
     "members": (

@@ -12,7 +12,6 @@ from oracles.inside import (
     prepared,
     recorded,
     small_spike_heights,
-    smooth,
     spike_heights,
     usual_bend,
     visible,
@@ -24,7 +23,7 @@ import mcgw
 from mcgw.maps import Spectrum, Topography, gaussian_map
 from mcgw.maps.fit_cautions import cautions
 from mcgw.maps.form import form_left
-from mcgw.maps.instrument import _kept_of_noise, faults, shares
+from mcgw.maps.instrument import faults, shares
 
 N, PIXEL = 240, (1e-6, 2e-6)
 OF_THE_MAP = {"spikes", "form", "waves", "slope"}
@@ -302,15 +301,6 @@ def test_a_fault_is_named_and_its_flag_helps(fault):
     wrong, left = np.abs(np.mean(wrong, axis=0)).max(), np.abs(np.mean(left, axis=0)).max()
     assert wrong > 0.07 > left
     assert left < wrong / 2
-
-
-@pytest.mark.parametrize("cutoff", [None, 12e-6])
-def test_what_a_filter_keeps_of_noise(cutoff):
-    """Against white noise that is filtered: mean squares of its second differences, within a few per cent."""
-    noise = Topography(rng(1).normal(size=(400, 400)), (1e-6, 2e-6), periodic=True)
-    z = noise.heights if cutoff is None else smooth(noise, cutoff).heights
-    seen = [np.mean(np.diff(z, 2, axis=axis) ** 2) for axis in (1, 0)]
-    assert _kept_of_noise(cutoff, noise.pixel) == pytest.approx(seen, rel=0.05)
 
 
 def plain(z, cutoff=None, **known):

@@ -13,8 +13,6 @@ from oracles.inside import (
     by_caps,
     by_summits,
     coarse_sums_of,
-    moments_of,
-    skewness_of,
     summit_sums_of,
     unhidden,
     visible,
@@ -124,17 +122,6 @@ def test_what_a_grid_loses_goes_as_the_square_of_the_pixel():
     added = [eta * 0.02, radius / 0.97 - radius, sigma * 0.01]
     assert [error for _, error in found[:2]] == pytest.approx([x / 4 for x in added[:2]], rel=1e-9)
     assert found[2][1] == pytest.approx(added[2] / 4, rel=0.03)
-
-
-def test_moments_and_skewness_are_those_of_the_sums():
-    sums = np.zeros((len(SUMS), 2))
-    sums[:, 0] = [3, 6, 20, 90, 12, 30, 9, 8, 7, 1]
-    sums[:, 1] = [2, -2, 4, -8, 4, 2, 15, 5, 5, 2]
-    t = SummitSums(sums, np.zeros(0), np.zeros(0), np.zeros((2, 0)), np.zeros(0, dtype=int), 1.0)
-    mean, square, cube = 4 / 5, 24 / 5, 82 / 5
-    m, m0 = moments_of(t), square - mean**2
-    assert (m.m0, m.m2, m.m4) == pytest.approx((m0, 24 / 5, 24 / 5), rel=1e-14)
-    assert skewness_of(t) == pytest.approx((cube - 3 * mean * square + 2 * mean**3) / m0**1.5, rel=1e-14)
 
 
 def by_quadrature(overlap, blur):

@@ -4,7 +4,6 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import mcgw
@@ -126,16 +125,6 @@ def test_cautions_of_a_fit_travel_the_gravest_first(fit, tmp_path, capsys):
             assert told.count(f"fit: {line}") == 1, words
         assert "(and 2 more under [fitted] in the scene)" in told
     assert "fit: skewness: told (and 2 more" in (tmp_path / "s.html").read_text()
-
-
-def test_profiles_tell_what_they_saw():
-    z = 1e-6 * np.random.default_rng(5).standard_normal(4096)
-    z = np.convolve(z, np.hanning(41), mode="same")
-    fit = mcgw.fit(mcgw.maps.profile.Profile(z, 1e-6), cutoff=None)
-    fitted = mcgw.fitted_scene(fit).fitted
-    assert (fitted.lay, fitted.area) == (None, None)
-    assert fitted.moments == fit.moments
-    assert fitted.agreement == pytest.approx(max(fit.peaks) / min(fit.peaks))
 
 
 SOLVES = fitted_maps.read()
