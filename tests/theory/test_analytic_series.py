@@ -112,6 +112,15 @@ def test_it_is_a_value():
     assert len(repr(one)) < 80
 
 
+def test_two_resolutions_of_one_function_agree():
+    """Whatever breaks beyond the ends were told; another function, or another range, does not."""
+    one = resolved(Custom(lambda s: 1 + 0.3 * np.tanh(s)), 0.0, 13.0)
+    other = Custom(lambda s: (1 + 0.3 * np.tanh(s)) * (1 + 1e-15), (-3.0, 1.0, 20.0))
+    assert one.agrees(resolved(other, 0.0, 13.0))
+    assert not one.agrees(resolved(Custom(lambda s: 1 + (0.3 + 1e-12) * np.tanh(s)), 0.0, 13.0))
+    assert not one.agrees(resolved(Custom(lambda s: 1 + 0.3 * np.tanh(s)), 1.0, 13.0))
+
+
 @pytest.mark.parametrize(("law", "h"), [
     (analytic.Gaussian(), (0.0, 4.0)), (analytic.ExponentialHeights(), (-30.0, 1.0)),
     (analytic.HeightTable.of([1.0, 2.0, 5.0, 9.0]), (-30.0, 1.0)),

@@ -105,22 +105,16 @@ def test_asperities_without_stiffness_carry_nothing_and_never_yield(law):
 
 
 @pytest.mark.parametrize("law", BRIDGED, ids=name)
-def test_bridges_join_load_area_and_slopes(law):
-    e = np.array(0.8)
-    for j, limit in enumerate(law.limits(e)):
-        y = np.sqrt(limit)
-        assert law.load(j, y, e) == pytest.approx(law.load(j + 1, y, e), rel=1e-13)
-        assert law.radius(j, y, e) == pytest.approx(law.radius(j + 1, y, e), rel=1e-13)
-        assert law.slope(j, y, e) == pytest.approx(law.slope(j + 1, y, e), rel=1e-12)
-
-
-@pytest.mark.parametrize("law", BRIDGED, ids=name)
-def test_away_from_bridges_the_law_is_the_published_one(law):
-    bare = replace(law, bridge=None)
+def test_bridges_join_the_published_pieces(law):
+    """Load, area and slopes at their ends; between them the law is the published one, to the bit."""
+    for j, limit in enumerate(law.limits(ONE)):
+        for formula, within in ((law.load, 1e-13), (law.radius, 1e-13), (law.slope, 1e-12)):
+            y = np.sqrt(limit)
+            assert formula(j, y, ONE) == pytest.approx(formula(j + 1, y, ONE), rel=within)
     delta = np.geomspace(1e-4, 20, 2001)
     between = piece_of(law, delta, ONE) % 2 == 0
     for quantity in ("load", "area", "load_slope"):
-        a, b = term(quantity, law, delta, ONE), term(quantity, bare, delta, ONE)
+        a, b = (term(quantity, x, delta, ONE) for x in (law, replace(law, bridge=None)))
         assert np.array_equal(a[between], b[between])
         assert not np.array_equal(a, b)
 

@@ -10,7 +10,7 @@ from oracles.laws_of_one_depth import kogut_etsion
 from oracles.unloading_by_hand import TOP, carried, ends, integral
 
 from analytic import Coated, Exponential, ExponentialHeights, KogutEtsion, MeasuredHeights, Model, quantity_of
-from analytic.laws import DerjaguinMullerToporov, Film, JohnsonKendallRoberts, term_of
+from analytic.laws import DerjaguinMullerToporov, Film, JohnsonKendallRoberts
 
 LAW = KogutEtsion(critical=0.05)
 BACK = Model(SURFACE, law=LAW, unload_from=0.5)
@@ -38,13 +38,6 @@ def test_unloading_begins_where_loading_ends():
     for name in ("load", "area", "stiffness", "contacts", "conductance", "conductance_si"):
         turn, there = model.mean(f"{name}_unloading", 0.5), model.mean(name, 0.5)
         assert float(turn) == pytest.approx(float(there), rel=1e-12)
-
-
-def test_separations_that_share_a_rule_do_not_matter_to_each_other():
-    h = np.array([0.5, 0.5 + 1e-9, 0.53, 0.9, 0.9 + 1e-9, 4.0])
-    model = replace(BACK, grading=GRADINGS["no tips"])
-    alone = [float(model.mean("load_unloading", x)) for x in h]
-    np.testing.assert_allclose(model.mean("load_unloading", h), alone, rtol=1e-11)
 
 
 def test_other_heights():
@@ -150,8 +143,6 @@ def test_contacts_that_stick_at_their_check_values(stretch, quantity, value):
 def test_only_what_has_touched_sticks(h):
     """From a turn at 0.5 contacts are those above h - D, and above 0.5; and both ways have a covariance."""
     model = stuck(0.5, unload_from=0.5, n_asperities=1.0, count="poisson")
-    way, below_and_above = model.ways.of("contacts_unloading"), np.array([0.499, 0.501])
-    np.testing.assert_array_equal(term_of("contacts", way, 0.8, below_and_above, np.ones(2)), [0, 1])
     low, back = max(h - 0.5, 0.5), JohnsonKendallRoberts(pull_off=0.5).unloading()
     most = np.array(9.0)
 

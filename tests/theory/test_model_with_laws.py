@@ -21,7 +21,6 @@ from scipy.optimize import brentq
 
 from analytic import (
     Clipped,
-    ContactLaw,
     Exponential,
     ExponentialHeights,
     Gaussian,
@@ -216,13 +215,3 @@ def test_shares_of_the_pieces_are_shares_of_heights():
     assert float(model.share(0, h)) == pytest.approx(elastic, 1e-11)
     yielded = float(model.mean("yielded", h) / model.mean("contacts", h))
     assert float(sum(model.share(piece, h) for piece in (1, 2, 3))) == pytest.approx(yielded, rel=1e-13)
-
-
-def test_hertz_named_is_hertz_left_out():
-    h = np.linspace(-2, 4, 9)
-    named, left_out = (Model(SURFACE, grading=Exponential(0.2), law=law) for law in (ContactLaw(), None))
-    np.testing.assert_array_equal(named.std("load", h), left_out.std("load", h))
-    np.testing.assert_array_equal(named.slope("load", h), left_out.slope("load", h))
-    np.testing.assert_allclose(named.mean("load_slope", h), left_out.mean("stiffness", h), rtol=1e-12)
-    np.testing.assert_array_equal(named.mean("yielded", h), 0.0)
-    np.testing.assert_array_equal(named.share(0, h), 1.0)

@@ -53,6 +53,7 @@ REFUSED = [
     ("both are rigid", lambda: analytic.composite_modulus([analytic.Body(math.inf)] * 2)),
     ("count = 'random'", lambda: Model(SURFACE, count="random")),
     ("heights = Nayak(alpha=5.0)", lambda: Model(SURFACE, curvature=RandomCurvature(5.0))),
+    ("two or more finite numbers", lambda: analytic.HeightTable.of([0.0, math.nan, 1.0])),
     # gradings
     ("gamma = inf", lambda: Exponential(math.inf)),
     ("not finite at s = 1", lambda: analytic.fn(1.5, 0.0, Custom(lambda s: np.where(s > 1, np.nan, 1.0)))),
@@ -76,6 +77,7 @@ REFUSED = [
     ("load = nan", lambda: HERTZ.separation_at("load", math.nan)),
     ("load = [1.0, -1.0]", lambda: OWN.separation_at("load", [1.0, -1.0])),
     ("contacts: not reached for h from -40 to 37", lambda: HERTZ.separation_at("contacts", 2000.0)),
+    ("load: not reached", lambda: HERTZ.separation_at("load", 1e-320)),
     ("load_unloading: not reached for h from 0.5 to", lambda: BACK.separation_at("load_unloading", 1e9)),
     (
         "load: not reached",
@@ -120,6 +122,7 @@ REFUSED = [
     ("thickness = None, reduced_thickness = None", lambda: Coated(ratio=2.0)),
     ("ratio = 0.0", lambda: Coated(ratio=0.0, thickness=1e-6)),
     ("thickness=1e-06", lambda: Coated(ratio=2.0, thickness=1e-6).finest),
+    ("conductivities = (1.0, -1.0)", lambda: analytic.Film(conductivities=(1.0, -1.0))),
     ("resistivity = 0.0", lambda: analytic.Film(0.0, film_resistance=1.0)),
     ("work = None, pull_off = None", lambda: JohnsonKendallRoberts()),
     ("pull_off = 1.0: give one", lambda: JohnsonKendallRoberts(work=1.0, pull_off=1.0)),
