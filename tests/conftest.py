@@ -1,5 +1,6 @@
 import io
 import os
+from contextlib import chdir
 from pathlib import Path
 
 # Workers share the cores: threads of BLAS that wait for each other spin.
@@ -89,23 +90,18 @@ def blank(figure, target, **_):
         target.write(b"" if isinstance(target, io.BytesIO) else "<svg></svg>")
 
 
-def draw_nothing(patch):
-    """Figures are made and their files written, but nothing is laid out or drawn in them."""
-    patch.setattr(Figure, "savefig", blank)
-    patch.setattr("matplotlib.layout_engine.ConstrainedLayoutEngine.execute", lambda *_: None)
-
-
 @pytest.fixture
-def in_tmp_path(tmp_path, monkeypatch):
+def in_tmp_path(tmp_path):
     """Work in an empty folder."""
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
+    with chdir(tmp_path):
+        yield tmp_path
 
 
 @pytest.fixture
 def blank_figures(monkeypatch):
-    """Draw nothing, which takes most of the time of commands with figures."""
-    draw_nothing(monkeypatch)
+    """Figures are made and their files written, but nothing is laid out or drawn in them."""
+    monkeypatch.setattr(Figure, "savefig", blank)
+    monkeypatch.setattr("matplotlib.layout_engine.ConstrainedLayoutEngine.execute", lambda *_: None)
 
 
 @pytest.fixture
@@ -137,15 +133,19 @@ def recorded(request):
 
 
 @pytest.fixture
-def one_pressure(monkeypatch):
-    """Reports solve for one pressure: each takes half a second."""
-    monkeypatch.setattr("mcgw.reports.report_figures._PRESSURES", 1)
+def pressures(monkeypatch):
+    """Set at how many pressures reports solve: each takes half a second."""
+    return lambda number: monkeypatch.setattr("mcgw.reports.report_figures._PRESSURES", number)
 
 
 @pytest.fixture
-def no_pressures(monkeypatch):
-    """Reports say nothing at loads, which takes most of their time."""
-    monkeypatch.setattr("mcgw.reports.report_figures._PRESSURES", 0)
+def one_pressure(pressures):
+    pressures(1)
+
+
+@pytest.fixture
+def no_pressures(pressures):
+    pressures(0)
 
 
 @pytest.fixture

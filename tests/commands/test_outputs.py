@@ -6,6 +6,7 @@ import shutil
 import stat
 import subprocess
 import sys
+from contextlib import chdir
 from functools import partial
 
 import h5py
@@ -30,11 +31,11 @@ def inputs(tmp_path_factory):
 
 
 @pytest.fixture
-def here(inputs, tmp_path, monkeypatch):
+def here(inputs, tmp_path):
     """A folder of its own with all inputs, as the current one."""
     shutil.copytree(inputs, tmp_path / "here")
-    monkeypatch.chdir(tmp_path / "here")
-    return tmp_path / "here"
+    with chdir(tmp_path / "here"):
+        yield tmp_path / "here"
 
 
 def told(capsys, words):

@@ -48,9 +48,8 @@ def test_error_of_std_over_mean_is_that_of_repetitions(make_scene):
 
 
 @pytest.fixture(autouse=True)
-def _few_pressures(monkeypatch):
-    """Each takes half a second."""
-    monkeypatch.setattr("mcgw.reports.report_figures._PRESSURES", 2)
+def _few_pressures(pressures):
+    pressures(2)
 
 
 def test_curves_are_values_and_scatter_of_solve_on_theory(scene):
