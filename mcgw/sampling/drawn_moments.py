@@ -9,7 +9,7 @@ The moments of a cell with n asperities are sums of n independent vectors ``b(u)
 they are Gaussian with mean ``n E b`` and covariance ``n Cov b``, both known exactly. Cells are narrow:
 what is approximated is only the small part of the fluctuations that arises inside a cell. In 1e5 surfaces
 the first four cumulants of load, area and stiffness cannot be told from the exact ones for N from 10 to
-1e9, even if single asperities count as a crowd (`tests/sampling/test_aggregate.py`). What gives the
+1e9, even if single asperities count as a crowd. What gives the
 approximation away is the shape: with a threshold of 1, 1 % of the surfaces at light contact have a negative
 load, with 4 one in 1e5, with 16 or more none.
 
