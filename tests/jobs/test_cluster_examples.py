@@ -51,14 +51,11 @@ OVER = ["--over", "grading.gamma=0.5,1,2", "--over", "ensemble.count=fixed,poiss
 
 @pytest.mark.parametrize("words", [["run", "s.toml"], ["sweep", "s.toml", *OVER]], ids=["run", "sweep"])
 def test_an_array_of_jobs_draws_it(shell, tmp_path, words):
-    done = shell("bash", EXAMPLES / "submit.sh", "3", "e.h5", *words)
-    assert done.returncode == 0, done.stderr
+    shell("bash", EXAMPLES / "submit.sh", "3", "e.h5", *words)
     said = {path.stem: path.read_text() for path in (tmp_path / "slurm").glob("*.out")}
     assert sorted(said) == ["slurm-100_1", "slurm-100_2", "slurm-100_3", "slurm-101_None"]
-    for i in (1, 2, 3):
-        assert f"shard {i}/3 is done" in said[f"slurm-100_{i}"]
-    alone = shell("mcgw", *words, "-o", "alone.h5")
-    assert alone.returncode == 0, alone.stderr
+    assert all(f"shard {i}/3 is done" in said[f"slurm-100_{i}"] for i in (1, 2, 3))
+    shell("mcgw", *words, "-o", "alone.h5")
     one, other = (shell("mcgw", "show", "--digest", name).stdout for name in ("e.h5", "alone.h5"))
     assert one == other != ""
 

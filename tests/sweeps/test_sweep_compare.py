@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from oracles.inside import FALSE_ALARM, verdict
+from oracles.said import call
 
 import mcgw
-from mcgw.cli import main
 from mcgw.sweeps.points import sweep_cautions
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
@@ -51,8 +51,7 @@ def test_the_table_has_each_mean_of_each_point_in_its_row(sweep):
     for name in ("mean", "theory", "residual"):
         assert columns[name] == [x for one in compared.points for x in getattr(one, name).ravel()]
     assert columns["separation"] == [0.0, 1.0, 2.0] * (9 * 4)
-    names = [name for one in compared.points for name in np.repeat(one.quantities, 3)]
-    assert columns["quantity"] == names
+    assert columns["quantity"] == [x for one in compared.points for x in np.repeat(one.quantities, 3)]
     assert columns["p_of_point"] == [one.verdict.p for one in compared.points for _ in range(12)]
     assert [float(x) for x in columns["grading.gamma"]] == list(np.repeat([0.5, 1.0, 2.0], 36))
 
@@ -107,10 +106,10 @@ def test_cautions_are_counted():
     assert numbers == sorted(numbers, reverse=True)
 
 
-def test_the_commands_see_what_is_wrong(sweep, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
+def test_the_commands_see_what_is_wrong(sweep, in_tmp_path, monkeypatch):
     mcgw.sweep(SCENE, OVER, path="w.h5")
     monkeypatch.setattr("mcgw.store.ensembles.open_results", lambda path: off(sweep, 1.03))
-    assert main(["compare", "w.h5", "-o", "w.svg"]) == 1
-    assert "DISAGREE" in (tmp_path / "w.svg").read_text()
-    assert "DISAGREE: chi-square" in capsys.readouterr().out
+    done = call("compare", "w.h5", "-o", "w.svg")
+    assert done.returncode == 1
+    assert "DISAGREE: chi-square" in done.stdout
+    assert "DISAGREE" in (in_tmp_path / "w.svg").read_text()
