@@ -225,6 +225,8 @@ def test_levels_and_ends_of_a_recording():
     fine = rng(1).normal(size=(30, 30))
     assert recorded(fine) == (0.0, 0.0)
     assert recorded(np.minimum(fine, 1))[1] == np.mean(fine >= 1)
+    fine[3, 4:6] = 9.0
+    assert recorded(fine)[1] == 2 / 900
     assert recorded(np.zeros((20, 20)))[0] == 0
     # a level for eight points is none, and as many levels are as good as none
     for number, levels, step in ((800, 100, 0), (800, 99, 1), (9 * 4095, 4095, 1), (9 * 4096, 4096, 0)):
