@@ -136,9 +136,9 @@ def test_time_ends_a_run(make_scene, tmp_path):
     for asked in (scene, scene.replace(rel_err=1e-3)):
         assert 0 < mcgw.simulate(asked).n_surfaces < 10**8
     path = tmp_path / "a.h5"
-    n = mcgw.run(scene.replace(n_surfaces=10**6), path).n_surfaces
-    assert 64 <= n < 10**6
-    assert mcgw.run(scene.replace(n_surfaces=10**6, max_seconds=1e-9), path).n_surfaces == n
+    n = mcgw.run(scene.replace(n_surfaces=300_000), path).n_surfaces
+    assert 64 <= n < 300_000
+    assert mcgw.run(scene.replace(n_surfaces=300_000, max_seconds=1e-9), path).n_surfaces == n
     assert mcgw.run(scene.replace(n_surfaces=n + 5, max_seconds=600.0), path).n_surfaces == n + 5
     with pytest.raises(ValueError, match="max_seconds: the jobs of a run end at different times"):
         mcgw.run(scene, path, shard="1/2")
