@@ -67,6 +67,8 @@ def read_heights(
     """
     check_file(path)
     raw = _read(path, pixel, unit, missing)
+    if raw.heights.ndim == 2 and 1 in raw.heights.shape:  # SDF and X3P hold a line as a map of one row
+        raw, pixel = _along_line(raw), None
     metre, assumed = height_unit(path, raw.unit, unit)
     with np.errstate(over="ignore", invalid="ignore"):  # of scales: a map refuses what comes of it
         heights = np.ascontiguousarray(in_metres(path, raw.heights, metre, missing))
@@ -87,6 +89,13 @@ def read_map(
     if isinstance(found, Profile):
         raise ValueError(f"{path}: is a profile along a line; a map has rows and columns")
     return found
+
+
+def _along_line(raw: Raw) -> Raw:
+    """Return a map of one row, or of one column, as a profile."""
+    spacing = raw.pixel[int(raw.heights.shape[0] > 1)]
+    places = spacing * np.arange(raw.heights.size, dtype=np.float64)
+    return Raw(raw.heights.ravel(), raw.unit, places=places, unit_of_places="m", assumed=raw.assumed)
 
 
 def _map(path: Path, topography: Topography) -> Topography:

@@ -15,35 +15,49 @@ from mcgw.maps import Topography, read_heights, read_map
 
 NM = np.array([[1, 2, 3, 4], [4, np.nan, 6, 7], [7, 8, 9, 10], [5, 3, 2, 0]])  # what each holds, nm
 PIXEL = (1.5e-6, 4e-6)
-# The code of a type of numbers, its mark of a missing point, and the rows that a file has of it.
+# The code of a type of numbers, and its mark of a missing point.
 SDF = {
-    "<i2": (5, -(2**15), 4), "<f4": (3, np.finfo("f4").min, 4), "<f8": (7, np.finfo("f8").min, 4),
-    "<u2": (1, 2**16 - 1, 1),
+    "<i2": (5, -(2**15)), "<f4": (3, np.finfo("f4").min), "<f8": (7, np.finfo("f8").min),
+    "<u2": (1, 2**16 - 1),
 }  # fmt: skip
+
+
+def written(path, kind, nm):
+    """SDF as ISO 25178-71 describes it, X3P by the library itself."""
+    rows, columns = nm.shape
+    if kind == "x3p":
+        library = pytest.importorskip("SurfaceTopography")
+        library.Topography(1e-9 * nm.T, (columns * PIXEL[0], rows * PIXEL[1]), unit="m").to_x3p(str(path))
+    else:
+        code, mark = SDF[kind]
+        head = b"bISO-1.0", b"", b"", b"", columns, rows, *PIXEL, 1e-9, 0, 0, code, 0
+        raw = np.where(np.isnan(nm), mark, nm).astype(kind).tobytes()
+        path.write_bytes(struct.pack("<8s10s12s12sHHddddBBB", *head) + raw)
+    return path
 
 
 @pytest.mark.parametrize("kind", [*SDF, "x3p"])
 @pytest.mark.filterwarnings("ignore")
 def test_heights_pixel_and_missing_points(kind, tmp_path):
-    """SDF as ISO 25178-71 describes it, X3P by the library itself; both may have a single row.
-
-    In single precision where the file has no more.
-    """
-    library = pytest.importorskip("SurfaceTopography")
-    path = tmp_path / f"map.{kind if kind in 'x3p' else 'sdf'}"
-    if kind == "x3p":
-        nm = NM[:1]
-        library.Topography(1e-9 * nm.T, (4 * PIXEL[0], PIXEL[1]), unit="m").to_x3p(str(path))
-    else:
-        code, mark, rows = SDF[kind]
-        nm = NM[:rows]
-        head = b"bISO-1.0", b"", b"", b"", 4, rows, *PIXEL, 1e-9, 0, 0, code, 0
-        raw = np.where(np.isnan(nm), mark, nm).astype(kind).tobytes()
-        path.write_bytes(struct.pack("<8s10s12s12sHHddddBBB", *head) + raw)
-    found = read_map(path)
+    """In single precision where the file has no more."""
+    pytest.importorskip("SurfaceTopography")
+    nm = np.nan_to_num(NM) if kind == "x3p" else NM
+    found = read_map(written(tmp_path / f"map.{kind if kind in 'x3p' else 'sdf'}", kind, nm))
     assert found.heights == pytest.approx(1e-9 * nm, nan_ok=True, rel=1e-6)
     assert found.pixel == pytest.approx(PIXEL, rel=1e-9)
     assert (found.missing, found.assumed_unit) == (np.isnan(nm).sum(), "")
+
+
+@pytest.mark.parametrize("kind", ["<f8", "x3p"])
+@pytest.mark.parametrize("upright", [False, True])
+@pytest.mark.filterwarnings("ignore")
+def test_a_single_row_or_column_is_a_profile(kind, upright, tmp_path):
+    pytest.importorskip("SurfaceTopography")
+    nm = np.arange(20.0)[None] ** 2
+    path = written(tmp_path / f"line.{'x3p' if kind == 'x3p' else 'sdf'}", kind, nm.T if upright else nm)
+    found = read_heights(path)
+    assert found.heights == pytest.approx(1e-9 * nm[0], rel=1e-6)
+    assert (found.spacing, found.filled) == (pytest.approx(PIXEL[int(upright)], rel=1e-9), 0)
 
 
 # --- a library that does what a file asks for -----------------------------------------------------------
