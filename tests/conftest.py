@@ -98,6 +98,14 @@ def in_tmp_path(tmp_path):
 
 
 @pytest.fixture
+def small_blocks(monkeypatch):
+    """Runs are drawn in blocks of 16 surfaces, in chunks of 8."""
+    from oracles.begun_runs import in_small_blocks
+
+    in_small_blocks(monkeypatch)
+
+
+@pytest.fixture
 def blank_figures(monkeypatch):
     """Figures are made and their files written, but nothing is laid out or drawn in them."""
     monkeypatch.setattr(Figure, "savefig", blank)

@@ -1,9 +1,8 @@
 """Long work has a bar on the terminal of who waits for it: commands and ``progress=True``, nobody else."""
 
 import io
-import sys
 import time
-from contextlib import nullcontext, suppress
+from contextlib import nullcontext, redirect_stderr, suppress
 
 import numpy as np
 import pytest
@@ -16,15 +15,11 @@ SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "0.1 mm^2", "78.6 GPa")
 SCENE = mcgw.Scene(SURFACE, separations=[0.0, 1.0], n_surfaces=4, seed=1)
 
 
-class Stream(io.StringIO):
+def stream(terminal):
     """Standard error of a person, or of a log."""
-
-    def __init__(self, terminal):
-        super().__init__()
-        self.terminal = terminal
-
-    def isatty(self):
-        return self.terminal
+    made = io.StringIO()
+    made.isatty = lambda: terminal
+    return made
 
 
 @pytest.mark.usefixtures("without_caps")
@@ -36,24 +31,23 @@ class Stream(io.StringIO):
         ("sweep s.toml --over grading.gamma=0.2:1:7 -o w.h5", ["/7 [", "? points/s"]),
     ],
 )
-def test_commands_draw_one_on_terminals(words, bars, in_tmp_path, monkeypatch):
+def test_commands_draw_one_on_terminals(words, bars, in_tmp_path):
     """What they say elsewhere is recorded, see `test_what_users_read`: there are none."""
     (in_tmp_path / "s.toml").write_text(mcgw.scene_text(SCENE))
     z = np.random.default_rng(1).normal(size=(64, 64))
     np.save("map.npy", 1e-7 * (z + np.roll(z, 1, 0) + np.roll(z, 1, 1)))
-    monkeypatch.setattr(sys, "stderr", Stream(terminal=True))
-    assert main(words.split()) == 0
-    assert all(part in sys.stderr.getvalue() for part in bars)
+    with redirect_stderr(stream(terminal=True)) as shown:
+        assert main(words.split()) == 0
+    assert all(part in shown.getvalue() for part in bars)
 
 
-def test_python_waits_only_if_it_says_so(monkeypatch):
-    stream, calls = Stream(terminal=True), []
-    monkeypatch.setattr(sys, "stderr", stream)
-    over = {"grading.gamma": [0.5, 1.5]}
-    mcgw.sweep(SCENE, over)
-    assert not stream.getvalue()
-    mcgw.sweep(SCENE, over, progress=True)
-    assert " points/s" in stream.getvalue()
+def test_python_waits_only_if_it_says_so():
+    over, calls = {"grading.gamma": [0.5, 1.5]}, []
+    with redirect_stderr(stream(terminal=True)) as shown:
+        mcgw.sweep(SCENE, over)
+        assert not shown.getvalue()
+        mcgw.sweep(SCENE, over, progress=True)
+    assert " points/s" in shown.getvalue()
     mcgw.solve(SCENE, pressure=1e6, progress=lambda *pair: calls.append(pair))
     assert not calls  # nothing is drawn where answers are exact
     mcgw.solve(SCENE.replace(interaction="body"), pressure=1e6, progress=lambda *pair: calls.append(pair))
@@ -63,22 +57,20 @@ def test_python_waits_only_if_it_says_so(monkeypatch):
 @pytest.mark.parametrize("terminal", [True, False])
 @pytest.mark.parametrize("person", [True, False])
 @pytest.mark.parametrize("progress", [True, False, None, print])
-def test_who_has_a_bar(terminal, person, progress, monkeypatch):
+def test_who_has_a_bar(terminal, person, progress):
     """Who asks for one, or a person who waits at a terminal; calls within it draw none beside it."""
-    stream = Stream(terminal)
-    monkeypatch.setattr(sys, "stderr", stream)
-    with watched() if person else nullcontext(), asked(progress, "surfaces") as tell:
-        assert not stream.getvalue()  # nothing is drawn before the first number
-        assert progress is not print or tell is print
-        if progress is not print:
-            tell(1, 3)
-        assert list(steps([4, 5], "things")) == [4, 5]
-    drawn = progress is True or (progress is None and terminal and person)
-    assert ("1/3 [" in stream.getvalue()) == drawn
-    assert ("things/s" in stream.getvalue()) == (progress in (print, False) and terminal and person)
-    stream.truncate(0)
-    assert list(steps([4, 5], "things")) == [4, 5]  # nobody waits any more
-    assert not stream.getvalue()
+    with redirect_stderr(stream(terminal)) as shown:
+        with watched() if person else nullcontext(), asked(progress, "surfaces") as tell:
+            assert not shown.getvalue()  # nothing is drawn before the first number
+            assert progress is not print or tell is print
+            if progress is not print:
+                tell(1, 3)
+            assert list(steps([4, 5], "things")) == [4, 5]
+        said = shown.getvalue()
+        assert list(steps([4, 5], "things")) == [4, 5]  # nobody waits any more
+    assert shown.getvalue() == said
+    assert ("1/3 [" in said) == (progress is True or (progress is None and terminal and person))
+    assert ("things/s" in said) == (progress in (print, False) and terminal and person)
 
 
 @pytest.mark.parametrize("progress", [3, "bar"])
@@ -87,14 +79,17 @@ def test_what_is_no_function_is_refused(progress):
         mcgw.simulate(SCENE, progress=progress)
 
 
-def test_a_bar_goes_on_from_what_was_done_before_and_ends_with_an_error(monkeypatch):
+def test_a_bar_goes_on_from_what_was_done_before_and_ends_with_an_error():
     for _ in range(2):
-        monkeypatch.setattr(sys, "stderr", Stream(terminal=True))
-        with suppress(KeyError), asked(True, "surfaces") as show:
+        with (
+            redirect_stderr(stream(terminal=True)) as shown,
+            suppress(KeyError),
+            asked(True, "surfaces") as show,
+        ):
             for done in (50, 60, 100):
                 show(done, 100)
                 time.sleep(0.11)  # so often it is drawn
             raise KeyError
-        shown = sys.stderr.getvalue()
-        assert all(part in shown for part in (" 50/100 [", " 60/100 [", " 100/100 [", " surfaces/s]"))
-        assert shown.endswith("\r")  # it leaves nothing
+        parts = (" 50/100 [", " 60/100 [", " 100/100 [", " surfaces/s]")
+        assert all(part in shown.getvalue() for part in parts)
+        assert shown.getvalue().endswith("\r")  # it leaves nothing

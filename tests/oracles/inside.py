@@ -31,7 +31,7 @@ MODULES = {
     "mcgw.figures.panels": "draw save",
     "mcgw.figures.studies": "convergence_figure tradeoff_figure",
     "mcgw.figures.style": "FAMILIES look PAIRS power_of_ten prefixed save_figure short STYLE THEORY",
-    "mcgw.formats.files": ("alive check_output rename_over state_of temporary_beside whole_file write_whole"),
+    "mcgw.formats.files": "alive check_output state_of temporary_beside whole_file write_whole",
     "mcgw.formats.gate": "check_archive open_h5 opened",
     "mcgw.formats.law_text": "law_text",
     "mcgw.formats.named_files": "loads loads_json open_npy read_text",

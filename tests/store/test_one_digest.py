@@ -7,7 +7,7 @@ import h5py
 import numpy as np
 import pytest
 from conftest import SURFACE
-from oracles.begun_runs import SIZE, digest, halted, in_small_blocks
+from oracles.begun_runs import SIZE, digest, halted
 from oracles.inside import read_attributes, storable
 from oracles.interacting_by_hand import interaction
 from oracles.laws_by_hand import OWN
@@ -16,6 +16,8 @@ import analytic
 import mcgw
 from analytic import laws
 from mcgw.errors import StoreError
+
+pytestmark = pytest.mark.usefixtures("small_blocks")
 
 SURFACES = 60  # in four blocks, the last one short
 HEIGHTS = mcgw.MeasuredHeights(np.random.default_rng(1).normal(size=50), resampled=True)
@@ -44,13 +46,8 @@ SCENES = {
     "coated": {"law": laws.Coated(thickness=1e-6, ratio=3.0), "unload_from": "loop"},
     "own": {"law": OWN, "grading": analytic.Exponential(1.5)},
 }  # fmt: skip
-OFTEN = {"aggregate", "own", "much"}
+OFTEN = {"own", "much"}
 EVERY = [pytest.param(name, marks=[] if name in OFTEN else pytest.mark.slow) for name in SCENES]
-
-
-@pytest.fixture(autouse=True)
-def _small_blocks(monkeypatch):
-    in_small_blocks(monkeypatch)
 
 
 @pytest.fixture

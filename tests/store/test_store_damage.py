@@ -1,23 +1,22 @@
 """What is damaged is never gone on with: each kind of damage, and then every way of going on."""
 
 from contextlib import suppress
+from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
-from oracles.begun_runs import SURFACES, begun, in_small_blocks
+from oracles.begun_runs import SURFACES, begun, digest
 from oracles.flipped import flip_a_number
 from oracles.inside import RECORD, Plan, parts_of
 
 import mcgw
 from mcgw.cli import main
 from mcgw.errors import RunError, StoreError
-from mcgw.store import ensembles, h5_reading
+from mcgw.jobs import making
+from mcgw.store import ensembles, h5_reading, place
 
-
-@pytest.fixture(autouse=True)
-def _small_blocks(monkeypatch):
-    in_small_blocks(monkeypatch)
+pytestmark = pytest.mark.usefixtures("small_blocks")
 
 
 @pytest.fixture
@@ -134,16 +133,57 @@ def test_a_flipped_bit_anywhere_is_seen_or_changes_nothing(file):
     """HDF5 leaves room that nobody reads; where the scene stands all is read."""
     whole, said, data = mcgw.open_ensemble(file), ensembles.read_attributes(file), file.read_bytes()
     dice, scene = np.random.default_rng(1), data.index(said["scene"].encode())
-    of_scene = dice.integers(scene, scene + len(said["scene"].encode()), 30)
-    for k, at in enumerate([*of_scene, *dice.integers(len(data), size=60)]):
+    of_scene = dice.integers(scene, scene + len(said["scene"].encode()), 20)
+    for k, at in enumerate([*of_scene, *dice.integers(len(data), size=40)]):
         changed = bytearray(data)
         changed[at] ^= 1 << int(dice.integers(8))
         file.write_bytes(changed)
         with suppress(StoreError):
             found = mcgw.open_ensemble(file)
-            assert k >= 30
+            assert k >= 20
             assert (found.scene, ensembles.read_attributes(file)) == (whole.scene, said)
             assert all(np.array_equal(found[name], whole[name]) for name in whole.scene.quantities)
+
+
+@pytest.mark.parametrize("keep", ["sums", "statistics"])
+@pytest.mark.parametrize("damage", [flip_a_number, Path.unlink], ids=["flipped", "gone"])
+def test_a_block_that_is_lost_late_never_comes_into_the_file(scene, tmp_path, keep, damage, monkeypatch):
+    """After the shards were looked at."""
+    path, merged, kept = tmp_path / "e.h5", making._merged, scene.replace(keep=keep)
+    block = begun(kept, path)[2]
+
+    def damaged_first(*words):
+        damage(block)
+        return merged(*words)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(making, "_merged", damaged_first)
+        with pytest.raises(RunError, match="a shard is damaged; run the jobs again to redraw it"):
+            mcgw.merge(path)
+    assert not path.exists()
+    assert not list(parts_of(path).glob(".*.tmp"))
+    mcgw.run(kept, path)
+    mcgw.save(mcgw.simulate(kept), tmp_path / "whole.h5")
+    assert digest(path) == digest(tmp_path / "whole.h5")
+
+
+def test_numbers_that_go_to_another_place_are_seen(scene, tmp_path, monkeypatch):
+    """Two chunks in the wrong order, each of them intact."""
+    path, write = tmp_path / "e.h5", place.write
+    begun(scene, path)
+
+    def swapped(temporary, *words):
+        write(temporary, *words)
+        with h5py.File(temporary, "r+") as file:
+            area = file["area"].id
+            parts = [area.read_direct_chunk((row, 0))[1] for row in (32, 40)]
+            for row, part in zip((40, 32), parts, strict=True):
+                area.write_direct_chunk((row, 0), part)
+
+    monkeypatch.setattr(place, "write", swapped)
+    with pytest.raises(RunError, match="was not written correctly"):
+        mcgw.merge(path)
+    assert not path.exists()
 
 
 # --- the record of a run or a sweep: its blocks are whole, and the scene is at hand ------------------------

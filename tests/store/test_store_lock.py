@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from filelock import Timeout
-from oracles.inside import LOCK_FILES, Values, locked
+from oracles.inside import LOCK_FILES, Values, locked, parts_of
 
 import mcgw
 from mcgw.errors import StoreError
@@ -96,6 +96,18 @@ def test_nothing_planted_is_followed(tmp_path):
     with pytest.raises(StoreError, match="cannot be locked"):
         locked(folder).__enter__()
     assert victim.read_text() == "mine"
+
+
+def test_planted_links_of_files_are_not_followed(make_scene, tmp_path):
+    scene, elsewhere = make_scene(n_surfaces=4), tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    parts_of(tmp_path / "e.h5").symlink_to(elsewhere)
+    with pytest.raises(StoreError, match="is not a folder"):
+        mcgw.run(scene, tmp_path / "e.h5")
+    assert not list(elsewhere.iterdir())
+    (tmp_path / "f.h5").symlink_to(elsewhere / "victim")
+    with pytest.raises(StoreError, match="is not a regular file"):
+        mcgw.run(scene, tmp_path / "f.h5")
 
 
 def test_a_run_in_a_folder_open_to_all_leaves_nothing(tmp_path, make_scene, monkeypatch):

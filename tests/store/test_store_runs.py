@@ -7,21 +7,19 @@ import shutil
 import signal
 from itertools import product
 
+import h5py
 import numpy as np
 import pytest
-from oracles.begun_runs import SIZE, SURFACES, begun, digest, halted, in_small_blocks
+from oracles.begun_runs import SIZE, SURFACES, begun, digest, halted
 from oracles.flipped import flip_a_number
-from oracles.inside import RECORD, Blocks, Plan, Span, commit_block, part_of, parts_of
+from oracles.inside import RECORD, Blocks, Plan, Span, Values, commit_block, part_of, parts_of
 from oracles.said import call
 
 import mcgw
 from mcgw.errors import RunError, StoppedError, StoreError
-from mcgw.store import ensembles
+from mcgw.store import ensembles, h5_writing
 
-
-@pytest.fixture(autouse=True)
-def _small_blocks(monkeypatch):
-    in_small_blocks(monkeypatch)
+pytestmark = pytest.mark.usefixtures("small_blocks")
 
 
 @pytest.fixture
@@ -107,18 +105,6 @@ def test_what_is_left_out_of_a_run_is_told(scene, tmp_path):
         with pytest.raises(ValueError, match=r"^--shard .*: give i/n with 1 <= i <= n$"):
             part_of(wrong)
     assert part_of("3/3") == (3, 3)
-
-
-def test_planted_links_are_not_followed(scene, tmp_path):
-    elsewhere = tmp_path / "elsewhere"
-    elsewhere.mkdir()
-    parts_of(tmp_path / "e.h5").symlink_to(elsewhere)
-    with pytest.raises(StoreError, match="is not a folder"):
-        mcgw.run(scene, tmp_path / "e.h5")
-    assert not list(elsewhere.iterdir())
-    (tmp_path / "f.h5").symlink_to(elsewhere / "victim")
-    with pytest.raises(StoreError, match="is not a regular file"):
-        mcgw.run(scene, tmp_path / "f.h5")
 
 
 @pytest.mark.parametrize(
@@ -220,8 +206,9 @@ def test_blocks_of_several_groups_end_with_their_group():
     assert [Blocks(((50, 16),), whole=True).kept(n) for n in (0, 20, 32, 50)] == [0, 16, 32, 50]
 
 
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
-@pytest.mark.parametrize("surfaces", [SIZE, SURFACES])
+@pytest.mark.parametrize(
+    ("number", "code", "surfaces"), [(signal.SIGINT, 130, SURFACES), (signal.SIGTERM, 143, SIZE)]
+)
 def test_signals_stop_a_run_that_then_goes_on(scene, tmp_path, number, code, surfaces, expected, monkeypatch):
     """Sent while the third block is drawn: it is kept, and the rest drawn later; of one block nothing is."""
     path, draw, seen = tmp_path / "e.h5", Plan.draw, []
@@ -271,4 +258,52 @@ def test_a_full_disk_is_one_line_and_the_run_completes_later(
     assert not path.exists()
     assert len(list(parts_of(path).glob("shards/block-*.h5"))) >= 2
     mcgw.run(scene, path)
+    assert digest(path) == expected
+
+
+@pytest.mark.parametrize("rows", [4, 12, 256])
+def test_blocks_and_chunks_of_any_size_make_the_same(scene, tmp_path, expected, monkeypatch, rows):
+    """The first three blocks as of a version with other blocks; the file is one of 37 surfaces that grows."""
+    monkeypatch.setattr(h5_writing, "CHUNK_ROWS", rows)
+    path = tmp_path / "e.h5"
+    mcgw.run(scene.replace(n_surfaces=37), path)
+    monkeypatch.setattr(Values, "rows", 20)
+    assert mcgw.run(scene, path, shard="1/1") == 0
+    monkeypatch.setattr(Values, "rows", SIZE)
+    made, drawn = mcgw.run(scene, path), mcgw.simulate(scene)
+    assert digest(path) == expected
+    for name in scene.quantities:
+        np.testing.assert_array_equal(made[name], drawn[name])
+
+
+@pytest.mark.parametrize("columns", [0, 41, 512, 513, 2**17, 2**20])
+def test_chunks_are_cut_at_powers_of_two_within_a_mebibyte(columns, monkeypatch):
+    monkeypatch.setattr(h5_writing, "CHUNK_ROWS", 256)
+    rows = h5_writing.chunk_rows(10**6, columns)
+    assert 256 % rows == 0  # so that blocks of whole chunks of the largest kind are whole chunks of any
+    assert rows == 1 or 8 * rows * columns <= 2**20
+    assert rows == 256 or 16 * rows * columns > 2**20
+    assert h5_writing.chunk_rows(7, columns) == min(rows, 7)
+
+
+@pytest.mark.parametrize("step", ["__setitem__", "__getitem__"])
+def test_a_signal_while_merging_keeps_all_blocks(scene, tmp_path, expected, monkeypatch, step):
+    """While the file is written, or read back."""
+    path, work, struck = tmp_path / "e.h5", getattr(h5py.Dataset, step), []
+    blocks = begun(scene, path)
+
+    def signalled(*arguments):
+        if not struck:
+            struck.append(True)
+            os.kill(os.getpid(), signal.SIGINT)
+        return work(*arguments)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(h5py.Dataset, step, signalled)
+        with pytest.raises(StoppedError, match=r"all blocks are kept in .*; the same command merges them"):
+            mcgw.merge(path)
+    assert not path.exists()
+    assert sorted(parts_of(path).glob("shards/*.h5")) == blocks
+    assert not list(parts_of(path).glob(".*.tmp"))
+    mcgw.merge(path)
     assert digest(path) == expected

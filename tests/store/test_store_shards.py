@@ -51,7 +51,7 @@ def test_every_lost_byte_and_flipped_bit_is_noticed(shard):
         shard.path.write_bytes(data[:length])
         with pytest.raises(StoreError):
             open_shard(shard.path, RUN)
-    for at in dice.choice(len(data), 100, replace=False):
+    for at in dice.choice(len(data), 50, replace=False):
         changed = bytearray(data)
         changed[at] ^= 1 << int(dice.integers(8))
         shard.path.write_bytes(changed)

@@ -19,7 +19,6 @@ SCENE = mcgw.Scene(
 )
 GAMMA, N = "grading.gamma", "ensemble.n_asperities"
 OVER = {GAMMA: np.linspace(0.5, 1.7, 9), N: [200, 2000]}
-WORDS = {GAMMA: [0.5, 2.0], "ensemble.count": ["poisson", "fixed"]}
 FIRST = 2 * [0, 100, 200]  # surfaces of the chunks
 
 
@@ -67,21 +66,18 @@ def test_a_file_has_the_bits_of_memory(tmp_path):
 def test_other_programs_read_it(tmp_path):
     xarray = pytest.importorskip("xarray")
     pytest.importorskip("h5netcdf")
-    sweep = mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5")
-    with xarray.open_dataset(tmp_path / "a.h5", engine="h5netcdf") as data:
-        assert data.load_std.dims == ("gamma", "n_asperities", "separation")
-        assert np.array_equal(data.load_std, sweep.std("load"))
-        assert (data.gamma.values.tolist(), data.n_asperities.values.tolist()) == tuple(
-            map(list, OVER.values())
-        )
-        assert data.attrs["filetype"] == "mcgw-results"
-    zipped = mcgw.sweep(SCENE, WORDS, zipped=True, path=tmp_path / "b.h5")
-    with xarray.open_dataset(tmp_path / "b.h5", engine="h5netcdf") as data:
-        assert data.load_mean.dims == ("point", "separation")
-        assert np.array_equal(data.load_mean, zipped.mean("load"))
-        assert data.gamma.values.tolist() == [0.5, 2.0]
-        assert data["count"].values.tolist() == [0, 1]
-        assert data["count"].attrs["long_name"] == "ensemble.count: 0 poisson, 1 fixed"
+    for over, zipped, dims, codes in (
+        (OVER, False, ("gamma", "n_asperities", "separation"), [200, 2000]),
+        ({GAMMA: [0.5, 2.0], "ensemble.count": ["poisson", "fixed"]}, True, ("point", "separation"), [0, 1]),
+    ):
+        sweep = mcgw.sweep(SCENE, over, zipped=zipped, path=tmp_path / f"{zipped}.h5")
+        with xarray.open_dataset(tmp_path / f"{zipped}.h5", engine="h5netcdf") as data:
+            assert data.load_std.dims == dims
+            assert np.array_equal(data.load_std, sweep.std("load"))
+            assert data.gamma.values.tolist() == list(over[GAMMA])
+            second = data["count" if zipped else "n_asperities"]
+            assert second.values.tolist() == codes
+            assert not zipped or second.attrs["long_name"] == "ensemble.count: 0 poisson, 1 fixed"
 
 
 @pytest.mark.parametrize("after", [1, 3])
@@ -218,3 +214,22 @@ def test_executors_draw_into_a_file(tmp_path, expected):
             mcgw.sweep(SCENE, OVER, path="a.h5", executor=pool, shard="1/2")
         mcgw.sweep(SCENE, OVER, path=tmp_path / "a.h5", executor=pool)
     assert digest(tmp_path / "a.h5") == expected
+
+
+def test_a_sweep_half_done_says_how_far_it_is(tmp_path):
+    path, scene = tmp_path / "s.h5", SCENE.replace(n_surfaces=100)
+    over = {GAMMA: [0.5, 1.5], "ensemble.count": ["fixed", "poisson"]}
+    left = mcgw.sweep(scene, over, path=path, shard="1/2")
+    assert left == 100  # one of two groups, by the law of the number of asperities
+    assert call("show", path).stdout == (
+        f"{path}: a sweep of 4 points over grading.gamma, ensemble.count, not finished: 100 of 200 surfaces "
+        "are drawn; run mcgw sweep again to resume\n"
+    )
+    assert mcgw.scene_from(call("show", "--scene", path).stdout).surface == SURFACE
+    for option in ("--verify", "--digest"):
+        done = call("show", path, option)
+        assert done.returncode == 2
+        assert "is an unfinished sweep; finish it with mcgw sweep" in done.stderr
+    with pytest.raises(mcgw.StoreError, match="is an unfinished sweep; mcgw show prints its progress"):
+        mcgw.open_ensemble(path)
+    assert mcgw.sweep(scene, over, path=path).shape == (2, 2)  # nothing of it was removed
