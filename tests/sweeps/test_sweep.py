@@ -262,3 +262,12 @@ def test_points_have_the_intervals_and_tables_of_single_runs():
     for ask in (point.values, lambda q: point.quantile(q, 0.5), point.covariance):
         with pytest.raises(ValueError, match=r"load: a sweep only keeps mean and .* surfaces of that scene"):
             ask("load")
+
+
+def test_progress_counts_what_a_group_takes():
+    """By hand: an asperity that touches at the lowest separation is one, a scene of a surface 3000."""
+    told, over = [], {"ensemble.n_asperities": [200, 40_000], GAMMA: [1.0, 1.5, 2.0]}
+    sweep = mcgw.sweep(SCENE.replace(n_surfaces=40), over, progress=lambda *pair: told.append(pair))
+    work = [n / 2 + 3000 * 3 for n in (200, 40_000)]  # half of the asperities lie above d = 0
+    assert len(sweep.groups) == 2
+    assert told == [(0, 80), (round(80 * work[0] / sum(work)), 80), (80, 80)]
