@@ -155,6 +155,10 @@ def test_what_nobody_gave_follows():
     sweep = mcgw.sweep(follows, {"surface.nominal_area": ["1 mm^2", "2 mm^2"]})
     assert [scene.n_asperities for scene in sweep.scenes] == [300, 600]
     assert len({scene.seed for scene in sweep.scenes}) == 1
+    ruled = mcgw.sweep(SCENE.replace(rel_err=0.05, n_surfaces=2000), {GAMMA: [1.0, 2.0]})
+    for scene in ruled.scenes:  # the rule is one number for all
+        assert scene.rel_err is None
+        assert 300 < scene.n_surfaces < 2000
 
 
 MISTAKES = [
