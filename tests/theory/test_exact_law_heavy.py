@@ -4,6 +4,7 @@ from unittest import mock
 
 import numpy as np
 import pytest
+from oracles.accurately import term
 from oracles.inside import Needs
 from oracles.scenes import scene_by
 from scipy import stats
@@ -44,6 +45,38 @@ def test_errors_are_at_most_the_stated_ones(heights, law, gamma, n, count, share
         off = np.abs(found.sf(x) - model.distribution("load", h).sf(x))
     assert np.all(off <= found.error_at(x) * np.minimum(found.cdf(x), found.sf(x)))
     assert off.max() < 1e-6
+
+
+DRAWN = [(None, 100, "fixed"), (YIELDS, 1000, "poisson"), (STICKS, 1000, "fixed")]
+
+
+def beyond(scene, h, shares, more=1.0):
+    """Standard errors by which shares of 40 000 surfaces, summed asperity by asperity, lie beyond quantiles.
+
+    With so many times the asperities of the scene.
+    """
+    law, rng, surfaces = scene.theory.distribution("load", h), np.random.default_rng(scene.seed), 40_000
+    touching, n = stats.norm.sf(h), round(more * scene.n_asperities)
+    by_count = {"poisson": rng.poisson(n * touching, surfaces), "fixed": rng.binomial(n, touching, surfaces)}
+    counts = by_count[scene.count]
+    s = stats.norm.isf(touching * rng.random(counts.sum()))
+    one = analytic.quantity_of("load").scale(scene.surface) * term(scene, "load", h, s)
+    loads = np.bincount(np.repeat(np.arange(surfaces), counts), one, surfaces)
+    seen = np.array([np.mean(loads > x) for x in law.isf(shares)])
+    return (seen - shares) / np.sqrt(shares * (1 - shares) / surfaces)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("law", "n", "count"), [(None, 100, "fixed"), (YIELDS, 1000, "poisson"), (STICKS, 1000, "fixed")]
+)
+def test_drawn_surfaces_are_beyond_quantiles_as_often_as_said(law, n, count):
+    """Both tails down to 1e-3: |z| < 5, 18 numbers of 6e-7. The companion: a tenth more asperities."""
+    surface, h = mcgw.Surface(1e-6, 1e-5, 1e9, 1e-6, 1e9), 1.0
+    given = {"law": law, "grading": mcgw.Exponential(2.0), "n_asperities": n, "count": count, "seed": 9}
+    scene, shares = scene_by(surface, separations=[h], **given), np.array([1e-3, 1e-2, 0.1, 0.9, 0.99, 0.999])
+    assert np.abs(beyond(scene, h, shares)).max() < 5
+    assert np.abs(beyond(scene, h, shares, 1.1)).max() > 5
 
 
 @pytest.mark.slow
