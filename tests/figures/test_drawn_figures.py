@@ -245,17 +245,3 @@ def test_panels_of_a_comparison_have_room(comparison, panels, sign, size):
     assert not crowded(figure)
     figure.axes[0].set_title("A title for which there is no room " * 9)  # which would be seen
     assert crowded(figure)
-
-
-@pytest.mark.site
-@pytest.mark.parametrize("ending", ["svg", "pdf", "png"])
-def test_files_have_the_same_bytes_twice_and_texts_stay_texts(ending, tmp_path, monkeypatch):
-    """SOURCE_DATE_EPOCH, matplotlib's clock, is a year later; ticks of less than a decade."""
-    for at in ("1", "31536000"):
-        monkeypatch.setenv("SOURCE_DATE_EPOCH", at)
-        panel = Panel("p", "approach", "y", SERIES[:1], ("log", "log"), settings={"xlim": (2.0, 7.0)})
-        inside.save(FigureData("", "", (panel,)), tmp_path / f"{at}.{ending}")
-    one, two = (path.read_bytes() for path in tmp_path.iterdir())
-    assert one == two
-    assert ending != "svg" or b">approach</text>" in one
-    assert ending != "pdf" or (b"/FontFile2" in one and b"/Type3" not in one)  # TrueType

@@ -114,17 +114,6 @@ def test_points_that_need_other_cells_share_their_surfaces(name):
     assert not np.array_equal(*alone)  # what common cells are for
 
 
-def test_what_no_cells_resolve_is_drawn_one_by_one_at_all_points(monkeypatch):
-    monkeypatch.setattr("mcgw.sampling.samplers._CUTS", 0)
-    steep = {"grading": mcgw.Graded(mcgw.Exponential(-1.5), negative="clip"), "separations": [-1.2, 1.8]}
-    scene = FEW.replace(n_asperities=3000, law=mcgw.KogutEtsion(critical=0.0018), **steep)
-    sweep = mcgw.sweep(scene, {"surface.E_star": [7e10, 8e10]})
-    assert len(sweep.groups) == 1
-    assert all(same_bits(sweep, (i,)) for i in range(2))
-    with pytest.raises(ValueError, match='use sampler = "tail"'):
-        mcgw.sweep(scene.replace(sampler="cells"), {"surface.E_star": [7e10, 8e10]})
-
-
 @pytest.mark.parametrize("gammas", [[1.0, 1.001, 1.5], np.linspace(0.5, 1.7, 9)])
 def test_slopes_from_pairs_are_those_of_theory(gammas):
     slopes = mcgw.sweep(SCENE, {"ensemble.count": ["fixed", "poisson"], GAMMA: gammas}).slopes("load", GAMMA)

@@ -107,18 +107,6 @@ def test_interrupted_anywhere_it_goes_on_to_the_same_digest(tmp_path, monkeypatc
     assert not parts_of(path).exists()
 
 
-def test_progress_of_a_file_goes_on_from_what_it_holds(tmp_path):
-    """By hand: an asperity that touches at d = 0 is one, a scene of a surface 3000; 600 surfaces in all."""
-    over, path, told = {GAMMA: [0.5, 1.0, 1.7], N: [200, 20_000]}, tmp_path / "a.h5", []
-    each = np.array([n / 2 + 3 * 3000 for n in (200, 20_000)])
-    half = np.cumsum([0, *each[[0, 0, 1]]])  # every other block
-    whole = half[-1] + np.cumsum([0, *each[[0, 1, 1]]])
-    for more, expected in (({"shard": "1/2"}, half), ({"threads": 1}, whole), ({}, whole[-1:])):
-        mcgw.sweep(SCENE, over, path=path, progress=lambda *pair: told.append(pair), **more)
-        assert told == [(round(600 * x / whole[-1]), 600) for x in expected]
-        told.clear()
-
-
 def test_another_sweep_is_left_alone(tmp_path):
     a, b, e = (tmp_path / f"{name}.h5" for name in "abe")
     mcgw.sweep(SCENE, OVER, path=a)
@@ -144,19 +132,6 @@ def test_a_seed_that_nobody_gave_is_that_of_the_file(tmp_path):
     for scene in (first, other):
         made = mcgw.sweep(scene, {GAMMA: [1.0, 2.0]}, path=tmp_path / "a.h5")
         assert made.scenes[0].seed == first.seed != other.seed
-
-
-def test_scenes_of_a_file_are_those_of_a_list(tmp_path):
-    """By any index or slice."""
-    few = SCENE.replace(n_surfaces=2)
-    mcgw.sweep(few, OVER, path=tmp_path / "a.h5")
-    scenes, memory = mcgw.open_sweep(tmp_path / "a.h5").scenes, mcgw.sweep(few, OVER).scenes
-    assert len(scenes) == len(memory) == 18
-    for some in (slice(None), slice(3, 9, 2), slice(None, None, -7), slice(-2, None), slice(5, 5)):
-        assert tuple(scenes[some]) == tuple(memory[some])
-    assert scenes[-1] == memory[-1]
-    with pytest.raises(IndexError):
-        scenes[18]
 
 
 def test_commands_show_it(tmp_path):
