@@ -49,10 +49,6 @@ def crowd(f, **changes):
     return falling(surface=dataclasses.replace(SHALLOW, nominal_area=area, eta=3000 / area), **changes)
 
 
-def plain(h):
-    return {"separations": h, "grading": analytic.Homogeneous(), "n_surfaces": 2}
-
-
 LADDER = {"separations": (0.0, 0.5, 1.0, 1.5, 2.0)}
 # Words, a scene of which they are told in one line, and one beside it of which they are not.
 BESIDE = [
@@ -64,7 +60,7 @@ BESIDE = [
     # of 3000 exp(-h - 1) fewer than 30 from ln 100 - 1 = 3.605 on
     ("from d/sigma = 3.7 fewer than 30", falling(separations=(4.5, 0.0, 3.7, 4.0)), falling(3.6)),
     ("up to d/sigma = 1 more than 5%", crowd(np.exp(1.2), **LADDER), crowd(np.exp(0.9), **LADDER)),
-    ("up to d/sigma = -0.5 more than half", plain((-1.5, -0.5, 0.5)), plain((0.5, 1.0))),
+    ("up to d/sigma = -0.5 more than half", falling(separations=(-0.9, -0.5, 0.5)), falling(0.0)),
     ("load too large if d is that of a rigid punch", crowd(2.0), crowd(2.0, interaction="body")),
     ('metals yield much earlier: use contact.law = "kogut-etsion"', {}, {"law": METAL}),  # steep and elastic
 ]
