@@ -51,24 +51,16 @@ def one_asperity(model: Any, quantity: str, h: float, cells: int) -> OneAsperity
     low = high = values
     if p.any() and not isinstance(model.heights, MeasuredHeights):
         lowest = max(min(h, model.ways.of(quantity).lowest(h)), model.heights.support[0])
-        low, high, p = _cells(model, h, rule, added, cells, lowest)
+        left, wide, p, ratios = cells_between(model, h, rule, cells, lowest)
+        at = np.concatenate([left + _JUST * wide, left + wide])  # right of where contacts begin
+        ratios = None if ratios is None else np.tile(ratios, 2)
+        low, high = added(replace(rule, heights=at, probabilities=0 * at, ratios=ratios)).reshape(2, -1)
         share = (mean - (p * (low + high)).sum() / 2) / ((p * (np.abs(low) + np.abs(high))).sum() / 2)
         low, high = low + share * np.abs(low), high + share * np.abs(high)
     touching = ((low != 0) | (high != 0)) & (p > 0)
     low, high, p = (x[touching] for x in (np.minimum(low, high), np.maximum(low, high), p))
     order = np.argsort(low + high)
     return OneAsperity(low[order], high[order], p[order], n * mean, n * square, n, poisson)
-
-
-def _cells(
-    model: Any, h: float, rule: Any, added: Any, cells: int, lowest: float
-) -> tuple[Array, Array, Array]:
-    """Values at both ends of cells of the heights between the nodes of a rule, and their probabilities."""
-    left, wide, p, ratios = cells_between(model, h, rule, cells, lowest)
-    at = np.concatenate([left + _JUST * wide, left + wide])  # right of where contacts begin
-    ratios = None if ratios is None else np.tile(ratios, 2)
-    low, high = added(replace(rule, heights=at, probabilities=0 * at, ratios=ratios)).reshape(2, -1)
-    return low, high, p
 
 
 def cells_between(
@@ -111,7 +103,7 @@ def separation_law_of(model: Any, load: float, quantity: str, *, other: bool = F
     check_falling(model, quantity, start)
     unit = q.scale(model.surface)
     one, target = one_asperity(model, quantity, start, _CELLS[other]), load / unit
-    spread = float(unit * one.usual[1] / model.slope(quantity, start))
+    spread = float(unit * np.sqrt(one.variance) / model.slope(quantity, start))
     score = cache(partial(score_of, model, quantity, target, other=other))
     h = _between(score, start + other * spread / 7, spread)
     z = np.array([score(at) for at in h])
@@ -151,23 +143,16 @@ def _between(score: Callable[[float], float], start: float, spread: float) -> li
     return places
 
 
-def shares_upto(model: Any, quantity: str, h: float) -> Callable[[float, Array], Array]:
+def shares_upto(model: Any, quantity: str, h: float, number: float, values: Array) -> Array:
     """Return the shares of surfaces of a number of asperities whose sum is no more than some values, SI.
 
     They are right to 1e-6 or better. For what is integrated over: one lattice that suits the largest of
     them, without the far tails of a `Law`.
     """
-    unit = quantity_of(quantity).scale(model.surface)
-    one = one_asperity(model, quantity, h, _CELLS[False] // 2)
-
-    def shares(number: float, values: Array) -> Array:
-        if number < 1:
-            return np.where(values >= 0, 1.0, 0.0)
-        part = number / one.number
-        some = replace(one, number=number, mean=part * one.mean, variance=part * one.variance)
-        return shares_at(some, values / unit, _POINTS[False] // 4)
-
-    return shares
+    if number < 1:
+        return np.where(values >= 0, 1.0, 0.0)
+    one = replace(one_asperity(model, quantity, h, _CELLS[False] // 2), number=number)
+    return shares_at(one, values / quantity_of(quantity).scale(model.surface), _POINTS[False] // 4)
 
 
 def check_falling(model: Any, quantity: str, h: float) -> None:
