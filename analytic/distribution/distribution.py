@@ -35,8 +35,6 @@ class Law:
         Mean and variance over surfaces.
     ends : (float, float)
         Values that none is below, or above.
-    rounding : float
-        Of the shares.
     again : callable
         Computes the law once more, by other lattices and other cells of the heights.
     """
@@ -45,7 +43,6 @@ class Law:
     upto: Array
     moments: tuple[float, float]
     ends: tuple[float, float]
-    rounding: float
     again: Callable[[], Any]
 
     def __repr__(self) -> str:
@@ -114,7 +111,7 @@ class Law:
     def error(self) -> float:
         """Error bound of `cdf`, from the second computation."""
         again, x = self.again(), np.append(self.x, (self.x[1:] + self.x[:-1]) / 2)
-        return float(_SAFE * np.abs(self.cdf(x) - again.cdf(x)).max() + _USUAL + self.rounding)
+        return float(_SAFE * np.abs(self.cdf(x) - again.cdf(x)).max() + _USUAL)
 
     def mapped(self, forward: Callable[[Any], Any], *, falls: bool = False) -> "Law":
         """Return the law of a function that rises, or falls, with the value.
