@@ -208,7 +208,7 @@ def _gains(
     least = min(float(model.mean(given, h)), value) - _SPREADS * float(model.std(given, h))
     start = max(least, 0.0)
     width = (value - start) / (_GRID - 1)
-    bear = shares_upto(model, given, h, n - two, start + width * np.arange(_GRID))
+    bear = shares_upto(model, given, h, n - two, np.asarray(start + width * np.arange(_GRID)))
     left = (value - start - added) / width
     beside = _Beside(left, in_cells / width, bear, bear[0] if start == 0 else 0.0)
     bears = beside.bears()

@@ -16,13 +16,14 @@ from analytic.arrays import Array
 
 _ROUNDING = 5e-12  # of a probability of sums, times the root of the number of contacts
 _DAMPED = 20.0  # logarithm of the damping over a period, which is twice as long as what is read
+_SMOOTH = 1e4  # mean over standard deviation of sums that damping would blow up
 _STENCIL = range(-2, 3)  # lattice points that share a value and keep its moments up to the fourth
 _MARGIN = 16  # lattice points below the lowest sum
 _REACH = 9.0  # standard deviations that hold all but 1e-18
 _RARE = 1e-2, 1e-12  # asperities on a surface that add more than the shortest lattice holds, and the longest
 _NEVER = 1e-9  # asperities on a surface that pull more than the lowest sum allows for
 _WIDER = 32.0  # times as long as a lattice: the next one
-_FINER = 1024.0  # times as short: the first one, of surfaces that
+_FINER = 16.0  # times as short: the first one, of surfaces that
 _FEW = 1e-25  # or more expected asperities touch alone
 _SINGLE = 1e-9  # width of a single value, over itself and the median
 _OWN = 2  # lattice points to one that the distribution of one asperity has of its own
@@ -65,7 +66,7 @@ class OneAsperity:
     @property
     def rounding(self) -> float:
         """Of probabilities of sums: it grows as the mean in standard deviations."""
-        return _ROUNDING * max(np.sqrt(self.number * self.share), 1.0)
+        return _ROUNDING * float(np.clip(np.sqrt(self.number * self.share), 1.0, _SMOOTH))
 
     @cached_property
     def none(self) -> float:
@@ -94,10 +95,11 @@ class OneAsperity:
         x, p, n = self.middle, self.probabilities, self.number
         rarer = n * np.cumsum(p[::-1])[::-1]
         usual, pull = np.where(rarer > min(rare, rarer[0] / 2), x, 0.0), np.minimum(x, 0.0)
-        means, squares = (p @ np.stack([usual, pull], axis=1) ** k for k in (1, 2))
+        means, squares = ((p * np.stack([usual, pull]) ** k).sum(axis=1) for k in (1, 2))
         spread = _REACH * np.sqrt(n * np.maximum(squares - (0.0 if self.poisson else means**2), 0.0))
-        deepest = pull[min(np.searchsorted(n * np.cumsum(p), _NEVER), x.size - 1)]
-        return float((n * means - spread).max() + 2 * deepest), float((n * means + spread)[0] + usual.max())
+        deepest = pull[min(int(np.searchsorted(n * np.cumsum(p), _NEVER)), x.size - 1)]
+        low, high = (n * means - spread).max() + 2 * deepest, (n * means + spread)[0] + max(usual.max(), 0.0)
+        return float(low), float(high)
 
     def lattices(self) -> tuple[float, list[float]]:
         """Return where lattices begin and end: short ones tell where sums of few contacts begin."""
@@ -114,21 +116,28 @@ def on_lattice(one: OneAsperity, x: Array, low: float, high: float, points: int)
     Values beyond are left out: no sum that is read has them.
     """
     step, size = (high - low) / points, 2 * points
-    first, k, damping = int(low // step) - _MARGIN, np.arange(size), _DAMPED / size
+    first, k = np.floor(low / step) - _MARGIN, np.arange(size)
+    signed = np.where(k < 3 * points // 2, k, k - size)
+    damping = _DAMPED / size if one.mean < _SMOOTH * np.sqrt(one.variance) else 0.0
     places, p, f = one.middle / step, one.probabilities, np.zeros(size)
     kept = (places < points) & (places > -points / 2)
-    near, p = np.rint(places[kept]), p[kept]
+    near, p, lost = np.rint(places[kept]), p[kept], float(p[~kept].sum())
     off, at = places[kept] - near, near.astype(np.int64)
     for i in _STENCIL:  # by Lagrange's weights
         weights = np.prod([(off - j) / (i - j) for j in _STENCIL if j != i], axis=0)
         f += np.bincount((at + i) % size, p * weights, size)
-    scatter = np.fft.rfft(f * np.exp(-damping * np.where(k < 3 * points // 2, k, k - size)))
-    q = scatter - one.share
-    spectrum = np.exp(one.number * (q if one.poisson else log1p(q)) + damping * first)
+    centre = float((f * signed).sum())
+    f[[1, -1]] -= centre / 2, -centre / 2  # apart from what scatters: it takes digits where N is large
+    f[0] = 0.0
+    f[0] = -f.sum() - lost  # so that many small values lose no digits
+    scatter, z = np.fft.rfft(f * np.exp(-damping * signed)), damping + 2j * np.pi / size * k[: points + 1]
+    q = scatter - centre * np.sinh(z)
+    log = q + centre * z - (0.0 if one.poisson else q - log1p(q))
+    spectrum = np.exp(one.number * log + z * (first - one.number * centre))
     if one.alone:
-        spectrum -= (one.none + one.alone * scatter) * np.exp(damping * first)
+        spectrum -= (one.none + one.alone * (q + one.share)) * np.exp(z * first)
     read = k[: points + 2 * _MARGIN]
-    p = np.roll(np.fft.irfft(spectrum, size), -first)[read] * np.exp(damping * read)
+    p = np.fft.irfft(spectrum, size)[read] * np.exp(damping * read)
     several = np.interp(x, (first + read) * step, np.cumsum(p) - p / 2, left=0.0)
     return np.asarray(several + one.alone * np.interp(x, *one.distribution, left=0.0, right=one.share))
 
@@ -136,9 +145,9 @@ def on_lattice(one: OneAsperity, x: Array, low: float, high: float, points: int)
 def shares_at(one: OneAsperity, x: Array, points: int) -> Array:
     """Return the shares of surfaces with sums up to x, by a lattice that ends at the largest of them."""
     low, high = one.span(_RARE[1]) if one.low.size else (0.0, 0.0)
-    high = min(high, float(x.max()))
-    if high <= low:
+    if high <= low or x.max() <= low:
         return np.where((x >= 0) & (x >= low), 1.0, 0.0)
+    high = float(np.clip(x.max(), low + (high - low) / _WIDER, high))
     return on_lattice(one, x, low, high, points) + one.none * (x >= 0)
 
 
