@@ -120,7 +120,7 @@ def on_lattice(one: OneAsperity, x: Array, low: float, high: float, points: int)
     signed = np.where(k < 3 * points // 2, k, k - size)
     damping = _DAMPED / size if one.mean < _SMOOTH * np.sqrt(one.variance) else 0.0
     places, p, f = one.middle / step, one.probabilities, np.zeros(size)
-    kept = (places < points) & (places > -points / 2)
+    kept = (places < points + 2 * _MARGIN) & (places > -points / 2)
     near, p, lost = np.rint(places[kept]), p[kept], float(p[~kept].sum())
     off, at = places[kept] - near, near.astype(np.int64)
     for i in _STENCIL:  # by Lagrange's weights
@@ -143,11 +143,12 @@ def on_lattice(one: OneAsperity, x: Array, low: float, high: float, points: int)
 
 
 def shares_at(one: OneAsperity, x: Array, points: int) -> Array:
-    """Return the shares of surfaces with sums up to x, by a lattice that ends at the largest of them."""
+    """Return the shares of surfaces with sums up to x, of few contacts by a lattice that ends with them."""
     low, high = one.span(_RARE[1]) if one.low.size else (0.0, 0.0)
     if high <= low or x.max() <= low:
         return np.where((x >= 0) & (x >= low), 1.0, 0.0)
-    high = float(np.clip(x.max(), low + (high - low) / _WIDER, high))
+    if one.alone > _FEW:  # others lie closely, and are not damped where they are very many
+        high = float(np.clip(x.max(), low + (high - low) / _WIDER**2, high))
     return on_lattice(one, x, low, high, points) + one.none * (x >= 0)
 
 
