@@ -28,22 +28,20 @@ pytestmark = pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no devi
 
 
 @pytest.fixture
-def disturbed():
-    """A stream of that state, as Python has it at the start of a process."""
+def disturbed(monkeypatch):
+    """Give a standard stream a state, as Python has it at the start of a process."""
     opened = []
 
-    def make(state):
-        if state == "closed":
-            return None
+    def disturb(stream, state):
         if state == "full":
             opened.append(os.fdopen(os.open("/dev/full", os.O_WRONLY), "w"))
-        else:
+        elif state == "broken":
             reader, writer = os.pipe()
             os.close(reader)
             opened.append(os.fdopen(writer, "w"))
-        return opened[-1]
+        monkeypatch.setattr(sys, stream, None if state == "closed" else opened[-1])
 
-    yield make
+    yield disturb
     for stream in opened:
         stream.close()
 
@@ -55,7 +53,7 @@ def instead(monkeypatch):
 
 
 @pytest.mark.parametrize(("line", "stream", "state"), DISTURBED)
-def test_what_is_said_decides_nothing(line, stream, state, disturbed, monkeypatch, instead):
+def test_what_is_said_decides_nothing(line, stream, state, disturbed, instead):
     """The work stands in for that of the command: it says much before and after, and ends in every way."""
     ends = {0: None, 1: None, 2: ValueError("bad"), 3: RunError("failed", code=3), 130: KeyboardInterrupt()}
     done = []
@@ -72,7 +70,7 @@ def test_what_is_said_decides_nothing(line, stream, state, disturbed, monkeypatc
 
     instead(work)
     for code in ends:
-        monkeypatch.setattr(sys, stream, disturbed(state))
+        disturbed(stream, state)
         lost = line in PRINTED and (stream, state) == ("stdout", "full")
         assert main(line.split()) == (code or int(lost))
     assert done == [0, 1] * 5
@@ -110,14 +108,14 @@ def test_each_end_has_its_line_after_those_of_the_warnings(end, code, told, inst
 @pytest.mark.parametrize(
     ("stream", "words"), [("stdout", "--version"), ("stdout", "show --help"), ("stderr", "show --none")]
 )
-def test_help_is_what_was_asked_for_and_other_words_bad_input(stream, words, state, disturbed, monkeypatch):
-    monkeypatch.setattr(sys, stream, disturbed(state))
+def test_help_is_what_was_asked_for_and_other_words_bad_input(stream, words, state, disturbed):
+    disturbed(stream, state)
     with pytest.raises(SystemExit) as end:
         main(words.split())
     assert end.value.code == (2 if stream == "stderr" else int(state == "full"))
 
 
-def test_a_termination_is_told_in_one_line(instead, monkeypatch, capsys):
+def test_a_termination_is_told_in_one_line(instead, capsys):
     def work(args):
         os.kill(os.getpid(), signal.SIGTERM)
         time.sleep(5)

@@ -149,11 +149,11 @@ def kept_in(figures):
     return keep
 
 
+@pytest.mark.usefixtures("blank_figures")
 @pytest.mark.parametrize("command", LINES)
 def test_commands(command, material, recorded, monkeypatch):
     figures, told = [], []
     monkeypatch.setattr(Figure, "savefig", kept_in(figures))
-    monkeypatch.setattr("matplotlib.layout_engine.ConstrainedLayoutEngine.execute", lambda *_: None)
     for words in LINES[command]:
         before = {path: path.stat().st_mtime_ns for path in material.rglob("*")}
         done = call(*words.split(), cwd=material)

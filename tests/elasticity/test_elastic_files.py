@@ -26,16 +26,6 @@ def whole(tmp_path):
     return path, path.read_bytes(), found.found.mean.tolist()
 
 
-def test_clocks_do_not_matter(monkeypatch):
-    """Seconds that are random numbers: once by luck, three times never."""
-    plans, rng = [], np.random.default_rng(3)
-    for _ in range(3):
-        monkeypatch.setattr(levels.time, "process_time", lambda: float(rng.exponential(10)))
-        found = mcgw.elastic(MAPS, **ASKED | {"solves": None, "rel_err": 0.2})
-        plans.append((found.planned, found.found.mean.tolist(), found.found.stderr.tolist()))
-    assert plans[0] == plans[1] == plans[2]
-
-
 def test_what_is_in_the_file_is_not_solved_again(whole, monkeypatch):
     """Half of it, and all of it; progress counts up to what was planned."""
     path, data, mean = whole

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
-from oracles.inside import Values, block_size, check_memory, memory_available, reducer_of
+from oracles.inside import Values, block_size, memory_available, reducer_of
 from oracles.memory_growth import peak_growth
 from oracles.said import without_notes
 
@@ -104,15 +104,6 @@ def test_work_is_refused_where_a_byte_is_missing(what, make_scene, monkeypatch):
     monkeypatch.setattr(memory, "memory_available", lambda: size - 1)
     with pytest.raises(StoreError, match=rf" needs {size / 2**30:.4g} GiB of memory but only"):
         ask(scene)
-
-
-def test_small_requests_are_not_looked_up(monkeypatch):
-    monkeypatch.setattr(memory, "memory_available", lambda: 0)
-    check_memory("anything", 2**24 - 1)
-    with pytest.raises(
-        StoreError, match=r"^anything needs 0\.01562 GiB of memory but only 0 GiB is available"
-    ):
-        check_memory("anything", 2**24)
 
 
 def test_disk_is_asked_for_blocks_and_file(make_scene):

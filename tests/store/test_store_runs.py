@@ -276,16 +276,6 @@ def test_blocks_and_chunks_of_any_size_make_the_same(scene, tmp_path, expected, 
         np.testing.assert_array_equal(made[name], drawn[name])
 
 
-@pytest.mark.parametrize("columns", [0, 41, 512, 513, 2**17, 2**20])
-def test_chunks_are_cut_at_powers_of_two_within_a_mebibyte(columns, monkeypatch):
-    monkeypatch.setattr(h5_writing, "CHUNK_ROWS", 256)
-    rows = h5_writing.chunk_rows(10**6, columns)
-    assert 256 % rows == 0  # so that blocks of whole chunks of the largest kind are whole chunks of any
-    assert rows == 1 or 8 * rows * columns <= 2**20
-    assert rows == 256 or 16 * rows * columns > 2**20
-    assert h5_writing.chunk_rows(7, columns) == min(rows, 7)
-
-
 @pytest.mark.parametrize("step", ["__setitem__", "__getitem__"])
 def test_a_signal_while_merging_keeps_all_blocks(scene, tmp_path, expected, monkeypatch, step):
     """While the file is written, or read back."""
