@@ -164,6 +164,8 @@ def shares(one: OneAsperity, points: int) -> tuple[Array, Array]:
         new = np.union1d(new[(new > begin) & (new <= end)], [0.0] * (begin <= 0.0))
         x, upto, begin = np.append(x, new), np.append(upto, on_lattice(one, new, low, end, points)), end
     at, upto = int(np.searchsorted(x, 0.0)), np.maximum.accumulate(upto)
+    if one.low.min() >= 0:  # no rounding beside the surfaces that nothing touches
+        upto[: at + 1] = 0.0
     x, upto = np.insert(x, at, 0.0), np.insert(upto, at, upto[at])
     upto[at + 1 :] += one.none
     upto = np.clip(upto, one.rounding, 1 - one.rounding)

@@ -26,6 +26,7 @@ LINES = (
 )  # fmt: skip
 
 
+@pytest.mark.slow
 def test_quiet_is_silent_but_for_errors(tmp_path):
     """What each says otherwise is recorded, see `test_what_users_read`."""
     (tmp_path / "s.toml").write_text(SCENE)
