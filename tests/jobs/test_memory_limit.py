@@ -106,6 +106,15 @@ def test_work_is_refused_where_a_byte_is_missing(what, make_scene, monkeypatch):
         ask(scene)
 
 
+@pytest.mark.parametrize("separations", [2, 40, 1000])
+def test_a_block_fills_a_few_mebibytes(separations, make_scene):
+    """So that writing one costs little, and holding some for each core too; or it is one of the sampler's."""
+    reducer = reducer_of(make_scene(separations=np.linspace(0, 3, separations), n_surfaces=10**6))
+    size = 8 * reducer.scene.width * reducer.rows
+    assert size <= 2**23 or reducer.rows <= 256
+    assert size > 2**20
+
+
 def test_disk_is_asked_for_blocks_and_file(make_scene):
     """Statistics: those of whole blocks are one in the file, which holds covariances too."""
     sampler = SimpleNamespace(draws=0, words=0, moments=100, cells=7)
