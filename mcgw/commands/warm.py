@@ -1,7 +1,7 @@
 """``mcgw warm``: compile the loops before they are needed.
 
 A run compiles what it needs by itself. Here small scenes need all there is: every sampler, laws that add
-loops of their own, radii, interaction, statistics, maps.
+loops of their own, radii, interaction, statistics, maps and surfaces that are made.
 """
 
 from typing import Any
@@ -57,9 +57,15 @@ def _scenes() -> list[dict[str, Any]]:
 def _maps() -> None:
     import numpy as np
 
+    from mcgw.maps.envelope import envelope, hidden_summits
     from mcgw.maps.fitting import fit
+    from mcgw.maps.synthetic import asperities_of
     from mcgw.maps.topography import Topography
 
+    field = asperities_of(_scene(), 0)
+    for periodic in (False, True):
+        envelope(field, (16, 16), periodic=periodic)
+        hidden_summits(field, periodic=periodic)
     heights = np.random.default_rng(1).normal(size=(64, 64)) * 1e-6
     fit(Topography(heights, (1e-6, 1e-6)), cutoff="8 um")
 
