@@ -1,7 +1,8 @@
-"""The long versions of the tests of the store: ``python runs/reliability/measure.py crash|kills|fuzz``.
+"""The long versions of the tests of the store: ``python runs/reliability/measure.py crash|kills|flips|fuzz``.
 
 crash   every file-modifying system call of a run of eight blocks, in four ways (about a minute)
 kills   500 random kills of all that writes
+flips   500 bits flipped where files say what their numbers mean (half a minute)
 fuzz    1e4 HDF5 files (about ten minutes)
 
 Each line printed is JSON; a list or count of problems that is not empty or zero is one.
@@ -38,6 +39,11 @@ def kills(folder):
     call(Path(__file__).with_name("kills.py"), 500, 1, folder / "kills")
 
 
+def flips(folder):
+    """Flip single bits, and open."""
+    call(TESTS / "crash" / "flips.py", folder / "flips", 500)
+
+
 def fuzz(folder):  # noqa: ARG001
     """Read what is wrong in every way."""
     call(TESTS / "fuzz" / "fuzz.py", 10_000, 7)
@@ -46,5 +52,5 @@ def fuzz(folder):  # noqa: ARG001
 if __name__ == "__main__":
     memory = Path("/dev/shm")  # flushing is quick there: what is tried is the order of the calls
     with tempfile.TemporaryDirectory(dir=memory if memory.is_dir() else None) as place:
-        for name in sys.argv[1:] or ("crash", "kills", "fuzz"):
-            {"crash": crash, "kills": kills, "fuzz": fuzz}[name](Path(place))
+        for name in sys.argv[1:] or ("crash", "kills", "flips", "fuzz"):
+            {"crash": crash, "kills": kills, "flips": flips, "fuzz": fuzz}[name](Path(place))

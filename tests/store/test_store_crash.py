@@ -29,13 +29,13 @@ def shim(tmp_path_factory):
     return library
 
 
-def said_of(folder, mode, stride, **env):
-    """What the harness found of a run struck at every so many-th call."""
+def said_by(script, folder, *words, **env):
+    """What a script of the folder `crash` found."""
     memory = Path("/dev/shm")  # where flushing is quick: what is tried is the order of the calls
     place = (memory if memory.is_dir() else folder) / f"{folder.name}-{os.getpid()}"
     paths = [str(HERE.parent.parent), str(HERE), *filter(None, [os.environ.get("PYTHONPATH")])]
     env = os.environ | {"PYTHONPATH": os.pathsep.join(paths)} | env
-    call = [sys.executable, HERE / "harness.py", place, mode, str(BLOCKS), str(stride)]
+    call = [sys.executable, HERE / script, place, *map(str, words)]
     try:
         done = subprocess.run(call, capture_output=True, text=True, env=env, check=False, timeout=500)
     finally:
@@ -47,7 +47,7 @@ def said_of(folder, mode, stride, **env):
 @pytest.mark.slow
 @pytest.mark.parametrize("mode", ["kill", "torn", "ENOSPC", "EIO"])
 def test_nothing_is_lost_at_any_call(shim, mode, tmp_path):
-    found = said_of(tmp_path, mode, 1, LD_PRELOAD=str(shim))
+    found = said_by("harness.py", tmp_path, mode, BLOCKS, 1, LD_PRELOAD=str(shim))
     assert found["points"] >= BLOCKS * 5
     assert found["problems"] == {}
 
@@ -55,4 +55,13 @@ def test_nothing_is_lost_at_any_call(shim, mode, tmp_path):
 @pytest.mark.slow
 def test_the_harness_sees_a_shard_written_in_place(shim, tmp_path):
     """A companion: without the temporary name, torn writes leave half a shard, and that is noticed."""
-    assert said_of(tmp_path, "torn", 5, LD_PRELOAD=str(shim), MCGW_IN_PLACE="1")["problems"]
+    struck = {"LD_PRELOAD": str(shim), "MCGW_IN_PLACE": "1"}
+    assert said_by("harness.py", tmp_path, "torn", BLOCKS, 5, **struck)["problems"]
+
+
+@pytest.mark.slow
+def test_flipped_bits_are_seen_on_opening(tmp_path):
+    found = said_by("flips.py", tmp_path, 100)
+    assert found["flips"] == sum(place["flips"] for place in found["where"].values()) == 100
+    assert len(found["where"]) == 10
+    assert found["unseen"] == 0, found
