@@ -1,5 +1,6 @@
 import io
 import os
+import sys
 from contextlib import chdir
 from pathlib import Path
 
@@ -9,6 +10,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from oracles.inside import Values
 from oracles.interacting_by_hand import QUANTITIES, SEPARATIONS, interaction
 from oracles.scenes import scene_by
 from oracles.told import ANSWERS, apart
@@ -95,6 +97,18 @@ def in_tmp_path(tmp_path):
     """Work in an empty folder."""
     with chdir(tmp_path):
         yield tmp_path
+
+
+@pytest.fixture
+def missing(monkeypatch):
+    """Make a package one that cannot be imported."""
+    return lambda package: monkeypatch.setitem(sys.modules, package, None)
+
+
+@pytest.fixture
+def blocks_of(monkeypatch):
+    """Set the number of surfaces in a block."""
+    return lambda rows: monkeypatch.setattr(Values, "rows", rows)
 
 
 @pytest.fixture

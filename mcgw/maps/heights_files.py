@@ -95,7 +95,7 @@ def _along_line(raw: Raw) -> Raw:
     """Return a map of one row, or of one column, as a profile."""
     spacing = raw.pixel[int(raw.heights.shape[0] > 1)]
     places = spacing * np.arange(raw.heights.size, dtype=np.float64)
-    return Raw(raw.heights.ravel(), raw.unit, places=places, unit_of_places="m", assumed=raw.assumed)
+    return Raw(raw.heights.ravel(), raw.unit, places=places, unit_of_places="m")
 
 
 def _map(path: Path, topography: Topography) -> Topography:

@@ -2,7 +2,6 @@
 
 import shutil
 import subprocess
-import sys
 
 import pytest
 
@@ -31,8 +30,8 @@ def test_bash_completes_commands_words_and_files(line, capsys):
     assert line in capsys.readouterr().out.splitlines()
 
 
-def test_without_the_library_one_line_says_so(monkeypatch, capsys):
-    monkeypatch.setitem(sys.modules, "shtab", None)
+def test_without_the_library_one_line_says_so(missing, capsys):
+    missing("shtab")
     assert main(["completion", "bash"]) == 2
     assert capsys.readouterr().err == (
         "mcgw: shtab is not installed: in a clone of mcgw, pip install -e '.[completion]'\n"

@@ -1,7 +1,6 @@
 """Boundary elements by Tamaas: Hertz, a gap that is held, and what is told where there is no answer."""
 
 import math
-import sys
 
 import numpy as np
 import pytest
@@ -71,7 +70,7 @@ def test_what_does_not_end_is_told(tamaas, answer, held, words, rng, monkeypatch
         solved(rough(rng).heights, **held)
 
 
-def test_that_tamaas_is_not_there_is_told(rng, monkeypatch):
-    monkeypatch.setitem(sys.modules, "tamaas", None)
+def test_that_tamaas_is_not_there_is_told(rng, missing):
+    missing("tamaas")
     with pytest.raises(mcgw.RunError, match="need Tamaas: in a clone of mcgw, pip install -e"):
         solved(rough(rng).heights, pressure=1e6)

@@ -135,8 +135,8 @@ def test_xarray_is_as_the_file_is_and_a_dataframe_has_a_row_for_each_surface_and
 
 
 @pytest.mark.parametrize(("method", "package"), [("to_dataframe", "pandas"), ("to_xarray", "xarray")])
-def test_a_package_that_is_not_installed_is_named(ensemble, monkeypatch, method, package):
-    monkeypatch.setitem(__import__("sys").modules, package, None)
+def test_a_package_that_is_not_installed_is_named(ensemble, missing, method, package):
+    missing(package)
     how = r"in a clone of mcgw, pip install -e '\.\[notebook\]'"
     with pytest.raises(ImportError, match=rf"^{method} needs {package}: {how}$"):
         getattr(ensemble, method)()

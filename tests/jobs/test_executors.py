@@ -3,7 +3,6 @@
 import multiprocessing
 import os
 import signal
-import sys
 import time
 from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
 from contextlib import nullcontext
@@ -32,8 +31,8 @@ SPANS = [Span(8 * i, 8) for i in range(6)]
 
 
 @pytest.fixture(autouse=True)
-def _small_blocks(monkeypatch):
-    monkeypatch.setattr(Values, "rows", SIZE)
+def _small_blocks(blocks_of, monkeypatch):
+    blocks_of(SIZE)
     # Spawned workers import this package from here.
     monkeypatch.setenv("PYTHONPATH", str(HERE.parent))
 
@@ -64,11 +63,11 @@ def test_killed_dask_workers_are_replaced(make_scene, tmp_path):
     assert digest(tmp_path / "e.h5") == digest(tmp_path / "threads.h5")
 
 
-def test_dask_that_is_not_there_is_one_line(monkeypatch):
+def test_dask_that_is_not_there_is_one_line(missing):
     told = r"^--dask ftp://x: no scheduler answers|^dask is not installed"
     with pytest.raises(RunError, match=told), dask_executor("ftp://x"):
         pass
-    monkeypatch.setitem(sys.modules, "distributed", None)  # it cannot be imported
+    missing("distributed")
     told = r"dask is not installed: in a clone of mcgw, pip install -e '\.\["
     with pytest.raises(RunError, match=told), dask_executor("tcp://127.0.0.1:1"):
         pass

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
-from oracles.inside import Values, block_size, memory_available, reducer_of
+from oracles.inside import block_size, memory_available, reducer_of
 from oracles.memory_growth import peak_growth
 from oracles.said import without_notes
 
@@ -94,9 +94,9 @@ NEEDS = {
 
 
 @pytest.mark.parametrize("what", NEEDS)
-def test_work_is_refused_where_a_byte_is_missing(what, make_scene, monkeypatch):
+def test_work_is_refused_where_a_byte_is_missing(what, make_scene, blocks_of, monkeypatch):
     """And not where there is just enough."""
-    monkeypatch.setattr(Values, "rows", 50_000)
+    blocks_of(50_000)
     changes, ask, size = NEEDS[what]
     scene = make_scene(**changes)
     monkeypatch.setattr(memory, "memory_available", lambda: size)

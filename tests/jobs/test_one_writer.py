@@ -11,7 +11,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
-from oracles.inside import LockedError, Plan, Values, locked, parts_of, state_of
+from oracles.inside import LockedError, Plan, locked, parts_of, state_of
 from oracles.said import call
 
 import mcgw
@@ -25,8 +25,8 @@ SIZE = 16
 
 
 @pytest.fixture(autouse=True)
-def _small_blocks_and_no_patience(monkeypatch):
-    monkeypatch.setattr(Values, "rows", SIZE)
+def _small_blocks_and_no_patience(blocks_of, monkeypatch):
+    blocks_of(SIZE)
     monkeypatch.setattr(lock, "PATIENCE", 0.0)
 
 

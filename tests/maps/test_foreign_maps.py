@@ -140,8 +140,8 @@ def test_what_is_refused_is_one_line(name, text, given, told, foreign, tmp_path)
     assert not (tmp_path / "read").exists() or not re.search("points: more|could not convert", told)
 
 
-def test_without_the_library_its_name_is_told(tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "SurfaceTopography", None)
+def test_without_the_library_its_name_is_told(tmp_path, missing):
+    missing("SurfaceTopography")
     (tmp_path / "map.sdf").write_bytes(b"bISO-1.0")
     with pytest.raises(ValueError, match=r"map\.sdf: \.sdf is read by SurfaceTopography, which is not inst"):
         read_map(tmp_path / "map.sdf")

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from filelock import Timeout
-from oracles.inside import LOCK_FILES, Values, locked, parts_of
+from oracles.inside import LOCK_FILES, locked, parts_of
 
 import mcgw
 from mcgw.errors import StoreError
@@ -110,9 +110,9 @@ def test_planted_links_of_files_are_not_followed(make_scene, tmp_path):
         mcgw.run(scene, tmp_path / "f.h5")
 
 
-def test_a_run_in_a_folder_open_to_all_leaves_nothing(tmp_path, make_scene, monkeypatch):
+def test_a_run_in_a_folder_open_to_all_leaves_nothing(tmp_path, make_scene, blocks_of):
     """The lock would make names of its own in a folder that others can write."""
-    monkeypatch.setattr(Values, "rows", 4)
+    blocks_of(4)
     tmp_path.chmod(0o777)
     before = os.umask(0)
     try:

@@ -11,7 +11,7 @@ import h5py
 import numpy as np
 import pytest
 import scipy.stats
-from oracles.inside import SAMPLERS, Values, sampler_of
+from oracles.inside import SAMPLERS, sampler_of
 from oracles.memory_growth import peak_growth
 from oracles.scenes import scene_by
 
@@ -98,12 +98,12 @@ def test_golden_numbers(case):
 
 
 @pytest.mark.slow
-def test_memory_does_not_grow_with_the_ensemble(make_scene, tmp_path, monkeypatch):
+def test_memory_does_not_grow_with_the_ensemble(make_scene, tmp_path, blocks_of):
     """Peak memory of a run that is merged: 32 times the surfaces, 1e4 the asperities.
 
     The larger file has 80 MB of numbers; 25 MB is what allocators differ by from run to run.
     """
-    monkeypatch.setattr(Values, "rows", 256)
+    blocks_of(256)
 
     def peak(m, n):
         separations = tuple(np.linspace(2, 4, 40))

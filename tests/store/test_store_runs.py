@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from oracles.begun_runs import SIZE, SURFACES, begun, digest, halted
 from oracles.flipped import flip_a_number
-from oracles.inside import RECORD, Blocks, Plan, Span, Values, commit_block, part_of, parts_of
+from oracles.inside import RECORD, Blocks, Plan, Span, commit_block, part_of, parts_of
 from oracles.said import call
 
 import mcgw
@@ -262,14 +262,14 @@ def test_a_full_disk_is_one_line_and_the_run_completes_later(
 
 
 @pytest.mark.parametrize("rows", [4, 12, 256])
-def test_blocks_and_chunks_of_any_size_make_the_same(scene, tmp_path, expected, monkeypatch, rows):
+def test_blocks_and_chunks_of_any_size_make_the_same(scene, tmp_path, expected, blocks_of, monkeypatch, rows):
     """The first three blocks as of a version with other blocks; the file is one of 37 surfaces that grows."""
     monkeypatch.setattr(h5_writing, "CHUNK_ROWS", rows)
     path = tmp_path / "e.h5"
     mcgw.run(scene.replace(n_surfaces=37), path)
-    monkeypatch.setattr(Values, "rows", 20)
+    blocks_of(20)
     assert mcgw.run(scene, path, shard="1/1") == 0
-    monkeypatch.setattr(Values, "rows", SIZE)
+    blocks_of(SIZE)
     made, drawn = mcgw.run(scene, path), mcgw.simulate(scene)
     assert digest(path) == expected
     for name in scene.quantities:
