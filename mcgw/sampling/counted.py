@@ -11,7 +11,7 @@ from analytic.arrays import Array, Ints
 from mcgw.sampling.block import Block, Layout, Sampler
 from mcgw.sampling.counts import contacts_above, counts_of
 from mcgw.sampling.direct import asperity_sums
-from mcgw.sampling.drawn_moments import Drawing, OneByOne
+from mcgw.sampling.drawn_moments import OneByOne
 from mcgw.sampling.outside import extra_heights
 from mcgw.sampling.response.response import Response
 from mcgw.sampling.stretches import stretches_of
@@ -30,14 +30,14 @@ class Counted(Sampler):
         As of any `Sampler`.
     response : Response or Families
         Physics on this mesh.
-    drawing : Drawing, optional
+    drawing : OneByOne, optional
         How the moments of the cells are drawn.
     table : RadiusTable, optional
         Of radii, where summits have their own.
     """
 
     response: "Response | Families"
-    drawing: Drawing = OneByOne()  # noqa: RUF009 - it has no state
+    drawing: OneByOne = OneByOne()  # noqa: RUF009 - it has no state
     table: "RadiusTable | None" = None
 
     @property

@@ -14,7 +14,6 @@ from analytic import quantity_of
 from analytic.arrays import Array
 from mcgw.machine.compiling import njit
 from mcgw.sampling.block import Block, Sampler
-from mcgw.sampling.cells import no_cells
 from mcgw.sampling.counts import generator
 from mcgw.scene.scene import Scene
 
@@ -25,11 +24,6 @@ _PIECE = 2**20  # heights at a time
 @dataclass(frozen=True)
 class Direct(Sampler):
     """Draws every asperity of every surface."""
-
-    @classmethod
-    def of(cls, scene: Scene) -> "Direct":
-        """Prepare it."""
-        return cls("direct", scene, no_cells(scene))
 
     @property
     def words(self) -> int:

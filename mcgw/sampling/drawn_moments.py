@@ -19,7 +19,7 @@ add less than a millionth of the variance stay at their means.
 
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -37,40 +37,23 @@ CROWDED = 256  # asperities in a cell, from which its moments count as Gaussian
 VARYING = 1e-6  # accuracy of the laws up to which moments vary, if only sums are kept
 
 
-class Drawing(Protocol):
-    """A way to draw the moments of the cells."""
-
-    @property
-    def distance(self) -> float:
-        """Of the laws of values from the exact ones; nan if nobody knows."""
-        ...
-
-    def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
-        """Moments of surfaces `first` ..., shape (moments, surfaces)."""
-        ...
-
-    def draws(self, asperities: float, layout: Layout) -> float:
-        """Numbers drawn for so many asperities in the cells of a surface."""
-        ...
-
-
 @dataclass(frozen=True)
 class OneByOne:
-    """A uniform for each asperity."""
+    """A uniform for each asperity; other ways to draw the moments of the cells derive from it."""
 
-    distance = 0.0
+    distance = 0.0  # of the laws of values from the exact ones; nan if nobody knows
 
     def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
-        """Return the sums over the uniforms of each cell."""
+        """Return the sums over the uniforms of each cell of surfaces `first` ..., (moments, surfaces)."""
         return cell_moments(seed, first, counts.cells, layout)
 
     def draws(self, asperities: float, layout: Layout) -> float:
-        """All of them, unless nobody asks for a moment."""
+        """Return the numbers drawn for so many asperities in the cells of a surface."""
         return asperities if layout.sizes.any() else 0.0
 
 
 @dataclass(frozen=True)
-class Crowds:
+class Crowds(OneByOne):
     """Crowded cells by the Gaussian limit of their moments (`mcgw.sampling.drawn_moments`).
 
     Parameters

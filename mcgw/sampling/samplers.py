@@ -21,7 +21,8 @@ from mcgw.sampling.block import Sampler
 from mcgw.sampling.cells import Mesh, cut, mesh_of, no_cells
 from mcgw.sampling.counted import Counted
 from mcgw.sampling.direct import Direct
-from mcgw.sampling.drawn_moments import CROWDED, VARYING, Crowds, OneByOne
+from mcgw.sampling.drawn_moments import CROWDED, VARYING, Crowds
+from mcgw.sampling.outside import table_of
 from mcgw.sampling.response.response import Response, parts_of, response_of
 from mcgw.sampling.response.walk import UnresolvedError
 from mcgw.scene.promises import promise_of
@@ -108,10 +109,12 @@ def _counted(name: str, scene: Scene, mesh: Mesh) -> Counted:
     """Return a sampler on a mesh, with radii where the scene has them."""
     mesh, response = _resolved(scene, mesh)
     if not isinstance(response, Response):
-        from mcgw.sampling.weighted_sums import with_radii
+        from mcgw.sampling.weighted_sums import WithRadii
 
-        return with_radii(name, scene, mesh, response)
-    return Counted(name, scene, mesh, response, OneByOne())
+        table = table_of(scene, scene.lowest)
+        assert table is not None
+        return Counted(name, scene, mesh, response, WithRadii(mesh, table, response), table)
+    return Counted(name, scene, mesh, response)
 
 
 def aggregate_of(scene: Scene, crowded: int = CROWDED, distance: float = np.nan) -> Counted:
@@ -140,7 +143,7 @@ def aggregate_of(scene: Scene, crowded: int = CROWDED, distance: float = np.nan)
 
 
 _MAKERS: dict[str, Callable[[Scene], Sampler]] = {
-    "direct": Direct.of,
+    "direct": lambda scene: Direct("direct", scene, no_cells(scene)),
     "tail": tail_of,
     "cells": cells_of,
     "aggregate": aggregate_of,

@@ -19,13 +19,12 @@ from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
 from mcgw.sampling.block import Layout
 from mcgw.sampling.cells import Mesh
-from mcgw.sampling.counted import Counted
 from mcgw.sampling.counts import Counts
+from mcgw.sampling.drawn_moments import OneByOne
 from mcgw.sampling.kernels import BUFFER, TOGETHER, add_weighted, unfold
 from mcgw.sampling.moments import add_compensated, in_runs_of_cells
-from mcgw.sampling.own_radii import Families, RadiusTable, radius_table, root_ratio
+from mcgw.sampling.own_radii import Families, RadiusTable, root_ratio
 from mcgw.sampling.philox import CELLS, RADII, RADII_LOW, centred
-from mcgw.scene.scene import Scene
 
 _MOST = 32  # sums of one kind: there are 21
 # A thread's workspace: x, sqrt(u), two uniforms of the radius, weights, factors; then sums and their carries
@@ -95,20 +94,8 @@ def _sum_cells(who: Any, counts: Any, kinds: Any, bounds: Any, mesh: Any, table:
                 moments[row + j, surface] = w[sums + j]
 
 
-def with_radii(
-    name: str,
-    scene: Scene,
-    mesh: Mesh,
-    response: Families,
-) -> Counted:
-    """Return a sampler on a mesh that draws a radius for each asperity."""
-    assert scene.summits is not None
-    table = radius_table(scene.summits, scene.lowest)
-    return Counted(name, scene, mesh, response, WithRadii(mesh, table, response), table)
-
-
 @dataclass(frozen=True)
-class WithRadii:
+class WithRadii(OneByOne):
     """A uniform and a radius for each asperity.
 
     Parameters
@@ -124,7 +111,6 @@ class WithRadii:
     mesh: Mesh
     table: RadiusTable
     families: Families
-    distance = 0.0
 
     def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
         """Draw sums over the uniforms of each cell, each with a power of its radius, family by family.
