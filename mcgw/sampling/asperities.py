@@ -49,9 +49,7 @@ def heights(scene: Scene, surface: int, *, untouched: bool = False) -> NDArray[n
     >>> s.size == int(mcgw.simulate(scene).contacts[3, 0])
     True
     """
-    if untouched:
-        return summits(scene, surface)[0]
-    return touching_summits(scene, surface)[0]
+    return (summits if untouched else touching_summits)(scene, surface)[0]
 
 
 def radii(scene: Scene, surface: int) -> NDArray[np.float64]:

@@ -1,8 +1,8 @@
 """What every sampler has, and what it gives; and which moments of each cell a surface keeps."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Protocol, Self, TypeVar
+from dataclasses import dataclass
+from typing import Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -142,10 +142,6 @@ class Sampler:
     def outside(self) -> float:
         """Asperities that are expected to be drawn by themselves."""
         return self.scene.n_asperities * (self.mesh.low_extras + self.mesh.high_extras)
-
-    def with_seed(self, seed: int) -> Self:
-        """Return the same cells and physics with other draws."""
-        return replace(self, scene=self.scene.replace(seed=seed))
 
     def block(self, first: int, n: int) -> Block:
         """Results of surfaces `first` ... `first + n - 1`."""

@@ -150,16 +150,14 @@ def _mesh(law: HeightLaw, lowest: float, asked: bytes) -> Mesh:
     probability = law.pdf(edges[:-1]) * mass
     stretch = _stretch(law, edges[:-1], np.diff(edges), mass)
     below = float(law.cdf(np.array(edges[0])) - law.cdf(np.array(lowest))) if edges[0] > lowest else 0.0
-    return Mesh(edges, probability, stretch, below, _above(law, float(edges[-1])))
+    return Mesh(edges, probability, stretch, below, float(law.sf(np.array(edges[-1]))))
 
 
 def no_cells(scene: Scene) -> Mesh:
     """Leave every contacting asperity to be drawn by itself."""
-    return Mesh(np.empty(0), np.empty(0), np.empty((_ORDER, 0)), 0.0, _above(scene.heights, scene.lowest))
-
-
-def _above(law: HeightLaw, s: float) -> float:
-    return float(law.sf(np.array(s)))
+    return Mesh(
+        np.empty(0), np.empty(0), np.empty((_ORDER, 0)), 0.0, float(scene.heights.sf(np.array(scene.lowest)))
+    )
 
 
 def _range(law: HeightLaw, share: float, lowest: float) -> tuple[float, float]:

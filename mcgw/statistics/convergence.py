@@ -1,7 +1,7 @@
 """The statistical convergence test, for this simulator and for a user's sampler or contact law."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
@@ -193,7 +193,7 @@ def converge(
 
 
 def _own(scene: Scene) -> Sums:
-    sampler = _prepared(scene.replace(seed=0)).with_seed(scene.seed)
+    sampler = replace(_prepared(scene.replace(seed=0)), scene=scene)
     return joined([block.sums for block in blocks(scene, sampler)])
 
 

@@ -59,9 +59,7 @@ class Response:
     matrix = matrix_of
 
 
-def response_of(
-    scene: Scene, mesh: Mesh, quantities: tuple[str, ...], *, accuracy: float = EXACT
-) -> Response:
+def response_of(scene: Scene, mesh: Mesh, quantities: tuple[str, ...]) -> Response:
     """Build the response of a mesh.
 
     Parameters
@@ -73,21 +71,18 @@ def response_of(
     quantities : tuple of str
         Which answers there are. Each separation has its own once, in increasing order: repeated or
         permuted ones give the same bits.
-    accuracy : float, optional
-        Take as many moments as this needs.
 
     Returns
     -------
     Response
-        By default accurate to 1e-13 of the largest value of each law on each cell, or of the sum of a
-        surface.
+        Accurate to 1e-13 of the largest value of each law on each cell, or of the sum of a surface.
 
     Raises
     ------
     ValueError
         If the grading is not resolved on a cell.
     """
-    parts = parts_of(scene, mesh, quantities, accuracy)
+    parts = parts_of(scene, mesh, quantities, EXACT)
     shape = len(quantities), len(scene.all_separations)
     return Response(parts.layout, tiles_of(parts, parts.rows.order(shape[0] * shape[1])), shape)
 
