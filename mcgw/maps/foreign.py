@@ -17,7 +17,8 @@ import h5py
 import numpy as np
 
 from mcgw.formats.gate import check_archive, open_h5
-from mcgw.maps.topography import Raw, checked_shape, height_unit
+from mcgw.maps.raw import Given, Raw
+from mcgw.maps.topography import checked_shape
 
 _MOST_TEXT = 2**26  # bytes of a text, which it takes in whole
 _LARGEST = 3.4e38  # in the numbers of a file, which mark a missing point by the least of their type
@@ -25,41 +26,34 @@ _MAGIC = 64  # bytes that tell a text
 _PRINTABLE = bytes(range(32, 127)) + b"\t\r\n"
 
 
-class ForeignError(ValueError):
-    """A file that is not in one of our formats, but may be in another."""
-
-
-def read_foreign(
-    path: Path, pixel: tuple[float, float] | None, unit: str | None, missing: float | None
-) -> Raw:
+def read_foreign(path: Path, given: Given) -> Raw:
     """Read a map or a profile by SurfaceTopography: the first channel of heights. Its unit is that of x too.
 
     Raises
     ------
     ValueError
-        If it is not installed or cannot read the file, or the file holds no heights, or tells the size of a
-        pixel that was given, or none that was not.
+        If it is not installed or cannot read the file, or the file holds no heights, or a file of this size
+        cannot hold so many.
     """
     channel = _channel(path)
-    columns, rows = _points(path, channel)
-    told = _unit(channel)
-    if channel.dim == 1:
-        with _one_line_errors(path):
-            x, z = channel.topography().positions_and_heights()
-        return Raw(np.ma.filled(z, np.nan), told, places=x, unit_of_places=told or unit)
-    sized = channel.physical_sizes is not None
-    if sized and pixel is not None:
-        raise ValueError(f"{path}: gives the size of a pixel; leave --pixel out")
-    if not sized and pixel is None:
-        raise ValueError(f"{path}: does not give the size of a pixel; give --pixel")
-    metre, _ = height_unit(path, told, unit)
+    points = tuple(int(n) for n in channel.nb_grid_pts)
+    try:
+        checked_shape(*(*points, 1)[1::-1], held=path.stat().st_size)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
+    told = None if channel.unit is None else str(channel.unit)
+    sized = {} if channel.dim == 1 or channel.physical_sizes is not None else {"physical_sizes": points}
     with _one_line_errors(path):
-        found = channel.topography(**({} if sized else {"physical_sizes": (columns, rows)}))
+        found = channel.topography(**sized)
+        if channel.dim == 1:
+            x, z = found.positions_and_heights()
+            return Raw(np.ma.filled(z, np.nan), told, places=x, lateral=told or given.unit)
         z = np.ma.filled(np.ma.masked_invalid(found.heights()), np.nan).T
-    if missing is None:
+    if given.missing is None:
         z[np.abs(z) > _LARGEST * abs(channel.height_scale_factor or 1.0)] = np.nan
-    dx, dy = pixel or (float(p) * metre for p in found.pixel_size)
-    return Raw(z, told, (dx, dy), bool(found.is_periodic))
+    dx, dy = found.pixel_size
+    pixel = None if sized else (float(dx), float(dy))
+    return Raw(z, told, pixel, bool(found.is_periodic), lateral=told or given.unit)
 
 
 def check_foreign(path: Path) -> None:
@@ -107,21 +101,6 @@ def _channel(path: Path) -> Any:
             + ", ".join(f"{c.name} in {c.data_unit or c.unit or 'no unit'}" for c in reader.channels)[:120]
         )
     return channel
-
-
-def _unit(channel: Any) -> str | None:
-    return None if channel.unit is None else str(channel.unit)
-
-
-def _points(path: Path, channel: Any) -> tuple[int, int]:
-    """Columns and rows, if a file of this size can hold them."""
-    points = tuple(int(n) for n in channel.nb_grid_pts)
-    columns, rows = points if len(points) == 2 else (*points, 1)
-    try:
-        checked_shape(rows, columns, held=path.stat().st_size)
-    except ValueError as error:
-        raise ValueError(f"{path}: {error}") from None
-    return columns, rows
 
 
 @contextmanager

@@ -1,33 +1,29 @@
-"""Maps and profiles from files: readers by ending; arrays with a JSON sidecar, and HDF5."""
+"""Maps and profiles from files: a reader for each format, and what files do not tell filled in."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import h5py
 import numpy as np
+from numpy.typing import NDArray
 
 from analytic.arrays import Array
-from mcgw.formats.gate import open_h5
-from mcgw.formats.named_files import loads_json, open_npy, read_bytes
-from mcgw.machine.terminal import one_line
-from mcgw.maps.foreign import ForeignError, read_foreign
-from mcgw.maps.map_files import FILETYPE, sidecar_of
+from mcgw.maps.foreign import read_foreign
+from mcgw.maps.map_files import read_h5, read_npy
 from mcgw.maps.profile import Profile, profile_at
+from mcgw.maps.raw import ForeignError, Given, Raw, metres_in
 from mcgw.maps.text_file import read_text
-from mcgw.maps.topography import (
-    FLATTEST,
-    STEEPEST,
-    XYZ,
-    Raw,
-    Topography,
-    check_file,
-    checked_shape,
-    height_unit,
-    in_metres,
-)
+from mcgw.maps.topography import FLATTEST, STEEPEST, Topography
 
-_MOST_JSON = 2**16
 _TEXT = (".txt", ".csv", ".asc", ".dat", ".tsv", ".prf", ".xy", ".xyz")
+READERS: dict[str, Callable[[Path, Given], Raw]] = {
+    ".npy": read_npy,
+    ".h5": read_h5,
+    **dict.fromkeys(_TEXT, read_text),
+}
+_SENTINELS = (-9999.0, -99999.0, -32768.0, 32767.0, 1e30, -1e30, 1e10, -1e10, 3.4028235e38, -3.4028235e38)
+_FAR = 3.0  # ranges of all other heights
+_EQUAL = 1e-6  # relative, of a height and the number that stands for a missing one; beyond 1e30 a hundredth
 
 
 def read_heights(
@@ -65,16 +61,41 @@ def read_heights(
     OSError
         If it cannot be read.
     """
-    check_file(path)
-    raw = _read(path, pixel, unit, missing)
-    if raw.heights.ndim == 2 and 1 in raw.heights.shape:  # SDF and X3P hold a line as a map of one row
-        raw, pixel = _along_line(raw), None
-    metre, assumed = height_unit(path, raw.unit, unit)
+    if not path.is_file():
+        raise ValueError(f"{path}: is not a regular file" if path.exists() else f"{path}: no such file")
+    raw = _read(path, Given(pixel, unit, missing))
+    if unit is not None and raw.unit is not None and metres_in(path, unit) != metres_in(path, raw.unit):
+        raise ValueError(
+            f"{path}: heights are in {raw.unit} as the file says, not in {unit}; leave --unit out"
+        )
+    known = raw.unit or unit
     with np.errstate(over="ignore", invalid="ignore"):  # of scales: a map refuses what comes of it
-        heights = np.ascontiguousarray(in_metres(path, raw.heights, metre, missing))
-    if heights.ndim == 1:
-        return _profile(path, raw, heights, assumed, pixel)
-    return _map(path, Topography(heights, raw.pixel, raw.periodic, assumed or raw.assumed))
+        heights = np.ascontiguousarray(_in_metres(path, raw.heights, metres_in(path, known), missing))
+    plane = heights.ndim == 2
+    told = raw.pixel if plane else raw.places
+    if pixel is not None and (raw.pixel if plane else raw.lateral) is not None:
+        what = "the size of a pixel" if plane else f"x in {raw.lateral}"
+        raise ValueError(f"{path}: gives {what}; leave --pixel out")
+    if pixel is None and told is None:
+        what = "size of a pixel" if plane else "distance between its points"
+        raise ValueError(f"{path}: does not give the {what}; give --pixel")
+    lateral = np.asarray(pixel or metres_in(path, raw.lateral) * np.asarray(told))
+    assumed = "" if known and (pixel or raw.lateral) else "m"
+    if plane and 1 not in heights.shape:
+        dx, dy = lateral.tolist()
+        return _plausible(path, Topography(heights, (dx, dy), raw.periodic, assumed))
+    if plane or pixel is not None:  # SDF and X3P hold a line as a map of one row
+        lateral = lateral[int(plane and len(heights) > 1)] * np.arange(heights.size)
+    try:
+        profile = profile_at(lateral, heights.ravel(), assumed)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
+    if profile.doubtful:
+        raise ValueError(
+            f"{path}: does not give all units, and in {profile.assumed_unit} {profile.doubtful}; give --unit "
+            "(um, nm, ...) of the heights, and --pixel, the distance between points"
+        )
+    return profile
 
 
 def read_map(
@@ -91,14 +112,8 @@ def read_map(
     return found
 
 
-def _along_line(raw: Raw) -> Raw:
-    """Return a map of one row, or of one column, as a profile."""
-    spacing = raw.pixel[int(raw.heights.shape[0] > 1)]
-    places = spacing * np.arange(raw.heights.size, dtype=np.float64)
-    return Raw(raw.heights.ravel(), raw.unit, places=places, unit_of_places="m")
-
-
-def _map(path: Path, topography: Topography) -> Topography:
+def _plausible(path: Path, topography: Topography) -> Topography:
+    """Refuse slopes that no surface has."""
     slope = topography.steepness
     if slope == 0 or FLATTEST <= slope <= STEEPEST:
         return topography
@@ -113,114 +128,63 @@ def _map(path: Path, topography: Topography) -> Topography:
     )
 
 
-def _profile(
-    path: Path, raw: Raw, heights: Array, assumed: str, pixel: tuple[float, float] | None
-) -> Profile:
-    if pixel is not None:
-        if raw.unit_of_places is not None:
-            raise ValueError(f"{path}: gives x in {raw.unit_of_places}; leave --pixel out")
-        places = pixel[0] * np.arange(raw.heights.size, dtype=np.float64)
-    elif raw.places is None:
-        raise ValueError(f"{path}: does not give the distance between its points; give --pixel")
-    else:
-        of_x, assumed_x = height_unit(path, raw.unit_of_places, None)
-        places, assumed = raw.places * of_x, assumed or assumed_x
-    try:
-        profile = profile_at(places, heights, assumed)
-    except ValueError as error:
-        raise ValueError(f"{path}: {error}") from None
-    if profile.doubtful:
-        raise ValueError(
-            f"{path}: does not give all units, and in {profile.assumed_unit} {profile.doubtful}; give --unit "
-            "(um, nm, ...) of the heights, and --pixel, the distance between points"
-        )
-    return profile
-
-
-def _read(path: Path, pixel: tuple[float, float] | None, unit: str | None, missing: float | None) -> Raw:
+def _read(path: Path, given: Given) -> Raw:
     """Read by our own readers, otherwise by SurfaceTopography.
 
     Since that skips text it does not know, text files must state their pixel.
     """
-    ending = path.suffix.lower()
-    text = ending in _TEXT
-    if not text and ending not in (".npy", ".h5"):
-        return read_foreign(path, pixel, unit, missing)
+    reader = READERS.get(path.suffix.lower(), read_foreign)
     try:
-        if text:
-            return read_text(path, pixel, unit)
-        return _read_npy(path, pixel) if ending == ".npy" else _read_h5(path, pixel)
+        return reader(path, given)
     except ForeignError as error:
         refused = error
     try:
-        found = read_foreign(path, None if text else pixel, unit, missing)
+        found = read_foreign(path, given)
     except ValueError as too:
-        raise refused if text else ValueError(f"{refused}; {str(too).removeprefix(f'{path}: ')}") from None
-    if text and pixel is not None:
-        raise ValueError(f"{path}: gives the size of a pixel; leave --pixel out")
+        if reader is read_text:
+            raise refused from None
+        raise ValueError(f"{refused}; {str(too).removeprefix(f'{path}: ')}") from None
+    if reader is read_text and found.heights.ndim == 2 and found.pixel is None:
+        raise refused
     return found
 
 
-def _read_npy(path: Path, pixel: tuple[float, float] | None) -> Raw:
-    """Read an array; its pixel size and the unit of its heights from the sidecar, unless a pixel is given."""
-    array = open_npy(path)
-    if array.ndim == 1:
-        return Raw(array)
-    if array.ndim != 2:
-        raise ValueError(f"{path}: holds {array.ndim} dimension(s); a map has rows and columns")
-    checked_shape(*array.shape)
-    if array.shape[1] == XYZ < len(array):  # no map is three pixels wide
+def _in_metres(path: Path, raw: NDArray[Any], metre: float, missing: float | None) -> Array:
+    """Heights of a file in m, of a unit of so many metres; nan where the number of a missing point stands."""
+    if raw.dtype.kind not in "fiu":
+        raise ValueError(f"{path}: heights are {raw.dtype.name}, not real numbers; give their real part")
+    z = raw.astype(np.float64)
+    if missing is not None:
+        marked = _equal(z, missing)
+        if not marked.any():
+            raise ValueError(f"{path}: no height is {missing:g}; leave --missing-value out")
+        z[marked] = np.nan
+    elif sentinel := _sentinel(z):
+        value, number = sentinel
         raise ValueError(
-            f"{path}: three numbers a line, {len(array)} lines: single points with x, y and z are not a map; "
-            "give rows of heights on a grid"
+            f"{path}: {number} of {z.size} heights are {value:.8g}, far from all others; if they stand for "
+            f"missing points, give --missing-value={value:.8g}"
         )
-    if pixel is not None:
-        return Raw(array, pixel=pixel)
-    beside = sidecar_of(path)
-    if not beside.is_file():
-        raise ValueError(f"{path}: there is no {beside.name} with the size of a pixel; give --pixel")
-    data = read_bytes(beside, _MOST_JSON)
-    try:
-        facts: Any = loads_json(data)
-        pixel, periodic, unit = facts["pixel"], facts.get("periodic", False), facts.get("unit")
-    except (AttributeError, KeyError, TypeError, ValueError) as error:
-        raise ValueError(f'{beside}: must hold "pixel": [dx, dy] in m: {error}') from None
-    if unit not in (None, "m"):
-        raise ValueError(f"{beside}: unit = {unit!r}: must be 'm'")
-    return Raw(array, unit, _pixel(beside, pixel), _periodic(beside, periodic))
+    z *= metre
+    return z
 
 
-def _pixel(path: Path, told: Any) -> tuple[float, float]:
-    """Pixel size from a file, if it is two numbers; a text of two digits is not."""
-    values = told.tolist() if isinstance(told, np.ndarray) else told
-    if not (isinstance(values, list) and len(values) == 2 and all(type(p) in (int, float) for p in values)):
-        raise ValueError(f"{path}: pixel = {told!r}: must be [dx, dy], two numbers in m")
-    return float(values[0]), float(values[1])
+def _equal(z: Array, value: float) -> NDArray[np.bool_]:
+    return np.abs(z - value) <= (0.01 if abs(value) > 1e30 else _EQUAL) * abs(value)
 
 
-def _periodic(path: Path, told: Any) -> bool:
-    """Whether a file says that its map is periodic; texts do not count, since "no" is true in Python."""
-    if not isinstance(told, bool | np.bool_):
-        raise ValueError(f"{path}: periodic = {told!r}: must be true or false")
-    return bool(told)
-
-
-def _read_h5(path: Path, given: tuple[float, float] | None) -> Raw:
-    """Read the map of such a file."""
-    if not h5py.is_hdf5(path):
-        raise ForeignError(f"{path}: is not a valid HDF5 file")
-    try:
-        with open_h5(path) as file:
-            if file.attrs.get("filetype") != FILETYPE:
-                raise ForeignError(f"{path}: is not a {FILETYPE} file; it was not written by mcgw surface")
-            if given is not None:
-                raise ValueError(f"{path}: gives the size of a pixel; leave --pixel out")
-            data = file["height"]
-            checked_shape(*data.shape, held=data.id.get_storage_size())
-            pixel, periodic = _pixel(path, file.attrs["pixel"]), _periodic(path, file.attrs["periodic"])
-            told = data.attrs.get("units")
-            if data.size and not data.id.get_storage_size():
-                raise ValueError(f"{path}: its heights were never written")
-            return Raw(data[...], None if told is None else str(told), pixel, periodic)
-    except (AttributeError, KeyError, OSError, RuntimeError, TypeError) as error:  # as HDF5 tells of damage
-        raise ValueError(f"{path}: is a damaged {FILETYPE} file: {one_line(str(error))}") from None
+def _sentinel(z: Array) -> tuple[float, int] | None:
+    """Return a number that stands for missing points, and how many of them there are."""
+    with np.errstate(invalid="ignore"):
+        for extreme in (np.fmin, np.fmax):
+            value = float(extreme.reduce(z, axis=None))
+            if not any(_equal(np.array(value), mark) for mark in _SENTINELS):
+                continue
+            marked = _equal(z, value)
+            others = z[~marked & np.isfinite(z)]
+            if not others.size:
+                continue
+            low, high = float(others.min()), float(others.max())
+            if max(low - value, value - high) > _FAR * (high - low):
+                return value, int(np.count_nonzero(marked))
+    return None

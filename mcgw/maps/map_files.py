@@ -1,21 +1,27 @@
-"""Maps as files: an array with a JSON sidecar, HDF5, or SDF for other programs."""
+"""Our own files of maps: an array with a JSON sidecar, HDF5, or SDF for other programs."""
 
 import json
 import struct
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
 
 from mcgw.formats.files import together, whole_file
+from mcgw.formats.gate import open_h5
+from mcgw.formats.named_files import loads_json, open_npy, read_bytes
+from mcgw.machine.terminal import one_line
+from mcgw.maps.raw import ForeignError, Given, Raw
 from mcgw.maps.synthetic import Asperities
-from mcgw.maps.topography import Topography
+from mcgw.maps.topography import XYZ, Topography, checked_shape
 
 FILETYPE = "mcgw-surface"
 WRITTEN = (".npy", ".h5", ".sdf")
 _HEADER = struct.Struct("<8s10s12s12sHHddddBBB")
 _DOUBLE = 7
+_MOST_JSON = 2**16
 _MOST_POINTS = 65535  # along each axis: 16 bits
 
 
@@ -38,6 +44,35 @@ def write_npy(topography: Topography, path: Path) -> None:
         with open(unfinished, "wb") as file:
             np.save(file, topography.heights)
         beside.write_text(json.dumps(facts, indent=2) + "\n", encoding="utf-8")
+
+
+def read_npy(path: Path, given: Given) -> Raw:
+    """Read an array; its pixel size and the unit of its heights from the sidecar, unless a pixel is given."""
+    array = open_npy(path)
+    if array.ndim == 1:
+        return Raw(array)
+    if array.ndim != 2:
+        raise ValueError(f"{path}: holds {array.ndim} dimension(s); a map has rows and columns")
+    checked_shape(*array.shape)
+    if array.shape[1] == XYZ < len(array):  # no map is three pixels wide
+        raise ValueError(
+            f"{path}: three numbers a line, {len(array)} lines: single points with x, y and z are not a map; "
+            "give rows of heights on a grid"
+        )
+    if given.pixel is not None:
+        return Raw(array)
+    beside = sidecar_of(path)
+    if not beside.is_file():
+        raise ValueError(f"{path}: there is no {beside.name} with the size of a pixel; give --pixel")
+    data = read_bytes(beside, _MOST_JSON)
+    try:
+        facts: Any = loads_json(data)
+        pixel, periodic, unit = facts["pixel"], facts.get("periodic", False), facts.get("unit")
+    except (AttributeError, KeyError, TypeError, ValueError) as error:
+        raise ValueError(f'{beside}: must hold "pixel": [dx, dy] in m: {error}') from None
+    if unit not in (None, "m"):
+        raise ValueError(f"{beside}: unit = {unit!r}: must be 'm'")
+    return Raw(array, unit, *_facts(beside, pixel, periodic), lateral="m")
 
 
 def write_h5(topography: Topography, path: Path, field: Asperities | None = None, *, scene: str = "") -> None:
@@ -63,6 +98,35 @@ def write_h5(topography: Topography, path: Path, field: Asperities | None = None
             for name, values in (("x", field.x), ("y", field.y), ("z", field.z)):
                 group.create_dataset(name, data=values).attrs["units"] = "m"
         file["scene"] = scene  # a dataset: an attribute ends at 64 kB
+
+
+def read_h5(path: Path, given: Given) -> Raw:  # noqa: ARG001
+    """Read the map of such a file."""
+    if not h5py.is_hdf5(path):
+        raise ForeignError(f"{path}: is not a valid HDF5 file")
+    try:
+        with open_h5(path) as file:
+            if file.attrs.get("filetype") != FILETYPE:
+                raise ForeignError(f"{path}: is not a {FILETYPE} file; it was not written by mcgw surface")
+            data = file["height"]
+            checked_shape(*data.shape, held=data.id.get_storage_size())
+            pixel, periodic = _facts(path, file.attrs["pixel"], file.attrs["periodic"])
+            told = data.attrs.get("units")
+            if data.size and not data.id.get_storage_size():
+                raise ValueError(f"{path}: its heights were never written")
+            return Raw(data[...], None if told is None else str(told), pixel, periodic, lateral="m")
+    except (AttributeError, KeyError, OSError, RuntimeError, TypeError) as error:  # as HDF5 tells of damage
+        raise ValueError(f"{path}: is a damaged {FILETYPE} file: {one_line(str(error))}") from None
+
+
+def _facts(path: Path, pixel: Any, periodic: Any) -> tuple[tuple[float, float], bool]:
+    """Pixel and periodicity from a file, if they are two numbers and a truth: "no" is true in Python."""
+    values = pixel.tolist() if isinstance(pixel, np.ndarray) else pixel
+    if not (isinstance(values, list) and len(values) == 2 and all(type(p) in (int, float) for p in values)):
+        raise ValueError(f"{path}: pixel = {pixel!r}: must be [dx, dy], two numbers in m")
+    if not isinstance(periodic, bool | np.bool_):
+        raise ValueError(f"{path}: periodic = {periodic!r}: must be true or false")
+    return (float(values[0]), float(values[1])), bool(periodic)
 
 
 def write_sdf(topography: Topography, path: Path) -> None:

@@ -7,26 +7,23 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analytic.arrays import Array
-from mcgw.formats.units import METRES
-from mcgw.maps.foreign import ForeignError
-from mcgw.maps.grid_of_points import along_line, grid_of
-from mcgw.maps.topography import XYZ, Raw, checked_shape, height_unit, metres_in
+from mcgw.formats.units import METRES, parse
+from mcgw.maps.raw import ForeignError, Given, Raw, metres_in
+from mcgw.maps.topography import XYZ, checked_shape
 
 _MOST_LINE = 2**24
 MOST_HEADER = 500  # lines
-_LENGTH = re.compile(r"#\s*(Width|Height|Breite|Höhe)\s*:\s*(.*?)\s*$")
-_SIZE = re.compile(r"([-+]?[.,\d]+(?:[eE][-+]?\d+)?)\s*([^\d\s.,+-]\S*)$")
+_LENGTH = re.compile(r"#\s*(Width|Breite|Height|Höhe)\s*:\s*(.*[^\s\d.,])\s*$")
 _UNITS = {name: name for name in METRES} | {"Nanometer": "nm", "Micrometer": "um", "Millimeter": "mm"}
 _UNIT_NAMES = "|".join(sorted(map(re.escape, _UNITS), key=len, reverse=True))
 _UNIT = re.compile(
     rf"[\[(/]\s*({_UNIT_NAMES})\s*(?=[\])\s;,\t]|$)|\bin ({_UNIT_NAMES})\b"
     rf"|\w_({_UNIT_NAMES})$|^(?:Lateral|Raw) ({_UNIT_NAMES})$"
 )
-_ENGLISH = {"Breite": "Width", "Höhe": "Height"}
 _VALUE_UNIT = re.compile(r"#\s*(?:Value units|Werteinheit(?:en)?|Einheit(?:en)? der Werte)\s*:\s*(\S+)\s*$")
-_ENCODINGS = {codecs.BOM_UTF8: "utf-8-sig", codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16"}
 _BLANKS = " \r\n\f\v"  # a tab parts two numbers, both of which may be missing
 _COMMA_TOO = re.compile(r"[ \f\v]*[;,\t][ \f\v]*|[ \f\v]+")
 _WITHOUT_COMMA = re.compile(r"[ \f\v]*[;\t][ \f\v]*|[ \f\v]+")
@@ -34,9 +31,12 @@ _COMMA_ALONE = re.compile(r"\s*[-+]?\d+(?:,\d+)?(?:[eE][-+]?\d+)?\s*")
 _DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d*(?:[eE][-+]?\d+)?")
 _MORE_COMMAS = re.compile(r"[-+.,\deE]*\d,+[-+.\d][-+.,\deE]*")
 _MISSING = ("", "BAD", "---")
+_SAME = 0.3  # of the widest step: places nearer than that are one
+_EVEN = 0.05  # of a step that a place may be off the grid
+_SPARSE = 4  # points of the grid for each one that is there
 
 
-def read_text(path: Path, pixel: tuple[float, float] | None, unit: str | None) -> Raw:
+def read_text(path: Path, given: Given) -> Raw:
     """Read a map or a profile: a matrix, a row a line; points x, y and z; or z, or x and z, of a profile.
 
     Numbers are separated by spaces, tabs, semicolons or commas. Where something else parts the numbers of a
@@ -45,8 +45,7 @@ def read_text(path: Path, pixel: tuple[float, float] | None, unit: str | None) -
     profiles may have a header, from which units are taken where they stand in brackets, after a slash or
     alone. Lines like 1,25 are x and z if what stands before the comma rises, and heights with decimal commas
     otherwise. ``nan``, ``BAD``, ``---`` and nothing between two separators are missing points. The text is
-    UTF-8, or UTF-16 with its mark. What no comment tells is given: the size of a pixel, m, and the unit of
-    points, by default m.
+    UTF-8, or UTF-16 with its mark. A given pixel counts more than what a comment tells.
 
     Raises
     ------
@@ -54,48 +53,44 @@ def read_text(path: Path, pixel: tuple[float, float] | None, unit: str | None) -
         If a row has another length than the first, a word is not a number, a comma may mean two things, no
         pixel size is known, or points are on no regular grid.
     """
-    header, table = _lone_numbers(path) or table_of(path)
-    along = along_line(table) if table.shape[1] == XYZ else None
-    if not header.extent and (along is not None or table.shape[1] < XYZ):
-        return _of_line(header, table, along)
-    points = table.shape[1] == XYZ < len(table)
-    if header.refused is not None and not (points and isinstance(header.refused, ForeignError)):
-        raise header.refused
+    table, header, refused = table_of(path)
+    rows, columns = table.shape
+    extent, told = _extent(path, header), _units(header, columns)
+    if columns == XYZ and not extent:
+        for along, across in ((0, 1), (1, 0)):
+            if np.ptp(table[:, across]) == 0 < np.ptp(table[:, along]):
+                return Raw(table[:, 2], told[2], places=table[:, along], lateral=told[along])
+    if columns == 2 and not extent:
+        return Raw(table[:, 1], told[1], places=table[:, 0], lateral=told[0])
+    if columns == 1 and not extent:
+        return Raw(table[:, 0], told[0])
+    points = columns == XYZ < rows
+    if refused is not None and not (points and isinstance(refused, ForeignError)):
+        raise refused
     if points:
-        return _of_points(path, header, table, pixel, unit)
-    if pixel is None:
-        if set(header.extent) != {"Width", "Height"}:
-            message = f"{path}: does not give the size of a pixel; give --pixel"
-            raise ForeignError(message) if header.lines and not header.extent else ValueError(message)
-        pixel = header.extent["Width"] / table.shape[1], header.extent["Height"] / table.shape[0]
-    return Raw(table, header.unit, pixel)
+        return _of_points(path, table, told, given)
+    unit = next((found[1] for line in header.values() if (found := _VALUE_UNIT.match(line))), None)
+    if given.pixel is not None:
+        return Raw(table, unit)
+    if set(extent) != {"width", "height"}:
+        message = f"{path}: does not give the size of a pixel; give --pixel"
+        raise (ForeignError if header and not extent else ValueError)(message)
+    return Raw(table, unit, (extent["width"] / columns, extent["height"] / rows), lateral="m")
 
 
-class Header:
-    """What a text says above and between its numbers."""
-
-    def __init__(self) -> None:
-        self.lines: list[str] = []
-        self.extent: dict[str, float] = {}
-        self.unit: str | None = None
-        self.refused: ValueError | None = None  # why the first line that is not numbers is none
-
-    def add(self, path: Path, number: int, line: str) -> None:
-        """Understand a comment."""
-        self.lines.append(line.lstrip("# "))
-        if found := _LENGTH.match(line):
-            if not (size := _SIZE.match(found[2])):
-                raise ValueError(
-                    f"{path}: line {number}: {found[1]} = {found[2]!r}: give one length, as 4 um"
-                )
-            length = _numbers_of(path, number, [size[1].replace(",", ".")])[0]
-            self.extent[_ENGLISH.get(found[1], found[1])] = float(length) * metres_in(path, size[2])
-        elif found := _VALUE_UNIT.match(line):
-            self.unit = found[1]
+def _extent(path: Path, header: dict[int, str]) -> dict[str, float]:
+    """Return width and height of a map, m, as far as comments of Gwyddion tell them."""
+    found = {k: match for k, line in header.items() if (match := _LENGTH.match(line))}
+    return {
+        "width" if match[1] in ("Width", "Breite") else "height": parse(
+            match[2].replace(",", "."), "m", f"{path}: line {k}: {match[1]}"
+        )
+        for k, match in found.items()
+    }
 
 
-def table_of(path: Path) -> tuple[Header, Array]:
-    """Return the header of a text and its rows of numbers, as a matrix.
+def table_of(path: Path) -> tuple[Array, dict[int, str], ValueError | None]:
+    """Return the numbers of a text as a matrix; its other lines by number; and why the first of them is none.
 
     Columns at its left or right end in which no row has anything are those beyond a separator.
 
@@ -104,89 +99,61 @@ def table_of(path: Path) -> tuple[Header, Array]:
     ValueError
         If a row has another length than the first, or is no numbers; or there is none.
     """
-    header, total = Header(), 0
+    header: dict[int, str] = {}
     rows: list[Array] = []
-    first, last = 1, 0  # columns that hold anything
-    for number, line in lines_of(path):
+    refused: ValueError | None = None
+    total, first, last = 0, 1, 0  # numbers; columns that hold anything
+    decimal = _are_heights(path)
+    for number, line in _lines_of(path):
         if line.startswith("#"):
-            header.add(path, number, line)
+            header[number] = line
             continue
         try:
-            words = _words_of(path, number, line)
+            words = [line.replace(",", ".")] if decimal else _words_of(path, number, line)
             row = _numbers_of(path, number, words)
         except ValueError as error:
             if rows:  # a matrix, which a wrong word makes no file of another program
                 raise (ValueError(str(error)) if rows[0].size > XYZ else error) from None
-            header.refused = header.refused or error
-            header.lines.append(line)
-            if len(header.lines) > MOST_HEADER:
+            refused = refused or error
+            header[number] = line
+            if len(header) > MOST_HEADER:
                 told = f"{path}: the first {MOST_HEADER} lines are not numbers; is it a map or a profile?"
                 raise ForeignError(told) from None
             continue
         rows.append(row)
-        first, last = min(first, int(not words[0])), max(last, _filled(words))
+        filled = next((k for k in range(len(words), 0, -1) if words[k - 1]), 0)
+        first, last = min(first, int(not words[0])), max(last, filled)
         if row.size != rows[0].size:
             told = f"{path}: line {number} has {row.size} numbers, the first row {rows[0].size}"
-            raise ForeignError(told) if header.refused else ValueError(told)
+            raise ForeignError(told) if refused else ValueError(told)
         total += row.size
         checked_shape(1, total)
     if not rows:
-        raise header.refused or ForeignError(f"{path}: holds no numbers")
+        raise refused or ForeignError(f"{path}: holds no numbers")
     table = np.array(rows)
     del rows
-    return header, table[:, first : max(last, first + 1)]
+    return table[:, first : max(last, first + 1)], header, refused
 
 
-def _filled(words: list[str]) -> int:
-    """Return the number of words up to the last one that is not empty."""
-    return next((k for k in range(len(words), 0, -1) if words[k - 1]), 0)
-
-
-def _of_points(
-    path: Path, header: Header, points: Array, pixel: tuple[float, float] | None, unit: str | None
-) -> Raw:
-    """Return a map of points x, y and z."""
-    if pixel is not None:
-        raise ValueError(f"{path}: three numbers a line are points with x, y and z; leave --pixel out")
-    *of_places, told = header_units(header.lines, XYZ)
-    (dx, assumed), (dy, _) = (height_unit(path, x, unit if x is None else None) for x in of_places)
-    heights, size = grid_of(path, points * [dx, dy, 1])
-    return Raw(heights, told, size, assumed=assumed)
-
-
-def _of_line(header: Header, table: Array, along: int | None) -> Raw:
-    """Return a profile: z alone, x and z, or points along x (0) or y (1)."""
-    told = header_units(header.lines, table.shape[1])
-    if table.shape[1] == 1:
-        return Raw(table[:, 0], told[0])
-    x = along or 0
-    return Raw(table[:, -1], told[-1], places=table[:, x], unit_of_places=told[x])
-
-
-def _lone_numbers(path: Path) -> tuple[Header, Array] | None:
-    """Header and heights with decimal commas, if all lines are like 1,25 and not x and z."""
-    header = Header()
-    lines: list[str] = []
-    for _, line in lines_of(path):
+def _are_heights(path: Path) -> bool:
+    """Whether all lines are like 1,25 and are heights with decimal commas, not x and z."""
+    header, found = 0, []
+    for _, line in _lines_of(path):
         if _COMMA_ALONE.fullmatch(line):
-            lines.append(line)
-        elif (lines and not line.startswith("#")) or len(header.lines) == MOST_HEADER:
-            return None
+            found.append(line.partition(","))
+        elif (found and not line.startswith("#")) or header == MOST_HEADER:
+            return False
         else:
-            header.lines.append(line.lstrip("# "))
-    x, _, z = zip(*(line.partition(",") for line in lines), strict=True) if lines else ((), (), ())
-    steps = np.diff([int(text) if text.isdigit() else math.nan for text in x])
-    if not lines or (all(z) and (np.all(steps > 0) or np.all(steps < 0))):
-        return None
-    return header, np.array([[float(line.replace(",", "."))] for line in lines])
+            header += 1
+    steps = np.diff([int(x) if x.isdigit() else math.nan for x, _, _ in found])
+    return bool(found) and not (all(z for *_, z in found) and bool(np.all(steps > 0) or np.all(steps < 0)))
 
 
-def lines_of(path: Path) -> Iterator[tuple[int, str]]:
+def _lines_of(path: Path) -> Iterator[tuple[int, str]]:
     """Lines that are not blank, with their numbers."""
     with open(path, "rb") as file:
-        start = file.read(3)
-    encoding = next((name for mark, name in _ENCODINGS.items() if start.startswith(mark)), "utf-8")
-    with open(path, encoding=encoding, errors="replace") as file:
+        wide = file.read(2) in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+    with open(path, encoding="utf-16" if wide else "utf-8-sig", errors="replace") as file:
         for number, line in enumerate(iter(lambda: file.readline(_MOST_LINE), ""), 1):
             if len(line) == _MOST_LINE:
                 raise ValueError(f"{path}: line {number} has {_MOST_LINE} characters or more; is it a map?")
@@ -197,25 +164,22 @@ def lines_of(path: Path) -> Iterator[tuple[int, str]]:
 def _words_of(path: Path, number: int, line: str) -> list[str]:
     """Numbers of a row as they stand, with decimal points."""
     words = _WITHOUT_COMMA.split(line)
-    if "," not in line:
-        return words
-    if len(words) > 1 and any(_DECIMAL_COMMA.fullmatch(word) for word in words):
-        if all(_DECIMAL_COMMA.fullmatch(word) for word in words if "," in word):
-            return [word.replace(",", ".") for word in words]
-        raise ValueError(
-            f"{path}: line {number}: commas are both inside and between numbers; separate the numbers by "
-            "semicolons or tabs"
-        )
-    if len(words) > 1 and any(_MORE_COMMAS.fullmatch(word) for word in words):
-        raise ValueError(
-            f"{path}: line {number}: numbers are separated by commas and by something else; use one separator"
-        )
+    commas = [word for word in words if "," in word]
+    decimal = [word for word in commas if _DECIMAL_COMMA.fullmatch(word)]
+    told = ""
+    if not commas or (len(words) > 1 and decimal == commas):
+        return [word.replace(",", ".") for word in words]
+    if len(words) > 1 and decimal:
+        told = "commas are both inside and between numbers; separate the numbers by semicolons or tabs"
+    elif len(words) > 1 and any(_MORE_COMMAS.fullmatch(word) for word in words):
+        told = "numbers are separated by commas and by something else; use one separator"
     words = _COMMA_TOO.split(line)
-    if any(re.fullmatch(r"[-+]?0\d+", word) for word in words):
-        raise ValueError(
-            f"{path}: line {number}: a number begins with 0; if commas are decimal marks, separate the "
-            "numbers by semicolons or tabs"
+    if not told and any(re.fullmatch(r"[-+]?0\d+", word) for word in words):
+        told = (
+            "a number begins with 0; if commas are decimal marks, separate the numbers by semicolons or tabs"
         )
+    if told:
+        raise ValueError(f"{path}: line {number}: {told}")
     return words
 
 
@@ -230,9 +194,9 @@ def _numbers_of(path: Path, number: int, words: list[str]) -> Array:
     return row
 
 
-def header_units(header: list[str], columns: int) -> list[str | None]:
+def _units(header: dict[int, str], columns: int) -> list[str | None]:
     """Return the unit of each column, from the last header line with units and no digits."""
-    for line in reversed([line for line in header if not re.search(r"\d", line)]):
+    for line in reversed([line.lstrip("# ") for line in header.values() if not re.search(r"\d", line)]):
         cells = [cell for cell in re.split(r"[;,\t]|\s{2,}", line) if cell.strip()]
         units = [_unit(cell) for cell in cells]
         if len(cells) == columns and any(units):
@@ -249,3 +213,51 @@ def _unit(cell: str) -> list[str]:
     if not all(word in _UNITS for word in words):
         words = [next(filter(None, found)) for found in _UNIT.findall(cell)]
     return [_UNITS[word] for word in words]
+
+
+def _of_points(path: Path, points: Array, told: list[str | None], given: Given) -> Raw:
+    """Return a map of points x, y and z, in any order, on a regular grid; nan where there is none.
+
+    Raises
+    ------
+    ValueError
+        If the places along x or y are not evenly spaced, most of the grid is empty, a place has two heights,
+        or all points lie on one line.
+    """
+    if given.pixel is not None:
+        raise ValueError(f"{path}: three numbers a line are points with x, y and z; leave --pixel out")
+    if not np.isfinite(points[:, :2]).all():
+        raise ValueError(f"{path}: a point lacks x or y")
+    units = [unit or given.unit for unit in told[:2]]
+    x, y = (points[:, k] * metres_in(path, unit or "m") for k, unit in enumerate(units))
+    (columns, dx, i), (rows, dy, j) = _places(path, "x", x), _places(path, "y", y)
+    if min(columns, rows) == 1:
+        raise ValueError(f"{path}: all points lie on one line: a profile; give x and z alone")
+    checked_shape(rows, columns)
+    if rows * columns > _SPARSE * len(points):
+        raise ValueError(
+            f"{path}: {len(points)} points on a grid of {columns} x {rows}: scattered points are not a map; "
+            "interpolate them to a grid first"
+        )
+    heights = np.full((rows, columns), np.nan)
+    twice = np.bincount(j * columns + i, minlength=rows * columns)[j * columns + i] > 1
+    if twice.any():
+        raise ValueError(f"{path}: x = {x[twice][0]:g}, y = {y[twice][0]:g} has two heights")
+    heights[j, i] = points[:, 2]
+    return Raw(heights, told[2], (dx, dy), lateral="m" if units[0] else None)
+
+
+def _places(path: Path, name: str, values: Array) -> tuple[int, float, NDArray[np.intp]]:
+    """Return the number of places along an axis, their distance, and which one each point has."""
+    ordered, which = np.unique(values, return_inverse=True)
+    steps = np.diff(ordered, prepend=ordered[0])
+    places = np.cumsum(steps > _SAME * steps.max())[which]
+    centres = np.bincount(places, weights=values) / np.bincount(places)
+    distance = float(f"{np.ptp(centres) / max(len(centres) - 1, 1):.12g}")  # as a text may give it
+    off = np.abs(values - centres[0] - distance * places)
+    if len(centres) > 1 and not np.all(off <= _EVEN * distance):
+        raise ValueError(
+            f"{path}: {name} of the points is not evenly spaced ({len(centres)} places from {ordered[0]:g} "
+            f"to {ordered[-1]:g}); single points with x, y and z are a map only on a regular grid"
+        )
+    return len(centres), distance, places

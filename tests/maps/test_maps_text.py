@@ -29,7 +29,7 @@ UM, MM = 1e-6, 1e-3
 )
 def test_numbers_of_every_country(content, expected, tmp_path):
     (tmp_path / "map.csv").write_text(content, newline="")
-    found = table_of(tmp_path / "map.csv")[1]
+    found = table_of(tmp_path / "map.csv")[0]
     assert found.shape == np.shape(expected)
     assert np.array_equal(found, expected, equal_nan=True)
 
@@ -40,7 +40,7 @@ def test_numbers_of_every_country(content, expected, tmp_path):
 )
 def test_marks_of_the_encoding_and_letters_of_comments_are_no_numbers(encoding, text, tmp_path):
     (tmp_path / "map.csv").write_bytes(text.encode(encoding))
-    assert table_of(tmp_path / "map.csv")[1].tolist() == [[1, 2]]
+    assert table_of(tmp_path / "map.csv")[0].tolist() == [[1, 2]]
 
 
 @pytest.mark.parametrize("word", ["Value units", "Werteinheit", "Werteinheiten", "Einheit der Werte"])
@@ -198,8 +198,16 @@ REFUSED = [  # text, what is given, what is told
     ("# nothing\n", PIXEL, "holds no numbers"),
     ("1" * 2**24, PIXEL, r"p\.txt: line 1 has 16777216 characters or more; is it a map\?"),
     ("# Width: 4 um\n1 2 3\n4 5 6\n", M, "does not give the size of a pixel"),
-    ("# Width: 4 um\n# Height: 4 lightyears\n1 2\n", M, "'lightyears' is not a known unit of length"),
-    ("# Width: 1-2 um\n# Height: 4 um\n1 2\n", M, "line 1: Width = '1-2 um': give one length, as 4 um"),
+    (
+        "# Width: 4 um\n# Height: 4 lightyears\n1 2\n",
+        M,
+        "line 2: Height = '4 lightyears': give a number > 0 with its unit",
+    ),
+    (
+        "# Width: 1-2 um\n# Height: 4 um\n1 2\n",
+        M,
+        "line 1: Width = '1-2 um': give a number > 0 with its unit",
+    ),
     (text_of([*POINTS, POINTS[0]]), {"unit": "um"}, "x = 0, y = 0 has two heights"),
     (text_of([*POINTS, (0.37, 0, 1)]), {"unit": "um"}, "x of the points is not evenly spaced"),
     (text_of([(k, k, k % 3) for k in range(9)]), M, "9 points on a grid of 9 x 9: scattered points are not"),
