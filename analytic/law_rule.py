@@ -30,7 +30,6 @@ _NOTHING = 1e-32  # share of the touching heights that can be left out
 _RARE = 1e-37  # a share that no sampler draws
 _SURE = 1e-16  # up to such a rare height a grading must have values
 _SUMS = ((4, 0.0), (3, 0.0), (2, 0.0), (1, 3.0))  # powers of the modulus and of the approach in moments
-_LARGEST = 1e300
 _GRID = 16  # the upper end is rounded up to one over this
 _TOGETHER = 32  # separations that share a rule under the normal law
 
@@ -200,7 +199,7 @@ def extent(grading: Grading, heights: HeightLaw, separations: Sequence[float]) -
         ends = _of_moments(grading, heights, h)
         low, high = min(low, max(ends[0], float(h[0]))), max(high, ends[1])
     high = min(math.ceil(_GRID * high) / _GRID, end)
-    return (low, _valued(grading, sure, high)) if low < high else (low, low + 1.0)
+    return (low, high) if low < high else (low, low + 1.0)
 
 
 def _above(heights: HeightLaw, share: float, start: float) -> float:
@@ -218,22 +217,3 @@ def _of_moments(grading: Grading, heights: HeightLaw, h: Array) -> tuple[float, 
         except ValueError:  # its message is for those who ask for this moment
             continue
     return math.inf, -math.inf
-
-
-def _valued(grading: Grading, sure: float, high: float) -> float:
-    """How far up to `high` the grading has values, and at least up to `sure`."""
-    if not sure < high:
-        return high
-    far = np.unique([sure, high, *np.linspace(sure, min(high, sure + 64), 257), *np.geomspace(1, high, 64)])
-    far = far[(sure <= far) & (far <= high)]
-    if _has_values(grading, far):
-        return high
-    first = next((k for k in range(1, far.size) if not _has_values(grading, far[k : k + 1])), far.size)
-    return float(far[first - 1])
-
-
-def _has_values(grading: Grading, s: Array) -> bool:
-    try:
-        return bool(np.all(np.abs(grading(s)) < _LARGEST))
-    except ValueError:
-        return False
