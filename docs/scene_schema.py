@@ -17,7 +17,7 @@ from typing import Any
 import mcgw
 from analytic.laws import by_name
 from mcgw.scene.keys import GRADINGS, HEIGHTS, TABLES as ROWS
-from mcgw.scene.kinds import ByName, Either, Flag, Kind, List, Number, Table, Text, Whole, Word
+from mcgw.scene.kinds import Either, Flag, Kind, List, Number, Table, Text, Whole, Word
 from mcgw.scene.section import Key
 
 PAGE = Path(__file__).parent / "reference" / "scene.md"
@@ -62,9 +62,9 @@ def shape_of(kind: Kind) -> Shape:
             shape |= {"minItems": kind.least} if kind.least else {}
             shape |= {"maxItems": kind.most} if kind.most < 1000 else {}
             return shape | ({"uniqueItems": True} if kind.once else {})
-        case Table():
+        case Table(item=None):
             return table_shape(kind.rows)
-        case ByName():
+        case Table():
             names = {"propertyNames": {"enum": list(kind.names)}, "minProperties": 1} if kind.names else {}
             return {"type": "object", "additionalProperties": shape_of(kind.item), **names}
         case Either():
@@ -129,7 +129,7 @@ def in_words(name: str) -> tuple[Key, ...]:
     return tuple(rows)
 
 
-TABLES = {name: table._replace(rows=in_words(name)) for name, table in ROWS.items()}
+TABLES = {name: replace(table, rows=in_words(name)) for name, table in ROWS.items()}
 
 
 def schema() -> Shape:

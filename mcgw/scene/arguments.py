@@ -33,7 +33,7 @@ def arguments(given: Mapping[str, Any], kinds: Mapping[str, Kind]) -> dict[str, 
         With one line for each mistake, which names the argument.
     """
     plain = {name: as_toml(value) for name, value in given.items()}
-    section = Section("", plain, {name: Key(name, kind) for name, kind in kinds.items()})
+    section = Section("", plain, [Key(name, kind) for name, kind in kinds.items()])
     found = section.read_all(kinds)
     if section.problems:
         raise SceneError(section.problems)
@@ -45,18 +45,9 @@ def argument(name: str, value: Any, unit: str) -> float:
     return float(arguments({name: value}, {name: Number(unit)})[name])
 
 
-def as_seed(value: Any) -> Any:
-    """Draw a seed from a generator or a seed sequence of NumPy; other values stay as they are."""
-    if isinstance(value, np.random.SeedSequence):
-        return int(value.generate_state(1, np.uint64)[0])
-    if isinstance(value, np.random.BitGenerator):
-        value = np.random.Generator(value)
-    return int(value.integers(2**63)) if isinstance(value, np.random.Generator) else value
-
-
 def as_toml(value: Any) -> Any:
     """Convert a Python value to what TOML gives: arrays, tuples and ranges to lists of plain numbers."""
-    if isinstance(value, str | bytes | bool | int | float):
+    if isinstance(value, str | bytes | bool | int | float) or callable(value):
         return value.item() if isinstance(value, np.generic) else value
     if isinstance(value, Mapping):
         return {key: as_toml(inner) for key, inner in value.items()}

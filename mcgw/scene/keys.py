@@ -5,26 +5,13 @@ from collections.abc import Mapping
 from typing import Any
 
 import analytic
-from mcgw.scene.kinds import ByName, Either, Flag, List, Number, Table, Text, Whole, Word
+from mcgw.scene.kinds import Either, Flag, List, Number, Table, Text, Whole, Word
+from mcgw.scene.laws import GRADINGS, HEIGHTS, contact_law_given, grading_given, heights_given, radii_given
 from mcgw.scene.parts import Contact, Joint, Sampling, rows_of
-from mcgw.scene.section import Key, TableOfKeys
+from mcgw.scene.section import Key
 from mcgw.scene.uncertainty import Uncertainty
 from mcgw.validity.fitted_map import Fitted
 
-GRADINGS: dict[str, Any] = {  # laws by their words in a scene
-    "homogeneous": analytic.Homogeneous,
-    "exponential": analytic.Exponential,
-    "table": analytic.Table,
-    "series": analytic.PiecewiseSeries,
-}
-HEIGHTS: dict[str, Any] = {
-    "gaussian": analytic.Gaussian,
-    "exponential": analytic.ExponentialHeights,
-    "weibull": analytic.Weibull,
-    "nayak": analytic.Nayak,
-    "table": analytic.HeightTable,
-    "scipy": analytic.ScipyHeights,
-}
 _MOST = 100_000
 
 
@@ -71,13 +58,16 @@ _BODY = Table(
     analytic.Body,
 )
 _BODY_OF_FILE = Table((Key("file", _FILE, required=True),), "")
+_GRADING = "mcgw.Exponential(gamma), mcgw.Table(s, ratio), or a function of an array of heights"
+_HEIGHTS = "mcgw.HeightTable.of(heights), or a frozen continuous distribution, scipy.stats.lognorm(0.3)"
+_OWN_LAW = "a law; your own law is mcgw.CustomLaw(load=..., area=..., ...)"
 # fmt: off
-TABLES: dict[str, TableOfKeys] = {
-"": TableOfKeys("", (
+TABLES: dict[str, Table] = {
+"": Table((
     Key("title", Text(empty=True), '"My surface"', "title of figures and reports", ""),
 )),
-"surface": TableOfKeys("Either `sigma`, `radius`, `eta`, or the spectrum by `m0`, `m2`, `m4`; either "
-    "`E_star` or `bodies`.", (
+"surface": Table(words="Either `sigma`, `radius`, `eta`, or the spectrum by `m0`, `m2`, `m4`; either "
+    "`E_star` or `bodies`.", advice="mcgw.Surface(sigma, radius, eta, nominal_area, E_star)", rows=(
     Key("sigma", Number("m"), "1.37e-6", required=True),
     Key("radius", Number("m"), "13e-6", required=True),
     Key("eta", Number("1/m^2"), "3.0e8", required=True),
@@ -98,8 +88,8 @@ TABLES: dict[str, TableOfKeys] = {
         "values, with their `correlation` in this order, if any; `mcgw fit` writes them, and `mcgw solve` "
         "includes them in its error"),
 ), required=True),
-"grading": TableOfKeys("E*(s)/E* over the reduced height s. Default: 1 at every height.", (
-    Key("law", Word((*GRADINGS,)), '"exponential"',
+"grading": Table(words="E*(s)/E* over the reduced height s. Default: 1 at every height.", rows=(
+    Key("law", Word((*GRADINGS,), "", grading_given, _GRADING), '"exponential"',
         "`homogeneous`, `exponential` (Eq. 4), `table` or `series`; default: `exponential` if there is a "
         "`gamma`, otherwise `homogeneous`", "homogeneous"),
     Key("gamma", _ANY, "0.5", "γ of E*(s)/E* = γ − (γ − 1) exp(−s)"),
@@ -117,9 +107,9 @@ TABLES: dict[str, TableOfKeys] = {
     Key("checked", Flag(), "false", "`false`: a series far from 1 at all heights that touch is meant so",
         True),
 )),
-"heights": TableOfKeys("Distribution of the summit heights, scaled to mean 0 and standard deviation 1. "
-    "Default: Gaussian.", (
-    Key("law", Word((*HEIGHTS,)), '"weibull"',
+"heights": Table(words="Distribution of the summit heights, scaled to mean 0 and standard deviation 1. "
+    "Default: Gaussian.", rows=(
+    Key("law", Word((*HEIGHTS,), "", heights_given, _HEIGHTS), '"weibull"',
         "`gaussian`, `exponential`, `weibull`, `nayak`, `table` or `scipy`", "gaussian"),
     Key("shape", Number(low=1, high=100, advice="give a number from 1 to 100 (3.6 has no skewness)"), "2.0",
         "shape of the Weibull law, 1 to 100; 3.6 has no skewness"),
@@ -137,10 +127,12 @@ TABLES: dict[str, TableOfKeys] = {
     Key("share", _LISTED, "[0.0, 1.0]", needs=("s",)),
     Key("name", Text(), '"gamma"', 'name of a continuous distribution of `scipy.stats`, for `law = "scipy"`',
         "norm"),
-    Key("shapes", ByName(_ANY, "give its shapes, such as {a = 4.0}"), "{a = 4.0}", "its shape parameters"),
+    Key("shapes", Table(item=_ANY, advice="give its shapes, such as {a = 4.0}"), "{a = 4.0}",
+        "its shape parameters"),
 )),
-"summits": TableOfKeys("Radii of the summits, if they differ.", (
-    Key("curvature", Word(("random", "mean")), '"random"',
+"summits": Table(words="Radii of the summits, if they differ.", rows=(
+    Key("curvature", Word(("random", "mean"), "", radii_given, "mcgw.MeasuredRadii(heights, ratios)"),
+        '"random"',
         "`random`: the radius of each summit follows the exact joint distribution with its height (default "
         "with `m0`, `m2`, `m4`); `mean`: one radius"),
     Key("largest_radius", Number("m"), '"1 mm"', "upper limit of the radii, m"),
@@ -155,7 +147,7 @@ TABLES: dict[str, TableOfKeys] = {
         "`true`: summits drawn in pairs from the list; `false`: one surface, the summits as they are", False,
         needs=("heights", "file")),
 )),
-"contact": TableOfKeys("Separations, and what is computed of the contacts.", (
+"contact": Table(words="Separations, and what is computed of the contacts.", rows=(
     Key("separations",
         Either((
             List(_SEPARATION, 1, _MOST, f"{_SEPARATIONS}, at most {_MOST} of them"),
@@ -165,13 +157,14 @@ TABLES: dict[str, TableOfKeys] = {
         ), _SEPARATIONS),
         "{start = 0.0, stop = 1.0, num = 3}", "d/σ: a range, a list, or one number", required=True),
     *rows_of(Contact),
-), required=True, make=Contact, advice="give mcgw.Contact(...), or the keys of [contact] in a scene file"),
-"contact.law": TableOfKeys("Contact law of an asperity, and its constants: [how the laws "
+), required=True, make=Contact, advice="mcgw.Contact(...)"),
+"contact.law": Table(words="Contact law of an asperity, and its constants: [how the laws "
     "differ](../explanation/contact-laws.md). A law without constants may stand under `[contact]` as a word: "
-    "`law = \"hertz\"`. Default: Hertz's.", (
-    Key("name", Word(_contact_laws), '"kogut-etsion"', "`hertz` (default), `power-law-graded`, `coated`, "
-        "`chang-etsion-bogy`, `zhao-maietta-chang`, `kogut-etsion`, `jackson-green`, "
-        "`derjaguin-muller-toporov`, `johnson-kendall-roberts` or `custom`", "hertz"),
+    "`law = \"hertz\"`. Default: Hertz's.", rows=(
+    Key("name", Word(_contact_laws, "", contact_law_given, _OWN_LAW), '"kogut-etsion"',
+        "`hertz` (default), `power-law-graded`, `coated`, `chang-etsion-bogy`, `zhao-maietta-chang`, "
+        "`kogut-etsion`, `jackson-green`, `derjaguin-muller-toporov`, `johnson-kendall-roberts` or `custom`",
+        "hertz"),
     Key("hardness", Number("Pa"), '"1.2 GPa"', "hardness of the softer body, Pa, for elastic-plastic laws; "
         "under an elastic law it only tells whether contacts yield"),
     Key("poisson", POISSON, "0.3", "Poisson's ratio of the body that yields or coats"),
@@ -192,20 +185,20 @@ TABLES: dict[str, TableOfKeys] = {
     Key("area", _PIECES, _PIECES_EXAMPLE),
     Key("checked", Flag(), "false", "`false`: a law far from Hertz's at all penetrations is meant so", True),
 ),),
-"interaction": TableOfKeys("[Asperity interaction](../explanation/interaction.md). Default: asperities are "
-    "independent.", (
+"interaction": Table(words="[Asperity interaction](../explanation/interaction.md). Default: asperities are "
+    "independent.", rows=(
     Key("reference", Word(("body", "mean-plane"), f"give {_PLANES}"), '"body"', required=True),
     Key("bulk_modulus", Number("Pa"), "1e11"),
 ), make=lambda **keys: analytic.Interaction(**keys),
-    advice='give mcgw.Interaction("body"), or mcgw.Interaction("mean-plane")'),
-"joint": TableOfKeys("Conduction: through spots alone as in vacuum, or [a thermal "
+    advice='mcgw.Interaction("body")'),
+"joint": Table(words="Conduction: through spots alone as in vacuum, or [a thermal "
     "joint](../how-to/conductance-of-a-joint.md), in which gas conducts beside them, and both in series with "
     "the bodies where `[interaction]` has them constrict the flux. Default: only `conductance`, without a "
-    "unit.", rows_of(Joint), make=Joint,
-    advice='give mcgw.Joint((150.0, 16.0), gas="air"), or the keys of [joint] in a scene file'),
-"fitted": TableOfKeys("More about the fitted map, written by `mcgw fit`. It does not affect the results, but "
+    "unit.", rows=rows_of(Joint), make=Joint,
+    advice='mcgw.Joint((150.0, 16.0), gas="air")'),
+"fitted": Table(words="More about the fitted map, written by `mcgw fit`. It does not affect the results, but "
     "the stated [error of the model](../explanation/validity.md). Default: the surface is assumed to be "
-    "Gaussian.", (
+    "Gaussian.", rows=(
     Key("m0", Number("m^2"), "1e-12", required=True),
     Key("m2", Number("1"), "1e-3", required=True),
     Key("m4", Number("1/m^2"), "5e6", required=True),
@@ -217,14 +210,13 @@ TABLES: dict[str, TableOfKeys] = {
     Key("area", Number("m^2"), "1e-6"),
     Key("cautions", List(Text(), 0, advice="give a list of texts"), '["lay: mean square slopes 2 : 1"]',
         default=[]),
-), make=Fitted, advice="give the `fitted` of a scene from mcgw.fitted_scene, or the keys of [fitted] in a "
-    "scene file"),
-"ensemble": TableOfKeys("Number of surfaces, and sampling.", rows_of(Sampling), make=Sampling,
-    advice="give mcgw.Sampling(...), or the keys of [ensemble] in a scene file"),
+), make=Fitted, advice="the `fitted` of a scene from mcgw.fitted_scene"),
+"ensemble": Table(words="Number of surfaces, and sampling.", rows=rows_of(Sampling), make=Sampling,
+    advice="mcgw.Sampling(...)"),
 }
 # fmt: on
 
-KEYS = {table: {row.name: row for row in rows} for table, (_, rows, *_) in TABLES.items()}
+KEYS = {name: {row.name: row for row in table.rows} for name, table in TABLES.items()}
 SURFACE_UNITS = {name: KEYS["surface"][name].kind.unit for name in (*SUMMITS, "nominal_area", "E_star")}
 
 
@@ -237,8 +229,8 @@ def whole_key(key: str) -> str:
 
 
 def as_tables(document: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return a document with its contact law as a table, which may be a word in its place."""
+    """Return a document with its contact law as a table, in whose place a word or an object may stand."""
     contact = document.get("contact")
-    if not isinstance(contact, Mapping) or not isinstance(law := contact.get("law"), str):
+    if not isinstance(contact, Mapping) or isinstance(law := contact.get("law", {}), Mapping):
         return document
     return {**document, "contact": {**contact, "law": {"name": law}}}

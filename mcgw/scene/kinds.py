@@ -87,21 +87,31 @@ class Whole(Kind):
 
 @dataclass(frozen=True, slots=True)
 class Word(Kind):
-    """One of a few words; a function may find them when needed."""
+    """One of a few words, or what stands for one: an object that Python gives and a function `accepts`."""
 
     words: tuple[str, ...] | Callable[[], tuple[str, ...]]
     advice: str = ""
+    accepts: Callable[[Any], Any] | None = None
+    objects: str = ""
 
     @property
     def known(self) -> tuple[str, ...]:
-        """These words."""
+        """These words, which a function may find when needed."""
         return self.words() if callable(self.words) else self.words
 
-    def read(self, path: str, value: Any) -> str:
-        """Read it."""
-        if isinstance(value, str) and value in self.known:
-            return value
-        advice = self.advice or f"choose one of {', '.join(self.known)}"
+    def read(self, path: str, value: Any) -> Any:
+        """Return the word or the object."""
+        advice, python = self.advice, ""
+        try:
+            if isinstance(value, str) and value in self.known:
+                return value
+            if self.accepts and not isinstance(value, str):
+                if (found := self.accepts(value)) is not None:
+                    return found
+                python = f"; in Python, give {self.objects}"
+        except (TypeError, ValueError) as error:
+            advice = str(error)
+        advice = advice or f"choose one of {', '.join(self.known)}{python}"
         raise mistake(path, value, f"{nearest(value, self.known)}{advice}")
 
 
@@ -159,44 +169,32 @@ class List(Kind):
 
 @dataclass(frozen=True, slots=True)
 class Table(Kind):
-    """A table in braces, or the object that its keys `make`."""
+    """A table, or the object that its keys `make`.
 
-    rows: tuple[Key, ...]
-    advice: str
-    make: type | None = None
+    Its keys are its rows; or any names, some of `names`, if there are, each with a value like the `item`.
+    """
+
+    rows: tuple[Key, ...] = ()
+    advice: str = ""
+    make: Callable[..., Any] | None = None
+    item: Kind | None = None
+    names: tuple[str, ...] = ()
+    words: str = ""
+    required: bool = False
 
     def read(self, path: str, value: Any) -> Any:
         """Read its keys and make the object."""
-        if self.make and isinstance(value, self.make):
+        if isinstance(self.make, type) and isinstance(value, self.make):
             return value
-        if not isinstance(value, dict):
+        if not isinstance(value, Mapping):
             raise mistake(path, value, self.advice)
-        inner = Section(path, value, {row.name: row for row in self.rows})
+        inner = Section(path, value, [Key(name, self.item) for name in value] if self.item else self.rows)
         found = inner.read_all(inner.rows)
         inner.finish()
         made = inner.made(self.make or dict, found)
         if inner.problems:
             raise SceneError(inner.problems)
         return made
-
-
-@dataclass(frozen=True, slots=True)
-class ByName(Kind):
-    """A table whose keys are any names, or some of `names`, with values of one kind."""
-
-    item: Kind
-    advice: str
-    names: tuple[str, ...] = ()
-
-    def read(self, path: str, value: Any) -> dict[str, Any]:
-        """Read its values."""
-        if not isinstance(value, Mapping):
-            raise mistake(path, value, self.advice)
-        inner = Section(path, value, {name: Key(name, self.item) for name in value})
-        found = inner.read_all(value)
-        if inner.problems:
-            raise SceneError(inner.problems)
-        return found
 
 
 @dataclass(frozen=True, slots=True)
@@ -217,7 +215,6 @@ class Either(Kind):
 _LOOKS: dict[type[Kind], Any] = {
     List: list,
     Table: Mapping,
-    ByName: Mapping,
     Word: str,
     Number: int | float | str,
 }

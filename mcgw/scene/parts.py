@@ -11,10 +11,12 @@ from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
+import numpy as np
+
 import analytic
 from analytic.gases import GASES, Gas
 from analytic.laws import ContactLaw, Film, Layer
-from mcgw.scene.kinds import ByName, Either, List, Number, Table, Whole, Word
+from mcgw.scene.kinds import Either, List, Number, Table, Whole, Word
 from mcgw.scene.promises import SAMPLERS
 from mcgw.scene.section import Key, Kind
 
@@ -32,10 +34,8 @@ _SHARES = List(
     Number("1", high=0.1, infinite=True),
     advice=f"{_KNOWN_TO}, for each separation; or inf, for no requirement",
 )
-_REL_ERR = Either(
-    (ByName(Either((_SHARES, _SHARE), _KNOWN_TO), "", (*SUMS, *analytic.UNLOADING)), _SHARE), _KNOWN_TO
-)
-_SEED = Whole(0, 2**64 - 1, "give a whole number from 0 to 2^64 - 1")
+_BY_NAME = Table(item=Either((_SHARES, _SHARE), _KNOWN_TO), names=(*SUMS, *analytic.UNLOADING))
+_REL_ERR = Either((_BY_NAME, _SHARE), _KNOWN_TO)
 _ACCURACY = Number("1", high=0.1, zero=True, advice="give a number from 0, exact, to 0.1")
 _NAMES = List(
     Word((*SUMS, *analytic.UNLOADING), f"choose one of {', '.join(SUMS)}"),
@@ -60,6 +60,21 @@ _GASES = Either(
     ),
     _GAS,
 )
+
+
+class Seed(Whole):
+    """A seed, or what draws one: a generator or a seed sequence of NumPy."""
+
+    def value(self, given: Any) -> int | None:
+        """Return it as an integer."""
+        if isinstance(given, np.random.SeedSequence):
+            given = int(given.generate_state(1, np.uint64)[0])
+        if isinstance(given, np.random.BitGenerator):
+            given = np.random.Generator(given)
+        return super().value(int(given.integers(2**63)) if isinstance(given, np.random.Generator) else given)
+
+
+_SEED = Seed(0, 2**64 - 1, "give a whole number from 0 to 2^64 - 1")
 
 
 def key(kind: Kind, example: str, default: Any = None, **others: Any) -> Any:

@@ -48,36 +48,21 @@ class RoughBody:
         Its hardness is that of the softer body. What is not known of both is unknown.
         """
         a, b = self.moments, other.moments
+        moduli, hardness = (self.E_star, other.E_star), (self.hardness, other.hardness)
         known = self.conductivities and other.conductivities
         return RoughBody(
             SpectralMoments(a.m0 + b.m0, a.m2 + b.m2, a.m4 + b.m4),
-            _of_both(self.E_star, other.E_star, lambda x, y: 1 / (1 / x + 1 / y)),
-            _of_both(self.hardness, other.hardness, min),
+            None if None in moduli else 1 / sum(1 / E for E in moduli if E),
+            None if None in hardness else min(x for x in hardness if x),
             self.conductivities + other.conductivities if known else (),
         )
-
-
-def _of_both(a: float | None, b: float | None, of: Callable[[float, float], float]) -> float | None:
-    return None if a is None or b is None else of(a, b)
 
 
 def with_bodies(document: Tables, folder: Path, read: Callable[[Tables, Path], Tables]) -> Tables:
     """Put the surface of two bodies into the tables of a scene in place of the files that describe them.
 
-    Parameters
-    ----------
-    document : mapping
-        Tables of the scene; those without files of bodies are returned as they are.
-    folder : Path
-        Where the files lie.
-    read : callable
-        Values of a scene by its tables and folder.
-
-    Returns
-    -------
-    mapping
-        With m0, m2, m4 and E_star of the pair; its hardness and conductivities under ``[contact.law]`` and
-        ``[joint]``, where both files give them and the scene does not.
+    Their hardness and conductivities go under ``[contact.law]`` and ``[joint]``, where both files give them
+    and the scene does not; `read` gives the values of a scene by its tables and folder.
 
     Raises
     ------

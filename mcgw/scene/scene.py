@@ -119,20 +119,7 @@ class Scene(Fields, Shown):
         n_surfaces: int | None = None,
         seed: int | Generator | SeedSequence | None = None,
     ) -> None:
-        short = {"separations": separations, "law": law, "n_surfaces": n_surfaces, "seed": seed}
-        given = {
-            "surface": surface,
-            "title": title,
-            "grading": grading,
-            "heights": heights,
-            "contact": contact,
-            "summits": summits,
-            "interaction": interaction,
-            "joint": joint,
-            "ensemble": ensemble,
-            "fitted": fitted,
-            **{name: value for name, value in short.items() if value is not None},
-        }
+        given = {key: x for key, x in locals().items() if key != "self" and x is not None}
         self._made_of(of_arguments(given))
 
     @classmethod

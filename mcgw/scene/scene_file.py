@@ -13,12 +13,11 @@ from mcgw.formats.named_files import HDF5, loads, read_bytes
 from mcgw.machine.terminal import one_line
 from mcgw.scene.fields import LeftOut
 from mcgw.scene.keys import as_tables, whole_key
-from mcgw.scene.laws import contact_law_table, grading_table, heights_table, written
-from mcgw.scene.radii import summits_table
 from mcgw.scene.reading import of_tables
 from mcgw.scene.rough_bodies import files_of_bodies
 from mcgw.scene.scene import Scene, storable
 from mcgw.scene.section import SceneError, shortened
+from mcgw.scene.writing import contact_law_table, grading_table, heights_table, summits_table, written
 
 _MOST_BYTES = 2**21
 _BARE = r"([\w.]+)\s*=\s*([^\s\"'\[{#][^\"'\]},#]*?)\s*(?:#.*)?"  # a value that lacks its quotes
@@ -155,7 +154,7 @@ def scene_of(
     document: Mapping[str, Any], *, folder: Path | None = None, seed: Callable[[], int | None] | None = None
 ) -> Scene:
     """Make a scene of the tables that its TOML text holds; arguments and errors as of `scene_from`."""
-    return Scene.of(of_tables(document, None, folder or Path(), seed))
+    return Scene.of(of_tables(document, folder or Path(), seed))
 
 
 def with_changes(document: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:

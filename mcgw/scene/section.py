@@ -3,13 +3,12 @@
 import difflib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple, TypeVar
+from typing import Any
 
 from mcgw.machine.terminal import one_line
 
 _MOST_NAMED = 20  # unknown keys of a table: more say nothing new
 _FROM_ROW: Any = object()
-_Value = TypeVar("_Value")
 
 
 class SceneError(ValueError):
@@ -32,32 +31,13 @@ class SceneError(ValueError):
 
 
 class Kind:
-    """What a key may hold.
-
-    Attributes
-    ----------
-    advice : str
-        What to give, if something else or nothing is given.
-    unit : str
-        Of a number.
-    """
+    """What a key may hold: its `unit`, if it is a number, and `advice` what to give."""
 
     advice: str = ""
     unit: str = ""
 
-    @property
-    def missing(self) -> str:
-        """What to give if nothing is given."""
-        return f"give it in {self.unit}" if self.unit not in ("", "1") else self.advice or "give it"
-
     def read(self, path: str, value: Any) -> Any:
-        """Read the value of a key.
-
-        Raises
-        ------
-        SceneError
-            If it does not fit.
-        """
+        """Return the value of a key, or raise `SceneError`."""
         found = self.value(value)
         if found is None:
             raise mistake(path, value, self.wanted)
@@ -110,63 +90,31 @@ class Key:
     excludes: tuple[str, ...] = ()
 
 
-class TableOfKeys(NamedTuple):
-    """A table of a scene file: its description, as Markdown, and its rows.
-
-    Where all its keys `make` an object, the scene holds that in a field of its name, and Python gives it; or
-    else hears the `advice`.
-    """
-
-    words: str
-    rows: tuple[Key, ...]
-    required: bool = False
-    make: Callable[..., Any] | None = None
-    advice: str = ""
-
-
 class Section:
-    """A table and the mistakes found in it.
+    """The contents of a table by its keys, its `known` keys and tables, and a line for each mistake in it."""
 
-    Parameters
-    ----------
-    name : str
-        Its name, "" for the document.
-    table : mapping
-        Its contents.
-    rows : mapping of str to Key
-        Its keys.
-
-    Attributes
-    ----------
-    known : list of str
-        Its keys and tables.
-    problems : list of str
-        A line for each mistake.
-    """
-
-    def __init__(self, name: str, table: Mapping[str, Any], rows: Mapping[str, Key]) -> None:
-        self.name, self.table, self.rows = name, table, rows
-        self.known = [*rows]
+    def __init__(self, name: str, table: Mapping[str, Any], rows: Iterable[Key]) -> None:
+        self.name, self.table, self.rows = name, table, {row.name: row for row in rows}
+        self.known = [*self.rows]
         self.problems: list[str] = []
 
-    def section(self, name: str, rows: Mapping[str, Key], advice: str = "") -> "Section":
-        """Return a table inside this one; empty if missing."""
+    def section(self, name: str, rows: Iterable[Key], python: str = "") -> "Section":
+        """Return a table inside this one, in place of which Python gives an object; empty if missing."""
         self.known.append(name)
         value = self.table.get(name, {})
         if not isinstance(value, dict):
-            self.fail(name, value, advice or f"must be a table: write [{name}] above its keys")
+            other = f", or in Python give {python}" if python else ""
+            self.fail(name, value, f"must be a table: write [{name}] above its keys{other}")
             value = {}
         return Section(self.path(name), value, rows)
 
-    def fail(self, name: str, value: Any, advice: str) -> _Value | None:
-        """Note a mistake; return None as the value."""
+    def fail(self, name: str, value: Any, advice: str) -> None:
+        """Note a mistake in the value of a key."""
         self.problems += mistake(self.path(name), value, advice).problems
-        return None
 
-    def note(self, line: str) -> _Value | None:
+    def note(self, line: str) -> None:
         """Note a mistake with this text."""
         self.problems.append(line)
-        return None
 
     def __contains__(self, name: str) -> bool:
         """Whether the key is given."""
@@ -182,7 +130,9 @@ class Section:
                 self.problems += error.problems
                 return None
         if row.required and default is _FROM_ROW:
-            self.note(f"{self.path(name)}: missing; {row.kind.missing}")
+            unit = row.kind.unit
+            cure = f"give it in {unit}" if unit not in ("", "1") else row.kind.advice or "give it"
+            self.note(f"{self.path(name)}: missing; {cure}")
         return row.default if default is _FROM_ROW else default
 
     def read_all(self, names: Iterable[str]) -> dict[str, Any]:
@@ -203,13 +153,13 @@ class Section:
         key, _, advice = reason.partition(": ")
         at, there = key.partition(" = ")[0].partition(",")[0], [name for name in given if name in self]
         if at in there:
-            return self.fail(at, self.table[at], advice)
-        if at in self.rows:
-            return self.note(f"{self.name}.{reason}")
-        if there:
+            self.fail(at, self.table[at], advice)
+        elif at in self.rows or not there:
+            self.note(f"{self.name}{'.' if at in self.rows else ': '}{reason}")
+        else:
             cure = self.rows["file"].kind.advice if there[0] == "file" else ""
-            return self.fail(there[0], self.table[there[0]], "; ".join(filter(None, (reason, cure))))
-        return self.note(f"{self.name}: {reason}")
+            self.fail(there[0], self.table[there[0]], "; ".join(filter(None, (reason, cure))))
+        return None
 
     def finish(self, moved: Callable[[str], str] = str) -> None:
         """Note unknown keys, whose tables `moved` may know, and those that do not go together."""
@@ -223,10 +173,11 @@ class Section:
             self.note(f"[{self.name}]: {len(unknown) - _MOST_NAMED} more unknown keys")
         told = [line.partition(":")[0] for line in self.problems]  # a missing key is noted once
         for row in (self.rows[name] for name in self.table if name in self.rows):
+            value, needs = self.table[row.name], " or ".join(row.needs)
             if row.needs and not any(other in self or self.path(other) in told for other in row.needs):
-                self.fail(row.name, self.table[row.name], f"give {_either(row.needs)} too, or leave it out")
+                self.fail(row.name, value, f"give {needs} too, or leave it out")
             if others := [other for other in row.excludes if other in self]:
-                self.fail(row.name, self.table[row.name], f"give it or {_either(others)}, not both")
+                self.fail(row.name, value, f"give it or {' or '.join(others)}, not both")
 
     def path(self, name: str) -> str:
         """Name of a key with its table."""
@@ -245,10 +196,6 @@ def as_written(value: object) -> str:
 def shortened(text: str) -> str:
     """Shorten a text to 60 characters, with dots at its end."""
     return text if len(text) <= 60 else f"{text[:57]}..."
-
-
-def _either(words: Iterable[str]) -> str:
-    return " or ".join(words)
 
 
 def nearest(value: Any, known: Iterable[str]) -> str:

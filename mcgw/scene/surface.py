@@ -167,7 +167,7 @@ def _read(kind: type[_Kind], given: Mapping[str, Any], uncertainty: Any) -> _Kin
     plain = {key: as_toml(value) for key, value in given.items()}
     if uncertainty is not None:
         plain["uncertainty"] = as_toml(uncertainty)
-    section = Section("surface", plain, KEYS["surface"])
+    section = Section("surface", plain, KEYS["surface"].values())
     surface = read_surface(section)
     section.finish()
     if section.problems:
@@ -213,4 +213,5 @@ def read_surface(section: Section, listed: Mapping[str, float] | None = None) ->
     try:
         return None if section.problems else made(**values)
     except ValueError as error:
-        return section.note(f"surface: {error}")
+        section.note(f"surface: {error}")
+        return None

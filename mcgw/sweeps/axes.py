@@ -15,8 +15,8 @@ from mcgw.ensemble.labelled import AXES, GROUP
 from mcgw.machine.terminal import brief
 from mcgw.scene.arguments import as_toml
 from mcgw.scene.keys import TABLES
-from mcgw.scene.laws import grading_table
 from mcgw.scene.section import SceneError
+from mcgw.scene.writing import grading_table
 
 Point = tuple[int, ...]
 
