@@ -19,7 +19,7 @@ from scipy.stats import norm
 import analytic
 import mcgw
 from mcgw.validity import error_table as grid
-from mcgw.validity.place_in_table import LEAST_CROWDING, moments_of
+from mcgw.validity.lookup import LEAST_CROWDING, moments_of
 
 TABLE = Path(mcgw.__file__).parent / "validity" / "table.csv"
 HEAD = ["map", "model", "interaction", "x", "p"]
