@@ -17,13 +17,13 @@ asperity has q(s), and each of the N - 1 others q(t) where the last N - 2 bear w
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property, partial
+from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from analytic.arrays import Array, Complex, Ints
-from analytic.distribution.of_model import cells_between, check_falling, score_of, shares_upto
+from analytic.distribution.of_model import cells_between, scores_of, shares_upto
 from analytic.height_rule import HeightRule
 from analytic.inversion import LOWEST
 from analytic.measured_summits import MeasuredHeights
@@ -118,10 +118,8 @@ def specimen_moments(model: Any, given: str, value: float, names: Sequence[str])
 
 def _ends(model: Any, given: str, value: float) -> tuple[float, float]:
     """Separations between which next to all surfaces have the given sum."""
-    check_falling(model, given, start := float(model.separation_at(given, value)))
-    spread, ends = float(model.std(given, start) / model.slope(given, start)), []
-    target = value / quantity_of(given).scale(model.surface)
-    score = cache(partial(score_of, model, given, target))
+    score, start, spread = scores_of(model, given, value)
+    ends = []
 
     def beyond(h: float, way: int) -> float:
         """By how much it is over that of next to all surfaces, or none."""
@@ -210,7 +208,7 @@ def _gains(
     least = min(float(model.mean(given, h)), value) - _SPREADS * float(model.std(given, h))
     start = max(least, 0.0)
     width = (value - start) / (_GRID - 1)
-    bear = shares_upto(model, given, h)(n - two, np.asarray(start + width * np.arange(_GRID)))
+    bear = shares_upto(model, given, h, n - two, np.asarray(start + width * np.arange(_GRID)))
     left = (value - start - added) / width
     beside = _Beside(left, in_cells / width, bear, bear[0] if start == 0 else 0.0)
     bears = beside.bears()

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -158,17 +158,27 @@ def _clenshaw(c: Array, piece: Ints, x: Array) -> Array:
     return np.asarray(c[0][piece] + (x * value - last))
 
 
+@cache
+def to_coefficients(terms: int) -> Array:
+    """Return the matrix from values at Chebyshev points to coefficients, to be multiplied from the right."""
+    basis = chebyshev.chebvander(chebyshev.chebpts1(terms), terms - 1) * (2 / terms)  # orthogonal over them
+    basis[:, 0] /= 2
+    return np.asarray(basis)
+
+
+def chebyshev_points(low: Array, high: Array, terms: int) -> Array:
+    """Return so many heights on each interval, shape (intervals, terms)."""
+    return np.asarray(low[:, None] + (high - low)[:, None] * (1 + chebyshev.chebpts1(terms)) / 2)
+
+
 def fitted(function: Callable[[Array], Array], edges: Array, terms: int) -> PiecewiseSeries:
     """Interpolate a function of an array at the Chebyshev points of every interval between increasing edges.
 
     To the last digits where the function has no feature much narrower than its interval.
     """
-    nodes = chebyshev.chebpts1(terms)
-    places = edges[:-1, None] + np.diff(edges)[:, None] * (1 + nodes) / 2
+    places = chebyshev_points(edges[:-1], edges[1:], terms)
     values = function(places.ravel()).reshape(places.shape)
-    basis = chebyshev.chebvander(nodes, terms - 1) * (2 / terms)  # orthogonal over these points
-    basis[:, 0] /= 2
-    return PiecewiseSeries(edges.tolist(), [_without_noise(c) for c in values @ basis])
+    return PiecewiseSeries(edges.tolist(), [_without_noise(c) for c in values @ to_coefficients(terms)])
 
 
 def _without_noise(c: Array) -> list[float]:

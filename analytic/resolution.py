@@ -1,13 +1,14 @@
 """Where a grading varies: the heights between which it is resolved, and where it turns negative."""
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
 from analytic.arrays import Array
 from analytic.gradings import Custom, Grading
+from analytic.piecewise import chebyshev_points, to_coefficients
 
 _WIDEST = 4.0
 _NEAR, _GROWTH = 64.0, 1.25  # heights up to here are looked at in equal steps, then in ever wider ones
@@ -28,40 +29,22 @@ class _Fit:
 
     Parameters
     ----------
-    degree : int
+    terms : int
         Of all of them.
     even : bool, optional
         Whether an interval, unless it is narrow, must have values of one size: then the polynomial is
         as accurate next to each height as it is on the whole.
     """
 
-    degree: int
+    terms: int
     even: bool = False
-
-    @cached_property
-    def nodes(self) -> Array:
-        """Chebyshev points, shape (degree + 1,)."""
-        return np.asarray(chebyshev.chebpts1(self.degree + 1), dtype=np.float64)
-
-    @cached_property
-    def to_coefficients(self) -> Array:
-        """Matrix from values at the nodes to coefficients."""
-        return np.asarray(np.linalg.inv(chebyshev.chebvander(self.nodes, self.degree)), dtype=np.float64)
-
-    def heights(self, low: Array, high: Array) -> Array:
-        """Return the nodes on each interval, shape (intervals, degree + 1)."""
-        return np.asarray(low[:, None] + (high - low)[:, None] * (1 + self.nodes) / 2)
-
-    def at_nodes(self, grading: Grading, low: Array, high: Array) -> Array:
-        """Values of the grading there."""
-        return np.asarray(grading(self.heights(low, high)), dtype=np.float64)
 
     def misfit(self, grading: Grading, low: Array, high: Array, heights: Array) -> tuple[Array, Array]:
         """How far the polynomial on each interval is from the grading there, and how far it may be."""
         width = (high - low)[:, None]
-        at_nodes, at_heights = self.at_nodes(grading, low, high), grading(heights)
-        basis = chebyshev.chebvander(2 * (heights - low[:, None]) / width - 1, self.degree)
-        fit = np.einsum("ijk,ik->ij", basis, at_nodes @ self.to_coefficients.T)
+        at_nodes, at_heights = grading(chebyshev_points(low, high, self.terms)), grading(heights)
+        basis = chebyshev.chebvander(2 * (heights - low[:, None]) / width - 1, self.terms - 1)
+        fit = np.einsum("ijk,ik->ij", basis, at_nodes @ to_coefficients(self.terms))
         values = np.concatenate([at_nodes, at_heights], axis=1)
         # A height is only known to its last digit: a slope of spread/width turns that into noise.
         last_digit = np.spacing(np.maximum(np.abs(low), np.abs(high)))
@@ -76,7 +59,7 @@ class _Fit:
         return misfit, _TOLERANCE * size.max(axis=1) + noise
 
 
-_LONG, SHORT = _Fit(24), _Fit(12, even=True)
+_LONG, SHORT = _Fit(25), _Fit(13, even=True)
 
 
 def marks(low: float, high: float, step: float) -> list[float]:

@@ -6,12 +6,11 @@ import numpy as np
 
 from analytic.arrays import Array, Marks
 from analytic.gradings import Clipped, Custom, Exponential, Grading, Homogeneous, Squared
-from analytic.piecewise import MOST_PIECES, PiecewiseSeries
+from analytic.piecewise import MOST_PIECES, PiecewiseSeries, chebyshev_points, fitted
 from analytic.resolution import SHORT, bisected, marks, merged, resolved_breaks, spread_over
 from analytic.tables import Table
 
 _DATA = Homogeneous, Exponential, Table, PiecewiseSeries
-_NOTHING = 1e-15  # of the largest value on a piece
 _SLIVER = 64  # spacings of floats: pieces so narrow only close in on a jump
 _ABOUT = 2.0**-8  # a kink is what no polynomial describes up to here on either side
 
@@ -82,20 +81,11 @@ def resolved(grading: Grading, low: float, high: float) -> PiecewiseSeries:
     told = np.unique([float(b) for b in grading.breaks if low < b < high])
     edges = bisected(SHORT, grading, np.unique([low, *marks(low, high, 1.0), *told, high]), MOST_PIECES)
     edges = _without_slivers(merged(SHORT, grading, edges, told), told)
-    left, right = edges[:-1], edges[1:]
-    c = SHORT.at_nodes(grading, left, right) @ SHORT.to_coefficients.T
-    series = [_shortened(row) for row in c]
+    series = fitted(grading, edges, SHORT.terms).coefficients
     kinks = edges[1:-1][np.isin(edges[1:-1], told) | _bends(grading, edges)].tolist()
     checked = getattr(getattr(grading, "grading", grading), "checked", True)
     found = PiecewiseSeries(edges.tolist(), series, name_of(grading), kinks, checked)
-    return _not_below(found, grading, left, right)
-
-
-def _shortened(c: Array) -> list[float]:
-    """Without the last coefficients that add nothing."""
-    tail = np.cumsum(np.abs(c)[::-1])[::-1]
-    count = max(int((tail > _NOTHING * tail[0]).sum()), 1)
-    return [float(x) for x in c[:count]]
+    return _not_below(found, grading, edges[:-1], edges[1:])
 
 
 def _without_slivers(edges: Array, told: Array) -> Array:
@@ -118,7 +108,9 @@ def _bends(grading: Grading, edges: Array) -> Marks:
 def _not_below(found: PiecewiseSeries, grading: Grading, left: Array, right: Array) -> PiecewiseSeries:
     """Return the series raised by their rounding where they are negative and the grading is not."""
     ends = np.stack([left, np.nextafter(right, left)], axis=1)
-    heights = np.concatenate([spread_over(left, right), ends, SHORT.heights(left, right)], axis=1)
+    heights = np.concatenate(
+        [spread_over(left, right), ends, chebyshev_points(left, right, SHORT.terms)], axis=1
+    )
     lacking = np.where(np.all(grading(heights) >= 0, axis=1), -2 * found(heights).min(axis=1), 0.0)
     raised = [(c[0] + max(more, 0.0), *c[1:]) for c, more in zip(found.coefficients, lacking, strict=True)]
     return PiecewiseSeries(found.edges, raised, found.name, found.kinks, found.checked)

@@ -13,12 +13,9 @@ from analytic.arrays import Array, hold
 _NARROW = 1e-9  # of the table: cells that have no density to be told
 _FAR = 1e100  # beyond all sums
 _SAFE = 8.0  # times what two computations differ by: their errors may have one sign
-_USUAL = 1e-6  # over the root of a share: what two computations may have in common, by a grid of 630 laws
-_NEIGHBOURS = 1 / 40  # of the table, in which the largest difference counts: differences pass through 0
+_USUAL = 5e-7  # what two computations may have in common, by a grid of 630 laws
 _NOTHING = 1e-50  # less than any value but 0
-_LEAST = 1e-30  # less than any share
 _EPSILON = 2.0**-53  # what 1 less a share has of digits
-_SCIPY = 1e-14
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -26,8 +23,7 @@ class Law:
     """Distribution of a value over surfaces, as a table; arguments have any shape.
 
     Shares are linear between the points of the table, of which the first and the last are those that lattices
-    resolve. Beyond them the share is a bound, that at the last point, with `error_at` = 1, and quantiles are
-    nan.
+    resolve. Beyond them the share is a bound, that at the last point, and quantiles are nan.
 
     Parameters
     ----------
@@ -39,8 +35,6 @@ class Law:
         Mean and variance over surfaces.
     ends : (float, float)
         Values that none is below, or above.
-    rounding : float
-        Of the shares.
     again : callable
         Computes the law once more, by other lattices and other cells of the heights.
     """
@@ -49,7 +43,6 @@ class Law:
     upto: Array
     moments: tuple[float, float]
     ends: tuple[float, float]
-    rounding: float
     again: Callable[[], Any]
 
     def __repr__(self) -> str:
@@ -114,28 +107,11 @@ class Law:
         """Probability that no asperity touches."""
         return float(self.cdf(0.0) - self.cdf(-_NOTHING))
 
-    def error_at(self, y: ArrayLike) -> Array:
-        """Return a relative error bound of the smaller one of cdf and sf, from the second computation."""
-        y = np.asarray(y, dtype=np.float64)
-        known, beyond = (y < self.ends[0]) | (y >= self.ends[1]), (y < self.x[0]) | (y > self.x[-1])
-        found = np.interp(y, self.x, self._bound) / np.maximum(np.minimum(self.cdf(y), self.sf(y)), _LEAST)
-        return np.select([known, beyond], [0.0, 1.0], found)[()]
-
-    @property
+    @cached_property
     def error(self) -> float:
         """Error bound of `cdf`, from the second computation."""
-        return float(self._bound.max())
-
-    @cached_property
-    def _bound(self) -> Array:
-        """Error bound at the points, by the largest difference of the second computation near each."""
-        from scipy.ndimage import maximum_filter1d  # few ask
-
-        again, middle = self.again(), (self.x[1:] + self.x[:-1]) / 2
-        apart = np.abs(self.cdf(self.x) - again.cdf(self.x))
-        apart[1:] = np.maximum(apart[1:], np.abs(self.cdf(middle) - again.cdf(middle)))
-        near = maximum_filter1d(apart, 1 + 2 * int(_NEIGHBOURS * self.x.size))
-        return np.asarray(_SAFE * near + _USUAL * np.sqrt(self.upto * (1 - self.upto)) + self.rounding)
+        again, x = self.again(), np.append(self.x, (self.x[1:] + self.x[:-1]) / 2)
+        return float(_SAFE * np.abs(self.cdf(x) - again.cdf(x)).max() + _USUAL)
 
     def mapped(self, forward: Callable[[Any], Any], *, falls: bool = False) -> "Law":
         """Return the law of a function that rises, or falls, with the value.
@@ -167,8 +143,4 @@ class Counted(Law):
     def __init__(self, of_number: Any) -> None:
         """Take its functions; `pdf` is the probability of a number."""
         functions = {name: getattr(of_number, name) for name in ("cdf", "sf", "ppf", "isf", "mean", "var")}
-        hold(self, **functions, pdf=of_number.pmf, _bound=np.array([_SCIPY]))
-
-    def error_at(self, y: ArrayLike) -> Array:
-        """Return the rounding of SciPy's functions."""
-        return np.full(np.shape(y), _SCIPY)[()]
+        hold(self, **functions, pdf=of_number.pmf, error=1e-14)

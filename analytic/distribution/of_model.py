@@ -18,7 +18,7 @@ from analytic.summits import Radii
 
 _POINTS = 2**15, 5 * 2**13  # of a lattice, and of another one
 _CELLS = 12_288, 20_480  # of the heights, by the root of the probability, and as many evenly between nodes
-_SCORES, _HIGHEST, _APART = 6.0, 6.5, 0.5  # of normal scores: looked for, told, and from one to the next
+_SCORES, _HIGHEST, _APART = 6.0, 6.5, 0.4  # of normal scores: looked for, told, and from one to the next
 _LONGER, _SMALLEST, _TABLE = 1.25, 1e-3, 8192
 _LEVEL = 1e-9  # of a score: all asperities touch, and the rest of the surfaces have none
 _JUST = 1e-9  # of a cell
@@ -38,37 +38,27 @@ def distribution_of(model: Any, quantity: str, h: float, *, other: bool = False)
     x, upto = shares(one, _POINTS[other])
     lowest = -np.inf if one.low.min(initial=0) < 0 else 0.0
     again = partial(distribution_of, model, quantity, h, other=True)
-    moments = unit * one.mean, unit**2 * one.variance
-    return Law(unit * x, upto, moments, (lowest, np.inf), one.rounding, again)
+    known = model.cumulants(quantity, h)
+    return Law(unit * x, upto, (float(known.mean), float(known.variance)), (lowest, np.inf), again)
 
 
 def one_asperity(model: Any, quantity: str, h: float, cells: int) -> OneAsperity:
     """Return what one asperity adds, over the scale of the quantity, by cells of heights."""
     rule, added = model.asperities(quantity, h)
-    values, p, n, poisson = added(rule), rule.probabilities, model.number, model.count == "poisson"
-    mean = float(p @ values)
-    square = float(p @ values**2) - (0 if poisson else mean**2)
-    low = high = values
+    low = high = added(rule)
+    p, mean = rule.probabilities, float(rule.probabilities @ low)
     if p.any() and not isinstance(model.heights, MeasuredHeights):
         lowest = max(min(h, model.ways.of(quantity).lowest(h)), model.heights.support[0])
-        low, high, p = _cells(model, h, rule, added, cells, lowest)
+        left, wide, p, ratios = cells_between(model, h, rule, cells, lowest)
+        at = np.concatenate([left + _JUST * wide, left + wide])  # right of where contacts begin
+        ratios = None if ratios is None else np.tile(ratios, 2)
+        low, high = added(replace(rule, heights=at, probabilities=0 * at, ratios=ratios)).reshape(2, -1)
         share = (mean - (p * (low + high)).sum() / 2) / ((p * (np.abs(low) + np.abs(high))).sum() / 2)
         low, high = low + share * np.abs(low), high + share * np.abs(high)
     touching = ((low != 0) | (high != 0)) & (p > 0)
     low, high, p = (x[touching] for x in (np.minimum(low, high), np.maximum(low, high), p))
     order = np.argsort(low + high)
-    return OneAsperity(low[order], high[order], p[order], n * mean, n * square, n, poisson)
-
-
-def _cells(
-    model: Any, h: float, rule: Any, added: Any, cells: int, lowest: float
-) -> tuple[Array, Array, Array]:
-    """Values at both ends of cells of the heights between the nodes of a rule, and their probabilities."""
-    left, wide, p, ratios = cells_between(model, h, rule, cells, lowest)
-    at = np.concatenate([left + _JUST * wide, left + wide])  # right of where contacts begin
-    ratios = None if ratios is None else np.tile(ratios, 2)
-    low, high = added(replace(rule, heights=at, probabilities=0 * at, ratios=ratios)).reshape(2, -1)
-    return low, high, p
+    return OneAsperity(low[order], high[order], p[order], model.number, model.count == "poisson")
 
 
 def cells_between(
@@ -107,30 +97,36 @@ def separation_law_of(model: Any, load: float, quantity: str, *, other: bool = F
         raise ValueError(
             f"quantity = {quantity!r}: give a sum that decreases with the separation, such as 'load'"
         )
-    start = float(model.separation_at(quantity, load))
-    check_falling(model, quantity, start)
-    unit = q.scale(model.surface)
-    one, target = one_asperity(model, quantity, start, _CELLS[other]), load / unit
-    spread = float(unit * one.usual[1] / model.slope(quantity, start))
-    score = cache(partial(score_of, model, quantity, target, other=other))
+    score, start, spread = scores_of(model, quantity, load, other=other)
     h = _between(score, start + other * spread / 7, spread)
     z = np.array([score(at) for at in h])
     x = np.interp(np.linspace(0, len(h) - 1, _TABLE), np.arange(len(h)), h)
-    smooth = make_interp_spline(h, z, min(_DEGREE, len(h) - 1))
-    upto = ndtr(np.maximum.accumulate(smooth(x)))
-    kept = (upto > one.rounding) & (upto < 1 - one.rounding)
-    middle, p = (x[kept][1:] + x[kept][:-1]) / 2, np.diff(upto[kept])
+    smooth = np.maximum.accumulate(make_interp_spline(h, z, min(_DEGREE, len(h) - 1))(x))
+    x, upto = x[np.abs(smooth) < _SCORES], ndtr(smooth[np.abs(smooth) < _SCORES])
+    middle, p = (x[1:] + x[:-1]) / 2, np.diff(upto)
     mean = float(p @ middle / p.sum())
     moments = mean, float(p @ (middle - mean) ** 2)
     again = partial(separation_law_of, model, load, quantity, other=True)
-    return Law(x[kept], upto[kept], moments, (-np.inf, np.inf), one.rounding, again)
+    return Law(x, upto, moments, (-np.inf, np.inf), again)
 
 
-def score_of(model: Any, quantity: str, target: float, h: float, *, other: bool = False) -> float:
-    """Return the normal score of the share of surfaces with no more than a target, over the scale."""
-    one = one_asperity(model, quantity, h, _CELLS[other] // 2)
-    share = float(shares_at(one, np.array([target]), _POINTS[other] // 2)[0])
-    return float(np.clip(ndtri(np.clip(share, 0.0, 1.0)), -_HIGHEST, _HIGHEST))
+def scores_of(
+    model: Any, quantity: str, value: float, *, other: bool = False
+) -> tuple[Callable[[float], float], float, float]:
+    """Return the normal score, at a separation, of the share of surfaces whose sum is no more than a value.
+
+    And where the mean surface has that value, and how far others lie from there, to first order. Sums that
+    may rise with the separation are a ValueError.
+    """
+    start = float(model.separation_at(quantity, value))
+    _check_falling(model, quantity, start)
+
+    @cache
+    def score(h: float) -> float:
+        share = shares_upto(model, quantity, h, model.number, np.array([value]), other=other)
+        return float(np.clip(ndtri(np.clip(share[0], 0.0, 1.0)), -_HIGHEST, _HIGHEST))
+
+    return score, start, float(model.std(quantity, start) / model.slope(quantity, start))
 
 
 def _between(score: Callable[[float], float], start: float, spread: float) -> list[float]:
@@ -151,26 +147,21 @@ def _between(score: Callable[[float], float], start: float, spread: float) -> li
     return places
 
 
-def shares_upto(model: Any, quantity: str, h: float) -> Callable[[float, Array], Array]:
+def shares_upto(
+    model: Any, quantity: str, h: float, number: float, values: Array, *, other: bool = False
+) -> Array:
     """Return the shares of surfaces of a number of asperities whose sum is no more than some values, SI.
 
     They are right to 1e-6 or better. For what is integrated over: one lattice that suits the largest of
     them, without the far tails of a `Law`.
     """
-    unit = quantity_of(quantity).scale(model.surface)
-    one = one_asperity(model, quantity, h, _CELLS[False] // 2)
-
-    def shares(number: float, values: Array) -> Array:
-        if number < 1:
-            return np.where(values >= 0, 1.0, 0.0)
-        part = number / one.number
-        some = replace(one, number=number, mean=part * one.mean, variance=part * one.variance)
-        return shares_at(some, values / unit, _POINTS[False] // 4)
-
-    return shares
+    if number < 1:
+        return np.where(values >= 0, 1.0, 0.0)
+    one = replace(one_asperity(model, quantity, h, _CELLS[other] // 2), number=number)
+    return shares_at(one, values / quantity_of(quantity).scale(model.surface), _POINTS[other] // 4)
 
 
-def check_falling(model: Any, quantity: str, h: float) -> None:
+def _check_falling(model: Any, quantity: str, h: float) -> None:
     """Refuse sums that may rise with the separation."""
     rule, added = model.asperities(quantity, h)
     if np.any(added(rule) < 0):

@@ -10,24 +10,22 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.special import log1p  # NumPy's loses digits of small complex numbers
 
-from analytic.arrays import Array, Complex
+from analytic.arrays import Array
 
-_ROUNDING = 5e-12  # of a probability of sums
+_ROUNDING = 5e-12  # of a probability of sums, times the root of the number of contacts
 _DAMPED = 20.0  # logarithm of the damping over a period, which is twice as long as what is read
+_SMOOTH = 500.0  # lengths of a lattice up to the lowest sum: these are so many that damping takes digits
 _STENCIL = range(-3, 4)  # lattice points that share a value and keep its moments up to the sixth
 _MARGIN = 16  # lattice points below the lowest sum
 _REACH = 9.0  # standard deviations that hold all but 1e-18
-_RARE = 1e-2, 1e-9  # asperities on a surface that add more than usual ones; that add less than next to all
-_WIDER = 32.0 ** np.arange(-2, 4)  # lattices than the narrowest
-_RESOLVED = 5.0  # lattice points in a standard deviation of the usual sums
-_SINGLE = 1e-9, 1e-12  # width of a single value, over the median and over itself
-_SMOOTH = 1e4  # mean over standard deviation of sums that damping would blow up
-_FEW = 1e-25  # surfaces that one asperity alone touches, below which a lattice may be too coarse for them
+_RARE, _NEVER = 1e-2, 1e-9  # asperities on a surface that add more than usual ones, and that pull more
+_RESOLVED = 1 / 12  # of the standard deviation of usual sums: a step of the lattice, unless of surfaces that
+_FEW = 1e-25  # or more expected asperities touch alone; they have a lattice narrower than of usual sums, too
+_WIDER = 32.0 ** np.arange(-1, 4)
+_SINGLE = 1e-9  # width of a single value, over itself and the median
 _OWN = 2  # lattice points to one that the distribution of one asperity has of its own
-_HOLDS = 1.02  # length of a lattice that holds a sum, with its margin
-_DIED = 45.0  # logarithm of a transform of sums
-_NEVER = 1e3  # a logarithm of what is 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,8 +36,6 @@ class OneAsperity:
     ----------
     low, high, probabilities : ndarray
         Asperities that touch, spread evenly between two values each, their middles increasing; shape (m,).
-    mean, variance : float
-        Of the sum over a surface.
     number : float
         Asperities on a surface, or their mean number.
     poisson : bool
@@ -49,12 +45,15 @@ class OneAsperity:
     low: Array
     high: Array
     probabilities: Array
-    mean: float
-    variance: float
     number: float
     poisson: bool
 
-    @property
+    @cached_property
+    def middle(self) -> Array:
+        """Middles of the values."""
+        return (self.low + self.high) / 2
+
+    @cached_property
     def share(self) -> float:
         """Probability that an asperity touches."""
         return min(float(self.probabilities.sum()), 1.0)
@@ -62,7 +61,7 @@ class OneAsperity:
     @property
     def rounding(self) -> float:
         """Of probabilities of sums: it grows as the mean in standard deviations."""
-        return _ROUNDING * float(np.clip(np.sqrt(self.number * self.share), 1.0, _SMOOTH))
+        return _ROUNDING * max(float(np.sqrt(self.number * self.share)), 1.0)
 
     @cached_property
     def none(self) -> float:
@@ -78,133 +77,91 @@ class OneAsperity:
     @cached_property
     def distribution(self) -> tuple[Array, Array]:
         """Values, and the share of asperities that touch and add no more: linear in between."""
-        median = np.interp(self.share / 2, np.cumsum(self.probabilities), np.abs(self.low + self.high) / 2)
-        width = np.maximum(self.high - self.low, _SINGLE[0] * median + _SINGLE[1] * np.abs(self.high))
-        left = np.where(self.high == self.low, self.low - width, self.low)
-        density, places = self.probabilities / width, np.concatenate([left, left + width])
+        median = np.interp(self.share / 2, np.cumsum(self.probabilities), np.abs(self.middle))
+        width = np.maximum(self.high - self.low, _SINGLE * (median + np.abs(self.high)))
+        density, places = self.probabilities / width, np.concatenate([self.high - width, self.high])
         order = np.argsort(places)
         slopes = np.cumsum(np.concatenate([density, -density])[order], dtype=np.longdouble)[:-1]
         places = places[order]
         return places, np.append(0.0, np.cumsum(slopes * np.diff(places))).astype(np.float64)
 
-    def with_few(self, x: Array, upto: Array) -> Array:
-        """Add surfaces that no asperity touches, or one, to the shares with sums up to x."""
-        own = np.interp(x, *self.distribution, left=0.0, right=self.share)
-        return np.asarray(upto + self.alone * own + self.none * (x >= 0))
-
     @cached_property
-    def usual(self) -> tuple[float, float, float]:
-        """Mean and standard deviation of sums without rare large values, and the largest value in them."""
-        x, p = (self.low + self.high) / 2, self.probabilities
-        rarer = self.number * np.cumsum(p[::-1])[::-1]
-        kept = rarer > min(_RARE[0], rarer[0] / 2)
-        mean = float((p * x)[kept].sum())
-        variance = float((p * x**2)[kept].sum()) - (0.0 if self.poisson else mean**2)
-        return self.number * mean, float(np.sqrt(self.number * max(variance, 0.0))), float(x[kept][-1])
-
-    @cached_property
-    def lowest(self) -> float:
-        """A sum that next to no surface stays below: by all values, or by the negative ones alone."""
-        x, p, n = np.minimum(self.low, 0.0), self.probabilities, self.number
-        usual, rarest = x[np.minimum(np.searchsorted(np.cumsum(p), np.array(_RARE) / n), x.size - 1)].tolist()
-        negative = n * (p * x).sum() - _REACH * np.sqrt(n * (p * x**2).sum())
-        mean, std, _ = self.usual
-        return float(max(mean - _REACH * std, negative) + 2 * (_REACH * usual + rarest))
-
-    def widths(self, points: int) -> list[float]:
-        """Lengths above the lowest sum that lattices cover, increasing."""
-        mean, std, largest = self.usual
-        width = mean + _REACH * std + max(largest, 0.0) - self.lowest
-        if self.alone < _FEW:
-            least, most = width, max(width, points * std / _RESOLVED)
-        else:
-            least, most = -self.lowest if self.lowest < 0 else width, np.inf
-        return [w for w in width * _WIDER if least <= w <= most]
+    def span(self) -> tuple[float, float, float]:
+        """Lowest sum, highest one of surfaces without rare large values, longest step of a lattice."""
+        x, p, n = self.middle, self.probabilities, self.number
+        rarer = n * np.cumsum(p[::-1])[::-1]
+        usual, pull = np.where(rarer > min(_RARE, rarer[0] / 2), x, 0.0), np.minimum(x, 0.0)
+        means, squares = ((p * np.stack([usual, pull]) ** k).sum(axis=1) for k in (1, 2))
+        spread = np.sqrt(n * np.maximum(squares - (0.0 if self.poisson else means**2), 0.0))
+        deepest = pull[min(int(np.searchsorted(n * np.cumsum(p), _NEVER)), x.size - 1)]
+        low = (n * means - _REACH * spread).max() + 2 * deepest
+        high = n * means[0] + _REACH * spread[0] + max(usual.max(), 0.0)
+        return float(low), float(high), np.inf if self.alone > _FEW else _RESOLVED * float(spread[0])
 
 
-def on_lattice(one: OneAsperity, width: float, points: int) -> tuple[Array, Array]:
-    """Return sums above the lowest one, and the share of surfaces with two contacts or more up to each.
+def on_lattice(one: OneAsperity, x: Array, low: float, high: float, points: int) -> Array:
+    """Return the shares of surfaces in contact with sums up to x, which lie between two.
 
-    Values beyond the width are left out: no sum that is read has them.
+    Values beyond are left out: no sum that is read has them.
     """
-    step, size = width / points, 2 * points
-    first = float(np.floor(one.lowest / step)) - _MARGIN
-    smooth = one.mean > _SMOOTH * one.usual[1]
-    k, damping = np.arange(size), 0.0 if smooth else _DAMPED / size
+    step, size = (high - low) / points, 2 * points
+    damping = _DAMPED / size if low < _SMOOTH * (high - low) else 0.0
+    first, k = np.floor(low / step) - _MARGIN, np.arange(size)
     signed = np.where(k < 3 * points // 2, k, k - size)
-    f, lost = _stencil(one, step, size)
+    places, p, f = one.middle / step, one.probabilities, np.zeros(size)
+    kept = (places < points + 2 * _MARGIN) & (places > -points / 2)
+    near, p, lost = np.rint(places[kept]), p[kept], float(p[~kept].sum())
+    off, at = places[kept] - near, near.astype(np.int64)
+    for i in _STENCIL:  # by Lagrange's weights
+        weights = np.prod([(off - j) / (i - j) for j in _STENCIL if j != i], axis=0)
+        f += np.bincount((at + i) % size, p * weights, size)
     centre = float((f * signed).sum())
     f[[1, -1]] -= centre / 2, -centre / 2  # apart from what scatters: it takes digits where N is large
     f[0] = 0.0
     f[0] = -f.sum() - lost  # so that many small values lose no digits
-    f[1:] *= np.exp(-damping * signed[1:])
-    scatter = np.fft.rfft(f)
-    z = damping + 2j * np.pi / size * k[: scatter.size]
+    scatter, z = np.fft.rfft(f * np.exp(-damping * signed)), damping + 2j * np.pi / size * k[: points + 1]
     q = scatter - centre * np.sinh(z)
-    log = scatter - centre * (np.sinh(z) - z) - (0.0 if one.poisson else q - _log1p(q))
-    log = one.number * log + z * (first - one.number * centre)
-    if smooth:  # no more comes, whatever a stencil makes of high frequencies
-        log[np.argmax(log.real < log.real[0] - _DIED) :] = -np.inf
-    spectrum = np.exp(log)
+    log = q + centre * z - (0.0 if one.poisson else q - log1p(q))
+    spectrum = np.exp(one.number * log + z * (first - one.number * centre))
     if one.alone:
         spectrum -= (one.none + one.alone * (q + one.share)) * np.exp(z * first)
-    p = np.fft.irfft(spectrum, size)[:points] * np.exp(damping * k[:points])
-    upto = np.cumsum(p) - p / 2
-    return np.asarray((first + k[:points]) * step), np.asarray(upto)
-
-
-def _stencil(one: OneAsperity, step: float, size: int) -> tuple[Array, float]:
-    """Probabilities of values at the points of a lattice, by Lagrange's weights, and of those beyond it."""
-    places, p = (one.low + one.high) / (2 * step), one.probabilities
-    kept = (places < size / 2) & (places > -size / 4)
-    lost, places, p, f = float(p[~kept].sum()), places[kept], p[kept], np.zeros(size)
-    near = np.rint(places)
-    off, at = places - near, near.astype(np.int64)
-    for i in _STENCIL:
-        weights = p.copy()
-        for j in _STENCIL:
-            if j != i:
-                weights *= (off - j) / (i - j)
-        f += np.bincount((at + i) % size, weights, size)
-    return f, lost
-
-
-def _log1p(q: Complex) -> Complex:
-    """``log(1 + q)``, of which NumPy's loses digits where q is small."""
-    with np.errstate(divide="ignore"):
-        size = np.maximum(np.log1p(2 * q.real + np.abs(q) ** 2) / 2, -_NEVER)
-    return np.asarray(size + 1j * np.arctan2(q.imag, 1 + q.real))
+    read = k[: points + 2 * _MARGIN]
+    p = np.fft.irfft(spectrum, size)[read] * np.exp(damping * read)
+    several = np.interp(x, (first + read) * step, np.cumsum(p) - p / 2, left=0.0)
+    return np.asarray(several + one.alone * np.interp(x, *one.distribution, left=0.0, right=one.share))
 
 
 def shares_at(one: OneAsperity, x: Array, points: int) -> Array:
-    """Return the shares of surfaces with sums up to x, by the narrowest lattice that holds them."""
-    for width in one.widths(points) if one.low.size else []:
-        if one.lowest + width > x.max():
-            if one.alone > _FEW and x.max() > one.lowest:  # what is beyond the largest does not count
-                width = min(width, _HOLDS * float(x.max() - one.lowest))
-            return one.with_few(x, np.interp(x, *on_lattice(one, width, points), left=0.0))
-    return np.where((x >= 0) | bool(one.low.size), 1.0, 0.0)
+    """Return the shares of surfaces with sums up to x, by a lattice that ends with the largest of them.
+
+    Of many contacts it has usual sums, and ends where it would not resolve them: the share is then a bound.
+    """
+    if not one.low.size:
+        return np.where(x >= 0, 1.0, 0.0)
+    low, usual, step = one.span
+    if x.max() <= low:
+        return np.where((x >= 0) & (x >= low), 1.0, 0.0)
+    high = float(np.clip(x.max(), low if np.isinf(step) else usual, max(usual, low + points * step)))
+    return on_lattice(one, x, low, high, points) + one.none * (x >= 0)
 
 
 def shares(one: OneAsperity, points: int) -> tuple[Array, Array]:
     """Return sums and the shares of surfaces up to them, by ever wider lattices; a jump is a sum twice."""
     if not one.low.size:
         return np.zeros(2), np.array([0.0, 1.0])
-    own = one.distribution[0]
-    x, upto = np.zeros(0), np.zeros(0)
-    for width in one.widths(points):
-        lattice, p = on_lattice(one, width, points)
-        new = np.union1d(lattice, own[:: max(1, _OWN * own.size // points)])
-        new = new[(new > max(lattice[0], x[-1] if x.size else -np.inf)) & (new <= lattice[-1])]
-        x, upto = np.append(x, new), np.append(upto, one.with_few(new, np.interp(new, lattice, p)))
-        if upto[-1] > 1 - one.rounding:
+    own, x, upto, (low, usual, step) = one.distribution[0], np.zeros(0), np.zeros(0), one.span
+    begin, least = low, -low if np.isinf(step) else usual - low
+    for end in [low + w for w in (usual - low) * _WIDER if least <= w <= max(points * step, usual - low)]:
+        new = np.union1d(np.linspace(low, end, points), own[:: max(1, _OWN * own.size // points)])
+        new = np.union1d(new[(new > begin) & (new <= end)], [0.0] if begin <= 0 else [])
+        x, upto, begin = np.append(x, new), np.append(upto, on_lattice(one, new, low, end, points)), end
+        if upto[-1] > 1 - one.none - one.rounding:
             break
-    if one.low.min() >= 0:  # sums below 0 are there for interpolation
-        x, upto = np.append(0.0, x[x > 0]), np.append(one.none, upto[x > 0])
-    at = int(np.searchsorted(x, 0.0))
-    x, upto = np.insert(x, at, 0.0), np.insert(upto, at, max(upto[at] - one.none, 0.0))
-    upto = np.maximum.accumulate(np.clip(upto, one.rounding, 1 - one.rounding))
-    kept = np.flatnonzero((upto > one.rounding) & (upto < 1 - one.rounding))
-    kept = kept if kept.size else np.array([np.argmax(upto >= 0.5)])
-    table = slice(max(kept[0] - 1, 0), kept[-1] + 2)
-    return x[table], upto[table]
+    at, upto = int(np.searchsorted(x, 0.0)), np.maximum.accumulate(upto)
+    if one.low.min() >= 0:  # no rounding beside the surfaces that nothing touches
+        upto[: at + 1] = 0.0
+    x, upto = np.insert(x, at, 0.0), np.insert(upto, at, upto[at])
+    upto[at + 1 :] += one.none
+    upto = np.clip(upto, one.rounding, 1 - one.rounding)
+    first, last = np.searchsorted(upto, upto[0], "right"), np.searchsorted(upto, upto[-1])
+    return x[max(first - 1, 0) : last + 1], upto[max(first - 1, 0) : last + 1]
