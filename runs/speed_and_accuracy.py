@@ -20,8 +20,8 @@ import mcgw
 from mcgw.figures.panels import save
 from mcgw.figures.studies import tradeoff_figure
 from mcgw.statistics.measured_ways import Answers, moved
-from mcgw.statistics.prices import TARGETS, WANTS, Advice, Needs, Way, advise
 from mcgw.statistics.tradeoff import Tradeoff, tradeoff
+from mcgw.statistics.ways import TARGETS, WANTS, Advice, Way, advise, surfaces_for
 
 HERE = Path(__file__).parent
 FOLDER = HERE / "speed"
@@ -63,7 +63,6 @@ def advised(study: Tradeoff) -> Iterator[tuple[Advice, list[float]]]:
 def carried_out(name: str, study: Tradeoff) -> Iterator[dict[str, Any]]:
     """A row for each advice: how often its target was reached, and seconds over what was said."""
     scene, answers = study.scene, Answers(study.scene)
-    needs = Needs(scene)
     for advice, targets in advised(study):
         way, target = advice.way, min(targets)
         assert way is not None
@@ -76,7 +75,7 @@ def carried_out(name: str, study: Tradeoff) -> Iterator[dict[str, Any]]:
                 or other.floor > target
             ):
                 continue
-            n = needs.surfaces(way.want, target - other.floor) if other.draws else 0
+            n = surfaces_for(scene, way.want, target - other.floor) if other.draws else 0
             if other.measured and other.seconds(n) <= CHEAP:
                 others[other.name] = runner(answers, scene, other, int(n))
         seconds, errors = [], []
@@ -124,7 +123,6 @@ def runner(answers: Answers, scene: mcgw.Scene, way: Way, n_surfaces: int) -> An
 
 def companions(name: str, study: Tradeoff) -> Iterator[dict[str, Any]]:
     """Advice for single surfaces if the way that is advised were 1 % wrong, or ten times slower."""
-    needs = Needs(study.scene)
     first = study.advice("values", 1e-6)
     if first.way is None:
         return
@@ -133,7 +131,7 @@ def companions(name: str, study: Tradeoff) -> Iterator[dict[str, Any]]:
     }}  # fmt: skip
     for what, change in changes.items():
         ways = [replace(w, **change) if w.name == first.way.name else w for w in study.ways]
-        then = advise("values", 1e-6, ways, needs)
+        then = advise("values", 1e-6, ways, study.scene)
         yield {
             "scene": name,
             "advised": first.way.name,

@@ -30,8 +30,8 @@ def tradeoff(
     """
     from mcgw.figures.panels import save
     from mcgw.figures.studies import tradeoff_figure
-    from mcgw.statistics.prices import TARGETS
     from mcgw.statistics.tradeoff import tradeoff as studied
+    from mcgw.statistics.ways import TARGETS
 
     table, measured, figure = output
     found = studied(scene, seconds=seconds)

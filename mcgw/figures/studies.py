@@ -1,7 +1,7 @@
 """Figures of the two studies of a scene: its convergence test, and error against time."""
 
-from collections.abc import Iterator
 from dataclasses import replace
+from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -12,10 +12,9 @@ from mcgw.figures.data import FigureData, Mark, Panel, words
 from mcgw.figures.style import BAND, HOMOGENEOUS, LEVEL, MONTE_CARLO, SEEN, THEORY, look, shown_title
 from mcgw.statistics.checks import Slope
 from mcgw.statistics.convergence import Convergence
-from mcgw.statistics.ladder import Rung
-from mcgw.statistics.prices import SOLVE, WANTS
 from mcgw.statistics.tradeoff import Tradeoff
 from mcgw.statistics.verdict import FALSE_ALARM
+from mcgw.statistics.ways import SOLVE, WANTS
 
 _SURFACES, _ASPERITIES = "surfaces $M$", "asperities $N$"
 _FLOOR, _LEAST = 1e-14, 1e-12  # errors and probabilities that are drawn
@@ -101,7 +100,7 @@ def tradeoff_figure(found: Tradeoff) -> FigureData:
     within = {"xlim": (min(times) / 2, 2 * max(times))}
     answers = (errors_panel(found, want) for want in WANTS)
     panels = (*(replace(x, settings=x.settings | within) for x in answers), _ladder_panel(found))
-    return FigureData(title, found.ladder.sentence, panels, columns=3)
+    return FigureData(title, found.worth, panels, columns=3)
 
 
 def errors_panel(found: Tradeoff, want: str) -> Panel:
@@ -115,51 +114,44 @@ def errors_panel(found: Tradeoff, want: str) -> Panel:
     marks: list[Mark] = []
     for way in kept:
         own = _RULES.get(way.name) or {key: look(way.name)[key] for key in ("color", "marker")}
-        if way.draws and want != "values":
-            marks += _points(found, want, way.name, own)
-            continue
-        seconds, floor = way.seconds(found.scene.n_surfaces), max(way.floor, _FLOOR)
-        marks.append(Mark("plot", (seconds, floor), {"ls": "", "ms": 6, "label": way.name, **own}))
+        points = [p for p in found.points if (p.way, p.want) == (way.name, want) and p.n_surfaces]
+        if not way.draws or want == "values":
+            seconds, floor = way.seconds(found.scene.n_surfaces), max(way.floor, _FLOOR)
+            marks.append(Mark("plot", (seconds, floor), {"ls": "", "ms": 6, "label": way.name, **own}))
+        elif points:  # of growing numbers of surfaces, and the line that falls with the root of these
+            time, size, error, stderr = np.array(
+                [(p.seconds, p.n_surfaces, p.rms, p.stderr) for p in points]
+            ).T
+            of_one = np.exp(np.mean(np.log(_TWO * error) + np.log(size) / 2))
+            marks.append(Mark("plot", (time, of_one / np.sqrt(size)), {"color": own["color"], "lw": 1}))
+            bars = time, _TWO * error, _TWO**2 * stderr
+            marks.append(Mark("errorbar", bars, {"ls": "", "ms": 4, "label": way.name, **own}))
         if not way.draws:
             marks.append(Mark("axhline", (floor,), {"color": own["color"], "lw": 0.8, "ls": ":"}))
     limits = {"ylim": (_FLOOR / 3, 3)}
     return Panel(title, _TIME, _BOUND, scales=("log", "log"), marks=tuple(marks), settings=limits)
 
 
-def _points(found: Tradeoff, want: str, name: str, own: dict[str, Any]) -> Iterator[Mark]:
-    """Measured errors of growing numbers of surfaces, and the line that falls with the root of these."""
-    points = [p for p in found.points if (p.way, p.want) == (name, want) and p.n_surfaces]
-    if not points:
-        return
-    seconds, size = [p.seconds for p in points], np.array([p.n_surfaces for p in points])
-    error, bars = [_TWO * p.rms for p in points], [_TWO**2 * p.stderr for p in points]
-    of_one = np.exp(np.mean(np.log(error) + np.log(size) / 2))
-    yield Mark("plot", (seconds, of_one / np.sqrt(size)), {"color": own["color"], "lw": 1})
-    yield Mark("errorbar", (seconds, error, bars), {"ls": "", "ms": 4, "label": name, **own})
-
-
 def _ladder_panel(found: Tradeoff) -> Panel:
     """Whole errors of the conductance at a load against time, model by model; their parts as thin lines."""
     marks: list[Mark] = []
-    rungs = found.ladder.rungs
-    if not np.isnan(rungs[0].model):
-        marks.append(
-            Mark("axhline", (rungs[0].model,), {"color": LEVEL, "lw": 1, "label": "error of the model"})
-        )
-    for name in dict.fromkeys(rung.name for rung in rungs):
-        marks += _model([rung for rung in rungs if rung.name == name])
+    model = found.ladder[0].model
+    known = not np.isnan(model)
+    if known:
+        marks.append(Mark("axhline", (model,), {"color": LEVEL, "lw": 1, "label": "error of the model"}))
+    for name, group in groupby(found.ladder, lambda rung: rung.name):
+        rungs, own = [*group], _RULES[name]
+        time, whole = [r.seconds for r in rungs], [r.whole if known else r.drawn for r in rungs]
+        if len(rungs) == 1:
+            marks.append(Mark("plot", (time, whole), {**own, "ms": 5, "ls": "", "label": name}))
+            continue
+        marks.append(Mark("plot", (time, whole), {**own, "ms": 5, "ls": "-", "label": name}))
+        if known:
+            part = {"color": own["color"], "lw": 0.8, "ls": ":"}
+            marks.append(Mark("plot", (time, [r.drawn for r in rungs]), part))
+        for r, error in zip(rungs, whole, strict=True):
+            beside = {"textcoords": "offset points", "fontsize": 7, "ha": "center"}
+            marks.append(Mark("annotate", (f"{r.n_surfaces:g}", (r.seconds, error), (0, 5)), beside))
     title = "conductance at its load, by numbers of surfaces or maps; dotted: without the model"
-    return Panel(
-        title, _TIME, "whole error (95 % bound)", scales=("log", "log"), marks=tuple(marks), wide=True
-    )
-
-
-def _model(rungs: list[Rung]) -> Iterator[Mark]:
-    own, many, known = _RULES[rungs[0].name], len(rungs) > 1, not np.isnan(rungs[0].model)
-    time, whole = [r.seconds for r in rungs], [r.whole if known else r.drawn for r in rungs]
-    yield Mark("plot", (time, whole), {**own, "ms": 5, "ls": "-" if many else "", "label": rungs[0].name})
-    if many and known:
-        yield Mark("plot", (time, [r.drawn for r in rungs]), {"color": own["color"], "lw": 0.8, "ls": ":"})
-    for r, error in zip(rungs, whole, strict=True) if many else ():
-        beside = {"textcoords": "offset points", "fontsize": 7, "ha": "center"}
-        yield Mark("annotate", (f"{r.n_surfaces:g}", (r.seconds, error), (0, 5)), beside)
+    whole_error = "whole error (95 % bound)"
+    return Panel(title, _TIME, whole_error, scales=("log", "log"), marks=tuple(marks), wide=True)

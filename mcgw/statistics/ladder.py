@@ -8,14 +8,13 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from math import hypot, isnan
-from typing import Any
 
 import numpy as np
 
 from mcgw.ensemble.drawing import in_words
 from mcgw.errors import RunError
 from mcgw.scene.scene import Scene
-from mcgw.statistics.prices import Needs
+from mcgw.statistics.ways import SOLVE, Way, of_one
 from mcgw.validity.model_error import percent
 
 _SIZES = (2, 10, 100, 1000, 10_000, 100_000)
@@ -41,45 +40,32 @@ class Rung:
         return hypot(self.drawn, self.model)
 
 
-@dataclass(frozen=True)
-class Ladder:
-    """Rungs from cheap to dear, and why the error of the model is not known where it is not."""
-
-    rungs: tuple[Rung, ...]
-    unknown: str
-
-    @property
-    def sentence(self) -> str:
-        """Where more surfaces stop to help."""
-        formula = self.rungs[0]
-        if isnan(formula.model):
-            return f"The error of the model is not known here: {self.unknown}."
-        parts = [f"The model is off by {percent(formula.model)}"]
-        enough = [r for r in self.rungs[1:] if r.name == "surfaces" and r.whole <= _ENOUGH * formula.model]
-        if formula.whole <= _ENOUGH * formula.model:
-            parts.append(f"theory, {in_words(formula.seconds)}, is as good as any number of surfaces")
-        elif enough:
-            parts.append(f"more than {enough[0].n_surfaces} surfaces do not help")
-        dear = [r for r in self.rungs if r.name == "boundary elements" and r.whole < formula.whole]
-        if dear:
-            parts.append(f"`mcgw elastic` gets {percent(dear[-1].whole)} in {in_words(dear[-1].seconds)}")
-        return f"{'; '.join(parts)}."
+def worth(ladder: Sequence[Rung], unknown: str) -> str:
+    """Say where more surfaces stop to help, or why the error of the model is not known."""
+    formula = ladder[0]
+    if isnan(formula.model):
+        return f"The error of the model is not known here: {unknown}."
+    parts = [f"The model is off by {percent(formula.model)}"]
+    enough = [r for r in ladder if r.name == "surfaces" and r.whole <= _ENOUGH * formula.model]
+    if formula.whole <= _ENOUGH * formula.model:
+        parts.append(f"theory, {in_words(formula.seconds)}, is as good as any number of surfaces")
+    elif enough:
+        parts.append(f"more than {enough[0].n_surfaces} surfaces do not help")
+    dear = [r for r in ladder if r.name == "boundary elements" and r.whole < formula.whole]
+    if dear:
+        parts.append(f"`mcgw elastic` gets {percent(dear[-1].whole)} in {in_words(dear[-1].seconds)}")
+    return f"{'; '.join(parts)}."
 
 
-def ladder_of(scene: Scene, alone: Scene, load: float, ways: Sequence[Any]) -> Ladder:
-    """Rungs of the whole scene; `alone` is that of its asperities at the one separation of the load."""
-    h = alone.separations[0]
-    validity = scene.validity([h])
-    model = float(validity.error["stiffness"][0])
+def ladder_of(scene: Scene, alone: Scene, load: float, ways: Sequence[Way], model: float) -> Iterator[Rung]:
+    """Yield the rungs of a scene whose model is so far off; `alone`: its asperities at the separation."""
     by = {way.name: way for way in ways if way.want == "conductance"}
-    theory = by.get("theory") or next(way for way in ways if way.name == "theory")
-    rungs = [Rung("formula", 0, theory.seconds(0), theory.floor, model)]
-    if "solve" in by:
-        of_one = Needs(alone).at_load
-        rungs += [Rung("surfaces", n, by["solve"].seconds(n), of_one / n**0.5, model) for n in _SIZES]
+    theory = by["theory"]
+    yield Rung("formula", 0, theory.seconds(0), theory.floor, model)
+    for n in _SIZES if SOLVE in by else ():
+        yield Rung("surfaces", n, by[SOLVE].seconds(n), of_one(alone, "conductance") / n**0.5, model)
     with suppress(ValueError, RunError):  # without a spectrum, or Tamaas, the ladder ends here
-        rungs += _of_maps(scene, load / scene.surface.nominal_area)
-    return Ladder(tuple(rungs), validity.unknown or "not measured")
+        yield from _of_maps(scene, load / scene.surface.nominal_area)
 
 
 def _of_maps(scene: Scene, pressure: float) -> Iterator[Rung]:

@@ -6,8 +6,7 @@ Times are of the CPU, all cores together: what else a machine does changes the c
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
-from functools import partial
+from dataclasses import dataclass, field
 from time import process_time
 from typing import Any
 
@@ -22,7 +21,7 @@ from mcgw.ensemble.solution import solutions
 from mcgw.sampling.asperities import worst_of_values
 from mcgw.sampling.expected import expected
 from mcgw.scene.scene import Scene
-from mcgw.statistics.prices import PROBABILITY, SOLVE, Needs, Way, sampler_of, wants_of
+from mcgw.statistics.ways import PROBABILITY, SOLVE, Way, drawn_by, of_one, wants_of
 
 REPEATS = 16
 _FEWEST = 3  # repeats of what draws nothing and takes long
@@ -57,15 +56,16 @@ class Point:
     repeats: int
 
 
+@dataclass
 class Task:
     """A way at a size: a timed call on the scene of each repeat, and the errors of what it returns."""
 
-    def __init__(
-        self, way: str, n_surfaces: int, call: Callable[[Scene], Any], compare: Callable[[Any], Errors]
-    ) -> None:
-        self.way, self.n_surfaces, self.call, self.compare = way, n_surfaces, call, compare
-        self.errors: list[Errors] = []
-        self.seconds: list[float] = []
+    way: str
+    n_surfaces: int
+    call: Callable[[Scene], Any]
+    compare: Callable[[Any], Errors]
+    errors: list[Errors] = field(default_factory=list)
+    seconds: list[float] = field(default_factory=list)
 
     def run(self, scene: Scene, limit: float = np.inf) -> None:
         """Run it once; a long one that draws nothing not again once it has spent its limit of seconds."""
@@ -93,36 +93,43 @@ class Answers:
 
     def __init__(self, scene: Scene) -> None:
         self.q, self.h, theory = scene.quantities[0], scene.separations[0], scene.theory
-        self.load = float(theory.mean("load", self.h))
+        self.load, self.scene, self.at = float(theory.mean("load", self.h)), scene, np.empty(0)
         self.known = {name: float(getattr(theory, name)(self.q, self.h)) for name in ("mean", "std")}
         if not self.known["mean"]:
             raise ValueError(
                 f"mean {self.q} at d/sigma = {self.h:g} is 0: a relative error needs a mean that is not; "
                 "change separations"
             )
-        self.touching, self.of_one, self.at = scene.touching, Needs(scene).at_load, np.empty(0)
         with suppress(KeyError, ValueError):
             law = theory.distribution(self.q, self.h)
             self.at = np.array(law.ppf(_LEVELS))
             self.levels, self.known["quantile"] = np.array(law.cdf(self.at)), float(law.ppf(PROBABILITY))
         if laws_are_quick(scene):
             with suppress(KeyError, ValueError, IndexError):
-                found = specimen_moments(theory, "load", self.load, ["conductance"]).mean
-                self.known["conductance"] = found["conductance"]
+                self.known["conductance"] = self._by_law(scene)
 
-    def _off(self, want: str, value: float) -> Errors:
-        """Error of an answer; none where it is not known."""
-        return {want: value / self.known[want] - 1} if want in self.known else {}
+    def _load(self, scene: Scene) -> float:
+        """Return the load, moved as the scene of a repeat is."""
+        return self.load * (1 + scene.separations[0] - self.h)
 
-    def _off_at_load(self, value: float) -> Errors:
+    def _by_law(self, scene: Scene) -> float:
+        return specimen_moments(scene.theory, "load", self._load(scene), ["conductance"]).mean["conductance"]
+
+    def _by_theory(self, scene: Scene) -> float:
+        h = scene.theory.separation_at("load", self._load(scene))
+        return float(scene.theory.mean("conductance", h))
+
+    def _at_load(self, value: float) -> Errors:
         """Error of a conductance; where the mean over specimens is not known, theory's by its order 1/N."""
-        return self._off("conductance", float(value)) or {"conductance": self.of_one**2}
+        known = self.known.get("conductance")
+        return {"conductance": of_one(self.scene, "conductance") ** 2 if known is None else value / known - 1}
 
     def of_sample(self, x: Array) -> Errors:
         """Errors of the answers that a sample of surfaces gives."""
-        errors = self._off("mean", float(x.mean())) | self._off("std", float(x.std(ddof=1)))
-        if x.size >= _FEWEST_FOR_QUANTILE:
-            errors |= self._off("quantile", float(np.quantile(x, PROBABILITY)))
+        found = {"mean": float(x.mean()), "std": float(x.std(ddof=1))}
+        if x.size >= _FEWEST_FOR_QUANTILE and "quantile" in self.known:
+            found["quantile"] = float(np.quantile(x, PROBABILITY))
+        errors = {want: value / self.known[want] - 1 for want, value in found.items()}
         if self.at.size:
             below = np.searchsorted(np.sort(x), self.at, side="right") / x.size
             errors["distribution"] = float(np.abs(below - self.levels).max())
@@ -131,46 +138,35 @@ class Answers:
     def without_surfaces(self) -> Iterator[Task]:
         """Ways that draw nothing; their errors are those that tests hold them to."""
 
-        def by_theory(name: str, scene: Scene) -> Any:
-            return getattr(scene.theory, name)(self.q, scene.separations[0])
+        def task(way: str, want: str, call: Callable[[Scene], Any]) -> Task:
+            return Task(way, 0, call, lambda _: {want: 0.0})
 
-        def at_load(scene: Scene) -> float:
-            h = scene.theory.separation_at("load", self._load(scene))
-            return float(scene.theory.mean("conductance", h))
+        def law(scene: Scene) -> Any:
+            return scene.theory.distribution(self.q, scene.separations[0])
 
-        yield Task("theory", 0, partial(by_theory, "mean"), lambda _: {"mean": 0.0})
-        yield Task("theory", 0, partial(by_theory, "std"), lambda _: {"std": 0.0})
-        yield Task("theory", 0, at_load, self._off_at_load)
-        if "conductance" in self.known and self.touching < _MOST_LISTED:
-            yield Task("exact law", 0, self._exactly, lambda _: {"conductance": 0.0})
+        yield task("theory", "mean", lambda s: s.theory.mean(self.q, s.separations[0]))
+        yield task("theory", "std", lambda s: s.theory.std(self.q, s.separations[0]))
+        yield Task("theory", 0, self._by_theory, self._at_load)
+        if "conductance" in self.known and self.scene.touching < _MOST_LISTED:
+            yield task("exact law", "conductance", self._by_law)
         if self.at.size:
-            law = partial(by_theory, "distribution")
-            yield Task("exact law", 0, lambda s: law(s).ppf(PROBABILITY), lambda _: {"quantile": 0.0})
-            yield Task("exact law", 0, lambda s: law(s).cdf(self.at), lambda _: {"distribution": 0.0})
-
-    def _load(self, scene: Scene) -> float:
-        """Return the load, moved as the scene of a repeat is."""
-        return self.load * (1 + scene.separations[0] - self.h)
-
-    def _exactly(self, scene: Scene) -> float:
-        return specimen_moments(scene.theory, "load", self._load(scene), ["conductance"]).mean["conductance"]
-
-    def _drawn(self, n_surfaces: int, scene: Scene) -> float:
-        scene = scene.replace(n_surfaces=n_surfaces)
-        (found,) = solutions(scene, "load", [self._load(scene)], draw=True)
-        return float(found.surfaces["conductance"].mean())
+            yield task("exact law", "quantile", lambda s: law(s).ppf(PROBABILITY))
+            yield task("exact law", "distribution", lambda s: law(s).cdf(self.at))
 
     def sampled(self, name: str, n_surfaces: int) -> Task:
         """Return a way that draws so many surfaces: at the separation, or at the load."""
+
+        def values(scene: Scene) -> Array:
+            return simulate(scene, sampler=name, n_surfaces=n_surfaces)[self.q][:, 0]
+
+        def solved(scene: Scene) -> float:
+            scene = scene.replace(n_surfaces=n_surfaces)
+            (found,) = solutions(scene, "load", [self._load(scene)], draw=True)
+            return float(found.surfaces["conductance"].mean())
+
         if name == SOLVE:
-            return Task(name, n_surfaces, partial(self._drawn, n_surfaces), self._off_at_load)
-        sampler = sampler_of(name)
-        return Task(
-            name,
-            n_surfaces,
-            lambda s: simulate(s, sampler=sampler, n_surfaces=n_surfaces)[self.q][:, 0],
-            self.of_sample,
-        )
+            return Task(name, n_surfaces, solved, self._at_load)
+        return Task(name, n_surfaces, values, self.of_sample)
 
 
 def moved(scene: Scene, number: int) -> Scene:
@@ -179,42 +175,38 @@ def moved(scene: Scene, number: int) -> Scene:
     return scene.replace(separations=(scene.separations[0] + _SHIFT * number,), seed=seed)
 
 
-def sized(answers: Answers, name: str, scene: Scene, share: float) -> list[Task]:
-    """Return a way at all sizes of which 16 repeats fit into its share of seconds, each run before."""
-    tasks: list[Task] = []
-    rough = expected(scene.replace(sampler=sampler_of(name))).seconds
+def sized(answers: Answers, name: str, share: float) -> Iterator[Task]:
+    """Yield a way at all sizes of which 16 repeats fit into its share of seconds, each run before."""
+    each = expected(drawn_by(answers.scene, name)).seconds
     for size in _SIZES:
-        each = tasks[-1].seconds[-1] / tasks[-1].n_surfaces if size >= _RELIABLE else rough
         if REPEATS * size * each > share:
-            break
-        tasks.append(answers.sampled(name, size))
+            return
+        task = answers.sampled(name, size)
         for number in (-2, -1):  # the first compiles
-            tasks[-1].run(moved(scene, number))
-    for task in tasks:
+            task.run(moved(answers.scene, number))
+        if 10 * size >= _RELIABLE:
+            each = task.seconds[-1] / size
         task.errors, task.seconds = [], []
-    return tasks
+        yield task
 
 
-def prices(scene: Scene, points: Sequence[Point], names: Sequence[str]) -> list[Way]:
-    """Return set-up and cost of a surface from the times of all sizes; floors from what is off."""
+def prices(scene: Scene, points: Sequence[Point], names: Sequence[str]) -> Iterator[Way]:
+    """Yield set-up and cost of a surface from the times of all sizes; floors from what is off."""
     tested = {"theory": _HERTZ if scene.hertzian and scene.summits is None else _OTHERS, "exact law": _LAW}
-    still = [p for p in points if p.way in tested]
-    ways = [Way(p.way, p.want, max(tested[p.way], p.rms), p.seconds, 0.0) for p in still]
+    for p in points:
+        if p.way in tested:
+            yield Way(p.way, p.want, max(tested[p.way], p.rms), p.seconds, 0.0)
     for name in names:
+        asked = drawn_by(scene, name)
+        rough = expected(asked)
         own = [p for p in points if p.way == name]
-        asked, worst = scene.replace(sampler=sampler_of(name)), 0.0
-        rough = expected(asked).seconds
-        if "values" in wants_of(name) and expected(asked).draws < _MOST_LISTED:
-            worst = worst_of_values(asked, _LISTED)
-        for want in wants_of(name):
-            timed = [p for p in own if p.want == ("conductance" if name == SOLVE else "mean")]
-            bias = ([p.bias for p in own if p.want == want] or [p.bias for p in timed] or [0.0])[-1]
-            floor = worst if want == "values" else bias
-            if timed:
-                ways.append(Way(name, want, floor, *_price(timed, rough)))
-            elif name != SOLVE:
-                ways.append(Way(name, want, floor, 0.0, rough, measured=False))
-    return ways
+        timed = [p for p in own if p.want == ("conductance" if name == SOLVE else "mean")]
+        price = _price(timed, rough.seconds) if timed else (0.0, rough.seconds)
+        for want in wants_of(name) if timed or name != SOLVE else ():
+            floor = ([0.0, *(p.bias for p in timed)] + [p.bias for p in own if p.want == want])[-1]
+            if want == "values":
+                floor = worst_of_values(asked, _LISTED) if rough.draws < _MOST_LISTED else 0.0
+            yield Way(name, want, floor, *price, measured=bool(timed))
 
 
 def _price(timed: Sequence[Point], rough: float) -> tuple[float, float]:

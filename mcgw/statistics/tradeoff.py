@@ -1,12 +1,12 @@
 """Error against time of one scene on this machine: which answer, how exact, at what cost."""
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from itertools import groupby
 from operator import attrgetter
 from time import monotonic
 from typing import Any
+from warnings import catch_warnings, simplefilter
 
 from analytic import MeasuredHeights, MeasuredRadii
 from mcgw.ensemble.drawing import in_words
@@ -16,17 +16,12 @@ from mcgw.machine.progress import Progress, told
 from mcgw.machine.terminal import plotted
 from mcgw.scene.arguments import argument, check_object
 from mcgw.scene.scene import Scene
-from mcgw.statistics.ladder import Ladder, ladder_of
+from mcgw.statistics.ladder import Rung, ladder_of, worth
 from mcgw.statistics.measured_ways import REPEATS, Answers, Point, moved, prices, sized
-from mcgw.statistics.prices import PROBABILITY, TARGETS, WANTS, Advice, Needs, Way, advise, sampled_ways
+from mcgw.statistics.ways import TARGETS, WANTS, Advice, Way, advise, sampled_ways
 
 SECONDS = 60.0
-_SHOWN = (1e-2,)
 _EXACT = 1e-12  # error of values that are right to the last digits
-WORDS = {
-    "mean": "mean {}", "std": "standard deviation", "quantile": f"{PROBABILITY:.0%} quantile",
-    "distribution": "distribution", "conductance": "conductance at its load", "values": "values of surfaces",
-}  # fmt: skip
 
 
 @dataclass(frozen=True, repr=False)
@@ -43,8 +38,10 @@ class Tradeoff(Shown):
         What was measured.
     ways : tuple of Way
         Prices of all ways to all answers.
-    ladder : Ladder
+    ladder : tuple of Rung
         Whole errors, of surfaces and of the model, from one formula to boundary elements.
+    worth : str
+        Where more surfaces stop to help.
     seconds : float
         How long the study took.
     """
@@ -53,16 +50,17 @@ class Tradeoff(Shown):
     load: float
     points: tuple[Point, ...]
     ways: tuple[Way, ...]
-    ladder: Ladder
+    ladder: tuple[Rung, ...]
+    worth: str
     seconds: float
 
     def advice(self, want: str, target: float) -> Advice:
-        """Choose the cheapest way to one of `prices.WANTS` within a relative error, a 95 % bound."""
-        return advise(want, target, list(self.ways), Needs(self.scene))
+        """Choose the cheapest way to one of `ways.WANTS` within a relative error, a 95 % bound."""
+        return advise(want, target, self.ways, self.scene)
 
     def words(self, want: str) -> str:
         """Name of an answer."""
-        return WORDS[want].format(self.scene.quantities[0])
+        return WANTS[want].format(self.scene.quantities[0])
 
     def plot(self, ax: Any = None, *, want: str = "mean") -> Any:
         """Draw error against time of one of the answers.
@@ -99,13 +97,13 @@ class Tradeoff(Shown):
         text = "; ".join(parts)
         return f"{text[0].upper()}{text[1:]}."
 
-    def sheet(self, targets: Sequence[float] = _SHOWN) -> Table:
+    def sheet(self, targets: Sequence[float] = (1e-2,)) -> Table:
         """Return what to run for each answer; targets with one and the same way in one row."""
         scene = self.scene
         facts = [
             ("at", f"d/sigma = {scene.separations[0]:g}; an error is a 95 % bound, 1.96 standard errors"),
             ("do", self.sentence),
-            ("model", self.ladder.sentence),
+            ("model", self.worth),
         ]
         table = self._rows(targets, ("want", "way", "n_surfaces"))
         return Table(table.columns[: None if len(targets) > 1 else -1], "Speed and accuracy", facts)
@@ -116,16 +114,17 @@ class Tradeoff(Shown):
 
     def _rows(self, targets: Sequence[float], alike: tuple[str, ...]) -> Table:
         found = [self.advice(want, target) for want in WANTS for target in targets]
-        groups = [[*group] for _, group in groupby(found, attrgetter(*alike))]
-        first = [group[0] for group in groups]
-        drawn = [f"{x.n_surfaces:d}" if x.way and x.way.draws else "" for x in first]
+        rows = [
+            (some[0], some[0].way, _errors(some))
+            for some in ([*group] for _, group in groupby(found, attrgetter(*alike)))
+        ]
         columns = (
-            Column("want", [self.words(x.want) for x in first]),
-            Column("error_95", [_errors(group) for group in groups], "95 %"),
-            Column("way", ["none" if x.way is None else x.way.name for x in first], "cheapest"),
-            Column("n_surfaces", drawn),
-            Column("cpu_s", [x.seconds for x in first], "CPU (s)", form=".2g", missing=""),
-            Column("type", [x.code(self.scene, self.load) for x in first]),
+            Column("want", [self.words(x.want) for x, *_ in rows]),
+            Column("error_95", [errors for *_, errors in rows], "95 %"),
+            Column("way", [way.name if way else "none" for _, way, _ in rows], "cheapest"),
+            Column("n_surfaces", [f"{x.n_surfaces:d}" if way and way.draws else "" for x, way, _ in rows]),
+            Column("cpu_s", [x.seconds for x, *_ in rows], "CPU (s)", form=".2g", missing=""),
+            Column("type", [x.code(self.scene, self.load) for x, *_ in rows]),
         )
         return Table(columns)
 
@@ -135,11 +134,12 @@ class Tradeoff(Shown):
         return Table(tuple(Column(x, [getattr(p, x) for p in self.points], form=".3g") for x in names))
 
 
-def _errors(group: list[Advice]) -> str:
+def _errors(group: Sequence[Advice]) -> str:
     """Targets of a row; "exact" where values are right to the last digits."""
-    ends = " ... ".join(f"{x.target:g}" for x in (group[0], group[-1])[: len(group)])
-    way = group[0].way
-    return "exact" if group[0].want == "values" and way and way.floor <= _EXACT else ends
+    first, *_, last = (*group, group[-1])
+    if first.want == "values" and first.way and first.way.floor <= _EXACT:
+        return "exact"
+    return f"{first.target:g}" if first is last else f"{first.target:g} ... {last.target:g}"
 
 
 def tradeoff(
@@ -189,19 +189,23 @@ def tradeoff(
     limit = argument("seconds", SECONDS if seconds is None else seconds, "s")
     started = monotonic()
     check_object("tradeoff", scene, Scene)
-    whole = _refused(scene.replace(**changes))
+    whole = scene.replace(**changes)
+    if isinstance(whole.summits, MeasuredRadii):
+        raise ValueError("summits: listed summits are summed or drawn, and have no other method")
+    if isinstance(whole.heights, MeasuredHeights):
+        raise ValueError("heights: measured heights are summed exactly; no answer is traded off")
     h = sorted(whole.separations)[(len(whole.separations) - 1) // 2] if separation is None else separation
     scene = scene_alone(whole).replace(
         separations=(float(h),), quantities=whole.quantities[:1], keep="sums",
         rel_err=None, max_seconds=None,
     )  # fmt: skip
     answers, names = Answers(scene), sampled_ways(scene)
-    with told(progress, "s") as tell, warnings.catch_warnings():
+    with told(progress, "s") as tell, catch_warnings():
         tell(0, limit)
-        warnings.simplefilter("ignore", UserWarning)  # of ways that take long, which is what is asked
+        simplefilter("ignore", UserWarning)  # of ways that take long, which is what is asked
         tasks = [*answers.without_surfaces()]
         for name in names:
-            tasks += sized(answers, name, scene, limit / (2 * len(names)))
+            tasks += sized(answers, name, limit / (2 * len(names)))
         number = 0
         while number < REPEATS or monotonic() - started < limit:
             number += 1
@@ -209,15 +213,8 @@ def tradeoff(
                 task.run(moved(scene, number), limit / REPEATS)
             tell(min(monotonic() - started, limit), limit)
         points = tuple(point for task in tasks for point in task.points())
-        ways = prices(scene, points, names)
-    ladder = ladder_of(whole, scene, answers.load, ways)
-    return Tradeoff(scene, answers.load, points, tuple(ways), ladder, monotonic() - started)
-
-
-def _refused(scene: Scene) -> Scene:
-    """Return the scene, if its answers can be traded off."""
-    if isinstance(scene.summits, MeasuredRadii):
-        raise ValueError("summits: listed summits are summed or drawn, and have no other method")
-    if isinstance(scene.heights, MeasuredHeights):
-        raise ValueError("heights: measured heights are summed exactly; no answer is traded off")
-    return scene
+        ways = tuple(prices(scene, points, names))
+    known = whole.validity([h])
+    ladder = tuple(ladder_of(whole, scene, answers.load, ways, float(known.error["stiffness"][0])))
+    said = worth(ladder, known.unknown or "not measured")
+    return Tradeoff(scene, answers.load, points, ways, ladder, said, monotonic() - started)

@@ -8,15 +8,16 @@ import pytest
 from conftest import SURFACE
 from oracles.inside import (
     WANTS,
-    Ladder,
-    Needs,
     Rung,
     Task,
     Way,
     advise,
+    of_one,
     sampled_ways,
+    surfaces_for,
     wants_of,
     worst_of_values,
+    worth,
 )
 from oracles.scenes import scene_by
 from scipy.stats import kstwobign, norm
@@ -125,19 +126,18 @@ def test_a_target_is_1_96_standard_errors(scene, count, n_asperities):
         "quantile": np.quantile(load, 0.99, axis=1),
     }.items():
         drawn = 1.96 * values.std() / values.mean() * math.sqrt(n)
-        assert Needs(scene).of_one(want) == pytest.approx(drawn, rel=0.15)
+        assert of_one(scene, want) == pytest.approx(drawn, rel=0.15)
 
 
 def test_needs_are_those_of_theory(scene):
     """Of means to a sixteenth, as a rule of stopping counts them; 20 of 2000 lie beyond the quantile."""
-    needs = Needs(scene)
-    assert needs.of_one("distribution") == pytest.approx(kstwobign.ppf(0.95), rel=1e-4)
+    assert of_one(scene, "distribution") == pytest.approx(kstwobign.ppf(0.95), rel=1e-4)
     spread = float(scene.theory.std("load", 1.0) / scene.theory.mean("load", 1.0))
     plain = (norm.ppf(0.975) * spread / 1e-3) ** 2
-    assert plain <= needs.surfaces("mean", 1e-3) * 1.001 <= 1.08 * plain
+    assert plain <= surfaces_for(scene, "mean", 1e-3) * 1.001 <= 1.08 * plain
     for want, target, n in (("mean", 1e-9, math.inf), ("std", 0.0, math.inf), ("quantile", 0.1, 2000)):
-        assert needs.surfaces(want, target) == n
-    assert needs.surfaces("values", 1e-6) == scene.n_surfaces
+        assert surfaces_for(scene, want, target) == n
+    assert surfaces_for(scene, "values", 1e-6) == scene.n_surfaces
 
 
 def test_solve_draws_what_rel_err_asks_for(scene):
@@ -163,13 +163,12 @@ def test_the_cheapest_way_that_is_good_enough(scene):
         Way("theory", "mean", 1e-13, 1e-3, 0.0), Way("cells", "mean", 0.0, 1e-5, 1e-9),
         Way("tail", "mean", 0.0, 0.9e-5, 1e-9), Way("aggregate", "mean", 1e-3, 0.0, 1e-10),
     ]  # fmt: skip
-    needs = Needs(scene)
-    names = [advise("mean", target, ways, needs).way.name for target in (1e-1, 1e-2, 1e-3, 1e-5)]
+    names = [advise("mean", target, ways, scene).way.name for target in (1e-1, 1e-2, 1e-3, 1e-5)]
     assert names == ["aggregate", "aggregate", "cells", "theory"]
-    coarse = advise("mean", 1e-2, ways, needs)
-    assert coarse.n_surfaces == needs.surfaces("mean", 1e-2 - 1e-3)  # what the floor leaves
+    coarse = advise("mean", 1e-2, ways, scene)
+    assert coarse.n_surfaces == surfaces_for(scene, "mean", 1e-2 - 1e-3)  # what the floor leaves
     assert coarse.seconds == pytest.approx(1e-10 * coarse.n_surfaces)
-    assert advise("std", 1e-2, ways, needs).way is None
+    assert advise("std", 1e-2, ways, scene).way is None
 
 
 def test_auto_is_named_first(make_scene):
@@ -183,13 +182,13 @@ def test_auto_is_named_first(make_scene):
 def test_the_ladder_says_where_more_surfaces_do_not_help():
     surfaces = [Rung("surfaces", n, n / 10, 0.09 / math.sqrt(n), 0.03) for n in (10, 100, 1000)]
     formula = Rung("formula", 0, 2e-3, 1e-3, 0.03)
-    told = Ladder((formula, *surfaces), "").sentence
+    told = worth((formula, *surfaces), "")
     assert told == "The model is off by 3 %; theory, 2 ms, is as good as any number of surfaces."
-    told = Ladder((replace(formula, drawn=0.2), *surfaces), "").sentence
+    told = worth((replace(formula, drawn=0.2), *surfaces), "")
     assert told == "The model is off by 3 %; more than 100 surfaces do not help."
     dear = Rung("boundary elements", 9, 200.0, 0.01, 0.0)
-    assert Ladder((formula, dear), "").sentence.endswith("; `mcgw elastic` gets 1 % in 3.3 min.")
-    assert "not known here: far off" in Ladder((replace(formula, model=math.nan),), "far off").sentence
+    assert worth((formula, dear), "").endswith("; `mcgw elastic` gets 1 % in 3.3 min.")
+    assert "not known here: far off" in worth((replace(formula, model=math.nan),), "far off")
 
 
 def test_what_is_typed_is_python_that_runs(scene, study):

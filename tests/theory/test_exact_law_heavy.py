@@ -5,7 +5,7 @@ from unittest import mock
 import numpy as np
 import pytest
 from oracles.accurately import term
-from oracles.inside import Needs
+from oracles.inside import of_one
 from oracles.scenes import scene_by
 from scipy import stats
 
@@ -94,7 +94,7 @@ def test_specimens_of_heavy_tails_are_as_drawn():
     between = scene.theory.distribution("load", h).interval(0.9)
     np.testing.assert_allclose([np.mean(loads <= end) for end in between], shares, atol=allowed)
     assert laws_of_values(values).p > 1e-5
-    half = Needs(scene.replace(quantities=("load",), separations=(h,))).of_one("quantile")
+    half = of_one(scene.replace(quantities=("load",), separations=(h,)), "quantile")
     each = np.quantile(
         mcgw.simulate(scene.replace(n_surfaces=100_000)).load[:, 0].reshape(100, 1000), 0.99, axis=1
     )

@@ -1,0 +1,172 @@
+"""Ways to answers: what each gives, how many surfaces an error takes, what it costs, and the cheapest.
+
+An error is a 95 % bound: 1.96 standard errors of a mean, a standard deviation or a quantile over the answer,
+and for a whole distribution the largest difference of a probability, which Kolmogorov's law bounds.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import ceil, inf, nan, sqrt
+
+from scipy.special import ndtri
+
+from mcgw.ensemble.forecast import MOST_SURFACES, forecast, surfaces_at_load
+from mcgw.ensemble.intervals import CONFIDENCE, moments
+from mcgw.machine.memory import kept
+from mcgw.sampling.expected import expected
+from mcgw.scene.promises import promise_of
+from mcgw.scene.scene import Scene
+from mcgw.scene.section import SceneError
+
+PROBABILITY = 0.99  # of the quantile
+WANTS = {
+    "mean": "mean {}", "std": "standard deviation", "quantile": f"{PROBABILITY:.0%} quantile",
+    "distribution": "distribution", "conductance": "conductance at its load", "values": "values of surfaces",
+}  # fmt: skip
+TARGETS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
+SOLVE = "solve"  # surfaces drawn one by one, each at its own separation
+_GIVES = {
+    "theory": ("mean", "std", "conductance"), "exact law": ("quantile", "distribution", "conductance"),
+    SOLVE: ("conductance",),
+}  # fmt: skip
+_FASTER = 1.5  # a way must be so much faster than one named before it
+_BOUND = float(ndtri((1 + CONFIDENCE) / 2))
+_KOLMOGOROV = 1.3581  # sqrt(n) times the largest difference of probabilities, in 95 of 100 samples
+_FEWEST = {"std": 30, "quantile": 2000, "distribution": 1}  # 20 of 2000 lie beyond the quantile
+
+
+@dataclass(frozen=True)
+class Way:
+    """One way to one answer.
+
+    Parameters
+    ----------
+    name : str
+        "theory", "exact law", "solve", or a sampler.
+    want : str
+        One of `WANTS`.
+    floor : float
+        Error that more surfaces do not reduce.
+    set_up, each : float
+        CPU seconds: before the first surface, and of each; `each` is 0 where none is drawn.
+    measured : bool
+        Whether it was timed; otherwise its price is arithmetic (`mcgw.sampling.expected`).
+    """
+
+    name: str
+    want: str
+    floor: float
+    set_up: float
+    each: float
+    measured: bool = True
+
+    @property
+    def draws(self) -> bool:
+        """Whether it draws surfaces."""
+        return self.each > 0
+
+    def seconds(self, n_surfaces: float) -> float:
+        """CPU time of an answer from so many surfaces."""
+        return self.set_up + n_surfaces * self.each
+
+
+def drawn_by(scene: Scene, way: str) -> Scene:
+    """Return the scene with the sampler by which a way draws."""
+    return scene.replace(sampler="tail" if way == SOLVE else way)
+
+
+def sampled_ways(scene: Scene) -> list[str]:
+    """Names of the ways that draw surfaces of a scene, first the one that ``auto`` takes."""
+
+    def fits(name: str) -> bool:
+        try:
+            sampler = drawn_by(scene, name).sampler
+        except SceneError:
+            return False
+        return scene.summits is None or promise_of(sampler).one_by_one
+
+    first = expected(scene.replace(sampler="auto")).name
+    return [*filter(fits, dict.fromkeys((first, "cells", "tail", "direct", "aggregate", SOLVE)))]
+
+
+def wants_of(name: str) -> tuple[str, ...]:
+    """Return what a way can give: no law of surfaces by theory, nor by a sampler whose laws are off."""
+    if name in _GIVES:
+        return _GIVES[name]
+    return (
+        ("mean", "std", "quantile", "distribution", "values")
+        if promise_of(name).one_by_one
+        else ("mean", "std")
+    )
+
+
+@kept(64)
+def of_one(scene: Scene, want: str) -> float:
+    """Bound of the error from one surface, by exact theory; it falls with the root of their number."""
+    h, q = scene.separations[0], scene.quantities[0]
+    if want == "distribution":
+        return _KOLMOGOROV
+    if want == "conductance":  # at the load of this separation
+        alone = float(scene.theory.asperities_for("conductance", h, 1.0, given="load"))
+        return _BOUND * sqrt(alone / scene.n_asperities)
+    if want == "std":  # by the fourth moment of the sum over asperities, about 0 or about the mean
+        _, second, fourth = moments(scene, [q], (2, 4))[:, 0, 0]
+        excess = (fourth / second**2 - 3 * (scene.count == "fixed")) / scene.n_asperities
+        return _BOUND * sqrt(max(2 + excess, 0.0) / 4)
+    law = scene.theory.distribution(q, h)  # of a quantile by the density there (order statistics)
+    value = float(law.ppf(PROBABILITY))
+    density = value * float(law.pdf(value))
+    return _BOUND * sqrt(PROBABILITY * (1 - PROBABILITY)) / density if density > 0 else inf
+
+
+def surfaces_for(scene: Scene, want: str, target: float) -> float:
+    """Surfaces for which 1.96 standard errors are at most the target; infinite if none are enough."""
+    if not target > 0:
+        return inf
+    if want == "values":
+        return float(scene.n_surfaces)
+    if want == "mean":
+        found = forecast(scene.replace(rel_err=target, n_surfaces=MOST_SURFACES))
+        return inf if found.out_of_reach else float(found.surfaces)
+    if want == "conductance":
+        return surfaces_at_load(scene, scene.separations[0], {"conductance": target})
+    return float(max(ceil((of_one(scene, want) / target) ** 2), _FEWEST[want]))
+
+
+@dataclass(frozen=True)
+class Advice:
+    """What to run for one of `WANTS` within a target: a way, or None, its surfaces (0: none) and seconds."""
+
+    want: str
+    target: float
+    way: Way | None
+    n_surfaces: int
+    seconds: float
+
+    def code(self, scene: Scene, load: float) -> str:
+        """Python that carries it out, for a scene of one separation and one quantity, and the load there."""
+        if self.way is None:
+            return ""
+        h, q = scene.separations[0], scene.quantities[0]
+        if self.want == "conductance" and self.way.name == "theory":
+            return f'scene.theory.mean("conductance", scene.theory.separation_at("load", {load:.6g}))'
+        if self.want == "conductance":
+            solved = f"mcgw.solve(scene, load={load:.6g}, n_surfaces={max(self.n_surfaces, 2)})"
+            return solved + ('.surfaces["conductance"].mean()' if self.way.draws else '.value["conductance"]')
+        if self.way.draws:
+            changes = {"separations": h, "sampler": self.way.name, "n_surfaces": self.n_surfaces}
+            return f"mcgw.simulate(scene, {', '.join(f'{key}={x!r}' for key, x in changes.items())})"
+        law = f'distribution("{q}", {h:g})'
+        found = {"quantile": f"{law}.ppf({PROBABILITY})", "distribution": law}
+        return "scene.theory." + found.get(self.want, f'{self.want}("{q}", {h:g})')
+
+
+def advise(want: str, target: float, ways: Sequence[Way], scene: Scene) -> Advice:
+    """Choose the cheapest way; of those that cost about the same, the one named first."""
+    best = Advice(want, target, None, 0, nan)
+    for way in (way for way in ways if way.want == want and way.floor <= target):
+        n = surfaces_for(scene, want, target - way.floor) if way.draws else 0
+        seconds = way.seconds(n)
+        if n <= MOST_SURFACES and (best.way is None or seconds * _FASTER < best.seconds):
+            best = Advice(want, target, way, int(n), seconds)
+    return best
