@@ -7,16 +7,16 @@ for their values, and an example.
 
 import argparse
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from importlib import import_module
-from inspect import cleandoc
+from inspect import Parameter, cleandoc, signature
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any, NoReturn, get_args, get_origin
 
 import mcgw.commands
-from mcgw.commands.kinds import Dry, In, Kind, OneOf, Out, SceneFile
+from mcgw.commands.kinds import Call, In, Kind, OneOf, Out, SceneFile
 from mcgw.commands.outputs import check_outputs, reading
-from mcgw.commands.voice import add_amount_options, tell_cautions
+from mcgw.commands.voice import ALL, NEWS, QUIET, tell_cautions
 
 _HELPERS = ("declared", "kinds", "options", "outputs", "voice")
 _ORDER = (
@@ -94,79 +94,62 @@ def parser_of(names: Sequence[str] = ()) -> argparse.ArgumentParser:
         )
         sub._negative_number_matcher = _NEGATIVE
         _add_arguments(sub, function, sections[0] if sections[1:] else "")
-        add_amount_options(sub)
+        amount = sub.add_mutually_exclusive_group()
+        quiet, verbose = (
+            "print only errors and requested output",
+            "print everything: tables, cautions in full, sources",
+        )
+        for names, value, words in ((("-q", "--quiet"), QUIET, quiet), (("-v", "--verbose"), ALL, verbose)):
+            amount.add_argument(
+                *names, dest="amount", action="store_const", const=value, default=NEWS, help=words
+            )
         sub.set_defaults(function=function, command=name)
     return parser
 
 
-def kinds_of(function: Command) -> dict[str, Kind]:
-    """Return the kind of each parameter of a command."""
-    found = {}
-    for name, annotation in function.__annotations__.items():
-        own = (x for x in getattr(annotation, "__metadata__", ()) if isinstance(x, Kind))
-        found[name] = next(own, Kind())
-    found.pop("return", None)
-    return found
+def _kinds_of(function: Command) -> Iterator[tuple[Parameter, Kind, str, OneOf | None]]:
+    """Yield each parameter of a command, its kind, the option that sets it, and its group."""
+    for each in signature(function).parameters.values():
+        beside = getattr(each.annotation, "__metadata__", ())
+        kind = next((x for x in beside if isinstance(x, Kind)), Kind())
+        option = "-o" if each.name == "output" else f"--{each.name.replace('_', '-')}"
+        yield each, kind, option, next((x for x in beside if isinstance(x, OneOf)), None)
 
 
 def _add_arguments(parser: argparse.ArgumentParser, function: Command, words: str) -> None:
     texts = {name: (metavar, " ".join(text.split())) for name, metavar, text in _WORDS.findall(words)}
-    code, kinds = function.__code__, kinds_of(function)
-    placed = code.co_varnames[: code.co_argcount]
-    defaults = dict(zip(placed[::-1], (function.__defaults__ or ())[::-1], strict=False))
-    defaults |= function.__kwdefaults__ or {}
-    groups: dict[OneOf, Any] = {}
-    for name, kind in kinds.items():
-        annotation = function.__annotations__[name]
-        to: Any = parser
-        for group in getattr(annotation, "__metadata__", ()):
-            if isinstance(group, OneOf):
-                new = (
-                    None if group in groups else parser.add_mutually_exclusive_group(required=group.required)
-                )
-                to = groups.setdefault(group, new)
-        option = f"--{name.replace('_', '-')}"
-        names = [name] if name in placed else ["-o", option] if name == "output" else [option]
-        to.add_argument(
-            *names,
-            **_options(
-                kind,
-                annotation,
-                name in placed,
-                defaults.get(name, ...),
-                *texts.get(name, (kind.metavar, kind.about)),
-            ),
-        )
-    if any(isinstance(kind, SceneFile) for kind in kinds.values()):
+    groups: dict[OneOf | None, Any] = {None: parser}
+    for each, kind, option, group in _kinds_of(function):
+        if group not in groups:
+            groups[group] = parser.add_mutually_exclusive_group(required=group.required)
+        placed = each.kind is Parameter.POSITIONAL_OR_KEYWORD
+        names = [each.name] if placed else [option, "--output"] if option == "-o" else [option]
+        found = _options(each, kind, placed, *texts.get(each.name, (kind.metavar, kind.about)))
+        groups[group].add_argument(*names, **found)
+    if any(isinstance(kind, SceneFile) for _, kind, *_ in _kinds_of(function)):
         told = "change a key of the scene, such as grading.gamma=2 or contact.law=hertz; repeat for more keys"
         parser.add_argument("--set", action="append", metavar="KEY=VALUE", help=told)
 
 
-def _options(
-    kind: Kind, annotation: Any, placed: bool, default: Any, metavar: str, words: str
-) -> dict[str, Any]:
-    """Return what argparse takes for a parameter; the default is ... where it must be given."""
-    annotation = (
-        getattr(annotation, "__origin__", annotation) if hasattr(annotation, "__metadata__") else annotation
-    )
-    types = getattr(annotation, "__args__", (annotation,))
-    several = next((x for x in (annotation, *types) if getattr(x, "__origin__", None) is list), None)
+def _options(each: Parameter, kind: Kind, placed: bool, metavar: str, words: str) -> dict[str, Any]:
+    """Return what argparse takes for a parameter."""
+    annotation = get_args(each.annotation)[0] if hasattr(each.annotation, "__metadata__") else each.annotation
+    types = [annotation, *get_args(annotation)]
+    types += [inner for one in types[1:] for inner in get_args(one)]
+    several = any(get_origin(one) is list for one in types)
     words = f"{words}{kind.words}".removeprefix("; ").replace("%", "%%")
     if bool in types:
         return {"action": "store_true", "help": words}
-    if default not in (..., None, "") and default != []:
+    default = None if each.default is Parameter.empty else each.default
+    if default not in (None, "", []):
         words += f"; default: {default}"
-    must = default is ... and not (isinstance(kind, Out) and kind.beside)
-    found: dict[str, Any] = {"help": words, "default": None if default is ... else default}
-    if kind.file or kind.reads:
-        found["type"] = Path if kind.file else str
-    else:
-        inner = several.__args__ if several else types
-        found["type"] = next((x for x in (Path, int, float) if x in inner), str)
-    found["metavar"] = metavar or None
-    choices = kind.choices or types
-    if str in map(type, choices):  # a Literal
-        found |= {"choices": choices, "type": str}
+    must = each.default is Parameter.empty and not (isinstance(kind, Out) and kind.beside)
+    choices = kind.choices or tuple(one for one in types if isinstance(one, str))  # of a Literal
+    plain = next((one for one in (Path, int, float) if one in types), str)
+    found: dict[str, Any] = {"help": words, "default": default, "metavar": metavar or None}
+    found["type"] = kind.typed or (str if choices else plain)
+    if choices:
+        found["choices"] = choices
     if kind.action:
         found["action"] = kind.action
     elif several and not isinstance(kind, Out):
@@ -181,30 +164,14 @@ def execute(function: Command, args: argparse.Namespace) -> int:
 
     Cautions of what it read are printed last.
     """
-    kinds = kinds_of(function)
-    typed = {name: getattr(args, name) for name in kinds}
-    files = {name: typed[name] for name, kind in kinds.items() if isinstance(kind, In) and typed[name]}
-    source = next((path for path in files.values() if isinstance(path, Path)), None)
-    values, outputs = {}, []
-    for name, kind in kinds.items():
-        option = "-o" if name == "output" else f"--{name.replace('_', '-')}"
-        if isinstance(kind, Out):
-            values[name], some = kind.place(typed[name], option, source)
-            outputs += some
-        else:
-            values[name] = kind.read(typed[name], option)
-    grown = next((each.path for each in outputs if each.grows), None)
-    inputs, cautious = [], []
-    for name, path in files.items():
-        kind = kinds[name]
-        assert isinstance(kind, In)
-        values[name], read = kind.open(path, args, grown)
-        inputs += read
-        cautious.append(kind.cautions(path, values[name]))
-    dry = any(isinstance(kind, Dry) and typed[name] for name, kind in kinds.items())
-    with reading(inputs):
-        check_outputs([] if dry else outputs)
+    parts = [*_kinds_of(function)]
+    files = (getattr(args, each.name) for each, kind, *_ in parts if isinstance(kind, In))
+    call = Call(args, next((path for path in files if isinstance(path, Path)), None))
+    parts.sort(key=lambda part: not isinstance(part[1], Out))  # a scene may take its seed from an output
+    values = {each.name: kind.read(getattr(args, each.name), option, call) for each, kind, option, _ in parts}
+    with reading(call.inputs):
+        check_outputs(call.outputs)
         done = function(**values)
-    for each in filter(None, cautious):
-        tell_cautions(*each)
+    for source, instead in call.cautious:
+        tell_cautions(source, instead)
     return int(done is False)

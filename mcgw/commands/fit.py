@@ -5,7 +5,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from mcgw.commands.kinds import In, Out, Pixel, Quantity, Table, Unit
+from mcgw.commands.kinds import Call, In, Out, Pixel, Quantity, Table, Unit
 from mcgw.commands.outputs import NPY, TOML, Output, check_outputs
 from mcgw.commands.voice import details, news, notes
 from mcgw.maps.steps import Form, LinesTo, Missing, SpikesTo
@@ -20,11 +20,12 @@ _AREA = 1e-6  # m^2, default of numbers alone
 class Maps(In):
     """Maps or profiles, with the files beside them that say their units."""
 
-    def open(self, path: Any, args: Any, grown: Path | None) -> tuple[Any, list[Path]]:  # noqa: ARG002
+    def open(self, path: Any, call: Call) -> Any:
         """Their paths."""
         from mcgw.maps.map_files import files_of_map
 
-        return path, [file for one in path for file in files_of_map(one)]
+        call.inputs.extend(file for one in path for file in files_of_map(one))
+        return path
 
 
 def fit(

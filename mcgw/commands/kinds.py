@@ -5,7 +5,8 @@ that is typed; one that is ``Annotated[type, kind]`` what its kind makes of it. 
 it into a group.
 """
 
-import argparse
+from argparse import Namespace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -16,6 +17,17 @@ if TYPE_CHECKING:
     from mcgw.scene.scene import Scene
 
 _GEOMETRIC = ("Pa", "N")  # pressures and loads are at a constant ratio, all else evenly
+
+
+@dataclass(frozen=True)
+class Call:
+    """What was typed, what is read first, all that is read and written, and cautions to end with."""
+
+    args: Namespace
+    source: Path | None
+    inputs: list[Path] = field(default_factory=list)
+    outputs: list[Output] = field(default_factory=list)
+    cautious: list[tuple[Any, str]] = field(default_factory=list)
 
 
 class OneOf:
@@ -34,8 +46,7 @@ class Kind:
         What stands for its value, and what it is, where the docstring of the command has no words for it.
     """
 
-    file = False
-    reads = False  # whether it reads texts itself
+    typed: type | None = None  # what argparse makes of a word, if it is not what is annotated
     action = ""  # of argparse, if it is not that of the type
     words = ""  # that the help adds
     choices: tuple[str, ...] = ()
@@ -43,7 +54,7 @@ class Kind:
     def __init__(self, metavar: str = "", about: str = "") -> None:
         self.metavar, self.about = metavar, about
 
-    def read(self, given: Any, option: str) -> Any:  # noqa: ARG002
+    def read(self, given: Any, option: str, call: Call) -> Any:  # noqa: ARG002
         """Make the value of what was typed after an option, or of the default."""
         return given
 
@@ -51,17 +62,23 @@ class Kind:
 class Dry(Kind):
     """A flag with which nothing is written."""
 
+    def read(self, given: Any, option: str, call: Call) -> Any:  # noqa: ARG002
+        """Forget what would be written."""
+        if given:
+            call.outputs.clear()
+        return given
+
 
 class Quantity(Kind):
     """A positive number with a unit, in the SI unit named."""
 
-    reads = True
+    typed = str
 
     def __init__(self, unit: str, metavar: str = "", about: str = "") -> None:
         super().__init__(metavar, about)
         self.unit = unit
 
-    def read(self, given: Any, option: str) -> Any:
+    def read(self, given: Any, option: str, call: Call) -> Any:  # noqa: ARG002
         """Return the number; what is no text, as a default, is one already."""
         from mcgw.formats.units import parse
 
@@ -76,14 +93,14 @@ class Values(Quantity):
         how = "at a constant ratio" if unit in _GEOMETRIC else "at equal steps"
         self.words = f"; or A:B:N for N of them from A to B, {how}"
 
-    def read(self, given: Any, option: str) -> Any:
+    def read(self, given: Any, option: str, call: Call) -> Any:
         """Return a list of SI numbers; without a unit, what is no range is left to the function."""
         found = []
         for text in given or ():
             if ":" in text:
                 found += ranged(text, option, self.unit)
             else:
-                found.append(super().read(text, option) if self.unit else text)
+                found.append(super().read(text, option, call) if self.unit else text)
         return found or None
 
 
@@ -121,17 +138,18 @@ def ranged(text: str, option: str, unit: str = "") -> list[float]:
 
 
 class In(Kind):
-    """A file that is read, which no output may replace."""
+    """A file, or several, that is read, which no output may replace."""
 
-    file = True
+    typed = Path
 
-    def open(self, path: Any, args: argparse.Namespace, grown: Path | None) -> tuple[Any, list[Path]]:  # noqa: ARG002
-        """Return what the function gets, and all files that are read for it."""
-        return path, path if isinstance(path, list) else [path]
+    def read(self, given: Any, option: str, call: Call) -> Any:  # noqa: ARG002
+        """Return what the function gets."""
+        return given and self.open(given, call)
 
-    def cautions(self, path: Path, opened: Any) -> tuple[Any, str] | None:  # noqa: ARG002
-        """Whose cautions the command ends with, and what shows them in full; None for those of nothing."""
-        return None
+    def open(self, path: Any, call: Call) -> Any:
+        """Return what the function gets of a file that was given."""
+        call.inputs.extend(path if isinstance(path, list) else [path])
+        return path
 
 
 class Results(In):
@@ -141,15 +159,13 @@ class Results(In):
         super().__init__("FILE", f"file of an ensemble{' or of a sweep' * sweeps} (HDF5)")
         self.sweeps = sweeps
 
-    def open(self, path: Any, args: argparse.Namespace, grown: Path | None) -> tuple[Any, list[Path]]:  # noqa: ARG002
-        """Return the ensemble or the sweep."""
+    def open(self, path: Any, call: Call) -> Any:
+        """Return the ensemble or the sweep; the command ends with the cautions of its scenes."""
         from mcgw.store.ensembles import open_ensemble, open_results
 
-        return (open_results if self.sweeps else open_ensemble)(path), [path]
-
-    def cautions(self, path: Path, opened: Any) -> tuple[Any, str]:
-        """Those of its scenes."""
-        return opened, f"mcgw show {path}"
+        found = (open_results if self.sweeps else open_ensemble)(super().open(path, call))
+        call.cautious.append((found, f"mcgw show {path}"))
+        return found
 
 
 class SceneFile(In):
@@ -167,23 +183,23 @@ class SceneFile(In):
         super().__init__("SCENE", "TOML file, SI units")
         self.others, self.cautious = others, cautious
 
-    def open(self, path: Any, args: argparse.Namespace, grown: Path | None) -> tuple[Any, list[Path]]:
-        """Return the scene, with the seed of what `grown` holds where it gives none."""
+    def open(self, path: Any, call: Call) -> Any:
+        """Return the scene, with the seed of what an output holds where it gives none."""
         from mcgw.scene.scene_file import files_of, load_scene
         from mcgw.store.place import recorded_scene
 
+        changes = call.args.set
         if self.others and path.suffix.lower() != ".toml":
-            if args.set:
-                raise ValueError(f"--set {args.set[0]}: {path} is no scene (.toml); give one")
-            return path, [path]
+            if changes:
+                raise ValueError(f"--set {changes[0]}: {path} is no scene (.toml); give one")
+            return super().open(path, call)
+        grown = next((each.path for each in call.outputs if each.grows), None)
         seed = None if grown is None else lambda: getattr(recorded_scene(grown), "seed", None)
-        return load_scene(path, changes=_changes(args.set), seed=seed), files_of(path)
-
-    def cautions(self, path: Path, opened: Any) -> tuple[Any, str] | None:
-        """Those of the scene."""
-        if not self.cautious or isinstance(opened, Path):
-            return None
-        return opened, f"mcgw show --plan {path}" if self.cautious == "brief" else ""
+        scene = load_scene(path, changes=_changes(changes), seed=seed)
+        call.inputs.extend(files_of(path))
+        if self.cautious:
+            call.cautious.append((scene, f"mcgw show --plan {path}" if self.cautious == "brief" else ""))
+        return scene
 
 
 def _changes(given: list[str] | None) -> dict[str, Any]:
@@ -215,7 +231,7 @@ class Out(Kind):
         Whether the command makes ensembles, whose own rules say which may be replaced.
     """
 
-    file = True
+    typed = Path
 
     def __init__(self, form: Format | None, beside: str = "", *, grows: bool = False) -> None:
         super().__init__("FILE", "also write the table to this file")
@@ -223,12 +239,13 @@ class Out(Kind):
         if beside:
             self.words = f"; default: {beside.format('NAME')} beside what is read"
 
-    def place(self, given: Any, option: str, source: Path | None) -> tuple[Any, list[Output]]:
-        """Return what the function gets, and what it will write."""
-        if given is None and self.beside and source is not None:
-            given = source.parent / self.beside.format(source.stem)
-        form = self.form or figure_format() if given else None
-        return given, [Output(given, form, option, self.grows)] if form else []
+    def read(self, given: Any, option: str, call: Call) -> Any:
+        """Return the path."""
+        if given is None and self.beside and call.source is not None:
+            given = call.source.parent / self.beside.format(call.source.stem)
+        if given:
+            call.outputs.append(Output(given, self.form or figure_format(), option, self.grows))
+        return given
 
 
 class Folder(Out):
@@ -238,12 +255,14 @@ class Folder(Out):
         super().__init__(None, "out")
         self.names = names
 
-    def place(self, given: Any, option: str, source: Path | None) -> tuple[Any, list[Output]]:
+    def read(self, given: Any, option: str, call: Call) -> Any:
         """Return the paths of all files."""
-        assert source is not None
-        paths = [(given or source.parent / "out") / name.format(source.stem) for name in self.names]
-        forms = [CSV if path.suffix == ".csv" else figure_format() for path in paths]
-        return paths, [Output(path, form, option) for path, form in zip(paths, forms, strict=True)]
+        assert call.source is not None
+        folder = given or call.source.parent / "out"
+        paths = [folder / name.format(call.source.stem) for name in self.names]
+        forms = (CSV if path.suffix == ".csv" else figure_format() for path in paths)
+        call.outputs.extend(Output(path, form, option) for path, form in zip(paths, forms, strict=True))
+        return paths
 
 
 SceneIn = Annotated["Scene", SceneFile()]

@@ -27,23 +27,18 @@ def drawing(
 
     Libraries log nothing meanwhile: mcgw itself reports a lost worker or scheduler, in one line.
     """
+    from mcgw.jobs.executors import Jobs as Processes, dask_executor
+
+    chosen: AbstractContextManager[Executor | None] = nullcontext()
+    if jobs is not None or dask is not None:
+        chosen = Processes(jobs) if jobs is not None else dask_executor(dask)
     before = logging.root.manager.disable
     logging.disable(logging.CRITICAL)
     try:
-        with _executor(jobs, dask) as executor:
-            who = {"executor": executor} if shard is None else {"shard": shard}
-            yield {"threads": threads, **who}
+        with chosen as executor:
+            yield {"threads": threads, **({"executor": executor} if shard is None else {"shard": shard})}
     finally:
         logging.disable(before)
-
-
-def _executor(jobs: int | None, dask: str | None) -> "AbstractContextManager[Executor | None]":
-    """Return the executor that the options name, ended at the end; None for threads of this process."""
-    from mcgw.jobs.executors import Jobs as Processes, dask_executor
-
-    if jobs is not None:
-        return Processes(jobs)
-    return nullcontext() if dask is None else dask_executor(dask)
 
 
 def share_done(shard: str, path: object, left: int) -> str:

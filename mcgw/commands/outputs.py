@@ -59,10 +59,6 @@ class Output:
     option: str = "-o"
     grows: bool = False
 
-    def refuse(self, why: str) -> StoreError:
-        """Make the error for this output."""
-        return StoreError(f"{self.option} {self.path}: {why}; choose another {self.option}")
-
 
 @contextmanager
 def reading(inputs: Iterable[Path]) -> Iterator[None]:
@@ -92,19 +88,10 @@ def check_outputs(outputs: Iterable[Output]) -> None:
     """
     from mcgw.formats.files import check_output, refuse_read_only
 
-    outputs, inputs = list(outputs), list(_inputs.get())
+    outputs = list(outputs)
     for i, output in enumerate(outputs):
-        for path in inputs:
-            if same_file(output.path, path):
-                raise output.refuse(f"is an input ({path})")
-        _refuse_run(output, inputs)
-        for other in outputs[:i]:
-            if same_file(output.path, other.path):
-                raise output.refuse(f"is also the output of {other.option}")
-        if not output.path.name.lower().endswith(output.format.endings):
-            known = ", ".join(output.format.endings)
-            raise output.refuse(f"{output.format.what} is written there, whose name ends in {known}")
-        _refuse_ensemble(output)
+        for why in _faults(output, outputs[:i]):
+            raise StoreError(f"{output.option} {output.path}: {why}; choose another {output.option}")
         if not output.grows:
             refuse_read_only(output.path)
     for output in outputs:
@@ -123,35 +110,35 @@ def same_file(one: Path, other: Path) -> bool:
         return os.path.realpath(one) == os.path.realpath(other)
 
 
-def _refuse_run(output: Output, inputs: list[Path]) -> None:
-    """Refuse outputs inside or in place of a run folder."""
+def _faults(output: Output, others: Iterable[Output]) -> Iterator[str]:
+    """Why a file may not be written: what is read, a run, another output, what it would replace."""
     from mcgw.store.lock import LOCK_FILES, parts_of
 
-    place = Path(os.path.realpath(output.path))
-    for path in inputs:
-        if place.is_relative_to(os.path.realpath(parts_of(path))):
-            raise output.refuse(f"{parts_of(path)} is the folder of the run that makes {path}")
+    path, place = output.path, Path(os.path.realpath(output.path))
+    yield from (f"is an input ({read})" for read in _inputs.get() if same_file(path, read))
+    for read in _inputs.get():
+        if place.is_relative_to(os.path.realpath(parts_of(read))):
+            yield f"{parts_of(read)} is the folder of the run that makes {read}"
     for folder in (place, *place.parents):
         if folder.suffix == ".parts" and any((folder / name).exists() for name in LOCK_FILES):
-            raise output.refuse(f"{folder} is the folder of a run")
-
-
-def _refuse_ensemble(output: Output) -> None:
-    """Refuse to replace an ensemble unless the command makes ensembles."""
-    from mcgw.store.lock import parts_of
-
+            yield f"{folder} is the folder of a run"
+    yield from (f"is also the output of {other.option}" for other in others if same_file(path, other.path))
+    if not path.name.lower().endswith(output.format.endings):
+        known = ", ".join(output.format.endings)
+        yield f"{output.format.what} is written there, whose name ends in {known}"
     if output.grows:
         return
-    if parts_of(output.path).exists():
-        raise output.refuse(f"a run that makes this file is not finished ({parts_of(output.path)})")
-    if not output.path.is_file():
+    if parts_of(path).exists():
+        yield f"a run that makes this file is not finished ({parts_of(path)})"
+    if not path.is_file():
         return
-    with open(output.path, "rb") as file:
+    with open(path, "rb") as file:
         start = file.read(len(_SIGNATURE))
-    if start == _SIGNATURE and _holds_results(output.path):
-        raise output.refuse("is an ensemble of mcgw, which this would replace")
-    if start == _SIGNATURE and not set(HDF5.endings) & set(output.format.endings):
-        raise output.refuse("is an HDF5 file, which this would replace")
+    if start == _SIGNATURE:
+        if _holds_results(path):
+            yield "is an ensemble of mcgw, which this would replace"
+        if not set(HDF5.endings) & set(output.format.endings):
+            yield "is an HDF5 file, which this would replace"
 
 
 def _holds_results(path: Path) -> bool:

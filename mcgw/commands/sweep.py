@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Annotated, Any
 
-from mcgw.commands.kinds import Cautioned, Dry, Kind, Out, ranged
+from mcgw.commands.kinds import Call, Cautioned, Dry, Kind, Out, ranged
 from mcgw.commands.options import Dask, Jobs, Share, Threads, drawing, share_done
 from mcgw.commands.outputs import HDF5
 from mcgw.commands.voice import details, look_next, news
@@ -14,7 +14,7 @@ class Axis(Kind):
 
     action = "append"
 
-    def read(self, given: Any, option: str) -> Any:
+    def read(self, given: Any, option: str, call: Call) -> Any:  # noqa: ARG002
         """By key: numbers as in TOML, other texts as they are."""
         return dict(_axis(text, option) for text in given)
 

@@ -1,6 +1,5 @@
 """How much a command prints: the news; with -q only errors; with -v everything."""
 
-import argparse
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
@@ -18,18 +17,6 @@ if TYPE_CHECKING:
 
 QUIET, NEWS, ALL = range(3)
 _AMOUNT = ContextVar("_AMOUNT", default=NEWS)
-
-
-def add_amount_options(parser: argparse.ArgumentParser) -> None:
-    """Add -q and -v."""
-    amount = parser.add_mutually_exclusive_group()
-    for letter, name, value, words in (
-        ("-q", "--quiet", QUIET, "print only errors and requested output"),
-        ("-v", "--verbose", ALL, "print everything: tables, cautions in full, sources"),
-    ):
-        amount.add_argument(
-            letter, name, dest="amount", action="store_const", const=value, default=NEWS, help=words
-        )
 
 
 @contextmanager

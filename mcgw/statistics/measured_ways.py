@@ -56,7 +56,7 @@ class Point:
     repeats: int
 
 
-@dataclass
+@dataclass(frozen=True)
 class Task:
     """A way at a size: a timed call on the scene of each repeat, and the errors of what it returns."""
 
@@ -186,7 +186,8 @@ def sized(answers: Answers, name: str, share: float) -> Iterator[Task]:
             task.run(moved(answers.scene, number))
         if 10 * size >= _RELIABLE:
             each = task.seconds[-1] / size
-        task.errors, task.seconds = [], []
+        task.errors.clear()
+        task.seconds.clear()
         yield task
 
 

@@ -88,7 +88,7 @@ def test_points_and_prices_by_hand(scene):
     task = Task("tail", 4, lambda scene: None, lambda found: next(errors))
     for _ in range(3):
         task.run(scene)
-    task.seconds = [1.0, 5.0, 2.0]
+    task.seconds[:] = [1.0, 5.0, 2.0]
     (p,) = task.points()
     squares = np.array([0.01, 0.09, 0.04])
     assert (p.seconds, p.repeats, p.bias) == (2.0, 3, 0.0)
