@@ -1,9 +1,9 @@
 """Scenes on the same surfaces side by side: one and what it is measured by, or a preset swept over gamma."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cached_property
-from typing import Any
+from dataclasses import dataclass, field
+from functools import cached_property, wraps
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from mcgw.scene.scene import Scene
 from mcgw.scene.section import SceneError
 
 Key = str | float  # label of a scene or, in a sweep, a gamma
+_Result = TypeVar("_Result")
 
 SCENE = "this scene"
 _STIFFER, _SOFTER = (2.0, 1.5, 1.2, 1.0), (1.0, 0.8, 0.5, 0.2)
@@ -34,6 +35,19 @@ _SAME_SEPARATION = 1e-12  # of searches for the same load
 def of_gamma(gamma: float) -> str:
     """Label a grading."""
     return f"γ = {gamma:g}"
+
+
+def _once(method: Callable[..., _Result]) -> Callable[..., _Result]:
+    """Keep what a method returns for the same labels, names and separations."""
+
+    @wraps(method)
+    def call(self: "Compared", *given: Any) -> _Result:
+        place = (method.__name__, *(x.tobytes() if isinstance(x, np.ndarray) else x for x in given))
+        if place not in self.kept:
+            self.kept[place] = method(self, *given)
+        return self.kept[place]
+
+    return call
 
 
 @dataclass(frozen=True)
@@ -54,6 +68,7 @@ class Compared:
     asked: Scene
     swept: bool = False
     most_listed: int = 100
+    kept: dict[Any, Any] = field(default_factory=dict, init=False, repr=False)
 
     @cached_property
     def scene(self) -> Scene:
@@ -63,15 +78,10 @@ class Compared:
         h = np.unique(self.asked.separations)
         cheap = _MOST_ASPERITIES // self.asked.n_asperities
         return self.asked.replace(
-            separations=h[evenly(len(h), _MOST_SEPARATIONS)],
-            quantities=tuple(QUANTITIES),
-            unload_from=None,
-            joint=None,
+            separations=h[evenly(len(h), _MOST_SEPARATIONS)], quantities=tuple(QUANTITIES),
             n_surfaces=max(min(self.asked.n_surfaces, _MOST_SURFACES, cheap), 1),
-            keep="sums",
-            rel_err=None,
-            max_seconds=None,
-        )
+            unload_from=None, joint=None, keep="sums", rel_err=None, max_seconds=None,
+        )  # fmt: skip
 
     @cached_property
     def all(self) -> dict[str, Scene]:
@@ -132,42 +142,28 @@ class Compared:
         fine = _FINE if self.scene.summits is None else _COARSE
         return np.linspace(self.h.min(), self.h.max(), fine) if len(self.h) > 1 else self.h
 
-    @cached_property
-    def _kept(self) -> dict[Any, Any]:
-        return {}
-
     def of(self, key: Key) -> Scene:
         """Return the scene of a label or gamma."""
         label = key if isinstance(key, str) else of_gamma(key)
         return self.all[label] if label in self.all else self.scene.replace(grading=Exponential(float(key)))
 
-    def _once(self, place: tuple[Any, ...], make: Callable[[], Any]) -> Any:
-        """Return what was made for this place, or make it."""
-        if place not in self._kept:
-            self._kept[place] = make()
-        return self._kept[place]
-
+    @_once
     def theory(self, key: Key, quantity: str, h: Array) -> Array:
         """Exact means, each computed once."""
-        made = self._once((key, quantity, h.tobytes()), lambda: self.of(key).theory.mean(quantity, h))
-        return np.asarray(made)
+        return np.asarray(self.of(key).theory.mean(quantity, h))
 
+    @_once
     def at_load_of_reference(self, key: Key, h: Array) -> Array:
         """Separations with the load that the reference has at these."""
+        found = self.of(key).theory.separation_at("load", self.theory(self.reference, "load", h))
+        # Where both have the same load, the last digit would draw them in other cells.
+        return np.where(np.abs(found - h) < _SAME_SEPARATION, h, found)
 
-        def search() -> Array:
-            found = self.of(key).theory.separation_at("load", self.theory(self.reference, "load", h))
-            # Where both have the same load, the last digit would draw them in other cells.
-            return np.where(np.abs(found - h) < _SAME_SEPARATION, h, found)
-
-        return np.asarray(self._once((key, "at load", h.tobytes()), search))
-
+    @_once
     def drawn(self, key: Key, h: Array | None = None) -> Ensemble:
         """Ensemble on the same surfaces, at the separations of the scene or at others."""
         there: dict[str, Any] = {} if h is None else {"separations": h}
-        place = (key, "drawn", b"" if h is None else h.tobytes())
-        made: Ensemble = self._once(place, lambda: simulate(self.of(key), **there))
-        return made
+        return simulate(self.of(key), **there)
 
     def values(self, key: Key, quantity: str, h: Array) -> Array:
         """Return the sums of each surface at some of the separations of the scene."""
@@ -206,26 +202,27 @@ class Compared:
     def means(self, label: str, quantity: str, unit: float) -> Points | None:
         """Means over the surfaces, in this unit."""
         ensemble, exact = self.drawn(label), self.theory(label, quantity, self.h) / unit
-        return self.points(
-            lambda: (ensemble.mean(quantity) / unit, ensemble.stderr(quantity) / unit), exact, self.all[label]
-        )
+        found = ensemble.mean(quantity) / unit, ensemble.stderr(quantity) / unit
+        return self.points(lambda: found, exact, self.all[label])
 
     @property
     def caption(self) -> str:
         """In words."""
-        scene = self.scene
-        same = "γ" if self.swept else "lines"
-        markers = (
-            f"Markers: Monte-Carlo means with 95 % intervals, {scene.n_surfaces} surfaces of "
-            f"{scene.n_asperities:g} asperities, seed {scene.seed}, the same for all {same}."
-        )
-        return " ".join(filter(None, (self.words, markers * (scene.n_surfaces > 1), "Lines: theory.")))
+        return self.markers(self.scene.n_surfaces)
 
     @property
     def listed_caption(self) -> str:
         """In words, where the heights are listed."""
-        counted = self.caption.replace(f"{self.scene.n_surfaces} surf", f"{len(self.listed)} surf")
-        return counted if self.listed else self.words
+        return self.markers(len(self.listed)) if self.listed else self.words
+
+    def markers(self, surfaces: int) -> str:
+        """Describe the scene, and what is drawn of so many surfaces."""
+        markers = (
+            f"Markers: Monte-Carlo means with 95 % intervals, {surfaces} surfaces of "
+            f"{self.scene.n_asperities:g} asperities, seed {self.scene.seed}, the same for all "
+            f"{'γ' if self.swept else 'lines'}."
+        )
+        return " ".join(filter(None, (self.words, markers * (self.scene.n_surfaces > 1), "Lines: theory.")))
 
     @property
     def words(self) -> str:

@@ -1,6 +1,8 @@
 """How contacts, and surfaces, of one population differ: moduli and scatter."""
 
+from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -9,7 +11,7 @@ from analytic.arrays import Array
 from mcgw.ensemble.simulation import simulate
 from mcgw.figures.against_theory import spread
 from mcgw.figures.compared import SCENE, Compared, Key, Row
-from mcgw.figures.data import GAMMA, SEPARATION, Estimate, FigureData, Panel, Points, Series, ratio_of_sums
+from mcgw.figures.data import GAMMA, SEPARATION, Estimate, FigureData, Panel, Series, ratio_of_sums
 from mcgw.figures.ratios import ratio
 from mcgw.figures.style import power_of_ten
 
@@ -33,10 +35,11 @@ def mean_moduli(f: Compared) -> FigureData:
         return FigureData(title, f.listed_caption, _over_gamma(f))
     plain = f.hertz and f.scene.summits is None  # else area and load of a contact are not powers
     series = []
+    many = f.scene.replace(n_surfaces=max(len(f.listed), 1))  # points where their heights are enough
     for weight in _POWERS if plain else ("number",):
-        line, at = (_exact(f, SCENE, h, weight=weight) for h in (f.line, f.h))
-        label = "contacts" if weight == "number" else weight
-        series.append(Series(label, f.line, line, _points(f, weight, at)))
+        how, label = _Modulus(weight), "contacts" if weight == "number" else weight
+        points = f.points(partial(how.drawn, f, SCENE, f.h), how.exact(f, SCENE, f.h), many)
+        series.append(Series(label, f.line, how.exact(f, SCENE, f.line), points))
     panel = Panel("", SEPARATION, _PSI, tuple(series), level=1.0)
     said = (
         f"Mean over the contacts, each weighted alike (contacts){', by its area, or by its load' * plain}. "
@@ -48,33 +51,31 @@ def _over_gamma(f: Compared) -> tuple[Panel, ...]:
     just = tuple(Series(f"d/σ = {h:g}", _LINE, _LINE - (_LINE - 1) * np.exp(-h)) for h in _AT)
     panels = [Panel("a  as in the paper: just touching, s = d/σ", GAMMA, _PSI, just, level=1.0)]
     for weight, title in _TITLES.items():
-        exact, drawn = partial(_exact, weight=weight), partial(_drawn, weight=weight)
-        panels.append(ratio(f, title, r"$\psi/\psi", exact, drawn, _LINE, _GAMMAS, _AT))
+        panels.append(ratio(f, title, r"$\psi/\psi", _Modulus(weight), _LINE, _GAMMAS, _AT))
     return tuple(panels)
 
 
-def _exact(f: Compared, key: Key, h: Array, *, weight: str) -> Array:
-    return mean_modulus(h, f.of(key).modulus, heights=f.scene.heights, weight=weight)  # type: ignore[arg-type]
+@dataclass(frozen=True)
+class _Modulus:
+    """Mean of E*(s)/E* over the contacts, weighted."""
 
+    weight: Any
 
-def _points(f: Compared, weight: str, exact: Array) -> Points | None:
-    """Points from the listed heights, where there are enough."""
-    if len(f.listed) < 2:
-        return None
-    of = f.scene.replace(n_surfaces=len(f.listed))
-    return f.points(lambda: _drawn(f, SCENE, f.h, weight=weight), exact, of)
+    def exact(self, f: Compared, key: Key, h: Array) -> Array:
+        return mean_modulus(h, f.of(key).modulus, heights=f.scene.heights, weight=self.weight)
 
-
-def _drawn(f: Compared, key: Key, h: Array, *, weight: str) -> Estimate:
-    """Mean of E*(s)/E* over the contacts of the listed surfaces."""
-    above, below = np.zeros((2, len(f.listed), len(h)))
-    for i, s in enumerate(f.listed):
-        for k, separation in enumerate(h):
-            touching = s[s > separation]
-            e = f.of(key).modulus(touching)
-            weights = (touching - separation) ** _POWERS[weight] * (e if weight == "load" else 1.0)
-            above[i, k], below[i, k] = np.sum(weights * e), np.sum(weights)
-    return ratio_of_sums([above], [below])
+    def drawn(self, f: Compared, key: Key, h: Array) -> Estimate:
+        """Over the contacts of the listed surfaces."""
+        above, below = np.zeros((2, len(f.listed), len(h)))
+        for i, s in enumerate(f.listed):
+            for k, separation in enumerate(h):
+                touching = s[s > separation]
+                e = f.of(key).modulus(touching)
+                weights = (touching - separation) ** _POWERS[self.weight] * (
+                    e if self.weight == "load" else 1.0
+                )
+                above[i, k], below[i, k] = np.sum(weights * e), np.sum(weights)
+        return ratio_of_sums([above], [below])
 
 
 def fluctuations(f: Compared) -> FigureData:

@@ -1,8 +1,8 @@
 """Gradings, means over separation and load, and their ratios at equal separation and equal load."""
 
-from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -21,9 +21,6 @@ from mcgw.figures.data import (
     ratio_of_sums,
 )
 from mcgw.figures.style import prefixed
-
-Exact = Callable[[Compared, Key, Array], Array]  # of a label or gamma at separations
-Drawn = Callable[[Compared, Key, Array], Estimate]
 
 _BESIDE = 1.5  # sigma above the highest separation that a grading is shown
 _AT = np.arange(5.0)  # separations of the paper's ratios
@@ -51,19 +48,8 @@ def gradings(f: Compared) -> FigureData:
     return FigureData("The grading", f.words, tuple(panels))
 
 
-def load(f: Compared) -> FigureData:
-    """Show the load over the separation."""
-    return _against_separation(f, "Load at a given separation (Eq. 7)", "load", "pressure", "Pa")
-
-
-def stiffness(f: Compared) -> FigureData:
-    """Show the stiffness over the separation."""
-    title = "Stiffness at a given separation; the paper's “conductance”"
-    return _against_separation(f, title, "stiffness", "stiffness", "Pa/m")
-
-
-def _against_separation(f: Compared, title: str, quantity: str, words: str, unit: str) -> FigureData:
-    """Means: of a sweep as the paper's integrals, else per nominal area."""
+def against_separation(f: Compared, *, title: str, quantity: str, words: str, unit: str) -> FigureData:
+    """Show means: of a sweep as the paper's integrals, else per nominal area."""
     q, area = quantity_of(quantity), f.scene.surface.nominal_area
     top = max(float(np.abs(f.theory(label, quantity, f.line)).max()) for label in f.all)
     if f.swept:
@@ -86,58 +72,63 @@ def _against_separation(f: Compared, title: str, quantity: str, words: str, unit
     return FigureData(title, f.caption, tuple(panels))
 
 
-def _exact(f: Compared, key: Key, h: Array, *, name: str, per: str = "") -> Array:
-    """Mean of a quantity over the reference's; `per` another one, over that of the reference."""
-    found = f.theory(key, name, h) / f.theory(f.reference, name, h)
-    return found / _exact(f, key, h, name=per) if per else found
+@dataclass(frozen=True)
+class Ratio:
+    """Mean of a quantity over the reference's: at the same separation, or where both carry the same load.
+
+    Parameters
+    ----------
+    name : str
+        The quantity.
+    per : str, optional
+        Another one, over which both are.
+    at_load : bool, optional
+        Whether separations are those of the reference, and the load is the same.
+    """
+
+    name: str
+    per: str = ""
+    at_load: bool = False
+
+    def exact(self, f: Compared, key: Key, h: Array) -> Array:
+        """By theory, for a label or gamma at separations."""
+        there = f.at_load_of_reference(key, h) if self.at_load else h
+        found = f.theory(key, self.name, there) / f.theory(f.reference, self.name, h)
+        return found / Ratio(self.per).exact(f, key, h) if self.per else found
+
+    def drawn(self, f: Compared, key: Key, h: Array) -> Estimate:
+        """By Monte Carlo."""
+        above, below = [], [f.values(f.reference, self.name, h)]
+        if self.at_load:
+            above.append(f.drawn(key, f.at_load_of_reference(key, h)).values(self.name))
+        else:
+            above.append(f.values(key, self.name, h))
+        if self.per:
+            above.append(f.values(f.reference, self.per, h))
+            below.append(f.values(key, self.per, h))
+        return ratio_of_sums(above, below)
 
 
-def _drawn(f: Compared, key: Key, h: Array, *, name: str, per: str = "") -> Estimate:
-    (own, reference), *other = [[f.values(x, y, h) for x in (key, f.reference)] for y in (name, per) if y]
-    return ratio_of_sums([own, *(b for _, b in other)], [reference, *(a for a, _ in other)])
-
-
-def _of(name: str, per: str = "") -> tuple[Exact, Drawn]:
-    return partial(_exact, name=name, per=per), partial(_drawn, name=name, per=per)
-
-
-_AREA_PER_LOAD, _STIFFNESS = _of("area", "load"), _of("stiffness")
-
-
-def area_per_load(f: Compared) -> FigureData:
-    """Show the area per load over the reference's."""
-    title = "Area per load at a given separation (Eq. 12)"
-    return _at_separation(f, title, r"(A/P)\,/\,(A/P)", _AREA_PER_LOAD)
-
-
-def stiffness_ratios(f: Compared) -> FigureData:
-    """Show the stiffness over the reference's."""
-    title = "Stiffness at a given separation (Eq. 15: “conductance”)"
-    return _at_separation(f, title, "K/K", _STIFFNESS)
-
-
-def _at_separation(f: Compared, title: str, symbol: str, how: tuple[Exact, Drawn]) -> FigureData:
-    """Return a panel; of a sweep one for stiffer and one for softer tips."""
+def at_separation(f: Compared, *, title: str, symbol: str, how: Ratio) -> FigureData:
+    """Show a ratio; of a sweep a panel for stiffer and one for softer tips."""
     parts = (("a  stiffer tips", _STIFFER), ("b  softer tips", _SOFTER)) if f.swept else (("", _STIFFER),)
-    panels = (ratio(f, name, f"${symbol}", *how, *gammas, _AT) for name, gammas in parts)
+    panels = (ratio(f, name, f"${symbol}", how, *gammas, _AT) for name, gammas in parts)
     reference = "" if f.swept else f"Reference: {f.reference}, the same surface. "
     return FigureData(title, f"{reference}{f.caption}", tuple(panels))
 
 
-def ratio(
-    f: Compared, title: str, symbol: str, exact: Exact, drawn: Drawn, line: Array, gammas: Array, at: Array
-) -> Panel:
+def ratio(f: Compared, title: str, symbol: str, how: Any, line: Array, gammas: Array, at: Array) -> Panel:
     """Draw a ratio to the reference over gamma, if that is swept, else over the separation."""
     ylabel = rf"{symbol}_\mathrm{{{'hom' if f.swept else 'ref'}}}$"
     if not f.swept:
         series = tuple(
-            Series(label, f.line, exact(f, label, f.line),
-                   f.points(partial(drawn, f, label, f.h), exact(f, label, f.h)))
+            Series(label, f.line, how.exact(f, label, f.line),
+                   f.points(partial(how.drawn, f, label, f.h), how.exact(f, label, f.h)))
             for label in f.others
         )  # fmt: skip
         return Panel(title, SEPARATION, ylabel, series, level=1.0)
-    mean, stderr = np.array([drawn(f, float(gamma), at) for gamma in gammas]).transpose(1, 2, 0)
-    curves, truth = (np.array([exact(f, float(gamma), at) for gamma in x]).T for x in (line, gammas))
+    mean, stderr = np.array([how.drawn(f, float(gamma), at) for gamma in gammas]).transpose(1, 2, 0)
+    curves, truth = (np.array([how.exact(f, float(gamma), at) for gamma in x]).T for x in (line, gammas))
     series = tuple(
         Series(f"d/σ = {h:g}", line, curves[k], Points(gammas, mean[k], stderr[k], truth[k]))
         for k, h in enumerate(at)
@@ -186,46 +177,28 @@ def _exponent(f: Compared, label: str) -> Series:
 
 def equal_load(f: Compared) -> FigureData:
     """Show conductance, area and stiffness over the reference's, where both carry the same load."""
-    panels, keys = [], "abcd"
+    shown, panels = [(name, Ratio(name, at_load=True)) for name in _SHOWN], []
     if f.swept:
-        title = "a  equal separation: stiffness (Eq. 15)"
-        panels.append(
-            ratio(
-                f,
-                title,
-                "$K/K",
-                *_STIFFNESS,
-                _LINE,
-                _GAMMAS,
-                _AT_LOAD,
-            )
-        )
-        keys = "bcd"
-    for key, name in zip(keys, _SHOWN, strict=False):
-        symbol = quantity_of(name).symbol.removesuffix("ρ")  # the resistivity is that of both
-        exact, drawn = partial(_of_load, name=name), partial(_of_load_drawn, name=name)
-        title = f"{key}  {'equal load: ' * f.swept}{name}"
-        panels.append(ratio(f, title, f"${symbol}/{symbol}", exact, drawn, _LINE, _GAMMAS, _AT_LOAD))
+        shown.insert(0, ("equal separation: stiffness (Eq. 15)", Ratio("stiffness")))
+    for key, (name, how) in zip("abcd", shown, strict=False):
+        symbol = quantity_of(how.name).symbol.removesuffix("ρ")  # the resistivity is that of both
+        title = f"{key}  {'equal load: ' * (f.swept and how.at_load)}{name}"
+        panels.append(ratio(f, title, f"${symbol}/{symbol}", how, _LINE, _GAMMAS, _AT_LOAD))
     title = "At equal load the trend reverses: stiffer tips conduct less" if f.swept else "At the same load"
     which = "homogeneous surface" if f.swept else f"reference ({f.reference}, the same surface)"
     return FigureData(title, f"d/σ is that of the {which} and sets the load. {f.caption}", tuple(panels))
 
 
-def _of_load(f: Compared, key: Key, h: Array, *, name: str) -> Array:
-    return f.theory(key, name, f.at_load_of_reference(key, h)) / f.theory(f.reference, name, h)
-
-
-def _of_load_drawn(f: Compared, key: Key, h: Array, *, name: str) -> Estimate:
-    there = f.drawn(key, f.at_load_of_reference(key, h))
-    return ratio_of_sums([there.values(name)], [f.values(f.reference, name, h)])
-
-
 FIGURES = (
     Row("figure-1", gradings, ("grading",)),
-    Row("figure-2", load),
-    Row("figure-3", area_per_load, ("reference", "pressing")),
-    Row("figure-5", stiffness),
-    Row("figure-6", stiffness_ratios, ("reference",)),
+    Row("figure-2", partial(against_separation, title="Load at a given separation (Eq. 7)",
+                            quantity="load", words="pressure", unit="Pa")),
+    Row("figure-3", partial(at_separation, title="Area per load at a given separation (Eq. 12)",
+                            symbol=r"(A/P)\,/\,(A/P)", how=Ratio("area", "load")), ("reference", "pressing")),
+    Row("figure-5", partial(against_separation, quantity="stiffness", words="stiffness", unit="Pa/m",
+                            title="Stiffness at a given separation; the paper's “conductance”")),
+    Row("figure-6", partial(at_separation, title="Stiffness at a given separation (Eq. 15: “conductance”)",
+                            symbol="K/K", how=Ratio("stiffness")), ("reference",)),
     Row("equal-load", equal_load, ("reference", "pressing", "same load")),
     Row("area-and-load", area_and_load, ("pressing",)),
-)
+)  # fmt: skip
