@@ -13,10 +13,10 @@ from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.simulation import simulate
 from mcgw.exports.contact_table import contact_table
-from mcgw.exports.curves import KINDS, Curve, Kind, curves_at_gaps, curves_at_pressures, quantile_name
+from mcgw.exports.curves import KINDS, Curve, curves_at_gaps, curves_at_pressures, quantile_name
 from mcgw.exports.programs import PROGRAMS
-from mcgw.exports.table_text import UNITS, heading, in_units, table_text, unit_of
-from mcgw.formats.files import write_whole
+from mcgw.exports.table_text import UNITS, Sheet
+from mcgw.formats.files import together, write_whole
 from mcgw.formats.table import Column, Table
 from mcgw.scene.arguments import argument, as_toml
 from mcgw.scene.scene import Scene
@@ -127,23 +127,16 @@ def export(
         curves = curves_at_pressures(scene, kind, wanted, points, shares)
     else:
         ensemble = surfaces_for(source, kind.needs, wanted, points)
-        if wanted is not None and ensemble is not source:  # drawn at the separations of the rows
-            curves = curves_at_gaps(ensemble, kind, None, len(wanted), shares)
-        else:
-            curves = curves_at_gaps(ensemble, kind, wanted, points, shares)
-    scaled = [in_units(curve, kind, units) for curve in curves]
+        rows = wanted is not None and ensemble is not source  # drawn at the separations of the rows
+        bounds, most = (None, len(ensemble.separations)) if rows else (wanted, points)
+        curves = curves_at_gaps(ensemble, kind, bounds, most, shares)
     files = files_of_export(path, shares)
-    origin, stays = f"mcgw {version('mcgw')}; SHA-256 of the {digest}", kind.stays(scene)
-    texts = [
-        table_text(
-            curve, kind, PROGRAMS[to], units,
-            heading(scene, surfaces, kind, curve, units, origin), file.name, stays=stays,
-        )
-        for file, curve in zip(files, scaled, strict=False)
-    ]  # fmt: skip
-    for file, text in zip(files, texts, strict=False):
-        write_whole(file, [text.encode("ascii", "replace")])
-    _together(scaled, kind, units, scene).write(files[-1], comment=f"{kind.name}; SHA-256 of the {digest}")
+    origin = f"mcgw {version('mcgw')}; SHA-256 of the {digest}"
+    sheet = Sheet(scene, surfaces, kind, PROGRAMS[to], units, origin)
+    with together():
+        for file, curve in zip(files, curves, strict=False):
+            write_whole(file, [sheet.text(curve, file.name).encode("ascii", "replace")])
+        table_of(curves, sheet).write(files[-1], comment=f"{kind.name}; SHA-256 of the {digest}")
     return files
 
 
@@ -155,14 +148,14 @@ def files_of_export(path: str | Path, quantiles: Sequence[float] | None = None) 
     return [path, *beside, path.with_name(f"{path.stem}.all.csv")]
 
 
-def _together(curves: Sequence[Curve], kind: Kind, units: str, scene: Scene) -> Table:
+def table_of(curves: Sequence[Curve], sheet: Sheet) -> Table:
     """All curves side by side, in the units of the files; empty where one carries nothing."""
-    x = np.unique(np.concatenate([curve.x for curve in curves])).tolist()
-    columns = [Column(kind.against, x, unit=unit_of(kind.against, units, scene))]
+    kind, x = sheet.kind, np.unique(np.concatenate([sheet.columns(curve)[0] for curve in curves])).tolist()
+    columns = [Column(kind.against, x, unit=sheet.unit(kind.against)[1])]
     for curve in curves:
-        held = dict(zip(curve.x.tolist(), curve.y.tolist(), strict=True))
-        unit = unit_of(kind.quantity, units, scene)
-        columns.append(Column(f"{kind.quantity} {curve.name}", [held.get(at, "") for at in x], unit=unit))
+        at = dict(zip(*map(np.ndarray.tolist, sheet.columns(curve)), strict=True))
+        values = [at.get(each, "") for each in x]
+        columns.append(Column(f"{kind.quantity} {curve.name}", values, unit=sheet.unit(kind.quantity)[1]))
     return Table(tuple(columns))
 
 

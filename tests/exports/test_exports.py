@@ -3,6 +3,7 @@
 import csv
 import json
 import re
+from dataclasses import replace
 
 import jsonschema
 import numpy as np
@@ -15,7 +16,7 @@ from mcgw.cli import main
 from mcgw.exports.contact_table import SCHEMA
 from mcgw.exports.curves import KINDS, Curve, quantile_name
 from mcgw.exports.programs import PROGRAMS
-from mcgw.exports.table_text import UNITS, heading, in_units, table_text
+from mcgw.exports.table_text import UNITS, Sheet
 from mcgw.exports.writing import surfaces_for
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "10 mm^2", "78.6 GPa")
@@ -110,15 +111,14 @@ def test_a_curve_is_written_as_the_program_reads_it(scene, program, table, units
 
     Whatever a stranger wrote into a title or name stays a comment.
     """
-    kind, system, path = KINDS[table], units, tmp_path / "t"
+    kind, path = KINDS[table], tmp_path / "t"
     x, y = np.array([1.0, 2.0, 4.0]), np.array([1.0, 2.0, 5.0])
     x, y, foot = (1e-6 * x, 1e6 * y[::-1], 6e-6) if kind.against == "gap" else (1e6 * x, y, 0.0)
-    curve = in_units(Curve("q05", x, y), kind, system)
-    head = heading(scene, 60, kind, curve, system, "data 0a")
-    text = table_text(curve, kind, PROGRAMS[program], system, [*head, LIVE], LIVE)
+    curve, sheet = Curve("q05", x, y), Sheet(scene, 60, kind, PROGRAMS[program], units, "data 0a")
+    text = replace(sheet, origin=LIVE).text(curve, LIVE)
     for line in re.split(r"[\r\n]", text.encode("ascii", "replace").decode()):
         assert line in ("", PROGRAMS[program].header[table]) or re.fullmatch(LINES[program], line)
-    path.write_text(table_text(curve, kind, PROGRAMS[program], system, head, "f.x"))
+    path.write_text(sheet.text(curve, "f.x"))
     text = path.read_text()
     overclosure = table == "pressure-gap" and program in ("calculix", "abaqus")
     if overclosure:
