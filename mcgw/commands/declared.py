@@ -120,7 +120,7 @@ def _add_arguments(parser: argparse.ArgumentParser, function: Command, words: st
     texts = {name: (metavar, " ".join(text.split())) for name, metavar, text in _WORDS.findall(words)}
     groups: dict[OneOf | None, Any] = {None: parser}
     for each, kind, option, group in _kinds_of(function):
-        if group not in groups:
+        if group and group not in groups:
             groups[group] = parser.add_mutually_exclusive_group(required=group.required)
         placed = each.kind is Parameter.POSITIONAL_OR_KEYWORD
         names = [each.name] if placed else [option, "--output"] if option == "-o" else [option]

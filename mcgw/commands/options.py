@@ -30,8 +30,10 @@ def drawing(
     from mcgw.jobs.executors import Jobs as Processes, dask_executor
 
     chosen: AbstractContextManager[Executor | None] = nullcontext()
-    if jobs is not None or dask is not None:
-        chosen = Processes(jobs) if jobs is not None else dask_executor(dask)
+    if jobs is not None:
+        chosen = Processes(jobs)
+    elif dask is not None:
+        chosen = dask_executor(dask)
     before = logging.root.manager.disable
     logging.disable(logging.CRITICAL)
     try:

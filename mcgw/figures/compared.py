@@ -41,11 +41,11 @@ def _once(method: Callable[..., _Result]) -> Callable[..., _Result]:
     """Keep what a method returns for the same labels, names and separations."""
 
     @wraps(method)
-    def call(self: "Compared", *given: Any) -> _Result:
+    def call(self: "Compared", *given: Any) -> Any:
         place = (method.__name__, *(x.tobytes() if isinstance(x, np.ndarray) else x for x in given))
-        if place not in self.kept:
-            self.kept[place] = method(self, *given)
-        return self.kept[place]
+        if place not in self._kept:
+            self._kept[place] = method(self, *given)
+        return self._kept[place]
 
     return call
 
@@ -68,7 +68,7 @@ class Compared:
     asked: Scene
     swept: bool = False
     most_listed: int = 100
-    kept: dict[Any, Any] = field(default_factory=dict, init=False, repr=False)
+    _kept: dict[Any, Any] = field(default_factory=dict, init=False, repr=False)
 
     @cached_property
     def scene(self) -> Scene:
