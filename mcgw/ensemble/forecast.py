@@ -17,7 +17,6 @@ from analytic.arrays import Array
 from mcgw.ensemble.intervals import CONFIDENCE, MANY, TOO_FEW, Spread, chebyshev, spread_of
 from mcgw.sampling.counts import GROUP
 from mcgw.scene.scene import Scene
-from mcgw.scene.stop_rule import wanted
 
 if TYPE_CHECKING:
     from mcgw.ensemble.ensemble import Ensemble
@@ -67,7 +66,7 @@ def forecast(scene: Scene) -> Forecast:
     """
     if scene.rel_err is None:
         return Forecast({}, scene.n_surfaces, ())
-    asked = wanted(scene)
+    asked = scene.wanted
     limit, spreads = scene.n_surfaces, {name: spread_of(scene, name) for name in asked}
     needed = {name: _needed(spread, asked[name]) for name, spread in spreads.items()}
     waited = [needed[name][spread.relative**2 <= limit] for name, spread in spreads.items()]
@@ -161,7 +160,7 @@ def surfaces_at_loads(scene: Scene, separations: Sequence[float], given: str) ->
     UserWarning
         If `n_surfaces` is too small.
     """
-    asked = {name: float(share.min()) for name, share in wanted(scene).items()}
+    asked = {name: float(share.min()) for name, share in scene.wanted.items()}
     if not isinstance(scene.rel_err, Mapping):
         asked = dict.fromkeys(("load", "area", "stiffness", "conductance"), min(asked.values()))
     asked = {name: share for name, share in asked.items() if name != given}
@@ -187,7 +186,7 @@ def after(ensemble: "Ensemble", scene: Scene) -> list[str]:
         f"{limit / n:.3g} per asperity ({CONFIDENCE:.0%} confidence)"
         for h in np.unique(ensemble.separations[silent])
     ]
-    asked = wanted(scene) or dict.fromkeys(scene.quantities, np.ones(len(scene.separations)))
+    asked = scene.wanted or dict.fromkeys(scene.quantities, np.ones(len(scene.separations)))
     for name, most in asked.items():
         reach = spread_of(ensemble.scene, name).reach(m)
         for h, w, rel_err in zip(ensemble.separations[~silent], reach[~silent], most[~silent], strict=True):

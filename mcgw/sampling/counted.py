@@ -122,7 +122,7 @@ class Counted(Sampler):
         for name in self.scene.quantities:
             q = quantity_of(name)
             if q.counts:
-                found = stretches_of(self.scene, self.scene.branch_of(name), *self.mesh.range)
+                found = stretches_of(self.scene, self.scene.ways.of(name), *self.mesh.range)
                 here = (found.piece > 0) if q.base == "yielded" else np.ones(len(found.piece), dtype=bool)
                 first, last = (
                     np.minimum(np.searchsorted(self.mesh.edges, x[here]), self.mesh.size)

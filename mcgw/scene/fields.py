@@ -10,7 +10,8 @@ import numpy as np
 
 import analytic
 from analytic import HeightLaw, MeasuredRadii, RandomCurvature, Surface
-from analytic.laws import Branch, ContactLaw, Film, Hertz, Ways
+from analytic.arrays import Array
+from analytic.laws import ContactLaw, Film, Hertz, Ways
 from mcgw.machine.memory import kept
 from mcgw.scene.parts import Contact, Joint, Sampling
 from mcgw.scene.uncertainty import Uncertainty
@@ -74,6 +75,16 @@ class Fields(Flat):
     def uncertainty(self) -> Uncertainty | None:
         """Standard errors of the parameters of the surface; None if they are known."""
         return getattr(self.surface, "uncertainty", None)
+
+    @property
+    def wanted(self) -> dict[str, Array]:
+        """Wanted relative error of each mean, shape (separations,), for quantities with a wish."""
+        given: Any = {} if self.rel_err is None else self.rel_err
+        given = given if isinstance(given, Mapping) else dict.fromkeys(self.quantities, given)
+        return {
+            name: np.broadcast_to(np.array(x, dtype=np.float64), len(self.separations))
+            for name, x in given.items()
+        }
 
     @property
     def touching(self) -> float:
@@ -190,10 +201,6 @@ class Fields(Flat):
         conductance = None if self.film is None else self.film.on(self.surface)
         return Ways(self.reduced_law, self.unload_from, conductance)
 
-    def branch_of(self, quantity: str) -> Branch:
-        """Return the way of a quantity, loading or unloading."""
-        return self.ways.of(quantity)
-
     @property
     def all_separations(self) -> tuple[float, ...]:
         """Every separation once, increasing."""
@@ -202,8 +209,7 @@ class Fields(Flat):
     @property
     def tables(self) -> tuple[str, ...]:
         """Names of the tables of an ensemble, which have a number for each surface and separation."""
-        nominal = () if self.interaction is None else self.other_separations
-        return (*self.quantities, *nominal, *self.of_joint)
+        return (*self.quantities, *self.other_separations, *self.of_joint)
 
     @property
     def of_joint(self) -> tuple[str, ...]:

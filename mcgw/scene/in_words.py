@@ -1,5 +1,7 @@
 """A scene in words: its laws with their numbers, and what differs from Hertz and exact values."""
 
+from collections.abc import Mapping
+
 from analytic import Hertz
 from analytic.laws import Film
 from mcgw.formats.law_text import law_text
@@ -7,7 +9,6 @@ from mcgw.formats.table import Table
 from mcgw.machine.terminal import brief
 from mcgw.scene.fields import Fields
 from mcgw.scene.keys import SURFACE_UNITS
-from mcgw.scene.stop_rule import rel_err_text
 
 _PLANES = {"body": "undeformed body", "mean-plane": "mean deformed plane"}
 
@@ -61,7 +62,7 @@ def sheet_of(scene: Fields) -> Table:
     x = {key: f"{key} = {getattr(scene.surface, key):g} {unit}" for key, unit in SURFACE_UNITS.items()}
     h, among = scene.separations, f"{len(scene.separations)} from " if len(scene.separations) > 1 else ""
     ends = " to ".join(f"{end:g}" for end in sorted({min(h), max(h)}))
-    stop = "" if scene.rel_err is None else f" until rel_err = {rel_err_text(scene.rel_err)}, at most"
+    stop = "" if scene.rel_err is None else f"until rel_err = {_wish(scene.rel_err)}, at most "
     facts = [
         ("surface", ", ".join((x["sigma"], x["radius"], x["eta"]))),
         ("", f"{x['nominal_area']}, {x['E_star']}"),
@@ -74,9 +75,16 @@ def sheet_of(scene: Fields) -> Table:
         ("quantities", ", ".join(scene.quantities)),
         (
             "ensemble",
-            f"{stop} {scene.n_surfaces} surfaces of {scene.n_asperities} asperities ({scene.count}), "
-            f"seed {scene.seed}, sampler {scene.sampler}".strip(),
+            f"{stop}{scene.n_surfaces} surfaces of {scene.n_asperities} asperities ({scene.count}), "
+            f"seed {scene.seed}, sampler {scene.sampler}",
         ),
         *accuracy_facts(scene),
     ]
     return Table((), brief(f"Scene: {scene.title}") if scene.title else "Scene", facts)
+
+
+def _wish(rel_err: float | Mapping[str, float | list[float]]) -> str:
+    if not isinstance(rel_err, Mapping):
+        return f"{rel_err:g}"
+    least = {name: f"{min(x):g} at best" if isinstance(x, list) else f"{x:g}" for name, x in rel_err.items()}
+    return ", ".join(map(" ".join, least.items()))

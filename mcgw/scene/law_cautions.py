@@ -22,33 +22,21 @@ _POISSON = 0.3  # if the law of the scene has none
 _RATIOS = (1 / 3, 3.0)  # ratio of moduli for which the perturbation of a coating holds
 
 
-def _choice(scene: Scene) -> Iterator[str]:
-    """State how much comparable laws differ."""
-    others = other_laws(scene)
-    if others is None:
-        return
-    ratios = ", ".join(f"{name} {ratio:.3g}" for name, ratio in others.load.items())
-    yield (
-        f'contact.law = "{scene.law.name}": laws differ by {others.worth:.0%} in load at d/sigma = '
-        f"{others.separation:.3g}; ratios to this one at a critical penetration of "
-        f"{others.critical:.3g} sigma: {ratios}"
-    )
-
-
-def _yielded(scene: Scene) -> Iterator[str]:
-    """State how many contacts have yielded."""
-    h = scene.lowest
-    share = 1 - float(scene.theory.share(0, h))
-    if share > _DEEP:
+def _yielding(scene: Scene) -> Iterator[str]:
+    """State how much comparable laws differ, how many contacts have yielded, and what stiffness is."""
+    named, h = f'contact.law = "{scene.law.name}"', scene.lowest
+    if (others := other_laws(scene)) is not None:
+        ratios = ", ".join(f"{name} {ratio:.3g}" for name, ratio in others.load.items())
+        yield (
+            f"{named}: laws differ by {others.worth:.0%} in load at d/sigma = {others.separation:.3g}; "
+            f"ratios to this one at a critical penetration of {others.critical:.3g} sigma: {ratios}"
+        )
+    if (share := 1 - float(scene.theory.share(0, h))) > _DEEP:
         yield (
             f"{100 * share:.3g} % of the contacts have yielded at d/sigma = {h:g}; elastic solutions cannot "
             "check their loads and areas"
         )
-
-
-def _jumps(scene: Scene) -> Iterator[str]:
-    """Say that stiffness is not the slope of the load."""
-    line = f'contact.law = "{scene.law.name}": stiffness is that of initial unloading, 2 E*(s) a per contact'
+    line = f"{named}: stiffness is that of initial unloading, 2 E*(s) a per contact"
     if getattr(scene.law, "bridge", "none to build") is None:
         yield f'{line}; load_slope ignores the jumps of the load (bridge = "hermite" smooths them)'
     elif {"stiffness", "load_slope"} & set(scene.quantities):
@@ -123,19 +111,18 @@ def _adhesion(scene: Scene) -> Iterator[str]:
         )
 
 
-_OF_LAWS: dict[Any, tuple[Callable[[Scene], Iterator[str]], ...]] = {
-    ElasticPlastic: (_choice, _yielded, _jumps),
-    analytic.KogutEtsion: (_kogut_etsion,),
-    analytic.JacksonGreen: (_jackson_green,),
-    analytic.Coated: (_coating,),
-    analytic.JohnsonKendallRoberts | analytic.DerjaguinMullerToporov: (_adhesion,),
+_OF_LAWS: dict[Any, Callable[[Scene], Iterator[str]]] = {
+    ElasticPlastic: _yielding,
+    analytic.KogutEtsion: _kogut_etsion,
+    analytic.JacksonGreen: _jackson_green,
+    analytic.Coated: _coating,
+    analytic.JohnsonKendallRoberts | analytic.DerjaguinMullerToporov: _adhesion,
 }
 
 
 def law_cautions(scene: Scene) -> list[str]:
     """Cautions about the contact law, one per line; none for Hertz's."""
-    found = [caution for kind, each in _OF_LAWS.items() if isinstance(scene.law, kind) for caution in each]
-    return [line for caution in found for line in caution(scene)]
+    return [line for kind, of in _OF_LAWS.items() if isinstance(scene.law, kind) for line in of(scene)]
 
 
 @dataclass(frozen=True)

@@ -1,14 +1,13 @@
 """What is wrong with the values of a scene: a line for each mistake, with its key and what to give."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
 import analytic
 from mcgw.scene.fields import Fields
 from mcgw.scene.promises import promise_of
-from mcgw.scene.stop_rule import rel_err_mistakes
 
 _LEAST = 1e-100  # next to it, powers of a distance are beyond double precision
 _MOST_ASPERITIES = 2**53  # counts are exact in double precision up to here
@@ -22,11 +21,11 @@ def mistakes(scene: Fields) -> list[str]:
         _history: scene.unload_from is not None,
         _measured: isinstance(scene.heights, analytic.MeasuredHeights),
         _radii: scene.summits is not None,
-        rel_err_mistakes: scene.rel_err is not None,
+        _wishes: scene.rel_err is not None,
     }
     later = {
         _law: not scene.hertzian,
-        _gas: scene.joint.gas is not None,
+        _gas: scene.gas is not None,
         _pressed: scene.interaction is not None,
     }
     for checks in (has, {_scales: True}, later):
@@ -40,14 +39,13 @@ def mistakes(scene: Fields) -> list[str]:
 
 
 def _values(scene: Fields) -> Iterator[str]:
-    known = {**analytic.QUANTITIES, **analytic.LAW_QUANTITIES}
     if "conductance_si" in scene.quantities and scene.film is None:
         need = "joint.resistivity, or joint.conductivities = [k1, k2]"
         yield f'contact.quantities: "conductance_si" needs {need}'
     if tiny := [h for h in scene.separations if 0 < abs(h) < _LEAST]:
         yield f"contact.separations: {tiny[0]:g} is too close to 0; give 0, or at least {_LEAST:g}"
     for name in scene.quantities:
-        if name not in known and scene.unload_from is None:
+        if name in analytic.UNLOADING and scene.unload_from is None:
             yield f"contact.quantities: {name!r} needs unloading; give unload_from too"
     if not 1 <= scene.n_asperities <= _MOST_ASPERITIES:
         yield (
@@ -67,24 +65,17 @@ def _history(scene: Fields) -> Iterator[str]:
             'give the smallest that was reached, or "loop"'
         )
     try:
-        way = scene.reduced_law.unloading()
-        stiff = [name for name in ("stiffness", "load_slope") if name in scene.quantities]
-        rest = [
-            x for x in scene.quantities if x.partition("_unloading")[0] not in ("stiffness", "load_slope")
-        ]
+        way, steep = scene.reduced_law.unloading(), ("stiffness", "load_slope")
+        stiff = [name for name in steep if name in scene.quantities]
         if stiff and not way.stiff:
+            rest = [x for x in scene.quantities if x not in steep and x not in analytic.UNLOADING]
+            listed = str(rest or ["load"]).replace("'", '"')
             yield (
                 f"contact.quantities: {stiff[0]!r} has no variance if contacts break off (law = "
-                f'"{scene.law.name}"); give {_listed(rest)}, or leave out unload_from'
+                f'"{scene.law.name}"); give {listed}, or leave out unload_from'
             )
     except ValueError as error:
         yield f"contact.unload_from = {scene.unload_from:g}: {error}"
-
-
-def _listed(names: list[str]) -> str:
-    """Quantities as a file lists them, those of loading."""
-    known = [name for name in names if name in analytic.QUANTITIES or name in analytic.LAW_QUANTITIES]
-    return str(known or ["load"]).replace("'", '"')
 
 
 def _law(scene: Fields) -> Iterator[str]:
@@ -195,3 +186,16 @@ def _radii(scene: Fields) -> Iterator[str]:
             f'ensemble.sampler = "{scene.sampler}": summits with individual radii have different breaks of '
             f'contact.law = "{scene.law.name}"; use sampler = "tail", or summits.curvature = "mean"'
         )
+
+
+def _wishes(scene: Fields) -> Iterator[str]:
+    """Wanted accuracies that the scene cannot have."""
+    given = scene.rel_err if isinstance(scene.rel_err, Mapping) else {"": scene.rel_err}
+    if not given:
+        yield "ensemble.rel_err = {}: name at least one quantity, or give one number for all"
+    for name, value in given.items():
+        key = f"ensemble.rel_err.{name}" if name else "ensemble.rel_err"
+        if name and name not in scene.quantities:
+            yield f"{key}: is not one of contact.quantities; give one of {', '.join(scene.quantities)}"
+        if isinstance(value, list) and len(value) != len(scene.separations):
+            yield f"{key}: has {len(value)} values; give one for each of {len(scene.separations)} separations"

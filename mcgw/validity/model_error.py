@@ -179,42 +179,29 @@ def span(h: Array, where: Marks) -> str:
 
 
 _OFF = 0.1  # error of area, stiffness or load above which there is a caution
-_QUANTITIES = ("area", "stiffness", "load")  # the first two at a given load
+_QUANTITIES = ("area", "stiffness", "load")
 
 
 def off_elasticity(v: Validity, why: str) -> Iterator[str]:
     """Errors above 10 % by their size, and loads above those that were measured."""
     for loose, told, because in ((False, "model error", f": {why}"), (True, "scatter between surfaces", "")):
-        where = {name: (v.error[name] > _OFF) & (_scatters(v, name) == loose) for name in _QUANTITIES}
-        off = np.logical_or.reduce([*where.values()])
+        off, sizes = np.zeros(len(v.separations), dtype=np.bool_), {}
+        for name, error in v.error.items():
+            scatters = error > 2 * np.abs(v.bias[name])  # mostly scatter, not bias
+            where = (error > _OFF) & (scatters == loose) & (name in _QUANTITIES)
+            if where.any():
+                k = int(np.argmax(np.where(where, error, -np.inf)))
+                size, sign = percent(float(error[k])), "large" if v.bias[name][k] > 0 else "small"
+                sizes[name] = f"{name} ± {size}" if loose else f"{name} up to {size} too {sign}"
+                off |= where
+        at_load = ", ".join(size for name, size in sizes.items() if name != "load")
+        largest = [f"{at_load} at that load"] * bool(at_load)
+        largest += [f"{sizes['load']} at that mean gap"] if "load" in sizes else []
         if off.any():
-            yield f"d/sigma = {span(v.separations, off)}: {told}: {'; '.join(_told(v, where))}{because}"
+            yield f"d/sigma = {span(v.separations, off)}: {told}: {'; '.join(largest)}{because}"
     heavier = np.arange(len(v.separations)) < np.argmax(v.measured)
     if heavier.any():
         yield (
             f"d/sigma = {span(v.separations, heavier)}: loads heavier than measured ({v.axis} up to "
             f"{v.loads[heavier].max():.2g}); the error is not known"
         )
-
-
-def _scatters(v: Validity, name: str) -> Marks:
-    """Say where an error is mostly scatter, not bias."""
-    return np.asarray(v.error[name] > 2 * np.abs(v.bias[name]))
-
-
-def _told(v: Validity, where: dict[str, Marks]) -> Iterator[str]:
-    """Yield the largest error of each quantity among these separations, those at a given load first."""
-    sizes = {name: _size(v, name, mask) for name, mask in where.items() if mask.any()}
-    at_load = [sizes[name] for name in _QUANTITIES[:2] if name in sizes]
-    if at_load:
-        yield f"{', '.join(at_load)} at that load"
-    if "load" in sizes:
-        yield f"{sizes['load']} at that mean gap"
-
-
-def _size(v: Validity, name: str, where: Marks) -> str:
-    k = int(np.argmax(np.where(where, v.error[name], -np.inf)))
-    size = percent(float(v.error[name][k]))
-    if _scatters(v, name)[k]:
-        return f"{name} ± {size}"
-    return f"{name} up to {size} too {'large' if v.bias[name][k] > 0 else 'small'}"

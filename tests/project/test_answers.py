@@ -19,7 +19,7 @@ SCENES = {path.stem: path.read_text() for path in sorted((ANSWERS / "scenes").gl
 
 
 # Long, or said elsewhere in the record.
-APART = {"branch_of", "ensemble", "labelled", "plot", "replace", "scene", "series", "sheet", "surfaces_of"}
+APART = {"ensemble", "labelled", "plot", "replace", "scene", "series", "sheet", "surfaces_of"}
 APART |= {
     "alone",
     "area",

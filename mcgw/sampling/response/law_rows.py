@@ -93,7 +93,7 @@ def law_rows(scene: Scene, quantities: tuple[str, ...], mesh: Mesh) -> Rows:
     kinds: list[tuple[Branch, str, int, float]] = []
     sixteen = Sixteen.of(scene)
     for number, name in enumerate(quantities):
-        q, branch = quantity_of(name), scene.branch_of(name)
+        q, branch = quantity_of(name), scene.ways.of(name)
         if branch not in stretches:
             stretches[branch] = stretches_of(scene, branch, *mesh.range)
         found = stretches[branch]
