@@ -33,7 +33,7 @@ def arguments(given: Mapping[str, Any], kinds: Mapping[str, Kind]) -> dict[str, 
         With one line for each mistake, which names the argument.
     """
     plain = {name: as_toml(value) for name, value in given.items()}
-    section = Section("", plain, [Key(name, kind) for name, kind in kinds.items()])
+    section = Section("", plain, {name: Key(name, kind) for name, kind in kinds.items()})
     found = section.read_all(kinds)
     if section.problems:
         raise SceneError(section.problems)

@@ -188,7 +188,8 @@ class Table(Kind):
             return value
         if not isinstance(value, Mapping):
             raise mistake(path, value, self.advice)
-        inner = Section(path, value, [Key(name, self.item) for name in value] if self.item else self.rows)
+        rows = [Key(name, self.item) for name in value] if self.item else self.rows
+        inner = Section(path, value, {row.name: row for row in rows})
         found = inner.read_all(inner.rows)
         inner.finish()
         made = inner.made(self.make or dict, found)

@@ -25,7 +25,7 @@ def mistakes(scene: Fields) -> list[str]:
     }
     later = {
         _law: not scene.hertzian,
-        _gas: scene.gas is not None,
+        _gas: scene.joint.gas is not None,
         _pressed: scene.interaction is not None,
     }
     for checks in (has, {_scales: True}, later):

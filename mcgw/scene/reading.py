@@ -54,8 +54,12 @@ def of_arguments(given: Mapping[str, Any]) -> Values:
         if not PLACES[name] and value is not None:
             document[name] = _keys_of(name, value)
     for name, value in given.items():
-        if PLACES[name] and isinstance(keys := document.setdefault(PLACES[name], {}), dict):
-            document[PLACES[name]] = {key: x for key, x in {**keys, name: value}.items() if x is not None}
+        if not (table := PLACES[name]):
+            continue
+        keys = document.get(table, {})
+        keys = _fields(keys) if isinstance(keys, Surface) else keys
+        if isinstance(keys, dict):
+            document[table] = {key: x for key, x in {**keys, name: value}.items() if x is not None}
     if isinstance(contact := document.get("contact"), dict):
         of_yield = {key: contact.pop(key) for key in OF_YIELD if key in contact}
         if of_yield:
@@ -67,6 +71,8 @@ def _keys_of(name: str, value: Any) -> Any:
     """Return the keys of what stands for a whole table."""
     if isinstance(value, Mapping):
         return dict(value)
+    if isinstance(value, Surface):
+        return value
     if isinstance(value, Spectral):
         summits = {key: x for key, x in _fields(value.surface).items() if key not in SUMMITS}
         return _fields(value.moments) | summits
@@ -94,14 +100,16 @@ def of_tables(
         With one line for each mistake.
     """
     document = with_bodies(as_tables(document), folder, of_tables)
-    of = {"": Section("", document, TABLES[""].rows)}
+    if isinstance(whole := document.get("surface"), Surface):  # of Python, which checked it
+        document = {**document, "surface": {}}
+    of = {"": Section("", document, KEYS[""])}
     for name, table in TABLES.items():
         outer, _, inner = name.rpartition(".")
         if name:
-            of[name] = of[outer].section(inner, table.rows, table.advice)
+            of[name] = of[outer].section(inner, KEYS[name], table.advice)
     if of[""].problems:
         raise SceneError(of[""].problems)
-    surface, heights, radii = _surface_and_summits(of, folder)
+    surface, heights, radii = _surface_and_summits(of, whole, folder)
     joint = _joint(of)
     separations, contact = _contact(of, heights, joint)
     values = {
@@ -126,7 +134,7 @@ def of_tables(
 
 
 def _surface_and_summits(
-    of: Mapping[str, Section], folder: Path
+    of: Mapping[str, Section], whole: Any, folder: Path
 ) -> tuple[Surface | None, HeightLaw | None, Radii]:
     """Return a surface, the law of its heights, and that of its radii where summits have their own."""
     summits, of_heights = of["summits"], of["heights"]
@@ -134,12 +142,14 @@ def _surface_and_summits(
         if isinstance(of_heights.table.get("law", ""), str) and of_heights.table:
             of_heights.note("heights: [summits] already gives the heights; leave [heights] out")
         listed = listed_of(summits, folder)
-        surface = None if listed is None else read_surface(of["surface"], listed[2])
+        surface = (
+            whole if isinstance(whole, Surface) or not listed else read_surface(of["surface"], listed[2])
+        )
         if listed is None or not isinstance(surface, Surface):
             return None, Gaussian(), None
         unit = surface.radius if "radius" in listed[2] else 1.0
         return surface, listed[0], MeasuredRadii(listed[0], listed[1] / unit)
-    read = read_surface(of["surface"])
+    read = whole if isinstance(whole, Surface) else read_surface(of["surface"])
     surface, default = (read.surface, "random") if isinstance(read, Spectral) else (read, "mean")
     radii, largest = summits.read("curvature", default), summits.read("largest_radius")
     heights: HeightLaw | None

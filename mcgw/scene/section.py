@@ -93,12 +93,12 @@ class Key:
 class Section:
     """The contents of a table by its keys, its `known` keys and tables, and a line for each mistake in it."""
 
-    def __init__(self, name: str, table: Mapping[str, Any], rows: Iterable[Key]) -> None:
-        self.name, self.table, self.rows = name, table, {row.name: row for row in rows}
-        self.known = [*self.rows]
+    def __init__(self, name: str, table: Mapping[str, Any], rows: Mapping[str, Key]) -> None:
+        self.name, self.table, self.rows = name, table, rows
+        self.known = [*rows]
         self.problems: list[str] = []
 
-    def section(self, name: str, rows: Iterable[Key], python: str = "") -> "Section":
+    def section(self, name: str, rows: Mapping[str, Key], python: str = "") -> "Section":
         """Return a table inside this one, in place of which Python gives an object; empty if missing."""
         self.known.append(name)
         value = self.table.get(name, {})
@@ -172,11 +172,13 @@ class Section:
         if len(unknown) > _MOST_NAMED:
             self.note(f"[{self.name}]: {len(unknown) - _MOST_NAMED} more unknown keys")
         told = [line.partition(":")[0] for line in self.problems]  # a missing key is noted once
-        for row in (self.rows[name] for name in self.table if name in self.rows):
+        for row in [
+            row for row in self.rows.values() if (row.needs or row.excludes) and row.name in self.table
+        ]:
             value, needs = self.table[row.name], " or ".join(row.needs)
-            if row.needs and not any(other in self or self.path(other) in told for other in row.needs):
+            if row.needs and not any(other in self.table or self.path(other) in told for other in row.needs):
                 self.fail(row.name, value, f"give {needs} too, or leave it out")
-            if others := [other for other in row.excludes if other in self]:
+            if others := [other for other in row.excludes if other in self.table]:
                 self.fail(row.name, value, f"give it or {' or '.join(others)}, not both")
 
     def path(self, name: str) -> str:

@@ -167,7 +167,7 @@ def _read(kind: type[_Kind], given: Mapping[str, Any], uncertainty: Any) -> _Kin
     plain = {key: as_toml(value) for key, value in given.items()}
     if uncertainty is not None:
         plain["uncertainty"] = as_toml(uncertainty)
-    section = Section("surface", plain, KEYS["surface"].values())
+    section = Section("surface", plain, KEYS["surface"])
     surface = read_surface(section)
     section.finish()
     if section.problems:
