@@ -63,22 +63,20 @@ def _main(argv: Sequence[str] | None, asked: argparse.Namespace) -> int:
             with speaking(args.amount):
                 return execute(args.function, args)
     except KeyboardInterrupt as stop:
-        terminated = isinstance(stop, _Terminated)
-        print(f"mcgw: {'terminated' if terminated else 'interrupted'}", file=sys.stderr)
-        return 143 if terminated else 130
+        lines, code = "interrupted", 130
+        if isinstance(stop, _Terminated):
+            lines, code = "terminated", 143
     except RunError as error:
-        print(f"mcgw: {error}", file=sys.stderr)
-        return error.code
+        lines, code = str(error), error.code
     except MemoryError as error:
-        print(f"mcgw: not enough memory ({one_line(str(error))}); reduce the scene", file=sys.stderr)
-        return 1
+        lines, code = f"not enough memory ({one_line(str(error))}); reduce the scene", 1
     except OSError as error:
-        print(f"mcgw: {one_line(in_one_line(error))}", file=sys.stderr)
-        return 1 if error.errno in (errno.ENOSPC, errno.EDQUOT) else 2
+        lines, code = in_one_line(error), 1 if error.errno in (errno.ENOSPC, errno.EDQUOT) else 2
     except ValueError as error:
-        for line in str(error).splitlines():
-            print(f"mcgw: {one_line(line)}", file=sys.stderr)
-        return 2
+        lines, code = str(error), 2
+    for line in lines.splitlines():
+        print(f"mcgw: {one_line(line)}", file=sys.stderr)
+    return code
 
 
 class _Terminated(KeyboardInterrupt):

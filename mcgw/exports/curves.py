@@ -94,7 +94,10 @@ def curves_at_gaps(
     h, first = np.unique(ensemble.separations[order], return_index=True)
     order = order[first]
     name = kind.answer(ensemble.scene)
-    some = _with_values(ensemble) if quantiles else ensemble
+    some = ensemble
+    if quantiles and ensemble.scene.keep == "statistics":  # its first surfaces are drawn again
+        drawn = ensemble.scene.drawn_by(ensemble.sampler)
+        some = simulate(drawn, keep="sums", n_surfaces=min(ensemble.n_surfaces, _MOST))
     values = [ensemble.mean(name)[order], *(some.quantile(name, q)[order] for q in quantiles)]
     return _named(kind, quantiles, h * ensemble.scene.surface.sigma, values)
 
@@ -118,36 +121,27 @@ def curves_at_pressures(
 
 
 def _named(kind: Kind, quantiles: tuple[float, ...], x: Array, values: list[Array]) -> list[Curve]:
-    names = ["mean", *map(quantile_name, quantiles)]
-    return [_one_way(kind, name, x[y > 0], y[y > 0]) for name, y in zip(names, values, strict=True)]
-
-
-def _one_way(kind: Kind, name: str, x: Array, y: Array) -> Curve:
-    """Return a curve without points that carry nothing; refuse one that is not monotonic."""
-    if x.size < 2:
-        raise ValueError(
-            f"{kind.name}, {name}: {x.size} point(s) with load; give more or smaller separations, or a wider "
-            "range of pressures"
-        )
-    steps = np.diff(y) * (-1 if kind.against == "gap" else 1)
-    if np.any(steps <= 0):
-        at = x[int(np.argmin(steps))]
-        raise ValueError(
-            f"{kind.name}, {name}: is not monotone at {kind.against} = {at:.4g}, as programs require; give "
-            "fewer points, or a contact law without jumps"
-        )
-    return Curve(name, x, y)
+    """Name curves, without points that carry nothing; refuse what is not monotonic."""
+    curves = []
+    for name, every in zip(["mean", *map(quantile_name, quantiles)], values, strict=True):
+        at, y = x[every > 0], every[every > 0]
+        if at.size < 2:
+            raise ValueError(
+                f"{kind.name}, {name}: {at.size} point(s) with load; give more or smaller separations, or a "
+                "wider range of pressures"
+            )
+        steps = np.diff(y) * (-1 if kind.against == "gap" else 1)
+        if np.any(steps <= 0):
+            worst = at[int(np.argmin(steps))]
+            raise ValueError(
+                f"{kind.name}, {name}: is not monotone at {kind.against} = {worst:.4g}, as programs require; "
+                "give fewer points, or a contact law without jumps"
+            )
+        curves.append(Curve(name, at, y))
+    return curves
 
 
 def quantile_name(quantile: float) -> str:
     """Name of a quantile in file names: q05 for 0.05."""
     digits = f"{100 * quantile:.6g}"
     return f"q{digits.zfill(2)}" if "." not in digits else f"q{digits}"
-
-
-def _with_values(ensemble: Ensemble) -> Ensemble:
-    """Return the ensemble itself; if it keeps only statistics, its first surfaces drawn again."""
-    if ensemble.scene.keep != "statistics":
-        return ensemble
-    scene = ensemble.scene.drawn_by(ensemble.sampler)
-    return simulate(scene, keep="sums", n_surfaces=min(ensemble.n_surfaces, _MOST))

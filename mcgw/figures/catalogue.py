@@ -5,7 +5,7 @@ from dataclasses import replace
 from importlib.resources import files
 
 from mcgw.figures import populations, ratios
-from mcgw.figures.compared import Compared, Row
+from mcgw.figures.compared import Compared
 from mcgw.figures.data import FigureData
 from mcgw.machine.progress import steps
 from mcgw.scene.scene_file import scene_from
@@ -13,12 +13,13 @@ from mcgw.scene.scene_file import scene_from
 _SURFACES = 2000  # of the paper's figures
 
 
-def _place(row: Row) -> tuple[bool, str]:
-    """Figures of the paper by number, then all others by name."""
-    return not row.name.startswith("figure-"), row.name
-
-
-CATALOGUE = tuple(sorted((*ratios.FIGURES, *populations.FIGURES), key=_place))
+# Figures of the paper by number, then all others by name.
+CATALOGUE = tuple(
+    sorted(
+        (*ratios.FIGURES, *populations.FIGURES),
+        key=lambda row: (not row.name.startswith("figure-"), row.name),
+    )
+)
 
 
 def of_paper() -> Compared:

@@ -192,6 +192,7 @@ def _has_errors(panel: Panel) -> bool:
 
 
 def _draw_residuals(axis: Any, panel: Panel, *, labelled: bool) -> None:
+    """Draw residuals over the band in which 95 % of them lie."""
     reach = 4.0
     for k, series, points in _known(panel):
         found = _marks(series, k)
@@ -202,18 +203,12 @@ def _draw_residuals(axis: Any, panel: Panel, *, labelled: bool) -> None:
             x, z = x[[len(x) // 2]], z[[len(x) // 2]]
         axis.plot(x, z, found["marker"], color=found["color"], ms=3, mfc="white", mew=0.8)
         reach = max(reach, 1.1 * float(np.abs(z).max(initial=0.0)))
-    draw_residual(axis, reach)
-    axis.set_xlabel(panel.xlabel)
-    if labelled:
-        axis.set_ylabel("residual\n(std. errors)", fontsize=_SMALL, labelpad=0)
-
-
-def draw_residual(axis: Any, reach: float) -> None:
-    """Draw what is behind residuals in standard errors: zero, and the band in which 95 % of them lie."""
     axis.axhspan(-2, 2, color=BAND, zorder=0)
     axis.axhline(0, color=LEVEL, lw=0.8, zorder=1)
-    axis.set_ylim(-reach, reach)
+    axis.set(ylim=(-reach, reach), xlabel=panel.xlabel)
     axis.yaxis.set_major_locator(FixedLocator([-2, 0, 2]) if reach < 8 else MaxNLocator(4, symmetric=True))
+    if labelled:
+        axis.set_ylabel("residual\n(std. errors)", fontsize=_SMALL, labelpad=0)
 
 
 def save(data: FigureData, *paths: Path) -> None:

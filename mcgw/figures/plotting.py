@@ -96,9 +96,8 @@ def _(result: Comparison, *, quantity: str) -> Panel:
     return replace(panel, title=title, ylabel=result.ensemble.scene.quantity(quantity).title)
 
 
-@panel_of.register
-def _(result: SweepComparison) -> Panel:
-    return residuals_panel("all points", result.residuals)
+panel_of.register(SweepComparison, lambda result: residuals_panel("all points", result.residuals))
+panel_of.register(Tradeoff, errors_panel)
 
 
 @panel_of.register
@@ -162,11 +161,6 @@ def _(result: Solution) -> Panel:
 def _(result: Convergence) -> Panel:
     title = f"Statistical convergence {result.word}: p = {result.p:.3g}"
     return replace(checks_panel(result), title=title, xlabel="probability by chance; grey: fails")
-
-
-@panel_of.register
-def _(result: Tradeoff, *, want: str) -> Panel:
-    return errors_panel(result, want)
 
 
 @panel_of.register

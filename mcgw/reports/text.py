@@ -16,13 +16,11 @@ from mcgw.store.run_plan import Plan
 from mcgw.sweeps.axes import Axes
 
 if TYPE_CHECKING:
-    from mcgw.statistics.comparison import SweepComparison
     from mcgw.sweeps.sweep import Sweep
 
 _KEPT = "statistics alone: mean, covariance, skewness, quantiles, extremes"
 _SHOWN = ("separation", "mean", "std", "stderr")
 _COLUMNS = 6  # quantities that stand in one table
-_LISTED, _WORST = 12, 3  # points of a sweep; rows that are farthest from theory
 
 
 def summary(ensemble: Ensemble, attributes: dict[str, Any], full: bool = True) -> str:
@@ -99,17 +97,6 @@ def ratios_in_words(sweep: "Sweep") -> list[str]:
         )
         lines.append(f"{quantity_of(name).long_name}, {last} over {first}: {', '.join(found)}")
     return lines
-
-
-def comparison_summary(comparison: "Comparison | SweepComparison", *, whole: bool) -> tuple[str, list[str]]:
-    """Return the table, whole or its worst rows, as text; and the verdict."""
-    lines = [comparison.verdict.line]
-    if not isinstance(comparison, Comparison):
-        return comparison.sheet(_LISTED if whole else _WORST).text(), lines
-    lines.append(comparison.ensemble.scene.validity().verdict)
-    if comparison.of_many:
-        lines.append(f"tables and figure {comparison.of_many}; the verdict is on all of them")
-    return comparison_text(comparison) if whole else comparison.worst(_WORST).text(), lines
 
 
 def summary_of(result: "Ensemble | Sweep", attributes: dict[str, Any], full: bool) -> str:
