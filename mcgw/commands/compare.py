@@ -7,8 +7,6 @@ from mcgw.commands.kinds import EnsembleOrSweep, Out, Table
 from mcgw.commands.outputs import source
 from mcgw.commands.voice import ALL, news, says
 
-_LISTED, _WORST = 12, 3  # points of a sweep; rows that are farthest from theory
-
 
 def compare(
     file: EnsembleOrSweep,
@@ -37,21 +35,13 @@ def compare(
     """
     from mcgw.figures.against_theory import comparison_figure
     from mcgw.figures.panels import save
-    from mcgw.reports.text import comparison_text
-    from mcgw.statistics.comparison import Comparison, compare as compared
+    from mcgw.reports.text import comparison_summary
+    from mcgw.statistics.comparison import compare as compared
 
     found = compared(file, laws=laws)
     save(comparison_figure(found), output)
-    news(found.verdict.line)
-    whole = table or says(ALL)
-    if isinstance(found, Comparison):
-        news(found.ensemble.scene.validity().verdict)
-        if found.of_many:
-            news(f"tables and figure {found.of_many}; the verdict is on all of them")
-        text = comparison_text(found) if whole else found.worst(_WORST).text()
-    else:
-        text = found.sheet(_LISTED if whole else _WORST).text()
-    news(f"{output}: figure")
+    text, verdict = comparison_summary(found, whole=table or says(ALL))
+    news(*verdict, f"{output}: figure")
     if csv:
         found.table().write(csv)
         news(f"{csv}: the table")

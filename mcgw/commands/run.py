@@ -39,6 +39,8 @@ def run(
     --------
     mcgw run runs/demo.toml -o demo.h5
     """
+    from numba import get_num_threads
+
     from mcgw.ensemble.forecast import after, before, forecast
     from mcgw.jobs.running import run as drawn
 
@@ -46,7 +48,9 @@ def run(
     ruled = scene.rel_err is not None or scene.max_seconds is not None
     with warnings.catch_warnings(), drawing(threads, jobs, dask, shard) as how:
         warnings.filterwarnings("ignore", ".* n_surfaces allows")  # said as a note, or by the forecast
-        notes(*_of_threads(threads), *([] if ruled else _of_time(scene)))
+        if threads is not None and threads > get_num_threads():
+            notes(f"--threads {threads}: this machine has {get_num_threads()}; using all of them")
+        notes(*([] if ruled else _of_time(scene)))
         if shard is not None and expected.shortfall:
             notes(expected.shortfall)
         elif ruled and shard is None:
@@ -77,14 +81,6 @@ def _result(ensemble: "Ensemble") -> str:
         if name in scene.quantities
     ]
     return f"; {', '.join(found)} at d/sigma = {scene.lowest:g}" if found else ""
-
-
-def _of_threads(threads: int | None) -> list[str]:
-    from numba import get_num_threads
-
-    if threads is None or threads <= get_num_threads():
-        return []
-    return [f"--threads {threads}: this machine has {get_num_threads()}; using all of them"]
 
 
 def _of_time(scene: "Scene") -> list[str]:

@@ -1,6 +1,5 @@
 """How each finite-element program reads a table: a row each."""
 
-import re
 from dataclasses import dataclass
 
 from mcgw.exports.curves import KINDS
@@ -42,20 +41,6 @@ class Program:
     overclosure: bool = False
     most: int | None = None
     least_step: float = 0.0
-
-    def check_name(self, file: str) -> None:
-        """Refuse a file name that cannot stand in an input of the program or in its comments.
-
-        Raises
-        ------
-        ValueError
-            If it is not made of letters, digits and ``._+-``, or is too long for a line.
-        """
-        if not re.fullmatch(r"[A-Za-z0-9._+-]{1,64}", file):
-            raise ValueError(
-                f"path = {file!r}: {self.name} includes it by name; give a name of at most 64 letters, "
-                "digits and . _ + -"
-            )
 
 
 _BEHAVIOR = "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR"

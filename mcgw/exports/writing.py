@@ -1,6 +1,7 @@
 """``mcgw.export``: write a table, one file for each curve and one for all."""
 
 import json
+import re
 from collections.abc import Sequence
 from hashlib import sha256
 from importlib.metadata import version
@@ -102,7 +103,11 @@ def export(
         if value not in known:
             raise ValueError(f"{key} = {value!r}: choose one of {', '.join(known)}")
     if to != "json":
-        PROGRAMS[to].check_name(Path(path).name)
+        if not re.fullmatch(r"[A-Za-z0-9._+-]{1,64}", name := Path(path).name):
+            raise ValueError(
+                f"path = {name!r}: {to} includes it by name; give a name of at most 64 letters, digits and "
+                ". _ + -"
+            )
         if table not in (taken := PROGRAMS[to].header):
             raise ValueError(f"table = {table!r}: {to} does not support it; choose one of {', '.join(taken)}")
     wanted, kind = _pressures(pressures), KINDS[table]

@@ -21,11 +21,10 @@ def end_with(pipe: int, gone: Callable[[], object] | None = None) -> None:
         fcntl.fcntl(pipe, fcntl.F_SETFL, fcntl.fcntl(pipe, fcntl.F_GETFL) | os.O_ASYNC)
     except (ImportError, AttributeError, OSError):
         pass  # not Linux
+
     # Also there: the parent may have died before the kernel was asked.
-    waits = gone or (lambda: os.read(pipe, 1))
-    threading.Thread(target=_follow, args=(waits,), daemon=True, name="mcgw-lifeline").start()
+    def follow() -> None:
+        gone() if gone else os.read(pipe, 1)
+        os._exit(1)
 
-
-def _follow(gone: Callable[[], object]) -> None:
-    gone()
-    os._exit(1)
+    threading.Thread(target=follow, daemon=True, name="mcgw-lifeline").start()

@@ -25,6 +25,8 @@ from mcgw.statistics.comparison import compare
 from mcgw.validity.model_error import Validity
 
 Facts = list[tuple[str, str]]
+_PROVENANCE = ("digest", "seed", "sampler", "date", "versions", "commit", "cpu")
+_LIST = re.compile(r"\[\n([^\]]*)\]")  # of the scene as TOML, each shown on one line
 
 
 def report_html(
@@ -65,8 +67,10 @@ def report_html(
         errors=against.table(),
         cautions=cautions(scene),
         elastic_law=scene.law.elastic,
-        provenance=provenance_facts(attributes, scene.seed),
-        scene=plain_text(_shorter(attributes["scene"])),
+        provenance=[(key, str(({"seed": scene.seed} | attributes)[key])) for key in _PROVENANCE],
+        scene=plain_text(
+            _LIST.sub(lambda found: f"[{' '.join(found[1].split()).rstrip(',')}]", attributes["scene"])
+        ),
     )
 
 
@@ -83,11 +87,6 @@ def rendered(template: str, **values: Any) -> str:
     )  # fmt: skip
     environment.filters["typeset"] = typeset
     return environment.get_template(template).render(**values)
-
-
-def _shorter(scene: str) -> str:
-    """Return the scene as TOML with each list on one line."""
-    return re.sub(r"\[\n([^\]]*)\]", lambda found: f"[{' '.join(found[1].split()).rstrip(',')}]", scene)
 
 
 def opening_words(ensemble: Ensemble) -> str:
@@ -113,13 +112,6 @@ def surface_facts(ensemble: Ensemble) -> Facts:
         ("reduced", f"R/σ = {radius:.4g}, ηRσ = {overlap:.4g}, Aₙ/σ² = {area:.4g}"),
         ("contacts", f"{contacts:.4g} expected at the smallest separation"),
     ]
-
-
-def provenance_facts(attributes: dict[str, Any], seed: int) -> Facts:
-    """Provenance of the file; of an unfinished run, what is known."""
-    known = {"seed": seed} | attributes
-    keys = ("digest", "seed", "sampler", "date", "versions", "commit", "cpu")
-    return [(key, str(known[key])) for key in keys]
 
 
 def laws_table(scene: Scene) -> Table | None:

@@ -41,8 +41,9 @@ def solutions_text(
         lines += ["", (answer_table(solutions[0]) if one else by_load(scene, solutions)).text()]
     else:
         lines += _background(scene, solutions)
-        for solution in solutions:
-            table = _full(solution)
+        for solution in solutions:  # every quantity but the given one, specimens, and an infinite surface
+            table = solution.table(specimens=True)
+            table = _known(solution, table.only(*(x.name for x in table.columns if x.name != "std")))
             lines += ["", (replace(table, title="") if one else table).text()]
         if scene.film is not None:
             lines += ["", conductances(scene, solutions).text()]
@@ -52,12 +53,6 @@ def solutions_text(
         title = "Sources of error" if one else f"Sources of error, {_lowered(budget.title)}"
         lines += ["", replace(budget.table(), title=title).text(), f"  {budget.advice}"]
     return "\n".join(lines)
-
-
-def _full(solution: Solution) -> Table:
-    """Every quantity but the given one, with 90 % of specimens and that of an infinite surface."""
-    table = solution.table(specimens=True)
-    return _known(solution, replace(table, columns=tuple(x for x in table.columns if x.name != "std")))
 
 
 def _known(solution: Solution, table: Table) -> Table:

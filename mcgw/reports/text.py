@@ -16,19 +16,22 @@ from mcgw.store.run_plan import Plan
 from mcgw.sweeps.axes import Axes
 
 if TYPE_CHECKING:
+    from mcgw.statistics.comparison import SweepComparison
     from mcgw.sweeps.sweep import Sweep
 
 _KEPT = "statistics alone: mean, covariance, skewness, quantiles, extremes"
 _SHOWN = ("separation", "mean", "std", "stderr")
 _COLUMNS = 6  # quantities that stand in one table
+_LISTED, _WORST = 12, 3  # points of a sweep; rows that are farthest from theory
 
 
 def summary(ensemble: Ensemble, attributes: dict[str, Any], full: bool = True) -> str:
     """Tell what a file holds: provenance and a table of means; if `full`, one a quantity with its spread."""
     scene = ensemble.scene
-    h = scene.separations
+    h, n, total = scene.separations, ensemble.n_surfaces, scene.n_surfaces
+    so_far = "" if n == total else f" so far, of {total},"
     facts = [
-        ("surfaces", f"{_so_far(ensemble)} of {scene.n_asperities} asperities each ({scene.count})"),
+        ("surfaces", f"{n}{so_far} of {scene.n_asperities} asperities each ({scene.count})"),
         ("separations", f"{len(h)} from {min(h):g} to {max(h):g} (d/sigma)"),
         ("grading", law_text(scene.grading)),
         *contact_facts(scene),
@@ -64,12 +67,6 @@ def _means(ensemble: Ensemble) -> Table:
     return Table((Column("separation", ensemble.separations, SEPARATION, form="g"), *columns)).rows()
 
 
-def _so_far(ensemble: Ensemble) -> str:
-    """How many surfaces there are, and of how many while the run goes on."""
-    n, total = ensemble.n_surfaces, ensemble.scene.n_surfaces
-    return f"{n}" if n == total else f"{n} so far, of {total},"
-
-
 def _spent(word: str, attributes: dict[str, Any]) -> str:
     """How much of what was allowed was spent."""
     spent = attributes.get(f"{word}_spent")
@@ -97,6 +94,17 @@ def ratios_in_words(sweep: "Sweep") -> list[str]:
         )
         lines.append(f"{quantity_of(name).long_name}, {last} over {first}: {', '.join(found)}")
     return lines
+
+
+def comparison_summary(comparison: "Comparison | SweepComparison", *, whole: bool) -> tuple[str, list[str]]:
+    """Return the table, whole or its worst rows, as text; and the verdict."""
+    lines = [comparison.verdict.line]
+    if not isinstance(comparison, Comparison):
+        return comparison.sheet(_LISTED if whole else _WORST).text(), lines
+    lines.append(comparison.ensemble.scene.validity().verdict)
+    if comparison.of_many:
+        lines.append(f"tables and figure {comparison.of_many}; the verdict is on all of them")
+    return comparison_text(comparison) if whole else comparison.worst(_WORST).text(), lines
 
 
 def summary_of(result: "Ensemble | Sweep", attributes: dict[str, Any], full: bool) -> str:

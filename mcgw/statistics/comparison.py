@@ -268,23 +268,16 @@ def compare(
                 )
             return _of_sweep(result, progress)
     check_object("compare", result, Ensemble)
-    return _of_ensemble(result, laws)
-
-
-def _of_ensemble(ensemble: Ensemble, laws: bool) -> Comparison:
-    some, result = shown(ensemble), verdict(ensemble)
+    some, found, curves = shown(result), verdict(result), {}
     if laws:
         from mcgw.statistics.laws_of_values import laws_of_values  # imports the exact laws
 
-        result = together([result, laws_of_values(ensemble)])
-    curves = {name: _curve(some, name) for name in some.scene.answers}
-    return Comparison(some, curves, result, how_many(ensemble))
-
-
-def _curve(ensemble: Ensemble, name: str) -> Curve:
-    theory, h = ensemble.scene.theory, ensemble.scene.separations
-    stderr = np.sqrt(theory.cumulants(name, h).variance / ensemble.n_surfaces)
-    return Curve(ensemble.mean(name), *ensemble.interval(name), theory.mean(name, h), stderr)
+        found = together([found, laws_of_values(result)])
+    theory, h = some.scene.theory, some.scene.separations
+    for name in some.scene.answers:
+        stderr = np.sqrt(theory.cumulants(name, h).variance / some.n_surfaces)
+        curves[name] = Curve(some.mean(name), *some.interval(name), theory.mean(name, h), stderr)
+    return Comparison(some, curves, found, how_many(result))
 
 
 def _of_sweep(sweep: "Sweep", progress: Progress) -> SweepComparison:
