@@ -1,6 +1,7 @@
 """Cautions about a fit: the map, its pixel, heights and summits, one line each."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
 
 import numpy as np
 from scipy import ndimage
@@ -14,7 +15,7 @@ from mcgw.maps.preparation import Prepared
 from mcgw.maps.profile import Profile
 from mcgw.maps.profile_fit import ProfileFit
 from mcgw.maps.several_maps import disagreement
-from mcgw.maps.topography import STEEPEST, Topography
+from mcgw.maps.topography import STEEPEST
 
 _WIDEST = 1e-2  # m
 _FEW_WAVES = 50  # waves for sigma to a tenth
@@ -25,79 +26,62 @@ _SKEW, _ALPHA, _APART = 0.3, 1.5, 1.2
 _FEW, _STREAKY = 100, 1.5
 _PEAKS, _UNSURE = 1.2, 0.2
 
+Found = tuple[Any, ...]  # a key of `WORDS`, and what its words take
 
-# First words of cautions, the most serious first: errors from a wrong unit to a few per cent.
-_GRAVEST = (
-    "slope", "unit", "maps", "spikes", "lines", "rounding", "form", "range",
-    "cutoff", "pixel", "blur", "missing", "estimates", "lay", "skewness", "alpha", "peaks",
-    "overlap", "summits", "waves", "x",
-)  # fmt: skip
+# By first word, and case, the most serious first: errors from a wrong unit to a few per cent.
+WORDS = {
+    "slope": "{:.3g} is typical of this map; are heights or pixel in another unit?",
+    "unit": "a pixel is {:g} m; was um or mm meant?",
+    "maps": "mean square {} differ by a factor of {:.3g} between maps, more than their own errors allow; are "
+    "they of one surface, with one pixel?",
+    "spikes": "{} out of the map, the largest at x = {:.4g} m, y = {:.4g} m, {:.3g} m {} and narrower than "
+    "five pixels; a single one can dominate R, eta and sigma: use --spikes remove, or crop the map",
+    "lines": "offsets between {0}, as in a line scan, make {1:.2g} % of the curvature across them; level "
+    "them with --lines {0}",
+    "rounding": "heights are multiples of {:.3g} m; this rounding makes {:.2g} % of m4, and false summits; "
+    "use --cutoff of {:.3g} pixels or more",
+    "form": "{} of {:.3g} m from peak to valley remains, {:.0f} % of the variance; give --form {}",
+    "range": "{:.2g} % of the points have the same extreme height, as if the range of the instrument cut off "
+    "summits; measure with a larger range, or use --use moments, which is affected less",
+    "cutoff": "{:.3g} pixels per wavelength; below {:g} the pixel determines eta and R, not the specimen; "
+    "use a longer cutoff or finer pixels",
+    "cutoff of a profile": "{:.3g} points per wavelength; below {:g} the spacing determines eta and R, not "
+    "the specimen; use a longer cutoff",
+    "cutoff left out": "none, so noise and the tip determine m4, R and eta; give ten points ({:.2g} m) or "
+    "more, and at least the radius of the tip",
+    "pixel": "m4 by differences of fourth order is {:.2g} % above that by plain ones, so the pixel affects "
+    "m4, R and eta; use a cutoff of {:.3g} pixels or more",
+    "blur": "{:.0f} % of such caps are lost, where a valley is nearer than a pixel or a third of a cutoff; "
+    "use finer pixels and a shorter cutoff",
+    "missing": "{} of {} heights lie on straight lines between their neighbours",
+    "estimates": "moments and counted summits differ by a factor of {:.3g}, unlike on an isotropic Gaussian "
+    "map; use the measured summits (--heights summits)",
+    "lay": "mean square slopes across and along it have the ratio {:.3g}; the map is not isotropic",
+    "skewness": "{:.2f} of the heights; spectral moments give the summits of Gaussian heights only; use the "
+    "measured summits (--heights summits)",
+    "skewness of a profile": "{:.2f} of the heights; moments give the summits of Gaussian heights only; "
+    "measure a map and count its summits",
+    "alpha": "{:.3g} is below 1.5, which no isotropic Gaussian surface has",
+    "alpha of a profile": "{:.3g} is below 1.5, which no isotropic Gaussian surface has; a turned or ground "
+    "surface needs a map",
+    "peaks": "{:.3g} per metre counted, but {:.3g} expected from the moments of the profile; it is not "
+    "Gaussian, or noise makes peaks: measure a map",
+    "overlap": "eta R sigma = {:.2g};{} so asperities are not independent",
+    "summits": "only {} found; use a larger map or a shorter cutoff",
+    "waves": "the map has few of the longest waves, equivalent to {:.2g} independent heights: sigma may "
+    "differ elsewhere by {:.2g} % or more; measure a longer map",
+    "waves of a profile": "sigma is known to {:.2g} % only, because there are few of the longest waves; give "
+    "longer profiles, or more of them",
+    "x": "the points were not evenly spaced; heights were interpolated",
+}
+_ORDER = list(dict.fromkeys(key.partition(" ")[0] for key in WORDS))
 # Those that maps of one surface have together.
 _OF_ALL = ("blur", "estimates", "lay", "skewness", "alpha", "overlap", "summits", "waves")
 
 
-def _units(topography: Topography) -> Iterator[str]:
-    if topography.steepness > STEEPEST:
-        yield (
-            f"slope: {topography.steepness:.3g} is typical of this map; are heights or pixel in another unit?"
-        )
-    if max(topography.pixel) > _WIDEST:
-        yield f"unit: a pixel is {max(topography.pixel):g} m; was um or mm meant?"
-
-
-def _spikes(topography: Topography) -> Iterator[str]:
-    above = spike_heights(topography)
-    if not above.any():
-        return
-    number = ndimage.label(above, structure=np.ones((3, 3)))[1]  # adjacent points count once
-    places = "1 place stands" if number == 1 else f"{number} places stand"
-    j, i = np.unravel_index(int(np.argmax(np.abs(above))), above.shape)
-    x, y = ((int(k) + 0.5) * p for k, p in zip((i, j), topography.pixel, strict=True))
-    kind = "high" if above[j, i] > 0 else "deep"
-    yield (
-        f"spikes: {places} out of the map, the largest at x = {x:.4g} m, y = {y:.4g} m, "
-        f"{abs(above[j, i]):.3g} m {kind} and narrower than five pixels; a single one can dominate R, eta "
-        "and sigma: use --spikes remove, or crop the map"
-    )
-
-
-def _form(fit: Fit, topography: Topography) -> list[str]:
-    left = form_left(topography, fit.form)
-    if left is None:
-        return []
-    share, height, more = left
-    kind = "a tilt or a curved form" if fit.form == "none" else "a curved form"
-    return [
-        f"form: {kind} of {height:.3g} m from peak to valley remains, {100 * share:.0f} % of the "
-        f"variance; give --form {more}"
-    ]
-
-
-def _waves(fit: Fit) -> list[str]:
-    number = fit.waves.independent
-    if number >= _FEW_WAVES:
-        return []
-    return [
-        f"waves: the map has few of the longest waves, equivalent to {number:.2g} independent heights: sigma "
-        f"may differ elsewhere by {100 * fit.waves.spreads['sigma'].error:.2g} % or more; measure a longer "
-        f"map"
-    ]
-
-
 def cautions(fit: Fit, ready: Prepared, use: str = "auto") -> list[str]:
     """Warnings about the fit of a map, and the estimate to `use`: a line each, the most serious first."""
-    level = ready.levelled
-    return _gravest_first(
-        [
-            *_units(level),
-            *_spikes(level),
-            *(_form(fit, level) or _waves(fit)),
-            *faults(ready, _longer(ready)),
-            *_of_the_pixel(fit, ready),
-            *_of_the_heights(fit),
-            *_of_the_summits(fit, use if use in fit.estimates else fit.best),
-        ]
-    )
+    return _lines([*_of_the_map(fit, ready), *_of_the_fit(fit, use)])
 
 
 def cautions_of_several(fit: Fit, fits: Sequence[Fit], use: str = "auto") -> list[str]:
@@ -108,120 +92,91 @@ def cautions_of_several(fit: Fit, fits: Sequence[Fit], use: str = "auto") -> lis
         for line in each.cautions
         if line.partition(":")[0] not in _OF_ALL
     ]
-    used = use if use in fit.estimates else fit.best
-    return _gravest_first(
-        [*own, *disagreement(fits), *_waves(fit), *_of_the_heights(fit), *_of_the_summits(fit, used)]
-    )
-
-
-def _gravest_first(lines: list[str]) -> list[str]:
-    return sorted(lines, key=lambda line: _GRAVEST.index(line.partition(":")[0]))
-
-
-def _longer(ready: Prepared) -> float:
-    """Return a longer cutoff, in pixels."""
-    return max(_PIXELS, 1.5 * (ready.asked.cutoff or 0.0) / max(ready.used.pixel))
-
-
-def _of_the_pixel(fit: Fit, ready: Prepared) -> list[str]:
-    pixel, cutoff = max(ready.used.pixel), ready.asked.cutoff
-    if cutoff is not None and cutoff < _PIXELS * pixel:
-        return [
-            f"cutoff: {cutoff / pixel:.3g} pixels per wavelength; below {_PIXELS:g} the pixel determines eta "
-            "and R, not the specimen; use a longer cutoff or finer pixels"
-        ]
-    more = fit.mean_squares["bend"] / fit.mean_squares["bend_1"] - 1
-    if more > _RESOLVED:
-        return [
-            f"pixel: m4 by differences of fourth order is {100 * more:.2g} % above that by plain ones, so "
-            f"the pixel affects m4, R and eta; use a cutoff of {_longer(ready):.3g} pixels or more"
-        ]
-    return []
-
-
-def _of_the_heights(fit: Fit) -> Iterator[str]:
-    skewness, error = fit.skewness
-    if abs(skewness) > max(_SKEW, 3 * error):
-        yield (
-            f"skewness: {skewness:.2f} of the heights; spectral moments give the summits of Gaussian heights "
-            "only; use the measured summits (--heights summits)"
-        )
-    if fit.numbers["alpha"].value < _ALPHA:
-        yield f"alpha: {fit.numbers['alpha'].value:.3g} is below 1.5, which no isotropic Gaussian surface has"
-    if fit.lay > _STREAKY:
-        yield (
-            f"lay: mean square slopes across and along it have the ratio {fit.lay:.3g}; the map is not "
-            f"isotropic"
-        )
-
-
-def _of_the_summits(fit: Fit, used: str) -> Iterator[str]:
-    if fit.agreement is not None and fit.agreement > _APART:
-        yield (
-            f"estimates: moments and counted summits differ by a factor of {fit.agreement:.3g}, unlike on an "
-            "isotropic Gaussian map; use the measured summits (--heights summits)"
-        )
-    if fit.summits.size < _FEW:
-        yield f"summits: only {fit.summits.size} found; use a larger map or a shorter cutoff"
-    overlap = fit.estimates[used].overlap
-    if used == "caps" and fit.visible is not None:
-        sharp = visible(overlap).share
-        lost = sharp - fit.visible.share
-        if lost > _LOST:
-            yield (
-                f"blur: {100 * lost:.0f} % of such caps are lost, where a valley is nearer than a pixel or a "
-                "third of a cutoff; use finer pixels and a shorter cutoff"
-            )
-        hidden = f" {100 * (1 - sharp):.0f} % of such caps are hidden under others,"
-    else:
-        hidden = " summits are as broad as they are far apart,"
-    if overlap > CROWDED:
-        yield f"overlap: eta R sigma = {overlap:.2g};{hidden} so asperities are not independent"
+    apart = (("maps", *each) for each in disagreement(fits))
+    return _lines([*apart, *_few_waves(fit), *_of_the_fit(fit, use)], own)
 
 
 def profile_cautions(fit: ProfileFit, profiles: Sequence[Profile], cutoff: float | None) -> list[str]:
     """Warnings about the fit of these profiles, the most serious first."""
-    return _gravest_first([*_of_profile_points(profiles, cutoff), *_of_profile_heights(fit)])
+    return _lines(_of_profiles(fit, profiles, cutoff))
 
 
-def _of_profile_points(profiles: Sequence[Profile], cutoff: float | None) -> Iterator[str]:
-    filled, points = sum(p.filled for p in profiles), sum(p.heights.size for p in profiles)
-    if filled:
-        yield f"missing: {filled} of {points} heights lie on straight lines between their neighbours"
+def _lines(found: Iterable[Found], own: Sequence[str] = ()) -> list[str]:
+    """Return the words of what was found, with lines that are there already."""
+    lines = [*own, *(f"{key.partition(' ')[0]}: {WORDS[key].format(*numbers)}" for key, *numbers in found)]
+    return sorted(lines, key=lambda line: _ORDER.index(line.partition(":")[0]))
+
+
+def _of_the_map(fit: Fit, ready: Prepared) -> Iterator[Found]:
+    level, pixel, cutoff = ready.levelled, max(ready.used.pixel), ready.asked.cutoff
+    if level.steepness > STEEPEST:
+        yield "slope", level.steepness
+    if max(level.pixel) > _WIDEST:
+        yield "unit", max(level.pixel)
+    above = spike_heights(level)
+    if above.any():
+        number = ndimage.label(above, structure=np.ones((3, 3)))[1]  # adjacent points count once
+        j, i = np.unravel_index(int(np.argmax(np.abs(above))), above.shape)
+        x, y = ((int(k) + 0.5) * p for k, p in zip((i, j), level.pixel, strict=True))
+        places = "1 place stands" if number == 1 else f"{number} places stand"
+        yield "spikes", places, x, y, abs(above[j, i]), "high" if above[j, i] > 0 else "deep"
+    if left := form_left(level, fit.form):
+        share, height, more = left
+        kind = "a tilt or a curved form" if fit.form == "none" else "a curved form"
+        yield "form", kind, height, 100 * share, more
+    else:
+        yield from _few_waves(fit)
+    longer = max(_PIXELS, 1.5 * (cutoff or 0.0) / pixel)
+    yield from faults(ready, longer)
+    if cutoff is not None and cutoff < _PIXELS * pixel:
+        yield "cutoff", cutoff / pixel, _PIXELS
+    elif (more := fit.mean_squares["bend"] / fit.mean_squares["bend_1"] - 1) > _RESOLVED:
+        yield "pixel", 100 * more, longer
+
+
+def _few_waves(fit: Fit) -> Iterator[Found]:
+    if fit.waves.independent < _FEW_WAVES:
+        yield "waves", fit.waves.independent, 100 * fit.waves.spreads["sigma"].error
+
+
+def _of_the_fit(fit: Fit, use: str) -> Iterator[Found]:
+    skewness, error = fit.skewness
+    if abs(skewness) > max(_SKEW, 3 * error):
+        yield "skewness", skewness
+    if fit.numbers["alpha"].value < _ALPHA:
+        yield "alpha", fit.numbers["alpha"].value
+    if fit.lay > _STREAKY:
+        yield "lay", fit.lay
+    if fit.agreement is not None and fit.agreement > _APART:
+        yield "estimates", fit.agreement
+    if fit.summits.size < _FEW:
+        yield "summits", fit.summits.size
+    used = use if use in fit.estimates else fit.best
+    overlap, hidden = fit.estimates[used].overlap, " summits are as broad as they are far apart,"
+    if used == "caps" and fit.visible is not None:
+        sharp = visible(overlap).share
+        if (lost := sharp - fit.visible.share) > _LOST:
+            yield "blur", 100 * lost
+        hidden = f" {100 * (1 - sharp):.0f} % of such caps are hidden under others,"
+    if overlap > CROWDED:
+        yield "overlap", overlap, hidden
+
+
+def _of_profiles(fit: ProfileFit, profiles: Sequence[Profile], cutoff: float | None) -> Iterator[Found]:
     spacing = max(p.spacing for p in profiles)
+    if filled := sum(p.filled for p in profiles):
+        yield "missing", filled, sum(p.heights.size for p in profiles)
     if any(p.resampled for p in profiles):
-        yield "x: the points were not evenly spaced; heights were interpolated"
+        yield ("x",)
     if cutoff is None:
-        yield (
-            "cutoff: none, so noise and the tip determine m4, R and eta; give ten points "
-            f"({10 * spacing:.2g} m) or more, and at least the radius of the tip"
-        )
+        yield "cutoff left out", 10 * spacing
     elif cutoff < _PIXELS * spacing:
-        yield (
-            f"cutoff: {cutoff / spacing:.3g} points per wavelength; below {_PIXELS:g} the spacing determines "
-            "eta and R, not the specimen; use a longer cutoff"
-        )
-
-
-def _of_profile_heights(fit: ProfileFit) -> Iterator[str]:
+        yield "cutoff of a profile", cutoff / spacing, _PIXELS
     if abs(fit.roughness.sk) > max(_SKEW, 6 * fit.numbers["m0"].relative):
-        yield (
-            f"skewness: {fit.roughness.sk:.2f} of the heights; moments give the summits of Gaussian heights "
-            "only; measure a map and count its summits"
-        )
-    counted, expected = fit.peaks
-    if not 1 / _PEAKS < counted / expected < _PEAKS:
-        yield (
-            f"peaks: {counted:.3g} per metre counted, but {expected:.3g} expected from the moments of the "
-            "profile; it is not Gaussian, or noise makes peaks: measure a map"
-        )
+        yield "skewness of a profile", fit.roughness.sk
+    if not 1 / _PEAKS < fit.peaks[0] / fit.peaks[1] < _PEAKS:
+        yield "peaks", *fit.peaks
     if fit.moments.alpha < _ALPHA:
-        yield (
-            f"alpha: {fit.moments.alpha:.3g} is below 1.5, which no isotropic Gaussian surface has; a turned "
-            "or ground surface needs a map"
-        )
+        yield "alpha of a profile", fit.moments.alpha
     if (error := fit.numbers["sigma"].relative) >= _UNSURE:
-        yield (
-            f"waves: sigma is known to {100 * error:.2g} % only, because there are few of the longest waves; "
-            "give longer profiles, or more of them"
-        )
+        yield "waves of a profile", 100 * error

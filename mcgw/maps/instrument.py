@@ -1,4 +1,4 @@
-"""What an instrument did to a map: how much of each fault it shows, how much is too much, and words.
+"""What an instrument did to a map: how much of each fault it shows, and how much is too much.
 
 Most faults put power into waves as short as a pixel, which is all of m4 and of the curvature of summits. So
 they are measured on the map between its cutoffs, where they count, by second differences; of a large map
@@ -7,6 +7,8 @@ than waves that cross it slantwise do.
 """
 
 import math
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 from scipy import fft
@@ -31,23 +33,14 @@ def shares(ready: Prepared) -> dict[str, float]:
     }
 
 
-def faults(ready: Prepared, longer: float) -> list[str]:
-    """Return a line for each fault beyond its limit; `longer` is a cutoff to propose, in pixels."""
-    lines = (
-        "lines: offsets between {0}, as in a line scan, make {{:.2g}} % of the curvature across them; level "
-        "them with --lines {0}"
-    )
-    words = {
-        "range": "range: {:.2g} % of the points have the same extreme height, as if the range of the "
-        "instrument cut off summits; measure with a larger range, or use --use moments, which is affected "
-        "less",
-        "rounding": f"rounding: heights are multiples of {ready.recorded[0]:.3g} m; this rounding makes "
-        f"{{:.2g}} % of m4, and false summits; use --cutoff of {longer:.3g} pixels or more",
-        "rows": lines.format("rows"),
-        "columns": lines.format("columns"),
-    }
-    found = shares(ready).items()
-    return [words[name].format(100 * share) for name, share in found if share > LIMITS[name]]
+def faults(ready: Prepared, longer: float) -> Iterator[tuple[Any, ...]]:
+    """Faults beyond their limits, for words of `mcgw.maps.fit_cautions`; `longer` is a cutoff, in pixels."""
+    percent = {name: 100 * share for name, share in shares(ready).items() if share > LIMITS[name]}
+    if "range" in percent:
+        yield "range", percent["range"]
+    if "rounding" in percent:
+        yield "rounding", ready.recorded[0], percent["rounding"], longer
+    yield from (("lines", name, percent[name]) for name in ("rows", "columns") if name in percent)
 
 
 def _rounding(ready: Prepared) -> float:

@@ -77,18 +77,15 @@ def _of_all(value: float, each: Sequence[Uncertain], weights: Array) -> Uncertai
     return uncertain(value, value * between, within)
 
 
-def disagreement(fits: Sequence[Fit]) -> Iterator[str]:
-    """Say which moments differ between the maps by more than their errors, once in 1000 by chance."""
+def disagreement(fits: Sequence[Fit]) -> Iterator[tuple[str, float]]:
+    """Tell what differs between the maps by more than its errors, once in 1000 by chance, and the factor."""
     words = {"m0": "heights", "m2": "slopes", "m4": "curvatures"}
     for name, word in words.items():
         each = [fit.numbers[name] for fit in fits]
         logs, certain = np.log([x.value for x in each]), 1 / np.array([x.relative for x in each]) ** 2
         chi_square = float(certain @ (logs - np.average(logs, weights=certain)) ** 2)
         if chdtrc(len(each) - 1, chi_square) < _BY_CHANCE / len(words):
-            yield (
-                f"maps: mean square {word} differ by a factor of {math.exp(np.ptp(logs)):.3g} between "
-                "maps, more than their own errors allow; are they of one surface, with one pixel?"
-            )
+            yield word, math.exp(np.ptp(logs))
 
 
 def _norms(weights: Array, each: Sequence[tuple[float, float, float]]) -> Spread:

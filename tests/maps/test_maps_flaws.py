@@ -21,7 +21,7 @@ from scipy.optimize import brentq
 
 import mcgw
 from mcgw.maps import Spectrum, Topography, gaussian_map
-from mcgw.maps.fit_cautions import cautions
+from mcgw.maps.fit_cautions import WORDS, cautions
 from mcgw.maps.form import form_left
 from mcgw.maps.instrument import faults, shares
 
@@ -278,7 +278,7 @@ FAULTS = {
 def named(z, **steps):
     """Faults by the first words of their cautions."""
     ready = prepared(Topography(z, SQUARE), Preparation(**{"cutoff": None, **steps}))
-    return {line.partition(":")[0] for line in faults(ready, 10.0)}
+    return {name for name, *_ in faults(ready, 10.0)}
 
 
 def numbers(z, **steps):
@@ -362,6 +362,6 @@ def test_a_fault_is_named_from_its_limit_on_with_its_share():
             (plain(rows), "lines: offsets between rows, as in a line scan, make 5 % of the curvature across"),
             (plain(rows.T.copy()), "lines: offsets between columns, as in a line scan, make 5 %"),
         ):  # fmt: skip
-            found = faults(ready, 12.34)
+            found = [f"{name}: {WORDS[name].format(*x)}" for name, *x in faults(ready, 12.34)]
             assert len(found) == told
             assert all(x.startswith(line) for x in found)
