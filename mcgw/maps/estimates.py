@@ -47,6 +47,17 @@ class Roughness:
     sk: float
     ku: float
 
+    @classmethod
+    def of(cls, a: float, *central: float) -> Self:
+        """From the mean deviation, and the central moments of second, third and fourth order."""
+        q = math.sqrt(central[0])
+        return cls(a, q, *(m / q**k if q else 0.0 for k, m in enumerate(central[1:], 3)))
+
+    @property
+    def means(self) -> tuple[float, ...]:
+        """Return what `of` takes: means over the heights, which add up over areas."""
+        return self.a, self.q**2, self.sk * self.q**3, self.ku * self.q**4
+
     def text(self, kind: str) -> str:
         """Return the parameters in words, named as for a map ("S") or a profile ("P")."""
         return f"{kind}a = {self.a:.4g} m, {kind}q = {self.q:.4g} m, {kind}sk = {self.sk:.2f}"
@@ -56,10 +67,7 @@ def roughness_of(heights: Array) -> Roughness:
     """Roughness of an array of any shape without missing points, m."""
     z = heights - heights.mean()
     square = z * z
-    a, q = float(np.abs(z).mean()), math.sqrt(square.mean())
-    if q == 0:
-        return Roughness(a, q, 0.0, 0.0)
-    return Roughness(a, q, float((square * z).mean()) / q**3, float((square * square).mean()) / q**4)
+    return Roughness.of(*(float(x.mean()) for x in (np.abs(z), square, square * z, square * square)))
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,8 @@
 """Several maps of one surface as one fit, whose sub-areas are the maps."""
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import astuple, replace
 
 import numpy as np
 from scipy.special import chdtrc, ndtr, stdtrit
@@ -16,6 +16,7 @@ from mcgw.maps.hidden_caps import Visible
 from mcgw.maps.summits import Summits
 from mcgw.maps.waves import Spread, Uncertain, Waves, uncertain
 
+_MOMENTS = ("m0", "m2", "m4")
 _BY_CHANCE = 1e-3
 
 
@@ -32,36 +33,52 @@ def pooled(fits: Sequence[Fit], names: Sequence[str]) -> Fit:
     names : sequence of str
         Of the maps, for notes and tables.
     """
-    areas = np.array([fit.area for fit in fits])
+    first, areas = fits[0], np.array([fit.area for fit in fits])
     weights = areas / areas.sum()
-    squares = np.array([[fit.moments.m0, fit.moments.m2, fit.moments.m4] for fit in fits])
-    moments = SpectralMoments(*(weights @ squares).tolist())
-    methods = [x for x in fits[0].estimates if all(x in fit.estimates for fit in fits)]
+
+    def mean(of: Callable[[Fit], Sequence[float]]) -> list[float]:
+        """Return means over the area of several numbers of each fit."""
+        return [float(x) for x in weights @ np.array([of(fit) for fit in fits])]
+
+    moments = SpectralMoments(*mean(lambda fit: [getattr(fit.moments, x) for x in _MOMENTS]))
+    (skewness,) = mean(lambda fit: [fit.skewness[0] * (fit.moments.m0 / moments.m0) ** 1.5])
+    visible = None
+    if all(fit.visible for fit in fits):
+        visible = Visible(*mean(lambda fit: astuple(fit.visible)))  # type: ignore[arg-type]
+    methods = [x for x in first.estimates if all(x in fit.estimates for fit in fits)]
     return replace(
-        fits[0],
+        first,
         moments=moments,
         numbers={
-            x: _of_all(getattr(moments, x), [fit.numbers[x] for fit in fits], weights)
-            for x in fits[0].numbers
+            x: _of_all(getattr(moments, x), [fit.numbers[x] for fit in fits], weights) for x in first.numbers
         },
         estimates={x: _estimate(x, fits, weights, moments) for x in methods},
-        skewness=_skewness(fits, weights, moments),
+        skewness=(skewness, float(np.linalg.norm(weights * [fit.skewness[1] for fit in fits]))),
         listed=_listed(fits),
         mean_summit=float(
             np.average([fit.mean_summit for fit in fits], weights=[fit.summits.size for fit in fits])
         ),
         area=float(areas.sum()),
-        visible=_visible(fits, weights),
-        mean_squares={
-            x: float(weights @ [fit.mean_squares[x] for fit in fits]) for x in fits[0].mean_squares
-        },
-        waves=_waves(fits, weights),
+        visible=visible,
+        mean_squares=dict(
+            zip(first.mean_squares, mean(lambda fit: [*fit.mean_squares.values()]), strict=True)
+        ),
+        waves=Waves(
+            {x: _together([fit.waves.spreads[x] for fit in fits], weights) for x in first.waves.spreads},
+            sum(fit.waves.independent for fit in fits),
+            np.tensordot(weights**2, [fit.waves.covariance for fit in fits], 1),
+        ),
         tiles=_tiles(fits, names),
-        roughness=_roughness([fit.roughness for fit in fits], weights),
+        roughness=Roughness.of(*mean(lambda fit: fit.roughness.means)),
         maps=tuple(names),
         notes=tuple(f"{name}: {line}" for name, fit in zip(names, fits, strict=True) for line in fit.notes),
         cautions=(),
     )
+
+
+def _together(each: Sequence[Spread], weights: Array) -> Spread:
+    """Errors and arms of independent maps taken together."""
+    return Spread(*np.linalg.norm(weights[:, None] * [astuple(x) for x in each], axis=0).tolist())
 
 
 def _of_all(value: float, each: Sequence[Uncertain], weights: Array) -> Uncertain:
@@ -72,9 +89,8 @@ def _of_all(value: float, each: Sequence[Uncertain], weights: Array) -> Uncertai
     logs, n = np.log([x.value for x in each]), len(each)
     between = math.sqrt(n / (n - 1) * float(np.sum(weights**2 * (logs - weights @ logs) ** 2)))
     between *= float(stdtrit(n - 1, ndtr(2.0))) / 2
-    arms = [(x.relative, math.log(x.value / x.low), math.log(x.high / x.value)) for x in each]
-    within = _norms(weights, arms)
-    return uncertain(value, value * between, within)
+    arms = [Spread(x.relative, math.log(x.value / x.low), math.log(x.high / x.value)) for x in each]
+    return uncertain(value, value * between, _together(arms, weights))
 
 
 def disagreement(fits: Sequence[Fit]) -> Iterator[tuple[str, float]]:
@@ -86,11 +102,6 @@ def disagreement(fits: Sequence[Fit]) -> Iterator[tuple[str, float]]:
         chi_square = float(certain @ (logs - np.average(logs, weights=certain)) ** 2)
         if chdtrc(len(each) - 1, chi_square) < _BY_CHANCE / len(words):
             yield word, math.exp(np.ptp(logs))
-
-
-def _norms(weights: Array, each: Sequence[tuple[float, float, float]]) -> Spread:
-    """Errors, lower and upper arms of independent maps taken together."""
-    return Spread(*np.linalg.norm(weights[:, None] * np.array(each), axis=0).tolist())
 
 
 def _estimate(method: str, fits: Sequence[Fit], weights: Array, moments: SpectralMoments) -> Estimate:
@@ -108,13 +119,6 @@ def _estimate(method: str, fits: Sequence[Fit], weights: Array, moments: Spectra
     return Estimate(*(_of_all(value, x, weights) for value, x in zip(values, each, strict=True)))
 
 
-def _skewness(fits: Sequence[Fit], weights: Array, moments: SpectralMoments) -> tuple[float, float]:
-    """Of all heights about the mean plane of their map, and its standard error."""
-    shares = weights * [(fit.moments.m0 / moments.m0) ** 1.5 for fit in fits]
-    values, errors = np.array([fit.skewness for fit in fits]).T
-    return float(shares @ values), float(np.linalg.norm(shares * errors))
-
-
 def _listed(fits: Sequence[Fit]) -> Summits:
     """Summits of one map after the other; heights are relative to the mean of all."""
     listed = [fit.listed for fit in fits]
@@ -129,39 +133,14 @@ def _listed(fits: Sequence[Fit]) -> Summits:
     )
 
 
-def _visible(fits: Sequence[Fit], weights: Array) -> Visible | None:
-    """Of independent caps like these, if each map looks like a field of them."""
-    seen = [(x.share, x.mean, x.std) for x in (fit.visible for fit in fits) if x is not None]
-    return Visible(*(weights @ np.array(seen)).tolist()) if len(seen) == len(fits) else None
-
-
-def _waves(fits: Sequence[Fit], weights: Array) -> Waves:
-    """Errors due to the few waves on each map, which are others on the next."""
-
-    def spread(name: str) -> Spread:
-        return _norms(weights, [(x.error, x.down, x.up) for x in (fit.waves.spreads[name] for fit in fits)])
-
-    covariance = np.tensordot(weights**2, [fit.waves.covariance for fit in fits], 1)
-    independent = sum(fit.waves.independent for fit in fits)
-    return Waves({name: spread(name) for name in fits[0].waves.spreads}, independent, covariance)
-
-
 def _tiles(fits: Sequence[Fit], names: Sequence[str]) -> Table:
     """Return a row for each map: its summits as counted, and its moments."""
     by = "summits" if all("summits" in fit.estimates for fit in fits) else "moments"
     found = {x: [getattr(fit.estimates[by], x).value for fit in fits] for x in SUMMITS}
     units = {"eta": "1/m^2", "radius": "m", "sigma": "m", "m0": "m^2", "m2": "", "m4": "1/m^2"}
-    found |= {x: [getattr(fit.moments, x) for fit in fits] for x in ("m0", "m2", "m4")}
+    found |= {x: [getattr(fit.moments, x) for fit in fits] for x in _MOMENTS}
     return Table((
         Column("map", list(names)),
         Column("summits", np.array([fit.summits.size for fit in fits])),
         *(Column(x, np.array(values), unit=units[x]) for x, values in found.items()),
     ))  # fmt: skip
-
-
-def _roughness(each: Sequence[Roughness], weights: Array) -> Roughness:
-    """Of the heights of all maps, each about its mean."""
-    a, q, sk, ku = np.array([(x.a, x.q, x.sk, x.ku) for x in each]).T
-    all_q = math.sqrt(float(weights @ q**2))
-    third, fourth = float(weights @ (sk * q**3)), float(weights @ (ku * q**4))
-    return Roughness(float(weights @ a), all_q, third / all_q**3, fourth / all_q**4)
