@@ -34,6 +34,9 @@ class SummitSums:
         Sub-area of each summit.
     pixel_area : float
         m^2.
+    shapes : ndarray, optional
+        Of the summits, shape (4, summits): the vertex from the centre of the pixel along x and y, in pixels,
+        and the principal curvatures, the larger first, 1/m; the second is nan on ridges between pixels.
     """
 
     sums: Array
@@ -42,6 +45,7 @@ class SummitSums:
     places: Array
     part: Ints
     pixel_area: float
+    shapes: Array | None = None
 
     @property
     def parts(self) -> int:
@@ -103,27 +107,36 @@ def _rise(g: Any, c: Any) -> Any:
 
 @njit(cache=True)
 def _apex(z: Any, j: Any, i: Any) -> Any:
-    """Highest point, within the summit's own pixel, of the paraboloid through it and its neighbours."""
+    """Highest point, within the summit's own pixel, of the paraboloid through it and its neighbours.
+
+    Above the summit; and its vertex from there along x and y, as near as the pixel's edge, in pixels.
+    """
     gx, gy = (z[j, i + 1] - z[j, i - 1]) / 2, (z[j + 1, i] - z[j - 1, i]) / 2
     xx, yy = z[j, i + 1] - 2 * z[j, i] + z[j, i - 1], z[j + 1, i] - 2 * z[j, i] + z[j - 1, i]
     xy = (z[j + 1, i + 1] - z[j + 1, i - 1] - z[j - 1, i + 1] + z[j - 1, i - 1]) / 4
-    best = 0.0
+    best, x, y = 0.0, 0.0, 0.0
     for side in (-0.5, 0.5):
         best = max(best, gx * side + xx / 8 + _rise(gy + xy * side, yy))
         best = max(best, gy * side + yy / 8 + _rise(gx + xy * side, xx))
     det = xx * yy - xy * xy
-    x, y = gy * xy - gx * yy, gx * xy - gy * xx  # of the vertex, times det
-    if det > 0 and 2 * max(abs(x), abs(y)) < det:
-        x, y = x / det, y / det
-        best = max(best, gx * x + gy * y + (xx * x * x + yy * y * y) / 2 + xy * x * y)
-    return z[j, i] + best
+    if det > 0:
+        x, y = (gy * xy - gx * yy) / det, (gx * xy - gy * xx) / det
+        if 2 * max(abs(x), abs(y)) < 1:
+            best = max(best, gx * x + gy * y + (xx * x * x + yy * y * y) / 2 + xy * x * y)
+    return best, min(max(x, -0.5), 0.5), min(max(y, -0.5), 0.5)
+
+
+@njit(cache=True)
+def _slope(before: Any, next_before: Any, next_after: Any, after: Any) -> Any:
+    """First difference of the fourth order, from two points before to two points after."""
+    return (8 * (next_after - next_before) - (after - before)) / 12
 
 
 @njit(cache=True)
 def _pass(
     z: Any, mean: Any, seen: Any, dx: Any, dy: Any, across: Any, sums: Any, summits: Any, part_of: Any
 ) -> Any:
-    """Fill `sums`; write height, curvature, place and sub-area of each summit; give their number.
+    """Fill `sums`; write height, curvature, place, shape and sub-area of each summit; give their number.
 
     Heights count from their `mean`. Of points that are not `seen`, unless that is empty, nothing is written.
     """
@@ -159,9 +172,25 @@ def _pass(
             sums[9, k] += sx * sy
             higher = (c >= w1) & (c >= v1) & (c > x1) & (c > y1)  # no branch: what it takes is guessed wrong
             if higher and found < part_of.size and _is_summit(z, b, a):
-                summits[0, found] = _apex(z, b, a) - mean
+                rise, summits[4, found], summits[5, found] = _apex(z, b, a)
+                summits[0, found] = z[b, a] + rise - mean
                 summits[1, found] = -(xx + yy) / 2
                 summits[2, found], summits[3, found] = (i + 0.5) / columns, (j + 0.5) / rows
+                n2, n1, m1, m2 = z[b - 2], z[b - 1], z[b + 1], z[b + 2]
+                xy = (
+                    per_x
+                    * per_y
+                    * _slope(
+                        _slope(n2[a - 2], n2[a - 1], n2[a + 1], n2[a + 2]),
+                        _slope(n1[a - 2], n1[a - 1], n1[a + 1], n1[a + 2]),
+                        _slope(m1[a - 2], m1[a - 1], m1[a + 1], m1[a + 2]),
+                        _slope(m2[a - 2], m2[a - 1], m2[a + 1], m2[a + 2]),
+                    )
+                )
+                turn = np.hypot((xx - yy) / 2, xy)
+                summits[6, found], summits[7, found] = turn - (xx + yy) / 2, -turn - (xx + yy) / 2
+                if not summits[7, found] > 0:  # the neighbours are lower: plain differences have a sign
+                    summits[6, found], summits[7, found] = -(xx1 + yy1) / 2, np.nan
                 part_of[found] = k
                 found += 1
     return found
@@ -191,7 +220,7 @@ def summit_sums_of(topography: Topography, *, across: int = 4, seen: Marks | Non
         )
     sums = np.zeros((len(SUMS), across * across))
     most = _most_summits(rows, columns)
-    summits, part = np.empty((4, most)), np.empty(most, dtype=np.int64)
+    summits, part = np.empty((8, most)), np.empty(most, dtype=np.int64)
     found = _pass(z, mean, counts, *topography.pixel, across, sums, summits, part)
     if not sums[0].any():
         raise ValueError("too many points are missing, so none has all its neighbours; use --missing fill")
@@ -203,7 +232,7 @@ def summit_sums_of(topography: Topography, *, across: int = 4, seen: Marks | Non
         )
     dx, dy = topography.pixel
     summits = summits[:, :found].copy()
-    return SummitSums(sums, summits[0], summits[1], summits[2:], part[:found].copy(), dx * dy)
+    return SummitSums(sums, *summits[:2], summits[2:4], part[:found].copy(), dx * dy, summits[4:])
 
 
 def _with_neighbours(seen: Marks, periodic: bool) -> Marks:

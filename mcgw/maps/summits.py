@@ -16,10 +16,6 @@ from mcgw.maps.topography import Topography
 # What stands above their tables in a file.
 SUMMITS = "height is above the mean of the summits, radius is 1/sqrt(curvature_1 curvature_2)"
 TILES = "eta, radius and sigma by the summits of the tile; heights are about the mean of the tile"
-# Of the fourth order, as in the sums: from two points before to two points after.
-_REACH = 2
-_SLOPE = np.array([1, -8, 0, 8, -1]) / 12
-_BEND = np.array([-1, 16, -30, 16, -1]) / 12
 
 
 @dataclass(frozen=True)
@@ -67,74 +63,24 @@ class Summits:
 
 
 def summits_of(used: Topography, counted: SummitSums, origin: tuple[float, float]) -> Summits:
-    """Look again at every summit that was counted.
+    """Return every summit that was counted on a map, without form and filtered.
 
-    Parameters
-    ----------
-    used : Topography
-        The map that was counted, without form and filtered.
-    counted : SummitSums
-        Of this map.
-    origin : (float, float)
-        Where its corner lies on the map as it was read, x and y in m.
+    Its corner lies at the `origin` of the map as it was read, x and y in m.
     """
+    if counted.shapes is None:
+        raise ValueError("shapes of summits are known of a whole map only")
     margin = 0 if used.periodic else EDGE
-    shape = tuple(n - 2 * margin for n in used.heights.shape)
-    i, j = (
-        np.rint(p * n - 0.5).astype(np.int64) + margin
-        for p, n in zip(counted.places, shape[::-1], strict=True)
+    size = [(n - 2 * margin) * p for n, p in zip(used.heights.shape[::-1], used.pixel, strict=True)]
+    x, y = (
+        corner + margin * p + place * length + beside * p
+        for corner, p, place, length, beside in zip(
+            origin, used.pixel, counted.places, size, counted.shapes[:2], strict=True
+        )
     )
-    around = _around(used, j, i)
-    curvatures, unresolved = _curvatures(around, used.pixel)
-    right, up = _apex(around)
-    dx, dy = used.pixel
-    return Summits(
-        origin[0] + (i + 0.5 + right) * dx,
-        origin[1] + (j + 0.5 + up) * dy,
-        counted.heights - counted.heights.mean(),
-        curvatures,
-        counted.part,
-        unresolved,
-        (shape[1] * dx, shape[0] * dy),
-    )
-
-
-def _around(used: Topography, j: Ints, i: Ints) -> Array:
-    """Heights of the five by five points around each summit above its own, shape (summits, 5, 5).
-
-    Of a periodic map they may lie beyond its edges.
-    """
-    rows, columns = used.heights.shape
-    near = np.arange(-_REACH, _REACH + 1)
-    z = used.heights[(j[:, None, None] + near[:, None]) % rows, (i[:, None, None] + near) % columns]
-    return np.asarray(z - z[:, _REACH, _REACH, None, None])  # differences lose no digits
-
-
-def _curvatures(z: Array, pixel: tuple[float, float]) -> tuple[Array, int]:
-    """Principal curvatures, and how many had to be taken from the mean curvature."""
-    dx, dy = pixel
-    xx, yy = z[:, _REACH] @ _BEND / dx**2, z[:, :, _REACH] @ _BEND / dy**2
-    xy = z @ _SLOPE @ _SLOPE / (dx * dy)
-    mean, turn = -(xx + yy) / 2, np.hypot((xx - yy) / 2, xy)
-    found = np.array([mean + turn, mean - turn])
-    ridges = ~(found[1] > 0)
-    # The neighbours next to it are lower, so these plain differences have a sign.
-    plain = (z[ridges, 2, 1] + z[ridges, 2, 3]) / dx**2 + (z[ridges, 1, 2] + z[ridges, 3, 2]) / dy**2
-    found[:, ridges] = -plain / 2
-    return found, int(ridges.sum())
-
-
-def _apex(z: Array) -> tuple[Array, Array]:
-    """Vertex, within the summit's own pixel, of the paraboloid through it and its neighbours, in pixels."""
-    left, right, below, above = z[:, 2, 1], z[:, 2, 3], z[:, 1, 2], z[:, 3, 2]
-    gx, gy, xx, yy = (right - left) / 2, (above - below) / 2, right + left, above + below
-    xy = (z[:, 3, 3] - z[:, 3, 1] - z[:, 1, 3] + z[:, 1, 1]) / 4
-    det = xx * yy - xy * xy
-    flat = ~(det > 0)
-    det = np.where(flat, 1.0, det)
-    ends = (gy * xy - gx * yy) / det, (gx * xy - gy * xx) / det
-    x, y = (np.where(flat, 0.0, np.clip(end, -0.5, 0.5)) for end in ends)
-    return x, y
+    larger, smaller = counted.shapes[2:]
+    curvatures = np.array([larger, np.where(np.isnan(smaller), larger, smaller)])
+    heights, unresolved = counted.heights - counted.heights.mean(), int(np.isnan(smaller).sum())
+    return Summits(x, y, heights, curvatures, counted.part, unresolved, (size[0], size[1]))
 
 
 def tiles_of(counted: SummitSums) -> Table:

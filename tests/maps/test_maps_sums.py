@@ -268,10 +268,10 @@ def test_the_pass_writes_nothing_beyond_the_room_it_is_given():
     """Of whatever size: the lists are the first half of arrays here, whose other half must stay."""
     z = np.zeros((32, 32))
     z[::2, ::2] = 1.0
-    lists, part = np.full(800, -7.0), np.full(200, -7)
+    lists, part = np.full(1600, -7.0), np.full(200, -7)
     none, sums = np.empty((0, 0), dtype=np.bool_), np.zeros((9, 4))
-    assert summit_sums._pass(z, 0.0, none, 1.0, 1.0, 2, sums, lists[:400].reshape(4, 100), part[:100]) == 100
-    assert np.all(lists[400:] == -7)
+    assert summit_sums._pass(z, 0.0, none, 1.0, 1.0, 2, sums, lists[:800].reshape(8, 100), part[:100]) == 100
+    assert np.all(lists[800:] == -7)
     assert np.all(part[100:] == -7)
     odd = np.pad(z, ((0, 1), (0, 1)))
     odd[::2, ::2] = 1.0

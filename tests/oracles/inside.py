@@ -56,7 +56,7 @@ MODULES = {
     "mcgw.maps.hidden_caps": "unhidden visible",
     "mcgw.maps.preparation": "Preparation prepared",
     "mcgw.maps.readable_scene": "write_scene",
-    "mcgw.maps.summit_sums": "_apex coarse_sums_of summit_sums_of SummitSums SUMS",
+    "mcgw.maps.summit_sums": "coarse_sums_of summit_sums_of SummitSums SUMS",
     "mcgw.reports.html": "report_html",
     "mcgw.reports.plan": "plan_text",
     "mcgw.reports.report_figures": ("spread_panel svg_of pressure_curves round_pressures solved_pressures"),
