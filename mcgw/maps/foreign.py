@@ -56,14 +56,8 @@ def read_foreign(path: Path, given: Given) -> Raw:
     return Raw(z, told, pixel, bool(found.is_periodic), lateral=told or given.unit)
 
 
-def check_foreign(path: Path) -> None:
-    """Refuse a file that leads out of itself, or unpacks to far more than it is, before a reader sees it.
-
-    Raises
-    ------
-    ValueError
-        As `mcgw.formats.gate` does; or if a text is longer than 64 MiB.
-    """
+def _check(path: Path) -> None:
+    """Refuse a file that leads out of itself, or unpacks to far more than it is, before a reader sees it."""
     if h5py.is_hdf5(path):
         try:
             open_h5(path).close()
@@ -85,7 +79,7 @@ def _channel(path: Path) -> Any:
             f"{path}: {path.suffix or 'no ending'} is read by SurfaceTopography, which is not installed (the "
             "extra maps: pip install SurfaceTopography); or save it as .npy, .h5 of mcgw or text"
         )
-    check_foreign(path)
+    _check(path)
     with _one_line_errors(path):
         from SurfaceTopography import (  # type: ignore[import-not-found, import-untyped, unused-ignore]
             open_topography,

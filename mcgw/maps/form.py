@@ -15,7 +15,6 @@ from mcgw.maps.waves import block_means, coarser
 
 ORDERS = {"none": -1, "plane": 1, "quadratic": 2, "cubic": 3, "quartic": 4}
 
-_ALPHA = math.sqrt(math.log(2) / math.pi)  # ISO 16610-61: half the amplitude is left at the cutoff
 _REACH = 1.0  # of the filter's window, in cutoffs: beyond lies a share of 5e-7
 _COARSE, _FINE = 192, 1024  # points along each axis tell the longest waves, and a form
 _LONGEST = 2.3  # waves on the map; there are 20 such wave vectors
@@ -58,14 +57,14 @@ def _powers(n: int, order: int) -> Array:
     return np.asarray(np.polynomial.legendre.legvander(t, order))
 
 
+def filter_variance(cutoff: float) -> float:
+    """Of the window of the Gaussian filter, m^2: half the amplitude is left at the cutoff (ISO 16610-61)."""
+    return math.log(2) / (2 * math.pi**2) * cutoff**2
+
+
 def gaussian_transmission(q: Array, cutoff: float) -> Array:
     """Share of the amplitude that `smooth` leaves to the wave number `q`, 1/m."""
-    return np.asarray(np.exp(-math.pi * (_ALPHA * cutoff * q / (2 * math.pi)) ** 2))
-
-
-def filter_variance(cutoff: float) -> float:
-    """Of the window of the Gaussian filter, m^2: it leaves ``exp(-a q^2/2)`` of an amplitude."""
-    return -2 * math.log(float(gaussian_transmission(np.array(1 / cutoff), cutoff))) * cutoff**2
+    return np.asarray(np.exp(-filter_variance(cutoff) * q**2 / 2))
 
 
 def smooth(topography: Topography, cutoff: float) -> Topography:
@@ -79,20 +78,18 @@ def smooth(topography: Topography, cutoff: float) -> Topography:
     ValueError
         If nothing would be left.
     """
-    dx, dy = topography.pixel
-    radius = _window(topography, cutoff)
-    rows, columns = topography.heights.shape
-    if topography.periodic and max(radius) >= min(rows, columns):
-        raise ValueError(f"cutoff = {cutoff:g} m: longer than the map of {columns * dx:g} x {rows * dy:g} m")
-    if not topography.periodic and (2 * radius[0] + 8 > rows or 2 * radius[1] + 8 > columns):
+    radius, shape = _window(topography, cutoff), topography.heights.shape
+    size = "{:g} x {:g} m".format(*topography.size)
+    if topography.periodic:
+        if max(radius) >= min(shape):
+            raise ValueError(f"cutoff = {cutoff:g} m: longer than the map of {size}")
+        return replace(topography, heights=np.ascontiguousarray(lowpass(topography, cutoff)))
+    if any(2 * margin + 8 > n for margin, n in zip(radius, shape, strict=True)):
         raise ValueError(
-            f"cutoff = {cutoff:g} m: leaves nothing of a map of {columns * dx:g} x {rows * dy:g} m after "
-            "removing a margin of one cutoff"
+            f"cutoff = {cutoff:g} m: leaves nothing of a map of {size} after removing a margin of one cutoff"
         )
-    smoothed = lowpass(topography, cutoff)
-    if not topography.periodic:
-        smoothed = smoothed[radius[0] : -radius[0], radius[1] : -radius[1]]
-    return replace(topography, heights=np.ascontiguousarray(smoothed))
+    inside = tuple(slice(margin, -margin) for margin in radius)
+    return replace(topography, heights=np.ascontiguousarray(lowpass(topography, cutoff)[inside]))
 
 
 def lowpass(topography: Topography, cutoff: float) -> Array:
@@ -100,7 +97,7 @@ def lowpass(topography: Topography, cutoff: float) -> Array:
 
     Unless it is periodic. No point may be missing.
     """
-    width = _ALPHA / math.sqrt(2 * math.pi) * cutoff  # standard deviation of the window
+    width = math.sqrt(filter_variance(cutoff))
     dx, dy = topography.pixel
     mode: Literal["wrap", "reflect"] = "wrap" if topography.periodic else "reflect"
     rows, columns = topography.heights.shape

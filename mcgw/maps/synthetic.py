@@ -9,14 +9,14 @@ from scipy.optimize import brentq
 
 from analytic import SpectralMoments
 from analytic.arrays import Array
-from mcgw.formats.units import parse
+from mcgw.formats.units import parse, signed
 from mcgw.maps.topography import Topography, checked_shape
 from mcgw.sampling.asperities import summits
 from mcgw.sampling.philox import POSITIONS, uniforms
 from mcgw.scene.scene import Scene
 
 _HURST = 0.8
-_UNITS = {"rms": "m", "long": "m", "short": "m", "m0": "m^2", "m4": "1/m^2"}
+_UNITS = {"rms": "m", "long": "m", "short": "m", "m0": "m^2", "m2": "1", "m4": "1/m^2"}
 _NARROWEST, _WIDEST = 1 + 1e-6, 1e6  # ratio of the long to the short wavelength
 
 _X, _Y = 0, 1  # streams
@@ -94,19 +94,23 @@ def _mean_power(k: int, ratio: float, hurst: float) -> float:
     return integral(k - 2 * hurst) / integral(-2 * hurst)
 
 
-def _power(spectrum: Spectrum, shape: tuple[int, int], pixel: tuple[float, float]) -> Array:
-    """Density at the wave vectors of ``rfft2``."""
+def _waves(
+    spectrum: Spectrum, shape: tuple[int, int], pixel: tuple[float, float]
+) -> tuple[Array, Array, Array]:
+    """Wave numbers along x and y of ``rfft2``, 1/m, and the variance of its waves, with their conjugates."""
     rows, columns = checked_shape(*shape)
     if spectrum.short < 2 * max(pixel):
         raise ValueError(f"short = {spectrum.short:g} m: a pixel of {max(pixel):g} m shows 2 pixels or more")
     if spectrum.long > (1 + 1e-9) * min(columns * pixel[0], rows * pixel[1]):
         raise ValueError(f"long = {spectrum.long:g} m: longer than the map; give more pixels")
-    qy = 2 * math.pi * fft.fftfreq(rows, pixel[1])[:, None]
     qx = 2 * math.pi * fft.rfftfreq(columns, pixel[0])
+    qy = 2 * math.pi * fft.fftfreq(rows, pixel[1])[:, None]
     power = spectrum.density(np.hypot(qx, qy))
     if not power.any():
         raise ValueError("the spectrum lies between two wave vectors of the map; give more pixels")
-    return power
+    power[:, 1 : (columns + 1) // 2] *= 2  # rfft2 leaves out their conjugates
+    power *= spectrum.rms**2 / power.sum()
+    return qx, qy, power
 
 
 def moments_on_grid(
@@ -116,11 +120,7 @@ def moments_on_grid(
 
     They are sums over the waves of the grid instead of integrals over the spectrum.
     """
-    power = _power(spectrum, shape, pixel)
-    power[:, 1 : (shape[1] + 1) // 2] *= 2  # rfft2 leaves out their conjugates
-    power *= spectrum.rms**2 / power.sum()
-    qy = 2 * math.pi * fft.fftfreq(shape[0], pixel[1])[:, None]
-    qx = 2 * math.pi * fft.rfftfreq(shape[1], pixel[0])
+    qx, qy, power = _waves(spectrum, shape, pixel)
     m2, m4 = (float((power * (qx**k + qy**k)).sum() / 2) for k in (2, 4))
     return SpectralMoments(spectrum.rms**2, m2, m4)
 
@@ -146,12 +146,10 @@ def gaussian_map(
     ValueError
         If the shortest wavelength is below two pixels or the longest does not fit on the map.
     """
-    power = _power(spectrum, shape, pixel)
-    doubled = power.copy()
-    doubled[:, 1 : (shape[1] + 1) // 2] *= 2
-    amplitude = spectrum.rms * np.sqrt(power * (shape[0] * shape[1] / doubled.sum()))
+    *_, power = _waves(spectrum, shape, pixel)
+    power[:, 1 : (shape[1] + 1) // 2] /= 2
     noise = fft.rfft2(rng.standard_normal(shape), overwrite_x=True)
-    noise *= amplitude
+    noise *= np.sqrt(shape[0] * shape[1] * power)
     return Topography(np.asarray(fft.irfft2(noise, s=shape, overwrite_x=True)), pixel, periodic=True)
 
 
@@ -167,22 +165,17 @@ def spectrum_from(text: str) -> Spectrum:
     for part in text.split(","):
         key, _, value = part.partition("=")
         key = key.strip()
-        if key not in ("rms", "long", "short", "hurst", "m0", "m2", "m4") or key in given:
+        if key not in (*_UNITS, "hurst") or key in given:
             raise ValueError(f"{part!r}: give rms, long, short and hurst, or m0, m2, m4 and hurst, each once")
-        given[key] = parse(value, _UNITS[key], key) if key in _UNITS else _number(key, value)
+        given[key] = parse(value, _UNITS[key], key) if key in _UNITS else signed(value, "1")
     hurst = given.pop("hurst", _HURST)
+    if math.isnan(hurst):
+        raise ValueError(f"{text!r}: hurst is no number; give one from -1 (a flat spectrum) to 1")
     if set(given) == {"m0", "m2", "m4"}:
         return Spectrum.with_moments(SpectralMoments(**given), hurst)
     if set(given) == {"rms", "long", "short"}:
         return Spectrum(**given, hurst=hurst)
     raise ValueError(f"{text!r}: give rms, long and short, or m0, m2 and m4")
-
-
-def _number(key: str, text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        raise ValueError(f"{key} = {text!r}: give a number") from None
 
 
 @dataclass(frozen=True)

@@ -123,7 +123,7 @@ def test_what_makes_no_map_is_refused(tmp_path):
         (lambda: Spectrum(1e-6, 5e-6, 5e-6), "below long"),
         (lambda: Spectrum(1e-6, 30e-6, 5e-6, -1.01), "hurst = -1.01"),
         (lambda: gaussian_map(Spectrum(1e-6, 28e-6, 23e-6), (64, 64), pixel, None), "give more pixels"),
-        (lambda: spectrum_from("rms=1um,long=30um,short=5um,hurst=x"), "hurst = 'x': give a number"),
+        (lambda: spectrum_from("rms=1um,long=30um,short=5um,hurst=x"), "hurst is no number"),
         (lambda: spectrum_from("rms=1um,long=30um,m0=1e-12"), "give rms, long and short, or m0, m2 and m4"),
     ):
         with pytest.raises(ValueError, match=told):
