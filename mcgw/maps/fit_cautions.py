@@ -130,8 +130,8 @@ def _of_the_map(fit: Fit, ready: Prepared) -> Iterator[Found]:
     yield from faults(ready, longer)
     if cutoff is not None and cutoff < _PIXELS * pixel:
         yield "cutoff", cutoff / pixel, _PIXELS
-    elif (more := fit.mean_squares["bend"] / fit.mean_squares["bend_1"] - 1) > _RESOLVED:
-        yield "pixel", 100 * more, longer
+    elif (excess := fit.mean_squares["bend"] / fit.mean_squares["bend_1"] - 1) > _RESOLVED:
+        yield "pixel", 100 * excess, longer
 
 
 def _few_waves(fit: Fit) -> Iterator[Found]:

@@ -232,7 +232,8 @@ def summit_sums_of(topography: Topography, *, across: int = 4, seen: Marks | Non
         )
     dx, dy = topography.pixel
     summits = summits[:, :found].copy()
-    return SummitSums(sums, *summits[:2], summits[2:4], part[:found].copy(), dx * dy, summits[4:])
+    heights, bends = summits[:2]
+    return SummitSums(sums, heights, bends, summits[2:4], part[:found].copy(), dx * dy, summits[4:])
 
 
 def _with_neighbours(seen: Marks, periodic: bool) -> Marks:
