@@ -18,7 +18,7 @@ from mcgw.formats.table import Column, Shown, Table
 from mcgw.machine.progress import Progress, told
 from mcgw.maps.synthetic import Spectrum
 from mcgw.maps.topography import Topography
-from mcgw.scene.arguments import argument
+from mcgw.scene.kinds import argument
 from mcgw.scene.scene import Scene
 from mcgw.store.lock import locked, parts_of
 

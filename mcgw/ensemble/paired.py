@@ -12,7 +12,7 @@ from mcgw.ensemble.intervals import CONFIDENCE
 from mcgw.ensemble.pooled import Pooled
 from mcgw.formats.table import SEPARATION, Column, Shown, Table
 from mcgw.machine.terminal import plotted
-from mcgw.scene.arguments import check_object
+from mcgw.scene.kinds import check_object
 from mcgw.scene.scene import with_sampling
 
 Some = tuple[Ints, Array]  # numbers of pooled scenes, and their weights

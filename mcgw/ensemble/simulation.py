@@ -16,7 +16,7 @@ from mcgw.errors import StoreError
 from mcgw.machine.memory import check_memory
 from mcgw.machine.progress import Progress, told
 from mcgw.sampling.expected import Expected
-from mcgw.scene.arguments import check_object
+from mcgw.scene.kinds import check_object
 from mcgw.scene.scene import Scene, storable, with_sampling
 
 _BYTES = 2**23  # of a block: large enough that its flushing costs little

@@ -10,7 +10,7 @@ from mcgw.ensemble.at_load import answers_at, theory_at
 from mcgw.ensemble.loaded_surfaces import LoadedSurfaces
 from mcgw.ensemble.solved import Solution
 from mcgw.machine.progress import Progress, told
-from mcgw.scene.arguments import argument, as_toml, check_object
+from mcgw.scene.kinds import argument, as_toml, check_object
 from mcgw.scene.scene import Scene
 from mcgw.scene.section import nearest
 

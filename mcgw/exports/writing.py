@@ -19,7 +19,7 @@ from mcgw.exports.programs import PROGRAMS
 from mcgw.exports.table_text import UNITS, Sheet
 from mcgw.formats.files import together, write_whole
 from mcgw.formats.table import Column, Table
-from mcgw.scene.arguments import argument, as_toml
+from mcgw.scene.kinds import argument, as_toml
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 from mcgw.store.ensembles import open_ensemble, read_attributes

@@ -12,7 +12,7 @@ from mcgw.ensemble.forecast import checkpoints, forecast, without_rule
 from mcgw.jobs.driver import By, check_how
 from mcgw.jobs.making import make
 from mcgw.machine.progress import Progress, told
-from mcgw.scene.arguments import check_object
+from mcgw.scene.kinds import check_object
 from mcgw.scene.scene import Scene, storable
 from mcgw.store.ensembles import FileResults, open_ensemble, open_sweep
 from mcgw.store.place import as_recorded

@@ -17,8 +17,8 @@ from analytic import (
 from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
 from mcgw.maps.waves import log_derivatives
-from mcgw.scene.arguments import argument
 from mcgw.scene.keys import MOMENTS, SUMMITS
+from mcgw.scene.kinds import argument
 from mcgw.scene.parts import Contact, Sampling
 from mcgw.scene.scene import Scene
 from mcgw.scene.uncertainty import Uncertainty

@@ -16,7 +16,7 @@ from mcgw.maps.profile_fit import ProfileFit, fit_profiles
 from mcgw.maps.several_maps import pooled
 from mcgw.maps.steps import Form, LinesTo, Missing, SpikesTo
 from mcgw.maps.topography import Topography
-from mcgw.scene.arguments import argument
+from mcgw.scene.kinds import argument
 
 
 def fit(

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from analytic import SpectralMoments
-from mcgw.scene.arguments import argument
+from mcgw.scene.kinds import argument
 from mcgw.scene.radii import Spectral
 from mcgw.scene.section import SceneError
 from mcgw.scene.surface import SpectralSurface

@@ -12,8 +12,7 @@ from mcgw.maps.bad_points import filled, recorded, small_spike_heights, spike_he
 from mcgw.maps.form import lowpass, smooth, without_form, without_offsets
 from mcgw.maps.steps import Form, LinesTo, Missing, SpikesTo
 from mcgw.maps.topography import SMALLEST, Topography
-from mcgw.scene.arguments import arguments
-from mcgw.scene.kinds import Whole, Word
+from mcgw.scene.kinds import Whole, Word, arguments
 from mcgw.scene.section import Kind
 
 _NEIGHBOURS = 2  # pixels on each side that differences need

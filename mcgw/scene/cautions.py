@@ -23,10 +23,10 @@ def cautions(scene: Scene) -> list[str]:
     known = scene.validity()
     alone, together = "neither interact nor merge", "interact by a mean field, and do not merge"
     lines = [*off_elasticity(known, f"asperities {alone if scene.interaction is None else together}")]
-    unmeasured = [] if known.measured.any() else [_crowd, _half]
+    unmeasured = [] if known.measured.any() else [_crowd]
     conducts = scene.film is not None or "conductance" in scene.quantities
     conducting = [_neighbours, _thick_film, _no_answer] if conducts else []
-    for caution in [*unmeasured, _depth, _slope, _numbers, *conducting]:
+    for caution in [*unmeasured, _depth, _numbers, *conducting]:
         lines += caution(scene)
     if type(scene.law) is not Hertz:
         from mcgw.scene.law_cautions import law_cautions  # Hertz is meant
@@ -37,6 +37,8 @@ def cautions(scene: Scene) -> list[str]:
 
 
 def _crowd(scene: Scene) -> Iterator[str]:
+    """Caution about contacts that interact or merge."""
+
     def sparse(h: float) -> bool:
         return bool(scene.theory.mean("area_fraction", h) <= _CROWDED)
 
@@ -49,9 +51,6 @@ def _crowd(scene: Scene) -> Iterator[str]:
             f"contact; asperities interact there{'' if scene.interaction else apart}; the error was not "
             "measured"
         )
-
-
-def _half(scene: Scene) -> Iterator[str]:
     h = np.array(scene.separations)
     most = h[scene.heights.sf(h) > 0.5]
     if most.size:
@@ -62,6 +61,7 @@ def _half(scene: Scene) -> Iterator[str]:
 
 
 def _depth(scene: Scene) -> Iterator[str]:
+    """Caution about contacts too deep or too wide for the law."""
     surface, lowest = scene.surface, scene.lowest
     touching, deep = (
         float(scene.heights.sf(np.array(h))) for h in (lowest, lowest + surface.radius / surface.sigma)
@@ -73,9 +73,6 @@ def _depth(scene: Scene) -> Iterator[str]:
             f"surface.radius = {surface.radius:g} m: at d/sigma = {lowest:g}, {many} "
             f"contacts are compressed by more than R, where {_model(scene)} does not hold"
         )
-
-
-def _slope(scene: Scene) -> Iterator[str]:
     top = float(scene.heights.isf(np.array(1 / scene.n_asperities), -40.0))
     steepest = float(np.sqrt(max(top - scene.lowest, 0.0) * scene.surface.sigma / scene.surface.radius))
     yields = '; metals yield much earlier: use contact.law = "kogut-etsion"'

@@ -81,16 +81,12 @@ def _units(scene: Fields) -> Iterator[str]:
         yield from _no_law(scene, s - h, e)
 
 
-def _far(ratios: Array, farthest: float = _FARTHEST) -> bool:
-    """Whether all are far above 1, or all far below."""
-    size = np.abs(ratios)
-    return bool(np.all(size > farthest) or np.all(size < 1 / farthest))
-
-
 def _given_in(ratios: Array, size: float) -> bool:
-    """Whether they are no ratios: far from 1, or what one gives in a unit."""
+    """Whether they are no ratios: all far above 1 or below, or what one gives in a unit."""
+    ends = np.abs(ratios).min(), np.abs(ratios).max()
     near = np.all((ratios > size / _CLOSE) & (ratios < size * _CLOSE))
-    return _far(ratios) or (_far(ratios, _APART) and bool(near))
+    apart = max(ends[0], 1 / ends[1] if ends[1] else np.inf)
+    return bool(apart > _FARTHEST or (apart > _APART and near))
 
 
 def _no_ratio(scene: Fields, inner: Any, e: Array) -> Iterator[str]:

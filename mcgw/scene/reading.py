@@ -12,9 +12,9 @@ import numpy as np
 from analytic import UNLOADING, Gaussian, HeightLaw, MeasuredRadii, Nayak, RandomCurvature, Surface
 from analytic.laws import ContactLaw, Hertz
 from analytic.laws.law import check_poisson
-from mcgw.scene.arguments import as_toml
 from mcgw.scene.fields import LeftOut
 from mcgw.scene.keys import KEYS, MOMENTS, SUMMITS, SURFACE_UNITS, TABLES, as_tables, whole_key
+from mcgw.scene.kinds import as_toml
 from mcgw.scene.laws import OF_YIELD, contact_law, grading_of, heights_of
 from mcgw.scene.parts import Contact, Graded, Joint, Sampling
 from mcgw.scene.radii import LISTS, Spectral, listed_of

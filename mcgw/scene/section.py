@@ -55,7 +55,11 @@ class Kind:
 
 def mistake(path: str, value: Any, advice: str) -> SceneError:
     """Return the mistake of a value at a key, with what to give."""
-    return SceneError([f"{path} = {shortened(as_written(value))}: {advice}"])
+    try:
+        written = repr(value)
+    except ValueError:
+        written = "a number of more than 4000 digits"
+    return SceneError([f"{path} = {shortened(written)}: {advice}"])
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,14 +189,6 @@ class Section:
         """Name of a key with its table."""
         shown = one_line(shortened(name))
         return f"{self.name}.{shown}" if self.name else shown
-
-
-def as_written(value: object) -> str:
-    """Return the repr of a value; of a number too long for that, only that it is."""
-    try:
-        return repr(value)
-    except ValueError:
-        return "a number of more than 4000 digits"
 
 
 def shortened(text: str) -> str:

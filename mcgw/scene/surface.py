@@ -1,12 +1,12 @@
 """Surfaces from numbers or texts with units."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any, TypeVar
 
 from analytic import Body as PlainBody, Nayak, SpectralMoments, Surface as Plain, composite_modulus
-from mcgw.scene.arguments import arguments, as_toml
 from mcgw.scene.keys import KEYS, MOMENTS, POISSON, SUMMITS, SURFACE_UNITS, YOUNG
+from mcgw.scene.kinds import arguments, as_toml
 from mcgw.scene.plausible import surface_in_other_units, warn_of_units
 from mcgw.scene.radii import Spectral
 from mcgw.scene.section import SceneError, Section
@@ -28,13 +28,7 @@ class UncertainSurface(Plain):
     uncertainty: Uncertainty | None = None
 
     def __post_init__(self) -> None:
-        uncertain(self, None)  # whose numbers are checked
-
-
-def uncertain(surface: Plain, uncertainty: Uncertainty | None) -> Plain:
-    """Return the surface with these standard errors; None: without."""
-    given = {key: getattr(surface, key) for key in SURFACE_UNITS}
-    return Plain(**given) if uncertainty is None else UncertainSurface(**given, uncertainty=uncertainty)
+        Plain(*(getattr(self, key) for key in SURFACE_UNITS))  # whose numbers are checked
 
 
 def Body(E: float | str, nu: float = 0.3) -> PlainBody:  # noqa: N802 - the door to a class of this name
@@ -203,12 +197,13 @@ def read_surface(section: Section, listed: Mapping[str, float] | None = None) ->
     def made(**given: Any) -> Plain | Spectral:
         if modulus == "bodies":
             given["E_star"] = composite_modulus(given.pop("bodies"))
-        if not spectral:
-            return uncertain(Plain(**given), uncertainty)
-        moments = SpectralMoments(*(given[key] for key in MOMENTS))
-        Nayak(moments.alpha)
-        surface = moments.surface(given["nominal_area"], given["E_star"])
-        return Spectral(moments, uncertain(surface, uncertainty))
+        moments = SpectralMoments(*(given[key] for key in MOMENTS)) if spectral else None
+        if moments is not None:
+            Nayak(moments.alpha)
+        surface = moments.surface(given["nominal_area"], given["E_star"]) if moments else Plain(**given)
+        if uncertainty is not None:
+            surface = UncertainSurface(**asdict(surface), uncertainty=uncertainty)
+        return Spectral(moments, surface) if moments else surface
 
     try:
         return None if section.problems else made(**values)

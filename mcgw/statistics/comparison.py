@@ -14,7 +14,7 @@ from mcgw.ensemble.labelled import heading
 from mcgw.formats.table import SEPARATION, Column, Shown, Table, stacked
 from mcgw.machine.progress import Progress, told
 from mcgw.machine.terminal import plotted, quantity_and_axes
-from mcgw.scene.arguments import check_object
+from mcgw.scene.kinds import check_object
 from mcgw.scene.scene import Scene
 from mcgw.statistics.verdict import Check, Tested, tested, together, verdict
 from mcgw.sweeps.axes import label

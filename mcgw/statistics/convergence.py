@@ -20,7 +20,7 @@ from mcgw.machine.progress import Progress, told
 from mcgw.machine.terminal import brief, plotted
 from mcgw.sampling.block import Sampler
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene.arguments import check_object
+from mcgw.scene.kinds import check_object
 from mcgw.scene.scene import Scene
 from mcgw.statistics.checks import (
     PrincipalComponents,

@@ -14,7 +14,7 @@ from mcgw.ensemble.half_space import scene_alone
 from mcgw.formats.table import Column, Shown, Table
 from mcgw.machine.progress import Progress, told
 from mcgw.machine.terminal import plotted
-from mcgw.scene.arguments import argument, check_object
+from mcgw.scene.kinds import argument, check_object
 from mcgw.scene.scene import Scene
 from mcgw.statistics.ladder import Rung, ladder_of, worth
 from mcgw.statistics.measured_ways import REPEATS, Answers, Point, moved, prices, sized

@@ -11,8 +11,8 @@ from mcgw.ensemble.labelled import Labelled
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import State, check_output, refuse_read_only, remove_stale, state_of, whole_file
 from mcgw.machine.memory import gibibytes
-from mcgw.scene.arguments import check_object
 from mcgw.scene.fields import LeftOut
+from mcgw.scene.kinds import check_object
 from mcgw.scene.scene import Scene, storable
 from mcgw.scene.scene_file import scene_text
 from mcgw.store.ensembles import described, open_ensemble, verify

@@ -13,8 +13,8 @@ from analytic import is_data
 from analytic.arrays import Array
 from mcgw.ensemble.labelled import AXES, GROUP
 from mcgw.machine.terminal import brief
-from mcgw.scene.arguments import as_toml
 from mcgw.scene.keys import TABLES
+from mcgw.scene.kinds import as_toml
 from mcgw.scene.section import SceneError
 from mcgw.scene.writing import grading_table
 
