@@ -17,7 +17,7 @@ from analytic.arrays import Array, Ints
 from analytic.gradings import Grading
 from analytic.heights import GAUSSIAN, HeightLaw
 from analytic.law_rule import law_rule
-from analytic.laws.branch import Branch, Ways, terms_of
+from analytic.laws.branch import Branch
 from analytic.laws.law import ContactLaw
 from analytic.quantities import quantity_of
 
@@ -104,7 +104,9 @@ class HeightRule:
         shifted -= offset
         return Fluctuations(self, mean, shifted, -usual - offset)
 
-    def terms(self, quantities: Sequence[str], separations: ArrayLike, grading: Grading, ways: Ways) -> Array:
+    def terms(
+        self, quantities: Sequence[str], separations: ArrayLike, grading: Grading, ways: Branch
+    ) -> Array:
         """Return what an asperity adds, over scales of quantities: shape (m, quantities * separations)."""
         h, modulus = np.asarray(separations, dtype=np.float64), grading(self.heights)
         if not ways.law.elastic:
@@ -121,7 +123,7 @@ class HeightRule:
                     ratios = self.ratios[part]
                     of_part = ways.with_radii(ratios).of(quantities[which[0]])
                     radius = np.stack([ratios**q.radius for q in several])[:, None, :]
-                found = terms_of([q.base for q in several], of_part, h[:, None], s, e)
+                found = of_part.terms([q.base for q in several], h[:, None], s, e)
                 terms[part, which] = (radius * found).transpose(2, 0, 1)
         return terms.reshape(self.heights.size, len(quantities) * h.size)
 

@@ -18,7 +18,7 @@ from analytic.height_rule import Count, HeightRule
 from analytic.heights import Gaussian, HeightLaw
 from analytic.inversion import LOWEST, last_separations
 from analytic.law_rule import law_integral
-from analytic.laws.branch import Ways, slope_term
+from analytic.laws.branch import Branch
 from analytic.laws.film import Film
 from analytic.laws.law import ContactLaw, piece_of
 from analytic.measured_summits import MeasuredRadii
@@ -190,10 +190,10 @@ class MeanModel:
         return self.summits.rule(h, self.grading, self.ways.among(quantities))
 
     @cached_property
-    def ways(self) -> Ways:
+    def ways(self) -> Branch:
         """Contact law, loading history and film, in reduced units."""
         law = ContactLaw() if self.law is None else self.law.on(self.surface)
-        return Ways(law, self.unload_from, None if self.film is None else self.film.on(self.surface))
+        return Branch(law, self.unload_from, None if self.film is None else self.film.on(self.surface))
 
     @cached_property
     def summits(self) -> Summits:
@@ -258,9 +258,9 @@ class MeanModel:
         if rule.ratios is not None:
             p = p * rule.ratios ** quantity_of(quantity).radius
         branch, e = self._ways_of(rule).loading, self.grading(s)
-        return np.array([np.sum(p * slope_term(quantity, branch, s - x, e)) for x in h])
+        return np.array([np.sum(p * branch.slopes(quantity, s - x, e)) for x in h])
 
-    def _ways_of(self, rule: HeightRule) -> Ways:
+    def _ways_of(self, rule: HeightRule) -> Branch:
         """In units of each summit, where radii differ."""
         return self.ways if rule.ratios is None else self.ways.with_radii(rule.ratios)
 

@@ -3,9 +3,9 @@
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from analytic.laws.branch import Branch, Ways, term_of
+from analytic.laws.branch import Branch
 from analytic.laws.film import Film, Layer, SpotConductance, crowding_factor
-from analytic.laws.law import ContactLaw, Hertz, of_spot, piece_of
+from analytic.laws.law import ContactLaw, Hertz, piece_of
 from analytic.laws.regimes import Regimes
 from analytic.laws.unloading import Unloading
 
@@ -26,9 +26,9 @@ __all__ = [
     "Branch", "ChangEtsionBogy", "Coated", "ContactLaw", "CustomLaw", "DerjaguinMullerToporov", "Film",
     "Hertz", "JacksonGreen", "JohnsonKendallRoberts", "KogutEtsion", "Layer",
     "PowerLawGraded",
-    "Regimes", "SpotConductance", "Unloading", "Ways",
+    "Regimes", "SpotConductance", "Unloading",
     "ZhaoMaiettaChang", "by_name", "crowding_factor",
-    "of_spot", "piece_of", "term_of",
+    "piece_of",
 ]  # fmt: skip
 
 _HOMES = {

@@ -155,15 +155,15 @@ class _Stuck(Unloading):
 
     def residual(self, deepest: Any, e: Array) -> Any:
         """Penetration at which contact is lost, in the shape of `deepest` and `e`."""
-        return -self.loading.stretch(e) + 0.0 * deepest
+        return -self.loading.stretch(e)
 
     def load(self, piece: int, y: Any, deepest: Any, e: Array) -> Any:
         """Load of a contact, in the shape of all."""
-        return self.loading.load_at(_root(y * np.sqrt(3 / self.loading.stretch(e))), e) + 0.0 * deepest
+        return self.loading.load_at(_root(y * np.sqrt(3 / self.loading.stretch(e))), e)
 
     def radius(self, piece: int, y: Any, deepest: Any, e: Array) -> Any:
         """Radius of a contact; its square is the area over pi R sigma."""
-        return self.loading.radius_at(_root(y * np.sqrt(3 / self.loading.stretch(e))), e) + 0.0 * deepest
+        return self.loading.radius_at(_root(y * np.sqrt(3 / self.loading.stretch(e))), e)
 
     def stiffness(self, piece: int, y: Array, deepest: Array, e: Array) -> Array:
         """Refused: its variance is infinite."""

@@ -17,10 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.arrays import Array, Ints, hold, some_of
-from analytic.laws.unloading import Unloading, slope_in_root
+from analytic.laws.unloading import Unloading
 from analytic.surface import Surface
 
-_FORMULAS = ("limits", "load", "radius", "stiffness", "slope", "unloading")
+_FORMULAS = ("limits", "load", "radius", "stiffness", "unloading")
 
 
 class PerRadius:
@@ -189,10 +189,6 @@ class ContactLaw(PerRadius):
         """Return the radius of a contact; its square is the area over pi R sigma."""
         return y + 0.0 * e
 
-    def slope(self, piece: int, y: Array, e: Array) -> Array:
-        """Return the derivative of the load with respect to the penetration, within the piece."""
-        return slope_in_root(lambda v: self.load(piece, v, e), y)
-
     def stiffness(self, piece: int, y: Array, e: Array) -> Array:
         """Return the stiffness of a spot over 2 E* sqrt(R sigma); after yield, that as unloading starts."""
         return np.asarray(e * self.radius(piece, y, e))
@@ -242,44 +238,6 @@ def check_poisson(poisson: float) -> None:
     """Refuse a value that is not a Poisson's ratio."""
     if not -1 < poisson <= 0.5:
         raise ValueError(f"poisson = {poisson!r}: give a Poisson's ratio, above -1 and at most 0.5")
-
-
-def of_spot(quantity: str, formulas: "ContactLaw | Unloading", piece: int, *at: Array) -> Array:
-    """Evaluate what a contact of this piece adds, as the piece's formula goes on beyond its ends.
-
-    Parameters
-    ----------
-    quantity : str
-        Its name: one of `analytic.QUANTITIES` or `analytic.LAW_QUANTITIES`.
-    formulas : ContactLaw or Unloading
-        Of load, radius, stiffness and slope, in reduced units.
-    piece : int
-        Which formula.
-    *at : ndarray
-        What they take: the root of the penetration, on unloading that of what is left to lift-off and the
-        deepest penetration, and the modulus E*(s)/E*; of any shapes that broadcast.
-
-    Returns
-    -------
-    ndarray
-        In their common shape, over the scale of the quantity.
-
-    Raises
-    ------
-    KeyError
-        If there is no such quantity.
-    """
-    shape = np.broadcast_shapes(*map(np.shape, at))
-    known: dict[str, Any] = {
-        "load": lambda: formulas.load(piece, *at),
-        "area": lambda: formulas.radius(piece, *at) ** 2,
-        "stiffness": lambda: formulas.stiffness(piece, *at),
-        "contacts": lambda: np.ones(shape),
-        "conductance": lambda: formulas.radius(piece, *at),
-        "load_slope": lambda: formulas.slope(piece, *at) * (2 / 3),
-        "yielded": lambda: np.full(shape, float(piece > 0)),
-    }
-    return np.asarray(known[quantity]())
 
 
 def piece_of(law: ContactLaw, penetration: Array, e: Array) -> Ints:

@@ -5,15 +5,13 @@ lift-off, has begun where ``s - h >= bound(s)``: on one side of a height if the 
 several intervals if it falls faster than heights rise, as that of yielding does where the modulus falls.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
 from analytic.arrays import Array, Ints, Marks
 from analytic.gradings import Grading, Homogeneous
-from analytic.laws.law import ContactLaw
 from analytic.resolution import marks, resolved_breaks
 from analytic.roots import sign_changes
 
@@ -55,95 +53,49 @@ class Regimes:
 
 
 def regimes_between(
-    found: Sequence["Crossings"], h: Array, start: Array, high: float, breaks: Sequence[float], piece: Numbers
+    crossed: Iterable[tuple[Ints, Array]],
+    h: Array,
+    start: Array,
+    high: float,
+    breaks: Sequence[float],
+    numbers: Numbers,
 ) -> Regimes:
-    """Return the regimes of asperities in contact: what holds between the heights where it may change.
+    """Return the regimes at separations h, from the lowest heights that may touch up to the highest.
 
-    Ends within 8 spacings of floating-point numbers of a separation, of where contact starts, of a break of
-    the grading, or of each other, are one.
-
-    Parameters
-    ----------
-    found : sequence of Crossings
-        Of every bound of the law.
-    h, start : ndarray
-        Reduced separations, and the lowest height that may touch at each, shape (separations,).
-    high : float
-        Highest height; there is nothing for separations above that.
-    breaks : sequence of float
-        Of the grading.
-    piece : callable
-        Number of the piece at heights and numbers of their separations, -1 without contact.
-
-    Returns
-    -------
-    Regimes
-        From the start up to `high`.
+    What holds between crossings tells a function of heights and of the numbers of separations, -1 without
+    contact. Ends within 8 spacings of floating-point numbers of a separation, of where contact starts, of a
+    break of the grading, or of each other, are one.
     """
-    which = np.concatenate([np.empty(0, np.int64), *(c.separation for c in found)])
-    height = np.concatenate([np.empty(0), *(c.height for c in found)])
-    height = _anchored(height, h[which], np.unique([*start, *h, *breaks, high]))
-
-    every = np.arange(h.size)
-    which = np.concatenate([every, which, every])
-    edge = np.concatenate([start, np.maximum(height, start[which[h.size : -h.size]]), np.full(h.size, high)])
+    every, anchors = np.arange(h.size), np.unique([*start, *h, *breaks, high])
+    ends = [(every, start), (every, np.full(h.size, high)), *crossed]
+    which, edge = (np.concatenate(x) for x in zip(*ends, strict=True))
+    nearest = anchors[np.searchsorted((anchors[1:] + anchors[:-1]) / 2, edge)]
+    edge = np.where(np.abs(nearest - edge) <= _last_digits(edge, h[which]), nearest, edge)
+    edge = np.maximum(edge, start[which])
     order = np.lexsort((edge, which))
     which, edge = which[order], edge[order]
-    apart = (np.diff(which) > 0) | (np.diff(edge) > _last_digits(edge, h[which])[1:])
-    which, edge = which[np.append(True, apart)], edge[np.append(True, apart)]
+    apart = np.append(True, (np.diff(which) > 0) | (np.diff(edge) > _last_digits(edge, h[which])[1:]))
+    which, edge = which[apart[: which.size]], edge[apart[: which.size]]
     held = np.flatnonzero(which[1:] == which[:-1])
     which, begin, end = which[held], edge[held], edge[held + 1]
-    numbers = piece(begin + (end - begin) / 2, which)
-    goes_on = (which[1:] == which[:-1]) & (numbers[1:] == numbers[:-1])
+    piece = numbers(begin + (end - begin) / 2, which)
+    goes_on = (which[1:] == which[:-1]) & (piece[1:] == piece[:-1])
     first, last = np.append(True, ~goes_on)[: which.size], np.append(~goes_on, True)[: which.size]
-    contact = numbers[first] >= 0
-    return Regimes(which[first][contact], begin[first][contact], end[last][contact], numbers[first][contact])
+    contact = piece[first] >= 0
+    return Regimes(which[first][contact], begin[first][contact], end[last][contact], piece[first][contact])
 
 
-def _last_digits(heights: Array, separations: Array) -> Array:
-    """Distance up to which heights are not told apart: they were found from ``s - h``."""
-    return np.asarray(_SAME * np.spacing(np.maximum(np.abs(heights), np.abs(separations))))
+def crossings(
+    bound: Bound, grading: Grading, h: Array, low: float, high: float, radii: int
+) -> tuple[Ints, Array]:
+    """Where ``s - h >= bound(s)`` begins or ends to hold: which separation, and the first height behind.
 
-
-def _anchored(heights: Array, separations: Array, anchors: Array) -> Array:
-    """Heights, each replaced by the anchor that it cannot be told from; anchors increase."""
-    nearest = anchors[np.searchsorted((anchors[1:] + anchors[:-1]) / 2, heights)]
-    return np.where(np.abs(nearest - heights) <= _last_digits(heights, separations), nearest, heights)
-
-
-def limit_of(law: ContactLaw, grading: Grading, j: int) -> Bound:
-    """Return the penetration at which piece j + 1 begins, of the height and of which separation."""
-    return lambda s, which: np.asarray(law.of_some(which).limits(grading(s))[j])
-
-
-class Crossings(NamedTuple):
-    """Heights where ``s - h >= bound(s)`` begins or ends to hold, for several h.
-
-    Attributes
-    ----------
-    separation : ndarray
-        Which of the separations h, shape (crossings,), not decreasing.
-    height : ndarray
-        First of the heights behind the crossing, to some last digits, increasing for each separation.
+    A bound, infinite where that never does, is of heights and of the numbers of separations, which have as
+    many radii in turn. Under one modulus for all it must be constant, or rise by less than the height. A
+    grading that is not resolved by 4096 pieces is a ValueError.
     """
-
-    separation: Ints
-    height: Array
-
-
-def crossings_of(
-    bound: Bound, grading: Grading, separations: Array, low: float, high: float, radii: int = 1
-) -> Crossings:
-    """Return all crossings between two heights.
-
-    `bound` gives the penetration at which something begins, of the heights, and of the numbers of their
-    separations in an array that broadcasts with them; infinite where it never does. There are as many as
-    `radii`, which separations have in turn. Under one modulus for all it must be constant, or rise by less
-    than the height. A grading that is not resolved by 4096 pieces is a ValueError.
-    """
-    h = np.asarray(separations, dtype=np.float64)
     if not low < high:
-        return Crossings(np.empty(0, np.int64), np.empty(0))
+        return np.empty(0, np.int64), np.empty(0)
 
     def excess(s: Array, which: Ints) -> Array:
         with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
@@ -152,8 +104,12 @@ def crossings_of(
     s = _stretches(bound, grading, low, high, radii)
     beyond = excess(s, np.arange(h.size)[:, None]) >= 0
     which, i = np.nonzero(beyond[:, 1:] != beyond[:, :-1])
-    height = sign_changes(lambda x, k: excess(x, which[k]), s[i], s[i + 1], np.abs(h[which]))
-    return Crossings(which, height)
+    return which, sign_changes(lambda x, k: excess(x, which[k]), s[i], s[i + 1], np.abs(h[which]))
+
+
+def _last_digits(heights: Array, separations: Array) -> Array:
+    """Distance up to which heights are not told apart: they were found from ``s - h``."""
+    return np.asarray(_SAME * np.spacing(np.maximum(np.abs(heights), np.abs(separations))))
 
 
 def _stretches(bound: Bound, grading: Grading, low: float, high: float, radii: int) -> Array:

@@ -24,11 +24,11 @@ def slope_in_root(formula: Callable[[Any], Any], y: Array) -> Array:
 
 
 class Unloading:
-    """Unloading of an elastic asperity: it unloads along the loading curve.
+    """What a contact adds, on unloading along the loading curve; subclasses unload otherwise.
 
-    The contact holds down to the penetration `residual`. Its formulas take
-    ``y = sqrt(penetration - residual)``, so that next to lift-off no digit is lost; `piece` is the piece
-    of the law that holds at the deepest penetration, and `deepest` that penetration.
+    The contact holds down to the penetration `residual`. Formulas take ``y = sqrt(penetration - residual)``,
+    so that next to lift-off no digit is lost; `piece` is the piece of the law that holds at the deepest
+    penetration, and `deepest` that penetration.
 
     Parameters
     ----------
@@ -51,23 +51,58 @@ class Unloading:
 
     def residual(self, deepest: Any, e: Array) -> Any:
         """Penetration at which contact is lost, in the shape of `deepest` and `e`."""
-        return 0.0 * deepest + 0.0 * e
+        return 0.0 * deepest
 
     def load(self, piece: int, y: Any, deepest: Any, e: Array) -> Any:
         """Load of a contact, in the shape of all."""
-        return self.loading.load(piece, y, e) + 0.0 * deepest
+        return self.loading.load(piece, y, e)
 
     def radius(self, piece: int, y: Any, deepest: Any, e: Array) -> Any:
         """Radius of a contact; its square is the area over pi R sigma."""
-        return self.loading.radius(piece, y, e) + 0.0 * deepest
+        return self.loading.radius(piece, y, e)
 
     def stiffness(self, piece: int, y: Array, deepest: Array, e: Array) -> Array:
         """Stiffness of a spot over 2 E* sqrt(R sigma)."""
-        return np.asarray(self.loading.stiffness(piece, y, e) + 0.0 * deepest)
+        return np.asarray(self.loading.stiffness(piece, y, e))
 
     def slope(self, piece: int, y: Array, deepest: Array, e: Array) -> Array:
         """Return the derivative of the load with respect to the penetration, at a given deepest one."""
         return slope_in_root(lambda v: self.load(piece, v, deepest, e), y)
+
+    def added(self, quantity: str, piece: int, *at: Array) -> Array:
+        """Return what a contact of this piece adds, as the piece's formula goes on beyond its ends.
+
+        Parameters
+        ----------
+        quantity : str
+            Its name: one of `analytic.QUANTITIES` or `analytic.LAW_QUANTITIES`.
+        piece : int
+            Which formula.
+        *at : ndarray
+            The root of the penetration that is left to lift-off, the deepest penetration, and the modulus
+            E*(s)/E*; of any shapes that broadcast.
+
+        Returns
+        -------
+        ndarray
+            In their common shape, over the scale of the quantity.
+
+        Raises
+        ------
+        KeyError
+            If there is no such quantity.
+        """
+        shape = np.broadcast_shapes(*map(np.shape, at))
+        known: dict[str, Callable[[], Any]] = {
+            "load": lambda: self.load(piece, *at),
+            "area": lambda: self.radius(piece, *at) ** 2,
+            "stiffness": lambda: self.stiffness(piece, *at),
+            "contacts": lambda: np.ones(shape),
+            "conductance": lambda: self.radius(piece, *at),
+            "load_slope": lambda: self.slope(piece, *at) * (2 / 3),
+            "yielded": lambda: np.full(shape, float(piece > 0)),
+        }
+        return np.asarray(known[quantity]())
 
 
 class EtsionKligermanKadin(Unloading):

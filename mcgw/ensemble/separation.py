@@ -13,7 +13,6 @@ import numpy as np
 from analytic import Hertz, Quantity, quantity_of
 from analytic.arrays import Array, Ints
 from analytic.laws import Branch
-from analytic.laws.branch import terms_of
 from analytic.roots import falling_root, sign_changes
 from mcgw.scene.scene import Scene
 
@@ -52,9 +51,8 @@ def asperity_terms(
         found = [modulus * x if q.modulus else x for q, x in zip(quantities, powers, strict=True)]
     else:
         loading = scene.ways.loading
-        found = list(
-            terms_of(names, loading if ratios is None else loading.with_radii(ratios), h, s, modulus)
-        )
+        branch = loading if ratios is None else loading.with_radii(ratios)
+        found = list(branch.terms(names, h, s, modulus))
     if ratios is not None:
         found = [ratios**q.radius * x for q, x in zip(quantities, found, strict=True)]
     return np.asarray(found)

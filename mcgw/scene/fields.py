@@ -11,7 +11,7 @@ import numpy as np
 import analytic
 from analytic import HeightLaw, MeasuredRadii, RandomCurvature, Surface
 from analytic.arrays import Array
-from analytic.laws import ContactLaw, Film, Hertz, Ways
+from analytic.laws import Branch, ContactLaw, Film, Hertz
 from mcgw.machine.memory import kept
 from mcgw.scene.parts import Contact, Joint, Sampling
 from mcgw.scene.uncertainty import Uncertainty
@@ -196,10 +196,10 @@ class Fields(Flat):
         return self.hardness, 0.3 if poisson is None else poisson
 
     @property
-    def ways(self) -> Ways:
+    def ways(self) -> Branch:
         """Loading or unloading: the ways that its quantities need."""
         conductance = None if self.film is None else self.film.on(self.surface)
-        return Ways(self.reduced_law, self.unload_from, conductance)
+        return Branch(self.reduced_law, self.unload_from, conductance)
 
     @property
     def all_separations(self) -> tuple[float, ...]:

@@ -7,6 +7,7 @@ they are held against the sum over the contacts of what each presses or pulls an
 import numpy as np
 
 from analytic import quantity_of
+from analytic.laws import Unloading
 from oracles.inside import sampler_of, summits_drawn
 from oracles.literal import POWERS
 
@@ -74,7 +75,7 @@ def _there(scene, law, name, piece, d, _, e):
         "contacts": lambda: np.ones(len(y)),
         "conductance": lambda: radius,
         "conductance_si": lambda: _of_spots(scene, radius),
-        "load_slope": lambda: 2 / 3 * law.slope(piece, y, e),
+        "load_slope": lambda: 2 / 3 * Unloading(law).slope(piece, y, d, e),
         "yielded": lambda: np.full(len(y), float(piece > 0)),
     }[name]()
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from analytic import ChangEtsionBogy, JacksonGreen, KogutEtsion, Surface, ZhaoMaiettaChang, quantity_of
-from analytic.laws import Branch, term_of
+from analytic.laws import Branch
 
 ONE = np.array(1.0)
 SURFACE = Surface(sigma=1e-6, radius=1e-3, eta=1e9, nominal_area=1e-6, E_star=100e9)
@@ -20,7 +20,7 @@ def name(law):
 
 def term(quantity, law, penetration, e):
     """What asperities add that are loaded to a penetration, each by the formula of its piece."""
-    return term_of(quantity, Branch(law), 0.0, penetration, e)
+    return Branch(law).terms([quantity], 0.0, penetration, e)[0]
 
 
 def own_terms(scene, quantity, heights, radii):
@@ -29,6 +29,6 @@ def own_terms(scene, quantity, heights, radii):
     for s, radius in zip(heights.tolist(), radii.tolist(), strict=True):
         own = replace(scene.surface, radius=radius)
         branch, e = Branch(scene.law.on(own)), scene.modulus(np.array(s))
-        term = term_of(quantity, branch, np.array(scene.separations), s, e)
+        (term,) = branch.terms([quantity], np.array(scene.separations), s, e)
         terms.append(term * quantity_of(quantity).scale(own))
     return np.array(terms).T

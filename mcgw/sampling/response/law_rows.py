@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from analytic import Homogeneous, quantity_of
 from analytic.arrays import Array, Ints
-from analytic.laws import Branch, term_of
+from analytic.laws import Branch
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.response.rows import Rows, Sixteen
 from mcgw.sampling.stretches import Stretches, stretches_of
@@ -99,7 +99,7 @@ def law_rows(scene: Scene, quantities: tuple[str, ...], mesh: Mesh) -> Rows:
         found = stretches[branch]
         roots = np.array([branch.root_at_touch(int(piece)) for piece in found.piece], dtype=bool)
         scale, heights = q.scale(scene.surface), sixteen.approach + separations[:, None]
-        terms = term_of(q.base, branch, separations[:, None], heights, sixteen.e)
+        terms = branch.terms([q.base], separations[:, None], heights, sixteen.e)[0]
         total = sixteen.totals(scale, terms)
         parts.append(
             (
