@@ -1,10 +1,16 @@
-"""What the laws of asperities that yield have in common: penetrations in units of the critical one."""
+"""What the laws of asperities that yield have in common: penetrations in units of the critical one.
+
+Where published fits jump, cubic Hermite pieces may join them (``bridge = "hermite"``). The bridge over a jump
+at x_j runs from x_j, so that what is elastic stays Hertz's, to 1.5 x_j. There load and area are the cubics in
+the penetration which take over value and slope of the fits at both ends; both rise all the way. After the
+idea of Brake (2012), whose own formulas are not these.
+"""
 
 import math
 from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass
-from itertools import pairwise
-from typing import Any, ClassVar, Literal, NamedTuple
+from itertools import chain, pairwise
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -25,21 +31,36 @@ class Piece(NamedTuple):
     ----------
     start : float
         ``x = delta/delta_c`` where it begins.
-    load, area : callable
-        Of the law, x and e.
+    load, area : (float, float) or callable
+        Factor and exponent of a power of x, or a function of the law, x and e.
     """
 
     start: float
-    load: Formula
-    area: Formula
+    load: tuple[float, float] | Formula
+    area: tuple[float, float] | Formula
 
+    def value(self, what: str, law: Any, x: Any, e: Any) -> Any:
+        """Its load or area."""
+        formula = getattr(self, what)
+        return formula(law, x, e) if callable(formula) else formula[0] * x ** formula[1]
 
-def power(factor: float, exponent: float) -> Formula:
-    """Return the formula ``factor x^exponent``."""
-    return lambda _law, x, _e: factor * x**exponent
+    def bridge_to(self, right: "Piece") -> "Piece":
+        """Return the piece that leads on to another one."""
+        start, width = right.start, (BRIDGE - 1) * right.start
 
+        def cubic(what: str) -> Formula:
+            def formula(law: Any, x: Any, e: Any) -> Any:
+                first, last = np.array(start), np.array(start + width)
+                begins = self.value(what, law, first, e)
+                rise = right.value(what, law, last, e) - begins
+                at_first = width * derivative(lambda x: self.value(what, law, x, e), first) - rise
+                at_last = rise - width * derivative(lambda x: right.value(what, law, x, e), last)
+                t = (x - start) / width
+                return begins + t * rise + t * (1 - t) * ((1 - t) * at_first + t * at_last)
 
-HERTZ = Piece(0.0, power(1.0, 1.5), power(1.0, 1.0))
+            return formula
+
+        return Piece(start, cubic("load"), cubic("area"))
 
 
 @dataclass(frozen=True)
@@ -65,11 +86,18 @@ class ElasticPlastic(ContactLaw):
 
     def __post_init__(self) -> None:
         self.check_constants()
+        bridge = getattr(self, "bridge", None)
+        if bridge not in (None, "hermite"):
+            raise ValueError(f"bridge = {bridge!r}: give 'hermite', or leave it out")
 
     @property
     def _pieces(self) -> tuple[Piece, ...]:
-        """All of them: Hertz's law first."""
-        return (HERTZ, *self._fits)
+        """All of them: Hertz's law first, then fits, or bridges and fits in turn."""
+        fits = (Piece(0.0, load=(1.0, 1.5), area=(1.0, 1.0)), *self._fits)
+        if not getattr(self, "bridge", None):
+            return fits
+        pairs = [(a.bridge_to(b), b._replace(start=BRIDGE * b.start)) for a, b in pairwise(fits)]
+        return (fits[0], *chain.from_iterable(pairs))
 
     @property
     def edges(self) -> tuple[float, ...]:
@@ -96,25 +124,17 @@ class ElasticPlastic(ContactLaw):
     def load(self, piece: int, y: Any, e: Array) -> Any:
         """Load of a contact, in the shape of `y` and `e`."""
         hertz = super().load(piece, y, e)
-        if piece == 0:
-            return hertz
-        x = self.x(y, e)
-        return (
-            hertz * self._pieces[piece].load(self, x, np.where(np.asarray(e) > 0, e, 1.0)) / (x * np.sqrt(x))
-        )
+        return hertz * self._over_hertz("load", piece, y, e) if piece else hertz
 
     def radius(self, piece: int, y: Any, e: Array) -> Any:
         """Radius of a contact; its square is the area over pi R sigma."""
         hertz = super().radius(piece, y, e)
-        if piece == 0:
-            return hertz
+        return hertz * np.sqrt(self._over_hertz("area", piece, y, e)) if piece else hertz
+
+    def _over_hertz(self, what: str, piece: int, y: Any, e: Array) -> Any:
         x = self.x(y, e)
-        return hertz * np.sqrt(self._pieces[piece].area(self, x, np.where(np.asarray(e) > 0, e, 1.0)) / x)
-
-
-def kogut_etsion_factor(poisson: float) -> float:
-    """Greatest contact pressure at the onset of yield, over hardness: ``K = 0.454 + 0.41 nu`` [mem]."""
-    return 0.454 + 0.41 * poisson
+        of_fit = self._pieces[piece].value(what, self, x, np.where(np.asarray(e) > 0, e, 1.0))
+        return of_fit / (x * np.sqrt(x) if what == "load" else x)
 
 
 @dataclass(frozen=True)
@@ -142,53 +162,3 @@ class FromHardness(ElasticPlastic):
         assert self.hardness is not None
         strain = math.pi * self.yield_factor * self.hardness / (2 * surface.E_star)
         return strain * strain * surface.radius / surface.sigma  # inf where a power would raise
-
-
-@dataclass(frozen=True)
-class Bridgeable(ElasticPlastic):
-    """A law whose published fits jump; cubic Hermite pieces may join them.
-
-    The bridge over a jump at x_j runs from x_j, so that what is elastic stays Hertz's, to 1.5 x_j. There
-    load and area are the cubics in the penetration which take over value and slope of the fits at both
-    ends; both rise all the way. After the idea of Brake (2012), whose own formulas are not these.
-
-    Parameters
-    ----------
-    bridge : {None, "hermite"}, optional
-        Whether to join the fits.
-    """
-
-    _: KW_ONLY
-    bridge: Literal["hermite"] | None = None
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.bridge not in (None, "hermite"):
-            raise ValueError(f"bridge = {self.bridge!r}: give 'hermite', or leave it out")
-
-    @property
-    def _pieces(self) -> tuple[Piece, ...]:
-        """All of them: Hertz's law, then bridges and fits in turn."""
-        if self.bridge is None:
-            return super()._pieces
-        found = [HERTZ]
-        for left, right in pairwise(super()._pieces):
-            load = _bridge(right.start, left.load, right.load)
-            area = _bridge(right.start, left.area, right.area)
-            found += [Piece(right.start, load, area), right._replace(start=BRIDGE * right.start)]
-        return tuple(found)
-
-
-def _bridge(start: float, left: Formula, right: Formula) -> Formula:
-    """Return the cubic with value and slope of `left` where it starts, and of `right` where it ends."""
-    width = (BRIDGE - 1) * start
-
-    def formula(law: Any, x: Any, e: Any) -> Any:
-        first, last = np.array(start), np.array(start + width)
-        rise = right(law, last, e) - left(law, first, e)
-        begin = width * derivative(lambda x: left(law, x, e), first) - rise
-        end = rise - width * derivative(lambda x: right(law, x, e), last)
-        t = (x - start) / width
-        return left(law, first, e) + t * rise + t * (1 - t) * ((1 - t) * begin + t * end)
-
-    return formula

@@ -3,11 +3,11 @@
 
 import math
 from dataclasses import KW_ONLY, dataclass, replace
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 
-from analytic.laws.elastic_plastic import Bridgeable, FromHardness, Piece, kogut_etsion_factor, power
+from analytic.laws.elastic_plastic import ElasticPlastic, FromHardness, Piece
 from analytic.laws.unloading import EtsionKligermanKadin
 from analytic.surface import Surface
 
@@ -26,7 +26,7 @@ def _zhao_load(law: Any, x: Any, e: Any) -> Any:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ChangEtsionBogy(FromHardness, Bridgeable):
+class ChangEtsionBogy(FromHardness):
     """Chang, Etsion and Bogy (1987): beyond delta_c the volume is conserved and the mean pressure is K H.
 
     ``A = pi R (2 delta - delta_c)``, ``P = A K H``; in reduced units load
@@ -69,11 +69,12 @@ class ChangEtsionBogy(FromHardness, Bridgeable):
     _fits: ClassVar = (Piece(1.0, load=lambda law, x, e: 3 * x - 1.5, area=lambda law, x, e: 2 * x - 1),)
 
     poisson: float | None = None
+    bridge: Literal["hermite"] | None = None
 
     @property
     def yield_factor(self) -> float:
         """K, the greatest contact pressure at the onset of yield over the hardness."""
-        return 0.6 if self.poisson is None else kogut_etsion_factor(self.poisson)
+        return 0.6 if self.poisson is None else 0.454 + 0.41 * self.poisson
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,7 +116,7 @@ class ZhaoMaiettaChang(FromHardness):
     name: ClassVar[str] = "zhao-maietta-chang"
     _fits: ClassVar = (
         Piece(1.0, load=_zhao_load, area=_zhao_area),
-        Piece(_PLASTIC, load=power(2 / _FIRST_YIELD, 1.0), area=power(2.0, 1.0)),
+        Piece(_PLASTIC, load=(2 / _FIRST_YIELD, 1.0), area=(2.0, 1.0)),
     )
 
     @property
@@ -125,7 +126,7 @@ class ZhaoMaiettaChang(FromHardness):
 
 
 @dataclass(frozen=True, kw_only=True)
-class KogutEtsion(FromHardness, Bridgeable):
+class KogutEtsion(FromHardness):
     """Kogut and Etsion (2002): powers of ``x = delta/delta_c``, then the hardness on ``2 pi R delta``.
 
     ==========  ========================  ========================
@@ -171,17 +172,18 @@ class KogutEtsion(FromHardness, Bridgeable):
 
     name: ClassVar[str] = "kogut-etsion"
     _fits: ClassVar = (
-        Piece(1.0, load=power(1.03, 1.425), area=power(0.93, 1.136)),
-        Piece(6.0, load=power(1.40, 1.263), area=power(0.94, 1.146)),
-        Piece(110.0, load=lambda law, x, e: 3 / law.yield_factor * x, area=power(2.0, 1.0)),
+        Piece(1.0, load=(1.03, 1.425), area=(0.93, 1.136)),
+        Piece(6.0, load=(1.40, 1.263), area=(0.94, 1.146)),
+        Piece(110.0, load=lambda law, x, e: 3 / law.yield_factor * x, area=(2.0, 1.0)),
     )
 
     poisson: float = 0.3
+    bridge: Literal["hermite"] | None = None
 
     @property
     def yield_factor(self) -> float:
         """K, the greatest contact pressure at the onset of yield over the hardness."""
-        return kogut_etsion_factor(self.poisson)
+        return 0.454 + 0.41 * self.poisson
 
     def unloading(self) -> EtsionKligermanKadin:
         """Return the law of Etsion, Kligerman and Kadin; with a bridge, from the bridged load."""
@@ -203,7 +205,7 @@ def _jackson_load(law: Any, x: Any, e: Any) -> Any:
 
 
 @dataclass(frozen=True)
-class JacksonGreen(Bridgeable):
+class JacksonGreen(ElasticPlastic):
     """Jackson and Green (2005): Hertz up to 1.9 delta_c, then exponentials with H_G(a/R).
 
     With ``C = 1.295 exp(0.736 nu)`` and ``e_y = S_y/E*(s)``, ``delta_c = (pi C e_y/2)^2 R``. Beyond
@@ -255,6 +257,7 @@ class JacksonGreen(Bridgeable):
     poisson: float = 0.3
     _: KW_ONLY
     yield_strain: float | None = None
+    bridge: Literal["hermite"] | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
