@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.arrays import Array
-from analytic.gradings import Grading, Homogeneous, Squared
+from analytic.gradings import Custom, Grading, Homogeneous
 from analytic.heights import GAUSSIAN, HeightLaw
 from analytic.integrals import quotient
 from analytic.model import Model
@@ -171,7 +171,8 @@ def mean_modulus(
     1.727
     """
     if weight == "load":
-        return quotient(h, (1.5, Squared(grading)), (1.5, grading), heights)
+        squared = Custom(lambda s: np.square(grading(s)), grading.breaks, grading.smooth)
+        return quotient(h, (1.5, squared), (1.5, grading), heights)
     n = {"number": 0.0, "area": 1.0}[weight]
     return quotient(h, (n, grading), (n, None), heights)
 

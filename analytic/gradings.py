@@ -12,8 +12,7 @@ from typing import ClassVar, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic.arrays import Array
-from analytic.piecewise import PiecewiseSeries
+from analytic.arrays import Array, hold
 
 
 class Grading(Protocol):
@@ -44,6 +43,7 @@ class Homogeneous:
 
     breaks: tuple[float, ...] = ()
     smooth: bool = True
+    zeros: ClassVar[tuple[float, ...]] = ()
 
     def __call__(self, s: Array) -> Array:
         """E*(s)/E* = 1."""
@@ -91,6 +91,11 @@ class Exponential:
         if 0 <= self.gamma <= 1:
             return math.nan
         return -math.log(self.gamma / (self.gamma - 1))
+
+    @property
+    def zeros(self) -> tuple[float, ...]:
+        """Heights where the modulus changes its sign."""
+        return () if math.isnan(self.zero) else (self.zero,)
 
 
 @dataclass(frozen=True)
@@ -141,27 +146,6 @@ class Custom:
 
 
 @dataclass(frozen=True)
-class Squared:
-    """The square of a grading: the modulus weighted by the load, which has the modulus once already."""
-
-    grading: Grading
-
-    @property
-    def breaks(self) -> tuple[float, ...]:
-        """Those of the grading."""
-        return self.grading.breaks
-
-    @property
-    def smooth(self) -> bool:
-        """As the grading."""
-        return self.grading.smooth
-
-    def __call__(self, s: Array) -> Array:
-        """Return the squares of its values."""
-        return np.square(self.grading(s))
-
-
-@dataclass(frozen=True)
 class Clipped:
     """A grading whose negative moduli are replaced by zero.
 
@@ -170,38 +154,26 @@ class Clipped:
     grading : Grading
         What to clip.
     zeros : tuple of float, optional
-        Heights where it changes sign.
+        Heights where it changes sign; the exponential grading and series know theirs.
     """
 
     grading: Grading
-    zeros: tuple[float, ...] = ()
+    zeros: tuple[float, ...] | None = None
+
+    def __post_init__(self) -> None:
+        if self.zeros is None:
+            hold(self, zeros=getattr(self.grading, "zeros", None))
 
     @property
     def breaks(self) -> tuple[float, ...]:
         """Those of the grading, and its zeros."""
-        return tuple(sorted({*self.grading.breaks, *self.zeros}))
+        return tuple(sorted({*self.grading.breaks, *(self.zeros or ())}))
 
     @property
     def smooth(self) -> bool:
         """As the grading, where its zeros are known, or that it has none."""
-        match self.grading:
-            case Homogeneous():
-                return True
-            case Exponential(gamma=gamma) if 0 <= gamma <= 1:
-                return True
-            case PiecewiseSeries(zeros=zeros):
-                return self.zeros == zeros
-        return self.grading.smooth and bool(self.zeros)
+        return self.grading.smooth and self.zeros is not None
 
     def __call__(self, s: Array) -> Array:
         """Return the positive part of the grading."""
         return np.maximum(self.grading(s), 0.0)
-
-    @classmethod
-    def of(cls, grading: Grading) -> "Clipped":
-        """Clip a grading; the zeros of the exponential one and of series are known."""
-        if isinstance(grading, PiecewiseSeries):
-            return cls(grading, grading.zeros)
-        if isinstance(grading, Exponential) and math.isfinite(grading.zero):
-            return cls(grading, (grading.zero,))
-        return cls(grading)

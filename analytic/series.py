@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from analytic.arrays import Array, Marks
-from analytic.gradings import Clipped, Custom, Exponential, Grading, Homogeneous, Squared
+from analytic.gradings import Clipped, Custom, Exponential, Grading, Homogeneous
 from analytic.piecewise import MOST_PIECES, PiecewiseSeries, chebyshev_points, fitted
 from analytic.resolution import SHORT, bisected, marks, merged, resolved_breaks, spread_over
 from analytic.tables import Table
@@ -26,7 +26,7 @@ def bends(grading: Grading, low: float, high: float) -> tuple[float, ...]:
         case PiecewiseSeries(kinks=kinks):
             found = kinks
         case Clipped(grading=PiecewiseSeries(kinks=kinks), zeros=zeros):
-            found = tuple(sorted({*kinks, *zeros}))
+            found = tuple(sorted({*kinks, *(zeros or ())}))
         case _:
             return resolved_breaks(grading, low, high)
     return tuple(s for s in found if low < s < high)
@@ -39,8 +39,6 @@ def name_of(grading: Any) -> str:
             return name_of(function)
         case Clipped(grading=inner):
             return f"{name_of(inner)}, clipped"
-        case Squared(grading=inner):
-            return f"{name_of(inner)}, squared"
         case PiecewiseSeries(name=name):
             return name
     inner = getattr(grading, "func", grading)  # of a functools.partial

@@ -89,7 +89,7 @@ def proofs():
     ratio = integral(1.5, 0.0, 1.0) / integral(1.5, 0.0, 0.5)
     yield "12", "no effect above gamma = 0.5", f"ratio {ratio:.3f}", "h = 0, gamma = 0.5"
     low = -2.0
-    pushes = analytic.fn(1.5, low, analytic.Clipped.of(e(2.0)))
+    pushes = analytic.fn(1.5, low, analytic.Clipped(e(2.0)))
     pulls = float(1 - integral(1.5, low, 2.0) / pushes)
     yield "4", "gamma > 1 at any s", f"{pulls:.1%} pulls", "load at h = -2, gamma = 2"
 

@@ -94,7 +94,7 @@ class Fields(Flat):
     @property
     def modulus(self) -> analytic.Grading:
         """The grading as used: clipped if the scene says so."""
-        return analytic.Clipped.of(self.grading) if self.negative == "clip" else self.grading
+        return analytic.Clipped(self.grading) if self.negative == "clip" else self.grading
 
     @cached_property
     def theory(self) -> analytic.Model:

@@ -135,7 +135,7 @@ LITERAL = {  # grading, the same of mpmath, cuts of its quadrature, powers and s
     ),
     "table": (Table(S, RATIO), pchip(S, RATIO), S, (1.5,), (-1.0, 2.9)),
     "clipped": (
-        Clipped.of(Custom(lambda s: s - 0.3)), lambda s: max(s - ZERO, 0), [ZERO], (1.5,), (-2.0, 0.5),
+        Clipped(Custom(lambda s: s - 0.3)), lambda s: max(s - ZERO, 0), [ZERO], (1.5,), (-2.0, 0.5),
     ),
 }  # fmt: skip
 
@@ -184,9 +184,9 @@ def test_knots_nearer_than_the_points_of_a_rule(law, h):
 
 @pytest.mark.parametrize(("gamma", "n"), [(1.5, 1.5), (-0.2, 0)])
 def test_clipped_exponential(n, gamma):
-    law = Clipped.of(Exponential(gamma))
+    law = Clipped(Exponential(gamma))
     assert (law.smooth, law.breaks) == (True, (Exponential(gamma).zero,))
-    assert not Clipped(Exponential(2.0)).smooth  # its zero not given
+    assert not Clipped(Custom(np.tanh, smooth=True)).smooth  # its zero not given
     g = mp.mpf(gamma)
     zero = -mp.log(g / (g - 1))
     low, high = (None, zero) if gamma < 0 else (zero, None)

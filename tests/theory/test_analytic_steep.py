@@ -106,7 +106,7 @@ def test_logarithms_far_out_where_the_grading_nearly_vanishes(n, gamma):
     found = analytic.fn(n, h, Exponential(gamma), log=True)
     truth = [float(soft(n, x, gamma)) for x in h]
     np.testing.assert_allclose(found, truth, rtol=1e-14)
-    np.testing.assert_array_equal(analytic.fn(n, h, Clipped.of(Exponential(gamma)), log=True), found)
+    np.testing.assert_array_equal(analytic.fn(n, h, Clipped(Exponential(gamma)), log=True), found)
 
 
 def test_ratios_of_soft_tips_far_out():

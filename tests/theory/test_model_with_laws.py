@@ -37,7 +37,7 @@ LAWS = {
     "chang": chang_etsion_bogy(0.3), "half-space": HalfSpace(0.25), "film": Film(0.1),
 }  # fmt: skip
 GRADINGS = PLAIN | {
-    "stiff tips": Clipped.of(Exponential(2.0)),
+    "stiff tips": Clipped(Exponential(2.0)),
     "table": Table([-1.0, 0.0, 0.7, 1.5], [0.4, 1.0, 0.3, 2.0]),
 }
 PAIRS = [  # every law, every grading

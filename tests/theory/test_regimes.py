@@ -53,7 +53,7 @@ def bumpy(s):
 
 GRADINGS = {
     "no tips": Exponential(0.0),
-    "clipped": Clipped.of(Exponential(3.0)),
+    "clipped": Clipped(Exponential(3.0)),
     "table": Table([-1.0, 0.0, 0.7, 1.5], [0.4, 1.0, 0.3, 2.0]),
     "jump at a break": Custom(lambda s: np.where(s >= 1, 0.4, 1.0), breaks=(1.0,)),
     "untold jump": Custom(lambda s: np.where(s > 1.1, 0.4, 1.0)),
