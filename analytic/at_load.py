@@ -15,14 +15,13 @@ In the mean of the square, ``-(Q^2)' = -2 Q Q'``, the others count with their ow
 asperity has q(s), and each of the N - 1 others q(t) where the last N - 2 bear what both leave.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property, partial
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from analytic.arrays import Array, Complex, Ints
+from analytic.arrays import Array, Ints
 from analytic.distribution.of_model import cells_between, scores_of, shares_upto
 from analytic.height_rule import HeightRule
 from analytic.inversion import LOWEST
@@ -135,52 +134,6 @@ def _ends(model: Any, given: str, value: float) -> tuple[float, float]:
     return ends[0], ends[1]
 
 
-@dataclass(frozen=True, eq=False)
-class _Beside:
-    """The asperities beside one, or beside two, and how many surfaces of them bear what these leave.
-
-    Parameters
-    ----------
-    left : ndarray
-        What the one leaves of the given sum, over a step of the grid from its start.
-    given : ndarray
-        What the other one may add, in cells, over a step of the grid.
-    bear : ndarray
-        Share of the surfaces of all others with no more than each point of the grid, from its start.
-    none : float
-        What of that share jumps at the start: of surfaces where no other asperity touches.
-    """
-
-    left: Array
-    given: Array
-    bear: Array
-    none: float
-
-    @cached_property
-    def _spectrum(self) -> Complex:
-        return np.fft.rfft(self.bear - self.none, 2 * _GRID)
-
-    @cached_property
-    def _order(self) -> Ints:
-        return np.argsort(self.given)
-
-    def bears(self) -> Array:
-        """Return the share of surfaces that bear what the one leaves."""
-        return np.asarray(np.interp(self.left, np.arange(_GRID), self.bear, left=0.0))
-
-    def sums(self, weights: Array) -> Array:
-        """Return sums of weights of the other one, where all others bear what the two leave."""
-        inside = self.given < _GRID - 1
-        w, at = weights[inside], self.given[inside].astype(np.int64)
-        part = self.given[inside] - at
-        shared = np.bincount(at, w * (1 - part), _GRID) + np.bincount(at + 1, w * part, _GRID)
-        both = np.fft.irfft(np.fft.rfft(shared, 2 * _GRID) * self._spectrum, 2 * _GRID)[:_GRID]
-        in_order = weights[self._order]
-        upto = np.cumsum(in_order) - in_order / 2
-        alone = np.interp(self.left, self.given[self._order], upto, left=0.0)
-        return np.asarray(np.interp(self.left, np.arange(_GRID), both, left=0.0) + self.none * alone)
-
-
 def _gains(
     model: Any, given: str, value: float, names: Sequence[str], h: float
 ) -> tuple[float, Array, Array]:
@@ -209,17 +162,37 @@ def _gains(
     start = max(least, 0.0)
     width = (value - start) / (_GRID - 1)
     bear = shares_upto(model, given, h, n - two, np.asarray(start + width * np.arange(_GRID)))
-    left = (value - start - added) / width
-    beside = _Beside(left, in_cells / width, bear, bear[0] if start == 0 else 0.0)
-    bears = beside.bears()
-    bearable = bears if poisson else beside.sums(weights) + rule.below * bears
-    others = [(n - one) * beside.sums(each)[:-1] for each in marks]
+    left, none = (value - start - added) / width, bear[0] if start == 0 else 0.0
+    beside = _beside(left, in_cells / width, bear, none)
+    bears = np.interp(left, np.arange(_GRID), bear, left=0.0)
+    bearable = bears if poisson else beside(weights) + rule.below * bears
     squares = [
-        rate @ bearable[:-1] + 2 * both @ other
-        for rate, both, other in zip(own_rates, rates, others, strict=True)
+        rate @ bearable[:-1] + 2 * both @ ((n - one) * beside(each)[:-1])
+        for rate, both, each in zip(own_rates, rates, marks, strict=True)
     ]
     lower = bearable[-1] if poisson else p @ bearable
     return float(lower), n * rates @ bearable[:-1], n * np.array(squares)
+
+
+def _beside(left: Array, cells: Array, bear: Array, none: float) -> Callable[[Array], Array]:
+    """Return sums of weights of a second asperity, where all others bear what it and the first one leave.
+
+    Of what the first ones leave of the given sum and the second may add, in steps of a grid; of the shares of
+    surfaces that bear each point of it, and what of these jumps at the start: where no other one touches.
+    """
+    spectrum, order, points = np.fft.rfft(bear - none, 2 * _GRID), np.argsort(cells), np.arange(_GRID)
+    inside = np.flatnonzero(cells < _GRID - 1)
+    at = cells[inside].astype(np.int64)
+    part = cells[inside] - at
+
+    def sums(weights: Array) -> Array:
+        w, in_order = weights[inside], weights[order]
+        shared = np.bincount(at, w * (1 - part), _GRID) + np.bincount(at + 1, w * part, _GRID)
+        both = np.fft.irfft(np.fft.rfft(shared, 2 * _GRID) * spectrum, 2 * _GRID)[:_GRID]
+        alone = np.interp(left, cells[order], np.cumsum(in_order) - in_order / 2, left=0.0)
+        return np.asarray(np.interp(left, points, both, left=0.0) + none * alone)
+
+    return sums
 
 
 def _rate(now: Array, near: Array, far: Array, step: float) -> Array:
