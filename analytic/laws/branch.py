@@ -192,22 +192,22 @@ class Branch:
         """Deepest penetration."""
         return above if self.unload_from is None else above + (h - self.unload_from)
 
-    def _residual(self, s: Array, e: Array) -> Array:
-        """Penetration at which asperities of these heights are lost; infinite of those never in contact."""
+    def _residual(self, h: Array, above: Any, e: Array) -> Array:
+        """Penetration at which asperities are lost, infinite of those never in contact."""
         if self.unload_from is None:
             return np.zeros(())
-        deepest = s - self.unload_from
+        deepest = h + above - self.unload_from
         return np.where(deepest >= 0, self._formulas.residual(np.maximum(deepest, 0.0), e), np.inf)
 
     def left(self, h: Array, above: Array, e: Array) -> Array:
         """Penetration left until contact is lost, whose root the formulas take."""
-        return above - self._residual(h + above, e)
+        return above - self._residual(h, above, e)
 
     def pieces(self, h: Array, above: Array, e: Array) -> Ints:
         """Which formula holds at heights `above` the separations, -1 without contact."""
         above, h, e = np.broadcast_arrays(above, h, e)
         piece = piece_of(self.law, self._deepest(h, above), e)
-        return np.where(above > self._residual(h + above, e), piece, -1)
+        return np.where(above > self._residual(h, above, e), piece, -1)
 
     def regimes(self, grading: Grading, separations: ArrayLike, low: float, high: float) -> Regimes:
         """At which heights there is contact, and which formula holds there.
@@ -219,7 +219,7 @@ class Branch:
         count = len(self.law.limits(np.ones(self.law.radii)))
         bounds = [(turn, self._limit(grading, j)) for j in range(count)]
         if self.unload_from is not None:  # pieces are those of the deepest penetration, until contact is lost
-            bounds.append((h, lambda s, which: self.of_some(which)._residual(s, grading(s))))
+            bounds.append((h, lambda s, which: self.of_some(which)._residual(s, 0.0, grading(s))))
         crossed = [crossings(bound, grading, at, low, high, self.law.radii) for at, bound in bounds]
 
         def piece(s: Array, which: Ints) -> Ints:

@@ -3,17 +3,21 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from functools import lru_cache
+from typing import Any, Self
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from analytic.arrays import Array, hold
-from analytic.laws.law import PerRadius, is_positive
+from analytic.arrays import Array, hold, some_of
+from analytic.laws.law import is_positive
 from analytic.surface import Surface
 
-if TYPE_CHECKING:
-    from analytic.laws.layer import LayeredSpot
+_DIRECT = 60  # images that are rather summed one by one
+_NEGLIGIBLE = 1e-18  # weight of an image
+_ALTERNATING = 24  # terms of an alternating sum, whose error is 5.8 to that power
+_SMALLEST = 1e-100  # radius over thickness
+_REACH = np.geomspace(1e-4, 1e4, 401)  # radii over thicknesses at which a pole is looked for
 
 
 @dataclass(frozen=True)
@@ -36,8 +40,9 @@ class Layer:
     --------
     For spots of 2 um on 10 um of oxide on aluminium, the resistance is nearly that of oxide throughout:
 
-    >>> spot = Layer(10e-6, 1.3).between(200.0, 200.0, 1.0)
-    >>> round(float(spot(2e-6)) * 1.3, 3)
+    >>> oxide = Layer(10e-6, 1.3)
+    >>> spot = layered_resistivity(2e-6, oxide.thickness, oxide.conductivity, under=200.0, other=200.0)
+    >>> round(float(spot) * oxide.conductivity, 3)
     0.92
     """
 
@@ -48,12 +53,6 @@ class Layer:
         for key, unit in (("thickness", "m"), ("conductivity", "W/(m K)")):
             if not is_positive(getattr(self, key)):
                 raise ValueError(f"{key} = {getattr(self, key)!r}: give a finite number > 0, in {unit}")
-
-    def between(self, under: float, other: float, unit: float) -> "LayeredSpot":
-        """Return spots between the layer, on a body of conductivity `under`, and `other`; radii in `unit`."""
-        from analytic.laws.layer import LayeredSpot  # for those scenes alone
-
-        return LayeredSpot(self.thickness / unit, self.conductivity, under, other)
 
 
 @dataclass(frozen=True)
@@ -122,14 +121,15 @@ class Film:
     def on(self, surface: Surface) -> "SpotConductance":
         """Return the conductance of spots, in the reduced units of a surface."""
         unit = math.sqrt(surface.radius * surface.sigma)
-        layered = None
-        if self.layer is not None and self.conductivities is not None:
-            layered = self.layer.between(*self.conductivities, unit)
-        return SpotConductance(4 * self.film_resistance / (math.pi * self.rho * unit), self.rho, layered)
+        parameter = 4 * self.film_resistance / (math.pi * self.rho * unit)
+        if self.layer is None or self.conductivities is None:
+            return SpotConductance(parameter, self.rho)
+        layered = (self.layer.conductivity, *self.conductivities)
+        return SpotConductance(parameter, self.rho, self.layer.thickness / unit, layered)
 
 
 @dataclass(frozen=True)
-class SpotConductance(PerRadius):
+class SpotConductance:
     """Conductance of a spot by its radius: constriction, also in a layer, in series with a film.
 
     ``1/C = rho/(4 a) + r_f/(pi a^2)``, so that C over 4 sqrt(R sigma)/rho is ``a^2/(a + b)``; over a layer
@@ -137,13 +137,15 @@ class SpotConductance(PerRadius):
 
     Parameters
     ----------
-    parameter : float
+    parameter : float or ndarray
         Radius over sqrt(R sigma) of a spot whose film and constriction resist alike,
-        ``b = 4 r_f/(pi rho sqrt(R sigma))``.
+        ``b = 4 r_f/(pi rho sqrt(R sigma))``; one for each summit where these differ in radius.
     resistivity : float
         rho of `Film`.
-    layered : LayeredSpot, optional
-        What takes its place over a layer.
+    thickness : float or ndarray, optional
+        Of a layer, over sqrt(R sigma).
+    layered : (float, float, float), optional
+        Conductivity of the layer, of the body under it, and of the other body, W/(m K).
 
     Notes
     -----
@@ -151,30 +153,111 @@ class SpotConductance(PerRadius):
     path l, add ``16 l/(3 pi sqrt(R sigma))`` to b.
     """
 
-    of_radius: ClassVar[tuple[str, float]] = ("parameter", -0.5)
-
     parameter: Any
     resistivity: float
-    layered: "LayeredSpot | None" = None
+    thickness: Any = None
+    layered: tuple[float, float, float] | None = None
 
     @property
     def finest(self) -> float:
         """How far above first touch it is analytic: radii that go on to negative ones meet a pole."""
         parameter = float(np.min(self.parameter))
-        if self.layered is not None:
-            return self.layered.analytic_up_to(parameter * self.resistivity) ** 2
-        return parameter**2 if parameter > 0 else math.inf
+        if self.layered is None:
+            return parameter**2 if parameter > 0 else math.inf
+        thinnest, film = float(np.min(self.thickness)), parameter * self.resistivity
+        resists = layered_resistivity(-_REACH, 1.0, *self.layered) * thinnest * _REACH
+        changes = np.flatnonzero((resists > film) != (film == 0))  # branch points are at radii of i n t
+        return (thinnest * float(min([1.0, *_REACH[np.maximum(changes[:1] - 1, 0)]]))) ** 2
 
-    def _with(self, change: Callable[[Any, float], Any]) -> Self:
-        layered = None if self.layered is None else self.layered._with(change)
-        return replace(super()._with(change), layered=layered)
+    def with_radii(self, ratios: Array) -> Self:
+        """Return that of summits whose radii are these multiples of the surface's, one for each."""
+        return self._with(lambda length: length * ratios**-0.5)
+
+    def of_some(self, which: NDArray[Any]) -> Self:
+        """Return that of some of the summits that it was made for; itself where all have one radius."""
+        return self._with(lambda length: some_of(length, which))
+
+    def _with(self, change: Callable[[Any], Any]) -> Self:
+        thickness = None if self.layered is None else change(self.thickness)
+        return replace(self, parameter=change(self.parameter), thickness=thickness)
 
     def __call__(self, radius: Array) -> Array:
         """Conductance over 4 sqrt(R sigma), in 1/(ohm m) or W/(m K), analytic in the radius up to -b."""
-        if self.layered is not None:
-            resists = radius * self.layered(radius) + self.parameter * self.resistivity
-            return np.asarray(radius * np.divide(radius, resists, where=resists != 0, out=0 * resists))
-        return np.asarray(radius * (radius / (radius + self.parameter))) / self.resistivity
+        if self.layered is None:
+            return np.asarray(radius * (radius / (radius + self.parameter))) / self.resistivity
+        rho = layered_resistivity(radius, self.thickness, *self.layered)
+        resists = radius * rho + self.parameter * self.resistivity
+        return np.asarray(radius * np.divide(radius, resists, where=resists != 0, out=0 * resists))
+
+
+def layered_resistivity(
+    radius: Any, thickness: Any, conductivity: float, under: float, other: float
+) -> Array:
+    """Return what takes the place of both bodies' resistivities under a spot on a layer, of its radius.
+
+    ``rho(a) = 4 a R_1(a) + 1/k_other``. With the flux of an isothermal spot, as ``1/sqrt(1 - r^2/a^2)``, over
+    a layer of thickness t and conductivity k on a half-space the mean temperature gives ::
+
+        4 k a R_1 = 1 + (8/pi) sum_n K^n G(2 n t/a),    K = (k - k_under)/(k + k_under)
+        G(p) = int_0^inf exp(-p x) sin(x) J_1(x)/x^2 dx = Im [s (s - sqrt(1 + s^2)) - asinh s]/2,  s = p - i
+
+    Thin layers of little conductivity add ``t/(pi k a^2)`` to the half-space, thick ones are a half-space.
+
+    Parameters
+    ----------
+    radius : array_like
+        Of spots, negative ones too; a small step into the complex plane gives the derivative.
+    thickness : float or ndarray
+        In the same unit.
+    conductivity, under, other : float
+        Of the layer, the body under it, and the other body, W/(m K).
+
+    Returns
+    -------
+    ndarray
+        m K/W, in the common shape of radii and thicknesses.
+    """
+    radius, thickness = np.broadcast_arrays(radius, thickness)
+    side = np.where(np.real(radius) < 0, -1.0, 1.0)
+    smallest = _SMALLEST * thickness
+    over = 2 * thickness / np.where(np.abs(radius) > smallest, side * radius, smallest)
+    images = np.zeros_like(over)
+    for n, weight in _images((conductivity - under) / (conductivity + under)):
+        images += weight * _image(n * over)
+    return np.asarray((1 + side * (8 / math.pi) * images) / conductivity + 1 / other)
+
+
+def _image(p: Any) -> Any:
+    """G of what an image of the spot adds, to first order in the imaginary part of p, a small step."""
+    s = np.real(p) - 1j
+    half = s + np.sqrt(1 + s * s)
+    value = -(s / half + np.arcsinh(s)).imag / 2
+    return value - 1j * np.imag(p) * (1 / half).imag if np.iscomplexobj(p) else value
+
+
+@lru_cache(64)
+def _images(ratio: float) -> tuple[tuple[int, float], ...]:
+    """Images and their weights, whose sum is that of all ``ratio^n``.
+
+    Where many count, by the transformation of van Wijngaarden into an alternating sum, and the acceleration
+    of H. Cohen, F. Rodriguez Villegas, D. Zagier, Exp. Math. 9 (2000) 3, algorithm 1.
+    """
+    size = abs(ratio)
+    if size**_DIRECT < _NEGLIGIBLE:
+        return tuple((n, ratio**n) for n in range(1, _DIRECT) if size**n > _NEGLIGIBLE)
+    found: dict[int, float] = {}
+    total = ((3 + math.sqrt(8)) ** _ALTERNATING + (3 - math.sqrt(8)) ** _ALTERNATING) / 2
+    b, c, m = -1.0, -total, _ALTERNATING
+    for k in range(m):
+        c = b - c
+        b *= (k + m) * (k - m) / ((k + 0.5) * (k + 1))
+        n, times = k + 1, 1.0
+        while (weight := times * size**n) > _NEGLIGIBLE:
+            found[n] = found.get(n, 0.0) + (c / total) * weight * (1.0 if ratio > 0 else -1.0)
+            if ratio < 0:
+                break
+            n, times = 2 * n, 2 * times
+    return tuple(found.items())
 
 
 def crowding_factor(area_fraction: ArrayLike) -> Array:

@@ -23,54 +23,7 @@ from analytic.surface import Surface
 _FORMULAS = ("limits", "load", "radius", "stiffness", "unloading")
 
 
-class PerRadius:
-    """What may have a constant that follows the radius of a summit.
-
-    Attributes
-    ----------
-    of_radius : (str, float) or None
-        Its name, and the power of the radius on one surface that it goes as.
-    """
-
-    of_radius: ClassVar[tuple[str, float] | None] = None
-
-    @property
-    def each(self) -> bool:
-        """Whether it was made for summits of different radii: the constant is an array."""
-        return bool(self.of_radius and np.ndim(getattr(self, self.of_radius[0])))
-
-    def with_radii(self, ratios: Array) -> Self:
-        """Return it in the units of summits whose radii are these multiples of the surface's.
-
-        Parameters
-        ----------
-        ratios : ndarray
-            One a summit: formulas then take arrays of this shape.
-
-        Returns
-        -------
-        PerRadius
-            Radii of contact over sqrt(c R sigma), loads over ``(4/3) E* sqrt(c R) sigma^(3/2)``.
-        """
-        return self._with(lambda constant, power: constant * ratios**power)
-
-    def of_some(self, which: NDArray[Any]) -> Self:
-        """Return that of some of the summits that it was made for; itself where all have one radius.
-
-        Numbers beyond the last begin again with the first.
-        """
-        return self._with(lambda constant, _: some_of(constant, which)) if self.each else self
-
-    def _with(self, change: Callable[[Any, float], Any]) -> Self:
-        """Return the same with another constant in place of the one that follows the radius."""
-        if not self.of_radius:
-            return self
-        changed, (name, power) = copy(self), self.of_radius
-        hold(changed, **{name: change(getattr(self, name), power)})  # checks are for numbers
-        return changed
-
-
-class ContactLaw(PerRadius):
+class ContactLaw:
     """Contact law of one asperity: Hertz's elastic contact, unless a subclass changes it.
 
     A law consists of pieces. Piece 0 begins where the asperity touches, at delta = 0; piece j begins at
@@ -89,6 +42,9 @@ class ContactLaw(PerRadius):
     finest : float
         How far above first touch the formulas of piece 0 are analytic, in penetration: infinite if they
         are sums of powers of y.
+    of_radius : (str, float) or None
+        A constant that follows the radius of a summit, and the power of the radius on one surface that it
+        goes as.
     in_si : (str, str) or None
         The constant in SI units that may stand for that one, and words for the two.
     root : bool
@@ -99,6 +55,7 @@ class ContactLaw(PerRadius):
     elastic: ClassVar[bool] = True
     yields: ClassVar[bool] = False
     root: ClassVar[bool] = True
+    of_radius: ClassVar[tuple[str, float] | None] = None
     in_si: ClassVar[tuple[str, str] | None] = None
 
     @property
@@ -171,6 +128,33 @@ class ContactLaw(PerRadius):
                 f"{self}: put it on a surface first, law.on(surface), or give `{self.of_radius[0]}`"
             )
         return value
+
+    def with_radii(self, ratios: Array) -> Self:
+        """Return it in the units of summits whose radii are these multiples of the surface's.
+
+        Parameters
+        ----------
+        ratios : ndarray
+            One a summit: formulas then take arrays of this shape.
+
+        Returns
+        -------
+        ContactLaw
+            Radii of contact over sqrt(c R sigma), loads over ``(4/3) E* sqrt(c R) sigma^(3/2)``.
+        """
+        return self._with(lambda constant, power: constant * ratios**power)
+
+    def of_some(self, which: NDArray[Any]) -> Self:
+        """Return that of some of the summits that it was made for; itself where all have one radius."""
+        return self._with(lambda constant, _: some_of(constant, which))
+
+    def _with(self, change: Callable[[Any, float], Any]) -> Self:
+        """Return the same with another constant in place of the one that follows the radius."""
+        if not self.of_radius:
+            return self
+        changed, (name, power) = copy(self), self.of_radius
+        hold(changed, **{name: change(getattr(self, name), power)})  # checks are for numbers
+        return changed
 
     @property
     def radii(self) -> int:

@@ -18,7 +18,7 @@ from scipy.special import j1
 
 import analytic
 import mcgw
-from analytic.laws.layer import LayeredSpot
+from analytic.laws.film import layered_resistivity
 
 UNIT = math.sqrt(SURFACE.radius * SURFACE.sigma)
 LAYER = analytic.Layer(0.3 * UNIT, 1.3)
@@ -35,7 +35,7 @@ LAWS = {
 
 def over_thickness(tau, ratio):
     """4 k a R of a spot whose layer has this thickness over its radius and conductivity over the body's."""
-    return float(LayeredSpot(tau, ratio, 1.0, math.inf)(1.0)) * ratio
+    return float(layered_resistivity(1.0, tau, ratio, 1.0, math.inf)) * ratio
 
 
 def by_integral(radius, film=FILM):
@@ -129,11 +129,13 @@ def test_mean_by_quadrature(thickness, conductivity):
     layer = analytic.Layer(thickness * UNIT, conductivity)
     film = mcgw.Joint(conductivities=(200.0, 16.0), layer=layer, film_resistance=1e-9)
     scene = scene_of(joint=film, separations=1.0, n_asperities=1)
-    spot = film.layer.between(*film.conductivities, 1.0)
+    layered = layer.conductivity, *film.conductivities
 
     def one(y):
         a = UNIT * y
-        conducts = 1 / (float(spot(a)) / (4 * a) + 1e-9 / (math.pi * a * a))
+        conducts = 1 / (
+            float(layered_resistivity(a, layer.thickness, *layered)) / (4 * a) + 1e-9 / (math.pi * a * a)
+        )
         return 2 * y * conducts * math.exp(-((1 + y * y) ** 2) / 2) / math.sqrt(2 * math.pi)
 
     mean = math.fsum(
