@@ -245,22 +245,18 @@ class InteractingModel(Model):
             return _Answer(quantity, load, series=self.series(quantity))
         spots = f"conductance_si{way}" if quantity.startswith("joint") else ""
         from_body = self.interaction is not None and self.interaction.reference == "body"
-        series = self.series(spots) if spots and not from_body else 0.0
+        series, bodies = self.series(spots) if spots and not from_body else 0.0, 0.0
+        if spots and self.film is not None and self.interaction is not None:
+            bodies = self.interaction.bodies(self.surface, self.film.rho)
         return _Answer(
             spots,
             load,
             per=self.surface.nominal_area,
             series=series,
             sunk=0.0 if from_body else sunk,
-            bodies=self._bodies() if spots else 0.0,
+            bodies=bodies,
             at_plane=self.filled,
         )
-
-    def _bodies(self) -> float:
-        """Their resistance times the nominal area, to what passes them."""
-        if self.film is None or self.interaction is None:
-            return 0.0
-        return self.interaction.bodies(self.surface, self.film.rho)
 
 
 def _values(model: Model) -> dict[str, Any]:

@@ -31,23 +31,17 @@ __all__ = [
     "piece_of",
 ]  # fmt: skip
 
-_HOMES = {
-    "ChangEtsionBogy": "elastic_plastic_laws",
-    "ZhaoMaiettaChang": "elastic_plastic_laws",
-    "KogutEtsion": "elastic_plastic_laws",
-    "JacksonGreen": "elastic_plastic_laws",
-    "PowerLawGraded": "elastic",
-    "Coated": "elastic",
-    "DerjaguinMullerToporov": "adhesion",
-    "JohnsonKendallRoberts": "adhesion",
-    "CustomLaw": "custom",
-}
+_FILES = ("law", "elastic_plastic_laws", "elastic", "adhesion", "custom")  # in which laws stand
 
 
 def __getattr__(name: str) -> Any:
     """Return a law from its file; `by_name` has those of scene files."""
-    if name == "by_name":
-        return {law.name: law for law in (Hertz, *map(__getattr__, _HOMES)) if law.name != "custom"}
-    if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+    if not name.startswith("_"):
+        files = [import_module(f"{__name__}.{file}") for file in _FILES]
+        known = [x for file in files for x in vars(file).values() if isinstance(x, type)]
+        laws = [x for x in known if issubclass(x, ContactLaw) and x is not ContactLaw and "name" in vars(x)]
+        found: dict[str, Any] = {law.__name__: law for law in laws}
+        found["by_name"] = {law.name: law for law in laws if law.name != "custom"}
+        if name in found:
+            return found[name]
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
