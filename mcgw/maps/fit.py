@@ -222,7 +222,12 @@ def fit_prepared(ready: Prepared, *, across: int = 4) -> Fit:
         caps = by_caps(fine, blur)
         if caps is not None and caps[2][0] <= peak_to_valley:  # else too many are hidden
             estimates["caps"] = Estimate.of(caps, waves)
-    _check_sigma(estimates, peak_to_valley)
+    for name, estimate in estimates.items():
+        if not estimate.sigma.value <= peak_to_valley:
+            raise ValueError(
+                f"sigma of {METHODS[name]} is {estimate.sigma.value:.4g} m, more than the peak to valley of "
+                f"the map, {peak_to_valley:.4g} m; look at the map, and crop artefacts"
+            )
     seen = None
     if found := estimates.get("caps"):
         seen = visible(found.overlap, blur / math.sqrt(2 * found.radius.value * found.sigma.value))
@@ -255,16 +260,6 @@ def _scales(ready: Prepared, across: int, counted: SummitSums) -> tuple[SummitSu
         return _without_summit_form(sums_of(ready.used, across=fewer, seen=ready.seen), ready.asked.form)
 
     return counted if counted.parts == fewer**2 else count(summit_sums_of), count(coarse_sums_of)
-
-
-def _check_sigma(estimates: dict[str, Estimate], peak_to_valley: float) -> None:
-    """Refuse a standard deviation larger than the range."""
-    for name, estimate in estimates.items():
-        if not estimate.sigma.value <= peak_to_valley:
-            raise ValueError(
-                f"sigma of {METHODS[name]} is {estimate.sigma.value:.4g} m, more than the peak to valley of "
-                f"the map, {peak_to_valley:.4g} m; look at the map, and crop artefacts"
-            )
 
 
 def _without_summit_form(counted: SummitSums, form: Form) -> SummitSums:

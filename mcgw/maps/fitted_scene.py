@@ -89,7 +89,8 @@ def fitted_scene(
             'summits on the area of the map; leave it out, or use heights = "table"'
         )
     if use == "auto":
-        use = _best(fit, heights)
+        use = "moments" if isinstance(fit, ProfileFit) or heights == "nayak" else "summits"
+        use = fit.best if isinstance(fit, Fit) and heights == "gaussian" else use
     if isinstance(fit, Fit) and use != "moments" and use in fit.estimates:
         _check_spread(fit)
     scene = _as_fitted(fit, use, heights, argument("E_star", E_star, "Pa"), title)
@@ -104,13 +105,6 @@ def _check_spread(fit: Fit) -> None:
             f"all {fit.summits.size} summits are equally high, within {spread:.2g} m: a regular texture has "
             "no distribution of summit heights; give sigma, radius and eta of its asperities in a scene"
         )
-
-
-def _best(fit: Fit | ProfileFit, heights: Heights) -> str:
-    """Return the estimate that suits a kind of heights."""
-    if isinstance(fit, ProfileFit) or heights == "nayak":
-        return "moments"
-    return fit.best if heights == "gaussian" else "summits"
 
 
 def _uncertainty(fit: Fit | ProfileFit, use: str, heights: Heights) -> Uncertainty | None:

@@ -153,7 +153,8 @@ def waves_of(topography: Topography, moments: SpectralMoments, order: int = -1) 
         products += (terms[:3] * waves).reshape(3, -1) @ terms[:3].reshape(3, -1).T
         squares = terms * terms
         sums += [(t @ waves).sum(axis=1) for t in (squares, squares * terms, squares * squares)]
-        taken += float((power[band] * _taken(down[band], along) @ waves).sum())
+        share = down[band] @ along  # of a wave that the polynomial held; 1 of the mean, which is no wave
+        taken += float((power[band] * (share / np.where(share < 1, 1 - share, np.inf)) @ waves).sum())
     low = taken / total
 
     def spread(of: list[float], name: str) -> Spread:
@@ -211,12 +212,6 @@ def _legendre_shares(shape: tuple[int, int], order: int) -> tuple[Array, Array]:
         for q in (x, y)
     )
     return down.T, np.cumsum(along, axis=0)[::-1]  # degrees a of x up to order - b
-
-
-def _taken(down: Array, along: Array) -> Array:
-    """Return what the polynomial takes of these waves, over what it leaves; 0 for the mean, which is none."""
-    share = down @ along
-    return np.asarray(share / np.where(share < 1, 1 - share, np.inf))
 
 
 def _power(z: Array) -> tuple[Array, Array]:
