@@ -130,6 +130,8 @@ def test_a_curve_is_written_as_the_program_reads_it(scene, program, table, units
     factors = FACTORS[table] if units == "mm-N-s" else (1, 1)
     np.testing.assert_allclose(table_of(path, program), [factors[0] * x, factors[1] * y], rtol=1e-9)
     assert not foot or d0_of(path) == pytest.approx(factors[0] * foot)
+    heat = replace(sheet, scene=scene.replace(joint=mcgw.Joint([150.0, 16.0])))  # as a current, mW for mA
+    np.testing.assert_array_equal(heat.columns(curve), sheet.columns(curve))
     if program in ("calculix", "abaqus"):
         assert read_inp(path)[0] == KEYWORDS[program, table]
     assert ("INPUT=f.x" in text) == (program in ("calculix", "abaqus"))
