@@ -16,48 +16,17 @@ The radius of a summit is that of the sphere of its geometric mean curvature (Gr
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.arrays import Array
 from analytic.curvature_given_height import CurvatureGivenHeight
-from analytic.heights import HeightLaw
 from analytic.nayak import Nayak, tables_of
-from analytic.piecewise import PiecewiseSeries, fitted
 
 MEAN_CURVATURE = 8 / math.sqrt(3 * math.pi)  # of the summits, over sqrt(m4/3)
 _DIVERGES = 4.0  # power of the radius that has no mean: the density of g begins as its cube
-_TERMS = 24
 _BLOCK = 1024  # numbers whose rules are summed at a time
-
-
-@dataclass(frozen=True, eq=False)
-class WeightedHeights:
-    """A height law whose density counts with a weight: what summits of each height add in the mean.
-
-    Parameters
-    ----------
-    law : HeightLaw
-        The law itself, which all but `pdf` is of.
-    weight : callable
-        Takes reduced heights to their weights.
-    """
-
-    law: HeightLaw
-    weight: Callable[[Array], Array]
-
-    def pdf(self, s: Array) -> Array:
-        """Density times weight."""
-        return self.law.pdf(s) * self.weight(s)
-
-    def __getattr__(self, name: str) -> Any:
-        """Delegate other attributes to the law."""
-        if name.startswith("__"):  # what copying asks for before there is a law
-            raise AttributeError(name)
-        return getattr(self.law, name)
 
 
 @dataclass(frozen=True)
@@ -153,8 +122,12 @@ class RandomCurvature:
                 f"power = {power!r}: give one from 0 to below 4 (radii have no mean of the fourth power, "
                 "unless largest bounds them)"
             )
-        x = self.heights.over_rms(s)
-        return np.ones_like(x) if power == 0 else _means(self.alpha, self.largest, float(power))(x)
+        flattest = MEAN_CURVATURE / self.largest
+        return self._broadcast(
+            lambda a, x: a**power * CurvatureGivenHeight(self.alpha, x).mean_inverse(power, flattest),
+            MEAN_CURVATURE,
+            s,
+        )
 
     def summits(self, rng: np.random.Generator, n: int) -> tuple[Array, Array]:
         """Draw reduced heights and radius ratios of `n` summits together (`analytic.Nayak.summits`)."""
@@ -173,14 +146,3 @@ class RandomCurvature:
             i = slice(k, k + _BLOCK)
             result[i] = function(flat[i], heights[i])
         return result.reshape(a.shape)
-
-
-@lru_cache(maxsize=64)
-def _means(alpha: float, largest: float, power: float) -> PiecewiseSeries:
-    """Mean of a power of the ratio, of heights over sqrt(m0)."""
-
-    def mean(x: Array) -> Array:
-        inverse = CurvatureGivenHeight(alpha, x).mean_inverse(power, MEAN_CURVATURE / largest)
-        return np.asarray(MEAN_CURVATURE**power * inverse)
-
-    return fitted(mean, tables_of(alpha).edges, _TERMS)

@@ -68,10 +68,12 @@ class HeightRule:
         *,
         branches: Iterable[Branch] = (),
         cuts: Sequence[float] = (),
+        **powers: float,
     ) -> "HeightRule":
         """Return the rule for these reduced separations, this grading and law of the heights.
 
-        `branches` are those of what is summed, `cuts` heights at which it jumps or bends besides.
+        `branches` are those of what is summed, `cuts` heights at which it jumps or bends besides, `powers`
+        the highest ones of modulus and approach, as of `analytic.law_rule.ends_of`.
         """
         branches, h = tuple(branches), np.unique(np.asarray(separations, dtype=np.float64))
         lowest = np.unique([*h, *(branch.lowest(h[0]) for branch in branches)])
@@ -81,7 +83,7 @@ class HeightRule:
             found = [branch.regimes(grading, h, low, high) for branch in branches]
             return [*cuts, *(s for each in found for s in (*each.low.tolist(), *each.high.tolist()))]
 
-        rule = law_rule(heights, lowest, grading, further=changes)
+        rule = law_rule(heights, lowest, grading, further=changes, **powers)
         return cls(*rule, float(heights.cdf(lowest[0])))
 
     def mean(self, f: Array) -> Array:

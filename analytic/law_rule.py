@@ -31,13 +31,12 @@ _RARE = 1e-37  # a share that no sampler draws
 _SURE = 1e-16  # up to such a rare height a grading must have values
 _SUMS = ((4, 0.0), (3, 0.0), (2, 0.0), (1, 3.0))  # powers of the modulus and of the approach in moments
 _GRID = 16  # the upper end is rounded up to one over this
-_TOGETHER = 32  # separations that share a rule under the normal law
 
 Further = Callable[[float, float], Sequence[float]]
 
 
 def ends_of(
-    law: HeightLaw, separations: Array, grading: Grading, power: int = POWER, exponent: float = 0.0
+    law: HeightLaw, separations: Array, grading: Grading, power: float = POWER, exponent: float = 0.0
 ) -> tuple[float, float]:
     """Range of the rule: from the lowest separation, or height there is, to where nothing is left.
 
@@ -64,7 +63,7 @@ def ends_of(
     return far(middle, start, low), far(start, top, high)
 
 
-def _normal_ends(low: float, last: float, grading: Grading, power: int) -> tuple[float, float]:
+def _normal_ends(low: float, last: float, grading: Grading, power: float) -> tuple[float, float]:
     top = last + REACH**2 / (last + np.hypot(last, REACH))
     if tame(grading):
         return low, top
@@ -99,7 +98,7 @@ def pieces_of(
     separations: Array,
     grading: Grading,
     *,
-    power: int = POWER,
+    power: float = POWER,
     exponent: float = 0.0,
     further: Further = lambda *_: (),
 ) -> tuple[Array, Array]:
@@ -150,17 +149,11 @@ def _mass(law: HeightLaw, left: float, right: float) -> float:
 
 
 def law_integral(n: float, h: Array, law: HeightLaw, grading: Grading) -> Array:
-    """``int_h^inf (s-h)^n density(s) grading(s) ds`` in the shape of `h`, of some separations by one rule."""
-    if not np.all(np.isfinite(h)):
-        raise ValueError("h: every separation must be finite")
-    result, order = np.zeros(h.size), np.argsort(h, axis=None)
-    together = _TOGETHER if isinstance(law, Gaussian) else 1
-    for k in range(0, h.size, together):
-        part = order[k : k + together]
-        x = h.ravel()[part]
-        s, p = law_rule(law, np.unique(x), grading, power=1, exponent=n + 1)
-        approach = np.maximum(s[:, None] - x, 0.0)
-        result[part] = (p * grading(s)) @ np.where(approach > 0, approach**n, 0.0)
+    """``int_h^inf (s-h)^n density(s) grading(s) ds`` in the shape of `h`."""
+    result = np.zeros(h.size)
+    for k, x in enumerate(h.ravel().tolist()):
+        s, p = law_rule(law, np.array([x]), grading, power=1, exponent=n + 1)
+        result[k] = np.sum(p * grading(s) * (s - x) ** n)
     return result.reshape(h.shape)
 
 

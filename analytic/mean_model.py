@@ -1,7 +1,6 @@
 """A rough surface with everything that determines its contact, and its means.
 
-What an asperity adds in the mean is a sum over a rule of heights and radii, by the formulas of its law; where
-that is a power of its approach, as under Hertz's law, one integral over heights alone.
+What an asperity adds in the mean is a sum over a rule of heights and radii, by the formulas of its law.
 """
 
 from collections.abc import Callable, Sequence
@@ -17,13 +16,12 @@ from analytic.gradings import Grading, Homogeneous
 from analytic.height_rule import Count, HeightRule
 from analytic.heights import Gaussian, HeightLaw
 from analytic.inversion import LOWEST, last_separations
-from analytic.law_rule import law_integral
 from analytic.laws.branch import Branch
 from analytic.laws.film import Film
 from analytic.laws.law import ContactLaw, piece_of
 from analytic.measured_summits import MeasuredRadii
 from analytic.quadrature import REACH
-from analytic.quantities import LAW_QUANTITIES, NOT_SUMS, SEPARATIONS, Quantity, quantity_of
+from analytic.quantities import NOT_SUMS, SEPARATIONS, Quantity, quantity_of
 from analytic.summits import Summits, summits_of
 from analytic.surface import Surface
 
@@ -145,7 +143,7 @@ class MeanModel:
         ndarray
             In the shape of `h`; nan where no contact is to be expected in double precision.
         """
-        return self._in_parts(h, quantity_of("contacts"), partial(self._share_by, piece))
+        return self._in_parts(h, partial(self._share_by, piece))
 
     def separation_at(self, quantity: str, value: ArrayLike) -> Array:
         """Separation at which the mean has a given value.
@@ -174,9 +172,9 @@ class MeanModel:
         if not np.all(np.isfinite(target) & (target > 0)):
             raise ValueError(f"{quantity} = {value!r}: give finite values > 0 {q.unit}")
         grid = self._grid(q)
-        rough = self.summits.rule(grid[:1], self.grading)  # to a percent, but in tails
+        rough = self.summits.rule(grid[:1], self.grading, power=1)  # to a percent, but in tails
         with np.errstate(divide="ignore", invalid="ignore"):
-            about = np.log(self._mean_by(q, grid, rough))
+            about = np.log(rough.mean(rough.terms([q.name], grid, self.grading, self.ways)))
             found = partial(self._mean, q)
             return last_separations(
                 lambda h: np.log(found(h)), np.log(target / self._unit(q)), grid, about, quantity
@@ -202,13 +200,7 @@ class MeanModel:
 
     def _mean(self, q: Quantity, h: ArrayLike) -> Array:
         """Mean of what one asperity adds, over the scale, at separations of any shape."""
-        h = np.asarray(h, dtype=np.float64)
-        if self._by_powers(q):
-            return self._integral(q.exponent, q, h)
-        beyond = np.isfinite(h) & (self.heights.sf(h) == 0)  # far ones would make a rule long
-        result = np.zeros(np.shape(h))
-        result[~beyond] = self._in_parts(h[~beyond], q, partial(self._mean_by, q))
-        return result
+        return self._in_parts(h, partial(self._mean_by, q))
 
     def _slope(self, q: Quantity, h: ArrayLike) -> Array:
         """How fast that falls with the separation, jumps of asperities included."""
@@ -216,49 +208,47 @@ class MeanModel:
             if q.base != "load":
                 raise ValueError(f"quantity = {q.name!r}: its slope is not known; give 'load_unloading'")
             return q.exponent * self._mean(quantity_of("load_slope_unloading"), h)
-        if self._by_powers(q) and q.exponent >= 1:
-            return q.exponent * self._integral(q.exponent - 1, q, h)
-        if self.summits.listed:
-            return self._in_parts(h, quantity_of(q.base), partial(self._slope_by, q.base))
+        if self.summits.listed or (self.ways.law.hertz and q.exponent >= 1):  # no asperity jumps
+            return self._in_parts(h, partial(self._slope_by, quantity_of(q.base)))
         if q.base == "contacts":
             return self.heights.pdf(np.asarray(h, dtype=np.float64))
         return fall_of(partial(self._mean, q), h)
 
-    def _integral(self, n: float, q: Quantity, h: ArrayLike) -> Array:
-        """Mean of a power of the approach, and of the powers of radius and modulus in a quantity."""
-        grading = self.grading if q.modulus else Homogeneous()
-        return law_integral(n, np.asarray(h, dtype=np.float64), self.summits.weighted(q.radius), grading)
-
-    def _in_parts(self, h: ArrayLike, q: Quantity, function: Callable[[Array, HeightRule], Array]) -> Array:
-        """Return a few separations at a time, which share a rule by the formulas of the law."""
+    def _in_parts(self, h: ArrayLike, function: Callable[[Array], Array]) -> Array:
+        """Return what a function gives for a few separations at a time, which may share a rule."""
         flat = np.ravel(np.asarray(h, dtype=np.float64))
         if not np.all(np.isfinite(flat)):
             raise ValueError("h: every separation must be finite")
-        order, together = np.argsort(flat), self.summits.together
-        result = np.empty(flat.size)
-        for k in range(0, flat.size, together):
-            part = order[k : k + together]
-            rule = self.summits.rule(flat[part], self.grading, self.ways.among([q.name]))
-            result[part] = function(flat[part], rule)
-        return result.reshape(np.shape(h))
+        parts = self.summits.together(flat)
+        found = [function(flat[few]) for few in parts]
+        rows = np.concatenate(found)[np.argsort(np.concatenate(parts))] if parts else flat
+        return np.asarray(rows.reshape(np.shape(h) + rows.shape[1:]))
 
-    def _mean_by(self, q: Quantity, h: Array, rule: HeightRule) -> Array:
+    def _mean_by(self, q: Quantity, h: Array) -> Array:
+        rule = self._rule_of(q, h)
         return rule.mean(rule.terms([q.name], h, self.grading, self.ways))
 
-    def _share_by(self, piece: int, h: Array, rule: HeightRule) -> Array:
+    def _rule_of(self, q: Quantity, h: Array) -> HeightRule:
+        """Return a rule for the mean of one quantity, which there may be where there is no variance."""
+        branches = self.ways.among([q.name])
+        return self.summits.rule(h, self.grading, branches, power=1, exponent=q.exponent + 1)
+
+    def _share_by(self, piece: int, h: Array) -> Array:
+        rule = self._rule_of(quantity_of("contacts"), h)
         s, e, law = rule.heights, self.grading(rule.heights), self._ways_of(rule).law
         inside = np.stack([(s > x) & (piece_of(law, s - x, e) == piece) for x in h], axis=1)
         with np.errstate(invalid="ignore"):
-            return np.asarray(rule.mean(inside) / self._mean_by(quantity_of("contacts"), h, rule))
+            return np.asarray(rule.mean(inside) / self._mean_by(quantity_of("contacts"), h))
 
-    def _slope_by(self, quantity: str, h: Array, rule: HeightRule) -> Array:
+    def _slope_by(self, q: Quantity, h: Array) -> Array:
+        rule = self._rule_of(q, h)
         s, p = rule.heights, rule.probabilities
         if not s.size:
             return np.zeros(h.shape)
         if rule.ratios is not None:
-            p = p * rule.ratios ** quantity_of(quantity).radius
+            p = p * rule.ratios**q.radius
         branch, e = self._ways_of(rule).loading, self.grading(s)
-        return np.array([np.sum(p * branch.slopes(quantity, s - x, e)) for x in h])
+        return np.array([np.sum(p * branch.slopes(q.base, s - x, e)) for x in h])
 
     def _ways_of(self, rule: HeightRule) -> Branch:
         """In units of each summit, where radii differ."""
@@ -296,10 +286,6 @@ class MeanModel:
                 f"{self.unload_from:g}, where unloading begins; give larger separations"
             )
         return q
-
-    def _by_powers(self, q: Quantity) -> bool:
-        """Whether one asperity carries a power of its approach, whose mean is an integral over heights."""
-        return self.ways.law.hertz and q.base not in LAW_QUANTITIES and self.summits.powers
 
     def _unit(self, q: Quantity) -> float:
         return self.number * q.scale(self.surface)

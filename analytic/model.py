@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -89,12 +90,10 @@ class Model(MeanModel):
 
     def cumulants(self, quantity: str, h: ArrayLike) -> Cumulants:
         """Return the mean, variance, skewness and excess kurtosis over surfaces, in the shape of `h`."""
-        h = np.asarray(h, dtype=np.float64)
-        step = self.summits.together
-        parts = np.split(h.ravel(), range(step, h.size, step)) if h.size else []
-        rows = np.concatenate([np.empty((0, 4)), *(self._one_asperity(quantity, x) for x in parts)])
-        k1, k2, k3, k4 = rows.reshape(*h.shape, 4).transpose(-1, *range(h.ndim))
-        n, scale = self.number, quantity_of(quantity).scale(self.surface)
+        q, h = self._asked(quantity, h), np.asarray(h, dtype=np.float64)
+        rows = self._in_parts(h, partial(self._one_asperity, quantity))
+        k1, k2, k3, k4 = np.moveaxis(rows, -1, 0) if h.size else np.empty((4, *h.shape))
+        n, scale = self.number, q.scale(self.surface)
         with np.errstate(divide="ignore", invalid="ignore"):
             return Cumulants(
                 n * scale * k1, n * scale**2 * k2, k3 / k2 / np.sqrt(n * k2), k4 / k2 / (n * k2)

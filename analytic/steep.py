@@ -27,7 +27,7 @@ def reach(
     end: float,
     limit: float,
     *,
-    power: int,
+    power: float,
     exponent: float = 0.0,
 ) -> float:
     """Return the height beyond which an integral has nothing left.
@@ -40,7 +40,7 @@ def reach(
         E*(s)/E*.
     start, end, limit : float
         The answer is `end`, or as much farther from `start` as it takes, either way; never beyond `limit`.
-    power : int
+    power : float
         Of the modulus in the integral.
     exponent : float, optional
         Of the distance from the start.

@@ -7,16 +7,16 @@ radius alone. So there are some radii, each with a rule over the heights of its 
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from analytic.arrays import Array, Ints
-from analytic.curvature import MEAN_CURVATURE, RandomCurvature, WeightedHeights
+from analytic.curvature import MEAN_CURVATURE, RandomCurvature
 from analytic.gradings import Grading
 from analytic.height_rule import HeightRule
-from analytic.heights import Gaussian, HeightLaw
+from analytic.heights import HeightLaw
 from analytic.law_rule import ends_of
 from analytic.laws.branch import Branch
 from analytic.measured_summits import MeasuredHeights, MeasuredRadii
@@ -30,6 +30,7 @@ _HIGHEST = 1e-300  # share of heights above the highest separation that is looke
 _NODES, _AS_WIDE = 64, 0.6  # points for curvatures, if their density bends over so many heights
 _NARROW, _PER_NARROW, _PER_PIECE = 0.25, 16, 32  # heights of a narrow piece, points of one and of a wider one
 _RAREST = 1e-18  # share of the touching heights above which curvatures are left out
+_TOGETHER, _SHARED = 12, 1e-12  # separations that share a rule, and least share that touches at the last
 _KEPT = 4_000_000  # points of rules over heights and radii
 
 
@@ -82,12 +83,17 @@ def no_cuts(ratios: Array) -> Array:
 
 
 def rule_of_radii(
-    separations: Array, grading: Grading, law: RandomCurvature, branches: Branches, more: Cuts = no_cuts
+    separations: Array,
+    grading: Grading,
+    law: RandomCurvature,
+    branches: Branches,
+    more: Cuts,
+    **powers: float,
 ) -> HeightRule:
     """Rule over heights and radii for these separations, cut where the laws of the radii change."""
     h, radii = np.unique(separations), Radii.over(law, float(np.max(separations)))
     lowest = np.unique([*h, *(branch.lowest(float(h[0])) for branch in branches)])
-    below, (start, top) = float(law.heights.cdf(lowest[0])), ends_of(law.heights, lowest, grading)
+    below, (start, top) = float(law.heights.cdf(lowest[0])), ends_of(law.heights, lowest, grading, **powers)
     if not start < top:
         return HeightRule(np.empty(0), np.empty(0), below, np.empty(0))
     widest = min(SPANS * law.narrowest, WIDEST)
@@ -133,11 +139,6 @@ class Summits:
     heights: HeightLaw
 
     @property
-    def powers(self) -> bool:
-        """Whether the mean of a power of approach and radius is an integral over heights alone."""
-        return True
-
-    @property
     def listed(self) -> bool:
         """Whether there is a list of them, so that means change summit by summit."""
         return isinstance(self.heights, MeasuredHeights)
@@ -147,39 +148,46 @@ class Summits:
         """Whether the fourth power of the radius has no mean."""
         return False
 
-    @property
-    def together(self) -> int:
-        """How many separations share a rule: other laws leave out what the lowest one hardly needs."""
-        return 8 if isinstance(self.heights, Gaussian) else 1
+    def together(self, h: Array) -> list[Ints]:
+        """Return which separations share a rule: it leaves out what the lowest of them hardly needs."""
+        parts, order = [], np.argsort(h)
+        touching = self.heights.sf(h[order])
+        while order.size:
+            near = np.count_nonzero(touching >= _SHARED * touching[0])
+            few = 1 if self.listed else min(near, _TOGETHER)
+            parts.append(order[:few])
+            order, touching = order[few:], touching[few:]
+        return parts
 
     @property
     def highest(self) -> float:
         """Where probabilities underflow, or the highest of listed heights."""
         return float(self.heights.isf(np.array(_HIGHEST), 0.0))
 
-    def weighted(self, power: float) -> HeightLaw:  # noqa: ARG002 - of one radius
-        """Return the heights, each with the mean of this power of its radius over that of the surface."""
-        return self.heights
-
     def rule(
-        self, h: Array, grading: Grading, branches: Branches = (), cuts: Cuts | None = None
+        self, h: Array, grading: Grading, branches: Branches = (), cuts: Cuts | None = None, **powers: float
     ) -> HeightRule:
-        """Heights and radii for sums on these branches; `cuts` gives ends of pieces besides."""
+        """Heights and radii for sums on these branches; `cuts` gives ends of pieces besides.
+
+        `powers` are the highest of modulus and approach that are summed, as of `analytic.law_rule.ends_of`.
+        """
         if cuts is not None:
             return self._new_rule(h, grading, branches, cuts)
-        key = (branches, h.tobytes())  # of one model, every quantity and statistic of which asks again
+        key = (branches, h.tobytes(), *powers.values())  # every quantity and statistic of a model asks again
         if key not in self._rules:
             while sum(kept.heights.size for kept in self._rules.values()) > _KEPT:
                 self._rules.pop(next(iter(self._rules)))
-            self._rules[key] = self._new_rule(h, grading, branches)
+            self._rules[key] = self._new_rule(h, grading, branches, no_cuts, **powers)
         return self._rules[key]
 
-    def _new_rule(self, h: Array, grading: Grading, branches: Branches, cuts: Cuts = no_cuts) -> HeightRule:
+    def _new_rule(
+        self, h: Array, grading: Grading, branches: Branches, cuts: Cuts, **powers: float
+    ) -> HeightRule:
         more = cuts(np.ones(1)).ravel().tolist()
-        return HeightRule.over(h, grading, self.heights, branches=branches, cuts=more)
+        return HeightRule.over(h, grading, self.heights, branches=branches, cuts=more, **powers)
 
     @cached_property
-    def _rules(self) -> dict[tuple[Branches, bytes], HeightRule]:
+    def _rules(self) -> dict[tuple[Any, ...], HeightRule]:
         return {}
 
     def __getstate__(self) -> dict[str, Any]:
@@ -197,11 +205,10 @@ class _RandomRadii(Summits):
     def unbounded(self) -> bool:
         return bool(np.isinf(self.curvature.largest))
 
-    def weighted(self, power: float) -> HeightLaw:
-        return WeightedHeights(self.heights, partial(self.curvature.mean, power)) if power else self.heights
-
-    def _new_rule(self, h: Array, grading: Grading, branches: Branches, cuts: Cuts = no_cuts) -> HeightRule:
-        return rule_of_radii(h, grading, self.curvature, branches, cuts)
+    def _new_rule(
+        self, h: Array, grading: Grading, branches: Branches, cuts: Cuts, **powers: float
+    ) -> HeightRule:
+        return rule_of_radii(h, grading, self.curvature, branches, cuts, **powers)
 
 
 @dataclass(frozen=True)
@@ -210,13 +217,11 @@ class _ListedSummits(Summits):
 
     radii: MeasuredRadii | None = None
 
-    @property
-    def powers(self) -> bool:
-        return self.radii is None
-
-    def _new_rule(self, h: Array, grading: Grading, branches: Branches, cuts: Cuts = no_cuts) -> HeightRule:
+    def _new_rule(
+        self, h: Array, grading: Grading, branches: Branches, cuts: Cuts, **powers: float
+    ) -> HeightRule:
         if self.radii is None:
-            return super()._new_rule(h, grading, branches, cuts)
+            return super()._new_rule(h, grading, branches, cuts, **powers)
         lowest = float(h.min())
         lowest = min([lowest, *(branch.lowest(lowest) for branch in branches)])
         s, ratios = np.array(self.radii.heights.heights), np.array(self.radii.ratios)
