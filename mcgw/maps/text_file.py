@@ -164,10 +164,12 @@ def _lines_of(path: Path) -> Iterator[tuple[int, str]]:
 def _words_of(path: Path, number: int, line: str) -> list[str]:
     """Numbers of a row as they stand, with decimal points."""
     words = _WITHOUT_COMMA.split(line)
+    if "," not in line:
+        return words
     commas = [word for word in words if "," in word]
     decimal = [word for word in commas if _DECIMAL_COMMA.fullmatch(word)]
     told = ""
-    if not commas or (len(words) > 1 and decimal == commas):
+    if len(words) > 1 and decimal == commas:
         return [word.replace(",", ".") for word in words]
     if len(words) > 1 and decimal:
         told = "commas are both inside and between numbers; separate the numbers by semicolons or tabs"
