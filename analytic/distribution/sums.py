@@ -16,7 +16,7 @@ from analytic.arrays import Array
 
 _ROUNDING = 5e-12  # of a probability of sums, times the root of the number of contacts
 _DAMPED = 20.0  # logarithm of the damping over a period, which is twice as long as what is read
-_SMOOTH = 500.0  # lengths of a lattice up to the lowest sum: these are so many that damping takes digits
+_LAST_DIGIT = 1e-15  # of the asperities that touch: if fewer are beyond a lattice, damping only takes digits
 _STENCIL = range(-3, 4)  # lattice points that share a value and keep its moments up to the sixth
 _MARGIN = 16  # lattice points below the lowest sum
 _REACH = 9.0  # standard deviations that hold all but 1e-18
@@ -105,12 +105,13 @@ def on_lattice(one: OneAsperity, x: Array, low: float, high: float, points: int)
     Values beyond are left out: no sum that is read has them.
     """
     step, size = (high - low) / points, 2 * points
-    damping = _DAMPED / size if low < _SMOOTH * (high - low) else 0.0
     first, k = np.floor(low / step) - _MARGIN, np.arange(size)
     signed = np.where(k < 3 * points // 2, k, k - size)
     places, p, f = one.middle / step, one.probabilities, np.zeros(size)
     kept = (places < points + 2 * _MARGIN) & (places > -points / 2)
     near, p, lost = np.rint(places[kept]), p[kept], float(p[~kept].sum())
+    undamped = np.isfinite(one.span[2]) and lost <= _LAST_DIGIT * one.share
+    damping = 0.0 if undamped else _DAMPED / size
     off, at = places[kept] - near, near.astype(np.int64)
     for i in _STENCIL:  # by Lagrange's weights
         weights = np.prod([(off - j) / (i - j) for j in _STENCIL if j != i], axis=0)
