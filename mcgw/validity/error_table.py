@@ -1,10 +1,10 @@
 """Errors of the model against boundary elements: the packaged table and its interpolation."""
 
-import csv
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.special import digamma
@@ -12,66 +12,53 @@ from scipy.special import digamma
 from analytic.arrays import Array
 
 COLUMNS = ("area", "stiffness", "separation", "load")  # quantities with an error
-_OF_GAP = ("separation", "load")
+_MODEL = ("map", "model", "interaction")  # columns of words
 _SURE = 2.1  # standard deviations that hold 95 % of maps left out: light loads have long tails
-_ROUNDING = 1e-9  # tolerance at the points of the table
+_DIGITS, _ROUNDING = 12, 1e-9  # of places in the table, which are its points if they are as close
 # Standard deviation of the gap over sqrt(m0) between spectra of H = 0.5 to 1 and one alpha, a unit of
 # ln(alpha/2): 0.01 to 0.02 at alpha = 3 and 7, 0.04 to 0.06 at 15, whatever the load (fresh maps, README).
-_SPECTRA = 0.02
+_SPECTRA = {"separation": 0.02, "load": 0.02}
 
 
 @cache
-def rows() -> tuple[dict[str, str], ...]:
-    """Columns of the table by name; the head of the file describes them."""
-    text = (files("mcgw.validity") / "table.csv").read_text(encoding="utf-8")
-    return tuple(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
+def packaged() -> Any:
+    """Rows of the packaged table; the head of the file describes them."""
+    return read((files("mcgw.validity") / "table.csv").read_text(encoding="utf-8").splitlines())
+
+
+def read(lines: Iterable[str]) -> Any:
+    """Return the rows of a table, an array with named columns; # begins a comment."""
+    head, *rows = (line for line in lines if not line.startswith("#"))
+    kinds = [(name, "U16" if name in _MODEL else "f8") for name in head.split(",")]
+    return np.loadtxt(rows, kinds, delimiter=",", ndmin=1)
 
 
 @cache
 def grid_of(kind: str, model: str, interaction: str) -> "Grid":
     """Table of a model on one kind of maps, "gaussian" or "caps"."""
-    named = {"map": kind, "model": model, "interaction": interaction}
-    found = [row for row in rows() if all(row[key] == word for key, word in named.items())]
-    return Grid.of(found, along_separation=kind == "caps")
+    rows = packaged()
+    here = np.all(
+        [rows[key] == word for key, word in zip(_MODEL, (kind, model, interaction), strict=True)], 0
+    )
+    return Grid.of(rows[here], along_separation=kind == "caps")
 
 
-@dataclass(frozen=True)
-class Expected:
-    """Errors at some loads, each array in their shape; nan outside the measured range.
+class Expected(NamedTuple):
+    """Errors at some loads; nan outside the measured range.
 
-    Parameters
-    ----------
-    bias, scatter, unsure : dict of str to ndarray
-        Mean over maps, standard deviation over them, and standard error of the mean for a surface of another
-        spectrum, by column.
-    contacts, waves : ndarray
-        Loaded spots of a map, and independent heights.
-    maps : int
-        Fewest maps behind a number.
-    loads : (float, float)
-        Between which the area was measured here; nan if nowhere.
-    lightest : float
-        From which load on there is a number of the area, by theory below the first of `loads`.
+    The mean over maps; how far 95 % of surfaces are from it; the fewest maps behind a number; between which
+    loads the area was measured here, nan if nowhere; and from which on there is a number of it, by theory
+    below those.
     """
 
     bias: dict[str, Array]
-    scatter: dict[str, Array]
-    unsure: dict[str, Array]
-    contacts: Array
-    waves: Array
+    off: dict[str, Array]
     maps: int
     loads: tuple[float, float]
     lightest: float
 
-    def farthest(self, name: str, share: Array) -> Array:
-        """How far 95 % of surfaces are from the bias, at most, if they scatter by a share of what maps do."""
-        off = _SURE * np.hypot(self.scatter[name] * share, self.unsure[name])
-        return (
-            off if name == "separation" else (1 + self.bias[name]) * np.expm1(off)
-        )  # ratios differ by factors
 
-
-def scatter_law(rows: Mapping[str, Array], name: str) -> Array:
+def scatter_law(rows: Any, name: str) -> Array:
     """Fit the standard deviation between maps as a power of x times one of the loaded spots.
 
     Eight maps tell a deviation to a quarter; all those of a model tell such a law to a few per cent, and over
@@ -82,8 +69,7 @@ def scatter_law(rows: Mapping[str, Array], name: str) -> Array:
     ndarray
         Logarithm of the deviation where x and spots are 1, and both powers.
     """
-    std = rows[f"{name}_std"]
-    share = std if name == "separation" else std / (1 + rows[name])
+    share = _share(rows, name)
     known = np.isfinite(share) & (share > 0) & (rows["maps"] > 0)
     nu = rows["maps"][known] - 1
     # The mean logarithm of a variance of nu degrees of freedom lies below that of its mean.
@@ -105,8 +91,8 @@ class Grid:
     ----------
     x : ndarray
         Rising: alpha, or eta R sigma of caps.
-    rows : list of dict of str to ndarray
-        Columns of the rows of each, by rising load.
+    rows : list of ndarray
+        Rows of the table of each, by rising load.
     scatter : dict of str to ndarray
         Laws of that between maps, by column, of separations over their unit, else as of a logarithm; loads
         at a gap scatter as gaps do, times their steepness.
@@ -115,79 +101,80 @@ class Grid:
     """
 
     x: Array
-    rows: list[dict[str, Array]]
+    rows: list[Any]
     scatter: dict[str, Array]
     along_separation: bool
 
     @classmethod
-    def of(cls, found: Iterable[Mapping[str, str]], *, along_separation: bool) -> "Grid":
+    def of(cls, table: Any, *, along_separation: bool) -> "Grid":
         """Make a grid from rows of the table."""
-        ordered = sorted(found, key=lambda row: float(row["p"]))
-        words = ("map", "model", "interaction")
-        table = {
-            key: np.array([float(row[key]) for row in ordered]) for key in ordered[0] if key not in words
-        }
+        table = table[np.argsort(table["p"], kind="stable")]
         x = np.unique(table["x"])
-        rows = [{key: column[table["x"] == value] for key, column in table.items()} for value in x]
         scatter = {name: scatter_law(table, name) for name in COLUMNS if name != "load"}
-        return cls(x, rows, scatter, along_separation)
+        return cls(x, [table[table["x"] == value] for value in x], scatter, along_separation)
 
     def holds(self, x: float) -> bool:
         """Whether surfaces on both sides of this x were measured."""
         return bool(self.x[0] * (1 - _ROUNDING) <= x <= self.x[-1] * (1 + _ROUNDING))
 
-    def expected(self, x: float, p: Array) -> Expected:
-        """Errors of surfaces of one x within the grid at loads p > 0 of the model, shape (loads,)."""
-        place = float(np.interp(np.log(x), np.log(self.x), np.arange(len(self.x))))
-        k, nearest = int(place), round(place)
-        near = {k: k + 1 - place, k + 1: place - k} if abs(place - nearest) > _ROUNDING else {nearest: 1.0}
-        units = self.x if self.along_separation else np.ones_like(self.x)
-        unit = x if self.along_separation else 1.0
+    def expected(self, x: float, p: Array, contacts: Array | None = None, waves: float = np.nan) -> Expected:
+        """Errors of surfaces of one x within the grid at loads p > 0 of the model, shape (loads,).
+
+        A surface has so many contacts at each load, and so many independent heights: by default as many as
+        the maps. A gap, and what follows from it, is as sure as the long waves are many, however many
+        contacts lie on them.
+        """
+        place = round(float(np.interp(np.log(x), np.log(self.x), np.arange(len(self.x)))), _DIGITS)
+        near = [k for k in range(len(self.x)) if abs(k - place) < 1]
+        unit = {k: x / self.x[k] if self.along_separation else 1.0 for k in near}  # of the loads of a row
         with np.errstate(divide="ignore"):
-            at = np.log(p / unit)
+            at = np.log(p)
+        shares = np.array([1 - abs(k - place) for k in near])
         found = {
-            name: np.sum(
-                [share * _between(self.rows[k], name, units[k], at) for k, share in near.items()], axis=0
-            )
+            name: np.tensordot(shares, [_between(self.rows[k], name, unit[k], at) for k in near], 1)
             for name in COLUMNS
         }
-        solved = [self.rows[k]["p"][self.rows[k]["maps"] > 0] / units[k] for k in near]
-        low, high = max(loads[0] for loads in solved), min(loads[-1] for loads in solved)
-        lightest = max(self.rows[k]["p"][np.isfinite(self.rows[k]["area"])][0] / units[k] for k in near)
-        maps = min(int(m[m > 0].min()) for m in (self.rows[k]["maps"] for k in near))
-        scatter, unsure = {}, {}
-        for name, (_, contacts, _, steep, theory) in found.items():
-            start, of_x, of_contacts = self.scatter["separation" if name == "load" else name]
-            scatter[name] = np.exp(start + of_x * np.log(x) + of_contacts * contacts + steep)
-            # Few maps determine a mean, and alpha does not determine a spectrum.
-            other = _SPECTRA * np.log(x / self.x[0]) if name in _OF_GAP and not self.along_separation else 0.0
-            of_maps = np.hypot(scatter[name] / np.sqrt(maps), other * np.exp(steep))
-            unsure[name] = np.hypot(of_maps, theory)
-        return Expected(
-            {name: values[0] for name, values in found.items()},
-            scatter,
-            unsure,
-            np.exp(found["area"][1]),
-            np.exp(found["area"][2]),
-            maps,
-            (float(unit * low), float(unit * high)) if low <= high else (np.nan, np.nan),
-            float(unit * lightest),
+        solved = {k: self.rows[k][self.rows[k]["maps"] > 0] for k in near}
+        low, high = (
+            pick([unit[k] * solved[k]["p"][end] for k in near]) for pick, end in ((max, 0), (min, -1))
         )
+        lightest = max(unit[k] * self.rows[k]["p"][np.isfinite(self.rows[k]["area"])][0] for k in near)
+        maps = min(int(rows["maps"].min()) for rows in solved.values())
+        with np.errstate(divide="ignore", invalid="ignore"):
+            spots = np.ones_like(p) if contacts is None else np.sqrt(np.exp(found["area"][1]) / contacts)
+        longest = np.fmax(spots, np.sqrt(np.exp(found["area"][2]) / waves))
+        off = {}
+        for name, (bias, of_spots, _, steep, theory) in found.items():
+            start, of_x, of_contacts = self.scatter["separation" if name == "load" else name]
+            scatter = np.exp(start + of_x * np.log(x) + of_contacts * of_spots + steep)
+            # Few maps determine a mean, and alpha does not determine a spectrum.
+            other = 0.0 if self.along_separation else _SPECTRA.get(name, 0.0) * np.log(x / self.x[0])
+            unsure = np.hypot(np.hypot(scatter / np.sqrt(maps), other * np.exp(steep)), theory)
+            far = _SURE * np.hypot(scatter * (spots if name == "area" else longest), unsure)
+            # ratios differ by factors
+            off[name] = far if name == "separation" else (1 + bias) * np.expm1(far)
+        loads = (low, high) if low <= high else (np.nan, np.nan)
+        return Expected({name: values[0] for name, values in found.items()}, off, maps, loads, lightest)
 
 
-def _between(rows: Mapping[str, Array], name: str, unit: float, at: Array) -> Array:
+def _share(rows: Any, name: str) -> Array:
+    """Return the standard deviation between maps: of a separation over its unit, else relative."""
+    std = rows[f"{name}_std"]
+    return np.asarray(std if name == "separation" else std / (1 + rows[name]))
+
+
+def _between(rows: Any, name: str, unit: float, at: Array) -> Array:
     """Bias, logarithms of contacts, waves and steepness, and what is unsure, shape (5, loads)."""
-    bias, off = rows[name], rows[f"{name}_std"]
-    # The table's load is the right one; at a given gap the model is known by its own.
-    own = rows["p"] * (1 + bias) if name == "load" else rows["p"]
-    known = np.isfinite(own)
-    if not known.any():
+    rows = rows[np.isfinite(rows[name])]
+    if not rows.size:
         return np.full((5, *at.shape), np.nan)
+    # The table's load is the right one; at a given gap the model is known by its own.
+    points = np.log(unit * rows["p"] * (1 + rows["load"] if name == "load" else 1))
+    off = _share(rows, name)
     # Change of the logarithm of the load per unit of gap, between maps.
-    steep = np.log(off / (1 + bias) / rows["separation_std"]) if name == "load" else np.zeros_like(own)
-    unsure = np.where(rows["maps"] > 0, 0.0, off if name == "separation" else off / (1 + bias))
-    points = np.log(own[known] / unit)
-    nearest = points[np.argmin(np.abs(points - at[:, None]), axis=1)]
-    at = np.where(np.abs(nearest - at) <= _ROUNDING, nearest, at)
-    numbers = bias, np.log(rows["contacts"]), np.log(rows["waves"]), steep, unsure
-    return np.array([np.interp(at, points, y[known], np.nan, np.nan) for y in numbers])
+    steep = np.log(off / rows["separation_std"]) if name == "load" else np.zeros_like(off)
+    unsure = np.where(rows["maps"] > 0, 0.0, off)
+    numbers = rows[name], np.log(rows["contacts"]), np.log(rows["waves"]), steep, unsure
+    found = np.array([np.interp(at, points, y) for y in numbers])
+    inside = (at >= points[0] - _ROUNDING) & (at <= points[-1] + _ROUNDING)
+    return np.where(inside, found, np.nan)

@@ -1,7 +1,7 @@
 """Measured error of the model of a scene against elasticity: its place in the table, and errors there."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -44,24 +44,11 @@ _GAUSSIAN = Maps("gaussian", "alpha", "p/(E* g)", "Gaussian", "the limit of Bush
 _CAPS = Maps("caps", "eta R sigma", "p/(E* sqrt(sigma/R))", "separate caps", "Hertz's law")
 
 
-@dataclass(frozen=True)
-class Place:
-    """Place of a scene in the table.
+class Place(NamedTuple):
+    """Place of a scene in the table: the maps, and the model of its summits.
 
-    Parameters
-    ----------
-    maps : Maps
-        Isotropic Gaussian surfaces, or separate spherical caps.
-    model : {"one radius", "nayak", "own radii"}
-        Model of its summits.
-    x : float
-        Nayak's alpha of Gaussian surfaces, eta R sigma of caps.
-    slope : float
-        By which pressures over E* are taken: the rms slope g, or sqrt(sigma/R) of caps.
-    rms : float
-        By which gaps of the table are taken, over sigma: sqrt(m0), or 1 for caps.
-    area_only : str
-        Why only the area at a given load is known, in words; else empty.
+    Then Nayak's alpha, or eta R sigma of caps; by what pressures over E* are taken, the rms slope g or
+    sqrt(sigma/R) of caps; and gaps of the table over sigma, sqrt(m0) or 1 for caps.
     """
 
     maps: Maps
@@ -69,7 +56,6 @@ class Place:
     x: float
     slope: float
     rms: float
-    area_only: str
 
 
 def validity_of(scene: Any, separations: ArrayLike | None = None) -> Validity:
@@ -95,8 +81,8 @@ def validity_of(scene: Any, separations: ArrayLike | None = None) -> Validity:
     reason = not_on_the_map(scene)
     if reason is not None:
         return replace(nothing, unknown=f"not measured: {reason}")
-    place = place_of(scene)
-    alone = scene.interaction is None or place.area_only
+    place, area_only = place_of(scene), _area_only(scene)
+    alone = scene.interaction is None or area_only
     grid = grid_of(place.maps.kind, place.model, "none" if alone else "summits")
     x = f"{place.maps.x} = {place.x:.4g}"
     measured = f"measured: {grid.x[0]:g} to {grid.x[-1]:g}"
@@ -105,37 +91,27 @@ def validity_of(scene: Any, separations: ArrayLike | None = None) -> Validity:
     model = replace(scene.alone, grading=Homogeneous(), unload_from=None, film=None)
     stood_on = scene.n_asperities / scene.surface.eta  # area, m^2
     p = model.mean("load", h) / (scene.surface.E_star * stood_on) / place.slope
-    found = grid.expected(place.x, p)
     contacts = scene.n_asperities * scene.heights.sf(h)
-    share = _share(scene.fitted, found, contacts, stood_on)
+    none = contacts < _NONE
+    seen = scene.fitted and scene.fitted.area  # m^2
+    waves = scene.fitted.independent * stood_on / seen if seen else math.nan
+    found = grid.expected(place.x, p, np.where(none, np.nan, contacts), waves)
     bias, error = {}, {}
     for name in COLUMNS:
         unit = place.rms if name == "separation" else 1.0
-        unit = np.nan if place.area_only and name != "area" else unit
+        unit = np.nan if area_only and name != "area" else unit
         bias[name] = unit * found.bias[name]
-        error[name] = np.abs(bias[name]) + unit * found.farthest(name, share[name])
+        error[name] = np.abs(bias[name]) + unit * found.off[name]
     loads = _loads(place.maps, found, p)
     many = f"{found.maps} maps" if found.maps > 1 else "one map"
     where = (
         f"boundary elements on homogeneous half-spaces, {many} ({place.maps.words}) a point: "
         f"{place.maps.x} = {place.x:.3g}{_by(scene, place)} ({measured}), {loads}"
-        f"{f'; nothing else: {place.area_only}' if place.area_only else ''}"
+        f"{f'; nothing else: {area_only}' if area_only else ''}"
     )
     graded, listed = not isinstance(scene.modulus, Homogeneous), place.maps is _CAPS
     told = Validity(h, p, error, bias, graded, place.maps.axis, where, listed=listed)
-    return told if told.measured.all() else replace(told, unknown=_unknown(told, contacts < _NONE, loads))
-
-
-def _share(fitted: Fitted | None, found: Expected, own: Array, area: float) -> dict[str, Array]:
-    """Root of the contacts of a map over those of a surface; of waves, if fewer of them, for all but areas.
-
-    A gap, and what follows from it, is as sure as the long waves are many, however many contacts lie on them.
-    """
-    with np.errstate(divide="ignore", invalid="ignore"):
-        contacts = np.sqrt(found.contacts / np.where(own < _NONE, np.nan, own))
-    correlated = math.nan if fitted is None or fitted.area is None else fitted.area / fitted.independent
-    waves = np.sqrt(found.waves * correlated / area)
-    return {name: contacts if name == "area" else np.fmax(contacts, waves) for name in COLUMNS}
+    return told if told.measured.all() else replace(told, unknown=_unknown(told, none, loads))
 
 
 def _loads(maps: Maps, found: Expected, p: Array) -> str:
@@ -231,12 +207,12 @@ def place_of(scene: Any) -> Place:
         moments, model = moments_of(surface) if fitted is None else fitted.moments, "one radius"
     if moments is None:
         slope = math.sqrt(surface.sigma / surface.radius)
-        return Place(_CAPS, model, crowding(surface), slope, 1.0, _apart(scene))
+        return Place(_CAPS, model, crowding(surface), slope, 1.0)
     g, rms = math.sqrt(2 * moments.m2), math.sqrt(moments.m0) / surface.sigma
-    return Place(_GAUSSIAN, model, moments.alpha, g, rms, _apart(scene))
+    return Place(_GAUSSIAN, model, moments.alpha, g, rms)
 
 
-def _apart(scene: Any) -> str:
+def _area_only(scene: Any) -> str:
     """Why an interaction differs from that of the periodic cells, or empty; areas do not depend on it."""
     found, surface = scene.interaction, scene.surface
     if found is None:

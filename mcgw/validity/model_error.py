@@ -65,10 +65,7 @@ class Validity(Shown):
 
     def known(self, *names: str) -> Marks:
         """Whether one of some columns was measured, at each separation."""
-        known = np.zeros(len(self.separations), dtype=np.bool_)
-        for name in names:
-            known |= np.isfinite(self.error[name])
-        return known
+        return np.asarray(np.any([np.isfinite(self.error[name]) for name in names], axis=0))
 
     def worst(self, *names: str) -> float:
         """Largest expected error of some columns over the separations; nan if none was measured."""

@@ -12,6 +12,8 @@ order, alphas left out: the table 0.052, 0.060, 0.046; powers up to the fourth 0
 0.053, 0.053, 0.050. Fresh, 233 solves: 0.071, 0.124, 0.077; 0.077, 0.123, 0.074; 0.071, 0.124, 0.077.
 """
 
+from typing import Any
+
 import numpy as np
 import solve_table
 from deviations import deviations, number
@@ -19,7 +21,7 @@ from fresh_maps import PATH
 from numpy.typing import NDArray
 from scipy.interpolate import RBFInterpolator
 
-from mcgw.validity.error_table import Grid, rows
+from mcgw.validity.error_table import Grid, packaged
 
 Array = NDArray[np.float64]
 MODELS = (("one radius", "none"), ("own radii", "none"), ("own radii", "summits"))
@@ -40,16 +42,14 @@ def powers(at: Array, orders: tuple[int, int]) -> Array:
     return np.column_stack([at[:, 0] ** i * at[:, 1] ** j for i, j in pairs])
 
 
-def told(law: object, known: list[dict[str, str]], name: str, x: Array, p: Array) -> Array:
+def told(law: object, known: Any, name: str, x: Array, p: Array) -> Array:
     """The bias that a law of some rows tells."""
     if law == "table":
         grid = Grid.of(known, along_separation=False)
         return np.array(
             [float(grid.expected(a, np.array([b])).bias[name][0]) for a, b in zip(x, p, strict=True)]
         )
-    a, b, bias, std, maps = (
-        np.array([float(row[key]) for row in known]) for key in ("x", "p", name, f"{name}_std", "maps")
-    )
+    a, b, bias, std, maps = (known[key] for key in ("x", "p", name, f"{name}_std", "maps"))
     use = np.isfinite(bias) & (maps > 0)
     at, y = reduced(a[use], b[use]), (bias if name == "separation" else np.log1p(bias))[use]
     sure = 1 / np.hypot(std[use] / np.sqrt(maps[use]), NOISE)
@@ -78,23 +78,19 @@ def main() -> None:
     found = [{(d.model, d.interaction): d for d in deviations(row)} for row in fresh]
     laws: tuple[object, ...] = ("table", *ORDERS, "spline")
     print("".join(f"{word!s:>14}" for word in ("left out", "model", "", "quantity", *laws)))
+    rows = packaged()
     for model in MODELS:
-        known = [
-            row for row in rows() if (row["map"], row["model"], row["interaction"]) == ("gaussian", *model)
-        ]
-        known = [row for row in known if row["maps"] != "0"]
-        alphas = sorted({float(row["x"]) for row in known})
+        kind = [rows[key] == word for key, word in zip(("model", "interaction"), model, strict=True)]
+        known = rows[np.all([rows["map"] == "gaussian", *kind, rows["maps"] > 0], axis=0)]
+        alphas = np.unique(known["x"])
         for name in QUANTITIES:
             of_alphas, of_maps = [], []
             for law in laws:
                 off = []
                 for out in alphas[1:-1]:
-                    others = [row for row in known if float(row["x"]) != out]
-                    x, p, real = (
-                        np.array([float(row[key]) for row in known if float(row["x"]) == out])
-                        for key in ("x", "p", name)
-                    )
-                    off.append(left(name, real, told(law, others, name, x, p)))
+                    here = known[known["x"] == out]
+                    said = told(law, known[known["x"] != out], name, here["x"], here["p"])
+                    off.append(left(name, here[name], said))
                 of_alphas.append(np.sqrt(np.mean(np.concatenate(off) ** 2)))
                 real = np.array([getattr(each[model], name) for each in found])
                 of_maps.append(np.sqrt(np.mean(left(name, real, told(law, known, name, alpha, at)) ** 2)))
