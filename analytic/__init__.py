@@ -45,7 +45,7 @@ from analytic.equations import (
     stiffness,
     stiffness_ratio,
 )
-from analytic.gradings import Clipped, Custom, Exponential, Grading, Homogeneous
+from analytic.gradings import Clipped, Custom, Exponential, Grading, Homogeneous, Table
 from analytic.height_rule import Fluctuations, HeightRule
 from analytic.height_table import HeightTable
 from analytic.heights import ExponentialHeights, Gaussian, HeightLaw, Weibull
@@ -73,7 +73,6 @@ from analytic.resolution import first_negative, resolved_breaks
 from analytic.scipy_heights import ScipyHeights
 from analytic.series import bends, is_data, name_of, resolved
 from analytic.surface import Body, SpectralMoments, Surface, composite_modulus
-from analytic.tables import Table
 
 if TYPE_CHECKING:
     from analytic.correlation import (

@@ -16,17 +16,106 @@ The radius of a summit is that of the sphere of its geometric mean curvature (Gr
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.special import erfcx, ndtr
 
 from analytic.arrays import Array
-from analytic.curvature_given_height import CurvatureGivenHeight
-from analytic.nayak import Nayak, tables_of
+from analytic.nayak import Nayak, NayakTables, tables_of, upper_tail
+from analytic.quadrature import panelled
 
 MEAN_CURVATURE = 8 / math.sqrt(3 * math.pi)  # of the summits, over sqrt(m4/3)
 _DIVERGES = 4.0  # power of the radius that has no mean: the density of g begins as its cube
 _BLOCK = 1024  # numbers whose rules are summed at a time
+_WIDE = 9.5  # standard deviations, beyond which a normal density is 1e-20 of its largest value
+
+
+@dataclass(frozen=True, eq=False)
+class CurvatureGivenHeight:
+    """Law of g, the geometric mean curvature over sqrt(m4/3), of summits at heights x over sqrt(m0).
+
+    Parameters
+    ----------
+    alpha : float
+        Nayak's bandwidth.
+    x : ndarray
+        Heights, shape (n,).
+    """
+
+    alpha: float
+    x: Array
+
+    @property
+    def _tables(self) -> NayakTables:
+        return tables_of(float(self.alpha))
+
+    @property
+    def _v(self) -> float:
+        return 2 * self._tables.width**2
+
+    @cached_property
+    def _mu(self) -> Array:
+        return np.asarray(math.sqrt(2) * self._tables.rho * self.x)
+
+    @cached_property
+    def _whole(self) -> Array:
+        """Integral of `_parts` over all g."""
+        return self._tables.density(self.x) * math.sqrt(2 * math.pi / 3)
+
+    def _parts(self, g: Array) -> Array:
+        """``exp(g^2/2)`` times the integral over tau > g; far below over a factor that the height decides."""
+        v, mu = self._v, self._mu
+        x, a = g / math.sqrt(v), mu / math.sqrt(v)
+        z = math.sqrt(1 + v) * x - a / math.sqrt(1 + v)
+        tail = upper_tail(z) * np.exp(np.where(a < 0, x * (a - x / 2), -((x - a) ** 2) / 2))
+        body = ndtr(-z) * np.exp(np.minimum(g * g - mu * mu / (1 + v), 0.0) / 2)
+        return np.asarray(np.where(z > 0, tail, body) / math.sqrt(1 + v))
+
+    def edges(self, low: Array, high: Array) -> Array:
+        """Return ends of pieces on which the law is smooth, between two curvatures at each height: (6, n)."""
+        v, mu = self._v, self._mu
+        turn, width = mu / (1 + v), _WIDE * math.sqrt(v / (1 + v))
+        peak = mu - _WIDE * math.sqrt(v), self.highest(0 * mu)
+        return np.sort(np.clip([low, turn - width, turn + width, *peak, high], low, high), axis=0)
+
+    def highest(self, g: Array) -> Array:
+        """Curvature of which there are 1e-20 times as many as of `g`, or as of the most frequent one."""
+        above = np.maximum(g - self._mu, 0.0)
+        return np.asarray(self._mu + np.hypot(above, (_WIDE + 0.5) * math.sqrt(self._v)))
+
+    def pdf(self, g: Array) -> Array:
+        """Probability density at `g`, shape (n,)."""
+        return g**3 * self._parts(g) / self._whole
+
+    def with_height(self, g: Array) -> Array:
+        """Probability density of the height and of a curvature `g` together, shape (n,)."""
+        return g**3 * self._parts(g) * self._tables.envelope(self.x) / math.sqrt(2 * math.pi / 3)
+
+    def elasticity(self, g: Array) -> Array:
+        """``d log(density)/d log(g)``."""
+        v = self._v
+        z = (math.sqrt(1 + v) * g - self._mu / math.sqrt(1 + v)) / math.sqrt(v)
+        rate = math.sqrt(2 / math.pi) / erfcx(z * math.sqrt(0.5))  # of the normal tail
+        return np.asarray(3 + g * g - g * math.sqrt((1 + v) / v) * rate)
+
+    def between(self, low: Array, high: Array) -> Array:
+        """Probability of a curvature between two."""
+        g, w = panelled(self.edges(low, high))
+        return np.asarray((w * g**3 * self._parts(g)).sum(axis=0) / self._whole)
+
+    def sf(self, low: Array) -> Array:
+        """Probability of a larger curvature."""
+        return self.between(low, np.maximum(self.highest(low), low))
+
+    def mean_inverse(self, power: float, flattest: float) -> Array:
+        """Mean of ``max(g, flattest)^-power``."""
+        low = np.full_like(self.x, flattest)
+        high = np.maximum(self.highest(low), low)
+        y, w = panelled(np.sqrt(self.edges(low, high)))  # of the root all powers that are asked for are whole
+        rest = (w * 2 * y ** (7 - 2 * power) * self._parts(y * y)).sum(axis=0) / self._whole
+        return np.asarray(rest if flattest == 0 else rest + flattest**-power * self.between(0 * low, low))
 
 
 @dataclass(frozen=True)
@@ -84,20 +173,19 @@ class RandomCurvature:
 
     def pdf(self, g: ArrayLike, s: ArrayLike) -> Array:
         """Return the probability density of the curvature at given heights, broadcast."""
-        return self._broadcast(lambda a, x: CurvatureGivenHeight(self.alpha, x).pdf(a), g, s)
+        return self._given_height(CurvatureGivenHeight.pdf, g, s)
 
     def with_height(self, g: ArrayLike, s: ArrayLike) -> Array:
         """Return the probability density of reduced heights and curvatures together, broadcast."""
-        found = self._broadcast(lambda a, x: CurvatureGivenHeight(self.alpha, x).with_height(a), g, s)
-        return self.heights.std * found
+        return self.heights.std * self._given_height(CurvatureGivenHeight.with_height, g, s)
 
     def cdf(self, g: ArrayLike, s: ArrayLike) -> Array:
         """Return the probability of a smaller curvature, to full relative accuracy."""
-        return self._broadcast(lambda a, x: CurvatureGivenHeight(self.alpha, x).between(0 * a, a), g, s)
+        return self._given_height(lambda law, a: law.between(0 * a, a), g, s)
 
     def sf(self, g: ArrayLike, s: ArrayLike) -> Array:
         """Return the probability of a larger curvature, to full relative accuracy."""
-        return self._broadcast(lambda a, x: CurvatureGivenHeight(self.alpha, x).sf(a), g, s)
+        return self._given_height(CurvatureGivenHeight.sf, g, s)
 
     def mean(self, power: float, s: ArrayLike) -> Array:
         """Return the mean of a power of the radius ratio at given heights, in their shape.
@@ -123,10 +211,8 @@ class RandomCurvature:
                 "unless largest bounds them)"
             )
         flattest = MEAN_CURVATURE / self.largest
-        return self._broadcast(
-            lambda a, x: a**power * CurvatureGivenHeight(self.alpha, x).mean_inverse(power, flattest),
-            MEAN_CURVATURE,
-            s,
+        return self._given_height(
+            lambda law, a: a**power * law.mean_inverse(power, flattest), MEAN_CURVATURE, s
         )
 
     def summits(self, rng: np.random.Generator, n: int) -> tuple[Array, Array]:
@@ -134,15 +220,13 @@ class RandomCurvature:
         s, g = self.heights.summits(rng, n)
         return s, self.ratio(g)
 
-    def _over_rms(self, s: ArrayLike) -> Array:
-        """Heights over sqrt(m0), no farther out than there are any."""
+    def _given_height(
+        self, function: Callable[[CurvatureGivenHeight, Array], Array], g: ArrayLike, s: ArrayLike
+    ) -> Array:
+        """Broadcast over curvatures and heights, these no farther out than there are any."""
         edges = tables_of(float(self.alpha)).edges
-        return np.clip(self.heights.over_rms(s), edges[0], edges[-1])
-
-    def _broadcast(self, function: Callable[[Array, Array], Array], first: ArrayLike, s: ArrayLike) -> Array:
-        a, x = np.broadcast_arrays(np.asarray(first, dtype=np.float64), self._over_rms(s))
-        result, flat, heights = np.empty(a.size), a.ravel(), x.ravel()
-        for k in range(0, a.size, _BLOCK):
-            i = slice(k, k + _BLOCK)
-            result[i] = function(flat[i], heights[i])
-        return result.reshape(a.shape)
+        heights = np.clip(self.heights.over_rms(s), edges[0], edges[-1])
+        a, x = np.broadcast_arrays(np.asarray(g, dtype=np.float64), heights)
+        parts = [slice(k, k + _BLOCK) for k in range(0, a.size, _BLOCK)]
+        found = [function(CurvatureGivenHeight(self.alpha, x.ravel()[i]), a.ravel()[i]) for i in parts]
+        return np.concatenate([np.empty(0), *found]).reshape(a.shape)

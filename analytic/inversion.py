@@ -11,7 +11,7 @@ from analytic.gradings import Grading
 from analytic.heights import GAUSSIAN, HeightLaw
 from analytic.integrals import fn, quotient
 from analytic.quantities import QUANTITIES
-from analytic.roots import falling_root
+from analytic.roots import root
 
 LOWEST = -40.0  # separation that is looked at
 _GRID = np.concatenate([np.linspace(LOWEST, 10, 251), np.geomspace(10.5, 1000, 60)])
@@ -41,7 +41,7 @@ def last_separations(
             last = int(high_enough[-1])
             left, right = grid[max(last - farther, 0)], grid[min(last + 1 + farther, grid.size - 1)]
             if excess(left) > 0 > excess(right):
-                return falling_root(excess, float(left), float(right))
+                return root(excess, float(right), float(left))
             if not farther:  # right at an end of the bracket a target may lie beyond it by a last digit
                 return float(left if excess(left) <= 0 else right)
         raise ValueError(f"{name}: not reached for h from {grid[0]:g} to {grid[-1]:.4g}; give another value")

@@ -8,7 +8,6 @@ entire: its pieces have one width. Means and variances underflow with its densit
 
 import math
 from collections.abc import Callable, Sequence
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -19,7 +18,6 @@ from analytic.heights import Gaussian, HeightLaw
 from analytic.measured_summits import MeasuredHeights
 from analytic.quadrature import REACH, SPANS, WIDEST, in_pieces
 from analytic.resolution import resolved_breaks
-from analytic.steep import reach, tame
 
 POWER = 4  # of the modulus in the kurtosis
 _GROWTH = 8.0  # of the pieces away from a singular end
@@ -30,6 +28,9 @@ _NOTHING = 1e-32  # share of the touching heights that can be left out
 _RARE = 1e-37  # a share that no sampler draws
 _SURE = 1e-16  # up to such a rare height a grading must have values
 _SUMS = ((4, 0.0), (3, 0.0), (2, 0.0), (1, 3.0))  # powers of the modulus and of the approach in moments
+_LOST = 40.0  # logarithm of the weight lost outside: 4e-18 of its largest value
+_FARTHER, _MOST_STEPS = 1.1, 1000  # an end is looked for so many times as far, up to 1e38 times
+_ALONG = np.union1d(np.linspace(0, 1, 65), np.geomspace(1e-4, 1, 65))
 _GRID = 16  # the upper end is rounded up to one over this
 
 Further = Callable[[float, float], Sequence[float]]
@@ -44,32 +45,55 @@ def ends_of(
     that are summed. Under other laws than the normal one it is the range of what counts at the lowest
     separation. A grading that rises too steeply for sums of such powers is a ValueError.
     """
-    if isinstance(law, Gaussian):
-        return _normal_ends(float(separations[0]), max(float(separations[-1]), 0.0), grading, power)
     low, high = max(float(separations[0]), law.support[0]), law.support[1]
     start = max(low, float(law.ppf(np.array(_NOTHING))))
-    top = min(float(law.isf(np.array(_NOTHING), start)), high)
+    last = max(start, float(separations[-1])) if isinstance(law, Gaussian) else start
+    top = min(float(law.isf(np.array(_NOTHING), last)), high)
     if start < high and not start < top and law.pdf(np.array(start)) > 0:  # SciPy has lost this tail
         top = min(start + 1.0, high)
     elif not (start < top and law.sf(np.array(start)) > _RAREST):
         return start, top
 
-    def log_density(s: Array) -> Array:
+    def logarithms(s: Array, start: float) -> tuple[Array, Array]:
+        """Of what is summed, over a constant, and of the modulus in it."""
         with np.errstate(divide="ignore"):
-            return np.maximum(np.log(law.pdf(s)), _UNDERFLOW)
+            density = -s * s / 2 if isinstance(law, Gaussian) else np.maximum(np.log(law.pdf(s)), _UNDERFLOW)
+            modulus = power * np.log(np.abs(grading(s)))
+        return density + modulus + exponent * np.log1p(np.abs(s - start)), modulus
 
-    far = partial(reach, log_density, grading, power=power, exponent=exponent)
+    steepest = 700.0 - 25.0 * power  # leaves room for the power of the approach
     middle = float(np.clip(law.isf(np.array(0.5), start), start, top))
-    return far(middle, start, low), far(start, top, high)
+    return _reach(logarithms, steepest, middle, start, low), _reach(logarithms, steepest, start, top, high)
 
 
-def _normal_ends(low: float, last: float, grading: Grading, power: float) -> tuple[float, float]:
-    top = last + REACH**2 / (last + np.hypot(last, REACH))
-    if tame(grading):
-        return low, top
-    far = partial(reach, lambda s: -s * s / 2, grading, power=power)
-    top = max(far(max(x, 0.0), top, np.inf) for x in (low, last))
-    return (far(0.0, -REACH, low) if low < -REACH else low), top
+def _reach(
+    logarithms: Callable[[Array, float], tuple[Array, Array]],
+    steepest: float,
+    start: float,
+    end: float,
+    limit: float,
+) -> float:
+    """Height beyond which an integral has nothing left: `end`, or farther from `start`, up to `limit`.
+
+    If the integrand does not fall, or the modulus is then beyond double precision, it is a ValueError.
+    """
+    found = end
+    for _ in range(_MOST_STEPS):
+        s = start + (found - start) * _ALONG
+        s[-1] = found
+        weight, modulus = logarithms(s, start)
+        if found == limit or not weight[-1] > weight.max() - _LOST:
+            if found == end or modulus.max() < steepest:
+                return found
+            break
+        if modulus.max() > steepest:
+            break
+        found = start + _FARTHER * (found - start)
+        found = min(found, limit) if start < limit else max(found, limit)
+    raise ValueError(
+        f"grading: up to s = {found:.4g} E*(s)/E* increases too steeply, or the tail of the heights is "
+        "too heavy, for a mean and a variance in double precision; let the grading level off"
+    )
 
 
 def _edges(law: HeightLaw, start: float, top: float) -> list[float]:

@@ -79,17 +79,6 @@ def sign_changes(
     return found
 
 
-def falling_root(excess: Callable[[float], float], low: float, high: float) -> float:
-    """Return the root of one function that is not negative at `low`, and negative at `high`.
-
-    Examples
-    --------
-    >>> round(falling_root(lambda x: 2 - x * x, 0.0, 2.0), 12)
-    1.414213562373
-    """
-    return root(excess, high, low)
-
-
 def root(excess: Callable[[float], float], left: float, right: float, *, close: float = 0.0) -> float:
     """Return the root of one function: as `sign_changes`.
 

@@ -14,6 +14,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from analytic.arrays import Array, hold
+from analytic.gradings import Custom
 from analytic.heights import HeightLaw
 from analytic.resolution import resolved_breaks
 from analytic.roots import sign_changes
@@ -22,10 +23,8 @@ T = TypeVar("T")
 
 _SECONDS = 5.0  # for moments, or jumps, of a law of scipy: some are integrals of integrals
 _NOISE = 2.0**-30  # of a density that is the exponential of large terms, as of gamma(1e4)
-_RARER, _NEARLY = (
-    10.0 ** -np.arange(1.0, 37.0),
-    1e-2,
-)  # shares, and how near they come to themselves by way of heights
+_RARER = 10.0 ** -np.arange(1.0, 37.0)  # shares
+_NEARLY = 1e-2  # how near they come to themselves by way of heights
 _NEXT = 1e-8  # as near to the lower end as is as good as there
 _NO_RARER = 1e-300  # share beyond which a law has no heights, if its density ends there:
 _INSIDE, _OUTSIDE = 1e-2, 1e-6  # it is positive so far inside, in standard deviations, and 0 so far outside
@@ -126,7 +125,7 @@ class ScipyHeights(HeightLaw):
     def breaks(self) -> tuple[float, ...]:
         """Heights that cut the density, between its 1e-9 quantiles, into smooth curves."""
         low, high = self.ppf(np.array(1e-9)), self.isf(np.array(1e-9))
-        found = partial(resolved_breaks, _Density(self), float(low), float(high), _NOISE)
+        found = partial(resolved_breaks, Custom(self.pdf), float(low), float(high), _NOISE)
         return self._in_time(_SECONDS, found, "jumps and kinks of the density")
 
     @property
@@ -234,18 +233,6 @@ def _without_place(distribution: Any) -> Any:
     if not set(names) <= set(given):
         return frozen  # shapes of a kind that has no names
     return frozen.dist(**{name: float(given[name]) for name in names})
-
-
-@dataclass(frozen=True)
-class _Density:
-    """A density in the clothes of a grading, so that its jumps and kinks are found alike."""
-
-    law: ScipyHeights
-    breaks: tuple[float, ...] = ()
-    smooth: bool = False
-
-    def __call__(self, s: Array) -> Array:
-        return self.law.pdf(s)
 
 
 def in_time(seconds: float, call: Callable[[], T], problem: str) -> T:

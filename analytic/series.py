@@ -5,10 +5,9 @@ from typing import Any
 import numpy as np
 
 from analytic.arrays import Array, Marks
-from analytic.gradings import Clipped, Custom, Exponential, Grading, Homogeneous
+from analytic.gradings import Clipped, Custom, Exponential, Grading, Homogeneous, Table
 from analytic.piecewise import MOST_PIECES, PiecewiseSeries, chebyshev_points, fitted
 from analytic.resolution import SHORT, bisected, marks, merged, resolved_breaks, spread_over
-from analytic.tables import Table
 
 _DATA = Homogeneous, Exponential, Table, PiecewiseSeries
 _SLIVER = 64  # spacings of floats: pieces so narrow only close in on a jump

@@ -13,7 +13,7 @@ import numpy as np
 from analytic import Hertz, Quantity, quantity_of
 from analytic.arrays import Array, Ints
 from analytic.laws import Branch
-from analytic.roots import falling_root, sign_changes
+from analytic.roots import root, sign_changes
 from mcgw.scene.scene import Scene
 
 _FINE, _AT_ONCE = 1 / 64, 16  # step of the search where sums may rise and fall, and steps at a time
@@ -70,7 +70,7 @@ def crossing(excess: Callable[[Any], Any], high: float, lowest: float = LOWEST) 
         beyond = some[np.asarray(excess(some)) >= 0]
         if beyond.size:
             low = float(beyond[0])
-            return falling_root(lambda h: float(excess(h)), low, low + _FINE)
+            return root(lambda h: float(excess(h)), low + _FINE, low)
     return None
 
 
@@ -135,7 +135,7 @@ class Summits:
         if most < target:
             return None
         if smooth:
-            return falling_root(lambda h: float(np.sum(self._terms([q.name], h))) - target, low, high)
+            return root(lambda h: float(np.sum(self._terms([q.name], h))) - target, high, low)
         middle = low + (high - low) / 2
         if not low < middle < high:
             return low if at_low >= target else None

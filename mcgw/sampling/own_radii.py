@@ -22,8 +22,7 @@ from numpy.polynomial import chebyshev
 
 from analytic import Nayak, RandomCurvature, quantity_of
 from analytic.arrays import Array
-from analytic.curvature import MEAN_CURVATURE
-from analytic.curvature_given_height import CurvatureGivenHeight
+from analytic.curvature import MEAN_CURVATURE, CurvatureGivenHeight
 from mcgw.machine.compiling import njit
 from mcgw.sampling.block import Layout
 from mcgw.sampling.response.response import Response, matrix_of
