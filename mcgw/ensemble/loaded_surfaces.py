@@ -2,19 +2,16 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property
-from typing import TYPE_CHECKING, Any
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
-from analytic import SEPARATIONS, Hertz, MeasuredHeights, MeasuredRadii, Quantity
+from analytic import Hertz, MeasuredHeights, MeasuredRadii, Quantity
 from analytic.arrays import Array, hold
 from mcgw.ensemble.at_load import NEGATIVE, quantities_at
-from mcgw.ensemble.separation import LOWEST, ManySurfaces, Summits
+from mcgw.ensemble.separation import LOWEST, Asperities
 from mcgw.scene.scene import Scene, storable
-
-if TYPE_CHECKING:  # its loops are loaded where surfaces are drawn, in half of the time of a short command
-    from mcgw.sampling.block import Sampler
 
 _MARGIN = 6.0  # standard deviations of a surface's separation that are drawn at once
 _RESAMPLED = 200  # specimens in place of one measured surface
@@ -55,7 +52,10 @@ class LoadedSurfaces:
     @cached_property
     def lows(self) -> list[float]:
         """Separation that nearly every surface is above, at each value."""
-        return [_lowest(self.specimens, self.given, h) for h in self.about]
+        name = (
+            self.given.name if self.sunk is None else "load"
+        )  # that of a nominal separation follows from it
+        return [_lowest(self.specimens, name, h) for h in self.about]
 
     @cached_property
     def drawn(self) -> Scene:
@@ -75,7 +75,7 @@ class LoadedSurfaces:
         ValueError
             If surfaces cannot reach a value, or if there are too many asperities to draw.
         """
-        from mcgw.sampling.asperities import listing_sampler
+        from mcgw.sampling.asperities import listing_sampler, summits_of_many  # compiled loops
 
         drawn = self.drawn
         if drawn.touching * drawn.n_surfaces > _MOST_HEIGHTS:
@@ -87,16 +87,57 @@ class LoadedSurfaces:
         step = max(int(_AT_ONCE / (drawn.touching + 1)), 1)
         for first in range(0, drawn.n_surfaces, step):
             n = min(step, drawn.n_surfaces - first)
-            starts = list(zip(self.lows, self.about, strict=True))
-            parts.append(_surfaces(self.scene, sampler, first, n, self.given, self.values, starts, self.sunk))
+            some = Asperities(self.scene, *summits_of_many(drawn, sampler, first, n))
+            parts.append([self._at(k, some, first) for k in range(len(self.values))])
             if tell is not None:
                 tell(first + n, drawn.n_surfaces)
         found = [
-            {name: np.concatenate([part[k][name] for part in parts]) for name in parts[0][k]}
-            for k in range(len(self.values))
+            {name: np.concatenate([part[name] for part in at]) for name in at[0]}
+            for at in zip(*parts, strict=True)
         ]
         hold(self, sums=found)
         return found
+
+    def _at(self, number: int, some: Asperities, first: int) -> dict[str, Array]:
+        """Separation and all quantities of some of the surfaces at one of the values."""
+        from mcgw.sampling.asperities import summits
+
+        low, value, names = self.lows[number], self.values[number], quantities_at(self.scene)
+        near = some.above(low)
+        if self.sunk is None:
+            h = near.separations(self.given, value, low, self.about[number])
+        else:
+            h = near.separations_felt(value, self.sunk, low)
+        found = {"separation": h, **near.sums(names, np.where(np.isfinite(h), h, np.inf))}
+        softest = near.softest.copy()
+        lost = np.flatnonzero(np.isnan(h))  # rare: they lie below what was drawn
+        if lost.size:
+            whole = Asperities.of(self.scene, [summits(self.drawn, first + k) for k in lost.tolist()])
+            h[lost], softest[lost] = self._anywhere(value, whole), whole.softest
+            for k in lost[whole.counts == 0]:
+                raise ValueError(f"surface {first + k} has no asperity; increase n_asperities")
+            for name, x in whole.sums(names, np.where(np.isnan(h), np.inf, h)[lost]).items():
+                found[name][lost] = x
+        for k in np.flatnonzero(np.isnan(h) | ((self.scene.negative == "error") & (softest > h))):
+            self._refuse(value, f"surface {first + k}", float(softest[k]))
+        return found
+
+    def _anywhere(self, value: float, whole: Asperities) -> Array:
+        """Return the separations of surfaces all of whose asperities are listed; nan without one."""
+        if self.sunk is not None:
+            return whole.separations_felt(value, self.sunk, LOWEST)
+        h = whole.separations(self.given, value, LOWEST)
+        if self.scene.negative == "allow" and np.isnan(h).any():
+            h = np.where(np.isnan(h), whole.below_negative(self.given, value), h)
+        return h
+
+    def _refuse(self, value: float, surface: str, softest: float) -> None:
+        """Say why a surface has no separation with a value."""
+        q = self.given
+        if np.isfinite(softest):
+            raise ValueError(NEGATIVE.format(q.name, value, q.unit, surface, softest))
+        unit, give = (f" {q.unit}", "less") if self.sunk is None else ("", "more")
+        raise ValueError(f"{q.name} = {value:g}{unit}: {surface} does not reach it; give {give}")
 
     def contacts(self, surface: int, h: float) -> tuple[Array, Array | None]:
         """Reduced heights above a separation in descending order, and the radii of these summits."""
@@ -117,12 +158,11 @@ def _resampled(scene: Scene) -> Scene:
     return scene.replace(heights=again, summits=MeasuredRadii(again, ratios), n_surfaces=_RESAMPLED)
 
 
-def _lowest(scene: Scene, q: Quantity, h: float) -> float:
+def _lowest(scene: Scene, name: str, h: float) -> float:
     """Below the solution h of the mean surface: lower than that of nearly every surface, or than all heights.
 
     That is some standard deviations, to first order. What the modulus is there does not matter yet.
     """
-    name = "load" if q.name in SEPARATIONS else q.name  # that of a nominal separation follows from the load
     spread = float(scene.theory.std(name, h) / scene.theory.slope(name, h))
     return max(h - _MARGIN * spread, min(h, float(scene.heights.ppf(np.array(_NOTHING)))))
 
@@ -139,66 +179,3 @@ def _drawn(scene: Scene, lowest: float) -> Scene:
         joint=None,
         negative="clip" if scene.negative == "clip" else "allow",
     )
-
-
-def _surfaces(
-    scene: Scene,
-    sampler: "Sampler",
-    first: int,
-    n: int,
-    q: Quantity,
-    values: Sequence[float],
-    starts: Sequence[tuple[float, float]],
-    sunk: float | None,
-) -> list[dict[str, Array]]:
-    """All quantities of some surfaces at each value: together where sums fall, else one by one.
-
-    Each value has a separation that nearly none of them is below, and one that they are about.
-    """
-    from mcgw.sampling.asperities import summits_of_many
-
-    drawn, found, names = sampler.scene, [], quantities_at(scene)
-    many = ManySurfaces(scene, *summits_of_many(drawn, sampler, first, n))
-    surface = cache(many.surface)  # once for all values
-    for value, (low, about) in zip(values, starts, strict=True):
-        h, sums = np.full(n, np.nan), {name: np.zeros(n) for name in ("separation", *names)}
-        if sunk is None and value > 0:
-            near = many.above(low)
-            h = near.separations(q, value, low, about)
-            sums = {"separation": h, **near.sums(names, np.where(np.isfinite(h), h, np.inf))}
-        for k in np.flatnonzero(np.isnan(h)).tolist():
-            for name, x in _singly(surface(k), drawn, first + k, q, value, sunk).items():
-                sums[name][k] = x
-        found.append(sums)
-    return found
-
-
-def _singly(
-    on: Summits, drawn: Scene, number: int, q: Quantity, value: float, sunk: float | None
-) -> dict[str, float]:
-    """All quantities of one surface at a value; with `sunk`, 1/N, at a nominal separation."""
-    from mcgw.sampling.asperities import summits
-
-    scene = on.scene
-    target = value / q.scale(scene.surface)
-    if sunk is None:
-        h = on.largest_separation(q, target, drawn.lowest)
-    else:
-        h = on.nominal(value, sunk, drawn.lowest)
-    if h is None:  # rare: it lies below what was drawn
-        on = Summits.of(scene, *summits(drawn, number))
-        if not on.s.size:
-            raise ValueError(f"surface {number} has no asperity; increase n_asperities")
-        if sunk is None:
-            h = on.separation_anywhere(q, target, drawn.lowest)
-        else:
-            h = on.nominal(value, sunk, LOWEST)
-    negative = on.s[on.modulus < 0]
-    if h is None and not negative.size:
-        told, give = f"{q.name} = {value:g} {q.unit}", "less"
-        if sunk is not None:
-            told, give = f"nominal_separation = {value:g}", "more"
-        raise ValueError(f"{told}: surface {number} does not reach it; give {give}")
-    if h is None or (scene.negative == "error" and np.any(negative > h)):
-        raise ValueError(NEGATIVE.format(q.name, value, q.unit, f"surface {number}", negative.max()))
-    return {"separation": h, **on.sums(quantities_at(scene), h)}

@@ -21,7 +21,7 @@ MODULES = {
         "count_interval exact_ends FEWEST mean_interval moments pearson3_quantile Spread spread_of TOO_FEW"
     ),
     "mcgw.ensemble.results": "Held MemoryResults",
-    "mcgw.ensemble.separation": "crossing Summits",
+    "mcgw.ensemble.separation": "Asperities crossing",
     "mcgw.ensemble.simulation": "reducer_of Values",
     "mcgw.ensemble.solution": "solutions",
     "mcgw.figures.against_theory": "comparison_figure quantity_panel spread",
