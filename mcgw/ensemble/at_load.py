@@ -69,27 +69,27 @@ def answers_at(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
     (`reference = "mean-plane"`). Where current or heat is conducted, conductances per area and resistances
     are included.
     """
-    if scene.interaction is not None:
-        from mcgw.ensemble.half_space import with_interaction  # for those scenes alone
+    felt, joint = found["separation"], dict[str, Any]()
+    sums = {name: x for name, x in found.items() if name != "separation"}
+    if scene.interaction is not None or scene.gas is not None:
+        from mcgw.ensemble.half_space import answered  # for those scenes alone
 
-        sums, felt = {name: x for name, x in found.items() if name != "separation"}, found["separation"]
-        found = {"separation": felt, **with_interaction(scene, sums, ("nominal_separation",), felt)}
-    h = found["nominal_separation" if scene.from_mean_plane else "separation"]
+        more = () if scene.interaction is None else ("nominal_separation",)
+        in_gap = () if scene.gas is None else ("gap_conductance", "joint_conductance")
+        sums = answered(scene, sums, (*more, *in_gap), felt)
+        joint = {name: sums.pop(name) for name in in_gap}
+    ahead = {"separation": felt} | {name: sums[name] for name in SEPARATIONS if name in sums}
+    h = ahead["nominal_separation" if scene.from_mean_plane else "separation"]
     gap = scene.surface.sigma * (h + (scene.rise or 0.0))
-    ahead = {name: found[name] for name in found if name in ("separation", *SEPARATIONS)}
-    return {**ahead, scene.gap: gap, **found, **_conducted(scene, found)}
+    return {**ahead, scene.gap: gap, **sums, **_conducted(scene, sums, joint)}
 
 
-def _conducted(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
+def _conducted(scene: Scene, found: dict[str, Any], joint: dict[str, Any]) -> dict[str, Any]:
     """Conductances per nominal area, and resistances of spots and joint."""
     if scene.film is None:
         return {}
-    area, spots = scene.surface.nominal_area, found["conductance_si"]
-    answers = {"contact_conductance": spots / area}
-    if scene.gas is not None:
-        from mcgw.ensemble.half_space import with_joint  # for those scenes alone
-
-        answers |= with_joint(scene, found, ("gap_conductance", "joint_conductance"), found["separation"])
+    area = scene.surface.nominal_area
+    answers = {"contact_conductance": found["conductance_si"] / area, **joint}
     whole = answers.get("joint_conductance", answers["contact_conductance"])
     with np.errstate(divide="ignore"):
         name = "thermal_resistance" if scene.thermal else "contact_resistance"

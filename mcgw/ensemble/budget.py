@@ -269,7 +269,7 @@ def _of_joint(validity: Validity, scene: Scene, answers: Answers) -> tuple[float
 
     The errors of spots and gap, through the derivatives of the network, are added as independent ones.
     """
-    from mcgw.ensemble.half_space import with_joint  # for those scenes alone
+    from mcgw.ensemble.half_space import joint_conductance  # for those scenes alone
 
     assert scene.filled is not None
     spots, gap = (
@@ -279,10 +279,9 @@ def _of_joint(validity: Validity, scene: Scene, answers: Answers) -> tuple[float
         gap = (0.0, 0.0)
 
     def network(factor: float, lift: float) -> float:
-        at = {"conductance_si": factor * answers["contact_conductance"] * scene.surface.nominal_area}
-        at |= {x: answers[x] + lift for x in ("nominal_separation",) if x in answers}
-        h = answers["separation"] + lift
-        return float(with_joint(scene, at, ("joint_conductance",), h)["joint_conductance"])
+        spots_si = factor * answers["contact_conductance"] * scene.surface.nominal_area
+        apart = answers["nominal_separation" if scene.from_mean_plane else "separation"] + lift
+        return float(joint_conductance(scene, "joint_conductance", spots_si, apart))
 
     right = network(1 / (1 + spots[0]), -gap[0])
     by_spots = (spots[1] - abs(spots[0])) / (1 + spots[0])

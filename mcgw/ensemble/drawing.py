@@ -4,7 +4,7 @@ Estimates of the time of a run, in seconds and in words.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -24,7 +24,9 @@ from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.scene import Scene
 
 _Drawn = TypeVar("_Drawn")
-GoOn = Callable[[int], bool]  # called with the number drawn so far; returns whether to go on
+GoOn = Callable[
+    [float], bool
+]  # called with the surfaces drawn so far, or their work; returns whether to go on
 _WORDS = 4_000_000  # numbers of a block that fit the outer cache
 _MOST_WORDS = 20_000_000  # numbers a block may hold
 _DRAWS = 1.5e8  # asperities a block may draw, so that a bar moves every second
@@ -61,25 +63,15 @@ def at_a_time(size: int) -> int:
 
 def kept(scene: Scene, block: Block) -> dict[str, Any]:
     """Return what is kept of a block: its sums, contacts as whole numbers."""
-    alone = scene.interaction is scene.gas is None
-    arrays = dict(block.sums) if alone else answered(scene, block.sums)
+    arrays = dict(block.sums)
+    if not scene.interaction is scene.gas is None:
+        from mcgw.ensemble.half_space import answered  # for those scenes alone
+
+        more = (*scene.other_separations, *scene.of_joint)
+        arrays = answered(scene, arrays, more, np.array(scene.separations))
     for name in filter(lambda name: quantity_of(name).counts, scene.quantities):
         arrays[name] = np.rint(arrays[name]).astype(np.int64)
     return arrays
-
-
-def answered(scene: Scene, sums: dict[str, Any]) -> dict[str, Any]:
-    """Answers of surfaces from the sums over their asperities."""
-    found = dict(sums)
-    if scene.interaction is not None:
-        from mcgw.ensemble.half_space import with_interaction  # for those scenes alone
-
-        found = with_interaction(scene, sums, scene.other_separations, np.array(scene.separations))
-    if scene.gas is not None:
-        from mcgw.ensemble.half_space import with_joint  # for those scenes alone
-
-        found |= with_joint(scene, found, scene.of_joint, np.array(scene.separations))
-    return found
 
 
 def block_size(scene: Scene, sampler: Source[Any]) -> int:
@@ -120,7 +112,7 @@ def use_threads(threads: int | None) -> Iterator[None]:
         numba.set_num_threads(before)
 
 
-def always(_: int) -> bool:
+def always(_: float) -> bool:
     """Return True: continue always."""
     return True
 
@@ -168,22 +160,27 @@ class Reducer(ABC):
         """
 
 
-def drawn(reducer: Reducer, go_on: GoOn) -> Any:
-    """Return what is kept of all surfaces, or of as many as `go_on` allows, in memory."""
-    more = True
+def drawn(reducers: Sequence[Reducer], go_on: GoOn) -> list[Any]:
+    """Return what each keeps of all its surfaces, or of as many as `go_on` allows, in memory.
 
-    def asked(done: int) -> bool:
-        nonlocal more
-        more = go_on(done)
-        return more
+    That is told of the work that is done, of all of them.
+    """
+    more, before, found = True, 0.0, []
 
-    def blocks() -> Iterator[Tables]:
-        n, rows = reducer.n_surfaces, reducer.rows
-        for first in range(0, n, rows):
+    def blocks(one: Reducer) -> Iterator[Tables]:
+        def asked(done: float) -> bool:
+            nonlocal more
+            more = go_on(before + done * one.work)
+            return more
+
+        for first in range(0, one.n_surfaces, one.rows):
             if more:
-                yield reducer.tables(first, min(first + rows, n), asked)
+                yield one.tables(first, min(first + one.rows, one.n_surfaces), asked)
 
-    return reducer.held(blocks())
+    for one in reducers:
+        found.append(one.held(blocks(one)))
+        before += one.n_surfaces * one.work
+    return found
 
 
 @dataclass(frozen=True)

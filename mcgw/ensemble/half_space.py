@@ -10,35 +10,69 @@ from typing import Any
 
 import numpy as np
 
+from analytic import SEPARATIONS
 from analytic.arrays import Array
+from analytic.interaction import in_series
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import Held, Results
 from mcgw.scene.scene import Scene
 
 
-def with_interaction(scene: Scene, sums: dict[str, Any], others: Iterable[str], h: Any) -> dict[str, Any]:
-    """Return sums of asperities, stiffness and conductance with the half-space, and nominal separations.
+def answered(scene: Scene, sums: dict[str, Any], names: Iterable[str], h: Any) -> dict[str, Any]:
+    """Return sums of asperities, those of stiffness and conductance in series with the half-space; and more.
 
-    These follow from the load of each surface, without a search.
+    Nominal separations follow from the load of each surface, without a search. Each surface of a joint is
+    one network, ``1/h_j = 1/(h_spots + h_gas) + R_bodies A_n``: what passes the gas is constricted by the
+    bodies as a whole like what passes the spots. The distance of the mean planes is the separation that the
+    asperities feel, or the nominal one if it is measured from the mean plane itself.
 
     Parameters
     ----------
     scene : Scene
-        With an interaction.
+        Whose surfaces these are.
     sums : dict of str to ndarray
         Of the asperities, SI.
-    others : iterable of str
-        Of `analytic.SEPARATIONS`.
+    names : iterable of str
+        What is to be added, of `analytic.SEPARATIONS` and `analytic.JOINT`, in W/(m^2 K) or d/sigma.
     h : array_like
         Separations that the asperities feel.
     """
-    from analytic.interaction import in_series  # for those scenes alone: every comparison imports this file
-
-    series, sunk = {name: scene.series(name) for name in sums}, scene.compliance / scene.surface.sigma
-    found = {name: in_series(x, series[name]) if series[name] else x for name, x in sums.items()}
-    for name in others:
-        found[name] = h - sunk * sums["load_unloading" if name.endswith("_unloading") else "load"]
+    found = dict(sums)
+    if scene.interaction is not None:
+        series, sunk = {name: scene.series(name) for name in sums}, scene.compliance / scene.surface.sigma
+        found = {name: in_series(x, series[name]) if series[name] else x for name, x in sums.items()}
+    for name in names:
+        back = "_unloading" * name.endswith("_unloading")
+        if name in SEPARATIONS:
+            found[name] = h - sunk * sums[f"load{back}"]
+        else:
+            apart = found[f"nominal_separation{back}"] if scene.from_mean_plane else h
+            found[name] = joint_conductance(scene, name, found[f"conductance_si{back}"], apart)
     return found
+
+
+def joint_conductance(scene: Scene, name: str, conductance: Any, apart: Any) -> Any:
+    """Return "joint_conductance" or "gap_conductance", by whatever way, W/(m^2 K): see `answered`.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a joint.
+    name : str
+        Which of the two.
+    conductance : float or ndarray
+        Of the spots, and of the bodies in series with them, SI.
+    apart : float or ndarray
+        Distance of the mean planes, d/sigma.
+    """
+    assert scene.filled is not None
+    assert scene.film is not None
+    contact = conductance / scene.surface.nominal_area
+    gas = scene.filled(apart) + 0 * contact
+    if not name.startswith("joint"):
+        return gas
+    bodies = 0.0 if scene.interaction is None else scene.interaction.bodies(scene.surface, scene.film.rho)
+    return in_series(in_series(contact, -bodies) + gas, bodies)
 
 
 @dataclass(frozen=True)
@@ -50,8 +84,6 @@ class _Alone(Results):
 
     def read(self, name: str, start: int, stop: int | None) -> Array:
         """Rows `start` to `stop` (None: to the end) of a dataset."""
-        from analytic.interaction import in_series  # as above
-
         values = self.whole.read(name, start, stop)
         other = self.scene.series(name) if name in self.scene.quantities else 0.0
         return np.asarray(in_series(values, -other)) if other else values
@@ -77,40 +109,3 @@ def asperities_alone(ensemble: Ensemble) -> Ensemble:
         return replace(ensemble, scene=scene_alone(scene.replace(quantities=rest)))
     sums = _Alone(ensemble.sums, scene)
     return replace(ensemble, scene=scene_alone(scene), sums=sums)
-
-
-def with_joint(scene: Scene, found: dict[str, Any], names: Iterable[str], h: Any) -> dict[str, Any]:
-    """Conductances of the joint, W/(m^2 K), of what surfaces have besides.
-
-    Each surface is one network, ``1/h_j = 1/(h_spots + h_gas) + R_bodies A_n``: what passes the gas is
-    constricted by the bodies as a whole like what passes the spots. The distance of the mean planes is the
-    separation that the asperities feel, or the nominal one if that is measured from the mean plane itself
-    (`reference = "mean-plane"`).
-
-    Parameters
-    ----------
-    scene : Scene
-        With a joint.
-    found : dict of str to ndarray
-        SI: "conductance_si", and separations where surfaces have their own, of the same shape.
-    names : iterable of str
-        Of `analytic.JOINT`.
-    h : array_like
-        Separations where surfaces have none of their own.
-    """
-    from analytic.interaction import in_series  # as above
-
-    assert scene.filled is not None
-    assert scene.film is not None
-    bodies = 0.0 if scene.interaction is None else scene.interaction.bodies(scene.surface, scene.film.rho)
-    answers = {}
-    for name in names:
-        way = "_unloading" * name.endswith("_unloading")
-        contact = found[f"conductance_si{way}"] / scene.surface.nominal_area  # spots, and bodies in series
-        apart = found[f"nominal_separation{way}"] if scene.from_mean_plane else h
-        gas = scene.filled(apart) + 0 * contact
-        if name.startswith("joint"):
-            answers[name] = in_series(in_series(contact, -bodies) + gas, bodies)
-        else:
-            answers[name] = gas
-    return answers

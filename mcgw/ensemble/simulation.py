@@ -68,23 +68,22 @@ def simulate(
     scene = storable(scene)
     if scene.rel_err is not None or scene.max_seconds is not None:
         scene = without_rule(scene)
-    reducer, done_before = reducer_of(scene), 0
-    sampler = reducer.sampler.name
+    reducer, before = reducer_of(scene), 0.0
     reducer.check(scene.n_surfaces if until is None else 0)
 
-    def go_on(done: int) -> bool:
-        nonlocal done_before
+    def go_on(done: float) -> bool:
+        nonlocal before
         tell(done, scene.n_surfaces)
         if until is None:
             return True
-        reducer.check(done - done_before)  # how many there is time for is not known beforehand
-        done_before = done
+        reducer.check(int(done - before))  # how many there is time for is not known beforehand
+        before = done
         return monotonic() <= until
 
     with use_threads(threads), told(progress, "surfaces") as tell:
         tell(0, scene.n_surfaces)
-        held = drawn(reducer, go_on)
-    return Ensemble(with_sampling(scene, n_surfaces=held.rows()), sampler, held)
+        (held,) = drawn([reducer], go_on)
+    return Ensemble(with_sampling(scene, n_surfaces=held.rows()), reducer.sampler.name, held)
 
 
 class Values(OfScene):

@@ -77,7 +77,7 @@ def _at_once(plan: Plan, by: By) -> None:
     """All surfaces of a scene in this thread, and their file in one step. Only with the lock."""
     started = perf_counter()
 
-    def go_on(done: int) -> bool:
+    def go_on(done: float) -> bool:
         by.signals.check("nothing was saved, because the run is one block; the same command starts it again")
         by.progress(done)
         return True
@@ -87,8 +87,7 @@ def _at_once(plan: Plan, by: By) -> None:
     before = state_of(plan.path)
     finished(plan)  # else the file is another's
     found = plan.dataset([plan.reducers[0].held([tables])])
-    drawn = found._drawn() if plan.whole else None
-    put(plan, plan.contents(found.labelled(), perf_counter() - started, drawn), before)
+    put(plan, plan.contents(found.labelled(), perf_counter() - started, found._drawn()), before)
 
 
 def _in_blocks(plan: Plan, by: By) -> None:
@@ -129,7 +128,7 @@ def _draw_missing(plan: Plan, spans: list[Span], by: By, part: tuple[int, int] |
         done, left = done + plan.work(span), left - span.n
         by.progress(done)
 
-    def go_on(_: int) -> bool:
+    def go_on(_: float) -> bool:
         if ended.is_set():  # a long block does not keep an interrupted run alive
             raise StoppedError("the run has ended")
         return True

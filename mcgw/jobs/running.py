@@ -23,16 +23,7 @@ if TYPE_CHECKING:
 
 
 @overload
-def run(
-    scene: Scene,
-    path: str | Path,
-    *,
-    threads: int | None = None,
-    executor: Executor | None = None,
-    shard: None = None,
-    progress: Progress = None,
-    **changes: Any,
-) -> Ensemble: ...
+def run(scene: Scene, path: str | Path, *, shard: None = None, **others: Any) -> Ensemble: ...
 @overload
 def run(scene: Scene, path: str | Path, *, shard: str, **others: Any) -> int: ...
 def run(
@@ -117,7 +108,7 @@ def run(
                 break
     if plan.whole:
         return open_ensemble(path)
-    return Ensemble(plan.scene, plan.sampler, FileResults(path))
+    return Ensemble(plan.scene, plan.sampler, FileResults(((path, plan.total),)))
 
 
 def _stages(scene: Scene, path: Path) -> Iterator[Scene]:
@@ -136,32 +127,29 @@ def _stages(scene: Scene, path: Path) -> Iterator[Scene]:
         yield fixed.replace(n_surfaces=last)
 
 
+_Over = Mapping[str, Iterable[Any]]
+
+
 @overload
 def sweep(
     scene: Scene,
-    over: Mapping[str, Iterable[Any]],
+    over: _Over,
     *,
-    zipped: bool = False,
-    path: str | Path | None = None,
-    threads: int | None = None,
-    executor: Executor | None = None,
-    shard: None = None,
-    progress: Progress = None,
+    zipped: bool = ...,
+    path: str | Path | None = ...,
+    threads: int | None = ...,
+    executor: Executor | None = ...,
+    shard: None = ...,
+    progress: Progress = ...,
 ) -> "Sweep": ...
 @overload
 def sweep(
-    scene: Scene,
-    over: Mapping[str, Iterable[Any]],
-    *,
-    zipped: bool = False,
-    path: str | Path,
-    threads: int | None = None,
-    shard: str,
-    progress: Progress = None,
-) -> int: ...
+    scene: Scene, over: _Over, *, zipped: bool = ..., path: str | Path, threads: int | None = ...,
+    shard: str, progress: Progress = ...,
+) -> int: ...  # fmt: skip
 def sweep(
     scene: Scene,
-    over: Mapping[str, Iterable[Any]],
+    over: _Over,
     *,
     zipped: bool = False,
     path: str | Path | None = None,

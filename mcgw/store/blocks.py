@@ -120,8 +120,8 @@ class Shard:
     span: Span
     seconds: float
 
-    def tables(self, *wanted: str) -> Tables:
-        """Its tables, all or some, read and compared with their checksums.
+    def tables(self) -> Tables:
+        """Its tables, read and compared with their checksums.
 
         Raises
         ------
@@ -130,7 +130,7 @@ class Shard:
         """
         if not self.path.exists():
             raise StoreError(f"{self.path}: no longer exists; its run has ended, open the file again")
-        return read_tables(self.path, wanted or None)
+        return read_tables(self.path)
 
 
 def commit_shard(path: Path, run: str, span: Span, tables: Tables, seconds: float) -> Shard:

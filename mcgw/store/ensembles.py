@@ -1,6 +1,6 @@
 """Files of results, opened and verified: ensembles, sweeps, and what a run in progress has so far.
 
-The sums of an ensemble where they lie: in its file, or in the shards of a run in progress.
+The sums of an ensemble where they lie: in its file, or in the blocks of a run in progress.
 """
 
 from dataclasses import dataclass
@@ -13,11 +13,9 @@ from numpy.typing import NDArray
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import Results
 from mcgw.errors import StoreError
-from mcgw.formats.gate import open_h5
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from
-from mcgw.store.blocks import Shard
-from mcgw.store.h5_reading import drawn_tables, examine, look
+from mcgw.store.h5_reading import drawn_tables, examine, look, read_rows
 from mcgw.store.h5_writing import RUN_TYPE
 from mcgw.store.lock import parts_of
 from mcgw.store.run_plan import RECORD, Plan
@@ -62,13 +60,15 @@ def open_ensemble(path: str | Path) -> Ensemble:
         if not shards:
             raise StoreError(f"{path}: no block of its run is finished yet")
         if not plan.whole:
-            return Ensemble(plan.scene, plan.sampler, ShardResults(shards))
+            files = tuple((shard.path, shard.span.n) for shard in shards)
+            return Ensemble(plan.scene, plan.sampler, FileResults(files))
         blocks = (shard.tables() for shard in shards)  # each read when its turn comes
         return Ensemble(plan.scene, plan.sampler, plan.reducers[0].held(blocks))
     attributes, scene = described(path)
     if "axes" in attributes:
         raise StoreError(f"{path}: holds a sweep; mcgw.open_sweep opens it, mcgw compare and show take it")
-    held = statistics_in(path, scene) if scene.keep == "statistics" else FileResults(path)
+    values = FileResults(((path, scene.n_surfaces),))
+    held = statistics_in(path, scene) if scene.keep == "statistics" else values
     return Ensemble(scene, str(attributes["sampler"]), held)
 
 
@@ -179,40 +179,26 @@ def verify(path: Path) -> tuple[str, str]:
 
 @dataclass(frozen=True)
 class FileResults(Results):
-    """The datasets of an ensemble file, opened for each reading."""
+    """Values of surfaces in files, opened for each reading: in that of an ensemble, or in blocks of its run.
 
-    path: Path
+    Parameters
+    ----------
+    files : tuple of (Path, int)
+        Each with the number of its surfaces, in order.
+    """
 
-    def read(self, name: str, start: int, stop: int | None) -> NDArray[Any]:
-        """Rows `start` to `stop` (None: to the end) of a dataset."""
-        try:
-            with open_h5(self.path) as file:
-                return np.asarray(file[name][start:stop])
-        except OSError:
-            raise StoreError(f"{self.path}: cannot be read; is it damaged? See mcgw show --verify") from None
-
-    def rows(self) -> int:
-        """Return the number of surfaces."""
-        with open_h5(self.path) as file:
-            return int(file["surface"].shape[0])
-
-
-@dataclass(frozen=True)
-class ShardResults(Results):
-    """The blocks that a run had committed when it was looked at."""
-
-    shards: tuple[Shard, ...]
+    files: tuple[tuple[Path, int], ...]
 
     def read(self, name: str, start: int, stop: int | None) -> NDArray[Any]:
-        """Rows `start` to `stop` of what is there."""
-        rows, parts, first = self.rows() if stop is None else stop, [], 0
-        for shard in self.shards:
-            low, high = max(start - first, 0), min(rows - first, shard.span.n)
+        """Rows `start` to `stop` (None: to the end) of a table."""
+        parts, first = [], 0
+        for path, n in self.files:
+            low, high = max(start - first, 0), n if stop is None else min(stop - first, n)
             if low < high:
-                parts.append(shard.tables(name)[name][low:high])
-            first += shard.span.n
-        return np.concatenate(parts)
+                parts.append(read_rows(path, name, low, high))
+            first += n
+        return parts[0] if len(parts) == 1 else np.concatenate(parts)
 
     def rows(self) -> int:
         """Return the number of surfaces."""
-        return sum(shard.span.n for shard in self.shards)
+        return sum(n for _, n in self.files)

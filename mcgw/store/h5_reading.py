@@ -74,8 +74,8 @@ def _examined(path: Path, shown: Path, state: tuple[int, int, int]) -> dict[str,
     return look(shown, numbers=state[1] < LARGE)
 
 
-def read_tables(path: Path, wanted: Iterable[str] | None = None) -> Tables:
-    """Tables of a file, all or some, each compared with its checksum.
+def read_tables(path: Path) -> Tables:
+    """All tables of a file, each compared with its checksum.
 
     Raises
     ------
@@ -83,7 +83,24 @@ def read_tables(path: Path, wanted: Iterable[str] | None = None) -> Tables:
         If the file is gone or damaged.
     """
     with _in_words(path), open_h5(path) as file:
-        return {name: _whole(file[name]) for name in (table_names(file) if wanted is None else wanted)}
+        return {name: _whole(file[name]) for name in table_names(file)}
+
+
+def read_rows(path: Path, name: str, start: int, stop: int) -> NDArray[Any]:
+    """Rows `start` to `stop` of a table, compared with no more than the checksums of their chunks.
+
+    Raises
+    ------
+    StoreError
+        If the file is gone or damaged.
+    """
+    if not path.exists():
+        raise StoreError(f"{path}: no longer exists; its run has ended, open the file again")
+    try:
+        with open_h5(path) as file:
+            return np.asarray(file[name][start:stop])
+    except OSError:
+        raise StoreError(f"{path}: cannot be read; is it damaged? See mcgw show --verify") from None
 
 
 def drawn_tables(path: Path) -> Tables:

@@ -263,17 +263,14 @@ def draw(groups: Iterable[Group], tell: Callable[[float, float], object]) -> lis
     StoreError
         If the memory is too small.
     """
-    poolings, before, found = list(map(Pooling, groups)), 0.0, []
+    poolings = list(map(Pooling, groups))
     for one in poolings:
         one.check()
     note = weighted(poolings, tell)
-    note(0)
-    for one in poolings:
 
-        def go_on(done: int, one: Pooling = one, before: float = before) -> bool:
-            note(before + done * one.work)
-            return True
+    def go_on(done: float) -> bool:
+        note(done)
+        return True
 
-        found.append(drawn(one, go_on))
-        before += one.n_surfaces * one.work
-    return found
+    go_on(0)
+    return drawn(poolings, go_on)
