@@ -176,50 +176,39 @@ def exact_moments(scene: Scene, given: str, amount: float, theory: Mapping[str, 
         Of what is given alone, where the rest is not known or takes longer than to draw.
     """
     known = Moments({given: amount}, {given: 0.0})
-    if not _known_by_quadrature(scene, given):
+    if scene.summits is not None or scene.as_measured or given == "nominal_separation":
         return known
-    summed = [name for name in quantities_at(scene) if name in theory and name != given]
-    summed = [name for name in summed if quantity_of(name).base != "load_slope"]
+    sums = [x for x in quantities_at(scene) if x in theory and quantity_of(x).base != "load_slope"]
     try:
         with np.errstate(all="ignore"):
-            found = specimen_moments(scene.alone, given, amount, summed)
+            found = specimen_moments(scene.alone, given, amount, [name for name in sums if name != given])
     except (ValueError, IndexError):  # far up, where hardly any asperity of any surface is
         return known
     if not np.isfinite([*found.mean.values(), *found.std.values()]).all():
         return known
-    sources = _from_sums(scene, theory)
-    mean, std = (
-        {name: unit * part[of] for name, (of, unit) in sources.items() if of in part} | own
-        for part, own in zip(found, known, strict=True)
-    )
-    lift = found.mean["separation"] - theory["separation"]
-    for name, unit in _from_the_separation(scene, given).items():
-        if name in theory:
-            mean[name], std[name] = theory[name] + unit * lift, unit * found.std["separation"]
+    mean, std = dict(known.mean), dict(known.std)
+    for name, (of, factor, base) in _in_proportion(scene, given, [*sums, "separation"]).items():
+        if name in theory and name != given:
+            shift = theory[name] - factor * theory[of] if base else 0.0
+            mean[name], std[name] = factor * found.mean[of] + shift, factor * found.std[of]
     return Moments(mean, std)
 
 
-def _known_by_quadrature(scene: Scene, given: str) -> bool:
-    """Whether the law of the sums of its asperities is known, or quicker to find than to draw."""
-    return scene.summits is None and not scene.as_measured and given != "nominal_separation"
+def _in_proportion(scene: Scene, given: str, sums: Sequence[str]) -> dict[str, tuple[str, float, bool]]:
+    """Answers that are in proportion to a sum or the separation: of which, by how much, and from where.
 
-
-def _from_sums(scene: Scene, theory: Mapping[str, float]) -> dict[str, tuple[str, float]]:
-    """Answers that are a sum over asperities, or in proportion to one: which, and by how much."""
-    sums = [name for name in quantities_at(scene) if not scene.series(name)]
-    found = {name: (name, 1.0) for name in ("separation", *sums)}
-    if scene.interaction is None and scene.film is not None:
-        spots = ("conductance_si", 1 / scene.surface.nominal_area)
-        found["contact_conductance"] = spots
-        if scene.filled is not None and scene.filled.gas is None:
-            found |= {"gap_conductance": ("conductance_si", 0.0), "joint_conductance": spots}
-    return {name: found[name] for name in found if name in theory}
-
-
-def _from_the_separation(scene: Scene, given: str) -> dict[str, float]:
-    """Answers that differ from the separation by the same on all surfaces, with their unit over its own."""
+    What differs from the separation by the same on all surfaces does so by as much as in theory (True).
+    """
+    found = {name: (name, 1.0, False) for name in sums if name == "separation" or not scene.series(name)}
+    sigma = scene.surface.sigma
     if scene.interaction is None:
-        return {scene.gap: scene.surface.sigma}
-    if given != "load":
-        return {}
-    return {"nominal_separation": 1.0, **dict.fromkeys(GAPS, scene.surface.sigma)}
+        found[scene.gap] = ("separation", sigma, True)
+        if scene.film is not None:
+            spots = ("conductance_si", 1 / scene.surface.nominal_area, False)
+            found["contact_conductance"] = spots
+            if scene.filled is not None and scene.filled.gas is None:
+                found |= {"gap_conductance": ("conductance_si", 0.0, False), "joint_conductance": spots}
+    elif given == "load":
+        found["nominal_separation"] = ("separation", 1.0, True)
+        found |= dict.fromkeys(GAPS, ("separation", sigma, True))
+    return found

@@ -54,15 +54,10 @@ class Corrected(NamedTuple):
         Why there is no value; empty if there is one.
     """
 
-    value: float
-    low: float
-    high: float
+    value: float = math.nan
+    low: float = math.nan
+    high: float = math.nan
     why: str = ""
-
-    @classmethod
-    def unknown(cls, why: str) -> "Corrected":
-        """No corrected answer, with the reason why."""
-        return cls(math.nan, math.nan, math.nan, why)
 
 
 @dataclass(frozen=True, repr=False)
@@ -219,17 +214,17 @@ def moved(scene: Scene, steps: dict[str, float]) -> Scene:
 def corrected(solution: Any, name: str) -> Corrected:
     """Return an answer without the bias of its model: see `mcgw.ensemble.solved.Solution.corrected`."""
     if solution.given != "load":
-        return Corrected.unknown("errors of models are measured at a given load")
+        return Corrected(why="errors of models are measured at a given load")
     if why := yields(solution.yielding):
-        return Corrected.unknown(why)
+        return Corrected(why=why)
     scene, answers, validity = solution.scene, solution.value, solution.against_elasticity
     column = _ERROR_OF.get(name)
     if column is None:
-        return Corrected.unknown(f"{name}: its error was not measured")
+        return Corrected(why=f"{name}: its error was not measured")
     bias, error = _bias_and_error(validity, name, scene, answers)
     if math.isnan(error):
         filmed = name in _SPOTS and _filmed(scene)
-        return Corrected.unknown(_FILM if filmed else validity.unknown or f"{name}: not measured there")
+        return Corrected(why=_FILM if filmed else validity.unknown or f"{name}: not measured there")
     value = answers[name]
     besides = math.hypot(_SURE * solution.std[name] * validity.listed, solution.half_width(name))
     if column == "separation":

@@ -124,7 +124,6 @@ class Reducer(ABC):
     interruptions.
     """
 
-    whole = True  # whether only whole blocks are useful, since nothing is kept of single surfaces
     work = 1.0  # cost of a surface, in any unit
     disk = 0  # largest size of blocks and file in bytes
 

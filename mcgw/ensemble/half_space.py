@@ -12,7 +12,6 @@ import numpy as np
 
 from analytic import SEPARATIONS
 from analytic.arrays import Array
-from analytic.interaction import in_series
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import Held, Results
 from mcgw.scene.scene import Scene
@@ -37,6 +36,8 @@ def answered(scene: Scene, sums: dict[str, Any], names: Iterable[str], h: Any) -
     h : array_like
         Separations that the asperities feel.
     """
+    from analytic.interaction import in_series  # for those scenes alone: every comparison imports this file
+
     found = dict(sums)
     if scene.interaction is not None:
         series, sunk = {name: scene.series(name) for name in sums}, scene.compliance / scene.surface.sigma
@@ -65,6 +66,8 @@ def joint_conductance(scene: Scene, name: str, conductance: Any, apart: Any) -> 
     apart : float or ndarray
         Distance of the mean planes, d/sigma.
     """
+    from analytic.interaction import in_series  # as above
+
     assert scene.filled is not None
     assert scene.film is not None
     contact = conductance / scene.surface.nominal_area
@@ -84,6 +87,8 @@ class _Alone(Results):
 
     def read(self, name: str, start: int, stop: int | None) -> Array:
         """Rows `start` to `stop` (None: to the end) of a dataset."""
+        from analytic.interaction import in_series  # as above
+
         values = self.whole.read(name, start, stop)
         other = self.scene.series(name) if name in self.scene.quantities else 0.0
         return np.asarray(in_series(values, -other)) if other else values

@@ -119,7 +119,11 @@ class LoadedSurfaces:
             for name, x in whole.sums(names, np.where(np.isnan(h), np.inf, h)[lost]).items():
                 found[name][lost] = x
         for k in np.flatnonzero(np.isnan(h) | ((self.scene.negative == "error") & (softest > h))):
-            self._refuse(value, f"surface {first + k}", float(softest[k]))
+            surface, q = f"surface {first + k}", self.given
+            if np.isfinite(softest[k]):
+                raise ValueError(NEGATIVE.format(q.name, value, q.unit, surface, softest[k]))
+            unit, give = (f" {q.unit}", "less") if self.sunk is None else ("", "more")
+            raise ValueError(f"{q.name} = {value:g}{unit}: {surface} does not reach it; give {give}")
         return found
 
     def _anywhere(self, value: float, whole: Asperities) -> Array:
@@ -130,14 +134,6 @@ class LoadedSurfaces:
         if self.scene.negative == "allow" and np.isnan(h).any():
             h = np.where(np.isnan(h), whole.below_negative(self.given, value), h)
         return h
-
-    def _refuse(self, value: float, surface: str, softest: float) -> None:
-        """Say why a surface has no separation with a value."""
-        q = self.given
-        if np.isfinite(softest):
-            raise ValueError(NEGATIVE.format(q.name, value, q.unit, surface, softest))
-        unit, give = (f" {q.unit}", "less") if self.sunk is None else ("", "more")
-        raise ValueError(f"{q.name} = {value:g}{unit}: {surface} does not reach it; give {give}")
 
     def contacts(self, surface: int, h: float) -> tuple[Array, Array | None]:
         """Reduced heights above a separation in descending order, and the radii of these summits."""

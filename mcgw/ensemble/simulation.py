@@ -89,8 +89,6 @@ def simulate(
 class Values(OfScene):
     """All numbers of every surface."""
 
-    whole = False
-
     @cached_property
     def rows(self) -> int:
         """Surfaces of a block: whole chunks of a file."""

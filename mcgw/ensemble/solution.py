@@ -92,26 +92,17 @@ def solve(
     ((key, value),) = known.items()
     scene, plain = scene.replace(**changes), as_toml(value)
     several = plain if isinstance(plain, list) else [plain]
-    given, values = given_values(scene, key, several, lambda x, unit: argument(key, x, unit))
+    unit, given, per_area = _GIVEN[key]
+    if key != "nominal_separation":
+        factor = scene.surface.nominal_area if per_area else 1.0
+        values = [factor * argument(key, x, unit) for x in several]
+    elif scene.interaction is None:
+        raise ValueError(f'{key}: it needs [interaction] reference = "body" or "mean-plane"')
+    else:
+        values = [_reduced(x) for x in several]
     with told(progress, "surfaces") as tell:
         found = solutions(scene, given, values, tell)
     return found if isinstance(plain, list) else found[0]
-
-
-def given_values(
-    scene: Scene, key: str, values: Sequence[Any], read: Callable[[Any, str], float]
-) -> tuple[str, list[float]]:
-    """Return loads ("load", N) or real areas ("area", m^2) of what is given, each read as a number in a unit.
-
-    Nominal separations are numbers (d/sigma).
-    """
-    unit, given, per_area = _GIVEN[key]
-    if key == "nominal_separation":
-        if scene.interaction is None:
-            raise ValueError(f'{key}: it needs [interaction] reference = "body" or "mean-plane"')
-        return given, [_reduced(value) for value in values]
-    factor = scene.surface.nominal_area if per_area else 1.0
-    return given, [factor * read(value, unit) for value in values]
 
 
 def _reduced(value: Any) -> float:
@@ -152,7 +143,9 @@ def solutions(
         negative modulus where the scene does not allow them, if there are too many asperities to draw, or if
         a surface has none.
     """
-    whole, scene, q = scene, _asperities_of(scene), quantity_of(given)
+    whole, q = scene, quantity_of(given)
+    if scene.interaction is not None or scene.gas is not None:  # these change the separation alone
+        scene = scene.replace(interaction=None, joint=scene.joint.without_gas)
     if scene.n_surfaces < 2 and not scene.as_measured:
         raise ValueError(f"n_surfaces = {scene.n_surfaces}: an interval needs at least 2 surfaces")
     least = q.scale(scene.surface) * _LAST_DIGITS**q.exponent
@@ -176,10 +169,3 @@ def solutions(
     if draw or not all(each.exact for each in found):
         loaded.draw(tell)
     return found
-
-
-def _asperities_of(scene: Scene) -> Scene:
-    """Return the scene without asperity interaction, which at a given load only changes the separation."""
-    if scene.interaction is None and scene.gas is None:
-        return scene
-    return scene.replace(interaction=None, joint=scene.joint.without_gas)

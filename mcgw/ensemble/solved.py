@@ -1,5 +1,6 @@
 """The result of `mcgw.solve`: the state of surfaces at one given load or real area."""
 
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -11,7 +12,10 @@ from analytic import SEPARATIONS, yielding_share
 from analytic.arrays import Array
 from analytic.at_load import Moments
 from mcgw.ensemble.at_load import GAPS, Answers, answers_at, controlled, exact_moments
+from mcgw.ensemble.budget import Budget, Corrected, budget_of, corrected
 from mcgw.ensemble.intervals import FEWEST, laws_are_quick
+from mcgw.ensemble.loaded_surfaces import LoadedSurfaces
+from mcgw.ensemble.solved_table import elastic_verdict, sheet_of, table_of
 from mcgw.formats.table import Shown, Table
 from mcgw.machine.terminal import plotted
 from mcgw.scene.scene import Scene
@@ -20,8 +24,6 @@ from mcgw.validity.model_error import Validity
 
 if TYPE_CHECKING:
     from analytic.distribution import Law
-    from mcgw.ensemble.budget import Budget, Corrected
-    from mcgw.ensemble.loaded_surfaces import LoadedSurfaces
 
 
 @dataclass(frozen=True, repr=False)
@@ -52,7 +54,7 @@ class Solution(Shown):
     given: str
     amount: float
     theory: dict[str, float]
-    loaded: "LoadedSurfaces"
+    loaded: LoadedSurfaces
     number: int
 
     @cached_property
@@ -110,10 +112,10 @@ class Solution(Shown):
         return np.asarray(self.scene.surface.radius * (np.ones_like(s) if ratios is None else ratios))
 
     def _contacts(self, surface: int) -> tuple[Array, Array | None]:
-        separations = self.surfaces["separation"]
-        if not 0 <= surface < separations.size:
-            raise ValueError(f"surface = {surface}: give a number from 0 to {separations.size - 1}")
-        return self.loaded.contacts(surface, float(separations[surface]))
+        h = self.surfaces["separation"]
+        if not 0 <= surface < h.size:
+            raise ValueError(f"surface = {surface}: give a number from 0 to {h.size - 1}")
+        return self.loaded.contacts(surface, float(h[surface]))
 
     @cached_property
     def value(self) -> Answers:
@@ -129,31 +131,23 @@ class Solution(Shown):
     @cached_property
     def std(self) -> Answers:
         """Standard deviation over specimens: exact to 2e-4 where `value` is, else of the surfaces drawn."""
-        exact = self._exact.std
-        return Answers(
-            [*self.theory],
-            lambda name: exact[name] if name in exact else float(self.surfaces[name].std(ddof=1)),
-        )
+        known = self._exact.std
+        return Answers([*self.theory], lambda x: known[x] if x in known else self.surfaces[x].std(ddof=1))
 
     def interval(self, name: str, level: float = 0.95) -> tuple[float, float]:
         """Confidence interval of `value` (Student's t); of no width where that is exact.
 
         nan if the surfaces drawn have too few contacts.
         """
-        value, error, _ = self._estimate(name)
-        if error and self.surfaces.get("contacts", np.full(self._many, np.inf)).sum() < FEWEST:
+        value, half = self.value[name], self.half_width(name, level)
+        if half and self.surfaces.get("contacts", np.array(np.inf)).sum() < FEWEST:
             return float("nan"), float("nan")
-        half = self.half_width(name, level)
         return value - half, value + half
 
     def half_width(self, name: str, level: float = 0.95) -> float:
         """Return half of the width of `interval`, however few contacts there are; 0 if `value` is exact."""
         _, error, freedom = self._estimate(name)
         return float(stdtrit(freedom, (1 + level) / 2)) * error if error else 0.0
-
-    @property
-    def _many(self) -> int:
-        return len(self.surfaces["separation"])
 
     @property
     def exact(self) -> bool:
@@ -163,18 +157,13 @@ class Solution(Shown):
     def _estimate(self, name: str) -> tuple[float, float, int]:
         """Mean over specimens of an answer, its standard error, and the degrees of freedom of that."""
         exact = self._exact.mean
-        return (exact[name], 0.0, 0) if name in exact else self._drawn_estimates[name]
-
-    @cached_property
-    def _drawn_estimates(self) -> dict[str, tuple[float, float, int]]:
-        """The same of what is not known exactly."""
-        exact, drawn = self._exact.mean, self.surfaces
-        known = [  # of what is given there are rounding errors alone
-            (drawn[name], exact[name])
-            for name in ("separation", "conductance_si", "stiffness", "area")
-            if name in exact and name in drawn and name != self.given
-        ]
-        return {name: controlled(x, known) for name, x in drawn.items() if name not in exact}
+        if name in exact:
+            return exact[name], 0.0, 0
+        sums = ("separation", "conductance_si", "stiffness", "area")
+        known = [
+            x for x in sums if x in exact and x in self.surfaces and x != self.given
+        ]  # that is no control
+        return controlled(self.surfaces[name], [(self.surfaces[x], exact[x]) for x in known])
 
     @cached_property
     def _exact(self) -> Moments:
@@ -188,12 +177,10 @@ class Solution(Shown):
         It is not known where sums may rise with the separation, as with adhesive asperities, nor at a nominal
         separation.
         """
-        if self.given == "nominal_separation":
-            return None
-        try:
-            return self.scene.alone.separation_law(self.amount, self.given)
-        except ValueError:
-            return None
+        with suppress(ValueError):
+            if self.given != "nominal_separation":
+                return self.scene.alone.separation_law(self.amount, self.given)
+        return None
 
     @property
     def told_by(self) -> "Law | None":
@@ -230,8 +217,7 @@ class Solution(Shown):
         dict of str to float
             For area, load, stiffness and conductance, to leading order in 1/N.
         """
-        names = [x for x in ("load", "area", "stiffness", "conductance") if x in self.theory]
-        model = self.scene.alone
+        names, model = ["load", "area", "stiffness", "conductance"], self.scene.alone
         if self.given == "nominal_separation":
             model = self.scene.theory
         elif self.scene.interaction is not None:
@@ -240,7 +226,7 @@ class Solution(Shown):
         return {
             name: float(model.asperities_for(name, h, scatter, given=self.given))
             for name in names
-            if name != self.given
+            if name in self.theory and name != self.given
         }
 
     @cached_property
@@ -257,11 +243,9 @@ class Solution(Shown):
     @property
     def verdict(self) -> str:
         """Measured error of the model, and whether contacts yield that it takes as elastic, in one line."""
-        from mcgw.ensemble.solved_table import elastic_verdict
-
         return elastic_verdict([self])
 
-    def budget(self) -> "Budget":
+    def budget(self) -> Budget:
         """Error budget: how much a real specimen may differ from `value`, cause by cause.
 
         It is made once. The causes are the number of surfaces drawn (none where `value` is exact), the
@@ -286,13 +270,9 @@ class Solution(Shown):
         """
         return self._budget
 
-    @cached_property
-    def _budget(self) -> "Budget":
-        from mcgw.ensemble.budget import budget_of
+    _budget = cached_property(budget_of)
 
-        return budget_of(self)
-
-    def corrected(self, quantity: str) -> "Corrected":
+    def corrected(self, quantity: str) -> Corrected:
         """`value`, corrected by the measured error of the model against boundary elements.
 
         Parameters
@@ -308,8 +288,6 @@ class Solution(Shown):
             With the ends between which 95 % of such surfaces lie; nan where nothing was measured, with the
             reason in `why`.
         """
-        from mcgw.ensemble.budget import corrected
-
         return corrected(self, quantity)
 
     @cached_property
@@ -323,8 +301,6 @@ class Solution(Shown):
 
     def sheet(self) -> Table:
         """Return the answers, and how specimens differ."""
-        from mcgw.ensemble.solved_table import sheet_of
-
         return sheet_of(self)
 
     def table(self, specimens: bool = False) -> Table:
@@ -335,6 +311,4 @@ class Solution(Shown):
         specimens : bool
             Add the range of 90 % of them, for which surfaces are drawn.
         """
-        from mcgw.ensemble.solved_table import table_of
-
         return table_of(self, specimens=specimens)

@@ -12,7 +12,6 @@ from mcgw.ensemble.budget import MOST_YIELDING, yields
 from mcgw.ensemble.intervals import interval_column
 from mcgw.formats.table import Column, Table
 from mcgw.validity.lookup import validity_of
-from mcgw.validity.model_error import Validity
 
 
 def sheet_of(solution: Any) -> Table:
@@ -31,7 +30,7 @@ def sheet_of(solution: Any) -> Table:
 
 
 def table_of(solution: Any, *, specimens: bool) -> Table:
-    """Return what `mcgw.ensemble.solved.Solution.table` does, which calls this."""
+    """Return what `mcgw.ensemble.solved.Solution.table` does."""
     units = {**dict.fromkeys(GAPS, "m"), "separation": "sigma", **dict.fromkeys(SEPARATIONS, "sigma")}
     names = list(solution.theory)
     low, high = np.array([solution.interval(name) for name in names]).T
@@ -67,15 +66,11 @@ def table_of(solution: Any, *, specimens: bool) -> Table:
     return Table(tuple(columns), solution.title)
 
 
-def against_elasticity(solutions: Sequence[Any]) -> Validity:
-    """Error of the model against elasticity at solutions of one scene, at their effective separations."""
-    return validity_of(solutions[0].scene, [each.theory["separation"] for each in solutions])
-
-
 def elastic_verdict(solutions: Sequence[Any]) -> str:
     """Measured error of the model at some solutions of one scene, and whether contacts yield, in one line."""
-    error = against_elasticity(solutions).verdict
-    if not solutions[0].scene.law.elastic:
+    scene = solutions[0].scene
+    error = validity_of(scene, [each.theory["separation"] for each in solutions]).verdict
+    if not scene.law.elastic:
         return error
     most = max((each.yielding for each in solutions), key=lambda share: np.nan_to_num(share, nan=-1.0))
     if np.isnan(most):

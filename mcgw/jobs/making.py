@@ -23,7 +23,7 @@ from mcgw.store.h5_reading import pieces_of
 from mcgw.store.h5_writing import Rows
 from mcgw.store.lock import locked, parts_of
 from mcgw.store.place import check_room, drop_leftovers, finished, put, tidy
-from mcgw.store.run_plan import RECORD, Plan, remove_run
+from mcgw.store.run_plan import RECORD, Plan, remove_run, remove_unfinished
 
 if TYPE_CHECKING:
     from mcgw.ensemble.ensemble import Ensemble
@@ -93,7 +93,7 @@ def _at_once(plan: Plan, by: By) -> None:
 def _in_blocks(plan: Plan, by: By) -> None:
     """Draw missing shards, then make the file. Needs the lock."""
     plan.begin()
-    shards, done = plan.sweep(), finished(plan)
+    shards, done = plan.shards(aside=True), finished(plan)
     n = max((shard.span.stop for shard in shards), default=0)
     if n > plan.total:  # blocks beyond those requested are kept
         raise StoreError(
@@ -189,8 +189,9 @@ def merge(path: str | Path) -> "Ensemble | Sweep":
             return open_results(path)
         raise StoreError(f"{path}: neither this file nor its blocks ({parts_of(path)}) exist")
     with heed_signals() as signals, locked(parts_of(path)):
+        remove_unfinished(parts_of(path))
         plan = Plan.open(parts_of(path))
-        gaps = plan.missing(finished(plan), plan.sweep())
+        gaps = plan.missing(finished(plan), plan.shards(aside=True))
         if gaps:
             raise RunError(
                 f"{path}: {sum(span.n for span in gaps)} of {plan.total} surfaces are missing, "

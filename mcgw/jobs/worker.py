@@ -38,6 +38,6 @@ def _prepared(folder: str, _state: State | None) -> Plan:
     there = Plan.open(Path(folder))
     here = there.again()
     if here.identity != there.identity:
-        words = ((plan.text, plan.axes, plan.drawn_with) for plan in (there, here))
-        raise RunError(f"{folder}: this worker cannot draw for that run: {difference(*words)}")
+        why = difference(there.question, here.question)
+        raise RunError(f"{folder}: this worker cannot draw for that run: {why}")
     return here

@@ -73,12 +73,11 @@ def difference(there: Question, here: Question) -> str:
 
 def _said(scene: str, axes: str) -> dict[str, Any]:
     """Keys and values that decide the numbers: of a scene alone but for the number of surfaces."""
-    if not axes:
-        found = scene_from(scene)
-        return {key: value for key, value in _flat(scene_document(found)) if key != "ensemble.n_surfaces"} | {
-            "ensemble.n_asperities": found.n_asperities
-        }
-    return {**dict(_flat(loads(scene))), "sweep": axes}
+    found = dict(_flat(loads(scene)))
+    if axes:
+        return {**found, "sweep": axes}
+    found.pop("ensemble.n_surfaces", None)
+    return {**found, "ensemble.n_asperities": scene_from(scene).n_asperities}
 
 
 def _flat(table: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:

@@ -20,7 +20,7 @@ from mcgw.store.h5_reading import look
 from mcgw.store.h5_writing import write
 from mcgw.store.identity import difference
 from mcgw.store.lock import locked, parts_of
-from mcgw.store.run_plan import RECORD, Plan, remove_run
+from mcgw.store.run_plan import RECORD, Plan, remove_run, remove_unfinished
 
 
 def recorded_scene(path: Path) -> Scene | None:
@@ -93,7 +93,7 @@ def finished(plan: Plan) -> int:
         raise StoreError(f"{path}: holds {what}; choose another -o, or remove it")
     if not same:
         before = scene_text(there), "", str(attributes.get("draws", "another version"))
-        what = difference(before, (plan.text, "", plan.drawn_with))
+        what = difference(before, plan.question)
         raise StoreError(f"{path}: holds a different ensemble: {what}; choose another -o, or remove it")
     asked = plan.scene.n_surfaces
     if there.n_surfaces > asked:
@@ -205,8 +205,7 @@ def tidy(path: Path) -> None:
 def drop_leftovers(path: Path) -> None:
     """As `tidy`, for who has the lock."""
     folder = parts_of(path)
-    for left in (*folder.glob(".*.tmp"), *(folder / "shards").glob(".*.tmp")):
-        left.unlink(missing_ok=True)
+    remove_unfinished(folder)
     if not _of_use(path):
         remove_run(folder)
 

@@ -13,7 +13,7 @@ of valid shards is the only record of progress.
 """
 
 import shutil
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
@@ -32,7 +32,7 @@ from mcgw.scene.section import SceneError
 from mcgw.store.blocks import Blocks, Shard, Span, open_shard, write_tables
 from mcgw.store.h5_reading import look
 from mcgw.store.h5_writing import FORMAT, RUN_TYPE
-from mcgw.store.identity import attributes_of, difference, identity_of, now, versions, written
+from mcgw.store.identity import Question, attributes_of, difference, identity_of, now, versions, written
 from mcgw.store.lock import parts_of, refuse_link
 
 if TYPE_CHECKING:
@@ -145,6 +145,11 @@ class Plan:
 
         return Asked.from_texts(self.text, self.axes)
 
+    @property
+    def question(self) -> Question:
+        """What its numbers depend on, in words."""
+        return self.text, self.axes, self.drawn_with
+
     @cached_property
     def reducers(self) -> "tuple[Reducer, ...]":
         """What draws each group, and what of it is kept; a scene is one group.
@@ -234,10 +239,9 @@ class Plan:
                 raise
             return self._write(expected="anything")  # its blocks say that they are of this very run
         if old.identity != self.identity:
-            there, here = ((plan.text, plan.axes, plan.drawn_with) for plan in (old, self))
             raise StoreError(
                 f"{self.folder}: holds a different {'sweep' if self.axes else 'run'}: "
-                f"{difference(there, here)}; choose another -o, or remove it"
+                f"{difference(old.question, self.question)}; choose another -o, or remove it"
             )
         return self._write(expected="anything") if alone and old.text != self.text else None
 
@@ -246,27 +250,20 @@ class Plan:
         about |= {"draws": self.drawn_with, "date": now(), "axes": self.axes, "scene": self.text}
         write_tables(self.folder / RECORD, {}, about, expected)
 
-    def shards(self, *, numbers: bool = True) -> list[Shard]:
-        """Return valid shards in order, each looked at; or its head alone, without the `numbers`."""
-        return [shard for shard, _ in self._looked_at(numbers=numbers) if shard]
+    def shards(self, *, numbers: bool = True, aside: bool = False) -> list[Shard]:
+        """Return valid shards in order, each looked at; or its head alone, without the `numbers`.
 
-    def sweep(self) -> list[Shard]:
-        """As `shards`; whatever else lies there is put aside. Only with the lock."""
-        for left in (*self.folder.glob(".*.tmp"), *self.shards_folder.glob(".*.tmp")):
-            left.unlink(missing_ok=True)
-        valid = []
-        for shard, path in self._looked_at():
-            if shard:
-                valid.append(shard)
-            else:
-                path.rename(path.with_name(f"{path.name}.bad"))
-        return valid
-
-    def _looked_at(self, *, numbers: bool = True) -> Iterator[tuple[Shard | None, Path]]:
+        `aside`: whatever else lies there is put aside. Only with the lock.
+        """
         if not self.shards_folder.is_dir():
             raise RunError(f"{self.folder}: is missing or incomplete; run the command again")
+        valid = []
         for path in sorted(self.shards_folder.glob("block-*.h5")):
-            yield self._valid(path, numbers=numbers), path
+            if shard := self._valid(path, numbers=numbers):
+                valid.append(shard)
+            elif aside:
+                path.rename(path.with_name(f"{path.name}.bad"))
+        return valid
 
     def _valid(self, path: Path, *, numbers: bool = True) -> Shard | None:
         """Return the shard of a name, if it is whole, of this run and of use."""
@@ -289,8 +286,14 @@ class Plan:
         return self.blocks.missing(held)
 
 
+def remove_unfinished(folder: Path) -> None:
+    """Remove the temporary files of a run. Only with the lock."""
+    for left in (*folder.glob(".*.tmp"), *folder.glob("shards/.*.tmp")):
+        left.unlink(missing_ok=True)
+
+
 def remove_run(folder: Path) -> None:
     """Remove a run, readable or not; its lock stays, and with it the folder. Only with the lock."""
     shutil.rmtree(folder / "shards", ignore_errors=True)  # a worker that lost its driver may add to it
-    for left in (*folder.glob(".*.tmp"), folder / RECORD):
-        left.unlink(missing_ok=True)
+    remove_unfinished(folder)
+    (folder / RECORD).unlink(missing_ok=True)

@@ -209,16 +209,12 @@ class Pooling(Reducer):
     def rows(self) -> int:
         """Surfaces per block."""
         width = sum(scene.width for scene in self.group.computed)
-        return max(min(_ROWS, _BYTES // (8 * width), int(_DRAWS / (self._touching + 1))), 1)
+        return max(min(_ROWS, _BYTES // (8 * width), int(_DRAWS / (self.group.scenes[0].touching + 1))), 1)
 
     @property
     def work(self) -> float:  # type: ignore[override]
         """Cost of a surface, in asperities drawn."""
-        return self._touching + _ANSWER * len(self.group.computed)
-
-    @property
-    def _touching(self) -> float:
-        return self.group.scenes[0].touching
+        return self.group.scenes[0].touching + _ANSWER * len(self.group.computed)
 
     def tables(self, first: int, stop: int, go_on: GoOn = always) -> Tables:
         """Return the statistics of a block."""

@@ -131,7 +131,11 @@ class Asked:
         SceneError
             With the mistakes of all points.
         """
-        return groups_of([_with_a_number(scene) for scene in scenes_of(self.document, self.axes)])
+        scenes = scenes_of(self.document, self.axes)
+        if any(scene.max_seconds is not None for scene in scenes):
+            what = "ensemble.max_seconds: a sweep must be reproducible; give n_surfaces or rel_err"
+            raise SceneError([what])
+        return groups_of([x if x.rel_err is None else without_rule(x) for x in scenes])
 
     def answered(self, pooled: Sequence[Pooled], places: Sequence[Place] = ()) -> Sweep:
         """Return the sweep, from the data of each group, and where in them each point is."""
@@ -147,13 +151,6 @@ def sweep_of(scene: str, axes: str, drawn: Tables) -> Sweep:
     rows = zip(drawn["points"].tolist(), drawn["points"][:, 1:], drawn["weights"], strict=True)
     places = [Place(g, some[some >= 0], w[some >= 0]) for (g, *_), some, w in rows]
     return Asked(loads(scene), Axes.from_text(axes)).answered(pooled_from(drawn), places)
-
-
-def _with_a_number(scene: Scene) -> Scene:
-    """Return the same with a number of surfaces in place of a stop rule."""
-    if scene.max_seconds is not None:
-        raise SceneError(["ensemble.max_seconds: a sweep must be reproducible; give n_surfaces or rel_err"])
-    return scene if scene.rel_err is None else without_rule(scene)
 
 
 def sweep_cautions(sweep: Sweep) -> list[str]:

@@ -11,7 +11,6 @@ from scipy.stats import norm, qmc
 import mcgw
 from mcgw.cli import main
 from mcgw.ensemble.budget import moved, slopes_of
-from mcgw.ensemble.solved_table import against_elasticity
 from mcgw.maps import gaussian_map, spectrum_from
 
 SURFACE = mcgw.Surface("1 um", "13 um", "1000/mm^2", "1 cm^2", "78.6 GPa")  # eta R sigma = 0.013
@@ -123,7 +122,7 @@ def test_a_joint_is_corrected_through_its_network(gas):
     """Spots as stiffness, gas at the corrected gap, side by side: by hand."""
     joint = mcgw.Joint((200.0, 16.0), gas=gas, rms=2e-6)
     solved = mcgw.solve(scene_of(joint=joint, uncertainty=None), pressure="50 MPa")
-    scene, value, v = solved.scene, solved.value, against_elasticity([solved])
+    scene, value, v = solved.scene, solved.value, solved.against_elasticity
     (bias, error), (lift, gap) = ((v.bias[x][0], v.error[x][0]) for x in ("stiffness", "separation"))
     spots, found = solved.corrected("contact_conductance"), solved.corrected("joint_conductance")
     assert spots.value == pytest.approx(value["contact_conductance"] / (1 + bias))
@@ -169,7 +168,7 @@ def test_where_nothing_was_measured_the_answer_stays_alone(more, given, name, wh
     assert np.isnan(budget.shares["model"]).all()
     assert why in f"{budget.advice} {corrected.why}"
     assert np.isnan(corrected.value)
-    assert budget.lacking["model"] == against_elasticity([solved]).unknown or not more
+    assert budget.lacking["model"] == solved.against_elasticity.unknown or not more
     assert np.isnan(solved.table().only("best").columns[0].values).all()
     assert "best (95" not in repr(solved)
 

@@ -39,7 +39,7 @@ def test_every_flipped_bit_of_a_number_is_noticed(name, tmp_path, shard):
         changed[at] ^= 1 << at % 8
         shard.path.write_bytes(changed)
         assert open_shard(shard.path, RUN, numbers=False) == shard
-        for look in (lambda: open_shard(shard.path, RUN), lambda: shard.tables(name)):
+        for look in (lambda: open_shard(shard.path, RUN), lambda: shard.tables()):
             with pytest.raises(StoreError, match="damaged"):
                 look()
 
@@ -89,7 +89,7 @@ def test_the_checksum_is_of_contents_alone(shard):
     assert open_shard(shard.path, RUN) == shard
     with h5py.File(shard.path, "r+") as file:
         file["load"][0, 0] = -0.0  # equal to 0.0, and not the same bits
-    for look in (lambda: open_shard(shard.path, RUN), lambda: shard.tables("load")):
+    for look in (lambda: open_shard(shard.path, RUN), lambda: shard.tables()):
         with pytest.raises(StoreError, match="checksum mismatch of load"):
             look()
 
