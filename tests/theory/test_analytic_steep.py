@@ -141,3 +141,12 @@ def test_weibull_integrals_of_any_shape(shape, h):
         share = mp.exp(-low)
     assert off(analytic.fn(1.5, h, heights=Weibull(shape)), truth) < 1e-12
     assert off(Weibull(shape).sf(np.array(h)), share) < 1e-12
+
+
+def test_a_mean_reaches_as_far_as_its_separation_and_its_tail():
+    """Of separations that differ by 1e-26 of the touching heights, and of heights without a third moment."""
+    h, heavy = np.array([0.0, 60.0, 3.0]), ScipyHeights(scipy.stats.t(2.1))
+    found = analytic.Model(UNIT, heights=ExponentialHeights(), n_asperities=1.0).mean("load", h)
+    np.testing.assert_allclose(found, float(mp.gamma(2.5)) * np.exp(-1 - h), rtol=1e-12)
+    mean = analytic.Model(UNIT, heights=heavy, n_asperities=1.0).mean("load", 0.0)
+    assert off(mean, analytic.fn(1.5, 0.0, heights=heavy)) < 1e-12

@@ -192,3 +192,10 @@ def test_separations_do_not_matter_to_each_other(law):
     # On the way back radii are told apart by whether they still touch: 64 of them see that to 1e-6.
     alone = [float(m.mean("load_unloading", x)) for x in h]
     np.testing.assert_allclose(m.mean("load_unloading", h), alone, rtol=5e-6)
+
+
+@pytest.mark.parametrize("name", ["load", "area"])
+def test_slopes_are_those_of_the_mean(name):
+    of, step = model(grading=GRADED), 1e-4
+    below, above = of.mean(name, H - step), of.mean(name, H + step)
+    np.testing.assert_allclose(of.slope(name, H), (below - above) / (2 * step), rtol=1e-6)
