@@ -64,7 +64,7 @@ def at_a_time(size: int) -> int:
 def kept(scene: Scene, block: Block) -> dict[str, Any]:
     """Return what is kept of a block: its sums, contacts as whole numbers."""
     arrays = dict(block.sums)
-    if not scene.interaction is scene.gas is None:
+    if scene.interaction is not None or scene.gas is not None:
         from mcgw.ensemble.half_space import answered  # for those scenes alone
 
         more = (*scene.other_separations, *scene.of_joint)

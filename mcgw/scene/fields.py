@@ -209,7 +209,8 @@ class Fields(Flat):
     @property
     def tables(self) -> tuple[str, ...]:
         """Names of the tables of an ensemble, which have a number for each surface and separation."""
-        return (*self.quantities, *self.other_separations, *self.of_joint)
+        nominal = () if self.interaction is None else self.other_separations
+        return (*self.quantities, *nominal, *self.of_joint)
 
     @property
     def of_joint(self) -> tuple[str, ...]:

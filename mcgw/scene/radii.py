@@ -54,9 +54,10 @@ def listed_of(section: Section, folder: Path) -> Listed | None:
         for k in np.flatnonzero(~(np.isfinite(z) & np.isfinite(R) & (R > 0)))[:1]:
             has = f"summit {k + 1} has the height {z[k]:g} and the radius {R[k]:g}"
             raise ValueError(f"{has}; heights are finite, radii > 0")
+        law = MeasuredHeights(z, resampled=bool(resample))
         in_metres = {"sigma": float(z.std()), "radius": float(1 / np.mean(1 / R))}
         told = {"eta": len(z)} | (in_metres if file is not None or radii else {})
-        return MeasuredHeights(z, resampled=bool(resample)), R, told
+        return law, R, told
 
     given = section.read_all(LISTS)
     if (given["file"] is None) is (given["heights"] is None or given["radii"] is given["ratios"]):

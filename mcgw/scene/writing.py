@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, is_dataclass
+from dataclasses import asdict, fields, is_dataclass
 from typing import Any
 
 from analytic import (
@@ -59,7 +59,7 @@ def heights_table(heights: HeightLaw, file: str | None = None) -> dict[str, Any]
     if type(heights) is MeasuredHeights:
         held = {"heights": list(heights.heights)} if file is None else {"file": file}
         return {"law": "table", **held, "resample": False}
-    own = heights
+    own: Any = heights
     if type(heights) is ScipyHeights:
         import scipy.stats  # takes half a second; other scenes do not need it
 
@@ -69,7 +69,7 @@ def heights_table(heights: HeightLaw, file: str | None = None) -> dict[str, Any]
             return {"law": "scipy", "name": name, "shapes": heights.shapes}
     elif type(heights) in HEIGHTS.values():  # a subclass may do more
         (law,) = [name for name, kind in HEIGHTS.items() if type(heights) is kind]
-        return {"law": law, **written(heights, "heights")}
+        return {"law": law, **{x.name: getattr(heights, x.name) for x in fields(own)}}
     raise SceneError(
         [
             f"heights: {type(own).__name__} is a Python class that a file cannot store; give a distribution "

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from oracles.thirteen_height_laws import LAWS as HEIGHT_LAWS
 from tables.scene_keys import text, text_of
 
 import analytic
@@ -97,3 +98,9 @@ def test_replace_takes_fields_of_scene_and_surface_only():
     assert scene.replace(surface=LARGE, sigma=3e-6).surface == replace(LARGE, sigma=3e-6)
     with pytest.raises(TypeError):
         scene.replace(sigam=1.0)
+
+
+@pytest.mark.parametrize("law", HEIGHT_LAWS)
+def test_every_law_of_heights_is_written_and_read(law, make_scene):
+    scene = make_scene(heights=HEIGHT_LAWS[law], n_surfaces=1)
+    assert mcgw.scene_from(mcgw.scene_text(scene)) == scene
