@@ -102,5 +102,5 @@ def test_replace_takes_fields_of_scene_and_surface_only():
 
 @pytest.mark.parametrize("law", HEIGHT_LAWS)
 def test_every_law_of_heights_is_written_and_read(law, make_scene):
-    scene = make_scene(heights=HEIGHT_LAWS[law], n_surfaces=1)
+    scene = make_scene(heights=HEIGHT_LAWS[law], n_asperities=300, n_surfaces=1)
     assert mcgw.scene_from(mcgw.scene_text(scene)) == scene
