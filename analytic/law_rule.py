@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from analytic.arrays import Array
-from analytic.gradings import Grading
+from analytic.gradings import Exponential, Grading, Homogeneous, Table
 from analytic.heights import Gaussian, HeightLaw
 from analytic.measured_summits import MeasuredHeights
 from analytic.quadrature import REACH, SPANS, WIDEST, in_pieces
@@ -31,6 +31,7 @@ _SUMS = ((4, 0.0), (3, 0.0), (2, 0.0), (1, 3.0))  # powers of the modulus and of
 _LOST = 40.0  # logarithm of the weight lost outside: 4e-18 of its largest value
 _FARTHER, _MOST_STEPS = 1.1, 1000  # an end is looked for so many times as far, up to 1e38 times
 _ALONG = np.union1d(np.linspace(0, 1, 65), np.geomspace(1e-4, 1, 65))
+_TAME = Homogeneous, Exponential, Table  # rise no faster than ``exp(-s)``: the normal law makes nothing of it
 _GRID = 16  # the upper end is rounded up to one over this
 
 Further = Callable[[float, float], Sequence[float]]
@@ -46,6 +47,9 @@ def ends_of(
     separation. A grading that rises too steeply for sums of such powers is a ValueError.
     """
     low, high = max(float(separations[0]), law.support[0]), law.support[1]
+    if isinstance(law, Gaussian) and isinstance(getattr(grading, "grading", grading), _TAME):
+        last = max(float(separations[-1]), 0.0)
+        return low, last + REACH**2 / (last + math.hypot(last, REACH))
     start = max(low, float(law.ppf(np.array(_NOTHING))))
     last = max(start, float(separations[-1])) if isinstance(law, Gaussian) else start
     top = min(float(law.isf(np.array(_NOTHING), last)), high)

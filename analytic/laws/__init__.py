@@ -36,12 +36,14 @@ _FILES = ("law", "elastic_plastic_laws", "elastic", "adhesion", "custom")  # in 
 
 def __getattr__(name: str) -> Any:
     """Return a law from its file; `by_name` has those of scene files."""
-    if not name.startswith("_"):
-        files = [import_module(f"{__name__}.{file}") for file in _FILES]
-        known = [x for file in files for x in vars(file).values() if isinstance(x, type)]
-        laws = [x for x in known if issubclass(x, ContactLaw) and x is not ContactLaw and "name" in vars(x)]
-        found: dict[str, Any] = {law.__name__: law for law in laws}
-        found["by_name"] = {law.name: law for law in laws if law.name != "custom"}
-        if name in found:
-            return found[name]
+    found = {}
+    for file in () if name.startswith("_") else _FILES:  # no more of them than it takes
+        for law in vars(import_module(f"{__name__}.{file}")).values():
+            own = isinstance(law, type) and issubclass(law, ContactLaw) and "name" in vars(law)
+            if own and law is not ContactLaw:
+                if name == law.__name__:
+                    return law
+                found[law.name] = law
+    if name == "by_name":
+        return {word: law for word, law in found.items() if word != "custom"}
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
