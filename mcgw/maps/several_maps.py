@@ -41,7 +41,8 @@ def pooled(fits: Sequence[Fit], names: Sequence[str]) -> Fit:
         return [float(x) for x in weights @ np.array([of(fit) for fit in fits])]
 
     moments = SpectralMoments(*mean(lambda fit: [getattr(fit.moments, x) for x in _MOMENTS]))
-    (skewness,) = mean(lambda fit: [fit.skewness[0] * (fit.moments.m0 / moments.m0) ** 1.5])
+    cubes = weights * [(fit.moments.m0 / moments.m0) ** 1.5 for fit in fits]
+    skewness, errors = np.array([fit.skewness for fit in fits]).T
     visible = None
     if all(fit.visible for fit in fits):
         visible = Visible(*mean(lambda fit: astuple(fit.visible)))  # type: ignore[arg-type]
@@ -53,7 +54,7 @@ def pooled(fits: Sequence[Fit], names: Sequence[str]) -> Fit:
             x: _of_all(getattr(moments, x), [fit.numbers[x] for fit in fits], weights) for x in first.numbers
         },
         estimates={x: _estimate(x, fits, weights, moments) for x in methods},
-        skewness=(skewness, float(np.linalg.norm(weights * [fit.skewness[1] for fit in fits]))),
+        skewness=(float(cubes @ skewness), float(np.linalg.norm(cubes * errors))),
         listed=_listed(fits),
         mean_summit=float(
             np.average([fit.mean_summit for fit in fits], weights=[fit.summits.size for fit in fits])

@@ -57,6 +57,8 @@ def test_moments_are_means_over_the_area(fits, found):
         assert getattr(found.roughness, name) * found.roughness.q**power == pytest.approx(expected)
     third = weighted(fits, lambda fit: fit.skewness[0] * fit.numbers["m0"].value ** 1.5)
     assert found.skewness[0] == pytest.approx(third / found.numbers["m0"].value ** 1.5)
+    squares = [(fit.area * fit.skewness[1] * fit.moments.m0**1.5) ** 2 for fit in fits]
+    assert found.skewness[1] == pytest.approx(math.sqrt(sum(squares)) / found.area / m.m0**1.5, rel=1e-12)
 
 
 def test_summits_are_those_of_all_maps(fits, found):
