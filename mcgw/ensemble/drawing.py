@@ -24,9 +24,8 @@ from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.scene import Scene
 
 _Drawn = TypeVar("_Drawn")
-GoOn = Callable[
-    [float], bool
-]  # called with the surfaces drawn so far, or their work; returns whether to go on
+# Called with the surfaces drawn so far, or their work; returns whether to go on.
+GoOn = Callable[[float], bool]
 _WORDS = 4_000_000  # numbers of a block that fit the outer cache
 _MOST_WORDS = 20_000_000  # numbers a block may hold
 _DRAWS = 1.5e8  # asperities a block may draw, so that a bar moves every second

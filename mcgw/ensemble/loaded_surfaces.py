@@ -52,9 +52,7 @@ class LoadedSurfaces:
     @cached_property
     def lows(self) -> list[float]:
         """Separation that nearly every surface is above, at each value."""
-        name = (
-            self.given.name if self.sunk is None else "load"
-        )  # that of a nominal separation follows from it
+        name = self.given.name if self.sunk is None else "load"  # a nominal separation follows from it
         return [_lowest(self.specimens, name, h) for h in self.about]
 
     @cached_property

@@ -177,20 +177,17 @@ class Asperities:
         """
         low, goal = np.maximum(lowest, self.softest), value / q.scale(self.scene.surface)
         on = self.above(low) if np.any(self.softest > lowest) else self
-        found, root = np.full(self.counts.size, np.nan), 1 / max(q.exponent, 1.0)
+        found, power = np.full(self.counts.size, np.nan), 1 / max(q.exponent, 1.0)
         high, falls = on._highest(np.ones(on.s.size, dtype=bool)), on._falls(q)
         near = low if about is None else np.full_like(low, 2 * about - lowest)
         width = high - np.where(near < high, near, low)
 
         def excess(total: Array) -> Array:
             """Of the sum's root, in which it is nearly linear, over the value's."""
-            return np.asarray(np.sign(total) * np.abs(total / goal) ** root - 1)
+            return np.asarray(np.sign(total) * np.abs(total / goal) ** power - 1)
 
-        over, passed, active = (
-            np.full(low.size, -1.0),
-            np.zeros(low.size, dtype=bool),
-            np.flatnonzero(high > low),
-        )
+        over, passed = np.full(low.size, -1.0), np.zeros(low.size, dtype=bool)
+        active = np.flatnonzero(high > low)
         while active.size:
             top, some = high[active], on.some(active)
             below = np.nextafter(top, -np.inf)
@@ -240,8 +237,8 @@ class Asperities:
             def at(h: float, one: Asperities = one) -> float:
                 return excess(h, float(one.total(quantity_of(name), np.array([h]))[0]))
 
-            root = crossing(np.vectorize(at, otypes=[float]), float(high[k]), lowest)
-            found[k] = np.nan if root is None else root
+            h = crossing(np.vectorize(at, otypes=[float]), float(high[k]), lowest)
+            found[k] = np.nan if h is None else h
         return found
 
     def total(self, q: Quantity, h: Array) -> Array:

@@ -68,7 +68,7 @@ class Compared:
     asked: Scene
     swept: bool = False
     most_listed: int = 100
-    _kept: dict[Any, Any] = field(default_factory=dict, init=False, repr=False)
+    _kept: dict[Any, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @cached_property
     def scene(self) -> Scene:

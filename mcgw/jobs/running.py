@@ -23,7 +23,16 @@ if TYPE_CHECKING:
 
 
 @overload
-def run(scene: Scene, path: str | Path, *, shard: None = None, **others: Any) -> Ensemble: ...
+def run(
+    scene: Scene,
+    path: str | Path,
+    *,
+    threads: int | None = ...,
+    executor: Executor | None = ...,
+    shard: None = ...,
+    progress: Progress = ...,
+    **changes: Any,
+) -> Ensemble: ...
 @overload
 def run(scene: Scene, path: str | Path, *, shard: str, **others: Any) -> int: ...
 def run(

@@ -176,9 +176,7 @@ class Section:
         if len(unknown) > _MOST_NAMED:
             self.note(f"[{self.name}]: {len(unknown) - _MOST_NAMED} more unknown keys")
         told = [line.partition(":")[0] for line in self.problems]  # a missing key is noted once
-        for row in [
-            row for row in self.rows.values() if (row.needs or row.excludes) and row.name in self.table
-        ]:
+        for row in (row for row in self.rows.values() if row.name in self.table):
             value, needs = self.table[row.name], " or ".join(row.needs)
             if row.needs and not any(other in self.table or self.path(other) in told for other in row.needs):
                 self.fail(row.name, value, f"give {needs} too, or leave it out")
