@@ -188,8 +188,10 @@ class ScipyHeights(HeightLaw):
         """
         share = np.maximum(p * self.sf(np.array(above)), self._rarest)
         if math.isfinite(self.support[1]):
-            return self._s(self.distribution.isf(share))
-        s, rare = self.ppf(1 - share), share < 0.5
+            s = self._s(self.distribution.isf(share))
+            rare = np.isnan(s)  # SciPy loses beta heights at 1e-280
+        else:
+            s, rare = self.ppf(1 - share), share < 0.5
         s[rare] = self._sought(self.sf, share[rare], 1.0)
         return s
 

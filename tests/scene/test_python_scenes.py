@@ -91,6 +91,18 @@ def test_a_density_ends_where_scipy_does_not_say(given, end):
     assert analytic.ScipyHeights(scipy.stats.gumbel_l()).support[1] == np.inf
 
 
+def test_shares_next_to_the_end_of_heights_are_found_where_scipy_has_none():
+    """Of beta(2, 5), ``sf`` is 6 x^5 - 5 x^6 at x from the end; SciPy's ``isf(1e-290)`` is not a number."""
+    heights, shares = analytic.ScipyHeights(scipy.stats.beta(2, 5)), np.array([1e-290, 1e-30, 1e-3])
+    low, high = heights.support
+    left = (high - heights.isf(shares)) / (high - low)
+    np.testing.assert_allclose(6 * left**5 - 5 * left**6, shares, rtol=1e-8, atol=1e-70)
+    surface = mcgw.Surface("1 um", "10 um", "3e10/m^2", "1 mm^2", "70 GPa")
+    found = mcgw.solve(mcgw.Scene(surface, separations=1.0, heights=scipy.stats.beta(2, 5)), load=1e-6)
+    assert found.value["load"] == pytest.approx(1e-6)
+    assert high > found.theory["separation"] > 4.0
+
+
 # --- objects, texts and seeds -----------------------------------------------------------------------------
 
 
