@@ -8,6 +8,7 @@ import pytest
 from oracles.inside import solved_pressures
 from oracles.laws_of_one_depth import kogut_etsion
 from oracles.scenes import scene_by
+from scipy import stats
 
 import mcgw
 from mcgw.cli import main
@@ -25,6 +26,7 @@ QUICK = {
     "graded, 2 contacts": ({"grading": mcgw.Exponential(0.5)}, 100, 2, 4000),
     "yielding, 10 contacts": ({"law": YIELDING}, 60, 10, 1000),
 }
+HEAVY = {"heavy tails, 2 contacts": ({"heights": stats.t(4)}, 100, 2, 4000)}
 SCENES = {
     "Hertz, 0.06 contacts": ({}, 200, 0.06, 20_000),
     "Hertz, 3000 contacts": ({}, 10_000, 3000, 400),
@@ -43,9 +45,10 @@ def specimens(scene, load, many, contacts):
     """Answers of specimens drawn anew, each at the separation where literal sums have the load."""
     x, rng, found = scene.surface, np.random.default_rng(20240607), []
     contact = hertz if scene.law.elastic else kogut_etsion
+    heights = getattr(scene.heights, "distribution", stats.norm())
     for start in range(0, many, 2000):
         shape = min(2000, many - start), scene.n_asperities
-        s, r = rng.standard_normal(shape), x.radius
+        s, r = (heights.rvs(shape, random_state=rng) - heights.mean()) / heights.std(), x.radius
         if scene.count == "poisson":  # twice as many, of which those beyond the number are not there
             s = np.hstack([s, rng.standard_normal(shape)])
             s[np.arange(s.shape[1]) >= rng.poisson(shape[1], shape[0])[:, None]] = -99.0
@@ -77,7 +80,7 @@ def specimens(scene, load, many, contacts):
 
 def asked(name):
     """The scene of a name, its answer at the load of its mean surface, and those of specimens."""
-    more, n, contacts, many = {**QUICK, **SCENES}[name]
+    more, n, contacts, many = {**QUICK, **HEAVY, **SCENES}[name]
     surface = mcgw.Surface("1.37 um", "13 um", "300/mm^2", n / 3e8, "78.6 GPa")
     scene = scene_by(
         surface, separations=0.0, quantities=("load", "area", "stiffness"), n_asperities=n,
@@ -103,7 +106,7 @@ def hold(found, drawn):
         assert abs(found.std[quantity] - x.std(ddof=1)) < 5 * error + 1e-5 * abs(value), quantity
 
 
-@pytest.mark.parametrize("name", QUICK)
+@pytest.mark.parametrize("name", [*QUICK, *(pytest.param(name, marks=pytest.mark.slow) for name in HEAVY)])
 def test_the_answer_is_the_mean_of_specimens_and_exact(name):
     _, found, drawn = asked(name)
     hold(found, drawn)
