@@ -1,13 +1,8 @@
 """How much commands say: nothing with -q, cautions in full once or with -v."""
 
-import re
-
-import numpy as np
 import pytest
-from oracles.inside import law_text
 from oracles.said import call
 
-import mcgw
 from mcgw.cli import COMMANDS
 
 pytestmark = pytest.mark.usefixtures("blank_figures", "no_pressures", "without_caps")
@@ -49,14 +44,3 @@ def test_a_doubt_about_units_is_said_again_and_is_none_of_those_counted(tmp_path
 def test_every_command_takes_them(name):
     """Either, as `test_what_users_read` has their help; and not both."""
     assert call(name, "-q", "-v").returncode == 2
-
-
-@pytest.mark.parametrize("points", [2, 5, 400])
-def test_no_text_of_a_law_ends_in_half_a_number(points):
-    heights = mcgw.HeightTable.of(np.random.default_rng(1).normal(size=points))
-    text = law_text(heights)
-    assert len(text) < 200
-    known = {form(x) for x in (*heights.s, *heights.share) for form in ("{:.4g}".format, "{:.6g}".format)}
-    numbers = re.findall(r"-?\d+\.\d+(?:e-?\d+)?", text)
-    assert numbers
-    assert set(numbers) <= known

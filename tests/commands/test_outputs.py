@@ -110,17 +110,10 @@ WRITE = [
 ]
 
 
-@pytest.mark.parametrize(("words", "ending"), WRITE)
-def test_something_in_the_way_is_one_line(words, ending, here, capsys):
-    out = here / f"x{ending}"
-    out.mkdir() if len(ending) % 2 else os.mkfifo(out)
-    assert "is not a regular file" in told(capsys, words.replace("OUT", str(out)))
-
-
 @pytest.mark.usefixtures("blank_figures")
 @pytest.mark.parametrize(("words", "ending"), WRITE)
-def test_a_disk_that_fails_leaves_the_older_file(words, ending, here, monkeypatch):
-    """Bit by bit, and nothing lies beside it. Folders are made."""
+def test_a_disk_that_fails_leaves_the_older_file(words, ending, here, monkeypatch, capsys):
+    """Bit by bit, and nothing lies beside it. Folders are made; something else in the way is one line."""
     out = here / "new" / "deeper" / f"x{ending}"
     if ending not in (".h5", ".toml"):
         out.parent.mkdir(parents=True)
@@ -138,6 +131,9 @@ def test_a_disk_that_fails_leaves_the_older_file(words, ending, here, monkeypatc
     assert out.is_file()
     assert out not in before or out.read_bytes() != b"old"
     assert not list(out.parent.glob(".*"))
+    out.unlink()
+    out.mkdir() if len(ending) % 2 else os.mkfifo(out)
+    assert "is not a regular file" in told(capsys, " ".join(words))
 
 
 @pytest.mark.parametrize("links", [True, False])
@@ -157,16 +153,17 @@ def test_a_name_taken_meanwhile_is_left_alone(tmp_path, links, monkeypatch):
 
 
 def test_leftovers_of_the_dead_go_with_the_next_output(here):
+    """Those of the living stay, and of whom nobody can ask."""
     with subprocess.Popen([sys.executable, "-c", ""]) as dead:
         pass
     mine = temporary_beside(here / "x.csv")
-    theirs = mine.with_name(mine.name.replace(f"-{os.getpid()}-", f"-{dead.pid}-"))
-    mine.touch()
-    theirs.touch()
+    pids = (dead.pid, "some", 10**30)
+    theirs, *odd = (mine.with_name(mine.name.replace(f"-{os.getpid()}-", f"-{x}-")) for x in pids)
+    for path in (mine, theirs, *odd):
+        path.touch()
     assert theirs != mine
     assert main(["show", "e.h5", "--csv", "x.csv"]) == 0
-    assert mine.exists()
-    assert not theirs.exists()
+    assert [path.exists() for path in (mine, theirs, *odd)] == [True, False, True, True]
 
 
 def test_a_disk_that_does_not_flush_folders_is_no_error(tmp_path, make_scene, monkeypatch):

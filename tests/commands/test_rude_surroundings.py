@@ -16,7 +16,6 @@ from oracles.said import call as call_here, without_notes
 
 import analytic
 import mcgw
-from mcgw.machine.terminal import one_line, plain_text
 
 ROOT = Path(__file__).parents[2]
 SCENE = (ROOT / "runs" / "quick.toml").read_text()
@@ -84,7 +83,7 @@ def test_a_long_run_says_so_before_it_begins_and_a_short_one_does_not(tmp_path, 
     assert " years on this machine (5e+17 draws)" in line
 
 
-EVIL = "\\u001b]0;owned\\u0007\\u001b[31mred\\r$x_{\\u202e\\nverdict: agrees"
+EVIL = "\\u001b]0;日本\\u0007\\u001b[31mred\\r$x_{\\u202e\\u2028\\u009b\\U000e0001\\nverdict: agrees"
 
 
 @pytest.mark.usefixtures("blank_figures", "no_pressures")
@@ -100,8 +99,8 @@ def test_titles_cannot_steer_the_terminal(tmp_path):
     figure = draw(comparison_figure(mcgw.compare(mcgw.open_ensemble(tmp_path / "e.h5"))))
     assert r"red\r\$x_{" in figure.get_suptitle()
     page = (tmp_path / "e.html").read_text()
-    assert not {"\x1b", "\x07", "\u202e"} & set(page)
-    assert "red\\r$x_{" in page
+    assert not set("\x1b\x07\u202e\u2028\x9b\U000e0001") & set(page)
+    assert "日本\\u0007\\u001b[31mred\\r$x_{" in page
 
 
 def test_names_of_files_cannot_steer_the_terminal(tmp_path):
@@ -110,14 +109,6 @@ def test_names_of_files_cannot_steer_the_terminal(tmp_path):
     (line,) = done.stderr.splitlines()
     assert line.isprintable()
     assert line.endswith("No such file or directory")
-
-
-def test_one_line_keeps_what_is_printable():
-    for text in ("", "Kontakt σ = 1 µm²", "日本", "$x$ \\"):
-        assert one_line(text) == text
-    assert one_line("a\tb\nc\x9b\u2028\udcff") == "a\\tb\\nc\\u009b\\u2028\\udcff"
-    assert one_line("\r\uffff\U00010000\U000e0001") == "\\r\\uffff\U00010000\\U000e0001"
-    assert plain_text("a\tb\nc\x1b") == "a\\tb\nc\\u001b"
 
 
 TABLES = {

@@ -177,18 +177,6 @@ def test_python_of_the_readme_runs(tmp_path, in_tmp_path):
     assert mcgw.open_ensemble("demo.h5").load.shape == names["e"].load.shape == (1000, 5)
 
 
-def test_the_table_of_the_tutorial_is_a_grading(tmp_path):
-    found = [code for kind, code in blocks(pages()["tutorials/own-material.md"]) if kind == "text"]
-    (tmp_path / "indents.csv").write_text(found[0].partition("\n")[2])
-    scene = (ROOT / "mcgw" / "scene" / "presets" / "nanoindentation.toml").read_text()
-    scene = re.sub(
-        r"^(s|ratio) +=.*\n", "", scene.replace("sigma = 0.1e-6", "sigma = 0.8e-6"), flags=re.MULTILINE
-    )
-    scene = mcgw.scene_from(scene.replace('# file = "ind', 'file = "ind'), folder=tmp_path)
-    assert scene.grading(np.array([0.0]))[0] == pytest.approx(1.0, rel=1e-12)
-    assert scene.grading(np.array([2.5]))[0] == pytest.approx(104 / 72, rel=1e-12)  # 2 um at sigma = 0.8 um
-
-
 # --- the file format ------------------------------------------------------------------------------------
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")

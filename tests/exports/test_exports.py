@@ -211,25 +211,6 @@ def test_rows_against_pressure_are_the_values_and_specimens_of_solve(scene, tmp_
 # --- what has no table ----------------------------------------------------------------------------------
 
 
-WRONG = [
-    ({"table": "gap-pressure"}, r"^table = 'gap-pressure': choose one of pressure-gap, "),
-    ({"table": "conductance-gap"}, r"^table = 'conductance-gap': calculix does not support it; choose"),
-    ({"to": "ansys"}, r"^to = 'ansys': choose one of calculix, abaqus, moose, comsol, json$"),
-    ({"points": 300}, r"^points = 300: calculix reads at most 200 lines; give fewer$"),
-    ({"pressures": [2.0, 1.0]}, r"^pressures = \[2\.0, 1\.0\]: give two or more increasing numbers$"),
-    ({"pressures": ["1 N", "2 N"]}, r"^pressures = '1 N': give a finite number > 0 in Pa"),
-    ({"quantiles": [0.5, 1.0]}, r"^quantiles = \[0\.5, 1\.0\]: give numbers between 0 and 1"),
-]
-
-
-@pytest.mark.parametrize(("change", "told"), WRONG)
-def test_wrong_arguments_get_one_line(scene, change, told, tmp_path):
-    with pytest.raises(ValueError, match=told) as caught:
-        mcgw.export(scene, tmp_path / "t.inp", **({"to": "calculix"} | change))
-    assert "\n" not in str(caught.value)
-    assert not list(tmp_path.iterdir())
-
-
 def test_what_has_no_table_is_told(scene, ensemble, tmp_path):
     mean, stiffness = ensemble.mean("pressure"), {"table": "stiffness-pressure", "points": 5}
     conductance = {"table": "conductance-pressure", "pressures": [1e6, 1e12]}
@@ -238,6 +219,7 @@ def test_what_has_no_table_is_told(scene, ensemble, tmp_path):
     pulls = bare.replace(law=mcgw.DerjaguinMullerToporov(pull_off=0.3))
     fine = bare.replace(surface=mcgw.Surface("2 nm", "13 um", "300/mm^2", "10 mm^2", "78.6 GPa"))
     steps = {"to": "calculix", "points": 80}
+    alone, apart = (mcgw.simulate(JOINED, n_surfaces=2, separations=h) for h in (1.0, [0.0, 40.0]))
     for what, given, told in (
         (pulls, {}, r"^contact\.law: surfaces attract each other .* negative pressures"),
         (bare, conductance, r"^joint\.conductivities: missing for a table of conductance"),
@@ -247,21 +229,20 @@ def test_what_has_no_table_is_told(scene, ensemble, tmp_path):
         (scene.replace(separations=[8, 9]), stiffness, r"^contact\.separations: give two or more at which a"),
         (scene.replace(n_surfaces=1), stiffness, r"^n_surfaces = 1: an interval needs at least 2 surfaces$"),
         (3.0, {}, "^float: give a scene, an ensemble, or the file of an ensemble$"),
+        (alone, {"to": "json"}, "two separations or more"),
+        (apart, {"to": "json"}, "two separations or more"),
+        (scene, {"table": "gap-pressure"}, r"^table = 'gap-pressure': choose one of pressure-gap, "),
+        (scene, {"to": "calculix", "table": "conductance-gap"}, "calculix does not support it; choose"),
+        (scene, {"to": "ansys"}, r"^to = 'ansys': choose one of calculix, abaqus, moose, comsol, json$"),
+        (scene, {"to": "calculix", "points": 300}, "^points = 300: calculix reads at most 200 lines; give"),
+        (scene, {"pressures": [2.0, 1.0]}, r"^pressures = \[2\.0, 1\.0\]: give two or more increasing numb"),
+        (scene, {"pressures": ["1 N", "2 N"]}, "^pressures = '1 N': give a finite number > 0 in Pa"),
     ):
-        with pytest.raises(ValueError, match=told):
+        with pytest.raises(ValueError, match=told) as caught:
             mcgw.export(what, tmp_path / "t.txt", **({"to": "comsol"} | given))
+        assert "\n" not in str(caught.value)
     assert not list(tmp_path.iterdir())
     mcgw.export(fine, tmp_path / "t.inp", **steps, units="mm-N-s")
-
-
-@pytest.mark.parametrize(("given", "told"), [
-    ("1MPa:2MPa", "--pressures 1MPa:2MPa: give A:B:N, such as 10kPa:20MPa:30"),
-    ("2MPa:1MPa:3", "give the lower one first"),
-])  # fmt: skip
-def test_pressures_that_are_no_range_are_refused(given, told, in_tmp_path, capsys):
-    assert main(["init", "demo", "-o", "s.toml"]) == 0
-    assert main(["export", "s.toml", "--to", "moose", "-o", "t.csv", "--pressures", given]) == 2
-    assert told in capsys.readouterr().err
 
 
 # --- what a stranger wrote ------------------------------------------------------------------------------
@@ -316,11 +297,3 @@ def test_one_surface_without_a_film_has_neither_covariance_nor_conductance(tmp_p
     scene = mcgw.Scene(SURFACE, separations=[0.0, 1.0], n_surfaces=1, seed=1)
     table = as_json(scene, tmp_path / "a.json", points=3)
     assert table["covariance"] is table["conductance"] is None
-
-
-@pytest.mark.parametrize("separations", [1.0, [0.0, 40.0]])
-def test_what_makes_no_table_is_refused(separations, tmp_path):
-    ensemble = mcgw.simulate(JOINED, n_surfaces=2, separations=separations)
-    with pytest.raises(ValueError, match="two separations or more"):
-        mcgw.export(ensemble, tmp_path / "a.json", to="json")
-    assert not (tmp_path / "a.json").exists()

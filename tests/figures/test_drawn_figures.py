@@ -74,22 +74,6 @@ def test_panels_are_drawn_as_they_are(scale, recorded):
         np.testing.assert_allclose(bars_of(axis), ends, rtol=1e-12)
 
 
-def test_residuals_are_below_their_panel():
-    """In standard errors, with the marker and the colour of their series; none where there are no points."""
-    panels = Panel("with", "x (m)", "y (N)", SERIES[1:]), Panel("without", "x (m)", "y (N)", SERIES[:1])
-    figure = draw(FigureData("", "", panels))
-    assert named_in(figure) == ["with points", "γ = 1", "line alone", "Monte Carlo, 95 %"]
-    above, below, alone = figure.axes
-    assert (below.get_xlabel(), alone.get_xlabel()) == ("x (m)", "x (m)")
-    assert below.get_xlim() == above.get_xlim()
-    labelled = [axis.xaxis.get_tick_params()["labelbottom"] for axis in (above, below, alone)]
-    assert labelled == [False, True, True]  # the axis of both stands below
-    for line, series, other in zip(markers_of(below), SERIES[1:], markers_of(above), strict=True):
-        z = (series.points.mean - series.points.exact) / series.points.stderr
-        np.testing.assert_allclose(line.get_xydata(), np.stack([series.points.x, z], axis=1))
-        assert (line.get_marker(), line.get_color()) == (other.get_marker(), other.get_color())
-
-
 @pytest.mark.parametrize(("residuals", "shown"), [([0.7, 0.8, 0.75], 1), ([0.7, -0.8, 0.0], 3)])
 def test_residuals_of_one_draw_over_gamma_are_one_point(residuals, shown):
     """Beside a series without any error, which has none at all."""

@@ -9,13 +9,10 @@ import pytest
 from oracles.inside import (
     Column,
     Table,
-    alive,
     check_output,
     evenly,
     open_npy,
     opened,
-    parse,
-    temporary_beside,
     write_whole,
 )
 
@@ -84,13 +81,6 @@ def test_a_file_of_a_table_has_all_digits(tmp_path):
     assert list(kinds.to_dataframe()["e"]) == [1 / 3, 2.0]
 
 
-def test_a_long_text_is_shortened_where_it_is_no_number():
-    for text, shown in (("x" * 60, "x" * 60), ("x" * 61, "x" * 57 + "...")):
-        with pytest.raises(ValueError, match=f"^'{shown}': .*give a number > 0"):
-            parse(text, "m")
-    assert parse(f"1{' ' * 997}m", "m") == 1
-
-
 # --- files as such ------------------------------------------------------------------------------------------
 
 
@@ -122,18 +112,6 @@ def test_the_longest_name_can_be_written(tmp_path):
     for name in ("x" * 197 + ".csv", "é" * 100 + "x", "..", "a\x07.csv"):
         with pytest.raises(Exception, match="is not a valid file name"):
             check_output(tmp_path / name)
-
-
-def test_leftovers_of_the_living_stay(tmp_path):
-    """Of what cannot be asked, nothing is removed."""
-    mine = temporary_beside(tmp_path / "a.csv")
-    odd = mine.with_name(mine.name.replace(f"-{os.getpid()}-", "-some-"))
-    assert mine.name.startswith(".a.csv.")
-    odd.touch()
-    mine.touch()
-    check_output(tmp_path / "a.csv")
-    assert set(tmp_path.iterdir()) == {mine, odd}
-    assert (alive(os.getpid()), alive(10**30)) == (True, True)
 
 
 def test_a_disk_without_locks_is_read_without_one(monkeypatch):

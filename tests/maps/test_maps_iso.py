@@ -9,7 +9,6 @@ from oracles.inside import write_scene
 
 import mcgw
 from analytic import SpectralMoments
-from mcgw.cli import main
 from mcgw.maps.iso import NUMBERS, moments_from
 
 MOMENTS = ("m0", "m2", "m4")
@@ -99,22 +98,6 @@ def test_refused_in_one_line(numbers, told):
     with pytest.raises(mcgw.SceneError, match=told) as caught:
         mcgw.surface_from(**numbers, nominal_area=1e-6, E_star=1e11)
     assert "\n" not in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    ("given", "told"),
-    [
-        (["--iso", "Sq=1um", "Sq=2um"], "gives Sq more than once"),
-        (["--iso", "Sq=1um", "pruning=x"], "pruning = 'x': give a fraction"),
-        (["map.npy", "--iso", "Sq=1um"], "map.npy: give a map, or --iso"),
-        ([], "MAP: give a map or profiles, or --iso"),
-        (["map.npy"], "--cutoff: give the shortest wavelength"),
-    ],
-)
-def test_commands_that_lack_something(given, told, tmp_path, capsys):
-    """One line, exit code 2."""
-    assert main(["fit", *given, "-o", str(tmp_path / "x.toml")]) == 2
-    assert told in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(("sigma", "eta", "area", "told"), [

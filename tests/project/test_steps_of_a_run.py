@@ -43,10 +43,17 @@ def entered(call):
     return {one for one in found if any(Path(one[0]).is_relative_to(folder) for folder in PACKAGES)}
 
 
-@pytest.mark.parametrize(("name", "functions", "files"), [("simulate", 145, 34), ("run", 204, 47)])
+@pytest.mark.parametrize(
+    ("name", "functions", "files"), [("simulate", 145, 34), ("run", 204, 47), ("compare", 115, 28)]
+)
 def test_the_simplest_scene_takes_few_steps(name, functions, files, tmp_path):
     asked = scene()
-    calls = {"simulate": lambda _: mcgw.simulate(asked), "run": lambda path: mcgw.run(asked, path)}
+    ensemble = mcgw.simulate(asked)
+    calls = {
+        "simulate": lambda _: mcgw.simulate(asked),
+        "run": lambda path: mcgw.run(asked, path),
+        "compare": lambda _: mcgw.compare(ensemble),
+    }
     calls[name](tmp_path / "first.h5")
     found = entered(lambda: calls[name](tmp_path / "counted.h5"))
     assert len(found) <= functions
@@ -60,11 +67,3 @@ def test_steps_of_other_threads_are_counted_and_none_of_other_packages():
         thread.join()
 
     assert {name for *_, name in entered(call)} == {"typeset"}
-
-
-def test_a_verdict_takes_few_steps():
-    ensemble = mcgw.simulate(scene())
-    mcgw.compare(ensemble)
-    found = entered(lambda: mcgw.compare(ensemble))
-    assert len(found) <= 115
-    assert len({file for file, *_ in found}) <= 28

@@ -107,15 +107,6 @@ def test_every_number_of_tables_and_files(words, file, told, capsys, in_tmp_path
             assert float(text) == pytest.approx(wanted[column], rel=1e-7, abs=1e-6), (name, column)
 
 
-def test_show_says_what_there_is_and_its_means_in_short(file, told, capsys):
-    lines = out_of(["show", file], capsys).splitlines()
-    assert "  surfaces      150 of 3000 asperities each (fixed)" in lines
-    assert "  separations   4 from 0 to 2 (d/sigma)" in lines
-    at = next(k for k, line in enumerate(lines) if line.split()[:1] == ["d/sigma"])
-    for line, *means in zip(lines[at + 1 :], *(told[name]["mean"] for name in QUANTITIES), strict=False):
-        assert [float(x) for x in line.split()[1:]] == pytest.approx(means, rel=0.01)
-
-
 def test_tradeoff(make_scene, tmp_path, capsys, monkeypatch):
     """Files hold what was measured and what is advised, in full; the terminal says the same in short."""
     study = made_up(make_scene(quantities=("load",), separations=(2.0,)))

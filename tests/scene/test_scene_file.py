@@ -1,11 +1,9 @@
 """Scenes as TOML: what is read, refused, and reads back the same; what is left out is marked in files."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
-from oracles.thirteen_height_laws import LAWS as HEIGHT_LAWS
 from tables.scene_keys import text, text_of
 
 import analytic
@@ -18,13 +16,6 @@ def test_what_is_left_out_has_its_default():
     assert scene.heights == analytic.Gaussian()
     assert scene.quantities == ("load", "area", "stiffness", "contacts")
     assert (scene.n_asperities, scene.count, scene.sampler) == (1000, "fixed", "auto")
-
-
-@pytest.mark.parametrize("path", sorted(Path(__file__).parents[2].glob("runs/*.toml")), ids=lambda p: p.name)
-def test_every_scene_of_runs_reads_back_the_same(path):
-    scene = mcgw.load_scene(path)
-    assert scene.title
-    assert again(scene) == scene
 
 
 def test_heights_from_a_file_of_numpy_are_those_of_a_text(tmp_path):
@@ -98,9 +89,3 @@ def test_replace_takes_fields_of_scene_and_surface_only():
     assert scene.replace(surface=LARGE, sigma=3e-6).surface == replace(LARGE, sigma=3e-6)
     with pytest.raises(TypeError):
         scene.replace(sigam=1.0)
-
-
-@pytest.mark.parametrize("law", HEIGHT_LAWS)
-def test_every_law_of_heights_is_written_and_read(law, make_scene):
-    scene = make_scene(heights=HEIGHT_LAWS[law], n_asperities=300, n_surfaces=1)
-    assert mcgw.scene_from(mcgw.scene_text(scene)) == scene

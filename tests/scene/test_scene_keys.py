@@ -193,10 +193,13 @@ def test_what_an_editor_sees_of_infinity_passes():
     assert not validator().is_valid(document)
 
 
-def test_every_scene_of_ours_passes():
+def test_every_scene_of_ours_passes_and_reads_back_the_same():
     """Presets and those of runs/; pages show scenes that are read where they are tested."""
     for path in (*ROOT.glob("runs/*.toml"), *ROOT.glob("mcgw/**/*.toml")):
+        scene = mcgw.load_scene(path)
         assert passes(path.read_text(encoding="utf-8")), path
+        assert scene.title, path
+        assert mcgw.scene_from(mcgw.scene_text(scene)) == scene, path
 
 
 def test_init_puts_it_beside_the_scene(tmp_path, capsys):
