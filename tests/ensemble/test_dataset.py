@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from oracles.inside import verdict
 
 import mcgw
+from mcgw.ensemble.ensemble import MOST_SHOWN
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
 SCENE = mcgw.Scene(SURFACE, separations=[1.0, 0.0, 2.0], n_surfaces=60, seed=3)
@@ -25,7 +27,7 @@ def of(values, get):
     return np.array([get(one) for one in values]) if isinstance(values, list) else get(values)
 
 
-@pytest.mark.parametrize("name", ["load", "contacts", "pressure"])
+@pytest.mark.parametrize("name", ["load", "contacts", "pressure", "area_fraction"])
 def test_statistics_are_those_of_the_values(dataset, name):
     found, values = dataset
     expected = {
@@ -64,20 +66,27 @@ def test_what_is_not_kept_is_said_in_one_line(dataset):
         np.testing.assert_allclose(some, expected[np.ix_([2, 0], [2, 0])], rtol=1e-9)
 
 
-def test_other_forms_have_a_row_a_separation_and_the_axes_before(dataset):
-    pytest.importorskip("xarray")
-    found, values = dataset
-    data = found.to_xarray()
-    dims = data["load" if found is values else "load_mean"].dims
-    lead = ("surface",) if found is values else ("nominal_area",) if isinstance(values, list) else ()
-    assert dims == (*lead, "separation")
-    assert len(found.to_dataframe()) == np.prod([60 if found is values else 1, *found.shape, 3])
-    assert found.sel(separation=0.0).to_xarray().separation.values.tolist() == [0.0]
-
-
 def test_no_such_quantity_nor_separation(dataset):
     found, _ = dataset
     with pytest.raises(KeyError, match=r"'depth' is not in this (ensemble|sweep); it has load, area"):
         found.std("depth")
     with pytest.raises(ValueError, match=r"^separation = 0\.5: there are 1, 0, 2; scene\.theory has"):
         found.sel(separation=0.5)
+
+
+@pytest.mark.parametrize("keep", ["sums", "statistics"])
+def test_a_comparison_shows_some_of_many_separations_and_its_verdict_is_on_all(keep):
+    """The first, the last and some between, in their order; up to a limit all."""
+    h = np.linspace(1.5, 0.0, 2 * MOST_SHOWN + 1)
+    whole = mcgw.simulate(SCENE, separations=h, n_surfaces=40, keep=keep)
+    found = mcgw.compare(whole)
+    assert found.of_many == f"at {MOST_SHOWN} of {h.size} separations"
+    assert found.of_many in str(found)
+    for name, table in found.tables().items():
+        shown, mean = (table.only(column).columns[0].values for column in ("separation", "mean"))
+        index = [h.tolist().index(x) for x in shown]
+        assert (len(index), index[0], index[-1]) == (MOST_SHOWN, 0, h.size - 1)
+        assert np.all(np.diff(index) > 0)
+        np.testing.assert_array_equal(mean, whole.mean(name)[index])
+    assert found.verdict == verdict(whole)
+    assert mcgw.compare(whole.sel(separation=h[:MOST_SHOWN])).of_many == ""

@@ -214,18 +214,6 @@ def test_derivatives_of_the_gap_and_slopes_of_the_joint():
         assert float(model.slope(name, 1.5)) == pytest.approx(fall, rel=1e-6)
 
 
-def test_where_it_goes():
-    """Into statistics and tables, whose units are those of heat; spots are the same without it."""
-    scene = scene_of()
-    e = mcgw.simulate(scene)
-    kept = mcgw.simulate(scene.replace(keep="statistics"))
-    np.testing.assert_allclose(kept.mean("joint_conductance"), e.mean("joint_conductance"), rtol=1e-12)
-    without = mcgw.simulate(scene.replace(joint=FILM))
-    for name in without.scene.quantities:
-        np.testing.assert_array_equal(without[name], e[name])
-    assert e.labelled().variables["conductance_si"].about["units"] == "W/K"
-
-
 def test_a_fit_tells_the_surface():
     """[fitted] knows rms and alpha; what is given as rms goes before."""
     fitted = {"m0": 4e-12, "m2": 1e-3, "m4": 5e6, "skewness": 0.0, "kurtosis": 3.0, "independent": 900.0}

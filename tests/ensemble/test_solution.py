@@ -241,24 +241,3 @@ def test_their_loads_and_areas_add_up_to_what_was_given(surface, count):
             assert literal(found, i) == pytest.approx((found.amount, found.surfaces["area"][i]), rel=1e-9)
             assert found.heights(i).size == found.radii(i).size == found.surfaces["contacts"][i]
         assert not np.array_equal(found.heights(0), found.heights(2))
-
-
-def test_of_areas_too_and_below_what_was_drawn_at_first(monkeypatch):
-    """Where surfaces lie lower than was expected."""
-    monkeypatch.setattr("mcgw.ensemble.loaded_surfaces._MARGIN", 0.1)
-    scene = mcgw.Scene(PLAIN, separations=0.0, ensemble=mcgw.Sampling(n_asperities=10), n_surfaces=40, seed=1)
-    below = 0
-    for share in (0.02, 0.4):
-        found = mcgw.solve(scene, area_fraction=share * 1e-2)
-        below += np.count_nonzero(found.surfaces["separation"] < found.drawn.lowest)
-        for i in range(40):
-            assert literal(found, i)[1] == pytest.approx(found.amount, rel=1e-9)
-    assert below
-
-
-def test_asperities_that_press_each_other_down_have_theirs():
-    scene = mcgw.Scene(PLAIN, separations=0.0, n_surfaces=3, seed=2, interaction="body")
-    found = mcgw.solve(scene, pressure="1 MPa")
-    alone = mcgw.solve(scene.replace(interaction=None), pressure="1 MPa")
-    assert np.array_equal(found.heights(2), alone.heights(2))
-    assert found.heights(2).size == found.surfaces["contacts"][2] > 0

@@ -12,15 +12,6 @@ from mcgw.errors import StoreError
 SEEDS = 2500
 
 
-def test_checkpoints_are_multiples_of_a_group_and_end_at_the_limit():
-    numbers = list(checkpoints(10_000))
-    assert numbers[-1] == 10_000
-    assert all(n % 64 == 0 for n in numbers[:-1])
-    steps = np.diff(numbers)
-    assert (steps > 0).all()
-    assert (steps[20:] <= np.array(numbers[20:-1]) / 16 + 64).all()
-
-
 def test_forecast_is_where_every_interval_is_narrow_enough(make_scene):
     """And a sixteenth less is not: the number needed is that of the mean known least."""
     scene = make_scene(rel_err=0.02, n_surfaces=10**7, separations=(0.0, 1.5), n_asperities=300)
