@@ -183,6 +183,7 @@ SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
 
 
 def test_every_dataset_and_attribute_is_described(tmp_path):
+    """Of an ensemble, and of a sweep, where those of each quantity are as those of the load."""
     asked = {"quantities": ("load", "area", "stiffness", "contacts", "conductance")}
     scene = scene_by(
         SURFACE, separations=[0.0, 1.0], n_surfaces=3, seed=1, title="x", interaction="body", **asked
@@ -192,22 +193,13 @@ def test_every_dataset_and_attribute_is_described(tmp_path):
     with h5py.File(tmp_path / "a.h5") as file:
         found = set(file.attrs)
         file.visit(lambda name: found.update(name.split("/")))
-        for name in ("load", "surface"):
-            found |= {
-                key for key in file[name].attrs if key.islower()
-            }  # those of HDF5 itself are in capitals
-    assert found - words == set()
+        for name in ("load", "surface"):  # keys of HDF5 itself are in capitals
+            found |= {key for key in file[name].attrs if key.islower()}
     assert {"load", "digest", "units"} <= found
-
-
-def test_every_dataset_of_a_sweep_is_described(tmp_path):
-    scene = mcgw.Scene(SURFACE, separations=[0.0, 1.0], n_surfaces=10, seed=1, title="x")
-    mcgw.sweep(scene, {"grading.gamma": [0.5, 2.0]}, path=tmp_path / "a.h5")
-    words = set(re.findall(r"\w+", mcgw.store.__doc__))
-    quantities = {f"{name}_" for name in scene.quantities}
-    with h5py.File(tmp_path / "a.h5") as file:
-        found = set(file.attrs) | set(file) | set(file["drawn"])
+    mcgw.sweep(scene.replace(interaction=None), {"grading.gamma": [0.5, 2.0]}, path=tmp_path / "s.h5")
+    with h5py.File(tmp_path / "s.h5") as file:
+        of_sweep = set(file.attrs) | set(file) | set(file["drawn"])
         assert file.attrs["filetype"] == b"mcgw-results"
-    told = {name for name in found if name.startswith(tuple(quantities))}  # as those of the load
-    assert found - told - words == set()
+    told = {name for name in of_sweep if name.startswith(tuple(f"{name}_" for name in scene.quantities))}
     assert {"load_mean", "load_std"} <= told
+    assert (found | of_sweep) - told - words == set()

@@ -12,18 +12,6 @@ from scipy.integrate import quad
 from scipy.ndimage import map_coordinates
 
 
-def test_of_spheres_are_hertz():
-    spots, delta = Spots.hertz(np.zeros(3), np.array([1e-5, 2e-5, 3e-5]), 1e9), np.array([1e-7, 4e-7, -1e-7])
-    a = np.array([1e-6, math.sqrt(8e-12), 0.0])
-    assert_allclose(spots.contact_radii(delta), a, rtol=1e-14)
-    assert_allclose(spots.areas(delta), math.pi * a**2, rtol=1e-14)
-    assert_allclose(spots.slopes(delta), 2e9 * a, rtol=1e-14)
-    assert_allclose(spots.loads(delta), [4 / 3 * 1e9 * x**3 / r for x, r in zip(a, spots.radii, strict=True)])
-    two = spots.only(np.array([1, 2]))
-    assert two.radii.tolist() == [2e-5, 3e-5]
-    assert two.loads(delta[1:]).tolist() == spots.loads(delta)[1:].tolist()
-
-
 @pytest.mark.parametrize("n", [1.0, 1.6, 4.0])
 def test_of_a_power_are_integrals_of_sneddon(n):
     """f = c r^n, by quadrature with r = a sin t; the stiffness is the slope of the load."""

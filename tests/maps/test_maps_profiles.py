@@ -155,20 +155,6 @@ def test_intervals_hold_on_profiles_cut_from_maps(case):
 NOISE = np.random.default_rng(1).normal(size=900) * UM
 
 
-@pytest.mark.parametrize(("profiles", "cutoff", "told"), [
-    ([], None, "at least one profile"),
-    ([np.ones(900)], 10 * UM, "flat"),
-    ([NOISE], 800 * UM, "leaves nothing"),
-    ([NOISE[:63]], None, "63 points: too few for 16 stretches"),
-    ([NOISE[:31], NOISE[:400]], None, "31 points: too few for 8 stretches"),
-    ([np.sin(np.arange(9000) / 10) * UM], 37 * UM, "impossible for an isotropic surface"),
-    ([NOISE[300:400]], 40 * UM, "not all are > 0; the profile is too short"),
-])  # fmt: skip
-def test_profiles_that_cannot_be_fitted_are_refused(profiles, cutoff, told):
-    with pytest.raises(ValueError, match=told):
-        fit_profiles([Profile(z, UM) for z in profiles], cutoff=cutoff)
-
-
 def test_four_points_for_each_of_sixteen_stretches_are_enough():
     """Together, of the shortest profile."""
     (one,) = list(cut(Spectrum(UM, 20 * UM, 8 * UM), 400))[:1]
@@ -219,18 +205,6 @@ def test_cautions_of_points(two):
     assert "ten points (1e-05 m) or more" in profile_cautions(fit, two[0], None)[0]
 
 
-@pytest.mark.parametrize(("asked", "told"), [
-    *(({name: value}, f"--{name.replace('_', '-')}: is for maps") for name, value in (
-        ("long_cutoff", 1e-3), ("missing", "fill"), ("spikes", "remove"), ("lines", "rows"), ("trim", 3),
-    )),
-    ({"form": "cubic"}, "a profile has plane"),
-])  # fmt: skip
-def test_what_a_profile_cannot_be_asked(asked, told):
-    rough = Profile(np.random.default_rng(1).normal(size=900) * UM, UM)
-    with pytest.raises(ValueError, match=told):
-        mcgw.fit(rough, cutoff="10um", **asked)
-
-
 X, SQUARES = np.arange(40.0), np.arange(40.0) ** 2
 
 
@@ -246,18 +220,35 @@ def test_the_limits_of_places_and_gaps():
     assert profile_at(X[:8], SQUARES[:8].astype(int)).length == 8.0
 
 
-@pytest.mark.parametrize(("made", "told"), [
+def fitted(cutoff, *heights):
+    return fit_profiles([Profile(z, UM) for z in heights], cutoff=cutoff)
+
+
+REFUSED = [
     (lambda: profile_at(X, np.full(40, np.nan)), "no heights"),
     (lambda: profile_at(X, np.where((X > 2) & (X < 8), np.nan, X)), "5 of the 40 heights are missing"),
     (lambda: profile_at(X[:7], X[:7]), "^7 points: a profile has 8 or more"),
     (lambda: profile_at(X[:1], X[:1]), "1 points: a profile has"),
     (lambda: profile_at(np.sort([*X[:8], 5]), X[:9]), "x = 5 m is followed by 5 m; give x in increasing or "),
     (lambda: Profile(np.zeros((3, 9)), 1.0), "not 2 dimensions"),
-    (lambda: Profile(X[:7], 1.0), "8 or more"),
     (lambda: Profile(np.append(X, np.nan), 1.0), "are missing"),
     (lambda: Profile(X, 0.0), "give a length > 0 m"),
-])  # fmt: skip
-def test_what_makes_no_profile_is_refused(made, told):
+    (lambda: fitted(None), "at least one profile"),
+    (lambda: fitted(10 * UM, np.ones(900)), "flat"),
+    (lambda: fitted(800 * UM, NOISE), "leaves nothing"),
+    (lambda: fitted(None, NOISE[:63]), "63 points: too few for 16 stretches"),
+    (lambda: fitted(None, NOISE[:31], NOISE[:400]), "31 points: too few for 8 stretches"),
+    (lambda: fitted(37 * UM, np.sin(np.arange(9000) / 10) * UM), "impossible for an isotropic surface"),
+    (lambda: fitted(40 * UM, NOISE[300:400]), "not all are > 0; the profile is too short"),
+    (lambda: mcgw.fit(Profile(NOISE, UM), cutoff="10um", form="cubic"), "a profile has plane"),
+    *((lambda key=key, value=value: mcgw.fit(Profile(NOISE, UM), cutoff="10um", **{key: value}),
+       f"--{key.replace('_', '-')}: is for maps") for key, value in (
+        ("long_cutoff", 1e-3), ("missing", "fill"), ("spikes", "remove"), ("lines", "rows"), ("trim", 3))),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("made", "told"), REFUSED, ids=[told for _, told in REFUSED])
+def test_what_makes_no_profile_and_no_fit_is_refused(made, told):
     with pytest.raises(ValueError, match=told):
         made()
 

@@ -203,11 +203,6 @@ REFUSED = [  # text, what is given, what is told
         M,
         "line 2: Height = '4 lightyears': give a number > 0 with its unit",
     ),
-    (
-        "# Width: 1-2 um\n# Height: 4 um\n1 2\n",
-        M,
-        "line 1: Width = '1-2 um': give a number > 0 with its unit",
-    ),
     (text_of([*POINTS, POINTS[0]]), {"unit": "um"}, "x = 0, y = 0 has two heights"),
     (text_of([*POINTS, (0.37, 0, 1)]), {"unit": "um"}, "x of the points is not evenly spaced"),
     (text_of([(k, k, k % 3) for k in range(9)]), M, "9 points on a grid of 9 x 9: scattered points are not"),

@@ -8,7 +8,6 @@ import pydoc
 import re
 import rlcompleter
 import sys
-from concurrent.futures import ThreadPoolExecutor
 from importlib import import_module
 from pathlib import Path
 
@@ -195,42 +194,6 @@ def test_all_mistakes_are_told_at_once():
     assert [line.split(" = ")[0] for line in said] == ["surface.sigma", "surface.radius"]
 
 
-CALLS = [
-    (lambda: mcgw.simulate(scene(), threads=0), r"^threads = 0: give a whole number >= 1$"),
-    (lambda: mcgw.simulate(scene(), threads=1.5), r"^threads = 1\.5: give a whole number >= 1$"),
-    (lambda: mcgw.simulate(scene(), progress=3),
-     r"^progress = 3: give True, or a function of \(done, total\)$"),
-    (lambda: mcgw.run(scene(), "x.h5", executor="gpu"),
-     r"^executor = 'gpu': give a concurrent.futures.Executor, such as ProcessPoolExecutor"),
-    (lambda: mcgw.run(scene(), "x.h5", shard="9/8"), "9/8: give i/n with 1 <= i <= n$"),
-    (lambda: mcgw.run(scene(), "x.h5", shard="first"), "first: give i/n with 1 <= i <= n$"),
-    (lambda: mcgw.run(scene(), "x.h5", shard="1/2", executor=ThreadPoolExecutor(1)),
-     r"^shard = '1/2': .*leave executor out$"),
-    (lambda: mcgw.solve(scene()),
-     "^solve: give one of load, pressure, area, area_fraction, nominal_separation, not none$"),
-    (lambda: mcgw.solve(scene(), load=1, area=1), "^solve: give one of .*, not load and area$"),
-    (lambda: mcgw.solve(scene(), pressure="1 N"),
-     r"^pressure = '1 N': give a finite number > 0 in Pa, such as 1MPa"),
-    (lambda: mcgw.solve(scene(), load=[1.0, -1.0]),
-     r"^load = -1\.0: give a finite number > 0 in N, such as 5N"),
-    (lambda: mcgw.tradeoff(scene(), seconds="1 m"),
-     r"^seconds = '1 m': give a finite number > 0 in s, such as 90 s"),
-    (lambda: mcgw.fit("map.h5", cutoff="5 N"), r"^cutoff = '5 N': give a finite number > 0 in m"),
-    (lambda: mcgw.fit("map.h5", cutoff=None, form="x"),
-     r"^form = 'x': choose one of plane, none, quadratic, cubic, quartic$"),
-    (lambda: mcgw.fit("map.h5", cutoff=None, parts=1), r"^parts = 1: give a whole number >= 2$"),
-    (lambda: mcgw.fit("map.h5", cutoff=None, pixel=-1), r"^pixel = -1: give a finite number > 0 in m"),
-    (lambda: mcgw.fit("absent.h5", cutoff=None), r"^absent\.h5: no such file$"),
-]  # fmt: skip
-
-
-@pytest.mark.parametrize(("call", "told"), CALLS, ids=[told for _, told in CALLS])
-def test_a_wrong_call_is_one_line_that_names_the_argument(call, told, tmp_path, in_tmp_path):
-    with pytest.raises(ValueError, match=told) as caught:
-        call()
-    assert "\n" not in str(caught.value)
-
-
 @pytest.mark.parametrize(
     "call", [mcgw.Scene.replace, mcgw.simulate, mcgw.solve, mcgw.converge, mcgw.tradeoff]
 )
@@ -310,8 +273,3 @@ def test_a_plain_function_is_custom():
     np.testing.assert_allclose(*means, rtol=1e-11)
     swept = mcgw.sweep(scene(n_surfaces=50), {"grading": [mcgw.Homogeneous(), tips]})
     assert swept.scene(1).grading.name == "tips"  # the series of it
-
-
-def test_a_number_alone_is_no_load():
-    with pytest.raises(TypeError, match=r"^solve: 1000000\.0 has no name: give one of load=, pressure=, "):
-        mcgw.solve(scene(), 1e6)

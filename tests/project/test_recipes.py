@@ -1,8 +1,6 @@
 """The recipes of CONTRIBUTING.md, followed by the letter: a command and a figure, each in one file."""
 
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -81,7 +79,3 @@ def test_a_figure_is_one_file(folder, monkeypatch):
     assert lines[1].split(",")[:4] == ["", "this scene", "line", "0.0"]
     assert float(lines[1].split(",")[4]) == pytest.approx(500)
     assert sum(",point," in line for line in lines) == 2
-    listed = subprocess.run(
-        [sys.executable, "-m", "mcgw", "figures", "--list"], capture_output=True, text=True, check=True
-    )
-    assert listed.stdout.split() == [each.name for each in catalogue.CATALOGUE[:-1]]

@@ -58,15 +58,6 @@ def is_its_text(document):
 
 
 @pytest.mark.filterwarnings("ignore::UserWarning")
-@some_of(60)
-@given(documents())
-def test_text_and_scene_are_the_same(document):
-    is_its_text(document)
-
-
-@pytest.mark.slow
-@pytest.mark.filterwarnings("ignore::UserWarning")
-@some_of(2000)
-@given(documents())
-def test_text_and_scene_are_the_same_of_many(document):
-    is_its_text(document)
+@pytest.mark.parametrize("many", [60, pytest.param(2000, marks=pytest.mark.slow)])
+def test_text_and_scene_are_the_same(many):
+    some_of(many)(given(documents())(is_its_text))()

@@ -2,6 +2,7 @@
 
 import re
 import warnings
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -52,6 +53,32 @@ OTHERS = [  # other objects and words than a call takes
     (lambda: mcgw.Body(7e10, 0.6), r"nu = 0\.6: give a finite number"),
     (lambda: SCENE.replace(sigma="2 N"), r"surface\.sigma = '2 N': give a finite number > 0"),
 ]  # fmt: skip
+CALLS = [  # wrong values of arguments
+    (lambda: mcgw.simulate(scene(), threads=0), r"^threads = 0: give a whole number >= 1$"),
+    (lambda: mcgw.simulate(scene(), threads=1.5), r"^threads = 1\.5: give a whole number >= 1$"),
+    (lambda: mcgw.simulate(scene(), progress=3),
+     r"^progress = 3: give True, or a function of \(done, total\)$"),
+    (lambda: mcgw.run(scene(), "x.h5", executor="gpu"),
+     r"^executor = 'gpu': give a concurrent.futures.Executor, such as ProcessPoolExecutor"),
+    (lambda: mcgw.run(scene(), "x.h5", shard="9/8"), "9/8: give i/n with 1 <= i <= n$"),
+    (lambda: mcgw.run(scene(), "x.h5", shard="1/2", executor=ThreadPoolExecutor(1)),
+     r"^shard = '1/2': .*leave executor out$"),
+    (lambda: mcgw.solve(scene()),
+     "^solve: give one of load, pressure, area, area_fraction, nominal_separation, not none$"),
+    (lambda: mcgw.solve(scene(), load=1, area=1), "^solve: give one of .*, not load and area$"),
+    (lambda: mcgw.solve(scene(), pressure="1 N"),
+     r"^pressure = '1 N': give a finite number > 0 in Pa, such as 1MPa"),
+    (lambda: mcgw.solve(scene(), load=[1.0, -1.0]),
+     r"^load = -1\.0: give a finite number > 0 in N, such as 5N"),
+    (lambda: mcgw.tradeoff(scene(), seconds="1 m"),
+     r"^seconds = '1 m': give a finite number > 0 in s, such as 90 s"),
+    (lambda: mcgw.fit("map.h5", cutoff="5 N"), r"^cutoff = '5 N': give a finite number > 0 in m"),
+    (lambda: mcgw.fit("map.h5", cutoff=None, form="x"),
+     r"^form = 'x': choose one of plane, none, quadratic, cubic, quartic$"),
+    (lambda: mcgw.fit("map.h5", cutoff=None, parts=1), r"^parts = 1: give a whole number >= 2$"),
+    (lambda: mcgw.fit("map.h5", cutoff=None, pixel=-1), r"^pixel = -1: give a finite number > 0 in m"),
+    (lambda: mcgw.solve(SCENE, 1e6), r"^solve: 1000000\.0 has no name: give one of load=, pressure=, "),
+]  # fmt: skip
 HARDNESS = [  # what says nothing beside a law
     (lambda: scene(law="hertz", poisson=0.3), r"contact\.law\.poisson = 0\.3: give hardness too, or leave"),
     (lambda: scene(law={"name": "hertz", "k": 0.3}),
@@ -89,7 +116,7 @@ FAR = [  # beyond numbers, memory, disk and folders
     (lambda: mcgw.open_ensemble("/dev/zero"), "is not a regular file"),
     (lambda: mcgw.solve(SCENE, load=5e-324), r"load = .*double precision of the heights; give .* or more"),
 ]  # fmt: skip
-REFUSED = [*OTHERS, *HARDNESS, *TEXTS, *FAR]
+REFUSED = [*OTHERS, *CALLS, *HARDNESS, *TEXTS, *FAR]
 
 
 @pytest.mark.parametrize(("action", "words"), REFUSED, ids=[words for _, words in REFUSED])

@@ -10,14 +10,6 @@ import analytic
 import mcgw
 
 
-def test_what_is_left_out_has_its_default():
-    scene = mcgw.scene_from(text(heights=None, ensemble=None))
-    assert scene.grading == analytic.Homogeneous()
-    assert scene.heights == analytic.Gaussian()
-    assert scene.quantities == ("load", "area", "stiffness", "contacts")
-    assert (scene.n_asperities, scene.count, scene.sampler) == (1000, "fixed", "auto")
-
-
 def test_heights_from_a_file_of_numpy_are_those_of_a_text(tmp_path):
     z = np.random.default_rng(1).weibull(1.6, size=3)
     np.save(tmp_path / "z.npy", z)
