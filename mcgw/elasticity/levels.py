@@ -86,7 +86,7 @@ class Pressed:
             raise RunError("a map has no summit; give a larger one, or a shorter cutoff")
         columns, rows = (
             np.rint(p * n - 0.5).astype(np.int64) % n
-            for p, n in zip(counted.places, self.heights.shape[::-1], strict=True)
+            for p, n in zip(counted.summits[2:4], self.heights.shape[::-1], strict=True)
         )
         return counted.heights, summits_of(self._map, counted, (0.0, 0.0)), np.array([rows, columns])
 

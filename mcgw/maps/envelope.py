@@ -72,28 +72,17 @@ def _highest(
 
 
 @njit(parallel=True, cache=True)
-def _map(pixels: Any, pixel: Any, caps: Any, shape: Any, size: Any, periodic: Any) -> Any:
-    """Envelope above the centre of every pixel."""
+def _heights(px: Any, py: Any, least: Any, caps: Any, shape: Any, size: Any, periodic: Any) -> Any:
+    """Envelope above points in rows and columns, `least` or more."""
     x, y, z, per, starts = caps
-    result = np.empty(pixels)
+    result = np.empty(px.shape)
     top, flattest = z.max(), per.min()
-    for j in prange(pixels[0]):
-        for i in range(pixels[1]):
-            px, py = (i + 0.5) * pixel[0], (j + 0.5) * pixel[1]
+    for j in prange(px.shape[0]):
+        for i in range(px.shape[1]):
             mine = (x, y, z, per, starts)
-            result[j, i] = _highest(px, py, -np.inf, mine, top, flattest, shape, size, periodic)
-    return result
-
-
-@njit(parallel=True, cache=True)
-def _hidden(caps: Any, shape: Any, size: Any, periodic: Any) -> Any:
-    """Whether a taller neighbour's cap rises above each summit."""
-    x, y, z, per, starts = caps
-    result = np.zeros(z.size, dtype=np.bool_)
-    top, flattest = z.max(), per.min()
-    for k in prange(z.size):
-        mine = (x, y, z, per, starts)
-        result[k] = _highest(x[k], y[k], z[k], mine, top, flattest, shape, size, periodic) > z[k]
+            result[j, i] = _highest(
+                px[j, i], py[j, i], least[j, i], mine, top, flattest, shape, size, periodic
+            )
     return result
 
 
@@ -134,7 +123,9 @@ def envelope(
                 f"width = {width:g} m: give a length > 0, up to the nominal area's {widest:.4g} m"
             )
         pixel = (width / columns, width / columns)
-    heights = _map((rows, columns), pixel, *_binned(field)[1:], field.size, periodic)
+    x, y = ((np.arange(n) + 0.5) * p for n, p in zip((columns, rows), pixel, strict=True))
+    points = (np.broadcast_to(each, (rows, columns)) for each in (x, y[:, None], -np.inf))
+    heights = _heights(*points, *_binned(field)[1:], field.size, periodic)
     return Topography(heights, pixel, periodic and width is None)
 
 
@@ -142,5 +133,6 @@ def hidden_summits(field: Asperities, *, periodic: bool = False) -> Marks:
     """Which summits lie below the cap of a taller neighbour, across the edges too if periodic."""
     order, caps, shape = _binned(field)
     hidden = np.empty(field.number, dtype=np.bool_)
-    hidden[order] = _hidden(caps, shape, field.size, periodic)
+    x, y, z = (of_each[:, None] for of_each in caps[:3])
+    hidden[order] = (_heights(x, y, z, caps, shape, field.size, periodic) > z)[:, 0]
     return hidden

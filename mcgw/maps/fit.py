@@ -267,8 +267,9 @@ def _without_summit_form(counted: SummitSums, form: Form) -> SummitSums:
     order = min(ORDERS[form], 2)
     if order < 0:
         return counted
-    x, y = 2 * counted.places - 1
+    x, y = 2 * counted.summits[2:4] - 1
     columns = [np.ones_like(x), x, y, *((x * x, x * y, y * y) if order == 2 else ())]
     basis = np.column_stack(columns)
     found = np.linalg.lstsq(basis, counted.heights, rcond=None)[0]
-    return replace(counted, heights=counted.heights - basis[:, 1:] @ found[1:])
+    flat = counted.heights - basis[:, 1:] @ found[1:]
+    return replace(counted, summits=np.vstack([flat, counted.summits[1:]]))

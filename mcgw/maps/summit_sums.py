@@ -1,6 +1,5 @@
 """One pass over a map: sums of squares of its derivatives, and its summits, sub-area by sub-area."""
 
-import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,6 +15,7 @@ from mcgw.maps.topography import LARGEST, Topography
 SUMS = ("points", "z", "z2", "z3", "slope_x", "slope_y", "bend", "bend_1", "bend_2", "slope_xy")
 EDGE = 4  # pixels left out at the edge
 _STENCIL = 2  # pixels that the differences reach
+_FIRST = (1 / 12, -8 / 12, 0.0, 8 / 12, -1 / 12)  # the first difference of the fourth order
 
 
 @dataclass(frozen=True)
@@ -26,36 +26,35 @@ class SummitSums:
     ----------
     sums : ndarray
         Shape (sums, sub-areas), in the order of `SUMS`; m, m^2, ...
-    heights, curvatures : ndarray
-        Of the summits: m above the map's zero, and mean curvature, 1/m.
-    places : ndarray
-        Of the summits, shape (2, summits): x and y from 0 to 1 across the map.
+    summits : ndarray
+        Of each summit, shape (8, summits): height above the map's zero, m; mean curvature, 1/m; place along
+        x and y from 0 to 1 across the map; the vertex from the centre of the pixel along x and y, in pixels;
+        and principal curvatures, the larger first, 1/m; the second is nan on ridges between pixels.
     part : ndarray of int
         Sub-area of each summit.
     pixel_area : float
         m^2.
-    shapes : ndarray, optional
-        Of the summits, shape (4, summits): the vertex from the centre of the pixel along x and y, in pixels,
-        and the principal curvatures, the larger first, 1/m; the second is nan on ridges between pixels.
     """
 
     sums: Array
-    heights: Array
-    curvatures: Array
-    places: Array
+    summits: Array
     part: Ints
     pixel_area: float
-    shapes: Array | None = None
+
+    @property
+    def heights(self) -> Array:
+        """Heights of the summits, m."""
+        return self.summits[0]
+
+    @property
+    def curvatures(self) -> Array:
+        """Mean curvatures of the summits, 1/m."""
+        return self.summits[1]
 
     @property
     def parts(self) -> int:
         """Number of sub-areas."""
         return int(self.sums.shape[1])
-
-    @property
-    def across(self) -> int:
-        """Number of sub-areas along each axis."""
-        return math.isqrt(self.parts)
 
     @property
     def used(self) -> list[int]:
@@ -66,8 +65,7 @@ class SummitSums:
         """All but one sub-area."""
         kept = self.part != part
         sums = np.where(np.arange(self.parts) == part, 0.0, self.sums)
-        of_summits = (self.heights[kept], self.curvatures[kept], self.places[:, kept], self.part[kept])
-        return SummitSums(sums, *of_summits, self.pixel_area)
+        return SummitSums(sums, self.summits[:, kept], self.part[kept], self.pixel_area)
 
     @property
     def area(self) -> float:
@@ -80,7 +78,7 @@ def _is_summit(z: Any, j: Any, i: Any) -> Any:
     """Whether a point is higher than its eight neighbours; of equal ones the last counts.
 
     No point is that has no height, or has a neighbour without. So never are two neighbours, whatever a map
-    holds, which `_most_summits` rests on.
+    holds: one in every square of two points by two at most.
     """
     here = z[j, i]
     for dj in range(-1, 2):
@@ -90,11 +88,6 @@ def _is_summit(z: Any, j: Any, i: Any) -> Any:
             if (dj or di) and not (other < here or (other == here and not later)):
                 return False
     return True
-
-
-def _most_summits(rows: int, columns: int) -> int:
-    """One in every square of two points by two."""
-    return ((rows + 1) // 2) * ((columns + 1) // 2)
 
 
 @njit(cache=True)
@@ -124,12 +117,6 @@ def _apex(z: Any, j: Any, i: Any) -> Any:
         if 2 * max(abs(x), abs(y)) < 1:
             best = max(best, gx * x + gy * y + (xx * x * x + yy * y * y) / 2 + xy * x * y)
     return best, min(max(x, -0.5), 0.5), min(max(y, -0.5), 0.5)
-
-
-@njit(cache=True)
-def _slope(before: Any, next_before: Any, next_after: Any, after: Any) -> Any:
-    """First difference of the fourth order, from two points before to two points after."""
-    return (8 * (next_after - next_before) - (after - before)) / 12
 
 
 @njit(cache=True)
@@ -176,17 +163,11 @@ def _pass(
                 summits[0, found] = z[b, a] + rise - mean
                 summits[1, found] = -(xx + yy) / 2
                 summits[2, found], summits[3, found] = (i + 0.5) / columns, (j + 0.5) / rows
-                n2, n1, m1, m2 = z[b - 2], z[b - 1], z[b + 1], z[b + 2]
-                xy = (
-                    per_x
-                    * per_y
-                    * _slope(
-                        _slope(n2[a - 2], n2[a - 1], n2[a + 1], n2[a + 2]),
-                        _slope(n1[a - 2], n1[a - 1], n1[a + 1], n1[a + 2]),
-                        _slope(m1[a - 2], m1[a - 1], m1[a + 1], m1[a + 2]),
-                        _slope(m2[a - 2], m2[a - 1], m2[a + 1], m2[a + 2]),
-                    )
-                )
+                xy = 0.0
+                for p in range(5):
+                    for q in range(5):
+                        xy += _FIRST[p] * _FIRST[q] * (z[b + p - 2, a + q - 2] - mean)
+                xy *= per_x * per_y
                 turn = np.hypot((xx - yy) / 2, xy)
                 summits[6, found], summits[7, found] = turn - (xx + yy) / 2, -turn - (xx + yy) / 2
                 if not summits[7, found] > 0:  # the neighbours are lower: plain differences have a sign
@@ -219,7 +200,7 @@ def summit_sums_of(topography: Topography, *, across: int = 4, seen: Marks | Non
             f"{max(columns, 0)} x {max(rows, 0)} points are left: too few for {across} x {across} sub-areas"
         )
     sums = np.zeros((len(SUMS), across * across))
-    most = _most_summits(rows, columns)
+    most = ((rows + 1) // 2) * ((columns + 1) // 2)  # one in every square of two points by two
     summits, part = np.empty((8, most)), np.empty(most, dtype=np.int64)
     found = _pass(z, mean, counts, *topography.pixel, across, sums, summits, part)
     if not sums[0].any():
@@ -231,9 +212,7 @@ def summit_sums_of(topography: Topography, *, across: int = 4, seen: Marks | Non
             "give the right unit and pixel"
         )
     dx, dy = topography.pixel
-    summits = summits[:, :found].copy()
-    heights, bends = summits[:2]
-    return SummitSums(sums, heights, bends, summits[2:4], part[:found].copy(), dx * dy, summits[4:])
+    return SummitSums(sums, summits[:, :found].copy(), part[:found].copy(), dx * dy)
 
 
 def _with_neighbours(seen: Marks, periodic: bool) -> Marks:
@@ -261,9 +240,7 @@ def coarse_sums_of(topography: Topography, *, across: int = 4, seen: Marks | Non
             found.append(summit_sums_of(half, across=across, seen=None if seen is None else seen[every]))
     return SummitSums(
         np.sum([f.sums for f in found], axis=0),
-        np.concatenate([f.heights for f in found]),
-        np.concatenate([f.curvatures for f in found]),
-        np.concatenate([f.places for f in found], axis=1),
+        np.concatenate([f.summits for f in found], axis=1),
         np.concatenate([f.part for f in found]),
         found[0].pixel_area,
     )

@@ -67,17 +67,13 @@ def summits_of(used: Topography, counted: SummitSums, origin: tuple[float, float
 
     Its corner lies at the `origin` of the map as it was read, x and y in m.
     """
-    if counted.shapes is None:
-        raise ValueError("shapes of summits are known of a whole map only")
     margin = 0 if used.periodic else EDGE
     size = [(n - 2 * margin) * p for n, p in zip(used.heights.shape[::-1], used.pixel, strict=True)]
+    places, beside, (larger, smaller) = np.split(counted.summits[2:], 3)
     x, y = (
-        corner + margin * p + place * length + beside * p
-        for corner, p, place, length, beside in zip(
-            origin, used.pixel, counted.places, size, counted.shapes[:2], strict=True
-        )
+        corner + margin * p + at * length + vertex * p
+        for corner, p, length, at, vertex in zip(origin, used.pixel, size, places, beside, strict=True)
     )
-    larger, smaller = counted.shapes[2:]
     curvatures = np.array([larger, np.where(np.isnan(smaller), larger, smaller)])
     heights, unresolved = counted.heights - counted.heights.mean(), int(np.isnan(smaller).sum())
     return Summits(x, y, heights, curvatures, counted.part, unresolved, (size[0], size[1]))
@@ -100,12 +96,12 @@ def tiles_of(counted: SummitSums) -> Table:
 
     squares = mean((counted.heights - mean(counted.heights)[counted.part]) ** 2)
     several = np.where(number > 1, number / np.maximum(number - 1, 1), np.nan)
-    tile = np.arange(counted.parts)
+    tile, across = np.arange(counted.parts), math.isqrt(counted.parts)
     return Table(
         (
             Column("tile", tile),
-            Column("column", tile % counted.across),
-            Column("row", tile // counted.across),
+            Column("column", tile % across),
+            Column("row", tile // across),
             Column("summits", number),
             Column("eta", number / (points * counted.pixel_area), unit="1/m^2"),
             Column("radius", 1 / mean(counted.curvatures), "R", "m"),
