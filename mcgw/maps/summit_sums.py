@@ -44,12 +44,12 @@ class SummitSums:
     @property
     def heights(self) -> Array:
         """Heights of the summits, m."""
-        return self.summits[0]
+        return np.asarray(self.summits[0])
 
     @property
     def curvatures(self) -> Array:
         """Mean curvatures of the summits, 1/m."""
-        return self.summits[1]
+        return np.asarray(self.summits[1])
 
     @property
     def parts(self) -> int:
