@@ -127,7 +127,9 @@ SAID = [
 ]  # fmt: skip
 
 REFUSED = [
-    ("compare @s.toml", "is not a file of results"), ("show absent.h5", "absent.h5: No such file"),
+    ("compare @s.toml", "is not a file of results"),
+    ("run @e.h5", "holds results, not a scene; print their scene with mcgw show --scene"),
+    ("show absent.h5", "absent.h5: No such file"),
     (f"{RUN} --set grading.gama=2", "grading.gama: unknown key; did you mean gamma"),
     (f"{RUN} --set gamma", "--set gamma: give KEY=VALUE"),
     (f"{RUN} --set nonsense=1", "nonsense: unknown key"),

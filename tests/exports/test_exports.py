@@ -172,6 +172,10 @@ def test_points_that_carry_nothing_are_left_out(scene, tmp_path):
     far = mcgw.simulate(scene.replace(separations=[0, 1, 2, 4], n_surfaces=20))
     path, low, *_ = mcgw.export(far, tmp_path / "t.csv", to="moose")
     assert [len(table_of(file, "moose")[0]) for file in (path, low)] == [4 + 1, 3 + 1]
+    alone = mcgw.simulate(far.scene, n_surfaces=1)  # which has no quantiles
+    assert mcgw.export(alone, tmp_path / "o.csv", to="moose") == [
+        tmp_path / x for x in ("o.csv", "o.all.csv")
+    ]
 
 
 def test_pressures_of_a_scene_are_those_of_its_rows_against_the_gap(scene, tmp_path):

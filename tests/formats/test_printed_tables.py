@@ -10,7 +10,6 @@ from oracles.inside import (
     Column,
     Table,
     check_output,
-    evenly,
     open_npy,
     opened,
     write_whole,
@@ -42,17 +41,6 @@ def test_a_table_is_aligned_and_shows_each_number_to_its_error():
     assert bare.text() == "  share  area (m^2)\n  0.25            2"
     assert (SMALL.unit, bare.unit, Table((Column("x", []),)).unit) == ("N", "1", "")
     assert [column.textual for column in (*SMALL.columns, Column("x", []))] == [False, False, True, False]
-
-
-def test_rows_and_columns_are_picked_from_a_table():
-    assert evenly(20, 9).tolist() == [0, 2, 5, 7, 10, 12, 14, 17, 19]
-    assert evenly(3, 9).tolist() == [0, 1, 2]
-    long = Table((Column("n", list(range(20))),))
-    assert [long.rows(n).columns[0].values for n in (9, 2)] == [evenly(20, 9).tolist(), [0, 19]]
-    part = SMALL.at([1, 0]).only("kind", "load")
-    assert part.text().splitlines()[2:] == ["  bc        0 to 2.5", "  a     12.346 to 13"]
-    assert [column.name for column in SMALL.flat] == ["h", "load", "high", "kind"]
-    assert (len(SMALL), len(part), len(Table(()))) == (3, 2, 0)
 
 
 def test_a_table_of_a_page_has_the_cells_of_a_terminal_typeset():

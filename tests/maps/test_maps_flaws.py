@@ -259,43 +259,6 @@ def instrument_map(seed, n=256, long=120e-6):
     return gaussian_map(Spectrum(1e-6, long, 12e-6), (n, n), SQUARE, rng(seed)).heights
 
 
-# Of each: what is planted, and the flags that its caution names.
-FAULTS = {
-    "rounding": (lambda z, rng: np.round(z / z.std() * 5) * z.std() / 5, {"cutoff": 10e-6}),
-    "lines": (lambda z, rng: z + 0.1 * z.std() * rng.normal(size=(len(z), 1)), {"lines": "rows"}),
-}
-
-
-def named(z, **steps):
-    """Faults by the first words of their cautions."""
-    ready = prepared(Topography(z, SQUARE), Preparation(**{"cutoff": None, **steps}))
-    return {name for name, *_ in faults(ready, 10.0)}
-
-
-def numbers(z, **steps):
-    fit = fit_map(Topography(z, SQUARE), **{"cutoff": None, **steps})
-    e = fit.estimates["summits"]
-    return np.log([e.eta.value, e.radius.value])
-
-
-@pytest.mark.parametrize("fault", FAULTS)
-def test_a_fault_is_named_and_its_flag_helps(fault):
-    """On every map of three; and what was wrong by a tenth to a factor of fifty is right within 7 %."""
-    plant, flags = FAULTS[fault]
-    wrong, left = [], []
-    for seed in range(3):
-        z = instrument_map(seed)
-        broken = plant(z, rng(seed + 50))
-        assert named(broken) == {fault}
-        assert fault not in named(broken, **flags)
-        filtered = {"cutoff": flags["cutoff"]} if "cutoff" in flags else {}
-        wrong.append(numbers(broken) - numbers(z))
-        left.append(numbers(broken, **flags) - numbers(z, **filtered))
-    wrong, left = np.abs(np.mean(wrong, axis=0)).max(), np.abs(np.mean(left, axis=0)).max()
-    assert wrong > 0.07 > left
-    assert left < wrong / 2
-
-
 def plain(z, cutoff=None, **known):
     ready = prepared(Topography(z, (1e-6, 2e-6), periodic=True), Preparation(cutoff, form="none"))
     return replace(ready, **known)

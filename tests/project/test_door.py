@@ -194,15 +194,6 @@ def test_all_mistakes_are_told_at_once():
     assert [line.split(" = ")[0] for line in said] == ["surface.sigma", "surface.radius"]
 
 
-@pytest.mark.parametrize(
-    "call", [mcgw.Scene.replace, mcgw.simulate, mcgw.solve, mcgw.converge, mcgw.tradeoff]
-)
-def test_a_misspelt_field_is_told_with_the_one_that_was_meant(call):
-    more = {"load": 1.0} if call is mcgw.solve else {}
-    with pytest.raises(TypeError, match=r"^a scene has no 'n_surface'; did you mean n_surfaces\?$"):
-        call(scene(), n_surface=3, **more)
-
-
 def test_separations_in_any_clothes():
     pandas = pytest.importorskip("pandas")
     for given in (

@@ -167,7 +167,7 @@ SIZE = re.compile(r"(area|stiffness|load) (?:±|up to) (\d+) %")
 )
 def test_no_error_above_ten_percent_goes_without_its_size(alpha, heights):
     """At single separations, each alone: by the errors of the map, rounded up."""
-    for h in np.linspace(-0.5, 3, 8):
+    for h in np.linspace(-0.5, 3, 5):
         scene = of_alpha(alpha, separations=[h])
         if heights != "gaussian":
             curvature = mcgw.RandomCurvature(alpha) if heights == "own radii" else None
