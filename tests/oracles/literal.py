@@ -21,10 +21,9 @@ def factor(surface, quantity):
     }[quantity]
 
 
-def sums_of_heights(scene, heights, quantity, exponent=None):
+def sums_of_heights(scene, heights, quantity):
     """Exactly rounded sums over the asperities of one surface, one value a separation."""
     power, modulus = POWERS[quantity]
-    power = power if exponent is None else exponent
     values = []
     for h in scene.separations:
         touching = heights[heights > h]
@@ -32,25 +31,6 @@ def sums_of_heights(scene, heights, quantity, exponent=None):
         terms = (touching - h) ** power * e if power else np.ones_like(touching)
         values.append(factor(scene.surface, quantity) * math.fsum(terms.tolist()))
     return np.array(values)
-
-
-def ensemble_arrays(scene, seed, *, exponent=None, heights=None):
-    """An ensemble by a vector expression over NumPy's normals; `heights` transforms them."""
-    rng = np.random.default_rng(seed)
-    s = rng.standard_normal((scene.n_surfaces, scene.n_asperities))
-    s = s if heights is None else heights(s)
-    e = scene.grading(s)
-    arrays = {}
-    for quantity in scene.quantities:
-        power, modulus = POWERS[quantity]
-        if exponent is not None and quantity == "load":
-            power = exponent
-        columns = []
-        for h in scene.separations:
-            d = np.maximum(s - h, 0.0)
-            columns.append(((d > 0) * d**power * e**modulus).sum(axis=1))
-        arrays[quantity] = factor(scene.surface, quantity) * np.stack(columns, axis=1)
-    return arrays
 
 
 def scores(ensemble):

@@ -7,7 +7,6 @@ back and individual summit radii. Nothing here is statistical: bounds hold.
 import pytest
 from conftest import SURFACE
 from oracles.accurately import worst_error
-from oracles.literal import factor
 from oracles.scenes import scene_by
 from tables.drawn_scenes import BASIC, HERTZ, LAWS, H
 
@@ -37,8 +36,3 @@ def test_other_laws(name):
 def test_a_million_asperities():
     """Where many touch, series are held against the sum of a surface, which is sure to be large."""
     assert worst_error(*asked({"n_asperities": 10**6})) <= 3e-13
-
-
-@pytest.mark.parametrize("name", BASIC)
-def test_sums_are_in_the_units_of_hertz_formulas(name):
-    assert analytic.QUANTITIES[name].scale(SURFACE) == pytest.approx(factor(SURFACE, name), rel=1e-14)

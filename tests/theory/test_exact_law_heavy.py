@@ -66,9 +66,7 @@ def beyond(scene, h, shares, more=1.0):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("law", "n", "count"), [(None, 100, "fixed"), (YIELDS, 1000, "poisson"), (STICKS, 1000, "fixed")]
-)
+@pytest.mark.parametrize(("law", "n", "count"), DRAWN)
 def test_drawn_surfaces_are_beyond_quantiles_as_often_as_said(law, n, count):
     """Both tails down to 1e-3: |z| < 5, 18 numbers of 6e-7. The companion: a tenth more asperities."""
     surface, h = mcgw.Surface(1e-6, 1e-5, 1e9, 1e-6, 1e9), 1.0
