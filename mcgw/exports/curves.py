@@ -1,4 +1,4 @@
-"""Kinds of tables and their curves: mean and quantiles over surfaces against gap or pressure, SI."""
+"""Kinds of tables, and their numbers: mean and quantiles over surfaces against gap or pressure, SI."""
 
 from dataclasses import dataclass
 
@@ -12,6 +12,9 @@ from mcgw.ensemble.solution import solutions
 from mcgw.formats.table import evenly
 from mcgw.scene.scene import Scene
 
+Numbers = tuple[
+    Array, dict[str, Array]
+]  # x, rising; by name means and quantiles, nan where nothing is carried
 _MOST = 2000  # surfaces drawn again where an ensemble keeps statistics alone
 
 
@@ -26,12 +29,6 @@ class Kind:
     def name(self) -> str:
         """Quantity and argument."""
         return f"{self.quantity}-{self.against}"
-
-    @property
-    def needs(self) -> tuple[str, ...]:
-        """Quantities of an ensemble that the table needs."""
-        own = {"pressure": (), "conductance": ("conductance_si",)}
-        return ("load", *own.get(self.quantity, (self.quantity,)))
 
     def answer(self, scene: Scene) -> str:
         """Return the tabulated answer of a scene; the conductance is that of the joint, if there is one."""
@@ -48,82 +45,101 @@ _ALL = (("pressure", "gap"), ("conductance", "pressure"), ("conductance", "gap")
 KINDS = {kind.name: kind for kind in (Kind(*each) for each in _ALL)}
 
 
-@dataclass(frozen=True)
-class Curve:
-    """One curve of a table: "mean" or a quantile such as "q05"; x rises."""
+def surfaces_for(
+    source: Scene | Ensemble, needs: tuple[str, ...], pressures: Array | None, points: int
+) -> Ensemble:
+    """Return the ensemble itself; of a scene its surfaces, with only what a table against the gap needs.
 
-    name: str
-    x: Array
-    y: Array
+    They are drawn at so many separations, evenly between the lowest and the highest of the scene, or at those
+    where the mean surface has the pressures.
+    """
+    if isinstance(source, Ensemble):
+        if missing := [name for name in needs if name not in source.scene.quantities]:
+            raise ValueError(
+                f"contact.quantities: the ensemble has no {', '.join(missing)}; give its scene instead"
+            )
+        return source
+    if pressures is None:
+        h = np.linspace(min(source.separations), max(source.separations), points)
+    else:
+        h = np.array([float(source.theory.separation_at("pressure", p)) for p in pressures])
+    return simulate(
+        source.replace(
+            separations=tuple(h.tolist()), quantities=needs, keep="sums", unload_from=None,
+            rel_err=None, max_seconds=None,
+        )
+    )  # fmt: skip
 
 
-def curves_at_gaps(
-    ensemble: Ensemble, kind: Kind, bounds: Array | None, points: int, quantiles: tuple[float, ...]
-) -> list[Curve]:
+def at_gaps(
+    source: Scene | Ensemble, kind: Kind, pressures: Array | None, points: int, shares: tuple[float, ...]
+) -> Numbers:
     """Mean and quantiles over surfaces at equal gap, m.
 
     Parameters
     ----------
-    ensemble : Ensemble
-        Its own separations are the gaps.
+    source : Scene or Ensemble
+        Drawn for the table; or with its own separations, which the first and the last pressure bound.
     kind : Kind
         Of which table.
-    bounds : ndarray or None
-        The first and the last pressure bound the gaps. Default: all there are.
+    pressures : ndarray or None
+        Of the rows, or bounds. Default: all there are.
     points : int
         How many rows.
-    quantiles : tuple of float
-        Between 0 and 1; empty for the mean alone.
+    shares : tuple of float
+        Of the quantiles, between 0 and 1; empty for the mean alone.
 
     Raises
     ------
     ValueError
         If there are too few points, or something that is no function.
     """
-    order = np.argsort(ensemble.separations, kind="stable")
-    mean = ensemble.mean("pressure")[order]
+    needs = ("load", "conductance_si") if kind.quantity == "conductance" else ("load",)
+    ensemble = surfaces_for(source, needs, pressures, points)
+    h, rows = np.unique(ensemble.separations, return_index=True)
+    mean = ensemble.mean("pressure")[rows]
     if np.any(mean < 0):
-        worst = ensemble.separations[order][int(np.argmin(mean))]
         raise ValueError(
             f"contact.law: surfaces attract each other (mean pressure {mean.min():.3g} Pa at d/sigma = "
-            f"{worst:g}), and a contact table has no negative pressures; give a law without adhesion"
+            f"{h[np.argmin(mean)]:g}), and a contact table has no negative pressures; give a law without "
+            "adhesion"
         )
-    if bounds is not None:
-        order = order[(mean >= bounds[0] * (1 - 1e-9)) & (mean <= bounds[-1] * (1 + 1e-9))]
-    order = order[evenly(len(order), points)] if len(order) else order
-    h, first = np.unique(ensemble.separations[order], return_index=True)
-    order = order[first]
-    name = kind.answer(ensemble.scene)
+    if ensemble is source:
+        if pressures is not None:
+            rows = rows[(mean >= pressures[0] * (1 - 1e-9)) & (mean <= pressures[-1] * (1 + 1e-9))]
+        rows = rows[evenly(len(rows), points)]
     some = ensemble
-    if quantiles and ensemble.scene.keep == "statistics":  # its first surfaces are drawn again
+    if shares and ensemble.scene.keep == "statistics":  # its first surfaces are drawn again
         drawn = ensemble.scene.drawn_by(ensemble.sampler)
         some = simulate(drawn, keep="sums", n_surfaces=min(ensemble.n_surfaces, _MOST))
-    values = [ensemble.mean(name)[order], *(some.quantile(name, q)[order] for q in quantiles)]
-    return _named(kind, quantiles, h * ensemble.scene.surface.sigma, values)
+    name = kind.answer(ensemble.scene)
+    values = [ensemble.mean(name)[rows], *(some.quantile(name, share)[rows] for share in shares)]
+    return _checked(kind, shares, ensemble.separations[rows] * ensemble.scene.surface.sigma, values)
 
 
-def curves_at_pressures(
-    scene: Scene, kind: Kind, pressures: Array | None, points: int, quantiles: tuple[float, ...]
-) -> list[Curve]:
+def at_pressures(
+    scene: Scene, kind: Kind, pressures: Array | None, points: int, shares: tuple[float, ...]
+) -> Numbers:
     """Mean and quantiles over specimens that all carry the same load: those of `mcgw.solve`.
 
-    Parameters and errors are those of `curves_at_gaps`; default pressures are those that the scene's
-    separations span.
+    Parameters and errors are those of `at_gaps`; default pressures are those that the scene's separations
+    span.
     """
     if pressures is None:
         pressures = pressures_of(scene, points)
     area, name = scene.surface.nominal_area, kind.answer(scene)
     solved = solutions(scene, "load", (area * pressures).tolist())
+    values = [np.array([each.value[name] for each in solved])]
+    values += [np.array([np.quantile(each.surfaces[name], share) for each in solved]) for share in shares]
     per = area if kind.quantity == "stiffness" else 1.0
-    values = [[each.value[name] for each in solved]]
-    values += [[float(np.quantile(each.surfaces[name], q)) for each in solved] for q in quantiles]
-    return _named(kind, quantiles, pressures, [np.array(each) / per for each in values])
+    return _checked(kind, shares, pressures, [each / per for each in values])
 
 
-def _named(kind: Kind, quantiles: tuple[float, ...], x: Array, values: list[Array]) -> list[Curve]:
-    """Name curves, without points that carry nothing; refuse what is not monotonic."""
-    curves = []
-    for name, every in zip(["mean", *map(quantile_name, quantiles)], values, strict=True):
+def _checked(kind: Kind, shares: tuple[float, ...], x: Array, values: list[Array]) -> Numbers:
+    """Name the numbers, without rows that carry nothing; refuse what is not monotonic."""
+    carried = values[0] > 0
+    named = dict(zip(["mean", *map(quantile_name, shares)], values, strict=True))
+    for name, every in named.items():
         at, y = x[every > 0], every[every > 0]
         if at.size < 2:
             raise ValueError(
@@ -137,8 +153,7 @@ def _named(kind: Kind, quantiles: tuple[float, ...], x: Array, values: list[Arra
                 f"{kind.name}, {name}: is not monotone at {kind.against} = {worst:.4g}, as programs require; "
                 "give fewer points, or a contact law without jumps"
             )
-        curves.append(Curve(name, at, y))
-    return curves
+    return x[carried], {name: np.where(y > 0, y, np.nan)[carried] for name, y in named.items()}
 
 
 def quantile_name(quantile: float) -> str:

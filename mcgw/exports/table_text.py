@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.arrays import Array
-from mcgw.exports.curves import Curve, Kind
+from mcgw.exports.curves import Kind
 from mcgw.exports.programs import Program
 from mcgw.machine.terminal import brief, one_line
 from mcgw.scene.in_words import joint_text
@@ -57,17 +57,13 @@ class Sheet:
         current = name == "conductance" and film is not None and not film.thermal
         return UNITS[self.units]["current" if current else name]
 
-    def columns(self, curve: Curve) -> tuple[Array, Array]:
-        """Convert a curve from SI."""
-        return self.unit(self.kind.against)[0] * curve.x, self.unit(self.kind.quantity)[0] * curve.y
-
-    def heading(self, curve: Curve) -> Iterator[str]:
+    def heading(self, name: str) -> Iterator[str]:
         """Lines of plain text, without the mark of a comment."""
         scene, kind = self.scene, self.kind
         what = kind.quantity if kind.quantity == "pressure" else f"{kind.quantity} per nominal area"
-        name = curve.name if curve.name == "mean" else f"{curve.name[1:]} % quantile"
+        curve = name if name == "mean" else f"{name[1:]} % quantile"
         yield (
-            f"{kind.name}, {name} over {self.surfaces} surfaces of {scene.n_asperities:g} asperities, seed "
+            f"{kind.name}, {curve} over {self.surfaces} surfaces of {scene.n_asperities:g} asperities, seed "
             f"{scene.seed}, at equal {kind.against}"
         )
         yield f"scene: {brief(scene.title) or 'without a title'}"
@@ -91,17 +87,19 @@ class Sheet:
             felt = "the separation that asperities feel, without the displacement of the bulk"
             yield f"with asperity interaction; d is {felt}"
 
-    def text(self, curve: Curve, file: str) -> str:
-        """Comments, header and rows of a curve, in SI, for a file of this name.
+    def text(self, name: str, x: Array, y: Array, file: str) -> str:
+        """Comments, header and rows of a curve, "mean" or a quantile, for a file of this name.
+
+        Both columns are in the units of the file; x rises.
 
         Raises
         ------
         ValueError
             If the program has no room for it.
         """
-        kind, program, lines = self.kind, self.program, [*self.heading(curve)]
+        kind, program, lines = self.kind, self.program, [*self.heading(name)]
         overclosure = program.overclosure and kind.quantity == "pressure"
-        (x, y), stays = self.columns(curve), kind.stays(self.scene)
+        stays = kind.stays(self.scene)
         if kind.against == "pressure":  # nothing is carried at 0, where a curve that stays keeps its value
             x, y = np.append(0.0, x), np.append(y[0] if stays else 0.0, y)
         elif not stays:  # nor beyond a gap

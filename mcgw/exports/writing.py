@@ -1,4 +1,4 @@
-"""``mcgw.export``: write a table, one file for each curve and one for all."""
+"""``mcgw.export``: write a table, one file for each curve and one for all; or all columns as JSON."""
 
 import json
 import re
@@ -12,9 +12,7 @@ import numpy as np
 
 from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.simulation import simulate
-from mcgw.exports.contact_table import contact_table
-from mcgw.exports.curves import KINDS, Curve, curves_at_gaps, curves_at_pressures, quantile_name
+from mcgw.exports.curves import KINDS, at_gaps, at_pressures, quantile_name, surfaces_for
 from mcgw.exports.programs import PROGRAMS
 from mcgw.exports.table_text import UNITS, Sheet
 from mcgw.formats.files import together, write_whole
@@ -24,6 +22,7 @@ from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
 from mcgw.store.ensembles import open_ensemble, read_attributes
 
+SCHEMA = Path(__file__).with_name("contact-table.schema.json")
 _QUANTILES = (0.05, 0.95)
 _MOST_POINTS = 10_000
 _NEEDED = ("load", "area", "conductance_si")  # of all columns, the last where something is conducted
@@ -128,20 +127,22 @@ def export(
         )
     surfaces = scene.n_surfaces if isinstance(source, Scene) else source.n_surfaces
     shares = _quantiles(quantiles, surfaces)
-    if kind.against == "pressure":
-        curves = curves_at_pressures(scene, kind, wanted, points, shares)
+    if kind.against == "gap":
+        x, columns = at_gaps(source, kind, wanted, points, shares)
     else:
-        ensemble = surfaces_for(source, kind.needs, wanted, points)
-        rows = wanted is not None and ensemble is not source  # drawn at the separations of the rows
-        bounds, most = (None, len(ensemble.separations)) if rows else (wanted, points)
-        curves = curves_at_gaps(ensemble, kind, bounds, most, shares)
-    files = files_of_export(path, shares)
+        x, columns = at_pressures(scene, kind, wanted, points, shares)
     origin = f"mcgw {version('mcgw')}; SHA-256 of the {digest}"
-    sheet = Sheet(scene, surfaces, kind, PROGRAMS[to], units, origin)
+    sheet, files = Sheet(scene, surfaces, kind, PROGRAMS[to], units, origin), files_of_export(path, shares)
+    (per_x, unit_x), (per_y, unit_y) = sheet.unit(kind.against), sheet.unit(kind.quantity)
+    every = [Column(kind.against, per_x * x, unit=unit_x)]
     with together():
-        for file, curve in zip(files, curves, strict=False):
-            write_whole(file, [sheet.text(curve, file.name).encode("ascii", "replace")])
-        table_of(curves, sheet).write(files[-1], comment=f"{kind.name}; SHA-256 of the {digest}")
+        for file, (name, y) in zip(files, columns.items(), strict=False):
+            some = ~np.isnan(y)
+            text = sheet.text(name, per_x * x[some], per_y * y[some], file.name)
+            write_whole(file, [text.encode("ascii", "replace")])
+            values = np.where(some, (per_y * y).astype(object), "").tolist()
+            every.append(Column(f"{kind.quantity} {name}", values, unit=unit_y))
+        Table(tuple(every)).write(files[-1], comment=f"{kind.name}; SHA-256 of the {digest}")
     return files
 
 
@@ -151,17 +152,6 @@ def files_of_export(path: str | Path, quantiles: Sequence[float] | None = None) 
     names = map(quantile_name, _QUANTILES if quantiles is None else quantiles)
     beside = [path.with_name(f"{path.stem}.{name}{path.suffix}") for name in names]
     return [path, *beside, path.with_name(f"{path.stem}.all.csv")]
-
-
-def table_of(curves: Sequence[Curve], sheet: Sheet) -> Table:
-    """All curves side by side, in the units of the files; empty where one carries nothing."""
-    kind, x = sheet.kind, np.unique(np.concatenate([sheet.columns(curve)[0] for curve in curves])).tolist()
-    columns = [Column(kind.against, x, unit=sheet.unit(kind.against)[1])]
-    for curve in curves:
-        at = dict(zip(*map(np.ndarray.tolist, sheet.columns(curve)), strict=True))
-        values = [at.get(each, "") for each in x]
-        columns.append(Column(f"{kind.quantity} {curve.name}", values, unit=sheet.unit(kind.quantity)[1]))
-    return Table(tuple(columns))
 
 
 def _pressures(given: Any) -> Array | None:
@@ -196,27 +186,50 @@ def _source(what: Scene | Ensemble | str | Path) -> tuple[Scene | Ensemble, str]
     return what, f"scene {sha256(scene_text(scene).encode()).hexdigest()}"
 
 
-def surfaces_for(
-    source: Scene | Ensemble, needs: tuple[str, ...], pressures: Array | None, points: int
-) -> Ensemble:
-    """Return the ensemble itself; of a scene its surfaces, with only what a table against the gap needs.
+def contact_table(ensemble: Ensemble, digest: str) -> dict[str, Any]:
+    """Return what the file holds, by ``contact-table.schema.json``: means where they carry a load, SI.
 
-    They are drawn at so many separations, evenly between the lowest and the highest of the scene, or at those
-    where the mean surface has the pressures.
+    Parameters
+    ----------
+    ensemble : Ensemble
+        With load, area and, where heat or current is conducted, conductance at several separations.
+    digest : str
+        Of what it was made from, in words.
+
+    Raises
+    ------
+    ValueError
+        If fewer than two separations carry a load, or the pressure does not fall as the gap rises.
     """
-    if isinstance(source, Ensemble):
-        if missing := [name for name in needs if name not in source.scene.quantities]:
-            raise ValueError(
-                f"contact.quantities: the ensemble has no {', '.join(missing)}; give its scene instead"
-            )
-        return source
-    if pressures is None:
-        h = np.linspace(min(source.separations), max(source.separations), points)
-    else:
-        h = np.array([float(source.theory.separation_at("pressure", p)) for p in pressures])
-    return simulate(
-        source.replace(
-            separations=tuple(h.tolist()), quantities=needs, keep="sums", unload_from=None,
-            rel_err=None, max_seconds=None,
+    scene, order = ensemble.scene, np.argsort(ensemble.separations)
+    order = order[ensemble.mean("pressure")[order] > 0]
+    pressure = ensemble.mean("pressure")[order]
+    if len(order) < 2:
+        raise ValueError("a contact table needs two separations or more that carry a load")
+    if np.any(np.diff(pressure) >= 0):
+        raise ValueError(
+            "the mean pressure does not fall as the gap rises; give more surfaces, or fewer rows"
         )
-    )  # fmt: skip
+    conductance = covariance = None
+    if "conductance_si" in scene.quantities:
+        conductance = ensemble.mean(KINDS["conductance-gap"].answer(scene))[order].tolist()
+    if ensemble.n_surfaces > 1:
+        covariance = ensemble.covariance("pressure")[np.ix_(order, order)].tolist()
+    return {
+        "format": "mcgw-contact-table-1",
+        "units": {"gap": "m", "pressure": "Pa", "area": "1", "conductance": "per nominal area"},
+        "gap": (ensemble.separations[order] * scene.surface.sigma).tolist(),
+        "pressure": pressure.tolist(),
+        "area": ensemble.mean("area_fraction")[order].tolist(),
+        "conductance": conductance,
+        "covariance": covariance,
+        "provenance": {
+            "program": f"mcgw {version('mcgw')}",
+            "digest": digest,
+            "scene": scene_text(scene),
+            "surfaces": ensemble.n_surfaces,
+            "seed": scene.seed,
+            "nominal_area": scene.surface.nominal_area,
+        },
+        "validity": scene.validity().verdict,
+    }

@@ -13,11 +13,10 @@ from oracles.inside import pressures_of
 import mcgw
 from analytic.at_load import Moments
 from mcgw.cli import main
-from mcgw.exports.contact_table import SCHEMA
-from mcgw.exports.curves import KINDS, Curve, quantile_name
+from mcgw.exports.curves import KINDS, quantile_name, surfaces_for
 from mcgw.exports.programs import PROGRAMS
 from mcgw.exports.table_text import UNITS, Sheet
-from mcgw.exports.writing import surfaces_for
+from mcgw.exports.writing import SCHEMA
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "10 mm^2", "78.6 GPa")
 
@@ -114,11 +113,13 @@ def test_a_curve_is_written_as_the_program_reads_it(scene, program, table, units
     kind, path = KINDS[table], tmp_path / "t"
     x, y = np.array([1.0, 2.0, 4.0]), np.array([1.0, 2.0, 5.0])
     x, y, foot = (1e-6 * x, 1e6 * y[::-1], 6e-6) if kind.against == "gap" else (1e6 * x, y, 0.0)
-    curve, sheet = Curve("q05", x, y), Sheet(scene, 60, kind, PROGRAMS[program], units, "data 0a")
-    text = replace(sheet, origin=LIVE).text(curve, LIVE)
+    sheet = Sheet(scene, 60, kind, PROGRAMS[program], units, "data 0a")
+    factors = FACTORS[table] if units == "mm-N-s" else (1, 1)
+    columns = factors[0] * x, factors[1] * y
+    text = replace(sheet, origin=LIVE).text("q05", *columns, LIVE)
     for line in re.split(r"[\r\n]", text.encode("ascii", "replace").decode()):
         assert line in ("", PROGRAMS[program].header[table]) or re.fullmatch(LINES[program], line)
-    path.write_text(sheet.text(curve, "f.x"))
+    path.write_text(sheet.text("q05", *columns, "f.x"))
     text = path.read_text()
     overclosure = table == "pressure-gap" and program in ("calculix", "abaqus")
     if overclosure:
@@ -127,11 +128,12 @@ def test_a_curve_is_written_as_the_program_reads_it(scene, program, table, units
         x, y = np.append(x, foot), np.append(y, 0)
     else:
         x, y = np.append(0, x), np.append(0, y)
-    factors = FACTORS[table] if units == "mm-N-s" else (1, 1)
     np.testing.assert_allclose(table_of(path, program), [factors[0] * x, factors[1] * y], rtol=1e-9)
     assert not foot or d0_of(path) == pytest.approx(factors[0] * foot)
     heat = replace(sheet, scene=scene.replace(joint=mcgw.Joint([150.0, 16.0])))  # as a current, mW for mA
-    np.testing.assert_array_equal(heat.columns(curve), sheet.columns(curve))
+    for one in (sheet, heat):
+        found = one.unit(kind.against)[0], one.unit(kind.quantity)[0]
+        assert found == pytest.approx(factors, rel=1e-15)
     if program in ("calculix", "abaqus"):
         assert read_inp(path)[0] == KEYWORDS[program, table]
     assert ("INPUT=f.x" in text) == (program in ("calculix", "abaqus"))
