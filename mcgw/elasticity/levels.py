@@ -97,7 +97,7 @@ class Pressed:
         """
         heights, summits, places = self._counted
         near = np.flatnonzero(heights > 2 * self.plane(self.spots) - heights.max())
-        spots = self.spots.only(near)
+        spots = Spots.hertz(heights[near], summits.radii[near], self.E_star)
         for _ in range(fits):
             spots = fallen(self._map, summits, near, spots, spots.least_radii(self.plane(spots)))
         return spots, places[:, near]

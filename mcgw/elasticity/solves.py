@@ -52,42 +52,37 @@ class Solves:
     ) -> None:  # fmt: skip
         self.maps, self.held, self.E_star, self.seed, self.quantities = maps, held, E_star, seed, quantities
         self._rows: dict[tuple[str, int], tuple[Values, float]] = {}
-        self._last: tuple[int, Pressed] | None = None
         self._path = path
         if path is not None:
-            question = self._question()
+            determined = hashlib.sha256()  # by all given maps, or the first one of those that are drawn
+            for number in range(maps.number or 1):
+                determined.update(maps.heights(number, seed).tobytes())
+            question = {"maps": determined.hexdigest()[:16], **held, "E_star": E_star, "seed": seed}
             self._header = json.dumps(question)
             self._resume(path, _written(question, ""))
 
     def at(self, levels: Sequence[Level], number: int) -> tuple[Array, Array]:
         """Quantities of a map at levels, shape (levels, quantities), and the CPU seconds that each took."""
-        rows = [self._row(level, number) for level in levels]
-        values = [[values[name] for name in self.quantities] for values, _ in rows]
-        return np.array(values), np.array([seconds for _, seconds in rows])
-
-    def _row(self, level: Level, number: int) -> tuple[Values, float]:
-        key = (level.name, number)
-        if key not in self._rows:
-            if self._last is None or self._last[0] != number:
+        pressed = None
+        for level in levels:
+            key = (level.name, number)
+            if key in self._rows:
+                continue
+            if pressed is None:
                 heights = self.maps.heights(number, self.seed)
-                self._last = number, Pressed(heights, self.maps.size, self.E_star, **self.held)
-            self._rows[key] = level.timed(self._last[1])
+                pressed = Pressed(heights, self.maps.size, self.E_star, **self.held)
+            self._rows[key] = level.timed(pressed)
             if self._path is not None:
                 with open(self._path, "a", encoding="utf-8") as file:
                     file.write(self._line(key))
-        return self._rows[key]
+        rows = [self._rows[level.name, number] for level in levels]
+        values = [[values[name] for name in self.quantities] for values, _ in rows]
+        return np.array(values), np.array([seconds for _, seconds in rows])
 
     @property
     def seconds(self) -> float:
         """CPU seconds of all."""
         return sum(seconds for _, seconds in self._rows.values())
-
-    def _question(self) -> dict[str, Any]:
-        """Return what determines a value: all given maps, or the first one of those that are drawn."""
-        found = hashlib.sha256()
-        for number in range(self.maps.number or 1):
-            found.update(self.maps.heights(number, self.seed).tobytes())
-        return {"maps": found.hexdigest()[:16], **self.held, "E_star": self.E_star, "seed": self.seed}
 
     def _resume(self, path: Path, first: str) -> None:
         if not path.exists():
@@ -96,10 +91,8 @@ class Solves:
         text = read_bytes(path, _MOST_BYTES).decode("utf-8", errors="replace")
         header, *lines = StringIO(text, newline="\n") if text else [""]
         if header != first:
-            what = next(iter(self.held))
-            raise StoreError(
-                f"{path}: its first line does not name these maps at this {what}; give another path"
-            )
+            held = f"these maps at this {next(iter(self.held))}"
+            raise StoreError(f"{path}: its first line does not name {held}; give another path")
         damaged = []
         for number, line in enumerate(lines, 2):
             row = _checked(line, self._header)

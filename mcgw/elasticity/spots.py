@@ -88,11 +88,6 @@ class Spots:
         squared = self.contact_radii(self.heights - separation) ** 2
         return np.asarray(np.sqrt(np.maximum(squared, squared.mean(where=squared > 0))))
 
-    def only(self, which: Ints) -> "Spots":
-        """Return some of them."""
-        radii, depths, powers = self.radii[which], self.depths[which], self.powers[which]
-        return Spots(self.heights[which], radii, depths, powers, self.E_star)
-
 
 def fallen(used: Topography, summits: Summits, which: Ints, spots: Spots, radii: Array) -> Spots:
     """Make spots fall as a periodic map does around its summits, within contacts of some radii.
@@ -126,15 +121,8 @@ def fallen(used: Topography, summits: Summits, which: Ints, spots: Spots, radii:
     paraboloids = summits.curvatures.mean(axis=0)[which, None] / 2 * np.diff(r**2)
     past = np.logical_or.accumulate(falls <= 0, axis=1)
     falls = np.where(past, paraboloids[:, :, None], falls).mean(axis=2)
-    depths, loads = (falls @ weights for weights in _sneddon(t))
-    share = loads / depths
-    return Spots(spots.heights, radii, depths, share / (1 - share), spots.E_star)
-
-
-def _sneddon(t: Array) -> tuple[Array, Array]:
-    """Weights of what a profile falls in each step to the rim at t = 1, if it is linear in t^2 in between.
-
-    By them it is as deep, and carries as much over ``2 E* a``.
-    """
+    # of a profile that is linear in t^2 in each step: its depth, and its load over 2 E* a
     root, steps = np.sqrt(1 - t**2), np.diff(t**2)
-    return np.diff(-2 * root) / steps, np.diff(2 / 3 * root**3 - 2 * root) / steps
+    depths = falls @ (np.diff(-2 * root) / steps)
+    share = falls @ (np.diff(2 / 3 * root**3 - 2 * root) / steps) / depths
+    return Spots(spots.heights, radii, depths, share / (1 - share), spots.E_star)

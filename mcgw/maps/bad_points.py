@@ -39,18 +39,16 @@ def filled(heights: Array) -> Array:
         return heights
     nearest = ndimage.distance_transform_edt(missing, return_distances=False, return_indices=True)
     result = heights[tuple(nearest)]
-    own, index = np.arange(number), np.full(heights.shape, -1, dtype=np.int64)
-    index[missing] = own
-    matrix: Any = diags_array(np.full(number, 4.0), format="csr")
-    known = np.zeros(number)
-    places, last = np.argwhere(missing), np.array(heights.shape) - 1
-    for way in ((0, 1), (0, -1), (1, 0), (-1, 0)):
-        at = tuple(np.clip(places + way, 0, last).T)
-        beside, height = index[at], result[at]
-        hole = beside >= 0  # beyond an edge the point itself stands for its missing neighbour
-        matrix -= coo_array((np.ones(hole.sum()), (own[hole], beside[hole])), shape=(number, number)).tocsr()
-        known[~hole] += height[~hole]
+    index = np.full(heights.shape, -1, dtype=np.int64)
+    index[missing] = np.arange(number)
+    ways = np.array([[[0, 1]], [[0, -1]], [[1, 0]], [[-1, 0]]])
+    at = tuple(np.moveaxis(np.clip(np.argwhere(missing) + ways, 0, np.array(heights.shape) - 1), -1, 0))
+    beside = index[at]  # beyond an edge the point itself stands for its missing neighbour
+    way, point = np.nonzero(beside >= 0)
+    others = coo_array((np.ones(way.size), (point, beside[way, point])), shape=(number, number))
+    matrix: Any = diags_array(np.full(number, 4.0), format="csr") - others.tocsr()
     start = result[missing]
+    known = np.where(beside < 0, result[at], 0.0).sum(axis=0)
     away = known - matrix @ start  # solved for the difference, since heights may be far from zero
     scale = float(np.abs(away).max())
     if scale > 0:

@@ -142,36 +142,30 @@ def fit_sources(
     lines: list[Profile] = []
     ready, assumed = None, ""
     for name, source in zip(names, sources, strict=True):
-        each = [read(source) if isinstance(source, Path) else source]
+        each: list[Any] = [read(source) if isinstance(source, Path) else source]
         assumed = assumed or each[0].assumed_unit
-        if isinstance(each[0], Profile):
-            lines.append(each[0])
-            line, area = name, names[0]
-        else:
-            fit, ready = _fit_map(each, asked, across, use)
-            fits.append(fit)
-            line, area = names[0], name
-        if fits and lines:
+        is_line = isinstance(each[0], Profile)
+        others = fits if is_line else lines
+        if others:
+            line, area = (name, names[0]) if is_line else (names[0], name)
             raise ValueError(f"{line}: a profile, and {area} is a map; fit them apart")
+        if is_line:
+            lines += each
+            continue
+        with told(None, "steps") as tell:
+            tell(0, 3)
+            ready = prepared(each.pop(), asked)  # a large map that stayed in a list would fill the memory
+            tell(1, 3)
+            fit = fit_prepared(ready, across=across)
+            tell(2, 3)
+            fits.append(replace(fit, cautions=tuple(cautions(fit, ready, use))))
+            tell(3, 3)
     if lines:
         return _fit_lines(lines, asked), None, assumed
     if len(fits) == 1:
         return fits[0], ready, assumed
     found = pooled(fits, names)
     return replace(found, cautions=tuple(cautions_of_several(found, fits, use))), ready, assumed
-
-
-def _fit_map(raw: list[Any], asked: Preparation, across: int, use: str) -> tuple[Fit, Prepared]:
-    """Fit the map in a list, which is emptied: a large one would fill the memory."""
-    with told(None, "steps") as tell:
-        tell(0, 3)
-        ready = prepared(raw.pop(), asked)
-        tell(1, 3)
-        found = fit_prepared(ready, across=across)
-        tell(2, 3)
-        found = replace(found, cautions=tuple(cautions(found, ready, use)))
-        tell(3, 3)
-    return found, ready
 
 
 def _fit_lines(profiles: list[Profile], asked: Preparation) -> ProfileFit:

@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import Literal
 
 import numpy as np
+from numpy.polynomial.legendre import legvander
 from scipy import fft
 from scipy.ndimage import gaussian_filter, gaussian_filter1d
 
@@ -30,13 +31,8 @@ def without_form(topography: Topography, form: Form) -> Topography:
     """
     if form == "none":
         return topography
-    left = _without_polynomial(topography.heights, ORDERS[form])
-    return replace(topography, heights=left, periodic=False)
-
-
-def _without_polynomial(z: Array, order: int) -> Array:
-    """Return what that of least squares over the points that are there leaves."""
-    y, x = (_powers(n, order) for n in z.shape)
+    z, order = topography.heights, ORDERS[form]
+    y, x = (legvander((np.arange(n) + 0.5) / n * 2 - 1, order) for n in z.shape)
     terms = [(a, b) for a in range(order + 1) for b in range(order + 1 - a)]
     there = np.isfinite(z)
     whole = bool(there.all())
@@ -49,12 +45,7 @@ def _without_polynomial(z: Array, order: int) -> Array:
     weights = np.zeros_like(projected)
     for (a, b), value in zip(terms, found, strict=True):
         weights[a, b] = value
-    return np.asarray(z - y @ weights @ x.T)
-
-
-def _powers(n: int, order: int) -> Array:
-    t = (np.arange(n) + 0.5) / n * 2 - 1
-    return np.asarray(np.polynomial.legendre.legvander(t, order))
+    return replace(topography, heights=z - y @ weights @ x.T, periodic=False)
 
 
 def filter_variance(cutoff: float) -> float:

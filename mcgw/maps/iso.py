@@ -122,11 +122,17 @@ def moments_from(
         kind = str(numbers.get("autocorrelation", "gaussian"))
         return _moments_of_correlation(given["Sq"], lengths, kind), []
     powers = np.array([NUMBERS[key].powers for key in given]).reshape(-1, 3)
-    _check_enough(powers, list(given))
+    determined = np.linalg.pinv(powers) @ powers if len(powers) else np.zeros((3, 3))
+    if missing := [name for k, name in enumerate(_GIVES) if determined[k, k] < 1 - 1e-9]:
+        told = " and ".join(_GIVES[name] for name in missing)
+        raise ValueError(f"{', '.join(given) or 'no number'}: does not tell {', '.join(missing)}; add {told}")
     logs = np.array([math.log(value / NUMBERS[key].factor) for key, value in given.items()])
     found = np.linalg.lstsq(powers, logs, rcond=None)[0]
     moments = SpectralMoments(*np.exp(found).tolist())
-    doubts = _disagreement(dict(zip(given, (powers @ found - logs).tolist(), strict=True)))
+    doubts, off = [], powers @ found - logs
+    if np.abs(off).max() >= math.log(_APART):
+        factors = (f"{key} by a factor of {x:.3g}" for key, x in zip(given, np.exp(off), strict=True))
+        doubts.append(f"the numbers disagree; the surface that suits all best has {', '.join(factors)}")
     if pruned := [key for key in ("Spd", "Spc") if key in given and pruning > 0]:
         doubts.append(
             f"{', '.join(pruned)}: the formula is for all summits; without those below "
@@ -139,23 +145,6 @@ def moments_from(
             "surface has at least 1.5; all numbers must be of one map with one cutoff"
         )
     return moments, doubts
-
-
-def _check_enough(powers: np.ndarray, given: list[str]) -> None:
-    """Refuse numbers that do not determine all three moments."""
-    determined = np.linalg.pinv(powers) @ powers if len(powers) else np.zeros((3, 3))
-    missing = [name for k, name in enumerate(_GIVES) if determined[k, k] < 1 - 1e-9]
-    if missing:
-        told = " and ".join(_GIVES[name] for name in missing)
-        raise ValueError(f"{', '.join(given) or 'no number'}: does not tell {', '.join(missing)}; add {told}")
-
-
-def _disagreement(residuals: Mapping[str, float]) -> list[str]:
-    """Which numbers are off those of the surface that suits them all best, in the logarithm."""
-    told = [f"{key} by a factor of {math.exp(x):.3g}" for key, x in residuals.items()]
-    if max(abs(x) for x in residuals.values()) < math.log(_APART):
-        return []
-    return [f"the numbers disagree; the surface that suits all best has {', '.join(told)}"]
 
 
 def surface_from(

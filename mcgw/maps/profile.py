@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.polynomial import Legendre
 from scipy.ndimage import gaussian_filter1d
 
 from analytic.arrays import Array
@@ -127,9 +128,8 @@ def profile_at(places: Array, heights: Array, assumed_unit: str = "") -> Profile
 def without_profile_form(profile: Profile, form: Form) -> Profile:
     """Subtract the line, or the parabola, of least squares; the mean in any case."""
     t = np.linspace(-1, 1, profile.heights.size)
-    basis = np.polynomial.legendre.legvander(t, PROFILE_ORDERS[form])
-    found = np.linalg.lstsq(basis, profile.heights, rcond=None)[0]
-    return replace(profile, heights=profile.heights - basis @ found)
+    left = profile.heights - Legendre.fit(t, profile.heights, PROFILE_ORDERS[form])(t)
+    return replace(profile, heights=left)
 
 
 def smooth_profile(profile: Profile, cutoff: float) -> Profile:

@@ -79,7 +79,8 @@ def pooled(fits: Sequence[Fit], names: Sequence[str]) -> Fit:
 
 def _together(each: Sequence[Spread], weights: Array) -> Spread:
     """Errors and arms of independent maps taken together."""
-    return Spread(*np.linalg.norm(weights[:, None] * [astuple(x) for x in each], axis=0).tolist())
+    error, down, up = np.linalg.norm(weights[:, None] * each, axis=0).tolist()
+    return error, down, up
 
 
 def _of_all(value: float, each: Sequence[Uncertain], weights: Array) -> Uncertain:
@@ -90,7 +91,7 @@ def _of_all(value: float, each: Sequence[Uncertain], weights: Array) -> Uncertai
     logs, n = np.log([x.value for x in each]), len(each)
     between = math.sqrt(n / (n - 1) * float(np.sum(weights**2 * (logs - weights @ logs) ** 2)))
     between *= float(stdtrit(n - 1, ndtr(2.0))) / 2
-    arms = [Spread(x.relative, math.log(x.value / x.low), math.log(x.high / x.value)) for x in each]
+    arms = [(x.relative, math.log(x.value / x.low), math.log(x.high / x.value)) for x in each]
     return uncertain(value, value * between, _together(arms, weights))
 
 

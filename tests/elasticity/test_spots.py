@@ -52,7 +52,9 @@ def test_of_a_map_are_means_over_eight_rays():
     one = Pressed(heights, (9.6e-5, 9.6e-5), 1e11, 5e7)
     summits, which = one._counted[1], np.arange(3, one.spots.heights.size, 7)
     radii = rng.uniform(1e-6, 9e-6, which.size)
-    found = fallen(one._map, summits, which, one.spots.only(which), radii)
+    found = fallen(
+        one._map, summits, which, Spots.hertz(one.spots.heights[which], summits.radii[which], 1e11), radii
+    )
     assert found.heights.tolist() == one.spots.heights[which].tolist()
     for k, a, depth, power in zip(which, radii, found.depths, found.powers, strict=True):
         r = a * np.arange(7) / 6
