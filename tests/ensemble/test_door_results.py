@@ -93,15 +93,6 @@ def test_pressure_and_area_fraction_are_load_and_area_per_nominal_area(ensemble,
     np.testing.assert_allclose(matrix[0, :, 1], matrix[1, :, 1] / area, rtol=1e-12)
 
 
-def test_a_quantity_that_is_not_there_is_told_with_those_that_are(scene):
-    with pytest.raises(KeyError, match=r"'torque' is not a quantity; give one of load, .*, area_fraction"):
-        scene.theory.mean("torque", 1.0)
-    only = mcgw.simulate(scene, quantities=["load"])
-    assert only["pressure"].shape == (60, 3)
-    with pytest.raises(KeyError, match="'area_fraction' is not in this ensemble; it has load"):
-        only.interval("area_fraction")
-
-
 # --- tables ------------------------------------------------------------------------------------------------
 
 

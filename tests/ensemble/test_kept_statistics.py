@@ -80,22 +80,6 @@ def test_statistics_are_those_of_the_surfaces(name):
         assert np.all(np.abs(found - apart[q].T @ apart[first]) <= limit)
 
 
-def assert_same_bits(one, other):
-    for q in one.scene.tables:
-        for get in ("mean", "std"):
-            np.testing.assert_array_equal(getattr(one, get)(q), getattr(other, get)(q))
-        np.testing.assert_array_equal(one.covariance(q, "load"), other.covariance(q, "load"))
-
-
-@pytest.mark.usefixtures("small_blocks")
-def test_a_run_in_progress_can_be_looked_at(tmp_path):
-    asked = scene(n_surfaces=1500, keep="statistics")
-    mcgw.run(asked, tmp_path / "a.h5", shard="1/3")
-    e = mcgw.open_ensemble(tmp_path / "a.h5")
-    assert 0 < e.n_surfaces < 1500
-    assert np.all(np.abs(e.mean("load") - asked.theory.mean("load", np.array(H))) < 5 * e.stderr("load"))
-
-
 def test_the_file_is_read_by_others_and_says_when_it_is_damaged(tmp_path):
     xarray = pytest.importorskip("xarray")
     for package in ("h5netcdf", "pandas"):
@@ -142,7 +126,10 @@ def test_time_ends_between_pieces_and_the_same_number_gives_the_same_bits(monkey
     e = mcgw.simulate(asked, progress=lambda done, _: told.append(done))
     assert e.n_surfaces == told[-1] == 32 * 32
     assert len(told) > 32
-    assert_same_bits(e, mcgw.simulate(asked, max_seconds=None, n_surfaces=e.n_surfaces))
+    again = mcgw.simulate(asked, max_seconds=None, n_surfaces=e.n_surfaces)
+    for q in asked.tables:
+        np.testing.assert_array_equal(e.mean(q), again.mean(q))
+        np.testing.assert_array_equal(e.covariance(q, "load"), again.covariance(q, "load"))
 
 
 @pytest.mark.usefixtures("blank_figures", "no_pressures")

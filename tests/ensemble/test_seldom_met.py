@@ -28,7 +28,6 @@ RADII = analytic.RandomCurvature(5.0)
 PRESSED = analytic.InteractingModel.of(analytic.Model(SPECTRAL.surface), analytic.Interaction("body"))
 LISTED = {"n_asperities": 3, "n_surfaces": 1, "sampler": "direct"}
 LISTED["heights"] = analytic.MeasuredHeights([0.0, 1.0, 3.0])
-BOTH = {"name": "kogut-etsion", "critical": 0.05, "hardness": 1e9}
 HEAT = {"conductivities": (200.0, 16.0)}
 FILLED = {**HEAT, "gas": "air", "rms": "2 um"}
 NAYAK = analytic.Nayak(5.0)
@@ -42,11 +41,9 @@ def filled(scene):
 # Calls with a scene that are refused, by the word that names what is wrong.
 REFUSED = {
     "nothing": lambda _: RADII.nothing,
-    "resistivity": lambda _: analytic.Film(),
     "density": lambda _: analytic.MeasuredHeights([0.0, 1.0]).pdf(np.ones(2)),
     "a sum that decreases": lambda _: PRESSED.alone.separation_law(2.0, "contacts"),
     "joint.film_resistance": lambda scene: scene.replace(joint={"film_resistance": 1e-12}),
-    "one of them": lambda scene: scene.replace(law=BOTH),
     "one of them, in m": lambda scene: scene.replace(law={"name": "coated", "ratio": 2.0}),
     "contact.law.k: missing": lambda scene: scene.replace(law={"name": "power-law-graded", "c0": 1.0}),
     "conductance_si": lambda scene: scene.replace(quantities=["conductance_si"]),
@@ -71,11 +68,19 @@ REFUSED = {
     "joint.layer": lambda scene: scene.replace(layer=analytic.Layer(1e-5, 1.3)),
     "this model has no gas": lambda scene: scene.replace(joint=HEAT).theory.mean("thermal_resistance", 1.0),
     "only 'joint_conductance' is": lambda scene: filled(scene).distribution("gap_conductance", 1.5),
+    "give a load, an area, or another": lambda _: PRESSED.separation_at("stiffness", 1.0),
     "another sum of the asperities": lambda scene: filled(scene).separation_at("gap_conductance", 1.0),
     "'nominal_separation': this model has": lambda scene: scene.theory.std("nominal_separation", 1.0),
     "a number from 0 to 2": lambda scene: mcgw.solve(scene, load=1.0).heights(3),
     "it needs [interaction] reference = ": lambda scene: mcgw.solve(scene, nominal_separation=1.0),
     "surface = -1: give": lambda scene: mcgw.solve(scene, load=1.0).heights(-1),
+    "progress = 'bar': give True, or a function": lambda scene: mcgw.simulate(scene, progress="bar"),
+    "mean load at d/sigma = 60 is 0": lambda scene: mcgw.tradeoff(scene.replace(separations=60.0)),
+    "measured heights are summed exactly": lambda scene: mcgw.tradeoff(scene.replace(**LISTED)),
+    "'torque' is not a quantity; give one of load": lambda scene: scene.theory.mean("torque", 1.0),
+    "'area_fraction' is not in this ensemble; it has load": lambda scene: mcgw.simulate(
+        scene, quantities=["load"]
+    ).interval("area_fraction"),
     "eigenvalue": lambda scene: scene.replace(
         uncertainty=dict.fromkeys(("sigma", "eta", "radius"), 0.1)
         | {"correlation": [[1, 1, -1], [1, 1, 1], [-1, 1, 1]]}
@@ -161,7 +166,5 @@ def test_means_under_an_interaction_fall_as_their_slopes_say(pressed):
     for name in ("load", "stiffness"):
         fall = (theory.mean(name, h - step) - theory.mean(name, h + step)) / (2 * step)
         np.testing.assert_allclose(theory.slope(name, h), fall, rtol=1e-4)
-    with pytest.raises(ValueError, match="give a load, an area, or another sum of the asperities"):
-        theory.separation_at("stiffness", 1.0)
     h = theory.separation_at("area", theory.mean("area", 0.7))
     assert h == pytest.approx(0.7, abs=1e-9)

@@ -48,8 +48,6 @@ def test_python_waits_only_if_it_says_so():
         assert not shown.getvalue()
         mcgw.sweep(SCENE, over, progress=True)
     assert " points/s" in shown.getvalue()
-    mcgw.solve(SCENE, pressure=1e6, progress=lambda *pair: calls.append(pair))
-    assert not calls  # nothing is drawn where answers are exact
     mcgw.solve(SCENE.replace(interaction="body"), pressure=1e6, progress=lambda *pair: calls.append(pair))
     assert calls[-1] == (4, 4)
 
@@ -71,12 +69,6 @@ def test_who_has_a_bar(terminal, person, progress):
     assert shown.getvalue() == said
     assert ("1/3 [" in said) == (progress is True or (progress is None and terminal and person))
     assert ("things/s" in said) == (progress in (print, False) and terminal and person)
-
-
-@pytest.mark.parametrize("progress", [3, "bar"])
-def test_what_is_no_function_is_refused(progress):
-    with pytest.raises(ValueError, match=f"progress = {progress!r}: give True, or a function"):
-        mcgw.simulate(SCENE, progress=progress)
 
 
 def test_a_bar_goes_on_from_what_was_done_before_and_ends_with_an_error():

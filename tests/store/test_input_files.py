@@ -47,7 +47,6 @@ HOSTILE = {
     "soft loop": (put(load=h5py.SoftLink("/load")), "not an HDF5 file, or a damaged one"),
     "group": (lambda data: data.create_group("load"), "load: not a table"),
     "int32": (load(data=ONES.astype("int32")), "load: not a table"),
-    "references": (load((20, 2), h5py.ref_dtype), "load: not a table"),
     "empty": (put(load=NONE), "load: not a table"),
     "other numbers": (put(load=ONES), "damaged"),
     "missing": (lambda data: None, "damaged"),
@@ -170,10 +169,3 @@ def test_a_file_that_xarray_wrote_anew_is_read(make_scene, tmp_path):
     with xarray.open_dataset(path, engine="h5netcdf") as data:
         data.load().to_netcdf(tmp_path / "new.h5", engine="h5netcdf")
     assert (mcgw.open_ensemble(tmp_path / "new.h5").load == before).all()
-
-
-def test_counts_are_packed_and_loads_are_not(make_scene, tmp_path):
-    """Packing loads saves next to nothing, and takes longer than drawing them."""
-    mcgw.run(make_scene(n_surfaces=400), tmp_path / "e.h5")
-    with h5py.File(tmp_path / "e.h5") as file:
-        assert (file["contacts"].compression, file["load"].compression) == ("gzip", None)

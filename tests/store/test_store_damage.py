@@ -84,7 +84,7 @@ def test_a_damaged_file_is_not_extended_nor_sealed_anew(way, damage, file, large
     assert ensembles.verify(file)[1] == "unreadable"
 
 
-@pytest.mark.parametrize("damage", [OF_LARGE, "a result", "the end"])
+@pytest.mark.parametrize("damage", [OF_LARGE, "the end"])
 def test_a_file_damaged_while_more_is_drawn_is_not_merged(file, larger, damage, capsys):
     """Its own surfaces come first in the file that takes its place: they are looked at again."""
     assert mcgw.run(larger, file, shard="1/1") == 0

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from oracles.begun_runs import SIZE, SURFACES, begun, digest, halted
 from oracles.flipped import flip_a_number
-from oracles.inside import RECORD, Blocks, Plan, Span, commit_block, part_of, parts_of
+from oracles.inside import RECORD, Plan, commit_block, part_of, parts_of
 from oracles.said import call
 
 import mcgw
@@ -60,18 +60,11 @@ def test_damage_is_put_aside_and_drawn_again(scene, tmp_path, expected):
     halted(scene, path, 64)
     shards = sorted(parts_of(path).glob("shards/*.h5"))
     flip_a_number(shards[0])
-    shards[1].write_bytes(shards[1].read_bytes()[:-700])  # truncated
-    shards[2].write_bytes(shards[3].read_bytes())  # another block
+    shards[1].write_bytes(shards[3].read_bytes())  # another block
+    shards[2].rename(tmp_path / "elsewhere.h5")
+    shards[2].symlink_to(tmp_path / "elsewhere.h5")
     (shards[3].parent / ".left.tmp").write_bytes(b"half")
     assert ensembles.open_ensemble(path).n_surfaces == min(SIZE * len(shards), SURFACES) - 3 * SIZE
-    plan = Plan.open(parts_of(path))
-    assert [plan.held(Span(16 * k, 16)) is not None for k in range(4)] == [False, False, False, True]
-    assert plan.held(Span(48, 8)) is None  # of which the shard has more
-    shards[3].rename(tmp_path / "elsewhere.h5")
-    shards[3].symlink_to(tmp_path / "elsewhere.h5")
-    assert plan.held(Span(48, 16)) is None
-    shards[3].unlink()
-    (tmp_path / "elsewhere.h5").rename(shards[3])
     halted(scene, path, 0)
     assert len(list(parts_of(path).glob("shards/*.bad"))) == 3
     assert not list(parts_of(path).glob("shards/.*.tmp"))
@@ -149,8 +142,13 @@ def test_n_surfaces_is_the_total(scene, tmp_path, expected, drawn):
 
 
 def test_a_short_block_of_statistics_gives_way_to_a_whole_one(scene, tmp_path, drawn):
+    """Both are read while the run is not finished."""
     path, kept = tmp_path / "e.h5", scene.replace(keep="statistics")
     mcgw.run(kept.replace(n_surfaces=20), path, shard="1/1")
+    begun, whole = ensembles.open_ensemble(path), mcgw.simulate(kept, n_surfaces=20)
+    np.testing.assert_array_equal(
+        [begun.mean("load"), begun.std("load")], [whole.mean("load"), whole.std("load")]
+    )
     mcgw.run(kept, path)
     assert drawn == [0, 16, 16, 32, 48, 64, 80, 96]
     mcgw.save(mcgw.simulate(kept), tmp_path / "whole.h5")
@@ -183,27 +181,6 @@ def test_room_is_asked_for_what_is_not_there_yet(scene, tmp_path, monkeypatch):
     with pytest.raises(StoreError, match="free some space"):
         mcgw.run(scene, tmp_path / "other.h5")
     mcgw.run(scene, path)
-
-
-def test_blocks_of_several_groups_end_with_their_group():
-    """Two groups of 50 and 20 surfaces, in blocks of 16 and 20, one after the other."""
-    plan = Blocks(((50, 16), (20, 20)), whole=True)
-    blocks = [Span(0, 16), Span(16, 16), Span(32, 16), Span(48, 2), Span(50, 20)]
-    assert plan.total == 70
-    assert plan.missing([]) == blocks
-    assert [plan.number(block) for block in blocks] == [0, 1, 2, 3, 4]
-    assert [plan.group(block) for block in blocks] == [(0, 0), (0, 16), (0, 32), (0, 48), (1, 0)]
-    for held in blocks:
-        assert plan.missing([held]) == [block for block in blocks if block != held]
-        assert plan.takes(held)
-    assert plan.missing([Span(0, 37), Span(16, 16), Span(50, 9)]) == [
-        Span(37, 11),
-        Span(48, 2),
-        Span(59, 11),
-    ]  # one lies inside a longer one
-    assert not any(map(plan.takes, (Span(0, 15), Span(8, 16), Span(50, 16), Span(48, 4))))
-    assert Blocks(((50, 16),), whole=True).takes(Span(64, 16))  # of more than is asked for now
-    assert [Blocks(((50, 16),), whole=True).kept(n) for n in (0, 20, 32, 50)] == [0, 16, 32, 50]
 
 
 @pytest.mark.parametrize(

@@ -23,12 +23,6 @@ def shard(tmp_path):
     return commit_shard(tmp_path / SPAN.file_name, RUN, SPAN, arrays(), 1.5)
 
 
-def test_a_shard_gives_back_what_was_put_in(shard):
-    assert open_shard(shard.path, RUN) == shard
-    for name, values in arrays().items():
-        np.testing.assert_array_equal(shard.tables()[name], values)
-
-
 @pytest.mark.parametrize("name", ["load", "contacts", "block_mean"])
 def test_every_flipped_bit_of_a_number_is_noticed(name, tmp_path, shard):
     with h5py.File(shard.path) as file:

@@ -77,9 +77,6 @@ def test_any_kind_of_scene_has_its_bits(name):
     sweep = mcgw.sweep(scene, over)
     assert len(sweep.groups) == GROUPS.get(name, 1)
     assert all(same_bits(sweep, at) for at in np.ndindex(sweep.shape))
-    if name == "samplers":
-        with pytest.raises(ValueError, match="have different surfaces"):
-            sweep.difference("load", 0, 1)
 
 
 OF_OTHER_CELLS = {
@@ -139,15 +136,11 @@ def test_neither_threads_nor_blocks_nor_what_is_kept_change_a_bit(monkeypatch):
     np.testing.assert_allclose(parts.mean("load"), one.mean("load"), rtol=1e-14)
 
 
-def test_what_nobody_gave_follows():
-    follows = SCENE.replace(n_asperities=None)
-    sweep = mcgw.sweep(follows, {"surface.nominal_area": ["1 mm^2", "2 mm^2"]})
-    assert [scene.n_asperities for scene in sweep.scenes] == [300, 600]
-    assert len({scene.seed for scene in sweep.scenes}) == 1
+def test_a_rule_of_stopping_is_one_number_for_all():
     ruled = mcgw.sweep(SCENE.replace(rel_err=0.05, n_surfaces=2000), {GAMMA: [1.0, 2.0]})
-    for scene in ruled.scenes:  # the rule is one number for all
+    for scene in ruled.scenes:
         assert scene.rel_err is None
-        assert 300 < scene.n_surfaces < 2000
+        assert 300 < scene.n_surfaces == ruled.scenes[0].n_surfaces < 2000
 
 
 MISTAKES = [
@@ -165,6 +158,7 @@ MISTAKES = [
     ({"ensemble.max_seconds": [3]}, "max_seconds: a sweep must be reproducible"),
     ({"ensemble.seed": [-k for k in range(1, 99)]}, r"and 78 more"),
     ({"contact.quantities": [["load"]]}, "contact.quantities: must be the same"),
+    ({"grading": [lambda s: np.full_like(s, np.nan)]}, r"grading.*not finite"),
     ({GAMMA: [1, 2], "ensemble.seed": [1, 2, 3]}, r"zipped axes .* these have grading\.gamma 2, ens"),
 ]
 
@@ -225,17 +219,12 @@ def test_points_of_other_numbers_of_surfaces_have_errors_of_their_own():
         np.testing.assert_allclose(sweep.slopes("load", GAMMA).stderr[0, k], error / 1.5, rtol=1e-9)
 
 
-def test_pressures_on_other_areas_are_each_divided_by_its_own():
+def test_pressures_on_other_areas_differ_as_those_of_the_surfaces():
     """The same asperities on one area and on three times as much: value, error and gain from the surfaces."""
     areas = (1e-6, 3e-6)
     sweep = mcgw.sweep(SCENE, {"surface.nominal_area": areas})
     assert len(sweep.groups) == 1
     load = mcgw.simulate(SCENE).load
-    for i, area in enumerate(areas):
-        np.testing.assert_allclose(sweep.mean("pressure")[i], load.mean(axis=0) / area, rtol=1e-13)
-        np.testing.assert_allclose(sweep.stderr("pressure")[i] * 300**0.5 * area, load.std(axis=0, ddof=1))
-        exact = SCENE.theory.mean("load", sweep.separations) / area
-        np.testing.assert_allclose(sweep.theory("pressure")[i], exact, rtol=1e-13)
     found, pressure = sweep.difference("pressure", 1, 0), [load / area for area in areas]
     between = pressure[1] - pressure[0]
     np.testing.assert_allclose(found.value, between.mean(axis=0), rtol=1e-12)
@@ -244,13 +233,11 @@ def test_pressures_on_other_areas_are_each_divided_by_its_own():
     np.testing.assert_allclose(found.gain, apart, rtol=1e-9)
 
 
-def test_points_have_the_intervals_and_tables_of_single_runs():
+def test_points_have_the_tables_and_verdicts_of_single_runs():
     sweep = mcgw.sweep(SCENE, {GAMMA: [0.5, 2.0], "ensemble.n_asperities": [50, 2000]})
     frame, alone, point = sweep.to_dataframe(), mcgw.simulate(sweep.scene((1, 0))), sweep.ensemble((1, 0))
     assert frame.index.names == ["gamma", "n_asperities", "separation"]
     assert frame.loc[2.0, 50].load_std.tolist() == alone.std("load").tolist()
-    for found, expected in zip(sweep.interval("pressure", 0.9), alone.interval("pressure", 0.9), strict=True):
-        np.testing.assert_allclose(found[1, 0], expected, rtol=1e-12)
     assert mcgw.compare(point).verdict == mcgw.compare(alone).verdict
     for ask in (point.values, lambda q: point.quantile(q, 0.5), point.covariance):
         with pytest.raises(ValueError, match=r"load: a sweep only keeps mean and .* surfaces of that scene"):

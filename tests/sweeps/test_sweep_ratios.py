@@ -99,11 +99,6 @@ def test_tables_and_functions_share_their_surfaces(make_scene, tmp_path, path):
         swept.ratio("load", {"grading": stiffening}, 1)
 
 
-def test_a_function_that_cannot_be_resolved_is_one_line(make_scene):
-    with pytest.raises(ValueError, match=r"^[^\n]*grading[^\n]*$"):
-        mcgw.sweep(make_scene(), {"grading": [lambda s: np.full_like(s, np.nan)]})
-
-
 def test_points_that_are_weighted_means_have_the_same_ratios(make_scene):
     """Of nine gradings two are computed; two others have the ratio of their own surfaces, as of two runs."""
     scene = make_scene(separations=H, n_surfaces=60, grading=None)
