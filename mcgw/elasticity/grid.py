@@ -50,11 +50,6 @@ class Grid:
         """Distance of points along x and y, m."""
         return self.size[0] / self.shape[1], self.size[1] / self.shape[0]
 
-    @property
-    def area(self) -> float:
-        """Nominal area, m^2."""
-        return self.size[0] * self.size[1]
-
     @cached_property
     def potential(self) -> Array:
         """Potential by offsets of rows and columns, which wrap around, 1/m; at none that of own images."""

@@ -102,10 +102,6 @@ class Pressed:
             spots = fallen(self._map, summits, near, spots, spots.least_radii(self.plane(spots)))
         return spots, places[:, near]
 
-    def clear(self, highest: float) -> bool:
-        """Whether the plane is above all there is."""
-        return self.separation is not None and self.separation >= highest
-
     def values(self, area: float, stiffness: float, pressure: float, mean_gap: float) -> Values:
         """By name, SI; the conductance is C rho in m, which follows from the stiffness (Barber 2003)."""
         conductance = 2 * stiffness / self.E_star
@@ -115,7 +111,7 @@ class Pressed:
     def of_spots(self, spots: Spots, found: Balance) -> Values:
         """Return the sums over contacts in balance."""
         area, load = (float(part(found.penetrations).sum()) for part in (spots.areas, spots.loads))
-        return self.values(area, found.stiffness, load / self.grid.area, found.separation)
+        return self.values(area, found.stiffness, load / math.prod(self.size), found.separation)
 
 
 def alone(pressed: Pressed) -> Values:
@@ -128,7 +124,7 @@ def alone(pressed: Pressed) -> Values:
 
 def located(pressed: Pressed) -> Values:
     """Return the same summits, each with the surface around it and pressed down by all others."""
-    if pressed.clear(float(pressed.spots.heights.max())):
+    if pressed.separation is not None and pressed.separation >= pressed.spots.heights.max():
         return alone(pressed)
     spots, places = pressed.touching()
     load = pressed.load if pressed.separation is None else None
@@ -148,7 +144,7 @@ def boundary_elements(pressed: Pressed) -> Values:
     except ImportError:
         raise RunError(f"boundary elements need Tamaas: {extra('bem')}") from None
     tamaas.set_log_level(tamaas.LogLevel.error)
-    if pressed.clear(float(pressed.heights.max())):
+    if pressed.separation is not None and pressed.separation >= pressed.heights.max():
         return pressed.values(0.0, 0.0, 0.0, 0.0)
     side = pressed.size[1]
     heights = np.ascontiguousarray(pressed.heights / side)

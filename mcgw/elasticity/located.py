@@ -13,7 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csr_matrix
+from scipy.sparse import csr_matrix, diags_array
 from scipy.sparse.linalg import LinearOperator, cg
 from scipy.spatial import cKDTree
 
@@ -90,7 +90,7 @@ def balanced(spots: Spots, places: Ints, grid: Grid, separation: float, load: fl
 
 
 def interaction(spots: Spots, places: Ints, grid: Grid, separation: float) -> Push:
-    """Tell how far loads press down each spot, with contacts as wide as those of spots alone."""
+    """Tell how far loads in N press down each spot, m, with contacts as wide as those of spots alone."""
     n, near = spots.heights.size, _near(grid, places, spots.least_radii(separation))
     matrix = grid.between(places) + near.toarray() if n <= _DENSE else None
 
@@ -164,6 +164,6 @@ def _answered(slopes: Array, push: Push, share: float, sinking: Array) -> Array:
         return np.asarray(x / slopes[on] + share * push(loads)[on])
 
     whole = LinearOperator(shape, matvec=sunk, dtype=float)
-    alone = LinearOperator(shape, matvec=lambda x: slopes[on] * x, dtype=float)
+    alone = diags_array(slopes[on])
     loads[on] = cg(whole, sinking[on], rtol=_CLOSE, maxiter=_PRODUCTS, M=alone)[0]
     return loads

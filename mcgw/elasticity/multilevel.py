@@ -19,8 +19,6 @@ from analytic.arrays import Array
 
 FEWEST = 4  # maps a term: fewer tell no variance
 
-Chain = tuple[int, ...]  # levels that are used, from cheap to dear
-
 
 @dataclass(frozen=True)
 class Design:
@@ -29,7 +27,7 @@ class Design:
     Parameters
     ----------
     chain : tuple of int
-        Levels, the dearest last.
+        Levels that are used, from cheap to dear.
     maps : tuple of int
         Of each term: the first level's mean, then differences.
     cost : float
@@ -38,13 +36,13 @@ class Design:
         What the dearest level alone would cost for the same error.
     """
 
-    chain: Chain
+    chain: tuple[int, ...]
     maps: tuple[int, ...]
     cost: float
     plain: float
 
 
-def terms_of(chain: Chain) -> list[Chain]:
+def terms_of(chain: tuple[int, ...]) -> list[tuple[int, ...]]:
     """Levels of each term, of which the second is taken off the first."""
     return [chain[:1], *((dear, cheap) for cheap, dear in pairwise(chain))]
 
@@ -71,11 +69,11 @@ def design(pilot: Array, costs: Sequence[float], rel_err: float, solves: int | N
     top = pilot.shape[1] - 1
     scale = np.abs(pilot[:, top].mean(axis=0)) * rel_err / student.ppf(0.975, 20)
 
-    def spread(term: Chain) -> float:
+    def spread(term: tuple[int, ...]) -> float:
         x = difference(pilot[:, term])
         return float(((x - x[0]).var(axis=0, ddof=min(len(x) - 1, 1)) / scale**2).max())
 
-    def planned(chain: Chain) -> Design:
+    def planned(chain: tuple[int, ...]) -> Design:
         terms = terms_of(chain)
         of_terms = [sum(costs[level] for level in term) for term in terms]
         spreads = [spread(term) for term in terms]

@@ -63,11 +63,8 @@ def maps_of(source: "Scene | Spectrum | Topography | str | Path | Sequence[Topog
     maps = tuple(_whole(one) for one in source)
     if not maps or len({one.size for one in maps}) > 1 or not all(one.periodic for one in maps):
         raise ValueError("maps: give one or more periodic maps, all of one size")
-
-    def heights(number: int, _: int) -> Array:
-        return np.asarray(maps[number].heights - maps[number].heights.mean())
-
-    return Maps(heights, maps[0].size, f"the {len(maps)} given maps", len(maps))
+    words = f"the {len(maps)} given maps"
+    return Maps(lambda k, _: maps[k].heights - maps[k].heights.mean(), maps[0].size, words, len(maps))
 
 
 def _whole(given: "Topography | str | Path") -> Topography:

@@ -163,9 +163,7 @@ def by_summits(fine: SummitSums, coarse: SummitSums) -> Pairs:
         values[1] = 1 / values[1]
         return values
 
-    counted = _counted(fine)
-    counted[1] = 1 / counted[1]
-    pairs = zip(jackknife(found, fine, coarse), counted, strict=True)
+    pairs = zip(jackknife(found, fine, coarse), found(fine, fine), strict=True)
     return [_also(pair, pair[0] - float(plain)) for pair, plain in pairs]
 
 

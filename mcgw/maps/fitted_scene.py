@@ -163,25 +163,19 @@ def scene_of_moments(moments: SpectralMoments, area: float, modulus: float, titl
 
 def _of_summits(fit: Fit, use: str, heights: Heights, modulus: float, title: str) -> Scene:
     """With the heights of the summits: drawn from their table, or as measured, with their radii."""
-    z, sigma = fit.summits, float(fit.summits.std())
-    if heights == "table":
-        found = fit.estimates[use]
-        surface = Surface(sigma, found.radius.value, found.eta.value, fit.area, modulus)
-        return _scene(surface, title, heights=HeightTable.of(z))
-    law = MeasuredHeights(z)
-    curvature: MeasuredRadii | None = None
+    z, law = fit.summits, MeasuredHeights(fit.summits)
+    eta = z.size / fit.area  # summits between pixels have no heights
+    more: dict[str, Any] = {"heights": law, "ensemble": Sampling(1, z.size, sampler="direct")}
     if heights == "summits":
         radius = float(1 / np.mean(1 / fit.radii))
-        curvature = MeasuredRadii(law, fit.radii / radius)
-    elif use == "summits":
-        radius = fit.estimates[use].radius.value
+        more["summits"] = MeasuredRadii(law, fit.radii / radius)
     else:
-        raise ValueError(f'use = "{use}": measured heights as they are need use = "summits"')
-    surface = Surface(
-        sigma, radius, z.size / fit.area, fit.area, modulus
-    )  # summits between pixels have no heights
-    alone = Sampling(1, z.size, sampler="direct")
-    return _scene(surface, title, heights=law, summits=curvature, ensemble=alone)
+        radius = fit.estimates[use].radius.value
+        if heights == "table":
+            eta, more = fit.estimates[use].eta.value, {"heights": HeightTable.of(z)}
+        elif use != "summits":
+            raise ValueError(f'use = "{use}": measured heights as they are need use = "summits"')
+    return _scene(Surface(float(z.std()), radius, eta, fit.area, modulus), title, **more)
 
 
 def _scene(surface: Surface, title: str, **more: Any) -> Scene:

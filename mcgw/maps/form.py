@@ -135,17 +135,12 @@ def form_left(topography: Topography, form: Form) -> tuple[float, float, Form] |
     more: Form = "quadratic" if ORDERS[form] < ORDERS["quadratic"] else "quartic"
     coarse = coarser(topography, _FINE)
     rest = without_form(coarse, more).heights
-    longest, left = _longest(rest), coarse.heights - rest
+    left, z = coarse.heights - rest, block_means(rest, _COARSE)
+    power = np.abs(fft.fft2(z) / z.size) ** 2
+    along, down = (fft.fftfreq(n) * n for n in z.shape[::-1])
+    longest = float(power[np.hypot(along, down[:, None]) < _LONGEST].sum())
     variance = float(left.var())
     share = variance / float(topography.heights.var())
     if share < _COUNTS or variance < _STRONGER * longest:
         return None
     return share, float(np.ptp(left)), more
-
-
-def _longest(z: Array) -> float:
-    """Variance of the longest waves on a map."""
-    coarse = block_means(z, _COARSE)
-    power = np.abs(fft.fft2(coarse) / coarse.size) ** 2
-    along, down = (fft.fftfreq(n) * n for n in coarse.shape[::-1])
-    return float(power[np.hypot(along, down[:, None]) < _LONGEST].sum())

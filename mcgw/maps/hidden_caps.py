@@ -8,8 +8,8 @@ minus its mean.
 """
 
 import math
-from dataclasses import dataclass
 from functools import cache, lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
@@ -24,8 +24,7 @@ _REACH, _NODES = 9.0, 200
 _MOST = 10.0
 
 
-@dataclass(frozen=True, slots=True)
-class Visible:
+class Visible(NamedTuple):
     """Of the summits that no taller neighbour hides.
 
     Parameters

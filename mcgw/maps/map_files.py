@@ -32,14 +32,8 @@ def sidecar_of(path: Path) -> Path:
 
 def write_npy(topography: Topography, path: Path) -> None:
     """Write an array and its sidecar."""
-    dx, dy = topography.pixel
-    facts = {
-        "filetype": FILETYPE,
-        "pixel": [dx, dy],
-        "unit": "m",
-        "periodic": topography.periodic,
-        "axes": ["y", "x"],
-    }
+    facts: dict[str, Any] = {"filetype": FILETYPE, "pixel": topography.pixel, "unit": "m"}
+    facts |= {"periodic": topography.periodic, "axes": ["y", "x"]}
     with together(), whole_file(path) as unfinished, whole_file(sidecar_of(path)) as beside:
         with open(unfinished, "wb") as file:
             np.save(file, topography.heights)

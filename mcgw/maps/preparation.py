@@ -76,8 +76,6 @@ class Prepared:
         The map filtered between both cutoffs.
     seen : ndarray of bool or None
         Points of `used` that count; None: all.
-    filled : float
-        Share of the points that were missing.
     recorded : (float, float)
         Step and clipping of its instrument: see `mcgw.maps.bad_points.recorded`.
     asked : Preparation
@@ -89,7 +87,6 @@ class Prepared:
     levelled: Topography
     used: Topography
     seen: Marks | None
-    filled: float
     recorded: tuple[float, float]
     asked: Preparation
     notes: tuple[str, ...]
@@ -123,8 +120,7 @@ def prepared(topography: Topography, asked: Preparation) -> Prepared:
     if asked.cutoff is not None:
         used = smooth(used, asked.cutoff)
     seen = None if holes is None else _seen(level, holes, asked, notes)
-    filled_share = 0.0 if holes is None else float(holes.mean())
-    return Prepared(level, used, seen, filled_share, seen_by, asked, tuple(notes))
+    return Prepared(level, used, seen, seen_by, asked, tuple(notes))
 
 
 def _trimmed(topography: Topography, trim: int, notes: list[str]) -> Topography:

@@ -151,11 +151,8 @@ def fit_profiles(profiles: Sequence[Profile], *, cutoff: float | None, form: For
         for each in zip(*seen, strict=True)
     )
     values = stretches.sum(axis=1) / pieces
-    moments, stretches, waves = (
-        _checked(values),
-        len(plain) * stretches / values[:, None],
-        waves / values[:, None],
-    )
+    moments, waves = _checked(values), waves / values[:, None]
+    stretches *= len(plain) / values[:, None]
     return ProfileFit(
         moments,
         {

@@ -62,19 +62,13 @@ def _readable(document: dict[str, Any]) -> dict[str, Any]:
     tables = {name: keys for name, keys in document.items() if isinstance(keys, dict)}
     found = {
         name: {
-            key: _shortened(value, _unit(name, key))
+            key: _shortened(value, getattr(KEYS[name][key].kind, "unit", "") if key in KEYS[name] else "")
             for key, value in keys.items()
             if key not in KEYS[name] or value != KEYS[name][key].default
         }
         for name, keys in tables.items()
     }
     return {name: value for name, value in (document | found).items() if value or name == "title"}
-
-
-def _unit(table: str, key: str) -> str:
-    """Return the unit of a key; of a table, such as a law, none."""
-    row = KEYS[table].get(key)
-    return "" if row is None else getattr(row.kind, "unit", "")
 
 
 def _shortened(value: Any, unit: str) -> Any:

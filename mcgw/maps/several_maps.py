@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import astuple, replace
+from dataclasses import replace
 
 import numpy as np
 from scipy.special import chdtrc, ndtr, stdtrit
@@ -43,9 +43,8 @@ def pooled(fits: Sequence[Fit], names: Sequence[str]) -> Fit:
     moments = SpectralMoments(*mean(lambda fit: [getattr(fit.moments, x) for x in _MOMENTS]))
     cubes = weights * [(fit.moments.m0 / moments.m0) ** 1.5 for fit in fits]
     skewness, errors = np.array([fit.skewness for fit in fits]).T
-    visible = None
-    if all(fit.visible for fit in fits):
-        visible = Visible(*mean(lambda fit: astuple(fit.visible)))  # type: ignore[arg-type]
+    all_visible = [fit.visible for fit in fits if fit.visible is not None]
+    visible = Visible(*(weights @ all_visible).tolist()) if len(all_visible) == len(fits) else None
     methods = [x for x in first.estimates if all(x in fit.estimates for fit in fits)]
     return replace(
         first,

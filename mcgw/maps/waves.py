@@ -142,14 +142,10 @@ def waves_of(topography: Topography, moments: SpectralMoments, order: int = -1) 
         share = down[band] @ along  # of a wave that the polynomial held; 1 of the mean, which is no wave
         taken += float((power[band] * (share / np.where(share < 1, 1 - share, np.inf)) @ waves).sum())
     low = taken / total
-
-    def spread(of: list[float], name: str) -> Spread:
-        seen, third, fourth = of
-        degree = 0.5 if name in _ROOTS else 1.0
-        seen, fourth, sign = seen / degree**2, fourth / degree**4, math.copysign(degree, third)
-        return _spread(_number(seen), _freedom(seen, fourth), sign, float(by_moments[name][0]) * low)
-
-    spreads = {name: spread(of, name) for name, of in zip(by_moments, sums.T.tolist(), strict=True)}
+    spreads = {
+        name: _spread(of, 0.5 if name in _ROOTS else 1.0, float(by_moments[name][0]) * low)
+        for name, of in zip(by_moments, sums.T.tolist(), strict=True)
+    }
     return Waves(spreads, 2 * _number(float(sums[0, 0])), products)
 
 
@@ -166,22 +162,18 @@ def _number(seen: float) -> float:
     return max(1 / max(seen, 1e-30) - 1, _FEWEST)
 
 
-def _freedom(seen: float, fourth: float) -> float:
-    """Degrees of freedom of an error that was found from the waves themselves, twice its mean over variance.
+def _spread(sums: list[float], degree: float, low: float) -> Spread:
+    """Of the power `degree` of a sum of exponential terms, which has a gamma distribution, over its mean.
 
-    Of n equal waves, each with its conjugate, the sum of fourth powers over the squared sum of squares is
-    about ``3/(n + 5)``, and the squares of exponential powers scatter as ``5/n``.
+    `sums` are those of their squares, cubes and fourth powers; `low` is the logarithm of the truth over the
+    mean. Widened as Student's t asks, since the error is itself known from few waves: of n equal ones, each
+    with its conjugate, the sum of fourth powers over the squared sum of squares is about ``3/(n + 5)``, and
+    the squares of exponential powers scatter as ``5/n``.
     """
-    return max(0.4 * (3 * seen * seen / fourth - 5), _LEAST_FREEDOM)
-
-
-def _spread(n: float, freedom: float, degree: float, low: float) -> Spread:
-    """Of the power `degree` of a sum of n exponential terms, which has a gamma distribution, over its mean.
-
-    Widened as Student's t asks where n is itself known from few waves; `low` is the logarithm of the truth
-    over the mean.
-    """
-    wider = degree * float(stdtrit(freedom, float(ndtr(2.0)))) / 2
+    seen, third, fourth = sums
+    n = _number(seen / degree**2)
+    freedom = max(0.4 * (3 * seen * seen / fourth - 5), _LEAST_FREEDOM)  # twice the mean over the variance
+    wider = math.copysign(degree, third) * float(stdtrit(freedom, float(ndtr(2.0)))) / 2
     ends = sorted(-wider * math.log(gammaincinv(n, p) / n) for p in (_OUTSIDE, 1 - _OUTSIDE))
     error = math.hypot(wider * math.sqrt(float(polygamma(1, n))), low)
     return error, -ends[0] + max(-low, 0.0), ends[1] + max(low, 0.0)

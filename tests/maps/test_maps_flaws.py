@@ -129,7 +129,7 @@ def crowded(fit, overlap, lost=0.0):
     """By caps, of which so many are not seen because of the pixel."""
     one, seen = fit.estimates["moments"], visible(overlap)
     one = scaled(one, eta=overlap / one.overlap)
-    return replace(fit, estimates={"caps": one}, visible=replace(seen, share=seen.share - lost))
+    return replace(fit, estimates={"caps": one}, visible=seen._replace(share=seen.share - lost))
 
 
 def with_slope(ready, slope):

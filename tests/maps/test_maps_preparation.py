@@ -114,7 +114,7 @@ def test_points_count_whose_neighbours_were_seen(cutoff):
         told = f"missing: {number} of 3600 points ({number / 36:.2g} %) filled from their edges"
         assert masked.notes[0].startswith(told)
         assert f"which leaves {100 * whole.mean():.3g} % of the map" in masked.notes[0]
-        assert (masked.filled, used.seen) == (number / 3600, None)
+        assert used.seen is None
         assert (auto.seen is not None) == kept
         assert kept or f"only {100 * left:.2g} % of the others have all neighbours" in auto.notes[0]
     z[::3, ::3] = np.nan
