@@ -4,7 +4,6 @@ import dataclasses
 
 import numpy as np
 import pytest
-from mpmath import mp
 from oracles.law_of_crowds import distance, farthest
 from scipy.integrate import quad
 from scipy.stats import kstest
@@ -15,7 +14,7 @@ from mcgw.sampling import samplers
 from mcgw.sampling.cells import mesh_of
 from mcgw.sampling.counts import counts_of
 from mcgw.sampling.crowding import crowding
-from mcgw.sampling.drawn_moments import _law_of_moments, _partly
+from mcgw.sampling.drawn_moments import _partly
 from mcgw.sampling.samplers import aggregate_of, distance_of, sampler_of
 
 
@@ -96,31 +95,6 @@ def test_moments_that_stay_at_their_means_hide_a_millionth_of_the_variance(
         ).variance - extras(every, name)
         assert np.abs(variance(every)[q] / exact - 1).max() < 1e-11
         assert np.abs(variance(some)[q] / exact - 1).max() < 1e-6
-
-
-def covariance(plain, rooted):
-    """Of T_j(2u - 1) and sqrt(u) T_j(2u - 1), exactly: with u = v^2 they are polynomials in v."""
-    even = [mp.taylor(lambda v, j=j: mp.chebyt(2 * j, v), 0, 2 * j) for j in range(max(plain, rooted))]
-    terms = [*even[:plain], *([0, *c] for c in even[:rooted])]
-
-    def mean(f, g=(1,)):
-        return mp.fsum(2 * a * b / mp.mpf(i + k + 2) for i, a in enumerate(f) for k, b in enumerate(g))
-
-    return mp.matrix([[mean(f, g) - mean(f) * mean(g) for f in terms] for g in terms])
-
-
-@pytest.mark.parametrize(
-    ("plain", "rooted"), [(5, 0), (10, 5), pytest.param(18, 8, marks=pytest.mark.slow), (0, 4)]
-)
-def test_root_of_the_covariance_keeps_all_digits(plain, rooted):
-    """Cholesky's triangle in 80 digits: where it is lost to rounding, one kind of CPU draws other moments."""
-    order = [*range(min(plain, 1), plain), *reversed(range(plain, plain + rooted))]
-    with mp.workdps(80):
-        all_of_it = covariance(plain, rooted)
-        exact = mp.cholesky(mp.matrix([[all_of_it[i, j] for j in order] for i in order]))
-    _, root = _law_of_moments(plain, rooted)
-    assert not root[: min(plain, 1)].any()
-    np.testing.assert_allclose(root[order], np.array(exact.tolist(), float), atol=1e-13)
 
 
 @pytest.mark.parametrize("n", [10**3, pytest.param(10**6, marks=pytest.mark.slow)])

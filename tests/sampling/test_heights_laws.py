@@ -10,7 +10,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 import scipy.stats
-from hypothesis import given, settings, strategies as st
+from hypothesis import example, given, settings, strategies as st
 from oracles.literal import scores
 from scipy.integrate import quad
 
@@ -94,18 +94,14 @@ def test_samplers_have_the_exact_mean_and_variance(name, sampler, make_scene):
     assert max(scores(mcgw.simulate(scene))) < 5
 
 
-def test_ties_do_not_break_a_table():
-    law = HeightTable.of(np.repeat([1.0, 1.0, 2.0, 5.0], 50))
-    assert np.all(np.diff(law.s) > 0)
-    assert float(analytic.fn(0, -9.0, heights=law)) == pytest.approx(1, rel=1e-14)
-
-
 @settings(deadline=None)
 @given(st.lists(st.floats(-1e3, 1e3), min_size=2, max_size=60))
+@example([1.0] * 100 + [2.0] * 50 + [5.0] * 50)
 def test_a_table_of_any_heights_is_a_law(values):
     if np.std(values) < 1e-6:
         return
     law = HeightTable.of(values)
+    assert np.all(np.diff(law.s) > 0)
     rule = analytic.HeightRule.over([law.s[0] - 1], analytic.Homogeneous(), law)
     # A gap between two heights is only known to their last digits.
     known = 1e-13 + 1e-15 * max(np.abs(law.s)) / min(np.diff(law.s))
@@ -128,9 +124,6 @@ def test_a_modulus_may_be_negative_where_no_height_is(falls, given, refused, mak
 
 DENSITIES = {  # p(0), p(2) of heights over sqrt(m0), above the mean plane of the surface
     1.6: (0.00366848561180587, 0.532312950790285),
-    2.0: (0.0459483593407531, 0.441484818068322),
-    5.0: (0.238734539355392, 0.239972906814589),
-    10.0: (0.316873842161959, 0.168119159705182),
     100.0: (0.390587253425044, 0.0818569654881881),
 }
 ALPHAS = (1.501, 2.0, 100.0, 1e6)

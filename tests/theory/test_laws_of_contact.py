@@ -215,15 +215,3 @@ def test_another_law_does_not_agree():
     assert series.agrees(CustomLaw(**given))
     for other in ({"critical": 0.06}, {"limits": (1.0, 7.0)}, {"load": series.load_of[::-1]}):
         assert not series.agrees(CustomLaw(**given | other)), other
-
-
-def test_what_no_series_of_u_is_gets_advice():
-    """A kink inside a piece; and (u*u)**1.5, which is |u|^3: advice on kinks alone would lead nowhere."""
-    bent = (lambda u: u**3, lambda u: u**2 * (2 + np.sqrt((u - 2) ** 2)))
-    for law, words in (
-        (CustomLaw(bent, (lambda u: u**2,) * 2, (1,), 0.1), r"load\[1\]: .*give the penetration"),
-        (CustomLaw((lambda u: (u * u) ** 1.5,), (lambda u: u**2,), (), 0.05), r"load\[0\]: .*write u\*\*3"),
-    ):
-        with pytest.raises(ValueError, match=words):
-            law.as_data(5.0)
-    assert CustomLaw((lambda u: u**3,), (lambda u: u**2,), (), 0.05).as_data(0.2).is_data

@@ -37,6 +37,11 @@ def cube(u):
     return u**3
 
 
+def bent(u):
+    """A kink inside the second piece."""
+    return u**2 * (2 + np.sqrt((u - 2) ** 2))
+
+
 def noisy(s):
     return 1 + 1e-9 * np.modf(np.sin(1e9 * s) * 1e5)[0]
 
@@ -138,6 +143,8 @@ REFUSED = [
     ("load[0]", lambda: CustomLaw((lambda u: u**2.5,), (cube,), (), 0.1)),
     ("area[0]", lambda: CustomLaw((cube,), (lambda u: np.interp(u, [0, 1], [0, 1]),), (), 0.1)),
     ("load[1]", lambda: CustomLaw((cube, lambda u: np.log(1 - u)), (cube,) * 2, (1.0,), 0.1)),
+    ("give the penetration", lambda: CustomLaw((cube, bent), (cube,) * 2, (1,), 0.1).as_data(5.0)),
+    ("write u**3", lambda: CustomLaw((lambda u: (u * u) ** 1.5,), (cube,), (), 0.05).as_data(5.0)),
 ]
 
 
