@@ -196,15 +196,18 @@ def fit_prepared(ready: Prepared, *, across: int = 4) -> Fit:
         If the map has no summit or is too small, or an estimate of sigma is more than its peak to valley.
     """
     used, form = ready.used, ready.asked.form
-    counted = summit_sums_of(used, across=across, seen=ready.seen)
+
+    def count(sums_of: Callable[..., SummitSums], across: int) -> SummitSums:
+        return _without_summit_form(sums_of(used, across=across, seen=ready.seen), form)
+
+    counted = count(summit_sums_of, across)
     number = counted.heights.size
     if not number:
         form_too = ", or --form quadratic" if form_left(ready.levelled, form) else ""
         raise ValueError(f"the map has no summit; give a larger map or a shorter cutoff{form_too}")
     if number < _A_LITTLE * across**2:
         fewer = min(across, max(math.isqrt(number // _A_LITTLE), _FEW_ACROSS))
-        counted = summit_sums_of(used, across=fewer, seen=ready.seen)
-    counted = _without_summit_form(counted, form)
+        counted = count(summit_sums_of, fewer)
     moments = moments_of(counted)
     if not (moments.m2 > SMALLEST and moments.sigma > 0):  # alpha contains its square
         raise ValueError(
@@ -217,8 +220,9 @@ def fit_prepared(ready: Prepared, *, across: int = 4) -> Fit:
     blur = math.hypot(max(used.pixel), _BLUR * (ready.asked.cutoff or 0.0))
     peak_to_valley = float(np.ptp(used.heights if ready.seen is None else used.heights[ready.seen]))
     if number >= _FEWEST:
-        fine, coarse = _scales(ready, across, counted)
-        estimates["summits"] = Estimate.of(by_summits(fine, coarse), waves)
+        fewer = max(min(across, math.isqrt(number // _A_PART)), _LEAST_ACROSS)
+        fine = counted if counted.parts == fewer**2 else count(summit_sums_of, fewer)
+        estimates["summits"] = Estimate.of(by_summits(fine, count(coarse_sums_of, fewer)), waves)
         caps = by_caps(fine, blur)
         if caps is not None and caps[2][0] <= peak_to_valley:  # else too many are hidden
             estimates["caps"] = Estimate.of(caps, waves)
@@ -252,20 +256,10 @@ def _inside(ready: Prepared) -> Array:
     return heights if ready.seen is None else heights[ready.seen[inside]]
 
 
-def _scales(ready: Prepared, across: int, counted: SummitSums) -> tuple[SummitSums, SummitSums]:
-    """Summits of every point and of every second point, in fewer sub-areas if they are few."""
-    fewer = max(min(across, math.isqrt(counted.heights.size // _A_PART)), _LEAST_ACROSS)
-
-    def count(sums_of: Callable[..., SummitSums]) -> SummitSums:
-        return _without_summit_form(sums_of(ready.used, across=fewer, seen=ready.seen), ready.asked.form)
-
-    return counted if counted.parts == fewer**2 else count(summit_sums_of), count(coarse_sums_of)
-
-
 def _without_summit_form(counted: SummitSums, form: Form) -> SummitSums:
     """Summit heights about their own plane, since deep valleys tilt that of the map."""
     order = min(ORDERS[form], 2)
-    if order < 0:
+    if order < 0 or not counted.heights.size:
         return counted
     x, y = 2 * counted.summits[2:4] - 1
     columns = [np.ones_like(x), x, y, *((x * x, x * y, y * y) if order == 2 else ())]
