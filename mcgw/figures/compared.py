@@ -12,7 +12,7 @@ from analytic.arrays import Array, Marks
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.simulation import simulate
 from mcgw.figures.against_theory import ENOUGH
-from mcgw.figures.data import Estimate, FigureData, Points
+from mcgw.figures.data import Estimate, Points
 from mcgw.figures.style import contact_label, short
 from mcgw.formats.law_text import law_text
 from mcgw.formats.table import evenly
@@ -208,77 +208,19 @@ class Compared:
     @property
     def caption(self) -> str:
         """In words."""
-        return self.markers(self.scene.n_surfaces)
+        return self.caption_of(self.scene.n_surfaces)
 
-    @property
-    def listed_caption(self) -> str:
-        """In words, where the heights are listed."""
-        return self.markers(len(self.listed)) if self.listed else self.words
-
-    def markers(self, surfaces: int) -> str:
-        """Describe the scene, and what is drawn of so many surfaces."""
-        markers = (
-            f"Markers: Monte-Carlo means with 95 % intervals, {surfaces} surfaces of "
-            f"{self.scene.n_asperities:g} asperities, seed {self.scene.seed}, the same for all "
-            f"{'γ' if self.swept else 'lines'}."
-        )
-        return " ".join(filter(None, (self.words, markers * (self.scene.n_surfaces > 1), "Lines: theory.")))
-
-    @property
-    def words(self) -> str:
-        """Describe the scene."""
-        if self.swept:
-            return ""
-        said, law = contact_label(self.scene), short(law_text(self.scene.heights))
-        if self.scene.interaction is not None:
-            said += ", interacting (d/σ is effective)"
-        return f"This scene: {said}; heights {law}."
-
-
-def _presses(f: Compared) -> bool:
-    return not any(np.any(f.theory(label, "load", f.line) <= 0) for label in f.all)
-
-
-def _same_load(f: Compared) -> bool:
-    try:
-        for label in f.others:
-            f.at_load_of_reference(label, f.line)
-    except ValueError:
-        return False
-    return True
-
-
-# What a figure may need of a scene, and what is said of one without it.
-_NEEDS: dict[str, tuple[Callable[[Compared], Any], str]] = {
-    "grading": (lambda f: f.graded, "the scene has no grading: E*(s) = E* at every height"),
-    "reference": (
-        lambda f: f.others,
-        "the scene is its own reference (homogeneous, Hertz's law): every ratio is 1",
-    ),
-    "pressing": (_presses, "the mean load is not positive at every separation"),
-    "same load": (_same_load, "the scene does not reach the load of its reference at every separation"),
-    "several": (lambda f: f.scene.n_surfaces > 1, "there is only one surface"),
-}
-
-
-@dataclass(frozen=True)
-class Row:
-    """A figure.
-
-    Parameters
-    ----------
-    name : str
-        Name of its files.
-    draw : callable
-        Computes its numbers from the scenes.
-    needs : tuple of str, optional
-        What it needs of them.
-    """
-
-    name: str
-    draw: Callable[[Compared], FigureData]
-    needs: tuple[str, ...] = ()
-
-    def lacking(self, f: Compared) -> str:
-        """Say why the figure has no meaning for a scene, or nothing."""
-        return next((why for has, why in map(_NEEDS.__getitem__, self.needs) if not has(f)), "")
+    def caption_of(self, surfaces: int) -> str:
+        """Describe the scene, and what is drawn of so many surfaces; of none the scene alone."""
+        said = []
+        if not self.swept:
+            heard = ", interacting (d/σ is effective)" if self.scene.interaction is not None else ""
+            law = short(law_text(self.scene.heights))
+            said.append(f"This scene: {contact_label(self.scene)}{heard}; heights {law}.")
+        if surfaces > 1:
+            said.append(
+                f"Markers: Monte-Carlo means with 95 % intervals, {surfaces} surfaces of "
+                f"{self.scene.n_asperities:g} asperities, seed {self.scene.seed}, the same for all "
+                f"{'γ' if self.swept else 'lines'}."
+            )
+        return " ".join([*said, "Lines: theory."] if surfaces else said)

@@ -8,7 +8,7 @@ import numpy as np
 
 from analytic import quantity_of
 from analytic.arrays import Array
-from mcgw.figures.compared import SCENE, Compared, Key, Row
+from mcgw.figures.compared import SCENE, Compared, Key
 from mcgw.figures.data import (
     GAMMA,
     PRESSURE,
@@ -45,7 +45,7 @@ def gradings(f: Compared) -> FigureData:
     if f.swept:
         caption = "E*(s)/E* = γ − (γ − 1) exp(−s). Theory alone."
         return FigureData("Exponential grading (Eq. 4)", caption, tuple(panels))
-    return FigureData("The grading", f.words, tuple(panels))
+    return FigureData("The grading", f.caption_of(0), tuple(panels))
 
 
 def against_separation(f: Compared, *, title: str, quantity: str, words: str, unit: str) -> FigureData:
@@ -187,18 +187,3 @@ def equal_load(f: Compared) -> FigureData:
     title = "At equal load the trend reverses: stiffer tips conduct less" if f.swept else "At the same load"
     which = "homogeneous surface" if f.swept else f"reference ({f.reference}, the same surface)"
     return FigureData(title, f"d/σ is that of the {which} and sets the load. {f.caption}", tuple(panels))
-
-
-FIGURES = (
-    Row("figure-1", gradings, ("grading",)),
-    Row("figure-2", partial(against_separation, title="Load at a given separation (Eq. 7)",
-                            quantity="load", words="pressure", unit="Pa")),
-    Row("figure-3", partial(at_separation, title="Area per load at a given separation (Eq. 12)",
-                            symbol=r"(A/P)\,/\,(A/P)", how=Ratio("area", "load")), ("reference", "pressing")),
-    Row("figure-5", partial(against_separation, quantity="stiffness", words="stiffness", unit="Pa/m",
-                            title="Stiffness at a given separation; the paper's “conductance”")),
-    Row("figure-6", partial(at_separation, title="Stiffness at a given separation (Eq. 15: “conductance”)",
-                            symbol="K/K", how=Ratio("stiffness")), ("reference",)),
-    Row("equal-load", equal_load, ("reference", "pressing", "same load")),
-    Row("area-and-load", area_and_load, ("pressing",)),
-)  # fmt: skip

@@ -8,7 +8,7 @@ from oracles.said import call
 
 import mcgw.commands
 from mcgw.cli import COMMANDS, all_commands
-from mcgw.figures import catalogue, populations
+from mcgw.figures import catalogue
 
 ROOT = Path(mcgw.__file__).parents[1]
 SCENE = """
@@ -67,10 +67,10 @@ def test_a_command_is_one_file(folder, monkeypatch):
 
 def test_a_figure_is_one_file(folder, monkeypatch):
     """The recipe stands at the end of the file; names, files and the command line follow in a new process."""
-    text = Path(populations.__file__).read_text() + recipe("def contacts(")
-    space = {"__name__": "populations"}
-    exec(compile(text, "populations.py", "exec"), space)
-    row = space["FIGURES"][-1]
+    text = Path(catalogue.__file__).read_text() + recipe("def contacts(")
+    space = {"__name__": "catalogue"}
+    exec(compile(text, "catalogue.py", "exec"), space)
+    row = space["CATALOGUE"][-1]
     monkeypatch.setattr(catalogue, "CATALOGUE", (*catalogue.CATALOGUE, row))
     done = call("figures", "--scene", "s.toml", "--only", "contacts", "--csv", "-o", "new", cwd=folder)
     assert done.returncode == 0, done.stderr
