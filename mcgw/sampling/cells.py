@@ -21,9 +21,10 @@ from numpy.typing import NDArray
 
 from analytic import Grading, HeightLaw, PiecewiseSeries, bends
 from analytic.arrays import Array
+from analytic.quadrature import gauss_legendre
 from mcgw.machine.in_threads import in_threads
 from mcgw.machine.memory import kept
-from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, gauss_legendre, product
+from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, product
 from mcgw.sampling.spacing import refined, spaced
 from mcgw.sampling.stretches import SMALLEST, begins_and_breaks, losses
 from mcgw.scene.promises import EXACT

@@ -19,10 +19,11 @@ from scipy.special import pdtr, pdtrc
 
 from analytic import quantity_of
 from analytic.arrays import Array
+from analytic.quadrature import gauss_legendre
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.direct import asperity_sums
 from mcgw.sampling.drawn_moments import CROWDED
-from mcgw.sampling.rules import gauss_legendre, product
+from mcgw.sampling.rules import product
 from mcgw.scene.scene import Scene
 
 _MOST = 2**24  # of a crowd; fewer than CROWDED are as quickly drawn one by one

@@ -26,12 +26,13 @@ from numpy.polynomial import chebyshev
 from scipy.special import ndtri
 
 from analytic.arrays import Array
+from analytic.quadrature import gauss_legendre
 from mcgw.machine.compiling import njit
 from mcgw.sampling.block import Layout
 from mcgw.sampling.counts import Counts
 from mcgw.sampling.moments import cell_moments
 from mcgw.sampling.philox import MOMENTS, centred, made_for
-from mcgw.sampling.rules import gauss_legendre, product
+from mcgw.sampling.rules import product
 
 CROWDED = 256  # asperities in a cell, from which its moments count as Gaussian
 VARYING = 1e-6  # accuracy of the laws up to which moments vary, if only sums are kept

@@ -23,10 +23,11 @@ from numpy.polynomial import chebyshev
 from analytic import Nayak, RandomCurvature, quantity_of
 from analytic.arrays import Array
 from analytic.curvature import MEAN_CURVATURE, CurvatureGivenHeight
+from analytic.quadrature import gauss_legendre
 from mcgw.machine.compiling import njit
 from mcgw.sampling.block import Layout
 from mcgw.sampling.response.response import Response, matrix_of
-from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, gauss_legendre, product
+from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, product
 
 _PANELS = 4  # in a unit of height
 _OCTAVES, _FINE, _PARTS = 64, 8, 4  # of a uniform; those that are cut, and into how many parts

@@ -1,15 +1,14 @@
-"""Points, weights and products of matrices: the same bits for any number of threads and jobs.
+"""Chebyshev points and products of matrices: the same bits for any number of threads and jobs.
 
 Libraries of linear algebra share a product out to as many threads as there are, so that of here is written
 out: each sum is taken in the order of its terms.
 """
 
 import math
-from functools import cache
 from typing import Any
 
 import numpy as np
-from numpy.polynomial import chebyshev, legendre
+from numpy.polynomial import chebyshev
 
 from analytic.arrays import Array
 from mcgw.machine.compiling import njit
@@ -26,13 +25,6 @@ def chebyshev_transform(points: Array) -> Array:
     matrix = np.asarray(chebyshev.chebvander(points, n - 1).T * (2 / n), dtype=np.float64)
     matrix[0] /= 2
     return matrix
-
-
-@cache
-def gauss_legendre(n: int) -> tuple[Array, Array]:
-    """Return points, increasing, and weights of Gauss's rule of `n` points on (0, 1)."""
-    x, w = legendre.leggauss(n)
-    return (1 + x) / 2, w / w.sum()
 
 
 def product(a: Array, b: Array) -> Array:
