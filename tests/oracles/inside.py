@@ -7,7 +7,6 @@ from importlib import import_module
 from typing import Any
 
 MODULES = {
-    "mcgw.commands.outputs": "check_outputs CSV Output",
     "mcgw.elasticity.grid": "Grid",
     "mcgw.elasticity.levels": "alone Level LEVELS located Pressed rimless",
     "mcgw.elasticity.located": "balanced beyond_point interaction",
@@ -33,7 +32,6 @@ MODULES = {
     "mcgw.figures.style": "FAMILIES look PAIRS power_of_ten prefixed save_figure short STYLE THEORY",
     "mcgw.formats.files": "alive check_output state_of temporary_beside whole_file write_whole",
     "mcgw.formats.gate": "check_archive open_h5 opened",
-    "mcgw.formats.law_text": "law_text",
     "mcgw.formats.named_files": "loads loads_json open_npy read_text",
     "mcgw.formats.numbers": "typeset",
     "mcgw.machine.terminal": "brief listed",
@@ -42,7 +40,6 @@ MODULES = {
     "mcgw.jobs.driver": "drive heed_signals part_of Signals",
     "mcgw.jobs.executors": "dask_executor Jobs",
     "mcgw.jobs.worker": "commit_block",
-    "mcgw.jobs.running": "run",
     "mcgw.machine.memory": "check_memory memory_available",
     "mcgw.maps.bad_points": "filled recorded small_spike_heights spike_heights usual_bend",
     "mcgw.maps.envelope": "envelope hidden_summits",
