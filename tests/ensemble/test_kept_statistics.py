@@ -69,6 +69,7 @@ def test_statistics_are_those_of_the_surfaces(name):
         np.testing.assert_allclose(kept.mean(q).ravel(), mean, rtol=1e-13)
         if m == 1:
             assert np.isnan(kept.std(q)).all()
+            assert np.isnan(kept.covariance(q, first)).all()
             continue
         std = np.sqrt(squares / (m - 1))  # of which rounding of the mean takes digits where it is small
         lost = np.abs(mean / np.where(std > 0, std, np.inf))
