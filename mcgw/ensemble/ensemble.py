@@ -196,8 +196,8 @@ class Ensemble(Dataset):
         columns = [Column("quantity", [f"{q} ({scene.quantity(q).unit})" for q in names], _AT)]
         mean, error = (np.array([get(q)[few] for q in names]) for get in (self.mean, self.stderr))
         for i, h in enumerate(self.separations[few]):
-            stderr = Column("stderr", error[:, i], form=".1g")
-            columns.append(Column(f"{h:g}", mean[:, i], form=".5g", beside=stderr))
+            columns.append(Column(f"{h:g}", mean[:, i], form=".5g"))
+            columns.append(Column("stderr", error[:, i], form=".1g", between=" +- "))
         return Table(tuple(columns), head, facts)
 
 

@@ -161,14 +161,13 @@ def _root(passed: Callable[[Array], Marks], low: Array, high: Array) -> Array:
     return np.asarray((low + high) / 2)
 
 
-def interval_column(low: ArrayLike, high: ArrayLike, unit: str = "") -> Column:
-    """Both ends of 95 % intervals in one column of a table, or that there is none."""
+def interval_columns(low: ArrayLike, high: ArrayLike, unit: str = "") -> tuple[Column, Column]:
+    """Both ends of 95 % intervals in one cell of a table, or that there is none."""
     error = (np.asarray(high) - np.asarray(low)) / 4
-    ends = Column("high_95", np.asarray(high), unit=unit, error=error)
-    return Column(
-        "low_95", np.asarray(low), "95 % interval", unit, missing=TOO_FEW, beside=ends, between=" ... ",
-        error=error,
-    )  # fmt: skip
+    return (
+        Column("low_95", np.asarray(low), "95 % interval", unit, missing=TOO_FEW, error=error),
+        Column("high_95", np.asarray(high), unit=unit, between=" ... ", error=error),
+    )
 
 
 def interval_of(scene: Scene, sums: Held, name: str, level: float) -> tuple[Array, Array]:

@@ -9,7 +9,7 @@ import numpy as np
 from analytic import SEPARATIONS
 from mcgw.ensemble.at_load import GAPS
 from mcgw.ensemble.budget import MOST_YIELDING, yields
-from mcgw.ensemble.intervals import interval_column
+from mcgw.ensemble.intervals import interval_columns
 from mcgw.formats.table import Column, Table
 from mcgw.validity.lookup import validity_of
 
@@ -23,8 +23,8 @@ def sheet_of(solution: Any) -> Table:
     facts += [("yielding", why)] if (why := yields(solution.yielding)) else []
     table: Table = solution.table()
     table = replace(table, columns=tuple(x for x in table.columns if x.name != "infinite"))
-    if np.isnan(table.flat[-1].values).all():
-        table = replace(table, columns=table.columns[:-1])
+    if np.isnan(table.columns[-1].values).all():
+        table = replace(table, columns=table.columns[:-2])
     found = [k for k, name in enumerate(solution.theory) if name != solution.given]
     return table.at(found).under(table.title, facts)
 
@@ -37,31 +37,22 @@ def table_of(solution: Any, *, specimens: bool) -> Table:
     means = np.array([solution.value[name] for name in names])
     error = np.where(high > low, (high - low) / 4, np.where(high == low, 1e-6 * np.abs(means), np.nan))
     right, below, above, _ = map(np.array, zip(*map(solution.corrected, names), strict=True))
-    off = Column("best_95", (above - below) / 2, form=".1g")
     columns = [
         Column("quantity", names),
         Column("unit", [units.get(name) or solution.scene.quantity(name).unit for name in names]),
         Column("value", means, error=error),
-        interval_column(low, high),
+        *interval_columns(low, high),
         Column("std", [solution.std[name] for name in names], "std of specimens", form=".2g"),
     ]
     if specimens:
         least, most = np.array([solution.specimens(name) for name in names]).T
-        ends = Column("specimen_95", most, form=".4g")
-        words = "90 % of specimens"
-        columns.append(Column("specimen_05", least, words, form=".4g", between=" ... ", beside=ends))
+        columns.append(Column("specimen_05", least, "90 % of specimens", form=".4g"))
+        columns.append(Column("specimen_95", most, form=".4g", between=" ... "))
     infinite = [solution.theory[name] for name in names]
     columns += [
         Column("infinite", infinite, "infinite surface", form=".5g"),
-        Column(
-            "best",
-            right,
-            "best (95 %)",
-            error=(above - below) / 2,
-            missing="",
-            beside=off,
-            between=" ± ",
-        ),
+        Column("best", right, "best (95 %)", error=(above - below) / 2, missing=""),
+        Column("best_95", (above - below) / 2, form=".1g", between=" ± "),
     ]
     return Table(tuple(columns), solution.title)
 

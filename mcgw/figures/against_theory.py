@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from mcgw.statistics.comparison import SweepComparison
 
 ENOUGH = 20  # contacts in the ensemble; with fewer a mean is far from Gaussian
-_MOST_COLUMNS = 3  # more are too small to read on a page
 _BIN = 0.5  # standard errors
 _RESIDUAL = "residual (standard errors)"
 _CAPTION = (
@@ -50,7 +49,6 @@ def comparison_figure(comparison: "Comparison | SweepComparison") -> FigureData:
         f"{contact_label(scene)}; sampler {ensemble.sampler}, seed {scene.seed}"
         + (f"; {comparison.of_many}" if comparison.of_many else ""),
         curves,
-        columns=2 if len(curves) == 4 else _MOST_COLUMNS,
     )
 
 
@@ -110,11 +108,10 @@ def residuals_panel(title: str, z: Array) -> Panel:
     most = max(4.0, _BIN * np.ceil(np.abs(z).max(initial=0.0) / _BIN))
     x = np.linspace(-most, most, 201)
     expected = len(z) * _BIN * np.exp(-(x**2) / 2) / np.sqrt(2 * np.pi)
-    bars = {"color": SAMPLE, "label": f"{len(z)} means"}
-    line = {"color": THEORY, "label": "normal: expected if theory holds"}
+    bins = np.arange(-most, most + _BIN / 2, _BIN)
     marks = (
-        Mark("hist", (z, np.arange(-most, most + _BIN / 2, _BIN)), bars),
-        Mark("plot", (x, expected), line),
+        Mark("hist", z, bins, color=SAMPLE, label=f"{len(z)} means"),
+        Mark("plot", x, expected, color=THEORY, label="normal: expected if theory holds"),
     )
     limits = {"ylim": (0.4, 3 * max(expected.max(), 1.0))}
     return Panel(title, _RESIDUAL, "means", scales=("linear", "log"), marks=marks, settings=limits)
@@ -124,12 +121,12 @@ def _worst_panel(comparison: "SweepComparison") -> Panel:
     """Residuals of the least likely point; those that count have a marker."""
     t = comparison.worst[0]
     marks = [
-        Mark("axhspan", (-2, 2), {"color": BAND, "zorder": 0}),
-        Mark("axhline", (0,), {"color": LEVEL, "lw": 0.8, "zorder": 1}),
+        Mark("axhspan", -2, 2, color=BAND, zorder=0),
+        Mark("axhline", 0, color=LEVEL, lw=0.8, zorder=1),
     ]
     for name, residual, counts in zip(t.quantities, t.residual, t.counts, strict=True):
-        own = {"ms": 3, "mfc": "none", "lw": 1, "label": name.replace("_", " "), **look(name)}
-        marks.append(Mark("plot", (t.separations, np.where(counts, residual, np.nan)), own))
+        z, label = np.where(counts, residual, np.nan), name.replace("_", " ")
+        marks.append(Mark("plot", t.separations, z, ms=3, mfc="none", lw=1, label=label, **look(name)))
     reach = max(4, 1.5 * np.abs(t.residual[t.counts]).max(initial=0.0))
     point = list(comparison.sweep.axes.points())[t.number]
     at = one_line(comparison.sweep.axes.text(point)).replace("$", r"\$")

@@ -59,7 +59,6 @@ class Series:
     points: Points | None = None
 
 
-@dataclass(frozen=True)
 class Mark:
     """Something else that a panel shows: a method of matplotlib's axes and its arguments.
 
@@ -67,23 +66,21 @@ class Mark:
     ----------
     how : str
         The method, such as "errorbar" or "hist".
-    given : tuple
+    *given
         Its arguments.
-    options : dict, optional
-        Its options.
     bar : str, optional
         Label of a colour bar beside an image.
+    **options
+        Its options.
     """
 
-    how: str
-    given: tuple[Any, ...]
-    options: dict[str, Any] = field(default_factory=dict)
-    bar: str = ""
+    def __init__(self, how: str, *given: Any, bar: str = "", **options: Any) -> None:
+        self.how, self.given, self.bar, self.options = how, given, bar, options
 
 
 def words(text: str) -> Mark:
     """Return a few words in place of axes."""
-    return Mark("text", (0.5, 0.5, text), {"ha": "center", "va": "center"})
+    return Mark("text", 0.5, 0.5, text, ha="center", va="center")
 
 
 @dataclass(frozen=True)
@@ -126,7 +123,6 @@ class FigureData:
     title: str
     caption: str
     panels: tuple[Panel, ...]
-    columns: int = 2
     name: str = ""
 
 

@@ -2,6 +2,7 @@
 
 import textwrap
 from contextlib import suppress
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -22,7 +23,7 @@ _POINTS = 700  # points of a map along each side: more do not show
 _MOST_MARKS = 3000
 _CUTOFFS = 8
 _WIDTH, _LINES = 42, 27  # of the text, in characters and lines
-_LISTED = {"va": "top", "family": "monospace", "fontsize": 6.6}
+_LISTED: Any = {"va": "top", "family": "monospace", "fontsize": 6.6}
 _TIMES = 12.0  # from the shortest cutoff to the longest
 
 
@@ -45,9 +46,9 @@ def fit_figure(fit: Fit, raw: Topography, ready: Prepared) -> FigureData:
         _moments_panel(ready),
         heights_panel(fit),
         _curvatures_panel(fit),
-        Panel("f  estimates", "", "", marks=(Mark("text", (0, 1, _listing(fit)), _LISTED),)),
+        Panel("f  estimates", "", "", marks=(Mark("text", 0, 1, _listing(fit), **_LISTED),)),
     )
-    return FigureData("", "", panels, columns=3)
+    return FigureData("", "", panels)
 
 
 def _map_panel(title: str, topography: Topography, seen: Marks | None, *more: Mark) -> Panel:
@@ -58,12 +59,11 @@ def _map_panel(title: str, topography: Topography, seen: Marks | None, *more: Ma
     unit, factor = _unit(float(np.nanstd(z)))
     lateral, times = _unit(max(topography.size))
     low, high = np.nanpercentile(z, (0.5, 99.5)) * factor
-    look_of_it = {
-        "cmap": mpl.colormaps["gray"].with_extremes(bad=MISSING), "origin": "lower",
-        "vmin": low, "vmax": high,
-        "extent": (0, times * topography.size[0], 0, times * topography.size[1]), "interpolation": "nearest",
-    }  # fmt: skip
-    image = Mark("imshow", (factor * z,), look_of_it, bar=f"height ({unit})")
+    image = Mark(
+        "imshow", factor * z, bar=f"height ({unit})", vmin=low, vmax=high, origin="lower",
+        cmap=mpl.colormaps["gray"].with_extremes(bad=MISSING), interpolation="nearest",
+        extent=(0, times * topography.size[0], 0, times * topography.size[1]),
+    )  # fmt: skip
     return Panel(title, f"x ({lateral})", f"y ({lateral})", marks=(image, *more))
 
 
@@ -82,7 +82,7 @@ def _summits_panel(fit: Fit, ready: Prepared) -> Panel:
     listed = (fit.listed.x, fit.listed.y)
     x, y = (times * (place[some] - margin) for place, margin in zip(listed, margins, strict=True))
     size = max(0.4, min(3.0, 90 / np.sqrt(x.size)))
-    dots = Mark("plot", (x, y, "o"), {"ms": size, "color": MARKED, "mew": 0})
+    dots = Mark("plot", x, y, "o", ms=size, color=MARKED, mew=0)
     shown = "" if x.size == fit.summits.size else f", {x.size} shown"
     return _map_panel(f"b  as analysed: {fit.summits.size} summits{shown}", used, ready.seen, dots)
 
@@ -99,33 +99,27 @@ def _moments_panel(ready: Prepared) -> Panel:
             break
         rows.append((m.m0, m.m2, m.m4))
     unit, times = _unit(float(cutoffs[len(rows) // 2]))
+    x, title = times * cutoffs[: len(rows)], "c  moments against cutoff"
     marks = tuple(
-        Mark("plot", (times * cutoffs[: len(rows)], values / values[0]),
-             {**look(name), "ms": 4, "mfc": "white", "label": name})
+        Mark("plot", x, values / values[0], **look(name), ms=4, mfc="white", label=name)
         for values, name in zip(np.array(rows).T, ("$m_0$", "$m_2$", "$m_4$"), strict=True)
-    )  # fmt: skip
-    label = "over those at the first cutoff"
-    return Panel(
-        "c  moments against cutoff", f"cutoff ({unit})", label, scales=("linear", "log"), marks=marks
     )
+    label = "over those at the first cutoff"
+    return Panel(title, f"cutoff ({unit})", label, scales=("linear", "log"), marks=marks)
 
 
-def _bars(values: Array, label: str) -> Mark:
+def _bars(summits: Array) -> Mark:
     """Return a histogram as a density."""
-    return Mark("hist", (values,), {"bins": "auto", "density": True, "color": SAMPLE, "label": label})
+    return Mark("hist", summits, bins="auto", density=True, color=SAMPLE, label="summits")
 
 
 def heights_panel(fit: Fit) -> Panel:
     """Summit heights and the laws that they may follow."""
-    z, marks = np.linspace(-4.5, 4.5, 241), [_bars(fit.summits / fit.summits.std(), "summits")]
-    marks.append(
-        Mark("plot", (z, Gaussian().pdf(z)), {"color": HOMOGENEOUS, "ls": "--", "label": "Gaussian"})
-    )
+    z, marks = np.linspace(-4.5, 4.5, 241), [_bars(fit.summits / fit.summits.std())]
+    marks.append(Mark("plot", z, Gaussian().pdf(z), color=HOMOGENEOUS, ls="--", label="Gaussian"))
     with suppress(ValueError):  # no isotropic surface has such an alpha
-        label = f"Nayak, α = {fit.numbers['alpha'].value:.3g}"
-        marks.append(
-            Mark("plot", (z, Nayak(fit.numbers["alpha"].value).pdf(z)), {"color": THEORY, "label": label})
-        )
+        alpha = fit.numbers["alpha"].value
+        marks.append(Mark("plot", z, Nayak(alpha).pdf(z), color=THEORY, label=f"Nayak, α = {alpha:.3g}"))
     label = "summit height, about its mean, over its std"
     return Panel("d  summit heights", label, "density", marks=tuple(marks))
 
@@ -136,8 +130,8 @@ def _curvatures_panel(fit: Fit) -> Panel:
     x, mean = np.linspace(0.01, 3, 200), 8 / np.sqrt(3 * np.pi)
     t = mean * x
     density = np.sqrt(3) / (2 * np.sqrt(np.pi)) * (t**2 - 2 + 2 * np.exp(-(t**2) / 2)) * np.exp(-(t**2) / 4)
-    law = Mark("plot", (x, mean * density), {"color": THEORY, "label": "Gaussian surface"})
-    marks = (_bars(k[(k > 0) & (k < 3)], "summits"), law)
+    law = Mark("plot", x, mean * density, color=THEORY, label="Gaussian surface")
+    marks = (_bars(k[(k > 0) & (k < 3)]), law)
     label = "mean curvature over its mean"
     return Panel("e  summit curvatures", label, "density", marks=marks, settings={"xlim": (0, 3)})
 

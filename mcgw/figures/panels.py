@@ -18,6 +18,7 @@ from mcgw.figures.style import BAND, LEVEL, PAPER, STYLE, look, save_figure
 
 _WIDTH, _NARROWEST = 3.7, 4.4  # inches, of a panel with its labels and of a figure
 _TALL, _RESIDUAL, _TEXTS = 3.2, 0.8, 0.6  # inches, of a panel, residuals under it, title and caption
+_MOST_COLUMNS = 3  # more are too small to read on a page
 _KEY, _THEORY = "Monte Carlo, 95 %", "theory"
 _MARKS = look("Monte Carlo")
 _WHITE: Any = {"ms": 4, "mfc": "white", "mew": 0.9}
@@ -43,7 +44,8 @@ def draw(data: FigureData) -> Figure:
     matplotlib.figure.Figure
         With title and caption.
     """
-    columns = 3 if len(data.panels) == 3 else min(data.columns, len(data.panels))
+    narrow = sum(not panel.wide for panel in data.panels)
+    columns = 2 if narrow == 4 else min(narrow, _MOST_COLUMNS)
     places = list(_places(data.panels, columns))
     rows = places[-1][0] + 1
     checked = any(map(_has_errors, data.panels))
@@ -63,7 +65,10 @@ def draw(data: FigureData) -> Figure:
             above.set_xlabel("")
             above.tick_params(labelbottom=False)
         _draw_legend(part, data.panels, size[0])
-        write_around(figure, data.title, data.caption)
+        side: Any = {"x": 0.01, "ha": "left"}
+        figure.suptitle(_wrapped(data.title, int(10 * size[0])), fontsize=11, fontweight="bold", **side)
+        if data.caption:
+            figure.supxlabel(_wrapped(data.caption, int(16 * size[0])), fontsize=_SMALL, color=PAPER, **side)
     return figure
 
 
@@ -87,14 +92,6 @@ def _draw_legend(part: Any, panels: Sequence[Panel], width: float) -> None:
             named.values(), named.keys(), ncols=columns, fontsize=_SMALL, loc="outside upper left",
             handlelength=2.5, columnspacing=1, handler_map={tuple: HandlerTuple(ndivide=None)},
         )  # fmt: skip
-
-
-def write_around(figure: Any, title: str, caption: str = "") -> None:
-    """Write title and caption of a figure, wrapped to its width."""
-    width = figure.bbox.width / figure.dpi  # inches, of a part of a figure too
-    figure.suptitle(_wrapped(title, int(10 * width)), fontsize=11, fontweight="bold", x=0.01, ha="left")
-    if caption:
-        figure.supxlabel(_wrapped(caption, int(16 * width)), fontsize=_SMALL, color=PAPER, x=0.01, ha="left")
 
 
 def _wrapped(text: str, width: int) -> str:
@@ -153,37 +150,27 @@ def _marks(series: Series, k: int) -> dict[str, Any]:
 
 
 def _draw_series(axis: Any, series: Series, k: int, logarithmic: bool) -> None:
-    found = look(series.label, k)
-    line = {"color": found["color"], "linestyle": found["linestyle"]}
-    alone = series.points is None or series.label == _THEORY
-    few = series.points is None and len(series.x) < _FINE  # a table: marked where it is known
-    axis.plot(
-        series.x,
-        series.theory,
-        marker=found["marker"] if few else None,
-        ms=4,
-        label=series.label if alone else None,
-        **line,
-    )
+    found, points = look(series.label, k), series.points
+    marker = {"marker": found["marker"]}
+    line = {"color": found["color"], "linestyle": found["linestyle"], "ms": 4}
+    alone = {"label": series.label} if points is None or series.label == _THEORY else {}
+    few = points is None and len(series.x) < _FINE  # a table: marked where it is known
+    axis.plot(series.x, series.theory, **alone, **(marker if few else {}), **line)
     if not alone:
-        axis.plot([], [], label=series.label, marker=found["marker"], ms=4, mfc="white", **line)
-    if series.points is not None:
-        _draw_points(axis, series.points, _marks(series, k), logarithmic)
-
-
-def _draw_points(axis: Any, points: Points, found: dict[str, Any], logarithmic: bool) -> None:
-    low, high = points.arms
+        axis.plot([], [], label=series.label, **marker, mfc="white", **line)
+    if points is None:
+        return
+    found, (low, high) = _marks(series, k), points.arms
     if logarithmic:  # an interval that reaches zero has no end on such an axis
         low = np.minimum(low, 0.95 * points.mean)
     shown = (points.mean > 0) if logarithmic else np.isfinite(points.mean)
     marks = {"color": found["color"], "zorder": 3, **_WHITE}
     some = shown & np.isfinite(low)
-    columns = (x[some] for x in (points.x, points.mean))
-    bars = [low[some], high[some]]
-    axis.errorbar(*columns, bars, fmt=found["marker"], elinewidth=0.9, capsize=1.5, **marks)
-    few = shown & ~some
-    if few.any():
-        axis.plot(points.x[few], points.mean[few], "x", **marks)
+    columns = points.x[some], points.mean[some], [low[some], high[some]]
+    axis.errorbar(*columns, fmt=found["marker"], elinewidth=0.9, capsize=1.5, **marks)
+    others = shown & ~some
+    if others.any():
+        axis.plot(points.x[others], points.mean[others], "x", **marks)
 
 
 def _has_errors(panel: Panel) -> bool:

@@ -78,12 +78,11 @@ def _(result: Ensemble, *, quantity: str) -> Panel:
         low, high = (mean - std, mean + std) if exact is None else exact
         low = np.maximum(low, mean / 20)  # an axis of logarithms has no place for 0
         words = "std over surfaces (no quick law)" if exact is None else "90 % of the surfaces"
-        band = {"color": MONTE_CARLO, "alpha": 0.18, "lw": 0, "label": words}
-        marks.append(Mark("fill_between", (h[order], low[order], high[order]), band))
+        ends = h[order], low[order], high[order]
+        marks.append(Mark("fill_between", *ends, color=MONTE_CARLO, alpha=0.18, lw=0, label=words))
     low, high = result.interval(quantity)
     arms = np.nan_to_num([np.minimum(mean - low, 0.999 * mean), high - mean])[:, order]
-    dots = {**SEEN, "fmt": "o-", "label": "mean, 95 %"}
-    marks.append(Mark("errorbar", (h[order], mean[order], arms), dots))
+    marks.append(Mark("errorbar", h[order], mean[order], arms, **SEEN, fmt="o-", label="mean, 95 %"))
     scales = ("linear", "log" if np.any(mean > 0) else "linear")
     label, title = f"{quantity.replace('_', ' ')} ({q.unit})", f"{result.n_surfaces} surfaces"
     return Panel(shown_title(result.scene, title), SEPARATION, label, scales=scales, marks=tuple(marks))
@@ -104,7 +103,7 @@ panel_of.register(Tradeoff, errors_panel)
 def _(result: Paired) -> Panel:
     order = np.argsort(result.separations, kind="stable")
     columns = tuple(x[order] for x in (result.separations, result.ratio, 1.96 * result.stderr))
-    marks = (Mark("errorbar", columns, {**_SAME, "fmt": "o-"}),)
+    marks = (Mark("errorbar", *columns, **_SAME, fmt="o-"),)
     return Panel("", SEPARATION, f"ratio of the mean {result.quantity}", marks=marks)
 
 
@@ -117,7 +116,7 @@ def _(result: Sweep, *, quantity: str) -> Panel:
     for place, i in enumerate(some):
         columns = result.separations[order], means[points[i]][order], 1.96 * errors[points[i]][order]
         own = step(result.axes.values_text(points[i]), place, len(some))
-        marks.append(Mark("errorbar", columns, {"marker": "o", "ms": 3, **own}))
+        marks.append(Mark("errorbar", *columns, marker="o", ms=3, **own))
     among = f"{len(some)} of {len(points)} points" if len(some) < len(points) else f"{len(points)} points"
     return Panel(
         f"{', '.join(result.axes.keys)}: {among}, 95 %",
@@ -136,8 +135,8 @@ def _(result: Slopes, *, k: int) -> Panel:
         for x in (result.value, result.stderr, result.theory)
     )
     marks = (
-        Mark("errorbar", (result.at, value, 1.96 * error), {**_SAME, "fmt": "o"}),
-        Mark("plot", (result.at, theory), {"color": THEORY, "label": "theory"}),
+        Mark("errorbar", result.at, value, 1.96 * error, **_SAME, fmt="o"),
+        Mark("plot", result.at, theory, color=THEORY, label="theory"),
     )
     return Panel("", result.key, f"change of the mean {result.quantity.replace('_', ' ')}", marks=marks)
 
@@ -145,13 +144,11 @@ def _(result: Slopes, *, k: int) -> Panel:
 @panel_of.register
 def _(result: Solution) -> Panel:
     x = result.surfaces["separation"]
-    exact = {"color": THEORY, "label": "theory, infinite surface"}
-    mean = {"color": MONTE_CARLO, "ls": "--", "label": "mean of the surfaces"}
     marks = (
-        Mark("hist", (x,), {"bins": "auto", "color": SAMPLE, "label": f"{x.size} surfaces"}),
-        Mark("axvline", (result.theory["separation"],), exact),
-        Mark("axvline", (x.mean(),), mean),
-        Mark("margins", (), {"y": 0.3}),  # room for the legend
+        Mark("hist", x, bins="auto", color=SAMPLE, label=f"{x.size} surfaces"),
+        Mark("axvline", result.theory["separation"], color=THEORY, label="theory, infinite surface"),
+        Mark("axvline", x.mean(), color=MONTE_CARLO, ls="--", label="mean of the surfaces"),
+        Mark("margins", y=0.3),  # room for the legend
     )
     title = f"at {result.given} = {result.amount:.6g} {quantity_of(result.given).unit}"
     return Panel(title, SEPARATION, "surfaces", marks=marks)
@@ -177,9 +174,9 @@ def _(result: ProfileFit) -> Panel:
     z = np.linspace(-4 * rms, m.mean_height + 4 * m.sigma, 401)
     heights, summits = norm.pdf(z, scale=rms), norm.pdf(z, m.mean_height, m.sigma)
     marks = (
-        Mark("plot", (z, heights), {"color": SAMPLE, "label": f"all heights, Sq = {rms:.4g} m"}),
-        Mark("plot", (z, summits), {"color": THEORY, "label": f"summits, sigma = {m.sigma:.4g} m"}),
-        Mark("margins", (), {"y": 0.3}),
+        Mark("plot", z, heights, color=SAMPLE, label=f"all heights, Sq = {rms:.4g} m"),
+        Mark("plot", z, summits, color=THEORY, label=f"summits, sigma = {m.sigma:.4g} m"),
+        Mark("margins", y=0.3),
     )
     title = f"from {len(result.lengths)} profile(s), alpha = {m.alpha:.3g}"
     return Panel(title, "height above the mean plane (m)", "density (1/m)", marks=marks)

@@ -43,7 +43,7 @@ def convergence_figure(found: Convergence) -> FigureData:
     few = Panel("", "", "", marks=(words("z-scores: too few contacts"),))
     scores = residuals_panel("z-scores", found.scores) if found.scores.size else few
     panels = (slopes["M"], slopes["N"], scores, checks_panel(found))
-    return FigureData(title, "", panels, columns=3)
+    return FigureData(title, "", panels)
 
 
 def _slope_panel(curve: Slope) -> Panel:
@@ -58,11 +58,15 @@ def _slope_panel(curve: Slope) -> Panel:
         "rms error (standard deviations)" if of_m else "rms relative error",
         scales=("log", "log"),
         marks=(
-            Mark("plot", (curve.sizes, fit), {"color": THEORY, "label": "slope −1/2"}),
+            Mark("plot", curve.sizes, fit, color=THEORY, label="slope −1/2"),
             Mark(
                 "errorbar",
-                (curve.sizes, curve.errors, bars),
-                {**SEEN, "fmt": "o", "ms": 4, "label": "measured, 95 %"},
+                curve.sizes,
+                curve.errors,
+                bars,
+                **SEEN | {"ms": 4},
+                fmt="o",
+                label="measured, 95 %",
             ),
         ),
         settings=ticks,
@@ -75,13 +79,11 @@ def checks_panel(found: Convergence) -> Panel:
     limit, rows = FALSE_ALARM / len(p), np.arange(len(p))[::-1]
     failed = p <= limit
     marks = [
-        Mark("axvspan", (_LEAST / 10, limit), {"color": BAND, "zorder": 0}),
-        Mark("hlines", (rows, p, 1), {"color": "0.7", "lw": 1}),
+        Mark("axvspan", _LEAST / 10, limit, color=BAND, zorder=0),
+        Mark("hlines", rows, p, 1, color="0.7", lw=1),
     ]
     for some, color, marker in ((~failed, THEORY, "o"), (failed, MONTE_CARLO, "X")):
-        marks.append(
-            Mark("scatter", (p[some], rows[some]), {"color": color, "marker": marker, "s": 28, "zorder": 3})
-        )
+        marks.append(Mark("scatter", p[some], rows[some], color=color, marker=marker, s=28, zorder=3))
     settings = {
         "xlim": (_LEAST / 3, 2.5), "ylim": (-0.7, len(p) - 0.3), "yticks": rows,
         "yticklabels": [check.name for check in found.checks],
@@ -100,7 +102,7 @@ def tradeoff_figure(found: Tradeoff) -> FigureData:
     within = {"xlim": (min(times) / 2, 2 * max(times))}
     answers = (errors_panel(found, want) for want in WANTS)
     panels = (*(replace(x, settings=x.settings | within) for x in answers), _ladder_panel(found))
-    return FigureData(title, found.worth, panels, columns=3)
+    return FigureData(title, found.worth, panels)
 
 
 def errors_panel(found: Tradeoff, want: str) -> Panel:
@@ -117,17 +119,17 @@ def errors_panel(found: Tradeoff, want: str) -> Panel:
         points = [p for p in found.points if (p.way, p.want) == (way.name, want) and p.n_surfaces]
         if not way.draws or want == "values":
             seconds, floor = way.seconds(found.scene.n_surfaces), max(way.floor, _FLOOR)
-            marks.append(Mark("plot", (seconds, floor), {"ls": "", "ms": 6, "label": way.name, **own}))
+            marks.append(Mark("plot", seconds, floor, ls="", ms=6, label=way.name, **own))
         elif points:  # of growing numbers of surfaces, and the line that falls with the root of these
             time, size, error, stderr = np.array(
                 [(p.seconds, p.n_surfaces, p.rms, p.stderr) for p in points]
             ).T
             of_one = np.exp(np.mean(np.log(_TWO * error) + np.log(size) / 2))
-            marks.append(Mark("plot", (time, of_one / np.sqrt(size)), {"color": own["color"], "lw": 1}))
+            marks.append(Mark("plot", time, of_one / np.sqrt(size), color=own["color"], lw=1))
             bars = time, _TWO * error, _TWO**2 * stderr
-            marks.append(Mark("errorbar", bars, {"ls": "", "ms": 4, "label": way.name, **own}))
+            marks.append(Mark("errorbar", *bars, ls="", ms=4, label=way.name, **own))
         if not way.draws:
-            marks.append(Mark("axhline", (floor,), {"color": own["color"], "lw": 0.8, "ls": ":"}))
+            marks.append(Mark("axhline", floor, color=own["color"], lw=0.8, ls=":"))
     limits = {"ylim": (_FLOOR / 3, 3)}
     return Panel(title, _TIME, _BOUND, scales=("log", "log"), marks=tuple(marks), settings=limits)
 
@@ -138,20 +140,18 @@ def _ladder_panel(found: Tradeoff) -> Panel:
     model = found.ladder[0].model
     known = not np.isnan(model)
     if known:
-        marks.append(Mark("axhline", (model,), {"color": LEVEL, "lw": 1, "label": "error of the model"}))
+        marks.append(Mark("axhline", model, color=LEVEL, lw=1, label="error of the model"))
     for name, group in groupby(found.ladder, lambda rung: rung.name):
         rungs, own = [*group], _RULES[name]
         time, whole = [r.seconds for r in rungs], [r.whole if known else r.drawn for r in rungs]
+        marks.append(Mark("plot", time, whole, **own, ms=5, ls="-" * (len(rungs) > 1), label=name))
         if len(rungs) == 1:
-            marks.append(Mark("plot", (time, whole), {**own, "ms": 5, "ls": "", "label": name}))
             continue
-        marks.append(Mark("plot", (time, whole), {**own, "ms": 5, "ls": "-", "label": name}))
         if known:
-            part = {"color": own["color"], "lw": 0.8, "ls": ":"}
-            marks.append(Mark("plot", (time, [r.drawn for r in rungs]), part))
+            marks.append(Mark("plot", time, [r.drawn for r in rungs], color=own["color"], lw=0.8, ls=":"))
         for r, error in zip(rungs, whole, strict=True):
-            beside = {"textcoords": "offset points", "fontsize": 7, "ha": "center"}
-            marks.append(Mark("annotate", (f"{r.n_surfaces:g}", (r.seconds, error), (0, 5)), beside))
+            text = f"{r.n_surfaces:g}", (r.seconds, error), (0, 5)
+            marks.append(Mark("annotate", *text, textcoords="offset points", fontsize=7, ha="center"))
     title = "conductance at its load, by numbers of surfaces or maps; dotted: without the model"
     whole_error = "whole error (95 % bound)"
     return Panel(title, _TIME, whole_error, scales=("log", "log"), marks=tuple(marks), wide=True)

@@ -172,7 +172,7 @@ def _between(x: float, colors: Sequence[str], at: Array | None = None) -> str:
     return f"#{bytes(round(float(np.interp(x, at, channel))) for channel in rgb.T).hex().upper()}"
 
 
-def power_of_ten(x: float, _: Any = None) -> str:
+def power_of_ten(x: float) -> str:
     """Label of a tick of a logarithmic axis as plain text: to read formulas takes a quarter of a second."""
     power = round(math.log10(x))
     return f"10{str(power).translate(RAISED)}" if math.isclose(x, 10.0**power) else f"{x:g}"

@@ -37,10 +37,9 @@ class Column:
         Format of a number for a reader; files have all digits.
     missing : str, optional
         Text in place of nan.
-    beside : Column, optional
-        A second number in the same cell, such as a standard error or the end of an interval.
     between : str, optional
-        Text between the two.
+        Text between it and the column before it, in whose cell it stands, such as an error or the end of an
+        interval; where it is nan, the other stands alone. Default: it has cells of its own.
     error : array_like, optional
         Error of each number, which is shown to the second digit of its error.
     """
@@ -51,14 +50,8 @@ class Column:
     unit: str = ""
     form: str = ".6g"
     missing: str = "nan"
-    beside: "Column | None" = None
-    between: str = " +- "
+    between: str = ""
     error: Any = None
-
-    @property
-    def flat(self) -> "list[Column]":
-        """The column itself, and what is beside it."""
-        return [self] if self.beside is None else [replace(self, beside=None), *self.beside.flat]
 
     @property
     def suffix(self) -> str:
@@ -71,23 +64,22 @@ class Column:
         return any(isinstance(x, str) for x in self.values[:1])
 
     def cells(self) -> list[str]:
-        """Return the displayed text of each row: of two numbers the first one, where the second is nan."""
+        """Return the displayed text of each row."""
         errors = np.broadcast_to(np.nan if self.error is None else self.error, len(self.values))
-        own = [
+        return [
             x if isinstance(x, str) else self._shown(x, error)
             for x, error in zip(self.values, errors, strict=True)
-        ]
-        if self.beside is None:
-            return own
-        return [
-            one if np.isnan(x) else f"{one}{self.between}{other}"
-            for one, other, x in zip(own, self.beside.cells(), self.beside.values, strict=True)
         ]
 
     def _shown(self, x: float, error: float) -> str:
         if np.isnan(x):
             return self.missing
         return format(x, f".{digits_of(x, error)}g" if 0 < error < np.inf and x else self.form)
+
+    def at(self, k: Sequence[int]) -> "Column":
+        """Return some of its rows, by number."""
+        error = None if self.error is None else np.asarray(self.error)[list(k)]
+        return replace(self, values=[self.values[i] for i in k], error=error)
 
 
 @dataclass(frozen=True)
@@ -119,11 +111,6 @@ class Table:
         return len(self.columns[0].values) if self.columns else 0
 
     @property
-    def flat(self) -> list[Column]:
-        """Columns with one number per cell."""
-        return [each for column in self.columns for each in column.flat]
-
-    @property
     def unit(self) -> str:
         """The first unit of its columns."""
         return next((column.unit for column in self.columns if column.unit), "")
@@ -147,15 +134,26 @@ class Table:
 
     def at(self, k: Sequence[int]) -> "Table":
         """Return some of its rows, by number."""
-        return replace(self, columns=tuple(_part(column, k) for column in self.columns))
+        return replace(self, columns=tuple(column.at(k) for column in self.columns))
+
+    def cells(self) -> list[list[str]]:
+        """Return what is displayed, column by column, each under its heading."""
+        shown: list[list[str]] = []
+        for column in self.columns:
+            if not column.between:
+                shown.append([self.heading(column), *column.cells()])
+                continue
+            for k, (x, cell) in enumerate(zip(column.values, column.cells(), strict=True), 1):
+                shown[-1][k] += "" if np.isnan(x) else f"{column.between}{cell}"
+        return shown
 
     def text(self) -> str:
         """Plain text: texts are aligned left, numbers right."""
         lines = [one_line(self.title)] if self.title else []
         lines += listed((name, brief(text)) for name, text in self.facts)
-        cells = [[self.heading(column), *column.cells()] for column in self.columns]
+        cells = self.cells()
         widths = [max(map(len, column)) for column in cells]
-        left = [not k or column.textual for k, column in enumerate(self.columns)]
+        left = [not k or x.textual for k, x in enumerate(x for x in self.columns if not x.between)]
         for row in zip(*cells, strict=True):
             told = (
                 f"{x:{'<' if to_left else '>'}{width}}"
@@ -174,12 +172,12 @@ class Table:
 
     def html(self) -> str:
         """Return its columns as a ``table``: the cells of a terminal, typeset, every text escaped."""
-        head = "".join(f"<th>{escape(typeset(self.heading(column)))}</th>" for column in self.columns)
-        rows = "".join(
-            f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>"
-            for row in zip(*(map(typeset, column.cells()) for column in self.columns), strict=True)
-        )
-        return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>" if head else ""
+        if not self.columns:
+            return ""
+        head, *rows = ([escape(typeset(cell)) for cell in row] for row in zip(*self.cells(), strict=True))
+        above = "".join(f"<th>{cell}</th>" for cell in head)
+        below = "".join(f"<tr>{''.join(f'<td>{cell}</td>' for cell in row)}</tr>" for row in rows)
+        return f"<table><thead><tr>{above}</tr></thead><tbody>{below}</tbody></table>"
 
     def write(self, path: str | Path, *, comment: str = "") -> None:
         """Write it as CSV: names of the columns with units, then rows that read back to the last bit.
@@ -191,15 +189,14 @@ class Table:
         comment : str, optional
             A line above the names.
         """
-        columns = self.flat
         with (
             whole_file(Path(path)) as unfinished,
             open(unfinished, "w", newline="", encoding="utf-8") as file,
         ):
             file.write(f"# {one_line(comment)}\n" if comment else "")
             writer = csv.writer(file, lineterminator="\n")
-            writer.writerow([column.name + column.suffix for column in columns])
-            writer.writerows(zip(*map(_stored, columns), strict=True))
+            writer.writerow([column.name + column.suffix for column in self.columns])
+            writer.writerows(zip(*map(_stored, self.columns), strict=True))
 
     def to_dataframe(self) -> Any:
         """Return the same as a `pandas.DataFrame`.
@@ -210,7 +207,7 @@ class Table:
             If pandas is not installed.
         """
         pandas = optional("pandas", "to_dataframe")
-        return pandas.DataFrame({column.name: column.values for column in self.flat})
+        return pandas.DataFrame({column.name: column.values for column in self.columns})
 
 
 class Shown:
@@ -252,20 +249,12 @@ def joined(tables: Sequence[Table]) -> Table:
 
 
 def _under(columns: Sequence[Column]) -> Column:
-    """Join columns; the unit is kept if all have the same."""
+    """Join columns; the unit is kept if all have the same, and errors if all have them."""
     values = np.concatenate([np.asarray(column.values) for column in columns])
     unit = columns[0].unit if len({column.unit for column in columns}) == 1 else ""
-    besides = [column.beside for column in columns if column.beside is not None]
     errors = [column.error for column in columns if column.error is not None]
     error = np.concatenate(errors) if len(errors) == len(columns) else None
-    beside = _under(besides) if besides else None
-    return replace(columns[0], values=values, unit=unit, beside=beside, error=error)
-
-
-def _part(column: Column, k: Sequence[int]) -> Column:
-    beside = None if column.beside is None else _part(column.beside, k)
-    error = None if column.error is None else np.asarray(column.error)[list(k)]
-    return replace(column, values=[column.values[i] for i in k], beside=beside, error=error)
+    return replace(columns[0], values=values, unit=unit, error=error)
 
 
 def _stored(column: Column) -> Iterator[str]:

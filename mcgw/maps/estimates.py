@@ -102,8 +102,9 @@ def estimates_table(estimates: Mapping[str, Estimate]) -> Table:
     columns = [Column("method", [METHODS[name] for name in estimates], "by")]
     for name, words, unit in (("eta", "eta", "1/m^2"), ("radius", "R", "m"), ("sigma", "sigma", "m")):
         told = [getattr(e, name) for e in found]
-        error = Column(f"{name}_stderr", [x.error for x in told], unit=unit, form=".1g")
-        columns.append(Column(name, [x.value for x in told], words, unit, ".4g", beside=error))
+        errors = [x.error for x in told]
+        columns.append(Column(name, [x.value for x in told], words, unit, ".4g"))
+        columns.append(Column(f"{name}_stderr", errors, unit=unit, form=".1g", between=" +- "))
     return Table((*columns, Column("overlap", [e.overlap for e in found], "eta R sigma", form=".3g")))
 
 

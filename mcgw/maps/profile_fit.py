@@ -93,13 +93,13 @@ class ProfileFit(Shown):
         """Return a row for each number, with its 95 % interval."""
         units = {"m0": "m^2", "m4": "1/m^2", "eta": "1/m^2", "radius": "m", "sigma": "m"}
         value, _, low, high = zip(*self.numbers.values(), strict=True)
-        end = Column("high_95", high, form=".3g")
         return Table(
             (
                 Column("name", list(self.numbers), " "),
                 Column("unit", [units.get(name, "1") for name in self.numbers]),
                 Column("value", value, form=".4g"),
-                Column("low_95", low, "95 %", form=".3g", beside=end, between=" to "),
+                Column("low_95", low, "95 %", form=".3g"),
+                Column("high_95", high, form=".3g", between=" to "),
             )
         )
 

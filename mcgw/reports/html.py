@@ -2,29 +2,18 @@
 
 import re
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
 from mcgw.ensemble.ensemble import Ensemble, how_many
-from mcgw.ensemble.solved import Solution
 from mcgw.figures.style import grading_label
 from mcgw.formats.numbers import typeset
-from mcgw.formats.table import Column, Table
 from mcgw.machine.progress import told
 from mcgw.machine.terminal import one_line, plain_text
-from mcgw.reports.report_figures import (
-    comparison_pictures,
-    pressure_pictures,
-    solved_pressures,
-)
+from mcgw.reports.report_figures import comparison_pictures, pressure_pictures, solved_pressures
 from mcgw.reports.solved_loads import answer_table, by_load
 from mcgw.scene.cautions import cautions
-from mcgw.scene.law_cautions import other_laws
-from mcgw.scene.scene import Scene
 from mcgw.statistics.comparison import compare
-from mcgw.validity.model_error import Validity
 
-Facts = list[tuple[str, str]]
 _PROVENANCE = ("digest", "seed", "sampler", "date", "versions", "commit", "cpu")
 _LIST = re.compile(r"\[\n([^\]]*)\]")  # of the scene as TOML, each shown on one line
 
@@ -36,14 +25,13 @@ def report_html(
 
     Answers are at some pressures, Pa; by default at round ones that its separations span.
     """
-    scene, against = ensemble.scene, ensemble.scene.validity()
+    scene = ensemble.scene
     with told(None, "steps") as tell:
         tell(0, 3)
         comparison = compare(ensemble)
         tell(1, 3)
         at_loads = solved_pressures(scene, pressures)
         at_pressure = pressure_pictures(at_loads)
-        solved = at_loads[len(at_loads) // 2] if at_loads else None
         tell(2, 3)
         figures = comparison_pictures(comparison)
         tables = list(comparison.tables().values())
@@ -52,19 +40,15 @@ def report_html(
         "report.html.j2",
         title=one_line(scene.title) or "Ensemble of rough surfaces",
         words=opening_words(ensemble),
-        agrees=comparison.verdict.agrees,
-        verdict=comparison.verdict.line,
-        elastic=against.verdict,
+        verdict=comparison.verdict,
         at_pressure=at_pressure,
         by_pressure=by_load(scene, at_loads) if at_loads else None,
-        solved=solved and _named(solved),
-        budget=solved and solved.budget(),
+        solved=at_loads[len(at_loads) // 2] if at_loads else None,
+        answer_table=answer_table,
         figures=figures,
         tables=[table.rows() for table in tables],
         facts=surface_facts(ensemble),
-        laws=laws_table(scene),
-        elasticity=_elasticity_words(against),
-        errors=against.table(),
+        against=scene.validity(),
         cautions=cautions(scene),
         elastic_law=scene.law.elastic,
         provenance=[(key, str(({"seed": scene.seed} | attributes)[key])) for key in _PROVENANCE],
@@ -102,7 +86,7 @@ def opening_words(ensemble: Ensemble) -> str:
     )
 
 
-def surface_facts(ensemble: Ensemble) -> Facts:
+def surface_facts(ensemble: Ensemble) -> list[tuple[str, str]]:
     """Tell what the scene is, and its parameters in units of sigma."""
     scene, x = ensemble.scene, ensemble.scene.surface
     area, radius = x.nominal_area / x.sigma**2, x.radius / x.sigma
@@ -111,40 +95,4 @@ def surface_facts(ensemble: Ensemble) -> Facts:
         *scene.sheet().facts,
         ("reduced", f"R/σ = {radius:.4g}, ηRσ = {overlap:.4g}, Aₙ/σ² = {area:.4g}"),
         ("contacts", f"{contacts:.4g} expected at the smallest separation"),
-    ]
-
-
-def laws_table(scene: Scene) -> Table | None:
-    """Other contact laws beside that of a scene, at the same material; None if nothing yields."""
-    others = other_laws(scene)
-    if others is None:
-        return None
-    names = [f"{scene.law.name} (this one)", *others.load]
-    words = (
-        f"Means at d/σ = {others.separation:g} by theory, over those of this report, for the same critical "
-        f"penetration of {others.critical:.4g} σ. The choice between elastic-plastic laws changes the load "
-        f"by up to {others.worth:.0%}."
-    )
-    load, area = ([1.0, *(each[name] for name in others.load)] for each in (others.load, others.area))
-    numbers = (Column(name, x, unit="1", form=".4g") for name, x in (("load", load), ("area", area)))
-    return Table((Column("law", names, "contact law"), *numbers), words)
-
-
-def _named(solved: Solution) -> Table:
-    """Return the answer at a load, its quantities in words."""
-    names, *columns = answer_table(solved).columns
-    words = [name.replace("_", " ") for name in names.values]
-    return Table((replace(names, values=words), *columns), solved.title)
-
-
-def _elasticity_words(found: Validity) -> list[str]:
-    """State the error against elasticity, in paragraphs; the second introduces the table."""
-    if not found.measured.any():
-        return [f"{found.verdict}."]
-    details = f"{found.details}."
-    return [
-        f"{details[0].upper()}{details[1:]}",
-        "Relative error of the model: mean over the maps ± the range that contains 95 % of such surfaces. "
-        "Area, stiffness and gap are at the load of that separation; the load is at that separation, as the "
-        f"mean gap of a periodic cell. Pressure: {found.axis}.",
     ]

@@ -70,12 +70,12 @@ def round_pressures(low: float, high: float, most: int) -> list[float]:
 
 def pressure_pictures(solved: Sequence[Solution]) -> dict[str, str]:
     """Draw what holds at equal nominal pressure: SVG elements by what they show."""
-    if not solved:
-        return {}
-    low, high = (each.amount / each.scene.surface.nominal_area / 1e6 for each in (solved[0], solved[-1]))
-    against = f"against nominal pressure from {low:.3g} to {high:.3g} MPa"
-    panels = {f"{panel.title} {against}": panel for panel in pressure_curves(solved)}
-    return {label: svg_of(panel, label) for label, panel in panels.items()}
+    pictures = {}
+    for panel in pressure_curves(solved):
+        low, *_, high = panel.series[0].x
+        label = f"{panel.title} against nominal pressure from {low:.3g} to {high:.3g} MPa"
+        pictures[label] = svg_of(panel, label)
+    return pictures
 
 
 def svg_of(panel: Panel, label: str) -> str:
@@ -115,7 +115,7 @@ def pressure_curves(solved: Sequence[Solution]) -> list[Panel]:
             factor * np.array([x[name] for x in some])
             for some in ([each.value for each in solved], [each.std for each in solved])
         )
-        dots = Mark("errorbar", (pressure, mean, std), {**SEEN, "fmt": "o", "label": "specimens: mean, std"})
+        dots = Mark("errorbar", pressure, mean, std, **SEEN, fmt="o", label="specimens: mean, std")
         series = Series("infinite surface", sums["load"] / area / 1e6, factor * np.asarray(line[name]))
         scales = ("log", "linear" if name == "separation" else "log")
         curves.append(Panel(title, "nominal pressure P/Aₙ (MPa)", label, (series,), scales, marks=(dots,)))

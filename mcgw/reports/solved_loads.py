@@ -22,6 +22,7 @@ _GAP = {
 }
 _OF_SPECIMENS = {"joint": "joint, mean of h", "correlation": "correlation (spots)"}
 _LINES = 2  # loads that the news names one by one
+_IN_FULL = ("quantity", "unit", "value", "low_95", "high_95", "specimen_05", "specimen_95", "infinite")
 # Left out of the short table; all but the first only where a film gives the conductance in SI units.
 _VARIANTS = ("load_slope", "conductance", "conductance_si", "specific_contact_resistance")
 
@@ -42,8 +43,9 @@ def solutions_text(
     else:
         lines += _background(scene, solutions)
         for solution in solutions:  # every quantity but the given one, specimens, and an infinite surface
-            table = solution.table(specimens=True)
-            table = _known(solution, table.only(*(x.name for x in table.columns if x.name != "std")))
+            best = [x.name for x in solution.sheet().columns if x.name in ("best", "best_95")]
+            table = solution.table(specimens=True).only(*_IN_FULL, *best)
+            table = table.at([k for k, name in enumerate(solution.theory) if name != solution.given])
             lines += ["", (replace(table, title="") if one else table).text()]
         if scene.film is not None:
             lines += ["", conductances(scene, solutions).text()]
@@ -55,32 +57,18 @@ def solutions_text(
     return "\n".join(lines)
 
 
-def _known(solution: Solution, table: Table) -> Table:
-    """Without the quantity that was given, and without a column of corrected answers that is empty."""
-    if np.isnan(table.flat[-1].values).all():
-        table = replace(table, columns=table.columns[:-1])
-    return table.at([k for k, name in enumerate(solution.theory) if name != solution.given])
-
-
 def answer_table(solution: Solution) -> Table:
     """Return the answer and specimens to the digits that count, a row a quantity that is no variant."""
-    table = _known(solution, solution.table())
-    name, unit, value, interval, std, _, *best = table.columns
-    low, high = (np.asarray(column.values) for column in interval.flat)
+    name, unit, value, *ends, std = solution.sheet().columns[:6]
+    best, (low, high) = solution.sheet().columns[6:], (np.asarray(end.values) for end in ends)
     sure = high == low
     error = np.where(sure, 1e-4 * np.abs(np.asarray(value.values)), (high - low) / 2)
-    half = Column("half", np.where(sure, np.nan, error), form=".2g", missing="")
-    table = Table(
-        (
-            name,
-            unit,
-            replace(value, words="value (95 %)", error=error, beside=half, between=" ± "),
-            std,
-            *best,
-        ),
-        joint_text(solution.scene) if solution.scene.thermal else "",
-    )
+    half = Column("half", np.where(sure, np.nan, error), form=".2g", between=" ± ")
+    value = replace(value, words="value (95 %)", error=error)
+    title = joint_text(solution.scene) if solution.scene.thermal else ""
     hidden = _VARIANTS if solution.scene.film is not None else _VARIANTS[:1]
+    words = replace(name, values=[x.replace("_", " ") for x in name.values])
+    table = Table((words, unit, value, half, std, *best), title)
     return table.at([k for k, x in enumerate(name.values) if x not in hidden])
 
 
@@ -99,10 +87,9 @@ def by_load(scene: Scene, solutions: Sequence[Solution]) -> Table:
     columns = [given, h]
     for k, name in enumerate(budgets[0].quantities):
         unit = "m" if name in GAPS else scene.quantity(name).unit
-        error = Column("error", [budget.all[k] for budget in budgets], form=".1%")
-        values = [x.value[name] for x in solutions]
-        words = name.replace("_", " ")
-        columns.append(Column(name, values, words, unit, form=".4g", beside=error, between=" ± "))
+        values, errors = [x.value[name] for x in solutions], [budget.all[k] for budget in budgets]
+        columns.append(Column(name, values, name.replace("_", " "), unit, form=".4g"))
+        columns.append(Column("error", errors, form=".1%", between=" ± "))
     return Table((*columns, Column("contacts", [x.value["contacts"] for x in solutions], form=".4g")))
 
 

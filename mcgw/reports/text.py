@@ -29,19 +29,18 @@ def summary(ensemble: Ensemble, attributes: dict[str, Any], full: bool = True) -
     """Tell what a file holds: provenance and a table of means; if `full`, one a quantity with its spread."""
     scene = ensemble.scene
     h, n, total = scene.separations, ensemble.n_surfaces, scene.n_surfaces
-    so_far = "" if n == total else f" so far, of {total},"
+    so_far, spent = "" if n == total else f" so far, of {total},", attributes.get("accuracy_spent")
+    of_it = "" if spent is None else f", {spent:.2g} of it spent"
     facts = [
         ("surfaces", f"{n}{so_far} of {scene.n_asperities} asperities each ({scene.count})"),
         ("separations", f"{len(h)} from {min(h):g} to {max(h):g} (d/sigma)"),
         ("grading", law_text(scene.grading)),
         *contact_facts(scene),
         ("sampler", f"{ensemble.sampler}, seed {scene.seed}"),
-        *((word, f"{what}{_spent(word, attributes)}") for word, what in accuracy_facts(scene)),
+        *((word, f"{what}{of_it}") for word, what in accuracy_facts(scene)),
         *([] if scene.keep != "statistics" else [("kept", _KEPT)]),
         ("complete", "yes" if attributes["complete"] else "no"),
-        ("digest", str(attributes["digest"])),
-        ("made", f"{attributes['date']} in {attributes['wall_seconds']:.2f} s on {attributes['cpu']}"),
-        ("with", f"{attributes['versions']}; commit {attributes['commit']}"),
+        *_origin(attributes),
     ]
     lines = [one_line(scene.title) or "ensemble", *listed(facts, 12)]
     lines += [f"  {line}" for line in scene.validity().lines]
@@ -67,10 +66,13 @@ def _means(ensemble: Ensemble) -> Table:
     return Table((Column("separation", ensemble.separations, SEPARATION, form="g"), *columns)).rows()
 
 
-def _spent(word: str, attributes: dict[str, Any]) -> str:
-    """How much of what was allowed was spent."""
-    spent = attributes.get(f"{word}_spent")
-    return "" if spent is None else f", {spent:.2g} of it spent"
+def _origin(attributes: dict[str, Any]) -> list[tuple[str, str]]:
+    """Tell where the numbers of a file come from."""
+    return [
+        ("digest", str(attributes["digest"])),
+        ("made", f"{attributes['date']} in {attributes['wall_seconds']:.3g} s on {attributes['cpu']}"),
+        ("with", f"{attributes['versions']}; commit {attributes['commit']}"),
+    ]
 
 
 def comparison_text(comparison: Comparison) -> str:
@@ -111,13 +113,7 @@ def summary_of(result: "Ensemble | Sweep", attributes: dict[str, Any], full: boo
     """Return the summary of the file of an ensemble or of a sweep."""
     if isinstance(result, Ensemble):
         return summary(result, attributes, full)
-    lines = [
-        str(result),
-        f"  digest  {attributes['digest']}",
-        f"  made    {attributes['date']} in {attributes['wall_seconds']:.3g} s on {attributes['cpu']}",
-        f"  with    {attributes['versions']}; commit {attributes['commit']}",
-    ]
-    return "\n".join(lines)
+    return "\n".join([str(result), *listed(_origin(attributes))])
 
 
 def table_of(result: "Ensemble | Sweep") -> Table:

@@ -9,7 +9,7 @@ import numpy as np
 
 from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble, how_many, shown
-from mcgw.ensemble.intervals import interval_column
+from mcgw.ensemble.intervals import interval_columns
 from mcgw.ensemble.labelled import heading
 from mcgw.formats.table import SEPARATION, Column, Shown, Table, stacked
 from mcgw.machine.progress import Progress, told
@@ -120,7 +120,7 @@ class Comparison(Shown):
         columns = (
             Column("separation", self.ensemble.separations, SEPARATION, form="g"),
             Column("mean", c.mean, unit=unit, error=c.stderr),
-            interval_column(c.low, c.high, unit),
+            *interval_columns(c.low, c.high, unit),
             Column("std", self.ensemble.std(quantity), unit=unit, form=".3g"),
             Column("theory", c.theory, unit=unit, error=c.stderr),
             Column("residual", c.residual, form="+z.2f"),

@@ -213,7 +213,8 @@ class Sweep(Dataset):
         columns = [Column("point", where, f"mean +- stderr at d/sigma = {self.separations[k]:g}")]
         for name in self.quantities:
             mean, error = (get(name)[..., k].ravel()[shown] for get in (self.mean, self.stderr))
-            columns.append(Column(name, mean, form=".5g", beside=Column("stderr", error, form=".2g")))
+            columns.append(Column(name, mean, form=".5g"))
+            columns.append(Column("stderr", error, form=".2g", between=" +- "))
         return Table(tuple(columns), f"Sweep of {self.axes.size} scenes", facts)
 
     def table(self) -> Table:

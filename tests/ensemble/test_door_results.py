@@ -73,7 +73,7 @@ def test_columns_have_names_that_programs_may_rely_on(results, sweep):
             "grading.gamma quantity unit separation mean theory residual p_of_point",
         ),
     ):
-        assert [column.name.replace(" ", "_") for column in table.flat] == names.split()
+        assert [column.name.replace(" ", "_") for column in table.columns] == names.split()
 
 
 # --- quantities --------------------------------------------------------------------------------------------

@@ -39,7 +39,7 @@ def said(figures):
         if not isinstance(data, FigureData):
             yield f"{name}: {data}"
             continue
-        yield f"{name}: {data.title}; {data.caption}; {data.columns} columns"
+        yield f"{name}: {data.title}; {data.caption}"
         for panel in data.panels:
             axes = f"{panel.xlabel} | {panel.ylabel}, {' '.join(panel.scales)}, level {panel.level}"
             yield f" {panel.title or '-'}: {axes}"

@@ -15,11 +15,10 @@ from oracles.inside import (
     write_whole,
 )
 
-LOAD = Column(
-    "load", [12.3456, 0.0, np.nan], unit="N", error=[0.0123, 0.5, 1.0],
-    beside=Column("high", [13.0, 2.5, np.nan], unit="N", form=".3g"), between=" to ",
-)  # fmt: skip
-SMALL = Table((Column("h", [0.5, 1.0, 20.0], "d/sigma"), LOAD, Column("kind", ["a", "bc", ""])), "Of loads")
+LOAD = Column("load", [12.3456, 0.0, np.nan], unit="N", error=[0.0123, 0.5, 1.0])
+HIGH = Column("high", [13.0, 2.5, np.nan], unit="N", form=".3g", between=" to ")
+PLACE, KIND = Column("h", [0.5, 1.0, 20.0], "d/sigma"), Column("kind", ["a", "bc", ""])
+SMALL = Table((PLACE, LOAD, HIGH, KIND), "Of loads")
 
 
 def test_a_table_is_aligned_and_shows_each_number_to_its_error():
@@ -36,17 +35,24 @@ def test_a_table_is_aligned_and_shows_each_number_to_its_error():
     assert plain.cells() == ["0.123457", "nan", "7", "7", "7"]
     signed = Column("x", [1.23456, -0.056789, 123.456], error=[0.01, 1e-9, 0.02])
     assert signed.cells() == ["1.235", "-0.056789", "123.456"]
-    assert Column("x", [1.0], beside=Column("e", [0.5])).cells() == ["1 +- 0.5"]
+    together = Table((Column("x", [1.0]), Column("e", [0.5], between=" +- ")))
+    assert together.cells() == [["x", "1 +- 0.5"]]
     bare = Table((Column("share", [0.25], unit="1"), Column("area", [2.0], unit="m^2")))
     assert bare.text() == "  share  area (m^2)\n  0.25            2"
     assert (SMALL.unit, bare.unit, Table((Column("x", []),)).unit) == ("N", "1", "")
-    assert [column.textual for column in (*SMALL.columns, Column("x", []))] == [False, False, True, False]
+    assert [column.textual for column in (*SMALL.columns, Column("x", []))] == [
+        False,
+        False,
+        False,
+        True,
+        False,
+    ]
 
 
 def test_a_table_of_a_page_has_the_cells_of_a_terminal_typeset():
     mixed = Table((
-        Column("x", [1.5, np.nan], unit="m", form=".2g", missing="-9",
-               beside=Column("e", [0.25, np.nan], unit="m", form=".2g")),
+        Column("x", [1.5, np.nan], unit="m", form=".2g", missing="-9"),
+        Column("e", [0.25, np.nan], unit="m", form=".2g", between=" +- "),
         Column("y", [3e-7, 1.0], unit="m", form="g"),
         Column("<z>", ["&", "m^2"]),
     ))  # fmt: skip
@@ -61,7 +67,7 @@ def test_a_table_of_a_page_has_the_cells_of_a_terminal_typeset():
 def test_a_file_of_a_table_has_all_digits(tmp_path):
     kinds = Table((
         Column("i", [1, np.int64(-2)]), Column("t", ["a,b", "c"]),
-        Column("x", [0.1, np.float64(1e-300)], unit="N", beside=Column("e", [1 / 3, 2.0], unit="1")),
+        Column("x", [0.1, np.float64(1e-300)], unit="N"), Column("e", [1 / 3, 2.0], unit="1", between=" +- "),
     ))  # fmt: skip
     kinds.write(str(tmp_path / "t.csv"))
     lines = (tmp_path / "t.csv").read_bytes().decode().removesuffix("\n").split("\n")
