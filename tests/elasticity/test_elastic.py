@@ -98,9 +98,3 @@ def test_takes_a_separation(rng):
 def test_refuses(changes, words):
     with pytest.raises(ValueError, match=words):
         mcgw.elastic(SPECTRUM, **{"pressure": 5e7, "E_star": 1e11, **changes})
-
-
-def test_a_scene_without_a_spectrum_is_told():
-    scene = mcgw.Scene(mcgw.Surface(1e-6, 1e-5, 1e9, 1e-6, 1e9), separations=0.0, seed=1)
-    with pytest.raises(ValueError, match="m0, m2, m4"):
-        mcgw.elastic(scene, pressure=1e6)

@@ -2,7 +2,6 @@
 
 import ast
 import doctest
-import math
 import pkgutil
 import pydoc
 import re
@@ -147,42 +146,6 @@ def problems(call):
 
 def scene(**changes):
     return scene_by(**({"surface": SURFACE, "separations": [0.0, 1.0], "seed": 1} | changes))
-
-
-def scalar_only(s):
-    return 1.0 + math.tanh(s)
-
-
-ONLY_PYTHON = [
-    ({"surface": 3}, r"^surface = 3: .* give mcgw\.Surface\("),
-    ({"summits": 3.0}, r"^summits\.curvature = 3\.0: .* random, mean; .* give mcgw\.MeasuredRadii"),
-    ({"law": mcgw.KogutEtsion(hardness=1e300)},
-     r'^contact\.law = "kogut-etsion": critical = inf: give a finite number > 0$'),
-    ({"law": mcgw.JacksonGreen(yield_strength=1e200)},
-     r'^contact\.law = "jackson-green": critical = inf: give a finite number > 0$'),
-    ({"surface": analytic.Surface(1e250, 1e250, 1e-9, 1e12, 1e9), "quantities": ["load"]},
-     "^surface: the load of an asperity would be inf N, beyond double precision; check sigma"),
-    ({"grading": 2.0}, r"^grading\.law = 2\.0: .* give mcgw\.Exponential\(gamma\)"),
-    ({"grading": mcgw.Homogeneous}, r"^grading\.law = <class .*Homogeneous'>: .* give mcgw"),
-    ({"grading": scalar_only},
-     r"^grading: the function fails on an array of heights \(TypeError: .*vectorize"),
-    ({"grading": lambda s: s > 0 and 1.0}, r"^grading: the function fails on an array .*\(ValueError: "),
-    ({"grading": lambda s: s[:1]}, r"^grading: gave shape \(1,\)"),
-    ({"grading": lambda s: np.log(s - 3)}, r"^grading: E\*\(s\)/E\* is not finite at s = "),
-    ({"grading": lambda s: 1 - s}, r"^grading: E\*\(s\) is negative from s = 1\.\d*,"),
-    ({"heights": np.ones(3)}, r"^heights\.law = \[1.*\]: .* give .*mcgw\.HeightTable\.of\(heights\)"),
-    ({"heights": mcgw.Gaussian}, r"^heights\.law = <class .*Gaussian'>: .* give mcgw"),
-    ({"heights": scipy.stats.lognorm}, r"^heights\.law = <scipy.*: .* give mcgw"),
-    ({"heights": scipy.stats.poisson(3)}, r"^heights\.law = <scipy.*: give a frozen continuous distribution"),
-    ({"heights": scipy.stats.cauchy()},
-     r"^heights\.law = <scipy.*: cauchy: its mean is nan .* must be finite"),
-]  # fmt: skip
-
-
-@pytest.mark.parametrize(("change", "told"), ONLY_PYTHON, ids=[told for _, told in ONLY_PYTHON])
-def test_what_only_python_can_get_wrong(change, told):
-    (line,) = problems(lambda: scene(**change))
-    assert re.search(told, line)
 
 
 def test_all_mistakes_are_told_at_once():

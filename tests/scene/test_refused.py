@@ -20,7 +20,7 @@ COATED = analytic.Coated(ratio=2.0, thickness=1e-6, poisson=0.25)
 
 
 def scene(**given):
-    return scene_by(SURFACE, **{"separations": [0.0, 1.0], "n_surfaces": 3, "seed": 1} | given)
+    return scene_by(**{"surface": SURFACE, "separations": [0.0, 1.0], "n_surfaces": 3, "seed": 1} | given)
 
 
 def read(**tables):
@@ -42,6 +42,7 @@ OTHERS = [  # other objects and words than a call takes
     (lambda: mcgw.sweep(3, {"grading.gamma": [1.0]}), r"sweep: give a mcgw\.Scene, not int; "),
     (lambda: mcgw.converge(SURFACE), r"converge: give a mcgw\.Scene, not Surface"),
     (lambda: mcgw.tradeoff(SURFACE), r"tradeoff: give a mcgw\.Scene, not Surface"),
+    (lambda: mcgw.elastic(SCENE, pressure=1e6), "m0, m2, m4"),
     (lambda: mcgw.compare(SCENE),
      r"compare: give a mcgw\.Ensemble, not Scene; mcgw\.simulate\(scene\) draws one"),
     (lambda: mcgw.save("file.h5", "never.h5"),
@@ -120,7 +121,37 @@ FAR = [  # beyond numbers, memory, disk and folders
     (lambda: mcgw.open_ensemble("/dev/zero"), "is not a regular file"),
     (lambda: mcgw.solve(SCENE, load=5e-324), r"load = .*double precision of the heights; give .* or more"),
 ]  # fmt: skip
-REFUSED = [*OTHERS, *CALLS, *HARDNESS, *TEXTS, *FAR]
+ONLY_PYTHON = [
+    ({"surface": 3}, r"^surface = 3: .* give mcgw\.Surface\("),
+    ({"summits": 3.0}, r"^summits\.curvature = 3\.0: .* random, mean; .* give mcgw\.MeasuredRadii"),
+    ({"law": mcgw.KogutEtsion(hardness=1e300)},
+     r'^contact\.law = "kogut-etsion": critical = inf: give a finite number > 0$'),
+    ({"law": mcgw.JacksonGreen(yield_strength=1e200)},
+     r'^contact\.law = "jackson-green": critical = inf: give a finite number > 0$'),
+    ({"surface": analytic.Surface(1e250, 1e250, 1e-9, 1e12, 1e9), "quantities": ["load"]},
+     "^surface: the load of an asperity would be inf N, beyond double precision; check sigma"),
+    ({"grading": 2.0}, r"^grading\.law = 2\.0: .* give mcgw\.Exponential\(gamma\)"),
+    ({"grading": mcgw.Homogeneous}, r"^grading\.law = <class .*Homogeneous'>: .* give mcgw"),
+    ({"grading": lambda s: 1.0 + float(s)},
+     r"^grading: the function fails on an array of heights \(TypeError: .*vectorize"),
+    ({"grading": lambda s: s > 0 and 1.0}, r"^grading: the function fails on an array .*\(ValueError: "),
+    ({"grading": lambda s: s[:1]}, r"^grading: gave shape \(1,\)"),
+    ({"grading": lambda s: np.log(s - 3)}, r"^grading: E\*\(s\)/E\* is not finite at s = "),
+    ({"grading": lambda s: 1 - s}, r"^grading: E\*\(s\) is negative from s = 1\.\d*,"),
+    ({"heights": np.ones(3)}, r"^heights\.law = \[1.*\]: .* give .*mcgw\.HeightTable\.of\(heights\)"),
+    ({"heights": mcgw.Gaussian}, r"^heights\.law = <class .*Gaussian'>: .* give mcgw"),
+    ({"heights": st.lognorm}, r"^heights\.law = <scipy.*: .* give mcgw"),
+    ({"heights": st.poisson(3)}, r"^heights\.law = <scipy.*: give a frozen continuous distribution"),
+    ({"heights": st.cauchy()}, r"^heights\.law = <scipy.*: cauchy: its mean is nan .* must be finite"),
+]  # fmt: skip
+REFUSED = [
+    *((lambda given=given: scene(**given), words) for given, words in ONLY_PYTHON),
+    *OTHERS,
+    *CALLS,
+    *HARDNESS,
+    *TEXTS,
+    *FAR,
+]
 
 
 @pytest.mark.parametrize(("action", "words"), REFUSED, ids=[words for _, words in REFUSED])
