@@ -181,7 +181,9 @@ def _gains(model: Any, several: Sequence[str], value: float, h: float) -> tuple[
     rates = rule.probabilities * _rate(now, near, far, step).T
     rates_of_squares = rule.probabilities * _rate(now**2, near**2, far**2, step).T
     in_cells, weights, *marks = _cells(model, several, h, rule, now, float(at[-1]))
-    least = min(float(model.mean(given, h)), value) - _SPREADS * float(model.std(given, h))
+    sum_of, square = n * rule.probabilities @ np.column_stack([now[:, 0], now[:, 0] ** 2])
+    spread = math.sqrt(square if poisson else max(square - sum_of**2 / n, 0.0))
+    least = min(float(sum_of), value) - _SPREADS * spread
     start = max(least, 0.0)
     width = (value - start) / (_GRID - 1)
     bear = shares_upto(model, given, h, n - two, np.asarray(start + width * np.arange(_GRID)))
