@@ -243,6 +243,15 @@ def test_every_summit_of_four_cosines(without_caps):
     assert np.all(abs(fit.radii * np.sqrt(bends[0] * bends[1]) - 1) < beside.sum(axis=0) + 0.004)
 
 
+def test_principal_curvatures_of_a_turned_paraboloid_are_exact():
+    """Its axes lie aslant to the pixels, so that its mixed derivative counts."""
+    y, x = np.indices((25, 25)) - 12.0
+    z = 5.0 - x**2 - 0.75 * (0.5 * x * y + 3 * y**2)
+    (found,) = summit_sums_of(Topography(z, (0.5, 0.5)), across=1).summits[6:].T
+    expected = np.linalg.eigvalsh(np.array([[2.0, 0.375], [0.375, 4.5]]) / 0.25)
+    np.testing.assert_allclose(found, expected[::-1], rtol=1e-12)
+
+
 def test_tiles_without_summits_or_points_are_nan():
     """One summit has no spread of heights."""
     sums = np.ones((len(SUMS), 4))
