@@ -21,7 +21,7 @@ REACH = 13.0  # no lower or rarer normal height counts: 2e-37 of the density, ti
 def gauss_legendre(nodes: int) -> tuple[Array, Array]:
     """Points and weights, read-only."""
     x, w = leggauss(nodes)
-    x, w = (1 + x) / 2, w / 2
+    x, w = (1 + x) / 2, w / w.sum()
     x.flags.writeable = w.flags.writeable = False
     return x, w
 

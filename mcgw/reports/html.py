@@ -7,11 +7,14 @@ from typing import Any
 from mcgw.ensemble.ensemble import Ensemble, how_many
 from mcgw.figures.style import grading_label
 from mcgw.formats.numbers import typeset
+from mcgw.formats.table import Column, Table
 from mcgw.machine.progress import told
 from mcgw.machine.terminal import one_line, plain_text
 from mcgw.reports.report_figures import comparison_pictures, pressure_pictures, solved_pressures
 from mcgw.reports.solved_loads import answer_table, by_load
 from mcgw.scene.cautions import cautions
+from mcgw.scene.law_cautions import other_laws
+from mcgw.scene.scene import Scene
 from mcgw.statistics.comparison import compare
 
 _PROVENANCE = ("digest", "seed", "sampler", "date", "versions", "commit", "cpu")
@@ -48,6 +51,7 @@ def report_html(
         figures=figures,
         tables=[table.rows() for table in tables],
         facts=surface_facts(ensemble),
+        laws=laws_table(scene),
         against=scene.validity(),
         cautions=cautions(scene),
         elastic_law=scene.law.elastic,
@@ -96,3 +100,19 @@ def surface_facts(ensemble: Ensemble) -> list[tuple[str, str]]:
         ("reduced", f"R/σ = {radius:.4g}, ηRσ = {overlap:.4g}, Aₙ/σ² = {area:.4g}"),
         ("contacts", f"{contacts:.4g} expected at the smallest separation"),
     ]
+
+
+def laws_table(scene: Scene) -> Table | None:
+    """Other contact laws beside that of a scene, at the same material; None if nothing yields."""
+    others = other_laws(scene)
+    if others is None:
+        return None
+    names = [f"{scene.law.name} (this one)", *others.load]
+    words = (
+        f"Means at d/σ = {others.separation:g} by theory, over those of this report, for the same critical "
+        f"penetration of {others.critical:.4g} σ. The choice between elastic-plastic laws changes the load "
+        f"by up to {others.worth:.0%}."
+    )
+    load, area = ([1.0, *(each[name] for name in others.load)] for each in (others.load, others.area))
+    numbers = (Column(name, x, unit="1", form=".4g") for name, x in (("load", load), ("area", area)))
+    return Table((Column("law", names, "contact law"), *numbers), words)

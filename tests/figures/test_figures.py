@@ -87,6 +87,23 @@ def test_points_with_wrong_theory_would_show(figures):
             assert np.median(np.abs((p.mean - p.exact - 0.03 * slope) / p.stderr)) > 5
 
 
+def test_numbers_of_the_paper(figures):
+    """Independent of the functions behind the figures: theory.md's and the paper's own figures."""
+    just, *_, by_load = figures["figure-4"].panels
+    assert just.series[0].theory == pytest.approx(np.ones(73))  # s = 0: no effect, the paper's reading
+    assert by_load.series[0].theory[-1] == pytest.approx(1.727, abs=5e-4)
+    six = figures["figure-6"].panels[0].series
+    assert six[1].theory[-1] == pytest.approx(1.802, abs=5e-4)
+    assert six[4].theory[-1] == pytest.approx(2, abs=0.03)  # "C_FGM/C_HOM = gamma" at d/sigma = 4
+    conductance = figures["equal-load"].panels[1].series[1]
+    assert conductance.theory[[0, -1]] == pytest.approx([3.114, 0.548], abs=5e-4)
+    stiffness = figures["equal-load"].panels[3].series[1]
+    assert stiffness.theory[[0, -1]] == pytest.approx([0.945, 1.057], abs=5e-4)
+    homogeneous = figures["area-and-load"].panels[1].series[1]
+    assert np.all(np.diff(homogeneous.theory) > 0)
+    assert homogeneous.theory[-1] < 1  # area grows slower than load, ever less so
+
+
 def test_ratio_of_sums_against_repetition():
     """The stated error is the spread of repeated ratios: 200 of them know it to 5 %, four times that."""
     rng = np.random.default_rng(3)
