@@ -218,7 +218,7 @@ class Plan:
         return self.folder / "shards"
 
     def begin(self, *, alone: bool = True) -> None:
-        """Begin, or go on in the folder that is there, recording how many surfaces are wanted if `alone`.
+        """Begin, or go on in the folder that is there; record what is wanted, if not `alone` only more.
 
         Only with the lock.
 
@@ -243,7 +243,8 @@ class Plan:
                 f"{self.folder}: holds a different {'sweep' if self.axes else 'run'}: "
                 f"{difference(old.question, self.question)}; choose another -o, or remove it"
             )
-        return self._write(expected="anything") if alone and old.text != self.text else None
+        wanted = old.text != self.text if alone else self.scene.n_surfaces > old.scene.n_surfaces
+        return self._write(expected="anything") if wanted else None
 
     def _write(self, *, expected: Expected) -> None:
         about = {"filetype": RUN_TYPE, "format": FORMAT, "run": self.identity, "sampler": self.sampler}

@@ -155,6 +155,17 @@ def test_a_short_block_of_statistics_gives_way_to_a_whole_one(scene, tmp_path, d
     assert digest(path) == digest(tmp_path / "whole.h5")
 
 
+@pytest.mark.parametrize("keep", ["sums", "statistics"])
+def test_shares_of_more_surfaces_than_before_are_merged(keep, scene, tmp_path):
+    """Not refused as too many for what the first job wanted; a later job that wants fewer changes nothing."""
+    path, kept = tmp_path / "e.h5", scene.replace(keep=keep)
+    for n in (20, 100, 20):
+        assert mcgw.run(kept.replace(n_surfaces=n), path, shard="1/1") == 0
+    assert mcgw.merge(path).n_surfaces == 100
+    mcgw.save(mcgw.simulate(kept, n_surfaces=100), tmp_path / "whole.h5")
+    assert digest(path) == digest(tmp_path / "whole.h5")
+
+
 def test_rows_of_a_run_in_progress_are_those_of_a_list(scene, tmp_path):
     """From any surface to any other, within a block and beyond one."""
     path, asked = tmp_path / "e.h5", scene.replace(sampler="cells")
