@@ -99,9 +99,10 @@ def specimen_moments(model: Any, given: str, value: float, names: Sequence[str])
     if model.count == "fixed" and model.number < 2:
         raise ValueError(f"n_asperities = {model.number:g}: give 2 or more; no other bears what one leaves")
     several, ends, found = [given, *names], _ends(model, given, value), np.zeros(2)
-    many = float(model.mean("contacts", ends[1])) > _MANY
+    last, many = _at_last(model, several, value, ends[-1]), float(model.mean("contacts", ends[1])) > _MANY
     for times in _TIMES:
-        mean, std = _integrated(model, several, value, ends, times * (_LIFTS_OF_MANY if many else _LIFTS))
+        nodes = times * (_LIFTS_OF_MANY if many else _LIFTS)
+        mean, std = _integrated(model, several, value, ends, last, nodes)
         before, found = found, np.array([mean[1], math.hypot(mean[1], std[1])]) / value
         missed = min(abs(found - 1).max(), abs(found - before).max())  # a law with jumps passes it
         if missed < _EXACT:
@@ -112,21 +113,28 @@ def specimen_moments(model: Any, given: str, value: float, names: Sequence[str])
     return Moments(*(dict(zip(keys, values.tolist(), strict=True)) for values in (mean, std)))
 
 
+def _at_last(model: Any, several: Sequence[str], value: float, high: float) -> tuple[Array, Array]:
+    """Means and variances of the separation and of each sum, of surfaces that are not above the last one."""
+    mean, square = _gains(model, several, value, high)[1]
+    variance = square - mean**2
+    of_all, std = (np.array([float(of(name, high)) for name in several]) for of in (model.mean, model.std))
+    if np.allclose([mean, square], [of_all, of_all**2 + std**2], rtol=_ALL, atol=0):
+        mean, variance = of_all, std**2
+    return np.append(high, mean), np.append(0.0, variance)
+
+
 def _integrated(
-    model: Any, several: Sequence[str], value: float, ends: tuple[float, float, float], nodes: int
-) -> tuple[Array, Array]:
+    model: Any, several: Sequence[str], value: float, ends: tuple[float, float, float],
+    last: tuple[Array, Array], nodes: int,
+) -> tuple[Array, Array]:  # fmt: skip
     """Means and standard deviations of the separation and of each sum, from those at the last separation."""
-    high, (start, square) = ends[-1], _gains(model, several, value, ends[-1])[1]
-    variance = square - start**2
-    mean, std = (np.array([float(of(name, high)) for name in several]) for of in (model.mean, model.std))
-    if np.allclose([start, square], [mean, mean**2 + std**2], rtol=_ALL, atol=0):
-        start, variance = mean, std**2
-    start, variance = np.append(high, start), np.append(0.0, variance)
+    high, (start, variance) = ends[-1], last
     change = np.zeros_like(start)
     for h, width in zip(*_lifts(*ends, nodes), strict=True):
         lower, _, (rates, of_squares) = _gains(model, several, value, float(h))
         change += width * np.append(-lower, rates)
-        variance += width * np.append(2 * (high - h) * lower, of_squares - 2 * start[1:] * rates)
+        squares = np.append(2 * (high - h) * lower, of_squares - 2 * start[1:] * rates)
+        variance = variance + width * squares
     return start + change, np.sqrt(np.maximum(variance - change**2, 0.0))
 
 

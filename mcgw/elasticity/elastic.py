@@ -81,12 +81,16 @@ class Elastic(Shown):
             Column("high", high, "to", form=".5g"),
         ))  # fmt: skip
 
+    def verdict(self) -> str:
+        """How much the cheaper levels helped, in one sentence."""
+        plain = f"boundary elements alone: {self.planned.plain:.3g} for the same error"
+        if len(self.planned.chain) == 1:
+            return f"no cheaper level helps; {plain}"
+        return f"{self.planned.cost:.3g} solves by levels, {self.saved:.1f} times less than {plain}"
+
     def sheet(self) -> Table:
-        """Means, intervals, and how much the cheaper levels helped."""
-        helped = f"{self.planned.cost:.3g} solves by levels, {self.saved:.1f} times less than"
-        cost = f"{helped if len(self.planned.chain) > 1 else 'no cheaper level helps;'} boundary elements "
-        cost += f"alone: {self.planned.plain:.3g} for the same error"
-        return self.table().under(f"Elastic mean over {self.words}", [("cost", cost)])
+        """Means, intervals and what was saved."""
+        return self.table().under(f"Elastic mean over {self.words}", [("cost", self.verdict())])
 
 
 def elastic(

@@ -21,12 +21,16 @@ def sheet_of(solution: Any) -> Table:
     many += ", drawn from the measured summits" if solution.scene.as_measured else ""
     facts = [("over", many), ("elasticity", solution.against_elasticity.brief)]
     facts += [("yielding", why)] if (why := yields(solution.yielding)) else []
-    table: Table = solution.table()
-    table = replace(table, columns=tuple(x for x in table.columns if x.name != "infinite"))
+    table = answers_of(solution, solution.table())
+    shown = table.only(*(x.name for x in table.columns if x.name != "infinite"))
+    return shown.under(shown.title, facts)
+
+
+def answers_of(solution: Any, table: Table) -> Table:
+    """Leave out what was given, and the corrected answers where there are none."""
     if np.isnan(table.columns[-1].values).all():
         table = replace(table, columns=table.columns[:-2])
-    found = [k for k, name in enumerate(solution.theory) if name != solution.given]
-    return table.at(found).under(table.title, facts)
+    return table.at([k for k, name in enumerate(solution.theory) if name != solution.given])
 
 
 def table_of(solution: Any, *, specimens: bool) -> Table:

@@ -12,9 +12,8 @@ from mcgw.ensemble.solution import solutions
 from mcgw.formats.table import evenly
 from mcgw.scene.scene import Scene
 
-Numbers = tuple[
-    Array, dict[str, Array]
-]  # x, rising; by name means and quantiles, nan where nothing is carried
+# x, rising, and by name means and quantiles, nan where nothing is carried.
+Numbers = tuple[Array, dict[str, Array]]
 _MOST = 2000  # surfaces drawn again where an ensemble keeps statistics alone
 
 

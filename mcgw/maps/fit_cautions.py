@@ -136,7 +136,7 @@ def _of_the_map(fit: Fit, ready: Prepared) -> Iterator[Found]:
 
 def _few_waves(fit: Fit) -> Iterator[Found]:
     if fit.waves.independent < _FEW_WAVES:
-        yield "waves", fit.waves.independent, 100 * fit.waves.spreads["sigma"][0]
+        yield "waves", fit.waves.independent, 100 * fit.waves.spreads["sigma"].error
 
 
 def _of_the_fit(fit: Fit, use: str) -> Iterator[Found]:

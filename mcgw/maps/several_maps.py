@@ -78,8 +78,7 @@ def pooled(fits: Sequence[Fit], names: Sequence[str]) -> Fit:
 
 def _together(each: Sequence[Spread], weights: Array) -> Spread:
     """Errors and arms of independent maps taken together."""
-    error, down, up = np.linalg.norm(weights[:, None] * each, axis=0).tolist()
-    return error, down, up
+    return Spread(*np.linalg.norm(weights[:, None] * each, axis=0).tolist())
 
 
 def _of_all(value: float, each: Sequence[Uncertain], weights: Array) -> Uncertain:
@@ -90,7 +89,7 @@ def _of_all(value: float, each: Sequence[Uncertain], weights: Array) -> Uncertai
     logs, n = np.log([x.value for x in each]), len(each)
     between = math.sqrt(n / (n - 1) * float(np.sum(weights**2 * (logs - weights @ logs) ** 2)))
     between *= float(stdtrit(n - 1, ndtr(2.0))) / 2
-    arms = [(x.relative, math.log(x.value / x.low), math.log(x.high / x.value)) for x in each]
+    arms = [Spread(x.relative, math.log(x.value / x.low), math.log(x.high / x.value)) for x in each]
     return uncertain(value, value * between, _together(arms, weights))
 
 

@@ -20,8 +20,6 @@ _BAND = 16  # rows that are looked at together: what is made of them stays in th
 _ROOTS = ("radius", "sigma")  # which go as the root of a power
 _OUTSIDE = 0.025  # at either end of an interval
 
-Spread = tuple[float, float, float]  # standard error of a logarithm, and how far 95 % reach below and above
-
 
 class Uncertain(NamedTuple):
     """A positive number that a map tells.
@@ -45,15 +43,34 @@ class Uncertain(NamedTuple):
         return self.error / self.value
 
 
-def uncertain(value: float, error: float, waves: Spread = (0.0, 0.0, 0.0)) -> Uncertain:
+class Spread(NamedTuple):
+    """How far the truth may lie from an estimate, in logarithms.
+
+    Parameters
+    ----------
+    error : float
+        Standard error.
+    down, up : float
+        How far below and above the estimate an interval of 95 % reaches.
+    """
+
+    error: float
+    down: float
+    up: float
+
+
+_NO_WAVES = Spread(0.0, 0.0, 0.0)
+
+
+def uncertain(value: float, error: float, waves: Spread = _NO_WAVES) -> Uncertain:
     """Put together an error seen between sub-areas, two of which hold 95 %, and that of few long waves.
 
     The larger one counts: sub-areas see the short waves twice and the long ones not at all.
     """
     relative = error / value
-    of_waves, down, up = waves[0], max(2 * relative, waves[1]), max(2 * relative, waves[2])
+    down, up = max(2 * relative, waves.down), max(2 * relative, waves.up)
     high = value * math.exp(up) if up < 700 else math.inf  # where an arm has no end
-    return Uncertain(value, value * max(relative, of_waves), value * math.exp(-down), high)
+    return Uncertain(value, value * max(relative, waves.error), value * math.exp(-down), high)
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,9 +79,8 @@ class Waves:
 
     Parameters
     ----------
-    spreads : dict of str to (float, float, float)
-        Of the logarithms of m0, m2, m4, alpha, eta, radius and sigma by spectral moments: standard error, and
-        how far below and above an interval of 95 % reaches.
+    spreads : dict of str to Spread
+        Of m0, m2, m4, alpha, eta, radius and sigma by spectral moments.
     independent : float
         How many independent heights would tell m0 as well.
     covariance : ndarray
@@ -176,7 +192,7 @@ def _spread(sums: list[float], degree: float, low: float) -> Spread:
     wider = math.copysign(degree, third) * float(stdtrit(freedom, float(ndtr(2.0)))) / 2
     ends = sorted(-wider * math.log(gammaincinv(n, p) / n) for p in (_OUTSIDE, 1 - _OUTSIDE))
     error = math.hypot(wider * math.sqrt(float(polygamma(1, n))), low)
-    return error, -ends[0] + max(-low, 0.0), ends[1] + max(low, 0.0)
+    return Spread(error, -ends[0] + max(-low, 0.0), ends[1] + max(low, 0.0))
 
 
 def _legendre_shares(shape: tuple[int, int], order: int) -> tuple[Array, Array]:

@@ -9,7 +9,7 @@ from analytic import Nayak, cooper_mikic_yovanovich, mean_absolute_slope, mikic_
 from analytic.arrays import Array
 from mcgw.ensemble.at_load import GAPS
 from mcgw.ensemble.solved import Solution
-from mcgw.ensemble.solved_table import elastic_verdict
+from mcgw.ensemble.solved_table import answers_of, elastic_verdict
 from mcgw.formats.table import SEPARATION, Column, Table, joined
 from mcgw.scene.in_words import contact_facts, joint_text
 from mcgw.scene.scene import Scene
@@ -22,7 +22,6 @@ _GAP = {
 }
 _OF_SPECIMENS = {"joint": "joint, mean of h", "correlation": "correlation (spots)"}
 _LINES = 2  # loads that the news names one by one
-_IN_FULL = ("quantity", "unit", "value", "low_95", "high_95", "specimen_05", "specimen_95", "infinite")
 # Left out of the short table; all but the first only where a film gives the conductance in SI units.
 _VARIANTS = ("load_slope", "conductance", "conductance_si", "specific_contact_resistance")
 
@@ -43,9 +42,8 @@ def solutions_text(
     else:
         lines += _background(scene, solutions)
         for solution in solutions:  # every quantity but the given one, specimens, and an infinite surface
-            best = [x.name for x in solution.sheet().columns if x.name in ("best", "best_95")]
-            table = solution.table(specimens=True).only(*_IN_FULL, *best)
-            table = table.at([k for k, name in enumerate(solution.theory) if name != solution.given])
+            table = answers_of(solution, solution.table(specimens=True))
+            table = table.only(*(x.name for x in table.columns if x.name != "std"))
             lines += ["", (replace(table, title="") if one else table).text()]
         if scene.film is not None:
             lines += ["", conductances(scene, solutions).text()]
@@ -59,8 +57,8 @@ def solutions_text(
 
 def answer_table(solution: Solution) -> Table:
     """Return the answer and specimens to the digits that count, a row a quantity that is no variant."""
-    name, unit, value, *ends, std = solution.sheet().columns[:6]
-    best, (low, high) = solution.sheet().columns[6:], (np.asarray(end.values) for end in ends)
+    name, unit, value, least, most, std, _, *best = answers_of(solution, solution.table()).columns
+    low, high = np.asarray(least.values), np.asarray(most.values)
     sure = high == low
     error = np.where(sure, 1e-4 * np.abs(np.asarray(value.values)), (high - low) / 2)
     half = Column("half", np.where(sure, np.nan, error), form=".2g", between=" ± ")

@@ -70,7 +70,7 @@ def _origin(attributes: dict[str, Any]) -> list[tuple[str, str]]:
     """Tell where the numbers of a file come from."""
     return [
         ("digest", str(attributes["digest"])),
-        ("made", f"{attributes['date']} in {attributes['wall_seconds']:.3g} s on {attributes['cpu']}"),
+        ("made", f"{attributes['date']} in {attributes['wall_seconds']:.2f} s on {attributes['cpu']}"),
         ("with", f"{attributes['versions']}; commit {attributes['commit']}"),
     ]
 

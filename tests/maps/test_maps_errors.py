@@ -10,7 +10,7 @@ from scipy.stats import gamma, norm, t as t_law
 
 from analytic import SpectralMoments
 from mcgw.maps import Spectrum, Topography, gaussian_map, moments_on_grid
-from mcgw.maps.waves import coarser, uncertain, waves_of
+from mcgw.maps.waves import Spread, coarser, uncertain, waves_of
 
 PARAMETERS = ("eta", "radius", "sigma")
 MOMENTS = ("m0", "m2", "m4", "alpha")
@@ -48,12 +48,12 @@ def test_errors_of_a_few_waves():
         ends = sorted(-wider * math.log(gamma.ppf(p, number) / number) for p in (0.025, 0.975))
         expected = abs(wider) * math.sqrt(polygamma(1, number)), -ends[0], ends[1]
         spread = found.spreads[name]
-        assert spread == pytest.approx(expected, rel=1e-9), name
+        assert (spread.error, spread.down, spread.up) == pytest.approx(expected, rel=1e-9), name
     assert found.independent == pytest.approx(2 * (1 / sum(m0**2 / waves) - 1), rel=1e-9)
 
 
 def test_the_larger_error_counts_and_an_arm_without_an_end_is_infinite():
-    waves = (0.2, 0.3, 0.5)
+    waves = Spread(0.2, 0.3, 0.5)
     for error, down, up, told in ((0.1, 0.3, 0.5, 0.4), (0.6, 0.6, 0.6, 0.6)):
         found = uncertain(2.0, error, waves)
         assert found == pytest.approx((2.0, told, 2 * math.exp(-down), 2 * math.exp(up)))
