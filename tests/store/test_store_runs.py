@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from oracles.begun_runs import SIZE, SURFACES, begun, digest, halted
 from oracles.flipped import flip_a_number
-from oracles.inside import RECORD, Plan, commit_block, part_of, parts_of
+from oracles.inside import RECORD, Blocks, Plan, Span, commit_block, part_of, parts_of
 from oracles.said import call
 
 import mcgw
@@ -192,6 +192,27 @@ def test_room_is_asked_for_what_is_not_there_yet(scene, tmp_path, monkeypatch):
     with pytest.raises(StoreError, match="free some space"):
         mcgw.run(scene, tmp_path / "other.h5")
     mcgw.run(scene, path)
+
+
+def test_blocks_of_several_groups_end_with_their_group():
+    """Two groups of 50 and 20 surfaces, in blocks of 16 and 20, one after the other."""
+    plan = Blocks(((50, 16), (20, 20)), whole=True)
+    blocks = [Span(0, 16), Span(16, 16), Span(32, 16), Span(48, 2), Span(50, 20)]
+    assert plan.total == 70
+    assert plan.missing([]) == blocks
+    assert [plan.number(block) for block in blocks] == [0, 1, 2, 3, 4]
+    assert [plan.group(block) for block in blocks] == [(0, 0), (0, 16), (0, 32), (0, 48), (1, 0)]
+    for held in blocks:
+        assert plan.missing([held]) == [block for block in blocks if block != held]
+        assert plan.takes(held)
+    assert plan.missing([Span(0, 37), Span(16, 16), Span(50, 9)]) == [
+        Span(37, 11),
+        Span(48, 2),
+        Span(59, 11),
+    ]  # one lies inside a longer one
+    assert not any(map(plan.takes, (Span(0, 15), Span(8, 16), Span(50, 16), Span(48, 4))))
+    assert Blocks(((50, 16),), whole=True).takes(Span(64, 16))  # of more than is asked for now
+    assert [Blocks(((50, 16),), whole=True).kept(n) for n in (0, 20, 32, 50)] == [0, 16, 32, 50]
 
 
 @pytest.mark.parametrize(
