@@ -57,9 +57,9 @@ def sweep(
 
     if plan:
         from mcgw.reports.plan import sweep_plan_text
-        from mcgw.sweeps.points import Asked
+        from mcgw.sweeps.points import Points
 
-        return print(sweep_plan_text(Asked.of(scene, axes_of(over, zipped=zip))))
+        return print(sweep_plan_text(Points.of(scene, axes_of(over, zipped=zip))))
     with drawing(threads, jobs, dask, shard) as how:
         found = drawn(scene, over, zipped=zip, path=output, **how)
     if shard is not None:

@@ -6,7 +6,7 @@ from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Any, overload
 
-from mcgw.ensemble.drawing import use_threads
+from mcgw.ensemble.drawing import drawn, use_threads
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import checkpoints, forecast, without_rule
 from mcgw.jobs.driver import By, check_how
@@ -238,8 +238,8 @@ def sweep(
     array([1.71, 1.86, 1.93])
     """
     from mcgw.sweeps.axes import axes_of  # of which a run needs nothing
-    from mcgw.sweeps.groups import draw, weighted
-    from mcgw.sweeps.points import Asked
+    from mcgw.sweeps.groups import weighted
+    from mcgw.sweeps.points import Points
 
     check_object("sweep", scene, Scene)
     if path is None and not (executor is None and shard is None):
@@ -251,13 +251,16 @@ def sweep(
     axes = axes_of(over, zipped=zipped, resolve=resolved)
     if path is None:
         with use_threads(threads), told(progress, "surfaces") as tell:
-            asked = Asked.of(scene, axes)
-            return asked.answered(draw(asked.groups, tell))
+            asked = Points.of(scene, axes)
+            for group in asked.groups:
+                group.check()
+            note = weighted(asked.groups, tell)
+            note(0)
+            return asked.answered(drawn(asked.groups, note))
     path = Path(path)
     scene = as_recorded(scene, path)
     part = check_how(executor, threads, shard)
     with told(progress, "surfaces") as tell:
-        asked = Asked.from_texts(*Asked.of(scene, axes).texts())  # as workers read it
-        plan = Plan.of_sweep(asked, path)
+        plan = Plan.of_sweep(Points.of(scene, axes), path)
         left = make(plan, By(executor, threads, weighted(plan.reducers, tell)), part)
     return left if part else open_sweep(path)

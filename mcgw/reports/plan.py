@@ -13,8 +13,8 @@ from mcgw.sampling.shared import shared
 from mcgw.scene.in_words import contact_facts
 from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene, storable
-from mcgw.sweeps.groups import Group, Pooling
-from mcgw.sweeps.points import Asked
+from mcgw.sweeps.groups import Group
+from mcgw.sweeps.points import Points
 
 _TARGETS = (1e-2, 1e-3)  # 95 % bounds of means
 _NO_SURFACES = "means alone: no surfaces, scene.theory is exact"
@@ -81,12 +81,12 @@ def _targets(scene: Scene, each: float) -> list[str]:
     return [*lines, _NO_SURFACES]
 
 
-def sweep_plan_text(asked: Asked) -> str:
+def sweep_plan_text(asked: Points) -> str:
     """Return the plan in words; the group that takes the longest is tried out, of which nothing is kept."""
     groups = asked.groups
     title = str(asked.document["title"])
     computed = sum(len(group.computed) for group in groups)
-    drawn = sum(group.n_surfaces * group.scenes[0].touching for group in groups)
+    drawn = sum(group.n_surfaces * group.computed[0].touching for group in groups)
     facts = [
         ("groups", f"{len(groups)} that share their surfaces"),
         ("surfaces", f"{sum(group.n_surfaces for group in groups)}, with {drawn:.4g} asperities that touch"),
@@ -99,7 +99,7 @@ def sweep_plan_text(asked: Asked) -> str:
 
 def _seconds(groups: list[Group]) -> float:
     """Of all groups, from the one that takes the longest."""
-    work = [group.n_surfaces * Pooling(group).work for group in groups]
+    work = [group.n_surfaces * group.work for group in groups]
     longest = groups[work.index(max(work))]
     started = perf_counter()
     source = shared(longest.computed)

@@ -37,7 +37,7 @@ from mcgw.store.lock import parts_of, refuse_link
 
 if TYPE_CHECKING:
     from mcgw.ensemble.drawing import GoOn, Reducer
-    from mcgw.sweeps.points import Asked
+    from mcgw.sweeps.points import Points
     from mcgw.sweeps.sweep import Sweep
 
 RECORD = "run.h5"
@@ -92,7 +92,7 @@ class Plan:
         return plan
 
     @classmethod
-    def of_sweep(cls, asked: "Asked", path: Path) -> "Plan":
+    def of_sweep(cls, asked: "Points", path: Path) -> "Plan":
         """Return that of a sweep.
 
         Raises
@@ -139,11 +139,11 @@ class Plan:
         return scene_from(self.text)
 
     @cached_property
-    def asked(self) -> "Asked":
+    def asked(self) -> "Points":
         """The points of a sweep."""
-        from mcgw.sweeps.points import Asked  # of which most runs are none
+        from mcgw.sweeps.points import Points  # of which most runs are none
 
-        return Asked.from_texts(self.text, self.axes)
+        return Points.from_texts(self.text, self.axes)
 
     @property
     def question(self) -> Question:
@@ -161,9 +161,7 @@ class Plan:
         """
         if not self.axes:
             return self.again().reducers
-        from mcgw.sweeps.groups import Pooling  # of which most runs are none
-
-        return tuple(map(Pooling, self.asked.groups))
+        return tuple(self.asked.groups)
 
     @cached_property
     def of_all(self) -> str:

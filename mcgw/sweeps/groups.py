@@ -13,13 +13,13 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, fields
 from functools import lru_cache, reduce
 from operator import add
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
 from analytic import Exponential, Homogeneous, quantity_of
 from analytic.arrays import Array, Ints
-from mcgw.ensemble.drawing import GoOn, Reducer, always, block_size, drawn, drawn_blocks, kept
+from mcgw.ensemble.drawing import GoOn, Reducer, always, block_size, drawn_blocks, kept
 from mcgw.ensemble.pooled import Pooled, pooled_from, tables_of
 from mcgw.ensemble.results import Held, Tables, joined
 from mcgw.machine.memory import check_memory
@@ -27,7 +27,6 @@ from mcgw.machine.progress import steps
 from mcgw.sampling.shared import Shared, common_edges, shared, to_be_shared
 from mcgw.scene.scene import Scene
 
-_Item = TypeVar("_Item")
 _MANY = 8  # gradings; fewer are computed one by one, with the same bits as alone
 
 
@@ -86,108 +85,6 @@ class PointResults(Held):
         return self.pooled.mean(name, *some), np.sqrt(self.pooled.variance(name, *some))
 
 
-@dataclass(frozen=True)
-class Group:
-    """Points that share their surfaces.
-
-    Parameters
-    ----------
-    numbers : tuple of int
-        Which points of the sweep.
-    scenes : tuple of Scene
-        Their scenes.
-    computed : tuple of Scene
-        Those whose sums are computed for every surface.
-    places : tuple of Place
-        Places of all points.
-    edges : tuple of float
-        Common edges of cells, where the cells of the scenes would differ (`common_edges`).
-    """
-
-    numbers: tuple[int, ...]
-    scenes: tuple[Scene, ...]
-    computed: tuple[Scene, ...]
-    places: tuple[Place, ...]
-    edges: tuple[float, ...]
-
-    @property
-    def n_surfaces(self) -> int:
-        """Number of shared surfaces."""
-        return self.scenes[0].n_surfaces
-
-
-def groups_of(scenes: Sequence[Scene]) -> list[Group]:
-    """Group the scenes of a sweep."""
-    keys = [to_be_shared(scene) for scene in steps(scenes, "points")]
-    together = _alike(range(len(scenes)), lambda i: (i,) if keys[i] is None else keys[i])
-    return [_group(g, members, [scenes[i] for i in members]) for g, members in enumerate(together)]
-
-
-def _group(group: int, numbers: list[int], scenes: list[Scene]) -> Group:
-    edges = common_edges(scenes) if len(scenes) > 1 else ()
-    if edges is None:
-        scenes, edges = [scene.replace(sampler="tail") for scene in scenes], ()
-    computed: list[int] = []
-    places: dict[int, Place] = {}
-    for members in _alike(
-        range(len(scenes)),
-        lambda i: [
-            getattr(scenes[i], f.name) for f in fields(scenes[i]) if f.name not in ("grading", "title")
-        ],
-    ):
-        first, one = len(computed), np.ones(1)
-        if (found := between_two([scenes[i] for i in members])) is None:
-            computed += members
-            places |= {i: Place(group, np.array([first + k]), one) for k, i in enumerate(members)}
-            continue
-        two, weights = found
-        computed += [members[k] for k in two]
-        for i, pair in zip(members, weights, strict=True):
-            some = np.flatnonzero(pair)  # drop those with zero weight
-            places[i] = Place(group, first + some, pair[some])
-    in_order = tuple(places[i] for i in range(len(scenes)))
-    return Group(tuple(numbers), tuple(scenes), tuple(scenes[i] for i in computed), in_order, edges)
-
-
-def _alike(items: Sequence[_Item], key: Callable[[_Item], Any]) -> list[list[_Item]]:
-    """Group items with equal keys, which need not be hashable."""
-    keys: list[Any] = []
-    found: list[list[_Item]] = []
-    for item in items:
-        this = key(item)
-        at = next((i for i in range(len(keys) - 1, -1, -1) if keys[i] == this), None)
-        if at is None:
-            keys.append(this)
-            found.append([item])
-        else:
-            found[at].append(item)
-    return found
-
-
-def between_two(scenes: Sequence[Scene]) -> tuple[tuple[int, int], Array] | None:
-    """Scenes that differ in their gradings alone, as weighted means of two of them.
-
-    Returns
-    -------
-    ((int, int), ndarray) or None
-        The two, and the weights of each scene on them, shape (scenes, 2). None if there are few scenes, a
-        grading is no exponential one, or sums are not linear in it.
-    """
-    one = scenes[0]
-    # All that is kept must be linear in a modulus that is not negative.
-    linear = one.hertzian and one.interaction is None and one.negative == "error"
-    gammas = [
-        x.grading.gamma if isinstance(x.grading, Exponential) else 1.0 if x.grading == Homogeneous() else None
-        for x in scenes
-    ]
-    if len(set(gammas)) < _MANY or None in gammas or not linear:
-        return None
-    x = np.array(gammas, dtype=np.float64)
-    low, high = int(np.argmin(x)), int(np.argmax(x))
-    share = (x - x[low]) / (x[high] - x[low])
-    return (low, high), np.column_stack([1 - share, share])
-
-
 _ROWS = 8192  # surfaces whose values are pooled at once, as an ensemble does
 _BYTES = 2**28  # bytes of those values
 _DRAWS = 1e10  # asperities per block: the cost of an interruption
@@ -195,32 +92,41 @@ _ANSWER = 3000  # cost of one scene per surface, in asperities drawn
 
 
 @dataclass(frozen=True, eq=False)
-class Pooling(Reducer):
-    """Means, variances and covariances of the points of a sweep that share their surfaces."""
+class Group(Reducer):
+    """Points that share their surfaces: their means, variances and covariances.
 
-    group: Group
+    Parameters
+    ----------
+    computed : tuple of Scene
+        Those whose sums are computed for every surface.
+    edges : tuple of float
+        Common edges of cells, where the cells of the scenes would differ (`common_edges`).
+    """
+
+    computed: tuple[Scene, ...]
+    edges: tuple[float, ...]
 
     @property
     def n_surfaces(self) -> int:
         """Number of shared surfaces."""
-        return self.group.n_surfaces
+        return self.computed[0].n_surfaces
 
     @property
     def rows(self) -> int:
         """Surfaces per block."""
-        width = sum(scene.width for scene in self.group.computed)
-        return max(min(_ROWS, _BYTES // (8 * width), int(_DRAWS / (self.group.scenes[0].touching + 1))), 1)
+        width = sum(scene.width for scene in self.computed)
+        return max(min(_ROWS, _BYTES // (8 * width), int(_DRAWS / (self.computed[0].touching + 1))), 1)
 
     @property
     def work(self) -> float:  # type: ignore[override]
         """Cost of a surface, in asperities drawn."""
-        return self.group.scenes[0].touching + _ANSWER * len(self.group.computed)
+        return self.computed[0].touching + _ANSWER * len(self.computed)
 
     def tables(self, first: int, stop: int, go_on: GoOn = always) -> Tables:
         """Return the statistics of a block."""
-        scenes, source = self.group.computed, _source_of(self)
-        blocks = list(drawn_blocks(source, first, stop, block_size(scenes[0], source)))
-        values = [joined([kept(scene, block[i]) for block in blocks]) for i, scene in enumerate(scenes)]
+        source = _source_of(self)
+        blocks = list(drawn_blocks(source, first, stop, block_size(self.computed[0], source)))
+        values = [joined([kept(x, block[i]) for block in blocks]) for i, x in enumerate(self.computed)]
         go_on(stop)
         return tables_of([Pooled.of(values)])
 
@@ -230,7 +136,7 @@ class Pooling(Reducer):
 
     def check(self, surfaces: int | None = None) -> None:  # noqa: ARG002
         """Refuse covariances that the memory cannot hold."""
-        scenes = self.group.computed
+        scenes = self.computed
         check_memory(
             f"sweep: covariances between {len(scenes)} points at {len(scenes[0].separations)} separations",
             2 * 8 * scenes[0].width * len(scenes) ** 2,
@@ -238,35 +144,74 @@ class Pooling(Reducer):
 
 
 @lru_cache(maxsize=1)  # blocks come in the order of groups
-def _source_of(pooling: Pooling) -> Shared:
-    return shared(pooling.group.computed, pooling.group.edges)
+def _source_of(group: Group) -> Shared:
+    return shared(group.computed, group.edges)
 
 
-def weighted(
-    reducers: Iterable[Reducer], tell: Callable[[float, float], object]
-) -> Callable[[float], object]:
+def groups_of(scenes: Sequence[Scene]) -> tuple[list[Group], list[Place]]:
+    """Group the scenes of a sweep; return also where in the groups each scene is."""
+    groups, places = list[Group](), dict[int, Place]()
+    keys = [to_be_shared(scene) for scene in steps(scenes, "points")]
+    for members in _alike([(i,) if key is None else key for i, key in enumerate(keys)]):
+        some, computed = [scenes[i] for i in members], list[Scene]()
+        edges = common_edges(some) if len(some) > 1 else ()
+        if edges is None:
+            some, edges = [scene.replace(sampler="tail") for scene in some], ()
+        for alike in _alike([_but_gradings(scene) for scene in some]):
+            wanted, combinations = combined([some[k] for k in alike])
+            for k, (which, weights) in zip(alike, combinations, strict=True):
+                places[members[k]] = Place(len(groups), len(computed) + which, weights)
+            computed += [some[alike[k]] for k in wanted]
+        groups.append(Group(tuple(computed), edges))
+    return groups, [places[i] for i in range(len(scenes))]
+
+
+def _but_gradings(scene: Scene) -> list[Any]:
+    return [getattr(scene, each.name) for each in fields(scene) if each.name not in ("grading", "title")]
+
+
+def _alike(keys: Sequence[Any]) -> list[list[int]]:
+    """Group the numbers of equal keys, which need not be hashable."""
+    found: list[tuple[Any, list[int]]] = []
+    for i, key in enumerate(keys):
+        members = next((some for other, some in reversed(found) if other == key), None)
+        if members is None:
+            found.append((key, members := []))
+        members.append(i)
+    return [members for _, members in found]
+
+
+def combined(scenes: Sequence[Scene]) -> tuple[Sequence[int], list[tuple[Ints, Array]]]:
+    """Scenes that differ in their gradings alone, as weighted means of some of them.
+
+    Returns
+    -------
+    (sequence of int, list of (ndarray, ndarray))
+        Those of which all are means: two; or all, if they are few, a grading is no exponential one, or sums
+        are not linear in it. For each scene which of them it is made of, and their weights.
+    """
+    one = scenes[0]
+    # All that is kept must be linear in a modulus that is not negative.
+    linear = one.hertzian and one.interaction is None and one.negative == "error"
+    gammas = [
+        x.grading.gamma if isinstance(x.grading, Exponential) else 1.0 if x.grading == Homogeneous() else None
+        for x in scenes
+    ]
+    if len(set(gammas)) < _MANY or None in gammas or not linear:
+        return range(len(scenes)), [(np.array([i]), np.ones(1)) for i in range(len(scenes))]
+    x = np.array(gammas, dtype=np.float64)
+    low, high = int(np.argmin(x)), int(np.argmax(x))
+    pairs = [np.array([1 - share, share]) for share in (x - x[low]) / (x[high] - x[low])]
+    return (low, high), [(np.flatnonzero(pair), pair[pair != 0]) for pair in pairs]
+
+
+def weighted(reducers: Iterable[Reducer], tell: Callable[[float, float], object]) -> GoOn:
     """Convert work done to (done, total) surfaces, weighted by their cost."""
     each = [(one.n_surfaces, one.n_surfaces * one.work) for one in reducers]
     surfaces, work = map(sum, zip(*each, strict=True))
-    return lambda done: tell(round(surfaces * done / work), surfaces)
 
-
-def draw(groups: Iterable[Group], tell: Callable[[float, float], object]) -> list[Pooled]:
-    """Draw all groups in memory and return their statistics.
-
-    Raises
-    ------
-    StoreError
-        If the memory is too small.
-    """
-    poolings = list(map(Pooling, groups))
-    for one in poolings:
-        one.check()
-    note = weighted(poolings, tell)
-
-    def go_on(done: float) -> bool:
-        note(done)
+    def note(done: float) -> bool:
+        tell(round(surfaces * done / work), surfaces)
         return True
 
-    go_on(0)
-    return drawn(poolings, go_on)
+    return note

@@ -9,14 +9,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
-from oracles.inside import block_size, memory_available, reducer_of
+from oracles.inside import Group, block_size, memory_available, reducer_of
 from oracles.memory_growth import peak_growth
 from oracles.said import without_notes
 
 import mcgw
 from mcgw.errors import StoreError
 from mcgw.machine import memory
-from mcgw.sweeps.groups import Pooling
 
 resource = pytest.importorskip("resource")
 
@@ -88,7 +87,7 @@ NEEDS = {
     "less than a block": ({"n_surfaces": 30_000}, lambda scene: reducer_of(scene).check(),
                           3 * 8 * 30_000 * WIDTH),
     "statistics": ({"keep": "statistics"}, lambda scene: reducer_of(scene).check(), 4 * SUMMARY + 3 * 2**26),
-    "points": ({}, lambda scene: Pooling(SimpleNamespace(computed=(scene,) * 300)).check(),
+    "points": ({}, lambda scene: Group((scene,) * 300, ()).check(),
                2 * 8 * WIDTH * 300**2),
 }  # fmt: skip
 
@@ -143,6 +142,6 @@ def test_blocks_are_as_large_as_the_memory_and_an_interruption_allow(words, draw
     assert reducer.rows * draws <= 1e9 or reducer.rows == 1
     assert reducer.rows % 256 == 0 or reducer.rows <= max(size, 256) or keep == "statistics"
     computed = (SimpleNamespace(width=scene.width + words, touching=draws),)
-    rows = Pooling(SimpleNamespace(computed=computed, scenes=computed)).rows
+    rows = Group(computed, ()).rows
     assert rows == 1 or (8 * rows * (scene.width + words) <= 2**28 and rows * draws <= 1e10)
     assert rows <= 8192

@@ -80,6 +80,9 @@ MODULES = {
     "mcgw.store.lock": "LOCK_FILES locked LockedError parts_of",
     "mcgw.store.blocks": "Blocks commit_shard open_shard Span",
     "mcgw.store.run_plan": "Plan RECORD",
+    "mcgw.sweeps.axes": "axes_of label",
+    "mcgw.sweeps.groups": "Group",
+    "mcgw.sweeps.points": "sweep_cautions",
 }
 HOME = {name: module for module, names in MODULES.items() for name in names.split()}
 

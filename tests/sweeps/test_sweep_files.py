@@ -82,15 +82,15 @@ def test_other_programs_read_points_in_a_row_and_words_as_codes(tmp_path):
 @pytest.mark.parametrize("after", [1, 3])
 def test_interrupted_anywhere_it_goes_on_to_the_same_digest(tmp_path, monkeypatch, expected, after):
     """A damaged chunk is drawn again; a finished file is not."""
-    path, tables, drawn, stops = tmp_path / "a.h5", groups.Pooling.tables, [], [after]
+    path, tables, drawn, stops = tmp_path / "a.h5", groups.Group.tables, [], [after]
 
-    def counted(pooling, first, *rest):
+    def counted(group, first, *rest):
         if len(drawn) in stops:
             raise KeyboardInterrupt
         drawn.append(first)
-        return tables(pooling, first, *rest)
+        return tables(group, first, *rest)
 
-    monkeypatch.setattr(groups.Pooling, "tables", counted)
+    monkeypatch.setattr(groups.Group, "tables", counted)
     with pytest.raises(KeyboardInterrupt):
         mcgw.sweep(SCENE, OVER, path=path)
     settle()
