@@ -12,9 +12,8 @@ import numpy as np
 
 from analytic import SpectralMoments
 from mcgw.scene.kinds import argument
-from mcgw.scene.radii import Spectral
 from mcgw.scene.section import SceneError
-from mcgw.scene.surface import SpectralSurface
+from mcgw.scene.surface import Spectral, SpectralSurface
 
 
 class Row(NamedTuple):

@@ -5,8 +5,9 @@ from collections.abc import Mapping
 from typing import Any
 
 import analytic
+from analytic.laws import ContactLaw
 from mcgw.scene.kinds import Either, Flag, List, Number, Table, Text, Whole, Word
-from mcgw.scene.laws import GRADINGS, HEIGHTS, contact_law_given, grading_given, heights_given, radii_given
+from mcgw.scene.laws import GRADINGS, HEIGHTS, grading_given, heights_given, instance_of
 from mcgw.scene.parts import Contact, Joint, Sampling, rows_of
 from mcgw.scene.section import Key
 from mcgw.scene.uncertainty import Uncertainty
@@ -61,6 +62,7 @@ _BODY_OF_FILE = Table((Key("file", _FILE, required=True),), "")
 _GRADING = "mcgw.Exponential(gamma), mcgw.Table(s, ratio), or a function of an array of heights"
 _HEIGHTS = "mcgw.HeightTable.of(heights), or a frozen continuous distribution, scipy.stats.lognorm(0.3)"
 _OWN_LAW = "a law; your own law is mcgw.CustomLaw(load=..., area=..., ...)"
+_RADII_GIVEN = instance_of(analytic.RandomCurvature, analytic.MeasuredRadii)
 # fmt: off
 TABLES: dict[str, Table] = {
 "": Table((
@@ -131,8 +133,8 @@ TABLES: dict[str, Table] = {
         "its shape parameters"),
 )),
 "summits": Table(words="Radii of the summits, if they differ.", rows=(
-    Key("curvature", Word(("random", "mean"), "", radii_given, "mcgw.MeasuredRadii(heights, ratios)"),
-        '"random"',
+    Key("curvature", Word(("random", "mean"), "", _RADII_GIVEN,
+        "mcgw.MeasuredRadii(heights, ratios)"), '"random"',
         "`random`: the radius of each summit follows the exact joint distribution with its height (default "
         "with `m0`, `m2`, `m4`); `mean`: one radius"),
     Key("largest_radius", Number("m"), '"1 mm"', "upper limit of the radii, m"),
@@ -161,7 +163,7 @@ TABLES: dict[str, Table] = {
 "contact.law": Table(words="Contact law of an asperity, and its constants: [how the laws "
     "differ](../explanation/contact-laws.md). A law without constants may stand under `[contact]` as a word: "
     "`law = \"hertz\"`. Default: Hertz's.", rows=(
-    Key("name", Word(_contact_laws, "", contact_law_given, _OWN_LAW), '"kogut-etsion"',
+    Key("name", Word(_contact_laws, "", instance_of(ContactLaw), _OWN_LAW), '"kogut-etsion"',
         "`hertz` (default), `power-law-graded`, `coated`, `chang-etsion-bogy`, `zhao-maietta-chang`, "
         "`kogut-etsion`, `jackson-green`, `derjaguin-muller-toporov`, `johnson-kendall-roberts` or `custom`",
         "hertz"),

@@ -5,13 +5,18 @@ from inspect import Parameter, signature
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 import analytic
-from analytic import Custom, Grading, HeightLaw, Homogeneous, MeasuredRadii, RandomCurvature, Surface
+from analytic import Custom, Grading, HeightLaw, Homogeneous, Surface
+from analytic.arrays import Array
 from analytic.laws import ContactLaw, Hertz
-from mcgw.scene.files_beside import read_grading, read_heights
+from mcgw.scene.files_beside import read_grading, read_heights, read_summits
 from mcgw.scene.section import Section
 
 OF_YIELD = ("hardness", "poisson")  # which tell beside an elastic law whether contacts yield
+LISTS = ("file", "heights", "radii", "ratios", "resample")  # keys of listed summits
+Listed = tuple[analytic.MeasuredHeights, Array, dict[str, float]]
 GRADINGS: dict[str, Any] = {  # laws by their words in a scene
     "homogeneous": analytic.Homogeneous,
     "exponential": analytic.Exponential,
@@ -47,14 +52,9 @@ def heights_given(given: Any) -> HeightLaw | None:
     return given if own else None
 
 
-def contact_law_given(given: Any) -> ContactLaw | None:
-    """Accept a law of contact."""
-    return given if isinstance(given, ContactLaw) else None
-
-
-def radii_given(given: Any) -> RandomCurvature | MeasuredRadii | None:
-    """Accept radii of summits."""
-    return given if isinstance(given, RandomCurvature | MeasuredRadii) else None
+def instance_of(*kinds: type) -> Callable[[Any], Any]:
+    """Return what accepts objects of these kinds."""
+    return lambda given: given if isinstance(given, kinds) else None
 
 
 # --- by keys ---
@@ -73,7 +73,7 @@ def _law(section: Section, key: str, law: Any, makes: Mapping[str, Callable[...,
             if name in section:
                 given[name] = section.read(name)
             elif own.default is Parameter.empty:
-                section.note(f'{section.path(name)}: missing; {key} = "{law}" needs it')
+                section.problems.append(f'{section.path(name)}: missing; {key} = "{law}" needs it')
         elif name in section and name not in OF_YIELD:
             laws = [repr(word) for word, make in makes.items() if name in signature(make).parameters]
             only = f"it is for {key} = {' or '.join(laws)} only; leave it out"
@@ -120,6 +120,33 @@ def _of_scipy(name: str = "norm", shapes: Mapping[str, float] | None = None) -> 
     except (TypeError, ValueError) as error:
         wanted = distribution.shapes or "none"
         raise ValueError(f"shapes: give its shapes ({wanted}), such as {{a = 4.0}}; {error}") from None
+
+
+def listed_summits(section: Section, folder: Path) -> Listed | None:
+    """Read summits listed with their heights and radii; None if there are none, or mistakes, which are noted.
+
+    The law of their heights; radii, m or over that of the surface, shape (summits,); and what they tell of
+    their surface: their number ``eta`` on it and, if radii are in m, sigma and radius.
+    """
+
+    def listed(file: Any, heights: Any, radii: Any, ratios: Any, resample: Any) -> Listed:
+        own = (heights, ratios if radii is None else radii)
+        z, R = (np.asarray(x, np.float64) for x in (own if file is None else read_summits(folder / file)))
+        if z.shape != R.shape:
+            raise ValueError(f"there are {z.size} heights and {R.size} radii")
+        for k in np.flatnonzero(~(np.isfinite(z) & np.isfinite(R) & (R > 0)))[:1]:
+            has = f"summit {k + 1} has the height {z[k]:g} and the radius {R[k]:g}"
+            raise ValueError(f"{has}; heights are finite, radii > 0")
+        told = {"eta": float(len(z))}
+        if file is not None or radii:
+            told |= {"sigma": float(z.std()), "radius": float(1 / np.mean(1 / R))}
+        return analytic.MeasuredHeights(z, resampled=bool(resample)), R, told
+
+    given = section.read_all(LISTS)
+    if (given["file"] is None) is (given["heights"] is None or given["radii"] is given["ratios"]):
+        return None
+    made: Listed | None = section.made(listed, given)
+    return made
 
 
 def contact_law(section: Section) -> ContactLaw:

@@ -15,12 +15,11 @@ from analytic.laws.law import check_poisson
 from mcgw.scene.fields import LeftOut
 from mcgw.scene.keys import KEYS, MOMENTS, SUMMITS, SURFACE_UNITS, TABLES, as_tables, whole_key
 from mcgw.scene.kinds import as_toml
-from mcgw.scene.laws import OF_YIELD, contact_law, grading_of, heights_of
+from mcgw.scene.laws import LISTS, OF_YIELD, contact_law, grading_of, heights_of, listed_summits
 from mcgw.scene.parts import Contact, Graded, Joint, Sampling
-from mcgw.scene.radii import LISTS, Spectral, listed_of
 from mcgw.scene.rough_bodies import with_bodies
 from mcgw.scene.section import SceneError, Section, nearest
-from mcgw.scene.surface import read_surface
+from mcgw.scene.surface import Spectral, read_surface
 
 Values = dict[str, Any]
 Radii = RandomCurvature | MeasuredRadii | None
@@ -39,12 +38,7 @@ _QUANTITIES = ("load", "area", "stiffness", "contacts")
 def of_arguments(given: Mapping[str, Any]) -> Values:
     """Read parts of a scene, and keys of them by their names, as its file would be read; None: left out.
 
-    Raises
-    ------
-    TypeError
-        If there is no such part or key.
-    SceneError
-        With one line for each mistake.
+    Raises TypeError if there is no such part or key, SceneError with one line for each mistake.
     """
     document: Values = {}
     for name, value in given.items():
@@ -90,14 +84,9 @@ def of_tables(
     folder: Path = Path(),
     seed: Callable[[], int | None] | None = None,
 ) -> Values:
-    """Read the tables of a scene, and the files beside it in `folder`.
+    """Read the tables of a scene, and the files beside it in `folder`; where there is no seed, ask `seed`.
 
-    Where nothing gives a seed, `seed` is asked first.
-
-    Raises
-    ------
-    SceneError
-        With one line for each mistake.
+    Raises SceneError with one line for each mistake.
     """
     document = with_bodies(as_tables(document), folder, of_tables)
     if isinstance(whole := document.get("surface"), Surface):  # of Python, which checked it
@@ -140,36 +129,29 @@ def _surface_and_summits(
     summits, of_heights = of["summits"], of["heights"]
     if any(key in summits for key in LISTS):
         if isinstance(of_heights.table.get("law", ""), str) and of_heights.table:
-            of_heights.note("heights: [summits] already gives the heights; leave [heights] out")
-        listed = listed_of(summits, folder)
-        surface = (
-            whole if isinstance(whole, Surface) or not listed else read_surface(of["surface"], listed[2])
-        )
-        if listed is None or not isinstance(surface, Surface):
+            of_heights.problems.append("heights: [summits] already gives the heights; leave [heights] out")
+        if (listed := listed_summits(summits, folder)) is None:
             return None, Gaussian(), None
-        unit = surface.radius if "radius" in listed[2] else 1.0
-        return surface, listed[0], MeasuredRadii(listed[0], listed[1] / unit)
+        law, R, told = listed
+        surface = whole if isinstance(whole, Surface) else read_surface(of["surface"], told)
+        if not isinstance(surface, Surface):
+            return None, law, None
+        return surface, law, MeasuredRadii(law, R / (surface.radius if "radius" in told else 1.0))
     read = whole if isinstance(whole, Surface) else read_surface(of["surface"])
     surface, default = (read.surface, "random") if isinstance(read, Spectral) else (read, "mean")
     radii, largest = summits.read("curvature", default), summits.read("largest_radius")
-    heights: HeightLaw | None
-    if isinstance(radii, MeasuredRadii) and not of_heights.table:
-        heights = radii.heights
-    elif isinstance(read, Spectral) and not of_heights.table:
-        heights = read.heights
-    else:
-        heights = heights_of(of_heights, folder)
+    own: Any = radii if isinstance(radii, MeasuredRadii) else read
+    known = isinstance(own, MeasuredRadii | Spectral) and not of_heights.table
+    heights = own.heights if known else heights_of(of_heights, folder)
     uncertain = getattr(surface, "uncertainty", None)
     if uncertain and set(MOMENTS) & set(uncertain.names) and not isinstance(heights, Nayak | None):
         advice = 'm0, m2 and m4 need heights.law = "nayak"; otherwise give sigma, radius and eta'
         of["surface"].fail("uncertainty", uncertain.names, advice)
     if radii == "mean" and largest is not None:
         summits.fail("largest_radius", summits.table["largest_radius"], 'needs curvature = "random"')
-    if not isinstance(radii, str):
-        return surface, heights, radii
     if radii == "random" and surface is not None and heights is not None:
-        return surface, heights, _random(summits, heights, surface.radius, largest)
-    return surface, heights, None
+        radii = _random(summits, heights, surface.radius, largest)
+    return surface, heights, None if isinstance(radii, str) else radii
 
 
 def _random(
@@ -236,7 +218,7 @@ def _softer(section: Section, law: ContactLaw) -> Values:
         try:
             check_poisson(found["poisson"])
         except ValueError as error:
-            section.note(f"{section.name}.{error}")
+            section.problems.append(f"{section.name}.{error}")
         if "hardness" not in section:
             section.fail("poisson", found["poisson"], "give hardness too, or leave it out")
     return found
@@ -251,7 +233,7 @@ def _joint(of: Mapping[str, Section]) -> Joint:
         assert joint.film is not None
         assert joint.gas is None or joint.filling is not None
     except ValueError as error:
-        of["joint"].note(f"joint.{error}")
+        of["joint"].problems.append(f"joint.{error}")
         return Joint()
     return joint  # type: ignore[no-any-return]
 

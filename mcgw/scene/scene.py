@@ -23,9 +23,9 @@ from mcgw.scene.mistakes import mistakes
 from mcgw.scene.parts import Contact, Graded, Joint, Sampling
 from mcgw.scene.plausible import perhaps_other_units, takes_hours, warn_of_units
 from mcgw.scene.promises import promise_of
-from mcgw.scene.radii import Spectral
 from mcgw.scene.reading import of_arguments
 from mcgw.scene.section import SceneError
+from mcgw.scene.surface import Spectral
 from mcgw.validity.fitted_map import Fitted
 
 if TYPE_CHECKING:

@@ -116,10 +116,6 @@ class Section:
         """Note a mistake in the value of a key."""
         self.problems += mistake(self.path(name), value, advice).problems
 
-    def note(self, line: str) -> None:
-        """Note a mistake with this text."""
-        self.problems.append(line)
-
     def __contains__(self, name: str) -> bool:
         """Whether the key is given."""
         return name in self.table
@@ -136,7 +132,7 @@ class Section:
         if row.required and default is _FROM_ROW:
             unit = row.kind.unit
             cure = f"give it in {unit}" if unit not in ("", "1") else row.kind.advice or "give it"
-            self.note(f"{self.path(name)}: missing; {cure}")
+            self.problems.append(f"{self.path(name)}: missing; {cure}")
         return row.default if default is _FROM_ROW else default
 
     def read_all(self, names: Iterable[str]) -> dict[str, Any]:
@@ -159,7 +155,7 @@ class Section:
         if at in there:
             self.fail(at, self.table[at], advice)
         elif at in self.rows or not there:
-            self.note(f"{self.name}{'.' if at in self.rows else ': '}{reason}")
+            self.problems.append(f"{self.name}{'.' if at in self.rows else ': '}{reason}")
         else:
             cure = self.rows["file"].kind.advice if there[0] == "file" else ""
             self.fail(there[0], self.table[there[0]], "; ".join(filter(None, (reason, cure))))
@@ -172,9 +168,9 @@ class Section:
             meant = nearest(key[:99], self.known) or f"known keys: {', '.join(self.known)}"
             if "." in (whole := moved(key)) and whole != self.path(key):
                 meant = f"did you mean {whole}?"
-            self.note(f"{self.path(key)}: unknown key; {meant.removesuffix(' ')}")
+            self.problems.append(f"{self.path(key)}: unknown key; {meant.removesuffix(' ')}")
         if len(unknown) > _MOST_NAMED:
-            self.note(f"[{self.name}]: {len(unknown) - _MOST_NAMED} more unknown keys")
+            self.problems.append(f"[{self.name}]: {len(unknown) - _MOST_NAMED} more unknown keys")
         told = [line.partition(":")[0] for line in self.problems]  # a missing key is noted once
         for row in (row for row in self.rows.values() if row.name in self.table):
             value, needs = self.table[row.name], " or ".join(row.needs)

@@ -2,17 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from typing import Any, TypeVar
+from typing import Any
 
 from analytic import Body as PlainBody, Nayak, SpectralMoments, Surface as Plain, composite_modulus
 from mcgw.scene.keys import KEYS, MOMENTS, POISSON, SUMMITS, SURFACE_UNITS, YOUNG
 from mcgw.scene.kinds import arguments, as_toml
 from mcgw.scene.plausible import surface_in_other_units, warn_of_units
-from mcgw.scene.radii import Spectral
 from mcgw.scene.section import SceneError, Section
 from mcgw.scene.uncertainty import Uncertainty
-
-_Kind = TypeVar("_Kind", Plain, Spectral)
 
 
 @dataclass(frozen=True)
@@ -29,6 +26,27 @@ class UncertainSurface(Plain):
 
     def __post_init__(self) -> None:
         Plain(*(getattr(self, key) for key in SURFACE_UNITS))  # whose numbers are checked
+
+
+@dataclass(frozen=True)
+class Spectral:
+    """An isotropic Gaussian surface.
+
+    Parameters
+    ----------
+    moments : SpectralMoments
+        Moments of its spectrum.
+    surface : Surface
+        Its summits, with the inverse of their mean curvature as radius.
+    """
+
+    moments: SpectralMoments
+    surface: Plain
+
+    @property
+    def heights(self) -> Nayak:
+        """Height law of its summits."""
+        return Nayak(self.moments.alpha)
 
 
 def Body(E: float | str, nu: float = 0.3) -> PlainBody:  # noqa: N802 - the door to a class of this name
@@ -104,7 +122,7 @@ def Surface(  # noqa: N802 - the door to a class of this name
     0.0001
     """
     given = {"sigma": sigma, "radius": radius, "eta": eta, "nominal_area": nominal_area, "E_star": E_star}
-    return _read(Plain, given, uncertainty)
+    return _read(given, uncertainty)  # type: ignore[no-any-return]
 
 
 def SpectralSurface(  # noqa: N802 - as above
@@ -153,60 +171,49 @@ def SpectralSurface(  # noqa: N802 - as above
     Nayak(alpha=5.0)
     """
     given = {"m0": m0, "m2": m2, "m4": m4, "nominal_area": nominal_area, "E_star": E_star}
-    return _read(Spectral, given, uncertainty)
+    return _read(given, uncertainty)  # type: ignore[no-any-return]
 
 
-def _read(kind: type[_Kind], given: Mapping[str, Any], uncertainty: Any) -> _Kind:
+def _read(given: Mapping[str, Any], uncertainty: Any) -> Any:
     """Read numbers or texts with units; implausible values give a warning."""
-    plain = {key: as_toml(value) for key, value in given.items()}
-    if uncertainty is not None:
-        plain["uncertainty"] = as_toml(uncertainty)
-    section = Section("surface", plain, KEYS["surface"])
+    given = {**given, "uncertainty": uncertainty} if uncertainty is not None else given
+    section = Section("surface", as_toml(given), KEYS["surface"])
     surface = read_surface(section)
     section.finish()
     if section.problems:
         raise SceneError(section.problems)
     if isinstance(surface, Plain):
         warn_of_units(surface_in_other_units(surface))
-    assert isinstance(surface, kind)
     return surface
 
 
 def read_surface(section: Section, listed: Mapping[str, float] | None = None) -> Plain | Spectral | None:
     """Read the table [surface], also from m0, m2 and m4; mistakes are noted in the section and give None.
 
-    Parameters
-    ----------
-    section : Section
-        The table.
-    listed : mapping, optional
-        What summits that are listed tell: their number ``eta`` and, unless the table does, sigma and radius.
+    Summits that are `listed` tell their number ``eta`` and, unless the table does, sigma and radius.
     """
     told, spectral = dict(listed or {}), [key for key in MOMENTS if key in section]
-    if spectral and listed:
-        section.fail(
-            spectral[0], section.table[spectral[0]], "[summits] already lists the summits; leave it out"
-        )
+    if spectral and told:
+        advice = "[summits] already lists the summits; leave it out"
+        section.fail(spectral[0], section.table[spectral[0]], advice)
     modulus = "bodies" if "bodies" in section else "E_star"
     names = (*(MOMENTS if spectral else SUMMITS), "nominal_area", modulus)
     values = told | section.read_all(name for name in names if name in section or name not in told)
     uncertainty = section.read("uncertainty")
-    if listed and "eta" not in section and values["nominal_area"]:
+    if section.problems:
+        return None
+    if told and "eta" not in section:
         values["eta"] /= values["nominal_area"]
-
-    def made(**given: Any) -> Plain | Spectral:
+    try:
         if modulus == "bodies":
-            given["E_star"] = composite_modulus(given.pop("bodies"))
-        moments = SpectralMoments(*(given[key] for key in MOMENTS)) if spectral else None
+            values["E_star"] = composite_modulus(values.pop("bodies"))
+        moments = SpectralMoments(*(values.pop(key) for key in MOMENTS)) if spectral else None
         if moments is not None:
             Nayak(moments.alpha)
-        surface = moments.surface(given["nominal_area"], given["E_star"]) if moments else Plain(**given)
-        if uncertainty is not None:
-            surface = UncertainSurface(**asdict(surface), uncertainty=uncertainty)
-        return Spectral(moments, surface) if moments else surface
-
-    try:
-        return None if section.problems else made(**values)
+        surface = moments.surface(**values) if moments else Plain(**values)
     except ValueError as error:
-        section.note(f"surface: {error}")
+        section.problems.append(f"surface: {error}")
         return None
+    if uncertainty is not None:
+        surface = UncertainSurface(**asdict(surface), uncertainty=uncertainty)
+    return Spectral(moments, surface) if moments else surface

@@ -1,7 +1,6 @@
 """Errors of the model against boundary elements: the packaged table and its interpolation."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from typing import Any, NamedTuple
@@ -37,10 +36,8 @@ def read(lines: Iterable[str]) -> Any:
 def grid_of(kind: str, model: str, interaction: str) -> "Grid":
     """Table of a model on one kind of maps, "gaussian" or "caps"."""
     rows = packaged()
-    here = np.all(
-        [rows[key] == word for key, word in zip(_MODEL, (kind, model, interaction), strict=True)], 0
-    )
-    return Grid.of(rows[here], along_separation=kind == "caps")
+    here = (rows["map"] == kind) & (rows["model"] == model) & (rows["interaction"] == interaction)
+    return Grid(rows[here], along_separation=kind == "caps")
 
 
 class Expected(NamedTuple):
@@ -58,28 +55,6 @@ class Expected(NamedTuple):
     lightest: float
 
 
-def scatter_law(rows: Any, name: str) -> Array:
-    """Fit the standard deviation between maps as a power of x times one of the loaded spots.
-
-    Eight maps tell a deviation to a quarter; all those of a model tell such a law to a few per cent, and over
-    the table it is theirs (`runs/validation/README.md`). Weighted least squares of the logarithms.
-
-    Returns
-    -------
-    ndarray
-        Logarithm of the deviation where x and spots are 1, and both powers.
-    """
-    share = _share(rows, name)
-    known = np.isfinite(share) & (share > 0) & (rows["maps"] > 0)
-    nu = rows["maps"][known] - 1
-    # The mean logarithm of a variance of nu degrees of freedom lies below that of its mean.
-    told = np.log(share[known]) + (np.log(nu / 2) - digamma(nu / 2)) / 2
-    columns = np.column_stack([np.ones_like(nu), *(np.log(rows[key][known]) for key in ("x", "contacts"))])
-    weight = np.sqrt(nu)
-    return np.asarray(np.linalg.lstsq(columns * weight[:, None], told * weight, rcond=None)[0])
-
-
-@dataclass(frozen=True)
 class Grid:
     """Errors of one model on one kind of maps.
 
@@ -89,29 +64,18 @@ class Grid:
 
     Parameters
     ----------
-    x : ndarray
-        Rising: alpha, or eta R sigma of caps.
-    rows : list of ndarray
-        Rows of the table of each, by rising load.
-    scatter : dict of str to ndarray
-        Laws of that between maps, by column, of separations over their unit, else as of a logarithm; loads
-        at a gap scatter as gaps do, times their steepness.
+    table : ndarray
+        Rows of the table: their x is alpha, or eta R sigma of caps.
     along_separation : bool
         Whether loads are taken over x.
     """
 
-    x: Array
-    rows: list[Any]
-    scatter: dict[str, Array]
-    along_separation: bool
-
-    @classmethod
-    def of(cls, table: Any, *, along_separation: bool) -> "Grid":
-        """Make a grid from rows of the table."""
+    def __init__(self, table: Any, *, along_separation: bool) -> None:
         table = table[np.argsort(table["p"], kind="stable")]
-        x = np.unique(table["x"])
-        scatter = {name: scatter_law(table, name) for name in COLUMNS if name != "load"}
-        return cls(x, [table[table["x"] == value] for value in x], scatter, along_separation)
+        self.x, self.along_separation = np.unique(table["x"]), along_separation
+        self.rows = [table[table["x"] == x] for x in self.x]
+        # Loads at a gap scatter as gaps do, times their steepness.
+        self.scatter = {name: _scatter_law(table, name) for name in COLUMNS if name != "load"}
 
     def holds(self, x: float) -> bool:
         """Whether surfaces on both sides of this x were measured."""
@@ -155,6 +119,23 @@ class Grid:
             off[name] = far if name == "separation" else (1 + bias) * np.expm1(far)
         loads = (low, high) if low <= high else (np.nan, np.nan)
         return Expected({name: values[0] for name, values in found.items()}, off, maps, loads, lightest)
+
+
+def _scatter_law(rows: Any, name: str) -> Array:
+    """Fit the standard deviation between maps as a power of x times one of the loaded spots.
+
+    Eight maps tell a deviation to a quarter; all those of a model tell such a law to a few per cent, and over
+    the table it is theirs (`runs/validation/README.md`). Weighted least squares of the logarithms give that
+    of the deviation where x and spots are 1, and both powers.
+    """
+    share = _share(rows, name)
+    known = np.isfinite(share) & (share > 0) & (rows["maps"] > 0)
+    nu = rows["maps"][known] - 1
+    # The mean logarithm of a variance of nu degrees of freedom lies below that of its mean.
+    told = np.log(share[known]) + (np.log(nu / 2) - digamma(nu / 2)) / 2
+    columns = np.column_stack([np.ones_like(nu), *(np.log(rows[key][known]) for key in ("x", "contacts"))])
+    weight = np.sqrt(nu)
+    return np.asarray(np.linalg.lstsq(columns * weight[:, None], told * weight, rcond=None)[0])
 
 
 def _share(rows: Any, name: str) -> Array:

@@ -44,20 +44,6 @@ _GAUSSIAN = Maps("gaussian", "alpha", "p/(E* g)", "Gaussian", "the limit of Bush
 _CAPS = Maps("caps", "eta R sigma", "p/(E* sqrt(sigma/R))", "separate caps", "Hertz's law")
 
 
-class Place(NamedTuple):
-    """Place of a scene in the table: the maps, and the model of its summits.
-
-    Then Nayak's alpha, or eta R sigma of caps; by what pressures over E* are taken, the rms slope g or
-    sqrt(sigma/R) of caps; and gaps of the table over sigma, sqrt(m0) or 1 for caps.
-    """
-
-    maps: Maps
-    model: str
-    x: float
-    slope: float
-    rms: float
-
-
 def validity_of(scene: Any, separations: ArrayLike | None = None) -> Validity:
     """Look up the error of a scene's model against elasticity.
 
@@ -76,42 +62,41 @@ def validity_of(scene: Any, separations: ArrayLike | None = None) -> Validity:
     given = scene.separations if separations is None else separations
     h = np.unique(np.asarray(given, dtype=np.float64))
     h = h[evenly(len(h), _MOST_SEPARATIONS)]
-    none = np.full(len(h), np.nan)
-    nothing = Validity(h, none, dict.fromkeys(COLUMNS, none), dict.fromkeys(COLUMNS, none))
-    reason = not_on_the_map(scene)
-    if reason is not None:
+    nan = np.full(len(h), np.nan)
+    nothing = Validity(h, nan, dict.fromkeys(COLUMNS, nan), dict.fromkeys(COLUMNS, nan))
+    if (reason := not_on_the_map(scene)) is not None:
         return replace(nothing, unknown=f"not measured: {reason}")
-    place, area_only = place_of(scene), _area_only(scene)
-    alone = scene.interaction is None or area_only
-    grid = grid_of(place.maps.kind, place.model, "none" if alone else "summits")
-    x = f"{place.maps.x} = {place.x:.4g}"
+    maps, model, x, slope, rms = place_of(scene)
+    area_only = _area_only(scene)
+    grid = grid_of(maps.kind, model, "none" if scene.interaction is None or area_only else "summits")
     measured = f"measured: {grid.x[0]:g} to {grid.x[-1]:g}"
-    if not grid.holds(place.x):
-        return replace(nothing, unknown=f"outside the measured range ({x}; {measured})")
-    model = replace(scene.alone, grading=Homogeneous(), unload_from=None, film=None)
+    if not grid.holds(x):
+        return replace(nothing, unknown=f"outside the measured range ({maps.x} = {x:.4g}; {measured})")
+    hertzian = replace(scene.alone, grading=Homogeneous(), unload_from=None, film=None)
     stood_on = scene.n_asperities / scene.surface.eta  # area, m^2
-    p = model.mean("load", h) / (scene.surface.E_star * stood_on) / place.slope
+    p = hertzian.mean("load", h) / (scene.surface.E_star * stood_on) / slope
     contacts = scene.n_asperities * scene.heights.sf(h)
     none = contacts < _NONE
     seen = scene.fitted and scene.fitted.area  # m^2
     waves = scene.fitted.independent * stood_on / seen if seen else math.nan
-    found = grid.expected(place.x, p, np.where(none, np.nan, contacts), waves)
-    bias, error = {}, {}
-    for name in COLUMNS:
-        unit = place.rms if name == "separation" else 1.0
-        unit = np.nan if area_only and name != "area" else unit
-        bias[name] = unit * found.bias[name]
-        error[name] = np.abs(bias[name]) + unit * found.off[name]
-    loads = _loads(place.maps, found, p)
-    many = f"{found.maps} maps" if found.maps > 1 else "one map"
+    found = grid.expected(x, p, np.where(none, np.nan, contacts), waves)
+    unit = {name: math.nan if area_only and name != "area" else 1.0 for name in COLUMNS}
+    unit["separation"] *= rms
+    bias = {name: unit[name] * found.bias[name] for name in COLUMNS}
+    error = {name: np.abs(bias[name]) + unit[name] * found.off[name] for name in COLUMNS}
+    by = ""  # where alpha is from, unless it was given
+    if scene.fitted is not None:
+        by = " from the fit"
+    elif maps is _GAUSSIAN and model == "one radius":
+        by = f" as eta R sigma = {crowding(scene.surface):.3g} says"
+    loads, many = _loads(maps, found, p), f"{found.maps} maps" if found.maps > 1 else "one map"
     where = (
-        f"boundary elements on homogeneous half-spaces, {many} ({place.maps.words}) a point: "
-        f"{place.maps.x} = {place.x:.3g}{_by(scene, place)} ({measured}), {loads}"
-        f"{f'; nothing else: {area_only}' if area_only else ''}"
+        f"boundary elements on homogeneous half-spaces, {many} ({maps.words}) a point: "
+        f"{maps.x} = {x:.3g}{by} ({measured}), {loads}{f'; nothing else: {area_only}' if area_only else ''}"
     )
-    graded, listed = not isinstance(scene.modulus, Homogeneous), place.maps is _CAPS
-    told = Validity(h, p, error, bias, graded, place.maps.axis, where, listed=listed)
-    return told if told.measured.all() else replace(told, unknown=_unknown(told, none, loads))
+    graded = not isinstance(scene.modulus, Homogeneous)
+    told = Validity(h, p, error, bias, graded, maps.axis, where, listed=maps is _CAPS)
+    return replace(told, unknown=_unknown(told, none, loads))
 
 
 def _loads(maps: Maps, found: Expected, p: Array) -> str:
@@ -123,17 +108,10 @@ def _loads(maps: Maps, found: Expected, p: Array) -> str:
     return f"{maps.axis} = {here} (measured: {told})"
 
 
-def _by(scene: Any, place: Place) -> str:
-    """Say where alpha is from, unless it was given."""
-    if scene.fitted is not None:
-        return " from the fit"
-    if place.maps is _GAUSSIAN and place.model == "one radius":
-        return f" as eta R sigma = {crowding(scene.surface):.3g} says"
-    return ""
-
-
 def _unknown(found: Validity, none: Marks, loads: str) -> str:
-    """Why numbers are missing, at some separations where there is less than a contact."""
+    """Why numbers are missing, if some are, as at separations where there is less than a contact."""
+    if found.measured.all():
+        return ""
     if none.all():
         return "not stated, with fewer than one contact per surface"
     why = ["outside the measured range"] * bool(np.any(~none & ~found.measured))
@@ -197,8 +175,12 @@ def _not_gaussian(fitted: Fitted, surface: Surface) -> str | None:
     return f"the map is not isotropic and Gaussian ({why})"
 
 
-def place_of(scene: Any) -> Place:
-    """Place of a scene for which `not_on_the_map` has no reason."""
+def place_of(scene: Any) -> tuple[Maps, str, float, float, float]:
+    """Place in the table of a scene for which `not_on_the_map` has no reason.
+
+    The maps, and the model of its summits; Nayak's alpha, or eta R sigma of caps; by what pressures over E*
+    are taken, the rms slope g or sqrt(sigma/R) of caps; and gaps of the table over sigma, sqrt(m0) or 1.
+    """
     surface, fitted = scene.surface, scene.fitted
     if isinstance(scene.heights, Nayak):
         moments: SpectralMoments | None = moments_of_nayak(surface, scene.heights.alpha)
@@ -206,10 +188,9 @@ def place_of(scene: Any) -> Place:
     else:
         moments, model = moments_of(surface) if fitted is None else fitted.moments, "one radius"
     if moments is None:
-        slope = math.sqrt(surface.sigma / surface.radius)
-        return Place(_CAPS, model, crowding(surface), slope, 1.0)
-    g, rms = math.sqrt(2 * moments.m2), math.sqrt(moments.m0) / surface.sigma
-    return Place(_GAUSSIAN, model, moments.alpha, g, rms)
+        return _CAPS, model, crowding(surface), math.sqrt(surface.sigma / surface.radius), 1.0
+    rms = math.sqrt(moments.m0) / surface.sigma
+    return _GAUSSIAN, model, moments.alpha, math.sqrt(2 * moments.m2), rms
 
 
 def _area_only(scene: Any) -> str:

@@ -45,7 +45,7 @@ def powers(at: Array, orders: tuple[int, int]) -> Array:
 def told(law: object, known: Any, name: str, x: Array, p: Array) -> Array:
     """The bias that a law of some rows tells."""
     if law == "table":
-        grid = Grid.of(known, along_separation=False)
+        grid = Grid(known, along_separation=False)
         return np.array(
             [float(grid.expected(a, np.array([b])).bias[name][0]) for a, b in zip(x, p, strict=True)]
         )

@@ -143,7 +143,7 @@ def test_95_percent_hold_of_maps_left_out(monkeypatch):
         with monkeypatch.context() as patch:
             patch.setattr(deviations, "deviations", lambda row, known=known: [known[id(row)]])
             lines = deviations.table_text(deviations.condensed(others), b"", 0).splitlines()
-        grid = error_table.Grid.of(error_table.read(lines), along_separation=False)
+        grid = error_table.Grid(error_table.read(lines), along_separation=False)
         for row, one in found:
             if (row["x"], row["seed"]) != key:
                 continue
