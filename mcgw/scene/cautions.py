@@ -1,6 +1,5 @@
 """Cautions: where a scene goes beyond the assumptions of the model. One list for every command."""
 
-from bisect import bisect_left
 from collections.abc import Iterator
 
 import numpy as np
@@ -38,20 +37,15 @@ def cautions(scene: Scene) -> list[str]:
 
 def _crowd(scene: Scene) -> Iterator[str]:
     """Caution about contacts that interact or merge."""
-
-    def sparse(h: float) -> bool:
-        return bool(scene.theory.mean("area_fraction", h) <= _CROWDED)
-
-    separations = np.unique(scene.separations)
-    if not sparse(separations[0]):  # most scenes are throughout; the area falls with the separation
-        last = separations[bisect_left(separations, True, key=sparse) - 1]
+    h = np.unique(scene.separations)
+    crowded = h[scene.theory.mean("area_fraction", h) > _CROWDED]
+    if crowded.size:
         apart = " (load too large if d is that of a rigid punch, too small if it is the mean gap)"
         yield (
-            f"up to d/sigma = {last:.3g} more than {_CROWDED:.0%} of the nominal area is in "
+            f"up to d/sigma = {crowded.max():.3g} more than {_CROWDED:.0%} of the nominal area is in "
             f"contact; asperities interact there{'' if scene.interaction else apart}; the error was not "
             "measured"
         )
-    h = np.array(scene.separations)
     most = h[scene.heights.sf(h) > 0.5]
     if most.size:
         yield (
@@ -63,28 +57,24 @@ def _crowd(scene: Scene) -> Iterator[str]:
 def _depth(scene: Scene) -> Iterator[str]:
     """Caution about contacts too deep or too wide for the law."""
     surface, lowest = scene.surface, scene.lowest
-    touching, deep = (
-        float(scene.heights.sf(np.array(h))) for h in (lowest, lowest + surface.radius / surface.sigma)
-    )
+    law = "Hertz" if type(scene.law) is Hertz else f'law = "{scene.law.name}"'
+    ends = np.array([lowest, lowest + surface.radius / surface.sigma])
+    touching, deep = scene.heights.sf(ends).tolist()
     share = deep / touching if touching > 0 else 0.0
     if share > _DEEP or surface.sigma >= surface.radius:
         many = "all" if share > 0.995 else f"{100 * share:.2g} % of the"
         yield (
             f"surface.radius = {surface.radius:g} m: at d/sigma = {lowest:g}, {many} "
-            f"contacts are compressed by more than R, where {_model(scene)} does not hold"
+            f"contacts are compressed by more than R, where {law} does not hold"
         )
     top = float(scene.heights.isf(np.array(1 / scene.n_asperities), -40.0))
-    steepest = float(np.sqrt(max(top - scene.lowest, 0.0) * scene.surface.sigma / scene.surface.radius))
+    steepest = float(np.sqrt(max(top - lowest, 0.0) * surface.sigma / surface.radius))
     yields = '; metals yield much earlier: use contact.law = "kogut-etsion"'
     if steepest > _STEEP:
         yield (
             f"the highest asperities (s = {top:.1f}) have contact radii of {steepest:.2f} R at the smallest "
-            f"separation, too large for {_model(scene)}{yields * scene.law.elastic}"
+            f"separation, too large for {law}{yields * scene.law.elastic}"
         )
-
-
-def _model(scene: Scene) -> str:
-    return "Hertz" if type(scene.law) is Hertz else f'law = "{scene.law.name}"'
 
 
 def _numbers(scene: Scene) -> Iterator[str]:

@@ -20,7 +20,6 @@ from mcgw.validity.fitted_map import Fitted
 if TYPE_CHECKING:
     from analytic.joint import Gap
 
-_CLEARLY = 1e-6  # no rounding makes such a modulus negative
 _BEYOND = 1e-16  # share of heights above those checked for negative moduli
 
 
@@ -261,12 +260,7 @@ class Fields(Flat):
         bottom, end = self.heights.support
         high = min(max(self.highest, h + 1), end)
         start = max(h, self.least - 1, bottom)
-        if not start < high:
-            return None
-        grading = self.grading  # which rises or falls all the way, if it is exponential: two heights tell
-        if isinstance(grading, analytic.Exponential) and (grading(np.array([start, high])) > _CLEARLY).all():
-            return None
-        return analytic.first_negative(self.grading, start, high)
+        return analytic.first_negative(self.grading, start, high) if start < high else None
 
 
 @kept(64)  # the same for all scenes of a sweep

@@ -49,10 +49,7 @@ def _number(text: str, unit: str, si: str) -> float:
 def read_grading(path: Path, surface: Surface) -> Table:
     """Return a grading from a CSV file: heights ``s`` or ``z`` (m), and ``ratio`` or ``E_star`` (Pa).
 
-    Raises
-    ------
-    ValueError
-        If it cannot be read, or is not such a table; nothing of what stands there is quoted.
+    Raises ValueError, as all here, if it cannot be read or is not such a table; no text of it is quoted.
     """
     found = _columns(path, _MOST_OF_MODULI, _MODULI)
     axes = {"s": 1.0, "z": surface.sigma}, {"ratio": 1.0, "E_star": surface.E_star}
@@ -71,14 +68,7 @@ def read_grading(path: Path, surface: Surface) -> Table:
 
 
 def read_heights(path: Path) -> Array:
-    """Heights from ``.npy`` or text with one a line (# begins a comment), in any unit; shape (heights,).
-
-    Raises
-    ------
-    ValueError
-        If the file cannot be read, is longer than 256 MB, or does not hold numbers; nothing of what stands
-        there is quoted.
-    """
+    """Heights from ``.npy`` or text with one a line (# begins a comment), in any unit; at most 256 MB."""
     if path.suffix == ".npy":
         array = open_npy(path)
         if array.nbytes > _MOST_BYTES:
@@ -94,13 +84,7 @@ def read_heights(path: Path) -> Array:
 
 
 def read_summits(path: Path) -> tuple[list[float], ...]:
-    """Return the columns height and radius, m, of a CSV file.
-
-    Raises
-    ------
-    ValueError
-        If the file cannot be read, or lacks a column or a number; nothing of what stands there is quoted.
-    """
+    """Return the columns height and radius, m, of a CSV file."""
     found = _columns(path, _MOST_BYTES, _SUMMITS)
     if missing := [name for name in _SUMMITS if name not in found]:
         raise ValueError(f"{path}: has no column {' and no column '.join(missing)}")

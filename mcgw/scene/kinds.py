@@ -17,28 +17,14 @@ _MOST_WHOLE = 10**30  # so that no message has hundreds of digits
 
 @dataclass(frozen=True, slots=True)
 class Number(Kind):
-    """A finite number; with a unit also a text such as "1.37 um".
-
-    Parameters
-    ----------
-    unit : str, optional
-        Of `mcgw.formats.units`.
-    low, high : float, optional
-        Its range.
-    zero : bool, optional
-        Whether 0 is allowed if `low` is 0.
-    infinite : bool, optional
-        Whether it may be infinite.
-    advice : str, optional
-        What would do. Default: by unit and range.
-    """
+    """A finite number; with a unit of `mcgw.formats.units` also a text such as "1.37 um"."""
 
     unit: str = ""
     low: float = 0.0
     high: float = math.inf
-    zero: bool = False
+    zero: bool = False  # whether 0 is allowed if `low` is 0
     infinite: bool = False
-    advice: str = ""
+    advice: str = ""  # what would do, by default by unit and range
 
     def value(self, given: Any) -> float | None:
         """Return the number, or None if it does not fit."""
@@ -237,13 +223,7 @@ _MAKES = {
 
 
 def arguments(given: Mapping[str, Any], kinds: Mapping[str, Kind]) -> dict[str, Any]:
-    """Read arguments of these kinds as a table of keys.
-
-    Raises
-    ------
-    SceneError
-        With one line for each mistake, which names the argument.
-    """
+    """Read arguments of these kinds as a table of keys; raises `SceneError`, whose lines name them."""
     plain = {name: as_toml(value) for name, value in given.items()}
     section = Section("", plain, {name: Key(name, kind) for name, kind in kinds.items()})
     found = section.read_all(kinds)
@@ -259,6 +239,10 @@ def argument(name: str, value: Any, unit: str) -> float:
 
 def as_toml(value: Any) -> Any:
     """Convert a Python value to what TOML gives: arrays, tuples and ranges to lists of plain numbers."""
+    if isinstance(value, np.random.SeedSequence):  # seeds, as what draws them
+        return int(value.generate_state(1, np.uint64)[0])
+    if isinstance(value, np.random.BitGenerator | np.random.Generator):
+        return int(np.random.default_rng(value).integers(2**63))
     if isinstance(value, str | bytes | bool | int | float) or callable(value):
         return value.item() if isinstance(value, np.generic) else value
     if isinstance(value, Mapping):
@@ -271,13 +255,7 @@ def as_toml(value: Any) -> Any:
 
 
 def check_object(call: str, value: Any, kind: type) -> None:
-    """Check the type of an argument.
-
-    Raises
-    ------
-    TypeError
-        In one line, if it is not.
-    """
+    """Check the type of an argument; raises `TypeError` in one line."""
     if isinstance(value, kind):
         return
     ways, name = _MAKES[kind.__name__], type(value).__name__

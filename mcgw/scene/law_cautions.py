@@ -2,8 +2,8 @@
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -95,7 +95,7 @@ def _jackson_green(scene: Scene) -> Iterator[str]:
 def _coating(scene: Scene) -> Iterator[str]:
     law: Any = scene.law
     if not _RATIOS[0] <= law.ratio <= _RATIOS[1]:
-        yield (f"contact.law.ratio = {law.ratio:g}: the first-order coating law is valid from 1/3 to 3")
+        yield f"contact.law.ratio = {law.ratio:g}: the first-order coating law is valid from 1/3 to 3"
 
 
 def _adhesion(scene: Scene) -> Iterator[str]:
@@ -125,18 +125,11 @@ def law_cautions(scene: Scene) -> list[str]:
     return [line for kind, of in _OF_LAWS.items() if isinstance(scene.law, kind) for line in of(scene)]
 
 
-@dataclass(frozen=True)
-class OtherLaws:
-    """Means under other laws divided by those under the law of a scene, at one separation.
+class OtherLaws(NamedTuple):
+    """Means under other laws, Hertz's too, over those under the law of a scene, by name, at one separation.
 
-    Parameters
-    ----------
-    separation : float
-        The middle one of the scene, d/sigma.
-    critical : float
-        Penetration over sigma at which asperities of modulus E* yield, the same for all.
-    load, area : dict of str to float
-        Ratio of the means by the name of the other law, Hertz's too.
+    The separation is the middle one of the scene, d/sigma; at the critical penetration over sigma asperities
+    of modulus E* yield under each law.
     """
 
     separation: float
@@ -158,33 +151,30 @@ def other_laws(scene: Scene) -> OtherLaws | None:
         return None
     h = sorted(scene.separations)[len(scene.separations) // 2]
     theory = replace(scene.theory, unload_from=None, film=None)
-    means = {
-        other.name: [float(replace(theory, law=other).mean(name, h)) for name in ("load", "area")]
-        for other in (law, *_alike(scene, law.critical))
-    }
-    load, area = means.pop(law.name)
-    if not (load > 0 and area > 0):
-        return None
-    return OtherLaws(
-        h,
-        law.critical,
-        {name: mean[0] / load for name, mean in means.items()},
-        {name: mean[1] / area for name, mean in means.items()},
+    laws = (law, *(other for other in _alike(scene, law.critical) if other.name != law.name))
+    load, area = (
+        {each.name: float(replace(theory, law=each).mean(name, h)) for each in laws}
+        for name in ("load", "area")
     )
+    own = load.pop(law.name), area.pop(law.name)
+    if not min(own) > 0:
+        return None
+    ratios = (
+        {name: x / one for name, x in each.items()} for each, one in zip((load, area), own, strict=True)
+    )
+    return OtherLaws(h, law.critical, *ratios)
 
 
-def _alike(scene: Scene, critical: float) -> Iterator[analytic.ContactLaw]:
-    """Other laws that yield at this penetration, and Hertz's."""
+def _alike(scene: Scene, critical: float) -> tuple[analytic.ContactLaw, ...]:
+    """Plastic laws that yield at this penetration, and Hertz's."""
     poisson = getattr(scene.law, "poisson", None)
     poisson = _POISSON if poisson is None else poisson
     plain = analytic.JacksonGreen(yield_strain=1.0, critical=critical, poisson=poisson)
     strain = 2 * math.sqrt(critical * scene.surface.sigma / scene.surface.radius)
-    for law in (
+    return (
         analytic.ChangEtsionBogy(critical=critical),
         analytic.ZhaoMaiettaChang(critical=critical),
         analytic.KogutEtsion(critical=critical, poisson=poisson),
         replace(plain, yield_strain=strain / (np.pi * plain.yield_factor)),
         analytic.Hertz(),
-    ):
-        if law.name != scene.law.name:
-            yield law
+    )

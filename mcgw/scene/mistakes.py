@@ -28,14 +28,13 @@ def mistakes(scene: Fields) -> list[str]:
         _gas: scene.joint.gas is not None,
         _pressed: scene.interaction is not None,
     }
-    for checks in (has, {_scales: True}, later):
-        if found := [line for check, there in checks.items() if there for line in check(scene)]:
-            return found
-    if isinstance(scene.grading, analytic.Homogeneous) and scene.law.name != "custom":
-        return []
-    from mcgw.scene.moduli import mistakes_of_moduli  # for those scenes alone
+    stages = [[check for check, there in each.items() if there] for each in (has, {_scales: True}, later)]
+    if not isinstance(scene.grading, analytic.Homogeneous) or scene.law.name == "custom":
+        from mcgw.scene.moduli import CHECKS  # for those scenes alone
 
-    return mistakes_of_moduli(scene)
+        stages += [[check] for check in CHECKS]
+    found = ([line for check in stage for line in check(scene)] for stage in stages)
+    return next(filter(None, found), [])
 
 
 def _values(scene: Fields) -> Iterator[str]:

@@ -26,14 +26,6 @@ _UNTOLD = 0.1  # share of the contacts at a separation that a table may leave to
 _MEANT = "; if it is meant so, give "
 
 
-def mistakes_of_moduli(scene: Fields) -> list[str]:
-    """All that is wrong, later checks only where the earlier ones find nothing."""
-    for check in (_function, _range, _units, _modulus, _sums, _fluctuating):
-        if found := [*check(scene)]:
-            return found
-    return []
-
-
 def _function(scene: Fields) -> Iterator[str]:
     """Find a Python function that does not take arrays."""
     if not isinstance(scene.grading, analytic.Custom):
@@ -167,7 +159,7 @@ def _sums(scene: Fields) -> Iterator[str]:
             return  # `_modulus` says why, unless negative moduli are allowed
         sums = [q.scale(scene.surface) * steepest * float(scene.n_asperities) * _SAFELY for q in stiff]
     if not all(value < np.finfo(float).max for value in sums):
-        yield (f"{_key(scene)}: E*(s)/E* reaches {steepest:.3g}, so sums overflow; give a smaller one")
+        yield f"{_key(scene)}: E*(s)/E* reaches {steepest:.3g}, so sums overflow; give a smaller one"
 
 
 def _fluctuating(scene: Fields) -> Iterator[str]:
@@ -183,6 +175,9 @@ def _key(scene: Fields) -> str:
     """Find the key of a grading, and its value if that is one number."""
     grading = scene.grading
     return f"grading.gamma = {grading.gamma:g}" if isinstance(grading, analytic.Exponential) else "grading"
+
+
+CHECKS = (_function, _range, _units, _modulus, _sums, _fluctuating)  # in this order
 
 
 def doubts_of_table(table: analytic.Table, scene: Fields) -> Iterator[str]:

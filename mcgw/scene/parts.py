@@ -11,8 +11,6 @@ from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
-import numpy as np
-
 import analytic
 from analytic.gases import GASES, Gas
 from analytic.laws import ContactLaw, Film, Layer
@@ -62,19 +60,7 @@ _GASES = Either(
 )
 
 
-class Seed(Whole):
-    """A seed, or what draws one: a generator or a seed sequence of NumPy."""
-
-    def value(self, given: Any) -> int | None:
-        """Return it as an integer."""
-        if isinstance(given, np.random.SeedSequence):
-            given = int(given.generate_state(1, np.uint64)[0])
-        if isinstance(given, np.random.BitGenerator):
-            given = np.random.Generator(given)
-        return super().value(int(given.integers(2**63)) if isinstance(given, np.random.Generator) else given)
-
-
-_SEED = Seed(0, 2**64 - 1, "give a whole number from 0 to 2^64 - 1")
+_SEED = Whole(0, 2**64 - 1, "give a whole number from 0 to 2^64 - 1")
 
 
 def key(kind: Kind, example: str, default: Any = None, **others: Any) -> Any:

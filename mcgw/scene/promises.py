@@ -7,25 +7,14 @@ EXACT = 1e-13  # relative error of a value that is right to the last digits
 
 @dataclass(frozen=True)
 class Promise:
-    """What others may rely on, whichever sampler it is.
+    """What others may rely on, whichever sampler it is."""
 
-    Parameters
-    ----------
-    one_by_one : bool, optional
-        It draws single asperities, each with a radius of its own where summits have them, by the exact laws;
-        else sums of crowds, which are a little off: ``auto`` takes it where a scene allows that.
-    own_laws : bool, optional
-        It adds up summit by summit, so that each can have breaks of its own in the law of contact.
-    needs_density : bool, optional
-        It draws from the density of the heights, which a list of measured ones has not.
-    not_done : tuple of str, optional
-        What it spares, for people; ``{spared}`` stands for the asperities that do not touch.
-    """
-
+    # It draws single asperities, each with a radius of its own where summits have them, by the exact laws;
+    # else sums of crowds, which are a little off: ``auto`` takes it where a scene allows that.
     one_by_one: bool = True
-    own_laws: bool = False
-    needs_density: bool = False
-    not_done: tuple[str, ...] = ()
+    own_laws: bool = False  # it adds up summit by summit: each can have breaks of its own in the contact law
+    needs_density: bool = False  # it draws from that of the heights, which a list of measured ones has not
+    not_done: tuple[str, ...] = ()  # what it spares, for people; {spared}: asperities that do not touch
 
 
 _UNTOUCHED = "{spared:.4g} asperities per surface lie below every separation and are not drawn"

@@ -23,24 +23,12 @@ Tables = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class RoughBody:
-    """One of two rough bodies, or both as one.
-
-    Parameters
-    ----------
-    moments : SpectralMoments
-        Moments of its surface.
-    E_star : float or None
-        Composite modulus of this body alone on a rigid plane, E/(1 - nu^2), Pa; None: unknown.
-    hardness : float or None
-        Hardness, Pa; None: unknown.
-    conductivities : tuple of float
-        Its thermal conductivity, or those of both bodies of a pair, W/(m K); empty: unknown.
-    """
+    """One of two rough bodies, or both as one; None or empty: unknown."""
 
     moments: SpectralMoments
-    E_star: float | None = None
-    hardness: float | None = None
-    conductivities: tuple[float, ...] = ()
+    E_star: float | None = None  # composite modulus of this body alone on a rigid plane, E/(1 - nu^2), Pa
+    hardness: float | None = None  # Pa
+    conductivities: tuple[float, ...] = ()  # thermal, of the body, or of both of a pair, W/(m K)
 
     def beside(self, other: "RoughBody") -> "RoughBody":
         """Return both as one on a rigid plane: the gap between two independent isotropic Gaussian surfaces.
@@ -62,12 +50,8 @@ def with_bodies(document: Tables, folder: Path, read: Callable[[Tables, Path], T
     """Put the surface of two bodies into the tables of a scene in place of the files that describe them.
 
     Their hardness and conductivities go under ``[contact.law]`` and ``[joint]``, where both files give them
-    and the scene does not; `read` gives the values of a scene by its tables and folder.
-
-    Raises
-    ------
-    SceneError
-        If a file cannot be read, does not describe one rough body, or a key contradicts the files.
+    and the scene does not; `read` gives the values of a scene by its tables and folder. Raises SceneError if
+    a file cannot be read, does not describe one rough body, or a key contradicts the files.
     """
     if not (named := files_of_bodies(document)):
         return document
@@ -118,13 +102,7 @@ def _body(path: Path, read: Callable[[Tables, Path], Tables]) -> RoughBody:
 
 
 def moments_of(scene: Any) -> SpectralMoments:
-    """Return the moments of the rough surface of a scene: those of the fitted map, or of Nayak's heights.
-
-    Raises
-    ------
-    ValueError
-        If it has neither.
-    """
+    """Return the moments of the fitted map of a scene, or of Nayak's heights; ValueError without either."""
     if scene.fitted is not None:
         return scene.fitted.moments  # type: ignore[no-any-return]
     if isinstance(scene.heights, Nayak):

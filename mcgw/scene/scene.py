@@ -224,18 +224,13 @@ def storable(scene: Scene) -> Scene:
     """Return the scene with its grading and contact law resolved, unless a file holds them as they are.
 
     All samplers draw with this one, so that in memory, in a file, and resumed from there, a scene has
-    the same bits. A Python function becomes an `analytic.PiecewiseSeries` over all heights that count.
-
-    Raises
-    ------
-    SceneError
-        If the grading cannot be resolved, as one that is noisy.
+    the same bits. A Python function becomes an `analytic.PiecewiseSeries` over all heights that count; raises
+    SceneError if it cannot be resolved, as one that is noisy.
     """
     if scene.law.is_data and is_data(scene.grading):
         return scene
     same = object.__new__(Scene)  # not checked anew, which may take long
-    hold(same, **{each.name: getattr(scene, each.name) for each in dataclasses.fields(scene)})
-    hold(same, **in_numbers(scene))
+    hold(same, **{x.name: getattr(scene, x.name) for x in dataclasses.fields(scene)} | in_numbers(scene))
     return same
 
 
@@ -254,10 +249,7 @@ def in_numbers(scene: Scene) -> dict[str, Any]:
 
 def _extent(scene: Scene) -> tuple[float, float]:
     """Lowest and highest height that count; asperities may have felt lower separations than those asked."""
-    asked = scene.separations
-    if scene.lowest < min(asked):
-        asked = (*asked, scene.lowest)
-    low, high = extent(scene.grading, scene.heights, asked)
+    low, high = extent(scene.grading, scene.heights, (*scene.separations, scene.lowest))
     return low, high
 
 

@@ -162,20 +162,21 @@ def with_changes(document: Mapping[str, Any], changes: Mapping[str, Any]) -> dic
 
     A key that one table alone has may stand without its table, and a word for a law is its name.
     """
-    return _changed(as_tables(document), {whole_key(key): value for key, value in changes.items()})
-
-
-def _changed(document: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
-    changed = dict(document)
+    changed = {**as_tables(document)}
     for key, value in changes.items():
-        table, _, inner = key.partition(".")
-        if key == "law" and isinstance(value, str) and isinstance(held := changed.get(key), Mapping):
-            value = {**held, "name": value}
-        if inner:
-            held = changed.get(table, {})
-            held = {"name": held} if table == "law" and isinstance(held, str) else held
-            value = _changed(held, {inner: value}) if isinstance(held, Mapping) else held
-        changed[table] = value
+        *outer, last = whole_key(key).split(".")
+        table: Any = changed
+        for name in outer:
+            held = table.get(name, {})
+            held = {"name": held} if name == "law" and isinstance(held, str) else held
+            if not isinstance(held, Mapping):
+                break  # which is a mistake of its own
+            table[name] = {**held}
+            table = table[name]
+        else:
+            if last == "law" and isinstance(value, str) and isinstance(held := table.get(last), Mapping):
+                value = {**held, "name": value}
+            table[last] = value
     return changed
 
 

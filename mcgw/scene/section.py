@@ -64,34 +64,16 @@ def mistake(path: str, value: Any, advice: str) -> SceneError:
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """A row of a table of keys.
-
-    Parameters
-    ----------
-    name : str
-        Its name in the file.
-    kind : Kind
-        Kind of its values.
-    example : str
-        A right value, as TOML.
-    words : str
-        Its meaning, as Markdown; None for keys inside a value.
-    default : object, optional
-        Value if it is left out.
-    required : bool, optional
-        Whether it must be there, in a table that is asked for it.
-    needs, excludes : tuple of str, optional
-        Keys of its table of which one must be there too, and of which none may.
-    """
+    """A row of a table of keys."""
 
     name: str
     kind: Kind
-    example: str = ""
-    words: str = ""
-    default: Any = None
-    required: bool = False
-    needs: tuple[str, ...] = ()
-    excludes: tuple[str, ...] = ()
+    example: str = ""  # a right value, as TOML
+    words: str = ""  # its meaning, as Markdown; empty: told by a docstring, or a key inside a value
+    default: Any = None  # if it is left out
+    required: bool = False  # whether it must be there, in a table that is asked for it
+    needs: tuple[str, ...] = ()  # keys of its table of which one must be there too
+    excludes: tuple[str, ...] = ()  # and of which none may
 
 
 class Section:

@@ -16,18 +16,8 @@ _NEGATIVE = -1e-3  # allowed negative eigenvalue, from rounding
 class Uncertainty:
     """Standard errors of the logarithms of a surface's parameters: small ones are shares of the values.
 
-    Parameters
-    ----------
-    sigma, radius, eta, m0, m2, m4, E_star : float, optional
-        Of each; None: it is known.
-    correlation : sequence of sequence of float, optional
-        Of the logarithms of those that are given, in the order above; None: they are independent.
-
-    Raises
-    ------
-    ValueError
-        If there is no parameter, or the correlation is none: not square, symmetric and positive, with ones
-        on its diagonal.
+    None: it is known. With the `correlation` of those that are given, in this order, unless they are
+    independent; ValueError if it is not square, symmetric and positive, with ones on its diagonal.
     """
 
     sigma: float | None = None

@@ -5,15 +5,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, fields, is_dataclass
 from typing import Any
 
-from analytic import (
-    Grading,
-    HeightLaw,
-    MeasuredHeights,
-    MeasuredRadii,
-    RandomCurvature,
-    ScipyHeights,
-    Surface,
-)
+import analytic
+from analytic import Grading, HeightLaw, MeasuredHeights, MeasuredRadii, RandomCurvature, Surface
 from analytic.laws import ContactLaw
 from mcgw.scene.keys import KEYS
 from mcgw.scene.kinds import Word
@@ -51,16 +44,13 @@ def grading_table(grading: Grading) -> dict[str, Any]:
 def heights_table(heights: HeightLaw, file: str | None = None) -> dict[str, Any]:
     """Write the table [heights] of a height law; measured heights by the name of their file.
 
-    Raises
-    ------
-    SceneError
-        If the law is a class of the user.
+    Raises SceneError if the law is a class of the user.
     """
     if type(heights) is MeasuredHeights:
         held = {"heights": list(heights.heights)} if file is None else {"file": file}
         return {"law": "table", **held, "resample": False}
     own: Any = heights
-    if type(heights) is ScipyHeights:
+    if type(heights) is analytic.ScipyHeights:
         import scipy.stats  # takes half a second; other scenes do not need it
 
         own = getattr(heights.distribution, "dist", own)
@@ -70,12 +60,8 @@ def heights_table(heights: HeightLaw, file: str | None = None) -> dict[str, Any]
     elif type(heights) in HEIGHTS.values():  # a subclass may do more
         (law,) = [name for name, kind in HEIGHTS.items() if type(heights) is kind]
         return {"law": law, **{x.name: getattr(heights, x.name) for x in fields(own)}}
-    raise SceneError(
-        [
-            f"heights: {type(own).__name__} is a Python class that a file cannot store; give a distribution "
-            "of scipy.stats, or its points as a HeightTable"
-        ]
-    )
+    reason = "is a Python class that a file cannot store; give a distribution of scipy.stats, or its points"
+    raise SceneError([f"heights: {type(own).__name__} {reason} as a HeightTable"])
 
 
 def summits_table(

@@ -12,6 +12,7 @@ from mcgw.formats.table import SEPARATION, Column, Shown, Table
 from mcgw.validity.error_table import COLUMNS
 
 _AT_LOAD = {"area": "area", "stiffness": "stiffness", "separation": "gap"}  # columns at a given load
+_UNIFORM = "; measured for a uniform modulus"
 _COLUMNS = {"area": "area", "stiffness": "stiffness", "separation": "gap/sigma", "load": "load at d"}
 
 
@@ -77,17 +78,18 @@ class Validity(Shown):
         """One sentence: the error of the model, where, and where it was not measured."""
         if not self.measured.any():
             return f"Model error: {self.unknown}"
-        parts, at_load, at_gap = [], self.known("area", "stiffness"), self.known("load")
+        h, at_load, at_gap = self.separations, self.known("area", "stiffness"), self.known("load")
+        parts = []
         if at_load.any():
             most = percent(self.worst("area", "stiffness"))
             which = " and ".join(name for name in ("area", "stiffness") if self.known(name).any())
-            parts.append(f"{which} within {most} at a load{self._here(at_load)}")
+            parts.append(f"{which} within {most} at a load{_for(h, at_load)}")
         if at_gap.any():
-            where = "" if np.array_equal(at_gap, at_load) else self._here(at_gap)
+            where = "" if np.array_equal(at_gap, at_load) else _for(h, at_gap)
             parts.append(f"load within {percent(self.worst('load'))} at a mean gap{where}")
-        line = f"Against an elastic half-space: {', '.join(parts)} (95 % of surfaces{self._homogeneous})"
+        line = f"Against an elastic half-space: {', '.join(parts)} (95 % of surfaces{_UNIFORM * self.graded})"
         if not self.measured.all():
-            line += f"; at d/sigma = {span(self.separations, ~self.measured)} {self.unknown}"
+            line += f"; at d/sigma = {span(h, ~self.measured)} {self.unknown}"
         return line
 
     @property
@@ -119,7 +121,7 @@ class Validity(Shown):
         errors = {"at a given load": at_load, "in load at a given gap": at_gap}
         told = [f"{percent(error)} {of}" for of, error in errors.items() if not math.isnan(error)]
         where = "" if self.measured.all() else f"; d/sigma = {span(self.separations, self.measured)}"
-        return f"within {', '.join(told)} (95 %{self._homogeneous}){where}"
+        return f"within {', '.join(told)} (95 %{_UNIFORM * self.graded}){where}"
 
     def sheet(self) -> Table:
         """Return the verdict, and errors at some separations: mean over maps, and ends of 95 % of them."""
@@ -137,13 +139,6 @@ class Validity(Shown):
         separation = Column("separation", self.separations, SEPARATION, form="g")
         return Table((separation, Column("pressure", self.loads, unit="1", form=".2g"), *told)).rows()
 
-    @property
-    def _homogeneous(self) -> str:
-        return "; measured for a uniform modulus" if self.graded else ""
-
-    def _here(self, where: Marks) -> str:
-        return "" if where.all() else f" for d/sigma = {span(self.separations, where)}"
-
     def _cell(self, name: str, k: int) -> str:
         bias, error = float(self.bias[name][k]), float(self.error[name][k])
         if math.isnan(error):
@@ -152,6 +147,10 @@ class Validity(Shown):
         if name == "separation":
             return f"{bias:+z.2f} ± {off:.2f}"
         return f"{100 * bias:+z.0f} ± {100 * off:.0f} %"
+
+
+def _for(h: Array, where: Marks) -> str:
+    return "" if where.all() else f" for d/sigma = {span(h, where)}"
 
 
 def percent(x: float) -> str:
