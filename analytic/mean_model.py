@@ -18,7 +18,7 @@ from analytic.heights import Gaussian, HeightLaw
 from analytic.inversion import LOWEST, last_separations
 from analytic.laws.branch import Branch
 from analytic.laws.film import Film
-from analytic.laws.law import ContactLaw, piece_of
+from analytic.laws.law import ContactLaw
 from analytic.measured_summits import MeasuredRadii
 from analytic.quadrature import REACH
 from analytic.quantities import NOT_SUMS, SEPARATIONS, Quantity, quantity_of
@@ -64,7 +64,7 @@ class MeanModel:
             )
         law = self.ways.law  # one that lacks a constant says so now
         if self.unload_from is not None:
-            law.unloading()
+            law.unloading(0.0)
             if not np.isfinite(self.unload_from):
                 raise ValueError(f"unload_from = {self.unload_from!r}: give a finite separation d/sigma")
 
@@ -235,8 +235,8 @@ class MeanModel:
 
     def _share_by(self, piece: int, h: Array) -> Array:
         rule = self._rule_of(quantity_of("contacts"), h)
-        s, e, law = rule.heights, self.grading(rule.heights), self._ways_of(rule).law
-        inside = np.stack([(s > x) & (piece_of(law, s - x, e) == piece) for x in h], axis=1)
+        s, e, branch = rule.heights, self.grading(rule.heights), self._ways_of(rule).loading
+        inside = np.stack([branch.pieces(x, s - x, e) == piece for x in h], axis=1)
         with np.errstate(invalid="ignore"):
             return np.asarray(rule.mean(inside) / self._mean_by(quantity_of("contacts"), h))
 

@@ -63,7 +63,7 @@ class Quantity:
 
     @property
     def base(self) -> str:
-        """What one contact adds to it, on whatever way: `analytic.laws.Unloading.added` has the formulas."""
+        """What one contact adds to it, on whatever way: `analytic.laws.Branch` has the formulas."""
         base = self.unloading or self.of or self.name
         return {"spot_conductance": "conductance", "nominal_separation": "load"}.get(base, base)
 

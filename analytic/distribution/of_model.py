@@ -170,7 +170,7 @@ def _check_falling(model: Any, quantity: str, h: float) -> None:
             "separation; use a modulus >= 0 and a law without adhesion"
         )
     of, e = model.ways.of(quantity), np.maximum(model.grading(rule.heights), np.finfo(float).tiny)
-    for j, limit in enumerate(of.law.limits(e)):
+    for j, limit in enumerate(of.limits(e)):
         y = np.sqrt(limit)
         before, after = (of.of_root(quantity, piece, y, e) for piece in (j, j + 1))
         if np.any(after < before * (1 - _ROUNDING)):

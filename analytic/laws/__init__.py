@@ -7,7 +7,6 @@ from analytic.laws.branch import Branch
 from analytic.laws.film import Film, Layer, SpotConductance, crowding_factor
 from analytic.laws.law import ContactLaw, Hertz, piece_of
 from analytic.laws.regimes import Regimes
-from analytic.laws.unloading import Unloading
 
 if TYPE_CHECKING:
     from analytic.laws.adhesion import DerjaguinMullerToporov, JohnsonKendallRoberts
@@ -26,7 +25,7 @@ __all__ = [
     "Branch", "ChangEtsionBogy", "Coated", "ContactLaw", "CustomLaw", "DerjaguinMullerToporov", "Film",
     "Hertz", "JacksonGreen", "JohnsonKendallRoberts", "KogutEtsion", "Layer",
     "PowerLawGraded",
-    "Regimes", "SpotConductance", "Unloading",
+    "Regimes", "SpotConductance",
     "ZhaoMaiettaChang", "by_name", "crowding_factor",
     "piece_of",
 ]  # fmt: skip

@@ -8,7 +8,6 @@ import numpy as np
 
 from analytic.arrays import Array
 from analytic.laws.law import ContactLaw
-from analytic.laws.unloading import Unloading
 from analytic.surface import Surface
 
 
@@ -111,11 +110,12 @@ class JohnsonKendallRoberts(_Adhesive):
 
     name: ClassVar[str] = "johnson-kendall-roberts"
     elastic: ClassVar[bool] = False
+    stiff: ClassVar[bool] = False
 
     @property
     def finest(self) -> float:
         """The formulas end where contacts break off."""
-        return float(np.min(self.reduced))
+        return float(self.reduced)
 
     def stretch(self, e: Array) -> Array:
         """Return D_e, in the shape of `e`; infinite without stiffness."""
@@ -124,16 +124,19 @@ class JohnsonKendallRoberts(_Adhesive):
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
         """Return the load of a contact, in the shape of `y` and `e`."""
-        return self.load_at(_root(np.sqrt(3 + 3 * y * y / self.stretch(e))), e)
+        return self.load_at(self._z(y, e), e)
 
     def radius(self, piece: int, y: Any, e: Array) -> Any:
         """Return the radius of a contact; its square is the area over pi R sigma."""
-        return self.radius_at(_root(np.sqrt(3 + 3 * y * y / self.stretch(e))), e)
+        return self.radius_at(self._z(y, e), e)
 
     def stiffness(self, piece: int, y: Array, e: Array) -> Array:
         """Return the stiffness of a spot over 2 E* sqrt(R sigma): ``dP/d delta``."""
-        z = _root(np.sqrt(3 + 3 * y * y / self.stretch(e)))
+        z = self._z(y, e)
         return np.asarray(e * self.radius_at(z, e) * (z**3 - 3) / (z**3 - 1))
+
+    def _z(self, y: Any, e: Array) -> Any:
+        return _root(np.sqrt(3 + 3 * y * y / self.stretch(e)))
 
     def load_at(self, z: Any, e: Array) -> Any:
         """Return the load of contacts of this z."""
@@ -143,36 +146,31 @@ class JohnsonKendallRoberts(_Adhesive):
         """Return the radius of contacts of this z."""
         return np.sqrt(self.stretch(e) / 3) * z * z
 
-    def unloading(self) -> "_Stuck":
+    def unloading(self, deepest: Any) -> "_Stuck":
         """Return the law by which a contact holds until it is stretched by D_e."""
         return _Stuck(self)
 
 
-class _Stuck(Unloading):
+class _Stuck(ContactLaw):
     """Contacts that formed and are pulled: ``y = sqrt(delta + D_e)``."""
 
-    stiff: ClassVar[bool] = False
+    def __init__(self, loading: JohnsonKendallRoberts) -> None:
+        self.loading = loading
 
-    def residual(self, deepest: Any, e: Array) -> Any:
-        """Penetration at which contact is lost, in the shape of `deepest` and `e`."""
+    def residual(self, e: Array) -> Any:
+        """Return the penetration at which contact is lost."""
         return -self.loading.stretch(e)
 
-    def load(self, piece: int, y: Any, deepest: Any, e: Array) -> Any:
-        """Load of a contact, in the shape of all."""
-        return self.loading.load_at(_root(y * np.sqrt(3 / self.loading.stretch(e))), e)
+    def load(self, piece: int, y: Any, e: Array) -> Any:
+        """Return the load of a contact."""
+        return self.loading.load_at(self._z(y, e), e)
 
-    def radius(self, piece: int, y: Any, deepest: Any, e: Array) -> Any:
-        """Radius of a contact; its square is the area over pi R sigma."""
-        return self.loading.radius_at(_root(y * np.sqrt(3 / self.loading.stretch(e))), e)
+    def radius(self, piece: int, y: Any, e: Array) -> Any:
+        """Return the radius of a contact; its square is the area over pi R sigma."""
+        return self.loading.radius_at(self._z(y, e), e)
 
-    def stiffness(self, piece: int, y: Array, deepest: Array, e: Array) -> Array:
-        """Refused: its variance is infinite."""
-        raise ValueError(
-            "the stiffness of contacts that break off has no variance (johnson-kendall-roberts); leave "
-            "stiffness and load_slope out, or unload_from"
-        )
-
-    slope = stiffness
+    def _z(self, y: Any, e: Array) -> Any:
+        return _root(y * np.sqrt(3 / self.loading.stretch(e)))
 
 
 def _root(q: Any) -> Any:

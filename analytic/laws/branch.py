@@ -4,7 +4,7 @@ A branch says at which heights which formula holds, and gives the formulas at he
 So everything that sums over asperities treats loading, unloading and any law of contact alike.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Self
@@ -15,9 +15,8 @@ from numpy.typing import ArrayLike, NDArray
 from analytic.arrays import Array, Ints, Marks
 from analytic.gradings import Grading
 from analytic.laws.film import SpotConductance
-from analytic.laws.law import ContactLaw, piece_of
-from analytic.laws.regimes import Bound, Regimes, crossings, regimes_between
-from analytic.laws.unloading import Unloading, slope_in_root
+from analytic.laws.law import ContactLaw, piece_of, slope_in_root
+from analytic.laws.regimes import Regimes, regimes_of
 from analytic.quantities import quantity_of
 
 
@@ -35,11 +34,14 @@ class Branch:
         Lowest separation that an unloaded surface has reached, d/sigma.
     conductance : SpotConductance, optional
         Of "conductance_si".
+    ratios : ndarray, optional
+        Radius of each summit over that of the surface, along the last axis of what formulas take.
     """
 
     law: ContactLaw
     unload_from: float | None = None
     conductance: SpotConductance | None = None
+    ratios: Array | None = None
 
     def of(self, quantity: str) -> Self:
         """Return the branch that a quantity is on.
@@ -51,18 +53,23 @@ class Branch:
         KeyError
             If there is no such quantity.
         ValueError
-            If unloading, or what spots conduct through, is not known.
+            If unloading, or what spots conduct through, is not known, or a variance is infinite.
         """
         q = quantity_of(quantity)
         if q.base == "conductance_si" and self.conductance is None:
             raise ValueError(f"quantity = {quantity!r}: give a film, or at least a resistivity")
         if not q.unloading or self.law.elastic:
             return self.loading
-        self.law.unloading()  # a law that has none says so
+        self.law.unloading(0.0)  # a law that has none says so
         if self.unload_from is None:
             raise ValueError(
                 f"quantity = {quantity!r}: asperities yield under law = {self.law.name!r}; give unload_from, "
                 "the lowest separation reached before"
+            )
+        if not self.law.stiff and q.base in ("stiffness", "load_slope"):
+            raise ValueError(
+                f"quantity = {quantity!r}: the stiffness of contacts that break off has no variance (law = "
+                f"{self.law.name!r}); leave stiffness and load_slope out, or unload_from"
             )
         return self
 
@@ -77,13 +84,15 @@ class Branch:
 
     def with_radii(self, ratios: Array) -> Self:
         """Return that of summits whose radii are these multiples of the surface's, each in its own units."""
-        own = self.conductance and self.conductance.with_radii(ratios)
-        return replace(self, law=self.law.with_radii(ratios), conductance=own)
+        return replace(self, ratios=ratios)
 
     def of_some(self, which: NDArray[Any]) -> Self:
-        """Return the law of selected summits; itself where all have one radius."""
-        own = self.conductance and self.conductance.of_some(which)
-        return replace(self, law=self.law.of_some(which), conductance=own)
+        """Return that of selected summits, by a mask, or by numbers that begin again beyond the last."""
+        if self.ratios is None:
+            return self
+        if which.dtype == np.bool_:
+            return replace(self, ratios=np.broadcast_to(self.ratios, which.shape)[which])
+        return replace(self, ratios=self.ratios[which % self.ratios.size])
 
     @property
     def finest(self) -> float:
@@ -92,7 +101,7 @@ class Branch:
 
     def root_at_touch(self, piece: int) -> bool:
         """Whether formulas of a piece that begins from nothing take negative roots as well."""
-        return self.law.root if piece == 0 else self.unload_from is not None and self._formulas.root
+        return piece == 0 and self.law.root
 
     # --- what asperities add ---
 
@@ -122,10 +131,7 @@ class Branch:
         return np.asarray(ratios**q.radius * branch.with_radii(ratios).terms([q.base], h, s, e)[0])
 
     def terms(self, quantities: Sequence[str], h: ArrayLike, heights: ArrayLike, e: ArrayLike) -> Array:
-        """Several quantities on this branch: shape (quantities, *common shape).
-
-        A law made for summits of different radii is that of the last axis.
-        """
+        """Several quantities on this branch: shape (quantities, *common shape)."""
         h, s, e = (np.asarray(x, dtype=np.float64) for x in (h, heights, e))
         pieces = self.pieces(h, s - h, e)
         result = np.zeros((len(quantities), *pieces.shape))
@@ -139,7 +145,7 @@ class Branch:
 
         Of reduced penetrations s - h, 0 where they are negative, and moduli E*(s)/E*, in their common shape.
         """
-        pieces = np.where(penetration > 0, piece_of(self.law, penetration, e), -1)
+        pieces = np.where(penetration > 0, piece_of(self._law(), penetration, e), -1)
         result = np.zeros(pieces.shape)
         for piece, here, branch, (depth, modulus) in self._by_piece(pieces, penetration, e):
             of_root = partial(branch.of_root, quantity, piece, e=modulus)
@@ -161,26 +167,40 @@ class Branch:
 
         With a `sign` of -1 the formula goes on to negative roots of the penetration.
         """
-        deepest, formulas = self._deepest(h, above), self._formulas
-        y = sign * np.sqrt(np.maximum(above - formulas.residual(deepest, e), 0.0))
-        return self._added(quantity, formulas, piece, y, deepest, e)
+        law = self._law(self.deepest(h, above))
+        y = sign * np.sqrt(np.maximum(above - law.residual(e), 0.0))
+        return self._added(quantity, law, piece, y, e)
 
     def of_root(self, quantity: str, piece: int, y: Any, e: Array) -> Array:
         """Return the same, closer than ever before, of the root of the penetration, which may be complex."""
-        return self._added(quantity, Unloading(self.law), piece, y, y * y, e)
+        return self._added(quantity, self._law(), piece, y, e)
 
-    def _added(self, quantity: str, formulas: Unloading, piece: int, *at: Any) -> Array:
-        """Return a quantity by formulas at what they take, and by what spots conduct through."""
-        if quantity != "conductance_si":
-            return formulas.added(quantity, piece, *at)
+    def _added(self, quantity: str, law: ContactLaw, piece: int, y: Any, e: Array) -> Array:
+        """Return what contacts add by a formula of a law, as it goes on beyond the ends of its piece."""
+        shape = np.broadcast_shapes(np.shape(y), np.shape(e))
+        known: dict[str, Callable[[], Any]] = {
+            "load": lambda: law.load(piece, y, e),
+            "area": lambda: law.radius(piece, y, e) ** 2,
+            "stiffness": lambda: law.stiffness(piece, y, e),
+            "contacts": lambda: np.ones(shape),
+            "conductance": lambda: law.radius(piece, y, e),
+            "conductance_si": lambda: self._spots(law.radius(piece, y, e)),
+            "load_slope": lambda: slope_in_root(lambda v: law.load(piece, v, e), y) * (2 / 3),
+            "yielded": lambda: np.full(shape, float(piece > 0)),
+        }
+        return np.asarray(known[quantity]())
+
+    def _spots(self, radius: Array) -> Array:
+        """Conductance of spots by their radii."""
         if self.conductance is None:
             raise ValueError("conductance_si: give a resistivity")
-        return self.conductance(formulas.radius(piece, *at))
+        own = self.conductance if self.ratios is None else self.conductance.with_radii(self.ratios)
+        return own(radius)
 
-    @property
-    def _formulas(self) -> Unloading:
-        """Those of contacts that are closer than ever before too, or of those that are left."""
-        return Unloading(self.law) if self.unload_from is None else self.law.unloading()
+    def _law(self, deepest: Array | None = None) -> ContactLaw:
+        """Law of contacts that are closer than ever before, or on unloading have been this deep."""
+        law = self.law if self.ratios is None else self.law.with_radii(self.ratios)
+        return law if self.unload_from is None or deepest is None else law.unloading(np.maximum(deepest, 0.0))
 
     # --- where they touch ---
 
@@ -188,45 +208,27 @@ class Branch:
         """Height below which nothing touches, at a separation or at higher ones, in its shape."""
         return h if self.unload_from is None else self.unload_from
 
-    def _deepest(self, h: Array, above: Array) -> Array:
+    def deepest(self, h: Array, above: Array) -> Array:
         """Deepest penetration."""
-        return above if self.unload_from is None else above + (h - self.unload_from)
+        return above + (h - self.lowest(h))
 
-    def _residual(self, h: Array, above: Any, e: Array) -> Array:
-        """Penetration at which asperities are lost, infinite of those never in contact."""
-        if self.unload_from is None:
-            return np.zeros(())
-        deepest = h + above - self.unload_from
-        return np.where(deepest >= 0, self._formulas.residual(np.maximum(deepest, 0.0), e), np.inf)
+    def limits(self, e: Array) -> Array:
+        """Penetrations at which the next piece begins, increasing; shape (pieces - 1, *common shape)."""
+        return self._law().limits(e)
 
     def left(self, h: Array, above: Array, e: Array) -> Array:
-        """Penetration left until contact is lost, whose root the formulas take."""
-        return above - self._residual(h, above, e)
+        """Penetration left until contact is lost, whose root the formulas take; -inf without any before."""
+        deepest = self.deepest(h, above)
+        return np.where(deepest >= 0, above - self._law(deepest).residual(e), -np.inf)
 
     def pieces(self, h: Array, above: Array, e: Array) -> Ints:
         """Which formula holds at heights `above` the separations, -1 without contact."""
         above, h, e = np.broadcast_arrays(above, h, e)
-        piece = piece_of(self.law, self._deepest(h, above), e)
-        return np.where(above > self._residual(h, above, e), piece, -1)
+        return np.where(self.left(h, above, e) > 0, piece_of(self._law(), self.deepest(h, above), e), -1)
 
     def regimes(self, grading: Grading, separations: ArrayLike, low: float, high: float) -> Regimes:
         """At which heights there is contact, and which formula holds there.
 
-        Under a law of several radii (`ContactLaw.with_radii`) separations have these in turn.
+        Where summits have radii of their own, separations have these in turn.
         """
-        h = np.asarray(separations, dtype=np.float64)
-        turn = np.broadcast_to(self.lowest(h), h.shape)
-        count = len(self.law.limits(np.ones(self.law.radii)))
-        bounds = [(turn, self._limit(grading, j)) for j in range(count)]
-        if self.unload_from is not None:  # pieces are those of the deepest penetration, until contact is lost
-            bounds.append((h, lambda s, which: self.of_some(which)._residual(s, 0.0, grading(s))))
-        crossed = [crossings(bound, grading, at, low, high, self.law.radii) for at, bound in bounds]
-
-        def piece(s: Array, which: Ints) -> Ints:
-            return self.of_some(which).pieces(h[which], s - h[which], grading(s))
-
-        return regimes_between(crossed, h, np.maximum(turn, low), high, grading.breaks, piece)
-
-    def _limit(self, grading: Grading, j: int) -> Bound:
-        """Penetration at which piece j + 1 begins, of the height and of which separation."""
-        return lambda s, which: np.asarray(self.law.of_some(which).limits(grading(s))[j])
+        return regimes_of(self, grading, np.asarray(separations, dtype=np.float64), low, high)

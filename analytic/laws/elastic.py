@@ -153,7 +153,7 @@ class Coated(ContactLaw):
     @property
     def finest(self) -> float:
         """How far above first touch the formulas are analytic: arctan(a/t) up to ``|a|`` = t."""
-        return float(np.min(self.reduced)) ** 2
+        return float(self.reduced) ** 2
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
         """Return the load of a contact, in the shape of `y` and `e`, as an integral of its stiffness."""

@@ -15,8 +15,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from analytic.arrays import Array
-from analytic.laws.law import ContactLaw
-from analytic.laws.unloading import derivative
+from analytic.laws.law import ContactLaw, derivative
 from analytic.surface import Surface
 
 Formula = Callable[[Any, Any, Any], Any]  # of the law, of x = delta/delta_c, and of e = E*(s)/E*

@@ -185,9 +185,9 @@ class KogutEtsion(FromHardness):
         """K, the greatest contact pressure at the onset of yield over the hardness."""
         return 0.454 + 0.41 * self.poisson
 
-    def unloading(self) -> EtsionKligermanKadin:
+    def unloading(self, deepest: Any) -> EtsionKligermanKadin:
         """Return the law of Etsion, Kligerman and Kadin; with a bridge, from the bridged load."""
-        return EtsionKligermanKadin(self)
+        return EtsionKligermanKadin(self, deepest)
 
 
 def _jackson_area(law: Any, x: Any, e: Any) -> Any:

@@ -1,15 +1,14 @@
 """Electrical and thermal contact conductance of spots with a film, and how spots crowd each other."""
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from analytic.arrays import Array, hold, some_of
+from analytic.arrays import Array, hold
 from analytic.laws.law import is_positive
 from analytic.surface import Surface
 
@@ -161,25 +160,18 @@ class SpotConductance:
     @property
     def finest(self) -> float:
         """How far above first touch it is analytic: radii that go on to negative ones meet a pole."""
-        parameter = float(np.min(self.parameter))
         if self.layered is None:
-            return parameter**2 if parameter > 0 else math.inf
-        thinnest, film = float(np.min(self.thickness)), parameter * self.resistivity
-        resists = layered_resistivity(-_REACH, 1.0, *self.layered) * thinnest * _REACH
+            return float(self.parameter) ** 2 if self.parameter > 0 else math.inf
+        film = self.parameter * self.resistivity
+        resists = layered_resistivity(-_REACH, 1.0, *self.layered) * self.thickness * _REACH
         changes = np.flatnonzero((resists > film) != (film == 0))  # branch points are at radii of i n t
-        return (thinnest * float(min([1.0, *_REACH[np.maximum(changes[:1] - 1, 0)]]))) ** 2
+        return float(self.thickness * min([1.0, *_REACH[np.maximum(changes[:1] - 1, 0)]])) ** 2
 
     def with_radii(self, ratios: Array) -> Self:
         """Return that of summits whose radii are these multiples of the surface's, one for each."""
-        return self._with(lambda length: length * ratios**-0.5)
-
-    def of_some(self, which: NDArray[Any]) -> Self:
-        """Return that of some of the summits that it was made for; itself where all have one radius."""
-        return self._with(lambda length: some_of(length, which))
-
-    def _with(self, change: Callable[[Any], Any]) -> Self:
-        thickness = None if self.layered is None else change(self.thickness)
-        return replace(self, parameter=change(self.parameter), thickness=thickness)
+        unit = ratios**-0.5
+        thickness = None if self.layered is None else self.thickness * unit
+        return replace(self, parameter=self.parameter * unit, thickness=thickness)
 
     def __call__(self, radius: Array) -> Array:
         """Conductance over 4 sqrt(R sigma), in 1/(ohm m) or W/(m K), analytic in the radius up to -b."""

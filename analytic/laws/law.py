@@ -14,13 +14,12 @@ from numbers import Real
 from typing import Any, ClassVar, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-from analytic.arrays import Array, Ints, hold, some_of
-from analytic.laws.unloading import Unloading
+from analytic.arrays import Array, Ints, hold
 from analytic.surface import Surface
 
-_FORMULAS = ("limits", "load", "radius", "stiffness", "unloading")
+_STEP = 1e-30  # of a variable, into the complex plane
+_NEXT_TO_0 = 1e-60  # stands for 0: cubes of it, times a step, are still numbers
 
 
 class ContactLaw:
@@ -39,6 +38,8 @@ class ContactLaw:
         Whether an asperity unloads along its loading curve.
     yields : bool
         Whether an asperity yields.
+    stiff : bool
+        False if on unloading the stiffness of a contact has no variance, and so is refused.
     finest : float
         How far above first touch the formulas of piece 0 are analytic, in penetration: infinite if they
         are sums of powers of y.
@@ -55,6 +56,7 @@ class ContactLaw:
     elastic: ClassVar[bool] = True
     yields: ClassVar[bool] = False
     root: ClassVar[bool] = True
+    stiff: ClassVar[bool] = True
     of_radius: ClassVar[tuple[str, float] | None] = None
     in_si: ClassVar[tuple[str, str] | None] = None
 
@@ -84,7 +86,7 @@ class ContactLaw:
     @property
     def hertz(self) -> bool:
         """Whether this is Hertz's law, for which closed forms exist."""
-        return all(getattr(type(self), name) is getattr(ContactLaw, name) for name in _FORMULAS)
+        return type(self) in (ContactLaw, Hertz)
 
     def check_constants(self, *others: str) -> None:
         """Refuse constants that are not numbers > 0, and two that fix the same thing, or neither of these."""
@@ -142,24 +144,11 @@ class ContactLaw:
         ContactLaw
             Radii of contact over sqrt(c R sigma), loads over ``(4/3) E* sqrt(c R) sigma^(3/2)``.
         """
-        return self._with(lambda constant, power: constant * ratios**power)
-
-    def of_some(self, which: NDArray[Any]) -> Self:
-        """Return that of some of the summits that it was made for; itself where all have one radius."""
-        return self._with(lambda constant, _: some_of(constant, which))
-
-    def _with(self, change: Callable[[Any, float], Any]) -> Self:
-        """Return the same with another constant in place of the one that follows the radius."""
         if not self.of_radius:
             return self
         changed, (name, power) = copy(self), self.of_radius
-        hold(changed, **{name: change(getattr(self, name), power)})  # checks are for numbers
+        hold(changed, **{name: getattr(self, name) * ratios**power})  # checks are for numbers
         return changed
-
-    @property
-    def radii(self) -> int:
-        """Number of radii that it was made for."""
-        return np.size(getattr(self, self.of_radius[0])) if self.of_radius else 1
 
     def limits(self, e: Array) -> Array:
         """Return penetrations where the next piece begins, increasing; shape ``(pieces - 1, *e.shape)``."""
@@ -177,8 +166,11 @@ class ContactLaw:
         """Return the stiffness of a spot over 2 E* sqrt(R sigma); after yield, that as unloading starts."""
         return np.asarray(e * self.radius(piece, y, e))
 
-    def unloading(self) -> Unloading:
-        """Return the law by which an asperity unloads.
+    def unloading(self, deepest: Any) -> "ContactLaw":
+        """Return the law of contacts that are pulled back from their deepest penetration.
+
+        Its formulas take ``y = sqrt(penetration - residual)``, so that next to lift-off no digit is lost;
+        `piece` is the piece of this law that holds at the deepest penetration.
 
         Raises
         ------
@@ -189,7 +181,11 @@ class ContactLaw:
             raise ValueError(
                 f"law = {self.name!r}: no unloading is known for it; use 'kogut-etsion' or an elastic law"
             )
-        return Unloading(self)
+        return self
+
+    def residual(self, e: Array) -> Any:
+        """Return the penetration at which contact is lost on unloading."""
+        return 0.0
 
 
 @dataclass(frozen=True)
@@ -231,3 +227,15 @@ def piece_of(law: ContactLaw, penetration: Array, e: Array) -> Ints:
         for limit in law.limits(e):
             piece += limit <= penetration
     return piece
+
+
+def derivative(formula: Callable[[Any], Any], x: Array) -> Array:
+    """``d formula/dx`` where x is not 0."""
+    step = _STEP * np.abs(x)
+    return np.asarray(np.imag(formula(x + 1j * step)) / step)
+
+
+def slope_in_root(formula: Callable[[Any], Any], y: Array) -> Array:
+    """``d formula/d(y^2)``, at y = 0 its limit."""
+    y = np.where(y == 0, _NEXT_TO_0, y)
+    return derivative(formula, y) / (2 * y)

@@ -263,7 +263,7 @@ class Asperities:
             first = np.maximum(first, 0)
         changed = np.flatnonzero(first < last)
         smooth[self.owner[changed]] = False
-        for j, limit in enumerate(self.branch(changed).law.limits(e[changed]) if changed.size else ()):
+        for j, limit in enumerate(self.branch(changed).limits(e[changed]) if changed.size else ()):
             ends = (first[changed] <= j) & (j < last[changed])
             here, limit = changed[ends], limit[ends]
             weight = 1.0 if self.ratios is None else self.ratios[here] ** q.radius
@@ -276,7 +276,7 @@ class Asperities:
         branch, e = self.branch(slice(None)), np.maximum(self.modulus, np.finfo(float).tiny)
         if np.any(branch.of_root(q.base, 0, np.zeros_like(e), e) < 0):
             return False
-        for j, limit in enumerate(branch.law.limits(e)):
+        for j, limit in enumerate(branch.limits(e)):
             y = np.sqrt(limit)
             with np.errstate(all="ignore"):  # without a modulus nothing yields, at no limit
                 before, after = (branch.of_root(q.base, piece, y, e) for piece in (j, j + 1))

@@ -64,9 +64,10 @@ def _history(scene: Fields) -> Iterator[str]:
             'give the smallest that was reached, or "loop"'
         )
     try:
-        way, steep = scene.reduced_law.unloading(), ("stiffness", "load_slope")
+        steep = "stiffness", "load_slope"
+        scene.reduced_law.unloading(0.0)
         stiff = [name for name in steep if name in scene.quantities]
-        if stiff and not way.stiff:
+        if stiff and not scene.law.stiff:
             rest = [x for x in scene.quantities if x not in steep and x not in analytic.UNLOADING]
             listed = str(rest or ["load"]).replace("'", '"')
             yield (

@@ -7,7 +7,7 @@ they are held against the sum over the contacts of what each presses or pulls an
 import numpy as np
 
 from analytic import quantity_of
-from analytic.laws import Unloading
+from analytic.laws.law import slope_in_root
 from oracles.inside import sampler_of, summits_drawn
 from oracles.literal import POWERS
 
@@ -75,7 +75,7 @@ def _there(scene, law, name, piece, d, _, e):
         "contacts": lambda: np.ones(len(y)),
         "conductance": lambda: radius,
         "conductance_si": lambda: _of_spots(scene, radius),
-        "load_slope": lambda: 2 / 3 * Unloading(law).slope(piece, y, d, e),
+        "load_slope": lambda: 2 / 3 * slope_in_root(lambda v: law.load(piece, v, e), y),
         "yielded": lambda: np.full(len(y), float(piece > 0)),
     }[name]()
 
@@ -89,17 +89,16 @@ def _of_spots(scene, radius):
 
 def _back(_, law, name, piece, d, most, e):
     """After lift-off nothing."""
-    way, found = law.unloading(), np.zeros(len(d))
-    left = d - way.residual(most, e)
+    found, left = np.zeros(len(d)), d - law.unloading(most).residual(e)
     held = left > 0
-    y, most, e = np.sqrt(left[held]), most[held], e[held]
-    radius = way.radius(piece, y, most, e)
+    way, y, e = law.unloading(most[held]), np.sqrt(left[held]), e[held]
+    radius = way.radius(piece, y, e)
     found[held] = {
-        "load": lambda: way.load(piece, y, most, e),
+        "load": lambda: way.load(piece, y, e),
         "area": lambda: radius**2,
-        "stiffness": lambda: way.stiffness(piece, y, most, e),
+        "stiffness": lambda: way.stiffness(piece, y, e),
         "contacts": lambda: np.ones(len(y)),
         "conductance": lambda: radius,
-        "load_slope": lambda: 2 / 3 * way.slope(piece, y, most, e),
+        "load_slope": lambda: 2 / 3 * slope_in_root(lambda v: way.load(piece, v, e), y),
     }[name]()
     return found

@@ -61,7 +61,7 @@ QUANTITIES = ("load", "area", "stiffness", "contacts", "conductance", "load_slop
 
 def scene_of(law, grading, separations, **changes):
     names = QUANTITIES if law.elastic else (*QUANTITIES, "yielded")
-    if "unload_from" in changes and not law.on(SURFACE).unloading().stiff:
+    if "unload_from" in changes and not law.stiff:
         names = ("load", "area", "contacts", "conductance")
     values = {"quantities": names, "n_asperities": 5000, "n_surfaces": 1, "seed": 11, "negative": "clip"}
     values |= {"sampler": "cells"}

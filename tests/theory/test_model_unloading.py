@@ -143,11 +143,10 @@ def test_contacts_that_stick_at_their_check_values(stretch, quantity, value):
 def test_only_what_has_touched_sticks(h):
     """From a turn at 0.5 contacts are those above h - D, and above 0.5; and both ways have a covariance."""
     model = stuck(0.5, unload_from=0.5, n_asperities=1.0, count="poisson")
-    low, back = max(h - 0.5, 0.5), JohnsonKendallRoberts(pull_off=0.5).unloading()
-    most = np.array(9.0)
+    low, back = max(h - 0.5, 0.5), JohnsonKendallRoberts(pull_off=0.5).unloading(9.0)
 
     def load(s):
-        return back.load(0, np.sqrt(np.maximum(s - h + 0.5, 0.0)), most, np.array(1.0))
+        return back.load(0, np.sqrt(np.maximum(s - h + 0.5, 0.0)), np.array(1.0))
 
     marks = [low, *(low + x for x in (0.5, 2.0, 5.0)), TOP]
     assert float(reduced(model, "load_unloading", h)) == pytest.approx(integral(load, marks), rel=1e-11)
