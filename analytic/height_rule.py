@@ -116,17 +116,13 @@ class HeightRule:
         terms = np.zeros((self.heights.size, len(quantities), h.size))
         for branch in ways.among(quantities):
             which = [k for k, name in enumerate(quantities) if ways.of(name) == branch]
-            several = [quantity_of(quantities[k]) for k in which]
+            several = [quantity_of(quantities[k]).base for k in which]
             step = max(1, _TOGETHER // max(1, h.size))
             for first in range(0, self.heights.size, step):
                 part = slice(first, first + step)
-                s, e, of_part, radius = self.heights[part], modulus[part], branch, np.ones(1)
-                if self.ratios is not None:
-                    ratios = self.ratios[part]
-                    of_part = ways.with_radii(ratios).of(quantities[which[0]])
-                    radius = np.stack([ratios**q.radius for q in several])[:, None, :]
-                found = of_part.terms([q.base for q in several], h[:, None], s, e)
-                terms[part, which] = (radius * found).transpose(2, 0, 1)
+                own = branch.with_radii(None if self.ratios is None else self.ratios[part])
+                found = own.terms(several, h[:, None], self.heights[part], modulus[part])
+                terms[part, which] = found.transpose(2, 0, 1)
         return terms.reshape(self.heights.size, len(quantities) * h.size)
 
 

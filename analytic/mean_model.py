@@ -235,7 +235,7 @@ class MeanModel:
 
     def _share_by(self, piece: int, h: Array) -> Array:
         rule = self._rule_of(quantity_of("contacts"), h)
-        s, e, branch = rule.heights, self.grading(rule.heights), self._ways_of(rule).loading
+        s, e, branch = rule.heights, self.grading(rule.heights), self.ways.loading.with_radii(rule.ratios)
         inside = np.stack([branch.pieces(x, s - x, e) == piece for x in h], axis=1)
         with np.errstate(invalid="ignore"):
             return np.asarray(rule.mean(inside) / self._mean_by(quantity_of("contacts"), h))
@@ -245,14 +245,8 @@ class MeanModel:
         s, p = rule.heights, rule.probabilities
         if not s.size:
             return np.zeros(h.shape)
-        if rule.ratios is not None:
-            p = p * rule.ratios**q.radius
-        branch, e = self._ways_of(rule).loading, self.grading(s)
-        return np.array([np.sum(p * branch.slopes(q.base, s - x, e)) for x in h])
-
-    def _ways_of(self, rule: HeightRule) -> Branch:
-        """In units of each summit, where radii differ."""
-        return self.ways if rule.ratios is None else self.ways.with_radii(rule.ratios)
+        branch, e = self.ways.loading.with_radii(rule.ratios), self.grading(s)
+        return np.array([np.sum(p * branch.terms([q.base], x, s, e, slope=True)[0]) for x in h])
 
     def _grid(self, q: Quantity) -> Array:
         """Separations from where all touches to where probabilities underflow, or the highest height."""

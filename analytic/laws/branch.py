@@ -4,7 +4,7 @@ A branch says at which heights which formula holds, and gives the formulas at he
 So everything that sums over asperities treats loading, unloading and any law of contact alike.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Self
@@ -12,7 +12,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.arrays import Array, Ints, Marks
+from analytic.arrays import Array, Ints
 from analytic.gradings import Grading
 from analytic.laws.film import SpotConductance
 from analytic.laws.law import ContactLaw, piece_of, slope_in_root
@@ -82,9 +82,9 @@ class Branch:
         """Return the branches of some quantities, each once."""
         return tuple(dict.fromkeys(self.of(name) for name in quantities))
 
-    def with_radii(self, ratios: Array) -> Self:
+    def with_radii(self, ratios: Array | None) -> Self:
         """Return that of summits whose radii are these multiples of the surface's, each in its own units."""
-        return replace(self, ratios=ratios)
+        return self if ratios is None else replace(self, ratios=ratios)
 
     def of_some(self, which: NDArray[Any]) -> Self:
         """Return that of selected summits, by a mask, or by numbers that begin again beyond the last."""
@@ -125,57 +125,49 @@ class Branch:
         ndarray
             Over the quantity's scale for the radius of the surface, in their common shape.
         """
-        q, branch = quantity_of(quantity), self.of(quantity)
-        if ratios is None:
-            return np.asarray(branch.terms([q.base], h, s, e)[0])
-        return np.asarray(ratios**q.radius * branch.with_radii(ratios).terms([q.base], h, s, e)[0])
+        some = self.of(quantity).with_radii(ratios)
+        return np.asarray(some.terms([quantity_of(quantity).base], h, s, e)[0])
 
-    def terms(self, quantities: Sequence[str], h: ArrayLike, heights: ArrayLike, e: ArrayLike) -> Array:
-        """Several quantities on this branch: shape (quantities, *common shape)."""
-        h, s, e = (np.asarray(x, dtype=np.float64) for x in (h, heights, e))
-        pieces = self.pieces(h, s - h, e)
-        result = np.zeros((len(quantities), *pieces.shape))
-        for piece, here, branch, at in self._by_piece(pieces, h, s - h, e):
-            for k, quantity in enumerate(quantities):
-                result[k, here] = branch.value(quantity, piece, *at)
-        return result
+    def terms(
+        self, quantities: Sequence[str], h: ArrayLike, s: ArrayLike, e: ArrayLike, *, slope: bool = False
+    ) -> Array:
+        """Several quantities on this branch, or their slopes: shape (quantities, *common shape).
 
-    def slopes(self, quantity: str, penetration: Array, e: Array) -> Array:
-        """Return derivatives by the penetration of what asperities add on loading, within a piece.
-
-        Of reduced penetrations s - h, 0 where they are negative, and moduli E*(s)/E*, in their common shape.
+        Over scales for the radius of the surface. Slopes are derivatives by the penetration within a piece.
         """
-        pieces = np.where(penetration > 0, piece_of(self._law(), penetration, e), -1)
-        result = np.zeros(pieces.shape)
-        for piece, here, branch, (depth, modulus) in self._by_piece(pieces, penetration, e):
-            of_root = partial(branch.of_root, quantity, piece, e=modulus)
-            result[here] = slope_in_root(of_root, np.sqrt(depth))
-        return result
-
-    def _by_piece(self, pieces: Ints, *at: Array) -> Iterator[tuple[int, Marks, Self, list[Array]]]:
-        """Pieces that occur, where they do, the branch of the summits there, and other values there."""
-        at = tuple(np.broadcast_to(x, pieces.shape) for x in at)
+        h, s, e = (np.asarray(x, dtype=np.float64) for x in (h, s, e))
+        pieces = self.pieces(h, s - h, e)
+        at = [np.broadcast_to(x, pieces.shape) for x in (h, s - h, e)]
+        result = np.zeros((len(quantities), *pieces.shape))
         for piece in range(int(pieces.max(initial=-1)) + 1):
             here = pieces == piece
             if here.any():
-                yield piece, here, self.of_some(here), [x[here] for x in at]
+                some, there = self.of_some(here), [x[here] for x in at]
+                for k, quantity in enumerate(quantities):
+                    result[k, here] = some.value(quantity, piece, *there, slope=slope)
+        if self.ratios is not None:
+            for k, quantity in enumerate(quantities):
+                result[k] *= self.ratios ** quantity_of(quantity).radius
+        return result
 
     def value(
-        self, quantity: str, piece: int, h: Array, above: Array, e: Array, *, sign: float = 1.0
-    ) -> Array:
-        """Return what contacts of a piece add at heights `above` the separations, over the scale.
+        self, quantity: str, piece: int, h: Array, above: Array, e: Array, *, sign: float = 1.0,
+        slope: bool = False,
+    ) -> Array:  # fmt: skip
+        """Return what contacts of a piece add at heights `above` the separations, over scales of own radii.
 
         With a `sign` of -1 the formula goes on to negative roots of the penetration.
         """
         law = self._law(self.deepest(h, above))
         y = sign * np.sqrt(np.maximum(above - law.residual(e), 0.0))
-        return self._added(quantity, law, piece, y, e)
+        added = partial(self._added, quantity, law, piece, e=e)
+        return slope_in_root(added, y) if slope else added(y)
 
     def of_root(self, quantity: str, piece: int, y: Any, e: Array) -> Array:
         """Return the same, closer than ever before, of the root of the penetration, which may be complex."""
-        return self._added(quantity, self._law(), piece, y, e)
+        return self._added(quantity, self._law(), piece, y, e=e)
 
-    def _added(self, quantity: str, law: ContactLaw, piece: int, y: Any, e: Array) -> Array:
+    def _added(self, quantity: str, law: ContactLaw, piece: int, y: Any, *, e: Array) -> Array:
         """Return what contacts add by a formula of a law, as it goes on beyond the ends of its piece."""
         shape = np.broadcast_shapes(np.shape(y), np.shape(e))
         known: dict[str, Callable[[], Any]] = {
@@ -210,7 +202,7 @@ class Branch:
 
     def deepest(self, h: Array, above: Array) -> Array:
         """Deepest penetration."""
-        return above + (h - self.lowest(h))
+        return above if self.unload_from is None else np.asarray(above + (h - self.unload_from))
 
     def limits(self, e: Array) -> Array:
         """Penetrations at which the next piece begins, increasing; shape (pieces - 1, *common shape)."""

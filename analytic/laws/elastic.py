@@ -5,12 +5,10 @@ from math import cos, gamma, pi, sin, sqrt
 from typing import Any, ClassVar
 
 import numpy as np
+from scipy.special import log1p
 
 from analytic.arrays import Array
 from analytic.laws.law import ContactLaw
-from analytic.quadrature import gauss_legendre
-
-_NODES = 14  # enough for logarithms up to log(2)
 
 
 @dataclass(frozen=True)
@@ -158,35 +156,15 @@ class Coated(ContactLaw):
     def load(self, piece: int, y: Any, e: Array) -> Any:
         """Return the load of a contact, in the shape of `y` and `e`, as an integral of its stiffness."""
         w, nu = np.asarray(y) / self.reduced, self.poisson
-        _, tail, rise = _logarithms(w * w)
-        atan = w**3 / 3 * (pi / 2 - np.arctan(w)) + tail / 6
-        integral = 2 / pi * atan + ((1 - 2 * nu) * rise - tail) / (4 * pi * (1 - nu))
+        z, log = w * w, log1p(w * w)
+        atan = w**3 / 3 * (pi / 2 - np.arctan(w)) + (z - log) / 6
+        integral = 2 / pi * atan + ((1 - 2 * nu) * ((1 + z) * log - z) - (z - log)) / (4 * pi * (1 - nu))
         return e * (y * y * y + 3 * (self.ratio - 1) * self.reduced**3 * integral)
 
     def stiffness(self, piece: int, y: Array, e: Array) -> Array:
         """Return the stiffness of a spot over 2 E* sqrt(R sigma)."""
-        w = np.asarray(y) / self.reduced
-        return np.asarray(e * (y * (1 + (self.ratio - 1) * self._share(w))))
-
-    def _share(self, w: Any) -> Any:
-        """Weight I0 of the coating at the radius of contact w over its thickness."""
-        z, nu = w * w, self.poisson
-        mixed = (1 - 2 * nu) * w * _logarithms(z)[0] - w / (1 + z)
-        return 1 - 2 / pi * np.arctan(w) + mixed / (2 * pi * (1 - nu))
-
-
-def _logarithms(z: Any) -> tuple[Any, Any, Any]:
-    """``l/z``, ``z - l`` and ``(1 + z) l - z`` where ``l = log(1 + z)``, without loss next to z = 0.
-
-    There, by quadrature, of ``(z - l)/z^2``, the integral of x/(1 + z x) from 0 to 1.
-    """
-    near = np.real(z) < 1
-    low, high = np.where(near, z, 0.0), np.where(near, 1.0, z)
-    x, weights = gauss_legendre(_NODES)
-    share = (x / (1 + low[..., None] * x)) @ weights
-    log = np.log1p(high)
-    return (
-        np.where(near, 1 - low * share, log / high),
-        np.where(near, low * low * share, high - log),
-        np.where(near, low * low * (1 - (1 + low) * share), (1 + high) * log - high),
-    )
+        w, nu = np.asarray(y) / self.reduced, self.poisson
+        z = w * w
+        mixed = (1 - 2 * nu) * log1p(z) / np.where(w == 0, 1.0, w) - w / (1 + z)
+        share = 1 - 2 / pi * np.arctan(w) + mixed / (2 * pi * (1 - nu))
+        return np.asarray(e * (y * (1 + (self.ratio - 1) * share)))

@@ -127,20 +127,18 @@ class Asperities:
             Shape (quantities, asperities).
         """
         quantities, x = [quantity_of(name) for name in names], np.repeat(h, self.counts)
-        if self.scene.hertzian:
-            above = np.maximum(self.s - x, 0.0)
-            powers = (above**q.exponent if q.exponent else (above > 0) * 1.0 for q in quantities)
-            found = [self.modulus * y if q.modulus else y for q, y in zip(quantities, powers, strict=True)]
-        else:
-            found = list(self.branch(slice(None)).terms(names, x, self.s, self.modulus))
+        if not self.scene.hertzian:
+            return self.branch(slice(None)).terms(names, x, self.s, self.modulus)
+        above = np.maximum(self.s - x, 0.0)
+        powers = (above**q.exponent if q.exponent else (above > 0) * 1.0 for q in quantities)
+        found = [self.modulus * y if q.modulus else y for q, y in zip(quantities, powers, strict=True)]
         if self.ratios is not None:
             found = [self.ratios**q.radius * y for q, y in zip(quantities, found, strict=True)]
         return np.asarray(found)
 
     def branch(self, which: slice | Ints) -> Branch:
         """Return that of some asperities, each by the law of its own radius."""
-        loading = self.scene.ways.loading
-        return loading if self.ratios is None else loading.with_radii(self.ratios[which])
+        return self.scene.ways.loading.with_radii(None if self.ratios is None else self.ratios[which])
 
     def added(self, terms: Array) -> Array:
         """Return the sum of the terms of each surface."""
