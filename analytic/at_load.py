@@ -263,7 +263,8 @@ def _deepest(model: Any, given: str, target: float, h: float, ratios: Array) -> 
 
     def excess(penetration: Array, which: Ints) -> Array:
         s = h + penetration
-        return np.asarray(model.ways.term(given, h, s, model.grading(s), ratios[which]) - target)
+        own = model.ways.of(given).with_radii(ratios[which])
+        return np.asarray(own.terms([given], h, s, model.grading(s))[0] - target)
 
     deepest = np.full_like(ratios, _DEEPEST)
     has = np.flatnonzero(excess(deepest, np.arange(ratios.size)) > 0)

@@ -19,7 +19,6 @@ from analytic.heights import GAUSSIAN, HeightLaw
 from analytic.law_rule import law_rule
 from analytic.laws.branch import Branch
 from analytic.laws.law import ContactLaw
-from analytic.quantities import quantity_of
 
 Count = Literal["fixed", "poisson"]
 
@@ -116,7 +115,7 @@ class HeightRule:
         terms = np.zeros((self.heights.size, len(quantities), h.size))
         for branch in ways.among(quantities):
             which = [k for k, name in enumerate(quantities) if ways.of(name) == branch]
-            several = [quantity_of(quantities[k]).base for k in which]
+            several = [quantities[k] for k in which]
             step = max(1, _TOGETHER // max(1, h.size))
             for first in range(0, self.heights.size, step):
                 part = slice(first, first + step)

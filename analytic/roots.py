@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from analytic.arrays import Array, Ints, Marks
+from analytic.arrays import Array, Ints
 
 _MOST = 200  # steps; halving from 1e3 down to the smallest room takes 70
 _LAST_DIGITS = 2.0**-52
@@ -50,15 +50,10 @@ def sign_changes(
     >>> sign_changes(lambda x, which: x**2 - [2, 3], np.zeros(2), np.full(2, 2.0), np.ones(2)).round(12)
     array([1.41421356, 1.73205081])
     """
-    found, active = right.copy(), np.arange(left.size)
-    a, b, step = right, left, np.full(left.size, 0.5)
-    if at_ends is None:
-        fb, fa = excess(left, active), excess(right, active)
-    else:
-        fb, fa = at_ends
-        step = np.clip(fa / (fa - fb), 0.05, 0.95)
-    behind = fa >= 0
-    c, fc = b, fb
+    active, found = np.arange(left.size), right.copy()
+    fb, fa = at_ends or (excess(left, active), excess(right, active))
+    step = np.clip(fa / (fa - fb), 0.05, 0.95) if at_ends else np.full(left.size, 0.5)
+    a, b, c, fc, behind = right, left, left, fb, fa >= 0
     for _ in range(_MOST):
         room = np.maximum(_LAST_DIGITS * np.maximum(np.abs(a), unit), _SMALLEST)
         near = np.abs(fa) <= close
@@ -66,16 +61,19 @@ def sign_changes(
         found[active] = np.where(((fa >= 0) == behind) | near, a, b)
         if not more.any():
             break
-        active, unit, behind, room = active[more], unit[more], behind[more], room[more]
-        a, fa, b, fb, c, fc, step = (x[more] for x in (a, fa, b, fb, c, fc, step))
+        active, behind = active[more], behind[more]
+        unit, room, a, fa, b, fb, c, fc, step = (x[more] for x in (unit, room, a, fa, b, fb, c, fc, step))
         least = np.minimum(room / (2 * np.abs(b - a)), 0.5)
         new = a + np.clip(step, least, 1 - least) * (b - a)
         f = excess(new, active)
         same = (f >= 0) == (fa >= 0)
         c, fc = np.where(same, a, b), np.where(same, fa, fb)
-        b, fb = np.where(same, b, a), np.where(same, fb, fa)
-        a, fa = new, f
-        step = _next_step(a, fa, b, fb, c, fc)
+        a, fa, b, fb = new, f, np.where(same, b, a), np.where(same, fb, fa)
+        with np.errstate(all="ignore"):
+            place, value = (a - b) / (c - b), (fa - fb) / (fc - fb)
+            safe = (value**2 < place) & ((1 - value) ** 2 < 1 - place)
+            inverse = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
+        step = np.where(safe & np.isfinite(inverse), inverse, 0.5)
     return found
 
 
@@ -87,20 +85,6 @@ def root(excess: Callable[[float], float], left: float, right: float, *, close: 
     >>> abs(root(lambda x: x * x - 2, 0.0, 2.0, close=0.1) ** 2 - 2) <= 0.1
     True
     """
-    found = sign_changes(
-        lambda x, _: np.array([excess(float(y)) for y in x]),
-        np.array([left]),
-        np.array([right]),
-        np.ones(1),
-        close=close,
-    )
+    ends = (np.array([x]) for x in (left, right, 1.0))
+    found = sign_changes(lambda x, _: np.array([excess(float(x[0]))]), *ends, close=close)
     return float(found[0])
-
-
-def _next_step(a: Array, fa: Array, b: Array, fb: Array, c: Array, fc: Array) -> Array:
-    """Share of the way from a to b at which the function is looked at next."""
-    with np.errstate(all="ignore"):
-        place, value = (a - b) / (c - b), (fa - fb) / (fc - fb)
-        safe: Marks = (value**2 < place) & ((1 - value) ** 2 < 1 - place)
-        inverse = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
-    return np.where(safe & np.isfinite(inverse), inverse, 0.5)

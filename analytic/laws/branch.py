@@ -105,35 +105,24 @@ class Branch:
 
     # --- what asperities add ---
 
-    def term(self, quantity: str, h: ArrayLike, s: Array, e: Array, ratios: Array | None = None) -> Array:
-        """Return what summits, perhaps of radii of their own, add at a separation, 0 without contact.
-
-        Literally, each by its own formula.
+    def terms(
+        self, quantities: Sequence[str], h: ArrayLike, s: ArrayLike, e: ArrayLike, *, slope: bool = False
+    ) -> Array:
+        """Return what summits of this branch add at separations, each by its own formula, 0 without contact.
 
         Parameters
         ----------
-        quantity : str
-            Its name, on whatever way.
-        h : array_like
-            Reduced separations.
-        s, e, ratios : ndarray
-            Reduced heights, moduli E*(s)/E*, and radii over that of the surface, whose shapes broadcast;
-            None: all have that of the surface.
+        quantities : sequence of str
+            Their names, on whatever way.
+        h, s, e : array_like
+            Reduced separations and heights and moduli E*(s)/E*, whose shapes broadcast.
+        slope : bool, optional
+            Whether to give derivatives by the penetration instead, within a piece.
 
         Returns
         -------
         ndarray
-            Over the quantity's scale for the radius of the surface, in their common shape.
-        """
-        some = self.of(quantity).with_radii(ratios)
-        return np.asarray(some.terms([quantity_of(quantity).base], h, s, e)[0])
-
-    def terms(
-        self, quantities: Sequence[str], h: ArrayLike, s: ArrayLike, e: ArrayLike, *, slope: bool = False
-    ) -> Array:
-        """Several quantities on this branch, or their slopes: shape (quantities, *common shape).
-
-        Over scales for the radius of the surface. Slopes are derivatives by the penetration within a piece.
+            Over scales for the radius of the surface, shape (quantities, *common shape).
         """
         h, s, e = (np.asarray(x, dtype=np.float64) for x in (h, s, e))
         pieces = self.pieces(h, s - h, e)
@@ -144,7 +133,7 @@ class Branch:
             if here.any():
                 some, there = self.of_some(here), [x[here] for x in at]
                 for k, quantity in enumerate(quantities):
-                    result[k, here] = some.value(quantity, piece, *there, slope=slope)
+                    result[k, here] = some.value(quantity_of(quantity).base, piece, *there, slope=slope)
         if self.ratios is not None:
             for k, quantity in enumerate(quantities):
                 result[k] *= self.ratios ** quantity_of(quantity).radius

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.polynomial import chebyshev
+from numpy.polynomial import Chebyshev
 
 from analytic.arrays import Array, hold
 from analytic.laws.elastic_plastic import ElasticPlastic
@@ -13,7 +13,6 @@ from analytic.laws.elastic_plastic import ElasticPlastic
 _MOST_TERMS = 256
 _NOTHING = 1e-16  # of the largest value
 _ALLOWED = 1e-13
-_BETWEEN = np.linspace(-1, 1, 301)
 Formula = Callable[[Any], Any]
 _PROBE = 1e-30j  # slopes are taken by a step into the complex plane
 
@@ -25,8 +24,8 @@ class RootSeries:
     Parameters
     ----------
     low, high : float
-        Between which the series was made. If `low` is ``-high``, around first touch, its variable is
-        u/high; else ``(u - g)/(u + g)`` with ``g = sqrt(low high)``, which sees wide pieces evenly.
+        Between which the series was made. If `low` is ``-high``, around first touch, its variable is u, else
+        log(u), which sees wide pieces evenly.
     coefficients : sequence of float
         Of T_0, T_1, ... in that variable, stretched to -1..1.
     """
@@ -37,30 +36,23 @@ class RootSeries:
 
     def __call__(self, u: Any) -> Any:
         """Its values, for real and complex u, also slightly outside."""
-        return u * u * chebyshev.chebval(_variable(u, self.low, self.high), np.array(self.coefficients))
+        around_0 = self.low < 0
+        ends = [self.low, self.high] if around_0 else np.log([self.low, self.high])
+        return u * u * Chebyshev(self.coefficients, domain=ends)(u if around_0 else np.log(u))
+
+    @property
+    def between(self) -> Array:
+        """Roots all over its range, of which none is 0."""
+        if self.low < 0:
+            return np.linspace(self.low, self.high, 300)
+        return np.geomspace(self.low, self.high, 300)
 
     def agrees(self, other: "RootSeries") -> bool:
         """Whether another series has the same values, to 1e-13 of the largest."""
-        between = _at(_BETWEEN[_BETWEEN != 0], self.low, self.high)
-        mine, theirs = self(between), other(between)
+        u = self.between
+        mine, theirs = self(u) / u**2, other(u) / u**2
         near = np.allclose([self.low, self.high], [other.low, other.high], rtol=_ALLOWED)
         return bool(near and np.all(np.abs(mine - theirs) <= _ALLOWED * np.abs(mine).max()))
-
-
-def _variable(u: Any, low: float, high: float) -> Any:
-    if low == -high:
-        return u / high
-    middle = np.sqrt(low * high)
-    return (u - middle) / (u + middle) * ((high + middle) / (high - middle))
-
-
-def _at(t: Any, low: float, high: float) -> Any:
-    """Where the variable has this value."""
-    if low == -high:
-        return t * high
-    middle = np.sqrt(low * high)
-    t = t * ((high - middle) / (high + middle))
-    return middle * (1 + t) / (1 - t)
 
 
 def resolved_in_root(formula: Formula, low: float, high: float) -> RootSeries:
@@ -70,18 +62,19 @@ def resolved_in_root(formula: Formula, low: float, high: float) -> RootSeries:
     """
 
     def over_square(t: Any) -> Any:
-        u = _at(t, low, high)
+        u = t if low < 0 else np.exp(t)
         return formula(u) / (u * u)
 
-    between = _BETWEEN[_BETWEEN != 0]
+    ends = [low, high] if low < 0 else np.log([low, high])
     for terms in (16, 32, 64, 128, _MOST_TERMS):
         with np.errstate(all="ignore"):  # a piece may be too wide for any
-            c = chebyshev.chebinterpolate(over_square, terms - 1)
-            largest = np.abs(c).max()
-            c[np.abs(c) <= _NOTHING * largest] = 0  # so that what is even or odd stays it
-            off = np.abs(chebyshev.chebval(between, c) - over_square(between))
-        if np.all(off <= _ALLOWED * largest):
-            return RootSeries(low, high, tuple(np.trim_zeros(c, "b").tolist()))
+            c = Chebyshev.interpolate(over_square, terms - 1, domain=ends).coef
+            c[np.abs(c) <= _NOTHING * np.abs(c).max()] = 0  # so that what is even or odd stays it
+            found = RootSeries(low, high, tuple(np.trim_zeros(c, "b").tolist()) or (0.0,))
+            u = found.between
+            off = np.abs(found(u) - formula(u)) / u**2
+        if np.all(off <= _ALLOWED * np.abs(c).max()):
+            return found
     first = "; where it begins, write u**3 for (u*u)**1.5: it is also evaluated at -u" if low < 0 else ""
     raise ValueError(
         f"a series of {_MOST_TERMS} terms is not accurate enough between x = {low * abs(low):g} and "
@@ -136,8 +129,8 @@ class CustomLaw(ElasticPlastic):
 
     load_of: tuple[Formula, ...]
     area_of: tuple[Formula, ...]
-    beginnings: tuple[float, ...]
-    checked: bool
+    edges: tuple[float, ...] = ()
+    checked: bool = True
 
     def __init__(
         self,
@@ -147,13 +140,13 @@ class CustomLaw(ElasticPlastic):
         critical: float,
         checked: bool = True,
     ) -> None:
-        beginnings = tuple(map(float, limits))
-        hold(self, load_of=tuple(load), area_of=tuple(area), beginnings=beginnings, critical=float(critical))
+        edges = tuple(map(float, limits))
+        hold(self, load_of=tuple(load), area_of=tuple(area), edges=edges, critical=float(critical))
         hold(self, checked=checked)
         super().__post_init__()
-        rising = [0.0, *self.beginnings]
+        rising = [0.0, *self.edges]
         if not (np.all(np.isfinite(rising)) and np.all(np.diff(rising) > 0)):
-            raise ValueError(f"limits = {list(self.beginnings)}: give numbers > 0 that increase")
+            raise ValueError(f"limits = {list(self.edges)}: give numbers > 0 that increase")
         for name, formulas in self._formulas().items():
             if len(formulas) != len(rising):
                 raise ValueError(
@@ -169,11 +162,6 @@ class CustomLaw(ElasticPlastic):
     def is_data(self) -> bool:
         """Whether the law consists of series, which can be stored in a file."""
         return all(isinstance(formula, RootSeries) for formula in (*self.load_of, *self.area_of))
-
-    @property
-    def edges(self) -> tuple[float, ...]:
-        """Penetrations over the critical one at which pieces from 1 on begin."""
-        return self.beginnings
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
         """Return the load of a contact, in the shape of `y` and `e`."""
@@ -208,7 +196,7 @@ class CustomLaw(ElasticPlastic):
         """
         assert self.critical is not None
         x_max = deepest / self.critical
-        kept = [x for x in self.beginnings if x < x_max]
+        kept = [x for x in self.edges if x < x_max]
         ends = np.sqrt([*kept, x_max]).tolist()
         starts = [-ends[0], *ends[:-1]]
         series: dict[str, list[Formula]] = {"load": [], "area": []}
@@ -228,7 +216,7 @@ class CustomLaw(ElasticPlastic):
         """Return whether another law is the same but for the last digits of its series."""
         if not (isinstance(other, CustomLaw) and self.is_data and other.is_data):
             return False
-        alike = self.beginnings == other.beginnings and self.critical == other.critical
+        alike = self.edges == other.edges and self.critical == other.critical
         pairs = zip((*self.load_of, *self.area_of), (*other.load_of, *other.area_of), strict=True)
         return alike and all(mine.agrees(theirs) for mine, theirs in pairs)  # type: ignore[attr-defined]
 
@@ -238,7 +226,7 @@ class CustomLaw(ElasticPlastic):
 
     def _check(self, name: str, formula: Formula, piece: int) -> None:
         """Try a formula where its piece begins, and that of the first piece on both sides of first touch."""
-        start = self.beginnings[piece - 1] if piece else min(self.beginnings, default=1.0)
+        start = self.edges[piece - 1] if piece else min(self.edges, default=1.0)
         u = np.sqrt(start) * (np.array([1.1]) if piece else np.array([-0.5, 0.5]))
         with np.errstate(all="ignore"):
             try:

@@ -7,8 +7,7 @@ from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 
-from analytic.laws.elastic_plastic import ElasticPlastic, FromHardness, Piece
-from analytic.laws.unloading import EtsionKligermanKadin
+from analytic.laws.elastic_plastic import ElasticPlastic, EtsionKligermanKadin, FromHardness, Piece
 from analytic.surface import Surface
 
 _FIRST_YIELD = 0.4  # k of Zhao, Maietta and Chang: mean pressure at first yield over hardness

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.arrays import Array, hold
-from analytic.laws.law import is_positive
+from analytic.laws.law import check_positive
 from analytic.surface import Surface
 
 _DIRECT = 60  # images that are rather summed one by one
@@ -49,9 +49,8 @@ class Layer:
     conductivity: float
 
     def __post_init__(self) -> None:
-        for key, unit in (("thickness", "m"), ("conductivity", "W/(m K)")):
-            if not is_positive(getattr(self, key)):
-                raise ValueError(f"{key} = {getattr(self, key)!r}: give a finite number > 0, in {unit}")
+        check_positive("m", thickness=self.thickness)
+        check_positive("W/(m K)", conductivity=self.conductivity)
 
 
 @dataclass(frozen=True)
@@ -80,9 +79,8 @@ class Film:
     --------
     On copper, a film of 1e-14 ohm m^2 resists as much as the constriction of a spot of radius 0.37 um:
 
-    >>> surface = Surface(sigma=1e-6, radius=1e-5, eta=1e9, nominal_area=1e-6, E_star=1e11)
     >>> film = Film(resistivity=3.4e-8, film_resistance=1e-14)
-    >>> round(film.on(surface).parameter * (1e-5 * 1e-6) ** 0.5 * 1e6, 3)
+    >>> round(film.alike * 1e6, 3)
     0.374
     """
 
@@ -94,10 +92,9 @@ class Film:
     def __post_init__(self) -> None:
         if (self.resistivity is None) == (self.conductivities is None):
             raise ValueError("resistivity: give it in ohm m, or conductivities = (k1, k2) in W/(m K)")
-        if self.resistivity is not None and not is_positive(self.resistivity):
-            raise ValueError(f"resistivity = {self.resistivity!r}: give a finite number > 0, in ohm m")
+        check_positive("ohm m", resistivity=self.resistivity)
         if self.conductivities is not None:
-            if len(self.conductivities) != 2 or not all(map(is_positive, self.conductivities)):
+            if len(self.conductivities) != 2 or not all(0 < k < math.inf for k in self.conductivities):
                 raise ValueError(f"conductivities = {self.conductivities!r}: give two numbers > 0 in W/(m K)")
             hold(self, conductivities=tuple(map(float, self.conductivities)))
         elif self.layer is not None:
@@ -117,14 +114,14 @@ class Film:
         """Whether spots conduct heat, not current."""
         return self.conductivities is not None
 
+    @property
+    def alike(self) -> float:
+        """Radius of a spot whose film and constriction resist alike, m: ``b = 4 r_f/(pi rho)``."""
+        return 4 * self.film_resistance / (math.pi * self.rho)
+
     def on(self, surface: Surface) -> "SpotConductance":
         """Return the conductance of spots, in the reduced units of a surface."""
-        unit = math.sqrt(surface.radius * surface.sigma)
-        parameter = 4 * self.film_resistance / (math.pi * self.rho * unit)
-        if self.layer is None or self.conductivities is None:
-            return SpotConductance(parameter, self.rho)
-        layered = (self.layer.conductivity, *self.conductivities)
-        return SpotConductance(parameter, self.rho, self.layer.thickness / unit, layered)
+        return SpotConductance(self, math.sqrt(surface.radius * surface.sigma))
 
 
 @dataclass(frozen=True)
@@ -136,50 +133,47 @@ class SpotConductance:
 
     Parameters
     ----------
-    parameter : float or ndarray
-        Radius over sqrt(R sigma) of a spot whose film and constriction resist alike,
-        ``b = 4 r_f/(pi rho sqrt(R sigma))``; one for each summit where these differ in radius.
-    resistivity : float
-        rho of `Film`.
-    thickness : float or ndarray, optional
-        Of a layer, over sqrt(R sigma).
-    layered : (float, float, float), optional
-        Conductivity of the layer, of the body under it, and of the other body, W/(m K).
+    film : Film
+        What spots conduct through.
+    unit : float or ndarray
+        sqrt(R sigma), m; one for each summit where these differ in radius.
 
     Notes
     -----
     Source: R. Holm, Electric Contacts (1967). For Sharvin's (or Knudsen's) resistance with the mean free
-    path l, add ``16 l/(3 pi sqrt(R sigma))`` to b.
+    path l, add ``16 l/(3 pi)`` to b.
     """
 
-    parameter: Any
-    resistivity: float
-    thickness: Any = None
-    layered: tuple[float, float, float] | None = None
+    film: Film
+    unit: Any
 
     @property
     def finest(self) -> float:
         """How far above first touch it is analytic: radii that go on to negative ones meet a pole."""
-        if self.layered is None:
-            return float(self.parameter) ** 2 if self.parameter > 0 else math.inf
-        film = self.parameter * self.resistivity
-        resists = layered_resistivity(-_REACH, 1.0, *self.layered) * self.thickness * _REACH
-        changes = np.flatnonzero((resists > film) != (film == 0))  # branch points are at radii of i n t
-        return float(self.thickness * min([1.0, *_REACH[np.maximum(changes[:1] - 1, 0)]])) ** 2
+        farthest = self.film.alike or math.inf
+        if self.film.layer is not None:
+            thickness, film = self.film.layer.thickness, self.film.alike * self.film.rho
+            resists = self._resists(-_REACH * thickness) + film  # branch points are at radii of i n t
+            changes = np.flatnonzero((resists < 0) != (film == 0))
+            farthest = thickness * float(min([1.0, *_REACH[np.maximum(changes[:1] - 1, 0)]]))
+        return float(farthest / self.unit) ** 2
 
     def with_radii(self, ratios: Array) -> Self:
         """Return that of summits whose radii are these multiples of the surface's, one for each."""
-        unit = ratios**-0.5
-        thickness = None if self.layered is None else self.thickness * unit
-        return replace(self, parameter=self.parameter * unit, thickness=thickness)
+        return replace(self, unit=self.unit * np.sqrt(ratios))
 
     def __call__(self, radius: Array) -> Array:
         """Conductance over 4 sqrt(R sigma), in 1/(ohm m) or W/(m K), analytic in the radius up to -b."""
-        if self.layered is None:
-            return np.asarray(radius * (radius / (radius + self.parameter))) / self.resistivity
-        rho = layered_resistivity(radius, self.thickness, *self.layered)
-        resists = radius * rho + self.parameter * self.resistivity
-        return np.asarray(radius * np.divide(radius, resists, where=resists != 0, out=0 * resists))
+        a = radius * self.unit
+        resists = self._resists(a) + self.film.alike * self.film.rho
+        return np.asarray(radius * np.divide(a, resists, where=resists != 0, out=np.zeros_like(resists)))
+
+    def _resists(self, a: Array) -> Array:
+        """Return what takes the place of rho, times the radius."""
+        film = self.film
+        if film.layer is None or film.conductivities is None:
+            return a * film.rho
+        return a * layered_resistivity(a, film.layer.thickness, film.layer.conductivity, *film.conductivities)
 
 
 def layered_resistivity(

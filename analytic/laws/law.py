@@ -95,9 +95,7 @@ class ContactLaw:
         if self.in_si and sum(given[name] is None for name in names) != 1:
             told = ", ".join(f"{name} = {given[name]!r}" for name in names)
             raise ValueError(f"{told}: give one of them, {self.in_si[1]}")
-        for name, value in given.items():
-            if value is not None and not is_positive(value):
-                raise ValueError(f"{name} = {value!r}: give a finite number > 0")
+        check_positive("", **given)
         poisson = getattr(self, "poisson", None)
         if poisson is not None:
             check_poisson(poisson)
@@ -209,9 +207,11 @@ class Hertz(ContactLaw):
     name: ClassVar[str] = "hertz"
 
 
-def is_positive(value: Any) -> bool:
-    """Tell whether a value is a finite number > 0; texts, which only scene files read, are not."""
-    return isinstance(value, Real) and 0 < float(value) < math.inf
+def check_positive(unit: str, **values: Any) -> None:
+    """Refuse values that are no finite numbers > 0; texts, which only scene files read, are none."""
+    for name, value in values.items():
+        if value is not None and not (isinstance(value, Real) and 0 < float(value) < math.inf):
+            raise ValueError(f"{name} = {value!r}: give a finite number > 0{unit and f', in {unit}'}")
 
 
 def check_poisson(poisson: float) -> None:

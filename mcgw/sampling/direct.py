@@ -95,11 +95,11 @@ def asperity_sums(
     surface = np.repeat(np.arange(len(numbers)), numbers)
     touching = heights > scene.lowest
     surface, s, weight = surface[touching], heights[touching], weights[touching]
-    e, ways = scene.modulus(s), scene.ways
-    c = None if ratios is None else ratios[touching]
+    e, own = scene.modulus(s), None if ratios is None else ratios[touching]
     sums = {}
     for name in scene.quantities:
-        terms = (ways.term(name, h, s, e, c) for h in scene.separations)
+        branch = scene.ways.of(name).with_radii(own)
+        terms = (branch.terms([name], h, s, e)[0] for h in scene.separations)
         rows = np.stack([np.bincount(surface, weight * one, len(numbers)) for one in terms], axis=1)
         sums[name] = np.asarray(quantity_of(name).scale(scene.surface) * rows, dtype=np.float64)
     return sums

@@ -83,7 +83,7 @@ def contact_law_table(law: ContactLaw) -> dict[str, Any]:
     if law.name != "custom":
         return {"name": law.name, **law.given()}
     custom: Any = law
-    numbers = {"critical": custom.critical, "limits": custom.beginnings}
+    numbers = {"critical": custom.critical, "limits": custom.edges}
     series = {"load": custom.load_of, "area": custom.area_of}
     unchecked = {} if custom.checked else {"checked": False}
     return {"name": law.name, **_plain(numbers | series), **unchecked}

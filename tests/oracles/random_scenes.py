@@ -200,7 +200,7 @@ def literal(scene, name, h, s, ratios):
     """What each asperity adds, reduced."""
     if ratios is None and scene.film is None:
         return term(scene, name, h, s)
-    return scene.ways.term(name, h, s, scene.modulus(s), np.ones_like(s) if ratios is None else ratios)
+    return scene.ways.of(name).with_radii(ratios).terms([name], h, s, scene.modulus(s))[0]
 
 
 def far_from_theory(ensemble):
