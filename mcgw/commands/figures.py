@@ -46,7 +46,7 @@ def figures(
     from mcgw.figures.panels import save
     from mcgw.formats.files import together
 
-    names = [row.name for row in CATALOGUE]
+    names = [*CATALOGUE]
     if list:
         return print(*names, sep="\n")
     for name in only or ():

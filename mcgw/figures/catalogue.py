@@ -1,94 +1,156 @@
 """The figures of `mcgw figures`: one row each, of the paper's preset swept over gamma or of any scene."""
 
 from collections.abc import Callable, Collection, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from importlib.resources import files
-from typing import Any
 
 import numpy as np
 
-from analytic import mean_modulus
-from analytic.arrays import Array
+from analytic import quantity_of
 from mcgw.ensemble.simulation import simulate
 from mcgw.figures.against_theory import spread
-from mcgw.figures.compared import SCENE, Compared, Key
-from mcgw.figures.data import GAMMA, SEPARATION, Estimate, FigureData, Panel, Series, ratio_of_sums
-from mcgw.figures.ratios import (
-    Ratio,
-    against_separation,
-    area_and_load,
-    at_separation,
-    equal_load,
-    gradings,
-    ratio,
-)
-from mcgw.figures.style import power_of_ten
+from mcgw.figures.compared import SCENE, Compared
+from mcgw.figures.data import GAMMA, PRESSURE, SEPARATION, FigureData, Panel, Series
+from mcgw.figures.ratios import POWERS, Mean, Modulus, of_reference, over_gamma, over_separation
+from mcgw.figures.style import power_of_ten, prefixed
 from mcgw.machine.progress import steps
 from mcgw.scene.scene_file import scene_from
 
 _SURFACES = 2000  # of the paper's figures
 _SPREADING = ("load", "area", "stiffness")
+_BESIDE = 1.5  # sigma above the highest separation that a grading is shown
+_AT, _AT_LOAD = np.arange(5.0), np.array([1.0, 2.0, 3.0])  # separations of the paper's ratios
+_STIFFER = np.linspace(1, 2, 81), (1.2, 1.4, 1.6, 1.8, 2.0)  # gammas of lines and of points
+_SOFTER = np.linspace(0.2, 1, 81), (0.2, 0.4, 0.6, 0.8)
+_MODULI = np.linspace(0.2, 2, 73), (0.2, 0.4, 0.6, 0.8, 1.2, 1.4, 1.6, 1.8, 2.0)
+_LOADED = np.linspace(0.2, 2, 46), (0.2, 0.4, 0.6, 0.8, 1.2, 1.5, 2.0)
 _PSI = r"$\psi/\psi_\mathrm{hom}$"
-_POWERS = {"number": 0.0, "area": 1.0, "load": 1.5}
-_LINE = np.linspace(0.2, 2, 73)
-_GAMMAS = np.array([0.2, 0.4, 0.6, 0.8, 1.2, 1.4, 1.6, 1.8, 2.0])
-_AT = np.arange(5.0)
 _TITLES = {
     "number": "b  mean over the contacts",
     "area": "c  weighted by area",
     "load": "d  weighted by load",
 }
+_GRADES = ("γ = 2", "γ = 1", "γ = 0.5", "γ = 0.2")
+
+
+def gradings(f: Compared) -> FigureData:
+    """Show the modulus over the height."""
+    s = f.line if f.swept else np.linspace(f.h.min(), f.h.max() + _BESIDE, 161)
+    panels = []
+    for title, labels in f.groups if f.swept else (("", (SCENE, "homogeneous")),):
+        series = tuple(Series(label, s, f.all[label].modulus(s)) for label in labels)
+        panels.append(Panel(title, "summit height s = z/σ", "E*(s)/E*", series))
+    if f.swept:
+        caption = "E*(s)/E* = γ − (γ − 1) exp(−s). Theory alone."
+        return FigureData("Exponential grading (Eq. 4)", caption, tuple(panels))
+    return FigureData("The grading", f.caption_of(0), tuple(panels))
+
+
+def against_separation(f: Compared, *, title: str, quantity: str, words: str, unit: str) -> FigureData:
+    """Show means: of a sweep as the paper's integrals, else per nominal area."""
+    q, area = quantity_of(quantity), f.scene.surface.nominal_area
+    if f.swept:
+        size = f.scene.n_asperities * q.scale(f.scene.surface)
+        ylabel = rf"{quantity} integral $F^*_{{{2 * q.exponent:g}/2}}$"
+    else:
+        top = max(float(np.abs(f.theory(label, quantity, f.line)).max()) for label in f.all)
+        factor, prefix = prefixed(top / area)
+        size, ylabel = area * factor, f"{words} ${q.symbol}/A_n$ ({prefix}{unit})"
+    panels = []
+    for name, labels in f.groups:
+        series = tuple(over_separation(f, label, Mean((quantity,), factor=1 / size)) for label in labels)
+        positive = all(np.all(s.theory >= 0) and np.any(s.theory > 0) for s in series)
+        scales, level = (("linear", "log"), None) if positive else (("linear", "linear"), 0.0)
+        panels.append(Panel(name, SEPARATION, ylabel, series, scales, level))
+    return FigureData(title, f.caption, tuple(panels))
+
+
+def at_separation(f: Compared, *, title: str, symbol: str, how: Mean) -> FigureData:
+    """Show a ratio; of a sweep a panel for stiffer and one for softer tips."""
+    ylabel = of_reference(f, symbol)
+    if not f.swept:
+        panel = _over_separation(f, "", ylabel, how)
+        return FigureData(title, f"Reference: {f.reference}, the same surface. {f.caption}", (panel,))
+    parts = (("a  stiffer tips", _STIFFER), ("b  softer tips", _SOFTER))
+    panels = (over_gamma(f, name, ylabel, how, *gammas, _AT) for name, gammas in parts)
+    return FigureData(title, f.caption, tuple(panels))
+
+
+def _over_separation(f: Compared, title: str, ylabel: str, how: Mean) -> Panel:
+    """Show a ratio to the reference for each other scene."""
+    series = tuple(over_separation(f, label, how) for label in f.others)
+    return Panel(title, SEPARATION, ylabel, series, level=1.0)
+
+
+def equal_load(f: Compared) -> FigureData:
+    """Show conductance, area and stiffness over the reference's, where both carry the same load."""
+    names = ("conductance", "area", "stiffness")
+    shown = [(f"{'equal load: ' * f.swept}{name}", Mean((name,), (), True, True)) for name in names]
+    if f.swept:
+        shown.insert(0, ("equal separation: stiffness (Eq. 15)", Mean(("stiffness",), relative=True)))
+    panels = []
+    for key, (name, how) in zip("abcd", shown, strict=False):
+        symbol = quantity_of(*how.above).symbol.removesuffix("ρ")  # the resistivity is that of both
+        title, ylabel = f"{key}  {name}", of_reference(f, f"{symbol}/{symbol}")
+        panels.append(
+            over_gamma(f, title, ylabel, how, *_LOADED, _AT_LOAD)
+            if f.swept
+            else _over_separation(f, title, ylabel, how)
+        )
+    title = "At equal load the trend reverses: stiffer tips conduct less" if f.swept else "At the same load"
+    which = "homogeneous surface" if f.swept else f"reference ({f.reference}, the same surface)"
+    return FigureData(title, f"d/σ is that of the {which} and sets the load. {f.caption}", tuple(panels))
+
+
+def area_and_load(f: Compared) -> FigureData:
+    """Show the real area over the pressure; of a sweep the local exponent, too."""
+    area, areas = f.scene.surface.nominal_area, []
+    for label in _GRADES if f.swept else f.all:
+        one = over_separation(f, label, Mean(("area",), factor=1 / area))
+        pressure, points = f.theory(label, "load", f.line) / area / 1e6, one.points
+        if points:
+            loads = f.values(label, "load", points.x).mean(axis=0)
+            points = replace(points, x=loads / area / 1e6)
+        areas.append(replace(one, x=pressure, points=points))
+    panel = Panel("", PRESSURE, r"real area fraction $A/A_n$", tuple(areas), ("log", "log"))
+    if not f.swept:
+        return FigureData("Real area against load", f.caption, (panel,))
+    # (n/A)/(K/P), to the slope by dA/dd = -pi R n and dP/dd = -K
+    factor = np.pi * f.scene.surface.radius
+    exponent = Mean(("contacts", "load"), ("area", "stiffness"), factor=factor)
+    exponents = tuple(over_separation(f, label, exponent) for label in _GRADES)
+    panels = (
+        replace(panel, title="a  real area"),
+        Panel("b  local exponent", SEPARATION, r"$d\,\ln A/d\,\ln P$", exponents, level=1.0),
+    )
+    return FigureData("Real area against load, and its local exponent", f.caption, panels)
 
 
 def mean_moduli(f: Compared) -> FigureData:
     """Show the mean modulus of the contacts, which the plasticity index goes as."""
     title, caption = "Plasticity index over that of the homogeneous surface", f.caption_of(len(f.listed))
     if f.swept:
-        return FigureData(title, caption, _over_gamma(f))
+        just = tuple(
+            Series(f"d/σ = {h:g}", _MODULI[0], _MODULI[0] - (_MODULI[0] - 1) * np.exp(-h)) for h in _AT
+        )
+        ylabel = of_reference(f, r"\psi/\psi")
+        panels = [Panel("a  as in the paper: just touching, s = d/σ", GAMMA, _PSI, just, level=1.0)]
+        for weight, words in _TITLES.items():
+            panels.append(over_gamma(f, words, ylabel, Modulus(weight), *_MODULI, _AT))
+        return FigureData(title, caption, tuple(panels))
     plain = f.hertz and f.scene.summits is None  # else area and load of a contact are not powers
-    series = []
-    many = f.scene.replace(n_surfaces=max(len(f.listed), 1))  # points where their heights are enough
-    for weight in _POWERS if plain else ("number",):
-        how, label = _Modulus(weight), "contacts" if weight == "number" else weight
-        points = f.points(partial(how.drawn, f, SCENE, f.h), how.exact(f, SCENE, f.h), many)
-        series.append(Series(label, f.line, how.exact(f, SCENE, f.line), points))
-    panel = Panel("", SEPARATION, _PSI, tuple(series), level=1.0)
+    series = tuple(
+        over_separation(
+            f, "contacts" if weight == "number" else weight, Modulus(weight), SCENE, len(f.listed) or 1
+        )
+        for weight in (POWERS if plain else ("number",))
+    )  # points where the heights that are listed are enough
     said = (
         f"Mean over the contacts, each weighted alike (contacts){', by its area, or by its load' * plain}. "
     )
+    panel = Panel("", SEPARATION, _PSI, series, level=1.0)
     return FigureData(title, said + caption, (panel,))
-
-
-def _over_gamma(f: Compared) -> tuple[Panel, ...]:
-    just = tuple(Series(f"d/σ = {h:g}", _LINE, _LINE - (_LINE - 1) * np.exp(-h)) for h in _AT)
-    panels = [Panel("a  as in the paper: just touching, s = d/σ", GAMMA, _PSI, just, level=1.0)]
-    for weight, title in _TITLES.items():
-        panels.append(ratio(f, title, r"$\psi/\psi", _Modulus(weight), _LINE, _GAMMAS, _AT))
-    return tuple(panels)
-
-
-@dataclass(frozen=True)
-class _Modulus:
-    """Mean of E*(s)/E* over the contacts, weighted."""
-
-    weight: Any
-
-    def exact(self, f: Compared, key: Key, h: Array) -> Array:
-        return mean_modulus(h, f.of(key).modulus, heights=f.scene.heights, weight=self.weight)
-
-    def drawn(self, f: Compared, key: Key, h: Array) -> Estimate:
-        """Over the contacts of the listed surfaces."""
-        above, below = np.zeros((2, len(f.listed), len(h)))
-        for i, s in enumerate(f.listed):
-            for k, separation in enumerate(h):
-                touching = s[s > separation]
-                e = f.of(key).modulus(touching)
-                weights = (touching - separation) ** _POWERS[self.weight] * (
-                    e if self.weight == "load" else 1.0
-                )
-                above[i, k], below[i, k] = np.sum(weights * e), np.sum(weights)
-        return ratio_of_sums([above], [below])
 
 
 def fluctuations(f: Compared) -> FigureData:
@@ -116,40 +178,22 @@ def fluctuations(f: Compared) -> FigureData:
     )
 
 
-@dataclass(frozen=True)
-class Row:
-    """A figure.
-
-    Parameters
-    ----------
-    name : str
-        Name of its files.
-    draw : callable
-        Computes its numbers from the scenes.
-    needs : tuple of str, optional
-        What it needs of them, for `_lacking`.
-    """
-
-    name: str
-    draw: Callable[[Compared], FigureData]
-    needs: tuple[str, ...] = ()
-
-
-CATALOGUE = (
-    Row("figure-1", gradings, ("grading",)),
-    Row("figure-2", partial(against_separation, title="Load at a given separation (Eq. 7)",
-                            quantity="load", words="pressure", unit="Pa")),
-    Row("figure-3", partial(at_separation, title="Area per load at a given separation (Eq. 12)",
-                            symbol=r"(A/P)\,/\,(A/P)", how=Ratio("area", "load")), ("reference", "pressing")),
-    Row("figure-4", mean_moduli, ("grading",)),
-    Row("figure-5", partial(against_separation, quantity="stiffness", words="stiffness", unit="Pa/m",
-                            title="Stiffness at a given separation; the paper's “conductance”")),
-    Row("figure-6", partial(at_separation, title="Stiffness at a given separation (Eq. 15: “conductance”)",
-                            symbol="K/K", how=Ratio("stiffness")), ("reference",)),
-    Row("area-and-load", area_and_load, ("pressing",)),
-    Row("equal-load", equal_load, ("reference", "pressing", "same load")),
-    Row("fluctuations", fluctuations, ("several",)),
-)  # fmt: skip
+CATALOGUE: dict[str, tuple[Callable[..., FigureData], tuple[str, ...]]] = {  # needs: see `_lacking`
+    "figure-1": (gradings, ("grading",)),
+    "figure-2": (partial(against_separation, quantity="load", words="pressure", unit="Pa",
+                         title="Load at a given separation (Eq. 7)"), ()),
+    "figure-3": (partial(at_separation, title="Area per load at a given separation (Eq. 12)",
+                         symbol=r"(A/P)\,/\,(A/P)", how=Mean(("area",), ("load",), relative=True)),
+                 ("reference", "pressing")),
+    "figure-4": (mean_moduli, ("grading",)),
+    "figure-5": (partial(against_separation, quantity="stiffness", words="stiffness", unit="Pa/m",
+                         title="Stiffness at a given separation; the paper's “conductance”"), ()),
+    "figure-6": (partial(at_separation, title="Stiffness at a given separation (Eq. 15: “conductance”)",
+                         symbol="K/K", how=Mean(("stiffness",), relative=True)), ("reference",)),
+    "area-and-load": (area_and_load, ("pressing",)),
+    "equal-load": (equal_load, ("reference", "pressing", "same load")),
+    "fluctuations": (fluctuations, ("several",)),
+}  # fmt: skip
 
 
 def of_paper() -> Compared:
@@ -193,6 +237,7 @@ def figures_of(f: Compared, only: Collection[str] = ()) -> Iterator[tuple[str, F
     (str, FigureData or str)
         Name of a figure, and its numbers, or why it has no meaning for this scene.
     """
-    for row in steps([row for row in CATALOGUE if not only or row.name in only], "figures"):
-        why = next((why for need in row.needs if (why := _lacking(f, need))), "")
-        yield row.name, why or replace(row.draw(f), name=row.name)
+    for name in steps([name for name in CATALOGUE if not only or name in only], "figures"):
+        draw, needs = CATALOGUE[name]
+        why = next((why for need in needs if (why := _lacking(f, need))), "")
+        yield name, why or draw(f)

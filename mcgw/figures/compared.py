@@ -8,23 +8,20 @@ from typing import Any, TypeVar
 import numpy as np
 
 from analytic import QUANTITIES, Exponential, Hertz, Homogeneous, MeasuredHeights
-from analytic.arrays import Array, Marks
+from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.simulation import simulate
-from mcgw.figures.against_theory import ENOUGH
-from mcgw.figures.data import Estimate, Points
 from mcgw.figures.style import contact_label, short
 from mcgw.formats.law_text import law_text
 from mcgw.formats.table import evenly
 from mcgw.sampling.asperities import heights
 from mcgw.scene.scene import Scene
-from mcgw.scene.section import SceneError
 
 Key = str | float  # label of a scene or, in a sweep, a gamma
 _Result = TypeVar("_Result")
 
 SCENE = "this scene"
-_STIFFER, _SOFTER = (2.0, 1.5, 1.2, 1.0), (1.0, 0.8, 0.5, 0.2)
+_GAMMAS = (2.0, 1.5, 1.2, 1.0, 0.8, 0.5, 0.2)
 _MOST_SURFACES, _MOST_ASPERITIES = 1000, 1_000_000_000
 _MOST_SEPARATIONS, _FINE, _COARSE = 17, 49, 25  # separations of lines: own radii are slow
 _SWEPT, _SWEPT_LINE = np.linspace(0, 4, 17), np.linspace(0, 4, 161)
@@ -87,7 +84,7 @@ class Compared:
     def all(self) -> dict[str, Scene]:
         """Scenes by label, the one that ratios are taken to last; that alone if it is the simplest itself."""
         if self.swept:
-            gammas = (*_STIFFER[:-1], *_SOFTER[1:])
+            gammas = (gamma for gamma in _GAMMAS if gamma != 1)
             graded = {of_gamma(g): self.scene.replace(grading=Exponential(g)) for g in gammas}
             return graded | {of_gamma(1): self.scene}
         found = {SCENE: self.scene}
@@ -104,10 +101,8 @@ class Compared:
         """Titles of panels, and labels of what they show together."""
         if not self.swept:
             return (("", tuple(self.all)),)
-        return tuple(
-            (title, tuple(map(of_gamma, gammas)))
-            for title, gammas in (("a  stiffer tips", _STIFFER), ("b  softer tips", _SOFTER))
-        )
+        labels, one = tuple(map(of_gamma, _GAMMAS)), _GAMMAS.index(1)
+        return ("a  stiffer tips", labels[: one + 1]), ("b  softer tips", labels[one:])
 
     @property
     def graded(self) -> bool:
@@ -166,8 +161,10 @@ class Compared:
         return simulate(self.of(key), **there)
 
     def values(self, key: Key, quantity: str, h: Array) -> Array:
-        """Return the sums of each surface at some of the separations of the scene."""
-        return np.asarray(self.drawn(key).values(quantity)[:, np.searchsorted(self.h, h)])
+        """Return the sums of each surface at some of the separations of the scene, or at others."""
+        if np.isin(h, self.h).all():
+            return np.asarray(self.drawn(key).values(quantity)[:, np.searchsorted(self.h, h)])
+        return np.asarray(self.drawn(key, h).values(quantity))
 
     @cached_property
     def listed(self) -> tuple[Array, ...]:
@@ -179,31 +176,6 @@ class Compared:
         if scene.summits is None:
             scene = scene.replace(sampler="tail", keep="sums")
         return tuple(heights(scene, k) for k in range(min(self.most_listed, scene.n_surfaces, room)))
-
-    def enough(self, scene: Scene) -> Marks:
-        """Separations where the ensemble has enough contacts and surfaces for an error."""
-        h = np.array(scene.separations)
-        return (scene.theory.mean("contacts", h) * scene.n_surfaces >= ENOUGH) & (scene.n_surfaces > 1)
-
-    def points(self, found: Callable[[], Estimate], exact: Array, of: Scene | None = None) -> Points | None:
-        """Points at the separations where the ensemble of a scene has enough for an error.
-
-        There are none if its modulus is not positive at all separations of what is found.
-        """
-        known = self.enough(of or self.scene)
-        if not known.any():
-            return None
-        try:
-            mean, stderr = found()
-        except SceneError:
-            return None
-        return Points(self.h[known], mean[known], stderr[known], exact[known])
-
-    def means(self, label: str, quantity: str, unit: float) -> Points | None:
-        """Means over the surfaces, in this unit."""
-        ensemble, exact = self.drawn(label), self.theory(label, quantity, self.h) / unit
-        found = ensemble.mean(quantity) / unit, ensemble.stderr(quantity) / unit
-        return self.points(lambda: found, exact, self.all[label])
 
     @property
     def caption(self) -> str:

@@ -118,12 +118,11 @@ class Panel:
 
 @dataclass(frozen=True)
 class FigureData:
-    """A figure: its text, panels and file name."""
+    """A figure: its text and panels."""
 
     title: str
     caption: str
     panels: tuple[Panel, ...]
-    name: str = ""
 
 
 def ratio_of_sums(above: Sequence[Array], below: Sequence[Array]) -> Estimate:

@@ -50,15 +50,14 @@ def said(figures):
 
 
 def test_all_are_there_and_nothing_moves(figures, recorded):
-    assert [row.name for row in CATALOGUE] == list(figures)  # the names that are checked before one is drawn
-    assert [data.name for data in figures.values()] == list(figures)
+    assert list(CATALOGUE) == list(figures)  # the names that are checked before one is drawn
     assert {name for name, data in figures.items() if not points(data)} == THEORY_ALONE
     recorded("figures.sweep", said(figures))
 
 
 @pytest.mark.parametrize(
     "name",
-    [pytest.param(row.name, marks=() if row.name == "figure-3" else pytest.mark.site) for row in CATALOGUE],
+    [pytest.param(name, marks=() if name == "figure-3" else pytest.mark.site) for name in CATALOGUE],
 )
 def test_panels_have_room(figures, name):
     assert not crowded(draw(figures[name]))
@@ -147,7 +146,7 @@ def scene_of(surface=SURFACE, **given):
 def drawn(scene):
     """Figures by name, the names of those with no meaning, and why."""
     found = dict(figures_of(Compared(scene)))
-    assert [row.name for row in CATALOGUE] == list(found)
+    assert list(CATALOGUE) == list(found)
     figures = {name: x for name, x in found.items() if isinstance(x, FigureData)}
     without = {name: x for name, x in found.items() if name not in figures}
     assert all(isinstance(why, str) and why and "\n" not in why for why in without.values())
