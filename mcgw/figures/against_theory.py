@@ -1,20 +1,18 @@
 """Monte-Carlo means on curves of theory; for a sweep all residuals and the worst point."""
 
 import textwrap
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from scipy.stats import norm
 
 from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.figures.data import SEPARATION, FigureData, Mark, Panel, Points, Series
+from mcgw.figures.data import SEPARATION, FigureData, Panel, Points, Series
 from mcgw.figures.style import BAND, LEVEL, SAMPLE, THEORY, contact_label, look, shown_title
 from mcgw.machine.terminal import one_line
 from mcgw.scene.scene import Scene
-from mcgw.statistics.comparison import Comparison
-
-if TYPE_CHECKING:
-    from mcgw.statistics.comparison import SweepComparison
+from mcgw.statistics.comparison import Comparison, SweepComparison
 
 ENOUGH = 20  # contacts in the ensemble; with fewer a mean is far from Gaussian
 _BIN = 0.5  # standard errors
@@ -25,7 +23,7 @@ _CAPTION = (
 )
 
 
-def comparison_figure(comparison: "Comparison | SweepComparison") -> FigureData:
+def comparison_figure(comparison: Comparison | SweepComparison) -> FigureData:
     """Each quantity with its theory and residuals; of a sweep the residuals of all points and of the worst.
 
     Parameters
@@ -107,28 +105,31 @@ def residuals_panel(title: str, z: Array) -> Panel:
     """Draw a histogram of residuals on its expectation if theory holds; one outlier shows."""
     most = max(4.0, _BIN * np.ceil(np.abs(z).max(initial=0.0) / _BIN))
     x = np.linspace(-most, most, 201)
-    expected = len(z) * _BIN * np.exp(-(x**2) / 2) / np.sqrt(2 * np.pi)
-    bins = np.arange(-most, most + _BIN / 2, _BIN)
-    marks = (
-        Mark("hist", z, bins, color=SAMPLE, label=f"{len(z)} means"),
-        Mark("plot", x, expected, color=THEORY, label="normal: expected if theory holds"),
-    )
-    limits = {"ylim": (0.4, 3 * max(expected.max(), 1.0))}
-    return Panel(title, _RESIDUAL, "means", scales=("linear", "log"), marks=marks, settings=limits)
+    expected = len(z) * _BIN * norm.pdf(x)
+
+    def paint(axis: Any) -> None:
+        bins = np.arange(-most, most + _BIN / 2, _BIN)
+        axis.hist(z, bins, color=SAMPLE, label=f"{len(z)} means")
+        axis.plot(x, expected, color=THEORY, label="normal: expected if theory holds")
+        axis.set_ylim(0.4, 3 * max(expected.max(), 1.0))
+
+    return Panel(title, _RESIDUAL, "means", scales=("linear", "log"), paint=paint)
 
 
-def _worst_panel(comparison: "SweepComparison") -> Panel:
+def _worst_panel(comparison: SweepComparison) -> Panel:
     """Residuals of the least likely point; those that count have a marker."""
     t = comparison.worst[0]
-    marks = [
-        Mark("axhspan", -2, 2, color=BAND, zorder=0),
-        Mark("axhline", 0, color=LEVEL, lw=0.8, zorder=1),
-    ]
-    for name, residual, counts in zip(t.quantities, t.residual, t.counts, strict=True):
-        z, label = np.where(counts, residual, np.nan), name.replace("_", " ")
-        marks.append(Mark("plot", t.separations, z, ms=3, mfc="none", lw=1, label=label, **look(name)))
-    reach = max(4, 1.5 * np.abs(t.residual[t.counts]).max(initial=0.0))
+
+    def paint(axis: Any) -> None:
+        axis.axhspan(-2, 2, color=BAND, zorder=0)
+        axis.axhline(0, color=LEVEL, lw=0.8, zorder=1)
+        for name, residual, counts in zip(t.quantities, t.residual, t.counts, strict=True):
+            z, label = np.where(counts, residual, np.nan), name.replace("_", " ")
+            axis.plot(t.separations, z, ms=3, mfc="none", lw=1, label=label, **look(name))
+        reach = max(4, 1.5 * np.abs(t.residual[t.counts]).max(initial=0.0))
+        axis.set_ylim(-reach, reach)
+
     point = list(comparison.sweep.axes.points())[t.number]
     at = one_line(comparison.sweep.axes.text(point)).replace("$", r"\$")
     title = textwrap.fill(f"worst: {at}; p = {t.verdict.p:.2g} of this point alone", 36)
-    return Panel(title, SEPARATION, _RESIDUAL, marks=tuple(marks), settings={"ylim": (-reach, reach)})
+    return Panel(title, SEPARATION, _RESIDUAL, paint=paint)

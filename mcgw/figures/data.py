@@ -1,7 +1,7 @@
 """Numbers of a figure: lines of theory and Monte-Carlo points, to draw, test or export."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,6 +10,7 @@ from analytic.arrays import Array
 from mcgw.formats.table import Column, Table
 
 Estimate = tuple[Array, Array]  # means and their standard errors
+Painter = Callable[[Any], None]
 
 GAMMA, SEPARATION, PRESSURE = "grading factor γ", "separation d/σ", "pressure $P/A_n$ (MPa)"
 _ROUNDING = 1e-14  # of a ratio of sums that are the same: no residual is given in units of it
@@ -59,28 +60,14 @@ class Series:
     points: Points | None = None
 
 
-class Mark:
-    """Something else that a panel shows: a method of matplotlib's axes and its arguments.
+def words(text: str, x: float = 0.5, y: float = 0.5, **look: Any) -> Painter:
+    """Return what writes a text in place of axes."""
 
-    Parameters
-    ----------
-    how : str
-        The method, such as "errorbar" or "hist".
-    *given
-        Its arguments.
-    bar : str, optional
-        Label of a colour bar beside an image.
-    **options
-        Its options.
-    """
+    def paint(axis: Any) -> None:
+        axis.set_axis_off()
+        axis.text(x, y, text, transform=axis.transAxes, **({"ha": "center", "va": "center"} | look))
 
-    def __init__(self, how: str, *given: Any, bar: str = "", **options: Any) -> None:
-        self.how, self.given, self.bar, self.options = how, given, bar, options
-
-
-def words(text: str) -> Mark:
-    """Return a few words in place of axes."""
-    return Mark("text", 0.5, 0.5, text, ha="center", va="center")
+    return paint
 
 
 @dataclass(frozen=True)
@@ -97,10 +84,8 @@ class Panel:
         Of x and y.
     level : float, optional
         A value of y worth a line of its own.
-    marks : tuple of Mark, optional
-        What else it shows.
-    settings : dict, optional
-        Other properties of the axes, such as limits.
+    paint : callable, optional
+        Draws what else it shows, and sets other properties, on matplotlib's axes.
     wide : bool, optional
         Whether it takes all columns.
     """
@@ -111,8 +96,7 @@ class Panel:
     series: tuple[Series, ...] = ()
     scales: tuple[str, str] = ("linear", "linear")
     level: float | None = None
-    marks: tuple[Mark, ...] = ()
-    settings: dict[str, Any] = field(default_factory=dict)
+    paint: Painter = lambda _: None
     wide: bool = False
 
 
@@ -150,15 +134,9 @@ def ratio_of_sums(above: Sequence[Array], below: Sequence[Array]) -> Estimate:
 def figure_table(figure: FigureData) -> Table:
     """Every number of a figure."""
     rows: list[tuple[float | str, ...]] = []
-    for panel in figure.panels:
-        for series in panel.series:
-            rows += [
-                (panel.title, series.label, "line", x, y, "", "")
-                for x, y in zip(series.x, series.theory, strict=True)
-            ]
-            p = series.points
-            if p:
-                points = zip(p.x, p.exact, p.mean, p.stderr, strict=True)
-                rows += [(panel.title, series.label, "point", *point) for point in points]
-    columns = zip(_COLUMNS, zip(*rows, strict=True), strict=True)
-    return Table(tuple(Column(name, values) for name, values in columns))
+    for panel, series in ((one, series) for one in figure.panels for series in one.series):
+        about, p = (panel.title, series.label), series.points
+        rows += [(*about, "line", *at, "", "") for at in zip(series.x, series.theory, strict=True)]
+        if p:
+            rows += [(*about, "point", *at) for at in zip(p.x, p.exact, p.mean, p.stderr, strict=True)]
+    return Table(tuple(map(Column, _COLUMNS, zip(*rows, strict=True))))

@@ -9,7 +9,7 @@ import numpy as np
 
 from analytic import Gaussian, Nayak
 from analytic.arrays import Array, Marks
-from mcgw.figures.data import FigureData, Mark, Panel
+from mcgw.figures.data import FigureData, Painter, Panel, words
 from mcgw.figures.style import HOMOGENEOUS, MARKED, MISSING, SAMPLE, THEORY, look, prefixed
 from mcgw.maps.estimates import moments_of
 from mcgw.maps.fit import Fit
@@ -23,7 +23,7 @@ _POINTS = 700  # points of a map along each side: more do not show
 _MOST_MARKS = 3000
 _CUTOFFS = 8
 _WIDTH, _LINES = 42, 27  # of the text, in characters and lines
-_LISTED: Any = {"va": "top", "family": "monospace", "fontsize": 6.6}
+_LISTED: Any = {"va": "top", "ha": "left", "family": "monospace", "fontsize": 6.6}
 _TIMES = 12.0  # from the shortest cutoff to the longest
 
 
@@ -46,25 +46,33 @@ def fit_figure(fit: Fit, raw: Topography, ready: Prepared) -> FigureData:
         _moments_panel(ready),
         heights_panel(fit),
         _curvatures_panel(fit),
-        Panel("f  estimates", "", "", marks=(Mark("text", 0, 1, _listing(fit), **_LISTED),)),
+        Panel("f  estimates", "", "", paint=words(_listing(fit), 0, 1, **_LISTED)),
     )
     return FigureData("", "", panels)
 
 
-def _map_panel(title: str, topography: Topography, seen: Marks | None, *more: Mark) -> Panel:
+def _map_panel(
+    title: str, topography: Topography, seen: Marks | None, more: Painter = lambda _: None
+) -> Panel:
     """Heights in grey; points that do not count have a colour."""
     every = tuple(slice(None, None, max(n // _POINTS, 1)) for n in topography.heights.shape)
     z = topography.heights[every]
     z = np.where(np.isfinite(z) if seen is None else seen[every], z, np.nan)
     unit, factor = _unit(float(np.nanstd(z)))
     lateral, times = _unit(max(topography.size))
-    low, high = np.nanpercentile(z, (0.5, 99.5)) * factor
-    image = Mark(
-        "imshow", factor * z, bar=f"height ({unit})", vmin=low, vmax=high, origin="lower",
-        cmap=mpl.colormaps["gray"].with_extremes(bad=MISSING), interpolation="nearest",
-        extent=(0, times * topography.size[0], 0, times * topography.size[1]),
-    )  # fmt: skip
-    return Panel(title, f"x ({lateral})", f"y ({lateral})", marks=(image, *more))
+
+    def paint(axis: Any) -> None:
+        low, high = np.nanpercentile(z, (0.5, 99.5)) * factor
+        image = axis.imshow(
+            factor * z, vmin=low, vmax=high, origin="lower", interpolation="nearest",
+            cmap=mpl.colormaps["gray"].with_extremes(bad=MISSING),
+            extent=(0, times * topography.size[0], 0, times * topography.size[1]),
+        )  # fmt: skip
+        axis.grid(visible=False)
+        axis.figure.colorbar(image, ax=axis, label=f"height ({unit})", shrink=0.8)
+        more(axis)
+
+    return Panel(title, f"x ({lateral})", f"y ({lateral})", paint=paint)
 
 
 def _unit(length: float) -> tuple[str, float]:
@@ -82,9 +90,11 @@ def _summits_panel(fit: Fit, ready: Prepared) -> Panel:
     listed = (fit.listed.x, fit.listed.y)
     x, y = (times * (place[some] - margin) for place, margin in zip(listed, margins, strict=True))
     size = max(0.4, min(3.0, 90 / np.sqrt(x.size)))
-    dots = Mark("plot", x, y, "o", ms=size, color=MARKED, mew=0)
     shown = "" if x.size == fit.summits.size else f", {x.size} shown"
-    return _map_panel(f"b  as analysed: {fit.summits.size} summits{shown}", used, ready.seen, dots)
+    title = f"b  as analysed: {fit.summits.size} summits{shown}"
+    return _map_panel(
+        title, used, ready.seen, lambda axis: axis.plot(x, y, "o", ms=size, color=MARKED, mew=0)
+    )
 
 
 def _moments_panel(ready: Prepared) -> Panel:
@@ -99,29 +109,33 @@ def _moments_panel(ready: Prepared) -> Panel:
             break
         rows.append((m.m0, m.m2, m.m4))
     unit, times = _unit(float(cutoffs[len(rows) // 2]))
-    x, title = times * cutoffs[: len(rows)], "c  moments against cutoff"
-    marks = tuple(
-        Mark("plot", x, values / values[0], **look(name), ms=4, mfc="white", label=name)
-        for values, name in zip(np.array(rows).T, ("$m_0$", "$m_2$", "$m_4$"), strict=True)
-    )
-    label = "over those at the first cutoff"
-    return Panel(title, f"cutoff ({unit})", label, scales=("linear", "log"), marks=marks)
+
+    def paint(axis: Any) -> None:
+        for values, name in zip(np.array(rows).T, ("$m_0$", "$m_2$", "$m_4$"), strict=True):
+            over = values / values[0]
+            axis.plot(times * cutoffs[: len(rows)], over, **look(name), ms=4, mfc="white", label=name)
+
+    label, title = "over those at the first cutoff", "c  moments against cutoff"
+    return Panel(title, f"cutoff ({unit})", label, scales=("linear", "log"), paint=paint)
 
 
-def _bars(summits: Array) -> Mark:
-    """Return a histogram as a density."""
-    return Mark("hist", summits, bins="auto", density=True, color=SAMPLE, label="summits")
+def _draw_bars(axis: Any, summits: Array) -> None:
+    """Draw a histogram as a density."""
+    axis.hist(summits, bins="auto", density=True, color=SAMPLE, label="summits")
 
 
 def heights_panel(fit: Fit) -> Panel:
     """Summit heights and the laws that they may follow."""
-    z, marks = np.linspace(-4.5, 4.5, 241), [_bars(fit.summits / fit.summits.std())]
-    marks.append(Mark("plot", z, Gaussian().pdf(z), color=HOMOGENEOUS, ls="--", label="Gaussian"))
-    with suppress(ValueError):  # no isotropic surface has such an alpha
-        alpha = fit.numbers["alpha"].value
-        marks.append(Mark("plot", z, Nayak(alpha).pdf(z), color=THEORY, label=f"Nayak, α = {alpha:.3g}"))
+    z, alpha = np.linspace(-4.5, 4.5, 241), fit.numbers["alpha"].value
+
+    def paint(axis: Any) -> None:
+        _draw_bars(axis, fit.summits / fit.summits.std())
+        axis.plot(z, Gaussian().pdf(z), color=HOMOGENEOUS, ls="--", label="Gaussian")
+        with suppress(ValueError):  # no isotropic surface has such an alpha
+            axis.plot(z, Nayak(alpha).pdf(z), color=THEORY, label=f"Nayak, α = {alpha:.3g}")
+
     label = "summit height, about its mean, over its std"
-    return Panel("d  summit heights", label, "density", marks=tuple(marks))
+    return Panel("d  summit heights", label, "density", paint=paint)
 
 
 def _curvatures_panel(fit: Fit) -> Panel:
@@ -130,10 +144,13 @@ def _curvatures_panel(fit: Fit) -> Panel:
     x, mean = np.linspace(0.01, 3, 200), 8 / np.sqrt(3 * np.pi)
     t = mean * x
     density = np.sqrt(3) / (2 * np.sqrt(np.pi)) * (t**2 - 2 + 2 * np.exp(-(t**2) / 2)) * np.exp(-(t**2) / 4)
-    law = Mark("plot", x, mean * density, color=THEORY, label="Gaussian surface")
-    marks = (_bars(k[(k > 0) & (k < 3)]), law)
-    label = "mean curvature over its mean"
-    return Panel("e  summit curvatures", label, "density", marks=marks, settings={"xlim": (0, 3)})
+
+    def paint(axis: Any) -> None:
+        _draw_bars(axis, k[(k > 0) & (k < 3)])
+        axis.plot(x, mean * density, color=THEORY, label="Gaussian surface")
+        axis.set_xlim(0, 3)
+
+    return Panel("e  summit curvatures", "mean curvature over its mean", "density", paint=paint)
 
 
 def _listing(fit: Fit) -> str:

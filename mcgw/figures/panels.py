@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.legend_handler import HandlerTuple
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FixedLocator, MaxNLocator, NullLocator
+from matplotlib.ticker import FixedLocator, MaxNLocator
 
 from mcgw.ensemble.intervals import TOO_FEW
 from mcgw.figures.data import GAMMA, FigureData, Panel, Points, Series, figure_table
@@ -119,17 +119,7 @@ def draw_panel(axis: Any, panel: Panel) -> None:
     elif logarithmic:
         axis.set_ylim(bottom=0.6 * min(positive))
     axis.set_title(panel.title, loc="left")
-    for mark in panel.marks:
-        if mark.how == "text":
-            axis.set_axis_off()
-        within = {"transform": axis.transAxes} if mark.how == "text" else {}
-        shown = getattr(axis, mark.how)(*mark.given, **mark.options, **within)
-        if mark.bar:
-            axis.grid(visible=False)
-            axis.figure.colorbar(shown, ax=axis, label=mark.bar, shrink=0.8)
-    if "xticks" in panel.settings:  # a logarithmic axis of less than a decade would name others between
-        axis.xaxis.set_minor_locator(NullLocator())
-    axis.set(**panel.settings)
+    panel.paint(axis)
 
 
 def keys(axes: Sequence[Any], panels: Sequence[Panel]) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from mcgw.ensemble.intervals import exact_ends
 from mcgw.ensemble.paired import Paired, Slopes
 from mcgw.ensemble.solved import Solution
 from mcgw.figures.against_theory import quantity_panel, residuals_panel
-from mcgw.figures.data import SEPARATION, Mark, Panel
+from mcgw.figures.data import SEPARATION, Panel
 from mcgw.figures.map_fit import heights_panel
 from mcgw.figures.panels import draw_panel, keys
 from mcgw.figures.studies import checks_panel, errors_panel
@@ -70,22 +70,23 @@ def panel_of(result: Any) -> Panel:
 def _(result: Ensemble, *, quantity: str) -> Panel:
     """Mean and interval; the band holds 90 % of all surfaces; two thirds where no law is known."""
     result = shown(result)
-    h, q = result.separations, result.scene.quantity(quantity)
-    order, marks = np.argsort(h, kind="stable"), []
-    mean, std = result.mean(quantity), result.std(quantity)
-    if result.n_surfaces > 1:
-        exact = exact_ends(result.scene, quantity, 0.9)
-        low, high = (mean - std, mean + std) if exact is None else exact
-        low = np.maximum(low, mean / 20)  # an axis of logarithms has no place for 0
-        words = "std over surfaces (no quick law)" if exact is None else "90 % of the surfaces"
-        ends = h[order], low[order], high[order]
-        marks.append(Mark("fill_between", *ends, color=MONTE_CARLO, alpha=0.18, lw=0, label=words))
-    low, high = result.interval(quantity)
-    arms = np.nan_to_num([np.minimum(mean - low, 0.999 * mean), high - mean])[:, order]
-    marks.append(Mark("errorbar", h[order], mean[order], arms, **SEEN, fmt="o-", label="mean, 95 %"))
+    q, order = result.scene.quantity(quantity), np.argsort(result.separations, kind="stable")
+    h, mean, std = (x[order] for x in (result.separations, result.mean(quantity), result.std(quantity)))
+    low, high = (x[order] for x in result.interval(quantity))
+    arms = np.nan_to_num([np.minimum(mean - low, 0.999 * mean), high - mean])
+    ends = exact_ends(result.scene, quantity, 0.9) if result.n_surfaces > 1 else None
+
+    def paint(axis: Any) -> None:
+        if result.n_surfaces > 1:
+            least, most = (mean - std, mean + std) if ends is None else (x[order] for x in ends)
+            least = np.maximum(least, mean / 20)  # an axis of logarithms has no place for 0
+            words = "std over surfaces (no quick law)" if ends is None else "90 % of the surfaces"
+            axis.fill_between(h, least, most, color=MONTE_CARLO, alpha=0.18, lw=0, label=words)
+        axis.errorbar(h, mean, arms, **SEEN, fmt="o-", label="mean, 95 %")
+
     scales = ("linear", "log" if np.any(mean > 0) else "linear")
     label, title = f"{quantity.replace('_', ' ')} ({q.unit})", f"{result.n_surfaces} surfaces"
-    return Panel(shown_title(result.scene, title), SEPARATION, label, scales=scales, marks=tuple(marks))
+    return Panel(shown_title(result.scene, title), SEPARATION, label, scales=scales, paint=paint)
 
 
 @panel_of.register
@@ -102,28 +103,28 @@ panel_of.register(Tradeoff, errors_panel)
 @panel_of.register
 def _(result: Paired) -> Panel:
     order = np.argsort(result.separations, kind="stable")
-    columns = tuple(x[order] for x in (result.separations, result.ratio, 1.96 * result.stderr))
-    marks = (Mark("errorbar", *columns, **_SAME, fmt="o-"),)
-    return Panel("", SEPARATION, f"ratio of the mean {result.quantity}", marks=marks)
+    columns = [x[order] for x in (result.separations, result.ratio, 1.96 * result.stderr)]
+    label = f"ratio of the mean {result.quantity}"
+    return Panel("", SEPARATION, label, paint=lambda axis: axis.errorbar(*columns, **_SAME, fmt="o-"))
 
 
 @panel_of.register
 def _(result: Sweep, *, quantity: str) -> Panel:
     """Return a line a point, from the first to the last along all axes."""
     order, points = np.argsort(result.separations, kind="stable"), list(result.axes.points())
-    means, errors = result.mean(quantity), result.stderr(quantity)
-    some, marks = evenly(len(points), _MOST_LINES), []
-    for place, i in enumerate(some):
-        columns = result.separations[order], means[points[i]][order], 1.96 * errors[points[i]][order]
-        own = step(result.axes.values_text(points[i]), place, len(some))
-        marks.append(Mark("errorbar", *columns, marker="o", ms=3, **own))
+    means, errors, h = result.mean(quantity), result.stderr(quantity), result.separations[order]
+    some = [points[i] for i in evenly(len(points), _MOST_LINES)]
+
+    def paint(axis: Any) -> None:
+        for k, at in enumerate(some):
+            own = step(result.axes.values_text(at), k, len(some))
+            axis.errorbar(h, means[at][order], 1.96 * errors[at][order], marker="o", ms=3, **own)
+
     among = f"{len(some)} of {len(points)} points" if len(some) < len(points) else f"{len(points)} points"
+    label = f"mean {quantity.replace('_', ' ')} ({result.scenes[0].quantity(quantity).unit})"
+    scales = ("linear", "log" if np.any(means > 0) else "linear")
     return Panel(
-        f"{', '.join(result.axes.keys)}: {among}, 95 %",
-        SEPARATION,
-        f"mean {quantity.replace('_', ' ')} ({result.scenes[0].quantity(quantity).unit})",
-        scales=("linear", "log" if np.any(means > 0) else "linear"),
-        marks=tuple(marks),
+        f"{', '.join(result.axes.keys)}: {among}, 95 %", SEPARATION, label, scales=scales, paint=paint
     )
 
 
@@ -134,24 +135,26 @@ def _(result: Slopes, *, k: int) -> Panel:
         np.moveaxis(x, result.axis, 0)[..., k].reshape(len(result.at), -1)[:, 0]
         for x in (result.value, result.stderr, result.theory)
     )
-    marks = (
-        Mark("errorbar", result.at, value, 1.96 * error, **_SAME, fmt="o"),
-        Mark("plot", result.at, theory, color=THEORY, label="theory"),
-    )
-    return Panel("", result.key, f"change of the mean {result.quantity.replace('_', ' ')}", marks=marks)
+
+    def paint(axis: Any) -> None:
+        axis.errorbar(result.at, value, 1.96 * error, **_SAME, fmt="o")
+        axis.plot(result.at, theory, color=THEORY, label="theory")
+
+    return Panel("", result.key, f"change of the mean {result.quantity.replace('_', ' ')}", paint=paint)
 
 
 @panel_of.register
 def _(result: Solution) -> Panel:
     x = result.surfaces["separation"]
-    marks = (
-        Mark("hist", x, bins="auto", color=SAMPLE, label=f"{x.size} surfaces"),
-        Mark("axvline", result.theory["separation"], color=THEORY, label="theory, infinite surface"),
-        Mark("axvline", x.mean(), color=MONTE_CARLO, ls="--", label="mean of the surfaces"),
-        Mark("margins", y=0.3),  # room for the legend
-    )
+
+    def paint(axis: Any) -> None:
+        axis.hist(x, bins="auto", color=SAMPLE, label=f"{x.size} surfaces")
+        axis.axvline(result.theory["separation"], color=THEORY, label="theory, infinite surface")
+        axis.axvline(x.mean(), color=MONTE_CARLO, ls="--", label="mean of the surfaces")
+        axis.margins(y=0.3)  # room for the legend
+
     title = f"at {result.given} = {result.amount:.6g} {quantity_of(result.given).unit}"
-    return Panel(title, SEPARATION, "surfaces", marks=marks)
+    return Panel(title, SEPARATION, "surfaces", paint=paint)
 
 
 @panel_of.register
@@ -162,9 +165,8 @@ def _(result: Convergence) -> Panel:
 
 @panel_of.register
 def _(result: Fit) -> Panel:
-    return replace(
-        heights_panel(result), title=f"{result.summits.size} summits, sigma = {result.summits.std():.4g} m"
-    )
+    title = f"{result.summits.size} summits, sigma = {result.summits.std():.4g} m"
+    return replace(heights_panel(result), title=title)
 
 
 @panel_of.register
@@ -172,11 +174,12 @@ def _(result: ProfileFit) -> Panel:
     m = result.moments
     rms = float(np.sqrt(m.m0))
     z = np.linspace(-4 * rms, m.mean_height + 4 * m.sigma, 401)
-    heights, summits = norm.pdf(z, scale=rms), norm.pdf(z, m.mean_height, m.sigma)
-    marks = (
-        Mark("plot", z, heights, color=SAMPLE, label=f"all heights, Sq = {rms:.4g} m"),
-        Mark("plot", z, summits, color=THEORY, label=f"summits, sigma = {m.sigma:.4g} m"),
-        Mark("margins", y=0.3),
-    )
+
+    def paint(axis: Any) -> None:
+        axis.plot(z, norm.pdf(z, scale=rms), color=SAMPLE, label=f"all heights, Sq = {rms:.4g} m")
+        summits = norm.pdf(z, m.mean_height, m.sigma)
+        axis.plot(z, summits, color=THEORY, label=f"summits, sigma = {m.sigma:.4g} m")
+        axis.margins(y=0.3)
+
     title = f"from {len(result.lengths)} profile(s), alpha = {m.alpha:.3g}"
-    return Panel(title, "height above the mean plane (m)", "density (1/m)", marks=marks)
+    return Panel(title, "height above the mean plane (m)", "density (1/m)", paint=paint)

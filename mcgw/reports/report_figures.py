@@ -3,18 +3,21 @@
 import io
 import re
 from collections.abc import Iterator, Sequence
+from functools import partial
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
 
 from analytic import quantity_of
+from analytic.arrays import Array
 from mcgw.ensemble.at_load import answers_at, pressures_of, quantities_at
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.intervals import laws_are_quick
 from mcgw.ensemble.solution import solutions
 from mcgw.ensemble.solved import Solution
 from mcgw.figures.against_theory import quantity_panel, spread
-from mcgw.figures.data import SEPARATION, FigureData, Mark, Panel, Series
+from mcgw.figures.data import SEPARATION, FigureData, Panel, Series
 from mcgw.figures.panels import draw
 from mcgw.figures.style import SEEN, STYLE
 from mcgw.formats.table import evenly
@@ -115,11 +118,15 @@ def pressure_curves(solved: Sequence[Solution]) -> list[Panel]:
             factor * np.array([x[name] for x in some])
             for some in ([each.value for each in solved], [each.std for each in solved])
         )
-        dots = Mark("errorbar", pressure, mean, std, **SEEN, fmt="o", label="specimens: mean, std")
+        dots = partial(_draw_specimens, pressure, mean, std)
         series = Series("infinite surface", sums["load"] / area / 1e6, factor * np.asarray(line[name]))
         scales = ("log", "linear" if name == "separation" else "log")
-        curves.append(Panel(title, "nominal pressure P/Aₙ (MPa)", label, (series,), scales, marks=(dots,)))
+        curves.append(Panel(title, "nominal pressure P/Aₙ (MPa)", label, (series,), scales, paint=dots))
     return curves
+
+
+def _draw_specimens(pressure: Array, mean: Array, std: Array, axis: Any) -> None:
+    axis.errorbar(pressure, mean, std, **SEEN, fmt="o", label="specimens: mean, std")
 
 
 def _asked(scene: Scene) -> Iterator[tuple[str, float, str, str]]:

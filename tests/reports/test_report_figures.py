@@ -62,11 +62,11 @@ def test_curves_are_values_and_scatter_of_solve_on_theory(scene):
         ("Contact conductance", "C/Aₙ (S/m²)", "conductance_si", 1 / area),
     ]
     for panel, (title, label, name, factor) in zip(pressure_curves(solved), expected, strict=True):
-        (series,), (dots,) = panel.series, panel.marks
+        (series,) = panel.series
         assert (panel.title, panel.ylabel) == (title, label)
         pressure = [1e-6 * x.amount / area for x in solved]
         told = pressure, [factor * x.value[name] for x in solved], [factor * x.std[name] for x in solved]
-        for given, wanted in zip(dots.given, told, strict=True):
+        for given, wanted in zip(panel.paint.args, told, strict=True):
             np.testing.assert_allclose(given, wanted, rtol=1e-12)
         ends = [factor * x.theory[name] for x in (solved[0], solved[-1])]
         np.testing.assert_allclose(series.theory[[0, -1]], ends, rtol=1e-9)
@@ -95,7 +95,7 @@ def test_curves_rise_with_the_pressure_where_adhesion_lets_a_load_fall_below_0(s
     curves = pressure_curves(solved_pressures(attracting))
     assert len(curves) >= 4
     for panel in curves:
-        ((_, mean, std),) = (mark.given for mark in panel.marks)
+        _, mean, std = panel.paint.args
         for values in (mean, panel.series[0].theory):
             rising = -1 if "separation" in panel.ylabel else 1
             assert np.all(rising * np.diff(values) > 0), panel.title
