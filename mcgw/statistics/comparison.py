@@ -11,11 +11,10 @@ from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble, how_many, shown
 from mcgw.ensemble.intervals import interval_columns
 from mcgw.ensemble.labelled import heading
-from mcgw.formats.table import SEPARATION, Column, Shown, Table, stacked
+from mcgw.formats.table import SEPARATION, Column, Shown, Table, joined, stacked
 from mcgw.machine.progress import Progress, told
 from mcgw.machine.terminal import plotted, quantity_and_axes
 from mcgw.scene.kinds import check_object
-from mcgw.scene.scene import Scene
 from mcgw.statistics.verdict import Check, Tested, tested, together, verdict
 from mcgw.sweeps.axes import label
 
@@ -175,47 +174,30 @@ class SweepComparison(Shown):
         smallest = self.worst[0].verdict.p
         beyond = int((np.abs(self.residuals) > 3).sum())
         facts = [
-            (
-                "all points",
-                f"p = {v.p:.3g}: {n} times the smallest p of a point, {smallest:.3g}",
-            ),
+            ("all points", f"p = {v.p:.3g}: {n} times the smallest p of a point, {smallest:.3g}"),
             ("residuals", f"{beyond} of {len(self.residuals)} beyond 3 standard errors"),
         ]
-        where = list(self.sweep.axes.points())
-        shown = [(one, *one.worst) for one in self.worst[:most]]
-        at = [self.sweep.axes.values_text(where[one.number]) for one, *_ in shown]
-        columns = (
-            Column("point", at, ", ".join(self.sweep.axes.keys)),
-            *_columns(shown, self.sweep.scenes[0]),
-        )
-        title = f"Monte Carlo and theory of {n} scenes {v.word}"
-        return Table(columns, title, facts)
+        shown = self.worst[:most]
+        at = [self.sweep.axes.values_text(where) for where in self._where(shown)]
+        rows = joined([one.table(self.sweep.scenes[0]).at([one.row]) for one in shown])
+        columns = Column("point", at, ", ".join(self.sweep.axes.keys)), *rows.columns
+        return Table(columns, f"Monte Carlo and theory of {n} scenes {v.word}", facts)
 
     def table(self) -> Table:
         """Return a row for each point, quantity and separation."""
-        where, axes = list(self.sweep.axes.points()), self.sweep.axes
-        rows = [
-            (one, q, k)
-            for one in self.points
-            for q, k in np.ndindex(len(one.quantities), len(one.separations))
+        axes, tables = self.sweep.axes, [one.table(self.sweep.scenes[0]) for one in self.points]
+        at = [
+            axes.at(where)
+            for where, x in zip(self._where(self.points), tables, strict=True)
+            for _ in range(len(x))
         ]
-        at = [axes.at(where[one.number]) for one, *_ in rows]
         keys = (Column(key, [label(values[key]) for values in at]) for key in axes.keys)
-        return Table((*keys, *_columns(rows, self.sweep.scenes[0])))
+        return Table((*keys, *joined(tables).columns))
 
-
-def _columns(rows: Sequence[tuple[Tested, int, int]], scene: Scene) -> tuple[Column, ...]:
-    """Columns of points, each at a quantity and a separation, by number."""
-    names = [t.quantities[q] for t, q, _ in rows]
-    return (
-        Column("quantity", names),
-        Column("unit", [scene.quantity(name).unit for name in names]),
-        Column("separation", [t.separations[k] for t, _, k in rows], SEPARATION, form="g"),
-        Column("mean", [t.mean[q, k] for t, q, k in rows]),
-        Column("theory", [t.theory[q, k] for t, q, k in rows]),
-        Column("residual", [t.residual[q, k] for t, q, k in rows], form="+z.2f"),
-        Column("p_of_point", [t.verdict.p for t, *_ in rows], form=".2g"),
-    )
+    def _where(self, points: Sequence[Tested]) -> list[tuple[int, ...]]:
+        """Return the numbers of points along the axes."""
+        where = list(self.sweep.axes.points())
+        return [where[one.number] for one in points]
 
 
 @overload

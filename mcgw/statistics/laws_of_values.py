@@ -52,32 +52,22 @@ def distances(ensemble: Ensemble) -> list[tuple[float, str, float]]:
             "laws = True: needs kept values of surfaces, from an exact sampler; not "
             "for listed summits, nor for individual radii with a law other than Hertz's"
         )
-    h = np.unique(scene.separations)
+    h, m = np.unique(scene.separations), ensemble.n_surfaces
     chosen = h[evenly(len(h), _SEPARATIONS if scene.hertzian and one_radius else _FEW)].tolist()
-    found: list[tuple[float, str, float]] = []
+    found = []
     for name in scene.quantities:
-        apart = _distances(ensemble, name, [scene.separations.index(x) for x in chosen])
-        found += [(d, name, x) for d, x in zip(apart, chosen, strict=True)]
+        which = [scene.separations.index(x) for x in chosen]
+        values = np.sort(ensemble.sums.read(name, 0, m)[:, which].astype(np.float64), axis=0)
+        found += [
+            (_farthest(scene, name, *pair), name, pair[0]) for pair in zip(chosen, values.T, strict=True)
+        ]
     return found
 
 
-def _distances(ensemble: Ensemble, name: str, which: list[int]) -> list[float]:
-    """Distances of one quantity at some separations, by number."""
-    m, found = ensemble.n_surfaces, []
-    values = np.sort(ensemble.sums.read(name, 0, m)[:, which].astype(np.float64), axis=0)
-    for k, number in enumerate(which):
-        x = values[evenly(m, _PLACES), k]
-        below, upto = (np.searchsorted(values[:, k], x, side) / m for side in ("left", "right"))
-        found.append(_farthest(ensemble.scene, name, ensemble.scene.separations[number], x, below, upto))
-    return found
-
-
-def _farthest(scene: Scene, name: str, h: float, x: Array, below: Array, upto: Array) -> float:
+def _farthest(scene: Scene, name: str, h: float, values: Array) -> float:
     """Largest distance of shares from their probabilities; both as they jump at values that repeat."""
-    law = scene.theory.distribution(name, h)
-    if quantity_of(name).counts:
-        least, most = law.cdf(x - 1), law.cdf(x)
-    else:
-        most = law.cdf(x)
-        least = most - np.where(x == 0, law.atom, 0.0)
+    x, law = values[evenly(values.size, _PLACES)], scene.theory.distribution(name, h)
+    below, upto = (np.searchsorted(values, x, side) / values.size for side in ("left", "right"))
+    most = law.cdf(x)
+    least = law.cdf(x - 1) if quantity_of(name).counts else most - np.where(x == 0, law.atom, 0.0)
     return float(max((upto - most).max(), (least - below).max(), 0.0))

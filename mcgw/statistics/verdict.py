@@ -19,7 +19,7 @@ from analytic.arrays import Array, Marks
 from analytic.curvature import MEAN_CURVATURE
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.half_space import asperities_alone
-from mcgw.formats.table import evenly
+from mcgw.formats.table import SEPARATION, Column, Table, evenly
 from mcgw.scene.scene import Scene
 
 FALSE_ALARM = 1e-3
@@ -105,11 +105,29 @@ class Tested:
     number: int = 0
 
     @property
+    def row(self) -> int:
+        """Number in `table` of the mean farthest off, among those that count."""
+        return int(np.argmax(np.where(self.counts, np.abs(self.residual), -1.0)))
+
+    @property
     def worst(self) -> tuple[int, int]:
-        """Indices (quantity, separation) of the mean farthest off, among those that count."""
-        off = np.where(self.counts, np.abs(self.residual), -1.0)
-        quantity, separation = divmod(int(np.argmax(off)), len(self.separations))
-        return quantity, separation
+        """The same as indices (quantity, separation)."""
+        return divmod(self.row, len(self.separations))
+
+    def table(self, scene: Scene) -> Table:
+        """Return a row for each quantity and separation."""
+        names = np.repeat(self.quantities, len(self.separations)).tolist()
+        return Table(
+            (
+                Column("quantity", names),
+                Column("unit", [scene.quantity(name).unit for name in names]),
+                Column("separation", np.tile(self.separations, len(self.quantities)), SEPARATION, form="g"),
+                Column("mean", self.mean.ravel()),
+                Column("theory", self.theory.ravel()),
+                Column("residual", self.residual.ravel(), form="+z.2f"),
+                Column("p_of_point", [self.verdict.p] * len(names), form=".2g"),
+            )
+        )
 
 
 def verdict(ensemble: Ensemble) -> Check:
