@@ -5,7 +5,7 @@ at several separations share their asperities. Turned to these axes they are unc
 variance 1, with known third and fourth cumulants: a test needs no more.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -124,27 +124,28 @@ class Slope:
         return Check(f"slope of the error in {self.against}", seen, float(2 * norm.sf(abs(z))))
 
 
-def slope(against: str, sizes: Sequence[float], squares: Sequence[Array], excess: Sequence[float]) -> Slope:
-    """Exponent of the root mean square error, each size with its own independent errors.
+def slope(against: str, rows: Iterable[tuple[float, Array, float]]) -> list[Slope]:
+    """Exponent of the root mean square error, if there are two sizes, each with its own independent errors.
 
-    By weighted least squares on logarithms, whose mean and variance are those of a chi-square: `squares` are
-    the squared errors at each size, `excess` is the excess kurtosis of one error there.
+    By weighted least squares on logarithms, whose mean and variance are those of a chi-square: rows are a
+    size, the squared errors there, and the excess kurtosis of one error.
     """
+    if len(rows := list(rows)) < 2:
+        return []
+    sizes, squares, excess = zip(*rows, strict=True)
     degrees = np.array([x.size / (1 + k / 2) for x, k in zip(squares, excess, strict=True)])
     bias = psi(degrees / 2) - np.log(degrees / 2)
     y = (np.log([x.mean() for x in squares]) - bias) / 2
-    weight = 4 / polygamma(1, degrees / 2)
-    x = np.log(np.asarray(sizes, dtype=np.float64))
-    centre = x - (weight @ x) / weight.sum()
-    spread = weight @ centre**2
-    return Slope(
-        against,
-        np.asarray(sizes, dtype=np.float64),
-        np.exp(y),
-        1 / np.sqrt(weight),
-        float(weight @ (centre * y) / spread),
-        float(1 / np.sqrt(spread)),
-    )
+    weight = 2 / np.sqrt(polygamma(1, degrees / 2))
+    (value, _), covariance = np.polyfit(np.log(sizes), y, 1, w=weight, cov="unscaled")
+    size = np.array(sizes)
+    return [Slope(against, size, np.exp(y), 1 / weight, float(value), float(covariance[0, 0] ** 0.5))]
+
+
+def worst(name: str, p: Array, seen: Callable[[int], str]) -> Check:
+    """Return the least probability of several, which counts as often as there are (Bonferroni)."""
+    k = int(np.argmin(p))
+    return Check(name, seen(k), min(1.0, p.size * float(p[k])))
 
 
 def variances(exact: PrincipalComponents, y: Array) -> Check:
@@ -152,9 +153,7 @@ def variances(exact: PrincipalComponents, y: Array) -> Check:
     degrees = len(y) * 2 / (2 + exact.kurtosis)
     ratio = (y**2).mean(axis=0)
     p = 2 * np.minimum(chi2.cdf(degrees * ratio, degrees), chi2.sf(degrees * ratio, degrees))
-    worst = int(np.argmin(p))
-    seen = f"measured/exact = {ratio[worst]:.4f} at worst of {len(p)} axes"
-    return Check("variance", seen, min(1.0, len(p) * float(p[worst])))
+    return worst("variance", p, lambda k: f"measured/exact = {ratio[k]:.4f} at worst of {p.size} axes")
 
 
 def covariances(y: Array) -> Check:
@@ -171,9 +170,12 @@ def skewness(exact: PrincipalComponents, y: Array) -> Check:
     """Third cumulant along each axis, by the Hermite polynomial whose mean it is."""
     values = y**3 - 3 * y
     z = (values.mean(axis=0) - exact.skewness) / (values.std(axis=0) / np.sqrt(len(y)))
-    worst = int(np.argmax(np.abs(z)))
-    seen = f"z = {z[worst]:+z.2f} at worst of {z.size} axes, exact skewness {exact.skewness[worst]:.3f}"
-    return Check("skewness", seen, min(1.0, z.size * float(2 * norm.sf(abs(z[worst])))))
+    exactly = exact.skewness
+    return worst(
+        "skewness",
+        2 * norm.sf(np.abs(z)),
+        lambda k: f"z = {z[k]:+z.2f} at worst of {z.size} axes, exact skewness {exactly[k]:.3f}",
+    )
 
 
 def coverage(groups: Array, level: float = 0.95) -> Check:
@@ -190,9 +192,8 @@ def scores(groups: Array) -> tuple[Check, Array]:
     """Means of the seeds in exact standard errors: standard normal numbers."""
     z = (groups.mean(axis=1) * np.sqrt(groups.shape[1])).ravel()
     test = kstest(z, "norm")
-    return Check(
-        "distribution of z-scores", f"{z.size} of them, KS distance {test.statistic:.3f}", float(test.pvalue)
-    ), z
+    seen = f"{z.size} of them, KS distance {test.statistic:.3f}"
+    return Check("distribution of z-scores", seen, float(test.pvalue)), z
 
 
 def independence(groups: Array) -> Check:
@@ -202,9 +203,6 @@ def independence(groups: Array) -> Check:
     for lag in (k for k in _LAGS if k < m):
         products = groups[:, lag:] * groups[:, :-lag]
         z.append(products.sum(axis=(0, 1)) / np.sqrt(seeds * (m - lag)))
-    total = float(np.sum(np.square(z)))
-    return Check(
-        "independence of surfaces",
-        f"chi-square {total:.1f} for {len(z) * d} lags and axes",
-        float(chi2.sf(total, len(z) * d)),
-    )
+    total, degrees = float(np.sum(np.square(z))), len(z) * d
+    seen = f"chi-square {total:.1f} for {degrees} lags and axes"
+    return Check("independence of surfaces", seen, float(chi2.sf(total, degrees)))

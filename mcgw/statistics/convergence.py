@@ -1,6 +1,6 @@
 """The statistical convergence test, for this simulator and for a user's sampler or contact law."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
@@ -32,11 +32,13 @@ from mcgw.statistics.checks import (
     skewness,
     slope,
     variances,
+    worst,
 )
 from mcgw.statistics.verdict import Check, together, verdict
 
 Sums = Mapping[str, NDArray[Any]]
 Draw = Callable[[Scene], Sums]
+Rows = Iterator[tuple[float, Array, float]]  # for a slope
 
 SEEDS = 24
 _FEWEST, _MOST = 64, 1000  # surfaces per seed
@@ -88,9 +90,9 @@ class Convergence(Shown):
 
     def sheet(self) -> Table:
         """Return the verdict and its worst checks."""
-        worst = sorted(self.checks, key=lambda check: check.p)[:_MOST_SHOWN]
+        first = sorted(self.checks, key=lambda check: check.p)[:_MOST_SHOWN]
         facts = [("p", f"{self.p:.3g} over all {len(self.checks)} checks")]
-        return _table(worst, "worst").under(f"Statistical convergence {self.word}", facts)
+        return _table(first, "worst").under(f"Statistical convergence {self.word}", facts)
 
     def table(self) -> Table:
         """Every check."""
@@ -98,13 +100,8 @@ class Convergence(Shown):
 
 
 def _table(checks: Sequence[Check], words: str) -> Table:
-    return Table(
-        (
-            Column("check", [check.name for check in checks], words),
-            Column("p", [check.p for check in checks], form=".3g"),
-            Column("seen", [brief(check.seen) for check in checks]),
-        )
-    )
+    names, p, seen = zip(*((check.name, check.p, brief(check.seen)) for check in checks), strict=True)
+    return Table((Column("check", names, words), Column("p", p, form=".3g"), Column("seen", seen)))
 
 
 def converge(
@@ -179,15 +176,11 @@ def converge(
     if y.shape[1]:
         groups = y.reshape(seeds, scene.n_surfaces, -1)
         score, z = scores(groups)
-        checks += [
-            score,
-            coverage(groups),
-            variances(exact, y),
-            covariances(y),
-            skewness(exact, y),
-            independence(groups),
-        ]
-        slopes = [*_slope_in_surfaces(exact, y, scene.n_surfaces), *_slope_in_asperities(scene, draw)]
+        checks += [score, coverage(groups), variances(exact, y), covariances(y), skewness(exact, y)]
+        checks.append(independence(groups))
+        slopes = slope("M", _of_surfaces(exact, y, scene.n_surfaces)) + slope(
+            "N", _of_asperities(scene, draw)
+        )
         checks += [found.check for found in slopes]
     return Convergence(scene, tuple(checks), tuple(slopes), z)
 
@@ -212,11 +205,11 @@ def _contacts(scene: Scene, sums: Sums) -> list[Check]:
     tried = float(scene.n_surfaces) * scene.n_asperities
     exact = binom(tried, share) if scene.count == "fixed" else poisson(tried * share)
     p = np.minimum(2 * np.minimum(exact.cdf(total), exact.sf(total - 1)), 1.0)
-    worst = int(np.argmin(p))
-    seen = (
-        f"{total[worst]:.0f} at d/sigma = {scene.separations[worst]:g}, {tried * share[worst]:.1f} expected"
-    )
-    return [Check("number of contacts", seen, min(1.0, p.size * float(p[worst])))]
+
+    def seen(k: int) -> str:
+        return f"{total[k]:.0f} at d/sigma = {scene.separations[k]:g}, {tried * share[k]:.1f} expected"
+
+    return [worst("number of contacts", p, seen)]
 
 
 def _repeats(scene: Scene, sums: Sums) -> list[Check]:
@@ -234,38 +227,25 @@ def _repeats(scene: Scene, sums: Sums) -> list[Check]:
     return [Check("repeated surfaces", f"{again} of {len(values)}", float(poisson.sf(again - 1, expected)))]
 
 
-def _slope_in_surfaces(exact: PrincipalComponents, y: Array, most: int) -> list[Slope]:
+def _of_surfaces(exact: PrincipalComponents, y: Array, most: int) -> Rows:
     """Error of means of 1, 4, 16, ... surfaces, each size from surfaces of its own."""
     sizes = [m for m in 4 ** np.arange(8) if m <= most // 4]
-    squares, used = [], []
+    kurtosis = float(exact.kurtosis.mean())
     for m, part in zip(sizes, np.array_split(y, len(sizes)), strict=True):
         means = part[: len(part) // m * m].reshape(-1, m, y.shape[1]).mean(axis=1)
         if means.size >= _FEWEST_ERRORS:
-            squares.append(np.asarray(means**2))
-            used.append(float(m))
-    kurtosis = float(exact.kurtosis.mean())
-    return [slope("M", used, squares, [kurtosis / m for m in used])] if len(used) > 1 else []
+            yield float(m), np.asarray(means**2), kurtosis / m
 
 
-def _slope_in_asperities(scene: Scene, draw: Draw) -> list[Slope]:
+def _of_asperities(scene: Scene, draw: Draw) -> Rows:
     """Relative error of one surface of N/64, N/16, N/4, N asperities, at the lowest separation."""
-    squares, sizes, excess = [], [], []
-    lowest = (scene.lowest,)
     name = scene.quantities[0]
-    for divisor in _SIZES_OF_N:
-        n = scene.n_asperities // divisor
-        if n < 1:
-            continue
+    for divisor in (k for k in _SIZES_OF_N if scene.n_asperities >= k):
         small = scene.replace(
-            n_asperities=n,
-            separations=lowest,
-            quantities=(name,),
+            n_asperities=scene.n_asperities // divisor, separations=(scene.lowest,), quantities=(name,),
             seed=(scene.seed + 10**6 + divisor) % 2**64,
-        )
+        )  # fmt: skip
         exact = PrincipalComponents.of(small, (name,))
         if exact.axes.size:
-            y = exact.turn(draw(small))[:, 0]
-            sizes.append(float(n))
-            squares.append(np.asarray((y * exact.std[0] / exact.mean[0]) ** 2))
-            excess.append(float(exact.kurtosis[0]))
-    return [slope("N", sizes, squares, excess)] if len(sizes) > 1 else []
+            y = exact.turn(draw(small))[:, 0] * exact.std[0] / exact.mean[0]
+            yield float(small.n_asperities), np.asarray(y**2), float(exact.kurtosis[0])

@@ -305,10 +305,12 @@ def test_a_slope_weighs_sizes_by_what_they_tell(excess):
     degrees = np.array(numbers) / (1 + excess / 2)
     y = (np.log(levels) - psi(degrees / 2) + np.log(degrees / 2)) / 2
     weight = 4 / polygamma(1, degrees / 2)
-    fit, covariance = np.polyfit(np.log(sizes), y, 1, w=np.sqrt(weight), cov="unscaled")
-    found = convergence.slope("M", sizes, squares, [excess] * 3)
-    assert found.value == pytest.approx(fit[0], rel=1e-9, abs=1e-12)
+    x = np.stack([np.log(sizes), np.ones(3)])
+    covariance = np.linalg.inv(x * weight @ x.T)  # by the normal equations
+    (found,) = convergence.slope("M", zip(sizes, squares, [excess] * 3, strict=True))
+    assert found.value == pytest.approx((covariance @ (x * weight @ y))[0], rel=1e-9, abs=1e-12)
     assert found.uncertainty == pytest.approx(np.sqrt(covariance[0][0]), rel=1e-9)
+    assert convergence.slope("M", [(1.0, squares[0], excess)]) == []
     np.testing.assert_allclose(found.errors, np.exp(y), rtol=1e-12)
     np.testing.assert_allclose(found.stderr, weight**-0.5, rtol=1e-12)
     z = abs(found.value + 0.5) / found.uncertainty
