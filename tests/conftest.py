@@ -157,7 +157,7 @@ def recorded(request):
 @pytest.fixture
 def pressures(monkeypatch):
     """Set at how many pressures reports solve: each takes half a second."""
-    return lambda number: monkeypatch.setattr("mcgw.reports.report_figures._PRESSURES", number)
+    return lambda number: monkeypatch.setattr("mcgw.reports.html._PRESSURES", number)
 
 
 @pytest.fixture

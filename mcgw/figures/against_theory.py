@@ -24,13 +24,7 @@ _CAPTION = (
 
 
 def comparison_figure(comparison: Comparison | SweepComparison) -> FigureData:
-    """Each quantity with its theory and residuals; of a sweep the residuals of all points and of the worst.
-
-    Parameters
-    ----------
-    comparison : Comparison or SweepComparison
-        From `mcgw.statistics.comparison.compare`.
-    """
+    """Each quantity with its theory and residuals; of a sweep all residuals and those of the worst point."""
     verdict = comparison.verdict
     if not isinstance(comparison, Comparison):
         title = f"{shown_title(comparison.sweep.scenes[0], 'Sweep')}: {len(comparison.points)} scenes"
@@ -51,20 +45,7 @@ def comparison_figure(comparison: Comparison | SweepComparison) -> FigureData:
 
 
 def quantity_panel(comparison: Comparison, name: str) -> Panel:
-    """One quantity with its theory and residuals.
-
-    Parameters
-    ----------
-    comparison : Comparison
-        From `mcgw.statistics.comparison.compare`.
-    name : str
-        One of its curves.
-
-    Returns
-    -------
-    Panel
-        Over the separations.
-    """
+    """Return one of the curves over the separations, with its theory and residuals."""
     h, curve = comparison.ensemble.separations, comparison.curves[name]
     order = np.argsort(h, kind="stable")
     points = Points(h, curve.mean, curve.stderr, curve.theory, (curve.low, curve.high))

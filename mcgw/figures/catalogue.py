@@ -7,7 +7,7 @@ from importlib.resources import files
 
 import numpy as np
 
-from analytic import quantity_of
+from analytic import Hertz, quantity_of
 from mcgw.ensemble.simulation import simulate
 from mcgw.figures.against_theory import spread
 from mcgw.figures.compared import SCENE, Compared
@@ -44,7 +44,7 @@ def gradings(f: Compared) -> FigureData:
     if f.swept:
         caption = "E*(s)/E* = γ − (γ − 1) exp(−s). Theory alone."
         return FigureData("Exponential grading (Eq. 4)", caption, tuple(panels))
-    return FigureData("The grading", f.caption_of(0), tuple(panels))
+    return FigureData("The grading", f.caption(0), tuple(panels))
 
 
 def against_separation(f: Compared, *, title: str, quantity: str, words: str, unit: str) -> FigureData:
@@ -63,7 +63,7 @@ def against_separation(f: Compared, *, title: str, quantity: str, words: str, un
         positive = all(np.all(s.theory >= 0) and np.any(s.theory > 0) for s in series)
         scales, level = (("linear", "log"), None) if positive else (("linear", "linear"), 0.0)
         panels.append(Panel(name, SEPARATION, ylabel, series, scales, level))
-    return FigureData(title, f.caption, tuple(panels))
+    return FigureData(title, f.caption(), tuple(panels))
 
 
 def at_separation(f: Compared, *, title: str, symbol: str, how: Mean) -> FigureData:
@@ -71,10 +71,10 @@ def at_separation(f: Compared, *, title: str, symbol: str, how: Mean) -> FigureD
     ylabel = of_reference(f, symbol)
     if not f.swept:
         panel = _over_separation(f, "", ylabel, how)
-        return FigureData(title, f"Reference: {f.reference}, the same surface. {f.caption}", (panel,))
+        return FigureData(title, f"Reference: {f.reference}, the same surface. {f.caption()}", (panel,))
     parts = (("a  stiffer tips", _STIFFER), ("b  softer tips", _SOFTER))
     panels = (over_gamma(f, name, ylabel, how, *gammas, _AT) for name, gammas in parts)
-    return FigureData(title, f.caption, tuple(panels))
+    return FigureData(title, f.caption(), tuple(panels))
 
 
 def _over_separation(f: Compared, title: str, ylabel: str, how: Mean) -> Panel:
@@ -100,7 +100,7 @@ def equal_load(f: Compared) -> FigureData:
         )
     title = "At equal load the trend reverses: stiffer tips conduct less" if f.swept else "At the same load"
     which = "homogeneous surface" if f.swept else f"reference ({f.reference}, the same surface)"
-    return FigureData(title, f"d/σ is that of the {which} and sets the load. {f.caption}", tuple(panels))
+    return FigureData(title, f"d/σ is that of the {which} and sets the load. {f.caption()}", tuple(panels))
 
 
 def area_and_load(f: Compared) -> FigureData:
@@ -115,7 +115,7 @@ def area_and_load(f: Compared) -> FigureData:
         areas.append(replace(one, x=pressure, points=points))
     panel = Panel("", PRESSURE, r"real area fraction $A/A_n$", tuple(areas), ("log", "log"))
     if not f.swept:
-        return FigureData("Real area against load", f.caption, (panel,))
+        return FigureData("Real area against load", f.caption(), (panel,))
     # (n/A)/(K/P), to the slope by dA/dd = -pi R n and dP/dd = -K
     factor = np.pi * f.scene.surface.radius
     exponent = Mean(("contacts", "load"), ("area", "stiffness"), factor=factor)
@@ -124,12 +124,12 @@ def area_and_load(f: Compared) -> FigureData:
         replace(panel, title="a  real area"),
         Panel("b  local exponent", SEPARATION, r"$d\,\ln A/d\,\ln P$", exponents, level=1.0),
     )
-    return FigureData("Real area against load, and its local exponent", f.caption, panels)
+    return FigureData("Real area against load, and its local exponent", f.caption(), panels)
 
 
 def mean_moduli(f: Compared) -> FigureData:
     """Show the mean modulus of the contacts, which the plasticity index goes as."""
-    title, caption = "Plasticity index over that of the homogeneous surface", f.caption_of(len(f.listed))
+    title, caption = "Plasticity index over that of the homogeneous surface", f.caption(len(f.listed))
     if f.swept:
         just = tuple(
             Series(f"d/σ = {h:g}", _MODULI[0], _MODULI[0] - (_MODULI[0] - 1) * np.exp(-h)) for h in _AT
@@ -139,7 +139,9 @@ def mean_moduli(f: Compared) -> FigureData:
         for weight, words in _TITLES.items():
             panels.append(over_gamma(f, words, ylabel, Modulus(weight), *_MODULI, _AT))
         return FigureData(title, caption, tuple(panels))
-    plain = f.hertz and f.scene.summits is None  # else area and load of a contact are not powers
+    plain = (
+        type(f.scene.law) is Hertz and f.scene.summits is None
+    )  # else area and load of a contact are not powers
     series = tuple(
         over_separation(
             f, "contacts" if weight == "number" else weight, Modulus(weight), SCENE, len(f.listed) or 1
@@ -159,7 +161,7 @@ def fluctuations(f: Compared) -> FigureData:
         series = tuple(spread(name, f.scene, name, f.line, f.drawn(SCENE)) for name in _SPREADING)
         panel = Panel("", SEPARATION, "std / mean", series, ("linear", "log"), level=1.0)
         size = f"{f.scene.surface.nominal_area * 1e6:g} mm²"
-        return FigureData(f"Scatter of surfaces of {size}", f.caption, (panel,))
+        return FigureData(f"Scatter of surfaces of {size}", f.caption(), (panel,))
     scene = f.scene.replace(keep="sums", separations=np.linspace(0, 4, 9), quantities=_SPREADING)
     sizes = {n: min(2000, 400_000_000 // n) for n in (100, 10_000, 1_000_000)}
     drawn = {n: simulate(scene.replace(n_asperities=n, n_surfaces=m)) for n, m in sizes.items()}

@@ -92,7 +92,7 @@ class Compared:
             found["independent"] = self.scene.replace(interaction=None)
         if self.graded:
             found["homogeneous"] = self.scene.replace(grading=Homogeneous())
-        if not self.hertz:
+        if type(self.scene.law) is not Hertz:
             found["homogeneous, Hertz"] = self.scene.replace(grading=Homogeneous(), law=Hertz())
         return found
 
@@ -108,11 +108,6 @@ class Compared:
     def graded(self) -> bool:
         """Whether a modulus depends on the height."""
         return self.swept or not isinstance(self.scene.grading, Homogeneous)
-
-    @property
-    def hertz(self) -> bool:
-        """Whether its law of contact is Hertz's."""
-        return type(self.scene.law) is Hertz
 
     @property
     def reference(self) -> str:
@@ -177,14 +172,9 @@ class Compared:
             scene = scene.replace(sampler="tail", keep="sums")
         return tuple(heights(scene, k) for k in range(min(self.most_listed, scene.n_surfaces, room)))
 
-    @property
-    def caption(self) -> str:
-        """In words."""
-        return self.caption_of(self.scene.n_surfaces)
-
-    def caption_of(self, surfaces: int) -> str:
-        """Describe the scene, and what is drawn of so many surfaces; of none the scene alone."""
-        said = []
+    def caption(self, surfaces: int | None = None) -> str:
+        """Describe the scene, and what is drawn of so many surfaces (default: all); of none, it alone."""
+        surfaces, said = self.scene.n_surfaces if surfaces is None else surfaces, []
         if not self.swept:
             heard = ", interacting (d/σ is effective)" if self.scene.interaction is not None else ""
             law = short(law_text(self.scene.heights))

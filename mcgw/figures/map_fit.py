@@ -28,17 +28,7 @@ _TIMES = 12.0  # from the shortest cutoff to the longest
 
 
 def fit_figure(fit: Fit, raw: Topography, ready: Prepared) -> FigureData:
-    """Show a fit.
-
-    Parameters
-    ----------
-    fit : Fit
-        Fit of the map.
-    raw : Topography
-        The map as it was read.
-    ready : Prepared
-        The prepared map.
-    """
+    """Show the fit of a map, as it was read and as it was prepared."""
     missing = f", {raw.missing} points missing" if raw.missing else ""
     panels = (
         _map_panel(f"a  as read{missing}", raw, None),

@@ -33,16 +33,6 @@ def draw(data: FigureData) -> Figure:
 
     Under a panel with Monte-Carlo points are their distances from theory in standard errors: five decades,
     or a scale of ten to one, hide what matters.
-
-    Parameters
-    ----------
-    data : FigureData
-        Its numbers.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        With title and caption.
     """
     narrow = sum(not panel.wide for panel in data.panels)
     columns = 2 if narrow == 4 else min(narrow, _MOST_COLUMNS)
@@ -105,19 +95,17 @@ def _known(panel: Panel) -> list[tuple[int, Series, Points]]:
 
 def draw_panel(axis: Any, panel: Panel) -> None:
     """Draw lines and the points on them."""
-    positive = [float(y[y > 0].min()) for y in (x.theory for x in panel.series) if np.any(y > 0)]
-    logarithmic = panel.scales[1] == "log" and bool(positive)  # a log axis cannot show 0 alone
-    yscale = panel.scales[1] if positive or not panel.series else "linear"
+    rises = any(np.any(x.theory > 0) for x in panel.series)
+    logarithmic = panel.scales[1] == "log" and rises  # a log axis cannot show 0 alone
+    yscale = panel.scales[1] if rises or not panel.series else "linear"
     axis.set(xlabel=panel.xlabel, ylabel=panel.ylabel, xscale=panel.scales[0], yscale=yscale)
     if panel.level is not None:
         axis.axhline(panel.level, color=LEVEL, lw=0.8, zorder=1)
     for k, series in enumerate(panel.series):
         _draw_series(axis, series, k, logarithmic)
-    means = [points.mean for *_, points in _known(panel)]
-    if logarithmic and any(np.any(mean > 0) and np.any(mean == 0) for mean in means):
-        axis.set_ylim(bottom=_UNSEEN * min(mean[mean > 0].min() for mean in means if np.any(mean > 0)))
-    elif logarithmic:
-        axis.set_ylim(bottom=0.6 * min(positive))
+    means = np.concatenate([np.empty(0), *(points.mean for *_, points in _known(panel))])
+    if logarithmic and np.any(means == 0) and np.any(means > 0):
+        axis.set_ylim(bottom=_UNSEEN * means[means > 0].min())
     axis.set_title(panel.title, loc="left")
     panel.paint(axis)
 

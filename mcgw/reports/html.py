@@ -1,23 +1,47 @@
-"""Report of an ensemble: one HTML page without network or scripts."""
+"""Report of an ensemble: one HTML page without network or scripts, its figures inside as SVG."""
 
+import io
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from functools import partial
 from typing import Any
 
+import matplotlib as mpl
+import numpy as np
+
+from analytic import quantity_of
+from analytic.arrays import Array
+from mcgw.ensemble.at_load import answers_at, pressures_of, quantities_at
 from mcgw.ensemble.ensemble import Ensemble, how_many
-from mcgw.figures.style import grading_label
+from mcgw.ensemble.intervals import laws_are_quick
+from mcgw.ensemble.solution import solutions
+from mcgw.ensemble.solved import Solution
+from mcgw.figures.against_theory import quantity_panel, spread
+from mcgw.figures.data import SEPARATION, FigureData, Panel, Series
+from mcgw.figures.panels import draw
+from mcgw.figures.style import SEEN, STYLE, grading_label
 from mcgw.formats.numbers import typeset
-from mcgw.formats.table import Column, Table
+from mcgw.formats.table import Column, Table, evenly
 from mcgw.machine.progress import told
 from mcgw.machine.terminal import one_line, plain_text
-from mcgw.reports.report_figures import comparison_pictures, pressure_pictures, solved_pressures
 from mcgw.reports.solved_loads import answer_table, by_load
 from mcgw.scene.cautions import cautions
 from mcgw.scene.law_cautions import other_laws
 from mcgw.scene.scene import Scene
-from mcgw.statistics.comparison import compare
+from mcgw.statistics.comparison import Comparison, compare
 
 _PROVENANCE = ("digest", "seed", "sampler", "date", "versions", "commit", "cpu")
+_FEW_HEIGHTS, _FEWEST = 3e6, 20  # drawn at once for all pressures of a page, where they are drawn
+_PRESSURES = 7  # of the table and of the curves, at most
+_ROUND = (1.0, 2.0, 5.0)
+_FINE = 49  # points of a curve
+_PER_AREA = (  # name, factor from SI, title, unit
+    ("area", 100, "Real contact area", "%"),
+    ("stiffness", 1e-12, "Normal stiffness", "MPa/µm"),
+    ("contact_conductance", 1, "Contact conductance", ""),
+    ("conductance", 1, "Contact conductance times ρ", "1/m"),
+)
+_OF_JOINT = {"gap_conductance": "Gap conductance", "joint_conductance": "Joint conductance"}
 _LIST = re.compile(r"\[\n([^\]]*)\]")  # of the scene as TOML, each shown on one line
 
 
@@ -26,75 +50,64 @@ def report_html(
 ) -> str:
     """Make the page of an ensemble from it and the attributes of its file: scene, digest, versions, ...
 
-    Answers are at some pressures, Pa; by default at round ones that its separations span.
+    Answers are at some pressures, Pa; by default at round ones that its separations span. The template
+    extends ``page.html.j2``, which sets its look on screens and in print; every text is escaped.
     """
+    from jinja2 import Environment, PackageLoader, StrictUndefined  # only pages need it
+
     scene = ensemble.scene
+    page = Environment(
+        loader=PackageLoader("mcgw.reports", "."), autoescape=True, undefined=StrictUndefined,
+        trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True,
+    )  # fmt: skip
+    page.filters["typeset"] = typeset
     with told(None, "steps") as tell:
         tell(0, 3)
         comparison = compare(ensemble)
         tell(1, 3)
-        at_loads = solved_pressures(scene, pressures)
-        at_pressure = pressure_pictures(at_loads)
+        solved = solved_pressures(scene, pressures)
+        at_pressure = drawn(pressure_panels(solved))
         tell(2, 3)
-        figures = comparison_pictures(comparison)
-        tables = list(comparison.tables().values())
+        figures = drawn(comparison_panels(comparison))
         tell(3, 3)
-    return rendered(
-        "report.html.j2",
+    text = _LIST.sub(lambda found: f"[{' '.join(found[1].split()).rstrip(',')}]", attributes["scene"])
+    return page.get_template("report.html.j2").render(
         title=one_line(scene.title) or "Ensemble of rough surfaces",
-        words=opening_words(ensemble),
-        verdict=comparison.verdict,
+        words=_opening_words(ensemble),
+        comparison=comparison,
         at_pressure=at_pressure,
-        by_pressure=by_load(scene, at_loads) if at_loads else None,
-        solved=at_loads[len(at_loads) // 2] if at_loads else None,
-        answer_table=answer_table,
+        by_pressure=by_load(scene, solved) if solved else None,
+        solved=solved[len(solved) // 2] if solved else None,
+        answers=answer_table(solved[len(solved) // 2]) if solved else None,
         figures=figures,
-        tables=[table.rows() for table in tables],
-        facts=surface_facts(ensemble),
-        laws=laws_table(scene),
+        facts=_surface_facts(scene),
+        laws=_laws_table(scene),
         against=scene.validity(),
         cautions=cautions(scene),
         elastic_law=scene.law.elastic,
         provenance=[(key, str(({"seed": scene.seed} | attributes)[key])) for key in _PROVENANCE],
-        scene=plain_text(
-            _LIST.sub(lambda found: f"[{' '.join(found[1].split()).rstrip(',')}]", attributes["scene"])
-        ),
+        scene=plain_text(text),
     )
 
 
-def rendered(template: str, **values: Any) -> str:
-    """Render a template of this folder; every text is escaped.
-
-    The page extends ``page.html.j2``, which sets its look on screens and in print.
-    """
-    from jinja2 import Environment, PackageLoader, StrictUndefined  # only pages need it
-
-    environment = Environment(
-        loader=PackageLoader("mcgw.reports", "."), autoescape=True, undefined=StrictUndefined,
-        trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True,
-    )  # fmt: skip
-    environment.filters["typeset"] = typeset
-    return environment.get_template(template).render(**values)
-
-
-def opening_words(ensemble: Ensemble) -> str:
+def _opening_words(ensemble: Ensemble) -> str:
     """Describe what was drawn, in two sentences."""
-    scene = ensemble.scene
+    scene, shown = ensemble.scene, how_many(ensemble)
     count = "" if scene.count == "fixed" else " on average (a Poisson number)"
     separations = f"{len(scene.separations)} separation{'s' * (len(scene.separations) > 1)}"
     return (
         f"{ensemble.n_surfaces} rough surfaces of {scene.n_asperities:g} asperities{count}, "
         f"{grading_label(scene.grading)}, each pressed on a plane at {separations} from d/σ = "
         f"{min(scene.separations):g} to {max(scene.separations):g}."
-        + (f" Tables and figures are {how_many(ensemble)}." if how_many(ensemble) else "")
+        + (f" Tables and figures are {shown}." if shown else "")
     )
 
 
-def surface_facts(ensemble: Ensemble) -> list[tuple[str, str]]:
+def _surface_facts(scene: Scene) -> list[tuple[str, str]]:
     """Tell what the scene is, and its parameters in units of sigma."""
-    scene, x = ensemble.scene, ensemble.scene.surface
-    area, radius = x.nominal_area / x.sigma**2, x.radius / x.sigma
-    overlap, contacts = x.eta * x.radius * x.sigma, float(scene.theory.mean("contacts", scene.lowest))
+    x = scene.surface
+    area, radius, overlap = x.nominal_area / x.sigma**2, x.radius / x.sigma, x.eta * x.radius * x.sigma
+    contacts = float(scene.theory.mean("contacts", scene.lowest))
     return [
         *scene.sheet().facts,
         ("reduced", f"R/σ = {radius:.4g}, ηRσ = {overlap:.4g}, Aₙ/σ² = {area:.4g}"),
@@ -102,17 +115,113 @@ def surface_facts(ensemble: Ensemble) -> list[tuple[str, str]]:
     ]
 
 
-def laws_table(scene: Scene) -> Table | None:
+def _laws_table(scene: Scene) -> Table | None:
     """Other contact laws beside that of a scene, at the same material; None if nothing yields."""
-    others = other_laws(scene)
-    if others is None:
+    if (others := other_laws(scene)) is None:
         return None
-    names = [f"{scene.law.name} (this one)", *others.load]
     words = (
         f"Means at d/σ = {others.separation:g} by theory, over those of this report, for the same critical "
         f"penetration of {others.critical:.4g} σ. The choice between elastic-plastic laws changes the load "
         f"by up to {others.worth:.0%}."
     )
-    load, area = ([1.0, *(each[name] for name in others.load)] for each in (others.load, others.area))
-    numbers = (Column(name, x, unit="1", form=".4g") for name, x in (("load", load), ("area", area)))
-    return Table((Column("law", names, "contact law"), *numbers), words)
+    names = Column("law", [f"{scene.law.name} (this one)", *others.load], "contact law")
+    load, area = ([1.0, *ratios.values()] for ratios in (others.load, others.area))
+    return Table((names, Column("load", load, form=".4g"), Column("area", area, form=".4g")), words)
+
+
+def drawn(panels: Iterable[tuple[str, Panel]]) -> dict[str, str]:
+    """Draw panels: SVG elements by what they show."""
+    return {label: svg_of(panel, label) for label, panel in panels}
+
+
+def comparison_panels(comparison: Comparison) -> Iterator[tuple[str, Panel]]:
+    """Show each quantity with its theory, and how far surfaces spread."""
+    ensemble = comparison.ensemble
+    for name in ensemble.scene.answers:
+        yield quantity_of(name).long_name, quantity_panel(comparison, name)
+    if ensemble.n_surfaces > 1:
+        yield "std over mean against separation", spread_panel(ensemble)
+
+
+def solved_pressures(scene: Scene, pressures: Sequence[float] | None = None) -> list[Solution]:
+    """Answers at pressures, Pa; by default at round ones that the scene's separations span, if any are."""
+    if "load" not in scene.quantities:
+        return []
+    try:
+        low, high = pressures_of(scene, 2).tolist()
+        asked = round_pressures(low, high, _PRESSURES) if pressures is None else pressures
+        if not laws_are_quick(scene):  # specimens are drawn, their contacts one by one
+            most = int(_FEW_HEIGHTS / float(scene.theory.mean("contacts", scene.lowest)))
+            scene = scene.replace(n_surfaces=min(scene.n_surfaces, max(most, _FEWEST)))
+        return solutions(scene, "load", [scene.surface.nominal_area * pressure for pressure in asked])
+    except ValueError:
+        if pressures is None:
+            return []
+        raise
+
+
+def round_pressures(low: float, high: float, most: int) -> list[float]:
+    """At most so many pressures 1, 2 and 5 times a power of ten between two; these if there is none."""
+    powers = range(int(np.floor(np.log10(low))), int(np.ceil(np.log10(high))) + 1)
+    found = [float(f"{x:g}e{k}") for k in powers for x in _ROUND if low <= float(f"{x:g}e{k}") <= high]
+    return [found[k] for k in evenly(len(found), most)] if found else [low, high]
+
+
+def svg_of(panel: Panel, label: str) -> str:
+    """Draw a panel as an SVG element that takes the width it is given; its ids begin with the label."""
+    buffer, figure = io.StringIO(), draw(FigureData("", "", (panel,)))
+    with mpl.rc_context(STYLE | {"svg.hashsalt": label}):
+        figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})
+    text = buffer.getvalue()
+    text = re.sub(r"<metadata>.*?</metadata>", "", text[text.index("<svg") :], flags=re.DOTALL)
+    head, rest = text.split(">", 1)
+    head = re.sub(r' (width|height)="[^"]*"', "", head)
+    mark = re.sub(r"\W+", "-", label)
+    rest = re.sub(r'(id="|href="#|url\(#)', rf"\g<1>{mark}-", rest)
+    return f"{head}>{rest}"
+
+
+def spread_panel(ensemble: Ensemble) -> Panel:
+    """Show how far surfaces spread."""
+    scene, line = ensemble.scene, np.sort(ensemble.separations)
+    series = tuple(spread(name, scene, name, line, ensemble) for name in scene.quantities)
+    return Panel("Spread over surfaces", SEPARATION, "std / mean", series, ("linear", "log"))
+
+
+def pressure_panels(solved: Sequence[Solution]) -> Iterator[tuple[str, Panel]]:
+    """Show what holds at rising pressures, MPa: means over specimens, on those of an infinite surface."""
+    if not solved:
+        return
+    scene, area = solved[0].scene, solved[0].scene.surface.nominal_area
+    alone, h = scene.alone, [each.theory["separation"] for each in solved]
+    h = np.linspace(max(h), min(h), _FINE)
+    sums = {name: np.asarray(alone.mean(name, h)) for name in quantities_at(scene)}
+    line = answers_at(scene, {"separation": h, **sums})
+    pressure, x = np.array([each.amount for each in solved]) / area / 1e6, sums["load"] / area / 1e6
+    ends = f"from {x[0]:.3g} to {x[-1]:.3g} MPa"
+    for name, factor, title, label in _asked(scene):
+        mean, std = factor * np.array([(each.value[name], each.std[name]) for each in solved]).T
+        series = Series("infinite surface", x, factor * np.asarray(line[name]))
+        scales = ("log", "linear" if name == "separation" else "log")
+        dots = partial(_draw_specimens, pressure, mean, std)
+        panel = Panel(title, "nominal pressure P/Aₙ (MPa)", label, (series,), scales, paint=dots)
+        yield f"{title} against nominal pressure {ends}", panel
+
+
+def _draw_specimens(pressure: Array, mean: Array, std: Array, axis: Any) -> None:
+    axis.errorbar(pressure, mean, std, **SEEN, fmt="o", label="specimens: mean, std")
+
+
+def _asked(scene: Scene) -> Iterator[tuple[str, float, str, str]]:
+    """Name, factor from SI, title and label of the answers to the scene's quantities."""
+    area = scene.surface.nominal_area
+    held = {"contact_conductance" if name == "conductance_si" else name for name in scene.quantities}
+    conducted = scene.quantity("contact_conductance").unit.replace("^2", "²")
+    yield "separation", 1.0, "Load: pressure at a separation", "separation d/σ"
+    for name, factor, title, unit in _PER_AREA:
+        if name in held and not (name == "conductance" and "contact_conductance" in held):
+            per = 1.0 if name == "contact_conductance" else area
+            symbol = quantity_of("conductance_si" if name == "contact_conductance" else name).symbol
+            yield name, factor / per, title, f"{symbol}/Aₙ ({unit or conducted})"
+    for name in filter(_OF_JOINT.__contains__, scene.of_joint):
+        yield name, 1.0, _OF_JOINT[name], f"{quantity_of(name).symbol} ({conducted})"

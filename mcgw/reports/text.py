@@ -11,12 +11,11 @@ from mcgw.formats.law_text import law_text
 from mcgw.formats.table import SEPARATION, Column, Table, stacked
 from mcgw.machine.terminal import listed, one_line
 from mcgw.scene.in_words import accuracy_facts, contact_facts
-from mcgw.statistics.comparison import Comparison
+from mcgw.statistics.comparison import Comparison, SweepComparison
 from mcgw.store.run_plan import Plan
 from mcgw.sweeps.axes import Axes
 
 if TYPE_CHECKING:
-    from mcgw.statistics.comparison import SweepComparison
     from mcgw.sweeps.sweep import Sweep
 
 _KEPT = "statistics alone: mean, covariance, skewness, quantiles, extremes"
@@ -53,17 +52,11 @@ def summary(ensemble: Ensemble, attributes: dict[str, Any], full: bool = True) -
 
 def _means(ensemble: Ensemble) -> Table:
     """Means of the first quantities, to the digits that their standard errors allow."""
-    columns = [
-        Column(
-            x,
-            ensemble.mean(x),
-            x.replace("_", " "),
-            ensemble.scene.quantity(x).unit,
-            error=ensemble.stderr(x),
-        )
-        for x in ensemble.scene.answers[:_COLUMNS]
-    ]
-    return Table((Column("separation", ensemble.separations, SEPARATION, form="g"), *columns)).rows()
+    columns = [Column("separation", ensemble.separations, SEPARATION, form="g")]
+    for x in ensemble.scene.answers[:_COLUMNS]:
+        unit, error = ensemble.scene.quantity(x).unit, ensemble.stderr(x)
+        columns.append(Column(x, ensemble.mean(x), x.replace("_", " "), unit, error=error))
+    return Table(tuple(columns)).rows()
 
 
 def _origin(attributes: dict[str, Any]) -> list[tuple[str, str]]:
@@ -89,16 +82,13 @@ def ratios_in_words(sweep: "Sweep") -> list[str]:
     last, first = sweep.axes.text(points[-1]), sweep.axes.text(points[0])
     lines = []
     for name, pairs in sweep.ratios().items():
-        pair = pairs[-1]
-        found = (
-            f"{pair.ratio[k]:.5g} ({pair.ratio_low[k]:.5g} to {pair.ratio_high[k]:.5g}) at d/sigma = {h[k]:g}"
-            for k in ends
-        )
+        ratio, low, high = pairs[-1].ratio, pairs[-1].ratio_low, pairs[-1].ratio_high
+        found = (f"{ratio[k]:.5g} ({low[k]:.5g} to {high[k]:.5g}) at d/sigma = {h[k]:g}" for k in ends)
         lines.append(f"{quantity_of(name).long_name}, {last} over {first}: {', '.join(found)}")
     return lines
 
 
-def comparison_summary(comparison: "Comparison | SweepComparison", *, whole: bool) -> tuple[str, list[str]]:
+def comparison_summary(comparison: Comparison | SweepComparison, *, whole: bool) -> tuple[str, list[str]]:
     """Return the table, whole or its worst rows, as text; and the verdict."""
     lines = [comparison.verdict.line]
     if not isinstance(comparison, Comparison):

@@ -15,7 +15,7 @@ from mcgw.formats.table import SEPARATION, Column, Shown, Table, joined, stacked
 from mcgw.machine.progress import Progress, told
 from mcgw.machine.terminal import plotted, quantity_and_axes
 from mcgw.scene.kinds import check_object
-from mcgw.statistics.verdict import Check, Tested, tested, together, verdict
+from mcgw.statistics.verdict import Check, Tested, laws_of_values, tested, together, verdict
 from mcgw.sweeps.axes import label
 
 if TYPE_CHECKING:
@@ -227,8 +227,8 @@ def compare(
     Raises
     ------
     ValueError
-        If `laws` is set but the distribution of single values is not known (see `laws_of_values`), or they
-        are not kept.
+        If `laws` is set but single values are not kept, or their distribution is not known (see
+        `mcgw.statistics.verdict`).
 
     Examples
     --------
@@ -252,8 +252,6 @@ def compare(
     check_object("compare", result, Ensemble)
     some, found, curves = shown(result), verdict(result), {}
     if laws:
-        from mcgw.statistics.laws_of_values import laws_of_values  # imports the exact laws
-
         found = together([found, laws_of_values(result)])
     theory, h = some.scene.theory, some.scene.separations
     for name in some.scene.answers:

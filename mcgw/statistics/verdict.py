@@ -1,4 +1,4 @@
-"""Test whether means follow theory, all at once, for an ensemble or a point of a sweep.
+"""Test whether means follow theory, all at once, and whether values of single surfaces do.
 
 The theory for the test has a bound on radii that hardly any ensemble reaches.
 
@@ -14,12 +14,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import chdtrc
 
-from analytic import Fluctuations, Model, RandomCurvature, quantity_of
+from analytic import Fluctuations, MeasuredHeights, Model, RandomCurvature, quantity_of
 from analytic.arrays import Array, Marks
 from analytic.curvature import MEAN_CURVATURE
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.half_space import asperities_alone
 from mcgw.formats.table import SEPARATION, Column, Table, evenly
+from mcgw.scene.promises import promise_of
 from mcgw.scene.scene import Scene
 
 FALSE_ALARM = 1e-3
@@ -27,6 +28,8 @@ _MOST_SEPARATIONS = 48
 _SKEW, _KURTOSIS = 0.1, 0.1  # allowed departure from a Gaussian of a combination of means
 _INDEPENDENT = 1e-9  # least variance of a combination, above rounding errors
 _SELDOM = 1e-4  # expected summits flatter than the bound, per ensemble
+_LAWS, _FEW = 8, 3  # laws of values per quantity, at most; few where one takes 60 ms instead of 10
+_PLACES = 1000  # values at which shares and probabilities are compared, of more surfaces some of theirs
 _FLAT = 1e-3  # curvature down to which the share of flatter summits goes as its fourth power
 
 
@@ -205,3 +208,56 @@ def bounded_theory(scene: Scene, surfaces: int) -> Model:
     flatter = float(law.cdf(_FLAT, max(scene.lowest, scene.least))) * max(scene.touching, 1.0) * surfaces
     flattest = _FLAT * min((_SELDOM / flatter) ** 0.25, 1.0)
     return replace(theory, curvature=RandomCurvature(law.alpha, MEAN_CURVATURE / flattest))
+
+
+def laws_of_values(ensemble: Ensemble) -> Check:
+    """Test all surfaces against the exact laws of their quantities, all at once."""
+    found = distances(ensemble)
+    distance, name, h = max(found)
+    p = 2 * len(found) * float(np.exp(-2 * ensemble.n_surfaces * distance**2))
+    where = f"the distribution of {name} at d/sigma = {h:g}"
+    seen = f"{where} differs by {distance:.3g}, the most of {len(found)}"
+    return Check("distributions of values", seen, min(p, 1.0))
+
+
+def distances(ensemble: Ensemble) -> list[tuple[float, str, float]]:
+    """Largest difference of the share of the surfaces up to a value and its probability, and of what law.
+
+    Of each quantity at eight separations at most.
+
+    Raises
+    ------
+    ValueError
+        Where values are not kept, are those of listed summits (laws with a step for each of them) or of
+        radii of their own under a law that yields, or come from a sampler that spends some of the law.
+    """
+    scene, one_radius = ensemble.scene, ensemble.scene.summits is None
+    if (
+        scene.keep == "statistics"
+        or isinstance(scene.heights, MeasuredHeights)
+        or not promise_of(ensemble.sampler).one_by_one
+        or not (scene.hertzian or one_radius)
+    ):
+        raise ValueError(
+            "laws = True: needs kept values of surfaces, from an exact sampler; not "
+            "for listed summits, nor for individual radii with a law other than Hertz's"
+        )
+    h, m = np.unique(scene.separations), ensemble.n_surfaces
+    chosen = h[evenly(len(h), _LAWS if scene.hertzian and one_radius else _FEW)].tolist()
+    found = []
+    for name in scene.quantities:
+        which = [scene.separations.index(x) for x in chosen]
+        values = np.sort(ensemble.sums.read(name, 0, m)[:, which].astype(np.float64), axis=0)
+        found += [
+            (_farthest(scene, name, *pair), name, pair[0]) for pair in zip(chosen, values.T, strict=True)
+        ]
+    return found
+
+
+def _farthest(scene: Scene, name: str, h: float, values: Array) -> float:
+    """Largest distance of shares from their probabilities; both as they jump at values that repeat."""
+    x, law = values[evenly(values.size, _PLACES)], scene.theory.distribution(name, h)
+    below, upto = (np.searchsorted(values, x, side) / values.size for side in ("left", "right"))
+    most = law.cdf(x)
+    least = law.cdf(x - 1) if quantity_of(name).counts else most - np.where(x == 0, law.atom, 0.0)
+    return float(max((upto - most).max(), (least - below).max(), 0.0))

@@ -290,7 +290,7 @@ def test_places_left_out(call, material):
 
 def test_compare_says_which_law_is_the_least_likely_and_ends_with_1(call, monkeypatch):
     found = [(0.2, "area", 0.0), (0.5, "load", 1.5)]
-    monkeypatch.setattr("mcgw.statistics.laws_of_values.distances", lambda ensemble: found)
+    monkeypatch.setattr("mcgw.statistics.verdict.distances", lambda ensemble: found)
     said = call("compare @e.h5 -o p.png --laws")
     assert said.returncode == 1
     assert "the distribution of load at d/sigma = 1.5 differs by 0.5, the most of 2" in said.stdout

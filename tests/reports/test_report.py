@@ -30,8 +30,8 @@ ATTRIBUTES = {
 def _not_drawn():
     """Figures are made, and neither laid out nor drawn; drawn pages are in the tier `site`."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("mcgw.reports.report_figures.svg_of", lambda panel, label: "<svg></svg>")
-        patch.setattr("mcgw.reports.report_figures._PRESSURES", 1)
+        patch.setattr("mcgw.reports.html.svg_of", lambda panel, label: "<svg></svg>")
+        patch.setattr("mcgw.reports.html._PRESSURES", 1)
         yield
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from oracles import exact
-from oracles.inside import pressure_curves, round_pressures, solved_pressures, spread, spread_panel
+from oracles.inside import pressure_panels, round_pressures, solved_pressures, spread, spread_panel
 
 import analytic
 import mcgw
@@ -61,7 +61,8 @@ def test_curves_are_values_and_scatter_of_solve_on_theory(scene):
         ("Normal stiffness", "K/Aₙ (MPa/µm)", "stiffness", 1e-12 / area),
         ("Contact conductance", "C/Aₙ (S/m²)", "conductance_si", 1 / area),
     ]
-    for panel, (title, label, name, factor) in zip(pressure_curves(solved), expected, strict=True):
+    for (about, panel), (title, label, name, factor) in zip(pressure_panels(solved), expected, strict=True):
+        assert about.startswith(f"{title} against nominal pressure from ")
         (series,) = panel.series
         assert (panel.title, panel.ylabel) == (title, label)
         pressure = [1e-6 * x.amount / area for x in solved]
@@ -86,13 +87,13 @@ FLAT = ({"separations": 1.0}, {"separations": [8.0, 9.0]}, {"quantities": ["cont
 @pytest.mark.parametrize("changes", [*FLAT, {"n_surfaces": 1}])
 def test_there_are_no_curves_where_no_pressures_are_spanned(scene, changes):
     assert solved_pressures(scene.replace(**changes)) == []
-    assert pressure_curves([]) == []
+    assert list(pressure_panels([])) == []
 
 
 @pytest.mark.slow
 def test_curves_rise_with_the_pressure_where_adhesion_lets_a_load_fall_below_0(scene):
     attracting = scene.replace(law=mcgw.DerjaguinMullerToporov(pull_off=0.3))
-    curves = pressure_curves(solved_pressures(attracting))
+    curves = [panel for _, panel in pressure_panels(solved_pressures(attracting))]
     assert len(curves) >= 4
     for panel in curves:
         _, mean, std = panel.paint.args

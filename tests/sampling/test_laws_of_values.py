@@ -10,7 +10,7 @@ from scipy import stats
 import analytic
 import mcgw
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.statistics.laws_of_values import distances, laws_of_values
+from mcgw.statistics.verdict import distances, laws_of_values
 
 
 def holding(scene, **values):

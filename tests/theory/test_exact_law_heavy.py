@@ -12,7 +12,7 @@ from scipy import stats
 import analytic
 import mcgw
 from analytic.distribution import of_model
-from mcgw.statistics.laws_of_values import laws_of_values
+from mcgw.statistics.verdict import laws_of_values
 
 SHARES = np.append(1 - np.geomspace(1e-6, 0.5, 60), np.geomspace(0.5, 1e-6, 60)[1:])
 YIELDS = analytic.KogutEtsion(critical=0.05)
