@@ -21,10 +21,10 @@ _SURFACES = 2000  # of the paper's figures
 _SPREADING = ("load", "area", "stiffness")
 _BESIDE = 1.5  # sigma above the highest separation that a grading is shown
 _AT, _AT_LOAD = np.arange(5.0), np.array([1.0, 2.0, 3.0])  # separations of the paper's ratios
-_STIFFER = np.linspace(1, 2, 81), (1.2, 1.4, 1.6, 1.8, 2.0)  # gammas of lines and of points
-_SOFTER = np.linspace(0.2, 1, 81), (0.2, 0.4, 0.6, 0.8)
-_MODULI = np.linspace(0.2, 2, 73), (0.2, 0.4, 0.6, 0.8, 1.2, 1.4, 1.6, 1.8, 2.0)
-_LOADED = np.linspace(0.2, 2, 46), (0.2, 0.4, 0.6, 0.8, 1.2, 1.5, 2.0)
+_STIFFER = np.linspace(1, 2, 81), np.array([1.2, 1.4, 1.6, 1.8, 2.0])  # gammas of lines and of points
+_SOFTER = np.linspace(0.2, 1, 81), np.array([0.2, 0.4, 0.6, 0.8])
+_MODULI = np.linspace(0.2, 2, 73), np.array([0.2, 0.4, 0.6, 0.8, 1.2, 1.4, 1.6, 1.8, 2.0])
+_LOADED = np.linspace(0.2, 2, 46), np.array([0.2, 0.4, 0.6, 0.8, 1.2, 1.5, 2.0])
 _PSI = r"$\psi/\psi_\mathrm{hom}$"
 _TITLES = {
     "number": "b  mean over the contacts",

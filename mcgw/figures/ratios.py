@@ -1,6 +1,5 @@
 """Means over separation and load, their ratios at equal separation and equal load, and mean moduli."""
 
-from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
@@ -101,20 +100,21 @@ def over_separation(f: Compared, label: str, what: Measure, key: str = "", n_sur
     known = (f.theory(key, "contacts", f.h) * n >= ENOUGH) & (n > 1)
     with suppress(SceneError):
         if known.any():
-            columns = (*what.drawn(f, key, f.h), what.exact(f, key, f.h))
-            points = Points(f.h[known], *(x[known] for x in columns))
+            (mean, stderr), exact = what.drawn(f, key, f.h), what.exact(f, key, f.h)
+            points = Points(f.h[known], mean[known], stderr[known], exact[known])
     return Series(label, f.line, what.exact(f, key, f.line), points)
 
 
 def over_gamma(
-    f: Compared, title: str, ylabel: str, what: Measure, line: Array, gammas: Sequence[float], at: Array
+    f: Compared, title: str, ylabel: str, what: Measure, line: Array, gammas: Array, at: Array
 ) -> Panel:
     """Draw a ratio to the reference over gamma: a line for each separation."""
-    x = np.asarray(gammas)
-    mean, stderr = np.array([what.drawn(f, float(gamma), at) for gamma in x]).transpose(1, 2, 0)
-    curves, truth = (np.array([what.exact(f, float(gamma), at) for gamma in some]).T for some in (line, x))
+    mean, stderr = np.array([what.drawn(f, float(gamma), at) for gamma in gammas]).transpose(1, 2, 0)
+    curves, truth = (
+        np.array([what.exact(f, float(gamma), at) for gamma in some]).T for some in (line, gammas)
+    )
     series = tuple(
-        Series(f"d/σ = {h:g}", line, curves[k], Points(x, mean[k], stderr[k], truth[k]))
+        Series(f"d/σ = {h:g}", line, curves[k], Points(gammas, mean[k], stderr[k], truth[k]))
         for k, h in enumerate(at)
     )
     return Panel(title, GAMMA, ylabel, series, level=1.0)

@@ -193,19 +193,19 @@ def pressure_panels(solved: Sequence[Solution]) -> Iterator[tuple[str, Panel]]:
     if not solved:
         return
     scene, area = solved[0].scene, solved[0].scene.surface.nominal_area
-    alone, h = scene.alone, [each.theory["separation"] for each in solved]
-    h = np.linspace(max(h), min(h), _FINE)
+    alone, ends = scene.alone, [each.theory["separation"] for each in solved]
+    h = np.linspace(max(ends), min(ends), _FINE)
     sums = {name: np.asarray(alone.mean(name, h)) for name in quantities_at(scene)}
     line = answers_at(scene, {"separation": h, **sums})
     pressure, x = np.array([each.amount for each in solved]) / area / 1e6, sums["load"] / area / 1e6
-    ends = f"from {x[0]:.3g} to {x[-1]:.3g} MPa"
+    span = f"from {x[0]:.3g} to {x[-1]:.3g} MPa"
     for name, factor, title, label in _asked(scene):
         mean, std = factor * np.array([(each.value[name], each.std[name]) for each in solved]).T
         series = Series("infinite surface", x, factor * np.asarray(line[name]))
         scales = ("log", "linear" if name == "separation" else "log")
         dots = partial(_draw_specimens, pressure, mean, std)
         panel = Panel(title, "nominal pressure P/Aₙ (MPa)", label, (series,), scales, paint=dots)
-        yield f"{title} against nominal pressure {ends}", panel
+        yield f"{title} against nominal pressure {span}", panel
 
 
 def _draw_specimens(pressure: Array, mean: Array, std: Array, axis: Any) -> None:
