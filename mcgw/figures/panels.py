@@ -95,17 +95,18 @@ def _known(panel: Panel) -> list[tuple[int, Series, Points]]:
 
 def draw_panel(axis: Any, panel: Panel) -> None:
     """Draw lines and the points on them."""
-    rises = any(np.any(x.theory > 0) for x in panel.series)
-    logarithmic = panel.scales[1] == "log" and rises  # a log axis cannot show 0 alone
-    yscale = panel.scales[1] if rises or not panel.series else "linear"
+    lines = np.concatenate([np.empty(0), *(x.theory for x in panel.series)])
+    logarithmic = panel.scales[1] == "log" and bool(np.any(lines > 0))  # a log axis cannot show 0 alone
+    yscale = panel.scales[1] if logarithmic or not panel.series else "linear"
     axis.set(xlabel=panel.xlabel, ylabel=panel.ylabel, xscale=panel.scales[0], yscale=yscale)
     if panel.level is not None:
         axis.axhline(panel.level, color=LEVEL, lw=0.8, zorder=1)
     for k, series in enumerate(panel.series):
         _draw_series(axis, series, k, logarithmic)
-    means = np.concatenate([np.empty(0), *(points.mean for *_, points in _known(panel))])
-    if logarithmic and np.any(means == 0) and np.any(means > 0):
-        axis.set_ylim(bottom=_UNSEEN * means[means > 0].min())
+    if logarithmic:
+        means = np.concatenate([np.empty(0), *(points.mean for *_, points in _known(panel))])
+        touches = np.any(means == 0) and np.any(means > 0)
+        axis.set_ylim(bottom=_UNSEEN * means[means > 0].min() if touches else 0.6 * lines[lines > 0].min())
     axis.set_title(panel.title, loc="left")
     panel.paint(axis)
 
