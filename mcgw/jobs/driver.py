@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, wait
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from mcgw.errors import RunError, StoppedError
@@ -89,17 +89,14 @@ def drive(
     """
     todo, lost, running = deque(blocks), set[_Block](), dict[Future[Any], _Block]()
     in_hand = getattr(executor, "in_hand", in_hand)
-
-    def submit(block: _Block) -> None:
-        try:
-            running[executor.submit(outcome, task, *arguments(block))] = block
-        except Exception as error:
-            raise RunError(f"the executor takes no more work ({_in_words(error)}); {_RESUME}") from None
-
     try:
         while (todo or running) and signals.number is None:
             while todo and len(running) < (1 if todo[0] in lost else in_hand):
-                submit(todo.popleft())
+                block = todo.popleft()
+                try:
+                    running[executor.submit(outcome, task, *arguments(block))] = block
+                except Exception as refusal:
+                    raise _no_more(_in_words(refusal)) from None
             wait(running, timeout=0.2, return_when=FIRST_COMPLETED)
             future = next((one for one in running if one.done()), None)
             if future is None:
@@ -108,7 +105,7 @@ def drive(
             try:
                 result, error = future.result()
             except CancelledError:  # by nobody here: not a worker, but its executor is lost
-                raise RunError(f"the executor takes no more work (it dropped {block}); {_RESUME}") from None
+                raise _no_more(f"it dropped {block}") from None
             except Exception as failure:
                 if block in lost:
                     told = f"{block} were lost twice by the executor ({_in_words(failure)}); {_RESUME}"
@@ -128,6 +125,10 @@ def drive(
     finally:
         for future in running:
             future.cancel()
+
+
+def _no_more(why: str) -> RunError:
+    return RunError(f"the executor takes no more work ({why}); {_RESUME}")
 
 
 def _in_words(error: BaseException) -> str:
@@ -151,7 +152,7 @@ def part_of(shard: str) -> tuple[int, int]:
 
 @dataclass(frozen=True)
 class By:
-    """Who draws blocks, and who hears of progress.
+    """Who draws blocks.
 
     Parameters
     ----------
@@ -159,33 +160,30 @@ class By:
         Default: threads of this process; one writes a block while others draw the next.
     threads : int, optional
         Of a block.
-    progress : callable
-        Told what is done.
-    signals : Signals
-        What has come.
+    part : (int, int), optional
+        A share of all blocks: its number, from 1, and of how many.
     """
 
     executor: Executor | None
     threads: int | None
-    progress: Callable[[Any], Any]
-    signals: Signals = field(default_factory=Signals)
+    part: tuple[int, int] | None
 
+    @classmethod
+    def of(cls, executor: Any, threads: int | None, shard: str | None) -> "By":
+        """Check the arguments of a call.
 
-def check_how(executor: Any, threads: int | None, shard: str | None) -> tuple[int, int] | None:
-    """Check the arguments of a call; return the share that it asks for.
-
-    Raises
-    ------
-    ValueError
-        If one of them is wrong, or a share is given to an executor.
-    """
-    if threads is not None and threads < 1:
-        raise ValueError(f"threads = {threads}: give a whole number >= 1")
-    if shard is not None and executor is not None:
-        raise ValueError(f"shard = {shard!r}: a share uses threads; leave executor out")
-    if not (executor is None or isinstance(executor, Executor)):
-        raise ValueError(
-            f"executor = {executor!r}: give a concurrent.futures.Executor, such as ProcessPoolExecutor(8) or "
-            "client.get_executor() of a dask client"
-        )
-    return None if shard is None else part_of(shard)
+        Raises
+        ------
+        ValueError
+            If one of them is wrong, or a share is given to an executor.
+        """
+        if threads is not None and threads < 1:
+            raise ValueError(f"threads = {threads}: give a whole number >= 1")
+        if shard is not None and executor is not None:
+            raise ValueError(f"shard = {shard!r}: a share uses threads; leave executor out")
+        if not (executor is None or isinstance(executor, Executor)):
+            raise ValueError(
+                f"executor = {executor!r}: give a concurrent.futures.Executor, such as "
+                "ProcessPoolExecutor(8) or client.get_executor() of a dask client"
+            )
+        return cls(executor, threads, None if shard is None else part_of(shard))

@@ -1,36 +1,66 @@
-"""From a job to its file: its blocks are drawn, by whoever draws them, and merged."""
+"""From a plan to its file: its blocks are drawn, by whoever draws them, and merged."""
 
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
+from functools import lru_cache
 from itertools import groupby
 from operator import itemgetter
 from pathlib import Path
 from threading import Event
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from mcgw.ensemble.labelled import Labelled, values_of
+from mcgw.ensemble.labelled import Labelled
 from mcgw.ensemble.results import Tables
 from mcgw.errors import RunError, StoppedError, StoreError, in_one_line
-from mcgw.formats.files import state_of
+from mcgw.formats.files import State, state_of
 from mcgw.formats.gate import open_h5
 from mcgw.jobs.driver import By, Signals, drive, heed_signals
-from mcgw.jobs.worker import commit_block, draw_block
-from mcgw.store.blocks import Span
-from mcgw.store.ensembles import described, open_results, statistics_in
+from mcgw.store.blocks import Span, commit_shard
+from mcgw.store.ensembles import described, open_ensemble, open_results
 from mcgw.store.h5_reading import pieces_of
 from mcgw.store.h5_writing import Rows
+from mcgw.store.identity import difference
 from mcgw.store.lock import locked, parts_of
-from mcgw.store.place import check_room, drop_leftovers, finished, put, tidy
-from mcgw.store.run_plan import RECORD, Plan, remove_run, remove_unfinished
+from mcgw.store.place import check_room, drop_leftovers, finished, put, remove_run, remove_unfinished, tidy
+from mcgw.store.run_plan import RECORD, Plan
 
 if TYPE_CHECKING:
     from mcgw.ensemble.ensemble import Ensemble
     from mcgw.sweeps.sweep import Sweep
 
+Done = Callable[[float], Any]  # is told of the work that is done
 
-def make(plan: Plan, by: By, part: tuple[int, int] | None = None) -> int:
+
+def commit_block(folder: str, first: int, n: int) -> None:
+    """Draw a block of a run into its folder, unless a valid shard is there: what a worker does."""
+    _drawn(_prepared(folder, state_of(Path(folder) / RECORD)), Span(first, n), 1)()
+
+
+@lru_cache(maxsize=1)
+def _prepared(folder: str, _state: State | None) -> Plan:
+    """Return the plan of a folder, kept while its record is the same: making it takes as long as a block."""
+    there = Plan.open(Path(folder))
+    here = there.again()
+    if here.identity != there.identity:
+        why = difference(there.question, here.question)
+        raise RunError(f"{folder}: this worker cannot draw for that run: {why}")
+    return here
+
+
+def _drawn(plan: Plan, span: Span, threads: int | None, *go_on: Done) -> Callable[[], object]:
+    """Draw a block, unless it is there; what this returns writes it, to be done while the next is drawn."""
+    path = plan.shards_folder / span.file_name
+    held = plan.shard(path)
+    if held and held.span == span:
+        return lambda: None
+    started = perf_counter()
+    tables = plan.draw(span, threads, *go_on)
+    seconds = perf_counter() - started
+    return lambda: commit_shard(path, plan.identity, span, tables, seconds)
+
+
+def make(plan: Plan, by: By, progress: Done) -> int:
     """Draw what is missing of a file and make it; or of its blocks a share, for `mcgw.merge` to make it of.
 
     Returns
@@ -47,105 +77,102 @@ def make(plan: Plan, by: By, part: tuple[int, int] | None = None) -> int:
     """
     check_room(plan)
     if finished(plan) < plan.total:
-        if part:
+        if by.part:
             tidy(plan.path)
-        with heed_signals() as signals, locked(plan.folder, shared=part is not None) as new:
-            by = replace(by, signals=signals)
-            if not (part or new):
+        with heed_signals() as signals, locked(plan.folder, shared=by.part is not None) as new:
+            if not (by.part or new):
                 drop_leftovers(plan.path)
             if finished(plan) < plan.total:  # no other process was faster
+                draw = _at_once if _small(plan, by) else _in_blocks
                 try:
-                    if part:
-                        return _share(plan, by, part)
-                    rows, begun = plan.reducers[0].rows, (plan.folder / RECORD).exists()
-                    if by.executor is None and not plan.axes and plan.total <= rows > 1 and not begun:
-                        _at_once(plan, by)
-                    else:
-                        _in_blocks(plan, by)
+                    return draw(plan, by, progress, signals)
                 except OSError as error:
                     raise RunError(
                         f"{in_one_line(error)}; finished blocks are kept in {plan.folder}; once this is "
                         "fixed, the same command resumes"
                     ) from None
-                return 0
     tidy(plan.path)
-    by.progress(sum(one.n_surfaces * one.work for one in plan.reducers))
+    progress(sum(one.n_surfaces * one.work for one in plan.reducers))
     return 0
 
 
-def _at_once(plan: Plan, by: By) -> None:
+def _small(plan: Plan, by: By) -> bool:
+    """Whether a file is one block of surfaces, of which nothing is there."""
+    alone = by.executor is None and by.part is None and not plan.axes
+    return alone and plan.total <= plan.reducers[0].rows > 1 and not (plan.folder / RECORD).exists()
+
+
+def _at_once(plan: Plan, by: By, progress: Done, signals: Signals) -> int:
     """All surfaces of a scene in this thread, and their file in one step. Only with the lock."""
-    started = perf_counter()
 
     def go_on(done: float) -> bool:
-        by.signals.check("nothing was saved, because the run is one block; the same command starts it again")
-        by.progress(done)
+        signals.check("nothing was saved, because the run is one block; the same command starts it again")
+        progress(done)
         return True
 
-    by.progress(0)
+    started = perf_counter()
+    progress(0)
     tables = plan.draw(Span(0, plan.total), by.threads, go_on)
     before = state_of(plan.path)
     finished(plan)  # else the file is another's
-    found = plan.dataset([plan.reducers[0].held([tables])])
-    put(plan, plan.contents(found.labelled(), perf_counter() - started, found._drawn()), before)
+    put(plan, plan.contents([plan.reducers[0].held([tables])], perf_counter() - started), before)
+    return 0
 
 
-def _in_blocks(plan: Plan, by: By) -> None:
-    """Draw missing shards, then make the file. Needs the lock."""
+def _in_blocks(plan: Plan, by: By, progress: Done, signals: Signals) -> int:
+    """Draw missing shards, every so many-th of a share; then make the file, but of a share. With the lock."""
     plan.begin()
-    shards, done = plan.shards(aside=True), finished(plan)
+    shards, done = plan.shards(), finished(plan)
     n = max((shard.span.stop for shard in shards), default=0)
-    if n > plan.total:  # blocks beyond those requested are kept
+    if by.part is None and n > plan.total:  # blocks beyond those requested are kept
         raise StoreError(
             f"{plan.folder}: holds surfaces up to number {n} already, more than ensemble.n_surfaces = "
             f"{plan.total}; ask for as many or more, or choose another -o"
         )
-    _draw_missing(plan, plan.missing(done, shards), by)
-    make_file(plan, by.signals)
-
-
-def _share(plan: Plan, by: By, part: tuple[int, int]) -> int:
-    """Draw a share of the missing blocks; return how many surfaces are still missing. Needs the lock."""
-    plan.begin(alone=False)
-    done = finished(plan)
-    _draw_missing(plan, plan.missing(done, plan.shards()), by, part)
-    return sum(span.n for span in plan.missing(done, plan.shards()))
-
-
-def _draw_missing(plan: Plan, spans: list[Span], by: By, part: tuple[int, int] | None = None) -> None:
-    """Draw and store every missing block, or a job's share of them: every so many-th block."""
-    left = sum(span.n for span in spans)
-    done = sum(map(plan.work, plan.blocks.missing(spans)))
-    if part:
-        number, of = part
+    spans = plan.missing(done, shards)
+    left, worked = sum(span.n for span in spans), plan.work(plan.blocks.missing(spans))
+    if by.part:
+        number, of = by.part
         spans = [span for span in spans if plan.blocks.number(span) % of == number - 1]
-    folder, ended = str(plan.folder.resolve()), Event()
 
     def note(span: Span, write: Callable[[], object] | None) -> None:
-        nonlocal done, left
+        nonlocal left, worked
         if write:  # in this thread, while the other one draws the next block
             write()
-        done, left = done + plan.work(span), left - span.n
-        by.progress(done)
+        left, worked = left - span.n, worked + plan.work([span])
+        progress(worked)
+
+    progress(worked)
+    if by.executor:
+        folder = str(plan.folder.resolve())
+        drive(by.executor, spans, commit_block, lambda span: (folder, span.first, span.n), note, signals)
+    else:
+        _by_a_thread(plan, spans, by.threads, note, signals)
+    signals.check(
+        f"{plan.total - left} of {plan.total} surfaces are kept in {plan.folder}; the same command resumes"
+    )
+    if by.part:
+        return sum(span.n for span in plan.missing(done, plan.shards()))
+    make_file(plan, signals)
+    return 0
+
+
+def _by_a_thread(
+    plan: Plan, spans: list[Span], threads: int | None, note: Callable[[Span, Any], None], signals: Signals
+) -> None:
+    """Draw blocks, one after the other, in a thread that ends within a block when this one ends."""
+    ended = Event()
 
     def go_on(_: float) -> bool:
-        if ended.is_set():  # a long block does not keep an interrupted run alive
+        if ended.is_set():
             raise StoppedError("the run has ended")
         return True
 
-    by.progress(done)
-    if by.executor:
-        drive(by.executor, spans, commit_block, lambda s: (folder, s.first, s.n), note, by.signals)
-    else:
-        with ThreadPoolExecutor(1, thread_name_prefix="mcgw-blocks") as thread:
-            try:
-                how = by.threads, go_on
-                drive(thread, spans, draw_block, lambda s: (folder, s.first, s.n, *how), note, by.signals, 2)
-            finally:
-                ended.set()
-    by.signals.check(
-        f"{plan.total - left} of {plan.total} surfaces are kept in {plan.folder}; the same command resumes"
-    )
+    with ThreadPoolExecutor(1, thread_name_prefix="mcgw-blocks") as thread:
+        try:
+            drive(thread, spans, _drawn, lambda span: (plan, span, threads, go_on), note, signals, in_hand=2)
+        finally:
+            ended.set()
 
 
 def merge(path: str | Path) -> "Ensemble | Sweep":
@@ -191,7 +218,7 @@ def merge(path: str | Path) -> "Ensemble | Sweep":
     with heed_signals() as signals, locked(parts_of(path)):
         remove_unfinished(parts_of(path))
         plan = Plan.open(parts_of(path))
-        gaps = plan.missing(finished(plan), plan.shards(aside=True))
+        gaps = plan.missing(finished(plan), plan.shards())
         if gaps:
             raise RunError(
                 f"{path}: {sum(span.n for span in gaps)} of {plan.total} surfaces are missing, "
@@ -226,42 +253,33 @@ def _merged(plan: Plan, check: Callable[[], None]) -> Labelled:
     StoreError
         If a shard is missing or damaged.
     """
-    held, parts, seconds = _before(plan)
+    held, seconds = 0, 0.0
+    if not plan.axes and plan.path.exists():
+        attributes, there = described(plan.path)
+        held, seconds = plan.blocks.kept(there.n_surfaces), attributes["wall_seconds"]
     shards = [shard for shard in plan.shards(numbers=False) if shard.span.first >= held]
     ends = [held, *(shard.span.stop for shard in shards)]
     if ends != [*(shard.span.first for shard in shards), plan.total]:
         raise StoreError(f"{plan.folder}: blocks are missing")
     seconds += sum(shard.seconds for shard in shards)
 
-    def blocks() -> Iterator[tuple[int, Tables]]:
-        yield from ((0, part) for part in parts)
+    def pieces() -> Iterator[tuple[int, Tables]]:
+        """Values of surfaces, or statistics of blocks; each with the group that they are of."""
+        if held and plan.whole:
+            from mcgw.ensemble.pooled import tables_of  # for those scenes alone
+
+            sums: Any = open_ensemble(plan.path).sums
+            yield from (
+                (0, tables_of([part])) for part in sums.parts if part.n % plan.blocks.groups[0][1] == 0
+            )
+        elif held:
+            with open_h5(plan.path) as file:
+                yield from ((0, tables) for tables in pieces_of(file, plan.scene.tables))
         for shard in shards:
             check()
             yield plan.blocks.group(shard.span)[0], shard.tables()
 
-    def pieces() -> Iterator[Tables]:
-        if held:
-            with open_h5(plan.path) as file:
-                yield from pieces_of(file, plan.scene.tables)
-        yield from (shard.tables() for shard in shards)
-
     if not plan.whole:
-        rows = Rows(plan.total, pieces)
-        return plan.contents(values_of(plan.scene, plan.total, lambda _: rows), seconds)
-    groups = zip(plan.reducers, groupby(blocks(), itemgetter(0)), strict=True)
-    found = plan.dataset([one.held(tables for _, tables in some) for one, (_, some) in groups])
-    return plan.contents(found.labelled(), seconds, found._drawn())
-
-
-def _before(plan: Plan) -> tuple[int, list[Tables], float]:
-    """Of the file that is there: surfaces not drawn again, blocks of statistics, seconds that all took."""
-    if plan.axes or not plan.path.exists():
-        return 0, [], 0.0
-    attributes, scene = described(plan.path)
-    if not plan.whole:
-        return scene.n_surfaces, [], attributes["wall_seconds"]
-    from mcgw.ensemble.pooled import tables_of  # for those scenes alone
-
-    ((_, size),) = plan.blocks.groups
-    parts = [part for part in statistics_in(plan.path, scene).parts if part.n % size == 0]
-    return sum(part.n for part in parts), [tables_of([part]) for part in parts], attributes["wall_seconds"]
+        return plan.contents([Rows(plan.total, (tables for _, tables in pieces()))], seconds)
+    groups = zip(plan.reducers, groupby(pieces(), itemgetter(0)), strict=True)
+    return plan.contents([one.held(tables for _, tables in some) for one, (_, some) in groups], seconds)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, overload
 from mcgw.ensemble.drawing import drawn, use_threads
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import checkpoints, forecast, without_rule
-from mcgw.jobs.driver import By, check_how
+from mcgw.jobs.driver import By
 from mcgw.jobs.making import make
 from mcgw.machine.progress import Progress, told
 from mcgw.scene.kinds import check_object
@@ -102,19 +102,20 @@ def run(
     if shard is not None and scene.max_seconds is not None:
         raise ValueError("ensemble.max_seconds: the jobs of a run end at different times; give n_surfaces")
     total = scene.n_surfaces if scene.rel_err is None else forecast(scene).surfaces
-    part = check_how(executor, threads, shard)
+    by = By.of(executor, threads, shard)
     with told(progress, "surfaces") as tell:
-        by = By(executor, threads, lambda done: tell(done, total))
         scene = as_recorded(scene, path)
-        if part:
-            return make(Plan.of(without_rule(scene) if scene.rel_err is not None else scene, path), by, part)
+        if by.part and scene.rel_err is not None:
+            scene = without_rule(scene)
         started = monotonic()
         ruled = scene.rel_err is not None or scene.max_seconds is not None
         for stage in _stages(scene, path) if ruled else (scene,):
             plan = Plan.of(stage, path)
-            make(plan, by)
+            left = make(plan, by, lambda done: tell(done, total))
             if scene.max_seconds is not None and monotonic() - started > scene.max_seconds:
                 break
+    if by.part:
+        return left
     if plan.whole:
         return open_ensemble(path)
     return Ensemble(plan.scene, plan.sampler, FileResults(((path, plan.total),)))
@@ -259,8 +260,8 @@ def sweep(
             return asked.answered(drawn(asked.groups, note))
     path = Path(path)
     scene = as_recorded(scene, path)
-    part = check_how(executor, threads, shard)
+    by = By.of(executor, threads, shard)
     with told(progress, "surfaces") as tell:
         plan = Plan.of_sweep(Points.of(scene, axes), path)
-        left = make(plan, By(executor, threads, weighted(plan.reducers, tell)), part)
-    return left if part else open_sweep(path)
+        left = make(plan, by, weighted(plan.reducers, tell))
+    return left if by.part else open_sweep(path)

@@ -128,8 +128,6 @@ class Shard:
         StoreError
             If it was damaged or removed since.
         """
-        if not self.path.exists():
-            raise StoreError(f"{self.path}: no longer exists; its run has ended, open the file again")
         return read_tables(self.path)
 
 

@@ -4,6 +4,7 @@ The sums of an ensemble where they lie: in its file, or in the blocks of a run i
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,18 +12,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.results import Results
+from mcgw.ensemble.labelled import GROUP
+from mcgw.ensemble.results import Held, Results
 from mcgw.errors import StoreError
+from mcgw.formats.named_files import open_regular
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from
-from mcgw.store.h5_reading import drawn_tables, examine, look, read_rows
+from mcgw.store.h5_reading import look, read_rows, read_tables
 from mcgw.store.h5_writing import RUN_TYPE
 from mcgw.store.lock import parts_of
 from mcgw.store.run_plan import RECORD, Plan
 
 if TYPE_CHECKING:
-    from mcgw.ensemble.summarised import Summarised
     from mcgw.sweeps.sweep import Sweep
+
+LARGE = 2**30  # bytes of a file, from which on its numbers are compared with their checksums on request alone
 
 
 def open_ensemble(path: str | Path) -> Ensemble:
@@ -53,40 +57,37 @@ def open_ensemble(path: str | Path) -> Ensemble:
     ...     bool((mcgw.open_ensemble(f"{folder}/demo.h5").load == e.load).all())
     True
     """
-    path = Path(path)
-    if not path.exists() and parts_of(path).is_dir():
-        plan = _begun(path)
-        shards = tuple(plan.shards())
-        if not shards:
-            raise StoreError(f"{path}: no block of its run is finished yet")
-        if not plan.whole:
-            files = tuple((shard.path, shard.span.n) for shard in shards)
-            return Ensemble(plan.scene, plan.sampler, FileResults(files))
-        blocks = (shard.tables() for shard in shards)  # each read when its turn comes
-        return Ensemble(plan.scene, plan.sampler, plan.reducers[0].held(blocks))
-    attributes, scene = described(path)
-    if "axes" in attributes:
+    found = open_results(Path(path))
+    if not isinstance(found, Ensemble):
         raise StoreError(f"{path}: holds a sweep; mcgw.open_sweep opens it, mcgw compare and show take it")
-    values = FileResults(((path, scene.n_surfaces),))
-    held = statistics_in(path, scene) if scene.keep == "statistics" else values
-    return Ensemble(scene, str(attributes["sampler"]), held)
+    return found
 
 
 def described(path: Path) -> tuple[dict[str, Any], Scene]:
-    """Attributes and scene of a file that is as it was written; of a sweep what its points come from."""
-    attributes = {**examine(path), "complete": True}
+    """Attributes and scene of a file, looked at once until it changes; of a sweep what its points come from.
+
+    The numbers of a file of a gibibyte or more are not compared with their checksums.
+
+    Raises
+    ------
+    StoreError
+        If it is not such a file, damaged, or of another format.
+    """
+    with open(open_regular(path), "rb") as file:
+        head, size = file.read(512), file.seek(0, 2)
+    if path.suffix == ".toml" and b"\0" not in head:
+        raise StoreError(f"{path}: is not a file of results; make one from a scene with mcgw run {path}")
+    status = path.stat()
+    return _described(path.resolve(), path, (status.st_ino, size, status.st_mtime_ns))
+
+
+@lru_cache(maxsize=32)
+def _described(_: Path, shown: Path, state: tuple[int, int, int]) -> tuple[dict[str, Any], Scene]:
+    attributes = {**look(shown, numbers=state[1] < LARGE), "complete": True}
     try:
         return attributes, scene_from(str(attributes["scene"]))
     except ValueError as error:
-        raise StoreError(f"{path}: its scene cannot be read: {str(error).splitlines()[0]}") from None
-
-
-def statistics_in(path: Path, scene: Scene) -> "Summarised":
-    """Return what a file of statistics holds."""
-    from mcgw.ensemble.pooled import pooled_from  # for those scenes alone
-    from mcgw.ensemble.summarised import Summarised
-
-    return Summarised(scene, pooled_from(drawn_tables(path)))
+        raise StoreError(f"{shown}: its scene cannot be read: {str(error).splitlines()[0]}") from None
 
 
 def open_sweep(path: str | Path) -> "Sweep":
@@ -117,18 +118,38 @@ def open_sweep(path: str | Path) -> "Sweep":
     ...     mcgw.open_sweep(f"{folder}/gamma.h5").shape
     (2,)
     """
-    from mcgw.sweeps.points import sweep_of  # imports the samplers
-
-    path = Path(path)
-    said = read_attributes(path)
-    if "axes" not in said:
+    found = open_results(Path(path))
+    if isinstance(found, Ensemble):
         raise StoreError(f"{path}: not the file of a sweep; mcgw.open_ensemble opens it")
-    return sweep_of(said["scene"], said["axes"], drawn_tables(path))
+    return found
 
 
 def open_results(path: Path) -> "Ensemble | Sweep":
     """Open an ensemble, a sweep or a run in progress; errors as of `open_ensemble` and `open_sweep`."""
-    return (open_sweep if "axes" in read_attributes(path) else open_ensemble)(path)
+    held: Held
+    if not path.exists() and parts_of(path).is_dir():
+        plan = _begun(path)
+        shards = plan.shards()
+        if not shards:
+            raise StoreError(f"{path}: no block of its run is finished yet")
+        if plan.whole:
+            held = plan.reducers[0].held(shard.tables() for shard in shards)  # each read when its turn comes
+        else:
+            held = FileResults(tuple((shard.path, shard.span.n) for shard in shards))
+        return Ensemble(plan.scene, plan.sampler, held)
+    attributes, scene = described(path)
+    if "axes" in attributes:
+        from mcgw.sweeps.points import sweep_of  # imports the samplers
+
+        return sweep_of(attributes["scene"], attributes["axes"], read_tables(path, GROUP))
+    if scene.keep == "statistics":
+        from mcgw.ensemble.pooled import pooled_from  # for those scenes alone
+        from mcgw.ensemble.summarised import Summarised
+
+        held = Summarised(scene, pooled_from(read_tables(path, GROUP)))
+    else:
+        held = FileResults(((path, scene.n_surfaces),))
+    return Ensemble(scene, str(attributes["sampler"]), held)
 
 
 def read_attributes(path: Path) -> dict[str, Any]:

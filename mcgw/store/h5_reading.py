@@ -8,7 +8,6 @@ whoever wrote the file.
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -20,10 +19,8 @@ from mcgw.ensemble.labelled import GROUP
 from mcgw.ensemble.results import Tables
 from mcgw.errors import StoreError
 from mcgw.formats.gate import open_h5
-from mcgw.formats.named_files import open_regular
 from mcgw.store.h5_writing import FILETYPE, FORMAT, MOST_TEXT, checksum, sha_of
 
-LARGE = 2**30  # bytes of a file, from which on its numbers are compared with their checksums on request alone
 _ATTRIBUTES = (  # that this program writes; another one may add its own, which are not looked at
     *("filetype", "format", "title", "scene", "axes", "seed", "sampler", "digest", "checksum", "date"),
     *("versions", "commit", "cpu", "accuracy_spent", "run", "draws", "wall_seconds", "first", "n"),
@@ -43,7 +40,7 @@ def look(path: Path, filetype: str = FILETYPE, *, numbers: bool = True) -> dict[
     StoreError
         If it is not there, or no plain file of numbers, of another format, or damaged.
     """
-    with _in_words(path), open_h5(path) as file:
+    with _opened(path) as file:
         names, attributes = table_names(file), attributes_in(file)
         _check_format(attributes, filetype)
         if checksum_of(file) != attributes.get("checksum"):
@@ -53,37 +50,21 @@ def look(path: Path, filetype: str = FILETYPE, *, numbers: bool = True) -> dict[
         return attributes
 
 
-def examine(path: Path) -> dict[str, Any]:
-    """As `look`, once until the file changes; the numbers of one of a gibibyte or more are not compared.
-
-    Raises
-    ------
-    StoreError
-        As of `look`.
-    """
-    with open(open_regular(path), "rb") as file:
-        head, size = file.read(512), file.seek(0, 2)
-    if path.suffix == ".toml" and b"\0" not in head:
-        raise StoreError(f"{path}: is not a file of results; make one from a scene with mcgw run {path}")
-    status = path.stat()
-    return _examined(path.resolve(), path, (status.st_ino, size, status.st_mtime_ns))
-
-
-@lru_cache(maxsize=32)
-def _examined(path: Path, shown: Path, state: tuple[int, int, int]) -> dict[str, Any]:  # noqa: ARG001
-    return look(shown, numbers=state[1] < LARGE)
-
-
-def read_tables(path: Path) -> Tables:
-    """All tables of a file, each compared with its checksum.
+def read_tables(path: Path, group: str = "") -> Tables:
+    """All tables of a file, or of its group, each compared with its checksum.
 
     Raises
     ------
     StoreError
         If the file is gone or damaged.
     """
-    with _in_words(path), open_h5(path) as file:
-        return {name: _whole(file[name]) for name in table_names(file)}
+    found: Tables = {}
+    with _opened(path) as file:
+        for name in table_names(file):
+            if name.startswith(group):
+                found[name.removeprefix(f"{group}/")] = values = np.asarray(file[name][()])
+                _compare(file[name], [values])
+    return found
 
 
 def read_rows(path: Path, name: str, start: int, stop: int) -> NDArray[Any]:
@@ -94,26 +75,8 @@ def read_rows(path: Path, name: str, start: int, stop: int) -> NDArray[Any]:
     StoreError
         If the file is gone or damaged.
     """
-    if not path.exists():
-        raise StoreError(f"{path}: no longer exists; its run has ended, open the file again")
-    try:
-        with open_h5(path) as file:
-            return np.asarray(file[name][start:stop])
-    except OSError:
-        raise StoreError(f"{path}: cannot be read; is it damaged? See mcgw show --verify") from None
-
-
-def drawn_tables(path: Path) -> Tables:
-    """Of a file that holds no surfaces, all that its statistics follow from, read and compared."""
-    with _in_words(path), open_h5(path) as file:
-        return {name: _whole(table) for name, table in file[GROUP].items()}
-
-
-def _whole(table: h5py.Dataset) -> NDArray[Any]:
-    """All numbers of a table, compared with its checksum."""
-    values = np.asarray(table[()])
-    _compare(table, [values])
-    return values
+    with _opened(path) as file:
+        return np.asarray(file[name][start:stop])
 
 
 def _compare(table: h5py.Dataset, pieces: Iterable[NDArray[Any]]) -> None:
@@ -149,10 +112,13 @@ def pieces_of(file: h5py.File, names: Sequence[str]) -> Iterator[Tables]:
 
 
 @contextmanager
-def _in_words(path: Path) -> Iterator[None]:
-    """Errors of HDF5 as one of the store, that names the file."""
+def _opened(path: Path) -> Iterator[h5py.File]:
+    """Open a file; errors of HDF5 are one of the store, that names the file."""
     try:
-        yield
+        if not path.exists():
+            raise StoreError("no longer exists; its run has ended, open the file again")
+        with open_h5(path) as file:
+            yield file
     except StoreError as error:
         text = str(error)
         raise StoreError(text if text.startswith(str(path)) else f"{path}: {text}") from None

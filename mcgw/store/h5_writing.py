@@ -45,7 +45,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mcgw.ensemble.labelled import Labelled
-from mcgw.ensemble.results import CHUNK_ROWS, Tables
+from mcgw.ensemble.results import CHUNK_ROWS, Results, Tables
 from mcgw.errors import StoreError
 
 FILETYPE, BLOCK_TYPE, RUN_TYPE, FORMAT = "mcgw-results", "mcgw-block", "mcgw-run", [4, 0]
@@ -57,24 +57,30 @@ PACKED: Any = {"compression": "gzip", "compression_opts": 1, "shuffle": True, "f
 _PLAIN: Any = {"fletcher32": True}
 
 
-@dataclass(frozen=True)
-class Rows:
-    """The values of tables that come in pieces: some rows of all of them at a time.
+@dataclass(frozen=True, eq=False)
+class Rows(Results):
+    """Values of surfaces on their way into a file: in pieces, some rows of all tables at a time, in order.
 
     Parameters
     ----------
     n : int
         How many rows all have together.
-    pieces : callable
-        Gives them in order, as an iterator.
+    pieces : iterator of Tables
+        Read once, by who writes the file.
     """
 
     n: int
-    pieces: Callable[[], Iterator[Tables]]
+    pieces: Iterator[Tables]
 
     def __len__(self) -> int:
         """Return the number of rows."""
         return self.n
+
+    rows = __len__
+
+    def read(self, name: str, start: int, stop: int | None) -> Any:  # noqa: ARG002
+        """Return these rows, which stand for any of the tables."""
+        return self
 
 
 class SteadyFile(FileIO):
@@ -149,7 +155,7 @@ def _fill(
 ) -> None:
     variables = {**contents.coordinates, **contents.variables}
     inside = {name: one.values for name, one in variables.items() if not isinstance(one.values, Rows)}
-    pieces = next((one.values.pieces() for one in variables.values() if isinstance(one.values, Rows)), ())
+    pieces = next((one.values.pieces for one in variables.values() if isinstance(one.values, Rows)), ())
     shas, filled = dict[str, Any](), dict.fromkeys(variables, 0)
     for tables in chain([inside], pieces):
         for name, piece in tables.items():

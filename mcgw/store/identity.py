@@ -10,16 +10,16 @@ What is needed to repeat a run, besides its scene: versions, commit, processor, 
 import hashlib
 import json
 import platform
+import re
 import subprocess
-import sys
 from collections.abc import Iterator
+from contextlib import suppress
 from datetime import UTC, datetime
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import tomli_w
 
 from mcgw.errors import StoreError
@@ -27,7 +27,7 @@ from mcgw.formats.named_files import loads
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_document, scene_from
 from mcgw.scene.section import shortened
-from mcgw.store.h5_writing import FILETYPE, FORMAT, MOST_TEXT
+from mcgw.store.h5_writing import MOST_TEXT
 
 Question = tuple[str, str, str]  # text of a scene, axes of a sweep or none, versions that draw
 _PACKAGES = ("mcgw", "numpy", "scipy", "numba", "h5py")
@@ -59,6 +59,12 @@ def identity_of(*words: str) -> str:
     return hashlib.sha256("\0".join(words).encode()).hexdigest()
 
 
+def another(where: Path, kind: str, there: Question, here: Question) -> StoreError:
+    """Return the error that a place holds something else."""
+    what = difference(there, here)
+    return StoreError(f"{where}: holds a different {kind}: {what}; choose another -o, or remove it")
+
+
 def difference(there: Question, here: Question) -> str:
     """Tell what keeps two runs, or two sweeps, from being one: scene, axes and what draws, of each."""
     before, now = _said(*there[:2]), _said(*here[:2])
@@ -73,11 +79,11 @@ def difference(there: Question, here: Question) -> str:
 
 def _said(scene: str, axes: str) -> dict[str, Any]:
     """Keys and values that decide the numbers: of a scene alone but for the number of surfaces."""
-    found = dict(_flat(loads(scene)))
-    if axes:
-        return {**found, "sweep": axes}
-    found.pop("ensemble.n_surfaces", None)
-    return {**found, "ensemble.n_asperities": scene_from(scene).n_asperities}
+    found = {"sweep": axes or None, **dict(_flat(loads(scene)))}
+    if not axes:
+        found.pop("ensemble.n_surfaces", None)
+        found["ensemble.n_asperities"] = scene_from(scene).n_asperities
+    return found
 
 
 def _flat(table: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
@@ -86,27 +92,6 @@ def _flat(table: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
             yield from _flat(value, f"{prefix}{key}.")
         else:
             yield prefix + key, value
-
-
-def attributes_of(scene: Scene, sampler: str, text: str, /, **about: Any) -> dict[str, Any]:
-    """Root attributes of a file, where a text describes the scene, and more of them."""
-    usual = {
-        "filetype": FILETYPE,
-        "format": FORMAT,
-        "title": scene.title,
-        "scene": text,
-        "seed": np.uint64(scene.seed),
-        "sampler": sampler,
-        "date": now(),
-        "versions": versions(),
-        "commit": commit(),
-        "cpu": processor(),
-    }
-    if scene.accuracy:
-        from mcgw.sampling.samplers import distance_of  # for those scenes alone
-
-        usual["accuracy_spent"] = distance_of(scene)  # how far from the exact laws it went
-    return {**usual, **about}
 
 
 @cache
@@ -139,14 +124,16 @@ def commit() -> str:
         return "unknown"
 
 
+def made_with() -> dict[str, str]:
+    """Return what is needed to repeat a run, besides its scene."""
+    return {"versions": versions(), "commit": commit(), "cpu": processor()}
+
+
 @cache
 def processor() -> str:
     """Name of the processor and number of its cores."""
-    info = Path("/proc/cpuinfo")
-    if sys.platform == "linux" and info.exists():
-        names = [
-            line.split(":", 1)[1].strip() for line in info.read_text().splitlines() if "model name" in line
-        ]
+    with suppress(OSError):
+        names = re.findall(r"^model name\s*: (.*)", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
         if names:
-            return f"{names[0]} ({len(names)} cores)"
+            return f"{names[0].strip()} ({len(names)} cores)"
     return platform.processor() or platform.machine()

@@ -14,13 +14,12 @@ from mcgw.machine.memory import gibibytes
 from mcgw.scene.fields import LeftOut
 from mcgw.scene.kinds import check_object
 from mcgw.scene.scene import Scene, storable
-from mcgw.scene.scene_file import scene_text
 from mcgw.store.ensembles import described, open_ensemble, verify
 from mcgw.store.h5_reading import look
 from mcgw.store.h5_writing import write
-from mcgw.store.identity import difference
+from mcgw.store.identity import another
 from mcgw.store.lock import locked, parts_of
-from mcgw.store.run_plan import RECORD, Plan, remove_run, remove_unfinished
+from mcgw.store.run_plan import RECORD, Plan
 
 
 def recorded_scene(path: Path) -> Scene | None:
@@ -85,23 +84,18 @@ def finished(plan: Plan) -> int:
     if not path.exists():
         return 0
     attributes, there = described(path)
-    same = attributes.get("run") == plan.identity
-    if plan.axes and same:
+    if attributes.get("run") != plan.identity:
+        axes, draws = str(attributes.get("axes", "")), str(attributes.get("draws", "another version"))
+        kind = "sweep" if axes else "ensemble"
+        raise another(path, kind, (str(attributes["scene"]), axes, draws), plan.question)
+    if plan.axes:
         return plan.total
-    if plan.axes or "axes" in attributes:
-        what = "something else than this sweep" if plan.axes else "a sweep"
-        raise StoreError(f"{path}: holds {what}; choose another -o, or remove it")
-    if not same:
-        before = scene_text(there), "", str(attributes.get("draws", "another version"))
-        what = difference(before, plan.question)
-        raise StoreError(f"{path}: holds a different ensemble: {what}; choose another -o, or remove it")
-    asked = plan.scene.n_surfaces
-    if there.n_surfaces > asked:
+    if there.n_surfaces > plan.total:
         raise StoreError(
-            f"{path}: holds {there.n_surfaces} surfaces already, more than ensemble.n_surfaces = {asked}; "
-            "ask for as many or more, or choose another -o"
+            f"{path}: holds {there.n_surfaces} surfaces already, more than ensemble.n_surfaces = "
+            f"{plan.total}; ask for as many or more, or choose another -o"
         )
-    if there.n_surfaces < asked:
+    if there.n_surfaces < plan.total:
         look(path)  # all of it: it is about to be copied
     return there.n_surfaces
 
@@ -186,7 +180,7 @@ def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> 
             )
         before, plan = state_of(path), Plan.of(storable(ensemble.scene), path, ensemble.sampler)
         finished(plan)
-        put(plan, plan.contents(ensemble.labelled(), wall_seconds, ensemble._drawn()), before)
+        put(plan, plan.contents([ensemble.sums], wall_seconds), before)
     return open_ensemble(path)
 
 
@@ -224,3 +218,16 @@ def _of_use(path: Path) -> bool:
     except StoreError:
         return True  # a person must look
     return any(int(shard.stem.removeprefix("block-")) >= held for shard in shards)
+
+
+def remove_unfinished(folder: Path) -> None:
+    """Remove the temporary files of a run. Only with the lock."""
+    for left in (*folder.glob(".*.tmp"), *folder.glob("shards/.*.tmp")):
+        left.unlink(missing_ok=True)
+
+
+def remove_run(folder: Path) -> None:
+    """Remove a run, readable or not; its lock stays, and with it the folder. Only with the lock."""
+    shutil.rmtree(folder / "shards", ignore_errors=True)  # a worker that lost its driver may add to it
+    remove_unfinished(folder)
+    (folder / RECORD).unlink(missing_ok=True)

@@ -12,13 +12,14 @@ not; its attributes are the identity of the run, the numbers of the surfaces, an
 of valid shards is the only record of progress.
 """
 
-import shutil
 from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from analytic.arrays import hold
 from mcgw.ensemble.ensemble import Ensemble
@@ -31,8 +32,8 @@ from mcgw.scene.scene_file import scene_from
 from mcgw.scene.section import SceneError
 from mcgw.store.blocks import Blocks, Shard, Span, open_shard, write_tables
 from mcgw.store.h5_reading import look
-from mcgw.store.h5_writing import FORMAT, RUN_TYPE
-from mcgw.store.identity import Question, attributes_of, difference, identity_of, now, versions, written
+from mcgw.store.h5_writing import FILETYPE, FORMAT, RUN_TYPE
+from mcgw.store.identity import Question, another, identity_of, made_with, now, versions, written
 from mcgw.store.lock import parts_of, refuse_link
 
 if TYPE_CHECKING:
@@ -79,20 +80,18 @@ class Plan:
         StoreError
             If the scene cannot be told by a file, or none can be there.
         """
-        check_output(path)
-        known: dict[str, Any] = {"scene": scene}
-        if not sampler:
-            from mcgw.ensemble.simulation import reducer_of  # imports the samplers
+        from mcgw.ensemble.simulation import reducer_of  # imports the samplers
 
-            known["reducers"] = (reducer_of(scene),)
-            sampler = known["reducers"][0].sampler.name
+        check_output(path)
+        reducer = reducer_of(scene)
+        sampler = sampler or reducer.sampler.name
         (text, key), draws = written(scene), versions(of_draws=True)
         plan = cls(path, text, "", sampler, identity_of(key, sampler, draws), draws)
-        hold(plan, of_all=f"{key} {scene.n_surfaces}", **known)
+        hold(plan, scene=scene, reducers=(reducer,), of_all=f"{key} {scene.n_surfaces}")
         return plan
 
     @classmethod
-    def of_sweep(cls, asked: "Points", path: Path) -> "Plan":
+    def of_sweep(cls, points: "Points", path: Path) -> "Plan":
         """Return that of a sweep.
 
         Raises
@@ -101,7 +100,7 @@ class Plan:
             If no file can be there.
         """
         check_output(path)
-        texts, draws = asked.texts(), versions(of_draws=True)
+        texts, draws = points.texts(), versions(of_draws=True)
         return cls(path, *texts, "", identity_of(*texts, draws), draws)
 
     @classmethod
@@ -115,13 +114,14 @@ class Plan:
         """
         refuse_link(folder)
         file, path = folder / RECORD, folder.with_name(folder.name.removesuffix(".parts"))  # of `parts_of`
+        if not file.is_file():
+            raise StoreError(f"{file}: there is none")
         try:
             said = look(file, RUN_TYPE)
-            plan = cls(path, *(str(said[key]) for key in ("scene", "axes", "sampler", "run", "draws")))
+            scene, *others = (str(said[key]) for key in ("scene", "sampler", "run", "draws"))
+            plan = cls(path, scene, str(said.get("axes", "")), *others)
             plan.scene  # noqa: B018 - that can be read
         except (StoreError, SceneError, KeyError, ValueError) as error:
-            if not file.is_file():
-                raise StoreError(f"{file}: there is none") from None
             what = str(error).splitlines()[0].removeprefix(f"{file}: ")
             raise StoreError(
                 f"{file}: {what}; the blocks beside it are kept: resume with mcgw run or mcgw sweep, with "
@@ -131,7 +131,7 @@ class Plan:
 
     def again(self) -> "Plan":
         """Return what this process makes of the same words, whoever wrote them."""
-        return Plan.of_sweep(self.asked, self.path) if self.axes else Plan.of(self.scene, self.path)
+        return Plan.of_sweep(self.points, self.path) if self.axes else Plan.of(self.scene, self.path)
 
     @cached_property
     def scene(self) -> Scene:
@@ -139,7 +139,7 @@ class Plan:
         return scene_from(self.text)
 
     @cached_property
-    def asked(self) -> "Points":
+    def points(self) -> "Points":
         """The points of a sweep."""
         from mcgw.sweeps.points import Points  # of which most runs are none
 
@@ -159,9 +159,7 @@ class Plan:
         SceneError
             With the mistakes of all points of a sweep.
         """
-        if not self.axes:
-            return self.again().reducers
-        return tuple(self.asked.groups)
+        return tuple(self.points.groups) if self.axes else self.again().reducers
 
     @cached_property
     def of_all(self) -> str:
@@ -183,9 +181,9 @@ class Plan:
         """Surfaces of all groups."""
         return sum(one.n_surfaces for one in self.reducers)
 
-    def work(self, span: Span) -> float:
-        """Return what some surfaces of one group take, in any unit."""
-        return span.n * self.reducers[self.blocks.group(span)[0]].work
+    def work(self, spans: Iterable[Span]) -> float:
+        """Return what some surfaces take, each span of one group, in any unit."""
+        return sum(span.n * self.reducers[self.blocks.group(span)[0]].work for span in spans)
 
     def draw(self, span: Span, threads: int | None, *go_on: "GoOn") -> Tables:
         """Return what is kept of some surfaces of one group; it does not depend on `threads`."""
@@ -195,15 +193,22 @@ class Plan:
         with use_threads(threads):
             return self.reducers[group].tables(first, first + span.n, *go_on)
 
-    def dataset(self, held: list[Any]) -> "Ensemble | Sweep":
-        """Return the ensemble or the sweep of what is held of each group."""
-        return self.asked.answered(held) if self.axes else Ensemble(self.scene, self.sampler, held[0])
+    def contents(self, held: list[Any], seconds: float) -> Labelled:
+        """Return those of the file, of what is held of each group, with how long it took."""
+        found: Ensemble | Sweep
+        found = self.points.answered(held) if self.axes else Ensemble(self.scene, self.sampler, *held)
+        about = {**self._about(FILETYPE), **made_with(), "title": self.scene.title, "wall_seconds": seconds}
+        about["seed"] = np.uint64(self.scene.seed)
+        if self.scene.accuracy:
+            from mcgw.sampling.samplers import distance_of  # for those scenes alone
 
-    def contents(self, held: Labelled, seconds: float, drawn: Tables | None = None) -> Labelled:
-        """Those of the file: what a dataset holds, what its statistics are made of, and how long it took."""
-        about = {"run": self.identity, "draws": self.drawn_with, "wall_seconds": seconds}
-        about |= {"axes": self.axes} if self.axes else {}
-        return held.in_file(drawn or {}, attributes_of(self.scene, self.sampler, self.text, **about))
+            about["accuracy_spent"] = distance_of(self.scene)  # how far from the exact laws it went
+        return found.labelled().in_file(found._drawn(), about)
+
+    def _about(self, filetype: str) -> dict[str, Any]:
+        about = {"filetype": filetype, "format": FORMAT, "scene": self.text, "sampler": self.sampler}
+        about |= {"run": self.identity, "draws": self.drawn_with, "date": now()}
+        return {**about, "axes": self.axes} if self.axes else about
 
     @property
     def folder(self) -> Path:
@@ -215,8 +220,8 @@ class Plan:
         """Where the shards lie."""
         return self.folder / "shards"
 
-    def begin(self, *, alone: bool = True) -> None:
-        """Begin, or go on in the folder that is there; record what is wanted, if not `alone` only more.
+    def begin(self) -> None:
+        """Begin, or go on in the folder that is there; if more is wanted than it records, that is recorded.
 
         Only with the lock.
 
@@ -237,62 +242,30 @@ class Plan:
                 raise
             return self._write(expected="anything")  # its blocks say that they are of this very run
         if old.identity != self.identity:
-            raise StoreError(
-                f"{self.folder}: holds a different {'sweep' if self.axes else 'run'}: "
-                f"{difference(old.question, self.question)}; choose another -o, or remove it"
-            )
-        wanted = old.text != self.text if alone else self.scene.n_surfaces > old.scene.n_surfaces
-        return self._write(expected="anything") if wanted else None
+            raise another(self.folder, "sweep" if self.axes else "run", old.question, self.question)
+        more = self.scene.n_surfaces > old.scene.n_surfaces
+        return self._write(expected="anything") if more else None
 
     def _write(self, *, expected: Expected) -> None:
-        about = {"filetype": RUN_TYPE, "format": FORMAT, "run": self.identity, "sampler": self.sampler}
-        about |= {"draws": self.drawn_with, "date": now(), "axes": self.axes, "scene": self.text}
-        write_tables(self.folder / RECORD, {}, about, expected)
+        write_tables(self.folder / RECORD, {}, self._about(RUN_TYPE), expected)
 
-    def shards(self, *, numbers: bool = True, aside: bool = False) -> list[Shard]:
-        """Return valid shards in order, each looked at; or its head alone, without the `numbers`.
-
-        `aside`: whatever else lies there is put aside. Only with the lock.
-        """
+    def shards(self, *, numbers: bool = True) -> list[Shard]:
+        """Return valid shards in order, each looked at; or its head alone, without the `numbers`."""
         if not self.shards_folder.is_dir():
             raise RunError(f"{self.folder}: is missing or incomplete; run the command again")
-        valid = []
-        for path in sorted(self.shards_folder.glob("block-*.h5")):
-            if shard := self._valid(path, numbers=numbers):
-                valid.append(shard)
-            elif aside:
-                path.rename(path.with_name(f"{path.name}.bad"))
-        return valid
+        looked = (self.shard(path, numbers=numbers) for path in sorted(self.shards_folder.glob("block-*.h5")))
+        return [shard for shard in looked if shard]
 
-    def _valid(self, path: Path, *, numbers: bool = True) -> Shard | None:
-        """Return the shard of a name, if it is whole, of this run and of use."""
+    def shard(self, path: Path, *, numbers: bool = True) -> Shard | None:
+        """Return the shard of a name, if it is there, whole, of this run and of use."""
         try:
             shard = None if path.is_symlink() else open_shard(path, self.identity, numbers=numbers)
         except StoreError:
             return None
         return shard if shard and (not self.whole or self.blocks.takes(shard.span)) else None
 
-    def held(self, span: Span) -> Shard | None:
-        """Return the valid shard of a block, if there is one."""
-        path = self.shards_folder / span.file_name
-        shard = self._valid(path) if path.is_file() else None
-        return shard if shard and shard.span == span else None
-
     def missing(self, done: int, shards: Iterable[Shard]) -> list[Span]:
         """Blocks that neither the file, of `done` surfaces, nor one of the shards holds."""
         done = self.blocks.kept(done)
         held = [*([Span(0, done)] if done else []), *(shard.span for shard in shards)]
         return self.blocks.missing(held)
-
-
-def remove_unfinished(folder: Path) -> None:
-    """Remove the temporary files of a run. Only with the lock."""
-    for left in (*folder.glob(".*.tmp"), *folder.glob("shards/.*.tmp")):
-        left.unlink(missing_ok=True)
-
-
-def remove_run(folder: Path) -> None:
-    """Remove a run, readable or not; its lock stays, and with it the folder. Only with the lock."""
-    shutil.rmtree(folder / "shards", ignore_errors=True)  # a worker that lost its driver may add to it
-    remove_unfinished(folder)
-    (folder / RECORD).unlink(missing_ok=True)

@@ -39,7 +39,7 @@ MODULES = {
     "mcgw.formats.units": "_FACTORS EXAMPLES METRES parse",
     "mcgw.jobs.driver": "drive heed_signals part_of Signals",
     "mcgw.jobs.executors": "dask_executor Jobs",
-    "mcgw.jobs.worker": "commit_block",
+    "mcgw.jobs.making": "commit_block",
     "mcgw.machine.memory": "check_memory memory_available",
     "mcgw.maps.bad_points": "filled recorded small_spike_heights spike_heights usual_bend",
     "mcgw.maps.envelope": "envelope hidden_summits",

@@ -14,7 +14,7 @@ import mcgw
 from mcgw.cli import main
 from mcgw.errors import RunError, StoreError
 from mcgw.jobs import making
-from mcgw.store import ensembles, h5_reading, place
+from mcgw.store import ensembles, place
 
 pytestmark = pytest.mark.usefixtures("small_blocks")
 
@@ -72,9 +72,9 @@ def test_a_damaged_file_is_not_extended_nor_sealed_anew(way, damage, file, large
     assert ensembles.verify(file)[0] == ""
     DAMAGES[damage](file)
     if damage == OF_LARGE:
-        monkeypatch.setattr(h5_reading, "LARGE", 0)
+        monkeypatch.setattr(ensembles, "LARGE", 0)
         assert ensembles.open_ensemble(file).n_surfaces == SURFACES
-        with pytest.raises(StoreError, match="cannot be read; is it damaged"):
+        with pytest.raises(StoreError, match="not an HDF5 file, or a damaged one"):
             ensembles.open_ensemble(file).values("load")
     before = file.read_bytes()
     with pytest.raises(StoreError):

@@ -111,14 +111,17 @@ def test_another_sweep_is_left_alone(tmp_path):
     mcgw.sweep(SCENE, OVER, path=a)
     mcgw.sweep(SCENE, OVER, path=b, shard="1/2")
     mcgw.save(mcgw.simulate(SCENE, n_surfaces=3), e)
-    other, another = {GAMMA: [1.0]}, r"holds something else than this sweep; choose"
+    other, another = {GAMMA: [1.0]}, r"holds a different (sweep|ensemble): .* there and .* here; choose"
     for work, told in (
         (lambda: mcgw.sweep(SCENE, other, path=a), rf"a\.h5: {another}"),
         (lambda: mcgw.sweep(SCENE, other, path=a, shard="1/3"), rf"a\.h5: {another}"),
         (lambda: mcgw.sweep(SCENE.replace(seed=8), OVER, path=a), another),
         (lambda: mcgw.sweep(SCENE, OVER, path=e), another),
         (lambda: mcgw.open_ensemble(a), r"holds a sweep; mcgw\.open_sweep opens it, mcgw compare"),
-        (lambda: mcgw.run(SCENE, a), "holds a sweep; choose another -o, or remove it"),
+        (
+            lambda: mcgw.run(SCENE, a),
+            "holds a different sweep: sweep is .* there and None here; choose",
+        ),
         (lambda: mcgw.open_sweep(e), r"not the file of a sweep; mcgw\.open_ensemble opens it"),
         (lambda: mcgw.sweep(SCENE, other, path=b), r"holds a different sweep: sweep is .* there and .* here"),
     ):
