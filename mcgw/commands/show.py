@@ -37,7 +37,7 @@ def show(
     --------
     mcgw show demo.h5
     """
-    from mcgw.store.ensembles import open_results, read_attributes, unfinished_sweep, verify as verified
+    from mcgw.store.ensembles import open_results, read_attributes, unfinished, verify as verified
     from mcgw.store.place import tidy
 
     if csv and (scene or digest or verify or plan):
@@ -51,7 +51,7 @@ def show(
             f"{file}: --plan is of a scene (.toml); print its scene with mcgw show --scene {file}"
         )
     tidy(file)
-    if (begun := unfinished_sweep(file)) is not None:
+    if (begun := unfinished(file)) is not None and begun.axes:
         from mcgw.errors import StoreError
         from mcgw.reports.text import progress_of
 

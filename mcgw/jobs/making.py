@@ -113,9 +113,8 @@ def _at_once(plan: Plan, by: By, progress: Done, signals: Signals) -> int:
     started = perf_counter()
     progress(0)
     tables = plan.draw(Span(0, plan.total), by.threads, go_on)
-    before = state_of(plan.path)
-    finished(plan)  # else the file is another's
-    put(plan, plan.contents([plan.reducers[0].held([tables])], perf_counter() - started), before)
+    seconds = perf_counter() - started
+    put(plan, lambda: plan.contents([plan.reducers[0].held([tables])], seconds))
     return 0
 
 
@@ -230,14 +229,12 @@ def merge(path: str | Path) -> "Ensemble | Sweep":
 
 def make_file(plan: Plan, signals: Signals) -> None:
     """Make the file of the shards, and remove them. Only with the lock."""
-    before = state_of(plan.path)
-    finished(plan)
 
     def check() -> None:
         signals.check(f"all blocks are kept in {plan.folder}; the same command merges them")
 
     try:
-        put(plan, _merged(plan, check), before, check)
+        put(plan, lambda: _merged(plan, check), check)
     except StoreError as error:
         raise RunError(
             f"{plan.folder}: a shard is damaged; run the jobs again to redraw it ({error})"

@@ -127,8 +127,11 @@ def open_sweep(path: str | Path) -> "Sweep":
 def open_results(path: Path) -> "Ensemble | Sweep":
     """Open an ensemble, a sweep or a run in progress; errors as of `open_ensemble` and `open_sweep`."""
     held: Held
-    if not path.exists() and parts_of(path).is_dir():
-        plan = _begun(path)
+    if (plan := unfinished(path)) is not None:
+        if plan.axes:
+            raise StoreError(
+                f"{path}: is an unfinished sweep; mcgw show prints its progress, mcgw sweep resumes it"
+            )
         shards = plan.shards()
         if not shards:
             raise StoreError(f"{path}: no block of its run is finished yet")
@@ -160,9 +163,9 @@ def read_attributes(path: Path) -> dict[str, Any]:
     StoreError
         If it is not such a file, damaged, or of another format.
     """
-    if path.exists() or not parts_of(path).is_dir():
+    plan = unfinished(path)
+    if plan is None:
         return described(path)[0]
-    plan = _begun(path)
     said = look(plan.folder / RECORD, RUN_TYPE)
     seconds = sum(shard.seconds for shard in plan.shards())
     known = {"versions": plan.drawn_with, "commit": "unknown", "cpu": "its workers", "wall_seconds": seconds}
@@ -170,24 +173,19 @@ def read_attributes(path: Path) -> dict[str, Any]:
     return {**{key: said[key] for key in ("scene", "sampler", "date")}, **known}
 
 
-def unfinished_sweep(path: Path) -> Plan | None:
-    """Return what a sweep is that is not yet in its file, if there is one."""
-    if path.exists() or not (parts_of(path) / RECORD).is_file():
+def unfinished(path: Path) -> Plan | None:
+    """Return the run or sweep that makes a file which is not there yet, if there is one.
+
+    Raises
+    ------
+    StoreError
+        If it has no record: one that is a single block leaves none.
+    """
+    if path.exists() or not parts_of(path).is_dir():
         return None
-    plan = Plan.open(parts_of(path))
-    return plan if plan.axes else None
-
-
-def _begun(path: Path) -> Plan:
-    """Return the run that makes a file; one that is a single block leaves no record."""
     if not (parts_of(path) / RECORD).exists():
         raise StoreError(f"{path}: no block of its run is finished yet")
-    plan = Plan.open(parts_of(path))
-    if plan.axes:
-        raise StoreError(
-            f"{path}: is an unfinished sweep; mcgw show prints its progress, mcgw sweep resumes it"
-        )
-    return plan
+    return Plan.open(parts_of(path))
 
 
 def verify(path: Path) -> tuple[str, str]:

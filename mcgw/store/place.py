@@ -9,7 +9,7 @@ from analytic import PiecewiseSeries
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.labelled import Labelled
 from mcgw.errors import RunError, StoreError
-from mcgw.formats.files import State, check_output, refuse_read_only, remove_stale, state_of, whole_file
+from mcgw.formats.files import check_output, refuse_read_only, remove_stale, state_of, whole_file
 from mcgw.machine.memory import gibibytes
 from mcgw.scene.fields import LeftOut
 from mcgw.scene.kinds import check_object
@@ -100,22 +100,23 @@ def finished(plan: Plan) -> int:
     return there.n_surfaces
 
 
-def put(
-    plan: Plan, contents: Labelled, before: State | None, go_on: Callable[[], None] | None = None
-) -> None:
-    """Write the file of a plan in one atomic step over what `before` says that was there. With the lock.
+def put(plan: Plan, contents: Callable[[], Labelled], go_on: Callable[[], None] | None = None) -> None:
+    """Write the file of a plan in one atomic step over what is there. With the lock.
 
     With `go_on`, of a file of many blocks, it is read back before those go.
 
     Raises
     ------
+    StoreError
+        If that is another's, or `contents` raises it.
     RunError
-        If something else has this name by now, or the disk does not take it.
+        If something else has this name at the end, or the disk does not take it.
     """
-    path = plan.path
+    path, before = plan.path, state_of(plan.path)
+    finished(plan)
     try:
         with whole_file(path, expected=before, folder=plan.folder) as temporary:
-            write(temporary, contents, plan.of_all, go_on)
+            write(temporary, contents(), plan.of_all, go_on)
             if go_on and (problem := verify(temporary)[0]):
                 raise RunError(f"{path}: was not written correctly ({problem}); is the disk failing?")
     except FileExistsError as error:
@@ -123,14 +124,10 @@ def put(
             f"{path}: {error.strerror}; it was not changed, and finished blocks are kept: move that file "
             "away and repeat the command, or choose another -o"
         ) from None
-    except (OSError, RuntimeError) as error:
-        if isinstance(error, RunError):
-            raise
-        said = error.strerror if isinstance(error, OSError) else None
-        why = said or next(iter(str(error).splitlines()), type(error).__name__)
+    except OSError as error:
         raise RunError(
-            f"{path}: cannot be written ({why}); is the disk full? Finished blocks are kept; free some space "
-            "and repeat the command"
+            f"{path}: cannot be written ({error.strerror or error}); is the disk full? Finished blocks are "
+            "kept; free some space and repeat the command"
         ) from None
 
 
@@ -178,9 +175,8 @@ def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> 
                 f"{path}: a run that makes this file is not finished; finish it, choose another -o, "
                 f"or remove {parts_of(path)}"
             )
-        before, plan = state_of(path), Plan.of(storable(ensemble.scene), path, ensemble.sampler)
-        finished(plan)
-        put(plan, plan.contents([ensemble.sums], wall_seconds), before)
+        plan = Plan.of(storable(ensemble.scene), path, ensemble.sampler)
+        put(plan, lambda: plan.contents([ensemble.sums], wall_seconds))
     return open_ensemble(path)
 
 
@@ -197,27 +193,17 @@ def tidy(path: Path) -> None:
 
 
 def drop_leftovers(path: Path) -> None:
-    """As `tidy`, for who has the lock."""
-    folder = parts_of(path)
+    """As `tidy`, for who has the lock; a run stays if it has a block that its file does not have."""
+    folder, held = parts_of(path), 0
     remove_unfinished(folder)
-    if not _of_use(path):
-        remove_run(folder)
-
-
-def _of_use(path: Path) -> bool:
-    """Whether a run has a block that its file does not have."""
-    folder = parts_of(path)
     begun = (folder / RECORD).exists()  # without it nobody knows what the blocks are
     shards = list((folder / "shards").glob("block-*.h5")) if begun else []
-    if not shards or not path.exists():
-        return bool(shards)
-    try:
-        plan, (attributes, there) = Plan.open(folder), described(path)
-        same = attributes.get("run") == plan.identity
-        held = plan.blocks.kept(plan.total if plan.axes else there.n_surfaces) if same else 0
-    except StoreError:
-        return True  # a person must look
-    return any(int(shard.stem.removeprefix("block-")) >= held for shard in shards)
+    if shards and path.exists():
+        with suppress(StoreError):  # else a person must look
+            plan = Plan.open(folder)
+            held = plan.blocks.kept(finished(plan))
+    if not any(int(shard.stem.removeprefix("block-")) >= held for shard in shards):
+        remove_run(folder)
 
 
 def remove_unfinished(folder: Path) -> None:

@@ -96,33 +96,22 @@ class Axes:
         """Return the values in the order of the keys."""
         return brief(", ".join(map(_short, self.at(point).values())))
 
-    def dimension(self, key: str) -> int:
-        """Return the dimension that a key is along.
+    def numbers(self, key: str) -> tuple[int, Array]:
+        """Return the dimension that a key is along, and its values, of which neighbours are compared.
 
         Raises
         ------
         ValueError
-            If no such key varies.
+            If no such key varies, or it has a single value, a value that is not a number, or the same value
+            twice in a row.
         """
         if key not in self.values:
             raise ValueError(f"{key!r} is no axis of this sweep; it has {', '.join(self.keys)}")
-        return 0 if self.zipped else self.keys.index(key)
-
-    def numbers(self, key: str) -> Array:
-        """Values of an axis along which neighbours are compared.
-
-        Raises
-        ------
-        ValueError
-            If there is no such axis, or it has a single value, a value that is not a number, or the same
-            value twice in a row.
-        """
-        self.dimension(key)
         values = self.values[key]
         numbers = all(isinstance(x, int | float) for x in values)
         if len(values) < 2 or not numbers or not np.diff(values).all():
             raise ValueError(f"{key}: slopes need at least two numbers, with no equal neighbours")
-        return np.array(values, dtype=np.float64)
+        return 0 if self.zipped else self.keys.index(key), np.array(values, dtype=np.float64)
 
     def summary(self, key: str) -> str:
         """Return the values of a key in words: how many, from the first to the last."""

@@ -155,7 +155,7 @@ class Sweep(Dataset):
         ValueError
             If there is no such axis, or neighbours have different surfaces.
         """
-        x, axis = self.axes.numbers(along), self.axes.dimension(along)
+        axis, x = self.axes.numbers(along)
         step = np.diff(x).reshape(-1, *[1] * (len(self.shape) - axis))
         shape = tuple(n - (i == axis) for i, n in enumerate(self.shape))
         pairs = [(tuple(p + (np.arange(len(p)) == axis)), p) for p in map(np.array, np.ndindex(shape))]

@@ -21,16 +21,14 @@ import tempfile
 import time
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests"))
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "crash"))
 
 import harness
+from oracles.inside import RECORD, Plan, home, parts_of, read_attributes, verify
 
-from mcgw import export
+import mcgw
 from mcgw.errors import RunError, StoreError
-from mcgw.jobs import making, running
-from mcgw.store import ensembles, lock
-from mcgw.store.lock import parts_of
-from mcgw.store.run_plan import RECORD, Plan
 
 BLOCKS, SMALL_DISK = 12, 2**24
 OVER = {"surface.E_star": [1e9, 2e9], "ensemble.seed": list(range(7, 13))}
@@ -41,22 +39,22 @@ HALF = WANTED.replace(n_surfaces=harness.ROWS * BLOCKS // 2 + 3)
 
 def run(scene):
     """Draw a scene, as `mcgw run` does."""
-    return lambda file: running.run(scene, file)
+    return lambda file: mcgw.run(scene, file)
 
 
 def job(number):
     """Draw a share, as `mcgw run --shard` does."""
-    return lambda file: running.run(WANTED, file, shard=f"{number}/2")
+    return lambda file: mcgw.run(WANTED, file, shard=f"{number}/2")
 
 
 def sweep(file):
     """Draw twelve scenes in six groups, as `mcgw sweep` does."""
-    running.sweep(WANTED.replace(n_surfaces=40), OVER, path=file)
+    mcgw.sweep(WANTED.replace(n_surfaces=40), OVER, path=file)
 
 
 def exported(file):
     """Write tables of means and quantiles, as `mcgw export` does."""
-    export(WANTED.replace(n_surfaces=200), file, to="calculix", points=100)
+    mcgw.export(WANTED.replace(n_surfaces=200), file, to="calculix", points=100)
 
 
 # What lies there before, what is killed again and again, and what ends it.
@@ -65,8 +63,8 @@ KINDS = {
     "blocks": ([], [run(WANTED)]),
     "extension": ([run(HALF)], [run(WANTED)]),
     "one block grows": ([run(ONE.replace(n_surfaces=3))], [run(ONE)]),
-    "jobs": ([], [job(1), job(2), making.merge]),
-    "merge": ([job(1), job(2)], [making.merge]),
+    "jobs": ([], [job(1), job(2), mcgw.merge]),
+    "merge": ([job(1), job(2)], [mcgw.merge]),
     "sweep": ([], [sweep]),
     "export": ([], [exported]),
 }
@@ -77,7 +75,7 @@ def digest_of(file):
     if not file.exists():
         return "there is none", ""
     if file.suffix == ".h5":
-        return ensembles.verify(file)
+        return verify(file)
     texts = [path.read_bytes() for path in sorted(file.parent.iterdir())]
     return "", hashlib.sha256(b"\0".join(texts)).hexdigest()
 
@@ -119,7 +117,7 @@ def committed(file):
 
 
 def _surfaces(file):
-    return 10**4 if "axes" in ensembles.read_attributes(file) else ensembles.open_ensemble(file).n_surfaces
+    return 10**4 if "axes" in read_attributes(file) else mcgw.open_ensemble(file).n_surfaces
 
 
 def struck(action, file, after, count):
@@ -174,7 +172,7 @@ def undisturbed(kind, folder):
 def main(kills, seed, folder):
     """As many kills, spread over all kinds alike."""
     harness.prepare()
-    lock.PATIENCE = 1.0
+    home("PATIENCE").PATIENCE = 1.0
     dice = random.Random(seed)
     with tempfile.TemporaryDirectory() as once:  # compile the loops before the process is copied
         sweep(Path(once) / "e.h5")

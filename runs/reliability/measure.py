@@ -19,7 +19,7 @@ TESTS = Path(__file__).parents[2] / "tests"
 
 def call(*words, **environment):
     """Run one of the harnesses and pass on what it prints."""
-    paths = os.pathsep.join([str(TESTS.parent), str(TESTS / "crash")])
+    paths = os.pathsep.join([str(TESTS.parent), str(TESTS), str(TESTS / "crash")])
     env = os.environ | {"PYTHONPATH": paths} | environment
     subprocess.run([sys.executable, *map(str, words)], env=env, check=True)
 

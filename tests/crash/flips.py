@@ -13,11 +13,10 @@ from pathlib import Path
 import h5py
 import numpy as np
 from harness import RECORD, ROWS, Values, forked, made_up, parts_of, prepare, scene_of
+from oracles.inside import Span
 
+import mcgw
 from mcgw.errors import StoreError
-from mcgw.jobs.running import run
-from mcgw.store import ensembles
-from mcgw.store.blocks import Span
 
 BLOCKS = 5
 
@@ -26,10 +25,10 @@ def made(folder):
     """A file of one block, one that was merged, and a run in progress."""
     scene, files = scene_of(BLOCKS), [folder / f"{name}.h5" for name in ("one-block", "merged", "begun")]
     in_blocks, Values.rows = Values.rows, BLOCKS * ROWS
-    run(scene, files[0])
+    mcgw.run(scene, files[0])
     Values.rows = in_blocks
-    run(scene, files[1])
-    run(scene, files[2], shard="1/2")
+    mcgw.run(scene, files[1])
+    mcgw.run(scene, files[2], shard="1/2")
     return files
 
 
@@ -76,7 +75,7 @@ def found(file, whole):
     def look():
         sys.stderr = open(os.devnull, "w")  # noqa: SIM115
         try:
-            ensemble = ensembles.open_ensemble(file)
+            ensemble = mcgw.open_ensemble(file)
             if ensemble.n_surfaces < whole:
                 return 1
             first = 0
@@ -101,7 +100,7 @@ def main(folder, flips):
     shards = sorted(parts_of(begun).glob("shards/*.h5"))
     for path in (parts_of(begun) / RECORD, *shards):
         places[path.name] = (path, range(path.stat().st_size))
-    held = {begun: ensembles.open_ensemble(begun).n_surfaces}
+    held = {begun: mcgw.open_ensemble(begun).n_surfaces}
     counted = {kind: {"flips": 0, "seen": 0, "harmless": 0, "unseen": []} for kind in places}
     for i in range(flips):
         kind = list(places)[i % len(places)]

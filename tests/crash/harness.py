@@ -17,15 +17,11 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
+from oracles.inside import RECORD, Plan, Values, home, parts_of, verify
 
 import analytic
-from mcgw.ensemble.simulation import Values
+import mcgw
 from mcgw.errors import RunError, StoreError
-from mcgw.jobs import running
-from mcgw.scene.scene import Scene
-from mcgw.store import blocks, ensembles, h5_writing, lock
-from mcgw.store.lock import parts_of
-from mcgw.store.run_plan import RECORD, Plan
 
 multiprocessing.set_start_method("spawn")  # else Numba has a lock for all forks, which a killed one keeps
 _DRAW = Plan.draw
@@ -35,7 +31,7 @@ SURFACE = analytic.Surface(sigma=1e-6, radius=1e-5, eta=1e8, nominal_area=1e-4, 
 
 
 def scene_of(blocks):
-    return Scene(
+    return mcgw.Scene(
         surface=SURFACE,
         separations=(0.0, 1.0, 2.0),
         contact={"quantities": ("load", "contacts")},
@@ -54,10 +50,10 @@ def made_up(job, span, *how):
 
 def prepare():
     Plan.draw = made_up
-    lock.PATIENCE = 0.0  # a second driver is refused at once
-    Values.rows = h5_writing.CHUNK_ROWS = ROWS  # blocks are merged by their packed chunks
+    home("PATIENCE").PATIENCE = 0.0  # a second driver is refused at once
+    Values.rows = home("CHUNK_ROWS").CHUNK_ROWS = ROWS  # blocks are merged by their packed chunks
     if "MCGW_IN_PLACE" in os.environ:  # the wrong way, which the harness must notice
-        blocks.whole_file = written_in_place
+        home("commit_shard").whole_file = written_in_place
 
 
 @contextmanager
@@ -69,7 +65,7 @@ def written_in_place(path, **_):
 def attempt(scene, file, progress=None):
     """Exit code of a run, as the command line would have it."""
     try:
-        running.run(scene, file, progress=progress)
+        mcgw.run(scene, file, progress=progress)
     except (RunError, StoreError, OSError):
         return 1
     except BaseException as error:
@@ -116,7 +112,7 @@ def struck(scene, file, n, mode):
 def found(scene, file, acked, digest):
     """What is wrong with what lies there: all that was committed must be readable and right."""
     if file.exists():
-        problem, now = ensembles.verify(file)
+        problem, now = verify(file)
         return [] if not problem and now == digest else [f"final file: {problem or now}"]
     if not (parts_of(file) / RECORD).exists():
         return ["lost everything"] if acked else []
@@ -148,7 +144,7 @@ def trial(scene, folder, n, mode, digest):
     wrong += found(scene, file, acked, digest)
     if forked(lambda: attempt(scene, file)) or not file.exists():
         wrong.append("did not go on")
-    elif ensembles.verify(file) != ("", digest):
+    elif verify(file) != ("", digest):
         wrong.append("another digest after going on")
     if [path.name for path in folder.iterdir()] != ["e.h5"]:
         wrong.append(f"left behind: {sorted(path.name for path in folder.iterdir())}")
@@ -162,7 +158,7 @@ def main(folder, mode, blocks, stride):
     whole.mkdir(parents=True)
     if attempt(scene, whole / "e.h5"):
         sys.exit("the run fails without being struck")
-    digest = ensembles.verify(whole / "e.h5")[1]
+    digest = verify(whole / "e.h5")[1]
     gc.collect()
     problems, n = {}, 1
     while True:

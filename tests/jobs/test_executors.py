@@ -18,12 +18,12 @@ from oracles.inside import (
     dask_executor,
     drive,
     heed_signals,
+    home,
 )
 from oracles.lost_workers import deadly, deadly_once
 
 import mcgw
 from mcgw.errors import RunError, StoppedError
-from mcgw.jobs import driver
 
 SIZE = 8
 HERE = Path(__file__).parents[1]
@@ -157,7 +157,7 @@ def test_a_long_block_is_left_when_the_run_is_interrupted(make_scene, tmp_path):
 
     begin = time.monotonic()
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(driver, "_GRACE", 0.1)
+        patch.setattr(home("_GRACE"), "_GRACE", 0.1)
         patch.setattr(Values, "rows", 32 * SIZE)
         with pytest.raises(StoppedError, match=r"^terminated: 0 of 512 surfaces are kept"):
             mcgw.run(scene, tmp_path / "e.h5", progress=stop)

@@ -11,23 +11,21 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
-from oracles.inside import LockedError, Plan, locked, parts_of, state_of
+from oracles.inside import LockedError, Plan, home, locked, parts_of, state_of, tidy, verify
 from oracles.said import call
 
 import mcgw
 from mcgw.errors import RunError, StoreError
-from mcgw.store import ensembles, lock, place
-from mcgw.store.place import tidy
 
 ROOT = Path(__file__).parents[2]
-ENV = os.environ | {"PYTHONPATH": str(ROOT)}
+ENV = os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "tests")])}
 SIZE = 16
 
 
 @pytest.fixture(autouse=True)
 def _small_blocks_and_no_patience(blocks_of, monkeypatch):
     blocks_of(SIZE)
-    monkeypatch.setattr(lock, "PATIENCE", 0.0)
+    monkeypatch.setattr(home("PATIENCE"), "PATIENCE", 0.0)
 
 
 @pytest.fixture
@@ -70,7 +68,7 @@ def test_nothing_else_is_written_beside_a_run_of_one_block(scene, path, monkeypa
             with pytest.raises(LockedError, match=f"locked by pid {os.getpid()} on"):
                 other(path)
         tidy(path)  # what `show` does; it takes nothing away
-        monkeypatch.setattr(lock, "PATIENCE", 30.0)
+        monkeypatch.setattr(home("PATIENCE"), "PATIENCE", 30.0)
         same, another = (pool.submit(mcgw.run, scene.replace(seed=seed), path) for seed in (1, 2))
         time.sleep(0.2)
         go_on.set()
@@ -78,7 +76,7 @@ def test_nothing_else_is_written_beside_a_run_of_one_block(scene, path, monkeypa
         with pytest.raises(StoreError, match="seed is 1 there and 2 here"):
             another.result(30)
     assert len(blocks) == 1
-    assert ensembles.verify(path)[0] == ""
+    assert verify(path)[0] == ""
     assert [p.name for p in path.parent.iterdir()] == ["e.h5"]
 
 
@@ -133,14 +131,14 @@ def test_drawn_surfaces_are_kept_when_fewer_are_asked_for(scene, path):
 def test_a_file_that_changes_while_it_is_made_is_left_alone(there, scene, path, monkeypatch):
     if there:
         mcgw.run(scene, path)
-    write = place.write
+    write = home("put").write
 
     def replaced(*words):
         write(*words)
         path.unlink(missing_ok=True)
         path.write_bytes(b"precious")
 
-    monkeypatch.setattr(place, "write", replaced)
+    monkeypatch.setattr(home("put"), "write", replaced)
     told = "another file now has this name" if there else "File exists"
     with pytest.raises(RunError, match=rf"e\.h5: {told}; it was not changed, .* choose another"):
         mcgw.run(scene.replace(n_surfaces=3 * SIZE), path)
@@ -205,7 +203,7 @@ def gone(pid, seconds=30):
 
 POOL = """
 import sys, time
-from mcgw.jobs.executors import Jobs
+from oracles.inside import Jobs
 if __name__ == "__main__":
     jobs = Jobs(2)
     answers = [jobs.submit(time.sleep, 100) for _ in range(2)]

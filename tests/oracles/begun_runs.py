@@ -6,8 +6,7 @@ import pytest
 
 import mcgw
 from mcgw.ensemble.summarised import Statistics
-from mcgw.store import ensembles, h5_writing
-from oracles.inside import Values, parts_of
+from oracles.inside import Values, home, parts_of, verify
 
 SIZE, SURFACES = 16, 100  # seven blocks, the last one short
 
@@ -19,7 +18,7 @@ class HaltError(Exception):
 def in_small_blocks(patch, size=SIZE):
     for kept in (Values, Statistics):
         patch.setattr(kept, "rows", size)
-    patch.setattr(h5_writing, "CHUNK_ROWS", size // 2)
+    patch.setattr(home("CHUNK_ROWS"), "CHUNK_ROWS", size // 2)
 
 
 def settle():
@@ -51,6 +50,6 @@ def begun(scene, path, jobs=1):
 
 
 def digest(path):
-    problem, found = ensembles.verify(path)
+    problem, found = verify(path)
     assert problem == ""
     return found

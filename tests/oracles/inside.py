@@ -37,9 +37,9 @@ MODULES = {
     "mcgw.machine.terminal": "brief listed",
     "mcgw.formats.table": "Column digits_of evenly joined stacked Table",
     "mcgw.formats.units": "_FACTORS EXAMPLES METRES parse",
-    "mcgw.jobs.driver": "drive heed_signals part_of Signals",
+    "mcgw.jobs.driver": "_GRACE drive heed_signals part_of Signals",
     "mcgw.jobs.executors": "dask_executor Jobs",
-    "mcgw.jobs.making": "commit_block",
+    "mcgw.jobs.making": "_merged commit_block",
     "mcgw.machine.memory": "check_memory memory_available",
     "mcgw.maps.bad_points": "filled recorded small_spike_heights spike_heights usual_bend",
     "mcgw.maps.envelope": "envelope hidden_summits",
@@ -74,12 +74,16 @@ MODULES = {
     "mcgw.statistics.tradeoff": "Rung Tradeoff worth",
     "mcgw.statistics.ways": "advise of_one sampled_ways surfaces_for WANTS wants_of Way",
     "mcgw.statistics.verdict": "Check FALSE_ALARM verdict",
-    "mcgw.store.ensembles": "read_attributes verify",
-    "mcgw.store.lock": "LOCK_FILES locked LockedError parts_of",
     "mcgw.store.blocks": "Blocks commit_shard open_shard Span",
+    "mcgw.store.ensembles": "LARGE open_results read_attributes verify",
+    "mcgw.store.h5_reading": "attributes_in checksum_of MOST_TEXT table_names",
+    "mcgw.store.h5_writing": "CHUNK_ROWS",
+    "mcgw.store.identity": "another",
+    "mcgw.store.lock": "_lock LOCK_FILES locked LockedError parts_of PATIENCE",
+    "mcgw.store.place": "put tidy",
     "mcgw.store.run_plan": "Plan RECORD",
     "mcgw.sweeps.axes": "axes_of label",
-    "mcgw.sweeps.groups": "Group",
+    "mcgw.sweeps.groups": "_ROWS Group",
     "mcgw.sweeps.points": "sweep_cautions",
 }
 HOME = {name: module for module, names in MODULES.items() for name in names.split()}
@@ -89,3 +93,8 @@ def __getattr__(name: str) -> Any:
     if name not in HOME:
         raise AttributeError(name)
     return getattr(import_module(HOME[name]), name)
+
+
+def home(name: str) -> Any:
+    """Return the module that has a name, for a test that puts something in its place."""
+    return import_module(HOME[name])

@@ -33,7 +33,12 @@ def said_by(script, folder, *words, **env):
     """What a script of the folder `crash` found."""
     memory = Path("/dev/shm")  # where flushing is quick: what is tried is the order of the calls
     place = (memory if memory.is_dir() else folder) / f"{folder.name}-{os.getpid()}"
-    paths = [str(HERE.parent.parent), str(HERE), *filter(None, [os.environ.get("PYTHONPATH")])]
+    paths = [
+        str(HERE.parent.parent),
+        str(HERE.parent),
+        str(HERE),
+        *filter(None, [os.environ.get("PYTHONPATH")]),
+    ]
     env = os.environ | {"PYTHONPATH": os.pathsep.join(paths)} | env
     call = [sys.executable, HERE / script, place, *map(str, words)]
     try:

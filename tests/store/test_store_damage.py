@@ -8,13 +8,11 @@ import numpy as np
 import pytest
 from oracles.begun_runs import SURFACES, begun, digest
 from oracles.flipped import flip_a_number
-from oracles.inside import RECORD, Plan, parts_of
+from oracles.inside import RECORD, Plan, home, parts_of, read_attributes, verify
 
 import mcgw
 from mcgw.cli import main
 from mcgw.errors import RunError, StoreError
-from mcgw.jobs import making
-from mcgw.store import ensembles, place
 
 pytestmark = pytest.mark.usefixtures("small_blocks")
 
@@ -69,19 +67,19 @@ OF_LARGE = "a bit of a result"
 )
 def test_a_damaged_file_is_not_extended_nor_sealed_anew(way, damage, file, larger, monkeypatch):
     """Of a large file only the head is looked at on opening: all of it before more is drawn for it."""
-    assert ensembles.verify(file)[0] == ""
+    assert verify(file)[0] == ""
     DAMAGES[damage](file)
     if damage == OF_LARGE:
-        monkeypatch.setattr(ensembles, "LARGE", 0)
-        assert ensembles.open_ensemble(file).n_surfaces == SURFACES
+        monkeypatch.setattr(home("LARGE"), "LARGE", 0)
+        assert mcgw.open_ensemble(file).n_surfaces == SURFACES
         with pytest.raises(StoreError, match="not an HDF5 file, or a damaged one"):
-            ensembles.open_ensemble(file).values("load")
+            mcgw.open_ensemble(file).values("load")
     before = file.read_bytes()
     with pytest.raises(StoreError):
         WAYS[way](larger, file)
     assert file.read_bytes() == before
     assert not parts_of(file).exists() or not list(parts_of(file).glob("shards/*.h5"))
-    assert ensembles.verify(file)[1] == "unreadable"
+    assert verify(file)[1] == "unreadable"
 
 
 @pytest.mark.parametrize("damage", [OF_LARGE, "the end"])
@@ -107,7 +105,7 @@ def test_seconds_of_all_blocks_and_of_the_file_before_add_up(scene, larger, tmp_
         assert more > 0
         total += more
         mcgw.merge(path)
-        assert ensembles.read_attributes(path)["wall_seconds"] == pytest.approx(total, rel=1e-12)
+        assert read_attributes(path)["wall_seconds"] == pytest.approx(total, rel=1e-12)
 
 
 SMALL = [
@@ -131,7 +129,7 @@ def test_whatever_is_small_is_checked(file, change):
 
 def test_a_flipped_bit_anywhere_is_seen_or_changes_nothing(file):
     """HDF5 leaves room that nobody reads; where the scene stands all is read."""
-    whole, said, data = mcgw.open_ensemble(file), ensembles.read_attributes(file), file.read_bytes()
+    whole, said, data = mcgw.open_ensemble(file), read_attributes(file), file.read_bytes()
     dice, scene = np.random.default_rng(1), data.index(said["scene"].encode())
     of_scene = dice.integers(scene, scene + len(said["scene"].encode()), 20)
     for k, at in enumerate([*of_scene, *dice.integers(len(data), size=40)]):
@@ -141,7 +139,7 @@ def test_a_flipped_bit_anywhere_is_seen_or_changes_nothing(file):
         with suppress(StoreError):
             found = mcgw.open_ensemble(file)
             assert k >= 20
-            assert (found.scene, ensembles.read_attributes(file)) == (whole.scene, said)
+            assert (found.scene, read_attributes(file)) == (whole.scene, said)
             assert all(np.array_equal(found[name], whole[name]) for name in whole.scene.quantities)
 
 
@@ -149,7 +147,7 @@ def test_a_flipped_bit_anywhere_is_seen_or_changes_nothing(file):
 @pytest.mark.parametrize("damage", [flip_a_number, Path.unlink], ids=["flipped", "gone"])
 def test_a_block_that_is_lost_late_never_comes_into_the_file(scene, tmp_path, keep, damage, monkeypatch):
     """After the shards were looked at."""
-    path, merged, kept = tmp_path / "e.h5", making._merged, scene.replace(keep=keep)
+    path, merged, kept = tmp_path / "e.h5", home("_merged")._merged, scene.replace(keep=keep)
     block = begun(kept, path)[2]
 
     def damaged_first(*words):
@@ -157,7 +155,7 @@ def test_a_block_that_is_lost_late_never_comes_into_the_file(scene, tmp_path, ke
         return merged(*words)
 
     with monkeypatch.context() as patch:
-        patch.setattr(making, "_merged", damaged_first)
+        patch.setattr(home("_merged"), "_merged", damaged_first)
         with pytest.raises(RunError, match="a shard is damaged; run the jobs again to redraw it"):
             mcgw.merge(path)
     assert not path.exists()
@@ -169,7 +167,7 @@ def test_a_block_that_is_lost_late_never_comes_into_the_file(scene, tmp_path, ke
 
 def test_numbers_that_go_to_another_place_are_seen(scene, tmp_path, monkeypatch):
     """Two chunks in the wrong order, each of them intact."""
-    path, write = tmp_path / "e.h5", place.write
+    path, write = tmp_path / "e.h5", home("put").write
     begun(scene, path)
 
     def swapped(temporary, *words):
@@ -180,7 +178,7 @@ def test_numbers_that_go_to_another_place_are_seen(scene, tmp_path, monkeypatch)
             for row, part in zip((40, 32), parts, strict=True):
                 area.write_direct_chunk((row, 0), part)
 
-    monkeypatch.setattr(place, "write", swapped)
+    monkeypatch.setattr(home("put"), "write", swapped)
     with pytest.raises(RunError, match="was not written correctly"):
         mcgw.merge(path)
     assert not path.exists()

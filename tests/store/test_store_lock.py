@@ -9,11 +9,10 @@ from pathlib import Path
 
 import pytest
 from filelock import Timeout
-from oracles.inside import LOCK_FILES, locked, parts_of
+from oracles.inside import LOCK_FILES, home, locked, parts_of
 
 import mcgw
 from mcgw.errors import StoreError
-from mcgw.store import lock
 
 ROOT = Path(mcgw.__file__).parents[1]
 
@@ -21,7 +20,7 @@ ROOT = Path(mcgw.__file__).parents[1]
 HOLD = """
 import os, sys, time
 from pathlib import Path
-from mcgw.store.lock import locked
+from oracles.inside import locked
 with locked(Path(sys.argv[1]), shared=sys.argv[2] == "shared"):
     child = os.fork()
     if not child:
@@ -33,7 +32,7 @@ with locked(Path(sys.argv[1]), shared=sys.argv[2] == "shared"):
 
 @pytest.fixture(autouse=True)
 def _at_once(monkeypatch):
-    monkeypatch.setattr(lock, "PATIENCE", 0.1)
+    monkeypatch.setattr(home("PATIENCE"), "PATIENCE", 0.1)
 
 
 def free(folder, *, shared=False):
@@ -64,7 +63,7 @@ def test_alone_or_shared_until_the_last_one_leaves(tmp_path):
 
 @pytest.mark.parametrize("how", ["shared", "alone"])
 def test_kill_9_frees_it_though_a_child_of_the_holder_lives(tmp_path, how):
-    env = os.environ | {"PYTHONPATH": str(ROOT)}
+    env = os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "tests")])}
     holder = subprocess.Popen([sys.executable, "-c", HOLD, tmp_path, how], env=env, stdout=subprocess.PIPE)
     child = int(holder.stdout.readline())
     try:
@@ -129,7 +128,7 @@ def test_a_disk_that_keeps_no_locks_is_refused_in_one_line(error, make_scene, tm
     def none(*_, **__):
         raise error
 
-    monkeypatch.setattr(lock, "_lock", none)
+    monkeypatch.setattr(home("_lock"), "_lock", none)
     with pytest.raises(StoreError, match=r"^[^\n]*disk that keeps[^\n]*$"):
         mcgw.run(make_scene(n_surfaces=4), tmp_path / "e.h5")
     assert not (tmp_path / "e.h5").exists()

@@ -9,13 +9,12 @@ import h5py
 import numpy as np
 import pytest
 import scipy.stats
-from oracles.inside import SAMPLERS, sampler_of
+from oracles.inside import SAMPLERS, home, sampler_of
 from oracles.memory_growth import peak_growth
 from oracles.scenes import scene_by
 
 import analytic
 import mcgw
-from mcgw.store import identity
 
 GOLDEN = Path(__file__).parents[1] / "golden_samplers.json"
 
@@ -121,7 +120,7 @@ def test_what_keeps_two_runs_apart_is_said(make_scene):
         ((text, "x", "a"), (text, "y", "a"), "sweep is 'x' there and 'y' here"),
         ((text, "", "numpy 1"), (more, "", "numpy 2"), "it was drawn with numpy 1, but this is numpy 2"),
     ):
-        assert identity.difference(there, here) == told
+        assert home("another").difference(there, here) == told
 
 
 if __name__ == "__main__":

@@ -2,7 +2,6 @@
 
 import errno
 import os
-import pydoc
 import shutil
 import signal
 from itertools import product
@@ -12,12 +11,11 @@ import numpy as np
 import pytest
 from oracles.begun_runs import SIZE, SURFACES, begun, digest, halted
 from oracles.flipped import flip_a_number
-from oracles.inside import RECORD, Blocks, Plan, Span, commit_block, part_of, parts_of
+from oracles.inside import RECORD, Blocks, Plan, Span, commit_block, home, part_of, parts_of, read_attributes
 from oracles.said import call
 
 import mcgw
 from mcgw.errors import RunError, StoppedError, StoreError
-from mcgw.store import ensembles, h5_writing
 
 pytestmark = pytest.mark.usefixtures("small_blocks")
 
@@ -50,7 +48,7 @@ def drawn(monkeypatch):
 def test_another_version_is_refused(scene, tmp_path, monkeypatch):
     path = tmp_path / "e.h5"
     halted(scene, path, 40)
-    monkeypatch.setattr("mcgw.store.run_plan.versions", lambda **_: "mcgw 99")
+    monkeypatch.setattr(home("Plan"), "versions", lambda **_: "mcgw 99")
     with pytest.raises(StoreError, match=r"drawn with .*, but this is mcgw 99"):
         mcgw.run(scene, path)
 
@@ -64,7 +62,7 @@ def test_what_is_damaged_is_drawn_again(scene, tmp_path, expected):
     shards[2].rename(tmp_path / "elsewhere.h5")
     shards[2].symlink_to(tmp_path / "elsewhere.h5")
     (shards[3].parent / ".left.tmp").write_bytes(b"half")
-    assert ensembles.open_ensemble(path).n_surfaces == min(SIZE * len(shards), SURFACES) - 3 * SIZE
+    assert mcgw.open_ensemble(path).n_surfaces == min(SIZE * len(shards), SURFACES) - 3 * SIZE
     halted(scene, path, 0)
     assert not list(parts_of(path).glob("shards/.*.tmp"))
     mcgw.run(scene, path)
@@ -78,10 +76,10 @@ def test_a_run_without_a_block_or_its_record_is_said_to_have_none(scene, tmp_pat
     for shard in folder.glob("shards/*"):
         shard.unlink()
     with pytest.raises(StoreError, match=r"e\.h5: no block of its run is finished yet$"):
-        ensembles.open_ensemble(path)
+        mcgw.open_ensemble(path)
     (folder / "shards").rmdir()
     with pytest.raises(RunError, match=r"e\.h5\.parts: is missing or incomplete; run the command again$"):
-        ensembles.open_ensemble(path)
+        mcgw.open_ensemble(path)
     (folder / RECORD).unlink()
     with pytest.raises(StoreError, match=r"run\.h5: there is none$"):
         Plan.open(folder)
@@ -131,7 +129,7 @@ def test_n_surfaces_is_the_total(scene, tmp_path, expected, drawn):
     mcgw.run(scene.replace(n_surfaces=37), path)
     assert drawn == [0, 5, 16, 32]
     halted(scene.replace(n_surfaces=90), path, 64)
-    assert ensembles.open_ensemble(path).n_surfaces == 37  # the finished file stays as it is
+    assert mcgw.open_ensemble(path).n_surfaces == 37  # the finished file stays as it is
     drawn.clear()
     mcgw.run(scene, path)
     assert 64 <= drawn[0] <= 90
@@ -144,7 +142,7 @@ def test_a_short_block_of_statistics_gives_way_to_a_whole_one(scene, tmp_path, d
     """Both are read while the run is not finished."""
     path, kept = tmp_path / "e.h5", scene.replace(keep="statistics")
     mcgw.run(kept.replace(n_surfaces=20), path, shard="1/1")
-    begun, whole = ensembles.open_ensemble(path), mcgw.simulate(kept, n_surfaces=20)
+    begun, whole = mcgw.open_ensemble(path), mcgw.simulate(kept, n_surfaces=20)
     np.testing.assert_array_equal(
         [begun.mean("load"), begun.std("load")], [whole.mean("load"), whole.std("load")]
     )
@@ -170,8 +168,8 @@ def test_rows_of_a_run_in_progress_are_those_of_a_list(scene, tmp_path):
     path, asked = tmp_path / "e.h5", scene.replace(sampler="cells")
     *shards, last = begun(asked, path)
     last.unlink()
-    held, whole = ensembles.open_ensemble(path).sums, mcgw.simulate(asked)
-    assert not ensembles.read_attributes(path)["complete"]
+    held, whole = mcgw.open_ensemble(path).sums, mcgw.simulate(asked)
+    assert not read_attributes(path)["complete"]
     assert "  surfaces      96 so far, of 100, of 3000 asperities each (fixed)" in call("show", path).stdout
     for start, stop in product((0, 5, 15, 16, 33), (16, 17, 40, 48, None)):
         if start < (stop or 96):
@@ -187,7 +185,7 @@ def test_room_is_asked_for_what_is_not_there_yet(scene, tmp_path, monkeypatch):
     halted(scene, path, 64)
     half = 8 * SURFACES * len(scene.separations) * len(scene.quantities)
     free = shutil.disk_usage(tmp_path)._replace(free=2 * half - 1)
-    monkeypatch.setattr("mcgw.store.place.shutil.disk_usage", lambda folder: free)
+    monkeypatch.setattr(shutil, "disk_usage", lambda folder: free)
     with pytest.raises(StoreError, match="free some space"):
         mcgw.run(scene, tmp_path / "other.h5")
     mcgw.run(scene, path)
@@ -240,17 +238,17 @@ def test_signals_stop_a_run_that_then_goes_on(scene, tmp_path, number, code, sur
 
 
 @pytest.mark.parametrize(
-    ("where", "calls", "words"),
+    ("of", "where", "calls", "words"),
     [
-        ("jobs.making.commit_shard", 2, "finished blocks are kept"),
-        ("store.place.write", 0, "is the disk full"),
+        ("commit_block", "commit_shard", 2, "finished blocks are kept"),
+        ("put", "write", 0, "is the disk full"),
     ],
 )
 def test_a_full_disk_is_one_line_and_the_run_completes_later(
-    scene, tmp_path, expected, where, calls, words, monkeypatch
+    scene, tmp_path, expected, of, where, calls, words, monkeypatch
 ):
     """At the third block, which leaves two, and at the file."""
-    path, done, work = tmp_path / "e.h5", [], pydoc.locate(f"mcgw.{where}")
+    path, done, work = tmp_path / "e.h5", [], getattr(home(of), where)
 
     def full(*arguments):
         if len(done) == calls:
@@ -259,7 +257,7 @@ def test_a_full_disk_is_one_line_and_the_run_completes_later(
         return work(*arguments)
 
     with monkeypatch.context() as patch:
-        patch.setattr(f"mcgw.{where}", full)
+        patch.setattr(home(of), where, full)
         with pytest.raises(RunError, match=words) as caught:
             mcgw.run(scene, path)
     assert "\n" not in str(caught.value)
@@ -272,7 +270,7 @@ def test_a_full_disk_is_one_line_and_the_run_completes_later(
 @pytest.mark.parametrize("rows", [4, 12, 256])
 def test_blocks_and_chunks_of_any_size_make_the_same(scene, tmp_path, expected, blocks_of, monkeypatch, rows):
     """The first three blocks as of a version with other blocks; the file is one of 37 surfaces that grows."""
-    monkeypatch.setattr(h5_writing, "CHUNK_ROWS", rows)
+    monkeypatch.setattr(home("CHUNK_ROWS"), "CHUNK_ROWS", rows)
     path = tmp_path / "e.h5"
     mcgw.run(scene.replace(n_surfaces=37), path)
     blocks_of(20)

@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 from oracles.drawn_together import check_points
+from oracles.inside import axes_of, home, label
 from oracles.told import drawn
 
 import mcgw
-from mcgw.sweeps import groups
-from mcgw.sweeps.axes import axes_of, label
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
 SCENE = mcgw.Scene(
@@ -130,7 +129,7 @@ def test_neither_threads_nor_blocks_nor_what_is_kept_change_a_bit(monkeypatch):
     assert all(np.array_equal(one.std(name), two.std(name)) for name in one.quantities)
     same = one.difference("area", (0, 0), (5, 1))  # which the modulus does not enter
     assert not np.any([same.value, same.stderr])
-    monkeypatch.setattr(groups, "_ROWS", 70)
+    monkeypatch.setattr(home("Group"), "_ROWS", 70)
     parts = mcgw.sweep(SCENE, over)
     np.testing.assert_allclose(parts.std("load"), one.std("load"), rtol=1e-13)
     np.testing.assert_allclose(parts.mean("load"), one.mean("load"), rtol=1e-14)

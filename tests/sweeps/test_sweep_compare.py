@@ -4,11 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from oracles.inside import FALSE_ALARM, verdict
+from oracles.inside import FALSE_ALARM, home, sweep_cautions, verdict
 from oracles.said import call
 
 import mcgw
-from mcgw.sweeps.points import sweep_cautions
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
 SCENE = mcgw.Scene(
@@ -108,7 +107,7 @@ def test_cautions_are_counted():
 
 def test_the_commands_see_what_is_wrong(sweep, in_tmp_path, monkeypatch):
     mcgw.sweep(SCENE, OVER, path="w.h5")
-    monkeypatch.setattr("mcgw.store.ensembles.open_results", lambda path: off(sweep, 1.03))
+    monkeypatch.setattr(home("open_results"), "open_results", lambda path: off(sweep, 1.03))
     done = call("compare", "w.h5", "-o", "w.svg")
     assert done.returncode == 1
     assert "DISAGREE: chi-square" in done.stdout

@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 from oracles.begun_runs import settle
 from oracles.flipped import flip_a_number
-from oracles.inside import Plan, commit_block, parts_of, read_attributes
+from oracles.inside import Group, Plan, commit_block, home, parts_of, read_attributes
 from oracles.said import call
 
 import mcgw
-from mcgw.sweeps import groups
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 mm^2", "78.6 GPa")
 SCENE = mcgw.Scene(
@@ -30,7 +29,7 @@ def digest(path):
 def _small_chunks():
     """Three for each group."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(groups, "_ROWS", 100)
+        patch.setattr(home("Group"), "_ROWS", 100)
         yield
 
 
@@ -82,7 +81,7 @@ def test_other_programs_read_points_in_a_row_and_words_as_codes(tmp_path):
 @pytest.mark.parametrize("after", [1, 3])
 def test_interrupted_anywhere_it_goes_on_to_the_same_digest(tmp_path, monkeypatch, expected, after):
     """A damaged chunk is drawn again; a finished file is not."""
-    path, tables, drawn, stops = tmp_path / "a.h5", groups.Group.tables, [], [after]
+    path, tables, drawn, stops = tmp_path / "a.h5", Group.tables, [], [after]
 
     def counted(group, first, *rest):
         if len(drawn) in stops:
@@ -90,7 +89,7 @@ def test_interrupted_anywhere_it_goes_on_to_the_same_digest(tmp_path, monkeypatc
         drawn.append(first)
         return tables(group, first, *rest)
 
-    monkeypatch.setattr(groups.Group, "tables", counted)
+    monkeypatch.setattr(Group, "tables", counted)
     with pytest.raises(KeyboardInterrupt):
         mcgw.sweep(SCENE, OVER, path=path)
     settle()
