@@ -22,7 +22,7 @@ from mcgw.store.h5_reading import pieces_of
 from mcgw.store.h5_writing import Rows
 from mcgw.store.identity import difference
 from mcgw.store.lock import locked, parts_of
-from mcgw.store.place import check_room, drop_leftovers, finished, put, remove_run, remove_unfinished, tidy
+from mcgw.store.place import check_room, drop_leftovers, finished, last_block, put, remove_run, tidy
 from mcgw.store.run_plan import RECORD, Plan
 
 if TYPE_CHECKING:
@@ -83,7 +83,8 @@ def make(plan: Plan, by: By, progress: Done) -> int:
             if not (by.part or new):
                 drop_leftovers(plan.path)
             if finished(plan) < plan.total:  # no other process was faster
-                draw = _at_once if _small(plan, by) else _in_blocks
+                shared = by.executor or by.part or plan.axes or (plan.folder / RECORD).exists()
+                draw = _at_once if not shared and plan.total <= plan.reducers[0].rows > 1 else _in_blocks
                 try:
                     return draw(plan, by, progress, signals)
                 except OSError as error:
@@ -94,12 +95,6 @@ def make(plan: Plan, by: By, progress: Done) -> int:
     tidy(plan.path)
     progress(sum(one.n_surfaces * one.work for one in plan.reducers))
     return 0
-
-
-def _small(plan: Plan, by: By) -> bool:
-    """Whether a file is one block of surfaces, of which nothing is there."""
-    alone = by.executor is None and by.part is None and not plan.axes
-    return alone and plan.total <= plan.reducers[0].rows > 1 and not (plan.folder / RECORD).exists()
 
 
 def _at_once(plan: Plan, by: By, progress: Done, signals: Signals) -> int:
@@ -121,18 +116,19 @@ def _at_once(plan: Plan, by: By, progress: Done, signals: Signals) -> int:
 def _in_blocks(plan: Plan, by: By, progress: Done, signals: Signals) -> int:
     """Draw missing shards, every so many-th of a share; then make the file, but of a share. With the lock."""
     plan.begin()
-    shards, done = plan.shards(), finished(plan)
-    n = max((shard.span.stop for shard in shards), default=0)
-    if by.part is None and n > plan.total:  # blocks beyond those requested are kept
+    last = last_block(plan.folder)
+    if last >= plan.total and not by.part:  # blocks beyond those requested are kept
         raise StoreError(
-            f"{plan.folder}: holds surfaces up to number {n} already, more than ensemble.n_surfaces = "
-            f"{plan.total}; ask for as many or more, or choose another -o"
+            f"{plan.folder}: holds surface number {last} already, but ensemble.n_surfaces = {plan.total}; "
+            "ask for more, or choose another -o"
         )
-    spans = plan.missing(done, shards)
-    left, worked = sum(span.n for span in spans), plan.work(plan.blocks.missing(spans))
+    done = finished(plan)
+    spans = plan.missing(done, plan.shards())
+    left, worked = sum(span.n for span in spans), plan.work(plan.blocks) - plan.work(spans)
     if by.part:
         number, of = by.part
-        spans = [span for span in spans if plan.blocks.number(span) % of == number - 1]
+        own = set(list(plan.blocks)[number - 1 :: of])
+        spans = [span for span in spans if span in own]
 
     def note(span: Span, write: Callable[[], object] | None) -> None:
         nonlocal left, worked
@@ -215,7 +211,6 @@ def merge(path: str | Path) -> "Ensemble | Sweep":
             return open_results(path)
         raise StoreError(f"{path}: neither this file nor its blocks ({parts_of(path)}) exist")
     with heed_signals() as signals, locked(parts_of(path)):
-        remove_unfinished(parts_of(path))
         plan = Plan.open(parts_of(path))
         gaps = plan.missing(finished(plan), plan.shards())
         if gaps:
@@ -253,7 +248,7 @@ def _merged(plan: Plan, check: Callable[[], None]) -> Labelled:
     held, seconds = 0, 0.0
     if not plan.axes and plan.path.exists():
         attributes, there = described(plan.path)
-        held, seconds = plan.blocks.kept(there.n_surfaces), attributes["wall_seconds"]
+        held, seconds = plan.kept(there.n_surfaces), attributes["wall_seconds"]
     shards = [shard for shard in plan.shards(numbers=False) if shard.span.first >= held]
     ends = [held, *(shard.span.stop for shard in shards)]
     if ends != [*(shard.span.first for shard in shards), plan.total]:
@@ -262,21 +257,19 @@ def _merged(plan: Plan, check: Callable[[], None]) -> Labelled:
 
     def pieces() -> Iterator[tuple[int, Tables]]:
         """Values of surfaces, or statistics of blocks; each with the group that they are of."""
-        if held and plan.whole:
+        if held and plan.statistics:
             from mcgw.ensemble.pooled import tables_of  # for those scenes alone
 
             sums: Any = open_ensemble(plan.path).sums
-            yield from (
-                (0, tables_of([part])) for part in sums.parts if part.n % plan.blocks.groups[0][1] == 0
-            )
+            yield from ((0, tables_of([part])) for part in sums.parts if part.n % plan.reducers[0].rows == 0)
         elif held:
             with open_h5(plan.path) as file:
-                yield from ((0, tables) for tables in pieces_of(file, plan.scene.tables))
+                yield from ((0, tables) for tables in pieces_of(file, plan.scene.tables, held))
         for shard in shards:
             check()
-            yield plan.blocks.group(shard.span)[0], shard.tables()
+            yield plan.blocks[shard.span][0], shard.tables()
 
-    if not plan.whole:
+    if not plan.statistics:
         return plan.contents([Rows(plan.total, (tables for _, tables in pieces()))], seconds)
     groups = zip(plan.reducers, groupby(pieces(), itemgetter(0)), strict=True)
     return plan.contents([one.held(tables for _, tables in some) for one, (_, some) in groups], seconds)

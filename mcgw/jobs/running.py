@@ -116,7 +116,7 @@ def run(
                 break
     if by.part:
         return left
-    if plan.whole:
+    if plan.statistics:
         return open_ensemble(path)
     return Ensemble(plan.scene, plan.sampler, FileResults(((path, plan.total),)))
 

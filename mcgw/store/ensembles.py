@@ -135,7 +135,7 @@ def open_results(path: Path) -> "Ensemble | Sweep":
         shards = plan.shards()
         if not shards:
             raise StoreError(f"{path}: no block of its run is finished yet")
-        if plan.whole:
+        if plan.statistics:
             held = plan.reducers[0].held(shard.tables() for shard in shards)  # each read when its turn comes
         else:
             held = FileResults(tuple((shard.path, shard.span.n) for shard in shards))

@@ -46,7 +46,7 @@ def look(path: Path, filetype: str = FILETYPE, *, numbers: bool = True) -> dict[
         if checksum_of(file) != attributes.get("checksum"):
             raise StoreError("damaged (checksum mismatch of its scene or attributes)")
         for name in names if numbers else ():
-            _compare(file[name], (piece[name] for piece in pieces_of(file, [name])))
+            _compare(file[name], (piece[name] for piece in pieces_of(file, [name], len(file[name]))))
         return attributes
 
 
@@ -103,12 +103,12 @@ def _text(table: h5py.Dataset, key: str) -> str:
     return value.decode() if isinstance(value, bytes) else str(value)
 
 
-def pieces_of(file: h5py.File, names: Sequence[str]) -> Iterator[Tables]:
-    """All rows of tables of an open file that have as many, some at a time."""
+def pieces_of(file: h5py.File, names: Sequence[str], rows: int) -> Iterator[Tables]:
+    """So many rows of tables of an open file, some at a time."""
     width = sum(math.prod(file[name].shape[1:]) for name in names)
     step = max(_PIECE // (8 * width or 8), 1)
-    for start in range(0, len(file[names[0]]), step):
-        yield {name: file[name][start : start + step] for name in names}
+    for start in range(0, rows, step):
+        yield {name: file[name][start : min(start + step, rows)] for name in names}
 
 
 @contextmanager

@@ -12,7 +12,7 @@ import os
 import socket
 import sqlite3
 from collections.abc import Iterator
-from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from time import monotonic, sleep
 
@@ -80,7 +80,8 @@ def _try(folder: Path, shared: bool, held: ExitStack) -> str | None:
         # Writable by its owner alone: otherwise the lock makes names of its own there, and may leave them.
         folder.mkdir(mode=0o755, parents=True, exist_ok=True)
         try:
-            held.enter_context(_lock(folder, shared))
+            lock = ReadWriteLock(folder / _LOCK, is_singleton=False)
+            held.enter_context((lock.read_lock if shared else lock.write_lock)(blocking=False))
         except Timeout:
             return f"locked by {_holder(folder)}, which is working on this run"
         except (sqlite3.Error, ValueError) as error:  # the last: its file cannot be written
@@ -94,11 +95,6 @@ def _try(folder: Path, shared: bool, held: ExitStack) -> str | None:
             return "its run has just ended; repeat the command"  # the folder went between two steps
         raise StoreError(f"{folder}: cannot be locked ({error.strerror or error})") from None
     return None
-
-
-def _lock(folder: Path, shared: bool) -> AbstractContextManager[None]:
-    lock = ReadWriteLock(folder / _LOCK, is_singleton=False)
-    return (lock.read_lock if shared else lock.write_lock)(blocking=False)
 
 
 def _remove_if_empty(folder: Path) -> None:

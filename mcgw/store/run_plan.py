@@ -30,7 +30,7 @@ from mcgw.formats.files import Expected, check_output, sync
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from
 from mcgw.scene.section import SceneError
-from mcgw.store.blocks import Blocks, Shard, Span, open_shard, write_tables
+from mcgw.store.blocks import Shard, Span, blocks_of, open_shard, write_tables
 from mcgw.store.h5_reading import look
 from mcgw.store.h5_writing import FILETYPE, FORMAT, RUN_TYPE
 from mcgw.store.identity import Question, another, identity_of, made_with, now, versions, written
@@ -167,14 +167,14 @@ class Plan:
         return f"{self.text}\0{self.axes}" if self.axes else self.again().of_all
 
     @property
-    def whole(self) -> bool:
-        """Whether a block is of use as a whole only, since nothing is kept of a single surface."""
+    def statistics(self) -> bool:
+        """Whether nothing is kept of a single surface."""
         return bool(self.axes) or self.scene.keep == "statistics"
 
     @cached_property
-    def blocks(self) -> Blocks:
-        """Blocks of the surfaces that are asked for."""
-        return Blocks(tuple((one.n_surfaces, one.rows) for one in self.reducers), self.whole)
+    def blocks(self) -> dict[Span, tuple[int, int]]:
+        """Blocks of the surfaces that are asked for, of which group each is and where it begins there."""
+        return blocks_of((one.n_surfaces, one.rows) for one in self.reducers)
 
     @cached_property
     def total(self) -> int:
@@ -183,13 +183,13 @@ class Plan:
 
     def work(self, spans: Iterable[Span]) -> float:
         """Return what some surfaces take, each span of one group, in any unit."""
-        return sum(span.n * self.reducers[self.blocks.group(span)[0]].work for span in spans)
+        return sum(span.n * self.reducers[self.blocks[span][0]].work for span in spans)
 
     def draw(self, span: Span, threads: int | None, *go_on: "GoOn") -> Tables:
         """Return what is kept of some surfaces of one group; it does not depend on `threads`."""
         from mcgw.ensemble.drawing import use_threads  # imports the samplers
 
-        group, first = self.blocks.group(span) if self.axes else (0, span.first)
+        group, first = self.blocks[span] if self.axes else (0, span.first)
         with use_threads(threads):
             return self.reducers[group].tables(first, first + span.n, *go_on)
 
@@ -262,10 +262,13 @@ class Plan:
             shard = None if path.is_symlink() else open_shard(path, self.identity, numbers=numbers)
         except StoreError:
             return None
-        return shard if shard and (not self.whole or self.blocks.takes(shard.span)) else None
+        return shard if shard and shard.span in self.blocks else None
+
+    def kept(self, done: int) -> int:
+        """Of the first surfaces, that a file holds, those in whole blocks: any others are drawn again."""
+        return max((span.stop for span in self.blocks if span.stop <= done), default=0)
 
     def missing(self, done: int, shards: Iterable[Shard]) -> list[Span]:
         """Blocks that neither the file, of `done` surfaces, nor one of the shards holds."""
-        done = self.blocks.kept(done)
-        held = [*([Span(0, done)] if done else []), *(shard.span for shard in shards)]
-        return self.blocks.missing(held)
+        done, held = self.kept(done), {shard.span for shard in shards}
+        return [span for span in self.blocks if span.stop > done and span not in held]

@@ -128,7 +128,7 @@ def test_a_disk_that_keeps_no_locks_is_refused_in_one_line(error, make_scene, tm
     def none(*_, **__):
         raise error
 
-    monkeypatch.setattr(home("_lock"), "_lock", none)
+    monkeypatch.setattr(home("PATIENCE"), "ReadWriteLock", none)
     with pytest.raises(StoreError, match=r"^[^\n]*disk that keeps[^\n]*$"):
         mcgw.run(make_scene(n_surfaces=4), tmp_path / "e.h5")
     assert not (tmp_path / "e.h5").exists()

@@ -11,7 +11,18 @@ import numpy as np
 import pytest
 from oracles.begun_runs import SIZE, SURFACES, begun, digest, halted
 from oracles.flipped import flip_a_number
-from oracles.inside import RECORD, Blocks, Plan, Span, commit_block, home, part_of, parts_of, read_attributes
+from oracles.inside import (
+    RECORD,
+    Plan,
+    Shard,
+    Span,
+    blocks_of,
+    commit_block,
+    home,
+    part_of,
+    parts_of,
+    read_attributes,
+)
 from oracles.said import call
 
 import mcgw
@@ -127,7 +138,7 @@ def test_n_surfaces_is_the_total(scene, tmp_path, expected, drawn):
     path = tmp_path / "e.h5"
     mcgw.run(scene.replace(n_surfaces=5), path)
     mcgw.run(scene.replace(n_surfaces=37), path)
-    assert drawn == [0, 5, 16, 32]
+    assert drawn == [0, 0, 16, 32]
     halted(scene.replace(n_surfaces=90), path, 64)
     assert mcgw.open_ensemble(path).n_surfaces == 37  # the finished file stays as it is
     drawn.clear()
@@ -193,23 +204,23 @@ def test_room_is_asked_for_what_is_not_there_yet(scene, tmp_path, monkeypatch):
 
 def test_blocks_of_several_groups_end_with_their_group():
     """Two groups of 50 and 20 surfaces, in blocks of 16 and 20, one after the other."""
-    plan = Blocks(((50, 16), (20, 20)), whole=True)
-    blocks = [Span(0, 16), Span(16, 16), Span(32, 16), Span(48, 2), Span(50, 20)]
-    assert plan.total == 70
-    assert plan.missing([]) == blocks
-    assert [plan.number(block) for block in blocks] == [0, 1, 2, 3, 4]
-    assert [plan.group(block) for block in blocks] == [(0, 0), (0, 16), (0, 32), (0, 48), (1, 0)]
-    for held in blocks:
-        assert plan.missing([held]) == [block for block in blocks if block != held]
-        assert plan.takes(held)
-    assert plan.missing([Span(0, 37), Span(16, 16), Span(50, 9)]) == [
-        Span(37, 11),
-        Span(48, 2),
-        Span(59, 11),
-    ]  # one lies inside a longer one
-    assert not any(map(plan.takes, (Span(0, 15), Span(8, 16), Span(50, 16), Span(48, 4))))
-    assert Blocks(((50, 16),), whole=True).takes(Span(64, 16))  # of more than is asked for now
-    assert [Blocks(((50, 16),), whole=True).kept(n) for n in (0, 20, 32, 50)] == [0, 16, 32, 50]
+    blocks = blocks_of([(50, 16), (20, 20)])
+    assert list(blocks.items()) == [
+        (Span(0, 16), (0, 0)), (Span(16, 16), (0, 16)), (Span(32, 16), (0, 32)), (Span(48, 2), (0, 48)),
+        (Span(50, 20), (1, 0)),
+    ]  # fmt: skip
+
+
+def test_blocks_are_whole_or_missing(scene, tmp_path):
+    """Of 100 surfaces in blocks of 16: of what a file holds whole ones alone, or all, are not drawn again."""
+    plan = Plan.of(scene, tmp_path / "e.h5")
+    blocks = [Span(first, min(16, 100 - first)) for first in range(0, 100, 16)]
+    assert [plan.kept(n) for n in (0, 15, 16, 20, 32, 99, 100)] == [0, 0, 16, 16, 32, 96, 100]
+    assert plan.missing(0, []) == blocks
+    for i, span in enumerate(blocks):
+        assert plan.missing(0, [Shard(tmp_path, span, 0.0)]) == blocks[:i] + blocks[i + 1 :]
+        assert plan.missing(span.stop, [Shard(tmp_path, blocks[0], 0.0)]) == blocks[i + 1 :]
+    assert plan.missing(99, [Shard(tmp_path, Span(96, 3), 0.0)]) == blocks[-1:]
 
 
 @pytest.mark.parametrize(
