@@ -22,7 +22,7 @@ from mcgw.store.h5_reading import pieces_of
 from mcgw.store.h5_writing import Rows
 from mcgw.store.identity import difference
 from mcgw.store.lock import locked, parts_of
-from mcgw.store.place import check_room, drop_leftovers, finished, last_block, put, remove_run, tidy
+from mcgw.store.place import check_room, drop_leftovers, finished, put, remove_run, tidy
 from mcgw.store.run_plan import RECORD, Plan
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ def _drawn(plan: Plan, span: Span, threads: int | None, *go_on: Done) -> Callabl
     """Draw a block, unless it is there; what this returns writes it, to be done while the next is drawn."""
     path = plan.shards_folder / span.file_name
     held = plan.shard(path)
-    if held and held.span == span:
+    if held and held.span.n >= span.n:
         return lambda: None
     started = perf_counter()
     tables = plan.draw(span, threads, *go_on)
@@ -116,14 +116,14 @@ def _at_once(plan: Plan, by: By, progress: Done, signals: Signals) -> int:
 def _in_blocks(plan: Plan, by: By, progress: Done, signals: Signals) -> int:
     """Draw missing shards, every so many-th of a share; then make the file, but of a share. With the lock."""
     plan.begin()
-    last = last_block(plan.folder)
-    if last >= plan.total and not by.part:  # blocks beyond those requested are kept
+    shards, done = plan.shards(), finished(plan)
+    n = max((shard.span.stop for shard in shards), default=0)
+    if n > plan.total and not by.part:  # blocks beyond those requested are kept
         raise StoreError(
-            f"{plan.folder}: holds surface number {last} already, but ensemble.n_surfaces = {plan.total}; "
-            "ask for more, or choose another -o"
+            f"{plan.folder}: holds surfaces up to number {n} already, more than ensemble.n_surfaces = "
+            f"{plan.total}; ask for as many or more, or choose another -o"
         )
-    done = finished(plan)
-    spans = plan.missing(done, plan.shards())
+    spans = plan.missing(done, shards)
     left, worked = sum(span.n for span in spans), plan.work(plan.blocks) - plan.work(spans)
     if by.part:
         number, of = by.part

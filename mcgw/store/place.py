@@ -196,19 +196,14 @@ def drop_leftovers(path: Path) -> None:
     """As `tidy`, for who has the lock; a run stays if it has a block that its file does not have."""
     folder, held = parts_of(path), 0
     remove_unfinished(folder)
-    last = last_block(folder) if (folder / RECORD).exists() else -1  # else nobody knows what the blocks are
-    if last >= 0 and path.exists():
+    begun = (folder / RECORD).exists()  # without it nobody knows what the blocks are
+    shards = list(folder.glob("shards/block-*.h5")) if begun else []
+    if shards and path.exists():
         with suppress(StoreError):  # else a person must look
             plan = Plan.open(folder)
             held = plan.kept(finished(plan))
-    if last < held:
+    if not any(int(shard.stem.removeprefix("block-")) >= held for shard in shards):
         remove_run(folder)
-
-
-def last_block(folder: Path) -> int:
-    """Return the highest number that a shard of a run begins with, whether it is valid or not; else -1."""
-    names = [path.stem.removeprefix("block-") for path in folder.glob("shards/block-*.h5")]
-    return max((int(name) for name in names if name.isdecimal()), default=-1)
 
 
 def remove_unfinished(folder: Path) -> None:

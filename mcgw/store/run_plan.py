@@ -262,7 +262,12 @@ class Plan:
             shard = None if path.is_symlink() else open_shard(path, self.identity, numbers=numbers)
         except StoreError:
             return None
-        return shard if shard and shard.span in self.blocks else None
+        return shard if shard and (shard.span in self.blocks or self._of_more(shard.span)) else None
+
+    def _of_more(self, span: Span) -> bool:
+        """Whether this is a block of the same scene with more surfaces."""
+        rows = self.reducers[0].rows
+        return not self.axes and span.n == rows and span.first % rows == 0
 
     def kept(self, done: int) -> int:
         """Of the first surfaces, that a file holds, those in whole blocks: any others are drawn again."""
@@ -270,5 +275,5 @@ class Plan:
 
     def missing(self, done: int, shards: Iterable[Shard]) -> list[Span]:
         """Blocks that neither the file, of `done` surfaces, nor one of the shards holds."""
-        done, held = self.kept(done), {shard.span for shard in shards}
-        return [span for span in self.blocks if span.stop > done and span not in held]
+        done, held = self.kept(done), {shard.span.first for shard in shards}
+        return [span for span in self.blocks if span.stop > done and span.first not in held]

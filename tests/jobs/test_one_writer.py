@@ -109,7 +109,7 @@ def test_an_unfinished_run_is_not_replaced(scene, path):
     mcgw.run(blocks, path, shard="1/2")
     with pytest.raises(StoreError, match="a run that makes this file is not finished"):
         mcgw.save(mcgw.simulate(scene), path)
-    with pytest.raises(StoreError, match="holds surface number 32 already, but"):
+    with pytest.raises(StoreError, match="holds surfaces up to number 48 already, more than"):
         mcgw.run(scene, path)
     with pytest.raises(StoreError, match=r"holds a different run: .*seed is 1 there and 2"):
         mcgw.run(blocks.replace(seed=2), path)

@@ -220,7 +220,8 @@ def test_blocks_are_whole_or_missing(scene, tmp_path):
     for i, span in enumerate(blocks):
         assert plan.missing(0, [Shard(tmp_path, span, 0.0)]) == blocks[:i] + blocks[i + 1 :]
         assert plan.missing(span.stop, [Shard(tmp_path, blocks[0], 0.0)]) == blocks[i + 1 :]
-    assert plan.missing(99, [Shard(tmp_path, Span(96, 3), 0.0)]) == blocks[-1:]
+    assert plan.missing(99, []) == blocks[-1:]
+    assert plan.missing(96, [Shard(tmp_path, Span(96, 16), 0.0)]) == []  # of more surfaces than now
 
 
 @pytest.mark.parametrize(
