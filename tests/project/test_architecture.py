@@ -197,5 +197,5 @@ def test_tests_know_little_of_the_inside():
             if isinstance(node, ast.ImportFrom) and (node.module or "").startswith(("mcgw.", "analytic."))
             and node.module.count(".") > 1
         ]  # fmt: skip
-    assert len(inner) + len(MODULES) <= 107
+    assert len(inner) + len(MODULES) <= 112
     assert patches <= 146
