@@ -20,15 +20,17 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import erfcx, ndtr
+from scipy.special import erfcx, log_ndtr
 
-from analytic.arrays import Array
-from analytic.nayak import Nayak, NayakTables, tables_of, upper_tail
-from analytic.quadrature import panelled
+from analytic.arrays import Array, Ints
+from analytic.nayak import Nayak, NayakTables, tables_of
+from analytic.quadrature import gauss_legendre, panelled
 
 MEAN_CURVATURE = 8 / math.sqrt(3 * math.pi)  # of the summits, over sqrt(m4/3)
 _DIVERGES = 4.0  # power of the radius that has no mean: the density of g begins as its cube
 _BLOCK = 1024  # numbers whose rules are summed at a time
+_NODES, _AS_WIDE = 64, 0.6  # points for curvatures, if their density bends over so many heights
+_RAREST = 1e-18  # share of the touching heights above which curvatures are left out
 _WIDE = 9.5  # standard deviations, beyond which a normal density is 1e-20 of its largest value
 
 
@@ -67,11 +69,9 @@ class CurvatureGivenHeight:
     def _parts(self, g: Array) -> Array:
         """``exp(g^2/2)`` times the integral over tau > g; far below over a factor that the height decides."""
         v, mu = self._v, self._mu
-        x, a = g / math.sqrt(v), mu / math.sqrt(v)
-        z = math.sqrt(1 + v) * x - a / math.sqrt(1 + v)
-        tail = upper_tail(z) * np.exp(np.where(a < 0, x * (a - x / 2), -((x - a) ** 2) / 2))
-        body = ndtr(-z) * np.exp(np.minimum(g * g - mu * mu / (1 + v), 0.0) / 2)
-        return np.asarray(np.where(z > 0, tail, body) / math.sqrt(1 + v))
+        z = (mu / math.sqrt(1 + v) - math.sqrt(1 + v) * g) / math.sqrt(v)
+        over = g * g - mu * mu / (1 + v) + np.minimum(mu, 0.0) ** 2 / v
+        return np.asarray(np.exp(log_ndtr(z) + over / 2) / math.sqrt(1 + v))
 
     def edges(self, low: Array, high: Array) -> Array:
         """Return ends of pieces on which the law is smooth, between two curvatures at each height: (6, n)."""
@@ -230,3 +230,46 @@ class RandomCurvature:
         parts = [slice(k, k + _BLOCK) for k in range(0, a.size, _BLOCK)]
         found = [function(CurvatureGivenHeight(self.alpha, x.ravel()[i]), a.ravel()[i]) for i in parts]
         return np.concatenate([np.empty(0), *found]).reshape(a.shape)
+
+
+@dataclass(frozen=True)
+class RadiusRule:
+    """Radii of a rule over the curvature, the last of them that of all flatter summits if there is a bound.
+
+    Parameters
+    ----------
+    law : RandomCurvature
+        Of the radii.
+    curvatures, weights : ndarray
+        Points of the rule, and their weights; shape (radii,).
+    """
+
+    law: RandomCurvature
+    curvatures: Array
+    weights: Array
+
+    @classmethod
+    def over(cls, law: RandomCurvature, highest: float) -> "RadiusRule":
+        """Of summits as high as touch at this separation."""
+        top = float(law.heights.isf(np.array(_RAREST), highest))
+        first = np.sqrt(MEAN_CURVATURE / law.largest)
+        last = max(np.sqrt(law.steepest(top)), first)
+        x, w = gauss_legendre(int(np.ceil(_NODES * max(1.0, _AS_WIDE / law.narrowest))))
+        roots = first + (last - first) * x
+        curvatures, weights = roots**2, 2 * roots * (last - first) * w
+        if first > 0:
+            curvatures, weights = np.append(curvatures, first**2), np.append(weights, 1.0)
+        return cls(law, curvatures, weights)
+
+    @property
+    def ratios(self) -> Array:
+        """Over the radius of the surface."""
+        return MEAN_CURVATURE / self.curvatures
+
+    def density(self, s: Array, which: Ints) -> Array:
+        """Density of the heights of summits of some of the radii, with their weights."""
+        own = np.empty(s.shape)
+        bound = (which == self.curvatures.size - 1) & np.isfinite(self.law.largest)
+        own[bound] = self.law.cdf(self.curvatures[-1], s[bound]) * self.law.heights.pdf(s[bound])
+        own[~bound] = self.law.with_height(self.curvatures[which[~bound]], s[~bound])
+        return np.asarray(self.weights[which] * own)

@@ -2,10 +2,12 @@
 
 One surface has N independent asperities (or a Poisson number of them with mean N), so a quantity is
 a sum of N independent terms ``f(s_i)``. Its cumulants follow from integrals over one asperity, taken with a
-fixed set of heights and probabilities (`HeightRule`).
+fixed set of heights and probabilities (`HeightRule`). Where radii are random the integrals are over the
+curvature too, in the root of which they are smooth: the heights at which a contact changes its law depend on
+the radius alone. So there are some radii, each with pieces of the heights of its own.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import reduce
 from typing import Any, Literal
@@ -14,16 +16,22 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from analytic.arrays import Array, Ints
+from analytic.curvature import RadiusRule, RandomCurvature
 from analytic.gradings import Grading
 from analytic.heights import GAUSSIAN, HeightLaw
-from analytic.law_rule import law_rule
+from analytic.law_rule import TINY, ends_of, regular_edges
 from analytic.laws.branch import Branch
 from analytic.laws.law import ContactLaw
+from analytic.measured_summits import MeasuredHeights, MeasuredRadii
+from analytic.quadrature import NODES, SPANS, WIDEST, in_pieces
+from analytic.resolution import resolved_breaks
 
 Count = Literal["fixed", "poisson"]
+Cuts = Callable[[Array], Array]  # of ratios of radii: heights, shape (cuts, radii)
 
 _TOGETHER = 2**17  # terms that are found together: a cache holds them
 _DIVERGES = 4  # power of the radius of a summit that has no mean
+_NARROW, _PER_NARROW, _PER_PIECE = 0.25, 16, 32  # of many radii: heights of a narrow piece, and points
 
 
 def _check(s: Array, modulus: Array, contact: ContactLaw) -> None:
@@ -64,26 +72,53 @@ class HeightRule:
         separations: ArrayLike,
         grading: Grading,
         heights: HeightLaw = GAUSSIAN,
+        radii: RandomCurvature | MeasuredRadii | None = None,
         *,
         branches: Iterable[Branch] = (),
-        cuts: Sequence[float] = (),
+        cuts: Cuts | None = None,
         **powers: float,
     ) -> "HeightRule":
-        """Return the rule for these reduced separations, this grading and law of the heights.
+        """Return the rule for these reduced separations, this grading, and laws of the heights and radii.
 
-        `branches` are those of what is summed, `cuts` heights at which it jumps or bends besides, `powers`
-        the highest ones of modulus and approach, as of `analytic.law_rule.ends_of`.
+        `branches` are those of what is summed, `cuts` gives heights at which it jumps or bends besides,
+        `powers` are the highest ones of modulus and approach, as of `analytic.law_rule.ends_of`. Heights
+        increase, of each radius; those of a list keep its order, each as probable as another.
         """
         branches, h = tuple(branches), np.unique(np.asarray(separations, dtype=np.float64))
         lowest = np.unique([*h, *(branch.lowest(h[0]) for branch in branches)])
-
-        def changes(low: float, high: float) -> list[float]:
-            """Heights where another formula holds."""
-            found = [branch.regimes(grading, h, low, high) for branch in branches]
-            return [*cuts, *(s for each in found for s in (*each.low.tolist(), *each.high.tolist()))]
-
-        rule = law_rule(heights, lowest, grading, further=changes, **powers)
-        return cls(*rule, float(heights.cdf(lowest[0])))
+        below = float(heights.cdf(lowest[0]))
+        if isinstance(heights, MeasuredHeights):  # a separation seldom meets one that jumps
+            s = np.array(heights.heights)
+            touching = s > lowest[0]
+            ratios = np.array(radii.ratios)[touching] if isinstance(radii, MeasuredRadii) else None
+            return cls(s[touching], np.full(touching.sum(), 1 / s.size), below, ratios)
+        start, top = ends_of(heights, lowest, grading, **powers)
+        own = RadiusRule.over(radii, h[-1]) if isinstance(radii, RandomCurvature) else None
+        if not start < top:
+            return cls(np.empty(0), np.empty(0), below, None if own is None else np.empty(0))
+        if own is None:
+            ratios, regular = np.ones(1), np.array(regular_edges(heights, start, top))
+        else:
+            widest = min(SPANS * own.law.narrowest, WIDEST)
+            ratios, regular = own.ratios, np.linspace(start, top, int(np.ceil((top - start) / widest)) + 1)
+        common = np.concatenate([regular, resolved_breaks(grading, start, top), lowest])
+        edges, which = [np.tile(common, ratios.size)], [np.repeat(np.arange(ratios.size), common.size)]
+        for branch in branches:  # at each separation, which has the radii in turn
+            branch = branch if own is None else branch.with_radii(ratios)
+            found = branch.regimes(grading, np.repeat(h, ratios.size), start, top)
+            edges += [found.low, found.high]
+            which += [found.separation % ratios.size] * 2
+        if cuts is not None:
+            more = cuts(ratios)
+            edges, which = [*edges, more.ravel()], [*which, np.tile(np.arange(ratios.size), len(more))]
+        left, right, of = _pieces(np.concatenate(edges), np.concatenate(which), start, top)
+        if own is None:
+            return cls(*_of_heights(heights, left, right), below)
+        wide, parts = right - left > _NARROW, []
+        for some, points in ((wide, _PER_PIECE), (~wide, _PER_NARROW)):
+            parts.append((*in_pieces(left[some], right[some], points), np.repeat(of[some], points)))
+        s, weights, of = (np.concatenate(part) for part in zip(*parts, strict=True))
+        return cls(s, weights * own.density(s, of), below, ratios[of])
 
     def mean(self, f: Array) -> Array:
         """Return the mean of each column of `f` above the lowest separation; in this thread alone."""
@@ -96,14 +131,13 @@ class HeightRule:
         almost every asperity contributes (nothing, or the same), so that a variance like 1e-89 keeps its
         digits; for a Poisson number the terms themselves.
         """
-        mean = self.mean(f)
-        if count == "poisson" or not self.heights.size:
-            return Fluctuations(self, mean, f, np.zeros(f.shape[1]))
-        usual = np.zeros(f.shape[1]) if self.below > 0.5 else f[np.argmax(self.probabilities)]
-        shifted = f - usual
-        offset = self.mean(shifted) - self.below * usual
-        shifted -= offset
-        return Fluctuations(self, mean, shifted, -usual - offset)
+        mean, p = self.mean(f), np.append(self.probabilities, self.below)
+        parts = np.append(f, np.zeros((1, f.shape[1])), axis=0)
+        if count == "fixed" and self.heights.size:
+            if self.below <= 0.5:
+                parts -= f[np.argmax(self.probabilities)]
+            parts -= np.einsum("i,ij->j", p, parts)
+        return Fluctuations(p, mean, parts)
 
     def terms(
         self, quantities: Sequence[str], separations: ArrayLike, grading: Grading, ways: Branch
@@ -125,6 +159,30 @@ class HeightRule:
         return terms.reshape(self.heights.size, len(quantities) * h.size)
 
 
+def _pieces(cuts: Array, which: Ints, start: float, top: float) -> tuple[Array, Array, Ints]:
+    """Return the ends of the pieces between the cuts of each radius, and the number of the radius."""
+    inside = (cuts >= start) & (cuts <= top)
+    cuts, which = cuts[inside], which[inside]
+    order = np.lexsort((cuts, which))
+    cuts, which = cuts[order], which[order]
+    held = np.flatnonzero((np.diff(which) == 0) & (np.diff(cuts) > 0))
+    return cuts[held], cuts[held + 1], which[held]
+
+
+def _of_heights(law: HeightLaw, left: Array, right: Array) -> tuple[Array, Array]:
+    """Return heights and probabilities of the pieces.
+
+    What a singular end leaves over, less than the last digit of a height, counts with its exact probability.
+    """
+    at_low, at_high = np.isin(left, law.singular), np.isin(right, law.singular)
+    lump = (right - left <= 2 * TINY) & (at_low | at_high)
+    s, weights = in_pieces(left[~lump], right[~lump], NODES)
+    mass = np.where(at_low, law.cdf(right), law.sf(left))[lump] if lump.any() else np.empty(0)
+    s, probabilities = np.append(s, left[lump]), np.append(weights * law.pdf(s), mass)
+    order = np.argsort(s, kind="stable")
+    return s[order], probabilities[order]
+
+
 @dataclass(frozen=True, slots=True)
 class Fluctuations:
     """Random parts of what one asperity contributes to some sums, the columns.
@@ -133,30 +191,28 @@ class Fluctuations:
 
     Parameters
     ----------
-    rule : HeightRule
-        Heights and their probabilities.
+    probabilities : ndarray
+        Those of the heights of a rule, and of one below them; shape (m + 1,).
     mean : ndarray
         What one asperity contributes in the mean, shape (columns,).
-    at_heights : ndarray
-        The random part at each height of the rule, shape (m, columns).
-    below : ndarray
-        That below all of them, shape (columns,).
+    parts : ndarray
+        The random part at each of these heights, shape (m + 1, columns).
     radius : ndarray, optional
         Power of the radius in each column, where radii have means up to the third power only.
     """
 
-    rule: HeightRule
+    probabilities: Array
     mean: Array
-    at_heights: Array
-    below: Array
+    parts: Array
     radius: Array | None = None
 
     def moment(self, k: int) -> Array:
         """Return the mean of the `k`-th power, shape (columns,); infinite where there is none."""
-        rule = self.rule
-        powers = reduce(np.multiply, [self.at_heights] * k)  # ten times as fast as **
-        found = np.asarray(rule.mean(powers) + rule.below * self.below**k)
-        return found if self.radius is None else np.where(k * self.radius < _DIVERGES, found, np.inf)
+        powers = reduce(np.multiply, [self.parts] * k)  # ten times as fast as **
+        found = np.einsum("i,ij->j", self.probabilities, powers)  # in this thread alone
+        return np.asarray(
+            found if self.radius is None else np.where(k * self.radius < _DIVERGES, found, np.inf)
+        )
 
     def combined(self, mean: Array, own: Ints, factor: Array, other: Ints, press: Array) -> "Fluctuations":
         """Return those of columns `own` times `factor` and columns `other` times `press`, to first order."""
@@ -165,33 +221,23 @@ class Fluctuations:
             radius = np.maximum(
                 *(np.where(by != 0, radius[k], 0.0) for k, by in ((own, factor), (other, press)))
             )
-        return Fluctuations(
-            self.rule,
-            mean,
-            self.at_heights[:, own] * factor + self.at_heights[:, other] * press,
-            self.below[own] * factor + self.below[other] * press,
-            radius,
-        )
+        parts = self.parts[:, own] * factor + self.parts[:, other] * press
+        return Fluctuations(self.probabilities, mean, parts, radius)
 
     def products(self) -> Array:
         """Return the mean products of all columns, shape (columns, columns)."""
-        weighted = self.at_heights * self.rule.probabilities[:, None]
-        return np.asarray(weighted.T @ self.at_heights + self.rule.below * np.outer(self.below, self.below))
+        return np.asarray((self.parts * self.probabilities[:, None]).T @ self.parts)
 
     def take(self, columns: NDArray[Any], unit: Array | float = 1.0) -> "Fluctuations":
         """Return some of the columns, in units of `unit`."""
-        return Fluctuations(
-            self.rule,
-            self.mean[columns] / unit,
-            self.at_heights[:, columns] / unit,
-            self.below[columns] / unit,
-            None if self.radius is None else self.radius[columns],
-        )
+        radius = None if self.radius is None else self.radius[columns]
+        parts = self.parts[:, columns] / unit
+        return Fluctuations(self.probabilities, self.mean[columns] / unit, parts, radius)
 
     def turned(self, axes: Array) -> "Fluctuations":
         """Return combinations of the columns; `axes` has shape (columns, combinations)."""
         radius = None if self.radius is None else np.where(axes, self.radius[:, None], 0.0).max(axis=0)
-        return Fluctuations(self.rule, self.mean @ axes, self.at_heights @ axes, self.below @ axes, radius)
+        return Fluctuations(self.probabilities, self.mean @ axes, self.parts @ axes, radius)
 
     def whitening(self, least: float) -> Array:
         """Return the matrix that makes columns of unit variance uncorrelated, shape (columns, axes).

@@ -9,12 +9,11 @@ from functools import cached_property, lru_cache
 from typing import Any, ClassVar, Protocol
 
 import numpy as np
-from scipy.special import erfcx, gammaln, log_ndtr, ndtri, ndtri_exp, zeta
+from scipy.special import erfcx, gammaln, log_ndtr, ndtri, ndtri_exp
 
 from analytic.arrays import Array
 
 _FAR = -30.0  # below, where no height is ever drawn, probabilities underflow
-_SERIES = 4.0  # shape of a Weibull law from which on its spread is summed in powers of its inverse
 _BEND = 0.5  # change of the logarithm of the density over a span
 _NO_DENSITY = 1e4  # beyond, a normal density is 0
 
@@ -182,20 +181,9 @@ class Weibull(HeightLaw):
 
     @cached_property
     def _spread(self) -> tuple[float, float]:
-        """Deviation over mean of the unreduced x of scale 1, and k times the logarithm of its mean.
-
-        ``x^k`` makes k times an error of the first, so it is summed in powers of 1/k, whose coefficients are
-        zeta functions, where the difference of logarithms of Gamma functions would cancel.
-        """
-        k = self.shape
-        if k < _SERIES:
-            logs = gammaln(1 + 1 / k), gammaln(1 + 2 / k)
-            return math.sqrt(math.expm1(logs[1] - 2 * logs[0])), float(k * logs[0])
-        m = np.arange(2, 80)
-        terms = (-1.0) ** m * zeta(m) / m
-        log_square = math.fsum(terms * (2.0**m - 2) * k ** (-1.0 * m))
-        log_mean = math.fsum([-np.euler_gamma, *(terms * k ** (1.0 - m))])
-        return math.sqrt(math.expm1(log_square)), log_mean
+        """Deviation over mean of the unreduced x of scale 1, and k times the logarithm of its mean."""
+        first, second = (float(gammaln(1 + n / self.shape)) for n in (1, 2))
+        return math.sqrt(math.expm1(second - 2 * first)), self.shape * first
 
     @property
     def support(self) -> tuple[float, float]:

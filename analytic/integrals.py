@@ -9,21 +9,30 @@ from numpy.typing import ArrayLike
 
 from analytic.arrays import Array
 from analytic.gradings import Grading, Homogeneous
+from analytic.height_rule import HeightRule
 from analytic.heights import GAUSSIAN, Gaussian, HeightLaw, exp_minus_half_square
-from analytic.law_rule import ends_of, law_integral, pieces_of
+from analytic.law_rule import ends_of, regular_edges
 from analytic.quadrature import NODES, gauss_legendre, towards_both_ends
-from analytic.resolution import resolved_once
+from analytic.resolution import resolved_breaks
 
 
-def _relative(n: float, h: float, grading: Grading) -> float:
+def _relative(n: float, h: float, grading: Grading, breaks: Array) -> float:
     """``int (s-h)^n g phi / phi(max(h, 0))`` over s > h."""
-    left, right = pieces_of(GAUSSIAN, np.array([h]), grading, power=1)
-    width, above = (right - left)[:, None], max(h, 0.0)
+    start, top = ends_of(GAUSSIAN, np.array([h]), grading, power=1)
+    inner = breaks[(start < breaks) & (breaks < top)]
+    edges = np.unique([*regular_edges(GAUSSIAN, start, top), *inner])
+    width, above = np.diff(edges)[:, None], max(h, 0.0)
     place, weight = towards_both_ends(NODES if (2 * n) % 1 == 0 else 2 * NODES)
-    approach = (left - h)[:, None] + width * place
+    approach = (edges[:-1] - h)[:, None] + width * place
     beyond = approach + (h - above)  # s - above, without cancellation
     density = np.exp(GAUSSIAN.log_ratio(np.array(above), beyond))
     return float(np.sum(width * weight * approach**n * density * grading(above + beyond)))
+
+
+def _absolute(n: float, h: float, grading: Grading, heights: HeightLaw) -> float:
+    """``int (s-h)^n g density`` over s > h."""
+    rule = HeightRule.over([h], grading, heights, power=1, exponent=n + 1)
+    return float(np.sum(rule.probabilities * grading(rule.heights) * (rule.heights - h) ** n))
 
 
 def quotient(
@@ -65,13 +74,11 @@ def fn_scaled(
         raise ValueError(f"n = {n!r}: give a finite number that is not negative")
     if not np.all(np.isfinite(h)):
         raise ValueError("h: every separation must be finite")
-    grading = Homogeneous() if grading is None else grading
-    if not isinstance(heights, Gaussian):
-        return law_integral(n, h, heights, grading)
-    if h.size:
-        once = np.unique(h)
-        grading = resolved_once(grading, *ends_of(heights, once, grading, power=1))
-    values = [_relative(n, x, grading) for x in h.ravel().tolist()]
+    grading, flat = Homogeneous() if grading is None else grading, h.ravel().tolist()
+    if not isinstance(heights, Gaussian) or not flat:
+        return np.reshape([_absolute(n, x, grading, heights) for x in flat], h.shape)
+    breaks = np.array(resolved_breaks(grading, *ends_of(heights, np.unique(h), grading, power=1)))
+    values = [_relative(n, x, grading, breaks) for x in flat]
     unit = np.where(h >= 0, 1.0, 1 / np.sqrt(2 * np.pi))
     return np.asarray(unit * np.reshape(values, h.shape))
 
@@ -105,7 +112,7 @@ def fn(
         Return the natural logarithm, which does not underflow; nan where the integral is negative.
     heights : HeightLaw, optional
         Law of the heights, with its density in place of phi. Another than the Gaussian is integrated
-        to 1e-12 as far as its density reaches in double precision.
+        to 1e-11 as far as its density reaches in double precision.
 
     Returns
     -------

@@ -35,11 +35,6 @@ def _itself(x: Array, order: int = 0) -> Array:
     return x if order == 0 else np.full_like(x, float(order == 1))
 
 
-def _mean_in_series(mean: Array, variance: Array, other: float) -> Array:
-    """Return the mean of what is in series, to second order."""
-    return np.asarray(in_series(mean, other) - other * variance / (1 + other * mean) ** 3)
-
-
 @dataclass(frozen=True)
 class _Answer:
     """How a quantity of a surface follows from a sum S over its spots and its load P.
@@ -73,32 +68,28 @@ class _Answer:
 
     def mean(self, model: Model, h: Array) -> Array:
         """Mean over surfaces, to second order."""
-        y, variance = np.zeros(h.shape), np.zeros(h.shape)
-        if self.spots:
-            y = model.mean(self.spots, h) / self.per
-            if self.series or self.bodies:
-                variance = model.cumulants(self.spots, h).variance / self.per**2
-            if self.series:
-                y = _mean_in_series(y, variance, self.series * self.per)
-        if self.at_plane:
-            x = self._plane(model, h)
-            y = y + self.at_plane(x, 0)
-            if self.sunk and self.at_plane is not _itself:
-                y = y + self.at_plane(x, 2) * self.sunk**2 * model.cumulants(self.load, h).variance / 2
-        return _mean_in_series(y, variance, self.bodies) if self.bodies else y
+        y, _, (bend_spots, bend_load) = self.at_means(model, h)
+        if self.series or self.bodies:
+            y = y + bend_spots * model.cumulants(self.spots, h).variance / 2
+        if self.sunk and self.at_plane is not _itself:
+            y = y + bend_load * model.cumulants(self.load, h).variance / 2
+        return y
 
-    def rates(self, model: Model, h: Array) -> tuple[Array, Array]:
-        """How much it deviates with S and with P, at their means."""
-        of_spots, of_load, y = np.zeros(h.shape), np.zeros(h.shape), np.zeros(h.shape)
+    def at_means(self, model: Model, h: Array) -> tuple[Array, Array, Array]:
+        """Value at the means of S and P, and its first and second derivatives by both."""
+        y, (slopes, bends) = np.zeros(h.shape), np.zeros((2, 2, *h.shape))
         if self.spots:
             alone = model.mean(self.spots, h)
-            of_spots = (1 + self.series * alone) ** -2.0 / self.per
-            y = in_series(alone, self.series) / self.per
+            y, whole = in_series(alone, self.series) / self.per, 1 + self.series * alone
+            slopes[0], bends[0] = whole**-2.0 / self.per, -2 * self.series * whole**-3.0 / self.per
         if self.at_plane:
-            x = self._plane(model, h)
-            of_load, y = -self.sunk * self.at_plane(x, 1), y + self.at_plane(x, 0)
-        whole = (1 + self.bodies * y) ** -2.0
-        return of_spots * whole, of_load * whole
+            x = h - self.sunk * model.mean(self.load, h) if self.sunk else h
+            y = y + self.at_plane(x, 0)
+            if self.sunk:
+                slopes[1], bends[1] = -self.sunk * self.at_plane(x, 1), self.sunk**2 * self.at_plane(x, 2)
+        whole = 1 + self.bodies * y
+        bends = (bends - 2 * self.bodies * slopes**2 / whole) / whole**2
+        return in_series(y, self.bodies), slopes / whole**2, bends
 
     def law(self, model: Model, h: float) -> "Law":
         """Return the distribution over surfaces, of what follows from S or P alone."""
@@ -114,9 +105,6 @@ class _Answer:
             return np.asarray(y / (1 + self.bodies * y) if self.bodies else y)
 
         return law if self.is_sum else law.mapped(together)
-
-    def _plane(self, model: Model, h: Array) -> Array:
-        return h - self.sunk * model.mean(self.load, h) if self.sunk else h
 
 
 @dataclass(frozen=True)
@@ -224,7 +212,7 @@ class InteractingModel(Model):
         for name, answer, pair in zip(quantities, answers, pairs, strict=True):
             unit = quantity_of(name).scale(self.surface)
             means.append(self.mean(name, h) / (self.number * unit))
-            for column, rate in zip(pair, answer.rates(self.alone, h), strict=True):
+            for column, rate in zip(pair, answer.at_means(self.alone, h)[1], strict=True):
                 at = columns.index(column or pair[0])
                 scale = quantity_of(columns[at]).scale(self.surface) / unit
                 parts.append((at * h.size + np.arange(h.size), rate * scale))

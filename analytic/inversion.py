@@ -1,7 +1,6 @@
 """The separation at a given load (or area, ...), and comparisons at equal load."""
 
 from collections.abc import Callable
-from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,28 +22,24 @@ def last_separations(
     """Find the largest separations at which a mean has given values, in the shape of their logarithms.
 
     `log_mean` takes separations to the logarithm of the mean, nan where that is negative. They are looked for
-    between those of an increasing grid, where `about` is the same to some digits: where the exact means deny
-    what it says they are taken on the grid. A value that is not reached there is a ValueError with the
-    `name`.
+    between those of an increasing grid, from where `about` says, which is the same to some digits. A value
+    that is not reached there is a ValueError with the `name`.
     """
-    exact = cache(lambda: log_mean(grid))
 
     def found(target: float) -> float:
         def excess(h: float) -> float:  # -100 also where the mean is not positive
             return float(np.fmax(log_mean(h) - target, -100.0))
 
-        for values, farther in ((about, 1), (about, 3), (None, 0)):
-            values = exact() if values is None else values
-            high_enough = np.flatnonzero(values >= target)
-            if not high_enough.size or high_enough[-1] == grid.size - 1:
-                continue
-            last = int(high_enough[-1])
-            left, right = grid[max(last - farther, 0)], grid[min(last + 1 + farther, grid.size - 1)]
-            if excess(left) > 0 > excess(right):
-                return root(excess, float(right), float(left))
-            if not farther:  # right at an end of the bracket a target may lie beyond it by a last digit
-                return float(left if excess(left) <= 0 else right)
-        raise ValueError(f"{name}: not reached for h from {grid[0]:g} to {grid[-1]:.4g}; give another value")
+        k = int(np.flatnonzero(about >= target).max(initial=0))
+        while k > 0 and excess(grid[k]) < 0:
+            k -= 1
+        while k < grid.size - 1 and excess(grid[k + 1]) >= 0:
+            k += 1
+        if k == grid.size - 1 or excess(grid[k]) < 0:
+            raise ValueError(
+                f"{name}: not reached for h from {grid[0]:g} to {grid[-1]:.4g}; give another value"
+            )
+        return root(excess, float(grid[k + 1]), float(grid[k]))
 
     roots = [found(target) for target in log_targets.ravel().tolist()]
     return np.array(roots, dtype=np.float64).reshape(log_targets.shape)

@@ -22,11 +22,11 @@ from analytic.arrays import Array, hold
 from analytic.gases import ATMOSPHERE, GASES, ROOM, Gas, gas_of
 from analytic.nayak import Nayak
 from analytic.piecewise import fitted
-from analytic.quadrature import gauss_legendre
+from analytic.quadrature import panelled
 from analytic.surface import SUMMIT_SPREAD, SpectralMoments, Surface
 
 _REACH = 10.0  # standard deviations of heights that count
-_DIRECT, _PANEL, _TERMS = 4096, 0.5, 18  # distances that are integrated one by one; or interpolated
+_DIRECT, _PANEL, _TERMS = 512, 0.5, 18  # distances that are integrated one by one; or interpolated
 
 
 @dataclass(frozen=True)
@@ -196,19 +196,10 @@ def gap_integral(y: ArrayLike, m: float, order: int = 0) -> Array:
 
 
 def _integrals(y: Array, m: float, order: int) -> Array:
-    """Each by Gauss-Legendre rules in panels: from 0, as fine as M there, or about Y if that is far."""
-    far, turned = y > 1.2 * _REACH, HermiteE.basis(order)  # the derivatives of the Gaussian
-    found = np.empty(y.shape)
-    x, w = _rule([-_REACH, *np.arange(1 - _REACH, _REACH + 1)])
-    found[far] = (w * np.exp(-x * x / 2) * turned(x) / (y[far, None] + x + m)).sum(axis=1)
-    near = m * 4.0 ** np.arange(math.ceil(-math.log(m, 4))) if m < 1 else ()
-    x, w = _rule([0.0, *near, *np.arange(1, 2.2 * _REACH + 2)])
-    z = x - y[~far, None]
-    found[~far] = (w / (x + m) * np.exp(-z * z / 2) * turned(z)).sum(axis=1)
-    return found / math.sqrt(2 * math.pi)
-
-
-def _rule(edges: ArrayLike) -> tuple[Array, Array]:
-    x, w = gauss_legendre(24)
-    left, width = np.asarray(edges)[:-1, None], np.diff(edges)[:, None]
-    return (left + width * x).ravel(), (width * w).ravel()
+    """Each by Gauss-Legendre rules in panels: as fine as M from 0 on, and about Y."""
+    near = m * 4.0 ** np.arange(math.ceil(-math.log(m, 4))) if m < 1 else np.empty(0)
+    about = np.maximum(y, 0.0) + np.linspace(-_REACH, _REACH, 5)[:, None]
+    fine = np.maximum(np.append(0.0, near)[:, None], np.maximum(about[0], 0.0))
+    x, w = panelled(np.sort(np.append(fine, np.maximum(about, 0.0), axis=0), axis=0))
+    z, turned = x - y, HermiteE.basis(order)  # the derivatives of the Gaussian
+    return np.asarray((w / (x + m) * np.exp(-z * z / 2) * turned(z)).sum(axis=0) / math.sqrt(2 * math.pi))

@@ -1,14 +1,12 @@
-"""Integrals over any law of heights: pieces on which the density is one smooth curve.
+"""Which heights count under a law of heights, and pieces of them on which its density is one smooth curve.
 
-A piece is at most six spans of the law wide, ends at every separation, at every break of the law, of the
-grading and of the law of contact, and shrinks towards the ends where the density is a broken power. What such
-an end leaves over, less than the last digit of a height, counts with its exact probability. The normal law is
-entire: its pieces have one width. Means and variances underflow with its density, beyond h = 37.
+A piece is at most six spans of the law wide, ends at every break of the law, and shrinks towards the ends
+where the density is a broken power. The normal law is entire: its pieces have one width. Means and variances
+underflow with its density, beyond h = 37.
 """
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any
 
 import numpy as np
 
@@ -16,12 +14,11 @@ from analytic.arrays import Array
 from analytic.gradings import Exponential, Grading, Homogeneous, Table
 from analytic.heights import Gaussian, HeightLaw
 from analytic.measured_summits import MeasuredHeights
-from analytic.quadrature import REACH, SPANS, WIDEST, in_pieces
-from analytic.resolution import resolved_breaks
+from analytic.quadrature import REACH, SPANS, WIDEST
 
 POWER = 4  # of the modulus in the kurtosis
 _GROWTH = 8.0  # of the pieces away from a singular end
-_TINY = 1e-14  # distance from such an end, below which heights are not told apart
+TINY = 1e-14  # distance from such an end, below which heights are not told apart
 _UNDERFLOW = -745.0  # logarithm of the least density
 _RAREST = 1e-290  # share of the heights next to which densities underflow
 _NOTHING = 1e-32  # share of the touching heights that can be left out
@@ -33,8 +30,6 @@ _FARTHER, _MOST_STEPS = 1.1, 1000  # an end is looked for so many times as far, 
 _ALONG = np.union1d(np.linspace(0, 1, 65), np.geomspace(1e-4, 1, 65))
 _TAME = Homogeneous, Exponential, Table  # rise no faster than ``exp(-s)``: the normal law makes nothing of it
 _GRID = 16  # the upper end is rounded up to one over this
-
-Further = Callable[[float, float], Sequence[float]]
 
 
 def ends_of(
@@ -49,7 +44,7 @@ def ends_of(
     low, high = max(float(separations[0]), law.support[0]), law.support[1]
     if isinstance(law, Gaussian) and isinstance(getattr(grading, "grading", grading), _TAME):
         last = max(float(separations[-1]), 0.0)
-        return low, last + REACH**2 / (last + math.hypot(last, REACH))
+        return max(low, -REACH), last + REACH**2 / (last + math.hypot(last, REACH))
     start = max(low, float(law.ppf(np.array(_NOTHING))))
     last = max(start, float(separations[-1])) if isinstance(law, Gaussian) else start
     top = min(float(law.isf(np.array(_NOTHING), last)), high)
@@ -100,8 +95,10 @@ def _reach(
     )
 
 
-def _edges(law: HeightLaw, start: float, top: float) -> list[float]:
-    """From `start` to `top`, as wide as the density lets each piece be."""
+def regular_edges(law: HeightLaw, start: float, top: float) -> list[float]:
+    """Return ends of pieces from `start` to `top`, as wide as the density lets each piece be."""
+    if isinstance(law, Gaussian):
+        return [start, *WIDEST * np.arange(np.floor(start / WIDEST) + 1, np.ceil(top / WIDEST)), top]
     marks = [b for b in law.breaks if start < b < top] + [top]
     below = [b for b in law.singular if b <= start]
     above = [b for b in law.singular if b >= top]
@@ -111,78 +108,14 @@ def _edges(law: HeightLaw, start: float, top: float) -> list[float]:
             a = edges[-1]
             step = min(SPANS * law.span(a), max(WIDEST, abs(a))) if not (below and a == below[0]) else WIDEST
             if below:
-                step = min(step, max((_GROWTH - 1) * (a - below[0]), _TINY))
+                step = min(step, max((_GROWTH - 1) * (a - below[0]), TINY))
             if above:
-                step = min(step, max((1 - 1 / _GROWTH) * (above[0] - a), _TINY))
+                step = min(step, max((1 - 1 / _GROWTH) * (above[0] - a), TINY))
             while a == start and a + step < mark and law.cdf(np.array(a + step)) < _NOTHING:
                 step *= 2  # where a law begins flat and its ppf is lost, no end of pieces would hold nothing
             last = a + (1 if above else 1.5) * step >= mark  # towards a singular end no piece is a wider one
             edges.append(mark if last or a + step == a else a + step)
     return edges
-
-
-def pieces_of(
-    law: HeightLaw,
-    separations: Array,
-    grading: Grading,
-    *,
-    power: float = POWER,
-    exponent: float = 0.0,
-    further: Further = lambda *_: (),
-) -> tuple[Array, Array]:
-    """Return the ends of the pieces of a rule, increasing.
-
-    Arguments are those of `ends_of`; `further` takes the lowest and the highest height of the rule and gives
-    further ends of pieces.
-    """
-    start, top = ends_of(law, separations, grading, power, exponent)
-    if not start < top:
-        return np.empty(0), np.empty(0)
-    if isinstance(law, Gaussian):
-        lowest = max(start, -REACH)
-        regular = [start, *WIDEST * np.arange(np.floor(start / WIDEST) + 1, np.ceil(top / WIDEST)), top]
-    else:
-        lowest, regular = start, _edges(law, start, top)
-    inside = [*separations, *further(lowest, top)]
-    cuts = [*regular, *resolved_breaks(grading, lowest, top), *(s for s in inside if start < s < top)]
-    edges = np.unique(cuts)
-    return edges[:-1], edges[1:]
-
-
-def law_rule(law: HeightLaw, separations: Array, grading: Grading, **given: Any) -> tuple[Array, Array]:
-    """Heights and probabilities: ``E f(s) = probabilities @ f(heights)`` for sums of contacts.
-
-    Arguments are those of `pieces_of`; f may have a root above each separation, and bend at breaks of the
-    grading. Heights are those above the lowest separation, increasing.
-    """
-    if isinstance(law, MeasuredHeights):
-        s = np.array(law.heights)
-        s = s[s > separations[0]]
-        return s, np.full(s.size, 1 / len(law.heights))
-    left, right = pieces_of(law, separations, grading, **given)
-    at_end = np.isin(left, law.singular) | np.isin(right, law.singular)
-    lump = (right - left <= 2 * _TINY) & at_end
-    s, weights = in_pieces(left[~lump], right[~lump])
-    mass = [_mass(law, *ends) for ends in zip(left[lump].tolist(), right[lump].tolist(), strict=True)]
-    s, probabilities = np.append(s, left[lump]), np.append(weights * law.pdf(s), mass)
-    order = np.argsort(s, kind="stable")
-    return s[order], probabilities[order]
-
-
-def _mass(law: HeightLaw, left: float, right: float) -> float:
-    """Probability between two heights at an end of the support."""
-    if left in law.singular:
-        return float(law.cdf(np.array(right)))
-    return float(law.sf(np.array(left)))
-
-
-def law_integral(n: float, h: Array, law: HeightLaw, grading: Grading) -> Array:
-    """``int_h^inf (s-h)^n density(s) grading(s) ds`` in the shape of `h`."""
-    result = np.zeros(h.size)
-    for k, x in enumerate(h.ravel().tolist()):
-        s, p = law_rule(law, np.array([x]), grading, power=1, exponent=n + 1)
-        result[k] = np.sum(p * grading(s) * (s - x) ** n)
-    return result.reshape(h.shape)
 
 
 def extent(grading: Grading, heights: HeightLaw, separations: Sequence[float]) -> tuple[float, float]:

@@ -22,7 +22,7 @@ from analytic.laws.law import ContactLaw
 from analytic.measured_summits import MeasuredRadii
 from analytic.quadrature import REACH
 from analytic.quantities import NOT_SUMS, SEPARATIONS, Quantity, quantity_of
-from analytic.summits import Summits, summits_of
+from analytic.summits import Summits
 from analytic.surface import Surface
 
 _HIGHEST = 1000.0  # separation that is looked at
@@ -196,7 +196,7 @@ class MeanModel:
     @cached_property
     def summits(self) -> Summits:
         """Their heights and radii."""
-        return summits_of(self.heights, self.curvature)
+        return Summits(self.heights, self.curvature)
 
     def _mean(self, q: Quantity, h: ArrayLike) -> Array:
         """Mean of what one asperity adds, over the scale, at separations of any shape."""

@@ -14,11 +14,11 @@ fall, and held as Chebyshev series.
 
 import math
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import erfcx, ndtr
+from scipy.special import log_ndtr
 
 from analytic.arrays import Array
 from analytic.heights import HeightLaw, exp_minus_half_square
@@ -36,12 +36,7 @@ _STEPS_OF_NEWTON = 4
 _LEAST, _MOST = 1.501, 1e12
 
 
-def upper_tail(z: Array) -> Array:
-    """``exp(z^2/2) P(Z > z)`` for z > 0, where P(Z > z) underflows."""
-    return np.asarray(0.5 * erfcx(np.maximum(z, 0.0) * math.sqrt(0.5)))
-
-
-def _share(q: Array) -> Array:
+def _less_one(q: Array) -> Array:
     """``q - 1 + exp(-q)``, of which the small values do not cancel."""
     small, series = np.minimum(q, 1.0), np.ones_like(q)
     for k in range(20, 2, -1):
@@ -99,12 +94,12 @@ class NayakTables:
     @cached_property
     def below(self) -> PiecewiseSeries:
         """Probability of a lower height, for x < 0 over the envelope."""
-        return fitted(self._below, self.edges[self.edges < 3.5], _TERMS)
+        return fitted(partial(self._beyond, way=-1), self.edges[self.edges < 3.5], _TERMS)
 
     @cached_property
     def above(self) -> PiecewiseSeries:
         """Probability of a higher height over the envelope, for x >= 0."""
-        return fitted(self._above, self.edges[self.edges >= 0], _TERMS)
+        return fitted(partial(self._beyond, way=1), self.edges[self.edges >= 0], _TERMS)
 
     @cached_property
     def guesses(self) -> tuple[Array, Array, Array]:
@@ -130,31 +125,19 @@ class NayakTables:
         most = np.hypot(_LARGEST / math.sqrt(2), np.maximum(x, 0.0) / rho) / self.width
         edges = np.sort(np.clip([0 * x, *inner, most], 0, most), axis=0)
         u, w = panelled(edges)
-        return u, w * 2 * _share((self.width * u) ** 2), y
-
-    def _falling(self, u: Array, y: Array) -> Array:
-        """``sqrt(2 pi) phi(u - rho y)``, for y < 0 over its value at u = 0."""
-        a = self.rho * y
-        return np.exp(np.where(a < 0, u * (a - u / 2), -((u - a) ** 2) / 2))
+        return u, w * 2 * _less_one((self.width * u) ** 2), y
 
     def _density(self, x: Array) -> Array:
         u, w, y = self._rule(x)
-        return np.asarray((w * self._falling(u, y)).sum(axis=0) * math.sqrt(3) / (2 * math.pi))
+        a = self.rho * y
+        falling = np.exp(np.where(a < 0, u * (a - u / 2), -((u - a) ** 2) / 2))
+        return np.asarray((w * falling).sum(axis=0) * math.sqrt(3) / (2 * math.pi))
 
-    def _below(self, x: Array) -> Array:
+    def _beyond(self, x: Array, way: int) -> Array:
+        """Share of the summits above (1) or below (-1): over the envelope where they are the fewer."""
         u, w, y = self._rule(x)
-        z = self.rho * u - y
-        tail = np.where(y < 0, 1.0, np.exp(-x * x / 2)) * upper_tail(z) * self._falling(u, y)
-        body = np.exp(-((self.width * u) ** 2) / 2) * ndtr(-z)
-        return self._curvatures(w * np.where(z > 0, tail, body))
-
-    def _above(self, x: Array) -> Array:
-        u, w, y = self._rule(x)
-        z, far = y - self.rho * u, self.width * u
-        body = np.exp(np.minimum((x - far) * (x + far) / 2, 50.0)) * ndtr(-z)
-        return self._curvatures(w * np.where(z > 0, upper_tail(z) * self._falling(u, y), body))
-
-    def _curvatures(self, terms: Array) -> Array:
+        fewer = (x if way > 0 else np.minimum(y, 0.0)) ** 2 / 2
+        terms = w * np.exp(log_ndtr(way * (self.rho * u - y)) - (self.width * u) ** 2 / 2 + fewer)
         return np.asarray(terms.sum(axis=0) * self.width * math.sqrt(3 / (2 * math.pi)))
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from analytic.arrays import Array
-from analytic.gradings import Custom, Grading
+from analytic.gradings import Grading
 from analytic.piecewise import chebyshev_points, to_coefficients
 
 _WIDEST = 4.0
@@ -158,11 +158,6 @@ def resolved_breaks(
     if grading.smooth or not low < high:
         return tuple(np.unique([float(b) for b in grading.breaks if low < b < high]).tolist())
     return _found_breaks(Same(grading), low, high, noise_of_one)
-
-
-def resolved_once(grading: Grading, low: float, high: float) -> Grading:
-    """Return the same grading with the cuts of a range told, for integrals over parts of that."""
-    return grading if grading.smooth else Custom(grading, resolved_breaks(grading, low, high), smooth=True)
 
 
 class Same:

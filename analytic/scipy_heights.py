@@ -1,15 +1,13 @@
-"""Any distribution of scipy.stats as a distribution of heights, with a time limit on slow calls."""
+"""Any distribution of scipy.stats as a distribution of heights."""
 
 import math
-import sys
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from time import thread_time
-from types import FrameType
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
@@ -18,16 +16,13 @@ from analytic.heights import HeightLaw
 from analytic.resolution import resolved_breaks
 from analytic.roots import sign_changes
 
-T = TypeVar("T")
-
-_SECONDS = 5.0  # for moments, or jumps, of a law of scipy: some are integrals of integrals
+_SLOW = 5e-3  # seconds for one of thousands of densities: some are integrals of integrals
 _NOISE = 2.0**-30  # of a density that is the exponential of large terms, as of gamma(1e4)
 _RARER = 10.0 ** -np.arange(1.0, 37.0)  # shares
 _NEARLY = 1e-2  # how near they come to themselves by way of heights
 _NEXT = 1e-8  # as near to the lower end as is as good as there
 _NO_RARER = 1e-300  # share beyond which a law has no heights, if its density ends there:
 _INSIDE, _OUTSIDE = 1e-2, 1e-6  # it is positive so far inside, in standard deviations, and 0 so far outside
-_TRIAL, _TRIAL_SECONDS = np.array([1e-9, 0.1, 0.5, 0.9]), 1.0  # a few of the thousands of calls to come
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,8 +38,7 @@ class ScipyHeights(HeightLaw):
     Raises
     ------
     ValueError
-        If it is not continuous, its variance is not positive and finite, or scipy takes seconds to
-        evaluate it.
+        If it is not continuous, its variance is not positive and finite, or a density takes SciPy 5 ms.
 
     Examples
     --------
@@ -60,21 +54,27 @@ class ScipyHeights(HeightLaw):
         if not hasattr(self.distribution, "pdf"):
             raise ValueError(f"{self.distribution!r}: give a frozen continuous distribution of scipy.stats")
         hold(self, distribution=_without_place(self.distribution))
+        self._check_speed()
         mean, std = self._mean_std
         if not (math.isfinite(mean) and math.isfinite(std) and std > 0):
             raise ValueError(
                 f"{self._name}: its mean is {mean:g} and its deviation {std:g}; both must be finite"
             )
-        for function in (self.distribution.ppf, self.distribution.isf):
-            self._in_time(_TRIAL_SECONDS, partial(function, _TRIAL), "a few heights of given probability")
 
     @property
     def _name(self) -> str:
         return str(getattr(getattr(self.distribution, "dist", None), "name", self.distribution))
 
-    def _in_time(self, seconds: float, call: Callable[[], T], what: str) -> T:
-        problem = f"{self._name}: {what} take SciPy longer than {seconds:g} s; give another law, or a table"
-        return in_time(seconds, call, problem)
+    def _check_speed(self) -> None:
+        low, high = np.clip(self.distribution.support(), -3.0, 3.0)
+        for _ in range(2):  # the first call may load something
+            start = thread_time()
+            self.distribution.pdf((low + high) / 2)
+            seconds = thread_time() - start
+        if seconds > _SLOW:
+            raise ValueError(
+                f"{self._name}: one density takes SciPy {1e3 * seconds:.0f} ms; give another law, or a table"
+            )
 
     @property
     def shapes(self) -> dict[str, float]:
@@ -98,8 +98,7 @@ class ScipyHeights(HeightLaw):
 
     @cached_property
     def _mean_std(self) -> tuple[float, float]:
-        law = self.distribution
-        return self._in_time(_SECONDS, lambda: (float(law.mean()), float(law.std())), "mean and deviation")
+        return float(self.distribution.mean()), float(self.distribution.std())
 
     @cached_property
     def support(self) -> tuple[float, float]:
@@ -124,8 +123,7 @@ class ScipyHeights(HeightLaw):
     def breaks(self) -> tuple[float, ...]:
         """Heights that cut the density, between its 1e-9 quantiles, into smooth curves."""
         low, high = self.ppf(np.array(1e-9)), self.isf(np.array(1e-9))
-        found = partial(resolved_breaks, _Density(self), float(low), float(high), _NOISE)
-        return self._in_time(_SECONDS, found, "jumps and kinks of the density")
+        return resolved_breaks(_Density(self), float(low), float(high), _NOISE)
 
     @property
     def singular(self) -> tuple[float, ...]:
@@ -246,26 +244,3 @@ class _Density:
 
     def __call__(self, s: Array) -> Array:
         return self.law.pdf(s)
-
-
-def in_time(seconds: float, call: Callable[[], T], problem: str) -> T:
-    """Return the result of a call that takes no more than so many seconds of this thread's own CPU time.
-
-    Looks at the clock at each Python function that the call enters. So it does not depend on what else the
-    machine does, and works in any thread; only a single compiled function cannot be interrupted. No bound
-    under a profiler. `problem` is what a ValueError says if it
-    takes longer.
-    """
-    if sys.getprofile() is not None:  # a profiler at work would be thrown out: whoever runs it sees the time
-        return call()
-    end = thread_time() + seconds
-
-    def look(frame: FrameType, event: str, arg: Any) -> None:  # noqa: ARG001 - the interpreter's own form
-        if thread_time() > end:
-            raise ValueError(problem)
-
-    sys.setprofile(look)
-    try:
-        return call()
-    finally:
-        sys.setprofile(None)

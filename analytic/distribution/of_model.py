@@ -9,12 +9,12 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 
 from analytic.arrays import Array
+from analytic.curvature import RadiusRule
 from analytic.distribution.distribution import Counted, Law
 from analytic.distribution.sums import OneAsperity, shares, shares_at
 from analytic.inversion import LOWEST
 from analytic.measured_summits import MeasuredHeights
 from analytic.quantities import quantity_of
-from analytic.summits import Radii
 
 _POINTS = 2**15, 5 * 2**13  # of a lattice, and of another one
 _CELLS = 12_288, 20_480  # of the heights, by the root of the probability, and as many evenly between nodes
@@ -83,7 +83,7 @@ def cells_between(
     if ratios is None:
         p = wide * model.heights.pdf(middle)
     else:
-        ratios, radii = np.repeat(ratios, parts), Radii.over(model.curvature, h)
+        ratios, radii = np.repeat(ratios, parts), RadiusRule.over(model.curvature, h)
         p = wide * radii.density(middle, np.searchsorted(-radii.ratios, -ratios))
     return left, wide, p * (rule.probabilities.sum() / p.sum()), ratios
 

@@ -139,8 +139,8 @@ def test_weibull_integrals_of_any_shape(shape, h):
         marks = ("0", "1e-6", "1e-3", "0.03", "0.3", "1", "2", "4", "9", "20", "40", "80", "150")
         truth = mp.quad(integrand, [low + mp.mpf(c) for c in marks]) * mp.exp(-low)
         share = mp.exp(-low)
-    assert off(analytic.fn(1.5, h, heights=Weibull(shape)), truth) < 1e-12
-    assert off(Weibull(shape).sf(np.array(h)), share) < 1e-12
+    assert off(analytic.fn(1.5, h, heights=Weibull(shape)), truth) < 1e-11
+    assert off(Weibull(shape).sf(np.array(h)), share) < 1e-11
 
 
 def test_a_mean_reaches_as_far_as_its_separation_and_its_tail():
