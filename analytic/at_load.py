@@ -17,26 +17,22 @@ asperity has q(s), and each of the N - 1 others q(t) where the last N - 2 bear w
 
 import math
 from collections.abc import Callable, Sequence
-from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from analytic.arrays import Array, Ints
-from analytic.distribution.of_model import cells_between, scores_of, shares_upto
+from analytic.distribution.of_model import SCORES, between, cells_between, scores_of, shares_upto
 from analytic.height_rule import HeightRule
-from analytic.inversion import LOWEST
 from analytic.measured_summits import MeasuredHeights
 from analytic.quadrature import gauss_legendre
 from analytic.quantities import quantity_of
-from analytic.roots import root, sign_changes
+from analytic.roots import sign_changes
 
 _LIFTS, _TIMES = 24, (1, 2, 4)  # nodes in the separation, and as many times until the given sum is found
 _MANY, _LIFTS_OF_MANY = 100.0, 16  # contacts from which so many do as well
 _EXACT, _AT_LAST = 2e-6, 1e-3  # of its mean and its root mean square; with most nodes, of tails and jumps
 _ALL = 1e-6  # of what surfaces hold that is lost with those of heavy tails; else that of all is known better
-_SCORES, _CLOSE = 6.0, 0.2  # of the ends of the separations: 1e-9 of the surfaces are beyond
-_FIRST, _LONGEST, _LONGER = 4.0, 5.0, 1.5  # step: in deviations to first order; at most; than the last
 _DEEPEST = 20.0  # penetration over sigma that no asperity reaches
 _PARTS = np.array([0.25, 0.5, 0.75, 1.0])  # of the penetration at which one asperity has all of the load
 _CELLS = 8192  # of the heights, at least
@@ -147,23 +143,14 @@ def _lifts(low: float, middle: float, high: float, nodes: int) -> tuple[Array, A
 
 
 def _ends(model: Any, given: str, value: float) -> tuple[float, float, float]:
-    """Separations between which next to all surfaces have the given sum."""
+    """Separations between which next to all surfaces have the given sum, and the median."""
     score, start, spread = scores_of(model, given, value)
-    ends = []
-
-    def beyond(h: float, way: int) -> float:
-        """By how much it is over that of next to all surfaces, or none."""
-        return way * score(h) - _SCORES
-
-    for way in (-1, 1):
-        inner, outer, step = start, start, min(_FIRST * spread, _LONGEST)
-        while beyond(outer, way) < 0 and outer > LOWEST:
-            inner, outer, step = outer, max(outer + way * step, LOWEST), _LONGER * step
-        if beyond(outer, way) < 0:  # a Poisson number of asperities may be 0
-            raise ValueError(f"{given} = {value:g}: not every surface has a separation with it")
-        ends.append(root(partial(beyond, way=way), inner, outer, close=_CLOSE))
-    middle = start if abs(score(start)) < _CLOSE else root(score, *ends, close=_CLOSE)
-    return ends[0], middle, ends[1]
+    places = between(score, start, spread)
+    scores = np.maximum.accumulate([score(h) for h in places])
+    if scores[0] > -SCORES or scores[-1] < SCORES:  # a Poisson number of asperities may be 0
+        raise ValueError(f"{given} = {value:g}: not every surface has a separation with it")
+    low, middle, high = np.interp([-SCORES, 0.0, SCORES], scores, places).tolist()
+    return low, middle, high
 
 
 def _gains(model: Any, several: Sequence[str], value: float, h: float) -> tuple[float, Array, Array]:

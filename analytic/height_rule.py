@@ -214,14 +214,17 @@ class Fluctuations:
             found if self.radius is None else np.where(k * self.radius < _DIVERGES, found, np.inf)
         )
 
-    def combined(self, mean: Array, own: Ints, factor: Array, other: Ints, press: Array) -> "Fluctuations":
-        """Return those of columns `own` times `factor` and columns `other` times `press`, to first order."""
+    def combined(self, rates: Array, mean: Array) -> "Fluctuations":
+        """Return those of quantities that deviate at these rates with each of the sums, to first order.
+
+        Rates have the shape (sums, quantities, separations).
+        """
+        sums, _, separations = rates.shape
+        shaped = self.parts.reshape(-1, sums, separations)
+        parts = np.einsum("isk,sqk->iqk", shaped, rates).reshape(len(shaped), -1)
         radius = self.radius
         if radius is not None:
-            radius = np.maximum(
-                *(np.where(by != 0, radius[k], 0.0) for k, by in ((own, factor), (other, press)))
-            )
-        parts = self.parts[:, own] * factor + self.parts[:, other] * press
+            radius = np.where(rates != 0, radius.reshape(sums, 1, separations), 0.0).max(axis=0).ravel()
         return Fluctuations(self.probabilities, mean, parts, radius)
 
     def products(self) -> Array:

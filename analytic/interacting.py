@@ -205,19 +205,19 @@ class InteractingModel(Model):
         """Return the same as `Model.fluctuations`, to leading order where a surface answers by itself."""
         h = np.asarray(separations, dtype=np.float64)
         answers = [self._answer(name, h) for name in quantities]
-        pairs = [(each.spots or each.load, each.load if each.sunk else each.spots) for each in answers]
-        columns = list(dict.fromkeys(name or own for own, name in pairs for name in (own, name)))
+        named = [each.spots or each.load for each in answers] + [each.load for each in answers if each.sunk]
+        columns = list(dict.fromkeys(named))
         one = self.alone.fluctuations(columns, h)
-        means, parts = [], []
-        for name, answer, pair in zip(quantities, answers, pairs, strict=True):
+        rates, means = np.zeros((len(columns), len(answers), h.size)), []
+        for k, (name, answer) in enumerate(zip(quantities, answers, strict=True)):
             unit = quantity_of(name).scale(self.surface)
             means.append(self.mean(name, h) / (self.number * unit))
-            for column, rate in zip(pair, answer.at_means(self.alone, h)[1], strict=True):
-                at = columns.index(column or pair[0])
-                scale = quantity_of(columns[at]).scale(self.surface) / unit
-                parts.append((at * h.size + np.arange(h.size), rate * scale))
-        own, other = (tuple(np.concatenate(x) for x in zip(*parts[k::2], strict=True)) for k in (0, 1))
-        return one.combined(np.concatenate(means), *own, *other)
+            for term, rate in zip(
+                (answer.spots, answer.load), answer.at_means(self.alone, h)[1], strict=True
+            ):
+                if term in columns:
+                    rates[columns.index(term), k] += rate * quantity_of(term).scale(self.surface) / unit
+        return one.combined(rates, np.concatenate(means))
 
     def _asked(self, quantity: str, h: ArrayLike = np.inf) -> Quantity:
         known = (JOINT if self.filled else {}) | (SEPARATIONS if self.interaction else {})

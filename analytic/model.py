@@ -1,6 +1,6 @@
 """The exact statistics of one rough surface in contact: means, fluctuations and their inversion."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.arrays import Array
-from analytic.height_rule import Fluctuations, HeightRule
+from analytic.height_rule import Fluctuations
 from analytic.mean_model import MeanModel
 from analytic.quantities import quantity_of
 
@@ -179,18 +179,6 @@ class Model(MeanModel):
         if not self.summits.unbounded:
             return result
         return replace(result, radius=np.repeat([q.radius for q in asked], h.size))
-
-    def asperities(
-        self, quantity: str, h: float, farther: Sequence[float] = ()
-    ) -> tuple[HeightRule, Callable[[HeightRule], Array]]:
-        """Return a rule over the asperities at one separation, and what maps rules to the sums of its nodes.
-
-        Over the scale. The rule is over radii too, where they differ, and finer with heights `farther` above
-        the separation that divide it.
-        """
-        self._asked(quantity, h)
-        rule = self.rule(h + np.array([0.0, *farther]), [quantity])
-        return rule, lambda nodes: nodes.terms([quantity], [h], self.grading, self.ways)[:, 0]
 
     def distribution(self, quantity: str, h: float) -> "Law":
         """Return the exact distribution over surfaces of a quantity at a separation, as one of `scipy.stats`.

@@ -1,5 +1,6 @@
 """The laws of the quantities of a model."""
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache, partial
@@ -12,13 +13,14 @@ from analytic.arrays import Array
 from analytic.curvature import RadiusRule
 from analytic.distribution.distribution import Counted, Law
 from analytic.distribution.sums import OneAsperity, shares, shares_at
+from analytic.height_rule import HeightRule
 from analytic.inversion import LOWEST
 from analytic.measured_summits import MeasuredHeights
 from analytic.quantities import quantity_of
 
 _POINTS = 2**15, 5 * 2**13  # of a lattice, and of another one
 _CELLS = 12_288, 20_480  # of the heights, by the root of the probability, and as many evenly between nodes
-_SCORES, _HIGHEST, _APART = 6.0, 6.5, 0.4  # of normal scores: looked for, told, and from one to the next
+SCORES, _HIGHEST, _APART = 6.0, 6.5, 0.4  # of normal scores: looked for, told, and from one to the next
 _LONGER, _SMALLEST, _TABLE = 1.25, 1e-3, 8192
 _LEVEL = 1e-9  # of a score: all asperities touch, and the rest of the surfaces have none
 _JUST = 1e-9  # of a cell
@@ -44,21 +46,27 @@ def distribution_of(model: Any, quantity: str, h: float, *, other: bool = False)
 
 def one_asperity(model: Any, quantity: str, h: float, cells: int) -> OneAsperity:
     """Return what one asperity adds, over the scale of the quantity, by cells of heights."""
-    rule, added = model.asperities(quantity, h)
-    low = high = added(rule)
+    rule = model.rule([h], [quantity])
+    low = high = _added(model, quantity, h, rule)
     p, mean = rule.probabilities, float(rule.probabilities @ low)
     if p.any() and not isinstance(model.heights, MeasuredHeights):
         lowest = max(min(h, model.ways.of(quantity).lowest(h)), model.heights.support[0])
         left, wide, p, ratios = cells_between(model, h, rule, cells, lowest)
         at = np.concatenate([left + _JUST * wide, left + wide])  # right of where contacts begin
         ratios = None if ratios is None else np.tile(ratios, 2)
-        low, high = added(replace(rule, heights=at, probabilities=0 * at, ratios=ratios)).reshape(2, -1)
+        nodes = replace(rule, heights=at, probabilities=0 * at, ratios=ratios)
+        low, high = _added(model, quantity, h, nodes).reshape(2, -1)
         share = (mean - (p * (low + high)).sum() / 2) / ((p * (np.abs(low) + np.abs(high))).sum() / 2)
         low, high = low + share * np.abs(low), high + share * np.abs(high)
     touching = ((low != 0) | (high != 0)) & (p > 0)
     low, high, p = (x[touching] for x in (np.minimum(low, high), np.maximum(low, high), p))
     order = np.argsort(low + high)
     return OneAsperity(low[order], high[order], p[order], model.number, model.count == "poisson")
+
+
+def _added(model: Any, quantity: str, h: float, rule: HeightRule) -> Array:
+    """Return what asperities at the nodes of a rule add, over the scale of the quantity."""
+    return rule.terms([quantity], [h], model.grading, model.ways)[:, 0]
 
 
 def cells_between(
@@ -98,11 +106,11 @@ def separation_law_of(model: Any, load: float, quantity: str, *, other: bool = F
             f"quantity = {quantity!r}: give a sum that decreases with the separation, such as 'load'"
         )
     score, start, spread = scores_of(model, quantity, load, other=other)
-    h = _between(score, start + other * spread / 7, spread)
+    h = between(score, start + other * spread / 7, spread, _APART)
     z = np.array([score(at) for at in h])
     x = np.interp(np.linspace(0, len(h) - 1, _TABLE), np.arange(len(h)), h)
     smooth = np.maximum.accumulate(make_interp_spline(h, z, min(_DEGREE, len(h) - 1))(x))
-    x, upto = x[np.abs(smooth) < _SCORES], ndtr(smooth[np.abs(smooth) < _SCORES])
+    x, upto = x[np.abs(smooth) < SCORES], ndtr(smooth[np.abs(smooth) < SCORES])
     middle, p = (x[1:] + x[:-1]) / 2, np.diff(upto)
     mean = float(p @ middle / p.sum())
     moments = mean, float(p @ (middle - mean) ** 2)
@@ -129,18 +137,23 @@ def scores_of(
     return score, start, float(model.std(quantity, start) / model.slope(quantity, start))
 
 
-def _between(score: Callable[[float], float], start: float, spread: float) -> list[float]:
-    """Separations from one beyond next to all surfaces to one below them, their scores evenly apart."""
+def between(
+    score: Callable[[float], float], start: float, spread: float, apart: float = math.inf
+) -> list[float]:
+    """Return separations from one that next to no surface is below to one that next to none is above.
+
+    Their scores are at most so far apart.
+    """
     places, step, moved = [start], spread / 3, 1.0
-    while score(places[-1]) < _SCORES:  # far, where tails are heavy
+    while score(places[-1]) < SCORES:  # far, where tails are heavy
         places.append(places[-1] + step * _LONGER ** len(places))
-    while score(places[0]) > -_SCORES and moved > _LEVEL and places[0] > LOWEST:
+    while score(places[0]) > -SCORES and moved > _LEVEL and places[0] > LOWEST:
         places.insert(0, max(places[0] - step, LOWEST))
         moved = score(places[1]) - score(places[0])
     k = 1
     while k < len(places):
         left, right = places[k - 1], places[k]
-        if score(right) - score(left) > _APART and right - left > _SMALLEST * spread:
+        if score(right) - score(left) > apart and right - left > _SMALLEST * spread:
             places.insert(k, (left + right) / 2)
         else:
             k += 1
@@ -163,8 +176,8 @@ def shares_upto(
 
 def _check_falling(model: Any, quantity: str, h: float) -> None:
     """Refuse sums that may rise with the separation."""
-    rule, added = model.asperities(quantity, h)
-    if np.any(added(rule) < 0):
+    rule = model.rule([h], [quantity])
+    if np.any(_added(model, quantity, h, rule) < 0):
         raise ValueError(
             f"quantity = {quantity!r}: it is negative for some asperities, and sums may increase with the "
             "separation; use a modulus >= 0 and a law without adhesion"

@@ -280,9 +280,8 @@ def test_sums_of_few_that_pull_by_plain_convolutions():
     """Of 300 asperities, below no load: what k of them add above k times the least, by steps of its 1/200."""
     n, h, pulls = 300, 2.5, {**PULLS, "count": "fixed"}
     of = model(n, **pulls)
-    rule, added = of.asperities("load", h)
     s = h + np.linspace(1e-6, 1.0, 200_000) ** 2
-    values = added(replace(rule, heights=s, probabilities=np.zeros(s.size)))
+    values = of.ways.of("load").terms(["load"], h, s, of.grading(s))[0]
     assert np.all(np.diff(values) > 0)
     least, x = values[0], 1.2 * values[0]
     step = -least / 200
