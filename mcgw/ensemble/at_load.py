@@ -47,10 +47,11 @@ def nominal_of_mean(scene: Scene, value: float) -> float:
     mean = scene.alone.mean
     sunk = scene.compliance / scene.surface.sigma
     high = value + max(float(sunk * mean("load", value)), 0.0)
-    found = crossing(lambda h: value - h + sunk * mean("load", h), high, min(value, high) - _DEEP)
-    if found is None:
+    lowest = min(value, high) - _DEEP
+    (found,) = crossing(lambda h, _: value - h + sunk * mean("load", h), np.array([high]), lowest)
+    if np.isnan(found):
         raise ValueError(f"nominal_separation = {value:g}: the mean surface does not reach it; give more")
-    return found
+    return float(found)
 
 
 def quantities_at(scene: Scene) -> tuple[str, ...]:

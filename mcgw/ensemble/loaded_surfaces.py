@@ -100,38 +100,24 @@ class LoadedSurfaces:
         """Separation and all quantities of some of the surfaces at one of the values."""
         from mcgw.sampling.asperities import summits
 
-        low, value, names = self.lows[number], self.values[number], quantities_at(self.scene)
-        near = some.above(low)
-        if self.sunk is None:
-            h = near.separations(self.given, value, low, self.about[number])
-        else:
-            h = near.separations_felt(value, self.sunk, low)
-        found = {"separation": h, **near.sums(names, np.where(np.isfinite(h), h, np.inf))}
-        softest = near.softest.copy()
+        value, names, q = self.values[number], quantities_at(self.scene), self.given
+        h = some.separations(q, value, self.lows[number], self.about[number], self.sunk)
+        softest, found = some.softest.copy(), some.sums(names, np.where(np.isfinite(h), h, np.inf))
         lost = np.flatnonzero(np.isnan(h))  # rare: they lie below what was drawn
         if lost.size:
             whole = Asperities.of(self.scene, [summits(self.drawn, first + k) for k in lost.tolist()])
-            h[lost], softest[lost] = self._anywhere(value, whole), whole.softest
+            h[lost], softest[lost] = whole.separations(q, value, LOWEST, sunk=self.sunk), whole.softest
             for k in lost[whole.counts == 0]:
                 raise ValueError(f"surface {first + k} has no asperity; increase n_asperities")
             for name, x in whole.sums(names, np.where(np.isnan(h), np.inf, h)[lost]).items():
                 found[name][lost] = x
         for k in np.flatnonzero(np.isnan(h) | ((self.scene.negative == "error") & (softest > h))):
-            surface, q = f"surface {first + k}", self.given
+            surface = f"surface {first + k}"
             if np.isfinite(softest[k]):
                 raise ValueError(NEGATIVE.format(q.name, value, q.unit, surface, softest[k]))
             unit, give = (f" {q.unit}", "less") if self.sunk is None else ("", "more")
             raise ValueError(f"{q.name} = {value:g}{unit}: {surface} does not reach it; give {give}")
-        return found
-
-    def _anywhere(self, value: float, whole: Asperities) -> Array:
-        """Return the separations of surfaces all of whose asperities are listed; nan without one."""
-        if self.sunk is not None:
-            return whole.separations_felt(value, self.sunk, LOWEST)
-        h = whole.separations(self.given, value, LOWEST)
-        if self.scene.negative == "allow" and np.isnan(h).any():
-            h = np.where(np.isnan(h), whole.below_negative(self.given, value), h)
-        return h
+        return {"separation": h, **found}
 
     def contacts(self, surface: int, h: float) -> tuple[Array, Array | None]:
         """Reduced heights above a separation in descending order, and the radii of these summits."""

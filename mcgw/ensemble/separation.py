@@ -9,36 +9,35 @@ reached, or no contact changes its piece.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
 from analytic import Quantity, quantity_of
 from analytic.arrays import Array, Ints, Marks, hold
 from analytic.laws import Branch
-from analytic.roots import root, sign_changes
+from analytic.roots import sign_changes
 from mcgw.scene.scene import Scene
 
-_FINE, _AT_ONCE = 1 / 64, 16  # step of the search where moduli may be negative, and steps at a time
+_FINE = 1 / 64  # step of the search where moduli may be negative
 LOWEST = -40.0  # separation where searches end
 _CLOSE = 1e-14  # relative excess of a sum, which is its rounding error
 _ROUNDING = 1e-9  # of a law that goes on smoothly
 
 
-def crossing(excess: Callable[[Any], Any], high: float, lowest: float = LOWEST) -> float | None:
-    """Largest root up to `high`, where the function is not positive; None down to the end of the range.
+def crossing(excess: Callable[[Array, Ints], Array], high: Array, lowest: float = LOWEST) -> Array:
+    """Return the largest arguments up to `high` where functions are not negative, shape (functions,).
 
-    The function takes a separation or an array of them.
+    Of arguments and the numbers of the functions, shape (m,); nan where there is none, down to the lowest.
     """
-    if excess(high) >= 0:  # by a last digit
-        return high
-    lows = np.arange(high - _FINE, lowest, -_FINE)
-    for some in np.split(lows, range(_AT_ONCE, lows.size, _AT_ONCE)):
-        beyond = some[np.asarray(excess(some)) >= 0]
-        if beyond.size:
-            low = float(beyond[0])
-            return root(lambda h: float(excess(h)), low + _FINE, low)
-    return None
+    found, top, left = np.full(high.size, np.nan), high, np.flatnonzero(np.isfinite(high))
+    at = high
+    while left.size:
+        reached = excess(at[left], left) >= 0  # at once by a last digit
+        k = left[reached]
+        found[k] = sign_changes(lambda h, which, k=k: excess(h, k[which]), top[k], at[k], np.ones(k.size))
+        left = left[~reached & (at[left] > lowest)]
+        top, at = at, np.maximum(at - _FINE, lowest)
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,21 +80,21 @@ class Asperities:
         """Number of the surface of each asperity."""
         return np.repeat(np.arange(self.counts.size), self.counts)
 
-    def _highest(self, which: Marks) -> Array:
-        """Height of the highest one of some asperities on each surface; -inf where there is none."""
+    @cached_property
+    def highest(self) -> Array:
+        """Height of the highest asperity of each surface; -inf without one."""
         found = np.full(self.counts.size, -np.inf)
-        np.maximum.at(found, self.owner[which], self.s[which])
+        np.maximum.at(found, self.owner, self.s)
         return found
 
     @cached_property
     def softest(self) -> Array:
         """Height of the highest one of negative modulus on each surface, below which sums may rise."""
-        return self._highest(self.modulus < 0)
+        return self._only(self.modulus < 0).highest
 
-    def above(self, h: float | Array) -> "Asperities":
-        """Return the same surfaces, of which only the asperities above a separation are looked at."""
-        high = self.s > (h[self.owner] if isinstance(h, np.ndarray) else h)
-        return self._only(high, np.bincount(self.owner[high], minlength=self.counts.size))
+    def above(self, h: Array) -> "Asperities":
+        """Return the same surfaces, of which only the asperities above their separations are looked at."""
+        return self._only(self.s > h[self.owner])
 
     def some(self, which: Ints) -> "Asperities":
         """Return some of the surfaces, by rising numbers."""
@@ -105,8 +104,10 @@ class Asperities:
         chosen[which] = True
         return self._only(chosen[self.owner], self.counts[which])
 
-    def _only(self, which: Marks, counts: Ints) -> "Asperities":
+    def _only(self, which: Marks, counts: Ints | None = None) -> "Asperities":
         ratios = None if self.ratios is None else self.ratios[which]
+        if counts is None:
+            counts = np.bincount(self.owner[which], minlength=self.counts.size)
         found = Asperities(self.scene, counts, self.s[which], ratios)
         hold(found, modulus=self.modulus[which])
         return found
@@ -114,17 +115,7 @@ class Asperities:
     def terms(self, names: Sequence[str], h: Array) -> Array:
         """Return what asperities add to quantities, on loading, over the scale of each.
 
-        Parameters
-        ----------
-        names : sequence of str
-            Of the quantities.
-        h : ndarray
-            Separation of each surface.
-
-        Returns
-        -------
-        ndarray
-            Shape (quantities, asperities).
+        At the separation of each surface; of shape (quantities, asperities).
         """
         quantities, x = [quantity_of(name) for name in names], np.repeat(h, self.counts)
         if not self.scene.hertzian:
@@ -149,35 +140,49 @@ class Asperities:
 
     def sums(self, names: Sequence[str], h: Array) -> dict[str, Array]:
         """Quantities of each surface at its separation, SI, shape (surfaces,)."""
-        scales = (quantity_of(name).scale(self.scene.surface) for name in names)
-        found = zip(names, scales, self.terms(names, h), strict=True)
-        return {name: scale * self.added(each) for name, scale, each in found}
+        on, scales = self.above(h), (quantity_of(name).scale(self.scene.surface) for name in names)
+        found = zip(names, scales, on.terms(names, h), strict=True)
+        return {name: scale * on.added(each) for name, scale, each in found}
 
-    def separations(self, q: Quantity, value: float, lowest: float, about: float | None = None) -> Array:
+    def separations(
+        self, q: Quantity, value: float, lowest: float, about: float | None = None, sunk: float | None = None
+    ) -> Array:
         """Return the largest separation at which a sum of each surface has a value, or jumps past it.
 
         Parameters
         ----------
         q : Quantity
-            Load or area.
+            Load, area or nominal separation.
         value : float
-            Positive, SI.
+            Positive, SI; d/sigma.
         lowest : float
             Reduced separation above which all asperities are listed.
         about : float, optional
             What most are near, on either side within its distance from the lowest one.
+        sunk : float, optional
+            At a nominal separation: by how much each newton lowers it.
 
         Returns
         -------
         ndarray
-            Shape (surfaces,); nan where it lies below the lowest separation, or below an asperity of negative
-            modulus.
+            Shape (surfaces,); nan where it lies below the lowest separation, or, unless the scene allows such
+            contacts, below an asperity of negative modulus.
         """
-        low, goal = np.maximum(lowest, self.softest), value / q.scale(self.scene.surface)
-        on = self.above(low) if np.any(self.softest > lowest) else self
-        found, power = np.full(self.counts.size, np.nan), 1 / max(q.exponent, 1.0)
-        high, falls = on._highest(np.ones(on.s.size, dtype=bool)), on._falls(q)
-        near = low if about is None else np.full_like(low, 2 * about - lowest)
+        if sunk is not None:
+            load, high = quantity_of("load"), np.maximum(self.highest, value)
+            unit = sunk * load.scale(self.scene.surface)
+            return crossing(lambda h, k: value - h + unit * self._total(load, h, k), high, lowest)
+        goal, near = value / q.scale(self.scene.surface), lowest if about is None else 2 * about - lowest
+        found = self._first(q, goal, np.maximum(lowest, self.softest), near)
+        if self.scene.negative == "allow":
+            pressed = np.where(np.isnan(found), self.softest, -np.inf)
+            found = np.fmax(found, crossing(lambda h, k: self._total(q, h, k) - goal, pressed, lowest))
+        return found
+
+    def _first(self, q: Quantity, goal: float, low: Array, near: float) -> Array:
+        """Return where sums over their scale reach a goal above `low`; most are not far from `near`."""
+        on, found, power = self.above(low), np.full(low.size, np.nan), 1 / max(q.exponent, 1.0)
+        high, falls = on.highest.copy(), on._falls(q)
         width = high - np.where(near < high, near, low)
 
         def excess(total: Array) -> Array:
@@ -196,12 +201,8 @@ class Asperities:
             found[active[~free & thin]] = at[~free & thin]
             reached = ~free & ~thin & smooth
             k = active[reached]
-
-            def of_some(h: Array, which: Ints, k: Ints = k) -> Array:
-                return excess(on.some(k[which]).total(q, h))
-
             found[k] = sign_changes(
-                of_some,
+                lambda h, which, k=k: excess(on._total(q, h, k[which])),
                 top[reached], at[reached], np.ones(k.size), at_ends=(over[k], here[reached]), close=_CLOSE,
             )  # fmt: skip
             width[active] *= np.where(~free, 0.5, np.inf if falls else 1.0 + passed[active])
@@ -210,38 +211,10 @@ class Asperities:
             active = active[np.isnan(found[active]) & (high[active] > low[active])]
         return found
 
-    def separations_felt(self, nominal: float, sunk: float, lowest: float) -> Array:
-        """Return the largest separation that makes a nominal one on each surface, of those above the lowest.
-
-        The load of each lowers it, by `sunk` (1/N). Shape (surfaces,); nan where there is none.
-        """
-        high = np.maximum(self._highest(np.ones(self.s.size, dtype=bool)), nominal)
-        scale = sunk * quantity_of("load").scale(self.scene.surface)
-        return self._from_above(high, lowest, "load", lambda h, total: nominal - h + scale * total)
-
-    def below_negative(self, q: Quantity, value: float) -> Array:
-        """As `separations`, of surfaces that press asperities of negative modulus."""
-        goal = value / q.scale(self.scene.surface)
-        return self._from_above(self.softest, LOWEST, q.name, lambda _, total: total - goal)
-
-    def _from_above(
-        self, high: Array, lowest: float, name: str, excess: Callable[[float, float], float]
-    ) -> Array:
-        """Return where an excess that need not fall begins, of the separation and a sum over its scale."""
-        found = np.full(self.counts.size, np.nan)
-        for k in np.flatnonzero(np.isfinite(high)).tolist():
-            one = self.some(np.array([k]))
-
-            def at(h: float, one: Asperities = one) -> float:
-                return excess(h, float(one.total(quantity_of(name), np.array([h]))[0]))
-
-            h = crossing(np.vectorize(at, otypes=[float]), float(high[k]), lowest)
-            found[k] = np.nan if h is None else h
-        return found
-
-    def total(self, q: Quantity, h: Array) -> Array:
-        """Return a sum of each surface at its separation, over the scale."""
-        return self.added(self.terms([q.name], h)[0])
+    def _total(self, q: Quantity, h: Array, which: Ints) -> Array:
+        """Return a sum of some surfaces at their separations, over the scale."""
+        some = self.some(which)
+        return some.added(some.terms([q.name], h)[0])
 
     def _bounds(self, q: Quantity, low: Array, high: Array, falls: bool) -> tuple[Array, Array, Marks]:
         """Return sums at `low`, their bounds up to `high`, and where the sum there is the bound and falls.
