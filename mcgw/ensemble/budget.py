@@ -163,15 +163,11 @@ def budget_of(solution: Any) -> Budget:
         parameters = _SURE * np.sqrt(np.einsum("ki,ij,kj->k", slopes, scene.uncertainty.covariance, slopes))
         alone = _SURE * np.abs(slopes[0]) * np.sqrt(np.diag(scene.uncertainty.covariance))
         parts = dict(zip(scene.uncertainty.names, alone.tolist(), strict=True))
-    validity = solution.against_elasticity
-    model = np.array([_model_error(validity, name, scene, value) for name in names])
-    if given != "load":
-        model[:] = np.nan
-        lacking["model"] = f"its error was measured at a given load, not at a given {given.replace('_', ' ')}"
-    elif why := yields(solution.yielding):
-        model[:], lacking["model"] = np.nan, why
-    elif np.isnan(model[0]):
-        lacking["model"] = validity.unknown or "not measured"
+    errors = [_measured(solution, name) for name in names]
+    relative = [scene.surface.sigma / abs(value[name]) if name in GAPS else 1.0 for name in names]
+    model = np.array([error for _, error, _ in errors]) * relative
+    if errors[0][2]:
+        lacking["model"] = errors[0][2]
     lines = dict(zip(LINES, (np.abs(drawn), np.abs(scatter), parameters, model), strict=True))
     return Budget(solution.title, lines, names, lacking, parts)
 
@@ -213,54 +209,43 @@ def moved(scene: Scene, steps: dict[str, float]) -> Scene:
 
 def corrected(solution: Any, name: str) -> Corrected:
     """Return an answer without the bias of its model: see `mcgw.ensemble.solved.Solution.corrected`."""
-    if solution.given != "load":
-        return Corrected(why="errors of models are measured at a given load")
-    if why := yields(solution.yielding):
+    bias, error, why = _measured(solution, name)
+    if why:
         return Corrected(why=why)
-    scene, answers, validity = solution.scene, solution.value, solution.against_elasticity
-    column = _ERROR_OF.get(name)
-    if column is None:
-        return Corrected(why=f"{name}: its error was not measured")
-    bias, error = _bias_and_error(validity, name, scene, answers)
-    if math.isnan(error):
-        filmed = name in _SPOTS and _filmed(scene)
-        return Corrected(why=_FILM if filmed else validity.unknown or f"{name}: not measured there")
-    value = answers[name]
-    besides = math.hypot(_SURE * solution.std[name] * validity.listed, solution.half_width(name))
-    if column == "separation":
-        right, off = value - bias * scene.surface.sigma, (error - abs(bias)) * scene.surface.sigma
-        off = math.hypot(off, besides)
+    value, off = solution.value[name], error - abs(bias)
+    besides = math.hypot(
+        _SURE * solution.std[name] * solution.against_elasticity.listed, solution.half_width(name)
+    )
+    if name in GAPS:
+        sigma = solution.scene.surface.sigma
+        right, off = value - bias * sigma, math.hypot(off * sigma, besides)
         return Corrected(right, right - off, right + off)
-    right, factor = value / (1 + bias), 1 + math.hypot((error - abs(bias)) / (1 + bias), besides / value)
+    right, factor = value / (1 + bias), 1 + math.hypot(off / (1 + bias), besides / value)
     return Corrected(right, right / factor, right * factor)
 
 
-def _model_error(validity: Validity, name: str, scene: Scene, answers: Answers) -> float:
-    """Error of the model, relative to the answer."""
-    if name not in _ERROR_OF:
-        return math.nan
-    error = _bias_and_error(validity, name, scene, answers)[1]
-    return error * scene.surface.sigma / abs(answers[name]) if name in GAPS else error
-
-
-def _bias_and_error(validity: Validity, name: str, scene: Scene, answers: Answers) -> tuple[float, float]:
-    """Bias of an answer and its error, relative to the right value, of a gap over sigma; nan if not known."""
-    if name in _SPOTS and _filmed(scene):
-        return math.nan, math.nan
-    if name == "joint_conductance":
-        return _of_joint(validity, scene, answers)
-    column = _ERROR_OF[name]
-    return float(validity.bias[column][0]), float(validity.error[column][0])
-
-
-def _filmed(scene: Scene) -> bool:
-    """Whether spots conduct through a film or layer, so that their conductance is not that of stiffness."""
+def _measured(solution: Any, name: str) -> tuple[float, float, str]:
+    """Bias of an answer and its error, of the right value, of a gap over sigma; or why neither is known."""
+    scene, given, validity = solution.scene, solution.given, solution.against_elasticity
     film = scene.film
-    return film is not None and (film.film_resistance > 0 or film.layer is not None)
+    filmed = film is not None and (film.film_resistance > 0 or film.layer is not None)
+    if given != "load":
+        why = f"its error was measured at a given load, not at a given {given.replace('_', ' ')}"
+    elif name not in _ERROR_OF:
+        why = f"{name}: its error was not measured"
+    elif not (why := yields(solution.yielding)) and name in _SPOTS and filmed:
+        why = _FILM
+    if why:
+        return math.nan, math.nan, why
+    if name == "joint_conductance":
+        bias, error = _of_joint(validity, scene, solution.value)
+    else:
+        bias, error = (float(each[_ERROR_OF[name]][0]) for each in (validity.bias, validity.error))
+    return bias, error, validity.unknown or f"{name}: not measured there" if math.isnan(error) else ""
 
 
 def _of_joint(validity: Validity, scene: Scene, answers: Answers) -> tuple[float, float]:
-    """As `_bias_and_error` of a joint: from its network with the right spots and gap.
+    """As `_measured` of a joint: from its network with the right spots and gap.
 
     The errors of spots and gap, through the derivatives of the network, are added as independent ones.
     """
@@ -275,18 +260,13 @@ def _of_joint(validity: Validity, scene: Scene, answers: Answers) -> tuple[float
 
     def network(factor: float, lift: float) -> float:
         spots_si = factor * answers["contact_conductance"] * scene.surface.nominal_area
-        apart = answers["nominal_separation" if scene.from_mean_plane else "separation"] + lift
+        apart = answers["nominal_separation" if scene.from_mean_plane else "separation"] - lift
         return float(joint_conductance(scene, "joint_conductance", spots_si, apart))
 
-    right = network(1 / (1 + spots[0]), -gap[0])
-    by_spots = (spots[1] - abs(spots[0])) / (1 + spots[0])
-    off = math.hypot(
-        _slope(lambda x: network((1 + x) / (1 + spots[0]), -gap[0])) * by_spots,
-        _slope(lambda x: network(1 / (1 + spots[0]), x - gap[0])) * (gap[1] - abs(gap[0])),
-    )
+    factor, lift = 1 / (1 + spots[0]), gap[0]
+    right = network(factor, lift)
+    by_spots = (network(factor + _STEP, lift) - network(factor - _STEP, lift)) / (2 * _STEP)
+    by_gap = (network(factor, lift + _STEP) - network(factor, lift - _STEP)) / (2 * _STEP)
+    off = math.hypot(by_spots * (spots[1] - abs(spots[0])) * factor**2, by_gap * (gap[1] - abs(gap[0])))
     bias = network(1.0, 0.0) / right - 1
     return bias, abs(bias) + off / right * (1 + bias)
-
-
-def _slope(f: Callable[[float], float]) -> float:
-    return (f(_STEP) - f(-_STEP)) / (2 * _STEP)
