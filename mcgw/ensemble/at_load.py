@@ -4,7 +4,7 @@ Also the gap between the planes of a surface, and the pressures that the separat
 """
 
 from collections import UserDict
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -70,7 +70,7 @@ def answers_at(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
     (`reference = "mean-plane"`). Where current or heat is conducted, conductances per area and resistances
     are included.
     """
-    felt, joint = found["separation"], dict[str, Any]()
+    felt, area, joint = found["separation"], scene.surface.nominal_area, dict[str, Any]()
     sums = {name: x for name, x in found.items() if name != "separation"}
     if scene.interaction is not None or scene.gas is not None:
         from mcgw.ensemble.half_space import answered  # for those scenes alone
@@ -81,21 +81,14 @@ def answers_at(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
         joint = {name: sums.pop(name) for name in in_gap}
     ahead = {"separation": felt} | {name: sums[name] for name in SEPARATIONS if name in sums}
     h = ahead["nominal_separation" if scene.from_mean_plane else "separation"]
-    gap = scene.surface.sigma * (h + (scene.rise or 0.0))
-    return {**ahead, scene.gap: gap, **sums, **_conducted(scene, sums, joint)}
-
-
-def _conducted(scene: Scene, found: dict[str, Any], joint: dict[str, Any]) -> dict[str, Any]:
-    """Conductances per nominal area, and resistances of spots and joint."""
-    if scene.film is None:
-        return {}
-    area = scene.surface.nominal_area
-    answers = {"contact_conductance": found["conductance_si"] / area, **joint}
-    whole = answers.get("joint_conductance", answers["contact_conductance"])
-    with np.errstate(divide="ignore"):
-        name = "thermal_resistance" if scene.thermal else "contact_resistance"
-        answers[name] = np.divide(1.0, whole * area)
-        answers["specific_contact_resistance"] = np.divide(1.0, answers["contact_conductance"])
+    answers = {**ahead, scene.gap: scene.surface.sigma * (h + (scene.rise or 0.0)), **sums}
+    if scene.film is not None:
+        contact = sums["conductance_si"] / area
+        answers |= {"contact_conductance": contact, **joint}
+        with np.errstate(divide="ignore"):
+            whole = joint.get("joint_conductance", contact) * area
+            answers["thermal_resistance" if scene.thermal else "contact_resistance"] = np.divide(1.0, whole)
+            answers["specific_contact_resistance"] = np.divide(1.0, contact)
     return answers
 
 
@@ -159,8 +152,10 @@ def controlled(x: Array, known: Sequence[tuple[Array, float]]) -> tuple[float, f
     return float(fitted[0]), float(np.sqrt(left @ left / freedom / m)), freedom
 
 
-def exact_moments(scene: Scene, given: str, amount: float, theory: Mapping[str, float]) -> Moments:
+def exact_moments(scene: Scene, given: str, amount: float) -> Moments:
     """Means and standard deviations over specimens that need no draw: by quadrature, in SI units.
+
+    Of sums, and of answers that are linear in one of them or in the separation.
 
     Parameters
     ----------
@@ -168,8 +163,6 @@ def exact_moments(scene: Scene, given: str, amount: float, theory: Mapping[str, 
         Of the specimens.
     given, amount : str, float
         The sum that all have, and its value.
-    theory : mapping
-        Answers of an infinite surface: see `mcgw.ensemble.at_load.answers_at`.
 
     Returns
     -------
@@ -179,7 +172,7 @@ def exact_moments(scene: Scene, given: str, amount: float, theory: Mapping[str, 
     known = Moments({given: amount}, {given: 0.0})
     if scene.summits is not None or scene.as_measured or given == "nominal_separation":
         return known
-    sums = [x for x in quantities_at(scene) if x in theory and quantity_of(x).base != "load_slope"]
+    sums = [x for x in quantities_at(scene) if quantity_of(x).base != "load_slope"]
     try:
         with np.errstate(all="ignore"):
             found = specimen_moments(scene.alone, given, amount, [name for name in sums if name != given])
@@ -187,29 +180,14 @@ def exact_moments(scene: Scene, given: str, amount: float, theory: Mapping[str, 
         return known
     if not np.isfinite([*found.mean.values(), *found.std.values()]).all():
         return known
-    mean, std = dict(known.mean), dict(known.std)
-    for name, (of, factor, base) in _in_proportion(scene, given, [*sums, "separation"]).items():
-        if name in theory and name != given:
-            shift = theory[name] - factor * theory[of] if base else 0.0
-            mean[name], std[name] = factor * found.mean[of] + shift, factor * found.std[of]
-    return Moments(mean, std)
-
-
-def _in_proportion(scene: Scene, given: str, sums: Sequence[str]) -> dict[str, tuple[str, float, bool]]:
-    """Answers that are in proportion to a sum or the separation: of which, by how much, and from where.
-
-    What differs from the separation by the same on all surfaces does so by as much as in theory (True).
-    """
-    found = {name: (name, 1.0, False) for name in sums if name == "separation" or not scene.series(name)}
-    sigma = scene.surface.sigma
+    mean, std = found.mean | known.mean, found.std | known.std
+    at, above = (answers_at(scene, x) for x in (mean, {name: mean[name] + std[name] for name in mean}))
+    linear = {name for name in mean if name == "separation" or not scene.series(name)}
     if scene.interaction is None:
-        found[scene.gap] = ("separation", sigma, True)
-        if scene.film is not None:
-            spots = ("conductance_si", 1 / scene.surface.nominal_area, False)
-            found["contact_conductance"] = spots
-            if scene.filled is not None and scene.filled.gas is None:
-                found |= {"gap_conductance": ("conductance_si", 0.0, False), "joint_conductance": spots}
+        linear |= {scene.gap, "contact_conductance"}
+        if scene.filled is not None and scene.filled.gas is None:
+            linear |= {"gap_conductance", "joint_conductance"}
     elif given == "load":
-        found["nominal_separation"] = ("separation", 1.0, True)
-        found |= dict.fromkeys(GAPS, ("separation", sigma, True))
-    return found
+        linear |= {"nominal_separation", *GAPS}
+    linear &= at.keys()
+    return Moments({name: at[name] for name in linear}, {name: above[name] - at[name] for name in linear})

@@ -207,16 +207,29 @@ def moved(scene: Scene, steps: dict[str, float]) -> Scene:
     return scene.replace(surface=replace(surface, **own), heights=heights, summits=curvature)
 
 
-def corrected(solution: Any, name: str) -> Corrected:
-    """Return an answer without the bias of its model: see `mcgw.ensemble.solved.Solution.corrected`."""
-    bias, error, why = _measured(solution, name)
+def corrected(solution: Any, quantity: str) -> Corrected:
+    """`value`, corrected by the measured error of the model against boundary elements.
+
+    Parameters
+    ----------
+    quantity : str
+        "area", "stiffness", "conductance", "contact_conductance", "joint_conductance", "mean_gap" or
+        "gap_to_summits". Spots have the error of stiffness, to which they are proportional without a film
+        (Barber, 2003, Proc. R. Soc. A 459, 53); a joint that of its network of spots and gas.
+
+    Returns
+    -------
+    Corrected
+        With the ends between which 95 % of such surfaces lie; nan where nothing was measured, with the
+        reason in `why`.
+    """
+    bias, error, why = _measured(solution, quantity)
     if why:
         return Corrected(why=why)
-    value, off = solution.value[name], error - abs(bias)
-    besides = math.hypot(
-        _SURE * solution.std[name] * solution.against_elasticity.listed, solution.half_width(name)
-    )
-    if name in GAPS:
+    value, off = solution.value[quantity], error - abs(bias)
+    scatter = _SURE * solution.std[quantity] * solution.against_elasticity.listed
+    besides = math.hypot(scatter, solution.half_width(quantity))
+    if quantity in GAPS:
         sigma = solution.scene.surface.sigma
         right, off = value - bias * sigma, math.hypot(off * sigma, besides)
         return Corrected(right, right - off, right + off)

@@ -6,8 +6,6 @@ Estimates of the time of a run, in seconds and in words.
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
-from functools import cached_property
 from time import perf_counter
 from typing import Any, TypeVar
 
@@ -19,8 +17,7 @@ from mcgw.ensemble.results import Tables
 from mcgw.machine.in_threads import in_threads, pieces
 from mcgw.sampling.block import Block, Sampler, Source
 from mcgw.sampling.counts import GROUP
-from mcgw.sampling.expected import Expected, expected
-from mcgw.sampling.samplers import sampler_of
+from mcgw.sampling.expected import expected
 from mcgw.scene.scene import Scene
 
 _Drawn = TypeVar("_Drawn")
@@ -179,28 +176,6 @@ def drawn(reducers: Sequence[Reducer], go_on: GoOn) -> list[Any]:
         found.append(one.held(blocks(one)))
         before += one.n_surfaces * one.work
     return found
-
-
-@dataclass(frozen=True)
-class OfScene(Reducer):
-    """Draws the surfaces of one scene with a fixed number of them."""
-
-    scene: Scene
-    expected: Expected | None = None
-
-    @cached_property
-    def sampler(self) -> Any:
-        """The scene's."""
-        return self.expected or sampler_of(self.scene)
-
-    @property
-    def n_surfaces(self) -> int:
-        """How many surfaces are asked for."""
-        return self.scene.n_surfaces
-
-    @abstractmethod
-    def joined_bytes(self, surfaces: int) -> int:
-        """Approximate size of the file, before compression."""
 
 
 def seconds_for(scene: Scene, sampler: Sampler, surfaces: int, *, at_least: float = 0.0) -> float:

@@ -24,6 +24,11 @@ STATISTICS = ("mean", "std")  # of each quantity, kept in place of values, besid
 _COLUMNS = ("column", "other_column")  # of the covariance
 
 
+def _values(quantity: str, words: str) -> property:
+    """Return the property of an ensemble that holds the values of a quantity."""
+    return property(lambda self: self.values(quantity), doc=f"{words}; shape (surfaces, separations).")
+
+
 @dataclass(frozen=True, repr=False)
 class Ensemble(Dataset):
     """The sums of every surface at every separation.
@@ -112,46 +117,21 @@ class Ensemble(Dataset):
         """Return the same as `values`."""
         return self.values(quantity)
 
-    @property
-    def load(self) -> Array:
-        """Load P, N, shape (surfaces, separations)."""
-        return self.values("load")
-
-    @property
-    def area(self) -> Array:
-        """Real area A, m^2, shape (surfaces, separations)."""
-        return self.values("area")
-
-    @property
-    def stiffness(self) -> Array:
-        """Stiffness of the contact spots, N/m, shape (surfaces, separations): -dP/dd where nothing yields.
-
-        With asperity interaction, in series with the half-space: ``1/K = 1/K_asp + compliance``.
-        """
-        return self.values("stiffness")
-
-    @property
-    def contacts(self) -> Array:
-        """Number of contacts, shape (surfaces, separations)."""
-        return self.values("contacts")
-
-    @property
-    def conductance(self) -> Array:
-        """Contact conductance times resistivity, m, shape (surfaces, separations).
-
-        With asperity interaction it is in series with the half-space, as `stiffness` is.
-        """
-        return self.values("conductance")
-
-    @property
-    def pressure(self) -> Array:
-        """Load per nominal area P/A_n, Pa, shape (surfaces, separations)."""
-        return self.values("pressure")
-
-    @property
-    def area_fraction(self) -> Array:
-        """Real area per nominal area A/A_n, shape (surfaces, separations)."""
-        return self.values("area_fraction")
+    load = _values("load", "Load P, N")
+    area = _values("area", "Real area A, m^2")
+    stiffness = _values(
+        "stiffness",
+        "Stiffness of the contact spots, N/m: -dP/dd where nothing yields. With asperity interaction it is "
+        "in series with the half-space, 1/K = 1/K_asp + compliance",
+    )
+    contacts = _values("contacts", "Number of contacts")
+    conductance = _values(
+        "conductance",
+        "Contact conductance times resistivity, m. With asperity interaction it is in series with the "
+        "half-space, as `stiffness` is",
+    )
+    pressure = _values("pressure", "Load per nominal area P/A_n, Pa")
+    area_fraction = _values("area_fraction", "Real area per nominal area A/A_n")
 
     def labelled(self) -> Labelled:
         """Return the values of every surface; with ``keep = "statistics"`` means, deviations, covariances."""

@@ -38,16 +38,15 @@ def answered(scene: Scene, sums: dict[str, Any], names: Iterable[str], h: Any) -
     """
     from analytic.interaction import in_series  # for those scenes alone: every comparison imports this file
 
-    found = dict(sums)
-    if scene.interaction is not None:
-        series, sunk = {name: scene.series(name) for name in sums}, scene.compliance / scene.surface.sigma
-        found = {name: in_series(x, series[name]) if series[name] else x for name, x in sums.items()}
+    sunk = scene.compliance / scene.surface.sigma
+    found = {name: in_series(x, scene.series(name)) for name, x in sums.items()}
     for name in names:
         back = "_unloading" * name.endswith("_unloading")
+        nominal = h - sunk * sums[f"load{back}"] if scene.interaction else h
         if name in SEPARATIONS:
-            found[name] = h - sunk * sums[f"load{back}"]
+            found[name] = nominal
         else:
-            apart = found[f"nominal_separation{back}"] if scene.from_mean_plane else h
+            apart = nominal if scene.from_mean_plane else h
             found[name] = joint_conductance(scene, name, found[f"conductance_si{back}"], apart)
     return found
 
@@ -98,19 +97,14 @@ class _Alone(Results):
         return self.whole.rows()
 
 
-def scene_alone(scene: Scene) -> Scene:
-    """Return the scene without interaction."""
-    return scene if scene.interaction is None else scene.replace(interaction=None)
-
-
 def asperities_alone(ensemble: Ensemble) -> Ensemble:
     """Return the ensemble of the sums of the asperities.
 
     Of one that keeps no values those that are not in series with the half-space.
     """
-    scene = ensemble.scene
-    if not isinstance(ensemble.sums, Results):  # of what is in series only each surface's would tell
-        rest = tuple(name for name in scene.quantities if not scene.series(name))  # the load at least
-        return replace(ensemble, scene=scene_alone(scene.replace(quantities=rest)))
-    sums = _Alone(ensemble.sums, scene)
-    return replace(ensemble, scene=scene_alone(scene), sums=sums)
+    scene, sums, quantities = ensemble.scene, ensemble.sums, ensemble.scene.quantities
+    if isinstance(sums, Results):
+        sums = _Alone(sums, scene)
+    else:  # of what is in series only each surface's would tell
+        quantities = tuple(name for name in quantities if not scene.series(name))  # the load at least
+    return replace(ensemble, scene=scene.replace(quantities=quantities, interaction=None), sums=sums)

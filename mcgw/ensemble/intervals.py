@@ -10,7 +10,7 @@ contacts is binomial or Poisson, and its interval exact (Clopper and Pearson 193
 Which confidence interval a quantity of an ensemble has.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,7 +18,8 @@ from numpy.typing import ArrayLike
 from scipy.special import betainc, betaincc, gammainccinv, gammaincinv, ndtri
 
 from analytic import Hertz, MeasuredHeights, RandomCurvature, quantity_of
-from analytic.arrays import Array, Marks
+from analytic.arrays import Array
+from analytic.roots import sign_changes
 from mcgw.ensemble.results import Held
 from mcgw.formats.table import Column
 from mcgw.scene.scene import Scene
@@ -27,7 +28,6 @@ CONFIDENCE = 0.95
 FEWEST = 10.0  # effective contacts in the whole ensemble, below which there is no interval
 MANY = 30.0  # below it a sum of nearly equal terms is still discrete: half of the tails is left for that
 TOO_FEW = "too few contacts"
-_HALVINGS = 60
 _GAUSSIAN = 1e-5  # skewness below which the distribution is Gaussian to ten digits
 _AT_A_TIME = 32  # separations that share a rule of heights, whose size is the square of their number
 _MOST_OF_BAND = 100  # separations, at which laws may take six times as long
@@ -144,21 +144,19 @@ def count_interval(
     high = gammainccinv(k + 1, tail)
     if poisson:
         return low, np.asarray(high)
-    n = asperities
     # SciPy's inverse of the beta distribution fails beyond 1e9 asperities, the distribution does not.
+    n, unit = asperities, np.ones_like(k)
     inside, rest = np.maximum(k, 1.0), np.maximum(n - k, 1.0)
-    below = _root(lambda p: betainc(inside, n - inside + 1, p) > tail, np.zeros_like(k), k / n)
-    above = _root(lambda p: betaincc(k + 1, rest, p) < tail, k / n, np.minimum(high / n, 1.0))
-    return np.where(k > 0, n * below, 0.0), np.where(k < n, n * above, n)
-
-
-def _root(passed: Callable[[Array], Marks], low: Array, high: Array) -> Array:
-    """Where a condition begins to hold between two ends, by halving."""
-    for _ in range(_HALVINGS):
-        middle = (low + high) / 2
-        beyond = passed(middle)
-        low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
-    return np.asarray((low + high) / 2)
+    low = sign_changes(
+        lambda x, i: np.subtract(betainc(inside[i], n - inside[i] + 1, x / n), tail),
+        np.zeros_like(k),
+        k,
+        unit,
+    )
+    high = sign_changes(
+        lambda x, i: np.subtract(tail, betaincc(k[i] + 1, rest[i], x / n)), k, np.minimum(2 * high, n), unit
+    )
+    return np.where(k > 0, low, 0.0), np.where(k < n, high, n)
 
 
 def interval_columns(low: ArrayLike, high: ArrayLike, unit: str = "") -> tuple[Column, Column]:

@@ -215,40 +215,28 @@ def ratio_of(pooled: Pooled, quantity: str, first: Some, second: Some, separatio
     The error is that of ``b - r a``, one combination: what both share cancels before it is rounded.
     """
     b, a = pooled.mean(quantity, *first), pooled.mean(quantity, *second)
-    with np.errstate(divide="ignore", invalid="ignore"):  # without a contact there is no ratio
-        ratio = b / np.where(a == 0, np.nan, a)
-        together, apart = _variances(pooled, quantity, first, second, 1.0, ratio)
-        return Paired(
-            quantity, separations, ratio, np.sqrt(together / pooled.n) / np.abs(a), apart / together
-        )
+    ratio = b / np.where(a == 0, np.nan, a)  # without a contact there is none
+    between = difference_of(pooled, quantity, first, second, 1.0, ratio)
+    return Paired(quantity, separations, ratio, between.stderr / np.abs(a), between.gain)
 
 
 def difference_of(
-    pooled: Pooled, quantity: str, first: Some, second: Some, areas: tuple[float, float]
-) -> Difference:
-    """Return the first mean less the second, each per area, over the surfaces that both share."""
-    x, y = 1 / areas[0], 1 / areas[1]
-    together, apart = _variances(pooled, quantity, first, second, x, y)
-    value = pooled.mean(quantity, *first) / areas[0] - pooled.mean(quantity, *second) / areas[1]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return Difference(value, np.sqrt(together / pooled.n), apart / together)
-
-
-def _variances(
     pooled: Pooled, quantity: str, first: Some, second: Some, x: float | Array, y: float | Array
-) -> tuple[Array, Array]:
-    """Variance of `x` times the first less `y` times the second: over shared, and over different surfaces.
+) -> Difference:
+    """Return `x` times the first mean less `y` times the second, over the surfaces that both share.
 
-    The first is that of one combination of scenes: nothing cancels.
+    Its variance is that of one combination of scenes: nothing cancels.
     """
     (one, v), (other, w) = first, second
     scenes = np.union1d(one, other)
-    variances = pooled.variance(quantity, *first), pooled.variance(quantity, *second)
-    weights = np.zeros((len(scenes), *variances[0].shape))
-    weights[np.searchsorted(scenes, one)] += np.multiply.outer(v, x * np.ones(weights.shape[1:]))
-    weights[np.searchsorted(scenes, other)] -= np.multiply.outer(w, y * np.ones(weights.shape[1:]))
+    b, a = (pooled.variance(quantity, *some) for some in (first, second))
+    weights = np.zeros((len(scenes), *b.shape))
+    weights[np.searchsorted(scenes, one)] += np.multiply.outer(v, x * np.ones(b.shape))
+    weights[np.searchsorted(scenes, other)] -= np.multiply.outer(w, y * np.ones(b.shape))
     together = np.maximum(pooled.variance(quantity, scenes, weights), 0.0)  # apart from rounding
-    return together, np.asarray(x**2 * variances[0] + y**2 * variances[1])
+    value = x * pooled.mean(quantity, *first) - y * pooled.mean(quantity, *second)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return Difference(value, np.sqrt(together / pooled.n), (x**2 * b + y**2 * a) / together)
 
 
 def _same_asperities(one: Ensemble, other: Ensemble) -> bool:

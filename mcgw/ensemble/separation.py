@@ -18,13 +18,14 @@ from analytic.laws import Branch
 from analytic.roots import sign_changes
 from mcgw.scene.scene import Scene
 
+Excess = Callable[[Array, Ints], Array]  # of separations, and of the numbers of the surfaces that have them
 _FINE = 1 / 64  # step of the search where moduli may be negative
 LOWEST = -40.0  # separation where searches end
 _CLOSE = 1e-14  # relative excess of a sum, which is its rounding error
 _ROUNDING = 1e-9  # of a law that goes on smoothly
 
 
-def crossing(excess: Callable[[Array, Ints], Array], high: Array, lowest: float = LOWEST) -> Array:
+def crossing(excess: Excess, high: Array, lowest: float = LOWEST) -> Array:
     """Return the largest arguments up to `high` where functions are not negative, shape (functions,).
 
     Of arguments and the numbers of the functions, shape (m,); nan where there is none, down to the lowest.
@@ -34,10 +35,15 @@ def crossing(excess: Callable[[Array, Ints], Array], high: Array, lowest: float 
     while left.size:
         reached = excess(at[left], left) >= 0  # at once by a last digit
         k = left[reached]
-        found[k] = sign_changes(lambda h, which, k=k: excess(h, k[which]), top[k], at[k], np.ones(k.size))
+        found[k] = sign_changes(_of_some(excess, k), top[k], at[k], np.ones(k.size))
         left = left[~reached & (at[left] > lowest)]
         top, at = at, np.maximum(at - _FINE, lowest)
     return found
+
+
+def _of_some(excess: Excess, which: Ints) -> Excess:
+    """Return functions of which only some are asked."""
+    return lambda h, k: excess(h, which[k])
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,6 +195,9 @@ class Asperities:
             """Of the sum's root, in which it is nearly linear, over the value's."""
             return np.asarray(np.sign(total) * np.abs(total / goal) ** power - 1)
 
+        def excess_at(h: Array, which: Ints) -> Array:
+            return excess(on._total(q, h, which))
+
         over, passed = np.full(low.size, -1.0), np.zeros(low.size, dtype=bool)
         active = np.flatnonzero(high > low)
         while active.size:
@@ -202,7 +211,7 @@ class Asperities:
             reached = ~free & ~thin & smooth
             k = active[reached]
             found[k] = sign_changes(
-                lambda h, which, k=k: excess(on._total(q, h, k[which])),
+                _of_some(excess_at, k),
                 top[reached], at[reached], np.ones(k.size), at_ends=(over[k], here[reached]), close=_CLOSE,
             )  # fmt: skip
             width[active] *= np.where(~free, 0.5, np.inf if falls else 1.0 + passed[active])

@@ -4,18 +4,20 @@ What is kept of the surfaces of a scene as they are drawn: all their numbers, or
 """
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from functools import cached_property
 from time import monotonic
 from typing import Any
 
-from mcgw.ensemble.drawing import GoOn, OfScene, always, block_size, drawn, drawn_blocks, kept, use_threads
+from mcgw.ensemble.drawing import GoOn, Reducer, always, block_size, drawn, drawn_blocks, kept, use_threads
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import without_rule
-from mcgw.ensemble.results import CHUNK_ROWS, MemoryResults, Tables, joined
+from mcgw.ensemble.results import CHUNK_ROWS, Held, MemoryResults, Tables, joined
 from mcgw.errors import StoreError
 from mcgw.machine.memory import check_memory
 from mcgw.machine.progress import Progress, told
 from mcgw.sampling.expected import Expected
+from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.kinds import check_object
 from mcgw.scene.scene import Scene, storable, with_sampling
 
@@ -86,8 +88,30 @@ def simulate(
     return Ensemble(with_sampling(scene, n_surfaces=held.rows()), reducer.sampler.name, held)
 
 
-class Values(OfScene):
-    """All numbers of every surface."""
+@dataclass(frozen=True)
+class Values(Reducer):
+    """All numbers of every surface of one scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a fixed number of surfaces.
+    expected : Expected, optional
+        What stands for its sampler, to be asked its size.
+    """
+
+    scene: Scene
+    expected: Expected | None = None
+
+    @cached_property
+    def sampler(self) -> Any:
+        """The scene's."""
+        return self.expected or sampler_of(self.scene)
+
+    @property
+    def n_surfaces(self) -> int:
+        """How many surfaces are asked for."""
+        return self.scene.n_surfaces
 
     @cached_property
     def rows(self) -> int:
@@ -100,10 +124,10 @@ class Values(OfScene):
     @property
     def disk(self) -> int:  # type: ignore[override]
         """Bytes of the blocks, and of the file they are merged into."""
-        return 2 * 8 * self.scene.n_surfaces * self.scene.width
+        return 2 * self.joined_bytes(self.n_surfaces)
 
     def joined_bytes(self, surfaces: int) -> int:
-        """Return what the file of so many surfaces takes."""
+        """Approximate size of the file of so many surfaces, before compression."""
         return 8 * surfaces * self.scene.width
 
     def tables(self, first: int, stop: int, go_on: GoOn = always) -> Tables:
@@ -116,7 +140,7 @@ class Values(OfScene):
                 break
         return joined(parts)
 
-    def held(self, blocks: Iterable[Tables]) -> MemoryResults:
+    def held(self, blocks: Iterable[Tables]) -> Held:
         """All of them, one below the other."""
         return MemoryResults(joined(list(blocks)))
 
@@ -138,7 +162,7 @@ class Values(OfScene):
         check_memory(f"contact.separations: a block of {rows} surfaces", 3 * 8 * rows * scene.width)
 
 
-def reducer_of(scene: Scene, expected: Expected | None = None) -> OfScene:
+def reducer_of(scene: Scene, expected: Expected | None = None) -> Values:
     """Return the one for what a scene keeps; of a sampler that is only expected, to be asked its size."""
     if scene.keep != "statistics":
         return Values(scene, expected)

@@ -12,11 +12,11 @@ from analytic import SEPARATIONS, yielding_share
 from analytic.arrays import Array
 from analytic.at_load import Moments
 from mcgw.ensemble.at_load import GAPS, Answers, answers_at, controlled, exact_moments
-from mcgw.ensemble.budget import Budget, Corrected, budget_of, corrected
+from mcgw.ensemble.budget import Budget, budget_of, corrected
 from mcgw.ensemble.intervals import FEWEST, laws_are_quick
 from mcgw.ensemble.loaded_surfaces import LoadedSurfaces
 from mcgw.ensemble.solved_table import elastic_verdict, sheet_of, table_of
-from mcgw.formats.table import Shown, Table
+from mcgw.formats.table import Shown
 from mcgw.machine.terminal import plotted
 from mcgw.scene.scene import Scene
 from mcgw.validity.lookup import validity_of
@@ -170,7 +170,7 @@ class Solution(Shown):
     @cached_property
     def _exact(self) -> Moments:
         """Means and standard deviations that need no draw, in the units of `surfaces`."""
-        return exact_moments(self.scene, self.given, self.amount, self.theory)
+        return exact_moments(self.scene, self.given, self.amount)
 
     @cached_property
     def separation_law(self) -> "Law | None":
@@ -274,24 +274,6 @@ class Solution(Shown):
 
     _budget = cached_property(budget_of)
 
-    def corrected(self, quantity: str) -> Corrected:
-        """`value`, corrected by the measured error of the model against boundary elements.
-
-        Parameters
-        ----------
-        quantity : str
-            "area", "stiffness", "conductance", "contact_conductance", "joint_conductance", "mean_gap" or
-            "gap_to_summits". Spots have the error of stiffness, to which they are proportional without a film
-            (Barber, 2003, Proc. R. Soc. A 459, 53); a joint that of its network of spots and gas.
-
-        Returns
-        -------
-        Corrected
-            With the ends between which 95 % of such surfaces lie; nan where nothing was measured, with the
-            reason in `why`.
-        """
-        return corrected(self, quantity)
-
     @cached_property
     def against_elasticity(self) -> Validity:
         """Measured error of the model at this separation."""
@@ -301,16 +283,4 @@ class Solution(Shown):
         """Draw how the separation differs from surface to surface; returns the axes."""
         return plotted(self, ax)
 
-    def sheet(self) -> Table:
-        """Return the answers, and how specimens differ."""
-        return sheet_of(self)
-
-    def table(self, specimens: bool = False) -> Table:
-        """Return the mean over specimens, their scatter and the corrected answer, a row for each quantity.
-
-        Parameters
-        ----------
-        specimens : bool
-            Add the range of 90 % of them, for which surfaces are drawn.
-        """
-        return table_of(self, specimens=specimens)
+    corrected, sheet, table = corrected, sheet_of, table_of

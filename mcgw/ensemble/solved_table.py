@@ -33,8 +33,14 @@ def answers_of(solution: Any, table: Table) -> Table:
     return table.at([k for k, name in enumerate(solution.theory) if name != solution.given])
 
 
-def table_of(solution: Any, *, specimens: bool) -> Table:
-    """Return what `mcgw.ensemble.solved.Solution.table` does."""
+def table_of(solution: Any, specimens: bool = False) -> Table:
+    """Return the mean over specimens, their scatter and the corrected answer, a row for each quantity.
+
+    Parameters
+    ----------
+    specimens : bool
+        Add the range of 90 % of them, for which surfaces are drawn.
+    """
     units = {**dict.fromkeys(GAPS, "m"), "separation": "sigma", **dict.fromkeys(SEPARATIONS, "sigma")}
     names = list(solution.theory)
     low, high = np.array([solution.interval(name) for name in names]).T

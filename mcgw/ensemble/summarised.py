@@ -11,9 +11,10 @@ from operator import add
 import numpy as np
 
 from analytic.arrays import Array, Ints
-from mcgw.ensemble.drawing import GoOn, OfScene, always, block_size, drawn_blocks, kept
+from mcgw.ensemble.drawing import GoOn, always
 from mcgw.ensemble.pooled import Pooled, pooled_from, tables_of
-from mcgw.ensemble.results import Held, Tables, joined
+from mcgw.ensemble.results import Held, Tables
+from mcgw.ensemble.simulation import Values
 from mcgw.machine.memory import check_memory
 from mcgw.scene.scene import Scene
 
@@ -77,7 +78,7 @@ _DRAWS = 1e9  # numbers drawn for a block: what an interruption may cost
 _MOST = 2**20  # surfaces of a block
 
 
-class Statistics(OfScene):
+class Statistics(Values):
     """Count, means and covariances of the numbers of a scene's surfaces."""
 
     @cached_property
@@ -95,12 +96,10 @@ class Statistics(OfScene):
 
     def tables(self, first: int, stop: int, go_on: GoOn = always) -> Tables:
         """Return the statistics of a block."""
-        size, piece, parts = block_size(self.scene, self.sampler), self._piece, list[Pooled]()
-        for start in range(first, stop, piece):
-            end = min(start + piece, stop)
-            values = joined(
-                [kept(self.scene, block) for block in drawn_blocks(self.sampler, start, end, size)]
-            )
+        parts = list[Pooled]()
+        for start in range(first, stop, self._piece):
+            end = min(start + self._piece, stop)
+            values = super().tables(start, end)
             table = np.concatenate([values[name] for name in self.scene.tables], axis=1)
             parts.append(Pooled.of_columns(NUMBERS, table))
             if not go_on(end):

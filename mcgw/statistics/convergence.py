@@ -13,7 +13,6 @@ from analytic import quantity_of
 from analytic.arrays import Array
 from mcgw.ensemble.drawing import blocks
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.half_space import scene_alone
 from mcgw.ensemble.results import MemoryResults, joined
 from mcgw.formats.table import Column, Shown, Table, evenly
 from mcgw.machine.progress import Progress, told
@@ -151,8 +150,9 @@ def converge(
             "test; give smaller ones"
         )
     draw = draw or _own
-    scene, h = scene_alone(scene), np.unique(scene.separations)
+    h = np.unique(scene.separations)
     scene = scene.replace(  # few separations, in order, and a feasible number of surfaces
+        interaction=None,
         separations=tuple(h[evenly(len(h), _MOST_SEPARATIONS)].tolist()),
         n_surfaces=min(max(scene.n_surfaces, _FEWEST), _MOST),
         rel_err=None,

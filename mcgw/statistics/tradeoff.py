@@ -19,7 +19,6 @@ import numpy as np
 
 from analytic import MeasuredHeights, MeasuredRadii
 from mcgw.ensemble.drawing import in_words
-from mcgw.ensemble.half_space import scene_alone
 from mcgw.errors import RunError
 from mcgw.formats.table import Column, Shown, Table
 from mcgw.machine.progress import Progress, told
@@ -225,9 +224,9 @@ def tradeoff(
     if isinstance(whole.heights, MeasuredHeights):
         raise ValueError("heights: measured heights are summed exactly; no answer is traded off")
     h = sorted(whole.separations)[(len(whole.separations) - 1) // 2] if separation is None else separation
-    scene = scene_alone(whole).replace(
+    scene = whole.replace(
         separations=(float(h),), quantities=whole.quantities[:1], keep="sums",
-        rel_err=None, max_seconds=None,
+        interaction=None, rel_err=None, max_seconds=None,
     )  # fmt: skip
     answers, names = Answers(scene), sampled_ways(scene)
     with told(progress, "s") as tell, catch_warnings():

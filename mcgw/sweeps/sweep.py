@@ -116,8 +116,8 @@ class Sweep(Dataset):
         name, per_area = self._stored(quantity)
         a, b = self._numbers(one, other)
         pooled, both = self._pair(name, a, b)
-        areas = [self.scenes[k].surface.nominal_area if per_area else 1.0 for k in (a, b)]
-        return difference_of(pooled, name, *both, (areas[0], areas[1]))
+        per = [1 / self.scenes[k].surface.nominal_area if per_area else 1.0 for k in (a, b)]
+        return difference_of(pooled, name, *both, per[0], per[1])
 
     def ratio(self, quantity: str, one: At, other: At) -> Paired:
         """Ratio of a mean between two points, first over second, over the same surfaces.
