@@ -10,14 +10,13 @@ contacts is binomial or Poisson, and its interval exact (Clopper and Pearson 193
 Which confidence interval a quantity of an ensemble has.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import betainc, betaincc, gammainccinv, gammaincinv, ndtri
 
-from analytic import Hertz, MeasuredHeights, RandomCurvature, quantity_of
+from analytic import Hertz, MeasuredHeights, quantity_of
 from analytic.arrays import Array
 from analytic.roots import sign_changes
 from mcgw.ensemble.results import Held
@@ -29,7 +28,6 @@ FEWEST = 10.0  # effective contacts in the whole ensemble, below which there is 
 MANY = 30.0  # below it a sum of nearly equal terms is still discrete: half of the tails is left for that
 TOO_FEW = "too few contacts"
 _GAUSSIAN = 1e-5  # skewness below which the distribution is Gaussian to ten digits
-_AT_A_TIME = 32  # separations that share a rule of heights, whose size is the square of their number
 _MOST_OF_BAND = 100  # separations, at which laws may take six times as long
 _NOTHING = 1e-280  # a mean below it has lost its variance to underflow
 
@@ -96,27 +94,11 @@ def chebyshev(level: float = CONFIDENCE) -> float:
 
 def spread_of(scene: Scene, quantity: str) -> Spread:
     """Exact spread of a quantity over the surfaces of a scene, at its separations."""
-    mean, variance, third = moments(scene, [quantity], (2, 3))[:, 0]
+    found = scene.theory.cumulants(quantity, scene.separations)
     with np.errstate(divide="ignore", invalid="ignore"):
-        relative = np.sqrt(variance) / np.sqrt(scene.n_asperities) / np.abs(mean)
-        skewness = np.sign(mean) * third / variance / np.sqrt(variance) / np.sqrt(scene.n_asperities)
-    relative = np.where(np.abs(mean) < _NOTHING, np.inf, relative)
-    return Spread(relative, np.where(variance > 0, skewness, 0.0))
-
-
-def moments(scene: Scene, names: Sequence[str], orders: Sequence[int]) -> Array:
-    """Mean, and moments of the random part, of what one asperity contributes.
-
-    Shape (1 + orders, quantities, separations), over the scale of each quantity.
-    """
-    (h, back), parts = np.unique(scene.separations, return_inverse=True), []
-    cut_by_radius = isinstance(scene.summits, RandomCurvature) and not scene.hertzian
-    most = 1 if cut_by_radius else _AT_A_TIME
-    for few in np.array_split(h, -(-h.size // most)):
-        one = scene.theory.fluctuations(names, few)
-        found = np.stack([one.mean, *(one.moment(order) for order in orders)])
-        parts.append(found.reshape(1 + len(orders), len(names), -1))
-    return np.asarray(np.concatenate(parts, axis=2)[..., back])
+        relative = np.sqrt(found.variance) / np.abs(found.mean)
+    relative = np.where(np.abs(found.mean) < _NOTHING, np.inf, relative)
+    return Spread(relative, np.where(found.variance > 0, np.sign(found.mean) * found.skewness, 0.0))
 
 
 def mean_interval(
@@ -147,12 +129,8 @@ def count_interval(
     # SciPy's inverse of the beta distribution fails beyond 1e9 asperities, the distribution does not.
     n, unit = asperities, np.ones_like(k)
     inside, rest = np.maximum(k, 1.0), np.maximum(n - k, 1.0)
-    low = sign_changes(
-        lambda x, i: np.subtract(betainc(inside[i], n - inside[i] + 1, x / n), tail),
-        np.zeros_like(k),
-        k,
-        unit,
-    )
+    none, more = np.zeros_like(k), n - inside + 1
+    low = sign_changes(lambda x, i: np.subtract(betainc(inside[i], more[i], x / n), tail), none, k, unit)
     high = sign_changes(
         lambda x, i: np.subtract(tail, betaincc(k[i] + 1, rest[i], x / n)), k, np.minimum(2 * high, n), unit
     )

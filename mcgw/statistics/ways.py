@@ -11,7 +11,7 @@ from math import ceil, inf, nan, sqrt
 from scipy.special import ndtri
 
 from mcgw.ensemble.forecast import MOST_SURFACES, forecast, surfaces_at_load
-from mcgw.ensemble.intervals import CONFIDENCE, moments
+from mcgw.ensemble.intervals import CONFIDENCE
 from mcgw.machine.memory import kept
 from mcgw.sampling.expected import expected
 from mcgw.scene.promises import promise_of
@@ -110,8 +110,7 @@ def of_one(scene: Scene, want: str) -> float:
         alone = float(scene.theory.asperities_for("conductance", h, 1.0, given="load"))
         return _BOUND * sqrt(alone / scene.n_asperities)
     if want == "std":  # by the fourth moment of the sum over asperities, about 0 or about the mean
-        _, second, fourth = moments(scene, [q], (2, 4))[:, 0, 0]
-        excess = (fourth / second**2 - 3 * (scene.count == "fixed")) / scene.n_asperities
+        excess = float(scene.theory.cumulants(q, h).excess_kurtosis)
         return _BOUND * sqrt(max(2 + excess, 0.0) / 4)
     law = scene.theory.distribution(q, h)  # of a quantile by the density there (order statistics)
     value = float(law.ppf(PROBABILITY))
