@@ -4,7 +4,7 @@ Also the gap between the planes of a surface, and the pressures that the separat
 """
 
 from collections import UserDict
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -113,26 +113,11 @@ def pressures_of(scene: Scene, number: int) -> Array:
 
 
 class Answers(UserDict[str, Any]):
-    """Answers by name, each found when it is first asked for.
-
-    Parameters
-    ----------
-    names : sequence of str
-        All that there are.
-    find : callable
-        Finds the one of a name.
-    """
-
-    def __init__(self, names: Sequence[str], find: Callable[[str], float]) -> None:
-        """Find nothing yet."""
-        super().__init__(dict.fromkeys(names))
-        self._find = find
+    """Answers by name, each found by its function whenever it is asked for."""
 
     def __getitem__(self, name: str) -> float:
         """Return an answer; KeyError if there is no such."""
-        if self.data[name] is None:
-            self.data[name] = float(self._find(name))
-        return float(self.data[name])
+        return float(self.data[name]())
 
     def __repr__(self) -> str:
         """Show all, as a dict."""

@@ -1,4 +1,4 @@
-"""Draw surfaces block by block: block size, threads, and what is kept of a block.
+"""Draw surfaces block by block: block size, threads, and what is kept of them: here all their numbers.
 
 Estimates of the time of a run, in seconds and in words.
 """
@@ -6,6 +6,8 @@ Estimates of the time of a run, in seconds and in words.
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
 from time import perf_counter
 from typing import Any, TypeVar
 
@@ -13,11 +15,14 @@ import numba
 import numpy as np
 
 from analytic import quantity_of
-from mcgw.ensemble.results import Tables
+from mcgw.ensemble.results import CHUNK_ROWS, Held, MemoryResults, Tables, joined
+from mcgw.errors import StoreError
 from mcgw.machine.in_threads import in_threads, pieces
+from mcgw.machine.memory import check_memory
 from mcgw.sampling.block import Block, Sampler, Source
 from mcgw.sampling.counts import GROUP
-from mcgw.sampling.expected import expected
+from mcgw.sampling.expected import Expected, expected
+from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.scene import Scene
 
 _Drawn = TypeVar("_Drawn")
@@ -27,6 +32,9 @@ _WORDS = 4_000_000  # numbers of a block that fit the outer cache
 _MOST_WORDS = 20_000_000  # numbers a block may hold
 _DRAWS = 1.5e8  # asperities a block may draw, so that a bar moves every second
 _PER_COUNT, _PER_PRODUCT = 4e-8, 2.5e-10  # rough seconds per number and per pair, for statistics
+_FILE_BYTES = 2**23  # of a block of a file: large enough that its flushing costs little
+_FILE_DRAWS = 4e8  # numbers drawn for such a block: a second or so
+_MOST = 2**63 - 1
 _SHORT = 0.01  # s; times below are given in milliseconds
 _TRIED = 0.05  # rough seconds per surface up to which a block is drawn on trial
 
@@ -176,6 +184,80 @@ def drawn(reducers: Sequence[Reducer], go_on: GoOn) -> list[Any]:
         found.append(one.held(blocks(one)))
         before += one.n_surfaces * one.work
     return found
+
+
+@dataclass(frozen=True)
+class Values(Reducer):
+    """All numbers of every surface of one scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a fixed number of surfaces.
+    expected : Expected, optional
+        What stands for its sampler, to be asked its size.
+    """
+
+    scene: Scene
+    expected: Expected | None = None
+
+    @cached_property
+    def sampler(self) -> Any:
+        """The scene's."""
+        return self.expected or sampler_of(self.scene)
+
+    @property
+    def n_surfaces(self) -> int:
+        """How many surfaces are asked for."""
+        return self.scene.n_surfaces
+
+    @cached_property
+    def rows(self) -> int:
+        """Surfaces of a block: whole chunks of a file."""
+        size, row = block_size(self.scene, self.sampler), 8 * self.scene.width
+        fitting = min(_FILE_BYTES / (size * row), _FILE_DRAWS / (size * (self.sampler.draws + 1)))
+        rows = size * int(max(fitting, 1))
+        return rows - rows % CHUNK_ROWS if rows > CHUNK_ROWS else rows
+
+    @property
+    def disk(self) -> int:  # type: ignore[override]
+        """Bytes of the blocks, and of the file they are merged into."""
+        return 2 * self.joined_bytes(self.n_surfaces)
+
+    def joined_bytes(self, surfaces: int) -> int:
+        """Approximate size of the file of so many surfaces, before compression."""
+        return 8 * surfaces * self.scene.width
+
+    def tables(self, first: int, stop: int, go_on: GoOn = always) -> Tables:
+        """Return the numbers, a row a surface."""
+        parts, done = [], first
+        for block in drawn_blocks(self.sampler, first, stop, block_size(self.scene, self.sampler)):
+            parts.append(kept(self.scene, block))
+            done += len(parts[-1][self.scene.quantities[0]])
+            if not go_on(done):
+                break
+        return joined(parts)
+
+    def held(self, blocks: Iterable[Tables]) -> Held:
+        """All of them, one below the other."""
+        return MemoryResults(joined(list(blocks)))
+
+    def check(self, surfaces: int | None = None) -> None:
+        """Refuse what does not fit the memory."""
+        scene, n, k = self.scene, self.n_surfaces, len(self.scene.separations)
+        if surfaces is not None:
+            what = f"ensemble.n_surfaces = {surfaces}: {len(scene.quantities)} quantities at {k} separations"
+            check_memory(what, 2 * 8 * surfaces * scene.width)  # the blocks, and all of them joined
+            return
+        for what, value in (
+            ("n_surfaces * n_asperities", n * scene.n_asperities),
+            ("n_surfaces * n_asperities * separations", n * scene.n_asperities * k),
+            ("bytes of the file", self.disk // 2),
+        ):
+            if value > _MOST:
+                raise StoreError(f"ensemble: {what} = {value:.4g} is more than 2^63 - 1; reduce the scene")
+        rows = min(self.rows, n)
+        check_memory(f"contact.separations: a block of {rows} surfaces", 3 * 8 * rows * scene.width)
 
 
 def seconds_for(scene: Scene, sampler: Sampler, surfaces: int, *, at_least: float = 0.0) -> float:

@@ -46,19 +46,39 @@ class LoadedSurfaces:
 
     @cached_property
     def specimens(self) -> Scene:
-        """The scene, or specimens in place of its one measured surface."""
-        return _resampled(self.scene) if self.scene.as_measured else self.scene
+        """The scene, or specimens in place of its one measured surface, with as many of its summits."""
+        scene, heights, own = self.scene, self.scene.heights, self.scene.summits
+        if not (scene.as_measured and isinstance(heights, MeasuredHeights)):
+            return scene
+        again = MeasuredHeights(heights.heights, resampled=True)
+        ratios = own.ratios if isinstance(own, MeasuredRadii) else np.ones(len(heights.heights))
+        return scene.replace(heights=again, summits=MeasuredRadii(again, ratios), n_surfaces=_RESAMPLED)
 
     @cached_property
     def lows(self) -> list[float]:
-        """Separation that nearly every surface is above, at each value."""
+        """Separation that nearly every surface is above, or that all heights are, at each value.
+
+        By some standard deviations, to first order. What the modulus is there does not matter yet.
+        """
         name = self.given.name if self.sunk is None else "load"  # a nominal separation follows from it
-        return [_lowest(self.specimens, name, h) for h in self.about]
+        theory, bottom = self.specimens.theory, float(self.specimens.heights.ppf(np.array(_NOTHING)))
+        spreads = [float(theory.std(name, h) / theory.slope(name, h)) for h in self.about]
+        return [max(h - _MARGIN * x, min(h, bottom)) for h, x in zip(self.about, spreads, strict=True)]
 
     @cached_property
     def drawn(self) -> Scene:
-        """The scene with which the surfaces are drawn."""
-        return storable(_drawn(self.specimens, min(self.lows)))
+        """The scene with which the surfaces are drawn, above the lowest separation of nearly every one."""
+        scene = self.specimens.replace(
+            sampler="direct" if isinstance(self.specimens.heights, MeasuredHeights) else "tail",
+            keep="sums",
+            separations=(min(self.lows),),
+            quantities=("contacts",),
+            law=Hertz(),  # heights are what is drawn, the same under every law
+            unload_from=None,
+            joint=None,
+            negative="clip" if self.scene.negative == "clip" else "allow",
+        )
+        return storable(scene)
 
     @cached_property
     def sums(self) -> list[dict[str, Array]]:
@@ -126,36 +146,3 @@ class LoadedSurfaces:
         s, ratios = (summits if h < self.drawn.lowest else touching_summits)(self.drawn, surface)
         order = np.argsort(-s, kind="stable")[: np.count_nonzero(s > h)]
         return s[order], None if ratios is None else ratios[order]
-
-
-def _resampled(scene: Scene) -> Scene:
-    """Specimens of the one surface whose summits were measured: each has as many, drawn from these."""
-    heights = scene.heights
-    assert isinstance(heights, MeasuredHeights)
-    again = MeasuredHeights(heights.heights, resampled=True)
-    own = scene.summits
-    ratios = own.ratios if isinstance(own, MeasuredRadii) else np.ones(len(heights.heights))
-    return scene.replace(heights=again, summits=MeasuredRadii(again, ratios), n_surfaces=_RESAMPLED)
-
-
-def _lowest(scene: Scene, name: str, h: float) -> float:
-    """Below the solution h of the mean surface: lower than that of nearly every surface, or than all heights.
-
-    That is some standard deviations, to first order. What the modulus is there does not matter yet.
-    """
-    spread = float(scene.theory.std(name, h) / scene.theory.slope(name, h))
-    return max(h - _MARGIN * spread, min(h, float(scene.heights.ppf(np.array(_NOTHING)))))
-
-
-def _drawn(scene: Scene, lowest: float) -> Scene:
-    """Return the scene whose contacts are drawn: above the lowest separation of nearly every surface."""
-    return scene.replace(
-        sampler="direct" if isinstance(scene.heights, MeasuredHeights) else "tail",
-        keep="sums",
-        separations=(lowest,),
-        quantities=("contacts",),
-        law=Hertz(),  # heights are what is drawn, the same under every law
-        unload_from=None,
-        joint=None,
-        negative="clip" if scene.negative == "clip" else "allow",
-    )

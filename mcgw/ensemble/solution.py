@@ -99,20 +99,12 @@ def solve(
     elif scene.interaction is None:
         raise ValueError(f'{key}: it needs [interaction] reference = "body" or "mean-plane"')
     else:
-        values = [_reduced(x) for x in several]
+        if wrong := [x for x in several if not isinstance(x, int | float) or not np.isfinite(x)]:
+            raise ValueError(f"nominal_separation = {wrong[0]!r}: give a finite number, d/sigma")
+        values = [float(x) for x in several]
     with told(progress, "surfaces") as tell:
         found = solutions(scene, given, values, tell)
     return found if isinstance(plain, list) else found[0]
-
-
-def _reduced(value: Any) -> float:
-    try:
-        found = float(value)
-    except (TypeError, ValueError):
-        found = np.nan
-    if not np.isfinite(found):
-        raise ValueError(f"nominal_separation = {value!r}: give a finite number, d/sigma")
-    return found
 
 
 def solutions(

@@ -126,13 +126,13 @@ class Solution(Shown):
         surfaces drawn, corrected by what their sums and separations lack (a control variate). Otherwise it is
         the mean of the surfaces drawn.
         """
-        return Answers([*self.theory], lambda name: self._estimate(name)[0])
+        return Answers({name: lambda name=name: self._estimate(name)[0] for name in self.theory})
 
     @cached_property
     def std(self) -> Answers:
         """Standard deviation over specimens: exact to 2e-4 where `value` is, else of the surfaces drawn."""
-        known = self._exact.std
-        return Answers([*self.theory], lambda x: known[x] if x in known else self.surfaces[x].std(ddof=1))
+        exact = {name: lambda x=x: x for name, x in self._exact.std.items()}
+        return Answers({x: exact.get(x, lambda x=x: self.surfaces[x].std(ddof=1)) for x in self.theory})
 
     def interval(self, name: str, level: float = 0.95) -> tuple[float, float]:
         """Confidence interval of `value` (Student's t); of no width where that is exact.

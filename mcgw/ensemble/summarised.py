@@ -11,10 +11,9 @@ from operator import add
 import numpy as np
 
 from analytic.arrays import Array, Ints
-from mcgw.ensemble.drawing import GoOn, always
+from mcgw.ensemble.drawing import GoOn, Values, always
 from mcgw.ensemble.pooled import Pooled, pooled_from, tables_of
 from mcgw.ensemble.results import Held, Tables
-from mcgw.ensemble.simulation import Values
 from mcgw.machine.memory import check_memory
 from mcgw.scene.scene import Scene
 

@@ -14,14 +14,14 @@ MODULES = {
     "mcgw.elasticity.sources": "maps_of",
     "mcgw.elasticity.spots": "fallen Spots",
     "mcgw.ensemble.at_load": "mean_surface pressures_of",
-    "mcgw.ensemble.drawing": "block_size drawn in_words kept rough_seconds use_threads",
+    "mcgw.ensemble.drawing": "block_size drawn in_words kept rough_seconds use_threads Values",
     "mcgw.ensemble.forecast": "after before checkpoints forecast upper_contacts",
     "mcgw.ensemble.intervals": (
         "count_interval exact_ends FEWEST mean_interval pearson3_quantile Spread spread_of TOO_FEW"
     ),
     "mcgw.ensemble.results": "Held MemoryResults",
     "mcgw.ensemble.separation": "Asperities crossing",
-    "mcgw.ensemble.simulation": "reducer_of Values",
+    "mcgw.ensemble.simulation": "reducer_of",
     "mcgw.ensemble.solution": "solutions",
     "mcgw.figures.against_theory": "comparison_figure quantity_panel spread",
     "mcgw.figures.catalogue": "CATALOGUE figures_of",
