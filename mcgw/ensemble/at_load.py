@@ -32,26 +32,19 @@ def mean_surface(scene: Scene, given: str, value: float) -> dict[str, float]:
 
 def theory_at(scene: Scene, given: str, value: float) -> dict[str, float]:
     """Separation and all quantities of the asperities of the mean surface."""
-    alone, q = scene.alone, quantity_of(given)
-    if given == "nominal_separation":
-        h = nominal_of_mean(scene, value)
+    mean, q = scene.alone.mean, quantity_of(given)
+    if given == "nominal_separation":  # the largest one that the asperities feel there
+        sunk = scene.compliance / scene.surface.sigma
+        high = value + max(float(sunk * mean("load", value)), 0.0)
+        lowest = min(value, high) - _DEEP
+        (h,) = crossing(lambda x, _: value - x + sunk * mean("load", x), np.array([high]), lowest).tolist()
+        if np.isnan(h):
+            raise ValueError(f"nominal_separation = {value:g}: the mean surface does not reach it; give more")
     else:
-        h = float(alone.separation_at(given, value))
+        h = float(scene.alone.separation_at(given, value))
     if scene.negative == "error" and (where := scene.negative_above(h)) is not None:
         raise ValueError(NEGATIVE.format(q.name, value, q.unit, "the mean surface", where))
-    return {"separation": h, **{name: float(alone.mean(name, h)) for name in quantities_at(scene)}}
-
-
-def nominal_of_mean(scene: Scene, value: float) -> float:
-    """Largest separation that the asperities feel at which the mean surface has a nominal one."""
-    mean = scene.alone.mean
-    sunk = scene.compliance / scene.surface.sigma
-    high = value + max(float(sunk * mean("load", value)), 0.0)
-    lowest = min(value, high) - _DEEP
-    (found,) = crossing(lambda h, _: value - h + sunk * mean("load", h), np.array([high]), lowest)
-    if np.isnan(found):
-        raise ValueError(f"nominal_separation = {value:g}: the mean surface does not reach it; give more")
-    return float(found)
+    return {"separation": h, **{name: float(mean(name, h)) for name in quantities_at(scene)}}
 
 
 def quantities_at(scene: Scene) -> tuple[str, ...]:

@@ -274,7 +274,7 @@ def _of_joint(validity: Validity, scene: Scene, answers: Answers) -> tuple[float
     def network(factor: float, lift: float) -> float:
         spots_si = factor * answers["contact_conductance"] * scene.surface.nominal_area
         apart = answers["nominal_separation" if scene.from_mean_plane else "separation"] - lift
-        return float(joint_conductance(scene, "joint_conductance", spots_si, apart))
+        return float(joint_conductance(scene, spots_si, apart))
 
     factor, lift = 1 / (1 + spots[0]), gap[0]
     right = network(factor, lift)

@@ -39,11 +39,6 @@ _SHORT = 0.01  # s; times below are given in milliseconds
 _TRIED = 0.05  # rough seconds per surface up to which a block is drawn on trial
 
 
-def blocks(scene: Scene, sampler: Sampler) -> Iterator[Block]:
-    """Results of all surfaces of a scene, block by block, in order."""
-    yield from drawn_blocks(sampler, 0, scene.n_surfaces, block_size(scene, sampler))
-
-
 def drawn_blocks(sampler: Source[_Drawn], first: int, stop: int, size: int) -> Iterator[_Drawn]:
     """Results of surfaces `first` ... `stop - 1`, in order, in blocks of at most `size`.
 

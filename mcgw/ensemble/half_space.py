@@ -38,6 +38,7 @@ def answered(scene: Scene, sums: dict[str, Any], names: Iterable[str], h: Any) -
     """
     from analytic.interaction import in_series  # for those scenes alone: every comparison imports this file
 
+    filled: Any = scene.filled
     sunk = scene.compliance / scene.surface.sigma
     found = {name: in_series(x, scene.series(name)) for name, x in sums.items()}
     for name in names:
@@ -47,21 +48,23 @@ def answered(scene: Scene, sums: dict[str, Any], names: Iterable[str], h: Any) -
             found[name] = nominal
         else:
             apart = nominal if scene.from_mean_plane else h
-            found[name] = joint_conductance(scene, name, found[f"conductance_si{back}"], apart)
+            spots = found[f"conductance_si{back}"]
+            if name.startswith("joint"):
+                found[name] = joint_conductance(scene, spots, apart)
+            else:
+                found[name] = filled(apart) + 0 * spots
     return found
 
 
-def joint_conductance(scene: Scene, name: str, conductance: Any, apart: Any) -> Any:
-    """Return "joint_conductance" or "gap_conductance", by whatever way, W/(m^2 K): see `answered`.
+def joint_conductance(scene: Scene, spots: Any, apart: Any) -> Any:
+    """Return what spots and gas conduct side by side, in series with the bodies, W/(m^2 K): see `answered`.
 
     Parameters
     ----------
     scene : Scene
         With a joint.
-    name : str
-        Which of the two.
-    conductance : float or ndarray
-        Of the spots, and of the bodies in series with them, SI.
+    spots : float or ndarray
+        Conductance of the spots, and of the bodies in series with them, SI.
     apart : float or ndarray
         Distance of the mean planes, d/sigma.
     """
@@ -69,12 +72,9 @@ def joint_conductance(scene: Scene, name: str, conductance: Any, apart: Any) -> 
 
     assert scene.filled is not None
     assert scene.film is not None
-    contact = conductance / scene.surface.nominal_area
-    gas = scene.filled(apart) + 0 * contact
-    if not name.startswith("joint"):
-        return gas
+    contact = spots / scene.surface.nominal_area
     bodies = 0.0 if scene.interaction is None else scene.interaction.bodies(scene.surface, scene.film.rho)
-    return in_series(in_series(contact, -bodies) + gas, bodies)
+    return in_series(in_series(contact, -bodies) + scene.filled(apart), bodies)
 
 
 @dataclass(frozen=True)

@@ -115,17 +115,14 @@ def tables_of(parts: Sequence[Pooled]) -> Tables:
 
 def pooled_from(tables: Tables) -> tuple[Pooled, ...]:
     """From what `tables_of` gave."""
-    found, sizes = [], tables["n"]
-    ends = np.cumsum(sizes[:, 1]), np.cumsum(sizes[:, 1] ** 2)
-    for (n, k), end, last in zip(sizes.tolist(), *ends, strict=True):
-        means = {
-            name.removesuffix(_MEANS): table[end - k : end]
-            for name, table in tables.items()
-            if name.endswith(_MEANS)
-        }
-        products = {name: tables[name + _PRODUCTS][last - k**2 : last].reshape(k, k, -1) for name in means}
-        found.append(Pooled(n, means, products))
-    return tuple(found)
+    sizes = tables["n"][:, 1]
+    names = [name.removesuffix(_MEANS) for name in tables if name.endswith(_MEANS)]
+    means = {name: np.split(tables[name + _MEANS], np.cumsum(sizes)[:-1]) for name in names}
+    products = {name: np.split(tables[name + _PRODUCTS], np.cumsum(sizes**2)[:-1]) for name in names}
+    return tuple(
+        Pooled(n, {x: means[x][i] for x in names}, {x: products[x][i].reshape(k, k, -1) for x in names})
+        for i, (n, k) in enumerate(tables["n"].tolist())
+    )
 
 
 @njit(cache=True, fastmath={"reassoc", "contract"})

@@ -11,7 +11,7 @@ from scipy.stats import binom, poisson
 
 from analytic import quantity_of
 from analytic.arrays import Array
-from mcgw.ensemble.drawing import blocks
+from mcgw.ensemble.drawing import block_size, drawn_blocks
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.results import MemoryResults, joined
 from mcgw.formats.table import Column, Shown, Table, evenly
@@ -187,7 +187,8 @@ def converge(
 
 def _own(scene: Scene) -> Sums:
     sampler = replace(_prepared(scene.replace(seed=0)), scene=scene)
-    return joined([block.sums for block in blocks(scene, sampler)])
+    blocks = drawn_blocks(sampler, 0, scene.n_surfaces, block_size(scene, sampler))
+    return joined([block.sums for block in blocks])
 
 
 @lru_cache(maxsize=1)
