@@ -88,9 +88,7 @@ class _Alone(Results):
         """Rows `start` to `stop` (None: to the end) of a dataset."""
         from analytic.interaction import in_series  # as above
 
-        values = self.whole.read(name, start, stop)
-        other = self.scene.series(name) if name in self.scene.quantities else 0.0
-        return np.asarray(in_series(values, -other)) if other else values
+        return np.asarray(in_series(self.whole.read(name, start, stop), -self.scene.series(name)))
 
     def rows(self) -> int:
         """Return the number of surfaces there are."""

@@ -101,18 +101,6 @@ def spread_of(scene: Scene, quantity: str) -> Spread:
     return Spread(relative, np.where(found.variance > 0, np.sign(found.mean) * found.skewness, 0.0))
 
 
-def mean_interval(
-    mean: Array, spread: Spread, n_surfaces: int, level: float = CONFIDENCE
-) -> tuple[Array, Array]:
-    """Confidence interval of the exact mean, of the sign of the mean seen; nan where contacts are too few.
-
-    `mean` is over so many surfaces of this `spread`, shape (separations,), as are both ends.
-    """
-    low, high = spread.ratio(n_surfaces, level)
-    ends = mean / high, mean / low
-    return np.minimum(*ends), np.maximum(*ends)
-
-
 def count_interval(
     contacts: Array, asperities: float, *, poisson: bool, level: float = CONFIDENCE
 ) -> tuple[Array, Array]:
@@ -164,26 +152,22 @@ def interval_of(scene: Scene, sums: Held, name: str, level: float) -> tuple[Arra
         ends = count_interval(contacts, asperities, poisson=scene.count == "poisson", level=level)
         return ends[0] / m, ends[1] / m
     spread = spread_of(scene, name)
-    low, high = mean_interval(mean, spread, m, level)
+    low, high = spread.ratio(m, level)
     if laws_are_quick(scene) and scene.interaction is None and name not in scene.of_joint:
         rare = spread.effective(m) < MANY
-        low[rare], high[rare] = _by_law(scene, name, np.array(scene.separations)[rare], mean[rare], m, level)
-    return low, high
+        low[rare], high[rare] = _ratio_by_law(scene, name, np.array(scene.separations)[rare], m, level)
+    ends = mean / high, mean / low  # of the sign of the mean
+    return np.minimum(*ends), np.maximum(*ends)
 
 
-def _by_law(
-    scene: Scene, name: str, h: Array, mean: Array, n_surfaces: int, level: float
-) -> tuple[Array, Array]:
-    """As `mean_interval`, by the exact law of the sum of all surfaces: where contacts are few."""
+def _ratio_by_law(scene: Scene, name: str, h: Array, n_surfaces: int, level: float) -> Array:
+    """As `Spread.ratio`, by the exact law of the sum of all surfaces: where contacts are few."""
     together = replace(scene.theory, n_asperities=scene.n_asperities * n_surfaces)
-    each, back = np.unique(h, return_inverse=True)
-    found = []
-    for x in each.tolist():
-        law = together.distribution(name, x)
-        found.append(np.array(law.interval(level)) / law.mean() if law.mean() > 0 else np.full(2, np.nan))
-    ratios = np.reshape(found, (-1, 2))[back].T
-    low, high = np.where((ratios > 0).all(axis=0), ratios, np.nan)
-    return mean / high, mean / low
+    laws = [together.distribution(name, x) for x in h.tolist()]
+    ends = np.reshape([law.interval(level) for law in laws], (-1, 2)).T
+    means = np.array([law.mean() for law in laws])
+    known = (means > 0) & (ends > 0).all(axis=0)
+    return np.where(known, ends, np.nan) / np.where(known, means, 1.0)
 
 
 def _of_separation(scene: Scene, sums: Held, name: str, level: float) -> tuple[Array, Array]:

@@ -10,6 +10,7 @@ import numpy as np
 from analytic import Hertz, MeasuredHeights, MeasuredRadii, Quantity
 from analytic.arrays import Array, hold
 from mcgw.ensemble.at_load import NEGATIVE, quantities_at
+from mcgw.ensemble.results import joined
 from mcgw.ensemble.separation import LOWEST, Asperities
 from mcgw.scene.scene import Scene, storable
 
@@ -109,10 +110,7 @@ class LoadedSurfaces:
             parts.append([self._at(k, some, first) for k in range(len(self.values))])
             if tell is not None:
                 tell(first + n, drawn.n_surfaces)
-        found = [
-            {name: np.concatenate([part[name] for part in at]) for name in at[0]}
-            for at in zip(*parts, strict=True)
-        ]
+        found = [joined(at) for at in zip(*parts, strict=True)]
         hold(self, sums=found)
         return found
 

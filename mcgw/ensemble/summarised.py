@@ -61,9 +61,8 @@ class Summarised(Held):
 
     def mean_and_std(self, name: str) -> tuple[Array, Array]:
         """Mean and standard deviation (divisor M - 1)."""
-        columns, m = self._columns(name), self.rows()
-        mean, products = self.whole.means[NUMBERS][columns, 0], self.whole.products[NUMBERS]
-        return mean, np.sqrt(products[columns, columns, 0] / (m - 1 if m > 1 else np.nan))
+        mean = self.whole.means[NUMBERS][self._columns(name), 0]
+        return mean, np.sqrt(np.diagonal(self.covariance(name, name)))
 
     def covariance(self, name: str, other: str) -> Array:
         """Between all numbers of two tables (divisor M - 1)."""

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from oracles.inside import after, checkpoints, forecast, mean_interval, spread_of, upper_contacts
+from oracles.inside import after, checkpoints, forecast, spread_of, upper_contacts
 
 import analytic
 import mcgw
@@ -37,7 +37,7 @@ def test_stopped_ensembles_cover(make_scene):
     means = ensemble.load.reshape(SEEDS, n).mean(axis=1)
     exact = float(scene.theory.mean("load", 2.0))
     for number, enough in ((n, True), (16 * n, False)):  # the companion: a quarter of the width
-        low, high = mean_interval(means, spread_of(scene, "load"), number)
+        low, high = (means / end for end in spread_of(scene, "load").ratio(number)[::-1])
         assert (np.mean((low <= exact) & (exact <= high)) >= 0.93) == enough
 
 

@@ -17,7 +17,7 @@ MODULES = {
     "mcgw.ensemble.drawing": "block_size drawn in_words kept rough_seconds use_threads Values",
     "mcgw.ensemble.forecast": "after before checkpoints forecast upper_contacts",
     "mcgw.ensemble.intervals": (
-        "count_interval exact_ends FEWEST mean_interval pearson3_quantile Spread spread_of TOO_FEW"
+        "count_interval exact_ends FEWEST pearson3_quantile Spread spread_of TOO_FEW"
     ),
     "mcgw.ensemble.results": "Held MemoryResults",
     "mcgw.ensemble.separation": "Asperities crossing",
