@@ -98,16 +98,17 @@ class Dataset(Shown):
         KeyError
             If this quantity is not held.
         """
-        return self._of_each(quantity, lambda held, name: held.mean_and_std(name)[0])
+        return self._of_each(quantity, lambda _, held, name: held.mean_and_std(name)[0])
 
     def std(self, quantity: str) -> Array:
         """Return the standard deviation over the surfaces (divisor M - 1), nan for one; as `mean`."""
-        return self._of_each(quantity, lambda held, name: held.mean_and_std(name)[1])
+        return self._of_each(quantity, lambda _, held, name: held.mean_and_std(name)[1])
 
     def stderr(self, quantity: str) -> Array:
         """Return the standard error of the mean, nan for one surface; as `mean`."""
-        surfaces = [self._held(i).rows() for i in range(len(self._points))]
-        return np.asarray(self.std(quantity) / np.sqrt(self._of_points(surfaces)))
+        return self._of_each(
+            quantity, lambda _, held, name: held.mean_and_std(name)[1] / np.sqrt(held.rows())
+        )
 
     def covariance(self, quantity: str, other: str | None = None) -> Array:
         """Return the covariance over the surfaces (divisor M - 1) of two quantities, or of one with itself.
@@ -122,7 +123,7 @@ class Dataset(Shown):
             If this is not kept, as of a sweep.
         """
         second, per_area = self._stored(other or quantity)
-        found = self._of_each(quantity, lambda held, name: held.covariance(name, second))
+        found = self._of_each(quantity, lambda _, held, name: held.covariance(name, second))
         return self._per_area(found) if per_area else found
 
     def quantile(self, quantity: str, share: float) -> Array:
@@ -140,7 +141,7 @@ class Dataset(Shown):
         if not 0 <= share <= 1:
             raise ValueError(f"share = {share!r}: give a fraction of the surfaces, 0 to 1")
         return self._of_each(
-            quantity, lambda held, name: np.quantile(held.read(name, 0, None), share, axis=0)
+            quantity, lambda _, held, name: np.quantile(held.read(name, 0, None), share, axis=0)
         )
 
     def interval(self, quantity: str, level: float = CONFIDENCE) -> tuple[Array, Array]:
@@ -168,17 +169,15 @@ class Dataset(Shown):
         KeyError
             If this quantity is not held.
         """
-        name, per_area = self._stored(quantity)
-        scenes = enumerate(self._points)
-        ends = zip(*(interval_of(one, self._held(i), name, level) for i, one in scenes), strict=True)
-        low, high = map(self._arranged, ends)
-        return (self._per_area(low), self._per_area(high)) if per_area else (low, high)
+        ends = self._of_each(
+            quantity, lambda i, held, x: np.stack(interval_of(self._points[i], held, x, level), -1)
+        )
+        return ends[..., 0], ends[..., 1]
 
     def theory(self, quantity: str) -> Array:
         """Return the exact mean (`Scene.theory`), shape (points ..., separations)."""
-        self._stored(quantity)
         h = self.separations
-        return self._arranged([np.asarray(scene.theory.mean(quantity, h)) for scene in self._points])
+        return self._of_each(quantity, lambda i, _, name: self._points[i].theory.mean(name, h))
 
     def sel(self, *, separation: ArrayLike) -> Self:
         """Return the same surfaces at some of the separations.
@@ -229,23 +228,16 @@ class Dataset(Shown):
         quantity, ax = quantity_and_axes(quantity, ax)
         return plotted(self, ax, quantity=quantity or self.quantities[0])
 
-    def _of_each(self, quantity: str, get: Callable[[Held, str], Any]) -> Array:
-        """One array over all points, per area if requested."""
+    def _of_each(self, quantity: str, get: Callable[[int, Held, str], Any]) -> Array:
+        """One array over all points, in the shape of the axes, per area if requested."""
         name, per_area = self._stored(quantity)
-        found = self._arranged([get(self._held(i), name) for i in range(len(self._points))])
+        found = np.stack([get(i, self._held(i), name) for i in range(len(self._points))])
+        found = found.reshape(*self.shape, *found.shape[1:])
         return self._per_area(found) if per_area else found
 
-    def _arranged(self, found: Sequence[Any]) -> Array:
-        """Return data of all points in the shape of the axes."""
-        return np.stack(found).reshape(*self.shape, *np.shape(found[0]))
-
     def _per_area(self, values: Array) -> Array:
-        areas = self._of_points([scene.surface.nominal_area for scene in self._points])
-        return np.asarray(values / areas.reshape(*areas.shape, *[1] * (values.ndim - areas.ndim)))
-
-    def _of_points(self, numbers: Sequence[float]) -> Array:
-        """One number of each point, to go with what is at each separation."""
-        return np.array(numbers).reshape(*self.shape, 1)
+        areas = np.array([scene.surface.nominal_area for scene in self._points])
+        return np.asarray(values / areas.reshape(*self.shape, *[1] * (values.ndim - len(self.shape))))
 
     def _stored(self, quantity: str) -> tuple[str, bool]:
         """Return the stored quantity, and whether the requested one is per nominal area."""
