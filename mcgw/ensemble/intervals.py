@@ -163,11 +163,12 @@ def interval_of(scene: Scene, sums: Held, name: str, level: float) -> tuple[Arra
 def _ratio_by_law(scene: Scene, name: str, h: Array, n_surfaces: int, level: float) -> Array:
     """As `Spread.ratio`, by the exact law of the sum of all surfaces: where contacts are few."""
     together = replace(scene.theory, n_asperities=scene.n_asperities * n_surfaces)
-    laws = [together.distribution(name, x) for x in h.tolist()]
+    each, back = np.unique(h, return_inverse=True)
+    laws = [together.distribution(name, x) for x in each.tolist()]
     ends = np.reshape([law.interval(level) for law in laws], (-1, 2)).T
     means = np.array([law.mean() for law in laws])
     known = (means > 0) & (ends > 0).all(axis=0)
-    return np.where(known, ends, np.nan) / np.where(known, means, 1.0)
+    return np.asarray(np.where(known, ends, np.nan) / np.where(known, means, 1.0))[:, back]
 
 
 def _of_separation(scene: Scene, sums: Held, name: str, level: float) -> tuple[Array, Array]:
