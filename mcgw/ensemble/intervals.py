@@ -94,8 +94,8 @@ def chebyshev(level: float = CONFIDENCE) -> float:
 
 def spread_of(scene: Scene, quantity: str) -> Spread:
     """Exact spread of a quantity over the surfaces of a scene, at its separations."""
-    found = scene.theory.cumulants(quantity, scene.separations)
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # far up, where next to none touch
+        found = scene.theory.cumulants(quantity, scene.separations)
         relative = np.sqrt(found.variance) / np.abs(found.mean)
     relative = np.where(np.abs(found.mean) < _NOTHING, np.inf, relative)
     return Spread(relative, np.where(found.variance > 0, np.sign(found.mean) * found.skewness, 0.0))
