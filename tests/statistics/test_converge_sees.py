@@ -154,6 +154,9 @@ def test_p_of_a_variance_is_the_chi_squares(factor):
         found = variances(SimpleNamespace(kurtosis=np.zeros(axes)), np.tile(y, axes))
         assert found.p == pytest.approx(min(axes * exact_p, 1.0), rel=1e-12)
         assert found.seen == f"measured/exact = {total / 400:.4f} at worst of {axes} axes"
+    heavy = variances(SimpleNamespace(kurtosis=np.full(1, 2.0)), y)  # as many as half the numbers tell
+    half = 2 * min(chi2.cdf(total / 2, 200), chi2.sf(total / 2, 200))
+    assert heavy.p == pytest.approx(min(half, 1.0), rel=1e-12)
 
 
 def test_coverage_is_students_and_its_p_the_binomials():
