@@ -162,19 +162,32 @@ def network(scene, spots, h, load):
     return gas, 1 / (1 / (spots + gas) + bodies)
 
 
-@pytest.mark.parametrize(("reference", "area", "film"), [
-    (None, 1e-6, {"film_resistance": 1e-8}), ("mean-plane", 1e-8, {}),
-    ("mean-plane", 1e-4, {"layer": analytic.Layer(1e-5, 1.3)}), ("body", 1e-6, {"film_resistance": 1e-8}),
-])  # fmt: skip
-def test_network_by_hand(reference, area, film):
-    """Of every specimen at a separation; of the infinite surface and of specimens at a load."""
+BESIDE = [
+    (None, 1e-6, {"film_resistance": 1e-8}), ("mean-plane", 1e-4, {"layer": analytic.Layer(1e-5, 1.3)}),
+    ("mean-plane", 1e-8, {}), ("body", 1e-6, {"film_resistance": 1e-8}),
+]  # fmt: skip
+
+
+def with_and_without_gas(reference, area, film):
     asked = {"n_asperities": 3000, "n_surfaces": 6}
     scene = scene_of(**asked, joint=AIR | film, interaction=reference).replace(nominal_area=area)
-    alone = scene_of(**asked, joint=FILM | film).replace(nominal_area=area)
+    return scene, scene_of(**asked, joint=FILM | film).replace(nominal_area=area)
+
+
+@pytest.mark.parametrize(("reference", "area", "film"), BESIDE)
+def test_network_by_hand(reference, area, film):
+    """Of every specimen at a separation."""
+    scene, alone = with_and_without_gas(reference, area, film)
     e, single = mcgw.simulate(scene), mcgw.simulate(alone)
     gas, joint = network(scene, single["conductance_si"], np.tile(H, (6, 1)), single["load"])
     np.testing.assert_allclose(e["gap_conductance"], gas, rtol=1e-11)
     np.testing.assert_allclose(e["joint_conductance"], joint, rtol=1e-12)
+
+
+@pytest.mark.parametrize(("reference", "area", "film"), BESIDE[:2])
+def test_network_at_a_load_by_hand(reference, area, film):
+    """Of the infinite surface and of specimens."""
+    scene, alone = with_and_without_gas(reference, area, film)
     found, single = (mcgw.solve(x, pressure="1 MPa") for x in (scene, alone))
     for at, own in ((found.theory, single.theory), (found.surfaces, single.surfaces)):
         _, joint = network(scene, own["conductance_si"], own["separation"], 1e6 * area)
