@@ -5,15 +5,16 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic.arrays import Array
+from analytic.arrays import Array, Ints
 from analytic.gradings import Grading
 from analytic.heights import GAUSSIAN, HeightLaw
 from analytic.integrals import fn, quotient
 from analytic.quantities import QUANTITIES
-from analytic.roots import root
+from analytic.roots import sign_changes
 
 LOWEST = -40.0  # separation that is looked at
 _GRID = np.concatenate([np.linspace(LOWEST, 10, 251), np.geomspace(10.5, 1000, 60)])
+_ROUNDING = 1e-12  # of logarithms of means, which change by last digits with the separations beside them
 
 
 def last_separations(
@@ -25,24 +26,24 @@ def last_separations(
     between those of an increasing grid, from where `about` says, which is the same to some digits. A value
     that is not reached there is a ValueError with the `name`.
     """
+    targets = log_targets.ravel()
+    each = np.arange(targets.size)
 
-    def found(target: float) -> float:
-        def excess(h: float) -> float:  # -100 also where the mean is not positive
-            return float(np.fmax(log_mean(h) - target, -100.0))
+    def excess(h: Array, which: Ints) -> Array:  # -100 also where the mean is not positive
+        return np.fmax(log_mean(h) - targets[which], -100.0)
 
-        k = int(np.flatnonzero(about >= target).max(initial=0))
-        while k > 0 and excess(grid[k]) < 0:
-            k -= 1
-        while k < grid.size - 1 and excess(grid[k + 1]) >= 0:
-            k += 1
-        if k == grid.size - 1 or excess(grid[k]) < 0:
-            raise ValueError(
-                f"{name}: not reached for h from {grid[0]:g} to {grid[-1]:.4g}; give another value"
-            )
-        return root(excess, float(grid[k + 1]), float(grid[k]))
-
-    roots = [found(target) for target in log_targets.ravel().tolist()]
-    return np.array(roots, dtype=np.float64).reshape(log_targets.shape)
+    k = np.array([np.flatnonzero(about >= target).max(initial=0) for target in targets], dtype=np.int64)
+    while (below := (k > 0) & (excess(grid[k], each) < 0)).any():
+        k -= below
+    k = np.minimum(k, grid.size - 2)
+    while (above := (k < grid.size - 2) & (excess(grid[k + 1], each) >= 0)).any():
+        k += above
+    left, right = grid[k], grid[k + 1]
+    more, less = excess(left, each), excess(right, each)
+    if np.any(more < -_ROUNDING) or np.any(less > _ROUNDING):
+        raise ValueError(f"{name}: not reached for h from {grid[0]:g} to {grid[-1]:.4g}; give another value")
+    ends = np.minimum(less, -np.finfo(float).tiny), np.maximum(more, 0.0)
+    return sign_changes(excess, right, left, np.ones(targets.size), at_ends=ends).reshape(log_targets.shape)
 
 
 def ratio_at_equal_load(
