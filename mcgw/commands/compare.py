@@ -3,15 +3,15 @@
 from pathlib import Path
 from typing import Annotated
 
-from mcgw.commands.kinds import EnsembleOrSweep, Out, Table
-from mcgw.commands.outputs import source
+from mcgw.commands.kinds import EnsembleOrSweep, Table, file_out
+from mcgw.commands.outputs import figure_format, source
 from mcgw.commands.voice import ALL, news, says
 
 
 def compare(
     file: EnsembleOrSweep,
     *,
-    output: Annotated[Path, Out(None, "{}.png")],
+    output: Annotated[Path, file_out(figure_format, "{}.png")],
     csv: Table = None,
     table: bool = False,
     laws: bool = False,

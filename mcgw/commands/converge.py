@@ -3,11 +3,16 @@
 from pathlib import Path
 from typing import Annotated
 
-from mcgw.commands.kinds import Folder, SceneIn
+from mcgw.commands.kinds import SceneIn, file_out
+from mcgw.commands.outputs import table_or_figure
 from mcgw.commands.voice import ALL, news, says
 
+_FILES = ("{}-converge.png",)
 
-def converge(scene: SceneIn, *, output: Annotated[list[Path], Folder("{}-converge.png")]) -> bool:
+
+def converge(
+    scene: SceneIn, *, output: Annotated[list[Path], file_out(table_or_figure, "out", names=_FILES)]
+) -> bool:
     """Test statistical convergence: slopes, coverage, variance, skewness, ... (exit code 1 if it fails).
 
     Parameters

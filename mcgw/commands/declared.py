@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, NoReturn, get_args, get_origin
 
 import mcgw.commands
-from mcgw.commands.kinds import Call, In, Kind, OneOf, Out, SceneFile
+from mcgw.commands.kinds import Call, Kind, OneOf
 from mcgw.commands.outputs import check_outputs, reading
 from mcgw.commands.voice import ALL, NEWS, QUIET, tell_cautions
 
@@ -126,7 +126,7 @@ def _add_arguments(parser: argparse.ArgumentParser, function: Command, words: st
         names = [each.name] if placed else [option, "--output"] if option == "-o" else [option]
         found = _options(each, kind, placed, *texts.get(each.name, (kind.metavar, kind.about)))
         groups[group].add_argument(*names, **found)
-    if any(isinstance(kind, SceneFile) for _, kind, *_ in _kinds_of(function)):
+    if any(kind.file == "scene" for _, kind, *_ in _kinds_of(function)):
         told = "change a key of the scene, such as grading.gamma=2 or contact.law=hertz; repeat for more keys"
         parser.add_argument("--set", action="append", metavar="KEY=VALUE", help=told)
 
@@ -143,16 +143,16 @@ def _options(each: Parameter, kind: Kind, placed: bool, metavar: str, words: str
     default = None if each.default is Parameter.empty else each.default
     if default not in (None, "", []):
         words += f"; default: {default}"
-    must = each.default is Parameter.empty and not (isinstance(kind, Out) and kind.beside)
+    must = each.default is Parameter.empty and "; default: " not in kind.words
     choices = kind.choices or tuple(one for one in types if isinstance(one, str))  # of a Literal
     plain = next((one for one in (Path, int, float) if one in types), str)
     found: dict[str, Any] = {"help": words, "default": default, "metavar": metavar or None}
-    found["type"] = kind.typed or (str if choices else plain)
+    found["type"] = Path if kind.file else kind.typed or (str if choices else plain)
     if choices:
         found["choices"] = choices
     if kind.action:
         found["action"] = kind.action
-    elif several and not isinstance(kind, Out):
+    elif several and kind.file != "out":
         found["nargs"] = "*" if placed and not must else "+"
     elif placed and not must:
         found["nargs"] = "?"
@@ -165,13 +165,13 @@ def execute(function: Command, args: argparse.Namespace) -> int:
     Cautions of what it read are printed last.
     """
     parts = [*_kinds_of(function)]
-    files = (getattr(args, each.name) for each, kind, *_ in parts if isinstance(kind, In))
+    files = (getattr(args, each.name) for each, kind, *_ in parts if kind.file in ("in", "scene"))
     call = Call(args, next((path for path in files if isinstance(path, Path)), None))
-    parts.sort(key=lambda part: not isinstance(part[1], Out))  # a scene may take its seed from an output
+    parts.sort(key=lambda part: part[1].file != "out")  # a scene may take its seed from an output
     values = {each.name: kind.read(getattr(args, each.name), option, call) for each, kind, option, _ in parts}
-    with reading(call.inputs):
-        check_outputs(call.outputs)
-        done = function(**values)
+    reading(call.inputs)
+    check_outputs(call.outputs)
+    done = function(**values)
     for source, instead in call.cautious:
         tell_cautions(source, instead)
     return int(done is False)

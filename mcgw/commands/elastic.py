@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Annotated
 
-from mcgw.commands.kinds import OneOf, Out, Pixel, SceneOrMap, Unit
+from mcgw.commands.kinds import OneOf, Pixel, SceneOrMap, Unit, file_out
 from mcgw.commands.outputs import JSONL
 from mcgw.commands.voice import details, news
 
@@ -21,7 +21,7 @@ def elastic(
     rel_err: float = 0.02,
     solves: int | None = None,
     seed: int = 1,
-    output: Annotated[Path | None, Out(JSONL)] = None,
+    output: Annotated[Path | None, file_out(JSONL)] = None,
 ) -> None:
     """Find mean area, stiffness, conductance and gap of elastic surfaces from few boundary-element solves.
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Annotated, Literal
 
-from mcgw.commands.kinds import SceneOrFile, Values
+from mcgw.commands.kinds import SceneOrFile, values
 from mcgw.commands.outputs import CSV, Format, Output, check_outputs
 from mcgw.commands.voice import news
 
@@ -16,7 +16,7 @@ def export(
         "pressure-gap", "conductance-pressure", "conductance-gap", "stiffness-pressure"
     ] = "pressure-gap",
     points: int = 40,
-    pressures: Annotated[list[float] | None, Values("Pa")] = None,
+    pressures: Annotated[list[float] | None, values("Pa")] = None,
     quantile: list[float] | None = None,
     units: Literal["SI", "mm-N-s"] = "SI",
     output: Path,

@@ -3,8 +3,8 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from mcgw.commands.kinds import SceneFile
-from mcgw.commands.outputs import CSV, Output, check_outputs, figure_format
+from mcgw.commands.kinds import scene_file
+from mcgw.commands.outputs import Output, check_outputs, table_or_figure
 from mcgw.commands.voice import details, news
 
 if TYPE_CHECKING:
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 def figures(
     *,
     output: Path = Path("figures"),
-    scene: Annotated["Scene | None", SceneFile(cautious="")] = None,
+    scene: Annotated["Scene | None", scene_file(cautious="")] = None,
     only: list[str] | None = None,
     format: list[str] | None = None,  # noqa: A002
     list: bool = False,  # noqa: A002
@@ -56,10 +56,7 @@ def figures(
     files = {
         name: [output / f"{name}.{ending}" for ending in (*formats, *["csv"] * csv)] for name in only or names
     }
-    known = figure_format()
-    check_outputs(
-        Output(path, CSV if path.suffix == ".csv" else known) for paths in files.values() for path in paths
-    )
+    check_outputs(Output(path, table_or_figure(path)) for paths in files.values() for path in paths)
     drawn: tuple[Path, ...] = ()
     with together():
         for name, data in figures_of(of_paper() if scene is None else Compared(scene), only or names):

@@ -3,10 +3,10 @@
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
-from mcgw.commands.kinds import Call, In, Out, Pixel, Quantity, Table, Unit
-from mcgw.commands.outputs import NPY, TOML, Output, check_outputs
+from mcgw.commands.kinds import Call, Pixel, Table, Unit, file_in, file_out, pair, quantity
+from mcgw.commands.outputs import NPY, TOML, Output, check_outputs, figure_format
 from mcgw.commands.voice import details, news, notes
 from mcgw.maps.steps import Form, LinesTo, Missing, SpikesTo
 
@@ -17,19 +17,16 @@ E_STAR = 100e9  # Pa, default
 _AREA = 1e-6  # m^2, default of numbers alone
 
 
-class Maps(In):
-    """Maps or profiles, with the files beside them that say their units."""
+def _maps(paths: list[Path], call: Call) -> list[Path]:
+    """Return maps or profiles; the files beside them that say their units are read as well."""
+    from mcgw.maps.map_files import files_of_map
 
-    def open(self, path: Any, call: Call) -> Any:
-        """Their paths."""
-        from mcgw.maps.map_files import files_of_map
-
-        call.inputs.extend(file for one in path for file in files_of_map(one))
-        return path
+    call.inputs.extend(file for path in paths for file in files_of_map(path))
+    return paths
 
 
 def fit(
-    map: Annotated[list[Path], Maps()] = [],  # noqa: A002, B006
+    map: Annotated[list[Path], file_in(_maps)] = [],  # noqa: A002, B006
     *,
     iso: list[str] | None = None,
     cutoff: str | None = None,
@@ -44,13 +41,13 @@ def fit(
     missing_value: float | None = None,
     use: Literal["auto", "moments", "summits", "caps"] = "auto",
     heights: Literal["gaussian", "nayak", "table", "measured", "summits"] = "gaussian",
-    E_star: Annotated[float | None, Quantity("Pa")] = None,
-    nominal_area: Annotated[float | None, Quantity("m^2")] = None,
+    E_star: Annotated[float | None, quantity("Pa")] = None,
+    nominal_area: Annotated[float | None, quantity("m^2")] = None,
     parts: int = 4,
     summits: Table = None,
     tiles: Table = None,
-    picture: Annotated[Path | None, Out(None)] = None,
-    output: Annotated[Path, Out(TOML)],
+    picture: Annotated[Path | None, file_out(figure_format)] = None,
+    output: Annotated[Path, file_out(TOML)],
 ) -> None:
     """Fit summit density, radius and spread to measured height maps, and write a scene.
 
@@ -188,9 +185,7 @@ def _of_numbers(
 
     numbers: dict[str, str] = {}
     for part in iso:
-        key, equals, value = part.partition("=")
-        if not equals:
-            raise ValueError(f"--iso {part!r}: give NAME=VALUE, such as Sq=0.8um")
+        key, value = pair(part, "--iso", "NAME=VALUE, such as Sq=0.8um")
         if key in numbers:
             raise ValueError(f"--iso: gives {key} more than once")
         numbers[key] = value

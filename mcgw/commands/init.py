@@ -21,15 +21,11 @@ PRESETS = {
 }
 
 
-class Preset(Kind):
-    """A preset."""
-
-    choices = tuple(PRESETS)
-    words = "".join(f"; {name}: {what}" for name, what in PRESETS.items())
+_PRESET = Kind(choices=tuple(PRESETS), words="".join(f"; {name}: {what}" for name, what in PRESETS.items()))
 
 
 def init(
-    preset: Annotated[str, Preset()] = "demo", *, output: Path | None = None, schema: bool = False
+    preset: Annotated[str, _PRESET] = "demo", *, output: Path | None = None, schema: bool = False
 ) -> None:
     """Write a commented scene to start from.
 

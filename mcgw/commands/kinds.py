@@ -6,17 +6,19 @@ it into a group.
 """
 
 from argparse import Namespace
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from functools import partial
+from itertools import repeat
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from mcgw.commands.outputs import CSV, Format, Output, figure_format
+from mcgw.commands.outputs import CSV, Format, Output
 
 if TYPE_CHECKING:
     from mcgw.ensemble.ensemble import Ensemble
     from mcgw.scene.scene import Scene
-
-_GEOMETRIC = ("Pa", "N")  # pressures and loads are at a constant ratio, all else evenly
 
 
 @dataclass(frozen=True)
@@ -37,90 +39,66 @@ class OneOf:
         self.required = required
 
 
+@dataclass(frozen=True)
 class Kind:
-    """A parameter that is passed on as typed.
+    """A parameter.
 
     Parameters
     ----------
+    file : {"", "in", "scene", "out"}, optional
+        Whether it is a file that is read (of a scene, which --set changes), or that is written.
     metavar, about : str, optional
         What stands for its value, and what it is, where the docstring of the command has no words for it.
+    words : str, optional
+        That the help adds.
+    choices : tuple of str, optional
+        All that may be typed.
+    typed, action : optional
+        What argparse makes of a word, and does with it, if that does not follow from the type.
+    read : callable, optional
+        Makes of what was typed (or the default), the option and the `Call` what the function gets.
     """
 
-    typed: type | None = None  # what argparse makes of a word, if it is not what is annotated
-    action = ""  # of argparse, if it is not that of the type
-    words = ""  # that the help adds
+    metavar: str = ""
+    about: str = ""
+    file: Literal["", "in", "scene", "out"] = ""
+    words: str = ""
     choices: tuple[str, ...] = ()
-
-    def __init__(self, metavar: str = "", about: str = "") -> None:
-        self.metavar, self.about = metavar, about
-
-    def read(self, given: Any, option: str, call: Call) -> Any:  # noqa: ARG002
-        """Make the value of what was typed after an option, or of the default."""
-        return given
+    typed: type | None = None
+    action: str = ""
+    read: Callable[[Any, str, Call], Any] = lambda given, option, call: given  # noqa: ARG005
 
 
-class Dry(Kind):
-    """A flag with which nothing is written."""
+def quantity(unit: str, metavar: str = "", about: str = "") -> Kind:
+    """Return the kind of a positive number with a unit, in the SI unit named."""
 
-    def read(self, given: Any, option: str, call: Call) -> Any:  # noqa: ARG002
-        """Forget what would be written."""
-        if given:
-            call.outputs.clear()
-        return given
-
-
-class Quantity(Kind):
-    """A positive number with a unit, in the SI unit named."""
-
-    typed = str
-
-    def __init__(self, unit: str, metavar: str = "", about: str = "") -> None:
-        super().__init__(metavar, about)
-        self.unit = unit
-
-    def read(self, given: Any, option: str, call: Call) -> Any:  # noqa: ARG002
-        """Return the number; what is no text, as a default, is one already."""
+    def read(given: Any, option: str, call: Call) -> Any:  # noqa: ARG001
         from mcgw.formats.units import parse
 
-        return parse(given, self.unit, option) if isinstance(given, str) else given
+        return parse(given, unit, option) if isinstance(given, str) else given
+
+    return Kind(metavar, about, typed=str, read=read)
 
 
-class Values(Quantity):
-    """Numbers with units, and ranges of them."""
+def values(unit: str) -> Kind:
+    """Return the kind of numbers with units, and ranges of them; without a unit, others are left as typed."""
 
-    def __init__(self, unit: str) -> None:
-        super().__init__(unit)
-        how = "at a constant ratio" if unit in _GEOMETRIC else "at equal steps"
-        self.words = f"; or A:B:N for N of them from A to B, {how}"
-
-    def read(self, given: Any, option: str, call: Call) -> Any:
-        """Return a list of SI numbers; without a unit, what is no range is left to the function."""
-        found = []
+    def read(given: Any, option: str, call: Call) -> Any:
+        single = quantity(unit).read if unit else Kind.read
+        found: list[Any] = []
         for text in given or ():
-            if ":" in text:
-                found += ranged(text, option, self.unit)
-            else:
-                found.append(super().read(text, option, call) if self.unit else text)
+            found += ranged(text, option, unit) if ":" in text else [single(text, option, call)]
         return found or None
+
+    how = "at a constant ratio" if unit in _GEOMETRIC else "at equal steps"
+    return Kind(typed=str, words=f"; or A:B:N for N of them from A to B, {how}", read=read)
+
+
+_GEOMETRIC = ("Pa", "N")  # pressures and loads are at a constant ratio, all else evenly
 
 
 def ranged(text: str, option: str, unit: str = "") -> list[float]:
-    """Return the N numbers from A to B of a text A:B:N; pressures and loads at a constant ratio.
-
-    Parameters
-    ----------
-    text : str
-        A and B are numbers with a unit, where one is given.
-    option : str
-        Name of the option, for messages.
-    unit : str, optional
-        SI unit of the numbers; default: plain numbers.
-
-    Raises
-    ------
-    ValueError
-        If it is none, N is not from 2 to 1e6, or a ratio would not be positive and rising.
-    """
+    """Return the N numbers from A to B of a text A:B:N, with a unit if one is given."""
     import numpy as np
 
     from mcgw.formats.units import parse
@@ -137,39 +115,50 @@ def ranged(text: str, option: str, unit: str = "") -> list[float]:
     return [float(x) for x in space(first, last, int(number))]
 
 
-class In(Kind):
-    """A file, or several, that is read, which no output may replace."""
-
-    typed = Path
-
-    def read(self, given: Any, option: str, call: Call) -> Any:  # noqa: ARG002
-        """Return what the function gets."""
-        return given and self.open(given, call)
-
-    def open(self, path: Any, call: Call) -> Any:
-        """Return what the function gets of a file that was given."""
-        call.inputs.extend(path if isinstance(path, list) else [path])
-        return path
+def pair(text: str, option: str, form: str) -> tuple[str, str]:
+    """Return the two sides of a text KEY=VALUE; `form` says how it should look."""
+    key, equals, value = (part.strip() for part in text.partition("="))
+    if not (equals and key and value):
+        raise ValueError(f"{option} {text}: give {form}")
+    return key, value
 
 
-class Results(In):
-    """The file of an ensemble or, with `sweeps`, of a sweep, opened."""
+def as_value(text: str) -> Any:
+    """Return what a text is as TOML, a number such as .5, or the text."""
+    from mcgw.formats.named_files import loads
 
-    def __init__(self, *, sweeps: bool = True) -> None:
-        super().__init__("FILE", f"file of an ensemble{' or of a sweep' * sweeps} (HDF5)")
-        self.sweeps = sweeps
-
-    def open(self, path: Any, call: Call) -> Any:
-        """Return the ensemble or the sweep; the command ends with the cautions of its scenes."""
-        from mcgw.store.ensembles import open_ensemble, open_results
-
-        found = (open_results if self.sweeps else open_ensemble)(super().open(path, call))
-        call.cautious.append((found, f"mcgw show {path}"))
-        return found
+    for parse in (lambda x: loads(f"value = {x}")["value"], float):
+        with suppress(ValueError):
+            return parse(text)
+    return text
 
 
-class SceneFile(In):
-    """The file of a scene, read, with the changes of --set.
+def _read(path: Any, call: Call) -> Any:
+    """Let no output replace a file, or several."""
+    call.inputs.extend(path if isinstance(path, list) else [path])
+    return path
+
+
+def file_in(opened: Callable[[Any, Call], Any] = _read, metavar: str = "", about: str = "") -> Kind:
+    """Return the kind of a file that is read, which no output may replace; `opened` makes the value."""
+
+    def read(given: Any, option: str, call: Call) -> Any:  # noqa: ARG001
+        return given and opened(given, call)
+
+    return Kind(metavar, about, "in", read=read)
+
+
+def _results(path: Path, call: Call, *, sweeps: bool = True) -> Any:
+    """Return the ensemble or the sweep; the command ends with the cautions of its scenes."""
+    from mcgw.store.ensembles import open_ensemble, open_results
+
+    found = (open_results if sweeps else open_ensemble)(_read(path, call))
+    call.cautious.append((found, f"mcgw show {path}"))
+    return found
+
+
+def scene_file(*, others: bool = False, cautious: str = "brief") -> Kind:
+    """Return the kind of the file of a scene, read, with the changes of --set.
 
     Parameters
     ----------
@@ -179,102 +168,80 @@ class SceneFile(In):
         How the command ends: with the number of cautions, all of them, or none.
     """
 
-    def __init__(self, *, others: bool = False, cautious: str = "brief") -> None:
-        super().__init__("SCENE", "TOML file, SI units")
-        self.others, self.cautious = others, cautious
-
-    def open(self, path: Any, call: Call) -> Any:
-        """Return the scene, with the seed of what an output holds where it gives none."""
+    def opened(path: Path, call: Call) -> Any:
         from mcgw.scene.scene_file import files_of, load_scene
         from mcgw.store.place import recorded_scene
 
         changes = call.args.set
-        if self.others and path.suffix.lower() != ".toml":
+        if others and path.suffix.lower() != ".toml":
             if changes:
                 raise ValueError(f"--set {changes[0]}: {path} is no scene (.toml); give one")
-            return super().open(path, call)
+            return _read(path, call)
+        pairs = (pair(text, "--set", "KEY=VALUE, such as grading.gamma=2") for text in changes or ())
         grown = next((each.path for each in call.outputs if each.grows), None)
-        seed = None if grown is None else lambda: getattr(recorded_scene(grown), "seed", None)
-        scene = load_scene(path, changes=_changes(changes), seed=seed)
+        scene = load_scene(
+            path,
+            changes={key: as_value(value) for key, value in pairs},
+            seed=None if grown is None else lambda: getattr(recorded_scene(grown), "seed", None),
+        )
         call.inputs.extend(files_of(path))
-        if self.cautious:
-            call.cautious.append((scene, f"mcgw show --plan {path}" if self.cautious == "brief" else ""))
+        if cautious:
+            call.cautious.append((scene, f"mcgw show --plan {path}" if cautious == "brief" else ""))
         return scene
 
-
-def _changes(given: list[str] | None) -> dict[str, Any]:
-    """Values of --set by key: TOML where they parse as TOML, otherwise text."""
-    from mcgw.formats.named_files import loads
-
-    changes: dict[str, Any] = {}
-    for text in given or ():
-        key, equals, value = (part.strip() for part in text.partition("="))
-        if not (equals and key and value):
-            raise ValueError(f"--set {text}: give KEY=VALUE, such as grading.gamma=2")
-        try:
-            changes[key] = loads(f"value = {value}")["value"]
-        except ValueError:
-            changes[key] = value
-    return changes
+    return replace(file_in(opened, "SCENE", "TOML file, SI units"), file="scene")
 
 
-class Out(Kind):
-    """A file that is written: checked before anything is computed.
+def file_out(
+    form: Format | Callable[[Path], Format],
+    beside: str = "",
+    *,
+    names: tuple[str, ...] = (),
+    grows: bool = False,
+    dry: str = "",
+) -> Kind:
+    """Return the kind of a file that is written: checked before anything is computed.
 
     Parameters
     ----------
-    form : Format or None
-        Its format; None: that of a figure.
+    form : Format or callable
+        Its format, or what returns that of a path.
     beside : str, optional
         Its default, with {} for the stem of what is read, in the folder of that.
+    names : tuple of str, optional
+        It is a folder, and the function gets the paths of these files in it, named likewise.
     grows : bool, optional
         Whether the command makes ensembles, whose own rules say which may be replaced.
+    dry : str, optional
+        A flag with which nothing is written.
     """
 
-    typed = Path
+    def read(given: Any, option: str, call: Call) -> Any:
+        stem = call.source.stem if call.source else ""
+        if given is None and beside and call.source:
+            given = call.source.parent / beside.format(stem)
+        paths = [given / name.format(stem) for name in names] or [given] * bool(given)
+        if not (dry and getattr(call.args, dry)):
+            formats = (form if isinstance(form, Format) else form(path) for path in paths)
+            call.outputs.extend(map(Output, paths, formats, repeat(option), repeat(grows)))
+        return paths if names else given
 
-    def __init__(self, form: Format | None, beside: str = "", *, grows: bool = False) -> None:
-        super().__init__("FILE", "also write the table to this file")
-        self.form, self.beside, self.grows = form, beside, grows
-        if beside:
-            self.words = f"; default: {beside.format('NAME')} beside what is read"
-
-    def read(self, given: Any, option: str, call: Call) -> Any:
-        """Return the path."""
-        if given is None and self.beside and call.source is not None:
-            given = call.source.parent / self.beside.format(call.source.stem)
-        if given:
-            call.outputs.append(Output(given, self.form or figure_format(), option, self.grows))
-        return given
+    words = f"; default: {beside.format('NAME')} beside what is read" if beside else ""
+    return Kind("FILE", "also write the table to this file", "out", words, read=read)
 
 
-class Folder(Out):
-    """A folder for tables and figures of given names, with {} for the stem of what is read."""
-
-    def __init__(self, *names: str) -> None:
-        super().__init__(None, "out")
-        self.names = names
-
-    def read(self, given: Any, option: str, call: Call) -> Any:
-        """Return the paths of all files."""
-        assert call.source is not None
-        folder = given or call.source.parent / "out"
-        paths = [folder / name.format(call.source.stem) for name in self.names]
-        forms = (CSV if path.suffix == ".csv" else figure_format() for path in paths)
-        call.outputs.extend(Output(path, form, option) for path, form in zip(paths, forms, strict=True))
-        return paths
-
-
-SceneIn = Annotated["Scene", SceneFile()]
-Cautioned = Annotated["Scene", SceneFile(cautious="")]  # by the command itself
-SceneOrFile = Annotated["Scene | Path", SceneFile(others=True)]
-SceneOrMap = Annotated["Scene | Path", SceneFile(others=True, cautious="")]
-SceneOrResults = Annotated["Scene | Path", SceneFile(others=True, cautious="full")]
-EnsembleOrSweep = Annotated["Ensemble", Results()]
-EnsembleIn = Annotated["Ensemble", Results(sweeps=False)]
-Table = Annotated[Path | None, Out(CSV)]
-Length = Annotated[float | None, Quantity("m", "LENGTH")]
-Pixel = Annotated[float | None, Quantity("m", "LENGTH", "size of a pixel, if the file does not give it")]
+SceneIn = Annotated["Scene", scene_file()]
+Cautioned = Annotated["Scene", scene_file(cautious="")]  # by the command itself
+SceneOrFile = Annotated["Scene | Path", scene_file(others=True)]
+SceneOrMap = Annotated["Scene | Path", scene_file(others=True, cautious="")]
+SceneOrResults = Annotated["Scene | Path", scene_file(others=True, cautious="full")]
+EnsembleOrSweep = Annotated["Ensemble", file_in(_results, "FILE", "file of an ensemble or of a sweep (HDF5)")]
+EnsembleIn = Annotated[
+    "Ensemble", file_in(partial(_results, sweeps=False), "FILE", "file of an ensemble (HDF5)")
+]
+Table = Annotated[Path | None, file_out(CSV)]
+Length = Annotated[float | None, quantity("m", "LENGTH")]
+Pixel = Annotated[float | None, quantity("m", "LENGTH", "size of a pixel, if the file does not give it")]
 Unit = Annotated[
     str | None, Kind("UNIT", "unit of the heights, such as um, if the file does not give it; default: m")
 ]

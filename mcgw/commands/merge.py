@@ -3,12 +3,12 @@
 from pathlib import Path
 from typing import Annotated
 
-from mcgw.commands.kinds import Out
+from mcgw.commands.kinds import file_out
 from mcgw.commands.outputs import HDF5
 from mcgw.commands.voice import look_next, news
 
 
-def merge(file: Annotated[Path, Out(HDF5, grows=True)]) -> None:
+def merge(file: Annotated[Path, file_out(HDF5, grows=True)]) -> None:
     """Merge the blocks of a run or sweep that several jobs drew (--shard i/n) into one file.
 
     Parameters

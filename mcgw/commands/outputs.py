@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path
@@ -31,27 +31,23 @@ NPY = Format("heights", (".npy",))
 TOML = Format("a scene", (".toml",))
 
 
-def figure_format() -> Format:
+def figure_format(path: Path) -> Format:  # noqa: ARG001
     """Return the formats that matplotlib writes."""
     from mcgw.figures.style import figure_endings
 
     return Format("a figure", figure_endings())
 
 
+def table_or_figure(path: Path) -> Format:
+    """Return the format of a file that is one of these, by its name."""
+    return CSV if path.suffix == ".csv" else figure_format(path)
+
+
 @dataclass(frozen=True)
 class Output:
-    """A file that a command is about to write.
+    """A file that a command is about to write, and the option that gave its name.
 
-    Parameters
-    ----------
-    path : Path
-        Path of the file.
-    format : Format
-        Its format.
-    option : str, optional
-        The option that gave its name.
-    grows : bool, optional
-        Whether the command makes ensembles, whose own rules say which may be replaced.
+    If it `grows`, the rules of ensembles say which may be replaced.
     """
 
     path: Path
@@ -60,14 +56,9 @@ class Output:
     grows: bool = False
 
 
-@contextmanager
-def reading(inputs: Iterable[Path]) -> Iterator[None]:
-    """Let no output replace these files meanwhile."""
-    before = _inputs.set(tuple(inputs))
-    try:
-        yield
-    finally:
-        _inputs.reset(before)
+def reading(inputs: Iterable[Path]) -> None:
+    """Let no output of this command replace these files."""
+    _inputs.set(tuple(inputs))
 
 
 def source() -> Path:
@@ -78,13 +69,11 @@ def source() -> Path:
 def check_outputs(outputs: Iterable[Output]) -> None:
     """Refuse outputs that would destroy something or cannot be written; make missing folders and say so.
 
-    What the command is `reading` may have a run folder, which counts with it.
-
     Raises
     ------
     StoreError
-        If an output is an input or another output under any name, replaces an ensemble, has an ending
-        that does not fit, or if there is no place for it.
+        If an output is an input or another output under any name, is in the folder of a run, replaces an
+        ensemble, has an ending that does not fit, or if there is no place for it.
     """
     from mcgw.formats.files import check_output, refuse_read_only
 
@@ -102,7 +91,7 @@ def check_outputs(outputs: Iterable[Output]) -> None:
             notes(f"{folder} is a new folder")
 
 
-def same_file(one: Path, other: Path) -> bool:
+def _same_file(one: Path, other: Path) -> bool:
     """Whether two names are one file: same spelling, symbolic link or hard link."""
     try:
         return os.path.samefile(one, other)
@@ -115,14 +104,15 @@ def _faults(output: Output, others: Iterable[Output]) -> Iterator[str]:
     from mcgw.store.lock import LOCK_FILES, parts_of
 
     path, place = output.path, Path(os.path.realpath(output.path))
-    yield from (f"is an input ({read})" for read in _inputs.get() if same_file(path, read))
     for read in _inputs.get():
+        if _same_file(path, read):
+            yield f"is an input ({read})"
         if place.is_relative_to(os.path.realpath(parts_of(read))):
             yield f"{parts_of(read)} is the folder of the run that makes {read}"
     for folder in (place, *place.parents):
         if folder.suffix == ".parts" and any((folder / name).exists() for name in LOCK_FILES):
             yield f"{folder} is the folder of a run"
-    yield from (f"is also the output of {other.option}" for other in others if same_file(path, other.path))
+    yield from (f"is also the output of {other.option}" for other in others if _same_file(path, other.path))
     if not path.name.lower().endswith(output.format.endings):
         known = ", ".join(output.format.endings)
         yield f"{output.format.what} is written there, whose name ends in {known}"

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Annotated
 
-from mcgw.commands.kinds import EnsembleIn, Out, Values
+from mcgw.commands.kinds import EnsembleIn, file_out, values
 from mcgw.commands.outputs import HTML, source
 from mcgw.commands.voice import news
 
@@ -11,8 +11,8 @@ from mcgw.commands.voice import news
 def report(
     file: EnsembleIn,
     *,
-    output: Annotated[Path, Out(HTML, "{}.html")],
-    pressures: Annotated[list[float] | None, Values("Pa")] = None,
+    output: Annotated[Path, file_out(HTML, "{}.html")],
+    pressures: Annotated[list[float] | None, values("Pa")] = None,
 ) -> None:
     """Write a report: one HTML page with figures, tables, verdict and provenance.
 

@@ -4,7 +4,7 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from mcgw.commands.kinds import Out, SceneFile
+from mcgw.commands.kinds import file_out, scene_file
 from mcgw.commands.options import Dask, Jobs, Share, Threads, drawing, share_done
 from mcgw.commands.outputs import HDF5
 from mcgw.commands.voice import details, look_next, news, notes
@@ -17,9 +17,9 @@ _LONG = 60.0  # seconds; longer runs state their duration beforehand
 
 
 def run(
-    scene: Annotated["Scene", SceneFile(cautious="full")],
+    scene: Annotated["Scene", scene_file(cautious="full")],
     *,
-    output: Annotated[Path, Out(HDF5, "out/{}.h5", grows=True)],
+    output: Annotated[Path, file_out(HDF5, "out/{}.h5", grows=True)],
     threads: Threads = None,
     jobs: Jobs = None,
     dask: Dask = None,

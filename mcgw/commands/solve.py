@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from mcgw.commands.kinds import Cautioned, OneOf, Quantity, Table, Values
+from mcgw.commands.kinds import Cautioned, OneOf, Table, quantity, values
 from mcgw.commands.voice import ALL, news, says, tell_cautions
 
 _ONE = OneOf(required=True)
@@ -11,13 +11,13 @@ _ONE = OneOf(required=True)
 def solve(
     scene: Cautioned,
     *,
-    pressure: Annotated[list[float] | None, Values("Pa"), _ONE] = None,
-    load: Annotated[list[float] | None, Values("N"), _ONE] = None,
-    area: Annotated[list[float] | None, Values("m^2"), _ONE] = None,
-    area_fraction: Annotated[list[float] | None, Values("1"), _ONE] = None,
-    nominal_separation: Annotated[list[str] | None, Values(""), _ONE] = None,
+    pressure: Annotated[list[float] | None, values("Pa"), _ONE] = None,
+    load: Annotated[list[float] | None, values("N"), _ONE] = None,
+    area: Annotated[list[float] | None, values("m^2"), _ONE] = None,
+    area_fraction: Annotated[list[float] | None, values("1"), _ONE] = None,
+    nominal_separation: Annotated[list[str] | None, values(""), _ONE] = None,
     surfaces: int | None = None,
-    scatter: Annotated[float | None, Quantity("1")] = None,
+    scatter: Annotated[float | None, quantity("1")] = None,
     csv: Table = None,
 ) -> None:
     """Find separation, area, stiffness, contacts and conductance at given loads.

@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from mcgw.commands.kinds import Length, SceneFile
+from mcgw.commands.kinds import Length, scene_file
 from mcgw.commands.outputs import JSON, Format, Output, check_outputs
 from mcgw.commands.voice import news, notes
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def surface(
-    scene: Annotated["Scene | None", SceneFile()] = None,
+    scene: Annotated["Scene | None", scene_file()] = None,
     *,
     surface: int = 0,
     shape: str = "1024",

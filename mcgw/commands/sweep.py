@@ -3,29 +3,34 @@
 from pathlib import Path
 from typing import Annotated, Any
 
-from mcgw.commands.kinds import Call, Cautioned, Dry, Kind, Out, ranged
+from mcgw.commands.kinds import Call, Cautioned, Kind, as_value, file_out, pair, ranged
 from mcgw.commands.options import Dask, Jobs, Share, Threads, drawing, share_done
 from mcgw.commands.outputs import HDF5
 from mcgw.commands.voice import details, look_next, news
 
+_VALUES = "KEY=VALUES, such as grading.gamma=0.2:2:10 or =0.5,1,2"
 
-class Axis(Kind):
-    """A key of the scene and its values: KEY=VALUES."""
 
-    action = "append"
-
-    def read(self, given: Any, option: str, call: Call) -> Any:  # noqa: ARG002
-        """By key: numbers as in TOML, other texts as they are."""
-        return dict(_axis(text, option) for text in given)
+def _axes(given: list[str], option: str, call: Call) -> dict[str, list[Any]]:  # noqa: ARG001
+    """Return lists of values by key."""
+    axes: dict[str, list[Any]] = {}
+    for text in given:
+        key, words = pair(text, option, _VALUES)
+        parts = [as_value(part) for part in words.split(":")]
+        if len(parts) == 3 and not any(isinstance(part, str) for part in parts):
+            axes[key] = ranged(words, f"{option} {key}")
+        else:
+            axes[key] = [as_value(word) for word in words.split(",")]
+    return axes
 
 
 def sweep(
     scene: Cautioned,
     *,
-    over: Annotated[dict[str, list[Any]], Axis()],
+    over: Annotated[dict[str, list[Any]], Kind(action="append", read=_axes)],
     zip: bool = False,  # noqa: A002
-    plan: Annotated[bool, Dry()] = False,
-    output: Annotated[Path, Out(HDF5, "out/{}.sweep.h5", grows=True)],
+    plan: bool = False,
+    output: Annotated[Path, file_out(HDF5, "out/{}.sweep.h5", grows=True, dry="plan")],
     threads: Threads = None,
     jobs: Jobs = None,
     dask: Dask = None,
@@ -69,25 +74,3 @@ def sweep(
     details(*ratios[1:])
     look_next(output)
     return details(found)
-
-
-def _axis(text: str, option: str) -> tuple[str, list[Any]]:
-    """Parse KEY=VALUES."""
-    key, equals, values = text.partition("=")
-    if not (key and equals and values):
-        raise ValueError(f"{option} {text}: give KEY=VALUES, such as grading.gamma=0.2:2:10 or =0.5,1,2")
-    parts = values.split(":")
-    if len(parts) == 3 and all(_number(part) is not None for part in parts):
-        return key, ranged(values, f"{option} {key}")
-    found = [(value, _number(value)) for value in values.split(",")]
-    return key, [value if number is None else number for value, number in found]
-
-
-def _number(text: str) -> int | float | None:
-    """Return an int or float as in TOML; None for other text."""
-    for kind in (int, float):
-        try:
-            return kind(text)
-        except ValueError:
-            continue
-    return None

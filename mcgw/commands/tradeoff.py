@@ -3,7 +3,8 @@
 from pathlib import Path
 from typing import Annotated
 
-from mcgw.commands.kinds import Folder, Quantity, SceneIn
+from mcgw.commands.kinds import SceneIn, file_out, quantity
+from mcgw.commands.outputs import table_or_figure
 from mcgw.commands.voice import details, news
 
 _FILES = ("{}-tradeoff.csv", "{}-tradeoff-measured.csv", "{}-tradeoff.png")
@@ -12,8 +13,8 @@ _FILES = ("{}-tradeoff.csv", "{}-tradeoff-measured.csv", "{}-tradeoff.png")
 def tradeoff(
     scene: SceneIn,
     *,
-    output: Annotated[list[Path], Folder(*_FILES)],
-    seconds: Annotated[float, Quantity("s")] = 60.0,
+    output: Annotated[list[Path], file_out(table_or_figure, "out", names=_FILES)],
+    seconds: Annotated[float, quantity("s")] = 60.0,
 ) -> None:
     """Measure what each answer costs, how exact it is, and recommend a way.
 
