@@ -6,16 +6,14 @@ import gc
 import os
 import signal
 import sys
-import threading
 import warnings
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from typing import Any, NoReturn
 
 from mcgw.commands.declared import COMMANDS as COMMANDS, all_commands, execute, parser_of
 from mcgw.commands.voice import QUIET, speaking
 from mcgw.errors import RunError, in_one_line
-from mcgw.machine.terminal import Plain, one_line, plain_output
+from mcgw.machine.terminal import one_line, plain_output
 
 _PRINTED = ("", "show", "solve", "elastic", "completion")  # their product is what they print
 
@@ -37,25 +35,22 @@ def main(argv: Sequence[str] | None = None) -> int:
     asked = argparse.Namespace(command="")  # help, or the version
     with plain_output() as output:
         try:
-            return _main(argv, asked) or _printed(output, asked)
+            code = _main(argv, asked)
         except SystemExit as end:  # of argparse: help, the version, or words that are none
-            raise SystemExit(end.code or _printed(output, asked)) from None
-
-
-def _printed(output: Plain, asked: argparse.Namespace) -> int:
-    """Return 1 if the printed product could not be written to a full disk; a closed pipe is no error."""
-    output.flush()
-    if output.lost is None or isinstance(output.lost, BrokenPipeError) or asked.command not in _PRINTED:
-        return 0
-    print(f"mcgw: {in_one_line(output.lost)}", file=sys.stderr)
-    return 1
+            code = int(end.code or 0)
+        output.flush()
+        closed = output.lost is None or isinstance(output.lost, BrokenPipeError)  # which is no error
+        if code or closed or asked.command not in _PRINTED:
+            return code
+        print(f"mcgw: {in_one_line(output.lost)}", file=sys.stderr)
+        return 1
 
 
 def _main(argv: Sequence[str] | None, asked: argparse.Namespace) -> int:
     try:
         words = sys.argv[1:] if argv is None else argv
         args = parser_of([word for word in words[:1] if word in all_commands()]).parse_args(words, asked)
-        with warnings.catch_warnings(), _heeding_sigterm():
+        with warnings.catch_warnings():
             warnings.showwarning = _show_warning  # type: ignore[assignment]
             warnings.filterwarnings("ignore", module=r"mcgw\.scene\.plausible")  # shown as notes
             if args.amount == QUIET:
@@ -83,21 +78,9 @@ class _Terminated(KeyboardInterrupt):
     """SIGTERM, which ends a command as Ctrl-C does."""
 
 
-@contextmanager
-def _heeding_sigterm() -> Iterator[None]:
-    """Raise `_Terminated` in the main thread; runs and sweeps heed signals in their own way meanwhile."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-
-    def stop(*_: object) -> NoReturn:
-        raise _Terminated
-
-    before = signal.signal(signal.SIGTERM, stop)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, before)
+def terminate(*_: object) -> NoReturn:
+    """Heed SIGTERM; runs and sweeps heed signals in their own way meanwhile."""
+    raise _Terminated
 
 
 def _show_warning(message: Warning | str, *_: Any) -> None:
@@ -111,6 +94,7 @@ def process() -> NoReturn:
     Products of matrices are small: more threads of BLAS than one would only wait for each other, at work.
     """
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # read when NumPy is imported
+    signal.signal(signal.SIGTERM, terminate)
     code = main()
     gc.freeze()
     sys.exit(code)

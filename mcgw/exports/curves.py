@@ -1,6 +1,6 @@
 """Kinds of tables, and their numbers: mean and quantiles over surfaces against gap or pressure, SI."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,8 +17,7 @@ Numbers = tuple[Array, dict[str, Array]]
 _MOST = 2000  # surfaces drawn again where an ensemble keeps statistics alone
 
 
-@dataclass(frozen=True)
-class Kind:
+class Kind(NamedTuple):
     """A table of "pressure", "conductance" or "stiffness" against "gap" or "pressure"."""
 
     quantity: str
@@ -27,7 +26,7 @@ class Kind:
     @property
     def name(self) -> str:
         """Quantity and argument."""
-        return f"{self.quantity}-{self.against}"
+        return "-".join(self)
 
     def answer(self, scene: Scene) -> str:
         """Return the tabulated answer of a scene; the conductance is that of the joint, if there is one."""
@@ -58,40 +57,20 @@ def surfaces_for(
                 f"contact.quantities: the ensemble has no {', '.join(missing)}; give its scene instead"
             )
         return source
-    if pressures is None:
-        h = np.linspace(min(source.separations), max(source.separations), points)
-    else:
+    h = np.linspace(min(source.separations), max(source.separations), points)
+    if pressures is not None:
         h = np.array([float(source.theory.separation_at("pressure", p)) for p in pressures])
-    return simulate(
-        source.replace(
-            separations=tuple(h.tolist()), quantities=needs, keep="sums", unload_from=None,
-            rel_err=None, max_seconds=None,
-        )
-    )  # fmt: skip
+    changes = {"keep": "sums", "unload_from": None, "rel_err": None, "max_seconds": None}
+    return simulate(source.replace(separations=tuple(h.tolist()), quantities=needs, **changes))
 
 
 def at_gaps(
     source: Scene | Ensemble, kind: Kind, pressures: Array | None, points: int, shares: tuple[float, ...]
 ) -> Numbers:
-    """Mean and quantiles over surfaces at equal gap, m.
+    """Return mean and quantiles of these shares over surfaces at equal gap, m.
 
-    Parameters
-    ----------
-    source : Scene or Ensemble
-        Drawn for the table; or with its own separations, which the first and the last pressure bound.
-    kind : Kind
-        Of which table.
-    pressures : ndarray or None
-        Of the rows, or bounds. Default: all there are.
-    points : int
-        How many rows.
-    shares : tuple of float
-        Of the quantiles, between 0 and 1; empty for the mean alone.
-
-    Raises
-    ------
-    ValueError
-        If there are too few points, or something that is no function.
+    The pressures are those of the rows of a scene; the first and the last bound those of an ensemble, which
+    has its own separations.
     """
     needs = ("load", "conductance_si") if kind.quantity == "conductance" else ("load",)
     ensemble = surfaces_for(source, needs, pressures, points)
@@ -119,11 +98,7 @@ def at_gaps(
 def at_pressures(
     scene: Scene, kind: Kind, pressures: Array | None, points: int, shares: tuple[float, ...]
 ) -> Numbers:
-    """Mean and quantiles over specimens that all carry the same load: those of `mcgw.solve`.
-
-    Parameters and errors are those of `at_gaps`; default pressures are those that the scene's separations
-    span.
-    """
+    """Return mean and quantiles over specimens that all carry the same load: those of `mcgw.solve`."""
     if pressures is None:
         pressures = pressures_of(scene, points)
     area, name = scene.surface.nominal_area, kind.answer(scene)
@@ -136,7 +111,6 @@ def at_pressures(
 
 def _checked(kind: Kind, shares: tuple[float, ...], x: Array, values: list[Array]) -> Numbers:
     """Name the numbers, without rows that carry nothing; refuse what is not monotonic."""
-    carried = values[0] > 0
     named = dict(zip(["mean", *map(quantile_name, shares)], values, strict=True))
     for name, every in named.items():
         at, y = x[every > 0], every[every > 0]
@@ -152,6 +126,7 @@ def _checked(kind: Kind, shares: tuple[float, ...], x: Array, values: list[Array
                 f"{kind.name}, {name}: is not monotone at {kind.against} = {worst:.4g}, as programs require; "
                 "give fewer points, or a contact law without jumps"
             )
+    carried = values[0] > 0
     return x[carried], {name: np.where(y > 0, y, np.nan)[carried] for name, y in named.items()}
 
 

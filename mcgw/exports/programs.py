@@ -17,10 +17,9 @@ class Program:
         Endings of its files.
     comment, separator : str
         How a comment line begins; what stands between two numbers of a row.
-    header : dict of str to str
-        By table that it takes: the line above the rows, empty where there is none.
-    hints : dict of str to tuple of str
-        By table: lines that say how the program includes a ``file``, and what it does beyond the ends.
+    tables : dict of str to tuple of str
+        By table that it takes: the line above the rows, empty where there is none; then lines that say how
+        the program includes a ``file``, and what it does beyond the ends.
     first : {"x", "y"}
         Which column stands first: argument or value.
     overclosure : bool
@@ -35,8 +34,7 @@ class Program:
     endings: tuple[str, ...]
     comment: str
     separator: str
-    header: dict[str, str]
-    hints: dict[str, tuple[str, ...]]
+    tables: dict[str, tuple[str, ...]]
     first: str = "x"
     overclosure: bool = False
     most: int | None = None
@@ -44,22 +42,20 @@ class Program:
 
 
 _BEHAVIOR = "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR"
-_ANY = dict.fromkeys(KINDS, "")
 _INCLUDED = "under *SURFACE INTERACTION: *INCLUDE, INPUT={file}"
 _ROWS = (
     # Rules and limits as in CalculiX's manual and its sources (surfacebehaviors.f, springforc_n2f.f).
     Program(
         "calculix", (".inp",), "**", ", ",
-        {"pressure-gap": _BEHAVIOR, "conductance-pressure": "*GAP CONDUCTANCE"},
         {
             "pressure-gap": (
-                _INCLUDED,
+                _BEHAVIOR, _INCLUDED,
                 "use *CONTACT PAIR, TYPE=NODE TO SURFACE: with SURFACE TO SURFACE CalculiX misreads tables",
                 "beyond the last line the pressure is constant",
                 "in a thermomechanical step give *GAP CONDUCTANCE too",
             ),
             "conductance-pressure": (
-                _INCLUDED,
+                "*GAP CONDUCTANCE", _INCLUDED,
                 "below *SURFACE BEHAVIOR; beyond the last line the conductance is constant",
                 "third entry: temperature, which has no effect here",
             ),
@@ -70,29 +66,32 @@ _ROWS = (
     Program(
         "abaqus", (".inp",), "**", ", ",
         {
-            "pressure-gap": _BEHAVIOR,
-            "conductance-pressure": "*GAP CONDUCTANCE, PRESSURE",
-            "conductance-gap": "*GAP CONDUCTANCE",
-        },
-        {
-            "pressure-gap": (_INCLUDED, "beyond the last line the pressure continues with the last slope"),
-            "conductance-pressure": (_INCLUDED, "beyond the last line the conductance is constant"),
-            "conductance-gap": (_INCLUDED, "beyond the last line nothing is conducted"),
+            "pressure-gap": (
+                _BEHAVIOR, _INCLUDED, "beyond the last line the pressure continues with the last slope",
+            ),
+            "conductance-pressure": (
+                "*GAP CONDUCTANCE, PRESSURE", _INCLUDED, "beyond the last line the conductance is constant",
+            ),
+            "conductance-gap": (
+                "*GAP CONDUCTANCE", _INCLUDED, "beyond the last line nothing is conducted",
+            ),
         },
         first="y", overclosure=True,
     ),
     # MOOSE, PiecewiseTabularBase.C: comments "#", rising x.
     Program(
-        "moose", (".csv",), "#", ",", _ANY,
+        "moose", (".csv",), "#", ",",
         dict.fromkeys(KINDS, (
+            "",
             "[Functions] [{kind.quantity}] type = PiecewiseLinear data_file = {file} format = columns [] []",
             "x: {kind.against}, y: {kind.quantity}; beyond the ends y is constant, unless extrap = true",
         )),
     ),
     # COMSOL Multiphysics Reference Manual, "Spreadsheet Data Format": comments "%".
     Program(
-        "comsol", (".txt", ".dat"), "%", " ", _ANY,
+        "comsol", (".txt", ".dat"), "%", " ",
         dict.fromkeys(KINDS, (
+            "",
             "Definitions > Functions > Interpolation: Data source File, Data format Spreadsheet, 1 argument",
             "column 1: {kind.against} (argument), column 2: {kind.quantity}; enter their units under Units",
             "beyond the ends: Extrapolation Constant",

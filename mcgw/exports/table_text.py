@@ -1,7 +1,7 @@
 """A curve as the text of a file that a program reads."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,23 +26,8 @@ UNITS = {
 }  # fmt: skip
 
 
-@dataclass(frozen=True)
-class Sheet:
-    """A kind of table of a scene, for a program.
-
-    Parameters
-    ----------
-    scene : Scene
-        Whose surfaces were drawn, and how many `surfaces`.
-    kind : Kind
-        What is tabulated, against what.
-    program : Program
-        That reads it.
-    units : str
-        A key of `UNITS`.
-    origin : str
-        Names program and digest.
-    """
+class Sheet(NamedTuple):
+    """A kind of table of so many surfaces of a scene, for a program; `origin` names ours and the digest."""
 
     scene: Scene
     surfaces: int
@@ -112,7 +97,8 @@ class Sheet:
                     "overclosure = d0 - d: place the two surfaces so that they meet where the gap is d0"
                 )
                 x, y = (foot - x)[::-1], y[::-1]
-        lines += (line.format(file=file, kind=kind) for line in program.hints[kind.name])
+        header, *hints = program.tables[kind.name]
+        lines += (hint.format(file=file, kind=kind) for hint in hints)
         if program.most is not None and len(x) > program.most:
             raise ValueError(
                 f"points = {len(x) - 1}: {program.name} reads at most {program.most} lines; give fewer"
@@ -123,7 +109,7 @@ class Sheet:
                 'separate them; give fewer points or units = "mm-N-s"'
             )
         lines = [f"{program.comment} {one_line(line)}" for line in lines]
-        lines += filter(None, [program.header[kind.name]])
+        lines += [header] * bool(header)
         rows = np.column_stack([x, y] if program.first == "x" else [y, x])
         lines += [program.separator.join(f"{x:.9e}" for x in row) for row in rows.tolist()]
         return "\n".join([*lines, ""])

@@ -25,7 +25,6 @@ from mcgw.store.ensembles import open_ensemble, read_attributes
 SCHEMA = Path(__file__).with_name("contact-table.schema.json")
 _QUANTILES = (0.05, 0.95)
 _MOST_POINTS = 10_000
-_NEEDED = ("load", "area", "conductance_si")  # of all columns, the last where something is conducted
 
 
 def export(
@@ -101,23 +100,20 @@ def export(
     ):
         if value not in known:
             raise ValueError(f"{key} = {value!r}: choose one of {', '.join(known)}")
-    if to != "json":
-        if not re.fullmatch(r"[A-Za-z0-9._+-]{1,64}", name := Path(path).name):
-            raise ValueError(
-                f"path = {name!r}: {to} includes it by name; give a name of at most 64 letters, digits and "
-                ". _ + -"
-            )
-        if table not in (taken := PROGRAMS[to].header):
-            raise ValueError(f"table = {table!r}: {to} does not support it; choose one of {', '.join(taken)}")
+    if to != "json" and not re.fullmatch(r"[A-Za-z0-9._+-]{1,64}", name := Path(path).name):
+        raise ValueError(
+            f"path = {name!r}: {to} includes it by name; give a name of at most 64 letters, digits and "
+            ". _ + -"
+        )
+    if to != "json" and table not in (taken := PROGRAMS[to].tables):
+        raise ValueError(f"table = {table!r}: {to} does not support it; choose one of {', '.join(taken)}")
     wanted, kind = _pressures(pressures), KINDS[table]
     if isinstance(points, bool) or not isinstance(points, int) or not 2 <= points <= _MOST_POINTS:
         raise ValueError(f"points = {points!r}: give a whole number from 2 to {_MOST_POINTS}")
     source, digest = _source(what)
     scene = source if isinstance(source, Scene) else source.scene
     if to == "json":
-        conducts = scene.film is not None and (source is scene or "conductance_si" in scene.quantities)
-        ensemble = surfaces_for(source, _NEEDED[: 2 + conducts], wanted, points)
-        text = json.dumps(contact_table(ensemble, digest), indent=1, allow_nan=False)
+        text = json.dumps(_contact_table(source, wanted, points, digest), indent=1, allow_nan=False)
         write_whole(Path(path), [text.encode()])
         return [Path(path)]
     if kind.quantity == "conductance" and scene.film is None:
@@ -125,14 +121,14 @@ def export(
             "joint.conductivities: missing for a table of conductance; give conductivities = [k1, k2] in "
             "W/(m K), or resistivity, in the scene"
         )
-    surfaces = scene.n_surfaces if isinstance(source, Scene) else source.n_surfaces
-    shares = _quantiles(quantiles, surfaces)
+    shares = _quantiles(quantiles, source.n_surfaces)
     if kind.against == "gap":
         x, columns = at_gaps(source, kind, wanted, points, shares)
     else:
         x, columns = at_pressures(scene, kind, wanted, points, shares)
     origin = f"mcgw {version('mcgw')}; SHA-256 of the {digest}"
-    sheet, files = Sheet(scene, surfaces, kind, PROGRAMS[to], units, origin), files_of_export(path, shares)
+    sheet = Sheet(scene, source.n_surfaces, kind, PROGRAMS[to], units, origin)
+    files = files_of_export(path, shares)
     (per_x, unit_x), (per_y, unit_y) = sheet.unit(kind.against), sheet.unit(kind.quantity)
     every = [Column(kind.against, per_x * x, unit=unit_x)]
     with together():
@@ -186,21 +182,14 @@ def _source(what: Scene | Ensemble | str | Path) -> tuple[Scene | Ensemble, str]
     return what, f"scene {sha256(scene_text(scene).encode()).hexdigest()}"
 
 
-def contact_table(ensemble: Ensemble, digest: str) -> dict[str, Any]:
-    """Return what the file holds, by ``contact-table.schema.json``: means where they carry a load, SI.
-
-    Parameters
-    ----------
-    ensemble : Ensemble
-        With load, area and, where heat or current is conducted, conductance at several separations.
-    digest : str
-        Of what it was made from, in words.
-
-    Raises
-    ------
-    ValueError
-        If fewer than two separations carry a load, or the pressure does not fall as the gap rises.
-    """
+def _contact_table(
+    source: Scene | Ensemble, pressures: Array | None, points: int, digest: str
+) -> dict[str, Any]:
+    """Return what a file holds, by ``contact-table.schema.json``: means where they carry a load, SI."""
+    scene = source if isinstance(source, Scene) else source.scene
+    conducts = scene.film is not None and (source is scene or "conductance_si" in scene.quantities)
+    needs = ("load", "area", *["conductance_si"] * conducts)
+    ensemble = surfaces_for(source, needs, pressures, points)
     scene, order = ensemble.scene, np.argsort(ensemble.separations)
     order = order[ensemble.mean("pressure")[order] > 0]
     pressure = ensemble.mean("pressure")[order]

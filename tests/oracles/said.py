@@ -12,10 +12,7 @@ def call(*words, cwd="."):
     """A command in this process, answered as `subprocess.run` answers: a child takes a second to start."""
     out, err = StringIO(), StringIO()
     with chdir(Path(cwd)), redirect_stdout(out), redirect_stderr(err):
-        try:
-            code = main([str(word) for word in words])
-        except SystemExit as end:  # of argparse
-            code = end.code
+        code = main([str(word) for word in words])
     return CompletedProcess(words, code, out.getvalue(), err.getvalue())
 
 
