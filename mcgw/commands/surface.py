@@ -9,6 +9,8 @@ from mcgw.commands.outputs import JSON, Format, Output, check_outputs
 from mcgw.commands.voice import news, notes
 
 if TYPE_CHECKING:
+    from mcgw.maps.synthetic import Asperities
+    from mcgw.maps.topography import Topography
     from mcgw.scene.scene import Scene
 
 
@@ -49,7 +51,10 @@ def surface(
     --------
     mcgw surface runs/demo.toml --surface 3 -o map.h5
     """
-    from mcgw.maps.map_files import WRITTEN, files_of_map
+    from mcgw.maps.envelope import envelope
+    from mcgw.maps.map_files import WRITTEN, files_of_map, write_map
+    from mcgw.maps.synthetic import asperities_of
+    from mcgw.scene.scene_file import scene_text
 
     found = re.fullmatch(r"(\d{1,9})(?:x(\d{1,9}))?", shape)
     if found is None:
@@ -69,27 +74,17 @@ def surface(
         return _gaussian(from_spectrum, points, pixel, seed, output)
     if scene is None:
         raise ValueError("SCENE: give a scene (TOML), or --from-spectrum")
-    return _asperities(scene, surface, points, width, periodic, output)
-
-
-def _asperities(
-    scene: "Scene",
-    surface: int,
-    shape: tuple[int, int],
-    width: float | None,
-    periodic: bool,
-    path: Path,
-) -> None:
-    """Write the map, and tell how many of its summits are not independent."""
-    from mcgw.maps.envelope import envelope, hidden_summits
-    from mcgw.maps.hidden_caps import CROWDED
-    from mcgw.maps.map_files import write_map
-    from mcgw.maps.synthetic import asperities_of
-    from mcgw.scene.scene_file import scene_text
-
     field = asperities_of(scene, surface)
-    topography = envelope(field, shape, width=width, periodic=periodic)
-    news(*write_map(topography, path, field, scene=scene_text(scene)))
+    topography = envelope(field, points, width=width, periodic=periodic)
+    news(*write_map(topography, output, field, scene=scene_text(scene)))
+    return _tell_hidden(scene, field, topography)
+
+
+def _tell_hidden(scene: "Scene", field: "Asperities", topography: "Topography") -> None:
+    """Tell how many of the summits are not independent."""
+    from mcgw.maps.envelope import hidden_summits
+    from mcgw.maps.hidden_caps import CROWDED
+
     hidden = hidden_summits(field, periodic=topography.periodic)
     touching = field.z > scene.lowest * scene.surface.sigma
     overlap = field.number / (field.size[0] * field.size[1]) * field.radius * scene.surface.sigma

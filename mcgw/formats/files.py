@@ -24,7 +24,8 @@ State = tuple[int, int, int]
 Expected = State | None | Literal["anything"]
 _WRITABLE = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
 
-_waiting: ContextVar[list[tuple[Path, Path, Expected]] | None] = ContextVar("_waiting", default=None)
+Waiting = tuple[Path, Path, Expected]  # its temporary name, its own, and which file has that now
+_waiting: ContextVar[list[Waiting] | None] = ContextVar("_waiting", default=None)
 
 
 def state_of(path: Path) -> State | None:
@@ -67,21 +68,21 @@ def alive(pid: int) -> bool:
 
 
 @contextmanager
-def together() -> Iterator[None]:
+def together() -> Iterator[list[Waiting]]:
     """Let the files that are written inside get their names when all of them are whole, or none of them.
 
     For a command with several outputs: if a later one fails, the earlier ones are not there, and older files
-    are as they were.
+    are as they were. Yields the files that wait, those of a `together` around it as well, which says when.
     """
-    if _waiting.get() is not None:  # those around it say when
-        yield
+    if (around := _waiting.get()) is not None:
+        yield around
         return
-    waiting: list[tuple[Path, Path, Expected]] = []
+    waiting: list[Waiting] = []
     token = _waiting.set(waiting)
     try:
-        yield
-        for temporary, path, expected in waiting:
-            rename_over(temporary, path, expected)
+        yield waiting
+        for each in waiting:
+            _rename(*each)
         for folder in {path.parent for _, path, _ in waiting}:
             sync(folder)
     except BaseException:
@@ -117,14 +118,11 @@ def whole_file(path: Path, *, expected: Expected = "anything", folder: Path | No
     """
     temporary = temporary_beside((folder or path.parent) / path.name)
     try:
-        refuse_read_only(path)
-        yield temporary
-        sync(temporary)
-        if (waiting := _waiting.get()) is not None:
+        with together() as waiting:
+            refuse_read_only(path)
+            yield temporary
+            sync(temporary)
             waiting.append((temporary, path, expected))
-            return
-        rename_over(temporary, path, expected)
-        sync(path.parent)
     except BaseException as error:
         with suppress(OSError):  # it has its own name by now, or was never made
             os.unlink(temporary)
@@ -134,24 +132,15 @@ def whole_file(path: Path, *, expected: Expected = "anything", folder: Path | No
 
 
 def refuse_read_only(path: Path) -> None:
-    """Refuse to replace a file that nobody may write.
-
-    Raises
-    ------
-    StoreError
-        If it is one.
-    """
+    """Refuse to replace a file that nobody may write."""
     with suppress(OSError):  # there is none
         mode = os.lstat(path).st_mode
         if stat.S_ISREG(mode) and not mode & _WRITABLE:
             raise StoreError(f"{path}: is read-only; choose another -o, or make it writable")
 
 
-def rename_over(temporary: Path, path: Path, expected: Expected) -> None:
-    """Give a finished file its name, unless that belongs to another file than the expected one.
-
-    It keeps the mode of the file that it replaces.
-    """
+def _rename(temporary: Path, path: Path, expected: Expected) -> None:
+    """Give a finished file its name and the mode of the file that it replaces, unless that is another one."""
     with suppress(FileNotFoundError):
         replaced = os.lstat(path).st_mode
         if stat.S_ISREG(replaced):
@@ -162,19 +151,12 @@ def rename_over(temporary: Path, path: Path, expected: Expected) -> None:
         except FileExistsError:
             raise
         except OSError:  # a file system without hard links
-            _refuse_another(path, None)
-            os.replace(temporary, path)
+            pass
         else:
-            os.unlink(temporary)
-        return
-    if expected != "anything":
-        _refuse_another(path, expected)
-    os.replace(temporary, path)
-
-
-def _refuse_another(path: Path, expected: State | None) -> None:
-    if state_of(path) != expected:
+            return os.unlink(temporary)
+    if expected not in ("anything", state_of(path)):
         raise FileExistsError(errno.EEXIST, "another file now has this name", str(path))
+    return os.replace(temporary, path)
 
 
 def write_whole(path: Path, pieces: Iterable[bytes], *, expected: Expected = "anything") -> None:

@@ -24,15 +24,8 @@ MOST_OBJECTS, DEEPEST = 4096, 32  # groups, datasets and types of a file; groups
 MOST_MEMBERS = 1000  # of an archive
 _UNPACKED, _RATIO = 2**26, 200  # bytes that any archive may unpack to; and for each byte of it
 _MOST_XML = 2**26  # bytes of a description
-_FILTERS = {  # built into HDF5: any other is code that it loads from a folder
-    h5py.h5z.FILTER_DEFLATE,
-    h5py.h5z.FILTER_SHUFFLE,
-    h5py.h5z.FILTER_FLETCHER32,
-    h5py.h5z.FILTER_LZF,
-    h5py.h5z.FILTER_SZIP,
-    h5py.h5z.FILTER_NBIT,
-    h5py.h5z.FILTER_SCALEOFFSET,
-}
+# Deflate, shuffle, fletcher32, szip, nbit and scale-offset; any other is code that HDF5 loads from a folder.
+_FILTERS = {*range(1, 7), h5py.h5z.FILTER_LZF}
 
 
 def open_h5(path: Path | str) -> h5py.File:
@@ -43,7 +36,10 @@ def open_h5(path: Path | str) -> h5py.File:
     Raises
     ------
     StoreError
-        If it is no regular file, is damaged where its structure stands, or `check_h5` refuses it.
+        If it is no regular file, or is damaged where its structure stands; if there is an external link,
+        external storage, a virtual dataset, or a filter that HDF5 would load; if all datasets declare more
+        than 1100 times the file, or a chunk is beyond its data or memory; if groups are nested too deeply, or
+        there are too many objects.
     OSError
         If it is no HDF5 file.
     """
@@ -51,7 +47,7 @@ def open_h5(path: Path | str) -> h5py.File:
         size = found.seek(0, 2)
     file = opened(path)
     try:
-        check_h5(file, size)
+        _check(file, size)
     except StoreError as error:
         file.close()
         raise StoreError(f"{path}: refused: {error}") from None
@@ -63,7 +59,7 @@ def open_h5(path: Path | str) -> h5py.File:
 
 
 def opened(path: Path | str) -> h5py.File:
-    """Open an HDF5 file for reading without `check_h5`; for files that are checked otherwise."""
+    """Open an HDF5 file for reading without a look at it; for files that are checked otherwise."""
     try:
         return h5py.File(path, "r")
     except OSError as error:
@@ -72,25 +68,8 @@ def opened(path: Path | str) -> h5py.File:
         return h5py.File(path, "r", locking=False)
 
 
-def check_h5(file: h5py.File, size: int) -> None:
-    """Refuse an open HDF5 file that leads out of itself, or declares what its bytes cannot hold.
-
-    No data and no attribute are read.
-
-    Parameters
-    ----------
-    file : h5py.File
-        The open file.
-    size : int
-        Of the file, bytes.
-
-    Raises
-    ------
-    StoreError
-        If there is an external link, external storage, a virtual dataset, or a filter that HDF5 would load;
-        if all datasets declare more than 1100 times the file, or a chunk is beyond its data or memory; if
-        groups are nested too deeply, or there are too many objects. The line does not name the file.
-    """
+def _check(file: h5py.File, size: int) -> None:
+    """Refuse an open file of a size that leads out of itself, or declares what its bytes cannot hold."""
     left, seen = max(EXPANSION * size, ENOUGH), 0
 
     def look(name: bytes, link: Any) -> None:
@@ -155,30 +134,32 @@ def check_archive(path: Path) -> None:
     try:
         with zipfile.ZipFile(path) as archive:
             members = archive.infolist()
-            _check_members(path, members, size)
+            if len(members) > MOST_MEMBERS:
+                raise ValueError(
+                    f"{path}: an archive of {len(members)} members; at most {MOST_MEMBERS} are read"
+                )
+            unpacked = sum(member.file_size for member in members)
+            most = min(max(_UNPACKED, _RATIO * size), max(_UNPACKED, memory_available()))
+            if unpacked > most:
+                raise ValueError(
+                    f"{path}: an archive of {size} bytes that unpacks to {unpacked}; that is refused"
+                )
             for member in members:
-                if member.filename.lower().endswith(".xml"):
-                    _check_xml(path, archive, member)
+                if fault := _fault(archive, member):
+                    raise ValueError(f"{path}: {member.filename[:80]!r} {fault}")
     except (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError, OSError) as error:
         raise ValueError(f"{path}: is a damaged zip archive: {str(error)[:80]}") from None
 
 
-def _check_members(path: Path, members: list[zipfile.ZipInfo], size: int) -> None:
-    if len(members) > MOST_MEMBERS:
-        raise ValueError(f"{path}: an archive of {len(members)} members; at most {MOST_MEMBERS} are read")
-    unpacked = sum(member.file_size for member in members)
-    if unpacked > max(_UNPACKED, _RATIO * size) or (unpacked > _UNPACKED and unpacked > memory_available()):
-        raise ValueError(f"{path}: an archive of {size} bytes that unpacks to {unpacked}; that is refused")
-    for member in members:
-        if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED) or member.flag_bits & 1:
-            raise ValueError(f"{path}: {member.filename[:80]!r} is encrypted, or not packed by deflate")
-
-
-def _check_xml(path: Path, archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> None:
-    """Refuse a document type: entities make gigabytes of a line, and name other files."""
+def _fault(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> str:
+    """Say why a member is refused, if it is: entities make gigabytes of a line, and name other files."""
+    if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED) or member.flag_bits & 1:
+        return "is encrypted, or not packed by deflate"
+    if not member.filename.lower().endswith(".xml"):
+        return ""
     if member.file_size > _MOST_XML:
-        raise ValueError(f"{path}: {member.filename[:80]!r} is a description of {member.file_size} bytes")
-    with archive.open(member) as file:
-        text = file.read()
+        return f"is a description of {member.file_size} bytes"
+    text = archive.read(member)
     if b"<!DOCTYPE" in text or b"<!ENTITY" in text or b"\0" in text:
-        raise ValueError(f"{path}: {member.filename[:80]!r} declares entities, or is not UTF-8")
+        return "declares entities, or is not UTF-8"
+    return ""

@@ -1,7 +1,7 @@
 """A table of named columns: printed, as HTML, as CSV and as a DataFrame."""
 
 import csv
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from html import escape
 from importlib import import_module
@@ -58,28 +58,22 @@ class Column:
         """Its unit behind a name."""
         return f" ({self.unit})" if self.unit not in ("", "1") else ""
 
-    @property
-    def textual(self) -> bool:
-        """Whether it holds texts."""
-        return any(isinstance(x, str) for x in self.values[:1])
-
-    def cells(self) -> list[str]:
-        """Return the displayed text of each row."""
-        errors = np.broadcast_to(np.nan if self.error is None else self.error, len(self.values))
-        return [
-            x if isinstance(x, str) else self._shown(x, error)
-            for x, error in zip(self.values, errors, strict=True)
-        ]
-
-    def _shown(self, x: float, error: float) -> str:
-        if np.isnan(x):
-            return self.missing
-        return format(x, f".{digits_of(x, error)}g" if 0 < error < np.inf and x else self.form)
-
     def at(self, k: Sequence[int]) -> "Column":
         """Return some of its rows, by number."""
         error = None if self.error is None else np.asarray(self.error)[list(k)]
         return replace(self, values=[self.values[i] for i in k], error=error)
+
+    def cells(self) -> list[str]:
+        """Return the displayed text of each row."""
+        errors = np.broadcast_to(np.nan if self.error is None else self.error, len(self.values))
+        return [self._shown(x, error) for x, error in zip(self.values, errors, strict=True)]
+
+    def _shown(self, x: float | str, error: float) -> str:
+        if isinstance(x, str):
+            return x
+        if np.isnan(x):
+            return self.missing
+        return format(x, f".{digits_of(x, error)}g" if 0 < error < np.inf and x else self.form)
 
 
 @dataclass(frozen=True)
@@ -153,12 +147,13 @@ class Table:
         lines += listed((name, brief(text)) for name, text in self.facts)
         cells = self.cells()
         widths = [max(map(len, column)) for column in cells]
-        left = [not k or x.textual for k, x in enumerate(x for x in self.columns if not x.between)]
+        values = [column.values for column in self.columns if not column.between]
+        sides = [
+            "<" if not k or any(isinstance(x, str) for x in some[:1]) else ">"
+            for k, some in enumerate(values)
+        ]
         for row in zip(*cells, strict=True):
-            told = (
-                f"{x:{'<' if to_left else '>'}{width}}"
-                for x, width, to_left in zip(row, widths, left, strict=True)
-            )
+            told = (f"{x:{side}{width}}" for x, side, width in zip(row, sides, widths, strict=True))
             lines.append(f"  {'  '.join(told)}".rstrip())
         return "\n".join(lines)
 
@@ -196,7 +191,7 @@ class Table:
             file.write(f"# {one_line(comment)}\n" if comment else "")
             writer = csv.writer(file, lineterminator="\n")
             writer.writerow([column.name + column.suffix for column in self.columns])
-            writer.writerows(zip(*map(_stored, self.columns), strict=True))
+            writer.writerows(zip(*(column.values for column in self.columns), strict=True))
 
     def to_dataframe(self) -> Any:
         """Return the same as a `pandas.DataFrame`.
@@ -244,22 +239,14 @@ def stacked(tables: Mapping[str, Table], key: str, words: str = "") -> Table:
 
 
 def joined(tables: Sequence[Table]) -> Table:
-    """Stack tables with the same columns, without a column that names them."""
-    return Table(tuple(map(_under, zip(*(table.columns for table in tables), strict=True))))
-
-
-def _under(columns: Sequence[Column]) -> Column:
-    """Join columns; the unit is kept if all have the same, and errors if all have them."""
-    values = np.concatenate([np.asarray(column.values) for column in columns])
-    unit = columns[0].unit if len({column.unit for column in columns}) == 1 else ""
-    errors = [column.error for column in columns if column.error is not None]
-    error = np.concatenate(errors) if len(errors) == len(columns) else None
-    return replace(columns[0], values=values, unit=unit, error=error)
-
-
-def _stored(column: Column) -> Iterator[str]:
-    for x in column.values:
-        yield str(x) if isinstance(x, str | int | np.integer) else repr(float(x))
+    """Stack tables with the same columns; units and errors are those of columns that all have them."""
+    columns = []
+    for parts in zip(*(table.columns for table in tables), strict=True):
+        values, errors = [part.values for part in parts], [part.error for part in parts]
+        unit = parts[0].unit if len({part.unit for part in parts}) == 1 else ""
+        error = None if any(x is None for x in errors) else np.concatenate(errors)
+        columns.append(replace(parts[0], values=np.concatenate(values), unit=unit, error=error))
+    return Table(tuple(columns))
 
 
 def digits_of(x: float, error: float) -> int:

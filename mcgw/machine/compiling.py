@@ -52,7 +52,7 @@ def njit(**options: Any) -> Callable[[Any], Any]:
 def loops_folder() -> str:
     """Return the folder in which Numba keeps the loops of this package's folder; empty if it has none."""
     try:
-        return str(numba.njit(cache=True)(_nothing).stats.cache_path)
+        return str(numba.njit(cache=True)(lambda: None).stats.cache_path)
     except RuntimeError as error:
         warnings.warn(
             f"compiled loops cannot be kept ({error}), so every process takes 12 s to compile them; set "
@@ -60,10 +60,6 @@ def loops_folder() -> str:
             stacklevel=2,
         )
         return ""
-
-
-def _nothing() -> None:
-    """Stand for the loops of this package."""
 
 
 class _OneCompiles(event.Listener):  # type: ignore[misc, unused-ignore]

@@ -1,23 +1,16 @@
-"""Available memory, checked before anything is computed; arrays that begin with a line of the cache.
+"""Available memory, checked before anything is computed; results kept for calls with the same arguments."""
 
-Results that are kept for the next call with the same arguments.
-"""
-
-import math
 from collections.abc import Callable
+from contextlib import suppress
 from functools import lru_cache, wraps
 from pathlib import Path
 from typing import Any, TypeVar
-
-import numpy as np
-from numpy.typing import NDArray
 
 from mcgw.errors import StoreError
 
 _Result = TypeVar("_Result")
 _MOST = 2**63 - 1
 _SMALL = 2**24  # bytes; looking up what is available takes half a millisecond
-_LINE = 8  # words
 
 
 def check_memory(what: str, size: int) -> None:
@@ -45,20 +38,14 @@ def memory_available() -> int:
     most = [_number(line) for line in _lines("/sys/fs/cgroup/memory.max") if line.strip() != "max"]
     if used and most:
         limits.append(max(most[0] - used[0], 0))
-    if (limit := memory_limit()) is not None:
-        taken = [_number(line.split()[1]) * 1024 for line in _lines("/proc/self/status") if "VmSize" in line]
-        limits.append(max(limit - sum(taken), 0))
-    return min(limits, default=_MOST)
-
-
-def memory_limit() -> int | None:
-    """Bytes of address space that this process and each child may have; None: no limit, or not known."""
-    try:
+    with suppress(ImportError):  # not Windows
         import resource
-    except ImportError:
-        return None
-    soft, _ = resource.getrlimit(resource.RLIMIT_AS)
-    return None if soft == resource.RLIM_INFINITY else soft
+
+        limit, _ = resource.getrlimit(resource.RLIMIT_AS)
+        if limit != resource.RLIM_INFINITY:
+            taken = (_number(line.split()[1]) for line in _lines("/proc/self/status") if "VmSize" in line)
+            limits.append(max(limit - 1024 * sum(taken), 0))
+    return min(limits, default=_MOST)
 
 
 def _lines(path: str) -> list[str]:
@@ -75,17 +62,6 @@ def _number(text: str) -> int:
 def gibibytes(size: int) -> str:
     """Display a number of bytes."""
     return f"{size / 2**30:.4g} GiB"
-
-
-def aligned(*shape: int) -> NDArray[np.float64]:
-    """Memory for an array of this shape, not filled: its first word begins a line of the cache.
-
-    A full vector that straddles two lines takes twice as long to load.
-    """
-    words = math.prod(shape)
-    memory = np.empty(words + _LINE)
-    start = -(memory.ctypes.data // memory.itemsize) % _LINE
-    return memory[start : start + words].reshape(shape)
 
 
 def kept(most: int) -> Callable[[Callable[..., _Result]], Callable[..., _Result]]:

@@ -25,13 +25,13 @@ def told(progress: Progress, unit: str) -> Iterator[Tell]:
     ValueError
         If `progress` is something else.
     """
+    if progress is None:
+        progress = waited_for()
     if callable(progress):
         yield progress
         return
-    if progress not in (True, False, None):
+    if progress not in (True, False):
         raise ValueError(f"progress = {progress!r}: give True, or a function of (done, total)")
-    if progress is None and _WATCHED.get():
-        progress = waited_for()
     if not progress:
         yield lambda *_: None
         return
@@ -43,8 +43,8 @@ def told(progress: Progress, unit: str) -> Iterator[Tell]:
         if not _SHOWN:
             own.append(tqdm(total=total, initial=done, unit=f" {unit}", leave=False, smoothing=0))
             _SHOWN.append(own[0])
-        if own:
-            own[0].update(done - own[0].n)
+        for bar in own:
+            bar.update(done - bar.n)
 
     try:
         with watched():

@@ -18,7 +18,6 @@ from numba import get_num_threads
 from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads
-from mcgw.machine.memory import aligned
 from mcgw.sampling.block import Layout
 from mcgw.sampling.kernels import BUFFER, PLAIN, ROOTED, TOGETHER, WORDS, add_uniforms, unfold
 from mcgw.sampling.philox import CELLS, centred
@@ -124,7 +123,7 @@ def in_runs_of_cells(counts: Ints, orders: Ints, each: Array | float, sum_run: C
     ``sum_run(counts, bounds, moments)`` writes those of the cells and surfaces within bounds.
     """
     counts = np.where(orders.any(axis=1, keepdims=True), counts, 0)  # what nobody asks for is not drawn
-    moments = aligned(int(orders.sum()), counts.shape[1])
+    moments = np.empty((int(orders.sum()), counts.shape[1]))
     bounds = list(pairwise(_shares(counts, each).tolist()))
     in_threads(lambda some: sum_run(counts, some, moments), bounds)
     return moments

@@ -67,7 +67,8 @@ def test_the_least_of_what_machine_group_and_user_leave(monkeypatch, machine, us
     files = {"/proc/meminfo": machine, f"{group}.current": used, f"{group}.max": most}
     files["/proc/self/status"] = ["VmPeak: 9 kB", "VmSize: 2 kB"]
     monkeypatch.setattr("mcgw.machine.memory._lines", files.__getitem__)
-    monkeypatch.setattr("mcgw.machine.memory.memory_limit", lambda: limit)
+    limit = resource.RLIM_INFINITY if limit is None else limit
+    monkeypatch.setattr(resource, "getrlimit", lambda what: (limit, resource.RLIM_INFINITY))
     assert memory_available() == least
 
 

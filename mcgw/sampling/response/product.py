@@ -14,7 +14,6 @@ import numpy as np
 from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads, pieces
-from mcgw.machine.memory import aligned
 from mcgw.sampling.block import Layout
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.response.rows import Rows
@@ -110,7 +109,7 @@ class Tiles:
         result = np.empty((shape[0], given.shape[1], shape[1]))
 
         def share(ends: tuple[int, int]) -> None:
-            table, sums = aligned(rows * _WIDTH), aligned(FOUR * _WIDTH)
+            table, sums = np.empty(rows * _WIDTH), np.empty(FOUR * _WIDTH)
             for first in range(*ends, _WIDTH):
                 _sweep(program, table, sums, given, first, min(_WIDTH, ends[1] - first), result)
 
