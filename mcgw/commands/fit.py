@@ -134,11 +134,9 @@ def fit(
     size = None if pixel is None else (pixel, pixel)
     read = partial(read_heights, pixel=size, unit=unit, missing=missing_value)
     found, ready, assumed_unit = fit_sources(map, read, asked, across, use)
-    wrong = next((option for option, path in beside.items() if path), None)
-    if wrong and ready is None:
-        raise ValueError(
-            f"{wrong} {beside[wrong]}: a profile shows no summits, and has no sub-areas; give a map"
-        )
+    for option, path in beside.items():
+        if path and ready is None:
+            raise ValueError(f"{option} {path}: a profile shows no summits, and has no sub-areas; give a map")
     filtered = "none" if asked.cutoff is None else f"{asked.cutoff:g} m (Gaussian)"
     said = [f"{', '.join(names)}: form removed: {asked.form}; cutoff: {filtered}"]
     said[0] += f"; lengths in {assumed_unit}, since the file gives no unit" if assumed_unit else ""
@@ -149,8 +147,7 @@ def fit(
     units = "units: sigma and radius in m, eta in 1/m^2, nominal_area in m^2, E_star in Pa"
     measured = found if isinstance(found, Fit) and heights == "measured" else None
     with together():
-        path, *written = write_scene(scene, output, measured, [*said, "", units])
-        told = [str(each) for each in written]
+        told = [str(each) for each in write_scene(scene, output, measured, [*said, "", units])[1:]]
         if summits and isinstance(found, Fit):
             found.listed.table().write(summits, comment=SUMMITS)
             told.append(f"{summits}: every summit")
@@ -165,7 +162,7 @@ def fit(
             save(fit_figure(found, raw, ready), picture)
             told.append(f"{picture}: figure")
     lost = [line for line in said[1:] if line.startswith("missing: ")]
-    news(f"{path}: {_parameters(scene.surface, assumed)}", said[0], *lost, *told)
+    news(f"{output}: {_parameters(scene.surface, assumed)}", said[0], *lost, *told)
     details(*(line for line in said[1:] if line not in lost))
     notes(*([] if scene.fitted is None else scene.fitted.gravest))
     news(

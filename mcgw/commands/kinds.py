@@ -41,31 +41,16 @@ class OneOf:
 
 @dataclass(frozen=True)
 class Kind:
-    """A parameter.
+    """A parameter: how it is typed, and what the function gets of it."""
 
-    Parameters
-    ----------
-    file : {"", "in", "scene", "out"}, optional
-        Whether it is a file that is read (of a scene, which --set changes), or that is written.
-    metavar, about : str, optional
-        What stands for its value, and what it is, where the docstring of the command has no words for it.
-    words : str, optional
-        That the help adds.
-    choices : tuple of str, optional
-        All that may be typed.
-    typed, action : optional
-        What argparse makes of a word, and does with it, if that does not follow from the type.
-    read : callable, optional
-        Makes of what was typed (or the default), the option and the `Call` what the function gets.
-    """
-
-    metavar: str = ""
-    about: str = ""
-    file: Literal["", "in", "scene", "out"] = ""
-    words: str = ""
+    metavar: str = ""  # what stands for its value, where the docstring of the command has no words for it
+    about: str = ""  # what it is, likewise
+    file: Literal["", "in", "scene", "out"] = ""  # a file that is read (of a scene: --set changes it) or made
+    words: str = ""  # that the help adds
     choices: tuple[str, ...] = ()
-    typed: type | None = None
-    action: str = ""
+    typed: type | None = None  # what argparse makes of a word, if that does not follow from the type
+    action: str = ""  # of argparse, likewise
+    # Makes of what was typed (or the default), the option and the call what the function gets.
     read: Callable[[Any, str, Call], Any] = lambda given, option, call: given  # noqa: ARG005
 
 
@@ -157,15 +142,11 @@ def _results(path: Path, call: Call, *, sweeps: bool = True) -> Any:
     return found
 
 
-def scene_file(*, others: bool = False, cautious: str = "brief") -> Kind:
+def scene_file(*, others: bool = False, cautious: Literal["brief", "full", ""] = "brief") -> Kind:
     """Return the kind of the file of a scene, read, with the changes of --set.
 
-    Parameters
-    ----------
-    others : bool, optional
-        Whether it may be another file than TOML; of that the function gets the path.
-    cautious : {"brief", "full", ""}, optional
-        How the command ends: with the number of cautions, all of them, or none.
+    Of `others` than TOML, if they are taken, the function gets the path. The command ends with the number of
+    cautions, all of them, or none.
     """
 
     def opened(path: Path, call: Call) -> Any:
@@ -202,18 +183,10 @@ def file_out(
 ) -> Kind:
     """Return the kind of a file that is written: checked before anything is computed.
 
-    Parameters
-    ----------
-    form : Format or callable
-        Its format, or what returns that of a path.
-    beside : str, optional
-        Its default, with {} for the stem of what is read, in the folder of that.
-    names : tuple of str, optional
-        It is a folder, and the function gets the paths of these files in it, named likewise.
-    grows : bool, optional
-        Whether the command makes ensembles, whose own rules say which may be replaced.
-    dry : str, optional
-        A flag with which nothing is written.
+    Its form may be what returns that of a path. Its default is `beside` what is read, with {} for the stem of
+    that. With `names` it is a folder, and the function gets the paths of these files in it, named likewise.
+    What `grows` are ensembles, whose own rules say which may be replaced. With the flag `dry` nothing is
+    written.
     """
 
     def read(given: Any, option: str, call: Call) -> Any:

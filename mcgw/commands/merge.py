@@ -5,7 +5,7 @@ from typing import Annotated
 
 from mcgw.commands.kinds import file_out
 from mcgw.commands.outputs import HDF5
-from mcgw.commands.voice import look_next, news
+from mcgw.commands.voice import news
 
 
 def merge(file: Annotated[Path, file_out(HDF5, grows=True)]) -> None:
@@ -31,5 +31,4 @@ def merge(file: Annotated[Path, file_out(HDF5, grows=True)]) -> None:
         scene, made = found.scene, f"{found.n_surfaces} surfaces"
     else:
         scene, made = found.scenes[0], f"{found.axes.size} scenes"
-    news(f"{file}: {done}{made}, seed {scene.seed}")
-    look_next(file)
+    news(f"{file}: {done}{made}, seed {scene.seed}", f"next: mcgw compare {file}")

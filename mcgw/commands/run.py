@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 from mcgw.commands.kinds import file_out, scene_file
 from mcgw.commands.options import Dask, Jobs, Share, Threads, drawing, share_done
 from mcgw.commands.outputs import HDF5
-from mcgw.commands.voice import details, look_next, news, notes
+from mcgw.commands.voice import details, news, notes
 
 if TYPE_CHECKING:
     from mcgw.ensemble.ensemble import Ensemble
@@ -66,7 +66,7 @@ def run(
     known = scene.validity()
     news(known.verdict)
     details(*filter(None, [known.details]))
-    return look_next(output)
+    return news(f"next: mcgw compare {output}")
 
 
 def _result(ensemble: "Ensemble") -> str:

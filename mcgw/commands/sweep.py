@@ -6,7 +6,7 @@ from typing import Annotated, Any
 from mcgw.commands.kinds import Call, Cautioned, Kind, as_value, file_out, pair, ranged
 from mcgw.commands.options import Dask, Jobs, Share, Threads, drawing, share_done
 from mcgw.commands.outputs import HDF5
-from mcgw.commands.voice import details, look_next, news
+from mcgw.commands.voice import details, news
 
 _VALUES = "KEY=VALUES, such as grading.gamma=0.2:2:10 or =0.5,1,2"
 
@@ -72,5 +72,5 @@ def sweep(
     ratios = ratios_in_words(found)
     news(f"{output}: {found.axes.size} scenes, seed {scene.seed}", *ratios[:1])
     details(*ratios[1:])
-    look_next(output)
+    news(f"next: mcgw compare {output}")
     return details(found)

@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING, Any
 from mcgw.machine.progress import watched
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from mcgw.ensemble.ensemble import Ensemble
     from mcgw.scene.scene import Scene
     from mcgw.sweeps.sweep import Sweep
@@ -39,11 +37,6 @@ def news(*lines: object) -> None:
     """Print what was made, the result, and what to type next."""
     if says() and lines:
         print(*lines, sep="\n")
-
-
-def look_next(path: "Path") -> None:
-    """Print the command that looks at a new file."""
-    news(f"next: mcgw compare {path}")
 
 
 def details(*lines: object) -> None:

@@ -7,38 +7,19 @@ from mcgw.exports.curves import KINDS
 
 @dataclass(frozen=True)
 class Program:
-    """A finite-element program and its rules.
+    """A finite-element program and its rules."""
 
-    Parameters
-    ----------
-    name : str
-        Its name on the command line.
-    endings : tuple of str
-        Endings of its files.
-    comment, separator : str
-        How a comment line begins; what stands between two numbers of a row.
-    tables : dict of str to tuple of str
-        By table that it takes: the line above the rows, empty where there is none; then lines that say how
-        the program includes a ``file``, and what it does beyond the ends.
-    first : {"x", "y"}
-        Which column stands first: argument or value.
-    overclosure : bool
-        Whether gaps are written as overclosures that begin with 0 where the pressure does.
-    most : int, optional
-        Largest number of rows.
-    least_step : float, optional
-        Overclosures nearer than that are moved apart by the program.
-    """
-
-    name: str
-    endings: tuple[str, ...]
-    comment: str
-    separator: str
+    name: str  # on the command line
+    endings: tuple[str, ...]  # of its files
+    comment: str  # how a comment line begins
+    separator: str  # between two numbers of a row
+    # By table that it takes: the line above the rows, empty where there is none; then lines that say how the
+    # program includes a ``file``, and what it does beyond the ends.
     tables: dict[str, tuple[str, ...]]
-    first: str = "x"
-    overclosure: bool = False
-    most: int | None = None
-    least_step: float = 0.0
+    first: str = "x"  # which column stands first: "x", the argument, or "y", the value
+    overclosure: bool = False  # gaps are written as overclosures that begin with 0 where the pressure does
+    most: int | None = None  # rows
+    least_step: float = 0.0  # overclosures nearer than that are moved apart by the program
 
 
 _BEHAVIOR = "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR"

@@ -8,7 +8,7 @@ import tomllib
 import warnings
 from pathlib import Path
 from tokenize import TokenError
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from mcgw.errors import StoreError
 
@@ -84,21 +84,19 @@ def open_npy(path: Path) -> "NDArray[Any]":
     """
     import numpy as np  # the child that looks at files with little memory does without
 
-    headers = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
     try:
-        with os.fdopen(open_regular(path), "rb") as file, warnings.catch_warnings():
+        os.close(open_regular(path))
+        with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # a header in the style of Python 2 is as good
-            version = np.lib.format.read_magic(file)
-            shape, by_columns, dtype = headers[version](file)
-            if dtype.kind not in "fiu":
-                raise ValueError("its values are not real numbers")
-            order: Literal["F", "C"] = "F" if by_columns else "C"
-            return np.memmap(file, dtype, "r", file.tell(), shape, order)
+            array = np.lib.format.open_memmap(path, mode="r")
+        if array.dtype.kind not in "fiu":
+            raise ValueError("its values are not real numbers")
     except StoreError:
         raise
     except _UNSOUND as error:
         reason = (str(error).splitlines() or ["damaged"])[0]
         raise ValueError(f"{path}: is not a valid .npy file: {reason}") from None
+    return array
 
 
 def loads(text: str) -> dict[str, Any]:

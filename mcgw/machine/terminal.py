@@ -7,7 +7,7 @@ import os
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, redirect_stderr, redirect_stdout, suppress
 from typing import Any
 
 _bound: dict[str, Callable[..., Any]] = {}
@@ -96,16 +96,15 @@ def plain_output() -> Iterator[Plain]:
 
     Yields the new standard output.
     """
-    before = sys.stdout, sys.stderr
     with open(os.devnull, "w") as nowhere:
         output = Plain(sys.stdout or nowhere, "standard output", "\n")
-        sys.stdout, sys.stderr = output, Plain(sys.stderr or nowhere, "standard error", "\n\r")
-        try:
-            yield output
-        finally:
-            sys.stdout.flush()
-            sys.stderr.flush()
-            sys.stdout, sys.stderr = before
+        errors = Plain(sys.stderr or nowhere, "standard error", "\n\r")
+        with redirect_stdout(output), redirect_stderr(errors):  # type: ignore[type-var]
+            try:
+                yield output
+            finally:
+                output.flush()
+                errors.flush()
 
 
 def bind_drawing(draw: Callable[..., Any]) -> None:
