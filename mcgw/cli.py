@@ -39,10 +39,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         except SystemExit as end:  # of argparse: help, the version, or words that are none
             code = int(end.code or 0)
         output.flush()
-        closed = output.lost is None or isinstance(output.lost, BrokenPipeError)  # which is no error
-        if code or closed or asked.command not in _PRINTED:
-            return code
-        print(f"mcgw: {in_one_line(output.lost)}", file=sys.stderr)
+        lost = output.lost
+        if code or lost is None or isinstance(lost, BrokenPipeError) or asked.command not in _PRINTED:
+            return code  # a closed pipe is no error
+        print(f"mcgw: {in_one_line(lost)}", file=sys.stderr)
         return 1
 
 

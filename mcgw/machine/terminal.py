@@ -99,7 +99,7 @@ def plain_output() -> Iterator[Plain]:
     with open(os.devnull, "w") as nowhere:
         output = Plain(sys.stdout or nowhere, "standard output", "\n")
         errors = Plain(sys.stderr or nowhere, "standard error", "\n\r")
-        with redirect_stdout(output), redirect_stderr(errors):  # type: ignore[type-var]
+        with redirect_stdout(output), redirect_stderr(errors):
             try:
                 yield output
             finally:
