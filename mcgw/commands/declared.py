@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, NoReturn, get_args, get_origin
 
 import mcgw.commands
-from mcgw.commands.kinds import Call, Kind, OneOf
+from mcgw.commands.kinds import JUST_ONE, Call, Kind
 from mcgw.commands.outputs import check_outputs, reading
 from mcgw.commands.voice import ALL, NEWS, QUIET, tell_cautions
 
@@ -107,21 +107,21 @@ def parser_of(names: Sequence[str] = ()) -> argparse.ArgumentParser:
     return parser
 
 
-def _kinds_of(function: Command) -> Iterator[tuple[Parameter, Kind, str, OneOf | None]]:
+def _kinds_of(function: Command) -> Iterator[tuple[Parameter, Kind, str, str | None]]:
     """Yield each parameter of a command, its kind, the option that sets it, and its group."""
     for each in signature(function).parameters.values():
         beside = getattr(each.annotation, "__metadata__", ())
         kind = next((x for x in beside if isinstance(x, Kind)), Kind())
         option = "-o" if each.name == "output" else f"--{each.name.replace('_', '-')}"
-        yield each, kind, option, next((x for x in beside if isinstance(x, OneOf)), None)
+        yield each, kind, option, next((x for x in beside if isinstance(x, str)), None)
 
 
 def _add_arguments(parser: argparse.ArgumentParser, function: Command, words: str) -> None:
     texts = {name: (metavar, " ".join(text.split())) for name, metavar, text in _WORDS.findall(words)}
-    groups: dict[OneOf | None, Any] = {None: parser}
+    groups: dict[str | None, Any] = {None: parser}
     for each, kind, option, group in _kinds_of(function):
         if group and group not in groups:
-            groups[group] = parser.add_mutually_exclusive_group(required=group.required)
+            groups[group] = parser.add_mutually_exclusive_group(required=group == JUST_ONE)
         placed = each.kind is Parameter.POSITIONAL_OR_KEYWORD
         names = [each.name] if placed else [option, "--output"] if option == "-o" else [option]
         found = _options(each, kind, placed, *texts.get(each.name, (kind.metavar, kind.about)))

@@ -3,18 +3,16 @@
 from pathlib import Path
 from typing import Annotated
 
-from mcgw.commands.kinds import OneOf, Pixel, SceneOrMap, Unit, file_out
+from mcgw.commands.kinds import JUST_ONE, Pixel, SceneOrMap, Unit, file_out
 from mcgw.commands.outputs import JSONL
 from mcgw.commands.voice import details, news
-
-_HELD = OneOf(required=True)
 
 
 def elastic(
     source: SceneOrMap,
     *,
-    pressure: Annotated[str | None, _HELD] = None,
-    separation: Annotated[str | None, _HELD] = None,
+    pressure: Annotated[str | None, JUST_ONE] = None,
+    separation: Annotated[str | None, JUST_ONE] = None,
     E_star: str | None = None,
     pixel: Pixel = None,
     unit: Unit = None,

@@ -1,8 +1,8 @@
 """Kinds of parameters of commands: what a person types for each, and what the command's function then gets.
 
 A command is a function: see `mcgw.commands.declared`. A parameter of a plain type gets the text or number
-that is typed; one that is ``Annotated[type, kind]`` what its kind makes of it. `OneOf` beside the kind puts
-it into a group.
+that is typed; one that is ``Annotated[type, kind]`` what its kind makes of it. Of those with a text beside
+the kind one at most may be given, or just one.
 """
 
 from argparse import Namespace
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from mcgw.ensemble.ensemble import Ensemble
     from mcgw.scene.scene import Scene
 
+AT_MOST_ONE, JUST_ONE = "at most one", "just one"
+
 
 @dataclass(frozen=True)
 class Call:
@@ -30,13 +32,6 @@ class Call:
     inputs: list[Path] = field(default_factory=list)
     outputs: list[Output] = field(default_factory=list)
     cautious: list[tuple[Any, str]] = field(default_factory=list)
-
-
-class OneOf:
-    """Options of which one at most may be given, or just one."""
-
-    def __init__(self, *, required: bool = False) -> None:
-        self.required = required
 
 
 @dataclass(frozen=True)

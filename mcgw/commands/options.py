@@ -5,17 +5,18 @@ from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from typing import TYPE_CHECKING, Annotated, Any
 
-from mcgw.commands.kinds import Kind, OneOf
+from mcgw.commands.kinds import AT_MOST_ONE, Kind
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
-_HOW = OneOf()
 Threads = Annotated[int | None, Kind("N", "number of threads; default: all cores; does not change results")]
-Jobs = Annotated[int | None, Kind("N", "use N processes instead"), _HOW]
-Dask = Annotated[str | None, Kind("ADDRESS", "use the workers of a dask scheduler, tcp:// or tls://"), _HOW]
+Jobs = Annotated[int | None, Kind("N", "use N processes instead"), AT_MOST_ONE]
+Dask = Annotated[
+    str | None, Kind("ADDRESS", "use the workers of a dask scheduler, tcp:// or tls://"), AT_MOST_ONE
+]
 Share = Annotated[
-    str | None, Kind("I/N", "draw the I-th of N shares, as one job of an array; then mcgw merge"), _HOW
+    str | None, Kind("I/N", "draw the I-th of N shares, as one job of an array; then mcgw merge"), AT_MOST_ONE
 ]
 
 

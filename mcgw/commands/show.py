@@ -3,19 +3,17 @@
 from pathlib import Path
 from typing import Annotated
 
-from mcgw.commands.kinds import OneOf, SceneOrResults, Table
+from mcgw.commands.kinds import AT_MOST_ONE, SceneOrResults, Table
 from mcgw.commands.voice import ALL, news, says, tell_cautions
-
-_WHAT = OneOf()
 
 
 def show(
     file: SceneOrResults,
     *,
-    scene: Annotated[bool, _WHAT] = False,
-    digest: Annotated[bool, _WHAT] = False,
-    plan: Annotated[bool, _WHAT] = False,
-    verify: Annotated[bool, _WHAT] = False,
+    scene: Annotated[bool, AT_MOST_ONE] = False,
+    digest: Annotated[bool, AT_MOST_ONE] = False,
+    plan: Annotated[bool, AT_MOST_ONE] = False,
+    verify: Annotated[bool, AT_MOST_ONE] = False,
     csv: Table = None,
 ) -> bool | None:
     """Show the contents of an ensemble file, the progress of its run, or the plan of a scene.

@@ -2,20 +2,18 @@
 
 from typing import Annotated
 
-from mcgw.commands.kinds import Cautioned, OneOf, Table, quantity, values
+from mcgw.commands.kinds import JUST_ONE, Cautioned, Table, quantity, values
 from mcgw.commands.voice import ALL, news, says, tell_cautions
-
-_ONE = OneOf(required=True)
 
 
 def solve(
     scene: Cautioned,
     *,
-    pressure: Annotated[list[float] | None, values("Pa"), _ONE] = None,
-    load: Annotated[list[float] | None, values("N"), _ONE] = None,
-    area: Annotated[list[float] | None, values("m^2"), _ONE] = None,
-    area_fraction: Annotated[list[float] | None, values("1"), _ONE] = None,
-    nominal_separation: Annotated[list[str] | None, values(""), _ONE] = None,
+    pressure: Annotated[list[float] | None, values("Pa"), JUST_ONE] = None,
+    load: Annotated[list[float] | None, values("N"), JUST_ONE] = None,
+    area: Annotated[list[float] | None, values("m^2"), JUST_ONE] = None,
+    area_fraction: Annotated[list[float] | None, values("1"), JUST_ONE] = None,
+    nominal_separation: Annotated[list[str] | None, values(""), JUST_ONE] = None,
     surfaces: int | None = None,
     scatter: Annotated[float | None, quantity("1")] = None,
     csv: Table = None,

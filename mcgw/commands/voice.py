@@ -4,14 +4,9 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from contextvars import ContextVar
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from mcgw.machine.progress import watched
-
-if TYPE_CHECKING:
-    from mcgw.ensemble.ensemble import Ensemble
-    from mcgw.scene.scene import Scene
-    from mcgw.sweeps.sweep import Sweep
 
 QUIET, NEWS, ALL = range(3)
 _AMOUNT = ContextVar("_AMOUNT", default=NEWS)
@@ -51,7 +46,7 @@ def notes(*lines: str) -> None:
         print(f"mcgw: note: {line}", file=sys.stderr)
 
 
-def tell_cautions(source: "Scene | Ensemble | Sweep", instead: str = "") -> None:
+def tell_cautions(source: Any, instead: str = "") -> None:
     """Print the cautions of a scene, an ensemble or all points of a sweep.
 
     With `instead`, which says how to see them in full, only their number is printed, and doubts about units.
@@ -60,7 +55,7 @@ def tell_cautions(source: "Scene | Ensemble | Sweep", instead: str = "") -> None
         return
     from mcgw.scene.scene import Scene
 
-    scene: Any = getattr(source, "scene", source)
+    scene = getattr(source, "scene", source)
     doubts: list[str] = []
     if isinstance(scene, Scene):
         from mcgw.scene.cautions import cautions
@@ -70,7 +65,7 @@ def tell_cautions(source: "Scene | Ensemble | Sweep", instead: str = "") -> None
     else:
         from mcgw.sweeps.points import sweep_cautions
 
-        lines = sweep_cautions(source)  # type: ignore[arg-type]
+        lines = sweep_cautions(source)
     if instead and not says(ALL):
         number = len(lines) - len(doubts)
         lines = [*doubts, *([f"{number} caution{'s' * (number > 1)}: {instead}"] if number else [])]
