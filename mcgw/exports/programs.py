@@ -1,8 +1,29 @@
-"""How each finite-element program reads a table: a row each."""
+"""How each finite-element program reads a table, a row each; and a curve as the text of its file."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
-from mcgw.exports.curves import KINDS
+import numpy as np
+
+from analytic.arrays import Array
+from mcgw.exports.curves import KINDS, Kind
+from mcgw.machine.terminal import brief, one_line
+from mcgw.scene.in_words import joint_text
+from mcgw.scene.scene import Scene
+
+# Factors from SI, and names. Of mm, N and s the unit of power is N mm/s = mW, so that 1 W/(m^2 K) is
+# 1e3 mW / (1e6 mm^2 K). With volts that of currents is mW/V = mA.
+UNITS = {
+    "SI": {
+        "gap": (1.0, "m"), "pressure": (1.0, "Pa"), "stiffness": (1.0, "Pa/m"),
+        "conductance": (1.0, "W/(m^2 K)"), "current": (1.0, "S/m^2"),
+    },
+    "mm-N-s": {
+        "gap": (1e3, "mm"), "pressure": (1e-6, "MPa"), "stiffness": (1e-9, "MPa/mm"),
+        "conductance": (1e-3, "mW/(mm^2 K)"), "current": (1e-3, "mA/(mm^2 V)"),
+    },
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -80,3 +101,92 @@ _ROWS = (
     ),
 )  # fmt: skip
 PROGRAMS = {program.name: program for program in _ROWS}
+
+
+class Sheet(NamedTuple):
+    """A kind of table of so many surfaces of a scene, for a program; `origin` names ours and the digest."""
+
+    scene: Scene
+    surfaces: int
+    kind: Kind
+    program: Program
+    units: str
+    origin: str
+
+    def unit(self, name: str) -> tuple[float, str]:
+        """Return factor from SI and unit of a quantity or argument; of a conductance, for heat or current."""
+        film = self.scene.film
+        current = name == "conductance" and film is not None and not film.thermal
+        return UNITS[self.units]["current" if current else name]
+
+    def heading(self, name: str) -> Iterator[str]:
+        """Lines of plain text, without the mark of a comment."""
+        scene, kind = self.scene, self.kind
+        what = kind.quantity if kind.quantity == "pressure" else f"{kind.quantity} per nominal area"
+        curve = name if name == "mean" else f"{name[1:]} % quantile"
+        yield (
+            f"{kind.name}, {curve} over {self.surfaces} surfaces of {scene.n_asperities:g} asperities, seed "
+            f"{scene.seed}, at equal {kind.against}"
+        )
+        yield f"scene: {brief(scene.title) or 'without a title'}"
+        yield self.origin
+        units = self.unit(kind.quantity)[1], self.unit(kind.against)[1]
+        yield f"units: {what} in {units[0]}; {kind.against} in {units[1]}"
+        if kind.quantity == "conductance" and scene.thermal:
+            yield f"joint: {joint_text(scene)}"
+        if kind.stays(scene) and scene.thermal and kind.against == "gap":
+            yield "gas also conducts beyond the last line: add separations up to where the bodies part"
+        elif kind.stays(scene) and scene.thermal:
+            yield "at pressure 0 it has the value of the lowest pressure"
+        if kind.against != "gap":
+            return
+        yield "gap d: from the rigid plane to the mean plane of the summits"
+        factor, unit = self.unit("gap")
+        if scene.rise is not None:
+            rise = factor * scene.surface.sigma * scene.rise
+            yield f"(from the mean plane of the surface it is larger by {rise:.9e} {unit})"
+        if scene.interaction is not None:
+            felt = "the separation that asperities feel, without the displacement of the bulk"
+            yield f"with asperity interaction; d is {felt}"
+
+    def text(self, name: str, x: Array, y: Array, file: str) -> str:
+        """Comments, header and rows of a curve, "mean" or a quantile, for a file of this name.
+
+        Both columns are in the units of the file; x rises.
+
+        Raises
+        ------
+        ValueError
+            If the program has no room for it.
+        """
+        kind, program, lines = self.kind, self.program, [*self.heading(name)]
+        overclosure = program.overclosure and kind.quantity == "pressure"
+        stays = kind.stays(self.scene)
+        if kind.against == "pressure":  # nothing is carried at 0, where a curve that stays keeps its value
+            x, y = np.append(0.0, x), np.append(y[0] if stays else 0.0, y)
+        elif not stays:  # nor beyond a gap
+            foot = float(x[-1] + y[-1] * (x[-1] - x[-2]) / (y[-2] - y[-1]))
+            x, y = np.append(x, foot), np.append(y, 0.0)
+            lines.append(f"there is no load beyond the gap d0 = {foot:.9e} {self.unit('gap')[1]}")
+            lines.append("(where the line through the last two points reaches 0)")
+            if overclosure:
+                lines.append(
+                    "overclosure = d0 - d: place the two surfaces so that they meet where the gap is d0"
+                )
+                x, y = (foot - x)[::-1], y[::-1]
+        header, *hints = program.tables[kind.name]
+        lines += (hint.format(file=file, kind=kind) for hint in hints)
+        if program.most is not None and len(x) > program.most:
+            raise ValueError(
+                f"points = {len(x) - 1}: {program.name} reads at most {program.most} lines; give fewer"
+            )
+        if overclosure and program.least_step and np.diff(x).min() < program.least_step:
+            raise ValueError(
+                f"points: overclosures are closer than {program.least_step:g}, and {program.name} would "
+                'separate them; give fewer points or units = "mm-N-s"'
+            )
+        lines = [f"{program.comment} {one_line(line)}" for line in lines]
+        lines += [header] * bool(header)
+        rows = np.column_stack([x, y] if program.first == "x" else [y, x])
+        lines += [program.separator.join(f"{x:.9e}" for x in row) for row in rows.tolist()]
+        return "\n".join([*lines, ""])

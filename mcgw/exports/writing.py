@@ -13,8 +13,7 @@ import numpy as np
 from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.exports.curves import KINDS, at_gaps, at_pressures, quantile_name, surfaces_for
-from mcgw.exports.programs import PROGRAMS
-from mcgw.exports.table_text import UNITS, Sheet
+from mcgw.exports.programs import PROGRAMS, UNITS, Sheet
 from mcgw.formats.files import together, write_whole
 from mcgw.formats.table import Column, Table
 from mcgw.scene.kinds import argument, as_toml

@@ -1,6 +1,5 @@
 """Laws of moduli, heights, radii and contacts by name, with the numbers given for them."""
 
-from collections.abc import Mapping
 from dataclasses import MISSING, fields, is_dataclass
 from typing import Any
 
@@ -19,27 +18,23 @@ def law_text(law: Any) -> str:
     >>> law_text(Exponential(2.0))
     'Exponential(gamma=2.0)'
     """
+    name = type(law).__name__
     match law:
-        case ScipyHeights():
-            return f"scipy.stats.{law.distribution.dist.name}({_listed(law.distribution.kwds)})"
-        case PiecewiseSeries():
-            return repr(law)
-        case Custom():
-            return f"Custom({getattr(law.function, '__name__', type(law.function).__name__)})"
         case MeasuredHeights():
             return f"{len(law.heights)} measured ones, {'resampled' if law.resampled else 'as they are'}"
         case MeasuredRadii():
             return f"{len(law.ratios)} measured ones, each with its height"
+        case Custom():
+            return f"Custom({getattr(law.function, '__name__', type(law.function).__name__)})"
+        case ScipyHeights():
+            name, given = f"scipy.stats.{law.distribution.dist.name}", law.distribution.kwds
         case ContactLaw():
-            return f"{type(law).__name__}({_listed(law.given())})"
-    if not is_dataclass(law):
-        return repr(law)
-    given = {field.name: getattr(law, field.name) for field in fields(law) if field.default is MISSING}
-    return f"{type(law).__name__}({_listed(given)})"
-
-
-def _listed(given: Mapping[str, Any]) -> str:
-    return ", ".join(f"{key}={_short(value)}" for key, value in given.items())
+            given = law.given()
+        case _ if is_dataclass(law) and not isinstance(law, PiecewiseSeries):
+            given = {each.name: getattr(law, each.name) for each in fields(law) if each.default is MISSING}
+        case _:
+            return repr(law)
+    return f"{name}({', '.join(f'{key}={_short(value)}' for key, value in given.items())})"
 
 
 def _short(value: Any) -> str:

@@ -6,6 +6,8 @@ import re
 import stat
 import tomllib
 import warnings
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from tokenize import TokenError
 from typing import TYPE_CHECKING, Any
@@ -110,11 +112,8 @@ def loads(text: str) -> dict[str, Any]:
     """
     if _LONG_KEY.search(text) and _LONG_KEY.search(_ASIDE.sub("t", text)):
         raise ValueError(f"a dotted key has more than {_MOST_PARTS} parts")
-    _check_digits(text, _TOML_DIGITS)
-    try:
-        return tomllib.loads(text)
-    except RecursionError:
-        raise ValueError("nested too deeply") from None
+    parsed: dict[str, Any] = _parsed(tomllib.loads, text, _TOML_DIGITS)
+    return parsed
 
 
 def loads_json(text: str | bytes) -> Any:
@@ -126,19 +125,19 @@ def loads_json(text: str | bytes) -> Any:
         If it is not JSON in UTF-8, a number has more than 300 digits, or brackets are nested too deeply.
     """
     text = text if isinstance(text, str) else text.decode("utf-8-sig")
-    _check_digits(text, _JSON_DIGITS)
-    try:
-        return json.loads(text, parse_constant=_refuse_constant)
-    except RecursionError:
-        raise ValueError("nested too deeply") from None
+    return _parsed(partial(json.loads, parse_constant=_refuse_constant), text, _JSON_DIGITS)
 
 
 def _refuse_constant(word: str) -> float:
     raise ValueError(f"{word} is not a number of JSON")
 
 
-def _check_digits(text: str, most: int) -> None:
-    found = re.search(rf"(?:\d_?){{{most + 1}}}|0x(?:[\da-fA-F]_?){{{most + 1}}}", text)
-    if found:
+def _parsed(parse: Callable[[str], Any], text: str, most: int) -> Any:
+    """Parse a text whose numbers have at most so many digits."""
+    if found := re.search(rf"(?:\d_?){{{most + 1}}}|0x(?:[\da-fA-F]_?){{{most + 1}}}", text):
         line = text.count("\n", 0, found.start()) + 1
         raise ValueError(f"line {line}: a number has more than {most} digits")
+    try:
+        return parse(text)
+    except RecursionError:
+        raise ValueError("nested too deeply") from None

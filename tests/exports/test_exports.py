@@ -13,8 +13,7 @@ import mcgw
 from analytic.at_load import Moments
 from mcgw.cli import main
 from mcgw.exports.curves import KINDS, quantile_name, surfaces_for
-from mcgw.exports.programs import PROGRAMS
-from mcgw.exports.table_text import UNITS, Sheet
+from mcgw.exports.programs import PROGRAMS, UNITS, Sheet
 from mcgw.exports.writing import SCHEMA
 
 SURFACE = mcgw.Surface("1.37 um", "13 um", "300/mm^2", "10 mm^2", "78.6 GPa")
