@@ -1,20 +1,16 @@
 """``mcgw figures``: figures of the paper with Monte Carlo, further ones, or figures of a scene."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
 
-from mcgw.commands.kinds import scene_file
+from mcgw.commands.kinds import MaybeScene
 from mcgw.commands.outputs import Output, check_outputs, table_or_figure
 from mcgw.commands.voice import details, news
-
-if TYPE_CHECKING:
-    from mcgw.scene.scene import Scene
 
 
 def figures(
     *,
     output: Path = Path("figures"),
-    scene: Annotated["Scene | None", scene_file(cautious="")] = None,
+    scene: MaybeScene = None,
     only: list[str] | None = None,
     format: list[str] | None = None,  # noqa: A002
     list: bool = False,  # noqa: A002

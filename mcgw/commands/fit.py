@@ -3,15 +3,12 @@
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from mcgw.commands.kinds import Call, Pixel, Table, Unit, file_in, file_out, pair, quantity
 from mcgw.commands.outputs import NPY, TOML, Output, check_outputs, figure_format
 from mcgw.commands.voice import details, news, notes
 from mcgw.maps.steps import Form, LinesTo, Missing, SpikesTo
-
-if TYPE_CHECKING:
-    from analytic import Surface
 
 E_STAR = 100e9  # Pa, default
 _AREA = 1e-6  # m^2, default of numbers alone
@@ -200,7 +197,7 @@ def _of_numbers(
     notes(*doubts)
 
 
-def _parameters(s: "Surface", assumed: str) -> str:
+def _parameters(s: Any, assumed: str) -> str:
     """Return the parameters of a surface, and whether its modulus was given."""
     return (
         f"sigma = {s.sigma:.4g} m, radius = {s.radius:.4g} m, eta = {s.eta:.4g} 1/m^2, "

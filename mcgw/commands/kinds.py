@@ -200,6 +200,7 @@ def file_out(
 
 SceneIn = Annotated["Scene", scene_file()]
 Cautioned = Annotated["Scene", scene_file(cautious="")]  # by the command itself
+MaybeScene = Annotated["Scene | None", scene_file(cautious="")]
 SceneOrFile = Annotated["Scene | Path", scene_file(others=True)]
 SceneOrMap = Annotated["Scene | Path", scene_file(others=True, cautious="")]
 SceneOrResults = Annotated["Scene | Path", scene_file(others=True, cautious="full")]

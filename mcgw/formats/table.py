@@ -104,11 +104,6 @@ class Table:
     def __len__(self) -> int:
         return len(self.columns[0].values) if self.columns else 0
 
-    @property
-    def unit(self) -> str:
-        """The first unit of its columns."""
-        return next((column.unit for column in self.columns if column.unit), "")
-
     def heading(self, column: Column) -> str:
         """Heading of a column, with its unit unless the title has it."""
         return (column.words or column.name) + ("" if column.suffix in self.title else column.suffix)
@@ -220,22 +215,13 @@ class Shown:
 
 
 def stacked(tables: Mapping[str, Table], key: str, words: str = "") -> Table:
-    """Stack tables with the same columns.
-
-    Parameters
-    ----------
-    tables : dict of str to Table
-        By the value of the first column.
-    key : str
-        Name of the first column. The second is the unit, if there is any.
-    words : str, optional
-        Heading of the first column.
-    """
-    parts = list(tables.values())
-    first = [Column(key, [name for name, table in tables.items() for _ in range(len(table))], words)]
-    if any(table.unit for table in parts):
-        first.append(Column("unit", [table.unit for table in parts for _ in range(len(table))]))
-    return Table((*first, *joined(parts).columns))
+    """Stack tables with the same columns, after those of their keys and of their units, if there are any."""
+    rows = [len(table) for table in tables.values()]
+    units = [next((x.unit for x in table.columns if x.unit), "") for table in tables.values()]
+    first = [Column(key, np.repeat([*tables], rows).tolist(), words)]
+    if any(units):
+        first.append(Column("unit", np.repeat(units, rows).tolist()))
+    return Table((*first, *joined([*tables.values()]).columns))
 
 
 def joined(tables: Sequence[Table]) -> Table:
@@ -271,13 +257,7 @@ def evenly(n: int, most: int) -> Ints:
 
 
 def optional(package: str, what: str) -> Any:
-    """Import an optional package.
-
-    Raises
-    ------
-    ImportError
-        If it is not installed; the message says what needs it and how to get it.
-    """
+    """Import a package; the error of one that is not installed says what needs it and how to get it."""
     try:
         return import_module(package)
     except ImportError:

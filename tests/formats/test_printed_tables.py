@@ -39,7 +39,6 @@ def test_a_table_is_aligned_and_shows_each_number_to_its_error():
     assert together.cells() == [["x", "1 +- 0.5"]]
     bare = Table((Column("share", [0.25], unit="1"), Column("area", [2.0], unit="m^2")))
     assert bare.text() == "  share  area (m^2)\n  0.25            2"
-    assert (SMALL.unit, bare.unit, Table((Column("x", []),)).unit) == ("N", "1", "")
 
 
 def test_a_table_of_a_page_has_the_cells_of_a_terminal_typeset():
