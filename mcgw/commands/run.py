@@ -11,6 +11,7 @@ from mcgw.commands.voice import details, news, notes
 
 if TYPE_CHECKING:
     from mcgw.ensemble.ensemble import Ensemble
+    from mcgw.ensemble.forecast import Forecast
     from mcgw.scene.scene import Scene
 
 _LONG = 60.0  # seconds; longer runs state their duration beforehand
@@ -41,23 +42,15 @@ def run(
     """
     from numba import get_num_threads
 
-    from mcgw.ensemble.forecast import after, before, forecast
+    from mcgw.ensemble.forecast import after, forecast
     from mcgw.jobs.running import run as drawn
 
-    expected = forecast(scene)
     ruled = scene.rel_err is not None or scene.max_seconds is not None
     with warnings.catch_warnings(), drawing(threads, jobs, dask, shard) as how:
         warnings.filterwarnings("ignore", ".* n_surfaces allows")  # said as a note, or by the forecast
         if threads is not None and threads > get_num_threads():
             notes(f"--threads {threads}: this machine has {get_num_threads()}; using all of them")
-        notes(*([] if ruled else _of_time(scene)))
-        if shard is not None and expected.shortfall:
-            notes(expected.shortfall)
-        elif ruled and shard is None:
-            from mcgw.ensemble.drawing import seconds_per_surface
-            from mcgw.sampling.samplers import sampler_of
-
-            news(f"forecast: {before(expected, seconds_per_surface(scene, sampler_of(scene)))}")
+        _tell_before(scene, forecast(scene), ruled=ruled, shared=shard is not None)
         ensemble = drawn(scene, output, **how)
     if shard is not None:
         return news(share_done(shard, output, ensemble))
@@ -83,17 +76,19 @@ def _result(ensemble: "Ensemble") -> str:
     return f"; {', '.join(found)} at d/sigma = {scene.lowest:g}" if found else ""
 
 
-def _of_time(scene: "Scene") -> list[str]:
-    """Say how long the run will take, if more than a minute."""
-    from mcgw.ensemble.drawing import in_words, seconds_for
+def _tell_before(scene: "Scene", expected: "Forecast", *, ruled: bool, shared: bool) -> None:
+    """Say what a rule needs, or how long the run will take, if more than a minute."""
+    from mcgw.ensemble.drawing import in_words, seconds_for, seconds_per_surface
+    from mcgw.ensemble.forecast import before
     from mcgw.sampling.samplers import sampler_of
 
     sampler, m = sampler_of(scene), scene.n_surfaces
-    seconds = seconds_for(scene, sampler, m, at_least=_LONG / 4)
-    if seconds < _LONG:
-        return []
-    drawn = sampler.draws * m
-    return [
-        f"{m:g} surfaces of {scene.n_asperities:g} asperities: about {in_words(seconds)} on this machine "
-        f"({drawn:.2g} draws); Ctrl-C keeps finished work; details: mcgw show --plan"
-    ]
+    if not ruled and (seconds := seconds_for(scene, sampler, m, at_least=_LONG / 4)) >= _LONG:
+        notes(
+            f"{m:g} surfaces of {scene.n_asperities:g} asperities: about {in_words(seconds)} on this machine "
+            f"({sampler.draws * m:.2g} draws); Ctrl-C keeps finished work; details: mcgw show --plan"
+        )
+    if shared:
+        notes(*filter(None, [expected.shortfall]))
+    elif ruled:
+        news(f"forecast: {before(expected, seconds_per_surface(scene, sampler))}")

@@ -104,10 +104,6 @@ class Table:
     def __len__(self) -> int:
         return len(self.columns[0].values) if self.columns else 0
 
-    def heading(self, column: Column) -> str:
-        """Heading of a column, with its unit unless the title has it."""
-        return (column.words or column.name) + ("" if column.suffix in self.title else column.suffix)
-
     def under(self, title: str, facts: Sequence[tuple[str, str]] = ()) -> "Table":
         """Return the same under a title and facts."""
         return replace(self, title=title, facts=facts)
@@ -126,11 +122,12 @@ class Table:
         return replace(self, columns=tuple(column.at(k) for column in self.columns))
 
     def cells(self) -> list[list[str]]:
-        """Return what is displayed, column by column, each under its heading."""
+        """Return what is displayed, column by column, each under its heading; a unit of the title is left out."""
         shown: list[list[str]] = []
         for column in self.columns:
             if not column.between:
-                shown.append([self.heading(column), *column.cells()])
+                unit = "" if column.suffix in self.title else column.suffix
+                shown.append([(column.words or column.name) + unit, *column.cells()])
                 continue
             for k, (x, cell) in enumerate(zip(column.values, column.cells(), strict=True), 1):
                 shown[-1][k] += "" if np.isnan(x) else f"{column.between}{cell}"

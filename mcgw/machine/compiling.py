@@ -41,9 +41,8 @@ def njit(**options: Any) -> Callable[[Any], Any]:
     options = {"nogil": True, "error_model": "numpy", **options}
 
     def decorate(function: Any) -> Any:
-        if options.get("cache") and not loops_folder():
-            return numba.njit(**{**options, "cache": False})(function)
-        return numba.njit(**options)(function)
+        kept = bool(options.get("cache") and loops_folder())
+        return numba.njit(**{**options, "cache": kept})(function)
 
     return decorate
 

@@ -4,14 +4,13 @@ Every command, standard output and standard error, each closed, full, or a pipe 
 """
 
 import os
-import signal
+import subprocess
 import sys
-import time
 import warnings
 
 import pytest
 
-from mcgw.cli import main, process
+from mcgw.cli import main
 from mcgw.errors import RunError
 
 PRINTED = ("show e.h5", "solve a.toml --load 1N", "elastic a.toml --pressure 1MPa", "completion bash")
@@ -113,18 +112,15 @@ def test_help_is_what_was_asked_for_and_other_words_bad_input(stream, words, sta
     assert main(words.split()) == (2 if stream == "stderr" else int(state == "full"))
 
 
-def test_a_termination_is_told_in_one_line(instead, monkeypatch, capsys):
-    def work(args):
-        os.kill(os.getpid(), signal.SIGTERM)
-        time.sleep(5)
+TERMINATED = """
+import os, signal, sys
+from mcgw import cli
+cli.execute = lambda *_: os.kill(os.getpid(), signal.SIGTERM)
+sys.argv = ["mcgw", "merge", "e.h5"]
+cli.process()
+"""
 
-    monkeypatch.setattr("sys.argv", ["mcgw", "merge", "e.h5"])
-    monkeypatch.setattr("gc.freeze", lambda: None)
-    before = signal.getsignal(signal.SIGTERM)
-    instead(work)
-    try:
-        with pytest.raises(SystemExit, match="143"):
-            process()
-    finally:
-        signal.signal(signal.SIGTERM, before)
-    assert capsys.readouterr().err == "mcgw: terminated\n"
+
+def test_a_termination_is_told_in_one_line():
+    done = subprocess.run([sys.executable, "-c", TERMINATED], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (143, "", "mcgw: terminated\n")
