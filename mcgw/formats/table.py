@@ -122,7 +122,7 @@ class Table:
         return replace(self, columns=tuple(column.at(k) for column in self.columns))
 
     def cells(self) -> list[list[str]]:
-        """Return what is displayed, column by column, each under its heading; a unit of the title is left out."""
+        """Return what is displayed, column by column, each under its heading (a unit of the title once)."""
         shown: list[list[str]] = []
         for column in self.columns:
             if not column.between:
