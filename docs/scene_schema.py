@@ -17,7 +17,7 @@ from typing import Any
 import mcgw
 from analytic.laws import by_name
 from mcgw.scene.keys import GRADINGS, HEIGHTS, TABLES as ROWS
-from mcgw.scene.kinds import Either, Flag, Kind, List, Number, Table, Text, Whole, Word
+from mcgw.scene.kinds import MOST_WHOLE, Either, Kind, List, Number, Plain, Table, Word
 from mcgw.scene.section import Key
 
 PAGE = Path(__file__).parent / "reference" / "scene.md"
@@ -46,17 +46,17 @@ WITH_UNIT = {"type": "string", "pattern": r"^\s*\+?(\d+\.?\d*|\.\d+)([eE][-+]?\d
 def shape_of(kind: Kind) -> Shape:
     """Return a kind of values as JSON Schema."""
     match kind:
+        case Number(whole=True):
+            most = {"maximum": kind.high} if kind.high < MOST_WHOLE else {}
+            return {"type": "integer", "minimum": kind.low, **most}
         case Number():
             return number(kind)
-        case Whole():
-            most = {"maximum": kind.most} if kind.most < Whole().most else {}
-            return {"type": "integer", "minimum": kind.least, **most}
         case Word():
             return {"enum": list(kind.known)}
-        case Text():
-            return {"type": "string", **({} if kind.empty else {"minLength": 1})}
-        case Flag():
+        case Plain() if kind.type is bool:
             return {"type": "boolean"}
+        case Plain():
+            return {"type": "string", **({} if kind.empty else {"minLength": 1})}
         case List():
             shape: Shape = {"type": "array", "items": shape_of(kind.item)}
             shape |= {"minItems": kind.least} if kind.least else {}

@@ -15,9 +15,9 @@ from analytic import Nayak, RandomCurvature, SpectralMoments
 from analytic.arrays import Array
 from mcgw.ensemble.at_load import GAPS, mean_surface
 from mcgw.formats.table import Column, Shown, Table
+from mcgw.scene.measured import Uncertainty
 from mcgw.scene.scene import Scene
-from mcgw.scene.uncertainty import Uncertainty
-from mcgw.validity.fitted_map import moments_of_nayak
+from mcgw.validity.lookup import moments_of_nayak
 from mcgw.validity.model_error import Validity, percent
 
 LINES = ("drawn surfaces", "specimens", "parameters", "model")

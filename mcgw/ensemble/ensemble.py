@@ -13,9 +13,9 @@ from mcgw.ensemble.results import Held, Selected, Tables
 from mcgw.formats.law_text import law_text
 from mcgw.formats.table import Column, Table, evenly
 from mcgw.machine.terminal import brief
-from mcgw.scene.in_words import accuracy_facts, contact_facts
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_text
+from mcgw.scene.writing import accuracy_facts, contact_facts
 
 MOST_SHOWN = 100  # separations in a table or figure beside theory
 _MOST_READ = 20_000_000  # numbers that are read for a short look; of more, only how many there are

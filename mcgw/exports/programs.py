@@ -9,8 +9,8 @@ import numpy as np
 from analytic.arrays import Array
 from mcgw.exports.curves import KINDS, Kind
 from mcgw.machine.terminal import brief, one_line
-from mcgw.scene.in_words import joint_text
 from mcgw.scene.scene import Scene
+from mcgw.scene.writing import joint_text
 
 # Factors from SI, and names. Of mm, N and s the unit of power is N mm/s = mW, so that 1 W/(m^2 K) is
 # 1e3 mW / (1e6 mm^2 K). With volts that of currents is mW/V = mA.

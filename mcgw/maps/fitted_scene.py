@@ -17,12 +17,10 @@ from analytic import (
 from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
 from mcgw.maps.waves import log_derivatives
-from mcgw.scene.keys import MOMENTS, SUMMITS
 from mcgw.scene.kinds import argument
+from mcgw.scene.measured import MOMENTS, SUMMITS, Fitted, Uncertainty
 from mcgw.scene.parts import Contact, Sampling
 from mcgw.scene.scene import Scene
-from mcgw.scene.uncertainty import Uncertainty
-from mcgw.validity.fitted_map import Fitted
 
 Heights = Literal["gaussian", "nayak", "table", "measured", "summits"]
 _EQUAL = 1e-3  # of the standard deviation of the map: summits that differ less are equally high

@@ -12,7 +12,7 @@ from mcgw.maps.bad_points import filled, recorded, small_spike_heights, spike_he
 from mcgw.maps.form import lowpass, smooth, without_form, without_offsets
 from mcgw.maps.steps import Form, LinesTo, Missing, SpikesTo
 from mcgw.maps.topography import SMALLEST, Topography
-from mcgw.scene.kinds import Whole, Word, arguments
+from mcgw.scene.kinds import Word, arguments, whole
 from mcgw.scene.section import Kind
 
 _NEIGHBOURS = 2  # pixels on each side that differences need
@@ -53,7 +53,7 @@ def preparation_of(given: Mapping[str, Any], length: Callable[[str, Any], float]
     SceneError
         If words or numbers are none of those known, all of them told at once.
     """
-    kinds: dict[str, Kind] = {"parts": Whole(2), "trim": Whole()}
+    kinds: dict[str, Kind] = {"parts": whole(2), "trim": whole()}
     words = {"form": Form, "missing": Missing, "spikes": SpikesTo, "lines": LinesTo}
     kinds |= {name: Word(get_args(each)) for name, each in words.items()}
     chosen = arguments(given, kinds)

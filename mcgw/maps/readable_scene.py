@@ -13,10 +13,11 @@ from mcgw.formats.files import together, whole_file
 from mcgw.formats.units import parse
 from mcgw.maps.fit import Fit
 from mcgw.scene.fields import LeftOut
-from mcgw.scene.keys import KEYS, SUMMITS
+from mcgw.scene.keys import KEYS
+from mcgw.scene.measured import SUMMITS
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_document
-from mcgw.validity.fitted_map import moments_of_nayak
+from mcgw.validity.lookup import moments_of_nayak
 
 _ONE_LINE = 110  # characters of a list in a scene
 _NATURAL = {  # units of a scene that a person reads, and the numbers for which one is chosen

@@ -10,9 +10,9 @@ from mcgw.ensemble.simulation import reducer_of
 from mcgw.machine.terminal import listed, one_line
 from mcgw.sampling.expected import Expected, expected
 from mcgw.sampling.shared import shared
-from mcgw.scene.in_words import contact_facts
-from mcgw.scene.promises import promise_of
+from mcgw.scene.parts import promise_of
 from mcgw.scene.scene import Scene, storable
+from mcgw.scene.writing import contact_facts
 from mcgw.sweeps.groups import Group
 from mcgw.sweeps.points import Points
 

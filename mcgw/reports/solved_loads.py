@@ -11,9 +11,9 @@ from mcgw.ensemble.at_load import GAPS
 from mcgw.ensemble.solved import Solution
 from mcgw.ensemble.solved_table import answers_of, elastic_verdict
 from mcgw.formats.table import SEPARATION, Column, Table, joined
-from mcgw.scene.in_words import contact_facts, joint_text
 from mcgw.scene.scene import Scene
-from mcgw.validity.fitted_map import moments_of_nayak
+from mcgw.scene.writing import contact_facts, joint_text
+from mcgw.validity.lookup import moments_of_nayak
 
 _SHOWN = ("contact law", "bodies", "interaction", "joint")  # what of the contacts counts at a given load
 _GAP = {

@@ -10,7 +10,7 @@ from mcgw.ensemble.labelled import statistics_table
 from mcgw.formats.law_text import law_text
 from mcgw.formats.table import SEPARATION, Column, Table, stacked
 from mcgw.machine.terminal import listed, one_line
-from mcgw.scene.in_words import accuracy_facts, contact_facts
+from mcgw.scene.writing import accuracy_facts, contact_facts
 from mcgw.statistics.comparison import Comparison, SweepComparison
 from mcgw.store.run_plan import Plan
 from mcgw.sweeps.axes import Axes

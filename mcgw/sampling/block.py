@@ -97,7 +97,7 @@ class Sampler:
     Parameters
     ----------
     name : str
-        One of `mcgw.scene.promises.SAMPLERS`, never "auto".
+        One of `mcgw.scene.parts.SAMPLERS`, never "auto".
     scene : Scene
         What to simulate.
     mesh : Mesh

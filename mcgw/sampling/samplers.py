@@ -25,7 +25,7 @@ from mcgw.sampling.drawn_moments import CROWDED, VARYING, Crowds
 from mcgw.sampling.outside import table_of
 from mcgw.sampling.response.response import Response, parts_of, response_of
 from mcgw.sampling.response.walk import UnresolvedError
-from mcgw.scene.promises import promise_of
+from mcgw.scene.parts import promise_of
 from mcgw.scene.scene import Scene, storable
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ import numpy as np
 
 from analytic import Hertz
 from analytic.laws import crowding_factor
-from mcgw.scene.plausible import perhaps_other_units, takes_hours
+from mcgw.scene.plausible import perhaps_other_units
 from mcgw.scene.scene import Scene
 from mcgw.validity.model_error import off_elasticity
 
@@ -32,7 +32,7 @@ def cautions(scene: Scene) -> list[str]:
 
         lines += law_cautions(scene)
     of_fit = [] if scene.fitted is None else scene.fitted.gravest
-    return [*perhaps_other_units(scene), *takes_hours(scene), *of_fit, *lines]
+    return [*perhaps_other_units(scene), *of_fit, *lines]
 
 
 def _crowd(scene: Scene) -> Iterator[str]:

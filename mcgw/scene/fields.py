@@ -13,9 +13,8 @@ from analytic import HeightLaw, MeasuredRadii, RandomCurvature, Surface
 from analytic.arrays import Array
 from analytic.laws import Branch, ContactLaw, Film, Hertz
 from mcgw.machine.memory import kept
+from mcgw.scene.measured import Fitted, Uncertainty
 from mcgw.scene.parts import Contact, Joint, Sampling
-from mcgw.scene.uncertainty import Uncertainty
-from mcgw.validity.fitted_map import Fitted
 
 if TYPE_CHECKING:
     from analytic.joint import Gap
@@ -247,8 +246,7 @@ class Fields(Flat):
     @property
     def highest(self) -> float:
         """Height that hardly any asperity exceeds, above every separation."""
-        top = _ends(self.heights)[1]
-        return min(max(top, max(self.separations) + 1), self.heights.support[1])
+        return min(max(_ends(self.heights)[1], max(self.separations) + 1), self.heights.support[1])
 
     @property
     def least(self) -> float:

@@ -6,33 +6,24 @@ from typing import Any
 
 import analytic
 from analytic.laws import ContactLaw
-from mcgw.scene.kinds import Either, Flag, List, Number, Table, Text, Whole, Word
+from mcgw.scene.kinds import FLAG, Either, List, Number, Plain, Table, Word, whole
 from mcgw.scene.laws import GRADINGS, HEIGHTS, grading_given, heights_given, instance_of
+from mcgw.scene.measured import KNOWN, SUMMITS, Fitted, Uncertainty
 from mcgw.scene.parts import Contact, Joint, Sampling, rows_of
 from mcgw.scene.section import Key
-from mcgw.scene.uncertainty import Uncertainty
-from mcgw.validity.fitted_map import Fitted
 
 _MOST = 100_000
 
 
-def _contact_laws() -> tuple[str, ...]:
-    from analytic.laws import by_name  # which imports them all
-
-    return (*by_name, "custom")
-
-
-MOMENTS, SUMMITS = ("m0", "m2", "m4"), ("sigma", "radius", "eta")  # either describes summits of a surface
 POISSON = Number(low=-1.0, high=0.5)
 _ANY, _POSITIVE = Number(low=-math.inf), Number()
-_FILE = Text()
+_FILE = Plain()
 YOUNG = Number("Pa", infinite=True)
-_RATIO = Number(low=1, advice="give the larger over the smaller, a number >= 1")
 _RADII = List(_POSITIVE, advice="give a list of finite numbers > 0")
 _LISTED = List(_ANY)
 _SEPARATION = Number(low=-1e6, high=1e6)
 _SEPARATIONS = "give a list of finite numbers d/sigma, or {start = 0.0, stop = 4.0, num = 41}"
-_NUM = Whole(1, _MOST, f"give a whole number >= 1, at most {_MOST}")
+_NUM = whole(1, _MOST, f"give a whole number >= 1, at most {_MOST}")
 _PLANES = '"body", the undeformed body, or "mean-plane", that of the deformed one'
 _FORMULA = "give a list of {low, high, coefficients}, one for each piece, as mcgw writes them"
 _ENDS = (Key("low", _ANY, required=True), Key("high", _POSITIVE, required=True))
@@ -40,19 +31,7 @@ _PIECES = List(Table((*_ENDS, Key("coefficients", _LISTED, required=True)), _FOR
 _PIECES_EXAMPLE = (
     "[{low = -1.0, high = 1.0, coefficients = [1.0]}, {low = 1.0, high = 3.0, coefficients = [1.0]}]"
 )
-_KNOWN = 'give relative standard errors, such as {sigma = "20 %", radius = "15 %"}'
-_ERROR = Number("1", high=2.0, advice=_KNOWN)
-_ROWS = List(List(Number(low=-1.0, high=1.0)), advice="give rows of numbers from -1 to 1")
-_ERRORS = Table(
-    (
-        *(Key(name, _ERROR) for name in SUMMITS),
-        *(Key(name, _ERROR, excludes=SUMMITS) for name in MOMENTS),
-        Key("E_star", _ERROR),
-        Key("correlation", _ROWS),
-    ),
-    _KNOWN,
-    Uncertainty,
-)
+_ERRORS = Table(rows_of(Uncertainty), KNOWN, Uncertainty)
 _BODY = Table(
     (Key("E", YOUNG, required=True), Key("nu", POISSON, default=0.3)),
     "",
@@ -66,7 +45,7 @@ _RADII_GIVEN = instance_of(analytic.RandomCurvature, analytic.MeasuredRadii)
 # fmt: off
 TABLES: dict[str, Table] = {
 "": Table((
-    Key("title", Text(empty=True), '"My surface"', "title of figures and reports", ""),
+    Key("title", Plain(empty=True), '"My surface"', "title of figures and reports", ""),
 )),
 "surface": Table(words="Either `sigma`, `radius`, `eta`, or the spectrum by `m0`, `m2`, `m4`; either "
     "`E_star` or `bodies`.", advice="mcgw.Surface(sigma, radius, eta, nominal_area, E_star)", rows=(
@@ -98,15 +77,15 @@ TABLES: dict[str, Table] = {
     Key("negative", Word(("error", "clip", "allow")), '"clip"', default="error"),
     Key("s", _LISTED, "[0.0, 1.0]", needs=("ratio",), excludes=("file",)),
     Key("ratio", _LISTED, "[1.0, 2.0]", needs=("s",)),
-    Key("file", Text(advice="give a CSV file, or lists s and ratio"), '"moduli.csv"',
+    Key("file", Plain(advice="give a CSV file, or lists s and ratio"), '"moduli.csv"',
         "a CSV table beside the scene: columns `s` or `z` (m), and `ratio` or `E_star` (Pa); other units in "
         "the header, `z (um)`, or after a number, `61.2 GPa`"),
     Key("edges", _LISTED, "[0.0, 5.0, 20.0]"),
     Key("coefficients", List(_LISTED, advice="give a list of lists of finite numbers"),
         "[[1.0, 0.5], [1.5]]"),
     Key("kinks", List(_ANY, 0), "[5.0]"),
-    Key("name", Text(empty=True), '"ramp"', "name of the function, for display"),
-    Key("checked", Flag(), "false", "`false`: a series far from 1 at all heights that touch is meant so",
+    Key("name", Plain(empty=True), '"ramp"', "name of the function, for display"),
+    Key("checked", FLAG, "false", "`false`: a series far from 1 at all heights that touch is meant so",
         True),
 )),
 "heights": Table(words="Distribution of the summit heights, scaled to mean 0 and standard deviation 1. "
@@ -120,14 +99,15 @@ TABLES: dict[str, Table] = {
         "α = m0 m4/m2² of the surface for Nayak's law, above 1.5"),
     Key("heights", _LISTED, "[0.0, 1.0, 3.0]", "measured heights of a `table`, in any unit",
         excludes=("file", "s")),
-    Key("file", Text(advice="give a list of heights, a file of them, or points s and share"), '"heights.csv"',
-        "the same from a file beside the scene: `.npy`, or text with one per line", excludes=("s",)),
-    Key("resample", Flag(), "true",
+    Key("file", Plain(advice="give a list of heights, a file of them, or points s and share"),
+        '"heights.csv"', "the same from a file beside the scene: `.npy`, or text with one per line",
+        excludes=("s",)),
+    Key("resample", FLAG, "true",
         "`true` (default): drawn from the measured distribution; `false`: one surface, as they are",
         needs=("heights", "file")),
     Key("s", _LISTED, "[0.0, 1.0]", needs=("share",)),
     Key("share", _LISTED, "[0.0, 1.0]", needs=("s",)),
-    Key("name", Text(), '"gamma"', 'name of a continuous distribution of `scipy.stats`, for `law = "scipy"`',
+    Key("name", Plain(), '"gamma"', 'name of a continuous distribution of `scipy.stats`, for `law = "scipy"`',
         "norm"),
     Key("shapes", Table(item=_ANY, advice="give its shapes, such as {a = 4.0}"), "{a = 4.0}",
         "its shape parameters"),
@@ -138,14 +118,14 @@ TABLES: dict[str, Table] = {
         "`random`: the radius of each summit follows the exact joint distribution with its height (default "
         "with `m0`, `m2`, `m4`); `mean`: one radius"),
     Key("largest_radius", Number("m"), '"1 mm"', "upper limit of the radii, m"),
-    Key("file", Text(advice="give a CSV file of heights and radii, or lists of both"), '"summits.csv"',
+    Key("file", Plain(advice="give a CSV file of heights and radii, or lists of both"), '"summits.csv"',
         "measured summits, written by `mcgw fit --summits`: columns `height`, `radius`, m",
         excludes=("heights", "radii", "ratios", "curvature", "largest_radius")),
     Key("heights", _LISTED, "[0.0, 1e-6, 3e-6]", "the same in the scene itself: heights, m",
         needs=("radii", "ratios"), excludes=("curvature", "largest_radius")),
     Key("radii", _RADII, "[1e-5, 2e-5, 3e-5]", "and radii, m", needs=("heights",), excludes=("ratios",)),
     Key("ratios", _RADII, "[1.0, 2.0, 3.0]", "or radii over their mean", needs=("heights",)),
-    Key("resample", Flag(), "true",
+    Key("resample", FLAG, "true",
         "`true`: summits drawn in pairs from the list; `false`: one surface, the summits as they are", False,
         needs=("heights", "file")),
 )),
@@ -163,7 +143,8 @@ TABLES: dict[str, Table] = {
 "contact.law": Table(words="Contact law of an asperity, and its constants: [how the laws "
     "differ](../explanation/contact-laws.md). A law without constants may stand under `[contact]` as a word: "
     "`law = \"hertz\"`. Default: Hertz's.", rows=(
-    Key("name", Word(_contact_laws, "", instance_of(ContactLaw), _OWN_LAW), '"kogut-etsion"',
+    Key("name", Word(lambda: (*analytic.laws.by_name, "custom"), "", instance_of(ContactLaw), _OWN_LAW),
+        '"kogut-etsion"',
         "`hertz` (default), `power-law-graded`, `coated`, `chang-etsion-bogy`, `zhao-maietta-chang`, "
         "`kogut-etsion`, `jackson-green`, `derjaguin-muller-toporov`, `johnson-kendall-roberts` or `custom`",
         "hertz"),
@@ -185,7 +166,7 @@ TABLES: dict[str, Table] = {
     Key("limits", List(_POSITIVE, 0, advice="give a list of numbers > 0 that increase"), "[1.0]"),
     Key("load", _PIECES, _PIECES_EXAMPLE),
     Key("area", _PIECES, _PIECES_EXAMPLE),
-    Key("checked", Flag(), "false", "`false`: a law far from Hertz's at all penetrations is meant so", True),
+    Key("checked", FLAG, "false", "`false`: a law far from Hertz's at all penetrations is meant so", True),
 ),),
 "interaction": Table(words="[Asperity interaction](../explanation/interaction.md). Default: asperities are "
     "independent.", rows=(
@@ -200,19 +181,7 @@ TABLES: dict[str, Table] = {
     advice='mcgw.Joint((150.0, 16.0), gas="air")'),
 "fitted": Table(words="More about the fitted map, written by `mcgw fit`. It does not affect the results, but "
     "the stated [error of the model](../explanation/validity.md). Default: the surface is assumed to be "
-    "Gaussian.", rows=(
-    Key("m0", Number("m^2"), "1e-12", required=True),
-    Key("m2", Number("1"), "1e-3", required=True),
-    Key("m4", Number("1/m^2"), "5e6", required=True),
-    Key("skewness", _ANY, "-0.1", required=True),
-    Key("kurtosis", _POSITIVE, "3.0", required=True),
-    Key("independent", _POSITIVE, "800.0", required=True),
-    Key("agreement", _RATIO, "1.02"),
-    Key("lay", _RATIO, "1.1"),
-    Key("area", Number("m^2"), "1e-6"),
-    Key("cautions", List(Text(), 0, advice="give a list of texts"), '["lay: mean square slopes 2 : 1"]',
-        default=[]),
-), make=Fitted, advice="the `fitted` of a scene from mcgw.fitted_scene"),
+    "Gaussian.", rows=rows_of(Fitted), make=Fitted, advice="the `fitted` of a scene from mcgw.fitted_scene"),
 "ensemble": Table(words="Number of surfaces, and sampling.", rows=rows_of(Sampling), make=Sampling,
     advice="mcgw.Sampling(...)"),
 }

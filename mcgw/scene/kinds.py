@@ -12,7 +12,7 @@ from mcgw.formats.units import EXAMPLES, parse
 from mcgw.machine.terminal import brief
 from mcgw.scene.section import Key, Kind, SceneError, Section, mistake, nearest
 
-_MOST_WHOLE = 10**30  # so that no message has hundreds of digits
+MOST_WHOLE = 10**30  # so that no message has hundreds of digits
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,17 +24,19 @@ class Number(Kind):
     high: float = math.inf
     zero: bool = False  # whether 0 is allowed if `low` is 0
     infinite: bool = False
+    whole: bool = False  # 1e6 is an integer, 1.5 and true are not
     advice: str = ""  # what would do, by default by unit and range
 
     def value(self, given: Any) -> float | None:
         """Return the number, or None if it does not fit."""
         try:
-            if self.unit and isinstance(given, str):
-                number = parse(given, self.unit)
-            elif isinstance(given, int | float) and not isinstance(given, bool):
-                number = float(given)
-            else:
+            number = parse(given, self.unit) if self.unit and isinstance(given, str) else given
+            if isinstance(number, bool) or not isinstance(number, int | float):
                 return None
+            if self.whole:
+                exact = number if isinstance(number, int) else int(number)  # one that was left out stays so
+                return exact if self.low <= exact == number <= self.high else None
+            number = float(number)
         except (OverflowError, ValueError):
             return None
         inside = self.low <= number <= self.high and (number != self.low or self.zero or self.low != 0)
@@ -44,8 +46,8 @@ class Number(Kind):
     @property
     def wanted(self) -> str:
         """By range and unit, unless given."""
-        if self.advice:
-            return self.advice
+        if self.advice or self.whole:
+            return self.advice or f"give a whole number >= {self.low}"
         above = (" >= 0" if self.zero else " > 0") if self.low == 0 else ""
         below = f" and at most {self.high:g}" if self.high < math.inf else ""
         if self.unit:
@@ -53,25 +55,9 @@ class Number(Kind):
         return f"give a finite number{above}{below}"
 
 
-@dataclass(frozen=True, slots=True)
-class Whole(Kind):
-    """An integer from `least` to `most`; 1e6 is one, 1.5 and true are not."""
-
-    least: int = 0
-    most: int = _MOST_WHOLE
-    advice: str = ""
-
-    def value(self, given: Any) -> int | None:
-        """Return it as an integer."""
-        number = isinstance(given, int | float) and not isinstance(given, bool)
-        if not number or not self.least <= given <= self.most or given != int(given):
-            return None
-        return given if isinstance(given, int) else int(given)
-
-    @property
-    def wanted(self) -> str:
-        """By range, unless given."""
-        return self.advice or f"give a whole number >= {self.least}"
+def whole(low: int = 0, high: int = MOST_WHOLE, advice: str = "") -> Number:
+    """Return the kind of an integer."""
+    return Number(low=low, high=high, whole=True, advice=advice)
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,26 +91,19 @@ class Word(Kind):
 
 
 @dataclass(frozen=True, slots=True)
-class Text(Kind):
-    """A text."""
+class Plain(Kind):
+    """A text, not empty unless it may be, or true and false."""
 
+    type: type = str
     empty: bool = False
     advice: str = "give a text in quotes"
 
-    def value(self, given: Any) -> str | None:
-        """Return the text."""
-        return given if isinstance(given, str) and (given or self.empty) else None
+    def value(self, given: Any) -> Any:
+        """Return what is of the type."""
+        return given if isinstance(given, self.type) and (given or self.empty) else None
 
 
-@dataclass(frozen=True, slots=True)
-class Flag(Kind):
-    """Yes or no."""
-
-    advice: str = "give true or false"
-
-    def value(self, given: Any) -> bool | None:
-        """Return true or false."""
-        return given if isinstance(given, bool) else None
+FLAG = Plain(bool, True, "give true or false")
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,21 +181,14 @@ class Either(Kind):
         raise mistake(path, value, self.advice)
 
 
-_LOOKS: dict[type[Kind], Any] = {
-    List: list,
-    Table: Mapping,
-    Word: str,
-    Number: int | float | str,
-}
+_LOOKS: dict[type[Kind], Any] = {List: list, Table: Mapping, Word: str, Number: int | float | str}
 _DRAWN = "mcgw.simulate(scene) draws one"
 _MAKES = {
     "Scene": {
-        "Surface": "mcgw.Scene(surface, separations=...) makes one of it",
-        "Spectral": "mcgw.Scene(surface, separations=...) makes one of it",
+        **dict.fromkeys(("Surface", "Spectral"), "mcgw.Scene(surface, separations=...) makes one of it"),
         "path": "mcgw.load_scene(path) reads one",
         "Ensemble": "that of an ensemble is its .scene",
-        "Fit": "mcgw.fitted_scene(fit) makes one of it",
-        "ProfileFit": "mcgw.fitted_scene(fit) makes one of it",
+        **dict.fromkeys(("Fit", "ProfileFit"), "mcgw.fitted_scene(fit) makes one of it"),
     },
     "Ensemble": {"Scene": _DRAWN, "path": "mcgw.open_ensemble(path) opens one", "Surface": _DRAWN},
 }

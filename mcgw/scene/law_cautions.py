@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
@@ -64,8 +64,7 @@ def _kogut_etsion(scene: Scene) -> Iterator[str]:
 
 def _share(scene: Scene, multiple: float) -> float:
     """Share of contacts deeper than a multiple of the critical penetration, at the smallest separation."""
-    h, law = scene.lowest, scene.reduced_law
-    assert isinstance(law, ElasticPlastic)
+    h, law = scene.lowest, cast(ElasticPlastic, scene.reduced_law)
     s = scene.heights.isf((np.arange(_QUANTILES) + 0.5) / _QUANTILES, h)  # share among contacts
     return float(np.mean(s - h > multiple * law.delta_c(scene.modulus(s))))
 

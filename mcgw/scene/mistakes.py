@@ -2,12 +2,13 @@
 
 import math
 from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 
 import analytic
 from mcgw.scene.fields import Fields
-from mcgw.scene.promises import promise_of
+from mcgw.scene.parts import promise_of
 
 _LEAST = 1e-100  # next to it, powers of a distance are beyond double precision
 _MOST_ASPERITIES = 2**53  # counts are exact in double precision up to here
@@ -16,25 +17,29 @@ _SAFELY = 1e4  # factor by which the sum over all asperities stays below the lar
 
 def mistakes(scene: Fields) -> list[str]:
     """All that is wrong with what it has, later checks only where the earlier ones find nothing."""
-    has = {
-        _values: True,
-        _history: scene.unload_from is not None,
-        _measured: isinstance(scene.heights, analytic.MeasuredHeights),
-        _radii: scene.summits is not None,
-        _wishes: scene.rel_err is not None,
-    }
-    later = {
-        _law: not scene.hertzian,
-        _gas: scene.joint.gas is not None,
-        _pressed: scene.interaction is not None,
-    }
-    stages = [[check for check, there in each.items() if there] for each in (has, {_scales: True}, later)]
+    stages: list[Any] = [
+        {
+            _values: True,
+            _history: scene.unload_from is not None,
+            _measured: isinstance(scene.heights, analytic.MeasuredHeights),
+            _radii: scene.summits is not None,
+            _wishes: scene.rel_err is not None,
+        },
+        {_scales: True},
+        {
+            _law: not scene.hertzian,
+            _gas: scene.joint.gas is not None,
+            _pressed: scene.interaction is not None,
+        },
+    ]
     if not isinstance(scene.grading, analytic.Homogeneous) or scene.law.name == "custom":
-        from mcgw.scene.moduli import CHECKS  # for those scenes alone
+        from mcgw.scene.moduli import checks_of  # for those scenes alone
 
-        stages += [[check] for check in CHECKS]
-    found = ([line for check in stage for line in check(scene)] for stage in stages)
-    return next(filter(None, found), [])
+        stages += checks_of(scene)
+    for checks in stages:
+        if found := [line for check, there in checks.items() if there for line in check(scene)]:
+            return found
+    return []
 
 
 def _values(scene: Fields) -> Iterator[str]:

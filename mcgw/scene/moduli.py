@@ -20,19 +20,37 @@ _CLOSE = 3.0  # within this factor
 _LOOKED_AT = np.array([0.9, 0.75, 0.5, 0.25, 0.1, 0.01])  # shares of the contacts that are higher
 _UNITS = (1.0, 1e6, 1e9)  # in which moduli are given, Pa
 _PARAMETERS = (analytic.Homogeneous, analytic.Exponential)
+_STICKS = "johnson-kendall-roberts"  # a law that pulls asperities without a modulus in without limit
 _SAFELY = 1e4  # factor by which the sum over all asperities stays below the largest number
 _FARTHEST_HEIGHT = 50.0  # reduced, of which no surface has one
 _UNTOLD = 0.1  # share of the contacts at a separation that a table may leave to the value of its end
 _MEANT = "; if it is meant so, give "
+_WAYS_OUT = {
+    analytic.Table: "; a file names other units in its header, z (um),E_star (GPa)",
+    analytic.Custom: f"{_MEANT}mcgw.Custom(function, checked=False)",
+    analytic.PiecewiseSeries: f"{_MEANT}checked = false",
+}
+
+
+def checks_of(scene: Fields) -> list[Any]:
+    """Return what its moduli are asked: checks one after another, with whether they are needed."""
+    grading = scene.grading
+    return [
+        {_function: isinstance(grading, analytic.Custom)},
+        {_range: isinstance(grading, analytic.PiecewiseSeries) and scene.lowest < scene.highest},
+        {_units: not isinstance(grading, _PARAMETERS) or scene.law.name == "custom"},
+        {_modulus: scene.negative == "error" or (scene.negative == "clip" and scene.law.name == _STICKS)},
+        {_sums: True},
+        {_fluctuating: scene.keep == "statistics" and not grading.smooth},
+    ]
 
 
 def _function(scene: Fields) -> Iterator[str]:
     """Find a Python function that does not take arrays."""
-    if not isinstance(scene.grading, analytic.Custom):
-        return
+    grading: Any = scene.grading
     try:
         with np.errstate(all="ignore"):
-            scene.grading.function(np.array([scene.lowest, scene.highest]))
+            grading.function(np.array([scene.lowest, scene.highest]))
     except Exception as error:  # of any kind: it is the user's own code
         reason = brief(f"{type(error).__name__}: {error}")
         yield (
@@ -43,10 +61,9 @@ def _function(scene: Fields) -> Iterator[str]:
 
 def _range(scene: Fields) -> Iterator[str]:
     """Heights that touch and that the series of a grading do not reach."""
-    if not isinstance(scene.grading, analytic.PiecewiseSeries) or scene.lowest >= scene.highest:
-        return
+    grading: Any = scene.grading
     low, high = max(scene.lowest, scene.least), scene.highest
-    first, last = scene.grading.edges[0], scene.grading.edges[-1]
+    first, last = grading.edges[0], grading.edges[-1]
     if not (first <= low and high <= last):
         yield (
             f"grading.edges: the series reach from s = {first:.6g} to {last:.6g}, but heights from {low:.6g} "
@@ -85,16 +102,9 @@ def _no_ratio(scene: Fields, inner: Any, e: Array) -> Iterator[str]:
     E_star, sigma = scene.surface.E_star, scene.surface.sigma
     if not any(_given_in(e, E_star / size) for size in _UNITS):
         return
-    way_out = ""
-    if isinstance(inner, analytic.Table):
-        way_out = "; a file names other units in its header, z (um),E_star (GPa)"
-    elif isinstance(inner, analytic.Custom):
-        way_out = f"{_MEANT}mcgw.Custom(function, checked=False)"
-    elif isinstance(inner, analytic.PiecewiseSeries):
-        way_out = f"{_MEANT}checked = false"
     yield (
         f"grading: E*(s)/E* is {_ends(e)} at all heights that touch; give a ratio near 1: moduli over E_star "
-        f"= {E_star:g} Pa, of s = z/sigma, sigma = {sigma:g} m{way_out}"
+        f"= {E_star:g} Pa, of s = z/sigma, sigma = {sigma:g} m{_WAYS_OUT.get(type(inner), '')}"
     )
 
 
@@ -123,9 +133,6 @@ def _ends(values: Array) -> str:
 
 def _modulus(scene: Fields) -> Iterator[str]:
     """Negative moduli among the heights that touch; none where contacts stick."""
-    sticks = scene.law.name == "johnson-kendall-roberts"
-    if scene.negative != "error" and not (sticks and scene.negative == "clip"):
-        return
     try:
         where = scene.negative_above(scene.lowest)
     except ValueError as error:
@@ -141,11 +148,11 @@ def _modulus(scene: Fields) -> Iterator[str]:
             f'"{scene.law.name}" pulls them in without limit; increase the separations, or use another '
             "grading"
         )
-        return
-    yield (
-        f"{_key(scene)}: E*(s) is negative from s = {where:.4g}, which touches at h = {scene.lowest:g}; "
-        'increase the separations, or set negative = "clip" or "allow" under [grading]'
-    )
+    else:
+        yield (
+            f"{_key(scene)}: E*(s) is negative from s = {where:.4g}, which touches at h = {scene.lowest:g}; "
+            'increase the separations, or set negative = "clip" or "allow" under [grading]'
+        )
 
 
 def _sums(scene: Fields) -> Iterator[str]:
@@ -164,20 +171,16 @@ def _sums(scene: Fields) -> Iterator[str]:
 
 def _fluctuating(scene: Fields) -> Iterator[str]:
     """Find a Python function that has no variance."""
-    if scene.keep == "statistics" and not scene.grading.smooth:
-        try:
-            scene.alone.fluctuations(scene.quantities, np.array([scene.lowest]))
-        except ValueError as error:
-            yield f'ensemble.keep = "statistics": {error}; or use "sums"'
+    try:
+        scene.alone.fluctuations(scene.quantities, np.array([scene.lowest]))
+    except ValueError as error:
+        yield f'ensemble.keep = "statistics": {error}; or use "sums"'
 
 
 def _key(scene: Fields) -> str:
     """Find the key of a grading, and its value if that is one number."""
     grading = scene.grading
     return f"grading.gamma = {grading.gamma:g}" if isinstance(grading, analytic.Exponential) else "grading"
-
-
-CHECKS = (_function, _range, _units, _modulus, _sums, _fluctuating)  # in this order
 
 
 def doubts_of_table(table: analytic.Table, scene: Fields) -> Iterator[str]:

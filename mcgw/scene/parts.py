@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import analytic
 from analytic.gases import GASES, Gas
 from analytic.laws import ContactLaw, Film, Layer
-from mcgw.scene.kinds import Either, List, Number, Table, Whole, Word
-from mcgw.scene.promises import SAMPLERS
+from mcgw.scene.kinds import Either, List, Number, Table, Word, whole
 from mcgw.scene.section import Key, Kind
 
 if TYPE_CHECKING:
@@ -23,6 +22,39 @@ if TYPE_CHECKING:
 
 SUMS = tuple({**analytic.QUANTITIES, **analytic.LAW_QUANTITIES})
 _ANY = Number(low=-math.inf)
+EXACT = 1e-13  # relative error of a value that is right to the last digits
+
+# --- samplers ---
+
+
+@dataclass(frozen=True)
+class Promise:
+    """What others may rely on, whichever sampler it is."""
+
+    # It draws single asperities, each with a radius of its own where summits have them, by the exact laws;
+    # else sums of crowds, which are a little off: ``auto`` takes it where a scene allows that.
+    one_by_one: bool = True
+    own_laws: bool = False  # it adds up summit by summit: each can have breaks of its own in the contact law
+    needs_density: bool = False  # it draws from that of the heights, which a list of measured ones has not
+    not_done: tuple[str, ...] = ()  # what it spares, for people; {spared}: asperities that do not touch
+
+
+_UNTOUCHED = "{spared:.4g} asperities per surface lie below every separation and are not drawn"
+_CROWDED = "in crowded cells, Gaussian moments are drawn instead of asperities"
+
+_PROMISES = {
+    "direct": Promise(own_laws=True),
+    "tail": Promise(own_laws=True, needs_density=True, not_done=(_UNTOUCHED,)),
+    "cells": Promise(needs_density=True, not_done=(_UNTOUCHED,)),
+    "aggregate": Promise(one_by_one=False, needs_density=True, not_done=(_UNTOUCHED, _CROWDED)),
+}
+SAMPLERS = ("auto", *_PROMISES)
+
+
+def promise_of(sampler: str) -> Promise:
+    """Return what a sampler promises; ``auto`` takes one that promises all."""
+    return _PROMISES.get(sampler, Promise(own_laws=True))
+
 
 # --- kinds of values ---
 
@@ -60,12 +92,13 @@ _GASES = Either(
 )
 
 
-_SEED = Whole(0, 2**64 - 1, "give a whole number from 0 to 2^64 - 1")
+_SEED = whole(0, 2**64 - 1, "give a whole number from 0 to 2^64 - 1")
 
 
-def key(kind: Kind, example: str, default: Any = None, **others: Any) -> Any:
+def key(kind: Kind, example: str = "", default: Any = None, **others: Any) -> Any:
     """Return a field with its row in the table of its part."""
-    return field(default=default, metadata={"kind": kind, "example": example, "default": default, **others})
+    row = {"kind": kind, "example": example, "default": default, **others}
+    return field(metadata=row) if others.get("required") else field(default=default, metadata=row)
 
 
 def rows_of(part: type) -> tuple[Key, ...]:
@@ -245,8 +278,8 @@ class Sampling:
     'poisson'
     """
 
-    n_surfaces: int | None = key(Whole(1), "10")
-    n_asperities: int | None = key(Whole(1), "100")
+    n_surfaces: int | None = key(whole(1), "10")
+    n_asperities: int | None = key(whole(1), "100")
     count: Literal["fixed", "poisson"] = key(Word(("fixed", "poisson")), '"poisson"', "fixed")
     seed: "int | Generator | SeedSequence | None" = key(_SEED, "1")
     sampler: str = key(Word(SAMPLERS), '"cells"', "auto")

@@ -34,7 +34,7 @@ def warn_of_units(doubts: Iterable[str]) -> None:
 
 
 def perhaps_other_units(scene: "Fields") -> list[str]:
-    """Values that are perhaps given in another unit, a line each with what was perhaps meant."""
+    """Values that are perhaps in another unit, each with what was perhaps meant; and hours of drawing."""
     found = surface_in_other_units(scene.surface)
     farthest = max(scene.separations, key=abs)
     if 0 < abs(farthest) < _HARDLY_APART:
@@ -46,22 +46,21 @@ def perhaps_other_units(scene: "Fields") -> list[str]:
         from mcgw.scene.moduli import doubts_of_table  # for those scenes alone
 
         found += doubts_of_table(scene.grading, scene)
-    return found
+    return [*found, *_takes_hours(scene)]
 
 
-def takes_hours(scene: "Fields") -> list[str]:
+def _takes_hours(scene: "Fields") -> Iterator[str]:
     """Return a line if `auto` would draw the scene for more than an hour, and the remedy."""
     if scene.sampler != "auto" or scene.accuracy or scene.rel_err is not None or scene.max_seconds:
-        return []
+        return
     touching = scene.n_asperities * float(scene.heights.sf(np.array(min(scene.separations))))
     hours = touching * scene.n_surfaces * _A_CONTACT / 3600
-    if hours < 1:
-        return []
-    return [
-        f"ensemble: {scene.n_surfaces:g} surfaces, each of {touching:.3g} asperities that touch, take about "
-        f'{hours:.2g} hours; give fewer, as by surface.nominal_area, or sampler = "aggregate", which takes '
-        "no longer for many"
-    ]
+    if hours >= 1:
+        yield (
+            f"ensemble: {scene.n_surfaces:g} surfaces, each of {touching:.3g} asperities that touch, take "
+            f"about {hours:.2g} hours; give fewer, as by surface.nominal_area, or sampler = "
+            '"aggregate", which takes no longer for many'
+        )
 
 
 def surface_in_other_units(surface: Surface) -> list[str]:

@@ -13,15 +13,17 @@ from analytic import UNLOADING, Gaussian, HeightLaw, MeasuredRadii, Nayak, Rando
 from analytic.laws import ContactLaw, Hertz
 from analytic.laws.law import check_poisson
 from mcgw.scene.fields import LeftOut
-from mcgw.scene.keys import KEYS, MOMENTS, SUMMITS, SURFACE_UNITS, TABLES, as_tables, whole_key
+from mcgw.scene.keys import KEYS, SURFACE_UNITS, TABLES, as_tables, whole_key
 from mcgw.scene.kinds import as_toml
 from mcgw.scene.laws import LISTS, OF_YIELD, contact_law, grading_of, heights_of, listed_summits
+from mcgw.scene.measured import MOMENTS, SUMMITS
 from mcgw.scene.parts import Contact, Graded, Joint, Sampling
 from mcgw.scene.rough_bodies import with_bodies
 from mcgw.scene.section import SceneError, Section, nearest
 from mcgw.scene.surface import Spectral, read_surface
 
 Values = dict[str, Any]
+Seeds = Callable[[], int | None]  # asked for a seed
 Radii = RandomCurvature | MeasuredRadii | None
 
 # Keys of what may stand in place of a table: a word, or an object that no keys make.
@@ -79,11 +81,7 @@ def _fields(part: Any) -> Values:
     return {each.name: x for each in fields(part) if (x := getattr(part, each.name)) is not None}
 
 
-def of_tables(
-    document: Mapping[str, Any],
-    folder: Path = Path(),
-    seed: Callable[[], int | None] | None = None,
-) -> Values:
+def of_tables(document: Mapping[str, Any], folder: Path = Path(), seed: Seeds | None = None) -> Values:
     """Read the tables of a scene, and the files beside it in `folder`; where there is no seed, ask `seed`.
 
     Raises SceneError with one line for each mistake.
@@ -206,9 +204,7 @@ def _softer(section: Section, law: ContactLaw) -> Values:
     if name not in (law, law.name):
         return found  # what is wrong with the law is noted
     own: list[str] = [field.name for field in fields(law)] if is_dataclass(law) else []
-    for key in OF_YIELD:
-        if key not in section:
-            continue
+    for key in (key for key in OF_YIELD if key in section):
         if key not in own and not law.yields:
             found[key] = section.read(key)
         elif not isinstance(name, str):
@@ -226,16 +222,14 @@ def _softer(section: Section, law: ContactLaw) -> Values:
 
 def _joint(of: Mapping[str, Section]) -> Joint:
     """Return a joint of which film and gas can be made; what else is wrong is noted where its keys are."""
-    joint = _made(of, "joint")
-    if joint is None or (joint.resistivity is None) == (joint.conductivities is None):
-        return Joint()
-    try:
-        assert joint.film is not None
-        assert joint.gas is None or joint.filling is not None
-    except ValueError as error:
-        of["joint"].problems.append(f"joint.{error}")
-        return Joint()
-    return joint  # type: ignore[no-any-return]
+    joint: Joint | None = _made(of, "joint")
+    if joint is not None and (joint.resistivity is None) != (joint.conductivities is None):
+        try:
+            _ = joint.film, joint.filling  # which are made of it
+            return joint
+        except ValueError as error:
+            of["joint"].problems.append(f"joint.{error}")
+    return Joint()
 
 
 def _made(of: Mapping[str, Section], name: str) -> Any:
@@ -247,7 +241,7 @@ def _made(of: Mapping[str, Section], name: str) -> Any:
     return section.made(make, {key: tuple(x) if isinstance(x, list) else x for key, x in found.items()})
 
 
-def _ensemble(section: Section, seed: Callable[[], int | None] | None) -> Sampling:
+def _ensemble(section: Section, seed: Seeds | None) -> Sampling:
     """How many surfaces, and how they are drawn; numbers that nobody gave are marked."""
     values = section.read_all(section.rows)
     if "seed" not in section:

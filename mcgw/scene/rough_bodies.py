@@ -9,9 +9,9 @@ from typing import Any
 
 from analytic import Nayak, SpectralMoments
 from mcgw.formats.named_files import loads, read_bytes
-from mcgw.scene.keys import MOMENTS, SUMMITS, YOUNG
+from mcgw.scene.keys import YOUNG
+from mcgw.scene.measured import MOMENTS, SUMMITS
 from mcgw.scene.section import SceneError
-from mcgw.validity.fitted_map import moments_of_nayak
 
 _MOST_BYTES = 2**21
 _FOLLOW = (*SUMMITS, "E_star", *MOMENTS)  # keys of [surface] that two files determine
@@ -106,6 +106,8 @@ def moments_of(scene: Any) -> SpectralMoments:
     if scene.fitted is not None:
         return scene.fitted.moments  # type: ignore[no-any-return]
     if isinstance(scene.heights, Nayak):
+        from mcgw.validity.lookup import moments_of_nayak  # few have two bodies
+
         return moments_of_nayak(scene.surface, scene.heights.alpha)
     raise ValueError("has no spectrum; give m0, m2, m4 under [surface], or a scene written by mcgw fit")
 

@@ -18,15 +18,14 @@ from analytic.arrays import hold
 from analytic.laws import ContactLaw
 from mcgw.formats.table import Shown, Table
 from mcgw.scene.fields import Fields, LeftOut
-from mcgw.scene.in_words import sheet_of
+from mcgw.scene.measured import Fitted
 from mcgw.scene.mistakes import mistakes
-from mcgw.scene.parts import Contact, Graded, Joint, Sampling
-from mcgw.scene.plausible import perhaps_other_units, takes_hours, warn_of_units
-from mcgw.scene.promises import promise_of
+from mcgw.scene.parts import Contact, Graded, Joint, Sampling, promise_of
+from mcgw.scene.plausible import perhaps_other_units, warn_of_units
 from mcgw.scene.reading import of_arguments
 from mcgw.scene.section import SceneError
 from mcgw.scene.surface import Spectral
-from mcgw.validity.fitted_map import Fitted
+from mcgw.scene.writing import sheet_of
 
 if TYPE_CHECKING:
     from numpy.random import Generator, SeedSequence
@@ -142,7 +141,7 @@ class Scene(Fields, Shown):
             raise SceneError(problems)
         if not (self.law.is_data and is_data(self.grading)):
             in_numbers(self)  # a function that no series resolves is a mistake as well
-        warn_of_units([*perhaps_other_units(self), *takes_hours(self)])
+        warn_of_units(perhaps_other_units(self))
 
     def replace(self, **changes: Any) -> Scene:
         """Return the scene with other values; numbers that were left out follow from them.
@@ -249,8 +248,7 @@ def in_numbers(scene: Scene) -> dict[str, Any]:
 
 def _extent(scene: Scene) -> tuple[float, float]:
     """Lowest and highest height that count; asperities may have felt lower separations than those asked."""
-    low, high = extent(scene.grading, scene.heights, (*scene.separations, scene.lowest))
-    return low, high
+    return extent(scene.grading, scene.heights, (*scene.separations, scene.lowest))
 
 
 def _resolved_law(scene: Scene) -> ContactLaw:

@@ -1,7 +1,7 @@
 """Scenes as TOML: read with all mistakes named at once, written so that they read the same."""
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,7 @@ from mcgw.formats.named_files import HDF5, loads, read_bytes
 from mcgw.machine.terminal import one_line
 from mcgw.scene.fields import LeftOut
 from mcgw.scene.keys import as_tables, whole_key
-from mcgw.scene.reading import of_tables
+from mcgw.scene.reading import Seeds, of_tables
 from mcgw.scene.rough_bodies import files_of_bodies
 from mcgw.scene.scene import Scene, storable
 from mcgw.scene.section import SceneError, shortened
@@ -26,7 +26,7 @@ _BARE = r"([\w.]+)\s*=\s*([^\s\"'\[{#][^\"'\]},#]*?)\s*(?:#.*)?"  # a value that
 def load_scene(
     path: str | Path,
     *,
-    seed: Callable[[], int | None] | None = None,
+    seed: Seeds | None = None,
     changes: Mapping[str, Any] | None = None,
 ) -> Scene:
     """Read a scene.
@@ -82,9 +82,7 @@ def files_of(path: str | Path) -> list[Path]:
     return [path, *(path.parent / name for name in named)]
 
 
-def scene_from(
-    text: str | bytes, *, folder: Path | None = None, seed: Callable[[], int | None] | None = None
-) -> Scene:
+def scene_from(text: str | bytes, *, folder: Path | None = None, seed: Seeds | None = None) -> Scene:
     """Make a scene of its TOML text.
 
     Parameters
@@ -122,7 +120,7 @@ def scene_from(
     >>> scene.n_asperities
     30000
     """
-    return scene_of(_document(text), folder=folder, seed=seed)
+    return scene_of(_document(text), folder=folder or Path(), seed=seed)
 
 
 def _document(text: str | bytes, path: str = "") -> dict[str, Any]:
@@ -150,11 +148,9 @@ def _cure(text: str, reason: str) -> str:
     return f": {line}; write key = value" if "=" not in line and not line.startswith("[") else f": {line}"
 
 
-def scene_of(
-    document: Mapping[str, Any], *, folder: Path | None = None, seed: Callable[[], int | None] | None = None
-) -> Scene:
+def scene_of(document: Mapping[str, Any], *, folder: Path = Path(), seed: Seeds | None = None) -> Scene:
     """Make a scene of the tables that its TOML text holds; arguments and errors as of `scene_from`."""
-    return Scene.of(of_tables(document, folder or Path(), seed))
+    return Scene.of(of_tables(document, folder, seed))
 
 
 def with_changes(document: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:

@@ -5,22 +5,16 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from analytic import Body as PlainBody, Nayak, SpectralMoments, Surface as Plain, composite_modulus
-from mcgw.scene.keys import KEYS, MOMENTS, POISSON, SUMMITS, SURFACE_UNITS, YOUNG
+from mcgw.scene.keys import KEYS, POISSON, SURFACE_UNITS, YOUNG
 from mcgw.scene.kinds import arguments, as_toml
+from mcgw.scene.measured import MOMENTS, SUMMITS, Uncertainty
 from mcgw.scene.plausible import surface_in_other_units, warn_of_units
 from mcgw.scene.section import SceneError, Section
-from mcgw.scene.uncertainty import Uncertainty
 
 
 @dataclass(frozen=True)
 class UncertainSurface(Plain):
-    """A surface whose parameters have standard errors.
-
-    Parameters
-    ----------
-    uncertainty : Uncertainty
-        Standard errors of their logarithms.
-    """
+    """A surface whose parameters have standard errors, those of their logarithms."""
 
     uncertainty: Uncertainty | None = None
 

@@ -20,7 +20,7 @@ from analytic.curvature import MEAN_CURVATURE
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.half_space import asperities_alone
 from mcgw.formats.table import SEPARATION, Column, Table, evenly
-from mcgw.scene.promises import promise_of
+from mcgw.scene.parts import promise_of
 from mcgw.scene.scene import Scene
 
 FALSE_ALARM = 1e-3

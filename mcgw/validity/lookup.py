@@ -13,7 +13,6 @@ from analytic.surface import LEAST_ALPHA, SUMMIT_SPREAD
 from mcgw.formats.law_text import law_text
 from mcgw.formats.table import evenly
 from mcgw.validity.error_table import COLUMNS, Expected, grid_of
-from mcgw.validity.fitted_map import Fitted, moments_of_nayak
 from mcgw.validity.model_error import Validity
 
 _MOST_SEPARATIONS = 64
@@ -45,19 +44,9 @@ _CAPS = Maps("caps", "eta R sigma", "p/(E* sqrt(sigma/R))", "separate caps", "He
 
 
 def validity_of(scene: Any, separations: ArrayLike | None = None) -> Validity:
-    """Look up the error of a scene's model against elasticity.
+    """Look up the error of a scene's model against elasticity, at each separation once.
 
-    Parameters
-    ----------
-    scene : mcgw.Scene
-        Whose geometry counts: a grading, a film and friction do not.
-    separations : array_like, optional
-        Reduced separations. Default: those of the scene, or 64 of them.
-
-    Returns
-    -------
-    Validity
-        At the separations, each once.
+    Its geometry counts; a grading, a film and friction do not.
     """
     given = scene.separations if separations is None else separations
     h = np.unique(np.asarray(given, dtype=np.float64))
@@ -124,6 +113,12 @@ def crowding(surface: Surface) -> float:
     return surface.eta * surface.radius * surface.sigma
 
 
+def moments_of_nayak(surface: Surface, alpha: float) -> SpectralMoments:
+    """Return the moments of the Gaussian surface with this alpha, sigma and R."""
+    m0, m4 = surface.sigma**2 / (1 - SUMMIT_SPREAD / alpha), 9 * math.pi / (64 * surface.radius**2)
+    return SpectralMoments(m0, math.sqrt(m0 * m4 / alpha), m4)
+
+
 def moments_of(surface: Surface) -> SpectralMoments | None:
     """Return the Gaussian surface with this density, curvature and spread of summits; None if there is none.
 
@@ -155,7 +150,7 @@ def not_on_the_map(scene: Any) -> str | None:
     return None
 
 
-def _not_gaussian(fitted: Fitted, surface: Surface) -> str | None:
+def _not_gaussian(fitted: Any, surface: Surface) -> str | None:
     """Why a map is unlike those that were solved, or a surface unlike its map."""
     skewed = max(_SKEWED, _BY_CHANCE * math.sqrt(6 / fitted.independent))
     if fitted.lay is not None and fitted.lay > _LAID:

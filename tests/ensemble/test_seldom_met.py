@@ -8,7 +8,7 @@ import pytest
 import analytic
 import mcgw
 from analytic.laws import crowding_factor
-from mcgw.scene.uncertainty import Uncertainty
+from mcgw.scene.measured import Uncertainty
 from mcgw.statistics.comparison import verdict
 
 SPECTRAL = mcgw.SpectralSurface(1e-12, 1e-3, 5e6, "1 mm^2", "78.6 GPa")

@@ -63,7 +63,7 @@ MODULES = {
     "mcgw.scene.cautions": "cautions",
     "mcgw.scene.keys": "KEYS SURFACE_UNITS",
     "mcgw.scene.plausible": "perhaps_other_units RANGES surface_in_other_units",
-    "mcgw.scene.promises": "promise_of SAMPLERS",
+    "mcgw.scene.parts": "promise_of SAMPLERS",
     "mcgw.scene.scene": "Scene storable",
     "mcgw.statistics.checks": (
         "covariances coverage independence PrincipalComponents scores skewness Slope variances"

@@ -19,7 +19,7 @@ from mcgw.sampling.response.product import Parts, Tiles, tiles_of
 from mcgw.sampling.response.rows import hertz_rows
 from mcgw.sampling.response.tree import Nodes, tree_over
 from mcgw.sampling.response.walk import walk
-from mcgw.scene.promises import EXACT
+from mcgw.scene.parts import EXACT
 from mcgw.scene.scene import Scene
 
 

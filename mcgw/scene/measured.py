@@ -1,0 +1,140 @@
+"""What is known of a measured surface besides its summits: their errors, and what a fit saw."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic import SpectralMoments, Surface
+from analytic.arrays import Array, hold
+from mcgw.scene.kinds import List, Number, Plain
+from mcgw.scene.parts import key
+
+MOMENTS, SUMMITS = ("m0", "m2", "m4"), ("sigma", "radius", "eta")  # either describes summits of a surface
+KNOWN = 'give relative standard errors, such as {sigma = "20 %", radius = "15 %"}'
+_PARAMETERS = (*SUMMITS, *MOMENTS, "E_star")
+_LARGEST = 2.0  # standard error of a logarithm: a factor of 7
+_NEGATIVE = -1e-3  # allowed negative eigenvalue, from rounding
+_SHOWN = 3  # cautions
+_ERROR = Number("1", high=_LARGEST, advice=KNOWN)
+_ROWS = List(List(Number(low=-1.0, high=1.0)), advice="give rows of numbers from -1 to 1")
+_RATIO = Number(low=1, advice="give the larger over the smaller, a number >= 1")
+_CAUTIONS = List(Plain(), 0, advice="give a list of texts")
+
+
+@dataclass(frozen=True)
+class Uncertainty:
+    """Standard errors of the logarithms of a surface's parameters: small ones are shares of the values.
+
+    None: it is known. With the `correlation` of those that are given, in this order, unless they are
+    independent; ValueError if it is not square, symmetric and positive, with ones on its diagonal.
+    """
+
+    sigma: float | None = key(_ERROR)
+    radius: float | None = key(_ERROR)
+    eta: float | None = key(_ERROR)
+    m0: float | None = key(_ERROR, excludes=SUMMITS)
+    m2: float | None = key(_ERROR, excludes=SUMMITS)
+    m4: float | None = key(_ERROR, excludes=SUMMITS)
+    E_star: float | None = key(_ERROR)
+    correlation: Sequence[Sequence[float]] | None = key(_ROWS)
+
+    def __post_init__(self) -> None:
+        n = len(self.names)
+        if not n:
+            raise ValueError(f"sigma: does not name a parameter; give one of {', '.join(_PARAMETERS)}")
+        if self.correlation is None:
+            return
+        hold(self, correlation=tuple(map(tuple, self.correlation)))
+        if [len(row) for row in self.correlation] != [n] * n:
+            raise ValueError(f"correlation: give {n} rows of {n} numbers, for {', '.join(self.names)}")
+        matrix = np.array(self.correlation)
+        if not (np.allclose(matrix, matrix.T, atol=1e-6) and np.allclose(np.diag(matrix), 1, atol=1e-6)):
+            raise ValueError("correlation: must be symmetric, with ones on its diagonal")
+        if np.linalg.eigvalsh(matrix)[0] < _NEGATIVE:
+            raise ValueError("correlation: impossible, because an eigenvalue is negative")
+
+    @classmethod
+    def correlated(cls, names: Sequence[str], errors: Sequence[float], covariance: Array) -> "Uncertainty":
+        """With the correlation of a covariance, whatever its variances, to four digits."""
+        deviation = np.sqrt(np.diag(covariance))
+        rows = np.round(covariance / np.outer(deviation, deviation), 4).tolist()
+        found = {name: min(float(x), _LARGEST) for name, x in zip(names, errors, strict=True)}
+        return cls(**found, correlation=rows)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The parameters that are uncertain."""
+        return tuple(name for name in _PARAMETERS if getattr(self, name) is not None)
+
+    @property
+    def covariance(self) -> Array:
+        """Of the logarithms, shape (parameters, parameters)."""
+        errors = np.array([getattr(self, name) for name in self.names])
+        matrix = np.eye(errors.size) if self.correlation is None else np.array(self.correlation)
+        return np.asarray(matrix * np.outer(errors, errors))
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """What a fit knew of a surface besides its summits: by it `Scene.validity` tells whether it fits.
+
+    Parameters
+    ----------
+    m0, m2, m4 : float
+        Spectral moments, m^2, 1, 1/m^2: means over all directions.
+    skewness, kurtosis : float
+        Skewness and kurtosis of all heights: 0 and 3 of Gaussian ones.
+    independent : float
+        How many independent heights would tell m0 as well: few where long waves are.
+    agreement : float or None
+        Largest ratio, at least 1, between what moments and counted summits say of eta, R or sigma; of
+        profiles between the peaks that are counted and those that follow from the moments. None: summits
+        were too few to be counted.
+    lay : float or None
+        Mean square slope across the lay over that along it, at least 1; None: nobody saw it.
+    area : float or None
+        Area of the map, m^2; None: along lines only.
+    cautions : tuple of str
+        Warnings of `mcgw.fit`, the most serious first.
+    """
+
+    m0: float = key(Number("m^2"), "1e-12", required=True)
+    m2: float = key(Number("1"), "1e-3", required=True)
+    m4: float = key(Number("1/m^2"), "5e6", required=True)
+    skewness: float = key(Number(low=-math.inf), "-0.1", required=True)
+    kurtosis: float = key(Number(), "3.0", required=True)
+    independent: float = key(Number(), "800.0", required=True)
+    agreement: float | None = key(_RATIO, "1.02")
+    lay: float | None = key(_RATIO, "1.1")
+    area: float | None = key(Number("m^2"), "1e-6")
+    cautions: tuple[str, ...] = key(_CAUTIONS, '["lay: mean square slopes 2 : 1"]', ())
+
+    @property
+    def moments(self) -> SpectralMoments:
+        """m0, m2 and m4."""
+        return SpectralMoments(self.m0, self.m2, self.m4)
+
+    def off(self, surface: Surface) -> float:
+        """Largest ratio, at least 1, of eta, R and sigma of a surface to those from the moments."""
+        m = self.moments
+        pairs = ((surface.eta, m.eta), (surface.radius, m.radius), (surface.sigma, m.sigma))
+        return max(max(a, b) / min(a, b) if min(a, b) > 0 else math.inf for a, b in pairs)
+
+    @property
+    def gravest(self) -> list[str]:
+        """The cautions to display, at most three."""
+        shown, more = [f"fit: {line}" for line in self.cautions[:_SHOWN]], len(self.cautions) - _SHOWN
+        if more > 0:
+            shown[-1] += f" (and {more} more under [fitted] in the scene)"
+        return shown
+
+    def lines(self) -> tuple[str, str]:
+        """Lines about the spectrum and other properties of the map."""
+        lay = "" if self.lay is None else f", lay {self.lay:.3g}"
+        apart = "" if self.agreement is None else f", estimates differ by a factor of {self.agreement:.3g}"
+        return (
+            f"alpha = {self.moments.alpha:.4g}, rms slope {math.sqrt(2 * self.m2):.3g}{lay}",
+            f"skewness {self.skewness:.2f}, kurtosis {self.kurtosis:.2f}{apart}",
+        )
