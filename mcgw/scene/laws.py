@@ -147,7 +147,7 @@ def listed_summits(section: Section, folder: Path) -> Listed | None:
             has = f"summit {k + 1} has the height {z[k]:g} and the radius {R[k]:g}"
             raise ValueError(f"{has}; heights are finite, radii > 0")
         told = {"eta": float(len(z))}
-        if file is not None or radii:
+        if z.size and (file is not None or radii):
             told |= {"sigma": float(z.std()), "radius": float(1 / np.mean(1 / R))}
         return analytic.MeasuredHeights(z, resampled=bool(resample)), R, told
 

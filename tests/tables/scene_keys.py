@@ -3,7 +3,7 @@
 Most rows look at one asperity: of three of known heights the highest alone touches, and is 0.5 sigma deep.
 """
 
-from math import exp, pi, sqrt
+from math import exp, log2, pi, sqrt
 
 import numpy as np
 import oracles.laws_of_one_depth as by_hand
@@ -97,7 +97,7 @@ CUSTOM = {"name": "'custom'", "critical": 0.05, "limits": [1.0], "load": PIECE.f
 CUSTOM |= {"area": PIECE.format("3.0")}
 DEEP = sqrt(0.5 / 0.05)  # root of the depth over the critical one
 # The variable of a piece from u = 1 to 4 is (u - 2)/(u + 2), stretched to -1..1.
-LATER = 0.05**1.5 * DEEP**2 * (2.0 + 0.5 * 3 * (DEEP - 2) / (DEEP + 2))
+LATER = 0.05**1.5 * DEEP**2 * (2.0 + 0.5 * (log2(DEEP) - 1))  # a series in log(u) between 1 and 4
 SPOT = sqrt(1e-5 * 0.5e-6)
 
 
