@@ -175,6 +175,8 @@ class Scene(Fields, Shown):
         parts = {each.name: getattr(self, each.name) for each in dataclasses.fields(self)}
         if isinstance(changes.get("grading"), Graded | Mapping):
             del parts["negative"]
+        if isinstance(changes.get("surface"), Spectral):  # whose summits follow from the moments
+            del parts["heights"], parts["summits"]
         return Scene.of(of_arguments(parts | changes)) if changes else self
 
     def drawn_by(self, sampler: str) -> Scene:
