@@ -145,7 +145,7 @@ def _lifts(low: float, middle: float, high: float, nodes: int) -> tuple[Array, A
 def _ends(model: Any, given: str, value: float) -> tuple[float, float, float]:
     """Separations between which next to all surfaces have the given sum, and the median."""
     score, start, spread = scores_of(model, given, value)
-    places = between(score, start, 3 * spread)
+    places = between(score, start, 3 * spread)  # a third as many as a law needs: they place nodes alone
     scores = np.maximum.accumulate([score(h) for h in places])
     if scores[0] > -SCORES or scores[-1] < SCORES:  # a Poisson number of asperities may be 0
         raise ValueError(f"{given} = {value:g}: not every surface has a separation with it")

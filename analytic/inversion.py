@@ -14,7 +14,6 @@ from analytic.roots import sign_changes
 
 LOWEST = -40.0  # separation that is looked at
 _GRID = np.concatenate([np.linspace(LOWEST, 10, 251), np.geomspace(10.5, 1000, 60)])
-_ROUNDING = 1e-12  # of logarithms of means, which change by last digits with the separations beside them
 
 
 def last_separations(
@@ -33,17 +32,19 @@ def last_separations(
         return np.fmax(log_mean(h) - targets[which], -100.0)
 
     k = np.array([np.flatnonzero(about >= target).max(initial=0) for target in targets], dtype=np.int64)
-    while (below := (k > 0) & (excess(grid[k], each) < 0)).any():
-        k -= below
     k = np.minimum(k, grid.size - 2)
-    while (above := (k < grid.size - 2) & (excess(grid[k + 1], each) >= 0)).any():
+    more = excess(grid[k], each)
+    while (below := (k > 0) & (more < 0)).any():
+        k -= below
+        more = excess(grid[k], each)
+    less = excess(grid[k + 1], each)
+    while (above := (k < grid.size - 2) & (less >= 0)).any():
         k += above
-    left, right = grid[k], grid[k + 1]
-    more, less = excess(left, each), excess(right, each)
-    if np.any(more < -_ROUNDING) or np.any(less > _ROUNDING):
+        more, less = np.where(above, less, more), excess(grid[k + 1], each)
+    if np.any(more < 0) or np.any(less >= 0):
         raise ValueError(f"{name}: not reached for h from {grid[0]:g} to {grid[-1]:.4g}; give another value")
-    ends = np.minimum(less, -np.finfo(float).tiny), np.maximum(more, 0.0)
-    return sign_changes(excess, right, left, np.ones(targets.size), at_ends=ends).reshape(log_targets.shape)
+    ends, unit = (less, more), np.ones(targets.size)
+    return sign_changes(excess, grid[k + 1], grid[k], unit, at_ends=ends).reshape(log_targets.shape)
 
 
 def ratio_at_equal_load(

@@ -75,16 +75,3 @@ def sign_changes(
             inverse = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
         step = np.where(safe & np.isfinite(inverse), inverse, 0.5)
     return found
-
-
-def root(excess: Callable[[float], float], left: float, right: float, *, close: float = 0.0) -> float:
-    """Return the root of one function: as `sign_changes`.
-
-    Examples
-    --------
-    >>> abs(root(lambda x: x * x - 2, 0.0, 2.0, close=0.1) ** 2 - 2) <= 0.1
-    True
-    """
-    ends = (np.array([x]) for x in (left, right, 1.0))
-    found = sign_changes(lambda x, _: np.array([excess(float(x[0]))]), *ends, close=close)
-    return float(found[0])

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.arrays import Array, hold
-from analytic.laws.law import check_positive
+from analytic.laws.law import check_positive, is_positive
 from analytic.surface import Surface
 
 _DIRECT = 60  # images that are rather summed one by one
@@ -94,7 +94,7 @@ class Film:
             raise ValueError("resistivity: give it in ohm m, or conductivities = (k1, k2) in W/(m K)")
         check_positive("ohm m", resistivity=self.resistivity)
         if self.conductivities is not None:
-            if len(self.conductivities) != 2 or not all(0 < k < math.inf for k in self.conductivities):
+            if len(self.conductivities) != 2 or not all(map(is_positive, self.conductivities)):
                 raise ValueError(f"conductivities = {self.conductivities!r}: give two numbers > 0 in W/(m K)")
             hold(self, conductivities=tuple(map(float, self.conductivities)))
         elif self.layer is not None:

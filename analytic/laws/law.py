@@ -207,10 +207,15 @@ class Hertz(ContactLaw):
     name: ClassVar[str] = "hertz"
 
 
+def is_positive(value: Any) -> bool:
+    """Tell whether a value is a finite number > 0; texts, which only scene files read, are none."""
+    return isinstance(value, Real) and 0 < float(value) < math.inf
+
+
 def check_positive(unit: str, **values: Any) -> None:
-    """Refuse values that are no finite numbers > 0; texts, which only scene files read, are none."""
+    """Refuse values that are no finite numbers > 0."""
     for name, value in values.items():
-        if value is not None and not (isinstance(value, Real) and 0 < float(value) < math.inf):
+        if value is not None and not is_positive(value):
             raise ValueError(f"{name} = {value!r}: give a finite number > 0{unit and f', in {unit}'}")
 
 
