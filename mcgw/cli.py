@@ -37,7 +37,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         try:
             code = _main(argv, asked)
         except SystemExit as end:  # of argparse: help, the version, or words that are none
-            code = int(end.code or 0)
+            if isinstance(end.code, str):  # of somebody's own code
+                raise
+            code = end.code or 0
         output.flush()
         lost = output.lost
         if code or lost is None or isinstance(lost, BrokenPipeError) or asked.command not in _PRINTED:
@@ -96,5 +98,6 @@ def process() -> NoReturn:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # read when NumPy is imported
     signal.signal(signal.SIGTERM, terminate)
     code = main()
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)  # nobody catches what it raises from here on
     gc.freeze()
     sys.exit(code)

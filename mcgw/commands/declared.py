@@ -143,7 +143,7 @@ def _options(each: Parameter, kind: Kind, placed: bool, metavar: str, words: str
     default = None if each.default is Parameter.empty else each.default
     if default not in (None, "", []):
         words += f"; default: {default}"
-    must = each.default is Parameter.empty and "; default: " not in kind.words
+    must = each.default is Parameter.empty and not kind.beside
     choices = kind.choices or tuple(one for one in types if isinstance(one, str))  # of a Literal
     plain = next((one for one in (Path, int, float) if one in types), str)
     found: dict[str, Any] = {"help": words, "default": default, "metavar": metavar or None}

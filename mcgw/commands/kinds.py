@@ -47,6 +47,7 @@ class Kind:
     action: str = ""  # of argparse, likewise
     # Makes of what was typed (or the default), the option and the call what the function gets.
     read: Callable[[Any, str, Call], Any] = lambda given, option, call: given  # noqa: ARG005
+    beside: str = ""  # name of a file that is made, where none is given, beside what is read
 
 
 def quantity(unit: str, metavar: str = "", about: str = "") -> Kind:
@@ -104,12 +105,11 @@ def pair(text: str, option: str, form: str) -> tuple[str, str]:
 
 
 def as_value(text: str) -> Any:
-    """Return what a text is as TOML, a number such as .5, or the text."""
+    """Return what a text is as TOML, or the text."""
     from mcgw.formats.named_files import loads
 
-    for parse in (lambda x: loads(f"value = {x}")["value"], float):
-        with suppress(ValueError):
-            return parse(text)
+    with suppress(ValueError):
+        return loads(f"value = {text}")["value"]
     return text
 
 
@@ -195,7 +195,7 @@ def file_out(
         return paths if names else given
 
     words = f"; default: {beside.format('NAME')} beside what is read" if beside else ""
-    return Kind("FILE", "also write the table to this file", "out", words, read=read)
+    return Kind("FILE", "also write the table to this file", "out", words, read=read, beside=beside)
 
 
 SceneIn = Annotated["Scene", scene_file()]

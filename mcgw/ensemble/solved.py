@@ -157,11 +157,15 @@ class Solution(Shown):
     def _estimate(self, name: str) -> tuple[float, float, int]:
         """Mean over specimens of an answer, its standard error, and the degrees of freedom of that."""
         exact = self._exact.mean
-        if name in exact:
-            return exact[name], 0.0, 0
+        return (exact[name], 0.0, 0) if name in exact else self._drawn_estimates[name]
+
+    @cached_property
+    def _drawn_estimates(self) -> dict[str, tuple[float, float, int]]:
+        """The same of what is not known exactly."""
+        exact, drawn = self._exact.mean, self.surfaces
         sums = ("separation", "conductance_si", "stiffness", "area")  # what is given is no control
-        known = [(self.surfaces[x], exact[x]) for x in sums if x in exact and x != self.given]
-        return controlled(self.surfaces[name], known)
+        known = [(drawn[x], exact[x]) for x in sums if x in exact and x != self.given]
+        return {name: controlled(x, known) for name, x in drawn.items() if name not in exact}
 
     @cached_property
     def _exact(self) -> Moments:

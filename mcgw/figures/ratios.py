@@ -70,14 +70,13 @@ class Modulus:
 
     def drawn(self, f: Compared, key: Key, h: Array) -> Estimate:
         """Over the contacts of the listed surfaces."""
+        modulus, power = f.of(key).modulus, POWERS[self.weight]
         above, below = np.zeros((2, len(f.listed), len(h)))
         for i, s in enumerate(f.listed):
             for k, separation in enumerate(h):
                 touching = s[s > separation]
-                e = f.of(key).modulus(touching)
-                weights = (touching - separation) ** POWERS[self.weight] * (
-                    e if self.weight == "load" else 1.0
-                )
+                e = modulus(touching)
+                weights = (touching - separation) ** power * (e if self.weight == "load" else 1.0)
                 above[i, k], below[i, k] = np.sum(weights * e), np.sum(weights)
         return ratio_of_sums([above], [below])
 

@@ -228,6 +228,7 @@ def make_file(plan: Plan, signals: Signals) -> None:
     def check() -> None:
         signals.check(f"all blocks are kept in {plan.folder}; the same command merges them")
 
+    finished(plan)  # a file of another run is no damaged shard
     try:
         put(plan, lambda: _merged(plan, check), check)
     except StoreError as error:

@@ -1,12 +1,13 @@
 """Cautions: where a scene goes beyond the assumptions of the model. One list for every command."""
 
+from bisect import bisect_left
 from collections.abc import Iterator
 
 import numpy as np
 
 from analytic import Hertz
 from analytic.laws import crowding_factor
-from mcgw.scene.plausible import perhaps_other_units
+from mcgw.scene.plausible import perhaps_other_units, takes_hours
 from mcgw.scene.scene import Scene
 from mcgw.validity.model_error import off_elasticity
 
@@ -32,17 +33,21 @@ def cautions(scene: Scene) -> list[str]:
 
         lines += law_cautions(scene)
     of_fit = [] if scene.fitted is None else scene.fitted.gravest
-    return [*perhaps_other_units(scene), *of_fit, *lines]
+    return [*perhaps_other_units(scene), *takes_hours(scene), *of_fit, *lines]
 
 
 def _crowd(scene: Scene) -> Iterator[str]:
     """Caution about contacts that interact or merge."""
+
+    def sparse(separation: float) -> bool:
+        return bool(scene.theory.mean("area_fraction", separation) <= _CROWDED)
+
     h = np.unique(scene.separations)
-    crowded = h[scene.theory.mean("area_fraction", h) > _CROWDED]
-    if crowded.size:
+    if not sparse(h[0]):  # most scenes are throughout; the area falls with the separation
+        last = h[bisect_left(h, True, key=sparse) - 1]
         apart = " (load too large if d is that of a rigid punch, too small if it is the mean gap)"
         yield (
-            f"up to d/sigma = {crowded.max():.3g} more than {_CROWDED:.0%} of the nominal area is in "
+            f"up to d/sigma = {last:.3g} more than {_CROWDED:.0%} of the nominal area is in "
             f"contact; asperities interact there{'' if scene.interaction else apart}; the error was not "
             "measured"
         )

@@ -34,7 +34,7 @@ def warn_of_units(doubts: Iterable[str]) -> None:
 
 
 def perhaps_other_units(scene: "Fields") -> list[str]:
-    """Values that are perhaps in another unit, each with what was perhaps meant; and hours of drawing."""
+    """Values that are perhaps in another unit, each with what was perhaps meant."""
     found = surface_in_other_units(scene.surface)
     farthest = max(scene.separations, key=abs)
     if 0 < abs(farthest) < _HARDLY_APART:
@@ -46,10 +46,10 @@ def perhaps_other_units(scene: "Fields") -> list[str]:
         from mcgw.scene.moduli import doubts_of_table  # for those scenes alone
 
         found += doubts_of_table(scene.grading, scene)
-    return [*found, *_takes_hours(scene)]
+    return found
 
 
-def _takes_hours(scene: "Fields") -> Iterator[str]:
+def takes_hours(scene: "Fields") -> Iterator[str]:
     """Return a line if `auto` would draw the scene for more than an hour, and the remedy."""
     if scene.sampler != "auto" or scene.accuracy or scene.rel_err is not None or scene.max_seconds:
         return

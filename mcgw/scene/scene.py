@@ -18,10 +18,10 @@ from analytic.arrays import hold
 from analytic.laws import ContactLaw
 from mcgw.formats.table import Shown, Table
 from mcgw.scene.fields import Fields, LeftOut
-from mcgw.scene.measured import Fitted
+from mcgw.scene.measured import MOMENTS, Fitted
 from mcgw.scene.mistakes import mistakes
 from mcgw.scene.parts import Contact, Graded, Joint, Sampling, promise_of
-from mcgw.scene.plausible import perhaps_other_units, warn_of_units
+from mcgw.scene.plausible import perhaps_other_units, takes_hours, warn_of_units
 from mcgw.scene.reading import of_arguments
 from mcgw.scene.section import SceneError
 from mcgw.scene.surface import Spectral
@@ -141,7 +141,7 @@ class Scene(Fields, Shown):
             raise SceneError(problems)
         if not (self.law.is_data and is_data(self.grading)):
             in_numbers(self)  # a function that no series resolves is a mistake as well
-        warn_of_units(perhaps_other_units(self))
+        warn_of_units([*perhaps_other_units(self), *takes_hours(self)])
 
     def replace(self, **changes: Any) -> Scene:
         """Return the scene with other values; numbers that were left out follow from them.
@@ -175,8 +175,9 @@ class Scene(Fields, Shown):
         parts = {each.name: getattr(self, each.name) for each in dataclasses.fields(self)}
         if isinstance(changes.get("grading"), Graded | Mapping):
             del parts["negative"]
-        if isinstance(changes.get("surface"), Spectral):  # whose summits follow from the moments
-            del parts["heights"], parts["summits"]
+        surface = changes.get("surface")
+        if isinstance(surface, Spectral) or (isinstance(surface, Mapping) and surface.keys() & set(MOMENTS)):
+            del parts["heights"], parts["summits"]  # they follow from the moments
         return Scene.of(of_arguments(parts | changes)) if changes else self
 
     def drawn_by(self, sampler: str) -> Scene:

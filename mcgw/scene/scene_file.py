@@ -13,6 +13,7 @@ from mcgw.formats.named_files import HDF5, loads, read_bytes
 from mcgw.machine.terminal import one_line
 from mcgw.scene.fields import LeftOut
 from mcgw.scene.keys import as_tables, whole_key
+from mcgw.scene.kinds import as_toml
 from mcgw.scene.reading import Seeds, of_tables
 from mcgw.scene.rough_bodies import files_of_bodies
 from mcgw.scene.scene import Scene, storable
@@ -70,7 +71,8 @@ def load_scene(
         raise SceneError(
             [f"{path}: holds results, not a scene; print their scene with mcgw show --scene {path}"]
         )
-    return scene_of(with_changes(_document(text, f"{path}: "), changes or {}), folder=path.parent, seed=seed)
+    changed = with_changes(_document(text, f"{path}: "), as_toml(changes or {}))
+    return scene_of(changed, folder=path.parent, seed=seed)
 
 
 def files_of(path: str | Path) -> list[Path]:

@@ -124,9 +124,12 @@ def put(plan: Plan, contents: Callable[[], Labelled], go_on: Callable[[], None] 
             f"{path}: {error.strerror}; it was not changed, and finished blocks are kept: move that file "
             "away and repeat the command, or choose another -o"
         ) from None
-    except OSError as error:
+    except RunError:
+        raise
+    except (OSError, RuntimeError) as error:  # HDF5 tells of a full disk by either
+        why = getattr(error, "strerror", None) or error
         raise RunError(
-            f"{path}: cannot be written ({error.strerror or error}); is the disk full? Finished blocks are "
+            f"{path}: cannot be written ({why}); is the disk full? Finished blocks are "
             "kept; free some space and repeat the command"
         ) from None
 
@@ -200,8 +203,9 @@ def drop_leftovers(path: Path) -> None:
     shards = list(folder.glob("shards/block-*.h5")) if begun else []
     if shards and path.exists():
         with suppress(StoreError):  # else a person must look
-            plan = Plan.open(folder)
-            held = plan.kept(finished(plan))
+            plan, (attributes, there) = Plan.open(folder), described(path)
+            if attributes.get("run") == plan.identity:
+                held = plan.kept(plan.total if plan.axes else there.n_surfaces)
     if not any(int(shard.stem.removeprefix("block-")) >= held for shard in shards):
         remove_run(folder)
 

@@ -95,7 +95,7 @@ class Points(Sequence[Scene]):
             problems = [*problems[:_MOST_TOLD], f"... and {len(problems) - _MOST_TOLD} more"]
         elif not problems and len({(one.separations, one.tables) for one in found}) > 1:
             problems = ["sweep: the points differ in separations or quantities; sweep them separately"]
-        elif any(scene.max_seconds is not None for scene in found):
+        elif not problems and any(scene.max_seconds is not None for scene in found):
             problems = ["ensemble.max_seconds: a sweep must be reproducible; give n_surfaces or rel_err"]
         if problems:
             raise SceneError(problems)

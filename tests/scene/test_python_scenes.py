@@ -155,5 +155,7 @@ def test_a_spectral_surface_brings_its_summits_to_any_scene():
     spectral = mcgw.SpectralSurface(m0=1e-12, m2=1e-3, m4=5e6, nominal_area="1 mm^2", E_star="100 GPa")
     made, plain = (mcgw.Scene(surface, separations=1.0, seed=1) for surface in (spectral, SURFACE))
     assert plain.replace(surface=spectral) == made
+    written = {"m0": 1e-12, "m2": 1e-3, "m4": 5e6, "nominal_area": "1 mm^2", "E_star": "100 GPa"}
+    assert plain.replace(surface=written) == made
     other = plain.replace(surface=spectral, heights=analytic.Gaussian(), summits="mean")
     assert (other.heights, other.summits) == (plain.heights, plain.summits)
