@@ -17,7 +17,7 @@ from oracles.told import ANSWERS, apart
 
 import analytic
 import mcgw
-from mcgw.commands.warm import warm
+from mcgw.commands.starting import warm
 
 SURFACE = analytic.Surface(sigma=1.37e-6, radius=13e-6, eta=3.0e8, nominal_area=1e-4, E_star=78.6e9)
 

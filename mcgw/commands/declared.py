@@ -18,11 +18,13 @@ from mcgw.commands.kinds import JUST_ONE, Call, Kind
 from mcgw.commands.outputs import check_outputs, reading
 from mcgw.commands.voice import ALL, NEWS, QUIET, tell_cautions
 
-_HELPERS = ("declared", "kinds", "options", "outputs", "voice")
-_ORDER = (
-    "init", "run", "sweep", "show", "compare", "converge", "tradeoff", "merge", "solve", "export", "figures",
-    "report", "surface", "fit", "elastic", "warm", "completion",
-)  # fmt: skip
+_HOMES = {  # commands in the order of work, by the files in which they stand; any other has its own
+    "init": "starting", "run": "drawing", "sweep": "drawing", "show": "answers", "compare": "studies",
+    "converge": "studies", "tradeoff": "studies", "merge": "drawing", "solve": "answers",
+    "export": "products", "figures": "products", "report": "products", "surface": "surface", "fit": "fit",
+    "elastic": "answers", "warm": "starting", "completion": "starting",
+}  # fmt: skip
+_OTHERS = {*_HOMES.values(), "declared", "kinds", "outputs", "voice"}
 Command = Callable[..., bool | None]
 _NEGATIVE = re.compile(r"-\.?\d")  # a value that looks like an option, such as -1MPa
 _SECTION = re.compile(r"\n\n(?:Parameters|Examples)\n-+\n")
@@ -30,9 +32,9 @@ _WORDS = re.compile(r"(\w+)(?: : (.+))?\n((?:    .+\n?)+)")
 
 
 def all_commands() -> tuple[str, ...]:
-    """Names of all commands: the files of this package, in the order of work."""
-    names = {path.stem for folder in mcgw.commands.__path__ for path in Path(folder).glob("[a-z]*.py")}
-    return (*(name for name in _ORDER if name in names), *sorted(names - {*_ORDER, *_HELPERS}))
+    """Names of all commands: those of this package, and of files that somebody added to it."""
+    files = {path.stem for folder in mcgw.commands.__path__ for path in Path(folder).glob("[a-z]*.py")}
+    return (*_HOMES, *sorted(files - _OTHERS))
 
 
 COMMANDS = all_commands()
@@ -85,7 +87,7 @@ def parser_of(names: Sequence[str] = ()) -> argparse.ArgumentParser:
     parser.add_argument("--version", action=_Version, nargs=0, help="show program's version number and exit")
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
     for name in names or all_commands():
-        function = getattr(import_module(f"mcgw.commands.{name}"), name)
+        function = getattr(import_module(f"mcgw.commands.{_HOMES.get(name, name)}"), name)
         about, *sections = _SECTION.split(cleandoc(function.__doc__))
         about = f"{about[0].lower()}{' '.join(about.split())[1:]}"
         example = f"example: {sections[-1]}" if sections else None

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from mcgw.commands.kinds import Call, Pixel, Table, Unit, file_in, file_out, pair, quantity
-from mcgw.commands.outputs import NPY, TOML, Output, check_outputs, figure_format
+from mcgw.commands.outputs import FIGURE, NPY, TOML, Output, check_outputs
 from mcgw.commands.voice import details, news, notes
 from mcgw.maps.steps import Form, LinesTo, Missing, SpikesTo
 
@@ -23,7 +23,7 @@ def _maps(paths: list[Path], call: Call) -> list[Path]:
 
 
 def fit(
-    map: Annotated[list[Path], file_in(_maps)] = [],  # noqa: A002, B006
+    map: Annotated[list[Path], file_in(opened=_maps)] = [],  # noqa: A002, B006
     *,
     iso: list[str] | None = None,
     cutoff: str | None = None,
@@ -43,7 +43,7 @@ def fit(
     parts: int = 4,
     summits: Table = None,
     tiles: Table = None,
-    picture: Annotated[Path | None, file_out(figure_format)] = None,
+    picture: Annotated[Path | None, file_out(FIGURE)] = None,
     output: Annotated[Path, file_out(TOML)],
 ) -> None:
     """Fit summit density, radius and spread to measured height maps, and write a scene.

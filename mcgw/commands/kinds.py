@@ -9,15 +9,12 @@ from argparse import Namespace
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from functools import partial
-from itertools import repeat
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from mcgw.commands.outputs import CSV, Format, Output
 
 if TYPE_CHECKING:
-    from mcgw.ensemble.ensemble import Ensemble
     from mcgw.scene.scene import Scene
 
 AT_MOST_ONE, JUST_ONE = "at most one", "just one"
@@ -119,22 +116,13 @@ def _read(path: Any, call: Call) -> Any:
     return path
 
 
-def file_in(opened: Callable[[Any, Call], Any] = _read, metavar: str = "", about: str = "") -> Kind:
+def file_in(metavar: str = "", about: str = "", opened: Callable[[Any, Call], Any] = _read) -> Kind:
     """Return the kind of a file that is read, which no output may replace; `opened` makes the value."""
 
     def read(given: Any, option: str, call: Call) -> Any:  # noqa: ARG001
         return given and opened(given, call)
 
     return Kind(metavar, about, "in", read=read)
-
-
-def _results(path: Path, call: Call, *, sweeps: bool = True) -> Any:
-    """Return the ensemble or the sweep; the command ends with the cautions of its scenes."""
-    from mcgw.store.ensembles import open_ensemble, open_results
-
-    found = (open_results if sweeps else open_ensemble)(_read(path, call))
-    call.cautious.append((found, f"mcgw show {path}"))
-    return found
 
 
 def scene_file(*, others: bool = False, cautious: Literal["brief", "full", ""] = "brief") -> Kind:
@@ -165,11 +153,11 @@ def scene_file(*, others: bool = False, cautious: Literal["brief", "full", ""] =
             call.cautious.append((scene, f"mcgw show --plan {path}" if cautious == "brief" else ""))
         return scene
 
-    return replace(file_in(opened, "SCENE", "TOML file, SI units"), file="scene")
+    return replace(file_in("SCENE", "TOML file, SI units", opened), file="scene")
 
 
 def file_out(
-    form: Format | Callable[[Path], Format],
+    form: Format,
     beside: str = "",
     *,
     names: tuple[str, ...] = (),
@@ -178,10 +166,9 @@ def file_out(
 ) -> Kind:
     """Return the kind of a file that is written: checked before anything is computed.
 
-    Its form may be what returns that of a path. Its default is `beside` what is read, with {} for the stem of
-    that. With `names` it is a folder, and the function gets the paths of these files in it, named likewise.
-    What `grows` are ensembles, whose own rules say which may be replaced. With the flag `dry` nothing is
-    written.
+    Its default is `beside` what is read, with {} for the stem of that. With `names` it is a folder, and the
+    function gets the paths of these files in it, named likewise. What `grows` are ensembles, whose own rules
+    say which may be replaced. With the flag `dry` nothing is written.
     """
 
     def read(given: Any, option: str, call: Call) -> Any:
@@ -190,8 +177,7 @@ def file_out(
             given = call.source.parent / beside.format(stem)
         paths = [given / name.format(stem) for name in names] or [given] * bool(given)
         if not (dry and getattr(call.args, dry)):
-            formats = (form if isinstance(form, Format) else form(path) for path in paths)
-            call.outputs.extend(map(Output, paths, formats, repeat(option), repeat(grows)))
+            call.outputs.extend(Output(path, form, option, grows) for path in paths)
         return paths if names else given
 
     words = f"; default: {beside.format('NAME')} beside what is read" if beside else ""
@@ -204,10 +190,6 @@ MaybeScene = Annotated["Scene | None", scene_file(cautious="")]
 SceneOrFile = Annotated["Scene | Path", scene_file(others=True)]
 SceneOrMap = Annotated["Scene | Path", scene_file(others=True, cautious="")]
 SceneOrResults = Annotated["Scene | Path", scene_file(others=True, cautious="full")]
-EnsembleOrSweep = Annotated["Ensemble", file_in(_results, "FILE", "file of an ensemble or of a sweep (HDF5)")]
-EnsembleIn = Annotated[
-    "Ensemble", file_in(partial(_results, sweeps=False), "FILE", "file of an ensemble (HDF5)")
-]
 Table = Annotated[Path | None, file_out(CSV)]
 Length = Annotated[float | None, quantity("m", "LENGTH")]
 Pixel = Annotated[float | None, quantity("m", "LENGTH", "size of a pixel, if the file does not give it")]

@@ -29,18 +29,11 @@ JSON = Format("the size of a pixel", (".json",))
 JSONL = Format("solves", (".jsonl",))
 NPY = Format("heights", (".npy",))
 TOML = Format("a scene", (".toml",))
-
-
-def figure_format(path: Path) -> Format:  # noqa: ARG001
-    """Return the formats that matplotlib writes."""
-    from mcgw.figures.style import figure_endings
-
-    return Format("a figure", figure_endings())
-
-
-def table_or_figure(path: Path) -> Format:
-    """Return the format of a file that is one of these, by its name."""
-    return CSV if path.suffix == ".csv" else figure_format(path)
+FIGURE = Format("a figure", (  # that matplotlib writes
+    ".eps", ".gif", ".jpg", ".jpeg", ".pdf", ".pgf", ".png", ".ps", ".raw", ".rgba", ".svg", ".svgz", ".tif",
+    ".tiff", ".webp", ".avif",
+))  # fmt: skip
+TABLE_OR_FIGURE = Format("a figure or its table", (*FIGURE.endings, ".csv"))
 
 
 @dataclass(frozen=True)
@@ -59,11 +52,6 @@ class Output:
 def reading(inputs: Iterable[Path]) -> None:
     """Let no output of this command replace these files."""
     _inputs.set(tuple(inputs))
-
-
-def source() -> Path:
-    """Return the file that the command reads first."""
-    return _inputs.get()[0]
 
 
 def check_outputs(outputs: Iterable[Output]) -> None:

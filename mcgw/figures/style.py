@@ -15,7 +15,6 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 from cycler import cycler
-from matplotlib.backend_bases import FigureCanvasBase
 from matplotlib.figure import Figure
 
 from analytic import Exponential, Grading, Hertz, Homogeneous, PiecewiseSeries
@@ -209,11 +208,6 @@ def short(law: str) -> str:
 
 # Files have no date, so that the same figure gives the same bytes.
 _UNDATED: dict[str, dict[str, Any]] = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
-
-
-def figure_endings() -> tuple[str, ...]:
-    """Return the endings of the formats that matplotlib writes."""
-    return tuple(f".{name}" for name in FigureCanvasBase.get_supported_filetypes())
 
 
 def save_figure(figure: Figure, path: str | Path, **options: Any) -> None:

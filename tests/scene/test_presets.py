@@ -8,7 +8,7 @@ import pytest
 
 import mcgw
 from mcgw.cli import main
-from mcgw.commands.init import PRESETS
+from mcgw.commands.starting import PRESETS
 
 HERE = Path(mcgw.__file__).parent / "scene" / "presets"
 ROOT = Path(__file__).parents[2]

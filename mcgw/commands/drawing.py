@@ -1,0 +1,248 @@
+"""Surfaces in files: ``mcgw run``, ``mcgw sweep``, and ``mcgw merge`` of what jobs have drawn of either."""
+
+import logging
+import warnings
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from mcgw.commands.kinds import (
+    AT_MOST_ONE,
+    Call,
+    Cautioned,
+    Kind,
+    as_value,
+    file_out,
+    pair,
+    ranged,
+    scene_file,
+)
+from mcgw.commands.outputs import HDF5
+from mcgw.commands.voice import details, news, notes
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
+    from mcgw.ensemble.ensemble import Ensemble
+    from mcgw.ensemble.forecast import Forecast
+    from mcgw.scene.scene import Scene
+
+_LONG = 60.0  # seconds; longer runs state their duration beforehand
+Threads = Annotated[int | None, Kind("N", "number of threads; default: all cores; does not change results")]
+Jobs = Annotated[int | None, Kind("N", "use N processes instead"), AT_MOST_ONE]
+Dask = Annotated[
+    str | None, Kind("ADDRESS", "use the workers of a dask scheduler, tcp:// or tls://"), AT_MOST_ONE
+]
+Share = Annotated[
+    str | None, Kind("I/N", "draw the I-th of N shares, as one job of an array; then mcgw merge"), AT_MOST_ONE
+]
+
+
+@contextmanager
+def drawing(
+    threads: int | None, jobs: int | None, dask: str | None, shard: str | None
+) -> Iterator[dict[str, Any]]:
+    """Yield the arguments of `mcgw.run` and `mcgw.sweep` that say how.
+
+    Libraries log nothing meanwhile: mcgw itself reports a lost worker or scheduler, in one line.
+    """
+    from mcgw.jobs.executors import Jobs as Processes, dask_executor
+
+    chosen: AbstractContextManager[Executor | None] = nullcontext()
+    if jobs is not None:
+        chosen = Processes(jobs)
+    elif dask is not None:
+        chosen = dask_executor(dask)
+    before = logging.root.manager.disable
+    logging.disable(logging.CRITICAL)
+    try:
+        with chosen as executor:
+            yield {"threads": threads, **({"executor": executor} if shard is None else {"shard": shard})}
+    finally:
+        logging.disable(before)
+
+
+def share_done(shard: str, path: object, left: int) -> str:
+    """Say that a share is done and what remains."""
+    then = f"{left} surfaces are still missing" if left else f"all are done: mcgw merge {path}"
+    return f"{path}.parts: shard {shard} is done; {then}"
+
+
+def run(
+    scene: Annotated["Scene", scene_file(cautious="full")],
+    *,
+    output: Annotated[Path, file_out(HDF5, "out/{}.h5", grows=True)],
+    threads: Threads = None,
+    jobs: Jobs = None,
+    dask: Dask = None,
+    shard: Share = None,
+) -> None:
+    """Simulate a scene: draw its surfaces and store load, area, ... in HDF5; resumes where it stopped.
+
+    The first run on a machine compiles the loops that it needs, which takes about 12 s; mcgw warm compiles
+    all of them in advance.
+
+    Parameters
+    ----------
+    output : FILE.h5
+        the ensemble
+
+    Examples
+    --------
+    mcgw run runs/demo.toml -o demo.h5
+    """
+    from numba import get_num_threads
+
+    from mcgw.ensemble.forecast import after, forecast
+    from mcgw.jobs.running import run as drawn
+
+    ruled = scene.rel_err is not None or scene.max_seconds is not None
+    with warnings.catch_warnings(), drawing(threads, jobs, dask, shard) as how:
+        warnings.filterwarnings("ignore", ".* n_surfaces allows")  # said as a note, or by the forecast
+        if threads is not None and threads > get_num_threads():
+            notes(f"--threads {threads}: this machine has {get_num_threads()}; using all of them")
+        _tell_before(scene, forecast(scene), ruled=ruled, shared=shard is not None)
+        ensemble = drawn(scene, output, **how)
+    if shard is not None:
+        return news(share_done(shard, output, ensemble))
+    made = f"{ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, seed {scene.seed}"
+    news(f"{output}: {made}{_result(ensemble)}", *(after(ensemble, scene) if ruled else ()))
+    known = scene.validity()
+    news(known.verdict)
+    details(*filter(None, [known.details]))
+    return news(f"next: mcgw compare {output}")
+
+
+def _result(ensemble: "Ensemble") -> str:
+    """Load and area at the smallest separation."""
+    from mcgw.formats.table import with_error
+
+    scene = ensemble.scene
+    k = scene.separations.index(scene.lowest)
+    found = [
+        f"{name} {with_error(ensemble.mean(name)[k], ensemble.stderr(name)[k])} {scene.quantity(name).unit}"
+        for name in ("load", "area")
+        if name in scene.quantities
+    ]
+    return f"; {', '.join(found)} at d/sigma = {scene.lowest:g}" if found else ""
+
+
+def _tell_before(scene: "Scene", expected: "Forecast", *, ruled: bool, shared: bool) -> None:
+    """Say what a rule needs, or how long the run will take, if more than a minute."""
+    from mcgw.ensemble.drawing import in_words, seconds_for, seconds_per_surface
+    from mcgw.ensemble.forecast import before
+    from mcgw.sampling.samplers import sampler_of
+
+    sampler, m = sampler_of(scene), scene.n_surfaces
+    if not ruled and (seconds := seconds_for(scene, sampler, m, at_least=_LONG / 4)) >= _LONG:
+        notes(
+            f"{m:g} surfaces of {scene.n_asperities:g} asperities: about {in_words(seconds)} on this machine "
+            f"({sampler.draws * m:.2g} draws); Ctrl-C keeps finished work; details: mcgw show --plan"
+        )
+    if shared:
+        notes(*filter(None, [expected.shortfall]))
+    elif ruled:
+        news(f"forecast: {before(expected, seconds_per_surface(scene, sampler))}")
+
+
+_VALUES = "KEY=VALUES, such as grading.gamma=0.2:2:10 or =0.5,1,2"
+
+
+def _value(text: str) -> Any:
+    """Return what a text is as TOML, a number such as .5, or the text."""
+    value = as_value(text)
+    with suppress(ValueError):
+        return float(value) if isinstance(value, str) else value
+    return value
+
+
+def _axes(given: list[str], option: str, call: Call) -> dict[str, list[Any]]:  # noqa: ARG001
+    """Return lists of values by key."""
+    axes: dict[str, list[Any]] = {}
+    for text in given:
+        key, words = pair(text, option, _VALUES)
+        parts = [_value(part) for part in words.split(":")]
+        if len(parts) == 3 and not any(isinstance(part, str) for part in parts):
+            axes[key] = ranged(words, f"{option} {key}")
+        else:
+            axes[key] = [_value(word) for word in words.split(",")]
+    return axes
+
+
+def sweep(
+    scene: Cautioned,
+    *,
+    over: Annotated[dict[str, list[Any]], Kind(action="append", read=_axes)],
+    zip: bool = False,  # noqa: A002
+    plan: bool = False,
+    output: Annotated[Path, file_out(HDF5, "out/{}.sweep.h5", grows=True, dry="plan")],
+    threads: Threads = None,
+    jobs: Jobs = None,
+    dask: Dask = None,
+    shard: Share = None,
+) -> None:
+    """Draw many scenes at once on the same surfaces: means, deviations, paired ratios; resumes.
+
+    Parameters
+    ----------
+    scene : SCENE
+        TOML file with what all points have in common
+    over : KEY=VALUES
+        a key of the scene and its values, such as ensemble.n_asperities=1e4,1e5 or grading.gamma=0.2:2:10
+        (A:B:N for N of them from A to B, at equal steps); repeat for more axes
+    zip
+        combine the first values of all keys into one point, and so on
+    plan
+        print what would be drawn and how long it takes, without drawing
+    output : FILE.h5
+        the sweep
+
+    Examples
+    --------
+    mcgw sweep runs/demo.toml --over grading.gamma=0.2:2:10 -o gamma.h5
+    """
+    from mcgw.jobs.running import sweep as drawn
+    from mcgw.reports.text import ratios_in_words
+    from mcgw.sweeps.axes import axes_of
+
+    if plan:
+        from mcgw.reports.plan import sweep_plan_text
+        from mcgw.sweeps.points import Points
+
+        return print(sweep_plan_text(Points.of(scene, axes_of(over, zipped=zip))))
+    with drawing(threads, jobs, dask, shard) as how:
+        found = drawn(scene, over, zipped=zip, path=output, **how)
+    if shard is not None:
+        return news(share_done(shard, output, found))
+    ratios = ratios_in_words(found)
+    news(f"{output}: {found.axes.size} scenes, seed {scene.seed}", *ratios[:1])
+    details(*ratios[1:])
+    news(f"next: mcgw compare {output}")
+    return details(found)
+
+
+def merge(file: Annotated[Path, file_out(HDF5, grows=True)]) -> None:
+    """Merge the blocks of a run or sweep that several jobs drew (--shard i/n) into one file.
+
+    Parameters
+    ----------
+    file : FILE
+        the file to make, as given to run -o
+
+    Examples
+    --------
+    mcgw merge demo.h5
+    """
+    from mcgw.ensemble.ensemble import Ensemble
+    from mcgw.formats.files import state_of
+    from mcgw.jobs.making import merge as merged
+
+    before = state_of(file)
+    found = merged(file)
+    done = "was finished before, " if state_of(file) == before else ""
+    if isinstance(found, Ensemble):
+        scene, made = found.scene, f"{found.n_surfaces} surfaces"
+    else:
+        scene, made = found.scenes[0], f"{found.axes.size} scenes"
+    news(f"{file}: {done}{made}, seed {scene.seed}", f"next: mcgw compare {file}")

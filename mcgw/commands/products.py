@@ -1,0 +1,157 @@
+"""What others read: ``mcgw report``, ``mcgw figures``, and tables for programs by ``mcgw export``."""
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from mcgw.commands.kinds import MaybeScene, SceneOrFile, file_in, file_out, values
+from mcgw.commands.outputs import CSV, HTML, TABLE_OR_FIGURE, Format, Output, check_outputs
+from mcgw.commands.voice import details, news, tell_cautions
+
+
+def report(
+    file: Annotated[Path, file_in("FILE", "file of an ensemble (HDF5)")],
+    *,
+    output: Annotated[Path, file_out(HTML, "{}.html")],
+    pressures: Annotated[list[float] | None, values("Pa")] = None,
+) -> None:
+    """Write a report: one HTML page with figures, tables, verdict and provenance.
+
+    Parameters
+    ----------
+    output : HTML
+        the page
+    pressures : P
+        nominal pressures of the answers: kPa, MPa, GPa; default: round ones that the separations span
+
+    Examples
+    --------
+    mcgw report demo.h5 -o demo.html
+    """
+    from mcgw.formats.files import write_whole
+    from mcgw.reports.html import report_html
+    from mcgw.store.ensembles import open_ensemble, read_attributes
+
+    ensemble = open_ensemble(file)
+    page = report_html(ensemble, read_attributes(file), pressures)
+    write_whole(output, [page.encode()])
+    news(f"{output}: report, {len(page.encode()) / 1e6:.2f} MB; open it in a browser")
+    tell_cautions(ensemble, f"mcgw show {file}")
+
+
+def figures(
+    *,
+    output: Path = Path("figures"),
+    scene: MaybeScene = None,
+    only: list[str] | None = None,
+    format: list[str] | None = None,  # noqa: A002
+    list: bool = False,  # noqa: A002
+    csv: bool = False,
+) -> None:
+    """Draw Figures 1-6 of the paper with Monte-Carlo points, and some more; or the figures of a scene.
+
+    Parameters
+    ----------
+    output : DIR
+        folder
+    scene : SCENE
+        draw this scene beside its homogeneous reference instead
+    only : NAME
+        only these figures; default: all that apply
+    format : FORMAT
+        png, pdf, svg, ...; default: png
+    list
+        print the names of all figures without drawing
+    csv
+        also write the numbers of each figure
+
+    Examples
+    --------
+    mcgw figures --scene mine.toml --only figure-2 equal-load -o figures
+    """
+    from mcgw.figures.catalogue import CATALOGUE, figures_of, of_paper
+    from mcgw.figures.compared import Compared
+    from mcgw.figures.panels import save
+    from mcgw.formats.files import together
+
+    names = [*CATALOGUE]
+    if list:
+        return print(*names, sep="\n")
+    for name in only or ():
+        if name not in names:
+            raise ValueError(f"--only {name}: no such figure; give one of {', '.join(names)}")
+    formats = [given.lower().removeprefix(".") for given in format or ["png"]]
+    files = {
+        name: [output / f"{name}.{ending}" for ending in (*formats, *["csv"] * csv)] for name in only or names
+    }
+    check_outputs(Output(path, TABLE_OR_FIGURE) for paths in files.values() for path in paths)
+    drawn: tuple[Path, ...] = ()
+    with together():
+        for name, data in figures_of(of_paper() if scene is None else Compared(scene), only or names):
+            if isinstance(data, str):
+                (news if only else details)(f"{name}: not drawn: {data}")
+                continue
+            save(data, *files[name])
+            drawn += tuple(files[name])
+    details(*drawn)
+    where = f"{output / '*'}.{formats[0]}" if len(formats) == 1 else output
+    number = len({path.stem for path in drawn})
+    return news(f"{where}: {number} figure{'s' * (number != 1)}; mcgw figures --list for their names")
+
+
+def export(
+    source: SceneOrFile,
+    *,
+    to: Literal["calculix", "abaqus", "moose", "comsol", "json"],
+    table: Literal[
+        "pressure-gap", "conductance-pressure", "conductance-gap", "stiffness-pressure"
+    ] = "pressure-gap",
+    points: int = 40,
+    pressures: Annotated[list[float] | None, values("Pa")] = None,
+    quantile: list[float] | None = None,
+    units: Literal["SI", "mm-N-s"] = "SI",
+    output: Path,
+) -> None:
+    """Write pressure, conductance or stiffness as a table for a finite-element program.
+
+    Parameters
+    ----------
+    source : SCENE_OR_FILE
+        scene (TOML), whose surfaces are drawn as needed; or an ensemble file (HDF5)
+    to
+        the program; json: one file with all columns against the gap in SI units, and their origin
+    table
+        the quantity and its argument
+    points : N
+        number of rows
+    pressures : P
+        nominal pressures, such as 10kPa:20MPa:30; default: those that the separations of the scene span
+    quantile : Q
+        quantiles over the surfaces, besides the mean; default: 0.05 and 0.95
+    units
+        units of the files
+    output : FILE
+        file of the mean: .inp, for moose .csv, for comsol .txt, for json .json; quantiles and a joint table
+        go beside it
+
+    Examples
+    --------
+    mcgw export mine.toml --to calculix --units mm-N-s -o contact.inp
+    """
+    from mcgw.exports.programs import PROGRAMS
+    from mcgw.exports.writing import export as exported, files_of_export
+
+    *tables, together = files_of_export(output, quantile)
+    if to == "json":
+        check_outputs([Output(output, Format("a table", (".json",)))])
+    else:
+        form = Format(f"a table for {to}", PROGRAMS[to].endings)
+        check_outputs([*(Output(path, form) for path in tables), Output(together, CSV)])
+    made = exported(
+        source, output, to=to, table=table, points=points, pressures=pressures, quantiles=quantile,
+        units=units,
+    )  # fmt: skip
+    words = ["pressure, area and conductance against the gap"]
+    if to != "json":
+        words = [f"{table}, mean over the surfaces", *["the same for a quantile"] * (len(made) - 2)]
+        words.append("all curves")
+    news(*(f"{path}: {what}" for path, what in zip(made, words, strict=True)))
