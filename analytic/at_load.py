@@ -35,7 +35,7 @@ _EXACT, _AT_LAST = 2e-6, 1e-3  # of its mean and its root mean square; with most
 _ALL = 1e-6  # of what surfaces hold that is lost with those of heavy tails; else that of all is known better
 _DEEPEST = 20.0  # penetration over sigma that no asperity reaches
 _PARTS = np.array([0.25, 0.5, 0.75, 1.0])  # of the penetration at which one asperity has all of the load
-_CELLS = 8192  # of the heights, at least
+_CELLS = 4096  # of the heights, at least
 _STEP = 3e-4  # of differences, over the separation or the penetration of an asperity with all of the load
 _GRID, _SPREADS = 4096, 12.0  # points, and standard deviations of the given sum, over which others bear it
 
@@ -111,7 +111,8 @@ def specimen_moments(model: Any, given: str, value: float, names: Sequence[str])
 
 def _at_last(model: Any, several: Sequence[str], value: float, high: float) -> tuple[Array, Array]:
     """Means and variances of the separation and of each sum, of surfaces that are not above the last one."""
-    mean, square = _gains(model, several, value, high)[1]
+    (alone,) = _deepest(model, several[0], value, np.array([high]))
+    mean, square = _gains(model, several, value, high, float(alone))[1]
     variance = square - mean**2
     of_all, std = (np.array([float(of(name, high)) for name in several]) for of in (model.mean, model.std))
     if np.allclose([mean, square], [of_all, of_all**2 + std**2], rtol=_ALL, atol=0):
@@ -126,8 +127,10 @@ def _integrated(
     """Means and standard deviations of the separation and of each sum, from those at the last separation."""
     high, (start, variance) = ends[-1], last
     change = np.zeros_like(start)
-    for h, width in zip(*_lifts(*ends, nodes), strict=True):
-        lower, _, (rates, of_squares) = _gains(model, several, value, float(h))
+    places, widths = _lifts(*ends, nodes)
+    alone = _deepest(model, several[0], value, places)
+    for h, width, penetration in zip(places.tolist(), widths, alone.tolist(), strict=True):
+        lower, _, (rates, of_squares) = _gains(model, several, value, h, penetration)
         change += width * np.append(-lower, rates)
         squares = np.append(2 * (high - h) * lower, of_squares - 2 * start[1:] * rates)
         variance = variance + width * squares
@@ -153,21 +156,23 @@ def _ends(model: Any, given: str, value: float) -> tuple[float, float, float]:
     return low, middle, high
 
 
-def _gains(model: Any, several: Sequence[str], value: float, h: float) -> tuple[float, Array, Array]:
+def _gains(
+    model: Any, several: Sequence[str], value: float, h: float, alone: float
+) -> tuple[float, Array, Array]:
     """Share of surfaces that are lower than a separation, what these hold there, and the rates.
 
     What they hold and the rates, for each unit of separation, are means and mean squares of sums, the given
-    one first; of shape (2, several).
+    one first; of shape (2, several). One asperity `alone` has the value at that penetration.
     """
     n, poisson, given = model.number, model.count == "poisson", several[0]
     one, two = (0, 0) if poisson else (1, 2)  # of a Poisson number there are as many beside one
-    target = value / quantity_of(given).scale(model.surface)
-    step = _STEP * min(1 / (1 + abs(h)), float(_deepest(model, given, target, h, np.ones(1))[0]))
+    step = _STEP * min(1 / (1 + abs(h)), alone)
     at = h - step * np.arange(3)
 
     def parts(ratios: Array) -> Array:
         """Heights that are cut besides: beyond the highest an asperity alone has more than all."""
-        return np.asarray(h + np.multiply.outer(_PARTS, _deepest(model, given, target, h, ratios)))
+        own = _deepest(model, given, value, np.full(ratios.size, h), ratios) if model.curvature else [alone]
+        return np.asarray(h + np.multiply.outer(_PARTS, own))
 
     rule = model.summits.rule(at, model.grading, model.ways.among(several), parts)
     terms = rule.terms(several, at, model.grading, model.ways).reshape(-1, len(several), at.size)
@@ -245,16 +250,18 @@ def _units(model: Any, names: Sequence[str]) -> Array:
     return np.array([quantity_of(name).scale(model.surface) for name in names])
 
 
-def _deepest(model: Any, given: str, target: float, h: float, ratios: Array) -> Array:
-    """Penetration at which one asperity alone has the target, over the scale, by the ratio of its radius."""
+def _deepest(model: Any, given: str, value: float, h: Array, ratios: Array | None = None) -> Array:
+    """Penetrations over sigma at which one asperity alone has a value, by separation and ratio of radii."""
+    target = value / quantity_of(given).scale(model.surface)
 
     def excess(penetration: Array, which: Ints) -> Array:
-        s = h + penetration
-        own = model.ways.of(given).with_radii(ratios[which])
-        return np.asarray(own.terms([given], h, s, model.grading(s))[0] - target)
+        s = h[which] + penetration
+        own = model.ways.of(given)
+        own = own if ratios is None else own.with_radii(ratios[which])
+        return np.asarray(own.terms([given], h[which], s, model.grading(s))[0] - target)
 
-    deepest = np.full_like(ratios, _DEEPEST)
-    has = np.flatnonzero(excess(deepest, np.arange(ratios.size)) > 0)
+    deepest = np.full_like(h, _DEEPEST)
+    has = np.flatnonzero(excess(deepest, np.arange(h.size)) > 0)
     first, unit = np.zeros(has.size), np.ones(has.size)
     deepest[has] = sign_changes(lambda y, k: excess(y, has[k]), first, deepest[has], unit)
     return deepest

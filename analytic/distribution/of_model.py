@@ -170,8 +170,8 @@ def shares_upto(
     """
     if number < 1:
         return np.where(values >= 0, 1.0, 0.0)
-    one = replace(one_asperity(model, quantity, h, _CELLS[other] // 2), number=number)
-    return shares_at(one, values / quantity_of(quantity).scale(model.surface), _POINTS[other] // 4)
+    one = replace(one_asperity(model, quantity, h, _CELLS[other] // 4), number=number)
+    return shares_at(one, values / quantity_of(quantity).scale(model.surface), _POINTS[other] // 8)
 
 
 def _check_falling(model: Any, quantity: str, h: float) -> None:
