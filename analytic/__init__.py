@@ -42,21 +42,20 @@ from analytic.equations import (
     mean,
     mean_modulus,
     plasticity_index,
+    ratio_at_equal_load,
     stiffness,
     stiffness_ratio,
 )
 from analytic.gradings import Clipped, Custom, Exponential, Grading, Homogeneous, Table
 from analytic.height_rule import Fluctuations, HeightRule
-from analytic.height_table import HeightTable
 from analytic.heights import ExponentialHeights, Gaussian, HeightLaw, Weibull
 from analytic.integrals import fn, fn_paper, fn_scaled
-from analytic.inversion import ratio_at_equal_load
-from analytic.law_rule import extent
 from analytic.laws import ContactLaw, Film, Hertz, Layer
-from analytic.measured_summits import MeasuredHeights, MeasuredRadii
+from analytic.measured_summits import HeightTable, MeasuredHeights, MeasuredRadii
 from analytic.model import Cumulants, Model
 from analytic.nayak import Nayak
 from analytic.piecewise import PiecewiseSeries
+from analytic.quadrature import extent
 from analytic.quantities import (
     ALL_QUANTITIES,
     JOINT,
@@ -69,9 +68,8 @@ from analytic.quantities import (
     Quantity,
     quantity_of,
 )
-from analytic.resolution import first_negative, resolved_breaks
+from analytic.resolution import bends, first_negative, is_data, name_of, resolved, resolved_breaks
 from analytic.scipy_heights import ScipyHeights
-from analytic.series import bends, is_data, name_of, resolved
 from analytic.surface import Body, SpectralMoments, Surface, composite_modulus
 
 if TYPE_CHECKING:

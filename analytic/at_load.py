@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from analytic.arrays import Array, Ints
-from analytic.distribution.of_model import SCORES, between, cells_between, scores_of, shares_upto
+from analytic.exact_law import SCORES, between, cells_between, scores_of, shares_upto
 from analytic.height_rule import HeightRule
 from analytic.measured_summits import MeasuredHeights
 from analytic.quadrature import gauss_legendre
@@ -174,7 +174,7 @@ def _gains(
         own = _deepest(model, given, value, np.full(ratios.size, h), ratios) if model.curvature else [alone]
         return np.asarray(h + np.multiply.outer(_PARTS, own))
 
-    rule = model.summits.rule(at, model.grading, model.ways.among(several), parts)
+    rule = model.rule(at, several, parts)
     terms = rule.terms(several, at, model.grading, model.ways).reshape(-1, len(several), at.size)
     now, near, far = np.moveaxis(terms * _units(model, several)[:, None], -1, 0)
     p, added = np.append(rule.probabilities, rule.below), np.append(now[:, 0], 0.0)

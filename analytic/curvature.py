@@ -61,17 +61,16 @@ class CurvatureGivenHeight:
     def _mu(self) -> Array:
         return np.asarray(math.sqrt(2) * self._tables.rho * self.x)
 
-    @cached_property
-    def _whole(self) -> Array:
-        """Integral of `_parts` over all g."""
-        return self._tables.density(self.x) * math.sqrt(2 * math.pi / 3)
-
-    def _parts(self, g: Array) -> Array:
-        """``exp(g^2/2)`` times the integral over tau > g; far below over a factor that the height decides."""
+    def _logarithm(self, g: Array) -> Array:
+        """Of the density of the height and of a curvature `g` together, over the cube of `g`."""
         v, mu = self._v, self._mu
         z = (mu / math.sqrt(1 + v) - math.sqrt(1 + v) * g) / math.sqrt(v)
-        over = g * g - mu * mu / (1 + v) + np.minimum(mu, 0.0) ** 2 / v
-        return np.asarray(np.exp(log_ndtr(z) + over / 2) / math.sqrt(1 + v))
+        over = (g * g - mu * mu / (1 + v) - self.x**2) / 2
+        return np.asarray(log_ndtr(z) + over - math.log(2 * math.pi / 3 * (1 + v)) / 2)
+
+    def _parts(self, g: Array) -> Array:
+        """Density of `g` over its cube."""
+        return np.exp(self._logarithm(g) - self._tables.log_density(self.x))
 
     def edges(self, low: Array, high: Array) -> Array:
         """Return ends of pieces on which the law is smooth, between two curvatures at each height: (6, n)."""
@@ -87,11 +86,11 @@ class CurvatureGivenHeight:
 
     def pdf(self, g: Array) -> Array:
         """Probability density at `g`, shape (n,)."""
-        return g**3 * self._parts(g) / self._whole
+        return g**3 * self._parts(g)
 
     def with_height(self, g: Array) -> Array:
         """Probability density of the height and of a curvature `g` together, shape (n,)."""
-        return g**3 * self._parts(g) * self._tables.envelope(self.x) / math.sqrt(2 * math.pi / 3)
+        return np.asarray(g**3 * np.exp(self._logarithm(g)))
 
     def elasticity(self, g: Array) -> Array:
         """``d log(density)/d log(g)``."""
@@ -103,7 +102,7 @@ class CurvatureGivenHeight:
     def between(self, low: Array, high: Array) -> Array:
         """Probability of a curvature between two."""
         g, w = panelled(self.edges(low, high))
-        return np.asarray((w * g**3 * self._parts(g)).sum(axis=0) / self._whole)
+        return np.asarray((w * self.pdf(g)).sum(axis=0))
 
     def sf(self, low: Array) -> Array:
         """Probability of a larger curvature."""
@@ -114,7 +113,7 @@ class CurvatureGivenHeight:
         low = np.full_like(self.x, flattest)
         high = np.maximum(self.highest(low), low)
         y, w = panelled(np.sqrt(self.edges(low, high)))  # of the root all powers that are asked for are whole
-        rest = (w * 2 * y ** (7 - 2 * power) * self._parts(y * y)).sum(axis=0) / self._whole
+        rest = (w * 2 * y ** (7 - 2 * power) * self._parts(y * y)).sum(axis=0)
         return np.asarray(rest if flattest == 0 else rest + flattest**-power * self.between(0 * low, low))
 
 

@@ -12,9 +12,13 @@ from numpy.typing import ArrayLike
 from analytic.arrays import Array
 from analytic.gradings import Custom, Grading, Homogeneous
 from analytic.heights import GAUSSIAN, HeightLaw
-from analytic.integrals import quotient
+from analytic.integrals import fn, quotient
 from analytic.model import Model
+from analytic.quantities import QUANTITIES
+from analytic.roots import last_separations
 from analytic.surface import Surface
+
+_GRID = np.concatenate([np.linspace(-40, 10, 251), np.geomspace(10.5, 1000, 60)])  # separations
 
 
 def mean(
@@ -132,6 +136,49 @@ def stiffness_ratio(h: ArrayLike, grading: Grading, *, heights: HeightLaw = GAUS
     ``F*_{1/2}(h)/F_{1/2}(h)``, in the shape of `h`.
     """
     return quotient(h, (0.5, grading), (0.5, None), heights)
+
+
+def ratio_at_equal_load(
+    quantity: str, h: ArrayLike, grading: Grading, *, heights: HeightLaw = GAUSSIAN
+) -> Array:
+    """Return a mean of the graded surface over that of the homogeneous one at equal load, by Hertz's law.
+
+    Parameters
+    ----------
+    quantity : {"area", "stiffness", "contacts", "conductance"}
+        What to compare.
+    h : array_like
+        Reduced separations of the homogeneous surface, which set the load.
+    grading : Grading
+        E*(s)/E*.
+    heights : HeightLaw, optional
+        Law of the heights.
+
+    Returns
+    -------
+    ndarray
+        ``F*_n(h2)/F_n(h)`` with h2 from ``F*_{3/2}(h2) = F_{3/2}(h)``, in the shape of `h`.
+
+    Examples
+    --------
+    Stiffer tips conduct *less* at a given load, the opposite of the paper's conclusion:
+
+    >>> import analytic
+    >>> float(analytic.ratio_at_equal_load("conductance", 2.0, analytic.Exponential(2.0)).round(3))
+    0.548
+    """
+    q = QUANTITIES[quantity]
+    h = np.asarray(h, dtype=np.float64)
+
+    def log_load(at: ArrayLike) -> Array:
+        return fn(1.5, at, grading, log=True, heights=heights)
+
+    target = fn(1.5, h, log=True, heights=heights)
+    other = last_separations(log_load, target, _GRID, log_load(_GRID), "load")
+
+    # Relative to the loads, which are equal: hardly sensitive to the last digits of h2, and no underflow.
+    graded = quotient(other, (q.exponent, grading if q.modulus else None), (1.5, grading), heights)
+    return graded / quotient(h, (q.exponent, None), (1.5, None), heights)
 
 
 def mean_modulus(

@@ -19,11 +19,10 @@ from analytic.arrays import Array, Ints
 from analytic.curvature import RadiusRule, RandomCurvature
 from analytic.gradings import Grading
 from analytic.heights import GAUSSIAN, HeightLaw
-from analytic.law_rule import TINY, ends_of, regular_edges
 from analytic.laws.branch import Branch
 from analytic.laws.law import ContactLaw
 from analytic.measured_summits import MeasuredHeights, MeasuredRadii
-from analytic.quadrature import NODES, SPANS, WIDEST, in_pieces
+from analytic.quadrature import NODES, SPANS, TINY, WIDEST, ends_of, in_pieces, regular_edges
 from analytic.resolution import resolved_breaks
 
 Count = Literal["fixed", "poisson"]
@@ -81,7 +80,7 @@ class HeightRule:
         """Return the rule for these reduced separations, this grading, and laws of the heights and radii.
 
         `branches` are those of what is summed, `cuts` gives heights at which it jumps or bends besides,
-        `powers` are the highest ones of modulus and approach, as of `analytic.law_rule.ends_of`. Heights
+        `powers` are the highest ones of modulus and approach, as of `analytic.quadrature.ends_of`. Heights
         increase, of each radius; those of a list keep its order, each as probable as another.
         """
         branches, h = tuple(branches), np.unique(np.asarray(separations, dtype=np.float64))
@@ -140,9 +139,17 @@ class HeightRule:
         return Fluctuations(p, mean, parts)
 
     def terms(
-        self, quantities: Sequence[str], separations: ArrayLike, grading: Grading, ways: Branch
+        self,
+        quantities: Sequence[str],
+        separations: ArrayLike,
+        grading: Grading,
+        ways: Branch,
+        slope: bool = False,
     ) -> Array:
-        """Return what an asperity adds, over scales of quantities: shape (m, quantities * separations)."""
+        """Return what an asperity adds, over scales of quantities: shape (m, quantities * separations).
+
+        Or with `slope` how that rises as it is pressed, within a piece of the law.
+        """
         h, modulus = np.asarray(separations, dtype=np.float64), grading(self.heights)
         if not ways.law.elastic:
             _check(self.heights, modulus, ways.law)
@@ -154,7 +161,7 @@ class HeightRule:
             for first in range(0, self.heights.size, step):
                 part = slice(first, first + step)
                 own = branch.with_radii(None if self.ratios is None else self.ratios[part])
-                found = own.terms(several, h[:, None], self.heights[part], modulus[part])
+                found = own.terms(several, h[:, None], self.heights[part], modulus[part], slope=slope)
                 terms[part, which] = found.transpose(2, 0, 1)
         return terms.reshape(self.heights.size, len(quantities) * h.size)
 

@@ -11,8 +11,7 @@ from analytic.arrays import Array
 from analytic.gradings import Grading, Homogeneous
 from analytic.height_rule import HeightRule
 from analytic.heights import GAUSSIAN, Gaussian, HeightLaw, exp_minus_half_square
-from analytic.law_rule import ends_of, regular_edges
-from analytic.quadrature import NODES, gauss_legendre, towards_both_ends
+from analytic.quadrature import NODES, ends_of, gauss_legendre, regular_edges, towards_both_ends
 from analytic.resolution import resolved_breaks
 
 

@@ -6,6 +6,7 @@ What an asperity adds in the mean is a sum over a rule of heights and radii, by 
 from collections.abc import Callable, Sequence
 from dataclasses import KW_ONLY, dataclass, field
 from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,19 +14,21 @@ from numpy.typing import ArrayLike
 from analytic.arrays import Array
 from analytic.curvature import RandomCurvature
 from analytic.gradings import Grading, Homogeneous
-from analytic.height_rule import Count, HeightRule
+from analytic.height_rule import Count, Cuts, HeightRule
 from analytic.heights import Gaussian, HeightLaw
-from analytic.inversion import LOWEST, last_separations
 from analytic.laws.branch import Branch
 from analytic.laws.film import Film
 from analytic.laws.law import ContactLaw
-from analytic.measured_summits import MeasuredRadii
+from analytic.measured_summits import MeasuredHeights, MeasuredRadii
 from analytic.quadrature import REACH
 from analytic.quantities import NOT_SUMS, SEPARATIONS, Quantity, quantity_of
-from analytic.summits import Summits
+from analytic.roots import last_separations
 from analytic.surface import Surface
 
-_HIGHEST = 1000.0  # separation that is looked at
+LOWEST, _HIGHEST = -40.0, 1000.0  # separations that are looked at
+_RAREST = 1e-300  # share of heights above the highest separation that is looked at
+_TOGETHER, _SHARED = 12, 1e-12  # separations that share a rule, and least share that touches at the last
+_KEPT = 4_000_000  # points of rules over heights and radii
 _STEP = 2e-3  # of differences: where the mean has 12 digits, those of the slope are off by 1e-9 of the mean
 
 
@@ -172,7 +175,7 @@ class MeanModel:
         if not np.all(np.isfinite(target) & (target > 0)):
             raise ValueError(f"{quantity} = {value!r}: give finite values > 0 {q.unit}")
         grid = self._grid(q)
-        rough = self.summits.rule(grid[:1], self.grading, power=1)  # to a percent, but in tails
+        rough = self._rule(grid[:1], power=1)  # to a percent, but in tails
         with np.errstate(divide="ignore", invalid="ignore"):
             about = np.log(rough.mean(rough.terms([q.name], grid, self.grading, self.ways)))
             found = partial(self._mean, q)
@@ -180,12 +183,14 @@ class MeanModel:
                 lambda h: np.log(found(h)), np.log(target / self._unit(q)), grid, about, quantity
             )
 
-    def rule(self, separations: ArrayLike, quantities: Sequence[str] = ("load",)) -> HeightRule:
+    def rule(
+        self, separations: ArrayLike, quantities: Sequence[str] = ("load",), cuts: Cuts | None = None
+    ) -> HeightRule:
         """Heights and probabilities for integrals of these quantities of an asperity at these separations."""
         h = np.asarray(separations, dtype=np.float64)
         for name in quantities:
             self._asked(name, h)
-        return self.summits.rule(h, self.grading, self.ways.among(quantities))
+        return self._rule(h, self.ways.among(quantities), cuts)
 
     @cached_property
     def ways(self) -> Branch:
@@ -193,10 +198,34 @@ class MeanModel:
         law = ContactLaw() if self.law is None else self.law.on(self.surface)
         return Branch(law, self.unload_from, None if self.film is None else self.film.on(self.surface))
 
+    @property
+    def listed(self) -> bool:
+        """Whether there is a list of summits, so that means change summit by summit."""
+        return isinstance(self.heights, MeasuredHeights)
+
+    def _rule(
+        self, h: Array, branches: tuple[Branch, ...] = (), cuts: Cuts | None = None, **powers: float
+    ) -> HeightRule:
+        """Return `HeightRule.over` the summits; the same again, unless there are `cuts`."""
+        key = (branches, h.tobytes(), *powers.values())  # each quantity and statistic asks again
+        if cuts is None and key in self._rules:
+            return self._rules[key]
+        new = HeightRule.over(
+            h, self.grading, self.heights, self.curvature, branches=branches, cuts=cuts, **powers
+        )
+        if cuts is None:
+            while sum(kept.heights.size for kept in self._rules.values()) > _KEPT:
+                self._rules.pop(next(iter(self._rules)))
+            self._rules[key] = new
+        return new
+
     @cached_property
-    def summits(self) -> Summits:
-        """Their heights and radii."""
-        return Summits(self.heights, self.curvature)
+    def _rules(self) -> dict[tuple[Any, ...], HeightRule]:
+        return {}
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave out rules, which are large: other processes compute their own."""
+        return {name: value for name, value in vars(self).items() if name != "_rules"}
 
     def _mean(self, q: Quantity, h: ArrayLike) -> Array:
         """Mean of what one asperity adds, over the scale, at separations of any shape."""
@@ -208,8 +237,8 @@ class MeanModel:
             if q.base != "load":
                 raise ValueError(f"quantity = {q.name!r}: its slope is not known; give 'load_unloading'")
             return q.exponent * self._mean(quantity_of("load_slope_unloading"), h)
-        if self.summits.listed or (self.ways.law.hertz and q.exponent >= 1):  # no asperity jumps
-            return self._in_parts(h, partial(self._slope_by, quantity_of(q.base)))
+        if self.listed or (self.ways.law.hertz and q.exponent >= 1):  # no asperity jumps
+            return self._in_parts(h, partial(self._mean_by, q, slope=True))
         if q.base == "contacts":
             return self.heights.pdf(np.asarray(h, dtype=np.float64))
         return fall_of(partial(self._mean, q), h)
@@ -219,52 +248,49 @@ class MeanModel:
         flat = np.ravel(np.asarray(h, dtype=np.float64))
         if not np.all(np.isfinite(flat)):
             raise ValueError("h: every separation must be finite")
-        parts = self.summits.together(flat)
+        parts, order = [], np.argsort(flat)
+        touching = self.heights.sf(flat[order])
+        while order.size:  # the lowest hardly needs what a rule leaves out
+            near = np.count_nonzero(touching >= _SHARED * touching[0])
+            few = 1 if self.listed else min(near, _TOGETHER)
+            parts.append(order[:few])
+            order, touching = order[few:], touching[few:]
         found = [function(flat[few]) for few in parts]
         rows = np.concatenate(found)[np.argsort(np.concatenate(parts))] if parts else flat
         return np.asarray(rows.reshape(np.shape(h) + rows.shape[1:]))
 
-    def _mean_by(self, q: Quantity, h: Array) -> Array:
+    def _mean_by(self, q: Quantity, h: Array, slope: bool = False) -> Array:
         rule = self._rule_of(q, h)
-        return rule.mean(rule.terms([q.name], h, self.grading, self.ways))
+        return rule.mean(rule.terms([q.name], h, self.grading, self.ways, slope=slope))
 
     def _rule_of(self, q: Quantity, h: Array) -> HeightRule:
         """Return a rule for the mean of one quantity, which there may be where there is no variance."""
-        branches = self.ways.among([q.name])
-        return self.summits.rule(h, self.grading, branches, power=1, exponent=q.exponent + 1)
+        return self._rule(h, self.ways.among([q.name]), power=1, exponent=q.exponent + 1)
 
     def _share_by(self, piece: int, h: Array) -> Array:
         rule = self._rule_of(quantity_of("contacts"), h)
-        s, e, branch = rule.heights, self.grading(rule.heights), self.ways.loading.with_radii(rule.ratios)
-        inside = np.stack([branch.pieces(x, s - x, e) == piece for x in h], axis=1)
+        branch, h = self.ways.loading.with_radii(rule.ratios), h[:, None]
+        pieces = branch.pieces(h, rule.heights - h, self.grading(rule.heights))
         with np.errstate(invalid="ignore"):
-            return np.asarray(rule.mean(inside) / self._mean_by(quantity_of("contacts"), h))
-
-    def _slope_by(self, q: Quantity, h: Array) -> Array:
-        rule = self._rule_of(q, h)
-        s, p = rule.heights, rule.probabilities
-        if not s.size:
-            return np.zeros(h.shape)
-        branch, e = self.ways.loading.with_radii(rule.ratios), self.grading(s)
-        return np.array([np.sum(p * branch.terms([q.base], x, s, e, slope=True)[0]) for x in h])
+            return np.asarray(
+                rule.mean((pieces == piece).T) / self._mean_by(quantity_of("contacts"), h.ravel())
+            )
 
     def _grid(self, q: Quantity) -> Array:
-        """Separations from where all touches to where probabilities underflow, or the highest height."""
-        top = min(self.summits.highest, _HIGHEST)
+        """Separations from where all touches to where probabilities underflow, or the highest height.
+
+        The lowest is that of the turn, or above it one that has no negative modulus.
+        """
+        top, low = min(float(self.heights.isf(np.array(_RAREST), 0.0)), _HIGHEST), LOWEST
         near = min(top, 12.0)
+        if not self.ways.law.elastic:
+            s = np.linspace(max(self.heights.support[0], -REACH), near, 4001)
+            negative = np.flatnonzero(self.grading(s) < 0)
+            allowed = s[np.minimum(negative[-1:] + 1, s.size - 1)]
+            low = float(max(self.ways.of(q.name).lowest(LOWEST), *allowed, LOWEST))
         far = np.geomspace(near, top, 25)[1:] if top > near else np.empty(0)
         grid = np.concatenate([np.linspace(LOWEST, -4, 10)[:-1], np.linspace(-4, near, 41), far])
-        low = self._lowest(q, near)
         return np.concatenate([[low], grid[grid > low]])
-
-    def _lowest(self, q: Quantity, near: float) -> float:
-        """Lowest separation of the grid: that of the turn, or above it one that has no negative modulus."""
-        if self.ways.law.elastic:
-            return LOWEST
-        lowest = float(self.ways.of(q.name).lowest(LOWEST))
-        s = np.linspace(max(self.heights.support[0], -REACH), near, 4001)
-        negative = np.flatnonzero(self.grading(s) < 0)
-        return max(lowest, float(s[min(negative[-1] + 1, s.size - 1)])) if negative.size else lowest
 
     def _asked(self, quantity: str, h: ArrayLike = np.inf) -> Quantity:
         """Return a quantity that is known at these separations."""

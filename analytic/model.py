@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic.arrays import Array
+from analytic.curvature import RandomCurvature
 from analytic.height_rule import Fluctuations
 from analytic.mean_model import MeanModel
 from analytic.quantities import quantity_of
@@ -176,7 +177,7 @@ class Model(MeanModel):
         h, rule = np.asarray(separations, dtype=np.float64), self.rule(separations, quantities)
         terms = rule.terms(quantities, h, self.grading, self.ways)
         result = rule.fluctuations(terms, self.count)
-        if not self.summits.unbounded:
+        if not isinstance(self.curvature, RandomCurvature) or np.isfinite(self.curvature.largest):
             return result
         return replace(result, radius=np.repeat([q.radius for q in asked], h.size))
 
@@ -205,7 +206,7 @@ class Model(MeanModel):
         >>> (law.ppf([0.05, 0.5, 0.95]) / law.mean()).round(4)
         array([0.489 , 0.9659, 1.6275])
         """
-        from analytic.distribution import distribution_of  # few ask
+        from analytic.exact_law import distribution_of  # few ask
 
         return distribution_of(self, quantity, float(h))
 
@@ -229,7 +230,7 @@ class Model(MeanModel):
         ValueError
             If asperities adhere: several separations may then have the same load.
         """
-        from analytic.distribution import separation_law_of
+        from analytic.exact_law import separation_law_of
 
         return separation_law_of(self, load, quantity)
 

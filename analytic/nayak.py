@@ -8,11 +8,12 @@ curvature is normal ::
     x | tau ~ N(rho tau/sqrt(2), 1 - rho^2)
 
 Density and probabilities are integrals over tau of positive terms, in which nothing cancels, unlike in
-Nayak's closed form far down. They are taken once for each alpha, over the Gaussian factor by which they
-fall, and held as Chebyshev series.
+Nayak's closed form far down. They are taken once for each alpha, and their logarithms
+held as Chebyshev series.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache, partial
 
@@ -21,7 +22,7 @@ from numpy.typing import ArrayLike
 from scipy.special import log_ndtr
 
 from analytic.arrays import Array
-from analytic.heights import HeightLaw, exp_minus_half_square
+from analytic.heights import HeightLaw
 from analytic.piecewise import PiecewiseSeries, fitted
 from analytic.quadrature import panelled
 from analytic.surface import LEAST_ALPHA, SUMMIT_SPREAD
@@ -30,7 +31,7 @@ _TERMS = 24
 _WIDE = 9.5  # standard deviations, beyond which a normal density is 1e-20 of its largest value
 _LARGEST = 13.5  # curvature tau: exp(-tau^2/4) is 1e-20
 _FAR = 40.0  # standard deviations: beyond, densities underflow
-_STEPS = (0.0, 0.6, 1.2, 1.8, 2.5, 3.2, 4.0, 5.0, 6.0, 7.5, 9.0, 11.0, 13.0, 16.0, 20.0, 25.0, 32.0, _FAR)
+_STEPS = (0.0, 0.7, 1.4, 2.2, 3.2, 4.5, 6.5, 9.5, 14.0, 20.0, 28.0, _FAR)
 _PER_PIECE = 8  # points of the first guess of a quantile
 _STEPS_OF_NEWTON = 4
 _LEAST, _MOST = 1.501, 1e12
@@ -46,10 +47,7 @@ def _less_one(q: Array) -> Array:
 
 @dataclass(frozen=True)
 class NayakTables:
-    """What is integrated once for each alpha, in heights x over sqrt(m0).
-
-    Each series stands for a function over ``envelope``: ``exp(-x^2/2)`` for x >= 0 and, as heights become
-    rare faster below, ``exp(-x^2/(2 (1 - rho^2)))`` for x < 0.
+    """Logarithms of what is integrated once for each alpha, in heights x over sqrt(m0).
 
     Parameters
     ----------
@@ -75,70 +73,47 @@ class NayakTables:
         steps = np.array(_STEPS)
         return np.unique([*(-self.width * steps), *(self.width * steps), *steps[steps > self.width]])
 
-    def envelope(self, x: Array) -> Array:
-        """Return the Gaussian factor by which densities fall."""
-        return exp_minus_half_square(np.where(x < 0, x / self.width, x))
-
-    def log_envelope_step(self, x: Array, t: Array) -> Array:
-        """How the logarithm of the envelope changes from `x` to `x + t`."""
-        own = np.where(x < 0, self.width, 1.0)
-        other = np.where(x + t < 0, self.width, 1.0)
-        across = ((x / own) ** 2 - ((x + t) / other) ** 2) / 2
-        return np.where(own == other, -t * (x + t / 2) / own**2, across)
+    @cached_property
+    def log_density(self) -> PiecewiseSeries:
+        """Of the density of the heights."""
+        return fitted(self._log_density, self.edges, _TERMS)
 
     @cached_property
-    def density(self) -> PiecewiseSeries:
-        """Density over the envelope."""
-        return fitted(self._density, self.edges, _TERMS)
-
-    @cached_property
-    def below(self) -> PiecewiseSeries:
-        """Probability of a lower height, for x < 0 over the envelope."""
-        return fitted(partial(self._beyond, way=-1), self.edges[self.edges < 3.5], _TERMS)
-
-    @cached_property
-    def above(self) -> PiecewiseSeries:
-        """Probability of a higher height over the envelope, for x >= 0."""
-        return fitted(partial(self._beyond, way=1), self.edges[self.edges >= 0], _TERMS)
+    def log_shares(self) -> tuple[PiecewiseSeries, PiecewiseSeries]:
+        """Of the probabilities of a lower and of a higher height."""
+        below, above = (fitted(partial(self._log_share, way=way), self.edges, _TERMS) for way in (-1, 1))
+        return below, above
 
     @cached_property
     def guesses(self) -> tuple[Array, Array, Array]:
         """Heights, and logarithms of the probabilities below and above them."""
         parts = np.linspace(0, 1, _PER_PIECE, endpoint=False)
         x = np.append((self.edges[:-1, None] + np.diff(self.edges)[:, None] * parts).ravel(), self.edges[-1])
-        with np.errstate(divide="ignore"):
-            return x, np.log(self.shares(x)[0]), np.log(self.shares(x)[1])
+        below, above = self.log_shares
+        return x, below(x), above(x)
 
-    def shares(self, x: Array) -> tuple[Array, Array]:
-        """Probabilities of lower and of higher heights, each to full relative accuracy."""
-        envelope = self.envelope(x)
-        above = np.where(x < 0, 1.0, self.above(x) * envelope)
-        low = above > 0.5
-        below = np.where(low, self.below(x) * np.where(x < 0, envelope, 1.0), 1 - above)
-        return below, np.where(low, 1 - below, above)
-
-    def _rule(self, x: Array) -> tuple[Array, Array, Array]:
-        """Points u = tau/sqrt(v), ``v = 2 (1 - rho^2)``, weights with the share of summits, and x/width."""
+    def _logarithm(self, x: Array, exponent: Callable[[Array, Array], Array]) -> Array:
+        """Of the integral of ``2 (q - 1 + exp(-q)) exp(exponent)``, q = tau^2/2, over u = tau/sqrt(v)."""
         y, rho = x / self.width, self.rho
         a, begins = rho * y, y / rho  # of the two factors the one has its peak, the other its end there
         inner = [a - _WIDE, a + np.hypot(np.minimum(a, 0.0), _WIDE), begins - _WIDE, begins + _WIDE]
         most = np.hypot(_LARGEST / math.sqrt(2), np.maximum(x, 0.0) / rho) / self.width
-        edges = np.sort(np.clip([0 * x, *inner, most], 0, most), axis=0)
-        u, w = panelled(edges)
-        return u, w * 2 * _less_one((self.width * u) ** 2), y
+        u, w = panelled(np.sort(np.clip([0 * x, *inner, most], 0, most), axis=0))
+        terms = exponent(u, y)
+        largest = terms.max(axis=0)
+        sums = (w * 2 * _less_one((self.width * u) ** 2) * np.exp(terms - largest)).sum(axis=0)
+        return np.asarray(np.log(sums) + largest)
 
-    def _density(self, x: Array) -> Array:
-        u, w, y = self._rule(x)
-        a = self.rho * y
-        falling = np.exp(np.where(a < 0, u * (a - u / 2), -((u - a) ** 2) / 2))
-        return np.asarray((w * falling).sum(axis=0) * math.sqrt(3) / (2 * math.pi))
+    def _log_density(self, x: Array) -> Array:
+        over = self._logarithm(x, lambda u, y: -((u - self.rho * y) ** 2) / 2)
+        return over - x * x / 2 + math.log(math.sqrt(3) / (2 * math.pi))
 
-    def _beyond(self, x: Array, way: int) -> Array:
-        """Share of the summits above (1) or below (-1): over the envelope where they are the fewer."""
-        u, w, y = self._rule(x)
-        fewer = (x if way > 0 else np.minimum(y, 0.0)) ** 2 / 2
-        terms = w * np.exp(log_ndtr(way * (self.rho * u - y)) - (self.width * u) ** 2 / 2 + fewer)
-        return np.asarray(terms.sum(axis=0) * self.width * math.sqrt(3 / (2 * math.pi)))
+    def _log_share(self, x: Array, way: int) -> Array:
+        """Of the share of the summits above (1) or below (-1)."""
+        beyond = self._logarithm(
+            x, lambda u, y: log_ndtr(way * (self.rho * u - y)) - (self.width * u) ** 2 / 2
+        )
+        return beyond + math.log(self.width * math.sqrt(3 / (2 * math.pi)))
 
 
 @lru_cache(maxsize=64)
@@ -219,50 +194,44 @@ class Nayak(HeightLaw):
 
     def pdf(self, s: Array) -> Array:
         """Return Nayak's density, in reduced heights."""
-        x = self.over_rms(s)
-        return np.asarray(self.std * self._tables.density(x) * self._tables.envelope(x))
+        return np.asarray(self.std * np.exp(self._tables.log_density(self.over_rms(s))))
 
     def log_ratio(self, s: Array, t: Array) -> Array:
-        """Return the ratio of the envelope, and that of the rest."""
-        x, step = self.over_rms(s), self.std * np.asarray(t)
-        rest = np.log(self._tables.density(x + step) / self._tables.density(x))
-        return np.asarray(self._tables.log_envelope_step(x, step) + rest)
+        """Return the difference of the logarithms of the density."""
+        x, density = self.over_rms(s), self._tables.log_density
+        return np.asarray(density(x + self.std * np.asarray(t)) - density(x))
 
     def cdf(self, s: Array) -> Array:
         """Return the integral of the density from below."""
-        return self._tables.shares(self.over_rms(s))[0]
+        return np.exp(self._tables.log_shares[0](self.over_rms(s)))
 
     def sf(self, s: Array) -> Array:
         """Return the integral of the density from above."""
-        return self._tables.shares(self.over_rms(s))[1]
+        return np.exp(self._tables.log_shares[1](self.over_rms(s)))
 
     def ppf(self, p: Array, below: float = np.inf) -> Array:
         """Find the height by Newton's method on the logarithm of the smaller probability, or `below`."""
-        lower, higher = self._tables.shares(self.over_rms(below))
+        lower, higher = self.cdf(np.array(below)), self.sf(np.array(below))
         p = np.asarray(p, dtype=np.float64)
         found = self._at(p * lower, higher + (1 - p) * lower)
         return np.minimum(found if lower > 0 else below + 0 * p, below)
 
     def isf(self, p: Array, above: float = -np.inf) -> Array:
         """Return the quantile, counted from the top."""
-        lower, higher = self._tables.shares(self.over_rms(above))
+        lower, higher = self.cdf(np.array(above)), self.sf(np.array(above))
         p = np.asarray(p, dtype=np.float64)
         found = self._at(lower + (1 - p) * higher, p * higher)
         return np.maximum(found if higher > 0 else above + 0 * p, above)
 
     def _at(self, below: Array, above: Array) -> Array:
         """Reduced height with these probabilities on either side."""
-        x, log_below, log_above = self._tables.guesses
-        low = below < above
+        tables, (x, log_below, log_above), low = self._tables, self._tables.guesses, below < above
         with np.errstate(divide="ignore"):
             target = np.log(np.where(low, below, above))
         found = np.where(low, np.interp(target, log_below, x), np.interp(target, log_above[::-1], x[::-1]))
-        inside = np.isfinite(target)
         for _ in range(_STEPS_OF_NEWTON):
-            share = np.where(low, *self._tables.shares(found))
-            density = self._tables.density(found) * self._tables.envelope(found)
-            with np.errstate(all="ignore"):
-                step = (target - np.log(share)) * share / density
-            found = found + np.where(inside & np.isfinite(step), np.where(low, step, -step), 0.0)
+            share = np.where(low, *(series(found) for series in tables.log_shares))
+            step = (target - share) * np.exp(share - tables.log_density(found))
+            found = found + np.where(np.isfinite(target), np.where(low, step, -step), 0.0)
         ends = np.where(low, -np.inf, np.inf)
-        return np.where(inside, (found - self.mean) / self.std, ends)
+        return np.where(np.isfinite(target), (found - self.mean) / self.std, ends)

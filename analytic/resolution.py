@@ -1,15 +1,16 @@
-"""Where a grading varies: the heights between which it is resolved, and where it turns negative."""
+"""Where a grading varies: its pieces and the series that stand for it there, and negative moduli."""
 
-from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
 from analytic.arrays import Array
-from analytic.gradings import Grading
-from analytic.piecewise import chebyshev_points, to_coefficients
+from analytic.gradings import Clipped, Custom, Exponential, Grading, Homogeneous, Table
+from analytic.piecewise import MOST_PIECES, PiecewiseSeries, chebyshev_points, fitted, to_coefficients
 
+_LONG, _SHORT = 25, 13  # terms of polynomials: for Gauss rules, and to stand for a grading
 _WIDEST = 4.0
 _NEAR, _GROWTH = 64.0, 1.25  # heights up to here are looked at in equal steps, then in ever wider ones
 _EDGES = 10.0 ** -np.arange(3.0, 13.0)  # a steep ramp may begin right at an edge
@@ -18,48 +19,35 @@ _TINY = 2.0**-10
 _TOLERANCE = 1e-14
 _EVEN, _NARROW = 5.0, 2.0**-6  # greatest ratio of values on an interval, unless it is so narrow
 _OF_ONE = 2.0**-52  # rounding, as of 1 - tanh(s), that is not chased into narrow intervals
-_MOST = 4096
 _REMEMBERED = 256  # ranges, each of which every bound of a law and every slope asks again
 _NOISE = 2.0**-50  # of a grading, over its greatest value: more is a mistake
+_SLIVER = 64  # spacings of floats: pieces so narrow only close in on a jump
+_ABOUT = 2.0**-8  # a kink is what no polynomial describes up to here on either side
+_DATA = Homogeneous, Exponential, Table, PiecewiseSeries
 
 
-@dataclass(frozen=True)
-class _Fit:
-    """Polynomials that interpolate a grading, one on each interval.
+def _misfit(terms: int, grading: Grading, low: Array, high: Array, heights: Array) -> tuple[Array, Array]:
+    """How far a polynomial on each interval is from the grading at heights there, and how far it may be.
 
-    Parameters
-    ----------
-    terms : int
-        Of all of them.
-    even : bool, optional
-        Whether an interval, unless it is narrow, must have values of one size: then the polynomial is
-        as accurate next to each height as it is on the whole.
+    On an interval of a short one, unless it is narrow, values must have one size: then it is as accurate next
+    to each height as it is on the whole.
     """
-
-    terms: int
-    even: bool = False
-
-    def misfit(self, grading: Grading, low: Array, high: Array, heights: Array) -> tuple[Array, Array]:
-        """How far the polynomial on each interval is from the grading there, and how far it may be."""
-        width = (high - low)[:, None]
-        at_nodes, at_heights = grading(chebyshev_points(low, high, self.terms)), grading(heights)
-        basis = chebyshev.chebvander(2 * (heights - low[:, None]) / width - 1, self.terms - 1)
-        fit = np.einsum("ijk,ik->ij", basis, at_nodes @ to_coefficients(self.terms))
-        values = np.concatenate([at_nodes, at_heights], axis=1)
-        # A height is only known to its last digit: a slope of spread/width turns that into noise.
-        last_digit = np.spacing(np.maximum(np.abs(low), np.abs(high)))
-        noise = 4 * last_digit * np.ptp(values, axis=1) / width[:, 0]
-        size = np.abs(values)
-        misfit = np.abs(fit - at_heights).max(axis=1)
-        if self.even:
-            narrow = width[:, 0] <= _NARROW
-            uneven = size.max(axis=1) > _EVEN * size.min(axis=1)
-            misfit = np.where(uneven & ~narrow, np.inf, misfit)
-            noise = noise + np.where(narrow, _OF_ONE, 0.0)
-        return misfit, _TOLERANCE * size.max(axis=1) + noise
-
-
-_LONG, SHORT = _Fit(25), _Fit(13, even=True)
+    width = (high - low)[:, None]
+    at_nodes, at_heights = grading(chebyshev_points(low, high, terms)), grading(heights)
+    basis = chebyshev.chebvander(2 * (heights - low[:, None]) / width - 1, terms - 1)
+    fit = np.einsum("ijk,ik->ij", basis, at_nodes @ to_coefficients(terms))
+    values = np.concatenate([at_nodes, at_heights], axis=1)
+    # A height is only known to its last digit: a slope of spread/width turns that into noise.
+    last_digit = np.spacing(np.maximum(np.abs(low), np.abs(high)))
+    noise = 4 * last_digit * np.ptp(values, axis=1) / width[:, 0]
+    size = np.abs(values)
+    misfit = np.abs(fit - at_heights).max(axis=1)
+    if terms == _SHORT:
+        narrow = width[:, 0] <= _NARROW
+        uneven = size.max(axis=1) > _EVEN * size.min(axis=1)
+        misfit = np.where(uneven & ~narrow, np.inf, misfit)
+        noise = noise + np.where(narrow, _OF_ONE, 0.0)
+    return misfit, _TOLERANCE * size.max(axis=1) + noise
 
 
 def marks(low: float, high: float, step: float) -> list[float]:
@@ -71,40 +59,40 @@ def marks(low: float, high: float, step: float) -> list[float]:
     return [x for x in (*regular, *far, *(-x for x in far)) if low < x < high]
 
 
-def spread_over(low: Array, high: Array) -> Array:
+def _spread_over(low: Array, high: Array) -> Array:
     """Heights at which a polynomial on each interval is checked, shape (intervals, heights)."""
     return np.asarray(low[:, None] + (high - low)[:, None] * _CHECKS)
 
 
-def _rounding(fit: _Fit, grading: Grading, low: Array, high: Array) -> Array:
+def _rounding(terms: int, grading: Grading, low: Array, high: Array) -> Array:
     """Return the rounding noise of the grading: the misfit left on intervals 1000 times narrower."""
     width = np.maximum(_TINY * (high - low), 4 * np.spacing(np.maximum(np.abs(low), np.abs(high))))
     starts = [low + part * (high - low) for part in (0.19, 0.47, 0.83)]
-    left = [fit.misfit(grading, s, s + width, spread_over(s, s + width))[0] for s in starts]
+    left = [_misfit(terms, grading, s, s + width, _spread_over(s, s + width))[0] for s in starts]
     return np.asarray(np.median(left, axis=0))  # one of the three may lie on a jump
 
 
-def bisected(fit: _Fit, grading: Grading, edges: Array, most: int, noise_of_one: float = _NOISE) -> Array:
+def _bisected(terms: int, grading: Grading, edges: Array, noise_of_one: float = _NOISE) -> Array:
     """With further edges, until polynomials describe the grading on all intervals.
 
     What it seems to be off by on ever narrower intervals is its rounding noise, up to `noise_of_one` of its
-    greatest value. If that takes more edges than `most`, it is a ValueError.
+    greatest value. If that takes more than 4096 pieces, it is a ValueError.
     """
     left, right, noise = edges[:-1], edges[1:], np.zeros(edges.size - 1)
-    most_noise = noise_of_one * np.abs(grading(spread_over(left, right))).max()
+    most_noise = noise_of_one * np.abs(grading(_spread_over(left, right))).max()
     while left.size:
-        misfit, allowed = fit.misfit(grading, left, right, spread_over(left, right))
+        misfit, allowed = _misfit(terms, grading, left, right, _spread_over(left, right))
         middle = (left + right) / 2
         bad = (misfit > allowed + noise) & (middle > left) & (middle < right)
         left, middle, right, noise = left[bad], middle[bad], right[bad], noise[bad]
         if left.size:
-            noise = np.maximum(noise, np.minimum(8 * _rounding(fit, grading, left, right), most_noise))
+            noise = np.maximum(noise, np.minimum(8 * _rounding(terms, grading, left, right), most_noise))
         bad = misfit[bad] > allowed[bad] + noise
         left, middle, right, noise = left[bad], middle[bad], right[bad], noise[bad]
         edges = np.union1d(edges, middle)
-        if edges.size > most:
+        if edges.size > MOST_PIECES:
             raise ValueError(
-                f"grading: not resolved by {most} pieces near s = {middle[-1]:.6g}; is it noisy? "
+                f"grading: not resolved by {MOST_PIECES} pieces near s = {middle[-1]:.6g}; is it noisy? "
                 "Smooth it, or give it as a table"
             )
         left, right = np.concatenate([left, middle]), np.concatenate([middle, right])
@@ -112,7 +100,7 @@ def bisected(fit: _Fit, grading: Grading, edges: Array, most: int, noise_of_one:
     return edges
 
 
-def merged(fit: _Fit, grading: Grading, edges: Array, kept: Array) -> Array:
+def _merged(terms: int, grading: Grading, edges: Array, kept: Array) -> Array:
     """Without the edges that no polynomial needs: neighbours are joined while one describes both."""
     size = 0
     while size != edges.size:
@@ -120,8 +108,8 @@ def merged(fit: _Fit, grading: Grading, edges: Array, kept: Array) -> Array:
         for first in (0, 1):
             i = np.arange(first, edges.size - 2, 2)
             low, middle, high = edges[i], edges[i + 1], edges[i + 2]
-            heights = np.concatenate([spread_over(low, middle), spread_over(middle, high)], axis=1)
-            misfit, allowed = fit.misfit(grading, low, high, heights)
+            heights = np.concatenate([_spread_over(low, middle), _spread_over(middle, high)], axis=1)
+            misfit, allowed = _misfit(terms, grading, low, high, heights)
             edges = np.delete(edges, i[(misfit <= allowed) & ~np.isin(middle, kept)] + 1)
     return edges
 
@@ -157,10 +145,10 @@ def resolved_breaks(
     """
     if grading.smooth or not low < high:
         return tuple(np.unique([float(b) for b in grading.breaks if low < b < high]).tolist())
-    return _found_breaks(Same(grading), low, high, noise_of_one)
+    return _found_breaks(_Same(grading), low, high, noise_of_one)
 
 
-class Same:
+class _Same:
     """A grading by identity, for what is remembered of it: an equal function may have changed."""
 
     def __init__(self, grading: Grading) -> None:
@@ -170,16 +158,16 @@ class Same:
         return id(self.grading)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Same) and other.grading is self.grading
+        return isinstance(other, _Same) and other.grading is self.grading
 
 
 @lru_cache(maxsize=_REMEMBERED)
-def _found_breaks(same: Same, low: float, high: float, noise_of_one: float) -> tuple[float, ...]:
+def _found_breaks(same: _Same, low: float, high: float, noise_of_one: float) -> tuple[float, ...]:
     grading = same.grading
     declared = np.unique([float(b) for b in grading.breaks if low < b < high])
     edges = np.unique([low, *declared, *marks(low, high, _WIDEST), high])
-    edges = bisected(_LONG, grading, edges, _MOST, noise_of_one)
-    return tuple(merged(_LONG, grading, edges, declared)[1:-1].tolist())
+    edges = _bisected(_LONG, grading, edges, noise_of_one)
+    return tuple(_merged(_LONG, grading, edges, declared)[1:-1].tolist())
 
 
 def first_negative(grading: Grading, low: float, high: float) -> float | None:
@@ -202,3 +190,84 @@ def first_negative(grading: Grading, low: float, high: float) -> float | None:
     s = np.sort(np.concatenate([np.linspace(low, high, 4001), around[(around >= low) & (around <= high)]]))
     negative = s[grading(s) < 0]
     return float(negative[0]) if negative.size else None
+
+
+def is_data(grading: Grading) -> bool:
+    """Return whether a grading is made of numbers alone, which a file can hold as they are."""
+    return type(grading) in _DATA  # a class made of one may do more
+
+
+def bends(grading: Grading, low: float, high: float) -> tuple[float, ...]:
+    """Return `analytic.resolved_breaks` without the edges over which series go on smoothly."""
+    match grading:
+        case PiecewiseSeries(kinks=kinks):
+            found = kinks
+        case Clipped(grading=PiecewiseSeries(kinks=kinks), zeros=zeros):
+            found = tuple(sorted({*kinks, *(zeros or ())}))
+        case _:
+            return resolved_breaks(grading, low, high)
+    return tuple(s for s in found if low < s < high)
+
+
+def name_of(grading: Any) -> str:
+    """Return the name of the function, if there is one."""
+    match grading:
+        case Custom(function=function):
+            return name_of(function)
+        case Clipped(grading=inner):
+            return f"{name_of(inner)}, clipped"
+        case PiecewiseSeries(name=name):
+            return name
+    inner = getattr(grading, "func", grading)  # of a functools.partial
+    return str(getattr(inner, "__name__", type(inner).__name__))
+
+
+def resolved(grading: Grading, low: float, high: float) -> PiecewiseSeries:
+    """Return the Chebyshev series that stand for a grading between two heights.
+
+    The error is at most 1e-13 of the largest value that the grading has within 1/64 of a height, or what
+    the last digit of a height makes of its slope: also where it spans many decades. Only what is below
+    2e-16, or so noisy, may be off by that much. Kinks and jumps are found if they are not declared; features
+    narrower than 1/80 that come back to where they were can go unseen and are better declared.
+
+    Parameters
+    ----------
+    grading : Grading
+        E*(s)/E*; its `breaks` become edges.
+    low, high : float
+        Range of reduced heights; beyond it the series keep the values at its ends.
+
+    Returns
+    -------
+    PiecewiseSeries
+        Never negative where the grading is not. Its `kinks` are the heights told, and those found where
+        it jumps, bends, or changes within 1/256.
+
+    Raises
+    ------
+    ValueError
+        If more than 4096 pieces are not enough, as for noise, or a value is not finite.
+
+    Examples
+    --------
+    >>> resolved(Custom(lambda s: 1 + 0.3 * abs(s - 1)), 0.0, 8.0)
+    PiecewiseSeries('<lambda>', 2 pieces from s = 0 to 8)
+    """
+    told = np.unique([float(b) for b in grading.breaks if low < b < high])
+    edges = _bisected(_SHORT, grading, np.unique([low, *marks(low, high, 1.0), *told, high]))
+    edges = _merged(_SHORT, grading, edges, told)
+    sliver = np.append(False, np.diff(edges) <= _SLIVER * np.spacing(np.abs(edges[1:])))  # left by a jump
+    edges = edges[~sliver | np.isin(edges, [*told, high])]  # the one above begins there
+    inner, left, right = edges[1:-1], edges[:-1], edges[1:]
+    about = np.maximum(_ABOUT, _SLIVER * np.spacing(np.abs(inner)))
+    below, above = np.maximum(inner - about, low), np.minimum(inner + about, high)
+    misfit, allowed = _misfit(_SHORT, grading, below, above, _spread_over(below, above))
+    kinks = inner[np.isin(inner, told) | (misfit > 16 * allowed)].tolist()
+    series = fitted(grading, edges, _SHORT)
+    ends = np.stack([left, np.nextafter(right, left)], axis=1)
+    heights = [_spread_over(left, right), ends, chebyshev_points(left, right, _SHORT)]
+    s = np.concatenate(heights, axis=1)  # where it is not negative, its series must not be by rounding
+    lacking = np.where(np.all(grading(s) >= 0, axis=1), -2 * series(s).min(axis=1), 0.0)
+    raised = [(c[0] + max(more, 0.0), *c[1:]) for c, more in zip(series.coefficients, lacking, strict=True)]
+    checked = getattr(getattr(grading, "grading", grading), "checked", True)
+    return PiecewiseSeries(edges.tolist(), raised, name_of(grading), kinks, checked)

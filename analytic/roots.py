@@ -1,8 +1,9 @@
-"""Where functions change their sign: of many at once, each between two arguments."""
+"""Where functions change their sign: of many at once, each between two arguments; separations at a mean."""
 
 from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from analytic.arrays import Array, Ints
 
@@ -75,3 +76,34 @@ def sign_changes(
             inverse = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
         step = np.where(safe & np.isfinite(inverse), inverse, 0.5)
     return found
+
+
+def last_separations(
+    log_mean: Callable[[ArrayLike], Array], log_targets: Array, grid: Array, about: Array, name: str
+) -> Array:
+    """Find the largest separations at which a mean has given values, in the shape of their logarithms.
+
+    `log_mean` takes separations to the logarithm of the mean, nan where that is negative. They are looked for
+    between those of an increasing grid, from where `about` says, which is the same to some digits. A value
+    that is not reached there is a ValueError with the `name`.
+    """
+    targets = log_targets.ravel()
+    each = np.arange(targets.size)
+
+    def excess(h: Array, which: Ints) -> Array:  # -100 also where the mean is not positive
+        return np.fmax(log_mean(h) - targets[which], -100.0)
+
+    k = np.array([np.flatnonzero(about >= target).max(initial=0) for target in targets], dtype=np.int64)
+    k = np.minimum(k, grid.size - 2)
+    more = excess(grid[k], each)
+    while (below := (k > 0) & (more < 0)).any():
+        k -= below
+        more = excess(grid[k], each)
+    less = excess(grid[k + 1], each)
+    while (above := (k < grid.size - 2) & (less >= 0)).any():
+        k += above
+        more, less = np.where(above, less, more), excess(grid[k + 1], each)
+    if np.any(more < 0) or np.any(less >= 0):
+        raise ValueError(f"{name}: not reached for h from {grid[0]:g} to {grid[-1]:.4g}; give another value")
+    ends, unit = (less, more), np.ones(targets.size)
+    return sign_changes(excess, grid[k + 1], grid[k], unit, at_ends=ends).reshape(log_targets.shape)

@@ -124,12 +124,11 @@ def test_each_way_of_importing_would_be_seen(text):
 THEORY = {
     "equations",
     "integrals",
-    "inversion",
     "height_rule",
     "interacting",
-    "law_rule",
     "mean_model",
     "model",
+    "quadrature",
 }
 
 

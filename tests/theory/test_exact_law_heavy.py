@@ -11,7 +11,7 @@ from scipy import stats
 
 import analytic
 import mcgw
-from analytic.distribution import of_model
+from analytic import exact_law
 from mcgw.statistics.verdict import laws_of_values
 
 SHARES = np.append(1 - np.geomspace(1e-6, 0.5, 60), np.geomspace(0.5, 1e-6, 60)[1:])
@@ -41,7 +41,7 @@ def test_errors_are_at_most_the_stated_ones(heights, law, gamma, n, count, share
     shares = found.sf(np.linspace(x[0], x[-1], 2000))
     assert np.all((shares >= 0) & (shares <= 1))
     assert np.all(np.diff(shares) <= 0)
-    with mock.patch.multiple(of_model, _POINTS=(3 * 2**15, 2**17), _CELLS=(30_000, 36_000)):
+    with mock.patch.multiple(exact_law, _POINTS=(3 * 2**15, 2**17), _CELLS=(30_000, 36_000)):
         off = np.abs(found.sf(x) - model.distribution("load", h).sf(x))
     assert off.max() < min(1e-6, found.error)
 

@@ -1,4 +1,4 @@
-"""The laws of the quantities of a model."""
+"""The exact law of a finite surface: of a sum over its asperities, and of the separation, without a draw."""
 
 import math
 from collections.abc import Callable
@@ -11,10 +11,10 @@ from scipy.special import ndtr, ndtri
 
 from analytic.arrays import Array
 from analytic.curvature import RadiusRule
-from analytic.distribution.distribution import Counted, Law
-from analytic.distribution.sums import OneAsperity, shares, shares_at
+from analytic.distribution import Counted, Law
 from analytic.height_rule import HeightRule
-from analytic.inversion import LOWEST
+from analytic.lattice_sums import OneAsperity, shares, shares_at
+from analytic.mean_model import LOWEST
 from analytic.measured_summits import MeasuredHeights
 from analytic.quantities import quantity_of
 
