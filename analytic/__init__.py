@@ -27,9 +27,12 @@ Eq. (15)  `analytic.stiffness_ratio`           its ratio: that of the stiffnesse
 ========  ===================================  ================================================
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
-
+from analytic.correlation import (
+    cooper_mikic_yovanovich,
+    harmonic_conductivity,
+    mean_absolute_slope,
+    mikic_elastic,
+)
 from analytic.curvature import RandomCurvature
 from analytic.equations import (
     area,
@@ -38,19 +41,38 @@ from analytic.equations import (
     barber_conductance,
     conductance,
     contacts,
+    critical_penetration,
     load,
     mean,
     mean_modulus,
     plasticity_index,
-    ratio_at_equal_load,
     stiffness,
     stiffness_ratio,
+    summit_plasticity_index,
+    yielding_share,
 )
 from analytic.gradings import Clipped, Custom, Exponential, Grading, Homogeneous, Table
 from analytic.height_rule import Fluctuations, HeightRule
 from analytic.heights import ExponentialHeights, Gaussian, HeightLaw, Weibull
-from analytic.integrals import fn, fn_paper, fn_scaled
-from analytic.laws import ContactLaw, Film, Hertz, Layer
+from analytic.integrals import fn, fn_paper, fn_scaled, ratio_at_equal_load
+from analytic.interacting import InteractingModel
+from analytic.interaction import Interaction
+from analytic.joint import Joint
+from analytic.laws import (
+    ChangEtsionBogy,
+    Coated,
+    ContactLaw,
+    CustomLaw,
+    DerjaguinMullerToporov,
+    Film,
+    Hertz,
+    JacksonGreen,
+    JohnsonKendallRoberts,
+    KogutEtsion,
+    Layer,
+    PowerLawGraded,
+    ZhaoMaiettaChang,
+)
 from analytic.measured_summits import HeightTable, MeasuredHeights, MeasuredRadii
 from analytic.model import Cumulants, Model
 from analytic.nayak import Nayak
@@ -72,28 +94,6 @@ from analytic.resolution import bends, first_negative, is_data, name_of, resolve
 from analytic.scipy_heights import ScipyHeights
 from analytic.surface import Body, SpectralMoments, Surface, composite_modulus
 
-if TYPE_CHECKING:
-    from analytic.correlation import (
-        cooper_mikic_yovanovich,
-        harmonic_conductivity,
-        mean_absolute_slope,
-        mikic_elastic,
-    )
-    from analytic.interacting import InteractingModel
-    from analytic.interaction import Interaction
-    from analytic.laws import (
-        ChangEtsionBogy,
-        Coated,
-        CustomLaw,
-        DerjaguinMullerToporov,
-        JacksonGreen,
-        JohnsonKendallRoberts,
-        KogutEtsion,
-        PowerLawGraded,
-        ZhaoMaiettaChang,
-    )
-    from analytic.yielding import critical_penetration, summit_plasticity_index, yielding_share
-
 __all__ = [
     "ALL_QUANTITIES", "JOINT", "LAW_QUANTITIES", "PER_AREA", "QUANTITIES", "RESISTANCES", "SEPARATIONS",
     "UNLOADING",
@@ -111,20 +111,3 @@ __all__ = [
     "ratio_at_equal_load", "resolved", "resolved_breaks", "stiffness", "stiffness_ratio",
     "summit_plasticity_index", "yielding_share",
 ]  # fmt: skip
-
-_LATER = {
-    "Interaction": "interaction", "InteractingModel": "interacting", "Joint": "joint",
-    "cooper_mikic_yovanovich": "correlation", "harmonic_conductivity": "correlation",
-    "mean_absolute_slope": "correlation", "mikic_elastic": "correlation",
-    "critical_penetration": "yielding", "summit_plasticity_index": "yielding",
-    "yielding_share": "yielding",
-}  # fmt: skip
-
-
-def __getattr__(name: str) -> Any:
-    """Return a law of contact or an interaction, loaded when it is asked for."""
-    if name in _LATER:
-        return getattr(import_module(f"analytic.{_LATER[name]}"), name)
-    if name in __all__:
-        return getattr(import_module("analytic.laws"), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

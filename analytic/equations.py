@@ -2,8 +2,14 @@
 
 All take ``grading`` (E*(s)/E*, default: homogeneous) and ``heights`` (default: Gaussian); separations h
 are reduced, d/sigma from the mean of the summit heights, any shape.
+
+Contacts that an elastic law describes yield where their greatest pressure reaches K H, at ``delta_c = (pi K
+H/(2 E*))^2 R`` with ``K = 0.454 + 0.41 nu``. Source: L. Kogut, I. Etsion, J. Appl. Mech. 69 (2002) 657, with
+K as W. R. Chang, I. Etsion, D. B. Bogy, J. Tribol. 110 (1988) 50 give it [mem: K recalled].
 """
 
+import math
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -12,13 +18,12 @@ from numpy.typing import ArrayLike
 from analytic.arrays import Array
 from analytic.gradings import Custom, Grading, Homogeneous
 from analytic.heights import GAUSSIAN, HeightLaw
-from analytic.integrals import fn, quotient
+from analytic.integrals import quotient
+from analytic.laws.elastic_plastic_laws import KogutEtsion
 from analytic.model import Model
-from analytic.quantities import QUANTITIES
-from analytic.roots import last_separations
 from analytic.surface import Surface
 
-_GRID = np.concatenate([np.linspace(-40, 10, 251), np.geomspace(10.5, 1000, 60)])  # separations
+POISSON = 0.3  # of the body that yields, where nobody gives it
 
 
 def mean(
@@ -138,49 +143,6 @@ def stiffness_ratio(h: ArrayLike, grading: Grading, *, heights: HeightLaw = GAUS
     return quotient(h, (0.5, grading), (0.5, None), heights)
 
 
-def ratio_at_equal_load(
-    quantity: str, h: ArrayLike, grading: Grading, *, heights: HeightLaw = GAUSSIAN
-) -> Array:
-    """Return a mean of the graded surface over that of the homogeneous one at equal load, by Hertz's law.
-
-    Parameters
-    ----------
-    quantity : {"area", "stiffness", "contacts", "conductance"}
-        What to compare.
-    h : array_like
-        Reduced separations of the homogeneous surface, which set the load.
-    grading : Grading
-        E*(s)/E*.
-    heights : HeightLaw, optional
-        Law of the heights.
-
-    Returns
-    -------
-    ndarray
-        ``F*_n(h2)/F_n(h)`` with h2 from ``F*_{3/2}(h2) = F_{3/2}(h)``, in the shape of `h`.
-
-    Examples
-    --------
-    Stiffer tips conduct *less* at a given load, the opposite of the paper's conclusion:
-
-    >>> import analytic
-    >>> float(analytic.ratio_at_equal_load("conductance", 2.0, analytic.Exponential(2.0)).round(3))
-    0.548
-    """
-    q = QUANTITIES[quantity]
-    h = np.asarray(h, dtype=np.float64)
-
-    def log_load(at: ArrayLike) -> Array:
-        return fn(1.5, at, grading, log=True, heights=heights)
-
-    target = fn(1.5, h, log=True, heights=heights)
-    other = last_separations(log_load, target, _GRID, log_load(_GRID), "load")
-
-    # Relative to the loads, which are equal: hardly sensitive to the last digits of h2, and no underflow.
-    graded = quotient(other, (q.exponent, grading if q.modulus else None), (1.5, grading), heights)
-    return graded / quotient(h, (q.exponent, None), (1.5, None), heights)
-
-
 def mean_modulus(
     h: ArrayLike,
     grading: Grading,
@@ -249,3 +211,85 @@ def plasticity_index(modulus: ArrayLike, *, E_star: float, slope: float, hardnes
         ``modulus * E* m/(sqrt(2) H_v)``; plastic deformation prevails above 1.
     """
     return np.asarray(np.multiply(modulus, E_star * slope / (np.sqrt(2) * hardness)), dtype=np.float64)
+
+
+def critical_penetration(surface: Surface, hardness: float, poisson: float = POISSON) -> float:
+    """Return the penetration at which a summit of the surface yields, m.
+
+    Parameters
+    ----------
+    surface : Surface
+        With the radius R and the modulus E*.
+    hardness : float
+        H of the softer body, Pa.
+    poisson : float, optional
+        Its Poisson's ratio.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+
+    Examples
+    --------
+    >>> aluminium = Surface(sigma=1e-6, radius=1e-5, eta=1e9, nominal_area=1e-6, E_star=80e9)
+    >>> round(critical_penetration(aluminium, 1.2e9, 0.33) * 1e9, 3)  # nm
+    1.928
+    """
+    return KogutEtsion(hardness=hardness, poisson=poisson).reduced_on(surface) * surface.sigma
+
+
+def summit_plasticity_index(surface: Surface, hardness: float, poisson: float = POISSON) -> float:
+    """Return the plasticity index of the summits, ``psi = sqrt(sigma/delta_c)``.
+
+    Below about 0.6 hardly any contact yields, above 1 most do, whatever the load.
+
+    Parameters
+    ----------
+    surface, hardness, poisson
+        As for `critical_penetration`.
+
+    Notes
+    -----
+    Source: J. A. Greenwood, J. B. P. Williamson, Proc. R. Soc. Lond. A 295 (1966) 300, whose
+    ``(E*/H) sqrt(sigma/R)`` is this times pi K/2, about 0.9; as here W. R. Chang, I. Etsion, D. B. Bogy,
+    J. Tribol. 109 (1987) 257 [mem: recalled].
+
+    Examples
+    --------
+    >>> steel = Surface(sigma=1e-7, radius=1e-4, eta=1e9, nominal_area=1e-6, E_star=110e9)
+    >>> round(summit_plasticity_index(steel, 7e9), 3)
+    0.548
+    """
+    return math.sqrt(surface.sigma / critical_penetration(surface, hardness, poisson))
+
+
+def yielding_share(model: Model, h: ArrayLike, hardness: float, poisson: float = POISSON) -> Array:
+    """Return the share of the contacts that are past first yield, in the shape of `h`.
+
+    Parameters
+    ----------
+    model : Model
+        The surface, under any law: a contact counts if its penetration exceeds that at which Hertz's contact
+        of its own modulus E*(s) and radius yields.
+    h : array_like
+        Reduced separations; `Model.separation_at` finds that of a load.
+    hardness, poisson
+        As for `critical_penetration`.
+
+    Returns
+    -------
+    ndarray
+        From 0 to 1; nan where nothing touches.
+
+    Examples
+    --------
+    >>> import analytic
+    >>> surface = Surface(sigma=1e-6, radius=1e-5, eta=1e9, nominal_area=1e-6, E_star=80e9)
+    >>> model = analytic.Model(surface, heights=analytic.ExponentialHeights())
+    >>> float(yielding_share(model, 1.0, 1.2e9).round(6))  # exp(-delta_c/sigma)
+    0.998153
+    """
+    law = KogutEtsion(hardness=hardness, poisson=poisson)
+    alone: Model = getattr(model, "alone", model)  # what asperities feel under their own law
+    return np.asarray(1 - replace(alone, law=law, unload_from=None, film=None).share(0, h))

@@ -12,7 +12,11 @@ from analytic.gradings import Grading, Homogeneous
 from analytic.height_rule import HeightRule
 from analytic.heights import GAUSSIAN, Gaussian, HeightLaw, exp_minus_half_square
 from analytic.quadrature import NODES, ends_of, gauss_legendre, regular_edges, towards_both_ends
+from analytic.quantities import QUANTITIES
 from analytic.resolution import resolved_breaks
+from analytic.roots import last_separations
+
+_GRID = np.concatenate([np.linspace(-40, 10, 251), np.geomspace(10.5, 1000, 60)])  # separations
 
 
 def _relative(n: float, h: float, grading: Grading, breaks: Array) -> float:
@@ -173,3 +177,46 @@ def fn_paper(n: float, h: ArrayLike, gamma: float, ngp: int) -> Array:
     s = h - log_t
     terms = (-log_t) ** n * np.exp(-s * s / 2) * (gamma - (gamma - 1) * np.exp(-s)) / x
     return np.asarray(terms @ w / np.sqrt(2 * np.pi))
+
+
+def ratio_at_equal_load(
+    quantity: str, h: ArrayLike, grading: Grading, *, heights: HeightLaw = GAUSSIAN
+) -> Array:
+    """Return a mean of the graded surface over that of the homogeneous one at equal load, by Hertz's law.
+
+    Parameters
+    ----------
+    quantity : {"area", "stiffness", "contacts", "conductance"}
+        What to compare.
+    h : array_like
+        Reduced separations of the homogeneous surface, which set the load.
+    grading : Grading
+        E*(s)/E*.
+    heights : HeightLaw, optional
+        Law of the heights.
+
+    Returns
+    -------
+    ndarray
+        ``F*_n(h2)/F_n(h)`` with h2 from ``F*_{3/2}(h2) = F_{3/2}(h)``, in the shape of `h`.
+
+    Examples
+    --------
+    Stiffer tips conduct *less* at a given load, the opposite of the paper's conclusion:
+
+    >>> import analytic
+    >>> float(analytic.ratio_at_equal_load("conductance", 2.0, analytic.Exponential(2.0)).round(3))
+    0.548
+    """
+    q = QUANTITIES[quantity]
+    h = np.asarray(h, dtype=np.float64)
+
+    def log_load(at: ArrayLike) -> Array:
+        return fn(1.5, at, grading, log=True, heights=heights)
+
+    target = fn(1.5, h, log=True, heights=heights)
+    other = last_separations(log_load, target, _GRID, log_load(_GRID), "load")
+
+    # Relative to the loads, which are equal: hardly sensitive to the last digits of h2, and no underflow.
+    graded = quotient(other, (q.exponent, grading if q.modulus else None), (1.5, grading), heights)
+    return graded / quotient(h, (q.exponent, None), (1.5, None), heights)

@@ -198,11 +198,6 @@ class MeanModel:
         law = ContactLaw() if self.law is None else self.law.on(self.surface)
         return Branch(law, self.unload_from, None if self.film is None else self.film.on(self.surface))
 
-    @property
-    def listed(self) -> bool:
-        """Whether there is a list of summits, so that means change summit by summit."""
-        return isinstance(self.heights, MeasuredHeights)
-
     def _rule(
         self, h: Array, branches: tuple[Branch, ...] = (), cuts: Cuts | None = None, **powers: float
     ) -> HeightRule:
@@ -237,7 +232,9 @@ class MeanModel:
             if q.base != "load":
                 raise ValueError(f"quantity = {q.name!r}: its slope is not known; give 'load_unloading'")
             return q.exponent * self._mean(quantity_of("load_slope_unloading"), h)
-        if self.listed or (self.ways.law.hertz and q.exponent >= 1):  # no asperity jumps
+        if isinstance(self.heights, MeasuredHeights) or (
+            self.ways.law.hertz and q.exponent >= 1
+        ):  # no asperity jumps
             return self._in_parts(h, partial(self._mean_by, q, slope=True))
         if q.base == "contacts":
             return self.heights.pdf(np.asarray(h, dtype=np.float64))
@@ -252,7 +249,7 @@ class MeanModel:
         touching = self.heights.sf(flat[order])
         while order.size:  # the lowest hardly needs what a rule leaves out
             near = np.count_nonzero(touching >= _SHARED * touching[0])
-            few = 1 if self.listed else min(near, _TOGETHER)
+            few = min(near, 1 if isinstance(self.heights, MeasuredHeights) else _TOGETHER)
             parts.append(order[:few])
             order, touching = order[few:], touching[few:]
         found = [function(flat[few]) for few in parts]

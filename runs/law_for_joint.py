@@ -16,8 +16,8 @@ from importlib.resources import files
 
 import analytic
 import mcgw
+from analytic import summit_plasticity_index, yielding_share
 from analytic.correlation import cooper_mikic_yovanovich, mean_absolute_slope, mikic_elastic
-from analytic.yielding import summit_plasticity_index, yielding_share
 from mcgw.commands.starting import PRESETS
 
 M0, M2, AREA = 1e-12, 1e-2, 1e-4

@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
 import analytic
-from analytic.gases import GASES, Gas
+from analytic.joint import GASES, Gas
 from analytic.laws import ContactLaw, Film, Layer
 from mcgw.scene.kinds import Either, List, Number, Table, Word, whole
 from mcgw.scene.section import Key, Kind
@@ -237,7 +237,8 @@ class Joint:
         """What conducts beside the spots; None where nobody says."""
         if self.gas is None:
             return None
-        return analytic.Joint(self.gas, self.rms, self.temperature, self.gas_pressure)
+        numbers: Any = self.rms, self.temperature, self.gas_pressure  # texts became numbers when it was made
+        return analytic.Joint(self.gas, *numbers)
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,7 @@ from scipy.integrate import quad
 
 import analytic
 import mcgw
-from analytic.gases import Gas, gas_of
-from analytic.joint import Joint, gap_integral
+from analytic.joint import Gas, Joint, gap_integral, gas_of
 
 SURFACE = analytic.Surface(sigma=0.9e-6, radius=1e-5, eta=1e10, nominal_area=1e-4, E_star=1e11)
 

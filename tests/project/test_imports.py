@@ -11,7 +11,6 @@ from pathlib import Path
 import pytest
 from oracles.inside import SAMPLERS
 
-import analytic
 import mcgw
 
 ROOT = Path(mcgw.__file__).parents[1]
@@ -115,11 +114,6 @@ FEATURES = {
     "mcgw.sampling.own_radii": None, "mcgw.sampling.shared": None,
     "mcgw.sampling.weighted_sums": None, "mcgw.sweeps.sweep": None,
 }  # fmt: skip
-# Laws of contact and height, interaction and joints: by the last part of their names.
-LAWS = {
-    "adhesion", "custom", "elastic", "elastic_plastic", "elastic_plastic_laws", "law_rows",
-    "interacting", "interaction", "joint",
-}  # fmt: skip
 
 
 @pytest.mark.parametrize("step", NOT_THERE)
@@ -133,17 +127,6 @@ def test_who_does_not_ask_for_a_feature_imports_nothing_of_it(after):
     for name, step in FEATURES.items():
         assert (ROOT / f"{name.replace('.', '/')}.py").exists(), name
         assert step is None or name in after[step], name
-
-
-def test_who_asks_for_hertz_loads_no_other_law(after):
-    seen = after["run"] | after["compare"] | after["simulate"]
-    ours = (name for name in seen if name.startswith(("analytic", "mcgw")) and ".commands." not in name)
-    assert not LAWS & {name.rpartition(".")[2] for name in ours}
-    assert {path.stem for package in (mcgw, analytic) for path in folder(package).rglob("*.py")} >= LAWS
-
-
-def folder(package):
-    return Path(package.__file__).parent
 
 
 def test_what_is_imported_would_be_seen(after):

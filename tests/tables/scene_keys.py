@@ -10,7 +10,7 @@ import oracles.laws_of_one_depth as by_hand
 from scipy.integrate import quad
 from scipy.stats import gamma as gamma_law, norm, weibull_min
 
-import analytic.gases
+import analytic.joint
 import mcgw
 
 TOP = sqrt(1.5)  # of the heights -TOP, 0 and TOP, whose mean is 0 and variance 1
@@ -259,7 +259,7 @@ ROWS = [
     ("joint.temperature", 600.0, JOINED,
      lambda s: s.gas.held.conductivity, 2.64638e-3 * 600**1.5 / (600 + 245.4 * 10 ** (-12 / 600))),
     ("joint.gas_pressure", "'0.5 bar'", JOINED,
-     lambda s: s.gas.held.jump / analytic.gases.gas_of("air").jump, 101325 / 5e4),
+     lambda s: s.gas.held.jump / analytic.joint.gas_of("air").jump, 101325 / 5e4),
     ("fitted.m0", 2e-12, {"fitted": FITTED}, lambda s: s.fitted.moments.alpha, 20),
     ("fitted.m2", 2e-2, {"fitted": FITTED}, lambda s: s.fitted.moments.alpha, 2.5),
     ("fitted.m4", 4e9, {"fitted": FITTED}, lambda s: s.fitted.moments.alpha, 40),
