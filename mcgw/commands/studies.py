@@ -35,8 +35,8 @@ def compare(
     --------
     mcgw compare demo.h5 -o demo.png
     """
-    from mcgw.figures.against_theory import comparison_figure
     from mcgw.figures.panels import save
+    from mcgw.figures.studies import comparison_figure
     from mcgw.reports.text import comparison_summary
     from mcgw.statistics.comparison import compare as compared
     from mcgw.store.ensembles import open_results

@@ -9,10 +9,9 @@ import numpy as np
 
 from analytic import Hertz, quantity_of
 from mcgw.ensemble.simulation import simulate
-from mcgw.figures.against_theory import spread
 from mcgw.figures.compared import SCENE, Compared
-from mcgw.figures.data import GAMMA, PRESSURE, SEPARATION, FigureData, Panel, Series
-from mcgw.figures.ratios import POWERS, Mean, Modulus, of_reference, over_gamma, over_separation
+from mcgw.figures.panels import GAMMA, PRESSURE, SEPARATION, FigureData, Panel, Series
+from mcgw.figures.ratios import POWERS, Mean, Modulus, of_reference, over_gamma, over_separation, spread
 from mcgw.figures.style import power_of_ten, prefixed
 from mcgw.machine.progress import steps
 from mcgw.scene.scene_file import scene_from

@@ -9,7 +9,7 @@ import numpy as np
 
 from analytic import Gaussian, Nayak
 from analytic.arrays import Array, Marks
-from mcgw.figures.data import FigureData, Painter, Panel, words
+from mcgw.figures.panels import FigureData, Painter, Panel, words
 from mcgw.figures.style import HOMOGENEOUS, MARKED, MISSING, SAMPLE, THEORY, look, prefixed
 from mcgw.maps.estimates import moments_of
 from mcgw.maps.fit import Fit

@@ -1,7 +1,8 @@
-"""One way to draw the panels of a figure, and the files it is written to."""
+"""Panels of a figure by their numbers, one way to draw them, and the files of a figure."""
 
 import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,10 +13,15 @@ from matplotlib.legend_handler import HandlerTuple
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, MaxNLocator
 
+from analytic.arrays import Array
 from mcgw.ensemble.intervals import TOO_FEW
-from mcgw.figures.data import GAMMA, FigureData, Panel, Points, Series, figure_table
 from mcgw.figures.style import BAND, LEVEL, PAPER, STYLE, look, save_figure
+from mcgw.formats.table import Column, Table
 
+Painter = Callable[[Any], None]
+
+GAMMA, SEPARATION, PRESSURE = "grading factor γ", "separation d/σ", "pressure $P/A_n$ (MPa)"
+_COLUMNS = ("panel", "series", "kind", "x", "theory", "mean", "stderr")
 _WIDTH, _NARROWEST = 3.7, 4.4  # inches, of a panel with its labels and of a figure
 _TALL, _RESIDUAL, _TEXTS = 3.2, 0.8, 0.6  # inches, of a panel, residuals under it, title and caption
 _MOST_COLUMNS = 3  # more are too small to read on a page
@@ -28,6 +34,115 @@ _FINE = 12  # places from which on a line has no kinks
 _SAME = 0.25  # standard errors that markers of residuals cover
 
 
+@dataclass(frozen=True)
+class Points:
+    """Monte-Carlo means, arrays of one shape.
+
+    Parameters
+    ----------
+    x, mean, stderr : ndarray
+        Place, mean and standard error.
+    exact : ndarray
+        Values of theory there.
+    interval : (ndarray, ndarray), optional
+        Ends of 95 % intervals, nan where there are too few contacts for one; default: those of a normal law.
+    """
+
+    x: Array
+    mean: Array
+    stderr: Array
+    exact: Array
+    interval: tuple[Array, Array] | None = None
+
+    @property
+    def varies(self) -> Array:
+        """Where the means have an error."""
+        return self.stderr > 0
+
+    @property
+    def residual(self) -> Array:
+        """(mean - exact)/stderr; nan where there is no error."""
+        difference = self.mean - self.exact
+        return np.divide(difference, self.stderr, out=np.full_like(difference, np.nan), where=self.varies)
+
+    @property
+    def arms(self) -> tuple[Array, Array]:
+        """How far the intervals reach below and above the means."""
+        if self.interval is None:
+            return 1.96 * self.stderr, 1.96 * self.stderr
+        return self.mean - self.interval[0], self.interval[1] - self.mean
+
+
+@dataclass(frozen=True)
+class Series:
+    """A line of theory, and points on it if it has a counterpart by Monte Carlo."""
+
+    label: str
+    x: Array
+    theory: Array
+    points: Points | None = None
+
+
+def words(text: str, x: float = 0.5, y: float = 0.5, **look: Any) -> Painter:
+    """Return what writes a text in place of axes."""
+
+    def paint(axis: Any) -> None:
+        axis.set_axis_off()
+        axis.text(x, y, text, transform=axis.transAxes, **({"ha": "center", "va": "center"} | look))
+
+    return paint
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One pair of axes.
+
+    Parameters
+    ----------
+    title, xlabel, ylabel : str
+        Its texts.
+    series : tuple of Series, optional
+        Lines of theory and points.
+    scales : (str, str), optional
+        Of x and y.
+    level : float, optional
+        A value of y worth a line of its own.
+    paint : callable, optional
+        Draws what else it shows, and sets other properties, on matplotlib's axes.
+    wide : bool, optional
+        Whether it takes all columns.
+    """
+
+    title: str
+    xlabel: str
+    ylabel: str
+    series: tuple[Series, ...] = ()
+    scales: tuple[str, str] = ("linear", "linear")
+    level: float | None = None
+    paint: Painter = lambda _: None
+    wide: bool = False
+
+
+@dataclass(frozen=True)
+class FigureData:
+    """A figure: its text and panels."""
+
+    title: str
+    caption: str
+    panels: tuple[Panel, ...]
+
+
+def figure_table(figure: FigureData) -> Table:
+    """Every number of a figure."""
+    rows: list[tuple[float | str, ...]] = []
+    for panel, series in ((one, series) for one in figure.panels for series in one.series):
+        about, p = (panel.title, series.label), series.points
+        rows += [(*about, "line", *at, "", "") for at in zip(series.x, series.theory, strict=True)]
+        if p:
+            rows += [(*about, "point", *at) for at in zip(p.x, p.exact, p.mean, p.stderr, strict=True)]
+    return Table(tuple(map(Column, _COLUMNS, zip(*rows, strict=True))))
+
+
 def draw(data: FigureData) -> Figure:
     """Draw the panels of a figure beside and below each other, under one legend.
 
@@ -36,40 +151,33 @@ def draw(data: FigureData) -> Figure:
     """
     narrow = sum(not panel.wide for panel in data.panels)
     columns = 2 if narrow == 4 else min(narrow, _MOST_COLUMNS)
-    places = list(_places(data.panels, columns))
-    rows = places[-1][0] + 1
-    checked = any(map(_has_errors, data.panels))
+    rows: list[list[Any]] = [[]]
+    for k, panel in enumerate(data.panels):
+        if len(rows[-1]) + (width := columns if panel.wide else 1) > columns:
+            rows.append([])
+        rows[-1] += [k] * width
+    rows[-1] += ["."] * (columns - len(rows[-1]))
+    checked = {k for k, panel in enumerate(data.panels) if any(p.varies.any() for *_, p in _known(panel))}
+    places = [line for row in rows for line in (row, [f"below {k}" if k in checked else k for k in row])]
     with mpl.rc_context(STYLE):
-        size = max(_WIDTH * columns, _NARROWEST), rows * (_TALL + checked * _RESIDUAL) + _TEXTS
+        size = max(_WIDTH * columns, _NARROWEST), len(rows) * (_TALL + bool(checked) * _RESIDUAL) + _TEXTS
         figure = Figure(figsize=size, layout="constrained")
         part: Any = figure.subfigures()  # its legend stands below the title of the figure
-        grid = part.add_gridspec(2 * rows, columns, height_ratios=[_TALL, _RESIDUAL] * rows)
-        for panel, (row, column) in zip(data.panels, places, strict=True):
-            if not _has_errors(panel):
-                draw_panel(part.add_subplot(grid[2 * row : 2 * row + 2, column]), panel)
-                continue
-            above = part.add_subplot(grid[2 * row, column])
-            draw_panel(above, panel)
-            below = part.add_subplot(grid[2 * row + 1, column], sharex=above)
-            _draw_residuals(below, panel, labelled=column == 0)
-            above.set_xlabel("")
-            above.tick_params(labelbottom=False)
+        axes = part.subplot_mosaic(places, height_ratios=[_TALL, _RESIDUAL] * len(rows))
+        for k, panel in enumerate(data.panels):
+            draw_panel(axes[k], panel)
+            if k in checked:
+                below = axes[f"below {k}"]
+                below.sharex(axes[k])
+                _draw_residuals(below, panel, labelled=any(row[0] == k for row in rows))
+                axes[k].set_xlabel("")
+                axes[k].tick_params(labelbottom=False)
         _draw_legend(part, data.panels, size[0])
         side: Any = {"x": 0.01, "ha": "left"}
         figure.suptitle(_wrapped(data.title, int(10 * size[0])), fontsize=11, fontweight="bold", **side)
         if data.caption:
             figure.supxlabel(_wrapped(data.caption, int(16 * size[0])), fontsize=_SMALL, color=PAPER, **side)
     return figure
-
-
-def _places(panels: Sequence[Panel], columns: int) -> Iterator[tuple[int, Any]]:
-    """Row and column of each panel, from left to right; a wide one has a row of its own."""
-    row = column = 0
-    for panel in panels:
-        if column == columns or (panel.wide and column):
-            row, column = row + 1, 0
-        yield row, slice(None) if panel.wide else column
-        column = columns if panel.wide else column + 1
 
 
 def _draw_legend(part: Any, panels: Sequence[Panel], width: float) -> None:
@@ -152,18 +260,12 @@ def _draw_series(axis: Any, series: Series, k: int, logarithmic: bool) -> None:
         axis.plot(points.x[others], points.mean[others], "x", **marks)
 
 
-def _has_errors(panel: Panel) -> bool:
-    """Whether there are points with an error."""
-    return any(bool((points.stderr > 0).any()) for *_, points in _known(panel))
-
-
 def _draw_residuals(axis: Any, panel: Panel, *, labelled: bool) -> None:
     """Draw residuals over the band in which 95 % of them lie."""
     reach = 4.0
     for k, series, points in _known(panel):
         found = _marks(series, k)
-        varies = points.stderr > 0
-        x, z = points.x[varies], (points.mean - points.exact)[varies] / points.stderr[varies]
+        x, z = points.x[points.varies], points.residual[points.varies]
         if panel.xlabel == GAMMA and z.size and np.ptp(z) < _SAME:  # of the same surfaces: one for all gamma
             axis.plot(x[[0, -1]], z[[0, -1]], color=found["color"], lw=0.8)
             x, z = x[[len(x) // 2]], z[[len(x) // 2]]

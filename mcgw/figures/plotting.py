@@ -13,11 +13,9 @@ from mcgw.ensemble.ensemble import Ensemble, shown
 from mcgw.ensemble.intervals import exact_ends
 from mcgw.ensemble.paired import Paired, Slopes
 from mcgw.ensemble.solved import Solution
-from mcgw.figures.against_theory import quantity_panel, residuals_panel
-from mcgw.figures.data import SEPARATION, Panel
 from mcgw.figures.map_fit import heights_panel
-from mcgw.figures.panels import draw_panel, keys
-from mcgw.figures.studies import checks_panel, errors_panel
+from mcgw.figures.panels import SEPARATION, Panel, draw_panel, keys
+from mcgw.figures.studies import checks_panel, errors_panel, quantity_panel, residuals_panel
 from mcgw.figures.style import MONTE_CARLO, SAMPLE, SEEN, STYLE, THEORY, shown_title, step
 from mcgw.formats.table import evenly
 from mcgw.maps.fit import Fit

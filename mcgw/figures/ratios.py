@@ -1,5 +1,6 @@
-"""Means over separation and load, their ratios at equal separation and equal load, and mean moduli."""
+"""Means over separation and load, their ratios at equal separation and load, mean moduli, and scatter."""
 
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
@@ -8,12 +9,38 @@ import numpy as np
 
 from analytic import mean_modulus
 from analytic.arrays import Array
-from mcgw.figures.against_theory import ENOUGH
+from mcgw.ensemble.ensemble import Ensemble
 from mcgw.figures.compared import Compared, Key
-from mcgw.figures.data import GAMMA, Estimate, Panel, Points, Series, ratio_of_sums
+from mcgw.figures.panels import GAMMA, Panel, Points, Series
+from mcgw.scene.scene import Scene
 from mcgw.scene.section import SceneError
 
+Estimate = tuple[Array, Array]  # means and their standard errors
 POWERS = {"number": 0.0, "area": 1.0, "load": 1.5}
+ENOUGH = 20  # contacts in the ensemble; with fewer a mean is far from Gaussian
+_ROUNDING = 1e-14  # of a ratio of sums that are the same: no residual is given in units of it
+
+
+def ratio_of_sums(above: Sequence[Array], below: Sequence[Array]) -> Estimate:
+    """Take a product of means over the same surfaces over another, with its error by the delta method.
+
+    Parameters
+    ----------
+    above, below : sequence of ndarray
+        Sums of each surface, shape (surfaces, ...), of the factors of numerator and denominator.
+
+    Returns
+    -------
+    (ndarray, ndarray)
+        Value and standard error, of shape (...); nan where there is nothing. An error of the last digits
+        alone is 0.
+    """
+    signed = [*((1, x) for x in above), *((-1, x) for x in below)]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        value = np.prod([x.mean(axis=0) ** float(sign) for sign, x in signed], axis=0)
+        influence = np.sum([sign * x / x.mean(axis=0) for sign, x in signed], axis=0)
+        relative = influence.std(axis=0, ddof=1) / np.sqrt(len(influence))
+    return value, np.abs(value) * np.where(relative <= _ROUNDING, 0.0, relative)
 
 
 @dataclass(frozen=True)
@@ -117,3 +144,30 @@ def over_gamma(
         for k, h in enumerate(at)
     )
     return Panel(title, GAMMA, ylabel, series, level=1.0)
+
+
+def spread(
+    label: str, scene: Scene, name: str, line: Array, drawn: Ensemble | None, fewest: float = ENOUGH
+) -> Series:
+    """Return the exact standard deviation over the mean of a quantity, and that of what was drawn.
+
+    Points have standard errors by the exact law of one surface, to first order: half of std's, that of the
+    mean, and both together. There are none at separations with fewer contacts in the ensemble.
+    """
+    exact = _std_over_mean(scene.theory.cumulants(name, line))
+    if drawn is None:
+        return Series(label, line, exact)
+    h = drawn.separations
+    known = (scene.theory.mean("contacts", h) * drawn.n_surfaces >= fewest) & (drawn.std(name) > 0)
+    if not known.any():
+        return Series(label, line, exact)
+    law = scene.theory.cumulants(name, h[known])
+    there = _std_over_mean(law)
+    relative = np.sqrt((law.excess_kurtosis + 2) / 4 + there**2 - law.skewness * there)
+    seen = drawn.std(name)[known] / np.abs(drawn.mean(name)[known])
+    return Series(label, line, exact, Points(h[known], seen, there * relative / drawn.n_surfaces**0.5, there))
+
+
+def _std_over_mean(law: Any) -> Array:
+    with np.errstate(divide="ignore", invalid="ignore"):  # nan where nothing touches
+        return np.asarray(np.sqrt(law.variance) / np.abs(law.mean))

@@ -16,9 +16,9 @@ from mcgw.ensemble.ensemble import Ensemble, how_many
 from mcgw.ensemble.intervals import laws_are_quick
 from mcgw.ensemble.solution import solutions
 from mcgw.ensemble.solved import Solution
-from mcgw.figures.against_theory import quantity_panel, spread
-from mcgw.figures.data import SEPARATION, FigureData, Panel, Series
-from mcgw.figures.panels import draw
+from mcgw.figures.panels import SEPARATION, FigureData, Panel, Series, draw
+from mcgw.figures.ratios import spread
+from mcgw.figures.studies import quantity_panel
 from mcgw.figures.style import SEEN, STYLE, grading_label
 from mcgw.formats.numbers import typeset
 from mcgw.formats.table import Column, Table, evenly
