@@ -48,13 +48,15 @@ def show(
     --------
     mcgw show demo.h5
     """
+    from mcgw.errors import StoreError
+    from mcgw.reports.text import progress_of, summary, table_of
     from mcgw.store.ensembles import open_results, read_attributes, unfinished, verify as verified
     from mcgw.store.place import tidy
 
     if csv and (scene or digest or verify or plan):
         raise ValueError(f"--csv {csv}: belongs to the summary; leave out the other option")
     if not isinstance(file, Path):
-        from mcgw.reports.plan import plan_text
+        from mcgw.reports.plan import plan_text  # imports the samplers
 
         return print(plan_text(file))
     if plan:
@@ -63,9 +65,6 @@ def show(
         )
     tidy(file)
     if (begun := unfinished(file)) is not None and begun.axes:
-        from mcgw.errors import StoreError
-        from mcgw.reports.text import progress_of
-
         if verify or digest or csv:
             raise StoreError(f"{file}: is an unfinished sweep; finish it with mcgw sweep")
         return print(begun.text if scene else progress_of(begun), end="" if scene else "\n")
@@ -76,10 +75,8 @@ def show(
     attributes = read_attributes(file)
     if scene or digest:
         return print(attributes["scene" if scene else "digest"], end="" if scene else "\n")
-    from mcgw.reports.text import summary_of, table_of
-
     result = open_results(file)
-    print(summary_of(result, attributes, says(ALL)))
+    print(summary(result, attributes, says(ALL)))
     if csv:
         table_of(result).write(csv)
         news(f"{csv}: the table")

@@ -203,13 +203,12 @@ def sweep(
     mcgw sweep runs/demo.toml --over grading.gamma=0.2:2:10 -o gamma.h5
     """
     from mcgw.jobs.running import sweep as drawn
+    from mcgw.reports.plan import sweep_plan_text
     from mcgw.reports.text import ratios_in_words
     from mcgw.sweeps.axes import axes_of
+    from mcgw.sweeps.points import Points
 
     if plan:
-        from mcgw.reports.plan import sweep_plan_text
-        from mcgw.sweeps.points import Points
-
         return print(sweep_plan_text(Points.of(scene, axes_of(over, zipped=zip))))
     with drawing(threads, jobs, dask, shard) as how:
         found = drawn(scene, over, zipped=zip, path=output, **how)

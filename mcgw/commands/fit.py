@@ -100,11 +100,10 @@ def fit(
     from mcgw.formats.files import together
     from mcgw.formats.units import parse
     from mcgw.maps.fit import Fit
-    from mcgw.maps.fitted_scene import fitted_scene
+    from mcgw.maps.fitted_scene import fitted_scene, heights_beside, write_scene
     from mcgw.maps.fitting import fit_sources
     from mcgw.maps.heights_files import read_heights, read_map
     from mcgw.maps.preparation import preparation_of
-    from mcgw.maps.readable_scene import heights_beside, write_scene
     from mcgw.maps.summits import SUMMITS, TILES
 
     assumed = " (assumed; give --E-star)" if E_star is None else ""
@@ -173,9 +172,8 @@ def _of_numbers(
     iso: list[str], output: Path, E_star: float, assumed: str, nominal_area: float | None
 ) -> None:
     """Write the scene of an isotropic Gaussian surface with these numbers."""
-    from mcgw.maps.fitted_scene import scene_of_moments
+    from mcgw.maps.fitted_scene import scene_of_moments, write_scene
     from mcgw.maps.iso import moments_from
-    from mcgw.maps.readable_scene import write_scene
 
     numbers: dict[str, str] = {}
     for part in iso:

@@ -17,6 +17,7 @@ from analytic.arrays import Array
 from mcgw.ensemble.intervals import TOO_FEW
 from mcgw.figures.style import BAND, LEVEL, PAPER, STYLE, look, save_figure
 from mcgw.formats.table import Column, Table
+from mcgw.statistics.comparison import Points
 
 Painter = Callable[[Any], None]
 
@@ -32,45 +33,6 @@ _UNSEEN = 0.01  # share of the smallest mean: how far down theory is drawn
 _SMALL, _HANDLE, _LETTER = 8, 34.0, 4.4  # points, of a legend: text, line and gaps, letter
 _FINE = 12  # places from which on a line has no kinks
 _SAME = 0.25  # standard errors that markers of residuals cover
-
-
-@dataclass(frozen=True)
-class Points:
-    """Monte-Carlo means, arrays of one shape.
-
-    Parameters
-    ----------
-    x, mean, stderr : ndarray
-        Place, mean and standard error.
-    exact : ndarray
-        Values of theory there.
-    interval : (ndarray, ndarray), optional
-        Ends of 95 % intervals, nan where there are too few contacts for one; default: those of a normal law.
-    """
-
-    x: Array
-    mean: Array
-    stderr: Array
-    exact: Array
-    interval: tuple[Array, Array] | None = None
-
-    @property
-    def varies(self) -> Array:
-        """Where the means have an error."""
-        return self.stderr > 0
-
-    @property
-    def residual(self) -> Array:
-        """(mean - exact)/stderr; nan where there is no error."""
-        difference = self.mean - self.exact
-        return np.divide(difference, self.stderr, out=np.full_like(difference, np.nan), where=self.varies)
-
-    @property
-    def arms(self) -> tuple[Array, Array]:
-        """How far the intervals reach below and above the means."""
-        if self.interval is None:
-            return 1.96 * self.stderr, 1.96 * self.stderr
-        return self.mean - self.interval[0], self.interval[1] - self.mean
 
 
 @dataclass(frozen=True)
@@ -139,7 +101,7 @@ def figure_table(figure: FigureData) -> Table:
         about, p = (panel.title, series.label), series.points
         rows += [(*about, "line", *at, "", "") for at in zip(series.x, series.theory, strict=True)]
         if p:
-            rows += [(*about, "point", *at) for at in zip(p.x, p.exact, p.mean, p.stderr, strict=True)]
+            rows += [(*about, "point", *at) for at in zip(p.x, p.theory, p.mean, p.stderr, strict=True)]
     return Table(tuple(map(Column, _COLUMNS, zip(*rows, strict=True))))
 
 
@@ -165,10 +127,11 @@ def draw(data: FigureData) -> Figure:
         part: Any = figure.subfigures()  # its legend stands below the title of the figure
         axes = part.subplot_mosaic(places, height_ratios=[_TALL, _RESIDUAL] * len(rows))
         for k, panel in enumerate(data.panels):
+            if k in checked:
+                axes[f"below {k}"].sharex(axes[k])  # before it has a scale, which is then that of both
             draw_panel(axes[k], panel)
             if k in checked:
                 below = axes[f"below {k}"]
-                below.sharex(axes[k])
                 _draw_residuals(below, panel, labelled=any(row[0] == k for row in rows))
                 axes[k].set_xlabel("")
                 axes[k].tick_params(labelbottom=False)
@@ -226,7 +189,7 @@ def keys(axes: Sequence[Any], panels: Sequence[Panel]) -> dict[str, Any]:
     marks = {_marks(s, k)["marker"]: _marks(s, k)["color"] for k, s, _ in known}
     if marks:
         found[_KEY] = tuple(Line2D([], [], ls="", marker=m, color=c, **_WHITE) for m, c in marks.items())
-    if any(np.any((points.mean != 0) & ~np.isfinite(points.arms[0])) for *_, points in known):
+    if any(np.any((points.mean != 0) & ~np.isfinite(points.interval[0])) for *_, points in known):
         found[TOO_FEW] = Line2D([], [], ls="", marker="x", color=PAPER, **_WHITE)
     return found
 
@@ -247,7 +210,7 @@ def _draw_series(axis: Any, series: Series, k: int, logarithmic: bool) -> None:
         axis.plot([], [], label=series.label, **marker, mfc="white", **line)
     if points is None:
         return
-    found, (low, high) = _marks(series, k), points.arms
+    found, (low, high) = _marks(series, k), np.abs(np.array(points.interval) - points.mean)
     if logarithmic:  # an interval that reaches zero has no end on such an axis
         low = np.minimum(low, 0.95 * points.mean)
     shown = (points.mean > 0) if logarithmic else np.isfinite(points.mean)

@@ -14,13 +14,13 @@ from mcgw.ensemble.intervals import exact_ends
 from mcgw.ensemble.paired import Paired, Slopes
 from mcgw.ensemble.solved import Solution
 from mcgw.figures.map_fit import heights_panel
-from mcgw.figures.panels import SEPARATION, Panel, draw_panel, keys
+from mcgw.figures.panels import SEPARATION, Panel, Series, draw_panel, keys
 from mcgw.figures.studies import checks_panel, errors_panel, quantity_panel, residuals_panel
 from mcgw.figures.style import MONTE_CARLO, SAMPLE, SEEN, STYLE, THEORY, shown_title, step
 from mcgw.formats.table import evenly
 from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
-from mcgw.statistics.comparison import Comparison, SweepComparison
+from mcgw.statistics.comparison import Comparison, Points, SweepComparison
 from mcgw.statistics.convergence import Convergence
 from mcgw.statistics.tradeoff import Tradeoff
 from mcgw.sweeps.sweep import Sweep
@@ -134,11 +134,8 @@ def _(result: Slopes, *, k: int) -> Panel:
         for x in (result.value, result.stderr, result.theory)
     )
 
-    def paint(axis: Any) -> None:
-        axis.errorbar(result.at, value, 1.96 * error, **_SAME, fmt="o")
-        axis.plot(result.at, theory, color=THEORY, label="theory")
-
-    return Panel("", result.key, f"change of the mean {result.quantity.replace('_', ' ')}", paint=paint)
+    series = Series("theory", result.at, theory, Points(result.at, value, error, theory))
+    return Panel("", result.key, f"change of the mean {result.quantity.replace('_', ' ')}", (series,))
 
 
 @panel_of.register

@@ -11,9 +11,10 @@ from analytic import mean_modulus
 from analytic.arrays import Array
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.figures.compared import Compared, Key
-from mcgw.figures.panels import GAMMA, Panel, Points, Series
+from mcgw.figures.panels import GAMMA, Panel, Series
 from mcgw.scene.scene import Scene
 from mcgw.scene.section import SceneError
+from mcgw.statistics.comparison import Points
 
 Estimate = tuple[Array, Array]  # means and their standard errors
 POWERS = {"number": 0.0, "area": 1.0, "load": 1.5}

@@ -2,13 +2,13 @@
 
 import textwrap
 from itertools import groupby
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.ticker import EngFormatter, NullLocator
 
 from analytic.arrays import Array
-from mcgw.figures.panels import SEPARATION, FigureData, Panel, Points, Series, words
+from mcgw.figures.panels import SEPARATION, FigureData, Panel, Series, words
 from mcgw.figures.style import (
     BAND,
     HOMOGENEOUS,
@@ -22,12 +22,14 @@ from mcgw.figures.style import (
     shown_title,
 )
 from mcgw.machine.terminal import one_line
-from mcgw.statistics.checks import Slope
 from mcgw.statistics.comparison import Comparison, SweepComparison
-from mcgw.statistics.convergence import Convergence
-from mcgw.statistics.tradeoff import Tradeoff
 from mcgw.statistics.verdict import FALSE_ALARM
-from mcgw.statistics.ways import SOLVE, WANTS, Way
+
+if TYPE_CHECKING:  # these import the samplers
+    from mcgw.statistics.checks import Slope
+    from mcgw.statistics.convergence import Convergence
+    from mcgw.statistics.tradeoff import Tradeoff
+    from mcgw.statistics.ways import Way
 
 _BIN = 0.5  # standard errors
 _RESIDUAL = "residual (standard errors)"
@@ -43,7 +45,7 @@ _RULES: dict[str, dict[str, Any]] = {
     "theory": {"color": THEORY, "marker": "*"},
     "formula": {"color": THEORY, "marker": "*"},
     "exact law": {"color": HOMOGENEOUS, "marker": "P"},
-    SOLVE: {"color": look("tail")["color"], "marker": "o"},
+    "solve": {"color": look("tail")["color"], "marker": "o"},
     "surfaces": {"color": look("tail")["color"], "marker": "s"},
     "boundary elements": {"color": HOMOGENEOUS, "marker": "D"},
 }
@@ -72,11 +74,10 @@ def comparison_figure(comparison: Comparison | SweepComparison) -> FigureData:
 
 def quantity_panel(comparison: Comparison, name: str) -> Panel:
     """Return one of the curves over the separations, with its theory and residuals."""
-    h, curve = comparison.ensemble.separations, comparison.curves[name]
-    order = np.argsort(h, kind="stable")
-    points = Points(h, curve.mean, curve.stderr, curve.theory, (curve.low, curve.high))
-    series = Series("theory", h[order], curve.theory[order], points)
-    pulls = bool(np.any(curve.theory < 0) or np.any(curve.mean < 0))  # it does not fit a log axis
+    points = comparison.curves[name]
+    order = np.argsort(points.x, kind="stable")
+    series = Series("theory", points.x[order], points.theory[order], points)
+    pulls = bool(np.any(points.theory < 0) or np.any(points.mean < 0))  # it does not fit a log axis
     scales, level = (("linear", "linear"), 0.0) if pulls else (("linear", "log"), None)
     return Panel(comparison.ensemble.scene.quantity(name).title, SEPARATION, "", (series,), scales, level)
 
@@ -115,7 +116,7 @@ def _worst_panel(comparison: SweepComparison) -> Panel:
     return Panel(title, SEPARATION, _RESIDUAL, paint=paint)
 
 
-def convergence_figure(found: Convergence) -> FigureData:
+def convergence_figure(found: "Convergence") -> FigureData:
     """Slopes of the error, z-scores, and the probability of every check."""
     slopes = {curve.against: _slope_panel(curve) for curve in found.slopes}
     for name in {"M", "N"} - slopes.keys():
@@ -131,7 +132,7 @@ def convergence_figure(found: Convergence) -> FigureData:
     return FigureData(title, "", panels)
 
 
-def _slope_panel(curve: Slope) -> Panel:
+def _slope_panel(curve: "Slope") -> Panel:
     fit = np.exp(np.mean(np.log(curve.errors) + np.log(curve.sizes) / 2)) / np.sqrt(curve.sizes)
     of_m = curve.against == "M"
 
@@ -149,7 +150,7 @@ def _slope_panel(curve: Slope) -> Panel:
     return Panel(title, _SURFACES if of_m else _ASPERITIES, ylabel, scales=("log", "log"), paint=paint)
 
 
-def checks_panel(found: Convergence) -> Panel:
+def checks_panel(found: "Convergence") -> Panel:
     """Return the probability of every check."""
     p = np.array([max(check.p, _LEAST) for check in found.checks])
     limit, rows = FALSE_ALARM / len(p), np.arange(len(p))[::-1]
@@ -166,8 +167,10 @@ def checks_panel(found: Convergence) -> Panel:
     return Panel("", label, "", scales=("log", "linear"), paint=paint, wide=True)
 
 
-def tradeoff_figure(found: Tradeoff) -> FigureData:
+def tradeoff_figure(found: "Tradeoff") -> FigureData:
     """Error against time, a panel for each answer, and the ladder of models below."""
+    from mcgw.statistics.ways import WANTS
+
     title = f"{shown_title(found.scene, 'Speed and accuracy')}\n{found.sentence}"
     n, ways = found.scene.n_surfaces, found.ways
     times = [p.seconds for p in found.points]
@@ -177,7 +180,7 @@ def tradeoff_figure(found: Tradeoff) -> FigureData:
     return FigureData(title, found.worth, panels)
 
 
-def errors_panel(found: Tradeoff, want: str, **limits: Any) -> Panel:
+def errors_panel(found: "Tradeoff", want: str, **limits: Any) -> Panel:
     """95 % bounds against time: measured points, lines of the expected slope, and ways without draws."""
     kept = [way for way in found.ways if way.want == want and way.measured]
     title = found.words(want) + f" ({found.scene.n_surfaces})" * (want == "values")
@@ -194,7 +197,7 @@ def errors_panel(found: Tradeoff, want: str, **limits: Any) -> Panel:
     return Panel(title, _TIME, _BOUND, scales=("log", "log"), paint=paint)
 
 
-def _draw_way(axis: Any, way: Way, found: Tradeoff) -> None:
+def _draw_way(axis: Any, way: "Way", found: "Tradeoff") -> None:
     own = _RULES.get(way.name) or {key: look(way.name)[key] for key in ("color", "marker")}
     points = [p for p in found.points if (p.way, p.want) == (way.name, way.want) and p.n_surfaces]
     floor = max(way.floor, _FLOOR)
@@ -210,7 +213,7 @@ def _draw_way(axis: Any, way: Way, found: Tradeoff) -> None:
         axis.axhline(floor, color=own["color"], lw=0.8, ls=":")
 
 
-def _ladder_panel(found: Tradeoff) -> Panel:
+def _ladder_panel(found: "Tradeoff") -> Panel:
     """Whole errors of the conductance at a load against time, model by model; their parts as thin lines."""
     model = found.ladder[0].model
     known = not np.isnan(model)

@@ -21,7 +21,7 @@ from analytic import Exponential, Grading, Hertz, Homogeneous, PiecewiseSeries
 from analytic.arrays import Array
 from mcgw.formats.files import whole_file
 from mcgw.formats.law_text import law_text
-from mcgw.formats.numbers import RAISED
+from mcgw.formats.table import RAISED
 from mcgw.machine.terminal import one_line
 from mcgw.scene.scene import Scene
 

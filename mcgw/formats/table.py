@@ -1,6 +1,7 @@
-"""A table of named columns: printed, as HTML, as CSV and as a DataFrame."""
+"""A table of named columns: printed, as HTML, as CSV and as a DataFrame; and numbers as people write them."""
 
 import csv
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from html import escape
@@ -13,10 +14,12 @@ import numpy as np
 from analytic.arrays import Ints
 from mcgw.errors import extra
 from mcgw.formats.files import whole_file
-from mcgw.formats.numbers import typeset
 from mcgw.machine.terminal import brief, listed, one_line
 
 SEPARATION = "d/sigma"  # over a column of separations
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_POWER, _MINUS = re.compile(r"(?<=\d)e([+-]\d+)\b"), re.compile(r"(?<![\w⁻])-(?=[\d.])")
+_PRINTED = {"d/sigma": "d/σ", "gap/sigma": "gap/σ", "^2": "²", "+-": "±", " ... ": " … "}
 
 
 @dataclass(frozen=True)
@@ -230,6 +233,20 @@ def joined(tables: Sequence[Table]) -> Table:
         error = None if any(x is None for x in errors) else np.concatenate(errors)
         columns.append(replace(parts[0], values=np.concatenate(values), unit=unit, error=error))
     return Table(tuple(columns))
+
+
+def typeset(text: str) -> str:
+    """Typeset plain text of a terminal: 1e-05, d/sigma, m^2, +-, ... and minus signs.
+
+    Examples
+    --------
+    >>> typeset("d/sigma = -1.5 +- 2e-05 m^2")
+    'd/σ = −1.5 ± 2×10⁻⁵ m²'
+    """
+    text = _POWER.sub(lambda found: f"×10{str(int(found[1])).translate(RAISED)}", text)
+    for plain, printed in _PRINTED.items():
+        text = text.replace(plain, printed)
+    return _MINUS.sub("−", text)
 
 
 def digits_of(x: float, error: float) -> int:

@@ -13,7 +13,7 @@ from importlib import import_module
 from typing import Any
 
 from mcgw.errors import RunError, extra
-from mcgw.machine.child_process import end_with
+from mcgw.machine.in_threads import end_with
 
 
 class Jobs(Executor):

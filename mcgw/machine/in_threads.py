@@ -1,4 +1,4 @@
-"""Python calls side by side in threads.
+"""Python calls side by side in threads; and the end of worker processes with their parent.
 
 The caller does the first share itself. If it waited, the system would wake its helpers on the one core
 that has just come free, one after the other, and move them to another core only milliseconds later.
@@ -7,6 +7,9 @@ No loop of the sampler is compiled to run in parallel: numba's threads take as l
 its kinds may be called from several threads at once.
 """
 
+import os
+import signal
+import threading
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from itertools import chain, pairwise
@@ -48,3 +51,27 @@ def pieces(n: int, least: int) -> list[tuple[int, int]]:
     groups = -(-n // least)
     ends = np.linspace(0, groups, min(get_num_threads(), max(groups, 1)) + 1).astype(np.int64) * least
     return list(pairwise(np.minimum(ends, n).tolist()))
+
+
+def end_with(pipe: int, gone: Callable[[], object] | None = None) -> None:
+    """End this process at once when the other end of a pipe is closed; nothing may ever be written into it.
+
+    On Linux the kernel kills it, whatever it is busy with: a call into a C library that holds Python's
+    global lock does not delay it. Elsewhere a thread does, as soon as it can take that lock: when `gone`
+    returns, or reading from the pipe.
+    """
+    try:
+        import fcntl
+
+        fcntl.fcntl(pipe, fcntl.F_SETOWN, os.getpid())
+        fcntl.fcntl(pipe, fcntl.F_SETSIG, signal.SIGKILL)
+        fcntl.fcntl(pipe, fcntl.F_SETFL, fcntl.fcntl(pipe, fcntl.F_GETFL) | os.O_ASYNC)
+    except (ImportError, AttributeError, OSError):
+        pass  # not Linux
+
+    # Also there: the parent may have died before the kernel was asked.
+    def follow() -> None:
+        gone() if gone else os.read(pipe, 1)
+        os._exit(1)
+
+    threading.Thread(target=follow, daemon=True, name="mcgw-lifeline").start()

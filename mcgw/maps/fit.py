@@ -236,6 +236,8 @@ def fit_prepared(ready: Prepared, *, across: int = 4) -> Fit:
     if found := estimates.get("caps"):
         seen = visible(found.overlap, blur / math.sqrt(2 * found.radius.value * found.sigma.value))
     x, y = ((a - b) / 2 for a, b in zip(ready.levelled.size, used.size, strict=True))  # of equal margins
+    inside = (slice(None) if used.periodic else slice(EDGE, -EDGE),) * 2
+    counts = used.heights[inside] if ready.seen is None else used.heights[inside][ready.seen[inside]]
     return Fit(
         estimates, moments,
         {x: uncertain(*told[x], waves.spreads[x]) for x in ("m0", "m2", "m4", "alpha")},
@@ -245,15 +247,8 @@ def fit_prepared(ready: Prepared, *, across: int = 4) -> Fit:
         counted.area,
         seen,
         mean_squares(counted), form, waves, tiles_of(counted),
-        roughness_of(_inside(ready)), ready.notes,
+        roughness_of(counts), ready.notes,
     )  # fmt: skip
-
-
-def _inside(ready: Prepared) -> Array:
-    """Heights of the points that count."""
-    inside = (slice(None),) if ready.used.periodic else (slice(EDGE, -EDGE), slice(EDGE, -EDGE))
-    heights = ready.used.heights[inside]
-    return heights if ready.seen is None else heights[ready.seen[inside]]
 
 
 def _without_summit_form(counted: SummitSums, form: Form) -> SummitSums:

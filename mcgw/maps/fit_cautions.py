@@ -1,16 +1,23 @@
-"""Cautions about a fit: the map, its pixel, heights and summits, one line each."""
+"""Cautions about a fit: the map, its instrument, its pixel, heights and summits, one line each.
 
+Most faults of an instrument put power into waves as short as a pixel, which is all of m4 and of the curvature
+of summits. So they are measured on the map between its cutoffs, where they count, by second differences; of a
+large map about a million of them are looked at. No row of an isotropic Gaussian map differs from its
+neighbours more than waves that cross it slantwise do.
+"""
+
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
-from scipy import ndimage
+from scipy import fft, ndimage
 
+from analytic.arrays import Array
 from mcgw.maps.bad_points import spike_heights
 from mcgw.maps.fit import Fit
-from mcgw.maps.form import form_left
+from mcgw.maps.form import form_left, gaussian_transmission
 from mcgw.maps.hidden_caps import CROWDED, visible
-from mcgw.maps.instrument import faults
 from mcgw.maps.preparation import Prepared
 from mcgw.maps.profile import Profile
 from mcgw.maps.profile_fit import ProfileFit
@@ -25,6 +32,10 @@ _LOST = 0.1  # of the summits
 _SKEW, _ALPHA, _APART = 0.3, 1.5, 1.2
 _FEW, _STREAKY = 100, 1.5
 _PEAKS, _UNSURE = 1.2, 0.2
+_ENOUGH = 2**20  # second differences
+_NEAR = slice(1, 9)  # waves along a row that are nearly as long as those that do not change along it
+_ALTERNATE = -0.4  # correlation of second differences of neighbours: -2/3 of independent offsets
+LIMITS = {"range": 1e-3, "rounding": 0.05, "rows": 0.05, "columns": 0.05}  # shares that are let pass
 
 Found = tuple[Any, ...]  # a key of `WORDS`, and what its words take
 
@@ -180,3 +191,65 @@ def _of_profiles(fit: ProfileFit, profiles: Sequence[Profile], cutoff: float | N
         yield "alpha of a profile", fit.moments.alpha
     if (error := fit.numbers["sigma"].relative) >= _UNSURE:
         yield "waves of a profile", 100 * error
+
+
+def shares(ready: Prepared) -> dict[str, float]:
+    """Return how much of each fault a map shows: a share of its points (range) or of its mean square bend."""
+    return {
+        "range": ready.recorded[1],
+        "rounding": _rounding(ready),
+        "rows": _offsets(ready, 0),
+        "columns": _offsets(ready, 1),
+    }
+
+
+def faults(ready: Prepared, longer: float) -> Iterator[tuple[Any, ...]]:
+    """Faults beyond their limits, for words of `mcgw.maps.fit_cautions`; `longer` is a cutoff, in pixels."""
+    percent = {name: 100 * share for name, share in shares(ready).items() if share > LIMITS[name]}
+    if "range" in percent:
+        yield "range", percent["range"]
+    if "rounding" in percent:
+        yield "rounding", ready.recorded[0], percent["rounding"], longer
+    yield from (("lines", name, percent[name]) for name in ("rows", "columns") if name in percent)
+
+
+def _rounding(ready: Prepared) -> float:
+    """Share of the mean square bend, by plain differences, that rounding to steps adds."""
+    if not ready.recorded[0]:
+        return 0.0
+    z = ready.used.heights
+    kept = _kept_of_noise(ready.asked.cutoff, ready.used.pixel)
+    return max(
+        ready.recorded[0] ** 2 / 12 * gain / max(float(np.mean(_second(along) ** 2)), 1e-300)
+        for along, gain in zip((z.T, z), kept, strict=True)
+    )
+
+
+def _kept_of_noise(cutoff: float | None, pixel: tuple[float, float]) -> list[float]:
+    """Mean squares of second differences along x and y of independent heights of variance 1, filtered."""
+    k = math.pi * (np.arange(128) + 0.5) / 128
+    left = [1.0 if cutoff is None else gaussian_transmission(k / p, cutoff) ** 2 for p in pixel]
+    bend = (2 - 2 * np.cos(k)) ** 2
+    x, y = (np.mean(bend * t) for t in left), [float(np.mean(t)) for t in left]
+    return [float(b) * other for b, other in zip(x, y[::-1], strict=True)]
+
+
+def _offsets(ready: Prepared, axis: int) -> float:
+    """Share of the mean square bend across rows (0) or columns (1) that is the same all along a line.
+
+    Beyond twice what any of its neighbours in the spectrum has; nothing, if the means of lines do not
+    alternate as independent offsets do: grooves along the lines are as wide as several of them.
+    """
+    means = np.diff(ready.levelled.heights.mean(axis=1 - axis), 2)
+    if not float(means[1:] @ means[:-1]) < _ALTERNATE * float(means @ means):
+        return 0.0
+    bends = _second(np.moveaxis(ready.used.heights, axis, 0))
+    power = np.mean(np.abs(fft.rfft(bends)) ** 2, axis=0)
+    power[1:] *= 2
+    return float((power[0] - power[_NEAR].max()) / power.sum())
+
+
+def _second(z: Array) -> Array:
+    """Second differences from row to row, around rows that are equally far apart."""
+    j = np.arange(1, len(z) - 1, max(z.size // _ENOUGH, 1))
+    return np.asarray(z[j - 1] - 2 * z[j] + z[j + 1])

@@ -8,12 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.arrays import Array
-from mcgw.maps.foreign import read_foreign
-from mcgw.maps.map_files import read_h5, read_npy
+from mcgw.maps.map_files import read_foreign, read_h5, read_npy
 from mcgw.maps.profile import Profile, profile_at
-from mcgw.maps.raw import ForeignError, Given, Raw, metres_in
 from mcgw.maps.text_file import read_text
-from mcgw.maps.topography import FLATTEST, STEEPEST, Topography
+from mcgw.maps.topography import FLATTEST, STEEPEST, ForeignError, Given, Raw, Topography, metres_in
 
 _TEXT = (".txt", ".csv", ".asc", ".dat", ".tsv", ".prf", ".xy", ".xyz")
 READERS: dict[str, Callable[[Path, Given], Raw]] = {
@@ -83,7 +81,19 @@ def read_heights(
     assumed = "" if known and (pixel or raw.lateral) else "m"
     if plane and 1 not in heights.shape:
         dx, dy = lateral.tolist()
-        return _plausible(path, Topography(heights, (dx, dy), raw.periodic, assumed))
+        found = Topography(heights, (dx, dy), raw.periodic, assumed)
+        slope = found.steepness
+        if assumed and slope > STEEPEST:
+            raise ValueError(
+                f"{path}: gives no unit of its heights, and in {assumed} their typical slope would be "
+                f"{slope:.3g}; give --unit (um, nm, ...), or another --pixel"
+            )
+        if slope and not FLATTEST <= slope <= STEEPEST:
+            raise ValueError(
+                f"{path}: the typical slope of this map is {slope:.3g}, which no surface has ({FLATTEST:g} "
+                f"to {STEEPEST:g}): its heights, or its pixel of {dx:.3g} m, are in another unit"
+            )
+        return found
     if plane or pixel is not None:  # SDF and X3P hold a line as a map of one row
         lateral = lateral[int(plane and len(heights) > 1)] * np.arange(heights.size)
     try:
@@ -110,22 +120,6 @@ def read_map(
     if isinstance(found, Profile):
         raise ValueError(f"{path}: is a profile along a line; a map has rows and columns")
     return found
-
-
-def _plausible(path: Path, topography: Topography) -> Topography:
-    """Refuse slopes that no surface has."""
-    slope = topography.steepness
-    if slope == 0 or FLATTEST <= slope <= STEEPEST:
-        return topography
-    if topography.assumed_unit and slope > STEEPEST:
-        raise ValueError(
-            f"{path}: gives no unit of its heights, and in {topography.assumed_unit} their typical slope "
-            f"would be {slope:.3g}; give --unit (um, nm, ...), or another --pixel"
-        )
-    raise ValueError(
-        f"{path}: the typical slope of this map is {slope:.3g}, which no surface has ({FLATTEST:g} to "
-        f"{STEEPEST:g}): its heights, or its pixel of {topography.pixel[0]:.3g} m, are in another unit"
-    )
 
 
 def _read(path: Path, given: Given) -> Raw:

@@ -101,7 +101,14 @@ def prepared(topography: Topography, asked: Preparation) -> Prepared:
         If nothing is left of the map, or it is flat.
     """
     notes: list[str] = []
-    kept = _within(_trimmed(topography, asked.trim, notes), notes)
+    kept, trim = topography, asked.trim
+    if trim:
+        rows, columns = kept.heights.shape
+        if 2 * trim >= min(rows, columns):
+            raise ValueError(f"trim = {trim}: leaves nothing of {columns} x {rows} points")
+        notes.append(f"trim: {trim} points removed along each edge")
+        kept = replace(kept, heights=kept.heights[trim:-trim, trim:-trim], periodic=False)
+    kept = _within(kept, notes)
     del topography  # frees the memory of a large map that nobody else uses
     if not np.nanmax(kept.heights) - np.nanmin(kept.heights) > SMALLEST:
         raise ValueError("the map is flat, without roughness")
@@ -121,16 +128,6 @@ def prepared(topography: Topography, asked: Preparation) -> Prepared:
         used = smooth(used, asked.cutoff)
     seen = None if holes is None else _seen(level, holes, asked, notes)
     return Prepared(level, used, seen, seen_by, asked, tuple(notes))
-
-
-def _trimmed(topography: Topography, trim: int, notes: list[str]) -> Topography:
-    if not trim:
-        return topography
-    rows, columns = topography.heights.shape
-    if 2 * trim >= min(rows, columns):
-        raise ValueError(f"trim = {trim}: leaves nothing of {columns} x {rows} points")
-    notes.append(f"trim: {trim} points removed along each edge")
-    return replace(topography, heights=topography.heights[trim:-trim, trim:-trim], periodic=False)
 
 
 def _within(topography: Topography, notes: list[str]) -> Topography:

@@ -18,8 +18,14 @@ from analytic.arrays import Array
 from mcgw.formats.table import Column, Shown, Table
 from mcgw.machine.terminal import plotted
 from mcgw.maps.estimates import Estimate, Roughness, roughness_of
-from mcgw.maps.profile import PROFILE_ORDERS, Profile, smooth_profile, without_profile_form
-from mcgw.maps.profile_waves import SMOOTH, waves_of_profile
+from mcgw.maps.profile import (
+    PROFILE_ORDERS,
+    SMOOTH,
+    Profile,
+    smooth_profile,
+    waves_of_profile,
+    without_profile_form,
+)
 from mcgw.maps.steps import Form
 from mcgw.maps.waves import Uncertain, log_derivatives, uncertain
 

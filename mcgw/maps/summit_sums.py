@@ -1,7 +1,7 @@
 """One pass over a map: sums of squares of its derivatives, and its summits, sub-area by sub-area."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from scipy import ndimage
@@ -190,7 +190,10 @@ def summit_sums_of(topography: Topography, *, across: int = 4, seen: Marks | Non
         derivatives, or no point counts.
     """
     z, mean = np.ascontiguousarray(topography.heights), topography.heights.mean()
-    counts = np.empty((0, 0), dtype=np.bool_) if seen is None else _with_neighbours(seen, topography.periodic)
+    counts = np.empty((0, 0), dtype=np.bool_)
+    if seen is not None:  # with their neighbours, as far as differences reach
+        mode: Literal["wrap", "nearest"] = "wrap" if topography.periodic else "nearest"
+        counts = ndimage.minimum_filter(seen, 2 * _STENCIL + 1, mode=mode)
     if topography.periodic:
         z = np.pad(z, EDGE, mode="wrap")
         counts = np.pad(counts, EDGE, mode="wrap") if seen is not None else counts
@@ -213,13 +216,6 @@ def summit_sums_of(topography: Topography, *, across: int = 4, seen: Marks | Non
         )
     dx, dy = topography.pixel
     return SummitSums(sums, summits[:, :found].copy(), part[:found].copy(), dx * dy)
-
-
-def _with_neighbours(seen: Marks, periodic: bool) -> Marks:
-    """Points whose neighbours were seen too, as far as differences reach."""
-    wide = np.pad(seen, _STENCIL, mode="wrap" if periodic else "edge")
-    counts = ndimage.minimum_filter(wide, 2 * _STENCIL + 1)
-    return np.asarray(counts[_STENCIL:-_STENCIL, _STENCIL:-_STENCIL])
 
 
 def coarse_sums_of(topography: Topography, *, across: int = 4, seen: Marks | None = None) -> SummitSums:

@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from analytic.arrays import Array
 from mcgw.formats.units import METRES, parse
-from mcgw.maps.raw import ForeignError, Given, Raw, metres_in
-from mcgw.maps.topography import XYZ, checked_shape
+from mcgw.maps.topography import XYZ, ForeignError, Given, Raw, checked_shape, metres_in
 
 _MOST_LINE = 2**24
 MOST_HEADER = 500  # lines

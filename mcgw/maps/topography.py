@@ -1,12 +1,16 @@
-"""Height maps, as every reader returns and every writer takes them."""
+"""Height maps, as every writer takes them; and what every reader gets and gives, in the units of the file."""
 
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analytic.arrays import Array
+from mcgw.formats.units import METRES
 
 MOST_PIXELS = 2**28  # 16384 x 16384: 2 GiB as float64
 SMALLEST, LARGEST = 1e-150, 1e150  # of what is squared, m: sums of squares and a dozen times that, too
@@ -108,3 +112,65 @@ def checked_shape(rows: int, columns: int, *, held: int | None = None) -> tuple[
     if held is not None and rows * columns > max(_SMALL, _PACKED * held):
         raise ValueError(f"{columns} x {rows} points: more than {held} bytes hold of a map")
     return rows, columns
+
+
+class ForeignError(ValueError):
+    """A file that is not in one of our formats, but may be in another."""
+
+
+class Given(NamedTuple):
+    """What a user says of a file.
+
+    Parameters
+    ----------
+    pixel : (float, float) or None
+        Size of a pixel, m; of a profile the first is the distance between points.
+    unit : str or None
+        Of the heights.
+    missing : float or None
+        Number that stands for a missing point, in the unit of the file.
+    """
+
+    pixel: tuple[float, float] | None
+    unit: str | None
+    missing: float | None
+
+
+class Raw(NamedTuple):
+    """What a file holds of a map or of a profile, before a user adds what it does not tell.
+
+    Parameters
+    ----------
+    heights : ndarray
+        In their unit, shape (rows, columns) or (points,).
+    unit : str, optional
+        Of the heights, where the file tells it.
+    pixel : (float, float), optional
+        Size of a pixel of a map, where the file tells it.
+    periodic : bool, optional
+        Whether opposite edges fit together.
+    places : ndarray, optional
+        Of the points of a profile along its line.
+    lateral : str, optional
+        Unit of the pixel or the places, where it is known.
+    """
+
+    heights: NDArray[Any]
+    unit: str | None = None
+    pixel: tuple[float, float] | None = None
+    periodic: bool = False
+    places: Array | None = None
+    lateral: str | None = None
+
+
+def metres_in(path: Path, unit: str | None) -> float:
+    """Size of a unit of length, m; none is m.
+
+    Raises
+    ------
+    ValueError
+        If it is unknown.
+    """
+    if unit is not None and unit not in METRES:
+        raise ValueError(f"{path}: {unit!r} is not a known unit of length: {', '.join(METRES)}")
+    return METRES[unit or "m"]

@@ -2,7 +2,7 @@
 
 import io
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import Any
 
@@ -20,15 +20,14 @@ from mcgw.figures.panels import SEPARATION, FigureData, Panel, Series, draw
 from mcgw.figures.ratios import spread
 from mcgw.figures.studies import quantity_panel
 from mcgw.figures.style import SEEN, STYLE, grading_label
-from mcgw.formats.numbers import typeset
-from mcgw.formats.table import Column, Table, evenly
+from mcgw.formats.table import Column, Table, evenly, typeset
 from mcgw.machine.progress import told
 from mcgw.machine.terminal import one_line, plain_text
 from mcgw.reports.solved_loads import answer_table, by_load
 from mcgw.scene.cautions import cautions
 from mcgw.scene.law_cautions import other_laws
 from mcgw.scene.scene import Scene
-from mcgw.statistics.comparison import Comparison, compare
+from mcgw.statistics.comparison import compare
 
 _PROVENANCE = ("digest", "seed", "sampler", "date", "versions", "commit", "cpu")
 _FEW_HEIGHTS, _FEWEST = 3e6, 20  # drawn at once for all pressures of a page, where they are drawn
@@ -66,9 +65,12 @@ def report_html(
         comparison = compare(ensemble)
         tell(1, 3)
         solved = solved_pressures(scene, pressures)
-        at_pressure = drawn(pressure_panels(solved))
+        at_pressure = {label: svg_of(panel, label) for label, panel in pressure_panels(solved)}
         tell(2, 3)
-        figures = drawn(comparison_panels(comparison))
+        panels = {quantity_of(x).long_name: quantity_panel(comparison, x) for x in comparison.curves}
+        if ensemble.n_surfaces > 1:
+            panels["std over mean against separation"] = spread_panel(ensemble)
+        figures = {label: svg_of(panel, label) for label, panel in panels.items()}
         tell(3, 3)
     text = _LIST.sub(lambda found: f"[{' '.join(found[1].split()).rstrip(',')}]", attributes["scene"])
     return page.get_template("report.html.j2").render(
@@ -127,20 +129,6 @@ def _laws_table(scene: Scene) -> Table | None:
     names = Column("law", [f"{scene.law.name} (this one)", *others.load], "contact law")
     load, area = ([1.0, *ratios.values()] for ratios in (others.load, others.area))
     return Table((names, Column("load", load, form=".4g"), Column("area", area, form=".4g")), words)
-
-
-def drawn(panels: Iterable[tuple[str, Panel]]) -> dict[str, str]:
-    """Draw panels: SVG elements by what they show."""
-    return {label: svg_of(panel, label) for label, panel in panels}
-
-
-def comparison_panels(comparison: Comparison) -> Iterator[tuple[str, Panel]]:
-    """Show each quantity with its theory, and how far surfaces spread."""
-    ensemble = comparison.ensemble
-    for name in ensemble.scene.answers:
-        yield quantity_of(name).long_name, quantity_panel(comparison, name)
-    if ensemble.n_surfaces > 1:
-        yield "std over mean against separation", spread_panel(ensemble)
 
 
 def solved_pressures(scene: Scene, pressures: Sequence[float] | None = None) -> list[Solution]:

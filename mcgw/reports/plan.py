@@ -13,12 +13,9 @@ from mcgw.sampling.shared import shared
 from mcgw.scene.parts import promise_of
 from mcgw.scene.scene import Scene, storable
 from mcgw.scene.writing import contact_facts
-from mcgw.sweeps.groups import Group
 from mcgw.sweeps.points import Points
 
 _TARGETS = (1e-2, 1e-3)  # 95 % bounds of means
-_NO_SURFACES = "means alone: no surfaces, scene.theory is exact"
-
 _WORTH, _CROWD = 1.5, 300  # times faster, to be told; asperities of a cell, for crowds to pay
 
 
@@ -43,8 +40,14 @@ def plan_text(scene: Scene) -> str:
         ("results", kept),
         ("time", f"about {in_words(seconds)}"),
         ("accuracy", _accuracy(scene, known, surfaces)),
-        *(("for" if k == 0 else "", line) for k, line in enumerate(_targets(scene, seconds / surfaces))),
     ]
+    if scene.interaction is None and not scene.as_measured and laws_are_quick(scene):
+        for k, target in enumerate(_TARGETS):
+            found = forecast(scene.replace(rel_err=target, n_surfaces=MOST_SURFACES))
+            some = f", all but {len(found.out_of_reach)} means" if found.out_of_reach else ""
+            needed = f"{found.surfaces:.2g} surfaces, {in_words(seconds / surfaces * found.surfaces)}{some}"
+            facts.append(("" if k else "for", f"rel_err = {target:g}: {needed}"))
+        facts.append(("", "means alone: no surfaces, scene.theory is exact"))
     left_out = [name for name in QUANTITIES if name not in scene.quantities]
     spared = scene.n_asperities - scene.touching
     not_done = [line.format(spared=spared) for line in promise_of(known.name).not_done]
@@ -68,42 +71,23 @@ def _accuracy(scene: Scene, known: Expected, surfaces: int) -> str:
     return f"{given}; {bought} crowded cells, {times:.2g} x the time" if times <= 1 / _WORTH else given
 
 
-def _targets(scene: Scene, each: float) -> list[str]:
-    """Surfaces, of so many seconds each, for errors of every mean, and that theory needs none."""
-    if scene.interaction is not None or scene.as_measured or not laws_are_quick(scene):
-        return []  # no theory, or one that takes longer than a plan may
-    lines = []
-    for target in _TARGETS:
-        found = forecast(scene.replace(rel_err=target, n_surfaces=MOST_SURFACES))
-        some = f", all but {len(found.out_of_reach)} means" if found.out_of_reach else ""
-        seconds = in_words(each * found.surfaces)
-        lines.append(f"rel_err = {target:g}: {found.surfaces:.2g} surfaces, {seconds}{some}")
-    return [*lines, _NO_SURFACES]
-
-
 def sweep_plan_text(asked: Points) -> str:
     """Return the plan in words; the group that takes the longest is tried out, of which nothing is kept."""
     groups = asked.groups
-    title = str(asked.document["title"])
-    computed = sum(len(group.computed) for group in groups)
-    drawn = sum(group.n_surfaces * group.computed[0].touching for group in groups)
-    facts = [
-        ("groups", f"{len(groups)} that share their surfaces"),
-        ("surfaces", f"{sum(group.n_surfaces for group in groups)}, with {drawn:.4g} asperities that touch"),
-        ("computed", f"{computed} scenes; the others are weighted means of them"),
-        ("time", f"about {in_words(_seconds(groups))} on this machine"),
-    ]
-    keys = [(key, asked.axes.summary(key)) for key in asked.axes.keys]
-    return "\n".join([f"{one_line(title) or 'sweep'}: {asked.axes.size} scenes", *listed([*keys, *facts])])
-
-
-def _seconds(groups: list[Group]) -> float:
-    """Of all groups, from the one that takes the longest."""
+    scenes = sum(len(group.computed) for group in groups)
+    touching = sum(group.n_surfaces * group.computed[0].touching for group in groups)
     work = [group.n_surfaces * group.work for group in groups]
     longest = groups[work.index(max(work))]
     started = perf_counter()
     source = shared(longest.computed)
-    preparing = perf_counter() - started
-    each = seconds_per_surface(longest.computed[0], source)
-    scenes = sum(len(group.computed) for group in groups)
-    return preparing * scenes / len(longest.computed) + each * longest.n_surfaces * sum(work) / max(work)
+    preparing = (perf_counter() - started) * scenes / len(longest.computed)
+    drawing = seconds_per_surface(longest.computed[0], source) * longest.n_surfaces * sum(work) / max(work)
+    facts = [
+        *((key, asked.axes.summary(key)) for key in asked.axes.keys),
+        ("groups", f"{len(groups)} that share their surfaces"),
+        ("surfaces", f"{sum(x.n_surfaces for x in groups)}, with {touching:.4g} asperities that touch"),
+        ("computed", f"{scenes} scenes; the others are weighted means of them"),
+        ("time", f"about {in_words(preparing + drawing)} on this machine"),
+    ]
+    title = one_line(str(asked.document["title"])) or "sweep"
+    return "\n".join([f"{title}: {asked.axes.size} scenes", *listed(facts)])

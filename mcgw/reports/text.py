@@ -24,10 +24,17 @@ _COLUMNS = 6  # quantities that stand in one table
 _LISTED, _WORST = 12, 3  # points of a sweep; rows that are farthest from theory
 
 
-def summary(ensemble: Ensemble, attributes: dict[str, Any], full: bool = True) -> str:
+def summary(result: "Ensemble | Sweep", attributes: dict[str, Any], full: bool = True) -> str:
     """Tell what a file holds: provenance and a table of means; if `full`, one a quantity with its spread."""
-    scene = ensemble.scene
-    h, n, total = scene.separations, ensemble.n_surfaces, scene.n_surfaces
+    origin = [
+        ("digest", str(attributes["digest"])),
+        ("made", f"{attributes['date']} in {attributes['wall_seconds']:.2f} s on {attributes['cpu']}"),
+        ("with", f"{attributes['versions']}; commit {attributes['commit']}"),
+    ]
+    if not isinstance(result, Ensemble):
+        return "\n".join([str(result), *listed(origin)])
+    scene, n = result.scene, result.n_surfaces
+    h, total = scene.separations, scene.n_surfaces
     so_far, spent = "" if n == total else f" so far, of {total},", attributes.get("accuracy_spent")
     of_it = "" if spent is None else f", {spent:.2g} of it spent"
     facts = [
@@ -35,37 +42,24 @@ def summary(ensemble: Ensemble, attributes: dict[str, Any], full: bool = True) -
         ("separations", f"{len(h)} from {min(h):g} to {max(h):g} (d/sigma)"),
         ("grading", law_text(scene.grading)),
         *contact_facts(scene),
-        ("sampler", f"{ensemble.sampler}, seed {scene.seed}"),
+        ("sampler", f"{result.sampler}, seed {scene.seed}"),
         *((word, f"{what}{of_it}") for word, what in accuracy_facts(scene)),
         *([] if scene.keep != "statistics" else [("kept", _KEPT)]),
         ("complete", "yes" if attributes["complete"] else "no"),
-        *_origin(attributes),
+        *origin,
     ]
     lines = [one_line(scene.title) or "ensemble", *listed(facts, 12)]
     lines += [f"  {line}" for line in scene.validity().lines]
-    if not full:
-        lines += ["", _means(ensemble).text(), "standard deviations, all quantities: add -v"]
-    for name in scene.answers if full else ():
-        lines += ["", statistics_table(ensemble, name).only(*_SHOWN).rows().text()]
-    return "\n".join(lines)
-
-
-def _means(ensemble: Ensemble) -> Table:
-    """Means of the first quantities, to the digits that their standard errors allow."""
-    columns = [Column("separation", ensemble.separations, SEPARATION, form="g")]
-    for x in ensemble.scene.answers[:_COLUMNS]:
-        unit, error = ensemble.scene.quantity(x).unit, ensemble.stderr(x)
-        columns.append(Column(x, ensemble.mean(x), x.replace("_", " "), unit, error=error))
-    return Table(tuple(columns)).rows()
-
-
-def _origin(attributes: dict[str, Any]) -> list[tuple[str, str]]:
-    """Tell where the numbers of a file come from."""
-    return [
-        ("digest", str(attributes["digest"])),
-        ("made", f"{attributes['date']} in {attributes['wall_seconds']:.2f} s on {attributes['cpu']}"),
-        ("with", f"{attributes['versions']}; commit {attributes['commit']}"),
-    ]
+    if full:
+        for name in scene.answers:
+            lines += ["", statistics_table(result, name).only(*_SHOWN).rows().text()]
+        return "\n".join(lines)
+    columns = [Column("separation", result.separations, SEPARATION, form="g")]
+    for x in scene.answers[:_COLUMNS]:  # to the digits that their standard errors allow
+        unit, error = scene.quantity(x).unit, result.stderr(x)
+        columns.append(Column(x, result.mean(x), x.replace("_", " "), unit, error=error))
+    means = Table(tuple(columns)).rows().text()
+    return "\n".join([*lines, "", means, "standard deviations, all quantities: add -v"])
 
 
 def comparison_text(comparison: Comparison) -> str:
@@ -97,13 +91,6 @@ def comparison_summary(comparison: Comparison | SweepComparison, *, whole: bool)
     if comparison.of_many:
         lines.append(f"tables and figure {comparison.of_many}; the verdict is on all of them")
     return comparison_text(comparison) if whole else comparison.worst(_WORST).text(), lines
-
-
-def summary_of(result: "Ensemble | Sweep", attributes: dict[str, Any], full: bool) -> str:
-    """Return the summary of the file of an ensemble or of a sweep."""
-    if isinstance(result, Ensemble):
-        return summary(result, attributes, full)
-    return "\n".join([str(result), *listed(_origin(attributes))])
 
 
 def table_of(result: "Ensemble | Sweep") -> Table:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from analytic.arrays import Array
+from analytic.arrays import Array, Marks
 from mcgw.ensemble.ensemble import Ensemble, how_many, shown
 from mcgw.ensemble.intervals import interval_columns
 from mcgw.ensemble.labelled import heading
@@ -26,28 +26,46 @@ _LISTED = 7
 
 
 @dataclass(frozen=True)
-class Curve:
-    """One quantity over the separations, all arrays of shape (separations,) in SI units.
+class Points:
+    """Monte-Carlo means beside theory, all arrays of one shape.
 
     Parameters
     ----------
-    mean, low, high : ndarray
-        Monte-Carlo mean and its 95 % interval, nan where there are too few contacts for one.
-    theory, stderr : ndarray
-        Exact mean, and the exact standard error of the Monte-Carlo mean.
+    x : ndarray
+        Where: separations, or whatever a figure is drawn over.
+    mean, stderr : ndarray
+        Monte-Carlo means, and their standard errors.
+    theory : ndarray
+        Exact means.
+    low, high : ndarray, optional
+        Ends of 95 % intervals, nan where there are too few contacts for one; default: those of a normal law.
     """
 
+    x: Array
     mean: Array
-    low: Array
-    high: Array
-    theory: Array
     stderr: Array
+    theory: Array
+    low: Array | None = None
+    high: Array | None = None
+
+    @property
+    def varies(self) -> Marks:
+        """Where the means have an error."""
+        return np.asarray(self.stderr > 0)
 
     @property
     def residual(self) -> Array:
         """(mean - theory)/stderr; 0 where neither fluctuates."""
         difference = self.mean - self.theory
-        return np.divide(difference, self.stderr, out=np.zeros_like(difference), where=self.stderr > 0)
+        return np.divide(difference, self.stderr, out=np.zeros_like(difference), where=self.varies)
+
+    @property
+    def interval(self) -> tuple[Array, Array]:
+        """Ends of the 95 % intervals."""
+        half = 1.96 * self.stderr
+        if self.low is None or self.high is None:
+            return self.mean - half, self.mean + half
+        return self.low, self.high
 
 
 @dataclass(frozen=True, repr=False)
@@ -58,8 +76,8 @@ class Comparison(Shown):
     ----------
     ensemble : Ensemble
         What was compared, at the separations that are shown: 100 of them where there are more.
-    curves : dict of str to Curve
-        By quantity.
+    curves : dict of str to Points
+        By quantity, over the separations in SI units; the standard errors are exact.
     verdict : Check
         Of all means, and on the distributions of single surfaces if these were tested.
     of_many : str, optional
@@ -67,7 +85,7 @@ class Comparison(Shown):
     """
 
     ensemble: Ensemble
-    curves: dict[str, Curve]
+    curves: dict[str, Points]
     verdict: Check
     of_many: str = ""
 
@@ -119,7 +137,7 @@ class Comparison(Shown):
         columns = (
             Column("separation", self.ensemble.separations, SEPARATION, form="g"),
             Column("mean", c.mean, unit=unit, error=c.stderr),
-            *interval_columns(c.low, c.high, unit),
+            *interval_columns(*c.interval, unit),
             Column("std", self.ensemble.std(quantity), unit=unit, form=".3g"),
             Column("theory", c.theory, unit=unit, error=c.stderr),
             Column("residual", c.residual, form="+z.2f"),
@@ -256,7 +274,8 @@ def compare(
     theory, h = some.scene.theory, some.scene.separations
     for name in some.scene.answers:
         stderr = np.sqrt(theory.cumulants(name, h).variance / some.n_surfaces)
-        curves[name] = Curve(some.mean(name), *some.interval(name), theory.mean(name, h), stderr)
+        exact = theory.mean(name, h)
+        curves[name] = Points(some.separations, some.mean(name), stderr, exact, *some.interval(name))
     return Comparison(some, curves, found, how_many(result))
 
 

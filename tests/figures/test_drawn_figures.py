@@ -9,7 +9,7 @@ from conftest import SURFACE
 from matplotlib.collections import LineCollection
 from oracles import inside, told
 from oracles.crowding import crowded
-from oracles.inside import Comparison, Curve, FigureData, Panel, Points, Series, draw
+from oracles.inside import Comparison, FigureData, Panel, Points, Series, draw
 from oracles.study_by_hand import made_up
 
 import analytic
@@ -79,7 +79,9 @@ def test_residuals_of_one_draw_over_gamma_are_one_point(residuals, shown):
     """Beside a series without any error, which has none at all."""
     points = Points(X, X + np.array(residuals), np.ones(3), X)
     series = Series("a", X, X, points), Series("b", X, X, Points(X, X, 0 * X, X))
-    _, below = draw(FigureData("", "", (Panel("p", inside.GAMMA, "y", series),))).axes
+    panel = Panel("p", inside.GAMMA, "y", series, ("log", "linear"))
+    above, below = draw(FigureData("", "", (panel,))).axes
+    assert (above.get_xscale(), below.get_xscale()) == ("log", "log")
     assert [len(line.get_xdata()) for line in markers_of(below)] == [shown]
 
 
@@ -171,7 +173,8 @@ def test_lopsided_intervals_and_large_residuals_are_drawn_as_they_are(comparison
     """
     curve = comparison.curves["load"]
     mean = curve.theory + 20 * curve.stderr
-    lopsided = Curve(mean, mean * [0.9, 0.7, 0.99], mean * [1.3, 1.1, 1.5], curve.theory, curve.stderr)
+    ends = mean * [0.9, 0.7, 0.99], mean * [1.3, 1.1, 1.5]
+    lopsided = Points(curve.x, mean, curve.stderr, curve.theory, *ends)
     above, below = drawn(comparison, lopsided)
     bars = np.column_stack([H, lopsided.low, lopsided.high])
     np.testing.assert_allclose(bars_of(above), bars, rtol=1e-12)
@@ -201,7 +204,7 @@ def test_too_few_contacts_have_a_marker_of_their_own_and_pulls_a_linear_axis(com
     np.testing.assert_array_equal(points.get_xdata(), H[:2])
     np.testing.assert_array_equal(cross.get_xydata(), [(H[2], curve.mean[2])])
     assert named_in(axis.get_figure(root=True))[-1] == "too few contacts"
-    pull = Curve(-curve.mean, -curve.high, -curve.low, -curve.theory, curve.stderr)
+    pull = Points(curve.x, -curve.mean, curve.stderr, -curve.theory, -curve.high, -curve.low)
     axis = drawn(comparison, pull)[0]
     assert axis.get_yscale() == "linear"
     np.testing.assert_allclose(bars_of(axis)[:, 1:], np.column_stack([pull.low, pull.high]), rtol=1e-12)
@@ -221,7 +224,8 @@ def test_panels_of_a_comparison_have_room(comparison, panels, sign, size):
     names = (*QUANTITIES, "yielded", "load_slope")[:panels]
     one = comparison.curves["load"]
     mean, error = sign * 1e-12 * one.mean, 1e-13 * one.mean
-    curve = Curve(mean, mean - error, mean + error, mean * (1 + 0.01 * size), 1e-13 * one.stderr)
+    theory = mean * (1 + 0.01 * size)
+    curve = Points(one.x, mean, 1e-13 * one.stderr, theory, mean - error, mean + error)
     figure = draw(
         inside.comparison_figure(dataclasses.replace(comparison, curves=dict.fromkeys(names, curve)))
     )

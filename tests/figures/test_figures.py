@@ -45,7 +45,7 @@ def said(figures):
             yield f" {panel.title or '-'}: {axes}"
             for s in panel.series:
                 p = s.points
-                parts = (s.x, s.theory, *((p.x, p.mean, p.stderr, p.exact) if p else ()))
+                parts = (s.x, s.theory, *((p.x, p.mean, p.stderr, p.theory) if p else ()))
                 yield f"  {s.label}: {'; '.join(map(mark, parts))}"
 
 
@@ -83,7 +83,7 @@ def test_points_with_wrong_theory_would_show(figures):
             h = float(series.label.split("=")[1])
             p = series.points
             slope = analytic.stiffness_ratio(h, analytic.Exponential(2.0)) - 1
-            assert np.median(np.abs((p.mean - p.exact - 0.03 * slope) / p.stderr)) > 5
+            assert np.median(np.abs((p.mean - p.theory - 0.03 * slope) / p.stderr)) > 5
 
 
 def test_numbers_of_the_paper(figures):
@@ -126,7 +126,7 @@ def test_files_and_every_number_of_a_figure_in_its_csv(figures, tmp_path):
         for s in panel.series:
             p = s.points
             wanted += [(panel.title, s.label, "line", *row) for row in zip(s.x, s.theory, strict=True)]
-            told = zip(p.x, p.exact, p.mean, p.stderr, strict=True)
+            told = zip(p.x, p.theory, p.mean, p.stderr, strict=True)
             wanted += [(panel.title, s.label, "point", *row) for row in told]
     assert [(*row[:3], *(float(x) for x in row[3:] if x)) for row in found] == wanted
 
@@ -189,7 +189,7 @@ def test_every_kind_of_scene_has_its_figures(name, recorded):
         recorded(f"figures.{name}", said(figures | without))
     every = [p for figure in figures.values() for p in points(figure)]
     scatter = [p.stderr > 1e-14 * np.abs(p.mean) for p in every]  # more than rounding
-    z = np.concatenate([(p.mean - p.exact)[s] / p.stderr[s] for p, s in zip(every, scatter, strict=True)])
+    z = np.concatenate([(p.mean - p.theory)[s] / p.stderr[s] for p, s in zip(every, scatter, strict=True)])
     assert z.size > 10
     assert 0.05 < np.abs(z).max() < 5
     for panel in (panel for figure in figures.values() for panel in figure.panels):
@@ -222,7 +222,7 @@ def test_numbers_are_integrals_over_the_heights():
 
     def at_one(name, series=0, panel=0):
         p = graded[name].panels[panel].series[series].points
-        (value,) = p.exact[np.isclose(p.x, 1.0)]
+        (value,) = p.theory[np.isclose(p.x, 1.0)]
         return value
 
     x, plain = SURFACE, integral(1.5)

@@ -21,9 +21,8 @@ from scipy.optimize import brentq
 
 import mcgw
 from mcgw.maps import Spectrum, Topography, gaussian_map
-from mcgw.maps.fit_cautions import WORDS, cautions
+from mcgw.maps.fit_cautions import WORDS, cautions, faults, shares
 from mcgw.maps.form import form_left
-from mcgw.maps.instrument import faults, shares
 
 N, PIXEL = 240, (1e-6, 2e-6)
 OF_THE_MAP = {"spikes", "form", "waves", "slope"}

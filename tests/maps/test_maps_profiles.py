@@ -12,9 +12,14 @@ from scipy.stats import t as t_law
 import mcgw
 from analytic import SpectralMoments
 from mcgw.maps import Profile, Spectrum, gaussian_map
-from mcgw.maps.profile import profile_at, smooth_profile, without_profile_form
+from mcgw.maps.profile import (
+    areal_weights,
+    profile_at,
+    smooth_profile,
+    waves_of_profile,
+    without_profile_form,
+)
 from mcgw.maps.profile_fit import fit_profiles
-from mcgw.maps.profile_waves import areal_weights, waves_of_profile
 
 UM = 1e-6
 NAMES = ("m0", "m2", "m4", "alpha", "eta", "radius", "sigma")
