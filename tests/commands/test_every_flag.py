@@ -46,6 +46,7 @@ ROWS = [
             (line, target, "--threads 1", {"threads": 1, "executor": None, "shard": None}),
             (line, target, "--shard 1/2", {"shard": "1/2", "executor": None, "threads": None}),
             (line, target, "--set ensemble.n_surfaces=9", {"scene.n_surfaces": 9, "scene.seed": 5}),
+            (line, target, "--set title=007", {"scene.title": "007"}),
             (line, target, "--jobs 3", {"executor.n": 3, "shard": None}),
             (line, "jobs.executors:dask_executor", "--dask tcp://h:1", {"address": "tcp://h:1"}),
         )

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from oracles.law_of_crowds import distance, farthest
 from scipy.integrate import quad
-from scipy.stats import kstest
+from scipy.stats import kstest, norm
 
 import analytic
 import mcgw
 from mcgw.sampling import samplers
 from mcgw.sampling.cells import mesh_of
 from mcgw.sampling.counts import counts_of
-from mcgw.sampling.crowding import crowding
+from mcgw.sampling.crowding import _FOURTH, _SQUARED, _THIRD, crowding
 from mcgw.sampling.drawn_moments import _partly
 from mcgw.sampling.samplers import aggregate_of, distance_of, sampler_of
 
@@ -29,6 +29,15 @@ def test_where_the_approximation_begins_to_show(make_scene):
     single = samplers.aggregate_of(scene, crowded=1)
     share = (single.block(0, scene.n_surfaces).sums["load"] < 0).mean(axis=0)
     assert 0.005 < share[1] < 0.02
+
+
+def test_terms_of_edgeworth_are_bounded_by_their_largest_values():
+    x = np.linspace(-6, 6, 120_001)
+    of_density = x**2 - 1, x**3 - 3 * x, x**5 - 10 * x**3 + 15 * x
+    largest = [
+        np.abs(terms * norm.pdf(x)).max() / k for terms, k in zip(of_density, (6, 24, 72), strict=True)
+    ]
+    np.testing.assert_allclose([_THIRD, _FOURTH, _SQUARED], largest, rtol=2e-4)
 
 
 def test_price_does_not_depend_on_n(make_scene):

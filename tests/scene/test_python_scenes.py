@@ -142,12 +142,14 @@ SOURCES = {
 
 
 @pytest.mark.parametrize("name", SOURCES)
-def test_a_seed_from_numpy(name):
+def test_a_seed_from_numpy(name, tmp_path):
     """It is drawn once and recorded; the next of a generator is another one, of a sequence the same."""
     source = SOURCES[name](7)
     scene = mcgw.Scene(SURFACE, separations=[1.0], n_surfaces=3, seed=source)
     assert type(scene.seed) is int
     assert scene.seed == scene.replace(seed=SOURCES[name](7)).seed
+    (tmp_path / "s.toml").write_text(mcgw.scene_text(scene))
+    assert scene == mcgw.load_scene(tmp_path / "s.toml", changes={"ensemble.seed": SOURCES[name](7)})
     assert (scene.replace(seed=source).seed == scene.seed) == (name == "sequence")
 
 

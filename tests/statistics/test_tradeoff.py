@@ -162,6 +162,7 @@ def test_the_cheapest_way_that_is_good_enough(scene):
     ]  # fmt: skip
     names = [advise("mean", target, ways, scene).way.name for target in (1e-1, 1e-2, 1e-3, 1e-5)]
     assert names == ["aggregate", "aggregate", "cells", "theory"]
+    assert advise("mean", 1e-5, ways, scene).n_surfaces == 0
     coarse = advise("mean", 1e-2, ways, scene)
     assert coarse.n_surfaces == surfaces_for(scene, "mean", 1e-2 - 1e-3)  # what the floor leaves
     assert coarse.seconds == pytest.approx(1e-10 * coarse.n_surfaces)

@@ -108,6 +108,16 @@ def test_what_is_left_out_of_a_run_is_told(scene, tmp_path):
     assert part_of("3/3") == (3, 3)
 
 
+def test_a_file_of_another_run_is_told_as_such(scene, tmp_path):
+    """Not as a damaged shard, and its own stay."""
+    shards = begun(scene, tmp_path / "e.h5")
+    mcgw.run(scene.replace(seed=9), tmp_path / "f.h5")
+    (tmp_path / "f.h5").rename(tmp_path / "e.h5")
+    with pytest.raises(StoreError, match=r"holds a different ensemble: ensemble\.seed is 9 there and 1 here"):
+        mcgw.merge(tmp_path / "e.h5")
+    assert sorted(parts_of(tmp_path / "e.h5").glob("shards/block-*.h5")) == shards
+
+
 @pytest.mark.parametrize(
     ("by", "keep"), [("run", "sums"), ("shares", "sums"), ("workers", "sums"), ("run", "statistics")]
 )

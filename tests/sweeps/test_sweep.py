@@ -155,6 +155,7 @@ MISTAKES = [
     ({"contact.unload_from": [0, "x"]}, "contact.unload_from = 'x'"),
     ({"ensemble.keep": ["sums", "statistics"]}, r"ensemble\.keep: must be the same for all points"),
     ({"ensemble.max_seconds": [3]}, "max_seconds: a sweep must be reproducible"),
+    ({"ensemble.max_seconds": [3], GAMMA: [-3]}, "negative from s = 0.2877"),
     ({"ensemble.seed": [-k for k in range(1, 99)]}, r"and 78 more"),
     ({"contact.quantities": [["load"]]}, "contact.quantities: must be the same"),
     ({"grading": [lambda s: np.full_like(s, np.nan)]}, r"grading.*not finite"),
