@@ -19,7 +19,6 @@ from mcgw.maps.topography import Topography
 
 _EITHER = ("area", "stiffness", "conductance")
 QUANTITIES = {"pressure": (*_EITHER, "mean_gap"), "separation": (*_EITHER, "pressure")}  # by what is given
-
 Values = dict[str, float]
 
 # Share of the area that whole pixels add for each side of one at the rim (Yastrebov, Anciaux and Molinari,
