@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import Any, NoReturn
 
 from mcgw.commands.declared import COMMANDS as COMMANDS, all_commands, execute, parser_of
-from mcgw.commands.voice import QUIET, speaking
+from mcgw.commands.outputs import QUIET, speaking
 from mcgw.errors import RunError, in_one_line
 from mcgw.machine.terminal import one_line, plain_output
 

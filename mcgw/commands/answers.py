@@ -16,8 +16,7 @@ from mcgw.commands.kinds import (
     quantity,
     values,
 )
-from mcgw.commands.outputs import JSONL
-from mcgw.commands.voice import ALL, details, news, says, tell_cautions
+from mcgw.commands.outputs import ALL, JSONL, details, news, says, tell_cautions
 
 
 def show(

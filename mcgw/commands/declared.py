@@ -15,8 +15,7 @@ from typing import Any, NoReturn, get_args, get_origin
 
 import mcgw.commands
 from mcgw.commands.kinds import JUST_ONE, Call, Kind
-from mcgw.commands.outputs import check_outputs, reading
-from mcgw.commands.voice import ALL, NEWS, QUIET, tell_cautions
+from mcgw.commands.outputs import ALL, NEWS, QUIET, check_outputs, reading, tell_cautions
 
 _HOMES = {  # commands in the order of work, by the files in which they stand; any other has its own
     "init": "starting", "run": "drawing", "sweep": "drawing", "show": "answers", "compare": "studies",
@@ -24,7 +23,7 @@ _HOMES = {  # commands in the order of work, by the files in which they stand; a
     "export": "products", "figures": "products", "report": "products", "surface": "surface", "fit": "fit",
     "elastic": "answers", "warm": "starting", "completion": "starting",
 }  # fmt: skip
-_OTHERS = {*_HOMES.values(), "declared", "kinds", "outputs", "voice"}
+_OTHERS = {*_HOMES.values(), "declared", "kinds", "outputs"}
 Command = Callable[..., bool | None]
 _NEGATIVE = re.compile(r"-\.?\d")  # a value that looks like an option, such as -1MPa
 _SECTION = re.compile(r"\n\n(?:Parameters|Examples)\n-+\n")
@@ -67,13 +66,9 @@ class _Version(argparse.Action):
     """The action "version", looked up only when needed."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
-        from importlib.metadata import PackageNotFoundError, version
+        from importlib.metadata import version
 
-        try:
-            found = version("mcgw")
-        except PackageNotFoundError:
-            found = "unknown"
-        print(f"mcgw {found}")
+        print(f"mcgw {version('mcgw')}")
         parser.exit()
 
 

@@ -6,8 +6,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from mcgw.commands.kinds import Call, Pixel, Table, Unit, file_in, file_out, pair, quantity
-from mcgw.commands.outputs import FIGURE, NPY, TOML, Output, check_outputs
-from mcgw.commands.voice import details, news, notes
+from mcgw.commands.outputs import FIGURE, NPY, TOML, Output, check_outputs, details, news, notes
 from mcgw.maps.steps import Form, LinesTo, Missing, SpikesTo
 
 E_STAR = 100e9  # Pa, default
@@ -98,7 +97,6 @@ def fit(
     mcgw fit map.h5 --cutoff 5um -o fitted.toml
     """
     from mcgw.formats.files import together
-    from mcgw.formats.units import parse
     from mcgw.maps.fit import Fit
     from mcgw.maps.fitted_scene import fitted_scene, heights_beside, write_scene
     from mcgw.maps.fitting import fit_sources
@@ -120,7 +118,7 @@ def fit(
         "cutoff": cutoff, "long_cutoff": long_cutoff, "form": form, "missing": missing, "spikes": spikes,
         "lines": lines, "trim": trim, "parts": parts,
     }  # fmt: skip
-    asked, across = preparation_of(given, lambda key, x: parse(x, "m", f"--{key.replace('_', '-')}"))
+    asked, across = preparation_of(given)
     names = [path.name for path in map]
     beside = {"--summits": summits, "--tiles": tiles, "--picture": picture}
     if picture and len(map) > 1:

@@ -4,8 +4,17 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 from mcgw.commands.kinds import MaybeScene, SceneOrFile, file_in, file_out, values
-from mcgw.commands.outputs import CSV, HTML, TABLE_OR_FIGURE, Format, Output, check_outputs
-from mcgw.commands.voice import details, news, tell_cautions
+from mcgw.commands.outputs import (
+    CSV,
+    HTML,
+    TABLE_OR_FIGURE,
+    Format,
+    Output,
+    check_outputs,
+    details,
+    news,
+    tell_cautions,
+)
 
 
 def report(

@@ -4,8 +4,7 @@ from pathlib import Path
 from typing import Annotated
 
 from mcgw.commands.kinds import SceneIn, Table, file_in, file_out, quantity
-from mcgw.commands.outputs import FIGURE, TABLE_OR_FIGURE
-from mcgw.commands.voice import ALL, details, news, says, tell_cautions
+from mcgw.commands.outputs import ALL, FIGURE, TABLE_OR_FIGURE, details, news, says, tell_cautions
 
 _TRADED = "{}-tradeoff.csv", "{}-tradeoff-measured.csv", "{}-tradeoff.png"
 

@@ -5,8 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from mcgw.commands.kinds import Length, scene_file
-from mcgw.commands.outputs import JSON, Format, Output, check_outputs
-from mcgw.commands.voice import news, notes
+from mcgw.commands.outputs import JSON, Format, Output, check_outputs, news, notes
 
 if TYPE_CHECKING:
     from mcgw.maps.synthetic import Asperities

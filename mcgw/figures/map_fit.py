@@ -8,7 +8,7 @@ import matplotlib as mpl
 import numpy as np
 
 from analytic import Gaussian, Nayak
-from analytic.arrays import Array, Marks
+from analytic.arrays import Marks
 from mcgw.figures.panels import FigureData, Painter, Panel, words
 from mcgw.figures.style import HOMOGENEOUS, MARKED, MISSING, SAMPLE, THEORY, look, prefixed
 from mcgw.maps.estimates import moments_of
@@ -24,6 +24,7 @@ _MOST_MARKS = 3000
 _CUTOFFS = 8
 _WIDTH, _LINES = 42, 27  # of the text, in characters and lines
 _LISTED: Any = {"va": "top", "ha": "left", "family": "monospace", "fontsize": 6.6}
+_BARS: Any = {"bins": "auto", "density": True, "color": SAMPLE, "label": "summits"}
 _TIMES = 12.0  # from the shortest cutoff to the longest
 
 
@@ -109,17 +110,12 @@ def _moments_panel(ready: Prepared) -> Panel:
     return Panel(title, f"cutoff ({unit})", label, scales=("linear", "log"), paint=paint)
 
 
-def _draw_bars(axis: Any, summits: Array) -> None:
-    """Draw a histogram as a density."""
-    axis.hist(summits, bins="auto", density=True, color=SAMPLE, label="summits")
-
-
 def heights_panel(fit: Fit) -> Panel:
     """Summit heights and the laws that they may follow."""
     z, alpha = np.linspace(-4.5, 4.5, 241), fit.numbers["alpha"].value
 
     def paint(axis: Any) -> None:
-        _draw_bars(axis, fit.summits / fit.summits.std())
+        axis.hist(fit.summits / fit.summits.std(), **_BARS)
         axis.plot(z, Gaussian().pdf(z), color=HOMOGENEOUS, ls="--", label="Gaussian")
         with suppress(ValueError):  # no isotropic surface has such an alpha
             axis.plot(z, Nayak(alpha).pdf(z), color=THEORY, label=f"Nayak, α = {alpha:.3g}")
@@ -136,7 +132,7 @@ def _curvatures_panel(fit: Fit) -> Panel:
     density = np.sqrt(3) / (2 * np.sqrt(np.pi)) * (t**2 - 2 + 2 * np.exp(-(t**2) / 2)) * np.exp(-(t**2) / 4)
 
     def paint(axis: Any) -> None:
-        _draw_bars(axis, k[(k > 0) & (k < 3)])
+        axis.hist(k[(k > 0) & (k < 3)], **_BARS)
         axis.plot(x, mean * density, color=THEORY, label="Gaussian surface")
         axis.set_xlim(0, 3)
 

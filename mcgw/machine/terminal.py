@@ -25,16 +25,13 @@ def one_line(text: str) -> str:
     """
     if text.isprintable():
         return text
-    return "".join(c if c.isprintable() else _SHORT.get(c) or _escape(ord(c)) for c in text)
+    codes = ((c, f"\\u{ord(c):04x}" if ord(c) < 2**16 else f"\\U{ord(c):08x}") for c in text)
+    return "".join(c if c.isprintable() else _SHORT.get(c, code) for c, code in codes)
 
 
 def plain_text(text: str) -> str:
     """Escape each line as `one_line` does; TOML stays TOML."""
     return "\n".join(map(one_line, text.split("\n")))
-
-
-def _escape(code: int) -> str:
-    return f"\\u{code:04x}" if code < 2**16 else f"\\U{code:08x}"
 
 
 def brief(text: str) -> str:

@@ -106,12 +106,10 @@ def recorded(heights: Array) -> tuple[float, float]:
     levels = np.unique(some[np.isfinite(some)])
     steps = np.diff(levels)
     step = float(np.median(steps)) if 1 < levels.size < min(_MOST_LEVELS, some.size / 8) else 0.0
-    ends = ((np.nanmax(heights), -step), (np.nanmin(heights), step))
-    return step, max(_at_end(heights, *end) for end in ends)
-
-
-def _at_end(heights: Array, end: float, step: float) -> float:
-    """Share of the points at one end of the heights, if the next level has clearly fewer."""
-    number = np.count_nonzero(heights == end)
-    below = np.count_nonzero(np.abs(heights - (end + step)) < abs(step) / 2) if step else 0
-    return number / heights.size if number > max(_MORE * below, 1) else 0.0
+    clipped = 0.0
+    for end, inwards in ((np.nanmax(heights), -step), (np.nanmin(heights), step)):
+        number = np.count_nonzero(heights == end)
+        below = np.count_nonzero(np.abs(heights - (end + inwards)) < step / 2) if step else 0
+        if number > max(_MORE * below, 1):  # the next level has clearly fewer
+            clipped = max(clipped, number / heights.size)
+    return step, clipped

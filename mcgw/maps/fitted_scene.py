@@ -211,7 +211,14 @@ def write_scene(scene: Scene, path: Path, measured: Fit | None, comments: list[s
     document = scene_document(scene, heights_file=None if measured is None else beside.name)
     if isinstance(scene.seed, LeftOut):
         del document["ensemble"]["seed"]
-    document = _readable(_by_moments(document, scene))
+    if isinstance(scene.heights, Nayak) and document.get("summits") == {"curvature": "random"}:
+        m = moments_of_nayak(
+            scene.surface, scene.heights.alpha
+        )  # in place of the summits that follow from it
+        surface = {key: value for key, value in document["surface"].items() if key not in SUMMITS}
+        surface = {"m0": m.m0, "m2": m.m2, "m4": m.m4, **surface}
+        document = document | {"surface": surface, "heights": {}, "summits": {}}
+    document = _readable(document)
     text += _in_few_lines(tomli_w.dumps(document), scene.separations)
     if measured is None:
         with whole_file(path) as unfinished:
@@ -248,16 +255,6 @@ def _shortened(value: Any, unit: str) -> Any:
         if _LEAST <= (size := value / parse(f"1{name}", unit)) < _MOST:
             return f"{size:.4g}{name}"
     return float(f"{value:.4g}")
-
-
-def _by_moments(document: dict[str, Any], scene: Scene) -> dict[str, Any]:
-    """Return the tables with m0, m2 and m4 in place of the summits that follow from them."""
-    if not isinstance(scene.heights, Nayak) or document.get("summits") != {"curvature": "random"}:
-        return document
-    m = moments_of_nayak(scene.surface, scene.heights.alpha)
-    surface = {key: value for key, value in document["surface"].items() if key not in SUMMITS}
-    moments = {"m0": m.m0, "m2": m.m2, "m4": m.m4}
-    return document | {"surface": {**moments, **surface}, "heights": {}, "summits": {}}
 
 
 def _in_few_lines(text: str, separations: Sequence[float]) -> str:

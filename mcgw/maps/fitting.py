@@ -95,7 +95,7 @@ def fit(
         "cutoff": cutoff, "form": form, "missing": missing, "spikes": spikes, "trim": trim,
         "long_cutoff": long_cutoff, "lines": lines, "parts": parts,
     }  # fmt: skip
-    asked, across = preparation_of(given, lambda key, value: argument(key, value, "m"))
+    asked, across = preparation_of(given)
     size = None if pixel is None else (argument("pixel", pixel, "m"),) * 2
     if isinstance(heights, str | Path | Topography | Profile):
         heights = [heights]
@@ -161,19 +161,15 @@ def fit_sources(
             fits.append(replace(fit, cautions=tuple(cautions(fit, ready, use))))
             tell(3, 3)
     if lines:
-        return _fit_lines(lines, asked), None, assumed
+        plain = Preparation(asked.cutoff, asked.form)
+        for name in (field.name for field in fields(asked)):
+            if getattr(asked, name) != getattr(plain, name):
+                option = f"--{name.replace('_', '-')}"
+                raise ValueError(f"{option}: is for maps only; prepare the profile before")
+        of_lines = fit_profiles(lines, cutoff=asked.cutoff, form=asked.form)
+        warned = tuple(profile_cautions(of_lines, lines, asked.cutoff))
+        return replace(of_lines, cautions=warned), None, assumed
     if len(fits) == 1:
         return fits[0], ready, assumed
     found = pooled(fits, names)
     return replace(found, cautions=tuple(cautions_of_several(found, fits, use))), ready, assumed
-
-
-def _fit_lines(profiles: list[Profile], asked: Preparation) -> ProfileFit:
-    plain = Preparation(asked.cutoff, asked.form)
-    for field in fields(asked):
-        if getattr(asked, field.name) != getattr(plain, field.name):
-            raise ValueError(
-                f"--{field.name.replace('_', '-')}: is for maps only; prepare the profile before"
-            )
-    found = fit_profiles(profiles, cutoff=asked.cutoff, form=asked.form)
-    return replace(found, cautions=tuple(profile_cautions(found, profiles, asked.cutoff)))

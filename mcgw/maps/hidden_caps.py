@@ -8,7 +8,7 @@ minus its mean.
 """
 
 import math
-from functools import cache, lru_cache
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -20,7 +20,8 @@ from analytic.arrays import Array
 
 CROWDED = 0.05  # eta R sigma, from which one summit in six is hidden: the asperities are no longer apart
 
-_REACH, _NODES = 9.0, 200
+_REACH = 9.0
+_X, _W = leggauss(200)  # heights over their reach, by the rule of Gauss and Legendre
 _MOST = 10.0
 
 
@@ -40,19 +41,12 @@ class Visible(NamedTuple):
     std: float
 
 
-@cache
-def _nodes() -> tuple[Array, Array]:
-    """Heights by the rule of Gauss and Legendre, over their reach, and its weights."""
-    return leggauss(_NODES)
-
-
 @lru_cache(maxsize=64)
 def _taller_neighbours(blur: float) -> Array:
     """Mean number of neighbours that hide each height, over ``4 pi eta R sigma``."""
-    x, w = _nodes()
     reach = blur + math.sqrt(blur**2 + 2 * _REACH)  # beyond, nobody is tall enough
-    r, w = reach * (1 + x) / 2, reach * w / 2
-    return np.asarray(ndtr(-(_REACH * x[:, None] + r * r - 2 * r * blur)) @ (w * r))
+    r, w = reach * (1 + _X) / 2, reach * _W / 2
+    return np.asarray(ndtr(-(_REACH * _X[:, None] + r * r - 2 * r * blur)) @ (w * r))
 
 
 def visible(overlap: float, blur: float = 0.0) -> Visible:
@@ -65,14 +59,9 @@ def visible(overlap: float, blur: float = 0.0) -> Visible:
     blur : float, optional
         Distance p from a valley that a summit needs, over ``sqrt(2 R sigma)``.
     """
-    x, w = _nodes()
-    s = _REACH * x
-    p = (
-        _REACH
-        * w
-        * np.exp(-s * s / 2 - 4 * math.pi * overlap * _taller_neighbours(blur))
-        / math.sqrt(2 * math.pi)
-    )
+    s = _REACH * _X
+    hidden = np.exp(-s * s / 2 - 4 * math.pi * overlap * _taller_neighbours(blur))
+    p = _REACH * _W * hidden / math.sqrt(2 * math.pi)
     share = float(p.sum())
     if share == 0:
         return Visible(0.0, 0.0, 0.0)

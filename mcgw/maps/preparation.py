@@ -1,6 +1,6 @@
 """Preparation of a measured map before its evaluation, step by step, each with a line about it."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, get_args
 
@@ -12,7 +12,7 @@ from mcgw.maps.bad_points import filled, recorded, small_spike_heights, spike_he
 from mcgw.maps.form import lowpass, smooth, without_form, without_offsets
 from mcgw.maps.steps import Form, LinesTo, Missing, SpikesTo
 from mcgw.maps.topography import SMALLEST, Topography
-from mcgw.scene.kinds import Word, arguments, whole
+from mcgw.scene.kinds import Word, argument, arguments, whole
 from mcgw.scene.section import Kind
 
 _NEIGHBOURS = 2  # pixels on each side that differences need
@@ -45,8 +45,8 @@ class Preparation:
     lines: LinesTo = "keep"
 
 
-def preparation_of(given: Mapping[str, Any], length: Callable[[str, Any], float]) -> tuple[Preparation, int]:
-    """Read the keywords of `mcgw.fit` and ``parts``; `length` reads lengths.
+def preparation_of(given: Mapping[str, Any]) -> tuple[Preparation, int]:
+    """Read the keywords of `mcgw.fit` and ``parts``.
 
     Raises
     ------
@@ -60,7 +60,7 @@ def preparation_of(given: Mapping[str, Any], length: Callable[[str, Any], float]
     parts = chosen.pop("parts")
     for key in ("cutoff", "long_cutoff"):
         value = given[key]
-        chosen[key] = None if value is None or value == "none" else length(key, value)
+        chosen[key] = None if value is None or value == "none" else argument(key, value, "m")
     return Preparation(**chosen), parts
 
 

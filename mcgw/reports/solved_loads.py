@@ -48,7 +48,12 @@ def solutions_text(
         if scene.film is not None:
             lines += ["", conductances(scene, solutions).text()]
     if scatter is not None:
-        lines += ["", *(_sizes(solution, scatter) for solution in solutions)]
+        lines.append("")
+        for each in solutions:
+            known, eta = each.asperities_for(scatter).items(), each.scene.surface.eta
+            sizes = ", ".join(f"{x} {n:.3g} ({n / eta:.3g} m^2)" for x, n in known)
+            where = f"for std = {scatter:.3g} of the mean, {_lowered(each.title)}"
+            lines.append(f"Asperities (nominal area) {where}: {sizes}")
     for budget in (solution.budget() for solution in solutions if full):
         title = "Sources of error" if one else f"Sources of error, {_lowered(budget.title)}"
         lines += ["", replace(budget.table(), title=title).text(), f"  {budget.advice}"]
@@ -174,14 +179,6 @@ def correlation(scene: Scene, pressure: Array) -> Array | None:
     if hardness is None:
         return None
     return cooper_mikic_yovanovich(pressure, hardness=hardness, rms=rms, slope=slope, conductivity=k)
-
-
-def _sizes(solution: Solution, scatter: float) -> str:
-    """How many asperities, on which area, a scatter takes."""
-    eta = solution.scene.surface.eta
-    sizes = (f"{x} {n:.3g} ({n / eta:.3g} m^2)" for x, n in solution.asperities_for(scatter).items())
-    where = _lowered(solution.title)
-    return f"Asperities (nominal area) for std = {scatter:.3g} of the mean, {where}: {', '.join(sizes)}"
 
 
 def solutions_table(scene: Scene, solutions: Sequence[Solution]) -> Table:

@@ -266,7 +266,13 @@ def compare(
                 raise ValueError(
                     "laws = True: a sweep does not keep single values; compare one of its scenes"
                 )
-            return _of_sweep(result, progress)
+            points = []
+            with told(progress, "points") as tell:
+                for i, point in enumerate(result.axes.points()):
+                    tell(i, result.axes.size)
+                    points.append(replace(tested(result.ensemble(point), _SEPARATIONS), number=i))
+                tell(result.axes.size, result.axes.size)
+            return SweepComparison(result, tuple(points))
     check_object("compare", result, Ensemble)
     some, found, curves = shown(result), verdict(result), {}
     if laws:
@@ -277,14 +283,3 @@ def compare(
         exact = theory.mean(name, h)
         curves[name] = Points(some.separations, some.mean(name), stderr, exact, *some.interval(name))
     return Comparison(some, curves, found, how_many(result))
-
-
-def _of_sweep(sweep: "Sweep", progress: Progress) -> SweepComparison:
-    """Each point tested as an ensemble is, at twelve separations at most."""
-    found = []
-    with told(progress, "points") as tell:
-        for i, point in enumerate(sweep.axes.points()):
-            tell(i, sweep.axes.size)
-            found.append(replace(tested(sweep.ensemble(point), _SEPARATIONS), number=i))
-        tell(sweep.axes.size, sweep.axes.size)
-    return SweepComparison(sweep, tuple(found))

@@ -145,11 +145,15 @@ class Tradeoff(Shown):
     def _rows(self, targets: Sequence[float], alike: tuple[str, ...]) -> Table:
         found = [self.advice(want, target) for want in WANTS for target in targets]
         groups = [[*group] for _, group in groupby(found, attrgetter(*alike))]
-        first = [group[0] for group in groups]
+        first, errors = [group[0] for group in groups], []
+        for x, last in zip(first, (group[-1].target for group in groups), strict=True):
+            exact = x.want == "values" and x.way and x.way.floor <= _EXACT
+            span = f"{x.target:g}" if x.target == last else f"{x.target:g} ... {last:g}"
+            errors.append("exact" if exact else span)
         drawn = [x.way is not None and x.way.draws for x in first]
         columns = (
             Column("want", [self.words(x.want) for x in first]),
-            Column("error_95", [_errors(group) for group in groups], "95 %"),
+            Column("error_95", errors, "95 %"),
             Column("way", [x.way.name if x.way else "none" for x in first], "cheapest"),
             Column("n_surfaces", [f"{x.n_surfaces:d}" * some for x, some in zip(first, drawn, strict=True)]),
             Column("cpu_s", [x.seconds for x in first], "CPU (s)", form=".2g", missing=""),
@@ -161,14 +165,6 @@ class Tradeoff(Shown):
         """Errors and times of every way at every size."""
         names = [each.name for each in fields(Point)]
         return Table(tuple(Column(x, [getattr(p, x) for p in self.points], form=".3g") for x in names))
-
-
-def _errors(group: Sequence[Advice]) -> str:
-    """Targets of a row; "exact" where values are right to the last digits."""
-    first, *_, last = (*group, group[-1])
-    if first.want == "values" and first.way and first.way.floor <= _EXACT:
-        return "exact"
-    return f"{first.target:g}" if first is last else f"{first.target:g} ... {last.target:g}"
 
 
 def tradeoff(

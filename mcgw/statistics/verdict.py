@@ -252,17 +252,13 @@ def distances(ensemble: Ensemble) -> list[tuple[float, str, float]]:
     found = []
     for name in scene.quantities:
         which = [scene.separations.index(x) for x in chosen]
-        values = np.sort(ensemble.sums.read(name, 0, m)[:, which].astype(np.float64), axis=0)
-        found += [
-            (_farthest(scene, name, *pair), name, pair[0]) for pair in zip(chosen, values.T, strict=True)
-        ]
+        every = np.sort(ensemble.sums.read(name, 0, m)[:, which].astype(np.float64), axis=0)
+        for at, values in zip(
+            chosen, every.T, strict=True
+        ):  # shares and probabilities jump where values repeat
+            x, law = values[evenly(values.size, _PLACES)], scene.theory.distribution(name, at)
+            below, upto = (np.searchsorted(values, x, side) / values.size for side in ("left", "right"))
+            most = law.cdf(x)
+            least = law.cdf(x - 1) if quantity_of(name).counts else most - np.where(x == 0, law.atom, 0.0)
+            found.append((float(max((upto - most).max(), (least - below).max(), 0.0)), name, at))
     return found
-
-
-def _farthest(scene: Scene, name: str, h: float, values: Array) -> float:
-    """Largest distance of shares from their probabilities; both as they jump at values that repeat."""
-    x, law = values[evenly(values.size, _PLACES)], scene.theory.distribution(name, h)
-    below, upto = (np.searchsorted(values, x, side) / values.size for side in ("left", "right"))
-    most = law.cdf(x)
-    least = law.cdf(x - 1) if quantity_of(name).counts else most - np.where(x == 0, law.atom, 0.0)
-    return float(max((upto - most).max(), (least - below).max(), 0.0))
