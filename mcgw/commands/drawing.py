@@ -129,8 +129,8 @@ def _result(ensemble: "Ensemble") -> str:
 
 def _tell_before(scene: "Scene", expected: "Forecast", *, ruled: bool, shared: bool) -> None:
     """Say what a rule needs, or how long the run will take, if more than a minute."""
-    from mcgw.ensemble.drawing import in_words, seconds_for, seconds_per_surface
     from mcgw.ensemble.forecast import before
+    from mcgw.ensemble.simulation import in_words, seconds_for, seconds_per_surface
     from mcgw.sampling.samplers import sampler_of
 
     sampler, m = sampler_of(scene), scene.n_surfaces

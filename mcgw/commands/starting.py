@@ -87,7 +87,7 @@ def warm() -> None:
     from mcgw.sampling.block import Layout
     from mcgw.sampling.cells import mesh_of
     from mcgw.sampling.counts import counts_of
-    from mcgw.sampling.drawn_moments import OneByOne
+    from mcgw.sampling.moments import OneByOne
     from mcgw.scene.scene import Scene
     from mcgw.scene.surface import Surface
 

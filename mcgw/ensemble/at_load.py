@@ -1,20 +1,28 @@
 """Answers at given loads: of the exact mean surface, and means over specimens that need no draw.
 
-Also the gap between the planes of a surface, and the pressures that the separations of a scene span.
+Also the gap between the planes of a surface, and the pressures that the separations of a scene span; what the
+half-space makes of the sums of surfaces whose asperities press each other down, and these asperities by
+themselves; and what gas in the gap adds to the spots of surfaces, each at its own distance of mean planes.
 """
 
 from collections import UserDict
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from analytic import QUANTITIES, SEPARATIONS, quantity_of
 from analytic.arrays import Array
 from analytic.at_load import Moments, specimen_moments
+from analytic.interaction import in_series
 from analytic.laws.elastic_plastic import ElasticPlastic
+from mcgw.ensemble.results import Held, Results
 from mcgw.ensemble.separation import crossing
 from mcgw.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from mcgw.ensemble.ensemble import Ensemble
 
 GAPS = ("mean_gap", "gap_to_summits")  # m: see `answers_at`
 NEGATIVE = (
@@ -66,8 +74,6 @@ def answers_at(scene: Scene, found: dict[str, Any]) -> dict[str, Any]:
     felt, area, joint = found["separation"], scene.surface.nominal_area, dict[str, Any]()
     sums = {name: x for name, x in found.items() if name != "separation"}
     if scene.interaction is not None or scene.gas is not None:
-        from mcgw.ensemble.half_space import answered  # for those scenes alone
-
         more = () if scene.interaction is None else ("nominal_separation",)
         in_gap = () if scene.gas is None else ("gap_conductance", "joint_conductance")
         sums = answered(scene, sums, (*more, *in_gap), felt)
@@ -169,3 +175,88 @@ def exact_moments(scene: Scene, given: str, amount: float) -> Moments:
         linear |= {"nominal_separation", *GAPS}
     linear &= at.keys()
     return Moments({name: at[name] for name in linear}, {name: above[name] - at[name] for name in linear})
+
+
+def answered(scene: Scene, sums: dict[str, Any], names: Iterable[str], h: Any) -> dict[str, Any]:
+    """Return sums of asperities, those of stiffness and conductance in series with the half-space; and more.
+
+    Nominal separations follow from the load of each surface, without a search. Each surface of a joint is
+    one network, ``1/h_j = 1/(h_spots + h_gas) + R_bodies A_n``: what passes the gas is constricted by the
+    bodies as a whole like what passes the spots. The distance of the mean planes is the separation that the
+    asperities feel, or the nominal one if it is measured from the mean plane itself.
+
+    Parameters
+    ----------
+    scene : Scene
+        Whose surfaces these are.
+    sums : dict of str to ndarray
+        Of the asperities, SI.
+    names : iterable of str
+        What is to be added, of `analytic.SEPARATIONS` and `analytic.JOINT`, in W/(m^2 K) or d/sigma.
+    h : array_like
+        Separations that the asperities feel.
+    """
+    filled: Any = scene.filled
+    sunk = scene.compliance / scene.surface.sigma
+    found = {name: in_series(x, scene.series(name)) for name, x in sums.items()}
+    for name in names:
+        back = "_unloading" * name.endswith("_unloading")
+        nominal = h - sunk * sums[f"load{back}"] if scene.interaction else h
+        if name in SEPARATIONS:
+            found[name] = nominal
+        else:
+            apart = nominal if scene.from_mean_plane else h
+            spots = found[f"conductance_si{back}"]
+            if name.startswith("joint"):
+                found[name] = joint_conductance(scene, spots, apart)
+            else:
+                found[name] = filled(apart) + 0 * spots
+    return found
+
+
+def joint_conductance(scene: Scene, spots: Any, apart: Any) -> Any:
+    """Return what spots and gas conduct side by side, in series with the bodies, W/(m^2 K): see `answered`.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a joint.
+    spots : float or ndarray
+        Conductance of the spots, and of the bodies in series with them, SI.
+    apart : float or ndarray
+        Distance of the mean planes, d/sigma.
+    """
+    assert scene.filled is not None
+    assert scene.film is not None
+    contact = spots / scene.surface.nominal_area
+    bodies = 0.0 if scene.interaction is None else scene.interaction.bodies(scene.surface, scene.film.rho)
+    return in_series(in_series(contact, -bodies) + scene.filled(apart), bodies)
+
+
+@dataclass(frozen=True)
+class _Alone(Results):
+    """Results without the half-space that stiffness and conductance are in series with."""
+
+    whole: Held
+    scene: Scene
+
+    def read(self, name: str, start: int, stop: int | None) -> Array:
+        """Rows `start` to `stop` (None: to the end) of a dataset."""
+        return np.asarray(in_series(self.whole.read(name, start, stop), -self.scene.series(name)))
+
+    def rows(self) -> int:
+        """Return the number of surfaces there are."""
+        return self.whole.rows()
+
+
+def asperities_alone(ensemble: "Ensemble") -> "Ensemble":
+    """Return the ensemble of the sums of the asperities.
+
+    Of one that keeps no values those that are not in series with the half-space.
+    """
+    scene, sums, quantities = ensemble.scene, ensemble.sums, ensemble.scene.quantities
+    if isinstance(sums, Results):
+        sums = _Alone(sums, scene)
+    else:  # of what is in series only each surface's would tell
+        quantities = tuple(name for name in quantities if not scene.series(name))  # the load at least
+    return replace(ensemble, scene=scene.replace(quantities=quantities, interaction=None), sums=sums)

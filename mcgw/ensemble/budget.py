@@ -13,7 +13,7 @@ import numpy as np
 
 from analytic import Nayak, RandomCurvature, SpectralMoments
 from analytic.arrays import Array
-from mcgw.ensemble.at_load import GAPS, mean_surface
+from mcgw.ensemble.at_load import GAPS, joint_conductance, mean_surface
 from mcgw.formats.table import Column, Shown, Table
 from mcgw.scene.measured import Uncertainty
 from mcgw.scene.scene import Scene
@@ -262,8 +262,6 @@ def _of_joint(validity: Validity, scene: Scene, answers: Answers) -> tuple[float
 
     The errors of spots and gap, through the derivatives of the network, are added as independent ones.
     """
-    from mcgw.ensemble.half_space import joint_conductance  # for those scenes alone
-
     assert scene.filled is not None
     spots, gap = (
         (float(validity.bias[x][0]), float(validity.error[x][0])) for x in ("stiffness", "separation")

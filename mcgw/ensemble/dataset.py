@@ -10,8 +10,7 @@ from numpy.typing import ArrayLike
 from analytic import PER_AREA
 from analytic.arrays import Array, Ints
 from mcgw.ensemble.intervals import CONFIDENCE, interval_of
-from mcgw.ensemble.labelled import Labelled
-from mcgw.ensemble.results import Held, Tables
+from mcgw.ensemble.results import Held, Labelled
 from mcgw.formats.table import Shown
 from mcgw.machine.terminal import brief, plotted, quantity_and_axes
 from mcgw.scene.scene import Scene
@@ -52,10 +51,6 @@ class Dataset(Shown):
     @abstractmethod
     def _about(self) -> dict[str, Any]:
         """Return what is said of all data, for xarray."""
-
-    @abstractmethod
-    def _drawn(self) -> Tables:
-        """Return what statistics are made of, for the file."""
 
     def to_xarray(self) -> Any:
         """Return all data as an `xarray.Dataset`.

@@ -1,15 +1,13 @@
 """An ensemble: the sums of every surface, and their statistics over surfaces."""
 
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Any
 
 import numpy as np
 
 from analytic.arrays import Array, Ints
 from mcgw.ensemble.dataset import Dataset
-from mcgw.ensemble.labelled import Labelled, Variable, axes_of, statistics_of, values_of
-from mcgw.ensemble.results import Held, Selected, Tables
+from mcgw.ensemble.results import Held, Labelled, Rows, Selected, Variable, axis, statistics_of
 from mcgw.formats.law_text import law_text
 from mcgw.formats.table import Column, Table, evenly
 from mcgw.machine.terminal import brief
@@ -135,24 +133,27 @@ class Ensemble(Dataset):
 
     def labelled(self) -> Labelled:
         """Return the values of every surface; with ``keep = "statistics"`` means, deviations, covariances."""
-        scene = self.scene
+        scene, axes = self.scene, {"separation": axis("separation", self.scene.separations)}
         if scene.keep != "statistics":
-            return values_of(scene, self.sums.rows(), partial(self.sums.read, start=0, stop=None))
+            surfaces, found = axis("surface", np.arange(self.sums.rows())), {}
+            for name in scene.tables:
+                q = scene.quantity(name)
+                found[name] = Variable(("surface", "separation"), Rows(self.sums, name), q.unit, q.long_name)
+            return Labelled(found, {"surface": surfaces, **axes})
+        from mcgw.ensemble.pooled import tables_of  # for those scenes alone
+
         order = ", ".join(f"{name} {len(scene.separations)}" for name in scene.tables)
         rows = [[self.covariance(one, other) for other in scene.tables] for one in scene.tables]
         covariance = Variable(_COLUMNS, np.block(rows), "product of units", f"covariance of {order}")
         columns = Variable(("column",), np.arange(scene.width), "1", "quantity and separation")
         scales = {name: replace(columns, dims=(name,)) for name in _COLUMNS}
         variables = {**statistics_of(self, scene.tables, STATISTICS), "covariance": covariance}
-        return Labelled(variables, {**axes_of(scene), **scales})
+        parts: Any = self.sums
+        return Labelled(variables, {**axes, **scales}, drawn=tables_of(parts.parts))
 
     def _about(self) -> dict[str, Any]:
         """Return the title, the scene as TOML and the sampler."""
         return {"title": self.scene.title, "scene": scene_text(self.scene), "sampler": self.sampler}
-
-    def _drawn(self) -> Tables:
-        """Return what statistics are made of."""
-        return self.sums.drawn()
 
     def sheet(self) -> Table:
         """Return how the ensemble was drawn, and means at the lowest, a middle and the highest separation."""

@@ -5,23 +5,27 @@ with what, and that is fixed: blocks of a size that the scene decides are added 
 bits do not depend on who drew what, and when.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property, reduce
 from itertools import pairwise
+from operator import add
 from typing import Any
 
 import numpy as np
 
 from analytic.arrays import Array, Ints
-from mcgw.ensemble.results import Tables
+from mcgw.ensemble.results import Held, Tables
 from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads
+from mcgw.scene.scene import Scene
 
 Values = dict[str, Array]
 
 _MEANS, _PRODUCTS = "_means", "_products"
-_ROWS = 256  # of a column at a time: those of all columns stay near
+_RUN = 256  # of a column at a time: those of all columns stay near
 _BANDS = 16  # that threads share
+NUMBERS = "numbers"  # what all numbers of a surface are called together
 
 
 @dataclass(frozen=True)
@@ -129,8 +133,8 @@ def pooled_from(tables: Tables) -> tuple[Pooled, ...]:
 def _sum_products(columns: Any, first: int, stop: int, out: Any) -> None:  # pragma: no cover - compiled
     """Add the products of columns `first` ... `stop - 1` with all up to themselves."""
     rows = columns.shape[1]
-    for start in range(0, rows, _ROWS):
-        end = min(start + _ROWS, rows)
+    for start in range(0, rows, _RUN):
+        end = min(start + _RUN, rows)
         for i in range(first, stop):
             x = columns[i, start:end]
             for j in range(i + 1):
@@ -161,3 +165,60 @@ def products_of(columns: Array) -> Array:
     bands = list(pairwise(ends))  # every second one: halves of about the same work
     in_threads(lambda band: _sum_products(columns, *band, out), bands[::2] + bands[1::2])
     return out + np.tril(out, -1).T
+
+
+@dataclass(frozen=True)
+class Summarised(Held):
+    """Mean, deviation and covariance of all numbers of a surface.
+
+    Parameters
+    ----------
+    scene : Scene
+        Whose numbers these are: its tables one after the other.
+    parts : tuple of Pooled
+        Of all whole blocks together, which more may follow, and of a last one that is not whole.
+    """
+
+    scene: Scene
+    parts: tuple[Pooled, ...]
+
+    no_more = (
+        'single surfaces are not kept with keep = "statistics"; scene.theory.distribution has exact '
+        'quantiles, or simulate with keep = "sums"'
+    )
+
+    @cached_property
+    def whole(self) -> Pooled:
+        """All surfaces as one."""
+        return reduce(add, self.parts)
+
+    def rows(self) -> int:
+        """Return the number of surfaces."""
+        return sum(part.n for part in self.parts)
+
+    def _columns(self, name: str) -> Ints:
+        """Which of the numbers those of a table are, one at each separation."""
+        k = len(self.scene.separations)
+        first = k * self.scene.tables.index(name)
+        return np.arange(first, first + k)
+
+    def mean_and_std(self, name: str) -> tuple[Array, Array]:
+        """Mean and standard deviation (divisor M - 1)."""
+        mean = self.whole.means[NUMBERS][self._columns(name), 0]
+        return mean, np.sqrt(np.diagonal(self.covariance(name, name)))
+
+    def covariance(self, name: str, other: str) -> Array:
+        """Between all numbers of two tables (divisor M - 1)."""
+        a, b, m = self._columns(name), self._columns(other), self.rows()
+        return np.asarray(self.whole.products[NUMBERS][np.ix_(a, b)][..., 0] / (m - 1 if m > 1 else np.nan))
+
+
+def summarised(scene: Scene, blocks: Iterable[Tables], size: int) -> Summarised:
+    """Return the statistics of some blocks: whole ones of a size added up in their order, and the rest."""
+    whole, rest = list[Pooled](), list[Pooled]()
+    for (block,) in map(pooled_from, blocks):
+        if block.n % size:
+            rest = [block]
+        else:
+            whole = [reduce(add, [*whole, block])]
+    return Summarised(scene, (*whole, *rest))

@@ -1,19 +1,34 @@
-"""The numbers of an ensemble, wherever they lie, and their statistics over the surfaces."""
+"""The numbers of an ensemble, wherever they lie, and their statistics over the surfaces.
+
+And results as named arrays with axes, units and words, for files, xarray and pandas, and as tables.
+"""
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic import Quantity
 from analytic.arrays import Array, Ints
+from mcgw.formats.table import SEPARATION, Column, Table, optional
 
 Tables = dict[str, NDArray[Any]]  # numbers of surfaces by name, a row each
 
 CHUNK_ROWS = 256  # surfaces of a chunk of a file; fewer, by powers of two, where a chunk would be too large
 _ROWS = 8192  # surfaces at a time, for ensembles larger than the memory
+GROUP = "drawn"  # the one group of a file: what its statistics are made of
+AXES = {  # of tables, in their order: unit and long name
+    "point": ("1", "number of the point"),
+    "surface": ("1", "number of the surface"),
+    "separation": ("1", "mean-plane separation d/sigma"),
+}
+_WORDS = {
+    "mean": "mean of the {}",
+    "std": "standard deviation of the {} over surfaces",
+}
 
 
 class Held(ABC):
@@ -32,10 +47,6 @@ class Held(ABC):
     def read(self, name: str, start: int, stop: int | None) -> Array:  # noqa: ARG002
         """Rows `start` to `stop` (None: to the end) of a table."""
         raise ValueError(f"{name}: {self.no_more}")
-
-    def drawn(self) -> Tables:
-        """Return what the statistics of surfaces that are not kept are made of, for a file."""
-        return {}
 
     def covariance(self, name: str, other: str) -> Array:  # noqa: ARG002
         """Between all numbers of two tables (divisor M - 1), shape (separations, separations)."""
@@ -123,3 +134,144 @@ class Selected(Held):
 def joined(parts: Sequence[Mapping[str, NDArray[Any]]]) -> Tables:
     """Return the tables of several blocks of surfaces, one below the other."""
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """A table of values of surfaces that is read when it is asked for, by slices of its rows.
+
+    Parameters
+    ----------
+    of : Held
+        Where it lies.
+    name : str
+        Its name.
+    """
+
+    of: Held
+    name: str
+
+    def __len__(self) -> int:
+        """Return the number of surfaces."""
+        return self.of.rows()
+
+    def __getitem__(self, rows: slice) -> Array:
+        """Return some of the rows."""
+        return self.of.read(self.name, rows.start or 0, rows.stop)
+
+
+@dataclass(frozen=True)
+class Variable:
+    """An array, or one that is yet to be read, with the names of its axes, its unit and what it is."""
+
+    dims: tuple[str, ...]
+    values: Any  # an array, or `Rows` of one
+    units: str
+    long_name: str
+
+    @property
+    def about(self) -> dict[str, str]:
+        """Its attributes, as netCDF has them."""
+        return {**({"units": self.units} if self.units else {}), "long_name": self.long_name}
+
+
+@dataclass(frozen=True)
+class Labelled:
+    """Tables and the coordinates of their axes, by name, and what is said of all of them.
+
+    And what statistics of surfaces that are not kept are made of, for the one group of a file.
+    """
+
+    variables: Mapping[str, Variable]
+    coordinates: Mapping[str, Variable]
+    attributes: Mapping[str, Any] = field(default_factory=dict)
+    drawn: Tables = field(default_factory=dict)
+
+    def in_file(self, attributes: Mapping[str, Any]) -> "Labelled":
+        """Return what a file holds, with its attributes."""
+        coordinates = {
+            name: one if one.values.dtype.kind in "iuf" else _numbered(one)
+            for name, one in self.coordinates.items()
+        }
+        others = [name for name, one in coordinates.items() if one.dims != (name,)]
+        named = {"coordinates": " ".join(others)} if others else {}  # by which xarray knows them
+        scales = {name: one for name, one in coordinates.items() if name not in others}
+        made_of = {f"{GROUP}/{name}": Variable((), values, "", "") for name, values in self.drawn.items()}
+        return Labelled({**self.variables, **made_of}, {**scales, **coordinates}, {**attributes, **named})
+
+    def to_xarray(self, about: Mapping[str, Any]) -> Any:
+        """Return an `xarray.Dataset` with these attributes.
+
+        Raises
+        ------
+        ImportError
+            If xarray is not installed.
+        """
+        xarray = optional("xarray", "to_xarray")
+        both = (
+            {name: (one.dims, one.values[:], one.about) for name, one in some.items()}
+            for some in (self.variables, self.coordinates)
+        )
+        return xarray.Dataset(*both, dict(about))
+
+    def to_dataframe(self) -> Any:
+        """Return a `pandas.DataFrame` of the tables with the axes of the first: a row for each place there.
+
+        Raises
+        ------
+        ImportError
+            If pandas is not installed.
+        """
+        pandas = optional("pandas", "to_dataframe")
+        dims = next(iter(self.variables.values())).dims
+        places = [self.coordinates[dim].values for dim in dims]
+        if len(places) == 1:
+            index = pandas.Index(places[0], name=dims[0])
+        else:
+            index = pandas.MultiIndex.from_product(places, names=dims)
+        columns = {name: one.values[:].ravel() for name, one in self.variables.items() if one.dims == dims}
+        return pandas.DataFrame(columns, index=index)
+
+
+def _numbered(one: Variable) -> Variable:
+    """Return a coordinate whose values are texts by their numbers, and these in words."""
+    words = ", ".join(f"{k} {value}" for k, value in enumerate(one.values))
+    return replace(one, values=np.arange(len(one.values)), long_name=f"{one.long_name}: {words}")
+
+
+def axis(name: str, values: Any) -> Variable:
+    """Return the coordinate of an axis of this name."""
+    return Variable((name,), np.asarray(values), *AXES[name])
+
+
+def statistics_of(
+    result: Any, names: Iterable[str], kinds: Sequence[str], lead: tuple[str, ...] = ()
+) -> dict[str, Variable]:
+    """Return what a result tells over its surfaces of some quantities, with axes before those of one."""
+    found: dict[str, Variable] = {}
+    scene = result.scenes[0] if lead else result.scene
+    for name in names:
+        q = scene.quantity(name)
+        for kind in kinds:
+            words = _WORDS[kind].format(q.long_name)
+            found[f"{name}_{kind}"] = Variable(
+                (*lead, "separation"), getattr(result, kind)(name), q.unit, words
+            )
+    return found
+
+
+def heading(q: Quantity) -> str:
+    """Long name and unit of a quantity, over its table."""
+    return q.long_name if q.unit == "1" else f"{q.long_name} ({q.unit})"
+
+
+def statistics_table(ensemble: Any, name: str) -> Table:
+    """Mean, std and stderr of a quantity at every separation."""
+    q = ensemble.scene.quantity(name)
+    unit = q.unit
+    found = [("mean", ensemble.mean(name), ".6g"), ("std", ensemble.std(name), ".3g")]
+    found.append(("stderr", ensemble.stderr(name), ".3g"))
+    columns = [Column(kind, values, unit=unit, form=form) for kind, values, form in found]
+    columns[0] = replace(columns[0], error=found[2][1])
+    separation = Column("separation", ensemble.separations, SEPARATION, form="g")
+    return Table((separation, *columns), heading(q))

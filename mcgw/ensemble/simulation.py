@@ -1,15 +1,23 @@
-"""From a scene to an ensemble in memory."""
+"""From a scene to an ensemble in memory; and how long that takes, in seconds and in words."""
 
-from time import monotonic
+from time import monotonic, perf_counter
 from typing import Any
 
-from mcgw.ensemble.drawing import Values, drawn, use_threads
+import numba
+import numpy as np
+
+from mcgw.ensemble.drawing import at_a_time, block_size, drawn_blocks, reducer_of, use_threads
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import without_rule
 from mcgw.machine.progress import Progress, told
-from mcgw.sampling.expected import Expected
+from mcgw.sampling.block import Sampler, Source
+from mcgw.sampling.expected import expected
 from mcgw.scene.kinds import check_object
 from mcgw.scene.scene import Scene, storable, with_sampling
+
+_PER_COUNT, _PER_PRODUCT = 4e-8, 2.5e-10  # rough seconds per number and per pair, for statistics
+_SHORT = 0.01  # s; times below are given in milliseconds
+_TRIED = 0.05  # rough seconds per surface up to which a block is drawn on trial
 
 
 def simulate(
@@ -56,28 +64,67 @@ def simulate(
     scene = storable(scene)
     if scene.rel_err is not None or scene.max_seconds is not None:
         scene = without_rule(scene)
-    reducer, before = reducer_of(scene), 0.0
-    reducer.check(scene.n_surfaces if until is None else 0)
+    reducer, n, before, more = reducer_of(scene), scene.n_surfaces, 0.0, True
+    reducer.check(n if until is None else 0)
 
     def go_on(done: float) -> bool:
-        nonlocal before
-        tell(done, scene.n_surfaces)
-        if until is None:
-            return True
-        reducer.check(int(done - before))  # how many there is time for is not known beforehand
-        before = done
-        return monotonic() <= until
+        nonlocal before, more
+        tell(done, n)
+        if until is not None:  # how many there is time for is not known beforehand
+            reducer.check(int(done - before))
+            before, more = done, monotonic() <= until
+        return more
 
     with use_threads(threads), told(progress, "surfaces") as tell:
-        tell(0, scene.n_surfaces)
-        (held,) = drawn([reducer], go_on)
+        tell(0, n)
+        starts = range(0, n, reducer.rows)
+        held = reducer.held(reducer.tables(k, min(k + reducer.rows, n), go_on) for k in starts if more)
     return Ensemble(with_sampling(scene, n_surfaces=held.rows()), reducer.sampler.name, held)
 
 
-def reducer_of(scene: Scene, expected: Expected | None = None) -> Values:
-    """Return the one for what a scene keeps; of a sampler that is only expected, to be asked its size."""
-    if scene.keep != "statistics":
-        return Values(scene, expected)
-    from mcgw.ensemble.summarised import Statistics  # for those scenes alone
+def seconds_per_surface(scene: Scene, sampler: Source[Any]) -> float:
+    """Median wall time of drawing one surface in a block, after a warm-up."""
+    size = min(block_size(scene, sampler), 256)
+    n = at_a_time(size)
+    list(drawn_blocks(sampler, 0, n, size))
+    times = []
+    for _ in range(3):
+        start = perf_counter()
+        list(drawn_blocks(sampler, 0, n, size))
+        times.append(perf_counter() - start)
+    return float(np.median(times)) / n
 
-    return Statistics(scene, expected)
+
+def seconds_for(scene: Scene, sampler: Sampler, surfaces: int, *, at_least: float = 0.0) -> float:
+    """Return the expected wall time of drawing some surfaces on this machine, s.
+
+    Measured on a trial block if surfaces are cheap, unless a rough estimate is below `at_least`.
+    """
+    rough = rough_seconds(scene, 1)
+    if rough * surfaces < at_least or rough > _TRIED:
+        return rough * surfaces
+    return surfaces * (seconds_per_surface(scene, sampler) + _for_statistics(scene))
+
+
+def rough_seconds(scene: Scene, surfaces: int) -> float:
+    """Estimate the wall time of drawing some surfaces by arithmetic alone, s, within a factor of two."""
+    return surfaces * (expected(scene).seconds / numba.get_num_threads() + _for_statistics(scene))
+
+
+def _for_statistics(scene: Scene) -> float:
+    """Rough seconds of a surface of which only statistics are kept."""
+    return scene.width * _PER_COUNT + scene.width**2 / 2 * _PER_PRODUCT if scene.keep == "statistics" else 0.0
+
+
+def in_words(seconds: float) -> str:
+    """Return a time as people say it.
+
+    Examples
+    --------
+    >>> in_words(3e-4), in_words(200), in_words(90_000), in_words(1e9)
+    ('0.3 ms', '3.3 min', '25 h', '32 years')
+    """
+    for size, name in ((3.15576e7, "years"), (86_400 * 3, "days"), (3600.0, "h"), (60.0, "min")):
+        if seconds >= size:
+            return f"{seconds / (86_400 if name == 'days' else size):.2g} {name}"
+    return f"{1e3 * seconds:.2g} ms" if seconds < _SHORT else f"{seconds:.2g} s"

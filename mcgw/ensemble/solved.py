@@ -14,7 +14,6 @@ from analytic.at_load import Moments
 from mcgw.ensemble.at_load import GAPS, Answers, answers_at, controlled, exact_moments
 from mcgw.ensemble.budget import Budget, budget_of, corrected
 from mcgw.ensemble.intervals import FEWEST, laws_are_quick
-from mcgw.ensemble.loaded_surfaces import LoadedSurfaces
 from mcgw.ensemble.solved_table import elastic_verdict, sheet_of, table_of
 from mcgw.formats.table import Shown
 from mcgw.machine.terminal import plotted
@@ -54,7 +53,7 @@ class Solution(Shown):
     given: str
     amount: float
     theory: dict[str, float]
-    loaded: LoadedSurfaces
+    loaded: Any
     number: int
 
     @cached_property
@@ -71,7 +70,8 @@ class Solution(Shown):
     @property
     def drawn(self) -> Scene:
         """The scene with which the surfaces are drawn."""
-        return self.loaded.drawn
+        scene: Scene = self.loaded.drawn
+        return scene
 
     @property
     def title(self) -> str:
@@ -115,7 +115,8 @@ class Solution(Shown):
         h = self.surfaces["separation"]
         if not 0 <= surface < h.size:
             raise ValueError(f"surface = {surface}: give a number from 0 to {h.size - 1}")
-        return self.loaded.contacts(surface, float(h[surface]))
+        found: tuple[Array, Array | None] = self.loaded.contacts(surface, float(h[surface]))
+        return found
 
     @cached_property
     def value(self) -> Answers:

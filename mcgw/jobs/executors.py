@@ -1,19 +1,188 @@
-"""Executors of the command line: worker processes of this machine, and those of a dask scheduler.
+"""Executors give blocks to workers until none is missing, and heed signals.
 
-From Python any `concurrent.futures.Executor` draws blocks. A worker may die at any time and a block may be
+From Python any `concurrent.futures.Executor` draws blocks; here are those of the command line: worker
+processes of this machine, and those of a dask scheduler. A worker may die at any time and a block may be
 drawn twice: tasks are idempotent, and what counts is what lies on the disk.
 """
 
 import multiprocessing
 import signal
-from collections.abc import Callable, Iterator
-from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
+import threading
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    BrokenExecutor,
+    CancelledError,
+    Executor,
+    Future,
+    ProcessPoolExecutor,
+    wait,
+)
 from contextlib import contextmanager
 from importlib import import_module
-from typing import Any
+from typing import Any, TypeVar
 
-from mcgw.errors import RunError, extra
+from mcgw.errors import RunError, StoppedError, extra
 from mcgw.machine.in_threads import end_with
+
+_Block = TypeVar("_Block")
+
+_IN_HAND = 1024  # blocks given at a time to an executor that does not say how many it takes
+_RESUME = "finished blocks are kept; the same command resumes"
+_GRACE = 2.0  # seconds for running blocks to finish when the run stops
+
+
+class Signals:
+    """The signal that has arrived, if any."""
+
+    number: int | None = None
+
+    def check(self, kept: str) -> None:
+        """Raise if a signal has arrived.
+
+        Raises
+        ------
+        StoppedError
+            With what is kept.
+        """
+        if self.number is not None:
+            name = "interrupted" if self.number == signal.SIGINT else "terminated"
+            raise StoppedError(f"{name}: {kept}", 128 + self.number)
+
+
+@contextmanager
+def heed_signals() -> Iterator[Signals]:
+    """Record Ctrl-C and SIGTERM instead of dying; a second signal acts at once."""
+    signals = Signals()
+    if threading.current_thread() is not threading.main_thread():
+        yield signals
+        return
+
+    def note(number: int, frame: Any) -> None:  # noqa: ARG001
+        if signals.number is not None:
+            raise KeyboardInterrupt
+        signals.number = number
+
+    before = {number: signal.signal(number, note) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield signals
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def outcome(task: Callable[..., Any], *arguments: Any) -> tuple[Any, Exception | None]:
+    """Return the result of a task, or its error: what is raised in place of both is its executor's."""
+    try:
+        return task(*arguments), None
+    except Exception as error:
+        return None, error
+
+
+def drive(
+    executor: Executor,
+    blocks: Sequence[_Block],
+    task: Callable[..., Any],
+    arguments: Callable[[_Block], tuple[Any, ...]],
+    done: Callable[[_Block, Any], None],
+    signals: Signals,
+    in_hand: int = _IN_HAND,
+) -> None:
+    """Have an executor draw every block, in any order, and call `done` with each block and its result.
+
+    `task` is called with what `arguments` gives for a block. A block that the executor lost, as with its
+    worker, is submitted once more, alone. At most `in_hand` blocks are submitted at a time. When a signal has
+    come, which is asked several times a second, this returns.
+
+    Raises
+    ------
+    RunError
+        If the executor takes no more work, or lost a block twice.
+    Exception
+        As the task raises.
+    """
+    todo, lost, running = deque(blocks), set[_Block](), dict[Future[Any], _Block]()
+    in_hand = getattr(executor, "in_hand", in_hand)
+    try:
+        while (todo or running) and signals.number is None:
+            while todo and len(running) < (1 if todo[0] in lost else in_hand):
+                block = todo.popleft()
+                try:
+                    running[executor.submit(outcome, task, *arguments(block))] = block
+                except Exception as refusal:
+                    raise _no_more(_in_words(refusal)) from None
+            wait(running, timeout=0.2, return_when=FIRST_COMPLETED)
+            future = next((one for one in running if one.done()), None)
+            if future is None:
+                continue
+            block = running.pop(future)
+            try:
+                result, error = future.result()
+            except CancelledError:  # by nobody here: not a worker, but its executor is lost
+                raise _no_more(f"it dropped {block}") from None
+            except Exception as failure:
+                if block in lost:
+                    told = f"{block} were lost twice by the executor ({_in_words(failure)}); {_RESUME}"
+                    raise RunError(told) from None
+                lost.add(block)
+                todo.appendleft(block)
+                continue
+            if error is not None:
+                raise error
+            done(block, result)
+        if signals.number is not None:
+            ended = wait(running, timeout=_GRACE).done
+            for future in [one for one in running if one in ended]:
+                block = running.pop(future)
+                if not future.cancelled() and future.exception() is None and future.result()[1] is None:
+                    done(block, future.result()[0])
+    finally:
+        for future in running:
+            future.cancel()
+
+
+def _no_more(why: str) -> RunError:
+    return RunError(f"the executor takes no more work ({why}); {_RESUME}")
+
+
+def _in_words(error: BaseException) -> str:
+    """Return kind and first line of an error of an executor."""
+    return ": ".join([type(error).__name__, *str(error).splitlines()[:1]])
+
+
+def part_of(shard: str) -> tuple[int, int]:
+    """Return the share that a text like "2/8" names: its number, from 1, and of how many.
+
+    Raises
+    ------
+    ValueError
+        If it names none.
+    """
+    number, _, of = str(shard).partition("/")
+    if not (number.isdecimal() and of.isdecimal() and 1 <= int(number) <= int(of)):
+        raise ValueError(f"--shard {shard}: give i/n with 1 <= i <= n")
+    return int(number), int(of)
+
+
+def share_of(executor: Any, threads: int | None, shard: str | None) -> tuple[int, int] | None:
+    """Return the share that a call names, if any, once what is to draw was checked.
+
+    Raises
+    ------
+    ValueError
+        If one of them is wrong, or a share is given to an executor.
+    """
+    if threads is not None and threads < 1:
+        raise ValueError(f"threads = {threads}: give a whole number >= 1")
+    if shard is not None and executor is not None:
+        raise ValueError(f"shard = {shard!r}: a share uses threads; leave executor out")
+    if not (executor is None or isinstance(executor, Executor)):
+        raise ValueError(
+            f"executor = {executor!r}: give a concurrent.futures.Executor, such as "
+            "ProcessPoolExecutor(8) or client.get_executor() of a dask client"
+        )
+    return None if shard is None else part_of(shard)
 
 
 class Jobs(Executor):

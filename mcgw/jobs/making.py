@@ -1,7 +1,7 @@
 """From a plan to its file: its blocks are drawn, by whoever draws them, and merged."""
 
-from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Executor, ThreadPoolExecutor
 from functools import lru_cache
 from itertools import groupby
 from operator import itemgetter
@@ -10,16 +10,12 @@ from threading import Event
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-from mcgw.ensemble.labelled import Labelled
-from mcgw.ensemble.results import Tables
+from mcgw.ensemble.results import Labelled, Tables
 from mcgw.errors import RunError, StoppedError, StoreError, in_one_line
 from mcgw.formats.files import State, state_of
-from mcgw.formats.gate import open_h5
-from mcgw.jobs.driver import By, Signals, drive, heed_signals
+from mcgw.jobs.executors import Signals, drive, heed_signals
 from mcgw.store.blocks import Span, commit_shard
-from mcgw.store.ensembles import described, open_ensemble, open_results
-from mcgw.store.h5_reading import pieces_of
-from mcgw.store.h5_writing import Rows
+from mcgw.store.ensembles import FileResults, described, open_ensemble, open_results
 from mcgw.store.identity import difference
 from mcgw.store.lock import locked, parts_of
 from mcgw.store.place import check_room, drop_leftovers, finished, put, remove_run, tidy
@@ -60,8 +56,27 @@ def _drawn(plan: Plan, span: Span, threads: int | None, *go_on: Done) -> Callabl
     return lambda: commit_shard(path, plan.identity, span, tables, seconds)
 
 
-def make(plan: Plan, by: By, progress: Done) -> int:
+def make(
+    plan: Plan,
+    progress: Done,
+    executor: Executor | None,
+    threads: int | None,
+    part: tuple[int, int] | None,
+) -> int:
     """Draw what is missing of a file and make it; or of its blocks a share, for `mcgw.merge` to make it of.
+
+    Parameters
+    ----------
+    plan : Plan
+        Of the file.
+    progress : callable
+        Is told of the work that is done.
+    executor : concurrent.futures.Executor, optional
+        Draws the blocks. Default: threads of this process; one writes a block while others draw the next.
+    threads : int, optional
+        Of a block.
+    part : (int, int), optional
+        A share of all blocks: its number, from 1, and of how many.
 
     Returns
     -------
@@ -75,29 +90,30 @@ def make(plan: Plan, by: By, progress: Done) -> int:
     RunError
         If it could not be finished; what is done is kept.
     """
-    check_room(plan)
     if finished(plan) < plan.total:
-        if by.part:
+        check_room(plan)
+        if part:
             tidy(plan.path)
-        with heed_signals() as signals, locked(plan.folder, shared=by.part is not None) as new:
-            if not (by.part or new):
+        with heed_signals() as signals, locked(plan.folder, shared=part is not None) as new:
+            if not (part or new):
                 drop_leftovers(plan.path)
             if finished(plan) < plan.total:  # no other process was faster
-                shared = by.executor or by.part or plan.axes or (plan.folder / RECORD).exists()
-                draw = _at_once if not shared and plan.total <= plan.reducers[0].rows > 1 else _in_blocks
+                in_blocks = executor or part or plan.axes or (plan.folder / RECORD).exists()
                 try:
-                    return draw(plan, by, progress, signals)
+                    if not in_blocks and plan.total <= plan.reducers[0].rows > 1:
+                        return _at_once(plan, threads, progress, signals)
+                    return _in_blocks(plan, executor, threads, part, progress, signals)
                 except OSError as error:
                     raise RunError(
                         f"{in_one_line(error)}; finished blocks are kept in {plan.folder}; once this is "
                         "fixed, the same command resumes"
                     ) from None
     tidy(plan.path)
-    progress(sum(one.n_surfaces * one.work for one in plan.reducers))
+    progress(sum(one.scene.n_surfaces * one.work for one in plan.reducers))
     return 0
 
 
-def _at_once(plan: Plan, by: By, progress: Done, signals: Signals) -> int:
+def _at_once(plan: Plan, threads: int | None, progress: Done, signals: Signals) -> int:
     """All surfaces of a scene in this thread, and their file in one step. Only with the lock."""
 
     def go_on(done: float) -> bool:
@@ -107,46 +123,56 @@ def _at_once(plan: Plan, by: By, progress: Done, signals: Signals) -> int:
 
     started = perf_counter()
     progress(0)
-    tables = plan.draw(Span(0, plan.total), by.threads, go_on)
+    tables = plan.draw(Span(0, plan.total), threads, go_on)
     seconds = perf_counter() - started
     put(plan, lambda: plan.contents([plan.reducers[0].held([tables])], seconds))
     return 0
 
 
-def _in_blocks(plan: Plan, by: By, progress: Done, signals: Signals) -> int:
+def _in_blocks(
+    plan: Plan,
+    executor: Executor | None,
+    threads: int | None,
+    part: tuple[int, int] | None,
+    progress: Done,
+    signals: Signals,
+) -> int:
     """Draw missing shards, every so many-th of a share; then make the file, but of a share. With the lock."""
     plan.begin()
     shards, done = plan.shards(), finished(plan)
     n = max((shard.span.stop for shard in shards), default=0)
-    if n > plan.total and not by.part:  # blocks beyond those requested are kept
+    if n > plan.total and not part:  # blocks beyond those requested are kept
         raise StoreError(
             f"{plan.folder}: holds surfaces up to number {n} already, more than ensemble.n_surfaces = "
             f"{plan.total}; ask for as many or more, or choose another -o"
         )
+
+    def work(spans: Iterable[Span]) -> float:
+        return sum(span.n * plan.reducers[plan.blocks[span][0]].work for span in spans)
+
     spans = plan.missing(done, shards)
-    left, worked = sum(span.n for span in spans), plan.work(plan.blocks) - plan.work(spans)
-    if by.part:
-        number, of = by.part
-        own = set(list(plan.blocks)[number - 1 :: of])
+    left, worked = sum(span.n for span in spans), work(plan.blocks) - work(spans)
+    if part:
+        own = set(list(plan.blocks)[part[0] - 1 :: part[1]])
         spans = [span for span in spans if span in own]
 
     def note(span: Span, write: Callable[[], object] | None) -> None:
         nonlocal left, worked
         if write:  # in this thread, while the other one draws the next block
             write()
-        left, worked = left - span.n, worked + plan.work([span])
+        left, worked = left - span.n, worked + work([span])
         progress(worked)
 
     progress(worked)
-    if by.executor:
+    if executor:
         folder = str(plan.folder.resolve())
-        drive(by.executor, spans, commit_block, lambda span: (folder, span.first, span.n), note, signals)
+        drive(executor, spans, commit_block, lambda span: (folder, span.first, span.n), note, signals)
     else:
-        _by_a_thread(plan, spans, by.threads, note, signals)
+        _by_a_thread(plan, spans, threads, note, signals)
     signals.check(
         f"{plan.total - left} of {plan.total} surfaces are kept in {plan.folder}; the same command resumes"
     )
-    if by.part:
+    if part:
         return sum(span.n for span in plan.missing(done, plan.shards()))
     make_file(plan, signals)
     return 0
@@ -250,27 +276,25 @@ def _merged(plan: Plan, check: Callable[[], None]) -> Labelled:
     if not plan.axes and plan.path.exists():
         attributes, there = described(plan.path)
         held, seconds = plan.kept(there.n_surfaces), attributes["wall_seconds"]
-    shards = [shard for shard in plan.shards(numbers=False) if shard.span.first >= held]
+    shards = [shard for shard in plan.shards(numbers=not plan.statistics) if shard.span.first >= held]
     ends = [held, *(shard.span.stop for shard in shards)]
     if ends != [*(shard.span.first for shard in shards), plan.total]:
         raise StoreError(f"{plan.folder}: blocks are missing")
     seconds += sum(shard.seconds for shard in shards)
+    if not plan.statistics:
+        files = [(plan.path, held)] * (held > 0) + [(shard.path, shard.span.n) for shard in shards]
+        return plan.contents([FileResults(tuple(files))], seconds)
 
-    def pieces() -> Iterator[tuple[int, Tables]]:
-        """Values of surfaces, or statistics of blocks; each with the group that they are of."""
-        if held and plan.statistics:
+    def blocks() -> Iterator[tuple[int, Tables]]:
+        """Statistics of blocks, each with the group that it is of."""
+        if held:
             from mcgw.ensemble.pooled import tables_of  # for those scenes alone
 
             sums: Any = open_ensemble(plan.path).sums
             yield from ((0, tables_of([part])) for part in sums.parts if part.n % plan.reducers[0].rows == 0)
-        elif held:
-            with open_h5(plan.path) as file:
-                yield from ((0, tables) for tables in pieces_of(file, plan.scene.tables, held))
         for shard in shards:
             check()
             yield plan.blocks[shard.span][0], shard.tables()
 
-    if not plan.statistics:
-        return plan.contents([Rows(plan.total, (tables for _, tables in pieces()))], seconds)
-    groups = zip(plan.reducers, groupby(pieces(), itemgetter(0)), strict=True)
+    groups = zip(plan.reducers, groupby(blocks(), itemgetter(0)), strict=True)
     return plan.contents([one.held(tables for _, tables in some) for one, (_, some) in groups], seconds)

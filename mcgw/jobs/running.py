@@ -6,10 +6,10 @@ from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Any, overload
 
-from mcgw.ensemble.drawing import drawn, use_threads
+from mcgw.ensemble.drawing import use_threads
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import checkpoints, forecast, without_rule
-from mcgw.jobs.driver import By
+from mcgw.jobs.executors import share_of
 from mcgw.jobs.making import make
 from mcgw.machine.progress import Progress, told
 from mcgw.scene.kinds import check_object
@@ -102,19 +102,19 @@ def run(
     if shard is not None and scene.max_seconds is not None:
         raise ValueError("ensemble.max_seconds: the jobs of a run end at different times; give n_surfaces")
     total = scene.n_surfaces if scene.rel_err is None else forecast(scene).surfaces
-    by = By.of(executor, threads, shard)
+    part = share_of(executor, threads, shard)
     with told(progress, "surfaces") as tell:
         scene = as_recorded(scene, path)
-        if by.part and scene.rel_err is not None:
+        if part and scene.rel_err is not None:
             scene = without_rule(scene)
         started = monotonic()
         ruled = scene.rel_err is not None or scene.max_seconds is not None
         for stage in _stages(scene, path) if ruled else (scene,):
             plan = Plan.of(stage, path)
-            left = make(plan, by, lambda done: tell(done, total))
+            left = make(plan, lambda done: tell(done, total), executor, threads, part)
             if scene.max_seconds is not None and monotonic() - started > scene.max_seconds:
                 break
-    if by.part:
+    if part:
         return left
     if plan.statistics:
         return open_ensemble(path)
@@ -252,16 +252,11 @@ def sweep(
     axes = axes_of(over, zipped=zipped, resolve=resolved)
     if path is None:
         with use_threads(threads), told(progress, "surfaces") as tell:
-            asked = Points.of(scene, axes)
-            for group in asked.groups:
-                group.check()
-            note = weighted(asked.groups, tell)
-            note(0)
-            return asked.answered(drawn(asked.groups, note))
+            return Points.of(scene, axes).in_memory(tell)
     path = Path(path)
     scene = as_recorded(scene, path)
-    by = By.of(executor, threads, shard)
+    part = share_of(executor, threads, shard)
     with told(progress, "surfaces") as tell:
-        plan = Plan.of_sweep(Points.of(scene, axes), path)
-        left = make(plan, by, weighted(plan.reducers, tell))
-    return left if by.part else open_sweep(path)
+        plan = Plan.of(Points.of(scene, axes), path)
+        left = make(plan, weighted(plan.reducers, tell), executor, threads, part)
+    return left if part else open_sweep(path)

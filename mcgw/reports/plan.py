@@ -3,10 +3,10 @@
 from time import perf_counter
 
 from analytic import QUANTITIES
-from mcgw.ensemble.drawing import in_words, rough_seconds, seconds_per_surface
+from mcgw.ensemble.drawing import reducer_of
 from mcgw.ensemble.forecast import MOST_SURFACES, forecast
 from mcgw.ensemble.intervals import laws_are_quick
-from mcgw.ensemble.simulation import reducer_of
+from mcgw.ensemble.simulation import in_words, rough_seconds, seconds_per_surface
 from mcgw.machine.terminal import listed, one_line
 from mcgw.sampling.expected import Expected, expected
 from mcgw.sampling.shared import shared
@@ -75,17 +75,18 @@ def sweep_plan_text(asked: Points) -> str:
     """Return the plan in words; the group that takes the longest is tried out, of which nothing is kept."""
     groups = asked.groups
     scenes = sum(len(group.computed) for group in groups)
-    touching = sum(group.n_surfaces * group.computed[0].touching for group in groups)
-    work = [group.n_surfaces * group.work for group in groups]
+    touching = sum(group.scene.n_surfaces * group.scene.touching for group in groups)
+    work = [group.scene.n_surfaces * group.work for group in groups]
     longest = groups[work.index(max(work))]
     started = perf_counter()
     source = shared(longest.computed)
     preparing = (perf_counter() - started) * scenes / len(longest.computed)
-    drawing = seconds_per_surface(longest.computed[0], source) * longest.n_surfaces * sum(work) / max(work)
+    surfaces = longest.scene.n_surfaces * sum(work) / max(work)
+    drawing = seconds_per_surface(longest.scene, source) * surfaces
     facts = [
         *((key, asked.axes.summary(key)) for key in asked.axes.keys),
         ("groups", f"{len(groups)} that share their surfaces"),
-        ("surfaces", f"{sum(x.n_surfaces for x in groups)}, with {touching:.4g} asperities that touch"),
+        ("surfaces", f"{sum(x.scene.n_surfaces for x in groups)}, with {touching:.4g} asperities that touch"),
         ("computed", f"{scenes} scenes; the others are weighted means of them"),
         ("time", f"about {in_words(preparing + drawing)} on this machine"),
     ]

@@ -6,7 +6,7 @@ import numpy as np
 
 from analytic import quantity_of
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.labelled import statistics_table
+from mcgw.ensemble.results import statistics_table
 from mcgw.formats.law_text import law_text
 from mcgw.formats.table import SEPARATION, Column, Table, stacked
 from mcgw.machine.terminal import listed, one_line

@@ -6,9 +6,9 @@ from numpy.typing import NDArray
 from analytic.arrays import Array, Ints
 from mcgw.machine.memory import check_memory
 from mcgw.sampling.block import Sampler
+from mcgw.sampling.counted import extra_heights, table_of
 from mcgw.sampling.counts import counts_of, generator
 from mcgw.sampling.direct import Direct, asperity_sums
-from mcgw.sampling.outside import extra_heights, table_of
 from mcgw.sampling.philox import CELLS, RADII, RADII_LOW, REST, uniforms
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.parts import promise_of
@@ -166,7 +166,7 @@ def worst_of_values(scene: Scene, surfaces: int) -> float:
     for number in range(surfaces):
         s, ratios = summits_drawn(scene, sampler, number)
         plain = asperity_sums(scene, np.array([s.size]), s, np.ones(s.size), ratios)
-        for quantity, values in sampler.block(number, 1).sums.items():
+        for quantity, values in sampler.block(number, 1).items():
             if quantity in plain and plain[quantity].any():
                 worst = max(worst, float(np.abs(values / plain[quantity] - 1).max()))
     return worst

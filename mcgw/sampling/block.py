@@ -54,22 +54,10 @@ class Layout:
         return np.repeat(first - np.cumsum(size) + size, size) + np.arange(size.sum())
 
 
+Sums = dict[str, Array]  # of some consecutive surfaces each quantity, SI, shape (surfaces, separations)
 Drawn = TypeVar("Drawn", covariant=True)
 
 _WORDS = 12  # numbers in memory for an asperity drawn by itself
-
-
-@dataclass(frozen=True)
-class Block:
-    """Results of some consecutive surfaces.
-
-    Parameters
-    ----------
-    sums : dict of str to ndarray
-        Each quantity in SI units, shape (surfaces, separations).
-    """
-
-    sums: dict[str, Array]
 
 
 class Source(Protocol[Drawn]):
@@ -143,6 +131,6 @@ class Sampler:
         """Asperities that are expected to be drawn by themselves."""
         return self.scene.n_asperities * (self.mesh.low_extras + self.mesh.high_extras)
 
-    def block(self, first: int, n: int) -> Block:
+    def block(self, first: int, n: int) -> Sums:
         """Results of surfaces `first` ... `first + n - 1`."""
         raise NotImplementedError

@@ -51,7 +51,8 @@ def counts_of(scene: Scene, mesh: Mesh, first: int, n: int) -> Counts:
         A pure function of the seed and the number of the surface.
     """
     probability = np.concatenate([[mesh.low_extras], mesh.probability, [mesh.high_extras]])
-    touching = float(probability.sum())
+    n_asperities, touching = scene.n_asperities, float(probability.sum())
+    p = min(touching, 1.0)
     mantissa, exponent = np.frexp(probability[::-1] / (touching or 1.0))
     # To 44 bits: NumPy draws from the smaller side, and of two like cells a last digit would decide which.
     falling = np.ldexp(np.round(mantissa * 2.0**44) / 2.0**44, exponent)
@@ -59,7 +60,13 @@ def counts_of(scene: Scene, mesh: Mesh, first: int, n: int) -> Counts:
     drawn = []
     for group in groups:
         rng = generator(scene.seed, 0, group)
-        drawn.append(rng.multinomial(_touching(rng, scene, min(touching, 1.0)), falling))
+        if scene.count == "fixed" and p >= _RARE:
+            contacts = rng.binomial(n_asperities, p, GROUP)
+        else:
+            contacts = rng.poisson(n_asperities * p, GROUP)
+            if scene.count == "fixed":
+                contacts = np.minimum(contacts, n_asperities)
+        drawn.append(rng.multinomial(contacts, falling))
     skip = first - groups[0] * GROUP
     numbers = np.ascontiguousarray(np.concatenate(drawn)[skip : skip + n, ::-1].T)
     return Counts(numbers[1:-1], numbers[0], numbers[-1])
@@ -88,13 +95,3 @@ def contacts_above(counts: Array, cells: Ints) -> Array:
 def generator(seed: int, purpose: int, number: int) -> np.random.Generator:
     """NumPy's generator for one purpose and number, a pure function of these and the seed."""
     return np.random.Generator(np.random.Philox(key=seed, counter=[0, 0, number, purpose]))
-
-
-def _touching(rng: np.random.Generator, scene: Scene, p: float) -> Ints:
-    """Draw the numbers in contact of a group of surfaces, each asperity with probability `p`."""
-    asperities = scene.n_asperities
-    if scene.count == "poisson":
-        return rng.poisson(asperities * p, GROUP)
-    if p >= _RARE:
-        return rng.binomial(asperities, p, GROUP)
-    return np.minimum(rng.poisson(asperities * p, GROUP), asperities)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from analytic import quantity_of
 from analytic.arrays import Array
 from mcgw.machine.compiling import njit
-from mcgw.sampling.block import Block, Sampler
+from mcgw.sampling.block import Sampler, Sums
 from mcgw.sampling.counts import generator
 from mcgw.scene.scene import Scene
 
@@ -35,10 +35,10 @@ class Direct(Sampler):
         """Numbers drawn for a surface."""
         return float(self.scene.n_asperities)
 
-    def block(self, first: int, n: int) -> Block:
+    def block(self, first: int, n: int) -> Sums:
         """Results of surfaces `first` ... `first + n - 1`."""
         rows = [self._surface(number) for number in range(first, first + n)]
-        return Block({name: np.concatenate([row[name] for row in rows]) for name in rows[0]})
+        return {name: np.concatenate([row[name] for row in rows]) for name in rows[0]}
 
     def asperities(self, number: int) -> Iterator[tuple[Array, Array | None]]:
         """Heights of all asperities of a surface, and ratios of their radii, some at a time."""

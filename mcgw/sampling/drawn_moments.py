@@ -30,27 +30,12 @@ from analytic.quadrature import gauss_legendre
 from mcgw.machine.compiling import njit
 from mcgw.sampling.block import Layout
 from mcgw.sampling.counts import Counts
-from mcgw.sampling.moments import cell_moments
+from mcgw.sampling.moments import OneByOne, cell_moments
 from mcgw.sampling.philox import MOMENTS, centred, made_for
 from mcgw.sampling.rules import product
 
 CROWDED = 256  # asperities in a cell, from which its moments count as Gaussian
 VARYING = 1e-6  # accuracy of the laws up to which moments vary, if only sums are kept
-
-
-@dataclass(frozen=True)
-class OneByOne:
-    """A uniform for each asperity; other ways to draw the moments of the cells derive from it."""
-
-    distance = 0.0  # of the laws of values from the exact ones; nan if nobody knows
-
-    def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
-        """Return the sums over the uniforms of each cell of surfaces `first` ..., (moments, surfaces)."""
-        return cell_moments(seed, first, counts.cells, layout)
-
-    def draws(self, asperities: float, layout: Layout) -> float:
-        """Return the numbers drawn for so many asperities in the cells of a surface."""
-        return asperities if layout.sizes.any() else 0.0
 
 
 @dataclass(frozen=True)

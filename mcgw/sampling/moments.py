@@ -9,6 +9,7 @@ root of the distance from the cell's start (`mcgw.sampling.response.response`).
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
@@ -19,6 +20,7 @@ from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads
 from mcgw.sampling.block import Layout
+from mcgw.sampling.counts import Counts
 from mcgw.sampling.kernels import BUFFER, PLAIN, ROOTED, TOGETHER, WORDS, add_uniforms, unfold
 from mcgw.sampling.philox import CELLS, centred
 from mcgw.sampling.spacing import price
@@ -124,14 +126,24 @@ def in_runs_of_cells(counts: Ints, orders: Ints, each: Array | float, sum_run: C
     """
     counts = np.where(orders.any(axis=1, keepdims=True), counts, 0)  # what nobody asks for is not drawn
     moments = np.empty((int(orders.sum()), counts.shape[1]))
-    bounds = list(pairwise(_shares(counts, each).tolist()))
-    in_threads(lambda some: sum_run(counts, some, moments), bounds)
+    work = np.concatenate([[0.0], np.cumsum(_START * counts.shape[1] + counts.sum(axis=1) * each)])
+    threads = get_num_threads() if work[-1] > _ALONE else 1
+    ends = np.linspace(0, work[-1], threads + 1)  # counted through the surfaces of each cell in turn
+    places = np.interp(ends, work, counts.shape[1] * np.arange(len(work))).astype(np.int64)
+    in_threads(lambda some: sum_run(counts, some, moments), list(pairwise(places.tolist())))
     return moments
 
 
-def _shares(counts: Ints, each: Array | float) -> Ints:
-    """Where the work of each thread begins and ends, counted through the surfaces of each cell in turn."""
-    work = np.concatenate([[0.0], np.cumsum(_START * counts.shape[1] + counts.sum(axis=1) * each)])
-    threads = get_num_threads() if work[-1] > _ALONE else 1
-    ends = np.linspace(0, work[-1], threads + 1)
-    return np.asarray(np.interp(ends, work, counts.shape[1] * np.arange(len(work))), dtype=np.int64)
+@dataclass(frozen=True)
+class OneByOne:
+    """A uniform for each asperity; other ways to draw the moments of the cells derive from it."""
+
+    distance = 0.0  # of the laws of values from the exact ones; nan if nobody knows
+
+    def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
+        """Return the sums over the uniforms of each cell of surfaces `first` ..., (moments, surfaces)."""
+        return cell_moments(seed, first, counts.cells, layout)
+
+    def draws(self, asperities: float, layout: Layout) -> float:
+        """Return the numbers drawn for so many asperities in the cells of a surface."""
+        return asperities if layout.plain.any() or layout.rooted.any() else 0.0

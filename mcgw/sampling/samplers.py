@@ -12,6 +12,7 @@ name            cells        numbers in them  moments     for
 
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,10 +20,9 @@ import numpy as np
 from analytic import MeasuredHeights, quantity_of
 from mcgw.sampling.block import Sampler
 from mcgw.sampling.cells import Mesh, cut, mesh_of, no_cells
-from mcgw.sampling.counted import Counted
+from mcgw.sampling.counted import Counted, table_of
 from mcgw.sampling.direct import Direct
 from mcgw.sampling.drawn_moments import CROWDED, VARYING, Crowds
-from mcgw.sampling.outside import table_of
 from mcgw.sampling.response.response import Response, parts_of, response_of
 from mcgw.sampling.response.walk import UnresolvedError
 from mcgw.scene.parts import promise_of
@@ -151,27 +151,22 @@ _MAKERS: dict[str, Callable[[Scene], Sampler]] = {
 
 
 def _resolved(scene: Scene, mesh: Mesh) -> "tuple[Mesh, Response | Families]":
-    """Cut the mesh where the law of contact bends with the modulus; return it and its response."""
-    for _ in range(_CUTS):
+    """Cut the mesh where the law of contact bends with the modulus.
+
+    Return it and its response for all that moments can tell; contacts are counted.
+    """
+    names, cuts = _summed(scene.quantities), 0
+    while True:
         try:
-            return mesh, _response(scene, mesh)
+            if scene.summits is None or not names:
+                return mesh, response_of(scene, mesh, names)
+            from mcgw.sampling.own_radii import Families
+
+            return mesh, Families.of(names, partial(response_of, scene, mesh))
         except UnresolvedError as error:
-            mesh = cut(scene, mesh, error.starts)
-    return mesh, _response(scene, mesh)
-
-
-def _response(scene: Scene, mesh: Mesh) -> "Response | Families":
-    """Response for all that moments can tell; contacts are counted."""
-
-    def response_to(names: tuple[str, ...]) -> Response:
-        return response_of(scene, mesh, names)
-
-    names = _summed(scene.quantities)
-    if scene.summits is None or not names:
-        return response_to(names)
-    from mcgw.sampling.own_radii import Families
-
-    return Families.of(names, response_to)
+            if cuts == _CUTS:
+                raise
+            mesh, cuts = cut(scene, mesh, error.starts), cuts + 1
 
 
 def _summed(quantities: Iterable[str]) -> tuple[str, ...]:

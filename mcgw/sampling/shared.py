@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic import Exponential, Homogeneous, MeasuredRadii, quantity_of
-from mcgw.sampling.block import Block, Layout, Sampler
+from mcgw.sampling.block import Layout, Sampler, Sums
 from mcgw.sampling.cells import mesh_of
 from mcgw.sampling.counted import Counted
 from mcgw.sampling.response.walk import UnresolvedError
@@ -59,12 +59,12 @@ class Shared:
         """Numbers that are expected to be drawn for a surface."""
         return self.scenes[0].draws
 
-    def block(self, first: int, n: int) -> tuple[Block, ...]:
+    def block(self, first: int, n: int) -> tuple[Sums, ...]:
         """Return what surfaces `first` ... `first + n - 1` answer to each scene."""
         if len(self.scenes) == 1:
             return (self.scenes[0].block(first, n),)
         drawn = self._counted[0].drawn(first, n, self.layout)
-        return tuple(Block(one.sums(first, *drawn)) for one in self._answering)
+        return tuple(one.sums(first, *drawn) for one in self._answering)
 
 
 def to_be_shared(scene: Scene) -> tuple[Any, ...] | None:

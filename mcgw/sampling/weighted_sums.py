@@ -20,9 +20,8 @@ from mcgw.machine.compiling import njit
 from mcgw.sampling.block import Layout
 from mcgw.sampling.cells import Mesh
 from mcgw.sampling.counts import Counts
-from mcgw.sampling.drawn_moments import OneByOne
 from mcgw.sampling.kernels import BUFFER, TOGETHER, add_weighted, unfold
-from mcgw.sampling.moments import add_compensated, in_runs_of_cells
+from mcgw.sampling.moments import OneByOne, add_compensated, in_runs_of_cells
 from mcgw.sampling.own_radii import Families, RadiusTable, root_ratio
 from mcgw.sampling.philox import CELLS, RADII, RADII_LOW, centred
 

@@ -10,7 +10,7 @@ import numpy as np
 from analytic.arrays import Array, Marks
 from mcgw.ensemble.ensemble import Ensemble, how_many, shown
 from mcgw.ensemble.intervals import interval_columns
-from mcgw.ensemble.labelled import heading
+from mcgw.ensemble.results import heading
 from mcgw.formats.table import SEPARATION, Column, Shown, Table, joined, stacked
 from mcgw.machine.progress import Progress, told
 from mcgw.machine.terminal import plotted, quantity_and_axes

@@ -188,7 +188,7 @@ def converge(
 def _own(scene: Scene) -> Sums:
     sampler = replace(_prepared(scene.replace(seed=0)), scene=scene)
     blocks = drawn_blocks(sampler, 0, scene.n_surfaces, block_size(scene, sampler))
-    return joined([block.sums for block in blocks])
+    return joined(list(blocks))
 
 
 @lru_cache(maxsize=1)

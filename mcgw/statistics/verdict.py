@@ -18,7 +18,6 @@ from analytic import Fluctuations, MeasuredHeights, Model, RandomCurvature, quan
 from analytic.arrays import Array, Marks
 from analytic.curvature import MEAN_CURVATURE
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.half_space import asperities_alone
 from mcgw.formats.table import SEPARATION, Column, Table, evenly
 from mcgw.scene.parts import promise_of
 from mcgw.scene.scene import Scene
@@ -152,6 +151,8 @@ def tested(ensemble: Ensemble, most: int) -> Tested:
     """
     scene, surfaces = ensemble.scene, ensemble.n_surfaces
     if scene.interaction is not None:
+        from mcgw.ensemble.at_load import asperities_alone  # for those scenes alone
+
         return tested(asperities_alone(ensemble), most)
     h = np.unique(scene.separations)
     h = h[evenly(len(h), most)]

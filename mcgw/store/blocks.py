@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from mcgw.ensemble.labelled import Labelled, Variable
-from mcgw.ensemble.results import Tables
+from mcgw.ensemble.results import Labelled, Tables, Variable
 from mcgw.errors import StoreError
 from mcgw.formats.files import Expected, whole_file
 from mcgw.store.h5_reading import look, read_tables

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.labelled import GROUP
-from mcgw.ensemble.results import Held, Results
+from mcgw.ensemble.results import GROUP, Held, Results
 from mcgw.errors import StoreError
 from mcgw.formats.named_files import open_regular
 from mcgw.scene.scene import Scene
@@ -146,8 +145,7 @@ def open_results(path: Path) -> "Ensemble | Sweep":
 
         return sweep_of(attributes["scene"], attributes["axes"], read_tables(path, GROUP))
     if scene.keep == "statistics":
-        from mcgw.ensemble.pooled import pooled_from  # for those scenes alone
-        from mcgw.ensemble.summarised import Summarised
+        from mcgw.ensemble.pooled import Summarised, pooled_from  # for those scenes alone
 
         held = Summarised(scene, pooled_from(read_tables(path, GROUP)))
     else:

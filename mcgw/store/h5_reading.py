@@ -6,7 +6,7 @@ whoever wrote the file.
 """
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -15,11 +15,10 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.ensemble.labelled import GROUP
-from mcgw.ensemble.results import Tables
+from mcgw.ensemble.results import GROUP, Tables
 from mcgw.errors import StoreError
 from mcgw.formats.gate import open_h5
-from mcgw.store.h5_writing import FILETYPE, FORMAT, MOST_TEXT, checksum, sha_of
+from mcgw.store.h5_writing import FILETYPE, FORMAT, MOST_TEXT, PIECE, checksum, sha_of
 
 _ATTRIBUTES = (  # that this program writes; another one may add its own, which are not looked at
     *("filetype", "format", "title", "scene", "axes", "seed", "sampler", "digest", "checksum", "date"),
@@ -29,7 +28,6 @@ _ATTRIBUTES = (  # that this program writes; another one may add its own, which 
 _MOST_TABLES, _MOST_NUMBERS = 128, 64
 _DOCUMENTS = ("title", "scene", "axes")  # other texts are shown and exported as they stand
 _ABOUT = ("units", "long_name", "sha256")  # attributes of a table that this program writes
-_PIECE = 2**23  # bytes of numbers processed at a time
 
 
 def look(path: Path, filetype: str = FILETYPE, *, numbers: bool = True) -> dict[str, Any]:
@@ -46,7 +44,9 @@ def look(path: Path, filetype: str = FILETYPE, *, numbers: bool = True) -> dict[
         if checksum_of(file) != attributes.get("checksum"):
             raise StoreError("damaged (checksum mismatch of its scene or attributes)")
         for name in names if numbers else ():
-            _compare(file[name], (piece[name] for piece in pieces_of(file, [name], len(file[name]))))
+            table = file[name]
+            some = max(PIECE // (8 * math.prod(table.shape[1:])), 1)
+            _compare(table, (table[first : first + some] for first in range(0, len(table), some)))
         return attributes
 
 
@@ -101,14 +101,6 @@ def checksum_of(file: h5py.File) -> str:
 def _text(table: h5py.Dataset, key: str) -> str:
     value = table.attrs.get(key, "")
     return value.decode() if isinstance(value, bytes) else str(value)
-
-
-def pieces_of(file: h5py.File, names: Sequence[str], rows: int) -> Iterator[Tables]:
-    """So many rows of tables of an open file, some at a time."""
-    width = sum(math.prod(file[name].shape[1:]) for name in names)
-    step = max(_PIECE // (8 * width or 8), 1)
-    for start in range(0, rows, step):
-        yield {name: file[name][start : min(start + step, rows)] for name in names}
 
 
 @contextmanager

@@ -32,11 +32,9 @@ import hashlib
 import json
 import math
 import zlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from contextlib import closing
-from dataclasses import dataclass
 from io import FileIO
-from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -44,43 +42,16 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from mcgw.ensemble.labelled import Labelled
-from mcgw.ensemble.results import CHUNK_ROWS, Results, Tables
-from mcgw.errors import StoreError
+from mcgw.ensemble.results import CHUNK_ROWS, Labelled
 
 FILETYPE, BLOCK_TYPE, RUN_TYPE, FORMAT = "mcgw-results", "mcgw-block", "mcgw-run", [4, 0]
 MOST_TEXT = 2**22  # characters of an attribute, such as the scene
 _LIBVER = ("v108", "v110")  # checksums on all metadata, and every HDF5 of the last decade reads it
 _CHUNK = 2**20  # bytes of a chunk, at most
+PIECE = 2**23  # bytes of numbers processed at a time
 _SAMPLE = 2**14  # bytes that tell whether compression pays
 PACKED: Any = {"compression": "gzip", "compression_opts": 1, "shuffle": True, "fletcher32": True}
 _PLAIN: Any = {"fletcher32": True}
-
-
-@dataclass(frozen=True, eq=False)
-class Rows(Results):
-    """Values of surfaces on their way into a file: in pieces, some rows of all tables at a time, in order.
-
-    Parameters
-    ----------
-    n : int
-        How many rows all have together.
-    pieces : iterator of Tables
-        Read once, by who writes the file.
-    """
-
-    n: int
-    pieces: Iterator[Tables]
-
-    def __len__(self) -> int:
-        """Return the number of rows."""
-        return self.n
-
-    rows = __len__
-
-    def read(self, name: str, start: int, stop: int | None) -> Any:  # noqa: ARG002
-        """Return these rows, which stand for any of the tables."""
-        return self
 
 
 class SteadyFile(FileIO):
@@ -130,7 +101,7 @@ class SteadyFile(FileIO):
 
 
 def write(path: Path, contents: Labelled, of: str = "", go_on: Callable[[], None] | None = None) -> None:
-    """Write a new file, of whose tables those that come in pieces have one `Rows` as values.
+    """Write a new file, some rows of a table at a time.
 
     `of` says what the numbers are of, which `digest` is over as well; `go_on` is called often, and raises if
     this is to end.
@@ -153,29 +124,20 @@ def write(path: Path, contents: Labelled, of: str = "", go_on: Callable[[], None
 def _fill(
     file: h5py.File, contents: Labelled, of: str, raw: SteadyFile, go_on: Callable[[], None] | None
 ) -> None:
-    variables = {**contents.coordinates, **contents.variables}
-    inside = {name: one.values for name, one in variables.items() if not isinstance(one.values, Rows)}
-    pieces = next((one.values.pieces for one in variables.values() if isinstance(one.values, Rows)), ())
-    shas, filled = dict[str, Any](), dict.fromkeys(variables, 0)
-    for tables in chain([inside], pieces):
-        for name, piece in tables.items():
+    heads: dict[str, Any] = {}
+    for name, one in {**contents.coordinates, **contents.variables}.items():
+        n, some = len(one.values), max(PIECE // one.values[:1].nbytes, 1)
+        for first in range(0, n, some):
+            piece = one.values[first : first + some]
             values = np.ascontiguousarray(piece, piece.dtype.newbyteorder("<"))
-            first, n = filled[name], len(variables[name].values)
             if not first:
-                shas[name] = sha_of(values)
-                empty_table(file, name, n, values)
-            file[name][first : first + len(values)] = values
-            shas[name].update(values.reshape(-1))
-            filled[name] = first + len(values)
+                data, sha = empty_table(file, name, n, values), sha_of(values)
+            data[first : first + some] = values
+            sha.update(values.reshape(-1))
             raw.check()
             if go_on:
                 go_on()
-    heads: dict[str, Any] = {}
-    for name, one in variables.items():
-        if filled[name] != len(one.values):
-            raise StoreError(f"{name}: {filled[name]} rows, not {len(one.values)}")
-        data = file[name]
-        about = {"units": one.units, "long_name": one.long_name, "sha256": shas[name].hexdigest()}
+        about = {"units": one.units, "long_name": one.long_name, "sha256": sha.hexdigest()}
         _add_attributes(data, {key: text for key, text in about.items() if text})
         if one.dims == (name,):
             data.make_scale(name)
@@ -212,27 +174,12 @@ def checksum(attributes: dict[str, Any], heads: dict[str, Any]) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def chunk_rows(rows: int, columns: int) -> int:
-    """Rows of a chunk of a table."""
-    fitting = max(_CHUNK // (8 * max(columns, 1)), 1)
-    return min(CHUNK_ROWS, 1 << fitting.bit_length() - 1, rows)
-
-
 def empty_table(file: h5py.File, path: str, rows: int, like: NDArray[Any]) -> h5py.Dataset:
-    """Make a table of some rows like those of another, packed to suit its numbers."""
-    shape = like.shape[1:]
-    return file.create_dataset(
-        path,
-        (rows, *shape),
-        like.dtype,
-        chunks=(chunk_rows(rows, math.prod(shape)), *shape),
-        **(PACKED if _shrinks(like) else _PLAIN),
-    )
-
-
-def _shrinks(table: NDArray[Any]) -> bool:
-    """Whether compressing the first rows saves half of their size."""
-    rows = max(_SAMPLE // max(8 * math.prod(table.shape[1:]), 1), 1)
-    sample = np.ascontiguousarray(table[:rows])
+    """Make a table of some rows like those of another, packed if that halves the size of its first rows."""
+    shape, columns = like.shape[1:], max(math.prod(like.shape[1:]), 1)
+    fitting = max(_CHUNK // (8 * columns), 1)
+    chunk = min(CHUNK_ROWS, 1 << fitting.bit_length() - 1, rows)
+    sample = np.ascontiguousarray(like[: max(_SAMPLE // (8 * columns), 1)])
     shuffled = sample.reshape(-1).view(np.uint8).reshape(-1, sample.itemsize).T.tobytes()
-    return 2 * len(zlib.compress(shuffled, 1)) < len(shuffled)
+    how = PACKED if 2 * len(zlib.compress(shuffled, 1)) < len(shuffled) else _PLAIN
+    return file.create_dataset(path, (rows, *shape), like.dtype, chunks=(chunk, *shape), **how)

@@ -14,7 +14,6 @@ import re
 import subprocess
 from collections.abc import Iterator
 from contextlib import suppress
-from datetime import UTC, datetime
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -106,11 +105,6 @@ def versions(*, of_draws: bool = False) -> str:
     return ", ".join(known)
 
 
-def now() -> str:
-    """UTC date and time, ISO 8601."""
-    return datetime.now(UTC).isoformat(timespec="seconds")
-
-
 @cache
 def commit() -> str:
     """Commit of a source checkout, "unknown" for an installed package."""
@@ -122,11 +116,6 @@ def commit() -> str:
         return subprocess.run(call, capture_output=True, text=True, timeout=5, check=True).stdout.strip()
     except (OSError, subprocess.SubprocessError):
         return "unknown"
-
-
-def made_with() -> dict[str, str]:
-    """Return what is needed to repeat a run, besides its scene."""
-    return {"versions": versions(), "commit": commit(), "cpu": processor()}
 
 
 @cache

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from analytic import PiecewiseSeries
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.labelled import Labelled
+from mcgw.ensemble.results import Labelled
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import check_output, refuse_read_only, remove_stale, state_of, whole_file
 from mcgw.machine.memory import gibibytes

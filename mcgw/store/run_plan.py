@@ -15,16 +15,15 @@ of valid shards is the only record of progress.
 from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from analytic.arrays import hold
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.labelled import Labelled
-from mcgw.ensemble.results import Tables
+from mcgw.ensemble.results import Labelled, Tables
 from mcgw.errors import RunError, StoreError
 from mcgw.formats.files import Expected, check_output, sync
 from mcgw.scene.scene import Scene
@@ -33,11 +32,11 @@ from mcgw.scene.section import SceneError
 from mcgw.store.blocks import Shard, Span, blocks_of, open_shard, write_tables
 from mcgw.store.h5_reading import look
 from mcgw.store.h5_writing import FILETYPE, FORMAT, RUN_TYPE
-from mcgw.store.identity import Question, another, identity_of, made_with, now, versions, written
+from mcgw.store.identity import Question, another, commit, identity_of, processor, versions, written
 from mcgw.store.lock import parts_of, refuse_link
 
 if TYPE_CHECKING:
-    from mcgw.ensemble.drawing import GoOn, Reducer
+    from mcgw.ensemble.drawing import GoOn, Values
     from mcgw.sweeps.points import Points
     from mcgw.sweeps.sweep import Sweep
 
@@ -72,36 +71,28 @@ class Plan:
     drawn_with: str
 
     @classmethod
-    def of(cls, scene: Scene, path: Path, sampler: str = "") -> "Plan":
-        """Return that of a scene with a number of surfaces, not a rule for it; drawn by its own sampler.
+    def of(cls, asked: "Scene | Points", path: Path, sampler: str = "") -> "Plan":
+        """Return that of a sweep, or of a scene with a number of surfaces, not a rule for it.
+
+        A scene is drawn by its own sampler, unless another one has drawn it.
 
         Raises
         ------
         StoreError
             If the scene cannot be told by a file, or none can be there.
         """
-        from mcgw.ensemble.simulation import reducer_of  # imports the samplers
-
         check_output(path)
-        reducer = reducer_of(scene)
+        draws = versions(of_draws=True)
+        if not isinstance(asked, Scene):
+            texts = asked.texts()
+            return cls(path, *texts, "", identity_of(*texts, draws), draws)
+        from mcgw.ensemble.drawing import reducer_of  # imports the samplers
+
+        reducer, (text, key) = reducer_of(asked), written(asked)
         sampler = sampler or reducer.sampler.name
-        (text, key), draws = written(scene), versions(of_draws=True)
         plan = cls(path, text, "", sampler, identity_of(key, sampler, draws), draws)
-        hold(plan, scene=scene, reducers=(reducer,), of_all=f"{key} {scene.n_surfaces}")
+        vars(plan).update(scene=asked, reducers=(reducer,), of_all=f"{key} {asked.n_surfaces}")
         return plan
-
-    @classmethod
-    def of_sweep(cls, points: "Points", path: Path) -> "Plan":
-        """Return that of a sweep.
-
-        Raises
-        ------
-        StoreError
-            If no file can be there.
-        """
-        check_output(path)
-        texts, draws = points.texts(), versions(of_draws=True)
-        return cls(path, *texts, "", identity_of(*texts, draws), draws)
 
     @classmethod
     def open(cls, folder: Path) -> "Plan":
@@ -131,7 +122,7 @@ class Plan:
 
     def again(self) -> "Plan":
         """Return what this process makes of the same words, whoever wrote them."""
-        return Plan.of_sweep(self.points, self.path) if self.axes else Plan.of(self.scene, self.path)
+        return Plan.of(self.points if self.axes else self.scene, self.path)
 
     @cached_property
     def scene(self) -> Scene:
@@ -151,7 +142,7 @@ class Plan:
         return self.text, self.axes, self.drawn_with
 
     @cached_property
-    def reducers(self) -> "tuple[Reducer, ...]":
+    def reducers(self) -> "tuple[Values, ...]":
         """What draws each group, and what of it is kept; a scene is one group.
 
         Raises
@@ -174,16 +165,12 @@ class Plan:
     @cached_property
     def blocks(self) -> dict[Span, tuple[int, int]]:
         """Blocks of the surfaces that are asked for, of which group each is and where it begins there."""
-        return blocks_of((one.n_surfaces, one.rows) for one in self.reducers)
+        return blocks_of((one.scene.n_surfaces, one.rows) for one in self.reducers)
 
     @cached_property
     def total(self) -> int:
         """Surfaces of all groups."""
-        return sum(one.n_surfaces for one in self.reducers)
-
-    def work(self, spans: Iterable[Span]) -> float:
-        """Return what some surfaces take, each span of one group, in any unit."""
-        return sum(span.n * self.reducers[self.blocks[span][0]].work for span in spans)
+        return sum(one.scene.n_surfaces for one in self.reducers)
 
     def draw(self, span: Span, threads: int | None, *go_on: "GoOn") -> Tables:
         """Return what is kept of some surfaces of one group; it does not depend on `threads`."""
@@ -197,17 +184,18 @@ class Plan:
         """Return those of the file, of what is held of each group, with how long it took."""
         found: Ensemble | Sweep
         found = self.points.answered(held) if self.axes else Ensemble(self.scene, self.sampler, *held)
-        about = {**self._about(FILETYPE), **made_with(), "title": self.scene.title, "wall_seconds": seconds}
-        about["seed"] = np.uint64(self.scene.seed)
+        about = {**self._about(FILETYPE), "title": self.scene.title, "seed": np.uint64(self.scene.seed)}
+        about |= {"versions": versions(), "commit": commit(), "cpu": processor(), "wall_seconds": seconds}
         if self.scene.accuracy:
             from mcgw.sampling.samplers import distance_of  # for those scenes alone
 
             about["accuracy_spent"] = distance_of(self.scene)  # how far from the exact laws it went
-        return found.labelled().in_file(found._drawn(), about)
+        return found.labelled().in_file(about)
 
     def _about(self, filetype: str) -> dict[str, Any]:
         about = {"filetype": filetype, "format": FORMAT, "scene": self.text, "sampler": self.sampler}
-        about |= {"run": self.identity, "draws": self.drawn_with, "date": now()}
+        date = datetime.now(UTC).isoformat(timespec="seconds")
+        about |= {"run": self.identity, "draws": self.drawn_with, "date": date}
         return {**about, "axes": self.axes} if self.axes else about
 
     @property

@@ -11,7 +11,7 @@ import numpy as np
 
 from analytic import is_data
 from analytic.arrays import Array
-from mcgw.ensemble.labelled import AXES, GROUP
+from mcgw.ensemble.results import AXES, GROUP
 from mcgw.machine.terminal import brief
 from mcgw.scene.keys import TABLES
 from mcgw.scene.kinds import as_toml

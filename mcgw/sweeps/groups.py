@@ -19,7 +19,7 @@ import numpy as np
 
 from analytic import Exponential, Homogeneous, quantity_of
 from analytic.arrays import Array, Ints
-from mcgw.ensemble.drawing import GoOn, Reducer, always, block_size, drawn_blocks, kept
+from mcgw.ensemble.drawing import GoOn, Values, always, block_size, drawn_blocks, kept
 from mcgw.ensemble.pooled import Pooled, pooled_from, tables_of
 from mcgw.ensemble.results import Held, Tables, joined
 from mcgw.machine.memory import check_memory
@@ -91,8 +91,7 @@ _DRAWS = 1e10  # asperities per block: the cost of an interruption
 _ANSWER = 3000  # cost of one scene per surface, in asperities drawn
 
 
-@dataclass(frozen=True, eq=False)
-class Group(Reducer):
+class Group(Values):
     """Points that share their surfaces: their means, variances and covariances.
 
     Parameters
@@ -103,29 +102,23 @@ class Group(Reducer):
         Common edges of cells, where the cells of the scenes would differ (`common_edges`).
     """
 
-    computed: tuple[Scene, ...]
-    edges: tuple[float, ...]
+    disk = 0  # statistics take hardly any
 
-    @property
-    def n_surfaces(self) -> int:
-        """Number of shared surfaces."""
-        return self.computed[0].n_surfaces
+    def __init__(self, computed: tuple[Scene, ...], edges: tuple[float, ...]) -> None:
+        super().__init__(computed[0])
+        self.computed, self.edges = computed, edges
+        self.work = self.scene.touching + _ANSWER * len(computed)
 
     @property
     def rows(self) -> int:
         """Surfaces per block."""
         width = sum(scene.width for scene in self.computed)
-        return max(min(_ROWS, _BYTES // (8 * width), int(_DRAWS / (self.computed[0].touching + 1))), 1)
-
-    @property
-    def work(self) -> float:  # type: ignore[override]
-        """Cost of a surface, in asperities drawn."""
-        return self.computed[0].touching + _ANSWER * len(self.computed)
+        return max(min(_ROWS, _BYTES // (8 * width), int(_DRAWS / (self.scene.touching + 1))), 1)
 
     def tables(self, first: int, stop: int, go_on: GoOn = always) -> Tables:
         """Return the statistics of a block."""
         source = _source_of(self)
-        blocks = list(drawn_blocks(source, first, stop, block_size(self.computed[0], source)))
+        blocks = list(drawn_blocks(source, first, stop, block_size(self.scene, source)))
         values = [joined([kept(x, block[i]) for block in blocks]) for i, x in enumerate(self.computed)]
         go_on(stop)
         return tables_of([Pooled.of(values)])
@@ -136,11 +129,9 @@ class Group(Reducer):
 
     def check(self, surfaces: int | None = None) -> None:  # noqa: ARG002
         """Refuse covariances that the memory cannot hold."""
-        scenes = self.computed
-        check_memory(
-            f"sweep: covariances between {len(scenes)} points at {len(scenes[0].separations)} separations",
-            2 * 8 * scenes[0].width * len(scenes) ** 2,
-        )
+        n, h = len(self.computed), len(self.scene.separations)
+        what = f"sweep: covariances between {n} points at {h} separations"
+        check_memory(what, 2 * 8 * self.scene.width * n**2)
 
 
 @lru_cache(maxsize=1)  # blocks come in the order of groups
@@ -205,9 +196,9 @@ def combined(scenes: Sequence[Scene]) -> tuple[Sequence[int], list[tuple[Ints, A
     return (low, high), [(np.flatnonzero(pair), pair[pair != 0]) for pair in pairs]
 
 
-def weighted(reducers: Iterable[Reducer], tell: Callable[[float, float], object]) -> GoOn:
+def weighted(reducers: Iterable[Values], tell: Callable[[float, float], object]) -> GoOn:
     """Convert work done to (done, total) surfaces, weighted by their cost."""
-    each = [(one.n_surfaces, one.n_surfaces * one.work) for one in reducers]
+    each = [(one.scene.n_surfaces, one.scene.n_surfaces * one.work) for one in reducers]
     surfaces, work = map(sum, zip(*each, strict=True))
 
     def note(done: float) -> bool:

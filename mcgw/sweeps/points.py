@@ -4,7 +4,7 @@ A sweep is checked and put into groups before anything is drawn.
 """
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from typing import Any
@@ -21,7 +21,7 @@ from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_document, scene_of, with_changes
 from mcgw.scene.section import SceneError
 from mcgw.sweeps.axes import Axes
-from mcgw.sweeps.groups import Group, Place, groups_of
+from mcgw.sweeps.groups import Group, Place, groups_of, weighted
 from mcgw.sweeps.sweep import Sweep
 
 _NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
@@ -117,6 +117,30 @@ class Points(Sequence[Scene]):
         places = places or self._grouped[1]
         scenes = replace(self, drawn=tuple(pooled[place.group].n for place in places))
         return Sweep(self.axes, scenes, tuple(places), tuple(pooled))
+
+    def in_memory(self, tell: Callable[[float, float], object]) -> Sweep:
+        """Draw all of it; `tell` is told of (done, total) surfaces, weighted by their cost.
+
+        Raises
+        ------
+        StoreError
+            If the memory is too small.
+        """
+        note, done = weighted(self.groups, tell), 0.0
+        for group in self.groups:
+            group.check()
+
+        def blocks(group: Group) -> Iterator[Tables]:
+            nonlocal done
+            n = group.scene.n_surfaces
+            for first in range(0, n, group.rows):
+                stop = min(first + group.rows, n)
+                yield group.tables(first, stop)
+                done += (stop - first) * group.work
+                note(done)
+
+        note(0)
+        return self.answered([group.held(blocks(group)) for group in self.groups])
 
 
 def sweep_of(scene: str, axes: str, drawn: Tables) -> Sweep:

@@ -12,10 +12,9 @@ import numpy as np
 from analytic.arrays import Ints
 from mcgw.ensemble.dataset import Dataset
 from mcgw.ensemble.ensemble import STATISTICS, Ensemble
-from mcgw.ensemble.labelled import Labelled, Variable, axes_of, axis, statistics_of
 from mcgw.ensemble.paired import Difference, Paired, Slopes, Some, difference_of, ratio_of
 from mcgw.ensemble.pooled import Pooled, tables_of
-from mcgw.ensemble.results import Tables
+from mcgw.ensemble.results import Labelled, Variable, axis, statistics_of
 from mcgw.formats.table import SEPARATION, Column, Table, evenly
 from mcgw.sampling.samplers import name_of
 from mcgw.scene.scene import Scene
@@ -183,19 +182,17 @@ class Sweep(Dataset):
         }
         if self.axes.zipped:
             coordinates["point"] = axis("point", np.arange(self.axes.size))
-        first = self.scenes[0]
         variables = statistics_of(self, self.quantities, STATISTICS, self.axes.dims)
-        return Labelled(variables, {**axes_of(first), **coordinates})
+        # Of each point its group, one or two scenes of it (-1: none), and their weights.
+        points = [(place.group, *place.scenes, -1)[:3] for place in self.places]
+        weights = [(*place.weights, 0.0)[:2] for place in self.places]
+        drawn = {**tables_of(self.groups), "points": np.array(points), "weights": np.array(weights)}
+        axes = {"separation": axis("separation", self.separations), **coordinates}
+        return Labelled(variables, axes, drawn=drawn)
 
     def _about(self) -> dict[str, Any]:
         """Return the title and the first scene as TOML."""
         return {"title": self.scenes[0].title, "first_scene": scene_text(self.scenes[0])}
-
-    def _drawn(self) -> Tables:
-        """Return statistics of the groups; group, one or two scenes (-1) of it and weights of points."""
-        points = [(place.group, *place.scenes, -1)[:3] for place in self.places]
-        weights = [(*place.weights, 0.0)[:2] for place in self.places]
-        return {**tables_of(self.groups), "points": np.array(points), "weights": np.array(weights)}
 
     def sheet(self) -> Table:
         """Display the axes, and means of some points at the lowest separation."""

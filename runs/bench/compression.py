@@ -17,7 +17,7 @@ import numpy as np
 from scenes import S1
 
 import mcgw
-from mcgw.store.h5_writing import PACKED, chunk_rows, empty_table
+from mcgw.store.h5_writing import CHUNK_ROWS, PACKED, empty_table
 
 ROUNDS = 5
 WAYS = {
@@ -74,7 +74,7 @@ def by(options):
     """A way to store a table in chunks with these filters."""
 
     def store(file, name, values):
-        chunks = (chunk_rows(*values.shape), *values.shape[1:])
+        chunks = (min(CHUNK_ROWS, len(values)), *values.shape[1:])
         file.create_dataset(name, data=values, chunks=chunks, fletcher32=True, **options)
 
     return store

@@ -18,8 +18,7 @@ import distributed
 import numpy as np
 
 import mcgw
-from mcgw.jobs.driver import Signals, drive
-from mcgw.jobs.executors import Jobs
+from mcgw.jobs.executors import Jobs, Signals, drive
 from mcgw.store.blocks import Span, commit_shard
 
 SECONDS, ROWS, COLUMNS = 1.0, 1024, 128

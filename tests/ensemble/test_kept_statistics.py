@@ -12,7 +12,7 @@ from oracles.scenes import scene_by
 
 import mcgw
 from mcgw.cli import main
-from mcgw.ensemble import simulation, summarised
+from mcgw.ensemble import drawing, simulation
 
 H = [0.0, 1.0, 2.5]
 
@@ -41,8 +41,8 @@ SCENES = {
 @pytest.fixture
 def small_blocks(monkeypatch):
     """Blocks of 128 surfaces, of four pieces: as many as a long run has."""
-    monkeypatch.setattr(summarised, "_ROWS", 32)
-    monkeypatch.setattr(summarised, "_MOST", 128)
+    monkeypatch.setattr(drawing, "_PIECE_ROWS", 32)
+    monkeypatch.setattr(drawing, "_MOST_ROWS", 128)
 
 
 # --- joining --------------------------------------------------------------------------------------------

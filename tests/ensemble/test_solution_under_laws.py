@@ -83,7 +83,7 @@ def test_a_literal_search_finds_the_same(name, given):
 @pytest.mark.parametrize("given", ["load", "area"])
 def test_below_all_that_was_drawn_at_once_the_search_finds_the_same(given, monkeypatch):
     """Step by step, on the whole of each surface."""
-    monkeypatch.setattr("mcgw.ensemble.loaded_surfaces._MARGIN", -1.0)
+    monkeypatch.setattr("mcgw.ensemble.solution._MARGIN", -1.0)
     test_a_literal_search_finds_the_same("kogut-etsion", given)
 
 

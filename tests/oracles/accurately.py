@@ -17,7 +17,7 @@ POWERS_OF_RADIUS = {"load": 0.5, "area": 1.0, "stiffness": 0.5, "conductance": 0
 def drawn(scene, surfaces):
     """Values of some surfaces, and their heights: how many each has, all of them, ratios of radii or None."""
     sampler = sampler_of(scene)
-    sums = sampler.block(0, surfaces).sums
+    sums = sampler.block(0, surfaces)
     listed = [summits_drawn(scene, sampler, surface) for surface in range(surfaces)]
     numbers = [len(s) for s, _ in listed]
     s = np.concatenate([s for s, _ in listed])

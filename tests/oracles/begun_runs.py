@@ -5,8 +5,7 @@ import threading
 import pytest
 
 import mcgw
-from mcgw.ensemble.summarised import Statistics
-from oracles.inside import Values, home, parts_of, verify
+from oracles.inside import Statistics, Values, home, parts_of, verify
 
 SIZE, SURFACES = 16, 100  # seven blocks, the last one short
 

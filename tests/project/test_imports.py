@@ -109,7 +109,7 @@ NOT_THERE = {
 }
 # What a scene that does not ask for it pays nothing for; and the step that asks, if one does.
 FEATURES = {
-    "mcgw.ensemble.pooled": "statistics", "mcgw.ensemble.summarised": "statistics",
+    "mcgw.ensemble.pooled": "statistics",
     "mcgw.sampling.crowding": "accuracy",
     "mcgw.sampling.own_radii": None, "mcgw.sampling.shared": None,
     "mcgw.sampling.weighted_sums": None, "mcgw.sweeps.sweep": None,

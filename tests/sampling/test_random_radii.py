@@ -87,7 +87,7 @@ def test_each_summit_has_the_law_of_its_own_radius(law):
     )  # fmt: skip
     sampler = sampler_of(scene)
     assert sampler.name == "tail"
-    drawn = sampler.block(0, 1).sums
+    drawn = sampler.block(0, 1)
     s, ratios = summits_drawn(scene, sampler, 0)
     for name in scene.quantities:
         sums = own_terms(scene, name, s, scene.surface.radius * ratios).sum(axis=1)

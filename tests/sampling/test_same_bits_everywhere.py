@@ -45,17 +45,17 @@ def test_threads_blocks_and_company(make_scene, name):
     """In blocks of 1, 7, 64 or all at once, or a single one far down; another seed is another ensemble."""
     scene = make_scene(n_surfaces=70, **SCENES[name])
     drawn = sampler_of(scene)
-    whole = drawn.block(0, 140).sums
+    whole = drawn.block(0, 140)
     for size, firsts in ((1, range(0, 140, 5)), (7, (0, 63, 133)), (64, (0, 63))):
         for first in firsts:
-            part = drawn.block(first, size).sums
+            part = drawn.block(first, size)
             for quantity, values in part.items():
                 np.testing.assert_array_equal(values, whole[quantity][first : first + len(values)])
     one, two = (mcgw.simulate(scene, threads=threads) for threads in (1, 2))
     for quantity in scene.quantities:
         np.testing.assert_array_equal(one[quantity], two[quantity])
     np.testing.assert_array_equal(one["load"], whole["load"][:70])
-    other = sampler_of(scene.replace(seed=scene.seed + 1)).block(0, 70).sums["load"]
+    other = sampler_of(scene.replace(seed=scene.seed + 1)).block(0, 70)["load"]
     assert (other[:, :5] != whole["load"][:70, :5]).all()
 
 
@@ -67,7 +67,7 @@ def test_separations_in_any_order_and_repeated(make_scene, sampler):
         h = tuple(dice.uniform(0, 6, n).round(3).tolist())
         shuffled = tuple(dice.permutation([*h, *dice.choice(h, 2)]).tolist())
         a, b = (
-            sampler_of(make_scene(separations=x, sampler=sampler, n_asperities=300)).block(0, 3).sums
+            sampler_of(make_scene(separations=x, sampler=sampler, n_asperities=300)).block(0, 3)
             for x in (h, shuffled)
         )
         for name, values in b.items():
@@ -82,6 +82,6 @@ def test_units_of_length_and_stress_are_free(make_scene, metre, pascal):
     s, a, p = scene.surface, 2.0**metre, 2.0**pascal
     other = analytic.Surface(s.sigma * a, s.radius * a, s.eta / a**2, s.nominal_area * a**2, s.E_star * p)
     units = {"load": a * a * p, "area": a * a, "stiffness": a * p, "contacts": 1.0}
-    before = sampler_of(scene).block(0, 3).sums
-    for name, values in sampler_of(scene.replace(surface=other)).block(0, 3).sums.items():
+    before = sampler_of(scene).block(0, 3)
+    for name, values in sampler_of(scene.replace(surface=other)).block(0, 3).items():
         np.testing.assert_array_equal(values, before[name] * units[name])

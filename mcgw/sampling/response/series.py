@@ -50,11 +50,6 @@ class Entries(NamedTuple):
     length: Ints
     coefficients: Array
 
-    @property
-    def start(self) -> Ints:
-        """Where the coefficients of each begin."""
-        return np.cumsum(self.length) - self.length
-
 
 @njit()
 def meeting(low: Any, high: Any, rooted: Any, split: Any, start: Any, end: Any) -> Any:

@@ -194,10 +194,6 @@ class Nodes:
         """Heights above separations at the points of some nodes, and the moduli there: (points, nodes)."""
         return (self.start[node] - h) + self.above[node].T, self.moduli[node].T
 
-    def limits(self, rows: Rows) -> tuple[Array, Array, Array, NDArray[np.bool_], Array, float]:
-        """Return what the errors of series are held against, for compiled loops: `series_of` tells."""
-        return self.even, self.noise, self.crowd, rows.graded, rows.total, self.accuracy
-
     def rough_noise(self, node: Ints, row: Ints, rows: Rows) -> Array:
         """Return what the last digit of a height makes of a power of its distance from the end of a row."""
         noise = np.zeros(len(row))

@@ -45,7 +45,8 @@ class _Walk:
 
     def __init__(self, tree: Tree, nodes: Nodes, rows: Rows) -> None:
         self._tree, self._nodes, self._rows = tree, nodes, rows
-        self._limits = nodes.limits(rows)
+        # what the errors of series are held against, for compiled loops: `series_of` tells
+        self._limits = nodes.even, nodes.noise, nodes.crowd, rows.graded, rows.total, nodes.accuracy
 
     def entries(self) -> tuple[Entries, Ints, Ints, Array, float]:
         """Return what each node gives; how many T_j and R_j it must have; where that fails.
@@ -71,7 +72,8 @@ class _Walk:
             cells = left & ~nodes.parent[node]
             unresolved.append(nodes.start[node[cells & smooth]])
             begins = cells & ~smooth
-            inside = self._inside(node[begins], row[begins]).min(initial=inside)
+            low = self._rows.low[row[begins]]  # rows that begin inside a cell
+            inside = low[low != nodes.start[node[begins]]].min(initial=inside)
             for root, which, c, needed in self._starts(node[begins], row[begins]):
                 found.append(_entries(node[begins][which], row[begins][which], c, rooted=root))
                 np.maximum.at(rooted if root else plain, node[begins][which], needed)
@@ -93,11 +95,6 @@ class _Walk:
         how = _meetings(low, high, rows.rooted[row], split, nodes.start[node], nodes.end[node])
         here = how != APART
         return node[here], row[here], how[here] == WHOLE
-
-    def _inside(self, node: Ints, row: Ints) -> Array:
-        """Where rows begin that do so inside a cell."""
-        low = self._rows.low[row]
-        return np.asarray(low[low != self._nodes.start[node]])
 
     def _resolved(self, node: Ints, row: Ints) -> tuple[Entries, Ints, Ints]:
         """Series of rows that are smooth on nodes, where resolved; how many coefficients count; and which."""
