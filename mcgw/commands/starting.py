@@ -103,7 +103,7 @@ def warm() -> None:
     ]
     mesh = mesh_of(scene)  # moments of every length, without physics
     lengths = (np.resize(kinds, mesh.size) for kinds in ([10, 12, 16], [0, 0, 0, 4, 6, 11]))
-    OneByOne().moments(1, 0, counts_of(scene, mesh, 0, 20), Layout(*lengths))
+    OneByOne().moments(1, 0, counts_of(scene, mesh, 0, 20).cells, Layout(*lengths))
     for each in steps(changes, "scenes"):
         simulate(scene.replace(**each))
     field = asperities_of(scene, 0)

@@ -7,7 +7,7 @@ import numpy as np
 
 from analytic.arrays import Array, Ints
 from mcgw.ensemble.dataset import Dataset
-from mcgw.ensemble.results import Held, Labelled, Rows, Selected, Variable, axis, statistics_of
+from mcgw.ensemble.results import Held, Labelled, Selected, Variable, axis, statistics_of
 from mcgw.formats.law_text import law_text
 from mcgw.formats.table import Column, Table, evenly
 from mcgw.machine.terminal import brief
@@ -138,7 +138,7 @@ class Ensemble(Dataset):
             surfaces, found = axis("surface", np.arange(self.sums.rows())), {}
             for name in scene.tables:
                 q = scene.quantity(name)
-                found[name] = Variable(("surface", "separation"), Rows(self.sums, name), q.unit, q.long_name)
+                found[name] = Variable(("surface", "separation"), self.sums.table(name), q.unit, q.long_name)
             return Labelled(found, {"surface": surfaces, **axes})
         from mcgw.ensemble.pooled import tables_of  # for those scenes alone
 

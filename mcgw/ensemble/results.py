@@ -31,6 +31,30 @@ _WORDS = {
 }
 
 
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """A table of values of surfaces that is read when it is asked for, by slices of its rows.
+
+    Parameters
+    ----------
+    of : Held
+        Where it lies.
+    name : str
+        Its name.
+    """
+
+    of: "Held"
+    name: str
+
+    def __len__(self) -> int:
+        """Return the number of surfaces."""
+        return self.of.rows()
+
+    def __getitem__(self, rows: slice) -> Array:
+        """Return some of the rows."""
+        return self.of.read(self.name, rows.start or 0, rows.stop)
+
+
 class Held(ABC):
     """Stored results of surfaces: mean and deviation of each quantity, and perhaps more."""
 
@@ -47,6 +71,10 @@ class Held(ABC):
     def read(self, name: str, start: int, stop: int | None) -> Array:  # noqa: ARG002
         """Rows `start` to `stop` (None: to the end) of a table."""
         raise ValueError(f"{name}: {self.no_more}")
+
+    def table(self, name: str) -> "Array | Rows":
+        """Return a whole table, or what reads it when it is asked for."""
+        return Rows(self, name)
 
     def covariance(self, name: str, other: str) -> Array:  # noqa: ARG002
         """Between all numbers of two tables (divisor M - 1), shape (separations, separations)."""
@@ -93,6 +121,10 @@ class MemoryResults(Results):
         """Rows `start` to `stop` (None: to the end) of an array."""
         return self.arrays[name][start:stop]
 
+    def table(self, name: str) -> Array:
+        """Return an array."""
+        return self.arrays[name]
+
     def rows(self) -> int:
         """Length of the arrays."""
         return len(next(iter(self.arrays.values())))
@@ -134,30 +166,6 @@ class Selected(Held):
 def joined(parts: Sequence[Mapping[str, NDArray[Any]]]) -> Tables:
     """Return the tables of several blocks of surfaces, one below the other."""
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-
-
-@dataclass(frozen=True, eq=False)
-class Rows:
-    """A table of values of surfaces that is read when it is asked for, by slices of its rows.
-
-    Parameters
-    ----------
-    of : Held
-        Where it lies.
-    name : str
-        Its name.
-    """
-
-    of: Held
-    name: str
-
-    def __len__(self) -> int:
-        """Return the number of surfaces."""
-        return self.of.rows()
-
-    def __getitem__(self, rows: slice) -> Array:
-        """Return some of the rows."""
-        return self.of.read(self.name, rows.start or 0, rows.stop)
 
 
 @dataclass(frozen=True)

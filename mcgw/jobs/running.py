@@ -116,7 +116,7 @@ def run(
                 break
     if part:
         return left
-    if plan.statistics:
+    if scene.keep == "statistics":
         return open_ensemble(path)
     return Ensemble(plan.scene, plan.sampler, FileResults(((path, plan.total),)))
 

@@ -72,7 +72,7 @@ class Counted(Sampler):
     def drawn(self, first: int, n: int, layout: Layout) -> tuple[Array, Array, Array]:
         """Moments, numbers in the cells and heights outside of these surfaces: what `sums` takes."""
         counts = counts_of(self.scene, self.mesh, first, n)
-        moments = self.drawing.moments(self.scene.seed, first, counts, layout)
+        moments = self.drawing.moments(self.scene.seed, first, counts.cells, layout)
         extras = extra_heights(self.scene, self.mesh, first, counts, self.table)
         return moments, counts.cells.astype(np.float64), extras
 

@@ -25,12 +25,11 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from scipy.special import ndtri
 
-from analytic.arrays import Array
+from analytic.arrays import Array, Ints
 from analytic.quadrature import gauss_legendre
 from mcgw.machine.compiling import njit
 from mcgw.sampling.block import Layout
-from mcgw.sampling.counts import Counts
-from mcgw.sampling.moments import OneByOne, cell_moments
+from mcgw.sampling.moments import OneByOne
 from mcgw.sampling.philox import MOMENTS, centred, made_for
 from mcgw.sampling.rules import product
 
@@ -56,10 +55,10 @@ class Crowds(OneByOne):
     threshold: int
     distance: float = np.nan
 
-    def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
+    def moments(self, seed: int, first: int, counts: Ints, layout: Layout) -> Array:
         """Of crowded cells as Gaussian numbers, of the others asperity by asperity."""
-        many = np.where(counts.cells >= self.threshold, counts.cells, 0)
-        moments = cell_moments(seed, first, counts.cells - many, layout)
+        many = np.where(counts >= self.threshold, counts, 0)
+        moments = super().moments(seed, first, counts - many, layout)
         crowded = np.flatnonzero(many.any(axis=1) & (layout.sizes > 0))
         if not crowded.size:
             return moments

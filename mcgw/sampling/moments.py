@@ -20,7 +20,6 @@ from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads
 from mcgw.sampling.block import Layout
-from mcgw.sampling.counts import Counts
 from mcgw.sampling.kernels import BUFFER, PLAIN, ROOTED, TOGETHER, WORDS, add_uniforms, unfold
 from mcgw.sampling.philox import CELLS, centred
 from mcgw.sampling.spacing import price
@@ -91,33 +90,6 @@ def _sum_cells(
         at += stop - start
 
 
-def cell_moments(seed: int, first: int, counts: Ints, layout: Layout) -> Array:
-    """Moments of all cells of a block of surfaces.
-
-    Parameters
-    ----------
-    seed : int
-        The key.
-    first : int
-        Number of the block's first surface.
-    counts : ndarray of int
-        Asperities to draw in each cell, shape (cells, surfaces).
-    layout : Layout
-        Moments of each cell.
-
-    Returns
-    -------
-    ndarray
-        Shape (moments, surfaces): the same bits for any number of threads and in any block.
-    """
-    orders = np.column_stack([layout.plain, layout.rooted])
-
-    def sum_run(counts: Ints, bounds: tuple[int, int], moments: Array) -> None:
-        _sum_cells(np.uint64(seed), first, counts, layout.starts, orders, bounds, moments)
-
-    return in_runs_of_cells(counts, orders, price(layout.plain, layout.rooted), sum_run)
-
-
 def in_runs_of_cells(counts: Ints, orders: Ints, each: Array | float, sum_run: Callable[..., None]) -> Array:
     """Moments of all cells, of which every thread has a run: no number of threads changes a sum's order.
 
@@ -140,9 +112,31 @@ class OneByOne:
 
     distance = 0.0  # of the laws of values from the exact ones; nan if nobody knows
 
-    def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
-        """Return the sums over the uniforms of each cell of surfaces `first` ..., (moments, surfaces)."""
-        return cell_moments(seed, first, counts.cells, layout)
+    def moments(self, seed: int, first: int, counts: Ints, layout: Layout) -> Array:
+        """Return the sums over the uniforms of each cell of a block of surfaces.
+
+        Parameters
+        ----------
+        seed : int
+            The key.
+        first : int
+            Number of the block's first surface.
+        counts : ndarray of int
+            Asperities to draw in each cell, shape (cells, surfaces).
+        layout : Layout
+            Moments of each cell.
+
+        Returns
+        -------
+        ndarray
+            Shape (moments, surfaces): the same bits for any number of threads and in any block.
+        """
+        orders = np.column_stack([layout.plain, layout.rooted])
+
+        def sum_run(counts: Ints, bounds: tuple[int, int], moments: Array) -> None:
+            _sum_cells(np.uint64(seed), first, counts, layout.starts, orders, bounds, moments)
+
+        return in_runs_of_cells(counts, orders, price(layout.plain, layout.rooted), sum_run)
 
     def draws(self, asperities: float, layout: Layout) -> float:
         """Return the numbers drawn for so many asperities in the cells of a surface."""

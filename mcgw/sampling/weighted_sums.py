@@ -19,7 +19,6 @@ from analytic.arrays import Array, Ints
 from mcgw.machine.compiling import njit
 from mcgw.sampling.block import Layout
 from mcgw.sampling.cells import Mesh
-from mcgw.sampling.counts import Counts
 from mcgw.sampling.kernels import BUFFER, TOGETHER, add_weighted, unfold
 from mcgw.sampling.moments import OneByOne, add_compensated, in_runs_of_cells
 from mcgw.sampling.own_radii import Families, RadiusTable, root_ratio
@@ -111,7 +110,7 @@ class WithRadii(OneByOne):
     table: RadiusTable
     families: Families
 
-    def moments(self, seed: int, first: int, counts: Counts, layout: Layout) -> Array:
+    def moments(self, seed: int, first: int, counts: Ints, layout: Layout) -> Array:
         """Draw sums over the uniforms of each cell, each with a power of its radius, family by family.
 
         The same bits for any number of threads and in any block.
@@ -134,7 +133,7 @@ class WithRadii(OneByOne):
         def sum_run(counts: Ints, bounds: tuple[int, int], moments: Array) -> None:
             _sum_cells(who, counts, kinds, bounds, mesh, held, moments)
 
-        return in_runs_of_cells(counts.cells, orders, _PRICE, sum_run)
+        return in_runs_of_cells(counts, orders, _PRICE, sum_run)
 
     def draws(self, asperities: float, layout: Layout) -> float:
         """Return a height and two words of a radius, which take about as long."""

@@ -12,6 +12,7 @@ not; its attributes are the identity of the run, the numbers of the surfaces, an
 of valid shards is the only record of progress.
 """
 
+import hashlib
 from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
@@ -32,7 +33,7 @@ from mcgw.scene.section import SceneError
 from mcgw.store.blocks import Shard, Span, blocks_of, open_shard, write_tables
 from mcgw.store.h5_reading import look
 from mcgw.store.h5_writing import FILETYPE, FORMAT, RUN_TYPE
-from mcgw.store.identity import Question, another, commit, identity_of, processor, versions, written
+from mcgw.store.identity import Question, another, commit, processor, versions, written
 from mcgw.store.lock import parts_of, refuse_link
 
 if TYPE_CHECKING:
@@ -82,16 +83,19 @@ class Plan:
             If the scene cannot be told by a file, or none can be there.
         """
         check_output(path)
-        draws = versions(of_draws=True)
-        if not isinstance(asked, Scene):
-            texts = asked.texts()
-            return cls(path, *texts, "", identity_of(*texts, draws), draws)
-        from mcgw.ensemble.drawing import reducer_of  # imports the samplers
+        draws, known, axes = versions(of_draws=True), dict[str, Any](), ""
+        if isinstance(asked, Scene):
+            from mcgw.ensemble.drawing import reducer_of  # imports the samplers
 
-        reducer, (text, key) = reducer_of(asked), written(asked)
-        sampler = sampler or reducer.sampler.name
-        plan = cls(path, text, "", sampler, identity_of(key, sampler, draws), draws)
-        vars(plan).update(scene=asked, reducers=(reducer,), of_all=f"{key} {asked.n_surfaces}")
+            reducer, (text, key) = reducer_of(asked), written(asked)
+            sampler = sampler or reducer.sampler.name
+            known = {"scene": asked, "reducers": (reducer,), "of_all": f"{key} {asked.n_surfaces}"}
+            words = key, sampler
+        else:
+            words = text, axes = asked.texts()
+        identity = hashlib.sha256("\0".join([*words, draws]).encode()).hexdigest()
+        plan = cls(path, text, axes, sampler, identity, draws)
+        vars(plan).update(known)
         return plan
 
     @classmethod

@@ -10,7 +10,7 @@ from timing import Job, job, parser_of, timed
 from mcgw.ensemble.drawing import use_threads
 from mcgw.sampling import spacing
 from mcgw.sampling.block import Layout
-from mcgw.sampling.moments import cell_moments
+from mcgw.sampling.moments import OneByOne
 
 SURFACES, CELLS, MANY, FEW = 64, 20, 4000, 16
 ORDERS = [(10, 0), (12, 0), (15, 0), (20, 0), (10, 6), (10, 11), (10, 16)]
@@ -20,7 +20,7 @@ def cell(asperities: int, plain: int, rooted: int) -> Job:
     """Drawing one cell of one surface."""
     layout = Layout(np.full(CELLS, plain), np.full(CELLS, rooted))
     counts = np.full((CELLS, SURFACES), asperities)
-    return job(lambda: cell_moments(1, 0, counts, layout), SURFACES * CELLS)
+    return job(lambda: OneByOne().moments(1, 0, counts, layout), SURFACES * CELLS)
 
 
 def measure(rounds: int) -> None:

@@ -13,7 +13,7 @@ from scipy.stats import binom, chi2, norm
 from mcgw.sampling.block import Layout
 from mcgw.sampling.cells import mesh_of
 from mcgw.sampling.counts import counts_of
-from mcgw.sampling.moments import add_compensated, cell_moments
+from mcgw.sampling.moments import OneByOne, add_compensated
 from mcgw.sampling.philox import CELLS, centred, philox, uniforms
 
 FALSE_ALARM = 1e-6  # of each chi-square test; the seeds are fixed
@@ -146,7 +146,7 @@ ORDERS = np.array(list(product(range(1, 22), range(22))))
 @pytest.mark.parametrize("n", [0, 1, 61, 2500])
 def test_moments_are_sums_of_chebyshev_polynomials(n):
     layout = Layout(ORDERS[:, 0], ORDERS[:, 1])
-    moments = cell_moments(7, 0, np.full((len(ORDERS), 1), n), layout)[:, 0]
+    moments = OneByOne().moments(7, 0, np.full((len(ORDERS), 1), n), layout)[:, 0]
     for cell, (start, (plain, rooted)) in enumerate(zip(layout.starts[:-1], ORDERS, strict=True)):
         u = uniforms(7, CELLS, 0, cell, n)
         terms = chebvander(2 * u - 1, 20)
@@ -158,7 +158,7 @@ def test_moments_are_sums_of_chebyshev_polynomials(n):
 def test_moments_of_a_huge_cell_lose_no_digit():
     """Summed in pieces, each is the exact sum, rounded; one after another terms lose ten times as much."""
     n = 2 * 512 * 512 + 77
-    found = cell_moments(7, 0, np.array([[n]]), Layout(np.array([3]), np.array([2])))[:, 0]
+    found = OneByOne().moments(7, 0, np.array([[n]]), Layout(np.array([3]), np.array([2])))[:, 0]
     u = uniforms(7, CELLS, 0, 0, n)
     terms = chebvander(2 * u - 1, 2)
     columns = [*terms.T, np.sqrt(u), np.sqrt(u) * terms[:, 1]]

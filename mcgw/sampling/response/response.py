@@ -174,8 +174,10 @@ class Parts:
         What to simulate.
     entries : Entries
         What each node gives to the rows.
-    plain, rooted : ndarray of int
-        How many T_j each node has, and how many R_j each cell.
+    plain : ndarray of int
+        How many T_j each node has.
+    layout : Layout
+        Moments of the cells.
     """
 
     mesh: Mesh
@@ -183,12 +185,7 @@ class Parts:
     rows: Rows
     entries: Entries
     plain: Ints
-    rooted: Ints
-
-    @property
-    def layout(self) -> Layout:
-        """Moments of the cells."""
-        return Layout(self.plain[: self.mesh.size], self.rooted)
+    layout: Layout
 
 
 def parts_of(scene: Scene, mesh: Mesh, quantities: tuple[str, ...], accuracy: float) -> Parts:
@@ -208,7 +205,7 @@ def parts_of(scene: Scene, mesh: Mesh, quantities: tuple[str, ...], accuracy: fl
     tree = tree_over(mesh)
     nodes = Nodes.of(mesh, tree, scene.modulus, scene.n_asperities, accuracy)
     entries, plain, rooted = walk(mesh, tree, rows, nodes)
-    return Parts(mesh, tree, rows, entries, plain, rooted)
+    return Parts(mesh, tree, rows, entries, plain, Layout(plain[: mesh.size], rooted))
 
 
 def response_of(scene: Scene, mesh: Mesh, quantities: tuple[str, ...]) -> Response:
@@ -246,12 +243,13 @@ def response_of(scene: Scene, mesh: Mesh, quantities: tuple[str, ...]) -> Respon
     places[order] = np.arange(len(order))
     node, rooted = entries.node, entries.rooted
     start, size = rows.plain[node], parts.plain[node]
-    start[rooted], size[rooted] = rows.rooted[node[rooted]], parts.rooted[node[rooted]]
+    start[rooted], size[rooted] = rows.rooted[node[rooted]], parts.layout.rooted[node[rooted]]
     row, length = rows.end + places[parts.rows.answer[entries.row]], np.minimum(entries.length, size)
     begin = np.cumsum(entries.length) - entries.length
     to_answers = Lines(row, start, length, begin, entries.coefficients)
-    answers = np.full(rows.end - rows.given.size + _in_fours(len(order)), -1)  # what each computed row is
-    answers[rows.end - rows.given.size :][: len(order)] = order
+    before = rows.end - rows.given.size
+    answers = np.full(before - (-len(order) // FOUR) * FOUR, -1)  # what each computed row is
+    answers[before:][: len(order)] = order
     line, column, value = map(np.concatenate, zip(to_parents.entries(), to_answers.entries(), strict=True))
     given = len(rows.given)
     groups = given + len(answers) // FOUR
@@ -279,15 +277,11 @@ class _Rows:
     def of(cls, parts: Parts) -> "_Rows":
         cells, parents = parts.layout, parts.plain[parts.mesh.size :]
         sizes = np.stack([cells.plain, cells.rooted], axis=1).ravel()
-        starts = np.concatenate([[0], np.cumsum(_in_fours(np.concatenate([sizes, parents])))])
+        in_fours = -(-np.concatenate([sizes, parents]) // FOUR) * FOUR
+        starts = np.concatenate([[0], np.cumsum(in_fours)])
         of_cells, of_parents = starts[: len(sizes)], starts[len(sizes) : -1]
         given = np.full(starts[len(sizes)], -1)
         moment = np.arange(sizes.sum())
         given[np.repeat(of_cells - np.cumsum(sizes) + sizes, sizes) + moment] = moment
         plain = np.concatenate([of_cells[::2], of_parents])
         return cls(plain, of_cells[1::2], int(starts[-1]), given.reshape(-1, FOUR))
-
-
-def _in_fours(rows: Any) -> Any:
-    """Return the next multiple of four."""
-    return (rows + FOUR - 1) // FOUR * FOUR

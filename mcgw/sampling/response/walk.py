@@ -83,11 +83,6 @@ class _Walk:
         joined = Entries(*map(np.concatenate, zip(*found, strict=True)))
         return joined, plain, rooted, np.unique(np.concatenate(unresolved)), inside
 
-    def needed(self, node: Ints, row: Ints) -> Ints:
-        """Moments that each of these nodes needs for a row that is smooth on it."""
-        parts = [self._smooth(node[few], row[few])[1] for few in _together(np.arange(len(node)))]
-        return np.concatenate([_NONE, *parts])
-
     def _met(self, node: Ints, row: Ints) -> tuple[Ints, Ints, NDArray[np.bool_]]:
         """Nodes and rows that have heights in common, and whether the row is one smooth function there."""
         nodes, rows = self._nodes, self._rows
@@ -99,14 +94,14 @@ class _Walk:
     def _resolved(self, node: Ints, row: Ints) -> tuple[Entries, Ints, Ints]:
         """Series of rows that are smooth on nodes, where resolved; how many coefficients count; and which."""
         rows, parent = self._rows, self._nodes.parent[node]
-        c, needed = self._smooth(node, row)
+        c, needed = self.smooth(node, row)
         rough = rows.rough[row] & (rows.low[row] == self._nodes.start[node])
         smallest = (rough | (self._nodes.end[node] - self._nodes.start[node] <= 2 * SMALLEST)) & ~parent
         needed[smallest] = np.minimum(needed[smallest], MOST_IN_CELL)
         which = np.flatnonzero(needed <= np.where(parent, MOST, MOST_IN_CELL))
         return _entries(node[which], row[which], c[which]), needed[which], which
 
-    def _smooth(self, node: Ints, row: Ints) -> tuple[Array, Ints]:
+    def smooth(self, node: Ints, row: Ints) -> tuple[Array, Ints]:
         """Series of rows that are smooth on nodes, and how many coefficients must count.
 
         What no sum over many nodes can show is zero.
@@ -228,7 +223,8 @@ def walk(mesh: Mesh, tree: Tree, rows: Rows, nodes: Nodes) -> tuple[Entries, Int
     inherited = _inherited(plain, tree.left, tree.right)[: mesh.size]
     cell, row = rows.nearest(nodes.start[: mesh.size])
     nearest = np.ones(mesh.size, dtype=np.int64)
-    np.maximum.at(nearest, cell, series.needed(cell, row))
+    for few in _together(np.arange(len(cell))):
+        np.maximum.at(nearest, cell[few], series.smooth(cell[few], row[few])[1])
     # In the cell's uniform the height bends, so that even the first moments of a parent take many of its. But
     # what parents stand in for are rows from farther below, smoother on this cell than the nearest ones: no
     # more of its moments count than those would need. One of them counts the asperities. Below where rows
