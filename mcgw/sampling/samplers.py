@@ -22,7 +22,6 @@ from mcgw.sampling.block import Sampler
 from mcgw.sampling.cells import Mesh, cut, mesh_of, no_cells
 from mcgw.sampling.counted import Counted, table_of
 from mcgw.sampling.direct import Direct
-from mcgw.sampling.drawn_moments import CROWDED, VARYING, Crowds
 from mcgw.sampling.response.response import Response, parts_of, response_of
 from mcgw.sampling.response.walk import UnresolvedError
 from mcgw.scene.parts import promise_of
@@ -85,7 +84,7 @@ def distance_of(scene: Scene) -> float:
 
 def _perhaps_crowded(scene: Scene) -> Counted:
     """Crowds, if what they may cost in the laws buys enough; else ``cells``."""
-    from mcgw.sampling.crowding import crowding  # for those scenes alone
+    from mcgw.sampling.crowds import crowding  # for those scenes alone
 
     mesh = mesh_of(scene, split=False)
     found = crowding(scene, mesh)
@@ -117,7 +116,7 @@ def _counted(name: str, scene: Scene, mesh: Mesh) -> Counted:
     return Counted(name, scene, mesh, response)
 
 
-def aggregate_of(scene: Scene, crowded: int = CROWDED, distance: float = np.nan) -> Counted:
+def aggregate_of(scene: Scene, crowded: int | None = None, distance: float = np.nan) -> Counted:
     """Prepare ``aggregate``, perhaps with another threshold.
 
     Parameters
@@ -125,7 +124,7 @@ def aggregate_of(scene: Scene, crowded: int = CROWDED, distance: float = np.nan)
     scene : Scene
         What to simulate.
     crowded : int, optional
-        Asperities in a cell, from which its moments count as Gaussian.
+        Asperities in a cell, from which its moments count as Gaussian. Default: 256.
     distance : float, optional
         What is known of its distance from the exact laws.
 
@@ -134,12 +133,14 @@ def aggregate_of(scene: Scene, crowded: int = CROWDED, distance: float = np.nan)
     Counted
         Only the moments that the laws of its sums need vary.
     """
+    from mcgw.sampling.crowds import CROWDED, VARYING, Crowds  # as above
+
     mesh, response = _resolved(scene, mesh_of(scene, split=False))
     varying = response.layout
     with suppress(UnresolvedError):  # all of them vary where cells are too wide to tell
         needed = parts_of(scene, mesh, _summed(scene.quantities), VARYING)
         varying = needed.layout.at_most(response.layout)
-    return Counted("aggregate", scene, mesh, response, drawing=Crowds(varying, crowded, distance))
+    return Counted("aggregate", scene, mesh, response, drawing=Crowds(varying, crowded or CROWDED, distance))
 
 
 _MAKERS: dict[str, Callable[[Scene], Sampler]] = {

@@ -12,10 +12,8 @@ not; its attributes are the identity of the run, the numbers of the surfaces, an
 of valid shards is the only record of progress.
 """
 
-import hashlib
 from collections.abc import Iterable
 from contextlib import suppress
-from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cached_property
 from pathlib import Path
@@ -33,7 +31,7 @@ from mcgw.scene.section import SceneError
 from mcgw.store.blocks import Shard, Span, blocks_of, open_shard, write_tables
 from mcgw.store.h5_reading import look
 from mcgw.store.h5_writing import FILETYPE, FORMAT, RUN_TYPE
-from mcgw.store.identity import Question, another, commit, processor, versions, written
+from mcgw.store.identity import another, commit, identity_of, processor, versions, written
 from mcgw.store.lock import parts_of, refuse_link
 
 if TYPE_CHECKING:
@@ -44,7 +42,6 @@ if TYPE_CHECKING:
 RECORD = "run.h5"
 
 
-@dataclass(frozen=True, eq=False)
 class Plan:
     """What is drawn into a file: a scene, or groups of scenes that share their surfaces.
 
@@ -62,14 +59,27 @@ class Plan:
         Of all that the numbers of a surface depend on, whatever their number.
     drawn_with : str
         Versions that draw.
+    scene : Scene, optional
+        What `text` tells, if that is at hand.
     """
 
-    path: Path
-    text: str
-    axes: str
-    sampler: str
-    identity: str
-    drawn_with: str
+    def __init__(
+        self,
+        path: Path,
+        text: str,
+        axes: str,
+        sampler: str,
+        identity: str,
+        drawn_with: str,
+        scene: Scene | None = None,
+    ) -> None:
+        self.path, self.text, self.axes, self.sampler = path, text, axes, sampler
+        self.identity, self.drawn_with = identity, drawn_with
+        self.scene = scene or scene_from(text)
+        self.folder = parts_of(path)  # where the record lies
+        self.shards_folder = self.folder / "shards"
+        self.question = text, axes, drawn_with  # what its numbers depend on, in words
+        self.statistics = bool(axes) or self.scene.keep == "statistics"  # nothing is kept of a single surface
 
     @classmethod
     def of(cls, asked: "Scene | Points", path: Path, sampler: str = "") -> "Plan":
@@ -83,19 +93,16 @@ class Plan:
             If the scene cannot be told by a file, or none can be there.
         """
         check_output(path)
-        draws, known, axes = versions(of_draws=True), dict[str, Any](), ""
-        if isinstance(asked, Scene):
-            from mcgw.ensemble.drawing import reducer_of  # imports the samplers
+        draws = versions(of_draws=True)
+        if not isinstance(asked, Scene):
+            texts = asked.texts()
+            return cls(path, *texts, "", identity_of(*texts, draws), draws)
+        from mcgw.ensemble.drawing import reducer_of  # imports the samplers
 
-            reducer, (text, key) = reducer_of(asked), written(asked)
-            sampler = sampler or reducer.sampler.name
-            known = {"scene": asked, "reducers": (reducer,), "of_all": f"{key} {asked.n_surfaces}"}
-            words = key, sampler
-        else:
-            words = text, axes = asked.texts()
-        identity = hashlib.sha256("\0".join([*words, draws]).encode()).hexdigest()
-        plan = cls(path, text, axes, sampler, identity, draws)
-        vars(plan).update(known)
+        reducer, (text, key) = reducer_of(asked), written(asked)
+        sampler = sampler or reducer.sampler.name
+        plan = cls(path, text, "", sampler, identity_of(key, sampler, draws), draws, asked)
+        plan.reducers, plan.of_all = (reducer,), f"{key} {asked.n_surfaces}"
         return plan
 
     @classmethod
@@ -113,25 +120,18 @@ class Plan:
             raise StoreError(f"{file}: there is none")
         try:
             said = look(file, RUN_TYPE)
-            scene, *others = (str(said[key]) for key in ("scene", "sampler", "run", "draws"))
-            plan = cls(path, scene, str(said.get("axes", "")), *others)
-            plan.scene  # noqa: B018 - that can be read
+            text, sampler, run, draws = (str(said[key]) for key in ("scene", "sampler", "run", "draws"))
+            return cls(path, text, str(said.get("axes", "")), sampler, run, draws)
         except (StoreError, SceneError, KeyError, ValueError) as error:
             what = str(error).splitlines()[0].removeprefix(f"{file}: ")
             raise StoreError(
                 f"{file}: {what}; the blocks beside it are kept: resume with mcgw run or mcgw sweep, with "
                 f"their scene and seed, or remove {folder}"
             ) from None
-        return plan
 
     def again(self) -> "Plan":
         """Return what this process makes of the same words, whoever wrote them."""
         return Plan.of(self.points if self.axes else self.scene, self.path)
-
-    @cached_property
-    def scene(self) -> Scene:
-        """What is drawn; of a sweep what its points come from."""
-        return scene_from(self.text)
 
     @cached_property
     def points(self) -> "Points":
@@ -139,11 +139,6 @@ class Plan:
         from mcgw.sweeps.points import Points  # of which most runs are none
 
         return Points.from_texts(self.text, self.axes)
-
-    @property
-    def question(self) -> Question:
-        """What its numbers depend on, in words."""
-        return self.text, self.axes, self.drawn_with
 
     @cached_property
     def reducers(self) -> "tuple[Values, ...]":
@@ -160,11 +155,6 @@ class Plan:
     def of_all(self) -> str:
         """What the numbers of all surfaces are of: the words under the digest."""
         return f"{self.text}\0{self.axes}" if self.axes else self.again().of_all
-
-    @property
-    def statistics(self) -> bool:
-        """Whether nothing is kept of a single surface."""
-        return bool(self.axes) or self.scene.keep == "statistics"
 
     @cached_property
     def blocks(self) -> dict[Span, tuple[int, int]]:
@@ -201,16 +191,6 @@ class Plan:
         date = datetime.now(UTC).isoformat(timespec="seconds")
         about |= {"run": self.identity, "draws": self.drawn_with, "date": date}
         return {**about, "axes": self.axes} if self.axes else about
-
-    @property
-    def folder(self) -> Path:
-        """Where the record and the shards lie."""
-        return parts_of(self.path)
-
-    @property
-    def shards_folder(self) -> Path:
-        """Where the shards lie."""
-        return self.folder / "shards"
 
     def begin(self) -> None:
         """Begin, or go on in the folder that is there; if more is wanted than it records, that is recorded.
@@ -250,16 +230,11 @@ class Plan:
 
     def shard(self, path: Path, *, numbers: bool = True) -> Shard | None:
         """Return the shard of a name, if it is there, whole, of this run and of use."""
-        try:
-            shard = None if path.is_symlink() else open_shard(path, self.identity, numbers=numbers)
-        except StoreError:
-            return None
-        return shard if shard and (shard.span in self.blocks or self._of_more(shard.span)) else None
-
-    def _of_more(self, span: Span) -> bool:
-        """Whether this is a block of the same scene with more surfaces."""
-        rows = self.reducers[0].rows
-        return not self.axes and span.n == rows and span.first % rows == 0
+        shard, rows = open_shard(path, self.identity, numbers=numbers), self.reducers[0].rows
+        if shard is None or shard.span in self.blocks:
+            return shard
+        of_more = not self.axes and shard.span.n == rows and shard.span.first % rows == 0
+        return shard if of_more else None  # of the same scene with more surfaces
 
     def kept(self, done: int) -> int:
         """Of the first surfaces, that a file holds, those in whole blocks: any others are drawn again."""

@@ -19,7 +19,7 @@ from scipy.stats import norm, poisson
 import analytic
 import mcgw
 from mcgw.sampling.cells import mesh_of
-from mcgw.sampling.crowding import crowding
+from mcgw.sampling.crowds import crowding
 from oracles.scenes import scene_by
 
 X, W = (1 + leggauss(24)[0]) / 2, leggauss(24)[1] / 2

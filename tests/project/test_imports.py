@@ -110,7 +110,7 @@ NOT_THERE = {
 # What a scene that does not ask for it pays nothing for; and the step that asks, if one does.
 FEATURES = {
     "mcgw.ensemble.pooled": "statistics",
-    "mcgw.sampling.crowding": "accuracy",
+    "mcgw.sampling.crowds": "accuracy",
     "mcgw.sampling.own_radii": None, "mcgw.sampling.shared": None,
     "mcgw.sampling.weighted_sums": None, "mcgw.sweeps.sweep": None,
 }  # fmt: skip

@@ -13,8 +13,7 @@ import mcgw
 from mcgw.sampling import samplers
 from mcgw.sampling.cells import mesh_of
 from mcgw.sampling.counts import counts_of
-from mcgw.sampling.crowding import _FOURTH, _SQUARED, _THIRD, crowding
-from mcgw.sampling.drawn_moments import _partly
+from mcgw.sampling.crowds import _FOURTH, _SQUARED, _THIRD, CROWDED, _partly, crowding
 from mcgw.sampling.samplers import aggregate_of, distance_of, sampler_of
 
 
@@ -46,7 +45,7 @@ def test_price_does_not_depend_on_n(make_scene):
     for n in (10**8, 10**12, 2**53):
         sampler = samplers.sampler_of(make_scene(n_asperities=n, sampler="aggregate"))
         counts = counts_of(sampler.scene, sampler.mesh, 0, 4).cells
-        singly.append(counts[counts < samplers.CROWDED].sum() / 4)
+        singly.append(counts[counts < CROWDED].sum() / 4)
     assert max(singly) < 3000
 
 

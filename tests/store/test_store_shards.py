@@ -1,7 +1,5 @@
 """Shards: every changed number and every lost byte is noticed."""
 
-from contextlib import suppress
-
 import h5py
 import numpy as np
 import pytest
@@ -33,9 +31,9 @@ def test_every_flipped_bit_of_a_number_is_noticed(name, tmp_path, shard):
         changed[at] ^= 1 << at % 8
         shard.path.write_bytes(changed)
         assert open_shard(shard.path, RUN, numbers=False) == shard
-        for look in (lambda: open_shard(shard.path, RUN), lambda: shard.tables()):
-            with pytest.raises(StoreError, match="damaged"):
-                look()
+        assert open_shard(shard.path, RUN) is None
+        with pytest.raises(StoreError, match="damaged"):
+            shard.tables()
 
 
 def test_every_lost_byte_and_flipped_bit_is_noticed(shard):
@@ -43,24 +41,21 @@ def test_every_lost_byte_and_flipped_bit_is_noticed(shard):
     data, dice = shard.path.read_bytes(), np.random.default_rng(2)
     for length in [0, 1, len(data) - 1, *dice.choice(len(data), 50, replace=False)]:
         shard.path.write_bytes(data[:length])
-        with pytest.raises(StoreError):
-            open_shard(shard.path, RUN)
+        assert open_shard(shard.path, RUN) is None
     for at in dice.choice(len(data), 50, replace=False):
         changed = bytearray(data)
         changed[at] ^= 1 << int(dice.integers(8))
         shard.path.write_bytes(changed)
-        with suppress(StoreError):
-            assert open_shard(shard.path, RUN) == shard
+        if (found := open_shard(shard.path, RUN)) is not None:
+            assert found == shard
             assert all(np.array_equal(shard.tables()[name], values) for name, values in arrays().items())
 
 
 def test_a_shard_of_another_run_or_block_is_refused(shard):
-    with pytest.raises(StoreError, match="another run"):
-        open_shard(shard.path, "b" * 64)
+    assert open_shard(shard.path, "b" * 64) is None
     other = shard.path.with_name(Span(45, 5).file_name)
     other.write_bytes(shard.path.read_bytes())
-    with pytest.raises(StoreError, match="surfaces 40"):
-        open_shard(other, RUN)
+    assert open_shard(other, RUN) is None
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
@@ -83,9 +78,9 @@ def test_the_checksum_is_of_contents_alone(shard):
     assert open_shard(shard.path, RUN) == shard
     with h5py.File(shard.path, "r+") as file:
         file["load"][0, 0] = -0.0  # equal to 0.0, and not the same bits
-    for look in (lambda: open_shard(shard.path, RUN), lambda: shard.tables()):
-        with pytest.raises(StoreError, match="checksum mismatch of load"):
-            look()
+    assert open_shard(shard.path, RUN) is None
+    with pytest.raises(StoreError, match="checksum mismatch of load"):
+        shard.tables()
 
 
 @pytest.mark.parametrize("lacking", [1, 100, 1500])

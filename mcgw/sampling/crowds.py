@@ -1,9 +1,4 @@
-"""From the numbers of asperities in the cells to their moments.
-
-``OneByOne``   a uniform for each asperity, anywhere in the cell
-``Crowds``     for cells with few asperities as `OneByOne`, else one Gaussian number a moment
-
-Where summits have radii of their own there is a third way, `mcgw.sampling.weighted_sums`.
+"""Crowds: moments of cells with many asperities, drawn as Gaussian numbers; and how many make a crowd.
 
 The moments of a cell with n asperities are sums of n independent vectors ``b(u)``, so for large n
 they are Gaussian with mean ``n E b`` and covariance ``n Cov b``, both known exactly. Cells are narrow:
@@ -15,6 +10,17 @@ load, with 4 one in 1e5, with 16 or more none.
 
 Half of the moments are there for the last digits of the means. Where only sums are kept, those that would
 add less than a millionth of the variance stay at their means.
+
+What a crowded cell of n asperities adds to a value, given the numbers in the cells, has the third and fourth
+cumulants n k3 and n k4, and its Gaussian limit has none. Edgeworth's expansion of the distribution function
+of the value, whose standard deviation is sigma, then misses
+
+    (x^2 - 1) phi(x) K3/6 + (x^3 - 3x) phi(x) K4/24 + (x^5 - 10x^3 + 15x) phi(x) K3^2/72
+
+with K3 and K4 the sums over the crowded cells, over sigma^3 and sigma^4 (Petrov, "Sums of Independent
+Random Variables", 1975, VI.1): what the theorem of Berry and Esseen bounds. The largest of each term,
+doubled, is held against what may be spent. The distance itself is half of it
+(`tests/oracles/law_of_crowds.py`).
 """
 
 from dataclasses import dataclass
@@ -23,23 +29,32 @@ from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from scipy.special import ndtri
+from scipy.special import ndtri, pdtr, pdtrc
 
+from analytic import quantity_of
 from analytic.arrays import Array, Ints
 from analytic.quadrature import gauss_legendre
 from mcgw.machine.compiling import njit
 from mcgw.sampling.block import Layout
+from mcgw.sampling.cells import Mesh
+from mcgw.sampling.direct import asperity_sums
 from mcgw.sampling.moments import OneByOne
 from mcgw.sampling.philox import MOMENTS, centred, made_for
 from mcgw.sampling.rules import product
+from mcgw.scene.scene import Scene
 
 CROWDED = 256  # asperities in a cell, from which its moments count as Gaussian
 VARYING = 1e-6  # accuracy of the laws up to which moments vary, if only sums are kept
+_MOST = 2**24  # of a crowd; fewer than CROWDED are as quickly drawn one by one
+_TOGETHER = 16  # cells whose laws are in memory
+_THIRD, _FOURTH, _SQUARED = 0.3990 / 6, 0.5506 / 24, 2.3071 / 72  # the largest of the three terms
+_SAFELY = 2.0
+_U, _W = gauss_legendre(24)
 
 
 @dataclass(frozen=True)
 class Crowds(OneByOne):
-    """Crowded cells by the Gaussian limit of their moments (`mcgw.sampling.drawn_moments`).
+    """Crowded cells by the Gaussian limit of their moments (`mcgw.sampling.crowds`).
 
     Parameters
     ----------
@@ -158,3 +173,94 @@ def _mix(moments: Any, counts: Any, rows: Any, starts: Any, means: Any, roots: A
             for i in range(surfaces):
                 if n[i] > 0:
                     moments[rows[c] + j, i] = counts[c, i] * means[law + j] + n[i] * total[i]
+
+
+@dataclass(frozen=True)
+class Crowding:
+    """A threshold, and what it costs.
+
+    Parameters
+    ----------
+    threshold : int
+        Asperities in a cell, from which its moments count as Gaussian.
+    distance : float
+        From the exact law of any value: largest difference of distribution functions.
+    alone : float
+        Asperities of a surface that are expected in cells with fewer.
+    """
+
+    threshold: int
+    distance: float
+    alone: float
+
+
+def crowding(scene: Scene, mesh: Mesh) -> Crowding | None:
+    """Return the smallest crowd that keeps the laws of all values to `scene.accuracy`.
+
+    Parameters
+    ----------
+    scene : Scene
+        What to simulate.
+    mesh : Mesh
+        Its cells.
+
+    Returns
+    -------
+    Crowding or None
+        None if no crowd is large enough, or there is no cell.
+    """
+    if not mesh.size:
+        return None
+    variance, third, fourth = _cumulants(scene, mesh)
+    expected = scene.n_asperities * mesh.probability
+    threshold = CROWDED
+    while threshold <= _MOST:
+        crowded = expected * pdtrc(threshold - 2, expected)  # n P(n - 1 crowd at least) = E[n; n a crowd]
+        found = _distance(variance, product(crowded, third), product(crowded, fourth))
+        if found <= scene.accuracy:
+            return Crowding(threshold, found, float((expected * pdtr(threshold - 2, expected)).sum()))
+        threshold *= 2
+    return None
+
+
+def _cumulants(scene: Scene, mesh: Mesh) -> tuple[Array, Array, Array]:
+    """Variance of each value of a surface; third and fourth cumulants of one asperity in each cell.
+
+    Shapes (values,) and (cells, values), without values that are counted.
+    """
+    first = second = np.zeros(1)
+    thirds: list[Array] = []
+    fourths: list[Array] = []
+    for start in range(0, mesh.size, _TOGETHER):
+        cells = np.arange(start, min(start + _TOGETHER, mesh.size))
+        heights = mesh.edges[cells] + np.stack([mesh.offsets(cells, np.full(len(cells), v)) for v in _U])
+        values = _values(scene, heights.T.ravel()).reshape(len(cells), len(_U), -1)
+        mean = np.einsum("u,cuv->cv", _W, values)
+        apart = values - mean[:, None]
+        square, cube, biquadrate = (np.einsum("u,cuv->cv", _W, apart**power) for power in (2, 3, 4))
+        thirds.append(cube)
+        fourths.append(biquadrate - 3 * square**2)
+        share = mesh.probability[cells]
+        first = first + product(share, mean)
+        second = second + product(share, square + mean**2)
+    fixed = first**2 if scene.count == "fixed" else np.zeros(1)
+    return scene.n_asperities * (second - fixed), np.concatenate(thirds), np.concatenate(fourths)
+
+
+def _values(scene: Scene, heights: Array) -> Array:
+    """Return what single asperities add to every value that is not counted, reduced: (heights, values)."""
+    one = np.ones(len(heights))
+    sums = asperity_sums(scene, one.astype(np.int64), heights, one)
+    parts = [
+        part / quantity_of(name).scale(scene.surface)  # its fourth power is a number
+        for name, part in sums.items()
+        if not quantity_of(name).counts
+    ]
+    return np.concatenate([np.empty((len(heights), 0)), *parts], axis=1)
+
+
+def _distance(variance: Array, third: Array, fourth: Array) -> float:
+    """Bound of the three terms, of the value that is farthest off."""
+    some = variance > 0
+    k3, k4 = np.abs(third[some]) / variance[some] ** 1.5, np.abs(fourth[some]) / variance[some] ** 2
+    return float(_SAFELY * (_THIRD * k3 + _FOURTH * k4 + _SQUARED * k3**2).max(initial=0.0))
