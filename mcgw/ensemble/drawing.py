@@ -49,15 +49,10 @@ def drawn_blocks(sampler: Source[_Drawn], first: int, stop: int, size: int) -> I
     def block(ends: tuple[int, int]) -> _Drawn:
         return sampler.block(start + ends[0], ends[1] - ends[0])
 
-    step = at_a_time(size)
+    step = size * numba.get_num_threads() if size > 1 else 1  # a surface that is a block may fill the memory
     for start in range(first, stop, step):
         n = min(step, stop - start)
         yield from in_threads(block, pieces(n, GROUP if n >= GROUP * numba.get_num_threads() else 1))
-
-
-def at_a_time(size: int) -> int:
-    """Surfaces drawn side by side: a block for each thread, or one surface if that is a block."""
-    return size * numba.get_num_threads() if size > 1 else 1  # it may fill the memory
 
 
 def kept(scene: Scene, sums: Sums) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from typing import Any
 import numba
 import numpy as np
 
-from mcgw.ensemble.drawing import at_a_time, block_size, drawn_blocks, reducer_of, use_threads
+from mcgw.ensemble.drawing import block_size, drawn_blocks, reducer_of, use_threads
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.ensemble.forecast import without_rule
 from mcgw.machine.progress import Progress, told
@@ -85,7 +85,7 @@ def simulate(
 def seconds_per_surface(scene: Scene, sampler: Source[Any]) -> float:
     """Median wall time of drawing one surface in a block, after a warm-up."""
     size = min(block_size(scene, sampler), 256)
-    n = at_a_time(size)
+    n = size * numba.get_num_threads() if size > 1 else 1
     list(drawn_blocks(sampler, 0, n, size))
     times = []
     for _ in range(3):

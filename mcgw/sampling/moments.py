@@ -10,6 +10,7 @@ root of the distance from the cell's start (`mcgw.sampling.response.response`).
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -67,7 +68,7 @@ def _sum_cell(
 
 @njit(cache=True)
 def _sum_cells(
-    seed: Any, first: Any, counts: Any, starts: Any, orders: Any, bounds: Any, moments: Any
+    seed: Any, first: Any, starts: Any, orders: Any, counts: Any, bounds: Any, moments: Any
 ) -> None:
     """Sum a run of cells, all surfaces of one after the other."""
     w, carries = np.empty(WORDS), np.empty(2 * (WORDS - PLAIN))
@@ -132,10 +133,7 @@ class OneByOne:
             Shape (moments, surfaces): the same bits for any number of threads and in any block.
         """
         orders = np.column_stack([layout.plain, layout.rooted])
-
-        def sum_run(counts: Ints, bounds: tuple[int, int], moments: Array) -> None:
-            _sum_cells(np.uint64(seed), first, counts, layout.starts, orders, bounds, moments)
-
+        sum_run = partial(_sum_cells, np.uint64(seed), first, layout.starts, orders)
         return in_runs_of_cells(counts, orders, price(layout.plain, layout.rooted), sum_run)
 
     def draws(self, asperities: float, layout: Layout) -> float:

@@ -11,6 +11,7 @@ cell's lower edge and its series of the uniform.
 """
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -61,7 +62,7 @@ def _weigh(w: Any, n: Any, edge: Any, series: Any, table: Any) -> Any:
 
 
 @njit(cache=True)
-def _sum_cells(who: Any, counts: Any, kinds: Any, bounds: Any, mesh: Any, table: Any, moments: Any) -> None:
+def _sum_cells(who: Any, kinds: Any, mesh: Any, table: Any, counts: Any, bounds: Any, moments: Any) -> None:
     """Sum a run of cells, all surfaces of one after the other: 32 sums for each kind, and their carries."""
     (seed, first), (starts, orders, squares), (edges, series) = who, kinds, mesh
     w = np.ones(_WORDS)
@@ -129,11 +130,7 @@ class WithRadii(OneByOne):
         kinds = starts, orders, np.array([power == 1.0 for power in self.families.powers])
         mesh = self.mesh.edges, np.ascontiguousarray(self.mesh.stretch.T)
         who, held = (np.uint64(seed), first), (self.table.coefficients, self.table.bottom, self.table.largest)
-
-        def sum_run(counts: Ints, bounds: tuple[int, int], moments: Array) -> None:
-            _sum_cells(who, counts, kinds, bounds, mesh, held, moments)
-
-        return in_runs_of_cells(counts, orders, _PRICE, sum_run)
+        return in_runs_of_cells(counts, orders, _PRICE, partial(_sum_cells, who, kinds, mesh, held))
 
     def draws(self, asperities: float, layout: Layout) -> float:
         """Return a height and two words of a radius, which take about as long."""

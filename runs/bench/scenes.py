@@ -8,11 +8,12 @@ from functools import cache
 from itertools import count
 
 import numpy as np
+from numba import get_num_threads
 from timing import Job, job, seconds
 
 import analytic
-from mcgw.ensemble.drawing import at_a_time, block_size, drawn_blocks
-from mcgw.sampling.block import Block
+from mcgw.ensemble.drawing import block_size, drawn_blocks
+from mcgw.sampling.block import Sums
 from mcgw.sampling.samplers import cells_of, sampler_of
 from mcgw.scene.scene import Scene
 
@@ -35,7 +36,7 @@ def fresh(scene: Scene) -> Scene:
 
 def block(
     scene: Scene,
-    then: Callable[[Block], object] = lambda drawn: drawn,
+    then: Callable[[Sums], object] = lambda drawn: drawn,
 ) -> Job:
     """Blocks as a run draws them, and what is done with each; prepared when first called."""
     prepared = cache(lambda: sampler_of(scene))
@@ -43,7 +44,7 @@ def block(
     def draw() -> float:
         sampler = prepared()
         size = block_size(scene, sampler)
-        surfaces = at_a_time(size)
+        surfaces = size * get_num_threads() if size > 1 else 1
         return seconds(lambda: [then(drawn) for drawn in drawn_blocks(sampler, 0, surfaces, size)], surfaces)
 
     return draw

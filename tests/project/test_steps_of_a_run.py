@@ -44,7 +44,7 @@ def entered(call):
 
 
 @pytest.mark.parametrize(
-    ("name", "functions", "files"), [("simulate", 145, 34), ("run", 204, 47), ("compare", 115, 28)]
+    ("name", "functions", "files"), [("simulate", 125, 29), ("run", 178, 39), ("compare", 115, 28)]
 )
 def test_the_simplest_scene_takes_few_steps(name, functions, files, tmp_path):
     asked = scene()
