@@ -30,45 +30,26 @@ from mcgw.scene.scene import Scene
 _MANY = 8  # gradings; fewer are computed one by one, with the same bits as alone
 
 
+Place = tuple[int, Ints, Array]  # of a point: number of its group, which computed scenes of it, their weights
+
+
 @dataclass(frozen=True)
-class Place:
-    """Statistics of a point as a weighted mean of computed scenes.
+class PointResults(Held):
+    """Mean and deviation of a point, a weighted mean of computed scenes.
 
     Parameters
     ----------
-    group : int
-        Number of the group.
+    pooled : Pooled
+        Statistics of its group.
     scenes : ndarray of int
         Computed scenes of the group.
     weights : ndarray
         Of what the modulus enters; anything else is the same for all of them.
     """
 
-    group: int
+    pooled: Pooled
     scenes: Ints
     weights: Array
-
-    def of(self, quantity: str) -> tuple[Ints, Array]:
-        """For one quantity."""
-        if len(self.scenes) == 1 or quantity_of(quantity).modulus:
-            return self.scenes, self.weights
-        return self.scenes[:1], np.ones(1)
-
-
-@dataclass(frozen=True)
-class PointResults(Held):
-    """Mean and deviation of a point, a weighted mean of what is pooled.
-
-    Parameters
-    ----------
-    pooled : Pooled
-        Statistics of its group.
-    place : Place
-        Its place in the group.
-    """
-
-    pooled: Pooled
-    place: Place
 
     no_more = (
         "a sweep only keeps mean and standard deviation of a point; simulate(sweep.scene(point)) draws "
@@ -79,9 +60,15 @@ class PointResults(Held):
         """Return the number of surfaces."""
         return self.pooled.n
 
+    def of(self, quantity: str) -> tuple[Ints, Array]:
+        """Scenes and weights for one quantity."""
+        if len(self.scenes) == 1 or quantity_of(quantity).modulus:
+            return self.scenes, self.weights
+        return self.scenes[:1], np.ones(1)
+
     def mean_and_std(self, name: str) -> tuple[Array, Array]:
         """Mean and standard deviation (divisor M - 1)."""
-        some = self.place.of(name)
+        some = self.of(name)
         return self.pooled.mean(name, *some), np.sqrt(self.pooled.variance(name, *some))
 
 
@@ -148,17 +135,14 @@ def groups_of(scenes: Sequence[Scene]) -> tuple[list[Group], list[Place]]:
         edges = common_edges(some) if len(some) > 1 else ()
         if edges is None:
             some, edges = [scene.replace(sampler="tail") for scene in some], ()
-        for alike in _alike([_but_gradings(scene) for scene in some]):
+        others = [each.name for each in fields(Scene) if each.name not in ("grading", "title")]
+        for alike in _alike([[getattr(scene, name) for name in others] for scene in some]):
             wanted, combinations = combined([some[k] for k in alike])
             for k, (which, weights) in zip(alike, combinations, strict=True):
-                places[members[k]] = Place(len(groups), len(computed) + which, weights)
+                places[members[k]] = len(groups), len(computed) + which, weights
             computed += [some[alike[k]] for k in wanted]
         groups.append(Group(tuple(computed), edges))
     return groups, [places[i] for i in range(len(scenes))]
-
-
-def _but_gradings(scene: Scene) -> list[Any]:
-    return [getattr(scene, each.name) for each in fields(scene) if each.name not in ("grading", "title")]
 
 
 def _alike(keys: Sequence[Any]) -> list[list[int]]:

@@ -115,7 +115,7 @@ class Points(Sequence[Scene]):
     def answered(self, pooled: Sequence[Pooled], places: Sequence[Place] = ()) -> Sweep:
         """Return the sweep, from the data of each group, and where in them each point is."""
         places = places or self._grouped[1]
-        scenes = replace(self, drawn=tuple(pooled[place.group].n for place in places))
+        scenes = replace(self, drawn=tuple(pooled[group].n for group, *_ in places))
         return Sweep(self.axes, scenes, tuple(places), tuple(pooled))
 
     def in_memory(self, tell: Callable[[float, float], object]) -> Sweep:
@@ -146,7 +146,7 @@ class Points(Sequence[Scene]):
 def sweep_of(scene: str, axes: str, drawn: Tables) -> Sweep:
     """Return a finished sweep from the words and tables of its file; scenes are made when needed."""
     rows = zip(drawn["points"].tolist(), drawn["points"][:, 1:], drawn["weights"], strict=True)
-    places = [Place(g, some[some >= 0], w[some >= 0]) for (g, *_), some, w in rows]
+    places = [(g, some[some >= 0], w[some >= 0]) for (g, *_), some, w in rows]
     return Points.from_texts(scene, axes).answered(pooled_from(drawn), places)
 
 

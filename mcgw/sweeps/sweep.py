@@ -59,8 +59,8 @@ class Sweep(Dataset):
 
     def _held(self, point: int) -> PointResults:
         """Mean and deviation of a point."""
-        place = self.places[point]
-        return PointResults(self.groups[place.group], place)
+        group, scenes, weights = self.places[point]
+        return PointResults(self.groups[group], scenes, weights)
 
     def _at(self, which: Ints) -> "Sweep":
         """Return the same surfaces at some of the separations, by their numbers."""
@@ -184,8 +184,8 @@ class Sweep(Dataset):
             coordinates["point"] = axis("point", np.arange(self.axes.size))
         variables = statistics_of(self, self.quantities, STATISTICS, self.axes.dims)
         # Of each point its group, one or two scenes of it (-1: none), and their weights.
-        points = [(place.group, *place.scenes, -1)[:3] for place in self.places]
-        weights = [(*place.weights, 0.0)[:2] for place in self.places]
+        points = [(group, *scenes, -1)[:3] for group, scenes, _ in self.places]
+        weights = [(*weights, 0.0)[:2] for *_, weights in self.places]
         drawn = {**tables_of(self.groups), "points": np.array(points), "weights": np.array(weights)}
         axes = {"separation": axis("separation", self.separations), **coordinates}
         return Labelled(variables, axes, drawn=drawn)
@@ -239,7 +239,7 @@ class Sweep(Dataset):
         Empty unless all points share their surfaces.
         """
         first, *others = self.axes.points()
-        if not others or any(place.group != self.places[0].group for place in self.places):
+        if not others or len({group for group, *_ in self.places}) > 1:
             return {}
         found = {}
         for name in self.quantities:
@@ -254,11 +254,11 @@ class Sweep(Dataset):
 
     def _pair(self, name: str, a: int, b: int) -> tuple[Pooled, tuple[Some, Some]]:
         """Return what is kept of the surfaces that two points share, and which part of it each is."""
-        one, other = self.places[a], self.places[b]
-        if one.group != other.group:
+        one, other = self._held(a), self._held(b)
+        if one.pooled is not other.pooled:
             where = " and ".join(self.axes.text(list(self.axes.points())[k]) for k in (a, b))
             raise ValueError(
                 f"sweep: {where} have different surfaces, so there are no pairs, but the same seed "
                 "correlates them: give the ensemble of each its own seed"
             )
-        return self.groups[one.group], (one.of(name), other.of(name))
+        return one.pooled, (one.of(name), other.of(name))
