@@ -151,22 +151,8 @@ def _in_words(error: BaseException) -> str:
     return ": ".join([type(error).__name__, *str(error).splitlines()[:1]])
 
 
-def part_of(shard: str) -> tuple[int, int]:
-    """Return the share that a text like "2/8" names: its number, from 1, and of how many.
-
-    Raises
-    ------
-    ValueError
-        If it names none.
-    """
-    number, _, of = str(shard).partition("/")
-    if not (number.isdecimal() and of.isdecimal() and 1 <= int(number) <= int(of)):
-        raise ValueError(f"--shard {shard}: give i/n with 1 <= i <= n")
-    return int(number), int(of)
-
-
 def share_of(executor: Any, threads: int | None, shard: str | None) -> tuple[int, int] | None:
-    """Return the share that a call names, if any, once what is to draw was checked.
+    """Check who is to draw, and return the share that is named, as "2/8": its number from 1, and of how many.
 
     Raises
     ------
@@ -182,7 +168,12 @@ def share_of(executor: Any, threads: int | None, shard: str | None) -> tuple[int
             f"executor = {executor!r}: give a concurrent.futures.Executor, such as "
             "ProcessPoolExecutor(8) or client.get_executor() of a dask client"
         )
-    return None if shard is None else part_of(shard)
+    if shard is None:
+        return None
+    number, _, of = str(shard).partition("/")
+    if not (number.isdecimal() and of.isdecimal() and 1 <= int(number) <= int(of)):
+        raise ValueError(f"--shard {shard}: give i/n with 1 <= i <= n")
+    return int(number), int(of)
 
 
 class Jobs(Executor):

@@ -35,7 +35,7 @@ MODULES = {
     "mcgw.machine.terminal": "brief listed",
     "mcgw.formats.table": "Column digits_of evenly joined stacked Table typeset",
     "mcgw.formats.units": "_FACTORS EXAMPLES METRES parse",
-    "mcgw.jobs.executors": "_GRACE dask_executor drive heed_signals Jobs part_of Signals",
+    "mcgw.jobs.executors": "_GRACE dask_executor drive heed_signals Jobs share_of Signals",
     "mcgw.jobs.making": "_merged commit_block",
     "mcgw.machine.memory": "check_memory memory_available",
     "mcgw.maps.bad_points": "filled recorded small_spike_heights spike_heights usual_bend",

@@ -19,9 +19,9 @@ from oracles.inside import (
     blocks_of,
     commit_block,
     home,
-    part_of,
     parts_of,
     read_attributes,
+    share_of,
 )
 from oracles.said import call
 
@@ -104,8 +104,8 @@ def test_what_is_left_out_of_a_run_is_told(scene, tmp_path):
         assert [shard.span.first for shard in Plan.open(parts_of(path)).shards()] == held
     for wrong in ("0/3", "4/3", "1", "a/b", "1/0", "-1/3", "1/3/5", ""):
         with pytest.raises(ValueError, match=r"^--shard .*: give i/n with 1 <= i <= n$"):
-            part_of(wrong)
-    assert part_of("3/3") == (3, 3)
+            share_of(None, None, wrong)
+    assert share_of(None, None, "3/3") == (3, 3)
 
 
 def test_a_file_of_another_run_is_told_as_such(scene, tmp_path):

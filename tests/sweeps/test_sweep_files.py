@@ -1,7 +1,6 @@
 """Sweeps in files: whole or not at all, drawn once, the same digest by whom and however interrupted."""
 
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -170,7 +169,9 @@ def test_in_shares_in_any_order(tmp_path, expected):
 def test_a_worker_draws_for_nobody_who_asked_something_else(tmp_path):
     path = tmp_path / "a.h5"
     mcgw.sweep(SCENE, OVER, path=path, shard="2/2")
-    replace(Plan.open(parts_of(path)), identity="0" * 64)._write(expected="anything")
+    plan = Plan.open(parts_of(path))
+    plan.identity = "0" * 64
+    plan._write(expected="anything")
     with pytest.raises(mcgw.RunError, match="this worker cannot draw for that run"):
         commit_block(str(parts_of(path)), 0, 100)
 
