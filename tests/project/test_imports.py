@@ -66,11 +66,12 @@ surface = mcgw.Surface(1e-6, 1e-5, 3e8, 1e-4, 8e10)
 def simulate(**wish):
     return mcgw.simulate(mcgw.Scene(surface, separations=[0.0, 1.0], n_surfaces=2, seed=1), **wish)
 
-for sampler in ("cells", "tail", "direct", "aggregate"):
+for sampler in ("cells", "tail", "direct"):
     simulate(sampler=sampler, n_asperities=10**5)
 repr(simulate())
 simulate().mean("load")
 tell("simulate")
+simulate(sampler="aggregate", n_asperities=10**5)
 simulate(n_asperities=10**5, accuracy=1e-2)
 tell("accuracy")
 simulate(keep="statistics")
