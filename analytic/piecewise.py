@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -102,13 +102,13 @@ class PiecewiseSeries:
         padded = [[*c, *[0.0] * (order - len(c))] for c in self.coefficients]
         return edges[:-1], edges[1:], np.ascontiguousarray(np.array(padded).T)
 
-    def __call__(self, s: Array) -> Array:
-        """Its values, by Clenshaw's scheme."""
-        s = np.asarray(s, dtype=np.float64)
+    def __call__(self, s: Any) -> Any:
+        """Its values, by Clenshaw's scheme; a small step into the complex plane gives the slope."""
+        s = np.asarray(s)
         low, high, c = self._table
-        piece = np.searchsorted(high[:-1], s, side="right")
+        piece = np.searchsorted(high[:-1], s.real, side="right")
         a, b = low[piece], high[piece]
-        inside = np.clip(s, a, b)
+        inside = np.clip(s.real, a, b) + (1j * s.imag if np.iscomplexobj(s) else 0.0)
         return _clenshaw(c, piece, ((inside - a) - (b - inside)) / (b - a))
 
     def agrees(self, other: "PiecewiseSeries") -> bool:
@@ -150,7 +150,7 @@ def _rising(values: tuple[float, ...]) -> bool:
     return bool(np.all(np.isfinite(values)) and np.all(np.diff(values) > 0))
 
 
-def _clenshaw(c: Array, piece: Ints, x: Array) -> Array:
+def _clenshaw(c: Array, piece: Ints, x: Any) -> Any:
     """Sum of the Chebyshev series of a piece at x, element by element."""
     twice, last, value = 2 * x, np.zeros_like(x), np.zeros_like(x)
     for row in c[:0:-1]:

@@ -5,81 +5,42 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.polynomial import Chebyshev
 
 from analytic.arrays import Array, hold
+from analytic.gradings import Custom
 from analytic.laws.elastic_plastic import ElasticPlastic
+from analytic.piecewise import PiecewiseSeries
+from analytic.resolution import resolved
 
-_MOST_TERMS = 256
-_NOTHING = 1e-16  # of the largest value
-_ALLOWED = 1e-13
 Formula = Callable[[Any], Any]
 _PROBE = 1e-30j  # slopes are taken by a step into the complex plane
+_NEXT_TO_0 = 1e-60  # stands for 0
 
 
-@dataclass(frozen=True)
-class RootSeries:
-    """``u^2`` times a Chebyshev series, in the root u of a penetration.
-
-    Parameters
-    ----------
-    low, high : float
-        Between which the series was made. If `low` is ``-high``, around first touch, its variable is u, else
-        log(u), which sees wide pieces evenly.
-    coefficients : sequence of float
-        Of T_0, T_1, ... in that variable, stretched to -1..1.
-    """
-
-    low: float
-    high: float
-    coefficients: tuple[float, ...]
-
-    def __call__(self, u: Any) -> Any:
-        """Its values, for real and complex u, also slightly outside."""
-        around_0 = self.low < 0
-        ends = [self.low, self.high] if around_0 else np.log([self.low, self.high])
-        return u * u * Chebyshev(self.coefficients, domain=ends)(u if around_0 else np.log(u))
-
-    @property
-    def between(self) -> Array:
-        """Roots all over its range, of which none is 0."""
-        if self.low < 0:
-            return np.linspace(self.low, self.high, 300)
-        return np.geomspace(self.low, self.high, 300)
-
-    def agrees(self, other: "RootSeries") -> bool:
-        """Whether another series has the same values, to 1e-13 of the largest."""
-        u = self.between
-        mine, theirs = self(u) / u**2, other(u) / u**2
-        near = np.allclose([self.low, self.high], [other.low, other.high], rtol=_ALLOWED)
-        return bool(near and np.all(np.abs(mine - theirs) <= _ALLOWED * np.abs(mine).max()))
+class RootSeries(PiecewiseSeries):
+    """Series of a formula over ``u^2``: in u around first touch, of a later piece in log(u)."""
 
 
-def resolved_in_root(formula: Formula, low: float, high: float) -> RootSeries:
-    """Return the series that stands for a formula, to 1e-13 of the largest value of ``formula/u^2``.
+def _resolved_in_root(formula: Formula, low: float, high: float) -> RootSeries:
+    """Return the series that stand for a formula, of the first piece from ``low < 0`` on, to 1e-13."""
 
-    If 256 terms are not enough that is a ValueError.
-    """
+    def over_square(t: Array) -> Array:
+        u = np.where(np.abs(t) < _NEXT_TO_0, _NEXT_TO_0, t) if low < 0 else np.exp(t)
+        return np.asarray(formula(u) / (u * u))
 
-    def over_square(t: Any) -> Any:
-        u = t if low < 0 else np.exp(t)
-        return formula(u) / (u * u)
-
-    ends = [low, high] if low < 0 else np.log([low, high])
-    for terms in (16, 32, 64, 128, _MOST_TERMS):
-        with np.errstate(all="ignore"):  # a piece may be too wide for any
-            c = Chebyshev.interpolate(over_square, terms - 1, domain=ends).coef
-            c[np.abs(c) <= _NOTHING * np.abs(c).max()] = 0  # so that what is even or odd stays it
-            found = RootSeries(low, high, tuple(np.trim_zeros(c, "b").tolist()) or (0.0,))
-            u = found.between
-            off = np.abs(found(u) - formula(u)) / u**2
-        if np.all(off <= _ALLOWED * np.abs(c).max()):
-            return found
-    first = "; where it begins, write u**3 for (u*u)**1.5: it is also evaluated at -u" if low < 0 else ""
-    raise ValueError(
-        f"a series of {_MOST_TERMS} terms is not accurate enough between x = {low * abs(low):g} and "
-        f"{high * high:g}: give the penetration of each jump and kink in limits{first}"
-    )
+    try:
+        found = resolved(Custom(over_square), *((low, high) if low < 0 else np.log([low, high]).tolist()))
+    except ValueError:
+        kinks = True
+    else:
+        kinks = bool(found.kinks)
+    if kinks:
+        first = "; where it begins, write u**3 for (u*u)**1.5: it is also evaluated at -u" if low < 0 else ""
+        raise ValueError(
+            f"it is not smooth between x = {low * abs(low):g} and {high * high:g}: give the penetration of "
+            f"each jump and kink in limits{first}"
+        )
+    return RootSeries(found.edges, found.coefficients)
 
 
 @dataclass(frozen=True)
@@ -153,27 +114,20 @@ class CustomLaw(ElasticPlastic):
                     f"{name}: give {len(rising)} formulas, one more than limits, not {len(formulas)}"
                 )
             for piece, formula in enumerate(formulas):
-                self._check(f"{name}[{piece}]", formula, piece)
+                if not isinstance(formula, RootSeries):
+                    self._check(f"{name}[{piece}]", formula, piece)
 
     def _formulas(self) -> dict[str, tuple[Formula, ...]]:
         return {"load": self.load_of, "area": self.area_of}
+
+    def _value(self, what: str, piece: int, u: Any, e: Array) -> Any:
+        formula = self._formulas()[what][piece]
+        return u * u * formula(np.log(u) if piece else u) if isinstance(formula, RootSeries) else formula(u)
 
     @property
     def is_data(self) -> bool:
         """Whether the law consists of series, which can be stored in a file."""
         return all(isinstance(formula, RootSeries) for formula in (*self.load_of, *self.area_of))
-
-    def load(self, piece: int, y: Any, e: Array) -> Any:
-        """Return the load of a contact, in the shape of `y` and `e`."""
-        e = np.asarray(e, dtype=np.float64)
-        at_yield = self._root_of_critical**3 / np.square(np.where(e > 0, e, np.inf))
-        return at_yield * self.load_of[piece](self._u(y, e))
-
-    def radius(self, piece: int, y: Any, e: Array) -> Any:
-        """Return the radius of a contact; its square is the area over pi R sigma."""
-        u = self._u(y, e)
-        u = np.where(u == 0, 1.0, u)  # where the factor y is 0
-        return y * np.sqrt(self.area_of[piece](u) / (u * u))
 
     def as_data(self, deepest: float) -> "CustomLaw":
         """Return the law as plain numbers: `RootSeries` in place of formulas, up to a penetration.
@@ -187,7 +141,7 @@ class CustomLaw(ElasticPlastic):
         Returns
         -------
         CustomLaw
-            Exact to 1e-13 of the largest load or area per penetration in each piece; slopes to some 1e-12.
+            Exact to 1e-13 of the largest load or area per penetration in each piece; slopes to some 1e-11.
 
         Raises
         ------
@@ -203,7 +157,7 @@ class CustomLaw(ElasticPlastic):
         for name, formulas in self._formulas().items():
             for piece, (low, high) in enumerate(zip(starts, ends, strict=True)):
                 try:
-                    series[name].append(resolved_in_root(formulas[piece], low, high))
+                    series[name].append(_resolved_in_root(formulas[piece], low, high))
                 except ValueError as error:
                     raise ValueError(f"{name}[{piece}]: {error}") from None
         return CustomLaw(series["load"], series["area"], kept, self.critical, self.checked)
@@ -219,10 +173,6 @@ class CustomLaw(ElasticPlastic):
         alike = self.edges == other.edges and self.critical == other.critical
         pairs = zip((*self.load_of, *self.area_of), (*other.load_of, *other.area_of), strict=True)
         return alike and all(mine.agrees(theirs) for mine, theirs in pairs)  # type: ignore[attr-defined]
-
-    def _u(self, y: Any, e: Array) -> Any:
-        """``sqrt(delta/delta_c)``; 1 where there is no stiffness."""
-        return np.where(np.asarray(e) > 0, y * e / self._root_of_critical, 1.0)
 
     def _check(self, name: str, formula: Formula, piece: int) -> None:
         """Try a formula where its piece begins, and that of the first piece on both sides of first touch."""

@@ -15,10 +15,10 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from analytic.arrays import Array
-from analytic.laws.law import ContactLaw, derivative
+from analytic.laws.law import ContactLaw, slope_in_root
 from analytic.surface import Surface
 
-Formula = Callable[[Any, Any, Any], Any]  # of the law, of x = delta/delta_c, and of e = E*(s)/E*
+Formula = Callable[[Any, Any, Any], Any]  # of the law, of u = sqrt(delta/delta_c), and of e = E*(s)/E*
 
 BRIDGE = 1.5  # a bridge ends at this multiple of the penetration of its jump
 
@@ -31,30 +31,30 @@ class Piece(NamedTuple):
     start : float
         ``x = delta/delta_c`` where it begins.
     load, area : (float, float) or callable
-        Factor and exponent of a power of x, or a function of the law, x and e.
+        Factor and exponent of a power of x, or a function of the law, ``u = sqrt(x)`` and e.
     """
 
     start: float
     load: tuple[float, float] | Formula
     area: tuple[float, float] | Formula
 
-    def value(self, what: str, law: Any, x: Any, e: Any) -> Any:
+    def value(self, what: str, law: Any, u: Any, e: Any) -> Any:
         """Its load or area."""
         formula = getattr(self, what)
-        return formula(law, x, e) if callable(formula) else formula[0] * x ** formula[1]
+        return formula(law, u, e) if callable(formula) else formula[0] * u ** (2 * formula[1])
 
     def bridge_to(self, right: "Piece") -> "Piece":
         """Return the piece that leads on to another one."""
         start, width = right.start, (BRIDGE - 1) * right.start
 
         def cubic(what: str) -> Formula:
-            def formula(law: Any, x: Any, e: Any) -> Any:
-                first, last = np.array(start), np.array(start + width)
+            def formula(law: Any, u: Any, e: Any) -> Any:
+                first, last = np.sqrt(start), np.sqrt(start + width)
                 begins = self.value(what, law, first, e)
                 rise = right.value(what, law, last, e) - begins
-                at_first = width * derivative(lambda x: self.value(what, law, x, e), first) - rise
-                at_last = rise - width * derivative(lambda x: right.value(what, law, x, e), last)
-                t = (x - start) / width
+                at_first = width * slope_in_root(lambda u: self.value(what, law, u, e), first) - rise
+                at_last = rise - width * slope_in_root(lambda u: right.value(what, law, u, e), last)
+                t = (u * u - start) / width
                 return begins + t * rise + t * (1 - t) * ((1 - t) * at_first + t * at_last)
 
             return formula
@@ -103,18 +103,14 @@ class ElasticPlastic(ContactLaw):
         """Penetrations over the critical one at which pieces from 1 on begin."""
         return tuple(piece.start for piece in self._pieces[1:])
 
-    @property
-    def _root_of_critical(self) -> Any:
-        return np.sqrt(self.reduced)
-
     def delta_c(self, e: Array) -> Array:
         """Critical penetration, infinite where there is no stiffness; in the shape of `e`."""
         with np.errstate(divide="ignore", over="ignore"):
-            return np.asarray((self._root_of_critical / np.asarray(e, dtype=np.float64)) ** 2)
+            return np.asarray(self.reduced / np.square(np.asarray(e, dtype=np.float64)))
 
-    def x(self, y: Any, e: Array) -> Any:
-        """``delta/delta_c``; 1 where there is no stiffness, as formulas beyond yield mean nothing there."""
-        return np.where(np.asarray(e) > 0, np.square(y * e / self._root_of_critical), 1.0)
+    def u(self, y: Any, e: Array) -> Any:
+        """``sqrt(delta/delta_c)``; 1 where no stiffness is: formulas beyond yield mean nothing there."""
+        return np.where(np.asarray(e) > 0, y * e / np.sqrt(self.reduced), 1.0)
 
     def limits(self, e: Array) -> Array:
         """Penetrations at which the next piece begins, increasing; shape (pieces - 1, *e.shape)."""
@@ -122,18 +118,18 @@ class ElasticPlastic(ContactLaw):
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
         """Load of a contact, in the shape of `y` and `e`."""
-        hertz = super().load(piece, y, e)
-        return hertz * self._over_hertz("load", piece, y, e) if piece else hertz
+        e = np.asarray(e, dtype=np.float64)
+        at_yield = self.reduced**1.5 / np.square(np.where(e > 0, e, np.inf))
+        return at_yield * self._value("load", piece, self.u(y, e), e)
 
     def radius(self, piece: int, y: Any, e: Array) -> Any:
         """Radius of a contact; its square is the area over pi R sigma."""
-        hertz = super().radius(piece, y, e)
-        return hertz * np.sqrt(self._over_hertz("area", piece, y, e)) if piece else hertz
+        u = self.u(y, e)
+        u = np.where(u == 0, 1.0, u)  # where the factor y is 0
+        return y * np.sqrt(self._value("area", piece, u, e) / (u * u))
 
-    def _over_hertz(self, what: str, piece: int, y: Any, e: Array) -> Any:
-        x = self.x(y, e)
-        of_fit = self._pieces[piece].value(what, self, x, np.where(np.asarray(e) > 0, e, 1.0))
-        return of_fit / (x * np.sqrt(x) if what == "load" else x)
+    def _value(self, what: str, piece: int, u: Any, e: Array) -> Any:
+        return self._pieces[piece].value(what, self, u, np.where(np.asarray(e) > 0, e, 1.0))
 
 
 @dataclass(frozen=True)
@@ -208,7 +204,7 @@ class EtsionKligermanKadin(ContactLaw):
 
     def _x(self, e: Array) -> Any:
         """Deepest penetration over the critical one."""
-        return self.loading.x(np.sqrt(self.deepest), e)
+        return np.square(self.loading.u(np.sqrt(self.deepest), e))
 
     def _share(self, y: Any, e: Array) -> Any:
         """How much is left of the penetration that springs back."""

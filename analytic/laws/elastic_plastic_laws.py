@@ -14,14 +14,15 @@ _FIRST_YIELD = 0.4  # k of Zhao, Maietta and Chang: mean pressure at first yield
 _PLASTIC = 54.0  # their delta_2/delta_1
 
 
-def _zhao_area(law: Any, x: Any, e: Any) -> Any:
+def _zhao_area(law: Any, u: Any, e: Any) -> Any:
+    x = u * u
     t = (x - 1) / (_PLASTIC - 1)
     return x * (1 + t * t * (3 - 2 * t))
 
 
-def _zhao_load(law: Any, x: Any, e: Any) -> Any:
-    pressure = 1 - (1 - _FIRST_YIELD) * np.log(_PLASTIC / x) / math.log(_PLASTIC)
-    return _zhao_area(law, x, e) * pressure / _FIRST_YIELD
+def _zhao_load(law: Any, u: Any, e: Any) -> Any:
+    pressure = 1 - (1 - _FIRST_YIELD) * np.log(_PLASTIC / (u * u)) / math.log(_PLASTIC)
+    return _zhao_area(law, u, e) * pressure / _FIRST_YIELD
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,7 +66,9 @@ class ChangEtsionBogy(FromHardness):
     """
 
     name: ClassVar[str] = "chang-etsion-bogy"
-    _fits: ClassVar = (Piece(1.0, load=lambda law, x, e: 3 * x - 1.5, area=lambda law, x, e: 2 * x - 1),)
+    _fits: ClassVar = (
+        Piece(1.0, load=lambda law, u, e: 3 * u * u - 1.5, area=lambda law, u, e: 2 * u * u - 1),
+    )
 
     poisson: float | None = None
     bridge: Literal["hermite"] | None = None
@@ -173,7 +176,7 @@ class KogutEtsion(FromHardness):
     _fits: ClassVar = (
         Piece(1.0, load=(1.03, 1.425), area=(0.93, 1.136)),
         Piece(6.0, load=(1.40, 1.263), area=(0.94, 1.146)),
-        Piece(110.0, load=lambda law, x, e: 3 / law.yield_factor * x, area=(2.0, 1.0)),
+        Piece(110.0, load=lambda law, u, e: 3 / law.yield_factor * u * u, area=(2.0, 1.0)),
     )
 
     poisson: float = 0.3
@@ -189,18 +192,20 @@ class KogutEtsion(FromHardness):
         return EtsionKligermanKadin(self, deepest)
 
 
-def _jackson_area(law: Any, x: Any, e: Any) -> Any:
+def _jackson_area(law: Any, u: Any, e: Any) -> Any:
+    x = u * u
     with np.errstate(over="ignore"):  # infinite where the fit has no meaning
         return x * (x / 1.9) ** (0.14 * np.exp(23 * law.yield_strain / e))
 
 
-def _jackson_load(law: Any, x: Any, e: Any) -> Any:
+def _jackson_load(law: Any, u: Any, e: Any) -> Any:
+    x = u * u
     with np.errstate(over="ignore"):
         at_yield = math.pi * law.yield_factor / 2 * law.yield_strain / e  # radius of contact over R
-        radius = at_yield * np.sqrt(_jackson_area(law, x, e))
+        radius = at_yield * np.sqrt(_jackson_area(law, u, e))
         hardness = -2.84 * np.expm1(-0.82 * radius**-0.7)  # over the yield strength
     yielded = -np.expm1(-(x ** (5 / 9)) / 25) * x
-    return np.exp(-(x ** (5 / 12)) / 4) * x * np.sqrt(x) + 4 / law.yield_factor * hardness * yielded
+    return np.exp(-(x ** (5 / 12)) / 4) * u * x + 4 / law.yield_factor * hardness * yielded
 
 
 @dataclass(frozen=True)

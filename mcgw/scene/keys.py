@@ -25,11 +25,12 @@ _SEPARATION = Number(low=-1e6, high=1e6)
 _SEPARATIONS = "give a list of finite numbers d/sigma, or {start = 0.0, stop = 4.0, num = 41}"
 _NUM = whole(1, _MOST, f"give a whole number >= 1, at most {_MOST}")
 _PLANES = '"body", the undeformed body, or "mean-plane", that of the deformed one'
-_FORMULA = "give a list of {low, high, coefficients}, one for each piece, as mcgw writes them"
-_ENDS = (Key("low", _ANY, required=True), Key("high", _POSITIVE, required=True))
-_PIECES = List(Table((*_ENDS, Key("coefficients", _LISTED, required=True)), _FORMULA), advice=_FORMULA)
+_FORMULA = "give a list of {edges, coefficients}, one for each piece, as mcgw writes them"
+_LISTS = List(_LISTED, advice="give a list of lists of finite numbers")
+_SERIES = (Key("edges", _LISTED, required=True), Key("coefficients", _LISTS, required=True))
+_PIECES = List(Table(_SERIES, _FORMULA), advice=_FORMULA)
 _PIECES_EXAMPLE = (
-    "[{low = -1.0, high = 1.0, coefficients = [1.0]}, {low = 1.0, high = 3.0, coefficients = [1.0]}]"
+    "[{edges = [-1.0, 1.0], coefficients = [[1.0]]}, {edges = [0.0, 1.1], coefficients = [[1.0]]}]"
 )
 _ERRORS = Table(rows_of(Uncertainty), KNOWN, Uncertainty)
 _BODY = Table(
@@ -81,8 +82,7 @@ TABLES: dict[str, Table] = {
         "a CSV table beside the scene: columns `s` or `z` (m), and `ratio` or `E_star` (Pa); other units in "
         "the header, `z (um)`, or after a number, `61.2 GPa`"),
     Key("edges", _LISTED, "[0.0, 5.0, 20.0]"),
-    Key("coefficients", List(_LISTED, advice="give a list of lists of finite numbers"),
-        "[[1.0, 0.5], [1.5]]"),
+    Key("coefficients", _LISTS, "[[1.0, 0.5], [1.5]]"),
     Key("kinks", List(_ANY, 0), "[5.0]"),
     Key("name", Plain(empty=True), '"ramp"', "name of the function, for display"),
     Key("checked", FLAG, "false", "`false`: a series far from 1 at all heights that touch is meant so",

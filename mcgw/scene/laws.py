@@ -174,9 +174,11 @@ def _custom(critical: float, limits: list[float], load: Any, area: Any, checked:
     from analytic.laws.custom import CustomLaw, RootSeries
 
     def series(key: str, pieces: Any) -> list[RootSeries]:
-        found = [RootSeries(x["low"], x["high"], tuple(x["coefficients"])) for x in pieces]
-        if wrong := [x for x in found if x.low != -x.high and not 0 < x.low < x.high]:
-            raise ValueError(f"{key}: a piece reaches from {wrong[0].low:g} to {wrong[0].high:g}")
+        found = [RootSeries(**piece) for piece in pieces]
+        if (first := found[0].edges)[0] != -first[-1]:
+            raise ValueError(
+                f"{key}: the first piece reaches from {first[0]:g} to {first[-1]:g}, not around 0"
+            )
         return found
 
     return CustomLaw(series("load", load), series("area", area), limits, critical, checked)

@@ -90,7 +90,10 @@ def contact_law_table(law: ContactLaw) -> dict[str, Any]:
         return {"name": law.name, **law.given()}
     custom: Any = law
     numbers = {"critical": custom.critical, "limits": custom.edges}
-    series = {"load": custom.load_of, "area": custom.area_of}
+    series = {
+        name: [{"edges": piece.edges, "coefficients": piece.coefficients} for piece in pieces]
+        for name, pieces in (("load", custom.load_of), ("area", custom.area_of))
+    }
     unchecked = {} if custom.checked else {"checked": False}
     return {"name": law.name, **_plain(numbers | series), **unchecked}
 

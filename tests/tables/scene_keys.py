@@ -92,7 +92,10 @@ KE = {"name": "'kogut-etsion'", "critical": 0.05}
 JG = {"name": "'jackson-green'"}
 GRADED = {"name": "'power-law-graded'", "k": 0.5}
 COATED = {"name": "'coated'", "ratio": 3.0}
-PIECE = "[{{low = -1.0, high = 1.0, coefficients = [1.0]}}, {{low = 1.0, high = 4.0, coefficients = [{}]}}]"
+PIECE = (
+    "[{{edges = [-1.0, 1.0], coefficients = [[1.0]]}}, {{edges = [0.0, 1.3862943611198906], "
+    "coefficients = [[{}]]}}]"
+)
 CUSTOM = {"name": "'custom'", "critical": 0.05, "limits": [1.0], "load": PIECE.format("2.0, 0.5")}
 CUSTOM |= {"area": PIECE.format("3.0")}
 DEEP = sqrt(0.5 / 0.05)  # root of the depth over the critical one

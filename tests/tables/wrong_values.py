@@ -1,6 +1,6 @@
 """Values that a key of a scene may not have, as they are written: each is refused by a line with its key."""
 
-PIECE = "[{low = -1.0, high = 1.0, coefficients = [1.0]}, {low = 1.0, high = 3.0, coefficients = [1.0]}]"
+PIECE = "[{edges = [-1.0, 1.0], coefficients = [[1.0]]}, {edges = [0.0, 1.1], coefficients = [[1.0]]}]"
 # With ~ what the schema lets pass: wrong by other keys or a file, or as only the program can know.
 WRONG = {
     "title": ["1"], "sigma": ["0.0", "-1e-6", "~nan", "true", "[1.0]"], "radius": ["0", "-1", "~inf", "'x'"],
@@ -38,9 +38,10 @@ WRONG = {
                     "{sigma = 0.1, correlation = 1}", "~{sigma = 0.1, correlation = [[1.0, 0.0]]}",
                     "~{sigma = 0.1, eta = 0.1, correlation = [[1.0, 0.5], [0.0, 1.0]]}"],
     "limits": ["1.0", "[-1.0]", "['x']", "~[nan]"],
-    "load": ["[]", "1", "~" + PIECE.replace("}, {", "}] #"), "[{low = 1.0}]", PIECE.replace("[1.0]", "[]"),
-             "~" + PIECE.replace("high = 3.0", "high = 0.5")],
-    "area": ["[]", "'x'", PIECE.replace("[1.0]", "['x']"), PIECE.replace("low = 1.0", "lowest = 1.0")],
+    "load": ["[]", "1", "~" + PIECE.replace("}, {", "}] #"), "[{edges = [1.0]}]",
+             PIECE.replace("[[1.0]]", "[]"), "~" + PIECE.replace("1.1]", "-1.1]"),
+             "~" + PIECE.replace("-1.0", "-2.0")],
+    "area": ["[]", "'x'", PIECE.replace("[[1.0]]", "[['x']]"), PIECE.replace("edges = [0", "ends = [0")],
     "work": ["0", "-1", "'x'"], "pull_off": ["0", "-1", "~inf"],
     "alpha": ["1.5", "0", "'x'", "~nan", "inf"], "curvature": ["'all'", "1"],
     "skewness": ["~nan", "'x'"], "kurtosis": ["0", "-1", "~inf"], "independent": ["0", "'many'", "~nan"],
