@@ -102,7 +102,7 @@ class PiecewiseSeries:
         padded = [[*c, *[0.0] * (order - len(c))] for c in self.coefficients]
         return edges[:-1], edges[1:], np.ascontiguousarray(np.array(padded).T)
 
-    def __call__(self, s: Any) -> Any:
+    def __call__(self, s: Any) -> Array:
         """Its values, by Clenshaw's scheme; a small step into the complex plane gives the slope."""
         s = np.asarray(s)
         low, high, c = self._table
@@ -150,7 +150,7 @@ def _rising(values: tuple[float, ...]) -> bool:
     return bool(np.all(np.isfinite(values)) and np.all(np.diff(values) > 0))
 
 
-def _clenshaw(c: Array, piece: Ints, x: Any) -> Any:
+def _clenshaw(c: Array, piece: Ints, x: Any) -> Array:
     """Sum of the Chebyshev series of a piece at x, element by element."""
     twice, last, value = 2 * x, np.zeros_like(x), np.zeros_like(x)
     for row in c[:0:-1]:

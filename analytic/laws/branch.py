@@ -2,6 +2,10 @@
 
 A branch says at which heights which formula holds, and gives the formulas at heights above the separation.
 So everything that sums over asperities treats loading, unloading and any law of contact alike.
+
+Asperities of height s are penetrated by s - h. What begins at the penetration ``bound(s)``, as yielding or
+lift-off, has begun where ``s - h >= bound(s)``: on one side of a height if the bound is the same for all, on
+several intervals if it falls faster than heights rise, as that of yielding does where the modulus falls.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -12,12 +16,46 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.arrays import Array, Ints
-from analytic.gradings import Grading
+from analytic.arrays import Array, Ints, Marks
+from analytic.gradings import Grading, Homogeneous
 from analytic.laws.film import SpotConductance
 from analytic.laws.law import ContactLaw, piece_of, slope_in_root
-from analytic.laws.regimes import Regimes, regimes_of
 from analytic.quantities import quantity_of
+from analytic.resolution import marks, resolved_breaks
+from analytic.roots import sign_changes
+
+_STEP, _POINTS = 0.5, np.linspace(0, 1, 33)  # heights at which a bound is looked at, between its breaks
+_ABOUT = 2.0**-14  # heights on either side that tell whether a bound comes nearer
+_SAME = 8  # spacings of floating-point numbers between heights that are not told apart
+
+
+@dataclass(frozen=True)
+class Regimes:
+    """Intervals of heights on each of which one piece of the law holds, at several separations.
+
+    Those of one separation follow each other, upwards, from the lowest height in contact on; neighbours
+    have different pieces. All arrays have the shape (intervals,).
+
+    Parameters
+    ----------
+    separation : ndarray of int
+        Which of the separations, not decreasing.
+    low, high : ndarray
+        Reduced heights ``low <= s < high``.
+    piece : ndarray of int
+        Number of the piece.
+    """
+
+    separation: Ints
+    low: Array
+    high: Array
+    piece: Ints
+
+    @property
+    def goes_on(self) -> Marks:
+        """Whether each goes on where the one before ends; shape (intervals + 1,), false at both ends."""
+        on = (self.low[1:] <= self.high[:-1]) & (np.diff(self.separation) == 0)
+        return np.concatenate([[False], on, [False]]) if self.low.size else np.zeros(1, dtype=bool)
 
 
 @dataclass(frozen=True)
@@ -165,18 +203,11 @@ class Branch:
             "stiffness": lambda: law.stiffness(piece, y, e),
             "contacts": lambda: np.ones(shape),
             "conductance": lambda: law.radius(piece, y, e),
-            "conductance_si": lambda: self._spots(law.radius(piece, y, e)),
+            "conductance_si": lambda: self.conductance(law.radius(piece, y, e), self.ratios),  # type: ignore[misc]
             "load_slope": lambda: slope_in_root(lambda v: law.load(piece, v, e), y) * (2 / 3),
             "yielded": lambda: np.full(shape, float(piece > 0)),
         }
         return np.asarray(known[quantity]())
-
-    def _spots(self, radius: Array) -> Array:
-        """Conductance of spots by their radii."""
-        if self.conductance is None:
-            raise ValueError("conductance_si: give a resistivity")
-        own = self.conductance if self.ratios is None else self.conductance.with_radii(self.ratios)
-        return own(radius)
 
     def _law(self, deepest: Array | None = None) -> ContactLaw:
         """Law of contacts that are closer than ever before, or on unloading have been this deep."""
@@ -208,8 +239,73 @@ class Branch:
         return np.where(self.left(h, above, e) > 0, piece_of(self._law(), self.deepest(h, above), e), -1)
 
     def regimes(self, grading: Grading, separations: ArrayLike, low: float, high: float) -> Regimes:
-        """At which heights there is contact, and which formula holds there.
+        """Return at which heights of a range there is contact, and which formula holds there.
 
-        Where summits have radii of their own, separations have these in turn.
+        Where summits have radii of their own, separations have these in turn. Under one modulus for all, what
+        a bound asks must rise with the height. Ends within 8 spacings of floating-point numbers of a
+        separation, of where contact starts, of a break of the grading, or of each other, are one. A grading
+        that is not resolved by 4096 pieces is a ValueError.
         """
-        return regimes_of(self, grading, np.asarray(separations, dtype=np.float64), low, high)
+        h = np.asarray(separations, dtype=np.float64)
+
+        def beyond(s: Array, which: Ints) -> Array:
+            """How far heights are beyond each bound, at separations by their numbers: shape (bounds, ...)."""
+            some, x = self.of_some(which), h[which]
+            with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+                e, deepest = grading(s), some.deepest(x, s - x)
+                found = [deepest - limit for limit in some.limits(e)]
+                if self.unload_from is not None:
+                    found.append(some.left(x, s - x, e))
+                return np.reshape(found, (len(found), *deepest.shape))
+
+        every, start = np.arange(h.size), np.maximum(np.broadcast_to(self.lowest(h), h.shape), low)
+        s = np.array([low, high])
+        if not isinstance(grading, Homogeneous):
+            s = _stretches(beyond, grading, low, high, 1 if self.ratios is None else self.ratios.size)
+        held = beyond(s, every[:, None]) >= 0
+        bound, which, i = np.nonzero(held[..., 1:] != held[..., :-1])
+
+        def excess(x: Array, n: Ints) -> Array:
+            return np.asarray(beyond(x, which[n])[bound[n], np.arange(n.size)])
+
+        edge = sign_changes(excess, s[i], s[i + 1], np.abs(h[which]))
+        which = np.concatenate([every, every, which])
+        edge = np.concatenate([start, np.full(h.size, high), edge])
+        anchors = np.unique([*start, *h, *grading.breaks, high])
+        nearest = anchors[np.searchsorted((anchors[1:] + anchors[:-1]) / 2, edge)]
+        same = _SAME * np.spacing(np.maximum(np.abs(edge), np.abs(h[which])))  # found from ``s - h``
+        edge = np.maximum(np.where(np.abs(nearest - edge) <= same, nearest, edge), start[which])
+        order = np.lexsort((edge, which))
+        which, edge, same = which[order], edge[order], same[order]
+        apart = (np.diff(which) > 0) | (np.diff(edge) > same[1:])
+        which, edge = which[np.append(True, apart)], edge[np.append(True, apart)]
+        inside = np.flatnonzero(which[1:] == which[:-1])
+        which, begin, end = which[inside], edge[inside], edge[inside + 1]
+        middle = begin + (end - begin) / 2
+        piece = self.of_some(which).pieces(h[which], middle - h[which], grading(middle))
+        first = np.append(True, (np.diff(which) > 0) | (np.diff(piece) != 0))[: which.size]
+        last, contact = np.roll(first, -1), piece[first] >= 0
+        found = which[first], begin[first], end[last], piece[first]
+        return Regimes(*(each[contact] for each in found))
+
+
+def _stretches(
+    beyond: Callable[[Array, Ints], Array], grading: Grading, low: float, high: float, radii: int
+) -> Array:
+    """Return increasing ends of stretches on each of which heights only go beyond bounds, or only back."""
+    breaks = np.array(resolved_breaks(grading, low, high))
+    sides = np.concatenate([np.nextafter(breaks, -np.inf), breaks, np.nextafter(breaks, np.inf)])
+    ends = np.unique([low, *sides[(low < sides) & (sides < high)], *marks(low, high, _STEP), high])
+    s = np.unique(ends[:-1, None] + np.diff(ends)[:, None] * _POINTS)
+
+    def curve(x: Array, which: Ints) -> Array:  # the arctangent rises with it, also where it is infinite
+        return np.arctan(beyond(x, which))
+
+    rises = np.diff(curve(s, np.arange(radii)[:, None])) >= 0
+    bound, which, i = np.nonzero(rises[..., :-1] != rises[..., 1:])
+
+    def rise(x: Array, n: Ints) -> Array:
+        around = curve(x + _ABOUT, which[n]) - curve(x - _ABOUT, which[n])
+        return np.asarray(around[bound[n], np.arange(n.size)])
+
+    return np.unique([*ends, *sign_changes(rise, s[i], s[i + 2], np.ones(i.size))])

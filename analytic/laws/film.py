@@ -1,9 +1,9 @@
 """Electrical and thermal contact conductance of spots with a film, and how spots crowd each other."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -135,8 +135,8 @@ class SpotConductance:
     ----------
     film : Film
         What spots conduct through.
-    unit : float or ndarray
-        sqrt(R sigma), m; one for each summit where these differ in radius.
+    unit : float
+        sqrt(R sigma), m.
 
     Notes
     -----
@@ -145,7 +145,7 @@ class SpotConductance:
     """
 
     film: Film
-    unit: Any
+    unit: float
 
     @property
     def finest(self) -> float:
@@ -158,13 +158,12 @@ class SpotConductance:
             farthest = thickness * float(min([1.0, *_REACH[np.maximum(changes[:1] - 1, 0)]]))
         return float(farthest / self.unit) ** 2
 
-    def with_radii(self, ratios: Array) -> Self:
-        """Return that of summits whose radii are these multiples of the surface's, one for each."""
-        return replace(self, unit=self.unit * np.sqrt(ratios))
+    def __call__(self, radius: Array, ratios: Array | None = None) -> Array:
+        """Conductance over 4 sqrt(R sigma), in 1/(ohm m) or W/(m K), analytic in the radius up to -b.
 
-    def __call__(self, radius: Array) -> Array:
-        """Conductance over 4 sqrt(R sigma), in 1/(ohm m) or W/(m K), analytic in the radius up to -b."""
-        a = radius * self.unit
+        Of summits whose radii are these multiples of the surface's, each in units of its own.
+        """
+        a = radius * (self.unit if ratios is None else self.unit * np.sqrt(ratios))
         resists = self._resists(a) + self.film.alike * self.film.rho
         return np.asarray(radius * np.divide(a, resists, where=resists != 0, out=np.zeros_like(resists)))
 
