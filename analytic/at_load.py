@@ -238,7 +238,7 @@ def _cells(model: Any, several: Sequence[str], h: float, rule: Any, at_nodes: Ar
     whole = np.stack([at_nodes[:, 0], p, *(p * at_nodes.T)])
     if not p.size:
         return whole
-    left, wide, p, ratios = cells_between(model, h, rule, _CELLS, lowest)
+    left, wide, p, ratios = cells_between(model, rule, _CELLS, lowest)
     cells = HeightRule(left + wide / 2, p, rule.below, ratios)
     values = cells.terms(several, [h], model.grading, model.ways) * _units(model, several)
     found = np.stack([values[:, 0], p, *(p * values.T)])

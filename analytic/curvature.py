@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import erfcx, log_ndtr
 
-from analytic.arrays import Array, Ints
+from analytic.arrays import Array
 from analytic.nayak import Nayak, NayakTables, tables_of
 from analytic.quadrature import gauss_legendre, panelled
 
@@ -31,6 +31,7 @@ _DIVERGES = 4.0  # power of the radius that has no mean: the density of g begins
 _BLOCK = 1024  # numbers whose rules are summed at a time
 _NODES, _AS_WIDE = 64, 0.6  # points for curvatures, if their density bends over so many heights
 _RAREST = 1e-18  # share of the touching heights above which curvatures are left out
+_SAME = 1e-12  # relative rounding of the curvature of a bound
 _WIDE = 9.5  # standard deviations, beyond which a normal density is 1e-20 of its largest value
 
 
@@ -170,6 +171,28 @@ class RandomCurvature:
         """Range of reduced heights over which the density at one curvature hardly bends."""
         return tables_of(float(self.alpha)).width / self.heights.std / 2
 
+    def rule(self, highest: float) -> tuple[Array, Array]:
+        """Return curvatures, and weights, of summits as high as touch at this separation.
+
+        If there is a bound, the last one is that of all flatter summits.
+        """
+        top = float(self.heights.isf(np.array(_RAREST), highest))
+        first = np.sqrt(MEAN_CURVATURE / self.largest)
+        last = max(np.sqrt(self.steepest(top)), first)
+        x, w = gauss_legendre(int(np.ceil(_NODES * max(1.0, _AS_WIDE / self.narrowest))))
+        roots = first + (last - first) * x
+        curvatures, weights = roots**2, 2 * roots * (last - first) * w
+        if first > 0:
+            curvatures, weights = np.append(curvatures, first**2), np.append(weights, 1.0)
+        return curvatures, weights
+
+    def density(self, s: Array, g: Array) -> Array:
+        """Return the density of the heights `s` of summits of curvatures `g` of a rule, shape (n,)."""
+        own, bound = np.empty(s.shape), g <= MEAN_CURVATURE / self.largest * (1 + _SAME)
+        own[bound] = self.cdf(g[bound], s[bound]) * self.heights.pdf(s[bound])
+        own[~bound] = self.with_height(g[~bound], s[~bound])
+        return own
+
     def pdf(self, g: ArrayLike, s: ArrayLike) -> Array:
         """Return the probability density of the curvature at given heights, broadcast."""
         return self._given_height(CurvatureGivenHeight.pdf, g, s)
@@ -229,46 +252,3 @@ class RandomCurvature:
         parts = [slice(k, k + _BLOCK) for k in range(0, a.size, _BLOCK)]
         found = [function(CurvatureGivenHeight(self.alpha, x.ravel()[i]), a.ravel()[i]) for i in parts]
         return np.concatenate([np.empty(0), *found]).reshape(a.shape)
-
-
-@dataclass(frozen=True)
-class RadiusRule:
-    """Radii of a rule over the curvature, the last of them that of all flatter summits if there is a bound.
-
-    Parameters
-    ----------
-    law : RandomCurvature
-        Of the radii.
-    curvatures, weights : ndarray
-        Points of the rule, and their weights; shape (radii,).
-    """
-
-    law: RandomCurvature
-    curvatures: Array
-    weights: Array
-
-    @classmethod
-    def over(cls, law: RandomCurvature, highest: float) -> "RadiusRule":
-        """Of summits as high as touch at this separation."""
-        top = float(law.heights.isf(np.array(_RAREST), highest))
-        first = np.sqrt(MEAN_CURVATURE / law.largest)
-        last = max(np.sqrt(law.steepest(top)), first)
-        x, w = gauss_legendre(int(np.ceil(_NODES * max(1.0, _AS_WIDE / law.narrowest))))
-        roots = first + (last - first) * x
-        curvatures, weights = roots**2, 2 * roots * (last - first) * w
-        if first > 0:
-            curvatures, weights = np.append(curvatures, first**2), np.append(weights, 1.0)
-        return cls(law, curvatures, weights)
-
-    @property
-    def ratios(self) -> Array:
-        """Over the radius of the surface."""
-        return MEAN_CURVATURE / self.curvatures
-
-    def density(self, s: Array, which: Ints) -> Array:
-        """Density of the heights of summits of some of the radii, with their weights."""
-        own = np.empty(s.shape)
-        bound = (which == self.curvatures.size - 1) & np.isfinite(self.law.largest)
-        own[bound] = self.law.cdf(self.curvatures[-1], s[bound]) * self.law.heights.pdf(s[bound])
-        own[~bound] = self.law.with_height(self.curvatures[which[~bound]], s[~bound])
-        return np.asarray(self.weights[which] * own)

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 
 from analytic.arrays import Array
-from analytic.curvature import RadiusRule
+from analytic.curvature import MEAN_CURVATURE
 from analytic.distribution import Counted, Law
 from analytic.height_rule import HeightRule
 from analytic.lattice_sums import OneAsperity, shares, shares_at
@@ -51,7 +51,7 @@ def one_asperity(model: Any, quantity: str, h: float, cells: int) -> OneAsperity
     p, mean = rule.probabilities, float(rule.probabilities @ low)
     if p.any() and not isinstance(model.heights, MeasuredHeights):
         lowest = max(min(h, model.ways.of(quantity).lowest(h)), model.heights.support[0])
-        left, wide, p, ratios = cells_between(model, h, rule, cells, lowest)
+        left, wide, p, ratios = cells_between(model, rule, cells, lowest)
         at = np.concatenate([left + _JUST * wide, left + wide])  # right of where contacts begin
         ratios = None if ratios is None else np.tile(ratios, 2)
         nodes = replace(rule, heights=at, probabilities=0 * at, ratios=ratios)
@@ -70,7 +70,7 @@ def _added(model: Any, quantity: str, h: float, rule: HeightRule) -> Array:
 
 
 def cells_between(
-    model: Any, h: float, rule: Any, cells: int, lowest: float
+    model: Any, rule: Any, cells: int, lowest: float
 ) -> tuple[Array, Array, Array, Array | None]:
     """Return the lower ends of cells between the nodes of a rule, widths, probabilities, and ratios of radii.
 
@@ -87,13 +87,14 @@ def cells_between(
     wide = np.repeat((s - start) / parts, parts)
     number = np.arange(wide.size) - np.repeat(np.cumsum(parts) - parts, parts)
     left = np.repeat(start, parts) + number * wide
-    middle = left + wide / 2
+    middle, which = left + wide / 2, np.cumsum(new) - 1
     if ratios is None:
-        p = wide * model.heights.pdf(middle)
+        own = wide * model.heights.pdf(middle)
     else:
-        ratios, radii = np.repeat(ratios, parts), RadiusRule.over(model.curvature, h)
-        p = wide * radii.density(middle, np.searchsorted(-radii.ratios, -ratios))
-    return left, wide, p * (rule.probabilities.sum() / p.sum()), ratios
+        ratios = np.repeat(ratios, parts)
+        own = wide * model.curvature.density(middle, MEAN_CURVATURE / ratios)
+    whole, which = np.bincount(which, p), np.repeat(which, parts)  # each radius keeps its share
+    return left, wide, own * (whole / np.bincount(which, own))[which], ratios
 
 
 def separation_law_of(model: Any, load: float, quantity: str, *, other: bool = False) -> Law:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from analytic.arrays import Array, Ints
-from analytic.curvature import RadiusRule, RandomCurvature
+from analytic.curvature import MEAN_CURVATURE, RandomCurvature
 from analytic.gradings import Grading
 from analytic.heights import GAUSSIAN, HeightLaw
 from analytic.laws.branch import Branch
@@ -92,14 +92,16 @@ class HeightRule:
             ratios = np.array(radii.ratios)[touching] if isinstance(radii, MeasuredRadii) else None
             return cls(s[touching], np.full(touching.sum(), 1 / s.size), below, ratios)
         start, top = ends_of(heights, lowest, grading, **powers)
-        own = RadiusRule.over(radii, h[-1]) if isinstance(radii, RandomCurvature) else None
+        own = radii if isinstance(radii, RandomCurvature) else None
         if not start < top:
             return cls(np.empty(0), np.empty(0), below, None if own is None else np.empty(0))
         if own is None:
             ratios, regular = np.ones(1), np.array(regular_edges(heights, start, top))
         else:
-            widest = min(SPANS * own.law.narrowest, WIDEST)
-            ratios, regular = own.ratios, np.linspace(start, top, int(np.ceil((top - start) / widest)) + 1)
+            curvatures, of_radii = own.rule(h[-1])
+            widest = min(SPANS * own.narrowest, WIDEST)
+            regular = np.linspace(start, top, int(np.ceil((top - start) / widest)) + 1)
+            ratios = MEAN_CURVATURE / curvatures
         common = np.concatenate([regular, resolved_breaks(grading, start, top), lowest])
         edges, which = [np.tile(common, ratios.size)], [np.repeat(np.arange(ratios.size), common.size)]
         for branch in branches:  # at each separation, which has the radii in turn
@@ -117,7 +119,7 @@ class HeightRule:
         for some, points in ((wide, _PER_PIECE), (~wide, _PER_NARROW)):
             parts.append((*in_pieces(left[some], right[some], points), np.repeat(of[some], points)))
         s, weights, of = (np.concatenate(part) for part in zip(*parts, strict=True))
-        return cls(s, weights * own.density(s, of), below, ratios[of])
+        return cls(s, weights * of_radii[of] * own.density(s, curvatures[of]), below, ratios[of])
 
     def mean(self, f: Array) -> Array:
         """Return the mean of each column of `f` above the lowest separation; in this thread alone."""
