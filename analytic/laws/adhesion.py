@@ -1,12 +1,13 @@
 """Adhesive elastic contacts: Derjaguin, Muller and Toporov (DMT), and Johnson, Kendall and Roberts (JKR)."""
 
 import math
+from copy import copy
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from analytic.arrays import Array
+from analytic.arrays import Array, hold
 from analytic.laws.law import ContactLaw
 from analytic.surface import Surface
 
@@ -111,6 +112,7 @@ class JohnsonKendallRoberts(_Adhesive):
     name: ClassVar[str] = "johnson-kendall-roberts"
     elastic: ClassVar[bool] = False
     stiff: ClassVar[bool] = False
+    pulled: ClassVar[bool] = False  # true of the law of contacts that formed and are pulled
 
     @property
     def finest(self) -> float:
@@ -124,53 +126,32 @@ class JohnsonKendallRoberts(_Adhesive):
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
         """Return the load of a contact, in the shape of `y` and `e`."""
-        return self.load_at(self._z(y, e), e)
+        z = self._z(y, e)
+        return e * (self.stretch(e) / 3) ** 1.5 * (z**6 - 6 * z**3)
 
     def radius(self, piece: int, y: Any, e: Array) -> Any:
         """Return the radius of a contact; its square is the area over pi R sigma."""
-        return self.radius_at(self._z(y, e), e)
+        z = self._z(y, e)
+        return np.sqrt(self.stretch(e) / 3) * z * z
 
     def stiffness(self, piece: int, y: Array, e: Array) -> Array:
         """Return the stiffness of a spot over 2 E* sqrt(R sigma): ``dP/d delta``."""
         z = self._z(y, e)
-        return np.asarray(e * self.radius_at(z, e) * (z**3 - 3) / (z**3 - 1))
+        return np.asarray(e * np.sqrt(self.stretch(e) / 3) * z * z * (z**3 - 3) / (z**3 - 1))
 
-    def _z(self, y: Any, e: Array) -> Any:
-        return _root(np.sqrt(3 + 3 * y * y / self.stretch(e)))
-
-    def load_at(self, z: Any, e: Array) -> Any:
-        """Return the load of contacts of this z."""
-        return e * (self.stretch(e) / 3) ** 1.5 * (z**6 - 6 * z**3)
-
-    def radius_at(self, z: Any, e: Array) -> Any:
-        """Return the radius of contacts of this z."""
-        return np.sqrt(self.stretch(e) / 3) * z * z
-
-    def unloading(self, deepest: Any) -> "_Stuck":
-        """Return the law by which a contact holds until it is stretched by D_e."""
-        return _Stuck(self)
-
-
-class _Stuck(ContactLaw):
-    """Contacts that formed and are pulled: ``y = sqrt(delta + D_e)``."""
-
-    def __init__(self, loading: JohnsonKendallRoberts) -> None:
-        self.loading = loading
+    def unloading(self, deepest: Any) -> Self:
+        """Return the law by which a contact holds until it is stretched by D_e: ``y = sqrt(delta + D_e)``."""
+        pulled = copy(self)
+        hold(pulled, pulled=True)
+        return pulled
 
     def residual(self, e: Array) -> Any:
         """Return the penetration at which contact is lost."""
-        return -self.loading.stretch(e)
-
-    def load(self, piece: int, y: Any, e: Array) -> Any:
-        """Return the load of a contact."""
-        return self.loading.load_at(self._z(y, e), e)
-
-    def radius(self, piece: int, y: Any, e: Array) -> Any:
-        """Return the radius of a contact; its square is the area over pi R sigma."""
-        return self.loading.radius_at(self._z(y, e), e)
+        return -self.stretch(e) if self.pulled else 0.0
 
     def _z(self, y: Any, e: Array) -> Any:
-        return _root(y * np.sqrt(3 / self.loading.stretch(e)))
+        q = y * np.sqrt(3 / self.stretch(e))
+        return _root(q if self.pulled else np.sqrt(3 + q * q))
 
 
 def _root(q: Any) -> Any:
