@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -92,7 +91,14 @@ class Model(MeanModel):
     def cumulants(self, quantity: str, h: ArrayLike) -> Cumulants:
         """Return the mean, variance, skewness and excess kurtosis over surfaces, in the shape of `h`."""
         q, h = self._asked(quantity, h), np.asarray(h, dtype=np.float64)
-        rows = self._in_parts(h, partial(self._one_asperity, quantity))
+
+        def of_one(h: Array) -> Array:
+            """First four cumulants that one asperity contributes, over the scale: shape (separations, 4)."""
+            part = self.fluctuations([quantity], h)
+            m2, m3, m4 = (part.moment(k) for k in (2, 3, 4))
+            return np.stack([part.mean, m2, m3, m4 - 3 * m2 * m2 * (self.count == "fixed")], axis=1)
+
+        rows = self._in_parts(h, of_one)
         k1, k2, k3, k4 = np.moveaxis(rows, -1, 0) if h.size else np.empty((4, *h.shape))
         n, scale = self.number, q.scale(self.surface)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -233,9 +239,3 @@ class Model(MeanModel):
         from analytic.exact_law import separation_law_of
 
         return separation_law_of(self, load, quantity)
-
-    def _one_asperity(self, quantity: str, h: Array) -> Array:
-        """First four cumulants that one asperity contributes, over the scale: shape (separations, 4)."""
-        part = self.fluctuations([quantity], h)
-        m2, m3, m4 = (part.moment(k) for k in (2, 3, 4))
-        return np.stack([part.mean, m2, m3, m4 - 3 * m2 * m2 * (self.count == "fixed")], axis=1)

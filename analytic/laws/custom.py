@@ -9,12 +9,12 @@ import numpy as np
 from analytic.arrays import Array, hold
 from analytic.gradings import Custom
 from analytic.laws.elastic_plastic import ElasticPlastic
+from analytic.laws.law import NEXT_TO_0
 from analytic.piecewise import PiecewiseSeries
 from analytic.resolution import resolved
 
 Formula = Callable[[Any], Any]
 _PROBE = 1e-30j  # slopes are taken by a step into the complex plane
-_NEXT_TO_0 = 1e-60  # stands for 0
 
 
 class RootSeries(PiecewiseSeries):
@@ -25,7 +25,7 @@ def _resolved_in_root(formula: Formula, low: float, high: float) -> RootSeries:
     """Return the series that stand for a formula, of the first piece from ``low < 0`` on, to 1e-13."""
 
     def over_square(t: Array) -> Array:
-        u = np.where(np.abs(t) < _NEXT_TO_0, _NEXT_TO_0, t) if low < 0 else np.exp(t)
+        u = np.where(np.abs(t) < NEXT_TO_0, NEXT_TO_0, t) if low < 0 else np.exp(t)
         return np.asarray(formula(u) / (u * u))
 
     try:

@@ -15,7 +15,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from analytic.arrays import Array
-from analytic.laws.law import ContactLaw, slope_in_root
+from analytic.laws.law import NEXT_TO_0, ContactLaw, slope_in_root
 from analytic.surface import Surface
 
 Formula = Callable[[Any, Any, Any], Any]  # of the law, of u = sqrt(delta/delta_c), and of e = E*(s)/E*
@@ -118,15 +118,16 @@ class ElasticPlastic(ContactLaw):
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
         """Load of a contact, in the shape of `y` and `e`."""
-        e = np.asarray(e, dtype=np.float64)
-        at_yield = self.reduced**1.5 / np.square(np.where(e > 0, e, np.inf))
-        return at_yield * self._value("load", piece, self.u(y, e), e)
+        return super().load(piece, y, e) * self._over_hertz("load", 3, piece, y, e)
 
     def radius(self, piece: int, y: Any, e: Array) -> Any:
         """Radius of a contact; its square is the area over pi R sigma."""
+        return super().radius(piece, y, e) * np.sqrt(self._over_hertz("area", 2, piece, y, e))
+
+    def _over_hertz(self, what: str, power: int, piece: int, y: Any, e: Array) -> Any:
         u = self.u(y, e)
-        u = np.where(u == 0, 1.0, u)  # where the factor y is 0
-        return y * np.sqrt(self._value("area", piece, u, e) / (u * u))
+        u = np.where(np.abs(u) < NEXT_TO_0, NEXT_TO_0, u)
+        return self._value(what, piece, u, e) / u**power
 
     def _value(self, what: str, piece: int, u: Any, e: Array) -> Any:
         return self._pieces[piece].value(what, self, u, np.where(np.asarray(e) > 0, e, 1.0))

@@ -19,7 +19,7 @@ from analytic.arrays import Array, Ints, hold
 from analytic.surface import Surface
 
 _STEP = 1e-30  # of a variable, into the complex plane
-_NEXT_TO_0 = 1e-60  # stands for 0: cubes of it, times a step, are still numbers
+NEXT_TO_0 = 1e-60  # stands for 0: cubes of it, times a step, are still numbers
 
 
 class ContactLaw:
@@ -242,5 +242,5 @@ def derivative(formula: Callable[[Any], Any], x: Array) -> Array:
 
 def slope_in_root(formula: Callable[[Any], Any], y: Array) -> Array:
     """``d formula/d(y^2)``, at y = 0 its limit."""
-    y = np.where(y == 0, _NEXT_TO_0, y)
+    y = np.where(y == 0, NEXT_TO_0, y)
     return derivative(formula, y) / (2 * y)

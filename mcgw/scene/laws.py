@@ -174,7 +174,10 @@ def _custom(critical: float, limits: list[float], load: Any, area: Any, checked:
     from analytic.laws.custom import CustomLaw, RootSeries
 
     def series(key: str, pieces: Any) -> list[RootSeries]:
-        found = [RootSeries(**piece) for piece in pieces]
+        try:
+            found = [RootSeries(**piece) for piece in pieces]
+        except ValueError as error:
+            raise ValueError(f"{key}: {error}") from None
         if (first := found[0].edges)[0] != -first[-1]:
             raise ValueError(
                 f"{key}: the first piece reaches from {first[0]:g} to {first[-1]:g}, not around 0"

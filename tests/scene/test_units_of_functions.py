@@ -93,8 +93,7 @@ def test_a_law_that_is_right_on_a_graded_surface():
     for grading in (analytic.Exponential(2.0), lambda s: 1 + 0.3 * np.tanh(s)):
         assert scene(law=law, grading=grading).law.checked
     line = r"contact\.law = CustomLaw: E\*\(s\)/E\* reaches \S+ at s = \S+, where no series of the law is"
-    for steep in (2.0, 12.0):
-        refused(line, law=law, grading=mcgw.Custom(lambda s, k=steep: np.exp(k * s), checked=False))
+    refused(line, law=law, grading=mcgw.Custom(lambda s: np.exp(40 * s), checked=False))
 
 
 # --- tables ---
