@@ -3,30 +3,18 @@
 from pathlib import Path
 from typing import Annotated
 
-from mcgw.commands.kinds import (
-    AT_MOST_ONE,
-    JUST_ONE,
-    Cautioned,
-    Pixel,
-    SceneOrMap,
-    SceneOrResults,
-    Table,
-    Unit,
-    file_out,
-    quantity,
-    values,
-)
+from mcgw.commands import kinds
 from mcgw.commands.outputs import ALL, JSONL, details, news, says, tell_cautions
 
 
 def show(
-    file: SceneOrResults,
+    file: kinds.SceneOrResults,
     *,
-    scene: Annotated[bool, AT_MOST_ONE] = False,
-    digest: Annotated[bool, AT_MOST_ONE] = False,
-    plan: Annotated[bool, AT_MOST_ONE] = False,
-    verify: Annotated[bool, AT_MOST_ONE] = False,
-    csv: Table = None,
+    scene: Annotated[bool, kinds.AT_MOST_ONE] = False,
+    digest: Annotated[bool, kinds.AT_MOST_ONE] = False,
+    plan: Annotated[bool, kinds.AT_MOST_ONE] = False,
+    verify: Annotated[bool, kinds.AT_MOST_ONE] = False,
+    csv: kinds.Table = None,
 ) -> bool | None:
     """Show the contents of an ensemble file, the progress of its run, or the plan of a scene.
 
@@ -84,16 +72,16 @@ def show(
 
 
 def solve(
-    scene: Cautioned,
+    scene: kinds.Cautioned,
     *,
-    pressure: Annotated[list[float] | None, values("Pa"), JUST_ONE] = None,
-    load: Annotated[list[float] | None, values("N"), JUST_ONE] = None,
-    area: Annotated[list[float] | None, values("m^2"), JUST_ONE] = None,
-    area_fraction: Annotated[list[float] | None, values("1"), JUST_ONE] = None,
-    nominal_separation: Annotated[list[str] | None, values(""), JUST_ONE] = None,
+    pressure: Annotated[list[float] | None, kinds.values("Pa"), kinds.JUST_ONE] = None,
+    load: Annotated[list[float] | None, kinds.values("N"), kinds.JUST_ONE] = None,
+    area: Annotated[list[float] | None, kinds.values("m^2"), kinds.JUST_ONE] = None,
+    area_fraction: Annotated[list[float] | None, kinds.values("1"), kinds.JUST_ONE] = None,
+    nominal_separation: Annotated[list[str] | None, kinds.values(""), kinds.JUST_ONE] = None,
     surfaces: int | None = None,
-    scatter: Annotated[float | None, quantity("1")] = None,
-    csv: Table = None,
+    scatter: Annotated[float | None, kinds.quantity("1")] = None,
+    csv: kinds.Table = None,
 ) -> None:
     """Find separation, area, stiffness, contacts and conductance at given loads.
 
@@ -144,17 +132,17 @@ def solve(
 
 
 def elastic(
-    source: SceneOrMap,
+    source: kinds.SceneOrMap,
     *,
-    pressure: Annotated[str | None, JUST_ONE] = None,
-    separation: Annotated[str | None, JUST_ONE] = None,
+    pressure: Annotated[str | None, kinds.JUST_ONE] = None,
+    separation: Annotated[str | None, kinds.JUST_ONE] = None,
     E_star: str | None = None,
-    pixel: Pixel = None,
-    unit: Unit = None,
+    pixel: kinds.Pixel = None,
+    unit: kinds.Unit = None,
     rel_err: float = 0.02,
     solves: int | None = None,
     seed: int = 1,
-    output: Annotated[Path | None, file_out(JSONL)] = None,
+    output: Annotated[Path | None, kinds.file_out(JSONL)] = None,
 ) -> None:
     """Find mean area, stiffness, conductance and gap of elastic surfaces from few boundary-element solves.
 

@@ -1,4 +1,4 @@
-"""A command from its function: parser, help, completion, reading, checks of outputs and exit code.
+"""A command from its function: parser, help, completion, checks of outputs and exit code.
 
 Parameters before ``*`` are typed by place, the others are options. Their types and defaults are those of the
 signature, with kinds of `mcgw.commands.kinds`; the docstring has their words, in place of types what stands
@@ -15,7 +15,7 @@ from typing import Any, NoReturn, get_args, get_origin
 
 import mcgw.commands
 from mcgw.commands.kinds import JUST_ONE, Call, Kind
-from mcgw.commands.outputs import ALL, NEWS, QUIET, check_outputs, reading, tell_cautions
+from mcgw.commands.outputs import ALL, NEWS, QUIET, check_outputs, tell_cautions
 
 _HOMES = {  # commands in the order of work, by the files in which they stand; any other has its own
     "init": "starting", "run": "drawing", "sweep": "drawing", "show": "answers", "compare": "studies",
@@ -25,8 +25,6 @@ _HOMES = {  # commands in the order of work, by the files in which they stand; a
 }  # fmt: skip
 _OTHERS = {*_HOMES.values(), "declared", "kinds", "outputs"}
 Command = Callable[..., bool | None]
-_NEGATIVE = re.compile(r"-\.?\d")  # a value that looks like an option, such as -1MPa
-_SECTION = re.compile(r"\n\n(?:Parameters|Examples)\n-+\n")
 _WORDS = re.compile(r"(\w+)(?: : (.+))?\n((?:    .+\n?)+)")
 
 
@@ -83,13 +81,13 @@ def parser_of(names: Sequence[str] = ()) -> argparse.ArgumentParser:
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
     for name in names or all_commands():
         function = getattr(import_module(f"mcgw.commands.{_HOMES.get(name, name)}"), name)
-        about, *sections = _SECTION.split(cleandoc(function.__doc__))
+        about, *sections = re.split(r"\n\n(?:Parameters|Examples)\n-+\n", cleandoc(function.__doc__))
         about = f"{about[0].lower()}{' '.join(about.split())[1:]}"
         example = f"example: {sections[-1]}" if sections else None
         sub = commands.add_parser(
             name, help=about.partition(". ")[0].rstrip("."), description=about, epilog=example
         )
-        sub._negative_number_matcher = _NEGATIVE
+        sub._negative_number_matcher = re.compile(r"-\.?\d")  # no option: a value such as -1MPa
         _add_arguments(sub, function, sections[0] if sections[1:] else "")
         amount = sub.add_mutually_exclusive_group()
         quiet, verbose = (
@@ -166,8 +164,7 @@ def execute(function: Command, args: argparse.Namespace) -> int:
     call = Call(args, next((path for path in files if isinstance(path, Path)), None))
     parts.sort(key=lambda part: part[1].file != "out")  # a scene may take its seed from an output
     values = {each.name: kind.read(getattr(args, each.name), option, call) for each, kind, option, _ in parts}
-    reading(call.inputs)
-    check_outputs(call.outputs)
+    check_outputs(call.outputs, call.inputs)
     done = function(**values)
     for source, instead in call.cautious:
         tell_cautions(source, instead)

@@ -10,7 +10,6 @@ from mcgw.commands.outputs import FIGURE, NPY, TOML, Output, check_outputs, deta
 from mcgw.maps.steps import Form, LinesTo, Missing, SpikesTo
 
 E_STAR = 100e9  # Pa, default
-_AREA = 1e-6  # m^2, default of numbers alone
 
 
 def _maps(paths: list[Path], call: Call) -> list[Path]:
@@ -181,7 +180,7 @@ def _of_numbers(
         numbers[key] = value
     pruning = {"pruning": _share(numbers.pop("pruning"))} if "pruning" in numbers else {}
     moments, doubts = moments_from(numbers, **pruning)
-    area = nominal_area or _AREA
+    area = nominal_area or 1e-6  # m^2, default of numbers alone
     scene = scene_of_moments(moments, area, E_star, "From " + " ".join(iso)[:60])
     told = f"m0 = {moments.m0:.4g} m^2, m2 = {moments.m2:.4g}, m4 = {moments.m4:.4g} 1/m^2"
     write_scene(scene, output, None, [" ".join(iso), told, *doubts])

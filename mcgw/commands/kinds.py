@@ -102,13 +102,11 @@ def pair(text: str, option: str, form: str) -> tuple[str, str]:
 
 
 def as_value(text: str) -> Any:
-    """Return what a text is as TOML, a number such as .5, or the text."""
+    """Return what a text is as TOML, or the text."""
     from mcgw.formats.named_files import loads
 
     with suppress(ValueError):
         return loads(f"value = {text}")["value"]
-    with suppress(ValueError):
-        return float(text)
     return text
 
 

@@ -53,13 +53,10 @@ class Output:
     grows: bool = False
 
 
-def reading(inputs: Iterable[Path]) -> None:
-    """Let no output of this command replace these files."""
-    _inputs.set(tuple(inputs))
-
-
-def check_outputs(outputs: Iterable[Output]) -> None:
+def check_outputs(outputs: Iterable[Output], inputs: Iterable[Path] | None = None) -> None:
     """Refuse outputs that would destroy something or cannot be written; make missing folders and say so.
+
+    No later output of this command replaces the inputs either.
 
     Raises
     ------
@@ -69,6 +66,8 @@ def check_outputs(outputs: Iterable[Output]) -> None:
     """
     from mcgw.formats.files import check_output, refuse_read_only
 
+    if inputs is not None:
+        _inputs.set(tuple(inputs))
     outputs = list(outputs)
     for i, output in enumerate(outputs):
         for why in _faults(output, outputs[:i]):

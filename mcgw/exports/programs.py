@@ -45,7 +45,7 @@ class Program:
 
 _BEHAVIOR = "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR"
 _INCLUDED = "under *SURFACE INTERACTION: *INCLUDE, INPUT={file}"
-_ROWS = (
+PROGRAMS = {program.name: program for program in (
     # Rules and limits as in CalculiX's manual and its sources (surfacebehaviors.f, springforc_n2f.f).
     Program(
         "calculix", (".inp",), "**", ", ",
@@ -99,8 +99,7 @@ _ROWS = (
             "beyond the ends: Extrapolation Constant",
         )),
     ),
-)  # fmt: skip
-PROGRAMS = {program.name: program for program in _ROWS}
+)}  # fmt: skip
 
 
 class Sheet(NamedTuple):

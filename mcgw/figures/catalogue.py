@@ -16,7 +16,6 @@ from mcgw.figures.style import power_of_ten, prefixed
 from mcgw.machine.progress import steps
 from mcgw.scene.scene_file import scene_from
 
-_SURFACES = 2000  # of the paper's figures
 _SPREADING = ("load", "area", "stiffness")
 _BESIDE = 1.5  # sigma above the highest separation that a grading is shown
 _AT, _AT_LOAD = np.arange(5.0), np.array([1.0, 2.0, 3.0])  # separations of the paper's ratios
@@ -200,7 +199,7 @@ CATALOGUE: dict[str, tuple[Callable[..., FigureData], tuple[str, ...]]] = {  # n
 def of_paper() -> Compared:
     """Take the surfaces of the preset ``demo``, in the paper's reduced quantities."""
     text = (files("mcgw.scene") / "presets" / "demo.toml").read_text(encoding="utf-8")
-    return Compared(scene_from(text).replace(n_surfaces=_SURFACES), swept=True)
+    return Compared(scene_from(text).replace(n_surfaces=2000), swept=True)  # of the paper's figures
 
 
 def _lacking(f: Compared, need: str) -> str:

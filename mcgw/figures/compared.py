@@ -24,9 +24,7 @@ SCENE = "this scene"
 _GAMMAS = (2.0, 1.5, 1.2, 1.0, 0.8, 0.5, 0.2)
 _MOST_SURFACES, _MOST_ASPERITIES = 1000, 1_000_000_000
 _MOST_SEPARATIONS, _FINE, _COARSE = 17, 49, 25  # separations of lines: own radii are slow
-_SWEPT, _SWEPT_LINE = np.linspace(0, 4, 17), np.linspace(0, 4, 161)
 _MOST_HEIGHTS = 10_000_000
-_SAME_SEPARATION = 1e-12  # of searches for the same load
 
 
 def of_gamma(gamma: float) -> str:
@@ -71,7 +69,9 @@ class Compared:
     def scene(self) -> Scene:
         """What is drawn: pressed once, with the sums that the figures show, at some of its separations."""
         if self.swept:
-            return self.asked.replace(grading=Homogeneous(), separations=_SWEPT, quantities=tuple(QUANTITIES))
+            return self.asked.replace(
+                grading=Homogeneous(), separations=np.linspace(0, 4, 17), quantities=tuple(QUANTITIES)
+            )
         h = np.unique(self.asked.separations)
         cheap = _MOST_ASPERITIES // self.asked.n_asperities
         return self.asked.replace(
@@ -128,7 +128,7 @@ class Compared:
     def line(self) -> Array:
         """Separations of the lines."""
         if self.swept:
-            return _SWEPT_LINE
+            return np.linspace(0, 4, 161)
         fine = _FINE if self.scene.summits is None else _COARSE
         return np.linspace(self.h.min(), self.h.max(), fine) if len(self.h) > 1 else self.h
 
@@ -147,7 +147,7 @@ class Compared:
         """Separations with the load that the reference has at these."""
         found = self.of(key).theory.separation_at("load", self.theory(self.reference, "load", h))
         # Where both have the same load, the last digit would draw them in other cells.
-        return np.where(np.abs(found - h) < _SAME_SEPARATION, h, found)
+        return np.where(np.abs(found - h) < 1e-12, h, found)  # of searches for the same load
 
     @_once
     def drawn(self, key: Key, h: Array | None = None) -> Ensemble:

@@ -21,11 +21,9 @@ from mcgw.maps.waves import Uncertain
 
 _POINTS = 700  # points of a map along each side: more do not show
 _MOST_MARKS = 3000
-_CUTOFFS = 8
 _WIDTH, _LINES = 42, 27  # of the text, in characters and lines
 _LISTED: Any = {"va": "top", "ha": "left", "family": "monospace", "fontsize": 6.6}
 _BARS: Any = {"bins": "auto", "density": True, "color": SAMPLE, "label": "summits"}
-_TIMES = 12.0  # from the shortest cutoff to the longest
 
 
 def fit_figure(fit: Fit, raw: Topography, ready: Prepared) -> FigureData:
@@ -91,8 +89,8 @@ def _summits_panel(fit: Fit, ready: Prepared) -> Panel:
 def _moments_panel(ready: Prepared) -> Panel:
     """m0, m2, m4 over those at the cutoff that was chosen, against cutoff."""
     first = ready.asked.cutoff or 2 * max(ready.used.pixel)
-    last = min(_TIMES * first, min(ready.levelled.size) / 4)
-    cutoffs, rows = np.geomspace(first, max(last, 1.01 * first), _CUTOFFS), []
+    last = min(12.0 * first, min(ready.levelled.size) / 4)  # from the shortest cutoff to the longest
+    cutoffs, rows = np.geomspace(first, max(last, 1.01 * first), 8), []
     for cutoff in cutoffs:
         try:
             m = moments_of(summit_sums_of(smooth(ready.levelled, float(cutoff)), across=1))

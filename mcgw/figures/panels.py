@@ -25,7 +25,6 @@ GAMMA, SEPARATION, PRESSURE = "grading factor γ", "separation d/σ", "pressure 
 _COLUMNS = ("panel", "series", "kind", "x", "theory", "mean", "stderr")
 _WIDTH, _NARROWEST = 3.7, 4.4  # inches, of a panel with its labels and of a figure
 _TALL, _RESIDUAL, _TEXTS = 3.2, 0.8, 0.6  # inches, of a panel, residuals under it, title and caption
-_MOST_COLUMNS = 3  # more are too small to read on a page
 _KEY, _THEORY = "Monte Carlo, 95 %", "theory"
 _MARKS = look("Monte Carlo")
 _WHITE: Any = {"ms": 4, "mfc": "white", "mew": 0.9}
@@ -112,7 +111,7 @@ def draw(data: FigureData) -> Figure:
     or a scale of ten to one, hide what matters.
     """
     narrow = sum(not panel.wide for panel in data.panels)
-    columns = 2 if narrow == 4 else min(narrow, _MOST_COLUMNS)
+    columns = 2 if narrow == 4 else min(narrow, 3)  # more are too small to read on a page
     rows: list[list[Any]] = [[]]
     for k, panel in enumerate(data.panels):
         if len(rows[-1]) + (width := columns if panel.wide else 1) > columns:

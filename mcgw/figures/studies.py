@@ -8,19 +8,9 @@ import numpy as np
 from matplotlib.ticker import EngFormatter, NullLocator
 
 from analytic.arrays import Array
+from mcgw.figures import style
 from mcgw.figures.panels import SEPARATION, FigureData, Panel, Series, words
-from mcgw.figures.style import (
-    BAND,
-    HOMOGENEOUS,
-    LEVEL,
-    MONTE_CARLO,
-    SAMPLE,
-    SEEN,
-    THEORY,
-    contact_label,
-    look,
-    shown_title,
-)
+from mcgw.figures.style import contact_label, look, shown_title
 from mcgw.machine.terminal import one_line
 from mcgw.statistics.comparison import Comparison, SweepComparison
 from mcgw.statistics.verdict import FALSE_ALARM
@@ -33,21 +23,16 @@ if TYPE_CHECKING:  # these import the samplers
 
 _BIN = 0.5  # standard errors
 _RESIDUAL = "residual (standard errors)"
-_CAPTION = (
-    "Residuals of points with the same surfaces, and of neighbouring separations, are correlated; the "
-    "verdict allows for this."
-)
-_SURFACES, _ASPERITIES = "surfaces $M$", "asperities $N$"
 _FLOOR, _LEAST = 1e-14, 1e-12  # errors and probabilities that are drawn
 _TWO = 1.96  # standard errors that 95 of 100 keep
 _TIME, _BOUND = "CPU time (s)", "error (95 % bound)"
 _RULES: dict[str, dict[str, Any]] = {
-    "theory": {"color": THEORY, "marker": "*"},
-    "formula": {"color": THEORY, "marker": "*"},
-    "exact law": {"color": HOMOGENEOUS, "marker": "P"},
+    "theory": {"color": style.THEORY, "marker": "*"},
+    "formula": {"color": style.THEORY, "marker": "*"},
+    "exact law": {"color": style.HOMOGENEOUS, "marker": "P"},
     "solve": {"color": look("tail")["color"], "marker": "o"},
     "surfaces": {"color": look("tail")["color"], "marker": "s"},
-    "boundary elements": {"color": HOMOGENEOUS, "marker": "D"},
+    "boundary elements": {"color": style.HOMOGENEOUS, "marker": "D"},
 }
 
 
@@ -58,7 +43,8 @@ def comparison_figure(comparison: Comparison | SweepComparison) -> FigureData:
         title = f"{shown_title(comparison.sweep.scenes[0], 'Sweep')}: {len(comparison.points)} scenes"
         said = f"Monte Carlo and theory {verdict.word}: p = {verdict.p:.3g} for all points together"
         panels = (residuals_panel("all points", comparison.residuals), _worst_panel(comparison))
-        return FigureData(f"{title}\n{said}", _CAPTION, panels)
+        shared = "Residuals of points with the same surfaces, and of neighbouring separations, are correlated"
+        return FigureData(f"{title}\n{said}", f"{shared}; the verdict allows for this.", panels)
     ensemble, scene = comparison.ensemble, comparison.ensemble.scene
     curves = tuple(quantity_panel(comparison, name) for name in comparison.curves)
     seen = verdict.seen.replace("chi-square", "χ² =").replace(" degrees of freedom", " degrees")  # one line
@@ -90,8 +76,8 @@ def residuals_panel(title: str, z: Array) -> Panel:
 
     def paint(axis: Any) -> None:
         bins = np.arange(-most, most + _BIN / 2, _BIN)
-        axis.hist(z, bins, color=SAMPLE, label=f"{len(z)} means")
-        axis.plot(x, expected, color=THEORY, label="normal: expected if theory holds")
+        axis.hist(z, bins, color=style.SAMPLE, label=f"{len(z)} means")
+        axis.plot(x, expected, color=style.THEORY, label="normal: expected if theory holds")
         axis.set_ylim(0.4, 3 * max(expected.max(), 1.0))
 
     return Panel(title, _RESIDUAL, "means", scales=("linear", "log"), paint=paint)
@@ -102,8 +88,8 @@ def _worst_panel(comparison: SweepComparison) -> Panel:
     t = comparison.worst[0]
 
     def paint(axis: Any) -> None:
-        axis.axhspan(-2, 2, color=BAND, zorder=0)
-        axis.axhline(0, color=LEVEL, lw=0.8, zorder=1)
+        axis.axhspan(-2, 2, color=style.BAND, zorder=0)
+        axis.axhline(0, color=style.LEVEL, lw=0.8, zorder=1)
         for name, residual, counts in zip(t.quantities, t.residual, t.counts, strict=True):
             z, label = np.where(counts, residual, np.nan), name.replace("_", " ")
             axis.plot(t.separations, z, ms=3, mfc="none", lw=1, label=label, **look(name))
@@ -138,8 +124,8 @@ def _slope_panel(curve: "Slope") -> Panel:
 
     def paint(axis: Any) -> None:
         bars = _TWO * curve.stderr * curve.errors
-        axis.plot(curve.sizes, fit, color=THEORY, label="slope −1/2")
-        look = SEEN | {"ms": 4, "fmt": "o", "label": "measured, 95 %"}
+        axis.plot(curve.sizes, fit, color=style.THEORY, label="slope −1/2")
+        look = style.SEEN | {"ms": 4, "fmt": "o", "label": "measured, 95 %"}
         axis.errorbar(curve.sizes, curve.errors, bars, **look)
         if not of_m:  # of less than a decade or two, with others named between
             axis.xaxis.set_minor_locator(NullLocator())
@@ -147,7 +133,8 @@ def _slope_panel(curve: "Slope") -> Panel:
 
     title = f"slope {curve.value:.4f} ± {_TWO * curve.uncertainty:.4f}".replace("-", "−")
     ylabel = "rms error (standard deviations)" if of_m else "rms relative error"
-    return Panel(title, _SURFACES if of_m else _ASPERITIES, ylabel, scales=("log", "log"), paint=paint)
+    xlabel = "surfaces $M$" if of_m else "asperities $N$"
+    return Panel(title, xlabel, ylabel, scales=("log", "log"), paint=paint)
 
 
 def checks_panel(found: "Convergence") -> Panel:
@@ -156,9 +143,9 @@ def checks_panel(found: "Convergence") -> Panel:
     limit, rows = FALSE_ALARM / len(p), np.arange(len(p))[::-1]
 
     def paint(axis: Any) -> None:
-        axis.axvspan(_LEAST / 10, limit, color=BAND, zorder=0)
+        axis.axvspan(_LEAST / 10, limit, color=style.BAND, zorder=0)
         axis.hlines(rows, p, 1, color="0.7", lw=1)
-        for some, color, marker in ((p > limit, THEORY, "o"), (p <= limit, MONTE_CARLO, "X")):
+        for some, color, marker in ((p > limit, style.THEORY, "o"), (p <= limit, style.MONTE_CARLO, "X")):
             axis.scatter(p[some], rows[some], color=color, marker=marker, s=28, zorder=3)
         axis.set(xlim=(_LEAST / 3, 2.5), ylim=(-0.7, len(p) - 0.3))
         axis.set_yticks(rows, [check.name for check in found.checks])
@@ -220,7 +207,7 @@ def _ladder_panel(found: "Tradeoff") -> Panel:
 
     def paint(axis: Any) -> None:
         if known:
-            axis.axhline(model, color=LEVEL, lw=1, label="error of the model")
+            axis.axhline(model, color=style.LEVEL, lw=1, label="error of the model")
         for name, group in groupby(found.ladder, lambda rung: rung.name):
             rungs, own = [*group], _RULES[name]
             time, whole = [r.seconds for r in rungs], [r.whole if known else r.drawn for r in rungs]

@@ -51,14 +51,12 @@ _TOP = len(_DASHES)
 
 FAMILIES: tuple[tuple[str, ...], ...] = (  # what one figure may show together, in the order of the colours
     ("load", "area", "stiffness", "contacts", "conductance", "yielded"),
-    ("Chang", "Zhao", "Kogut", "Jackson"),
     ("cells", "tail", "aggregate", "direct"),
     ("own radii", "one radius", "nayak", "measured summits"),
     ("$m_0$", "$m_2$", "$m_4$"),
 )
 PAIRS: tuple[tuple[str, ...], ...] = (
     ("loading", "unloading"),
-    ("in", "back"),
     ("interacting", "independent"),
     ("exact", "Gaussian"),
     ("theory", "Monte Carlo"),
@@ -78,8 +76,6 @@ MEANINGS = {
     "homogeneous": _of(HOMOGENEOUS, 1) | {"marker": "v"},
     "homogeneous, Hertz": _of(LEVEL, 3),
     "Hertz": _of(HOMOGENEOUS, 0) | {"marker": "v"},
-    "mean": _of(MONTE_CARLO, 0),
-    "no film": _of(HOMOGENEOUS, 0) | {"marker": "v"},
 }
 
 # One style for all figures. Texts stay texts, so that they can be searched, copied and edited: in SVG set in
@@ -116,7 +112,7 @@ def look(label: str, place: int = 0) -> dict[str, Any]:
     Parameters
     ----------
     label : str
-        A name of `MEANINGS`, of a quantity on unloading, "γ = 0.5", "d/σ = 2", "N = 10³", or "b = 0.1".
+        A name of `MEANINGS`, of a quantity on unloading, "γ = 0.5", "d/σ = 2" or "N = 10³".
     place : int, optional
         Which line of its panel it is: tells those of other labels apart.
 
@@ -129,16 +125,14 @@ def look(label: str, place: int = 0) -> dict[str, Any]:
         return MEANINGS[label]
     if label.removesuffix("_unloading") in MEANINGS:
         return MEANINGS[label.removesuffix("_unloading")] | {"linestyle": "--"}
-    found = re.match(r"(γ|d/σ|N|b) = ([0-9.]+)([⁰¹²³⁴⁵⁶⁷⁸⁹]*)$", label)
+    if decade := re.match(r"N = 10([⁰¹²³⁴⁵⁶⁷⁸⁹]+)$", label):
+        power = int(decade[1].translate(_LOWERED)) - 2
+        return _of(_between(power / 4, STEPS), power)
+    found = re.match(r"(γ|d/σ) = ([0-9.]+)$", label)
     if found is None:
         return _of(_CYCLE[place % len(_CYCLE)], place)
     number = float(found[2])
-    if found[1] == "γ":
-        return _of_gamma(number)
-    if found[1] == "d/σ":
-        return _of(_between(number / 4, SEPARATIONS), round(number))
-    power = int(found[3].translate(_LOWERED)) - 2 if found[3] else round(math.log10(number)) + 2
-    return _of(_between(power / 4, STEPS), power)
+    return _of_gamma(number) if found[1] == "γ" else _of(_between(number / 4, SEPARATIONS), round(number))
 
 
 def line(label: str, place: int = 0) -> dict[str, Any]:

@@ -22,7 +22,6 @@ from mcgw.errors import StoreError
 # What tells a file from another that has taken its name: inode, size, time of the last change.
 State = tuple[int, int, int]
 Expected = State | None | Literal["anything"]
-_WRITABLE = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
 
 Waiting = tuple[Path, Path, Expected]  # its temporary name, its own, and which file has that now
 _waiting: ContextVar[list[Waiting] | None] = ContextVar("_waiting", default=None)
@@ -135,7 +134,7 @@ def refuse_read_only(path: Path) -> None:
     """Refuse to replace a file that nobody may write."""
     with suppress(OSError):  # there is none
         mode = os.lstat(path).st_mode
-        if stat.S_ISREG(mode) and not mode & _WRITABLE:
+        if stat.S_ISREG(mode) and not mode & 0o222:
             raise StoreError(f"{path}: is read-only; choose another -o, or make it writable")
 
 

@@ -23,7 +23,6 @@ MOST_CHUNK = 2**26  # bytes of a chunk that is larger than its data
 MOST_OBJECTS, DEEPEST = 4096, 32  # groups, datasets and types of a file; groups within groups
 MOST_MEMBERS = 1000  # of an archive
 _UNPACKED, _RATIO = 2**26, 200  # bytes that any archive may unpack to; and for each byte of it
-_MOST_XML = 2**26  # bytes of a description
 # Deflate, shuffle, fletcher32, szip, nbit and scale-offset; any other is code that HDF5 loads from a folder.
 _FILTERS = {*range(1, 7), h5py.h5z.FILTER_LZF}
 
@@ -157,7 +156,7 @@ def _fault(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> str:
         return "is encrypted, or not packed by deflate"
     if not member.filename.lower().endswith(".xml"):
         return ""
-    if member.file_size > _MOST_XML:
+    if member.file_size > 2**26:  # bytes of a description
         return f"is a description of {member.file_size} bytes"
     text = archive.read(member)
     if b"<!DOCTYPE" in text or b"<!ENTITY" in text or b"\0" in text:

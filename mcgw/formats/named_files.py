@@ -23,7 +23,6 @@ _MOST_PARTS = 100  # of a dotted key: the parser's time grows as their square
 _LONG_KEY = re.compile(rf"(?<![\w\"'-])(?:[\w\"'-]++[ \t]*+\.[ \t]*+){{{_MOST_PARTS}}}")
 # Texts and comments, which may be full of dots.
 _ASIDE = re.compile(r'"(?:[^"\\\n]|\\.)*+"|\'[^\'\n]*+\'|#[^\n]*+')
-_TOML_DIGITS, _JSON_DIGITS = 4000, 300  # of a number: Python reads no more; no float has more
 
 
 def open_regular(path: Path) -> int:
@@ -112,7 +111,7 @@ def loads(text: str) -> dict[str, Any]:
     """
     if _LONG_KEY.search(text) and _LONG_KEY.search(_ASIDE.sub("t", text)):
         raise ValueError(f"a dotted key has more than {_MOST_PARTS} parts")
-    parsed: dict[str, Any] = _parsed(tomllib.loads, text, _TOML_DIGITS)
+    parsed: dict[str, Any] = _parsed(tomllib.loads, text, 4000)  # of a number: Python reads no more
     return parsed
 
 
@@ -125,7 +124,7 @@ def loads_json(text: str | bytes) -> Any:
         If it is not JSON in UTF-8, a number has more than 300 digits, or brackets are nested too deeply.
     """
     text = text if isinstance(text, str) else text.decode("utf-8-sig")
-    return _parsed(partial(json.loads, parse_constant=_refuse_constant), text, _JSON_DIGITS)
+    return _parsed(partial(json.loads, parse_constant=_refuse_constant), text, 300)  # no float has more
 
 
 def _refuse_constant(word: str) -> float:

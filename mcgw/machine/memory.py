@@ -10,7 +10,6 @@ from mcgw.errors import StoreError
 
 _Result = TypeVar("_Result")
 _MOST = 2**63 - 1
-_SMALL = 2**24  # bytes; looking up what is available takes half a millisecond
 
 
 def check_memory(what: str, size: int) -> None:
@@ -21,7 +20,7 @@ def check_memory(what: str, size: int) -> None:
     StoreError
         With both numbers.
     """
-    if size < _SMALL:
+    if size < 2**24:  # bytes; looking up what is available takes half a millisecond
         return
     memory = memory_available()
     if size > memory:

@@ -15,7 +15,6 @@ _STEPS, _CLOSE = 2000, 1e-8
 _REACH = 3  # pixels from a point to the ring around it: a spike is narrower than five
 BENT = 7.0  # times the usual bend: exceeded once in 4e11 points of a Gaussian map
 _OF_MEDIAN = 0.6745  # median over standard deviation of a Gaussian
-_ENOUGH = 2**20  # rings: enough for their median to a thousandth
 _OUT = 3.0  # ranges of the ring: 12 deviations of white noise beyond it; ridges, pits and peaks stay below
 _LOOKED_AT = 2**18  # points tell the steps of up to some thousand levels
 _MOST_LEVELS = 2**12
@@ -72,7 +71,7 @@ def spike_heights(topography: Topography) -> Array:
     filters = ndimage.minimum_filter, ndimage.maximum_filter
     low, high = (extreme(heights, footprint=ring, mode="mirror") for extreme in filters)
     high -= low
-    some = high[:: max(heights.size // _ENOUGH, 1)]
+    some = high[:: max(heights.size // 2**20, 1)]  # rings: enough for their median to a thousandth
     usual = float(np.median(some)) or float(some.mean())  # 0: most of it is flat
     out = np.clip(heights - low, None, 0) + np.clip(heights - low - high, 0, None)
     return np.where(np.abs(out) > _OUT * np.maximum(high, usual), out, 0.0)

@@ -24,15 +24,11 @@ from mcgw.maps.profile_fit import ProfileFit
 from mcgw.maps.several_maps import disagreement
 from mcgw.maps.topography import STEEPEST
 
-_WIDEST = 1e-2  # m
-_FEW_WAVES = 50  # waves for sigma to a tenth
 _PIXELS = 10.0  # pixels that a cutoff wavelength should have
 _RESOLVED = 0.05  # allowed ratio of two estimates of m4, reached at about ten pixels per wavelength
-_LOST = 0.1  # of the summits
 _SKEW, _ALPHA, _APART = 0.3, 1.5, 1.2
 _FEW, _STREAKY = 100, 1.5
 _PEAKS, _UNSURE = 1.2, 0.2
-_ENOUGH = 2**20  # second differences
 _NEAR = slice(1, 9)  # waves along a row that are nearly as long as those that do not change along it
 _ALTERNATE = -0.4  # correlation of second differences of neighbours: -2/3 of independent offsets
 LIMITS = {"range": 1e-3, "rounding": 0.05, "rows": 0.05, "columns": 0.05}  # shares that are let pass
@@ -122,7 +118,7 @@ def _of_the_map(fit: Fit, ready: Prepared) -> Iterator[Found]:
     level, pixel, cutoff = ready.levelled, max(ready.used.pixel), ready.asked.cutoff
     if level.steepness > STEEPEST:
         yield "slope", level.steepness
-    if max(level.pixel) > _WIDEST:
+    if max(level.pixel) > 1e-2:  # m
         yield "unit", max(level.pixel)
     above = spike_heights(level)
     if above.any():
@@ -146,7 +142,7 @@ def _of_the_map(fit: Fit, ready: Prepared) -> Iterator[Found]:
 
 
 def _few_waves(fit: Fit) -> Iterator[Found]:
-    if fit.waves.independent < _FEW_WAVES:
+    if fit.waves.independent < 50:  # waves for sigma to a tenth
         yield "waves", fit.waves.independent, 100 * fit.waves.spreads["sigma"].error
 
 
@@ -166,7 +162,7 @@ def _of_the_fit(fit: Fit, use: str) -> Iterator[Found]:
     overlap, hidden = fit.estimates[used].overlap, " summits are as broad as they are far apart,"
     if used == "caps" and fit.visible is not None:
         sharp = visible(overlap).share
-        if (lost := sharp - fit.visible.share) > _LOST:
+        if (lost := sharp - fit.visible.share) > 0.1:  # of the summits
             yield "blur", 100 * lost
         hidden = f" {100 * (1 - sharp):.0f} % of such caps are hidden under others,"
     if overlap > CROWDED:
@@ -251,5 +247,5 @@ def _offsets(ready: Prepared, axis: int) -> float:
 
 def _second(z: Array) -> Array:
     """Second differences from row to row, around rows that are equally far apart."""
-    j = np.arange(1, len(z) - 1, max(z.size // _ENOUGH, 1))
+    j = np.arange(1, len(z) - 1, max(z.size // 2**20, 1))  # second differences
     return np.asarray(z[j - 1] - 2 * z[j] + z[j + 1])

@@ -35,7 +35,6 @@ from mcgw.validity.lookup import moments_of_nayak
 Heights = Literal["gaussian", "nayak", "table", "measured", "summits"]
 _EQUAL = 1e-3  # of the standard deviation of the map: summits that differ less are equally high
 _FITTED = ("load", "area", "stiffness", "contacts", "conductance")  # wanted quantities of a fitted scene
-_ONE_LINE = 110  # characters of a list in a scene
 _NATURAL = {  # units of a scene that a person reads, and the numbers for which one is chosen
     "m": (" um", " nm", " mm"),
     "m^2": (" mm^2", " um^2", " cm^2"),
@@ -263,7 +262,7 @@ def _in_few_lines(text: str, separations: Sequence[float]) -> str:
     def short(found: re.Match[str]) -> str:
         line = re.sub(r",? *\n *(?=\])|(?<=\[)\n *", "", found[0])
         line = re.sub(r" *\n *", " ", line)
-        return line if len(line) <= _ONE_LINE else found[0]
+        return line if len(line) <= 110 else found[0]  # characters of a list in a scene
 
     start, stop, num = separations[0], separations[-1], len(separations)
     even = [float(f"{h:.15g}") for h in np.linspace(start, stop, num)]  # as a range is read

@@ -20,7 +20,6 @@ READERS: dict[str, Callable[[Path, Given], Raw]] = {
     **dict.fromkeys(_TEXT, read_text),
 }
 _SENTINELS = (-9999.0, -99999.0, -32768.0, 32767.0, 1e30, -1e30, 1e10, -1e10, 3.4028235e38, -3.4028235e38)
-_FAR = 3.0  # ranges of all other heights
 _EQUAL = 1e-6  # relative, of a height and the number that stands for a missing one; beyond 1e30 a hundredth
 
 
@@ -179,6 +178,6 @@ def _sentinel(z: Array) -> tuple[float, int] | None:
             if not others.size:
                 continue
             low, high = float(others.min()), float(others.max())
-            if max(low - value, value - high) > _FAR * (high - low):
+            if max(low - value, value - high) > 3.0 * (high - low):  # ranges of all other heights
                 return value, int(np.count_nonzero(marked))
     return None

@@ -30,12 +30,10 @@ from mcgw.maps.topography import XYZ, ForeignError, Given, Raw, Topography, chec
 FILETYPE = "mcgw-surface"
 WRITTEN = (".npy", ".h5", ".sdf")
 _HEADER = struct.Struct("<8s10s12s12sHHddddBBB")
-_DOUBLE = 7
 _MOST_JSON = 2**16
 _MOST_POINTS = 65535  # along each axis: 16 bits
 _MOST_TEXT = 2**26  # bytes of a text, which it takes in whole
 _LARGEST = 3.4e38  # in the numbers of a file, which mark a missing point by the least of their type
-_MAGIC = 64  # bytes that tell a text
 _PRINTABLE = bytes(range(32, 127)) + b"\t\r\n"
 
 
@@ -139,7 +137,7 @@ def _write_sdf(topography: Topography, path: Path) -> None:
         )
     stamp = datetime.now(UTC).strftime("%d%m%Y%H%M").encode()
     scales = (*topography.pixel, 1.0, 0.0)  # of x, y and z, and the resolution of z
-    head = (b"bISO-1.0", b"mcgw".ljust(10), stamp, stamp, columns, rows, *scales, 0, _DOUBLE, 0)
+    head = (b"bISO-1.0", b"mcgw".ljust(10), stamp, stamp, columns, rows, *scales, 0, 7, 0)  # 7: a double
     with whole_file(path) as unfinished, open(unfinished, "wb") as file:
         file.write(_HEADER.pack(*head))
         for row in topography.heights:
@@ -216,7 +214,7 @@ def _check(path: Path) -> None:
         check_archive(path)
     elif path.stat().st_size > _MOST_TEXT:
         with open(path, "rb") as file:
-            start = file.read(_MAGIC)
+            start = file.read(64)  # bytes that tell a text
         if not start.strip(_PRINTABLE):
             raise ValueError(f"{path}: a text longer than {_MOST_TEXT} bytes; save it as .npy")
 

@@ -15,11 +15,7 @@ from mcgw.maps.topography import SMALLEST, Topography
 from mcgw.scene.kinds import Word, argument, arguments, whole
 from mcgw.scene.section import Kind
 
-_NEIGHBOURS = 2  # pixels on each side that differences need
 _LEAST = 0.5  # share of measured points that must have all neighbours, else filled ones count
-_SHARE = 0.1  # share of the filter's window that may be filled
-_ROUNDS = 5  # searches for spikes: small ones stand beside large ones
-_ROUNDING = 1e-12  # share of the removed range
 
 
 @dataclass(frozen=True)
@@ -150,9 +146,9 @@ def _levelled(
 ) -> tuple[Topography, Marks | None]:
     """Return the map without spikes, form and holes; and where its holes are."""
     kept, number, largest = topography, 0, 0.0
-    for _ in range(_ROUNDS):
+    for _ in range(5):  # searches for spikes: small ones stand beside large ones
         plain = without_form(kept, asked.form)
-        if plain.highest < _ROUNDING * kept.highest:
+        if plain.highest < 1e-12 * kept.highest:  # share of the removed range
             raise ValueError(f"the map is flat after removing its form ({asked.form})")
         whole = replace(plain, heights=filled(plain.heights))
         if asked.spikes == "keep":
@@ -177,10 +173,10 @@ def _seen(topography: Topography, holes: Marks, asked: Preparation, notes: list[
         seen = ~holes
     else:
         share = smooth(replace(topography, heights=holes.astype(np.float64)), asked.cutoff).heights
-        seen = share < _SHARE
+        seen = share < 0.1  # share of the filter's window that may be filled
     number = int(np.count_nonzero(holes))
     told = f"missing: {number} of {holes.size} points ({100 * holes.mean():.2g} %) filled from their edges"
-    whole = ndimage.minimum_filter(seen, 2 * _NEIGHBOURS + 1)
+    whole = ndimage.minimum_filter(seen, 2 * 2 + 1)  # pixels on each side that differences need
     left = np.count_nonzero(whole) / max(np.count_nonzero(~holes) * seen.size / holes.size, 1)
     if asked.missing == "fill" or (asked.missing == "auto" and left < _LEAST):
         why = (

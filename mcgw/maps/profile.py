@@ -32,16 +32,13 @@ from mcgw.maps.steps import Form
 from mcgw.maps.topography import STEEPEST
 
 _EVEN = 0.1  # share of a step that places may be off an even grid
-_MOST_MISSING = 0.1  # share of all points
 _LEAST = 8  # points
 _WIDEST, _LONGEST = 1e-2, 0.2  # m, longest spacing and profile of a stylus
 PROFILE_ORDERS = {"none": 0, "plane": 1, "quadratic": 2}
-_SERIES = 0.02  # below it two terms of the series suffice for 1e-9
 _REACH = 1.5  # range of the weights, in cutoffs: exp(-16) beyond
 _LEAST_REACH = 24  # points: with a short cutoff weights decay slowly
 _STENCIL = 4  # points, without a cutoff
 _FINE = 16  # points of a spectrum per weight
-_ENDS = 0.1  # share of a profile faded out at its ends
 SMOOTH = 3  # waves over which power is averaged
 _LOW = slice(1, 5)  # waves that show what the form removed
 
@@ -131,7 +128,7 @@ def profile_at(places: Array, heights: Array, assumed_unit: str = "") -> Profile
     first, last = int(np.argmax(known)), int(known.size - np.argmax(known[::-1]))
     places, heights, known = places[first:last], heights[first:last], known[first:last]
     missing = int(np.count_nonzero(~known))
-    if missing > _MOST_MISSING * known.size:
+    if missing > 0.1 * known.size:  # share of all points
         raise ValueError(f"{missing} of the {known.size} heights are missing; measure the profile again")
     if places.size > 1 and places[-1] < places[0]:
         places, heights, known = places[::-1], heights[::-1], known[::-1]
@@ -194,7 +191,7 @@ def areal_weights(wave_numbers: Array, cutoff: float) -> Array:
         Shape (3, waves).
     """
     x = wave_numbers * math.sqrt(filter_variance(cutoff))
-    few = x < _SERIES
+    few = x < 0.02  # below it two terms of the series suffice for 1e-9
     y = np.where(few, 1.0, x)
     f = dawsn(y)
     first = 1 - 2 * y * f
@@ -280,7 +277,7 @@ def _stretches(u: Array, weights: Array, pieces: int) -> Array:
 
 def _power(z: Array) -> Array:
     """Of the waves of ``rfft``, without the mean; ends are faded out, so that they fit."""
-    fade = max(round(_ENDS * z.size), 1)
+    fade = max(round(0.1 * z.size), 1)  # share of a profile faded out at its ends
     window = np.ones(z.size)
     window[:fade] = np.sin(math.pi / 2 * (np.arange(fade) + 0.5) / fade) ** 2
     window[-fade:] = window[:fade][::-1]

@@ -29,9 +29,6 @@ from mcgw.maps.profile import (
 from mcgw.maps.steps import Form
 from mcgw.maps.waves import Uncertain, log_derivatives, uncertain
 
-_PIECES = 16
-_LEAST_ALPHA = 0.9  # below it summit heights have no variance
-
 
 @dataclass(frozen=True, repr=False)
 class ProfileFit(Shown):
@@ -146,7 +143,7 @@ def fit_profiles(profiles: Sequence[Profile], *, cutoff: float | None, form: For
     ):
         raise ValueError("the profile is flat, without roughness")
     filtered = plain if cutoff is None else [smooth_profile(p, cutoff) for p in plain]
-    pieces = math.ceil(_PIECES / len(profiles))
+    pieces = math.ceil(16 / len(profiles))
     shortest = min(p.heights.size for p in profiles)
     if shortest < 4 * pieces:
         raise ValueError(f"{shortest} points: too few for {pieces} stretches; give a longer profile")
@@ -181,7 +178,7 @@ def _checked(values: Array) -> SpectralMoments:
             "short for this cutoff, or the surface is not isotropic; give a longer one"
         )
     moments = SpectralMoments(*values.tolist())
-    if moments.alpha < _LEAST_ALPHA:
+    if moments.alpha < 0.9:  # below it summit heights have no variance
         raise ValueError(
             f"m0 m4/m2^2 = {moments.alpha:.3g}, impossible for an isotropic surface (1.5 or more): the "
             "surface has a lay, or the profile is too short"

@@ -17,7 +17,6 @@ from mcgw.maps.summits import Summits
 from mcgw.maps.waves import Spread, Uncertain, Waves, uncertain
 
 _MOMENTS = ("m0", "m2", "m4")
-_BY_CHANCE = 1e-3
 
 
 def pooled(fits: Sequence[Fit], names: Sequence[str]) -> Fit:
@@ -100,7 +99,7 @@ def disagreement(fits: Sequence[Fit]) -> Iterator[tuple[str, float]]:
         each = [fit.numbers[name] for fit in fits]
         logs, certain = np.log([x.value for x in each]), 1 / np.array([x.relative for x in each]) ** 2
         chi_square = float(certain @ (logs - np.average(logs, weights=certain)) ** 2)
-        if chdtrc(len(each) - 1, chi_square) < _BY_CHANCE / len(words):
+        if chdtrc(len(each) - 1, chi_square) < 1e-3 / len(words):
             yield word, math.exp(np.ptp(logs))
 
 

@@ -14,7 +14,6 @@ from mcgw.maps.topography import LARGEST, Topography
 # differences over one pixel and over two, which tell whether the pixel resolves them, and products of slopes.
 SUMS = ("points", "z", "z2", "z3", "slope_x", "slope_y", "bend", "bend_1", "bend_2", "slope_xy")
 EDGE = 4  # pixels left out at the edge
-_STENCIL = 2  # pixels that the differences reach
 _FIRST = (1 / 12, -8 / 12, 0.0, 8 / 12, -1 / 12)  # the first difference of the fourth order
 
 
@@ -193,7 +192,7 @@ def summit_sums_of(topography: Topography, *, across: int = 4, seen: Marks | Non
     counts = np.empty((0, 0), dtype=np.bool_)
     if seen is not None:  # with their neighbours, as far as differences reach
         mode: Literal["wrap", "nearest"] = "wrap" if topography.periodic else "nearest"
-        counts = ndimage.minimum_filter(seen, 2 * _STENCIL + 1, mode=mode)
+        counts = ndimage.minimum_filter(seen, 2 * 2 + 1, mode=mode)  # pixels that the differences reach
     if topography.periodic:
         z = np.pad(z, EDGE, mode="wrap")
         counts = np.pad(counts, EDGE, mode="wrap") if seen is not None else counts

@@ -19,8 +19,6 @@ _HURST = 0.8
 _UNITS = {"rms": "m", "long": "m", "short": "m", "m0": "m^2", "m2": "1", "m4": "1/m^2"}
 _NARROWEST, _WIDEST = 1 + 1e-6, 1e6  # ratio of the long to the short wavelength
 
-_X, _Y = 0, 1  # streams
-
 
 @dataclass(frozen=True)
 class Spectrum:
@@ -225,5 +223,5 @@ def asperities_of(scene: Scene, surface: int) -> Asperities:
     s, ratios = summits(scene, surface)
     z, radius = scene.surface.sigma * s, scene.surface.radius
     radii = np.full(s.shape, radius) if ratios is None else radius * ratios
-    x, y = (uniforms(scene.seed, POSITIONS, surface, stream, len(z)) for stream in (_X, _Y))
+    x, y = (uniforms(scene.seed, POSITIONS, surface, stream, len(z)) for stream in (0, 1))
     return Asperities(side * x, side * y, z, radii, radius, (side, side))

@@ -31,8 +31,6 @@ _DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d*(?:[eE][-+]?\d+)?")
 _MORE_COMMAS = re.compile(r"[-+.,\deE]*\d,+[-+.\d][-+.,\deE]*")
 _MISSING = ("", "BAD", "---")
 _SAME = 0.3  # of the widest step: places nearer than that are one
-_EVEN = 0.05  # of a step that a place may be off the grid
-_SPARSE = 4  # points of the grid for each one that is there
 
 
 def read_text(path: Path, given: Given) -> Raw:
@@ -235,7 +233,7 @@ def _of_points(path: Path, points: Array, told: list[str | None], given: Given) 
     if min(columns, rows) == 1:
         raise ValueError(f"{path}: all points lie on one line: a profile; give x and z alone")
     checked_shape(rows, columns)
-    if rows * columns > _SPARSE * len(points):
+    if rows * columns > 4 * len(points):  # points of the grid for each one that is there
         raise ValueError(
             f"{path}: {len(points)} points on a grid of {columns} x {rows}: scattered points are not a map; "
             "interpolate them to a grid first"
@@ -256,7 +254,7 @@ def _places(path: Path, name: str, values: Array) -> tuple[int, float, NDArray[n
     centres = np.bincount(places, weights=values) / np.bincount(places)
     distance = float(f"{np.ptp(centres) / max(len(centres) - 1, 1):.12g}")  # as a text may give it
     off = np.abs(values - centres[0] - distance * places)
-    if len(centres) > 1 and not np.all(off <= _EVEN * distance):
+    if len(centres) > 1 and not np.all(off <= 0.05 * distance):  # of a step that a place may be off the grid
         raise ValueError(
             f"{path}: {name} of the points is not evenly spaced ({len(centres)} places from {ordered[0]:g} "
             f"to {ordered[-1]:g}); single points with x, y and z are a map only on a regular grid"

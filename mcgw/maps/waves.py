@@ -14,8 +14,6 @@ from analytic.arrays import Array
 from mcgw.maps.topography import Topography
 
 _ACROSS = 1536  # points that are looked at; of the waves shorter than that there are always many
-_FEWEST = 0.5  # waves: one that is cut in two
-_LEAST_FREEDOM = 2.0
 _BAND = 16  # rows that are looked at together: what is made of them stays in the cache
 _ROOTS = ("radius", "sigma")  # which go as the root of a power
 _OUTSIDE = 0.025  # at either end of an interval
@@ -175,7 +173,7 @@ def _number(seen: float) -> float:
 
     On average ``1/(n + 1)`` and never more than 1, since the sum itself fluctuates with its terms.
     """
-    return max(1 / max(seen, 1e-30) - 1, _FEWEST)
+    return max(1 / max(seen, 1e-30) - 1, 0.5)  # waves: one that is cut in two
 
 
 def _spread(sums: list[float], degree: float, low: float) -> Spread:
@@ -188,7 +186,7 @@ def _spread(sums: list[float], degree: float, low: float) -> Spread:
     """
     seen, third, fourth = sums
     n = _number(seen / degree**2)
-    freedom = max(0.4 * (3 * seen * seen / fourth - 5), _LEAST_FREEDOM)  # twice the mean over the variance
+    freedom = max(0.4 * (3 * seen * seen / fourth - 5), 2.0)  # twice the mean over the variance
     wider = math.copysign(degree, third) * float(stdtrit(freedom, float(ndtr(2.0)))) / 2
     ends = sorted(-wider * math.log(gammaincinv(n, p) / n) for p in (_OUTSIDE, 1 - _OUTSIDE))
     error = math.hypot(wider * math.sqrt(float(polygamma(1, n))), low)

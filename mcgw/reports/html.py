@@ -32,8 +32,6 @@ from mcgw.statistics.comparison import compare
 _PROVENANCE = ("digest", "seed", "sampler", "date", "versions", "commit", "cpu")
 _FEW_HEIGHTS, _FEWEST = 3e6, 20  # drawn at once for all pressures of a page, where they are drawn
 _PRESSURES = 7  # of the table and of the curves, at most
-_ROUND = (1.0, 2.0, 5.0)
-_FINE = 49  # points of a curve
 _PER_AREA = (  # name, factor from SI, title, unit
     ("area", 100, "Real contact area", "%"),
     ("stiffness", 1e-12, "Normal stiffness", "MPa/µm"),
@@ -151,7 +149,9 @@ def solved_pressures(scene: Scene, pressures: Sequence[float] | None = None) -> 
 def round_pressures(low: float, high: float, most: int) -> list[float]:
     """At most so many pressures 1, 2 and 5 times a power of ten between two; these if there is none."""
     powers = range(int(np.floor(np.log10(low))), int(np.ceil(np.log10(high))) + 1)
-    found = [float(f"{x:g}e{k}") for k in powers for x in _ROUND if low <= float(f"{x:g}e{k}") <= high]
+    found = [
+        float(f"{x:g}e{k}") for k in powers for x in (1.0, 2.0, 5.0) if low <= float(f"{x:g}e{k}") <= high
+    ]
     return [found[k] for k in evenly(len(found), most)] if found else [low, high]
 
 
@@ -182,7 +182,7 @@ def pressure_panels(solved: Sequence[Solution]) -> Iterator[tuple[str, Panel]]:
         return
     scene, area = solved[0].scene, solved[0].scene.surface.nominal_area
     alone, ends = scene.alone, [each.theory["separation"] for each in solved]
-    h = np.linspace(max(ends), min(ends), _FINE)
+    h = np.linspace(max(ends), min(ends), 49)  # points of a curve
     sums = {name: np.asarray(alone.mean(name, h)) for name in quantities_at(scene)}
     line = answers_at(scene, {"separation": h, **sums})
     pressure, x = np.array([each.amount for each in solved]) / area / 1e6, sums["load"] / area / 1e6

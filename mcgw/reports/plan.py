@@ -15,7 +15,6 @@ from mcgw.scene.scene import Scene, storable
 from mcgw.scene.writing import contact_facts
 from mcgw.sweeps.points import Points
 
-_TARGETS = (1e-2, 1e-3)  # 95 % bounds of means
 _WORTH, _CROWD = 1.5, 300  # times faster, to be told; asperities of a cell, for crowds to pay
 
 
@@ -42,7 +41,7 @@ def plan_text(scene: Scene) -> str:
         ("accuracy", _accuracy(scene, known, surfaces)),
     ]
     if scene.interaction is None and not scene.as_measured and laws_are_quick(scene):
-        for k, target in enumerate(_TARGETS):
+        for k, target in enumerate((1e-2, 1e-3)):  # 95 % bounds of means
             found = forecast(scene.replace(rel_err=target, n_surfaces=MOST_SURFACES))
             some = f", all but {len(found.out_of_reach)} means" if found.out_of_reach else ""
             needed = f"{found.surfaces:.2g} surfaces, {in_words(seconds / surfaces * found.surfaces)}{some}"

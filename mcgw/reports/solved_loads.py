@@ -21,7 +21,6 @@ _GAP = {
     "gap_to_summits": "gap to the mean plane of the summits",
 }
 _OF_SPECIMENS = {"joint": "joint, mean of h", "correlation": "correlation (spots)"}
-_LINES = 2  # loads that the news names one by one
 # Left out of the short table; all but the first only where a film gives the conductance in SI units.
 _VARIANTS = ("load_slope", "conductance", "conductance_si", "specific_contact_resistance")
 
@@ -33,7 +32,7 @@ def solutions_text(
 
     With `scatter` also how many asperities it takes; `full` adds every quantity and the sources of error.
     """
-    lines = [_brief(x) for x in (solutions if len(solutions) <= _LINES else (solutions[0], solutions[-1]))]
+    lines = [_brief(x) for x in (solutions if len(solutions) <= 2 else (solutions[0], solutions[-1]))]
     lines.append(elastic_verdict(solutions))
     one = len(solutions) == 1
     if not full:

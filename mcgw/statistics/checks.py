@@ -19,10 +19,8 @@ from analytic.arrays import Array
 from mcgw.scene.scene import Scene
 from mcgw.statistics.verdict import Check, bounded_theory
 
-_LAGS = (1, 2, 4, 8, 16, 32, 64)
 _TOUCHING = 100  # asperities expected in contact, so that a single surface is nearly Gaussian
 _INDEPENDENT = 1e-6  # least variance of a combination: below it columns are nearly equal
-_MOST_KURTOSIS = 0.5  # of a combination, over surfaces
 
 
 @dataclass(frozen=True)
@@ -65,7 +63,7 @@ class PrincipalComponents:
         axes = parts.take(chosen, unit).whitening(_INDEPENDENT)
         along = parts.take(chosen, unit).turned(axes)
         third, fourth = along.moment(3), along.moment(4) - 3 * (scene.count == "fixed")
-        good = np.abs(fourth) / n < _MOST_KURTOSIS
+        good = np.abs(fourth) / n < 0.5  # of a combination, over surfaces
         columns = tuple((quantities[c // len(h)], c % len(h)) for c in chosen.tolist())
         scale = np.array([quantity_of(name).scale(scene.surface) for name, _ in columns])
         return cls(
@@ -200,7 +198,7 @@ def independence(groups: Array) -> Check:
     """Products of each surface with later ones, over lags of 1 to 64 surfaces and all axes."""
     seeds, m, d = groups.shape
     z = []
-    for lag in (k for k in _LAGS if k < m):
+    for lag in (k for k in (1, 2, 4, 8, 16, 32, 64) if k < m):
         products = groups[:, lag:] * groups[:, :-lag]
         z.append(products.sum(axis=(0, 1)) / np.sqrt(seeds * (m - lag)))
     total, degrees = float(np.sum(np.square(z))), len(z) * d

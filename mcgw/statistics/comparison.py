@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from mcgw.sweeps.sweep import Sweep
 
 _SEPARATIONS = 12  # separations of a point, at most: the cost of theory grows as their square
-_LISTED = 7
 
 
 @dataclass(frozen=True)
@@ -186,7 +185,7 @@ class SweepComparison(Shown):
         """Draw how the residuals of all points are distributed; returns the axes."""
         return plotted(self, ax)
 
-    def sheet(self, most: int = _LISTED) -> Table:
+    def sheet(self, most: int = 7) -> Table:
         """Return the verdict, and the points that are farthest from theory."""
         v, n = self.verdict, len(self.points)
         smallest = self.worst[0].verdict.p

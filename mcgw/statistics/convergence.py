@@ -40,11 +40,6 @@ Draw = Callable[[Scene], Sums]
 Rows = Iterator[tuple[float, Array, float]]  # for a slope
 
 SEEDS = 24
-_FEWEST, _MOST = 64, 1000  # surfaces per seed
-_MOST_SEPARATIONS = 12
-_MOST_SHOWN = 8  # checks displayed
-_FEWEST_ERRORS = 24  # squares for a root mean square, at least
-_SIZES_OF_N = (64, 16, 4, 1)  # divisors of the scene's number of asperities
 
 
 @dataclass(frozen=True, repr=False)
@@ -89,7 +84,7 @@ class Convergence(Shown):
 
     def sheet(self) -> Table:
         """Return the verdict and its worst checks."""
-        first = sorted(self.checks, key=lambda check: check.p)[:_MOST_SHOWN]
+        first = sorted(self.checks, key=lambda check: check.p)[:8]  # checks displayed
         facts = [("p", f"{self.p:.3g} over all {len(self.checks)} checks")]
         return _table(first, "worst").under(f"Statistical convergence {self.word}", facts)
 
@@ -153,8 +148,8 @@ def converge(
     h = np.unique(scene.separations)
     scene = scene.replace(  # few separations, in order, and a feasible number of surfaces
         interaction=None,
-        separations=tuple(h[evenly(len(h), _MOST_SEPARATIONS)].tolist()),
-        n_surfaces=min(max(scene.n_surfaces, _FEWEST), _MOST),
+        separations=tuple(h[evenly(len(h), 12)].tolist()),
+        n_surfaces=min(max(scene.n_surfaces, 64), 1000),
         rel_err=None,
         max_seconds=None,
         keep="sums",
@@ -234,14 +229,14 @@ def _of_surfaces(exact: PrincipalComponents, y: Array, most: int) -> Rows:
     kurtosis = float(exact.kurtosis.mean())
     for m, part in zip(sizes, np.array_split(y, len(sizes)), strict=True):
         means = part[: len(part) // m * m].reshape(-1, m, y.shape[1]).mean(axis=1)
-        if means.size >= _FEWEST_ERRORS:
+        if means.size >= 24:  # squares for a root mean square, at least
             yield float(m), np.asarray(means**2), kurtosis / m
 
 
 def _of_asperities(scene: Scene, draw: Draw) -> Rows:
     """Relative error of one surface of N/64, N/16, N/4, N asperities, at the lowest separation."""
     name = scene.quantities[0]
-    for divisor in (k for k in _SIZES_OF_N if scene.n_asperities >= k):
+    for divisor in (k for k in (64, 16, 4, 1) if scene.n_asperities >= k):
         small = scene.replace(
             n_asperities=scene.n_asperities // divisor, separations=(scene.lowest,), quantities=(name,),
             seed=(scene.seed + 10**6 + divisor) % 2**64,

@@ -25,15 +25,12 @@ from mcgw.statistics.ways import PROBABILITY, SOLVE, Way, drawn_by, of_one, want
 
 REPEATS = 16
 _FEWEST = 3  # repeats of what draws nothing and takes long
-_SIZES = tuple(10**k for k in range(1, 7))
-_RELIABLE = 1000  # surfaces, from which on tenths of them tell how long they take
 _SHIFT = 1e-9  # of a separation, from repeat to repeat
 _SURE = 5.0  # standard errors of a bias, by 16 repeats: a right way is taken for wrong once in 6000
 _BY_CHANCE = (0.8687, 0.2603)  # mean and standard deviation of Kolmogorov's law
 _FEWEST_FOR_QUANTILE, _LEVELS = 2000, np.arange(1, 200) / 200  # surfaces; probabilities that are compared
 _MOST_LISTED, _LISTED = 3e6, 4  # asperities of a surface that are summed by themselves; surfaces
 _HERTZ, _OTHERS, _LAW = 1e-13, 1e-9, 1e-6  # errors that theory and exact laws are tested to
-_LEAST = 1e-9  # seconds: less than any clock tells
 
 Errors = dict[str, float]
 
@@ -73,7 +70,7 @@ class Task:
             return
         start = process_time()
         found = self.call(scene)
-        self.seconds.append(max(process_time() - start, _LEAST))
+        self.seconds.append(max(process_time() - start, 1e-9))  # seconds: less than any clock tells
         self.errors.append(self.compare(found))
 
     def points(self) -> Iterator[Point]:
@@ -178,13 +175,13 @@ def moved(scene: Scene, number: int) -> Scene:
 def sized(answers: Answers, name: str, share: float) -> Iterator[Task]:
     """Yield a way at all sizes of which 16 repeats fit into its share of seconds, each run before."""
     each = expected(drawn_by(answers.scene, name)).seconds
-    for size in _SIZES:
+    for size in (10**k for k in range(1, 7)):
         if REPEATS * size * each > share:
             return
         task = answers.sampled(name, size)
         for number in (-2, -1):  # the first compiles
             task.run(moved(answers.scene, number))
-        if 10 * size >= _RELIABLE:
+        if 10 * size >= 1000:  # surfaces, from which on tenths of them tell how long they take
             each = task.seconds[-1] / size
         task.errors.clear()
         task.seconds.clear()

@@ -31,10 +31,7 @@ from mcgw.validity.model_error import percent
 
 SECONDS = 60.0
 _EXACT = 1e-12  # error of values that are right to the last digits
-_RUNGS = (2, 10, 100, 1000, 10_000, 100_000)
-_PILOT = 4  # maps on which levels are compared
 _PIXELS = 0.02  # error of boundary elements on the maps of `mcgw.elastic`: see `mcgw.elasticity.sources`
-_OF_ELEMENTS = (0.1, 0.03, 0.01)
 _ENOUGH = 1.05  # times the error of the model: more surfaces are not worth it
 
 
@@ -267,7 +264,7 @@ def ladder_of(scene: Scene, alone: Scene, load: float, ways: Sequence[Way], mode
     by = {way.name: way for way in ways if way.want == "conductance"}
     theory = by["theory"]
     yield Rung("formula", 0, theory.seconds(0), theory.floor, model)
-    for n in _RUNGS if SOLVE in by else ():
+    for n in (2, 10, 100, 1000, 10_000, 100_000) if SOLVE in by else ():
         yield Rung("surfaces", n, by[SOLVE].seconds(n), of_one(alone, "conductance") / n**0.5, model)
     with suppress(ValueError, RunError):  # without a spectrum, or Tamaas, the ladder ends here
         yield from _of_maps(scene, load / scene.surface.nominal_area)
@@ -281,9 +278,9 @@ def _of_maps(scene: Scene, pressure: float) -> Iterator[Rung]:
     from mcgw.elasticity.sources import maps_of
 
     solves = Solves(maps_of(scene), {"pressure": pressure}, scene.surface.E_star, 1, ["conductance"])
-    rows = [solves.at(LEVELS, number) for number in range(_PILOT)]
+    rows = [solves.at(LEVELS, number) for number in range(4)]  # maps on which levels are compared
     values, seconds = (np.array(part) for part in zip(*rows, strict=True))
     solve = float(np.median(seconds[:, -1]))
-    for target in _OF_ELEMENTS:
+    for target in (0.1, 0.03, 0.01):
         planned = design(values, [level.cost for level in LEVELS], target)
         yield Rung("boundary elements", planned.maps[-1], planned.cost * solve, target, _PIXELS)

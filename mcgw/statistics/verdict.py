@@ -25,7 +25,6 @@ from mcgw.scene.scene import Scene
 FALSE_ALARM = 1e-3
 _MOST_SEPARATIONS = 48
 _SKEW, _KURTOSIS = 0.1, 0.1  # allowed departure from a Gaussian of a combination of means
-_INDEPENDENT = 1e-9  # least variance of a combination, above rounding errors
 _SELDOM = 1e-4  # expected summits flatter than the bound, per ensemble
 _LAWS, _FEW = 8, 3  # laws of values per quantity, at most; few where one takes 60 ms instead of 10
 _PLACES = 1000  # values at which shares and probabilities are compared, of more surfaces some of theirs
@@ -174,7 +173,7 @@ def tested(ensemble: Ensemble, most: int) -> Tested:
     residual, counts = np.zeros(len(means)), np.zeros(len(means), dtype=np.bool_)
     residual[varies], counts[varies] = z, usable
     parts, z = parts.take(usable), z[usable]
-    axes = parts.whitening(_INDEPENDENT)
+    axes = parts.whitening(1e-9)  # least variance of a combination, above rounding errors
     axes = axes[:, _gaussian(parts.turned(axes), asperities)]
     chi_square = float(np.sum((z @ axes) ** 2))
     degrees = axes.shape[1]

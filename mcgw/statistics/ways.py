@@ -31,7 +31,6 @@ _GIVES = {
 }  # fmt: skip
 _FASTER = 1.5  # a way must be so much faster than one named before it
 _BOUND = float(ndtri((1 + CONFIDENCE) / 2))
-_KOLMOGOROV = 1.3581  # sqrt(n) times the largest difference of probabilities, in 95 of 100 samples
 _FEWEST = {"std": 30, "quantile": 2000, "distribution": 1}  # 20 of 2000 lie beyond the quantile
 
 
@@ -105,7 +104,7 @@ def of_one(scene: Scene, want: str) -> float:
     """Bound of the error from one surface, by exact theory; it falls with the root of their number."""
     h, q = scene.separations[0], scene.quantities[0]
     if want == "distribution":
-        return _KOLMOGOROV
+        return 1.3581  # sqrt(n) times the largest difference of probabilities, in 95 of 100 samples
     if want == "conductance":  # at the load of this separation
         alone = float(scene.theory.asperities_for("conductance", h, 1.0, given="load"))
         return _BOUND * sqrt(alone / scene.n_asperities)
