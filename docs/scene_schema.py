@@ -17,7 +17,7 @@ from typing import Any
 import mcgw
 from analytic.laws import by_name
 from mcgw.scene.keys import GRADINGS, HEIGHTS, TABLES as ROWS
-from mcgw.scene.kinds import MOST_WHOLE, Either, Kind, List, Number, Plain, Table, Word
+from mcgw.scene.kinds import MOST_WHOLE, Either, Kind, List, Number, Plain, Table, Whole, Word
 from mcgw.scene.section import Key
 
 PAGE = Path(__file__).parent / "reference" / "scene.md"
@@ -46,7 +46,7 @@ WITH_UNIT = {"type": "string", "pattern": r"^\s*\+?(\d+\.?\d*|\.\d+)([eE][-+]?\d
 def shape_of(kind: Kind) -> Shape:
     """Return a kind of values as JSON Schema."""
     match kind:
-        case Number(whole=True):
+        case Whole():
             most = {"maximum": kind.high} if kind.high < MOST_WHOLE else {}
             return {"type": "integer", "minimum": kind.low, **most}
         case Number():

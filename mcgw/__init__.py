@@ -122,7 +122,9 @@ if TYPE_CHECKING:
     from mcgw.maps.iso import surface_from as surface_from
     from mcgw.maps.two_bodies import combine as combine
     from mcgw.sampling.asperities import heights as heights, radii as radii
-    from mcgw.scene.parts import Contact as Contact, Graded as Graded, Joint as Joint, Sampling as Sampling
+    from mcgw.scene.contact import Contact as Contact, Joint as Joint
+    from mcgw.scene.ensemble import Sampling as Sampling
+    from mcgw.scene.laws import Graded as Graded
     from mcgw.scene.scene import Scene as Scene
     from mcgw.scene.scene_file import (
         load_scene as load_scene,
@@ -164,7 +166,9 @@ _HOMES = {
     "mcgw.sampling.asperities": "heights radii",
     "mcgw.scene.scene": "Scene",
     "mcgw.scene.scene_file": "load_scene scene_from scene_text",
-    "mcgw.scene.parts": "Contact Graded Joint Sampling",
+    "mcgw.scene.contact": "Contact Joint",
+    "mcgw.scene.ensemble": "Sampling",
+    "mcgw.scene.laws": "Graded",
     "mcgw.scene.section": "SceneError",
     "mcgw.scene.surface": "Body SpectralSurface Surface",
     "mcgw.statistics.comparison": "compare",

@@ -54,7 +54,7 @@ def _main(argv: Sequence[str] | None, asked: argparse.Namespace) -> int:
         args = parser_of([word for word in words[:1] if word in all_commands()]).parse_args(words, asked)
         with warnings.catch_warnings():
             warnings.showwarning = _show_warning  # type: ignore[assignment]
-            warnings.filterwarnings("ignore", module=r"mcgw\.scene\.plausible")  # shown as notes
+            warnings.filterwarnings("ignore", module=r"mcgw\.scene\.surface")  # shown as notes
             if args.amount == QUIET:
                 warnings.simplefilter("ignore")
             with speaking(args.amount):

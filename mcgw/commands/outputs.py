@@ -179,7 +179,7 @@ def tell_cautions(source: Any, instead: str = "") -> None:
     doubts: list[str] = []
     if isinstance(scene, Scene):
         from mcgw.scene.cautions import cautions
-        from mcgw.scene.plausible import perhaps_other_units
+        from mcgw.scene.surface import perhaps_other_units
 
         lines, doubts = cautions(scene), perhaps_other_units(scene)
     else:

@@ -12,7 +12,7 @@ from analytic.arrays import Array
 from mcgw.maps.heights_files import read_map
 from mcgw.maps.synthetic import Spectrum, gaussian_map
 from mcgw.maps.topography import Topography
-from mcgw.scene.rough_bodies import moments_of
+from mcgw.scene.measured import moments_of
 from mcgw.scene.scene import Scene
 
 _POINTS = 8  # a shortest wave: twice as many change area by 2 %, and the rest by less

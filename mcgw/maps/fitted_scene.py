@@ -23,11 +23,12 @@ from mcgw.formats.units import parse
 from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
 from mcgw.maps.waves import log_derivatives
+from mcgw.scene.contact import Contact
+from mcgw.scene.ensemble import Sampling
 from mcgw.scene.fields import LeftOut
 from mcgw.scene.keys import KEYS
 from mcgw.scene.kinds import argument
 from mcgw.scene.measured import MOMENTS, SUMMITS, Fitted, Uncertainty
-from mcgw.scene.parts import Contact, Sampling
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_document
 from mcgw.validity.lookup import moments_of_nayak

@@ -12,7 +12,7 @@ from mcgw.maps.bad_points import filled, recorded, small_spike_heights, spike_he
 from mcgw.maps.form import lowpass, smooth, without_form, without_offsets
 from mcgw.maps.steps import Form, LinesTo, Missing, SpikesTo
 from mcgw.maps.topography import SMALLEST, Topography
-from mcgw.scene.kinds import Word, argument, arguments, whole
+from mcgw.scene.kinds import Whole, Word, argument, arguments
 from mcgw.scene.section import Kind
 
 _LEAST = 0.5  # share of measured points that must have all neighbours, else filled ones count
@@ -49,7 +49,7 @@ def preparation_of(given: Mapping[str, Any]) -> tuple[Preparation, int]:
     SceneError
         If words or numbers are none of those known, all of them told at once.
     """
-    kinds: dict[str, Kind] = {"parts": whole(2), "trim": whole()}
+    kinds: dict[str, Kind] = {"parts": Whole(2), "trim": Whole()}
     words = {"form": Form, "missing": Missing, "spikes": SpikesTo, "lines": LinesTo}
     kinds |= {name: Word(get_args(each)) for name, each in words.items()}
     chosen = arguments(given, kinds)

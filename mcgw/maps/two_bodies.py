@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from analytic import SpectralMoments, harmonic_conductivity
 from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
-from mcgw.scene.rough_bodies import RoughBody, body_of
+from mcgw.scene.measured import RoughBody, body_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.section import SceneError
 from mcgw.scene.surface import Spectral, SpectralSurface

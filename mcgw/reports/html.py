@@ -24,8 +24,7 @@ from mcgw.formats.table import Column, Table, evenly, typeset
 from mcgw.machine.progress import told
 from mcgw.machine.terminal import one_line, plain_text
 from mcgw.reports.solved_loads import answer_table, by_load
-from mcgw.scene.cautions import cautions
-from mcgw.scene.law_cautions import other_laws
+from mcgw.scene.cautions import cautions, other_laws
 from mcgw.scene.scene import Scene
 from mcgw.statistics.comparison import compare
 

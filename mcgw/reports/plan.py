@@ -10,7 +10,7 @@ from mcgw.ensemble.simulation import in_words, rough_seconds, seconds_per_surfac
 from mcgw.machine.terminal import listed, one_line
 from mcgw.sampling.expected import Expected, expected
 from mcgw.sampling.shared import shared
-from mcgw.scene.parts import promise_of
+from mcgw.scene.ensemble import promise_of
 from mcgw.scene.scene import Scene, storable
 from mcgw.scene.writing import contact_facts
 from mcgw.sweeps.points import Points

@@ -11,7 +11,7 @@ from mcgw.sampling.counts import counts_of, generator
 from mcgw.sampling.direct import Direct, asperity_sums
 from mcgw.sampling.philox import CELLS, RADII, RADII_LOW, REST, uniforms
 from mcgw.sampling.samplers import sampler_of
-from mcgw.scene.parts import promise_of
+from mcgw.scene.ensemble import promise_of
 from mcgw.scene.scene import Scene, storable
 
 Listed = tuple[Array, Array | None]  # reduced heights; radii over the surface's, where summits have their own

@@ -85,7 +85,7 @@ class Sampler:
     Parameters
     ----------
     name : str
-        One of `mcgw.scene.parts.SAMPLERS`, never "auto".
+        One of `mcgw.scene.ensemble.SAMPLERS`, never "auto".
     scene : Scene
         What to simulate.
     mesh : Mesh

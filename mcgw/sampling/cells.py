@@ -27,7 +27,7 @@ from mcgw.machine.memory import kept
 from mcgw.sampling.rules import chebyshev_points, chebyshev_transform, product
 from mcgw.sampling.spacing import refined, spaced
 from mcgw.sampling.stretches import SMALLEST, begins_and_breaks, losses
-from mcgw.scene.parts import EXACT
+from mcgw.scene.ensemble import EXACT
 from mcgw.scene.scene import Scene
 
 _RARE = 0.1  # asperities a surface that may be expected beyond the cells, on either side

@@ -24,7 +24,7 @@ from mcgw.sampling.counted import Counted, table_of
 from mcgw.sampling.direct import Direct
 from mcgw.sampling.response.response import Response, parts_of, response_of
 from mcgw.sampling.response.walk import UnresolvedError
-from mcgw.scene.parts import promise_of
+from mcgw.scene.ensemble import promise_of
 from mcgw.scene.scene import Scene, storable
 
 if TYPE_CHECKING:

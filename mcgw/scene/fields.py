@@ -13,8 +13,9 @@ from analytic import HeightLaw, MeasuredRadii, RandomCurvature, Surface
 from analytic.arrays import Array
 from analytic.laws import Branch, ContactLaw, Film, Hertz
 from mcgw.machine.memory import kept
+from mcgw.scene.contact import Contact, Joint
+from mcgw.scene.ensemble import Sampling
 from mcgw.scene.measured import Fitted, Uncertainty
-from mcgw.scene.parts import Contact, Joint, Sampling
 
 if TYPE_CHECKING:
     from analytic.joint import Gap

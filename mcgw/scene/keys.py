@@ -1,16 +1,15 @@
 """Every key of a scene, one row each: source of reader, writer, checks, schema, page and ``--set``."""
 
 import math
-from collections.abc import Mapping
-from typing import Any
 
 import analytic
 from analytic.laws import ContactLaw
-from mcgw.scene.kinds import FLAG, Either, List, Number, Plain, Table, Word, whole
-from mcgw.scene.laws import GRADINGS, HEIGHTS, grading_given, heights_given, instance_of
+from mcgw.scene.contact import Contact, Joint
+from mcgw.scene.ensemble import Sampling
+from mcgw.scene.kinds import FLAG, Either, List, Number, Plain, Table, Whole, Word
+from mcgw.scene.laws import GRADINGS, HEIGHTS, evenly, grading_given, heights_given, instance_of, piece_of_law
 from mcgw.scene.measured import KNOWN, SUMMITS, Fitted, Uncertainty
-from mcgw.scene.parts import Contact, Joint, Sampling, rows_of
-from mcgw.scene.section import Key
+from mcgw.scene.section import Key, rows_of
 
 _MOST = 100_000
 
@@ -23,21 +22,17 @@ _RADII = List(_POSITIVE, advice="give a list of finite numbers > 0")
 _LISTED = List(_ANY)
 _SEPARATION = Number(low=-1e6, high=1e6)
 _SEPARATIONS = "give a list of finite numbers d/sigma, or {start = 0.0, stop = 4.0, num = 41}"
-_NUM = whole(1, _MOST, f"give a whole number >= 1, at most {_MOST}")
+_NUM = Whole(1, _MOST, f"give a whole number >= 1, at most {_MOST}")
 _PLANES = '"body", the undeformed body, or "mean-plane", that of the deformed one'
 _FORMULA = "give a list of {edges, coefficients}, one for each piece, as mcgw writes them"
 _LISTS = List(_LISTED, advice="give a list of lists of finite numbers")
 _SERIES = (Key("edges", _LISTED, required=True), Key("coefficients", _LISTS, required=True))
-_PIECES = List(Table(_SERIES, _FORMULA), advice=_FORMULA)
+_PIECES = List(Table(_SERIES, _FORMULA, piece_of_law), advice=_FORMULA)
 _PIECES_EXAMPLE = (
     "[{edges = [-1.0, 1.0], coefficients = [[1.0]]}, {edges = [0.0, 1.1], coefficients = [[1.0]]}]"
 )
 _ERRORS = Table(rows_of(Uncertainty), KNOWN, Uncertainty)
-_BODY = Table(
-    (Key("E", YOUNG, required=True), Key("nu", POISSON, default=0.3)),
-    "",
-    analytic.Body,
-)
+_BODY = Table((Key("E", YOUNG, required=True), Key("nu", POISSON, default=0.3)), "", analytic.Body)
 _BODY_OF_FILE = Table((Key("file", _FILE, required=True),), "")
 _GRADING = "mcgw.Exponential(gamma), mcgw.Table(s, ratio), or a function of an array of heights"
 _HEIGHTS = "mcgw.HeightTable.of(heights), or a frozen continuous distribution, scipy.stats.lognorm(0.3)"
@@ -134,7 +129,7 @@ TABLES: dict[str, Table] = {
         Either((
             List(_SEPARATION, 1, _MOST, f"{_SEPARATIONS}, at most {_MOST} of them"),
             Table((Key("start", _ANY, required=True), Key("stop", _ANY, required=True),
-                   Key("num", _NUM, required=True)), _SEPARATIONS),
+                   Key("num", _NUM, required=True)), _SEPARATIONS, evenly),
             Number(low=-1e6, high=1e6, advice=_SEPARATIONS),
         ), _SEPARATIONS),
         "{start = 0.0, stop = 1.0, num = 3}", "d/σ: a range, a list, or one number", required=True),
@@ -172,7 +167,7 @@ TABLES: dict[str, Table] = {
     "independent.", rows=(
     Key("reference", Word(("body", "mean-plane"), f"give {_PLANES}"), '"body"', required=True),
     Key("bulk_modulus", Number("Pa"), "1e11"),
-), make=lambda **keys: analytic.Interaction(**keys),
+),
     advice='mcgw.Interaction("body")'),
 "joint": Table(words="Conduction: through spots alone as in vacuum, or [a thermal "
     "joint](../how-to/conductance-of-a-joint.md), in which gas conducts beside them, and both in series with "
@@ -189,19 +184,6 @@ TABLES: dict[str, Table] = {
 
 KEYS = {name: {row.name: row for row in table.rows} for name, table in TABLES.items()}
 SURFACE_UNITS = {name: KEYS["surface"][name].kind.unit for name in (*SUMMITS, "nominal_area", "E_star")}
-
-
-def whole_key(key: str) -> str:
-    """Return a key with its table, where it is given without and only one table has it."""
-    tables = [name for name, rows in KEYS.items() if key in rows]
-    if "." in key or key in TABLES or len(tables) != 1:
-        return key
-    return f"{tables[0]}.{key}" if tables[0] else key
-
-
-def as_tables(document: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return a document with its contact law as a table, in whose place a word or an object may stand."""
-    contact = document.get("contact")
-    if not isinstance(contact, Mapping) or isinstance(law := contact.get("law", {}), Mapping):
-        return document
-    return {**document, "contact": {**contact, "law": {"name": law}}}
+INSIDE = {
+    name: [x.rpartition(".")[2] for x in TABLES if x and x.rpartition(".")[0] == name] for name in TABLES
+}

@@ -2,13 +2,14 @@
 
 import math
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from mcgw.formats.units import EXAMPLES, parse
+from mcgw.formats.units import EXAMPLES, signed
 from mcgw.machine.terminal import brief
 from mcgw.scene.section import Key, Kind, SceneError, Section, mistake, nearest
 
@@ -24,40 +25,41 @@ class Number(Kind):
     high: float = math.inf
     zero: bool = False  # whether 0 is allowed if `low` is 0
     infinite: bool = False
-    whole: bool = False  # 1e6 is an integer, 1.5 and true are not
     advice: str = ""  # what would do, by default by unit and range
+    looks = (int, float, str)
 
-    def value(self, given: Any) -> float | None:
-        """Return the number, or None if it does not fit."""
-        try:
-            number = parse(given, self.unit) if self.unit and isinstance(given, str) else given
-            if isinstance(number, bool) or not isinstance(number, int | float):
-                return None
-            if self.whole:
-                exact = number if isinstance(number, int) else int(number)  # one that was left out stays so
-                return exact if self.low <= exact == number <= self.high else None
-            number = float(number)
-        except (OverflowError, ValueError):
-            return None
-        inside = self.low <= number <= self.high and (number != self.low or self.zero or self.low != 0)
-        fits = (inside and math.isfinite(number)) or (self.infinite and number == math.inf)
-        return number if fits else None
-
-    @property
-    def wanted(self) -> str:
-        """By range and unit, unless given."""
-        if self.advice or self.whole:
-            return self.advice or f"give a whole number >= {self.low}"
+    def read(self, path: str, value: Any) -> float:
+        """Return the number."""
+        number = math.nan
+        if isinstance(value, str) and self.unit:
+            number = signed(value, self.unit)
+        elif isinstance(value, int | float) and not isinstance(value, bool):
+            with suppress(OverflowError):
+                number = float(value)
+        inside = self.low <= number <= self.high and (number != 0 or self.zero or self.low != 0)
+        if (inside and math.isfinite(number)) or (self.infinite and number == math.inf):
+            return number
         above = (" >= 0" if self.zero else " > 0") if self.low == 0 else ""
         below = f" and at most {self.high:g}" if self.high < math.inf else ""
         if self.unit:
             below += f"{f' in {self.unit}' if self.unit != '1' else ''}, such as {EXAMPLES[self.unit]}"
-        return f"give a finite number{above}{below}"
+        raise mistake(path, value, self.advice or f"give a finite number{above}{below}")
 
 
-def whole(low: int = 0, high: int = MOST_WHOLE, advice: str = "") -> Number:
-    """Return the kind of an integer."""
-    return Number(low=low, high=high, whole=True, advice=advice)
+@dataclass(frozen=True, slots=True)
+class Whole(Kind):
+    """An integer: 1e6 is one, 1.5 and true are not."""
+
+    low: int = 0
+    high: int = MOST_WHOLE
+    advice: str = ""
+
+    def read(self, path: str, value: Any) -> int:
+        """Return the integer; one that was left out stays so."""
+        number = isinstance(value, int | float) and not isinstance(value, bool)
+        if number and self.low <= value <= self.high and value == int(value):
+            return value if isinstance(value, int) else int(value)
+        raise mistake(path, value, self.advice or f"give a whole number >= {self.low}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +70,7 @@ class Word(Kind):
     advice: str = ""
     accepts: Callable[[Any], Any] | None = None
     objects: str = ""
+    looks = str
 
     @property
     def known(self) -> tuple[str, ...]:
@@ -98,9 +101,11 @@ class Plain(Kind):
     empty: bool = False
     advice: str = "give a text in quotes"
 
-    def value(self, given: Any) -> Any:
+    def read(self, path: str, value: Any) -> Any:
         """Return what is of the type."""
-        return given if isinstance(given, self.type) and (given or self.empty) else None
+        if isinstance(value, self.type) and (value or self.empty):
+            return value
+        raise mistake(path, value, self.advice)
 
 
 FLAG = Plain(bool, True, "give true or false")
@@ -115,29 +120,29 @@ class List(Kind):
     most: float = math.inf
     advice: str = "give a list of finite numbers"
     once: bool = False
+    looks = list
 
-    def read(self, path: str, value: Any) -> list[Any]:
+    def read(self, path: str, value: Any) -> tuple[Any, ...]:
         """Read all values."""
         found: list[Any] = []
-        few, reason = "", ""
-        try:
-            if isinstance(value, list) and self.least <= len(value) <= self.most:
-                for each in value:
-                    found.append(self.item.read(path, each))
+        few = "give at least one; " if value == [] and self.least == 1 else ""
+        reason = ""
+        if isinstance(value, list) and self.least <= len(value) <= self.most:
+            try:
+                found.extend(self.item.read(path, each) for each in value)
+            except SceneError:
+                if isinstance(self.item, Word):
+                    raise
+                reason = f"; value {len(found) + 1} is {brief(repr(value[len(found)]))}"
+            else:
                 if not (self.once and len(set(found)) < len(found)):
-                    return found
-        except SceneError:
-            if isinstance(self.item, Word):
-                raise
-            reason = f"; value {len(found) + 1} is {brief(repr(value[len(found)]))}"
-        if value == [] and self.least == 1:
-            few = "give at least one; "
+                    return tuple(found)
         raise mistake(path, value, f"{few}{self.advice}{reason}")
 
 
 @dataclass(frozen=True, slots=True)
 class Table(Kind):
-    """A table, or the object that its keys `make`.
+    """A table, or the object that its keys `make`, without which it is read as values.
 
     Its keys are its rows; or any names, some of `names`, if there are, each with a value like the `item`.
     """
@@ -150,6 +155,11 @@ class Table(Kind):
     words: str = ""
     required: bool = False
 
+    @property
+    def looks(self) -> Any:
+        """A table, or what it makes."""
+        return (Mapping, self.make) if isinstance(self.make, type) else Mapping
+
     def read(self, path: str, value: Any) -> Any:
         """Read its keys and make the object."""
         if isinstance(self.make, type) and isinstance(value, self.make):
@@ -158,9 +168,7 @@ class Table(Kind):
             raise mistake(path, value, self.advice)
         rows = [Key(name, self.item) for name in value] if self.item else self.rows
         inner = Section(path, value, {row.name: row for row in rows})
-        found = inner.read_all(inner.rows)
-        inner.finish()
-        made = inner.made(self.make or dict, found)
+        made = inner.make(self.make) if self.make else inner.values
         if inner.problems:
             raise SceneError(inner.problems)
         return made
@@ -176,32 +184,18 @@ class Either(Kind):
     def read(self, path: str, value: Any) -> Any:
         """Read it as the kind that it looks like."""
         for kind in self.kinds:
-            if isinstance(value, (_LOOKS[type(kind)], getattr(kind, "make", None) or ())):
+            if isinstance(value, kind.looks):
                 return kind.read(path, value)
         raise mistake(path, value, self.advice)
 
 
-_LOOKS: dict[type[Kind], Any] = {List: list, Table: Mapping, Word: str, Number: int | float | str}
-_DRAWN = "mcgw.simulate(scene) draws one"
-_MAKES = {
-    "Scene": {
-        **dict.fromkeys(("Surface", "Spectral"), "mcgw.Scene(surface, separations=...) makes one of it"),
-        "path": "mcgw.load_scene(path) reads one",
-        "Ensemble": "that of an ensemble is its .scene",
-        **dict.fromkeys(("Fit", "ProfileFit"), "mcgw.fitted_scene(fit) makes one of it"),
-    },
-    "Ensemble": {"Scene": _DRAWN, "path": "mcgw.open_ensemble(path) opens one", "Surface": _DRAWN},
-}
-
-
 def arguments(given: Mapping[str, Any], kinds: Mapping[str, Kind]) -> dict[str, Any]:
     """Read arguments of these kinds as a table of keys; raises `SceneError`, whose lines name them."""
-    plain = {name: as_toml(value) for name, value in given.items()}
+    plain = {name: as_toml(value) for name, value in given.items() if name in kinds}
     section = Section("", plain, {name: Key(name, kind) for name, kind in kinds.items()})
-    found = section.read_all(kinds)
     if section.problems:
         raise SceneError(section.problems)
-    return found
+    return section.values
 
 
 def argument(name: str, value: Any, unit: str) -> float:
@@ -224,6 +218,18 @@ def as_toml(value: Any) -> Any:
     if isinstance(value, Iterable) and not isinstance(value, type):
         return [as_toml(inner) for inner in value]
     return value
+
+
+_DRAWN = "mcgw.simulate(scene) draws one"
+_MAKES = {
+    "Scene": {
+        **dict.fromkeys(("Surface", "Spectral"), "mcgw.Scene(surface, separations=...) makes one of it"),
+        "path": "mcgw.load_scene(path) reads one",
+        "Ensemble": "that of an ensemble is its .scene",
+        **dict.fromkeys(("Fit", "ProfileFit"), "mcgw.fitted_scene(fit) makes one of it"),
+    },
+    "Ensemble": {"Scene": _DRAWN, "path": "mcgw.open_ensemble(path) opens one", "Surface": _DRAWN},
+}
 
 
 def check_object(call: str, value: Any, kind: type) -> None:

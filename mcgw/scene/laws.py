@@ -4,9 +4,10 @@ import csv
 import math
 import re
 from collections.abc import Callable, Mapping
-from inspect import Parameter, signature
+from dataclasses import dataclass
+from inspect import signature
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -39,9 +40,33 @@ _LAW_OF_HEIGHTS = ("support", "breaks", "span", "log_ratio", "pdf")
 
 
 _MOST_BYTES, _MOST_OF_MODULI = 2**28, 2**24
-_MODULI = {"s": "1", "z": "m", "ratio": "1", "E_star": "Pa"}  # columns and their units
-_SUMMITS = {"height": "m", "radius": "m"}
+_SUMMITS: list[dict[str, tuple[str, float]]] = [{"height": ("m", 1.0)}, {"radius": ("m", 1.0)}]
 _NAMED = re.compile(r"\s*(\w+)\s*(?:[(\[/ ]\s*([^()\[\]]*?)\s*[)\]]?)?\s*")  # z, z (um), z [um], z / um, z um
+
+
+@dataclass(frozen=True)
+class Graded:
+    """Moduli against height, with what happens where they are negative.
+
+    Parameters
+    ----------
+    law : Grading or callable
+        As `mcgw.Scene` takes it alone.
+    negative : {"error", "clip", "allow"}, optional
+        What to do if it makes the modulus of a contacting asperity negative: refuse the scene, set the
+        modulus to zero, or take it as it is.
+
+    Examples
+    --------
+    >>> import mcgw
+    >>> surface = mcgw.Surface("1 um", "10 um", "300/mm^2", "1 cm^2", "80 GPa")
+    >>> softer = mcgw.Graded(mcgw.Exponential(-0.5), negative="clip")
+    >>> mcgw.Scene(surface, separations=0.0, grading=softer).negative
+    'clip'
+    """
+
+    law: analytic.Grading | Callable[[Any], Any] | None
+    negative: Literal["error", "clip", "allow"] = "error"
 
 
 # --- objects of Python, or None ---
@@ -70,25 +95,29 @@ def instance_of(*kinds: type) -> Callable[[Any], Any]:
 # --- by keys ---
 
 
-def _law(section: Section, key: str, law: Any, makes: Mapping[str, Callable[..., Any]]) -> Any:
+def _law(section: Section, key: str, default: str, makes: Mapping[str, Callable[..., Any]]) -> Any:
     """Return a law that is given, or make the one whose word stands at `key`, from those keys it takes.
 
     Mistakes are noted in the section and give None.
     """
+    law = section.values.get(key, None if key in section.table else default)
     if not isinstance(law, str):
-        return law  # None: unknown, so that its keys cannot be checked
-    known, given = signature(makes[law]).parameters, {}
-    for name in section.rows:
-        if own := known.get(name):
-            if name in section:
-                given[name] = section.read(name)
-            elif own.default is Parameter.empty:
-                section.problems.append(f'{section.path(name)}: missing; {key} = "{law}" needs it')
-        elif name in section and name not in OF_YIELD:
-            laws = [repr(word) for word, make in makes.items() if name in signature(make).parameters]
+        return _alone(section, key, law)  # None: unknown, so that its keys cannot be checked
+    known = {word: signature(make).parameters for word, make in makes.items()} if section.values else {}
+    for name in section.values:
+        laws = [repr(word) for word, names in known.items() if name in names]
+        if laws and repr(law) not in laws and name not in OF_YIELD:
             only = f"it is for {key} = {' or '.join(laws)} only; leave it out"
-            section.problems += [f"{section.path(name)}: unknown key; {only}"] if laws else []
-    return section.made(makes[law], given)
+            section.problems.append(f"{section.path}{name}: unknown key; {only}")
+    return section.make(makes[law], f'{key} = "{law}" needs it')
+
+
+def _alone(section: Section, key: str, law: Any) -> Any:
+    """Return a law that is given as an object, beside which no constants of laws stand."""
+    for name in section.values if law is not None else ():
+        if name not in (key, "negative", *OF_YIELD):
+            section.fail(name, f"give it to the law, {type(law).__name__}, or leave it out")
+    return law
 
 
 def grading_of(section: Section, surface: Surface | None, folder: Path) -> Grading:
@@ -99,8 +128,8 @@ def grading_of(section: Section, surface: Surface | None, folder: Path) -> Gradi
             return analytic.Table(s, ratio)
         return read_grading(folder / file, surface) if surface else None
 
-    law = section.read("law", "exponential" if "gamma" in section else "homogeneous")
-    return _law(section, "law", law, GRADINGS | {"table": table}) or Homogeneous()
+    default = "exponential" if "gamma" in section.table else "homogeneous"
+    return _law(section, "law", default, GRADINGS | {"table": table}) or Homogeneous()
 
 
 def heights_of(section: Section, folder: Path) -> HeightLaw | None:
@@ -115,7 +144,7 @@ def heights_of(section: Section, folder: Path) -> HeightLaw | None:
         return analytic.HeightTable.of(sample) if resample else analytic.MeasuredHeights(sample)
 
     makes = HEIGHTS | {"table": table, "scipy": _of_scipy}
-    return _law(section, "law", section.read("law"), makes)  # type: ignore[no-any-return]
+    return _law(section, "law", "gaussian", makes)  # type: ignore[no-any-return]
 
 
 def _of_scipy(name: str = "norm", shapes: Mapping[str, float] | None = None) -> HeightLaw:
@@ -132,105 +161,110 @@ def _of_scipy(name: str = "norm", shapes: Mapping[str, float] | None = None) -> 
 
 
 def listed_summits(section: Section, folder: Path) -> Listed | None:
-    """Read summits listed with their heights and radii; None if there are none, or mistakes, which are noted.
+    """Read summits listed with their heights and radii; None if there are mistakes, which are noted.
 
     The law of their heights; radii, m or over that of the surface, shape (summits,); and what they tell of
     their surface: their number ``eta`` on it and, if radii are in m, sigma and radius.
     """
 
-    def listed(file: Any, heights: Any, radii: Any, ratios: Any, resample: Any) -> Listed:
+    def listed(
+        file: str | None = None,
+        heights: Any = None,
+        radii: Any = None,
+        ratios: Any = None,
+        resample: bool = False,
+    ) -> Listed:
         own = (heights, ratios if radii is None else radii)
-        z, R = (np.asarray(x, np.float64) for x in (own if file is None else read_summits(folder / file)))
+        given = own if file is None else _columns(folder / file, _MOST_BYTES, *_SUMMITS)
+        z, R = (np.asarray(x, np.float64) for x in given)
         if z.shape != R.shape:
             raise ValueError(f"there are {z.size} heights and {R.size} radii")
         for k in np.flatnonzero(~(np.isfinite(z) & np.isfinite(R) & (R > 0)))[:1]:
             has = f"summit {k + 1} has the height {z[k]:g} and the radius {R[k]:g}"
             raise ValueError(f"{has}; heights are finite, radii > 0")
         told = {"eta": float(len(z))}
-        if z.size and (file is not None or radii):
+        if z.size and ratios is None:
             told |= {"sigma": float(z.std()), "radius": float(1 / np.mean(1 / R))}
-        return analytic.MeasuredHeights(z, resampled=bool(resample)), R, told
+        return analytic.MeasuredHeights(z, resampled=resample), R, told
 
-    given = section.read_all(LISTS)
-    if (given["file"] is None) is (given["heights"] is None or given["radii"] is given["ratios"]):
-        return None
-    return section.made(listed, given)  # type: ignore[no-any-return]
+    return section.make(listed)  # type: ignore[no-any-return]
 
 
 def contact_law(section: Section) -> ContactLaw:
     """Read the law and its constants; mistakes are noted in the section and give Hertz's."""
-    law = section.read("name")
+    law = section.values.get("name", section.table.get("name", Hertz.name))
+    if isinstance(law, ContactLaw):
+        return _alone(section, "name", law)  # type: ignore[no-any-return]
     if law == Hertz.name and {*section.table} <= {"name", *OF_YIELD}:
         return Hertz()
-    if isinstance(law, ContactLaw):
-        return law
     from analytic.laws import by_name  # which imports them all
 
-    return _law(section, "name", law, {**by_name, "custom": _custom}) or Hertz()
+    return _law(section, "name", Hertz.name, {**by_name, "custom": _custom}) or Hertz()
 
 
-def _custom(critical: float, limits: list[float], load: Any, area: Any, checked: bool = True) -> ContactLaw:
+def _custom(critical: float, limits: Any, load: Any, area: Any, checked: bool = True) -> ContactLaw:
     """Explain what a contact law of a Python script becomes in a file."""
-    from analytic.laws.custom import CustomLaw, RootSeries
+    for key, edges in (("load", load[0].edges), ("area", area[0].edges)):
+        if edges[0] != -edges[-1]:
+            reach = f"{edges[0]:g} to {edges[-1]:g}"
+            raise ValueError(f"{key}: the first piece reaches from {reach}, not around 0")
+    return analytic.CustomLaw(load, area, limits, critical, checked)
 
-    def series(key: str, pieces: Any) -> list[RootSeries]:
-        try:
-            found = [RootSeries(**piece) for piece in pieces]
-        except ValueError as error:
-            raise ValueError(f"{key}: {error}") from None
-        if (first := found[0].edges)[0] != -first[-1]:
-            raise ValueError(
-                f"{key}: the first piece reaches from {first[0]:g} to {first[-1]:g}, not around 0"
-            )
-        return found
 
-    return CustomLaw(series("load", load), series("area", area), limits, critical, checked)
+def piece_of_law(edges: Any, coefficients: Any) -> Any:
+    """Return one piece of the series of such a law."""
+    from analytic.laws.custom import RootSeries
+
+    return RootSeries(edges, coefficients)
+
+
+def evenly(start: float, stop: float, num: int) -> tuple[float, ...]:
+    """Return separations with even steps: 0.3, where these give 0.30000000000000004."""
+    return tuple(float(f"{h:.15g}") for h in np.linspace(start, stop, num))
 
 
 # --- files beside a scene: moduli against height, heights, summits with radii ---
 
 
-def _columns(path: Path, most: int, units: Mapping[str, str]) -> dict[str, list[float]]:
-    """Return columns of a CSV file by name, in SI; nan where there is no number, empty those of other names.
+def _columns(path: Path, most: int, *axes: Mapping[str, tuple[str, float]]) -> list[Array]:
+    """Return a column of a CSV file for each axis, by one of its names, over a size in the SI unit of it.
 
     Units may follow the names, ``z (um), E_star (GPa)``, or the numbers, ``61.2 GPa``; # begins a comment.
+    Raises ValueError, as all here, if it cannot be read or is not such a table; no text of it is quoted.
     """
     lines = [line for line in read_text(path, most).splitlines() if line.strip() and line[0] != "#"]
     try:
         header, *rows = list(csv.reader(lines)) or [[]]
     except csv.Error as error:
         raise ValueError(f"{path}: is not a table: {error}") from None
-    found: dict[str, list[float]] = {}
+    found: list[list[Array]] = [[] for _ in axes]
     for k, text in enumerate(header):
         match = _NAMED.fullmatch(text)
         name, unit = (match[1], match[2] or "") if match else (text, "")
-        known = name in units and not math.isnan(signed(f"1{unit}", units[name]))
-        cells = [row[k] if len(row) == len(header) else "" for row in rows if known]
-        found[name if known else text] = [_number(cell, unit, units[name]) for cell in cells]
-    return found
-
-
-def _number(text: str, unit: str, si: str) -> float:
-    """Return a number in its own unit or in that of its column; nan if it is none."""
-    value = signed(f"{text}{unit}", si)
-    value = value if math.isfinite(value) else signed(text, si)
-    return value if math.isfinite(value) else math.nan
+        for columns, axis in zip(found, axes, strict=True):
+            si, size = axis.get(name, ("1", 1.0))
+            if name in axis and not math.isnan(signed(f"1{unit}", si)):
+                cells = [row[k] if len(row) == len(header) else "" for row in rows]
+                own = [
+                    x if math.isfinite(x := signed(f"{cell}{unit}", si)) else signed(cell, si)
+                    for cell in cells
+                ]
+                columns.append(np.array(own) / size)
+    names = " and ".join(" or ".join(axis) for axis in axes)
+    if any(len(columns) != 1 for columns in found):
+        raise ValueError(
+            f"{path}: the first line must name {names}, with commas, such as z (um),E_star (GPa)"
+        )
+    for k in np.flatnonzero(~np.isfinite(found).all(axis=(0, 1)))[:1]:
+        raise ValueError(f"{path}: row {k + 1} below the header has no number as {names}")
+    return [column for (column,) in found]
 
 
 def read_grading(path: Path, surface: Surface) -> analytic.Table:
-    """Return a grading from a CSV file: heights ``s`` or ``z`` (m), and ``ratio`` or ``E_star`` (Pa).
-
-    Raises ValueError, as all here, if it cannot be read or is not such a table; no text of it is quoted.
-    """
-    found = _columns(path, _MOST_OF_MODULI, _MODULI)
-    axes = {"s": 1.0, "z": surface.sigma}, {"ratio": 1.0, "E_star": surface.E_star}
-    named = [[np.array(found[name]) / size for name, size in axis.items() if name in found] for axis in axes]
-    if len(found) != 2 or not all(named):
-        first = "s or z, a comma, and ratio or E_star, such as z (um),E_star (GPa)"
-        raise ValueError(f"{path}: the first line must be {first}")
-    (s,), (ratio,) = named
-    if np.isnan([s, ratio]).any():
-        raise ValueError(f"{path}: every line below the header must be two numbers, separated by a comma")
+    """Return a grading from a CSV file: heights ``s`` or ``z`` (m), and ``ratio`` or ``E_star`` (Pa)."""
+    heights = {"s": ("1", 1.0), "z": ("m", surface.sigma)}
+    moduli = {"ratio": ("1", 1.0), "E_star": ("Pa", surface.E_star)}
+    s, ratio = _columns(path, _MOST_OF_MODULI, heights, moduli)
     order = np.argsort(s, kind="stable")
     try:
         return analytic.Table(s[order].tolist(), ratio[order].tolist())
@@ -252,14 +286,3 @@ def read_heights(path: Path) -> Array:
         raise ValueError(
             f"{path}: give one height per line, or the same number on each line, separated by commas"
         ) from None
-
-
-def read_summits(path: Path) -> tuple[list[float], ...]:
-    """Return the columns height and radius, m, of a CSV file."""
-    found = _columns(path, _MOST_BYTES, _SUMMITS)
-    if missing := [name for name in _SUMMITS if name not in found]:
-        raise ValueError(f"{path}: has no column {' and no column '.join(missing)}")
-    columns = tuple(found[name] for name in _SUMMITS)
-    for k in np.flatnonzero(np.isnan(columns).any(axis=0))[:1]:
-        raise ValueError(f"{path}: summit {k + 1} has no number as {' or '.join(_SUMMITS)}")
-    return columns

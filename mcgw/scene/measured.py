@@ -1,15 +1,16 @@
-"""What is known of a measured surface besides its summits: their errors, and what a fit saw."""
+"""What is known of a measured surface besides its summits: errors, what a fit saw, and one of two bodies."""
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from analytic import SpectralMoments, Surface
+from analytic import Nayak, SpectralMoments, Surface
 from analytic.arrays import Array, hold
 from mcgw.scene.kinds import List, Number, Plain
-from mcgw.scene.parts import key
+from mcgw.scene.section import key
 
 MOMENTS, SUMMITS = ("m0", "m2", "m4"), ("sigma", "radius", "eta")  # either describes summits of a surface
 KNOWN = 'give relative standard errors, such as {sigma = "20 %", radius = "15 %"}'
@@ -138,3 +139,50 @@ class Fitted:
             f"alpha = {self.moments.alpha:.4g}, rms slope {math.sqrt(2 * self.m2):.3g}{lay}",
             f"skewness {self.skewness:.2f}, kurtosis {self.kurtosis:.2f}{apart}",
         )
+
+
+@dataclass(frozen=True)
+class RoughBody:
+    """One of two rough bodies, or both as one; None or empty: unknown."""
+
+    moments: SpectralMoments
+    E_star: float | None = None  # composite modulus of this body alone on a rigid plane, E/(1 - nu^2), Pa
+    hardness: float | None = None  # Pa
+    conductivities: tuple[float, ...] = ()  # thermal, of the body, or of both of a pair, W/(m K)
+
+    def beside(self, other: "RoughBody") -> "RoughBody":
+        """Return both as one on a rigid plane: the gap between two independent isotropic Gaussian surfaces.
+
+        Its hardness is that of the softer body. What is not known of both is unknown.
+        """
+        a, b = self.moments, other.moments
+        moduli, hardness = (self.E_star, other.E_star), (self.hardness, other.hardness)
+        known = self.conductivities and other.conductivities
+        return RoughBody(
+            SpectralMoments(a.m0 + b.m0, a.m2 + b.m2, a.m4 + b.m4),
+            None if None in moduli else 1 / sum(1 / E for E in moduli if E),
+            None if None in hardness else min(x for x in hardness if x),
+            self.conductivities + other.conductivities if known else (),
+        )
+
+
+def moments_of(scene: Any) -> SpectralMoments:
+    """Return the moments of the fitted map of a scene, or of Nayak's heights; ValueError without either."""
+    if scene.fitted is not None:
+        return scene.fitted.moments  # type: ignore[no-any-return]
+    if isinstance(scene.heights, Nayak):
+        from mcgw.validity.lookup import moments_of_nayak  # few have two bodies
+
+        return moments_of_nayak(scene.surface, scene.heights.alpha)
+    raise ValueError("has no spectrum; give m0, m2, m4 under [surface], or a scene written by mcgw fit")
+
+
+def body_of(scene: Any) -> RoughBody:
+    """Return the body of a scene on a rigid plane; errors as of `moments_of`, or if it conducts as a pair."""
+    pair = scene.joint.conductivities or ()
+    if len(set(pair)) > 1:
+        raise ValueError(
+            f"joint.conductivities = {list(pair)}: those of a pair; a body has equal ones, as [150.0, 150.0]"
+        )
+    hardness = scene.contact.hardness or getattr(scene.contact.law, "hardness", None)
+    return RoughBody(moments_of(scene), scene.surface.E_star, hardness, tuple(pair[:1]))

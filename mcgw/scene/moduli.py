@@ -4,6 +4,7 @@ Scenes with neither do not import this.
 """
 
 from collections.abc import Iterator
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -32,51 +33,36 @@ _WAYS_OUT = {
 }
 
 
-def checks_of(scene: Fields) -> list[Any]:
-    """Return what its moduli are asked: checks one after another, with whether they are needed."""
-    grading = scene.grading
-    return [
-        {_function: isinstance(grading, analytic.Custom)},
-        {_range: isinstance(grading, analytic.PiecewiseSeries) and scene.lowest < scene.highest},
-        {_units: not isinstance(grading, _PARAMETERS) or scene.law.name == "custom"},
-        {_modulus: scene.negative == "error" or (scene.negative == "clip" and scene.law.name == _STICKS)},
-        {_sums: True},
-        {_fluctuating: scene.keep == "statistics" and not grading.smooth},
-    ]
-
-
-def _function(scene: Fields) -> Iterator[str]:
-    """Find a Python function that does not take arrays."""
+def _reach(scene: Fields) -> Iterator[str]:
+    """Find a Python function that does not take arrays, and series that end before heights that touch."""
     grading: Any = scene.grading
-    try:
-        with np.errstate(all="ignore"):
-            grading.function(np.array([scene.lowest, scene.highest]))
-    except Exception as error:  # of any kind: it is the user's own code
-        reason = brief(f"{type(error).__name__}: {error}")
-        yield (
-            f"grading: the function fails on an array of heights ({reason}); write it with numpy, or "
-            "give np.vectorize of it"
-        )
-
-
-def _range(scene: Fields) -> Iterator[str]:
-    """Heights that touch and that the series of a grading do not reach."""
-    grading: Any = scene.grading
-    low, high = max(scene.lowest, scene.least), scene.highest
-    first, last = grading.edges[0], grading.edges[-1]
-    if not (first <= low and high <= last):
-        yield (
-            f"grading.edges: the series reach from s = {first:.6g} to {last:.6g}, but heights from {low:.6g} "
-            f"to {high:.6g} are needed; give the grading itself, or other separations"
-        )
+    if isinstance(grading, analytic.Custom):
+        try:
+            with np.errstate(all="ignore"):
+                grading.function(np.array([scene.lowest, scene.highest]))
+        except Exception as error:  # of any kind: it is the user's own code
+            reason = brief(f"{type(error).__name__}: {error}")
+            yield (
+                f"grading: the function fails on an array of heights ({reason}); write it with numpy, or "
+                "give np.vectorize of it"
+            )
+    elif isinstance(grading, analytic.PiecewiseSeries) and scene.lowest < scene.highest:
+        low, high = max(scene.lowest, scene.least), scene.highest
+        first, last = grading.edges[0], grading.edges[-1]
+        if not (first <= low and high <= last):
+            yield (
+                f"grading.edges: the series reach from s = {first:.6g} to {last:.6g}, but heights from "
+                f"{low:.6g} to {high:.6g} are needed; give the grading itself, or other separations"
+            )
 
 
 def _units(scene: Fields) -> Iterator[str]:
     """Refuse a grading or a custom contact law that is far from 1 at all heights that touch."""
-    own_law = scene.law.name == "custom" and getattr(scene.law, "checked", True)
-    inner = getattr(scene.grading, "grading", scene.grading)  # of a clipped one
-    own_grading = not isinstance(inner, _PARAMETERS) and getattr(inner, "checked", True)
-    h = min(scene.separations)
+    law: Any = scene.law
+    grading = getattr(scene.grading, "grading", scene.grading)  # of a clipped one
+    own_law = law.name == "custom" and getattr(law, "checked", True)
+    own_grading = not isinstance(grading, _PARAMETERS) and getattr(grading, "checked", True)
+    surface, h = scene.surface, min(scene.separations)
     if not (own_law or own_grading) or not scene.heights.sf(np.array(h)) > 0:
         return
     s = scene.heights.isf(_LOOKED_AT, h)
@@ -84,10 +70,27 @@ def _units(scene: Fields) -> Iterator[str]:
         e = np.asarray(scene.grading(s))
     except ValueError:
         return  # a later check reports it
-    if own_grading:
-        yield from _no_ratio(scene, inner, e)
-    if own_law and np.all(e > 0):
-        yield from _no_law(scene, s - h, e)
+    if own_grading and any(_given_in(e, surface.E_star / size) for size in _UNITS):
+        yield (
+            f"grading: E*(s)/E* is {_ends(e)} at all heights that touch; give a ratio near 1: moduli over "
+            f"E_star = {surface.E_star:g} Pa, of s = z/sigma, sigma = {surface.sigma:g} m"
+            f"{_WAYS_OUT.get(type(grading), '')}"
+        )
+    if not own_law or not np.all(e > 0):
+        return
+    y, delta_c = np.sqrt(s - h), law.critical * surface.sigma
+    contacts = [*zip(piece_of(law, s - h, e).tolist(), y, e, strict=True)]
+    hertz = 4 / 3 * surface.E_star * surface.radius**0.5 * delta_c**1.5
+    load, area = (np.array([float(of(*each)) for each in contacts]) for of in (law.load, law.radius))
+    for name, ratios, size, unit in (
+        ("load", load / (e * y**3), hertz, "(4/3) E*(s) sqrt(R) delta_c^1.5 = {:.4g} N at E*"),
+        ("area", (area / y) ** 2, np.pi * surface.radius * delta_c, "pi R delta_c = {:.4g} m^2 at E*"),
+    ):
+        if _given_in(ratios, size):
+            yield (
+                f"contact.law = {type(law).__name__}: its {name} is {_ends(ratios)} of Hertz's at all "
+                f"penetrations that occur; divide it by {unit.format(size)}{_MEANT}checked=False"
+            )
 
 
 def _given_in(ratios: Array, size: float) -> bool:
@@ -98,89 +101,48 @@ def _given_in(ratios: Array, size: float) -> bool:
     return bool(apart > _FARTHEST or (apart > _APART and near))
 
 
-def _no_ratio(scene: Fields, inner: Any, e: Array) -> Iterator[str]:
-    E_star, sigma = scene.surface.E_star, scene.surface.sigma
-    if not any(_given_in(e, E_star / size) for size in _UNITS):
-        return
-    yield (
-        f"grading: E*(s)/E* is {_ends(e)} at all heights that touch; give a ratio near 1: moduli over E_star "
-        f"= {E_star:g} Pa, of s = z/sigma, sigma = {sigma:g} m{_WAYS_OUT.get(type(inner), '')}"
-    )
-
-
-def _no_law(scene: Fields, penetration: Array, e: Array) -> Iterator[str]:
-    law: Any = scene.law
-    surface, y = scene.surface, np.sqrt(penetration)
-    delta_c = law.critical * surface.sigma
-    hertz = 4 / 3 * surface.E_star * surface.radius**0.5 * delta_c**1.5
-    at = list(zip(piece_of(law, penetration, e).tolist(), y, e, strict=True))
-    loads = np.array([float(law.load(*each) / (each[2] * each[1] ** 3)) for each in at])
-    areas = np.array([float(law.radius(*each) / each[1]) ** 2 for each in at])
-    for name, ratios, size, unit in (
-        ("load", loads, hertz, "(4/3) E*(s) sqrt(R) delta_c^1.5 = {:.4g} N at E*"),
-        ("area", areas, np.pi * surface.radius * delta_c, "pi R delta_c = {:.4g} m^2 at E*"),
-    ):
-        if _given_in(ratios, size):
-            yield (
-                f"contact.law = {type(law).__name__}: its {name} is {_ends(ratios)} of Hertz's at all "
-                f"penetrations that occur; divide it by {unit.format(size)}{_MEANT}checked=False"
-            )
-
-
 def _ends(values: Array) -> str:
     return " to ".join(dict.fromkeys(f"{end:.3g}" for end in (values.min(), values.max())))
 
 
-def _modulus(scene: Fields) -> Iterator[str]:
-    """Negative moduli among the heights that touch; none where contacts stick."""
+def _values(scene: Fields) -> Iterator[str]:
+    """Find moduli that are negative where contacts touch, make sums overflow, or have no variance."""
+    grading, sticks, where = scene.grading, scene.law.name == _STICKS, None
+    key = f"grading.gamma = {grading.gamma:g}" if isinstance(grading, analytic.Exponential) else "grading"
     try:
-        where = scene.negative_above(scene.lowest)
+        if scene.negative == "error" or (scene.negative == "clip" and sticks):
+            where = scene.negative_above(scene.lowest)
     except ValueError as error:
         yield str(error)
         return
-    if where is None:
-        return
-    if isinstance(scene.grading, analytic.Exponential) and scene.grading.gamma < 0:
-        where = scene.grading.zero
-    if scene.negative == "clip":
+    if where is not None and scene.negative == "clip":
         yield (
             f'grading.negative = "clip": from s = {where:.4g} asperities have no modulus, and contact.law = '
-            f'"{scene.law.name}" pulls them in without limit; increase the separations, or use another '
-            "grading"
+            f'"{_STICKS}" pulls them in without limit; increase the separations, or use another grading'
         )
-    else:
+    elif where is not None:
+        if isinstance(grading, analytic.Exponential) and grading.gamma < 0:
+            where = grading.zero
         yield (
-            f"{_key(scene)}: E*(s) is negative from s = {where:.4g}, which touches at h = {scene.lowest:g}; "
+            f"{key}: E*(s) is negative from s = {where:.4g}, which touches at h = {scene.lowest:g}; "
             'increase the separations, or set negative = "clip" or "allow" under [grading]'
         )
+    else:
+        units = [q.scale(scene.surface) for q in map(analytic.quantity_of, scene.quantities) if q.modulus]
+        steepest = largest = 0.0
+        with np.errstate(all="ignore"), suppress(ValueError):  # of a function, if negative ones are allowed
+            steepest = float(np.abs(scene.modulus(np.array([*scene.separations, scene.highest]))).max())
+            largest = max(units, default=0.0) * steepest * float(scene.n_asperities) * _SAFELY
+        if not largest < np.finfo(float).max:
+            yield f"{key}: E*(s)/E* reaches {steepest:.3g}, so sums overflow; give a smaller one"
+        elif scene.keep == "statistics" and not grading.smooth:
+            try:
+                scene.alone.fluctuations(scene.quantities, np.array([scene.lowest]))
+            except ValueError as error:
+                yield f'ensemble.keep = "statistics": {error}; or use "sums"'
 
 
-def _sums(scene: Fields) -> Iterator[str]:
-    """Find the sums that the grading makes larger than double precision holds."""
-    ends = np.array(sorted({scene.highest, *scene.separations}))
-    stiff = [q for q in map(analytic.quantity_of, scene.quantities) if q.modulus]
-    with np.errstate(all="ignore"):
-        try:
-            steepest = float(np.max(np.abs(scene.modulus(ends))))
-        except ValueError:
-            return  # `_modulus` says why, unless negative moduli are allowed
-        sums = [q.scale(scene.surface) * steepest * float(scene.n_asperities) * _SAFELY for q in stiff]
-    if not all(value < np.finfo(float).max for value in sums):
-        yield f"{_key(scene)}: E*(s)/E* reaches {steepest:.3g}, so sums overflow; give a smaller one"
-
-
-def _fluctuating(scene: Fields) -> Iterator[str]:
-    """Find a Python function that has no variance."""
-    try:
-        scene.alone.fluctuations(scene.quantities, np.array([scene.lowest]))
-    except ValueError as error:
-        yield f'ensemble.keep = "statistics": {error}; or use "sums"'
-
-
-def _key(scene: Fields) -> str:
-    """Find the key of a grading, and its value if that is one number."""
-    grading = scene.grading
-    return f"grading.gamma = {grading.gamma:g}" if isinstance(grading, analytic.Exponential) else "grading"
+CHECKS = (_reach, _units, _values)  # each where those before it find nothing
 
 
 def doubts_of_table(table: analytic.Table, scene: Fields) -> Iterator[str]:

@@ -2,39 +2,40 @@
 
 import math
 import secrets
+from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from analytic import UNLOADING, Gaussian, HeightLaw, MeasuredRadii, Nayak, RandomCurvature, Surface
-from analytic.laws import ContactLaw, Hertz
+import analytic
+from analytic import UNLOADING, HeightLaw, MeasuredRadii, Nayak, RandomCurvature
+from analytic.laws import ContactLaw
 from analytic.laws.law import check_poisson
+from mcgw.scene.contact import Contact, Joint
+from mcgw.scene.ensemble import Sampling
 from mcgw.scene.fields import LeftOut
-from mcgw.scene.keys import KEYS, SURFACE_UNITS, TABLES, as_tables, whole_key
+from mcgw.scene.keys import INSIDE, KEYS, TABLES
 from mcgw.scene.kinds import as_toml
-from mcgw.scene.laws import LISTS, OF_YIELD, contact_law, grading_of, heights_of, listed_summits
-from mcgw.scene.measured import MOMENTS, SUMMITS
-from mcgw.scene.parts import Contact, Graded, Joint, Sampling
-from mcgw.scene.rough_bodies import with_bodies
-from mcgw.scene.section import SceneError, Section, nearest
+from mcgw.scene.laws import LISTS, OF_YIELD, Graded, contact_law, grading_of, heights_of, listed_summits
+from mcgw.scene.measured import MOMENTS, SUMMITS, Fitted
+from mcgw.scene.section import SceneError, Section, mistake, nearest
 from mcgw.scene.surface import Spectral, read_surface
 
 Values = dict[str, Any]
+Tables = Mapping[str, Any]
 Seeds = Callable[[], int | None]  # asked for a seed
-Radii = RandomCurvature | MeasuredRadii | None
 
+_QUANTITIES = ("load", "area", "stiffness", "contacts")
 # Keys of what may stand in place of a table: a word, or an object that no keys make.
 _OF_WORD = {"grading": "law", "heights": "law", "summits": "curvature", "interaction": "reference"}
-# Parts of a scene, and of which of them a value that may be given by its own name is a key.
-PLACES = {name or "title": "" for name in TABLES if "." not in name}
-for _table in ("contact", "joint", "ensemble"):
-    PLACES |= dict.fromkeys(KEYS[_table], _table)
-PLACES |= dict.fromkeys(("law", *OF_YIELD), "contact") | {"negative": "grading"}
-PLACES |= dict.fromkeys((*SURFACE_UNITS, "uncertainty"), "surface")
-_QUANTITIES = ("load", "area", "stiffness", "contacts")
+_TABLES_WITH = Counter(key for rows in KEYS.values() for key in rows)
+# Each key that one table alone has, with that table; of several laws the one of contacts.
+_WHOLE = {key: f"{name}.{key}" for name in filter(None, KEYS) for key in KEYS[name] if _TABLES_WITH[key] == 1}
+_WHOLE |= {"law": "contact.law"}
+
+
+# --- from Python ---
 
 
 def of_arguments(given: Mapping[str, Any]) -> Values:
@@ -43,35 +44,35 @@ def of_arguments(given: Mapping[str, Any]) -> Values:
     Raises TypeError if there is no such part or key, SceneError with one line for each mistake.
     """
     document: Values = {}
+    parts, changes = {}, {}
     for name, value in given.items():
-        if name not in PLACES:
-            meant = nearest(name, PLACES).rstrip() or f"it has {', '.join(PLACES)}"
+        place = whole_key(name)
+        if name in TABLES:
+            keys = None if value is None else _keys_of(name, value)
+            if isinstance(keys, dict):
+                document[name] = {}
+                for key, inner in keys.items():
+                    whole = whole_key(key)
+                    parts[whole if whole.startswith(f"{name}.") else f"{name}.{key}"] = inner
+            elif keys is not None:
+                document[name] = keys
+        elif "." in place or place in KEYS[""]:
+            changes[place] = value
+        else:
+            known = [*filter(None, TABLES), *_WHOLE]
+            meant = nearest(name, known).rstrip() or f"it has {', '.join(known)}"
             raise TypeError(f"a scene has no {name!r}; {meant}")
-        if not PLACES[name] and value is not None:
-            document[name] = _keys_of(name, value)
-    for name, value in given.items():
-        if not (table := PLACES[name]):
-            continue
-        keys = document.get(table, {})
-        keys = _fields(keys) if isinstance(keys, Surface) else keys
-        if isinstance(keys, dict):
-            document[table] = {key: x for key, x in {**keys, name: value}.items() if x is not None}
-    if isinstance(contact := document.get("contact"), dict):
-        of_yield = {key: contact.pop(key) for key in OF_YIELD if key in contact}
-        if of_yield:
-            contact["law"] = as_tables(document)["contact"].get("law", {}) | of_yield
-    return of_tables(as_toml(document))
+    inner_last = sorted((parts | changes).items(), key=lambda each: each[0].count("."))
+    return of_tables(as_toml(with_changes(document, dict(inner_last))))
 
 
 def _keys_of(name: str, value: Any) -> Any:
     """Return the keys of what stands for a whole table."""
-    if isinstance(value, Mapping):
-        return dict(value)
-    if isinstance(value, Surface):
-        return value
     if isinstance(value, Spectral):
         summits = {key: x for key, x in _fields(value.surface).items() if key not in SUMMITS}
         return _fields(value.moments) | summits
+    if isinstance(value, Mapping):
+        return dict(value)
     if isinstance(value, Graded) or (is_dataclass(value) and name not in ("grading", "heights", "summits")):
         return _fields(value)
     return {_OF_WORD[name]: value} if name in _OF_WORD else value
@@ -81,89 +82,117 @@ def _fields(part: Any) -> Values:
     return {each.name: x for each in fields(part) if (x := getattr(part, each.name)) is not None}
 
 
-def of_tables(document: Mapping[str, Any], folder: Path = Path(), seed: Seeds | None = None) -> Values:
+def whole_key(key: str) -> str:
+    """Return a key with its table, where it is given without and only one table has it."""
+    return key if key in TABLES else _WHOLE.get(key, key)
+
+
+def with_changes(document: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Tables with other values at some keys, dotted, None: without; a whole table takes the place of one.
+
+    A key that one table alone has may stand without its table, and a word for a contact law is its name.
+    """
+    changed = {**document}
+    for key, value in changes.items():
+        *outer, last = whole_key(key).split(".")
+        table: Any = changed
+        for name in outer:
+            held = table.get(name, {})
+            held = {"name": held} if name == "law" and not isinstance(held, Mapping) else held
+            if not isinstance(held, Mapping) or (value is None and name not in table):
+                break  # which is a mistake of its own, or as it is
+            table[name] = {**held}
+            table = table[name]
+        else:
+            held = table.pop(last, None)
+            if last == "law" and isinstance(held, Mapping) and not isinstance(value, Mapping):
+                value = {**held, "name": value}
+            table |= {} if value is None else {last: value}
+    return changed
+
+
+# --- from tables ---
+
+
+def of_tables(document: Tables, folder: Path = Path(), seed: Seeds | None = None) -> Values:
     """Read the tables of a scene, and the files beside it in `folder`; where there is no seed, ask `seed`.
 
     Raises SceneError with one line for each mistake.
     """
-    document = with_bodies(as_tables(document), folder, of_tables)
-    if isinstance(whole := document.get("surface"), Surface):  # of Python, which checked it
-        document = {**document, "surface": {}}
-    of = {"": Section("", document, KEYS[""])}
+    of: dict[str, Section] = {}
     for name, table in TABLES.items():
         outer, _, inner = name.rpartition(".")
-        if name:
-            of[name] = of[outer].section(inner, KEYS[name], table.advice)
-    if of[""].problems:
-        raise SceneError(of[""].problems)
-    surface, heights, radii = _surface_and_summits(of, whole, folder)
-    joint = _joint(of)
+        given = of[outer].table.get(inner, {}) if name else document
+        if name == "contact.law" and not isinstance(given, Mapping):
+            given = {"name": given}
+        if not isinstance(given, Mapping):
+            other = f", or in Python give {table.advice}" if table.advice else ""
+            raise mistake(name, given, f"must be a table: write [{name}] above its keys{other}")
+        of[name] = Section(name, given, KEYS[name], INSIDE[name], whole_key)
+    surface, heights, radii = _surface_and_summits(of, folder)
+    joint = _joint(of["joint"])
     separations, contact = _contact(of, heights, joint)
+    interaction, fitted = "interaction" in document, "fitted" in document
     values = {
-        "title": of[""].read("title"),
+        "title": of[""].get("title"),
         "surface": surface,
         "separations": separations,
         "grading": grading_of(of["grading"], surface, folder),
-        "negative": of["grading"].read("negative"),
+        "negative": of["grading"].get("negative"),
         "heights": heights,
         "summits": radii,
         "contact": contact,
-        "interaction": _made(of, "interaction"),
+        "interaction": of["interaction"].make(analytic.Interaction) if interaction else None,
         "joint": joint,
         "ensemble": _ensemble(of["ensemble"], seed),
-        "fitted": _made(of, "fitted"),
+        "fitted": of["fitted"].make(Fitted) if fitted else None,
     }
-    for section in of.values():
-        section.finish(whole_key)
     if problems := [line for section in of.values() for line in section.problems]:
         raise SceneError(problems)
     return values
 
 
-def _surface_and_summits(
-    of: Mapping[str, Section], whole: Any, folder: Path
-) -> tuple[Surface | None, HeightLaw | None, Radii]:
+def _surface_and_summits(of: Mapping[str, Section], folder: Path) -> tuple[Any, HeightLaw | None, Any]:
     """Return a surface, the law of its heights, and that of its radii where summits have their own."""
-    summits, of_heights = of["summits"], of["heights"]
-    if any(key in summits for key in LISTS):
+    section, summits, of_heights = of["surface"], of["summits"], of["heights"]
+    if any(key in summits.table for key in LISTS):
         if isinstance(of_heights.table.get("law", ""), str) and of_heights.table:
             of_heights.problems.append("heights: [summits] already gives the heights; leave [heights] out")
         if (listed := listed_summits(summits, folder)) is None:
-            return None, Gaussian(), None
+            return None, None, None
         law, R, told = listed
-        surface = whole if isinstance(whole, Surface) else read_surface(of["surface"], told)
-        if not isinstance(surface, Surface):
+        surface = read_surface(section, told)
+        if not isinstance(surface, analytic.Surface):
             return None, law, None
         return surface, law, MeasuredRadii(law, R / (surface.radius if "radius" in told else 1.0))
-    read = whole if isinstance(whole, Surface) else read_surface(of["surface"])
+    read = read_surface(section)
     surface, default = (read.surface, "random") if isinstance(read, Spectral) else (read, "mean")
-    radii, largest = summits.read("curvature", default), summits.read("largest_radius")
+    radii = summits.values.get("curvature", default)
     own: Any = radii if isinstance(radii, MeasuredRadii) else read
     known = isinstance(own, MeasuredRadii | Spectral) and not of_heights.table
     heights = own.heights if known else heights_of(of_heights, folder)
     uncertain = getattr(surface, "uncertainty", None)
     if uncertain and set(MOMENTS) & set(uncertain.names) and not isinstance(heights, Nayak | None):
         advice = 'm0, m2 and m4 need heights.law = "nayak"; otherwise give sigma, radius and eta'
-        of["surface"].fail("uncertainty", uncertain.names, advice)
-    if radii == "mean" and largest is not None:
-        summits.fail("largest_radius", summits.table["largest_radius"], 'needs curvature = "random"')
-    if radii == "random" and surface is not None and heights is not None:
-        radii = _random(summits, heights, surface.radius, largest)
-    return surface, heights, None if isinstance(radii, str) else radii
+        section.fail("uncertainty", advice)
 
+    def radii_of(curvature: Any = default, largest_radius: float | None = None) -> Any:
+        if curvature == "mean" and largest_radius is not None:
+            raise ValueError('largest_radius: needs curvature = "random"')
+        if isinstance(curvature, MeasuredRadii) and heights != curvature.heights:
+            raise ValueError("heights: they differ from those of the measured summits; leave them out")
+        if curvature == "random":
+            if not isinstance(heights, Nayak):
+                raise ValueError('curvature: needs heights.law = "nayak", or m0, m2, m4 under [surface]')
+            largest = largest_radius / surface.radius if surface and largest_radius else math.inf
+            return RandomCurvature(heights.alpha, largest)
+        if isinstance(curvature, RandomCurvature) and curvature.alpha != getattr(heights, "alpha", None):
+            raise ValueError(
+                f'curvature: needs heights.law = "nayak", alpha = {curvature.alpha:g}; use these'
+            )
+        return None if curvature == "mean" else curvature
 
-def _random(
-    section: Section, heights: HeightLaw, mean: float, largest: float | None
-) -> RandomCurvature | None:
-    """Return radii of summits that follow from the spectrum, up to the largest, m."""
-    if not isinstance(heights, Nayak):
-        section.fail("curvature", "random", 'needs heights.law = "nayak", or m0, m2, m4 under [surface]')
-        return None
-    try:
-        return RandomCurvature(heights.alpha, math.inf if largest is None else largest / mean)
-    except ValueError as error:
-        section.fail("largest_radius", section.table.get("largest_radius", largest), str(error))
-        return None
+    return surface, heights, summits.make(radii_of) if surface and heights else None
 
 
 def _contact(
@@ -173,80 +202,60 @@ def _contact(
 
     These are in SI units where there is a film, and of unloading.
     """
-    section = of["contact"]
-    values = section.read_all(section.rows)
-    given, datum, shift = values.pop("separations"), values.pop("datum"), 0.0
-    if datum == "surface" and isinstance(heights, Nayak):
+    section, shift = of["contact"], 0.0
+    if section.get("datum") == "surface" and isinstance(heights, Nayak):
         shift = heights.mean / heights.std
-    elif datum == "surface" and heights is not None:
-        section.fail(
-            "datum", datum, 'needs heights.law = "nayak", which defines the mean plane of the surface'
-        )
-    if isinstance(given, dict):
-        even = np.linspace(given["start"], given["stop"], given["num"])
-        given = [float(f"{h:.15g}") for h in even]  # 0.3, where even steps give 0.30000000000000004
-    listed = [0.0] if given is None else given if isinstance(given, list) else [given]
-    separations = tuple(h - shift + 0.0 for h in listed)  # -0.0 is 0.0
-    back = min(separations) if values["unload_from"] == "loop" else values["unload_from"]
-    names = dict.fromkeys(values["quantities"] or _QUANTITIES)
+    elif section.get("datum") == "surface" and heights is not None:
+        section.fail("datum", 'needs heights.law = "nayak", which defines the mean plane of the surface')
+    separations = tuple(h - shift + 0.0 for h in section.make(_listed) or (0.0,))  # -0.0 is 0.0
+    back = section.get("unload_from")
+    back = min(separations) if back == "loop" else back
+    names = dict.fromkeys(section.get("quantities") or _QUANTITIES)
     names |= {} if joint.film is None else {"conductance_si": None}
     if back is not None:
         names |= {q.name: None for name in names for q in UNLOADING.values() if q.unloading == name}
     law = contact_law(of["contact.law"])
-    values |= {"quantities": tuple(names), "unload_from": back}
-    return separations, Contact(law, **values, **_softer(of["contact.law"], law))
+    return separations, Contact(law, tuple(names), back, **_softer(of["contact.law"], law))
+
+
+def _listed(separations: Any) -> tuple[float, ...]:
+    return separations if isinstance(separations, tuple) else (separations,)
 
 
 def _softer(section: Section, law: ContactLaw) -> Values:
     """Hardness and Poisson's ratio that an elastic law does not take, to tell whether its contacts yield."""
-    found: Values = dict.fromkeys(OF_YIELD)
-    name = section.table.get("name", Hertz.name)
-    if name not in (law, law.name):
-        return found  # what is wrong with the law is noted
-    own: list[str] = [field.name for field in fields(law)] if is_dataclass(law) else []
-    for key in (key for key in OF_YIELD if key in section):
-        if key not in own and not law.yields:
-            found[key] = section.read(key)
-        elif not isinstance(name, str):
-            advice = f"give it to the law, {type(law).__name__}, or leave it out"
-            section.fail(key, section.table[key], advice)
-    if found["poisson"] is not None:
+    found: Values = {}
+    for key in [key for key in OF_YIELD if key in section.values and not section.problems]:
+        if key not in getattr(law, "__dataclass_fields__", {}) and not law.yields:
+            found[key] = section.values[key]
+        elif section.values.get("name") is law:
+            section.fail(key, f"give it to the law, {type(law).__name__}, or leave it out")
+    if "poisson" in found:
         try:
             check_poisson(found["poisson"])
         except ValueError as error:
             section.problems.append(f"{section.name}.{error}")
-        if "hardness" not in section:
-            section.fail("poisson", found["poisson"], "give hardness too, or leave it out")
+        if "hardness" not in section.table:
+            section.fail("poisson", "give hardness too, or leave it out")
     return found
 
 
-def _joint(of: Mapping[str, Section]) -> Joint:
+def _joint(section: Section) -> Joint:
     """Return a joint of which film and gas can be made; what else is wrong is noted where its keys are."""
-    joint: Joint | None = _made(of, "joint")
-    if joint is not None and (joint.resistivity is None) != (joint.conductivities is None):
+    if not section.problems:
+        joint = Joint(**section.values)
         try:
             _ = joint.film, joint.filling  # which are made of it
             return joint
         except ValueError as error:
-            of["joint"].problems.append(f"joint.{error}")
+            section.problems.append(f"joint.{error}")
     return Joint()
-
-
-def _made(of: Mapping[str, Section], name: str) -> Any:
-    """Return what all keys of a table make; None where it is left out, or wrong, which is noted."""
-    section, make = of[name], TABLES[name].make
-    if make is None or not isinstance(of[""].table.get(name), dict):
-        return None
-    found = section.read_all(section.rows)
-    return section.made(make, {key: tuple(x) if isinstance(x, list) else x for key, x in found.items()})
 
 
 def _ensemble(section: Section, seed: Seeds | None) -> Sampling:
     """How many surfaces, and how they are drawn; numbers that nobody gave are marked."""
-    values = section.read_all(section.rows)
-    if "seed" not in section:
+    values = dict.fromkeys(("n_surfaces", "n_asperities"), LeftOut()) | section.values
+    if "seed" not in section.table:
         other = None if seed is None else seed()
         values["seed"] = LeftOut(secrets.randbits(63) if other is None else other)
-    for key in ("n_surfaces", "n_asperities"):
-        values[key] = LeftOut() if values[key] is None else values[key]
     return Sampling(**values)

@@ -13,18 +13,17 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic import Grading, MeasuredRadii, RandomCurvature, Surface, extent, is_data, resolved
-from analytic.arrays import hold
+from analytic import Grading, Homogeneous, MeasuredRadii, RandomCurvature, Surface, extent, is_data, resolved
 from analytic.laws import ContactLaw
 from mcgw.formats.table import Shown, Table
+from mcgw.scene.contact import Contact, Joint, interaction_mistakes, law_mistakes
+from mcgw.scene.ensemble import Sampling, promise_of
 from mcgw.scene.fields import Fields, LeftOut
+from mcgw.scene.laws import Graded
 from mcgw.scene.measured import MOMENTS, Fitted
-from mcgw.scene.mistakes import mistakes
-from mcgw.scene.parts import Contact, Graded, Joint, Sampling, promise_of
-from mcgw.scene.plausible import perhaps_other_units, takes_hours, warn_of_units
 from mcgw.scene.reading import of_arguments
 from mcgw.scene.section import SceneError
-from mcgw.scene.surface import Spectral
+from mcgw.scene.surface import Spectral, perhaps_other_units, scale_mistakes, warn_of_units
 from mcgw.scene.writing import sheet_of
 
 if TYPE_CHECKING:
@@ -130,18 +129,17 @@ class Scene(Fields, Shown):
 
     def _made_of(self, values: Mapping[str, Any]) -> None:
         """Give what was left out its value, and refuse values that do not go together."""
-        hold(self, **values)
+        vars(self).update(values)
         listed = self.summits if self.as_measured and isinstance(self.summits, MeasuredRadii) else None
         number = len(listed.ratios) if listed else round(min(self.surface.n_asperities, 2.0**62))
         most = _SURFACES if self.rel_err is None else _MOST_SURFACES
         for key, value in (("n_asperities", number), ("n_surfaces", 1 if listed else most)):
             if isinstance(getattr(self, key), LeftOut):  # now, or in the scene that this one was made of
-                hold(self.ensemble, **{key: LeftOut(value)})
-        if problems := mistakes(self):
-            raise SceneError(problems)
+                vars(self.ensemble)[key] = LeftOut(value)
+        _refuse_mistakes(self)
         if not (self.law.is_data and is_data(self.grading)):
             in_numbers(self)  # a function that no series resolves is a mistake as well
-        warn_of_units([*perhaps_other_units(self), *takes_hours(self)])
+        warn_of_units([*perhaps_other_units(self), *self.ensemble.cautions(self)])
 
     def replace(self, **changes: Any) -> Scene:
         """Return the scene with other values; numbers that were left out follow from them.
@@ -215,10 +213,28 @@ class Scene(Fields, Shown):
         return validity_of(self, separations)
 
 
+def _refuse_mistakes(scene: Scene) -> None:
+    """Ask its parts, later ones only where the earlier ones find nothing."""
+    stages: list[Any] = [
+        (scene.contact.mistakes, scene.ensemble.mistakes),
+        (scale_mistakes,),
+        [] if scene.hertzian else [law_mistakes],
+        [] if scene.gas is None else [scene.joint.mistakes],
+        [] if scene.interaction is None else [interaction_mistakes],
+    ]
+    if not isinstance(scene.grading, Homogeneous) or scene.law.name == "custom":
+        from mcgw.scene.moduli import CHECKS  # for those scenes alone
+
+        stages += [(check,) for check in CHECKS]
+    for checks in stages:
+        if found := [line for check in checks for line in check(scene)]:
+            raise SceneError(found)
+
+
 def with_sampling(scene: Scene, **changes: Any) -> Scene:
     """Return the scene drawn in another way, on which nothing else hangs: not checked anew."""
     scene = copy(scene)
-    hold(scene, ensemble=dataclasses.replace(scene.ensemble, **changes))
+    vars(scene)["ensemble"] = dataclasses.replace(scene.ensemble, **changes)
     return scene
 
 
@@ -232,46 +248,42 @@ def storable(scene: Scene) -> Scene:
     if scene.law.is_data and is_data(scene.grading):
         return scene
     same = object.__new__(Scene)  # not checked anew, which may take long
-    hold(same, **{x.name: getattr(scene, x.name) for x in dataclasses.fields(scene)} | in_numbers(scene))
+    vars(same).update({x.name: getattr(scene, x.name) for x in dataclasses.fields(scene)} | in_numbers(scene))
     return same
 
 
 def in_numbers(scene: Scene) -> dict[str, Any]:
-    """Return what of a scene a file does not hold as it is, resolved; raises as `storable`."""
+    """Return what of a scene a file does not hold as it is, resolved; raises as `storable`.
+
+    Asperities may have felt lower separations than those asked.
+    """
+    low, high = extent(scene.grading, scene.heights, (*scene.separations, scene.lowest))
     changes: dict[str, Any] = {}
     if not scene.law.is_data:
-        changes["contact"] = dataclasses.replace(scene.contact, law=_resolved_law(scene))
-    if is_data(scene.grading):
-        return changes
-    try:
-        return changes | {"grading": resolved(scene.grading, *_extent(scene))}
-    except ValueError as error:
-        raise SceneError([str(error)]) from None
+        changes["contact"] = dataclasses.replace(scene.contact, law=_resolved_law(scene, low, high))
+    if not is_data(scene.grading):
+        try:
+            changes["grading"] = resolved(scene.grading, low, high)
+        except ValueError as error:
+            raise SceneError([str(error)]) from None
+    return changes
 
 
-def _extent(scene: Scene) -> tuple[float, float]:
-    """Lowest and highest height that count; asperities may have felt lower separations than those asked."""
-    return extent(scene.grading, scene.heights, (*scene.separations, scene.lowest))
-
-
-def _resolved_law(scene: Scene) -> ContactLaw:
+def _resolved_law(scene: Scene, low: float, high: float) -> ContactLaw:
     """Return the series of a law up to the deepest penetration of the stiffest asperity."""
-    low, high = _extent(scene)
-    deepest = high - min(scene.lowest, low if scene.unload_from is None else scene.unload_from)
     s = np.linspace(low, high, _LOOKED_AT)
     stiff = np.abs(scene.modulus(s))
-    stiffest, where = float(stiff.max()), float(s[stiff.argmax()])
-    with np.errstate(over="ignore"):
-        farthest = _BEYOND * deepest * np.square(stiffest)  # penetration over that of a modulus of 1
+    where, stiffest = s[stiff.argmax()], stiff.max()
+    with np.errstate(over="ignore"):  # penetration over that of a modulus of 1
+        farthest = float(_BEYOND * (high - min(scene.lowest, low)) * np.square(stiffest))
     try:
         if np.isinf(farthest):
             raise ValueError("no series reaches that far")
-        return scene.law.as_data(float(farthest))
+        return scene.law.as_data(farthest)
     except ValueError as error:
-        reason = str(error)
-        if farthest > _FARTHEST:
-            reason = (
-                f"E*(s)/E* reaches {stiffest:.3g} at s = {where:.4g}, where no series of the law is accurate"
-                "; give a grading that is less steep, or a law of the package"
-            )
+        steep = (
+            f"E*(s)/E* reaches {stiffest:.3g} at s = {where:.4g}, where no series of the law is accurate; "
+            "give a grading that is less steep, or a law of the package"
+        )
+        reason = steep if farthest > _FARTHEST else error
         raise SceneError([f"contact.law = {type(scene.law).__name__}: {reason}"]) from None

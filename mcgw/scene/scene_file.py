@@ -1,8 +1,10 @@
 """Scenes as TOML: read with all mistakes named at once, written so that they read the same."""
 
+import math
 import re
 from collections.abc import Mapping
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import tomli_w
@@ -12,23 +14,23 @@ from analytic.laws import Hertz
 from mcgw.formats.named_files import HDF5, loads, read_bytes
 from mcgw.machine.terminal import one_line
 from mcgw.scene.fields import LeftOut
-from mcgw.scene.keys import as_tables, whole_key
 from mcgw.scene.kinds import as_toml
-from mcgw.scene.reading import Seeds, of_tables
-from mcgw.scene.rough_bodies import files_of_bodies
+from mcgw.scene.measured import MOMENTS, SUMMITS, RoughBody, body_of
+from mcgw.scene.reading import Seeds, of_tables, with_changes
 from mcgw.scene.scene import Scene, storable
 from mcgw.scene.section import SceneError, shortened
-from mcgw.scene.writing import contact_law_table, grading_table, heights_table, summits_table, written
+from mcgw.scene.writing import contact_law_table, heights_table, law_table, summits_table, written
 
 _MOST_BYTES = 2**21
+_FOLLOW = (*SUMMITS, "E_star", *MOMENTS)  # keys of [surface] that two files of bodies determine
+# Keys of [joint] and [contact.law] beside which those of the files do not count.
+_CONDUCTION = {"resistivity", "conductivities"}
+_YIELD = {"hardness", "critical", "yield_strength", "yield_strain"}
 _BARE = r"([\w.]+)\s*=\s*([^\s\"'\[{#][^\"'\]},#]*?)\s*(?:#.*)?"  # a value that lacks its quotes
 
 
 def load_scene(
-    path: str | Path,
-    *,
-    seed: Seeds | None = None,
-    changes: Mapping[str, Any] | None = None,
+    path: str | Path, *, seed: Seeds | None = None, changes: Mapping[str, Any] | None = None
 ) -> Scene:
     """Read a scene.
 
@@ -152,30 +154,7 @@ def _cure(text: str, reason: str) -> str:
 
 def scene_of(document: Mapping[str, Any], *, folder: Path = Path(), seed: Seeds | None = None) -> Scene:
     """Make a scene of the tables that its TOML text holds; arguments and errors as of `scene_from`."""
-    return Scene.of(of_tables(document, folder, seed))
-
-
-def with_changes(document: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
-    """Tables with other values at some keys, dotted; a whole table takes the place of one.
-
-    A key that one table alone has may stand without its table, and a word for a law is its name.
-    """
-    changed = {**as_tables(document)}
-    for key, value in changes.items():
-        *outer, last = whole_key(key).split(".")
-        table: Any = changed
-        for name in outer:
-            held = table.get(name, {})
-            held = {"name": held} if name == "law" and isinstance(held, str) else held
-            if not isinstance(held, Mapping):
-                break  # which is a mistake of its own
-            table[name] = {**held}
-            table = table[name]
-        else:
-            if last == "law" and isinstance(value, str) and isinstance(held := table.get(last), Mapping):
-                value = {**held, "name": value}
-            table[last] = value
-    return changed
+    return Scene.of(of_tables(with_bodies(document, folder), folder, seed))
 
 
 def scene_text(scene: Scene, *, heights_file: str | None = None) -> str:
@@ -220,7 +199,7 @@ def scene_document(scene: Scene, *, heights_file: str | None = None) -> dict[str
     document: dict[str, Any] = {
         "title": scene.title,
         "surface": written(scene.surface, "surface"),
-        "grading": {**grading_table(scene.grading), "negative": scene.negative},
+        "grading": {**law_table(scene.grading, "grading"), "negative": scene.negative},
         "heights": {} if listed else heights_table(scene.heights, heights_file),
         "summits": scene.summits and summits_table(scene.summits, scene.surface, heights_file),
         "contact": {"separations": list(scene.separations), **written(scene.contact, "contact")}
@@ -231,3 +210,60 @@ def scene_document(scene: Scene, *, heights_file: str | None = None) -> dict[str
     if isinstance(scene.n_asperities, LeftOut):
         del document["ensemble"]["n_asperities"]
     return {key: value for key, value in document.items() if value or key == "title"}
+
+
+# --- two rough bodies, each in a file ---
+
+
+def with_bodies(document: Mapping[str, Any], folder: Path) -> Mapping[str, Any]:
+    """Put the surface of two bodies into the tables of a scene in place of the files that describe them.
+
+    Their hardness and conductivities go under ``[contact.law]`` and ``[joint]``, where both files give them
+    and the scene does not. Raises SceneError if a file cannot be read, does not describe one rough body, or a
+    key contradicts the files.
+    """
+    if not (named := files_of_bodies(document)):
+        return document
+    surface, bodies = document["surface"], document["surface"]["bodies"]
+    if len(named) != 2 or bodies != [{"file": name} for name in named]:
+        raise SceneError([f"surface.bodies = {bodies}: give {{file = ...}} of both, or E and nu of both"])
+    if beside := [key for key in _FOLLOW if key in surface]:
+        raise SceneError([f"surface.{beside[0]}: follows from the files of both bodies; leave it out"])
+    a, b = (_body(folder / name) for name in named)
+    pair = a.beside(b)
+    changes: dict[str, Any] = {"surface.bodies": None, "surface.E_star": pair.E_star}
+    changes |= {f"surface.{key}": getattr(pair.moments, key) for key in MOMENTS}
+    contact, joint = document.get("contact", {}), document.get("joint", {})
+    law = contact.get("law", {}) if isinstance(contact, Mapping) else {}
+    own = {key for table in (joint, law) if isinstance(table, Mapping) for key in table}
+    if not _CONDUCTION & own and pair.conductivities:
+        changes["joint.conductivities"] = list(pair.conductivities)
+    if not _YIELD & own and pair.hardness:
+        changes["contact.law.hardness"] = pair.hardness
+    return with_changes(document, changes)
+
+
+def files_of_bodies(document: Mapping[str, Any]) -> list[str]:
+    """Return the files that `[surface] bodies` of a scene names, as they are written."""
+    surface = document.get("surface")
+    bodies = surface.get("bodies") if isinstance(surface, Mapping) else None
+    tables = [each for each in bodies if isinstance(each, Mapping)] if isinstance(bodies, list) else []
+    return [str(body["file"]) for body in tables if "file" in body]
+
+
+def _body(path: Path) -> RoughBody:
+    """Read the scene of one body on a rigid plane."""
+    try:
+        document = loads(read_bytes(path, _MOST_BYTES).decode())
+        if files_of_bodies(document):
+            raise ValueError("names the files of two bodies itself; give one body")
+        values = of_tables(document, path.parent)
+        bodies = document["surface"].get("bodies")
+        if bodies and not any(body["E"] == math.inf for body in bodies):
+            raise ValueError(
+                "surface.bodies: two elastic bodies; a file describes one on a rigid plane, {E = inf}"
+            )
+        return body_of(SimpleNamespace(**values))
+    except ValueError as error:
+        problems = getattr(error, "problems", [str(error).removeprefix(f"{path}: ")])
+        raise SceneError([f"surface.bodies: {path}: {line}" for line in problems]) from None

@@ -1,15 +1,33 @@
-"""Surfaces from numbers or texts with units."""
+"""Surfaces from numbers or texts with units, of which others were perhaps meant."""
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+import math
+import warnings
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
 from typing import Any
 
-from analytic import Body as PlainBody, Nayak, SpectralMoments, Surface as Plain, composite_modulus
+import numpy as np
+
+import analytic
+from analytic import Body as PlainBody, Nayak, SpectralMoments, Surface as Plain, Table, composite_modulus
+from mcgw.formats.units import parse
 from mcgw.scene.keys import KEYS, POISSON, SURFACE_UNITS, YOUNG
 from mcgw.scene.kinds import arguments, as_toml
-from mcgw.scene.measured import MOMENTS, SUMMITS, Uncertainty
-from mcgw.scene.plausible import surface_in_other_units, warn_of_units
+from mcgw.scene.measured import MOMENTS, Uncertainty
 from mcgw.scene.section import SceneError, Section
+
+# Values that need no question, what others are, and units that were perhaps meant. Wide: from atoms to faults
+# in rock, from gels to diamond.
+RANGES = {
+    "sigma": (1e-10, 1e-3, "less than an atom", "higher than the summits of any ground surface", "um nm"),
+    "radius": (1e-10, 0.1, "less than an atom", "too large for the radius of a summit", "um mm"),
+    "eta": (1e4, 1e19, "less than one summit per square centimetre", "more than one per atom", "/mm^2"),
+    "nominal_area": (1e-17, 10.0, "less than a hundred atoms", "larger than any contact", "mm^2 um^2"),
+    "E_star": (1e3, 2e12, "softer than any gel", "stiffer than diamond", "GPa MPa"),
+}
+_HARDLY_APART = 1e-3  # d/sigma: separations that all lie so close to 0 are lengths
+_SAFELY = 1e4  # factor by which the sum over all asperities stays below the largest number
 
 
 @dataclass(frozen=True)
@@ -173,41 +191,109 @@ def _read(given: Mapping[str, Any], uncertainty: Any) -> Any:
     given = {**given, "uncertainty": uncertainty} if uncertainty is not None else given
     section = Section("surface", as_toml(given), KEYS["surface"])
     surface = read_surface(section)
-    section.finish()
-    if section.problems:
+    if surface is None:
         raise SceneError(section.problems)
     if isinstance(surface, Plain):
         warn_of_units(surface_in_other_units(surface))
     return surface
 
 
-def read_surface(section: Section, listed: Mapping[str, float] | None = None) -> Plain | Spectral | None:
+def read_surface(section: Section, told: Mapping[str, float] | None = None) -> Plain | Spectral | None:
     """Read the table [surface], also from m0, m2 and m4; mistakes are noted in the section and give None.
 
-    Summits that are `listed` tell their number ``eta`` and, unless the table does, sigma and radius.
+    Summits that are listed have `told` their number ``eta`` and, unless the table does, sigma and radius.
     """
-    told, spectral = dict(listed or {}), [key for key in MOMENTS if key in section]
+    others: dict[str, Any] = dict(told or {})
+    spectral = [key for key in MOMENTS if key in section.table]
     if spectral and told:
-        advice = "[summits] already lists the summits; leave it out"
-        section.fail(spectral[0], section.table[spectral[0]], advice)
-    modulus = "bodies" if "bodies" in section else "E_star"
-    names = (*(MOMENTS if spectral else SUMMITS), "nominal_area", modulus)
-    values = told | section.read_all(name for name in names if name in section or name not in told)
-    uncertainty = section.read("uncertainty")
-    if section.problems:
-        return None
-    if told and "eta" not in section:
-        values["eta"] /= values["nominal_area"]
+        section.fail(spectral[0], "[summits] already lists the summits; leave it out")
+    if "bodies" in section.values:
+        others["E_star"] = section.values["bodies"]
+    if told and "nominal_area" in section.values:
+        others["eta"] /= section.values["nominal_area"]
+    return section.make(_spectral if spectral else _surface, **others)  # type: ignore[no-any-return]
+
+
+def _surface(
+    sigma: float,
+    radius: float,
+    eta: float,
+    nominal_area: float,
+    E_star: Any,
+    uncertainty: Uncertainty | None = None,
+) -> Plain:
+    modulus = composite_modulus(E_star) if isinstance(E_star, tuple) else E_star
+    values = sigma, radius, eta, nominal_area, modulus
+    return Plain(*values) if uncertainty is None else UncertainSurface(*values, uncertainty)
+
+
+def _spectral(
+    m0: float, m2: float, m4: float, nominal_area: float, E_star: Any, uncertainty: Uncertainty | None = None
+) -> Spectral:
+    found = SpectralMoments(m0, m2, m4)
     try:
-        if modulus == "bodies":
-            values["E_star"] = composite_modulus(values.pop("bodies"))
-        moments = SpectralMoments(*(values.pop(key) for key in MOMENTS)) if spectral else None
-        if moments is not None:
-            Nayak(moments.alpha)
-        surface = moments.surface(**values) if moments else Plain(**values)
+        Nayak(found.alpha)
     except ValueError as error:
-        section.problems.append(f"surface: {error}")
-        return None
-    if uncertainty is not None:
-        surface = UncertainSurface(**asdict(surface), uncertainty=uncertainty)
-    return Spectral(moments, surface) if moments else surface
+        raise ValueError(f"m0: {error}") from None
+    summits = found.sigma, found.radius, found.eta
+    return Spectral(found, _surface(*summits, nominal_area, E_star, uncertainty))
+
+
+# --- values that are perhaps in other units, or beyond double precision ---
+
+
+def warn_of_units(doubts: Iterable[str]) -> None:
+    """Ask a caller in Python, once for each text; commands tell them as notes."""
+    for line in doubts:
+        warnings.warn(line, UserWarning, stacklevel=1)
+
+
+def perhaps_other_units(scene: Any) -> list[str]:
+    """Values that are perhaps in another unit, each with what was perhaps meant."""
+    found = surface_in_other_units(scene.surface)
+    farthest = max(scene.separations, key=abs)
+    if 0 < abs(farthest) < _HARDLY_APART:
+        found.append(
+            f"contact.separations: {farthest:g} sigma is almost 0; did you mean {farthest:g} m = "
+            f"{farthest / scene.surface.sigma:.4g} sigma? Separations are d/sigma"
+        )
+    if isinstance(scene.grading, Table):
+        from mcgw.scene.moduli import doubts_of_table  # for those scenes alone
+
+        found += doubts_of_table(scene.grading, scene)
+    return found
+
+
+def surface_in_other_units(surface: Plain) -> list[str]:
+    """Return the same of a surface alone."""
+    found = []
+    for key, (low, high, below, above, units) in RANGES.items():
+        value, si = float(getattr(surface, key)), SURFACE_UNITS[key]
+        if low <= value <= high:
+            continue
+        digits = value  # as people write them, from 0.01 to 9999
+        while digits < 1e-2:
+            digits *= 1e3
+        while digits >= 1e4:
+            digits /= 1e3
+        texts = [f"{digits:.6g}{'' if unit[0] == '/' else ' '}{unit}" for unit in units.split()]
+        meant = next(text for text in texts if low <= parse(text, si) <= high)
+        found.append(
+            f"surface.{key} = {value:g}: {value:g} {si} is {below if value < low else above}; "
+            f"did you mean {meant} = {parse(meant, si):g}?"
+        )
+    return found
+
+
+def scale_mistakes(scene: Any) -> Iterator[str]:
+    """Products of parameters that leave the range of double precision."""
+    most = np.finfo(float).max / _SAFELY / float(scene.n_asperities)
+    for q in map(analytic.quantity_of, scene.quantities):
+        one = math.inf
+        with np.errstate(all="ignore"), suppress(OverflowError):
+            one = q.scale(scene.surface)
+        if not np.finfo(float).tiny * 1e12 < one < most:
+            yield (
+                f"surface: the {q.name} of an asperity would be {one:.3g} {q.unit}, beyond double precision; "
+                "check sigma, radius and E_star"
+            )

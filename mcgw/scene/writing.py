@@ -3,11 +3,13 @@
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, fields, is_dataclass
-from typing import Any
+from typing import Any, cast
+
+import numpy as np
 
 import analytic
 from analytic import Grading, HeightLaw, MeasuredHeights, MeasuredRadii, RandomCurvature, Surface
-from analytic.laws import ContactLaw, Film, Hertz
+from analytic.laws import ContactLaw, Hertz
 from mcgw.formats.law_text import law_text
 from mcgw.formats.table import Table
 from mcgw.machine.terminal import brief
@@ -41,10 +43,12 @@ def _plain(value: Any) -> Any:
     return float(value) if isinstance(value, float) else value
 
 
-def grading_table(grading: Grading) -> dict[str, Any]:
-    """Write the table [grading] of a grading that is data."""
-    (law,) = [name for name, kind in GRADINGS.items() if isinstance(grading, kind)]
-    return {"law": law, **written(grading, "grading")}
+def law_table(law: Grading | HeightLaw, table: str) -> dict[str, Any]:
+    """Write the table [grading] or [heights] of a law that is data."""
+    words = {kind: word for word, kind in {"grading": GRADINGS, "heights": HEIGHTS}[table].items()}
+    word = next(words[kind] for kind in type(law).__mro__ if kind in words)
+    own = {each.name for each in fields(cast(Any, law)) if each.init}
+    return {"law": word, **{key: value for key, value in written(law, table).items() if key in own}}
 
 
 def heights_table(heights: HeightLaw, file: str | None = None) -> dict[str, Any]:
@@ -64,8 +68,7 @@ def heights_table(heights: HeightLaw, file: str | None = None) -> dict[str, Any]
         if name and type(own) is type(getattr(scipy.stats, name, None)):
             return {"law": "scipy", "name": name, "shapes": heights.shapes}
     elif type(heights) in HEIGHTS.values():  # a subclass may do more
-        (law,) = [name for name, kind in HEIGHTS.items() if type(heights) is kind]
-        return {"law": law, **{x.name: getattr(heights, x.name) for x in fields(own)}}
+        return law_table(heights, "heights")
     reason = "is a Python class that a file cannot store; give a distribution of scipy.stats, or its points"
     raise SceneError([f"heights: {type(own).__name__} {reason} as a HeightTable"])
 
@@ -101,26 +104,21 @@ def contact_law_table(law: ContactLaw) -> dict[str, Any]:
 # --- in words: laws with their numbers, and what differs from Hertz and exact values ---
 
 
-def conducting_text(film: Film) -> str:
-    """Conductivities or resistivities of the spots, as given."""
-    if film.conductivities is None:
-        held, unit = f"resistivity {film.resistivity:g} ohm m", "ohm m^2"
-    else:
-        held, unit = "{:g} and {:g} W/(m K)".format(*film.conductivities), "m^2 K/W"
-    thin = f", film {film.film_resistance:g} {unit}" if film.film_resistance else ""
-    layer = f", layer {film.layer.thickness:g} m of {film.layer.conductivity:g} W/(m K)" if film.layer else ""
-    return f"{held}{thin}{layer}"
-
-
 def contact_facts(scene: Fields) -> list[tuple[str, str]]:
     """Facts, by name, that differ from Hertz's contact pressed once."""
-    facts = []
+    facts, film = [], scene.film
     if type(scene.law) is not Hertz:
         facts.append(("contact law", law_text(scene.law)))
     if scene.unload_from is not None:
         facts.append(("unloading", f"from d/sigma = {scene.unload_from:g}"))
-    if scene.film is not None:
-        facts.append(("bodies", conducting_text(scene.film)))
+    if film is not None:
+        electric = f"resistivity {film.resistivity:g} ohm m" if film.resistivity else ""
+        bodies = electric or "{:g} and {:g} W/(m K)".format(*film.conductivities or ())
+        unit = "ohm m^2" if electric else "m^2 K/W"
+        bodies += f", film {film.film_resistance:g} {unit}" if film.film_resistance else ""
+        layer = film.layer
+        bodies += f", layer {layer.thickness:g} m of {layer.conductivity:g} W/(m K)" if layer else ""
+        facts.append(("bodies", bodies))
     if scene.interaction is not None:
         plane = _PLANES[scene.interaction.reference]
         facts.append(("interaction", f"from the {plane}, separations effective"))
@@ -150,7 +148,11 @@ def sheet_of(scene: Fields) -> Table:
     x = {key: f"{key} = {getattr(scene.surface, key):g} {unit}" for key, unit in SURFACE_UNITS.items()}
     h, among = scene.separations, f"{len(scene.separations)} from " if len(scene.separations) > 1 else ""
     ends = " to ".join(f"{end:g}" for end in sorted({min(h), max(h)}))
-    stop = "" if scene.rel_err is None else f"until rel_err = {_wish(scene.rel_err)}, at most "
+    given = scene.rel_err if isinstance(scene.rel_err, Mapping) else {"": scene.rel_err}
+    least = [
+        f"{name} {np.min(x):g}{' at best' * isinstance(x, tuple)}".strip() for name, x in given.items() if x
+    ]
+    stop = f"until rel_err = {', '.join(least)}, at most " if least else ""
     facts = [
         ("surface", ", ".join((x["sigma"], x["radius"], x["eta"]))),
         ("", f"{x['nominal_area']}, {x['E_star']}"),
@@ -169,10 +171,3 @@ def sheet_of(scene: Fields) -> Table:
         *accuracy_facts(scene),
     ]
     return Table((), brief(f"Scene: {scene.title}") if scene.title else "Scene", facts)
-
-
-def _wish(rel_err: float | Mapping[str, float | list[float]]) -> str:
-    if not isinstance(rel_err, Mapping):
-        return f"{rel_err:g}"
-    least = {name: f"{min(x):g} at best" if isinstance(x, list) else f"{x:g}" for name, x in rel_err.items()}
-    return ", ".join(map(" ".join, least.items()))

@@ -19,7 +19,7 @@ from analytic.arrays import Array, Marks
 from analytic.curvature import MEAN_CURVATURE
 from mcgw.ensemble.ensemble import Ensemble
 from mcgw.formats.table import SEPARATION, Column, Table, evenly
-from mcgw.scene.parts import promise_of
+from mcgw.scene.ensemble import promise_of
 from mcgw.scene.scene import Scene
 
 FALSE_ALARM = 1e-3

@@ -14,7 +14,7 @@ from mcgw.ensemble.forecast import MOST_SURFACES, forecast, surfaces_at_load
 from mcgw.ensemble.intervals import CONFIDENCE
 from mcgw.machine.memory import kept
 from mcgw.sampling.expected import expected
-from mcgw.scene.parts import promise_of
+from mcgw.scene.ensemble import promise_of
 from mcgw.scene.scene import Scene
 from mcgw.scene.section import SceneError
 

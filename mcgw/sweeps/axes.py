@@ -16,7 +16,7 @@ from mcgw.machine.terminal import brief
 from mcgw.scene.keys import TABLES
 from mcgw.scene.kinds import as_toml
 from mcgw.scene.section import SceneError
-from mcgw.scene.writing import grading_table
+from mcgw.scene.writing import law_table
 
 Point = tuple[int, ...]
 
@@ -188,7 +188,7 @@ def _value(key: str, value: Any, resolve: Callable[[Any], Any] | None = None) ->
             value = resolve(value)
         elif not is_data(value):
             raise ValueError("grading: a point that has a function is named by its indices")
-        return grading_table(value)
+        return law_table(value, "grading")
     return as_toml(value)
 
 

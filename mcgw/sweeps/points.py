@@ -17,8 +17,9 @@ from mcgw.ensemble.results import Tables
 from mcgw.formats.named_files import loads
 from mcgw.machine.progress import steps
 from mcgw.scene.cautions import cautions
+from mcgw.scene.reading import with_changes
 from mcgw.scene.scene import Scene
-from mcgw.scene.scene_file import scene_document, scene_of, with_changes
+from mcgw.scene.scene_file import scene_document, scene_of
 from mcgw.scene.section import SceneError
 from mcgw.sweeps.axes import Axes
 from mcgw.sweeps.groups import Group, Place, groups_of, weighted

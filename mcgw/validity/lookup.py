@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic import Gaussian, Hertz, Homogeneous, Nayak, RandomCurvature, SpectralMoments, Surface
-from analytic.arrays import Array, Marks
+from analytic.arrays import Marks
 from analytic.surface import LEAST_ALPHA, SUMMIT_SPREAD
 from mcgw.formats.law_text import law_text
 from mcgw.formats.table import evenly
-from mcgw.validity.error_table import COLUMNS, Expected, grid_of
+from mcgw.validity.error_table import COLUMNS, grid_of
 from mcgw.validity.model_error import Validity
 
 _MOST_SEPARATIONS = 64
@@ -56,7 +56,7 @@ def validity_of(scene: Any, separations: ArrayLike | None = None) -> Validity:
     if (reason := not_on_the_map(scene)) is not None:
         return replace(nothing, unknown=f"not measured: {reason}")
     maps, model, x, slope, rms = place_of(scene)
-    area_only = _area_only(scene)
+    area_only, fitted = _area_only(scene), scene.fitted
     grid = grid_of(maps.kind, model, "none" if scene.interaction is None or area_only else "summits")
     measured = f"measured: {grid.x[0]:g} to {grid.x[-1]:g}"
     if not grid.holds(x):
@@ -66,35 +66,31 @@ def validity_of(scene: Any, separations: ArrayLike | None = None) -> Validity:
     p = hertzian.mean("load", h) / (scene.surface.E_star * stood_on) / slope
     contacts = scene.n_asperities * scene.heights.sf(h)
     none = contacts < _NONE
-    seen = scene.fitted and scene.fitted.area  # m^2
-    waves = scene.fitted.independent * stood_on / seen if seen else math.nan
+    waves = fitted.independent * stood_on / fitted.area if fitted and fitted.area else math.nan
     found = grid.expected(x, p, np.where(none, np.nan, contacts), waves)
     unit = {name: math.nan if area_only and name != "area" else 1.0 for name in COLUMNS}
     unit["separation"] *= rms
     bias = {name: unit[name] * found.bias[name] for name in COLUMNS}
     error = {name: np.abs(bias[name]) + unit[name] * found.off[name] for name in COLUMNS}
     by = ""  # where alpha is from, unless it was given
-    if scene.fitted is not None:
+    if fitted is not None:
         by = " from the fit"
     elif maps is _GAUSSIAN and model == "one radius":
         by = f" as eta R sigma = {crowding(scene.surface):.3g} says"
-    loads, many = _loads(maps, found, p), f"{found.maps} maps" if found.maps > 1 else "one map"
+    low, high = found.loads
+    loads = f"{low:.2g} to {high:.2g}" if low <= high else "nothing in common"
+    lighter = f"; lighter ones approach {maps.limit}" if p.min() < low and found.lightest < low else ""
+    here = " to ".join(dict.fromkeys(f"{x:.2g}" for x in (p.min(), p.max())))
+    loads = f"{maps.axis} = {here} (measured: {loads}{lighter})"
+    many = f"{found.maps} maps" if found.maps > 1 else "one map"
     where = (
         f"boundary elements on homogeneous half-spaces, {many} ({maps.words}) a point: "
-        f"{maps.x} = {x:.3g}{by} ({measured}), {loads}{f'; nothing else: {area_only}' if area_only else ''}"
+        f"{maps.x} = {x:.3g}{by} ({measured}), {loads}"
+        f"{f'; nothing else: {area_only}' if area_only else ''}"
     )
     graded = not isinstance(scene.modulus, Homogeneous)
     told = Validity(h, p, error, bias, graded, maps.axis, where, listed=maps is _CAPS)
     return replace(told, unknown=_unknown(told, none, loads))
-
-
-def _loads(maps: Maps, found: Expected, p: Array) -> str:
-    low, high = found.loads
-    told = f"{low:.2g} to {high:.2g}" if low <= high else "nothing in common"
-    if p.min() < low and found.lightest < low:
-        told += f"; lighter ones approach {maps.limit}"
-    here = " to ".join(dict.fromkeys(f"{x:.2g}" for x in (p.min(), p.max())))
-    return f"{maps.axis} = {here} (measured: {told})"
 
 
 def _unknown(found: Validity, none: Marks, loads: str) -> str:

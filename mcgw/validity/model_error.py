@@ -3,7 +3,6 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import groupby
 
 import numpy as np
 
@@ -78,50 +77,40 @@ class Validity(Shown):
         """One sentence: the error of the model, where, and where it was not measured."""
         if not self.measured.any():
             return f"Model error: {self.unknown}"
-        h, at_load, at_gap = self.separations, self.known("area", "stiffness"), self.known("load")
-        parts = []
-        if at_load.any():
-            most = percent(self.worst("area", "stiffness"))
-            which = " and ".join(name for name in ("area", "stiffness") if self.known(name).any())
-            parts.append(f"{which} within {most} at a load{_for(h, at_load)}")
-        if at_gap.any():
-            where = "" if np.array_equal(at_gap, at_load) else _for(h, at_gap)
-            parts.append(f"load within {percent(self.worst('load'))} at a mean gap{where}")
-        line = f"Against an elastic half-space: {', '.join(parts)} (95 % of surfaces{_UNIFORM * self.graded})"
-        if not self.measured.all():
-            line += f"; at d/sigma = {span(h, ~self.measured)} {self.unknown}"
-        return line
+        where = span(self.separations, ~self.measured)
+        unknown = f"; at d/sigma = {where} {self.unknown}" if where else ""
+        return f"Against an elastic half-space: {self.brief}{unknown}"
+
+    @property
+    def brief(self) -> str:
+        """The error of the model alone, or why it is unknown."""
+        told, before = [], np.ones(len(self.separations), dtype=np.bool_)
+        for names, at in ((("area", "stiffness"), "a load"), (("load",), "a mean gap")):
+            known = self.known(*names)
+            where = "" if np.array_equal(known, before) else f" for d/sigma = {span(self.separations, known)}"
+            which = " and ".join(name for name in names if self.known(name).any())
+            if which:
+                told.append(f"{which} within {percent(self.worst(*names))} at {at}{where}")
+                before = known
+        return f"{', '.join(told)} (95 % of surfaces{_UNIFORM * self.graded})" if told else self.unknown
 
     @property
     def details(self) -> str:
         """The error of each quantity, and where it was measured; empty if nothing was."""
         if not self.measured.any():
             return ""
-        worst = {word: self.worst(name) for name, word in _AT_LOAD.items()}
-        known = {word: error for word, error in worst.items() if not math.isnan(error)}
-        told = [
-            f"{word} {rounded_up(error):g} sigma" if word == "gap" else f"{word} {percent(error)}"
-            for word, error in known.items()
-        ]
-        lacking = [word for word in _AT_LOAD.values() if word not in known]
-        each = ", ".join(told) + (f"; {', '.join(lacking)}: not measured" if lacking else "")
-        return f"{each} (95 %); by {self.where}"
+        told = []
+        for name, word in _AT_LOAD.items():
+            if math.isnan(worst := self.worst(name)):
+                told.append(f"{word} not measured")
+            else:
+                told.append(f"{word} {f'{rounded_up(worst):g} sigma' if word == 'gap' else percent(worst)}")
+        return f"{', '.join(told)} (95 %); by {self.where}"
 
     @property
     def lines(self) -> list[str]:
         """The verdict, and the error of each quantity."""
         return [*filter(None, (self.verdict, self.details))]
-
-    @property
-    def brief(self) -> str:
-        """The verdict in at most 88 characters."""
-        if not self.measured.any():
-            return self.unknown
-        at_load, at_gap = self.worst("area", "stiffness"), self.worst("load")
-        errors = {"at a given load": at_load, "in load at a given gap": at_gap}
-        told = [f"{percent(error)} {of}" for of, error in errors.items() if not math.isnan(error)]
-        where = "" if self.measured.all() else f"; d/sigma = {span(self.separations, self.measured)}"
-        return f"within {', '.join(told)} (95 %{_UNIFORM * self.graded}){where}"
 
     def sheet(self) -> Table:
         """Return the verdict, and errors at some separations: mean over maps, and ends of 95 % of them."""
@@ -132,10 +121,8 @@ class Validity(Shown):
         """At some separations the bias of each quantity, and how far 95 % are from it; else empty."""
         if not self.measured.any():
             return Table(())
-        told = (
-            Column(name, [self._cell(name, k) for k in range(len(self.separations))], words)
-            for name, words in _COLUMNS.items()
-        )
+        h = range(len(self.separations))
+        told = [Column(name, [self._cell(name, k) for k in h], words) for name, words in _COLUMNS.items()]
         separation = Column("separation", self.separations, SEPARATION, form="g")
         return Table((separation, Column("pressure", self.loads, unit="1", form=".2g"), *told)).rows()
 
@@ -144,13 +131,9 @@ class Validity(Shown):
         if math.isnan(error):
             return "not measured"
         off = error - abs(bias)
-        if name == "separation":
-            return f"{bias:+z.2f} ± {off:.2f}"
-        return f"{100 * bias:+z.0f} ± {100 * off:.0f} %"
-
-
-def _for(h: Array, where: Marks) -> str:
-    return "" if where.all() else f" for d/sigma = {span(h, where)}"
+        return (
+            f"{bias:+z.2f} ± {off:.2f}" if name == "separation" else f"{100 * bias:+z.0f} ± {100 * off:.0f} %"
+        )
 
 
 def percent(x: float) -> str:
@@ -165,13 +148,9 @@ def rounded_up(x: float) -> float:
 
 def span(h: Array, where: Marks) -> str:
     """Ranges of separations that are marked, in words."""
-    runs = []
-    for wanted, group in groupby(range(len(h)), key=lambda k: bool(where[k])):
-        members = list(group)
-        if wanted:
-            ends = dict.fromkeys(f"{h[k]:.3g}" for k in (members[0], members[-1]))
-            runs.append(" to ".join(ends))
-    return " and ".join(runs)
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], where, [False]])))
+    pairs = [(h[first], h[last - 1]) for first, last in edges.reshape(-1, 2)]
+    return " and ".join(" to ".join(dict.fromkeys(f"{end:.3g}" for end in pair)) for pair in pairs)
 
 
 _OFF = 0.1  # error of area, stiffness or load above which there is a caution

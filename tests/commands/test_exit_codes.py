@@ -92,7 +92,7 @@ def test_what_is_said_decides_nothing(line, stream, state, disturbed, instead):
 def test_each_end_has_its_line_after_those_of_the_warnings(end, code, told, instead, capsys):
     def work(args):
         warnings.warn("two\nlines", stacklevel=1)
-        warnings.warn_explicit("said as a note", UserWarning, "", 1, module="mcgw.scene.plausible")
+        warnings.warn_explicit("said as a note", UserWarning, "", 1, module="mcgw.scene.surface")
         if end is not None:
             raise end
         return 0

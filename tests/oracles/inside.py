@@ -59,8 +59,8 @@ MODULES = {
     "mcgw.sampling.samplers": "sampler_of",
     "mcgw.scene.cautions": "cautions",
     "mcgw.scene.keys": "KEYS SURFACE_UNITS",
-    "mcgw.scene.plausible": "perhaps_other_units RANGES surface_in_other_units",
-    "mcgw.scene.parts": "promise_of SAMPLERS",
+    "mcgw.scene.ensemble": "promise_of SAMPLERS",
+    "mcgw.scene.surface": "perhaps_other_units RANGES surface_in_other_units",
     "mcgw.scene.scene": "Scene storable",
     "mcgw.statistics.checks": (
         "covariances coverage independence PrincipalComponents scores skewness Slope variances"

@@ -44,12 +44,14 @@ def entered(call):
 
 
 @pytest.mark.parametrize(
-    ("name", "functions", "files"), [("simulate", 125, 29), ("run", 178, 39), ("compare", 115, 28)]
+    ("name", "functions", "files"),
+    [("Scene", 66, 17), ("simulate", 125, 29), ("run", 178, 39), ("compare", 115, 28)],
 )
 def test_the_simplest_scene_takes_few_steps(name, functions, files, tmp_path):
     asked = scene()
     ensemble = mcgw.simulate(asked)
     calls = {
+        "Scene": lambda _: scene(),
         "simulate": lambda _: mcgw.simulate(asked),
         "run": lambda path: mcgw.run(asked, path),
         "compare": lambda _: mcgw.compare(ensemble),

@@ -161,7 +161,7 @@ METAL = "law.name = 'kogut-etsion'\nlaw.hardness = 1e9\n[ensemble]\nsampler = 'c
     ("", PAIR + "[heights]\nlaw = 'nayak'\nalpha = 5.0", "leave [heights] out"),
     (SPECTRUM, PAIR, "surface.m0"),
     ("", PAIR + "[ensemble]\nsampler = 'cells'", 'use "direct"'),
-    ("", PAIR + "[ensemble]\nn_surfaces = 5", "resample = true under [summits]"),
+    ("", PAIR + "[ensemble]\nn_surfaces = 5", "set summits.resample = true"),
     ("", PAIR + "[ensemble]\nn_asperities = 5", "summits.resample = true"),
     ("", PAIR + "resample = true\n[ensemble]\nsampler = 'aggregate'", 'use "direct"'),
     (SPECTRUM + "radius = 1\n", "", "m0 = 1e-12: give it or radius"),
@@ -180,9 +180,9 @@ def test_summits_that_do_not_go_together_get_one_line(surface, more, says):
 
 
 @pytest.mark.parametrize(("content", "says"), [
-    ("height\n1e-6\n2e-6\n", "no column radius"),
-    ("height,radius\n1e-6,1e-5\n2e-6,flat\n", "summit 2 has no number"),
-    ("height,radius\n1e-6,1e-5\nnan,1e-5\n", "summit 2 has no number"),
+    ("height\n1e-6\n2e-6\n", "must name height and radius"),
+    ("height,radius\n1e-6,1e-5\n2e-6,flat\n", "row 2 below the header has no number"),
+    ("height,radius\n1e-6,1e-5\nnan,1e-5\n", "row 2 below the header has no number"),
     ("height,radius\n", "two or more"),
 ])  # fmt: skip
 def test_bad_files_get_one_line(content, says, tmp_path):

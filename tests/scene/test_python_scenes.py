@@ -153,6 +153,16 @@ def test_a_seed_from_numpy(name, tmp_path):
     assert (scene.replace(seed=source).seed == scene.seed) == (name == "sequence")
 
 
+def test_a_part_may_be_given_by_its_keys():
+    """Also by one that is called as its table, and a hardness that stands beside its law."""
+    by_keys = {"heights": {"law": "table", "heights": [0.0, 1.0, 3.0]}, "contact": {"hardness": "2 GPa"}}
+    found = mcgw.Scene(SURFACE, separations=1.0, seed=1, **by_keys)
+    assert found.heights == analytic.HeightTable.of([0.0, 1.0, 3.0])
+    assert found == mcgw.Scene(
+        SURFACE, separations=1.0, seed=1, heights=found.heights, contact=mcgw.Contact(hardness=2e9)
+    )
+
+
 def test_a_spectral_surface_brings_its_summits_to_any_scene():
     spectral = mcgw.SpectralSurface(m0=1e-12, m2=1e-3, m4=5e6, nominal_area="1 mm^2", E_star="100 GPa")
     made, plain = (mcgw.Scene(surface, separations=1.0, seed=1) for surface in (spectral, SURFACE))

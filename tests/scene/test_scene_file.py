@@ -81,3 +81,6 @@ def test_replace_takes_fields_of_scene_and_surface_only():
     assert scene.replace(surface=LARGE, sigma=3e-6).surface == replace(LARGE, sigma=3e-6)
     with pytest.raises(TypeError):
         scene.replace(sigam=1.0)
+    for key, law in (("gamma", "Homogeneous"), ("k", "Hertz"), ("alpha", "Gaussian")):
+        with pytest.raises(mcgw.SceneError, match=rf"\.{key} = 2\.0: give it to the law, {law}, or leave"):
+            scene.replace(**{key: 2.0})

@@ -129,12 +129,13 @@ def test_units_in_header_or_cells_are_worked_in(tmp_path, header):
     assert np.allclose(table.ratio, np.array(E) * 1e9 / E_STAR, rtol=1e-14, atol=0)
 
 
-HEADERS = ("z (GPa),E_star (um)", "s (um),ratio", "s,z", "s", "0,0.5", "", "s,ratio,note")
+HEADERS = ("z (GPa),E_star (um)", "s (um),ratio", "s,z", "s", "0,0.5", "")
 ROWS = (("1",), ("1", "2", "3"), ("1", "stiff"), ("1", "nan"))
 WRONG = [
     *((header, BARE, "first line") for header in HEADERS),
-    *(("s,ratio", [("0", "0.5"), row], "every line") for row in ROWS),
-    ("z (um),E_star (GPa)", [("1", "2 m"), ("2", "3")], "every line"),
+    ("s,ratio,note", BARE, "row 1 below"),
+    *(("s,ratio", [("0", "0.5"), row], "row [12] below") for row in ROWS),
+    ("z (um),E_star (GPa)", [("1", "2 m"), ("2", "3")], "row [12] below"),
     *((header, BARE, r"E_star = 7\.86e") for header in ("z,E_star", "s,ratio")),  # no um, no GPa
 ]
 

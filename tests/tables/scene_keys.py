@@ -280,7 +280,7 @@ ROWS = [
     ("fitted.area", "'4 mm^2'", {"fitted": FITTED}, lambda s: s.fitted.area, 4e-6),
     ("fitted.cautions", "['lay: 2 : 1']", {"fitted": FITTED}, lambda s: s.fitted.cautions, ("lay: 2 : 1",)),
 ]  # fmt: skip
-OTHER_FORMS = {("ensemble", "rel_err"): ["{load = 0.01, area = '2 %'}", "{load = [0.01]}"]}
+OTHER_FORMS = {("ensemble", "rel_err"): ["{load = 0.01, area = '2 %'}", "{load = [0.01]}", "{load = [inf]}"]}
 BESIDE = {}
 for _key, _value, _beside, *_ in ROWS:
     BESIDE.setdefault(tuple(_key.rpartition(".")[::2]), (_value, _beside))

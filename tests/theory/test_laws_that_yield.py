@@ -25,7 +25,7 @@ from analytic.laws import (
     piece_of,
 )
 from analytic.laws.law import slope_in_root
-from mcgw.scene.law_cautions import other_laws
+from mcgw.scene.cautions import other_laws
 
 TYPED_ANEW = {  # by `oracles.laws_of_one_depth`
     "kogut": (KogutEtsion(critical=0.05), partial(by_hand.kogut_etsion, critical=0.05)),

@@ -25,7 +25,7 @@ from mcgw.sampling.response.rows import Rows, hertz_rows
 from mcgw.sampling.response.series import Entries
 from mcgw.sampling.response.tree import Nodes, Tree, transfers, tree_over
 from mcgw.sampling.response.walk import walk
-from mcgw.scene.parts import EXACT
+from mcgw.scene.ensemble import EXACT
 from mcgw.scene.scene import Scene
 
 FOUR = 4  # rows and columns of a tile
