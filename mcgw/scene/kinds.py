@@ -204,7 +204,7 @@ def argument(name: str, value: Any, unit: str) -> float:
 
 
 def as_toml(value: Any) -> Any:
-    """Convert a Python value to what TOML gives: arrays, tuples and ranges to lists of plain numbers."""
+    """Convert a Python value to what TOML gives: arrays, tuples and ranges to lists; None is left out."""
     if isinstance(value, np.random.SeedSequence):  # seeds, as what draws them
         return int(value.generate_state(1, np.uint64)[0])
     if isinstance(value, np.random.BitGenerator | np.random.Generator):
@@ -212,7 +212,7 @@ def as_toml(value: Any) -> Any:
     if isinstance(value, str | bytes | bool | int | float) or callable(value):
         return value.item() if isinstance(value, np.generic) else value
     if isinstance(value, Mapping):
-        return {key: as_toml(inner) for key, inner in value.items()}
+        return {key: as_toml(inner) for key, inner in value.items() if inner is not None}
     if hasattr(value, "__array__"):
         return np.asarray(value).tolist()
     if isinstance(value, Iterable) and not isinstance(value, type):

@@ -15,7 +15,7 @@ from mcgw.formats.table import Table
 from mcgw.machine.terminal import brief
 from mcgw.scene.fields import Fields
 from mcgw.scene.keys import KEYS, SURFACE_UNITS
-from mcgw.scene.kinds import Word
+from mcgw.scene.kinds import Word, as_toml
 from mcgw.scene.laws import GRADINGS, HEIGHTS
 from mcgw.scene.section import SceneError
 
@@ -26,21 +26,11 @@ def written(part: Any, table: str) -> dict[str, Any]:
     """Return the keys of a table that are values of a part of a scene, without what is not asked for."""
     found = {}
     for key, row in KEYS[table].items():
-        value = _plain(getattr(part, key, None))
+        value: Any = getattr(part, key, None)
+        value = as_toml(asdict(value) if is_dataclass(value) else value)
         if value is not None and (value != row.default or isinstance(row.kind, Word)):
             found[key] = value
     return found
-
-
-def _plain(value: Any) -> Any:
-    """Return a value as TOML has it."""
-    if is_dataclass(value) and not isinstance(value, type):
-        return _plain(asdict(value))
-    if isinstance(value, Mapping):
-        return {key: _plain(inner) for key, inner in value.items() if inner is not None}
-    if isinstance(value, list | tuple):
-        return [_plain(inner) for inner in value]
-    return float(value) if isinstance(value, float) else value
 
 
 def law_table(law: Grading | HeightLaw, table: str) -> dict[str, Any]:
@@ -98,7 +88,7 @@ def contact_law_table(law: ContactLaw) -> dict[str, Any]:
         for name, pieces in (("load", custom.load_of), ("area", custom.area_of))
     }
     unchecked = {} if custom.checked else {"checked": False}
-    return {"name": law.name, **_plain(numbers | series), **unchecked}
+    return {"name": law.name, **as_toml(numbers | series), **unchecked}
 
 
 # --- in words: laws with their numbers, and what differs from Hertz and exact values ---
