@@ -27,7 +27,7 @@ def written(part: Any, table: str) -> dict[str, Any]:
     found = {}
     for key, row in KEYS[table].items():
         value: Any = getattr(part, key, None)
-        value = as_toml(asdict(value) if is_dataclass(value) else value)
+        value = as_toml(asdict(cast(Any, value)) if is_dataclass(value) else value)
         if value is not None and (value != row.default or isinstance(row.kind, Word)):
             found[key] = value
     return found
