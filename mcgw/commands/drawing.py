@@ -23,7 +23,6 @@ from mcgw.commands.outputs import HDF5, details, news, notes
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
-    from mcgw.ensemble.ensemble import Ensemble
     from mcgw.ensemble.forecast import Forecast
     from mcgw.scene.scene import Scene
 
@@ -94,6 +93,7 @@ def run(
     from numba import get_num_threads
 
     from mcgw.ensemble.forecast import after, forecast
+    from mcgw.formats.table import with_error
     from mcgw.jobs.running import run as drawn
 
     ruled = scene.rel_err is not None or scene.max_seconds is not None
@@ -105,26 +105,18 @@ def run(
         ensemble = drawn(scene, output, **how)
     if shard is not None:
         return news(share_done(shard, output, ensemble))
+    drawn_as, found = ensemble.scene, []
+    k = drawn_as.separations.index(drawn_as.lowest)
+    for name in (name for name in ("load", "area") if name in drawn_as.quantities):
+        value = with_error(ensemble.mean(name)[k], ensemble.stderr(name)[k])
+        found.append(f"{name} {value} {drawn_as.quantity(name).unit}")
     made = f"{ensemble.n_surfaces} surfaces of {scene.n_asperities:g} asperities, seed {scene.seed}"
-    news(f"{output}: {made}{_result(ensemble)}", *(after(ensemble, scene) if ruled else ()))
+    result = f"; {', '.join(found)} at d/sigma = {drawn_as.lowest:g}" if found else ""
+    news(f"{output}: {made}{result}", *(after(ensemble, scene) if ruled else ()))
     known = scene.validity()
     news(known.verdict)
     details(*filter(None, [known.details]))
     return news(f"next: mcgw compare {output}")
-
-
-def _result(ensemble: "Ensemble") -> str:
-    """Load and area at the smallest separation."""
-    from mcgw.formats.table import with_error
-
-    scene = ensemble.scene
-    k = scene.separations.index(scene.lowest)
-    found = [
-        f"{name} {with_error(ensemble.mean(name)[k], ensemble.stderr(name)[k])} {scene.quantity(name).unit}"
-        for name in ("load", "area")
-        if name in scene.quantities
-    ]
-    return f"; {', '.join(found)} at d/sigma = {scene.lowest:g}" if found else ""
 
 
 def _tell_before(scene: "Scene", expected: "Forecast", *, ruled: bool, shared: bool) -> None:

@@ -109,8 +109,14 @@ def export(
     wanted, kind = _pressures(pressures), KINDS[table]
     if isinstance(points, bool) or not isinstance(points, int) or not 2 <= points <= _MOST_POINTS:
         raise ValueError(f"points = {points!r}: give a whole number from 2 to {_MOST_POINTS}")
-    source, digest = _source(what)
+    source = open_ensemble(what) if isinstance(what, str | Path) else what
+    if not isinstance(source, Scene | Ensemble):
+        raise ValueError(f"{type(what).__name__}: give a scene, an ensemble, or the file of an ensemble")
     scene = source if isinstance(source, Scene) else source.scene
+    if isinstance(what, str | Path):
+        digest = f"data {read_attributes(Path(what))['digest']}"
+    else:  # without numbers in a file, that of the scene
+        digest = f"scene {sha256(scene_text(scene).encode()).hexdigest()}"
     if to == "json":
         text = json.dumps(_contact_table(source, wanted, points, digest), indent=1, allow_nan=False)
         write_whole(Path(path), [text.encode()])
@@ -169,16 +175,6 @@ def _quantiles(given: Sequence[float] | None, n_surfaces: int) -> tuple[float, .
             f"quantiles = {list(found)!r}: give numbers between 0 and 1, each once, such as 0.05"
         )
     return found
-
-
-def _source(what: Scene | Ensemble | str | Path) -> tuple[Scene | Ensemble, str]:
-    """Return a scene or an ensemble, with the digest of its numbers or, without numbers, of its scene."""
-    if isinstance(what, str | Path):
-        return open_ensemble(what), f"data {read_attributes(Path(what))['digest']}"
-    if not isinstance(what, Scene | Ensemble):
-        raise ValueError(f"{type(what).__name__}: give a scene, an ensemble, or the file of an ensemble")
-    scene = what if isinstance(what, Scene) else what.scene
-    return what, f"scene {sha256(scene_text(scene).encode()).hexdigest()}"
 
 
 def _contact_table(

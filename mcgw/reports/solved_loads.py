@@ -51,11 +51,11 @@ def solutions_text(
         for each in solutions:
             known, eta = each.asperities_for(scatter).items(), each.scene.surface.eta
             sizes = ", ".join(f"{x} {n:.3g} ({n / eta:.3g} m^2)" for x, n in known)
-            where = f"for std = {scatter:.3g} of the mean, {_lowered(each.title)}"
+            where = f"for std = {scatter:.3g} of the mean, {each.title[0].lower()}{each.title[1:]}"
             lines.append(f"Asperities (nominal area) {where}: {sizes}")
     for budget in (solution.budget() for solution in solutions if full):
-        title = "Sources of error" if one else f"Sources of error, {_lowered(budget.title)}"
-        lines += ["", replace(budget.table(), title=title).text(), f"  {budget.advice}"]
+        where = "" if one else f", {budget.title[0].lower()}{budget.title[1:]}"
+        lines += ["", replace(budget.table(), title=f"Sources of error{where}").text(), f"  {budget.advice}"]
     return "\n".join(lines)
 
 
@@ -120,11 +120,6 @@ def _background(scene: Scene, solutions: Sequence[Solution]) -> list[str]:
     if solutions[0].told_by is not None:
         lines.append("90 % of specimens: for the separation from its exact distribution")
     return lines
-
-
-def _lowered(title: str) -> str:
-    """Return a title inside a line."""
-    return f"{title[0].lower()}{title[1:]}"
 
 
 def conductances(scene: Scene, solutions: Sequence[Solution]) -> Table:

@@ -1,6 +1,5 @@
 """``mcgw.compare``: an ensemble, or all points of a sweep, against theory."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, overload
@@ -195,26 +194,23 @@ class SweepComparison(Shown):
             ("residuals", f"{beyond} of {len(self.residuals)} beyond 3 standard errors"),
         ]
         shown = self.worst[:most]
-        at = [self.sweep.axes.values_text(where) for where in self._where(shown)]
+        where = list(self.sweep.axes.points())
+        at = [self.sweep.axes.values_text(where[one.number]) for one in shown]
         rows = joined([one.table(self.sweep.scenes[0]).at([one.row]) for one in shown])
         columns = Column("point", at, ", ".join(self.sweep.axes.keys)), *rows.columns
         return Table(columns, f"Monte Carlo and theory of {n} scenes {v.word}", facts)
 
     def table(self) -> Table:
         """Return a row for each point, quantity and separation."""
-        axes, tables = self.sweep.axes, [one.table(self.sweep.scenes[0]) for one in self.points]
+        axes, where = self.sweep.axes, list(self.sweep.axes.points())
+        tables = [one.table(self.sweep.scenes[0]) for one in self.points]
         at = [
-            axes.at(where)
-            for where, x in zip(self._where(self.points), tables, strict=True)
+            axes.at(where[one.number])
+            for one, x in zip(self.points, tables, strict=True)
             for _ in range(len(x))
         ]
         keys = (Column(key, [label(values[key]) for values in at]) for key in axes.keys)
         return Table((*keys, *joined(tables).columns))
-
-    def _where(self, points: Sequence[Tested]) -> list[tuple[int, ...]]:
-        """Return the numbers of points along the axes."""
-        where = list(self.sweep.axes.points())
-        return [where[one.number] for one in points]
 
 
 @overload
