@@ -1,6 +1,7 @@
 """Cautions: where a scene goes beyond the assumptions of the model, or of its contact law."""
 
 import math
+from bisect import bisect_left
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any, NamedTuple
@@ -50,8 +51,12 @@ def cautions(scene: Scene) -> list[str]:
 def _crowd(scene: Scene) -> Iterator[str]:
     """Caution about contacts that interact or merge."""
     h, theory = np.unique(scene.separations), scene.theory
-    if theory.mean("area_fraction", h[0]) > _CROWDED:  # few scenes are; the area falls with the separation
-        last = h[theory.mean("area_fraction", h) > _CROWDED].max()
+
+    def sparse(separation: float) -> bool:
+        return bool(theory.mean("area_fraction", separation) <= _CROWDED)
+
+    if not sparse(h[0]):  # few scenes are crowded; the area falls with the separation
+        last = h[bisect_left(h, True, key=sparse) - 1]
         apart = " (load too large if d is that of a rigid punch, too small if it is the mean gap)"
         yield (
             f"up to d/sigma = {last:.3g} more than {_CROWDED:.0%} of the nominal area is in "
@@ -81,11 +86,11 @@ def _depth(scene: Scene) -> Iterator[str]:
         )
     top = float(scene.heights.isf(np.array(1 / scene.n_asperities), -40.0))
     steepest = float(np.sqrt(max(top - lowest, 0.0) * surface.sigma / surface.radius))
-    yields = '; metals yield much earlier: use contact.law = "kogut-etsion"'
+    yields = '; metals yield much earlier: use contact.law = "kogut-etsion"' if scene.law.elastic else ""
     if steepest > _STEEP:
         yield (
             f"the highest asperities (s = {top:.1f}) have contact radii of {steepest:.2f} R at the smallest "
-            f"separation, too large for {law}{yields * scene.law.elastic}"
+            f"separation, too large for {law}{yields}"
         )
 
 
