@@ -178,7 +178,12 @@ def _of_numbers(
         if key in numbers:
             raise ValueError(f"--iso: gives {key} more than once")
         numbers[key] = value
-    pruning = {"pruning": _share(numbers.pop("pruning"))} if "pruning" in numbers else {}
+    pruning = {}
+    if (text := numbers.pop("pruning", None)) is not None:
+        try:
+            pruning["pruning"] = float(text)
+        except ValueError:
+            raise ValueError(f"pruning = {text!r}: give a fraction of Sz, such as 0.05, or 0") from None
     moments, doubts = moments_from(numbers, **pruning)
     area = nominal_area or 1e-6  # m^2, default of numbers alone
     scene = scene_of_moments(moments, area, E_star, "From " + " ".join(iso)[:60])
@@ -198,11 +203,3 @@ def _parameters(s: Any, assumed: str) -> str:
         f"sigma = {s.sigma:.4g} m, radius = {s.radius:.4g} m, eta = {s.eta:.4g} 1/m^2, "
         f"E_star = {s.E_star:.4g} Pa{assumed}"
     )
-
-
-def _share(text: str) -> float:
-    """Return a fraction of Sz, which may be 0."""
-    try:
-        return float(text)
-    except ValueError:
-        raise ValueError(f"pruning = {text!r}: give a fraction of Sz, such as 0.05, or 0") from None

@@ -119,7 +119,19 @@ class Comparison(Shown):
 
     def tables(self) -> dict[str, Table]:
         """By quantity: mean, 95 % interval, standard deviation, theory, residual at each separation shown."""
-        return {name: self._table(name) for name in self.curves}
+        found = {}
+        for name, c in self.curves.items():
+            q = self.ensemble.scene.quantity(name)
+            columns = (
+                Column("separation", self.ensemble.separations, SEPARATION, form="g"),
+                Column("mean", c.mean, unit=q.unit, error=c.stderr),
+                *interval_columns(*c.interval, q.unit),
+                Column("std", self.ensemble.std(name), unit=q.unit, form=".3g"),
+                Column("theory", c.theory, unit=q.unit, error=c.stderr),
+                Column("residual", c.residual, form="+z.2f"),
+            )
+            found[name] = Table(columns, heading(q))
+        return found
 
     def table(self) -> Table:
         """Return a row for each quantity and separation shown."""
@@ -128,19 +140,6 @@ class Comparison(Shown):
     def worst(self, rows: int) -> Table:
         """Return the means farthest from theory, over all quantities."""
         return _farthest(self.table().under("farthest from theory, in standard errors"), rows)
-
-    def _table(self, quantity: str) -> Table:
-        c, q = self.curves[quantity], self.ensemble.scene.quantity(quantity)
-        unit = q.unit
-        columns = (
-            Column("separation", self.ensemble.separations, SEPARATION, form="g"),
-            Column("mean", c.mean, unit=unit, error=c.stderr),
-            *interval_columns(*c.interval, unit),
-            Column("std", self.ensemble.std(quantity), unit=unit, form=".3g"),
-            Column("theory", c.theory, unit=unit, error=c.stderr),
-            Column("residual", c.residual, form="+z.2f"),
-        )
-        return Table(columns, heading(q))
 
 
 def _farthest(table: Table, rows: int) -> Table:
