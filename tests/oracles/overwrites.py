@@ -9,39 +9,14 @@ from pathlib import Path
 
 import numpy as np
 
-SCENE = """
-[surface]
-sigma = 1.37e-6
-radius = 13e-6
-eta = 3.0e8
-nominal_area = 1e-6
-E_star = 78.6e9
-[grading]
-law = "table"
-file = "table.csv"
-[heights]
-law = "table"
-file = "heights.npy"
-[contact]
-separations = [0.0, 1.0]
-[ensemble]
-n_surfaces = 8
-seed = 1
+SURFACE = "surface = {sigma = 1.37e-6, radius = 13e-6, eta = 3.0e8, nominal_area = 1e-6, E_star = 78.6e9}\n"
+SCENE = f"""{SURFACE}grading = {{law = "table", file = "table.csv"}}
+heights = {{law = "table", file = "heights.npy"}}
+contact = {{separations = [0.0, 1.0]}}
+ensemble = {{n_surfaces = 8, seed = 1}}
 """
-PLAIN = """
-[surface]
-sigma = 1.37e-6
-radius = 13e-6
-eta = 3.0e8
-nominal_area = 1e-6
-E_star = 78.6e9
-[contact]
-separations = [0.0, 1.0]
-quantities = ["load"]
-[ensemble]
-n_surfaces = 8
-seed = 1
-sampler = "cells"
+PLAIN = f"""{SURFACE}contact = {{separations = [0.0, 1.0], quantities = ["load"]}}
+ensemble = {{n_surfaces = 8, seed = 1, sampler = "cells"}}
 """
 
 # By name: the file that is read; the command, with OUT or DIR for where it is told to write; and what the
