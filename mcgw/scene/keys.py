@@ -7,7 +7,7 @@ from analytic.laws import ContactLaw
 from mcgw.scene.contact import Contact, Joint
 from mcgw.scene.ensemble import Sampling
 from mcgw.scene.kinds import FLAG, Either, List, Number, Plain, Table, Whole, Word
-from mcgw.scene.laws import GRADINGS, HEIGHTS, evenly, grading_given, heights_given, instance_of, piece_of_law
+from mcgw.scene.laws import GRADINGS, HEIGHTS, evenly, grading_given, heights_given, piece_of_law
 from mcgw.scene.measured import KNOWN, SUMMITS, Fitted, Uncertainty
 from mcgw.scene.section import Key, rows_of
 
@@ -37,7 +37,7 @@ _BODY_OF_FILE = Table((Key("file", _FILE, required=True),), "")
 _GRADING = "mcgw.Exponential(gamma), mcgw.Table(s, ratio), or a function of an array of heights"
 _HEIGHTS = "mcgw.HeightTable.of(heights), or a frozen continuous distribution, scipy.stats.lognorm(0.3)"
 _OWN_LAW = "a law; your own law is mcgw.CustomLaw(load=..., area=..., ...)"
-_RADII_GIVEN = instance_of(analytic.RandomCurvature, analytic.MeasuredRadii)
+_RADII_LAWS = analytic.RandomCurvature | analytic.MeasuredRadii
 # fmt: off
 TABLES: dict[str, Table] = {
 "": Table((
@@ -108,8 +108,8 @@ TABLES: dict[str, Table] = {
         "its shape parameters"),
 )),
 "summits": Table(words="Radii of the summits, if they differ.", rows=(
-    Key("curvature", Word(("random", "mean"), "", _RADII_GIVEN,
-        "mcgw.MeasuredRadii(heights, ratios)"), '"random"',
+    Key("curvature", Word(("random", "mean"), "",
+        lambda given: given if isinstance(given, _RADII_LAWS) else None, "mcgw.MeasuredRadii(heights, ratios)"), '"random"',
         "`random`: the radius of each summit follows the exact joint distribution with its height (default "
         "with `m0`, `m2`, `m4`); `mean`: one radius"),
     Key("largest_radius", Number("m"), '"1 mm"', "upper limit of the radii, m"),
@@ -138,7 +138,8 @@ TABLES: dict[str, Table] = {
 "contact.law": Table(words="Contact law of an asperity, and its constants: [how the laws "
     "differ](../explanation/contact-laws.md). A law without constants may stand under `[contact]` as a word: "
     "`law = \"hertz\"`. Default: Hertz's.", rows=(
-    Key("name", Word(lambda: (*analytic.laws.by_name, "custom"), "", instance_of(ContactLaw), _OWN_LAW),
+    Key("name", Word(lambda: (*analytic.laws.by_name, "custom"), "",
+        lambda given: given if isinstance(given, ContactLaw) else None, _OWN_LAW),
         '"kogut-etsion"',
         "`hertz` (default), `power-law-graded`, `coated`, `chang-etsion-bogy`, `zhao-maietta-chang`, "
         "`kogut-etsion`, `jackson-green`, `derjaguin-muller-toporov`, `johnson-kendall-roberts` or `custom`",

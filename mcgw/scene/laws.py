@@ -87,11 +87,6 @@ def heights_given(given: Any) -> HeightLaw | None:
     return given if own else None
 
 
-def instance_of(*kinds: type) -> Callable[[Any], Any]:
-    """Return what accepts objects of these kinds."""
-    return lambda given: given if isinstance(given, kinds) else None
-
-
 # --- by keys ---
 
 

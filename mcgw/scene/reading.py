@@ -62,8 +62,8 @@ def of_arguments(given: Mapping[str, Any]) -> Values:
             known = [*filter(None, TABLES), *_WHOLE]
             meant = nearest(name, known).rstrip() or f"it has {', '.join(known)}"
             raise TypeError(f"a scene has no {name!r}; {meant}")
-    inner_last = sorted((parts | changes).items(), key=lambda each: each[0].count("."))
-    return of_tables(as_toml(with_changes(document, dict(inner_last))))
+    tables_first = dict(sorted((parts | changes).items()))
+    return of_tables(as_toml(with_changes(document, tables_first)))
 
 
 def _keys_of(name: str, value: Any) -> Any:

@@ -133,8 +133,7 @@ def Surface(  # noqa: N802 - the door to a class of this name
     >>> mcgw.Surface("1.37 um", "13 um", "300/mm^2", "1 cm^2", "78.6 GPa").nominal_area
     0.0001
     """
-    given = {"sigma": sigma, "radius": radius, "eta": eta, "nominal_area": nominal_area, "E_star": E_star}
-    return _read(given, uncertainty)  # type: ignore[no-any-return]
+    return _read(locals())  # type: ignore[no-any-return]
 
 
 def SpectralSurface(  # noqa: N802 - as above
@@ -182,14 +181,12 @@ def SpectralSurface(  # noqa: N802 - as above
     >>> mcgw.Scene(surface, separations=[0, 1, 2]).heights
     Nayak(alpha=5.0)
     """
-    given = {"m0": m0, "m2": m2, "m4": m4, "nominal_area": nominal_area, "E_star": E_star}
-    return _read(given, uncertainty)  # type: ignore[no-any-return]
+    return _read(locals())  # type: ignore[no-any-return]
 
 
-def _read(given: Mapping[str, Any], uncertainty: Any) -> Any:
+def _read(given: Mapping[str, Any]) -> Any:
     """Read numbers or texts with units; implausible values give a warning."""
-    given = {**given, "uncertainty": uncertainty} if uncertainty is not None else given
-    section = Section("surface", as_toml(given), KEYS["surface"])
+    section = Section("surface", as_toml(given), KEYS["surface"])  # without what is None
     surface = read_surface(section)
     if surface is None:
         raise SceneError(section.problems)
