@@ -108,8 +108,8 @@ TABLES: dict[str, Table] = {
         "its shape parameters"),
 )),
 "summits": Table(words="Radii of the summits, if they differ.", rows=(
-    Key("curvature", Word(("random", "mean"), "",
-        lambda given: given if isinstance(given, _RADII_LAWS) else None, "mcgw.MeasuredRadii(heights, ratios)"), '"random"',
+    Key("curvature", Word(("random", "mean"), "", lambda x: x if isinstance(x, _RADII_LAWS) else None,
+        "mcgw.MeasuredRadii(heights, ratios)"), '"random"',
         "`random`: the radius of each summit follows the exact joint distribution with its height (default "
         "with `m0`, `m2`, `m4`); `mean`: one radius"),
     Key("largest_radius", Number("m"), '"1 mm"', "upper limit of the radii, m"),
