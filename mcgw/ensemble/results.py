@@ -197,10 +197,12 @@ class Labelled:
 
     def in_file(self, attributes: Mapping[str, Any]) -> "Labelled":
         """Return what a file holds, with its attributes."""
-        coordinates = {
-            name: one if one.values.dtype.kind in "iuf" else _numbered(one)
-            for name, one in self.coordinates.items()
-        }
+        coordinates = dict(self.coordinates)
+        for name, one in coordinates.items():
+            if one.values.dtype.kind not in "iuf":  # texts by their numbers, and these in words
+                words = ", ".join(f"{k} {value}" for k, value in enumerate(one.values))
+                numbers, told = np.arange(len(one.values)), f"{one.long_name}: {words}"
+                coordinates[name] = replace(one, values=numbers, long_name=told)
         others = [name for name, one in coordinates.items() if one.dims != (name,)]
         named = {"coordinates": " ".join(others)} if others else {}  # by which xarray knows them
         scales = {name: one for name, one in coordinates.items() if name not in others}
@@ -239,12 +241,6 @@ class Labelled:
             index = pandas.MultiIndex.from_product(places, names=dims)
         columns = {name: one.values[:].ravel() for name, one in self.variables.items() if one.dims == dims}
         return pandas.DataFrame(columns, index=index)
-
-
-def _numbered(one: Variable) -> Variable:
-    """Return a coordinate whose values are texts by their numbers, and these in words."""
-    words = ", ".join(f"{k} {value}" for k, value in enumerate(one.values))
-    return replace(one, values=np.arange(len(one.values)), long_name=f"{one.long_name}: {words}")
 
 
 def axis(name: str, values: Any) -> Variable:

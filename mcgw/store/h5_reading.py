@@ -40,7 +40,14 @@ def look(path: Path, filetype: str = FILETYPE, *, numbers: bool = True) -> dict[
     """
     with _opened(path) as file:
         names, attributes = table_names(file), attributes_in(file)
-        _check_format(attributes, filetype)
+        found, known = str(attributes.get("filetype", "")), attributes.get("format")
+        if found.startswith("mcgw-") and (found != filetype or known != FORMAT):
+            raise StoreError(
+                f"{found} {known} is not read by this version, which reads {filetype} {FORMAT}; "
+                "run the scene in its attribute scene again"
+            )
+        if found != filetype:
+            raise StoreError(f"holds no results of mcgw (its filetype is not {filetype!r})")
         if checksum_of(file) != attributes.get("checksum"):
             raise StoreError("damaged (checksum mismatch of its scene or attributes)")
         for name in names if numbers else ():
@@ -118,18 +125,6 @@ def _opened(path: Path) -> Iterator[h5py.File]:
         raise StoreError(f"{path}: cannot be looked at: too little memory") from None
     except Exception:  # HDF5 reports damage as any of a dozen exceptions
         raise StoreError(f"{path}: not an HDF5 file, or a damaged one") from None
-
-
-def _check_format(attributes: dict[str, Any], filetype: str) -> None:
-    """Refuse files that are no results, or of a format that this version does not read."""
-    found, known = str(attributes.get("filetype", "")), attributes.get("format")
-    if found.startswith("mcgw-") and (found != filetype or known != FORMAT):
-        raise StoreError(
-            f"{found} {known} is not read by this version, which reads {filetype} {FORMAT}; "
-            "run the scene in its attribute scene again"
-        )
-    if found != filetype:
-        raise StoreError(f"holds no results of mcgw (its filetype is not {filetype!r})")
 
 
 def table_names(file: h5py.File) -> list[str]:

@@ -83,7 +83,10 @@ def _try(folder: Path, shared: bool, held: ExitStack) -> str | None:
             lock = ReadWriteLock(folder / _LOCK, is_singleton=False)
             held.enter_context((lock.read_lock if shared else lock.write_lock)(blocking=False))
         except Timeout:
-            return f"locked by {_holder(folder)}, which is working on this run"
+            holder = ""
+            with suppress(StoreError):
+                holder = read_text(folder / _HOLDER, _MOST_BYTES).strip()
+            return f"locked by {holder or _UNKNOWN}, which is working on this run"
         except (sqlite3.Error, ValueError) as error:  # the last: its file cannot be written
             if new:
                 _remove_if_empty(folder)
@@ -104,13 +107,6 @@ def _remove_if_empty(folder: Path) -> None:
             for name in names:
                 (folder / name).unlink(missing_ok=True)
             folder.rmdir()
-
-
-def _holder(folder: Path) -> str:
-    try:
-        return read_text(folder / _HOLDER, _MOST_BYTES).strip() or _UNKNOWN
-    except StoreError:
-        return _UNKNOWN
 
 
 def refuse_link(folder: Path) -> None:

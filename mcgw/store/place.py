@@ -198,7 +198,8 @@ def tidy(path: Path) -> None:
 def drop_leftovers(path: Path) -> None:
     """As `tidy`, for who has the lock; a run stays if it has a block that its file does not have."""
     folder, held = parts_of(path), 0
-    remove_unfinished(folder)
+    for left in (*folder.glob(".*.tmp"), *folder.glob("shards/.*.tmp")):
+        left.unlink(missing_ok=True)
     begun = (folder / RECORD).exists()  # without it nobody knows what the blocks are
     shards = list(folder.glob("shards/block-*.h5")) if begun else []
     if shards and path.exists():
@@ -210,14 +211,8 @@ def drop_leftovers(path: Path) -> None:
         remove_run(folder)
 
 
-def remove_unfinished(folder: Path) -> None:
-    """Remove the temporary files of a run. Only with the lock."""
-    for left in (*folder.glob(".*.tmp"), *folder.glob("shards/.*.tmp")):
-        left.unlink(missing_ok=True)
-
-
 def remove_run(folder: Path) -> None:
     """Remove a run, readable or not; its lock stays, and with it the folder. Only with the lock."""
     shutil.rmtree(folder / "shards", ignore_errors=True)  # a worker that lost its driver may add to it
-    remove_unfinished(folder)
-    (folder / RECORD).unlink(missing_ok=True)
+    for left in (*folder.glob(".*.tmp"), folder / RECORD):
+        left.unlink(missing_ok=True)
