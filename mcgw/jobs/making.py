@@ -16,6 +16,7 @@ from mcgw.formats.files import State, state_of
 from mcgw.jobs.executors import Signals, drive, heed_signals
 from mcgw.store.blocks import Span, commit_shard
 from mcgw.store.ensembles import FileResults, described, open_ensemble, open_results
+from mcgw.store.h5_reading import read_tables
 from mcgw.store.identity import difference
 from mcgw.store.lock import locked, parts_of
 from mcgw.store.place import check_room, drop_leftovers, finished, put, remove_run, tidy
@@ -294,7 +295,7 @@ def _merged(plan: Plan, check: Callable[[], None]) -> Labelled:
             yield from ((0, tables_of([part])) for part in sums.parts if part.n % plan.reducers[0].rows == 0)
         for shard in shards:
             check()
-            yield plan.blocks[shard.span][0], shard.tables()
+            yield plan.blocks[shard.span][0], read_tables(shard.path)
 
     groups = zip(plan.reducers, groupby(blocks(), itemgetter(0)), strict=True)
     return plan.contents([one.held(tables for _, tables in some) for one, (_, some) in groups], seconds)

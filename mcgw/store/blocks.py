@@ -3,14 +3,14 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from mcgw.ensemble.results import Labelled, Tables, Variable
 from mcgw.errors import StoreError
 from mcgw.formats.files import Expected, whole_file
-from mcgw.store.h5_reading import look, read_tables
+from mcgw.store.h5_reading import look
 from mcgw.store.h5_writing import BLOCK_TYPE, FORMAT, write
 
 
@@ -49,8 +49,7 @@ def blocks_of(groups: Iterable[tuple[int, int]]) -> dict[Span, tuple[int, int]]:
     return found
 
 
-@dataclass(frozen=True)
-class Shard:
+class Shard(NamedTuple):
     """A shard that was looked at.
 
     Parameters
@@ -66,16 +65,6 @@ class Shard:
     path: Path
     span: Span
     seconds: float
-
-    def tables(self) -> Tables:
-        """Its tables, read and compared with their checksums.
-
-        Raises
-        ------
-        StoreError
-            If it was damaged or removed since.
-        """
-        return read_tables(self.path)
 
 
 def commit_shard(path: Path, run: str, span: Span, tables: Tables, seconds: float) -> Shard:

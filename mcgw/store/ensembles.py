@@ -135,7 +135,7 @@ def open_results(path: Path) -> "Ensemble | Sweep":
         if not shards:
             raise StoreError(f"{path}: no block of its run is finished yet")
         if plan.statistics:
-            held = plan.reducers[0].held(shard.tables() for shard in shards)  # each read when its turn comes
+            held = plan.reducers[0].held(read_tables(shard.path) for shard in shards)
         else:
             held = FileResults(tuple((shard.path, shard.span.n) for shard in shards))
         return Ensemble(plan.scene, plan.sampler, held)

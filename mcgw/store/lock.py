@@ -19,7 +19,6 @@ from time import monotonic, sleep
 from filelock import ReadWriteLock, Timeout
 
 from mcgw.errors import StoreError
-from mcgw.formats.files import write_whole
 from mcgw.formats.named_files import read_text
 
 PATIENCE = 1.0  # seconds: a process that was killed may need a moment to die
@@ -63,8 +62,9 @@ def locked(folder: Path, *, shared: bool = False, patience: float | None = None)
             if shared:
                 (folder / _HOLDER).unlink(missing_ok=True)
             else:
-                text = f"pid {os.getpid()} on {socket.gethostname()}\n"
-                write_whole(folder / _HOLDER, (text.encode(),))
+                flags = os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_NOFOLLOW
+                with os.fdopen(os.open(folder / _HOLDER, flags, 0o644), "w") as file:
+                    file.write(f"pid {os.getpid()} on {socket.gethostname()}\n")
         try:
             yield new
         finally:

@@ -17,7 +17,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from oracles.inside import RECORD, Plan, Values, home, parts_of, verify
+from oracles.inside import RECORD, Plan, Values, home, parts_of, read_tables, verify
 
 import analytic
 import mcgw
@@ -127,7 +127,7 @@ def found(scene, file, acked, digest):
         wrong.append("a shard is there and not whole")
     for shard in valid:
         for name, values in made_up(None, shard.span, 1).items():
-            if not np.array_equal(shard.tables()[name], values):
+            if not np.array_equal(read_tables(shard.path)[name], values):
                 wrong.append(f"{shard.span}: {name} is wrong")
     return wrong
 

@@ -73,7 +73,7 @@ MODULES = {
     "mcgw.statistics.verdict": "Check FALSE_ALARM verdict",
     "mcgw.store.blocks": "blocks_of commit_shard open_shard Shard Span",
     "mcgw.store.ensembles": "LARGE open_results read_attributes verify",
-    "mcgw.store.h5_reading": "attributes_in checksum_of MOST_TEXT table_names",
+    "mcgw.store.h5_reading": "attributes_in checksum_of MOST_TEXT read_tables table_names",
     "mcgw.store.h5_writing": "CHUNK_ROWS",
     "mcgw.store.identity": "another",
     "mcgw.store.lock": "LOCK_FILES locked LockedError parts_of PATIENCE",
