@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from analytic import Hertz, MeasuredHeights, MeasuredRadii, Quantity, quantity_of
+from analytic import PER_AREA, Hertz, MeasuredHeights, MeasuredRadii, Quantity, quantity_of
 from analytic.arrays import Array, hold
 from mcgw.ensemble.at_load import NEGATIVE, answers_at, quantities_at, theory_at
 from mcgw.ensemble.forecast import surfaces_at_loads
@@ -23,15 +23,6 @@ from mcgw.scene.scene import Scene, storable
 from mcgw.scene.section import nearest
 
 _LAST_DIGITS = 64 * float(np.finfo(float).eps)  # of a reduced height
-# What may be given: its unit, the quantity that it is, and whether per nominal area.
-_GIVEN = {
-    "load": ("N", "load", False),
-    "pressure": ("Pa", "load", True),
-    "area": ("m^2", "area", False),
-    "area_fraction": ("1", "area", True),
-    "nominal_separation": ("", "nominal_separation", False),
-}
-
 _MARGIN = 6.0  # standard deviations of a surface's separation that are drawn at once
 _RESAMPLED = 200  # specimens in place of one measured surface
 _MOST_HEIGHTS = 3e9
@@ -106,10 +97,11 @@ def solve(
     ((key, value),) = known.items()
     scene, plain = scene.replace(**changes), as_toml(value)
     several = plain if isinstance(plain, list) else [plain]
-    unit, given, per_area = _GIVEN[key]
+    given, factor = key, 1.0
+    if key in PER_AREA:
+        given, factor = PER_AREA[key].of, scene.surface.nominal_area
     if key != "nominal_separation":
-        factor = scene.surface.nominal_area if per_area else 1.0
-        values = [factor * argument(key, x, unit) for x in several]
+        values = [factor * argument(key, x, quantity_of(key).unit) for x in several]
     elif scene.interaction is None:
         raise ValueError(f'{key}: it needs [interaction] reference = "body" or "mean-plane"')
     else:
