@@ -54,16 +54,6 @@ class Paired(Shown):
         half = ndtri((1 + level) / 2) * self.stderr
         return self.ratio - half, self.ratio + half
 
-    @property
-    def ratio_low(self) -> Array:
-        """Lower end of the 95 % interval."""
-        return self.interval()[0]
-
-    @property
-    def ratio_high(self) -> Array:
-        """Upper end of the 95 % interval."""
-        return self.interval()[1]
-
     def plot(self, ax: Any = None) -> Any:
         """Draw the ratio with its 95 % interval; returns the axes."""
         return plotted(self, ax)

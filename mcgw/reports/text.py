@@ -76,7 +76,7 @@ def ratios_in_words(sweep: "Sweep") -> list[str]:
     last, first = sweep.axes.text(points[-1]), sweep.axes.text(points[0])
     lines = []
     for name, pairs in sweep.ratios().items():
-        ratio, low, high = pairs[-1].ratio, pairs[-1].ratio_low, pairs[-1].ratio_high
+        ratio, (low, high) = pairs[-1].ratio, pairs[-1].interval()
         found = (f"{ratio[k]:.5g} ({low[k]:.5g} to {high[k]:.5g}) at d/sigma = {h[k]:g}" for k in ends)
         lines.append(f"{quantity_of(name).long_name}, {last} over {first}: {', '.join(found)}")
     return lines

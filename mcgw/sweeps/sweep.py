@@ -228,9 +228,9 @@ class Sweep(Dataset):
             unit = self.scenes[0].quantity(name).unit
             for kind in STATISTICS:
                 columns.append(Column(f"{name}_{kind}", getattr(self, kind)(name).ravel(), unit=unit))
-            for kind in ("ratio", "ratio_low", "ratio_high") if name in ratios else ():
-                values = np.ravel([getattr(one, kind) for one in ratios[name]])
-                columns.append(Column(f"{name}_{kind}", values, unit="1"))
+            found = np.array([(one.ratio, *one.interval()) for one in ratios.get(name, ())])
+            for k, kind in enumerate(("ratio", "ratio_low", "ratio_high") if len(found) else ()):
+                columns.append(Column(f"{name}_{kind}", found[:, k].ravel(), unit="1"))
         return Table(tuple(columns))
 
     def ratios(self) -> dict[str, list[Paired]]:
