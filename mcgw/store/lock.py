@@ -11,6 +11,7 @@ A disk that keeps no locks, as NFS or Lustre without them, is refused.
 import os
 import socket
 import sqlite3
+import stat
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
@@ -19,6 +20,7 @@ from time import monotonic, sleep
 from filelock import ReadWriteLock, Timeout
 
 from mcgw.errors import StoreError
+from mcgw.formats.files import write_whole
 from mcgw.formats.named_files import read_text
 
 PATIENCE = 1.0  # seconds: a process that was killed may need a moment to die
@@ -62,9 +64,8 @@ def locked(folder: Path, *, shared: bool = False, patience: float | None = None)
             if shared:
                 (folder / _HOLDER).unlink(missing_ok=True)
             else:
-                flags = os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_NOFOLLOW
-                with os.fdopen(os.open(folder / _HOLDER, flags, 0o644), "w") as file:
-                    file.write(f"pid {os.getpid()} on {socket.gethostname()}\n")
+                text = f"pid {os.getpid()} on {socket.gethostname()}\n"
+                write_whole(folder / _HOLDER, (text.encode(),))
         try:
             yield new
         finally:
@@ -117,5 +118,6 @@ def refuse_link(folder: Path) -> None:
     StoreError
         If it is a link or a file.
     """
-    if folder.is_symlink() or (folder.exists() and not folder.is_dir()):
-        raise StoreError(f"{folder}: is not a folder; remove it or choose another -o")
+    with suppress(FileNotFoundError):  # another process may just have removed it
+        if not stat.S_ISDIR(os.lstat(folder).st_mode):
+            raise StoreError(f"{folder}: is not a folder; remove it or choose another -o")
