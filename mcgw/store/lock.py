@@ -118,6 +118,6 @@ def refuse_link(folder: Path) -> None:
     StoreError
         If it is a link or a file.
     """
-    with suppress(FileNotFoundError):  # another process may just have removed it
+    with suppress(FileNotFoundError, NotADirectoryError):  # another process may just have removed it
         if not stat.S_ISDIR(os.lstat(folder).st_mode):
             raise StoreError(f"{folder}: is not a folder; remove it or choose another -o")
