@@ -138,7 +138,7 @@ class HeightRule:
             if self.below <= 0.5:
                 parts -= f[np.argmax(self.probabilities)]
             parts -= np.einsum("i,ij->j", p, parts)
-        return Fluctuations(p, mean, parts)
+        return Fluctuations(p, mean, parts, np.zeros(mean.size))
 
     def terms(
         self,
@@ -206,22 +206,20 @@ class Fluctuations:
         What one asperity contributes in the mean, shape (columns,).
     parts : ndarray
         The random part at each of these heights, shape (m + 1, columns).
-    radius : ndarray, optional
-        Power of the radius in each column, where radii have means up to the third power only.
+    radius : ndarray
+        Power of the radius in each column, where radii have means up to the third power only; else 0.
     """
 
     probabilities: Array
     mean: Array
     parts: Array
-    radius: Array | None = None
+    radius: Array
 
     def moment(self, k: int) -> Array:
         """Return the mean of the `k`-th power, shape (columns,); infinite where there is none."""
         powers = reduce(np.multiply, [self.parts] * k)  # ten times as fast as **
         found = np.einsum("i,ij->j", self.probabilities, powers)  # in this thread alone
-        return np.asarray(
-            found if self.radius is None else np.where(k * self.radius < _DIVERGES, found, np.inf)
-        )
+        return np.where(k * self.radius < _DIVERGES, found, np.inf)
 
     def combined(self, rates: Array, mean: Array) -> "Fluctuations":
         """Return those of quantities that deviate at these rates with each of the sums, to first order.
@@ -231,10 +229,8 @@ class Fluctuations:
         sums, _, separations = rates.shape
         shaped = self.parts.reshape(-1, sums, separations)
         parts = np.einsum("isk,sqk->iqk", shaped, rates).reshape(len(shaped), -1)
-        radius = self.radius
-        if radius is not None:
-            radius = np.where(rates != 0, radius.reshape(sums, 1, separations), 0.0).max(axis=0).ravel()
-        return Fluctuations(self.probabilities, mean, parts, radius)
+        radius = np.where(rates != 0, self.radius.reshape(sums, 1, separations), 0.0).max(axis=0)
+        return Fluctuations(self.probabilities, mean, parts, radius.ravel())
 
     def products(self) -> Array:
         """Return the mean products of all columns, shape (columns, columns)."""
@@ -242,13 +238,12 @@ class Fluctuations:
 
     def take(self, columns: NDArray[Any], unit: Array | float = 1.0) -> "Fluctuations":
         """Return some of the columns, in units of `unit`."""
-        radius = None if self.radius is None else self.radius[columns]
         parts = self.parts[:, columns] / unit
-        return Fluctuations(self.probabilities, self.mean[columns] / unit, parts, radius)
+        return Fluctuations(self.probabilities, self.mean[columns] / unit, parts, self.radius[columns])
 
     def turned(self, axes: Array) -> "Fluctuations":
         """Return combinations of the columns; `axes` has shape (columns, combinations)."""
-        radius = None if self.radius is None else np.where(axes, self.radius[:, None], 0.0).max(axis=0)
+        radius = np.where(axes, self.radius[:, None], 0.0).max(axis=0, initial=0.0)
         return Fluctuations(self.probabilities, self.mean @ axes, self.parts @ axes, radius)
 
     def whitening(self, least: float) -> Array:

@@ -18,8 +18,6 @@ from analytic.roots import sign_changes
 
 _SLOW = 5e-3  # seconds for one of thousands of densities: some are integrals of integrals
 _NOISE = 2.0**-30  # of a density that is the exponential of large terms, as of gamma(1e4)
-_RARER = 10.0 ** -np.arange(1.0, 37.0)  # shares
-_NEARLY = 1e-2  # how near they come to themselves by way of heights
 _NEXT = 1e-8  # as near to the lower end as is as good as there
 _NO_RARER = 1e-300  # share beyond which a law has no heights, if its density ends there:
 _INSIDE, _OUTSIDE = 1e-2, 1e-6  # it is positive so far inside, in standard deviations, and 0 so far outside
@@ -148,13 +146,8 @@ class ScipyHeights(HeightLaw):
 
     def log_ratio(self, s: Array, t: Array) -> Array:
         """Return the difference of its ``logpdf``."""
-        low, high = self.support
-        start = np.asarray(s)
-        moved = np.clip(start + t, low, high)
-        both = np.concatenate([moved.ravel(), start.ravel()])  # a call takes longer than a hundred values
-        logarithm = self.distribution.logpdf(self._x(both))
-        after, before = logarithm[: moved.size], logarithm[moved.size :]
-        return np.asarray(after.reshape(moved.shape) - before.reshape(start.shape))
+        logpdf, moved = self.distribution.logpdf, np.clip(np.asarray(s) + t, *self.support)
+        return np.asarray(logpdf(self._x(moved)) - logpdf(self._x(s)))
 
     def cdf(self, s: Array) -> Array:
         """Return its ``cdf``."""
@@ -184,7 +177,7 @@ class ScipyHeights(HeightLaw):
 
         SciPy's inverse of F takes 1 - p, and is infinite soon; of Rice's law ``sf`` is 1 - ``cdf`` as well.
         """
-        share = np.maximum(p * self.sf(np.array(above)), self._rarest)
+        share = np.asarray(p * self.sf(np.array(above)))
         if math.isfinite(self.support[1]):
             s = self._s(self.distribution.isf(share))
             rare = np.isnan(s)  # SciPy loses beta heights at 1e-280
@@ -192,16 +185,6 @@ class ScipyHeights(HeightLaw):
             s, rare = self.ppf(1 - share), share < 0.5
         s[rare] = self._sought(self.sf, share[rare], 1.0)
         return s
-
-    @cached_property
-    def _rarest(self) -> float:
-        """The last of some shares, ever smaller, up to which ``sf`` of its inverse gives each again."""
-        if math.isfinite(self.support[1]):
-            return 0.0
-        with _quiet():
-            again = self.sf(self._sought(self.sf, _RARER, 1.0))
-        good = np.cumprod(np.isclose(again, _RARER, rtol=_NEARLY, atol=0)).sum()
-        return 0.0 if good == _RARER.size else float(_RARER[max(good - 1, 0)])
 
     def _sought(self, tail: Callable[[Array], Array], share: Array, step: float) -> Array:
         """Heights where a tail of the law has these shares, each less than half, one way from the median."""

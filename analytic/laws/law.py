@@ -234,13 +234,8 @@ def piece_of(law: ContactLaw, penetration: Array, e: Array) -> Ints:
     return piece
 
 
-def derivative(formula: Callable[[Any], Any], x: Array) -> Array:
-    """``d formula/dx`` where x is not 0."""
-    step = _STEP * np.abs(x)
-    return np.asarray(np.imag(formula(x + 1j * step)) / step)
-
-
 def slope_in_root(formula: Callable[[Any], Any], y: Array) -> Array:
     """``d formula/d(y^2)``, at y = 0 its limit."""
     y = np.where(y == 0, NEXT_TO_0, y)
-    return derivative(formula, y) / (2 * y)
+    step = _STEP * np.abs(y)
+    return np.asarray(np.imag(formula(y + 1j * step)) / step / (2 * y))
