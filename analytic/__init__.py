@@ -55,7 +55,6 @@ from analytic.gradings import Clipped, Custom, Exponential, Grading, Homogeneous
 from analytic.height_rule import Fluctuations, HeightRule
 from analytic.heights import ExponentialHeights, Gaussian, HeightLaw, Weibull
 from analytic.integrals import fn, fn_paper, fn_scaled, ratio_at_equal_load
-from analytic.interacting import InteractingModel
 from analytic.interaction import Interaction
 from analytic.joint import Joint
 from analytic.laws import (
@@ -99,15 +98,14 @@ __all__ = [
     "UNLOADING",
     "Body", "ChangEtsionBogy", "Clipped", "Coated", "ContactLaw", "Cumulants", "Custom", "CustomLaw",
     "DerjaguinMullerToporov", "Exponential", "ExponentialHeights", "Film", "Fluctuations", "Gaussian",
-    "Grading", "HeightLaw", "HeightRule", "HeightTable", "Hertz", "Homogeneous", "InteractingModel",
-    "Interaction", "JacksonGreen", "JohnsonKendallRoberts", "Joint", "KogutEtsion", "Layer",
-    "MeasuredHeights", "MeasuredRadii", "Model", "Nayak", "PiecewiseSeries", "PowerLawGraded", "Quantity",
-    "RandomCurvature", "ScipyHeights", "SpectralMoments", "Surface", "Table", "Weibull",
-    "ZhaoMaiettaChang",
+    "Grading", "HeightLaw", "HeightRule", "HeightTable", "Hertz", "Homogeneous", "Interaction",
+    "JacksonGreen", "JohnsonKendallRoberts", "Joint", "KogutEtsion", "Layer", "MeasuredHeights",
+    "MeasuredRadii", "Model", "Nayak", "PiecewiseSeries", "PowerLawGraded", "Quantity", "RandomCurvature",
+    "ScipyHeights", "SpectralMoments", "Surface", "Table", "Weibull", "ZhaoMaiettaChang",
     "area", "area_per_load", "area_per_load_ratio", "barber_conductance", "bends", "composite_modulus",
     "conductance", "contacts", "cooper_mikic_yovanovich", "critical_penetration", "extent", "first_negative",
-    "fn", "fn_paper", "fn_scaled", "harmonic_conductivity", "is_data", "load", "mean",
-    "mean_absolute_slope", "mean_modulus", "mikic_elastic", "name_of", "plasticity_index", "quantity_of",
-    "ratio_at_equal_load", "resolved", "resolved_breaks", "stiffness", "stiffness_ratio",
-    "summit_plasticity_index", "yielding_share",
+    "fn", "fn_paper", "fn_scaled", "harmonic_conductivity", "is_data", "load", "mean", "mean_absolute_slope",
+    "mean_modulus", "mikic_elastic", "name_of", "plasticity_index", "quantity_of", "ratio_at_equal_load",
+    "resolved", "resolved_breaks", "stiffness", "stiffness_ratio", "summit_plasticity_index",
+    "yielding_share",
 ]  # fmt: skip

@@ -291,5 +291,4 @@ def yielding_share(model: Model, h: ArrayLike, hardness: float, poisson: float =
     0.998153
     """
     law = KogutEtsion(hardness=hardness, poisson=poisson)
-    alone: Model = getattr(model, "alone", model)  # what asperities feel under their own law
-    return np.asarray(1 - replace(alone, law=law, unload_from=None, film=None).share(0, h))
+    return np.asarray(1 - replace(model.alone, law=law, unload_from=None, film=None).share(0, h))

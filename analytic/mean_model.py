@@ -4,7 +4,7 @@ What an asperity adds in the mean is a sum over a rule of heights and radii, by 
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import KW_ONLY, dataclass, field
+from dataclasses import KW_ONLY, dataclass, field, replace
 from functools import cached_property, partial
 from typing import Any
 
@@ -16,12 +16,15 @@ from analytic.curvature import RandomCurvature
 from analytic.gradings import Grading, Homogeneous
 from analytic.height_rule import Count, Cuts, HeightRule
 from analytic.heights import Gaussian, HeightLaw
+from analytic.interacting import answer_of, asked
+from analytic.interaction import Interaction
+from analytic.joint import Gap
 from analytic.laws.branch import Branch
 from analytic.laws.film import Film
 from analytic.laws.law import ContactLaw
 from analytic.measured_summits import MeasuredHeights, MeasuredRadii
 from analytic.quadrature import REACH
-from analytic.quantities import NOT_SUMS, SEPARATIONS, Quantity, quantity_of
+from analytic.quantities import Quantity, quantity_of
 from analytic.roots import last_separations
 from analytic.surface import Surface
 
@@ -54,6 +57,8 @@ class MeanModel:
     film: Film | None = None
     n_asperities: float | None = None
     count: Count = "fixed"
+    interaction: Interaction | None = None
+    filled: Gap | None = None
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.number) and self.number > 0):
@@ -76,8 +81,22 @@ class MeanModel:
         """Asperities on a surface, or their mean number."""
         return self.surface.n_asperities if self.n_asperities is None else self.n_asperities
 
+    @cached_property
+    def alone(self) -> Any:
+        """The same asperities without interaction and gas."""
+        return replace(self, interaction=None, filled=None) if self.interaction or self.filled else self
+
+    @property
+    def compliance(self) -> float:
+        """Of the interaction, in units of sigma: d/sigma for each newton."""
+        if self.interaction is None:
+            return 0.0
+        return self.interaction.compliance(self.surface, self.number) / self.surface.sigma
+
     def mean(self, quantity: str, h: ArrayLike) -> Array:
         """Mean over surfaces: ``N scale F*_n(h)`` under Hertz's law, to 1e-13; under others to 1e-12.
+
+        To second order in what surfaces differ by, where a surface answers by itself.
 
         Parameters
         ----------
@@ -98,7 +117,9 @@ class MeanModel:
         ValueError
             If unloading is requested but not known, or starts above `h`.
         """
-        q = self._asked(quantity, h)
+        q = asked(self, quantity, h)
+        if answer := answer_of(self, q):
+            return answer.mean(self.alone, np.asarray(h, dtype=np.float64))
         return self._unit(q) * self._mean(q, h)
 
     def slope(self, quantity: str, h: ArrayLike) -> Array:
@@ -126,9 +147,11 @@ class MeanModel:
         ValueError
             For others.
         """
-        q = self._asked(quantity, h)
+        q = asked(self, quantity, h)
         if q.base == "load_slope":
             raise ValueError(f"quantity = {quantity!r}: its slope is not known; give another quantity")
+        if answer_of(self, q):
+            return fall_of(partial(self.mean, quantity), h)
         return self._unit(q) * self._slope(q, h)
 
     def share(self, piece: int, h: ArrayLike) -> Array:
@@ -170,7 +193,11 @@ class MeanModel:
             If a value is not positive, or not reached between h = -40 and where the probability of a contact
             underflows.
         """
-        q = self._asked(quantity)
+        q = asked(self, quantity)
+        if answer_of(self, q):
+            raise ValueError(
+                f"quantity = {quantity!r}: give a load, an area, or another sum of the asperities"
+            )
         target = np.asarray(value, dtype=np.float64)
         if not np.all(np.isfinite(target) & (target > 0)):
             raise ValueError(f"{quantity} = {value!r}: give finite values > 0 {q.unit}")
@@ -189,7 +216,7 @@ class MeanModel:
         """Heights and probabilities for integrals of these quantities of an asperity at these separations."""
         h = np.asarray(separations, dtype=np.float64)
         for name in quantities:
-            self._asked(name, h)
+            asked(self, name, h)
         return self._rule(h, self.ways.among(quantities), cuts)
 
     @cached_property
@@ -288,21 +315,6 @@ class MeanModel:
         far = np.geomspace(near, top, 25)[1:] if top > near else np.empty(0)
         grid = np.concatenate([np.linspace(LOWEST, -4, 10)[:-1], np.linspace(-4, near, 41), far])
         return np.concatenate([[low], grid[grid > low]])
-
-    def _asked(self, quantity: str, h: ArrayLike = np.inf) -> Quantity:
-        """Return a quantity that is known at these separations."""
-        q = quantity_of(quantity)
-        if quantity in NOT_SUMS:
-            raise KeyError(f"{quantity!r}: this model has no gas; use `theory` of a scene with a joint")
-        if quantity in SEPARATIONS:
-            raise KeyError(f"{quantity!r}: this model has no interaction; use `theory` of a scene with one")
-        self.ways.of(quantity)
-        if q.unloading and self.unload_from is not None and np.any(np.less(h, self.unload_from)):
-            raise ValueError(
-                f"quantity = {quantity!r}: h = {np.min(h):g} is smaller than unload_from = "
-                f"{self.unload_from:g}, where unloading begins; give larger separations"
-            )
-        return q
 
     def _unit(self, q: Quantity) -> float:
         return self.number * q.scale(self.surface)

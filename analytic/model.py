@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike
 from analytic.arrays import Array
 from analytic.curvature import RandomCurvature
 from analytic.height_rule import Fluctuations
+from analytic.interacting import Answer, answer_of, asked
 from analytic.mean_model import MeanModel
-from analytic.quantities import quantity_of
+from analytic.quantities import JOINT, Quantity, quantity_of
 
 if TYPE_CHECKING:
     from analytic.distribution import Law
@@ -72,6 +73,11 @@ class Model(MeanModel):
     count : {"fixed", "poisson"}, optional
         Whether their number is the same on every surface, or the mean of a Poisson law (a window on an
         unbounded surface).
+    interaction : Interaction, optional
+        By which asperities press each other down. Separations are those that the asperities feel; there is
+        "nominal_separation", d/sigma, besides, the separation of the bodies.
+    filled : Gap, optional
+        The gap conductance of a gas: there are "gap_conductance" and "joint_conductance", W/(m^2 K).
 
     Raises
     ------
@@ -86,11 +92,24 @@ class Model(MeanModel):
     >>> model = analytic.Model(surface, heights=analytic.ExponentialHeights())
     >>> float(model.mean("contacts", 1.0).round(3))
     135.335
+
+    Asperities that press each other down:
+
+    >>> model = analytic.Model(surface, interaction=analytic.Interaction("body"))
+    >>> float(model.mean("load", 1.0).round(4)), float(model.mean("nominal_separation", 1.0).round(4))
+    (0.319, 0.6981)
+
+    Steel in air:
+
+    >>> film, air = analytic.Film(conductivities=(16.0, 16.0)), analytic.Joint("air", rms=1.1e-6)
+    >>> model = analytic.Model(surface, film=film, filled=air.gap(surface, analytic.Gaussian()))
+    >>> [float(model.mean(name, 2.0).round(-2)) for name in ("contact_conductance", "joint_conductance")]
+    [1300.0, 10100.0]
     """
 
     def cumulants(self, quantity: str, h: ArrayLike) -> Cumulants:
         """Return the mean, variance, skewness and excess kurtosis over surfaces, in the shape of `h`."""
-        q, h = self._asked(quantity, h), np.asarray(h, dtype=np.float64)
+        q, h = asked(self, quantity, h), np.asarray(h, dtype=np.float64)
 
         def of_one(h: Array) -> Array:
             """First four cumulants that one asperity contributes, over the scale: shape (separations, 4)."""
@@ -177,15 +196,34 @@ class Model(MeanModel):
     def fluctuations(self, quantities: Sequence[str], separations: ArrayLike) -> Fluctuations:
         """Return the contribution of one asperity to each quantity at each separation, over its scale.
 
-        Columns are quantity by quantity, at increasing number of the separation.
+        Columns are quantity by quantity, at increasing number of the separation. To leading order where a
+        surface answers by itself.
         """
-        asked = [self._asked(name, separations) for name in quantities]
-        h, rule = np.asarray(separations, dtype=np.float64), self.rule(separations, quantities)
+        several = [asked(self, name, separations) for name in quantities]
+        h = np.asarray(separations, dtype=np.float64)
+        if any(answer_of(self, q) for q in several):
+            return self._answered(several, h)
+        rule = self.rule(h, quantities)
         terms = rule.terms(quantities, h, self.grading, self.ways)
         result = rule.fluctuations(terms, self.count)
         if not isinstance(self.curvature, RandomCurvature) or np.isfinite(self.curvature.largest):
             return result
-        return replace(result, radius=np.repeat([q.radius for q in asked], h.size))
+        return replace(result, radius=np.repeat([q.radius for q in several], h.size))
+
+    def _answered(self, several: Sequence[Quantity], h: Array) -> Fluctuations:
+        """Return the fluctuations of what follows from sums of the asperities."""
+        answers = [answer_of(self, q) or Answer(q.name, "") for q in several]
+        named = [each.spots or each.load for each in answers] + [each.load for each in answers if each.sunk]
+        columns, alone = list(dict.fromkeys(named)), self.alone
+        rates, means = np.zeros((len(columns), len(answers), h.size)), []
+        for k, (q, answer) in enumerate(zip(several, answers, strict=True)):
+            unit = q.scale(self.surface)
+            means.append(self.mean(q.name, h) / (self.number * unit))
+            for term, rate in zip((answer.spots, answer.load), answer.at_means(alone, h)[1], strict=True):
+                if term in columns:
+                    rates[columns.index(term), k] += rate * quantity_of(term).scale(self.surface) / unit
+        one: Fluctuations = alone.fluctuations(columns, h)
+        return one.combined(rates, np.concatenate(means))
 
     def distribution(self, quantity: str, h: float) -> "Law":
         """Return the exact distribution over surfaces of a quantity at a separation, as one of `scipy.stats`.
@@ -214,7 +252,15 @@ class Model(MeanModel):
         """
         from analytic.exact_law import distribution_of  # few ask
 
-        return distribution_of(self, quantity, float(h))
+        answer = answer_of(self, asked(self, quantity, h))
+        if answer is None:
+            return distribution_of(self, quantity, float(h))
+        if quantity in JOINT and (answer.sunk or not answer.spots):
+            raise ValueError(
+                f"quantity = {quantity!r}: only 'joint_conductance' is known, for surfaces with one distance "
+                "of mean planes"
+            )
+        return answer.law(self.alone, float(h))
 
     def separation_law(self, load: float, quantity: str = "load") -> "Law":
         """Return the exact distribution of the separation at a given load: P(h* <= h) = P(S(h) <= load).
@@ -238,4 +284,4 @@ class Model(MeanModel):
         """
         from analytic.exact_law import separation_law_of
 
-        return separation_law_of(self, load, quantity)
+        return separation_law_of(self.alone, load, quantity)

@@ -134,7 +134,7 @@ def _conduction(scene: Scene) -> Iterator[str]:
             )
     name = "conductance" if film is None else "conductance_si"
     if (other := scene.series(name)) < 0:
-        spots = theory.alone.mean(name, h)  # type: ignore[attr-defined]
+        spots = theory.alone.mean(name, h)
         if np.any(none := 1 + other * spots <= 0):
             yield (
                 f"up to d/sigma = {h[none].max():.3g} {name} is nan: the correction for the mean plane "

@@ -100,9 +100,7 @@ class Fields(Flat):
         """The exact model of this scene: modulus, heights, contact law, history, asperities."""
         if self.interaction is None and self.filled is None:
             return self.alone
-        from analytic import InteractingModel  # for those scenes alone
-
-        return InteractingModel.of(self.alone, self.interaction, self.filled)
+        return replace(self.alone, interaction=self.interaction, filled=self.filled)
 
     @cached_property
     def alone(self) -> analytic.Model:

@@ -20,7 +20,7 @@ from functools import partial
 from scenes import S1, block, script
 from timing import Job, against, parser_of, show, timed
 
-from analytic import InteractingModel, Interaction
+from analytic import Interaction
 from mcgw.ensemble.drawing import kept
 from mcgw.sampling.samplers import sampler_of
 from mcgw.scene.scene import Scene
@@ -33,7 +33,7 @@ FELT = {"body": 1.0, "mean-plane": -0.3}  # at h = 0, d/sigma
 def pressed(scene: Scene, reference: str) -> Scene:
     """The scene with an interaction by which its mean surface feels at h = 0 what `FELT` says."""
     hard = Interaction(reference, bulk_modulus=scene.surface.E_star)
-    model = InteractingModel.of(scene.theory, hard)
+    model = replace(scene.theory, interaction=hard)
     sunk = model.compliance * float(model.alone.mean("load", FELT[reference]))
     softer = scene.surface.E_star * sunk / FELT[reference]
     return scene.replace(interaction=replace(hard, bulk_modulus=softer))

@@ -25,7 +25,7 @@ def test_errors_of_a_fit_have_the_correlation_of_its_covariance():
 
 
 RADII = analytic.RandomCurvature(5.0)
-PRESSED = analytic.InteractingModel.of(analytic.Model(SPECTRAL.surface), analytic.Interaction("body"))
+PRESSED = analytic.Model(SPECTRAL.surface, interaction=analytic.Interaction("body"))
 LISTED = {"n_asperities": 3, "n_surfaces": 1, "sampler": "direct"}
 LISTED["heights"] = analytic.MeasuredHeights([0.0, 1.0, 3.0])
 HEAT = {"conductivities": (200.0, 16.0)}

@@ -154,7 +154,7 @@ def test_shapes_ends_and_the_atom():
 def test_what_is_in_series_and_the_nominal_separation(reference):
     """By quantiles of independent asperities: k/(1 + c k), also with c < 0, whose pole no surface reaches."""
     of = model(3000)
-    pressed = analytic.InteractingModel.of(of, analytic.Interaction(reference, bulk_modulus=3e9))
+    pressed = replace(of, interaction=analytic.Interaction(reference, bulk_modulus=3e9))
     alone, stiff = of.distribution("stiffness", 1.0), pressed.distribution("stiffness", 1.0)
     k, c = alone.ppf([0.01, 0.3, 0.9]), pressed.compliance * of.surface.sigma
     series = k / (1 + c * k)

@@ -2,6 +2,7 @@
 
 import math
 import runpy
+from dataclasses import replace
 from pathlib import Path
 
 import mpmath
@@ -11,7 +12,7 @@ from conftest import SURFACE
 from oracles.interacting_by_hand import interaction
 
 import analytic
-from analytic import InteractingModel, Model
+from analytic import Model
 from analytic.interaction import BOWL, LATTICE
 
 H = np.array([0.0, 0.8, 2.0])
@@ -43,7 +44,7 @@ def test_compliances_add(strength, grading):
     """Of a surface so large that it does not fluctuate; and the stiffness is the slope of the load."""
     n = 1e16
     how = interaction(strength, SURFACE, n)
-    model = InteractingModel(SURFACE, n_asperities=n, interaction=how, grading=grading)
+    model = Model(SURFACE, n_asperities=n, interaction=how, grading=grading)
     sunk = model.compliance * SURFACE.sigma
     stiffness = model.mean("stiffness", H)
     apart = 1 / model.alone.mean("stiffness", H)
@@ -92,7 +93,8 @@ def test_means_and_covariances_follow_from_those_of_sums(reference):
     h, n, film = 1.0, 600, analytic.Film(conductivities=(16.0, 20.0))
     alone = Model(SURFACE, film=film, n_asperities=n, count="poisson")
     pressed = None if reference is None else analytic.Interaction(reference)
-    model, answers = InteractingModel.of(alone, pressed, GAP), literal_answers(reference, h, n, film.rho)
+    model = replace(alone, interaction=pressed, filled=GAP)
+    answers = literal_answers(reference, h, n, film.rho)
     at, covariance = np.array([alone.mean(x, h) for x in SUMS]), alone.covariance(SUMS, [h])[:, 0, :, 0]
     steps = 1e-4 * np.diag(at)
     rates = np.array([[(f(at + d) - f(at - d)) for d in steps] for f in answers.values()]) / (2e-4 * at)
