@@ -16,8 +16,7 @@ from analytic.curvature import RandomCurvature
 from analytic.gradings import Grading, Homogeneous
 from analytic.height_rule import Count, Cuts, HeightRule
 from analytic.heights import Gaussian, HeightLaw
-from analytic.interacting import answer_of, asked
-from analytic.interaction import Interaction
+from analytic.interaction import Interaction, answer_of, asked
 from analytic.joint import Gap
 from analytic.laws.branch import Branch
 from analytic.laws.film import Film
@@ -152,7 +151,16 @@ class MeanModel:
             raise ValueError(f"quantity = {quantity!r}: its slope is not known; give another quantity")
         if answer_of(self, q):
             return fall_of(partial(self.mean, quantity), h)
-        return self._unit(q) * self._slope(q, h)
+        if q.unloading and not self.ways.law.elastic:
+            if q.base != "load":
+                raise ValueError(f"quantity = {quantity!r}: its slope is not known; give 'load_unloading'")
+            return q.exponent * self._unit(q) * self._mean(quantity_of("load_slope_unloading"), h)
+        hertz = self.ways.law.hertz and q.exponent >= 1
+        if hertz or isinstance(self.heights, MeasuredHeights):  # no asperity jumps
+            return self._unit(q) * self._in_parts(h, partial(self._mean_by, q, slope=True))
+        if q.base == "contacts":
+            return self._unit(q) * self.heights.pdf(np.asarray(h, dtype=np.float64))
+        return self._unit(q) * fall_of(partial(self._mean, q), h)
 
     def share(self, piece: int, h: ArrayLike) -> Array:
         """Mean share of the contacts to which a piece of the law applies, such as those that have yielded.
@@ -252,20 +260,6 @@ class MeanModel:
     def _mean(self, q: Quantity, h: ArrayLike) -> Array:
         """Mean of what one asperity adds, over the scale, at separations of any shape."""
         return self._in_parts(h, partial(self._mean_by, q))
-
-    def _slope(self, q: Quantity, h: ArrayLike) -> Array:
-        """How fast that falls with the separation, jumps of asperities included."""
-        if q.unloading and not self.ways.law.elastic:
-            if q.base != "load":
-                raise ValueError(f"quantity = {q.name!r}: its slope is not known; give 'load_unloading'")
-            return q.exponent * self._mean(quantity_of("load_slope_unloading"), h)
-        if isinstance(self.heights, MeasuredHeights) or (
-            self.ways.law.hertz and q.exponent >= 1
-        ):  # no asperity jumps
-            return self._in_parts(h, partial(self._mean_by, q, slope=True))
-        if q.base == "contacts":
-            return self.heights.pdf(np.asarray(h, dtype=np.float64))
-        return fall_of(partial(self._mean, q), h)
 
     def _in_parts(self, h: ArrayLike, function: Callable[[Array], Array]) -> Array:
         """Return what a function gives for a few separations at a time, which may share a rule."""

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from analytic.arrays import Array
 from analytic.curvature import RandomCurvature
 from analytic.height_rule import Fluctuations
-from analytic.interacting import Answer, answer_of, asked
+from analytic.interaction import Answer, answer_of, asked
 from analytic.mean_model import MeanModel
 from analytic.quantities import JOINT, Quantity, quantity_of
 

@@ -125,7 +125,6 @@ THEORY = {
     "equations",
     "integrals",
     "height_rule",
-    "interacting",
     "mean_model",
     "model",
     "quadrature",
