@@ -8,8 +8,6 @@ from mcgw.commands.kinds import Length, scene_file
 from mcgw.commands.outputs import JSON, Format, Output, check_outputs, news, notes
 
 if TYPE_CHECKING:
-    from mcgw.maps.synthetic import Asperities
-    from mcgw.maps.topography import Topography
     from mcgw.scene.scene import Scene
 
 
@@ -50,7 +48,8 @@ def surface(
     --------
     mcgw surface runs/demo.toml --surface 3 -o map.h5
     """
-    from mcgw.maps.envelope import envelope
+    from mcgw.maps.envelope import envelope, hidden_summits
+    from mcgw.maps.hidden_caps import CROWDED
     from mcgw.maps.map_files import WRITTEN, files_of_map, write_map
     from mcgw.maps.synthetic import asperities_of
     from mcgw.scene.scene_file import scene_text
@@ -76,14 +75,6 @@ def surface(
     field = asperities_of(scene, surface)
     topography = envelope(field, points, width=width, periodic=periodic)
     news(*write_map(topography, output, field, scene=scene_text(scene)))
-    return _tell_hidden(scene, field, topography)
-
-
-def _tell_hidden(scene: "Scene", field: "Asperities", topography: "Topography") -> None:
-    """Tell how many of the summits are not independent."""
-    from mcgw.maps.envelope import hidden_summits
-    from mcgw.maps.hidden_caps import CROWDED
-
     hidden = hidden_summits(field, periodic=topography.periodic)
     touching = field.z > scene.lowest * scene.surface.sigma
     overlap = field.number / (field.size[0] * field.size[1]) * field.radius * scene.surface.sigma
@@ -99,6 +90,7 @@ def _tell_hidden(scene: "Scene", field: "Asperities", topography: "Topography") 
         notes("the caps overlap, so this map is not a field of independent asperities")
     if max(topography.pixel) > 0.5 * (2 * field.radius * scene.surface.sigma) ** 0.5:
         notes("a pixel is wider than half a cap, sqrt(2 R sigma); give a larger --shape")
+    return None
 
 
 def _gaussian(text: str, shape: tuple[int, int], pixel: float, seed: int, path: Path) -> None:
