@@ -85,10 +85,10 @@ class Fields(Flat):
             for name, x in given.items()
         }
 
-    @property
+    @cached_property
     def touching(self) -> float:
         """Expected number of asperities of a surface above the lowest separation."""
-        return self.n_asperities * share_above(self.heights, float(self.lowest))
+        return self.n_asperities * float(self.heights.sf(np.array(self.lowest)))
 
     @property
     def modulus(self) -> analytic.Grading:
@@ -158,9 +158,8 @@ class Fields(Flat):
     @property
     def compliance(self) -> float:
         """How far a load on the surface moves the plane away from the asperities, m/N."""
-        if self.interaction is None:
-            return 0.0
-        return self.interaction.compliance(self.surface, float(self.n_asperities))
+        n = float(self.n_asperities)
+        return 0.0 if self.interaction is None else self.interaction.compliance(self.surface, n)
 
     def series(self, quantity: str) -> float:
         """Return what the half-space adds to the inverse of a sum over spots, in units of that sum."""
@@ -206,8 +205,7 @@ class Fields(Flat):
     @property
     def tables(self) -> tuple[str, ...]:
         """Names of the tables of an ensemble, which have a number for each surface and separation."""
-        nominal = () if self.interaction is None else self.other_separations
-        return (*self.quantities, *nominal, *self.of_joint)
+        return (*self.quantities, *self.other_separations, *self.of_joint)
 
     @property
     def of_joint(self) -> tuple[str, ...]:
@@ -258,12 +256,6 @@ class Fields(Flat):
         high = min(max(self.highest, h + 1), end)
         start = max(h, self.least - 1, bottom)
         return analytic.first_negative(self.grading, start, high) if start < high else None
-
-
-@kept(64)  # the same for all scenes of a sweep
-def share_above(heights: analytic.HeightLaw, h: float) -> float:
-    """Share of a height law above a height."""
-    return float(heights.sf(np.array(h)))
 
 
 @kept(64)  # needed by every scene, a few times
