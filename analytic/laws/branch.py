@@ -26,6 +26,7 @@ from analytic.roots import sign_changes
 
 _STEP, _POINTS = 0.5, np.linspace(0, 1, 33)  # heights at which a bound is looked at, between its breaks
 _ABOUT = 2.0**-14  # heights on either side that tell whether a bound comes nearer
+_ROUGHLY = 2.0**24  # spacings of heights to which its turn is found: it hardly moves there
 _SAME = 8  # spacings of floating-point numbers between heights that are not told apart
 
 
@@ -305,7 +306,7 @@ def _stretches(
     bound, which, i = np.nonzero(rises[..., :-1] != rises[..., 1:])
 
     def rise(x: Array, n: Ints) -> Array:
-        around = curve(x + _ABOUT, which[n]) - curve(x - _ABOUT, which[n])
-        return np.asarray(around[bound[n], np.arange(n.size)])
+        around = np.diff(curve(x + _ABOUT * np.array([[-1], [1]]), which[n]), axis=-2)
+        return np.asarray(around[bound[n], 0, np.arange(n.size)])
 
-    return np.unique([*ends, *sign_changes(rise, s[i], s[i + 2], np.ones(i.size))])
+    return np.unique([*ends, *sign_changes(rise, s[i], s[i + 2], np.full(i.size, _ROUGHLY))])

@@ -87,6 +87,7 @@ class CustomLaw(ElasticPlastic):
     """
 
     name: ClassVar[str] = "custom"
+    _begins_as_hertz: ClassVar[bool] = False
 
     load_of: tuple[Formula, ...]
     area_of: tuple[Formula, ...]

@@ -82,6 +82,7 @@ class ElasticPlastic(ContactLaw):
     yields: ClassVar[bool] = True
     of_radius: ClassVar[tuple[str, float]] = ("critical", 1.0)
     _fits: ClassVar[tuple[Piece, ...]] = ()
+    _begins_as_hertz: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         self.check_constants()
@@ -118,16 +119,19 @@ class ElasticPlastic(ContactLaw):
 
     def load(self, piece: int, y: Any, e: Array) -> Any:
         """Load of a contact, in the shape of `y` and `e`."""
-        return super().load(piece, y, e) * self._over_hertz("load", 3, piece, y, e)
+        return super().load(piece, y, e) * self._over_hertz("load", piece, y, e)
 
     def radius(self, piece: int, y: Any, e: Array) -> Any:
         """Radius of a contact; its square is the area over pi R sigma."""
-        return super().radius(piece, y, e) * np.sqrt(self._over_hertz("area", 2, piece, y, e))
+        return super().radius(piece, y, e) * np.sqrt(self._over_hertz("area", piece, y, e))
 
-    def _over_hertz(self, what: str, power: int, piece: int, y: Any, e: Array) -> Any:
+    def _over_hertz(self, what: str, piece: int, y: Any, e: Array) -> Any:
+        if piece == 0 and self._begins_as_hertz:
+            return 1.0
         u = self.u(y, e)
-        u = np.where(np.abs(u) < NEXT_TO_0, NEXT_TO_0, u)
-        return self._value(what, piece, u, e) / u**power
+        if piece == 0:
+            u = np.where(np.abs(u) < NEXT_TO_0, NEXT_TO_0, u)
+        return self._value(what, piece, u, e) / (u * u * u if what == "load" else u * u)
 
     def _value(self, what: str, piece: int, u: Any, e: Array) -> Any:
         return self._pieces[piece].value(what, self, u, np.where(np.asarray(e) > 0, e, 1.0))
