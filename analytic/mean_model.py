@@ -22,7 +22,7 @@ from analytic.laws.branch import Branch
 from analytic.laws.film import Film
 from analytic.laws.law import ContactLaw
 from analytic.measured_summits import MeasuredHeights, MeasuredRadii
-from analytic.quadrature import REACH
+from analytic.quadrature import REACH, fall_of
 from analytic.quantities import Quantity, quantity_of
 from analytic.roots import last_separations
 from analytic.surface import Surface
@@ -31,15 +31,6 @@ LOWEST, _HIGHEST = -40.0, 1000.0  # separations that are looked at
 _RAREST = 1e-300  # share of heights above the highest separation that is looked at
 _TOGETHER, _SHARED = 12, 1e-12  # separations that share a rule, and least share that touches at the last
 _KEPT = 4_000_000  # points of rules over heights and radii
-_STEP = 2e-3  # of differences: where the mean has 12 digits, those of the slope are off by 1e-9 of the mean
-
-
-def fall_of(mean: Callable[[Array], Array], h: ArrayLike) -> Array:
-    """How fast a mean falls with the separation, by differences of the fourth order; in the shape of `h`."""
-    h = np.asarray(h, dtype=np.float64)
-    step = _STEP / (1 + np.abs(h))
-    lower2, lower, upper, upper2 = mean(h + np.multiply.outer([-2, -1, 1, 2], step))
-    return np.asarray((8 * (lower - upper) - (lower2 - upper2)) / (12 * step))
 
 
 @dataclass(frozen=True)
@@ -203,9 +194,7 @@ class MeanModel:
         """
         q = asked(self, quantity)
         if answer_of(self, q):
-            raise ValueError(
-                f"quantity = {quantity!r}: give a load, an area, or another sum of the asperities"
-            )
+            raise ValueError(f"quantity = {quantity!r}: give a load, an area or another sum of asperities")
         target = np.asarray(value, dtype=np.float64)
         if not np.all(np.isfinite(target) & (target > 0)):
             raise ValueError(f"{quantity} = {value!r}: give finite values > 0 {q.unit}")
@@ -213,10 +202,8 @@ class MeanModel:
         rough = self._rule(grid[:1], power=1)  # to a percent, but in tails
         with np.errstate(divide="ignore", invalid="ignore"):
             about = np.log(rough.mean(rough.terms([q.name], grid, self.grading, self.ways)))
-            found = partial(self._mean, q)
-            return last_separations(
-                lambda h: np.log(found(h)), np.log(target / self._unit(q)), grid, about, quantity
-            )
+            targets = np.log(target / self._unit(q))
+            return last_separations(lambda h: np.log(self._mean(q, h)), targets, grid, about, quantity)
 
     def rule(
         self, separations: ArrayLike, quantities: Sequence[str] = ("load",), cuts: Cuts | None = None
@@ -286,13 +273,12 @@ class MeanModel:
         return self._rule(h, self.ways.among([q.name]), power=1, exponent=q.exponent + 1)
 
     def _share_by(self, piece: int, h: Array) -> Array:
-        rule = self._rule_of(quantity_of("contacts"), h)
+        q = quantity_of("contacts")
+        rule, contacts = self._rule_of(q, h), self._mean_by(q, h)
         branch, h = self.ways.loading.with_radii(rule.ratios), h[:, None]
         pieces = branch.pieces(h, rule.heights - h, self.grading(rule.heights))
         with np.errstate(invalid="ignore"):
-            return np.asarray(
-                rule.mean((pieces == piece).T) / self._mean_by(quantity_of("contacts"), h.ravel())
-            )
+            return np.asarray(rule.mean((pieces == piece).T) / contacts)
 
     def _grid(self, q: Quantity) -> Array:
         """Separations from where all touches to where probabilities underflow, or the highest height.

@@ -201,13 +201,7 @@ class MeasuredHeights(HeightLaw):
         return float(self._sorted[0]), float(self._sorted[-1])
 
     def span(self, s: float) -> float:
-        """Return no width: there is no density.
-
-        Raises
-        ------
-        ValueError
-            Always.
-        """
+        """Refuse to answer, by a ValueError: there is no density."""
         raise ValueError(
             f"measured heights have no density at s = {s:g}; make a HeightTable, or sum them directly"
         )

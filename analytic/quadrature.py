@@ -13,6 +13,7 @@ from functools import cache
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
+from numpy.typing import ArrayLike
 
 from analytic.arrays import Array
 from analytic.gradings import Exponential, Grading, Homogeneous, Table
@@ -25,6 +26,7 @@ WIDEST = 4.0  # piece, on which they resolve the normal density as far down as s
 REACH = 13.0  # no lower or rarer normal height counts: 2e-37 of the density, times a modulus up to exp(3|s|)
 POWER = 4  # of the modulus in the kurtosis
 _GROWTH = 8.0  # of the pieces away from a singular end
+_STEP = 2e-3  # of differences: where the mean has 12 digits, those of the slope are off by 1e-9 of the mean
 TINY = 1e-14  # distance from such an end, below which heights are not told apart
 _UNDERFLOW = -745.0  # logarithm of the least density
 _RAREST = 1e-290  # share of the heights next to which densities underflow
@@ -221,3 +223,11 @@ def _of_moments(grading: Grading, heights: HeightLaw, h: Array) -> tuple[float, 
         except ValueError:  # its message is for those who ask for this moment
             continue
     return math.inf, -math.inf
+
+
+def fall_of(mean: Callable[[Array], Array], h: ArrayLike) -> Array:
+    """How fast a mean falls with the separation, by differences of the fourth order; in the shape of `h`."""
+    h = np.asarray(h, dtype=np.float64)
+    step = _STEP / (1 + np.abs(h))
+    lower2, lower, upper, upper2 = mean(h + np.multiply.outer([-2, -1, 1, 2], step))
+    return np.asarray((8 * (lower - upper) - (lower2 - upper2)) / (12 * step))

@@ -16,47 +16,15 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.arrays import Array, Ints, Marks
+from analytic.arrays import Array, Ints
 from analytic.gradings import Grading, Homogeneous
 from analytic.laws.film import SpotConductance
 from analytic.laws.law import ContactLaw, piece_of, slope_in_root
+from analytic.laws.regimes import Regimes, stretches
 from analytic.quantities import quantity_of
-from analytic.resolution import marks, resolved_breaks
 from analytic.roots import sign_changes
 
-_STEP, _POINTS = 0.5, np.linspace(0, 1, 33)  # heights at which a bound is looked at, between its breaks
-_ABOUT = 2.0**-14  # heights on either side that tell whether a bound comes nearer
-_ROUGHLY = 2.0**24  # spacings of heights to which its turn is found: it hardly moves there
 _SAME = 8  # spacings of floating-point numbers between heights that are not told apart
-
-
-@dataclass(frozen=True)
-class Regimes:
-    """Intervals of heights on each of which one piece of the law holds, at several separations.
-
-    Those of one separation follow each other, upwards, from the lowest height in contact on; neighbours
-    have different pieces. All arrays have the shape (intervals,).
-
-    Parameters
-    ----------
-    separation : ndarray of int
-        Which of the separations, not decreasing.
-    low, high : ndarray
-        Reduced heights ``low <= s < high``.
-    piece : ndarray of int
-        Number of the piece.
-    """
-
-    separation: Ints
-    low: Array
-    high: Array
-    piece: Ints
-
-    @property
-    def goes_on(self) -> Marks:
-        """Whether each goes on where the one before ends; shape (intervals + 1,), false at both ends."""
-        on = (self.low[1:] <= self.high[:-1]) & (np.diff(self.separation) == 0)
-        return np.concatenate([[False], on, [False]]) if self.low.size else np.zeros(1, dtype=bool)
 
 
 @dataclass(frozen=True)
@@ -262,7 +230,7 @@ class Branch:
         every, start = np.arange(h.size), np.maximum(np.broadcast_to(self.lowest(h), h.shape), low)
         s = np.array([low, high])
         if not isinstance(grading, Homogeneous):
-            s = _stretches(beyond, grading, low, high, 1 if self.ratios is None else self.ratios.size)
+            s = stretches(beyond, grading, low, high, 1 if self.ratios is None else self.ratios.size)
         held = beyond(s, every[:, None]) >= 0
         bound, which, i = np.nonzero(held[..., 1:] != held[..., :-1])
 
@@ -288,25 +256,3 @@ class Branch:
         last, contact = np.roll(first, -1), piece[first] >= 0
         found = which[first], begin[first], end[last], piece[first]
         return Regimes(*(each[contact] for each in found))
-
-
-def _stretches(
-    beyond: Callable[[Array, Ints], Array], grading: Grading, low: float, high: float, radii: int
-) -> Array:
-    """Return increasing ends of stretches on each of which heights only go beyond bounds, or only back."""
-    breaks = np.array(resolved_breaks(grading, low, high))
-    sides = np.concatenate([np.nextafter(breaks, -np.inf), breaks, np.nextafter(breaks, np.inf)])
-    ends = np.unique([low, *sides[(low < sides) & (sides < high)], *marks(low, high, _STEP), high])
-    s = np.unique(ends[:-1, None] + np.diff(ends)[:, None] * _POINTS)
-
-    def curve(x: Array, which: Ints) -> Array:  # the arctangent rises with it, also where it is infinite
-        return np.arctan(beyond(x, which))
-
-    rises = np.diff(curve(s, np.arange(radii)[:, None])) >= 0
-    bound, which, i = np.nonzero(rises[..., :-1] != rises[..., 1:])
-
-    def rise(x: Array, n: Ints) -> Array:
-        around = np.diff(curve(x + _ABOUT * np.array([[-1], [1]]), which[n]), axis=-2)
-        return np.asarray(around[bound[n], 0, np.arange(n.size)])
-
-    return np.unique([*ends, *sign_changes(rise, s[i], s[i + 2], np.full(i.size, _ROUGHLY))])

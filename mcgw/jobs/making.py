@@ -48,8 +48,7 @@ def _prepared(folder: str, _state: State | None) -> Plan:
 def _drawn(plan: Plan, span: Span, threads: int | None, *go_on: Done) -> Callable[[], object]:
     """Draw a block, unless it is there; what this returns writes it, to be done while the next is drawn."""
     path = plan.shards_folder / span.file_name
-    held = plan.shard(path)
-    if held and held.span.n >= span.n:
+    if (held := plan.shard(path)) and held.span.n >= span.n:
         return lambda: None
     started = perf_counter()
     tables = plan.draw(span, threads, *go_on)
