@@ -84,8 +84,8 @@ def specimen_moments(model: Any, given: str, value: float, names: Sequence[str])
     --------
     >>> import analytic
     >>> surface = analytic.Surface(sigma=1e-6, radius=1e-5, eta=1e9, nominal_area=1e-8, E_star=1e9)
-    >>> found = specimen_moments(analytic.Model(surface), "load", 1e-6, ["load", "contacts"])
-    >>> round(found.mean["load"] / 1e-6, 6)
+    >>> found = specimen_moments(analytic.Model(surface), "load", 1e-3, ["load", "contacts"])
+    >>> round(found.mean["load"] / 1e-3, 6)
     1.0
     """
     if isinstance(model.heights, MeasuredHeights):

@@ -55,6 +55,7 @@ def test_the_table_holds_every_solve_it_counts():
     assert {key[1] for key in maps if key[0] == "caps"} == {0.002, 0.006, 0.02, 0.06, 0.2}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "x", "p"), [("gaussian", 100.0, 1e-3), ("caps", 0.06, 1e-2)])
 def test_the_table_is_made_of_the_solves(kind, x, p):
     found = deviations.condensed([row for row in rows_of(kind, x) if row["p"] == p])

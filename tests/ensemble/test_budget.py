@@ -45,7 +45,8 @@ def redrawn(scene, pressure, draws):
     return np.log(found)
 
 
-@pytest.mark.parametrize("law", [None, pytest.param(YIELDS, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("law", [None, YIELDS])
 def test_the_parameters_line_is_that_of_redraws(law):
     """128 points of a sequence tell a deviation to 1 %; 5 % are asked."""
     solved = mcgw.solve(scene_of(law=law), pressure="50 MPa")

@@ -79,7 +79,9 @@ def test_intervals_cover(expected, surfaces, law, gamma, count):
     assert min(coverage(cut(expected, surfaces, LAWS[law], count, gamma), surfaces).values()) >= 0.93
 
 
-@pytest.mark.parametrize(("count", "contacts"), [("poisson", 4.5), ("fixed", 12.0)])
+@pytest.mark.parametrize(
+    ("count", "contacts"), [("poisson", 4.5), pytest.param("fixed", 12.0, marks=pytest.mark.slow)]
+)
 def test_few_contacts_have_the_interval_of_their_exact_law(count, contacts):
     """It covers 95 of 100, no more; a false alarm in 1e5. Too few are those of which 2.5 % have none."""
     found = coverage(cut(contacts, 2, LAWS["gaussian"], count, 2.0), 2)

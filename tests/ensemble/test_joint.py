@@ -183,7 +183,9 @@ def test_network_by_hand(reference, area, film):
     np.testing.assert_allclose(e["joint_conductance"], joint, rtol=1e-12)
 
 
-@pytest.mark.parametrize(("reference", "area", "film"), BESIDE[:2])
+@pytest.mark.parametrize(
+    ("reference", "area", "film"), [BESIDE[0], pytest.param(*BESIDE[1], marks=pytest.mark.slow)]
+)
 def test_network_at_a_load_by_hand(reference, area, film):
     """Of the infinite surface and of specimens."""
     scene, alone = with_and_without_gas(reference, area, film)

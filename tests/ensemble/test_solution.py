@@ -105,7 +105,7 @@ def test_intervals_are_students(scene):
         assert exact.interval(name, 0.5) == (value, value)
 
 
-@pytest.mark.parametrize("bodies", [None, {"reference": "body"}])
+@pytest.mark.parametrize("bodies", [pytest.param(None, marks=pytest.mark.slow), {"reference": "body"}])
 def test_the_answer_is_the_mean_of_specimens(bodies, make_scene):
     """Not the infinite surface, whose area is a third at 0.06 contacts; resistances are means, too."""
     scene = make_scene(separations=0.0, n_surfaces=200, seed=5, grading=None)

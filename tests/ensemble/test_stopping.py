@@ -26,6 +26,7 @@ def test_forecast_is_where_every_interval_is_narrow_enough(make_scene):
     assert expected.needed["load"][1] == pytest.approx(gaussian, rel=0.05)
 
 
+@pytest.mark.slow
 def test_stopped_ensembles_cover(make_scene):
     """Homogeneous, h = 2, one ensemble cut into 2500: fewer than 0.93 cover by chance once in 4e5."""
     scene = make_scene(
@@ -41,6 +42,7 @@ def test_stopped_ensembles_cover(make_scene):
         assert (np.mean((low <= exact) & (exact <= high)) >= 0.93) == enough
 
 
+@pytest.mark.slow
 def test_rare_stiff_tips_are_waited_for(make_scene):
     """A modulus of 1e5 above 4.5 sigma, in one of a thousand surfaces.
 

@@ -96,7 +96,7 @@ def test_each_summit_has_the_law_of_its_own_radius(law, grading):
 
 
 @pytest.mark.parametrize(("law", "surfaces"), [
-    (None, 2000), (mcgw.KogutEtsion(hardness=1.2e9), 200),
+    (None, 2000), pytest.param(mcgw.KogutEtsion(hardness=1.2e9), 200, marks=pytest.mark.slow),
 ], ids=("hertz", "kogut-etsion"))  # fmt: skip
 def test_resampled_means_and_variances_are_exact(law, surfaces):
     """|z| < 5 of 16 means and 16 variances each: a false alarm in 50 000."""

@@ -40,9 +40,6 @@ def study(scene):
     return tradeoff(scene, seconds=0.5)
 
 
-# What was measured
-
-
 def test_errors_of_a_real_study_are_those_of_theory(study):
     """Root mean squares of 16 repeats: within 5 of their standard errors of what theory expects."""
     spread = float(study.scene.theory.std("load", 1.0) / study.scene.theory.mean("load", 1.0))
@@ -109,9 +106,6 @@ def test_points_and_prices_by_hand(scene):
     assert measured_ways._price(bent, 9.0) == pytest.approx((set_up, each))
 
 
-# What is needed
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(("count", "n_asperities"), [("fixed", 2000), ("poisson", 100)])
 def test_a_target_is_1_96_standard_errors(scene, count, n_asperities):
@@ -150,9 +144,6 @@ def test_solve_draws_what_rel_err_asks_for(scene):
     assert mcgw.solve(scene, rel_err=0.008, **asked).surfaces["area"].size < n / 2
     with pytest.warns(UserWarning, match=r"rel_err needs .* surfaces, and n_surfaces = 100"):
         mcgw.solve(scene, rel_err=0.004, pressure="2 MPa", n_surfaces=100)
-
-
-# What is advised
 
 
 def test_the_cheapest_way_that_is_good_enough(scene):

@@ -15,6 +15,7 @@ from mcgw.cli import main
 from mcgw.errors import RunError, StoreError
 
 pytestmark = pytest.mark.usefixtures("small_blocks")
+SLOW = pytest.mark.slow
 
 
 @pytest.fixture
@@ -127,6 +128,7 @@ def test_whatever_is_small_is_checked(file, change):
         mcgw.open_ensemble(file)
 
 
+@SLOW
 def test_a_flipped_bit_anywhere_is_seen_or_changes_nothing(file):
     """HDF5 leaves room that nobody reads; where the scene stands all is read."""
     whole, said, data = mcgw.open_ensemble(file), read_attributes(file), file.read_bytes()
@@ -143,8 +145,10 @@ def test_a_flipped_bit_anywhere_is_seen_or_changes_nothing(file):
             assert all(np.array_equal(found[name], whole[name]) for name in whole.scene.quantities)
 
 
-@pytest.mark.parametrize("keep", ["sums", "statistics"])
-@pytest.mark.parametrize("damage", [flip_a_number, Path.unlink], ids=["flipped", "gone"])
+@pytest.mark.parametrize(
+    ("keep", "damage"),
+    [("sums", Path.unlink), ("statistics", flip_a_number), pytest.param("sums", flip_a_number, marks=SLOW)],
+)
 def test_a_block_that_is_lost_late_never_comes_into_the_file(scene, tmp_path, keep, damage, monkeypatch):
     """After the shards were looked at."""
     path, merged, kept = tmp_path / "e.h5", home("_merged")._merged, scene.replace(keep=keep)
@@ -194,7 +198,9 @@ def flip_in(path, what):
     path.write_bytes(data)
 
 
-@pytest.mark.parametrize("what", [b"HDF", b"mcgw-run", b"seed = ", b"numba "])
+@pytest.mark.parametrize(
+    "what", [b"mcgw-run", b"seed = ", *(pytest.param(x, marks=SLOW) for x in (b"HDF", b"numba "))]
+)
 def test_a_run_goes_on_from_its_blocks(scene, what, tmp_path):
     """Whatever of its record is damaged; but no other scene takes them."""
     path = tmp_path / "e.h5"

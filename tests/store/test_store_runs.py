@@ -173,7 +173,7 @@ def test_a_short_block_of_statistics_gives_way_to_a_whole_one(scene, tmp_path, d
     assert digest(path) == digest(tmp_path / "whole.h5")
 
 
-@pytest.mark.parametrize("keep", ["sums", "statistics"])
+@pytest.mark.parametrize("keep", ["statistics", pytest.param("sums", marks=pytest.mark.slow)])
 def test_shares_of_more_surfaces_than_before_are_merged(keep, scene, tmp_path):
     """Not refused as too many for what the first job wanted; a later job that wants fewer changes nothing."""
     path, kept = tmp_path / "e.h5", scene.replace(keep=keep)

@@ -77,7 +77,7 @@ def test_other_programs_read_points_in_a_row_and_words_as_codes(tmp_path):
         assert data["count"].attrs["long_name"] == "ensemble.count: 0 poisson, 1 fixed"
 
 
-@pytest.mark.parametrize("after", [1, 3])
+@pytest.mark.parametrize("after", [1, pytest.param(3, marks=pytest.mark.slow)])
 def test_interrupted_anywhere_it_goes_on_to_the_same_digest(tmp_path, monkeypatch, expected, after):
     """A damaged chunk is drawn again; a finished file is not."""
     path, tables, drawn, stops = tmp_path / "a.h5", Group.tables, [], [after]
