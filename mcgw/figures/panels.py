@@ -117,7 +117,7 @@ def draw(data: FigureData) -> Figure:
         if len(rows[-1]) + (width := columns if panel.wide else 1) > columns:
             rows.append([])
         rows[-1] += [k] * width
-    rows[-1] += ["."] * (columns - len(rows[-1]))
+    rows = [[*row, *["."] * (columns - len(row))] for row in rows]
     checked = {k for k, panel in enumerate(data.panels) if any(p.varies.any() for *_, p in _known(panel))}
     places = [line for row in rows for line in (row, [f"below {k}" if k in checked else k for k in row])]
     with mpl.rc_context(STYLE):

@@ -29,7 +29,7 @@ THEORY, MONTE_CARLO = "#00598F", "#E0701A"
 SEEN: Any = {"color": MONTE_CARLO, "mfc": "none", "ms": 3}  # markers of means, on what theory says
 SAMPLE = "#9CCBEB"  # bars and bands of what was drawn, with lines upon them
 HOMOGENEOUS = "#000000"  # and every other reference: Hertz's law, boundary elements
-LEVEL, BAND, BACK = "0.55", "0.93", "0.35"  # a value worth a line; where residuals may lie; lesser lines
+LEVEL, BAND = "0.55", "0.93"  # a value worth a line; where residuals may lie
 MARKED, MISSING = "#E0701A", "#F0C419"  # on pictures of maps: summits; points without a height
 PAPER = "0.25"  # text that is read last
 

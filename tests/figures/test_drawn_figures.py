@@ -85,6 +85,11 @@ def test_residuals_of_one_draw_over_gamma_are_one_point(residuals, shown):
     assert [len(line.get_xdata()) for line in markers_of(below)] == [shown]
 
 
+def test_a_wide_panel_follows_a_row_that_is_not_full():
+    narrow, wide = Panel("", "x", "y"), Panel("", "x", "y", wide=True)
+    assert len(draw(FigureData("", "", (*[narrow] * 5, wide))).axes) == 6
+
+
 def test_there_are_no_residuals_of_points_whose_errors_are_not_known():
     series = Series("a", X, X, Points(X, X, 0 * X, X)), Series("b", X, X)
     axes = draw(FigureData("", "", (Panel("p", "x", "y", series),))).axes

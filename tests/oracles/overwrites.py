@@ -1,7 +1,4 @@
-"""Every command told to write over what it reads, under every name that a file can have.
-
-`tests/commands/test_outputs.py` asserts, `runs/reliability/overwrite.py` counts.
-"""
+"""Every command told to write over what it reads, under every name: a test and `runs/reliability` use it."""
 
 import os
 from contextlib import chdir
