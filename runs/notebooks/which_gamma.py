@@ -20,7 +20,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import mcgw
-from mcgw.figures.style import BACK, STYLE, THEORY, line
+from mcgw.figures.style import HOMOGENEOUS, STYLE, THEORY, line
 
 plt.rcParams.update(STYLE)
 
@@ -45,7 +45,7 @@ data = stiffness(1.5) * (1 + noise * np.random.default_rng(1).normal(size=len(pr
 
 # %%
 fig, ax = plt.subplots()
-ax.semilogx(pressure / 1e6, data / stiffness(1.0), "o", color=BACK, label="data")
+ax.semilogx(pressure / 1e6, data / stiffness(1.0), "o", color=HOMOGENEOUS, label="data")
 for gamma in (0.5, 1.5, 3.0):
     ax.semilogx(pressure / 1e6, stiffness(gamma) / stiffness(1.0), **line(f"γ = {gamma:g}"))
 ax.set(xlabel="pressure (MPa)", ylabel="stiffness over that of γ = 1")

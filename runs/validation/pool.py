@@ -23,9 +23,9 @@ from analytic import SpectralMoments
 from mcgw.elasticity.elastic import _by_levels
 from mcgw.elasticity.levels import LEVELS, Pressed
 from mcgw.elasticity.multilevel import difference, terms_of
-from mcgw.elasticity.sources import drawn
+from mcgw.elasticity.sources import Maps
 from mcgw.figures.style import HOMOGENEOUS, MONTE_CARLO, STYLE, THEORY, save_figure
-from mcgw.maps.synthetic import Spectrum
+from mcgw.maps.synthetic import Spectrum, gaussian_map
 
 HERE = Path(__file__).parent
 FILE, PICTURE = HERE / "pool.csv", HERE / "levels.png"
@@ -46,7 +46,12 @@ def maps_of(alpha):
     """Gaussian maps of this alpha, m0 = m2 = 1, eight points a shortest wave."""
     spectrum = Spectrum.with_moments(SpectralMoments(1.0, 1.0, float(alpha)))
     points, side = 8 * WAVES[alpha], WAVES[alpha] * spectrum.short
-    return drawn(spectrum, points, side)
+    shape, pixel = (points, points), (side / points, side / points)
+    return Maps(
+        lambda k, seed: gaussian_map(spectrum, shape, pixel, np.random.default_rng([seed, k])).heights,
+        (side, side),
+        f"alpha = {alpha}",
+    )
 
 
 def pressed(maps, number):

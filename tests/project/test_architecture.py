@@ -3,6 +3,7 @@
 import ast
 from functools import cache
 from graphlib import CycleError, TopologicalSorter
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -165,6 +166,20 @@ def test_compiled_functions_call_those_of_their_own_layer():
             assert name.startswith(("sampling.", "maps.", "ensemble.")), name
             if name.startswith("maps."):
                 assert not any(other.startswith("sampling") for other in imports(tree)), name
+
+
+def test_scripts_take_only_names_that_are_there():
+    """Those under `runs/`, most of which no test runs by itself."""
+    for path in (ROOT.parent / "runs").rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if (
+                isinstance(node, ast.ImportFrom)
+                and node.module
+                and node.module.split(".")[0] in ("mcgw", "analytic")
+            ):
+                for name in (alias.name for alias in node.names):
+                    there = hasattr(import_module(node.module), name) or f"{node.module}.{name}" in known()
+                    assert there, f"{path.name}: {node.module}.{name}"
 
 
 def test_every_dataclass_is_frozen():
