@@ -20,11 +20,9 @@ LAYERS = (
 ROOT = Path(mcgw.__file__).parent
 
 
-class Tree:
-    """What stands in a file."""
-
-    def __init__(self, tree):
-        self.body, self.nodes = tree.body, list(ast.walk(tree))
+def parsed(text):
+    """All nodes of a source."""
+    return tuple(ast.walk(ast.parse(text)))
 
 
 @cache
@@ -33,7 +31,7 @@ def modules(package):
     folder = Path(package.__file__).parent
     paths = {path.relative_to(folder.parent): path for path in sorted(folder.rglob("*.py"))}
     return {
-        ".".join(name.with_suffix("").parts).removesuffix(".__init__"): Tree(ast.parse(path.read_text()))
+        ".".join(name.with_suffix("").parts).removesuffix(".__init__"): parsed(path.read_text())
         for name, path in paths.items()
     }
 
@@ -50,7 +48,7 @@ def imports(tree):
 
 
 def named(tree):
-    for node in tree.nodes:
+    for node in tree:
         match node:
             case ast.ImportFrom(module=str(module), names=names):
                 inside = [f"{module}.{alias.name}" for alias in names]
@@ -114,27 +112,20 @@ def test_no_imports_go_round_in_a_circle():
 )
 def test_each_way_of_importing_would_be_seen(text):
     low, high = "mcgw.machine.terminal", "mcgw.figures.plotting"
-    (pair,) = going_up({low: Tree(ast.parse(text))})
+    (pair,) = going_up({low: parsed(text)})
     assert pair[0] == low
     if pair[1] == high:
-        back = Tree(ast.parse("from mcgw.machine.terminal import plotted"))
-        assert set(around({low: Tree(ast.parse(text)), high: back})) == {low, high}
+        back = parsed("from mcgw.machine.terminal import plotted")
+        assert set(around({low: parsed(text), high: back})) == {low, high}
 
 
-# Theory, as modules of `analytic`.
-THEORY = {
-    "equations",
-    "integrals",
-    "height_rule",
-    "mean_model",
-    "model",
-    "quadrature",
-}
+# Modules of `analytic` that hold theory.
+THEORY = {"equations", "integrals", "height_rule", "mean_model", "model", "quadrature"}
 
 
 def from_theory(tree, modules):
     """Names of `analytic` that a file uses and that these modules of it define."""
-    for node in tree.nodes:
+    for node in tree:
         match node:
             case ast.ImportFrom(module="analytic", names=names):
                 found = [alias.name for alias in names]
@@ -155,14 +146,14 @@ def test_the_simulator_takes_no_integral_from_theory():
     assert asking == {"scene", "statistics", "figures"}  # that of a scene, of comparisons, of what is drawn
     for name, tree in inside():
         if name.startswith(("sampling.", "store.")):
-            attributes = {node.attr for node in tree.nodes if isinstance(node, ast.Attribute)}
+            attributes = {node.attr for node in tree if isinstance(node, ast.Attribute)}
             assert "theory" not in attributes, name
 
 
 def test_compiled_functions_call_those_of_their_own_layer():
     """Whose files are all that is looked at to know whether what was kept is old."""
     for name, tree in inside():
-        if any(isinstance(node, ast.Name) and node.id == "njit" for node in tree.nodes):
+        if any(isinstance(node, ast.Name) and node.id == "njit" for node in tree):
             assert name.startswith(("sampling.", "maps.", "ensemble.")), name
             if name.startswith("maps."):
                 assert not any(other.startswith("sampling") for other in imports(tree)), name
@@ -187,7 +178,7 @@ def test_every_dataclass_is_frozen():
     thawed = [
         f"{name}.{node.name}"
         for name, tree in known().items()
-        for node in tree.nodes
+        for node in tree
         if isinstance(node, ast.ClassDef)
         for mark in map(ast.unparse, node.decorator_list)
         if mark.startswith("dataclass") and "frozen=True" not in mark
@@ -207,7 +198,7 @@ def test_tests_know_little_of_the_inside():
         patches += sum("monkeypatch" in line for line in text.splitlines())
         inner += [
             node.module
-            for node in ast.walk(ast.parse(text))
+            for node in parsed(text)
             if isinstance(node, ast.ImportFrom) and (node.module or "").startswith(("mcgw.", "analytic."))
             and node.module.count(".") > 1
         ]  # fmt: skip
