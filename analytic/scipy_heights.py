@@ -182,7 +182,8 @@ class ScipyHeights(HeightLaw):
             s = self._s(self.distribution.isf(share))
             rare = np.isnan(s)  # SciPy loses beta heights at 1e-280
         else:
-            s, rare = self.ppf(1 - share), share < 0.5
+            s, rare = np.empty(share.shape), share < 0.5
+            s[~rare] = self.ppf(1 - share[~rare])
         s[rare] = self._sought(self.sf, share[rare], 1.0)
         return s
 

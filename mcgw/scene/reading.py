@@ -128,7 +128,7 @@ def of_tables(document: Tables, folder: Path = Path(), seed: Seeds | None = None
         if not isinstance(given, Mapping):
             other = f", or in Python give {table.advice}" if table.advice else ""
             raise mistake(name, given, f"must be a table: write [{name}] above its keys{other}")
-        of[name] = Section(name, given, KEYS[name], INSIDE[name], whole_key)
+        of[name] = Section(name, given, KEYS[name], INSIDE[name], _WHOLE)
     surface, heights, radii = _surface_and_summits(of, folder)
     joint = _joint(of["joint"])
     separations, contact = _contact(of, heights, joint)

@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, fields
 from functools import lru_cache
 from inspect import Parameter, signature
+from types import MappingProxyType
 from typing import Any
 
 from mcgw.machine.terminal import one_line
@@ -46,10 +47,14 @@ def shortened(text: str) -> str:
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
+def close(value: Any, known: Iterable[str]) -> str:
+    """Return the word that was meant, or nothing."""
+    return next(iter(difflib.get_close_matches(str(value), list(known), n=1)), "")
+
+
 def nearest(value: Any, known: Iterable[str]) -> str:
     """Suggest the word that was meant, or nothing."""
-    close = difflib.get_close_matches(str(value), list(known), n=1)
-    return f"did you mean {close[0]}? " if close else ""
+    return f"did you mean {meant}? " if (meant := close(value, known)) else ""
 
 
 class Kind:
@@ -92,7 +97,7 @@ def rows_of(part: type) -> tuple[Key, ...]:
 class Section:
     """A table read by its rows: the `values` of keys that are right, and a line for each mistake.
 
-    It may have `tables` inside; `moved` finds the table that an unknown key is of.
+    It may have `tables` inside; keys of other tables stand `elsewhere`, each with its table.
     """
 
     def __init__(
@@ -101,7 +106,7 @@ class Section:
         table: Mapping[str, Any],
         rows: Mapping[str, Key],
         tables: Iterable[str] = (),
-        moved: Callable[[str], str] = str,
+        elsewhere: Mapping[str, str] = MappingProxyType({}),
     ) -> None:
         self.name, self.table, self.rows = name, table, rows
         self.path = f"{name}." if name else ""
@@ -119,11 +124,10 @@ class Section:
         known = [*rows, *tables]
         unknown = [key for key in table if key not in known]
         for key in unknown[:_MOST_NAMED]:
-            meant = nearest(key[:99], known) or f"known keys: {', '.join(known)}"
-            if "." in (whole := moved(key)) and whole != self.path + key:
-                meant = f"did you mean {whole}?"
-            shown = self.path + one_line(shortened(key))
-            self.problems.append(f"{shown}: unknown key; {meant.removesuffix(' ')}")
+            short = key[:99]
+            meant = elsewhere.get(key) or close(short, known) or elsewhere.get(close(short, elsewhere))
+            advice = f"did you mean {meant}?" if meant else f"known keys: {', '.join(known)}"
+            self.problems.append(f"{self.path}{one_line(shortened(key))}: unknown key; {advice}")
         if len(unknown) > _MOST_NAMED:
             self.problems.append(f"[{name}]: {len(unknown) - _MOST_NAMED} more unknown keys")
 

@@ -139,6 +139,7 @@ def test_an_unknown_table_is_named():
         with pytest.raises(mcgw.SceneError, match=f"{name}x: unknown key; did you mean {inner}"):
             mcgw.scene_from(text)
         assert not passes(text)
+    assert "did you mean contact.law.hardness" in problems(mcgw.scene_from, f"hardnes = 1\n{text}")[0]
 
 
 @FEW
