@@ -27,12 +27,7 @@ Eq. (15)  `analytic.stiffness_ratio`           its ratio: that of the stiffnesse
 ========  ===================================  ================================================
 """
 
-from analytic.correlation import (
-    cooper_mikic_yovanovich,
-    harmonic_conductivity,
-    mean_absolute_slope,
-    mikic_elastic,
-)
+from analytic.correlation import cooper_mikic_yovanovich, mean_absolute_slope, mikic_elastic
 from analytic.curvature import RandomCurvature
 from analytic.equations import (
     area,
@@ -41,7 +36,6 @@ from analytic.equations import (
     barber_conductance,
     conductance,
     contacts,
-    critical_penetration,
     load,
     mean,
     mean_modulus,
@@ -103,9 +97,8 @@ __all__ = [
     "MeasuredRadii", "Model", "Nayak", "PiecewiseSeries", "PowerLawGraded", "Quantity", "RandomCurvature",
     "ScipyHeights", "SpectralMoments", "Surface", "Table", "Weibull", "ZhaoMaiettaChang",
     "area", "area_per_load", "area_per_load_ratio", "barber_conductance", "bends", "composite_modulus",
-    "conductance", "contacts", "cooper_mikic_yovanovich", "critical_penetration", "extent", "first_negative",
-    "fn", "fn_paper", "fn_scaled", "harmonic_conductivity", "is_data", "load", "mean", "mean_absolute_slope",
-    "mean_modulus", "mikic_elastic", "name_of", "plasticity_index", "quantity_of", "ratio_at_equal_load",
-    "resolved", "resolved_breaks", "stiffness", "stiffness_ratio", "summit_plasticity_index",
-    "yielding_share",
+    "conductance", "contacts", "cooper_mikic_yovanovich", "extent", "first_negative", "fn", "fn_paper",
+    "fn_scaled", "is_data", "load", "mean", "mean_absolute_slope", "mean_modulus", "mikic_elastic", "name_of",
+    "plasticity_index", "quantity_of", "ratio_at_equal_load", "resolved", "resolved_breaks", "stiffness",
+    "stiffness_ratio", "summit_plasticity_index", "yielding_share",
 ]  # fmt: skip

@@ -28,24 +28,6 @@ def mean_absolute_slope(m2: float) -> float:
     return math.sqrt(2 * m2 / math.pi)
 
 
-def harmonic_conductivity(k1: float, k2: float) -> float:
-    """Return the conductivity of two bodies in series, ``2 k1 k2/(k1 + k2)``.
-
-    It is 2 over the sum of their resistivities, which stands for it where current is conducted.
-
-    Parameters
-    ----------
-    k1, k2 : float
-        Conductivities of the bodies, W/(m K).
-
-    Examples
-    --------
-    >>> harmonic_conductivity(150.0, 50.0)
-    75.0
-    """
-    return 2 / (1 / k1 + 1 / k2)
-
-
 def cooper_mikic_yovanovich(
     pressure: ArrayLike, *, hardness: float, rms: float, slope: float, conductivity: float
 ) -> Array:
@@ -62,7 +44,7 @@ def cooper_mikic_yovanovich(
     slope : float
         Mean absolute slope m of both together: `mean_absolute_slope`.
     conductivity : float
-        k of both bodies: `harmonic_conductivity`, W/(m K).
+        k of both bodies in series, ``2/(1/k1 + 1/k2)``, W/(m K).
 
     Returns
     -------

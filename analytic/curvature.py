@@ -14,16 +14,14 @@ The radius of a summit is that of the sphere of its geometric mean curvature (Gr
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import erfcx, log_ndtr
 
 from analytic.arrays import Array
-from analytic.nayak import Nayak, NayakTables, tables_of
+from analytic.nayak import Nayak
 from analytic.quadrature import gauss_legendre, panelled
 
 MEAN_CURVATURE = 8 / math.sqrt(3 * math.pi)  # of the summits, over sqrt(m4/3)
@@ -35,94 +33,12 @@ _SAME = 1e-12  # relative rounding of the curvature of a bound
 _WIDE = 9.5  # standard deviations, beyond which a normal density is 1e-20 of its largest value
 
 
-@dataclass(frozen=True, eq=False)
-class CurvatureGivenHeight:
-    """Law of g, the geometric mean curvature over sqrt(m4/3), of summits at heights x over sqrt(m0).
-
-    Parameters
-    ----------
-    alpha : float
-        Nayak's bandwidth.
-    x : ndarray
-        Heights, shape (n,).
-    """
-
-    alpha: float
-    x: Array
-
-    @property
-    def _tables(self) -> NayakTables:
-        return tables_of(float(self.alpha))
-
-    @property
-    def _v(self) -> float:
-        return 2 * self._tables.width**2
-
-    @cached_property
-    def _mu(self) -> Array:
-        return np.asarray(math.sqrt(2) * self._tables.rho * self.x)
-
-    def _logarithm(self, g: Array) -> Array:
-        """Of the density of the height and of a curvature `g` together, over the cube of `g`."""
-        v, mu = self._v, self._mu
-        z = (mu / math.sqrt(1 + v) - math.sqrt(1 + v) * g) / math.sqrt(v)
-        over = (g * g - mu * mu / (1 + v) - self.x**2) / 2
-        return np.asarray(log_ndtr(z) + over - math.log(2 * math.pi / 3 * (1 + v)) / 2)
-
-    def _parts(self, g: Array) -> Array:
-        """Density of `g` over its cube."""
-        return np.exp(self._logarithm(g) - self._tables.log_density(self.x))
-
-    def edges(self, low: Array, high: Array) -> Array:
-        """Return ends of pieces on which the law is smooth, between two curvatures at each height: (6, n)."""
-        v, mu = self._v, self._mu
-        turn, width = mu / (1 + v), _WIDE * math.sqrt(v / (1 + v))
-        peak = mu - _WIDE * math.sqrt(v), self.highest(0 * mu)
-        return np.sort(np.clip([low, turn - width, turn + width, *peak, high], low, high), axis=0)
-
-    def highest(self, g: Array) -> Array:
-        """Curvature of which there are 1e-20 times as many as of `g`, or as of the most frequent one."""
-        above = np.maximum(g - self._mu, 0.0)
-        return np.asarray(self._mu + np.hypot(above, (_WIDE + 0.5) * math.sqrt(self._v)))
-
-    def pdf(self, g: Array) -> Array:
-        """Probability density at `g`, shape (n,)."""
-        return g**3 * self._parts(g)
-
-    def with_height(self, g: Array) -> Array:
-        """Probability density of the height and of a curvature `g` together, shape (n,)."""
-        return np.asarray(g**3 * np.exp(self._logarithm(g)))
-
-    def elasticity(self, g: Array) -> Array:
-        """``d log(density)/d log(g)``."""
-        v = self._v
-        z = (math.sqrt(1 + v) * g - self._mu / math.sqrt(1 + v)) / math.sqrt(v)
-        rate = math.sqrt(2 / math.pi) / erfcx(z * math.sqrt(0.5))  # of the normal tail
-        return np.asarray(3 + g * g - g * math.sqrt((1 + v) / v) * rate)
-
-    def between(self, low: Array, high: Array) -> Array:
-        """Probability of a curvature between two."""
-        g, w = panelled(self.edges(low, high))
-        return np.asarray((w * self.pdf(g)).sum(axis=0))
-
-    def sf(self, low: Array) -> Array:
-        """Probability of a larger curvature."""
-        return self.between(low, np.maximum(self.highest(low), low))
-
-    def mean_inverse(self, power: float, flattest: float) -> Array:
-        """Mean of ``max(g, flattest)^-power``."""
-        low = np.full_like(self.x, flattest)
-        high = np.maximum(self.highest(low), low)
-        y, w = panelled(np.sqrt(self.edges(low, high)))  # of the root all powers that are asked for are whole
-        rest = (w * 2 * y ** (7 - 2 * power) * self._parts(y * y)).sum(axis=0)
-        return np.asarray(rest if flattest == 0 else rest + flattest**-power * self.between(0 * low, low))
-
-
 @dataclass(frozen=True)
 class RandomCurvature:
     """Radius ratios c = R_i/R of summits, where R is the inverse of their mean curvature.
 
-    Everything takes reduced heights s as those of `analytic.Nayak`, and curvatures g; c is 2.60588/g.
+    Everything takes reduced heights s as those of `analytic.Nayak`, and curvatures g, which broadcast; c is
+    2.60588/g.
 
     Parameters
     ----------
@@ -161,15 +77,10 @@ class RandomCurvature:
         with np.errstate(divide="ignore"):
             return np.minimum(MEAN_CURVATURE / np.asarray(g, dtype=np.float64), self.largest)
 
-    def steepest(self, s: float) -> float:
-        """Return the curvature above which there is next to no summit as low as `s`."""
-        x = self.heights.over_rms([s])
-        return float(CurvatureGivenHeight(self.alpha, x).highest(0 * x)[0])
-
     @property
     def narrowest(self) -> float:
         """Range of reduced heights over which the density at one curvature hardly bends."""
-        return tables_of(float(self.alpha)).width / self.heights.std / 2
+        return self.heights.width / self.heights.std / 2
 
     def rule(self, highest: float) -> tuple[Array, Array]:
         """Return curvatures, and weights, of summits as high as touch at this separation.
@@ -178,7 +89,7 @@ class RandomCurvature:
         """
         top = float(self.heights.isf(np.array(_RAREST), highest))
         first = np.sqrt(MEAN_CURVATURE / self.largest)
-        last = max(np.sqrt(self.steepest(top)), first)
+        last = max(float(np.sqrt(self.highest(0.0, top))), first)
         x, w = gauss_legendre(int(np.ceil(_NODES * max(1.0, _AS_WIDE / self.narrowest))))
         roots = first + (last - first) * x
         curvatures, weights = roots**2, 2 * roots * (last - first) * w
@@ -194,20 +105,34 @@ class RandomCurvature:
         return own
 
     def pdf(self, g: ArrayLike, s: ArrayLike) -> Array:
-        """Return the probability density of the curvature at given heights, broadcast."""
-        return self._given_height(CurvatureGivenHeight.pdf, g, s)
+        """Return the probability density of the curvature at given heights."""
+        g, x = np.asarray(g, dtype=np.float64), self._over_rms(s)
+        return np.asarray(g**3 * np.exp(self._logarithm(g, x) - self.heights.log_density(x)))
 
     def with_height(self, g: ArrayLike, s: ArrayLike) -> Array:
-        """Return the probability density of reduced heights and curvatures together, broadcast."""
-        return self.heights.std * self._given_height(CurvatureGivenHeight.with_height, g, s)
+        """Return the probability density of reduced heights and curvatures together."""
+        g = np.asarray(g, dtype=np.float64)
+        return np.asarray(self.heights.std * (g**3 * np.exp(self._logarithm(g, self._over_rms(s)))))
+
+    def elasticity(self, g: ArrayLike, s: ArrayLike) -> Array:
+        """Return ``d log(pdf)/d log(g)``."""
+        g, (mu, v) = np.asarray(g, dtype=np.float64), self._peak(self._over_rms(s))
+        z = (math.sqrt(1 + v) * g - mu / math.sqrt(1 + v)) / math.sqrt(v)
+        rate = math.sqrt(2 / math.pi) / erfcx(z * math.sqrt(0.5))  # of the normal tail
+        return np.asarray(3 + g * g - g * math.sqrt((1 + v) / v) * rate)
+
+    def highest(self, g: ArrayLike, s: ArrayLike) -> Array:
+        """Return curvatures of which there are 1e-20 times as many as of `g`, or as of the usual one."""
+        mu, v = self._peak(self._over_rms(s))
+        return np.asarray(mu + np.hypot(np.maximum(np.asarray(g) - mu, 0.0), (_WIDE + 0.5) * math.sqrt(v)))
 
     def cdf(self, g: ArrayLike, s: ArrayLike) -> Array:
         """Return the probability of a smaller curvature, to full relative accuracy."""
-        return self._given_height(lambda law, a: law.between(0 * a, a), g, s)
+        return self._between(0.0, g, s)
 
     def sf(self, g: ArrayLike, s: ArrayLike) -> Array:
         """Return the probability of a larger curvature, to full relative accuracy."""
-        return self._given_height(CurvatureGivenHeight.sf, g, s)
+        return self._between(g, self.highest(g, s), s)
 
     def mean(self, power: float, s: ArrayLike) -> Array:
         """Return the mean of a power of the radius ratio at given heights, in their shape.
@@ -233,22 +158,42 @@ class RandomCurvature:
                 "unless largest bounds them)"
             )
         flattest = MEAN_CURVATURE / self.largest
-        return self._given_height(
-            lambda law, a: a**power * law.mean_inverse(power, flattest), MEAN_CURVATURE, s
-        )
+        steeper = self._between(flattest, self.highest(flattest, s), s, power)
+        flatter = self.largest**power * self.cdf(flattest, s) if flattest else 0.0
+        return np.asarray(MEAN_CURVATURE**power * steeper + flatter)
 
     def summits(self, rng: np.random.Generator, n: int) -> tuple[Array, Array]:
         """Draw reduced heights and radius ratios of `n` summits together (`analytic.Nayak.summits`)."""
         s, g = self.heights.summits(rng, n)
         return s, self.ratio(g)
 
-    def _given_height(
-        self, function: Callable[[CurvatureGivenHeight, Array], Array], g: ArrayLike, s: ArrayLike
-    ) -> Array:
-        """Broadcast over curvatures and heights, these no farther out than there are any."""
-        edges = tables_of(float(self.alpha)).edges
-        heights = np.clip(self.heights.over_rms(s), edges[0], edges[-1])
-        a, x = np.broadcast_arrays(np.asarray(g, dtype=np.float64), heights)
-        parts = [slice(k, k + _BLOCK) for k in range(0, a.size, _BLOCK)]
-        found = [function(CurvatureGivenHeight(self.alpha, x.ravel()[i]), a.ravel()[i]) for i in parts]
-        return np.concatenate([np.empty(0), *found]).reshape(a.shape)
+    def _over_rms(self, s: ArrayLike) -> Array:
+        """Heights over sqrt(m0), no farther out than there are any."""
+        edges = self.heights.edges
+        return np.clip(self.heights.over_rms(s), edges[0], edges[-1])
+
+    def _peak(self, x: Array) -> tuple[Array, float]:
+        """Mean and variance of the mean curvature, as mu and v above."""
+        return math.sqrt(2) * self.heights.rho * x, 2 * self.heights.width**2
+
+    def _logarithm(self, g: Array, x: Array) -> Array:
+        """Of the density of heights and curvatures together, over the cube of the curvature."""
+        mu, v = self._peak(x)
+        z = (mu / math.sqrt(1 + v) - math.sqrt(1 + v) * g) / math.sqrt(v)
+        over = (g * g - mu * mu / (1 + v) - x**2) / 2
+        return np.asarray(log_ndtr(z) + over - math.log(2 * math.pi / 3 * (1 + v)) / 2)
+
+    def _between(self, low: ArrayLike, high: ArrayLike, s: ArrayLike, power: float = 0.0) -> Array:
+        """Mean of ``g^-power`` of curvatures between two, and of 0 of others."""
+        several = np.broadcast_arrays(low, high, np.asarray(s, dtype=np.float64))
+        found = np.empty(several[0].size)
+        for k in range(0, found.size, _BLOCK):
+            a, b, some = (each.ravel()[k : k + _BLOCK] for each in several)
+            x = self._over_rms(some)
+            mu, v = self._peak(x)
+            turn, width = mu / (1 + v), _WIDE * math.sqrt(v / (1 + v))
+            ends = [a, turn - width, turn + width, mu - _WIDE * math.sqrt(v), self.highest(0.0, some), b]
+            root, w = panelled(np.sqrt(np.sort(np.clip(ends, a, b), axis=0)))  # powers of it are whole
+            density = np.exp(self._logarithm(root * root, x) - self.heights.log_density(x))
+            found[k : k + _BLOCK] = (w * 2 * root ** (7 - 2 * power) * density).sum(axis=0)
+        return found.reshape(several[0].shape)

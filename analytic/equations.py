@@ -213,8 +213,10 @@ def plasticity_index(modulus: ArrayLike, *, E_star: float, slope: float, hardnes
     return np.asarray(np.multiply(modulus, E_star * slope / (np.sqrt(2) * hardness)), dtype=np.float64)
 
 
-def critical_penetration(surface: Surface, hardness: float, poisson: float = POISSON) -> float:
-    """Return the penetration at which a summit of the surface yields, m.
+def summit_plasticity_index(surface: Surface, hardness: float, poisson: float = POISSON) -> float:
+    """Return the plasticity index of the summits, ``psi = sqrt(sigma/delta_c)``.
+
+    Below about 0.6 hardly any contact yields, above 1 most do, whatever the load.
 
     Parameters
     ----------
@@ -230,25 +232,6 @@ def critical_penetration(surface: Surface, hardness: float, poisson: float = POI
     ValueError
         If a number is out of range.
 
-    Examples
-    --------
-    >>> aluminium = Surface(sigma=1e-6, radius=1e-5, eta=1e9, nominal_area=1e-6, E_star=80e9)
-    >>> round(critical_penetration(aluminium, 1.2e9, 0.33) * 1e9, 3)  # nm
-    1.928
-    """
-    return KogutEtsion(hardness=hardness, poisson=poisson).reduced_on(surface) * surface.sigma
-
-
-def summit_plasticity_index(surface: Surface, hardness: float, poisson: float = POISSON) -> float:
-    """Return the plasticity index of the summits, ``psi = sqrt(sigma/delta_c)``.
-
-    Below about 0.6 hardly any contact yields, above 1 most do, whatever the load.
-
-    Parameters
-    ----------
-    surface, hardness, poisson
-        As for `critical_penetration`.
-
     Notes
     -----
     Source: J. A. Greenwood, J. B. P. Williamson, Proc. R. Soc. Lond. A 295 (1966) 300, whose
@@ -261,7 +244,7 @@ def summit_plasticity_index(surface: Surface, hardness: float, poisson: float = 
     >>> round(summit_plasticity_index(steel, 7e9), 3)
     0.548
     """
-    return math.sqrt(surface.sigma / critical_penetration(surface, hardness, poisson))
+    return 1 / math.sqrt(KogutEtsion(hardness=hardness, poisson=poisson).reduced_on(surface))
 
 
 def yielding_share(model: Model, h: ArrayLike, hardness: float, poisson: float = POISSON) -> Array:
@@ -275,7 +258,7 @@ def yielding_share(model: Model, h: ArrayLike, hardness: float, poisson: float =
     h : array_like
         Reduced separations; `Model.separation_at` finds that of a load.
     hardness, poisson
-        As for `critical_penetration`.
+        As for `summit_plasticity_index`.
 
     Returns
     -------

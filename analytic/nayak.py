@@ -13,9 +13,8 @@ held as Chebyshev series.
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, lru_cache, partial
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -43,83 +42,6 @@ def _less_one(q: Array) -> Array:
     for k in range(20, 2, -1):
         series = 1 - series * small / k
     return np.where(q < 1, small * small / 2 * series, q + np.expm1(-q))
-
-
-@dataclass(frozen=True)
-class NayakTables:
-    """Logarithms of what is integrated once for each alpha, in heights x over sqrt(m0).
-
-    Parameters
-    ----------
-    alpha : float
-        Nayak's bandwidth.
-    """
-
-    alpha: float
-
-    @property
-    def rho(self) -> float:
-        """Correlation of the height of any point with its mean curvature."""
-        return math.sqrt(LEAST_ALPHA / self.alpha)
-
-    @property
-    def width(self) -> float:
-        """Deviation of the heights of summits of one curvature."""
-        return math.sqrt((self.alpha - LEAST_ALPHA) / self.alpha)
-
-    @property
-    def edges(self) -> Array:
-        """Between which everything is smooth: graded by either deviation, 0 among them."""
-        steps = np.array(_STEPS)
-        return np.unique([*(-self.width * steps), *(self.width * steps), *steps[steps > self.width]])
-
-    @cached_property
-    def log_density(self) -> PiecewiseSeries:
-        """Of the density of the heights."""
-        return fitted(self._log_density, self.edges, _TERMS)
-
-    @cached_property
-    def log_shares(self) -> tuple[PiecewiseSeries, PiecewiseSeries]:
-        """Of the probabilities of a lower and of a higher height."""
-        below, above = (fitted(partial(self._log_share, way=way), self.edges, _TERMS) for way in (-1, 1))
-        return below, above
-
-    @cached_property
-    def guesses(self) -> tuple[Array, Array, Array]:
-        """Heights, and logarithms of the probabilities below and above them."""
-        parts = np.linspace(0, 1, _PER_PIECE, endpoint=False)
-        x = np.append((self.edges[:-1, None] + np.diff(self.edges)[:, None] * parts).ravel(), self.edges[-1])
-        below, above = self.log_shares
-        return x, below(x), above(x)
-
-    def _logarithm(self, x: Array, exponent: Callable[[Array, Array], Array]) -> Array:
-        """Of the integral of ``2 (q - 1 + exp(-q)) exp(exponent)``, q = tau^2/2, over u = tau/sqrt(v)."""
-        y, rho = x / self.width, self.rho
-        a, begins = rho * y, y / rho  # of the two factors the one has its peak, the other its end there
-        inner = [a - _WIDE, a + np.hypot(np.minimum(a, 0.0), _WIDE), begins - _WIDE, begins + _WIDE]
-        most = np.hypot(_LARGEST / math.sqrt(2), np.maximum(x, 0.0) / rho) / self.width
-        u, w = panelled(np.sort(np.clip([0 * x, *inner, most], 0, most), axis=0))
-        terms = exponent(u, y)
-        largest = terms.max(axis=0)
-        sums = (w * 2 * _less_one((self.width * u) ** 2) * np.exp(terms - largest)).sum(axis=0)
-        return np.asarray(np.log(sums) + largest)
-
-    def _log_density(self, x: Array) -> Array:
-        over = self._logarithm(x, lambda u, y: -((u - self.rho * y) ** 2) / 2)
-        return over - x * x / 2 + math.log(math.sqrt(3) / (2 * math.pi))
-
-    def _log_share(self, x: Array, way: int) -> Array:
-        """Of the share of the summits above (1) or below (-1)."""
-        beyond = self._logarithm(
-            x, lambda u, y: log_ndtr(way * (self.rho * u - y)) - (self.width * u) ** 2 / 2
-        )
-        return beyond + math.log(self.width * math.sqrt(3 / (2 * math.pi)))
-
-
-@lru_cache(maxsize=64)
-def tables_of(alpha: float) -> NayakTables:
-    """Return the same tables for all that ask for one alpha."""
-    return NayakTables(alpha)
 
 
 @dataclass(frozen=True)
@@ -154,8 +76,24 @@ class Nayak(HeightLaw):
             )
 
     @property
-    def _tables(self) -> NayakTables:
-        return tables_of(float(self.alpha))
+    def rho(self) -> float:
+        """Correlation of the height of any point with its mean curvature."""
+        return math.sqrt(LEAST_ALPHA / self.alpha)
+
+    @property
+    def width(self) -> float:
+        """Deviation of the heights of summits of one curvature, over sqrt(m0)."""
+        return math.sqrt((self.alpha - LEAST_ALPHA) / self.alpha)
+
+    @property
+    def edges(self) -> Array:
+        """Heights over sqrt(m0) between which everything is smooth: graded by either deviation, with 0."""
+        steps = np.array(_STEPS)
+        return np.unique([*(-self.width * steps), *(self.width * steps), *steps[steps > self.width]])
+
+    def log_density(self, x: Array) -> Array:
+        """Return the logarithm of the density at heights over sqrt(m0), as density over these."""
+        return _series(self, 0)(x)
 
     @property
     def mean(self) -> float:
@@ -188,26 +126,25 @@ class Nayak(HeightLaw):
             both = square - rng.chisquare(2, more)
             accepted = u * square < both
             mean, product = np.append(mean, square[accepted]), np.append(product, both[accepted])
-        tables, tau = self._tables, np.sqrt(mean[:n])
-        x = tables.rho / math.sqrt(2) * tau + tables.width * rng.standard_normal(n)
+        x = self.rho / math.sqrt(2) * np.sqrt(mean[:n]) + self.width * rng.standard_normal(n)
         return np.asarray((x - self.mean) / self.std), np.sqrt(product[:n])
 
     def pdf(self, s: Array) -> Array:
         """Return Nayak's density, in reduced heights."""
-        return np.asarray(self.std * np.exp(self._tables.log_density(self.over_rms(s))))
+        return np.asarray(self.std * np.exp(self.log_density(self.over_rms(s))))
 
     def log_ratio(self, s: Array, t: Array) -> Array:
         """Return the difference of the logarithms of the density."""
-        x, density = self.over_rms(s), self._tables.log_density
-        return np.asarray(density(x + self.std * np.asarray(t)) - density(x))
+        x = self.over_rms(s)
+        return np.asarray(self.log_density(x + self.std * np.asarray(t)) - self.log_density(x))
 
     def cdf(self, s: Array) -> Array:
         """Return the integral of the density from below."""
-        return np.exp(self._tables.log_shares[0](self.over_rms(s)))
+        return np.exp(_series(self, -1)(self.over_rms(s)))
 
     def sf(self, s: Array) -> Array:
         """Return the integral of the density from above."""
-        return np.exp(self._tables.log_shares[1](self.over_rms(s)))
+        return np.exp(_series(self, 1)(self.over_rms(s)))
 
     def ppf(self, p: Array, below: float = np.inf) -> Array:
         """Find the height by Newton's method on the logarithm of the smaller probability, or `below`."""
@@ -225,13 +162,47 @@ class Nayak(HeightLaw):
 
     def _at(self, below: Array, above: Array) -> Array:
         """Reduced height with these probabilities on either side."""
-        tables, (x, log_below, log_above), low = self._tables, self._tables.guesses, below < above
+        (x, *logarithms), low = _guesses(self), below < above
         with np.errstate(divide="ignore"):
             target = np.log(np.where(low, below, above))
-        found = np.where(low, np.interp(target, log_below, x), np.interp(target, log_above[::-1], x[::-1]))
+        first = [np.interp(target, y[::way], x[::way]) for y, way in zip(logarithms, (1, -1), strict=True)]
+        found = np.where(low, *first)
         for _ in range(_STEPS_OF_NEWTON):
-            share = np.where(low, *(series(found) for series in tables.log_shares))
-            step = (target - share) * np.exp(share - tables.log_density(found))
+            share = np.where(low, *(_series(self, way)(found) for way in (-1, 1)))
+            step = (target - share) * np.exp(share - self.log_density(found))
             found = found + np.where(np.isfinite(target), np.where(low, step, -step), 0.0)
         ends = np.where(low, -np.inf, np.inf)
         return np.where(np.isfinite(target), (found - self.mean) / self.std, ends)
+
+
+@lru_cache(maxsize=192)
+def _series(law: Nayak, way: int) -> PiecewiseSeries:
+    """Series of the logarithm of the density (0), or of the share of the summits above (1) or below (-1)."""
+    rho, width = law.rho, law.width
+
+    def logarithm(x: Array) -> Array:
+        """Of the integral of ``2 (q - 1 + exp(-q)) exp(exponent)``, q = tau^2/2, over u = tau/sqrt(v)."""
+        y = x / width
+        a, begins = rho * y, y / rho  # of the two factors the one has its peak, the other its end there
+        inner = [a - _WIDE, a + np.hypot(np.minimum(a, 0.0), _WIDE), begins - _WIDE, begins + _WIDE]
+        most = np.hypot(_LARGEST / math.sqrt(2), np.maximum(x, 0.0) / rho) / width
+        u, w = panelled(np.sort(np.clip([0 * x, *inner, most], 0, most), axis=0))
+        if way:
+            exponent = log_ndtr(way * (rho * u - y)) - (width * u) ** 2 / 2
+            factor = np.asarray(math.log(width * math.sqrt(3 / (2 * math.pi))))
+        else:
+            exponent = -((u - rho * y) ** 2) / 2
+            factor = math.log(math.sqrt(3) / (2 * math.pi)) - x * x / 2
+        largest = exponent.max(axis=0)
+        sums = (w * 2 * _less_one((width * u) ** 2) * np.exp(exponent - largest)).sum(axis=0)
+        return np.asarray(np.log(sums) + largest + factor)
+
+    return fitted(logarithm, law.edges, _TERMS)
+
+
+@lru_cache(maxsize=64)
+def _guesses(law: Nayak) -> tuple[Array, Array, Array]:
+    """Heights over sqrt(m0), and logarithms of the probabilities below and above them."""
+    parts = np.linspace(0, 1, _PER_PIECE, endpoint=False)
+    x = np.append((law.edges[:-1, None] + np.diff(law.edges)[:, None] * parts).ravel(), law.edges[-1])
+    return x, _series(law, -1)(x), _series(law, 1)(x)

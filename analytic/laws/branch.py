@@ -10,7 +10,6 @@ several intervals if it falls faster than heights rise, as that of yielding does
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Any, Self
 
 import numpy as np
@@ -24,6 +23,7 @@ from analytic.laws.regimes import Regimes, stretches
 from analytic.quantities import quantity_of
 from analytic.roots import sign_changes
 
+_ROUNDING = 1e-9  # of a law that goes on smoothly
 _SAME = 8  # spacings of floating-point numbers between heights that are not told apart
 
 
@@ -156,27 +156,28 @@ class Branch:
         """
         law = self._law(self.deepest(h, above))
         y = sign * np.sqrt(np.maximum(above - law.residual(e), 0.0))
-        added = partial(self._added, quantity, law, piece, e=e)
-        return slope_in_root(added, y) if slope else added(y)
-
-    def of_root(self, quantity: str, piece: int, y: Any, e: Array) -> Array:
-        """Return the same, closer than ever before, of the root of the penetration, which may be complex."""
-        return self._added(quantity, self._law(), piece, y, e=e)
-
-    def _added(self, quantity: str, law: ContactLaw, piece: int, y: Any, *, e: Array) -> Array:
-        """Return what contacts add by a formula of a law, as it goes on beyond the ends of its piece."""
         shape = np.broadcast_shapes(np.shape(y), np.shape(e))
-        known: dict[str, Callable[[], Any]] = {
-            "load": lambda: law.load(piece, y, e),
-            "area": lambda: law.radius(piece, y, e) ** 2,
-            "stiffness": lambda: law.stiffness(piece, y, e),
-            "contacts": lambda: np.ones(shape),
-            "conductance": lambda: law.radius(piece, y, e),
-            "conductance_si": lambda: self.conductance(law.radius(piece, y, e), self.ratios),  # type: ignore[misc]
-            "load_slope": lambda: slope_in_root(lambda v: law.load(piece, v, e), y) * (2 / 3),
-            "yielded": lambda: np.full(shape, float(piece > 0)),
+        known: dict[str, Callable[[Any], Any]] = {
+            "load": lambda y: law.load(piece, y, e),
+            "area": lambda y: law.radius(piece, y, e) ** 2,
+            "stiffness": lambda y: law.stiffness(piece, y, e),
+            "contacts": lambda y: np.ones(shape),  # noqa: ARG005 - whatever the penetration
+            "conductance": lambda y: law.radius(piece, y, e),
+            "conductance_si": lambda y: self.conductance(law.radius(piece, y, e), self.ratios),  # type: ignore[misc]
+            "load_slope": lambda y: slope_in_root(lambda v: law.load(piece, v, e), y) * (2 / 3),
+            "yielded": lambda y: np.full(shape, float(piece > 0)),  # noqa: ARG005
         }
-        return np.asarray(known[quantity]())
+        return np.asarray(slope_in_root(known[quantity], y) if slope else known[quantity](y))
+
+    def falls(self, quantity: str, e: Array) -> int | None:
+        """Return the first piece at whose start contacts add less than before, or than nothing; or None."""
+        e = np.maximum(e, np.finfo(float).tiny)
+        for piece, limit in enumerate([np.zeros_like(e), *self.limits(e)]):
+            with np.errstate(all="ignore"):  # without a modulus nothing yields, at no limit
+                after, before = (self.value(quantity, j, 0 * e, limit, e) for j in (piece, max(piece - 1, 0)))
+            if np.any(after < (before * (1 - _ROUNDING) if piece else 0.0)):
+                return piece
+        return None
 
     def _law(self, deepest: Array | None = None) -> ContactLaw:
         """Law of contacts that are closer than ever before, or on unloading have been this deep."""

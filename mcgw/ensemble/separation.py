@@ -22,7 +22,6 @@ Excess = Callable[[Array, Ints], Array]  # of separations, and of the numbers of
 _FINE = 1 / 64  # step of the search where moduli may be negative
 LOWEST = -40.0  # separation where searches end
 _CLOSE = 1e-14  # relative excess of a sum, which is its rounding error
-_ROUNDING = 1e-9  # of a law that goes on smoothly
 
 
 def crossing(excess: Excess, high: Array, lowest: float = LOWEST) -> Array:
@@ -188,7 +187,8 @@ class Asperities:
     def _first(self, q: Quantity, goal: float, low: Array, near: float) -> Array:
         """Return where sums over their scale reach a goal above `low`; most are not far from `near`."""
         on, found, power = self.above(low), np.full(low.size, np.nan), 1 / max(q.exponent, 1.0)
-        high, falls = on.highest.copy(), on._falls(q)
+        high = on.highest.copy()
+        falls = on.branch(slice(None)).falls(q.base, on.modulus) is None  # as a surface is lifted
         width = high - np.where(near < high, near, low)
 
         def excess(total: Array) -> Array:
@@ -250,16 +250,3 @@ class Asperities:
             at_end = self.branch(here).value(q.base, j, s[here] - limit, limit, e[here])
             terms[here] = np.maximum(terms[here], weight * at_end)
         return total, np.where(smooth, total, self.added(terms)), smooth
-
-    def _falls(self, q: Quantity) -> bool:
-        """Whether what an asperity of modulus >= 0 adds never falls as it is pressed."""
-        branch, e = self.branch(slice(None)), np.maximum(self.modulus, np.finfo(float).tiny)
-        if np.any(branch.of_root(q.base, 0, np.zeros_like(e), e) < 0):
-            return False
-        for j, limit in enumerate(branch.limits(e)):
-            y = np.sqrt(limit)
-            with np.errstate(all="ignore"):  # without a modulus nothing yields, at no limit
-                before, after = (branch.of_root(q.base, piece, y, e) for piece in (j, j + 1))
-            if np.any(after < before * (1 - _ROUNDING)):
-                return False
-        return True

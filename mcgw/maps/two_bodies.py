@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from analytic import SpectralMoments, harmonic_conductivity
+from analytic import SpectralMoments
 from mcgw.maps.fit import Fit
 from mcgw.maps.profile_fit import ProfileFit
 from mcgw.scene.measured import RoughBody, body_of
@@ -35,7 +35,7 @@ class Pair(Spectral):
     @property
     def conductivity(self) -> float | None:
         """Harmonic mean of both conductivities, ``2 k1 k2/(k1 + k2)``, W/(m K)."""
-        return None if self.conductivities is None else harmonic_conductivity(*self.conductivities)
+        return None if self.conductivities is None else 2 / sum(1 / k for k in self.conductivities)
 
 
 def combine(

@@ -22,7 +22,7 @@ from numpy.polynomial import chebyshev
 
 from analytic import Nayak, RandomCurvature, quantity_of
 from analytic.arrays import Array
-from analytic.curvature import MEAN_CURVATURE, CurvatureGivenHeight
+from analytic.curvature import MEAN_CURVATURE
 from analytic.quadrature import gauss_legendre
 from mcgw.machine.compiling import njit
 from mcgw.sampling.block import Layout
@@ -105,11 +105,11 @@ def _shares() -> Array:
 
 def _inverted(alpha: float, s: Array, share: Array) -> Array:
     """Curvatures below, then above which a share of the summits lies: (heights, 2, *share.shape)."""
-    law = CurvatureGivenHeight(alpha, Nayak(alpha).over_rms(s))
-    g = _evenly_likely(law)
+    law = RandomCurvature(alpha)
+    g = _evenly_likely(law, s)
     inner = g[:-1, None] + np.diff(g, axis=0)[:, None] * _X[:, None]
-    mass = (law.pdf(inner) * _W[:, None]).sum(axis=1) * np.diff(g, axis=0)
-    density, bend = law.pdf(g), 1 + law.elasticity(g)
+    mass = (law.pdf(inner, s) * _W[:, None]).sum(axis=1) * np.diff(g, axis=0)
+    density, bend = law.pdf(g, s), 1 + law.elasticity(g, s)
     below = np.cumsum(np.concatenate([g[:1] * density[:1] / bend[:1], mass]), axis=0)
     above = np.cumsum(np.concatenate([mass, -g[-1:] * density[-1:] / bend[-1:]])[::-1], axis=0)[::-1]
     wanted, found = np.log(share.ravel()), np.empty((s.size, 2, share.size))
@@ -123,18 +123,18 @@ def _inverted(alpha: float, s: Array, share: Array) -> Array:
     return found.reshape(s.size, 2, *share.shape)
 
 
-def _evenly_likely(law: CurvatureGivenHeight) -> Array:
+def _evenly_likely(law: RandomCurvature, s: Array) -> Array:
     """Curvatures between which about the same share lies, on a logarithmic scale to either end."""
-    top = law.highest(0 * law.x)
+    top = law.highest(0.0, s)
     g = np.concatenate([np.geomspace(1e-8, 0.1, 100), np.linspace(0.1, 1.05, 400)[1:]])[:, None] * top
-    rise = law.pdf(g)
+    rise = law.pdf(g, s)
     mass = (rise[1:] + rise[:-1]) / 2 * np.diff(g, axis=0)
     below = np.cumsum(np.concatenate([g[:1] * rise[:1] / 4, mass]), axis=0)
     above = np.cumsum(np.concatenate([mass, 1e-3 * rise[-1:]])[::-1], axis=0)[::-1]
     scale = np.log(below) - np.log(above)
     ends = np.maximum(scale[0], -_FURTHEST), np.minimum(scale[-1], _FURTHEST)
     wanted = np.linspace(*ends, _POINTS)
-    columns = [np.interp(wanted[:, i], scale[:, i], np.log(g[:, i])) for i in range(law.x.size)]
+    columns = [np.interp(wanted[:, i], scale[:, i], np.log(g[:, i])) for i in range(s.size)]
     return np.exp(np.stack(columns, axis=1))
 
 

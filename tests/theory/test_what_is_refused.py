@@ -133,7 +133,7 @@ REFUSED = [
     ("pull_off = 1.0: give one", lambda: JohnsonKendallRoberts(work=1.0, pull_off=1.0)),
     ("work = -1.0", lambda: JohnsonKendallRoberts(work=-1.0)),
     ("pull_off = inf", lambda: JohnsonKendallRoberts(pull_off=np.inf)),
-    ("hardness = -1.0", lambda: analytic.critical_penetration(SURFACE, -1.0)),
+    ("hardness = -1.0", lambda: analytic.summit_plasticity_index(SURFACE, -1.0)),
     ("poisson = 0.7", lambda: analytic.yielding_share(HERTZ, 0.0, 1e9, 0.7)),
     # laws of one's own
     ("load: give 2 formulas", lambda: CustomLaw((cube,), (cube,), (1.0,), 0.1)),
