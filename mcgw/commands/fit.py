@@ -101,7 +101,7 @@ def fit(
     from mcgw.maps.fitting import fit_sources
     from mcgw.maps.heights_files import read_heights, read_map
     from mcgw.maps.preparation import preparation_of
-    from mcgw.maps.summits import SUMMITS, TILES
+    from mcgw.maps.summit_sums import SUMMITS, TILES
 
     assumed = " (assumed; give --E-star)" if E_star is None else ""
     E_star = E_STAR if E_star is None else E_star
@@ -117,7 +117,7 @@ def fit(
         "cutoff": cutoff, "long_cutoff": long_cutoff, "form": form, "missing": missing, "spikes": spikes,
         "lines": lines, "trim": trim, "parts": parts,
     }  # fmt: skip
-    asked, across = preparation_of(given)
+    asked = preparation_of(given)
     names = [path.name for path in map]
     beside = {"--summits": summits, "--tiles": tiles, "--picture": picture}
     if picture and len(map) > 1:
@@ -126,7 +126,7 @@ def fit(
         check_outputs([Output(heights_beside(output), NPY)])
     size = None if pixel is None else (pixel, pixel)
     read = partial(read_heights, pixel=size, unit=unit, missing=missing_value)
-    found, ready, assumed_unit = fit_sources(map, read, asked, across, use)
+    found, ready, assumed_unit = fit_sources(map, read, asked, use)
     for option, path in beside.items():
         if path and ready is None:
             raise ValueError(f"{option} {path}: a profile shows no summits, and has no sub-areas; give a map")

@@ -49,7 +49,7 @@ def surface(
     mcgw surface runs/demo.toml --surface 3 -o map.h5
     """
     from mcgw.maps.envelope import envelope, hidden_summits
-    from mcgw.maps.hidden_caps import CROWDED
+    from mcgw.maps.estimates import CROWDED
     from mcgw.maps.map_files import WRITTEN, files_of_map, write_map
     from mcgw.maps.synthetic import asperities_of
     from mcgw.scene.scene_file import scene_text

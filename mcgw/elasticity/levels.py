@@ -13,8 +13,7 @@ from mcgw.elasticity.grid import Grid, sized_grid
 from mcgw.elasticity.located import Balance, balanced
 from mcgw.elasticity.spots import Spots, fallen
 from mcgw.errors import RunError, extra
-from mcgw.maps.summit_sums import summit_sums_of
-from mcgw.maps.summits import Summits, summits_of
+from mcgw.maps.summit_sums import Summits, summit_sums_of
 from mcgw.maps.topography import Topography
 
 _EITHER = ("area", "stiffness", "conductance")
@@ -61,8 +60,7 @@ class Pressed:
     @cached_property
     def spots(self) -> Spots:
         """Hertz's contacts on its summits."""
-        heights, summits, _ = self._counted
-        return Spots.hertz(heights, summits.radii, self.E_star)
+        return Spots.hertz(self._counted.heights, self._counted.radii, self.E_star)
 
     def plane(self, spots: Spots) -> float:
         """Separation, or that at which spots carry the load, none of which feels another one, m."""
@@ -78,28 +76,28 @@ class Pressed:
         return Topography(self.heights, self.grid.pixel, periodic=True)
 
     @cached_property
-    def _counted(self) -> tuple[Array, Summits, Ints]:
-        """Heights of its summits, what else there is to them, and their rows and columns."""
+    def _counted(self) -> Summits:
+        """Its summits."""
         counted = summit_sums_of(self._map, across=1)
         if not counted.heights.size:
             raise RunError("a map has no summit; give a larger one, or a shorter cutoff")
-        columns, rows = (
-            np.rint(p * n - 0.5).astype(np.int64) % n
-            for p, n in zip(counted.summits[2:4], self.heights.shape[::-1], strict=True)
-        )
-        return counted.heights, summits_of(self._map, counted, (0.0, 0.0)), np.array([rows, columns])
+        return counted
 
     def touching(self, fits: int = _FITS) -> tuple[Spots, Ints]:
         """Spots that may touch, fitted so many times to the map around them, and their rows and columns.
 
         Those down to as far below the plane as the highest one, if none felt another one, rises above it.
         """
-        heights, summits, places = self._counted
-        near = np.flatnonzero(heights > 2 * self.plane(self.spots) - heights.max())
-        spots = Spots.hertz(heights[near], summits.radii[near], self.E_star)
+        summits, pixel = self._counted, self.grid.pixel
+        near = np.flatnonzero(summits.heights > 2 * self.plane(self.spots) - summits.heights.max())
+        spots = Spots.hertz(summits.heights[near], summits.radii[near], self.E_star)
         for _ in range(fits):
             spots = fallen(self._map, summits, near, spots, spots.least_radii(self.plane(spots)))
-        return spots, places[:, near]
+        places = (
+            each[near] // p % n
+            for each, p, n in zip((summits.y, summits.x), pixel, self.heights.shape, strict=True)
+        )
+        return spots, np.array([*places], dtype=np.int64)
 
     def values(self, area: float, stiffness: float, pressure: float, mean_gap: float) -> Values:
         """By name, SI; the conductance is C rho in m, which follows from the stiffness (Barber 2003)."""

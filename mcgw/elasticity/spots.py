@@ -8,7 +8,7 @@ from scipy.ndimage import map_coordinates
 from scipy.optimize import brentq
 
 from analytic.arrays import Array, Ints
-from mcgw.maps.summits import Summits
+from mcgw.maps.summit_sums import Summits
 from mcgw.maps.topography import Topography
 
 _RAYS, _STEPS = 8, 6  # from a summit to the rim of its contact

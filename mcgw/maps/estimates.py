@@ -1,21 +1,21 @@
 """Density, radius and spread of the summits by three methods, with their errors; and roughness."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Self
+from functools import lru_cache
+from typing import NamedTuple, Self
 
 import numpy as np
+from numpy.polynomial.legendre import leggauss
+from scipy.optimize import brentq
 from scipy.special import ndtr, stdtrit
 
 from analytic import SpectralMoments
 from analytic.arrays import Array
 from mcgw.formats.table import Column, Table
-from mcgw.maps.hidden_caps import unhidden
-from mcgw.maps.summit_sums import SUMS, SummitSums
+from mcgw.maps.summit_sums import SUMS, Summits
 from mcgw.maps.waves import Uncertain, Waves, uncertain
-
-Pairs = list[tuple[float, float]]
 
 SUMMITS = ("eta", "radius", "sigma")
 METHODS = {
@@ -26,10 +26,13 @@ METHODS = {
 _UNSURE = 0.25  # share of a correction that is uncertain, measured for hidden caps and summits between pixels
 _ORDER = 3  # losses scale as the pixel squared: one pixel loses a third of the difference between two and one
 _FLAT = 0.5  # share of the median curvature
+CROWDED = 0.05  # eta R sigma, from which one summit in six is hidden: the asperities are no longer apart
+_REACH = 9.0
+_X, _W = leggauss(200)  # heights over their reach, by the rule of Gauss and Legendre
+_MOST = 10.0
 
 
-@dataclass(frozen=True, slots=True)
-class Roughness:
+class Roughness(NamedTuple):
     """Roughness parameters of heights (ISO 25178-2 for maps, ISO 21920-2 for profiles).
 
     Parameters
@@ -47,27 +50,18 @@ class Roughness:
     sk: float
     ku: float
 
-    @classmethod
-    def of(cls, a: float, *central: float) -> Self:
-        """From the mean deviation, and the central moments of second, third and fourth order."""
-        q = math.sqrt(central[0])
-        return cls(a, q, *(m / q**k if q else 0.0 for k, m in enumerate(central[1:], 3)))
-
-    @property
-    def means(self) -> tuple[float, ...]:
-        """Return what `of` takes: means over the heights, which add up over areas."""
-        return self.a, self.q**2, self.sk * self.q**3, self.ku * self.q**4
-
     def text(self, kind: str) -> str:
         """Return the parameters in words, named as for a map ("S") or a profile ("P")."""
         return f"{kind}a = {self.a:.4g} m, {kind}q = {self.q:.4g} m, {kind}sk = {self.sk:.2f}"
 
 
 def roughness_of(heights: Array) -> Roughness:
-    """Roughness of an array of any shape without missing points, m."""
+    """Roughness of an array of any shape without missing points, not flat, m."""
     z = heights - heights.mean()
+    mean = float(np.abs(z).mean())
     square = z * z
-    return Roughness.of(*(float(x.mean()) for x in (np.abs(z), square, square * z, square * square)))
+    q = math.sqrt(square.mean())
+    return Roughness(mean, q, float((square * z).mean()) / q**3, float((square * square).mean()) / q**4)
 
 
 @dataclass(frozen=True)
@@ -90,10 +84,10 @@ class Estimate:
         return self.eta.value * self.radius.value * self.sigma.value
 
     @classmethod
-    def of(cls, pairs: Pairs, waves: Waves) -> Self:
+    def of(cls, pairs: Iterable[tuple[float, float]], waves: Waves) -> Self:
         """From values and errors over sub-areas, and the errors of few long waves."""
-        spreads = (waves.spreads[name] for name in SUMMITS)
-        return cls(*(uncertain(*pair, spread) for pair, spread in zip(pairs, spreads, strict=True)))
+        both = zip(pairs, SUMMITS, strict=True)
+        return cls(*(uncertain(float(x), float(error), waves.spreads[of]) for (x, error), of in both))
 
 
 def estimates_table(estimates: Mapping[str, Estimate]) -> Table:
@@ -101,109 +95,175 @@ def estimates_table(estimates: Mapping[str, Estimate]) -> Table:
     found = list(estimates.values())
     columns = [Column("method", [METHODS[name] for name in estimates], "by")]
     for name, words, unit in (("eta", "eta", "1/m^2"), ("radius", "R", "m"), ("sigma", "sigma", "m")):
-        told = [getattr(e, name) for e in found]
-        errors = [x.error for x in told]
-        columns.append(Column(name, [x.value for x in told], words, unit, ".4g"))
+        values, errors, *_ = zip(*(getattr(e, name) for e in found), strict=True)
+        columns.append(Column(name, values, words, unit, ".4g"))
         columns.append(Column(f"{name}_stderr", errors, unit=unit, form=".1g", between=" +- "))
     return Table((*columns, Column("overlap", [e.overlap for e in found], "eta R sigma", form=".3g")))
 
 
-def jackknife(statistic: Callable[..., Array], *counted: SummitSums) -> Pairs:
+def jackknife(statistic: Callable[..., Array], *counted: Summits) -> Array:
     """Values, and errors by leaving out one sub-area after the other, of all that was `counted` on them.
 
-    They are standard errors widened as Student's t asks for so few sub-areas: two of them hold 95 %.
+    A row for each number. Errors are standard errors widened as Student's t asks for so few sub-areas: two of
+    them hold 95 %.
     """
-    used = counted[0].used
+    used = np.flatnonzero(counted[0].sums[0]).tolist()
     n = len(used)
-    values = statistic(*counted)
     without = np.array([statistic(*(c.without(part) for c in counted)) for part in used])
     errors = np.sqrt((n - 1) / n * ((without - without.mean(axis=0)) ** 2).sum(axis=0))
-    errors *= stdtrit(n - 1, ndtr(2.0)) / 2
-    return list(zip(values.tolist(), errors.tolist(), strict=True))
+    return np.column_stack([statistic(*counted), errors * stdtrit(n - 1, ndtr(2.0)) / 2])
 
 
-def mean_squares(counted: SummitSums) -> dict[str, float]:
+def mean_squares(counted: Summits) -> dict[str, float]:
     """Means over the map, by the names of `mcgw.maps.summit_sums.SUMS`."""
     sums = counted.sums.sum(axis=1)
     return dict(zip(SUMS[1:], (sums[1:] / sums[0]).tolist(), strict=True))
 
 
-def moments_of(counted: SummitSums) -> SpectralMoments:
+def moments_of(counted: Summits) -> SpectralMoments:
     """Moments, averaged over both axes."""
     m = mean_squares(counted)
     return SpectralMoments(m["z2"] - m["z"] ** 2, (m["slope_x"] + m["slope_y"]) / 2, m["bend"])
 
 
-def skewness_of(counted: SummitSums) -> float:
-    """Skewness of the heights of all points."""
-    z, z2, z3 = (mean_squares(counted)[key] for key in ("z", "z2", "z3"))
-    return float((z3 - 3 * z * z2 + 2 * z**3) / (z2 - z * z) ** 1.5)
-
-
-def by_moments(counted: SummitSums) -> dict[str, tuple[float, float]]:
+def by_moments(counted: Summits) -> dict[str, tuple[float, float]]:
     """m0, m2, m4, alpha, the summits of an isotropic Gaussian surface that has these, and the skewness."""
     names = ("m0", "m2", "m4", "alpha", *SUMMITS)
 
-    def found(t: SummitSums) -> Array:
-        m = moments_of(t)
-        return np.array([*(getattr(m, name) for name in names), skewness_of(t)])
+    def found(t: Summits) -> Array:
+        moments, m = moments_of(t), mean_squares(t)
+        third = m["z3"] - 3 * m["z"] * m["z2"] + 2 * m["z"] ** 3
+        return np.array([*(getattr(moments, name) for name in names), third / moments.m0**1.5])
 
-    return dict(zip((*names, "skewness"), jackknife(found, counted), strict=True))
+    return dict(zip((*names, "skewness"), map(tuple, jackknife(found, counted).tolist()), strict=True))
 
 
-def by_summits(fine: SummitSums, coarse: SummitSums) -> Pairs:
+def by_summits(fine: Summits, coarse: Summits) -> Array:
     """Summits as they were counted over every point, and those that lie between pixels.
 
     A grid shows too few summits, too blunt: at eight pixels to the shortest wave it loses 1 to 3 %. What
     every second point loses over that, by three, is added (Richardson).
     """
 
-    def found(fine: SummitSums, coarse: SummitSums) -> Array:
-        values = _counted(fine)
-        values += (values - _counted(coarse)) / _ORDER
-        values[1] = 1 / values[1]
-        return values
+    def counted(t: Summits) -> Array:
+        return np.array([t.heights.size / t.area, t.bends.mean(), t.heights.std(ddof=1)])
 
-    pairs = zip(jackknife(found, fine, coarse), found(fine, fine), strict=True)
-    return [_also(pair, pair[0] - float(plain)) for pair, plain in pairs]
+    def found(fine: Summits, coarse: Summits) -> Array:
+        values = counted(fine)
+        eta, curvature, sigma = values + (values - counted(coarse)) / _ORDER
+        return np.array([eta, 1 / curvature, sigma])
 
-
-def _counted(t: SummitSums) -> Array:
-    """Density, mean curvature and standard deviation of heights, as counted."""
-    return np.array([t.heights.size / t.area, t.curvatures.mean(), t.heights.std(ddof=1)])
+    pairs = jackknife(found, fine, coarse)
+    pairs[:, 1] = np.hypot(pairs[:, 1], _UNSURE * (pairs[:, 0] - found(fine, fine)))
+    return pairs
 
 
-def _also(pair: tuple[float, float], correction: float) -> tuple[float, float]:
-    """Add a share of the correction to the error."""
-    return pair[0], float(np.hypot(pair[1], _UNSURE * correction))
-
-
-def by_caps(counted: SummitSums, blur: float) -> Pairs | None:
+def by_caps(counted: Summits, blur: float) -> Array | None:
     """Independent caps of one radius, those under taller ones added; None if they would not look like this.
 
     All caps have one radius, which is the median: a few summits next to a valley do not.
 
     Parameters
     ----------
-    counted : SummitSums
+    counted : Summits
         Of the map.
     blur : float
         Distance from a valley that a summit needs to be seen, m.
     """
 
-    def found(t: SummitSums, blur: float) -> Array:
-        median = np.median(t.curvatures)
-        caps = t.heights[t.curvatures > _FLAT * median]  # lower ones are ripples in the valleys
+    def found(t: Summits, blur: float) -> Array:
+        median = np.median(t.bends)
+        caps = t.heights[t.bends > _FLAT * median]  # lower ones are ripples in the valleys
         all_caps = unhidden(caps.size / t.area, float(1 / median), float(caps.std(ddof=1)), blur)
         return np.full(3, np.nan) if all_caps is None else np.array([all_caps[0], 1 / median, all_caps[1]])
 
-    pairs, sharp = jackknife(lambda t: found(t, blur), counted), found(counted, 0.0)
-    if not np.all(np.isfinite(pairs)):  # what blur shows, a sharp map shows too
+    pairs = jackknife(lambda t: found(t, blur), counted)
+    if not np.isfinite(pairs).all():  # what blur shows, a sharp map shows too
         return None
-    eta, radius, sigma = pairs
-    mean_radius = 1 / float(counted.curvatures.mean())
-    return [
-        _also(eta, eta[0] - float(sharp[0])),
-        (radius[0], float(np.hypot(radius[1], mean_radius - radius[0]))),
-        _also(sigma, sigma[0] - float(sharp[2])),
-    ]
+    doubts = _UNSURE * (pairs[:, 0] - found(counted, 0.0))
+    doubts[1] = 1 / counted.bends.mean() - pairs[1, 0]
+    pairs[:, 1] = np.hypot(pairs[:, 1], doubts)
+    return pairs
+
+
+# --- independent caps that hide under taller ones ---
+#
+# A cap of height z is hidden where an asperity at a distance r has z_j - r^2/(2R) > z. It cannot be told from
+# the slope of its neighbour where the valley between them is nearer to its summit than the blur p of the map:
+# where z_j - (r^2 - 2 r p)/(2R) > z. Of a Poisson field the number of such neighbours is Poisson distributed,
+# so the share of visible summits of that height is the exponential of minus its mean.
+
+
+class Visible(NamedTuple):
+    """Of the summits that no taller neighbour hides.
+
+    Parameters
+    ----------
+    share : float
+        Of all summits.
+    mean, std : float
+        Of their reduced heights; 0 if none is visible.
+    """
+
+    share: float
+    mean: float
+    std: float
+
+
+@lru_cache(maxsize=64)
+def _taller_neighbours(blur: float) -> Array:
+    """Mean number of neighbours that hide each height, over ``4 pi eta R sigma``."""
+    reach = blur + math.sqrt(blur**2 + 2 * _REACH)  # beyond, nobody is tall enough
+    r, w = reach * (1 + _X) / 2, reach * _W / 2
+    return np.asarray(ndtr(-(_REACH * _X[:, None] + r * r - 2 * r * blur)) @ (w * r))
+
+
+def visible(overlap: float, blur: float = 0.0) -> Visible:
+    """Statistics of the visible summits of Gaussian heights, by quadrature over heights and distances.
+
+    Parameters
+    ----------
+    overlap : float
+        ``eta R sigma``.
+    blur : float, optional
+        Distance p from a valley that a summit needs, over ``sqrt(2 R sigma)``.
+    """
+    s = _REACH * _X
+    hidden = np.exp(-s * s / 2 - 4 * math.pi * overlap * _taller_neighbours(blur))
+    p = _REACH * _W * hidden / math.sqrt(2 * math.pi)
+    share = float(p.sum())
+    if share == 0:
+        return Visible(0.0, 0.0, 0.0)
+    mean = float(p @ s) / share
+    return Visible(share, mean, math.sqrt(float(p @ (s - mean) ** 2) / share))
+
+
+def unhidden(eta: float, radius: float, sigma: float, blur: float = 0.0) -> tuple[float, float] | None:
+    """Density and standard deviation of all summits from those of the visible ones, SI units.
+
+    Parameters
+    ----------
+    eta, radius, sigma : float
+        Of the visible summits, SI units.
+    blur : float, optional
+        Distance p from a valley that a summit needs, m.
+
+    Returns
+    -------
+    (float, float) or None
+        None if no field of independent caps shows so many, or all have one height.
+    """
+    if not sigma > 0:
+        return None
+    reduced = blur / math.sqrt(2 * radius * sigma)
+
+    def misfit(overlap: float) -> float:
+        seen = visible(overlap, reduced)
+        return overlap * seen.share * seen.std - eta * radius * sigma
+
+    grid = np.geomspace(1e-9, _MOST, 60)
+    above = [x for x in grid if misfit(float(x)) > 0]
+    if not above:
+        return None
+    seen = visible(brentq(misfit, 0.0, float(above[0]), xtol=1e-15), reduced)
+    return eta / seen.share, sigma / seen.std

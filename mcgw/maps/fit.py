@@ -9,13 +9,14 @@ import numpy as np
 
 from analytic import SpectralMoments
 from analytic.arrays import Array
-from mcgw.formats.table import Shown, Table
+from mcgw.formats.table import Column, Shown, Table
 from mcgw.machine.terminal import plotted
 from mcgw.maps.estimates import (
     METHODS,
     SUMMITS,
     Estimate,
     Roughness,
+    Visible,
     by_caps,
     by_moments,
     by_summits,
@@ -23,13 +24,12 @@ from mcgw.maps.estimates import (
     mean_squares,
     moments_of,
     roughness_of,
+    visible,
 )
 from mcgw.maps.form import ORDERS, form_left
-from mcgw.maps.hidden_caps import Visible, visible
 from mcgw.maps.preparation import Prepared
 from mcgw.maps.steps import Form
-from mcgw.maps.summit_sums import EDGE, SummitSums, coarse_sums_of, summit_sums_of
-from mcgw.maps.summits import Summits, summits_of, tiles_of, variation
+from mcgw.maps.summit_sums import EDGE, Summits, coarse_sums_of, summit_sums_of, variation
 from mcgw.maps.topography import SMALLEST
 from mcgw.maps.waves import Uncertain, Waves, uncertain, waves_of
 
@@ -60,11 +60,7 @@ class Fit(Shown):
     skewness : (float, float)
         Skewness of the map's heights, and its standard error.
     listed : Summits
-        Every summit: its place, height and curvature.
-    mean_summit : float
-        Mean height of the summits above the mean plane, m.
-    area : float
-        Area evaluated, m^2.
+        Every summit: its place, height above the mean plane and curvature; and sums over the sub-areas.
     visible : Visible or None
         How much of a field of independent caps like this one is visible in a map.
     mean_squares : dict of str to float
@@ -73,8 +69,6 @@ class Fit(Shown):
         The form that was removed.
     waves : Waves
         Errors due to the small number of waves on the map.
-    tiles : Table
-        Estimates from each sub-area alone: see `mcgw.maps.summits.tiles_of`.
     roughness : Roughness
         Roughness of all heights of the filtered map without its form; sigma belongs to the summits only.
     notes : tuple of str, optional
@@ -90,22 +84,29 @@ class Fit(Shown):
     numbers: dict[str, Uncertain]
     skewness: tuple[float, float]
     listed: Summits
-    mean_summit: float
-    area: float
     visible: Visible | None
     mean_squares: dict[str, float]
     form: Form
     waves: Waves
-    tiles: Table
     roughness: Roughness
     notes: tuple[str, ...] = ()
     cautions: tuple[str, ...] = ()
     maps: tuple[str, ...] = ()
 
     @property
+    def area(self) -> float:
+        """Area evaluated, m^2."""
+        return self.listed.area
+
+    @property
+    def mean_summit(self) -> float:
+        """Mean height of the summits above the mean plane, m."""
+        return float(self.listed.heights.mean())
+
+    @property
     def summits(self) -> Array:
         """Heights of the summits relative to their mean, m."""
-        return self.listed.heights
+        return np.asarray(self.listed.heights - self.listed.heights.mean())
 
     @property
     def curvatures(self) -> Array:
@@ -116,6 +117,12 @@ class Fit(Shown):
     def radii(self) -> Array:
         """Radii of the summits, in the order of their heights, m: ``1/sqrt(k1 k2)``."""
         return self.listed.radii
+
+    @property
+    def tiles(self) -> Table:
+        """Estimates from each sub-area alone, or from each map: see `mcgw.maps.summit_sums.Summits.tiles`."""
+        found = self.listed.tiles()
+        return Table((Column("map", list(self.maps)), *found.columns[3:])) if self.maps else found
 
     @property
     def lay(self) -> float:
@@ -184,7 +191,7 @@ class Fit(Shown):
         return estimates_table(self.estimates).under(f"{self.summits.size} summits {where}", facts)
 
 
-def fit_prepared(ready: Prepared, *, across: int = 4) -> Fit:
+def fit_prepared(ready: Prepared) -> Fit:
     """Estimate eta, R and sigma of a prepared map.
 
     Standard errors are those of a jackknife over the sub-areas, or those that follow from the number of
@@ -195,19 +202,18 @@ def fit_prepared(ready: Prepared, *, across: int = 4) -> Fit:
     ValueError
         If the map has no summit or is too small, or an estimate of sigma is more than its peak to valley.
     """
-    used, form = ready.used, ready.asked.form
+    used, form, across = ready.used, ready.asked.form, ready.asked.parts
 
-    def count(sums_of: Callable[..., SummitSums], across: int) -> SummitSums:
-        return _without_summit_form(sums_of(used, across=across, seen=ready.seen), form)
+    def count(across: int, sums_of: Callable[..., Summits] = summit_sums_of) -> Summits:
+        return _without_summit_form(sums_of(used, across=across, seen=ready.seen), form, used.size)
 
-    counted = count(summit_sums_of, across)
+    counted = count(across)
     number = counted.heights.size
     if not number:
         form_too = ", or --form quadratic" if form_left(ready.levelled, form) else ""
         raise ValueError(f"the map has no summit; give a larger map or a shorter cutoff{form_too}")
     if number < _A_LITTLE * across**2:
-        fewer = min(across, max(math.isqrt(number // _A_LITTLE), _FEW_ACROSS))
-        counted = count(summit_sums_of, fewer)
+        counted = count(min(across, max(math.isqrt(number // _A_LITTLE), _FEW_ACROSS)))
     moments = moments_of(counted)
     if not (moments.m2 > SMALLEST and moments.sigma > 0):  # alpha contains its square
         raise ValueError(
@@ -218,11 +224,12 @@ def fit_prepared(ready: Prepared, *, across: int = 4) -> Fit:
     told = by_moments(counted)
     estimates = {"moments": Estimate.of([told[name] for name in SUMMITS], waves)}
     blur = math.hypot(max(used.pixel), _BLUR * (ready.asked.cutoff or 0.0))
-    peak_to_valley = float(np.ptp(used.heights if ready.seen is None else used.heights[ready.seen]))
+    heights = used.heights if ready.seen is None else used.heights[ready.seen]
+    peak_to_valley = float(np.ptp(heights))
     if number >= _FEWEST:
         fewer = max(min(across, math.isqrt(number // _A_PART)), _LEAST_ACROSS)
-        fine = counted if counted.parts == fewer**2 else count(summit_sums_of, fewer)
-        estimates["summits"] = Estimate.of(by_summits(fine, count(coarse_sums_of, fewer)), waves)
+        fine = counted if counted.parts == fewer**2 else count(fewer)
+        estimates["summits"] = Estimate.of(by_summits(fine, count(fewer, coarse_sums_of)), waves)
         caps = by_caps(fine, blur)
         if caps is not None and caps[2][0] <= peak_to_valley:  # else too many are hidden
             estimates["caps"] = Estimate.of(caps, waves)
@@ -232,33 +239,39 @@ def fit_prepared(ready: Prepared, *, across: int = 4) -> Fit:
                 f"sigma of {METHODS[name]} is {estimate.sigma.value:.4g} m, more than the peak to valley of "
                 f"the map, {peak_to_valley:.4g} m; look at the map, and crop artefacts"
             )
-    seen = None
+    shown = None
     if found := estimates.get("caps"):
-        seen = visible(found.overlap, blur / math.sqrt(2 * found.radius.value * found.sigma.value))
-    x, y = ((a - b) / 2 for a, b in zip(ready.levelled.size, used.size, strict=True))  # of equal margins
+        shown = visible(found.overlap, blur / math.sqrt(2 * found.radius.value * found.sigma.value))
     inside = (slice(None) if used.periodic else slice(EDGE, -EDGE),) * 2
-    counts = used.heights[inside] if ready.seen is None else used.heights[inside][ready.seen[inside]]
+    heights = used.heights[inside] if ready.seen is None else used.heights[inside][ready.seen[inside]]
+    squares = mean_squares(counted)
+    x, y = ((a - b) / 2 for a, b in zip(ready.levelled.size, used.size, strict=True))  # of equal margins
     return Fit(
-        estimates, moments,
-        {x: uncertain(*told[x], waves.spreads[x]) for x in ("m0", "m2", "m4", "alpha")},
-        told["skewness"],
-        summits_of(used, counted, (x, y)),
-        float(counted.heights.mean()) - mean_squares(counted)["z"],
-        counted.area,
-        seen,
-        mean_squares(counted), form, waves, tiles_of(counted),
-        roughness_of(counts), ready.notes,
-    )  # fmt: skip
+        estimates=estimates,
+        moments=moments,
+        numbers={x: uncertain(*told[x], waves.spreads[x]) for x in ("m0", "m2", "m4", "alpha")},
+        skewness=told["skewness"],
+        listed=replace(counted, x=counted.x + x, y=counted.y + y, heights=counted.heights - squares["z"]),
+        visible=shown,
+        mean_squares=squares,
+        form=form,
+        waves=waves,
+        roughness=roughness_of(
+            used.heights[inside] if ready.seen is None else used.heights[inside][ready.seen[inside]]
+        ),
+        notes=ready.notes,
+    )
 
 
-def _without_summit_form(counted: SummitSums, form: Form) -> SummitSums:
-    """Summit heights about their own plane, since deep valleys tilt that of the map."""
+def _without_summit_form(counted: Summits, form: Form, size: tuple[float, float]) -> Summits:
+    """Summit heights about their own plane, since deep valleys tilt that of a map of this size."""
     order = min(ORDERS[form], 2)
     if order < 0 or not counted.heights.size:
         return counted
-    x, y = 2 * counted.summits[2:4] - 1
-    columns = [np.ones_like(x), x, y, *((x * x, x * y, y * y) if order == 2 else ())]
-    basis = np.column_stack(columns)
+    x, y = (
+        2 * (place // p + 0.5) * p / length - 1  # of the pixel that it is in
+        for place, p, length in zip((counted.x, counted.y), counted.pixel, size, strict=True)
+    )
+    basis = np.array([np.ones_like(x), x, y, *((x * x, x * y, y * y) if order == 2 else ())]).T
     found = np.linalg.lstsq(basis, counted.heights, rcond=None)[0]
-    flat = counted.heights - basis[:, 1:] @ found[1:]
-    return replace(counted, summits=np.vstack([flat, counted.summits[1:]]))
+    return replace(counted, heights=counted.heights - basis[:, 1:] @ found[1:])

@@ -14,11 +14,10 @@ import numpy as np
 from scipy import fft, ndimage
 
 from analytic.arrays import Array
-from mcgw.maps.bad_points import spike_heights
+from mcgw.maps.estimates import CROWDED, visible
 from mcgw.maps.fit import Fit
 from mcgw.maps.form import form_left, gaussian_transmission
-from mcgw.maps.hidden_caps import CROWDED, visible
-from mcgw.maps.preparation import Prepared
+from mcgw.maps.preparation import Prepared, spike_heights
 from mcgw.maps.profile import Profile
 from mcgw.maps.profile_fit import ProfileFit
 from mcgw.maps.several_maps import disagreement

@@ -1,7 +1,7 @@
 """Fit a map from its file, in one call."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -95,20 +95,18 @@ def fit(
         "cutoff": cutoff, "form": form, "missing": missing, "spikes": spikes, "trim": trim,
         "long_cutoff": long_cutoff, "lines": lines, "parts": parts,
     }  # fmt: skip
-    asked, across = preparation_of(given)
     size = None if pixel is None else (argument("pixel", pixel, "m"),) * 2
     if isinstance(heights, str | Path | Topography | Profile):
         heights = [heights]
     sources = [Path(each) if isinstance(each, str) else each for each in heights]
     read = partial(read_heights, pixel=size, unit=unit, missing=missing_value)
-    return fit_sources(sources, read, asked, across)[0]
+    return fit_sources(sources, read, preparation_of(given))[0]
 
 
 def fit_sources(
     sources: Sequence[Path | Topography | Profile],
     read: Callable[[Path], Topography | Profile],
     asked: Preparation,
-    across: int,
     use: str = "auto",
 ) -> tuple[Fit | ProfileFit, Prepared | None, str]:
     """Fit maps or profiles of one surface.
@@ -121,8 +119,6 @@ def fit_sources(
         Reads a file.
     asked : Preparation
         Steps.
-    across : int
-        Sub-areas along each axis of a map.
     use : str, optional
         The estimate that cautions are about.
 
@@ -145,8 +141,7 @@ def fit_sources(
         each: list[Any] = [read(source) if isinstance(source, Path) else source]
         assumed = assumed or each[0].assumed_unit
         is_line = isinstance(each[0], Profile)
-        others = fits if is_line else lines
-        if others:
+        if fits if is_line else lines:
             line, area = (name, names[0]) if is_line else (names[0], name)
             raise ValueError(f"{line}: a profile, and {area} is a map; fit them apart")
         if is_line:
@@ -156,14 +151,14 @@ def fit_sources(
             tell(0, 3)
             ready = prepared(each.pop(), asked)  # a large map that stayed in a list would fill the memory
             tell(1, 3)
-            fit = fit_prepared(ready, across=across)
+            fit = fit_prepared(ready)
             tell(2, 3)
             fits.append(replace(fit, cautions=tuple(cautions(fit, ready, use))))
             tell(3, 3)
     if lines:
-        plain = Preparation(asked.cutoff, asked.form)
-        for name in (field.name for field in fields(asked)):
-            if getattr(asked, name) != getattr(plain, name):
+        plain = Preparation(asked.cutoff, asked.form, parts=asked.parts)
+        for name, value in vars(asked).items():
+            if value != getattr(plain, name):
                 option = f"--{name.replace('_', '-')}"
                 raise ValueError(f"{option}: is for maps only; prepare the profile before")
         of_lines = fit_profiles(lines, cutoff=asked.cutoff, form=asked.form)

@@ -1,7 +1,7 @@
 """Several maps of one surface as one fit, whose sub-areas are the maps."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -9,11 +9,9 @@ from scipy.special import chdtrc, ndtr, stdtrit
 
 from analytic import SpectralMoments
 from analytic.arrays import Array
-from mcgw.formats.table import Column, Table
-from mcgw.maps.estimates import SUMMITS, Estimate, Roughness
+from mcgw.maps.estimates import SUMMITS, Estimate, Roughness, Visible
 from mcgw.maps.fit import Fit
-from mcgw.maps.hidden_caps import Visible
-from mcgw.maps.summits import Summits
+from mcgw.maps.summit_sums import Summits
 from mcgw.maps.waves import Spread, Uncertain, Waves, uncertain
 
 _MOMENTS = ("m0", "m2", "m4")
@@ -34,41 +32,42 @@ def pooled(fits: Sequence[Fit], names: Sequence[str]) -> Fit:
     """
     first, areas = fits[0], np.array([fit.area for fit in fits])
     weights = areas / areas.sum()
-
-    def mean(of: Callable[[Fit], Sequence[float]]) -> list[float]:
-        """Return means over the area of several numbers of each fit."""
-        return [float(x) for x in weights @ np.array([of(fit) for fit in fits])]
-
-    moments = SpectralMoments(*mean(lambda fit: [getattr(fit.moments, x) for x in _MOMENTS]))
-    cubes = weights * [(fit.moments.m0 / moments.m0) ** 1.5 for fit in fits]
+    m0, m2, m4 = np.array([[getattr(fit.moments, x) for x in _MOMENTS] for fit in fits]).T
+    moments = SpectralMoments(*(float(weights @ m) for m in (m0, m2, m4)))
+    cubes = weights * (m0 / moments.m0) ** 1.5
     skewness, errors = np.array([fit.skewness for fit in fits]).T
-    all_visible = [fit.visible for fit in fits if fit.visible is not None]
-    visible = Visible(*(weights @ all_visible).tolist()) if len(all_visible) == len(fits) else None
-    methods = [x for x in first.estimates if all(x in fit.estimates for fit in fits)]
+    a, q, sk, ku = np.array([fit.roughness for fit in fits]).T
+    rms = math.sqrt(weights @ q**2)
+    rough = weights @ np.transpose([a, sk * (q / rms) ** 3, ku * (q / rms) ** 4])
+    listed = [fit.listed for fit in fits]
+    points = np.array([x.area / x.sums[0].sum() for x in listed])  # area of each
+    sums = [x.sums.sum(axis=1) * size for x, size in zip(listed, points / points[0], strict=True)]
+    visible = [fit.visible for fit in fits if fit.visible is not None]
+    waves, squares = [fit.waves for fit in fits], [[*fit.mean_squares.values()] for fit in fits]
     return replace(
         first,
         moments=moments,
         numbers={
             x: _of_all(getattr(moments, x), [fit.numbers[x] for fit in fits], weights) for x in first.numbers
         },
-        estimates={x: _estimate(x, fits, weights, moments) for x in methods},
+        estimates={
+            x: _estimate(x, fits, weights, moments)
+            for x in first.estimates
+            if all(x in fit.estimates for fit in fits)
+        },
         skewness=(float(cubes @ skewness), float(np.linalg.norm(cubes * errors))),
-        listed=_listed(fits),
-        mean_summit=float(
-            np.average([fit.mean_summit for fit in fits], weights=[fit.summits.size for fit in fits])
+        listed=replace(
+            Summits.together(listed, np.transpose(sums)),
+            tile=np.repeat(np.arange(len(fits)), [x.heights.size for x in listed]),
         ),
-        area=float(areas.sum()),
-        visible=visible,
-        mean_squares=dict(
-            zip(first.mean_squares, mean(lambda fit: [*fit.mean_squares.values()]), strict=True)
-        ),
+        visible=Visible(*(weights @ visible).tolist()) if len(visible) == len(fits) else None,
+        mean_squares=dict(zip(first.mean_squares, (weights @ squares).tolist(), strict=True)),
         waves=Waves(
-            {x: _together([fit.waves.spreads[x] for fit in fits], weights) for x in first.waves.spreads},
-            sum(fit.waves.independent for fit in fits),
-            np.tensordot(weights**2, [fit.waves.covariance for fit in fits], 1),
+            {x: _together([each.spreads[x] for each in waves], weights) for x in waves[0].spreads},
+            sum(each.independent for each in waves),
+            np.tensordot(weights**2, [each.covariance for each in waves], 1),
         ),
-        tiles=_tiles(fits, names),
-        roughness=Roughness.of(*mean(lambda fit: fit.roughness.means)),
+        roughness=Roughness(float(rough[0]), rms, float(rough[1]), float(rough[2])),
         maps=tuple(names),
         notes=tuple(f"{name}: {line}" for name, fit in zip(names, fits, strict=True) for line in fit.notes),
         cautions=(),
@@ -116,30 +115,3 @@ def _estimate(method: str, fits: Sequence[Fit], weights: Array, moments: Spectra
         values = [density, 1 / float(shares @ (1 / radius)), math.sqrt(variance)]
     each = ([getattr(e, x) for e in found] for x in SUMMITS)
     return Estimate(*(_of_all(value, x, weights) for value, x in zip(values, each, strict=True)))
-
-
-def _listed(fits: Sequence[Fit]) -> Summits:
-    """Summits of one map after the other; heights are relative to the mean of all."""
-    listed = [fit.listed for fit in fits]
-    heights = np.concatenate([fit.summits + fit.mean_summit for fit in fits])
-    return Summits(
-        np.concatenate([x.x for x in listed]),
-        np.concatenate([x.y for x in listed]),
-        heights - heights.mean(),
-        np.concatenate([x.curvatures for x in listed], axis=1),
-        np.repeat(np.arange(len(fits)), [x.heights.size for x in listed]),
-        sum(x.unresolved for x in listed),
-    )
-
-
-def _tiles(fits: Sequence[Fit], names: Sequence[str]) -> Table:
-    """Return a row for each map: its summits as counted, and its moments."""
-    by = "summits" if all("summits" in fit.estimates for fit in fits) else "moments"
-    found = {x: [getattr(fit.estimates[by], x).value for fit in fits] for x in SUMMITS}
-    units = {"eta": "1/m^2", "radius": "m", "sigma": "m", "m0": "m^2", "m2": "", "m4": "1/m^2"}
-    found |= {x: [getattr(fit.moments, x) for fit in fits] for x in _MOMENTS}
-    return Table((
-        Column("map", list(names)),
-        Column("summits", np.array([fit.summits.size for fit in fits])),
-        *(Column(x, np.array(values), unit=units[x]) for x, values in found.items()),
-    ))  # fmt: skip

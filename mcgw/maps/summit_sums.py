@@ -1,54 +1,67 @@
-"""One pass over a map: sums of squares of its derivatives, and its summits, sub-area by sub-area."""
+"""One pass over a map: every summit, and sums of squares of its derivatives, sub-area by sub-area."""
 
-from dataclasses import dataclass
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
 from scipy import ndimage
 
 from analytic.arrays import Array, Ints, Marks
+from mcgw.formats.table import Column, Table
 from mcgw.machine.compiling import njit
 from mcgw.maps.topography import LARGEST, Topography
 
 # Rows of the sums: points, powers of height, squared slopes, squared second derivatives, the latter by plain
-# differences over one pixel and over two, which tell whether the pixel resolves them, and products of slopes.
-SUMS = ("points", "z", "z2", "z3", "slope_x", "slope_y", "bend", "bend_1", "bend_2", "slope_xy")
+# differences too, which tell whether the pixel resolves them, and products of slopes.
+SUMS = ("points", "z", "z2", "z3", "slope_x", "slope_y", "bend", "bend_1", "slope_xy")
 EDGE = 4  # pixels left out at the edge
+_OF_EACH = ("x", "y", "heights", "bends", "curvatures", "tile")
+_HALF = 0.5 - 1e-7  # pixels: a summit lies within its own
+# What stands above their tables in a file.
+SUMMITS = "height is above the mean of the summits, radius is 1/sqrt(curvature_1 curvature_2)"
+TILES = "eta, radius and sigma by the summits of the tile; heights are about the mean of the tile"
 _FIRST = (1 / 12, -8 / 12, 0.0, 8 / 12, -1 / 12)  # the first difference of the fourth order
 
 
 @dataclass(frozen=True)
-class SummitSums:
-    """Sums and summits of a map, the basis of its estimates.
+class Summits:
+    """Summits of a map, and sums over it: the basis of its estimates.
 
     Parameters
     ----------
     sums : ndarray
         Shape (sums, sub-areas), in the order of `SUMS`; m, m^2, ...
-    summits : ndarray
-        Of each summit, shape (8, summits): height above the map's zero, m; mean curvature, 1/m; place along
-        x and y from 0 to 1 across the map; the vertex from the centre of the pixel along x and y, in pixels;
-        and principal curvatures, the larger first, 1/m; the second is nan on ridges between pixels.
-    part : ndarray of int
-        Sub-area of each summit.
-    pixel_area : float
-        m^2.
+    x, y : ndarray
+        Positions from the corner of the map, m, shape (summits,); the centre of its first pixel is half a
+        pixel from the corner. Those of `mcgw.fit` are on the trimmed and cropped map.
+    heights : ndarray
+        Heights above the map's zero, m, shape (summits,).
+    bends : ndarray
+        Mean curvatures, 1/m, shape (summits,).
+    curvatures : ndarray
+        Principal curvatures, shape (2, summits), the larger ones first, 1/m; positive. Both are the mean one,
+        by plain differences, on ridges between pixels.
+    tile : ndarray of int
+        Sub-area of each, counted from 0 along x first.
+    pixel : (float, float)
+        Size of a pixel, m.
     """
 
     sums: Array
-    summits: Array
-    part: Ints
-    pixel_area: float
+    x: Array
+    y: Array
+    heights: Array
+    bends: Array
+    curvatures: Array
+    tile: Ints
+    pixel: tuple[float, float]
 
     @property
-    def heights(self) -> Array:
-        """Heights of the summits, m."""
-        return np.asarray(self.summits[0])
-
-    @property
-    def curvatures(self) -> Array:
-        """Mean curvatures of the summits, 1/m."""
-        return np.asarray(self.summits[1])
+    def radii(self) -> Array:
+        """Radii of spheres that carry nearly the summits' loads, ``1/sqrt(k1 k2)``, m (Greenwood 2006)."""
+        return np.asarray(1 / np.sqrt(self.curvatures[0] * self.curvatures[1]))
 
     @property
     def parts(self) -> int:
@@ -56,20 +69,64 @@ class SummitSums:
         return int(self.sums.shape[1])
 
     @property
-    def used(self) -> list[int]:
-        """Sub-areas that show anything."""
-        return np.flatnonzero(self.sums[0]).tolist()
-
-    def without(self, part: int) -> "SummitSums":
-        """All but one sub-area."""
-        kept = self.part != part
-        sums = np.where(np.arange(self.parts) == part, 0.0, self.sums)
-        return SummitSums(sums, self.summits[:, kept], self.part[kept], self.pixel_area)
-
-    @property
     def area(self) -> float:
-        """m^2."""
-        return float(self.sums[0].sum()) * self.pixel_area
+        """Area of all points that count, m^2."""
+        return float(self.sums[0].sum()) * math.prod(self.pixel)
+
+    def without(self, part: int) -> "Summits":
+        """All but one sub-area."""
+        kept, sums = self.tile != part, np.where(np.arange(self.parts) == part, 0.0, self.sums)
+        rows: Any = {name: getattr(self, name)[..., kept] for name in _OF_EACH}
+        return replace(self, sums=sums, **rows)
+
+    @classmethod
+    def together(cls, found: Sequence["Summits"], sums: Array) -> "Summits":
+        """Summits of one after the other, and sums over all."""
+        rows: dict[str, Any] = {
+            name: np.concatenate([getattr(x, name) for x in found], axis=-1) for name in _OF_EACH
+        }
+        return replace(found[0], sums=sums, **rows)
+
+    def table(self) -> Table:
+        """Return a row for each summit, whose height is above the mean of all."""
+        heights, sharpness = self.heights - self.heights.mean(), ("curvature_1", "curvature_2")
+        lengths = {"x": self.x, "y": self.y, "height": heights, "radius": self.radii}
+        columns = [Column(name, values, unit="m") for name, values in lengths.items()]
+        columns += [Column(*each, unit="1/m") for each in zip(sharpness, self.curvatures, strict=True)]
+        return Table((*columns, Column("tile", self.tile)))
+
+    def tiles(self) -> Table:
+        """Return estimates from each sub-area alone, one row each, counted along x first.
+
+        From its summits: their number, density, inverse mean curvature and standard deviation of heights, nan
+        where they are too few. And spectral moments of heights about its own mean, so that waves longer than
+        the sub-area count less than on the whole map.
+        """
+        points, *sums = np.where(self.sums[0] > 0, self.sums, np.nan)  # where nothing was seen
+        m = dict(zip(SUMS[1:], sums / points, strict=True))
+        number = np.bincount(self.tile, minlength=self.parts)
+
+        def mean(values: Array) -> Array:
+            total = np.bincount(self.tile, values, minlength=self.parts)
+            return np.asarray(np.where(number > 0, total / np.maximum(number, 1), np.nan))
+
+        squares = mean((self.heights - mean(self.heights)[self.tile]) ** 2)
+        several = np.where(number > 1, number / np.maximum(number - 1, 1), np.nan)
+        tile, across = np.arange(self.parts), math.isqrt(self.parts)
+        return Table(
+            (
+                Column("tile", tile),
+                Column("column", tile % across),
+                Column("row", tile // across),
+                Column("summits", number),
+                Column("eta", number / (points * math.prod(self.pixel)), unit="1/m^2"),
+                Column("radius", 1 / mean(self.bends), "R", "m"),
+                Column("sigma", np.sqrt(squares * several), unit="m"),
+                Column("m0", m["z2"] - m["z"] ** 2, unit="m^2"),
+                Column("m2", (m["slope_x"] + m["slope_y"]) / 2),
+                Column("m4", m["bend"], unit="1/m^2"),
+            )
+        )
 
 
 @njit(cache=True)
@@ -115,14 +172,14 @@ def _apex(z: Any, j: Any, i: Any) -> Any:
         x, y = (gy * xy - gx * yy) / det, (gx * xy - gy * xx) / det
         if 2 * max(abs(x), abs(y)) < 1:
             best = max(best, gx * x + gy * y + (xx * x * x + yy * y * y) / 2 + xy * x * y)
-    return best, min(max(x, -0.5), 0.5), min(max(y, -0.5), 0.5)
+    return best, min(max(x, -_HALF), _HALF), min(max(y, -_HALF), _HALF)
 
 
 @njit(cache=True)
 def _pass(
     z: Any, mean: Any, seen: Any, dx: Any, dy: Any, across: Any, sums: Any, summits: Any, part_of: Any
 ) -> Any:
-    """Fill `sums`; write height, curvature, place, shape and sub-area of each summit; give their number.
+    """Fill `sums`; write place, height, curvatures and sub-area of each summit; give their number.
 
     Heights count from their `mean`. Of points that are not `seen`, unless that is empty, nothing is written.
     """
@@ -144,7 +201,6 @@ def _pass(
             xx = (16 * (x1 + w1) - (x2 + w2) - 30 * c) / 12 * per_xx
             yy = (16 * (y1 + v1) - (y2 + v2) - 30 * c) / 12 * per_yy
             xx1, yy1 = (x1 + w1 - 2 * c) * per_xx, (y1 + v1 - 2 * c) * per_yy
-            xx2, yy2 = (x2 + w2 - 2 * c) / 4 * per_xx, (y2 + v2 - 2 * c) / 4 * per_yy
             k = row + column[i]
             sums[0, k] += 1
             sums[1, k] += c
@@ -154,29 +210,27 @@ def _pass(
             sums[5, k] += sy * sy
             sums[6, k] += (xx * xx + yy * yy) / 2
             sums[7, k] += (xx1 * xx1 + yy1 * yy1) / 2
-            sums[8, k] += (xx2 * xx2 + yy2 * yy2) / 2
-            sums[9, k] += sx * sy
+            sums[8, k] += sx * sy
             higher = (c >= w1) & (c >= v1) & (c > x1) & (c > y1)  # no branch: what it takes is guessed wrong
             if higher and found < part_of.size and _is_summit(z, b, a):
-                rise, summits[4, found], summits[5, found] = _apex(z, b, a)
-                summits[0, found] = z[b, a] + rise - mean
-                summits[1, found] = -(xx + yy) / 2
-                summits[2, found], summits[3, found] = (i + 0.5) / columns, (j + 0.5) / rows
+                rise, x, y = _apex(z, b, a)
+                summits[0, found], summits[1, found] = (a + 0.5 + x) * dx, (b + 0.5 + y) * dy
+                summits[2, found], summits[3, found] = z[b, a] + rise - mean, -(xx + yy) / 2
                 xy = 0.0
                 for p in range(5):
                     for q in range(5):
                         xy += _FIRST[p] * _FIRST[q] * (z[b + p - 2, a + q - 2] - mean)
                 xy *= per_x * per_y
                 turn = np.hypot((xx - yy) / 2, xy)
-                summits[6, found], summits[7, found] = turn - (xx + yy) / 2, -turn - (xx + yy) / 2
-                if not summits[7, found] > 0:  # the neighbours are lower: plain differences have a sign
-                    summits[6, found], summits[7, found] = -(xx1 + yy1) / 2, np.nan
+                summits[4, found], summits[5, found] = turn - (xx + yy) / 2, -turn - (xx + yy) / 2
+                if not summits[5, found] > 0:  # the neighbours are lower: plain differences have a sign
+                    summits[4, found] = summits[5, found] = -(xx1 + yy1) / 2
                 part_of[found] = k
                 found += 1
     return found
 
 
-def summit_sums_of(topography: Topography, *, across: int = 4, seen: Marks | None = None) -> SummitSums:
+def summit_sums_of(topography: Topography, *, across: int = 4, seen: Marks | None = None) -> Summits:
     """Go once over a map that lacks no points, with `across` sub-areas along each axis.
 
     Four points at each edge are left out, unless the map is periodic. Where a mask says what was `seen`,
@@ -203,7 +257,7 @@ def summit_sums_of(topography: Topography, *, across: int = 4, seen: Marks | Non
         )
     sums = np.zeros((len(SUMS), across * across))
     most = ((rows + 1) // 2) * ((columns + 1) // 2)  # one in every square of two points by two
-    summits, part = np.empty((8, most)), np.empty(most, dtype=np.int64)
+    summits, part = np.empty((6, most)), np.empty(most, dtype=np.int64)
     found = _pass(z, mean, counts, *topography.pixel, across, sums, summits, part)
     if not sums[0].any():
         raise ValueError("too many points are missing, so none has all its neighbours; use --missing fill")
@@ -213,11 +267,13 @@ def summit_sums_of(topography: Topography, *, across: int = 4, seen: Marks | Non
             f"{topography.pixel[0]:.3g} m: squares of their derivatives overflow, or points are missing; "
             "give the right unit and pixel"
         )
-    dx, dy = topography.pixel
-    return SummitSums(sums, summits[:, :found].copy(), part[:found].copy(), dx * dy)
+    (dx, dy), added = topography.pixel, EDGE if topography.periodic else 0  # pixels around the map
+    x, y, heights, bends, *curvatures = summits[:, :found].copy()
+    places = x - added * dx, y - added * dy
+    return Summits(sums, *places, heights, bends, np.array(curvatures), part[:found].copy(), topography.pixel)
 
 
-def coarse_sums_of(topography: Topography, *, across: int = 4, seen: Marks | None = None) -> SummitSums:
+def coarse_sums_of(topography: Topography, *, across: int = 4, seen: Marks | None = None) -> Summits:
     """Go over the four maps of every second point along each axis, and put together what they show.
 
     Raises
@@ -233,9 +289,12 @@ def coarse_sums_of(topography: Topography, *, across: int = 4, seen: Marks | Non
             every = (slice(j, rows, 2), slice(i, columns, 2))
             half = Topography(topography.heights[every], pixel, topography.periodic)
             found.append(summit_sums_of(half, across=across, seen=None if seen is None else seen[every]))
-    return SummitSums(
-        np.sum([f.sums for f in found], axis=0),
-        np.concatenate([f.summits for f in found], axis=1),
-        np.concatenate([f.part for f in found]),
-        found[0].pixel_area,
-    )
+    return Summits.together(found, np.sum([f.sums for f in found], axis=0))
+
+
+def variation(values: Array) -> float:
+    """Return the standard deviation over the tiles, over the mean; nan where fewer than two tell anything."""
+    values = values[np.isfinite(values)]
+    if values.size < 2 or not values.any():
+        return math.nan
+    return float(values.std(ddof=1) / values.mean())

@@ -92,7 +92,7 @@ ROWS = [
         ("--form quadratic", {"asked.form": "quadratic", "asked.cutoff": None}),
         ("--missing fill", {"asked.missing": "fill"}), ("--spikes remove", {"asked.spikes": "remove"}),
         ("--lines rows", {"asked.lines": "rows"}), ("--trim 15", {"asked.trim": 15}),
-        ("--use moments", {"use": "moments", "across": 4}),
+        ("--use moments", {"use": "moments", "asked.parts": 4}),
         ("--pixel 2um", {"read.keywords.pixel": near((2e-6, 2e-6)), "read.keywords.unit": None}),
         ("--unit mm", {"read.keywords.unit": "mm"}),
         ("--missing-value 8e-6", {"read.keywords.missing": 8e-6}))),

@@ -50,7 +50,7 @@ def test_of_a_map_are_means_over_eight_rays():
     rng = np.random.default_rng(20261124)
     heights = rough(rng, 96, 64, (1e-6, 1.5e-6)).heights
     one = Pressed(heights, (9.6e-5, 9.6e-5), 1e11, 5e7)
-    summits, which = one._counted[1], np.arange(3, one.spots.heights.size, 7)
+    summits, which = one._counted, np.arange(3, one.spots.heights.size, 7)
     radii = rng.uniform(1e-6, 9e-6, which.size)
     found = fallen(
         one._map, summits, which, Spots.hertz(one.spots.heights[which], summits.radii[which], 1e11), radii

@@ -122,7 +122,7 @@ def waves(along, down, n=160):
 ])  # fmt: skip
 def test_few_summits_have_few_sub_areas(shape, parts, tiles, counted, without_caps):
     """Two summits in each on average, but three of them along each axis; fewer than eight are not counted."""
-    fit = fit_map(waves(*shape), cutoff=None, form="none", across=parts)
+    fit = fit_map(waves(*shape), cutoff=None, form="none", parts=parts)
     assert fit.summits.size == math.prod(shape)
     assert len(fit.tiles) == tiles
     assert ("summits" in fit.estimates) == counted
@@ -225,7 +225,7 @@ def test_the_very_summits_carry_what_they_carry_literally(rough, tmp_path):
     ensemble = mcgw.run(mcgw.scene_from(mcgw.scene_text(scene)), tmp_path / "summits.h5")
     assert scene.surface.radius == pytest.approx(1 / np.mean(1 / rough.listed.radii), rel=1e-12)
     d = scene.surface.sigma * np.array(scene.separations)
-    exact = summit_contact(rough.listed.heights, rough.listed.radii, 70e9, d)
+    exact = summit_contact(rough.summits, rough.listed.radii, 70e9, d)
     for name in ("load", "area", "stiffness", "contacts"):
         np.testing.assert_allclose(ensemble[name], getattr(exact, name), rtol=1e-11)
     assert exact.load[0, 0] > 0

@@ -174,8 +174,8 @@ def known(fit, name, relative):
 
 # Of each caution: how far it goes without a word, and what is changed to be there.
 LIMITS = {
-    "skewness": (0.3, lambda f, x: replace(known(f, "m0", 0.01), roughness=replace(f.roughness, sk=-x))),
-    "skewness, known": (0.6, lambda f, x: replace(known(f, "m0", 0.1), roughness=replace(f.roughness, sk=x))),
+    "skewness": (0.3, lambda f, x: replace(known(f, "m0", 0.01), roughness=f.roughness._replace(sk=-x))),
+    "skewness, known": (0.6, lambda f, x: replace(known(f, "m0", 0.1), roughness=f.roughness._replace(sk=x))),
     "peaks": (1.2, lambda f, x: replace(f, peaks=(x, 1.0))),
     "peaks, too few": (1.2, lambda f, x: replace(f, peaks=(1.0, x))),
     "alpha": (1 / 1.5, lambda f, x: replace(f, moments=SpectralMoments(1.0, 1.0, 1 / x))),

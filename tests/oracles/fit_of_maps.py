@@ -3,5 +3,5 @@
 from oracles.inside import Preparation, fit_prepared, prepared
 
 
-def fit_map(topography, *, cutoff, across=4, **steps):
-    return fit_prepared(prepared(topography, Preparation(cutoff, **steps)), across=across)
+def fit_map(topography, *, cutoff, **steps):
+    return fit_prepared(prepared(topography, Preparation(cutoff, **steps)))

@@ -38,19 +38,16 @@ MODULES = {
     "mcgw.jobs.executors": "_GRACE dask_executor drive heed_signals Jobs share_of Signals",
     "mcgw.jobs.making": "_merged commit_block",
     "mcgw.machine.memory": "check_memory memory_available",
-    "mcgw.maps.bad_points": "filled recorded small_spike_heights spike_heights usual_bend",
     "mcgw.maps.envelope": "envelope hidden_summits",
-    "mcgw.maps.estimates": (
-        "by_caps by_moments by_summits Estimate jackknife mean_squares moments_of roughness_of "
-        "skewness_of SUMMITS"
-    ),
+    "mcgw.maps.estimates": "by_caps by_summits SUMMITS unhidden visible",
     "mcgw.maps.fit": "fit_prepared",
     "mcgw.maps.fit_cautions": "profile_cautions",
     "mcgw.maps.form": "filter_variance gaussian_transmission lowpass smooth without_form without_offsets",
-    "mcgw.maps.hidden_caps": "unhidden visible",
-    "mcgw.maps.preparation": "Preparation prepared",
+    "mcgw.maps.preparation": (
+        "filled Preparation prepared recorded small_spike_heights spike_heights usual_bend"
+    ),
     "mcgw.maps.fitted_scene": "write_scene",
-    "mcgw.maps.summit_sums": "coarse_sums_of summit_sums_of SummitSums SUMS",
+    "mcgw.maps.summit_sums": "coarse_sums_of summit_sums_of Summits SUMS variation",
     "mcgw.reports.plan": "plan_text",
     "mcgw.reports.html": "pressure_panels report_html round_pressures solved_pressures spread_panel svg_of",
     "mcgw.reports.solved_loads": "correlation solutions_text",

@@ -12,7 +12,7 @@ from test_random_radii import LAWS as OTHERS
 
 import analytic
 import mcgw
-from mcgw.maps.summits import SUMMITS, Summits
+from mcgw.maps.summit_sums import SUMMITS, Summits
 
 K = 200
 MODULUS = 78.6e9
@@ -51,7 +51,8 @@ def table(tmp_path):
     """The summits in a file as `mcgw fit --summits` writes it."""
     curvatures = np.array([1.25 / RADII, 0.8 / RADII])
     place = np.linspace(0, 1e-3, K)
-    summits = Summits(place, place, Z, curvatures, np.zeros(K, dtype=np.int64), 0)
+    tile = np.zeros(K, dtype=np.int64)
+    summits = Summits(place[None], place, place, Z, place, curvatures, tile, (1.0, 1.0))
     summits.table().write(tmp_path / "summits.csv", comment=SUMMITS)
     return tmp_path / "summits.csv"
 
@@ -130,7 +131,7 @@ def test_a_scene_reads_the_same_again(table):
     beside = mcgw.scene_text(x, heights_file=table.name)
     assert mcgw.scene_from(beside, folder=table.parent) == x
     assert len(beside) < 2000
-    with_lists = HEAD + f"[summits]\nheights = {Z.tolist()}\nradii = {RADII.tolist()}\n" + ASKED
+    with_lists = HEAD + f"[summits]\nheights = {(Z - Z.mean()).tolist()}\nradii = {RADII.tolist()}\n" + ASKED
     found = mcgw.scene_from(with_lists)
     assert found.heights == from_file(table).heights
     assert found.summits.ratios == pytest.approx(RADII * np.mean(1 / RADII), rel=1e-14)
