@@ -11,9 +11,8 @@ from scipy.special import ndtr, ndtri
 
 from analytic.arrays import Array
 from analytic.curvature import MEAN_CURVATURE
-from analytic.distribution import Counted, Law
+from analytic.distribution import Counted, Law, OneAsperity, shares, shares_at
 from analytic.height_rule import HeightRule
-from analytic.lattice_sums import OneAsperity, shares, shares_at
 from analytic.mean_model import LOWEST
 from analytic.measured_summits import MeasuredHeights
 from analytic.quantities import quantity_of
@@ -40,7 +39,7 @@ def distribution_of(model: Any, quantity: str, h: float, *, other: bool = False)
     lowest = -np.inf if one.low.min(initial=0) < 0 else 0.0
     again = partial(distribution_of, model, quantity, h, other=True)
     known = model.cumulants(quantity, h)
-    return Law(unit * x, upto, (float(known.mean), float(known.variance)), (lowest, np.inf), again)
+    return Law(unit * x, upto, (lowest, np.inf), again, (float(known.mean), float(known.variance)))
 
 
 def one_asperity(model: Any, quantity: str, h: float, cells: int) -> OneAsperity:
@@ -111,11 +110,8 @@ def separation_law_of(model: Any, load: float, quantity: str, *, other: bool = F
     x = np.interp(np.linspace(0, len(h) - 1, _TABLE), np.arange(len(h)), h)
     smooth = np.maximum.accumulate(make_interp_spline(h, z, min(_DEGREE, len(h) - 1))(x))
     x, upto = x[np.abs(smooth) < SCORES], ndtr(smooth[np.abs(smooth) < SCORES])
-    middle, p = (x[1:] + x[:-1]) / 2, np.diff(upto)
-    mean = float(p @ middle / p.sum())
-    moments = mean, float(p @ (middle - mean) ** 2)
     again = partial(separation_law_of, model, load, quantity, other=True)
-    return Law(x, upto, moments, (-np.inf, np.inf), again)
+    return Law(x, upto, (-np.inf, np.inf), again)
 
 
 def scores_of(

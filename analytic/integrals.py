@@ -35,7 +35,7 @@ def _relative(n: float, h: float, grading: Grading, breaks: Array) -> float:
 def _absolute(n: float, h: float, grading: Grading, heights: HeightLaw) -> float:
     """``int (s-h)^n g density`` over s > h."""
     rule = HeightRule.over([h], grading, heights, power=1, exponent=n + 1)
-    return float(np.sum(rule.probabilities * grading(rule.heights) * (rule.heights - h) ** n))
+    return float(rule.probabilities @ (grading(rule.heights) * (rule.heights - h) ** n))
 
 
 def quotient(

@@ -36,7 +36,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic.arrays import Array
+from analytic.arrays import Array, check_positive
 from analytic.quantities import JOINT, NOT_SUMS, SEPARATIONS, Quantity, quantity_of
 from analytic.surface import Surface
 
@@ -94,9 +94,7 @@ class Interaction:
     def __post_init__(self) -> None:
         if self.reference not in get_args(Reference):
             raise ValueError(f'reference = {self.reference!r}: give "body" or "mean-plane"')
-        modulus = self.bulk_modulus
-        if modulus is not None and not (math.isfinite(modulus) and modulus > 0):
-            raise ValueError(f"bulk_modulus = {modulus!r}: give a finite number > 0, in Pa")
+        check_positive("Pa", bulk_modulus=self.bulk_modulus)
 
     def compliance(self, surface: Surface, n_asperities: float) -> float:
         """Return how far each newton on the surface lowers the plane that the asperities feel, m/N."""

@@ -20,8 +20,7 @@ import numpy as np
 from numpy.polynomial import HermiteE
 from numpy.typing import ArrayLike
 
-from analytic.arrays import Array, hold
-from analytic.laws.law import check_positive
+from analytic.arrays import Array, check_positive, hold
 from analytic.nayak import Nayak
 from analytic.piecewise import fitted
 from analytic.quadrature import panelled
@@ -59,17 +58,6 @@ class Gas:
         check_positive("m", **{"gas.jump": self.jump})
 
 
-@dataclass(frozen=True, slots=True)
-class _Kind:
-    """Conductivity at T; accommodation at engineering surfaces; specific heats; Pr; mean free path, m."""
-
-    conductivity: Callable[[float], float]
-    accommodation: float
-    heats: float
-    prandtl: float
-    path: float
-
-
 def _power(at_300: float, exponent: float) -> Callable[[float], float]:
     return lambda t: at_300 * math.pow(t / 300, exponent)
 
@@ -79,45 +67,19 @@ def _of_air(t: float) -> float:
     return 2.64638e-3 * math.pow(t, 1.5) / (t + 245.4 * math.pow(10, -12 / t))
 
 
+# Of each gas the conductivity at T, accommodation, ratio of specific heats, Pr, and mean free path, m.
 # Conductivities: powers of T through 300 and 400 K of the CRC Handbook of Chemistry and Physics, which from
 # 250 to 500 K are off by at most 3 %. Mean free paths: at 288 K and one atmosphere, from viscosities.
 # Accommodation: M/(M + 6.8), M the molar mass in g/mol, times 1.4 where molecules have two atoms (S. Song,
 # M. M. Yovanovich, 1987; recalled), and the usual value for air.
-_KINDS = {
-    "air": _Kind(_of_air, 0.87, 1.4, 0.71, 64e-9),
-    "argon": _Kind(_power(0.0179, 0.81), 0.85, 5 / 3, 0.67, 66.9e-9),
-    "helium": _Kind(_power(0.1567, 0.681), 0.37, 5 / 3, 0.67, 186e-9),
-    "hydrogen": _Kind(_power(0.1869, 0.727), 0.29, 1.4, 0.69, 117.5e-9),
-    "nitrogen": _Kind(_power(0.026, 0.754), 0.85, 1.4, 0.71, 62.9e-9),
+_KINDS: dict[str, tuple[Callable[[float], float], float, float, float, float]] = {
+    "air": (_of_air, 0.87, 1.4, 0.71, 64e-9),
+    "argon": (_power(0.0179, 0.81), 0.85, 5 / 3, 0.67, 66.9e-9),
+    "helium": (_power(0.1567, 0.681), 0.37, 5 / 3, 0.67, 186e-9),
+    "hydrogen": (_power(0.1869, 0.727), 0.29, 1.4, 0.69, 117.5e-9),
+    "nitrogen": (_power(0.026, 0.754), 0.85, 1.4, 0.71, 62.9e-9),
 }
 GASES = tuple(_KINDS)
-
-
-def gas_of(name: str, temperature: float = ROOM, pressure: float = ATMOSPHERE) -> Gas:
-    """Return a gas between engineering surfaces.
-
-    Parameters
-    ----------
-    name : {"air", "argon", "helium", "hydrogen", "nitrogen"}
-        Which.
-    temperature, pressure : float, optional
-        K and Pa.
-
-    Returns
-    -------
-    Gas
-        Its conductivity, and its jump distance at two walls.
-
-    Examples
-    --------
-    >>> gas = gas_of("helium", temperature=300.0)
-    >>> gas.conductivity, round(gas.jump, 8)
-    (0.1567, 3.18e-06)
-    """
-    kind = _KINDS[name]
-    walls = 2 * (2 - kind.accommodation) / kind.accommodation
-    jump = walls * 2 * kind.heats / ((kind.heats + 1) * kind.prandtl) * kind.path
-    return Gas(kind.conductivity(temperature), jump * temperature / _AT * ATMOSPHERE / pressure)
 
 
 @dataclass(frozen=True)
@@ -140,6 +102,10 @@ class Joint:
 
     Examples
     --------
+    >>> helium = Joint("helium", temperature=300.0).held
+    >>> helium.conductivity, round(helium.jump, 8)
+    (0.1567, 3.18e-06)
+
     >>> import analytic
     >>> surface = analytic.Surface(sigma=0.9e-6, radius=1e-5, eta=1e10, nominal_area=1e-4, E_star=1e11)
     >>> gap = analytic.Joint("air", rms=1e-6).gap(surface, analytic.Gaussian())
@@ -166,12 +132,16 @@ class Joint:
 
     @property
     def held(self) -> Gas | None:
-        """The gas; None for a vacuum."""
+        """The gas, one given by name between engineering surfaces; None for a vacuum."""
         if isinstance(self.gas, Gas):
             return self.gas
         if self.gas == "vacuum":
             return None
-        return gas_of(self.gas, self.temperature or ROOM, self.gas_pressure or ATMOSPHERE)
+        conductivity, accommodation, heats, prandtl, path = _KINDS[self.gas]
+        t, p = self.temperature or ROOM, self.gas_pressure or ATMOSPHERE
+        walls = 2 * (2 - accommodation) / accommodation
+        jump = walls * 2 * heats / ((heats + 1) * prandtl) * path
+        return Gas(conductivity(t), jump * t / _AT * ATMOSPHERE / p)
 
     def gap(self, surface: Surface, heights: Any, moments: SpectralMoments | None = None) -> "Gap":
         """Return the gap conductance of a surface.

@@ -30,7 +30,6 @@ from analytic.surface import Surface
 LOWEST, _HIGHEST = -40.0, 1000.0  # separations that are looked at
 _RAREST = 1e-300  # share of heights above the highest separation that is looked at
 _TOGETHER, _SHARED = 12, 1e-12  # separations that share a rule, and least share that touches at the last
-_KEPT = 4_000_000  # points of rules over heights and radii
 
 
 @dataclass(frozen=True)
@@ -168,7 +167,16 @@ class MeanModel:
         ndarray
             In the shape of `h`; nan where no contact is to be expected in double precision.
         """
-        return self._in_parts(h, partial(self._share_by, piece))
+
+        def of(h: Array) -> Array:
+            rule = self._rule(h, ["contacts"], power=1, exponent=1.0)
+            branch, above = self.ways.loading.with_radii(rule.ratios), rule.heights - h[:, None]
+            pieces = branch.pieces(h[:, None], above, self.grading(rule.heights)).T
+            some, every = (rule.mean(np.where(kind, 1.0, 0.0)) for kind in (pieces == piece, pieces >= 0))
+            with np.errstate(invalid="ignore"):
+                return some / every
+
+        return self._in_parts(h, of)
 
     def separation_at(self, quantity: str, value: ArrayLike) -> Array:
         """Separation at which the mean has a given value.
@@ -212,7 +220,7 @@ class MeanModel:
         h = np.asarray(separations, dtype=np.float64)
         for name in quantities:
             asked(self, name, h)
-        return self._rule(h, self.ways.among(quantities), cuts)
+        return self._rule(h, quantities, cuts)
 
     @cached_property
     def ways(self) -> Branch:
@@ -221,28 +229,12 @@ class MeanModel:
         return Branch(law, self.unload_from, None if self.film is None else self.film.on(self.surface))
 
     def _rule(
-        self, h: Array, branches: tuple[Branch, ...] = (), cuts: Cuts | None = None, **powers: float
+        self, h: Array, quantities: Sequence[str] = (), cuts: Cuts | None = None, **powers: float
     ) -> HeightRule:
-        """Return `HeightRule.over` the summits; the same again, unless there are `cuts`."""
-        key = (branches, h.tobytes(), *powers.values())  # each quantity and statistic asks again
-        if cuts is None and key in self._rules:
-            return self._rules[key]
-        new = HeightRule.over(
+        branches = self.ways.among(quantities)
+        return HeightRule.over(
             h, self.grading, self.heights, self.curvature, branches=branches, cuts=cuts, **powers
         )
-        if cuts is None:
-            while sum(kept.heights.size for kept in self._rules.values()) > _KEPT:
-                self._rules.pop(next(iter(self._rules)))
-            self._rules[key] = new
-        return new
-
-    @cached_property
-    def _rules(self) -> dict[tuple[Any, ...], HeightRule]:
-        return {}
-
-    def __getstate__(self) -> dict[str, Any]:
-        """Leave out rules, which are large: other processes compute their own."""
-        return {name: value for name, value in vars(self).items() if name != "_rules"}
 
     def _mean(self, q: Quantity, h: ArrayLike) -> Array:
         """Mean of what one asperity adds, over the scale, at separations of any shape."""
@@ -265,20 +257,8 @@ class MeanModel:
         return np.asarray(rows.reshape(np.shape(h) + rows.shape[1:]))
 
     def _mean_by(self, q: Quantity, h: Array, slope: bool = False) -> Array:
-        rule = self._rule_of(q, h)
+        rule = self._rule(h, [q.name], power=1, exponent=q.exponent + 1)  # there may be no variance
         return rule.mean(rule.terms([q.name], h, self.grading, self.ways, slope=slope))
-
-    def _rule_of(self, q: Quantity, h: Array) -> HeightRule:
-        """Return a rule for the mean of one quantity, which there may be where there is no variance."""
-        return self._rule(h, self.ways.among([q.name]), power=1, exponent=q.exponent + 1)
-
-    def _share_by(self, piece: int, h: Array) -> Array:
-        q = quantity_of("contacts")
-        rule, contacts = self._rule_of(q, h), self._mean_by(q, h)
-        branch, h = self.ways.loading.with_radii(rule.ratios), h[:, None]
-        pieces = branch.pieces(h, rule.heights - h, self.grading(rule.heights))
-        with np.errstate(invalid="ignore"):
-            return np.asarray(rule.mean((pieces == piece).T) / contacts)
 
     def _grid(self, q: Quantity) -> Array:
         """Separations from where all touches to where probabilities underflow, or the highest height.

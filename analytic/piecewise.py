@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from analytic.arrays import Array, Ints, hold
+from analytic.arrays import Array, hold
 from analytic.roots import sign_changes
 
 MOST_PIECES = 4096  # as text they stay below two megabytes
@@ -109,7 +109,8 @@ class PiecewiseSeries:
         piece = np.searchsorted(high[:-1], s.real, side="right")
         a, b = low[piece], high[piece]
         inside = np.clip(s.real, a, b) + (1j * s.imag if np.iscomplexobj(s) else 0.0)
-        return _clenshaw(c, piece, ((inside - a) - (b - inside)) / (b - a))
+        x = ((inside - a) - (b - inside)) / (b - a)
+        return np.asarray(chebyshev.chebval(x, c[:, piece], tensor=False))
 
     def agrees(self, other: "PiecewiseSeries") -> bool:
         """Return whether both stand for one function, resolved perhaps where its last digits are others."""
@@ -148,14 +149,6 @@ def _floats(values: Iterable[float]) -> tuple[float, ...]:
 
 def _rising(values: tuple[float, ...]) -> bool:
     return bool(np.all(np.isfinite(values)) and np.all(np.diff(values) > 0))
-
-
-def _clenshaw(c: Array, piece: Ints, x: Any) -> Array:
-    """Sum of the Chebyshev series of a piece at x, element by element."""
-    twice, last, value = 2 * x, np.zeros_like(x), np.zeros_like(x)
-    for row in c[:0:-1]:
-        last, value = value, row[piece] + (twice * value - last)
-    return np.asarray(c[0][piece] + (x * value - last))
 
 
 @cache

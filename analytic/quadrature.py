@@ -9,6 +9,7 @@ one width. Means and variances underflow with its density, beyond h = 37.
 
 import math
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from functools import cache
 
 import numpy as np
@@ -201,9 +202,11 @@ def extent(grading: Grading, heights: HeightLaw, separations: Sequence[float]) -
     bottom = max(float(heights.ppf(np.array(_RARE))), heights.support[0])
     low = max(float(h[0]), bottom)
     high = max([sure, *(_above(heights, _RARE, start) for start in (-math.inf, h[-1]))])
-    if not isinstance(heights, MeasuredHeights):
-        ends = _of_moments(grading, heights, h)
-        low, high = min(low, max(ends[0], float(h[0]))), max(high, ends[1])
+    for power, exponent in () if isinstance(heights, MeasuredHeights) else _SUMS:
+        with suppress(ValueError):  # its message is for those who ask for this moment
+            ends = ends_of(heights, h, grading, power, exponent)
+            low, high = min(low, max(ends[0], float(h[0]))), max(high, ends[1])
+            break
     high = min(math.ceil(_GRID * high) / _GRID, end)
     return (low, high) if low < high else (low, low + 1.0)
 
@@ -213,16 +216,6 @@ def _above(heights: HeightLaw, share: float, start: float) -> float:
     with np.errstate(all="ignore"):
         found = float(heights.isf(np.array(share), start))
     return found if math.isfinite(found) else -math.inf
-
-
-def _of_moments(grading: Grading, heights: HeightLaw, h: Array) -> tuple[float, float]:
-    """Range of the highest moments that there are in double precision."""
-    for power, exponent in _SUMS:
-        try:
-            return ends_of(heights, h, grading, power, exponent)
-        except ValueError:  # its message is for those who ask for this moment
-            continue
-    return math.inf, -math.inf
 
 
 def fall_of(mean: Callable[[Array], Array], h: ArrayLike) -> Array:

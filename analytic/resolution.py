@@ -1,14 +1,16 @@
 """Where a grading varies: its pieces and the series that stand for it there, and negative moduli."""
 
+from collections.abc import Callable
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from analytic.arrays import Array
+from analytic.arrays import Array, Ints
 from analytic.gradings import Clipped, Custom, Exponential, Grading, Homogeneous, Table
 from analytic.piecewise import MOST_PIECES, PiecewiseSeries, chebyshev_points, fitted, to_coefficients
+from analytic.roots import sign_changes
 
 _LONG, _SHORT = 25, 13  # terms of polynomials: for Gauss rules, and to stand for a grading
 _WIDEST = 4.0
@@ -23,6 +25,9 @@ _REMEMBERED = 256  # ranges, each of which every bound of a law and every slope 
 _NOISE = 2.0**-50  # of a grading, over its greatest value: more is a mistake
 _SLIVER = 64  # spacings of floats: pieces so narrow only close in on a jump
 _ABOUT = 2.0**-8  # a kink is what no polynomial describes up to here on either side
+_STEP, _POINTS = 0.5, np.linspace(0, 1, 33)  # heights at which a bound is looked at, between its breaks
+_NEARBY = 2.0**-14  # heights on either side that tell whether a bound comes nearer
+_ROUGHLY = 2.0**24  # spacings of heights to which its turn is found: it hardly moves there
 _DATA = Homogeneous, Exponential, Table, PiecewiseSeries
 
 
@@ -168,6 +173,28 @@ def _found_breaks(same: _Same, low: float, high: float, noise_of_one: float) -> 
     edges = np.unique([low, *declared, *marks(low, high, _WIDEST), high])
     edges = _bisected(_LONG, grading, edges, noise_of_one)
     return tuple(_merged(_LONG, grading, edges, declared)[1:-1].tolist())
+
+
+def stretches(
+    beyond: Callable[[Array, Ints], Array], grading: Grading, low: float, high: float, radii: int
+) -> Array:
+    """Return increasing ends of stretches on each of which heights only go beyond bounds, or only back."""
+    breaks = np.array(resolved_breaks(grading, low, high))
+    sides = np.concatenate([np.nextafter(breaks, -np.inf), breaks, np.nextafter(breaks, np.inf)])
+    ends = np.unique([low, *sides[(low < sides) & (sides < high)], *marks(low, high, _STEP), high])
+    s = np.unique(ends[:-1, None] + np.diff(ends)[:, None] * _POINTS)
+
+    def curve(x: Array, which: Ints) -> Array:  # the arctangent rises with it, also where it is infinite
+        return np.arctan(beyond(x, which))
+
+    rises = np.diff(curve(s, np.arange(radii)[:, None])) >= 0
+    bound, which, i = np.nonzero(rises[..., :-1] != rises[..., 1:])
+
+    def rise(x: Array, n: Ints) -> Array:
+        around = np.diff(curve(x + _NEARBY * np.array([[-1], [1]]), which[n]), axis=-2)
+        return np.asarray(around[bound[n], 0, np.arange(n.size)])
+
+    return np.unique([*ends, *sign_changes(rise, s[i], s[i + 2], np.full(i.size, _ROUGHLY))])
 
 
 def first_negative(grading: Grading, low: float, high: float) -> float | None:

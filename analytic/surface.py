@@ -2,7 +2,9 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass
+
+from analytic.arrays import check_positive
 
 LEAST_ALPHA = 1.5  # of an isotropic surface: all its waves have one length
 # Variance of the summit heights is (1 - 0.8968/alpha) m0 (Bush, Gibson and Thomas 1975), exactly:
@@ -73,13 +75,6 @@ def composite_modulus(bodies: Sequence[Body]) -> float:
     return 1 / compliance
 
 
-def _check_positive(of: "Surface | SpectralMoments") -> None:
-    for field in fields(of):
-        value = getattr(of, field.name)
-        if not (math.isfinite(value) and value > 0):
-            raise ValueError(f"{field.name} = {value!r}: give a finite number > 0")
-
-
 @dataclass(frozen=True, slots=True)
 class Surface:
     """The equivalent rough surface of Greenwood and Williamson, pressed on a rigid plane.
@@ -110,7 +105,7 @@ class Surface:
     E_star: float
 
     def __post_init__(self) -> None:
-        _check_positive(self)
+        check_positive("", **asdict(self))
 
     @property
     def n_asperities(self) -> float:
@@ -146,7 +141,7 @@ class SpectralMoments:
     m4: float
 
     def __post_init__(self) -> None:
-        _check_positive(self)
+        check_positive("", **asdict(self))
 
     @property
     def alpha(self) -> float:

@@ -1,13 +1,12 @@
 """Contact laws of one asperity, and those of scene files by their names there."""
 
 from analytic.laws.adhesion import DerjaguinMullerToporov, JohnsonKendallRoberts
-from analytic.laws.branch import Branch
+from analytic.laws.branch import Branch, Regimes
 from analytic.laws.custom import CustomLaw
 from analytic.laws.elastic import Coated, PowerLawGraded
 from analytic.laws.elastic_plastic_laws import ChangEtsionBogy, JacksonGreen, KogutEtsion, ZhaoMaiettaChang
 from analytic.laws.film import Film, Layer, SpotConductance, crowding_factor
 from analytic.laws.law import ContactLaw, Hertz, piece_of
-from analytic.laws.regimes import Regimes
 
 __all__ = [
     "Branch", "ChangEtsionBogy", "Coated", "ContactLaw", "CustomLaw", "DerjaguinMullerToporov", "Film",

@@ -15,16 +15,45 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from analytic.arrays import Array, Ints
+from analytic.arrays import Array, Ints, Marks
 from analytic.gradings import Grading, Homogeneous
 from analytic.laws.film import SpotConductance
 from analytic.laws.law import ContactLaw, piece_of, slope_in_root
-from analytic.laws.regimes import Regimes, stretches
 from analytic.quantities import quantity_of
+from analytic.resolution import stretches
 from analytic.roots import sign_changes
 
 _ROUNDING = 1e-9  # of a law that goes on smoothly
 _SAME = 8  # spacings of floating-point numbers between heights that are not told apart
+
+
+@dataclass(frozen=True)
+class Regimes:
+    """Intervals of heights on each of which one piece of the law holds, at several separations.
+
+    Those of one separation follow each other, upwards, from the lowest height in contact on; neighbours
+    have different pieces. All arrays have the shape (intervals,).
+
+    Parameters
+    ----------
+    separation : ndarray of int
+        Which of the separations, not decreasing.
+    low, high : ndarray
+        Reduced heights ``low <= s < high``.
+    piece : ndarray of int
+        Number of the piece.
+    """
+
+    separation: Ints
+    low: Array
+    high: Array
+    piece: Ints
+
+    @property
+    def goes_on(self) -> Marks:
+        """Whether each goes on where the one before ends; shape (intervals + 1,), false at both ends."""
+        on = (self.low[1:] <= self.high[:-1]) & (np.diff(self.separation) == 0)
+        return np.concatenate([[False], on, [False]]) if self.low.size else np.zeros(1, dtype=bool)
 
 
 @dataclass(frozen=True)
@@ -106,12 +135,6 @@ class Branch:
         """How far above first touch formulas are analytic."""
         return min(self.law.finest, self.conductance.finest) if self.conductance else self.law.finest
 
-    def root_at_touch(self, piece: int) -> bool:
-        """Whether formulas of a piece that begins from nothing take negative roots as well."""
-        return piece == 0 and self.law.root
-
-    # --- what asperities add ---
-
     def terms(
         self, quantities: Sequence[str], h: ArrayLike, s: ArrayLike, e: ArrayLike, *, slope: bool = False
     ) -> Array:
@@ -183,8 +206,6 @@ class Branch:
         """Law of contacts that are closer than ever before, or on unloading have been this deep."""
         law = self.law if self.ratios is None else self.law.with_radii(self.ratios)
         return law if self.unload_from is None or deepest is None else law.unloading(np.maximum(deepest, 0.0))
-
-    # --- where they touch ---
 
     def lowest(self, h: Any) -> Any:
         """Height below which nothing touches, at a separation or at higher ones, in its shape."""

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic.arrays import Array, hold
-from analytic.laws.law import check_positive, is_positive
+from analytic.arrays import Array, check_positive, hold, is_positive
 from analytic.surface import Surface
 
 _DIRECT = 60  # images that are rather summed one by one

@@ -10,12 +10,11 @@ import math
 from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass, fields, is_dataclass, replace
-from numbers import Real
 from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from analytic.arrays import Array, Ints, hold
+from analytic.arrays import Array, Ints, check_positive, hold
 from analytic.surface import Surface
 
 _STEP = 1e-30  # of a variable, into the complex plane
@@ -205,18 +204,6 @@ class Hertz(ContactLaw):
     """
 
     name: ClassVar[str] = "hertz"
-
-
-def is_positive(value: Any) -> bool:
-    """Tell whether a value is a finite number > 0; texts, which only scene files read, are none."""
-    return isinstance(value, Real) and 0 < float(value) < math.inf
-
-
-def check_positive(unit: str, **values: Any) -> None:
-    """Refuse values that are no finite numbers > 0."""
-    for name, value in values.items():
-        if value is not None and not is_positive(value):
-            raise ValueError(f"{name} = {value!r}: give a finite number > 0{unit and f', in {unit}'}")
 
 
 def check_poisson(poisson: float) -> None:

@@ -95,7 +95,7 @@ def begins_and_breaks(scene: Scene, low: float, high: float) -> tuple[Array, Arr
         starts, pieces = found.low[found.begins], found.piece[found.begins]
         begins.append(found.root)
         breaks += [found.low, found.high]
-        rough = np.array([not branch.root_at_touch(int(piece)) for piece in pieces], dtype=bool)
+        rough = (pieces > 0) | (not branch.law.root)
         breaks.append(starts[rough] + SMALLEST)
         if np.isfinite(branch.finest):
             breaks.append(starts[~rough] + branch.finest / _ANALYTIC)

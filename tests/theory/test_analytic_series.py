@@ -66,11 +66,11 @@ def test_evaluation_is_literal_arithmetic():
     for x in s.tolist():
         x = min(max(x, series.edges[0]), series.edges[-1])
         k = sum(edge <= x for edge in series.edges[1:-1])
-        a, b, c = series.edges[k], series.edges[k + 1], series.coefficients[k]
+        a, b, c = series.edges[k], series.edges[k + 1], [*series.coefficients[k], 0.0, 0.0]
         u, last, value = ((x - a) - (b - x)) / (b - a), 0.0, 0.0
-        for coefficient in c[:0:-1]:
-            last, value = value, coefficient + (2 * u * value - last)
-        expected.append(c[0] + (u * value - last))
+        for coefficient in c[::-1]:
+            last, value = coefficient - value, last + 2 * u * value
+        expected.append(last + u * value)
     np.testing.assert_array_equal(series(s), expected)
 
 

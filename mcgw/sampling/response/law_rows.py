@@ -97,7 +97,7 @@ def law_rows(scene: Scene, quantities: tuple[str, ...], mesh: Mesh) -> Rows:
         if branch not in stretches:
             stretches[branch] = stretches_of(scene, branch, *mesh.range)
         found = stretches[branch]
-        roots = np.array([branch.root_at_touch(int(piece)) for piece in found.piece], dtype=bool)
+        roots = (found.piece == 0) & branch.law.root
         scale, heights = q.scale(scene.surface), sixteen.approach + separations[:, None]
         terms = branch.terms([q.base], separations[:, None], heights, sixteen.e)[0]
         total = sixteen.totals(scale, terms)
