@@ -200,10 +200,9 @@ def _jackson_area(law: Any, u: Any, e: Any) -> Any:
 
 def _jackson_load(law: Any, u: Any, e: Any) -> Any:
     x = u * u
-    with np.errstate(over="ignore"):
-        at_yield = math.pi * law.yield_factor / 2 * law.yield_strain / e  # radius of contact over R
-        radius = at_yield * np.sqrt(_jackson_area(law, u, e))
-        hardness = -2.84 * np.expm1(-0.82 * radius**-0.7)  # over the yield strength
+    at_yield = math.pi * law.yield_factor / 2 * law.yield_strain / e  # radius of contact over R
+    radius = at_yield * np.sqrt(_jackson_area(law, u, e))
+    hardness = -2.84 * np.expm1(-0.82 * radius**-0.7)  # over the yield strength
     yielded = -np.expm1(-(x ** (5 / 9)) / 25) * x
     return np.exp(-(x ** (5 / 12)) / 4) * u * x + 4 / law.yield_factor * hardness * yielded
 

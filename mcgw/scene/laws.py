@@ -81,7 +81,7 @@ def grading_given(given: Any) -> Grading | None:
 
 def heights_given(given: Any) -> HeightLaw | None:
     """Accept a height law, or a frozen distribution of scipy.stats."""
-    if hasattr(given, "dist") and hasattr(given, "kwds"):
+    if hasattr(given, "dist"):
         return analytic.ScipyHeights(given)
     own = all(hasattr(given, name) for name in _LAW_OF_HEIGHTS) and not isinstance(given, type)
     return given if own else None

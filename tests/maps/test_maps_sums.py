@@ -297,5 +297,5 @@ def test_moments_that_no_surface_has_are_refused_in_one_line(factor, place, heig
 def test_sums_that_lack_a_point_are_refused():
     z = 1e-6 * np.random.default_rng(1).normal(size=(64, 66))
     z[16, 16] = np.nan
-    with pytest.raises(ValueError, match=NO_NUMBERS):
-        summit_sums_of(Topography(z, (1e-6, 1e-6)))
+    with pytest.raises(ValueError, match=f"on pixels of 1e-06 m: {NO_NUMBERS}"):
+        summit_sums_of(Topography(z, (1e-6, 2e-6)))

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from oracles import exact
 from oracles.inside import pressure_panels, round_pressures, solved_pressures, spread, spread_panel
 
@@ -69,6 +70,8 @@ def test_curves_are_values_and_scatter_of_solve_on_theory(scene):
         told = pressure, [factor * x.value[name] for x in solved], [factor * x.std[name] for x in solved]
         for given, wanted in zip(panel.paint.args, told, strict=True):
             np.testing.assert_allclose(given, wanted, rtol=1e-12)
+        panel.paint(axis := Figure().subplots())
+        assert axis.get_legend_handles_labels()[1] == ["specimens: mean, std"]
         ends = [factor * x.theory[name] for x in (solved[0], solved[-1])]
         np.testing.assert_allclose(series.theory[[0, -1]], ends, rtol=1e-9)
         np.testing.assert_allclose(series.x[[0, -1]], [pressure[0], pressure[-1]], rtol=1e-9)

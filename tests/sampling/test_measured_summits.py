@@ -115,8 +115,9 @@ def test_resampled_means_and_variances_are_exact(law, surfaces):
 
 
 def test_slopes_inverses_and_shares():
-    theory, h = scene(law=mcgw.KogutEtsion(hardness=1.2e9)).theory, 0.7123
-    for name in ("load", "area", "conductance"):
+    layered = mcgw.Joint((150.0, 16.0), layer={"thickness": "1 um", "conductivity": 1.3})
+    theory, h = scene(law=mcgw.KogutEtsion(hardness=1.2e9), joint=layered).theory, 0.7123
+    for name in ("load", "area", "conductance", "conductance_si"):
         step = 1e-6
         rise = (theory.mean(name, h - step) - theory.mean(name, h + step)) / (2 * step)
         assert theory.slope(name, h) == pytest.approx(rise, rel=1e-6)

@@ -8,7 +8,7 @@ import sys
 import numba
 import numpy as np
 import pytest
-from oracles.inside import in_words, plan_text, rough_seconds, sampler_of
+from oracles.inside import forecast, in_words, plan_text, rough_seconds, sampler_of
 
 import analytic
 import mcgw
@@ -29,6 +29,8 @@ def test_plan_says_what_is_drawn(make_scene):
     assert (number("cells", text), known.moments) == (len(counts), pytest.approx(len(moments), rel=0.2))
     assert number("results", text) == pytest.approx(1e-6 * 8 * 200 * 2 * 4)
     assert "chosen by auto" not in text
+    enough = forecast(scene.replace(rel_err=0.01, n_surfaces=10**9)).surfaces
+    assert f"{enough:.2g} surfaces, {in_words(rough_seconds(scene, 200) / 200 * enough)}" in text
     many = plan_text(scene.replace(keep="statistics", n_surfaces=10**6))
     assert float(re.search(r"statistics alone, about (\S+) MB", many)[1]) < 8
     ruled = make_scene(rel_err=0.01, n_surfaces=10**6, separations=(0.0,))

@@ -79,6 +79,7 @@ REFUSED = [
     ("yielded_unloading", lambda: BACK.mean("yielded_unloading", 0.6)),
     ("h: every separation must be finite", lambda: OWN.mean("load", math.nan)),
     ("h: every separation must be finite", lambda: analytic.fn(1.5, [0.0, math.inf])),
+    ("load = 0.0", lambda: HERTZ.separation_at("load", 0.0)),
     ("load = nan", lambda: HERTZ.separation_at("load", math.nan)),
     ("load = [1.0, -1.0]", lambda: OWN.separation_at("load", [1.0, -1.0])),
     ("contacts: not reached for h from -40 to 37", lambda: HERTZ.separation_at("contacts", 2000.0)),

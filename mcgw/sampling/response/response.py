@@ -105,14 +105,14 @@ class Response:
 
     def __matmul__(self, moments: Array) -> Array:
         """Quantities of every surface: moments (rows, surfaces) to (quantities, surfaces, separations)."""
-        program = self.given.ravel(), self.ends, self.columns, self.values, self.answers
-        rows, surfaces = self.given.size + self.answers.size, moments.shape[1]
+        program = np.maximum(self.given, 0), self.ends, self.columns, self.values, self.answers
+        surfaces, flat = moments.shape[1], np.ascontiguousarray(moments).reshape(-1)
         result = np.empty((self.shape[0], surfaces, self.shape[1]))
 
         def share(ends: tuple[int, int]) -> None:
-            table, sums = np.empty(rows * _WIDTH), np.empty(FOUR * _WIDTH)
+            table, sums = np.empty(self.answers.size * _WIDTH), np.empty(FOUR * _WIDTH)
             for first in range(*ends, _WIDTH):
-                _sweep(program, table, sums, moments, first, min(_WIDTH, ends[1] - first), result)
+                _sweep(program, table, sums, flat, first, min(_WIDTH, ends[1] - first), result)
 
         in_threads(share, pieces(surfaces, _WIDTH))
         return result
@@ -122,44 +122,50 @@ class Response:
 
 @njit(cache=True, fastmath={"contract"})
 def _sweep(program: Any, table: Any, sums: Any, given: Any, first: Any, n: Any, result: Any) -> None:
-    """Take all steps for `n` surfaces from `first` on; the sum over a row has one order, in any block.
+    """Take all steps for `n` surfaces from `first` on; the sum over a row has one order, in any block."""
+    rows, ends, columns, values, answers = program
+    surfaces, separations, tile, width = np.uint64(result.shape[1]), result.shape[2], 0, np.uint64(_WIDTH)
+    for step in range(ends.size):
+        sums[:] = 0.0
+        while tile < ends[step]:
+            column = columns[tile]
+            if column < len(rows):
+                a, b, c, d = rows[column]
+                start = np.uint64(first)
+                _add(values[tile], given, start, surfaces, (a, b, c, d), sums, n)
+            else:
+                a = FOUR * (column - len(rows))
+                _add(values[tile], table, np.uint64(0), width, (a, a + 1, a + 2, a + 3), sums, n)
+            tile += 1
+        for r in range(FOUR):
+            answer, at = answers[step, r], np.uint64(FOUR * step + r) * width
+            for k in range(n):
+                table[at + np.uint64(k)] = sums[r * _WIDTH + k]
+            for k in range(n if answer >= 0 else 0):
+                result[answer // separations, first + k, answer % separations] = sums[r * _WIDTH + k]
+
+
+@njit(cache=True, fastmath={"contract"})
+def _add(tile: Any, table: Any, start: Any, stride: Any, rows: Any, sums: Any, n: Any) -> None:
+    """Add what a tile makes of four rows of a table, from `start` on in each.
 
     Places in the table are unsigned: for a signed one may count from its end, and the loop is three times
     as slow.
     """
-    rows, ends, columns, values, answers = program
-    separations, tile, width = result.shape[2], 0, np.uint64(_WIDTH)
-    for r in range(rows.size):
-        filled, at = n if rows[r] >= 0 else 0, np.uint64(r) * width
-        for k in range(filled):
-            table[at + np.uint64(k)] = given[np.uint64(rows[r]), np.uint64(first + k)]
-        for k in range(filled, _WIDTH):
-            table[at + np.uint64(k)] = 0.0
-    for step in range(ends.size):
-        sums[:] = 0.0
-        while tile < ends[step]:
-            v, at = values[tile], np.uint64(FOUR * columns[tile]) * width
-            a0, b0, c0, d0 = v[0, 0], v[0, 1], v[0, 2], v[0, 3]
-            a1, b1, c1, d1 = v[1, 0], v[1, 1], v[1, 2], v[1, 3]
-            a2, b2, c2, d2 = v[2, 0], v[2, 1], v[2, 2], v[2, 3]
-            a3, b3, c3, d3 = v[3, 0], v[3, 1], v[3, 2], v[3, 3]
-            for k in range(_WIDTH):
-                i = np.uint64(k)
-                j = at + i
-                a, b = table[j], table[j + width]
-                c, d = table[j + np.uint64(2) * width], table[j + np.uint64(3) * width]
-                sums[i] += (a0 * a + b0 * b) + (c0 * c + d0 * d)
-                sums[i + width] += (a1 * a + b1 * b) + (c1 * c + d1 * d)
-                sums[i + np.uint64(2) * width] += (a2 * a + b2 * b) + (c2 * c + d2 * d)
-                sums[i + np.uint64(3) * width] += (a3 * a + b3 * b) + (c3 * c + d3 * d)
-            tile += 1
-        at = np.uint64(rows.size + FOUR * step) * width
-        for k in range(FOUR * _WIDTH):
-            table[at + np.uint64(k)] = sums[k]
-        for r in range(FOUR):
-            answer = answers[step, r]
-            for k in range(n if answer >= 0 else 0):
-                result[answer // separations, first + k, answer % separations] = sums[r * _WIDTH + k]
+    width = np.uint64(_WIDTH)
+    ka, kb = start + np.uint64(rows[0]) * stride, start + np.uint64(rows[1]) * stride
+    kc, kd = start + np.uint64(rows[2]) * stride, start + np.uint64(rows[3]) * stride
+    a0, b0, c0, d0 = tile[0, 0], tile[0, 1], tile[0, 2], tile[0, 3]
+    a1, b1, c1, d1 = tile[1, 0], tile[1, 1], tile[1, 2], tile[1, 3]
+    a2, b2, c2, d2 = tile[2, 0], tile[2, 1], tile[2, 2], tile[2, 3]
+    a3, b3, c3, d3 = tile[3, 0], tile[3, 1], tile[3, 2], tile[3, 3]
+    for k in range(n):
+        i = np.uint64(k)
+        a, b, c, d = table[ka + i], table[kb + i], table[kc + i], table[kd + i]
+        sums[i] += (a0 * a + b0 * b) + (c0 * c + d0 * d)
+        sums[i + width] += (a1 * a + b1 * b) + (c1 * c + d1 * d)
+        sums[i + np.uint64(2) * width] += (a2 * a + b2 * b) + (c2 * c + d2 * d)
+        sums[i + np.uint64(3) * width] += (a3 * a + b3 * b) + (c3 * c + d3 * d)
 
 
 @dataclass(frozen=True)
