@@ -129,10 +129,8 @@ def test_a_task_that_kills_its_worker_is_tried_once_more_and_given_up(mark, tmp_
     """A worker that is killed is replaced; a task that kills two is the only one that is not done."""
     done, given_up = [], r"16 \.\.\. 23 were lost twice by the executor \(BrokenProcessPool"
     words = (str(tmp_path / mark),) if mark else ()
-    with Jobs(1) as executor, nullcontext() if mark else pytest.raises(RunError, match=given_up):
-        drive(
-            executor, SPANS[:3], deadly, lambda s: (s.first, *words), lambda s, _: done.append(s), Signals()
-        )
+    with Jobs(1) as pool, nullcontext() if mark else pytest.raises(RunError, match=given_up):
+        drive(pool, SPANS[:3], deadly, lambda s: (s.first, *words), lambda s, _: done.append(s), Signals())
     assert sorted(done) == [span for span in SPANS[:3] if mark or span.first != 16]
 
 
