@@ -210,23 +210,20 @@ def faults(ready: Prepared, longer: float) -> Iterator[tuple[Any, ...]]:
 
 def _rounding(ready: Prepared) -> float:
     """Share of the mean square bend, by plain differences, that rounding to steps adds."""
-    if not ready.recorded[0]:
+    (step, _), cutoff, z = ready.recorded, ready.asked.cutoff, ready.used.heights
+    if not step:
         return 0.0
-    z = ready.used.heights
-    kept = _kept_of_noise(ready.asked.cutoff, ready.used.pixel)
-    return max(
-        ready.recorded[0] ** 2 / 12 * gain / max(float(np.mean(_second(along) ** 2)), 1e-300)
-        for along, gain in zip((z.T, z), kept, strict=True)
-    )
-
-
-def _kept_of_noise(cutoff: float | None, pixel: tuple[float, float]) -> list[float]:
-    """Mean squares of second differences along x and y of independent heights of variance 1, filtered."""
+    # Of independent heights of variance 1, filtered: mean squares along x and y, and of second differences.
     k = math.pi * (np.arange(128) + 0.5) / 128
-    left = [1.0 if cutoff is None else gaussian_transmission(k / p, cutoff) ** 2 for p in pixel]
-    bend = (2 - 2 * np.cos(k)) ** 2
-    x, y = (np.mean(bend * t) for t in left), [float(np.mean(t)) for t in left]
-    return [float(b) * other for b, other in zip(x, y[::-1], strict=True)]
+    left = [
+        np.ones_like(k) if cutoff is None else gaussian_transmission(k / p, cutoff) ** 2
+        for p in ready.used.pixel
+    ]
+    bends = [float(np.mean((2 - 2 * np.cos(k)) ** 2 * t)) for t in left]
+    return max(
+        step**2 / 12 * bend * float(np.mean(across)) / max(float(np.mean(_second(along) ** 2)), 1e-300)
+        for along, bend, across in zip((z.T, z), bends, left[::-1], strict=True)
+    )
 
 
 def _offsets(ready: Prepared, axis: int) -> float:

@@ -99,14 +99,26 @@ def fitted_scene(
     >>> scene.surface.E_star, scene.grading.gamma
     (70000000000.0, 2.0)
     """
+    modulus = argument("E_star", E_star, "Pa")
     if heights in ("measured", "summits") and changes.get("nominal_area") is not None:
         raise ValueError(
             f'nominal_area = {changes["nominal_area"]!r}: heights = "{heights}" uses the measured '
             'summits on the area of the map; leave it out, or use heights = "table"'
         )
+    by_heights = "moments" if isinstance(fit, ProfileFit) or heights == "nayak" else "summits"
     if use == "auto":
-        use = "moments" if isinstance(fit, ProfileFit) or heights == "nayak" else "summits"
-        use = fit.best if isinstance(fit, Fit) and heights == "gaussian" else use
+        use = fit.best if isinstance(fit, Fit) and heights == "gaussian" else by_heights
+    if isinstance(fit, ProfileFit) and (use == "caps" or heights not in ("gaussian", "nayak")):
+        raise ValueError(
+            f'use = "{use}", heights = "{heights}": profiles do not show summits, only '
+            'moments; use heights = "gaussian" or "nayak"'
+        )
+    if heights == "nayak" and use != "moments":
+        raise ValueError(f'use = "{use}": heights = "nayak" follow from the "moments"')
+    if heights not in ("nayak", "summits") and use not in fit.estimates:
+        raise ValueError(
+            f"use = {use!r}: this map has no such estimate; give one of {', '.join(fit.estimates)}"
+        )
     if isinstance(fit, Fit) and use != "moments" and use in fit.estimates and fit.summits.size > 1:
         spread = float(np.ptp(fit.summits))
         if spread < _EQUAL * math.sqrt(fit.numbers["m0"].value):
@@ -115,8 +127,16 @@ def fitted_scene(
                 "has no distribution of summit heights; give sigma, radius and eta of its asperities in a "
                 "scene"
             )
-    scene = _as_fitted(fit, use, heights, argument("E_star", E_star, "Pa"), title)
-    return scene.replace(**{"fitted": _known(fit), "uncertainty": _uncertainty(fit, use, heights), **changes})
+    if heights == "nayak":
+        scene = scene_of_moments(fit.moments, fit.area, modulus, title)
+    elif isinstance(fit, Fit) and heights != "gaussian":
+        scene = _of_summits(fit, use, heights, modulus, title)
+    else:  # profiles stand for a square of their length
+        found = fit.estimates[use]
+        surface = Surface(found.sigma.value, found.radius.value, found.eta.value, fit.area, modulus)
+        scene = _scene(surface, title)
+    more = {"fitted": _known(fit), "uncertainty": _uncertainty(fit, use, heights)}
+    return scene.replace(**{**more, **changes})
 
 
 def _uncertainty(fit: Fit | ProfileFit, use: str, heights: Heights) -> Uncertainty | None:
@@ -126,13 +146,11 @@ def _uncertainty(fit: Fit | ProfileFit, use: str, heights: Heights) -> Uncertain
     """
     if heights in ("measured", "summits"):
         return None
+    names, told = (SUMMITS, vars(fit.estimates[use])) if heights != "nayak" else (MOMENTS, fit.numbers)
     of_moments = fit.covariance if isinstance(fit, ProfileFit) else fit.waves.covariance
-    if heights == "nayak":
-        return Uncertainty.correlated(MOMENTS, [fit.numbers[x].relative for x in MOMENTS], of_moments)
     by = log_derivatives(fit.moments)
-    rows = np.array([by[name] for name in SUMMITS])
-    errors = [getattr(fit.estimates[use], name).relative for name in SUMMITS]
-    return Uncertainty.correlated(SUMMITS, errors, rows @ of_moments @ rows.T)
+    rows = np.array([by[name] for name in names])
+    return Uncertainty.correlated(names, [told[x].relative for x in names], rows @ of_moments @ rows.T)
 
 
 def _known(fit: Fit | ProfileFit) -> Fitted:
@@ -144,27 +162,6 @@ def _known(fit: Fit | ProfileFit) -> Fitted:
         agreement = max(counted, expected) / min(counted, expected) if counted > 0 else None
         return Fitted(*known, 2 / fit.numbers["m0"].relative ** 2, agreement, cautions=fit.cautions)
     return Fitted(*known, fit.waves.independent, fit.agreement, fit.lay, fit.area, fit.cautions)
-
-
-def _as_fitted(fit: Fit | ProfileFit, use: str, heights: Heights, modulus: float, title: str) -> Scene:
-    """Return the scene with the results of the fit alone; profiles stand for a square of their length."""
-    if isinstance(fit, ProfileFit) and (use == "caps" or heights not in ("gaussian", "nayak")):
-        raise ValueError(
-            f'use = "{use}", heights = "{heights}": profiles do not show summits, only '
-            'moments; use heights = "gaussian" or "nayak"'
-        )
-    if heights == "nayak":
-        if use != "moments":
-            raise ValueError(f'use = "{use}": heights = "nayak" follow from the "moments"')
-        return scene_of_moments(fit.moments, fit.area, modulus, title)
-    if heights != "summits" and use not in fit.estimates:
-        raise ValueError(
-            f"use = {use!r}: this map has no such estimate; give one of {', '.join(fit.estimates)}"
-        )
-    if isinstance(fit, Fit) and heights != "gaussian":
-        return _of_summits(fit, use, heights, modulus, title)
-    found = fit.estimates[use]
-    return _scene(Surface(found.sigma.value, found.radius.value, found.eta.value, fit.area, modulus), title)
 
 
 def scene_of_moments(moments: SpectralMoments, area: float, modulus: float, title: str) -> Scene:
@@ -233,16 +230,16 @@ def write_scene(scene: Scene, path: Path, measured: Fit | None, comments: list[s
 
 def _readable(document: dict[str, Any]) -> dict[str, Any]:
     """Return the tables of a scene as a person writes them: four digits, natural units, no defaults."""
-    tables = {name: keys for name, keys in document.items() if isinstance(keys, dict)}
-    found = {
-        name: {
-            key: _shortened(value, getattr(KEYS[name][key].kind, "unit", "") if key in KEYS[name] else "")
-            for key, value in keys.items()
-            if key not in KEYS[name] or value != KEYS[name][key].default
-        }
-        for name, keys in tables.items()
-    }
-    return {name: value for name, value in (document | found).items() if value or name == "title"}
+    found: dict[str, Any] = {"title": document["title"]}
+    for name, keys in document.items():
+        if isinstance(keys, dict):
+            rows = KEYS[name]
+            found[name] = {
+                key: _shortened(value, rows[key].kind.unit if key in rows else "")
+                for key, value in keys.items()
+                if key not in rows or value != rows[key].default
+            }
+    return {name: value for name, value in found.items() if value or name == "title"}
 
 
 def _shortened(value: Any, unit: str) -> Any:

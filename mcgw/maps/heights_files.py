@@ -152,12 +152,8 @@ def _in_metres(path: Path, raw: NDArray[Any], metre: float, missing: float | Non
         if not marked.any():
             raise ValueError(f"{path}: no height is {missing:g}; leave --missing-value out")
         z[marked] = np.nan
-    elif sentinel := _sentinel(z):
-        value, number = sentinel
-        raise ValueError(
-            f"{path}: {number} of {z.size} heights are {value:.8g}, far from all others; if they stand for "
-            f"missing points, give --missing-value={value:.8g}"
-        )
+    else:
+        _refuse_sentinels(path, z)
     z *= metre
     return z
 
@@ -166,11 +162,10 @@ def _equal(z: Array, value: float) -> NDArray[np.bool_]:
     return np.abs(z - value) <= (0.01 if abs(value) > 1e30 else _EQUAL) * abs(value)
 
 
-def _sentinel(z: Array) -> tuple[float, int] | None:
-    """Return a number that stands for missing points, and how many of them there are."""
+def _refuse_sentinels(path: Path, z: Array) -> None:
+    """Refuse an extreme height that programs write for missing points, if it is far from all others."""
     with np.errstate(invalid="ignore"):
-        for extreme in (np.fmin, np.fmax):
-            value = float(extreme.reduce(z, axis=None))
+        for value in (float(extreme.reduce(z, axis=None)) for extreme in (np.fmin, np.fmax)):
             if not any(_equal(np.array(value), mark) for mark in _SENTINELS):
                 continue
             marked = _equal(z, value)
@@ -179,5 +174,7 @@ def _sentinel(z: Array) -> tuple[float, int] | None:
                 continue
             low, high = float(others.min()), float(others.max())
             if max(low - value, value - high) > 3.0 * (high - low):  # ranges of all other heights
-                return value, int(np.count_nonzero(marked))
-    return None
+                raise ValueError(
+                    f"{path}: {np.count_nonzero(marked)} of {z.size} heights are {value:.8g}, far from all "
+                    f"others; if they stand for missing points, give --missing-value={value:.8g}"
+                )

@@ -17,19 +17,7 @@ from mcgw.scene.surface import Spectral, SpectralSurface
 
 
 class Row(NamedTuple):
-    """A number that is ``factor * m0^a m2^b m4^c``.
-
-    Parameters
-    ----------
-    unit : str
-        SI unit.
-    factor : float
-        Before the powers.
-    powers : (float, float, float)
-        a, b and c.
-    source : str
-        Formula and where it comes from.
-    """
+    """A number that is ``factor * m0^a m2^b m4^c``, with a formula and where it comes from."""
 
     unit: str
     factor: float

@@ -42,16 +42,6 @@ def sidecar_of(path: Path) -> Path:
     return path.with_suffix(".json")
 
 
-def _write_npy(topography: Topography, path: Path) -> None:
-    """Write an array and its sidecar."""
-    facts: dict[str, Any] = {"filetype": FILETYPE, "pixel": topography.pixel, "unit": "m"}
-    facts |= {"periodic": topography.periodic, "axes": ["y", "x"]}
-    with together(), whole_file(path) as unfinished, whole_file(sidecar_of(path)) as beside:
-        with open(unfinished, "wb") as file:
-            np.save(file, topography.heights)
-        beside.write_text(json.dumps(facts, indent=2) + "\n", encoding="utf-8")
-
-
 def read_npy(path: Path, given: Given) -> Raw:
     """Read an array; its pixel size and the unit of its heights from the sidecar, unless a pixel is given."""
     array = open_npy(path)
@@ -81,11 +71,9 @@ def read_npy(path: Path, given: Given) -> Raw:
     return Raw(array, unit, *_facts(beside, pixel, periodic), lateral="m")
 
 
-def _write_h5(
-    topography: Topography, path: Path, field: Asperities | None = None, *, scene: str = ""
-) -> None:
+def _write_h5(topography: Topography, path: Path, field: Asperities | None, scene: str) -> None:
     """Write datasets ``height`` (y, x) and ``asperities/x``, ``y``, ``z``, all in m, and the scene."""
-    with whole_file(path) as unfinished, h5py.File(unfinished, "w", locking=False) as file:
+    with h5py.File(path, "w", locking=False) as file:
         file.attrs.update(
             filetype=FILETYPE, format=[1, 0], pixel=topography.pixel, periodic=topography.periodic
         )
@@ -138,7 +126,7 @@ def _write_sdf(topography: Topography, path: Path) -> None:
     stamp = datetime.now(UTC).strftime("%d%m%Y%H%M").encode()
     scales = (*topography.pixel, 1.0, 0.0)  # of x, y and z, and the resolution of z
     head = (b"bISO-1.0", b"mcgw".ljust(10), stamp, stamp, columns, rows, *scales, 0, 7, 0)  # 7: a double
-    with whole_file(path) as unfinished, open(unfinished, "wb") as file:
+    with open(path, "wb") as file:
         file.write(_HEADER.pack(*head))
         for row in topography.heights:
             file.write(row.astype("<f8").tobytes())
@@ -161,15 +149,20 @@ def write_map(
     ValueError
         If the ending is unknown or the map too large for the format.
     """
-    match path.suffix.lower():
-        case ".sdf":
-            _write_sdf(topography, path)
-        case ".npy":
-            _write_npy(topography, path)
-        case ".h5":
-            _write_h5(topography, path, field, scene=scene)
-        case _:
-            raise ValueError(f"{path}: the ending determines the format; give one of {', '.join(WRITTEN)}")
+    if (ending := path.suffix.lower()) not in WRITTEN:
+        raise ValueError(f"{path}: the ending determines the format; give one of {', '.join(WRITTEN)}")
+    with together(), whole_file(path) as unfinished:
+        if ending == ".h5":
+            _write_h5(topography, unfinished, field, scene)
+        elif ending == ".sdf":
+            _write_sdf(topography, unfinished)
+        else:
+            with open(unfinished, "wb") as file:
+                np.save(file, topography.heights)
+            facts: dict[str, Any] = {"filetype": FILETYPE, "pixel": topography.pixel, "unit": "m"}
+            facts |= {"periodic": topography.periodic, "axes": ["y", "x"]}
+            with whole_file(sidecar_of(path)) as beside:
+                beside.write_text(json.dumps(facts, indent=2) + "\n", encoding="utf-8")
     return files_of_map(path)
 
 
@@ -182,14 +175,32 @@ def read_foreign(path: Path, given: Given) -> Raw:
         If it is not installed or cannot read the file, or the file holds no heights, or a file of this size
         cannot hold so many.
     """
-    channel = _channel(path)
-    points = tuple(int(n) for n in channel.nb_grid_pts)
+    if find_spec("SurfaceTopography") is None:
+        raise ValueError(
+            f"{path}: {path.suffix or 'no ending'} is read by SurfaceTopography, which is not installed (the "
+            "extra maps: pip install SurfaceTopography); or save it as .npy, .h5 of mcgw or text"
+        )
+    _check(path)
+    with _one_line_errors(path):
+        from SurfaceTopography import (  # type: ignore[import-not-found, import-untyped, unused-ignore]
+            open_topography,
+        )
+
+        reader = open_topography(str(path))
+        channels = reader.height_channels
+        channel = channels[0] if channels else reader.default_channel
+        lengths, points = channel.physical_sizes, tuple(int(n) for n in channel.nb_grid_pts)
+    if not channels:
+        raise ValueError(
+            f"{path}: holds no heights: its channels are "
+            + ", ".join(f"{c.name} in {c.data_unit or c.unit or 'no unit'}" for c in reader.channels)[:120]
+        )
     try:
         checked_shape(*(*points, 1)[1::-1], held=path.stat().st_size)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
     told = None if channel.unit is None else str(channel.unit)
-    sized = {} if channel.dim == 1 or channel.physical_sizes is not None else {"physical_sizes": points}
+    sized = {} if channel.dim == 1 or lengths is not None else {"physical_sizes": points}
     with _one_line_errors(path):
         found = channel.topography(**sized)
         if channel.dim == 1:
@@ -217,31 +228,6 @@ def _check(path: Path) -> None:
             start = file.read(64)  # bytes that tell a text
         if not start.strip(_PRINTABLE):
             raise ValueError(f"{path}: a text longer than {_MOST_TEXT} bytes; save it as .npy")
-
-
-def _channel(path: Path) -> Any:
-    """Return the first channel of heights, of which nothing but facts is read."""
-    if find_spec("SurfaceTopography") is None:
-        raise ValueError(
-            f"{path}: {path.suffix or 'no ending'} is read by SurfaceTopography, which is not installed (the "
-            "extra maps: pip install SurfaceTopography); or save it as .npy, .h5 of mcgw or text"
-        )
-    _check(path)
-    with _one_line_errors(path):
-        from SurfaceTopography import (  # type: ignore[import-not-found, import-untyped, unused-ignore]
-            open_topography,
-        )
-
-        reader = open_topography(str(path))
-        channels = reader.height_channels
-        channel = channels[0] if channels else reader.default_channel
-        channel.dim, channel.nb_grid_pts, channel.physical_sizes  # noqa: B018  # tells damage here
-    if not channels:
-        raise ValueError(
-            f"{path}: holds no heights: its channels are "
-            + ", ".join(f"{c.name} in {c.data_unit or c.unit or 'no unit'}" for c in reader.channels)[:120]
-        )
-    return channel
 
 
 @contextmanager

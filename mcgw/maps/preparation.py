@@ -30,28 +30,16 @@ _MORE = 1.3  # times the points of the next level: of a summit that a step cuts,
 
 @dataclass(frozen=True)
 class Preparation:
-    """Requested steps, by the keywords of `mcgw.fit`.
+    """Requested steps, by the keywords of `mcgw.fit`."""
 
-    Parameters
-    ----------
-    cutoff, long_cutoff : float or None
-        Shortest and longest wavelength that counts, m; None: as measured.
-    form, missing, spikes, lines : str, optional
-        Each by one of its words in `mcgw.maps.steps`.
-    trim : int, optional
-        Points that are left off along each edge.
-    parts : int, optional
-        Sub-areas along each axis, to estimate errors.
-    """
-
-    cutoff: float | None
+    cutoff: float | None  # shortest wavelength that counts, m; None: as measured
     form: Form = "plane"
     missing: Missing = "auto"
     spikes: SpikesTo = "keep"
-    trim: int = 0
-    long_cutoff: float | None = None
+    trim: int = 0  # points that are left off along each edge
+    long_cutoff: float | None = None  # longest wavelength that counts, m; None: as measured
     lines: LinesTo = "keep"
-    parts: int = 4
+    parts: int = 4  # sub-areas along each axis, to estimate errors
 
 
 def preparation_of(given: Mapping[str, Any]) -> Preparation:
@@ -72,30 +60,14 @@ def preparation_of(given: Mapping[str, Any]) -> Preparation:
 
 @dataclass(frozen=True)
 class Prepared:
-    """A map ready for evaluation.
+    """A map ready for evaluation."""
 
-    Parameters
-    ----------
-    levelled : Topography
-        The map without its form, with no missing points and all wavelengths.
-    used : Topography
-        The map filtered between both cutoffs.
-    seen : ndarray of bool or None
-        Points of `used` that count; None: all.
-    recorded : (float, float)
-        Step and clipping of its instrument: see `recorded`.
-    asked : Preparation
-        What was asked for.
-    notes : tuple of str
-        What was done, a line each.
-    """
-
-    levelled: Topography
-    used: Topography
-    seen: Marks | None
-    recorded: tuple[float, float]
+    levelled: Topography  # without its form, with no missing points and all wavelengths
+    used: Topography  # filtered between both cutoffs
+    seen: Marks | None  # points of `used` that count; None: all
+    recorded: tuple[float, float]  # step and clipping of its instrument: see `recorded`
     asked: Preparation
-    notes: tuple[str, ...]
+    notes: tuple[str, ...]  # what was done, a line each
 
 
 def prepared(topography: Topography, asked: Preparation) -> Prepared:

@@ -3,6 +3,22 @@
 A peak of a profile is not a summit of the surface: that usually lies beside the line. But both share their
 moments: for an isotropic surface, m0, m2 and m4 of any profile are those of the surface (Nayak 1971), and if
 heights are Gaussian they determine density, curvature and heights of its summits.
+
+A profile sees a wave of the surface the longer, the more obliquely it crosses it. So the profile of a
+filtered surface is not a filtered profile: filtered along itself, a profile keeps short waves that it
+crosses slantwise, and its m2 and m4 are too large by tenths. What is the same in both is the
+autocorrelation. Of an isotropic surface it depends on the distance alone, and to filter the surface with
+exp(-a q^2), in power, is to take the mean of it under a plane Gaussian of variance 2a. For a wave k of the
+profile that mean is
+
+    w0(k) = integral of cos(k r) exp(-r^2/(4a)) r/(2a) over r from 0 on = F'(x),  x = k sqrt(a),
+
+with Dawson's integral F, for which F' = 1 - 2 x F. Derivatives with respect to a bring q^2 down, so that
+
+    w2 = -1/2 dw0/da = k^2 (F + x F')/(2 x),      w4 = 3/8 d^2w0/da^2 = k^4 3/32 (x F''' - F'')/x^3.
+
+Sums of the profile's power with these weights are the areal moments m0, m2 and m4 of `mcgw.maps.fit`,
+without bias. They are negative for short waves: those take back what the longer ones have too much.
 """
 
 import math
@@ -11,23 +27,26 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.special import stdtrit
+from scipy import fft
+from scipy.special import dawsn, stdtrit
 
 from analytic import SpectralMoments
 from analytic.arrays import Array
 from mcgw.formats.table import Column, Shown, Table
 from mcgw.machine.terminal import plotted
 from mcgw.maps.estimates import Estimate, Roughness, roughness_of
-from mcgw.maps.profile import (
-    PROFILE_ORDERS,
-    SMOOTH,
-    Profile,
-    smooth_profile,
-    waves_of_profile,
-    without_profile_form,
-)
+from mcgw.maps.form import filter_variance
+from mcgw.maps.profile import Profile
 from mcgw.maps.steps import Form
 from mcgw.maps.waves import Uncertain, log_derivatives, uncertain
+
+_ORDERS = {"none": 0, "plane": 1, "quadratic": 2}
+_REACH = 1.5  # range of the weights, in cutoffs: exp(-16) beyond
+_LEAST_REACH = 24  # points: with a short cutoff weights decay slowly
+_STENCIL = 4  # points, without a cutoff
+_FINE = 16  # points of a spectrum per weight
+_SMOOTH = 3  # waves over which power is averaged
+_LOW = slice(1, 5)  # waves that show what the form removed
 
 
 @dataclass(frozen=True, repr=False)
@@ -123,38 +142,44 @@ def fit_profiles(profiles: Sequence[Profile], *, cutoff: float | None, form: For
     form : {"none", "plane", "quadratic"}, optional
         What is taken off first: nothing but the mean, a line, or a parabola.
 
-    Returns
-    -------
-    ProfileFit
-        See `mcgw.maps.fit_cautions` for reasons for caution.
-
     Raises
     ------
     ValueError
         If there is no profile, or they are flat, or too short for the cutoff.
     """
-    if form not in PROFILE_ORDERS:
+    if form not in _ORDERS:
         raise ValueError(f"form = {form!r}: a profile has plane (a line), quadratic (a parabola) or none")
     if not profiles:
         raise ValueError("give at least one profile")
-    plain = [without_profile_form(p, form) for p in profiles]
+    plain = [p.without_form(_ORDERS[form]) for p in profiles]
     if not any(
         np.ptp(p.heights) > 1e-12 * np.abs(q.heights).max() for p, q in zip(plain, profiles, strict=True)
     ):
         raise ValueError("the profile is flat, without roughness")
-    filtered = plain if cutoff is None else [smooth_profile(p, cutoff) for p in plain]
+    filtered = plain if cutoff is None else [p.smoothed(cutoff) for p in plain]
     pieces = math.ceil(16 / len(profiles))
     shortest = min(p.heights.size for p in profiles)
     if shortest < 4 * pieces:
         raise ValueError(f"{shortest} points: too few for {pieces} stretches; give a longer profile")
-    seen = [waves_of_profile(p, cutoff=cutoff, terms=PROFILE_ORDERS[form] + 1, pieces=pieces) for p in plain]
+    seen = [_waves(p, cutoff, _ORDERS[form] + 1, pieces) for p in plain]
     shares = np.array([p.length for p in plain]) / sum(p.length for p in plain)
     stretches, waves = (
         np.concatenate([share * part for share, part in zip(shares, each, strict=True)], axis=1)
         for each in zip(*seen, strict=True)
     )
     values = stretches.sum(axis=1) / pieces
-    moments, waves = _checked(values), waves / values[:, None]
+    if not np.all(values > 0):
+        raise ValueError(
+            f"m0, m2, m4 = {', '.join(f'{v:.3g}' for v in values)}: not all are > 0; the profile is too "
+            "short for this cutoff, or the surface is not isotropic; give a longer one"
+        )
+    moments = SpectralMoments(*values.tolist())
+    if moments.alpha < 0.9:  # below it summit heights have no variance
+        raise ValueError(
+            f"m0 m4/m2^2 = {moments.alpha:.3g}, impossible for an isotropic surface (1.5 or more): the "
+            "surface has a lay, or the profile is too short"
+        )
+    waves /= values[:, None]
     stretches *= len(plain) / values[:, None]
     return ProfileFit(
         moments,
@@ -170,45 +195,105 @@ def fit_profiles(profiles: Sequence[Profile], *, cutoff: float | None, form: For
     )
 
 
-def _checked(values: Array) -> SpectralMoments:
-    """Check that a surface can have these moments."""
-    if not np.all(values > 0):
-        raise ValueError(
-            f"m0, m2, m4 = {', '.join(f'{v:.3g}' for v in values)}: not all are > 0; the profile is too "
-            "short for this cutoff, or the surface is not isotropic; give a longer one"
-        )
-    moments = SpectralMoments(*values.tolist())
-    if moments.alpha < 0.9:  # below it summit heights have no variance
-        raise ValueError(
-            f"m0 m4/m2^2 = {moments.alpha:.3g}, impossible for an isotropic surface (1.5 or more): the "
-            "surface has a lay, or the profile is too short"
-        )
-    return moments
-
-
 def _error(stretches: Array, waves: Array) -> float:
-    """Of the logarithm of a number, from what stretches and waves have in it, widened by Student's t.
-
-    Two of them hold 95 %.
-    """
+    """Of the logarithm of a number, by its stretches and its waves; two of them hold 95 % (Student's t)."""
     squares = waves**2
-    by_waves = math.sqrt(float(squares.sum()) / (1 + 1 / SMOOTH))
+    by_waves = math.sqrt(float(squares.sum()) / (1 + 1 / _SMOOTH))
     freedom = max(float(squares.sum() ** 2 / (squares**2).sum()) / 2, 2.0)  # neighbours share power
     by_stretches = float(stretches.std(ddof=1)) / math.sqrt(stretches.size)
-    return max(by_waves * _widened(freedom), by_stretches * _widened(stretches.size - 1))
-
-
-def _widened(freedom: float) -> float:
-    return float(stdtrit(freedom, 0.975)) / 2
+    both = (by_waves, freedom), (by_stretches, stretches.size - 1)
+    return max(error * float(stdtrit(n, 0.975)) / 2 for error, n in both)
 
 
 def _peaks(profiles: list[Profile]) -> tuple[float, float]:
     """Peaks per length of filtered profiles, counted and by Rice's formula."""
-    counted, slopes, bends, points, length = 0, 0.0, 0.0, 0, 0.0
+    counted, slopes, bends, length = 0, 0.0, 0.0, 0.0
     for p in profiles:
         z, h = p.heights, p.spacing
         counted += int(np.count_nonzero((z[1:-1] > z[:-2]) & (z[1:-1] >= z[2:])))
         slopes += float(np.sum((np.diff(z)[:-1] / h) ** 2))
         bends += float(np.sum((np.diff(z, 2) / h**2) ** 2))
-        points, length = points + z.size - 2, length + (z.size - 2) * h
+        length += (z.size - 2) * h
     return counted / length, math.sqrt(bends / slopes) / (2 * math.pi)
+
+
+# --- sums over the waves of a profile ---
+
+
+def _areal_weights(wave_numbers: Array, cutoff: float) -> Array:
+    """Weights of waves in m0, m2 and m4, the latter two over ``k^2`` and ``k^4``, shape (3, waves)."""
+    x = wave_numbers * math.sqrt(filter_variance(cutoff))
+    few = x < 0.02  # below it two terms of the series suffice for 1e-9
+    y = np.where(few, 1.0, x)
+    f = dawsn(y)
+    first = 1 - 2 * y * f
+    second = -2 * f - 2 * y * first
+    third = -4 * first - 2 * y * second
+    return np.array(
+        [
+            np.where(few, 1 - 2 * x**2 + 4 / 3 * x**4, first),
+            np.where(few, 1 - 4 / 3 * x**2 + 4 / 5 * x**4, (f + y * first) / (2 * y)),
+            np.where(few, 1 - 6 / 5 * x**2 + 24 / 35 * x**4, 3 / 32 * (y * third - second) / y**3),
+        ]
+    )
+
+
+def _waves(profile: Profile, cutoff: float | None, terms: int, pieces: int) -> tuple[Array, Array]:
+    """Return m0, m2 and m4 by each stretch of a profile without form, and what each wave has in their means.
+
+    A moment is the sum, over distances along the line, of the mean product of two heights (slopes, second
+    differences) times a weight. No end has to fit the other, and no window bends it. Each of the `terms` of
+    the form took a wave with it, of the longest there are, which m0 gets back.
+    """
+    h, z = profile.spacing, profile.heights
+    reach = _STENCIL if cutoff is None else max(math.ceil(_REACH * cutoff / h), _LEAST_REACH)
+    reach = min(reach, z.size // 2)
+    weights = fft.irfft(_gains(fft.rfftfreq(_FINE * reach), h, cutoff), _FINE * reach)[:, : reach + 1]
+    stretches = np.array(
+        [
+            _stretches(np.diff(z, order) / h**order, row, pieces)
+            for order, row in zip((0, 1, 2), weights, strict=True)
+        ]
+    )
+    frequencies = fft.rfftfreq(z.size)
+    differences = (2 / h * np.sin(math.pi * frequencies)) ** np.array([[0], [2], [4]])
+    of_waves = _gains(frequencies, h, cutoff) * differences
+    power = _power(z)
+    taken = float(np.mean(power[_LOW] * of_waves[0, _LOW])) / 2  # a wave has two terms
+    stretches[0] += terms * taken
+    smoothed = np.convolve(power, np.full(_SMOOTH, 1 / _SMOOTH), mode="same")
+    return stretches, np.asarray(of_waves * smoothed)
+
+
+def _gains(frequencies: Array, spacing: float, cutoff: float | None) -> Array:
+    """Weights of waves over the squares of what plain differences see of them."""
+    phases = 2 * math.pi * frequencies
+    if cutoff is None:  # what differences of the fourth order see, as a map is looked at
+        c = np.cos(phases)
+        return np.array([np.ones_like(c), (np.cos(phases / 2) * (4 - c) / 3) ** 2, ((7 - c) / 6) ** 2])
+    weights = _areal_weights(phases / spacing, cutoff)
+    return np.asarray(weights * np.sinc(frequencies) ** np.array([[0], [-2], [-4]]))
+
+
+def _stretches(u: Array, weights: Array, pieces: int) -> Array:
+    """Return the sums over distances of weight times mean product, from pairs that begin on each stretch."""
+    n, reach = u.size, weights.size - 1
+    size = fft.next_fast_len(n + reach, real=True)
+    even = np.zeros(size)
+    even[: reach + 1] = weights * n / (n - np.arange(reach + 1))  # number of pairs
+    even[size - reach :] = even[1 : reach + 1][::-1]
+    products = u * fft.irfft(fft.rfft(u, size) * fft.rfft(even), size)[:n]
+    edges = np.linspace(0, n, pieces + 1).round().astype(np.int64)
+    return np.asarray(np.add.reduceat(products, edges[:-1]) * pieces / n)
+
+
+def _power(z: Array) -> Array:
+    """Of the waves of ``rfft``, without the mean; ends are faded out, so that they fit."""
+    fade = max(round(0.1 * z.size), 1)  # share of a profile faded out at its ends
+    window = np.ones(z.size)
+    window[:fade] = np.sin(math.pi / 2 * (np.arange(fade) + 0.5) / fade) ** 2
+    window[-fade:] = window[:fade][::-1]
+    window /= math.sqrt(np.mean(window**2))
+    power = 2 * np.abs(fft.rfft(z * window) / z.size) ** 2
+    power[0] = 0.0
+    return np.asarray(power)

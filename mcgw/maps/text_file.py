@@ -16,6 +16,7 @@ from mcgw.maps.topography import XYZ, ForeignError, Given, Raw, checked_shape, m
 _MOST_LINE = 2**24
 MOST_HEADER = 500  # lines
 _LENGTH = re.compile(r"#\s*(Width|Breite|Height|Höhe)\s*:\s*(.*[^\s\d.,])\s*$")
+_ALONG = {"Width": "width", "Breite": "width", "Height": "height", "Höhe": "height"}
 _UNITS = {name: name for name in METRES} | {"Nanometer": "nm", "Micrometer": "um", "Millimeter": "mm"}
 _UNIT_NAMES = "|".join(sorted(map(re.escape, _UNITS), key=len, reverse=True))
 _UNIT = re.compile(
@@ -52,7 +53,12 @@ def read_text(path: Path, given: Given) -> Raw:
     """
     table, header, refused = table_of(path)
     rows, columns = table.shape
-    extent, told = _extent(path, header), _units(header, columns)
+    told = _units(header, columns)
+    lengths = {k: match for k, line in header.items() if (match := _LENGTH.match(line))}
+    extent = {
+        _ALONG[match[1]]: parse(match[2].replace(",", "."), "m", f"{path}: line {k}: {match[1]}")
+        for k, match in lengths.items()
+    }
     if columns == XYZ and not extent:
         for along, across in ((0, 1), (1, 0)):
             if np.ptp(table[:, across]) == 0 < np.ptp(table[:, along]):
@@ -75,26 +81,10 @@ def read_text(path: Path, given: Given) -> Raw:
     return Raw(table, unit, (extent["width"] / columns, extent["height"] / rows), lateral="m")
 
 
-def _extent(path: Path, header: dict[int, str]) -> dict[str, float]:
-    """Return width and height of a map, m, as far as comments of Gwyddion tell them."""
-    found = {k: match for k, line in header.items() if (match := _LENGTH.match(line))}
-    return {
-        "width" if match[1] in ("Width", "Breite") else "height": parse(
-            match[2].replace(",", "."), "m", f"{path}: line {k}: {match[1]}"
-        )
-        for k, match in found.items()
-    }
-
-
 def table_of(path: Path) -> tuple[Array, dict[int, str], ValueError | None]:
     """Return the numbers of a text as a matrix; its other lines by number; and why the first of them is none.
 
     Columns at its left or right end in which no row has anything are those beyond a separator.
-
-    Raises
-    ------
-    ValueError
-        If a row has another length than the first, or is no numbers; or there is none.
     """
     header: dict[int, str] = {}
     rows: list[Array] = []
@@ -215,14 +205,7 @@ def _unit(cell: str) -> list[str]:
 
 
 def _of_points(path: Path, points: Array, told: list[str | None], given: Given) -> Raw:
-    """Return a map of points x, y and z, in any order, on a regular grid; nan where there is none.
-
-    Raises
-    ------
-    ValueError
-        If the places along x or y are not evenly spaced, most of the grid is empty, a place has two heights,
-        or all points lie on one line.
-    """
+    """Return a map of points x, y and z, in any order, on a regular grid; nan where there is none."""
     if given.pixel is not None:
         raise ValueError(f"{path}: three numbers a line are points with x, y and z; leave --pixel out")
     if not np.isfinite(points[:, :2]).all():

@@ -119,48 +119,22 @@ class ForeignError(ValueError):
 
 
 class Given(NamedTuple):
-    """What a user says of a file.
+    """What a user says of a file."""
 
-    Parameters
-    ----------
-    pixel : (float, float) or None
-        Size of a pixel, m; of a profile the first is the distance between points.
-    unit : str or None
-        Of the heights.
-    missing : float or None
-        Number that stands for a missing point, in the unit of the file.
-    """
-
-    pixel: tuple[float, float] | None
-    unit: str | None
-    missing: float | None
+    pixel: tuple[float, float] | None  # m; of a profile the first is the distance between points
+    unit: str | None  # of the heights
+    missing: float | None  # number that stands for a missing point, in the unit of the file
 
 
 class Raw(NamedTuple):
-    """What a file holds of a map or of a profile, before a user adds what it does not tell.
+    """What a file holds of a map or of a profile, before a user adds what it does not tell."""
 
-    Parameters
-    ----------
-    heights : ndarray
-        In their unit, shape (rows, columns) or (points,).
-    unit : str, optional
-        Of the heights, where the file tells it.
-    pixel : (float, float), optional
-        Size of a pixel of a map, where the file tells it.
-    periodic : bool, optional
-        Whether opposite edges fit together.
-    places : ndarray, optional
-        Of the points of a profile along its line.
-    lateral : str, optional
-        Unit of the pixel or the places, where it is known.
-    """
-
-    heights: NDArray[Any]
-    unit: str | None = None
-    pixel: tuple[float, float] | None = None
-    periodic: bool = False
-    places: Array | None = None
-    lateral: str | None = None
+    heights: NDArray[Any]  # in their unit, shape (rows, columns) or (points,)
+    unit: str | None = None  # of the heights, where the file tells it
+    pixel: tuple[float, float] | None = None  # of a map, where the file tells it
+    periodic: bool = False  # whether opposite edges fit together
+    places: Array | None = None  # of the points of a profile along its line
+    lateral: str | None = None  # unit of the pixel or the places, where it is known
 
 
 def metres_in(path: Path, unit: str | None) -> float:

@@ -42,19 +42,11 @@ class Uncertain(NamedTuple):
 
 
 class Spread(NamedTuple):
-    """How far the truth may lie from an estimate, in logarithms.
+    """How far the truth may lie from an estimate, in logarithms."""
 
-    Parameters
-    ----------
-    error : float
-        Standard error.
-    down, up : float
-        How far below and above the estimate an interval of 95 % reaches.
-    """
-
-    error: float
-    down: float
-    up: float
+    error: float  # standard error
+    down: float  # how far below the estimate an interval of 95 % reaches
+    up: float  # and above
 
 
 _NO_WAVES = Spread(0.0, 0.0, 0.0)

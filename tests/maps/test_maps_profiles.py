@@ -12,14 +12,8 @@ from scipy.stats import t as t_law
 import mcgw
 from analytic import SpectralMoments
 from mcgw.maps import Profile, Spectrum, gaussian_map
-from mcgw.maps.profile import (
-    areal_weights,
-    profile_at,
-    smooth_profile,
-    waves_of_profile,
-    without_profile_form,
-)
-from mcgw.maps.profile_fit import fit_profiles
+from mcgw.maps.profile import profile_at
+from mcgw.maps.profile_fit import _areal_weights, _waves, fit_profiles
 
 UM = 1e-6
 NAMES = ("m0", "m2", "m4", "alpha", "eta", "radius", "sigma")
@@ -28,7 +22,7 @@ NAMES = ("m0", "m2", "m4", "alpha", "eta", "radius", "sigma")
 @pytest.mark.parametrize("x", [0.019, 0.021, 3.0])
 def test_weights_are_means_of_the_autocorrelation_under_a_gaussian(x):
     k = x / math.sqrt(filter_variance(1.0))
-    found = areal_weights(np.array([k]), 1.0)[:, 0]
+    found = _areal_weights(np.array([k]), 1.0)[:, 0]
     for order in range(3):
         assert found[order] == pytest.approx(by_quadrature(x, order), rel=1e-8, abs=1e-9)
 
@@ -39,7 +33,7 @@ def test_waves_of_one_length_in_all_directions_give_the_moments_of_the_filtered_
     cutoff, n = 1.0, 4000
     angle = (np.arange(n) + 0.5) * math.pi / n
     k = np.abs(q * np.cos(angle))  # the trapezium over a period: all digits
-    weights = areal_weights(k, cutoff) * k ** np.array([[0], [2], [4]])
+    weights = _areal_weights(k, cutoff) * k ** np.array([[0], [2], [4]])
     left = float(gaussian_transmission(np.array(q), cutoff)) ** 2
     expected = np.array([1, q**2 / 2, 3 * q**4 / 8]) * left
     np.testing.assert_allclose(weights.mean(axis=1), expected, rtol=1e-12, atol=1e-13 * q**4)
@@ -60,11 +54,9 @@ def test_parts_of_the_waves_of_a_profile_literally():
         window[k] = window[-1 - k] = math.sin(math.pi / 2 * (k + 0.5) / 17) ** 2
     seen = np.abs(np.fft.rfft(z * window / math.sqrt((window**2).mean()))) ** 2 * 2 / n**2
     seen[0] = 0
-    (some, waves), (none, _) = (
-        waves_of_profile(Profile(z, h), cutoff=cutoff, terms=t, pieces=8) for t in (3, 0)
-    )
+    (some, waves), (none, _) = (_waves(Profile(z, h), cutoff, t, 8) for t in (3, 0))
     k = 2 * math.pi * np.fft.rfftfreq(n) / h
-    weights = areal_weights(k, cutoff) * k ** np.array([[0], [2], [4]])
+    weights = _areal_weights(k, cutoff) * k ** np.array([[0], [2], [4]])
     shared = [(a + b + c) / 3 for a, b, c in zip([0, *seen], seen, [*seen[1:], 0], strict=False)]
     np.testing.assert_allclose(waves, weights * shared, rtol=1e-9, atol=1e-12 * np.abs(waves).max())
     added = 3 * (seen[1:5] * weights[0, 1:5]).mean() / 2
@@ -96,12 +88,12 @@ def test_errors_of_a_fit_literally():
     """Of profiles of unequal length: power of the waves seen, and what stretches differ, the larger one."""
     profiles = list(cut(Spectrum(UM, 60 * UM, 8 * UM), 900))[:2]
     profiles[1] = Profile(profiles[1].heights[:500], UM)
-    plain = [without_profile_form(p, "plane") for p in profiles]
+    plain = [p.without_form(1) for p in profiles]
     fit = fit_profiles(profiles, cutoff=10 * UM)
-    filtered = np.concatenate([smooth_profile(p, 10 * UM).heights for p in plain])
+    filtered = np.concatenate([p.smoothed(10 * UM).heights for p in plain])
     assert (fit.roughness.q, fit.area) == (pytest.approx(filtered.std()), pytest.approx((0.7e-3) ** 2))
     shares = 900 / 1400, 500 / 1400
-    seen = [waves_of_profile(p, cutoff=10 * UM, terms=2, pieces=8) for p in plain]  # 16 stretches together
+    seen = [_waves(p, 10 * UM, 2, 8) for p in plain]  # 16 stretches together
     values = sum(share * stretches.mean(axis=1) for share, (stretches, _) in zip(shares, seen, strict=True))
     assert (fit.moments.m0, fit.moments.m2, fit.moments.m4) == pytest.approx(tuple(values), rel=1e-12)
     parts = [share * waves / values[:, None] for share, (_, waves) in zip(shares, seen, strict=True)]
@@ -152,7 +144,7 @@ def test_intervals_hold_on_profiles_cut_from_maps(case):
         assert 0.6 < np.std(z) < 1.25, name
         assert abs(np.mean(z)) < 0.4, name  # logarithms of few waves: minus half a variance
     if case == "noisy":  # the companion: filtered along the line instead
-        wrong = [np.mean((np.diff(smooth_profile(p, cutoff).heights, 2) / UM**2) ** 2) for p in profiles[:40]]
+        wrong = [np.mean((np.diff(p.smoothed(cutoff).heights, 2) / UM**2) ** 2) for p in profiles[:40]]
         errors = [2 * f.numbers["m4"].relative for f in fits[:40]]
         assert np.mean(np.abs(np.log(np.array(wrong) / expected.m4)) > errors) > 0.5
 
@@ -275,8 +267,8 @@ def test_a_filtered_profile_is_a_sum_over_its_window():
     z, cutoff = np.random.default_rng(1).normal(size=28), 9.5
     t = np.arange(-10, 11.0)
     w = np.exp(-math.pi * (t / (math.sqrt(math.log(2) / math.pi) * cutoff)) ** 2)
-    found = smooth_profile(Profile(z, 1.0, filled=2), cutoff)
+    found = Profile(z, 1.0, filled=2).smoothed(cutoff)
     np.testing.assert_allclose(found.heights, np.convolve(z, w / w.sum(), mode="valid"), rtol=1e-10)
     assert found.filled == 2
     with pytest.raises(ValueError, match="leaves nothing of a profile of 27 m"):
-        smooth_profile(Profile(z[:27], 1.0), cutoff)
+        Profile(z[:27], 1.0).smoothed(cutoff)
