@@ -1,7 +1,5 @@
-"""Types of arrays, how frozen objects come to hold their values, and numbers that must be positive."""
+"""Types of the arrays that everything here takes and gives, and how frozen objects come to hold theirs."""
 
-import math
-from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -16,15 +14,3 @@ def hold(frozen: Any, **values: Any) -> None:
     """Give fields of a frozen object their values while it is made: the one place that can."""
     for name, value in values.items():
         object.__setattr__(frozen, name, value)
-
-
-def is_positive(value: Any) -> bool:
-    """Tell whether a value is a finite number > 0; texts, which only scene files read, are none."""
-    return isinstance(value, Real) and 0 < float(value) < math.inf
-
-
-def check_positive(unit: str, **values: Any) -> None:
-    """Refuse values that are no finite numbers > 0."""
-    for name, value in values.items():
-        if value is not None and not is_positive(value):
-            raise ValueError(f"{name} = {value!r}: give a finite number > 0{unit and f', in {unit}'}")

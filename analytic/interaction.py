@@ -36,9 +36,9 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic.arrays import Array, check_positive
+from analytic.arrays import Array
 from analytic.quantities import JOINT, NOT_SUMS, SEPARATIONS, Quantity, quantity_of
-from analytic.surface import Surface
+from analytic.surface import Surface, check_positive
 
 if TYPE_CHECKING:
     from analytic.distribution import Law

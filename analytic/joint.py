@@ -20,11 +20,11 @@ import numpy as np
 from numpy.polynomial import HermiteE
 from numpy.typing import ArrayLike
 
-from analytic.arrays import Array, check_positive, hold
+from analytic.arrays import Array, hold
 from analytic.nayak import Nayak
 from analytic.piecewise import fitted
 from analytic.quadrature import panelled
-from analytic.surface import SUMMIT_SPREAD, SpectralMoments, Surface
+from analytic.surface import SUMMIT_SPREAD, SpectralMoments, Surface, check_positive
 
 _REACH = 10.0  # standard deviations of heights that count
 _DIRECT, _PANEL, _TERMS = 512, 0.5, 18  # distances that are integrated one by one; or interpolated

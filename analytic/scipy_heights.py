@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from analytic.arrays import Array, hold
-from analytic.gradings import Custom
 from analytic.heights import HeightLaw
 from analytic.resolution import resolved_breaks
 from analytic.roots import sign_changes
@@ -122,7 +121,7 @@ class ScipyHeights(HeightLaw):
     def breaks(self) -> tuple[float, ...]:
         """Heights that cut the density, between its 1e-9 quantiles, into smooth curves."""
         low, high = self.ppf(np.array(1e-9)), self.isf(np.array(1e-9))
-        return resolved_breaks(Custom(self.pdf), float(low), float(high), _NOISE)
+        return resolved_breaks(_Density(self), float(low), float(high), _NOISE)
 
     @property
     def singular(self) -> tuple[float, ...]:
@@ -217,3 +216,15 @@ def _without_place(distribution: Any) -> Any:
     if not set(names) <= set(given):
         return frozen  # shapes of a kind that has no names
     return frozen.dist(**{name: float(given[name]) for name in names})
+
+
+@dataclass(frozen=True)
+class _Density:
+    """A density as a grading, so that its jumps and kinks are found alike; it may be infinite."""
+
+    law: ScipyHeights
+    breaks: tuple[float, ...] = ()
+    smooth: bool = False
+
+    def __call__(self, s: Array) -> Array:
+        return self.law.pdf(s)

@@ -3,8 +3,8 @@
 import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-
-from analytic.arrays import check_positive
+from numbers import Real
+from typing import Any
 
 LEAST_ALPHA = 1.5  # of an isotropic surface: all its waves have one length
 # Variance of the summit heights is (1 - 0.8968/alpha) m0 (Bush, Gibson and Thomas 1975), exactly:
@@ -73,6 +73,13 @@ def composite_modulus(bodies: Sequence[Body]) -> float:
     if compliance == 0:
         raise ValueError("bodies: both are rigid; one of them must be elastic")
     return 1 / compliance
+
+
+def check_positive(unit: str, **values: Any) -> None:
+    """Refuse values that are no finite numbers > 0; texts, which only scene files read, are none."""
+    for name, value in values.items():
+        if value is not None and not (isinstance(value, Real) and 0 < float(value) < math.inf):
+            raise ValueError(f"{name} = {value!r}: give a finite number > 0{unit and f', in {unit}'}")
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,13 +3,14 @@
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from numbers import Real
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from analytic.arrays import Array, check_positive, hold, is_positive
-from analytic.surface import Surface
+from analytic.arrays import Array, hold
+from analytic.surface import Surface, check_positive
 
 _DIRECT = 60  # images that are rather summed one by one
 _NEGLIGIBLE = 1e-18  # weight of an image
@@ -93,7 +94,8 @@ class Film:
             raise ValueError("resistivity: give it in ohm m, or conductivities = (k1, k2) in W/(m K)")
         check_positive("ohm m", resistivity=self.resistivity)
         if self.conductivities is not None:
-            if len(self.conductivities) != 2 or not all(map(is_positive, self.conductivities)):
+            given: tuple[Any, ...] = self.conductivities
+            if len(given) != 2 or not all(isinstance(k, Real) and 0 < float(k) < math.inf for k in given):
                 raise ValueError(f"conductivities = {self.conductivities!r}: give two numbers > 0 in W/(m K)")
             hold(self, conductivities=tuple(map(float, self.conductivities)))
         elif self.layer is not None:

@@ -14,8 +14,8 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from analytic.arrays import Array, Ints, check_positive, hold
-from analytic.surface import Surface
+from analytic.arrays import Array, Ints, hold
+from analytic.surface import Surface, check_positive
 
 _STEP = 1e-30  # of a variable, into the complex plane
 NEXT_TO_0 = 1e-60  # stands for 0: cubes of it, times a step, are still numbers

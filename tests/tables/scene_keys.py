@@ -262,7 +262,7 @@ ROWS = [
     ("joint.temperature", 600.0, JOINED,
      lambda s: s.gas.held.conductivity, 2.64638e-3 * 600**1.5 / (600 + 245.4 * 10 ** (-12 / 600))),
     ("joint.gas_pressure", "'0.5 bar'", JOINED,
-     lambda s: s.gas.held.jump / analytic.joint.gas_of("air").jump, 101325 / 5e4),
+     lambda s: s.gas.held.jump / analytic.Joint("air").held.jump, 101325 / 5e4),
     ("fitted.m0", 2e-12, {"fitted": FITTED}, lambda s: s.fitted.moments.alpha, 20),
     ("fitted.m2", 2e-2, {"fitted": FITTED}, lambda s: s.fitted.moments.alpha, 2.5),
     ("fitted.m4", 4e9, {"fitted": FITTED}, lambda s: s.fitted.moments.alpha, 40),
