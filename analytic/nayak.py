@@ -183,8 +183,8 @@ def _series(law: Nayak, way: int) -> PiecewiseSeries:
     def logarithm(x: Array) -> Array:
         """Of the integral of ``2 (q - 1 + exp(-q)) exp(exponent)``, q = tau^2/2, over u = tau/sqrt(v)."""
         y = x / width
-        a, begins = rho * y, y / rho  # of the two factors the one has its peak, the other its end there
-        inner = [a - _WIDE, a + np.hypot(np.minimum(a, 0.0), _WIDE), begins - _WIDE, begins + _WIDE]
+        a = rho * y  # where a factor has its peak
+        inner = [a - _WIDE, a + np.hypot(np.minimum(a, 0.0), _WIDE)]
         most = np.hypot(_LARGEST / math.sqrt(2), np.maximum(x, 0.0) / rho) / width
         u, w = panelled(np.sort(np.clip([0 * x, *inner, most], 0, most), axis=0))
         if way:
