@@ -125,8 +125,8 @@ def fit(
     if heights == "measured":
         check_outputs([Output(heights_beside(output), NPY)])
     size = None if pixel is None else (pixel, pixel)
-    read = partial(read_heights, pixel=size, unit=unit, missing=missing_value)
-    found, ready, assumed_unit = fit_sources(map, read, asked, use)
+    of_file: dict[str, Any] = {"pixel": size, "unit": unit, "missing": missing_value}
+    found, ready, assumed_unit = fit_sources(map, partial(read_heights, **of_file), asked, use)
     for option, path in beside.items():
         if path and ready is None:
             raise ValueError(f"{option} {path}: a profile shows no summits, and has no sub-areas; give a map")
@@ -151,8 +151,7 @@ def fit(
             from mcgw.figures.map_fit import fit_figure
             from mcgw.figures.panels import save
 
-            raw = read_map(map[0], pixel=size, unit=unit, missing=missing_value)
-            save(fit_figure(found, raw, ready), picture)
+            save(fit_figure(found, read_map(map[0], **of_file), ready), picture)
             told.append(f"{picture}: figure")
     lost = [line for line in said[1:] if line.startswith("missing: ")]
     news(f"{output}: {_parameters(scene.surface, assumed)}", said[0], *lost, *told)
