@@ -161,20 +161,14 @@ def by_summits(fine: Summits, coarse: Summits) -> Array:
 def by_caps(counted: Summits, blur: float) -> Array | None:
     """Independent caps of one radius, those under taller ones added; None if they would not look like this.
 
-    All caps have one radius, which is the median: a few summits next to a valley do not.
-
-    Parameters
-    ----------
-    counted : Summits
-        Of the map.
-    blur : float
-        Distance from a valley that a summit needs to be seen, m.
+    All caps have one radius, which is the median: a few summits next to a valley do not. A summit is seen at
+    a distance `blur`, m, from a valley.
     """
 
     def found(t: Summits, blur: float) -> Array:
         median = np.median(t.bends)
         caps = t.heights[t.bends > _FLAT * median]  # lower ones are ripples in the valleys
-        all_caps = unhidden(caps.size / t.area, float(1 / median), float(caps.std(ddof=1)), blur)
+        all_caps = _unhidden(caps.size / t.area, float(1 / median), float(caps.std(ddof=1)), blur)
         return np.full(3, np.nan) if all_caps is None else np.array([all_caps[0], 1 / median, all_caps[1]])
 
     pairs = jackknife(lambda t: found(t, blur), counted)
@@ -238,20 +232,10 @@ def visible(overlap: float, blur: float = 0.0) -> Visible:
     return Visible(share, mean, math.sqrt(float(p @ (s - mean) ** 2) / share))
 
 
-def unhidden(eta: float, radius: float, sigma: float, blur: float = 0.0) -> tuple[float, float] | None:
+def _unhidden(eta: float, radius: float, sigma: float, blur: float) -> tuple[float, float] | None:
     """Density and standard deviation of all summits from those of the visible ones, SI units.
 
-    Parameters
-    ----------
-    eta, radius, sigma : float
-        Of the visible summits, SI units.
-    blur : float, optional
-        Distance p from a valley that a summit needs, m.
-
-    Returns
-    -------
-    (float, float) or None
-        None if no field of independent caps shows so many, or all have one height.
+    None if no field of independent caps shows so many, or all have one height.
     """
     if not sigma > 0:
         return None

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 from scipy import fft, ndimage
+from scipy.special import chdtrc
 
 from analytic.arrays import Array
 from mcgw.maps.estimates import CROWDED, visible
@@ -20,7 +21,6 @@ from mcgw.maps.form import form_left, gaussian_transmission
 from mcgw.maps.preparation import Prepared, spike_heights
 from mcgw.maps.profile import Profile
 from mcgw.maps.profile_fit import ProfileFit
-from mcgw.maps.several_maps import disagreement
 from mcgw.maps.topography import STEEPEST
 
 _PIXELS = 10.0  # pixels that a cutoff wavelength should have
@@ -98,8 +98,19 @@ def cautions_of_several(fit: Fit, fits: Sequence[Fit], use: str = "auto") -> lis
         for line in each.cautions
         if line.partition(":")[0] not in _OF_ALL
     ]
-    apart = (("maps", *each) for each in disagreement(fits))
+    apart = (("maps", *each) for each in _disagreement(fits))
     return _lines([*apart, *_few_waves(fit), *_of_the_fit(fit, use)], own)
+
+
+def _disagreement(fits: Sequence[Fit]) -> Iterator[tuple[str, float]]:
+    """Tell what differs between the maps by more than its errors, once in 1000 by chance, and the factor."""
+    words = {"m0": "heights", "m2": "slopes", "m4": "curvatures"}
+    for name, word in words.items():
+        each = [fit.numbers[name] for fit in fits]
+        logs, certain = np.log([x.value for x in each]), 1 / np.array([x.relative for x in each]) ** 2
+        chi_square = float(certain @ (logs - np.average(logs, weights=certain)) ** 2)
+        if chdtrc(len(each) - 1, chi_square) < 1e-3 / len(words):
+            yield word, math.exp(np.ptp(logs))
 
 
 def profile_cautions(fit: ProfileFit, profiles: Sequence[Profile], cutoff: float | None) -> list[str]:

@@ -12,7 +12,7 @@ from scipy.ndimage import gaussian_filter, gaussian_filter1d
 from analytic.arrays import Array
 from mcgw.maps.steps import Form, LinesTo
 from mcgw.maps.topography import Topography
-from mcgw.maps.waves import block_means, coarser
+from mcgw.maps.waves import coarser
 
 ORDERS = {"none": -1, "plane": 1, "quadratic": 2, "cubic": 3, "quartic": 4}
 
@@ -134,8 +134,8 @@ def form_left(topography: Topography, form: Form) -> tuple[float, float, Form] |
     """
     more: Form = "quadratic" if ORDERS[form] < ORDERS["quadratic"] else "quartic"
     coarse = coarser(topography, _FINE)
-    rest = without_form(coarse, more).heights
-    left, z = coarse.heights - rest, block_means(rest, _COARSE)
+    rest = without_form(coarse, more)
+    left, z = coarse.heights - rest.heights, coarser(rest, _COARSE).heights
     power = np.abs(fft.fft2(z) / z.size) ** 2
     along, down = (fft.fftfreq(n) * n for n in z.shape[::-1])
     longest = float(power[np.hypot(along, down[:, None]) < _LONGEST].sum())

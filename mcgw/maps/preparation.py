@@ -20,7 +20,7 @@ from mcgw.scene.section import Kind
 _LEAST = 0.5  # share of measured points that must have all neighbours, else filled ones count
 _STEPS, _CLOSE = 2000, 1e-8
 _REACH = 3  # pixels from a point to the ring around it: a spike is narrower than five
-BENT = 7.0  # times the usual bend: exceeded once in 4e11 points of a Gaussian map
+_BENT = 7.0  # times the usual bend: exceeded once in 4e11 points of a Gaussian map
 _OF_MEDIAN = 0.6745  # median over standard deviation of a Gaussian
 _OUT = 3.0  # ranges of the ring: 12 deviations of white noise beyond it; ridges, pits and peaks stay below
 _LOOKED_AT = 2**18  # points tell the steps of up to some thousand levels
@@ -179,12 +179,8 @@ def filled(heights: Array) -> Array:
     """Fill missing points: each is the mean of its neighbours left, right, above and below.
 
     That is Laplace's equation on the pixels. Neighbours beyond the map do not count. In holes wider than
-    some thousand points the iteration ends before its limit, near the height of the nearest edge.
-
-    Parameters
-    ----------
-    heights : ndarray
-        Two-dimensional; missing points are nan, not all of them.
+    some thousand points the iteration ends before its limit, near the height of the nearest edge. Missing
+    points are nan, not all of them.
     """
     missing = ~np.isfinite(heights)
     number = int(np.count_nonzero(missing))
@@ -239,13 +235,9 @@ def small_spike_heights(topography: Topography) -> Array:
     """
     bends = ndimage.laplace(topography.heights, mode="nearest")
     size = np.abs(bends)
-    out = (size > BENT * usual_bend(bends)) & (size == ndimage.maximum_filter(size, 3))
+    usual = float(np.median(np.abs(bends - np.median(bends)))) / _OF_MEDIAN
+    out = (size > _BENT * usual) & (size == ndimage.maximum_filter(size, 3))
     return np.asarray(np.where(out, bends / -4, 0.0))
-
-
-def usual_bend(bends: Array) -> float:
-    """Return the standard deviation of Gaussian bends that have the median of these; some may be nan."""
-    return float(np.nanmedian(np.abs(bends - np.nanmedian(bends)))) / _OF_MEDIAN
 
 
 def recorded(heights: Array) -> tuple[float, float]:

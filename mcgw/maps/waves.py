@@ -93,21 +93,13 @@ def log_derivatives(moments: SpectralMoments) -> dict[str, Array]:
     }  # fmt: skip
 
 
-def block_means(heights: Array, most: int) -> Array:
-    """Means over blocks of pixels that leave `most` to twice as many along each axis."""
-    down, along = (max(n // most, 1) for n in heights.shape)
-    if down == along == 1:
-        return heights
-    rows, columns = heights.shape[0] // down, heights.shape[1] // along
-    blocks = heights[: rows * down, : columns * along].reshape(rows, down, columns, along)
-    return np.asarray(blocks.mean(axis=(1, 3)))
-
-
 def coarser(topography: Topography, most: int) -> Topography:
-    """Return the map of such means."""
-    z = block_means(topography.heights, most)
-    along, down = (n // m for n, m in zip(topography.heights.shape[::-1], z.shape[::-1], strict=True))
-    return replace(topography, heights=z, pixel=(topography.pixel[0] * along, topography.pixel[1] * down))
+    """Return the map of means over blocks of pixels that leave `most` to twice as many along each axis."""
+    z, (dx, dy) = topography.heights, topography.pixel
+    down, along = (max(n // most, 1) for n in z.shape)
+    rows, columns = z.shape[0] // down, z.shape[1] // along
+    blocks = z[: rows * down, : columns * along].reshape(rows, down, columns, along)
+    return replace(topography, heights=blocks.mean(axis=(1, 3)), pixel=(along * dx, down * dy))
 
 
 def waves_of(topography: Topography, moments: SpectralMoments, order: int = -1) -> Waves:

@@ -10,11 +10,11 @@ from oracles.fit_of_maps import fit_map
 from oracles.inside import (
     SUMS,
     Summits,
+    _unhidden,
     by_caps,
     by_summits,
     coarse_sums_of,
     summit_sums_of,
-    unhidden,
     variation,
     visible,
 )
@@ -146,7 +146,7 @@ def test_hidden_caps_by_quadrature(overlap, blur):
     assert (found.share, found.mean, found.std) == pytest.approx((share, mean, std), rel=1e-7)
     radius, sigma = 1e-5, 1e-6
     eta = overlap / radius / sigma
-    back = unhidden(eta * share, radius, sigma * std, blur * math.sqrt(2 * radius * sigma * std))
+    back = _unhidden(eta * share, radius, sigma * std, blur * math.sqrt(2 * radius * sigma * std))
     if blur == 0:
         assert back == pytest.approx((eta, sigma), rel=1e-7)
         # Ripples in valleys, much flatter than the median, are no caps.
@@ -156,7 +156,7 @@ def test_hidden_caps_by_quadrature(overlap, blur):
         pairs = by_caps(counted(heights, bends, area=200 / eta / share), 0.0)
         assert [x for x, _ in pairs] == pytest.approx([eta, radius, sigma], rel=1e-7)
     else:
-        assert back[0] > unhidden(eta * share, radius, sigma * std)[0]
+        assert back[0] > _unhidden(eta * share, radius, sigma * std, 0.0)[0]
 
 
 def test_caps_are_as_sharp_as_half_of_the_median():
@@ -184,9 +184,9 @@ def test_where_nothing_is_seen_nothing_is_found_again():
     assert (nothing.share, nothing.mean, nothing.std) == (0, 0, 0)
     assert visible(0.0).share == pytest.approx(1, rel=1e-12)
     assert visible(0.0).std == pytest.approx(1, rel=1e-9)
-    assert unhidden(1e9, 1e-5, 0.0) is None
-    assert unhidden(1e9, 1e-5, 1e-3) is None  # no field shows so many
-    assert unhidden(1e3, 1e-5, 1e-6) == pytest.approx((1e3, 1e-6), rel=1e-5)
+    assert _unhidden(1e9, 1e-5, 0.0, 0.0) is None
+    assert _unhidden(1e9, 1e-5, 1e-3, 0.0) is None  # no field shows so many
+    assert _unhidden(1e3, 1e-5, 1e-6, 0.0) == pytest.approx((1e3, 1e-6), rel=1e-5)
 
 
 # --- summits one by one: those of a few cosines, known on paper -------------------------------------------

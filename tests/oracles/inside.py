@@ -39,13 +39,11 @@ MODULES = {
     "mcgw.jobs.making": "_merged commit_block",
     "mcgw.machine.memory": "check_memory memory_available",
     "mcgw.maps.envelope": "envelope hidden_summits",
-    "mcgw.maps.estimates": "by_caps by_summits SUMMITS unhidden visible",
+    "mcgw.maps.estimates": "_unhidden by_caps by_summits SUMMITS visible",
     "mcgw.maps.fit": "fit_prepared",
     "mcgw.maps.fit_cautions": "profile_cautions",
     "mcgw.maps.form": "filter_variance gaussian_transmission lowpass smooth without_form without_offsets",
-    "mcgw.maps.preparation": (
-        "filled Preparation prepared recorded small_spike_heights spike_heights usual_bend"
-    ),
+    "mcgw.maps.preparation": ("filled Preparation prepared recorded small_spike_heights spike_heights"),
     "mcgw.maps.fitted_scene": "write_scene",
     "mcgw.maps.summit_sums": "coarse_sums_of summit_sums_of Summits SUMS variation",
     "mcgw.reports.plan": "plan_text",
