@@ -97,6 +97,8 @@ def coarser(topography: Topography, most: int) -> Topography:
     """Return the map of means over blocks of pixels that leave `most` to twice as many along each axis."""
     z, (dx, dy) = topography.heights, topography.pixel
     down, along = (max(n // most, 1) for n in z.shape)
+    if down == along == 1:
+        return topography
     rows, columns = z.shape[0] // down, z.shape[1] // along
     blocks = z[: rows * down, : columns * along].reshape(rows, down, columns, along)
     return replace(topography, heights=blocks.mean(axis=(1, 3)), pixel=(along * dx, down * dy))
