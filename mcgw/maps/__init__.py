@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from mcgw.maps.heights_files import read_heights as read_heights, read_map as read_map
     from mcgw.maps.map_files import write_map as write_map
-    from mcgw.maps.profile import Profile as Profile
     from mcgw.maps.synthetic import (
         Asperities as Asperities,
         Spectrum as Spectrum,
@@ -23,15 +22,14 @@ if TYPE_CHECKING:
         moments_on_grid as moments_on_grid,
         spectrum_from as spectrum_from,
     )
-    from mcgw.maps.topography import Topography as Topography
+    from mcgw.maps.topography import Profile as Profile, Topography as Topography
 
 # Where names come from; they are imported on first use, as those of `mcgw` are.
 _HOMES = {
     "map_files": "write_map",
-    "profile": "Profile",
     "heights_files": "read_heights read_map",
     "synthetic": "Asperities Spectrum asperities_of gaussian_map moments_on_grid spectrum_from",
-    "topography": "Topography",
+    "topography": "Profile Topography",
 }
 _HOME = {name: f"mcgw.maps.{module}" for module, names in _HOMES.items() for name in names.split()}
 

@@ -215,12 +215,7 @@ def _taller_neighbours(blur: float) -> Array:
 def visible(overlap: float, blur: float = 0.0) -> Visible:
     """Statistics of the visible summits of Gaussian heights, by quadrature over heights and distances.
 
-    Parameters
-    ----------
-    overlap : float
-        ``eta R sigma``.
-    blur : float, optional
-        Distance p from a valley that a summit needs, over ``sqrt(2 R sigma)``.
+    The `overlap` is ``eta R sigma``; the `blur`, over ``sqrt(2 R sigma)``, is the distance p from a valley.
     """
     s = _REACH * _X
     hidden = np.exp(-s * s / 2 - 4 * math.pi * overlap * _taller_neighbours(blur))

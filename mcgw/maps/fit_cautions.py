@@ -19,9 +19,8 @@ from mcgw.maps.estimates import CROWDED, visible
 from mcgw.maps.fit import Fit
 from mcgw.maps.form import form_left, gaussian_transmission
 from mcgw.maps.preparation import Prepared, spike_heights
-from mcgw.maps.profile import Profile
 from mcgw.maps.profile_fit import ProfileFit
-from mcgw.maps.topography import STEEPEST
+from mcgw.maps.topography import STEEPEST, Profile
 
 _PIXELS = 10.0  # pixels that a cutoff wavelength should have
 _RESOLVED = 0.05  # allowed ratio of two estimates of m4, reached at about ten pixels per wavelength

@@ -18,11 +18,10 @@ from mcgw.maps.fit import Fit, fit_prepared
 from mcgw.maps.fit_cautions import cautions, cautions_of_several, profile_cautions
 from mcgw.maps.heights_files import read_heights
 from mcgw.maps.preparation import Preparation, Prepared, preparation_of, prepared
-from mcgw.maps.profile import Profile
 from mcgw.maps.profile_fit import ProfileFit, fit_profiles
 from mcgw.maps.steps import Form, LinesTo, Missing, SpikesTo
 from mcgw.maps.summit_sums import Summits
-from mcgw.maps.topography import Topography
+from mcgw.maps.topography import Profile, Topography
 from mcgw.maps.waves import Spread, Uncertain, Waves, uncertain
 from mcgw.scene.kinds import argument
 

@@ -11,7 +11,7 @@ from scipy.ndimage import gaussian_filter, gaussian_filter1d
 
 from analytic.arrays import Array
 from mcgw.maps.steps import Form, LinesTo
-from mcgw.maps.topography import Topography
+from mcgw.maps.topography import Topography, filter_variance
 from mcgw.maps.waves import coarser
 
 ORDERS = {"none": -1, "plane": 1, "quadratic": 2, "cubic": 3, "quartic": 4}
@@ -46,11 +46,6 @@ def without_form(topography: Topography, form: Form) -> Topography:
     for (a, b), value in zip(terms, found, strict=True):
         weights[a, b] = value
     return replace(topography, heights=z - y @ weights @ x.T, periodic=False)
-
-
-def filter_variance(cutoff: float) -> float:
-    """Of the window of the Gaussian filter, m^2: half the amplitude is left at the cutoff (ISO 16610-61)."""
-    return math.log(2) / (2 * math.pi**2) * cutoff**2
 
 
 def gaussian_transmission(q: Array, cutoff: float) -> Array:

@@ -9,9 +9,18 @@ from numpy.typing import NDArray
 
 from analytic.arrays import Array
 from mcgw.maps.map_files import read_foreign, read_h5, read_npy
-from mcgw.maps.profile import Profile, profile_at
 from mcgw.maps.text_file import read_text
-from mcgw.maps.topography import FLATTEST, STEEPEST, ForeignError, Given, Raw, Topography, metres_in
+from mcgw.maps.topography import (
+    FLATTEST,
+    LEAST_POINTS,
+    STEEPEST,
+    ForeignError,
+    Given,
+    Profile,
+    Raw,
+    Topography,
+    metres_in,
+)
 
 _TEXT = (".txt", ".csv", ".asc", ".dat", ".tsv", ".prf", ".xy", ".xyz")
 READERS: dict[str, Callable[[Path, Given], Raw]] = {
@@ -20,6 +29,7 @@ READERS: dict[str, Callable[[Path, Given], Raw]] = {
     **dict.fromkeys(_TEXT, read_text),
 }
 _SENTINELS = (-9999.0, -99999.0, -32768.0, 32767.0, 1e30, -1e30, 1e10, -1e10, 3.4028235e38, -3.4028235e38)
+_EVEN = 0.1  # share of a step that places may be off an even grid
 _EQUAL = 1e-6  # relative, of a height and the number that stands for a missing one; beyond 1e30 a hundredth
 
 
@@ -96,7 +106,7 @@ def read_heights(
     if plane or pixel is not None:  # SDF and X3P hold a line as a map of one row
         lateral = lateral[int(plane and len(heights) > 1)] * np.arange(heights.size)
     try:
-        profile = profile_at(lateral, heights.ravel(), assumed)
+        profile = _profile_at(lateral, heights.ravel(), assumed)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
     if profile.doubtful:
@@ -140,6 +150,39 @@ def _read(path: Path, given: Given) -> Raw:
     if reader is read_text and found.heights.ndim == 2 and found.pixel is None:
         raise refused
     return found
+
+
+def _profile_at(places: Array, heights: Array, assumed_unit: str = "") -> Profile:
+    """Return a profile of heights at places along a line, on an even grid of as many points.
+
+    Places a tenth of a step beside an even grid are taken as rounded. Otherwise, and where heights are
+    missing (nan), those on the grid are interpolated along straight lines.
+    """
+    known = np.isfinite(heights)
+    if not known.any():
+        raise ValueError("the profile has no heights")
+    first, last = int(np.argmax(known)), int(known.size - np.argmax(known[::-1]))
+    places, heights, known = places[first:last], heights[first:last], known[first:last]
+    missing = int(np.count_nonzero(~known))
+    if missing > 0.1 * known.size:  # share of all points
+        raise ValueError(f"{missing} of the {known.size} heights are missing; measure the profile again")
+    if places.size > 1 and places[-1] < places[0]:
+        places, heights, known = places[::-1], heights[::-1], known[::-1]
+    if places.size < LEAST_POINTS:
+        raise ValueError(f"{places.size} points: a profile has {LEAST_POINTS} or more")
+    steps = np.diff(places)
+    if not np.all(steps > 0):
+        k = int(np.argmin(steps))
+        raise ValueError(
+            f"x = {places[k]:g} m is followed by {places[k + 1]:g} m; give x in increasing or decreasing "
+            f"order"
+        )
+    even = np.linspace(places[0], places[-1], places.size)
+    spacing = float(even[1] - even[0])
+    resampled = bool(np.abs(places - even).max() > _EVEN * spacing)
+    if resampled or missing:
+        heights = np.interp(even if resampled else places, places[known], heights[known])
+    return Profile(np.array(heights, dtype=np.float64), spacing, assumed_unit, missing, resampled)
 
 
 def _in_metres(path: Path, raw: NDArray[Any], metre: float, missing: float | None) -> Array:

@@ -182,10 +182,8 @@ def surface_from(
     """
     try:
         moments, doubts = moments_from(numbers, pruning)
-    except SceneError:
-        raise
     except ValueError as error:
-        raise SceneError([str(error)]) from None
+        raise SceneError(getattr(error, "problems", [str(error)])) from None
     for line in doubts:
         warnings.warn(line, UserWarning, stacklevel=2)
     return SpectralSurface(moments.m0, moments.m2, moments.m4, nominal_area, E_star)

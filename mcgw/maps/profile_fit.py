@@ -35,9 +35,8 @@ from analytic.arrays import Array
 from mcgw.formats.table import Column, Shown, Table
 from mcgw.machine.terminal import plotted
 from mcgw.maps.estimates import Estimate, Roughness, roughness_of
-from mcgw.maps.form import filter_variance
-from mcgw.maps.profile import Profile
 from mcgw.maps.steps import Form
+from mcgw.maps.topography import Profile, filter_variance
 from mcgw.maps.waves import Uncertain, log_derivatives, uncertain
 
 _ORDERS = {"none": 0, "plane": 1, "quadratic": 2}

@@ -274,13 +274,7 @@ def summit_sums_of(topography: Topography, *, across: int = 4, seen: Marks | Non
 
 
 def coarse_sums_of(topography: Topography, *, across: int = 4, seen: Marks | None = None) -> Summits:
-    """Go over the four maps of every second point along each axis, and put together what they show.
-
-    Raises
-    ------
-    ValueError
-        As `summit_sums_of` does.
-    """
+    """Go over the four maps of every second point along each axis, and put together what they show."""
     pixel = (2 * topography.pixel[0], 2 * topography.pixel[1])
     rows, columns = (n - n % 2 for n in topography.heights.shape)  # all four of one size
     found = []

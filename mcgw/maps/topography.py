@@ -1,13 +1,15 @@
-"""Height maps, as every writer takes them; and what every reader gets and gives, in the units of the file."""
+"""Heights on a grid or along a line, as every writer takes them; and what a reader gets and gives."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.polynomial import Legendre
 from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d
 
 from analytic.arrays import Array
 from mcgw.formats.units import METRES
@@ -19,6 +21,8 @@ _SMALL, _PACKED = 2**22, 20  # points that any file may declare, and that each o
 _ENOUGH = 2**20  # differences between neighbours tell their median to a thousandth
 XYZ = 3
 STEEPEST = 10.0  # 84 degrees: no instrument that gives a height map sees such slopes all over it
+LEAST_POINTS = 8  # of a profile
+_WIDEST, _LONGEST = 1e-2, 0.2  # m, longest spacing and profile of a stylus
 FLATTEST = 1e-6  # and no surface is so flat from one pixel to the next
 
 
@@ -93,6 +97,95 @@ class Topography:
             if np.isfinite(differences := np.diff(lines[::every])).any()
         ]
         return math.hypot(*usual)
+
+
+@dataclass(frozen=True)
+class Profile:
+    """Heights on an even grid along a line.
+
+    Parameters
+    ----------
+    heights : ndarray
+        m, shape (points,); none is missing.
+    spacing : float
+        Between two points, m.
+    assumed_unit : str, optional
+        Unit assumed for the lengths if the file does not state it; empty if it is known.
+    filled : int, optional
+        Number of missing heights that were filled along straight lines.
+    resampled : bool, optional
+        Whether the places were uneven, so that heights were interpolated.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than 8 points, one is missing, or the spacing is no length.
+    """
+
+    heights: Array
+    spacing: float
+    assumed_unit: str = ""
+    filled: int = 0
+    resampled: bool = False
+
+    def __post_init__(self) -> None:
+        if self.heights.ndim != 1:
+            raise ValueError(f"a profile has one row of heights, not {self.heights.ndim} dimensions")
+        if self.heights.size < LEAST_POINTS:
+            raise ValueError(f"{self.heights.size} points: a profile has {LEAST_POINTS} or more")
+        if not np.all(np.isfinite(self.heights)):
+            raise ValueError("points of the profile are missing (nan); fill them first")
+        if not (math.isfinite(self.spacing) and self.spacing > 0):
+            raise ValueError(f"spacing = {self.spacing!r}: give a length > 0 m")
+
+    @property
+    def length(self) -> float:
+        """Length along the line, m, including the whole spacing of the outer points."""
+        return self.heights.size * self.spacing
+
+    @property
+    def steepness(self) -> float:
+        """Typical slope, from the median difference between neighbours."""
+        return float(np.median(np.abs(np.diff(self.heights)))) / self.spacing
+
+    @property
+    def doubtful(self) -> str:
+        """Why the assumed unit of the lengths is implausible; empty if it is plausible."""
+        if not self.assumed_unit:
+            return ""
+        if self.steepness > STEEPEST:
+            return f"the typical slope is {self.steepness:.3g}"
+        if self.spacing > _WIDEST:
+            return f"the points are {self.spacing:g} m apart"
+        return f"it is {self.length:.3g} m long" if self.length > _LONGEST else ""
+
+    def without_form(self, order: int) -> "Profile":
+        """Subtract the polynomial of least squares of this order; the mean in any case."""
+        t = np.linspace(-1, 1, self.heights.size)
+        return replace(self, heights=self.heights - Legendre.fit(t, self.heights, order)(t))
+
+    def smoothed(self, cutoff: float) -> "Profile":
+        """Apply the Gaussian filter of ISO 16610-21 and leave off the margins of one cutoff it cannot reach.
+
+        Raises
+        ------
+        ValueError
+            If nothing would be left.
+        """
+        radius = math.ceil(cutoff / self.spacing)
+        if 2 * radius + LEAST_POINTS > self.heights.size:
+            raise ValueError(
+                f"cutoff = {cutoff:g} m: leaves nothing of a profile of {self.length:g} m after removing "
+                "margins of one cutoff"
+            )
+        width = math.sqrt(filter_variance(cutoff)) / self.spacing
+        filtered = gaussian_filter1d(self.heights, width, radius=radius)
+        return replace(self, heights=filtered[radius : filtered.size - radius])
+
+
+def filter_variance(cutoff: float) -> float:
+    """Of the window of the Gaussian filter, m^2: half the amplitude is left at the cutoff (ISO 16610-61)."""
+    return math.log(2) / (2 * math.pi**2) * cutoff**2
 
 
 def checked_shape(rows: int, columns: int, *, held: int | None = None) -> tuple[int, int]:

@@ -110,17 +110,8 @@ def waves_of(topography: Topography, moments: SpectralMoments, order: int = -1) 
     A moment is a sum of the powers of waves, each exponentially distributed: its variance is the sum of
     their squared means, and that is half the sum of the squares seen. For m0 this is ``2/A`` times the
     integral of the squared autocorrelation. Ratios follow from derivatives of their logarithms. Sub-areas of
-    the map see none of it: they all lie on the same waves. What a polynomial takes of long waves makes the
-    moments too small, by as much as is known of these waves.
-
-    Parameters
-    ----------
-    topography : Topography
-        After its form was taken off.
-    moments : SpectralMoments
-        Of this map.
-    order : int, optional
-        Of the polynomial that was taken off; -1: none.
+    the map see none of it: they all lie on the same waves. What a polynomial of this `order` (-1: none) took
+    of long waves makes the `moments` of the map that is left too small, by as much as is known of the waves.
     """
     coarse = coarser(topography, _ACROSS)
     z, (dx, dy) = coarse.heights, coarse.pixel

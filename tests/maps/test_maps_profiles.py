@@ -12,7 +12,7 @@ from scipy.stats import t as t_law
 import mcgw
 from analytic import SpectralMoments
 from mcgw.maps import Profile, Spectrum, gaussian_map
-from mcgw.maps.profile import profile_at
+from mcgw.maps.heights_files import _profile_at
 from mcgw.maps.profile_fit import _areal_weights, _waves, fit_profiles
 
 UM = 1e-6
@@ -208,13 +208,13 @@ X, SQUARES = np.arange(40.0), np.arange(40.0) ** 2
 def test_the_limits_of_places_and_gaps():
     """A tenth of a step beside the grid, a tenth of the heights; at either end nothing is filled."""
     line = np.where((X == 0) | (X > 37), np.nan, 3 * X + 1)  # straight lines do not change it
-    np.testing.assert_array_equal(profile_at(-X, line).heights, 3 * X[37:0:-1] + 1)
+    np.testing.assert_array_equal(_profile_at(-X, line).heights, 3 * X[37:0:-1] + 1)
     for shift, resampled in ((0.099, False), (0.101, True)):
-        found = profile_at(X + shift * (X == 20), SQUARES)
+        found = _profile_at(X + shift * (X == 20), SQUARES)
         assert found.resampled == (found.heights[20] != 400.0) == resampled
-    found = profile_at(X, np.where((X > 2) & (X < 11) & (X % 2 == 1), np.nan, SQUARES), "um")
+    found = _profile_at(X, np.where((X > 2) & (X < 11) & (X % 2 == 1), np.nan, SQUARES), "um")
     assert (found.filled, found.assumed_unit, found.heights[5]) == (4, "um", 26.0)
-    assert profile_at(X[:8], SQUARES[:8].astype(int)).length == 8.0
+    assert _profile_at(X[:8], SQUARES[:8].astype(int)).length == 8.0
 
 
 def fitted(cutoff, *heights):
@@ -222,11 +222,11 @@ def fitted(cutoff, *heights):
 
 
 REFUSED = [
-    (lambda: profile_at(X, np.full(40, np.nan)), "no heights"),
-    (lambda: profile_at(X, np.where((X > 2) & (X < 8), np.nan, X)), "5 of the 40 heights are missing"),
-    (lambda: profile_at(X[:7], X[:7]), "^7 points: a profile has 8 or more"),
-    (lambda: profile_at(X[:1], X[:1]), "1 points: a profile has"),
-    (lambda: profile_at(np.sort([*X[:8], 5]), X[:9]), "x = 5 m is followed by 5 m; give x in increasing or "),
+    (lambda: _profile_at(X, np.full(40, np.nan)), "no heights"),
+    (lambda: _profile_at(X, np.where((X > 2) & (X < 8), np.nan, X)), "5 of the 40 heights are missing"),
+    (lambda: _profile_at(X[:7], X[:7]), "^7 points: a profile has 8 or more"),
+    (lambda: _profile_at(X[:1], X[:1]), "1 points: a profile has"),
+    (lambda: _profile_at(np.sort([*X[:8], 5]), X[:9]), "x = 5 m is followed by 5 m; give x in increas"),
     (lambda: Profile(np.zeros((3, 9)), 1.0), "not 2 dimensions"),
     (lambda: Profile(np.append(X, np.nan), 1.0), "are missing"),
     (lambda: Profile(X, 0.0), "give a length > 0 m"),
