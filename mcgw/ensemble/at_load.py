@@ -7,7 +7,7 @@ themselves; and what gas in the gap adds to the spots of surfaces, each at its o
 
 from collections import UserDict
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,7 +17,7 @@ from analytic.arrays import Array
 from analytic.at_load import Moments, specimen_moments
 from analytic.interaction import in_series
 from analytic.laws.elastic_plastic import ElasticPlastic
-from mcgw.ensemble.results import Held, Results
+from mcgw.ensemble.results import Results
 from mcgw.ensemble.separation import crossing
 from mcgw.scene.scene import Scene
 
@@ -35,11 +35,6 @@ _DEEP = 8.0  # below a nominal separation, where the search for the other one en
 
 def mean_surface(scene: Scene, given: str, value: float) -> dict[str, float]:
     """Values of `Solution.theory`, without drawing any surface."""
-    return answers_at(scene, theory_at(scene, given, value))
-
-
-def theory_at(scene: Scene, given: str, value: float) -> dict[str, float]:
-    """Separation and all quantities of the asperities of the mean surface."""
     mean, q = scene.alone.mean, quantity_of(given)
     if given == "nominal_separation":  # the largest one that the asperities feel there
         sunk = scene.compliance / scene.surface.sigma
@@ -52,7 +47,7 @@ def theory_at(scene: Scene, given: str, value: float) -> dict[str, float]:
         h = float(scene.alone.separation_at(given, value))
     if scene.negative == "error" and (where := scene.negative_above(h)) is not None:
         raise ValueError(NEGATIVE.format(q.name, value, q.unit, "the mean surface", where))
-    return {"separation": h, **{name: float(mean(name, h)) for name in quantities_at(scene)}}
+    return answers_at(scene, {"separation": h} | {x: float(mean(x, h)) for x in quantities_at(scene)})
 
 
 def quantities_at(scene: Scene) -> tuple[str, ...]:
@@ -233,22 +228,6 @@ def joint_conductance(scene: Scene, spots: Any, apart: Any) -> Any:
     return in_series(in_series(contact, -bodies) + scene.filled(apart), bodies)
 
 
-@dataclass(frozen=True)
-class _Alone(Results):
-    """Results without the half-space that stiffness and conductance are in series with."""
-
-    whole: Held
-    scene: Scene
-
-    def read(self, name: str, start: int, stop: int | None) -> Array:
-        """Rows `start` to `stop` (None: to the end) of a dataset."""
-        return np.asarray(in_series(self.whole.read(name, start, stop), -self.scene.series(name)))
-
-    def rows(self) -> int:
-        """Return the number of surfaces there are."""
-        return self.whole.rows()
-
-
 def asperities_alone(ensemble: "Ensemble") -> "Ensemble":
     """Return the ensemble of the sums of the asperities.
 
@@ -256,7 +235,7 @@ def asperities_alone(ensemble: "Ensemble") -> "Ensemble":
     """
     scene, sums, quantities = ensemble.scene, ensemble.sums, ensemble.scene.quantities
     if isinstance(sums, Results):
-        sums = _Alone(sums, scene)
+        sums = sums.changed(lambda name, rows: np.asarray(in_series(rows, -scene.series(name))))
     else:  # of what is in series only each surface's would tell
         quantities = tuple(name for name in quantities if not scene.series(name))  # the load at least
     return replace(ensemble, scene=scene.replace(quantities=quantities, interaction=None), sums=sums)

@@ -11,7 +11,7 @@ from analytic import PER_AREA
 from analytic.arrays import Array, Ints
 from mcgw.ensemble.intervals import CONFIDENCE, interval_of
 from mcgw.ensemble.results import Held, Labelled
-from mcgw.formats.table import Shown
+from mcgw.formats.table import Shown, optional
 from mcgw.machine.terminal import brief, plotted, quantity_and_axes
 from mcgw.scene.scene import Scene
 
@@ -63,7 +63,12 @@ class Dataset(Shown):
         ImportError
             If xarray is not installed.
         """
-        return self.labelled().to_xarray(self._about())
+        xarray, found = optional("xarray", "to_xarray"), self.labelled()
+        both = (
+            {name: (one.dims, one.values[:], one.about) for name, one in some.items()}
+            for some in (found.variables, found.coordinates)
+        )
+        return xarray.Dataset(*both, self._about())
 
     def to_dataframe(self) -> Any:
         """Return all data as a `pandas.DataFrame`: a row for each place along the dimensions of `to_xarray`.
@@ -73,7 +78,15 @@ class Dataset(Shown):
         ImportError
             If pandas is not installed.
         """
-        return self.labelled().to_dataframe()
+        pandas, found = optional("pandas", "to_dataframe"), self.labelled()
+        dims = next(iter(found.variables.values())).dims
+        places = [found.coordinates[dim].values for dim in dims]
+        if len(places) == 1:
+            index = pandas.Index(places[0], name=dims[0])
+        else:
+            index = pandas.MultiIndex.from_product(places, names=dims)
+        columns = {name: one.values[:].ravel() for name, one in found.variables.items() if one.dims == dims}
+        return pandas.DataFrame(columns, index=index)
 
     @property
     def separations(self) -> Array:

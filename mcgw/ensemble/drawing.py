@@ -14,7 +14,7 @@ import numba
 import numpy as np
 
 from analytic import quantity_of
-from mcgw.ensemble.results import CHUNK_ROWS, MemoryResults, Tables, joined
+from mcgw.ensemble.results import CHUNK_ROWS, Results, Tables, joined
 from mcgw.errors import StoreError
 from mcgw.machine.in_threads import in_threads, pieces
 from mcgw.machine.memory import check_memory
@@ -153,7 +153,7 @@ class Values:
 
     def held(self, blocks: Iterable[Tables]) -> Any:
         """Return the results of all blocks, each read in its turn."""
-        return MemoryResults(joined(list(blocks)))
+        return Results(joined(list(blocks)))
 
     def check(self, surfaces: int | None = None) -> None:
         """Refuse surfaces that do not fit the memory; with a file, only a block must fit.
@@ -213,7 +213,7 @@ class Statistics(Values):
         """All of them: whole blocks added up in their order, and the rest."""
         from mcgw.ensemble.pooled import summarised  # as above
 
-        return summarised(self.scene, blocks, self.rows)
+        return summarised(self.scene.tables, blocks, self.rows)
 
     def check(self, surfaces: int | None = None) -> None:  # noqa: ARG002
         """Refuse covariances that do not fit the memory."""

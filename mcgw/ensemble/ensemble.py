@@ -7,7 +7,7 @@ import numpy as np
 
 from analytic.arrays import Array, Ints
 from mcgw.ensemble.dataset import Dataset
-from mcgw.ensemble.results import Held, Labelled, Selected, Variable, axis, statistics_of
+from mcgw.ensemble.results import Held, Labelled, Variable, axis, statistics_of
 from mcgw.formats.law_text import law_text
 from mcgw.formats.table import Column, Table, evenly
 from mcgw.machine.terminal import brief
@@ -97,7 +97,7 @@ class Ensemble(Dataset):
     def _at(self, which: Ints) -> "Ensemble":
         """Return the same surfaces at some separations, by their numbers; `surfaces_of` is as before."""
         scene = self.scene.replace(separations=tuple(self.separations[which].tolist()))
-        return Ensemble(scene, self.sampler, Selected(self.sums, which), self.surfaces_of)
+        return Ensemble(scene, self.sampler, self.sums.at(which), self.surfaces_of)
 
     def values(self, quantity: str) -> Array:
         """Return all values of a quantity in SI units, shape (surfaces, separations).
@@ -134,11 +134,12 @@ class Ensemble(Dataset):
     def labelled(self) -> Labelled:
         """Return the values of every surface; with ``keep = "statistics"`` means, deviations, covariances."""
         scene, axes = self.scene, {"separation": axis("separation", self.scene.separations)}
+        sums: Any = self.sums
         if scene.keep != "statistics":
-            surfaces, found = axis("surface", np.arange(self.sums.rows())), {}
+            surfaces, found = axis("surface", np.arange(sums.rows())), {}
             for name in scene.tables:
                 q = scene.quantity(name)
-                found[name] = Variable(("surface", "separation"), self.sums.table(name), q.unit, q.long_name)
+                found[name] = Variable(("surface", "separation"), sums.tables[name], q.unit, q.long_name)
             return Labelled(found, {"surface": surfaces, **axes})
         from mcgw.ensemble.pooled import tables_of  # for those scenes alone
 
@@ -148,8 +149,7 @@ class Ensemble(Dataset):
         columns = Variable(("column",), np.arange(scene.width), "1", "quantity and separation")
         scales = {name: replace(columns, dims=(name,)) for name in _COLUMNS}
         variables = {**statistics_of(self, scene.tables, STATISTICS), "covariance": covariance}
-        parts: Any = self.sums
-        return Labelled(variables, {**axes, **scales}, drawn=tables_of(parts.parts))
+        return Labelled(variables, {**axes, **scales}, drawn=tables_of(sums.parts))
 
     def _about(self) -> dict[str, Any]:
         """Return the title, the scene as TOML and the sampler."""

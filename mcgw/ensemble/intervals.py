@@ -14,11 +14,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import betainc, betaincc, gammainccinv, gammaincinv, ndtri
+from scipy.special import betainccinv, betaincinv, gammainccinv, gammaincinv, ndtri
 
 from analytic import Hertz, MeasuredHeights, quantity_of
 from analytic.arrays import Array
-from analytic.roots import sign_changes
 from mcgw.ensemble.results import Held
 from mcgw.formats.table import Column
 from mcgw.scene.scene import Scene
@@ -27,6 +26,7 @@ CONFIDENCE = 0.95
 FEWEST = 10.0  # effective contacts in the whole ensemble, below which there is no interval
 MANY = 30.0  # below it a sum of nearly equal terms is still discrete: half of the tails is left for that
 TOO_FEW = "too few contacts"
+_RARE = 1e-10  # share of the asperities in contact below which their number is Poisson's to ten digits
 _GAUSSIAN = 1e-5  # skewness below which the distribution is Gaussian to ten digits
 _MOST_OF_BAND = 100  # separations, at which laws may take six times as long
 _NOTHING = 1e-280  # a mean below it has lost its variance to underflow
@@ -114,15 +114,10 @@ def count_interval(
     high = gammainccinv(k + 1, tail)
     if poisson:
         return low, np.asarray(high)
-    # SciPy's inverse of the beta distribution fails beyond 1e9 asperities, the distribution does not.
-    n, unit = asperities, np.ones_like(k)
-    inside, rest = np.maximum(k, 1.0), np.maximum(n - k, 1.0)
-    none, more = np.zeros_like(k), n - inside + 1
-    low = sign_changes(lambda x, i: np.subtract(betainc(inside[i], more[i], x / n), tail), none, k, unit)
-    high = sign_changes(
-        lambda x, i: np.subtract(tail, betaincc(k[i] + 1, rest[i], x / n)), k, np.minimum(2 * high, n), unit
-    )
-    return np.where(k > 0, low, 0.0), np.where(k < n, high, n)
+    n, many = asperities, k + 1 > _RARE * asperities  # below, SciPy's inverse may fail
+    low = np.where(many & (k > 0), n * betaincinv(np.maximum(k, 1.0), n - k + 1, tail), low)
+    high = np.where(many, n * betainccinv(k + 1, np.maximum(n - k, 1.0), tail), high)
+    return low, np.where(k < n, high, n)
 
 
 def interval_columns(low: ArrayLike, high: ArrayLike, unit: str = "") -> tuple[Column, Column]:

@@ -18,7 +18,6 @@ from analytic.arrays import Array, Ints
 from mcgw.ensemble.results import Held, Tables
 from mcgw.machine.compiling import njit
 from mcgw.machine.in_threads import in_threads
-from mcgw.scene.scene import Scene
 
 Values = dict[str, Array]
 
@@ -173,13 +172,13 @@ class Summarised(Held):
 
     Parameters
     ----------
-    scene : Scene
-        Whose numbers these are: its tables one after the other.
+    names : tuple of str
+        Of tables of as many numbers each, one after the other.
     parts : tuple of Pooled
         Of all whole blocks together, which more may follow, and of a last one that is not whole.
     """
 
-    scene: Scene
+    names: tuple[str, ...]
     parts: tuple[Pooled, ...]
 
     no_more = (
@@ -196,11 +195,20 @@ class Summarised(Held):
         """Return the number of surfaces."""
         return sum(part.n for part in self.parts)
 
+    def at(self, which: Ints) -> "Summarised":
+        """Return the same at some of the separations, by their numbers."""
+        columns = np.concatenate([self._columns(name)[which] for name in self.names])
+        both = np.ix_(columns, columns)
+        some = (
+            Pooled(one.n, {NUMBERS: one.means[NUMBERS][columns]}, {NUMBERS: one.products[NUMBERS][both]})
+            for one in self.parts
+        )
+        return Summarised(self.names, tuple(some))
+
     def _columns(self, name: str) -> Ints:
         """Which of the numbers those of a table are, one at each separation."""
-        k = len(self.scene.separations)
-        first = k * self.scene.tables.index(name)
-        return np.arange(first, first + k)
+        numbers = np.arange(len(self.whole.means[NUMBERS])).reshape(len(self.names), -1)
+        return np.asarray(numbers[self.names.index(name)])
 
     def mean_and_std(self, name: str) -> tuple[Array, Array]:
         """Mean and standard deviation (divisor M - 1)."""
@@ -213,7 +221,7 @@ class Summarised(Held):
         return np.asarray(self.whole.products[NUMBERS][np.ix_(a, b)][..., 0] / (m - 1 if m > 1 else np.nan))
 
 
-def summarised(scene: Scene, blocks: Iterable[Tables], size: int) -> Summarised:
+def summarised(names: tuple[str, ...], blocks: Iterable[Tables], size: int) -> Summarised:
     """Return the statistics of some blocks: whole ones of a size added up in their order, and the rest."""
     whole, rest = list[Pooled](), list[Pooled]()
     for (block,) in map(pooled_from, blocks):
@@ -221,4 +229,4 @@ def summarised(scene: Scene, blocks: Iterable[Tables], size: int) -> Summarised:
             rest = [block]
         else:
             whole = [reduce(add, [*whole, block])]
-    return Summarised(scene, (*whole, *rest))
+    return Summarised(names, (*whole, *rest))

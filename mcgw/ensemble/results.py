@@ -4,7 +4,7 @@ And results as named arrays with axes, units and words, for files, xarray and pa
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from analytic import Quantity
 from analytic.arrays import Array, Ints
-from mcgw.formats.table import SEPARATION, Column, Table, optional
+from mcgw.formats.table import SEPARATION, Column, Table
 
 Tables = dict[str, NDArray[Any]]  # numbers of surfaces by name, a row each
 
@@ -37,22 +37,22 @@ class Rows:
 
     Parameters
     ----------
-    of : Held
-        Where it lies.
-    name : str
-        Its name.
+    n : int
+        Number of surfaces.
+    read : callable
+        Returns the rows of a slice.
     """
 
-    of: "Held"
-    name: str
+    n: int
+    read: Callable[[slice], Array]
 
     def __len__(self) -> int:
         """Return the number of surfaces."""
-        return self.of.rows()
+        return self.n
 
     def __getitem__(self, rows: slice) -> Array:
         """Return some of the rows."""
-        return self.of.read(self.name, rows.start or 0, rows.stop)
+        return self.read(rows)
 
 
 class Held(ABC):
@@ -68,30 +68,55 @@ class Held(ABC):
     def mean_and_std(self, name: str) -> tuple[Array, Array]:
         """Mean and standard deviation (divisor M - 1)."""
 
+    @abstractmethod
+    def at(self, which: Ints) -> "Held":
+        """Return the same at some of the separations, by their numbers."""
+
     def read(self, name: str, start: int, stop: int | None) -> Array:  # noqa: ARG002
         """Rows `start` to `stop` (None: to the end) of a table."""
         raise ValueError(f"{name}: {self.no_more}")
-
-    def table(self, name: str) -> "Array | Rows":
-        """Return a whole table, or what reads it when it is asked for."""
-        return Rows(self, name)
 
     def covariance(self, name: str, other: str) -> Array:  # noqa: ARG002
         """Between all numbers of two tables (divisor M - 1), shape (separations, separations)."""
         raise ValueError(f"{name}: {self.no_more}")
 
 
+@dataclass(frozen=True)
 class Results(Held):
-    """Values of every surface, of which statistics are made when they are asked for."""
+    """Values of every surface, of which statistics are made when they are asked for.
 
-    @abstractmethod
+    Parameters
+    ----------
+    tables : dict of str to ndarray or Rows
+        By name, shape (surfaces, separations).
+    """
+
+    tables: Mapping[str, Any]
+
+    def rows(self) -> int:
+        """Return the number of surfaces there are."""
+        return len(next(iter(self.tables.values())))
+
     def read(self, name: str, start: int, stop: int | None) -> Array:
         """Rows `start` to `stop` (None: to the end) of a table."""
+        return np.asarray(self.tables[name][start:stop])
+
+    def changed(self, change: Callable[[str, Array], Array]) -> "Results":
+        """Return what a function makes of each table and its name, whenever that is read."""
+
+        def of(name: str, table: Any) -> Rows:
+            return Rows(len(table), lambda rows: change(name, table[rows]))
+
+        return Results({name: of(name, table) for name, table in self.tables.items()})
+
+    def at(self, which: Ints) -> "Results":
+        """Return the same at some of the separations, by their numbers."""
+        return self.changed(lambda _, rows: rows[:, which])
 
     def mean_and_std(self, name: str) -> tuple[Array, Array]:
         """Shifted by the first row, so that nothing cancels."""
         m = self.rows()
-        few = [self.read(name, 0, m).astype(np.float64)] if m <= _ROWS else None  # read once
+        few = list(self._chunks(name)) if m <= _ROWS else None  # read once
         shift = next(iter(few or self._chunks(name)))[0]
         mean = sum((chunk - shift).sum(axis=0) for chunk in few or self._chunks(name)) / m + shift
         squares = sum(((chunk - mean) ** 2).sum(axis=0) for chunk in few or self._chunks(name))
@@ -109,58 +134,6 @@ class Results(Held):
         m = self.rows()
         for start in range(0, m, _ROWS):
             yield self.read(name, start, min(start + _ROWS, m)).astype(np.float64)
-
-
-@dataclass(frozen=True)
-class MemoryResults(Results):
-    """Numbers in memory, by name."""
-
-    arrays: dict[str, Array]
-
-    def read(self, name: str, start: int, stop: int | None) -> Array:
-        """Rows `start` to `stop` (None: to the end) of an array."""
-        return self.arrays[name][start:stop]
-
-    def table(self, name: str) -> Array:
-        """Return an array."""
-        return self.arrays[name]
-
-    def rows(self) -> int:
-        """Length of the arrays."""
-        return len(next(iter(self.arrays.values())))
-
-
-@dataclass(frozen=True)
-class Selected(Held):
-    """Results of surfaces at some of the separations.
-
-    Parameters
-    ----------
-    whole : Held
-        At all separations.
-    which : ndarray of int
-        Numbers of the separations.
-    """
-
-    whole: Held
-    which: Ints
-
-    def rows(self) -> int:
-        """Return the number of surfaces there are."""
-        return self.whole.rows()
-
-    def mean_and_std(self, name: str) -> tuple[Array, Array]:
-        """Mean and standard deviation (divisor M - 1)."""
-        mean, std = self.whole.mean_and_std(name)
-        return mean[self.which], std[self.which]
-
-    def read(self, name: str, start: int, stop: int | None) -> Array:
-        """Rows `start` to `stop` (None: to the end) of a table."""
-        return self.whole.read(name, start, stop)[:, self.which]
-
-    def covariance(self, name: str, other: str) -> Array:
-        """Between all numbers of two tables (divisor M - 1)."""
-        return self.whole.covariance(name, other)[np.ix_(self.which, self.which)]
 
 
 def joined(parts: Sequence[Mapping[str, NDArray[Any]]]) -> Tables:
@@ -208,39 +181,6 @@ class Labelled:
         scales = {name: one for name, one in coordinates.items() if name not in others}
         made_of = {f"{GROUP}/{name}": Variable((), values, "", "") for name, values in self.drawn.items()}
         return Labelled({**self.variables, **made_of}, {**scales, **coordinates}, {**attributes, **named})
-
-    def to_xarray(self, about: Mapping[str, Any]) -> Any:
-        """Return an `xarray.Dataset` with these attributes.
-
-        Raises
-        ------
-        ImportError
-            If xarray is not installed.
-        """
-        xarray = optional("xarray", "to_xarray")
-        both = (
-            {name: (one.dims, one.values[:], one.about) for name, one in some.items()}
-            for some in (self.variables, self.coordinates)
-        )
-        return xarray.Dataset(*both, dict(about))
-
-    def to_dataframe(self) -> Any:
-        """Return a `pandas.DataFrame` of the tables with the axes of the first: a row for each place there.
-
-        Raises
-        ------
-        ImportError
-            If pandas is not installed.
-        """
-        pandas = optional("pandas", "to_dataframe")
-        dims = next(iter(self.variables.values())).dims
-        places = [self.coordinates[dim].values for dim in dims]
-        if len(places) == 1:
-            index = pandas.Index(places[0], name=dims[0])
-        else:
-            index = pandas.MultiIndex.from_product(places, names=dims)
-        columns = {name: one.values[:].ravel() for name, one in self.variables.items() if one.dims == dims}
-        return pandas.DataFrame(columns, index=index)
 
 
 def axis(name: str, values: Any) -> Variable:

@@ -12,7 +12,7 @@ import numpy as np
 
 from analytic import PER_AREA, Hertz, MeasuredHeights, MeasuredRadii, Quantity, quantity_of
 from analytic.arrays import Array, hold
-from mcgw.ensemble.at_load import NEGATIVE, answers_at, quantities_at, theory_at
+from mcgw.ensemble.at_load import NEGATIVE, mean_surface, quantities_at
 from mcgw.ensemble.forecast import surfaces_at_loads
 from mcgw.ensemble.results import joined
 from mcgw.ensemble.separation import LOWEST, Asperities
@@ -152,14 +152,15 @@ def solutions(
             f"{q.name} = {small[0]:g} {q.unit}: too small for double precision of the heights; "
             f"give {2 * least:.1g} {q.unit} or more"
         )
-    theory = [theory_at(whole, given, value) for value in values]
+    theory = [mean_surface(whole, given, value) for value in values]
+    about = [at["separation"] for at in theory]
     if scene.rel_err is not None:
-        n = surfaces_at_loads(scene, [at["separation"] for at in theory], given)
+        n = surfaces_at_loads(scene, about, given)
         whole, scene = (x.replace(n_surfaces=n, rel_err=None, max_seconds=None) for x in (whole, scene))
     sunk = whole.compliance / whole.surface.sigma if given == "nominal_separation" else None
-    loaded = LoadedSurfaces(scene, q, values, [at["separation"] for at in theory], sunk)
+    loaded = LoadedSurfaces(scene, q, values, about, sunk)
     found = [
-        Solution(whole, given, float(value), answers_at(whole, at), loaded, k)
+        Solution(whole, given, float(value), at, loaded, k)
         for k, (value, at) in enumerate(zip(values, theory, strict=True))
     ]
     if draw or not all(each.exact for each in found):
@@ -192,40 +193,37 @@ class LoadedSurfaces:
     sunk: float | None
 
     @cached_property
-    def specimens(self) -> Scene:
-        """The scene, or specimens in place of its one measured surface, with as many of its summits."""
-        scene, heights, own = self.scene, self.scene.heights, self.scene.summits
-        if not (scene.as_measured and isinstance(heights, MeasuredHeights)):
-            return scene
-        again = MeasuredHeights(heights.heights, resampled=True)
-        ratios = own.ratios if isinstance(own, MeasuredRadii) else np.ones(len(heights.heights))
-        return scene.replace(heights=again, summits=MeasuredRadii(again, ratios), n_surfaces=_RESAMPLED)
+    def _begin(self) -> tuple[Scene, list[float]]:
+        """The scene with which surfaces are drawn, and what nearly all separations at each value are above.
 
-    @cached_property
-    def lows(self) -> list[float]:
-        """Separation that nearly every surface is above, or that all heights are, at each value.
-
-        By some standard deviations, to first order. What the modulus is there does not matter yet.
+        By some standard deviations, to first order, or all heights are above that. One measured surface is
+        replaced by specimens with as many of its summits.
         """
+        scene, heights, own = self.scene, self.scene.heights, self.scene.summits
+        if scene.as_measured and isinstance(heights, MeasuredHeights):
+            again = MeasuredHeights(heights.heights, resampled=True)
+            ratios = own.ratios if isinstance(own, MeasuredRadii) else np.ones(len(heights.heights))
+            scene = scene.replace(heights=again, summits=MeasuredRadii(again, ratios), n_surfaces=_RESAMPLED)
         name = self.given.name if self.sunk is None else "load"  # a nominal separation follows from it
-        theory, bottom = self.specimens.theory, float(self.specimens.heights.ppf(np.array(_NOTHING)))
+        theory, bottom = scene.theory, float(scene.heights.ppf(np.array(_NOTHING)))
         spreads = [float(theory.std(name, h) / theory.slope(name, h)) for h in self.about]
-        return [max(h - _MARGIN * x, min(h, bottom)) for h, x in zip(self.about, spreads, strict=True)]
-
-    @cached_property
-    def drawn(self) -> Scene:
-        """The scene with which the surfaces are drawn, above the lowest separation of nearly every one."""
-        scene = self.specimens.replace(
-            sampler="direct" if isinstance(self.specimens.heights, MeasuredHeights) else "tail",
+        lows = [max(h - _MARGIN * x, min(h, bottom)) for h, x in zip(self.about, spreads, strict=True)]
+        drawn = scene.replace(
+            sampler="direct" if isinstance(scene.heights, MeasuredHeights) else "tail",
             keep="sums",
-            separations=(min(self.lows),),
+            separations=(min(lows),),
             quantities=("contacts",),
             law=Hertz(),  # heights are what is drawn, the same under every law
             unload_from=None,
             joint=None,
-            negative="clip" if self.scene.negative == "clip" else "allow",
+            negative="clip" if scene.negative == "clip" else "allow",  # what moduli are there comes later
         )
-        return storable(scene)
+        return storable(drawn), lows
+
+    @property
+    def drawn(self) -> Scene:
+        """The scene with which the surfaces are drawn, above the lowest separation of nearly every one."""
+        return self._begin[0]
 
     @cached_property
     def sums(self) -> list[dict[str, Array]]:
@@ -265,7 +263,7 @@ class LoadedSurfaces:
         from mcgw.sampling.asperities import summits
 
         value, names, q = self.values[number], quantities_at(self.scene), self.given
-        h = some.separations(q, value, self.lows[number], self.about[number], self.sunk)
+        h = some.separations(q, value, self._begin[1][number], self.about[number], self.sunk)
         softest, found = some.softest.copy(), some.sums(names, np.where(np.isfinite(h), h, np.inf))
         lost = np.flatnonzero(np.isnan(h))  # rare: they lie below what was drawn
         if lost.size:

@@ -30,7 +30,6 @@ _Block = TypeVar("_Block")
 
 _IN_HAND = 1024  # blocks given at a time to an executor that does not say how many it takes
 _RESUME = "finished blocks are kept; the same command resumes"
-_GRACE = 2.0  # seconds for running blocks to finish when the run stops
 
 
 class Signals:
@@ -93,7 +92,7 @@ def drive(
 
     `task` is called with what `arguments` gives for a block. A block that the executor lost, as with its
     worker, is submitted once more, alone. At most `in_hand` blocks are submitted at a time. When a signal has
-    come, which is asked several times a second, this returns.
+    come, which is asked several times a second, this returns; blocks in hand are dropped.
 
     Raises
     ------
@@ -113,30 +112,22 @@ def drive(
                 except Exception as refusal:
                     raise _no_more(_in_words(refusal)) from None
             wait(running, timeout=0.2, return_when=FIRST_COMPLETED)
-            future = next((one for one in running if one.done()), None)
-            if future is None:
-                continue
-            block = running.pop(future)
-            try:
-                result, error = future.result()
-            except CancelledError:  # by nobody here: not a worker, but its executor is lost
-                raise _no_more(f"it dropped {block}") from None
-            except Exception as failure:
-                if block in lost:
-                    told = f"{block} were lost twice by the executor ({_in_words(failure)}); {_RESUME}"
-                    raise RunError(told) from None
-                lost.add(block)
-                todo.appendleft(block)
-                continue
-            if error is not None:
-                raise error
-            done(block, result)
-        if signals.number is not None:
-            ended = wait(running, timeout=_GRACE).done
-            for future in [one for one in running if one in ended]:
+            for future in [one for one in running if one.done()]:
                 block = running.pop(future)
-                if not future.cancelled() and future.exception() is None and future.result()[1] is None:
-                    done(block, future.result()[0])
+                try:
+                    result, error = future.result()
+                except CancelledError:  # by nobody here: not a worker, but its executor is lost
+                    raise _no_more(f"it dropped {block}") from None
+                except Exception as failure:
+                    if block in lost:
+                        told = f"{block} were lost twice by the executor ({_in_words(failure)}); {_RESUME}"
+                        raise RunError(told) from None
+                    lost.add(block)
+                    todo.appendleft(block)
+                    continue
+                if error is not None:
+                    raise error
+                done(block, result)
     finally:
         for future in running:
             future.cancel()

@@ -14,13 +14,12 @@ from mcgw.ensemble.results import Labelled, Tables
 from mcgw.errors import RunError, StoppedError, StoreError, in_one_line
 from mcgw.formats.files import State, state_of
 from mcgw.jobs.executors import Signals, drive, heed_signals
-from mcgw.store.blocks import Span, commit_shard
-from mcgw.store.ensembles import FileResults, described, open_ensemble, open_results
+from mcgw.store.ensembles import described, open_ensemble, open_results, results_in
 from mcgw.store.h5_reading import read_tables
 from mcgw.store.identity import difference
 from mcgw.store.lock import locked, parts_of
 from mcgw.store.place import check_room, drop_leftovers, finished, put, remove_run, tidy
-from mcgw.store.run_plan import RECORD, Plan
+from mcgw.store.run_plan import RECORD, Plan, Span, commit_shard
 
 if TYPE_CHECKING:
     from mcgw.ensemble.ensemble import Ensemble
@@ -38,7 +37,7 @@ def commit_block(folder: str, first: int, n: int) -> None:
 def _prepared(folder: str, _state: State | None) -> Plan:
     """Return the plan of a folder, kept while its record is the same: making it takes as long as a block."""
     there = Plan.open(Path(folder))
-    here = there.again()
+    here = Plan(there.asked, there.path)
     if here.identity != there.identity:
         why = difference(there.question, here.question)
         raise RunError(f"{folder}: this worker cannot draw for that run: {why}")
@@ -47,8 +46,8 @@ def _prepared(folder: str, _state: State | None) -> Plan:
 
 def _drawn(plan: Plan, span: Span, threads: int | None, *go_on: Done) -> Callable[[], object]:
     """Draw a block, unless it is there; what this returns writes it, to be done while the next is drawn."""
-    path = plan.shards_folder / span.file_name
-    if (held := plan.shard(path)) and held.span.n >= span.n:
+    path = plan.shard_path(span)
+    if (held := plan.shard(path)) and held[0].n >= span.n:
         return lambda: None
     started = perf_counter()
     tables = plan.draw(span, threads, *go_on)
@@ -140,7 +139,7 @@ def _in_blocks(
     """Draw missing shards, every so many-th of a share; then make the file, but of a share. With the lock."""
     plan.begin()
     shards, done = plan.shards(), finished(plan)
-    n = max((shard.span.stop for shard in shards), default=0)
+    n = max((span.stop for span in shards), default=0)
     if n > plan.total and not part:  # blocks beyond those requested are kept
         raise StoreError(
             f"{plan.folder}: holds surfaces up to number {n} already, more than ensemble.n_surfaces = "
@@ -276,14 +275,15 @@ def _merged(plan: Plan, check: Callable[[], None]) -> Labelled:
     if not plan.axes and plan.path.exists():
         attributes, there = described(plan.path)
         held, seconds = plan.kept(there.n_surfaces), attributes["wall_seconds"]
-    shards = [shard for shard in plan.shards(numbers=not plan.statistics) if shard.span.first >= held]
-    ends = [held, *(shard.span.stop for shard in shards)]
-    if ends != [*(shard.span.first for shard in shards), plan.total]:
+    shards = {
+        span: took for span, took in plan.shards(numbers=not plan.statistics).items() if span.first >= held
+    }
+    if [held, *(span.stop for span in shards)] != [*(span.first for span in shards), plan.total]:
         raise StoreError(f"{plan.folder}: blocks are missing")
-    seconds += sum(shard.seconds for shard in shards)
+    seconds += sum(shards.values())
     if not plan.statistics:
-        files = [(plan.path, held)] * (held > 0) + [(shard.path, shard.span.n) for shard in shards]
-        return plan.contents([FileResults(tuple(files))], seconds)
+        files = [(plan.path, held)] * (held > 0) + [(plan.shard_path(span), span.n) for span in shards]
+        return plan.contents([results_in(files, plan.scene.tables)], seconds)
 
     def blocks() -> Iterator[tuple[int, Tables]]:
         """Statistics of blocks, each with the group that it is of."""
@@ -292,9 +292,9 @@ def _merged(plan: Plan, check: Callable[[], None]) -> Labelled:
 
             sums: Any = open_ensemble(plan.path).sums
             yield from ((0, tables_of([part])) for part in sums.parts if part.n % plan.reducers[0].rows == 0)
-        for shard in shards:
+        for span in shards:
             check()
-            yield plan.blocks[shard.span][0], read_tables(shard.path)
+            yield plan.blocks[span][0], read_tables(plan.shard_path(span))
 
     groups = zip(plan.reducers, groupby(blocks(), itemgetter(0)), strict=True)
     return plan.contents([one.held(tables for _, tables in some) for one, (_, some) in groups], seconds)

@@ -14,7 +14,7 @@ from mcgw.jobs.making import make
 from mcgw.machine.progress import Progress, told
 from mcgw.scene.kinds import check_object
 from mcgw.scene.scene import Scene, storable
-from mcgw.store.ensembles import FileResults, open_ensemble, open_sweep
+from mcgw.store.ensembles import open_ensemble, open_sweep, results_in
 from mcgw.store.place import as_recorded
 from mcgw.store.run_plan import Plan
 
@@ -110,7 +110,7 @@ def run(
         started = monotonic()
         ruled = scene.rel_err is not None or scene.max_seconds is not None
         for stage in _stages(scene, path) if ruled else (scene,):
-            plan = Plan.of(stage, path)
+            plan = Plan(stage, path)
             left = make(plan, lambda done: tell(done, total), executor, threads, part)
             if scene.max_seconds is not None and monotonic() - started > scene.max_seconds:
                 break
@@ -118,7 +118,7 @@ def run(
         return left
     if scene.keep == "statistics":
         return open_ensemble(path)
-    return Ensemble(plan.scene, plan.sampler, FileResults(((path, plan.total),)))
+    return Ensemble(plan.scene, plan.sampler, results_in([(path, plan.total)], plan.scene.tables))
 
 
 def _stages(scene: Scene, path: Path) -> Iterator[Scene]:
@@ -257,6 +257,6 @@ def sweep(
     scene = as_recorded(scene, path)
     part = share_of(executor, threads, shard)
     with told(progress, "surfaces") as tell:
-        plan = Plan.of(Points.of(scene, axes), path)
+        plan = Plan(Points.of(scene, axes), path)
         left = make(plan, weighted(plan.reducers, tell), executor, threads, part)
     return left if part else open_sweep(path)

@@ -13,7 +13,7 @@ from analytic import quantity_of
 from analytic.arrays import Array
 from mcgw.ensemble.drawing import block_size, drawn_blocks
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.results import MemoryResults, joined
+from mcgw.ensemble.results import Results, joined
 from mcgw.formats.table import Column, Shown, Table, evenly
 from mcgw.machine.progress import Progress, told
 from mcgw.machine.terminal import brief, plotted
@@ -164,7 +164,7 @@ def converge(
     exact = PrincipalComponents.of(scene)
     y = exact.turn(sums)
     whole = scene.replace(n_surfaces=len(y))
-    means = verdict(Ensemble(whole, "drawn", MemoryResults(sums)))
+    means = verdict(Ensemble(whole, "drawn", Results(sums)))
     checks = [means, *_contacts(whole, sums), *_repeats(scene, sums)]
     slopes: list[Slope] = []
     z = np.empty(0)

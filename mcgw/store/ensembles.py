@@ -3,8 +3,8 @@
 The sums of an ensemble where they lie: in its file, or in the blocks of a run in progress.
 """
 
-from dataclasses import dataclass
-from functools import lru_cache
+from collections.abc import Iterable, Sequence
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.results import GROUP, Held, Results
+from mcgw.ensemble.results import GROUP, Held, Results, Rows
 from mcgw.errors import StoreError
 from mcgw.formats.named_files import open_regular
 from mcgw.scene.scene import Scene
@@ -135,9 +135,9 @@ def open_results(path: Path) -> "Ensemble | Sweep":
         if not shards:
             raise StoreError(f"{path}: no block of its run is finished yet")
         if plan.statistics:
-            held = plan.reducers[0].held(read_tables(shard.path) for shard in shards)
+            held = plan.reducers[0].held(read_tables(plan.shard_path(span)) for span in shards)
         else:
-            held = FileResults(tuple((shard.path, shard.span.n) for shard in shards))
+            held = results_in([(plan.shard_path(span), span.n) for span in shards], plan.scene.tables)
         return Ensemble(plan.scene, plan.sampler, held)
     attributes, scene = described(path)
     if "axes" in attributes:
@@ -147,9 +147,9 @@ def open_results(path: Path) -> "Ensemble | Sweep":
     if scene.keep == "statistics":
         from mcgw.ensemble.pooled import Summarised, pooled_from  # for those scenes alone
 
-        held = Summarised(scene, pooled_from(read_tables(path, GROUP)))
+        held = Summarised(scene.tables, pooled_from(read_tables(path, GROUP)))
     else:
-        held = FileResults(((path, scene.n_surfaces),))
+        held = results_in([(path, scene.n_surfaces)], scene.tables)
     return Ensemble(scene, str(attributes["sampler"]), held)
 
 
@@ -165,7 +165,7 @@ def read_attributes(path: Path) -> dict[str, Any]:
     if plan is None:
         return described(path)[0]
     said = look(plan.folder / RECORD, RUN_TYPE)
-    seconds = sum(shard.seconds for shard in plan.shards())
+    seconds = sum(plan.shards().values())
     known = {"versions": plan.drawn_with, "commit": "unknown", "cpu": "its workers", "wall_seconds": seconds}
     known |= {"complete": False, "digest": "none until it is complete"}
     return {**{key: said[key] for key in ("scene", "sampler", "date")}, **known}
@@ -194,28 +194,17 @@ def verify(path: Path) -> tuple[str, str]:
         return str(error).removeprefix(f"{path}: "), "unreadable"
 
 
-@dataclass(frozen=True)
-class FileResults(Results):
-    """Values of surfaces in files, opened for each reading: in that of an ensemble, or in blocks of its run.
+def results_in(files: Sequence[tuple[Path, int]], names: Iterable[str]) -> Results:
+    """Return values of surfaces in files, each with its number of them, which are opened for each reading."""
+    ends = np.cumsum([0, *(n for _, n in files)])
+    total = int(ends[-1])
 
-    Parameters
-    ----------
-    files : tuple of (Path, int)
-        Each with the number of its surfaces, in order.
-    """
-
-    files: tuple[tuple[Path, int], ...]
-
-    def read(self, name: str, start: int, stop: int | None) -> NDArray[Any]:
-        """Rows `start` to `stop` (None: to the end) of a table."""
-        parts, first = [], 0
-        for path, n in self.files:
-            low, high = max(start - first, 0), n if stop is None else min(stop - first, n)
+    def read(name: str, rows: slice) -> NDArray[Any]:
+        parts, (start, stop, _) = [], rows.indices(total)
+        for (path, n), first in zip(files, ends.tolist(), strict=False):
+            low, high = max(start - first, 0), min(stop - first, n)
             if low < high:
                 parts.append(read_rows(path, name, low, high))
-            first += n
         return parts[0] if len(parts) == 1 else np.concatenate(parts)
 
-    def rows(self) -> int:
-        """Return the number of surfaces."""
-        return sum(n for _, n in self.files)
+    return Results({name: Rows(total, partial(read, name)) for name in names})

@@ -178,7 +178,7 @@ def save(ensemble: Ensemble, path: str | Path, *, wall_seconds: float = 0.0) -> 
                 f"{path}: a run that makes this file is not finished; finish it, choose another -o, "
                 f"or remove {parts_of(path)}"
             )
-        plan = Plan.of(storable(ensemble.scene), path, ensemble.sampler)
+        plan = Plan(storable(ensemble.scene), path, ensemble.sampler)
         put(plan, lambda: plan.contents([ensemble.sums], wall_seconds))
     return open_ensemble(path)
 

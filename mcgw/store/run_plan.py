@@ -14,32 +14,101 @@ of valid shards is the only record of progress.
 
 from collections.abc import Iterable
 from contextlib import suppress
+from dataclasses import dataclass
 from datetime import UTC, datetime
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from mcgw.ensemble.ensemble import Ensemble
-from mcgw.ensemble.results import Labelled, Tables
+from mcgw.ensemble.results import Labelled, Tables, Variable
 from mcgw.errors import RunError, StoreError
-from mcgw.formats.files import Expected, check_output, sync
+from mcgw.formats.files import Expected, check_output, sync, whole_file
 from mcgw.scene.scene import Scene
 from mcgw.scene.scene_file import scene_from
-from mcgw.scene.section import SceneError
-from mcgw.store.blocks import Shard, Span, blocks_of, open_shard, write_tables
 from mcgw.store.h5_reading import look
-from mcgw.store.h5_writing import FILETYPE, FORMAT, RUN_TYPE
+from mcgw.store.h5_writing import BLOCK_TYPE, FILETYPE, FORMAT, RUN_TYPE, write
 from mcgw.store.identity import another, commit, identity_of, processor, versions, written
 from mcgw.store.lock import parts_of, refuse_link
 
 if TYPE_CHECKING:
     from mcgw.ensemble.drawing import GoOn, Values
     from mcgw.sweeps.points import Points
-    from mcgw.sweeps.sweep import Sweep
 
 RECORD = "run.h5"
+
+
+@dataclass(frozen=True, order=True)
+class Span:
+    """Surfaces `first` ... `first + n - 1`: a block."""
+
+    first: int
+    n: int
+
+    @property
+    def stop(self) -> int:
+        """The surface after the last one."""
+        return self.first + self.n
+
+    @property
+    def file_name(self) -> str:
+        """Name of its shard."""
+        return f"block-{self.first:013d}.h5"
+
+    def __str__(self) -> str:
+        return f"surfaces {self.first} ... {self.stop - 1}"
+
+
+def blocks_of(groups: Iterable[tuple[int, int]]) -> dict[Span, tuple[int, int]]:
+    """Cut the surfaces of groups, one group after the other, into blocks; the last one of each may be short.
+
+    Of each group its number of surfaces is given, and how many of them make a block; of each block follow the
+    group that it is of, and the number of its first surface in there.
+    """
+    found, first = dict[Span, tuple[int, int]](), 0
+    for group, (n, size) in enumerate(groups):
+        for start in range(0, n, size):
+            found[Span(first + start, min(size, n - start))] = group, start
+        first += n
+    return found
+
+
+def commit_shard(path: Path, run: str, span: Span, tables: Tables, seconds: float) -> None:
+    """Write a shard of a run in one atomic step, with the seconds that drawing it took.
+
+    Raises
+    ------
+    StoreError
+        If a number is not finite: nothing is written.
+    OSError
+        If the disk does not take it.
+    """
+    for name, values in tables.items():
+        if not np.all(np.isfinite(values)):
+            raise StoreError(f"{path}: {name} holds numbers that are not finite")
+    about = {"filetype": BLOCK_TYPE, "format": FORMAT, "run": run, "first": span.first, "n": span.n}
+    _write(path, tables, {**about, "wall_seconds": seconds})
+
+
+def _write(path: Path, tables: Tables, about: dict[str, Any], expected: Expected = "anything") -> None:
+    variables = {name: Variable((), values, "", "") for name, values in tables.items()}
+    with whole_file(path, expected=expected) as temporary:
+        write(temporary, Labelled(variables, {}, about))
+
+
+def open_shard(path: Path, run: str, *, numbers: bool = True) -> tuple[Span, float] | None:
+    """Return the surfaces of a shard of this run and what drawing it took, s, if it is there and whole.
+
+    `numbers`: and all of them are as written.
+    """
+    try:
+        said = {} if path.is_symlink() else look(path, BLOCK_TYPE, numbers=numbers)
+        span, seconds, its_run = Span(said["first"], said["n"]), said["wall_seconds"], said["run"]
+    except (StoreError, KeyError):
+        return None
+    return (span, seconds) if its_run == run and path.name == span.file_name else None
 
 
 class Plan:
@@ -47,63 +116,38 @@ class Plan:
 
     Parameters
     ----------
+    asked : Scene or Points
+        With a number of surfaces, not a rule for it.
     path : Path
         The file to be.
-    text : str
-        The scene as TOML, frozen; of a sweep what all points have in common.
-    axes : str
-        Of a sweep, as JSON; empty for a scene.
-    sampler : str
-        Never "auto"; empty for a sweep.
-    identity : str
-        Of all that the numbers of a surface depend on, whatever their number.
-    drawn_with : str
-        Versions that draw.
-    scene : Scene, optional
-        What `text` tells, if that is at hand.
+    sampler : str, optional
+        What has drawn the scene. Default: its own.
+    recorded : (str, str), optional
+        The identity of the run as it began, and the versions that drew then. Default: of now.
+
+    Raises
+    ------
+    StoreError
+        If the scene cannot be told by a file, or none can be there.
     """
 
     def __init__(
-        self,
-        path: Path,
-        text: str,
-        axes: str,
-        sampler: str,
-        identity: str,
-        drawn_with: str,
-        scene: Scene | None = None,
+        self, asked: "Scene | Points", path: Path, sampler: str = "", recorded: tuple[str, str] | None = None
     ) -> None:
-        self.path, self.text, self.axes, self.sampler = path, text, axes, sampler
-        self.identity, self.drawn_with = identity, drawn_with
-        self.scene = scene or scene_from(text)
-        self.folder = parts_of(path)  # where the record lies
-        self.shards_folder = self.folder / "shards"
-        self.question = text, axes, drawn_with  # what its numbers depend on, in words
-        self.statistics = bool(axes) or self.scene.keep == "statistics"  # nothing is kept of a single surface
-
-    @classmethod
-    def of(cls, asked: "Scene | Points", path: Path, sampler: str = "") -> "Plan":
-        """Return that of a sweep, or of a scene with a number of surfaces, not a rule for it.
-
-        A scene is drawn by its own sampler, unless another one has drawn it.
-
-        Raises
-        ------
-        StoreError
-            If the scene cannot be told by a file, or none can be there.
-        """
-        check_output(path)
-        draws = versions(of_draws=True)
-        if not isinstance(asked, Scene):
-            texts = asked.texts()
-            return cls(path, *texts, "", identity_of(*texts, draws), draws)
-        from mcgw.ensemble.drawing import reducer_of  # imports the samplers
-
-        reducer, (text, key) = reducer_of(asked), written(asked)
-        sampler = sampler or reducer.sampler.name
-        plan = cls(path, text, "", sampler, identity_of(key, sampler, draws), draws, asked)
-        plan.reducers, plan.of_all = (reducer,), f"{key} {asked.n_surfaces}"
-        return plan
+        if not recorded:
+            check_output(path)
+        self.asked, self.path, self.folder = asked, path, parts_of(path)
+        self.shards_folder, draws = self.folder / "shards", versions(of_draws=True)
+        if isinstance(asked, Scene):
+            self.scene, self.axes, (self.text, key) = asked, "", written(asked)
+            self.sampler = sampler or self.reducers[0].sampler.name
+            words, self.of_all = (key, self.sampler), f"{key} {asked.n_surfaces}"
+        else:
+            self.text, self.axes = words = asked.texts()
+            self.scene, self.sampler, self.of_all = scene_from(self.text), "", "\0".join(words)
+        self.identity, self.drawn_with = recorded or (identity_of(*words, draws), draws)
+        self.question = self.text, self.axes, self.drawn_with  # what its numbers depend on, in words
+        self.statistics = bool(self.axes) or self.scene.keep == "statistics"  # of no surface anything is kept
 
     @classmethod
     def open(cls, folder: Path) -> "Plan":
@@ -121,24 +165,17 @@ class Plan:
         try:
             said = look(file, RUN_TYPE)
             text, sampler, run, draws = (str(said[key]) for key in ("scene", "sampler", "run", "draws"))
-            return cls(path, text, str(said.get("axes", "")), sampler, run, draws)
-        except (StoreError, SceneError, KeyError, ValueError) as error:
+            if "axes" not in said:
+                return cls(scene_from(text), path, sampler, (run, draws))
+            from mcgw.sweeps.points import Points  # of which most runs are none
+
+            return cls(Points.from_texts(text, str(said["axes"])), path, sampler, (run, draws))
+        except (KeyError, ValueError) as error:
             what = str(error).splitlines()[0].removeprefix(f"{file}: ")
             raise StoreError(
                 f"{file}: {what}; the blocks beside it are kept: resume with mcgw run or mcgw sweep, with "
                 f"their scene and seed, or remove {folder}"
             ) from None
-
-    def again(self) -> "Plan":
-        """Return what this process makes of the same words, whoever wrote them."""
-        return Plan.of(self.points if self.axes else self.scene, self.path)
-
-    @cached_property
-    def points(self) -> "Points":
-        """The points of a sweep."""
-        from mcgw.sweeps.points import Points  # of which most runs are none
-
-        return Points.from_texts(self.text, self.axes)
 
     @cached_property
     def reducers(self) -> "tuple[Values, ...]":
@@ -149,12 +186,11 @@ class Plan:
         SceneError
             With the mistakes of all points of a sweep.
         """
-        return tuple(self.points.groups) if self.axes else self.again().reducers
+        if not isinstance(self.asked, Scene):
+            return tuple(self.asked.groups)
+        from mcgw.ensemble.drawing import reducer_of  # imports the samplers
 
-    @cached_property
-    def of_all(self) -> str:
-        """What the numbers of all surfaces are of: the words under the digest."""
-        return f"{self.text}\0{self.axes}" if self.axes else self.again().of_all
+        return (reducer_of(self.asked),)
 
     @cached_property
     def blocks(self) -> dict[Span, tuple[int, int]]:
@@ -176,8 +212,8 @@ class Plan:
 
     def contents(self, held: list[Any], seconds: float) -> Labelled:
         """Return those of the file, of what is held of each group, with how long it took."""
-        found: Ensemble | Sweep
-        found = self.points.answered(held) if self.axes else Ensemble(self.scene, self.sampler, *held)
+        asked: Any = self.asked
+        found = asked.answered(held) if self.axes else Ensemble(self.scene, self.sampler, *held)
         about = {**self._about(FILETYPE), "title": self.scene.title, "seed": np.uint64(self.scene.seed)}
         about |= {"versions": versions(), "commit": commit(), "cpu": processor(), "wall_seconds": seconds}
         if self.scene.accuracy:
@@ -205,42 +241,47 @@ class Plan:
         refuse_link(self.folder)
         self.shards_folder.mkdir(parents=True, exist_ok=True)
         sync(self.folder.parent)
+        record = partial(_write, self.folder / RECORD, {}, self._about(RUN_TYPE))
         with suppress(FileExistsError):
-            return self._write(expected=None)
+            return record(None)
         try:
             old = Plan.open(self.folder)
         except StoreError:
             if not self.shards(numbers=False):
                 raise
-            return self._write(expected="anything")  # its blocks say that they are of this very run
+            return record()  # its blocks say that they are of this very run
         if old.identity != self.identity:
             raise another(self.folder, "sweep" if self.axes else "run", old.question, self.question)
         more = self.scene.n_surfaces > old.scene.n_surfaces
-        return self._write(expected="anything") if more else None
+        return record() if more else None
 
-    def _write(self, *, expected: Expected) -> None:
-        write_tables(self.folder / RECORD, {}, self._about(RUN_TYPE), expected)
+    def shards(self, *, numbers: bool = True) -> dict[Span, float]:
+        """Return the blocks that lie in valid shards, in order, and what drawing each took, s.
 
-    def shards(self, *, numbers: bool = True) -> list[Shard]:
-        """Return valid shards in order, each looked at; or its head alone, without the `numbers`."""
+        Each was looked at; or its head alone, without the `numbers`.
+        """
         if not self.shards_folder.is_dir():
             raise RunError(f"{self.folder}: is missing or incomplete; run the command again")
         looked = (self.shard(path, numbers=numbers) for path in sorted(self.shards_folder.glob("block-*.h5")))
-        return [shard for shard in looked if shard]
+        return dict(shard for shard in looked if shard)
 
-    def shard(self, path: Path, *, numbers: bool = True) -> Shard | None:
-        """Return the shard of a name, if it is there, whole, of this run and of use."""
+    def shard(self, path: Path, *, numbers: bool = True) -> tuple[Span, float] | None:
+        """Return the block of a shard and its seconds, if it is there, whole, of this run and of use."""
         shard, rows = open_shard(path, self.identity, numbers=numbers), self.reducers[0].rows
-        if shard is None or shard.span in self.blocks:
+        if shard is None or shard[0] in self.blocks:
             return shard
-        of_more = not self.axes and shard.span.n == rows and shard.span.first % rows == 0
+        of_more = not self.axes and shard[0].n == rows and shard[0].first % rows == 0
         return shard if of_more else None  # of the same scene with more surfaces
+
+    def shard_path(self, span: Span) -> Path:
+        """Where the shard of a block lies, or would."""
+        return self.shards_folder / span.file_name
 
     def kept(self, done: int) -> int:
         """Of the first surfaces, that a file holds, those in whole blocks: any others are drawn again."""
         return max((span.stop for span in self.blocks if span.stop <= done), default=0)
 
-    def missing(self, done: int, shards: Iterable[Shard]) -> list[Span]:
+    def missing(self, done: int, shards: Iterable[Span]) -> list[Span]:
         """Blocks that neither the file, of `done` surfaces, nor one of the shards holds."""
-        done, held = self.kept(done), {shard.span.first for shard in shards}
+        done, held = self.kept(done), {span.first for span in shards}
         return [span for span in self.blocks if span.stop > done and span.first not in held]

@@ -60,6 +60,10 @@ class PointResults(Held):
         """Return the number of surfaces."""
         return self.pooled.n
 
+    def at(self, which: Ints) -> "PointResults":
+        """Return the same at some of the separations, by their numbers."""
+        return PointResults(self.pooled.at(which), self.scenes, self.weights)
+
     def of(self, quantity: str) -> tuple[Ints, Array]:
         """Scenes and weights for one quantity."""
         if len(self.scenes) == 1 or quantity_of(quantity).modulus:

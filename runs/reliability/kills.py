@@ -111,8 +111,8 @@ def committed(file):
     if file.exists():  # of a sweep and an export all or none
         held.update(range(10**4 if file.suffix != ".h5" else _surfaces(file)))
     if (parts_of(file) / RECORD).is_file():
-        for shard in Plan.open(parts_of(file)).shards():
-            held.update(range(shard.span.first, shard.span.stop))
+        for span in Plan.open(parts_of(file)).shards():
+            held.update(range(span.first, span.stop))
     return held
 
 

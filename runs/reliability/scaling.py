@@ -19,7 +19,7 @@ import numpy as np
 
 import mcgw
 from mcgw.jobs.executors import Jobs, Signals, drive
-from mcgw.store.blocks import Span, commit_shard
+from mcgw.store.run_plan import Span, commit_shard
 
 SECONDS, ROWS, COLUMNS = 1.0, 1024, 128
 RUN = hashlib.sha256(b"scaling").hexdigest()
@@ -40,7 +40,8 @@ def commit(folder, first, rows):
     """Commit a shard of random numbers."""
     load = np.random.default_rng(first).random((rows, COLUMNS))
     span = Span(first, rows)
-    return commit_shard(Path(folder) / span.file_name, RUN, span, {"load": load}, SECONDS).path.name
+    commit_shard(Path(folder) / span.file_name, RUN, span, {"load": load}, SECONDS)
+    return span.file_name
 
 
 def wall(executor, blocks, seconds, task=wait_and_commit):

@@ -121,14 +121,14 @@ def found(scene, file, acked, digest):
     except StoreError as error:
         return [f"the record: {error}"]
     valid = run.shards()
-    if sum(shard.span.n for shard in valid) < acked:
+    if sum(span.n for span in valid) < acked:
         wrong.append(f"{acked} surfaces were committed, {sum(s.span.n for s in valid)} are there")
     if len(valid) != len(list(run.shards_folder.glob("block-*.h5"))):
         wrong.append("a shard is there and not whole")
-    for shard in valid:
-        for name, values in made_up(None, shard.span, 1).items():
-            if not np.array_equal(read_tables(shard.path)[name], values):
-                wrong.append(f"{shard.span}: {name} is wrong")
+    for span in valid:
+        for name, values in made_up(None, span, 1).items():
+            if not np.array_equal(read_tables(run.shard_path(span))[name], values):
+                wrong.append(f"{span}: {name} is wrong")
     return wrong
 
 

@@ -9,7 +9,7 @@ from conftest import SURFACE
 from oracles.inside import (
     FEWEST,
     TOO_FEW,
-    MemoryResults,
+    Results,
     Spread,
     comparison_text,
     count_interval,
@@ -51,7 +51,7 @@ def intervals(ensemble, surfaces):
     for name in scene.quantities:
         parts = ensemble.values(name).reshape(SEEDS, surfaces).T
         wide = scene.replace(n_surfaces=surfaces, separations=scene.separations * SEEDS)
-        found[name] = mcgw.Ensemble(wide, "cells", MemoryResults({name: parts})).interval(name)
+        found[name] = mcgw.Ensemble(wide, "cells", Results({name: parts})).interval(name)
     return found
 
 

@@ -18,7 +18,6 @@ from oracles.inside import (
     dask_executor,
     drive,
     heed_signals,
-    home,
 )
 from oracles.lost_workers import deadly
 
@@ -157,7 +156,6 @@ def test_a_long_block_is_left_when_the_run_is_interrupted(make_scene, tmp_path):
 
     begin = time.monotonic()
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(home("_GRACE"), "_GRACE", 0.1)
         patch.setattr(Values, "rows", 32 * SIZE)
         with pytest.raises(StoppedError, match=r"^terminated: 0 of 512 surfaces are kept"):
             mcgw.run(scene, tmp_path / "e.h5", progress=stop)
@@ -191,13 +189,12 @@ def test_a_signal_is_noted_and_a_second_one_acts_at_once(number, word, code):
     assert signal.getsignal(number) == before
 
 
-def test_blocks_in_hand_when_a_signal_comes_are_kept():
-    """Of six, one that is done and those that were begun with it, but for the one that fails."""
+def test_when_a_signal_comes_no_more_blocks_are_begun():
     signals, done = Signals(), []
 
     def note(span, first):
         done.append(first)
         signals.number = signal.SIGTERM
 
-    drive(Now(), SPANS, lambda first: first // (first != 8), lambda span: (span.first,), note, signals)
-    assert done == [0, 16, 24, 32, 40]
+    drive(Now(), SPANS, abs, lambda span: (span.first,), note, signals, in_hand=2)
+    assert done == [0, 8]

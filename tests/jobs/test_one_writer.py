@@ -157,7 +157,7 @@ def leave_behind(path, scene, *, shards):
     (folder / "shards" / "block-0000000000016.h5").write_bytes(b"of a worker whose driver is gone")
     if shards:
         (folder / "shards" / "block-0000000000016.h5").unlink()
-        Plan.of(scene, path).begin()
+        Plan(scene, path).begin()
         (folder / "shards" / "block-0000000000000.h5").write_bytes(b"whole")
 
 
@@ -179,7 +179,7 @@ def test_leftovers_of_a_finished_file_are_cleared(command, shards, scene, path):
 def test_an_empty_run_of_another_scene_gives_way(scene, path):
     folder, other = parts_of(path), scene.replace(seed=2, n_surfaces=3 * SIZE)
     with locked(folder):
-        Plan.of(scene, path).begin()
+        Plan(scene, path).begin()
     mcgw.run(other, path, shard="1/2")
     assert Plan.open(folder).scene.seed == 2
     leave_behind(path.with_name("f.h5"), scene, shards=False)

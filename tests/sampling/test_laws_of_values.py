@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from oracles.inside import MemoryResults, verdict
+from oracles.inside import Results, verdict
 from scipy import stats
 
 import analytic
@@ -15,7 +15,7 @@ from mcgw.statistics.verdict import distances, laws_of_values
 
 def holding(scene, **values):
     """An ensemble of these values, as if they had been drawn."""
-    return Ensemble(scene, "cells", MemoryResults(values))
+    return Ensemble(scene, "cells", Results(values))
 
 
 def test_distances_are_those_of_scipy(make_scene):

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 from oracles import exact
-from oracles.inside import Check, MemoryResults, verdict
+from oracles.inside import Check, Results, verdict
 from scipy.stats import chi2
 
 import analytic
@@ -33,7 +33,7 @@ def scaled(ensemble, factors):
     arrays = {name: ensemble.values(name).astype(float) for name in ensemble.scene.quantities}
     for (name, k), factor in factors.items():
         arrays[name][:, k] *= factor
-    return dataclasses.replace(ensemble, sums=MemoryResults(arrays))
+    return dataclasses.replace(ensemble, sums=Results(arrays))
 
 
 def test_the_ensemble_agrees_as_it_is(ensemble):

@@ -14,7 +14,6 @@ from oracles.flipped import flip_a_number
 from oracles.inside import (
     RECORD,
     Plan,
-    Shard,
     Span,
     blocks_of,
     commit_block,
@@ -101,7 +100,7 @@ def test_what_is_left_out_of_a_run_is_told(scene, tmp_path):
     path = tmp_path / "e.h5"
     for k, held in ((2, [16, 64]), (3, [16, 32, 64, 80])):
         mcgw.run(scene, path, shard=f"{k}/3")
-        assert [shard.span.first for shard in Plan.open(parts_of(path)).shards()] == held
+        assert [span.first for span in Plan.open(parts_of(path)).shards()] == held
     for wrong in ("0/3", "4/3", "1", "a/b", "1/0", "-1/3", "1/3/5", ""):
         with pytest.raises(ValueError, match=r"^--shard .*: give i/n with 1 <= i <= n$"):
             share_of(None, None, wrong)
@@ -223,15 +222,15 @@ def test_blocks_of_several_groups_end_with_their_group():
 
 def test_blocks_are_whole_or_missing(scene, tmp_path):
     """Of 100 surfaces in blocks of 16: of what a file holds whole ones alone, or all, are not drawn again."""
-    plan = Plan.of(scene, tmp_path / "e.h5")
+    plan = Plan(scene, tmp_path / "e.h5")
     blocks = [Span(first, min(16, 100 - first)) for first in range(0, 100, 16)]
     assert [plan.kept(n) for n in (0, 15, 16, 20, 32, 99, 100)] == [0, 0, 16, 16, 32, 96, 100]
     assert plan.missing(0, []) == blocks
     for i, span in enumerate(blocks):
-        assert plan.missing(0, [Shard(tmp_path, span, 0.0)]) == blocks[:i] + blocks[i + 1 :]
-        assert plan.missing(span.stop, [Shard(tmp_path, blocks[0], 0.0)]) == blocks[i + 1 :]
+        assert plan.missing(0, [span]) == blocks[:i] + blocks[i + 1 :]
+        assert plan.missing(span.stop, [blocks[0]]) == blocks[i + 1 :]
     assert plan.missing(99, []) == blocks[-1:]
-    assert plan.missing(96, [Shard(tmp_path, Span(96, 16), 0.0)]) == []  # of more surfaces than now
+    assert plan.missing(96, [Span(96, 16)]) == []  # of more surfaces than now
 
 
 @pytest.mark.parametrize(

@@ -18,45 +18,44 @@ def arrays():
 
 @pytest.fixture
 def shard(tmp_path):
-    return commit_shard(tmp_path / SPAN.file_name, RUN, SPAN, arrays(), 1.5)
+    commit_shard(tmp_path / SPAN.file_name, RUN, SPAN, arrays(), 1.5)
+    return tmp_path / SPAN.file_name
 
 
 @pytest.mark.parametrize("name", ["load", "contacts", "block_mean"])
 def test_every_flipped_bit_of_a_number_is_noticed(name, tmp_path, shard):
-    with h5py.File(shard.path) as file:
+    with h5py.File(shard) as file:
         chunk = file[name].id.get_chunk_info(0)
-    data = shard.path.read_bytes()
+    data = shard.read_bytes()
     for at in range(chunk.byte_offset, chunk.byte_offset + chunk.size, 7):
         changed = bytearray(data)
         changed[at] ^= 1 << at % 8
-        shard.path.write_bytes(changed)
-        assert open_shard(shard.path, RUN, numbers=False) == shard
-        assert open_shard(shard.path, RUN) is None
+        shard.write_bytes(changed)
+        assert open_shard(shard, RUN, numbers=False) == (SPAN, 1.5)
+        assert open_shard(shard, RUN) is None
         with pytest.raises(StoreError, match="damaged"):
-            read_tables(shard.path)
+            read_tables(shard)
 
 
 def test_every_lost_byte_and_flipped_bit_is_noticed(shard):
     """But for bits in room that HDF5 leaves and nobody reads."""
-    data, dice = shard.path.read_bytes(), np.random.default_rng(2)
+    data, dice = shard.read_bytes(), np.random.default_rng(2)
     for length in [0, 1, len(data) - 1, *dice.choice(len(data), 50, replace=False)]:
-        shard.path.write_bytes(data[:length])
-        assert open_shard(shard.path, RUN) is None
+        shard.write_bytes(data[:length])
+        assert open_shard(shard, RUN) is None
     for at in dice.choice(len(data), 50, replace=False):
         changed = bytearray(data)
         changed[at] ^= 1 << int(dice.integers(8))
-        shard.path.write_bytes(changed)
-        if (found := open_shard(shard.path, RUN)) is not None:
-            assert found == shard
-            assert all(
-                np.array_equal(read_tables(shard.path)[name], values) for name, values in arrays().items()
-            )
+        shard.write_bytes(changed)
+        if (found := open_shard(shard, RUN)) is not None:
+            assert found == (SPAN, 1.5)
+            assert all(np.array_equal(read_tables(shard)[name], values) for name, values in arrays().items())
 
 
 def test_a_shard_of_another_run_or_block_is_refused(shard):
-    assert open_shard(shard.path, "b" * 64) is None
-    other = shard.path.with_name(Span(45, 5).file_name)
-    other.write_bytes(shard.path.read_bytes())
+    assert open_shard(shard, "b" * 64) is None
+    other = shard.with_name(Span(45, 5).file_name)
+    other.write_bytes(shard.read_bytes())
     assert open_shard(other, RUN) is None
 
 
@@ -71,18 +70,18 @@ def test_numbers_that_are_not_finite_are_never_committed(tmp_path, bad):
 
 def test_the_checksum_is_of_contents_alone(shard):
     """Laid out otherwise, by another program and in big-endian numbers, the numbers are as good."""
-    with h5py.File(shard.path, "r+") as file:
+    with h5py.File(shard, "r+") as file:
         sha = file["load"].attrs["sha256"]
         del file["load"]
         file["load"] = arrays()["load"].astype(">f8")
         file["load"].attrs["sha256"] = sha
         file.attrs["comment"] = "seen"
-    assert open_shard(shard.path, RUN) == shard
-    with h5py.File(shard.path, "r+") as file:
+    assert open_shard(shard, RUN) == (SPAN, 1.5)
+    with h5py.File(shard, "r+") as file:
         file["load"][0, 0] = -0.0  # equal to 0.0, and not the same bits
-    assert open_shard(shard.path, RUN) is None
+    assert open_shard(shard, RUN) is None
     with pytest.raises(StoreError, match="checksum mismatch of load"):
-        read_tables(shard.path)
+        read_tables(shard)
 
 
 @pytest.mark.parametrize("lacking", [1, 100, 1500])
